@@ -7,7 +7,6 @@
 #include <limits>
 #include <utility>
 
-#include "core/detection/plane_decision.h"
 #include "core/detection/upright_box.h"
 #include "core/evidence/plane_support.h"
 #include "pcl_symmetry/core/published_planes.h"
@@ -15,37 +14,10 @@
 
 namespace pcl_symmetry::detail {
 
-namespace {
-
-// Tolerances from which neighboring points are so far apart that they are no surface. 5 000 points of one side of an
-// object are one tolerance apart, the points of a car in a LiDAR's sweep three.
-constexpr double kNoSurface = 1.5;
-
-}  // namespace
-
-void decideByUprightBox(DetectedPlanes& found, const Visibility& seen, const DetectionOptions& options) {
-  const std::vector<Eigen::Vector3d> up = carryingNormals(found.points, seen);
-  const bool is_sparse = spacingOf(found.points) > kNoSurface * found.tolerance;
-  const bool is_decided = !found.axes.empty() || !found.centers.empty() ||
-                          (!found.planes.empty() && found.planes.front().kind == PlaneKind::Symmetry);
-  if (up.empty() || (is_decided && !is_sparse)) return;
-  std::optional<SymmetryPlane> plane = middlePlaneOfBox(found.points, up.front(), seen.viewpoint());
-  if (is_sparse) {
-    found.planes.clear();
-    found.axes.clear();
-    found.centers.clear();
-    found.turns.clear();
-    found.best = plane;
-  }
-  if (!plane || plane->confidence < (is_sparse ? options.min_possible : options.min_confidence)) return;
-  plane->kind = plane->confidence >= options.min_confidence ? PlaneKind::Symmetry : PlaneKind::Possible;
-  found.planes.insert(found.planes.begin(), std::move(*plane));
-  found.best.reset();
-}
-
 DetectedPlanes foundPlanes(Points points, const GaussianEdt* edt, const SymmetryMap& map,
                            const DetectionOptions& options, const MakeSearch& search,
-                           const std::optional<Visibility>& seen, const std::optional<Points>& normals) {
+                           const std::optional<Visibility>& seen, const std::optional<Points>& normals,
+                           bool may_be_rings) {
   PlaneInput input(points, seen ? &*seen : nullptr);
   if (normals) input.normals = &*normals;
   if (edt) {
@@ -56,6 +28,8 @@ DetectedPlanes foundPlanes(Points points, const GaussianEdt* edt, const Symmetry
   DetectedPlanes found;
   static_cast<Detection&>(found) = detectPlanes(input, options);
   found.points = std::move(points);
+  if (may_be_rings && seen && !seen->supports().empty() && found.reason.empty())
+    decideByUprightBox(found.points, *seen, options, found);
   return found;
 }
 

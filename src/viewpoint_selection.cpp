@@ -24,12 +24,12 @@ struct ViewRules {
   double from_above = 0.98;                // cosine between the direction of a view and up
   double level = -0.05;                    // sine of the elevation of the lowest view from above
 };
-constexpr ViewRules view_rules;
+constexpr ViewRules kView;
 
 /// \return the share of the points that others hide from a camera in this direction, in [0, 1].
 double hiddenShare(const Points& points, const BoundingBall& ball, const Eigen::Vector3d& direction) {
-  const auto seen = Visibility::fromPoints(points, ball.center + view_rules.camera_distance * ball.radius * direction);
-  return seen ? seen->hiddenShare(points, view_rules.hidden_margin * ball.radius) : 1.0;
+  const auto seen = Visibility::fromPoints(points, ball.center + kView.camera_distance * ball.radius * direction);
+  return seen ? seen->hiddenShare(points, kView.hidden_margin * ball.radius) : 1.0;
 }
 
 /// \return the direction and its images under up to three reflections in a row: with three perpendicular
@@ -56,7 +56,7 @@ std::vector<Eigen::Vector3d> mirrorImages(const Eigen::Vector3d& direction,
 /// \return whether no direction has less than min_score of the best score.
 bool seenFromEverywhere(const std::vector<ViewPlane>& planes) {
   const std::vector<RankedView> best = bestViews(planes);
-  return !best.empty() && worstView(planes).score >= view_rules.min_score * best[0].score;
+  return !best.empty() && worstView(planes).score >= kView.min_score * best[0].score;
 }
 
 SelectedView noView() {
@@ -85,7 +85,7 @@ void ViewpointSelection::setPlanes(const std::vector<SymmetryPlane>& planes, con
     if (seenFromEverywhere(planes_)) break;
     const Eigen::Vector3d n = maximum.plane.normal();
     const bool near = std::any_of(planes_.begin(), planes_.end(), [&](const ViewPlane& plane) {
-      return std::abs(plane.normal.dot(n)) > view_rules.max_across;
+      return std::abs(plane.normal.dot(n)) > kView.max_across;
     });
     if (!near) planes_.push_back({n, maximum.value});
   }
@@ -113,7 +113,7 @@ Eigen::Vector3d ViewpointSelection::getUpAxis() const {
   if (planes_.empty()) return up_;
   const Eigen::Vector3d first = planes_[0].normal;
   const auto second = std::find_if(planes_.begin(), planes_.end(), [&](const ViewPlane& plane) {
-    return std::abs(plane.normal.dot(first)) < view_rules.perpendicular;
+    return std::abs(plane.normal.dot(first)) < kView.perpendicular;
   });
   Eigen::Vector3d best = first;
   const auto consider = [&](const Eigen::Vector3d& axis) {
@@ -124,10 +124,10 @@ Eigen::Vector3d ViewpointSelection::getUpAxis() const {
     const Eigen::Vector3d across = (second->normal - second->normal.dot(first) * first).normalized();
     consider(across);
     consider(first.cross(across));
-  } else if (in_plane.norm() > view_rules.perpendicular) {
+  } else if (in_plane.norm() > kView.perpendicular) {
     consider(in_plane.normalized());
   }
-  return std::abs(best.dot(up_)) < view_rules.near_up ? up_ : Eigen::Vector3d(std::copysign(1.0, best.dot(up_)) * best);
+  return std::abs(best.dot(up_)) < kView.near_up ? up_ : Eigen::Vector3d(std::copysign(1.0, best.dot(up_)) * best);
 }
 
 Eigen::Affine3f ViewpointSelection::computePose(const Eigen::Vector3d& direction) const {
@@ -136,7 +136,7 @@ Eigen::Affine3f ViewpointSelection::computePose(const Eigen::Vector3d& direction
   });
   const Eigen::Vector3d forward = -direction.normalized();
   Eigen::Vector3d up = getUpAxis();
-  if (std::abs(up.dot(forward)) > view_rules.from_above) {
+  if (std::abs(up.dot(forward)) > kView.from_above) {
     // From above or below: the strongest plane stands upright in the picture.
     const Eigen::Vector3d across = planes_.empty() ? up.unitOrthogonal() : Eigen::Vector3d(planes_[0].normal);
     const Eigen::Vector3d along = forward.cross(across);
@@ -145,7 +145,7 @@ Eigen::Affine3f ViewpointSelection::computePose(const Eigen::Vector3d& direction
   const Eigen::Vector3d right = forward.cross(up).normalized();
   Eigen::Matrix3d axes;
   axes << right, forward.cross(right), forward;
-  const double distance = ball_.radius / std::sin(0.5 * view_rules.view_angle);
+  const double distance = ball_.radius / std::sin(0.5 * kView.view_angle);
   Eigen::Affine3d pose = Eigen::Affine3d::Identity();
   pose.linear() = axes;
   pose.translation() = ball_.center - distance * forward;
@@ -156,7 +156,7 @@ RankedView ViewpointSelection::leastHidden(const std::vector<RankedView>& views)
   const Eigen::Vector3d up = getUpAxis();
   std::vector<RankedView> from_above;
   for (const RankedView& view : views)
-    if (view.direction.dot(up) > view_rules.level) from_above.push_back(view);
+    if (view.direction.dot(up) > kView.level) from_above.push_back(view);
   const std::vector<RankedView>& candidates = from_above.empty() ? views : from_above;
   std::vector<double> hidden;
   for (const RankedView& view : candidates) hidden.push_back(hiddenShare(points_, ball_, view.direction));
@@ -194,7 +194,7 @@ std::vector<SelectedView> ViewpointSelection::getGoodViews(int num_views) const 
   while (!remaining.empty() && static_cast<int>(views.size()) < num_views) {
     std::vector<RankedView> equal;
     for (const RankedView& view : remaining)
-      if (view.score >= view_rules.near_best * remaining[0].score) equal.push_back(view);
+      if (view.score >= kView.near_best * remaining[0].score) equal.push_back(view);
     const RankedView view = leastHidden(equal);
     views.push_back({view, computePose(view.direction)});
     const std::vector<Eigen::Vector3d> shown = mirrorImages(view.direction, symmetries_);

@@ -23,7 +23,7 @@ namespace {
 constexpr double kMostChanged = 0.05;
 // Samples around a place that may have its color.
 constexpr int kNumColorsNear = 4;
-// Turns that stand for all turns about an axis.
+// Rotations that represent all rotations about an axis.
 constexpr int kNumTurns = 8;
 // Greatest fold of stripes.
 constexpr int kMaxFold = 24;

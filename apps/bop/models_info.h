@@ -29,7 +29,7 @@ ListedSymmetries bopSymmetries(const ObjectSymmetries& symmetries, double sphere
 nlohmann::ordered_json symmetriesJson(const ListedSymmetries& listed);
 
 /// An entry for DOPE: the same fields, and align_axes, by which it chooses one of the poses that look the same: the
-/// main axis of the object upright in the image, a line across it towards the camera.
+/// main axis of the object upright in the image, a line across it toward the camera.
 nlohmann::ordered_json dopeJson(const ObjectSymmetries& symmetries, double sphere_angle);
 
 /// Reads what symmetriesJson() writes.

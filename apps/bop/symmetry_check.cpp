@@ -17,7 +17,7 @@ namespace {
 
 // Greatest distance of a point between turns that are one, share of the diameter.
 constexpr double kOneTurn = 0.02;
-// Turns that stand for all turns about an axis.
+// Rotations that represent all rotations about an axis.
 constexpr int kNumAngles = 8;
 
 const Eigen::Isometry3d kIdentity = Eigen::Isometry3d::Identity();
@@ -231,7 +231,7 @@ SurfaceEvidence::SurfaceEvidence(Points points, double tolerance)
     : points_(std::move(points)),
       tolerance_(tolerance),
       search_(makeFlannSearch(points_)),
-      geometry_(localGeometry(points_, *search_, kNumSupportNeighbours, 1)) {}
+      geometry_(localGeometry(points_, *search_, kNumSupportNeighbors, 1)) {}
 
 std::vector<double> SurfaceEvidence::distances(const Eigen::Isometry3d& motion) const {
   const Points moved = (motion.cast<float>() * points_.colwise().homogeneous()).eval();

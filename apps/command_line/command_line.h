@@ -25,7 +25,7 @@ struct CommonOptions {
   std::optional<double> sigma;  ///< width of the Gaussian, input units; none: two cells
   int mesh_points = 10'000;     ///< number of points spread over a mesh
   Viewpoint viewpoint;
-  bool takes_volumes = false;     ///< whether the tool analyses volumes
+  bool takes_volumes = false;     ///< whether the tool analyzes volumes
   std::vector<double> levels;     ///< intensities of volumes that count, two; empty: chosen from the values
   std::optional<double> surface;  ///< the intensity whose surface is analyzed in place of the volume
   bool quiet = false;

@@ -1,4 +1,4 @@
-/// Which files the arguments of a tool stand for.
+/// Which files the arguments of a tool name.
 #pragma once
 
 #include <string>
@@ -24,7 +24,7 @@ std::vector<InputFile> inputFiles(const std::vector<std::string>& arguments);
 /// \return whether the name ends in one of kShapeFilesOfFolders, in capitals or not
 bool hasShapeExtension(const std::string& path);
 
-/// \return whether one argument may stand for several files: a folder, a pattern or a list
+/// \return whether one argument may name several files: a folder, a pattern or a list
 bool standsForSeveral(const std::string& argument);
 
 }  // namespace pcl_symmetry::apps

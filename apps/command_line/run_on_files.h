@@ -30,7 +30,7 @@ struct BatchOptions {
   std::vector<std::string> inputs;  ///< as inputFiles() takes them
   std::optional<std::string> csv_path;
   bool resume = false;
-  /// What the tool writes of each input besides JSON and CSV: names in which {} stands for the name of the input.
+  /// What the tool writes of each input besides JSON and CSV: names in which {} is replaced by the name of the input.
   std::vector<const std::optional<std::string>*> outputs;
 
   /// Adds -csv and -resume.
@@ -51,7 +51,7 @@ struct FileReport {
 
 class FileJob {
 public:
-  /// \param console says nothing where there are several inputs.
+  /// \param console is silent where there are several inputs.
   /// \param num_threads as -threads; 1 where there are several inputs, of which each has a thread.
   FileJob(std::string path, const Console& console, int num_threads)
       : path_(std::move(path)), console_(console), num_threads_(num_threads) {}

@@ -1,4 +1,4 @@
-/// What stops a tool, the exit code that each reason stands for, and the frame that turns one into the other.
+/// What stops a tool, the exit code of each reason, and the frame that turns one into the other.
 #pragma once
 
 #include <pcl/exceptions.h>

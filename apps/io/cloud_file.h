@@ -38,7 +38,7 @@ void makeRoom(std::uint64_t width, std::uint64_t height, pcl::PCLPointCloud2& cl
 /// \return a value of the type at any address, as double.
 double numberAt(const void* source, std::uint8_t type);
 
-/// Stores what the token spells; whole numbers are rounded towards zero and kept within the range of the type.
+/// Stores what the token spells; whole numbers are rounded toward zero and kept within the range of the type.
 /// \return whether the token is a number.
 bool storeNumber(std::string_view token, std::uint8_t type, void* target);
 

@@ -185,7 +185,7 @@ std::vector<std::uint8_t> decompressed(const std::string& path, std::string_view
   if (sizes[1] != size)
     reject(path, "uncompressed size = " + std::to_string(sizes[1]) + ", must be " + std::to_string(size) +
                      ", the size of all points");
-  constexpr std::uint64_t kMaxRatio = 88;  // a reference of three bytes stands for at most 264
+  constexpr std::uint64_t kMaxRatio = 88;  // a reference of three bytes expands to at most 264
   if (sizes[1] > kMaxRatio * sizes[0]) reject(path, "the compressed points are damaged, too few bytes for them");
   std::vector<std::uint8_t> bytes(size);
   if (!decompressLZF(body.substr(8, sizes[0]), bytes)) reject(path, "the compressed points are damaged");

@@ -50,7 +50,7 @@ struct PictureScene {
   std::optional<pcl::PolygonMesh> mesh = {};        ///< drawn in light gray
   std::vector<PicturePanel> panels = {};            ///< at least one
   int num_columns = 0;                              ///< 0 = as square as the panels allow
-  Eigen::Vector3d view = {1.0, -1.6, 0.8};          ///< from the scene towards the camera
+  Eigen::Vector3d view = {1.0, -1.6, 0.8};          ///< from the scene toward the camera
   Eigen::Vector3d up = Eigen::Vector3d::UnitZ();
   bool show_color_bar = true;  ///< legend of the support, in panels that have support
 };

@@ -53,7 +53,7 @@ public:
   Eigen::Vector3d center() const;
   double diagonal() const;
 
-  /// \param direction from the center towards the scanner, in the model's frame; any length but zero.
+  /// \param direction from the center toward the scanner, in the model's frame; any length but zero.
   /// \param options with random_pose, scanner and model are turned and moved together, so what is seen stays.
   /// \throws std::invalid_argument for bad options or a zero direction, std::runtime_error if too few rays hit.
   VirtualScan scan(const Eigen::Vector3d& direction, const VirtualScannerOptions& options = {}) const;

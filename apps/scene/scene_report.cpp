@@ -160,9 +160,9 @@ void lookFromSensor(PictureScene& picture, const SceneAnalysis& scene, const Eig
   Eigen::Vector3d up = Eigen::Vector3d::UnitZ();
   if (!scene.supports.empty()) up = scene.supports.front().coefficients.head<3>();
   if (seen) {
-    const Eigen::Vector3d towards = (seen->viewpoint() - middle).normalized();
-    if (std::abs(up.dot(towards)) > 0.95) up = towards.unitOrthogonal();  // a wall that faces the sensor
-    picture.view = (towards + kRaised * up).normalized();
+    const Eigen::Vector3d toward = (seen->viewpoint() - middle).normalized();
+    if (std::abs(up.dot(toward)) > 0.95) up = toward.unitOrthogonal();  // a wall that faces the sensor
+    picture.view = (toward + kRaised * up).normalized();
   }
   picture.up = up;
 }

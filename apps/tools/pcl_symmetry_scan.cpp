@@ -42,7 +42,7 @@ CommandLine commandLine(ScanOptions& options) {
                    "pcl_symmetry_scan bull.off bull.pcd -direction 1,-1,0.5 -noise 0.001");
   line.positional("mesh", options.input, ".off, .obj, .stl or .ply with faces")
       .positional("output", options.output, ".pcd or .ply; with -all eight files, NAME_0.pcd to NAME_7.pcd")
-      .direction("direction", options.direction, "from the object's center towards the scanner (as -corner 7)")
+      .direction("direction", options.direction, "from the object's center toward the scanner (as -corner 7)")
       .number("corner", options.corner, Range::closed(0, 7),
               "corner of a cube around the object; bit 0, 1, 2 set: positive x, y, z")
       .flag("all", options.all, "scan from all eight corners")

@@ -41,7 +41,7 @@ IspFrame frameOf(const Points& points, const std::vector<int>& samples, const Re
 
 std::vector<IspFrame> ispFrames(const Points& points, const ReflectionPlane& plane) {
   const ClosestPointSearch::Ptr search = makeFlannSearch(points);
-  const LocalGeometry geometry = localGeometry(points, *search, kNumSupportNeighbours, 0);
+  const LocalGeometry geometry = localGeometry(points, *search, kNumSupportNeighbors, 0);
   const IspSurface surface{points, geometry.normals, *search};
   std::vector<int> samples;
   const Eigen::Index stride = std::max<Eigen::Index>(1, points.cols() / kNumSamples);

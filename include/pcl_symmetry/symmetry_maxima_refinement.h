@@ -43,7 +43,7 @@ public:
   /// Uses at most 50 000 points, see setMaxPoints().
   SymmetryMaximaRefinement() : ScanAnalysis<PointT>("SymmetryMaximaRefinement", 50'000) {}
 
-  /// Sets the cloud to analyse; clears the results of the last one, and the map that was given for it.
+  /// Sets the cloud to analyze; clears the results of the last one, and the map that was given for it.
   void setInputCloud(const PointCloudConstPtr& cloud) override {
     ScanAnalysis<PointT>::setInputCloud(cloud);
     map_ = {};

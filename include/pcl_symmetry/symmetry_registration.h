@@ -46,7 +46,7 @@ struct CloudRegistrationOptions {
 /// A pose of a cloud in another one.
 struct RegisteredPose {
   Eigen::Isometry3d T_target_source = Eigen::Isometry3d::Identity();  ///< moves the source onto the target
-  /// Of this pose. The source counts as the scan, unless only the target was seen from one side.
+  /// How good this pose is. The source counts as the scan, unless only the target was seen from one side.
   PoseScore score;
 };
 
@@ -87,7 +87,7 @@ constexpr int kLeastRegistrationPoints = 100;
 class PreparedCloud;
 
 /// A cloud that others are registered to, again and again. Its normals, its trees, and its symmetry frame where that
-/// is asked for, are made when they are first needed, and kept. Copies share them; several threads may use them.
+/// is needed, are made when they are first needed, and kept. Copies share them; several threads may use them.
 class RegistrationTarget {
 public:
   /// \param points 3 x N, finite, not all equal, input units.

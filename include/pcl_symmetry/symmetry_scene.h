@@ -33,7 +33,7 @@ struct SceneOptions {
   int min_points = 300;
   /// Points at a greater depth than this, seen from the viewpoint, are background, input units, >= 0; 0 = none is.
   double max_range = 0.0;
-  /// Points of a cluster that are analysed, >= 100: time grows with them; half makes weak planes less certain.
+  /// Points of a cluster that are analyzed, >= 100: time grows with them; half makes weak planes less certain.
   int max_points = 5'000;
   /// Cuts objects that touch apart where their surface bends inwards, and joins pieces that one symmetry explains.
   bool separate = true;
@@ -52,14 +52,14 @@ struct SceneOptions {
 
 /// A table, floor or wall: other points lie on the viewer's side of it.
 struct SupportingPlane {
-  Eigen::Vector4d coefficients;  ///< unit normal towards the viewer, then d: normal . x + d = 0 on the plane
+  Eigen::Vector4d coefficients;  ///< unit normal toward the viewer, then d: normal . x + d = 0 on the plane
   pcl::Indices indices;          ///< of its points, into the scene
 };
 
 /// A cluster of a scene, and what was found.
 struct SceneObject {
   pcl::Indices indices;                 ///< of its points, into the scene
-  std::string reason;                   ///< why the cluster holds no answer, one sentence; empty where it was analysed
+  std::string reason;                   ///< why the cluster holds no answer, one sentence; empty where it was analyzed
   std::vector<SymmetryPlane> planes;    ///< as in Detection, frame of the scene
   std::vector<SymmetryAxis> axes;       ///< as in Detection
   std::vector<SymmetryCenter> centers;  ///< as in Detection

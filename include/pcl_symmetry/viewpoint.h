@@ -82,9 +82,10 @@ public:
   /// \param source how the place of the scanner is known.
   SeenSpace(Visibility visibility, ViewpointSource source) : visibility_(std::move(visibility)), source_(source) {}
 
-  /// Of a whole scene. An organized cloud shows it by its own pixels, any other cloud by a range image from the
-  /// viewpoint. Viewpoint::Mode::Auto believes sensor_origin_ where the scene can have been seen from there: hardly any
-  /// point lies behind others. One of 0 0 0 must not be surrounded by points: a whole object may lie about it.
+  /// The space that the scanner of a whole scene saw. An organized cloud shows it by its own pixels, any other cloud by
+  /// a range image from the viewpoint. Viewpoint::Mode::Auto believes sensor_origin_ where the scene can have been seen
+  /// from there: hardly any point lies behind others. One of 0 0 0 must not be surrounded by points: a whole object may
+  /// lie about it.
   /// \param scene all that the scanner measured; points that are not finite are pixels without a point.
   /// \param max_pixels of a range image, >= 16; it takes four bytes a pixel. Organized clouds keep theirs.
   /// \throws pcl::BadArgumentException for another max_pixels.
@@ -98,7 +99,7 @@ public:
   static SeenSpace together(const std::vector<SeenSpace>& spaces);
 
   /// The same for objects on a table, see Visibility::withSupport().
-  /// \param support unit normal towards the objects, then d: normal . x + d = 0 on the surface.
+  /// \param support unit normal toward the objects, then d: normal . x + d = 0 on the surface.
   /// \param margin by which objects may seem to reach into it, input units, >= 0.
   SeenSpace withSupport(const Eigen::Vector4d& support, double margin) const;
 

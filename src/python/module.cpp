@@ -415,7 +415,7 @@ void addPlaneFunctions(py::module_& module) {
       "absolute_tolerance: the same in input units; 0: tolerance decides.\n"
       "approximate: also the other maxima of the transform, and symmetries of parts.\n"
       "normals: (N, 3), of any length and sign; None: estimated.\n"
-      "max_points: larger clouds are thinned to so many. threads: 0 = one per core.\n"
+      "max_points: larger clouds are thinned to that number. threads: 0 = one per core.\n"
       "evidence: also what the decisions are taken from, `evidence` and `turn_evidence` of the result; takes about as\n"
       "long again.\n"
       "Returns Planes. Raises ValueError for bad parameters.");

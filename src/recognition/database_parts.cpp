@@ -88,14 +88,14 @@ std::shared_ptr<const PairSearch> DatabaseParts::pairs() {
   std::unique_lock<std::mutex> lock(mutex);
   const std::uint64_t version = store.version();
   if (pairs_version_ == version) return pairs_;
-  if (store.models().size() > recognition_rules.max_pair_models) return pairs_ = nullptr;
+  if (store.models().size() > kRecognition.max_pair_models) return pairs_ = nullptr;
   const std::vector<StoredModel> models = store.models();
   const std::shared_ptr<const PairSearch> before = pairs_;
   lock.unlock();  // clouds are read under it, one at a time
   const auto read = [&](const StoredModel& model) {
     const PositionCloud stored = cloud(model);
-    return ModelPoints{finitePoints(stored, recognition_rules.num_fine_points),
-                       finitePoints(stored, recognition_rules.num_coarse_points)};
+    return ModelPoints{finitePoints(stored, kRecognition.num_fine_points),
+                       finitePoints(stored, kRecognition.num_coarse_points)};
   };
   const auto made = std::make_shared<const PairSearch>(models, read, before.get(), options.num_threads);
   lock.lock();

@@ -22,7 +22,7 @@ struct DatabaseParts {
   DatabaseParts(const std::string& file, const DatabaseOptions& database_options)
       : options(database_options), store(file, database_options.lock_timeout, database_options.unit) {}
 
-  /// Of the state that is read now.
+  /// The indexes of the state that is read now.
   std::shared_ptr<const ShapeSearch> shapes();
   std::shared_ptr<const ViewSearch> views();
   /// Pairs of points of all models; null in a large database.

@@ -18,7 +18,7 @@ PairSearch::PairSearch(std::vector<StoredModel> models, const PointReader& read,
     }
     ModelPoints points = read(models_[i]);
     std::vector<SurfacePoints> few =
-        evenSurfacePoints(points.fine, {matching_rules.num_pair_points, matching_rules.num_screened_points}, 1);
+        evenSurfacePoints(points.fine, {kMatching.num_pair_points, kMatching.num_screened_points}, 1);
     shapes_[i] = std::make_shared<const Shape>(Shape{std::move(points), std::move(few[0]), ScreenedSurface(few[1])});
   });
   std::vector<SurfacePoints> of_pairs;
@@ -40,7 +40,7 @@ const ModelPoints* PairSearch::pointsOf(const StoredModel& model) const {
 std::vector<ModelOfView> PairSearch::nearest(const Points& scan, const Visibility& seen,
                                              const std::vector<ModelOfView>& others,
                                              const PoseScreeningOptions& options) const {
-  const SurfacePoints points = evenSurfacePoints(scan, matching_rules.num_scan_points, 1);
+  const SurfacePoints points = evenSurfacePoints(scan, kMatching.num_scan_points, 1);
   std::vector<PosesOfShape> poses;
   for (const auto& shape : shapes_) poses.push_back({&shape->screened, {}});
   const auto add = [&](std::size_t model, const std::vector<Eigen::Isometry3d>& more) {
@@ -49,7 +49,7 @@ std::vector<ModelOfView> PairSearch::nearest(const Points& scan, const Visibilit
   };
   PairSearchOptions by_pairs;
   by_pairs.num_nearest = index_->numShapes();
-  by_pairs.num_poses = recognition_rules.num_pair_poses;
+  by_pairs.num_poses = kRecognition.num_pair_poses;
   by_pairs.num_threads = options.num_threads;
   for (const ShapeOfPairs& shape : index_->nearest(points, by_pairs))
     add(static_cast<std::size_t>(shape.shape), shape.T_shape_scan);

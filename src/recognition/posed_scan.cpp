@@ -12,7 +12,7 @@ namespace pcl_symmetry::detail {
 
 double sharedSurface(const PosedModel& a, const PosedModel& b) {
   const Eigen::Isometry3d T_b_a = b.T_surface_scan * a.T_surface_scan.inverse();
-  const PoseScorer::Detail detail{recognition_rules.num_compared_points, recognition_rules.same_surface, true, true};
+  const PoseScorer::Detail detail{kRecognition.num_compared_points, kRecognition.same_surface, true, true};
   return std::min(PoseScorer(*a.surface, *b.surface).score(T_b_a, detail).support,
                   PoseScorer(*b.surface, *a.surface).score(T_b_a.inverse(), detail).support);
 }
@@ -31,7 +31,7 @@ CloudRegistrationOptions quickRegistration(int num_threads) {
 PosedScan::PosedScan(const Points& points, const std::optional<Visibility>& seen, int num_threads)
     : options_(quickRegistration(num_threads)),
       ball_(boundingBall(points)),
-      scale_(ball_.radius / recognition_rules.seen_radius),
+      scale_(ball_.radius / kRecognition.seen_radius),
       surface_(surfaceOf(points, ball_.center,
                          seen ? std::optional(seen->normalized(ball_.center, scale_)) : std::nullopt)) {}
 
@@ -55,8 +55,7 @@ std::vector<PosedModel> PosedScan::refined(int num_refined) {
   std::vector<PosedModel> found;
   for (const SearchedModel& model : models_) {
     if (found.size() == static_cast<std::size_t>(num_refined)) break;
-    if (found.size() >= recognition_rules.min_refined &&
-        merit(model) < merit(models_.front()) - recognition_rules.hopeless)
+    if (found.size() >= kRecognition.min_refined && merit(model) < merit(models_.front()) - kRecognition.hopeless)
       break;
     found.push_back(refined(model, std::make_shared<const PosedSurface>(
                                        surfaceOf(model.read(), model.frames.target_center, std::nullopt))));
@@ -74,8 +73,8 @@ PosedModel PosedScan::rotated(const PosedModel& found) const {
   const PrincipalAxes principal = principalAxes(found.surface->points);
   std::vector<Eigen::Isometry3d> hypotheses;
   for (int k = 0; k < 3; ++k) {
-    for (int i = 1; i < recognition_rules.num_rotations; ++i) {
-      const Eigen::AngleAxisd rotation(2.0 * kPi * i / recognition_rules.num_rotations, principal.axes.col(k));
+    for (int i = 1; i < kRecognition.num_rotations; ++i) {
+      const Eigen::AngleAxisd rotation(2.0 * kPi * i / kRecognition.num_rotations, principal.axes.col(k));
       hypotheses.push_back(Eigen::Translation3d(principal.center) * rotation * Eigen::Translation3d(-principal.center) *
                            found.T_surface_scan);
     }
@@ -100,8 +99,8 @@ PosedModel PosedScan::judged(const std::string& name, const Points& points,
 
 PoseScore PosedScan::scoreOf(const PosedSurface& model, const Eigen::Isometry3d& T_model_scan) const {
   return PoseScorer(surface_, model)
-      .score(T_model_scan, {recognition_rules.num_judged_points,
-                            std::max(recognition_rules.min_width, surface_.accuracy), true, true});
+      .score(T_model_scan,
+             {kRecognition.num_judged_points, std::max(kRecognition.min_width, surface_.accuracy), true, true});
 }
 
 PosedSurface PosedScan::surfaceOf(const Points& points, const Eigen::Vector3d& center,

@@ -16,9 +16,9 @@ namespace pcl_symmetry {
 namespace {
 
 using detail::DatabaseParts;
+using detail::kRecognition;
 using detail::PosedModel;
 using detail::PosedScan;
-using detail::recognition_rules;
 using detail::StoredModel;
 
 /// Models that look like the scan from some side, each with poses to try. With a search by pairs: of all models those
@@ -44,7 +44,7 @@ std::vector<std::size_t> firstsOfShapes(const std::vector<PosedModel>& found) {
   for (std::size_t i = 0; i < found.size(); ++i) {
     std::size_t first = 0;
     while (first < i &&
-           (firsts[first] != first || detail::sharedSurface(found[first], found[i]) < recognition_rules.same_shape))
+           (firsts[first] != first || detail::sharedSurface(found[first], found[i]) < kRecognition.same_shape))
       ++first;
     firsts.push_back(first);
   }
@@ -61,9 +61,8 @@ void fillConfidences(std::vector<PosedModel>& found) {
     std::size_t other = 0;
     while (other < found.size() && firsts[other] == firsts[i]) ++other;
     const double lead =
-        std::min(merit - (other < found.size() ? found[other].model.score.merit() : 0.0), recognition_rules.max_lead);
-    found[i].model.confidence =
-        1.0 / (1.0 + std::exp((recognition_rules.even_sum - merit - lead) / recognition_rules.odds_step));
+        std::min(merit - (other < found.size() ? found[other].model.score.merit() : 0.0), kRecognition.max_lead);
+    found[i].model.confidence = 1.0 / (1.0 + std::exp((kRecognition.even_sum - merit - lead) / kRecognition.odds_step));
     if (firsts[i] == i) sum += found[i].model.confidence;
   }
   if (sum > 1.0)
@@ -100,9 +99,9 @@ std::vector<PosedModel> fitLikeViews(DatabaseParts& database, const Points& poin
   const auto fit = [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       const StoredModel& model = candidates[i].model;
-      scan.bringTo(model.name, points_of(model, &detail::ModelPoints::coarse, recognition_rules.num_coarse_points),
+      scan.bringTo(model.name, points_of(model, &detail::ModelPoints::coarse, kRecognition.num_coarse_points),
                    candidates[i].T_model_scan,
-                   [&] { return points_of(model, &detail::ModelPoints::fine, recognition_rules.num_fine_points); });
+                   [&] { return points_of(model, &detail::ModelPoints::fine, kRecognition.num_fine_points); });
     }
     const std::vector<PosedModel> fitted = scan.refined(options.num_refined);
     found.insert(found.end(), fitted.begin(), fitted.end());
@@ -124,7 +123,7 @@ std::vector<PosedModel> fitLikeShapes(DatabaseParts& database, const Points& poi
   std::vector<PosedModel> found;
   const PosedScan scan(scan_points, std::nullopt, options.num_threads);
   for (const auto& [model, distance] : database.shapes()->nearest(points, nullptr, options.num_candidates)) {
-    const Points model_points = database.points(model, recognition_rules.num_scan_points);
+    const Points model_points = database.points(model, kRecognition.num_scan_points);
     const CloudRegistration posed =
         registerClouds(scan_points, std::nullopt, model_points, std::nullopt, Eigen::Isometry3d::Identity(),
                        detail::quickRegistration(options.num_threads));
@@ -169,16 +168,15 @@ void SymmetryDatabase::prepare() const {
 Recognition SymmetryDatabase::recognize(const Cloud& scan, const RecognitionOptions& options,
                                         const Viewpoint& viewpoint) const {
   const Points points = detail::finitePoints(scan, parts_->options.max_points);
-  return recognizeIn(*parts_, points, detail::finitePoints(scan, recognition_rules.num_scan_points), options,
+  return recognizeIn(*parts_, points, detail::finitePoints(scan, kRecognition.num_scan_points), options,
                      [&] { return detail::seenSpace(scan, points, viewpoint); });
 }
 
 Recognition SymmetryDatabase::recognize(const Cloud& scene, const pcl::Indices& cluster,
                                         const RecognitionOptions& options, const SeenSpace::ConstPtr& seen) const {
   const Points points = detail::selectPoints(scene, &cluster, parts_->options.max_points, 1).points;
-  return recognizeIn(*parts_, points,
-                     detail::selectPoints(scene, &cluster, recognition_rules.num_scan_points, 1).points, options,
-                     [&] { return detail::visibilityOf(seen ? *seen : SeenSpace(scene)); });
+  return recognizeIn(*parts_, points, detail::selectPoints(scene, &cluster, kRecognition.num_scan_points, 1).points,
+                     options, [&] { return detail::visibilityOf(seen ? *seen : SeenSpace(scene)); });
 }
 
 }  // namespace pcl_symmetry

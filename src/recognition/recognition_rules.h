@@ -31,6 +31,6 @@ struct RecognitionRules {
   double same_surface = 0.03;     // with a Gaussian of this width: each was brought to the scan by itself,
   int num_compared_points = 500;  // by this many points
 };
-inline constexpr RecognitionRules recognition_rules;
+inline constexpr RecognitionRules kRecognition;
 
 }  // namespace pcl_symmetry::detail

@@ -37,7 +37,7 @@ void ShapeSearch::makeIndex(ModelStore& store, std::int64_t stored, const Databa
     }
   }
   CompactIndexOptions index;
-  index.num_candidates = recognition_rules.num_shape_forms;
+  index.num_candidates = kRecognition.num_shape_forms;
   index.num_threads = options.num_threads;
   index_ = CompactIndex(std::move(compact), kFormsPerModel, index, std::move(typical));
 }

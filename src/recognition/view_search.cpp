@@ -25,7 +25,7 @@ ViewIndex indexOf(const std::vector<StoredModel>& models, const ViewSearch::View
 
 ViewSearch::ViewSearch(ModelStore& store, const FittedForms& stored, const DatabaseOptions& options)
     : models_(store.models()) {
-  if (models_.size() <= recognition_rules.num_view_models) {
+  if (models_.size() <= kRecognition.num_view_models) {
     std::mutex mutex;
     all_ = indexOf(
         models_, [&](const StoredModel& model) { return viewsOf(store, model, mutex); }, options.num_threads);
@@ -51,7 +51,7 @@ std::vector<ModelOfView> ViewSearch::nearest(const View& scan, int num_nearest, 
   std::vector<StoredModel> candidates;
   ViewIndex index;
   if (coder_) {
-    const auto count = std::max(recognition_rules.num_view_models, static_cast<std::size_t>(num_nearest));
+    const auto count = std::max(kRecognition.num_view_models, static_cast<std::size_t>(num_nearest));
     for (const int model : codes_.nearest(coder_->codeOf(scan), static_cast<int>(count), num_threads))
       candidates.push_back(models_[static_cast<std::size_t>(model)]);
     index = indexOf(candidates, read, num_threads);

@@ -28,7 +28,7 @@ std::map<std::uint32_t, std::uint32_t> piecesOf(pcl::LCCPSegmentation<pcl::Point
   while (true) {
     std::set<std::uint32_t, decltype(before)> small(before);
     for (const auto& [segment, around] : neighbors)
-      if (!around.empty() && members[segment].size() <= scene_rules.fewest) small.insert(segment);
+      if (!around.empty() && members[segment].size() <= kScene.fewest) small.insert(segment);
     if (small.empty()) break;
     const std::uint32_t from = *small.begin();
     const std::set<std::uint32_t> around = neighbors[from];
@@ -53,11 +53,11 @@ std::map<std::uint32_t, std::uint32_t> piecesOf(pcl::LCCPSegmentation<pcl::Point
 
 std::vector<pcl::Indices> convexPieces(const SymmetryScene::Cloud& scene, const pcl::Indices& cluster,
                                        const Eigen::Vector3d& viewpoint, double spacing, int min_points) {
-  const auto voxel = static_cast<float>(scene_rules.voxel_spacings * spacing);
-  const auto supervoxel = static_cast<float>(scene_rules.supervoxel_voxels * voxel);
+  const auto voxel = static_cast<float>(kScene.voxel_spacings * spacing);
+  const auto supervoxel = static_cast<float>(kScene.supervoxel_voxels * voxel);
   pcl::SupervoxelClustering<pcl::PointXYZ> clustering(voxel, supervoxel);
   clustering.setUseSingleCameraTransform(false);
-  // PCL turns normals towards the origin.
+  // PCL turns normals toward the origin.
   auto points = pcl::make_shared<SymmetryScene::Cloud>(scene, cluster);
   for (pcl::PointXYZ& point : *points) point.getVector3fMap() -= viewpoint.cast<float>();
   clustering.setInputCloud(points);
@@ -68,9 +68,9 @@ std::vector<pcl::Indices> convexPieces(const SymmetryScene::Cloud& scene, const 
   std::multimap<std::uint32_t, std::uint32_t> adjacent;
   clustering.getSupervoxelAdjacency(adjacent);
   pcl::LCCPSegmentation<pcl::PointXYZ> segmentation;
-  segmentation.setConcavityToleranceThreshold(scene_rules.concavity);
-  segmentation.setSmoothnessCheck(true, voxel, supervoxel, scene_rules.smoothness);
-  segmentation.setKFactor(scene_rules.common_neighbors);
+  segmentation.setConcavityToleranceThreshold(kScene.concavity);
+  segmentation.setSmoothnessCheck(true, voxel, supervoxel, kScene.smoothness);
+  segmentation.setKFactor(kScene.common_neighbors);
   segmentation.setInputSupervoxels(supervoxels, adjacent);
   segmentation.segment();
   const pcl::PointCloud<pcl::PointXYZL>::Ptr labeled = clustering.getLabeledCloud();

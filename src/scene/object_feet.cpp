@@ -81,13 +81,12 @@ void offerFeet(const SymmetryScene::Cloud::ConstPtr& scene, const std::vector<Su
 
 double riseOfNoise(const SymmetryScene::Cloud& scene, const SupportingPlane& support, const pcl::Indices& cluster,
                    double spacing, double distance) {
-  const Box around(scene, cluster, scene_rules.around * distance);
+  const Box around(scene, cluster, kScene.around * distance);
   std::vector<double> heights;
   for (const pcl::index_t i : support.indices)
     if (around.contains(scene[i].getVector3fMap())) heights.push_back(std::abs(heightOver(support, scene[i])));
-  if (heights.size() < scene_rules.least_around) return std::numeric_limits<double>::infinity();
-  return std::max(scene_rules.rises_at_least * spacing,
-                  scene_rules.rises * kDeviationPerMedian * median(std::move(heights)));
+  if (heights.size() < kScene.least_around) return std::numeric_limits<double>::infinity();
+  return std::max(kScene.rises_at_least * spacing, kScene.rises * kDeviationPerMedian * median(std::move(heights)));
 }
 
 void returnFeet(const SymmetryScene::Cloud::ConstPtr& scene, std::vector<SupportingPlane>& supports,

@@ -35,10 +35,10 @@ std::optional<Consensus> greatestPlane(const SymmetryScene::Cloud::ConstPtr& sce
   // What pcl::SACSegmentation does, without its other models.
   using Model = pcl::SampleConsensusModelPlane<pcl::PointXYZ>;
   pcl::Indices some;
-  const std::size_t stride = 1 + (points.size() - 1) / scene_rules.consensus_points;
+  const std::size_t stride = 1 + (points.size() - 1) / kScene.consensus_points;
   for (std::size_t i = 0; i < points.size(); i += stride) some.push_back(points[i]);
   pcl::RandomSampleConsensus<pcl::PointXYZ> consensus(pcl::make_shared<Model>(scene, some), distance);
-  consensus.setMaxIterations(scene_rules.consensus_iterations);
+  consensus.setMaxIterations(kScene.consensus_iterations);
   if (!consensus.computeModel()) return std::nullopt;
   Consensus plane;
   Eigen::VectorXf found, coefficients;
@@ -56,13 +56,13 @@ std::optional<Consensus> greatestPlane(const SymmetryScene::Cloud::ConstPtr& sce
 /// of them, which is tilted by their noise and by points of what stands on it.
 Eigen::Vector4d fitted(const SymmetryScene::Cloud& scene, const Consensus& plane) {
   Eigen::Vector4d coefficients = plane.coefficients;
-  for (int round = 0; round < scene_rules.fit_rounds; ++round) {
+  for (int round = 0; round < kScene.fit_rounds; ++round) {
     const auto height = [&](pcl::index_t i) {
       return std::abs(coefficients.dot(scene[i].getVector3fMap().cast<double>().homogeneous().eval()));
     };
     std::vector<double> heights;
     for (const pcl::index_t i : plane.inliers) heights.push_back(height(i));
-    const double most = scene_rules.fit_deviations * median(std::move(heights));
+    const double most = kScene.fit_deviations * median(std::move(heights));
     Eigen::Vector3d sum = Eigen::Vector3d::Zero();
     Eigen::Matrix3d squares = Eigen::Matrix3d::Zero();
     const Eigen::Vector3d origin = scene[plane.inliers.front()].getVector3fMap().cast<double>();
@@ -98,7 +98,7 @@ Sides sidesOf(const SymmetryScene::Cloud& scene, const Consensus& plane, const p
   const auto extent = [&](const Eigen::Vector3d& axis) {
     std::vector<double> places;
     for (const pcl::index_t i : plane.inliers) places.push_back(along(i, axis));
-    const auto trim = static_cast<std::ptrdiff_t>(scene_rules.footprint_trim * static_cast<double>(places.size() - 1));
+    const auto trim = static_cast<std::ptrdiff_t>(kScene.footprint_trim * static_cast<double>(places.size() - 1));
     const auto first = places.begin() + trim, last = places.end() - 1 - trim;
     std::nth_element(places.begin(), first, places.end());
     const double low = *first;
@@ -110,7 +110,7 @@ Sides sidesOf(const SymmetryScene::Cloud& scene, const Consensus& plane, const p
   Sides sides;
   for (const pcl::index_t i : others) {
     const double height = along(i, n) + plane.coefficients[3], at_u = along(i, u), at_v = along(i, v);
-    sides.attached += height < -distance && height > -scene_rules.attached * distance ? 1 : 0;
+    sides.attached += height < -distance && height > -kScene.attached * distance ? 1 : 0;
     if (std::abs(height) <= distance || at_u < u_low || at_u > u_high || at_v < v_low || at_v > v_high) continue;
     ++(height > 0.0 ? sides.above : sides.below);
   }
@@ -130,9 +130,9 @@ bool isRemainder(const SymmetryScene::Cloud& scene, const pcl::Indices& cluster,
                  double distance) {
   const auto num_near = std::count_if(cluster.begin(), cluster.end(), [&](pcl::index_t i) {
     const double height = support.coefficients.dot(scene[i].getVector3fMap().cast<double>().homogeneous().eval());
-    return std::abs(height) <= scene_rules.remainder * distance;
+    return std::abs(height) <= kScene.remainder * distance;
   });
-  return static_cast<double>(num_near) > scene_rules.remainder_share * static_cast<double>(cluster.size());
+  return static_cast<double>(num_near) > kScene.remainder_share * static_cast<double>(cluster.size());
 }
 
 }  // namespace
@@ -141,27 +141,27 @@ SurfaceScale surfaceScale(const SymmetryScene::Cloud& scene, const pcl::Indices&
   Points surface(3, static_cast<Eigen::Index>(points.size()));
   for (std::size_t i = 0; i < points.size(); ++i)
     surface.col(static_cast<Eigen::Index>(i)) = scene[points[i]].getVector3fMap();
-  const std::size_t stride = 1 + (points.size() - 1) / scene_rules.scale_samples;
+  const std::size_t stride = 1 + (points.size() - 1) / kScene.scale_samples;
   Points places(3, static_cast<Eigen::Index>((points.size() + stride - 1) / stride));
   for (Eigen::Index i = 0; i < places.cols(); ++i) places.col(i) = surface.col(i * static_cast<Eigen::Index>(stride));
   const auto search = makeFlannSearch(surface);
-  const int num_neighbours = static_cast<int>(std::min<std::size_t>(kNumSupportNeighbours + 1, points.size()));
+  const int num_neighbors = static_cast<int>(std::min<std::size_t>(kNumSupportNeighbors + 1, points.size()));
   std::vector<int> closest;
   std::vector<float> sq_distances;
-  search->search(places, num_neighbours, closest, sq_distances);
+  search->search(places, num_neighbors, closest, sq_distances);
   std::vector<float> spacing(static_cast<std::size_t>(places.cols()));
   for (std::size_t i = 0; i < spacing.size(); ++i)
-    // As LocalGeometry::spacing: pi r^2 holds the neighbours within r.
+    // As LocalGeometry::spacing: pi r^2 holds the neighbors within r.
     spacing[i] =
-        std::sqrt(static_cast<float>(kPi) * sq_distances[(i + 1) * static_cast<std::size_t>(num_neighbours) - 1] /
-                  static_cast<float>(std::max(1, num_neighbours - 1)));
+        std::sqrt(static_cast<float>(kPi) * sq_distances[(i + 1) * static_cast<std::size_t>(num_neighbors) - 1] /
+                  static_cast<float>(std::max(1, num_neighbors - 1)));
   return {median(std::move(spacing)), median(localGeometryAt(surface, *search, places).roughness)};
 }
 
 SceneDistances sceneDistances(const SymmetryScene::Cloud& scene, const pcl::Indices& points) {
   const SurfaceScale scale = surfaceScale(scene, points);
-  return {scale.spacing, scene_rules.plane_spacings * scale.spacing + scene_rules.plane_roughnesses * scale.roughness,
-          scene_rules.cluster_spacings * scale.spacing};
+  return {scale.spacing, kScene.plane_spacings * scale.spacing + kScene.plane_roughnesses * scale.roughness,
+          kScene.cluster_spacings * scale.spacing};
 }
 
 SeenSpace seenOfObject(const SeenSpace& seen, const SymmetryScene::Cloud& scene,
@@ -173,13 +173,13 @@ SeenSpace seenOfObject(const SeenSpace& seen, const SymmetryScene::Cloud& scene,
     points.col(static_cast<Eigen::Index>(i)) = scene[object[i]].getVector3fMap();
   const double diagonal = (points.rowwise().maxCoeff() - points.rowwise().minCoeff()).cast<double>().norm();
   const double off = std::max(tolerance * diagonal, resolvedTolerance(points, *seen.visibility()));
-  const double most = scene_rules.support_margin * distances.plane;
+  const double most = kScene.support_margin * distances.plane;
   SeenSpace result = seen;
   for (const SupportingPlane& support : supports) {
     const Eigen::RowVector3f normal = support.coefficients.head<3>().cast<float>();
     const auto offset = static_cast<float>(support.coefficients[3] + most);
     const auto num_above = ((normal * points).array() > -offset).count();
-    if (static_cast<double>(num_above) < scene_rules.above_share * static_cast<double>(object.size())) continue;
+    if (static_cast<double>(num_above) < kScene.above_share * static_cast<double>(object.size())) continue;
     // A symmetric surface may be off by the tolerance, and by noise. A wider margin would leave unknown space below a
     // table, where a reflection costs nothing.
     const double rise = riseOfNoise(scene, support, object, distances.spacing, distances.cluster);
@@ -215,12 +215,12 @@ std::vector<SupportingPlane> findSupports(const SymmetryScene::Cloud::ConstPtr& 
                                           const std::optional<Eigen::Vector3d>& viewpoint, double distance) {
   std::vector<SupportingPlane> supports;
   pcl::Indices candidates = points, others = points;
-  for (int round = 0; round < scene_rules.most_planes; ++round) {
+  for (int round = 0; round < kScene.most_planes; ++round) {
     std::optional<Consensus> plane = greatestPlane(scene, candidates, distance);
     const auto share = [&](std::size_t count) {
       return static_cast<double>(count) / static_cast<double>(points.size());
     };
-    if (!plane || share(plane->inliers.size()) < scene_rules.least_share) break;
+    if (!plane || share(plane->inliers.size()) < kScene.least_share) break;
     plane->coefficients = fitted(*scene, *plane);
     candidates = without(candidates, plane->inliers, scene->size());
     if (viewpoint && plane->coefficients.dot(viewpoint->homogeneous()) < 0.0) plane->coefficients *= -1.0;
@@ -229,11 +229,11 @@ std::vector<SupportingPlane> findSupports(const SymmetryScene::Cloud::ConstPtr& 
       plane->coefficients *= -1.0;
       std::swap(sides.above, sides.below);
     }
-    const double few = scene_rules.telling_share * static_cast<double>(plane->inliers.size());
+    const double few = kScene.telling_share * static_cast<double>(plane->inliers.size());
     const bool tells = static_cast<double>(sides.above + sides.below) > few;
     // Above a table lies what stands on it. Behind the face of a box the other faces begin.
     const bool is_bare =
-        share(plane->inliers.size()) >= scene_rules.bare_share && static_cast<double>(sides.attached) <= few;
+        share(plane->inliers.size()) >= kScene.bare_share && static_cast<double>(sides.attached) <= few;
     const bool supports_others = tells ? sides.above >= sides.below : is_bare;
     if (!supports_others) continue;
     others = without(others, plane->inliers, scene->size());

@@ -13,8 +13,8 @@ namespace pcl_symmetry::detail {
 
 /// How far points of one surface are apart: what distances of a scene follow from.
 struct SurfaceScale {
-  double spacing = 0.0;    ///< of neighbouring points, median, input units
-  double roughness = 0.0;  ///< root mean square distance of neighbours from their tangent plane, median
+  double spacing = 0.0;    ///< of neighboring points, median, input units
+  double roughness = 0.0;  ///< root mean square distance of neighbors from their tangent plane, median
 };
 
 /// \param points indices of finite points, at least one.
@@ -22,7 +22,7 @@ SurfaceScale surfaceScale(const SymmetryScene::Cloud& scene, const pcl::Indices&
 
 /// Distances that decide what belongs together, input units.
 struct SceneDistances {
-  double spacing;  ///< of neighbouring points
+  double spacing;  ///< of neighboring points
   double plane;    ///< of the points of a supporting plane
   double cluster;  ///< between the points of one object
 };

@@ -63,6 +63,6 @@ struct SceneRules {
   int planes_of_axis = 4;                 ///< that represent an axis, 45 degrees apart
 };
 
-inline constexpr SceneRules scene_rules;
+inline constexpr SceneRules kScene;
 
 }  // namespace pcl_symmetry::detail

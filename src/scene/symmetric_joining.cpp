@@ -48,8 +48,8 @@ ReflectionPlane planeThrough(const SymmetryAxis& axis, const Eigen::Vector3d& no
 std::vector<ReflectionPlane> planesThrough(const SymmetryAxis& axis) {
   std::vector<ReflectionPlane> planes;
   const Eigen::Vector3d u = axis.direction.unitOrthogonal(), v = axis.direction.cross(u);
-  for (int k = 0; k < scene_rules.planes_of_axis; ++k) {
-    const double angle = kPi * k / scene_rules.planes_of_axis;
+  for (int k = 0; k < kScene.planes_of_axis; ++k) {
+    const double angle = kPi * k / kScene.planes_of_axis;
     planes.push_back(planeThrough(axis, std::cos(angle) * u + std::sin(angle) * v));
   }
   return planes;
@@ -71,7 +71,7 @@ struct Landings {
   double all = 0.0;               ///< with those that land in unknown space
 
   double known() const { return own + other + off; }
-  bool isInformative() const { return known() >= scene_rules.informative * all; }
+  bool isInformative() const { return known() >= kScene.informative * all; }
   double share() const { return known() > 0.0 ? (own + other) / known() : 0.0; }
 };
 
@@ -100,7 +100,7 @@ public:
 
   /// Whether the pieces are two bodies: symmetries of their own explain them, and neither is a face or part of a wall.
   bool isCutBySymmetry(double share_apart) const {
-    return share_apart >= scene_rules.own && !isFlat(*pieces_[0]) && !isFlat(*pieces_[1]);
+    return share_apart >= kScene.own && !isFlat(*pieces_[0]) && !isFlat(*pieces_[1]);
   }
 
   const pcl::Indices& indices() const { return indices_; }
@@ -112,16 +112,16 @@ public:
     const SupportingPlane& support = nearestSupport();
     const std::array<double, 2> heights[] = {heightsOf(support, *pieces_[0]), heightsOf(support, *pieces_[1])};
     const double beside = std::min(heights[0][1], heights[1][1]) - std::max(heights[0][0], heights[1][0]);
-    if (beside < scene_rules.beside * std::min(heights[0][1] - heights[0][0], heights[1][1] - heights[1][0]))
+    if (beside < kScene.beside * std::min(heights[0][1] - heights[0][0], heights[1][1] - heights[1][0]))
       return std::nullopt;
     const Eigen::Vector3d up = support.coefficients.head<3>();
     const std::vector<Wall> walls = wallsOf(up);
     Eigen::Vector3d at = center_;
-    for (int round = 0; round < scene_rules.axis_rounds; ++round) {
+    for (int round = 0; round < kScene.axis_rounds; ++round) {
       Eigen::Matrix3d a = up * up.transpose();  // leaves the height where it is
       Eigen::Vector3d b = a * center_;
       for (const Wall& wall : walls) {
-        const double off = wall.aside.dot(wall.point - at) / (scene_rules.misses * diagonal_);
+        const double off = wall.aside.dot(wall.point - at) / (kScene.misses * diagonal_);
         const double weight = round == 0 ? 1.0 : 1.0 / (1.0 + off * off);
         a += weight * wall.aside * wall.aside.transpose();
         b += weight * wall.aside.dot(wall.point) * wall.aside;
@@ -135,11 +135,11 @@ public:
       inwards -= up * up.dot(inwards);
       num_walls[wall.piece] += 1.0;
       num_round[wall.piece] +=
-          std::abs(wall.aside.dot(inwards)) <= std::sin(scene_rules.points_to) * inwards.norm() ? 1.0 : 0.0;
+          std::abs(wall.aside.dot(inwards)) <= std::sin(kScene.points_to) * inwards.norm() ? 1.0 : 0.0;
     }
     for (std::size_t k = 0; k < 2; ++k)
-      if (num_walls[k] < scene_rules.walls * static_cast<double>(reflected_[k].size()) ||
-          num_round[k] < scene_rules.round_share * num_walls[k])
+      if (num_walls[k] < kScene.walls * static_cast<double>(reflected_[k].size()) ||
+          num_round[k] < kScene.round_share * num_walls[k])
         return std::nullopt;
     return shareOfBoth(num_round[0] / num_walls[0], num_round[1] / num_walls[1]);
   }
@@ -184,7 +184,7 @@ private:
     std::array<pcl::Indices, 2> some;
     for (int k = 0; k < 2; ++k) {
       const pcl::Indices& all = pieces_[k]->indices;
-      const std::size_t stride = 1 + (all.size() - 1) / scene_rules.reflected;
+      const std::size_t stride = 1 + (all.size() - 1) / kScene.reflected;
       for (std::size_t i = 0; i < all.size(); i += stride) some[k].push_back(all[i]);
     }
     return some;
@@ -227,8 +227,8 @@ private:
       for (int k = 0; k < 2; ++k) {
         const Landings all = landings(k, plane);
         if (!all.isInformative()) continue;
-        if (all.share() < scene_rules.explained) return false;
-        is_explained[k] = is_explained[k] || of_axis || all.own >= scene_rules.explained * (all.own + all.other);
+        if (all.share() < kScene.explained) return false;
+        is_explained[k] = is_explained[k] || of_axis || all.own >= kScene.explained * (all.own + all.other);
       }
     return is_explained[0] && is_explained[1];
   }
@@ -247,12 +247,11 @@ private:
       for (const pcl::index_t i : reflected_[k]) {
         Eigen::Vector4f normal;
         float curvature = 0.0f;
-        if (tree_.radiusSearch((*scene_.frame)[i], scene_rules.normal_spacings * scene_.spacing, around, sq_distances) <
-                3 ||
+        if (tree_.radiusSearch((*scene_.frame)[i], kScene.normal_spacings * scene_.spacing, around, sq_distances) < 3 ||
             !pcl::computePointNormal(*scene_.frame, around, normal, curvature))
           continue;
         const Eigen::Vector3d aside = up.cross(normal.head<3>().cast<double>());
-        if (aside.norm() >= scene_rules.level) walls.push_back({k, positionOf(*scene_.frame, i), aside.normalized()});
+        if (aside.norm() >= kScene.level) walls.push_back({k, positionOf(*scene_.frame, i), aside.normalized()});
       }
     return walls;
   }
@@ -263,13 +262,13 @@ private:
   }
 
   bool isSame(const SymmetryAxis& a, const SymmetryAxis& b) const {
-    return std::abs(a.direction.dot(b.direction)) >= std::cos(scene_rules.same_angle) &&
-           (middleOf(a) - middleOf(b)).norm() <= scene_rules.same_offset * diagonal_;
+    return std::abs(a.direction.dot(b.direction)) >= std::cos(kScene.same_angle) &&
+           (middleOf(a) - middleOf(b)).norm() <= kScene.same_offset * diagonal_;
   }
 
   bool contains(const ReflectionPlane& plane, const SymmetryAxis& axis) const {
-    return std::abs(plane.normal().dot(axis.direction)) <= std::sin(scene_rules.same_angle) &&
-           std::abs(plane.signedDistance(middleOf(axis))) <= scene_rules.same_offset * diagonal_;
+    return std::abs(plane.normal().dot(axis.direction)) <= std::sin(kScene.same_angle) &&
+           std::abs(plane.signedDistance(middleOf(axis))) <= kScene.same_offset * diagonal_;
   }
 
   /// The plane through the axis of the larger piece and the smaller piece.
@@ -289,7 +288,7 @@ private:
       squares += x * x.transpose() / static_cast<double>(piece.indices.size());
     }
     const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(squares, Eigen::EigenvaluesOnly);
-    return solver.eigenvalues()[0] < std::pow(scene_rules.flat, 2) * solver.eigenvalues()[2];
+    return solver.eigenvalues()[0] < std::pow(kScene.flat, 2) * solver.eigenvalues()[2];
   }
 
   /// The support that a piece comes closest to.
@@ -306,7 +305,7 @@ private:
     if (scene_.supports.empty()) return true;
     const SupportingPlane& support = nearestSupport();
     return footOf(support, *pieces_[1]) - footOf(support, *pieces_[0]) >
-           std::max(2.0 * scene_.plane_distance, scene_rules.hangs * diagonal_);
+           std::max(2.0 * scene_.plane_distance, kScene.hangs * diagonal_);
   }
 
   /// Heights of the foot and the top of a piece, without flying pixels.
@@ -315,7 +314,7 @@ private:
     for (const pcl::index_t i : piece.indices)
       heights.push_back(support.coefficients.dot(positionOf(*scene_.frame, i).homogeneous().eval()));
     const auto foot =
-        heights.begin() + static_cast<std::ptrdiff_t>(scene_rules.trimmed * static_cast<double>(heights.size()));
+        heights.begin() + static_cast<std::ptrdiff_t>(kScene.trimmed * static_cast<double>(heights.size()));
     const auto top = heights.end() - 1 - (foot - heights.begin());
     std::nth_element(heights.begin(), foot, heights.end());
     const double lowest = *foot;
@@ -349,7 +348,7 @@ bool touch(const JoiningScene& scene, const SceneObject& larger, const SceneObje
 /// The decision on a pair.
 struct Verdict {
   bool are_one = false;
-  std::optional<SceneObject> object;  // the one object, where it was analysed
+  std::optional<SceneObject> object;  // the one object, where it was analyzed
   double together = 0.0, apart = 0.0;
 };
 
@@ -369,16 +368,16 @@ public:
         if (cluster_of[i] == cluster_of[j] && touch(scene, objects_[i], objects_[j])) pairs_[larger(i, j)] = {};
   }
 
-  void analyseAll() {
+  void analyzeAll() {
     std::set<std::size_t> left;
     for (std::size_t i = 0; i < objects_.size(); ++i)
       if (owners_[i] == i) left.insert(i);
-    analyse(left);
+    analyze(left);
   }
 
   /// Unites pairs until decide(pair, number of pairs) unites none.
   /// \param report whether these pairs are reported as junctions.
-  /// \param again whether united pieces are analysed.
+  /// \param again whether united pieces are analyzed.
   template <typename Decide>
   void unite(const Decide& decide, bool report, bool again) {
     std::vector<PiecePair> asked;
@@ -393,7 +392,7 @@ public:
         Verdict& verdict = verdicts[k];
         pairs_[asked[k]] = {verdict.together, verdict.apart};
         const std::size_t to = owner(asked[k].first), from = owner(asked[k].second);
-        // What was analysed holds for pieces as they were; other pairs are asked again.
+        // What was analyzed holds for pieces as they were; other pairs are asked again.
         const bool is_stale = verdict.object && (changed.count(to) || changed.count(from));
         if (!verdict.are_one || to == from || is_stale) continue;
         if (report) junctions_.push_back(junctionOf(asked[k]));
@@ -407,7 +406,7 @@ public:
         owners_[from] = to;
         changed.insert({to, from});
       }
-      if (again) analyse(unknown);
+      if (again) analyze(unknown);
       asked.clear();
       std::map<PiecePair, std::array<double, 2>> left;
       for (const auto& [pair, shares] : pairs_) {
@@ -446,10 +445,10 @@ private:
     return i;
   }
 
-  void analyse(const std::set<std::size_t>& objects) {
+  void analyze(const std::set<std::size_t>& objects) {
     const std::vector<std::size_t> all(objects.begin(), objects.end());
     parallelBlocks(all.size(), scene_.num_threads,
-                   [&](std::size_t k) { objects_[all[k]] = scene_.analyse(objects_[all[k]].indices, all.size()); });
+                   [&](std::size_t k) { objects_[all[k]] = scene_.analyze(objects_[all[k]].indices, all.size()); });
   }
 
   PiecePair larger(std::size_t i, std::size_t j) const {
@@ -480,7 +479,7 @@ JoinedPieces joinBySymmetry(const JoiningScene& scene, const std::vector<pcl::In
   };
   const auto are_one = [&](const Pair& pair, std::size_t num_pairs) {
     if (!pair.isPlausible()) return Verdict();
-    Verdict verdict{false, scene.analyse(pair.indices(), num_pairs), 0.0, pair.shareApart()};
+    Verdict verdict{false, scene.analyze(pair.indices(), num_pairs), 0.0, pair.shareApart()};
     verdict.are_one = pair.areOne(*verdict.object);
     verdict.together = pair.shareTogether(&*verdict.object);
     return verdict;
@@ -490,7 +489,7 @@ JoinedPieces joinBySymmetry(const JoiningScene& scene, const std::vector<pcl::In
     return Verdict{!pair.isCutBySymmetry(apart), std::nullopt, pair.shareTogether(nullptr), apart};
   };
   joining.unite(are_round, true, false);
-  joining.analyseAll();
+  joining.analyzeAll();
   joining.unite(are_one, true, true);
   joining.unite(are_not_cut, false, true);
   return std::move(joining).result();

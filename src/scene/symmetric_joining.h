@@ -18,8 +18,8 @@ struct JoiningScene {
   int num_threads;          ///< 0 = one per core
   /// What the sensor saw, for an object with these points.
   std::function<SeenSpace(const pcl::Indices&)> seen_of;
-  /// The planes and axes of an object with these points, one of several that are analysed at once, by several threads.
-  std::function<SceneObject(const pcl::Indices&, std::size_t num_objects)> analyse;
+  /// The planes and axes of an object with these points, one of several that are analyzed at once, by several threads.
+  std::function<SceneObject(const pcl::Indices&, std::size_t num_objects)> analyze;
 };
 
 struct JoinedPieces {

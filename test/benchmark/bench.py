@@ -368,7 +368,7 @@ class Scan:
 
 
 def scan(mesh, direction, random, num_points=10_000, noise=0.0, pose=None, distance=2.0, field_of_view=0.4, resolution=None):
-    """What a depth camera sees from `direction` (model frame, towards the camera), about `num_points` of it.
+    """What a depth camera sees from `direction` (model frame, toward the camera), about `num_points` of it.
 
     noise: standard deviation along the ray, in diagonals. pose: T_cloud_model. distance: of the camera from the center,
     in diagonals. resolution: edge of the picture; None: found by the number of points, up to 1024.

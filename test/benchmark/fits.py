@@ -16,7 +16,7 @@ LEAST_EXAMPLES = 100  # of either kind, weights counted; with fewer a decision i
 def logistic(terms, right, weights=None, pull=1e-3, name="the fit", least=LEAST_EXAMPLES):
     """(coefficients, their standard errors) of the log odds of `right` by terms, of which the first is 1.
 
-    right: outcomes in [0, 1]; shares count as both outcomes. pull: on all but the first coefficient towards 0, in
+    right: outcomes in [0, 1]; shares count as both outcomes. pull: on all but the first coefficient toward 0, in
     cases, of terms scaled to a mean square of 1. Newton's method, so that the same cases give the same bits.
     """
     terms, right = np.asarray(terms, float), np.asarray(right, float)

@@ -4,8 +4,8 @@
 real_frames.py kinect data --tools build/apps           data: a clone of github.com/PointCloudLibrary/data
 real_frames.py lidar SUSTechPOINTS --tools build/apps   SUSTechPOINTS: a clone of github.com/naurril/SUSTechPOINTS
 
-kinect: the learn frames of segmentation/mOSD, in which people labelled boxes and cylinders on a table. References are the
-middle planes of boxes and the axes of cylinders, fitted to the labelled points. Each object is given alone, with its rows
+kinect: the learn frames of segmentation/mOSD, in which people labeled boxes and cylinders on a table. References are the
+middle planes of boxes and the axes of cylinders, fitted to the labeled points. Each object is given alone, with its rows
 and columns, and in the whole frame, where the object found counts that overlaps the label the most, by half and more.
 lidar: vehicles in the frames 000950 and 000965, in boxes that people drew: the reference is the middle plane along the
 vehicle. The points in a box are given with the viewpoint of the sensor and the ground, and without.
@@ -43,7 +43,7 @@ def show(repository, path):
     return done.stdout
 
 
-def read_labelled_frame(repository, path):
+def read_labeled_frame(repository, path):
     """(H, W, 3) points, NaN where there are none, and (H, W) labels, of a compressed PCD file in a git folder."""
     import open3d
 
@@ -70,7 +70,7 @@ def read_sweep(repository, path):
 
 
 def fit_plane(points):
-    """(n, offset) with n.x = offset and n towards the camera at the origin."""
+    """(n, offset) with n.x = offset and n toward the camera at the origin."""
     mean = points.mean(0)
     n = np.linalg.eigh(np.cov((points - mean).T))[1][:, 0]
     n = -n if n @ mean > 0 else n
@@ -260,7 +260,7 @@ def objects_found(name, points, arguments):
 
 def kinect_frame(frame, arguments):
     """Rows of the objects of one frame, alone and in the whole."""
-    points, labels = read_labelled_frame(arguments.repository, f"segmentation/mOSD/learn/learn{frame}.pcd")
+    points, labels = read_labeled_frame(arguments.repository, f"segmentation/mOSD/learn/learn{frame}.pcd")
     truths, rows, exported = objects_of(frame, points, labels), [], {}
     objects = objects_found(f"learn_{frame}", points, arguments)
     for label, truth in truths.items():

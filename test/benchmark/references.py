@@ -185,9 +185,9 @@ def scan_all_planes(surface, num_normals=5955, num_offsets=101, reach=0.04, num_
         values[part[:, 0], part[:, 1]] = closeness(reflect(planes, x))
     values += 1e-6 * np.random.default_rng(1).uniform(size=values.shape).astype(np.float32)  # no ties
     widest = maximum_filter1d(values, 5, axis=1)  # half a diagonal times two degrees
-    neighbours = cKDTree(np.vstack([normals, -normals])).query_ball_point(normals, 2 * math.sin(math.radians(1.5)))
+    neighbors = cKDTree(np.vstack([normals, -normals])).query_ball_point(normals, 2 * math.sin(math.radians(1.5)))
     both = np.vstack([widest, widest[:, ::-1]])
-    highest = np.stack([both[rows].max(0) for rows in neighbours])
+    highest = np.stack([both[rows].max(0) for rows in neighbors])
     maxima = np.argwhere((values >= highest) & (values > 0))
     maxima = maxima[np.argsort(-values[maxima[:, 0], maxima[:, 1]])]
     return np.c_[normals[maxima[:, 0]], offsets[maxima[:, 1]]].astype(float), values[maxima[:, 0], maxima[:, 1]]

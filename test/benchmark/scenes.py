@@ -32,21 +32,21 @@ import recognition
 import references
 import registration
 
-LEAST_DIAGONAL, GREATEST_DIAGONAL = 0.15, 0.30  # of models, metres
+LEAST_DIAGONAL, GREATEST_DIAGONAL = 0.15, 0.30  # of models, meters
 BANDS = (0.0, 0.1, 0.3, 0.5, 0.7)  # of the share of an object that others hide
 RIGHT_POSE = 0.05  # of the diameter: the limit of the BOP benchmark
 MIN_IOU = 0.5
 DEVIATION, STEP, FLYING, EDGE = 1.425e-3, 2.85e-3, 0.5, 0.02  # structured light at 1 m (Khoshelham and Elberink 2012); shares
 RANGE_DEVIATION = 0.001  # of a LiDAR scanner: 2 cm at a car of 4.5 m, for an object of 0.22 m
 ROAD = 20  # a road is this many times smaller: 5 to 30 m from a scanner at a height of 1.8 m
-TABLE_RIM, BIN_HEIGHT, BIN_WALL, BIN_GAP = 0.4, 0.15, 0.01, 0.01  # metres
+TABLE_RIM, BIN_HEIGHT, BIN_WALL, BIN_GAP = 0.4, 0.15, 0.01, 0.01  # meters
 
 
 # Models in their size
 
 
 def prepare(model, arguments):
-    """Size and reference symmetries of a model, in metres about its center."""
+    """Size and reference symmetries of a model, in meters about its center."""
     random = bench.generator(arguments.seed, model.key, "size")
     diagonal = random.uniform(LEAST_DIAGONAL, GREATEST_DIAGONAL)
     mesh = bench.read_mesh(model.path)
@@ -92,7 +92,7 @@ def draw_scene(models, arguments, number):
 
 
 def look_at_middle(placed, arguments, random):
-    """T_scene_sensor; most often along the line from an object to its nearest neighbour, which hides a part of it."""
+    """T_scene_sensor; most often along the line from an object to its nearest neighbor, which hides a part of it."""
     azimuth = random.uniform(0, 2 * np.pi)
     if len(placed) > 1 and random.uniform() < 0.8:
         hidden = random.integers(len(placed))
@@ -104,9 +104,9 @@ def look_at_middle(placed, arguments, random):
     if arguments.place == "road":
         distance, aim = random.uniform(5, 30) / ROAD, 0.75 / ROAD
         elevation = math.asin(1.8 / ROAD / distance)
-    towards = np.array([math.cos(elevation) * math.cos(azimuth), math.cos(elevation) * math.sin(azimuth), math.sin(elevation)])
+    toward = np.array([math.cos(elevation) * math.cos(azimuth), math.cos(elevation) * math.sin(azimuth), math.sin(elevation)])
     pose = np.eye(4)
-    pose[:3, :3], pose[:3, 3] = bench.look_along([0, 0, aim] - distance * towards), distance * towards
+    pose[:3, :3], pose[:3, 3] = bench.look_along([0, 0, aim] - distance * toward), distance * toward
     return pose
 
 

@@ -326,14 +326,14 @@ TEST_F(SymmetryRegistrationTest, DoesNotDependOnThreadsAndUnits) {
   const Eigen::Matrix4f expected = transform();
   registration_.setNumberOfThreads(4);
   EXPECT_EQ(transform(), expected);
-  constexpr float kMillimetres = 1000.0f;
+  constexpr float kMillimeters = 1000.0f;
   for (const auto& cloud : {scan, model}) {
-    for (pcl::PointXYZ& point : *cloud) point.getVector3fMap() *= kMillimetres;
-    cloud->sensor_origin_.head<3>() *= kMillimetres;
+    for (pcl::PointXYZ& point : *cloud) point.getVector3fMap() *= kMillimeters;
+    cloud->sensor_origin_.head<3>() *= kMillimeters;
   }
   const Eigen::Matrix4f scaled = transform();
   EXPECT_LT(angleOf(scaled * expected.inverse()), 1.0 * kDegree);
-  EXPECT_LT((scaled.topRightCorner<3, 1>() / kMillimetres - expected.topRightCorner<3, 1>()).norm(), 0.02);
+  EXPECT_LT((scaled.topRightCorner<3, 1>() / kMillimeters - expected.topRightCorner<3, 1>()).norm(), 0.02);
 }
 
 TEST_F(SymmetryRegistrationTest, RefusesWrongParameters) {

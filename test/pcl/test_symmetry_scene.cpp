@@ -25,7 +25,7 @@ using Cloud = SymmetryScene::Cloud;
 using test::pictureOf;
 
 /// Fewer points than by default, to save time.
-SceneAnalysis analysed(const Cloud::ConstPtr& cloud, bool frames = false,
+SceneAnalysis analyzed(const Cloud::ConstPtr& cloud, bool frames = false,
                        const Eigen::Vector4d& ground = Eigen::Vector4d::Zero()) {
   SymmetryScene scene;
   SceneOptions options;
@@ -53,7 +53,7 @@ const test::Table& twoBoxes() {
 }
 
 TEST(SymmetryScene, TakesTheTableOutAndFindsWhatStandsOnIt) {
-  const SceneAnalysis scene = analysed(pictureOf(twoBoxes().scan), true);
+  const SceneAnalysis scene = analyzed(pictureOf(twoBoxes().scan), true);
   ASSERT_EQ(scene.supports.size(), 1u);
   EXPECT_LT((scene.supports[0].coefficients - Eigen::Vector4d(0.0, 0.0, 1.0, 0.0)).norm(), 0.02) << "toward the viewer";
   ASSERT_EQ(scene.objects.size(), 2u);
@@ -74,7 +74,7 @@ TEST(SymmetryScene, TakesTheTableOutAndFindsWhatStandsOnIt) {
 
 TEST(SymmetryScene, ObjectsStandOnTheTableWithTheirFeet) {
   const Cloud::ConstPtr cloud = pictureOf(twoBoxes().scan);
-  const SceneAnalysis scene = analysed(cloud);
+  const SceneAnalysis scene = analyzed(cloud);
   ASSERT_EQ(scene.supports.size(), 1u);
   EXPECT_LT((scene.supports[0].coefficients - Eigen::Vector4d(0.0, 0.0, 1.0, 0.0)).norm(), 1e-5)
       << "points without noise";
@@ -116,7 +116,7 @@ TEST(WithoutDepthErrors, LeavesExactAndUnorganizedFramesAsTheyAre) {
 }
 
 TEST(SymmetryScene, DecidesPlanesOfBoxesThroughTheErrorsOfACamera) {
-  const SceneAnalysis scene = analysed(withDepthErrors(twoBoxes().scan));
+  const SceneAnalysis scene = analyzed(withDepthErrors(twoBoxes().scan));
   ASSERT_EQ(scene.supports.size(), 1u);
   ASSERT_EQ(scene.objects.size(), 2u);
   for (const SceneObject& object : scene.objects) {
@@ -163,7 +163,7 @@ TEST(SymmetryMaximaRefinement, DecidesAtWhatTheSensorResolves) {
 }
 
 TEST(SymmetryScene, CompletesIntoSpaceThatWasNotSeen) {
-  const SceneAnalysis scene = analysed(pictureOf(twoBoxes().scan));
+  const SceneAnalysis scene = analyzed(pictureOf(twoBoxes().scan));
   const Visibility truth = twoBoxes().scan.visibility();
   for (const SceneObject& object : scene.objects) {
     EXPECT_EQ(object.completed_by.has_value(), !object.planes.empty() && object.planes[0].kind == PlaneKind::Symmetry);
@@ -180,7 +180,7 @@ TEST(SymmetryScene, AnUnorganizedSceneGivesTheSameObjects) {
   for (const pcl::PointXYZ& point : *picture)
     if (pcl::isXYZFinite(point)) points->push_back(point);
   points->sensor_origin_ << twoBoxes().scan.viewpoint.cast<float>(), 0.0f;
-  const SceneAnalysis scene = analysed(points);
+  const SceneAnalysis scene = analyzed(points);
   EXPECT_EQ(scene.seen->source(), ViewpointSource::Stored);
   EXPECT_EQ(scene.supports.size(), 1u);
   EXPECT_EQ(scene.objects.size(), 2u);
@@ -188,7 +188,7 @@ TEST(SymmetryScene, AnUnorganizedSceneGivesTheSameObjects) {
 
 TEST(SymmetryScene, TheTableAloneIsNoObject) {
   const test::Scan empty = test::scan({{{{0.0, 0.0, -0.02}, {0.7, 0.7, 0.02}}}, {}}, {0.1, -1.6, 1.0}, 0.0, 160, 120);
-  const SceneAnalysis scene = analysed(pictureOf(empty));
+  const SceneAnalysis scene = analyzed(pictureOf(empty));
   EXPECT_EQ(scene.supports.size(), 1u);
   EXPECT_TRUE(scene.objects.empty());
 }
@@ -201,7 +201,7 @@ TEST(SymmetryScene, BulgesOfTheTableAreNoObjects) {
     const double sq_distance = std::pow(point.x + 0.2, 2) + std::pow(point.y + 0.35, 2);
     point.z += static_cast<float>(0.045 * std::exp(-sq_distance / (0.15 * 0.15)));
   }
-  const SceneAnalysis found = analysed(scene);
+  const SceneAnalysis found = analyzed(scene);
   EXPECT_EQ(found.supports.size(), 1u);
   EXPECT_EQ(found.objects.size(), 2u) << "the boxes";
 }
@@ -246,7 +246,7 @@ TEST(SymmetryScene, AnyNumberOfThreadsGivesTheSameObjects) {
 TEST(SymmetryScene, ALargeBoxIsNoTable) {
   // Its front is more than half of the picture; what lies behind the front is the rest of the box.
   const test::Scan box = test::scan(test::blockBox(), {0.8, -2.5, 1.2}, 0.0, 160, 120);
-  const SceneAnalysis scene = analysed(pictureOf(box));
+  const SceneAnalysis scene = analyzed(pictureOf(box));
   ASSERT_EQ(scene.objects.size(), 1u);
   EXPECT_GT(scene.objects[0].indices.size(), 0.9 * static_cast<double>(box.cloud().cols()));
 }
@@ -313,7 +313,7 @@ struct Frame {
 
 void expectOneObjectEach(const std::vector<Body>& bodies) {
   const Frame frame(bodies);
-  const SceneAnalysis scene = analysed(frame.cloud);
+  const SceneAnalysis scene = analyzed(frame.cloud);
   ASSERT_EQ(scene.objects.size(), bodies.size());
   std::set<int> found;
   for (const SceneObject& object : scene.objects) {
@@ -347,7 +347,7 @@ TEST(SymmetryScene, ABoxBeforeACylinderAreTwo) {
 TEST(SymmetryScene, AMugAndItsHandleAreOne) {
   const Frame frame(
       {uprightCylinder({0.0, 0.0}, 0.08, 0.0, 0.2), block({0.12, -0.04, 0.11}, {0.06, 0.012, 0.06}, -0.3)});
-  const SceneAnalysis scene = analysed(frame.cloud);
+  const SceneAnalysis scene = analyzed(frame.cloud);
   ASSERT_EQ(scene.objects.size(), 1u);
   ASSERT_EQ(scene.junctions.size(), 1u) << "convexity cuts the handle off";
   EXPECT_TRUE(scene.junctions[0].isJoined());
@@ -373,12 +373,12 @@ TEST(SymmetryScene, TheInsideOfABowlIsOne) {
     return nearest;
   };
   const Frame frame({bowl});
-  for (const SceneObject& object : analysed(frame.cloud).objects)
+  for (const SceneObject& object : analyzed(frame.cloud).objects)
     EXPECT_GT(object.indices.size(), 5000u) << "in a piece";
 }
 
 TEST(SymmetryScene, KnowsTheGroundThatIsGiven) {
-  const SceneAnalysis found = analysed(pictureOf(twoBoxes().scan), false, {0.0, 0.0, -2.0, 0.0});
+  const SceneAnalysis found = analyzed(pictureOf(twoBoxes().scan), false, {0.0, 0.0, -2.0, 0.0});
   ASSERT_EQ(found.supports.size(), 1u);
   EXPECT_EQ(found.supports[0].coefficients, Eigen::Vector4d(0.0, 0.0, 1.0, 0.0)) << "toward the viewer";
   EXPECT_EQ(found.objects.size(), 2u);
@@ -456,9 +456,9 @@ TEST(SymmetryMaximaRefinement, NeedsAGroundForTheBoxOfAVehicle) {
 TEST(SymmetryScene, DataWithoutAnswerGiveNoObject) {
   const float none = std::numeric_limits<float>::quiet_NaN();
   EXPECT_TRUE(SymmetryScene().compute().objects.empty());
-  EXPECT_TRUE(analysed(pcl::make_shared<Cloud>()).objects.empty());
-  EXPECT_TRUE(analysed(pcl::make_shared<Cloud>(50, 1, pcl::PointXYZ(none, 0.0f, 0.0f))).objects.empty());
-  EXPECT_TRUE(analysed(pcl::make_shared<Cloud>(500, 1, pcl::PointXYZ(1.0f, 2.0f, 3.0f))).objects.empty());
+  EXPECT_TRUE(analyzed(pcl::make_shared<Cloud>()).objects.empty());
+  EXPECT_TRUE(analyzed(pcl::make_shared<Cloud>(50, 1, pcl::PointXYZ(none, 0.0f, 0.0f))).objects.empty());
+  EXPECT_TRUE(analyzed(pcl::make_shared<Cloud>(500, 1, pcl::PointXYZ(1.0f, 2.0f, 3.0f))).objects.empty());
 }
 
 TEST(SymmetryScene, RefusesBadOptions) {

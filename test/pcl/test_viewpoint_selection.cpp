@@ -51,7 +51,7 @@ TEST(ViewpointSelection, CameraLooksAtTheObjectAndStandsUpright) {
   for (const Eigen::Vector3d& direction : evenDirections(40)) {
     const Eigen::Affine3d camera = selection.computePose(direction).cast<double>();
     EXPECT_NEAR(camera.linear().determinant(), 1.0, 1e-5);
-    EXPECT_LT((camera.linear().col(2) + direction).norm(), 1e-5) << "forward is towards the object";
+    EXPECT_LT((camera.linear().col(2) + direction).norm(), 1e-5) << "forward is toward the object";
     EXPECT_GE(-camera.linear().col(1).dot(selection.getUpAxis()), -1e-5) << "y is down";
     EXPECT_NEAR(camera.linear().col(0).dot(selection.getUpAxis()), 0.0,
                 std::abs(direction.dot(selection.getUpAxis())) < 0.98 ? 1e-5 : 1.0)

@@ -17,10 +17,10 @@ struct AskedSearch {
   MakeSearch make() {
     struct Counting : ClosestPointSearch {
       Counting(const PointsRef& points, AskedSearch& asked) : all(makeFlannSearch(points)), asked_(asked) {}
-      void search(const PointsRef& queries, int num_neighbours, std::vector<int>& indices,
+      void search(const PointsRef& queries, int num_neighbors, std::vector<int>& indices,
                   std::vector<float>& sq_distances) const override {
         asked_.num_queries += queries.cols();
-        all->search(queries, num_neighbours, indices, sq_distances);
+        all->search(queries, num_neighbors, indices, sq_distances);
       }
       Ptr all;
       AskedSearch& asked_;

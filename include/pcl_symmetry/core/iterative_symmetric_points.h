@@ -11,8 +11,8 @@ namespace PCL_SYMMETRY_EXPORTS pcl_symmetry {
 
 /// How Iterative Symmetric Points moves the plane.
 enum class IspUpdate {
-  PointToPoint,  ///< the paper's: minimises the weighted squared distances of the pairs, in closed form
-  PointToPlane   ///< minimises distances across the surface by a Gauss-Newton step; converges in far fewer iterations
+  PointToPoint,  ///< the paper's: minimizes the weighted squared distances of the pairs, in closed form
+  PointToPlane   ///< minimizes distances across the surface by a Gauss-Newton step; converges in far fewer iterations
 };
 
 /// Options of Iterative Symmetric Points (Section 4.4).
@@ -67,7 +67,7 @@ struct IspResult {
   IspStep last;            ///< the last iteration: its distances are those before a step that no longer mattered
 };
 
-/// The plane that minimises sum w |x' - y|^2 over pairs (x, y) of a sample and the closest point to its reflection x'.
+/// The plane that minimizes sum w |x' - y|^2 over pairs (x, y) of a sample and the closest point to its reflection x'.
 ///
 /// sum w |x' - y|^2 = const + 4 sum w (n.x - r)(n.y - r). Hence r = n.m with m the weighted mean of (x + y) / 2, and n
 /// is the eigenvector of the smallest eigenvalue of sum w [(x - m)(y - m)^T + (y - m)(x - m)^T] / 2.
@@ -81,7 +81,7 @@ ReflectionPlane fitReflectionPlane(const PointsRef& x, const PointsRef& y, const
 /// and the reflected normal at x.
 ///
 /// Directions that this leaves free (a flat piece of surface is uninformative about planes across it) move by a step on
-/// sum w |x' - y|^2. Departure from the paper, which minimises the latter alone: it needs many more iterations.
+/// sum w |x' - y|^2. Departure from the paper, which minimizes the latter alone: it needs many more iterations.
 /// \param x,y,x_normals,y_normals 3 x M.
 /// \param weights M values >= 0.
 ReflectionPlane stepReflectionPlane(const PointsRef& x, const PointsRef& y, const PointsRef& x_normals,

@@ -123,9 +123,9 @@ struct PlanarTransformOptions {
   RotationalTransformOptions rotational;              ///< of TransformMethod::Rotational
   VotingTransformOptions voting;                      ///< of TransformMethod::Voting
 
-  /// Of all estimators.
+  /// Gives all estimators a seed.
   void setSeed(std::uint64_t seed) { sampled.seed = voting.seed = seed; }
-  /// Of all estimators. \param n >= 0; 0 = one per core.
+  /// Gives all estimators their number of threads. \param n >= 0; 0 = one per core.
   void setNumThreads(int n) {
     sampled.num_threads = convolution.num_threads = rotational.num_threads = voting.num_threads = n;
   }

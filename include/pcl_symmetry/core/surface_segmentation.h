@@ -87,7 +87,7 @@ struct SegmentNode {
 };
 
 /// A plane of the whole surface that maps at least this share of it onto itself has an image for every segment.
-/// At half, planes pair segments that are not alike; towards 1, only nearly symmetric shapes have pairs.
+/// At half, planes pair segments that are not alike; toward 1, only nearly symmetric shapes have pairs.
 constexpr double kMappedShare = 0.75;
 
 /// The result of segmentSurface().

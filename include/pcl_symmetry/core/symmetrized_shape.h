@@ -20,8 +20,8 @@ enum class SymmetrizedHalf {
 /// A shape that a plane maps onto itself, and how far the given one was from it.
 struct SymmetrizedShape {
   Points points;  ///< 3 x N, the given points moved, input frame
-  /// Of a cloud: indices of the points that are in the symmetrized one, which consists of them and of their
-  /// reflections. Empty for a mesh, whose vertices all stay.
+  /// Indices of the points of a cloud that stay; the symmetrized cloud consists of them and of their reflections. Empty
+  /// for a mesh, whose vertices all stay.
   std::vector<int> kept;
   /// N, by how much the shape at a given point lies outside of the reflection of its other side: signed distance along
   /// its normal, input units. NaN where the other side has nothing, and at points that are not finite.
@@ -73,7 +73,7 @@ ReflectedPairs reflectedPairs(const PointsRef& points, const ReflectionPlane& pl
 
 /// The asymmetry of landmarks, as morphometrics takes it.
 struct LandmarkAsymmetry {
-  /// Of each pair: from the second landmark to the reflection of the first, input frame and units.
+  /// For each pair, the vector from the second landmark to the reflection of the first, input frame and units.
   std::vector<Eigen::Vector3d> paired;
   std::vector<double> unpaired;  ///< of each landmark of the midline: signed distance from the plane
   double paired_rms = 0.0;       ///< root mean square length of the vectors of the pairs

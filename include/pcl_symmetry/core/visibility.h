@@ -15,7 +15,7 @@ namespace PCL_SYMMETRY_EXPORTS pcl_symmetry {
 /// What a range scanner saw: space in front of the surface on each ray is free, space behind it is unknown.
 ///
 /// It is a picture of depths with the projection that made it, or several of them: free is what any of them shows to be
-/// free. A reflected point in free space speaks against the plane; a reflected point in unknown space says nothing.
+/// free. A reflected point in free space speaks against the plane; a reflected point in unknown space is uninformative.
 /// Departure from the paper, which takes scans for whole objects: their best planes then often lie beside the true
 /// ones.
 ///
@@ -47,7 +47,7 @@ public:
   /// lie in a cone of 75 degrees around one direction.
   static std::optional<Visibility> fromPoints(const PointsRef& points, const Eigen::Vector3d& viewpoint);
 
-  /// The range image of a scene, of which the analysed points are a part: whatever hides them is in it too. Space
+  /// The range image of a scene, of which the analyzed points are a part: whatever hides them is in it too. Space
   /// beyond the picture is unknown. Points all around the viewpoint give six pictures, the faces of a cube; where the
   /// points lie in a cone of 75 degrees around one direction there is one.
   /// \param points 3 x N, finite: all that the scanner measured.
@@ -64,7 +64,7 @@ public:
 
   /// The same for objects on a table: none of them reaches into the table, so that space behind its surface is free of
   /// them.
-  /// \param support unit normal n towards the objects, then d: n . x + d = 0 on the surface, frame of the points.
+  /// \param support unit normal n toward the objects, then d: n . x + d = 0 on the surface, frame of the points.
   /// \param margin by which objects may seem to reach into it, input units, >= 0.
   Visibility withSupport(const Eigen::Vector4d& support, double margin) const;
 

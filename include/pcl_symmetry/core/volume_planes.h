@@ -11,7 +11,7 @@ namespace PCL_SYMMETRY_EXPORTS pcl_symmetry {
 /// plane take the place of Iterative Symmetric Points: they minimize the sum of (f(x) - f(gamma x))^2, which is
 /// 2 |f|^2 - 2 f . gamma(f), over the voxels whose reflection the volume shows.
 ///
-/// Of a SymmetryPlane, `score` is D, `support` the correlation c (Pearson) of f with its reflection inside the body,
+/// In the planes returned, `score` is D, `support` the correlation c (Pearson) of f with its reflection inside the body,
 /// `seen` the share of the body whose reflection lies within the volume, and `residual` the root mean square of
 /// f(x) - f(gamma x). `confidence` is no probability here: ((c - c0) / (1 - c0))^2, where c0 is what three quarters of
 /// the planes reach that pass through the center of mass in all directions, but for those near a maximum. It is 0 for a

@@ -14,9 +14,11 @@ namespace detail {
 /// What does not depend on the type of the points of SymmetryMaximaRefinement::compute().
 /// \param edt,map of these points; edt null: the map is computed.
 /// \param search null: the library's own.
+/// \param may_be_rings the points may be those of a LiDAR's rings: their upright box decides where they are no surface.
 DetectedPlanes foundPlanes(Points points, const GaussianEdt* edt, const SymmetryMap& map,
                            const DetectionOptions& options, const MakeSearch& search,
-                           const std::optional<Visibility>& seen, const std::optional<Points>& normals);
+                           const std::optional<Visibility>& seen, const std::optional<Points>& normals,
+                           bool may_be_rings);
 
 /// The same for a volume.
 DetectedPlanes planesOfVolume(const ScalarGrid& volume, const DetectionOptions& options, const VolumeLevels& levels);
@@ -24,10 +26,6 @@ DetectedPlanes planesOfVolume(const ScalarGrid& volume, const DetectionOptions& 
 /// The same as published.
 DetectedPlanes planesAsPublished(Points points, const GaussianEdt* edt, const SymmetryMap& map,
                                  const DetectionOptions& options);
-
-/// Where points that stand on a ground are too far apart for a surface, as those of a LiDAR's rings: the middle plane
-/// of their upright box decides in place of what was found.
-void decideByUprightBox(DetectedPlanes& found, const Visibility& seen, const DetectionOptions& options);
 
 /// \param all finite points of a cloud.
 /// \param cloud_size points of the cloud.
@@ -65,11 +63,9 @@ std::vector<SymmetryPlane> SymmetryMaximaRefinement<PointT>::compute() {
     const std::optional<Visibility> seen = this->seenSpace(points);
     const std::optional<Points> normals =
         use_input_normals_ ? detail::normalsOf(*input_, this->getUsedIndices()) : std::nullopt;
-    found_ = detail::foundPlanes(std::move(points), edt_.get(), map_, options_, search, seen, normals);
+    const bool may_be_rings = this->hasGivenSupport() && this->getViewpointSource() != ViewpointSource::Rays;
+    found_ = detail::foundPlanes(std::move(points), edt_.get(), map_, options_, search, seen, normals, may_be_rings);
     if (mesh_ && !seen) refineOnMesh(*mesh_, found_, options_);
-    const bool has_rows = this->getViewpointSource() == ViewpointSource::Rays;
-    if (seen && this->hasGivenSupport() && !has_rows && !seen->supports().empty() && found_.reason.empty())
-      detail::decideByUprightBox(found_, *seen, options_);
     return std::move(found_.planes);
   });
 }

@@ -31,7 +31,7 @@ namespace pcl_symmetry {
 
 namespace {
 
-/// The last stage of refinement and the judgement, with as little work as the answer needs: planes that cannot be
+/// The last stage of refinement and the judgment, with as little work as the answer needs: planes that cannot be
 /// symmetries beside the ones that were found are left out after a look at some points, and planes climb only where
 /// that may decide.
 class PlaneSettler {
@@ -86,7 +86,7 @@ std::vector<SymmetryPlane> PlaneSettler::judged(std::vector<Candidate> candidate
   std::vector<Candidate> climbing;
   std::vector<std::size_t> places;
   for (std::size_t i = 0; i < planes.size(); ++i) {
-    if (planes[i].confidence < detection_rules.climbing_confidence) continue;
+    if (planes[i].confidence < kDetection.climbing_confidence) continue;
     climbing.push_back(std::move(candidates[i]));
     places.push_back(i);
   }
@@ -185,14 +185,14 @@ Detection planesOfCloud(const NormalizedCloud& cloud, const Points& all, const S
   timed("closure");
 
   // Families: bodies of revolution, spheres, and what only rotations of a scan show.
-  if (options.families && !decision.isPlace()) {
+  if (options.families && !decision.isCutAllAround()) {
     PlanesAndFamilies found = collectFamilies(std::move(planes), cloud, all, *fit, judge, options);
     planes = std::move(found.planes);
     detection.axes = std::move(found.axes);
     detection.centers = std::move(found.centers);
   }
   timed("families");
-  if (!decision.isPlace())
+  if (!decision.isCutAllAround())
     planes = withScanAxes(std::move(planes), cloud, judge.measure.tolerance(), options, detection);
   const bool has_family = !detection.axes.empty() || !detection.centers.empty();
   decision.preferBest(planes, has_family);

@@ -184,6 +184,6 @@ struct DetectionRules {
   double little_hold = 1e-3;  ///< stiffness of a line that is hardly held; boxes have 0.05
 };
 
-inline constexpr DetectionRules detection_rules;
+inline constexpr DetectionRules kDetection;
 
 }  // namespace pcl_symmetry

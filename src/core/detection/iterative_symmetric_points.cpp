@@ -137,7 +137,7 @@ ReflectionPlane steppedPlane(const PointsRef& x, const std::vector<double>& weig
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(across.h);  // reads the lower half
   const Eigen::Vector3d& stiffness = solver.eigenvalues();                // ascending
   int num_soft = 0;
-  while (num_soft < 3 && !(stiffness[num_soft] > detection_rules.least_stiffness * stiffness[2])) ++num_soft;
+  while (num_soft < 3 && !(stiffness[num_soft] > kDetection.least_stiffness * stiffness[2])) ++num_soft;
   Eigen::Vector3d step = Eigen::Vector3d::Zero();
   for (int i = num_soft; i < 3; ++i)
     step -= solver.eigenvectors().col(i) * (solver.eigenvectors().col(i).dot(across.g) / stiffness[i]);
@@ -150,7 +150,7 @@ ReflectionPlane steppedPlane(const PointsRef& x, const std::vector<double>& weig
   }
   const double length = step.norm();
   if (!std::isfinite(length)) return plane;
-  if (length > detection_rules.longest_step) step *= detection_rules.longest_step / length;
+  if (length > kDetection.longest_step) step *= kDetection.longest_step / length;
   return across.moved(step);
 }
 
@@ -161,8 +161,8 @@ IspStep matchReflections(const IspSurface& surface, const Points& reflected, dou
   const auto size = static_cast<std::size_t>(reflected.cols());
   step.closest.assign(size, -1);
   step.sq_distances.assign(size, std::numeric_limits<float>::infinity());
-  const float bound = surface.far ? surface.far->bound(detection_rules.reach * sigma) : 0.0f;
-  const auto sq_reach = static_cast<float>(detection_rules.reach * detection_rules.reach * sigma * sigma);
+  const float bound = surface.far ? surface.far->bound(kDetection.reach * sigma) : 0.0f;
+  const auto sq_reach = static_cast<float>(kDetection.reach * kDetection.reach * sigma * sigma);
   parallelRanges(size, 1024, surface.num_threads, [&](std::size_t begin, std::size_t end) {
     if (!surface.far && size <= 1024) {  // all at once
       if (guesses) step.closest = *guesses;
@@ -219,7 +219,7 @@ Points reflections(const Points& points, const ReflectionPlane& plane) {
 /// taken instead, draw a plane away from the symmetry, to where more of what was seen overlaps.
 double seenWeight(const Visibility* visibility, const Eigen::Vector3d& reflection, double sigma) {
   if (!visibility) return 1.0;
-  const double depth = std::max(0.0, visibility->depthBehind(reflection)) / (detection_rules.hidden_depth * sigma);
+  const double depth = std::max(0.0, visibility->depthBehind(reflection)) / (kDetection.hidden_depth * sigma);
   return std::exp(-depth * depth);
 }
 
@@ -345,8 +345,8 @@ IspResult refineSymmetricPoints(const IspSurface& surface, const std::vector<int
     const double tolerance = options.tolerance * extent + options.error_share * result.last.residual / std::sqrt(size);
     result.converged = sigma == options.final_sigma && moved <= tolerance && angle * extent <= tolerance;
     result.plane = next;
-    // Narrower weights only where the plane has come to rest at these: it must not lose what it moves towards.
-    if (moved + angle * extent <= detection_rules.rest * sigma) sigma = std::max(options.final_sigma, 0.5 * sigma);
+    // Narrower weights only where the plane has come to rest at these: it must not lose what it moves toward.
+    if (moved + angle * extent <= kDetection.rest * sigma) sigma = std::max(options.final_sigma, 0.5 * sigma);
   }
   return result;
 }

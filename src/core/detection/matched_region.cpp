@@ -20,20 +20,20 @@ namespace {
 /// K neighbors lie within rho = sqrt(k / pi) spacings. Of the neighbors of samples within rho of a straight edge, 2 rho
 /// / (3 pi) per spacing of edge lie beyond it. A disc of n samples has an edge of 2 sqrt(pi n) spacings.
 double edgeOfDisc() {
-  const double reach = std::sqrt((detection_rules.num_smoothing + 1) / kPi);
+  const double reach = std::sqrt((kDetection.num_smoothing + 1) / kPi);
   return 2.0 * reach / (3.0 * kPi) * 2.0 * std::sqrt(kPi);
 }
 
 }  // namespace
 
 MatchedRegions::MatchedRegions(const NormalizedCloud& cloud, const PlaneFit& fit, std::uint64_t seed, int num_threads)
-    : cloud_(cloud), fit_(fit), samples_(drawSamples(cloud.points.cols(), detection_rules.num_region_samples, seed)) {
+    : cloud_(cloud), fit_(fit), samples_(drawSamples(cloud.points.cols(), kDetection.num_region_samples, seed)) {
   std::sort(samples_.begin(), samples_.end());
   const Points places = pointsAt(cloud.points, samples_);
   const ClosestPointSearch::Ptr search = makeFlannSearch(places);
   std::vector<float> sq_distances;
-  const int num_neighbours = std::min<int>(detection_rules.num_smoothing + 1, static_cast<int>(samples_.size()));
-  search->search(places, num_neighbours, neighbours_, sq_distances);
+  const int num_neighbors = std::min<int>(kDetection.num_smoothing + 1, static_cast<int>(samples_.size()));
+  search->search(places, num_neighbors, neighbors_, sq_distances);
   closest_sample_.resize(static_cast<std::size_t>(cloud.points.cols()));
   parallelRanges(closest_sample_.size(), 1024, num_threads, [&](std::size_t begin, std::size_t end) {
     std::vector<int> closest;
@@ -47,12 +47,12 @@ MatchedRegions::MatchedRegions(const NormalizedCloud& cloud, const PlaneFit& fit
 MatchedRegion MatchedRegions::largest(const ReflectionPlane& plane, const std::vector<int>* guesses) const {
   IspStep step = matchReflectionsOnly(cloud_.surface, samples_, plane, cloud_.final_sigma, guesses);
   const std::vector<float> support = fit_.shares(plane, samples_, step).point_support;
-  const std::size_t size = samples_.size(), num_neighbours = neighbours_.size() / size;
+  const std::size_t size = samples_.size(), num_neighbors = neighbors_.size() / size;
   std::vector<char> matched(size);
   for (std::size_t i = 0; i < size; ++i) {
     double sum = 0.0;
-    for (std::size_t k = 0; k < num_neighbours; ++k) sum += support[neighbours_[i * num_neighbours + k]];
-    matched[i] = sum >= detection_rules.matched * static_cast<double>(num_neighbours);
+    for (std::size_t k = 0; k < num_neighbors; ++k) sum += support[neighbors_[i * num_neighbors + k]];
+    matched[i] = sum >= kDetection.matched * static_cast<double>(num_neighbors);
   }
   const std::vector<char> inside = inLargest(matched, step, support);
   MatchedRegion region;
@@ -74,18 +74,18 @@ MatchedRegion MatchedRegions::largest(const ReflectionPlane& plane, const std::v
 /// the plane between them.
 std::vector<char> MatchedRegions::inLargest(const std::vector<char>& matched, const IspStep& step,
                                             const std::vector<float>& support) const {
-  const std::size_t size = samples_.size(), num_neighbours = neighbours_.size() / size;
+  const std::size_t size = samples_.size(), num_neighbors = neighbors_.size() / size;
   std::vector<int> rank(size, 0), parent(size);
   std::iota(parent.begin(), parent.end(), 0);
   boost::disjoint_sets<int*, int*> sets(rank.data(), parent.data());
-  const std::size_t num_connecting = std::min<std::size_t>(detection_rules.num_connecting + 1, num_neighbours);
+  const std::size_t num_connecting = std::min<std::size_t>(kDetection.num_connecting + 1, num_neighbors);
   for (std::size_t i = 0; i < size; ++i) {
     if (!matched[i]) continue;
     for (std::size_t k = 0; k < num_connecting; ++k) {
-      const int j = neighbours_[i * num_neighbours + k];
+      const int j = neighbors_[i * num_neighbors + k];
       if (matched[j]) sets.union_set(static_cast<int>(i), j);
     }
-    if (step.closest[i] < 0 || support[i] < detection_rules.counterpart) continue;
+    if (step.closest[i] < 0 || support[i] < kDetection.counterpart) continue;
     const int j = closest_sample_[step.closest[i]];
     if (matched[j]) sets.union_set(static_cast<int>(i), j);
   }
@@ -99,13 +99,13 @@ std::vector<char> MatchedRegions::inLargest(const std::vector<char>& matched, co
 }
 
 double MatchedRegions::edgeOf(const std::vector<char>& inside, double count) const {
-  const std::size_t size = samples_.size(), num_neighbours = neighbours_.size() / size;
+  const std::size_t size = samples_.size(), num_neighbors = neighbors_.size() / size;
   std::size_t num_beyond = 0;
   for (std::size_t i = 0; i < size; ++i) {
     if (!inside[i]) continue;
-    for (std::size_t k = 0; k < num_neighbours; ++k) num_beyond += inside[neighbours_[i * num_neighbours + k]] ? 0 : 1;
+    for (std::size_t k = 0; k < num_neighbors; ++k) num_beyond += inside[neighbors_[i * num_neighbors + k]] ? 0 : 1;
   }
-  const double share = static_cast<double>(num_beyond) / static_cast<double>(num_neighbours);
+  const double share = static_cast<double>(num_beyond) / static_cast<double>(num_neighbors);
   return share / (std::sqrt(count) * edgeOfDisc());
 }
 

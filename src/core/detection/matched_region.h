@@ -40,7 +40,7 @@ private:
   const NormalizedCloud& cloud_;
   const PlaneFit& fit_;
   std::vector<int> samples_;         ///< indices of points of the cloud, ascending
-  std::vector<int> neighbours_;      ///< of each sample, as indices of samples, nearest first
+  std::vector<int> neighbors_;       ///< of each sample, as indices of samples, nearest first
   std::vector<int> closest_sample_;  ///< to each point of the cloud, as an index of a sample
 };
 

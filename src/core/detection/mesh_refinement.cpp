@@ -5,15 +5,18 @@
 #include <cmath>
 #include <utility>
 
+#include "core/detection/plane_decision.h"
+#include "core/geometry/geometry_rules.h"
+
 namespace pcl_symmetry {
 
 namespace {
 
 /// The probability that at least 97 % of the surface is within the tolerance, where a share of its samples is.
 double confidenceOf(double share, int num_samples) {
-  constexpr double kSymmetric = 0.97, kLeast = 0.003;  // the least and, less 1, the greatest confidence of samples
-  const double deviation = std::sqrt(kSymmetric * (1.0 - kSymmetric) / num_samples);
-  const double confidence = 0.5 * std::erfc(-(share - kSymmetric) / deviation / std::sqrt(2.0));
+  constexpr double kLeast = 0.003;  // the least and, less 1, the greatest confidence of samples
+  const double deviation = std::sqrt(kSymmetricShare * (1.0 - kSymmetricShare) / num_samples);
+  const double confidence = 0.5 * std::erfc(-(share - kSymmetricShare) / deviation / std::sqrt(2.0));
   return std::clamp(confidence, kLeast, 1.0 - kLeast);
 }
 
@@ -27,9 +30,7 @@ void refine(const MeshSurface& mesh, SymmetryPlane& plane, double tolerance, con
   plane.deviation = shares.deviation;
   plane.residual = shares.residual;
   plane.confidence = confidenceOf(shares.share, mesh.numSamples());
-  plane.kind = plane.confidence >= options.min_confidence ? PlaneKind::Symmetry
-               : plane.confidence >= options.min_possible ? PlaneKind::Possible
-                                                          : PlaneKind::Approximate;
+  plane.kind = kindOf(plane.confidence, options);
 }
 
 bool areOne(const SymmetryPlane& a, const SymmetryPlane& b, const BoundingBall& ball, const DetectionOptions& options) {

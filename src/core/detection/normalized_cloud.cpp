@@ -20,13 +20,13 @@ namespace {
 
 /// The geometry of points, whose neighbors FLANN's search uses from then on.
 /// \param flann null: the search is of the caller.
-/// \param[out] neighbours of the points.
+/// \param[out] neighbors of the points.
 LocalGeometry geometryOf(const Points& points, const ClosestPointSearch& search, FlannSearch* flann, int num_threads,
-                         FoundNeighbours& neighbours) {
-  LocalGeometry geometry = localGeometry(points, search, kNumSupportNeighbours, num_threads, &neighbours);
-  static_assert(kNumSupportNeighbours == NeighborLists::kNeighbors);
+                         FoundNeighbors& neighbors) {
+  LocalGeometry geometry = localGeometry(points, search, kNumSupportNeighbors, num_threads, &neighbors);
+  static_assert(kNumSupportNeighbors == NeighborLists::kNeighbors);
   if (flann && NeighborLists::isUseful(points.cols()))
-    flann->use(NeighborLists(points, neighbours.indices, neighbours.sq_reach));
+    flann->use(NeighborLists(points, neighbors.indices, neighbors.sq_reach));
   return geometry;
 }
 
@@ -50,7 +50,7 @@ NormalizedCloud::NormalizedCloud(const PointsRef& input, const GaussianEdt& edt_
       points(normalizePoints(input, center, scale)),
       flann(input_search ? nullptr : std::make_shared<FlannSearch>(points)),
       search(input_search ? std::move(input_search) : flann),
-      geometry(withNormals(geometryOf(points, *search, flann.get(), num_threads, neighbours), given_normals)),
+      geometry(withNormals(geometryOf(points, *search, flann.get(), num_threads, neighbors), given_normals)),
       samples(points, geometry, num_threads),
       visibility(seen ? std::optional<Visibility>(seen->normalized(center, scale)) : std::nullopt),
       far(edt, center, scale),
@@ -68,10 +68,10 @@ NormalizedCloud::NormalizedCloud(const PointsRef& input, const GaussianEdt& edt_
       roughness(measures_.roughness / std::max(spacing, 1e-6)),
       baseline(std::max(meanSupport(ownSupport(samples, num_threads)), 1e-3)),
       sigma(edt.sigma() / scale),
-      final_sigma(std::min(sigma, std::max(1e-6, detection_rules.final_sigma_in_spacings * spacing))),
-      kind_(visibility                                     ? CloudKind::Scan
-            : roughness > detection_rules.volume_roughness ? CloudKind::Volume
-                                                           : CloudKind::Surface) {}
+      final_sigma(std::min(sigma, std::max(1e-6, kDetection.final_sigma_in_spacings * spacing))),
+      kind_(visibility                                ? CloudKind::Scan
+            : roughness > kDetection.volume_roughness ? CloudKind::Volume
+                                                      : CloudKind::Surface) {}
 
 NormalizedCloud::Measures::Measures(const Points& points, const LocalGeometry& geometry, int num_threads) {
   const std::array<std::function<void()>, 4> measurements{

@@ -37,7 +37,7 @@ struct NormalizedCloud {
   const Points points;                       ///< 3 x N
   const std::shared_ptr<FlannSearch> flann;  ///< null: the search is of the caller
   const ClosestPointSearch::Ptr search;
-  FoundNeighbours neighbours;  ///< of the points, found together with their geometry
+  FoundNeighbors neighbors;  ///< of the points, found together with their geometry
   const LocalGeometry geometry;
   const SurfaceSamples samples;                ///< the points and their geometry
   const std::optional<Visibility> visibility;  ///< of a scan

@@ -22,12 +22,18 @@ double heightOf(const PointsRef& points, const Eigen::Vector4d& support) {
 
 }  // namespace
 
+PlaneKind kindOf(double confidence, const DetectionOptions& options) {
+  return confidence >= options.min_confidence ? PlaneKind::Symmetry
+         : confidence >= options.min_possible ? PlaneKind::Possible
+                                              : PlaneKind::Approximate;
+}
+
 std::vector<Eigen::Vector3d> carryingNormals(const PointsRef& points, const Visibility& seen) {
   std::vector<double> heights;
   for (const Eigen::Vector4d& support : seen.supports()) heights.push_back(heightOf(points, support));
   if (heights.empty()) return {};
   const double reach =
-      *std::min_element(heights.begin(), heights.end()) + detection_rules.touching * 2.0 * boundingBall(points).radius;
+      *std::min_element(heights.begin(), heights.end()) + kDetection.touching * 2.0 * boundingBall(points).radius;
   std::vector<Eigen::Vector3d> normals;
   for (std::size_t i = 0; i < heights.size(); ++i)
     if (heights[i] <= reach) normals.push_back(seen.supports()[i].head<3>().normalized());
@@ -37,7 +43,7 @@ std::vector<Eigen::Vector3d> carryingNormals(const PointsRef& points, const Visi
 bool slants(const ReflectionPlane& plane, const std::vector<Eigen::Vector3d>& carrying_normals) {
   const auto is_along = [&](const Eigen::Vector3d& normal) {
     const double angle = std::acos(std::min(1.0, std::abs(normal.dot(plane.normal()))));
-    return angle <= detection_rules.upright || angle >= 0.5 * kPi - detection_rules.upright;
+    return angle <= kDetection.upright || angle >= 0.5 * kPi - kDetection.upright;
   };
   return !carrying_normals.empty() && std::none_of(carrying_normals.begin(), carrying_normals.end(), is_along);
 }
@@ -65,7 +71,7 @@ SymmetryPlane PlaneDecision::decide(PlaneRecord record) const {
   plane.iterations = record.iterations;
   plane.converged = record.converged;
   plane.residual = record.residual * cloud_.scale;
-  decideBy(planeConfidence(evidence) * std::min(1.0, record.told / detection_rules.least_told), plane);
+  decideBy(planeConfidence(evidence) * std::min(1.0, record.told / kDetection.least_told), plane);
   return plane;
 }
 
@@ -77,42 +83,43 @@ void PlaneDecision::decideBy(double confidence, SymmetryPlane& plane) const {
 PlaneKind PlaneDecision::kindOf(const ReflectionPlane& plane, double confidence) const {
   // A plane that moves nothing is uninformative: a sheet is mapped onto itself by its own plane, whatever it is a part
   // of.
-  const auto saysNothing = [&] {
+  const auto is_uninformative = [&] {
     if (measure_.thinness() == Thinness::Solid) return false;
     return measure_.thinness() == Thinness::Line ||
-           measure_.movedShare(cloud_.toNormalized(plane)) < 1.0 - detection_rules.still_share;
+           measure_.movedShare(cloud_.toNormalized(plane)) < 1.0 - kDetection.still_share;
   };
-  if (confidence >= options_.min_confidence && isResolved() && !isPlace() && !saysNothing()) return PlaneKind::Symmetry;
-  return confidence >= options_.min_possible ? PlaneKind::Possible : PlaneKind::Approximate;
+  const PlaneKind kind = pcl_symmetry::kindOf(confidence, options_);
+  return kind == PlaneKind::Symmetry && (!isResolved() || isCutAllAround() || is_uninformative()) ? PlaneKind::Possible
+                                                                                                  : kind;
 }
 
 bool PlaneDecision::isResolved() const {
   return measure_.tolerance() >= measure_.resolution() ||
-         (measure_.tolerance() >= detection_rules.coarsest_tolerance * cloud_.extent &&
-          measure_.resolution() <= detection_rules.coarsest_resolution * cloud_.extent);
+         (measure_.tolerance() >= kDetection.coarsest_tolerance * cloud_.extent &&
+          measure_.resolution() <= kDetection.coarsest_resolution * cloud_.extent);
 }
 
-bool PlaneDecision::isPlace() const {
-  return measure_.cutShare() > detection_rules.most_cut;
+bool PlaneDecision::isCutAllAround() const {
+  return measure_.cutShare() > kDetection.most_cut;
 }
 
 bool PlaneDecision::explainsAll(const SymmetryPlane& plane) const {
   return cloud_.rules().may_lack_piece && plane.kind == PlaneKind::Symmetry &&
-         1.0 - plane.seen <= detection_rules.nothing_missing;
+         1.0 - plane.seen <= kDetection.nothing_missing;
 }
 
 bool PlaneDecision::isHopeless(const Candidate& candidate) const {
-  if (!cloud_.rules().may_lack_piece || candidate.merit >= detection_rules.symmetric_merit) return false;
+  if (!cloud_.rules().may_lack_piece || candidate.merit >= kDetection.symmetric_merit) return false;
   const PlaneMeasure::QuickShare quick = measure_.quickShare(candidate);
-  return quick.share + detection_rules.look_errors * quick.error < detection_rules.symmetric_merit;
+  return quick.share + kDetection.look_errors * quick.error < kDetection.symmetric_merit;
 }
 
 void PlaneDecision::preferWhole(std::vector<SymmetryPlane>& planes) const {
   if (std::none_of(planes.begin(), planes.end(), [&](const SymmetryPlane& plane) { return explainsAll(plane); }))
     return;
   for (SymmetryPlane& plane : planes) {
-    if (1.0 - plane.seen <= detection_rules.piece_missing) continue;
-    const double odds = detection_rules.odds_of_a_piece * plane.confidence;
+    if (1.0 - plane.seen <= kDetection.piece_missing) continue;
+    const double odds = kDetection.odds_of_a_piece * plane.confidence;
     decideBy(odds / (odds + 1.0 - plane.confidence), plane);
   }
 }
@@ -120,10 +127,10 @@ void PlaneDecision::preferWhole(std::vector<SymmetryPlane>& planes) const {
 void PlaneDecision::preferBest(std::vector<SymmetryPlane>& planes, bool has_family) const {
   double most = 0.0;
   for (const SymmetryPlane& plane : planes) most = std::max(most, plane.confidence);
-  // Of planes that are as likely, the greatest D.
+  // Among planes that are as likely, D decides.
   const auto best = std::max_element(planes.begin(), planes.end(), [&](const SymmetryPlane& a, const SymmetryPlane& b) {
-    const bool a_likely = a.confidence >= most - detection_rules.as_likely,
-               b_likely = b.confidence >= most - detection_rules.as_likely;
+    const bool a_likely = a.confidence >= most - kDetection.as_likely,
+               b_likely = b.confidence >= most - kDetection.as_likely;
     return a_likely != b_likely ? b_likely : a.score < b.score;
   });
   for (auto plane = planes.begin(); plane != planes.end(); ++plane)
@@ -136,7 +143,7 @@ void PlaneDecision::doubtSlanted(std::vector<SymmetryPlane>& planes) const {
   const std::vector<Eigen::Vector3d> normals = carryingNormals(cloud_.points, *cloud_.seen());
   for (SymmetryPlane& plane : planes)
     if (isDecided(plane) && slants(plane, normals))
-      decideBy(withOdds(plane.confidence, detection_rules.slanted_odds), plane);
+      decideBy(withOdds(plane.confidence, kDetection.slanted_odds), plane);
   if (!options_.approximate)
     planes.erase(std::remove_if(planes.begin(), planes.end(), [](const SymmetryPlane& p) { return !isDecided(p); }),
                  planes.end());
@@ -219,12 +226,12 @@ bool isOnSlopeOf(const SymmetryPlane& better, const SymmetryPlane& plane, const 
   const double sign = a.normal().dot(b.normal()) < 0.0 ? -1.0 : 1.0;
   const Eigen::Vector3d normal = a.normal() + sign * b.normal();
   const ReflectionPlane between(normal, 0.5 * normal.norm() * (a.offset() + sign * b.offset()));
-  return cloud.score(cloud.toInput(between)) > plane.score - detection_rules.slope_dip;
+  return cloud.score(cloud.toInput(between)) > plane.score - kDetection.slope_dip;
 }
 
 /// Whether a plane is of a polygon, between whose planes noise may leave no dip.
 bool isOf(const std::optional<PlaneLattice>& polygon, const SymmetryPlane& plane, const NormalizedCloud& cloud) {
-  return polygon && contains(cloud.toNormalized(plane), polygon->line, detection_rules.contained_offset);
+  return polygon && contains(cloud.toNormalized(plane), polygon->line, kDetection.contained_offset);
 }
 
 /// Judges every point, where the plane was judged by some of them.

@@ -19,6 +19,9 @@ namespace pcl_symmetry {
 /// \return their unit normals.
 std::vector<Eigen::Vector3d> carryingNormals(const PointsRef& points, const Visibility& seen);
 
+/// The kind that a confidence alone gives a plane.
+PlaneKind kindOf(double confidence, const DetectionOptions& options);
+
 /// True where a plane is neither upright nor level on any of these supports; false without one.
 bool slants(const ReflectionPlane& plane, const std::vector<Eigen::Vector3d>& carrying_normals);
 
@@ -38,7 +41,7 @@ public:
   void decideBy(double confidence, SymmetryPlane& plane) const;
 
   /// Whether the picture cuts the cloud off all around: a place, such as a table, and no object.
-  bool isPlace() const;
+  bool isCutAllAround() const;
 
   /// Whether a plane explains all of a whole cloud, so that nothing of it is missing.
   bool explainsAll(const SymmetryPlane& plane) const;

@@ -44,7 +44,7 @@ Eigen::Vector3d commonPoint(const std::vector<ReflectionPlane>& planes, const Ei
     distances[i] = -planes[i].signedDistance(start);
   }
   Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixX3d> solver;
-  solver.setThreshold(detection_rules.coplanar);
+  solver.setThreshold(kDetection.coplanar);
   solver.compute(normals);
   return start + solver.solve(distances);
 }
@@ -65,21 +65,19 @@ double meanShare(const PlaneAt& plane_at, int count, double least,
 template <typename PlaneAt>
 std::vector<ReflectionPlane> planesAt(const PlaneAt& plane_at) {
   std::vector<ReflectionPlane> planes;
-  for (int k = 0; k < detection_rules.tested; ++k) planes.push_back(plane_at(k));
+  for (int k = 0; k < kDetection.tested; ++k) planes.push_back(plane_at(k));
   return planes;
 }
 
 /// The family of all planes through a point, or through one nearby.
 std::optional<CenterFamily> centerAt(Eigen::Vector3d point, double least, const FamilyTest& test) {
-  const auto at = [&](int k) { return planeThrough(point, k, detection_rules.tested); };
-  if (meanShare(at, detection_rules.screening, least - detection_rules.rough_factor * test.allowance,
-                test.rough_share) == 0.0)
+  const auto at = [&](int k) { return planeThrough(point, k, kDetection.tested); };
+  if (meanShare(at, kDetection.screening, least - kDetection.rough_factor * test.allowance, test.rough_share) == 0.0)
     return std::nullopt;
   std::vector<ReflectionPlane> refined;
-  for (int k = 0; k < detection_rules.fitted; ++k)
-    refined.push_back(test.refine(planeThrough(point, k, detection_rules.fitted)));
+  for (int k = 0; k < kDetection.fitted; ++k) refined.push_back(test.refine(planeThrough(point, k, kDetection.fitted)));
   point = commonPoint(refined, point);
-  const double share = meanShare(at, detection_rules.tested, least, test.share);
+  const double share = meanShare(at, kDetection.tested, least, test.share);
   if (share < least) return std::nullopt;
   return CenterFamily{point, share, planesAt(at)};
 }
@@ -89,17 +87,16 @@ std::optional<AxisFamily> axisAt(const Line3d& start, double least, const Family
   Line3d line = start;
   const auto at = [&](int k) { return planeThrough(line, k); };
   // The line through two rough planes may be off by a little: the refined line has to pass the full test.
-  if (meanShare(at, detection_rules.screening, least - detection_rules.rough_factor * test.allowance,
-                test.rough_share) == 0.0)
+  if (meanShare(at, kDetection.screening, least - kDetection.rough_factor * test.allowance, test.rough_share) == 0.0)
     return std::nullopt;
   std::vector<ReflectionPlane> refined;
-  for (int k = 0; k < detection_rules.fitted; ++k) refined.push_back(test.refine(planeThrough(line, k)));
+  for (int k = 0; k < kDetection.fitted; ++k) refined.push_back(test.refine(planeThrough(line, k)));
   line = commonLine(refined);
-  double share = meanShare(at, detection_rules.tested, least, test.share);
+  double share = meanShare(at, kDetection.tested, least, test.share);
   // Planes that map a scan to what was not seen drift when they are refined.
   if (share < least) {
     line = start;
-    share = meanShare(at, detection_rules.tested, least, test.share);
+    share = meanShare(at, kDetection.tested, least, test.share);
   }
   if (share < least) return std::nullopt;
   return AxisFamily{line, share, planesAt(at)};
@@ -125,7 +122,7 @@ std::optional<CenterFamily> findCenter(const std::vector<ReflectionPlane>& plane
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(sum / static_cast<double>(planes.size()),
                                                               Eigen::EigenvaluesOnly);
   const bool has_point =
-      planes.size() >= 3 && solver.eigenvalues()[0] >= detection_rules.least_spread;  // or else all hold one line
+      planes.size() >= 3 && solver.eigenvalues()[0] >= kDetection.least_spread;  // or else all hold one line
   if (has_point) points.push_back(commonPoint(planes, Eigen::Vector3d::Zero()));
   points.insert(points.end(), guesses.begin(), guesses.end());
   const double least = std::max(test.min_share, test.share(planes[0]) - test.allowance);
@@ -140,7 +137,7 @@ std::vector<AxisFamily> findAxes(const std::vector<ReflectionPlane>& planes, con
   std::vector<Line3d> tried;
   const auto attempt = [&](const Line3d& line, double best_share) {
     const bool known = std::any_of(tried.begin(), tried.end(), [&](const Line3d& other) {
-      return std::abs(other.direction().dot(line.direction())) > std::cos(detection_rules.contained_angle) &&
+      return std::abs(other.direction().dot(line.direction())) > std::cos(kDetection.contained_angle) &&
              other.distance(line.origin()) < test.tolerance;
     });
     if (known) return;
@@ -152,10 +149,10 @@ std::vector<AxisFamily> findAxes(const std::vector<ReflectionPlane>& planes, con
   };
   if (!planes.empty())
     for (const Line3d& guess : guesses) attempt(guess, test.share(planes[0]));
-  const std::size_t size = std::min(planes.size(), detection_rules.most_planes);
+  const std::size_t size = std::min(planes.size(), kDetection.most_planes);
   for (std::size_t i = 0; i < size; ++i) {
     for (std::size_t j = 0; j < i; ++j) {
-      if (planes[i].angleTo(planes[j]) < detection_rules.least_angle) continue;
+      if (planes[i].angleTo(planes[j]) < kDetection.least_angle) continue;
       attempt(commonLine({planes[i], planes[j]}), std::max(test.share(planes[i]), test.share(planes[j])));
     }
   }
@@ -180,15 +177,15 @@ FamilyTest familyTest(const NormalizedCloud& cloud, const PlaneFit& fit, const s
   // Samples may be all points in the order of the file, whose first fifth is one end of the shape.
   std::vector<int> fewer;
   const auto num_samples = static_cast<Eigen::Index>(samples.size());
-  for (const int i : drawSamples(num_samples, static_cast<int>(num_samples) / detection_rules.rough_sample_share, seed))
+  for (const int i : drawSamples(num_samples, static_cast<int>(num_samples) / kDetection.rough_sample_share, seed))
     fewer.push_back(samples[i]);
   test.rough_share = share_of(fewer);
   test.refine = [&fit, samples](const ReflectionPlane& plane) {
-    return fit.refined(plane, samples, detection_rules.refine_iterations);
+    return fit.refined(plane, samples, kDetection.refine_iterations);
   };
   test.min_share = cloud.rules().family_share;
   test.allowance = fit.familyAllowance();
-  test.tolerance = detection_rules.contained_offset;
+  test.tolerance = kDetection.contained_offset;
   return test;
 }
 
@@ -246,7 +243,7 @@ PlanesAndFamilies collectFamilies(std::vector<SymmetryPlane> planes, const Norma
   if (is_line) {
     const Line3d line = longestAxis(cloud.principal_axes);
     std::vector<ReflectionPlane> through;
-    for (int k = 0; k < detection_rules.tested; ++k) through.push_back(planeThrough(line, k));
+    for (int k = 0; k < kDetection.tested; ++k) through.push_back(planeThrough(line, k));
     const JudgedFamily judged = judge.judgeFamily(through, samples);
     if (judged.confidence >= options.min_confidence)
       found.axes.push_back(
@@ -265,7 +262,7 @@ PlanesAndFamilies collectFamilies(std::vector<SymmetryPlane> planes, const Norma
   const auto isFamily = [&](const JudgedFamily& judged) {
     return judged.confidence >= options.min_confidence &&
            (!cloud.rules().family_needs_all ||
-            judged.least_confidence >= detection_rules.worst_share * options.min_confidence);
+            judged.least_confidence >= kDetection.worst_share * options.min_confidence);
   };
   if (const std::optional<CenterFamily> center = findCenter(symmetries, test, guesses.centers)) {
     const JudgedFamily judged = judge.judgeFamily(center->planes, samples);
@@ -285,7 +282,7 @@ PlanesAndFamilies collectFamilies(std::vector<SymmetryPlane> planes, const Norma
     // No bounded shape has two parallel axes, but a thin disc seems to within the tolerance: the best is the
     // axis.
     const bool is_known = std::any_of(found.axes.begin(), found.axes.end(), [&](const SymmetryAxis& axis) {
-      return std::abs(axis.direction.dot(family.line.direction())) > std::cos(detection_rules.contained_angle);
+      return std::abs(axis.direction.dot(family.line.direction())) > std::cos(kDetection.contained_angle);
     });
     if (!is_known)
       found.axes.push_back({cloud.toInput(family.line.origin()), family.line.direction(), judged.confidence,
@@ -299,7 +296,7 @@ std::vector<SymmetryPlane> withoutPlanesOf(std::vector<SymmetryPlane> planes, co
                                            const NormalizedCloud& cloud) {
   const auto belongs = [&](const SymmetryPlane& plane) {
     return std::any_of(axes.begin(), axes.end(), [&](const SymmetryAxis& axis) {
-      return contains(cloud.toNormalized(plane), cloud.lineOf(axis), detection_rules.contained_offset);
+      return contains(cloud.toNormalized(plane), cloud.lineOf(axis), kDetection.contained_offset);
     });
   };
   planes.erase(std::remove_if(planes.begin(), planes.end(), belongs), planes.end());

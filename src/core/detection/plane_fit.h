@@ -41,7 +41,7 @@ struct PlaneShares {
   std::vector<float> point_support;  ///< of each sample, in [0, 1]
 };
 
-/// A plane on its way through the stages of refinement, normalised frame.
+/// A plane on its way through the stages of refinement, normalized frame.
 struct Candidate {
   ReflectionPlane plane;
   bool from_map = false;  ///< a maximum of the map, whose cell it must not leave

@@ -22,7 +22,7 @@ namespace {
 std::array<double, 2> sharesWithin(const std::vector<float>& distances, double tolerance) {
   std::array<double, 2> shares{};
   for (std::size_t k = 0; k < shares.size(); ++k)
-    shares[k] = std::max(0.1, shareWithin(distances, detection_rules.tolerances[k] * tolerance));
+    shares[k] = std::max(0.1, shareWithin(distances, kDetection.tolerances[k] * tolerance));
   return shares;
 }
 
@@ -30,8 +30,7 @@ std::array<double, 2> sharesWithin(const std::vector<float>& distances, double t
 /// resolve no surface.
 double sampledTolerance(const NormalizedCloud& cloud, double tolerance) {
   if (cloud.rules().by_halves) return 0.0;
-  return std::min(cloud.spacing / evidence_rules.coarsest,
-                  detection_rules.tolerances.back() * tolerance * cloud.extent);
+  return std::min(cloud.spacing / kEvidence.coarsest, kDetection.tolerances.back() * tolerance * cloud.extent);
 }
 
 }  // namespace
@@ -46,7 +45,7 @@ PlaneMeasure::PlaneMeasure(const NormalizedCloud& cloud, const PlaneFit& fit, co
                      : std::max(options.tolerance * cloud.extent,
                                 std::min(std::max(resolution_, sampledTolerance(cloud, options.tolerance)),
                                          options.most_tolerance * cloud.extent))),
-      cut_share_(resolution_ > 0.0 ? pcl_symmetry::cutShare(cloud.points, *cloud.seen(), detection_rules.beside_outline)
+      cut_share_(resolution_ > 0.0 ? pcl_symmetry::cutShare(cloud.points, *cloud.seen(), kDetection.beside_outline)
                                    : 0.0),
       thinness_(
           thinnessOf(cloud.points, cloud.principal_axes, cloud.rules().thin_tolerances * tolerance_, lineTolerance())),
@@ -60,10 +59,9 @@ PlaneMeasure::PlaneMeasure(const NormalizedCloud& cloud, const PlaneFit& fit, co
                          : 1.0) {}
 
 double PlaneMeasure::lineTolerance() const {
-  const double noisy = detection_rules.noisy_thinness * tolerance_;
-  return cloud_.kind() == CloudKind::Volume
-             ? noisy
-             : std::clamp(detection_rules.round_spacings * cloud_.spacing, tolerance_, noisy);
+  const double noisy = kDetection.noisy_thinness * tolerance_;
+  return cloud_.kind() == CloudKind::Volume ? noisy
+                                            : std::clamp(kDetection.round_spacings * cloud_.spacing, tolerance_, noisy);
 }
 
 std::vector<int> PlaneMeasure::samples() const {
@@ -166,7 +164,7 @@ std::vector<float> PlaneMeasure::unknownMatches(const Reflected& reflected, cons
       }
     return unknown;
   }
-  const double held = std::clamp(offset_stiffness / detection_rules.held - 1.0, 0.0, 1.0);
+  const double held = std::clamp(offset_stiffness / kDetection.held - 1.0, 0.0, 1.0);
   if (held <= 0.0 || static_cast<Eigen::Index>(size) != cloud_.points.cols()) return unknown;
   const auto trust = static_cast<float>(held * ends().trust());
   if (trust <= 0.0f) return unknown;
@@ -182,12 +180,12 @@ PlaneMeasure::Agreement PlaneMeasure::agreement(const ReflectionPlane& plane, co
   const std::vector<float> moved = halves_ ? of_halves : movedOnly(reflected.distances, plane, reflected.points);
   std::array<double, 2> within{};
   for (std::size_t k = 0; k < within.size() && !moved.empty(); ++k)
-    within[k] = std::min(1.0, shareWithin(moved, detection_rules.tolerances[k] * tolerance_) / own_shares_[k]);
+    within[k] = std::min(1.0, shareWithin(moved, kDetection.tolerances[k] * tolerance_) / own_shares_[k]);
   std::vector<char> matched(size);
   for (std::size_t i = 0; i < size; ++i) matched[i] = reflected.distances[i] <= tolerance_;
   Eigen::Matrix3d stiffness = Eigen::Matrix3d::Zero();
   std::vector<float> unknown(size, 0.0f);
-  if (cloud_.seen() || (cloud_.rules().may_lack_piece && within[0] < detection_rules.surely_whole)) {
+  if (cloud_.seen() || (cloud_.rules().may_lack_piece && within[0] < kDetection.surely_whole)) {
     stiffness = motionStiffness(reflected.points, matchedNormals(step), matched, plane);
     unknown = unknownMatches(reflected, step, matched, offsetStiffness(stiffness), rim);
   }
@@ -199,7 +197,7 @@ PlaneMeasure::Agreement PlaneMeasure::agreement(const ReflectionPlane& plane, co
     if (unknown[i] < 0.5f) telling.push_back(reflected.distances[i]);
     if (unknown[i] < 0.5f && moves(plane, reflected.points.col(static_cast<Eigen::Index>(i)))) ++num_told;
     for (std::size_t k = 0; k < missing.size(); ++k)
-      if (reflected.distances[i] > detection_rules.tolerances[k] * tolerance_) missing[k] += unknown[i] / count;
+      if (reflected.distances[i] > kDetection.tolerances[k] * tolerance_) missing[k] += unknown[i] / count;
   }
   const auto share = [&](std::size_t k) {
     const double good = within[k], bad = std::max(0.0, 1.0 - good - missing[k]);
@@ -212,7 +210,7 @@ PlaneMeasure::Agreement PlaneMeasure::agreement(const ReflectionPlane& plane, co
 }
 
 bool PlaneMeasure::moves(const ReflectionPlane& plane, const Eigen::Vector3f& x) const {
-  return 2.0 * std::abs(plane.signedDistance(x.cast<double>())) > detection_rules.still * tolerance_;
+  return 2.0 * std::abs(plane.signedDistance(x.cast<double>())) > kDetection.still * tolerance_;
 }
 
 std::vector<float> PlaneMeasure::movedOnly(const std::vector<float>& distances, const ReflectionPlane& plane,
@@ -233,7 +231,7 @@ double PlaneMeasure::deviationOf(std::vector<float> distances) const {
 }
 
 double PlaneMeasure::deviation(const ReflectionPlane& plane) const {
-  const std::vector<int> samples = drawSamples(cloud_.points.cols(), detection_rules.deviation_samples, options_.seed);
+  const std::vector<int> samples = drawSamples(cloud_.points.cols(), kDetection.deviation_samples, options_.seed);
   IspStep step;
   step.closest.assign(samples.size(), -1);
   Reflected all = reflected(plane, samples, step);
@@ -249,7 +247,7 @@ double PlaneMeasure::deviation(const ReflectionPlane& plane) const {
 }
 
 PlaneMeasure::QuickShare PlaneMeasure::quickShare(const Candidate& candidate) const {
-  const std::vector<int> samples = drawSamples(cloud_.points.cols(), detection_rules.look_samples, options_.seed);
+  const std::vector<int> samples = drawSamples(cloud_.points.cols(), kDetection.look_samples, options_.seed);
   const Reflected some = reflected(candidate.plane, samples, fit_.matches(candidate.plane, samples));
   const double share = std::min(1.0, shareWithin(some.distances, tolerance_) / own_shares_[0]);
   return {share, std::sqrt(share * (1.0 - share) / static_cast<double>(samples.size()))};
@@ -265,7 +263,7 @@ double PlaneMeasure::movedShare(const ReflectionPlane& plane) const {
 
 const SurfaceEnds& PlaneMeasure::ends() const {
   std::call_once(ends_found_, [this] {
-    ends_.emplace(cloud_.points, cloud_.geometry, *cloud_.search, cloud_.neighbours, cloud_.spacing, options_.seed,
+    ends_.emplace(cloud_.points, cloud_.geometry, *cloud_.search, cloud_.neighbors, cloud_.spacing, options_.seed,
                   options_.num_threads);
   });
   return *ends_;

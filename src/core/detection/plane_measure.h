@@ -97,7 +97,7 @@ private:
   /// Whether the scanner saw that nothing is at a point, nor within \p rim beside it: the rim of what was seen is as
   /// exact as its pixels.
   bool isSeenEmpty(const Eigen::Vector3d& x, double rim) const;
-  /// Of each sample without a match, whether nothing is known of its counterpart, in [0, 1].
+  /// For each sample without a match, whether nothing is known of its counterpart, in [0, 1].
   std::vector<float> unknownMatches(const Reflected& reflected, const IspStep& step, const std::vector<char>& matched,
                                     double offset_stiffness, double rim) const;
   Agreement agreement(const ReflectionPlane& plane, const Reflected& reflected, const IspStep& step, double rim) const;

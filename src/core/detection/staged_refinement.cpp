@@ -13,30 +13,30 @@ StagedRefinement::StagedRefinement(const NormalizedCloud& cloud, const PlaneFit&
     : cloud_(cloud), fit_(fit), options_(options) {}
 
 std::vector<Candidate> StagedRefinement::coarse(std::vector<Candidate> candidates, const PlaneGrid& grid) const {
-  const double narrow = std::clamp(cloud_.final_sigma, detection_rules.narrowest_coarsely * cloud_.sigma, cloud_.sigma);
+  const double narrow = std::clamp(cloud_.final_sigma, kDetection.narrowest_coarsely * cloud_.sigma, cloud_.sigma);
   const std::vector<Candidate> moved = refined(
-      candidates, stage(options_.expert.num_coarse_samples, cloud_.sigma, narrow, detection_rules.coarse_iterations));
-  return distinct(withinCells(moved, candidates, grid), -1.0, detection_rules.kept_coarsely);
+      candidates, stage(options_.expert.num_coarse_samples, cloud_.sigma, narrow, kDetection.coarse_iterations));
+  return distinct(withinCells(moved, candidates, grid), -1.0, kDetection.kept_coarsely);
 }
 
 std::vector<Candidate> StagedRefinement::close(std::vector<Candidate> candidates) const {
-  const auto isSymmetry = [](const Candidate& candidate) { return candidate.merit >= detection_rules.symmetric_merit; };
+  const auto isSymmetry = [](const Candidate& candidate) { return candidate.merit >= kDetection.symmetric_merit; };
   const bool all = cloud_.rules().keeps_unlikely || options_.approximate;
   const auto likely = all ? candidates.end()
                           : std::stable_partition(candidates.begin(), candidates.end(), [](const Candidate& candidate) {
-                              return candidate.merit >= detection_rules.symmetric_merit - detection_rules.coarse_slack;
+                              return candidate.merit >= kDetection.symmetric_merit - kDetection.coarse_slack;
                             });
   std::vector<Candidate> found = refined({candidates.begin(), likely}, closeStage());
   // Beside a symmetry of a whole cloud, the others are of no use.
   if (!all && std::any_of(found.begin(), found.end(), isSymmetry)) return distinct(std::move(found), -1.0, 0);
   for (Candidate& other : refined({likely, candidates.end()}, closeStage())) found.push_back(std::move(other));
   const bool is_whole = std::any_of(found.begin(), found.end(), isSymmetry);
-  return distinct(std::move(found), -1.0, all || !is_whole ? detection_rules.kept_closely : 0);
+  return distinct(std::move(found), -1.0, all || !is_whole ? kDetection.kept_closely : 0);
 }
 
 std::vector<Candidate> StagedRefinement::closeSymmetries(std::vector<Candidate> candidates) const {
-  return distinct(refined(std::move(candidates), closeStage()),
-                  detection_rules.symmetric_merit - detection_rules.close_slack, detection_rules.kept_closely);
+  return distinct(refined(std::move(candidates), closeStage()), kDetection.symmetric_merit - kDetection.close_slack,
+                  kDetection.kept_closely);
 }
 
 std::vector<Candidate> StagedRefinement::full(std::vector<Candidate> candidates) const {
@@ -54,16 +54,16 @@ std::vector<bool> StagedRefinement::climb(std::vector<Candidate>& candidates) co
 
 RefinementStage StagedRefinement::fullStage() const {
   RefinementStage full = stage(options_.expert.num_refine_samples / cloud_.rules().full_share, cloud_.final_sigma,
-                               cloud_.final_sigma, detection_rules.full_iterations);
+                               cloud_.final_sigma, kDetection.full_iterations);
   full.climbs = true;
   return full;
 }
 
 RefinementStage StagedRefinement::closeStage() const {
-  return stage(std::min(detection_rules.close_sample_factor * options_.expert.num_coarse_samples,
-                        options_.expert.num_refine_samples),
-               std::clamp(cloud_.final_sigma, detection_rules.narrowest_coarsely * cloud_.sigma, cloud_.sigma),
-               cloud_.final_sigma, detection_rules.close_iterations);
+  return stage(
+      std::min(kDetection.close_sample_factor * options_.expert.num_coarse_samples, options_.expert.num_refine_samples),
+      std::clamp(cloud_.final_sigma, kDetection.narrowest_coarsely * cloud_.sigma, cloud_.sigma), cloud_.final_sigma,
+      kDetection.close_iterations);
 }
 
 RefinementStage StagedRefinement::stage(int num_samples, double sigma, double final_sigma, int max_iterations) const {
@@ -80,8 +80,8 @@ RefinementStage StagedRefinement::stage(int num_samples, double sigma, double fi
   stage.isp.final_sigma = final_sigma;
   stage.isp.max_iterations = std::min(max_iterations, options_.expert.max_iterations);
   stage.rough_isp = stage.isp;
-  stage.rough_isp.max_iterations = std::min(stage.isp.max_iterations, detection_rules.rough_iterations);
-  if (options_.expert.update == IspUpdate::PointToPlane) stage.isp.error_share = detection_rules.settled_error_share;
+  stage.rough_isp.max_iterations = std::min(stage.isp.max_iterations, kDetection.rough_iterations);
+  if (options_.expert.update == IspUpdate::PointToPlane) stage.isp.error_share = kDetection.settled_error_share;
   return stage;
 }
 
@@ -115,7 +115,7 @@ std::vector<Candidate> StagedRefinement::distinct(std::vector<Candidate> candida
   std::vector<Candidate> kept;
   for (Candidate& candidate : candidates) {
     if (candidate.merit < least_merit) break;
-    if (candidate.merit < detection_rules.symmetric_merit - detection_rules.close_slack && kept.size() >= most) break;
+    if (candidate.merit < kDetection.symmetric_merit - kDetection.close_slack && kept.size() >= most) break;
     if (!tolerance.anySame(kept, candidate.plane, [](const Candidate& other) { return other.plane; }))
       kept.push_back(std::move(candidate));
   }

@@ -7,7 +7,9 @@
 
 #include "core/base/constants.h"
 #include "core/base/median.h"
+#include "core/detection/plane_decision.h"
 #include "core/geometry/reflected_points.h"
+#include "core/geometry/surface_normals.h"
 #include "pcl_symmetry/core/closest_point_search.h"
 
 namespace pcl_symmetry {
@@ -21,6 +23,9 @@ struct UprightBoxRules {
   double meets = 0.03;      // diagonals within which a reflection meets what a beam met
   double beam_reach = 2.0;  // distances of neighboring beams within which a beam is informative
   int beams = 3;            // nearest a reflection
+  // Tolerances from which neighboring points are so far apart that they are no surface. 5 000 points of one side of an
+  // object are one tolerance apart, the points of a car in a LiDAR's sweep three.
+  double no_surface = 1.5;
   // Logit of the confidence, by the share near a side and the root of the share in free space, fitted to 284 virtual
   // scans with 16 to 64 rings at 5 to 25 m; cross-validated, 3 % of asymmetric shapes are called symmetric.
   double confidence = 0.7, of_near = 4.15, of_free = -15.6;
@@ -172,15 +177,27 @@ std::optional<SymmetryPlane> middlePlaneOfBox(const PointsRef& points, const Eig
   return plane;
 }
 
-double spacingOf(const PointsRef& points) {
-  constexpr int kNeighbors = 8;
-  std::vector<int> closest;
-  std::vector<float> sq_distances, spacing;
-  makeFlannSearch(points)->search(points, kNeighbors + 1, closest, sq_distances);
-  // pi r^2 holds the neighbors within r.
-  for (std::size_t i = kNeighbors; i < sq_distances.size(); i += kNeighbors + 1)
-    spacing.push_back(std::sqrt(static_cast<float>(kPi) * sq_distances[i] / kNeighbors));
-  return median(std::move(spacing));
+void decideByUprightBox(const PointsRef& points, const Visibility& seen, const DetectionOptions& options,
+                        Detection& found) {
+  const std::vector<Eigen::Vector3d> up = carryingNormals(points, seen);
+  const float spacing =
+      median(localGeometry(points, *makeFlannSearch(points), kNumSupportNeighbors, options.num_threads).spacing);
+  const bool is_sparse = spacing > kBox.no_surface * found.tolerance;
+  const bool is_decided = !found.axes.empty() || !found.centers.empty() ||
+                          (!found.planes.empty() && found.planes.front().kind == PlaneKind::Symmetry);
+  if (up.empty() || (is_decided && !is_sparse)) return;
+  std::optional<SymmetryPlane> plane = middlePlaneOfBox(points, up.front(), seen.viewpoint());
+  if (is_sparse) {
+    found.planes.clear();
+    found.axes.clear();
+    found.centers.clear();
+    found.turns.clear();
+    found.best = plane;
+  }
+  if (!plane || plane->confidence < (is_sparse ? options.min_possible : options.min_confidence)) return;
+  plane->kind = kindOf(plane->confidence, options);
+  found.planes.insert(found.planes.begin(), std::move(*plane));
+  found.best.reset();
 }
 
 }  // namespace pcl_symmetry

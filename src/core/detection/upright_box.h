@@ -3,8 +3,9 @@
 #include <Eigen/Core>
 #include <optional>
 
-#include "pcl_symmetry/core/plane_types.h"
+#include "pcl_symmetry/core/detect_planes.h"
 #include "pcl_symmetry/core/point_set.h"
+#include "pcl_symmetry/core/visibility.h"
 
 namespace pcl_symmetry {
 
@@ -24,7 +25,9 @@ namespace pcl_symmetry {
 std::optional<SymmetryPlane> middlePlaneOfBox(const PointsRef& points, const Eigen::Vector3d& up,
                                               const Eigen::Vector3d& viewpoint);
 
-/// \return distance between neighboring points, median, input units.
-double spacingOf(const PointsRef& points);
+/// Where points that stand on a ground are too far apart for a surface, as those of a LiDAR's rings: the middle plane
+/// of their upright box decides in place of what was found.
+void decideByUprightBox(const PointsRef& points, const Visibility& seen, const DetectionOptions& options,
+                        Detection& found);
 
 }  // namespace pcl_symmetry

@@ -19,7 +19,7 @@ std::optional<CutPlane> planeThrough(const Eigen::Vector3f& a, const Eigen::Vect
   const Eigen::Vector3f across = (b - a).cross(c - a);
   const float longest = std::max({(b - a).norm(), (c - a).norm(), (c - b).norm()});
   // The height of the triangle, compared with the error of its points.
-  if (!(across.norm() > 2.0f * evidence_rules.cut_band * spacing * longest)) return std::nullopt;
+  if (!(across.norm() > 2.0f * kEvidence.cut_band * spacing * longest)) return std::nullopt;
   const Eigen::Vector3f normal = across.normalized();
   return CutPlane{normal, normal.dot(a)};
 }
@@ -27,7 +27,7 @@ std::optional<CutPlane> planeThrough(const Eigen::Vector3f& a, const Eigen::Vect
 class CutSearch {
 public:
   CutSearch(const Points& points, const std::vector<char>& borders, float spacing)
-      : points_(points), borders_(borders), band_(evidence_rules.cut_band * spacing), spacing_(spacing) {
+      : points_(points), borders_(borders), band_(kEvidence.cut_band * spacing), spacing_(spacing) {
     for (std::size_t i = 0; i < borders.size(); ++i)
       if (borders[i]) free_.push_back(static_cast<Eigen::Index>(i));
     middle_ = points.rowwise().mean();
@@ -36,10 +36,10 @@ public:
   /// The cut with most of the border points that no other cut has; nothing where there is none.
   std::optional<CutPlane> next(RandomStream& random) {
     std::optional<CutPlane> best;
-    std::size_t most = evidence_rules.least_of_cut - 1;
+    std::size_t most = kEvidence.least_of_cut - 1;
     if (free_.size() <= most) return best;
     const auto any = [&]() -> Eigen::Vector3f { return points_.col(free_[random.below(free_.size())]); };
-    for (int draw = 0; draw < evidence_rules.cut_draws; ++draw) {
+    for (int draw = 0; draw < kEvidence.cut_draws; ++draw) {
       const Eigen::Vector3f a = any(), b = any(), c = any();
       std::optional<CutPlane> plane = planeThrough(a, b, c, spacing_);
       if (!plane) continue;
@@ -61,7 +61,7 @@ public:
 
 private:
   bool leavesPointsBeyond(const CutPlane& plane) const {
-    auto left = static_cast<Eigen::Index>(evidence_rules.most_beyond * static_cast<double>(points_.cols()));
+    auto left = static_cast<Eigen::Index>(kEvidence.most_beyond * static_cast<double>(points_.cols()));
     for (Eigen::Index i = 0; i < points_.cols(); ++i)
       if (plane.normal.dot(points_.col(i)) > plane.offset + band_ && --left < 0) return true;
     return false;
@@ -85,7 +85,7 @@ private:
       squares += d * d.transpose() / static_cast<double>(at.size());
     }
     const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(squares);
-    const double least = evidence_rules.least_spread * spacing_;
+    const double least = kEvidence.least_spread * spacing_;
     if (!(solver.eigenvalues()[1] > least * least)) return std::nullopt;
     Eigen::Vector3f normal = solver.eigenvectors().col(0).cast<float>();
     if (normal.dot(start.normal) < 0.0f) normal = -normal;
@@ -97,7 +97,7 @@ private:
       ++num_near;
       num_at_border += borders_[static_cast<std::size_t>(i)] ? 1 : 0;
     }
-    if (static_cast<double>(num_at_border) < evidence_rules.least_at_border * static_cast<double>(num_near))
+    if (static_cast<double>(num_at_border) < kEvidence.least_at_border * static_cast<double>(num_near))
       return std::nullopt;
     return plane;
   }
@@ -116,7 +116,7 @@ std::vector<CutPlane> findCutPlanes(const Points& points, const std::vector<char
   std::vector<CutPlane> cuts;
   CutSearch search(points, borders, static_cast<float>(spacing));
   RandomStream random(seed);
-  while (cuts.size() < static_cast<std::size_t>(evidence_rules.most_cuts)) {
+  while (cuts.size() < static_cast<std::size_t>(kEvidence.most_cuts)) {
     const std::optional<CutPlane> cut = search.next(random);
     if (!cut) break;
     cuts.push_back(*cut);

@@ -67,6 +67,6 @@ struct EvidenceRules {
   double least_curvature = 1e-3;     ///< share of the greatest
 };
 
-inline constexpr EvidenceRules evidence_rules;
+inline constexpr EvidenceRules kEvidence;
 
 }  // namespace pcl_symmetry

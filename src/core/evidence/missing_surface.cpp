@@ -38,7 +38,7 @@ std::vector<int> cellsOf(const Points& points, int cells_per_side) {
 OutermostPoints::OutermostPoints(const Points& points) : mean_(points.rowwise().mean()) {
   const auto size = static_cast<std::size_t>(points.cols());
   const int cells_per_side =
-      std::max(1, static_cast<int>(std::sqrt(static_cast<double>(size) / evidence_rules.points_per_square)));
+      std::max(1, static_cast<int>(std::sqrt(static_cast<double>(size) / kEvidence.points_per_square)));
   const std::vector<int> cells = cellsOf(points, cells_per_side);
   std::vector<std::size_t> place(static_cast<std::size_t>(cells_per_side * cells_per_side * cells_per_side) + 1, 0);
   for (const int cell : cells) ++place[static_cast<std::size_t>(cell) + 1];
@@ -99,12 +99,12 @@ namespace {
 /// (Gilbert 1966). Where these overlap, a direction in which they overlap little.
 Eigen::Vector3f separatingDirection(const OutermostPoints& points, const OutermostPoints& piece, float spacing) {
   Eigen::Vector3f between = piece.mean() - points.mean();
-  for (int step = 0; step < evidence_rules.most_steps; ++step) {
+  for (int step = 0; step < kEvidence.most_steps; ++step) {
     const Eigen::Vector3f nearest = piece.last(-between) - points.last(between);
-    if (between.dot(nearest) >= (1.0f - evidence_rules.least_gain) * between.squaredNorm()) break;
+    if (between.dot(nearest) >= (1.0f - kEvidence.least_gain) * between.squaredNorm()) break;
     const Eigen::Vector3f change = nearest - between;
     const Eigen::Vector3f next = between - std::min(1.0f, between.dot(change) / change.squaredNorm()) * change;
-    if (next.norm() < evidence_rules.no_distance * spacing) break;
+    if (next.norm() < kEvidence.no_distance * spacing) break;
     between = next;
   }
   return between.normalized();
@@ -115,10 +115,9 @@ Eigen::Vector3f separatingDirection(const OutermostPoints& points, const Outermo
 float lastOf(const OutermostPoints& points, const Eigen::Vector3f& direction, float farthest, float spacing) {
   const auto size = static_cast<std::size_t>(points.size());
   const std::size_t num_beyond =
-      size - 1 - static_cast<std::size_t>((1.0 - evidence_rules.outliers) * static_cast<double>(size - 1));
+      size - 1 - static_cast<std::size_t>((1.0 - kEvidence.outliers) * static_cast<double>(size - 1));
   std::vector<float> distances;
-  for (const float from :
-       {farthest - evidence_rules.outliers_within * spacing, -std::numeric_limits<float>::infinity()}) {
+  for (const float from : {farthest - kEvidence.outliers_within * spacing, -std::numeric_limits<float>::infinity()}) {
     distances.clear();
     points.visitFrom(direction, from,
                      [&](Eigen::Index, const Eigen::Vector3f&, float distance) { distances.push_back(distance); });
@@ -141,12 +140,12 @@ float beyondEnd(const OutermostPoints& cloud, const Points& normals, const Outer
   const Eigen::Vector3f normal = separatingDirection(cloud, piece, unit);
   const float farthest = normal.dot(cloud.last(normal));
   const float gap = (normal.dot(piece.last(-normal)) - farthest) / unit;
-  const float is_beyond = ramp(gap, -evidence_rules.behind, -evidence_rules.in_front);
+  const float is_beyond = ramp(gap, -kEvidence.behind, -kEvidence.in_front);
   if (is_beyond <= 0.0f) return 0.0f;
   // The surface has to end beside the piece, or within 60 degrees of the way to it.
-  const float reach = (evidence_rules.behind + 2.0f * std::max(0.0f, gap)) * unit;
+  const float reach = (kEvidence.behind + 2.0f * std::max(0.0f, gap)) * unit;
   float cosines = 0.0f, count = 0.0f, cosines_before = 0.0f, count_before = 0.0f;
-  cloud.visitFrom(normal, lastOf(cloud, normal, farthest, unit) - evidence_rules.last_points * unit,
+  cloud.visitFrom(normal, lastOf(cloud, normal, farthest, unit) - kEvidence.last_points * unit,
                   [&](Eigen::Index i, const Eigen::Vector3f& x, float) {
                     const float cosine = std::abs(normal.dot(normals.col(i)));
                     cosines += cosine;
@@ -156,15 +155,15 @@ float beyondEnd(const OutermostPoints& cloud, const Points& normals, const Outer
                     count_before += 1.0f;
                   });
   if (count_before == 0.0f) return 0.0f;
-  return is_beyond * ramp(-std::max(cosines / count, cosines_before / count_before), -evidence_rules.closes,
-                          -evidence_rules.runs_into);
+  return is_beyond *
+         ramp(-std::max(cosines / count, cosines_before / count_before), -kEvidence.closes, -kEvidence.runs_into);
 }
 
 namespace {
 
 /// Lower limit of a proportion (Wilson).
 float lowerLimit(float count, float total) {
-  const float share = count / total, sq = evidence_rules.standard_errors * evidence_rules.standard_errors / total;
+  const float share = count / total, sq = kEvidence.standard_errors * kEvidence.standard_errors / total;
   return (share + 0.5f * sq - std::sqrt(sq * (share * (1.0f - share) + 0.25f * sq))) / (1.0f + sq);
 }
 
@@ -221,8 +220,8 @@ std::vector<float> missingCounterparts(const SampledSurface& surface, const std:
       explained[region] += ends(static_cast<int>(i)) || ends(j) ? 1.0f : 0.0f;
     }
   }
-  const auto least = std::max(evidence_rules.least_of_piece,
-                              static_cast<std::size_t>(evidence_rules.least_piece * static_cast<double>(size)));
+  const auto least =
+      std::max(kEvidence.least_of_piece, static_cast<std::size_t>(kEvidence.least_piece * static_cast<double>(size)));
   std::vector<float> missing(size, 0.0f);
   for (const std::vector<int>& members : membersOf(regions, matched)) {
     const int region = regions.of(members.front());
@@ -232,9 +231,8 @@ std::vector<float> missingCounterparts(const SampledSurface& surface, const std:
       // A region all of which lies near borders, as a wire, has its edge near them whatever the plane.
       const float chance = std::min(0.99f, static_cast<float>(at_borders) / static_cast<float>(members.size()));
       const float share = (lowerLimit(explained[region], edges[region]) - chance) / (1.0f - chance);
-      value = std::clamp(
-          (share - evidence_rules.least_explained) / (evidence_rules.explained - evidence_rules.least_explained), 0.0f,
-          1.0f);
+      value = std::clamp((share - kEvidence.least_explained) / (kEvidence.explained - kEvidence.least_explained), 0.0f,
+                         1.0f);
     }
     if (value < 1.0f && members.size() >= least)
       value = std::max(value, beyondEnd(surface.points, surface.geometry.normals,
@@ -250,24 +248,23 @@ namespace {
 /// its end is no cut.
 bool isOpenSheet(const Points& points) {
   const PrincipalAxes axes = principalAxes(points);
-  const double far = evidence_rules.far_view * boundingBall(points).radius;
-  return layeredShare(points, axes.center + far * axes.axes.col(2)) < evidence_rules.layered_sheet;
+  const double far = kEvidence.far_view * boundingBall(points).radius;
+  return layeredShare(points, axes.center + far * axes.axes.col(2)) < kEvidence.layered_sheet;
 }
 
 }  // namespace
 
 SurfaceEnds::SurfaceEnds(const Points& points, const LocalGeometry& geometry, const ClosestPointSearch& search,
-                         const FoundNeighbours& found, double spacing, std::uint64_t seed, int num_threads)
+                         const FoundNeighbors& found, double spacing, std::uint64_t seed, int num_threads)
     : geometry_(geometry),
       spacing_(spacing),
       borders_(openBorders(points, search, geometry.normals, num_threads, &found)),
       outermost_(points),
       cuts_(findCutPlanes(points, borders_, spacing, seed)),
-      trust_(isOpenSheet(points)
-                 ? 0.0
-                 : std::clamp((evidence_rules.borders_everywhere - shareNearBorders(borders_, geometry)) /
-                                  (evidence_rules.borders_everywhere - evidence_rules.few_borders),
-                              0.0, 1.0)) {}
+      trust_(isOpenSheet(points) ? 0.0
+                                 : std::clamp((kEvidence.borders_everywhere - shareNearBorders(borders_, geometry)) /
+                                                  (kEvidence.borders_everywhere - kEvidence.few_borders),
+                                              0.0, 1.0)) {}
 
 std::vector<float> SurfaceEnds::missing(const std::vector<char>& matched, const std::vector<int>& closest,
                                         const Points& reflected) const {

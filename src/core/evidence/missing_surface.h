@@ -77,11 +77,6 @@ private:
 /// \return in [0, 1]: 1 where the cloud was cut off before the piece, 0 where a counterpart should be there.
 float beyondEnd(const OutermostPoints& cloud, const Points& normals, const OutermostPoints& piece, double spacing);
 
-/// Where a cloud ends although the object goes on: a cut, a hole, a side that no scan saw.
-///
-/// Beyond the paper, which has whole shapes. For a true plane the points without a counterpart begin where the cloud,
-/// or its reflection, ends; for a false one they begin in the middle of the surface.
-
 /// The samples of a cloud, as points() of NormalizedCloud.
 struct SampledSurface {
   const OutermostPoints& points;     ///< N
@@ -105,6 +100,9 @@ std::vector<float> missingCounterparts(const SampledSurface& surface, const std:
                                        const std::vector<int>& closest, const Points& reflected);
 
 /// Where a cloud ends although the object may go on: its open borders and the planes that it was cut by.
+///
+/// Beyond the paper, which has whole shapes. For a true plane the points without a counterpart begin where the cloud,
+/// or its reflection, ends; for a false one they begin in the middle of the surface.
 class SurfaceEnds {
 public:
   /// \param points,geometry must outlive this object.
@@ -112,7 +110,7 @@ public:
   /// \param spacing median distance of the points.
   /// \param num_threads 0 = one per core.
   SurfaceEnds(const Points& points, const LocalGeometry& geometry, const ClosestPointSearch& search,
-              const FoundNeighbours& found, double spacing, std::uint64_t seed, int num_threads);
+              const FoundNeighbors& found, double spacing, std::uint64_t seed, int num_threads);
 
   /// Whether the counterparts of samples are missing from the cloud, in [0, 1], by which ends of the cloud say so.
   /// \param matched,closest,reflected as of missingCounterparts(), for all points.

@@ -110,7 +110,7 @@ std::vector<double> logOddsTerms(const PlaneEvidence& evidence) {
 double shareUnit(const PlaneEvidence& evidence) {
   const EvidenceUnits units;
   return units.off + units.off_per_spacing * coarseness(evidence) + noiseOf(evidence) +
-         evidence_rules.unknown_share * evidence.unknown;
+         kEvidence.unknown_share * evidence.unknown;
 }
 
 ShareInterval shareInterval(const PlaneEvidence& evidence) {
@@ -123,10 +123,10 @@ ShareInterval shareInterval(const PlaneEvidence& evidence) {
 double planeConfidence(const PlaneEvidence& evidence) {
   const std::vector<double> terms = logOddsTerms(evidence);
   const auto& coefficients = kConfidenceFit.log_odds[static_cast<int>(evidence.kind)];
-  // Of a flat cloud the outline alone tells, of a scan one side.
+  // A flat cloud is judged by its outline alone, a scan by one side.
   const bool tells_little = evidence.flat || (evidence.kind == CloudKind::Scan && evidence.sparse);
-  const double coarsest = tells_little ? evidence_rules.coarsest_part : evidence_rules.coarsest;
-  const double unresolved = evidence_rules.lost_per_coarseness * std::max(0.0, coarseness(evidence) - coarsest);
+  const double coarsest = tells_little ? kEvidence.coarsest_part : kEvidence.coarsest;
+  const double unresolved = kEvidence.lost_per_coarseness * std::max(0.0, coarseness(evidence) - coarsest);
   const double log_odds = std::inner_product(terms.begin(), terms.end(), coefficients.begin(), 0.0) - unresolved;
   return 1.0 / (1.0 + std::exp(-log_odds));
 }

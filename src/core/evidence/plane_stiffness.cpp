@@ -32,7 +32,7 @@ Eigen::Matrix3d motionStiffness(const Points& points, const Points& normals, con
 
 double offsetStiffness(const Eigen::Matrix3d& stiffness) {
   Eigen::Matrix2d tilts = stiffness.topLeftCorner<2, 2>();
-  tilts.diagonal().array() += evidence_rules.tilt_ridge;
+  tilts.diagonal().array() += kEvidence.tilt_ridge;
   const Eigen::Vector2d coupling = stiffness.topRightCorner<2, 1>();
   return std::max(0.0, stiffness(2, 2) - coupling.dot(tilts.ldlt().solve(coupling)));
 }

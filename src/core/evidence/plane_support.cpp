@@ -20,30 +20,29 @@ float sqDeviation(const SurfaceSample& sample, const Eigen::Vector3f& point, con
   const float reach = std::max(1e-6f, sample.disc_radius);
   const float sq_length = difference.squaredNorm();
   const float along =
-      sq_length < evidence_rules.surely * reach * reach ? 0.0f : std::max(0.0f, std::sqrt(sq_length) / reach - 1.0f);
+      sq_length < kEvidence.surely * reach * reach ? 0.0f : std::max(0.0f, std::sqrt(sq_length) / reach - 1.0f);
   if (along * along >= most) return most;
-  const float normal_reach = std::max(evidence_rules.normal_reach, evidence_rules.rough_reach * sample.roughness);
+  const float normal_reach = std::max(kEvidence.normal_reach, kEvidence.rough_reach * sample.roughness);
   const float height = std::abs(sample.normal.dot(difference));
-  const float across =
-      height < evidence_rules.surely * normal_reach ? 0.0f : std::max(0.0f, height / normal_reach - 1.0f);
+  const float across = height < kEvidence.surely * normal_reach ? 0.0f : std::max(0.0f, height / normal_reach - 1.0f);
   const float sq_distance = along * along + across * across;
   if (sq_distance >= most) return most;
   const float cosine = std::min(1.0f, std::abs(sample.normal.dot(point_normal)));
   // Normals count as far as they can be trusted, without a jump.
-  if (cosine > evidence_rules.agreeing_cosine || sample.normal_trust == 0.0f) return sq_distance;
-  const float turned = sample.normal_trust * std::max(0.0f, std::acos(cosine) / evidence_rules.normal_angle - 1.0f);
+  if (cosine > kEvidence.agreeing_cosine || sample.normal_trust == 0.0f) return sq_distance;
+  const float turned = sample.normal_trust * std::max(0.0f, std::acos(cosine) / kEvidence.normal_angle - 1.0f);
   return sq_distance + turned * turned;
 }
 
 /// Support by the closest sample or one of those next to it, whichever is best, but not by sample \p self (-1 = none).
 float supportNear(int closest, int self, const Eigen::Vector3f& point, const Eigen::Vector3f& point_normal,
                   const SurfaceSamples& samples) {
-  float least = sqDeviation(samples[closest], point, point_normal, evidence_rules.most);
+  float least = sqDeviation(samples[closest], point, point_normal, kEvidence.most);
   for (const int j : samples[closest].nearest) {
     if (least == 0.0f) return 1.0f;
     if (j != self) least = std::min(least, sqDeviation(samples[j], point, point_normal, least));
   }
-  return least < evidence_rules.most ? std::exp(-least) : 0.0f;
+  return least < kEvidence.most ? std::exp(-least) : 0.0f;
 }
 
 }  // namespace
@@ -51,8 +50,8 @@ float supportNear(int closest, int self, const Eigen::Vector3f& point, const Eig
 float emptiness(const Visibility& visibility, const Eigen::Vector3d& x) {
   const double behind = visibility.depthBehind(x);
   if (behind >= 0.0) return 0.0f;
-  const bool is_exact = visibility.depthError(x) < evidence_rules.exact_depth;
-  return std::isfinite(behind) || is_exact ? 1.0f : evidence_rules.empty_without_depth;
+  const bool is_exact = visibility.depthError(x) < kEvidence.exact_depth;
+  return std::isfinite(behind) || is_exact ? 1.0f : kEvidence.empty_without_depth;
 }
 
 PointEvidence pointEvidence(const Points& reflected, const Points& reflected_normals, const std::vector<int>& closest,
@@ -91,7 +90,7 @@ std::vector<float> planeSupport(const PointsRef& points, const PointsRef& sample
   check(ball.radius > 0.0, "extent of the samples", ball.radius, "> 0");
   const Points surface = normalizePoints(samples, ball.center, ball.radius);
   const auto search = makeFlannSearch(surface);
-  const SurfaceSamples described(surface, localGeometry(surface, *search, kNumSupportNeighbours, num_threads));
+  const SurfaceSamples described(surface, localGeometry(surface, *search, kNumSupportNeighbors, num_threads));
   const Eigen::Vector3f n = plane.normal().cast<float>();
   std::vector<float> support(points.cols());
   parallelRanges(points.cols(), kBlockSize, num_threads, [&](std::size_t begin, std::size_t end) {

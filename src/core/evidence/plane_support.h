@@ -9,13 +9,6 @@
 
 namespace pcl_symmetry {
 
-/// How well single points of a surface support a reflection (the white regions of Figure 8).
-///
-/// Departure from the paper, which measures the distance of the reflected point by the Gaussian of the transform: here
-/// the unit is the distance between samples, so that the result needs no length in input units. A reflected point that
-/// lies on the surface is farther from the closest sample than 1.25 spacings in 1 of 135 cases (spacing = 1 /
-/// sqrt(density), measured at that sample). Up to there the support is 1; beyond, it falls as a Gaussian.
-
 /// Evidence of each of M reflected points, in [0, 1].
 struct PointEvidence {
   std::vector<float> support;   ///< the reflection lies on the surface
@@ -28,7 +21,13 @@ struct PointEvidence {
 /// \return in [0, 1]: 0 behind what was seen, 1 before it.
 float emptiness(const Visibility& visibility, const Eigen::Vector3d& x);
 
-/// Near an edge the closest sample may lie on another face: the best of that sample and of those next to it counts.
+/// How well single points of a surface support a reflection (the white regions of Figure 8). Near an edge the closest
+/// sample may lie on another face: the best of that sample and of those next to it counts.
+///
+/// Departure from the paper, which measures the distance of the reflected point by the Gaussian of the transform: here
+/// the unit is the distance between samples, so that the result needs no length in input units. A reflected point that
+/// lies on the surface is farther from the closest sample than 1.25 spacings in 1 of 135 cases (spacing = 1 /
+/// sqrt(density), measured at that sample). Up to there the support is 1; beyond, it falls as a Gaussian.
 /// \param reflected 3 x M, reflections of points of the surface, normalized to the unit ball.
 /// \param reflected_normals 3 x M, reflections of their normals.
 /// \param closest M indices of the closest samples; -1: none is near.

@@ -56,7 +56,7 @@ struct Quadric {
   Eigen::Vector3d stepUp() const {
     const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(hessian);
     Eigen::Vector3d step = Eigen::Vector3d::Zero();
-    const double least = evidence_rules.least_curvature * solver.eigenvalues().cwiseAbs().maxCoeff();
+    const double least = kEvidence.least_curvature * solver.eigenvalues().cwiseAbs().maxCoeff();
     for (int k = 0; k < 3; ++k) {
       const Eigen::Vector3d axis = solver.eigenvectors().col(k);
       step += axis * axis.dot(gradient) / std::max(std::abs(solver.eigenvalues()[k]), least);
@@ -69,18 +69,16 @@ struct Quadric {
 
 PointDensity::PointDensity(const PointsRef& points, double bandwidth, int num_threads)
     : bandwidth_(bandwidth), middle_(centerOfMass(points)) {
-  const Eigen::Array3f low =
-      points.rowwise().minCoeff().array() - static_cast<float>(evidence_rules.margin * bandwidth);
-  const Eigen::Array3f high =
-      points.rowwise().maxCoeff().array() + static_cast<float>(evidence_rules.margin * bandwidth);
-  cell_size_ = std::max(static_cast<float>(evidence_rules.cell_size * bandwidth),
-                        (high - low).maxCoeff() / evidence_rules.most_cells);
+  const Eigen::Array3f low = points.rowwise().minCoeff().array() - static_cast<float>(kEvidence.margin * bandwidth);
+  const Eigen::Array3f high = points.rowwise().maxCoeff().array() + static_cast<float>(kEvidence.margin * bandwidth);
+  cell_size_ =
+      std::max(static_cast<float>(kEvidence.cell_size * bandwidth), (high - low).maxCoeff() / kEvidence.most_cells);
   origin_ = low.matrix();
   size_ = ((high - low) / cell_size_).ceil().cast<int>() + 2;
   spread(points);
   const double deviation = blur(bandwidth, num_threads);
   // What a point adds to the density at its own position.
-  const double own_part = std::pow(2.0 * kPi * (deviation * deviation + evidence_rules.cell_variance), -1.5);
+  const double own_part = std::pow(2.0 * kPi * (deviation * deviation + kEvidence.cell_variance), -1.5);
   double total = 0.0, sq_extent = 0.0;
   for (Eigen::Index i = 0; i < points.cols(); ++i) {
     total += at(points.col(i));
@@ -119,8 +117,8 @@ double PointDensity::blur(double bandwidth, int num_threads) {
   const std::array<std::size_t, 3> stride{1, static_cast<std::size_t>(size_[0]),
                                           static_cast<std::size_t>(size_[0]) * size_[1]};
   const double sq_cells = std::pow(bandwidth / cell_size_, 2);
-  const double deviation = std::sqrt(std::max(evidence_rules.least_variance, sq_cells - evidence_rules.cell_variance));
-  const int reach = static_cast<int>(std::ceil(evidence_rules.kernel_reach * deviation));
+  const double deviation = std::sqrt(std::max(kEvidence.least_variance, sq_cells - kEvidence.cell_variance));
+  const int reach = static_cast<int>(std::ceil(kEvidence.kernel_reach * deviation));
   const std::vector<float> kernel = gaussianKernel(deviation, reach);
   for (int axis = 0; axis < 3; ++axis) {
     const int along = size_[axis], across = size_[(axis + 1) % 3], deep = size_[(axis + 2) % 3];
@@ -168,7 +166,7 @@ PointDensity::Refined PointDensity::refine(const PointsRef& samples, const Refle
                                            int max_iterations) const {
   Refined best{plane, 0};
   double best_value = overlap(samples, best.plane);
-  const double step = evidence_rules.step * bandwidth_ / extent_;  // radians; times the extent in offset
+  const double step = kEvidence.step * bandwidth_ / extent_;  // radians; times the extent in offset
   for (; best.iterations < max_iterations; ++best.iterations) {
     const Eigen::Vector3d n = best.plane.normal(), u = n.unitOrthogonal(), v = n.cross(u);
     const double offset = best.plane.signedDistance(middle_);
@@ -179,16 +177,16 @@ PointDensity::Refined PointDensity::refine(const PointsRef& samples, const Refle
     const auto value = [&](const Eigen::Vector3d& by) { return overlap(samples, moved(by)); };
     Eigen::Vector3d by = Quadric(value, best_value, step).stepUp();
     if (!by.allFinite()) break;
-    if (by.norm() > evidence_rules.longest_step * step) by *= evidence_rules.longest_step * step / by.norm();
+    if (by.norm() > kEvidence.longest_step * step) by *= kEvidence.longest_step * step / by.norm();
     double next = value(by);
-    while (next < best_value && by.norm() * extent_ > evidence_rules.settled * bandwidth_) {
+    while (next < best_value && by.norm() * extent_ > kEvidence.settled * bandwidth_) {
       by *= 0.5;
       next = value(by);
     }
     if (next < best_value) break;
     best.plane = moved(by);
     best_value = next;
-    if (by.norm() * extent_ < evidence_rules.settled * bandwidth_) break;
+    if (by.norm() * extent_ < kEvidence.settled * bandwidth_) break;
   }
   return best;
 }

@@ -47,7 +47,7 @@ double lost(const GaussianEdt& a, const GaussianEdt& b) {
 SplitSurface::SplitSurface(const Points& points, std::uint64_t seed, int num_threads) : seed_(seed) {
   std::tie(first_, second_) = halvesOf(points, seed);
   search_ = makeFlannSearch(second_);
-  samples_.emplace(second_, localGeometry(second_, *search_, kNumSupportNeighbours, num_threads));
+  samples_.emplace(second_, localGeometry(second_, *search_, kNumSupportNeighbors, num_threads));
 }
 
 std::vector<float> SplitSurface::reflectedDistances(const ReflectionPlane& plane) const {

@@ -17,9 +17,9 @@ SurfaceSamples::SurfaceSamples(const Points& points, const LocalGeometry& geomet
       samples_[static_cast<std::size_t>(i)] = {
           points.col(i),
           geometry.normals.col(i),
-          evidence_rules.disc_radius * spacing,
+          kEvidence.disc_radius * spacing,
           geometry.roughness[i],
-          std::clamp((evidence_rules.rough_share - rough) / evidence_rules.trust_width, 0.0f, 1.0f),
+          std::clamp((kEvidence.rough_share - rough) / kEvidence.trust_width, 0.0f, 1.0f),
           geometry.nearest[i]};
     }
   });
@@ -59,7 +59,7 @@ std::vector<float> ownSurfaceDistances(const SurfaceSamples& samples, int num_th
   std::vector<float> distances(static_cast<std::size_t>(samples.size()));
   parallelRanges(distances.size(), 2048, num_threads, [&](std::size_t begin, std::size_t end) {
     for (auto i = static_cast<int>(begin); i < static_cast<int>(end); ++i)
-      distances[i] = distanceNear(samples[i].nearest[0], i, samples[i].point, samples, evidence_rules.new_point_factor);
+      distances[i] = distanceNear(samples[i].nearest[0], i, samples[i].point, samples, kEvidence.new_point_factor);
   });
   return distances;
 }

@@ -24,7 +24,7 @@ Eigen::Matrix3d orthonormal(const Eigen::Matrix3f& axes) {
 /// \param score of the plane.
 float firstOffset(const FrameEvidence& evidence, const CellPlane& first, double score) {
   const double doubtful_radii =
-      evidence.scanned() ? frame_rules.scan_first_radius : frame_rules.whole_first_radius / std::max(1.0 - score, 0.01);
+      evidence.scanned() ? kFrame.scan_first_radius : kFrame.whole_first_radius / std::max(1.0 - score, 0.01);
   const double away = evidence.middleAlong(first.normal) - first.offset;
   const double doubtful = doubtful_radii * evidence.reach();
   return first.offset + static_cast<float>(away * away * away / (away * away + doubtful * doubtful));
@@ -55,8 +55,8 @@ Eigen::Vector3d centerOfSymmetry(const FrameEvidence& evidence, const FrameCandi
     double sum = 0.0, moment = 0.0;
     for (std::size_t i = 0; i < s.size(); ++i) {
       const double r = static_cast<double>(i) - std::floor(evidence.reach());
-      const double away = (r - middle) / (frame_rules.offset_width * evidence.reach());
-      const double weight = std::exp(frame_rules.offset_sharpness * (s[i] - top) - 0.5 * away * away);
+      const double away = (r - middle) / (kFrame.offset_width * evidence.reach());
+      const double weight = std::exp(kFrame.offset_sharpness * (s[i] - top) - 0.5 * away * away);
       sum += weight;
       moment += weight * r;
     }
@@ -69,8 +69,7 @@ Eigen::Vector3d meanCenter(const std::vector<Eigen::Vector3d>& centers, const st
   Eigen::Vector3d mean = Eigen::Vector3d::Zero();
   double sum = 0.0;
   for (std::size_t i = 0; i < frames.size(); ++i) {
-    const double weight =
-        std::exp(frame_rules.center_sharpness * std::min(frames[i].value - frames.front().value, 0.0));
+    const double weight = std::exp(kFrame.center_sharpness * std::min(frames[i].value - frames.front().value, 0.0));
     mean += weight * (centers[i] - centers.front());
     sum += weight;
   }
@@ -83,8 +82,8 @@ int revolutionAxis(const FrameEvidence& evidence, const FrameCandidate& frame, d
   for (int k = 0; k < 3; ++k) {
     const Eigen::Vector3f u = frame.axes.col((k + 1) % 3), v = frame.axes.col((k + 2) % 3);
     float lowest = std::numeric_limits<float>::infinity(), highest = 0.0f;
-    for (int a = 0; a < frame_rules.num_revolution_angles; ++a) {
-      const float angle = static_cast<float>(kPi * a / frame_rules.num_revolution_angles);
+    for (int a = 0; a < kFrame.num_revolution_angles; ++a) {
+      const float angle = static_cast<float>(kPi * a / kFrame.num_revolution_angles);
       const Eigen::Vector3f normal = std::cos(angle) * u + std::sin(angle) * v;
       const float score = evidence.nearbyOffset(normal, normal.dot(center)).score;
       lowest = std::min(lowest, score);
@@ -110,7 +109,7 @@ void EquivalentFrames::addWithSigns(const Eigen::Matrix3d& axes, const Eigen::Ve
     if (kept >= 0) signs[kept] = 1.0;
     const Eigen::Isometry3d T = canonicalPose(axes * signs.asDiagonal(), center);
     const bool known = std::any_of(poses_.begin(), poses_.end(), [&](const Eigen::Isometry3d& other) {
-      return Eigen::AngleAxisd(T.linear() * other.linear().transpose()).angle() < frame_rules.same_frame;
+      return Eigen::AngleAxisd(T.linear() * other.linear().transpose()).angle() < kFrame.same_frame;
     });
     if (!known) poses_.push_back(T);
   }
@@ -134,7 +133,7 @@ bool isRotatedAboutRevolution(const SymmetryFrame& result, const FrameCandidate&
   if (result.revolution_axis < 0) return false;
   if (result.revolution_axis == 3) return true;
   const Eigen::Vector3f axis = result.axes.col(result.revolution_axis).cast<float>();
-  return (frame.axes.transpose() * axis).cwiseAbs().maxCoeff() > std::cos(frame_rules.same_frame);
+  return (frame.axes.transpose() * axis).cwiseAbs().maxCoeff() > std::cos(kFrame.same_frame);
 }
 
 }  // namespace pcl_symmetry

@@ -7,10 +7,8 @@
 
 namespace pcl_symmetry {
 
-/// From the three planes that were found to the canonical frame (Section 5.1).
-
-/// The principal symmetry axes (PSA): the normals of the three planes, exactly orthonormal and right-handed. Signs come
-/// from the third central moments of the points.
+/// The principal symmetry axes (PSA) of the canonical frame (Section 5.1): the normals of the three planes, exactly
+/// orthonormal and right-handed. Signs come from the third central moments of the points.
 /// \param axes columns: unit normals, perpendicular to within rounding.
 Eigen::Matrix3d principalSymmetryAxes(const PointsRef& points, const Eigen::Matrix3f& axes);
 

@@ -19,10 +19,10 @@ GaussianEdtOptions edtOptionsOf(const FrameOptions& options) {
 FrameEvidence::FrameEvidence(const PointsRef& points, const FrameOptions& options, const Visibility* visibility)
     : points_(points),
       scanned_(visibility != nullptr),
-      weight_(scanned_ ? frame_rules.scan_weight : frame_rules.whole_weight),
+      weight_(scanned_ ? kFrame.scan_weight : kFrame.whole_weight),
       edt_(points, edtOptions(points, edtOptionsOf(options), scanned_)),
       free_space_(visibility ? pcl_symmetry::freeSpace(edt_, *visibility, options.num_threads) : std::vector<float>()),
-      profiles_(edt_, free_space_, frame_rules.num_profile_samples, options.seed, options.num_threads),
+      profiles_(edt_, free_space_, kFrame.num_profile_samples, options.seed, options.num_threads),
       directions_(points, edt_),
       middle_(edt_.origin() + Eigen::Vector3d::Constant(0.5 * (edt_.numCells() - 1) * edt_.cellSize())),
       reach_(static_cast<float>(edt_.radius() / edt_.cellSize())),
@@ -32,7 +32,7 @@ FrameEvidence::FrameEvidence(const PointsRef& points, const FrameOptions& option
 
 Eigen::Vector3f FrameEvidence::push(const Visibility* visibility) const {
   if (!visibility) return Eigen::Vector3f::Zero();
-  return static_cast<float>(frame_rules.push) * reach_ *
+  return static_cast<float>(kFrame.push) * reach_ *
          (principal_axes_.center - visibility->viewpoint()).normalized().cast<float>();
 }
 
@@ -42,8 +42,7 @@ GaussianEdtOptions FrameEvidence::edtOptions(const PointsRef& points, GaussianEd
   const double cell = 2.2 * radius / options.num_cells;  // the side of the grid is 2 (1 + 2 sigma) radii
   // Point spacing if the points covered a sphere, or a hemisphere for a scan.
   const double spacing = radius * std::sqrt((scanned ? 2.0 : 4.0) * kPi / static_cast<double>(points.cols()));
-  options.sigma =
-      std::max((scanned ? frame_rules.scan_sigma : frame_rules.whole_sigma) * cell, frame_rules.min_sigma * spacing);
+  options.sigma = std::max((scanned ? kFrame.scan_sigma : kFrame.whole_sigma) * cell, kFrame.min_sigma * spacing);
   return options;
 }
 
@@ -80,7 +79,7 @@ double FrameEvidence::middleAlong(const Eigen::Vector3f& axis) const {
   std::vector<float> t(static_cast<std::size_t>(points_.cols()));
   for (std::size_t i = 0; i < t.size(); ++i)
     t[i] = axis.dot(toCells(points_.col(static_cast<Eigen::Index>(i)).cast<double>()));
-  const auto tail = static_cast<std::ptrdiff_t>(frame_rules.tail * static_cast<double>(t.size() - 1));
+  const auto tail = static_cast<std::ptrdiff_t>(kFrame.tail * static_cast<double>(t.size() - 1));
   std::nth_element(t.begin(), t.begin() + tail, t.end());
   const float low = t[static_cast<std::size_t>(tail)];
   std::nth_element(t.begin(), t.end() - 1 - tail, t.end());

@@ -58,7 +58,7 @@ struct FrameRules {
   std::size_t max_outlines = 2;                // first axes whose outline is tried
   double far_from_principal = 20.0 * kDegree;  // angle to the principal axes at which the term of the fit ends
 };
-inline constexpr FrameRules frame_rules;
+inline constexpr FrameRules kFrame;
 
 /// \return those of the distance transform; sigma is 0 where the width is not given.
 GaussianEdtOptions edtOptionsOf(const FrameOptions& options);

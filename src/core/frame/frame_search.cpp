@@ -22,7 +22,7 @@ bool isKnown(const std::vector<CellPlane>& planes, const Eigen::Vector3f& normal
 CellPlane climbed(const FrameEvidence& evidence, CellPlane plane) {
   double quality = evidence.quality(plane);
   for (const double step : {3.0, 1.5, 0.75}) {
-    for (int move = 0; move < frame_rules.max_plane_moves; ++move) {
+    for (int move = 0; move < kFrame.max_plane_moves; ++move) {
       const Eigen::Vector3f u = plane.normal.unitOrthogonal(), v = plane.normal.cross(u);
       CellPlane better = plane;
       for (const Eigen::Vector3f& side : {u, Eigen::Vector3f(-u), v, Eigen::Vector3f(-v)}) {
@@ -69,7 +69,7 @@ PerpendicularPlane planeOf(const FrameEvidence& evidence, const CellPlane& first
 
 /// \param angle_index in steps of 90 degrees / num_angles.
 PerpendicularPlane planeAt(const FrameEvidence& evidence, const CellPlane& first, std::size_t angle_index) {
-  const float angle = static_cast<float>(kPi * static_cast<double>(angle_index) / (2 * frame_rules.num_angles));
+  const float angle = static_cast<float>(kPi * static_cast<double>(angle_index) / (2 * kFrame.num_angles));
   const Eigen::Vector3f u = first.normal.unitOrthogonal(), v = first.normal.cross(u);
   return planeOf(evidence, first, std::cos(angle) * u + std::sin(angle) * v);
 }
@@ -85,7 +85,7 @@ FrameCandidate frameOf(const FrameEvidence& evidence, const CellPlane& first, co
     frame.rotation_axis = second.half_way.score > third.half_way.score ? 2 : 1;
     const ScoredOffset& half_way = frame.rotation_axis == 2 ? second.half_way : third.half_way;
     frame.half_way_offset = half_way.offset;
-    frame.value += frame_rules.half_way_weight * half_way.score;
+    frame.value += kFrame.half_way_weight * half_way.score;
   }
   return frame;
 }
@@ -114,7 +114,7 @@ FrameCandidate rotatedTo(const FrameEvidence& evidence, const FrameCandidate& fr
         evidence.nearbyOffset(normal, from.half_way_offset + (normal - before).dot(evidence.centerOfMass()));
     frame.rotation_axis = from.rotation_axis;
     frame.half_way_offset = half_way.offset;
-    frame.value += frame_rules.half_way_weight * half_way.score;
+    frame.value += kFrame.half_way_weight * half_way.score;
   }
   return frame;
 }
@@ -123,7 +123,7 @@ FrameCandidate rotatedTo(const FrameEvidence& evidence, const FrameCandidate& fr
 FrameCandidate climbed(const FrameEvidence& evidence, const FrameCandidate& start) {
   FrameCandidate frame = rotatedTo(evidence, start, start.axes);
   for (const double step : {2.0, 1.0, 0.5}) {
-    for (int move = 0; move < frame_rules.max_frame_moves; ++move) {
+    for (int move = 0; move < kFrame.max_frame_moves; ++move) {
       FrameCandidate best = frame;
       for (int k = 0; k < 6; ++k) {
         const Eigen::Vector3f about = frame.axes.col(k / 2);
@@ -159,14 +159,13 @@ std::vector<CellPlane> firstPlaneCandidates(const FrameEvidence& evidence, const
   maxima.num_threads = num_threads;
   std::vector<CellPlane> candidates;
   for (const LocalMaximum& maximum : findLocalMaxima(map, maxima)) {
-    if (candidates.size() >= frame_rules.max_candidates) break;
+    if (candidates.size() >= kFrame.max_candidates) break;
     const CellPlane plane = evidence.toCells(maximum.plane);
-    if (!isKnown(candidates, plane.normal, frame_rules.candidate_angle)) candidates.push_back(plane);
+    if (!isKnown(candidates, plane.normal, kFrame.candidate_angle)) candidates.push_back(plane);
   }
   const std::size_t num_maxima = candidates.size();
   for (int k = 0; k < 3; ++k) candidates.push_back({evidence.principalAxes().axes.col(k).cast<float>(), 0.0f});
-  for (const Eigen::Vector3f& peak : evidence.directions().peaks(frame_rules.max_faces))
-    candidates.push_back({peak, 0.0f});
+  for (const Eigen::Vector3f& peak : evidence.directions().peaks(kFrame.max_faces)) candidates.push_back({peak, 0.0f});
   parallelBlocks(candidates.size(), num_threads, [&](std::size_t i) {
     CellPlane& plane = candidates[i];
     if (i >= num_maxima) plane.offset = evidence.bestOffset(plane.normal).offset;
@@ -181,8 +180,8 @@ std::vector<CellPlane> bestFirstPlanes(const FrameEvidence& evidence, const std:
   std::stable_sort(ranked.begin(), ranked.end(), [](const auto& a, const auto& b) { return a.first > b.first; });
   std::vector<CellPlane> best;
   for (const auto& [quality, plane] : ranked) {
-    if (best.size() >= frame_rules.max_first_planes) break;
-    if (!isKnown(best, plane.normal, 0.5 * frame_rules.candidate_angle)) best.push_back(plane);
+    if (best.size() >= kFrame.max_first_planes) break;
+    if (!isKnown(best, plane.normal, 0.5 * kFrame.candidate_angle)) best.push_back(plane);
   }
   return best;
 }
@@ -197,7 +196,7 @@ FrameCandidate frameOfAxes(const FrameEvidence& evidence, const Eigen::Matrix3f&
 std::vector<FrameCandidate> framesAbout(const FrameEvidence& evidence, const std::vector<CellPlane>& first_planes,
                                         int num_threads) {
   // The second plane within 90 degrees, and the third one within the 90 degrees that follow.
-  const std::size_t num_angles = frame_rules.num_angles, num_planes = 2 * num_angles;
+  const std::size_t num_angles = kFrame.num_angles, num_planes = 2 * num_angles;
   std::vector<PerpendicularPlane> planes(first_planes.size() * num_planes);
   parallelBlocks(planes.size(), num_threads,
                  [&](std::size_t i) { planes[i] = planeAt(evidence, first_planes[i / num_planes], i % num_planes); });
@@ -212,7 +211,7 @@ std::vector<FrameCandidate> framesAbout(const FrameEvidence& evidence, const std
 }
 
 std::vector<FrameCandidate> frameMaxima(const std::vector<FrameCandidate>& rotated) {
-  const std::size_t num_angles = frame_rules.num_angles;
+  const std::size_t num_angles = kFrame.num_angles;
   std::vector<FrameCandidate> maxima;
   for (std::size_t first = 0; first < rotated.size(); first += num_angles) {
     const auto value = [&](std::size_t angle) { return rotated[first + angle % num_angles].value; };
@@ -223,7 +222,7 @@ std::vector<FrameCandidate> frameMaxima(const std::vector<FrameCandidate>& rotat
     if (maxima.empty()) maxima.push_back(rotated[first]);
   }
   std::stable_sort(maxima.begin(), maxima.end(), better);
-  maxima.resize(std::min(maxima.size(), frame_rules.max_refined));
+  maxima.resize(std::min(maxima.size(), kFrame.max_refined));
   return maxima;
 }
 

@@ -47,7 +47,7 @@ struct Extent {
 
 /// The angle within 90 degrees at which a measure is greatest.
 double angleOfGreatest(const std::function<double(double)>& measure) {
-  const double step = frame_rules.outline_step;
+  const double step = kFrame.outline_step;
   const int num_steps = static_cast<int>(std::lround(0.5 * kPi / step));
   double greatest = -std::numeric_limits<double>::infinity(), at = 0.0;
   for (int i = 0; i < num_steps; ++i) {
@@ -107,7 +107,7 @@ Outline::Box Outline::boxAt(double angle) const {
   for (const Eigen::Vector2f& corner : corners_)
     for (std::size_t k = 0; k < 2; ++k) extents[k].add(sides[k].dot(corner));
   const float longer = std::max(extents[0].length(), extents[1].length());
-  const float touch = static_cast<float>(frame_rules.touch) * longer;
+  const float touch = static_cast<float>(kFrame.touch) * longer;
   Box box;
   box.area = static_cast<double>(extents[0].length()) * extents[1].length();
   if (!(longer > 0.0f)) return box;
@@ -139,8 +139,8 @@ std::vector<FrameCandidate> leveledFirst(const FrameEvidence& evidence, std::vec
   const Eigen::Vector3f first = best.axes.col(0);
   const Outline outline(evidence.points(), first);
   const FrameCandidate leveled = frameAt(evidence, outline, first, angleOfFaces(evidence, outline), tie);
-  if (leveled.value >= best.value - frame_rules.max_lost_value &&
-      contactOf(outline, leveled) >= contactOf(outline, best) + frame_rules.min_gained_contact)
+  if (leveled.value >= best.value - kFrame.max_lost_value &&
+      contactOf(outline, leveled) >= contactOf(outline, best) + kFrame.min_gained_contact)
     frames.insert(frames.begin(), leveled);
   return frames;
 }

@@ -1,6 +1,7 @@
 #include <Eigen/Geometry>
 #include <utility>
 
+#include "core/geometry/geometry_rules.h"
 #include "core/rotation/rotation_fit.h"
 #include "pcl_symmetry/core/mesh_surface.h"
 #include "pcl_symmetry/core/rotational_symmetry.h"
@@ -9,10 +10,6 @@
 namespace pcl_symmetry {
 
 namespace {
-
-// A plane of a frame is exact where it maps this share of the surface to within this share of the diameter, as
-// DetectionOptions::tolerance has it.
-constexpr double kExactShare = 0.97, kExactTolerance = 0.01;
 
 MotionsAbout motionsOf(const ObjectSymmetries& symmetries) {
   MotionsAbout motions{{}, symmetries.center};
@@ -55,7 +52,7 @@ ObjectSymmetries objectSymmetries(const PointsRef& points, const MeshSurface& me
   const MotionsAbout motions = place(mesh, greater);
   const RotationLimits limits{found.tolerance, options.max_feature};
   const OffShares off{1.0 - mesh.shares(motions, limits.tolerance).share,
-                      1.0 - mesh.shares(motions, rotation_rules.far_tolerances * limits.tolerance).share};
+                      1.0 - mesh.shares(motions, kRotation.far_tolerances * limits.tolerance).share};
   const double confidence = limits.confidence(off, mesh.numSamples());
   if (confidence < options.min_confidence) return found;
   greater.support = 1.0 - off.off;
@@ -73,7 +70,7 @@ void refineOnMesh(const MeshSurface& mesh, SymmetryFrame& frame) {
   int exact[3], num_exact = 0;
   for (int k = 0; k < 3; ++k) {
     const ReflectionPlane plane = mesh.fitted(ReflectionPlane(frame.axes.col(k), frame.axes.col(k).dot(frame.center)));
-    if (mesh.shares(plane, 2.0 * kExactTolerance * mesh.ball().radius).share < kExactShare) continue;
+    if (mesh.shares(plane, 2.0 * DetectionOptions().tolerance * mesh.ball().radius).share < kSymmetricShare) continue;
     axes.col(k) = plane.normal();
     for (int i = 0; i < num_exact; ++i) axes.col(k) -= axes.col(exact[i]).dot(axes.col(k)) * axes.col(exact[i]);
     axes.col(k).normalize();

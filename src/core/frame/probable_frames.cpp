@@ -30,19 +30,19 @@ bool isKnown(const std::vector<FrameChoice>& known, const FrameCandidate& frame)
     if (other.revolution_axis == 3) return true;
     if (other.revolution_axis >= 0) {
       const Eigen::Vector3f axis = other.frame.axes.col(other.revolution_axis);
-      if ((frame.axes.transpose() * axis).cwiseAbs().maxCoeff() > std::cos(frame_rules.same_frame)) return true;
+      if ((frame.axes.transpose() * axis).cwiseAbs().maxCoeff() > std::cos(kFrame.same_frame)) return true;
     }
-    return angleBetween(frame.axes, other.frame.axes) < frame_rules.same_frame;
+    return angleBetween(frame.axes, other.frame.axes) < kFrame.same_frame;
   });
 }
 
 std::vector<Eigen::Vector3f> firstAxes(const std::vector<FrameCandidate>& frames) {
   std::vector<Eigen::Vector3f> axes;
   for (const FrameCandidate& frame : frames) {
-    if (axes.size() >= frame_rules.max_outlines) break;
+    if (axes.size() >= kFrame.max_outlines) break;
     const Eigen::Vector3f first = frame.axes.col(0);
     const bool known = std::any_of(axes.begin(), axes.end(), [&](const Eigen::Vector3f& other) {
-      return std::abs(other.dot(first)) > std::cos(frame_rules.same_outline);
+      return std::abs(other.dot(first)) > std::cos(kFrame.same_outline);
     });
     if (!known) axes.push_back(first);
   }
@@ -71,7 +71,7 @@ std::vector<FrameChoice> frameChoices(const FrameEvidence& evidence, const std::
     const Outline outline(evidence.points(), choice.frame.axes.col(0));
     choice.terms << 1.0, choice.frame.value - best, choice.frame.scores[0],
         outline.boxAt(outline.angleOf(choice.frame.axes.col(1))).contact,
-        std::min(angleBetween(choice.frame.axes, principal) / frame_rules.far_from_principal, 1.0), 0.0,
+        std::min(angleBetween(choice.frame.axes, principal) / kFrame.far_from_principal, 1.0), 0.0,
         choice.frame.scores[1] + choice.frame.scores[2], 0.0;
   }
   if (!choices.empty()) {

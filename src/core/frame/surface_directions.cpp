@@ -19,7 +19,7 @@ SurfaceDirections::SurfaceDirections(const PointsRef& points, const GaussianEdt&
 }
 
 double SurfaceDirections::agreement(const Eigen::Vector3f& axis) const {
-  const auto width = static_cast<float>(frame_rules.face_width);
+  const auto width = static_cast<float>(kFrame.face_width);
   const float inverse = 1.0f / (width * width);
   const Eigen::ArrayXf cosines = (normals_.transpose() * axis).array().abs();
   const Eigen::ArrayXf across = (1.0f - inverse * cosines.square()).max(0.0f);
@@ -33,24 +33,24 @@ std::vector<Eigen::Vector3f> SurfaceDirections::peaks(int max_peaks) const {
     double share;
   };
   std::vector<Peak> found;
-  const Eigen::Index stride = std::max<Eigen::Index>(1, normals_.cols() / frame_rules.num_peak_starts);
-  const float least = std::cos(static_cast<float>(frame_rules.peak_width));
+  const Eigen::Index stride = std::max<Eigen::Index>(1, normals_.cols() / kFrame.num_peak_starts);
+  const float least = std::cos(static_cast<float>(kFrame.peak_width));
   for (Eigen::Index start = 0; start < normals_.cols(); start += stride) {
     Eigen::Vector3f direction = normals_.col(start);
     double share = 0.0;
-    for (int step = 0; step < frame_rules.num_peak_steps; ++step) {
+    for (int step = 0; step < kFrame.num_peak_steps; ++step) {
       const Eigen::ArrayXf cosines = (normals_.transpose() * direction).array();
       const Eigen::ArrayXf weights =
           (cosines.abs() >= least).select(weights_.array(), Eigen::ArrayXf::Zero(cosines.size()));
       share = weights.sum();
-      if (share < frame_rules.min_peak) break;
+      if (share < kFrame.min_peak) break;
       direction = (normals_ * (weights * cosines.sign()).matrix()).normalized();
     }
-    if (share >= frame_rules.min_peak) found.push_back({direction, share});
+    if (share >= kFrame.min_peak) found.push_back({direction, share});
   }
   std::stable_sort(found.begin(), found.end(), [](const Peak& a, const Peak& b) { return a.share > b.share; });
   std::vector<Eigen::Vector3f> peaks;
-  const float same = static_cast<float>(std::cos(frame_rules.peak_distance));
+  const float same = static_cast<float>(std::cos(kFrame.peak_distance));
   for (const Peak& peak : found) {
     if (static_cast<int>(peaks.size()) >= max_peaks) break;
     const bool known = std::any_of(peaks.begin(), peaks.end(), [&](const Eigen::Vector3f& other) {

@@ -32,7 +32,7 @@ SymmetryFrame publishedFrame(const PointsRef& points, const FrameOptions& option
   const GaussianEdt edt(points, edtOptionsOf(options));
   const SymmetryMap map = publishedMap(points, edt, TransformMethod::Convolution, options.seed, options.num_threads);
   const PlaneGrid& grid = map.grid;
-  const PlaneProfiles profiles(edt, {}, frame_rules.num_profile_samples, options.seed, options.num_threads);
+  const PlaneProfiles profiles(edt, {}, kFrame.num_profile_samples, options.seed, options.num_threads);
   const Eigen::Vector3d middle = edt.origin() + Eigen::Vector3d::Constant(0.5 * (edt.numCells() - 1) * edt.cellSize());
   const auto best_offset = [&](const Eigen::Vector3d& normal) -> OffsetAndScore {
     const double first = (normal.dot(grid.center() - middle) + grid.offset(0)) / edt.cellSize();

@@ -42,7 +42,8 @@ struct GeometryRules {
   float most_disc_cells = 96.0f;   ///< along the longest edge
 
   // Local geometry
-  /// Of the neighbors' mean, in distances to the last one; 0.25 by chance, 0.42 beside half a disc.
+  /// Offset of the neighbors' mean from a point at the border, in distances to the last neighbor; 0.25 by chance, 0.42
+  /// beside half a disc.
   double border_offset = 0.38;
 };
 

@@ -225,7 +225,6 @@ ReflectionPlane MeshSurface::fitted(const ReflectionPlane& plane) const {
 }
 
 MeshShares MeshSurface::shares(const MotionsAbout& motions, double tolerance) const {
-  constexpr double kQuantile = 0.97;  // as of SymmetryPlane::deviation
   MeshShares worst;
   for (const Eigen::Matrix3d& linear : motions.linear) {
     std::vector<double> distances;
@@ -237,7 +236,7 @@ MeshShares MeshSurface::shares(const MotionsAbout& motions, double tolerance) co
       within += 1.0;
       sq_sum += distances.back() * distances.back();
     }
-    const auto quantile = distances.begin() + static_cast<std::ptrdiff_t>(kQuantile * kMesh.samples);
+    const auto quantile = distances.begin() + static_cast<std::ptrdiff_t>(kSymmetricShare * kMesh.samples);
     std::nth_element(distances.begin(), quantile, distances.end());
     worst.share = std::min(worst.share, within / kMesh.samples);
     worst.deviation = std::max(worst.deviation, *quantile);

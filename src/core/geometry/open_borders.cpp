@@ -60,7 +60,7 @@ bool isAtBorder(int self, const int* neighbors, int count, const Points& samples
 }  // namespace
 
 std::vector<char> openBorders(const Points& samples, const ClosestPointSearch& search, const Points& normals,
-                              int num_threads, const FoundNeighbours* known) {
+                              int num_threads, const FoundNeighbors* known) {
   const auto size = static_cast<std::size_t>(samples.cols());
   const int count = static_cast<int>(std::min<Eigen::Index>(samples.cols(), kGeometry.border_neighbors + 1));
   const int num_known = known ? std::min(count, static_cast<int>(known->indices.size() / size)) : 0;

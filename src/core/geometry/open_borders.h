@@ -17,7 +17,7 @@ namespace pcl_symmetry {
 /// searched for; the answer is the same. Null = not known.
 /// \return N values, 1 at a border.
 std::vector<char> openBorders(const Points& samples, const ClosestPointSearch& search, const Points& normals,
-                              int num_threads, const FoundNeighbours* known = nullptr);
+                              int num_threads, const FoundNeighbors* known = nullptr);
 
 /// The points within two steps of a border along neighbors: about three spacings.
 /// \param borders what openBorders() returned.

@@ -30,7 +30,7 @@ std::vector<ReflectionPlane> principalPlanes(const PrincipalAxes& axes);
 /// principal axes.
 Eigen::Isometry3d sheetPose(const PointsRef& points);
 
-/// What is left of a shape at a tolerance: reflections along its thin directions move nothing and say nothing.
+/// What is left of a shape at a tolerance: reflections along its thin directions move nothing and are uninformative.
 enum class Thinness {
   Solid,
   Sheet,  ///< 97 % of the points lie within the tolerance of planes of one plane

@@ -20,7 +20,7 @@ public:
   /// \param samples 3 x N, finite, N >= 1.
   /// \param geometry of the samples; must outlive this object, as must the samples.
   /// \param disc_radius spacings, > 0.
-  /// \param reach greatest distance that is asked for, units of the samples, > 0.
+  /// \param reach greatest distance of a query, units of the samples, > 0.
   SurfaceDiscs(const Points& samples, const LocalGeometry& geometry, float disc_radius, float reach);
 
   /// The disc that is nearest to a point, of those within reach.

@@ -24,10 +24,10 @@ struct LocalGeometry {
 
 /// Neighbors that give normals and spacing.
 /// The error of the spacing from k neighbors is 1 / (2 sqrt(k)), 18 % for 8; fewer exceed 20 %.
-constexpr int kNumSupportNeighbours = 8;
+constexpr int kNumSupportNeighbors = 8;
 
 /// The closest points of each sample.
-struct FoundNeighbours {
+struct FoundNeighbors {
   std::vector<int> indices;
   std::vector<float> sq_reach;
 };
@@ -43,7 +43,7 @@ struct FoundNeighbours {
 /// \param[out] neighbors those that were found, with the point itself: for each point num_neighbors + 1 indices,
 /// nearest first, or as many as there are points, and the squared distance of the last one; null = not wanted.
 LocalGeometry localGeometry(const Points& points, const ClosestPointSearch& search, int num_neighbors, int num_threads,
-                            FoundNeighbours* neighbors = nullptr);
+                            FoundNeighbors* neighbors = nullptr);
 
 /// A part of LocalGeometry at a few of the points.
 struct GeometryAtPlaces {
@@ -55,6 +55,6 @@ struct GeometryAtPlaces {
 /// \param search over the same points.
 /// \param positions 3 x M, some of the points.
 GeometryAtPlaces localGeometryAt(const Points& points, const ClosestPointSearch& search, const Points& positions,
-                                 int num_neighbors = kNumSupportNeighbours);
+                                 int num_neighbors = kNumSupportNeighbors);
 
 }  // namespace pcl_symmetry

@@ -15,7 +15,7 @@ public:
     sums_.noalias() += weight * row * row.transpose();
   }
 
-  /// Of all rows that were added.
+  /// The weighted sum of the products of all rows that were added.
   const Matrix& sums() const { return sums_; }
 
 private:

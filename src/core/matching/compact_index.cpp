@@ -91,7 +91,7 @@ std::vector<std::pair<int, float>> CompactIndex::nearest(const Eigen::MatrixXf& 
   check(num_nearest >= 0, "num_nearest", num_nearest, ">= 0");
   if (compact_.cols() == 0) return {};
   check(rotations.rows() == compact_.rows(), "size of a compact form", rotations.rows(), "that of the index");
-  const auto share = static_cast<int>(matching_rules.candidate_share * static_cast<double>(compact_.cols()));
+  const auto share = static_cast<int>(kMatching.candidate_share * static_cast<double>(compact_.cols()));
   const std::vector<int> forms = candidates(
       rotations,
       static_cast<std::size_t>(std::max({options_.num_candidates, share, 2 * num_nearest * forms_per_shape_})));

@@ -37,7 +37,7 @@ ViewOutline outlineOf(const PointColumns& in_view) {
   const Eigen::Array2f high = in_view.leftCols<2>().colwise().maxCoeff().transpose();
   const float extent = (high - low).maxCoeff();
   check(extent > 0.0f, "extent of the points across the view", extent, "> 0");
-  const int cells = matching_rules.outline_cells;
+  const int cells = kMatching.outline_cells;
   DepthPicture picture(cells + 1, low, extent / cells);
   picture.add(in_view);
 
@@ -57,7 +57,7 @@ ViewOutline outlineOf(const PointColumns& in_view) {
 
 SmoothPicture::SmoothPicture(const DepthPicture& picture, float middle, float unit) : side_(picture.side()) {
   const float weights[3] = {0.25f, 0.5f, 0.25f};
-  const float deepest = matching_rules.deepest;
+  const float deepest = kMatching.deepest;
   values_.resize(static_cast<std::size_t>(side_) * side_);
   for (int v = 0; v < side_; ++v) {
     for (int u = 0; u < side_; ++u) {

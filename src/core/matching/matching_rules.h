@@ -54,6 +54,6 @@ struct MatchingRules {
   double first_width = 0.25;       // radii, from this width
   double last_width = 0.1;         // radii, to this one
 };
-inline constexpr MatchingRules matching_rules;
+inline constexpr MatchingRules kMatching;
 
 }  // namespace pcl_symmetry

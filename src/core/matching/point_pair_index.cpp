@@ -46,7 +46,7 @@ PointPairIndex::PointPairIndex(const std::vector<SurfacePoints>& shapes, int num
     normals_.middleCols(begins_[k], size) = shapes[k].normals;
     radii_.push_back(boundingBall(shapes[k].points).radius);
     if (!(radii_.back() > 0.0)) continue;
-    nearest = std::min(nearest, matching_rules.min_pair_distance * radii_.back());
+    nearest = std::min(nearest, kMatching.min_pair_distance * radii_.back());
     farthest = std::max(farthest, 2.1 * radii_.back());
   }
   if (!(farthest > 0.0)) return;
@@ -72,7 +72,7 @@ PointPairIndex::Block PointPairIndex::blockOf(int first_shape, int end_shape) co
       const PairRow row = surface.row(i);
       const auto point = static_cast<std::uint32_t>(begin + i - begins_[static_cast<std::size_t>(first_shape)]);
       for (int j = 0; j < size; ++j) {
-        if (!(row.distance[j] > matching_rules.min_pair_distance)) continue;
+        if (!(row.distance[j] > kMatching.min_pair_distance)) continue;
         keys.push_back(static_cast<std::uint32_t>(keyOf(std::max(row.distance_step[j], first_distance_),
                                                         row.angle_step[j], row.other_step[j], row.between_step[j])));
         pairs.push_back(point << 8 | static_cast<std::uint32_t>(row.rotation[j]));
@@ -100,8 +100,8 @@ void PointPairIndex::fillWeights() {
                           static_cast<double>(std::count(sizes.begin(), sizes.end(), std::uint32_t{0}));
   for (std::size_t key = 0; key < sizes.size(); ++key) {
     const double share = static_cast<double>(num_pairs) / num_used / std::max<std::uint32_t>(1, sizes[key]);
-    weights_[key] = static_cast<std::uint8_t>(
-        std::clamp(matching_rules.mean_weight * std::sqrt(share), 1.0, matching_rules.max_weight));
+    weights_[key] =
+        static_cast<std::uint8_t>(std::clamp(kMatching.mean_weight * std::sqrt(share), 1.0, kMatching.max_weight));
   }
 }
 
@@ -189,8 +189,8 @@ ShapeOfPairs PointPairIndex::clustered(int shape, std::vector<Vote> votes, const
     Eigen::Vector3d position;
     double weight;
   };
-  const double cosine = std::cos(0.5 * matching_rules.same_angle),
-               distance = matching_rules.same_position * radii_[static_cast<std::size_t>(shape)];
+  const double cosine = std::cos(0.5 * kMatching.same_angle),
+               distance = kMatching.same_position * radii_[static_cast<std::size_t>(shape)];
   std::vector<Cluster> clusters;
   for (const Vote& vote : votes) {
     const auto same = std::find_if(clusters.begin(), clusters.end(), [&](const Cluster& cluster) {
@@ -223,7 +223,7 @@ std::vector<ShapeOfPairs> PointPairIndex::nearest(const SurfacePoints& scan, con
   const Eigen::Vector3d center = centerOfMass(scan.points);
   std::vector<Reference> references;
   if (!blocks_.empty())
-    for (int i = 0; i < std::min<int>(matching_rules.num_references, static_cast<int>(scan.points.cols())); ++i)
+    for (int i = 0; i < std::min<int>(kMatching.num_references, static_cast<int>(scan.points.cols())); ++i)
       for (const int sign : {1, -1}) references.push_back(referenceOf(scan, i, sign));
   std::vector<ShapeOfPairs> found(radii_.size());
   for (std::size_t k = 0; k < found.size(); ++k) found[k].shape = static_cast<int>(k);

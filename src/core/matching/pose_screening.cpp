@@ -19,16 +19,14 @@ struct Trial {
 };
 
 void improveAndJudge(RankedPose& pose, const PoseScorer& scorer, double radius) {
-  PoseScorer::Detail detail{matching_rules.num_improved_points, 0.0};
+  PoseScorer::Detail detail{kMatching.num_improved_points, 0.0};
   detail.unit = radius;
-  for (int i = 0; i < matching_rules.num_steps; ++i) {
-    const double share = static_cast<double>(i) / (matching_rules.num_steps - 1);
-    detail.width =
-        matching_rules.first_width * std::pow(matching_rules.last_width / matching_rules.first_width, share) * radius;
+  for (int i = 0; i < kMatching.num_steps; ++i) {
+    const double share = static_cast<double>(i) / (kMatching.num_steps - 1);
+    detail.width = kMatching.first_width * std::pow(kMatching.last_width / kMatching.first_width, share) * radius;
     pose.T_model_scan = scorer.step(pose.T_model_scan, detail);
   }
-  pose.score =
-      scorer.score(pose.T_model_scan, {matching_rules.num_improved_points, matching_rules.last_width * radius});
+  pose.score = scorer.score(pose.T_model_scan, {kMatching.num_improved_points, kMatching.last_width * radius});
 }
 
 /// Calls judge(pose, scorer, radius of the shape) for each trial and sorts them, best first.
@@ -81,10 +79,9 @@ std::vector<ScreenedShape> screenPoses(const ScreenedSurface& scan, const std::v
                                        const PoseScreeningOptions& options) {
   std::vector<Trial> trials = trialsOf(scan, shapes);
   judgeAll(trials, scan, shapes, options.num_threads, [](RankedPose& pose, const PoseScorer& scorer, double radius) {
-    pose.score =
-        scorer.score(pose.T_model_scan, {matching_rules.num_judged_points, matching_rules.judged_width * radius});
+    pose.score = scorer.score(pose.T_model_scan, {kMatching.num_judged_points, kMatching.judged_width * radius});
   });
-  trials.resize(std::min<std::size_t>(trials.size(), matching_rules.num_improved));
+  trials.resize(std::min<std::size_t>(trials.size(), kMatching.num_improved));
   judgeAll(trials, scan, shapes, options.num_threads, improveAndJudge);
 
   std::vector<std::vector<RankedPose>> of_shape(shapes.size());

@@ -76,7 +76,7 @@ std::vector<FineCell> fineCells(const Points& points, const Eigen::Matrix3Xf& no
 /// \param cube kNumOrientations * kNumCells values, 0 before.
 void fillCube(const Points& points, const Eigen::Matrix3Xf& normals, const std::vector<int>& normal_of_points,
               float* cube) {
-  const float reach = static_cast<float>(matching_rules.signature_reach) * points.colwise().norm().mean();
+  const float reach = static_cast<float>(kMatching.signature_reach) * points.colwise().norm().mean();
   const std::vector<FineCell> fine = fineCells(points, normals, normal_of_points, reach);
   for (int i = 0; i < kNumFineCells; ++i) {
     const FineCell& cell = fine[static_cast<std::size_t>(i)];
@@ -156,7 +156,7 @@ Points aboutMiddle(const Points& points, const Eigen::Matrix3d& axes) {
 /// Points divided by their root mean squares along the axes.
 Points stretched(const Points& points) {
   const Eigen::Vector3f spread = points.rowwise().norm();
-  return spread.cwiseMax(matching_rules.min_spread * spread.maxCoeff()).cwiseInverse().asDiagonal() * points;
+  return spread.cwiseMax(kMatching.min_spread * spread.maxCoeff()).cwiseInverse().asDiagonal() * points;
 }
 
 /// At most \p max_points points, at equal steps in the input.
@@ -171,8 +171,8 @@ Points thinned(const PointsRef& points, Eigen::Index max_points) {
 
 std::vector<float> shapeSignature(const PointsRef& points, const Eigen::Matrix3d& axes) {
   const Points centered = inRadii(points);
-  const CellNormals surface = cellNormals(centered, Eigen::Vector3d::Constant(-1.0), 2.0 / matching_rules.normal_cells,
-                                          matching_rules.normal_cells);
+  const CellNormals surface =
+      cellNormals(centered, Eigen::Vector3d::Constant(-1.0), 2.0 / kMatching.normal_cells, kMatching.normal_cells);
   const Points rotated = aboutMiddle(centered, axes);
   const Eigen::Matrix3Xf normals = axes.transpose().cast<float>() * surface.normals;
   std::vector<float> signature(kSignatureSize, 0.0f);
@@ -230,7 +230,7 @@ ShapeDescription describeShape(const PointsRef& points, const DescriptionOptions
   frame_options.seed = options.seed;
   frame_options.num_threads = options.num_threads;
   ShapeDescription result;
-  result.frame = symmetryFrame(thinned(points, matching_rules.frame_points), frame_options, visibility);
+  result.frame = symmetryFrame(thinned(points, kMatching.frame_points), frame_options, visibility);
   const Points used = thinned(points, options.max_points);
   const std::vector<Eigen::Matrix3d> frames = signatureFrames(used, result.frame);
   result.signatures.resize(kSignatureSize, static_cast<Eigen::Index>(frames.size()));

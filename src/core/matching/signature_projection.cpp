@@ -69,8 +69,7 @@ Components principalComponents(const Eigen::MatrixXf& products, const Projection
   };
   Eigen::MatrixXf space =
       Eigen::MatrixXf::NullaryExpr(size, searched, [&] { return static_cast<float>(random.uniform() - 0.5); });
-  for (int i = 0; i < matching_rules.num_iterations; ++i)
-    space = product(products, orthonormal(space), options.num_threads);
+  for (int i = 0; i < kMatching.num_iterations; ++i) space = product(products, orthonormal(space), options.num_threads);
   space = orthonormal(space);
   const Eigen::MatrixXf within = space.transpose() * product(products, space, options.num_threads);
   const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXf> solver(within);
@@ -108,7 +107,7 @@ Eigen::MatrixXf whitenedBasis(const Eigen::MatrixXf& signatures, const Component
     });
   }
   const Eigen::ArrayXf deviations = components.variances.array().sqrt();
-  const Eigen::ArrayXf weights = deviations.pow(-static_cast<float>(matching_rules.whitening));
+  const Eigen::ArrayXf weights = deviations.pow(-static_cast<float>(kMatching.whitening));
   basis *= (weights / deviations).matrix().asDiagonal();
   return basis;
 }

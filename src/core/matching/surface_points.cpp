@@ -35,8 +35,7 @@ std::vector<int> spreadPoints(const Points& points, const std::vector<int>& orde
 double areaOf(const Points& points, const ClosestPointSearch& search, std::vector<int> order) {
   order.resize(std::min<std::size_t>(order.size(), 1000));
   double sum = 0.0;
-  for (const float spacing :
-       localGeometryAt(points, search, pointsAt(points, order), matching_rules.num_neighbors).spacing)
+  for (const float spacing : localGeometryAt(points, search, pointsAt(points, order), kMatching.num_neighbors).spacing)
     sum += static_cast<double>(spacing) * spacing;
   return sum / static_cast<double>(order.size()) * static_cast<double>(points.cols());
 }
@@ -53,7 +52,7 @@ std::vector<SurfacePoints> evenSurfacePoints(const Points& points, const std::ve
     // Discs of half the distance cover at most 0.547 of the area, the jamming limit of random sequential adsorption.
     if (points.cols() > count) chosen = spreadPoints(points, order, std::sqrt(4.0 * 0.5 * area / (kPi * count)), count);
     const Points kept = pointsAt(points, chosen);
-    found.push_back({kept, localGeometryAt(points, *search, kept, matching_rules.num_neighbors).normals});
+    found.push_back({kept, localGeometryAt(points, *search, kept, kMatching.num_neighbors).normals});
   }
   return found;
 }

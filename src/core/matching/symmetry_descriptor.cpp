@@ -38,7 +38,7 @@ SymmetryDescriptors symmetryDescriptors(const PointsRef& points, const Eigen::Is
   if (points.cols() == 0) throw std::invalid_argument("points: 0 given, must be >= 1");
   if (!points.allFinite()) throw std::invalid_argument("points: a coordinate is not finite");
   const Eigen::Matrix3Xd moved = T_frame_input * points.cast<double>();
-  const double scale = matching_rules.described_radius * moved.colwise().norm().mean();
+  const double scale = kMatching.described_radius * moved.colwise().norm().mean();
   check(scale > 0.0, "mean distance from the origin", scale, "> 0");
   const Points scaled = (moved / scale).cast<float>();
   GaussianEdtOptions edt_options;
@@ -47,8 +47,8 @@ SymmetryDescriptors symmetryDescriptors(const PointsRef& points, const Eigen::Is
   edt_options.num_cells = kDescriptorBins;
   SymmetryDescriptors result;
   result.gedt = GaussianEdt(scaled, edt_options).values();
-  edt_options.num_cells = matching_rules.transform_cells;
-  edt_options.sigma = matching_rules.transform_sigma;
+  edt_options.num_cells = kMatching.transform_cells;
+  edt_options.sigma = kMatching.transform_sigma;
   const GaussianEdt edt(scaled, edt_options);
   result.prst = prstOf(edt, kDescriptorBins, options);
   // A single bin of r is centered on the planes through the origin.

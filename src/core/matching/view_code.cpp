@@ -134,7 +134,7 @@ void ViewCodeIndex::add(const std::string& codes) {
 
 std::vector<int> ViewCodeIndex::nearest(const ViewCode& scan, int count, int num_threads) const {
   check(count >= 0, "count", count, ">= 0");
-  const auto weight = static_cast<float>(matching_rules.size_weight) * kViewSizeStep;
+  const auto weight = static_cast<float>(kMatching.size_weight) * kViewSizeStep;
   std::vector<float> distances(numShapes());
   parallelRanges(numShapes(), 256, num_threads, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i)
@@ -166,8 +166,8 @@ struct NearView {
 std::vector<NearView> nearestViews(const std::vector<View>& views, const View& scan, const ViewComparison& comparison) {
   std::vector<NearView> nearest;
   for (const View& view : views) {
-    const double size = matching_rules.size_weight * std::abs(std::log(view.radius / scan.radius));
-    const bool full = nearest.size() >= matching_rules.num_view_poses;
+    const double size = kMatching.size_weight * std::abs(std::log(view.radius / scan.radius));
+    const bool full = nearest.size() >= kMatching.num_view_poses;
     const double enough = full ? nearest.back().distance - size : 2.0;  // the greatest distance of unit vectors
     if (enough <= 0.0) continue;
     const ViewAgreement agreement = comparison.compare(view.values.data(), static_cast<float>(enough));
@@ -182,7 +182,7 @@ std::vector<NearView> nearestViews(const std::vector<View>& views, const View& s
 }
 
 double meanDistance(const std::vector<NearView>& nearest) {
-  const std::size_t count = std::min<std::size_t>(matching_rules.num_mean_views, nearest.size());
+  const std::size_t count = std::min<std::size_t>(kMatching.num_mean_views, nearest.size());
   double sum = 0.0;
   for (std::size_t i = 0; i < count; ++i) sum += nearest[i].distance;
   return sum / static_cast<double>(count);

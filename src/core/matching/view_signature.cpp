@@ -49,9 +49,9 @@ int imaginaryPart(int harmonic) {
 /// View::values of a picture.
 Eigen::VectorXf harmonicsOf(const SmoothPicture& picture) {
   Eigen::VectorXf values = Eigen::VectorXf::Zero(kViewSignatureSize);
-  const float reach = matching_rules.picture_reach, to_cells = matching_rules.picture_cells / (2.0f * reach);
+  const float reach = kMatching.picture_reach, to_cells = kMatching.picture_cells / (2.0f * reach);
   for (int ring = 0; ring < kViewRings; ++ring) {
-    const double radius = (ring + 0.5) * matching_rules.outer_ring / kViewRings;
+    const double radius = (ring + 0.5) * kMatching.outer_ring / kViewRings;
     for (int a = 0; a < kNumAngles; ++a) {
       const float x = static_cast<float>(radius) * rotationTable().cosines[1][a],
                   y = static_cast<float>(radius) * rotationTable().sines[1][a];
@@ -86,8 +86,8 @@ public:
     const ViewOutline outline = outlineOf(in_view);
     const Eigen::Vector3f middle = outline.middle.cast<float>();
     const auto radius = static_cast<float>(outline.radius);
-    const float reach = matching_rules.picture_reach;
-    const int cells = matching_rules.picture_cells;
+    const float reach = kMatching.picture_reach;
+    const int cells = kMatching.picture_cells;
     DepthPicture picture(cells, middle.head<2>().array() - reach * radius, 2.0f * reach * radius / cells);
     picture.add(in_view);
     View view;
@@ -146,7 +146,7 @@ ViewComparison::ViewComparison(const View& view) : values_(view.values), magnitu
 
 ViewAgreement ViewComparison::compare(const float* values, float enough) const {
   ViewAgreement best;
-  const float weight = matching_rules.magnitude_weight;
+  const float weight = kMatching.magnitude_weight;
   const Eigen::Map<const Eigen::VectorXf> other(values, kViewSignatureSize);
   const float apart = (magnitudesOf(other) - magnitudes_).norm();
   if (apart >= enough) return best;  // it is the smaller one of the two distances

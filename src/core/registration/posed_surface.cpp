@@ -34,7 +34,7 @@ PosedSurface::PosedSurface(const PointsRef& input, std::optional<Visibility> see
       seen(std::move(seen_space)),
       grid(std::make_shared<LateGrid>(kRegistration.cells)),
       search(makeFlannSearch(input)) {
-  LocalGeometry geometry = localGeometry(points, *search, kNumSupportNeighbours, num_threads);
+  LocalGeometry geometry = localGeometry(points, *search, kNumSupportNeighbors, num_threads);
   const double typical = median(geometry.spacing);
   spacing = geometry.spacing;
   if (median(geometry.roughness) > kRegistration.rough_share * typical)

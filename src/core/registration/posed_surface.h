@@ -45,8 +45,8 @@ struct PosedSurface {
   /// \param seed of the order.
   /// \param num_threads >= 0; 0 = one per core.
   PosedSurface(const PointsRef& points, std::optional<Visibility> seen, std::uint64_t seed, int num_threads);
-  /// Of a few points in random order, whose normals are known, for poses that are judged coarsely: the grid of closest
-  /// points is coarser, and there are no search, spacing and accuracy, which exact judgements need.
+  /// A surface of a few points in random order, whose normals are known, for poses that are judged coarsely: the grid
+  /// of closest points is coarser, and there are no search, spacing and accuracy, which exact judgments need.
   PosedSurface(const PointsRef& points, const PointsRef& normals, std::optional<Visibility> seen);
 };
 

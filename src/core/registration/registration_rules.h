@@ -11,7 +11,7 @@ struct RegistrationRules {
   double same_rotation = 10.0 * kDegree;  ///< radians between rotations that are one: the search reaches further
 
   // Steps
-  /// Of the greatest entry, added to the diagonal: directions that nothing fixes stay where they are.
+  /// Share of the greatest entry that is added to the diagonal: directions that nothing fixes stay where they are.
   double relative_inertia = 1e-4;
   double inertia = 1e-6;          ///< the same, absolute
   double least_deviation = 1e-7;  ///< radii; standard deviation of a residual, the rounding of floats

@@ -20,7 +20,7 @@ std::vector<int> completingPoints(const PointsRef& points, const ReflectionPlane
   std::vector<int> completing;
   if (points.cols() == 0) return completing;
   const auto search = makeFlannSearch(points);
-  const LocalGeometry geometry = localGeometry(points, *search, kNumSupportNeighbours, options.num_threads);
+  const LocalGeometry geometry = localGeometry(points, *search, kNumSupportNeighbors, options.num_threads);
   const Points reflected = reflectedPoints(points, plane);
   std::vector<int> closest;
   std::vector<float> sq_distances;

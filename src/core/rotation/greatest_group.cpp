@@ -25,7 +25,7 @@ std::optional<PlacedGroup> cylindricalGroup(const RotationFit& fit, const Object
                                             const FoldAxis& main) {
   std::vector<double> offsets;
   // Up to half the radius: where points are unevenly dense, the center of a cylinder lies off the center of mass.
-  for (int k = -25; k <= 25; ++k) offsets.push_back(rotation_rules.across_step * k);
+  for (int k = -25; k <= 25; ++k) offsets.push_back(kRotation.across_step * k);
   const Line3d across = bestAcross(fit, main.line, kPi, 1, offsets);
   RotationSet set = rotationsAbout({across.origin(), main.line.direction()});
   set.rotations.insert(set.rotations.begin() + 1, rotationAbout(across.direction(), kPi));
@@ -37,7 +37,7 @@ std::optional<PlacedGroup> dihedralGroup(const RotationFit& fit, const ObjectSym
                                          const FoldAxis& main) {
   const RotationGroup group{RotationGroupKind::Dihedral, main.fold};
   const double width = kPi / main.fold;
-  const int num_angles = std::max(4, static_cast<int>(std::ceil(width / rotation_rules.across_step)));
+  const int num_angles = std::max(4, static_cast<int>(std::ceil(width / kRotation.across_step)));
   const Line3d across = bestAcross(fit, main.line, width, num_angles, {0.0, -0.04, 0.04, -0.08, 0.08, -0.12, 0.12});
   const auto placed = [&](const Eigen::Vector3d& direction) {
     const Eigen::Matrix3d frame = frameAlong(main.line.direction(), direction);
@@ -51,8 +51,7 @@ std::optional<PlacedGroup> dihedralGroup(const RotationFit& fit, const ObjectSym
   Eigen::Vector3d best = across.direction();
   for (int k = 0; k < num_angles; ++k) {
     const Eigen::Vector3d direction = rotationAbout(main.line.direction(), width * k / num_angles) * across.direction();
-    const OffShares shares =
-        sharp.offShares(rotationAbout(direction, kPi), across.origin(), rotation_rules.num_some_points);
+    const OffShares shares = sharp.offShares(rotationAbout(direction, kPi), across.origin(), kRotation.num_some_points);
     if (!(shares.off < least)) continue;
     least = shares.off;
     best = direction;
@@ -72,8 +71,8 @@ std::optional<PlacedGroup> groupThrough(const RotationFit& fit, const ObjectSymm
                                         ? -second.line.direction()
                                         : second.line.direction();
   const double expected = angleBetweenLines(a.direction, b.direction);
-  if (expected < rotation_rules.axes_meet ||
-      std::abs(angleBetweenLines(first.line.direction(), direction) - expected) > rotation_rules.axes_meet)
+  if (expected < kRotation.axes_meet ||
+      std::abs(angleBetweenLines(first.line.direction(), direction) - expected) > kRotation.axes_meet)
     return std::nullopt;
   const Eigen::Matrix3d frame =
       frameAlong(first.line.direction(), direction) * frameAlong(a.direction, b.direction).transpose();

@@ -23,7 +23,7 @@ std::optional<OffShares> meanShares(const RotationFit& fit, const RotationSet& s
   OffShares mean;
   for (std::size_t i = 0; i < set.num_judged; ++i) {
     const OffShares shares = fit.offShares(set.rotations[i], set.center);
-    if (fit.limits().excess(shares) > rotation_rules.max_worst) return std::nullopt;
+    if (fit.limits().excess(shares) > kRotation.max_worst) return std::nullopt;
     mean.off += shares.off / static_cast<double>(set.num_judged);
     mean.far += shares.far / static_cast<double>(set.num_judged);
   }
@@ -34,21 +34,21 @@ std::optional<OffShares> meanShares(const RotationFit& fit, const RotationSet& s
 
 double greatestExcess(const RotationLimits& limits, int num_samples) {
   const double phi = std::max(limits.max_feature, 1e-3);
-  return 1.0 + (rotation_rules.gain_of_fit + rotation_rules.max_errors * std::sqrt(phi / num_samples)) / phi;
+  return 1.0 + (kRotation.gain_of_fit + kRotation.max_errors * std::sqrt(phi / num_samples)) / phi;
 }
 
 bool beatsOthers(double excess, double others) {
-  return others >= rotation_rules.clear_factor * excess && others >= excess + rotation_rules.clear_excess;
+  return others >= kRotation.clear_factor * excess && others >= excess + kRotation.clear_excess;
 }
 
 std::optional<PlacedGroup> placedGroup(const RotationFit& fit, const ObjectSymmetryOptions& options,
                                        RotationGroupKind kind, int fold, RotationSet set) {
-  if (fit.overlap(set) < rotation_rules.rough_overlap) return std::nullopt;
+  if (fit.overlap(set) < kRotation.rough_overlap) return std::nullopt;
   set = fit.roughlyFitted(set);
-  if (fit.overlap(set) < rotation_rules.fair_overlap) return std::nullopt;
+  if (fit.overlap(set) < kRotation.fair_overlap) return std::nullopt;
   set = fit.closelyFitted(set);
-  const double some = greatestExcess(fit.limits(), rotation_rules.num_some_points);
-  if (fit.limits().excess(fit.worstShares(set, rotation_rules.num_some_points, some)) > some) return std::nullopt;
+  const double some = greatestExcess(fit.limits(), kRotation.num_some_points);
+  if (fit.limits().excess(fit.worstShares(set, kRotation.num_some_points, some)) > some) return std::nullopt;
   const std::optional<OffShares> shares =
       representsAll(kind) ? meanShares(fit, set)
                           : fit.worstShares(set, std::numeric_limits<int>::max(), 1.0 / options.min_confidence);

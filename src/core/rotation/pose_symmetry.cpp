@@ -64,7 +64,7 @@ struct ClosestSymmetry {
   double angle = 0.0;  ///< of the rotation C
 };
 
-/// Of elements that come equally close the first one.
+/// Among elements that come equally close, the first one.
 /// \param M R_previous^T R: the symmetry S with the greatest trace of M S is the closest.
 ClosestSymmetry closestSymmetry(const ObjectSymmetries& symmetries, const Eigen::Matrix3d& M) {
   ClosestSymmetry closest;

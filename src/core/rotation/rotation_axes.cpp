@@ -23,7 +23,7 @@ Eigen::Vector3d directionAt(int k, int count) {
 
 /// The overlap of a rotation; 0 where a part of the points shows that it is too small.
 double overlapOrLess(const RotationFit& fit, const Eigen::Matrix3d& rotation, const Eigen::Vector3d& center) {
-  return fit.overlap(rotation, center, rotation_rules.num_first_points) < rotation_rules.first_overlap
+  return fit.overlap(rotation, center, kRotation.num_first_points) < kRotation.first_overlap
              ? 0.0
              : fit.overlap(rotation, center);
 }
@@ -35,9 +35,9 @@ std::vector<int> peaks(const std::vector<double>& values) {
   std::iota(order.begin(), order.end(), 0);
   std::stable_sort(order.begin(), order.end(), [&](int a, int b) { return values[a] > values[b]; });
   for (const int k : order) {
-    if (kept.size() >= rotation_rules.max_directions || values[k] < rotation_rules.min_line_overlap) break;
+    if (kept.size() >= kRotation.max_directions || values[k] < kRotation.min_line_overlap) break;
     const bool near = std::any_of(kept.begin(), kept.end(), [&](int other) {
-      return std::abs(directionAt(k, size).dot(directionAt(other, size))) > std::cos(rotation_rules.min_angle);
+      return std::abs(directionAt(k, size).dot(directionAt(other, size))) > std::cos(kRotation.min_angle);
     });
     if (!near) kept.push_back(k);
   }
@@ -51,7 +51,7 @@ std::vector<double> foldOverlaps(const RotationFit& fit, const Line3d& line, int
   for (int n = 2; n <= max_fold; ++n) {
     const double own = fit.overlap(rotationAbout(line.direction(), 2.0 * kPi / n), line.origin());
     const double half = fit.overlap(rotationAbout(line.direction(), kPi / n), line.origin());
-    overlaps[n] = own >= half - rotation_rules.half_allowance ? own : 0.0;
+    overlaps[n] = own >= half - kRotation.half_allowance ? own : 0.0;
   }
   return overlaps;
 }
@@ -78,15 +78,15 @@ std::vector<Line3d> linesThrough(const Eigen::Vector3d& center, const RotationFi
 /// dense, that of the bounding ball, which is 0.
 std::vector<Eigen::Vector3d> axisCenters(const RotationFit& fit) {
   const Eigen::Vector3d mass = centerOfMass(fit.points());
-  return mass.norm() > rotation_rules.same_line ? std::vector<Eigen::Vector3d>{mass, Eigen::Vector3d::Zero()}
-                                                : std::vector{mass};
+  return mass.norm() > kRotation.same_line ? std::vector<Eigen::Vector3d>{mass, Eigen::Vector3d::Zero()}
+                                           : std::vector{mass};
 }
 
 /// Whether a line is one of \p lines.
 bool isKnown(const std::vector<Line3d>& lines, const Line3d& line) {
   return std::any_of(lines.begin(), lines.end(), [&](const Line3d& other) {
-    return angleBetweenLines(other.direction(), line.direction()) < rotation_rules.same_line &&
-           (line.origin() - other.origin()).cross(other.direction()).norm() < rotation_rules.same_line;
+    return angleBetweenLines(other.direction(), line.direction()) < kRotation.same_line &&
+           (line.origin() - other.origin()).cross(other.direction()).norm() < kRotation.same_line;
   });
 }
 
@@ -98,10 +98,10 @@ std::vector<int> likelyFolds(const RotationFit& fit, const Line3d& line, int max
   const auto least_near_best = [&](int last) {
     const double best = *std::max_element(overlaps.begin(), overlaps.begin() + last + 1);
     int n = 2;
-    while (overlaps[n] < best - rotation_rules.near_best) ++n;
+    while (overlaps[n] < best - kRotation.near_best) ++n;
     return n;
   };
-  const int small = least_near_best(std::min(rotation_rules.small_fold, max_fold)), any = least_near_best(max_fold);
+  const int small = least_near_best(std::min(kRotation.small_fold, max_fold)), any = least_near_best(max_fold);
   return any == small ? std::vector{small} : std::vector{small, any};
 }
 
@@ -120,7 +120,7 @@ public:
     part = std::min(part / divisor, (whole - part) / divisor);  // a rotation and its inverse fail alike
     whole /= divisor;
     const auto [entry, is_new] = shares_.insert({{part, whole}, {}});
-    if (is_new) entry->second = fit_.offShares(rotation(part, whole), line_.origin(), rotation_rules.num_some_points);
+    if (is_new) entry->second = fit_.offShares(rotation(part, whole), line_.origin(), kRotation.num_some_points);
     return entry->second;
   }
 
@@ -150,16 +150,16 @@ std::optional<RotationSet> fittedRotation(const RotationFit& fit, const Line3d& 
   double overlap = 0.0;
   for (const int fold : likelyFolds(fit, start, max_fold)) {
     RotationSet other = singleRotation(start, fold);
-    if (fit.overlap(other) < rotation_rules.min_overlap) continue;
+    if (fit.overlap(other) < kRotation.min_overlap) continue;
     other = fit.roughlyFitted(other);
     const double its_overlap = fit.overlap(other);
-    if (its_overlap <= overlap + rotation_rules.clearly_better) continue;
+    if (its_overlap <= overlap + kRotation.clearly_better) continue;
     overlap = its_overlap;
     best = std::move(other);
   }
-  if (overlap < rotation_rules.rough_overlap || isKnown(tried, lineOf(best, start))) return std::nullopt;
+  if (overlap < kRotation.rough_overlap || isKnown(tried, lineOf(best, start))) return std::nullopt;
   best = fit.closelyFitted(best);
-  return fit.overlap(best) < rotation_rules.fair_overlap ? std::nullopt : std::optional(best);
+  return fit.overlap(best) < kRotation.fair_overlap ? std::nullopt : std::optional(best);
 }
 
 /// The surface judged at a tolerance that rotations about a line do not keep to by themselves: about a slender part,
@@ -170,7 +170,7 @@ RotationFit fitAbout(const RotationFit& fit, const Line3d& line) {
     sq_radius =
         std::max(sq_radius, (fit.points().col(i).cast<double>() - line.origin()).cross(line.direction()).squaredNorm());
   RotationLimits limits = fit.limits();
-  limits.tolerance = std::min(limits.tolerance, rotation_rules.max_tolerance_of_radius * std::sqrt(sq_radius));
+  limits.tolerance = std::min(limits.tolerance, kRotation.max_tolerance_of_radius * std::sqrt(sq_radius));
   return fit.withLimits(limits);
 }
 
@@ -202,10 +202,10 @@ double excessBetween(RotationProfile& profile, int fold) {
 /// halfway between. A multiple of a true fold fails that: half its rotations are no symmetries, or as good as any.
 /// \return the greatest first.
 std::vector<int> foldsOf(const RotationFit& fit, RotationProfile& profile, const Line3d& line, int max_fold) {
-  const double most = greatestExcess(fit.limits(), rotation_rules.num_some_points);
+  const double most = greatestExcess(fit.limits(), kRotation.num_some_points);
   std::vector<int> folds;
   for (int n = max_fold; n >= 2; --n) {
-    if (fit.overlap(profile.rotation(1, n), line.origin()) < rotation_rules.rough_overlap) continue;
+    if (fit.overlap(profile.rotation(1, n), line.origin()) < kRotation.rough_overlap) continue;
     const double excess = excessOfFold(profile, n, most);
     if (excess <= most && beatsOthers(excess, excessBetween(profile, n))) folds.push_back(n);
   }
@@ -265,7 +265,7 @@ Line3d bestAcross(const RotationFit& fit, const Line3d& line, double width, int 
 
 std::optional<FoldAxis> AxisFinder::foldAbout(const RotationFit& fit, const Line3d& line,
                                               const std::vector<int>& folds) const {
-  for (std::size_t i = 0; i < folds.size() && i < rotation_rules.max_folds; ++i) {
+  for (std::size_t i = 0; i < folds.size() && i < kRotation.max_folds; ++i) {
     const RotationSet rotations = cyclicSet(line, folds[i]);
     auto axis = axisFrom(placedGroup(fit, options_, RotationGroupKind::Cyclic, folds[i], rotations), folds[i]);
     if (axis) return axis;
@@ -278,17 +278,17 @@ std::optional<FoldAxis> AxisFinder::foldAbout(const RotationFit& fit, const Line
 std::optional<FoldAxis> AxisFinder::axisAbout(const Line3d& line) {
   const RotationFit fit = fitAbout(fit_, line);
   RotationProfile profile(fit, line);
-  const double most = greatestExcess(fit.limits(), rotation_rules.num_some_points);
+  const double most = greatestExcess(fit.limits(), kRotation.num_some_points);
   const auto failing = failingRotation(profile, most);
   const int worst = failing.first;
   const double excess = failing.second;
   const auto revolution = [&]() -> std::optional<FoldAxis> {
-    if (excess > rotation_rules.max_worst * most) return std::nullopt;
+    if (excess > kRotation.max_worst * most) return std::nullopt;
     return axisFrom(placedGroup(fit, options_, RotationGroupKind::Revolution, 0, rotationsAbout(line)), 0);
   };
   std::vector<int> folds;
-  if (excess >= rotation_rules.pattern_excess) folds = foldsOf(fit, profile, line, options_.max_fold);
-  const bool is_pattern = !folds.empty() && (folds.front() >= rotation_rules.min_pattern || excess > 1.0);
+  if (excess >= kRotation.pattern_excess) folds = foldsOf(fit, profile, line, options_.max_fold);
+  const bool is_pattern = !folds.empty() && (folds.front() >= kRotation.min_pattern || excess > 1.0);
   std::optional<FoldAxis> axis = is_pattern ? foldAbout(fit, line, folds) : revolution();
   if (!axis) axis = is_pattern ? revolution() : foldAbout(fit, line, folds);
   if (!axis || axis->fold > 0)
@@ -298,7 +298,7 @@ std::optional<FoldAxis> AxisFinder::axisAbout(const Line3d& line) {
 
 void AxisFinder::judge(const std::vector<Line3d>& lines) {
   for (const Line3d& start : lines) {
-    if (isRound() || axes_.size() >= rotation_rules.max_axes) break;
+    if (isRound() || axes_.size() >= kRotation.max_axes) break;
     if (isKnown(tried_, start)) continue;
     const std::optional<RotationSet> rotation = fittedRotation(fit_, start, options_.max_fold, tried_);
     const bool is_new = rotation && !isKnown(tried_, lineOf(*rotation, start));
@@ -306,8 +306,8 @@ void AxisFinder::judge(const std::vector<Line3d>& lines) {
     if (!is_new) continue;
     const Line3d line = lineOf(*rotation, start);
     tried_.push_back(line);
-    const OffShares shares = fit_.offShares(rotation->rotations[0], rotation->center, rotation_rules.num_some_points);
-    if (fit_.limits().excess(shares) > greatestExcess(fit_.limits(), rotation_rules.num_some_points)) {
+    const OffShares shares = fit_.offShares(rotation->rotations[0], rotation->center, kRotation.num_some_points);
+    if (fit_.limits().excess(shares) > greatestExcess(fit_.limits(), kRotation.num_some_points)) {
       const double angle = Eigen::AngleAxisd(rotation->rotations[0]).angle();
       rejected_.push_back({line, static_cast<int>(std::lround(2.0 * kPi / angle)), angle, shares});
       continue;

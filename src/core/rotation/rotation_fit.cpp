@@ -34,17 +34,15 @@ std::vector<std::size_t> spreadOver(std::size_t size, std::size_t most) {
 }  // namespace
 
 double RotationLimits::excess(const OffShares& shares) const {
-  const double far = std::max(rotation_rules.min_far, rotation_rules.far_of_feature * max_feature);
+  const double far = std::max(kRotation.min_far, kRotation.far_of_feature * max_feature);
   const double by_off = max_feature > 0.0 ? shares.off / max_feature : (shares.off > 0.0 ? 2.0 : 0.0);
   return std::max(by_off, shares.far / far);
 }
 
 double RotationLimits::confidence(const OffShares& shares, std::size_t num_points) const {
-  const double unit =
-      rotation_rules.share_unit +
-      rotation_rules.share_errors * std::sqrt(max_feature * (1.0 - max_feature) / static_cast<double>(num_points));
-  const double margin =
-      max_feature > 0.0 ? max_feature * (1.0 - rotation_rules.optimism * excess(shares)) : -shares.off;
+  const double unit = kRotation.share_unit + kRotation.share_errors * std::sqrt(max_feature * (1.0 - max_feature) /
+                                                                                static_cast<double>(num_points));
+  const double margin = max_feature > 0.0 ? max_feature * (1.0 - kRotation.optimism * excess(shares)) : -shares.off;
   return 1.0 / (1.0 + std::exp(-margin / unit));
 }
 
@@ -65,11 +63,11 @@ struct RotationFit::NormalEquations {
     Vector6d result = Vector6d::Zero();
     for (int i = 0; i < 6; ++i) {
       const double stiffness = solver.eigenvalues()[i];
-      if (!(stiffness > rotation_rules.min_stiffness * solver.eigenvalues()[5])) continue;
+      if (!(stiffness > kRotation.min_stiffness * solver.eigenvalues()[5])) continue;
       result -= solver.eigenvectors().col(i) * (solver.eigenvectors().col(i).dot(g) / stiffness);
     }
     const double length = result.norm();
-    return length > rotation_rules.max_step ? Vector6d(result * (rotation_rules.max_step / length)) : result;
+    return length > kRotation.max_step ? Vector6d(result * (kRotation.max_step / length)) : result;
   }
 };
 
@@ -80,27 +78,26 @@ RotationFit::RotationFit(Points points, const GaussianEdt& edt, RotationLimits l
   surface->points = std::move(points);
   const Points& p = surface->points;
   const auto search = makeFlannSearch(p);
-  surface->geometry = localGeometry(p, *search, kNumSupportNeighbours, num_threads);
+  surface->geometry = localGeometry(p, *search, kNumSupportNeighbors, num_threads);
   const LocalGeometry& geometry = surface->geometry;
   surface->spacing = median(geometry.spacing);
   surface->roughness = median(geometry.roughness);
   constexpr double rounding = 1e-6;  // radii: that of float coordinates
-  first_sigma_ = std::max(
-      {rounding, rotation_rules.first_tolerances * limits.tolerance, rotation_rules.first_spacings * surface->spacing});
-  last_sigma_ = std::max({rounding, rotation_rules.last_tolerances * limits.tolerance,
-                          rotation_rules.last_roughnesses * surface->roughness});
+  first_sigma_ =
+      std::max({rounding, kRotation.first_tolerances * limits.tolerance, kRotation.first_spacings * surface->spacing});
+  last_sigma_ = std::max(
+      {rounding, kRotation.last_tolerances * limits.tolerance, kRotation.last_roughnesses * surface->roughness});
   last_sigma_ = std::min(last_sigma_, first_sigma_);
   const double farthest = std::max(reach, first_sigma_);
-  surface->discs =
-      std::make_unique<SurfaceDiscs>(p, geometry, evidence_rules.disc_radius, static_cast<float>(farthest));
+  surface->discs = std::make_unique<SurfaceDiscs>(p, geometry, kEvidence.disc_radius, static_cast<float>(farthest));
   surface->grid = std::make_unique<ClosestPointGrid>(p, 32);
   surface->own_distances.resize(static_cast<std::size_t>(p.cols()));
   parallelRanges(surface->own_distances.size(), 512, num_threads, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i)
-      surface->own_distances[i] = surface->discs->ownDistance(static_cast<int>(i), rotation_rules.new_sample_factor);
+      surface->own_distances[i] = surface->discs->ownDistance(static_cast<int>(i), kRotation.new_sample_factor);
   });
   surface->order = drawSamples(p.cols(), static_cast<int>(p.cols()) - 1, seed);
-  surface->overlap_points = pointsAt(p, drawSamples(p.cols(), rotation_rules.num_overlap_points, seed + 2));
+  surface->overlap_points = pointsAt(p, drawSamples(p.cols(), kRotation.num_overlap_points, seed + 2));
   // Under a symmetry the closest sample of a rotated sample is as far away as the closest other sample of a sample.
   double sum = 0.0;
   for (Eigen::Index i = 0; i < p.cols(); ++i) {
@@ -144,13 +141,13 @@ double RotationFit::overlap(const RotationSet& set) const {
 
 RotationSet RotationFit::roughlyFitted(const RotationSet& set) const {
   const double sigma = edt_.sigma();
-  return fitted(set, spreadOver(set.num_judged, rotation_rules.max_fitted), rotation_rules.num_rough_points,
-                {sigma, std::max(std::min(sigma, first_sigma_), 0.5 * sigma), rotation_rules.rough_iterations, true});
+  return fitted(set, spreadOver(set.num_judged, kRotation.max_fitted), kRotation.num_rough_points,
+                {sigma, std::max(std::min(sigma, first_sigma_), 0.5 * sigma), kRotation.rough_iterations, true});
 }
 
 RotationSet RotationFit::closelyFitted(const RotationSet& set) const {
-  return fitted(set, spreadOver(set.rotations.size(), rotation_rules.max_fitted), rotation_rules.num_close_points,
-                {first_sigma_, last_sigma_, rotation_rules.close_iterations, false});
+  return fitted(set, spreadOver(set.rotations.size(), kRotation.max_fitted), kRotation.num_close_points,
+                {first_sigma_, last_sigma_, kRotation.close_iterations, false});
 }
 
 /// The sample that the grid names for the cell of a point, or a neighbor that is closer.
@@ -193,7 +190,7 @@ RotationFit::NormalEquations RotationFit::equations(const RotationSet& set, std:
     } else {
       nearest = surface_->discs->nearest(image);
     }
-    if (nearest.disc < 0 || nearest.distance > rotation_rules.reach_sigmas * annealing.sigma) continue;
+    if (nearest.disc < 0 || nearest.distance > kRotation.reach_sigmas * annealing.sigma) continue;
     const Eigen::Vector3d y = points.col(nearest.disc).cast<double>();
     const Eigen::Vector3d normal = geometry.normals.col(nearest.disc).cast<double>();
     const Eigen::Vector3d rotated = rotation * geometry.normals.col(sample).cast<double>();
@@ -223,8 +220,8 @@ RotationSet RotationFit::fitted(RotationSet set, const std::vector<std::size_t>&
     for (Eigen::Matrix3d& rotation : set.rotations) rotation = change * rotation * change.transpose();
     set.center += step.tail<3>();
     const double length = step.norm();
-    if (annealing.sigma == annealing.final_sigma && length <= rotation_rules.settled_step) break;
-    if (length <= rotation_rules.rest_step * annealing.sigma)
+    if (annealing.sigma == annealing.final_sigma && length <= kRotation.settled_step) break;
+    if (length <= kRotation.rest_step * annealing.sigma)
       annealing.sigma = std::max(annealing.final_sigma, 0.5 * annealing.sigma);
   }
   return set;
@@ -239,7 +236,7 @@ OffShares RotationFit::offShares(const Eigen::Matrix3d& rotation, const Eigen::V
   const auto tolerance = static_cast<float>(limits_.tolerance);
   // The closest sample lies beside the closest point of the surface.
   const auto far = static_cast<float>(
-      std::hypot(rotation_rules.far_tolerances * limits_.tolerance, evidence_rules.disc_radius * surface_->spacing));
+      std::hypot(kRotation.far_tolerances * limits_.tolerance, kEvidence.disc_radius * surface_->spacing));
   std::size_t num_off = 0, num_far = 0;
   for (std::size_t k = 0; k < size; ++k) {
     const Eigen::Vector3f x = R * points.col(surface_->order[k]) + shift;

@@ -72,7 +72,7 @@ struct RotationRules {
   double axes_meet = 0.1;     // angles between two found axes and two of a group agree within this
   double across_step = 0.02;  // of the search for half turns about axes perpendicular to the main one
 };
-inline constexpr RotationRules rotation_rules;
+inline constexpr RotationRules kRotation;
 
 /// Rotations about one center that move together: a group, a part of a group, or rotations about one axis.
 struct RotationSet {

@@ -54,7 +54,7 @@ void visitLines(const PartialImage& image, const PixelStep& step, const Visit& v
       if (step.du == 0 || u != side) visitLine(image, u, 0, step, visit);
 }
 
-/// Of each filled pixel, the distance to the next one along a step or against it.
+/// For each filled pixel, the distance to the next one along a step or against it.
 std::vector<float> distancesAlong(const PartialImage& image, const PixelStep& step) {
   std::vector<float> distances(image.depths.size(), std::numeric_limits<float>::infinity());
   visitLines(image, step, [&](std::ptrdiff_t from, std::ptrdiff_t to, int count) {
@@ -204,7 +204,7 @@ void closeSurfaces(RangeImage& image, std::size_t largest_hole) {
 /// fewer than kScan.inside_sides of the four directions along rows and columns.
 void forgetOutside(RangeImage& image) {
   const int width = image.grid.width, height = image.grid.height;
-  // Of each pixel, the number of the four directions in which a filled pixel lies.
+  // For each pixel, the number of the four directions in which a filled pixel lies.
   std::vector<char> num_sides(image.depths.size(), 0);
   const auto walk = [&](std::size_t start, std::ptrdiff_t step, int count) {
     bool met = false;

@@ -32,7 +32,7 @@ struct ScanRules {
   double most_side_angle = 0.044;
   double side_angle_step = 0.0044;  ///< radians
   int least_row = 10;               ///< points of the last row; round ends of objects have fewer
-  /// Of its points to the mean of the next two rows: 82 of 89 cut sides pass, 62 of 437 ends of objects.
+  /// Points of the last row over the mean of the next two rows: 82 of 89 cut sides pass, 62 of 437 ends of objects.
   double least_row_ratio = 0.8;
 
   // Depth images made of points

@@ -22,18 +22,18 @@ constexpr SingleViewLimits kLimits{0.12, 0.15};
 // the true viewpoint, too.
 constexpr SingleViewLimits kSureLimits{kScan.most_hidden, 0.4};
 
-/// Whether all points are at a border, as those of a wire: its density says nothing, and it is seen once from
+/// Whether all points are at a border, as those of a wire: its density is uninformative, and it is seen once from
 /// everywhere.
 bool isWire(const PointsRef& points) {
   const Points drawn = pointsAt(points, drawSamples(points.cols(), kScan.border_samples, 1));
   const ClosestPointSearch::Ptr search = makeFlannSearch(drawn);
-  const LocalGeometry geometry = localGeometry(drawn, *search, kNumSupportNeighbours, 1);
+  const LocalGeometry geometry = localGeometry(drawn, *search, kNumSupportNeighbors, 1);
   return shareNearBorders(openBorders(drawn, *search, geometry.normals, 1), geometry) > kScan.wire;
 }
 
-/// Whether the surface bulges towards the viewer: on average it is farther away the farther it is from the middle of
+/// Whether the surface bulges toward the viewer: on average it is farther away the farther it is from the middle of
 /// the picture.
-bool bulgesTowards(const PointsRef& points, const Eigen::Vector3d& center, const Eigen::Vector3d& viewpoint) {
+bool bulgesToward(const PointsRef& points, const Eigen::Vector3d& center, const Eigen::Vector3d& viewpoint) {
   const Eigen::Vector3d forward = (center - viewpoint).normalized();
   double depth_sum = 0.0, sq_across_sum = 0.0, product_sum = 0.0;
   for (Eigen::Index i = 0; i < points.cols(); ++i) {
@@ -50,7 +50,7 @@ bool bulgesTowards(const PointsRef& points, const Eigen::Vector3d& center, const
 Eigen::Vector3d onItsSide(const PointsRef& points, const ScanDensity& density, const Eigen::Vector3d& best) {
   const Eigen::Vector3d center = density.ball().center, behind = 2.0 * center - best;
   const bool as_good = density.unexplained(behind) <= kScan.as_good * density.unexplained(best) + kScan.as_good_beyond;
-  return as_good && bulgesTowards(points, center, behind) ? behind : best;
+  return as_good && bulgesToward(points, center, behind) ? behind : best;
 }
 
 /// The view from the position from which the points have the fewest layers, of those from which they may be seen at

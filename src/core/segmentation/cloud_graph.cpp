@@ -15,7 +15,7 @@ namespace {
 /// The surface at a point of a cloud, from the point and its neighbors.
 struct LocalSurface {
   Eigen::Vector3f normal, u, v;  ///< unit, perpendicular to each other: least, middle and greatest principal axis
-  float area;                    ///< that the point stands for, input units squared
+  float area;                    ///< that the point represents, input units squared
   float border;                  ///< with each neighbor, input units
 };
 
@@ -27,7 +27,7 @@ LocalSurface localSurface(const PointsRef& points, Eigen::Index i, const std::ve
   const Points offsets = around.colwise() - around.rowwise().mean();
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3f> axes(offsets * offsets.transpose());
   LocalSurface local{axes.eigenvectors().col(0), axes.eigenvectors().col(1), axes.eigenvectors().col(2), 0.0f, 0.0f};
-  // A disc through the last of k neighbors holds k points: each stands for pi r^2 / k.
+  // A disc through the last of k neighbors holds k points: each represents pi r^2 / k.
   const auto count = static_cast<float>(neighbors.size());
   const float radius = (around.rightCols(1) - around.col(0)).norm();
   local.area = static_cast<float>(kPi) * radius * radius / std::max(1.0f, count);

@@ -112,7 +112,7 @@ void indexEdges(SurfaceGraph& graph) {
   }
 }
 
-/// The edge is concave if the normals at its ends point towards each other.
+/// The edge is concave if the normals at its ends point toward each other.
 float concavityOf(const SurfaceGraph& graph, const SurfaceGraph::Edge& edge) {
   const Eigen::Vector3f a = graph.normals.col(edge.from), b = graph.normals.col(edge.to);
   const float angle = std::atan2(a.cross(b).norm(), a.dot(b));

@@ -33,7 +33,7 @@ struct SurfacePoint {
   float reach;  ///< input units; rays from here begin at this distance
 };
 
-/// Points spread over each patch by area, one in each of equal shares. The points of a cloud stand for themselves.
+/// Points spread over each patch by area, one in each of equal shares. The points of a cloud represent themselves.
 std::vector<std::vector<SurfacePoint>> samplePatches(const SurfaceGraph& graph, const Patches& patches, float radius,
                                                      std::uint64_t seed) {
   RandomStream random(seed);

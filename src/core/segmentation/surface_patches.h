@@ -38,7 +38,7 @@ struct PatchBorder {
   double length;          ///< input units
   double edge_concavity;  ///< mean concavity of the edges, weighted by length, radians
   /// (n_from - n_to) . d in [-2, 2], with the unit vector d from the center of the one to the center of the other;
-  /// > 0 if the normals point towards each other.
+  /// > 0 if the normals point toward each other.
   double patch_concavity;
 };
 

@@ -138,7 +138,7 @@ void correlate(const float* values, int first, int last, std::int32_t* sums) {
   }
 }
 
-// Of the quintic spline: roots within the unit circle of z^4 + 26 z^3 + 66 z^2 + 26 z + 1.
+// Poles of the quintic spline: roots within the unit circle of z^4 + 26 z^3 + 66 z^2 + 26 z + 1.
 constexpr double kPoles[2] = {-0.4305753470999738, -0.0430962882032647};
 constexpr int reach_of_spline = 12;  // values on each side that a coefficient depends on: pole^13 = 2e-5 is left out
 constexpr int num_taps = 6;          // coefficients that a value of quintic splines depends on

@@ -17,7 +17,7 @@ namespace pcl_symmetry {
 
 namespace {
 
-/// A float clamped to [low, high], as an integer; rounded towards zero.
+/// A float clamped to [low, high], as an integer; rounded toward zero.
 int clampedInt(float value, int low, int high) {
   return static_cast<int>(std::clamp(value, static_cast<float>(low), static_cast<float>(high)));
 }

@@ -69,7 +69,7 @@ public:
     std::vector<std::complex<float>> coefficients(num_beta_ / 2 + 1);
     std::vector<std::complex<double>> sums(num_beta_ / 2 + 1);
     std::vector<float> row;
-    const double across = std::hypot(e.dot(middle), b.dot(middle)), towards = std::atan2(b.dot(middle), e.dot(middle));
+    const double across = std::hypot(e.dot(middle), b.dot(middle)), toward = std::atan2(b.dot(middle), e.dot(middle));
     for (double h = -radius; h < radius; h += step_) {
       const double disc = std::sqrt(radius * radius - h * h);  // where f is not 0 at this height
       for (int k = 0; k < rows_; ++k) {
@@ -80,8 +80,8 @@ public:
         const double cosine = (across * across + rho * rho - disc * disc) / (2.0 * across * rho);
         const double half = cosine > -1.0 ? std::acos(std::min(1.0, cosine)) : kPi;
         const Eigen::Vector3d center = point_ + (along + h) * a;
-        const int first = static_cast<int>(std::ceil((towards - half) / (2.0 * kPi) * size)),
-                  last = static_cast<int>(std::floor((towards + half) / (2.0 * kPi) * size));
+        const int first = static_cast<int>(std::ceil((toward - half) / (2.0 * kPi) * size)),
+                  last = static_cast<int>(std::floor((toward + half) / (2.0 * kPi) * size));
         for (int i = first; i <= std::min(last, first + size - 1); ++i) {
           const double alpha = 2.0 * kPi * i / size;
           row[(i % size + size) % size] =

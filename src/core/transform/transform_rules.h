@@ -23,7 +23,7 @@ struct TransformRules {
   int halvings = 6;                      ///< of steps, down to 0.05 degrees
 
   // Bundles of lines
-  /// Of the distance between lines, where rows are the closer: two whole cells in place of 0.9 sigmas.
+  /// Factor on the distance between lines, where rows are closer: two whole cells in place of 0.9 sigmas.
   double most_stretch = 1.12;
   double near_whole = 0.1;        ///< cells; at whole distances, all points of a row would be rounded to one side
   double less_than_whole = 0.87;  ///< by which rows then come closer

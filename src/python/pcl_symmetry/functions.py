@@ -177,7 +177,7 @@ def planes(
     absolute_tolerance: the same in input units; 0: tolerance decides.
     approximate: also the other maxima of the transform, and symmetries of parts.
     normals: (N, 3), of any length and sign; None: estimated.
-    max_points: larger clouds are thinned to so many. threads: 0 = one per core.
+    max_points: larger clouds are thinned to that number. threads: 0 = one per core.
     evidence: also what the decisions are taken from; takes about as long again.
     as_published: refine the maxima of the map as the paper does (Section 4.4), without a decision; method: of the map,
         sampled, convolution, rotational or voting.

@@ -51,7 +51,7 @@ TEST(FitReflectionPlane, IsTheMinimumOfItsCost) {
     const Pairs pairs = noisyPairs(plane, 0.2, i + 1);
     const auto costOf = [&](const ReflectionPlane& other) { return cost(pairs.x, pairs.y, pairs.weights, other); };
     const ReflectionPlane fitted = fitReflectionPlane(pairs.x, pairs.y, pairs.weights, {});
-    EXPECT_GT(plane.angleTo(fitted), 1e-4);  // there was something to minimise
+    EXPECT_GT(plane.angleTo(fitted), 1e-4);  // there was something to minimize
     for (int k = 0; k < 100; ++k) EXPECT_LE(costOf(fitted), costOf(randomPlane(random)));
     // A step of length e from the minimum costs e^2 of the curvature, which rounding of 1e-16 hides below 1e-8 or so.
     for (const double step : {1e-1, 1e-3, 1e-6})

@@ -303,13 +303,6 @@ TEST(MiddlePlaneOfBox, DoubtsWhatHasNoStraightSides) {
   }
 }
 
-TEST(MiddlePlaneOfBox, SpacingIsThatOfAGrid) {
-  Points grid(3, 400);
-  for (Eigen::Index i = 0; i < 400; ++i)
-    grid.col(i) << 0.5f * static_cast<float>(i % 20), 0.5f * static_cast<float>(i / 20), 0.0f;
-  EXPECT_NEAR(spacingOf(grid), 0.5, 0.2 * 0.5) << "8 neighbors give it to 18 %";
-}
-
 /// A shape as a scanner sees it from one side.
 struct SeenFromOneSide {
   Points points;

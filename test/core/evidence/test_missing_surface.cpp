@@ -27,7 +27,7 @@ struct Surface {
   explicit Surface(const Points& input)
       : points(input),
         search(makeFlannSearch(points)),
-        geometry(localGeometry(points, *search, kNumSupportNeighbours, 1)),
+        geometry(localGeometry(points, *search, kNumSupportNeighbors, 1)),
         borders(openBorders(points, *search, geometry.normals, 1)) {}
 
   double borderShare() const {
@@ -138,7 +138,7 @@ Points between(const Points& points, float low, float high) {
 
 float explained(const Points& points, const Points& piece, double spacing) {
   const auto search = makeFlannSearch(points);
-  return beyondEnd(OutermostPoints(points), localGeometry(points, *search, kNumSupportNeighbours, 1).normals,
+  return beyondEnd(OutermostPoints(points), localGeometry(points, *search, kNumSupportNeighbors, 1).normals,
                    OutermostPoints(piece), spacing);
 }
 
@@ -193,7 +193,7 @@ double spacingOf(const Points& points, double area) {
 
 std::vector<CutPlane> cutsOf(const Points& points, double spacing) {
   const auto search = makeFlannSearch(points);
-  const LocalGeometry geometry = localGeometry(points, *search, kNumSupportNeighbours, 1);
+  const LocalGeometry geometry = localGeometry(points, *search, kNumSupportNeighbors, 1);
   return findCutPlanes(points, openBorders(points, *search, geometry.normals, 1), spacing, 1);
 }
 
@@ -244,7 +244,7 @@ Points lattice() {
 double distanceOf(const Eigen::Vector3f& x) {
   const Points surface = lattice(), point = x;
   const auto search = makeFlannSearch(surface);
-  const LocalGeometry geometry = localGeometry(surface, *search, kNumSupportNeighbours, 1);
+  const LocalGeometry geometry = localGeometry(surface, *search, kNumSupportNeighbors, 1);
   std::vector<int> closest;
   std::vector<float> sq_distances;
   search->search(point, 1, closest, sq_distances);
@@ -255,7 +255,7 @@ TEST(SurfaceDistance, IsThatOfDiscsAroundTheSamples) {
   EXPECT_NEAR(distanceOf({0.03f, 0.04f, 0.0f}), 0.0, 1e-5) << "between samples";
   EXPECT_NEAR(distanceOf({0.03f, 0.04f, 0.07f}), 0.07, 1e-5) << "above the surface";
   EXPECT_NEAR(distanceOf({0.03f, 0.04f, -0.07f}), 0.07, 1e-5) << "below it";
-  // Beside the rim: the disc of a sample there is wider than elsewhere, because the neighbours lie to one side.
+  // Beside the rim: the disc of a sample there is wider than elsewhere, because the neighbors lie to one side.
   const double beside = distanceOf({2.5f, 0.0f, 0.0f});
   EXPECT_LT(beside, 0.5 - 0.1);
   EXPECT_GT(beside, 0.5 - 0.35);
@@ -264,7 +264,7 @@ TEST(SurfaceDistance, IsThatOfDiscsAroundTheSamples) {
 
 TEST(SurfaceDistance, IsInfiniteWhereNoSampleIsNear) {
   const Points surface = lattice(), point = Eigen::Vector3f::Zero();
-  const LocalGeometry geometry = localGeometry(surface, *makeFlannSearch(surface), kNumSupportNeighbours, 1);
+  const LocalGeometry geometry = localGeometry(surface, *makeFlannSearch(surface), kNumSupportNeighbors, 1);
   EXPECT_TRUE(std::isinf(surfaceDistances(point, {-1}, {surface, geometry})[0]));
 }
 
@@ -278,7 +278,7 @@ TEST(SurfaceDistance, OwnDistancesAreThoseOfASecondSampleOfANoisySurface) {
     second.col(i) += Eigen::Vector3f(0.05f, 0.05f, noise * static_cast<float>(gaussian(random)));
   }
   const auto search = makeFlannSearch(first);
-  const LocalGeometry geometry = localGeometry(first, *search, kNumSupportNeighbours, 1);
+  const LocalGeometry geometry = localGeometry(first, *search, kNumSupportNeighbors, 1);
   std::vector<int> closest;
   std::vector<float> sq_distances;
   search->search(second, 1, closest, sq_distances);
@@ -365,7 +365,7 @@ Points noisy(const Shape& shape, double noise, std::uint64_t seed) {
 
 /// One and a half median spacings, as detection chooses it.
 double bandwidthOf(const Points& points) {
-  std::vector<float> spacing = localGeometry(points, *makeFlannSearch(points), kNumSupportNeighbours, 0).spacing;
+  std::vector<float> spacing = localGeometry(points, *makeFlannSearch(points), kNumSupportNeighbors, 0).spacing;
   std::nth_element(spacing.begin(), spacing.begin() + static_cast<std::ptrdiff_t>(spacing.size() / 2), spacing.end());
   return 1.5 * spacing[spacing.size() / 2];
 }

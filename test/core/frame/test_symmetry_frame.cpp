@@ -83,7 +83,7 @@ TEST(SymmetryFrame, TurnsMovesAndScalesWithTheInput) {
   const SymmetryFrame expected = symmetryFrame(shape.cloud());
   EXPECT_GT(std::abs(expected.axes(1, 0)), std::cos(3.0 * kDegree));
   EXPECT_GT(std::abs(expected.axes(0, 1)), std::cos(3.0 * kDegree));
-  EXPECT_GT(expected.axes(2, 2), std::cos(3.0 * kDegree)) << "towards the fin";
+  EXPECT_GT(expected.axes(2, 2), std::cos(3.0 * kDegree)) << "toward the fin";
   for (std::uint64_t seed = 1; seed <= 4; ++seed) {
     const Eigen::Isometry3d pose = test::randomPose(seed);
     const double scale = std::pow(10.0, static_cast<double>(seed) - 3.0);

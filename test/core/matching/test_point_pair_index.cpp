@@ -39,7 +39,7 @@ const Eigen::Vector3d kHalves[] = {
 std::vector<SurfacePoints> shapes(double scale) {
   std::vector<SurfacePoints> made;
   for (const Eigen::Vector3d& half : kHalves)
-    made.push_back(evenSurfacePoints(scale * lumpyEllipsoid(half, 4000, 1), matching_rules.num_pair_points, 1));
+    made.push_back(evenSurfacePoints(scale * lumpyEllipsoid(half, 4000, 1), kMatching.num_pair_points, 1));
   return made;
 }
 
@@ -108,7 +108,7 @@ TEST(PointPairIndex, FindsShapesOfWhichHalfIsHidden) {
     const PointPairIndex index(made, 1);
     ASSERT_EQ(index.numShapes(), 5);
     for (int k = 0; k < 5; ++k) {
-      const SurfacePoints scan = evenSurfacePoints(halfHidden(kHalves[k], scale), matching_rules.num_scan_points, 1);
+      const SurfacePoints scan = evenSurfacePoints(halfHidden(kHalves[k], scale), kMatching.num_scan_points, 1);
       const std::vector<ShapeOfPairs> found = index.nearest(scan);
       ASSERT_EQ(found.size(), 5u);
       EXPECT_EQ(found[0].shape, k) << scale;
@@ -122,7 +122,7 @@ TEST(PointPairIndex, FindsShapesOfWhichHalfIsHidden) {
 }
 
 TEST(PointPairIndex, ThreadsDoNotChangeIt) {
-  const SurfacePoints scan = evenSurfacePoints(halfHidden(kHalves[1], 1.0), matching_rules.num_scan_points, 1);
+  const SurfacePoints scan = evenSurfacePoints(halfHidden(kHalves[1], 1.0), kMatching.num_scan_points, 1);
   std::vector<ShapeOfPairs> found[2];
   for (int i = 0; i < 2; ++i) {
     PairSearchOptions options;
@@ -146,7 +146,7 @@ TEST(PointPairIndex, DegenerateShapesAreFoundByNoPair) {
   std::vector<SurfacePoints> with = shapes(1.0);
   with.push_back(evenSurfacePoints(same, 20, 1));
   const PointPairIndex index(with, 1);
-  const SurfacePoints scan = evenSurfacePoints(halfHidden(kHalves[0], 1.0), matching_rules.num_scan_points, 1);
+  const SurfacePoints scan = evenSurfacePoints(halfHidden(kHalves[0], 1.0), kMatching.num_scan_points, 1);
   EXPECT_EQ(index.nearest(scan).front().shape, 0);
   EXPECT_EQ(index.nearest(scan).back().votes, 0.0);
   for (const ShapeOfPairs& shape : index.nearest(evenSurfacePoints(same, 20, 1))) EXPECT_EQ(shape.votes, 0.0);
@@ -158,7 +158,7 @@ Points pointsOfBox(const Eigen::Vector3d& half, int count, std::uint64_t seed) {
 }
 
 ScreenedSurface screenedBox(const Eigen::Vector3d& half) {
-  return ScreenedSurface(evenSurfacePoints(pointsOfBox(half, 5000, 1), matching_rules.num_screened_points, 1));
+  return ScreenedSurface(evenSurfacePoints(pointsOfBox(half, 5000, 1), kMatching.num_screened_points, 1));
 }
 
 const Eigen::Vector3d kBoxes[] = {{1.0, 0.6, 0.3}, {0.8, 0.8, 0.5}, {1.2, 0.2, 0.4}};
@@ -353,7 +353,7 @@ TEST(ViewCodeIndex, FindsWhatAComparisonOfAllCodesFinds) {
       for (std::size_t k = 0; k < kViewCodeSize; ++k) sum += std::pow(code.values[k] - scan.values[k], 2.0);
       least = std::min(
           least, static_cast<double>(kViewCodeStep) * std::sqrt(sum) +
-                     matching_rules.size_weight * static_cast<double>(kViewSizeStep) * std::abs(code.size - scan.size));
+                     kMatching.size_weight * static_cast<double>(kViewSizeStep) * std::abs(code.size - scan.size));
     }
     distances.emplace_back(least, i);
   }

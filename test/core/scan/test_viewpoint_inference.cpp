@@ -241,7 +241,7 @@ TEST(ScanDensity, TooFewPointsAndPointsWithoutExtentHaveNoViewpoint) {
 
 constexpr int kWidth = 80, kHeight = 60;
 constexpr double kPixelAngle = 1.0 / 500.0;
-constexpr double kError = 1.5e-3;  // of inverse depths, per metre: 1.5 mm at 1 m, as of structured light
+constexpr double kError = 1.5e-3;  // of inverse depths, per meter: 1.5 mm at 1 m, as of structured light
 
 using DepthOf = std::function<double(int u, int v)>;
 
@@ -258,7 +258,7 @@ DepthImage noisy(DepthImage image) {
   return image;
 }
 
-/// A floor that rises towards the back: its inverse depths grow evenly.
+/// A floor that rises toward the back: its inverse depths grow evenly.
 double slanted(int, int v) {
   return 1.0 / (0.8 + 0.004 * v);
 }
