@@ -110,37 +110,27 @@ TriangleTree::TriangleTree(const Points& corners, const std::vector<Eigen::Vecto
 /// Where a ray enters and leaves the boxes of the children. Comparisons with NaN, where a ray runs within a side of a
 /// box, leave both as they are.
 void TriangleTree::distancesTo(const Node& node, const Ray& ray, float farthest, Lanes& near, Lanes& far) {
-  for (int k = 0; k < kWidth; ++k) near[k] = ray.nearest;
-  for (int k = 0; k < kWidth; ++k) far[k] = farthest;
+  near = Lanes{} + ray.nearest;
+  far = Lanes{} + farthest;
   for (int axis = 0; axis < 3; ++axis) {
-    const Lanes &enter = node.box[ray.side[axis]][axis], &leave = node.box[1 - ray.side[axis]][axis];
-    const float start = ray.origin[axis], inverse = ray.inverse[axis];
-    for (int k = 0; k < kWidth; ++k) {
-      const float in = (enter[k] - start) * inverse, out = (leave[k] - start) * inverse;
-      near[k] = in > near[k] ? in : near[k];
-      far[k] = out < far[k] ? out : far[k];
-    }
+    const int side = ray.side[axis];
+    const Lanes in = (node.box[side][axis] - ray.origin[axis]) * ray.inverse[axis],
+                out = (node.box[1 - side][axis] - ray.origin[axis]) * ray.inverse[axis];
+    near = in > near ? in : near;
+    far = out < far ? out : far;
   }
 }
 
 /// Intersections of a ray with triangles (Moeller and Trumbore 1997), in lengths of its direction; infinity where it
 /// misses the triangle.
-void TriangleTree::distancesTo(const Leaf& leaf, const Ray& ray, Lanes& distances) {
+TriangleTree::Lanes TriangleTree::distancesTo(const Leaf& leaf, const Ray& ray) {
   constexpr float kMiss = std::numeric_limits<float>::infinity();  // farther than every hit
-  const float d0 = ray.direction[0], d1 = ray.direction[1], d2 = ray.direction[2];
-  for (int k = 0; k < kWidth; ++k) {
-    const float u0 = leaf.u[0][k], u1 = leaf.u[1][k], u2 = leaf.u[2][k];
-    const float v0 = leaf.v[0][k], v1 = leaf.v[1][k], v2 = leaf.v[2][k];
-    const float p0 = d1 * v2 - d2 * v1, p1 = d2 * v0 - d0 * v2, p2 = d0 * v1 - d1 * v0;
-    const float determinant = u0 * p0 + (u1 * p1 + u2 * p2);
-    const float t0 = ray.origin[0] - leaf.a[0][k], t1 = ray.origin[1] - leaf.a[1][k], t2 = ray.origin[2] - leaf.a[2][k];
-    const float x = (t0 * p0 + (t1 * p1 + t2 * p2)) / determinant;
-    const float q0 = t1 * u2 - t2 * u1, q1 = t2 * u0 - t0 * u2, q2 = t0 * u1 - t1 * u0;
-    const float y = (d0 * q0 + (d1 * q1 + d2 * q2)) / determinant;
-    const float distance = (v0 * q0 + (v1 * q1 + v2 * q2)) / determinant;
-    const bool inside = (determinant != 0.0f) & (x >= 0.0f) & (x <= 1.0f) & (y >= 0.0f) & (x + y <= 1.0f);
-    distances[k] = inside ? distance : kMiss;
-  }
+  const Vectors direction = same(ray.direction), from_a = minus(same(ray.origin), leaf.a);
+  const Vectors p = cross(direction, leaf.v), q = cross(from_a, leaf.u);
+  const Lanes determinant = dot(leaf.u, p);
+  const Lanes x = dot(from_a, p) / determinant, y = dot(direction, q) / determinant;
+  const auto inside = (determinant != 0.0f) & (x >= 0.0f) & (x <= 1.0f) & (y >= 0.0f) & (x + y <= 1.0f);
+  return inside ? dot(leaf.v, q) / determinant : Lanes{} + kMiss;
 }
 
 RayHit TriangleTree::search(const Eigen::Vector3f& origin, const Eigen::Vector3f& direction, float nearest,
@@ -168,8 +158,7 @@ RayHit TriangleTree::search(const Eigen::Vector3f& origin, const Eigen::Vector3f
     if (!(next.near <= hit.distance)) continue;
     if (next.child < 0) {
       const Leaf& leaf = leaves_[~next.child];
-      Lanes distances;
-      distancesTo(leaf, ray, distances);
+      const Lanes distances = distancesTo(leaf, ray);
       for (int k = 0; k < kWidth; ++k)
         if (distances[k] > nearest && distances[k] < hit.distance) hit = {leaf.triangle[k], distances[k]};
       if (any && hit.triangle >= 0) return hit;
@@ -195,32 +184,38 @@ RayHit TriangleTree::closest(const Eigen::Vector3f& origin, const Eigen::Vector3
   return search(origin, direction, nearest, farthest, false);
 }
 
-namespace {
-
-/// The point a + s u + t v of a triangle that is closest to a + w (Ericson, Real-Time Collision Detection, 5.1.5).
-Eigen::Vector3f closestOffset(const Eigen::Vector3f& u, const Eigen::Vector3f& v, const Eigen::Vector3f& w) {
-  const float d1 = u.dot(w), d2 = v.dot(w);
-  if (d1 <= 0.0f && d2 <= 0.0f) return Eigen::Vector3f::Zero();
-  const Eigen::Vector3f to_u = w - u, to_v = w - v;
-  const float d3 = u.dot(to_u), d4 = v.dot(to_u);
-  if (d3 >= 0.0f && d4 <= d3) return u;
-  const float d5 = u.dot(to_v), d6 = v.dot(to_v);
-  if (d6 >= 0.0f && d5 <= d6) return v;
-  const float c = d1 * d4 - d3 * d2;
-  if (c <= 0.0f && d1 >= 0.0f && d3 <= 0.0f) return d1 / (d1 - d3) * u;
-  const float b = d5 * d2 - d1 * d6;
-  if (b <= 0.0f && d2 >= 0.0f && d6 <= 0.0f) return d2 / (d2 - d6) * v;
-  const float a = d3 * d6 - d5 * d4;
-  if (a <= 0.0f && d4 >= d3 && d5 >= d6) return u + (d4 - d3) / ((d4 - d3) + (d5 - d6)) * (v - u);
-  const Eigen::Vector3f normal = u.cross(v);  // a slender triangle has weights of its corners that are rounding
-  return w - normal.dot(w) / normal.squaredNorm() * normal;
+/// The points a + start + share * direction of triangles that are closest to a point (Ericson, Real-Time Collision
+/// Detection, 5.1.5).
+TriangleTree::Vectors TriangleTree::closestPoints(const Leaf& leaf, const Vectors& x) {
+  const Vectors &u = leaf.u, &v = leaf.v, w = minus(x, leaf.a), from_u = minus(w, u), from_v = minus(w, v);
+  const Lanes d1 = dot(u, w), d2 = dot(v, w), d3 = dot(u, from_u), d4 = dot(v, from_u), d5 = dot(u, from_v),
+              d6 = dot(v, from_v);
+  const Lanes a = d3 * d6 - d5 * d4, b = d5 * d2 - d1 * d6, c = d1 * d4 - d3 * d2, to_v = d4 - d3, to_u = d5 - d6;
+  // Within the triangle first. A slender one has weights of its corners that are rounding.
+  Vectors start = w, direction = cross(u, v);
+  Lanes share = -dot(direction, w) / dot(direction, direction);
+  const auto takeIf = [&](const auto& here, const Vectors& from, const Lanes& by, const Vectors& along) {
+    share = here ? by : share;
+    for (int axis = 0; axis < 3; ++axis) {
+      start[axis] = here ? from[axis] : start[axis];
+      direction[axis] = here ? along[axis] : direction[axis];
+    }
+  };
+  const Vectors zero{};
+  takeIf((a <= 0.0f) & (to_v >= 0.0f) & (to_u >= 0.0f), u, to_v / (to_v + to_u), minus(v, u));
+  takeIf((b <= 0.0f) & (d2 >= 0.0f) & (d6 <= 0.0f), zero, d2 / (d2 - d6), v);
+  takeIf((c <= 0.0f) & (d1 >= 0.0f) & (d3 <= 0.0f), zero, d1 / (d1 - d3), u);
+  takeIf((d6 >= 0.0f) & (d5 <= d6), v, Lanes{}, zero);
+  takeIf((d3 >= 0.0f) & (d4 <= d3), u, Lanes{}, zero);
+  takeIf((d1 <= 0.0f) & (d2 <= 0.0f), zero, Lanes{}, zero);
+  for (int axis = 0; axis < 3; ++axis) start[axis] = leaf.a[axis] + (start[axis] + share * direction[axis]);
+  return start;
 }
-
-}  // namespace
 
 ClosestOnTriangles TriangleTree::closestTo(const Eigen::Vector3f& x) const {
   ClosestOnTriangles found;
   if (nodes_.empty()) return found;
+  const Vectors all_x = same(x.data());
   struct Open {
     float sq_distance;
     int child;
@@ -233,25 +228,23 @@ ClosestOnTriangles TriangleTree::closestTo(const Eigen::Vector3f& x) const {
     if (!(next.sq_distance < found.sq_distance)) continue;
     if (next.child < 0) {
       const Leaf& leaf = leaves_[~next.child];
-      for (int k = 0; k < leaf.size; ++k) {
-        const Eigen::Vector3f a(leaf.a[0][k], leaf.a[1][k], leaf.a[2][k]), u(leaf.u[0][k], leaf.u[1][k], leaf.u[2][k]),
-            v(leaf.v[0][k], leaf.v[1][k], leaf.v[2][k]);
-        const Eigen::Vector3f point = a + closestOffset(u, v, x - a);
-        const float sq_distance = (x - point).squaredNorm();
-        if (sq_distance < found.sq_distance) found = {leaf.triangle[k], point, sq_distance};
-      }
+      const Vectors points = closestPoints(leaf, all_x), off = minus(all_x, points);
+      const Lanes sq_distances = dot(off, off);
+      for (int k = 0; k < leaf.size; ++k)
+        if (sq_distances[k] < found.sq_distance)
+          found = {leaf.triangle[k], {points[0][k], points[1][k], points[2][k]}, sq_distances[k]};
       continue;
     }
     const Node& node = nodes_[next.child];
     Lanes sq_distances{};
-    for (int axis = 0; axis < 3; ++axis)
-      for (int k = 0; k < kWidth; ++k) {
-        const float below = node.box[0][axis][k] - x[axis], above = x[axis] - node.box[1][axis][k];
-        const float out = std::max(0.0f, std::max(below, above));
-        sq_distances[k] += out * out;
-      }
+    for (int axis = 0; axis < 3; ++axis) {
+      const Lanes below = node.box[0][axis] - x[axis], above = x[axis] - node.box[1][axis];
+      const Lanes beyond = below > above ? below : above, out = beyond > 0.0f ? beyond : Lanes{};
+      sq_distances += out * out;
+    }
     const int behind = depth;
     for (int k = 0; k < node.num_children; ++k) {
+      if (!(sq_distances[k] < found.sq_distance)) continue;
       int position = depth++;
       for (; position > behind && stack[position - 1].sq_distance < sq_distances[k]; --position)
         stack[position] = stack[position - 1];

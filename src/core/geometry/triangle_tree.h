@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <array>
 #include <limits>
 #include <vector>
 
@@ -45,7 +46,8 @@ public:
 private:
   static constexpr int kWidth = 4;      // floats in the smallest vector register of current processors
   static constexpr int kMostOpen = 64;  // 2^31 triangles have 16 levels; each leaves at most three children behind
-  using Lanes = float[kWidth];
+  using Lanes = float __attribute__((vector_size(kWidth * sizeof(float))));
+  using Vectors = std::array<Lanes, 3>;
 
   struct Node {
     Lanes box[2][3];       // lower and upper bounds of the children, by axis
@@ -54,7 +56,7 @@ private:
   };
   /// Triangles a, a + u, a + v. Lanes without a triangle have no area.
   struct Leaf {
-    Lanes a[3], u[3], v[3];
+    Vectors a, u, v;
     int triangle[kWidth];
     int size = 0;
   };
@@ -72,7 +74,15 @@ private:
   RayHit search(const Eigen::Vector3f& origin, const Eigen::Vector3f& direction, float nearest, float farthest,
                 bool any) const;
   static void distancesTo(const Node& node, const Ray& ray, float farthest, Lanes& near, Lanes& far);
-  static void distancesTo(const Leaf& leaf, const Ray& ray, Lanes& distances);
+  static Lanes distancesTo(const Leaf& leaf, const Ray& ray);
+  static Vectors closestPoints(const Leaf& leaf, const Vectors& x);
+
+  static Vectors same(const float* x) { return {Lanes{} + x[0], Lanes{} + x[1], Lanes{} + x[2]}; }
+  static Vectors minus(const Vectors& x, const Vectors& y) { return {x[0] - y[0], x[1] - y[1], x[2] - y[2]}; }
+  static Lanes dot(const Vectors& x, const Vectors& y) { return x[0] * y[0] + (x[1] * y[1] + x[2] * y[2]); }
+  static Vectors cross(const Vectors& x, const Vectors& y) {
+    return {x[1] * y[2] - x[2] * y[1], x[2] * y[0] - x[0] * y[2], x[0] * y[1] - x[1] * y[0]};
+  }
 
   std::vector<Node> nodes_;
   std::vector<Leaf> leaves_;
