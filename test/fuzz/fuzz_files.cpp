@@ -1,5 +1,5 @@
-/// Readers of files. FUZZ_KIND in the environment names one of them: a kind of shape file such as pcd, or isaac,
-/// models_info, labels.
+/// Readers of files. FUZZ_KIND in the environment names one of them: a kind of shape file such as pcd, or of volumes
+/// such as nii.gz, or isaac, models_info, labels.
 #include <unistd.h>
 
 #include <fstream>
@@ -9,6 +9,7 @@
 #include "bop/models_info.h"
 #include "command_line/tool_errors.h"
 #include "fuzz/byte_source.h"
+#include "io/input_shape.h"
 #include "io/load_module.h"
 #include "io/mesh_output.h"
 #include "io/shape_input.h"
@@ -42,6 +43,12 @@ void readModelsSymmetries(const std::string& path) {
     for (const Eigen::Isometry3d& motion : listed.discrete) FUZZ_CHECK(motion.linear().isUnitary(1e-6));
 }
 
+void readVoxels(const std::string& path) {
+  Volume volume;
+  readVolume(path, volume);
+  FUZZ_CHECK(volume.grid && volume.grid->numVoxels() > 0);
+}
+
 struct Kind {
   std::string extension;
   Reader read;
@@ -49,6 +56,11 @@ struct Kind {
 
 Kind kindOf(const std::string& name) {
   static const std::map<std::string, Kind> kinds = {
+      {"nii", {".nii", readVoxels}},
+      {"nii.gz", {".nii.gz", readVoxels}},
+      {"nrrd", {".nrrd", readVoxels}},
+      {"mha", {".mha", readVoxels}},
+      {"vti", {".vti", readVoxels}},
       {"isaac", {".yaml", [](const std::string& path) { readIsaacAxes(path); }}},
       {"models_info", {".json", readModelsSymmetries}},
       {"labels", {".seg", [](const std::string& path) { readFaceLabels(path); }}}};
@@ -65,6 +77,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   std::ofstream(path, std::ios::binary).write(reinterpret_cast<const char*>(data), static_cast<std::streamsize>(size));
   try {
     kind.read(path);
+  } catch (const std::invalid_argument&) {  // the tools put the file's name before it
   } catch (const InputError& error) {
     FUZZ_CHECK(std::string(error.what()).find('\n') == std::string::npos);
   }

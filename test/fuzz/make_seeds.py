@@ -1,9 +1,11 @@
 """Seeds for the fuzzers: small files of every kind that the tools read, and bytes that become points."""
 
+import gzip
 import json
 import random
 import struct
 import sys
+import zlib
 from pathlib import Path
 
 USAGE = "usage: python3 test/fuzz/make_seeds.py FOLDER\nWrites a folder of seeds for each target into FOLDER."
@@ -107,6 +109,47 @@ def shape_files():
     yield "glb", [glb(), glb(True)]
 
 
+def nifti(values):
+    header = bytearray(352)
+    struct.pack_into("<i", header, 0, 348)
+    struct.pack_into("<8h", header, 40, 3, 12, 5, 4, 1, 1, 1, 1)
+    struct.pack_into("<2h8f3f", header, 70, 16, 32, 1, 2, 2, 3, 0, 0, 0, 0, 352, 2, -50)
+    struct.pack_into("<h", header, 254, 1)
+    struct.pack_into("<12f4s", header, 280, 0, -2, 0, 5, 2, 0, 0, 7, 0, 0, 3, -9, b"n+1")
+    return bytes(header) + values
+
+
+def nrrd(encoding, values):
+    header = "space: left-posterior-superior\nspace directions: (0,2,0) (-2,0,0) (0,0,3)\nspace origin: (5,7,-9)\n"
+    return f"NRRD0004\ntype: float\ndimension: 3\nsizes: 12 5 4\nendian: little\nencoding: {encoding}\n{header}\n".encode() + values
+
+
+def meta_image(values, size=None):
+    packed = f"CompressedData = {bool(size)}\n" + (f"CompressedDataSize = {size}\n" if size else "")
+    header = "ObjectType = Image\nNDims = 3\nBinaryData = True\nBinaryDataByteOrderMSB = False\n" + packed
+    header += "TransformMatrix = 0 1 0 -1 0 0 0 0 1\nOffset = 5 7 -9\nElementSpacing = 2 2 3\nDimSize = 12 5 4\n"
+    return (header + "ElementType = MET_FLOAT\nElementDataFile = LOCAL\n").encode() + values
+
+
+def vtk_image(text):
+    return (
+        '<VTKFile type="ImageData" version="1.0" byte_order="LittleEndian" header_type="UInt64">\n<ImageData WholeExtent='
+        '"0 11 0 4 0 3" Origin="5 7 -9" Spacing="2 2 3" Direction="0 -1 0 1 0 0 0 0 1"><Piece Extent="0 11 0 4 0 3">\n'
+        '<PointData Scalars="v"><DataArray type="Float32" Name="v" format="ascii">' + text + "</DataArray></PointData>\n"
+        "</Piece></ImageData></VTKFile>\n"
+    ).encode()
+
+
+def volume_files():
+    numbers = [k * k % 7 - 1.5 for k in range(240)]
+    values, text = struct.pack("<240f", *numbers), " ".join(map(str, numbers))
+    yield "nii", [nifti(values)]
+    yield "nii.gz", [gzip.compress(nifti(values), mtime=0)]
+    yield "nrrd", [nrrd("raw", values), nrrd("gzip", gzip.compress(values, mtime=0)), nrrd("ascii", text.encode())]
+    yield "mha", [meta_image(values), meta_image(zlib.compress(values), len(zlib.compress(values)))]
+    yield "vti", [vtk_image(text)]
+
+
 def symmetry_files():
     turn = [1, 0, 0, 0, 0, -1, 0, 4, 0, 0, -1, 0, 0, 0, 0, 1]
     axis = {"axis": [0, 0, 1], "offset": [0, 0.5, 0]}
@@ -140,7 +183,7 @@ def packed_parts():
 
 
 def main(folder):
-    for name, files in [*shape_files(), *symmetry_files(), *packed_parts()]:
+    for name, files in [*shape_files(), *volume_files(), *symmetry_files(), *packed_parts()]:
         write(Path(folder) / name, files)
     for name, num_options in (("planes", 15), ("rotations", 4), ("segment", 7)):
         write(Path(folder) / name, list(point_bytes(num_options, 8)))
