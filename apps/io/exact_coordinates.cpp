@@ -46,6 +46,14 @@ pcl::PointCloud<pcl::PointXYZ> shifted(const std::vector<Eigen::Vector3d>& point
   return cloud;
 }
 
+int digitsOfFloat(const pcl::PointCloud<pcl::PointXYZ>& points, const Eigen::Vector3d& shift) {
+  Eigen::AlignedBox3f box;
+  for (const pcl::PointXYZ& point : points)
+    if (point.getVector3fMap().allFinite()) box.extend(point.getVector3fMap());
+  const double spacing = kFloatSpacing * shift.cwiseAbs().maxCoeff();
+  return std::max(0, static_cast<int>(std::floor(std::log10(box.sizes().norm() / spacing))));
+}
+
 pcl::PCLPointCloud2 toFields(const pcl::PointCloud<pcl::PointXYZ>& points, const Eigen::Vector3d& shift) {
   pcl::PCLPointCloud2 cloud;
   if (shift.isZero(0.0)) {

@@ -36,6 +36,9 @@ Eigen::Vector3d shiftFor(const std::vector<Eigen::Vector3d>& points);
 /// \return the points minus the shift
 pcl::PointCloud<pcl::PointXYZ> shifted(const std::vector<Eigen::Vector3d>& points, const Eigen::Vector3d& shift);
 
+/// \return digits of the extent that coordinates of type float keep around the shift, which is not zero
+int digitsOfFloat(const pcl::PointCloud<pcl::PointXYZ>& points, const Eigen::Vector3d& shift);
+
 /// \return the points plus the shift: with a shift fields x, y and z of type double, otherwise those of PointXYZ
 pcl::PCLPointCloud2 toFields(const pcl::PointCloud<pcl::PointXYZ>& points, const Eigen::Vector3d& shift);
 

@@ -4,6 +4,8 @@
 #include <new>
 
 #include "command_line/tool_errors.h"
+#include "io/answers.h"
+#include "io/cloud_fields.h"
 #include "io/exact_coordinates.h"
 #include "io/file_text.h"
 #include "io/load_module.h"
@@ -30,6 +32,9 @@ InputShape loadInput(const std::string& path, int mesh_points, std::uint64_t see
 
 void warnOfLeftOut(const Console& console, const std::string& path, const Shape& shape) {
   for (const std::string& what : shape.left_out) console.warn(path + ": " + what + " left out");
+  if (shape.shift.isZero(0.0) || VectorField(shape.cloud).isDouble()) return;
+  const int digits = digitsOfFloat(*shape.points, shape.shift);
+  if (digits < 4) console.warn(path + ": float coordinates leave " + counted(digits, "digit") + " of the extent");
 }
 
 namespace {

@@ -35,7 +35,7 @@ Shape completed(const std::string& path, Shape shape) {
   return shape;
 }
 
-/// With a shift where the fields are double and float would lose digits.
+/// With a shift where float loses digits.
 Shape fromCloudFile(const std::string& path, CloudFile file) {
   Shape shape;
   shape.cloud = std::move(file.cloud);
@@ -45,7 +45,7 @@ Shape fromCloudFile(const std::string& path, CloudFile file) {
   const VectorField xyz(shape.cloud);
   std::vector<Eigen::Vector3d> exact(std::size_t{shape.cloud.width} * shape.cloud.height);
   for (std::size_t i = 0; i < exact.size(); ++i) exact[i] = xyz.get(shape.cloud, i);
-  if (xyz.isDouble()) shape.shift = shiftFor(exact);
+  shape.shift = shiftFor(exact);
   shape.points.reset(new pcl::PointCloud<pcl::PointXYZ>(shifted(exact, shape.shift)));
   shape.points->width = shape.cloud.width;
   shape.points->height = shape.cloud.height;
@@ -54,7 +54,7 @@ Shape fromCloudFile(const std::string& path, CloudFile file) {
     shape.mesh->polygons = std::move(file.polygons);
     shape.mesh->cloud = shape.cloud;
     // Meshes are read as PointXYZ everywhere.
-    if (xyz.isDouble()) pcl::toPCLPointCloud2(*shape.points, shape.mesh->cloud);
+    if (xyz.isDouble() || !shape.shift.isZero(0.0)) pcl::toPCLPointCloud2(*shape.points, shape.mesh->cloud);
   }
   return completed(path, std::move(shape));
 }

@@ -116,45 +116,6 @@ TEST_F(PlanesTool, SaysNone) {
   EXPECT_NE(output_.find("approximate"), std::string::npos);
 }
 
-/// Files that are no part of the repository: in the folder PCL_SYMMETRY_DATA, or beside the repository.
-std::string dataFile(const std::string& name) {
-  const char* const folder = std::getenv("PCL_SYMMETRY_DATA");
-  return (folder ? std::string(folder) : TOOLS_FOLDER "/../../../shared/data") + "/" + name;
-}
-
-/// A scanned mug whose handle is on one side: its plane, or none, and not the plane that throws the handle into empty
-/// space.
-TEST_F(PlanesTool, ThrowsNoHandleIntoEmptySpace) {
-  const std::string mug = dataFile("field/mug.ply");
-  if (!std::filesystem::exists(mug)) GTEST_SKIP() << mug << " is absent";
-  for (int seed = 0; seed < 5; ++seed) {
-    const nlohmann::json report = reportOf(mug + " -quiet -seed " + std::to_string(seed));
-    for (const auto& plane : report["planes"])
-      if (plane["kind"] == "symmetry") {
-        EXPECT_GT(std::abs(plane["coefficients"][1].get<double>()), std::cos(0.09)) << seed;
-      }
-  }
-}
-
-TEST_F(PlanesTool, FindsNoSymmetryOfAnOpenWavySheet) {
-  const std::string sheet = dataFile("field/open_sheet.off");
-  if (!std::filesystem::exists(sheet)) GTEST_SKIP() << sheet << " is absent";
-  for (int seed = 0; seed < 20; ++seed) {
-    const nlohmann::json report = reportOf(sheet + " -quiet -seed " + std::to_string(seed));
-    for (const auto& plane : report["planes"]) EXPECT_NE(plane["kind"], "symmetry") << seed;
-  }
-}
-
-TEST_F(PlanesTool, CallsNoFrameOfATableSymmetric) {
-  for (const char* name : {"milk_cartoon_all_small_clorox", "rs1", "table_scene_mug_stereo_textured"}) {
-    const std::string frame = dataFile("scans/" + std::string(name) + ".pcd");
-    if (!std::filesystem::exists(frame)) GTEST_SKIP() << frame << " is absent";
-    const nlohmann::json report = reportOf(frame + " -quiet");
-    EXPECT_TRUE(report["axes"].empty()) << name;
-    for (const auto& plane : report["planes"]) EXPECT_NE(plane["kind"], "symmetry") << name;
-  }
-}
-
 TEST_F(PlanesTool, WritesTheSupportOfEveryPointAndKeepsItsFields) {
   const std::string input = folder_.write("c.pcd", [] {
     std::string text =
