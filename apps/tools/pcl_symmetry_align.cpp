@@ -228,6 +228,8 @@ Symmetrized symmetrized(const Console& console, const InputShape& input, const A
     result.mesh = options.cut ? mirroredHalf(shape.mesh, plane, half != SymmetrizedHalf::Right, &result.mesh_asymmetry)
                               : shape.mesh;
     result.json["deviation"] = options.cut ? 0.0 : shape.deviation;
+    if (!options.cut)
+      result.text += formatted("up to %.2g from its own reflection, exact with -cut\n", shape.deviation);
   } else {
     const SymmetrizedCloud<pcl::PointXYZ> shape = symmetrize(*input.points, plane, half, common.threads);
     report(shape);

@@ -54,8 +54,26 @@ void copyTo(double* row, const Values& values) {
   std::copy(values.begin(), values.end(), row);
 }
 
+/// Makes the types of the rows known to NumPy, once: at the first row, as that imports NumPy.
+bool registerRows() {
+  PYBIND11_NUMPY_DTYPE(PlaneRow, coefficients, kind, flat, confidence, share, double_share, unknown, score, own_score,
+                       support, conflict, baseline, hold, spacing, roughness, tolerance, share_unit, terms);
+  PYBIND11_NUMPY_DTYPE(TurnRow, point, direction, fold, kind, confidence, support, off, far, halfway, grown, hold,
+                       planes_off, beside, terms);
+  PYBIND11_NUMPY_DTYPE(FrameRow, constant, value, first_score, contact, principal_angle, best, other_scores,
+                       best_score);
+  PYBIND11_NUMPY_DTYPE(MergeRow, into, from, log_odds, area_into, area_from, cues);
+  return true;
+}
+
+void needRows() {
+  static const bool is_done = registerRows();
+  (void)is_done;
+}
+
 template <typename Row>
 py::array arrayOfRows(const std::vector<Row>& rows) {
+  needRows();
   return py::array_t<Row>(static_cast<py::ssize_t>(rows.size()), rows.data());
 }
 
@@ -171,13 +189,6 @@ py::array frameEvidence(const SymmetryFrame& frame) {
 }
 
 void addEvidence(py::module_& module) {
-  PYBIND11_NUMPY_DTYPE(PlaneRow, coefficients, kind, flat, confidence, share, double_share, unknown, score, own_score,
-                       support, conflict, baseline, hold, spacing, roughness, tolerance, share_unit, terms);
-  PYBIND11_NUMPY_DTYPE(TurnRow, point, direction, fold, kind, confidence, support, off, far, halfway, grown, hold,
-                       planes_off, beside, terms);
-  PYBIND11_NUMPY_DTYPE(FrameRow, constant, value, first_score, contact, principal_angle, best, other_scores,
-                       best_score);
-  PYBIND11_NUMPY_DTYPE(MergeRow, into, from, log_odds, area_into, area_from, cues);
   py::class_<Merging>(module, "Merging", "Small patches of a mesh, and the merges that make parts of them.")
       .def(py::init([](const AnyArray& points, const std::vector<std::vector<int>>& faces, std::uint64_t seed,
                        int threads) { return std::make_unique<Merging>(points, faces, seed, threads); }),

@@ -15,7 +15,7 @@ pybind11::array turnEvidence(const Detection& found);
 /// \return one row for each of SymmetryFrame::probable.
 pybind11::array frameEvidence(const SymmetryFrame& frame);
 
-/// Makes the types of the rows known, and adds the class Merging to the module.
+/// Adds the class Merging to the module.
 void addEvidence(pybind11::module_& module);
 
 }  // namespace pcl_symmetry::python

@@ -476,7 +476,7 @@ void addShapeFunctions(py::module_& module) {
              py::arg("seed") = 1, py::arg("threads") = 0,
              "(2, K) signatures of unit norm, the same in all poses and sizes (Section 5.2).");
   module.def("transform", &transform, py::arg("points"), py::arg("bins") = std::array<int, 3>{64, 64, 64},
-             py::kw_only(), py::arg("method") = "sampled", py::arg("center") = Eigen::Vector3d(0.0, 0.0, 0.0),
+             py::kw_only(), py::arg("method") = "sampled", py::arg("center") = py::make_tuple(0.0, 0.0, 0.0),
              py::arg("radius") = 0.0, py::arg("sigma") = 0.0, py::arg("seed") = 1, py::arg("threads") = 0,
              "The planar-reflective symmetry transform (Section 4). bins: of theta, phi and r.\n"
              "method: sampled, convolution, rotational or voting.\n"

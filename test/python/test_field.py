@@ -22,13 +22,13 @@ X, Y, Z = np.eye(3)
 
 
 class Field(unittest.TestCase):
-    def tool(self, verb, file, *arguments):
+    def tool(self, verb, file, *arguments, status=0):
         """What the tool prints and its errors."""
         if not (DATA / file).exists():
             self.skipTest(f"{DATA / file} is absent")
         command = [f"{os.environ['TOOLS']}/pcl_symmetry_{verb}", DATA / file, *map(str, arguments)]
         run = subprocess.run(command, capture_output=True, text=True)
-        self.assertEqual(run.returncode, 0, run.stderr)
+        self.assertEqual(run.returncode, status, run.stderr)
         return run.stdout, run.stderr
 
     def symmetries(self, file, *arguments):
@@ -99,6 +99,21 @@ class Clouds(Field):
         for name in ("milk_cartoon_all_small_clorox", "rs1", "table_scene_mug_stereo_textured"):
             found, report = self.symmetries(f"scans/{name}.pcd")
             self.assertEqual((len(found), report["axes"]), (0, []), name)
+
+
+class FewPoints(Field):
+    def test_get_one_sentence(self):
+        random = np.random.default_rng(1)
+        with tempfile.TemporaryDirectory() as folder:
+            names = {n: f"{folder}/{n}.xyz" for n in (5, 20, 50, 4000)}
+            for n, name in names.items():
+                points = random.uniform(-1, 1, (n, 3))
+                np.savetxt(name, points / np.abs(points).max(axis=1, keepdims=True) * (1.0, 0.7, 0.4))
+            _, error = self.tool("planes", names[5], "-quiet", status=1)
+            self.assertRegex(error, "^pcl_symmetry_planes: .*5.xyz: .*: 5 distinct points, at least 20 are needed\n$")
+            for n in (20, 50):
+                printed, error = self.tool("align", names[n], "-target", names[4000], "-quiet", status=1)
+                self.assertEqual((printed, len(error.splitlines())), ("", 1), error)
 
 
 class Terrain(Field):
