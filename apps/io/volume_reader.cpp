@@ -44,11 +44,14 @@ Eigen::Affine3d affineOf(const vtkMatrix4x4& matrix) {
   return result;
 }
 
-/// The text after a key at the start of a line of a header; empty without one.
+/// The text after a key of a header; empty without one.
 std::string headerValue(const std::string& path, const std::string& key) {
   std::ifstream file(path, std::ios::binary);
-  for (std::string line; std::getline(file, line) && !line.empty() && line.size() < 4096;)
-    if (boost::algorithm::istarts_with(line, key)) return line.substr(line.find_first_of(":=", key.size()) + 1);
+  for (std::string line; std::getline(file, line) && !line.empty() && line.size() < 4096;) {
+    const std::size_t sign = std::min(line.size(), line.find_first_of(":="));
+    if (boost::algorithm::iequals(boost::algorithm::trim_copy(line.substr(0, sign)), key))
+      return line.substr(std::min(line.size(), sign + 1));
+  }
   return {};
 }
 

@@ -133,18 +133,20 @@ TEST_F(Volumes, AreDrawnAsSlicesAndTheirSurfaceIsAMesh) {
 TEST_F(Volumes, ThatAreBadGetASentence) {
   const std::string data = bytesOf(body());
   const std::vector<float> zero(body().size()), nan(body().size(), std::numeric_limits<float>::quiet_NaN());
-  const std::array<std::string, 3> files[] = {{"cut.nii", nifti(data).substr(0, 90'000), "cut off"},
-                                              {"cut.nrrd", nrrd(data).substr(0, 90'000), "cut.nrrd"},
-                                              {"cut.mha", metaImage(data).substr(0, 90'000), "cut.mha"},
-                                              {"text.nii.gz", "no volume", "text.nii.gz"},
-                                              {"axes.mha", metaImage(data).replace(27, 1, "-3"), "number of axes"},
-                                              {"type.nii", nifti(data).replace(70, 2, "\x39\x30"), "unknown type"},
-                                              {"text.vti", "<VTKFile", "text.vti"},
-                                              {"bare.nrrd", "NRRD0004\ntype: float\n\n" + data, "type, dimension"},
-                                              {"void.nrrd", "NRRD0004\ntype: float\nsizes:\n\n", "with a value"},
-                                              {"zero.mha", metaImage(bytesOf(zero)), "equal"},
-                                              {"nan.mha", metaImage(bytesOf(nan)), "finite"},
-                                              {"one.mha", metaImage(data, "44 1920 1"), "slices"}};
+  const std::array<std::string, 3> files[] = {
+      {"cut.nii", nifti(data).substr(0, 90'000), "cut off"},
+      {"cut.nrrd", nrrd(data).substr(0, 90'000), "cut.nrrd"},
+      {"cut.mha", metaImage(data).substr(0, 90'000), "cut.mha"},
+      {"text.nii.gz", "no volume", "text.nii.gz"},
+      {"axes.mha", metaImage(data).replace(27, 1, "-3"), "number of axes"},
+      {"type.nii", nifti(data).replace(70, 2, "\x39\x30"), "unknown type"},
+      {"text.vti", "<VTKFile", "text.vti"},
+      {"bare.nrrd", "NRRD0004\ntype: float\n\n" + data, "type, dimension"},
+      {"sizes_8.nrrd", nrrd(data).replace(nrrd("").find("sizes:"), 6, "sizes 8:"), "type, dimension"},
+      {"void.nrrd", "NRRD0004\ntype: float\nsizes:\n\n", "with a value"},
+      {"zero.mha", metaImage(bytesOf(zero)), "equal"},
+      {"nan.mha", metaImage(bytesOf(nan)), "finite"},
+      {"one.mha", metaImage(data, "44 1920 1"), "slices"}};
   for (const auto& [name, content, said] : files) {
     EXPECT_TRUE(fails(folder_.write(name, content) + " -quiet", 1, said));
     EXPECT_EQ(std::count(error_.begin(), error_.end(), '\n'), 1) << error_;
