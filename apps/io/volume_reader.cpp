@@ -69,7 +69,9 @@ void checkFields(const std::string& path, bool is_nrrd) {
     is_whole = !(is_nrrd && file.eof()) && isPrintable(line) &&
                ((is_nrrd && line[0] == '#') ||
                 (sign < 200 && line.size() < 4000 && line.find_first_not_of(":= ", sign) != std::string::npos));
-    if (is_whole && line.rfind("ElementDataFile", 0) == 0) return;
+    if (!is_whole || line.rfind("ElementDataFile", 0) != 0) continue;
+    if (line.find('%') == std::string::npos) return;
+    throw InputError(path + ": cannot be read, its data must be in one file");
   }
   if (!is_whole) throw InputError(path + ": cannot be read, a line of its header is no field with a value");
 }
@@ -200,10 +202,11 @@ Image imageOf(const std::string& path, const VtkMessages& messages) {
   } else if (ends(".nrrd") || ends(".nhdr")) {
     checkFields(path, true);
     const std::string sizes = headerValue(path, "sizes");
+    const std::size_t num_sizes = numbersIn(sizes).size();
     const bool are_whole = boost::algorithm::all(sizes, boost::is_digit() || boost::is_space());
-    if (!are_whole || numbersIn(headerValue(path, "dimension")) != std::vector<double>{1.0 * numbersIn(sizes).size()} ||
-        headerValue(path, "type").empty() || headerValue(path, "encoding").empty())
-      throw InputError(path + ": cannot be read, its header must have type, dimension, sizes and encoding");
+    if (!are_whole || numbersIn(headerValue(path, "dimension")) != std::vector<double>{1.0 * num_sizes} ||
+        num_sizes < 3 || num_sizes > 4 || headerValue(path, "type").empty() || headerValue(path, "encoding").empty())
+      throw InputError(path + ": cannot be read, its header must have type, dimension 3 or 4, sizes and encoding");
     vtkNew<vtkNrrdReader> reader;
     image.data = updated(*reader, path, messages);
     image.T_input_index = placedBy(*image.data, directionIn(path, "space directions"));
