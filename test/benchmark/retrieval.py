@@ -3,10 +3,11 @@
 
 retrieval.py PSB --classes train.cla --json retrieval.json --figure recall.png
 
-Each model asks for the others of its class (Princeton Shape Benchmark). Descriptors of the paper stand about the center
-of mass, in a ball of twice the mean distance of the points from it:
+Each model asks for the others of its class (Princeton Shape Benchmark). Descriptors of the paper are those of
+pcl_symmetry.descriptors(), about the center of mass, in a ball of twice the mean distance of the points from it:
 
   PRST, PRSD   sqrt(D) of 32 x 32 x 32 planes, and of the 32 x 32 through the center; L2, weighted by sqrt(sin theta)
+  by maximum   the greatest difference, as Kazhdan et al. (2004) compare PRSD
   GEDT         exp(-distance^2 / sigma^2) at 32 x 32 x 32 places; L2
   equation 1   sqrt((1 + D) / 2) in place of sqrt(D)
   x            the product of two distances
@@ -75,10 +76,8 @@ def describe(model, arguments):
     axes = {"files": (cloud, np.eye(3)), "symmetry": (turned, frame), "principal": (turned, right_handed(principal))}
     forms = {}
     for name, (points, columns) in axes.items():
-        points = in_ball((points - points.mean(0)) @ columns, 2.0)
-        forms[f"prst {name}"] = prst(points, (32, 32, 32))
-        forms[f"prsd {name}"] = prst(points, (32, 32, 1))
-        forms[f"gedt {name}"] = gedt(points, 32)
+        of_paper = pcl_symmetry.descriptors((points - points.mean(0)) @ columns, input_axes=True, threads=1)
+        forms.update({f"{form} {name}": values for form, values in zip(("prst", "prsd", "gedt"), of_paper)})
     points = turned @ right_handed(frame)  # about the point half-way between center of mass and middle of the extent
     points = points - 0.5 * (points.mean(0) + 0.5 * (points.min(0) + points.max(0)))
     spread = np.sqrt((points**2).mean(0))
@@ -131,7 +130,7 @@ def rotated_planes(maps, order, signs):
     return np.where(opposite[..., None], values[..., ::-1], values)
 
 
-# Distances of N models, (N, N)
+# Distances of N models, (N, N): pcl_symmetry.descriptor_distance() of all pairs at once
 
 
 def l2(rows):
@@ -184,7 +183,8 @@ def published(load, axes):
     """{row: distances} of the paper's descriptors in one kind of axes."""
     roots, through_center, f = load(f"prst {axes}"), load(f"prsd {axes}"), load(f"gedt {axes}")
     weights = plane_weights(roots.shape[1:])
-    rows = {"PRSD": l2(weights * through_center), "PRST": l2(weights * roots), "GEDT": l2(f)}
+    rows = {"PRSD by maximum": np.stack([np.abs(through_center - one).max((1, 2)) for one in through_center])}
+    rows |= {"PRSD": l2(weights[..., 0] * through_center), "PRST": l2(weights * roots), "GEDT": l2(f)}
     rows["PRST by equation 1"] = l2(weights * np.sqrt((1 + roots**2) / 2))
     rows["PRST x GEDT"] = rows["PRST"] * rows["GEDT"]
     rows["PRST by equation 1 x GEDT"] = rows["PRST by equation 1"] * rows["GEDT"]
