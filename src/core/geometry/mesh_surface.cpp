@@ -88,25 +88,30 @@ struct MeshSurface::Parts {
 
   /// Where a sample lands, and from the closest point to there.
   struct Match {
-    Eigen::Vector3d image, apart, direction;
+    Eigen::Vector3d image = Eigen::Vector3d::Zero(), apart = Eigen::Vector3d::Constant(1e3), direction;
   };
+  using Matches = std::vector<Match>;
 
-  static std::vector<Match> matches(const Surface& surface, Eigen::Index size, const Eigen::Matrix3d& linear,
-                                    const Eigen::Vector3d& center) {
-    std::vector<Match> found;
-    for (Eigen::Index i = 0; i < size; ++i) {
+  /// \param[in,out] matches as many as are wanted: their closest points by another motion are near to those by this.
+  static void match(const Surface& surface, const Eigen::Matrix3d& linear, const Eigen::Vector3d& center,
+                    Matches& matches) {
+    constexpr double kSlack = 1e-4;  // radii, above rounding: the closest point before is mostly as far at least
+    for (std::size_t i = 0; i < matches.size(); ++i) {
       const Eigen::Vector3d x = center + linear * (surface.samples.col(i).cast<double>() - center);
-      const ClosestOnTriangles closest = surface.tree->closestTo(x.cast<float>());
-      found.push_back({x, x - closest.point.cast<double>(), surface.directions.col(closest.triangle).cast<double>()});
+      const double guess = (x - matches[i].image + matches[i].apart).norm() + kSlack;
+      const ClosestOnTriangles closest = surface.tree->closestTo(x.cast<float>(), static_cast<float>(guess * guess));
+      matches[i] = {x, x - closest.point.cast<double>(), surface.directions.col(closest.triangle).cast<double>()};
     }
-    return found;
   }
 
   /// \param least_width of the weights.
-  void addTo(MotionSums& sums, const Surface& surface, Eigen::Index size, const MotionsAbout& motions,
-             double least_width) const {
-    for (const Eigen::Matrix3d& linear : motions.linear) {
-      const std::vector<Match> found = matches(surface, size, linear, motions.center);
+  /// \param[in,out] matches of each motion.
+  void addTo(MotionSums& sums, const Surface& surface, const MotionsAbout& motions, double least_width,
+             std::vector<Matches>& matches) const {
+    for (std::size_t k = 0; k < matches.size(); ++k) {
+      const Eigen::Matrix3d& linear = motions.linear[k];
+      Matches& found = matches[k];
+      match(surface, linear, motions.center, found);
       std::vector<double> distances;
       for (const Match& match : found) distances.push_back(match.apart.norm());
       const double sigma = std::max(least_width, kMesh.widths * median(distances));
@@ -192,10 +197,12 @@ MeshSurface::Placement MeshSurface::fitted(const MotionsAbout& motions) const {
   Eigen::Matrix3d rotation = Eigen::Matrix3d::Identity();
   Placement best{rotation, motions.center};
   double least = std::numeric_limits<double>::infinity(), width = kMesh.first_width;
+  std::vector<Parts::Matches> on_faces(motions.linear.size(), Parts::Matches(kMesh.fitted_samples)),
+      on_borders(motions.linear.size(), Parts::Matches(kMesh.border_samples));
   for (int i = 0; i < kMesh.iterations; ++i) {
     MotionSums sums;
-    parts_->addTo(sums, parts_->faces, kMesh.fitted_samples, moving, width);
-    if (parts_->borders.tree) parts_->addTo(sums, parts_->borders, kMesh.border_samples, moving, width);
+    parts_->addTo(sums, parts_->faces, moving, width, on_faces);
+    if (parts_->borders.tree) parts_->addTo(sums, parts_->borders, moving, width, on_borders);
     const bool is_near =
         Eigen::AngleAxisd(rotation).angle() < kMesh.farthest && (moving.center - start).norm() < kMesh.farthest;
     if (!is_near) break;
@@ -229,8 +236,9 @@ MeshShares MeshSurface::shares(const MotionsAbout& motions, double tolerance) co
   for (const Eigen::Matrix3d& linear : motions.linear) {
     std::vector<double> distances;
     double sq_sum = 0.0, within = 0.0;
-    for (const Parts::Match& match : Parts::matches(parts_->faces, kMesh.samples, linear,
-                                                    (motions.center - parts_->ball.center) / parts_->ball.radius)) {
+    Parts::Matches matches(kMesh.samples);
+    Parts::match(parts_->faces, linear, (motions.center - parts_->ball.center) / parts_->ball.radius, matches);
+    for (const Parts::Match& match : matches) {
       distances.push_back(parts_->ball.radius * match.apart.norm());
       if (distances.back() > tolerance) continue;
       within += 1.0;

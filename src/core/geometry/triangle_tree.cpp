@@ -212,8 +212,9 @@ TriangleTree::Vectors TriangleTree::closestPoints(const Leaf& leaf, const Vector
   return start;
 }
 
-ClosestOnTriangles TriangleTree::closestTo(const Eigen::Vector3f& x) const {
+ClosestOnTriangles TriangleTree::closestTo(const Eigen::Vector3f& x, float sq_guess) const {
   ClosestOnTriangles found;
+  found.sq_distance = sq_guess;
   if (nodes_.empty()) return found;
   const Vectors all_x = same(x.data());
   struct Open {
@@ -251,7 +252,7 @@ ClosestOnTriangles TriangleTree::closestTo(const Eigen::Vector3f& x) const {
       stack[position] = {sq_distances[k], node.child[k]};
     }
   }
-  return found;
+  return found.triangle < 0 && std::isfinite(sq_guess) ? closestTo(x) : found;
 }
 
 bool TriangleTree::blocks(const Eigen::Vector3f& from, const Eigen::Vector3f& to) const {

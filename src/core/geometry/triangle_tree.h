@@ -40,8 +40,9 @@ public:
   /// \return whether a triangle lies between two points.
   bool blocks(const Eigen::Vector3f& from, const Eigen::Vector3f& to) const;
 
+  /// \param sq_guess more than the squared distance, if it is right; the closer to it, the faster.
   /// \return the exact closest point of the triangles, also of those without area.
-  ClosestOnTriangles closestTo(const Eigen::Vector3f& x) const;
+  ClosestOnTriangles closestTo(const Eigen::Vector3f& x, float sq_guess = std::numeric_limits<float>::infinity()) const;
 
 private:
   static constexpr int kWidth = 4;      // floats in the smallest vector register of current processors
