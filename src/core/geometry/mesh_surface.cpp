@@ -26,6 +26,7 @@ struct MeshRules {
   int fitted_samples = 2000;   // that motions are fitted to
   int border_samples = 1000;   // of the open borders
   int iterations = 40;         // at most; exact surfaces take three to six
+  int most_worse = 3;          // iterations after the best one, at the narrowest weights: the fit does not return to it
   double settled = 1e-9;       // length of a step that ends the fit: below what float coordinates resolve
   double longest_step = 0.05;  // radians and radii: samples of the other side are not reached in one step
   double widths = 2.5;         // medians of the distances, the width of the weights: most samples of a symmetry agree
@@ -199,6 +200,7 @@ MeshSurface::Placement MeshSurface::fitted(const MotionsAbout& motions) const {
   double least = std::numeric_limits<double>::infinity(), width = kMesh.first_width;
   std::vector<Parts::Matches> on_faces(motions.linear.size(), Parts::Matches(kMesh.fitted_samples)),
       on_borders(motions.linear.size(), Parts::Matches(kMesh.border_samples));
+  int num_worse = 0;  // iterations since the best
   for (int i = 0; i < kMesh.iterations; ++i) {
     MotionSums sums;
     parts_->addTo(sums, parts_->faces, moving, width, on_faces);
@@ -210,6 +212,9 @@ MeshSurface::Placement MeshSurface::fitted(const MotionsAbout& motions) const {
     if (sums.cost <= least * (1.0 + kMesh.least_width) + kMesh.exact_cost) {
       best = {rotation, ball.center + ball.radius * moving.center};
       least = std::min(least, sums.cost);
+      num_worse = 0;
+    } else if (++num_worse >= kMesh.most_worse && width == kMesh.least_width) {
+      break;
     }
     const Vector6d step = sums.step();
     const double angle = step.head<3>().norm();
