@@ -64,7 +64,7 @@ public:
 
 private:
   struct Parts;
-  std::shared_ptr<const Parts> parts_;
+  std::shared_ptr<Parts> parts_;
 };
 
 }  // namespace pcl_symmetry

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <mutex>
 #include <utility>
 
 #include "core/base/check.h"
@@ -85,7 +86,17 @@ struct MeshSurface::Parts {
   };
 
   BoundingBall ball;
-  Surface faces, borders;  // about the center of the ball, in radii; borders may have no tree
+  Points corners;  // three of each triangle, about the center of the ball, in radii; as the surfaces
+  std::vector<Eigen::Vector3i> triangles;
+  Surface faces, borders;  // borders may have no tree
+  std::once_flag has_trees;
+
+  /// Plants the trees when they are first used: many meshes have no symmetry to refine.
+  const Parts& withTrees() {
+    std::call_once(has_trees, [this] { plantTrees(); });
+    return *this;
+  }
+  void plantTrees();
 
   /// Where a sample lands, and from the closest point to there.
   struct Match {
@@ -142,57 +153,57 @@ struct MeshSurface::Parts {
   }
 };
 
-MeshSurface::MeshSurface(const PointsRef& vertices, const std::vector<Eigen::Vector3i>& triangles) {
+MeshSurface::MeshSurface(const PointsRef& vertices, const std::vector<Eigen::Vector3i>& triangles)
+    : parts_(std::make_shared<Parts>()) {
   std::vector<Eigen::Vector3i> faces = finiteTriangles(vertices, triangles);
   Points corners(3, 3 * faces.size());
   for (int t = 0; t < static_cast<int>(faces.size()); ++t) {
     for (int k = 0; k < 3; ++k) corners.col(3 * t + k) = vertices.col(faces[t][k]);
     faces[t] << 3 * t, 3 * t + 1, 3 * t + 2;
   }
-  const auto parts = std::make_shared<Parts>();
-  parts->ball = boundingBall(corners);
-  check(parts->ball.radius > 0.0, "extent of the mesh", parts->ball.radius, "> 0");
-  corners = normalizePoints(corners, parts->ball.center, parts->ball.radius);
+  parts_->ball = boundingBall(corners);
+  check(parts_->ball.radius > 0.0, "extent of the mesh", parts_->ball.radius, "> 0");
+  parts_->corners = normalizePoints(corners, parts_->ball.center, parts_->ball.radius);
+  parts_->triangles = std::move(faces);
+  // Every second sample is fitted to first, spread over the surface.
+  const Points samples = sampleTriangles(parts_->corners, parts_->triangles, kMesh.samples);
+  parts_->faces.samples = samples;
+  for (int i = 0; i < kMesh.samples; ++i)
+    parts_->faces.samples.col(i / 2 + (i % 2) * kMesh.fitted_samples) = samples.col(i);
+}
 
-  parts->faces.tree = std::make_unique<TriangleTree>(corners, faces);
-  parts->faces.directions.resize(3, faces.size());
-  for (Eigen::Index t = 0; t < parts->faces.directions.cols(); ++t) {
+void MeshSurface::Parts::plantTrees() {
+  faces.tree = std::make_unique<TriangleTree>(corners, triangles);
+  faces.directions.resize(3, triangles.size());
+  for (Eigen::Index t = 0; t < faces.directions.cols(); ++t) {
     const Eigen::Vector3f u = corners.col(3 * t + 1) - corners.col(3 * t),
                           v = corners.col(3 * t + 2) - corners.col(3 * t);
-    parts->faces.directions.col(t) = u.cross(v).stableNormalized();
+    faces.directions.col(t) = u.cross(v).stableNormalized();
   }
-  // Every second sample is fitted to first, spread over the surface.
-  const Points samples = sampleTriangles(corners, faces, kMesh.samples);
-  parts->faces.samples = samples;
-  for (int i = 0; i < kMesh.samples; ++i)
-    parts->faces.samples.col(i / 2 + (i % 2) * kMesh.fitted_samples) = samples.col(i);
-
   std::vector<Eigen::Vector3i> edges;
   std::vector<double> length_up_to{0.0};
-  for (const auto& [a, b] : openEdges(corners, faces)) {
+  for (const auto& [a, b] : openEdges(corners, triangles)) {
     edges.emplace_back(a, b, b);
     length_up_to.push_back(length_up_to.back() + (corners.col(b) - corners.col(a)).norm());
   }
-  if (length_up_to.back() > 0.0) {
-    Parts::Surface& borders = parts->borders;
-    borders.tree = std::make_unique<TriangleTree>(corners, edges);
-    borders.directions.resize(3, edges.size());
-    for (std::size_t e = 0; e < edges.size(); ++e)
-      borders.directions.col(e) = (corners.col(edges[e][1]) - corners.col(edges[e][0])).normalized();
-    borders.samples.resize(3, kMesh.border_samples);
-    std::size_t e = 0;
-    for (int i = 0; i < kMesh.border_samples; ++i) {
-      const double target = (i + 0.5) * length_up_to.back() / kMesh.border_samples;
-      while (e + 1 < edges.size() && length_up_to[e + 1] < target) ++e;
-      borders.samples.col(i) =
-          corners.col(edges[e][0]) + static_cast<float>(target - length_up_to[e]) * borders.directions.col(e);
-    }
+  if (!(length_up_to.back() > 0.0)) return;
+  borders.tree = std::make_unique<TriangleTree>(corners, edges);
+  borders.directions.resize(3, edges.size());
+  for (std::size_t e = 0; e < edges.size(); ++e)
+    borders.directions.col(e) = (corners.col(edges[e][1]) - corners.col(edges[e][0])).normalized();
+  borders.samples.resize(3, kMesh.border_samples);
+  std::size_t e = 0;
+  for (int i = 0; i < kMesh.border_samples; ++i) {
+    const double target = (i + 0.5) * length_up_to.back() / kMesh.border_samples;
+    while (e + 1 < edges.size() && length_up_to[e + 1] < target) ++e;
+    borders.samples.col(i) =
+        corners.col(edges[e][0]) + static_cast<float>(target - length_up_to[e]) * borders.directions.col(e);
   }
-  parts_ = parts;
 }
 
 MeshSurface::Placement MeshSurface::fitted(const MotionsAbout& motions) const {
-  const BoundingBall& ball = parts_->ball;
+  const Parts& parts = parts_->withTrees();
+  const BoundingBall& ball = parts.ball;
   MotionsAbout moving{motions.linear, (motions.center - ball.center) / ball.radius};
   const Eigen::Vector3d start = moving.center;
   Eigen::Matrix3d rotation = Eigen::Matrix3d::Identity();
@@ -203,8 +214,8 @@ MeshSurface::Placement MeshSurface::fitted(const MotionsAbout& motions) const {
   int num_worse = 0;  // iterations since the best
   for (int i = 0; i < kMesh.iterations; ++i) {
     MotionSums sums;
-    parts_->addTo(sums, parts_->faces, moving, width, on_faces);
-    if (parts_->borders.tree) parts_->addTo(sums, parts_->borders, moving, width, on_borders);
+    parts.addTo(sums, parts.faces, moving, width, on_faces);
+    if (parts.borders.tree) parts.addTo(sums, parts.borders, moving, width, on_borders);
     const bool is_near =
         Eigen::AngleAxisd(rotation).angle() < kMesh.farthest && (moving.center - start).norm() < kMesh.farthest;
     if (!is_near) break;
@@ -237,14 +248,15 @@ ReflectionPlane MeshSurface::fitted(const ReflectionPlane& plane) const {
 }
 
 MeshShares MeshSurface::shares(const MotionsAbout& motions, double tolerance) const {
+  const Parts& parts = parts_->withTrees();
   MeshShares worst;
   for (const Eigen::Matrix3d& linear : motions.linear) {
     std::vector<double> distances;
     double sq_sum = 0.0, within = 0.0;
     Parts::Matches matches(kMesh.samples);
-    Parts::match(parts_->faces, linear, (motions.center - parts_->ball.center) / parts_->ball.radius, matches);
+    Parts::match(parts.faces, linear, (motions.center - parts.ball.center) / parts.ball.radius, matches);
     for (const Parts::Match& match : matches) {
-      distances.push_back(parts_->ball.radius * match.apart.norm());
+      distances.push_back(parts.ball.radius * match.apart.norm());
       if (distances.back() > tolerance) continue;
       within += 1.0;
       sq_sum += distances.back() * distances.back();
