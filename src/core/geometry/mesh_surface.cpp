@@ -107,10 +107,10 @@ struct MeshSurface::Parts {
   /// \param[in,out] matches as many as are wanted: their closest points by another motion are near to those by this.
   static void match(const Surface& surface, const Eigen::Matrix3d& linear, const Eigen::Vector3d& center,
                     Matches& matches) {
-    constexpr double kSlack = 1e-4;  // radii, above rounding: the closest point before is mostly as far at least
+    const double slack = 1e-4;  // radii, above rounding: the closest point before is mostly as far at least
     for (std::size_t i = 0; i < matches.size(); ++i) {
       const Eigen::Vector3d x = center + linear * (surface.samples.col(i).cast<double>() - center);
-      const double guess = (x - matches[i].image + matches[i].apart).norm() + kSlack;
+      const double guess = (x - matches[i].image + matches[i].apart).norm() + slack;
       const ClosestOnTriangles closest = surface.tree->closestTo(x.cast<float>(), static_cast<float>(guess * guess));
       matches[i] = {x, x - closest.point.cast<double>(), surface.directions.col(closest.triangle).cast<double>()};
     }
