@@ -91,12 +91,8 @@ struct MeshSurface::Parts {
   Surface faces, borders;  // borders may have no tree
   std::once_flag has_trees;
 
-  /// Plants the trees when they are first used: many meshes have no symmetry to refine.
-  const Parts& withTrees() {
-    std::call_once(has_trees, [this] { plantTrees(); });
-    return *this;
-  }
-  void plantTrees();
+  /// Makes the trees when they are first used: many meshes have no symmetry to refine.
+  const Parts& withTrees();
 
   /// Where a sample lands, and from the closest point to there.
   struct Match {
@@ -172,33 +168,36 @@ MeshSurface::MeshSurface(const PointsRef& vertices, const std::vector<Eigen::Vec
     parts_->faces.samples.col(i / 2 + (i % 2) * kMesh.fitted_samples) = samples.col(i);
 }
 
-void MeshSurface::Parts::plantTrees() {
-  faces.tree = std::make_unique<TriangleTree>(corners, triangles);
-  faces.directions.resize(3, triangles.size());
-  for (Eigen::Index t = 0; t < faces.directions.cols(); ++t) {
-    const Eigen::Vector3f u = corners.col(3 * t + 1) - corners.col(3 * t),
-                          v = corners.col(3 * t + 2) - corners.col(3 * t);
-    faces.directions.col(t) = u.cross(v).stableNormalized();
-  }
-  std::vector<Eigen::Vector3i> edges;
-  std::vector<double> length_up_to{0.0};
-  for (const auto& [a, b] : openEdges(corners, triangles)) {
-    edges.emplace_back(a, b, b);
-    length_up_to.push_back(length_up_to.back() + (corners.col(b) - corners.col(a)).norm());
-  }
-  if (!(length_up_to.back() > 0.0)) return;
-  borders.tree = std::make_unique<TriangleTree>(corners, edges);
-  borders.directions.resize(3, edges.size());
-  for (std::size_t e = 0; e < edges.size(); ++e)
-    borders.directions.col(e) = (corners.col(edges[e][1]) - corners.col(edges[e][0])).normalized();
-  borders.samples.resize(3, kMesh.border_samples);
-  std::size_t e = 0;
-  for (int i = 0; i < kMesh.border_samples; ++i) {
-    const double target = (i + 0.5) * length_up_to.back() / kMesh.border_samples;
-    while (e + 1 < edges.size() && length_up_to[e + 1] < target) ++e;
-    borders.samples.col(i) =
-        corners.col(edges[e][0]) + static_cast<float>(target - length_up_to[e]) * borders.directions.col(e);
-  }
+const MeshSurface::Parts& MeshSurface::Parts::withTrees() {
+  std::call_once(has_trees, [this] {
+    faces.tree = std::make_unique<TriangleTree>(corners, triangles);
+    faces.directions.resize(3, triangles.size());
+    for (Eigen::Index t = 0; t < faces.directions.cols(); ++t) {
+      const Eigen::Vector3f u = corners.col(3 * t + 1) - corners.col(3 * t),
+                            v = corners.col(3 * t + 2) - corners.col(3 * t);
+      faces.directions.col(t) = u.cross(v).stableNormalized();
+    }
+    std::vector<Eigen::Vector3i> edges;
+    std::vector<double> length_up_to{0.0};
+    for (const auto& [a, b] : openEdges(corners, triangles)) {
+      edges.emplace_back(a, b, b);
+      length_up_to.push_back(length_up_to.back() + (corners.col(b) - corners.col(a)).norm());
+    }
+    if (!(length_up_to.back() > 0.0)) return;
+    borders.tree = std::make_unique<TriangleTree>(corners, edges);
+    borders.directions.resize(3, edges.size());
+    for (std::size_t e = 0; e < edges.size(); ++e)
+      borders.directions.col(e) = (corners.col(edges[e][1]) - corners.col(edges[e][0])).normalized();
+    borders.samples.resize(3, kMesh.border_samples);
+    std::size_t e = 0;
+    for (int i = 0; i < kMesh.border_samples; ++i) {
+      const double target = (i + 0.5) * length_up_to.back() / kMesh.border_samples;
+      while (e + 1 < edges.size() && length_up_to[e + 1] < target) ++e;
+      borders.samples.col(i) =
+          corners.col(edges[e][0]) + static_cast<float>(target - length_up_to[e]) * borders.directions.col(e);
+    }
+  });
+  return *this;
 }
 
 MeshSurface::Placement MeshSurface::fitted(const MotionsAbout& motions) const {

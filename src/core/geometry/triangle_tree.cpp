@@ -42,26 +42,20 @@ struct TriangleTree::Builder {
   }
 
   /// \return the bounds of the child in a lane of a node.
-  Box addChild(int node, int lane, int begin, int end) {
-    Box box;
-    int child = 0;
-    if (end - begin > kWidth) {
-      child = static_cast<int>(tree.nodes_.size());
-      box = addNode(begin, end);
-    } else {
-      child = ~static_cast<int>(tree.leaves_.size());
-      box = addLeaf(begin, end);
-    }
+  Eigen::AlignedBox3f addChild(int node, int lane, int begin, int end) {
+    const bool is_leaf = end - begin <= kWidth;
+    const int child = static_cast<int>(is_leaf ? ~tree.leaves_.size() : tree.nodes_.size());
+    const Eigen::AlignedBox3f box = is_leaf ? addLeaf(begin, end) : addNode(begin, end);
     Node& parent = tree.nodes_[node];
     for (int axis = 0; axis < 3; ++axis) {
-      parent.box[0][axis][lane] = box.min[axis];
-      parent.box[1][axis][lane] = box.max[axis];
+      parent.box[0][axis][lane] = box.min()[axis];
+      parent.box[1][axis][lane] = box.max()[axis];
     }
     parent.child[lane] = child;
     return box;
   }
 
-  Box addNode(int begin, int end) {
+  Eigen::AlignedBox3f addNode(int begin, int end) {
     const int node = static_cast<int>(tree.nodes_.size());
     tree.nodes_.emplace_back();
     std::vector<int> bounds{begin, end};
@@ -71,15 +65,12 @@ struct TriangleTree::Builder {
     }
     const int num_children = static_cast<int>(bounds.size()) - 1;
     tree.nodes_[node].num_children = num_children;
-    Box all = addChild(node, 0, bounds[0], bounds[1]);
-    for (int lane = 1; lane < num_children; ++lane) {
-      const Box box = addChild(node, lane, bounds[lane], bounds[lane + 1]);
-      all = {all.min.min(box.min), all.max.max(box.max)};
-    }
+    Eigen::AlignedBox3f all;
+    for (int lane = 0; lane < num_children; ++lane) all.extend(addChild(node, lane, bounds[lane], bounds[lane + 1]));
     return all;
   }
 
-  Box addLeaf(int begin, int end) {
+  Eigen::AlignedBox3f addLeaf(int begin, int end) {
     Leaf leaf{};
     Eigen::AlignedBox3f box;
     for (int i = begin; i < end; ++i) {
@@ -96,7 +87,7 @@ struct TriangleTree::Builder {
       for (int k = 0; k < 3; ++k) box.extend(corners.col(t[k]));
     }
     tree.leaves_.push_back(leaf);
-    return {box.min(), box.max()};
+    return box;
   }
 };
 
@@ -106,6 +97,28 @@ TriangleTree::TriangleTree(const Points& corners, const std::vector<Eigen::Vecto
   nodes_.reserve(triangles.size() / 4);
   Builder(*this, corners, triangles).addNode(0, static_cast<int>(triangles.size()));
 }
+
+namespace {
+
+/// What a search has still to open, last first.
+struct OpenBoxes {
+  static constexpr int kMost = 64;  // 2^31 triangles have 16 levels; each leaves at most three children behind
+  struct Box {
+    int child;
+    float distance;
+  } boxes[kMost];
+  int size = 0;
+
+  /// \param behind number of boxes that are opened after this one, near or not.
+  void add(int child, float distance, int behind) {
+    int position = size++;
+    for (; position > behind && boxes[position - 1].distance < distance; --position)
+      boxes[position] = boxes[position - 1];
+    boxes[position] = {child, distance};
+  }
+};
+
+}  // namespace
 
 /// Where a ray enters and leaves the boxes of the children. Comparisons with NaN, where a ray runs within a side of a
 /// box, leave both as they are.
@@ -125,7 +138,7 @@ void TriangleTree::distancesTo(const Node& node, const Ray& ray, float farthest,
 /// misses the triangle.
 TriangleTree::Lanes TriangleTree::distancesTo(const Leaf& leaf, const Ray& ray) {
   constexpr float kMiss = std::numeric_limits<float>::infinity();  // farther than every hit
-  const Vectors direction = same(ray.direction), from_a = minus(same(ray.origin), leaf.a);
+  const Vectors direction = same(ray.direction.data()), from_a = minus(same(ray.origin.data()), leaf.a);
   const Vectors p = cross(direction, leaf.v), q = cross(from_a, leaf.u);
   const Lanes determinant = dot(leaf.u, p);
   const Lanes x = dot(from_a, p) / determinant, y = dot(direction, q) / determinant;
@@ -138,24 +151,13 @@ RayHit TriangleTree::search(const Eigen::Vector3f& origin, const Eigen::Vector3f
   RayHit hit;
   hit.distance = farthest;
   if (nodes_.empty()) return hit;
-  Ray ray;
-  ray.nearest = nearest;
-  for (int axis = 0; axis < 3; ++axis) {
-    ray.origin[axis] = origin[axis];
-    ray.direction[axis] = direction[axis];
-    ray.inverse[axis] = 1.0f / direction[axis];
-    ray.side[axis] = ray.inverse[axis] < 0.0f ? 1 : 0;
-  }
-  struct Open {
-    float near;
-    int child;
-  };
-  Open stack[kMostOpen];
-  int depth = 0;
-  stack[depth++] = {nearest, 0};
-  while (depth > 0) {
-    const Open next = stack[--depth];
-    if (!(next.near <= hit.distance)) continue;
+  Ray ray{origin, direction, direction.cwiseInverse(), {}, nearest};
+  for (int axis = 0; axis < 3; ++axis) ray.side[axis] = ray.inverse[axis] < 0.0f ? 1 : 0;
+  OpenBoxes open;
+  open.add(0, nearest, 0);
+  while (open.size > 0) {
+    const OpenBoxes::Box next = open.boxes[--open.size];
+    if (!(next.distance <= hit.distance)) continue;
     if (next.child < 0) {
       const Leaf& leaf = leaves_[~next.child];
       const Lanes distances = distancesTo(leaf, ray);
@@ -167,21 +169,11 @@ RayHit TriangleTree::search(const Eigen::Vector3f& origin, const Eigen::Vector3f
     const Node& node = nodes_[next.child];
     Lanes near, far;
     distancesTo(node, ray, hit.distance, near, far);
-    const int behind = depth;
-    for (int k = 0; k < node.num_children; ++k) {
-      if (!(near[k] <= far[k])) continue;
-      int position = depth++;
-      for (; !any && position > behind && stack[position - 1].near < near[k]; --position)
-        stack[position] = stack[position - 1];
-      stack[position] = {near[k], node.child[k]};
-    }
+    const int behind = open.size;
+    for (int k = 0; k < node.num_children; ++k)
+      if (near[k] <= far[k]) open.add(node.child[k], near[k], any ? open.size : behind);
   }
   return hit;
-}
-
-RayHit TriangleTree::closest(const Eigen::Vector3f& origin, const Eigen::Vector3f& direction, float nearest,
-                             float farthest) const {
-  return search(origin, direction, nearest, farthest, false);
 }
 
 /// The points a + start + share * direction of triangles that are closest to a point (Ericson, Real-Time Collision
@@ -217,16 +209,11 @@ ClosestOnTriangles TriangleTree::closestTo(const Eigen::Vector3f& x, float sq_gu
   found.sq_distance = sq_guess;
   if (nodes_.empty()) return found;
   const Vectors all_x = same(x.data());
-  struct Open {
-    float sq_distance;
-    int child;
-  };
-  Open stack[kMostOpen];
-  int depth = 0;
-  stack[depth++] = {0.0f, 0};
-  while (depth > 0) {
-    const Open next = stack[--depth];
-    if (!(next.sq_distance < found.sq_distance)) continue;
+  OpenBoxes open;
+  open.add(0, 0.0f, 0);
+  while (open.size > 0) {
+    const OpenBoxes::Box next = open.boxes[--open.size];
+    if (!(next.distance < found.sq_distance)) continue;
     if (next.child < 0) {
       const Leaf& leaf = leaves_[~next.child];
       const Vectors points = closestPoints(leaf, all_x), off = minus(all_x, points);
@@ -243,20 +230,11 @@ ClosestOnTriangles TriangleTree::closestTo(const Eigen::Vector3f& x, float sq_gu
       const Lanes beyond = below > above ? below : above, out = beyond > 0.0f ? beyond : Lanes{};
       sq_distances += out * out;
     }
-    const int behind = depth;
-    for (int k = 0; k < node.num_children; ++k) {
-      if (!(sq_distances[k] < found.sq_distance)) continue;
-      int position = depth++;
-      for (; position > behind && stack[position - 1].sq_distance < sq_distances[k]; --position)
-        stack[position] = stack[position - 1];
-      stack[position] = {sq_distances[k], node.child[k]};
-    }
+    const int behind = open.size;
+    for (int k = 0; k < node.num_children; ++k)
+      if (sq_distances[k] < found.sq_distance) open.add(node.child[k], sq_distances[k], behind);
   }
   return found.triangle < 0 && std::isfinite(sq_guess) ? closestTo(x) : found;
-}
-
-bool TriangleTree::blocks(const Eigen::Vector3f& from, const Eigen::Vector3f& to) const {
-  return search(from, to - from, 0.0f, 1.0f, true).triangle >= 0;
 }
 
 }  // namespace pcl_symmetry

@@ -35,18 +35,21 @@ public:
   /// \param direction not zero; its length is the unit of the distances.
   /// \return the closest triangle at a distance in (nearest, farthest).
   RayHit closest(const Eigen::Vector3f& origin, const Eigen::Vector3f& direction, float nearest = 0.0f,
-                 float farthest = std::numeric_limits<float>::infinity()) const;
+                 float farthest = std::numeric_limits<float>::infinity()) const {
+    return search(origin, direction, nearest, farthest, false);
+  }
 
   /// \return whether a triangle lies between two points.
-  bool blocks(const Eigen::Vector3f& from, const Eigen::Vector3f& to) const;
+  bool blocks(const Eigen::Vector3f& from, const Eigen::Vector3f& to) const {
+    return search(from, to - from, 0.0f, 1.0f, true).triangle >= 0;
+  }
 
   /// \param sq_guess more than the squared distance, if it is right; the closer to it, the faster.
   /// \return the exact closest point of the triangles, also of those without area.
   ClosestOnTriangles closestTo(const Eigen::Vector3f& x, float sq_guess = std::numeric_limits<float>::infinity()) const;
 
 private:
-  static constexpr int kWidth = 4;      // floats in the smallest vector register of current processors
-  static constexpr int kMostOpen = 64;  // 2^31 triangles have 16 levels; each leaves at most three children behind
+  static constexpr int kWidth = 4;  // floats in the smallest vector register of current processors
   using Lanes = float __attribute__((vector_size(kWidth * sizeof(float))));
   using Vectors = std::array<Lanes, 3>;
 
@@ -61,11 +64,8 @@ private:
     int triangle[kWidth];
     int size = 0;
   };
-  struct Box {
-    Eigen::Array3f min, max;
-  };
   struct Ray {
-    float origin[3], direction[3], inverse[3];
+    Eigen::Vector3f origin, direction, inverse;
     int side[3];  // of a box, by axis, that the ray enters through: 0 the lower one, 1 the upper one
     float nearest;
   };
