@@ -24,6 +24,7 @@
 #include <cstdlib>
 #include <fstream>
 #include <iostream>
+#include <map>
 #include <new>
 #include <sstream>
 
@@ -44,36 +45,39 @@ Eigen::Affine3d affineOf(const vtkMatrix4x4& matrix) {
   return result;
 }
 
-/// The text after a key of a header; empty without one.
-std::string headerValue(const std::string& path, const std::string& key) {
-  std::ifstream file(path, std::ios::binary);
-  for (std::string line; std::getline(file, line) && !line.empty() && line.size() < 4096;) {
-    const std::size_t sign = std::min(line.size(), line.find_first_of(":="));
-    if (boost::algorithm::iequals(boost::algorithm::trim_copy(line.substr(0, sign)), key))
-      return line.substr(std::min(line.size(), sign + 1));
-  }
-  return {};
-}
+using Fields = std::map<std::string, std::string>;
 
-/// VTK's readers of NRRD and MetaImage run in circles or crash where a header is cut off, is no text, or has a field
-/// without a value.
-void checkFields(const std::string& path, bool is_nrrd) {
+/// The fields of a header. VTK's readers of NRRD and MetaImage run in circles or crash where it is cut off, is no text,
+/// or has a field twice or without a value.
+Fields fieldsOf(const std::string& path, bool is_nrrd) {
+  const std::string sign = is_nrrd ? ": " : "=";
   std::ifstream file(path, std::ios::binary);
+  Fields fields;
+  const auto next = [&](std::string& line) {
+    if (!std::getline(file, line)) return false;
+    boost::algorithm::trim_right_if(line, boost::is_any_of("\r"));
+    return true;
+  };
   std::string line;
-  bool is_whole = !is_nrrd || (std::getline(file, line) && line.rfind("NRRD", 0) == 0 &&
-                               isPrintable(boost::algorithm::trim_copy(line)));
-  while (is_whole && std::getline(file, line)) {
-    boost::algorithm::trim(line);
-    if (is_nrrd && line.empty()) return;
-    const std::size_t sign = line.find(is_nrrd ? ':' : '=');
-    is_whole = !(is_nrrd && file.eof()) && isPrintable(line) &&
-               ((is_nrrd && line[0] == '#') ||
-                (sign < 200 && line.size() < 4000 && line.find_first_not_of(":= ", sign) != std::string::npos));
-    if (!is_whole || line.rfind("ElementDataFile", 0) != 0) continue;
-    if (line.find('%') == std::string::npos) return;
-    throw InputError(path + ": cannot be read, its data must be in one file");
+  bool is_whole = !is_nrrd || (next(line) && line.rfind("NRRD", 0) == 0 && isPrintable(line));
+  while (is_whole && next(line)) {
+    if (is_nrrd && line.empty()) return fields;
+    const std::size_t at = line.find(sign);
+    is_whole = isPrintable(line) && line.size() < 4000 && !(is_nrrd && file.eof());
+    if (is_nrrd && (line[0] == '#' || (at == std::string::npos && line.find(":=") < line.size()))) continue;
+    is_whole = is_whole && at < 200;
+    if (!is_whole) break;
+    const std::string key = is_nrrd ? line.substr(0, at) : boost::algorithm::trim_copy(line.substr(0, at));
+    const std::string value = boost::algorithm::trim_copy(line.substr(at + sign.size()));
+    is_whole = !value.empty() && fields.emplace(key, value).second;
+    if (key == "ElementDataFile") return fields;
   }
   if (!is_whole) throw InputError(path + ": cannot be read, a line of its header is no field with a value");
+  return fields;
+}
+
+[[noreturn]] void throwSeveralFiles(const std::string& path) {
+  throw InputError(path + ": cannot be read, its data must be in one file");
 }
 
 /// VTK's reader of NIfTI trusts a header whose dimensions or type make no sense.
@@ -94,6 +98,11 @@ void checkNIfTI(const std::string& path) {
     throw InputError(path + ": cannot be read, its header is not of NIfTI or has an unknown type");
 }
 
+std::string valueOf(const Fields& fields, const char* key) {
+  const auto found = fields.find(key);
+  return found == fields.end() ? std::string() : found->second;
+}
+
 /// The numbers of a text, whatever stands between them; "none" is none.
 std::vector<double> numbersIn(std::string text) {
   for (char& c : text)
@@ -108,8 +117,8 @@ std::vector<double> numbersIn(std::string text) {
 }
 
 /// What VTK's readers of NRRD and MetaImage leave out: where the axes of the grid point. Columns.
-Eigen::Matrix3d directionIn(const std::string& path, const char* key) {
-  const std::vector<double> numbers = numbersIn(headerValue(path, key));
+Eigen::Matrix3d directionIn(const Fields& fields, const char* key) {
+  const std::vector<double> numbers = numbersIn(valueOf(fields, key));
   if (numbers.size() < 9) return Eigen::Matrix3d::Identity();
   Eigen::Matrix3d direction = Eigen::Map<const Eigen::Matrix3d>(numbers.data());
   return direction.colwise().normalized();
@@ -200,28 +209,32 @@ Image imageOf(const std::string& path, const VtkMessages& messages) {
     image.intercept = reader->GetRescaleIntercept();
     image.num_times = std::max(1, reader->GetTimeDimension());
   } else if (ends(".nrrd") || ends(".nhdr")) {
-    checkFields(path, true);
-    const std::string sizes = headerValue(path, "sizes");
-    const std::size_t num_sizes = numbersIn(sizes).size();
-    const bool are_whole = boost::algorithm::all(sizes, boost::is_digit() || boost::is_space());
-    if (!are_whole || numbersIn(headerValue(path, "dimension")) != std::vector<double>{1.0 * num_sizes} ||
-        num_sizes < 3 || num_sizes > 4 || headerValue(path, "type").empty() || headerValue(path, "encoding").empty())
-      throw InputError(path + ": cannot be read, its header must have type, dimension 3 or 4, sizes and encoding");
+    const Fields fields = fieldsOf(path, true);
+    const std::string sizes = valueOf(fields, "sizes"), encoding = valueOf(fields, "encoding");
+    const std::string file = valueOf(fields, "data file") + valueOf(fields, "datafile");
+    if (!boost::algorithm::all(sizes, boost::is_digit() || boost::is_space()) || numbersIn(sizes).size() != 3 ||
+        valueOf(fields, "dimension") != "3" || valueOf(fields, "type").empty() ||
+        (fields.count("space dimension") && valueOf(fields, "space dimension") != "3"))
+      throw InputError(path + ": cannot be read, its header must have type, dimension 3 and three sizes");
+    if (encoding != "raw" && encoding != "gzip" && encoding != "gz")
+      throw InputError(path + ": encoding = " + encoding + ", must be raw or gzip");
+    if (file.find('%') < file.size() || boost::algorithm::starts_with(file, "LIST")) throwSeveralFiles(path);
     vtkNew<vtkNrrdReader> reader;
     image.data = updated(*reader, path, messages);
-    image.T_input_index = placedBy(*image.data, directionIn(path, "space directions"));
-    const std::vector<double> origin = numbersIn(headerValue(path, "space origin"));
+    image.T_input_index = placedBy(*image.data, directionIn(fields, "space directions"));
+    const std::vector<double> origin = numbersIn(valueOf(fields, "space origin"));
     if (origin.size() == 3) image.T_input_index.translation() = Eigen::Map<const Eigen::Vector3d>(origin.data());
   } else {
-    checkFields(path, false);
-    const std::vector<double> num_sizes = numbersIn(headerValue(path, "NDims"));
+    const Fields fields = fieldsOf(path, false);
+    const std::vector<double> num_sizes = numbersIn(valueOf(fields, "NDims"));
+    if (valueOf(fields, "ElementDataFile").find('%') != std::string::npos) throwSeveralFiles(path);
     if (num_sizes.size() != 1 || num_sizes[0] < 1.0 || num_sizes[0] > 10.0)
       throw InputError(path + ": cannot be read, NDims must be a number of axes");
     vtkNew<vtkMetaImageReader> reader;
     image.data = updated(*reader, path, messages);
     Eigen::Matrix3d direction = Eigen::Matrix3d::Identity();
     for (const char* key : {"TransformMatrix", "Orientation", "Rotation"})
-      if (direction.isIdentity()) direction = directionIn(path, key);
+      if (direction.isIdentity()) direction = directionIn(fields, key);
     image.T_input_index = placedBy(*image.data, direction);
   }
   return image;

@@ -145,7 +145,7 @@ def volume_files():
     values, text = struct.pack("<240f", *numbers), " ".join(map(str, numbers))
     yield "nii", [nifti(values)]
     yield "nii.gz", [gzip.compress(nifti(values), mtime=0)]
-    yield "nrrd", [nrrd("raw", values), nrrd("gzip", gzip.compress(values, mtime=0)), nrrd("ascii", text.encode())]
+    yield "nrrd", [nrrd("raw", values), nrrd("gzip", gzip.compress(values, mtime=0))]
     yield "mha", [meta_image(values), meta_image(zlib.compress(values), len(zlib.compress(values)))]
     yield "vti", [vtk_image(text)]
 

@@ -144,6 +144,7 @@ TEST_F(Volumes, ThatAreBadGetASentence) {
       {"bare.nrrd", "NRRD0004\ntype: float\n\n" + data, "type, dimension"},
       {"sizes_8.nrrd", nrrd(data).replace(nrrd("").find("sizes:"), 6, "sizes 8:"), "type, dimension"},
       {"line.nrrd", "NRRD0004\ntype: short\ndimension: 1\nsizes: 810\nencoding: raw\n\n" + data, "dimension 3"},
+      {"words.nrrd", nrrd(data).replace(nrrd("").find("raw"), 3, "ascii"), "must be raw or gzip"},
       {"files.mha", "NDims = 3\nDimSize = 5 4 12\nElementType = MET_FLOAT\nElementDataFile = %a\n", "one file"},
       {"void.nrrd", "NRRD0004\ntype: float\nsizes:\n\n", "with a value"},
       {"zero.mha", metaImage(bytesOf(zero)), "equal"},
