@@ -55,7 +55,7 @@ Fields fieldsOf(const std::string& path, bool is_nrrd) {
   Fields fields;
   const auto next = [&](std::string& line) {
     if (!std::getline(file, line)) return false;
-    boost::algorithm::trim_right_if(line, boost::is_any_of("\r"));
+    if (!line.empty() && line.back() == '\r') line.pop_back();
     return true;
   };
   std::string line;
@@ -69,7 +69,7 @@ Fields fieldsOf(const std::string& path, bool is_nrrd) {
     if (!is_whole) break;
     const std::string key = is_nrrd ? line.substr(0, at) : boost::algorithm::trim_copy(line.substr(0, at));
     const std::string value = boost::algorithm::trim_copy(line.substr(at + sign.size()));
-    is_whole = !value.empty() && fields.emplace(key, value).second;
+    is_whole = !value.empty() && fields.emplace(key, value).second && (key != "sizes" || fields.count("dimension"));
     if (key == "ElementDataFile") return fields;
   }
   if (!is_whole) throw InputError(path + ": cannot be read, a line of its header is no field with a value");

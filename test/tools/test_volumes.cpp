@@ -144,9 +144,10 @@ TEST_F(Volumes, ThatAreBadGetASentence) {
       {"bare.nrrd", "NRRD0004\ntype: float\n\n" + data, "type, dimension"},
       {"sizes_8.nrrd", nrrd(data).replace(nrrd("").find("sizes:"), 6, "sizes 8:"), "type, dimension"},
       {"line.nrrd", "NRRD0004\ntype: short\ndimension: 1\nsizes: 810\nencoding: raw\n\n" + data, "dimension 3"},
+      {"ends.nrrd", nrrd("").replace(nrrd("").size() - 1, 1, "\r\r\n"), "with a value"},
       {"words.nrrd", nrrd(data).replace(nrrd("").find("raw"), 3, "ascii"), "must be raw or gzip"},
       {"files.mha", "NDims = 3\nDimSize = 5 4 12\nElementType = MET_FLOAT\nElementDataFile = %a\n", "one file"},
-      {"void.nrrd", "NRRD0004\ntype: float\nsizes:\n\n", "with a value"},
+      {"void.nrrd", "NRRD0004\ntype: float\nsizes: 9 9 9\ndimension: 3\n\n", "with a value"},
       {"zero.mha", metaImage(bytesOf(zero)), "equal"},
       {"nan.mha", metaImage(bytesOf(nan)), "finite"},
       {"one.mha", metaImage(data, "44 1920 1"), "slices"}};
