@@ -506,7 +506,7 @@ class Meshes(unittest.TestCase):
 
 
 def has_pcl():
-    return any(Path(pcl_symmetry.__file__).parent.glob("_recognition*"))
+    return any(Path(pcl_symmetry.__file__).parent.glob("_recognition*.so"))
 
 
 @unittest.skipUnless(has_pcl(), "the module was built without PCL")
@@ -843,9 +843,10 @@ class Package(unittest.TestCase):
                     checked.append(Path(folder) / f"{Path(page).stem.lower()}_{i}.py")
                     checked[-1].write_text(block)
             package = Path(pcl_symmetry.__file__).parent
+            path = {} if package.parent.name.endswith("-packages") else {"MYPYPATH": str(package.parent)}
             command = [sys.executable, "-m", "mypy", "--strict", "--ignore-missing-imports", "--cache-dir", folder]
             result = subprocess.run(
-                [*command, package, *checked], cwd=folder, env={"MYPYPATH": str(package.parent)}, capture_output=True, text=True
+                [*command, package, *checked], cwd=folder, env=path, capture_output=True, text=True
             )
         self.assertEqual(result.returncode, 0, result.stdout + result.stderr)
 
