@@ -138,7 +138,7 @@ TEST_F(Volumes, ThatAreBadGetASentence) {
       {"cut.nrrd", nrrd(data).substr(0, 90'000), "cut.nrrd"},
       {"cut.mha", metaImage(data).substr(0, 90'000), "cut.mha"},
       {"text.nii.gz", "no volume", "text.nii.gz"},
-      {"axes.mha", metaImage(data).replace(27, 1, "-3"), "number of axes"},
+      {"axes.mha", metaImage(data).replace(27, 1, "4"), "NDims must be 3"},
       {"type.nii", nifti(data).replace(70, 2, "\x39\x30"), "unknown type"},
       {"text.vti", "<VTKFile", "text.vti"},
       {"bare.nrrd", "NRRD0004\ntype: float\n\n" + data, "type, dimension"},
