@@ -134,6 +134,21 @@ public:
   }
 
 private:
+  /// What a trilinear look-up adds to f between voxels, to second order. Left in, it draws planes to where voxels fall
+  /// on voxels, by up to a degree.
+  double blurAt(const Eigen::Vector3d& p) const {
+    const Eigen::Array3d t = p.array() - p.array().floor();
+    std::ptrdiff_t at = 0, steps[3];
+    for (int a = 0; a < 3; ++a) {
+      steps[a] = a == 0 ? 1 : steps[a - 1] * f_.size()[a - 1];
+      at += steps[a] * std::clamp(static_cast<int>(p[a] + 0.5), 1, f_.size()[a] - 2);
+    }
+    const float* const v = f_.values().data() + at;
+    double blur = 0.0;
+    for (int a = 0; a < 3; ++a) blur += 0.5 * t[a] * (1.0 - t[a]) * (v[steps[a]] - 2.0 * v[0] + v[-steps[a]]);
+    return blur;
+  }
+
   template <bool kWithStep>
   PairSums ofSlice(const ReflectionPlane& plane, int z, int stride) const {
     const Chart chart(plane, pivot_);
@@ -167,7 +182,7 @@ private:
         const Eigen::Vector3d j(2.0 * (chart.u.dot(from_pivot) * along + d * g.dot(chart.u)),
                                 2.0 * (chart.v.dot(from_pivot) * along + d * g.dot(chart.v)), -2.0 * along);
         sum.normal += j * j.transpose();
-        sum.rhs += (own - other) * j;
+        sum.rhs += (own - other + blurAt(p)) * j;
       }
     }
     return sum;
@@ -245,7 +260,9 @@ Detection detectVolumePlanes(const ScalarGrid& input, const DetectionOptions& op
     found.diameter = 2.0 * edt.radius();
     found.timing_ms.emplace_back("transform", watch.lap());
 
-    const ReflectedVolume few(coarse, center, 1), all(fine, center, options.num_threads);
+    // Smoothed once more: what second differences do not tell about f between voxels falls by half.
+    const VolumeFunction soft(fine, kRules.fine_voxels, options.num_threads);
+    const ReflectedVolume few(coarse, center, 1), all(soft, center, options.num_threads);
     const int stride = strideFor(coarse.f, 30'000);
     const PlaneTolerance one{kRules.merge_angle, kRules.merge_offset * edt.radius()};
     const std::vector<ReflectionPlane> starts = startsOf(found.map, body, options.expert.max_candidates);
@@ -279,7 +296,7 @@ Detection detectVolumePlanes(const ScalarGrid& input, const DetectionOptions& op
     for (SymmetryPlane& plane : maxima) {
       if (!options.approximate && confidence(plane) < options.min_confidence) continue;
       const int before = plane.iterations;
-      plane = all.refined(plane, strideFor(fine.f, 500'000), 10, 1e-4);
+      plane = all.refined(plane, strideFor(soft.f, 500'000), 10, 1e-4);
       const Comparison comparison = few.compare(plane, 1, false);
       plane.iterations += before;
       plane.support = std::max(0.0, comparison.merit());

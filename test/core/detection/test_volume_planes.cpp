@@ -66,8 +66,15 @@ struct Phantom {
   double cropped = 0.0;          ///< units that are cut off on one side
   double slice = 1.0;            ///< thickness of slices in voxels
   std::uint64_t seed = 1;        ///< of the pose and the noise
+  bool nearly_along = false;     ///< the plane is nearly parallel to an axis of the grid, where voxels fall on voxels
 
+  static Eigen::Matrix3d direction() {
+    return Eigen::AngleAxisd(0.4, Eigen::Vector3d(1, 2, 2).normalized()).toRotationMatrix();
+  }
   Eigen::Isometry3d pose() const {
+    if (nearly_along)
+      return Eigen::Isometry3d(direction() * Eigen::AngleAxisd(0.115, Eigen::Vector3d::UnitZ()) *
+                               Eigen::AngleAxisd(0.01, Eigen::Vector3d::UnitY()));
     RandomStream random(seed);
     const auto number = [&] { return 2.0 * random.uniform() - 1.0; };
     const Eigen::Vector3d axis(number(), number(), number());
@@ -85,9 +92,9 @@ struct Phantom {
   ScalarGrid grid() const {
     const Eigen::Isometry3d T_phantom_input = pose().inverse();
     const int num_slices = static_cast<int>(size / slice);
-    const Eigen::Matrix3d direction = Eigen::AngleAxisd(0.4, Eigen::Vector3d(1, 2, 2).normalized()).toRotationMatrix();
-    const Eigen::Affine3d T = ScalarGrid::placed(
-        {voxel(), voxel(), voxel() * slice}, direction * Eigen::Vector3d(cropped - 100.0, -100.0, -100.0), direction);
+    const Eigen::Affine3d T =
+        ScalarGrid::placed({voxel(), voxel(), voxel() * slice},
+                           direction() * Eigen::Vector3d(cropped - 100.0, -100.0, -100.0), direction());
     RandomStream random(seed, 1);
     std::vector<float> values;
     const int parts = slice > 1.0 ? 4 : 1;
@@ -116,9 +123,10 @@ void expectPlane(const Phantom& phantom, double most_degrees, double most_voxels
 }
 
 TEST(VolumePlanes, OfATiltedHeadAreExactAndOfANoisyOneWithinHalfADegreeAndVoxel) {
-  for (const std::uint64_t seed : {1, 2, 3}) {
+  for (const std::uint64_t seed : {1, 2, 3, 4}) {
     Phantom phantom;
     phantom.seed = seed;
+    phantom.nearly_along = seed == 4;
     expectPlane(phantom, 0.1, 0.2);
     phantom.signal_to_noise = 3.0;
     expectPlane(phantom, 0.5, 0.5);
