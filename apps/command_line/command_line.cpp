@@ -172,7 +172,8 @@ CommandLine& CommandLine::common(CommonOptions& options, unsigned flags) {
   if (flags & kVolumes) {
     options.takes_volumes = true;
     add("levels", "LOW,HIGH",
-        "volumes: intensities that count, as a window of a viewer (background and brightest voxels)",
+        "volumes (.nii, .nii.gz, .nrrd, .nhdr, .mha, .mhd or .vti): intensities that count, as a window of a viewer "
+        "(background and brightest voxels)",
         [&options](const std::string& text) {
           options.levels = parseNumbers("-levels", text);
           if (options.levels.size() != 2 || !(options.levels[0] < options.levels[1]))

@@ -103,6 +103,15 @@ std::string valueOf(const Fields& fields, const char* key) {
   return found == fields.end() ? std::string() : found->second;
 }
 
+/// VTK's reader of .vti takes what is left of data that are cut off.
+void checkEnd(const std::string& path) {
+  std::ifstream file(path, std::ios::binary | std::ios::ate);
+  std::string end(std::min<std::size_t>(file.tellg(), 200), '\0');
+  file.seekg(-static_cast<std::streamoff>(end.size()), std::ios::end).read(&end[0], end.size());
+  if (!boost::algorithm::ends_with(boost::algorithm::trim_copy(end), "</VTKFile>"))
+    throw InputError(path + ": cannot be read, it is cut off");
+}
+
 /// The numbers of a text, whatever stands between them; "none" is none.
 std::vector<double> numbersIn(std::string text) {
   for (char& c : text)
@@ -192,6 +201,7 @@ Image imageOf(const std::string& path, const VtkMessages& messages) {
   Image image;
   const auto ends = [&](const char* ending) { return boost::algorithm::iends_with(path, ending); };
   if (ends(".vti")) {
+    checkEnd(path);
     vtkNew<vtkXMLImageDataReader> reader;
     image.data = updated(*reader, path, messages);
     image.T_input_index = affineOf(*image.data->GetIndexToPhysicalMatrix());

@@ -44,7 +44,7 @@ struct DescribeOptions {
   std::string output;
   std::vector<std::string> inputs;
   std::string type = "signature";
-  bool input_axes = false;
+  bool input_axes = false, by_equation_1 = false;
   int num_points = 20'000;
   std::optional<std::string> csv_path;
   bool resume = false;
@@ -61,6 +61,7 @@ CommandLine commandLine(DescribeOptions& options) {
               "signatures in two frames, or one of the paper's descriptors")
       .flag("input_axes", options.input_axes,
             "compute the paper's descriptors in the axes of the input, not of its symmetry")
+      .flag("equation_1", options.by_equation_1, "prst and prsd as sqrt((1 + D) / 2), not sqrt(D)")
       .number("points", options.num_points, Range::closed(100, 10'000'000), "number of points that describe a shape")
       .text("csv", "FILE", options.csv_path, "table of all descriptors: a row for each, its values behind the name")
       .flag("resume", options.resume, "keep the descriptors of this type that stand in the folder")
@@ -105,6 +106,7 @@ pcl::PCLPointCloud2 describe(const InputShape& input, const DescribeOptions& opt
   DescriptorOptions descriptor;
   descriptor.seed = options.common.librarySeed();
   descriptor.num_threads = 1;
+  descriptor.by_equation_1 = options.by_equation_1;
   const SymmetryDescriptors all = symmetryDescriptors(selected.points, T_frame_input, descriptor);
   if (options.type == "prst") return toBlob({all.prst.data()}, &PRSTSignature32768::prst);
   if (options.type == "prsd") return toBlob({all.prsd.data()}, &PRSDSignature1024::prsd);

@@ -47,7 +47,8 @@ struct MeasureOptions {
   std::string of = "planes";       ///< planes, axes or centers
   int fold = -1;                   ///< of axes: order of the turns, 0 = any angle; below 0: 2 to 8 and any angle
   std::string method = "sampled";  ///< of planes: the estimator, one of kMethodNames
-  double scale = 0.0;              ///< of planes: radius of the window around each point, of the shape's; 0: the whole
+  bool as_published = false;
+  double scale = 0.0;  ///< of planes: radius of the window around each point, of the shape's; 0: the whole
 };
 
 constexpr int kMostListed = 5;
@@ -75,6 +76,7 @@ SymmetryMeasure ofPlanes(const InputShape& input, const CommonOptions& common, c
   PlanarSymmetryTransform<pcl::PointXYZ> transform;
   transform.setGridSize(common.grid);
   transform.setMethod(methodNamed(options.method));
+  if (options.as_published) transform.setNearDistance(0.0);
   setUp(transform, input, common);
   const auto map = std::make_shared<const SymmetryMap>(transform.compute());
   checkAnswer(transform, input);
@@ -192,6 +194,7 @@ CommandLine commandLine(MapOptions& options) {
       .number("fold", options.fold, Range::closed(0, 60),
               "with -of axes: order of the turns, 0 = by any angle, not 1; default: the best of 2 to 8 and any angle")
       .choice("method", options.what.method, kMethodNames, "estimator of planes (Sections 4.2 and 4.3)")
+      .flag("as_published", options.what.as_published, "with -method voting: near pairs of points vote like all others")
       .number("scale", options.what.scale, Range::closed(0, 1),
               "local symmetry of planes: within this share of the shape's radius around each point; 0 = of the whole")
       .text("volume", "FILE", options.volume_path, "VTK image (.vti) of the space around, for ParaView")

@@ -307,10 +307,12 @@ Eigen::MatrixXf describe(const AnyArray& points, const py::object& viewpoint, st
 }
 
 SymmetryMap transform(const AnyArray& points, const std::array<int, 3>& bins, const std::string& method,
-                      const Eigen::Vector3d& center, double radius, double sigma, std::uint64_t seed, int threads) {
+                      const Eigen::Vector3d& center, double radius, double sigma, bool as_published, std::uint64_t seed,
+                      int threads) {
   const InputPoints input("points", points, 0, seed);
   PlanarTransformOptions options;
   options.method = methodNamed(method);
+  if (as_published) options.voting.near_distance = 0.0;
   options.setSeed(seed);
   options.setNumThreads(threads);
   const py::gil_scoped_release release;
@@ -477,11 +479,8 @@ void addShapeFunctions(py::module_& module) {
              "(2, K) signatures of unit norm, the same in all poses and sizes (Section 5.2).");
   module.def("transform", &transform, py::arg("points"), py::arg("bins") = std::array<int, 3>{64, 64, 64},
              py::kw_only(), py::arg("method") = "sampled", py::arg("center") = py::make_tuple(0.0, 0.0, 0.0),
-             py::arg("radius") = 0.0, py::arg("sigma") = 0.0, py::arg("seed") = 1, py::arg("threads") = 0,
-             "The planar-reflective symmetry transform (Section 4). bins: of theta, phi and r.\n"
-             "method: sampled, convolution, rotational or voting.\n"
-             "center, radius: of the ball whose planes are measured; radius 0: the bounding ball of the points.\n"
-             "sigma: width of the Gaussian; 0: two cells of a grid of 64. All in input units. Returns Map.");
+             py::arg("radius") = 0.0, py::arg("sigma") = 0.0, py::arg("as_published") = false, py::arg("seed") = 1,
+             py::arg("threads") = 0);
 }
 
 }  // namespace

@@ -89,6 +89,7 @@ TEST_F(AlignTool, TurnsAWholeIntoItsFrame) {
     EXPECT_GT(json["scores"][k].get<double>(), 0.5);
   }
   EXPECT_EQ(json["revolution_axis"], -1);
+  EXPECT_NE(reportOf(box_ + " -as_published")["scores"], json["scores"]);
   const Shape out = loadShape(folder_ / "out.pcd");
   EXPECT_EQ(out.points->size(), 10000u);
   EXPECT_NE(output_.find("center"), std::string::npos);

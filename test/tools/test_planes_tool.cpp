@@ -49,6 +49,7 @@ TEST_F(PlanesTool, WritesTheProfileOfABodyOfRevolution) {
 }
 
 TEST_F(PlanesTool, FindsTheThreePlanesOfABox) {
+  EXPECT_EQ(reportOf(box_ + " -as_published")["planes"][0]["kind"], "approximate");
   const nlohmann::json report = reportOf(box_);
   ASSERT_EQ(report["planes"].size(), 3u);
   std::array<int, 3> along{};

@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 #include <pcl/io/pcd_io.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <map>
 #include <nlohmann/json.hpp>
@@ -45,7 +46,11 @@ TEST_F(DescribeTool, WritesThePapersDescriptors) {
   ASSERT_EQ(run(out + " " + box + " -type prst -input_axes -points 2000"), 0) << error_;
   pcl::PointCloud<PRSTSignature32768> prst;
   ASSERT_EQ(pcl::io::loadPCDFile(out + "/box.pcd", prst), 0);
-  EXPECT_EQ(prst.size(), 1u);
+  ASSERT_EQ(prst.size(), 1u);
+  EXPECT_LT(*std::min_element(prst[0].prst, prst[0].prst + kPRSTSize), 0.7f);
+  ASSERT_EQ(run(out + " " + box + " -type prst -equation_1 -points 2000"), 0) << error_;
+  ASSERT_EQ(pcl::io::loadPCDFile(out + "/box.pcd", prst), 0);
+  EXPECT_GT(*std::min_element(prst[0].prst, prst[0].prst + kPRSTSize), 0.7f) << "1 / sqrt(2)";
   ASSERT_EQ(run(out + " " + box + " -type gedt -points 2000"), 0) << error_;
   pcl::PointCloud<GEDTSignature32768> gedt;
   ASSERT_EQ(pcl::io::loadPCDFile(out + "/box.pcd", gedt), 0);

@@ -19,9 +19,10 @@ using namespace pcl_symmetry::apps;
 constexpr int kSize[3] = {44, 48, 40};
 
 /// A body with a pair of spots, symmetric in the plane x = 20.5 of the grid.
-std::vector<float> body() {
+/// \param step every step-th slice.
+std::vector<float> body(int step = 1) {
   std::vector<float> values;
-  for (int z = 0; z < kSize[2]; ++z)
+  for (int z = 0; z < kSize[2]; z += step)
     for (int y = 0; y < kSize[1]; ++y)
       for (int x = 0; x < kSize[0]; ++x) {
         const double side = std::abs(x - 20.5), v = y - 23.0, w = z - 19.0;
@@ -40,38 +41,54 @@ std::string bytesOf(const std::vector<float>& values) {
 }
 
 /// Axes of the grid along y, -x and z of the frame, spacing 2, 2 and 3: the plane is y = 2 * 20.5 + 7.
-std::string metaImage(const std::string& data, const std::string& size = "44 48 40") {
+std::string metaImage(const std::string& data, int slices = 40, int thickness = 3) {
   return "ObjectType = Image\nNDims = 3\nBinaryData = True\nBinaryDataByteOrderMSB = False\nCompressedData = False\n"
-         "TransformMatrix = 0 1 0 -1 0 0 0 0 1\nOffset = 5 7 -9\nElementSpacing = 2 2 3\nDimSize = " +
-         size + "\nElementType = MET_FLOAT\nElementDataFile = LOCAL\n" + data;
+         "TransformMatrix = 0 1 0 -1 0 0 0 0 1\nOffset = 5 7 -9\nElementSpacing = 2 2 " +
+         std::to_string(thickness) + "\nDimSize = 44 48 " + std::to_string(slices) +
+         "\nElementType = MET_FLOAT\nElementDataFile = LOCAL\n" + data;
 }
 
-std::string nrrd(const std::string& data) {
-  return "NRRD0004\ntype: float\ndimension: 3\nspace: left-posterior-superior\nsizes: 44 48 40\nendian: "
-         "little\nencoding: raw\n"
-         "space directions: (0,2,0) (-2,0,0) (0,0,3)\nspace origin: (5,7,-9)\n\n" +
-         data;
+std::string nrrd(const std::string& data, int slices = 40, int thickness = 3) {
+  return "NRRD0004\ntype: float\ndimension: 3\nspace: left-posterior-superior\nsizes: 44 48 " + std::to_string(slices) +
+         "\nendian: little\nencoding: raw\nspace directions: (0,2,0) (-2,0,0) (0,0," + std::to_string(thickness) +
+         ")\nspace origin: (5,7,-9)\n\n" + data;
 }
 
-std::string nifti(const std::string& data) {
+std::string nifti(const std::string& data, int slices = 40, int thickness = 3) {
   std::string header(352, '\0');
   const auto put = [&](std::size_t at, auto value) { std::memcpy(&header[at], &value, sizeof value); };
   put(0, std::int32_t{348});
-  const std::int16_t dims[8] = {3, 44, 48, 40, 1, 1, 1, 1};
+  const std::int16_t dims[8] = {3, 44, 48, static_cast<std::int16_t>(slices), 1, 1, 1, 1};
   for (int i = 0; i < 8; ++i) put(40 + 2 * i, dims[i]);
   put(70, std::int16_t{16});  // float
   put(72, std::int16_t{32});
-  const float spacing[4] = {1, 2, 2, 3};
+  const float depth = thickness, spacing[4] = {1, 2, 2, depth};
   for (int i = 0; i < 4; ++i) put(76 + 4 * i, spacing[i]);
   put(108, 352.0f);
   put(112, 2.0f);  // slope
   put(116, -50.0f);
   put(254, std::int16_t{1});  // sform
-  const float rows[12] = {0, -2, 0, 5, 2, 0, 0, 7, 0, 0, 3, -9};
+  const float rows[12] = {0, -2, 0, 5, 2, 0, 0, 7, 0, 0, depth, -9};
   for (int i = 0; i < 12; ++i) put(280 + 4 * i, rows[i]);
   std::memcpy(&header[344], "n+1", 4);
   return header + data;
 }
+
+std::string vti(const std::string& data, int slices = 40, int thickness = 3) {
+  const std::string extent = "0 43 0 47 0 " + std::to_string(slices - 1);
+  const auto size = static_cast<std::uint32_t>(data.size());
+  return "<VTKFile type=\"ImageData\" version=\"1.0\" byte_order=\"LittleEndian\" header_type=\"UInt32\">\n"
+         "<ImageData WholeExtent=\"" +
+         extent + "\" Origin=\"5 7 -9\" Spacing=\"2 2 " + std::to_string(thickness) +
+         "\" Direction=\"0 -1 0 1 0 0 0 0 1\"><Piece Extent=\"" + extent +
+         "\"><PointData Scalars=\"f\"><DataArray type=\"Float32\" Name=\"f\" format=\"appended\" offset=\"0\"/>"
+         "</PointData></Piece></ImageData><AppendedData encoding=\"raw\">_" +
+         std::string(reinterpret_cast<const char*>(&size), 4) + data + "</AppendedData></VTKFile>\n";
+}
+
+/// An ending and what writes it.
+const std::pair<std::string, std::string (*)(const std::string&, int, int)> kFormats[] = {
+    {".mha", metaImage}, {".nrrd", nrrd}, {".nii", nifti}, {".vti", vti}};
 
 class MapsOfVolumes : public ToolTest {
 protected:
@@ -81,7 +98,7 @@ protected:
 TEST_F(MapsOfVolumes, AreOfPlanesAxesAndCentersAndSeenAtAScale) {
   const std::string path = folder_.write("a.mha", metaImage(bytesOf(body())));
   for (const std::string flags :
-       {"-method exact", "-method rotational", "-method voting", "-of axes -fold 2", "-of centers", "-scale 0.4"}) {
+       {"-method exact", "-method rotational", "-method voting -as_published", "-of axes -fold 2", "-of centers", "-scale 0.4"}) {
     const nlohmann::json report = reportOf(path + " -quiet -grid 16 " + flags);
     // No center lies at the border, where the values of the map are read.
     EXPECT_GT(flags == "-of centers" ? report["centers"][0]["symmetry"] : report["greatest"], 0.6) << flags;
@@ -99,16 +116,17 @@ protected:
 };
 
 TEST_F(Volumes, OfAllFormatsHaveTheSamePlaneInTheFrameOfTheFile) {
-  const std::string data = bytesOf(body());
-  for (const std::string& path : {folder_.write("a.mha", metaImage(data)), folder_.write("a.nrrd", nrrd(data)),
-                                  folder_.write("a.nii", nifti(data))}) {
-    const nlohmann::json planes = planesOf(path);
-    ASSERT_GE(planes.size(), 1u) << path;
-    const double b = planes[0]["coefficients"][1], d = planes[0]["coefficients"][3];  // of either sign
-    EXPECT_NEAR(std::abs(b), 1.0, 1e-4) << path;
-    EXPECT_NEAR(d / b, -48.0, 0.05) << path;
-    EXPECT_GT(planes[0]["confidence"], 0.8) << path;
-  }
+  const std::string data = bytesOf(body()), one_in_ten = bytesOf(body(10));
+  for (const auto& [ending, write] : kFormats)
+    for (const std::string& path :
+         {folder_.write("a" + ending, write(data, 40, 3)), folder_.write("thick" + ending, write(one_in_ten, 4, 20))}) {
+      const nlohmann::json planes = planesOf(path);
+      ASSERT_GE(planes.size(), 1u) << path;
+      const double b = planes[0]["coefficients"][1], d = planes[0]["coefficients"][3];  // of either sign
+      EXPECT_NEAR(std::abs(b), 1.0, 1e-4) << path;
+      EXPECT_NEAR(d / b, -48.0, 0.05) << path;
+      EXPECT_GT(planes[0]["confidence"], 0.8) << path;
+    }
 }
 
 TEST_F(Volumes, KeepWhatTheirHeadersSay) {

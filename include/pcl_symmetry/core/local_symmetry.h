@@ -13,7 +13,7 @@ namespace PCL_SYMMETRY_EXPORTS pcl_symmetry {
 struct LocalSymmetryOptions {
   double scale = 0.0;        ///< radius of the window around each point, input units, > 0
   int num_directions = 256;  ///< of planes through each point, >= 1; 256 are 9 degrees apart
-  int num_samples = 64;      ///< drawn from the window, >= 1
+  int num_samples = 256;     ///< drawn from the window, >= 1
   std::uint64_t seed = 1;    ///< of these
   int num_threads = 0;       ///< >= 0; 0 = one per core
 

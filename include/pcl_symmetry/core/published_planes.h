@@ -12,7 +12,7 @@ namespace PCL_SYMMETRY_EXPORTS pcl_symmetry {
 /// Options of publishedPlanes(); the defaults are the paper's.
 struct PublishedOptions {
   LocalMaximaOptions maxima;     ///< thresholds of radius and Laplacian
-  int num_points = 10'000;       ///< reflected in each iteration, >= 10; drawn anew for each maximum
+  int num_points = 10'000;       ///< reflected, >= 10; drawn once for each maximum, so that the iteration converges
   int max_iterations = 50;       ///< >= 1
   int max_maxima = 0;            ///< strongest maxima that are refined, >= 0; 0 = all
   bool discard_unstable = true;  ///< drops maxima that leave their cell; false keeps them where they end
@@ -34,7 +34,7 @@ struct PublishedOptions {
 std::vector<SymmetryPlane> publishedPlanes(const PointsRef& points, const GaussianEdt& edt, const SymmetryMap& map,
                                            const PublishedOptions& options = {});
 
-/// The map that the paper's applications begin with: 64 x 64 x 64 bins about the center of mass's ball of the EDT.
+/// The map that the paper's applications begin with: 64 x 64 x 64 bins in the ball of the EDT.
 /// \param method exact (Section 4.2), sampled, or voting with all pairs alike (Section 4.3).
 SymmetryMap publishedMap(const PointsRef& points, const GaussianEdt& edt,
                          TransformMethod method = TransformMethod::Convolution, std::uint64_t seed = 1,

@@ -45,9 +45,9 @@ struct SplittingOptions {
   /// length alone counts: cuts take the shortest way, as through the thighs in the paper's Figure 15.
   double concavity_weight = 0.0;
 
-  /// Keeps to the letter of Sections 4.4 and 5.3: the features are the strongest max_planes maxima of the exact
-  /// map as publishedPlanes() refines them, with 1000 points for the paper's 10 000, and elements outside the two
-  /// largest components go to the closer one. Otherwise such a maximum stays a feature at its place on the grid, maxima
+  /// Keeps to the letter of Sections 4.4 and 5.3: the features are all maxima of the exact map as publishedPlanes()
+  /// refines them, with 1000 points for the paper's 10 000, and elements outside the two largest components go to the
+  /// closer one. Otherwise such a maximum stays a feature at its place on the grid, maxima
   /// of one basin count once, and the cut assigns the other elements.
   bool as_published = false;
 

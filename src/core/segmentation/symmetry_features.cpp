@@ -104,7 +104,6 @@ SymmetryFeatures symmetryFeatures(const SurfaceGraph& graph, const std::vector<i
     const SymmetryMap map = publishedMap(samples, edt, TransformMethod::Convolution, seed, num_threads);
     PublishedOptions published;
     published.num_points = kSegmentation.published_samples;
-    published.max_maxima = options.max_planes;
     published.seed = seed;
     published.num_threads = num_threads;
     for (const SymmetryPlane& plane : publishedPlanes(samples, edt, map, published))

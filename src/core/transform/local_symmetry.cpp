@@ -27,13 +27,13 @@ std::vector<float> localSymmetry(const GaussianEdt& edt, const PointsRef& points
   std::vector<float> result(points.cols(), 0.0f);
   parallelRanges(result.size(), 64, options.num_threads, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
-      // Cells of the window that f is not 0 in, with w^2 f^2.
+      // Cells of the window that f is not 0 in.
       const Eigen::Vector3d p = (points.col(i).cast<double>() - edt.origin()) / cell;
       const int n = edt.numCells();
       const Eigen::Vector3d low = (p.array() - scale).ceil().max(0.0), high = (p.array() + scale).floor().min(n - 1.0);
       std::vector<Eigen::Vector3d> cells;
-      std::vector<double> up_to;  // sums of w^2 f^2
-      double sum = 0.0;
+      std::vector<double> up_to;  // sums of w^2 f
+      double sum = 0.0, sq_norm = 0.0;
       for (int z = static_cast<int>(low.z()); z <= high.z(); ++z)
         for (int y = static_cast<int>(low.y()); y <= high.y(); ++y)
           for (int x = static_cast<int>(low.x()); x <= high.x(); ++x) {
@@ -41,24 +41,25 @@ std::vector<float> localSymmetry(const GaussianEdt& edt, const PointsRef& points
             const Eigen::Vector3d offset = Eigen::Vector3d(x, y, z) - p;
             const double left = 1.0 - offset.squaredNorm() / (scale * scale);
             if (f <= 0.0f || left <= 0.0) continue;
-            sum += std::pow(left * left * f, 2);
+            sum += std::pow(left, 4) * f;
+            sq_norm += std::pow(left, 4) * f * f;
             cells.push_back(offset);
             up_to.push_back(sum);
           }
       if (sum == 0.0) continue;
-      // Drawn with probability w^2 f^2, each counts f(gamma x) / f(x).
+      // Drawn with probability w^2 f, each counts f(gamma x).
       RandomStream random(options.seed, i);
-      std::vector<std::pair<Eigen::Vector3d, double>> drawn;
+      std::vector<Eigen::Vector3d> drawn;
       for (int k = 0; k < options.num_samples; ++k) {
         const double target = (k + random.uniform()) * sum / options.num_samples;
         const auto at = std::min<std::size_t>(std::upper_bound(up_to.begin(), up_to.end(), target) - up_to.begin(),
                                               up_to.size() - 1);
-        drawn.emplace_back(cells[at], 1.0 / std::max(1e-3, edt.atCell(p + cells[at])));
+        drawn.push_back(cells[at]);
       }
       for (const Eigen::Vector3d& normal : normals) {
         double total = 0.0;
-        for (const auto& [x, weight] : drawn) total += weight * edt.atCell(p + x - 2.0 * normal.dot(x) * normal);
-        result[i] = std::max(result[i], static_cast<float>(total / options.num_samples));
+        for (const Eigen::Vector3d& x : drawn) total += edt.atCell(p + x - 2.0 * normal.dot(x) * normal);
+        result[i] = std::max(result[i], static_cast<float>(sum / sq_norm * total / options.num_samples));
       }
     }
   });

@@ -446,17 +446,18 @@ def transform(
     center: "ArrayLike" = (0.0, 0.0, 0.0),
     radius: float = 0.0,
     sigma: float = 0.0,
+    as_published: bool = False,
     seed: int = 1,
     threads: int = 0,
 ) -> Map:
     """The planar-reflective symmetry transform (Section 4). bins: of theta, phi and r.
 
-    method: sampled, convolution, rotational or voting.
+    method: sampled, convolution, rotational or voting; as_published: near pairs of points vote like all others (Section 4.3).
     center, radius: of the ball whose planes are measured, input frame and units; radius 0: the bounding ball of the points.
     sigma: width of the Gaussian, input units; 0: two cells of a grid of 64.
     """
     array, shift = prepare("points", points)
-    options = dict(center=_seen_from(center, shift), radius=radius, sigma=sigma, seed=seed, threads=threads)
-    found = core.transform(array, tuple(bins), method=method, **options)
+    options = dict(center=_seen_from(center, shift), radius=radius, sigma=sigma, as_published=as_published)
+    found = core.transform(array, tuple(bins), method=method, seed=seed, threads=threads, **options)
     result = Map(**_fields(found, "sigma", "center", "radius", "values"))
     return result if shift is None else result._moved(shift)
