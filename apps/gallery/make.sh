@@ -86,6 +86,9 @@ draw_figure_1() {
   draw figure_1_contours pcl_symmetry_lines cup.pcd mug.pcd flower.pcd flower_4.pcd flower_3.pcd -size 150 \
     -png "$gallery/figure_1_contours.png"
   local model
+  for model in 0.2 0.5 1; do
+    draw "scale_$model" pcl_symmetry_map bull.off -scale "$model" -size 280 -png "$gallery/scale_$model.png"
+  done
   for model in bull cow; do
     draw "figure_1_$model" pcl_symmetry_map "$model.off" -size 200 -slices "$gallery/figure_1_$model.png"
   done
