@@ -105,11 +105,10 @@ std::string valueOf(const Fields& fields, const char* key) {
 
 /// VTK's reader of .vti takes what is left of data that are cut off.
 void checkEnd(const std::string& path) {
-  std::ifstream file(path, std::ios::binary | std::ios::ate);
-  std::string end(std::min<std::size_t>(file.tellg(), 200), '\0');
-  file.seekg(-static_cast<std::streamoff>(end.size()), std::ios::end).read(&end[0], end.size());
-  if (!boost::algorithm::ends_with(boost::algorithm::trim_copy(end), "</VTKFile>"))
-    throw InputError(path + ": cannot be read, it is cut off");
+  std::ifstream file(path, std::ios::binary);
+  file.seekg(-std::min<std::streamoff>(40, boost::filesystem::file_size(path)), std::ios::end);
+  const std::string end(std::istreambuf_iterator<char>(file), {});
+  if (end.find("</VTKFile>") == std::string::npos) throw InputError(path + ": cannot be read, it is cut off");
 }
 
 /// The numbers of a text, whatever stands between them; "none" is none.

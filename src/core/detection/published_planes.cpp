@@ -1,27 +1,15 @@
 #include "pcl_symmetry/core/published_planes.h"
 
 #include <algorithm>
-#include <numeric>
 
 #include "core/base/check.h"
 #include "core/base/parallel.h"
-#include "core/base/random.h"
+#include "core/geometry/point_samples.h"
 #include "core/transform/edt_correlation.h"
 
 namespace pcl_symmetry {
 
 namespace {
-
-/// Indices of points, drawn without repetition.
-std::vector<int> drawnPoints(Eigen::Index size, int count, std::uint64_t seed, std::uint64_t stream) {
-  std::vector<int> indices(size);
-  std::iota(indices.begin(), indices.end(), 0);
-  RandomStream random(seed, stream);
-  const std::size_t kept = std::min<std::size_t>(count, indices.size());
-  for (std::size_t i = 0; i < kept; ++i) std::swap(indices[i], indices[i + random.below(indices.size() - i)]);
-  indices.resize(kept);
-  return indices;
-}
 
 double scoreOf(const ReflectionPlane& plane, const GaussianEdt& edt) {
   const ReflectionPlane cells(plane.normal(), plane.signedDistance(edt.origin()) / -edt.cellSize());
@@ -56,7 +44,7 @@ std::vector<SymmetryPlane> publishedPlanes(const PointsRef& points, const Gaussi
   std::vector<SymmetryPlane> refined(maxima.size());
   std::vector<char> is_stable(maxima.size());
   parallelBlocks(maxima.size(), options.num_threads, [&](std::size_t i) {
-    const std::vector<int> samples = drawnPoints(points.cols(), options.num_points, options.seed, i);
+    const std::vector<int> samples = drawSamples(points.cols(), options.num_points, options.seed + i);
     const IspResult end = refineSymmetricPoints(surface, samples, maxima[i].plane, isp);
     const auto cell = map.grid.find(end.plane);
     is_stable[i] = cell && map.grid.index(*cell) == map.grid.index(maxima[i].bin);

@@ -138,12 +138,10 @@ private:
   /// on voxels, by up to a degree.
   double blurAt(const Eigen::Vector3d& p) const {
     const Eigen::Array3d t = p.array() - p.array().floor();
-    std::ptrdiff_t at = 0, steps[3];
-    for (int a = 0; a < 3; ++a) {
-      steps[a] = a == 0 ? 1 : steps[a - 1] * f_.size()[a - 1];
-      at += steps[a] * std::clamp(static_cast<int>(p[a] + 0.5), 1, f_.size()[a] - 2);
-    }
-    const float* const v = f_.values().data() + at;
+    const auto [nx, ny, nz] = f_.size();
+    const std::ptrdiff_t steps[] = {1, nx, std::ptrdiff_t{nx} * ny};
+    const Eigen::Array3i c = (p.array() + 0.5).cast<int>().max(1).min(Eigen::Array3i(nx, ny, nz) - 2);
+    const float* const v = f_.values().data() + c.x() + c.y() * steps[1] + c.z() * steps[2];
     double blur = 0.0;
     for (int a = 0; a < 3; ++a) blur += 0.5 * t[a] * (1.0 - t[a]) * (v[steps[a]] - 2.0 * v[0] + v[-steps[a]]);
     return blur;
