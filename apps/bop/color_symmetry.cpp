@@ -13,20 +13,72 @@
 
 #include "core/base/constants.h"
 #include "core/geometry/directions.h"
+#include "pcl_symmetry/core/closest_point_search.h"
 #include "pictures/raster_image.h"
 
 namespace pcl_symmetry::apps {
 
 namespace {
 
-// Share of the surface whose color a symmetry may change.
-constexpr double kMostChanged = 0.05;
-// Samples around a place that may have its color.
-constexpr int kNumColorsNear = 4;
-// Rotations that represent all rotations about an axis.
-constexpr int kNumTurns = 8;
-// Greatest fold of stripes.
-constexpr int kMaxFold = 24;
+constexpr double kMostChanged = 0.05;  // share of the surface whose color a symmetry may change
+constexpr int kNumColorsNear = 4;      // samples around a place that may have its color
+constexpr int kNumTurns = 8;           // rotations that represent all rotations about an axis
+constexpr int kMaxFold = 24;           // greatest fold of stripes
+
+/// CIELAB of an sRGB color under D65.
+/// \param rgb in [0, 1].
+/// \return L in [0, 100], a, b.
+Eigen::Vector3f labOf(const Eigen::Vector3f& rgb) {
+  // The transfer curve of sRGB (IEC 61966-2-1), its primaries, and CIELAB relative to D65.
+  const auto linear = [](float c) { return c <= 0.04045f ? c / 12.92f : std::pow((c + 0.055f) / 1.055f, 2.4f); };
+  Eigen::Matrix3f xyz_rgb;
+  xyz_rgb << 0.4124f, 0.3576f, 0.1805f, 0.2126f, 0.7152f, 0.0722f, 0.0193f, 0.1192f, 0.9505f;
+  const Eigen::Vector3f white(0.9505f, 1.0f, 1.089f);
+  const Eigen::Vector3f xyz = (xyz_rgb * rgb.unaryExpr(linear)).cwiseQuotient(white);
+  const auto curve = [](float t) { return t > 0.008856f ? std::cbrt(t) : 7.787f * t + 16.0f / 116.0f; };
+  const Eigen::Vector3f f = xyz.unaryExpr(curve);
+  return {116.0f * f.y() - 16.0f, 500.0f * (f.x() - f.y()), 200.0f * (f.y() - f.z())};
+}
+
+/// Samples of a surface with the colors next to them.
+class ColoredSurface {
+public:
+  ColoredSurface(const SurfaceColors& colors, Points points, double tolerance)
+      : points_(std::move(points)), tolerance_(tolerance), search_(makeFlannSearch(points_)) {
+    std::vector<int> closest;
+    std::vector<float> ignored;
+    makeFlannSearch(colors.points)->search(points_, 1, closest, ignored);
+    lab_.resize(3, points_.cols());
+    for (Eigen::Index i = 0; i < points_.cols(); ++i)
+      lab_.col(i) = labOf(colors.rgb.col(closest[static_cast<std::size_t>(i)]));
+  }
+
+  /// Share of the surface on which a motion changes the color by more than the tolerance.
+  double changedShare(const Eigen::Isometry3d& motion) const {
+    const Points moved = (motion.cast<float>() * points_.colwise().homogeneous()).eval();
+    std::vector<int> closest;
+    std::vector<float> ignored;
+    const int num_near = std::min(kNumColorsNear, static_cast<int>(points_.cols()));
+    search_->search(moved, num_near, closest, ignored);
+    Eigen::Index num_changed = 0;
+    for (Eigen::Index i = 0; i < moved.cols(); ++i) {
+      float least = (lab_.col(i) - lab_.col(closest[i * num_near])).norm();
+      for (int k = 1; k < num_near; ++k)
+        least = std::min(least, (lab_.col(i) - lab_.col(closest[i * num_near + k])).norm());
+      num_changed += least > tolerance_;
+    }
+    return static_cast<double>(num_changed) / static_cast<double>(moved.cols());
+  }
+
+  /// Whether a motion changes the color of no more than 5 % of the surface.
+  bool keeps(const Eigen::Isometry3d& motion) const { return changedShare(motion) <= kMostChanged; }
+
+private:
+  Points points_;
+  Eigen::Matrix3Xf lab_;
+  double tolerance_;
+  ClosestPointSearch::Ptr search_;
+};
 
 Eigen::Isometry3d turnAbout(const Eigen::Vector3d& axis, double angle, const Eigen::Vector3d& center) {
   return motionFixing(center, rotationAbout(axis, angle));
@@ -109,49 +161,9 @@ ObjectSymmetries sphereGroup(const ObjectSymmetries& found, const ColoredSurface
 
 }  // namespace
 
-Eigen::Vector3f labOf(const Eigen::Vector3f& rgb) {
-  // The transfer curve of sRGB (IEC 61966-2-1), its primaries, and CIELAB relative to D65.
-  const auto linear = [](float c) { return c <= 0.04045f ? c / 12.92f : std::pow((c + 0.055f) / 1.055f, 2.4f); };
-  Eigen::Matrix3f xyz_rgb;
-  xyz_rgb << 0.4124f, 0.3576f, 0.1805f, 0.2126f, 0.7152f, 0.0722f, 0.0193f, 0.1192f, 0.9505f;
-  const Eigen::Vector3f white(0.9505f, 1.0f, 1.089f);
-  const Eigen::Vector3f xyz = (xyz_rgb * rgb.unaryExpr(linear)).cwiseQuotient(white);
-  const auto curve = [](float t) { return t > 0.008856f ? std::cbrt(t) : 7.787f * t + 16.0f / 116.0f; };
-  const Eigen::Vector3f f = xyz.unaryExpr(curve);
-  return {116.0f * f.y() - 16.0f, 500.0f * (f.x() - f.y()), 200.0f * (f.y() - f.z())};
-}
-
-ColoredSurface::ColoredSurface(const SurfaceColors& colors, Points points, double tolerance)
-    : points_(std::move(points)), tolerance_(tolerance), search_(makeFlannSearch(points_)) {
-  std::vector<int> closest;
-  std::vector<float> ignored;
-  makeFlannSearch(colors.points)->search(points_, 1, closest, ignored);
-  lab_.resize(3, points_.cols());
-  for (Eigen::Index i = 0; i < points_.cols(); ++i)
-    lab_.col(i) = labOf(colors.rgb.col(closest[static_cast<std::size_t>(i)]));
-}
-
-double ColoredSurface::changedShare(const Eigen::Isometry3d& motion) const {
-  const Points moved = (motion.cast<float>() * points_.colwise().homogeneous()).eval();
-  std::vector<int> closest;
-  std::vector<float> ignored;
-  const int num_near = std::min(kNumColorsNear, static_cast<int>(points_.cols()));
-  search_->search(moved, num_near, closest, ignored);
-  Eigen::Index num_changed = 0;
-  for (Eigen::Index i = 0; i < moved.cols(); ++i) {
-    float least = (lab_.col(i) - lab_.col(closest[i * num_near])).norm();
-    for (int k = 1; k < num_near; ++k)
-      least = std::min(least, (lab_.col(i) - lab_.col(closest[i * num_near + k])).norm());
-    num_changed += least > tolerance_;
-  }
-  return static_cast<double>(num_changed) / static_cast<double>(moved.cols());
-}
-
-bool ColoredSurface::keeps(const Eigen::Isometry3d& motion) const {
-  return changedShare(motion) <= kMostChanged;
-}
-
-ObjectSymmetries keepingColors(const ObjectSymmetries& found, const ColoredSurface& surface) {
+ObjectSymmetries keepingColors(const ObjectSymmetries& found, const SurfaceColors& colors, const Points& points,
+                               double tolerance) {
+  const ColoredSurface surface(colors, points, tolerance);
   ObjectSymmetries kept;
   if (found.kind == RotationGroupKind::Spherical)
     kept = sphereGroup(found, surface);
@@ -170,8 +182,7 @@ ObjectSymmetries keepingColors(const ObjectSymmetries& found, const ColoredSurfa
 
 namespace {
 
-// Points of a surface with a texture.
-constexpr int kTexturedPoints = 100'000;
+constexpr int kTexturedPoints = 100'000;  // points of a surface with a texture
 constexpr int kMostHeaderLines = 1000;
 
 const pcl::PCLPointField* fieldOf(const pcl::PCLPointCloud2& cloud, const std::vector<const char*>& names) {

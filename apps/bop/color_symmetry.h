@@ -2,12 +2,10 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <memory>
 #include <optional>
 #include <string>
 
 #include "io/shape_input.h"
-#include "pcl_symmetry/core/closest_point_search.h"
 #include "pcl_symmetry/core/point_set.h"
 #include "pcl_symmetry/core/rotational_symmetry.h"
 
@@ -29,36 +27,11 @@ bool hasColors(const Shape& shape);
 /// \throws InputError where the texture cannot be read.
 std::optional<SurfaceColors> surfaceColors(const Shape& shape, const std::string& path);
 
-/// Difference of colors in CIELAB that counts as none.
-constexpr double kColorTolerance = 12.0;
-
-/// CIELAB of an sRGB color under D65.
-/// \param rgb in [0, 1].
-/// \return L in [0, 100], a, b.
-Eigen::Vector3f labOf(const Eigen::Vector3f& rgb);
-
-/// Samples of a surface with the colors next to them.
-class ColoredSurface {
-public:
-  /// \param colors at least one.
-  /// \param points 3 x N, finite, N >= 1, in the frame of the colors.
-  /// \param tolerance difference in CIELAB.
-  ColoredSurface(const SurfaceColors& colors, Points points, double tolerance);
-
-  /// Share of the surface on which a motion changes the color by more than the tolerance.
-  double changedShare(const Eigen::Isometry3d& motion) const;
-
-  /// Whether a motion changes the color of no more than 5 % of the surface.
-  bool keeps(const Eigen::Isometry3d& motion) const;
-
-private:
-  Points points_;
-  Eigen::Matrix3Xf lab_;
-  double tolerance_;
-  ClosestPointSearch::Ptr search_;
-};
-
 /// The greatest group among the symmetries that keeps the colors.
-ObjectSymmetries keepingColors(const ObjectSymmetries& found, const ColoredSurface& surface);
+/// \param colors at least one.
+/// \param points 3 x N of the surface, finite, N >= 1, in the frame of the colors.
+/// \param tolerance difference in CIELAB.
+ObjectSymmetries keepingColors(const ObjectSymmetries& found, const SurfaceColors& colors, const Points& points,
+                               double tolerance);
 
 }  // namespace pcl_symmetry::apps

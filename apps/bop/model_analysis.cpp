@@ -20,8 +20,7 @@ namespace pcl_symmetry::apps {
 
 namespace {
 
-// Points spread over a mesh to measure distances.
-constexpr int kEvidencePoints = 20'000;
+constexpr int kEvidencePoints = 20'000;  // points spread over a mesh to measure distances
 
 void shiftBack(ObjectSymmetries& symmetries, const Eigen::Vector3d& shift) {
   if (shift.isZero(0.0)) return;
@@ -44,8 +43,7 @@ Points sampled(const Shape& shape, const Points& vertices, int num_points, std::
   return shape.mesh ? finitePoints(*sampleMesh(*shape.mesh, num_points, seed)) : vertices;
 }
 
-/// Rejected candidates that are told of, those that fail least.
-constexpr int kMostRejections = 3;
+constexpr int kMostRejections = 3;    // rejected candidates that are told of, those that fail least
 constexpr double kFarFailure = 10.0;  // tolerances; as ObjectSymmetryOptions::max_feature has it
 
 pcl::PointXYZRGB coloredPoint(const Eigen::Vector3f& x, double distance, double tolerance) {
@@ -108,7 +106,7 @@ void compare(ModelInfo& info, const Shape& shape, const Points& vertices, const 
   if (colors) {
     const Points points = sampled(shape, vertices, options.mesh_points, seed);
     const std::string before = info.symmetries.name();
-    info.symmetries = keepingColors(info.symmetries, ColoredSurface(*colors, points, options.color_tolerance));
+    info.symmetries = keepingColors(info.symmetries, *colors, points, options.color_tolerance);
     if (info.symmetries.name() != before) info.group_without_colors = before;
   }
   if (!given && !options.failures_folder) return;

@@ -4,7 +4,6 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
-#include <vector>
 
 #include "bop/color_symmetry.h"
 #include "bop/symmetry_check.h"
@@ -17,7 +16,7 @@ struct ModelOptions {
   ObjectSymmetryOptions symmetries;
   int mesh_points = 10'000;
   bool use_colors = false;
-  double color_tolerance = kColorTolerance;    ///< difference in CIELAB
+  double color_tolerance = 12.0;               ///< difference in CIELAB that counts as none
   bool explain = false;                        ///< tells of rejected rotations and other tolerances
   std::optional<std::string> failures_folder;  ///< where pictures of the rejected rotations go
 };

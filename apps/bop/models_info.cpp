@@ -17,8 +17,7 @@ namespace pcl_symmetry::apps {
 
 namespace {
 
-// Greatest entry of R R^T - I of a rotation in a file.
-constexpr double kRotationError = 0.02;
+constexpr double kRotationError = 0.02;  // greatest entry of R R^T - I of a rotation in a file
 
 using nlohmann::json;
 using nlohmann::ordered_json;
@@ -73,8 +72,7 @@ const json& listOf(const json& entry, const char* field, const std::string& wher
   return entry[field];
 }
 
-// Bytes of a name that a message shows.
-constexpr std::size_t kShownOfName = 40;
+constexpr std::size_t kShownOfName = 40;  // bytes of a name that a message shows
 
 /// A name as it stands in the file, on one line: line breaks and the like stay escaped, and a long one is cut off.
 std::string onOneLine(const std::string& name) {
@@ -159,8 +157,7 @@ std::map<std::string, ListedSymmetries> readModelsInfo(const std::string& path) 
 
 namespace {
 
-// Angle between an axis and a coordinate axis that counts as none.
-constexpr double kAligned = 5.0 * kDegree;
+constexpr double kAligned = 5.0 * kDegree;  // angle between an axis and a coordinate axis that counts as none
 
 const std::string kNames = "xyz";
 

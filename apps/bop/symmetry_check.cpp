@@ -17,8 +17,13 @@ namespace {
 
 // Greatest distance of a point between turns that are one, share of the diameter.
 constexpr double kOneTurn = 0.02;
-// Rotations that represent all rotations about an axis.
-constexpr int kNumAngles = 8;
+constexpr int kNumAngles = 8;  // rotations that represent all rotations about an axis
+
+// Spacings around a sample that count as its plane. No point of an even grid is farther than sqrt(1/2); samples drawn
+// at random leave gaps of twice that.
+constexpr float kReach = 1.5f;
+// Share of the points whose distance is reported. The share of the surface that a symmetry maps onto it.
+constexpr double kDeviationShare = 0.97;
 
 const Eigen::Isometry3d kIdentity = Eigen::Isometry3d::Identity();
 
@@ -216,16 +221,6 @@ void printCheck(const std::string& name, const SymmetryCheck& check, double diam
                 100.0 * disagreement.evidence.deviation / diameter);
   }
 }
-
-namespace {
-
-// Spacings around a sample that count as its plane. No point of an even grid is farther than sqrt(1/2); samples drawn
-// at random leave gaps of twice that.
-constexpr float kReach = 1.5f;
-// Share of the points whose distance is reported. The share of the surface that a symmetry maps onto it.
-constexpr double kDeviationShare = 0.97;
-
-}  // namespace
 
 SurfaceEvidence::SurfaceEvidence(Points points, double tolerance)
     : points_(std::move(points)),

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <boost/algorithm/string.hpp>
-#include <boost/program_options.hpp>
 #include <iostream>
 #include <numeric>
 #include <sstream>
@@ -33,22 +32,11 @@ std::size_t editDistance(const std::string& a, const std::string& b) {
 
 }  // namespace
 
-struct CommandLine::Parser {
-  po::options_description flags{"Flags", 120, 60};  // width of the help and of its right column, characters
-  std::vector<std::pair<std::string, Assign>> assignments;
-  std::vector<std::pair<std::string, bool*>> switches;
-  po::variables_map values;
-};
-
 CommandLine::CommandLine(std::string tool, std::string summary, std::string example)
-    : tool_(std::move(tool)), summary_(std::move(summary)), example_(std::move(example)), parser_(new Parser) {
-  parser_->flags.add_options()("help,h", "print this text")("version", "print the version");
+    : tool_(std::move(tool)), summary_(std::move(summary)), example_(std::move(example)) {
+  flags_.add_options()("help,h", "print this text")("version", "print the version");
   flag_names_ = {"help", "version"};
 }
-
-CommandLine::~CommandLine() = default;
-CommandLine::CommandLine(CommandLine&& other) noexcept = default;
-CommandLine& CommandLine::operator=(CommandLine&& other) noexcept = default;
 
 CommandLine& CommandLine::positional(const std::string& name, std::string& value, const std::string& help) {
   positionals_.push_back({name, help, true, [&value](const std::string& text) { value = text; }});
@@ -68,17 +56,17 @@ CommandLine& CommandLine::positionals(const std::string& name, std::vector<std::
 }
 
 CommandLine& CommandLine::flag(const std::string& name, bool& value, const std::string& help) {
-  parser_->flags.add_options()(name.c_str(), help.c_str());
+  flags_.add_options()(name.c_str(), help.c_str());
   flag_names_.push_back(name);
-  parser_->switches.emplace_back(name, &value);
+  switches_.emplace_back(name, &value);
   return *this;
 }
 
 CommandLine& CommandLine::add(const std::string& name, const std::string& placeholder, const std::string& help,
                               Assign assign) {
-  parser_->flags.add_options()(name.c_str(), po::value<std::string>()->value_name(placeholder), help.c_str());
+  flags_.add_options()(name.c_str(), po::value<std::string>()->value_name(placeholder), help.c_str());
   flag_names_.push_back(name);
-  parser_->assignments.emplace_back(name, std::move(assign));
+  assignments_.emplace_back(name, std::move(assign));
   return *this;
 }
 
@@ -221,7 +209,7 @@ bool CommandLine::parse(int argc, const char* const* argv) {
     return false;
   }
   if (given("version")) {
-    printVersion(tool_);
+    std::cout << tool_ << " " << PCL_SYMMETRY_VERSION << "\n";
     return false;
   }
   assignPositionals();
@@ -231,16 +219,16 @@ bool CommandLine::parse(int argc, const char* const* argv) {
 
 void CommandLine::readTokens(int argc, const char* const* argv) {
   po::options_description all;
-  all.add(parser_->flags);
+  all.add(flags_);
   all.add_options()("positional arguments", po::value<std::vector<std::string>>());
   po::positional_options_description order;
   order.add("positional arguments", -1);
   using namespace po::command_line_style;
-  parser_->values.clear();
+  values_.clear();
   try {
     const int style = allow_long | long_allow_adjacent | long_allow_next | allow_short | allow_dash_for_short |
                       short_allow_next | allow_long_disguise;
-    po::store(po::command_line_parser(argc, argv).options(all).positional(order).style(style).run(), parser_->values);
+    po::store(po::command_line_parser(argc, argv).options(all).positional(order).style(style).run(), values_);
   } catch (const po::unknown_option& error) {
     const std::string unknown = error.get_option_name();
     const std::string closest = closestFlag(unknown);
@@ -252,7 +240,7 @@ void CommandLine::readTokens(int argc, const char* const* argv) {
 
 void CommandLine::assignPositionals() const {
   std::vector<std::string> arguments;
-  if (given("positional arguments")) arguments = parser_->values["positional arguments"].as<std::vector<std::string>>();
+  if (given("positional arguments")) arguments = values_["positional arguments"].as<std::vector<std::string>>();
   const bool repeated = !positionals_.empty() && positionals_.back().repeated;
   if (arguments.size() > positionals_.size() && !repeated) {
     throw UsageError("unexpected argument '" + arguments[positionals_.size()] + "'");
@@ -269,14 +257,14 @@ void CommandLine::assignPositionals() const {
 }
 
 void CommandLine::assignFlags() const {
-  for (const auto& [name, target] : parser_->switches)
+  for (const auto& [name, target] : switches_)
     if (given(name)) *target = true;
-  for (const auto& [name, assign] : parser_->assignments)
-    if (given(name)) assign(parser_->values[name].as<std::string>());
+  for (const auto& [name, assign] : assignments_)
+    if (given(name)) assign(values_[name].as<std::string>());
 }
 
 bool CommandLine::given(const std::string& name) const {
-  return parser_->values.count(name) > 0;
+  return values_.count(name) > 0;
 }
 
 std::string CommandLine::usage() const {
@@ -293,14 +281,9 @@ std::string CommandLine::usage() const {
     text << "  " << argument.name << std::string(width - argument.name.size() + 2, ' ') << argument.help << "\n";
   }
   std::ostringstream flags;
-  flags << parser_->flags;
+  flags << flags_;
   text << "\n" << boost::algorithm::replace_all_copy(flags.str(), " --", " -") << "\nExample:\n  " << example_ << "\n";
   return text.str();
-}
-
-void printVersion(const std::string& tool) {
-  // PCL_SYMMETRY_VERSION: the version of the CMake project.
-  std::cout << tool << " " << PCL_SYMMETRY_VERSION << "\n";
 }
 
 }  // namespace pcl_symmetry::apps

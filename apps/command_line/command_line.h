@@ -3,11 +3,12 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <boost/program_options.hpp>
 #include <cstdint>
 #include <functional>
-#include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "command_line/flag_values.h"
@@ -80,9 +81,6 @@ public:
   /// \param summary one sentence
   /// \param example a complete command
   CommandLine(std::string tool, std::string summary, std::string example);
-  ~CommandLine();
-  CommandLine(CommandLine&& other) noexcept;
-  CommandLine& operator=(CommandLine&& other) noexcept;
 
   /// Arguments without a flag, in the order of declaration; required ones come first.
   CommandLine& positional(const std::string& name, std::string& value, const std::string& help);
@@ -133,7 +131,6 @@ private:
     Assign assign;
     bool repeated = false;
   };
-  struct Parser;  ///< Boost.Program_options, which the tools need not see
 
   CommandLine& add(const std::string& name, const std::string& placeholder, const std::string& help, Assign assign);
   std::string closestFlag(const std::string& unknown) const;
@@ -144,10 +141,10 @@ private:
   std::string tool_, summary_, example_;
   std::vector<Positional> positionals_;
   std::vector<std::string> flag_names_;
-  std::unique_ptr<Parser> parser_;
+  std::vector<std::pair<std::string, Assign>> assignments_;
+  std::vector<std::pair<std::string, bool*>> switches_;
+  boost::program_options::options_description flags_{"Flags", 120, 60};  // widths of the help and of its right column
+  boost::program_options::variables_map values_;
 };
-
-/// Prints the name of a tool and the version of the library, e.g. "pcl_symmetry_planes 0.1.0".
-void printVersion(const std::string& tool);
 
 }  // namespace pcl_symmetry::apps

@@ -38,24 +38,16 @@ struct Range {
 /// \return the value with at most six significant digits.
 std::string shortest(double value);
 
-/// \return the number that the whole text spells.
-/// \throws UsageError starting with `name = text`.
+// All throw UsageError starting with `name = text` where the whole text does not spell such a value.
+
 double parseNumber(const std::string& name, const std::string& text, const Range& range = {});
-/// \return the whole number that the text spells.
-/// \throws UsageError starting with `name = text`.
 std::int64_t parseInteger(const std::string& name, const std::string& text, const Range& range = {});
 int parseInt(const std::string& name, const std::string& text, const Range& range = {});
-
-/// \return the numbers spelled "A,B,C", at least one.
-/// \throws UsageError starting with `name = text`.
+/// "A,B,C", at least one.
 std::vector<double> parseNumbers(const std::string& name, const std::string& text, const Range& range = {});
-
-/// \return the vector spelled "X,Y,Z", all finite.
-/// \throws UsageError starting with `name = text`.
+/// "X,Y,Z", all finite.
 Eigen::Vector3d parseVector(const std::string& name, const std::string& text);
-
-/// \return the choice spelled "auto", "none" or "X,Y,Z".
-/// \throws UsageError otherwise.
+/// "auto", "none" or "X,Y,Z".
 Viewpoint parseViewpoint(const std::string& name, const std::string& text);
 
 }  // namespace pcl_symmetry::apps

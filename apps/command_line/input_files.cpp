@@ -8,7 +8,7 @@
 #include <fstream>
 
 #include "io/file_text.h"
-#include "io/shape_file_kinds.h"
+#include "io/shape_input.h"
 
 namespace pcl_symmetry::apps {
 

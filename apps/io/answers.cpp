@@ -1,7 +1,5 @@
 #include "io/answers.h"
 
-#include "io/exact_coordinates.h"
-
 namespace pcl_symmetry::apps {
 
 const char* toString(PlaneKind kind) {
@@ -30,13 +28,6 @@ nlohmann::json turnsJson(const std::vector<SymmetryTurn>& turns, const Eigen::Ve
                     {"far", turn.far},
                     {"halfway", turn.halfway}});
   return json;
-}
-
-std::string lineOf(const SymmetryTurn& turn, const Eigen::Vector3d& shift) {
-  const std::string order = turn.fold > 0 ? "axis of order " + std::to_string(turn.fold) : "axis of revolution";
-  return order + ": through " + spelled(shiftedBack(turn.point, shift), lengthDigits(shift)) +
-         formatted(" along %.6f %.6f %.6f, confidence %.3f\n", turn.direction.x(), turn.direction.y(),
-                   turn.direction.z(), turn.confidence);
 }
 
 }  // namespace pcl_symmetry::apps

@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "io/exact_coordinates.h"
 #include "pcl_symmetry/core/detect_planes.h"
 #include "pcl_symmetry/viewpoint.h"
 
@@ -25,9 +26,6 @@ std::string counted(std::size_t number, const std::string& one, const std::strin
 /// Axes of turns of scans, one object for each, input frame.
 /// \param shift that was subtracted from the input.
 nlohmann::json turnsJson(const std::vector<SymmetryTurn>& turns, const Eigen::Vector3d& shift);
-
-/// A line such as "axis of order 6: through 0 0 0 along 0.000000 0.000000 1.000000, confidence 0.973".
-std::string lineOf(const SymmetryTurn& turn, const Eigen::Vector3d& shift);
 
 /// JSON as text. Names of files are bytes: what is no UTF-8 is replaced, where nlohmann's default would throw.
 /// \param indent blanks a level; -1: one line
@@ -63,6 +61,17 @@ std::string formatted(const char* format, Values... values) {
   std::string text(static_cast<std::size_t>(std::snprintf(nullptr, 0, format, values...)), '\0');
   std::snprintf(text.data(), text.size() + 1, format, values...);
   return text;
+}
+
+/// A line such as "axis of order 6: through 0 0 0 along 0.000000 0.000000 1.000000, confidence 0.973".
+/// \param axis SymmetryAxis or SymmetryTurn.
+/// \param fold order of the turns; 0: any angle.
+template <typename Axis>
+std::string lineOf(const Axis& axis, int fold, const Eigen::Vector3d& shift) {
+  const std::string order = fold > 0 ? "axis of order " + std::to_string(fold) : "axis of revolution";
+  const Eigen::Vector3d& d = axis.direction;
+  return order + ": through " + spelled(shiftedBack(axis.point, shift), lengthDigits(shift)) +
+         formatted(" along %.6f %.6f %.6f, confidence %.3f\n", d.x(), d.y(), d.z(), axis.confidence);
 }
 
 }  // namespace pcl_symmetry::apps

@@ -1,7 +1,7 @@
 #include "io/cloud_fields.h"
 
 #include <pcl/common/io.h>
-#include <pcl/point_types.h>
+#include <pcl/type_traits.h>
 
 #include <cstring>
 

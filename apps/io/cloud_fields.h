@@ -6,7 +6,6 @@
 
 #include <Eigen/Geometry>
 #include <array>
-#include <cstdint>
 #include <string>
 #include <vector>
 

@@ -1,7 +1,7 @@
-#include "io/cloud_writer.h"
-
 #include <pcl/io/pcd_io.h>
 #include <pcl/io/ply_io.h>
+
+#include "io/shape_output.h"
 
 namespace pcl_symmetry::apps {
 

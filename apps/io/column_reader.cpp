@@ -5,7 +5,7 @@
 #include <boost/algorithm/string.hpp>
 #include <optional>
 
-#include "io/header_lines.h"
+#include "io/file_text.h"
 
 namespace pcl_symmetry::apps {
 

@@ -15,8 +15,7 @@ namespace {
 
 /// Spacing of float numbers, relative. 23 bits of mantissa.
 constexpr double kFloatSpacing = 0x1.0p-23;
-/// Spacing of coordinates that is allowed, in extents.
-constexpr double kAllowedSpacing = 1e-5;
+constexpr double kAllowedSpacing = 1e-5;  // spacing of coordinates that is allowed, in extents
 
 }  // namespace
 

@@ -1,14 +1,15 @@
 #include "io/file_text.h"
 
-#include <sys/stat.h>
-
 #include <algorithm>
+#include <boost/algorithm/string.hpp>
 #include <boost/filesystem.hpp>
 #include <cctype>
 #include <cerrno>
 #include <charconv>
+#include <cstdio>
 #include <cstdlib>
 #include <cstring>
+#include <fstream>
 
 namespace pcl_symmetry::apps {
 
@@ -25,20 +26,11 @@ void checkReadableFile(const std::string& path) {
     throw InputError(path + ": cannot be opened, " + std::strerror(errno));
 }
 
-std::string readWholeFile(const std::string& path) {
-  checkReadableFile(path);
-  std::FILE* const file = std::fopen(path.c_str(), "rb");
-  if (!file) throw InputError(path + ": cannot be opened, " + std::strerror(errno));
-  std::string text = readAll(file, path);
-  std::fclose(file);
-  return text;
-}
+namespace {
 
+/// \param name in errors.
 std::string readAll(std::FILE* file, const std::string& name) {
   std::string text;
-  struct stat status {};
-  if (::fstat(::fileno(file), &status) == 0 && S_ISREG(status.st_mode))
-    text.reserve(static_cast<std::size_t>(status.st_size) + 1);
   constexpr std::size_t kPiece = 1 << 16;
   std::size_t size = 0;
   do {
@@ -49,6 +41,56 @@ std::string readAll(std::FILE* file, const std::string& name) {
   if (std::ferror(file)) throw InputError(name + ": cannot be read, " + std::strerror(errno));
   if (text.empty()) throw InputError(name + ": is empty (0 bytes)");
   return text;
+}
+
+}  // namespace
+
+std::string readWholeFile(const std::string& path) {
+  checkReadableFile(path);
+  std::FILE* const file = std::fopen(path.c_str(), "rb");
+  if (!file) throw InputError(path + ": cannot be opened, " + std::strerror(errno));
+  std::string text = readAll(file, path);
+  std::fclose(file);
+  return text;
+}
+
+std::string readStandardInput() {
+  static bool read_before = false;
+  if (read_before) throw InputError("standard input: can be read only once");
+  read_before = true;
+  return readAll(stdin, "standard input");
+}
+
+void reject(const std::string& path, const std::string& what) {
+  throw InputError(path + ": " + what);
+}
+
+std::uint64_t headerCount(const std::string& path, const std::string& key, const std::string& value,
+                          std::uint64_t largest) {
+  std::uint64_t count = 0;
+  if (!spellsCount(value, &count)) reject(path, key + " = " + value + ", must be a whole number >= 0");
+  if (count > largest) reject(path, key + " = " + value + ", must be <= " + std::to_string(largest));
+  return count;
+}
+
+std::vector<std::string> split(std::string_view line) {
+  std::vector<std::string> words;
+  const std::string trimmed = boost::algorithm::trim_copy(std::string(line));
+  if (!trimmed.empty()) boost::algorithm::split(words, trimmed, boost::is_space(), boost::token_compress_on);
+  return words;
+}
+
+bool isPrintable(std::string_view line) {
+  return std::all_of(line.begin(), line.end(), [](unsigned char c) { return c == '\t' || c >= 32; });
+}
+
+bool LineReader::next(std::string_view& line) {
+  if (position_ >= text_.size()) return false;
+  const std::size_t end = std::min(text_.find('\n', position_), text_.size());
+  line = text_.substr(position_, end - position_);
+  if (!line.empty() && line.back() == '\r') line.remove_suffix(1);
+  position_ = std::min(end + 1, text_.size());
+  return true;
 }
 
 bool spellsNumber(std::string_view token, double* value) {

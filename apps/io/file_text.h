@@ -1,9 +1,8 @@
-/// Byte-exact reading of the textual parts of shape files.
+/// Byte-exact reading of files, and the textual parts of shape files: lines, words, numbers.
 #pragma once
 
 #include <cstdint>
-#include <cstdio>
-#include <fstream>
+#include <limits>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -12,6 +11,11 @@
 
 namespace pcl_symmetry::apps {
 
+/// \return whether the name stands for standard input, or output.
+inline bool isStandardStream(const std::string& path) {
+  return path == "-";
+}
+
 /// \throws InputError unless `path` is a file that can be opened.
 void checkReadableFile(const std::string& path);
 
@@ -19,9 +23,40 @@ void checkReadableFile(const std::string& path);
 /// \throws InputError if it cannot be read or is empty.
 std::string readWholeFile(const std::string& path);
 
-/// \return what is left of an open file.
-/// \param name in errors.
-std::string readAll(std::FILE* file, const std::string& name);
+/// \return all of standard input.
+/// \throws InputError where it is empty, cannot be read or was read before.
+std::string readStandardInput();
+
+/// Points of a file at most. PCL's indices are 32-bit integers.
+constexpr std::uint64_t kMaxPoints = std::numeric_limits<std::int32_t>::max();
+
+/// \throws InputError `path: what`.
+[[noreturn]] void reject(const std::string& path, const std::string& what);
+
+/// \return the whole number that the value of a header entry spells.
+/// \throws InputError naming the key and the rule.
+std::uint64_t headerCount(const std::string& path, const std::string& key, const std::string& value,
+                          std::uint64_t largest);
+
+/// \return the words of a line, between blanks.
+std::vector<std::string> split(std::string_view line);
+
+/// \return whether a line holds no control characters but tabs.
+bool isPrintable(std::string_view line);
+
+/// Reads line by line and knows where the next line begins.
+class LineReader {
+public:
+  explicit LineReader(std::string_view text) : text_(text) {}
+
+  /// \return false at the end of the text.
+  bool next(std::string_view& line);
+  std::size_t position() const { return position_; }
+
+private:
+  std::string_view text_;
+  std::size_t position_ = 0;
+};
 
 /// Walks through text token by token; a '#' opens a comment that ends with its line.
 class TokenReader {

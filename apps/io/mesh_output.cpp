@@ -5,12 +5,10 @@
 #include <boost/algorithm/string.hpp>
 #include <cmath>
 #include <functional>
-#include <limits>
 #include <ostream>
 
 #include "io/cloud_fields.h"
 #include "io/exact_coordinates.h"
-#include "io/file_text.h"
 #include "io/shape_output.h"
 #include "pictures/colors.h"
 
@@ -71,15 +69,6 @@ pcl::PCLPointCloud2 facesAsPoints(const Shape& shape) {
 }
 
 }  // namespace
-
-std::vector<int> readFaceLabels(const std::string& path) {
-  const std::string text = readWholeFile(path);
-  TokenReader reader(text, path);
-  std::vector<int> labels;
-  while (!reader.atEnd())
-    labels.push_back(static_cast<int>(reader.count("segment of face", labels.size(), std::numeric_limits<int>::max())));
-  return labels;
-}
 
 void writeFaceLabels(const std::string& path, const std::vector<int>& labels) {
   std::string text;

@@ -11,12 +11,7 @@
 
 namespace pcl_symmetry::apps {
 
-/// Reads a file of the Princeton Segmentation Benchmark: the segment of each face of a mesh, one whole number a line.
-/// \return one label >= 0 per face.
-/// \throws InputError naming the first line that is wrong.
-std::vector<int> readFaceLabels(const std::string& path);
-
-/// Writes such a file whole.
+/// Writes a file of the Princeton Segmentation Benchmark: the segment of each face of a mesh, one whole number a line.
 void writeFaceLabels(const std::string& path, const std::vector<int>& labels);
 
 /// Writes the segments of a shape.

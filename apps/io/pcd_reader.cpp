@@ -8,12 +8,13 @@
 #include <limits>
 #include <map>
 
-#include "io/header_lines.h"
+#include "io/file_text.h"
 
 namespace pcl_symmetry::apps {
 
 namespace {
 
+using Words = std::vector<std::string>;
 using PCDHeader = std::map<std::string, Words>;
 
 /// \return a * b, or the greatest number where the product does not fit.

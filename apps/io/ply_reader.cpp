@@ -11,7 +11,7 @@
 #include <optional>
 #include <set>
 
-#include "io/header_lines.h"
+#include "io/file_text.h"
 
 namespace pcl_symmetry::apps {
 
@@ -60,7 +60,7 @@ std::uint8_t plyType(const std::string& path, const std::string& word) {
   return entry->second;
 }
 
-void addPLYProperty(const std::string& path, const Words& words, PLYElement& element) {
+void addPLYProperty(const std::string& path, const std::vector<std::string>& words, PLYElement& element) {
   const bool is_list = words.size() == 5 && words[1] == "list";
   if (words.size() != 3 && !is_list) reject(path, "malformed PLY property");
   PLYProperty property{words.back(), plyType(path, words[words.size() - 2]), std::nullopt};
@@ -77,7 +77,7 @@ PLYHeader readPLYHeader(const std::string& path, std::string_view text) {
   std::set<std::string> names;
   while (lines.next(line)) {
     if (!isPrintable(line)) reject(path, "PLY header ends before end_header");
-    const Words words = split(line);
+    const std::vector<std::string> words = split(line);
     if (words.empty() || words[0] == "comment" || words[0] == "obj_info") continue;
     if (words[0] == "format" && words.size() == 3) {
       header.format = words[1];

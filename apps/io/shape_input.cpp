@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <boost/algorithm/string.hpp>
 #include <boost/filesystem.hpp>
+#include <cctype>
+#include <cstring>
 #include <new>
 #include <utility>
 #include <vector>
@@ -15,7 +17,6 @@
 #include "io/input_shape.h"
 #include "io/load_module.h"
 #include "io/shape_readers.h"
-#include "io/standard_streams.h"
 #include "pictures/drawing.h"
 
 namespace pcl_symmetry::apps {
@@ -73,6 +74,23 @@ Shape fromExact(const std::string& path, ExactShape exact) {
   return completed(path, std::move(shape));
 }
 
+/// Binary STL: 80 bytes, the number of triangles, 50 bytes each.
+bool isBinarySTL(const std::string& content) {
+  if (content.size() < 84) return false;
+  std::uint32_t num_triangles = 0;
+  std::memcpy(&num_triangles, content.data() + 80, sizeof(num_triangles));
+  return num_triangles > 0 && content.size() >= 84 + 50 * std::uint64_t{num_triangles};
+}
+
+bool isOFF(const std::string& word) {
+  const std::size_t tail = word.find("OFF");
+  return tail != std::string::npos && tail <= 4 && word.find_first_not_of("STCN") >= tail;
+}
+
+bool isOneOf(const std::string& word, std::initializer_list<const char*> words) {
+  return std::find(words.begin(), words.end(), word) != words.end();
+}
+
 /// \param name of the file in errors.
 Shape shapeOf(const std::string& name, std::string text, const std::string& extension) {
   try {
@@ -80,7 +98,7 @@ Shape shapeOf(const std::string& name, std::string text, const std::string& exte
     if (extension == ".ply") return fromCloudFile(name, readPLY(name, text));
     if (extension == ".off") return fromExact(name, readOFF(name, text));
     if (extension == ".obj") return fromExact(name, readOBJ(name, text));
-    if (isColumnFile(extension)) return fromExact(name, readColumns(name, text));
+    if (isOneOf(extension, {".xyz", ".pts", ".asc", ".txt", ".csv"})) return fromExact(name, readColumns(name, text));
     if (extension == ".stl" || extension == ".glb") {
       ExactShape shape;
       functionOf<decltype(readMesh)>("pcl_symmetry_mesh_files", "readMesh")(name, text, extension.substr(1), shape);
@@ -97,6 +115,23 @@ Shape shapeOf(const std::string& name, std::string text, const std::string& exte
 }
 
 }  // namespace
+
+std::string extensionOfContent(const std::string& content) {
+  if (boost::algorithm::starts_with(content, "glTF")) return ".glb";
+  if (boost::algorithm::starts_with(content, "# .PCD")) return ".pcd";
+  const std::string begin = content.substr(0, 1 << 16);
+  TokenReader tokens(begin, "standard input");
+  const std::string word(tokens.next());
+  if (word == "ply") return ".ply";
+  if (isOneOf(word, {"VERSION", "FIELDS", "COLUMNS"})) return ".pcd";
+  if (boost::algorithm::iequals(word, "solid") || isBinarySTL(content)) return ".stl";
+  if (isOneOf(word, {"v", "vn", "vt", "o", "g", "s", "mtllib", "usemtl"})) return ".obj";
+  if (isOFF(word)) return ".off";
+  const bool has_number = begin.find_first_of("0123456789") != std::string::npos;
+  const bool is_text =
+      std::all_of(begin.begin(), begin.end(), [](unsigned char c) { return c >= ' ' || std::isspace(c); });
+  return has_number && is_text ? ".xyz" : "";
+}
 
 Shape loadShape(const std::string& path) {
   const bool is_stdin = isStandardStream(path);

@@ -12,11 +12,16 @@
 #include <vector>
 
 #include "command_line/tool_errors.h"
-#include "io/shape_file_kinds.h"
 #include "pcl_symmetry/core/point_set.h"
 #include "pcl_symmetry/core/scalar_grid.h"
 
 namespace pcl_symmetry::apps {
+
+/// The endings of files that loadShape() reads, for help and messages.
+inline const char* const kShapeFiles = ".pcd, .ply, .obj, .stl, .off, .glb, .xyz, .pts, .asc, .txt or .csv";
+
+/// Those that are taken from folders, where .txt and .csv hold many other things.
+inline const char* const kShapeFilesOfFolders = ".pcd, .ply, .obj, .stl, .off, .glb, .xyz, .pts or .asc";
 
 /// What a file holds. Points may be non-finite, as scanners write them.
 struct Shape {
@@ -34,6 +39,9 @@ struct Shape {
 /// is that of a pipe without extension
 /// \throws InputError naming the file, what is wrong and the rule
 Shape loadShape(const std::string& path);
+
+/// \return the extension that a shape file of this content has, such as ".pcd"; empty where it is of no known kind.
+std::string extensionOfContent(const std::string& content);
 
 /// \return the mesh where a volume has a value.
 /// \throws InputError naming the file where there is no such place.

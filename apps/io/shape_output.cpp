@@ -1,23 +1,26 @@
 #include "io/shape_output.h"
 
+#include <fcntl.h>
 #include <pcl/common/io.h>
 #include <pcl/exceptions.h>
 #include <sys/mman.h>
 #include <unistd.h>
 
 #include <algorithm>
+#include <atomic>
 #include <boost/algorithm/string.hpp>
 #include <boost/filesystem.hpp>
 #include <cerrno>
+#include <csignal>
 #include <cstdio>
 #include <cstring>
 #include <fstream>
 #include <iostream>
+#include <mutex>
 #include <optional>
 
+#include "io/file_text.h"
 #include "io/load_module.h"
-#include "io/standard_streams.h"
-#include "io/temporary_file.h"
 
 namespace pcl_symmetry::apps {
 
@@ -92,6 +95,47 @@ private:
   int descriptor_;
 };
 
+/// The file that is being written, which a signal that ends the program removes.
+std::atomic<const char*> pending_file{nullptr};
+std::mutex pending_file_mutex;
+
+extern "C" void removePendingFile(int signal) {
+  if (const char* const name = pending_file) ::unlink(name);
+  std::signal(signal, SIG_DFL);
+  std::raise(signal);
+}
+
+/// A new file, one at a time, which is gone when it goes out of scope, or when SIGINT, SIGTERM or SIGHUP ends the
+/// program.
+class TemporaryFile {
+public:
+  /// \param model with % signs, each replaced by a random digit.
+  explicit TemporaryFile(const fs::path& model) : lock_(pending_file_mutex), name_(fs::unique_path(model).string()) {
+    for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
+      struct sigaction action {};
+      sigaction(signal, nullptr, &action);
+      if (action.sa_handler == SIG_DFL) std::signal(signal, removePendingFile);
+    }
+    const int descriptor = ::open(name_.c_str(), O_CREAT | O_EXCL | O_WRONLY | O_CLOEXEC, 0666);
+    if (descriptor < 0) return;
+    pending_file = name_.c_str();
+    ::close(descriptor);
+  }
+  ~TemporaryFile() {
+    if (pending_file.exchange(nullptr)) ::unlink(name_.c_str());
+  }
+  TemporaryFile(const TemporaryFile&) = delete;
+  TemporaryFile& operator=(const TemporaryFile&) = delete;
+
+  /// \return whether it could be made; errno says why not.
+  bool exists() const { return pending_file != nullptr; }
+  const std::string& name() const { return name_; }
+
+private:
+  std::lock_guard<std::mutex> lock_;
+  std::string name_;
+};
+
 /// Extension of the file that a cloud is written to, in lower case; .pcd for standard output.
 std::string lowerExtension(const std::string& path) {
   if (isStandardStream(path)) return ".pcd";
@@ -121,21 +165,16 @@ void writeStream(const std::string& path, const std::function<void(std::ostream&
   boost::system::error_code ignored;
   const bool is_special = fs::exists(target, ignored) && !fs::is_regular_file(target, ignored);  // a pipe or a device
   const fs::path final_name = fs::is_symlink(target, ignored) ? fs::canonical(target, ignored) : target;
-  const std::string temporary =
-      is_special ? path
-                 : makeUniqueFile((final_name.parent_path() /
-                                   ("." + target.stem().string() + ".%%%%%%%%" + target.extension().string()))
-                                      .string());
-  if (temporary.empty()) failToWrite(path, std::strerror(errno));
-  std::optional<TemporaryFile> guard;
-  if (!is_special) guard.emplace(temporary);
-  {
-    std::ofstream stream(temporary, std::ios::binary);
-    write(stream);
-    stream.close();
-    if (!stream) failToWrite(path, std::strerror(errno));
-  }
-  if (!is_special && std::rename(temporary.c_str(), final_name.c_str()) != 0) failToWrite(path, std::strerror(errno));
+  std::optional<TemporaryFile> temporary;
+  if (!is_special)
+    temporary.emplace(final_name.parent_path() /
+                      ("." + target.stem().string() + ".%%%%%%%%" + target.extension().string()));
+  if (temporary && !temporary->exists()) failToWrite(path, std::strerror(errno));
+  std::ofstream stream(temporary ? temporary->name() : path, std::ios::binary);
+  write(stream);
+  stream.close();
+  if (!stream || (temporary && std::rename(temporary->name().c_str(), final_name.c_str()) != 0))
+    failToWrite(path, std::strerror(errno));
 }
 
 void writeAtomically(const std::string& path, const std::function<void(const std::string&)>& writer) {

@@ -9,18 +9,18 @@
 #include <string>
 
 #include "command_line/tool_errors.h"
-#include "io/cloud_writer.h"
 
 namespace pcl_symmetry::apps {
+
+enum class PCDEncoding { Ascii, Binary, BinaryCompressed };
 
 /// Lets a tool refuse before the long work.
 /// \throws InputError where no file of this name can be made: its folder is missing, or it is a folder.
 void checkTarget(const std::string& path);
 
 /// Everything that tools write goes this way: into a temporary file beside `path`, which is renamed when it is whole.
-/// It
-/// is removed if the disk is full, if the writer throws and if a signal ends the program. With the path "-" the bytes go
-/// to standard output; pipes and devices are written as they are.
+/// It is removed if the disk is full, if the writer throws and if a signal ends the program. With the path "-" the bytes
+/// go to standard output; pipes and devices are written as they are.
 /// \throws InputError if the folder is missing or not writable or the disk is full; whatever the writer throws.
 void writeStream(const std::string& path, const std::function<void(std::ostream&)>& writer);
 
@@ -32,7 +32,7 @@ void writeAtomically(const std::string& path, const std::function<void(const std
 /// \throws InputError if it cannot be made.
 void makeFolder(const std::string& path);
 
-/// Writes text, e.g. JSON, as it is.
+/// Writes text as it is.
 void writeText(const std::string& path, const std::string& text);
 
 /// Writes a cloud with all its fields and the pose of the sensor; PCD or (binary) PLY by the extension of the name;
@@ -43,5 +43,12 @@ void saveCloud(const std::string& path, const pcl::PCLPointCloud2& cloud, const 
 
 /// \throws UsageError unless saveCloud() knows the extension; lets a tool refuse before the long work.
 void checkCloudExtension(const std::string& path);
+
+/// PCL's writers, in the module pcl_symmetry_cloud_files.
+/// \param extension ".ply" or ".pcd"; the encoding is that of PCD.
+/// \return false, or throws what PCL throws, where PCL reports a failure; it does not notice all.
+extern "C" bool writeCloudFile(const std::string& path, const std::string& extension, const pcl::PCLPointCloud2& cloud,
+                               const Eigen::Vector4f& origin, const Eigen::Quaternionf& orientation,
+                               PCDEncoding encoding);
 
 }  // namespace pcl_symmetry::apps

@@ -21,7 +21,6 @@
 #include <algorithm>
 #include <boost/algorithm/string.hpp>
 #include <boost/filesystem.hpp>
-#include <cstdlib>
 #include <fstream>
 #include <iostream>
 #include <map>
@@ -29,7 +28,7 @@
 #include <sstream>
 
 #include "command_line/tool_errors.h"
-#include "io/header_lines.h"
+#include "io/file_text.h"
 #include "io/input_shape.h"
 #include "pictures/drawing.h"
 #include "pictures/vtk_messages.h"

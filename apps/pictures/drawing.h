@@ -32,7 +32,6 @@ void requireDisplay(const std::string& name);
 
 /// All throw InputError naming the file where they fail.
 extern "C" {
-/// \param scenes checked.
 void drawScenes(const std::vector<PictureScene>& scenes, const PictureTarget& target, int num_columns);
 void decodeImage(const std::string& path, bool png, RasterImage& image);
 void encodeImage(const RasterImage& image, const std::string& path, const std::string& file);

@@ -16,8 +16,7 @@ namespace pcl_symmetry::apps {
 
 namespace {
 
-/// Neighbors that give the normal of a point.
-constexpr int kShadingNeighbors = 12;
+constexpr int kShadingNeighbors = 12;  // neighbors that give the normal of a point
 constexpr std::size_t kMinShadedPoints = 16;
 
 /// \return the corners of the square of the given size around the given center, upright as far as the plane allows.

@@ -32,8 +32,7 @@ std::array<Eigen::Vector3d, 4> patchCorners(const PlanePatch& plane, const Pictu
 /// own.
 std::pair<Eigen::Vector3d, Eigen::Vector3d> axisEnds(const AxisLine& axis, const PictureScene& scene);
 
-/// More points shade themselves by their density.
-constexpr std::size_t kMaxShadedPoints = 200'000;
+constexpr std::size_t kMaxShadedPoints = 200'000;  // more points shade themselves by their density
 
 /// \return 3 x N, unit, of arbitrary sign, one for each point; not finite where the point is not, and for clouds of
 /// fewer than 16 or more than kMaxShadedPoints points.

@@ -49,7 +49,6 @@ struct PictureScene {
   pcl::PointCloud<pcl::PointXYZ>::ConstPtr points;  ///< non-finite points are not drawn
   std::optional<pcl::PolygonMesh> mesh = {};        ///< drawn in light gray
   std::vector<PicturePanel> panels = {};            ///< at least one
-  int num_columns = 0;                              ///< 0 = as square as the panels allow
   Eigen::Vector3d view = {1.0, -1.6, 0.8};          ///< from the scene toward the camera
   Eigen::Vector3d up = Eigen::Vector3d::UnitZ();
   bool show_color_bar = true;  ///< legend of the support, in panels that have support
@@ -58,17 +57,14 @@ struct PictureScene {
 /// Turns the view so that \p up is to it what z was; any length but zero.
 void standUpright(PictureScene& scene, const Eigen::Vector3d& up);
 
-/// \throws std::invalid_argument for a scene that does not fit together.
-void checkScene(const PictureScene& scene);
-
 /// Renders off screen and writes a PNG whole. Needs a display; tools start one with xvfb-run, see runTool().
-/// \param width, height of the whole picture in pixels, 16 to 16384.
-/// \throws std::invalid_argument for a scene that does not fit together, InputError if nothing can draw or the file
-/// cannot be written.
+/// \param width, height of the whole picture in pixels.
+/// \throws InputError if nothing can draw or the file cannot be written.
 void renderPicture(const PictureScene& scene, const std::string& path, int width, int height);
 
 /// The panels of several scenes in one picture, row by row.
-/// \param num_columns of all panels, 0 = as square as the panels allow; that of the scenes does not count.
+/// \param scenes at least one.
+/// \param num_columns of all panels, 0 = as square as the panels allow.
 void renderPicture(const std::vector<PictureScene>& scenes, const std::string& path, int width, int height,
                    int num_columns = 0);
 

@@ -1,6 +1,5 @@
 #include "pictures/picture_actors.h"
 
-#include <pcl/common/point_tests.h>
 #include <pcl/conversions.h>
 #include <vtkCellArray.h>
 #include <vtkCellData.h>
@@ -14,13 +13,8 @@
 #include <vtkTextProperty.h>
 #include <vtkUnsignedCharArray.h>
 
-#include <Eigen/Eigenvalues>
-#include <Eigen/Geometry>
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <limits>
-#include <utility>
 
 #include "pictures/patch_geometry.h"
 
@@ -31,6 +25,22 @@ namespace {
 void addColor(vtkUnsignedCharArray& colors, const Eigen::Vector3d& color) {
   for (int k = 0; k < 3; ++k)
     colors.InsertNextValue(static_cast<unsigned char>(std::lround(255 * std::clamp(color[k], 0.0, 1.0))));
+}
+
+/// Adds what has one color and no light.
+/// \return how it is drawn.
+vtkSmartPointer<vtkPolyDataMapper> addPlain(vtkRenderer& renderer, vtkPolyData* data, const Eigen::Vector3d& color,
+                                            double line_width, double opacity = 1.0) {
+  vtkNew<vtkPolyDataMapper> mapper;
+  mapper->SetInputData(data);
+  vtkNew<vtkActor> actor;
+  actor->SetMapper(mapper);
+  actor->GetProperty()->SetColor(color.x(), color.y(), color.z());
+  actor->GetProperty()->SetOpacity(opacity);
+  actor->GetProperty()->SetLineWidth(static_cast<float>(line_width));
+  actor->GetProperty()->LightingOff();
+  renderer.AddActor(actor);
+  return mapper;
 }
 
 }  // namespace
@@ -124,7 +134,6 @@ vtkSmartPointer<vtkActor> meshActor(const pcl::PolygonMesh& mesh, const PictureP
 
 void addAxis(vtkRenderer& renderer, const AxisLine& axis, const PictureScene& scene, const Normalization& normalize,
              double line_width) {
-  const bool is_short = axis.half_length > 0.0;
   const auto [begin, end] = axisEnds(axis, scene);
   vtkNew<vtkPoints> points;
   points->InsertNextPoint(normalize(begin).data());
@@ -135,20 +144,11 @@ void addAxis(vtkRenderer& renderer, const AxisLine& axis, const PictureScene& sc
   vtkNew<vtkPolyData> data;
   data->SetPoints(points);
   data->SetLines(line);
-  vtkNew<vtkPolyDataMapper> mapper;
-  mapper->SetInputData(data);
-  if (is_short) {
-    // Steps of the depth buffer.
-    constexpr double kInFront = -66'000.0;
-    mapper->SetResolveCoincidentTopologyToPolygonOffset();
-    mapper->SetRelativeCoincidentTopologyLineOffsetParameters(0.0, kInFront);
-  }
-  vtkNew<vtkActor> actor;
-  actor->SetMapper(mapper);
-  actor->GetProperty()->SetColor(axis.color.x(), axis.color.y(), axis.color.z());
-  actor->GetProperty()->SetLineWidth(static_cast<float>(line_width));
-  actor->GetProperty()->LightingOff();
-  renderer.AddActor(actor);
+  const auto mapper = addPlain(renderer, data, axis.color, line_width);
+  if (!(axis.half_length > 0.0)) return;
+  constexpr double kInFront = -66'000.0;  // steps of the depth buffer
+  mapper->SetResolveCoincidentTopologyToPolygonOffset();
+  mapper->SetRelativeCoincidentTopologyLineOffsetParameters(0.0, kInFront);
 }
 
 void addPlane(vtkRenderer& renderer, const PlanePatch& plane, const PictureScene& scene, const Normalization& normalize,
@@ -160,24 +160,13 @@ void addPlane(vtkRenderer& renderer, const PlanePatch& plane, const PictureScene
   vtkNew<vtkCellArray> quad, outline;
   quad->InsertNextCell(4, loop);
   outline->InsertNextCell(5, loop);
-  for (const bool filled : {true, false}) {
-    vtkNew<vtkPolyData> data;
-    data->SetPoints(points);
-    if (filled) {
-      data->SetPolys(quad);
-    } else {
-      data->SetLines(outline);
-    }
-    vtkNew<vtkPolyDataMapper> mapper;
-    mapper->SetInputData(data);
-    vtkNew<vtkActor> actor;
-    actor->SetMapper(mapper);
-    actor->GetProperty()->SetColor(plane.color.x(), plane.color.y(), plane.color.z());
-    actor->GetProperty()->SetOpacity(filled ? 0.25 : 1.0);
-    actor->GetProperty()->SetLineWidth(static_cast<float>(line_width));
-    actor->GetProperty()->LightingOff();
-    renderer.AddActor(actor);
-  }
+  vtkNew<vtkPolyData> filled, border;
+  filled->SetPoints(points);
+  filled->SetPolys(quad);
+  addPlain(renderer, filled, plane.color, line_width, 0.25);
+  border->SetPoints(points);
+  border->SetLines(outline);
+  addPlain(renderer, border, plane.color, line_width);
 }
 
 vtkSmartPointer<vtkTextActor> labelActor(const std::string& text, int font_size) {

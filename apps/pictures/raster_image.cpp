@@ -27,21 +27,16 @@ void RasterImage::drawDisk(const Eigen::Vector2d& center, double radius, const E
       if ((Eigen::Vector2d(x, y) - center).squaredNorm() <= radius * radius) set(x, y, color);
 }
 
-void RasterImage::paste(const RasterImage& tile, int x, int y) {
-  for (int row = 0; row < tile.height; ++row) std::memcpy(at(x, y + row), tile.at(0, row), 3 * std::size_t(tile.width));
-}
-
 RasterImage sideBySide(const std::vector<RasterImage>& tiles, int num_columns) {
   constexpr int kGap = 4;  // pixels between pictures
   const int num = static_cast<int>(tiles.size()), columns = num_columns > 0 ? std::min(num_columns, num) : num;
   const int rows = (num + columns - 1) / columns, width = tiles[0].width + kGap, height = tiles[0].height + kGap;
   RasterImage image(columns * width - kGap, rows * height - kGap);
-  for (int i = 0; i < num; ++i) image.paste(tiles[i], i % columns * width, i / columns * height);
+  for (int i = 0; i < num; ++i)
+    for (int row = 0; row < tiles[i].height; ++row)
+      std::memcpy(image.at(i % columns * width, i / columns * height + row), tiles[i].at(0, row),
+                  3 * std::size_t(tiles[i].width));
   return image;
-}
-
-bool isImagePath(const std::string& path) {
-  return boost::algorithm::iends_with(path, ".png") || boost::algorithm::iends_with(path, ".pgm");
 }
 
 RasterImage readImage(const std::string& path) {
@@ -97,7 +92,8 @@ pcl::PointCloud<pcl::PointXYZ>::Ptr contourOfImage(const RasterImage& image, boo
 }
 
 pcl::PointCloud<pcl::PointXYZ>::Ptr loadContour(const std::string& path, bool filled) {
-  return isImagePath(path) ? contourOfImage(readImage(path), filled, path) : loadShape(path).points;
+  const bool is_image = boost::algorithm::iends_with(path, ".png") || boost::algorithm::iends_with(path, ".pgm");
+  return is_image ? contourOfImage(readImage(path), filled, path) : loadShape(path).points;
 }
 
 }  // namespace pcl_symmetry::apps

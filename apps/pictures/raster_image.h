@@ -33,20 +33,13 @@ struct RasterImage {
   void set(int x, int y, const Eigen::Vector3d& color);
 
   /// Fills the disk, at least the pixel that its center is in; what lies outside the picture is left out.
-  /// \param center
-  /// pixels, (0, 0) = middle of the first one.
+  /// \param center pixels, (0, 0) = middle of the first one.
   void drawDisk(const Eigen::Vector2d& center, double radius, const Eigen::Vector3d& color);
-
-  /// Copies \p tile to (x, y), which it must fit at.
-  void paste(const RasterImage& tile, int x, int y);
 };
 
 /// Pictures of one size in rows, with white gaps.
 /// \param num_columns 0 = one row.
 RasterImage sideBySide(const std::vector<RasterImage>& tiles, int num_columns = 0);
-
-/// \return whether the name ends as pictures do that readImage() knows: .png or .pgm, in capitals or not.
-bool isImagePath(const std::string& path);
 
 /// Gray pictures get three equal channels, transparent ones a white ground.
 /// \throws InputError for a file that is no PNG or binary PGM picture of 8 or 16 bits.

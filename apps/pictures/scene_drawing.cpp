@@ -26,9 +26,8 @@ namespace pcl_symmetry::apps {
 
 namespace {
 
-/// Pictures up to this edge, pixels, are drawn at twice their size.
-constexpr int kMaxSuperSampled = 4096;
-constexpr double kViewAngle = 25.0;  ///< degrees
+constexpr int kMaxSuperSampled = 4096;  // pictures up to this edge, pixels, are drawn at twice their size
+constexpr double kViewAngle = 25.0;     ///< degrees
 
 /// Places the camera so that all of the panel lies inside the picture, below the label and left of the color bar.
 /// \param bar_share part of the panel's width that the color bar takes.

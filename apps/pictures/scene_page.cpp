@@ -8,7 +8,6 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <set>
-#include <stdexcept>
 #include <vector>
 
 #include "io/shape_output.h"
@@ -23,11 +22,9 @@ extern const char* const kPageViewer;   ///< JavaScript
 
 namespace {
 
-/// Points of a page.
-constexpr std::size_t kMaxPagePoints = 200'000;
-constexpr int kBarColors = 12;  // the anchors of the color scale
-/// Segments of a panel whose colors stand before its name.
-constexpr std::size_t kMostSwatches = 8;
+constexpr std::size_t kMaxPagePoints = 200'000;  // points of a page
+constexpr int kBarColors = 12;                   // the anchors of the color scale
+constexpr std::size_t kMostSwatches = 8;         // segments of a panel whose colors stand before its name
 
 template <typename Value>
 std::string base64(const std::vector<Value>& values) {
@@ -198,7 +195,6 @@ private:
 }  // namespace
 
 void writePage(const PictureScene& scene, const PageText& text, const std::string& path) {
-  checkScene(scene);
   // In a script nothing but "</" can end the script.
   const std::string json = PageScene(scene).json(text).dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
   const std::string safe = boost::algorithm::replace_all_copy(json, "</", "<\\/");

@@ -1,12 +1,7 @@
 #include "scanner/virtual_scanner.h"
 
-#include <omp.h>
-
-#include <pcl/PolygonMesh.h>
 #include <pcl/conversions.h>
-#include <pcl/point_types.h>
-#include <Eigen/Core>
-#include <Eigen/Geometry>
+
 #include <algorithm>
 #include <cmath>
 #include <functional>
@@ -14,11 +9,11 @@
 #include <new>
 #include <random>
 #include <stdexcept>
-#include <string>
 #include <utility>
 #include <vector>
 
 #include "core/base/constants.h"
+#include "core/base/parallel.h"
 
 #if PCL_SYMMETRY_EMBREE >= 4
 #include <embree4/rtcore.h>
@@ -28,156 +23,14 @@
 
 namespace pcl_symmetry::apps {
 
-/// Finds the first triangle along a ray: Embree 3 takes a context for that, Embree 4 does not.
-inline void intersect(RTCScene scene, RTCRayHit& query) {
-#if PCL_SYMMETRY_EMBREE >= 4
-  rtcIntersect1(scene, &query);
-#else
-  RTCIntersectContext context;
-  rtcInitIntersectContext(&context);
-  rtcIntersect1(scene, &context, &query);
-#endif
-}
-
-struct Triangle {
-  Eigen::Vector3d a, b, c;
-};
-
-/// Triangles in a frame of their own, centerd and with unit diagonal, where single precision is enough to find which
-/// one is hit or closest; where exactly can be computed in double precision.
-class TriangleScene {
-public:
-  /// Polygons are cut into fans; triangles with non-finite corners are left out.
-  /// \throws std::invalid_argument if no triangle is left, or all corners are equal.
-  explicit TriangleScene(const pcl::PolygonMesh& mesh);
-  ~TriangleScene();
-  TriangleScene(const TriangleScene&) = delete;
-  TriangleScene& operator=(const TriangleScene&) = delete;
-
-  /// Center and diagonal of the bounding box of the triangles, input units.
-  const Eigen::Vector3d& center() const { return center_; }
-  double diagonal() const { return diagonal_; }
-
-  /// (corner - center) / diagonal; the index is the primitive's in embree().
-  const std::vector<Triangle>& triangles() const { return triangles_; }
-  RTCScene embree() const { return scene_; }
-
-private:
-  void collectTriangles(const pcl::PolygonMesh& mesh);
-  void buildTree();
-  void release();
-
-  Eigen::Vector3d center_ = Eigen::Vector3d::Zero();
-  double diagonal_ = 0;
-  std::vector<Triangle> triangles_;
-  RTCDevice device_ = nullptr;
-  RTCScene scene_ = nullptr;
-};
+namespace {
 
 /// Distances from single and double precision that differ by more are those of a triangle seen edge on, where the exact
 /// one is no better; diagonals of the mesh.
 constexpr double kCoarseError = 1e-3;
-
-TriangleScene::TriangleScene(const pcl::PolygonMesh& mesh) {
-  collectTriangles(mesh);
-  try {
-    buildTree();
-  } catch (...) {
-    release();
-    throw;
-  }
-}
-
-TriangleScene::~TriangleScene() {
-  release();
-}
-
-void TriangleScene::release() {
-  if (scene_) rtcReleaseScene(scene_);
-  if (device_) rtcReleaseDevice(device_);
-}
-
-void TriangleScene::collectTriangles(const pcl::PolygonMesh& mesh) {
-  pcl::PointCloud<pcl::PointXYZ> vertices;
-  pcl::fromPCLPointCloud2(mesh.cloud, vertices);
-  const auto corner = [&](pcl::index_t index) -> Eigen::Vector3d {
-    return vertices.at(static_cast<std::size_t>(index)).getVector3fMap().cast<double>();
-  };
-  Eigen::AlignedBox3d box;
-  for (const pcl::Vertices& polygon : mesh.polygons) {
-    for (std::size_t k = 2; k < polygon.vertices.size(); ++k) {
-      const Triangle triangle{corner(polygon.vertices[0]), corner(polygon.vertices[k - 1]),
-                              corner(polygon.vertices[k])};
-      if (!triangle.a.allFinite() || !triangle.b.allFinite() || !triangle.c.allFinite()) continue;
-      box.extend(triangle.a).extend(triangle.b).extend(triangle.c);
-      triangles_.push_back(triangle);
-    }
-  }
-  if (triangles_.empty()) throw std::invalid_argument("mesh has no faces to scan");
-  center_ = box.center();
-  diagonal_ = box.diagonal().norm();
-  if (!(diagonal_ > 0)) throw std::invalid_argument("mesh has no extent, all its corners are equal");
-  for (Triangle& triangle : triangles_) {
-    for (Eigen::Vector3d* point : {&triangle.a, &triangle.b, &triangle.c}) *point = (*point - center_) / diagonal_;
-  }
-}
-
-/// One thread builds the tree, so that it is the same tree for any number of threads.
-void TriangleScene::buildTree() {
-  device_ = rtcNewDevice("threads=1");
-  if (!device_) throw std::runtime_error("Embree cannot start");
-  scene_ = rtcNewScene(device_);
-  rtcSetSceneFlags(scene_, RTC_SCENE_FLAG_ROBUST);
-  RTCGeometry geometry = rtcNewGeometry(device_, RTC_GEOMETRY_TYPE_TRIANGLE);
-  auto* positions = static_cast<float*>(rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
-                                                                3 * sizeof(float), 3 * triangles_.size()));
-  auto* indices = static_cast<unsigned*>(rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3,
-                                                                 3 * sizeof(unsigned), triangles_.size()));
-  if (!positions || !indices) {
-    rtcReleaseGeometry(geometry);
-    throw std::bad_alloc();
-  }
-  for (std::size_t i = 0; i < triangles_.size(); ++i) {
-    Eigen::Map<Eigen::Matrix3f>(positions + 9 * i) << triangles_[i].a.cast<float>(), triangles_[i].b.cast<float>(),
-        triangles_[i].c.cast<float>();
-    for (unsigned k = 0; k < 3; ++k) indices[3 * i + k] = static_cast<unsigned>(3 * i + k);
-  }
-  rtcCommitGeometry(geometry);
-  rtcAttachGeometry(scene_, geometry);
-  rtcReleaseGeometry(geometry);
-  rtcCommitScene(scene_);
-  if (rtcGetDeviceError(device_) != RTC_ERROR_NONE) throw std::runtime_error("Embree cannot build its tree");
-}
-
-/// \param origin,direction of a unit ray, in the frame of TriangleScene::triangles().
-/// \return the distance to the first triangle along the ray, infinite if there is none.
-double distanceAlong(const TriangleScene& scene, const Eigen::Vector3d& origin, const Eigen::Vector3d& direction) {
-  RTCRayHit query{};
-  const Eigen::Vector3f o = origin.cast<float>(), d = direction.cast<float>();
-  query.ray.org_x = o.x(), query.ray.org_y = o.y(), query.ray.org_z = o.z();
-  query.ray.dir_x = d.x(), query.ray.dir_y = d.y(), query.ray.dir_z = d.z();
-  query.ray.tfar = std::numeric_limits<float>::infinity();
-  query.ray.mask = ~0u;
-  query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
-  intersect(scene.embree(), query);
-  if (query.hit.geomID == RTC_INVALID_GEOMETRY_ID) return std::numeric_limits<double>::infinity();
-  const Triangle& triangle = scene.triangles()[query.hit.primID];
-  const Eigen::Vector3d normal = (triangle.b - triangle.a).cross(triangle.c - triangle.a);
-  const double distance = normal.dot(triangle.a - origin) / normal.dot(direction);
-  const double coarse = query.ray.tfar;
-  return std::abs(distance - coarse) < kCoarseError ? distance : coarse;
-}
-
-namespace {
-
-/// Edge of the largest picture, pixels.
-constexpr int kMaxResolution = 8192;
-/// Edge of the first picture, which tells the share of hits, pixels.
-constexpr int kFirstResolution = 128;
-/// Relative error of the number of points.
-constexpr double kAcceptedCountError = 0.01;
-/// Pictures until the number of points has to fit.
-constexpr int kMaxRounds = 8;
+constexpr int kFirstResolution = 128;         // edge of the first picture, which tells the share of hits, pixels
+constexpr double kAcceptedCountError = 0.01;  // relative error of the number of points
+constexpr int kMaxRounds = 8;                 // pictures until the number of points has to fit
 
 /// Uniform in [0, 1), on every platform the same, which the distributions of the standard library are not.
 /// \param generator of 64 random bits.
@@ -191,10 +44,6 @@ template <typename Generator>
 double standardNormal(Generator& generator) {
   const double radius = std::sqrt(-2.0 * std::log(1.0 - uniform(generator)));
   return radius * std::cos(2.0 * kPi * uniform(generator));
-}
-
-[[noreturn]] void reject(const char* field, double value, const char* rule) {
-  throw std::invalid_argument(std::string(field) + " = " + std::to_string(value) + ", " + rule);
 }
 
 /// Right, down, forward: the columns of the sensor's rotation. The picture's up is z, or y for a vertical view.
@@ -247,32 +96,104 @@ struct Picture {
 
 }  // namespace
 
-void VirtualScannerOptions::validate() const {
-  if (num_points <= 0) reject("num_points", num_points, "must be > 0");
-  if (!(field_of_view > 0) || !(field_of_view < kPi)) reject("field_of_view", field_of_view, "must be > 0 and < pi");
-  if (!(distance > 0.5) || !std::isfinite(distance)) reject("distance", distance, "must be > 0.5 diagonals");
-  if (!(noise >= 0) || !std::isfinite(noise)) reject("noise", noise, "must be >= 0");
-  if (num_threads < 0) reject("num_threads", num_threads, "must be >= 0");
-  if (resolution && (*resolution < 1 || *resolution > kMaxResolution)) {
-    reject("resolution", *resolution, "must be >= 1 and <= 8192");
-  }
-  if (max_resolution < 1 || max_resolution > kMaxResolution) {
-    reject("max_resolution", max_resolution, "must be >= 1 and <= 8192");
-  }
-}
+/// The triangles of a mesh in a frame of their own, centered and with unit diagonal, where single precision is enough
+/// to find which one is hit; where exactly is computed in double precision.
+struct VirtualScanner::Scene {
+  struct Triangle {
+    Eigen::Vector3d a, b, c;
+  };
 
-struct VirtualScanner::Scene : TriangleScene {
-  using TriangleScene::TriangleScene;
+  Eigen::Vector3d center;     ///< of the bounding box, input units
+  double diagonal;            ///< of the bounding box, input units
+  std::vector<Triangle> all;  ///< (corner - center) / diagonal; the index is Embree's
+  std::unique_ptr<RTCDeviceTy, decltype(&rtcReleaseDevice)> device{rtcNewDevice("threads=1"), &rtcReleaseDevice};
+  std::unique_ptr<RTCSceneTy, decltype(&rtcReleaseScene)> tree{nullptr, &rtcReleaseScene};
+
+  explicit Scene(const pcl::PolygonMesh& mesh) {
+    collectTriangles(mesh);
+    buildTree();
+  }
+
+  void collectTriangles(const pcl::PolygonMesh& mesh) {
+    pcl::PointCloud<pcl::PointXYZ> vertices;
+    pcl::fromPCLPointCloud2(mesh.cloud, vertices);
+    const auto corner = [&](pcl::index_t index) -> Eigen::Vector3d {
+      return vertices.at(static_cast<std::size_t>(index)).getVector3fMap().cast<double>();
+    };
+    Eigen::AlignedBox3d box;
+    for (const pcl::Vertices& polygon : mesh.polygons) {
+      for (std::size_t k = 2; k < polygon.vertices.size(); ++k) {
+        const Triangle triangle{corner(polygon.vertices[0]), corner(polygon.vertices[k - 1]),
+                                corner(polygon.vertices[k])};
+        if (!triangle.a.allFinite() || !triangle.b.allFinite() || !triangle.c.allFinite()) continue;
+        box.extend(triangle.a).extend(triangle.b).extend(triangle.c);
+        all.push_back(triangle);
+      }
+    }
+    if (all.empty()) throw std::invalid_argument("mesh has no faces to scan");
+    center = box.center();
+    diagonal = box.diagonal().norm();
+    if (!(diagonal > 0)) throw std::invalid_argument("mesh has no extent, all its corners are equal");
+    for (Triangle& triangle : all) {
+      for (Eigen::Vector3d* point : {&triangle.a, &triangle.b, &triangle.c}) *point = (*point - center) / diagonal;
+    }
+  }
+
+  /// One thread builds the tree, so that it is the same tree for any number of threads.
+  void buildTree() {
+    if (!device) throw std::runtime_error("Embree cannot start");
+    tree.reset(rtcNewScene(device.get()));
+    rtcSetSceneFlags(tree.get(), RTC_SCENE_FLAG_ROBUST);
+    const std::unique_ptr<RTCGeometryTy, decltype(&rtcReleaseGeometry)> geometry{
+        rtcNewGeometry(device.get(), RTC_GEOMETRY_TYPE_TRIANGLE), &rtcReleaseGeometry};
+    auto* positions = static_cast<float*>(rtcSetNewGeometryBuffer(
+        geometry.get(), RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, 3 * sizeof(float), 3 * all.size()));
+    auto* indices = static_cast<unsigned*>(rtcSetNewGeometryBuffer(geometry.get(), RTC_BUFFER_TYPE_INDEX, 0,
+                                                                   RTC_FORMAT_UINT3, 3 * sizeof(unsigned), all.size()));
+    if (!positions || !indices) throw std::bad_alloc();
+    for (std::size_t i = 0; i < all.size(); ++i) {
+      Eigen::Map<Eigen::Matrix3f>(positions + 9 * i) << all[i].a.cast<float>(), all[i].b.cast<float>(),
+          all[i].c.cast<float>();
+      for (unsigned k = 0; k < 3; ++k) indices[3 * i + k] = static_cast<unsigned>(3 * i + k);
+    }
+    rtcCommitGeometry(geometry.get());
+    rtcAttachGeometry(tree.get(), geometry.get());
+    rtcCommitScene(tree.get());
+    if (rtcGetDeviceError(device.get()) != RTC_ERROR_NONE) throw std::runtime_error("Embree cannot build its tree");
+  }
+
+  /// \param origin,direction of a unit ray, in the frame of the triangles.
+  /// \return the distance to the first triangle along the ray, infinite if there is none.
+  double distanceAlong(const Eigen::Vector3d& origin, const Eigen::Vector3d& direction) const {
+    RTCRayHit query{};
+    const Eigen::Vector3f o = origin.cast<float>(), d = direction.cast<float>();
+    query.ray.org_x = o.x(), query.ray.org_y = o.y(), query.ray.org_z = o.z();
+    query.ray.dir_x = d.x(), query.ray.dir_y = d.y(), query.ray.dir_z = d.z();
+    query.ray.tfar = std::numeric_limits<float>::infinity();
+    query.ray.mask = ~0u;
+    query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
+#if PCL_SYMMETRY_EMBREE >= 4
+    rtcIntersect1(tree.get(), &query);
+#else
+    RTCIntersectContext context;
+    rtcInitIntersectContext(&context);
+    rtcIntersect1(tree.get(), &context, &query);
+#endif
+    if (query.hit.geomID == RTC_INVALID_GEOMETRY_ID) return std::numeric_limits<double>::infinity();
+    const Triangle& triangle = all[query.hit.primID];
+    const Eigen::Vector3d normal = (triangle.b - triangle.a).cross(triangle.c - triangle.a);
+    const double distance = normal.dot(triangle.a - origin) / normal.dot(direction);
+    const double coarse = query.ray.tfar;
+    return std::abs(distance - coarse) < kCoarseError ? distance : coarse;
+  }
 
   Picture takePicture(const Camera& camera, int num_threads) const {
     std::vector<double> distances(static_cast<std::size_t>(camera.resolution) * camera.resolution);
-#pragma omp parallel for schedule(dynamic, 8) num_threads(num_threads > 0 ? num_threads : omp_get_max_threads())
-    for (int row = 0; row < camera.resolution; ++row) {
-      for (int column = 0; column < camera.resolution; ++column) {
-        distances[static_cast<std::size_t>(row) * camera.resolution + column] =
-            distanceAlong(*this, camera.origin, camera.rayThrough(column, row));
-      }
-    }
+    parallelBlocks(camera.resolution, num_threads, [&](std::size_t row) {
+      for (int column = 0; column < camera.resolution; ++column)
+        distances[row * camera.resolution + column] =
+            distanceAlong(camera.origin, camera.rayThrough(column, static_cast<int>(row)));
+    });
     return {camera, std::move(distances)};
   }
 
@@ -321,16 +242,32 @@ pcl::PointCloud<pcl::PointXYZ>::Ptr cloudOf(const Picture& picture, const Virtua
   return cloud;
 }
 
-VirtualScan toScan(const Picture& picture, const TriangleScene& scene, const VirtualScannerOptions& options) {
+}  // namespace
+
+VirtualScanner::VirtualScanner(const pcl::PolygonMesh& mesh) : scene_(std::make_unique<Scene>(mesh)) {}
+
+VirtualScanner::~VirtualScanner() = default;
+
+double VirtualScanner::diagonal() const {
+  return scene_->diagonal;
+}
+
+VirtualScan VirtualScanner::scan(const Eigen::Vector3d& direction, const VirtualScannerOptions& options) const {
+  const Eigen::Vector3d towards_scanner = direction.normalized();
+  const Picture picture = scene_->takePictureOfPoints(
+      {options.distance * towards_scanner, lookAlong(-towards_scanner), std::tan(options.field_of_view / 2),
+       std::min(kFirstResolution, options.max_resolution)},
+      options);
+  if (picture.num_hits == 0) throw std::runtime_error("no ray hits the model");
   VirtualScan result;
   result.num_points = picture.num_hits;
   result.cropped = picture.touchesBorder();
   if (options.random_pose) {
-    result.T_scan_model = randomPose(options.seed, scene.diagonal());
-    result.T_scan_model.translation() -= result.T_scan_model.linear() * scene.center();
+    result.T_scan_model = randomPose(options.seed, scene_->diagonal);
+    result.T_scan_model.translation() -= result.T_scan_model.linear() * scene_->center;
   }
   const auto to_scan = [&](const Eigen::Vector3d& point) -> Eigen::Vector3d {
-    return result.T_scan_model * (scene.center() + scene.diagonal() * point);
+    return result.T_scan_model * (scene_->center + scene_->diagonal * point);
   };
   result.T_scan_sensor.linear() = result.T_scan_model.linear() * picture.camera.axes;
   result.T_scan_sensor.translation() = to_scan(picture.camera.origin);
@@ -339,36 +276,6 @@ VirtualScan toScan(const Picture& picture, const TriangleScene& scene, const Vir
   result.cloud->sensor_origin_[3] = 0.0f;
   result.cloud->sensor_orientation_ = Eigen::Quaterniond(result.T_scan_sensor.linear()).normalized().cast<float>();
   return result;
-}
-
-}  // namespace
-
-VirtualScanner::VirtualScanner(const pcl::PolygonMesh& mesh) : scene_(std::make_unique<Scene>(mesh)) {}
-
-VirtualScanner::~VirtualScanner() = default;
-VirtualScanner::VirtualScanner(VirtualScanner&&) noexcept = default;
-VirtualScanner& VirtualScanner::operator=(VirtualScanner&&) noexcept = default;
-
-Eigen::Vector3d VirtualScanner::center() const {
-  return scene_->center();
-}
-double VirtualScanner::diagonal() const {
-  return scene_->diagonal();
-}
-
-VirtualScan VirtualScanner::scan(const Eigen::Vector3d& direction, const VirtualScannerOptions& options) const {
-  options.validate();
-  if (!direction.allFinite() || !(direction.norm() > 0)) {
-    throw std::invalid_argument("direction must be finite and not zero");
-  }
-  const Eigen::Vector3d towards_scanner = direction.normalized();
-  const Camera camera{options.distance * towards_scanner, lookAlong(-towards_scanner),
-                      std::tan(options.field_of_view / 2),
-                      options.resolution.value_or(std::min(kFirstResolution, options.max_resolution))};
-  const Picture picture = options.resolution ? scene_->takePicture(camera, options.num_threads)
-                                             : scene_->takePictureOfPoints(camera, options);
-  if (picture.num_hits == 0) throw std::runtime_error("no ray hits the model");
-  return toScan(picture, *scene_, options);
 }
 
 std::array<Eigen::Vector3d, 8> cubeCorners() {

@@ -9,24 +9,19 @@
 #include <array>
 #include <cstdint>
 #include <memory>
-#include <optional>
 
 namespace pcl_symmetry::apps {
 
 struct VirtualScannerOptions {
-  int num_points = 10000;              ///< wanted number of hits, > 0
-  double field_of_view = 0.4;          ///< full angle of the square picture, radians, in (0, pi)
-  double distance = 2.0;               ///< from the center of the bounding box, in its diagonals, > 0.5
-  double noise = 0.0;                  ///< standard deviation of the depth along the ray, in diagonals, >= 0
-  bool random_pose = false;            ///< turn and move the model before it is scanned
-  std::uint64_t seed = 0;              ///< of pose and noise
-  std::uint64_t noise_stream = 0;      ///< tells scans of one pose apart, so that their noise is not the same
-  int num_threads = 0;                 ///< 0 = all; does not change the result
-  std::optional<int> resolution = {};  ///< edge of the picture in pixels, 1 to 8192; chosen by num_points if not set
-  int max_resolution = 8192;           ///< that may be chosen, 1 to 8192; thin shapes then give fewer points
-
-  /// \throws std::invalid_argument naming field, value and rule.
-  void validate() const;
+  int num_points = 10000;          ///< wanted number of hits, > 0
+  double field_of_view = 0.4;      ///< full angle of the square picture, radians, in (0, pi)
+  double distance = 2.0;           ///< from the center of the bounding box, in its diagonals, > 0.5
+  double noise = 0.0;              ///< standard deviation of the depth along the ray, in diagonals, >= 0
+  bool random_pose = false;        ///< turn and move the model before it is scanned
+  std::uint64_t seed = 0;          ///< of pose and noise
+  std::uint64_t noise_stream = 0;  ///< tells scans of one pose apart, so that their noise is not the same
+  int num_threads = 0;             ///< 0 = all; does not change the result
+  int max_resolution = 8192;       ///< pixels along the edge of the picture; thin shapes then give fewer points
 };
 
 struct VirtualScan {
@@ -46,16 +41,13 @@ public:
   /// \throws std::invalid_argument if no triangle is left.
   explicit VirtualScanner(const pcl::PolygonMesh& mesh);
   ~VirtualScanner();
-  VirtualScanner(VirtualScanner&&) noexcept;
-  VirtualScanner& operator=(VirtualScanner&&) noexcept;
 
-  /// Center and diagonal of the bounding box of the triangles, input units.
-  Eigen::Vector3d center() const;
+  /// Of the bounding box of the triangles, input units.
   double diagonal() const;
 
   /// \param direction from the center toward the scanner, in the model's frame; any length but zero.
   /// \param options with random_pose, scanner and model are turned and moved together, so what is seen stays.
-  /// \throws std::invalid_argument for bad options or a zero direction, std::runtime_error if too few rays hit.
+  /// \throws std::runtime_error if no ray hits.
   VirtualScan scan(const Eigen::Vector3d& direction, const VirtualScannerOptions& options = {}) const;
 
 private:

@@ -1,11 +1,22 @@
 /// The objects of one frame of a sensor and their symmetries: a table, JSON, the completed scene, a picture, a page; or
 /// of each frame that arrives in a folder.
+#include <poll.h>
+#include <sys/inotify.h>
+#include <unistd.h>
+
+#include <algorithm>
 #include <boost/algorithm/string/case_conv.hpp>
 #include <boost/filesystem/path.hpp>
+#include <cerrno>
+#include <csignal>
 #include <cstdio>
+#include <cstring>
+#include <deque>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
+#include <utility>
 
 #include "command_line/command_line.h"
 #include "command_line/console.h"
@@ -17,7 +28,6 @@
 #include "io/shape_output.h"
 #include "pcl_symmetry/symmetry_scene.h"
 #include "pictures/scene_page.h"
-#include "scene/folder_watch.h"
 #include "scene/scene_report.h"
 
 namespace {
@@ -68,6 +78,93 @@ CommandLine commandLine(SceneToolOptions& o) {
       .common(o.common, kAnalysisFlags);
   return line;
 }
+
+volatile std::sig_atomic_t stopped = 0;
+
+extern "C" void stopWatching(int) {
+  stopped = 1;
+}
+
+// What a user, a service manager and a closed terminal end a program by.
+constexpr int kSignals[] = {SIGINT, SIGTERM, SIGHUP};
+
+/// Names files of a folder as soon as they are whole: when a program that wrote one closes it, or when one is moved
+/// into the folder, also in place of another. Files that are there before are not named. SIGINT, SIGTERM and SIGHUP end
+/// the wait, not the program, while an object of this class lives.
+class FolderWatch {
+public:
+  /// \throws InputError naming the folder where it cannot be watched.
+  explicit FolderWatch(const std::string& folder)
+      : folder_(folder), descriptor_(inotify_init1(IN_CLOEXEC | IN_NONBLOCK)) {
+    const std::uint32_t events = IN_CLOSE_WRITE | IN_MOVED_TO | IN_DELETE_SELF | IN_MOVE_SELF | IN_ONLYDIR;
+    if (descriptor_ < 0 || inotify_add_watch(descriptor_, folder.c_str(), events) < 0) {
+      const std::string reason = std::strerror(errno);
+      if (descriptor_ >= 0) close(descriptor_);
+      throw InputError(folder + ": cannot be watched, " + reason);
+    }
+    // The signals are let through only while next() waits: none comes between its question and its wait, and threads
+    // that are made later do not take them.
+    stopped = 0;
+    sigemptyset(&signals_);
+    struct sigaction action = {};
+    action.sa_handler = stopWatching;
+    for (std::size_t i = 0; i < std::size(kSignals); ++i) {
+      sigaddset(&signals_, kSignals[i]);
+      sigaction(kSignals[i], &action, &old_actions_[i]);
+    }
+    pthread_sigmask(SIG_BLOCK, &signals_, &old_mask_);
+  }
+
+  ~FolderWatch() {
+    close(descriptor_);
+    for (std::size_t i = 0; i < std::size(kSignals); ++i) sigaction(kSignals[i], &old_actions_[i], nullptr);
+    pthread_sigmask(SIG_SETMASK, &old_mask_, nullptr);
+  }
+  FolderWatch(const FolderWatch&) = delete;
+  FolderWatch& operator=(const FolderWatch&) = delete;
+
+  /// Waits for the next file. A file that was written again before it is named is named once.
+  /// \return its path; nothing once a signal has come.
+  /// \throws InputError where the folder is gone.
+  std::optional<std::string> next() {
+    for (;;) {
+      const timespec at_once{0, 0};  // ppoll() does not let a signal through while names keep coming
+      if (stopped || sigtimedwait(&signals_, nullptr, &at_once) > 0) return std::nullopt;
+      pollfd asked{descriptor_, POLLIN, 0};
+      const int ready = ppoll(&asked, 1, waiting_.empty() ? nullptr : &at_once, &old_mask_);
+      if (ready > 0) readEvents();
+      if (waiting_.empty()) continue;
+      std::string path = (boost::filesystem::path(folder_) / waiting_.front()).string();
+      waiting_.pop_front();
+      return path;
+    }
+  }
+
+  /// \return whether files came faster than the system keeps their names, since the last call: some were missed.
+  bool hasMissed() { return std::exchange(missed_, false); }
+
+private:
+  void readEvents() {
+    alignas(inotify_event) char buffer[1u << 16];
+    const ssize_t size = read(descriptor_, buffer, sizeof(buffer));
+    for (ssize_t at = 0; at < size;) {
+      const auto* event = reinterpret_cast<const inotify_event*>(buffer + at);
+      at += static_cast<ssize_t>(sizeof(inotify_event) + event->len);
+      if (event->mask & IN_Q_OVERFLOW) missed_ = true;
+      if (event->mask & (IN_DELETE_SELF | IN_MOVE_SELF | IN_UNMOUNT)) throw InputError(folder_ + ": is gone");
+      if (event->len == 0 || (event->mask & IN_ISDIR)) continue;
+      const std::string name = event->name;
+      if (std::find(waiting_.begin(), waiting_.end(), name) == waiting_.end()) waiting_.push_back(name);
+    }
+  }
+
+  std::string folder_;
+  int descriptor_;
+  sigset_t signals_ = {}, old_mask_ = {};
+  struct sigaction old_actions_[3] = {};
+  std::deque<std::string> waiting_;
+  bool missed_ = false;
+};
 
 SymmetryScene makeScene(const SceneToolOptions& options) {
   SymmetryScene scene;

@@ -13,33 +13,14 @@ namespace pcl_symmetry::apps {
 
 namespace {
 
-// Points of the overview.
-constexpr std::size_t kDrawnPoints = 150'000;
-// Objects that have a panel of their own.
-constexpr std::size_t kMostPanels = 8;
-// Pixels.
-constexpr int kPanelWidth = 520, kPanelHeight = 440;
-// Color of points that a symmetry added, counted from that of the object.
-constexpr int kAddedColor = 5;
+constexpr std::size_t kDrawnPoints = 150'000;         // points of the overview
+constexpr std::size_t kMostPanels = 8;                // objects that have a panel of their own
+constexpr int kPanelWidth = 520, kPanelHeight = 440;  // pixels
+constexpr int kAddedColor = 5;  // color of points that a symmetry added, counted from that of the object
 // Above the line of sight, as a share of the distance: the scene is looked at slightly from above, so that depths tell.
 constexpr double kRaised = 0.25;
 
-// Radii of the object.
-constexpr double kAxisReach = 1.4, kPlaneReach = 1.1;
-
-struct Finding {
-  enum class Kind { Center, Axis, Plane, None } kind = Kind::None;
-  double confidence = 0.0;
-};
-
-/// What an object's best answer is.
-Finding bestOf(const SceneObject& object) {
-  if (!object.centers.empty()) return {Finding::Kind::Center, object.centers.front().confidence};
-  if (!object.axes.empty()) return {Finding::Kind::Axis, object.axes.front().confidence};
-  if (!object.planes.empty() && object.planes.front().kind == PlaneKind::Symmetry)
-    return {Finding::Kind::Plane, object.planes.front().confidence};
-  return {};
-}
+constexpr double kAxisReach = 1.4, kPlaneReach = 1.1;  // radii of the object
 
 std::size_t numPlanes(const SceneObject& object, PlaneKind kind) {
   return static_cast<std::size_t>(std::count_if(object.planes.begin(), object.planes.end(),
@@ -49,24 +30,17 @@ std::size_t numPlanes(const SceneObject& object, PlaneKind kind) {
 /// What was found of an object, in words.
 std::string summaryOf(const SceneObject& object) {
   if (!object.reason.empty()) return object.reason;
-  const Finding best = bestOf(object);
-  const std::string confidence = formatted(", confidence %.2f", best.confidence);
-  std::string text;
-  switch (best.kind) {
-    case Finding::Kind::Center:
-      text = "sphere" + confidence;
-      break;
-    case Finding::Kind::Axis:
-      text = "axis of revolution" + confidence;
-      break;
-    case Finding::Kind::Plane:
-      text = counted(numPlanes(object, PlaneKind::Symmetry), "plane") + confidence;
-      break;
-    case Finding::Kind::None: {
-      const std::size_t possible = numPlanes(object, PlaneKind::Possible);
-      text = possible ? counted(possible, "possible plane") : "no symmetry";
-    }
-  }
+  const auto sure = [](const std::string& what, double confidence) {
+    return what + formatted(", confidence %.2f", confidence);
+  };
+  const std::size_t num_possible = numPlanes(object, PlaneKind::Possible);
+  std::string text = num_possible > 0 ? counted(num_possible, "possible plane") : "no symmetry";
+  if (!object.centers.empty())
+    text = sure("sphere", object.centers.front().confidence);
+  else if (!object.axes.empty())
+    text = sure("axis of revolution", object.axes.front().confidence);
+  else if (!object.planes.empty() && object.planes.front().kind == PlaneKind::Symmetry)
+    text = sure(counted(numPlanes(object, PlaneKind::Symmetry), "plane"), object.planes.front().confidence);
   if (!object.models.empty())
     text += ", " + object.models.front().name + formatted(" (%.2f)", object.models.front().confidence);
   return text;
@@ -200,6 +174,34 @@ PictureScene closeUp(const InputShape& input, const SceneAnalysis& scene, std::s
   return picture;
 }
 
+/// All objects at once.
+PictureScene overview(const InputShape& input, const SceneAnalysis& scene) {
+  const std::vector<int> numbers = objectNumbers(scene, input.points->size());
+  auto points = pcl::make_shared<SymmetryScene::Cloud>();
+  PicturePanel panel;
+  Eigen::Vector3d middle = Eigen::Vector3d::Zero();
+  const std::size_t stride = 1 + input.points->size() / kDrawnPoints;
+  double num_of_objects = 0.0;
+  for (std::size_t i = 0; i < numbers.size(); ++i) {
+    const pcl::PointXYZ& point = (*input.points)[i];
+    if (!pcl::isXYZFinite(point) || (numbers[i] <= 0 && i % stride != 0)) continue;
+    points->push_back(point);
+    panel.segments.push_back(numbers[i] - 1);
+    if (numbers[i] <= 0) panel.segments.back() = -1;
+    if (numbers[i] > 0) middle += point.getVector3fMap().cast<double>(), ++num_of_objects;
+  }
+  if (num_of_objects > 0.0) middle /= num_of_objects;
+  for (std::size_t k = 0; k < scene.objects.size(); ++k)
+    markFindings(panel, scene.objects[k], SymmetryScene::Cloud(*input.points, scene.objects[k].indices),
+                 segmentColor(static_cast<int>(k)));
+  panel.label = counted(scene.objects.size(), "object") + ", " + counted(scene.supports.size(), "supporting plane");
+  PictureScene picture;
+  picture.points = points;
+  picture.panels = {panel};
+  lookFromSensor(picture, scene, middle);
+  return picture;
+}
+
 }  // namespace
 
 std::string tableOf(const SceneAnalysis& scene, const Eigen::Vector3d& shift) {
@@ -255,33 +257,6 @@ pcl::PCLPointCloud2 completedScene(const InputShape& input, const SceneAnalysis&
   }
   completed.resize(points.size(), 1.0f);
   return withFields(toFields(points, input.shift()), {"object", "completed"}, {object, completed});
-}
-
-PictureScene overview(const InputShape& input, const SceneAnalysis& scene) {
-  const std::vector<int> numbers = objectNumbers(scene, input.points->size());
-  auto points = pcl::make_shared<SymmetryScene::Cloud>();
-  PicturePanel panel;
-  Eigen::Vector3d middle = Eigen::Vector3d::Zero();
-  const std::size_t stride = 1 + input.points->size() / kDrawnPoints;
-  double num_of_objects = 0.0;
-  for (std::size_t i = 0; i < numbers.size(); ++i) {
-    const pcl::PointXYZ& point = (*input.points)[i];
-    if (!pcl::isXYZFinite(point) || (numbers[i] <= 0 && i % stride != 0)) continue;
-    points->push_back(point);
-    panel.segments.push_back(numbers[i] - 1);
-    if (numbers[i] <= 0) panel.segments.back() = -1;
-    if (numbers[i] > 0) middle += point.getVector3fMap().cast<double>(), ++num_of_objects;
-  }
-  if (num_of_objects > 0.0) middle /= num_of_objects;
-  for (std::size_t k = 0; k < scene.objects.size(); ++k)
-    markFindings(panel, scene.objects[k], SymmetryScene::Cloud(*input.points, scene.objects[k].indices),
-                 segmentColor(static_cast<int>(k)));
-  panel.label = counted(scene.objects.size(), "object") + ", " + counted(scene.supports.size(), "supporting plane");
-  PictureScene picture;
-  picture.points = points;
-  picture.panels = {panel};
-  lookFromSensor(picture, scene, middle);
-  return picture;
 }
 
 PictureScene selectableObjects(const InputShape& input, const SceneAnalysis& scene) {

@@ -21,16 +21,14 @@ nlohmann::json describeScene(const InputShape& input, const SceneAnalysis& scene
 /// symmetry added the point) of all finite points of the scene and the added ones.
 pcl::PCLPointCloud2 completedScene(const InputShape& input, const SceneAnalysis& scene);
 
-/// The scene from where the sensor stood, each object in a color of its own with its plane or axis.
-PictureScene overview(const InputShape& input, const SceneAnalysis& scene);
-
-/// The same, and the first objects one by one, each with its planes and axes and what it was decided at.
+/// The scene from where the sensor stood, each object in a color of its own with its plane or axis, and the first
+/// objects one by one, each with its planes and axes and what it was decided at.
 PictureScene selectableObjects(const InputShape& input, const SceneAnalysis& scene);
 
 /// The colors of an organized cloud, pixel by pixel; empty where it has none.
 RasterImage cameraPicture(const InputShape& input);
 
-/// The overview, and each object with what its symmetry adds.
+/// The scene, and each object with what its symmetry adds.
 void drawScene(const InputShape& input, const SceneAnalysis& scene, const std::string& path);
 
 }  // namespace pcl_symmetry::apps

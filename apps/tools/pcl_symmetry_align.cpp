@@ -264,16 +264,12 @@ PictureScene sceneOf(const InputShape& input, const Symmetrized& shape) {
   const auto last = sizes.begin() + static_cast<std::ptrdiff_t>(kShown * static_cast<double>(sizes.size()));
   if (last != sizes.end()) std::nth_element(sizes.begin(), last, sizes.end());
   const float scale = last != sizes.end() && *last > 0.0f ? *last : 1.0f;
-  PictureScene scene;
-  scene.points = input.shape.points;
-  scene.mesh = input.shape.mesh;
-  scene.show_color_bar = false;
-  PicturePanel panel;
-  panel.label = formatted("asymmetry: blue %.3g inside, yellow %.3g outside", scale, scale);
-  panel.show_points = !scene.mesh;
+  PicturePanel panel{formatted("asymmetry: blue %.3g inside, yellow %.3g outside", scale, scale)};
+  panel.show_points = !input.shape.mesh;
   for (const float value : shape.asymmetry)
-    panel.support.push_back(std::isfinite(value) ? std::min(1.0f, std::max(0.0f, 0.5f + 0.5f * value / scale)) : 0.5f);
-  scene.panels = {panel};
+    panel.support.push_back(std::isfinite(value) ? std::clamp(0.5f + 0.5f * value / scale, 0.0f, 1.0f) : 0.5f);
+  PictureScene scene{input.shape.points, input.shape.mesh, {panel}};
+  scene.show_color_bar = false;
   return scene;
 }
 
@@ -283,33 +279,24 @@ struct Motion {
   bool converged = true;
   std::string text;
   nlohmann::json json;
-  std::optional<PictureScene> scene;  ///< what a page shows of it, where one is wanted
+  PictureScene scene;  ///< what a page shows of it
 };
 
 /// The shape with the axes of its frame: the first red, the second green, the third blue.
 PictureScene sceneOf(const InputShape& input, const SymmetryFrame& frame) {
-  PictureScene scene;
-  scene.points = input.points;
-  scene.mesh = input.shape.mesh;
-  PicturePanel panel;
-  panel.label = "center and axes: 1 red, 2 green, 3 blue";
-  panel.show_points = !scene.mesh;
+  PicturePanel panel{"center and axes: 1 red, 2 green, 3 blue"};
+  panel.show_points = !input.shape.mesh;
   for (int k = 0; k < 3; ++k) panel.axes.push_back({frame.center, frame.axes.col(k), Eigen::Vector3d::Unit(k)});
-  scene.panels = {panel};
-  return scene;
+  return {input.points, input.shape.mesh, {panel}};
 }
 
 /// Two clouds in two colors.
 /// \param num_first points of the first.
 PictureScene sceneOf(const pcl::PointCloud<pcl::PointXYZ>& both, std::size_t num_first, const std::string& label) {
-  PictureScene scene;
-  PicturePanel panel;
-  panel.label = label;
+  PicturePanel panel{label};
   panel.segments.assign(num_first, 0);
   panel.segments.resize(both.size(), 1);
-  scene.points = pcl::make_shared<pcl::PointCloud<pcl::PointXYZ>>(both);
-  scene.panels = {panel};
-  return scene;
+  return {pcl::make_shared<pcl::PointCloud<pcl::PointXYZ>>(both), std::nullopt, {panel}};
 }
 
 /// The target, and the input where the motion brings it.
@@ -384,7 +371,7 @@ std::string linesOf(const SymmetryFrame& frame, const Eigen::Vector3d& shift) {
     lines += formatted("axis %d %9.6f %9.6f %9.6f  score %.3f%s\n", k + 1, frame.axes(0, k), frame.axes(1, k),
                        frame.axes(2, k), frame.scores[k], frame.revolution_axis == k ? "  axis of revolution" : "");
   for (const SymmetryTurn& turn : frame.turns)
-    if (turn.confidence >= DetectionOptions().min_confidence) lines += lineOf(turn, shift);
+    if (turn.confidence >= DetectionOptions().min_confidence) lines += lineOf(turn, turn.fold, shift);
   double others = 0.0;
   for (std::size_t i = 1; i < frame.probable.size(); ++i) others += frame.probable[i].probability;
   if (!frame.probable.empty())
@@ -396,20 +383,15 @@ std::string linesOf(const SymmetryFrame& frame, const Eigen::Vector3d& shift) {
 Motion toOwnFrame(const Console& console, const InputShape& input, const AlignOptions& options,
                   const CommonOptions& common) {
   const SymmetryFrame frame = computeFrame(console, input, common, options.as_published);
-  Motion motion{shiftedBack(frame.T_canonical_input, input.shift(), Eigen::Vector3d::Zero()),
-                true,
-                linesOf(frame, input.shift()),
-                describe(frame, input.shift()),
-                {}};
-  if (options.html_path || options.png_path) motion.scene = sceneOf(input, frame);
-  return motion;
+  return {shiftedBack(frame.T_canonical_input, input.shift(), Eigen::Vector3d::Zero()), true,
+          linesOf(frame, input.shift()), describe(frame, input.shift()), sceneOf(input, frame)};
 }
 
 Motion toTarget(const Console& console, const InputShape& input, const AlignOptions& options,
                 const CommonOptions& common) {
   const InputShape target = loadInput(console, *options.target, common);
   Motion motion = registerTo(console, input, target, common);
-  if (options.html_path || options.png_path) motion.scene = sceneOf(input, target, motion.transform);
+  motion.scene = sceneOf(input, target, motion.transform);
   if (motion.converged)
     motion.text = linesOf(motion.transform, std::max(lengthDigits(input.shift()), lengthDigits(target.shift())));
   return motion;
@@ -447,17 +429,17 @@ void analyze(const AlignOptions& options, FileJob& job) {
     shape = symmetrized(console, input, options, common);
     motion.text += shape->text;
     motion.json["symmetrised"] = shape->json;
-    if (motion.scene) motion.scene = sceneOf(input, *shape);
+    motion.scene = sceneOf(input, *shape);
   }
   pcl::PCLPointCloud2 fields = shape ? std::move(shape->fields) : input.fields();
   if (options.complete && motion.converged) {
     const pcl::PointCloud<pcl::PointXYZ> both = complete(console, input, common, fields);
-    if (motion.scene) motion.scene = sceneOf(both, input.points->size(), "the input (1) and what completes it (2)");
+    motion.scene = sceneOf(both, input.points->size(), "the input (1) and what completes it (2)");
   }
   job.report({motion.text, motion.json, rowsOf(motion)});
   if (!motion.converged) throw InputError(job.path() + ": does not fit " + *options.target + " in any pose");
-  if (options.html_path) writePage(*motion.scene, {job.path(), motion.text}, job.output(*options.html_path));
-  if (options.png_path) renderPicture(*motion.scene, job.output(*options.png_path), 800, 600);
+  if (options.html_path) writePage(motion.scene, {job.path(), motion.text}, job.output(*options.html_path));
+  if (options.png_path) renderPicture(motion.scene, job.output(*options.png_path), 800, 600);
   if (shape && shape->mesh) {
     const Eigen::Isometry3d T_output_shifted = motion.transform * Eigen::Translation3d(input.shift());
     if (options.output)

@@ -21,7 +21,7 @@
 #include "core/base/constants.h"
 #include "core/base/parallel.h"
 #include "io/answers.h"
-#include "io/shape_file_kinds.h"
+#include "io/shape_input.h"
 #include "io/shape_output.h"
 
 namespace {

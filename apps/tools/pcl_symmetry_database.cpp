@@ -17,7 +17,7 @@
 #include "command_line/command_line.h"
 #include "command_line/console.h"
 #include "command_line/input_files.h"
-#include "command_line/result_files.h"
+#include "command_line/run_on_files.h"
 #include "command_line/tool_errors.h"
 #include "io/answers.h"
 #include "io/input_shape.h"
@@ -146,13 +146,6 @@ public:
 private:
   bool isBuild() const { return options_.command == "build" || options_.command == "add"; }
 
-  void printFailures(const BuildReport& report) const {
-    for (const auto& [name, reason] : report.failures)
-      console_.error("left out: " + (reason.rfind("name = ", 0) == 0 || reason.find(name) != std::string::npos
-                                         ? reason
-                                         : name + ": " + reason));
-  }
-
   int build(SymmetryDatabase& database) const {
     const std::vector<ModelInput> inputs = modelInputs(options_);
     Step step(console_, "Describing " + counted(inputs.size(), "model"));
@@ -173,10 +166,13 @@ private:
   }
 
   int finish(const BuildReport& report, nlohmann::json json) const {
-    printFailures(report);
     json["added"] = report.num_added;
     json["failures"] = nlohmann::json::array();
-    for (const auto& [name, reason] : report.failures) json["failures"].push_back({{"name", name}, {"reason", reason}});
+    for (const auto& [name, reason] : report.failures) {
+      const bool is_named = reason.rfind("name = ", 0) == 0 || reason.find(name) != std::string::npos;
+      console_.error("left out: " + (is_named ? reason : name + ": " + reason));
+      json["failures"].push_back({{"name", name}, {"reason", reason}});
+    }
     writeJson(json);
     return report.failures.empty() ? 0 : 1;
   }

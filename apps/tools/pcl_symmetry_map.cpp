@@ -120,11 +120,7 @@ SymmetryMeasure ofAxes(const InputShape& input, const CommonOptions& common, int
                             {"symmetry", maximum.value},
                             {"folds", map->folds},
                             {"symmetry_of_folds", maximum.values}});
-    AxisLine line;
-    line.point = local;
-    line.direction = d;
-    line.color = distinctColor(measure.axes.size());
-    measure.axes.push_back(line);
+    measure.axes.push_back({local, d, distinctColor(measure.axes.size())});
   }
   return measure;
 }
@@ -222,8 +218,7 @@ struct CellBox {
   Eigen::Array3i size;
 
   CellBox(const Points& points, int num_cells) {
-    // Share of the longest edge, on each side
-    constexpr double kMargin = 0.1;
+    constexpr double kMargin = 0.1;  // share of the longest edge, on each side
     const Eigen::Vector3d low = points.rowwise().minCoeff().cast<double>(),
                           high = points.rowwise().maxCoeff().cast<double>();
     const double edge = (high - low).maxCoeff();
@@ -333,16 +328,13 @@ void savePoints(const InputShape& input, const MappedCloud& mapped, const std::s
 }
 
 void drawPoints(const SymmetryMeasure& map, const MappedCloud& mapped, const std::string& path, int size) {
-  PicturePanel panel;
-  panel.label = "greatest symmetry of the " + map.of + " through each point";
+  PicturePanel panel{"greatest symmetry of the " + map.of + " through each point"};
   panel.axes = map.axes;
   panel.support.assign(mapped.cloud->size(), 0.0);
   const double range = std::max(1e-9f, mapped.greatest - mapped.least);
   for (std::size_t i = 0; i < mapped.symmetry.size(); ++i)
     panel.support[mapped.indices[i]] = (mapped.symmetry[i] - mapped.least) / range;
-  PictureScene scene;
-  scene.points = mapped.cloud;
-  scene.panels.push_back(panel);
+  PictureScene scene{mapped.cloud, std::nullopt, {panel}};
   scene.show_color_bar = false;
   renderPicture(scene, path, size, size);
 }

@@ -1,11 +1,8 @@
 /// Which models of a database a cloud is like, or shows.
-#include <pcl/exceptions.h>
-
 #include <algorithm>
 #include <boost/filesystem.hpp>
 #include <cstdio>
 #include <nlohmann/json.hpp>
-#include <optional>
 #include <string>
 
 #include "command_line/command_line.h"

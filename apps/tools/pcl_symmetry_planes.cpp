@@ -1,7 +1,6 @@
 /// Symmetry planes of a cloud or mesh: a table, JSON, the support of every point, a picture.
 #include <algorithm>
 #include <boost/algorithm/string.hpp>
-#include <cmath>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <utility>
@@ -9,7 +8,6 @@
 
 #include "command_line/command_line.h"
 #include "command_line/console.h"
-#include "command_line/result_files.h"
 #include "command_line/run_on_files.h"
 #include "command_line/tool_errors.h"
 #include "io/answers.h"
@@ -104,11 +102,10 @@ struct Findings {
   bool empty() const { return planes.empty() && axes.empty() && centers.empty() && turns.empty(); }
 };
 
-/// How far the best plane of a shape without symmetry is off.
-std::string lineOfBest(const SymmetryPlane& best, double tolerance, const Eigen::Vector3d& shift, int digits) {
-  const Eigen::Vector4d c = printedCoefficients(best, shift);
-  return formatted("best plane %.6f %.6f %.6f %.*g maps %.1f %% of the surface to within %.3g, 97 %% to within %.3g\n",
-                   c[0], c[1], c[2], digits, c[3], 100.0 * best.share, tolerance, best.deviation);
+/// a, b, c and d of a plane.
+std::string coefficientsOf(const ReflectionPlane& plane, const Eigen::Vector3d& shift) {
+  const Eigen::Vector4d c = printedCoefficients(plane, shift);
+  return formatted("%.6f %.6f %.6f %.*g", c[0], c[1], c[2], lengthDigits(shift), c[3]);
 }
 
 /// What the sensor and the points resolve.
@@ -120,29 +117,26 @@ std::string lineOfTolerance(const Findings& findings) {
                    100.0 * findings.resolution / findings.diameter);
 }
 
-/// The plane that all points lie on.
-std::string lineOfFlat(const ReflectionPlane& flat, const Eigen::Vector3d& shift, int digits) {
-  const Eigen::Vector4d c = printedCoefficients(flat, shift);
-  return formatted("flat: the points lie on the plane %.6f %.6f %.6f %.*g; a reflection across it is uninformative\n",
-                   c[0], c[1], c[2], digits, c[3]);
-}
-
 std::string tableOf(const Findings& findings, const Eigen::Vector3d& shift) {
   const int digits = lengthDigits(shift);
   std::string table;
-  if (findings.flat) table += lineOfFlat(*findings.flat, shift, digits);
+  if (findings.flat)
+    table += "flat: the points lie on the plane " + coefficientsOf(*findings.flat, shift) +
+             "; a reflection across it is uninformative\n";
   if (findings.resolution >= findings.tolerance && findings.tolerance > 0.0) table += lineOfTolerance(findings);
-  if (findings.empty())
-    return table + "no symmetry plane\n" +
-           (findings.best ? lineOfBest(*findings.best, findings.tolerance, shift, digits) : std::string());
-  const auto place = [&](const Eigen::Vector3d& point) { return spelled(shiftedBack(point, shift), digits); };
+  if (findings.empty()) {
+    table += "no symmetry plane\n";
+    if (const auto& best = findings.best)  // how far it is off
+      table += "best plane " + coefficientsOf(*best, shift) +
+               formatted(" maps %.1f %% of the surface to within %.3g, 97 %% to within %.3g\n", 100.0 * best->share,
+                         findings.tolerance, best->deviation);
+    return table;
+  }
   for (const SymmetryCenter& center : findings.centers)
-    table += formatted("center of all planes: %s, confidence %.3f\n", place(center.point).c_str(), center.confidence);
-  for (const SymmetryAxis& axis : findings.axes)
-    table +=
-        formatted("axis of revolution: through %s along %.6f %.6f %.6f, confidence %.3f\n", place(axis.point).c_str(),
-                  axis.direction.x(), axis.direction.y(), axis.direction.z(), axis.confidence);
-  for (const SymmetryTurn& turn : findings.turns) table += lineOf(turn, shift);
+    table += formatted("center of all planes: %s, confidence %.3f\n",
+                       spelled(shiftedBack(center.point, shift), digits).c_str(), center.confidence);
+  for (const SymmetryAxis& axis : findings.axes) table += lineOf(axis, 0, shift);
+  for (const SymmetryTurn& turn : findings.turns) table += lineOf(turn, turn.fold, shift);
   const std::vector<SymmetryPlane>& planes = findings.planes;
   if (planes.empty()) return table;
   table += formatted("%5s %10s %10s %10s %12s %10s %7s %7s %7s %6s  %s\n", "plane", "a", "b", "c", "d", "confidence",
@@ -174,19 +168,16 @@ std::vector<std::vector<nlohmann::json>> rowsOf(const Findings& findings, const 
         {p.confidence, p.share, p.support, p.score, p.seen, p.deviation});
   };
   const auto at = [&](const Eigen::Vector3d& point) { return numbersOf(shiftedBack(point, shift)); };
-  std::size_t number = 0;
-  for (const SymmetryPlane& plane : findings.planes) addPlane(++number, toString(plane.kind), plane);
-  number = 0;
+  std::size_t planes = 0, axes = 0, turns = 0, centers = 0;
+  for (const SymmetryPlane& plane : findings.planes) addPlane(++planes, toString(plane.kind), plane);
   for (const SymmetryAxis& axis : findings.axes)
-    add(++number, "axis", {}, at(axis.point), numbersOf(axis.direction),
+    add(++axes, "axis", {}, at(axis.point), numbersOf(axis.direction),
         {axis.confidence, none, axis.support, axis.score, none, none});
-  number = 0;
   for (const SymmetryTurn& turn : findings.turns)
-    add(++number, "turn", {}, at(turn.point), numbersOf(turn.direction),
+    add(++turns, "turn", {}, at(turn.point), numbersOf(turn.direction),
         {turn.confidence, none, none, none, none, none});
-  number = 0;
   for (const SymmetryCenter& center : findings.centers)
-    add(++number, "center", {}, at(center.point), {},
+    add(++centers, "center", {}, at(center.point), {},
         {center.confidence, none, center.support, center.score, none, none});
   if (findings.best) addPlane(1, "best", *findings.best);
   return rows;
@@ -261,20 +252,14 @@ std::vector<PicturePanel> panelsOf(const Findings& findings) {
     PicturePanel& panel = add(formatted("plane %zu (%s): confidence %.2f, support %.2f", k + 1, toString(plane.kind),
                                         plane.confidence, plane.support));
     panel.support.assign(findings.support[k].begin(), findings.support[k].end());
-    PlanePatch patch;
-    patch.normal = plane.normal();
-    patch.offset = plane.offset();
-    patch.color = distinctColor(k);
-    panel.planes = {patch};
+    panel.planes = {{plane.normal(), plane.offset(), Eigen::Vector3d::Zero(), 0.0, distinctColor(k)}};
   }
   if (panels.empty()) panels.push_back({"no symmetry plane"});
   return panels;
 }
 
 PictureScene makeScene(const pcl::PointCloud<pcl::PointXYZ>::ConstPtr& cloud, const Findings& findings) {
-  PictureScene scene;
-  scene.points = cloud;
-  scene.panels = panelsOf(findings);
+  PictureScene scene{cloud, std::nullopt, panelsOf(findings)};
   if (findings.planes.empty()) return scene;
   // Off the normals of the planes shown, so that none is seen edge on or face on; see ViewpointSelection for more.
   const Eigen::Vector3d n = findings.planes[0].normal();

@@ -56,13 +56,6 @@ CommandLine commandLine(ScanOptions& options) {
   return line;
 }
 
-void checkCombination(const ScanOptions& options) {
-  if (int(options.direction.has_value()) + int(options.corner.has_value()) + int(options.all) > 1) {
-    throw UsageError("only one of -direction, -corner and -all may be given");
-  }
-  checkCloudExtension(options.output);
-}
-
 std::vector<View> viewsOf(const ScanOptions& options) {
   const auto corners = cubeCorners();
   if (options.direction) return {{*options.direction, options.output}};
@@ -79,11 +72,6 @@ std::vector<View> viewsOf(const ScanOptions& options) {
 PCDEncoding encodingOf(const std::string& format) {
   if (format == "ascii") return PCDEncoding::Ascii;
   return format == "binary" ? PCDEncoding::Binary : PCDEncoding::BinaryCompressed;
-}
-
-/// A scan without a random pose lies where its mesh lies, shifted; one with such a pose lies near the origin.
-Eigen::Vector3d shiftOf(const ScanOptions& options, const Shape& shape) {
-  return options.scanner.random_pose ? Eigen::Vector3d::Zero() : shape.shift;
 }
 
 nlohmann::json describe(const VirtualScan& scan, const std::string& path, const Eigen::Vector3d& mesh_shift,
@@ -126,7 +114,9 @@ int run(int argc, char** argv) {
   ScanOptions options;
   CommandLine line = commandLine(options);
   if (!line.parse(argc, argv)) return 0;
-  checkCombination(options);
+  if (int(options.direction.has_value()) + int(options.corner.has_value()) + int(options.all) > 1)
+    throw UsageError("only one of -direction, -corner and -all may be given");
+  checkCloudExtension(options.output);
   options.scanner.seed = options.common.seed;
   options.scanner.num_threads = options.common.threads;
   if (options.field_of_view) options.scanner.field_of_view = *options.field_of_view * kDegree;
@@ -146,7 +136,8 @@ int run(int argc, char** argv) {
     console.warn(options.input + ": reaches beyond the picture; a larger -fov or -distance shows all of it");
 
   nlohmann::json report;
-  const Eigen::Vector3d shift = shiftOf(options, shape);
+  // A scan without a random pose lies where its mesh lies, shifted; one with such a pose lies near the origin.
+  const Eigen::Vector3d shift = options.scanner.random_pose ? Eigen::Vector3d(Eigen::Vector3d::Zero()) : shape.shift;
   Step saving(console, "Saving " + (options.all ? std::to_string(views.size()) + " files" : options.output));
   for (std::size_t i = 0; i < views.size(); ++i) {
     save(scans[i], views[i].path, shift, encodingOf(options.format));

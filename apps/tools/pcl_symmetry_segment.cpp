@@ -1,7 +1,4 @@
 /// Parts of a cloud or mesh: labels of points or faces, the tree of parts, a picture.
-#include <pcl/common/io.h>
-#include <pcl/conversions.h>
-
 #include <algorithm>
 #include <boost/algorithm/string.hpp>
 #include <boost/filesystem/path.hpp>
@@ -115,12 +112,9 @@ nlohmann::json describe(const std::string& path, const Shape& shape, const std::
 }
 
 PictureScene sceneOf(const SegmentOptions& o, const Shape& shape, const std::vector<int>& labels) {
-  PictureScene scene;
-  scene.points = shape.points;
-  scene.mesh = shape.mesh;
   PicturePanel panel;
   panel.segments = labels;
-  scene.panels = {panel};
+  PictureScene scene{shape.points, shape.mesh, {panel}};
   if (o.up) standUpright(scene, *o.up);
   return scene;
 }
@@ -156,21 +150,15 @@ std::vector<pcl::PointIndices> cut(const FileJob& job, const SegmentOptions& o, 
   return segments;
 }
 
-/// One row a part.
-std::vector<std::vector<nlohmann::json>> rowsOf(const std::vector<pcl::PointIndices>& segments) {
-  std::vector<std::vector<nlohmann::json>> rows;
-  for (std::size_t i = 0; i < segments.size(); ++i) rows.push_back({i, segments[i].indices.size()});
-  return rows;
-}
-
 void analyze(const SegmentOptions& options, FileJob& job) {
   const Shape shape = load(job, options);
   SymmetrySegmentation<pcl::PointXYZ> segmentation;
   double ms = 0.0;
   const std::vector<pcl::PointIndices> segments = cut(job, options, shape, segmentation, ms);
   const std::vector<int>& labels = segmentation.getLabels();
-  job.report({"", describe(job.path(), shape, segments, segmentation.getTree(), segmentation.getImages(), ms),
-              rowsOf(segments)});
+  std::vector<std::vector<nlohmann::json>> rows;
+  for (std::size_t i = 0; i < segments.size(); ++i) rows.push_back({i, segments[i].indices.size()});
+  job.report({"", describe(job.path(), shape, segments, segmentation.getTree(), segmentation.getImages(), ms), rows});
   if (options.output) saveLabeled(job.output(*options.output), shape, labels);
   if (options.html_path) {
     PictureScene scene = sceneOf(options, shape, labels);

@@ -9,7 +9,6 @@
 #include "command_line/tool_errors.h"
 #include "io/exact_coordinates.h"
 #include "io/input_shape.h"
-#include "io/shape_input.h"
 #include "pictures/drawing.h"
 #include "viewer/viewer_window.h"
 
@@ -77,18 +76,13 @@ int run(int argc, char** argv) {
   searching.done(model.summary);
 
   const std::string name = boost::filesystem::path(options.input).stem().string();
-  if (!options.screenshot_path) {
-    const auto window = makeViewerWindow(model, name, false, options.width, options.height);
-    for (const std::string& key : keys) window->press(key);
-    window->run();
-    return 0;
+  std::optional<Step> drawing;
+  if (options.screenshot_path) {
+    drawing.emplace(console, "Drawing " + *options.screenshot_path);
+    requireDisplay(*options.screenshot_path);
   }
-  Step drawing(console, "Drawing " + *options.screenshot_path);
-  requireDisplay(*options.screenshot_path);
-  const auto window = makeViewerWindow(model, name, true, options.width, options.height);
-  for (const std::string& key : keys) window->press(key);
-  window->save(*options.screenshot_path);
-  drawing.done();
+  showModel(model, name, keys, options.width, options.height, options.screenshot_path);
+  if (drawing) drawing->done();
   return 0;
 }
 

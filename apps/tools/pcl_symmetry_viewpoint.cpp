@@ -66,16 +66,9 @@ std::string lineOf(const char* name, const SelectedView& view) {
 }
 
 PictureScene sceneOf(const InputShape& input, const SelectedView& view, const std::string& label) {
-  PictureScene scene;
-  scene.points = input.points;
-  scene.mesh = input.shape.mesh;
-  PicturePanel panel;
-  panel.label = label;
+  PicturePanel panel{label};
   panel.show_points = !input.shape.mesh;
-  scene.panels.push_back(panel);
-  scene.view = view.direction;
-  scene.up = -view.pose.linear().col(1).cast<double>();
-  return scene;
+  return {input.points, input.shape.mesh, {panel}, view.direction, -view.pose.linear().col(1).cast<double>()};
 }
 
 /// The score as a spherical function (Figure 16): directions scaled and colored by it.
@@ -83,8 +76,7 @@ PictureScene scoreSphere(const ViewpointSelection& selection, const SelectedView
   constexpr int kRings = 120, kAround = 240;  // 1.5 degrees
   const Eigen::Vector3d up = selection.getUpAxis(), side = up.unitOrthogonal(), front = up.cross(side);
   pcl::PointCloud<pcl::PointXYZ>::Ptr surface(new pcl::PointCloud<pcl::PointXYZ>);
-  PicturePanel panel;
-  panel.label = "score of each direction";
+  PicturePanel panel{"score of each direction"};
   panel.show_points = false;
   const double range = std::max(best.score - worst.score, 1e-9);
   for (int ring = 0; ring <= kRings; ++ring) {
@@ -108,16 +100,10 @@ PictureScene scoreSphere(const ViewpointSelection& selection, const SelectedView
       mesh.polygons.push_back(quad);
     }
   }
-  PictureScene scene;
-  scene.points = surface;
-  scene.mesh = mesh;
-  scene.panels.push_back(panel);
-  scene.show_color_bar = false;
   // Beside the best view, so that its peak is seen in profile.
-  scene.view = Eigen::AngleAxisd(0.3 * kPi, up) * best.direction + 0.2 * up;
-  scene.up = up;
-  if (scene.view.normalized().cross(up).norm() < 0.2) scene.view = side + 0.5 * up;
-  return scene;
+  Eigen::Vector3d view = Eigen::AngleAxisd(0.3 * kPi, up) * best.direction + 0.2 * up;
+  if (view.normalized().cross(up).norm() < 0.2) view = side + 0.5 * up;
+  return {surface, mesh, {panel}, view, up, false};
 }
 
 /// Chooses by the local maxima of the transform of the cloud.

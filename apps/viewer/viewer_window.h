@@ -1,35 +1,22 @@
 /// A window on a shape and its planes: PCL's visualizer, driven by the keys of viewer_state.h.
 #pragma once
 
-#include <memory>
+#include <optional>
 #include <string>
+#include <vector>
 
 #include "viewer/viewer_model.h"
 #include "viewer/viewer_state.h"
 
 namespace pcl_symmetry::apps {
 
-class ViewerWindow {
-public:
-  virtual ~ViewerWindow() = default;
-
-  /// Does what the key says and draws again.
-  /// \return whether the key does anything.
-  virtual bool press(const std::string& symbol) = 0;
-
-  /// Lets the user work until they quit.
-  virtual void run() = 0;
-
-  /// Writes what is drawn now as a PNG, whole.
-  /// \throws InputError if the file cannot be written.
-  virtual void save(const std::string& path) = 0;
-};
-
-/// Needs a display (drawing.h).
+/// Lets the user work until they quit; or draws off screen, and writes a picture. Needs a display (drawing.h).
 /// \param name of the shape, in the title and in the names of saved pictures.
-/// \param off_screen draws, but shows no window and takes no mouse.
+/// \param keys pressed at the start.
 /// \param width,height pixels.
-std::unique_ptr<ViewerWindow> makeViewerWindow(const ViewerModel& model, const std::string& name, bool off_screen,
-                                               int width, int height);
+/// \param screenshot_path PNG that is written whole; none: a window.
+/// \throws InputError if the file cannot be written.
+void showModel(const ViewerModel& model, const std::string& name, const std::vector<std::string>& keys, int width,
+               int height, const std::optional<std::string>& screenshot_path);
 
 }  // namespace pcl_symmetry::apps

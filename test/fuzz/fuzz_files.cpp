@@ -1,5 +1,5 @@
 /// Readers of files. FUZZ_KIND in the environment names one of them: a kind of shape file such as pcd, or of volumes
-/// such as nii.gz, or isaac, models_info, labels.
+/// such as nii.gz, or isaac, models_info.
 #include <unistd.h>
 
 #include <fstream>
@@ -11,7 +11,6 @@
 #include "fuzz/byte_source.h"
 #include "io/input_shape.h"
 #include "io/load_module.h"
-#include "io/mesh_output.h"
 #include "io/shape_input.h"
 #include "io/shape_readers.h"
 
@@ -62,8 +61,7 @@ Kind kindOf(const std::string& name) {
       {"mha", {".mha", readVoxels}},
       {"vti", {".vti", readVoxels}},
       {"isaac", {".yaml", [](const std::string& path) { readIsaacAxes(path); }}},
-      {"models_info", {".json", readModelsSymmetries}},
-      {"labels", {".seg", [](const std::string& path) { readFaceLabels(path); }}}};
+      {"models_info", {".json", readModelsSymmetries}}};
   const auto known = kinds.find(name);
   return known == kinds.end() ? Kind{"." + name, readShape} : known->second;
 }

@@ -157,7 +157,6 @@ def symmetry_files():
     rows = [turn[i : i + 4] for i in range(0, 16, 4)]
     yield "models_info", [json.dumps(models).encode(), json.dumps({"symmetries_discrete": [rows], "align_axes": []}).encode()]
     yield "isaac", [b'obj_1: ["z_90", "z_180"]\nobj_2: ["x_full"] # any angle\n', b"symmetry_axes: ['y_full']\n"]
-    yield "labels", [b"0\n0\n1\n2\n"]
 
 
 def point_bytes(num_options, count):

@@ -11,7 +11,7 @@ undefined-behavior sanitizers, from small files of make_seeds.py and what earlie
 crashes, takes more than 120 s, or asks for more than 300 MB at once stays in build-fuzz/findings/TARGET.
 
 Targets: planes rotations segment packed database, and readers of files: pcd ply off xyz csv obj stl glb nii nii.gz nrrd
-mha vti models_info isaac labels.
+mha vti models_info isaac.
 
 Exit status 0: nothing was found. 1: something was. 2: wrong usage, or the fuzzers could not be built.
 END
@@ -23,7 +23,7 @@ case "${1-}" in
 esac
 seconds=$1
 shift
-readers="pcd ply off xyz csv obj stl glb nii nii.gz nrrd mha vti models_info isaac labels"
+readers="pcd ply off xyz csv obj stl glb nii nii.gz nrrd mha vti models_info isaac"
 targets=("$@")
 ((${#targets[@]} > 0)) || targets=(planes rotations segment packed database $readers)
 cd "$(dirname "${BASH_SOURCE[0]}")/../.." || exit 2
