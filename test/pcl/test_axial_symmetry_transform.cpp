@@ -34,14 +34,6 @@ TEST(AxialSymmetryTransform, FindsTheAxisOfAPrism) {
   EXPECT_TRUE(transform.getAxes().empty());
 }
 
-TEST(AxialSymmetryTransform, DataWithoutAnAnswerGiveNone) {
-  auto transform = small();
-  transform.setInputCloud(pcl::make_shared<pcl::PointCloud<pcl::PointXYZ>>());
-  EXPECT_TRUE(transform.compute().empty());
-  EXPECT_TRUE(transform.computeCenters().values.empty());
-  EXPECT_FALSE(transform.getReason().empty());
-}
-
 TEST(AxialSymmetryTransform, RefusesBadValues) {
   auto transform = small();
   EXPECT_EQ(messageOf([&] { transform.setFolds({1}); }), "fold = 1, must be 0 or in [2, 60]");

@@ -53,17 +53,6 @@ TEST(PlanarSymmetryTransform2D, NamesWhatIsWrong) {
   Transform transform;
   EXPECT_NE(messageOf([&] { transform.setSigma(-1.0); }).find("sigma = -1, must be"), std::string::npos);
   EXPECT_NE(messageOf([&] { transform.setGridSize(2); }).find("num_cells = 2"), std::string::npos);
-  EXPECT_NE(messageOf([&] { transform.setNumberOfThreads(-2); }).find("num_threads = -2"), std::string::npos);
-}
-
-TEST(PlanarSymmetryTransform2D, GivesAnEmptyMapWhereThereIsNoAnswer) {
-  for (const auto& [name, cloud] : cloudsWithoutAnswer()) {
-    Transform transform;
-    transform.setInputCloud(cloud);
-    EXPECT_TRUE(transform.compute().empty()) << name;
-    EXPECT_NE(transform.getReason(), "") << name;
-    EXPECT_TRUE(transform.getLines().empty()) << name;
-  }
 }
 
 }  // namespace

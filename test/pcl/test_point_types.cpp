@@ -2,7 +2,7 @@
 #include "pcl_symmetry/point_types.h"
 
 #include <gtest/gtest.h>
-#include <pcl/kdtree/impl/kdtree_flann.hpp>
+#include <pcl/point_representation.h>
 
 #include <algorithm>
 #include <iterator>
@@ -29,22 +29,6 @@ TEST(PointRepresentation, HoldsAllValuesOfADescriptor) {
   expectAllValues(&PRSDSignature1024::prsd);
   expectAllValues(&GEDTSignature32768::gedt);
   expectAllValues(&ShapeSignature20736::signature);
-}
-
-TEST(PointRepresentation, SearchTreesCompareAllValues) {
-  auto cloud = pcl::make_shared<pcl::PointCloud<PRSTSignature32768>>();
-  cloud->resize(4);
-  for (std::size_t i = 0; i < cloud->size(); ++i) (*cloud)[i].prst[32767 - i] = 1.0f;  // equal in the first values
-  pcl::KdTreeFLANN<PRSTSignature32768> tree;
-  tree.setInputCloud(cloud);
-  for (int i = 0; i < 4; ++i) {
-    pcl::Indices indices;
-    std::vector<float> sq_distances;
-    ASSERT_EQ(tree.nearestKSearch((*cloud)[static_cast<std::size_t>(i)], 2, indices, sq_distances), 2);
-    EXPECT_EQ(indices[0], i);
-    EXPECT_EQ(sq_distances[0], 0.0f);
-    EXPECT_EQ(sq_distances[1], 2.0f);
-  }
 }
 
 }  // namespace

@@ -429,7 +429,8 @@ TEST_F(SymmetryDatabaseTest, NamesAreAnyTextButPaths) {
                              "\xff\xfe", "\xc3",      std::string(10'000, 'x')};
   for (const std::string& name : bad) {
     const std::string message = test::messageOf([&] { database.add(name, cube()); });
-    EXPECT_NE(message.find("must be 1 to 200 bytes of UTF-8 without '/' and control characters"), std::string::npos);
+    EXPECT_NE(message.find("must be 1 to 200 bytes of UTF-8 without '/' and control characters, not '.' first"),
+              std::string::npos);
     EXPECT_LT(message.size(), 250u);
     EXPECT_FALSE(database.contains(name));
   }
@@ -439,9 +440,6 @@ TEST_F(SymmetryDatabaseTest, NamesAreAnyTextButPaths) {
 
 TEST_F(SymmetryDatabaseTest, SaysWhatIsWrong) {
   SymmetryDatabase database(file_);
-  EXPECT_EQ(test::messageOf([&] { database.add("../evil", cube()); }),
-            "name = '../evil' (7 bytes), must be 1 to 200 bytes of UTF-8 without '/' and control characters, not '.' "
-            "first");
   EXPECT_THROW(database.add("flat", Cloud(10, 1, pcl::PointXYZ(1.0f, 1.0f, 1.0f))), pcl::BadArgumentException);
   EXPECT_EQ(test::messageOf([&] { database.remove("nobody"); }), "name = 'nobody', must be that of a model");
   EXPECT_THROW(database.cloud("nobody"), pcl::BadArgumentException);

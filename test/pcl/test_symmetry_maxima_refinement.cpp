@@ -158,19 +158,6 @@ TEST(SymmetryMaximaRefinement, TakesAMapMadeBefore) {
   EXPECT_EQ(numFound(shape, planes, 0.001 * test::kDegree, 1e-5 * test::diagonal(shape.cloud())), 9);
 }
 
-TEST(SymmetryMaximaRefinement, FindsNothingWhereThereIsNoAnswer) {
-  for (const auto& [name, cloud] : test::cloudsWithoutAnswer()) {
-    SymmetryMaximaRefinement<pcl::PointXYZ> refinement;
-    refinement.setApproximate(true);
-    refinement.setInputCloud(cloud);
-    EXPECT_TRUE(refinement.compute().empty()) << name;
-    EXPECT_NE(refinement.getReason(), "") << name;
-    EXPECT_TRUE(refinement.getAxes().empty()) << name;
-    for (const float support : refinement.computePointSupport(ReflectionPlane()))
-      EXPECT_TRUE(std::isnan(support)) << name;
-  }
-}
-
 TEST(SymmetryMaximaRefinement, AUsedObjectIsAsGoodAsANewOne) {
   const auto first = test::toCloud(test::cylinder(3000, 3)),
              second = test::toCloud(test::cube(3000, Sampling::Random, 6));
@@ -201,7 +188,6 @@ TEST(SymmetryMaximaRefinement, RefusesWrongParameters) {
   SymmetryMaximaRefinement<pcl::PointXYZ> refinement;
   EXPECT_EQ(messageOf([&] { refinement.setMinConfidence(1.5); }), "min_confidence = 1.5, must be in [0, 1]");
   EXPECT_EQ(messageOf([&] { refinement.setMaxPlanes(0); }), "max_planes = 0, must be >= 1");
-  EXPECT_EQ(messageOf([&] { refinement.setNumberOfThreads(-1); }), "num_threads = -1, must be >= 0");
   EXPECT_NE(messageOf([&] { refinement.setSymmetryMap(SymmetryMap(), nullptr); }).find("symmetry map: empty"),
             std::string::npos);
 }

@@ -331,16 +331,11 @@ void expectOneObjectEach(const std::vector<Body>& bodies) {
   }
 }
 
-TEST(SymmetryScene, ABoxBesideABoxAreTwo) {
+TEST(SymmetryScene, BodiesThatTouchAreTwo) {
+  // A box beside a box, a stack, a box before a cylinder.
   expectOneObjectEach({block({-0.1, 0.0, 0.1}, {0.1, 0.06, 0.1}), block({0.08, -0.02, 0.05}, {0.08, 0.1, 0.05})});
-}
-
-TEST(SymmetryScene, AStackAreTwo) {
   expectOneObjectEach(
       {block({0.0, 0.0, 0.05}, {0.15, 0.12, 0.05}), block({0.01, 0.02, 0.15}, {0.08, 0.06, 0.05}, 0.4)});
-}
-
-TEST(SymmetryScene, ABoxBeforeACylinderAreTwo) {
   expectOneObjectEach({uprightCylinder({0.0, 0.1}, 0.07, 0.0, 0.2), block({0.0, -0.03, 0.05}, {0.1, 0.06, 0.05})});
 }
 
