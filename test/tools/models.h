@@ -1,13 +1,13 @@
 /// Text of models with known symmetry: a box, what is turned on a lathe, and a tetrahedron that has none.
 #pragma once
 
-#include <Eigen/Geometry>
+#include <Eigen/Core>
 #include <array>
-#include <cmath>
 #include <sstream>
 #include <string>
-#include <utility>
 #include <vector>
+
+#include "shapes/turning_shapes.h"
 
 /// \param polygons lists of the numbers of vertices.
 template <typename Polygons>
@@ -23,31 +23,20 @@ std::string offText(const Eigen::Matrix3Xd& vertices, const Polygons& polygons) 
   return text.str();
 }
 
-/// OFF text of a profile turned about z.
-/// \param profile radius and height from end to end.
-/// \param num_sides >= 3.
-inline std::string latheOFF(const std::vector<std::pair<double, double>>& profile, int num_sides) {
-  Eigen::Matrix3Xd vertices(3, static_cast<int>(profile.size()) * num_sides);
-  std::vector<std::array<int, 4>> quads;
-  for (int i = 0; i < vertices.cols(); ++i) {
-    const auto [radius, height] = profile[static_cast<std::size_t>(i / num_sides)];
-    const double angle = 2.0 * M_PI * (i % num_sides) / num_sides;
-    vertices.col(i) << radius * std::cos(angle), radius * std::sin(angle), height;
-    const int next = i + (i % num_sides == num_sides - 1 ? 1 - num_sides : 1);
-    if (i + num_sides < vertices.cols()) quads.push_back({i, next, next + num_sides, i + num_sides});
-  }
-  return offText(vertices, quads);
+inline std::string offText(const pcl_symmetry::test::TurningShape& shape) {
+  return offText(shape.corners(), shape.triangles);
+}
+
+/// A profile (radius, height) turned about z.
+inline std::string latheOFF(const std::vector<Eigen::Vector2d>& profile, int num_sides) {
+  pcl_symmetry::test::TurningShape shape;
+  shape.addLathe(profile, num_sides);
+  return offText(shape);
 }
 
 /// A vase: closed at the bottom, open at the top.
 inline std::string vaseOFF() {
   return latheOFF({{0.001, 0}, {0.5, 0}, {0.8, 0.5}, {0.9, 1.0}, {0.7, 1.6}, {0.3, 2.2}, {0.3, 2.5}, {0.45, 2.7}}, 64);
-}
-
-inline std::string sphereOFF() {
-  std::vector<std::pair<double, double>> profile;
-  for (int k = 0; k <= 48; ++k) profile.emplace_back(std::sin(M_PI * k / 48), -std::cos(M_PI * k / 48));
-  return latheOFF(profile, 96);
 }
 
 /// \return the corners of a box about the origin: counterclockwise below, then above.

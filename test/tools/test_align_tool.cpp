@@ -1,4 +1,6 @@
 #include <gtest/gtest.h>
+#include <pcl/io/pcd_io.h>
+#include <pcl/point_types.h>
 
 #include <Eigen/Geometry>
 #include <algorithm>
@@ -39,21 +41,18 @@ protected:
     options.seed = 5;
     const VirtualScan scan = scanner.scan({-0.6, -1.0, 0.7}, options);
     T_scan_model = scan.T_scan_model;
-    const Eigen::Vector4f origin = scan.cloud->sensor_origin_;
-    std::string points;
-    int size = 0;
+    pcl::PointCloud<pcl::PointXYZLNormal> seen;
+    seen.sensor_origin_ = scan.cloud->sensor_origin_;
     for (const pcl::PointXYZ& point : *scan.cloud) {
       if (!point.getVector3fMap().allFinite()) continue;
-      const Eigen::Vector3f n = (origin.head<3>() - point.getVector3fMap()).normalized();
-      for (const float value : {point.x, point.y, point.z, n.x(), n.y(), n.z()}) points += std::to_string(value) + " ";
-      points += std::to_string(size++) + "\n";
+      pcl::PointXYZLNormal added;
+      added.getVector3fMap() = point.getVector3fMap();
+      added.getNormalVector3fMap() = (seen.sensor_origin_.head<3>() - point.getVector3fMap()).normalized();
+      added.label = static_cast<std::uint32_t>(seen.size());
+      seen.push_back(added);
     }
-    return folder_.write("scan.pcd",
-                         "VERSION 0.7\nFIELDS x y z normal_x normal_y normal_z label\nSIZE 4 4 4 4 4 4 4\n"
-                         "TYPE F F F F F F U\nCOUNT 1 1 1 1 1 1 1\nWIDTH " +
-                             std::to_string(size) + "\nHEIGHT 1\nVIEWPOINT " + std::to_string(origin.x()) + " " +
-                             std::to_string(origin.y()) + " " + std::to_string(origin.z()) + " 1 0 0 0\nPOINTS " +
-                             std::to_string(size) + "\nDATA ascii\n" + points);
+    pcl::io::savePCDFileBinary(folder_ / "scan.pcd", seen);
+    return folder_ / "scan.pcd";
   }
 
   static Eigen::Isometry3d transformOf(const nlohmann::json& json) {

@@ -12,10 +12,9 @@
 
 #include "command_line/command_line.h"
 #include "command_line/input_files.h"
-#include "command_line/result_files.h"
 #include "command_line/run_on_files.h"
 #include "command_line/tool_errors.h"
-#include "io/standard_streams.h"
+#include "io/shape_input.h"
 #include "pcl_symmetry/core/detect_planes.h"
 #include "shapes/complaint.h"
 #include "tools/tool_run.h"

@@ -14,7 +14,6 @@
 #include "pictures/raster_image.h"
 #include "shapes/complaint.h"
 #include "shapes/temporary_folder.h"
-#include "shapes/turning_shapes.h"
 #include "tools/models.h"
 #include "tools/tool_run.h"
 
@@ -24,10 +23,6 @@ using namespace pcl_symmetry;
 using namespace pcl_symmetry::apps;
 
 using nlohmann::json;
-
-std::string offOf(const test::TurningShape& shape) {
-  return offText(shape.corners(), shape.triangles);
-}
 
 class BopTool : public ToolTest {
 protected:
@@ -78,7 +73,7 @@ TEST_F(BopTool, GivesBodiesOfRevolutionAnAxisAndCylindersAFlip) {
   EXPECT_NEAR(offset[0], 0.0, 0.01);
   EXPECT_NEAR(offset[1], 0.0, 0.01);
 
-  const json cylinder = infoOf(folder_.write("can.off", offOf(test::cylinderShape()))).at("1");
+  const json cylinder = infoOf(folder_.write("can.off", offText(test::cylinderShape()))).at("1");
   ASSERT_EQ(cylinder["symmetries_continuous"].size(), 1u);
   ASSERT_EQ(cylinder["symmetries_discrete"].size(), 1u);
   const Eigen::Matrix4d flip = matrixOf(cylinder["symmetries_discrete"][0]);
@@ -86,7 +81,7 @@ TEST_F(BopTool, GivesBodiesOfRevolutionAnAxisAndCylindersAFlip) {
 }
 
 TEST_F(BopTool, GivesASphereAnAxisAndTiltsAndAnAsymmetricModelNothing) {
-  const std::string ball = folder_.write("ball.off", sphereOFF());
+  const std::string ball = folder_.write("ball.off", offText(test::ballShape()));
   const json sphere = infoOf(ball + " -sphere_angle 90").at("1");
   EXPECT_EQ(sphere["symmetries_continuous"].size(), 1u);
   ASSERT_EQ(sphere["symmetries_discrete"].size(), 1u) << "upside down";
@@ -98,7 +93,7 @@ TEST_F(BopTool, GivesASphereAnAxisAndTiltsAndAnAsymmetricModelNothing) {
 }
 
 TEST_F(BopTool, ExplainsWhatFails) {
-  const std::string mug = folder_.write("mug.off", offOf(test::cupShape(true)));
+  const std::string mug = folder_.write("mug.off", offText(test::cupShape(true)));
   infoOf(mug + " -explain -failures " + (folder_ / "failures"));
   EXPECT_NE(output_.find("  tolerance "), std::string::npos) << output_;
   ASSERT_NE(output_.find("  rejected "), std::string::npos) << output_;

@@ -66,17 +66,10 @@ protected:
 TEST_F(Picture, IsAWholePNGOfTheWantedSize) {
   const TemporaryFolder folder;
   renderPicture(boxScene(), folder / "box.png", 300, 200);
-  const std::string png = contentOf(folder / "box.png");
-  ASSERT_GT(png.size(), 2000u) << "a blank picture of this size compresses to less";
-  EXPECT_EQ(png.substr(1, 3), "PNG");
-  const auto bigEndian = [&](std::size_t at) {
-    int value = 0;
-    for (std::size_t i = at; i < at + 4; ++i) value = 256 * value + static_cast<unsigned char>(png[i]);
-    return value;
-  };
-  EXPECT_EQ(bigEndian(16), 300);
-  EXPECT_EQ(bigEndian(20), 200);
-  EXPECT_EQ(png.substr(png.size() - 8, 4), "IEND");
+  const RasterImage picture = readImage(folder / "box.png");
+  EXPECT_EQ(picture.width, 300);
+  EXPECT_EQ(picture.height, 200);
+  EXPECT_GT(contentOf(folder / "box.png").size(), 2000u) << "a blank picture of this size compresses to less";
   EXPECT_EQ(folder.names().size(), 1u);
 }
 
@@ -89,7 +82,6 @@ TEST_F(Picture, HoldsSeveralScenes) {
   renderPicture({other, other}, folder / "beside.png", 300, 200, 2);
   EXPECT_NE(contentOf(folder / "one.png"), contentOf(folder / "two.png"));
   EXPECT_NE(contentOf(folder / "two.png"), contentOf(folder / "beside.png"));
-  EXPECT_THROW(renderPicture(std::vector<PictureScene>{}, folder / "none.png", 300, 200), std::invalid_argument);
 }
 
 TEST_F(Picture, FailsWithOneErrorWhereNothingCanDraw) {
@@ -101,22 +93,6 @@ TEST_F(Picture, FailsWithOneErrorWhereNothingCanDraw) {
   EXPECT_THROW(renderPicture(boxScene(), folder / "box.png", 300, 200), InputError);
   setenv("PATH", old_path.c_str(), 1);
   if (display) setenv("DISPLAY", old_display.c_str(), 1);
-  EXPECT_TRUE(folder.names().empty());
-}
-
-TEST_F(Picture, RefusesScenesThatDoNotFitTogether) {
-  const TemporaryFolder folder;
-  const auto refused = [&](auto change) {
-    PictureScene scene = boxScene();
-    change(scene);
-    EXPECT_THROW(renderPicture(scene, folder / "a.png", 100, 100), std::invalid_argument);
-  };
-  refused([](PictureScene& scene) { scene.points.reset(); });
-  refused([](PictureScene& scene) { scene.panels.clear(); });
-  refused([](PictureScene& scene) { scene.panels[0].support.pop_back(); });
-  refused([](PictureScene& scene) { scene.panels[0].planes[0].normal.setZero(); });
-  refused([](PictureScene& scene) { scene.view = scene.up; });
-  EXPECT_THROW(renderPicture(boxScene(), folder / "a.png", 0, 100), std::invalid_argument);
   EXPECT_TRUE(folder.names().empty());
 }
 
@@ -199,8 +175,6 @@ TEST(ScenePage, ThinsLargeCloudsAndLeavesOutWhatIsNotFinite) {
   scene.points.reset(new pcl::PointCloud<pcl::PointXYZ>(1, 1, {NAN, 0, 0}));
   scene.panels = {{}};
   EXPECT_THROW(writePage(scene, {"a", ""}, folder / "b.html"), InputError);
-  scene.panels.clear();
-  EXPECT_THROW(writePage(scene, {"a", ""}, folder / "b.html"), std::invalid_argument);
 }
 
 TEST(ScenePage, ShowsThePartsOfAMesh) {
@@ -229,18 +203,10 @@ TEST(ScenePage, ShowsThePartsOfAMesh) {
   EXPECT_EQ(page["panels"][1]["segments"].size(), 1u);
 }
 
-using pcl_symmetry::test::boxMesh;
-
-ViewerState stateWith(int num_planes) {
-  ViewerState state;
-  state.num_planes = num_planes;
-  state.has_mesh = true;
-  state.camera = CameraMove::Stay;
-  return state;
-}
-
 TEST(ViewerKeys, DoWhatTheHelpSays) {
-  ViewerState state = stateWith(3);
+  ViewerState state;
+  state.num_planes = 3;
+  state.has_mesh = true;
   pressKey(state, "n");
   EXPECT_EQ(state.plane, 1);
   pressKey(state, "b");
@@ -248,20 +214,15 @@ TEST(ViewerKeys, DoWhatTheHelpSays) {
   EXPECT_EQ(state.plane, 2) << "round";
   pressKey(state, "Right");
   EXPECT_EQ(state.plane, 0);
-  const auto toggles = [&](const char* key, bool ViewerState::*field) {
-    const bool before = state.*field;
-    pressKey(state, key);
-    EXPECT_NE(state.*field, before) << key;
-    pressKey(state, key);
-    EXPECT_EQ(state.*field, before) << key;
-  };
-  toggles("g", &ViewerState::patch);
-  toggles("s", &ViewerState::support);
-  toggles("o", &ViewerState::reflection);
-  toggles("a", &ViewerState::axes);
-  toggles("m", &ViewerState::mesh);
-  toggles("c", &ViewerState::parts);
-  toggles("h", &ViewerState::help);
+  using Toggle = std::pair<const char*, bool ViewerState::*>;
+  for (const auto& [key, field] :
+       {Toggle("g", &ViewerState::patch), Toggle("s", &ViewerState::support), Toggle("o", &ViewerState::reflection),
+        Toggle("a", &ViewerState::axes), Toggle("m", &ViewerState::mesh), Toggle("c", &ViewerState::parts),
+        Toggle("h", &ViewerState::help)})
+    for (const bool expected : {!(state.*field), state.*field}) {
+      pressKey(state, key);
+      EXPECT_EQ(state.*field, expected) << key;
+    }
   pressKey(state, "i");
   pressKey(state, "i");
   EXPECT_EQ(state.step, 1);

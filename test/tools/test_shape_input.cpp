@@ -1,14 +1,12 @@
 /// Shapes as other programs write them: what they mean is read, what is left out is said, what is wrong is refused.
 #include <gtest/gtest.h>
 #include <pcl/conversions.h>
-#include <pcl/io/pcd_io.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
 #include <array>
 #include <cstring>
 #include <limits>
-#include <random>
 #include <thread>
 
 #include "command_line/tool_errors.h"
@@ -489,71 +487,10 @@ TEST_F(LoadShape, Pipes) {
   }
 }
 
-pcl::PointCloud<pcl::PointXYZRGBNormal> colored() {
-  pcl::PointCloud<pcl::PointXYZRGBNormal> cloud(4, 3);
-  std::mt19937 generator(2);
-  std::normal_distribution<float> normal;
-  for (auto& point : cloud) {
-    point.getVector3fMap() = Eigen::Vector3f(normal(generator), 1e-20f * normal(generator), 1e9f * normal(generator));
-    point.getNormalVector3fMap().setConstant(normal(generator));
-    point.r = static_cast<std::uint8_t>(generator());
-    point.curvature = normal(generator);
-  }
-  cloud[5].x = std::numeric_limits<float>::quiet_NaN();
-  cloud.sensor_origin_ = Eigen::Vector4f(1, 2, 3, 0);
-  cloud.sensor_orientation_ = Eigen::Quaternionf(0.5f, 0.5f, -0.5f, 0.5f);
-  return cloud;
-}
-
 const pcl::PCLPointField* fieldOf(const pcl::PCLPointCloud2& cloud, const std::string& name) {
   for (const pcl::PCLPointField& field : cloud.fields)
     if (field.name == name) return &field;
   return nullptr;
-}
-
-/// PCL reads the same values from the file.
-void expectAsPCL(const std::string& path) {
-  pcl::PCLPointCloud2 expected;
-  Eigen::Vector4f origin;
-  Eigen::Quaternionf orientation;
-  int version = 0;
-  ASSERT_EQ(pcl::PCDReader().read(path, expected, origin, orientation, version), 0);
-  const CloudFile read = readPCD(path, contentOf(path));
-  EXPECT_EQ(read.sensor_origin.head<3>(), origin.head<3>());
-  EXPECT_EQ(read.sensor_orientation.coeffs(), orientation.coeffs());
-  ASSERT_EQ(read.cloud.width, expected.width);
-  ASSERT_EQ(read.cloud.height, expected.height);
-  EXPECT_EQ(read.cloud.is_dense, expected.is_dense);
-  for (const pcl::PCLPointField& field : expected.fields) {
-    if (field.name == "_") continue;
-    const pcl::PCLPointField* mine = fieldOf(read.cloud, field.name);
-    ASSERT_TRUE(mine) << field.name;
-    EXPECT_EQ(mine->datatype, field.datatype);
-    EXPECT_EQ(mine->count, field.count);
-    const std::size_t size = field.count * static_cast<std::size_t>(pcl::getFieldSize(field.datatype));
-    for (std::size_t i = 0; i < std::size_t{expected.width} * expected.height; ++i)
-      ASSERT_EQ(std::memcmp(&read.cloud.data[i * read.cloud.point_step + mine->offset],
-                            &expected.data[i * expected.point_step + field.offset], size),
-                0)
-          << path << ": " << field.name << " of point " << i;
-  }
-}
-
-TEST(ReadPCD, ReadsWhatPCLReads) {
-  const TemporaryFolder folder;
-  pcl::io::savePCDFileASCII(folder / "ascii.pcd", colored());
-  pcl::io::savePCDFileBinary(folder / "binary.pcd", colored());
-  pcl::io::savePCDFileBinaryCompressed(folder / "compressed.pcd", colored());
-  for (const char* name : {"ascii.pcd", "binary.pcd", "compressed.pcd"}) expectAsPCL(folder / name);
-  folder.write("padded.pcd",
-               "VERSION 0.7\nFIELDS x _ y z\nSIZE 4 1 4 4\nTYPE F U F F\nCOUNT 1 3 1 1\nWIDTH 1\nHEIGHT "
-               "1\nPOINTS 1\nDATA binary\n" +
-                   std::string("\0\0\200?...\0\0\0@\0\0@@", 15));
-  const CloudFile padded = readPCD("padded.pcd", contentOf(folder / "padded.pcd"));
-  EXPECT_EQ(padded.cloud.point_step, 12u);
-  float xyz[3];
-  std::memcpy(xyz, padded.cloud.data.data(), sizeof(xyz));
-  EXPECT_EQ(Eigen::Vector3f(xyz[0], xyz[1], xyz[2]), Eigen::Vector3f(1, 2, 3));
 }
 
 TEST(ReadPCD, ReadsIntegersOfEverySizeAndSeveralValues) {

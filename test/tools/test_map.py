@@ -1,0 +1,156 @@
+"""The tools of the map, of views and of parts."""
+import os
+import pty
+import subprocess
+import unittest
+
+import tool_run
+from tool_run import ToolTest, np
+
+
+class Map(ToolTest):
+    tool = "map"
+
+    def setUp(self):
+        super().setUp()
+        self.box = self.write("box.off", tool_run.box(1.4))
+
+    def test_points_on_the_planes_of_a_box_are_the_most_symmetric(self):
+        self.assertEqual(self.report(self.box, "box.ply -quiet")["num_points"], 10000)
+        points, _ = tool_run.ply_points(self.folder / "box.ply")
+        self.assertEqual(len(points), 10000)
+        distance = abs(tool_run.xyz(points)).min(axis=1)
+        self.assertGreater(points["intensity"][distance < 0.05].mean(), 0.85)
+        self.assertLess(points["intensity"][distance > 0.5].mean(), 0.75)
+
+    def test_shows_on_a_terminal_how_far_it_is(self):
+        ours, terminal = pty.openpty()
+        subprocess.run([tool_run.TOOLS / "pcl_symmetry_map", self.box, "-points", "150000", "-grid", "16"], stdout=subprocess.DEVNULL,
+                       stderr=terminal, check=True)
+        os.close(terminal)
+        shown = os.read(ours, 1 << 16).decode()
+        os.close(ours)
+        self.assertIn("\rMapping back to points [", shown)
+        self.assertIn(" 66 %", shown)
+
+    def test_writes_a_vtk_image_and_slices(self):
+        self.run_tool(self.box, "-quiet -cells 20 -size 50 -volume a.vti -slices a.png")
+        self.assertIn('WholeExtent="0 11 0 14 0 19"', self.text("a.vti"))
+        self.assertIn('Name="symmetry"', self.text("a.vti"))
+        self.assertEqual(tool_run.png_size(self.folder / "a.png"), (158, 50))
+
+    def test_a_box_has_three_axes_of_half_turns_and_a_center(self):
+        common = "-quiet -grid 32 -points 3000"
+        axes = self.report(self.box, common, "-of axes -fold 2 -png a.png")["axes"]
+        self.assertIn("symmetry of the axes through the points", self.output)
+        self.assertGreaterEqual(len(axes), 3)
+        for axis in axes[:3]:
+            self.assertEqual(axis["fold"], 2)
+            # 2 cells of 16 in the cube are wide; measured: 1 to 2 degrees
+            self.assertGreater(max(map(abs, axis["direction"])), 0.995)
+            self.assertGreater(axis["symmetry"], 0.9)
+        np.testing.assert_allclose(self.report(self.box, common, "-of centers")["centers"][0]["point"], 0, atol=0.2)
+
+    def test_refuses_folds_that_have_no_meaning(self):
+        self.fails(2, "-fold goes with -of axes", self.box, "-fold 3")
+        self.fails(2, "a turn of order 1 changes nothing", self.box, "-of axes -fold 1")
+        self.run_tool(self.box, "-of lines", code=2)
+
+
+class Viewpoint(ToolTest):
+    tool = "viewpoint"
+
+    def setUp(self):
+        super().setUp()
+        self.box = self.write("box.off", tool_run.box(1.4))
+
+    def test_looks_at_a_box_from_a_corner_and_worst_along_its_planes(self):
+        answer = self.report(self.box, "-quiet")
+        self.assertGreater(min(map(abs, answer["best"]["direction"])), 0.3)
+        self.assertGreater(max(map(abs, answer["worst"]["direction"])), 0.99)
+        self.assertGreater(answer["best"]["score"], answer["worst"]["score"])
+        self.assertEqual(len(answer["best"]["pose"]), 16)
+        self.assertEqual(answer["good"][0], answer["best"])
+        self.assertIn("worst", self.output)
+        self.assertGreater(self.report(self.box, "-quiet -as_published")["best"]["score"], answer["best"]["score"], "all maxima")
+
+    def test_draws_the_score_and_the_views(self):
+        self.run_tool(self.box, "-size 120 -png a.png -icon b.png")
+        self.assertEqual(tool_run.png_size(self.folder / "a.png")[0], 360)
+        self.assertEqual(tool_run.png_size(self.folder / "b.png")[0], 120)
+
+
+def dumbbell():
+    """Two cubes of 8 x 8 x 8 joined by a bar of 2 x 2 x 6 along x: vertices and quads of unit cubes."""
+    def filled(x, y, z):
+        inside = 0 <= x < 22 and 0 <= y < 8 and 0 <= z < 8
+        return inside and (x < 8 or x >= 14 or (3 <= y < 5 and 3 <= z < 5))
+
+    indices, quads = {}, []
+    units = np.eye(3, dtype=int)
+    for cube in np.argwhere([[[filled(x, y, z) for z in range(8)] for y in range(8)] for x in range(22)]):
+        for axis in range(3):
+            for sign in (-1, 1):
+                if filled(*cube + sign * units[axis]):
+                    continue
+                u, v = units[(axis + 1) % 3], units[(axis + 2) % 3]
+                corner = cube + units[axis] if sign > 0 else cube
+                corners = [corner, corner + u, corner + u + v, corner + v][::sign]
+                quads.append([indices.setdefault(tuple(c), len(indices)) for c in corners])
+    return np.array(list(indices), float), quads
+
+
+class Segment(ToolTest):
+    tool = "segment"
+    vertices, quads = dumbbell()
+
+    def setUp(self):
+        super().setUp()
+        self.mesh = self.write("dumbbell.off", tool_run.off(self.vertices, self.quads))
+
+    def labels(self):
+        return np.loadtxt(self.folder / "out.seg", int)
+
+    def test_writes_a_segment_for_each_face_a_tree_and_a_picture(self):
+        tree = self.report(self.mesh, "out.seg -parts 3 -size 300 -png p.png -html p.html")
+        self.assertIn('"part 3: ', self.text("p.html"), "parts one by one")
+        self.assertEqual((len(self.labels()), set(self.labels())), (len(self.quads), {0, 1, 2}))
+        self.assertEqual([tree["elements"], len(tree["segments"])], ["faces", 3])
+        self.assertEqual(tree["segments"][0]["size"], (self.labels() == 0).sum())
+        self.assertEqual(len(tree["tree"]), 5, "three leaves of a binary tree")
+        self.assertEqual(tree["tree"][0]["parent"], -1)
+        self.assertNotEqual(tree["tree"][0]["planes"], [])
+        self.assertIn("3 parts", self.error)
+        self.assertEqual(tool_run.png_size(self.folder / "p.png"), (300, 300))
+        self.run_tool(self.mesh, "-parts 3 -size 300 -up 1,0,0 -png q.png")
+        self.assertNotEqual((self.folder / "p.png").read_bytes(), (self.folder / "q.png").read_bytes())
+
+    def test_methods_of_the_paper(self):
+        for flag in ("", "-as_published"):
+            self.run_tool(self.mesh, "out.seg -method splitting -depth 1 -quiet", flag)
+            self.assertEqual((self.labels().max(), self.error), (1, ""), flag)
+
+    def test_labels_points_of_clouds_and_keeps_their_fields(self):
+        centers = [(*self.vertices[quad].mean(axis=0), 7) for quad in self.quads]
+        cloud = self.write("cloud.pcd", tool_run.pcd("x:F y:F z:F weight:F", centers))
+        self.run_tool(cloud, "labeled.pcd -parts 2 -png p.png")
+        header = tool_run.pcd_header(self.folder / "labeled.pcd")
+        self.assertCountEqual(header["FIELDS"], ["x", "y", "z", "weight", "label"])
+        self.assertEqual(header["WIDTH"], [str(len(centers))])
+        self.run_tool(cloud, "out.seg", code=1)  # a cloud has no faces
+
+    def test_colors_the_faces_of_a_mesh_in_ply(self):
+        self.run_tool(self.mesh, "parts.ply -parts 2")
+        self.assertIn(f"element face {len(self.quads)}", self.text("parts.ply"))
+        self.assertIn("property int label", self.text("parts.ply"))
+
+    def test_refuses_what_does_not_fit_together(self):
+        self.run_tool(self.mesh, "out.obj", code=2)
+        self.run_tool(self.mesh, "-depth 2", code=2)  # needs the paper's method
+        self.run_tool(self.mesh, "-method splitting -evidence all", code=2)
+        self.run_tool(self.mesh, "-parts -1", code=2)
+        self.run_tool("none.off", code=1)
+
+
+if __name__ == "__main__":
+    unittest.main()

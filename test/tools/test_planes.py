@@ -1,0 +1,199 @@
+"""The tool of planes, and what it shows of all tools: many inputs, standard streams, names, full disks."""
+import json
+import os
+import subprocess
+import unittest
+from pathlib import Path
+
+import tool_run
+from tool_run import ToolTest, np
+
+
+class Planes(ToolTest):
+    tool = "planes"
+
+    def setUp(self):
+        super().setUp()
+        self.box = self.write("box.off", tool_run.box())
+        self.tetrahedron = self.write("t.off", tool_run.TETRAHEDRON)
+
+    def test_writes_the_profile_of_a_body_of_revolution(self):
+        vase = self.write("vase.off", tool_run.lathe([(0.5, 0), (0.7, 0.3), (0.5, 0.8), (0.3, 1.0), (0.4, 1.4)], 90))
+        self.run_tool(vase, "-profile p.csv")
+        header, *rows = self.text("p.csv").splitlines()
+        self.assertEqual(header, "radius,height,spread,count")
+        self.assertGreater(len(rows), 60)
+        self.assertAlmostEqual(max(float(row.split(",")[0]) for row in rows), 0.7, delta=0.02)
+        self.run_tool(vase, "-profile p.svg")
+        self.assertTrue(self.text("p.svg").startswith("<svg "))
+        self.run_tool(vase, "-profile p.txt", code=2)
+        self.fails(1, "no body of revolution", self.box, "-profile p.csv")
+
+    def test_finds_the_three_planes_of_a_box(self):
+        report = self.report(self.box)
+        normals = np.array([plane["coefficients"][:3] for plane in report["planes"]])
+        np.testing.assert_array_equal((abs(normals) > np.cos(0.0017)).sum(axis=0), [1, 1, 1], "each axis once, within 0.1 degrees")
+        np.testing.assert_allclose(np.linalg.norm(normals, axis=1), 1, atol=1e-9)
+        self.assertEqual(len(normals), 3)
+        for plane in report["planes"]:
+            self.assertAlmostEqual(plane["coefficients"][3], 0, delta=0.005)
+            self.assertGreater(plane["support"], 0.98)
+            self.assertEqual(plane["kind"], "symmetry")
+            self.assertGreater(plane["confidence"], 0.9)
+            self.assertLessEqual(plane["confidence"], 1)
+            self.assertAlmostEqual(plane["seen"], 1, delta=1e-6)
+        self.assertEqual([report["axes"], report["centers"], report["partial"]], [[], [], False])
+        self.assertGreater(report["timing_ms"]["total"], 0)
+        self.assertIn("symmetry", self.output)
+        self.assertEqual(self.report(self.box, "-as_published")["planes"][0]["kind"], "approximate")
+
+    def test_keeps_coordinates_beyond_float_precision(self):
+        """A box of 1 x 0.8 x 0.6 m at map coordinates, where the spacing of float is half a meter; its planes are oblique."""
+        half, middle, turn = (0.5, 0.4, 0.3), np.array([500000.3, 5000000.7, 100.2]), tool_run.rotation(np.array([1.0, 2, 3]), 0.7)
+        far = self.write("far.off", tool_run.off(tool_run.box_corners(*half) @ turn.T + middle, tool_run.BOX_FACES))
+        planes = self.report(far, "-support s.ply")["planes"]
+        table = [line.split() for line in self.output.splitlines()]
+        along = np.zeros(3)
+        for plane, row in zip(planes, table[1:], strict=True):
+            normal, d = np.array(plane["coefficients"][:3]), plane["coefficients"][3]
+            along += abs(turn.T @ normal) > 0.99
+            self.assertAlmostEqual(normal @ middle + d, 0, delta=1e-3, msg="through the middle of the box")
+            printed = np.array(row[1:5], float)
+            self.assertAlmostEqual(printed[:3] @ middle + printed[3], 0, delta=2e-5, msg="few digits, and still the plane at the points")
+        np.testing.assert_array_equal(along, [1, 1, 1])
+        points, _ = tool_run.ply_points(self.folder / "s.ply")
+        self.assertEqual(points["x"].dtype, np.float64)
+        self.assertLess((abs((tool_run.xyz(points)[0] - middle) @ turn) - half).max(), 1e-6, "on the box, in the input frame")
+
+    def test_says_none(self):
+        answer = self.report(self.tetrahedron, "-quiet")
+        self.assertTrue(self.output.startswith("no symmetry plane\nbest plane "), self.output)
+        self.assertEqual(self.error, "")
+        self.assertEqual(answer["planes"], [])
+        self.assertLess(answer["best"]["share"], 0.9)
+        self.assertGreater(answer["best"]["deviation"], answer["tolerance"])
+        self.run_tool(self.tetrahedron, "-quiet --approximate")
+        self.assertIn("approximate", self.output)
+
+    def test_writes_the_support_of_every_point_and_keeps_its_fields(self):
+        i = np.arange(1200)
+        u, v, side = i * 0.754877666 % 1, i * 0.569840291 % 1, np.where(i % 2, 1, -1)
+        points = np.select([(i % 3 == k)[:, None] for k in range(3)],
+                           [np.stack(p, axis=1) for p in ((side, 3 * v - 1.5, 4 * u - 2), (2 * u - 1, 1.5 * side, 4 * v - 2),
+                                                          (2 * u - 1, 3 * v - 1.5, 2 * side))])
+        rows = [("nan", "nan", "nan", 7), *((*point, k) for k, point in enumerate(points))]
+        cloud = self.write("c.pcd", tool_run.pcd("x:F y:F z:F label:U", rows, (1, 2, 3)))
+        planes = self.report(cloud, "-support s.pcd")["planes"]
+        self.assertGreaterEqual(len(planes), 1)
+        header = tool_run.pcd_header(self.folder / "s.pcd")
+        self.assertCountEqual(header["FIELDS"], ["x", "y", "z", "label", *(f"support_{k + 1}" for k in range(len(planes)))])
+        self.assertEqual([header["POINTS"], header["VIEWPOINT"][:3]], [["1201"], ["1", "2", "3"]])
+        self.run_tool(cloud, "-support s.ply")
+        support = tool_run.ply_points(self.folder / "s.ply")[0]["support_1"]
+        self.assertTrue(np.isnan(support[0]))
+        self.assertGreater(support[1:].mean(), 0.9)
+
+    def test_reports_an_axis_of_revolution(self):
+        report = self.report(self.write("cylinder.off", tool_run.CYLINDER))
+        self.assertEqual([len(report[key]) for key in ("axes", "centers", "planes")], [1, 0, 1])
+        axis = report["axes"][0]
+        self.assertGreater(abs(axis["direction"][2]), np.cos(0.01))
+        self.assertLess(np.hypot(*axis["point"][:2]), 0.01)
+        self.assertGreaterEqual(axis["confidence"], 0.5)
+        self.assertGreater(axis["support"], 0.9)
+        self.assertGreater(axis["score"], 0.9)
+        self.assertGreater(abs(report["planes"][0]["coefficients"][2]), np.cos(0.01))
+        self.assertIn("axis of revolution", self.output)
+        ball = self.report(self.write("ball.off", tool_run.SPHERE))
+        self.assertEqual([len(ball[key]) for key in ("axes", "centers", "planes")], [0, 1, 0])
+        np.testing.assert_allclose(ball["centers"][0]["point"], 0, atol=0.01)
+
+    def test_answers_bad_input_with_one_line_and_an_exit_code(self):
+        for name, content in (("garbage.pcd", "not a point cloud at all"),
+                              ("one.pcd", tool_run.pcd("x:F y:F z:F", [(1, 2, 3), (1, 2, 3)]))):
+            self.fails(1, name, self.write(name, content), "-quiet -json never.json")
+            self.assertEqual(self.error.count("\n"), 1, self.error)
+        self.assertFalse((self.folder / "never.json").exists())
+        for output in ("-json", "-csv", "-support"):
+            self.run_tool(self.box, f"{output} missing/out.pcd", code=1)
+            self.assertEqual(self.output, "", "refused before the work")
+        self.run_tool(self.box, "-quiet -json /dev/null")
+        self.run_tool("missing.pcd", code=1)
+        self.fails(2, "min_confidence", self.box, "-min_confidence 2")
+        self.run_tool(self.box, "-nonsense", code=2)
+        self.fails(2, "-png = out.jpg, must end in .png", self.box, "-png out.jpg")
+        self.run_tool("--version")
+        self.assertTrue(self.output.startswith("pcl_symmetry_planes "), self.output)
+        self.run_tool(code=2)
+        self.run_tool("-h")
+        self.assertIn("pcl_symmetry_planes chair.pcd", self.output)
+
+
+class Pipelines(ToolTest):
+    """A folder "in" of two boxes and a file that is no shape."""
+    tool = "planes"
+    flags = "-quiet -points 2000"
+
+    def setUp(self):
+        super().setUp()
+        self.a = self.write("in/a.off", tool_run.box(1.5, 2.0))
+        self.b = self.write("in/b.off", "no shape")
+        self.c = self.write("in/c.off", tool_run.box(1.5, 3.0))
+
+    def lines(self, text):
+        return [json.loads(line) for line in text.splitlines()]
+
+    def test_take_a_folder(self):
+        self.fails(1, "b.off: does not begin with OFF", "in", self.flags, "-csv t.csv -json t.jsonl -support {}_support.pcd")
+        self.assertEqual((self.output, self.error.count("\n")), ("", 1))
+        found = self.lines(self.text("t.jsonl"))
+        self.assertEqual([len(found), len(found[0]["planes"]), "error" in found[1], found[2]["file"]], [3, 3, True, "in/c.off"])
+        table = self.text("t.csv")
+        self.assertTrue(table.startswith("file,number,kind,a,b,c,d,"))
+        self.assertEqual(table.count("\n"), 7)
+        for name in "ac":
+            self.assertEqual(tool_run.pcd_header(self.folder / f"{name}_support.pcd")["POINTS"], ["2000"])
+        alone = self.report("in/c.off", self.flags)
+        self.assertEqual({**alone, "timing_ms": 0}, {**found[2], "timing_ms": 0}, "the same as one by one")
+
+    def test_print_lines_of_json_where_no_file_is_named(self):
+        self.run_tool(self.a, self.c, self.flags)
+        self.assertEqual(len(self.lines(self.output)), 2)
+        self.fails(2, "must hold {}", "in -png out.png")
+        self.fails(2, "-resume needs -json FILE", "in -resume")
+
+    def test_read_standard_input_and_write_standard_output(self):
+        content = self.a.read_bytes()
+        for flags, start in (("", "plane"), ("-support -", "# .PCD"), ("-csv -", "file,number")):
+            self.run_tool("-", self.flags, flags, input=content)
+            self.assertTrue(self.output.lstrip().startswith(start), self.output[:200])
+        self.run_tool("-", self.flags, "-json -", input=content)
+        self.assertEqual(json.loads(self.output)["file"], "-")
+        self.run_tool("- -quiet -csv - -json -", input=content, code=2)
+        for text, said in (("no shape", "is of no known kind"), ("", "is empty"),
+                           ("OFF\n3 1 0\n0 0 0\n0 0 0\n", "x of vertex 2 is missing")):
+            self.fails(1, "standard input: " + said, "- -quiet", input=text.encode())
+
+    def test_take_names_in_any_language(self):
+        """Names in UTF-8, and bytes that are none: file names are bytes."""
+        for name in ("куб 1", os.fsdecode(b"no \xff text"), "'quotes' & more"):
+            path = self.write(f"Würfel 立方/{name}.off", self.a.read_bytes())
+            outputs = {flag: Path(f"{path.with_suffix('')}{ending}") for flag, ending in
+                       (("-json", ".json"), ("-csv", ".csv"), ("-support", "_support.ply"), ("-html", ".html"))}
+            self.run_tool(path, self.flags, *(word for pair in outputs.items() for word in pair))
+            self.assertEqual(len(json.loads(outputs["-json"].read_bytes())["planes"]), 3, name)
+            self.assertEqual(len(tool_run.ply_points(outputs["-support"])[0]), 2000, name)
+            self.assertGreater(outputs["-html"].stat().st_size, 0, name)
+        self.run_tool(self.folder / "Würfel 立方", self.flags)
+        self.assertEqual(len(self.lines(self.output)), 6, "three boxes, three clouds with support")
+
+    def test_say_that_standard_output_is_full(self):
+        for flags in ("-json -", "-csv -", "-support -", ""):
+            with open("/dev/full", "w", encoding="utf-8") as full:
+                done = subprocess.run([tool_run.TOOLS / "pcl_symmetry_planes", self.a, *self.flags.split(), *flags.split()],
+                                      stdout=full, stderr=subprocess.PIPE, check=False)
+            self.assertEqual((done.returncode, b"standard output" in done.stderr), (1, True), flags)
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,138 @@
+"""CT and MR volumes as files: the same plane from every format, and a sentence for bad ones."""
+import struct
+import unittest
+
+import tool_run
+from tool_run import ToolTest, np
+
+SHAPE = (40, 48, 44)  # z, y, x
+
+
+def body():
+    """A body with a pair of spots, symmetric in the plane x = 20.5 of the grid."""
+    z, y, x = np.indices(SHAPE).astype(float)
+    side, v, w = abs(x - 20.5), y - 23, z - 19
+    hull = np.sqrt((side / 15) ** 2 + ((v + 0.004 * w * w) / 19) ** 2 + (w / 16) ** 2)
+    spot = np.hypot(side - 7, np.hypot(v - 8, w - 3))
+    values = 100 / (1 + np.exp((hull - 1) * 12)) + 60 / (1 + np.exp(spot - 3)) + 30 / (1 + np.exp(np.hypot(v - 15, w + 9) - 4))
+    return values.astype("<f4").tobytes()
+
+
+BODY = body()
+
+
+def meta_image(data, slices=40, thickness=3):
+    """Axes of the grid along y, -x and z of the frame, spacing 2, 2 and 3: the plane is y = 2 * 20.5 + 7."""
+    return (b"ObjectType = Image\nNDims = 3\nBinaryData = True\nBinaryDataByteOrderMSB = False\nCompressedData = False\n"
+            b"TransformMatrix = 0 1 0 -1 0 0 0 0 1\nOffset = 5 7 -9\nElementSpacing = 2 2 %d\nDimSize = 44 48 %d\n"
+            b"ElementType = MET_FLOAT\nElementDataFile = LOCAL\n" % (thickness, slices) + data)
+
+
+def nrrd(data, slices=40, thickness=3):
+    return (b"NRRD0004\ntype: float\ndimension: 3\nspace: left-posterior-superior\nsizes: 44 48 %d\nendian: little\nencoding: raw\n"
+            b"space directions: (0,2,0) (-2,0,0) (0,0,%d)\nspace origin: (5,7,-9)\n\n" % (slices, thickness) + data)
+
+
+def nifti(data, slices=40, thickness=3, kind=16):
+    """Its intensities are scaled by 2, minus 50."""
+    header = bytearray(352)
+    for at, form, *values in ((0, "<i", 348), (40, "<8h", 3, 44, 48, slices, 1, 1, 1, 1), (70, "<2h", kind, 32),
+                              (76, "<4f", 1, 2, 2, thickness), (108, "<3f", 352, 2, -50), (254, "<h", 1),
+                              (280, "<12f", 0, -2, 0, 5, 2, 0, 0, 7, 0, 0, thickness, -9), (344, "<4s", b"n+1")):
+        struct.pack_into(form, header, at, *values)
+    return bytes(header) + data
+
+
+def vti(data, slices=40, thickness=3):
+    extent = b"0 43 0 47 0 %d" % (slices - 1)
+    return (b'<VTKFile type="ImageData" version="1.0" byte_order="LittleEndian" header_type="UInt32">\n'
+            b'<ImageData WholeExtent="%s" Origin="5 7 -9" Spacing="2 2 %d" Direction="0 -1 0 1 0 0 0 0 1"><Piece Extent="%s">'
+            b'<PointData Scalars="f"><DataArray type="Float32" Name="f" format="appended" offset="0"/></PointData></Piece></ImageData>'
+            b'<AppendedData encoding="raw">_' % (extent, thickness, extent)
+            + struct.pack("<I", len(data)) + data + b"</AppendedData></VTKFile>\n")
+
+
+FORMATS = ((".mha", meta_image), (".nrrd", nrrd), (".nii", nifti), (".vti", vti))
+
+
+class Maps(ToolTest):
+    tool = "map"
+
+    def test_are_of_planes_axes_and_centers_and_seen_at_a_scale(self):
+        path = self.write("a.mha", meta_image(BODY))
+        for flags in ("-method exact", "-method rotational", "-method voting -as_published", "-of axes -fold 2", "-of centers", "-scale 0.4"):
+            report = self.report(path, "-quiet -grid 16", flags)
+            # No center lies at the border, where the values of the map are read.
+            greatest = report["centers"][0]["symmetry"] if flags == "-of centers" else report["greatest"]
+            self.assertGreater(greatest, 0.6, flags)
+            self.assertGreater(report["num_points"], 500, "the border of the body")
+
+
+class Volumes(ToolTest):
+    tool = "planes"
+
+    def planes(self, path, flags=""):
+        return self.report(path, "-quiet", flags)["planes"]
+
+    def test_of_all_formats_have_the_same_plane_in_the_frame_of_the_file(self):
+        slice_size = 4 * SHAPE[1] * SHAPE[2]
+        one_in_ten = b"".join(BODY[k * slice_size:(k + 1) * slice_size] for k in range(0, SHAPE[0], 10))
+        for ending, write in FORMATS:
+            for name, content in (("a" + ending, write(BODY)), ("thick" + ending, write(one_in_ten, 4, 20))):
+                planes = self.planes(self.write(name, content))
+                self.assertGreaterEqual(len(planes), 1, name)
+                _, b, _, d = planes[0]["coefficients"]  # of either sign
+                self.assertAlmostEqual(abs(b), 1, delta=1e-4, msg=name)
+                self.assertAlmostEqual(d / b, -48, delta=0.05, msg=name)
+                self.assertGreater(planes[0]["confidence"], 0.8, name)
+
+    def test_are_drawn_as_slices_and_their_surface_is_a_mesh(self):
+        path = self.write("a.mha", meta_image(BODY))
+        self.run_tool(path, "-quiet -png a.png")
+        width, height = tool_run.png_size(self.folder / "a.png")
+        self.assertGreater(width, 3 * 400)
+        self.assertGreater(height, 2 * 400)
+        of_surface = self.planes(path, "-surface 50")
+        self.assertAlmostEqual(abs(of_surface[0]["coefficients"][3]), 48, delta=0.5)
+
+    def test_keep_what_their_headers_say(self):
+        """The window of intensities, and the frame in all directions, are those of the file."""
+        meta, scaled = self.write("a.mha", meta_image(BODY)), self.write("a.nii", nifti(BODY))
+        plain, same = self.planes(meta, "-levels 20,120"), self.planes(scaled, "-levels -10,190")
+        self.assertGreaterEqual(len(plain), 1)
+        np.testing.assert_allclose([plane["coefficients"] for plane in same], [plane["coefficients"] for plane in plain], atol=1e-4)
+        boxes = []
+        for path, level in ((meta, 60), (scaled, 70)):
+            self.run_tool(path, f"-quiet -surface {level} -support {path.stem}{path.suffix[1:]}.ply")
+            points = tool_run.xyz(tool_run.ply_points(self.folder / f"{path.stem}{path.suffix[1:]}.ply")[0])
+            boxes.append([points.min(axis=0), points.max(axis=0)])
+        np.testing.assert_allclose(boxes[1], boxes[0], atol=0.2)
+
+    def test_that_are_bad_get_a_sentence(self):
+        zero, nan = (np.full(np.prod(SHAPE), value, "<f4").tobytes() for value in (0, np.nan))
+        files = [("text.nii.gz", b"no volume", "text.nii.gz"),
+                 ("axes.mha", meta_image(BODY).replace(b"NDims = 3", b"NDims = 4"), "NDims must be 3"),
+                 ("type.nii", nifti(BODY, kind=12345), "unknown type"),
+                 ("text.vti", b"<VTKFile", "text.vti"),
+                 ("bare.nrrd", b"NRRD0004\ntype: float\n\n" + BODY, "type, dimension"),
+                 ("sizes_8.nrrd", nrrd(BODY).replace(b"sizes:", b"sizes 8:"), "type, dimension"),
+                 ("line.nrrd", b"NRRD0004\ntype: short\ndimension: 1\nsizes: 810\nencoding: raw\n\n" + BODY, "dimension 3"),
+                 ("ends.nrrd", nrrd(b"")[:-1] + b"\r\r\n", "with a value"),
+                 ("words.nrrd", nrrd(BODY).replace(b"raw", b"ascii", 1), "must be raw or gzip"),
+                 ("files.mha", b"NDims = 3\nDimSize = 5 4 12\nElementType = MET_FLOAT\nElementDataFile = %a\n", "one file"),
+                 ("void.nrrd", b"NRRD0004\ntype: float\nsizes: 9 9 9\ndimension: 3\n\n", "with a value")]
+        for ending, write in FORMATS:
+            files += [("cut" + ending, write(BODY)[:90_000], "cut off"),
+                      ("larger" + ending, write(BODY, 400), "does not fit its data"),
+                      ("zero" + ending, write(zero), "equal"),
+                      ("nan" + ending, write(nan), "finite"),
+                      ("one" + ending, write(BODY[:4 * SHAPE[1] * SHAPE[2]], 1), "slices along an axis = 1")]
+        for name, content, said in files:
+            self.fails(1, said, self.write(name, content), "-quiet")
+            self.assertEqual(self.error.count("\n"), 1, self.error)
+        self.fails(1, "missing.nii", "missing.nii -quiet")
+        self.run_tool(self.write("a.mha", meta_image(BODY)), "-levels 5,3", code=2)
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,149 @@
+"""Tools run as their users run them, and the files that go in and come out."""
+import json
+import os
+import re
+import struct
+import subprocess
+import sys
+import tempfile
+import unittest
+import zlib
+from pathlib import Path
+
+try:
+    import numpy as np
+except ImportError:
+    print("these tests need numpy")
+    sys.exit(77)
+
+TOOLS = Path(os.environ["TOOLS"])  # their folder
+
+
+class ToolTest(unittest.TestCase):
+    tool = ""  # without the common beginning, e.g. "planes"
+
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory(prefix="pcl_symmetry_")
+        self.addCleanup(folder.cleanup)
+        self.folder = Path(folder.name)
+
+    def write(self, name, content):
+        path = self.folder / name
+        path.parent.mkdir(parents=True, exist_ok=True)
+        path.write_bytes(content if isinstance(content, bytes) else content.encode())
+        return path
+
+    def text(self, name):
+        return (self.folder / name).read_text(errors="replace")
+
+    def run_tool(self, *arguments, code=0, tool=None, **options):
+        """Runs a tool in the folder of the test: paths as they are, strings cut at blanks.
+
+        What it printed is in self.output and self.error then.
+        """
+        words = [word for argument in arguments for word in ([argument] if isinstance(argument, Path) else argument.split())]
+        done = subprocess.run([TOOLS / f"pcl_symmetry_{tool or self.tool}", *words], capture_output=True, cwd=self.folder, **options)
+        self.output, self.error = (text.decode(errors="replace") for text in (done.stdout, done.stderr))
+        self.assertEqual(done.returncode, code, f"{words}: {self.error}")
+
+    def report(self, *arguments, **options):
+        """Runs a tool that must not fail. Returns what it reports."""
+        self.run_tool(*arguments, "-json report.json", **options)
+        return json.loads(self.text("report.json"))
+
+    def fails(self, code, words, *arguments, **options):
+        """The tool ends with this exit code and these words among its errors."""
+        self.run_tool(*arguments, code=code, **options)
+        self.assertIn(words, self.error)
+
+
+def data_file(name):
+    """Files that are no part of the repository: in the folder PCL_SYMMETRY_DATA, or beside the repository."""
+    path = Path(os.environ.get("PCL_SYMMETRY_DATA", Path(__file__).parents[3] / "shared/data")) / name
+    if not path.exists():
+        raise unittest.SkipTest(f"{path} is absent")
+    return path
+
+
+def off(vertices, faces):
+    lines = ["OFF", f"{len(vertices)} {len(faces)} 0"]
+    lines += [" ".join(f"{x:.12g}" for x in vertex) for vertex in vertices]
+    return "\n".join(lines + [" ".join(map(str, [len(face), *face])) for face in faces]) + "\n"
+
+
+BOX_FACES = [(3, 2, 1, 0), (4, 5, 6, 7), (0, 1, 5, 4), (2, 3, 7, 6), (1, 2, 6, 5), (3, 0, 4, 7)]
+TETRAHEDRON = "OFF\n4 4 6\n0 0 0\n2 0.1 0\n0.4 1.3 0.1\n0.7 0.2 0.9\n3 0 2 1\n3 0 1 3\n3 1 2 3\n3 0 3 2\n"  # no symmetry
+
+
+def box_corners(x, y, z):
+    """The corners of a box about the origin: counterclockwise below, then above."""
+    return np.array([[a * x, b * y, c * z] for c in (-1, 1) for a, b in ((-1, -1), (1, -1), (1, 1), (-1, 1))])
+
+
+def box(y=1.5, z=2.0):
+    """A box from -1 -y -z to 1 y z."""
+    return off(box_corners(1.0, y, z), BOX_FACES)
+
+
+def lathe(profile, num_sides):
+    """A profile (radius, height) turned about z."""
+    angles = 2 * np.pi * np.arange(num_sides) / num_sides
+    vertices = [(r * np.cos(a), r * np.sin(a), h) for r, h in profile for a in angles]
+    faces = [[i * num_sides + k, i * num_sides + (k + 1) % num_sides, (i + 1) * num_sides + (k + 1) % num_sides, (i + 1) * num_sides + k]
+             for i in range(len(profile) - 1) for k in range(num_sides)]
+    return off(vertices, faces)
+
+
+VASE = lathe([(0.001, 0), (0.5, 0), (0.8, 0.5), (0.9, 1.0), (0.7, 1.6), (0.3, 2.2), (0.3, 2.5), (0.45, 2.7)], 64)  # open at the top
+CYLINDER = lathe([(0.001, -1), (0.6, -1), (0.6, 1), (0.001, 1)], 128)
+SPHERE = lathe([(np.sin(np.pi * k / 48), -np.cos(np.pi * k / 48)) for k in range(49)], 96)
+
+
+def rotation(axis, angle):
+    """By an angle in radians about an axis, 3 x 3."""
+    x, y, z = axis / np.linalg.norm(axis)
+    cross = np.array([[0, -z, y], [z, 0, -x], [-y, x, 0]])
+    return np.eye(3) + np.sin(angle) * cross + (1 - np.cos(angle)) * cross @ cross
+
+
+def pcd(fields, points, viewpoint=(0, 0, 0)):
+    """A PCD file as text; fields as "x:F y:F z:F label:U"."""
+    names, types = zip(*(field.split(":") for field in fields.split()))
+    return (f"VERSION 0.7\nFIELDS {' '.join(names)}\nSIZE {'4 ' * len(names)}\nTYPE {' '.join(types)}\nCOUNT {'1 ' * len(names)}\n"
+            f"WIDTH {len(points)}\nHEIGHT 1\nVIEWPOINT {' '.join(map(str, viewpoint))} 1 0 0 0\nPOINTS {len(points)}\nDATA ascii\n"
+            + "".join(" ".join(map(str, point)) + "\n" for point in points))
+
+
+def pcd_header(path):
+    """Of a PCD file of any encoding, by the first words of its lines."""
+    lines = Path(path).read_bytes().split(b"\nDATA")[0].decode().splitlines()
+    return {line.split()[0]: line.split()[1:] for line in lines}
+
+
+def ply_points(path):
+    """The vertices of a binary PLY file, with all properties, and its header."""
+    header, body = Path(path).read_bytes().split(b"end_header\n", 1)
+    header = header.decode()
+    types = {"char": "i1", "uchar": "u1", "short": "<i2", "ushort": "<u2", "int": "<i4", "uint": "<u4", "float": "<f4", "double": "<f8"}
+    count, properties = re.search(r"element vertex (\d+)\n((?:property [a-z0-9]+ \w+\n)+)", header).groups()
+    names = [line.split()[1:] for line in properties.splitlines()]
+    return np.frombuffer(body, [(name, types[kind]) for kind, name in names], int(count)), header
+
+
+def xyz(points):
+    return np.stack([points["x"], points["y"], points["z"]], axis=1)
+
+
+def png(pixels):
+    """A PNG file of pixels, rows x columns x 3, 8 bits."""
+    def chunk(kind, data):
+        return struct.pack(">I", len(data)) + kind + data + struct.pack(">I", zlib.crc32(kind + data))
+    height, width, _ = pixels.shape
+    rows = np.hstack([np.zeros((height, 1), np.uint8), pixels.astype(np.uint8).reshape(height, -1)])
+    return (b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", struct.pack(">IIBBBBB", width, height, 8, 2, 0, 0, 0))
+            + chunk(b"IDAT", zlib.compress(rows.tobytes())) + chunk(b"IEND", b""))
+
+
+def png_size(path):
+    """Width and height."""
+    return struct.unpack(">II", Path(path).read_bytes()[16:24])
