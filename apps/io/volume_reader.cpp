@@ -71,7 +71,7 @@ Fields fieldsOf(const std::string& path, bool is_nrrd) {
     is_whole = !value.empty() && fields.emplace(key, value).second && (key != "sizes" || fields.count("dimension"));
     if (key == "ElementDataFile") return fields;
   }
-  if (!is_whole) throw InputError(path + ": cannot be read, a line of its header is no field with a value");
+  if (!is_whole || is_nrrd) throw InputError(path + ": cannot be read, a line of its header is no field with a value");
   return fields;
 }
 
