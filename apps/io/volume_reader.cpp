@@ -62,7 +62,7 @@ Fields fieldsOf(const std::string& path, bool is_nrrd) {
   while (is_whole && next(line)) {
     if (is_nrrd && line.empty()) return fields;
     const std::size_t at = line.find(sign);
-    is_whole = isPrintable(line) && line.size() < 4000 && !(is_nrrd && file.eof());
+    is_whole = isPrintable(line) && line.size() < (is_nrrd ? 4000 : 250) && !(is_nrrd && file.eof());
     if (is_nrrd && (line[0] == '#' || (at == std::string::npos && line.find(":=") < line.size()))) continue;
     is_whole = is_whole && at < 200;
     if (!is_whole) break;
@@ -226,7 +226,7 @@ Image imageOf(const std::string& path, const VtkMessages& messages) {
       throw InputError(path + ": cannot be read, its header must have type, dimension 3 and three sizes");
     if (encoding != "raw" && encoding != "gzip" && encoding != "gz")
       throw InputError(path + ": encoding = " + encoding + ", must be raw or gzip");
-    if (file.find('%') < file.size() || boost::algorithm::starts_with(file, "LIST")) throwSeveralFiles(path);
+    if (file.find_first_of("% \t") < file.size() || file == "LIST") throwSeveralFiles(path);
     vtkNew<vtkNrrdReader> reader;
     image.data = updated(*reader, path, messages);
     image.T_input_index = placedBy(*image.data, directionIn(fields, "space directions"));
