@@ -1,22 +1,28 @@
-/// Files that are written hold all fields, and survive full disks; files that are read cannot ask for more memory than
-/// they hold.
+/// Files that are written hold all fields, and survive kills and full disks; files that are read cannot ask for more
+/// memory than they hold.
 #include <gtest/gtest.h>
 #include <pcl/conversions.h>
 #include <pcl/point_cloud.h>
 #include <pcl/point_types.h>
 #include <sched.h>
+#include <signal.h>
 #include <sys/mount.h>
 #include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
 #include <algorithm>
+#include <array>
+#include <chrono>
 #include <csignal>
 #include <filesystem>
 #include <fstream>
 #include <functional>
 #include <iterator>
 #include <map>
+#include <random>
+#include <set>
+#include <thread>
 
 #include "io/mesh_output.h"
 #include "io/shape_input.h"
@@ -71,6 +77,48 @@ int numberIn(const std::string& path, std::size_t size) {
   for (const pcl::PointXYZ& point : *points)
     if (point.x != (*points)[0].x || point.z != point.x) return -1;
   return points->size() == size ? static_cast<int>((*points)[0].x) : -1;
+}
+
+/// Writes the files again and again, until it is killed, and a byte into a pipe after each.
+[[noreturn]] void writeForever(const TemporaryFolder& folder, std::uint32_t size, int pipe) {
+  const auto all = writers(size);
+  for (int number = 1;; ++number)
+    for (const auto& [name, write] : all) {
+      write(folder / name, number);
+      if (::write(pipe, "", 1) != 1) _exit(1);
+    }
+}
+
+TEST(SafeFiles, KilledWritersLeaveWholeFiles) {
+  const TemporaryFolder folder;
+  constexpr std::uint32_t kSize = 3000;
+  const auto all = writers(kSize);
+  for (const auto& [name, write] : all) write(folder / name, 0);  // loads the module before the forks
+  std::mt19937 generator(1);
+  int num_within_rounds = 0;
+  for (int kill = 0; kill < 200; ++kill) {
+    std::array<int, 2> pipe{};
+    ASSERT_EQ(::pipe(pipe.data()), 0);
+    const pid_t child = fork();
+    if (child == 0) writeForever(folder, kSize, pipe[1]);
+    close(pipe[1]);
+    // Some files on, however busy the machine is, and somewhere in the next one.
+    char byte = 0;
+    for (auto num_files = generator() % 10; num_files > 0; --num_files) ASSERT_EQ(read(pipe[0], &byte, 1), 1);
+    std::this_thread::sleep_for(std::chrono::microseconds(generator() % 1000));
+    ::kill(child, SIGKILL);
+    ASSERT_EQ(waitpid(child, nullptr, 0), child);
+    close(pipe[0]);
+    std::set<int> numbers;
+    for (const auto& [name, write] : all) {
+      const int number = numberIn(folder / name, kSize);
+      ASSERT_GE(number, 0) << name << " after kill " << kill;
+      numbers.insert(number);
+      write(folder / name, 0);
+    }
+    num_within_rounds += numbers.size() > 1;
+  }
+  EXPECT_GT(num_within_rounds, 50) << "the kills came while files were written";
 }
 
 /// The size of files is limited: the kernel then answers a write as on a full disk, with another error number.

@@ -112,6 +112,8 @@ class Volumes(ToolTest):
         zero, nan = (np.full(np.prod(SHAPE), value, "<f4").tobytes() for value in (0, np.nan))
         files = [("text.nii.gz", b"no volume", "text.nii.gz"),
                  ("axes.mha", meta_image(BODY).replace(b"NDims = 3", b"NDims = 4"), "NDims must be 3"),
+                 ("minus.mha", meta_image(BODY).replace(b"NDims = 3", b"NDims = -3"), "NDims must be 3"),
+                 ("empty.nrrd", b"NRRD0004\ntype: float\nsizes:\n\n", "with a value"),
                  ("type.nii", nifti(BODY, kind=12345), "unknown type"),
                  ("text.vti", b"<VTKFile", "text.vti"),
                  ("bare.nrrd", b"NRRD0004\ntype: float\n\n" + BODY, "type, dimension"),

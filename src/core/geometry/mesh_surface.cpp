@@ -103,7 +103,7 @@ struct MeshSurface::Parts {
   /// \param[in,out] matches as many as are wanted: their closest points by another motion are near to those by this.
   static void match(const Surface& surface, const Eigen::Matrix3d& linear, const Eigen::Vector3d& center,
                     Matches& matches) {
-    const double slack = 1e-4;  // radii, above rounding: the closest point before is mostly as far at least
+    const double slack = 1e-4;  // radii, more than rounding: the closest point itself is within the guess
     for (std::size_t i = 0; i < matches.size(); ++i) {
       const Eigen::Vector3d x = center + linear * (surface.samples.col(i).cast<double>() - center);
       const double guess = (x - matches[i].image + matches[i].apart).norm() + slack;
