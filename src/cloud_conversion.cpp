@@ -236,6 +236,7 @@ SeenSpace SeenSpace::together(const std::vector<SeenSpace>& spaces) {
   for (const SeenSpace& space : spaces) {
     if (!space.visibility_) continue;
     if (views.empty()) all.source_ = space.source_;
+    all.asks_for_support_ = all.asks_for_support_ && space.asks_for_support_;
     views.push_back(*space.visibility_);
   }
   if (!views.empty()) all.visibility_ = Visibility::together(views);
@@ -243,8 +244,14 @@ SeenSpace SeenSpace::together(const std::vector<SeenSpace>& spaces) {
 }
 
 SeenSpace SeenSpace::withSupport(const Eigen::Vector4d& support, double margin) const {
-  SeenSpace result = *this;
+  SeenSpace result = withoutSupport();
   if (visibility_) result.visibility_ = visibility_->withSupport(support, margin);
+  return result;
+}
+
+SeenSpace SeenSpace::withoutSupport() const {
+  SeenSpace result = *this;
+  result.asks_for_support_ = false;
   return result;
 }
 

@@ -4,6 +4,7 @@
 #include <pcl/type_traits.h>
 
 #include <cstring>
+#include <stdexcept>
 
 #include "command_line/tool_errors.h"
 #include "io/cloud_file.h"
@@ -91,6 +92,17 @@ pcl::PCLPointCloud2 withFields(const pcl::PCLPointCloud2& cloud, const std::vect
 
 pcl::PCLPointCloud2 withLabels(const pcl::PCLPointCloud2& cloud, const std::vector<int>& labels) {
   return joined<std::uint32_t>(cloud, {"label"}, {{labels.begin(), labels.end()}});
+}
+
+pcl::Indices labeledPoints(const pcl::PCLPointCloud2& cloud, int label) {
+  const int field = pcl::getFieldIndex(cloud, "label");
+  if (field < 0) throw std::invalid_argument("has no field label");
+  pcl::Indices labeled;
+  for (std::size_t i = 0; i < sizeOf(cloud); ++i)
+    if (numberAt(&cloud.data[i * cloud.point_step + cloud.fields[field].offset], cloud.fields[field].datatype) == label)
+      labeled.push_back(static_cast<pcl::index_t>(i));
+  if (labeled.empty()) throw std::invalid_argument("has no point with the label " + std::to_string(label));
+  return labeled;
 }
 
 pcl::PCLPointCloud2 appendCopies(const pcl::PCLPointCloud2& cloud, const pcl::Indices& points,

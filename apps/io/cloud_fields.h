@@ -44,6 +44,10 @@ pcl::PCLPointCloud2 withFields(const pcl::PCLPointCloud2& cloud, const std::vect
 /// One more field `label` of unsigned numbers.
 pcl::PCLPointCloud2 withLabels(const pcl::PCLPointCloud2& cloud, const std::vector<int>& labels);
 
+/// \return the points whose field `label` has a value.
+/// \throws std::invalid_argument where the cloud has no such field, or no such point.
+pcl::Indices labeledPoints(const pcl::PCLPointCloud2& cloud, int label);
+
 /// Appends copies of the named points; the result is not organized. One more field of type int32 tells of each copy the
 /// index of the point that it was made of, and is -1 for all others.
 pcl::PCLPointCloud2 appendCopies(const pcl::PCLPointCloud2& cloud, const pcl::Indices& points,

@@ -36,6 +36,7 @@ struct PlanesOptions {
   std::string method = "sampled";
   bool method_given = false, as_published = false;
   std::optional<Eigen::Vector4d> ground;
+  std::optional<int> label;
   CommonOptions common;
 };
 
@@ -76,6 +77,9 @@ CommandLine commandLine(PlanesOptions& options) {
       .plane("ground", options.ground,
              "what the object stands on: a x + b y + c z + d = 0; with a viewpoint, sparse points of a LiDAR are then "
              "decided by the box around them")
+      .number("label", options.label, Range::atLeast(0),
+              "the object is the points of a cloud whose field label has this value; the others are its scene: they hide "
+              "it, and it stands on them")
       .number("max_planes", options.detection.max_planes, Range::closed(1, 1000), "largest number of planes reported")
       .common(options.common, kShapeFlags | kSigma | kVolumes);
   options.batch.addTo(line);
@@ -310,6 +314,8 @@ Findings search(const FileJob& job, const InputShape& input, const PlanesOptions
       refinement.setInputVolume(input.volume, input.levels);
     else
       refinement.setInputCloud(input.points);
+    if (options.label)
+      refinement.setIndices(pcl::make_shared<pcl::Indices>(labeledPoints(input.shape.cloud, *options.label)));
     if (input.shape.mesh) refinement.setMesh(meshSurface(*input.shape.mesh));
     if (options.method_given && !input.volume) giveMap(refinement, input, options);
     findings.planes = refinement.compute();
@@ -404,6 +410,7 @@ void analyze(const PlanesOptions& options, FileJob& job) {
   const InputShape input = loadInput(job.console(), job.path(), options.common);
   if (input.volume && (options.support_path || options.html_path))
     throw InputError(job.path() + ": -support and -html are of points; -surface VALUE makes some");
+  if (options.label && (input.volume || input.shape.mesh)) throw InputError(job.path() + ": -label is of clouds");
   const Findings findings = search(job, input, options);
   job.report({tableOf(findings, input.shift()), describe(input, findings), rowsOf(findings, input.shift())});
   if (options.support_path) saveSupport(input, findings, job.output(*options.support_path));

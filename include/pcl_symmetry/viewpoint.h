@@ -103,15 +103,22 @@ public:
   /// \param margin by which objects may seem to reach into it, input units, >= 0.
   SeenSpace withSupport(const Eigen::Vector4d& support, double margin) const;
 
+  /// The same for objects that stand on nothing, or whose support is unknown. Otherwise an analysis of a part of a scene,
+  /// named by setIndices(), looks for the planes that it stands on, unless withSupport() gave one.
+  SeenSpace withoutSupport() const;
+
   /// \return null where there is no viewpoint.
   const Visibility* visibility() const { return visibility_ ? &*visibility_ : nullptr; }
   ViewpointSource source() const { return source_; }  ///< how the viewpoint is known
+  /// \return whether an analysis of a part of the scene looks for the planes that it stands on.
+  bool asksForSupport() const { return visibility_ && asks_for_support_; }
 
 private:
   SeenSpace(const detail::ScannerOutput& scene, const Viewpoint& viewpoint, std::size_t max_pixels);
 
   std::optional<Visibility> visibility_;
   ViewpointSource source_ = ViewpointSource::None;
+  bool asks_for_support_ = true;
 };
 
 }  // namespace pcl_symmetry

@@ -167,14 +167,14 @@ SceneDistances sceneDistances(const SymmetryScene::Cloud& scene, const pcl::Indi
 SeenSpace seenOfObject(const SeenSpace& seen, const SymmetryScene::Cloud& scene,
                        const std::vector<SupportingPlane>& supports, const pcl::Indices& object,
                        const SceneDistances& distances, double tolerance) {
-  if (!seen.visibility() || supports.empty()) return seen;
+  SeenSpace result = seen.withoutSupport();
+  if (!seen.visibility() || supports.empty()) return result;
   Points points(3, static_cast<Eigen::Index>(object.size()));
   for (std::size_t i = 0; i < object.size(); ++i)
     points.col(static_cast<Eigen::Index>(i)) = scene[object[i]].getVector3fMap();
   const double diagonal = (points.rowwise().maxCoeff() - points.rowwise().minCoeff()).cast<double>().norm();
   const double off = std::max(tolerance * diagonal, resolvedTolerance(points, *seen.visibility()));
   const double most = kScene.support_margin * distances.plane;
-  SeenSpace result = seen;
   for (const SupportingPlane& support : supports) {
     const Eigen::RowVector3f normal = support.coefficients.head<3>().cast<float>();
     const auto offset = static_cast<float>(support.coefficients[3] + most);
@@ -188,15 +188,11 @@ SeenSpace seenOfObject(const SeenSpace& seen, const SymmetryScene::Cloud& scene,
   return result;
 }
 
-SeenSpace seenOfPart(const ScannerOutput& scanned, const pcl::Indices& part, const Viewpoint& viewpoint,
-                     double tolerance) {
+SeenSpace standingInScene(const SeenSpace& seen, const ScannerOutput& scanned, const pcl::Indices& part,
+                          double tolerance) {
   auto scene = pcl::make_shared<SymmetryScene::Cloud>(scanned.width, scanned.height);
   for (std::size_t i = 0; i < scene->size(); ++i)
     (*scene)[i].getVector3fMap() = scanned.pixels.col(static_cast<Eigen::Index>(i));
-  scene->sensor_origin_.head<3>() = scanned.stored.origin.cast<float>();
-  scene->sensor_orientation_ = scanned.stored.orientation;
-  const SeenSpace seen(*scene, viewpoint);
-  if (!seen.visibility()) return seen;
   // A face of the object is no table.
   std::vector<char> is_part(scene->size(), 0);
   for (const pcl::index_t i : part) is_part[static_cast<std::size_t>(i)] = 1;

@@ -258,9 +258,18 @@ def objects_found(name, points, arguments):
     return [{**o, "pixels": pixels[labels == i + 1].tolist()} for i, o in enumerate(objects)]
 
 
+def answers_of_label(path, label, arguments):
+    """What the tool answers for the points of a frame with a label, which the others hide and support."""
+    command = [arguments.tool, path, "-label", str(label), "-quiet", "-threads", "1", "-seed", str(arguments.seed + 1)]
+    with tempfile.TemporaryDirectory() as folder:
+        done = subprocess.run([*command, "-json", f"{folder}/found.json"], capture_output=True)
+        return bench.NO_ANSWERS if done.returncode else bench.read_answers(folder, "found")
+
+
 def kinect_frame(frame, arguments):
-    """Rows of the objects of one frame, alone and in the whole."""
-    points, labels = read_labeled_frame(arguments.repository, f"segmentation/mOSD/learn/learn{frame}.pcd")
+    """Rows of the objects of one frame: alone, by label, and in the whole."""
+    path = f"segmentation/mOSD/learn/learn{frame}.pcd"
+    points, labels = read_labeled_frame(arguments.repository, path)
     truths, rows, exported = objects_of(frame, points, labels), [], {}
     objects = objects_found(f"learn_{frame}", points, arguments)
     for label, truth in truths.items():
@@ -269,6 +278,12 @@ def kinect_frame(frame, arguments):
         if truth["shape"]:
             answers = bench.ask(name, np.where(mask[..., None], points, np.nan), None, arguments)
             rows.append({"cloud": name, "way": "alone", "shape": truth["shape"], **judge(answers, truth)})
+        if truth["shape"] and arguments.tool and not arguments.judge:
+            with tempfile.NamedTemporaryFile(suffix=".pcd") as file:
+                file.write(show(arguments.repository, path))
+                file.flush()
+                answers = answers_of_label(file.name, label, arguments)
+            rows.append({"cloud": name, "way": "label", "shape": truth["shape"], **judge(answers, truth)})
         if objects is None:
             continue
         own = set(np.flatnonzero(mask & np.isfinite(points).all(-1)))

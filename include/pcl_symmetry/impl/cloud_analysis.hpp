@@ -169,19 +169,18 @@ protected:
   }
 
   /// \return whether the caller may have told what the object stands on, by setGround() or setSeenSpace().
-  bool hasGivenSupport() const { return ground_ || seen_space_; }
+  bool hasGivenSupport() const { return ground_ || (seen_space_ && !seen_space_->asksForSupport()); }
 
   /// \param points selected from the input, 3 x N, N >= 1.
   /// \return what the scanner saw; nothing without a viewpoint.
   /// \throws std::invalid_argument where the points surround the viewpoint that was given.
   std::optional<Visibility> seenSpace(const Points& points) {
     const bool is_part = this->use_indices_ && this->indices_->size() < this->input_->size();
-    SeenSpace seen = seen_space_ ? *seen_space_
-                     : is_part && viewpoint_.mode != Viewpoint::Mode::None
-                         ? detail::seenOfPart(detail::ScannerOutput(*this->input_), *this->indices_, viewpoint_,
-                                              DetectionOptions().tolerance)
-                         : detail::findSeenSpace(*this->input_, points, viewpoint_);
-    if (ground_) seen = detail::standingOn(seen, *ground_, points, DetectionOptions().tolerance);
+    const double tolerance = DetectionOptions().tolerance;
+    SeenSpace seen = seen_space_ ? *seen_space_ : detail::findSeenSpace(*this->input_, points, viewpoint_, is_part);
+    if (is_part && seen.asksForSupport())
+      seen = detail::standingInScene(seen, detail::ScannerOutput(*this->input_), *this->indices_, tolerance);
+    if (ground_) seen = detail::standingOn(seen, *ground_, points, tolerance);
     viewpoint_source_ = seen.source();
     used_viewpoint_.reset();
     if (seen.visibility()) used_viewpoint_ = seen.visibility()->viewpoint();

@@ -183,12 +183,12 @@ Eigen::Vector4d unitPlane(const Eigen::Vector4d& coefficients);
 /// \return \p seen itself where it has no viewpoint.
 SeenSpace standingOn(const SeenSpace& seen, const Eigen::Vector4d& ground, const Points& points, double tolerance);
 
-/// Seen, free and unknown space about a part of a scene: its other points hide it, and behind the supporting planes
-/// that it stands on or before, which PCL's sample consensus finds, none of it is.
+/// The same space about a part of a scene: behind the supporting planes that it stands on or before, which PCL's sample
+/// consensus finds among the other points, none of it is.
 /// \param part indices of its points, at least one of them finite.
 /// \param tolerance how far a symmetric surface may be off, as a share of the diameter.
-SeenSpace seenOfPart(const ScannerOutput& scene, const pcl::Indices& part, const Viewpoint& viewpoint,
-                     double tolerance);
+SeenSpace standingInScene(const SeenSpace& seen, const ScannerOutput& scene, const pcl::Indices& part,
+                          double tolerance);
 
 /// \return nothing where there is no viewpoint.
 inline std::optional<Visibility> visibilityOf(const SeenSpace& seen) {
