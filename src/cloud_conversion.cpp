@@ -133,6 +133,13 @@ SeenSpace standingOn(const SeenSpace& seen, const Eigen::Vector4d& ground, const
   return seen.withSupport(sign * ground, tolerance * diagonal);
 }
 
+pcl::PointCloud<pcl::PointXYZ>::Ptr cloudOf(const ScannerOutput& scanned) {
+  auto cloud = pcl::make_shared<pcl::PointCloud<pcl::PointXYZ>>(scanned.width, scanned.height);
+  for (std::size_t i = 0; i < cloud->size(); ++i)
+    (*cloud)[i].getVector3fMap() = scanned.pixels.col(static_cast<Eigen::Index>(i));
+  return cloud;
+}
+
 std::optional<Visibility> seenByOrganizedCloud(const Points& pixels, int width, int height) {
   pcl::Indices finite;
   for (Eigen::Index i = 0; i < pixels.cols(); ++i)

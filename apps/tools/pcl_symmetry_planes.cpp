@@ -77,9 +77,10 @@ CommandLine commandLine(PlanesOptions& options) {
       .plane("ground", options.ground,
              "what the object stands on: a x + b y + c z + d = 0; with a viewpoint, sparse points of a LiDAR are then "
              "decided by the box around them")
-      .number("label", options.label, Range::atLeast(0),
-              "the object is the points of a cloud whose field label has this value; the others are its scene: they hide "
-              "it, and it stands on them")
+      .number(
+          "label", options.label, Range::atLeast(0),
+          "the object is the points of a cloud whose field label has this value; the others are its scene: they hide "
+          "it, and it stands on them")
       .number("max_planes", options.detection.max_planes, Range::closed(1, 1000), "largest number of planes reported")
       .common(options.common, kShapeFlags | kSigma | kVolumes);
   options.batch.addTo(line);

@@ -101,17 +101,6 @@ struct SceneAnalysis {
   std::vector<std::pair<std::string, double>> timing_ms;  ///< stages in order
 };
 
-/// Takes the errors of a depth camera out of its frame: each point becomes that of the plane through the pixels around
-/// it, and pixels that fly between two surfaces become NaN. Edges stay; parts that are narrower than two pixels are
-/// lost.
-/// \param frame organized.
-/// \param seen of this frame.
-/// \param num_threads 0 = one per core.
-/// \return a frame with the same pixels; \p frame itself where it is not organized, has no errors, or pixels share them
-/// with their neighbors, as of stereo and structured light.
-pcl::PointCloud<pcl::PointXYZ>::ConstPtr withoutDepthErrors(const pcl::PointCloud<pcl::PointXYZ>::ConstPtr& frame,
-                                                            const SeenSpace& seen, int num_threads = 0);
-
 /// Finds the objects of a scene and their symmetries.
 ///
 /// Supporting planes are found by PCL's sample consensus and left out; the rest falls into clusters by PCL's Euclidean

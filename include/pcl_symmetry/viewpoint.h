@@ -1,6 +1,7 @@
 #pragma once
 
 #include <pcl/point_cloud.h>
+#include <pcl/point_types.h>
 
 #include <Eigen/Core>
 #include <Eigen/Geometry>
@@ -103,8 +104,8 @@ public:
   /// \param margin by which objects may seem to reach into it, input units, >= 0.
   SeenSpace withSupport(const Eigen::Vector4d& support, double margin) const;
 
-  /// The same for objects that stand on nothing, or whose support is unknown. Otherwise an analysis of a part of a scene,
-  /// named by setIndices(), looks for the planes that it stands on, unless withSupport() gave one.
+  /// The same for objects that stand on nothing, or whose support is unknown. Otherwise an analysis of a part of a
+  /// scene, named by setIndices(), looks for the planes that it stands on, unless withSupport() gave one.
   SeenSpace withoutSupport() const;
 
   /// \return null where there is no viewpoint.
@@ -120,5 +121,16 @@ private:
   ViewpointSource source_ = ViewpointSource::None;
   bool asks_for_support_ = true;
 };
+
+/// Takes the errors of a depth camera out of its frame: each point becomes that of the plane through the pixels around
+/// it, and pixels that fly between two surfaces become NaN. Edges stay; parts that are narrower than two pixels are
+/// lost.
+/// \param frame organized.
+/// \param seen of this frame.
+/// \param num_threads 0 = one per core.
+/// \return a frame with the same pixels; \p frame itself where it is not organized, has no errors, or pixels share them
+/// with their neighbors, as of stereo and structured light.
+pcl::PointCloud<pcl::PointXYZ>::ConstPtr withoutDepthErrors(const pcl::PointCloud<pcl::PointXYZ>::ConstPtr& frame,
+                                                            const SeenSpace& seen, int num_threads = 0);
 
 }  // namespace pcl_symmetry

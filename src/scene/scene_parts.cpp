@@ -190,9 +190,7 @@ SeenSpace seenOfObject(const SeenSpace& seen, const SymmetryScene::Cloud& scene,
 
 SeenSpace standingInScene(const SeenSpace& seen, const ScannerOutput& scanned, const pcl::Indices& part,
                           double tolerance) {
-  auto scene = pcl::make_shared<SymmetryScene::Cloud>(scanned.width, scanned.height);
-  for (std::size_t i = 0; i < scene->size(); ++i)
-    (*scene)[i].getVector3fMap() = scanned.pixels.col(static_cast<Eigen::Index>(i));
+  const SymmetryScene::Cloud::ConstPtr scene = cloudOf(scanned);
   // A face of the object is no table.
   std::vector<char> is_part(scene->size(), 0);
   for (const pcl::index_t i : part) is_part[static_cast<std::size_t>(i)] = 1;

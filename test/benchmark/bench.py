@@ -505,6 +505,14 @@ def _detect_by_tool(points, sensor, seed, tool, options):
         return NO_ANSWERS if run.returncode else read_answers(folder, "found")
 
 
+def detect_labeled(path, label, seed, tool):
+    """What the tool answers for the points of a frame with a label; the others hide and support them."""
+    command = [tool, path, "-label", str(label), "-quiet", "-threads", "1", "-seed", str(seed)]
+    with tempfile.TemporaryDirectory() as folder:
+        done = subprocess.run([*command, "-json", f"{folder}/found.json"], capture_output=True)
+        return NO_ANSWERS if done.returncode else read_answers(folder, "found")
+
+
 def google_benchmark(command, *flags):
     """Rows that a program of Google Benchmark writes; command: its path, or words that end with it."""
     command = [command] if isinstance(command, str) else command

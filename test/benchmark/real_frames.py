@@ -258,14 +258,6 @@ def objects_found(name, points, arguments):
     return [{**o, "pixels": pixels[labels == i + 1].tolist()} for i, o in enumerate(objects)]
 
 
-def answers_of_label(path, label, arguments):
-    """What the tool answers for the points of a frame with a label, which the others hide and support."""
-    command = [arguments.tool, path, "-label", str(label), "-quiet", "-threads", "1", "-seed", str(arguments.seed + 1)]
-    with tempfile.TemporaryDirectory() as folder:
-        done = subprocess.run([*command, "-json", f"{folder}/found.json"], capture_output=True)
-        return bench.NO_ANSWERS if done.returncode else bench.read_answers(folder, "found")
-
-
 def kinect_frame(frame, arguments):
     """Rows of the objects of one frame: alone, by label, and in the whole."""
     path = f"segmentation/mOSD/learn/learn{frame}.pcd"
@@ -282,7 +274,7 @@ def kinect_frame(frame, arguments):
             with tempfile.NamedTemporaryFile(suffix=".pcd") as file:
                 file.write(show(arguments.repository, path))
                 file.flush()
-                answers = answers_of_label(file.name, label, arguments)
+                answers = bench.detect_labeled(file.name, label, arguments.seed + 1, arguments.tool)
             rows.append({"cloud": name, "way": "label", "shape": truth["shape"], **judge(answers, truth)})
         if objects is None:
             continue

@@ -5,16 +5,17 @@ scenes.py PSB --classes train.cla --fold 1 --every 3 --scenes 45 --noise 0,1 --m
 
 Models of 0.15 to 0.3 m stand on a table or in a bin, none meets another, and a sensor looks at them; or they stand on
 a road, as large as vehicles, 5 to 30 m from a scanner, with y up as in most files of PSB; there, right is within 5 degrees
-and 3.3 % of the diagonal. Each object that shows enough points is asked for twice:
+and 3.3 % of the diagonal. Each object that shows enough points is asked for in three ways:
 
   alone   its points, cut out of the frame, with the viewpoint: pcl_symmetry.planes() and Database.recognize();
           on a road pcl_symmetry_planes, which is told the ground, too
+  label   its points in the frame, as a segmentation names them: pcl_symmetry_planes -label; planes only
   scene   the whole frame: pcl_symmetry_scene; the object that it finds must share half of the points (IoU >= 0.5)
 
 Answers of kind symmetry with a confidence of at least 0.5 decide, as in planes.py. A name is right with the pose where no
 point of the model is off by more than 5 % of its diameter, symmetries counted.
 
---frames keeps the frames (PCD with a field object: -1 table, -2 nothing) and truth.json, or judges those that are there.
+--frames keeps the frames (PCD with a field label: -1 table, -2 nothing) and truth.json, or judges those that are there.
 --judge reads what another program found in each: NAME.json and NAME.pcd as `pcl_symmetry_scene` writes them.
 """
 import json
@@ -211,7 +212,7 @@ def make(number, arguments):
         labels, name = ids, f"scene_{int(number):04d}_noise_{noise:g}"
         if arguments.sensor == "lidar":  # no rows: what met nothing is left out
             points, labels = points[ids > -2], ids[ids > -2]
-        bench.write_cloud(f"{arguments.frames}/{name}.pcd", points, sensor, object=labels)
+        bench.write_cloud(f"{arguments.frames}/{name}.pcd", points, sensor, label=labels)
         frames[name] = objects
     return frames
 
@@ -227,10 +228,10 @@ def read_frame(path):
         with open(path, "rb") as file:
             header = next((line for line in file if line.startswith(b"VIEWPOINT")), b"VIEWPOINT 0 0 0")
         cloud = open3d.t.io.read_point_cloud(str(path)).point
-        labels = cloud["object"].numpy().ravel().astype(int)
+        labels = cloud["label"].numpy().ravel().astype(int)
         return cloud["positions"].numpy().astype(np.float32), labels, np.array(header.split()[1:4], float)
     except (OSError, KeyError, RuntimeError, ValueError):
-        raise bench.BadInput(f"{path}: is no frame with the field object") from None
+        raise bench.BadInput(f"{path}: is no frame with the field label") from None
 
 
 def overlaps(labels, truth, shape):
@@ -296,13 +297,16 @@ def judge_frame(frame, arguments):
             models = ask_database(own, viewpoint, arguments) if arguments.leave_out else []
             road = {"tool": f"{arguments.tools}/pcl_symmetry_planes", "ground": "0,0,1,0"} if arguments.place == "road" else {}
             ways.append(("alone", True, {**bench.detect(own, sensor, arguments.seed + 1, **road), "models": models}))
+        if "label" in arguments.seen:
+            tool = f"{arguments.tools}/pcl_symmetry_planes"
+            ways.append(("label", True, bench.detect_labeled(f"{arguments.frames}/{frame.name}.pcd", k, arguments.seed + 1, tool)))
         if "scene" in arguments.seen:
             best = max(range(len(found)), key=lambda i: iou[i, k], default=None)
             is_found = best is not None and bool(iou[best, k] >= MIN_IOU)
             ways.append(("scene", is_found, found[best] if is_found else {**bench.NO_ANSWERS, "models": []}))
         for seen, is_found, answers in ways:
             judged = planes.judge(answers, truth["symmetries"], 5 / 3 if arguments.place == "road" else 1)
-            name = judge_name(answers["models"], truth, frame.known) if arguments.leave_out else {}
+            name = judge_name(answers["models"], truth, frame.known) if arguments.leave_out and seen != "label" else {}
             rows.append({"frame": frame.name, "noise": frame.noise, "object": k, "model": truth["model"],
                          "kind": truth["symmetries"]["kind"], "occlusion": occlusion(truth), "points": len(own), "seen": seen,
                          "found": is_found, "called": judged["called"], "decided_right": judged["decided_right"], **name})  # fmt: skip
@@ -411,7 +415,7 @@ if __name__ == "__main__":
     add("--place", choices=("table", "bin", "road"), default="table")
     add("--sensor", choices=("camera", "lidar"), default="camera")
     add("--rings", type=int, default=64, help="of a LiDAR scanner")
-    add("--seen", type=bench.numbers(str, ("alone", "scene")), default="alone,scene", help="how objects are asked for")
+    add("--seen", type=bench.numbers(str, ("alone", "label", "scene")), default="alone,label,scene", help="how objects are asked for")
     add("--min-points", type=int, default=300, help="least number of points of an object")
     add("--least-occlusion", type=float, default=0.0, help="objects of which others hide less are passed over")
     add("--most-in-band", type=int, default=0, help="objects of a band after which others are passed over; 0: none are")

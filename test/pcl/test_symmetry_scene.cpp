@@ -91,13 +91,20 @@ TEST(SymmetryScene, ObjectsStandOnTheTableWithTheirFeet) {
 }
 
 /// The errors of structured light: 1.4 mm at 1 m, growing with the square of the depth.
-Cloud::Ptr withDepthErrors(const test::Scan& scan) {
+/// \param window side of the square of pixels whose errors are averaged, as by sensors that match windows.
+Cloud::Ptr withDepthErrors(const test::Scan& scan, int window = 1) {
   RandomStream random(5);
   Cloud::Ptr cloud = pictureOf(scan);
-  for (pcl::PointXYZ& point : *cloud) {
-    double deviate = -6.0;  // normal, from twelve even ones
+  Eigen::MatrixXd deviates(scan.width + window, scan.height + window);
+  for (double& deviate : deviates.reshaped()) {
+    deviate = -6.0;  // normal, from twelve even ones
     for (int i = 0; i < 12; ++i) deviate += random.uniform();
+  }
+  for (std::size_t i = 0; i < cloud->size(); ++i) {
+    pcl::PointXYZ& point = (*cloud)[i];
     if (!pcl::isXYZFinite(point)) continue;
+    const auto u = static_cast<int>(i) % scan.width, v = static_cast<int>(i) / scan.width;
+    const double deviate = deviates.block(u, v, window, window).sum() / window;
     const Eigen::Vector3d x = point.getVector3fMap().cast<double>();
     const double depth = (scan.T_camera_object * x).z();
     point.getVector3fMap() = (scan.viewpoint + (1.0 + 1.4e-3 * depth * deviate) * (x - scan.viewpoint)).cast<float>();
@@ -136,14 +143,25 @@ SymmetryMaximaRefinement<pcl::PointXYZ> ofBox(const Cloud::ConstPtr& frame, int 
 
 TEST(SymmetryMaximaRefinement, APartOfAFrameKnowsTheTableThatItStandsOn) {
   const Cloud::ConstPtr frame = pictureOf(twoBoxes().scan);
-  const SeenSpace seen = detail::seenOfPart(detail::ScannerOutput(*frame), twoBoxes().pixelsOf(1), Viewpoint(), 0.01);
+  const SeenSpace seen =
+      detail::standingInScene(SeenSpace(*frame), detail::ScannerOutput(*frame), twoBoxes().pixelsOf(1), 0.01);
   ASSERT_NE(seen.visibility(), nullptr);
   ASSERT_EQ(seen.visibility()->supports().size(), 1u);
   EXPECT_LT((seen.visibility()->supports()[0].head<3>() - Eigen::Vector3d::UnitZ()).norm(), 1e-3);
 }
 
+TEST(SymmetryMaximaRefinement, ErrorsOfAFrameAreTakenOutOfItsParts) {
+  const Cloud::ConstPtr noisy = withDepthErrors(twoBoxes().scan);
+  auto own = ofBox(noisy, 1), shared = ofBox(withoutDepthErrors(noisy, SeenSpace(*noisy)), 1);
+  const std::vector<SymmetryPlane> planes = own.compute(), of_filtered = shared.compute();
+  EXPECT_LT(own.getUsedIndices().size(), twoBoxes().pixelsOf(1).size()) << "pixels that fly are left out";
+  ASSERT_EQ(planes.size(), of_filtered.size());
+  for (std::size_t i = 0; i < planes.size(); ++i) EXPECT_EQ(planes[i].coefficients(), of_filtered[i].coefficients());
+}
+
 TEST(SymmetryMaximaRefinement, DecidesAtWhatTheSensorResolves) {
-  const Cloud::ConstPtr exact = pictureOf(twoBoxes().scan), noisy = withDepthErrors(twoBoxes().scan);
+  constexpr int kWindow = 3;  // errors of single pixels would be taken out
+  const Cloud::ConstPtr exact = pictureOf(twoBoxes().scan), noisy = withDepthErrors(twoBoxes().scan, kWindow);
   for (const int box : {1, 2}) {
     auto clean = ofBox(exact, box);
     clean.compute();

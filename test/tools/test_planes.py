@@ -75,6 +75,15 @@ class Planes(ToolTest):
         self.run_tool(self.tetrahedron, "-quiet --approximate")
         self.assertIn("approximate", self.output)
 
+    def test_a_label_names_the_object_in_its_scene(self):
+        random = np.random.default_rng(3)
+        points = random.uniform(-0.5, 0.5, (600, 3)) * (1, 0.8, 0.6) + np.repeat([[0, 0, 0], [4, 0, 0]], 300, axis=0)
+        cloud = self.write("l.pcd", tool_run.pcd("x:F y:F z:F label:U", [(*p, 3 if p[0] < 1 else 8) for p in points]))
+        self.assertEqual(self.report(cloud, "-label 3 -viewpoint none")["num_points"], (points[:, 0] < 1).sum())
+        self.fails(1, "l.pcd: has no point with the label 4", cloud, "-label 4")
+        self.fails(1, "has no field label", self.write("n.pcd", tool_run.pcd("x:F y:F z:F", points.tolist())), "-label 3")
+        self.fails(1, "-label is of clouds", self.box, "-label 3")
+
     def test_writes_the_support_of_every_point_and_keeps_its_fields(self):
         i = np.arange(1200)
         u, v, side = i * 0.754877666 % 1, i * 0.569840291 % 1, np.where(i % 2, 1, -1)

@@ -93,10 +93,17 @@ protected:
   /// \param num_threads 0 = one per core.
   /// \return 3 x N points; N = 0 where the input holds no answer.
   Points selectInput(std::uint64_t seed, int num_threads = 1) {
+    if (input_) return selectFrom(*input_, seed, num_threads);
     clearResults();
-    if (!input_) return giveNoAnswer("input cloud: not set");
+    return giveNoAnswer("input cloud: not set");
+  }
+
+  /// The same from another cloud with the points of the input, such as a filtered one.
+  template <typename OtherPointT>
+  Points selectFrom(const pcl::PointCloud<OtherPointT>& cloud, std::uint64_t seed, int num_threads) {
+    clearResults();
     detail::SelectedPoints selected =
-        detail::selectPoints(*input_, use_indices_ ? indices_.get() : nullptr, max_points_, seed, num_threads);
+        detail::selectPoints(cloud, use_indices_ ? indices_.get() : nullptr, max_points_, seed, num_threads);
     std::string reason = detail::reasonForNoAnswer(selected.points);
     if (!reason.empty()) return giveNoAnswer(std::move(reason));
     used_indices_ = std::move(selected.indices);
@@ -148,7 +155,7 @@ public:
   void setGround(const Eigen::Vector4d& coefficients) { ground_ = detail::unitPlane(coefficients); }
 
   /// Gives what the scanners of a scene saw, made once for the analyses of all its objects, in place of what the
-  /// viewpoint and the input tell.
+  /// viewpoint and the input tell. The errors of its depths are then taken out once, too: withoutDepthErrors().
   /// \param seen in the frame of the input; null (default): each analysis finds out for itself.
   void setSeenSpace(const SeenSpace::ConstPtr& seen) { seen_space_ = seen; }
 
@@ -168,6 +175,16 @@ protected:
     used_viewpoint_.reset();
   }
 
+  /// Selects points without the errors of a depth camera, which its rows and columns tell.
+  Points selectInput(std::uint64_t seed, int num_threads = 1) {
+    const bool asks_data = !seen_space_ && viewpoint_.mode == Viewpoint::Mode::Auto;
+    frame_ = asks_data && this->input_ && this->input_->isOrganized() && this->input_->width > 1
+                 ? detail::depthFrame(detail::ScannerOutput(*this->input_), num_threads)
+                 : detail::DepthFrame();
+    return frame_.filtered ? this->selectFrom(*frame_.filtered, seed, num_threads)
+                           : CloudAnalysis<PointT>::selectInput(seed, num_threads);
+  }
+
   /// \return whether the caller may have told what the object stands on, by setGround() or setSeenSpace().
   bool hasGivenSupport() const { return ground_ || (seen_space_ && !seen_space_->asksForSupport()); }
 
@@ -177,7 +194,10 @@ protected:
   std::optional<Visibility> seenSpace(const Points& points) {
     const bool is_part = this->use_indices_ && this->indices_->size() < this->input_->size();
     const double tolerance = DetectionOptions().tolerance;
-    SeenSpace seen = seen_space_ ? *seen_space_ : detail::findSeenSpace(*this->input_, points, viewpoint_, is_part);
+    const detail::DepthFrame frame = std::exchange(frame_, {});
+    SeenSpace seen = seen_space_               ? *seen_space_
+                     : frame.seen.visibility() ? frame.seen
+                                               : detail::findSeenSpace(*this->input_, points, viewpoint_, is_part);
     if (is_part && seen.asksForSupport())
       seen = detail::standingInScene(seen, detail::ScannerOutput(*this->input_), *this->indices_, tolerance);
     if (ground_) seen = detail::standingOn(seen, *ground_, points, tolerance);
@@ -191,6 +211,7 @@ private:
   Viewpoint viewpoint_;
   std::optional<Eigen::Vector4d> ground_;
   SeenSpace::ConstPtr seen_space_;
+  detail::DepthFrame frame_;  // of the analysis that runs
   ViewpointSource viewpoint_source_ = ViewpointSource::None;
   std::optional<Eigen::Vector3d> used_viewpoint_;
 };

@@ -172,6 +172,18 @@ SeenSpace findSeenSpace(const pcl::PointCloud<PointT>& cloud, const Points& poin
   return seenFrom(points, viewpoint, storedPose(cloud));
 }
 
+/// \return the pixels as points with rows and columns.
+pcl::PointCloud<pcl::PointXYZ>::Ptr cloudOf(const ScannerOutput& scanned);
+
+/// An organized cloud whose rows and columns are those of a depth camera.
+struct DepthFrame {
+  pcl::PointCloud<pcl::PointXYZ>::ConstPtr filtered;  ///< without the errors of its depths; null where it has none
+  SeenSpace seen;                                     ///< by its own rays; empty where no camera fits
+};
+
+/// \param num_threads 0 = one per core.
+DepthFrame depthFrame(const ScannerOutput& scanned, int num_threads);
+
 /// \return the plane with a unit normal.
 /// \throws pcl::BadArgumentException for a zero normal or a value that is not finite.
 Eigen::Vector4d unitPlane(const Eigen::Vector4d& coefficients);

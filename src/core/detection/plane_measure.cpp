@@ -109,8 +109,8 @@ PlaneEvidence PlaneMeasure::evidenceOf(double support, double conflict, double s
   evidence.tolerance = tolerance_;
   evidence.own_score = own_score_;
   evidence.flat = thinness_ == Thinness::Sheet;
-  evidence.sparse =
-      options_.absolute_tolerance == 0.0 && tolerance_ > std::max(resolution_, options_.tolerance * cloud_.extent);
+  if (options_.absolute_tolerance == 0.0)
+    evidence.coarser = std::max(0.0, tolerance_ / std::max(resolution_, options_.tolerance * cloud_.extent) - 1.0);
   return evidence;
 }
 

@@ -124,8 +124,10 @@ double planeConfidence(const PlaneEvidence& evidence) {
   const std::vector<double> terms = logOddsTerms(evidence);
   const auto& coefficients = kConfidenceFit.log_odds[static_cast<int>(evidence.kind)];
   // A flat cloud is judged by its outline alone, a scan by one side.
-  const bool tells_little = evidence.flat || (evidence.kind == CloudKind::Scan && evidence.sparse);
-  const double coarsest = tells_little ? kEvidence.coarsest_part : kEvidence.coarsest;
+  const double by_spacing =
+      evidence.kind == CloudKind::Scan ? std::min(1.0, evidence.coarser / kEvidence.surely_coarser) : 0.0;
+  const double tells_little = evidence.flat ? 1.0 : by_spacing;
+  const double coarsest = kEvidence.coarsest + tells_little * (kEvidence.coarsest_part - kEvidence.coarsest);
   const double unresolved = kEvidence.lost_per_coarseness * std::max(0.0, coarseness(evidence) - coarsest);
   const double log_odds = std::inner_product(terms.begin(), terms.end(), coefficients.begin(), 0.0) - unresolved;
   return 1.0 / (1.0 + std::exp(-log_odds));

@@ -29,7 +29,7 @@ struct PlaneEvidence {
   double tolerance = 0.02;    ///< of that share, divided by the radius of the points, > 0
   double unknown = 0.0;  ///< share of the surface that is uninformative: its reflection was not seen or was cut off
   bool flat = false;     ///< all points lie in one plane: the outline alone tells
-  bool sparse = false;   ///< decided at what the spacing of the points resolves
+  double coarser = 0.0;  ///< share by which the spacing of the points raised the tolerance, >= 0
   bool further = false;  ///< another plane of the same cloud has better evidence
 };
 

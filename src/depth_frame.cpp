@@ -6,13 +6,13 @@
 
 #include "core/base/median.h"
 #include "core/scan/depth_filter.h"
-#include "pcl_symmetry/symmetry_scene.h"
+#include "pcl_symmetry/impl/cloud_conversion.hpp"
 
 namespace pcl_symmetry {
 
 namespace {
 
-using Cloud = SymmetryScene::Cloud;
+using Cloud = pcl::PointCloud<pcl::PointXYZ>;
 
 constexpr float kNone = std::numeric_limits<float>::quiet_NaN();  // the depth of a pixel without a point
 // Radius of the filter in pixels. Of 2 and 3, the one that leaves the least errors on the objects of five scenes; 1
@@ -56,5 +56,18 @@ Cloud::ConstPtr withoutDepthErrors(const Cloud::ConstPtr& frame, const SeenSpace
   result->is_dense = false;
   return result;
 }
+
+namespace detail {
+
+DepthFrame depthFrame(const ScannerOutput& scanned, int num_threads) {
+  std::optional<Visibility> seen = seenByOrganizedCloud(scanned.pixels, scanned.width, scanned.height);
+  if (!seen) return {};
+  DepthFrame frame{nullptr, {std::move(*seen), ViewpointSource::Rays}};
+  const Cloud::ConstPtr cloud = cloudOf(scanned), filtered = withoutDepthErrors(cloud, frame.seen, num_threads);
+  if (filtered != cloud) frame = {filtered, SeenSpace(*filtered)};
+  return frame;
+}
+
+}  // namespace detail
 
 }  // namespace pcl_symmetry
