@@ -252,7 +252,7 @@ def objects_found(name, points, arguments):
         bench.run_tool(arguments.tools, "pcl_symmetry_scene", f"{folder}/frame.pcd", f"{folder}/out.pcd", "-quiet",
                        "-json", f"{folder}/found.json", "-threads", "1", "-seed", str(arguments.seed + 1))  # fmt: skip
         objects = json.loads(pathlib.Path(folder, "found.json").read_text())["objects"]
-        labels = scenes.read_frame(f"{folder}/out.pcd")[1]
+        labels = scenes.read_frame(f"{folder}/out.pcd", "object")[1]
     pixels = np.flatnonzero(np.isfinite(points.reshape(-1, 3)).all(1))
     labels = labels[: len(pixels)]  # points that the completion adds come behind
     return [{**o, "pixels": pixels[labels == i + 1].tolist()} for i, o in enumerate(objects)]

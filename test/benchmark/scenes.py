@@ -220,18 +220,18 @@ def make(number, arguments):
 # Judging
 
 
-def read_frame(path):
-    """(N, 3) points, NaN where nothing was met, (N,) objects, and the position of the sensor."""
+def read_frame(path, field="label"):
+    """(N, 3) points, NaN where nothing was met, (N,) whole numbers of a field, and the position of the sensor."""
     import open3d
 
     try:
         with open(path, "rb") as file:
             header = next((line for line in file if line.startswith(b"VIEWPOINT")), b"VIEWPOINT 0 0 0")
         cloud = open3d.t.io.read_point_cloud(str(path)).point
-        labels = cloud["label"].numpy().ravel().astype(int)
+        labels = cloud[field].numpy().ravel().astype(int)
         return cloud["positions"].numpy().astype(np.float32), labels, np.array(header.split()[1:4], float)
     except (OSError, KeyError, RuntimeError, ValueError):
-        raise bench.BadInput(f"{path}: is no frame with the field label") from None
+        raise bench.BadInput(f"{path}: is no frame with the field {field}") from None
 
 
 def overlaps(labels, truth, shape):
@@ -277,7 +277,8 @@ def found_in_frame(frame, finite, truth, arguments):
             found = json.loads(pathlib.Path(folder, f"{frame}.json").read_text())["objects"]
         except (OSError, ValueError, KeyError, TypeError):
             raise bench.BadInput(f"{folder}/{frame}.json: is no answer of pcl_symmetry_scene") from None
-        labels = read_frame(f"{folder}/{frame}.pcd")[1][: finite.sum()] - 1  # points that the completion adds come behind
+        labels = read_frame(f"{folder}/{frame}.pcd", "object")[1]
+        labels = labels[: finite.sum()] - 1  # points that the completion adds come behind
     if len(labels) < finite.sum() or labels.max() >= len(found):
         raise bench.BadInput(f"{folder}/{frame}.pcd: must have the points of the frame, and objects of {frame}.json")
     return found, overlaps(labels, truth[finite], (len(found), truth.max() + 1)), milliseconds
