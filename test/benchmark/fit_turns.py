@@ -19,7 +19,7 @@ OUTPUT = "src/core/detection/turn_confidence_fit.h"
 KINDS, NUM_TERMS = ("by any angle", "half turns", "of order 3 and more"), (4, 7, 6)
 NUM_SAMPLES = 5000  # of the mesh: a share of 0.1 is known to 0.004
 PULL = 0.5  # cases; half and twice change no confidence by 0.05, and without any separable cases would be certain
-NUM_SCANS, NUM_SOLIDS = 4, 1080
+NUM_SCANS, NUM_SOLIDS = 4, 900
 
 
 def solid(i, random):
