@@ -1,12 +1,9 @@
-/// Files that are written hold all fields, and survive kills and full disks; files that are read cannot ask for more
-/// memory than they hold.
+/// Files that are written hold all fields, and survive kills and full disks.
 #include <gtest/gtest.h>
 #include <pcl/conversions.h>
 #include <pcl/point_cloud.h>
 #include <pcl/point_types.h>
-#include <sched.h>
 #include <signal.h>
-#include <sys/mount.h>
 #include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -29,7 +26,6 @@
 #include "io/shape_output.h"
 #include "shapes/complaint.h"
 #include "shapes/temporary_folder.h"
-#include "tools/tool_run.h"
 
 namespace {
 
@@ -143,126 +139,6 @@ TEST(SafeFiles, FullDisksLeaveTheOldFile) {
   }
   std::signal(SIGXFSZ, old_handler);
   EXPECT_EQ(folder.names().size(), 5u) << "nothing half-written stays";
-}
-
-/// A disk of 16 kB, seen by this process alone. \return whether it could be mounted
-bool mountTinyDisk(const std::string& folder) {
-  const auto user = ::getuid();
-  if (::unshare(CLONE_NEWNS) != 0) {
-    if (::unshare(CLONE_NEWUSER | CLONE_NEWNS) != 0) return false;
-    std::ofstream("/proc/self/uid_map") << "0 " << user << " 1";
-  }
-  return ::mount("none", "/", nullptr, MS_REC | MS_PRIVATE, nullptr) == 0 &&
-         ::mount("tmpfs", folder.c_str(), "tmpfs", 0, "size=16k") == 0;
-}
-
-/// Each way that a tool writes a file: the disk is full, and there is a message, status 1, and no stray file.
-TEST(SafeFiles, ToolsNameAFullDisk) {
-  const TemporaryFolder inputs, disk;
-  const std::string box = inputs / "box.off", database = inputs / "box.db", many = "@" + (inputs / "list");
-  inputs.write("box.off",
-               "OFF\n8 6 0\n-3 -2 -1\n3 -2 -1\n3 2 -1\n-3 2 -1\n-3 -2 1\n3 -2 1\n3 2 1\n-3 2 1\n"
-               "4 0 3 2 1\n4 4 5 6 7\n4 0 1 5 4\n4 1 2 6 5\n4 2 3 7 6\n4 3 0 4 7\n");
-  inputs.write("list", box + "\n" + box + "\n");
-  ASSERT_EQ(std::system((toolPath("database") + " build " + database + " " + box + " -quiet").c_str()), 0);
-  const std::map<std::string, std::string> commands = {{"o.pcd", "scan " + box + " OUT -format ascii"},
-                                                       {"binary.pcd", "scan " + box + " OUT -format binary"},
-                                                       {"packed.pcd", "segment " + box + " OUT"},
-                                                       {"o.ply", "align " + box + " OUT"},
-                                                       {"mesh.ply", "align " + box + " OUT -symmetrise mean"},
-                                                       {"o.seg", "segment " + box + " OUT"},
-                                                       {"o.json", "planes " + box + " -json OUT"},
-                                                       {"o.csv", "planes " + box + " -csv OUT"},
-                                                       {"lines.json", "planes " + many + " -json OUT"},
-                                                       {"rows.csv", "planes " + many + " -csv OUT"},
-                                                       {"o.html", "planes " + box + " -html OUT"},
-                                                       {"o.png", "viewpoint " + box + " -icon OUT"},
-                                                       {"support.pcd", "planes " + box + " -support OUT"},
-                                                       {"o.vti", "map " + box + " -volume OUT"},
-                                                       {"o.yaml", "bop " + box + " -isaac OUT"},
-                                                       {"o.db", "database build OUT " + box},
-                                                       {"list.csv", "database list " + database + " -csv OUT"}};
-  const pid_t child = fork();
-  if (child == 0) {
-    if (!mountTinyDisk(disk / ".")) _exit(77);
-    disk.write("full", std::string(16384, ' '));
-    int num_wrong = 0;
-    for (const auto& [name, command] : commands) {
-      std::string words = command;
-      words.replace(words.find("OUT"), 3, disk / name);
-      const int status = std::system((toolPath(words) + " -quiet >/dev/null 2>" + (inputs / "stderr")).c_str());
-      const std::string message = contentOf(inputs / "stderr");
-      if (WIFEXITED(status) && WEXITSTATUS(status) == 1 &&
-          message.find(name + ": cannot be written") < message.size() &&
-          disk.names() == std::vector<std::string>{"full"})
-        continue;
-      std::fprintf(stderr, "%s: status %d, '%s', %zu files\n", command.c_str(), status, message.c_str(),
-                   disk.names().size());
-      ++num_wrong;
-    }
-    _exit(num_wrong);
-  }
-  int status = 0;
-  ASSERT_EQ(waitpid(child, &status, 0), child);
-  ASSERT_TRUE(WIFEXITED(status)) << "signal " << WTERMSIG(status);
-  if (WEXITSTATUS(status) == 77) GTEST_SKIP() << "no file system can be mounted here";
-  EXPECT_EQ(WEXITSTATUS(status), 0);
-}
-
-/// Reads in a process of its own with less memory than the headers ask for.
-/// \return the message, or that of a failure.
-std::string messageWithLittleMemory(const std::string& path) {
-  int ends[2];
-  if (pipe(ends) != 0) return "no pipe";
-  const pid_t child = fork();
-  if (child == 0) {
-    std::ifstream status("/proc/self/statm");
-    std::uint64_t pages = 0;
-    status >> pages;
-    const rlim_t bytes = pages * static_cast<std::uint64_t>(sysconf(_SC_PAGESIZE)) + (64u << 20);
-    const rlimit limit{bytes, bytes};
-    setrlimit(RLIMIT_AS, &limit);
-    const std::string message = complaintOf<std::exception>([&] { loadShape(path); });
-    const auto written = ::write(ends[1], message.data(), message.size());
-    _exit(written == static_cast<ssize_t>(message.size()) ? 0 : 1);
-  }
-  close(ends[1]);
-  std::string message(4096, '\0');
-  const ssize_t size = ::read(ends[0], message.data(), message.size());
-  close(ends[0]);
-  waitpid(child, nullptr, 0);
-  message.resize(static_cast<std::size_t>(std::max<ssize_t>(0, size)));
-  return message.empty() ? "the reader crashed" : message;
-}
-
-TEST(SafeFiles, HeadersCannotAskForMoreMemoryThanTheFileHolds) {
-  const TemporaryFolder folder;
-  const std::string fields = "VERSION 0.7\nFIELDS x y z\nSIZE 4 4 4\nTYPE F F F\nCOUNT 1 1 1\n";
-  const auto pcd = [&](const std::string& points, const std::string& rest) {
-    return fields + "WIDTH " + points + "\nHEIGHT 1\nPOINTS " + points + "\nDATA " + rest;
-  };
-  const std::string vertices = "property float x\nproperty float y\nproperty float z\n";
-  const auto ply = [&](const std::string& format, const std::string& faces) {
-    return "ply\nformat " + format + " 1.0\nelement vertex 1\n" + vertices + faces + "end_header\n";
-  };
-  const std::string face = "element face 1\nproperty list uint int vertex_indices\n";
-  const std::map<std::string, std::string> files = {
-      {"ascii.pcd", pcd("2000000000", "ascii\n1 2 3\n")},
-      {"binary.pcd", pcd("2000000000", "binary\n" + std::string(12, '\1'))},
-      {"compressed.pcd", pcd("300000000", "binary_compressed\n" + std::string("\x04\0\0\0\0\xa4\x93\xd6....", 12))},
-      {"vertices.ply", "ply\nformat ascii 1.0\nelement vertex 2000000000\n" + vertices + "end_header\n1 2 3\n"},
-      {"list.ply", ply("binary_little_endian", face) + std::string(12, '\0') + "\xff\xff\xff\x7f"},
-      {"text_list.ply", ply("ascii", face) + "1 2 3\n2000000000 0 0 0\n"},
-      {"vertices.off", "OFF\n2000000000 1 0\n0 0 0\n"},
-      {"faces.off", "OFF\n1 2000000000 0\n0 0 0\n"},
-      {"corners.off", "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n2000000000 0 1 2\n"},
-      {"triangles.stl", std::string(80, ' ') + "\xff\xff\xff\x7f" + std::string(50, '\0')}};
-  for (const auto& [name, content] : files) {
-    const std::string message = messageWithLittleMemory(folder.write(name, content));
-    EXPECT_NE(message.find(name), std::string::npos) << name << ": " << message;
-    EXPECT_EQ(message.find("memory"), std::string::npos) << message;
-  }
-  EXPECT_EQ(messageWithLittleMemory(folder.write("good.pcd", pcd("1", "ascii\n1 2 3\n"))), "no exception");
 }
 
 TEST(MakeFolder, MakesWhatIsMissingAndRefusesAFile) {

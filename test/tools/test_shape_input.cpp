@@ -1,6 +1,7 @@
 /// Shapes as other programs write them: what they mean is read, what is left out is said, what is wrong is refused.
 #include <gtest/gtest.h>
 #include <pcl/conversions.h>
+#include <sys/resource.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -32,11 +33,29 @@ std::string plainPCD(int points, const std::string& data) {
 }
 
 const std::string kPLYVertex = "property float x\nproperty float y\nproperty float z\n";
+const std::string kPLYFace = "element face 1\nproperty list uint int vertex_indices\n";
 const std::string kSquare = "0 0 0\n2 0 0\n2 1 0\n0 1 0\n";
 
 std::string ply(const std::string& format, const std::string& elements, const std::string& body) {
   return "ply\nformat " + format + " 1.0\n" + elements + "end_header\n" + body;
 }
+
+/// While it lives this process gets no more than 256 MB: headers cannot ask for more memory than their files hold.
+class LittleMemory {
+public:
+  LittleMemory() {
+    std::uint64_t num_pages = 0;
+    std::ifstream("/proc/self/statm") >> num_pages;
+    getrlimit(RLIMIT_AS, &before_);
+    rlimit limit = before_;
+    limit.rlim_cur = num_pages * static_cast<std::uint64_t>(sysconf(_SC_PAGESIZE)) + (256u << 20);
+    setrlimit(RLIMIT_AS, &limit);
+  }
+  ~LittleMemory() { setrlimit(RLIMIT_AS, &before_); }
+
+private:
+  rlimit before_{};
+};
 
 class LoadShape : public testing::Test {
 protected:
@@ -50,10 +69,14 @@ protected:
   static std::string complaintOnReading(const std::string& path) {
     testing::internal::CaptureStderr();
     testing::internal::CaptureStdout();
-    const std::string message = pcl_symmetry::test::complaintOf<InputError>([&] { loadShape(path); });
+    const std::string message = pcl_symmetry::test::complaintOf<InputError>([&] {
+      const LittleMemory limit;
+      loadShape(path);
+    });
     EXPECT_EQ(testing::internal::GetCapturedStderr() + testing::internal::GetCapturedStdout(), "") << path;
     EXPECT_EQ(message.rfind(path + ": ", 0), 0u) << "'" << message << "' for " << path;
     EXPECT_EQ(message.find('\n'), std::string::npos) << message;
+    EXPECT_EQ(message.find("memory"), std::string::npos) << message;
     return message;
   }
   const TemporaryFolder folder_;
@@ -84,6 +107,8 @@ TEST_F(LoadShape, RefusesBadFilesWithOneLine) {
       {"sizes_compressed.pcd", plainPCD(2, "binary_compressed\n" + raw), "compressed size = "},
       {"damaged_compressed.pcd",
        plainPCD(1, "binary_compressed\n" + std::string("\3\0\0\0\14\0\0\0", 8) + "\xff\xff\xff"), "damaged"},
+      {"huge_compressed.pcd",
+       plainPCD(300'000'000, "binary_compressed\n" + std::string("\x04\0\0\0\0\xa4\x93\xd6....", 12)), "damaged"},
       {"empty.ply", "", "is empty"},
       {"garbage.ply", "hello\n", "does not begin with ply"},
       {"cut.ply", "ply\nformat ascii 1.0\n", "ends before end_header"},
@@ -93,6 +118,9 @@ TEST_F(LoadShape, RefusesBadFilesWithOneLine) {
        "vertex property z"},
       {"two_billion.ply", ply("binary_little_endian", "element vertex 2000000000\n" + kPLYVertex, raw),
        "but only 12 bytes"},
+      {"huge_ascii.ply", ply("ascii", "element vertex 2000000000\n" + kPLYVertex, "1 2 3\n"), "but only 6 bytes"},
+      {"huge_list.ply", ply("ascii", "element vertex 1\n" + kPLYVertex + kPLYFace, "1 2 3\n2000000000 0 0 0\n"),
+       "vertex_indices of face 0 is missing"},
       {"twice.ply", ply("ascii", "element vertex 1\n" + kPLYVertex + "property float x\n", "1 2 3 4\n"),
        "property x of vertex stands twice"},
       {"two_elements.ply",
@@ -100,9 +128,7 @@ TEST_F(LoadShape, RefusesBadFilesWithOneLine) {
        "element vertex stands twice"},
       {"cut_ascii.ply", ply("ascii", "element vertex 2\n" + kPLYVertex, "1 2 3\n4.5555555 5\n"), "is missing"},
       {"list.ply",
-       ply("binary_little_endian",
-           "element vertex 1\n" + kPLYVertex + "element face 1\nproperty list uint int vertex_indices\n",
-           raw + "\xff\xff\xff\xff" + raw),
+       ply("binary_little_endian", "element vertex 1\n" + kPLYVertex + kPLYFace, raw + "\xff\xff\xff\x7f" + raw),
        "a corner of face 0 = 16843009"},
       {"empty.off", "", "is empty"},
       {"garbage.off", "solid cube\n", "does not begin with OFF"},
@@ -111,6 +137,9 @@ TEST_F(LoadShape, RefusesBadFilesWithOneLine) {
       {"index.off", "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 3\n", "corner of face 0 = 3, must be <= 2"},
       {"letters.off", "OFF\n3 1 0\n0 zero 0\n1 0 0\n0 1 0\n3 0 1 2\n", "y of vertex 0 = zero, must be a number"},
       {"huge.off", "OFF\n2000000000 1 0\n0 0 0\n", "too short"},
+      {"huge_faces.off", "OFF\n1 2000000000 0\n0 0 0\n", "number of faces, header value 2 = 2000000000"},
+      {"huge_face.off", "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n2000000000 0 1 2\n",
+       "number of corners of face 0 = 2000000000"},
       {"garbage.obj", std::string("\x7f\x45\0\1\2\3\xff\xfe", 8), "cannot be read"},
       {"empty.obj", "", "is empty"},
       {"letters.obj", "v 0 0 0\nv 1 zero 0\n", "y of vertex 1 = zero, must be a number"},

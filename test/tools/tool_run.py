@@ -85,13 +85,16 @@ def box(y=1.5, z=2.0):
     return off(box_corners(1.0, y, z), BOX_FACES)
 
 
+def grid_faces(rows, columns):
+    """Quads between vertices in rows, each of which is a ring."""
+    return [[i * columns + k, i * columns + (k + 1) % columns, (i + 1) * columns + (k + 1) % columns, (i + 1) * columns + k]
+            for i in range(rows - 1) for k in range(columns)]
+
+
 def lathe(profile, num_sides):
     """A profile (radius, height) turned about z."""
     angles = 2 * np.pi * np.arange(num_sides) / num_sides
-    vertices = [(r * np.cos(a), r * np.sin(a), h) for r, h in profile for a in angles]
-    faces = [[i * num_sides + k, i * num_sides + (k + 1) % num_sides, (i + 1) * num_sides + (k + 1) % num_sides, (i + 1) * num_sides + k]
-             for i in range(len(profile) - 1) for k in range(num_sides)]
-    return off(vertices, faces)
+    return off([(r * np.cos(a), r * np.sin(a), h) for r, h in profile for a in angles], grid_faces(len(profile), num_sides))
 
 
 VASE = lathe([(0.001, 0), (0.5, 0), (0.8, 0.5), (0.9, 1.0), (0.7, 1.6), (0.3, 2.2), (0.3, 2.5), (0.45, 2.7)], 64)  # open at the top
@@ -147,3 +150,24 @@ def png(pixels):
 def png_size(path):
     """Width and height."""
     return struct.unpack(">II", Path(path).read_bytes()[16:24])
+
+
+def png_pixels(path):
+    """The pixels of a PNG file of 8 bits a channel, rows x columns x channels."""
+    content = Path(path).read_bytes()
+    width, height = png_size(path)
+    channels = {0: 1, 2: 3, 4: 2, 6: 4}[content[25]]
+    packed, at = b"", 8
+    while at < len(content):
+        size, kind = struct.unpack(">I4s", content[at:at + 8])
+        packed += content[at + 8:at + 8 + size] if kind == b"IDAT" else b""
+        at += 12 + size
+    rows = np.frombuffer(zlib.decompress(packed), np.uint8).reshape(height, -1)
+    pixels = np.zeros((height + 1, width + 1, channels), np.uint8)  # zeros above and at the left
+    for y, (kind, *row) in enumerate(rows, 1):
+        for x, value in enumerate(np.reshape(row, (width, channels)), 1):
+            left, up, corner = (pixels[at].astype(int) for at in ((y, x - 1), (y - 1, x), (y - 1, x - 1)))
+            distances = [abs(left + up - corner - other) for other in (left, up, corner)]
+            paeth = np.choose(np.argmin(distances, axis=0), (left, up, corner))
+            pixels[y, x] = value + (0, left, up, (left + up) // 2, paeth)[kind]
+    return pixels[1:, 1:]

@@ -1,0 +1,143 @@
+"""The tool of frames and poses, what it completes and what it makes symmetric."""
+import unittest
+
+import tool_run
+from tool_run import ToolTest, np
+
+SEAT, BACK = ((0, 0, 0), (1, 1, 0.2)), ((0, 0.9, 1.1), (0.8, 0.1, 0.9))  # center and half size; one plane of symmetry, x = 0
+CHAIR = tool_run.off(np.vstack([tool_run.box_corners(*half) + center for center, half in (SEAT, BACK)]),
+                     [[corner + first for corner in face] for first in (0, 8) for face in tool_run.BOX_FACES])
+
+
+class Align(ToolTest):
+    tool = "align"
+
+    def setUp(self):
+        super().setUp()
+        self.chair, self.box = self.write("chair.off", CHAIR), self.write("box.off", tool_run.box())
+
+    def scan(self):
+        """What a scanner sees of the chair, with normals that look to the scanner. Returns the file and where the chair stands."""
+        scan = self.report(self.chair, "seen.ply -direction -0.6,-1,0.7 -points 4000 -random_pose -seed 5", tool="scan")["scans"][0]
+        points = tool_run.xyz(tool_run.ply_points(self.folder / "seen.ply")[0])
+        points = points[np.isfinite(points).all(axis=1)]
+        normals = scan["viewpoint"] - points
+        normals /= np.linalg.norm(normals, axis=1, keepdims=True)
+        fields = "x:F y:F z:F normal_x:F normal_y:F normal_z:F label:U"
+        rows = [(*point, *normal, label) for label, (point, normal) in enumerate(zip(points, normals.astype(np.float32)))]
+        return self.write("scan.pcd", tool_run.pcd(fields, rows, scan["viewpoint"])), np.reshape(scan["transform"], (4, 4))
+
+    def points(self, name):
+        return tool_run.ply_points(self.folder / name)[0]
+
+    def assert_reflected(self, points, first):
+        """The points from the first one on are reflections of others in the plane x = 0 of the model."""
+        added = tool_run.xyz(points[first:])
+        of = tool_run.xyz(points)[points["reflected_of"][first:]] * (-1, 1, 1)
+        self.assertLess(np.linalg.norm(added - of, axis=1).max(), 0.1)
+
+    def test_turns_a_whole_into_its_frame(self):
+        found = self.report(self.box, "out.pcd")
+        self.assertIn("center", self.output)
+        np.testing.assert_allclose(found["center"], 0, atol=0.03)
+        turn = np.reshape(found["transform"], (4, 4))[:3, :3]
+        self.assertAlmostEqual(np.linalg.det(turn), 1, delta=1e-9)
+        self.assertGreater(abs(turn).max(axis=1).min(), np.cos(0.02), "axes of the box")
+        np.testing.assert_allclose(found["axes"], turn, atol=1e-9, err_msg="axes are the rows of the transform")
+        self.assertGreater(min(found["scores"]), 0.5)
+        self.assertEqual(found["revolution_axis"], -1)
+        self.assertEqual(tool_run.pcd_header(self.folder / "out.pcd")["POINTS"], ["10000"])
+        self.assertNotEqual(self.report(self.box, "-as_published")["scores"], found["scores"])
+
+    def test_keeps_coordinates_beyond_float_precision(self):
+        center = np.array([500000.5, 5000000.4, 100.3])
+        found = self.report(self.write("far.off", tool_run.off(tool_run.box_corners(0.5, 0.4, 0.3) + center, tool_run.BOX_FACES)), "out.ply")
+        np.testing.assert_allclose(found["center"], center, rtol=0, atol=0.01)
+        self.assertLess(np.linalg.norm((np.reshape(found["transform"], (4, 4)) @ (*center, 1))[:3]), 0.02, "of the input frame")
+        self.assertLess(np.linalg.norm(tool_run.xyz(self.points("out.ply")), axis=1).max(), 0.75, "half of the diagonal is 0.71")
+
+    def test_brings_a_scan_to_its_model(self):
+        scan, model = self.scan()
+        found = self.report(scan, "out.ply -target chair.off")
+        self.assertTrue(found["converged"])
+        transform = np.reshape(found["transform"], (4, 4))
+        error = transform @ model
+        self.assertGreater(np.trace(error[:3, :3]), 1 + 2 * np.cos(0.02), "the chair has no rotation of its own")
+        self.assertLess(np.linalg.norm(error[:3, 3]), 0.03)
+        self.assertLess(found["fitness"], 0.03 ** 2, "mean squared distance")
+        before, after = np.loadtxt(scan, skiprows=10), self.points("out.ply")
+        self.assertEqual(len(before), len(after))
+        turn = transform[:3, :3]
+        np.testing.assert_allclose(tool_run.xyz(after), before[:, :3] @ turn.T + transform[:3, 3], atol=1e-4)
+        np.testing.assert_allclose(np.stack([after["nx"], after["ny"], after["nz"]], axis=1), before[:, 3:6] @ turn.T, atol=1e-4)
+        np.testing.assert_array_equal(after["label"], before[:, 6], "other fields stay")
+        viewpoint = np.array(tool_run.pcd_header(scan)["VIEWPOINT"][:3], float)
+        self.run_tool(scan, "out.pcd -quiet -target chair.off")
+        moved = np.array(tool_run.pcd_header(self.folder / "out.pcd")["VIEWPOINT"][:3], float)
+        np.testing.assert_allclose(moved, turn @ viewpoint + transform[:3, 3], atol=1e-3)
+
+    def test_says_that_nothing_fits(self):
+        scan, _ = self.scan()
+        self.fails(1, "does not fit", scan, "never.pcd -quiet -target box.off -json report.json")
+        self.assertEqual((self.error.count("\n"), '"converged": false' in self.text("report.json")), (1, True), self.error)
+        self.assertFalse((self.folder / "never.pcd").exists())
+
+    def hidden(self, points, model, viewpoint):
+        """How many reflections of the points, in the plane of the chair, its scanner cannot see."""
+        eye, *points = np.linalg.solve(model, np.vstack([np.vstack([viewpoint, points]).T, np.ones(len(points) + 1)]))[:3].T
+        rays = np.array(points) * (-1, 1, 1) - eye
+        first = np.full(len(rays), np.inf)
+        for center, half in (SEAT, BACK):
+            a, b = ((np.array(center) + side * np.array(half) - eye) / rays for side in (-1, 1))
+            enters, leaves = np.minimum(a, b).max(axis=1), np.maximum(a, b).min(axis=1)
+            first = np.where(enters <= leaves, np.minimum(first, enters), first)
+        return (first < 0.99).sum()
+
+    def test_completes_a_scan_and_marks_what_it_adds(self):
+        scan, model = self.scan()
+        self.run_tool(scan, "out.ply -complete -target chair.off -html o.html")
+        self.assertIn("what completes it", self.text("o.html"))
+        before, after = np.loadtxt(scan, skiprows=10), self.points("out.ply")
+        viewpoint = np.array(tool_run.pcd_header(scan)["VIEWPOINT"][:3], float)
+        hidden = self.hidden(before[:, :3], model, viewpoint)
+        self.assertGreater(hidden, 100, "a side of it was hidden")
+        self.assertAlmostEqual(len(after) - len(before), hidden, delta=0.2 * hidden)
+        np.testing.assert_array_equal(after["reflected_of"][:len(before)], -1)
+        added = after["reflected_of"][len(before):]
+        self.assertGreaterEqual(added.min(), 0)
+        np.testing.assert_array_equal(after["label"][len(before):], added)
+        self.assert_reflected(after, len(before))
+
+    def test_makes_a_mesh_symmetric(self):
+        """A box whose right end stands 0.02 further out than its left one, about x = 0.01."""
+        corners = tool_run.box_corners(2, 1.5, 1)
+        corners[[1, 5], 0] = 2.02
+        mesh = self.write("m.off", tool_run.off(corners, tool_run.BOX_FACES))
+        self.write("l.txt", "# ends\n-2 0 0, 2 0 0\n0 1.5 0\n")
+        found = self.report(mesh, "s.ply -symmetrise mean -landmarks l.txt")["symmetrised"]
+        self.assertLess(found["deviation"], 1e-5 * 5)
+        self.assertLess(found["greatest_asymmetry"], 0.025)
+        self.assertEqual([len(found["landmarks"][key]) for key in ("paired", "midline")], [1, 1])
+        self.assertIn("from its own reflection, exact with -cut\nlandmarks: object asymmetry", self.output)
+        header, body = self.text("s.ply").split("end_header\n")
+        self.assertIn("element face 6\n", header)
+        self.assertIn("property float asymmetry\n", header)
+        self.assertTrue(np.isfinite(float(body.splitlines()[3].split()[3])))
+        self.run_tool(mesh, "c.ply -symmetrise mean -cut")
+        self.assertIn("element face 28\n", self.text("c.ply"), "two triangles of an end, twelve of four sides")
+        self.fails(2, ".ply", mesh, "s.pcd -symmetrise mean")
+        self.write("bad.txt", "1 2 3\n1 2\n")
+        self.fails(1, "bad.txt: line 2", mesh, "-symmetrise mean -landmarks bad.txt")
+        self.run_tool(mesh, "-complete -symmetrise mean", code=2)
+
+    def test_makes_a_cloud_symmetric(self):
+        scan, _ = self.scan()
+        self.run_tool(scan, "out.ply -symmetrise left -target chair.off")
+        points = self.points("out.ply")
+        half = len(points) // 2
+        np.testing.assert_array_equal(points["reflected_of"][half:], np.arange(half))
+        self.assert_reflected(points, half)
+
+
+if __name__ == "__main__":
+    unittest.main()

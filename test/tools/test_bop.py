@@ -1,0 +1,191 @@
+"""The tool of symmetries of object models: files of the BOP benchmark, of DOPE and of Isaac, and colors."""
+import json
+import unittest
+
+import tool_run
+from tool_run import ToolTest, np
+
+FEW = "-quiet -points 2000 -grid 32"
+
+
+def mug():
+    """A cup with a handle."""
+    around = np.arange(8) * np.pi / 4
+    handle = []
+    for along in np.linspace(-0.5, 0.5, 17) * np.pi:
+        r = 0.45 + 0.08 * np.cos(around)
+        handle += list(np.stack([0.7 + r * np.cos(along), 0.08 * np.sin(around), 0.8 + r * np.sin(along)], axis=1))
+    turns = np.arange(96) * np.pi / 48
+    cup = [(r * np.cos(a), r * np.sin(a), h) for r, h in ((0.001, 0), (0.7, 0), (0.75, 1.6)) for a in turns]
+    faces = [[len(cup) + corner for corner in face] for face in tool_run.grid_faces(17, 8)]
+    return tool_run.off(cup + handle, tool_run.grid_faces(3, 96) + faces)
+
+
+def cube(properties, size, more, comment=""):
+    """A cube as PLY whose sides have vertices of their own.
+
+    :param size: squares along an edge
+    :param more: what a vertex has besides its position, of its side, and u and v from 0 to 1 there
+    """
+    vertices, faces = [], []
+    for side in range(6):
+        normal, a = (-1) ** side * np.eye(3)[side // 2], np.eye(3)[(side // 2 + 1) % 3]
+        b = np.cross(normal, a)
+        for i in range(size + 1):
+            for k in range(size + 1):
+                u, v, first = i / size, k / size, len(vertices)
+                vertices.append((*normal + (2 * u - 1) * a + (2 * v - 1) * b, *more(side, u, v)))
+                if i < size and k < size:
+                    faces.append((4, first, first + size + 1, first + size + 2, first + 1))
+    header = (f"ply\nformat ascii 1.0\n{comment}element vertex {len(vertices)}\n" + "".join(f"property float {x}\n" for x in "xyz")
+              + "".join(f"property {one}\n" for one in properties)
+              + f"element face {len(faces)}\nproperty list uchar int vertex_indices\nend_header\n")
+    return header + "".join(" ".join(map(str, row)) + "\n" for row in vertices + faces)
+
+
+def colored_cube(has_red_side, names=("red", "green", "blue")):
+    """One side is red where it is told, all others are gray."""
+    return cube([f"uchar {name}" for name in names], 6,
+                lambda side, u, v: (200, 20, 20) if side == 4 and has_red_side else (120, 120, 120))
+
+
+def textured_cube(texture, is_printed):
+    """The sides show the white half of the picture, but one: that shows the whole picture if it is printed."""
+    return cube(("float texture_u", "float texture_v"), 1,
+                lambda side, u, v: (0.05 + 0.9 * u, 0.05 + ((1 if is_printed and side == 4 else 0.45) - 0.1) * v),
+                f"comment TextureFile {texture}\n")
+
+
+class Bop(ToolTest):
+    tool = "bop"
+
+    def setUp(self):
+        super().setUp()
+        self.box, self.vase = self.write("obj_000003.off", tool_run.box()), self.write("obj_000012.off", tool_run.VASE)
+
+    def test_describes_a_box_as_the_benchmark_does(self):
+        info = self.report(self.box, "-quiet")
+        self.assertEqual(list(info), ["3"])
+        box = info["3"]
+        self.assertEqual(box["diameter"], 2 * np.sqrt(1 + 1.5 ** 2 + 4), "of the vertices, exactly")
+        self.assertEqual([box[key + axis] for key in ("min_", "size_") for axis in "xyz"], [-1, -1.5, -2, 2, 3, 4])
+        self.assertNotIn("symmetries_continuous", box, "what there is none of is left out")
+        turns = np.reshape(box["symmetries_discrete"], (-1, 4, 4))
+        self.assertEqual(len(turns), 3)
+        for turn in turns:
+            np.testing.assert_array_equal(turn[3], (0, 0, 0, 1), "row by row")
+            self.assertAlmostEqual(np.linalg.det(turn), 1, delta=1e-9)
+            self.assertAlmostEqual(np.trace(turn), 0, delta=1e-9, msg="by pi")
+            np.testing.assert_allclose(abs(turn), np.eye(4), atol=0.02, err_msg="about a coordinate axis")
+
+    def test_gives_bodies_of_revolution_an_axis_and_cylinders_a_flip(self):
+        vase = self.report(self.vase, "-quiet")["12"]
+        self.assertNotIn("symmetries_discrete", vase)
+        self.assertEqual(len(vase["symmetries_continuous"]), 1)
+        self.assertAlmostEqual(abs(vase["symmetries_continuous"][0]["axis"][2]), 1, delta=1e-4)
+        np.testing.assert_allclose(vase["symmetries_continuous"][0]["offset"][:2], 0, atol=0.01)
+        cylinder = self.report(self.write("can.off", tool_run.CYLINDER), "-quiet")["1"]
+        self.assertEqual([len(cylinder[key]) for key in ("symmetries_continuous", "symmetries_discrete")], [1, 1])
+        self.assertAlmostEqual(cylinder["symmetries_discrete"][0][10], -1, delta=1e-3, msg="end over end")
+
+    def test_gives_a_sphere_an_axis_and_tilts_and_an_asymmetric_model_nothing(self):
+        sphere = self.report(self.write("ball.off", tool_run.SPHERE), "-quiet -sphere_angle 90")["1"]
+        self.assertEqual([len(sphere[key]) for key in ("symmetries_continuous", "symmetries_discrete")], [1, 1])
+        self.assertAlmostEqual(sphere["symmetries_discrete"][0][10], -1, delta=1e-9, msg="upside down")
+        tetrahedron = self.report(self.write("m7.off", tool_run.TETRAHEDRON), "-quiet")["7"]
+        self.assertFalse({"symmetries_continuous", "symmetries_discrete"} & set(tetrahedron))
+        self.assertIn("group C1", self.output)
+
+    def test_explains_what_fails(self):
+        self.run_tool(self.write("mug.off", mug()), "-quiet -explain -failures failures")
+        self.assertIn("  tolerance ", self.output)
+        self.assertIn("  rejected ", self.output)
+        points, _ = tool_run.ply_points(self.folder / "failures/mug_rejected_1.ply")
+        self.assertEqual(len(points), 20_000)
+        self.assertIn("red", points.dtype.names)
+
+    def test_numbers_models_as_their_files_or_else_by_the_first_free_number(self):
+        zero, plain = self.write("obj_000000.off", tool_run.box()), self.write("vase.off", tool_run.VASE)
+        info = self.report(self.vase, self.box, plain, zero, "-quiet -points 1000")
+        self.assertEqual(list(info), ["0", "1", "3", "12"], "by number")
+        self.assertEqual(self.text("report.json").count("\n"), 6, "a line for each")
+        self.fails(2, "both model 3", self.box, self.write("copy_3.off", tool_run.box()))
+
+    def test_takes_folders(self):
+        for name, content in (("obj_000002.off", tool_run.box()), ("obj_000010.off", "OFF\n1 0 0\n0 0 0\n"),
+                              ("obj_000011.off", tool_run.box()), ("other.off", tool_run.box()), ("readme.txt", "no model")):
+            self.write(f"models/{name}", content)
+        self.fails(1, "obj_000010.off", "models -quiet -points 1000 -grid 32 -json report.json")  # it has no surface
+        self.assertEqual(self.error.count("\n"), 1, self.error)
+        self.assertEqual(set(json.loads(self.text("report.json"))), {"2", "11"})
+        (self.folder / "empty").mkdir()
+        self.fails(1, "holds no .pcd", "empty")
+
+    def check(self, given, *models):
+        """Compares models with a file. Returns the comparison."""
+        path = given if isinstance(given, str) else self.write("given.json", json.dumps(given)).name
+        self.run_tool(*models, FEW, f"-check {path} -report check.json")
+        return json.loads(self.text("check.json"))
+
+    def test_says_where_a_file_disagrees_with_the_surface(self):
+        """The box has D2; its file lists one of three half turns."""
+        half_turn = [1, 0, 0, 0, 0, -1, 0, 0, 0, 0, -1, 0, 0, 0, 0, 1]
+        given = {"3": {"symmetries_discrete": [half_turn]}, "12": {"symmetries_continuous": [{"axis": [0, 0, 1], "offset": [0, 0, 0]}]}}
+        found = self.check(given, self.box, self.vase, self.write("plain.off", tool_run.box()))
+        self.assertIn("model 12     file Cinf  surface Cinf  agree", self.output)
+        self.assertIn("1 of 2 models disagree", self.output)
+        self.assertEqual((found["missing"], found["disagreeing"]), (["1"], 1))
+        box = found["models"]["3"]
+        self.assertEqual((box["file"], box["surface"], len(box["disagreements"])), ("C2", "D2", 2), "axes y and z")
+        for row in box["disagreements"]:
+            self.assertEqual(row["says"], "surface only")
+            self.assertAlmostEqual(row["angle"], 180, delta=1e-6)
+            self.assertGreater(row["share"], 0.97)
+            self.assertLess(row["deviation_of_diameter"], 0.01)
+        self.run_tool(self.box, "-report check.json", code=2)  # nothing to compare with
+
+    def test_shows_that_a_turn_in_a_file_is_none(self):
+        given = {"symmetries_discrete": [[0, -1, 0, 0, 1, 0, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1]]}
+        box = self.check(given, self.box)["models"]["3"]
+        self.assertEqual((box["file"], box["remark"]), ("C4", "lists 1 of the 3 rotations of C4"))
+        row = box["disagreements"][0]
+        # A quarter turn about z swaps sides of 2 and 3: the long sides, 2 x 2 x 4 of the area 52, land 0.5 inside or outside.
+        self.assertEqual(row["says"], "file only")
+        self.assertLess(row["share"], 0.5)
+        self.assertGreater(row["deviation"], 0.3)
+        self.run_tool(self.box, self.vase, "-quiet -check given.json", code=1)  # a file of one model
+
+    def test_agrees_with_what_it_wrote_in_every_format(self):
+        self.run_tool(self.box, FEW, "-json bop.json -isaac isaac.yaml -dope dope")
+        self.assertIn('"3": ["x_180", "y_180", "z_180"]  # D2', self.text("isaac.yaml"))
+        for path in ("bop.json", "isaac.yaml", "dope/obj_000003/model_info.json"):
+            self.check(path, self.box)
+            self.assertIn("0 of 1 models disagree", self.output, path)
+
+    def test_asks_for_colors_only_when_it_is_told(self):
+        plain, red = self.write("obj_1.ply", colored_cube(False)), self.write("obj_2.ply", colored_cube(True))
+        self.run_tool(red, FEW)
+        self.assertIn("1 of 1 models have colors, which were not looked at", self.output)
+        self.assertIn("obj_2.ply  group O", self.output)
+        self.run_tool(plain, red, FEW, "-colour")
+        self.assertNotIn("not looked at", self.output)
+        for said in ("obj_1.ply  group O", "obj_2.ply  group C4", "without its colors the group is O"):
+            self.assertIn(said, self.output)
+        # The same red cube with its colors as coordinates in a texture that it does not name.
+        self.run_tool(self.write("obj_3.ply", colored_cube(True, ("texture_u", "texture_v", "other"))), FEW, "-colour")
+        self.assertIn("only those of vertices, and textures that PLY files name, can be read", self.output)
+
+    def test_reads_the_texture_that_a_model_of_the_benchmark_names(self):
+        pixels = np.full((64, 64, 3), 255)
+        pixels[:32] = (255, 0, 0)
+        self.write("print.png", tool_run.png(pixels))
+        white, red = (self.write(f"obj_{k + 1}.ply", textured_cube("print.png", k == 1)) for k in range(2))
+        self.run_tool(white, red, FEW, "-colour")
+        self.assertNotIn("not looked at", self.output)
+        self.assertIn("obj_1.ply  group O", self.output)
+        self.assertIn("obj_2.ply  group C1", self.output, "v runs from bottom to top: half of that side is red")
+        self.fails(1, "missing.png", self.write("obj_3.ply", textured_cube("missing.png", True)), "-quiet -colour")
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,168 @@
+"""The command line of all tools: flags, their help and errors, and many inputs."""
+import csv
+import io
+import json
+import unittest
+
+import tool_run
+from tool_run import ToolTest
+
+
+class Flags(ToolTest):
+    tool = "planes"
+
+    def setUp(self):
+        super().setUp()
+        self.box = self.write("box.off", tool_run.box())
+
+    def test_single_and_double_dash_mean_the_same(self):
+        scans = []
+        for k, flags in enumerate(("-noise 0.01 -seed 7", "--noise 0.01 --seed 7", "-seed 8 -noise 0.01")):
+            self.run_tool("box.off", flags, f"{k}.pcd -points 500 -quiet", tool="scan")
+            scans.append((self.folder / f"{k}.pcd").read_bytes())
+        self.assertEqual(scans[0], scans[1])
+        self.assertNotEqual(scans[0], scans[2])
+
+    def test_help_shows_flags_with_their_defaults_and_an_example(self):
+        for flag in ("-h", "-help", "--help"):
+            self.run_tool(flag, tool="map")
+            for part in ("Usage: pcl_symmetry_map input [output]", "-threads N", "-viewpoint auto|none|X,Y,Z", "Example:"):
+                self.assertIn(part, self.output)
+            self.assertNotIn(" --", self.output)
+            text = " ".join(self.output.split())
+            for default in ("of the distance field (64)", "0 = all (0)", "input frame (auto)", "over a mesh (10000)", "random streams (0)"):
+                self.assertIn(default, text)
+
+    def test_negative_vectors_are_values_and_viewpoints_have_words(self):
+        flags = "-quiet -points 500 -viewpoint"
+        given = self.report(self.box, flags, "-10,20,-0.25")["viewpoint"]
+        self.assertEqual((given["from"], [round(x, 9) for x in given["position"]]), ("given", [-10, 20, -0.25]))
+        for word in ("none", "auto"):
+            self.assertEqual(self.report(self.box, flags, word)["viewpoint"], {"from": "none"})
+
+    def test_common_flags_reach_the_library(self):
+        answers = [self.report(self.box, "-quiet -points 500", flags, tool="map") for flags in
+                   ("", "", "-seed 4", "-grid 32", "-sigma 0.5", "-threads 1")]
+        self.assertEqual({answer["num_points"] for answer in answers}, {500})
+        found = [(answer["least"], answer["greatest"]) for answer in answers]
+        self.assertEqual((found[1], found[5]), (found[0], found[0]), "the same bytes for any number of threads")
+        self.assertEqual(len(set(found)), 4, "others for another seed, grid and width")
+
+    def test_what_is_wrong_is_named_with_its_rule(self):
+        for flags, said in (("-viewpoint never", "-viewpoint = never, must be auto, none or X,Y,Z"),
+                            ("-viewpoint 1,2", "-viewpoint = 1,2, must be auto, none or X,Y,Z"),
+                            ("-threads -1", "-threads = -1, must be >= 0 and <= 4096"),
+                            ("-tolerance 0", "-tolerance = 0, must be > 0 and <= 0.1"),
+                            ("-tolerance nan", "-tolerance = nan, must be finite"),
+                            ("-tolerance 0.5x", "-tolerance = 0.5x, must be a number"),
+                            ("-seed 1.5", "-seed = 1.5, must be a whole number"),
+                            ("-seed -3", "-seed = -3, must be >= 0"),
+                            ("-seed 99999999999999999999", "-seed = 99999999999999999999, is too large"),
+                            ("-method none", "-method = none, must be sampled|exact|rotational|voting"),
+                            ("-ground 1,x,0,0", "-ground = x, must be a number"),
+                            ("-sead 1", "unknown flag -sead, did you mean -seed?"),
+                            ("--bogus", "unknown flag --bogus (see"),
+                            ("-seed", "-seed"), ("-seed 1 -seed 2", "-seed"), ("-see 1", "-see")):  # abbreviations are not guessed
+            self.fails(2, "pcl_symmetry_planes: " if said.startswith("-see") else f"pcl_symmetry_planes: {said}", self.box, flags)
+            self.assertIn(said, self.error)
+            self.assertTrue(self.error.endswith("(see pcl_symmetry_planes -h)\n"), self.error)
+        self.fails(2, "missing argument 'input'", tool="map")
+        self.fails(2, "unexpected argument 'c'", "a b c", tool="map")
+        self.fails(2, "-direction = 1,nan,0, must be three finite numbers X,Y,Z", "a b.pcd -direction 1,nan,0", tool="scan")
+        self.fails(2, "-up = 0,0,0, must not be zero", "a -up 0,0,0", tool="segment")
+        self.fails(1, "missing.off: no such file", "missing.off -png OUT.PNG")  # the name of the picture is one
+
+    def test_standard_input_is_known_by_its_content(self):
+        binary_stl = bytes(80).replace(b"\0", b"x") + b"\1\0\0\0" + bytes(50)
+        for content, said in ((b"# .PCD v0.7\nVERSION", "PCD header"), (b"VERSION 0.7\n", "PCD header"),
+                              (b"ply\r\nformat", "malformed PLY header line"), (b"# a mesh\nv 1 2 x\n", "z of vertex 0 = x"),
+                              (b"COFF\n1 0 0\n", "x of vertex 0 is missing"), (b"solid cube\n", "has neither faces nor points"),
+                              (b"SOLID cube\n", "has neither faces nor points"), (binary_stl, "no polygon has an area"), (b"glTF....", "as glb"),
+                              (b"\n# a b c\n-1.5 2\n", "line 3 = -1.5 2, must hold three"), (b"//X Y\n1 2\n", "line 2 = 1 2, must hold three"),
+                              (b"hello", "is of no known kind"), (b"", "is empty")):
+            self.fails(1, f"standard input: {said}" if said.startswith("is ") else said, "-", input=content)
+
+
+class ManyInputs(ToolTest):
+    """Lines of JSON and rows of a table, in the order of the inputs."""
+    tool = "planes"
+    flags = "-quiet -points 500"
+
+    def lines(self, name="out.jsonl"):
+        return [json.loads(line) for line in self.text(name).splitlines()]
+
+    def test_are_written_in_their_order(self):
+        paths = [self.write(name, tool_run.box(1.5, z)) for z, name in enumerate(("a.off", 'b "2", new.off', "c.off"), 2)]
+        for threads in (1, 3):
+            self.run_tool(*paths, self.flags, f"-json out.jsonl -csv out.csv -threads {threads}")
+            self.assertEqual([line["file"] for line in self.lines()], list(map(str, paths)))
+            header, *rows = csv.reader(io.StringIO(self.text("out.csv")))
+            self.assertEqual(header[:3], ["file", "number", "kind"])
+            planes = [(line["file"], plane) for line in self.lines() for plane in line["planes"]]
+            self.assertEqual([row[0] for row in rows], [file for file, _ in planes])
+            for row, (_, plane) in zip(rows, planes, strict=True):
+                self.assertEqual([float(number) for number in row[3:7]], plane["coefficients"])
+                self.assertEqual(row[7:13], [""] * 6, "a plane has no point and direction")
+
+    def test_resume_where_they_were_interrupted(self):
+        names = ("a.off", "b, or not.off", "c.off", "d.off")
+        paths = [self.write(name, tool_run.box(1.5, z)) for z, name in enumerate(names, 2)]
+        broken = paths[2].read_bytes()
+        paths[2].write_text("no shape")
+        arguments = (*paths, self.flags, "-json out.jsonl -csv out.csv")
+        self.run_tool(*arguments, code=1)
+        whole = self.text("out.jsonl")
+        rows = self.text("out.csv").count("\n")
+        self.assertEqual(rows, 1 + 3 * 3)
+        self.write("out.jsonl", whole[:-4])  # killed while it wrote the last line
+        paths[2].write_bytes(broken)
+        self.run_tool(*arguments, "-resume")
+        kept = whole.splitlines()[:2]
+        self.assertEqual(self.text("out.jsonl").splitlines()[:2], kept, "c failed and d was torn")
+        self.assertEqual([line["file"] for line in self.lines()], list(map(str, paths)))
+        self.assertEqual(self.text("out.csv").count("\n"), 1 + 4 * 3)
+        done = self.text("out.jsonl")
+        self.run_tool(*arguments, "-resume")
+        self.assertEqual(self.text("out.jsonl"), done, "nothing is left to do")
+        self.write("out.jsonl", '{"shapes": []}\n')
+        self.fails(1, "holds a line that is no result of this tool", *arguments, "-resume")
+        self.assertEqual(self.text("out.jsonl"), '{"shapes": []}\n', "something else is not overwritten")
+
+    def test_more_than_may_wait_for_an_early_one(self):
+        """Nothing hangs, and the order is that of the inputs; errors are named at the end, a thousand of them."""
+        first = self.write("first.off", tool_run.VASE)
+        names = [str(first), *(str(self.write(f"{i}.xyz", "1 2 3\n")) for i in range(1, 2000))]
+        self.write("list", "\n".join(names))
+        for kept in (0, 1500):
+            self.write("out.jsonl", "".join(json.dumps({"file": name}) + "\n" for name in names[:kept]))
+            self.run_tool("@list -quiet -threads 4 -json out.jsonl", "-resume" if kept else "", code=1)
+            self.assertEqual([line["file"] for line in self.lines()], names)
+            self.assertEqual([sum("error" in line for line in self.lines()), self.error.count("\n")],
+                             [1999 if not kept else 500, 1001 if not kept else 500])
+
+    def test_names_that_clash_are_refused(self):
+        for name in ("a.off", "b.off", "more/a.off"):
+            self.write(name, tool_run.box())
+        self.fails(2, "with several inputs only -json and -csv can be -", "a.off b.off -support -")
+        self.fails(2, "only one output can be -", "a.off b.off -json - -csv -")
+        self.fails(1, "more/a.off: has the name of a.off, names must differ", "a.off b.off more/a.off -support {}.pcd")
+        self.fails(2, "-resume needs several inputs", "a.off -resume -json out.jsonl")
+
+    def test_are_files_folders_patterns_and_lists(self):
+        for name in ("in/b.pcd", "in/a.PLY", "in/c.txt", "in/d.glb", "in/e.XYZ", "in/a.or", "in/pcd"):
+            self.write(name, "x")
+        self.write("list", "# comment\nin/c.txt\n\n  missing.pcd \n")
+        folder = [f"in/{name}" for name in ("a.PLY", "b.pcd", "d.glb", "e.XYZ")]
+        for arguments, files in (("in", folder), ("in/*.txt in/c.txt", ["in/c.txt", "in/c.txt"]),
+                                 ("in/c.txt in in/c.txt", ["in/c.txt", *folder, "in/c.txt"]), ("i*", folder),
+                                 ("@list -", ["in/c.txt", "missing.pcd", "-"])):
+            self.run_tool(arguments, "-quiet -json out.jsonl", code=1, input=b"")
+            self.assertEqual([line["file"] for line in self.lines()], files)
+        self.fails(1, "*.stl: no file has such a name", "in/*.stl")
+        self.fails(1, "nowhere: no such file", "@nowhere")
+        (self.folder / "empty").mkdir()
+        self.fails(1, "empty: holds no file of type .pcd", "empty")
+
+
+if __name__ == "__main__":
+    unittest.main()

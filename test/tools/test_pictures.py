@@ -1,0 +1,100 @@
+"""Pictures and pages that tools write, with and without a display."""
+import json
+import os
+import unittest
+
+import tool_run
+from tool_run import ToolTest, np
+
+
+class Pages(ToolTest):
+    tool = "planes"
+
+    def scene(self, page):
+        """The JSON in a page, its arrays of numbers decoded to their sizes in bytes."""
+        text = self.text(page).split('id="scene">')[1].split("</script>")[0]
+        return json.loads(text)
+
+    @staticmethod
+    def num_bytes(text):
+        """Bytes that a base64 text holds."""
+        return len(text) // 4 * 3 - text.count("=")
+
+    def test_hold_everything_in_little_room(self):
+        # A name that would end the script of the page.
+        path = self.write("a </script>.off", tool_run.box())
+        self.run_tool(path, "-quiet -html a.html")
+        page = self.text("a.html")
+        self.assertLess(len(page), 1_500_000)
+        self.assertTrue(page.startswith("<!DOCTYPE html>"))
+        self.assertIn("The MIT License", page, "the license of three.js goes with it")
+        for outside in ("src=", "href=", "@import", 'fetch("http'):
+            self.assertNotIn(outside, page, "nothing comes from elsewhere")
+        self.assertEqual(page.count("</script>"), 3)
+        scene = self.scene("a.html")
+        self.assertEqual((scene["title"], scene["text"]), (str(path), self.output))
+        self.assertEqual([self.num_bytes(scene[key]) for key in ("points", "normals")], [120_000, 30_000])
+        self.assertEqual(len(scene["panels"]), 3)
+        for k, panel in enumerate(scene["panels"], 1):
+            self.assertTrue(panel["label"].startswith(f"plane {k} (symmetry): "), panel["label"])
+            self.assertEqual(self.num_bytes(panel["point_colors"]), 30_000)
+            self.assertEqual(len(panel["planes"][0]["corners"]), 4)
+        self.run_tool(self.write("vase.off", tool_run.VASE), "-quiet -html v.html")
+        self.assertEqual(len(self.scene("v.html")["panels"][0]["axes"][0]["ends"]), 2)
+
+    def test_thin_large_clouds_and_leave_out_what_is_not_finite(self):
+        points = np.random.default_rng(1).normal(size=(450_000, 3)).astype("<f4")
+        points /= np.linalg.norm(points, axis=1, keepdims=True)
+        points[0, 0] = np.nan
+        header = tool_run.pcd("x:F y:F z:F", []).replace("WIDTH 0", "WIDTH 450000").replace("POINTS 0", "POINTS 450000")
+        cloud = self.write("a.pcd", header.replace("DATA ascii", "DATA binary").encode() + points.tobytes())
+        self.run_tool(cloud, "-quiet -html a.html")
+        self.assertEqual(self.num_bytes(self.scene("a.html")["points"]), 12 * 150_000, "every third")
+
+    def test_show_the_parts_of_a_mesh(self):
+        self.run_tool(self.write("box.off", tool_run.box()), "-quiet -parts 3 -html a.html", tool="segment")
+        page = self.scene("a.html")
+        num_triangles = 6 * 2
+        self.assertEqual(self.num_bytes(page["mesh"]), 36 * num_triangles)
+        self.assertEqual(self.num_bytes(page["panels"][0]["mesh_colors"]), 9 * num_triangles)
+        self.assertFalse(page["panels"][0]["show_points"])
+        self.assertEqual([len(panel["segments"]) for panel in page["panels"]], [3, 1, 1, 1], "a swatch for each part")
+
+
+class Pictures(ToolTest):
+    tool = "viewer"
+
+    def setUp(self):
+        super().setUp()
+        self.box = self.write("box.off", tool_run.box(1.4))
+        self.no_display = {key: value for key, value in os.environ.items() if key != "DISPLAY"}
+
+    def test_are_made_without_a_screen(self):
+        pictures = set()
+        for keys in ("", "-keys n,o,h", "-keys i,i", "-keys c -parts 2"):
+            self.run_tool(self.box, "-quiet -symmetries -width 320 -height 240 -screenshot a.png", keys, env=self.no_display)
+            self.assertEqual(tool_run.png_size(self.folder / "a.png"), (320, 240))
+            pictures.add((self.folder / "a.png").read_bytes())
+        self.assertEqual(len(pictures), 4)
+
+    def test_hold_panels_of_several_scenes(self):
+        self.run_tool(self.box, "-quiet -points 2000 -size 100 -png views.png -icon best.png", tool="viewpoint")
+        self.assertEqual([tool_run.png_size(self.folder / name) for name in ("views.png", "best.png")], [(300, 100), (100, 100)])
+        self.assertEqual(sorted(path.name for path in self.folder.iterdir()), ["best.png", "box.off", "views.png"])
+        best, *panels = (tool_run.png_pixels(self.folder / name) for name in ("best.png", "views.png"))
+        score, again, worst = np.split(panels[0], 3, axis=1)
+        for picture in (best, score, again, worst):
+            self.assertGreater(np.unique(picture.reshape(-1, picture.shape[2]), axis=0).shape[0], 10, "not blank")
+        self.assertTrue((again != worst).any() and (score != again).any())
+
+    def test_say_why_nothing_can_be_drawn(self):
+        self.fails(1, "there is no display", self.box, env=self.no_display)
+        self.assertIn("-screenshot FILE needs none", self.error)
+        self.fails(2, "there is no key F7", self.box, "-screenshot a.png -keys F7", env=self.no_display)
+        for tool, flags in (("planes", "-png a.png"), ("viewer", "-screenshot a.png")):
+            self.fails(1, "xvfb-run is missing", self.box, "-quiet", flags, tool=tool, env={**self.no_display, "PATH": "/nowhere"})
+            self.assertEqual([path.name for path in self.folder.iterdir()], ["box.off"])
+
+
+if __name__ == "__main__":
+    unittest.main()
