@@ -133,19 +133,6 @@ CommandLine& CommandLine::number(const std::string& name, std::uint64_t& value, 
   });
 }
 
-CommandLine& CommandLine::numbers(const std::string& name, std::vector<double>& values, const Range& range,
-                                  const std::string& help) {
-  std::vector<std::string> defaults;
-  for (const double value : values) defaults.push_back(shortest(value));
-  return add(name, "A,B,...", help + " (" + boost::algorithm::join(defaults, ",") + ")",
-             [&values, range, name](const std::string& text) { values = parseNumbers("-" + name, text, range); });
-}
-
-CommandLine& CommandLine::vector(const std::string& name, std::optional<Eigen::Vector3d>& value,
-                                 const std::string& help) {
-  return add(name, "X,Y,Z", help, [&value, name](const std::string& text) { value = parseVector("-" + name, text); });
-}
-
 CommandLine& CommandLine::direction(const std::string& name, std::optional<Eigen::Vector3d>& value,
                                     const std::string& help) {
   return add(name, "X,Y,Z", help, [&value, name](const std::string& text) {

@@ -101,10 +101,6 @@ public:
   CommandLine& number(const std::string& name, int& value, const Range& range, const std::string& help);
   CommandLine& number(const std::string& name, std::optional<int>& value, const Range& range, const std::string& help);
   CommandLine& number(const std::string& name, std::uint64_t& value, const std::string& help);
-  /// A list "A,B,C" of one number or more, which replaces the default as a whole.
-  CommandLine& numbers(const std::string& name, std::vector<double>& values, const Range& range,
-                       const std::string& help);
-  CommandLine& vector(const std::string& name, std::optional<Eigen::Vector3d>& value, const std::string& help);
   /// A vector that must not be zero.
   CommandLine& direction(const std::string& name, std::optional<Eigen::Vector3d>& value, const std::string& help);
   /// A plane a x + b y + c z + d = 0.

@@ -35,6 +35,17 @@ std::string cellOf(const nlohmann::json& value) {
   return "\"" + boost::algorithm::replace_all_copy(text, "\"", "\"\"") + "\"";
 }
 
+/// \return the first cell of a line of comma-separated values.
+std::string firstCell(const std::string& line) {
+  if (line.empty() || line.front() != '"') return line.substr(0, line.find(','));
+  std::string cell;
+  for (std::size_t i = 1; i < line.size(); ++i) {
+    if (line[i] == '"' && (i + 1 == line.size() || line[++i] != '"')) break;
+    cell += line[i];
+  }
+  return cell;
+}
+
 std::string stemOf(const std::string& path) {
   return isStandardStream(path) ? "stdin" : boost::filesystem::path(path).stem().string();
 }
@@ -325,16 +336,6 @@ std::string csvLine(const std::vector<nlohmann::json>& cells) {
   std::string line;
   for (const nlohmann::json& cell : cells) line += (line.empty() ? "" : ",") + cellOf(cell);
   return line + "\n";
-}
-
-std::string firstCell(const std::string& line) {
-  if (line.empty() || line.front() != '"') return line.substr(0, line.find(','));
-  std::string cell;
-  for (std::size_t i = 1; i < line.size(); ++i) {
-    if (line[i] == '"' && (i + 1 == line.size() || line[++i] != '"')) break;
-    cell += line[i];
-  }
-  return cell;
 }
 
 std::string FileJob::output(const std::string& pattern) const {

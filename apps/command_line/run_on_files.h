@@ -79,9 +79,6 @@ private:
 /// \return a line of comma-separated values (RFC 4180) that ends with a line feed.
 std::string csvLine(const std::vector<nlohmann::json>& cells);
 
-/// \return the first cell of such a line.
-std::string firstCell(const std::string& line);
-
 /// \param columns of the CSV table, after "file".
 /// \param analyze called once for each input, from several threads at once; throws what stops this input.
 /// \return exit status of the tool: 1 if an input failed.
