@@ -4,11 +4,12 @@
 #include <pybind11/stl.h>
 
 #include <algorithm>
-#include <array>
 #include <memory>
 #include <optional>
 #include <stdexcept>
 #include <string>
+#include <tuple>
+#include <utility>
 #include <vector>
 
 #include "core/detection/plane_decision.h"
@@ -23,104 +24,43 @@ namespace pcl_symmetry::python {
 
 namespace {
 
-struct PlaneRow {
-  double coefficients[4];
-  std::int32_t kind;
-  bool flat;
-  double confidence, share, double_share, unknown, score, own_score, support, conflict, baseline, hold, spacing,
-      roughness, tolerance, share_unit;
-  double terms[7];
-};
+using Columns = std::vector<std::pair<std::string, std::string>>;  ///< names, and types as NumPy has them
 
-struct TurnRow {
-  double point[3], direction[3];
-  std::int32_t fold, kind;
-  double confidence, support, off, far, halfway, grown, hold, planes_off, beside;
-  double terms[7];
-};
-
-struct FrameRow {
-  double constant, value, first_score, contact, principal_angle, best, other_scores, best_score;
-};
-
-struct MergeRow {
-  std::int32_t into, from;
-  double log_odds, area_into, area_from;
-  double cues[kNumCues];
-};
-
-template <typename Values>
-void copyTo(double* row, const Values& values) {
-  std::copy(values.begin(), values.end(), row);
+/// \param rows tuples of a value for each column.
+template <typename Rows>
+py::array arrayOfRows(const Rows& rows, const Columns& columns) {
+  const py::module_ numpy = py::module_::import("numpy");
+  return numpy.attr("array")(rows, numpy.attr("dtype")(columns, py::arg("align") = true));
 }
 
-/// Makes the types of the rows known to NumPy, once: at the first row, as that imports NumPy.
-bool registerRows() {
-  PYBIND11_NUMPY_DTYPE(PlaneRow, coefficients, kind, flat, confidence, share, double_share, unknown, score, own_score,
-                       support, conflict, baseline, hold, spacing, roughness, tolerance, share_unit, terms);
-  PYBIND11_NUMPY_DTYPE(TurnRow, point, direction, fold, kind, confidence, support, off, far, halfway, grown, hold,
-                       planes_off, beside, terms);
-  PYBIND11_NUMPY_DTYPE(FrameRow, constant, value, first_score, contact, principal_angle, best, other_scores,
-                       best_score);
-  PYBIND11_NUMPY_DTYPE(MergeRow, into, from, log_odds, area_into, area_from, cues);
-  return true;
+/// Kinds have terms of their own, at most seven.
+std::vector<double> padded(std::vector<double> terms) {
+  terms.resize(7);
+  return terms;
 }
 
-void needRows() {
-  static const bool is_done = registerRows();
-  (void)is_done;
+auto rowOf(const JudgedPlane& judged) {
+  const PlaneEvidence& e = judged.evidence;
+  PlaneEvidence further = e;
+  further.further = true;
+  return std::make_tuple(judged.plane.coefficients(), static_cast<int>(e.kind), e.flat, judged.plane.confidence,
+                         e.share, e.double_share, e.unknown, e.score, e.own_score, e.support, e.conflict, e.baseline,
+                         e.hold, e.spacing, e.roughness, e.tolerance, shareUnit(e), padded(logOddsTerms(further)));
 }
 
-template <typename Row>
-py::array arrayOfRows(const std::vector<Row>& rows) {
-  needRows();
-  return py::array_t<Row>(static_cast<py::ssize_t>(rows.size()), rows.data());
-}
-
-PlaneRow rowOf(const JudgedPlane& judged) {
-  PlaneEvidence e = judged.evidence;
-  PlaneRow row{};
-  const Eigen::Vector4d coefficients = judged.plane.coefficients();
-  std::copy(coefficients.data(), coefficients.data() + 4, row.coefficients);
-  row.kind = static_cast<std::int32_t>(e.kind);
-  row.flat = e.flat;
-  row.confidence = judged.plane.confidence;
-  row.share = e.share;
-  row.double_share = e.double_share;
-  row.unknown = e.unknown;
-  row.score = e.score;
-  row.own_score = e.own_score;
-  row.support = e.support;
-  row.conflict = e.conflict;
-  row.baseline = e.baseline;
-  row.hold = e.hold;
-  row.spacing = e.spacing;
-  row.roughness = e.roughness;
-  row.tolerance = e.tolerance;
-  row.share_unit = shareUnit(e);
-  e.further = true;
-  copyTo(row.terms, logOddsTerms(e));
-  return row;
-}
-
-TurnRow rowOf(const JudgedTurn& judged) {
+auto rowOf(const JudgedTurn& judged) {
   const SymmetryTurn& turn = judged.turn;
-  TurnRow row{};
-  std::copy(turn.point.data(), turn.point.data() + 3, row.point);
-  std::copy(turn.direction.data(), turn.direction.data() + 3, row.direction);
-  row.fold = turn.fold;
-  row.kind = static_cast<std::int32_t>(kindOf(turn));
-  row.confidence = turn.confidence;
-  row.support = turn.support;
-  row.off = turn.off;
-  row.far = turn.far;
-  row.halfway = turn.halfway;
-  row.grown = judged.signs.grown;
-  row.hold = judged.signs.hold;
-  row.planes_off = judged.signs.planes_off;
-  row.beside = judged.signs.beside;
-  copyTo(row.terms, turnOddsTerms(turn, judged.signs));
-  return row;
+  const TurnSigns& signs = judged.signs;
+  return std::make_tuple(turn.point, turn.direction, turn.fold, static_cast<int>(kindOf(turn)), turn.confidence,
+                         turn.support, turn.off, turn.far, turn.halfway, signs.grown, signs.hold, signs.planes_off,
+                         signs.beside, padded(turnOddsTerms(turn, signs)));
+}
+
+template <typename Judged>
+auto rowsOf(const std::vector<Judged>& all) {
+  std::vector<decltype(rowOf(all[0]))> rows;
+  for (const Judged& judged : all) rows.push_back(rowOf(judged));
+  return rows;
 }
 
 /// Small patches of a mesh, and their merges by any weights.
@@ -145,18 +85,22 @@ public:
       throw std::invalid_argument("weights = " + std::to_string(given->size()) + " numbers, must be " +
                                   std::to_string(weights.size()));
     if (given) std::copy(given->begin(), given->end(), weights.begin());
-    std::vector<MergeRow> rows;
+    std::vector<std::tuple<int, int, double, double, double, Cues>> rows;
     {
       const py::gil_scoped_release release;
       Regions regions(evidence_);
       for (const Merge& merge : mergeRegions(regions, weights)) {
-        MergeRow row{merge.into, merge.from, merge.log_odds, regions.area(merge.into), regions.area(merge.from), {}};
-        copyTo(row.cues, regions.cues(merge.into, merge.from));
-        rows.push_back(row);
+        rows.emplace_back(merge.into, merge.from, merge.log_odds, regions.area(merge.into), regions.area(merge.from),
+                          regions.cues(merge.into, merge.from));
         regions.merge(merge.into, merge.from);
       }
     }
-    return arrayOfRows(rows);
+    return arrayOfRows(rows, {{"into", "i4"},
+                              {"from", "i4"},
+                              {"log_odds", "f8"},
+                              {"area_into", "f8"},
+                              {"area_from", "f8"},
+                              {"cues", std::to_string(kNumCues) + "f8"}});
   }
 
 private:
@@ -166,26 +110,30 @@ private:
 }  // namespace
 
 py::array planeEvidence(const Detection& found) {
-  std::vector<PlaneRow> rows;
-  if (found.evidence)
-    for (const JudgedPlane& judged : found.evidence->planes) rows.push_back(rowOf(judged));
-  return arrayOfRows(rows);
+  Columns columns{{"coefficients", "4f8"}, {"kind", "i4"}, {"flat", "?"}};
+  for (const char* name : {"confidence", "share", "double_share", "unknown", "score", "own_score", "support",
+                           "conflict", "baseline", "hold", "spacing", "roughness", "tolerance", "share_unit"})
+    columns.emplace_back(name, "f8");
+  columns.emplace_back("terms", "7f8");
+  return arrayOfRows(rowsOf(found.evidence ? found.evidence->planes : std::vector<JudgedPlane>{}), columns);
 }
 
 py::array turnEvidence(const Detection& found) {
-  std::vector<TurnRow> rows;
-  if (found.evidence)
-    for (const JudgedTurn& judged : found.evidence->turns) rows.push_back(rowOf(judged));
-  return arrayOfRows(rows);
+  Columns columns{{"point", "3f8"}, {"direction", "3f8"}, {"fold", "i4"}, {"kind", "i4"}};
+  for (const char* name : {"confidence", "support", "off", "far", "halfway", "grown", "hold", "planes_off", "beside"})
+    columns.emplace_back(name, "f8");
+  columns.emplace_back("terms", "7f8");
+  return arrayOfRows(rowsOf(found.evidence ? found.evidence->turns : std::vector<JudgedTurn>{}), columns);
 }
 
 py::array frameEvidence(const SymmetryFrame& frame) {
-  std::vector<FrameRow> rows;
-  for (const ProbableFrame& one : frame.probable) {
-    const std::array<double, 8>& e = one.evidence;
-    rows.push_back({e[0], e[1], e[2], e[3], e[4], e[5], e[6], e[7]});
-  }
-  return arrayOfRows(rows);
+  Columns columns;
+  for (const char* name :
+       {"constant", "value", "first_score", "contact", "principal_angle", "best", "other_scores", "best_score"})
+    columns.emplace_back(name, "f8");
+  py::list rows;
+  for (const ProbableFrame& one : frame.probable) rows.append(py::tuple(py::cast(one.evidence)));
+  return arrayOfRows(rows, columns);
 }
 
 void addEvidence(py::module_& module) {

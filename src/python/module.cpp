@@ -280,9 +280,7 @@ std::vector<int> segment(const AnyArray& points, const py::object& faces, int pa
                          int threads) {
   auto options = optionsWith<SegmentationOptions>(seed, threads);
   options.num_parts = parts;
-  if (method != "merging" && method != "splitting")
-    throw std::invalid_argument("method = " + method + ", must be merging or splitting");
-  options.method = method == "merging" ? SegmentationMethod::Merging : SegmentationMethod::Splitting;
+  options.method = named<SegmentationMethod>("method", method, {"merging", "splitting"});
   options.splitting.depth = depth;
   options.splitting.as_published = as_published;
   if (progress)

@@ -16,17 +16,8 @@ namespace pcl_symmetry::python {
 namespace {
 
 const char* nameOf(PlaneKind kind) {
-  switch (kind) {
-    case PlaneKind::Symmetry:
-      return "symmetry";
-    case PlaneKind::Possible:
-      return "possible";
-    case PlaneKind::Approximate:
-      return "approximate";
-    case PlaneKind::Local:
-      return "local";
-  }
-  return "";
+  static const char* const names[] = {"symmetry", "possible", "approximate", "local"};
+  return names[static_cast<int>(kind)];
 }
 
 void addPlane(py::module_& module) {
