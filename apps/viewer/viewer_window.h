@@ -1,4 +1,4 @@
-/// A window on a shape and its planes: PCL's visualizer, driven by the keys of viewer_state.h.
+/// A window on a shape and its planes, driven by the keys of viewer_state.h.
 #pragma once
 
 #include <optional>
