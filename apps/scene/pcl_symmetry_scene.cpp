@@ -2,6 +2,7 @@
 /// of each frame that arrives in a folder.
 #include <poll.h>
 #include <sys/inotify.h>
+#include <sys/signalfd.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -79,60 +80,33 @@ CommandLine commandLine(SceneToolOptions& o) {
   return line;
 }
 
-volatile std::sig_atomic_t stopped = 0;
-
-extern "C" void stopWatching(int) {
-  stopped = 1;
-}
-
-// What a user, a service manager and a closed terminal end a program by.
-constexpr int kSignals[] = {SIGINT, SIGTERM, SIGHUP};
-
 /// Names files of a folder as soon as they are whole: when a program that wrote one closes it, or when one is moved
 /// into the folder, also in place of another. Files that are there before are not named. SIGINT, SIGTERM and SIGHUP end
-/// the wait, not the program, while an object of this class lives.
+/// the watch, not the program: what a user, a service manager and a closed terminal end a program by.
 class FolderWatch {
 public:
   /// \throws InputError naming the folder where it cannot be watched.
-  explicit FolderWatch(const std::string& folder)
-      : folder_(folder), descriptor_(inotify_init1(IN_CLOEXEC | IN_NONBLOCK)) {
+  explicit FolderWatch(const std::string& folder) : folder_(folder) {
+    sigset_t signals;
+    sigemptyset(&signals);
+    for (const int signal : {SIGINT, SIGTERM, SIGHUP}) sigaddset(&signals, signal);
+    pthread_sigmask(SIG_BLOCK, &signals, nullptr);  // also of threads that are made later
+    signals_.fd = signalfd(-1, &signals, SFD_CLOEXEC);
+    events_.fd = inotify_init1(IN_CLOEXEC);
     const std::uint32_t events = IN_CLOSE_WRITE | IN_MOVED_TO | IN_DELETE_SELF | IN_MOVE_SELF | IN_ONLYDIR;
-    if (descriptor_ < 0 || inotify_add_watch(descriptor_, folder.c_str(), events) < 0) {
-      const std::string reason = std::strerror(errno);
-      if (descriptor_ >= 0) close(descriptor_);
-      throw InputError(folder + ": cannot be watched, " + reason);
-    }
-    // The signals are let through only while next() waits: none comes between its question and its wait, and threads
-    // that are made later do not take them.
-    stopped = 0;
-    sigemptyset(&signals_);
-    struct sigaction action = {};
-    action.sa_handler = stopWatching;
-    for (std::size_t i = 0; i < std::size(kSignals); ++i) {
-      sigaddset(&signals_, kSignals[i]);
-      sigaction(kSignals[i], &action, &old_actions_[i]);
-    }
-    pthread_sigmask(SIG_BLOCK, &signals_, &old_mask_);
+    if (inotify_add_watch(events_.fd, folder.c_str(), events) < 0)
+      throw InputError(folder + ": cannot be watched, " + std::strerror(errno));
   }
-
-  ~FolderWatch() {
-    close(descriptor_);
-    for (std::size_t i = 0; i < std::size(kSignals); ++i) sigaction(kSignals[i], &old_actions_[i], nullptr);
-    pthread_sigmask(SIG_SETMASK, &old_mask_, nullptr);
-  }
-  FolderWatch(const FolderWatch&) = delete;
-  FolderWatch& operator=(const FolderWatch&) = delete;
 
   /// Waits for the next file. A file that was written again before it is named is named once.
   /// \return its path; nothing once a signal has come.
   /// \throws InputError where the folder is gone.
   std::optional<std::string> next() {
     for (;;) {
-      const timespec at_once{0, 0};  // ppoll() does not let a signal through while names keep coming
-      if (stopped || sigtimedwait(&signals_, nullptr, &at_once) > 0) return std::nullopt;
-      pollfd asked{descriptor_, POLLIN, 0};
-      const int ready = ppoll(&asked, 1, waiting_.empty() ? nullptr : &at_once, &old_mask_);
-      if (ready > 0) readEvents();
+      pollfd asked[] = {signals_, events_};
+      poll(asked, 2, waiting_.empty() ? -1 : 0);
+      if (asked[0].revents != 0) return std::nullopt;
+      if (asked[1].revents != 0) readEvents();
       if (waiting_.empty()) continue;
       std::string path = (boost::filesystem::path(folder_) / waiting_.front()).string();
       waiting_.pop_front();
@@ -146,7 +120,7 @@ public:
 private:
   void readEvents() {
     alignas(inotify_event) char buffer[1u << 16];
-    const ssize_t size = read(descriptor_, buffer, sizeof(buffer));
+    const ssize_t size = read(events_.fd, buffer, sizeof(buffer));
     for (ssize_t at = 0; at < size;) {
       const auto* event = reinterpret_cast<const inotify_event*>(buffer + at);
       at += static_cast<ssize_t>(sizeof(inotify_event) + event->len);
@@ -159,9 +133,7 @@ private:
   }
 
   std::string folder_;
-  int descriptor_;
-  sigset_t signals_ = {}, old_mask_ = {};
-  struct sigaction old_actions_[3] = {};
+  pollfd signals_{-1, POLLIN, 0}, events_{-1, POLLIN, 0};
   std::deque<std::string> waiting_;
   bool missed_ = false;
 };
@@ -218,8 +190,8 @@ bool isFrame(const std::string& path) {
 /// Handles files as they arrive. A file that cannot be handled has a line with "error".
 int watch(const SceneToolOptions& options) {
   const Console console(options.common.quiet);
+  FolderWatch folder(*options.watched);  // before there are other threads
   SymmetryScene scene = makeScene(options);
-  FolderWatch folder(*options.watched);
   console.info("Watching " + *options.watched);
   while (const std::optional<std::string> path = folder.next()) {
     if (folder.hasMissed()) console.error(*options.watched + ": files came too fast, some were missed");
