@@ -7,6 +7,7 @@
 
 #include "core/base/random.h"
 #include "pcl_symmetry/core/point_set.h"
+#include "pcl_symmetry/core/surface_graph.h"
 
 namespace pcl_symmetry::test {
 
@@ -24,6 +25,7 @@ struct Mesh {
     for (const int v : polygons[polygon]) sum += vertices.col(v);
     return sum / static_cast<float>(polygons[polygon].size());
   }
+  SurfaceGraph graph() const { return meshGraph(vertices, polygons); }
 };
 
 struct TriangleMesh {

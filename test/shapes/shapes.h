@@ -46,14 +46,23 @@ inline Eigen::Vector3d randomDirection(RandomStream& random) {
 }
 
 /// A uniformly random rotation, then a translation by up to \p distance along each axis.
-inline Eigen::Isometry3d randomPose(std::uint64_t seed, double distance = 3.0) {
-  RandomStream random(seed, 77);
+inline Eigen::Isometry3d randomPose(RandomStream& random, double distance = 3.0) {
   Eigen::Vector4d q;
   for (int i = 0; i < 4; ++i) q[i] = gaussian(random);
   Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
   pose.linear() = Eigen::Quaterniond(q.normalized()).toRotationMatrix();
   for (int i = 0; i < 3; ++i) pose.translation()[i] = distance * symmetric(random);
   return pose;
+}
+
+inline Eigen::Isometry3d randomPose(std::uint64_t seed, double distance = 3.0) {
+  RandomStream random(seed, 77);
+  return randomPose(random, distance);
+}
+
+/// Of a rotation, radians, in [0, pi].
+inline double angleOf(const Eigen::Matrix3d& rotation) {
+  return Eigen::AngleAxisd(rotation).angle();
 }
 
 inline Shape moved(const Shape& shape, const Eigen::Isometry3d& pose) {
@@ -165,6 +174,15 @@ inline Shape sphere(int num_points, std::uint64_t seed) {
   return shape;
 }
 
+/// The square from -1 to 1 in z = 0.
+inline Points flatSquare(int num_points, std::uint64_t seed) {
+  RandomStream random(seed);
+  Points points = Points::Zero(3, num_points);
+  for (Eigen::Index i = 0; i < num_points; ++i)
+    for (int k = 0; k < 2; ++k) points(k, i) = static_cast<float>(symmetric(random));
+  return points;
+}
+
 /// A closed cylinder of radius 0.6 and height 2 about z: every plane through the axis, and z = 0.
 inline Shape cylinder(int num_points, std::uint64_t seed) {
   constexpr double kRadius = 0.6, kHalfHeight = 1.0;
@@ -226,13 +244,6 @@ Points pointsWhere(const Points& points, const Keep& keep) {
   for (Eigen::Index i = 0; i < points.cols(); ++i)
     if (keep(Eigen::Vector3f(points.col(i)))) kept.push_back(i);
   return points(Eigen::all, kept);
-}
-
-/// Calls \p expectSame with what \p make gives for several threads and for one.
-template <typename Make, typename ExpectSame>
-void compareThreads(const Make& make, const ExpectSame& expectSame) {
-  const auto one = make(1);
-  for (const int num_threads : {2, 8}) expectSame(make(num_threads), one);
 }
 
 /// The diagonal of the bounding box, the unit in which offsets are judged.

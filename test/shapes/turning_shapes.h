@@ -76,6 +76,16 @@ inline TurningShape boxShape(const std::string& name, const Eigen::Vector3d& hal
   return shape;
 }
 
+/// A rectangle in z = 0.
+inline TurningShape sheetShape(double half_width, double half_height) {
+  TurningShape shape = turningShape("sheet", RotationGroupKind::Dihedral, 2);
+  shape.addFace({{-half_width, -half_height, 0.0},
+                 {half_width, -half_height, 0.0},
+                 {half_width, half_height, 0.0},
+                 {-half_width, half_height, 0.0}});
+  return shape;
+}
+
 /// A regular n-gon of circumradius 1 swept along z, one corner on x.
 inline TurningShape prismShape(int n, double half_height) {
   TurningShape shape = turningShape("prism of " + std::to_string(n) + " sides", RotationGroupKind::Dihedral, n);

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "shapes/found_planes.h"
+#include "shapes/threads.h"
 
 namespace pcl_symmetry {
 namespace {
@@ -344,10 +345,7 @@ struct Change {
 
   Shape of(const Shape& shape) const {
     Shape result = scaled(moved(shape, pose), scale);
-    Eigen::Matrix3Xd points(3, static_cast<Eigen::Index>(order.size()));
-    for (std::size_t i = 0; i < order.size(); ++i)
-      points.col(static_cast<Eigen::Index>(i)) = result.points.col(order[i]);
-    result.points = points;
+    result.points = Eigen::Matrix3Xd(result.points(Eigen::all, order));
     return result;
   }
 };

@@ -6,12 +6,14 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
+#include <numeric>
 #include <optional>
 
 #include "core/detection/matched_region.h"
 #include "core/detection/part_search.h"
 #include "pcl_symmetry/core/detect_planes.h"
 #include "shapes/shapes.h"
+#include "shapes/threads.h"
 
 namespace {
 
@@ -39,13 +41,11 @@ const SymmetryPlane* planeAcrossX(const Detection& detection) {
 /// Without the points farthest along a direction.
 Points cut(const Points& points, double share, const Eigen::Vector3f& direction) {
   std::vector<int> order(static_cast<std::size_t>(points.cols()));
-  for (std::size_t i = 0; i < order.size(); ++i) order[i] = static_cast<int>(i);
+  std::iota(order.begin(), order.end(), 0);
   std::sort(order.begin(), order.end(),
             [&](int i, int j) { return direction.dot(points.col(i)) < direction.dot(points.col(j)); });
   order.resize(static_cast<std::size_t>((1.0 - share) * static_cast<double>(order.size())));
-  Points rest(3, static_cast<Eigen::Index>(order.size()));
-  for (std::size_t i = 0; i < order.size(); ++i) rest.col(static_cast<Eigen::Index>(i)) = points.col(order[i]);
-  return rest;
+  return points(Eigen::all, order);
 }
 
 TEST(PlaneJudge, ToleranceDecidesWhatIsSymmetric) {
@@ -222,9 +222,7 @@ struct TwoBoxes {
     const Eigen::Matrix3d turn = Eigen::AngleAxisd(0.6, Eigen::Vector3d(1.0, 2.0, 0.5).normalized()).toRotationMatrix();
     const Eigen::Vector3d place(1.68, 0.2, 0.1);  // a corner reaches 0.04 into the large box
     points.resize(3, a.cols() + b.cols());
-    points.leftCols(a.cols()) = a;
-    for (Eigen::Index i = 0; i < b.cols(); ++i)
-      points.col(a.cols() + i) = (turn * b.col(i).cast<double>() + place).cast<float>();
+    points << a, ((turn * b.cast<double>()).colwise() + place).cast<float>();
     for (int k = 0; k < 3; ++k) {
       planes.emplace_back(Eigen::Vector3d::Unit(k), 0.0);
       planes.emplace_back(turn.col(k), turn.col(k).dot(place));
@@ -257,13 +255,11 @@ TEST(SymmetricParts, AllPlanesOfBothBoxesAreLocal) {
 TEST(SymmetricParts, AreTheSameForAnyNumberOfThreads) {
   const TwoBoxes boxes;
   const SearchedCloud searched(boxes.points);
-  const auto one = findSymmetricParts(searched.cloud, *searched.fit, {IspUpdate::PointToPlane, 1, 1});
-  const auto many = findSymmetricParts(searched.cloud, *searched.fit, {IspUpdate::PointToPlane, 1, 3});
-  ASSERT_EQ(one.size(), many.size());
-  for (std::size_t i = 0; i < one.size(); ++i) {
-    EXPECT_EQ(one[i].plane.normal(), many[i].plane.normal());
-    EXPECT_EQ(one[i].points, many[i].points);
-  }
+  compareThreads([&](int num_threads) {
+    const auto parts = findSymmetricParts(searched.cloud, *searched.fit, {IspUpdate::PointToPlane, 1, num_threads});
+    return valuesOf(
+        parts, [](const SymmetricPart& part) { return part.plane.normal(); }, &SymmetricPart::points);
+  });
 }
 
 TEST(MatchedRegion, OfASymmetryIsAllOfTheSurfaceAndHasNoEdge) {

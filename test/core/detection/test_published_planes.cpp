@@ -5,6 +5,7 @@
 
 #include "core/base/constants.h"
 #include "shapes/found_planes.h"
+#include "shapes/threads.h"
 
 namespace {
 

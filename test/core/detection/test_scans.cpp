@@ -21,6 +21,7 @@
 #include "pcl_symmetry/core/visibility.h"
 #include "shapes/found_planes.h"
 #include "shapes/scans.h"
+#include "shapes/threads.h"
 #include "shapes/turning_shapes.h"
 
 namespace pcl_symmetry {
@@ -187,9 +188,8 @@ TEST(OpenSurfaces, TableThatThePictureCutsOffIsPossibleAtMost) {
 /// Points in a cube of unit side that stands at a height.
 Points cubeAt(double height) {
   RandomStream random(1);
-  Points points(3, 500);
-  for (Eigen::Index i = 0; i < points.cols(); ++i)
-    points.col(i) = Eigen::Vector3d(random.uniform(), random.uniform(), height + random.uniform()).cast<float>();
+  Points points = Points::NullaryExpr(3, 500, [&] { return static_cast<float>(random.uniform()); });
+  points.row(2).array() += static_cast<float>(height);
   return points;
 }
 
@@ -378,12 +378,6 @@ TurningShape box() {
   return boxShape("box", {1.0, 0.7, 0.45}, RotationGroupKind::Dihedral, 2);
 }
 
-TurningShape sheet() {
-  TurningShape shape = turningShape("sheet", RotationGroupKind::Dihedral, 2);
-  shape.addFace({{-1.0, -0.7, 0.0}, {1.0, -0.7, 0.0}, {1.0, 0.7, 0.0}, {-1.0, 0.7, 0.0}});
-  return shape;
-}
-
 /// A scan of a shape, and what it says of half turns.
 struct Scanned {
   Scanned(const TurningShape& shape, const Eigen::Vector3d& viewpoint)
@@ -436,7 +430,7 @@ TEST(TurnSigns, AHalfTurnOfABoxHasPlanesAndStaysInItsPlace) {
 }
 
 TEST(TurnSigns, AFlatSideHoldsNoLineAndABoxDoes) {
-  const Scanned flat(sheet(), {0.3, 0.5, 5.0});
+  const Scanned flat(sheetShape(1.0, 0.7), {0.3, 0.5, 5.0});
   const SymmetryTurn over = flat.turn(Eigen::Vector3d::Zero(), Eigen::Vector3d::UnitX());
   EXPECT_GT(over.support, 0.95) << "the shares alone take the lower side for the upper one";
   const auto hold = [](const Scanned& scanned, const Eigen::Vector3d& direction) {
@@ -511,15 +505,11 @@ TEST(ScanAxes, AreFoundWithoutPlanesToo) {
 TEST(ScanAxes, ThreadsDoNotMatterAndTurnsCanBeLeftOut) {
   const SeenFromOneSide scan = seenFrom(prismShape(5, 0.4), {2.0, 3.0, 5.0});
   DetectionOptions options;
-  options.num_threads = 1;
-  const Detection one = detectPlanes({scan.points, &*scan.seen}, options);
-  options.num_threads = 3;
-  const Detection three = detectPlanes({scan.points, &*scan.seen}, options);
-  ASSERT_EQ(one.turns.size(), three.turns.size());
-  for (std::size_t i = 0; i < one.turns.size(); ++i) {
-    EXPECT_EQ(one.turns[i].point, three.turns[i].point);
-    EXPECT_EQ(one.turns[i].confidence, three.turns[i].confidence);
-  }
+  compareThreads([&](int num_threads) {
+    options.num_threads = num_threads;
+    const Detection found = detectPlanes({scan.points, &*scan.seen}, options);
+    return valuesOf(found.turns, &SymmetryTurn::point, &SymmetryTurn::confidence);
+  });
   options.turns = false;
   EXPECT_TRUE(detectPlanes({scan.points, &*scan.seen}, options).turns.empty());
   EXPECT_TRUE(detectPlanes(scan.points, options).turns.empty()) << "whole objects have objectSymmetries()";

@@ -10,6 +10,7 @@
 #include "core/base/constants.h"
 #include "core/base/random.h"
 #include "shapes/found_planes.h"
+#include "shapes/threads.h"
 
 namespace {
 

@@ -14,9 +14,11 @@
 #include "core/evidence/split_surface.h"
 #include "core/evidence/surface_samples.h"
 #include "core/geometry/open_borders.h"
+#include "core/geometry/reflected_points.h"
 #include "core/geometry/surface_normals.h"
 #include "pcl_symmetry/core/gaussian_edt.h"
 #include "shapes/shapes.h"
+#include "shapes/threads.h"
 
 namespace {
 
@@ -29,6 +31,14 @@ struct Surface {
         search(makeFlannSearch(points)),
         geometry(localGeometry(points, *search, kNumSupportNeighbors, 1)),
         borders(openBorders(points, *search, geometry.normals, 1)) {}
+
+  /// Of the points from the surface.
+  std::vector<float> distancesTo(const Points& others) const {
+    std::vector<int> closest;
+    std::vector<float> sq_distances;
+    search->search(others, 1, closest, sq_distances);
+    return surfaceDistances(others, closest, {points, geometry});
+  }
 
   double borderShare() const {
     return std::accumulate(borders.begin(), borders.end(), 0.0) / static_cast<double>(borders.size());
@@ -47,9 +57,7 @@ Points cap(double height) {
 
 /// Means over the points: mapped onto the surface within 0.05, and missing.
 std::pair<double, double> matchedAndMissing(const Surface& surface, const ReflectionPlane& plane) {
-  Points reflected(3, surface.points.cols());
-  for (Eigen::Index i = 0; i < reflected.cols(); ++i)
-    reflected.col(i) = plane.reflect(surface.points.col(i).cast<double>()).cast<float>();
+  const Points reflected = reflectedPoints(surface.points, plane);
   std::vector<int> closest;
   std::vector<float> sq_distances;
   surface.search->search(reflected, 1, closest, sq_distances);
@@ -103,17 +111,10 @@ TEST(MissingCounterparts, ExplainWhatWasCutOff) {
 TEST(MissingCounterparts, ExplainAPartWithoutAnEdge) {
   // Two spheres, and nothing between them. x = 0 maps a third one, at the left, to where the cloud was cut off.
   const Points ball = cap(2.0);
-  Points points(3, 0);
-  const auto add = [&](double x, bool is_cut) {
-    for (Eigen::Index i = 0; i < ball.cols(); ++i) {
-      if (is_cut && ball(0, i) > 0.2f) continue;
-      points.conservativeResize(3, points.cols() + 1);
-      points.col(points.cols() - 1) = ball.col(i) + Eigen::Vector3f(static_cast<float>(x), 0.0f, 0.0f);
-    }
-  };
-  add(1.2, true);
-  add(-1.2, false);
-  add(-4.0, false);
+  const Points cut = pointsWhere(ball, [](const Eigen::Vector3f& x) { return x.x() <= 0.2f; });
+  const auto along = [](float x) { return Eigen::Vector3f(x, 0.0f, 0.0f); };
+  Points points(3, cut.cols() + 2 * ball.cols());
+  points << cut.colwise() + along(1.2f), ball.colwise() + along(-1.2f), ball.colwise() + along(-4.0f);
   const auto [matched, missing] = matchedAndMissing(Surface(points), ReflectionPlane(Eigen::Vector3d::UnitX(), 0.0));
   EXPECT_LT(matched, 0.6);
   EXPECT_NEAR(matched + missing, 1.0, 0.03);
@@ -137,9 +138,7 @@ Points between(const Points& points, float low, float high) {
 }
 
 float explained(const Points& points, const Points& piece, double spacing) {
-  const auto search = makeFlannSearch(points);
-  return beyondEnd(OutermostPoints(points), localGeometry(points, *search, kNumSupportNeighbors, 1).normals,
-                   OutermostPoints(piece), spacing);
+  return beyondEnd(OutermostPoints(points), Surface(points).geometry.normals, OutermostPoints(piece), spacing);
 }
 
 /// A plate of half the size 1 x 1 x half_height: both faces and its four sides.
@@ -192,9 +191,7 @@ double spacingOf(const Points& points, double area) {
 }
 
 std::vector<CutPlane> cutsOf(const Points& points, double spacing) {
-  const auto search = makeFlannSearch(points);
-  const LocalGeometry geometry = localGeometry(points, *search, kNumSupportNeighbors, 1);
-  return findCutPlanes(points, openBorders(points, *search, geometry.normals, 1), spacing, 1);
+  return findCutPlanes(points, Surface(points).borders, spacing, 1);
 }
 
 TEST(CutPlanes, AreFoundWhereTheCloudWasCut) {
@@ -222,10 +219,7 @@ TEST(CutPlanes, ClosedSurfacesHaveNone) {
 }
 
 TEST(CutPlanes, TheEdgesOfASheetFixNone) {
-  Points sheet(3, 4000);
-  RandomStream random(4);
-  for (Eigen::Index i = 0; i < sheet.cols(); ++i)
-    sheet.col(i) = Eigen::Vector3d(symmetric(random), symmetric(random), 0.0).cast<float>();
+  const Points sheet = flatSquare(4000, 4);
   EXPECT_TRUE(cutsOf(sheet, spacingOf(sheet, 4.0)).empty());
 }
 
@@ -241,17 +235,9 @@ Points lattice() {
   return points;
 }
 
-double distanceOf(const Eigen::Vector3f& x) {
-  const Points surface = lattice(), point = x;
-  const auto search = makeFlannSearch(surface);
-  const LocalGeometry geometry = localGeometry(surface, *search, kNumSupportNeighbors, 1);
-  std::vector<int> closest;
-  std::vector<float> sq_distances;
-  search->search(point, 1, closest, sq_distances);
-  return surfaceDistances(point, closest, {surface, geometry})[0];
-}
-
 TEST(SurfaceDistance, IsThatOfDiscsAroundTheSamples) {
+  const Surface surface(lattice());
+  const auto distanceOf = [&](const Eigen::Vector3f& x) { return surface.distancesTo(x)[0]; };
   EXPECT_NEAR(distanceOf({0.03f, 0.04f, 0.0f}), 0.0, 1e-5) << "between samples";
   EXPECT_NEAR(distanceOf({0.03f, 0.04f, 0.07f}), 0.07, 1e-5) << "above the surface";
   EXPECT_NEAR(distanceOf({0.03f, 0.04f, -0.07f}), 0.07, 1e-5) << "below it";
@@ -263,9 +249,9 @@ TEST(SurfaceDistance, IsThatOfDiscsAroundTheSamples) {
 }
 
 TEST(SurfaceDistance, IsInfiniteWhereNoSampleIsNear) {
-  const Points surface = lattice(), point = Eigen::Vector3f::Zero();
-  const LocalGeometry geometry = localGeometry(surface, *makeFlannSearch(surface), kNumSupportNeighbors, 1);
-  EXPECT_TRUE(std::isinf(surfaceDistances(point, {-1}, {surface, geometry})[0]));
+  const Surface surface(lattice());
+  const Points point = Eigen::Vector3f::Zero();
+  EXPECT_TRUE(std::isinf(surfaceDistances(point, {-1}, {surface.points, surface.geometry})[0]));
 }
 
 TEST(SurfaceDistance, OwnDistancesAreThoseOfASecondSampleOfANoisySurface) {
@@ -277,13 +263,9 @@ TEST(SurfaceDistance, OwnDistancesAreThoseOfASecondSampleOfANoisySurface) {
     first.col(i).z() = noise * static_cast<float>(gaussian(random));
     second.col(i) += Eigen::Vector3f(0.05f, 0.05f, noise * static_cast<float>(gaussian(random)));
   }
-  const auto search = makeFlannSearch(first);
-  const LocalGeometry geometry = localGeometry(first, *search, kNumSupportNeighbors, 1);
-  std::vector<int> closest;
-  std::vector<float> sq_distances;
-  search->search(second, 1, closest, sq_distances);
-  const double own = shareWithin(ownSurfaceDistances({first, geometry}), noise);
-  const double other = shareWithin(surfaceDistances(second, closest, {first, geometry}), noise);
+  const Surface surface(first);
+  const double own = shareWithin(ownSurfaceDistances({first, surface.geometry}), noise);
+  const double other = shareWithin(surface.distancesTo(second), noise);
   // The standard error of either is 0.012. Without the factor for new points, own exceeds other by 0.1 and more.
   EXPECT_NEAR(own, other, 0.06);
 }
@@ -296,18 +278,10 @@ constexpr double kTolerance = 0.04;
 
 /// A box with noise of more than its spacing (0.04), symmetric about x = 0.
 Points noisyBox(double noise) {
-  Points points(3, 6000);
-  RandomStream random(3);
-  for (Eigen::Index i = 0; i < points.cols(); ++i) {
-    Eigen::Vector3d x(1 * (2.0 * random.uniform() - 1.0), 0.6 * (2.0 * random.uniform() - 1.0),
-                      0.3 * (2.0 * random.uniform() - 1.0));
-    const Eigen::Vector3d half(1.0, 0.6, 0.3);
-    const int side = static_cast<int>(random.below(3));
-    x[side] = random.below(2) == 0 ? half[side] : -half[side];
-    for (int k = 0; k < 3; ++k) x[k] += noise * gaussian(random);
-    points.col(i) = x.cast<float>();
-  }
-  return points;
+  Shape shape = box({1.0, 0.6, 0.3}, 6000, Sampling::Random, 3);
+  RandomStream random(3, 5);
+  for (Eigen::Index i = 0; i < shape.points.size(); ++i) shape.points(i) += noise * gaussian(random);
+  return shape.cloud();
 }
 
 TEST(SplitSurface, ATruePlaneReachesTheShareOfTheHalvesWhateverTheNoise) {
@@ -334,10 +308,7 @@ TEST(SplitSurface, OwnScoreIsThatOfATruePlane) {
     options.sigma = 0.1;
     options.radius = ball.radius;
     const auto scoreOf = [&](const ReflectionPlane& plane) {
-      Points reflected = points;
-      for (Eigen::Index i = 0; i < points.cols(); ++i)
-        reflected.col(i) = plane.reflect(points.col(i).cast<double>()).cast<float>();
-      const GaussianEdt a(points, options), b(reflected, options);
+      const GaussianEdt a(points, options), b(reflectedPoints(points, plane), options);
       return std::inner_product(a.values().begin(), a.values().end(), b.values().begin(), 0.0) /
              std::sqrt(a.sqNorm() * b.sqNorm());
     };
@@ -423,12 +394,12 @@ TEST(PointDensity, SameBitsForAnyNumberOfThreads) {
   const Shape shape = box(4000, Sampling::Random, 6);
   const Points points = noisy(shape, 0.03, 3);
   const double bandwidth = bandwidthOf(points);
-  const PointDensity one(points, bandwidth, 1), eight(points, bandwidth, 8);
   const ReflectionPlane start = tilted(shape.planes[0], 2.0 * kDegree);
-  EXPECT_EQ(one.overlap(points, start), eight.overlap(points, start));
-  const PointDensity::Refined by_one = one.refine(points, start, 6), by_eight = eight.refine(points, start, 6);
-  EXPECT_EQ(by_one.plane.coefficients(), by_eight.plane.coefficients());
-  EXPECT_EQ(by_one.iterations, by_eight.iterations);
+  compareThreads([&](int num_threads) {
+    const PointDensity density(points, bandwidth, num_threads);
+    const PointDensity::Refined refined = density.refine(points, start, 6);
+    return std::make_tuple(density.overlap(points, start), refined.plane.coefficients(), refined.iterations);
+  });
 }
 
 TEST(PointDensity, MovesAndScalesWithThePoints) {

@@ -182,14 +182,8 @@ constexpr int kSamples = 2000;
 const ReflectionPlane kAcrossX(Eigen::Vector3d::UnitX(), 0.0);
 
 Samples ball() {
-  Samples samples{Points(3, kSamples), Points(3, kSamples)};
-  RandomStream random(1);
-  for (int i = 0; i < kSamples; ++i) {
-    const double z = 2.0 * random.uniform() - 1.0, angle = 2.0 * kPi * random.uniform(), ring = std::sqrt(1.0 - z * z);
-    samples.normals.col(i) = Eigen::Vector3d(ring * std::cos(angle), ring * std::sin(angle), z).cast<float>();
-    samples.points.col(i) = samples.normals.col(i);
-  }
-  return samples;
+  const Points points = sphere(kSamples, 1).cloud();
+  return {points, points};
 }
 
 /// About z, without its ends.

@@ -14,6 +14,7 @@
 #include "shapes/complaint.h"
 #include "shapes/scans.h"
 #include "shapes/shapes.h"
+#include "shapes/threads.h"
 
 namespace pcl_symmetry {
 namespace {
@@ -39,19 +40,9 @@ void expectSame(const SymmetryFrame& a, const SymmetryFrame& b) {
   EXPECT_EQ(a.axes, b.axes);
   EXPECT_EQ(a.scores, b.scores);
   EXPECT_EQ(a.revolution_axis, b.revolution_axis);
-  ASSERT_EQ(a.probable.size(), b.probable.size());
-  for (std::size_t i = 0; i < a.probable.size(); ++i) EXPECT_EQ(a.probable[i].probability, b.probable[i].probability);
-  ASSERT_EQ(a.equivalent.size(), b.equivalent.size());
-  for (std::size_t i = 0; i < a.equivalent.size(); ++i)
-    EXPECT_EQ(a.equivalent[i].matrix(), b.equivalent[i].matrix()) << i;
-}
-
-void expectSameTurns(const SymmetryFrame& a, const SymmetryFrame& b) {
-  ASSERT_EQ(a.turns.size(), b.turns.size());
-  for (std::size_t i = 0; i < a.turns.size(); ++i) {
-    EXPECT_EQ(a.turns[i].point, b.turns[i].point);
-    EXPECT_EQ(a.turns[i].confidence, b.turns[i].confidence);
-  }
+  EXPECT_EQ(test::valuesOf(a.probable, &ProbableFrame::probability),
+            test::valuesOf(b.probable, &ProbableFrame::probability));
+  EXPECT_EQ(test::matricesOf(a.equivalent), test::matricesOf(b.equivalent));
 }
 
 /// A box with a fin at the end of its back, like the body of an airplane: one plane, y = 0, one nearly, x = 0, and
@@ -214,16 +205,17 @@ TEST(SymmetryFrame, IsTheSameForAnyNumberOfThreads) {
   const test::Scan scan = test::scan(test::blockChair(), {3.0, -4.0, 3.5});
   const Points cloud = scan.cloud();
   const Visibility visibility = scan.visibility();
-  FrameOptions options;
-  options.num_threads = 1;
-  const SymmetryFrame expected = symmetryFrame(cloud, options, &visibility);
-  const SymmetryFrame expected_whole = symmetryFrame(cloud, options);
-  for (const int num_threads : {2, 8}) {
-    options.num_threads = num_threads;
-    const SymmetryFrame frame = symmetryFrame(cloud, options, &visibility);
-    expectSame(frame, expected);
-    expectSameTurns(frame, expected);
-    expectSame(symmetryFrame(cloud, options), expected_whole);
+  for (const Visibility* const seen : {&visibility, static_cast<const Visibility*>(nullptr)}) {
+    const auto frame = [&](int num_threads) {
+      FrameOptions options;
+      options.num_threads = num_threads;
+      return symmetryFrame(cloud, options, seen);
+    };
+    test::compareThreads(frame, [](const SymmetryFrame& many, const SymmetryFrame& one) {
+      expectSame(many, one);
+      EXPECT_EQ(test::valuesOf(many.turns, &SymmetryTurn::point, &SymmetryTurn::confidence),
+                test::valuesOf(one.turns, &SymmetryTurn::point, &SymmetryTurn::confidence));
+    });
   }
 }
 

@@ -129,16 +129,20 @@ Points queriesFor(const Points& points) {
   return queries;
 }
 
+NeighborLists listsOf(const Points& points, const FlannSearch& search) {
+  constexpr int kCount = NeighborLists::kNeighbors + 1;
+  std::vector<int> nearest;
+  std::vector<float> sq_distances, sq_reach;
+  search.search(points, kCount, nearest, sq_distances);
+  for (std::size_t i = kCount - 1; i < sq_distances.size(); i += kCount) sq_reach.push_back(sq_distances[i]);
+  return NeighborLists(points, nearest, sq_reach);
+}
+
 TEST(FlannSearch, GivesTheSameAnswersWithLists) {
   for (const auto& [name, points] : pointSets()) {
     if (!NeighborLists::isUseful(points.cols())) continue;
     FlannSearch search(points);
-    std::vector<int> nearest;
-    std::vector<float> sq_nearest, sq_reach;
-    constexpr int kCount = NeighborLists::kNeighbors + 1;
-    search.search(points, kCount, nearest, sq_nearest);
-    for (std::size_t i = kCount - 1; i < sq_nearest.size(); i += kCount) sq_reach.push_back(sq_nearest[i]);
-    search.use(NeighborLists(points, nearest, sq_reach));
+    search.use(listsOf(points, search));
     const ClosestPointSearch::Ptr without = makeFlannSearch(points);
     const Points queries = queriesFor(points);
     const auto size = static_cast<std::size_t>(queries.cols());
@@ -164,14 +168,11 @@ TEST(FlannSearch, GivesTheSameAnswersWithLists) {
 TEST(FlannSearch, QueriesThatAreNoNumbersEndWithoutHarm) {
   const Points points = Points::Random(3, 500);
   FlannSearch search(points);
-  constexpr int kCount = NeighborLists::kNeighbors + 1;
+  if (NeighborLists::isUseful(points.cols())) search.use(listsOf(points, search));
   std::vector<int> indices;
-  std::vector<float> sq_distances, sq_reach;
-  search.search(points, kCount, indices, sq_distances);
-  for (std::size_t i = kCount - 1; i < sq_distances.size(); i += kCount) sq_reach.push_back(sq_distances[i]);
-  if (NeighborLists::isUseful(points.cols())) search.use(NeighborLists(points, indices, sq_reach));
+  std::vector<float> sq_distances;
   const Points queries = Points::Constant(3, 4, std::numeric_limits<float>::quiet_NaN());
-  for (const int count : {1, kCount}) {
+  for (const int count : {1, NeighborLists::kNeighbors + 1}) {
     search.search(queries, count, indices, sq_distances);
     for (const int i : indices) EXPECT_TRUE(i >= 0 && i < points.cols()) << i;
   }
@@ -179,24 +180,6 @@ TEST(FlannSearch, QueriesThatAreNoNumbersEndWithoutHarm) {
   search.searchWithin(queries, 1.0f, guesses, sq_distances);
   EXPECT_EQ(guesses, std::vector<int>(4, -1));
 }
-
-/// Points, their lists, and a walk and FLANN over them.
-struct Searches {
-  explicit Searches(const Points& cloud) : points(cloud), flann(points), lists(listsOf(points, flann)) {}
-
-  static NeighborLists listsOf(const Points& points, const FlannSearch& flann) {
-    constexpr int kCount = NeighborLists::kNeighbors + 1;
-    std::vector<int> nearest;
-    std::vector<float> sq_distances, sq_reach;
-    flann.search(points, kCount, nearest, sq_distances);
-    for (Eigen::Index i = 0; i < points.cols(); ++i) sq_reach.push_back(sq_distances[kCount * i + kCount - 1]);
-    return NeighborLists(points, nearest, sq_reach);
-  }
-
-  Points points;
-  FlannSearch flann;
-  NeighborLists lists;
-};
 
 /// Points at some distance of those of a cloud.
 Points near(const Points& points, float distance) {
@@ -209,8 +192,9 @@ Points near(const Points& points, float distance) {
 TEST(NeighborWalk, EndsAtTheClosestPointOnTheSurfaceAndNearItBeside) {
   const Points points = box(4000, Sampling::Random, 5).cloud();
   if (!NeighborLists::isUseful(points.cols())) GTEST_SKIP() << "no lists on this processor";
-  const Searches searches(points);
-  const NeighborWalk walk(searches.lists, searches.flann);
+  const FlannSearch flann(points);
+  const NeighborLists lists = listsOf(points, flann);
+  const NeighborWalk walk(lists, flann);
   // 4000 points on a box of about 2 x 2 x 1 are 0.06 apart.
   for (const float distance : {0.002f, 0.15f}) {
     const Points queries = near(points, distance);
@@ -218,7 +202,7 @@ TEST(NeighborWalk, EndsAtTheClosestPointOnTheSurfaceAndNearItBeside) {
     std::vector<float> sq_walked, sq_closest;
     constexpr float kFar = 1.0f;
     walk.searchWithin(queries, kFar, walked, sq_walked);
-    searches.flann.searchWithin(queries, kFar, closest, sq_closest);
+    flann.searchWithin(queries, kFar, closest, sq_closest);
     int num_same = 0;
     double excess = 0.0;
     for (Eigen::Index i = 0; i < points.cols(); ++i) {
@@ -237,8 +221,9 @@ TEST(NeighborWalk, EndsAtTheClosestPointOnTheSurfaceAndNearItBeside) {
 TEST(NeighborWalk, KeepsTheLimitAndTheExactSearch) {
   const Points points = box(2000, Sampling::Random, 6).cloud();
   if (!NeighborLists::isUseful(points.cols())) GTEST_SKIP() << "no lists on this processor";
-  const Searches searches(points);
-  const NeighborWalk walk(searches.lists, searches.flann);
+  const FlannSearch flann(points);
+  const NeighborLists lists = listsOf(points, flann);
+  const NeighborWalk walk(lists, flann);
   const Points queries = near(points, 0.1f);
   std::vector<int> within(points.cols(), -1);
   std::vector<float> sq_distances;
@@ -255,7 +240,7 @@ TEST(NeighborWalk, KeepsTheLimitAndTheExactSearch) {
   EXPECT_GT(num_within, 0);
   EXPECT_LT(num_within, 2000);
   std::vector<int> exact, of_walk;
-  searches.flann.search(queries, 3, exact, sq_distances);
+  flann.search(queries, 3, exact, sq_distances);
   walk.search(queries, 3, of_walk, sq_distances);
   EXPECT_EQ(exact, of_walk);
 }

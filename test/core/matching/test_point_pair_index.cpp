@@ -13,7 +13,9 @@
 #include "core/matching/matching_rules.h"
 #include "core/matching/pose_screening.h"
 #include "core/matching/view_code.h"
+#include "shapes/scans.h"
 #include "shapes/shapes.h"
+#include "shapes/threads.h"
 
 namespace pcl_symmetry {
 namespace {
@@ -54,10 +56,7 @@ Eigen::Isometry3d elsewhere(double scale) {
 /// The points that are kept, scaled and then moved.
 template <typename IsKept>
 Points scaledPart(const Points& all, double scale, const Eigen::Isometry3d& motion, const IsKept& is_kept) {
-  std::vector<int> kept;
-  for (int i = 0; i < static_cast<int>(all.cols()); ++i)
-    if (is_kept(all.col(i))) kept.push_back(i);
-  return (motion * (scale * all(Eigen::all, kept).cast<double>())).cast<float>();
+  return (motion * (scale * test::pointsWhere(all, is_kept).cast<double>())).cast<float>();
 }
 
 /// The side of a shape that faces a viewer above it, without what lies beyond a plane: about half of what is
@@ -123,22 +122,17 @@ TEST(PointPairIndex, FindsShapesOfWhichHalfIsHidden) {
 
 TEST(PointPairIndex, ThreadsDoNotChangeIt) {
   const SurfacePoints scan = evenSurfacePoints(halfHidden(kHalves[1], 1.0), kMatching.num_scan_points, 1);
-  std::vector<ShapeOfPairs> found[2];
-  for (int i = 0; i < 2; ++i) {
+  test::compareThreads([&](int num_threads) {
     PairSearchOptions options;
     options.num_nearest = 3;
     options.num_poses = 2;
-    options.num_threads = 1 + 3 * i;
-    found[i] = PointPairIndex(shapes(1.0), options.num_threads).nearest(scan, options);
-    ASSERT_EQ(found[i].size(), 3u);
-  }
-  for (std::size_t k = 0; k < 3; ++k) {
-    EXPECT_EQ(found[0][k].shape, found[1][k].shape);
-    EXPECT_EQ(found[0][k].votes, found[1][k].votes);
-    ASSERT_EQ(found[0][k].T_shape_scan.size(), 2u);
-    for (std::size_t i = 0; i < 2; ++i)
-      EXPECT_EQ(found[0][k].T_shape_scan[i].matrix(), found[1][k].T_shape_scan[i].matrix());
-  }
+    options.num_threads = num_threads;
+    const std::vector<ShapeOfPairs> found = PointPairIndex(shapes(1.0), num_threads).nearest(scan, options);
+    EXPECT_EQ(found.size(), 3u);
+    for (const ShapeOfPairs& shape : found) EXPECT_EQ(shape.T_shape_scan.size(), 2u);
+    return test::valuesOf(found, &ShapeOfPairs::shape, &ShapeOfPairs::votes,
+                          [](const ShapeOfPairs& shape) { return test::matricesOf(shape.T_shape_scan); });
+  });
 }
 
 TEST(PointPairIndex, DegenerateShapesAreFoundByNoPair) {
@@ -175,10 +169,10 @@ SurfacePoints scanOfHalfABox(const Eigen::Vector3d& half, double scale) {
 
 /// A box is the same after half turns about its axes.
 double angleUpToHalfTurns(const Eigen::Matrix3d& rotation) {
-  double least = Eigen::AngleAxisd(rotation).angle();
+  double least = test::angleOf(rotation);
   for (int axis = 0; axis < 3; ++axis) {
     const Eigen::Matrix3d turn = (2.0 * Eigen::Vector3d::Unit(axis) - Eigen::Vector3d::Ones()).asDiagonal();
-    least = std::min(least, Eigen::AngleAxisd(Eigen::Matrix3d(rotation * turn)).angle());
+    least = std::min(least, test::angleOf(rotation * turn));
   }
   return least;
 }
@@ -186,13 +180,10 @@ double angleUpToHalfTurns(const Eigen::Matrix3d& rotation) {
 /// Poses anywhere, behind the given ones.
 std::vector<Eigen::Isometry3d> amongOthers(std::vector<Eigen::Isometry3d> poses, int count, double scale) {
   RandomStream random(5);
-  const auto direction = [&] {
-    return Eigen::Vector3d(Eigen::Vector3d::NullaryExpr([&] { return 2.0 * random.uniform() - 1.0; }));
-  };
   for (int i = 0; i < count; ++i) {
     Eigen::Isometry3d pose = scannedBox(scale);
-    pose.prerotate(Eigen::AngleAxisd(0.8 + 2.0 * random.uniform(), direction().normalized()));
-    pose.pretranslate(Eigen::Vector3d(0.5 * scale * direction()));
+    pose.prerotate(Eigen::AngleAxisd(0.8 + 2.0 * random.uniform(), test::randomDirection(random)));
+    pose.pretranslate(Eigen::Vector3d(0.5 * scale * test::randomDirection(random)));
     poses.insert(poses.begin(), pose);
   }
   return poses;
@@ -260,19 +251,14 @@ TEST(PoseScreening, ThreadsDoNotChangeIt) {
   std::vector<PosesOfShape> shapes;
   for (const ScreenedSurface& box : boxes) shapes.push_back({&box, amongOthers({scannedBox(1.0)}, 200, 1.0)});
   const ScreenedSurface scan(scanOfHalfABox(kBoxes[1], 1.0));
-  std::vector<ScreenedShape> found[2];
-  for (int i = 0; i < 2; ++i) {
+  test::compareThreads([&](int num_threads) {
     PoseScreeningOptions options;
-    options.num_threads = 1 + 3 * i;
-    found[i] = screenPoses(scan, shapes, options);
-    ASSERT_EQ(found[i].size(), 3u);
-  }
-  for (std::size_t k = 0; k < 3; ++k) {
-    EXPECT_EQ(found[0][k].shape, found[1][k].shape);
-    ASSERT_EQ(found[0][k].T_shape_scan.size(), found[1][k].T_shape_scan.size());
-    for (std::size_t i = 0; i < found[0][k].T_shape_scan.size(); ++i)
-      EXPECT_EQ(found[0][k].T_shape_scan[i].matrix(), found[1][k].T_shape_scan[i].matrix());
-  }
+    options.num_threads = num_threads;
+    const std::vector<ScreenedShape> found = screenPoses(scan, shapes, options);
+    EXPECT_EQ(found.size(), 3u);
+    return test::valuesOf(found, &ScreenedShape::shape,
+                          [](const ScreenedShape& shape) { return test::matricesOf(shape.T_shape_scan); });
+  });
 }
 
 TEST(PoseScreening, WithoutPosesOrSizeThereIsNoShape) {
@@ -372,26 +358,13 @@ TEST(ViewCodeIndex, FindsWhatAComparisonOfAllCodesFinds) {
 
 /// The surface of a slab with a tower on one end, 8000 points.
 Points slabWithTower(double length, double height) {
-  Points points(3, 8000);
-  RandomStream random(3);
-  const auto side = [&] { return 2.0 * random.uniform() - 1.0; };
-  for (Eigen::Index i = 0; i < points.cols(); ++i) {
-    Eigen::Vector3d x(side(), side(), side());
-    x[i % 3] = x[i % 3] < 0.0 ? -1.0 : 1.0;
-    const bool tower = i % 4 == 0;
-    x = x.cwiseProduct(tower ? Eigen::Vector3d(0.2, 0.15, height) : Eigen::Vector3d(length, 0.5, 0.2));
-    if (tower) x += Eigen::Vector3d(0.7 * length, 0.2, height);
-    points.col(i) = x.cast<float>();
-  }
-  return points;
+  const test::Block slab{Eigen::Vector3d::Zero(), {length, 0.5, 0.2}};
+  const test::Block tower{{0.7 * length, 0.2, height}, {0.2, 0.15, height}};
+  return test::surfaceOf({{slab, tower}, {}}, 8000, 3);
 }
 
 Points moved(const Points& points, const Eigen::Isometry3d& T) {
   return (T * points.cast<double>()).cast<float>();
-}
-
-double angleBetween(const Eigen::Isometry3d& a, const Eigen::Isometry3d& b) {
-  return Eigen::AngleAxisd(a.linear() * b.linear().transpose()).angle();
 }
 
 constexpr double kAngleStep = 2.0 * M_PI / 48.0;
@@ -431,7 +404,7 @@ TEST(ViewSignature, ARotationOfThePictureIsFound) {
     const ViewAgreement agreement = ViewComparison(rotated).compare(view.values.data(), 2.0f);
     EXPECT_LT(agreement.distance, 0.15f) << angle;
     const Eigen::Isometry3d pose = poseOfView(rotated, view, agreement.angle);
-    EXPECT_LT(angleBetween(pose, T.inverse()), 0.5 * kAngleStep + 0.02) << angle;
+    EXPECT_LT(test::angleOf((pose * T).linear()), 0.5 * kAngleStep + 0.02) << angle;
     EXPECT_LT((pose * (T * Eigen::Vector3d::Zero())).norm(), 0.1) << angle;
   }
 }
@@ -473,7 +446,7 @@ TEST(ViewIndex, FindsTheShapeAndItsPose) {
   EXPECT_LT(found.front().distance, found[1].distance);
   double least = M_PI;
   for (const Eigen::Isometry3d& pose : found.front().T_shape_scan)
-    least = std::min(least, angleBetween(pose, T_scan_shape.inverse()));
+    least = std::min(least, test::angleOf((pose * T_scan_shape).linear()));
   EXPECT_LT(least, 0.35);  // views are 20 degrees apart
 }
 
@@ -492,12 +465,9 @@ TEST(ViewIndex, AnyNumberOfThreadsGivesTheSame) {
   ViewIndex index;
   for (int i = 0; i < 20; ++i) index.add(viewsAround(slabWithTower(0.5 + 0.1 * i, 0.6), 10, 1));
   const View scan = viewOf(slabWithTower(1.07, 0.6), {0.3, -1.0, 0.6});
-  const std::vector<ShapeOfView> one = index.nearest(scan, 10, 1), many = index.nearest(scan, 10, 8);
-  ASSERT_EQ(one.size(), many.size());
-  for (std::size_t i = 0; i < one.size(); ++i) {
-    EXPECT_EQ(one[i].shape, many[i].shape);
-    EXPECT_EQ(one[i].distance, many[i].distance);
-  }
+  test::compareThreads([&](int num_threads) {
+    return test::valuesOf(index.nearest(scan, 10, num_threads), &ShapeOfView::shape, &ShapeOfView::distance);
+  });
 }
 
 }  // namespace

@@ -24,11 +24,6 @@ namespace {
 
 using namespace test;
 
-/// \return radians.
-double angleOf(const Eigen::Isometry3d& motion) {
-  return Eigen::AngleAxisd(motion.linear()).angle();
-}
-
 PosedSurface surface(const Points& points, std::optional<Visibility> seen = {}) {
   return {points, std::move(seen), 1, 0};
 }
@@ -50,7 +45,7 @@ TEST(PoseSearch, FindsAnyPoseOfAWhole) {
     const std::vector<RankedPose> poses = searchPoses(scan, model, {});
     ASSERT_FALSE(poses.empty());
     EXPECT_LE(poses.size(), 4u);
-    EXPECT_LT(angleOf(poses.front().T_model_scan * T_model_scan.inverse()), 0.05) << i;
+    EXPECT_LT(angleOf((poses.front().T_model_scan * T_model_scan.inverse()).linear()), 0.05) << i;
     for (std::size_t k = 1; k < poses.size(); ++k)
       EXPECT_LE(poses[k].score.merit(), poses[k - 1].score.merit()) << "best first";
   }
@@ -130,7 +125,7 @@ TEST(FrameHypotheses, AreAllWaysToLayAxesOnAxes) {
     const Eigen::Matrix3d cosines = b.axes.transpose() * hypotheses[i].linear() * a.axes;
     EXPECT_LT((cosines.cwiseAbs().colwise().maxCoeff().array() - 1.0).abs().maxCoeff(), 1e-9) << "axes on axes";
     for (std::size_t j = 0; j < i; ++j)
-      EXPECT_GT(angleOf(hypotheses[i] * hypotheses[j].inverse()), 10.0 * kDegree) << "each once";
+      EXPECT_GT(angleOf((hypotheses[i] * hypotheses[j].inverse()).linear()), 10.0 * kDegree) << "each once";
   }
 }
 
@@ -161,7 +156,8 @@ TEST(FrameHypotheses, HoldTheMotionBetweenTwoPosesOfAShape) {
   const std::vector<Eigen::Isometry3d> hypotheses = frameHypotheses(a, b);
   EXPECT_GE(hypotheses.size(), 24u);
   double least = kPi;
-  for (const Eigen::Isometry3d& hypothesis : hypotheses) least = std::min(least, angleOf(T_b_a.inverse() * hypothesis));
+  for (const Eigen::Isometry3d& hypothesis : hypotheses)
+    least = std::min(least, angleOf((T_b_a.inverse() * hypothesis).linear()));
   EXPECT_LT(least, 3.0 * kDegree);
 }
 
@@ -215,7 +211,7 @@ TEST(PoseScorer, TheTruePoseIsBestAndStandsStill) {
   const PoseScore score = scorer.score(T_model_scan, detail);
   EXPECT_GT(score.support, 0.95);
   EXPECT_EQ(score.conflict, 0.0) << "nobody looked";
-  EXPECT_LT(angleOf(scorer.step(T_model_scan, detail) * T_model_scan.inverse()), 0.01);
+  EXPECT_LT(angleOf((scorer.step(T_model_scan, detail) * T_model_scan.inverse()).linear()), 0.01);
   for (const double angle : {0.2, 0.5}) {
     Eigen::Isometry3d turned = T_model_scan;
     turned.linear() = T_model_scan.linear() * Eigen::AngleAxisd(angle, Eigen::Vector3d(1, 2, 3).normalized());

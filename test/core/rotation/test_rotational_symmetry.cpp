@@ -11,16 +11,13 @@
 #include "core/rotation/rotation_cover.h"
 #include "shapes/complaint.h"
 #include "shapes/shapes.h"
+#include "shapes/threads.h"
 #include "shapes/turning_shapes.h"
 
 namespace {
 
 using namespace pcl_symmetry;
 using namespace pcl_symmetry::test;
-
-double angleOf(const Eigen::Matrix3d& rotation) {
-  return Eigen::AngleAxisd(rotation).angle();
-}
 
 /// How far the closest of the motions found is from a rotation.
 double angleToNearest(const std::vector<Eigen::Isometry3d>& found, const Eigen::Matrix3d& rotation) {
@@ -256,9 +253,7 @@ TEST(ObjectSymmetries, CopiesOfPointsChangeNothing) {
 
 TEST(ObjectSymmetries, OfAFlatSheetTurnItOver) {
   const auto sheet = [](double width, double height) {
-    TurningShape shape = turningShape("sheet", RotationGroupKind::Dihedral, 2);
-    shape.addFace({{-width, -height, 0.0}, {width, -height, 0.0}, {width, height, 0.0}, {-width, height, 0.0}});
-    return objectSymmetries(moved(shape.sampled(3000, 1), randomPose(2)).cloud());
+    return objectSymmetries(moved(sheetShape(width, height).sampled(3000, 1), randomPose(2)).cloud());
   };
   EXPECT_EQ(sheet(1.0, 0.6).name(), "D2");
   EXPECT_EQ(sheet(1.0, 1.0).name(), "D4");
@@ -267,26 +262,15 @@ TEST(ObjectSymmetries, OfAFlatSheetTurnItOver) {
 TEST(ObjectSymmetries, AreTheSameForAnyNumberOfThreads) {
   for (const TurningShape& shape : {prismShape(3, 0.8), cylinderShape()}) {
     const Points cloud = moved(shape.sampled(1500, 1), randomPose(1)).cloud();
-    std::vector<ObjectSymmetries> found;
-    for (const int threads : {1, 5}) {
+    compareThreads([&](int num_threads) {
       ObjectSymmetryOptions options;  // coarse: sanitizers make it slow
       options.num_cells = 32;
       options.num_directions = 1000;
-      options.num_threads = threads;
-      found.push_back(objectSymmetries(cloud, options));
-    }
-    for (const ObjectSymmetries& other : found) {
-      EXPECT_EQ(other.name(), found[0].name());
-      EXPECT_EQ(other.confidence, found[0].confidence);
-      ASSERT_EQ(other.discrete.size(), found[0].discrete.size());
-      for (std::size_t i = 0; i < other.discrete.size(); ++i)
-        EXPECT_EQ(other.discrete[i].matrix(), found[0].discrete[i].matrix());
-      ASSERT_EQ(other.continuous.size(), found[0].continuous.size());
-      for (std::size_t i = 0; i < other.continuous.size(); ++i) {
-        EXPECT_EQ(other.continuous[i].axis, found[0].continuous[i].axis);
-        EXPECT_EQ(other.continuous[i].offset, found[0].continuous[i].offset);
-      }
-    }
+      options.num_threads = num_threads;
+      const ObjectSymmetries found = objectSymmetries(cloud, options);
+      return std::make_tuple(found.name(), found.confidence, matricesOf(found.discrete),
+                             valuesOf(found.continuous, &ContinuousSymmetry::axis, &ContinuousSymmetry::offset));
+    });
   }
 }
 
@@ -330,15 +314,6 @@ TEST(ObjectSymmetries, OptionsNameFieldValueAndRule) {
 }
 
 using Poses = std::vector<Eigen::Isometry3d>;
-
-/// A random rotation and a shift by up to \p shift.
-Eigen::Isometry3d poseFrom(RandomStream& random, double shift = 2.0) {
-  Eigen::Quaterniond q(test::gaussian(random), test::gaussian(random), test::gaussian(random), test::gaussian(random));
-  Eigen::Isometry3d T = Eigen::Isometry3d::Identity();
-  T.linear() = q.normalized().toRotationMatrix();
-  for (int k = 0; k < 3; ++k) T.translation()[k] = shift * (2.0 * random.uniform() - 1.0);
-  return T;
-}
 
 Eigen::Isometry3d rotationAboutPoint(const Eigen::Vector3d& axis, double angle, const Eigen::Vector3d& fixed) {
   return motionFixing(fixed, rotationAbout(axis.normalized(), angle));
@@ -385,7 +360,7 @@ std::vector<ObjectSymmetries> groups() {
   std::vector<ObjectSymmetries> all;
   for (const auto& [kind, fold] : kGroups) {
     all.push_back(placedGroupOf(kind, fold, Eigen::Isometry3d::Identity()));
-    all.push_back(placedGroupOf(kind, fold, poseFrom(random)));
+    all.push_back(placedGroupOf(kind, fold, randomPose(random)));
   }
   return all;
 }
@@ -393,7 +368,7 @@ std::vector<ObjectSymmetries> groups() {
 /// A symmetry of the group, drawn at random.
 Eigen::Isometry3d symmetryFrom(const ObjectSymmetries& group, RandomStream& random) {
   if (group.continuous.size() > 1)
-    return rotationAboutPoint(poseFrom(random).linear().col(0), 6.0 * random.uniform(), group.center);
+    return rotationAboutPoint(randomDirection(random), 6.0 * random.uniform(), group.center);
   const std::size_t k = random.below(group.discrete.size() + 1);
   const Eigen::Isometry3d element = k == 0 ? Eigen::Isometry3d::Identity() : group.discrete[k - 1];
   if (group.continuous.empty()) return element;
@@ -401,7 +376,7 @@ Eigen::Isometry3d symmetryFrom(const ObjectSymmetries& group, RandomStream& rand
 }
 
 double angleApart(const Eigen::Isometry3d& a, const Eigen::Isometry3d& b) {
-  return Eigen::Quaterniond(a.linear()).angularDistance(Eigen::Quaterniond(b.linear()));
+  return angleOf(a.linear().transpose() * b.linear());
 }
 
 double apart(const Eigen::Isometry3d& a, const Eigen::Isometry3d& b) {
@@ -409,26 +384,20 @@ double apart(const Eigen::Isometry3d& a, const Eigen::Isometry3d& b) {
 }
 
 Points pointsFrom(RandomStream& random, int size) {
-  Points points(3, size);
-  for (Eigen::Index i = 0; i < points.size(); ++i) points(i) = static_cast<float>(2.0 * random.uniform() - 1.0);
-  return points;
+  return Points::NullaryExpr(3, size, [&] { return static_cast<float>(symmetric(random)); });
 }
 
 /// The greatest distance of points in two poses.
 double greatestOffset(const Eigen::Isometry3d& a, const Eigen::Isometry3d& b, const Points& points) {
-  double sq = 0.0;
-  for (Eigen::Index i = 0; i < points.cols(); ++i) {
-    const Eigen::Vector3d x = points.col(i).cast<double>();
-    sq = std::max(sq, (a * x - b * x).squaredNorm());
-  }
-  return std::sqrt(sq);
+  const Eigen::Matrix3Xd x = points.cast<double>();
+  return (a * x - b * x).colwise().norm().maxCoeff();
 }
 
 TEST(PoseSymmetry, EquivalentsAreThePoseTimesEachSymmetry) {
   RandomStream random(1);
   for (const ObjectSymmetries& group : groups()) {
     SCOPED_TRACE(group.name());
-    const Eigen::Isometry3d T = poseFrom(random);
+    const Eigen::Isometry3d T = randomPose(random);
     const Poses equivalents = group.equivalents(T, 0.7);
     EXPECT_EQ(apart(equivalents[0], T), 0.0);
     if (group.continuous.size() < 2) {
@@ -456,7 +425,7 @@ TEST(PoseSymmetry, ClosestIsThatOfDenseSampling) {
     SCOPED_TRACE(group.name());
     const double step = group.continuous.size() > 1 ? 0.4 : 0.01;
     for (int k = 0; k < (group.continuous.size() > 1 ? 2 : 10); ++k) {
-      const Eigen::Isometry3d T = poseFrom(random), previous = poseFrom(random);
+      const Eigen::Isometry3d T = randomPose(random), previous = randomPose(random);
       const Eigen::Isometry3d closest = group.closestTo(T, previous);
       EXPECT_LT(group.distance(T, closest).angle, 1e-7) << "looks like T";
       EXPECT_LT((T * group.center - closest * group.center).norm(), 1e-12);
@@ -476,7 +445,7 @@ TEST(PoseSymmetry, CanonicalIsTheSameForAllThatLookTheSame) {
   for (const ObjectSymmetries& group : groups()) {
     SCOPED_TRACE(group.name());
     Poses poses{Eigen::Isometry3d::Identity()};
-    for (int k = 0; k < 6; ++k) poses.push_back(poseFrom(random));
+    for (int k = 0; k < 6; ++k) poses.push_back(randomPose(random));
     // Poses between equals: rotations by 90 and 180 degrees about the axes of the group and of the frame.
     for (const double angle : {0.5 * kPi, kPi, kPi / 3.0, kPi / 5.0}) {
       for (int k = 0; k < 3; ++k)
@@ -504,7 +473,7 @@ TEST(PoseSymmetry, DistanceIsThatOfClasses) {
   for (const ObjectSymmetries& group : groups()) {
     SCOPED_TRACE(group.name());
     for (int k = 0; k < 5; ++k) {
-      const Eigen::Isometry3d a = poseFrom(random), b = poseFrom(random), c = poseFrom(random);
+      const Eigen::Isometry3d a = randomPose(random), b = randomPose(random), c = randomPose(random);
       const PoseDistance ab = group.distance(a, b);
       EXPECT_NEAR(group.distance(b, a).angle, ab.angle, 1e-9);
       EXPECT_NEAR(group.distance(a * symmetryFrom(group, random), b * symmetryFrom(group, random)).angle, ab.angle,
@@ -522,21 +491,20 @@ TEST(PoseSymmetry, SurfaceDistanceIsThatOfDenseSampling) {
     if (group.kind == RotationGroupKind::Spherical) continue;
     SCOPED_TRACE(group.name());
     for (int k = 0; k < 4; ++k) {
-      const Eigen::Isometry3d a = poseFrom(random);
+      const Eigen::Isometry3d a = randomPose(random);
       const Eigen::Isometry3d b =
-          k < 2 ? poseFrom(random) : a * rotationAboutPoint({1, 2, 3}, 0.05, {1, 0, 1}) * symmetryFrom(group, random);
+          k < 2 ? randomPose(random) : a * rotationAboutPoint({1, 2, 3}, 0.05, {1, 0, 1}) * symmetryFrom(group, random);
       constexpr double kStep = 0.002;
-      double least = 1e9, farthest_arm = 0.0;
+      double least = 1e9;
       for (const Eigen::Isometry3d& other : group.equivalents(b, kStep))
         least = std::min(least, greatestOffset(a, other, points));
-      for (Eigen::Index i = 0; i < points.cols(); ++i)
-        farthest_arm = std::max(farthest_arm, (points.col(i).cast<double>() - group.center).norm());
+      const double farthest_arm = (points.cast<double>().colwise() - group.center).colwise().norm().maxCoeff();
       const double found = group.surfaceDistance(a, b, points);
       EXPECT_LE(found, least + 1e-9);
       EXPECT_LE(least, found + (group.continuous.empty() ? 1e-9 : 0.5 * kStep * farthest_arm));
       EXPECT_NEAR(group.surfaceDistance(a, b * symmetryFrom(group, random), points), found, 1e-6);
     }
-    const Eigen::Isometry3d T = poseFrom(random);
+    const Eigen::Isometry3d T = randomPose(random);
     EXPECT_LT(group.surfaceDistance(T, T * symmetryFrom(group, random), points), 1e-6);
   }
 }
@@ -544,14 +512,14 @@ TEST(PoseSymmetry, SurfaceDistanceIsThatOfDenseSampling) {
 /// Points of a ball that come in opposite pairs: whatever the rotation, one of a pair is at least as far as the center.
 TEST(PoseSymmetry, SurfaceDistanceOfASphereIsThatOfItsCenters) {
   RandomStream random(6);
-  const ObjectSymmetries sphere = placedGroupOf(RotationGroupKind::Spherical, 0, poseFrom(random));
+  const ObjectSymmetries sphere = placedGroupOf(RotationGroupKind::Spherical, 0, randomPose(random));
   Points points(3, 400);
   for (Eigen::Index i = 0; i < points.cols(); i += 2) {
-    const Eigen::Vector3d out = poseFrom(random).linear().col(0);
+    const Eigen::Vector3d out = randomDirection(random);
     points.col(i) = (sphere.center + 0.7 * out).cast<float>();
     points.col(i + 1) = (sphere.center - 0.7 * out).cast<float>();
   }
-  const Eigen::Isometry3d a = poseFrom(random), b = poseFrom(random);
+  const Eigen::Isometry3d a = randomPose(random), b = randomPose(random);
   const double found = sphere.surfaceDistance(a, b, points);
   EXPECT_NEAR(found, greatestOffset(a, sphere.closestTo(b, a), points), 1e-6);
   for (int k = 0; k < 200; ++k) EXPECT_GE(greatestOffset(a, b * symmetryFrom(sphere, random), points), found - 1e-6);
@@ -611,7 +579,7 @@ TEST(PoseSymmetry, GroupsGrowFromGeneratorsAndRefuseWhatIsNone) {
 
 TEST(TiltsCovering, ReachEveryRotationWithinTheAngle) {
   RandomStream random(12);
-  const Eigen::Vector3d axis = poseFrom(random).linear().col(0);
+  const Eigen::Vector3d axis = randomDirection(random);
   for (const double degrees : {180.0, 90.0, 60.0, 30.0, 15.0, 5.0}) {
     const double angle = degrees * kDegree;
     const std::vector<Eigen::Matrix3d> tilts = tiltsCovering(axis, angle);
@@ -620,7 +588,7 @@ TEST(TiltsCovering, ReachEveryRotationWithinTheAngle) {
     double farthest = 0.0;
     for (int k = 0; k < 5000; ++k) {
       // R = C D H: H takes R^-1 a to D^-1 a.
-      const Eigen::Vector3d direction = poseFrom(random).linear().col(0);
+      const Eigen::Vector3d direction = randomDirection(random);
       double closest = -1.0;
       for (const Eigen::Matrix3d& tilt : tilts) closest = std::max(closest, direction.dot(tilt.transpose() * axis));
       farthest = std::max(farthest, std::acos(std::min(1.0, closest)));

@@ -16,6 +16,7 @@
 #include "pcl_symmetry/core/visibility.h"
 #include "shapes/scans.h"
 #include "shapes/shapes.h"
+#include "shapes/threads.h"
 
 namespace {
 
@@ -83,11 +84,7 @@ TEST(InferView, FindsNoneForOpenShellsAndSheets) {
   // Half a sphere and a sheet are seen once from many positions. Their even density is not that of a scan.
   const Points whole = sphere(20'000, 1).cloud();
   EXPECT_FALSE(inferView(facing(whole, {0.0, 0.0, 100.0}), {0.0, 0.0, 4.0}));
-  RandomStream random(6);
-  Points sheet(3, 4000);
-  for (Eigen::Index i = 0; i < sheet.cols(); ++i)
-    sheet.col(i) = Eigen::Vector3d(symmetric(random), symmetric(random), 0.0).cast<float>();
-  EXPECT_FALSE(inferView(sheet, {0.0, 0.0, 4.0}));
+  EXPECT_FALSE(inferView(flatSquare(4000, 6), {0.0, 0.0, 4.0}));
 }
 
 TEST(InferView, FindsNoneForTwoViewsPutTogether) {
@@ -176,10 +173,7 @@ TEST(CutShare, IsOfTheOutlineBesideWhichThePictureEnds) {
 }
 
 TEST(LayeredShare, CountsLayers) {
-  RandomStream random(6);
-  Points points(3, 4000);
-  for (Eigen::Index i = 0; i < points.cols(); ++i)
-    points.col(i) = Eigen::Vector3d(symmetric(random), symmetric(random), 0.0).cast<float>();
+  Points points = flatSquare(4000, 6);
   const Eigen::Vector3d viewpoint(0.1, 0.2, 50.0);
   EXPECT_EQ(layeredShare(points, viewpoint), 0.0) << "a flat sheet";
   for (Eigen::Index i = 0; i < points.cols(); i += 2) points(2, i) = -0.5f;
@@ -361,8 +355,7 @@ TEST(SensorNoise, ResolvesWhatItsErrorsLeave) {
 
 TEST(DepthFilter, IsTheSameForAnyNumberOfThreads) {
   const DepthImage image = noisy(picture(slanted));
-  EXPECT_EQ(rootMeanSquare(filterDepths(image, 2, 1).depths, slanted),
-            rootMeanSquare(filterDepths(image, 2, 8).depths, slanted));
+  compareThreads([&](int num_threads) { return rootMeanSquare(filterDepths(image, 2, num_threads).depths, slanted); });
 }
 
 constexpr double kPixel = 0.01, kRoll = 0.3;
@@ -419,7 +412,6 @@ TEST(FrameSides, PlacesWithoutRowsHaveNone) {
 TEST(FrameSides, BeyondThemNothingIsKnown) {
   // A unit sphere seen from a distance of 4, its picture cut off on the right.
   const double focal = 200.0;
-  Points points(3, 0);
   std::vector<Eigen::Vector3f> hits;
   for (int v = -60; v <= 60; ++v)
     for (int u = -60; u <= 20; ++u) {
@@ -427,8 +419,7 @@ TEST(FrameSides, BeyondThemNothingIsKnown) {
       const double along = 4.0 * ray.z(), sq_half = 1.0 - 16.0 + along * along;
       if (sq_half > 0.0) hits.push_back(((along - std::sqrt(sq_half)) * ray).cast<float>());
     }
-  points.resize(3, static_cast<Eigen::Index>(hits.size()));
-  for (std::size_t i = 0; i < hits.size(); ++i) points.col(static_cast<Eigen::Index>(i)) = hits[i];
+  const Eigen::Map<const Points> points(hits[0].data(), 3, static_cast<Eigen::Index>(hits.size()));
   const auto seen = Visibility::fromPoints(points, Eigen::Vector3d::Zero());
   ASSERT_TRUE(seen);
   constexpr double kFree = -std::numeric_limits<double>::infinity(), kUnknown = -kFree;

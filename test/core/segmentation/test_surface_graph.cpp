@@ -27,8 +27,7 @@ Mesh step() {
 }
 
 TEST(SurfaceGraph, EveryFaceOfACubeHasFourNeighborsAndItsArea) {
-  const Mesh mesh = cube();
-  const SurfaceGraph graph = meshGraph(mesh.vertices, mesh.polygons);
+  const SurfaceGraph graph = cube().graph();
   ASSERT_EQ(graph.size(), 6 * 16);
   EXPECT_FLOAT_EQ(graph.area(), 96.0);
   for (int i = 0; i < graph.size(); ++i) {
@@ -39,8 +38,7 @@ TEST(SurfaceGraph, EveryFaceOfACubeHasFourNeighborsAndItsArea) {
 }
 
 TEST(SurfaceGraph, ConcaveEdgesArePositiveAndConvexOnesNegative) {
-  const Mesh mesh = step();
-  const SurfaceGraph graph = meshGraph(mesh.vertices, mesh.polygons);
+  const SurfaceGraph graph = step().graph();
   int num_concave = 0, num_convex = 0, num_flat = 0;
   for (const SurfaceGraph::Edge& edge : graph.edges) {
     if (std::abs(edge.concavity) < 1e-6f)
@@ -61,7 +59,7 @@ TEST(SurfaceGraph, SoupsAndTurnedFacesGiveTheSameGraph) {
   Mesh soup = test::soupOf(mesh);
   for (std::size_t f = 0; f < soup.polygons.size(); f += 3)
     std::reverse(soup.polygons[f].begin(), soup.polygons[f].end());
-  const SurfaceGraph graph = meshGraph(mesh.vertices, mesh.polygons), same = meshGraph(soup.vertices, soup.polygons);
+  const SurfaceGraph graph = mesh.graph(), same = soup.graph();
   EXPECT_EQ(same.edges.size(), graph.edges.size());
   EXPECT_TRUE(same.normals.isApprox(graph.normals, 1e-5f));
   for (const auto* g : {&graph, &same}) {
@@ -77,7 +75,7 @@ TEST(SurfaceGraph, BrokenFacesAreElementsToo) {
   mesh.polygons.push_back({mesh.polygons[1][0], mesh.polygons[1][1], mesh.polygons[1][0]});  // no area
   const int nowhere = mesh.add(Eigen::Vector3f::Constant(std::numeric_limits<float>::quiet_NaN()));
   mesh.polygons.push_back({0, 1, nowhere});
-  const SurfaceGraph graph = meshGraph(mesh.vertices, mesh.polygons);
+  const SurfaceGraph graph = mesh.graph();
   ASSERT_EQ(graph.size(), num_faces + 3);
   const auto num_neighbors = [&](int i) { return graph.first_edge[i + 1] - graph.first_edge[i]; };
   EXPECT_GT(num_neighbors(num_faces), 0) << "the copy joins the faces of its edges";
@@ -120,8 +118,7 @@ TEST(SurfaceGraph, CloudOfABoxHasItsAreaAndOutwardNormals) {
 }
 
 TEST(SurfaceGraph, PiecesAreConnectedAndOfOneLabel) {
-  const Mesh mesh = cube();
-  const SurfaceGraph graph = meshGraph(mesh.vertices, mesh.polygons);
+  const SurfaceGraph graph = cube().graph();
   std::vector<int> labels(static_cast<std::size_t>(graph.size()), 0);
   EXPECT_EQ(connectedPieces(graph, labels), labels);
   // Top and bottom have label 0 and do not touch; the other faces have no label.

@@ -17,6 +17,7 @@
 #include "pcl_symmetry/core/surface_graph.h"
 #include "shapes/meshes.h"
 #include "shapes/neighbors.h"
+#include "shapes/threads.h"
 
 namespace pcl_symmetry {
 namespace {
@@ -65,8 +66,7 @@ void expectNumberedByFallingArea(const SurfaceGraph& graph, const Segmentation& 
 }
 
 TEST(Splitting, TakesTheHandleOffABox) {
-  const Mesh mesh = mug();
-  const SurfaceGraph graph = meshGraph(mesh.vertices, mesh.polygons);
+  const SurfaceGraph graph = mug().graph();
   const Segmentation segmentation = segmentSurface(graph, splittingTo(1));
   ASSERT_EQ(segmentation.num_segments, 2);
   expectTreeOf(segmentation);
@@ -77,8 +77,7 @@ TEST(Splitting, TakesTheHandleOffABox) {
 }
 
 TEST(Splitting, DepthAndPartsBoundTheNumberOfSegments) {
-  const Mesh mesh = mug();
-  const SurfaceGraph graph = meshGraph(mesh.vertices, mesh.polygons);
+  const SurfaceGraph graph = mug().graph();
   EXPECT_EQ(segmentSurface(graph, splittingTo(0)).num_segments, 1);
   const Segmentation deep = segmentSurface(graph, splittingTo(2));
   EXPECT_GT(deep.num_segments, 2);
@@ -91,23 +90,12 @@ TEST(Splitting, DepthAndPartsBoundTheNumberOfSegments) {
 }
 
 TEST(Splitting, EndsIfNoPlaneMapsAShareBetweenTheTwo) {
-  const Mesh mesh = mug();
-  const SurfaceGraph graph = meshGraph(mesh.vertices, mesh.polygons);
+  const SurfaceGraph graph = mug().graph();
   SegmentationOptions options = splittingTo(3);
   options.splitting.min_share = options.splitting.max_share = 0.5;
   const Segmentation segmentation = segmentSurface(graph, options);
   EXPECT_EQ(segmentation.num_segments, 1) << "no plane maps exactly half of it";
   EXPECT_FALSE(segmentation.tree[0].planes.empty());
-}
-
-TEST(Splitting, SameForAnyNumberOfThreads) {
-  const Mesh mesh = mug();
-  const SurfaceGraph graph = meshGraph(mesh.vertices, mesh.polygons);
-  SegmentationOptions options = splittingTo(2);
-  options.num_threads = 1;
-  const std::vector<int> labels = segmentSurface(graph, options).labels;
-  options.num_threads = 3;
-  EXPECT_EQ(segmentSurface(graph, options).labels, labels);
 }
 
 /// Segment of the face whose center is closest to a position.
@@ -120,8 +108,7 @@ int segmentAt(const SurfaceGraph& graph, const Segmentation& segmentation, const
 const Eigen::Vector3f kLeftCube(4, 4, 8), kRightCube(18, 4, 8), kBar(11, 4, 5);
 
 TEST(Merging, FindsThePartsOfADumbbellAndTheirImages) {
-  const Mesh mesh = test::dumbbell();
-  const SurfaceGraph graph = meshGraph(mesh.vertices, mesh.polygons);
+  const SurfaceGraph graph = test::dumbbell().graph();
   const Segmentation segmentation = segmentSurface(graph);
   expectTreeOf(segmentation);
   EXPECT_GE(segmentation.num_segments, 3);
@@ -161,8 +148,7 @@ TEST(Merging, FindsThePartsOfADumbbellAndTheirImages) {
 }
 
 TEST(Merging, GivesAsManyPartsAsAskedFor) {
-  const Mesh mesh = test::dumbbell();
-  const SurfaceGraph graph = meshGraph(mesh.vertices, mesh.polygons);
+  const SurfaceGraph graph = test::dumbbell().graph();
   for (const int num_parts : {1, 2, 5}) {
     SegmentationOptions options;
     options.num_parts = num_parts;
@@ -173,8 +159,7 @@ TEST(Merging, GivesAsManyPartsAsAskedFor) {
 }
 
 TEST(Merging, ConcavityWithoutTheBodySeparatesTheCubes) {
-  const Mesh mesh = test::dumbbell();
-  const SurfaceGraph graph = meshGraph(mesh.vertices, mesh.polygons);
+  const SurfaceGraph graph = test::dumbbell().graph();
   SegmentationOptions options;
   options.evidence = MergingEvidence::SymmetryAndConcavity;
   const Segmentation segmentation = segmentSurface(graph, options);
@@ -187,7 +172,7 @@ TEST(Merging, PiecesThatNothingJoinsAreSegmentsAndCrumbsJoinTheClosest) {
   Mesh mesh = test::voxelMesh(22, [](int x, int y, int z) { return y < 8 && z < 8 && (x < 8 || x >= 14); });
   const int a = mesh.add({22.5f, 4, 4}), b = mesh.add({22.5f, 4.5f, 4}), c = mesh.add({22.5f, 4, 4.5f});
   mesh.polygons.push_back({a, b, c});
-  const SurfaceGraph graph = meshGraph(mesh.vertices, mesh.polygons);
+  const SurfaceGraph graph = mesh.graph();
   const Segmentation segmentation = segmentSurface(graph);
   expectTreeOf(segmentation);
   EXPECT_EQ(segmentation.num_segments, 2);
@@ -200,7 +185,7 @@ TEST(Merging, BrokenMeshesAreCutToo) {
   for (std::size_t f = 0; f < num_faces; f += 50) mesh.polygons.push_back(mesh.polygons[f]);   // twice
   for (std::size_t f = 10; f < num_faces; f += 90) mesh.polygons[f] = {0, 1, 1};               // holes
   mesh.polygons.push_back({mesh.polygons[5][0], mesh.polygons[5][1], mesh.polygons[300][0]});  // a fin
-  const SurfaceGraph graph = meshGraph(mesh.vertices, mesh.polygons);
+  const SurfaceGraph graph = mesh.graph();
   const Segmentation segmentation = segmentSurface(graph);
   expectTreeOf(segmentation);
   ASSERT_EQ(segmentation.labels.size(), mesh.polygons.size());
@@ -214,19 +199,18 @@ TEST(Merging, ShapesWithoutAnInsideAreCutToo) {
   for (int x = 0; x < 10; ++x)
     for (int y = 0; y < 10; ++y)
       sheet.polygons.push_back({11 * x + y, 11 * x + y + 11, 11 * x + y + 12, 11 * x + y + 1});
-  expectTreeOf(segmentSurface(meshGraph(sheet.vertices, sheet.polygons)));
+  expectTreeOf(segmentSurface(sheet.graph()));
   const Segmentation one = segmentSurface(meshGraph(sheet.vertices, {{0, 11, 1}}));
   EXPECT_EQ(one.labels, std::vector<int>{0});
 }
 
-TEST(Merging, SameForAnyNumberOfThreads) {
-  const Mesh mesh = mug();
-  const SurfaceGraph graph = meshGraph(mesh.vertices, mesh.polygons);
-  SegmentationOptions options;
-  options.num_threads = 1;
-  const std::vector<int> labels = segmentSurface(graph, options).labels;
-  options.num_threads = 3;
-  EXPECT_EQ(segmentSurface(graph, options).labels, labels);
+TEST(SurfaceSegmentation, IsTheSameForAnyNumberOfThreads) {
+  const SurfaceGraph graph = mug().graph();
+  for (SegmentationOptions options : {SegmentationOptions(), splittingTo(2)})
+    test::compareThreads([&](int num_threads) {
+      options.num_threads = num_threads;
+      return segmentSurface(graph, options).labels;
+    });
 }
 
 /// Points spread over the faces of a dumbbell.
@@ -267,12 +251,11 @@ TEST(SurfaceSegmentation, TwentyPointsAndSmallMeshesMayHaveParts) {
                              static_cast<float>(corner >> 2)));
   cube.polygons = {{0, 2, 3}, {0, 3, 1}, {4, 5, 7}, {4, 7, 6}, {0, 1, 5}, {0, 5, 4},
                    {2, 6, 7}, {2, 7, 3}, {0, 4, 6}, {0, 6, 2}, {1, 3, 7}, {1, 7, 5}};
-  EXPECT_EQ(segmentSurface(meshGraph(cube.vertices, cube.polygons), two).num_segments, 2);
+  EXPECT_EQ(segmentSurface(cube.graph(), two).num_segments, 2);
 }
 
 TEST(SurfaceSegmentation, RefusesBadOptions) {
-  const Mesh mesh = mug();
-  const SurfaceGraph graph = meshGraph(mesh.vertices, mesh.polygons);
+  const SurfaceGraph graph = mug().graph();
   EXPECT_THROW(segmentSurface(graph, splittingTo(-1)), std::invalid_argument);
   SegmentationOptions options;
   options.splitting.min_share = 0.95;
@@ -374,7 +357,7 @@ SurfaceGraph strip() {
       mesh.add({static_cast<float>(std::min(x, 7)), side * half_width, static_cast<float>(std::max(0, x - 7))});
   }
   for (int x = 0; x < 10; ++x) mesh.polygons.push_back({2 * x, 2 * x + 2, 2 * x + 3, 2 * x + 1});
-  return meshGraph(mesh.vertices, mesh.polygons);
+  return mesh.graph();
 }
 
 /// Elements 0 to 4 on one side, 5 to 9 on the other: the border is at x = 5.
@@ -469,7 +452,7 @@ int numPatches(const std::vector<int>& patches) {
 
 TEST(SurfacePatches, AreAsManyAsAskedForAndConnected) {
   const test::Mesh mesh = test::dumbbell();
-  const SurfaceGraph graph = meshGraph(mesh.vertices, mesh.polygons);
+  const SurfaceGraph graph = mesh.graph();
   for (const int num_patches : {1, 7, 40}) {
     const std::vector<int> patches = growPatches(graph, num_patches, 0.0f);
     EXPECT_EQ(numPatches(patches), num_patches);
@@ -485,7 +468,7 @@ TEST(SurfacePatches, BordersPreferConcaveEdges) {
     for (const float y : {0.0f, 1.0f})
       mesh.add({static_cast<float>(std::min(x, 1)), y, static_cast<float>(std::max(0, x - 1))});
   for (int x = 0; x < 4; ++x) mesh.polygons.push_back({2 * x, 2 * x + 2, 2 * x + 3, 2 * x + 1});
-  SurfaceGraph graph = meshGraph(mesh.vertices, mesh.polygons);
+  SurfaceGraph graph = mesh.graph();
   for (SurfaceGraph::Edge& edge : graph.edges) edge.concavity = std::abs(edge.concavity);
   const std::vector<int> patches = growPatches(graph, 2, 100.0f);
   EXPECT_NE(patches[0], patches[1]);

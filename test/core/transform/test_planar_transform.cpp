@@ -12,6 +12,7 @@
 #include "core/transform/sampled_transform.h"
 #include "pcl_symmetry/core/closest_point_search.h"
 #include "shapes/scans.h"
+#include "shapes/threads.h"
 
 namespace {
 
@@ -270,7 +271,7 @@ TEST(LineSums, VectorInstructionsGiveTheSumsOfThePlainLoop) {
 
 TEST(Transforms, SameBytesForAnyNumberOfThreads) {
   const Scene& scene = scenes()[3];
-  const auto all = [&](int num_threads) {
+  compareThreads([&](int num_threads) {
     SampledTransformOptions sampled;
     ConvolutionTransformOptions convolution;
     VotingTransformOptions voting;
@@ -282,10 +283,7 @@ TEST(Transforms, SameBytesForAnyNumberOfThreads) {
                                              convolutionTransform(scene.edt, scene.grid, convolution).values,
                                              rotationalTransform(scene.edt, scene.grid, rotational).values,
                                              votingTransform(scene.edt, scene.grid, voting).values};
-  };
-  const auto one = all(1);
-  EXPECT_EQ(all(2), one);
-  EXPECT_EQ(all(8), one);
+  });
 }
 
 TEST(Transforms, AGridOfItsOwnCenterMeansTheSamePlanes) {
@@ -366,13 +364,11 @@ TEST_F(TransformWithFreeSpace, IsSeenSymmetryOfTheTwoMeans) {
 }
 
 TEST_F(TransformWithFreeSpace, SameBytesForAnyNumberOfThreads) {
-  SampledTransformOptions options;
-  options.num_threads = 1;
-  const SymmetryMap one = sampledTransform(edt_, grid_, options, free_);
-  for (const int num_threads : {2, 8}) {
+  compareThreads([&](int num_threads) {
+    SampledTransformOptions options;
     options.num_threads = num_threads;
-    EXPECT_EQ(sampledTransform(edt_, grid_, options, free_).values, one.values) << num_threads;
-  }
+    return sampledTransform(edt_, grid_, options, free_).values;
+  });
 }
 
 TEST_F(TransformWithFreeSpace, EveryMethodGivesTheSameMap) {
