@@ -1,9 +1,9 @@
 #include <algorithm>
-#include <cmath>
 #include <optional>
 #include <utility>
 
 #include "core/base/check.h"
+#include "core/base/logistic.h"
 #include "core/matching/shape_signature.h"
 #include "core/matching/view_signature.h"
 #include "pcl_symmetry/impl/cloud_conversion.hpp"
@@ -62,7 +62,7 @@ void fillConfidences(std::vector<PosedModel>& found) {
     while (other < found.size() && firsts[other] == firsts[i]) ++other;
     const double lead =
         std::min(merit - (other < found.size() ? found[other].model.score.merit() : 0.0), kRecognition.max_lead);
-    found[i].model.confidence = 1.0 / (1.0 + std::exp((kRecognition.even_sum - merit - lead) / kRecognition.odds_step));
+    found[i].model.confidence = logistic(-(kRecognition.even_sum - merit - lead) / kRecognition.odds_step);
     if (firsts[i] == i) sum += found[i].model.confidence;
   }
   if (sum > 1.0)

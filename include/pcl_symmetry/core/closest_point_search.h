@@ -31,6 +31,14 @@ public:
   virtual void search(const PointsRef& queries, int num_neighbors, std::vector<int>& indices,
                       std::vector<float>& sq_distances) const = 0;
 
+  /// \return the closest point of each query, 3 x M.
+  std::vector<int> closest(const PointsRef& queries) const {
+    std::vector<int> indices;
+    std::vector<float> sq_distances;
+    search(queries, 1, indices, sq_distances);
+    return indices;
+  }
+
   /// Finds the closest point to each query within a distance. Must be safe to call from several threads at once.
   /// \param queries 3 x M, finite, input units.
   /// \param max_sq_distance greatest squared distance, input units squared.

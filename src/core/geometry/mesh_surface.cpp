@@ -1,6 +1,5 @@
 #include "pcl_symmetry/core/mesh_surface.h"
 
-#include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
@@ -11,15 +10,14 @@
 #include "core/base/check.h"
 #include "core/base/median.h"
 #include "core/geometry/directions.h"
+#include "core/geometry/geometry_rules.h"
 #include "core/geometry/mesh_sampling.h"
+#include "core/geometry/small_motion.h"
 #include "core/geometry/triangle_tree.h"
 
 namespace pcl_symmetry {
 
 namespace {
-
-using Vector6d = Eigen::Matrix<double, 6, 1>;
-using Matrix6d = Eigen::Matrix<double, 6, 6>;
 
 // Lengths are in radii of the bounding ball.
 struct MeshRules {
@@ -47,17 +45,6 @@ struct MotionSums {
   Matrix6d h = Matrix6d::Zero();
   Vector6d g = Vector6d::Zero();
   double cost = 0.0;  // of what does not agree
-
-  Vector6d step() const {
-    const Eigen::SelfAdjointEigenSolver<Matrix6d> solver(h);
-    Vector6d result = Vector6d::Zero();
-    for (int i = 0; i < 6; ++i) {
-      const double stiffness = solver.eigenvalues()[i];
-      if (!(stiffness > kMesh.stiffness * solver.eigenvalues()[5])) continue;
-      result -= solver.eigenvectors().col(i) * (solver.eigenvectors().col(i).dot(g) / stiffness);
-    }
-    return result * std::min(1.0, kMesh.longest_step / std::max(result.norm(), kMesh.settled));
-  }
 };
 
 }  // namespace
@@ -226,13 +213,11 @@ MeshSurface::Placement MeshSurface::fitted(const MotionsAbout& motions) const {
     } else if (++num_worse >= kMesh.most_worse && width == kMesh.least_width) {
       break;
     }
-    const Vector6d step = sums.step();
-    const double angle = step.head<3>().norm();
+    const Vector6d step = smallMotion(sums.h, sums.g, kMesh.stiffness, kMesh.longest_step);
     const bool is_done = step.norm() < kMesh.settled && (width == kMesh.least_width || sums.cost < kMesh.exact_cost);
     if (is_done || !step.allFinite()) break;
     if (step.norm() < kMesh.short_step * width) width = std::max(kMesh.least_width, 0.5 * width);
-    const Eigen::Matrix3d next =
-        angle > 0.0 ? Eigen::AngleAxisd(angle, step.head<3>() / angle).toRotationMatrix() : Eigen::Matrix3d::Identity();
+    const Eigen::Matrix3d next = rotationBy(step.head<3>());
     rotation = next * rotation;
     for (Eigen::Matrix3d& linear : moving.linear) linear = next * linear * next.transpose();
     moving.center += step.tail<3>();

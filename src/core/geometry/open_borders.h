@@ -12,7 +12,6 @@ namespace pcl_symmetry {
 /// \param samples 3 x N, finite.
 /// \param search over the same samples.
 /// \param normals 3 x N, unit.
-/// \param num_threads 0 = one per core.
 /// \param known the closest points of each sample, as localGeometry() finds them: where these leave no gap, no more are
 /// searched for; the answer is the same. Null = not known.
 /// \return N values, 1 at a border.

@@ -8,6 +8,7 @@
 
 #include "core/base/constants.h"
 #include "core/base/median.h"
+#include "core/geometry/small_motion.h"
 #include "core/registration/registration_rules.h"
 
 namespace pcl_symmetry {
@@ -40,7 +41,7 @@ Residuals residualsAt(const PosedSurface& scan, const PosedSurface& model, const
     const Eigen::Vector3d turned = T_model_scan.linear() * scan.normals.col(scan.order[i]).cast<double>();
     Eigen::Matrix<double, 6, 3> lever;
     lever << crossMatrix(x), Eigen::Matrix3d::Identity();
-    const Motion6d row = lever * n;
+    const Vector6d row = lever * n;
     const double distance = n.dot(x - model.points.col(closest[i]).cast<double>());
     residuals.hessian += row * row.transpose();
     // A normal is off in the two directions across it, by half of the square in each.
@@ -87,10 +88,9 @@ MotionCovariance poseCovariance(const PosedSurface& scan, const PosedSurface& mo
 }
 
 Eigen::Isometry3d MotionEquations::motion() const {
-  using Vector6d = Eigen::Matrix<double, 6, 1>;
   const WeightedProducts::Matrix planes = of_planes_.sums(), points = of_points_.sums();
   const Eigen::Matrix3d arms = points.topLeftCorner<3, 3>(), turned = points.block<3, 3>(0, 3);
-  Eigen::Matrix<double, 6, 6> hessian = planes.topLeftCorner<6, 6>();
+  Matrix6d hessian = planes.topLeftCorner<6, 6>();
   hessian.topLeftCorner<3, 3>() += arms.trace() * Eigen::Matrix3d::Identity() - arms;
   hessian.block<3, 3>(3, 0) -= crossMatrix(points.block<3, 1>(0, 6));
   hessian.bottomRightCorner<3, 3>().diagonal().array() += points(6, 6);
@@ -102,8 +102,7 @@ Eigen::Isometry3d MotionEquations::motion() const {
   const Vector6d motion = hessian.selfadjointView<Eigen::Lower>().ldlt().solve(gradient);
   Eigen::Isometry3d moved = Eigen::Isometry3d::Identity();
   if (!motion.allFinite()) return moved;
-  const double angle = motion.head<3>().norm();
-  if (angle > 0.0) moved.linear() = Eigen::AngleAxisd(angle, motion.head<3>() / angle).toRotationMatrix();
+  moved.linear() = rotationBy(motion.head<3>());
   moved.translation() = unit_ * motion.tail<3>();
   return moved;
 }

@@ -1,28 +1,20 @@
 #include "core/rotation/rotation_fit.h"
 
-#include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <numeric>
 
+#include "core/base/logistic.h"
 #include "core/base/median.h"
 #include "core/base/parallel.h"
 #include "core/evidence/surface_samples.h"
 #include "core/geometry/point_samples.h"
+#include "core/geometry/small_motion.h"
 
 namespace pcl_symmetry {
 
 namespace {
-
-using Vector6d = Eigen::Matrix<double, 6, 1>;
-using Matrix6d = Eigen::Matrix<double, 6, 6>;
-
-Eigen::Matrix3d rotationBy(const Eigen::Vector3d& rotation_vector) {
-  const double angle = rotation_vector.norm();
-  if (angle == 0.0) return Eigen::Matrix3d::Identity();
-  return Eigen::AngleAxisd(angle, rotation_vector / angle).toRotationMatrix();
-}
 
 /// Indices of at most \p most of \p size items, evenly spread.
 std::vector<std::size_t> spreadOver(std::size_t size, std::size_t most) {
@@ -43,32 +35,13 @@ double RotationLimits::confidence(const OffShares& shares, std::size_t num_point
   const double unit = kRotation.share_unit + kRotation.share_errors * std::sqrt(max_feature * (1.0 - max_feature) /
                                                                                 static_cast<double>(num_points));
   const double margin = max_feature > 0.0 ? max_feature * (1.0 - kRotation.optimism * excess(shares)) : -shares.off;
-  return 1.0 / (1.0 + std::exp(-margin / unit));
+  return logistic(margin / unit);
 }
 
-/// Least squares of the distances m . (x' - y) in small rotations omega of all axes and moves t of the center: unknowns
-/// (omega, t).
+/// Least squares of the distances m . (x' - y) in small rotations of all axes and moves of the center.
 struct RotationFit::NormalEquations {
   Matrix6d h = Matrix6d::Zero();
   Vector6d g = Vector6d::Zero();
-
-  void add(const NormalEquations& other) {
-    h += other.h;
-    g += other.g;
-  }
-
-  /// The Gauss-Newton step, at most max_step long. Directions that the surface does not fix stay as they are.
-  Vector6d step() const {
-    const Eigen::SelfAdjointEigenSolver<Matrix6d> solver(h);
-    Vector6d result = Vector6d::Zero();
-    for (int i = 0; i < 6; ++i) {
-      const double stiffness = solver.eigenvalues()[i];
-      if (!(stiffness > kRotation.min_stiffness * solver.eigenvalues()[5])) continue;
-      result -= solver.eigenvectors().col(i) * (solver.eigenvectors().col(i).dot(g) / stiffness);
-    }
-    const double length = result.norm();
-    return length > kRotation.max_step ? Vector6d(result * (kRotation.max_step / length)) : result;
-  }
 };
 
 RotationFit::RotationFit(Points points, const GaussianEdt& edt, RotationLimits limits, double reach, std::uint64_t seed,
@@ -213,8 +186,11 @@ RotationSet RotationFit::fitted(RotationSet set, const std::vector<std::size_t>&
     parallelBlocks(used.size(), num_threads_,
                    [&](std::size_t k) { parts[k] = equations(set, used[k], num_samples, annealing); });
     NormalEquations sums;
-    for (const NormalEquations& part : parts) sums.add(part);
-    const Vector6d step = sums.step();
+    for (const NormalEquations& part : parts) {
+      sums.h += part.h;
+      sums.g += part.g;
+    }
+    const Vector6d step = smallMotion(sums.h, sums.g, kRotation.min_stiffness, kRotation.max_step);
     if (!step.allFinite()) break;
     const Eigen::Matrix3d change = rotationBy(step.head<3>());
     for (Eigen::Matrix3d& rotation : set.rotations) rotation = change * rotation * change.transpose();

@@ -114,7 +114,6 @@ public:
   /// \param limits what symmetric means; tolerance at most \p reach.
   /// \param reach greatest tolerance of withLimits().
   /// \param seed of the samples.
-  /// \param num_threads >= 0; 0 = one per core.
   RotationFit(Points points, const GaussianEdt& edt, RotationLimits limits, double reach, std::uint64_t seed,
               int num_threads);
 
