@@ -156,9 +156,7 @@ void SymmetrySegmentation<PointT>::segmentCloud() {
   labels_.assign(input_->size(), -1);
   const detail::SelectedPoints all =
       detail::selectPoints(*input_, use_indices_ ? indices_.get() : nullptr, input_->size(), options_.seed);
-  std::vector<int> closest;
-  std::vector<float> sq_distances;
-  make_search(points)->search(all.points, 1, closest, sq_distances);
+  const std::vector<int> closest = make_search(points)->closest(all.points);
   for (std::size_t i = 0; i < all.indices.size(); ++i) labels_[all.indices[i]] = segmentation_.labels[closest[i]];
   for (std::size_t i = 0; i < used.size(); ++i) labels_[used[i]] = segmentation_.labels[i];
 }

@@ -4,6 +4,7 @@
 #include <map>
 
 #include "core/geometry/reflected_points.h"
+#include "core/segmentation/labels.h"
 #include "core/segmentation/segmentation_rules.h"
 #include "pcl_symmetry/core/closest_point_search.h"
 
@@ -20,12 +21,10 @@ struct CopiedLabels {
 /// Whether each segment lies on both sides of a plane.
 std::vector<char> liesAcross(const SurfaceGraph& graph, const std::vector<int>& labels,
                              const std::vector<char>& above) {
-  std::vector<double> areas(1 + static_cast<std::size_t>(*std::max_element(labels.begin(), labels.end())), 0.0);
-  std::vector<double> areas_above = areas;
-  for (int i = 0; i < graph.size(); ++i) {
-    areas[labels[i]] += graph.areas[i];
+  const std::vector<double> areas = areasOf(graph, labels);
+  std::vector<double> areas_above(areas.size(), 0.0);
+  for (int i = 0; i < graph.size(); ++i)
     if (above[i]) areas_above[labels[i]] += graph.areas[i];
-  }
   std::vector<char> across;
   for (std::size_t s = 0; s < areas.size(); ++s)
     across.push_back(std::min(areas_above[s], areas[s] - areas_above[s]) >= kSegmentation.least_across * areas[s]);
@@ -67,10 +66,7 @@ std::optional<GlobalPlane> globalPlane(const std::vector<PartPlane>& planes) {
 }
 
 std::vector<int> reflectedElements(const SurfaceGraph& graph, const ReflectionPlane& plane) {
-  std::vector<int> closest;
-  std::vector<float> sq_distances;
-  makeFlannSearch(graph.centers)->search(reflectedPoints(graph.centers, plane), 1, closest, sq_distances);
-  return closest;
+  return makeFlannSearch(graph.centers)->closest(reflectedPoints(graph.centers, plane));
 }
 
 std::vector<std::vector<int>> segmentImages(const PartEvidence& evidence, const std::vector<int>& labels,
@@ -96,12 +92,9 @@ std::vector<int> mirroredLabels(const SurfaceGraph& graph, const std::vector<int
   std::vector<char> above;
   for (int i = 0; i < graph.size(); ++i)
     above.push_back(plane.signedDistance(graph.centers.col(i).cast<double>()) > 0.0);
-  CopiedLabels below_copied = copySide(false, graph, labels, above, reflected);
-  CopiedLabels above_copied = copySide(true, graph, labels, above, reflected);
-  std::vector<int>& copied = (below_copied.kept >= above_copied.kept ? below_copied : above_copied).labels;
-  std::map<int, int> number;
-  for (int& label : copied) label = number.emplace(label, static_cast<int>(number.size())).first->second;
-  return copied;
+  const CopiedLabels below_copied = copySide(false, graph, labels, above, reflected);
+  const CopiedLabels above_copied = copySide(true, graph, labels, above, reflected);
+  return renumbered((below_copied.kept >= above_copied.kept ? below_copied : above_copied).labels);
 }
 
 }  // namespace pcl_symmetry

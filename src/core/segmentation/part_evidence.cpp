@@ -5,13 +5,13 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
-#include <numeric>
 #include <utility>
 #include <vector>
 
 #include "core/base/constants.h"
 #include "core/base/median.h"
 #include "core/base/random.h"
+#include "core/geometry/point_samples.h"
 #include "core/geometry/reflected_points.h"
 #include "core/geometry/triangle_tree.h"
 #include "core/segmentation/segmentation_rules.h"
@@ -21,12 +21,6 @@
 namespace pcl_symmetry {
 
 namespace {
-
-/// What rays through the body behind a surface tell about its K patches.
-struct BodyEvidence {
-  std::vector<double> thickness;  ///< K, as PartEvidence
-  Eigen::MatrixXf sight;          ///< K x K, as PartEvidence
-};
 
 struct SurfacePoint {
   Eigen::Vector3f position, normal;
@@ -109,15 +103,13 @@ Eigen::MatrixXf linesOfSight(const Points& positions, const TriangleTree& tree) 
   return sight;
 }
 
-/// Sends rays through the body behind each patch.
+/// Sets thickness and sight by rays through the body behind each patch.
 /// \param tree of the triangles of the graph.
 /// \param seed of rays and samples.
-BodyEvidence bodyEvidence(const SurfaceGraph& graph, const TriangleTree& tree, const Patches& patches,
-                          std::uint64_t seed) {
+void measureBody(const SurfaceGraph& graph, const TriangleTree& tree, std::uint64_t seed, PartEvidence& evidence) {
+  const Patches& patches = evidence.patches;
   const auto radius = static_cast<float>(boundingBall(graph.centers).radius);
   const auto samples = samplePatches(graph, patches, radius, seed);
-  BodyEvidence evidence;
-  evidence.thickness.assign(samples.size(), 0.0);
   Points inner = patches.centers;
   for (std::size_t p = 0; p < samples.size(); ++p) {
     if (samples[p].empty()) continue;
@@ -128,19 +120,6 @@ BodyEvidence bodyEvidence(const SurfaceGraph& graph, const TriangleTree& tree, c
     inner.col(column) = innerPlace(samples[p], patches.centers.col(column), depth, tree);
   }
   evidence.sight = linesOfSight(inner, tree);
-  return evidence;
-}
-
-/// The evidence of a surface without an inside: thickness 0, and a patch sees itself alone.
-BodyEvidence noBodyEvidence(int num_patches) {
-  return {std::vector<double>(static_cast<std::size_t>(num_patches), 0.0),
-          Eigen::MatrixXf::Identity(num_patches, num_patches)};
-}
-
-SymmetryFeatures featuresOfWhole(const SurfaceGraph& graph, const SegmentationOptions& options) {
-  std::vector<int> all(static_cast<std::size_t>(graph.size()));
-  std::iota(all.begin(), all.end(), 0);
-  return symmetryFeatures(graph, all, options.splitting, options.seed, options.num_threads, options.make_search);
 }
 
 /// Means of the support of the elements of each patch, weighted by area.
@@ -161,8 +140,7 @@ std::vector<std::vector<int>> imagesOfPatches(const Patches& patches, const std:
   const auto search = makeFlannSearch(patches.centers);
   for (const PartPlane& plane : planes) {
     if (plane.share < kMappedShare) continue;
-    std::vector<float> sq_distances;
-    search->search(reflectedPoints(patches.centers, plane.plane), 1, images.emplace_back(), sq_distances);
+    images.push_back(search->closest(reflectedPoints(patches.centers, plane.plane)));
   }
   return images;
 }
@@ -179,7 +157,10 @@ int firstSeed(const SurfaceGraph& graph, int division, std::uint64_t seed) {
 }  // namespace
 
 WholeEvidence::WholeEvidence(const SurfaceGraph& graph, const SegmentationOptions& options)
-    : graph_(graph), seed_(options.seed), features_(featuresOfWhole(graph, options)) {
+    : graph_(graph),
+      seed_(options.seed),
+      features_(symmetryFeatures(graph, allOf(graph.size()), options.splitting, options.seed, options.num_threads,
+                                 options.make_search)) {
   if (options.evidence == MergingEvidence::All) tree_.emplace(graph.corners, graph.triangles);
 }
 
@@ -190,9 +171,9 @@ PartEvidence WholeEvidence::ofDivision(int division) const {
       graph_,
       growPatches(graph_, kSegmentation.num_patches, kSegmentation.concave_detour, firstSeed(graph_, division, seed)));
   evidence.borders = patchBorders(graph_, evidence.patches);
-  BodyEvidence body = tree_ ? bodyEvidence(graph_, *tree_, evidence.patches, seed) : noBodyEvidence(evidence.size());
-  evidence.thickness = std::move(body.thickness);
-  evidence.sight = std::move(body.sight);
+  evidence.thickness.assign(evidence.patches.areas.size(), 0.0);
+  evidence.sight.setIdentity(evidence.size(), evidence.size());
+  if (tree_) measureBody(graph_, *tree_, seed, evidence);
   evidence.planes = features_.planes;
   evidence.support = supportOfPatches(graph_, evidence.patches, features_.support);
   evidence.images = imagesOfPatches(evidence.patches, evidence.planes);

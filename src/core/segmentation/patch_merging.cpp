@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "core/base/parallel.h"
+#include "core/segmentation/labels.h"
 #include "core/segmentation/merge_fit.h"
 #include "core/segmentation/mirrored_labels.h"
 #include "core/segmentation/part_evidence.h"
@@ -121,9 +122,9 @@ std::vector<int> intersections(const std::vector<MergedDivision>& divisions) {
 }
 
 std::vector<double> areaShares(const SurfaceGraph& graph, const std::vector<int>& label) {
+  std::vector<double> areas = areasOf(graph, label);
   const double whole = graph.area();
-  std::vector<double> areas(1 + static_cast<std::size_t>(*std::max_element(label.begin(), label.end())), 0.0);
-  for (int i = 0; i < graph.size(); ++i) areas[label[i]] += graph.areas[i] / whole;
+  for (double& area : areas) area /= whole;
   return areas;
 }
 
@@ -225,11 +226,9 @@ std::vector<int> consensus(const SurfaceGraph& graph, const std::vector<MergedDi
     if (pair.a < 0 || (num_parts == 0 && pair.probability < 0.5)) break;
     clusters.merge(pair.a, pair.b);
   }
-  std::map<int, int> number;
   std::vector<int> part;
-  for (const int cell : common.of_element)
-    part.push_back(number.emplace(clusters.ofCells()[cell], static_cast<int>(number.size())).first->second);
-  return part;
+  for (const int cell : common.of_element) part.push_back(clusters.ofCells()[cell]);
+  return renumbered(std::move(part));
 }
 
 }  // namespace pcl_symmetry

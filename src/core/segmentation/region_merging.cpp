@@ -4,108 +4,176 @@
 #include <cmath>
 #include <map>
 #include <numeric>
-#include <set>
 #include <utility>
 
+#include "core/base/logistic.h"
+#include "core/segmentation/labels.h"
 #include "core/segmentation/segmentation_rules.h"
 
 namespace pcl_symmetry {
 
 namespace {
 
-using RegionPair = std::pair<int, int>;  // lower number first
+double ratio(double a, double b) {
+  return b > 0.0 ? a / b : 0.0;
+}
 
-/// Pairs of neighboring regions, ordered by the log odds that they are one part.
-class PairQueue {
-public:
-  explicit PairQueue(const MergeWeights& weights) : weights_(weights) {}
-
-  bool empty() const { return queue_.empty(); }
-
-  /// \return log odds and regions of the pair with the highest log odds.
-  const std::pair<double, RegionPair>& likeliest() const { return *queue_.rbegin(); }
-
-  void remove(int a, int b) {
-    const RegionPair pair = std::minmax(a, b);
-    const auto known = log_odds_.find(pair);
-    if (known == log_odds_.end()) return;
-    queue_.erase({known->second, pair});
-    log_odds_.erase(known);
-  }
-
-  void update(const Regions& regions, int a, int b) {
-    remove(a, b);
-    const double log_odds = logOdds(regions.cues(a, b));
-    log_odds_[std::minmax(a, b)] = log_odds;
-    queue_.insert({log_odds, std::minmax(a, b)});
-  }
-
-private:
-  /// That two regions are one part: a weighted sum of the cues.
-  double logOdds(const Cues& cues) const {
-    return std::inner_product(weights_.begin(), weights_.end(), cues.begin(), 0.0);
-  }
-
-  const MergeWeights& weights_;
-  std::set<std::pair<double, RegionPair>> queue_;
-  std::map<RegionPair, double> log_odds_;
-};
+/// Log of the thickness at each patch. A patch behind which no ray met another side is open: as thick as the thickest.
+std::vector<double> logThickness(const std::vector<double>& thickness) {
+  const double thickest = *std::max_element(thickness.begin(), thickness.end());
+  std::vector<double> log_thickness;
+  for (const double t : thickness)
+    log_thickness.push_back(std::log(std::max(kSegmentation.thinnest, t > 0.0 ? t : thickest)));
+  return log_thickness;
+}
 
 }  // namespace
 
+void Regions::Border::add(const Border& other) {
+  length += other.length;
+  edge_concavity += other.edge_concavity;
+  patch_concavity += other.patch_concavity;
+  log_thickness += other.log_thickness;
+}
+
+Regions::Regions(const PartEvidence& evidence)
+    : region_(evidence.patches.areas.size()),
+      areas_(evidence.patches.areas),
+      log_thickness_(evidence.patches.areas.size()),
+      perimeters_(evidence.patches.areas.size(), 0.0),
+      inside_(evidence.patches.areas.size()),
+      borders_(evidence.patches.areas.size()) {
+  const int size = evidence.size();
+  const std::vector<double> log_thickness = logThickness(evidence.thickness);
+  Eigen::VectorXf areas(size);
+  for (int i = 0; i < size; ++i) {
+    region_[i] = i;
+    areas[i] = static_cast<float>(areas_[i]);
+    log_thickness_[i] = areas_[i] * log_thickness[i];
+  }
+  sight_ = areas.asDiagonal() * evidence.sight * areas.asDiagonal();
+  support_ = evidence.support * areas.asDiagonal();
+  for (const std::vector<int>& image : evidence.images) {
+    images_.emplace_back(Eigen::MatrixXf::Zero(size, size));
+    for (int i = 0; i < size; ++i) images_.back()(image[i], i) = areas[i];
+  }
+  for (const PatchBorder& b : evidence.borders) {
+    perimeters_[b.from] += b.length;
+    perimeters_[b.to] += b.length;
+    borders_[b.from][b.to] =
+        borders_[b.to][b.from] = {b.length, b.length * b.edge_concavity, b.length * b.patch_concavity,
+                                  b.length * 0.5 * (log_thickness[b.from] + log_thickness[b.to])};
+  }
+}
+
+/// The region that holds most of the reflection of a region; -1 for none.
+int Regions::imageOf(int region, const Eigen::MatrixXf& shared) const {
+  Eigen::Index most = 0;
+  return shared.col(region).maxCoeff(&most) > 0.0f ? static_cast<int>(most) : -1;
+}
+
+Cues Regions::cues(int a, int b) const {
+  const Border& between = borders_[a].at(b);
+  const double area_a = std::max(kSegmentation.least_area, areas_[a]),
+               area_b = std::max(kSegmentation.least_area, areas_[b]);
+  Cues cues{};
+  cues[kAlways] = 1.0;
+  cues[kContact] = std::min(1.0, ratio(between.length, std::min(perimeters_[a], perimeters_[b])));
+  cues[kSmallArea] = std::log(std::min(area_a, area_b));
+  cues[kLargeArea] = std::log(std::max(area_a, area_b));
+  if (support_.rows() > 0) {
+    const Eigen::VectorXd difference =
+        support_.col(a).cast<double>() / area_a - support_.col(b).cast<double>() / area_b;
+    cues[kSupportDifference] = difference.norm() / std::sqrt(static_cast<double>(difference.size()));
+  }
+  for (const Eigen::MatrixXf& shared : images_)
+    if (imageOf(a, shared) == b && imageOf(b, shared) == a) cues[kImages] = 1.0;
+  cues[kEdgeConcavity] = ratio(between.edge_concavity, between.length);
+  cues[kPatchConcavity] = ratio(between.patch_concavity, between.length);
+  cues[kInnerConcavity] =
+      ratio(inside_[a].patch_concavity + inside_[b].patch_concavity, inside_[a].length + inside_[b].length);
+  const double thickness_a = log_thickness_[a] / area_a, thickness_b = log_thickness_[b] / area_b;
+  cues[kThicknessRatio] = std::abs(thickness_a - thickness_b);
+  cues[kConstriction] = std::min(thickness_a, thickness_b) - ratio(between.log_thickness, between.length);
+  const double within = std::sqrt(sight_(a, a) * sight_(b, b)) / (area_a * area_b);
+  cues[kSight] = sight_(a, b) / (area_a * area_b);
+  cues[kRelativeSight] =
+      std::min(kSegmentation.most_relative_sight, cues[kSight] / std::max(kSegmentation.least_inner_sight, within));
+  cues[kSightOfSmall] = cues[kSight] * cues[kSmallArea];
+  return cues;
+}
+
+void Regions::merge(int a, int b) {
+  inside_[a].add(inside_[b]);
+  perimeters_[a] += perimeters_[b];
+  areas_[a] += areas_[b];
+  log_thickness_[a] += log_thickness_[b];
+  support_.col(a) += support_.col(b);
+  const auto join = [&](Eigen::MatrixXf& pairs) {
+    pairs.col(a) += pairs.col(b);
+    pairs.row(a) += pairs.row(b);
+    pairs.row(b).setZero();
+  };
+  join(sight_);
+  for (Eigen::MatrixXf& image : images_) join(image);
+  std::replace(region_.begin(), region_.end(), b, a);
+  for (const auto& [c, border] : borders_[b]) {
+    borders_[c].erase(b);
+    if (c == a) {
+      inside_[a].add(border);
+      perimeters_[a] -= 2.0 * border.length;
+    } else {
+      borders_[a][c].add(border);
+      borders_[c][a].add(border);
+    }
+  }
+  borders_[b].clear();
+}
+
 std::vector<Merge> mergeRegions(Regions regions, const MergeWeights& weights) {
-  PairQueue queue(weights);
+  // That two regions are one part: a weighted sum of the cues.
+  std::map<std::pair<int, int>, double> log_odds;  // by the regions, the lower number first
+  const auto update = [&](int a, int b) {
+    const Cues cues = regions.cues(a, b);
+    log_odds[std::minmax(a, b)] = std::inner_product(weights.begin(), weights.end(), cues.begin(), 0.0);
+  };
   for (int a = 0; a < regions.size(); ++a)
-    for (const int b : regions.neighbors(a))
-      if (a < b) queue.update(regions, a, b);
+    for (const auto& [b, border] : regions.borders(a))
+      if (a < b) update(a, b);
 
   std::vector<Merge> merges;
-  while (!queue.empty()) {
-    const auto [log_odds, pair] = queue.likeliest();
-    const auto [a, b] = pair;
-    for (const int c : regions.neighbors(b)) queue.remove(b, c);
+  while (!log_odds.empty()) {
+    const auto likeliest = std::max_element(log_odds.begin(), log_odds.end(), [](const auto& p, const auto& q) {
+      return std::make_pair(p.second, p.first) < std::make_pair(q.second, q.first);
+    });
+    const auto [a, b] = likeliest->first;
+    merges.push_back({a, b, likeliest->second});
+    for (const auto& [c, border] : regions.borders(b)) log_odds.erase(std::minmax(b, c));
     regions.merge(a, b);
-    merges.push_back({a, b, log_odds});
-    for (const int c : regions.neighbors(a)) queue.update(regions, a, c);
+    for (const auto& [c, border] : regions.borders(a)) update(a, c);
   }
   return merges;
 }
 
-namespace {
-
-/// The first merge that is not sure, or that leaves fewer regions than asked for.
-std::size_t firstDoubt(const std::vector<Merge>& merges, std::size_t num_made) {
-  std::size_t i = 0;
-  while (i < std::min(merges.size(), num_made) && merges[i].log_odds >= kSegmentation.surely_one) ++i;
-  return i;
-}
-
-/// Consecutive numbers for the regions of patches.
-std::map<int, int> numbersOf(const std::vector<int>& regions) {
-  std::map<int, int> number;
-  for (const int region : regions) number.emplace(region, static_cast<int>(number.size()));
-  return number;
-}
-
-}  // namespace
-
 MergedDivision mergedDivision(const PartEvidence& evidence, const MergeWeights& weights, int num_parts) {
   Regions regions(evidence);
   const std::vector<Merge> merges = mergeRegions(regions, weights);
-  const auto num_made = static_cast<std::size_t>(std::max(0, evidence.size() - num_parts));
-  const std::size_t doubt = num_parts > 0 ? std::min(merges.size(), num_made) : firstDoubt(merges, merges.size());
-  for (std::size_t i = 0; i < doubt; ++i) regions.merge(merges[i].into, merges[i].from);
-  const std::map<int, int> number = numbersOf(regions.ofPatches());
+  // The first merge that is not sure, or that leaves fewer regions than asked for.
+  const std::size_t num_made = std::min<std::size_t>(merges.size(), std::max(0, evidence.size() - num_parts));
+  std::size_t doubt = 0;
+  for (; doubt < num_made && (num_parts > 0 || merges[doubt].log_odds >= kSegmentation.surely_one); ++doubt)
+    regions.merge(merges[doubt].into, merges[doubt].from);
+  const std::vector<int> cell_of_patch = renumbered(regions.ofPatches());
   MergedDivision division;
-  for (const int patch : evidence.patches.of_element) division.cell.push_back(number.at(regions.ofPatches()[patch]));
-  const auto size = static_cast<Eigen::Index>(number.size());
+  for (const int patch : evidence.patches.of_element) division.cell.push_back(cell_of_patch[patch]);
+  std::map<int, std::vector<int>> cells_of;  // of regions
+  for (int patch = 0; patch < evidence.size(); ++patch) cells_of[regions.ofPatches()[patch]] = {cell_of_patch[patch]};
+  const auto size = static_cast<Eigen::Index>(cells_of.size());
   division.probability = Eigen::MatrixXf::Identity(size, size);
   if (num_parts > 0) return division;
-  std::map<int, std::vector<int>> cells_of;
-  for (const auto& [region, cell] : number) cells_of[region] = {cell};
   float least = 1.0f;
   for (std::size_t i = doubt; i < merges.size(); ++i) {
-    least = std::min(least, static_cast<float>(1.0 / (1.0 + std::exp(-merges[i].log_odds))));
+    least = std::min(least, static_cast<float>(logistic(merges[i].log_odds)));
     std::vector<int>&into = cells_of[merges[i].into], &from = cells_of[merges[i].from];
     for (const int a : into)
       for (const int b : from) division.probability(a, b) = division.probability(b, a) = least;

@@ -1,12 +1,56 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <map>
 #include <vector>
 
+#include "core/segmentation/merge_cues.h"
 #include "core/segmentation/part_evidence.h"
-#include "core/segmentation/regions.h"
 
 namespace pcl_symmetry {
+
+/// Regions of a surface that grow together, at first one per patch. A region has the number of one of its patches.
+class Regions {
+public:
+  /// One region per patch.
+  explicit Regions(const PartEvidence& evidence);
+
+  /// \return the number of patches; regions have numbers below it.
+  int size() const { return static_cast<int>(areas_.size()); }
+
+  /// \return share of the surface.
+  double area(int region) const { return areas_[region]; }
+
+  /// \return the region of each patch.
+  const std::vector<int>& ofPatches() const { return region_; }
+
+  /// What speaks for and against two neighbors being one part.
+  Cues cues(int a, int b) const;
+
+  /// Makes \p b part of \p a; they need not be neighbors.
+  void merge(int a, int b);
+
+  /// Sums along the border of two regions, weighted by length.
+  struct Border {
+    double length = 0.0, edge_concavity = 0.0, patch_concavity = 0.0, log_thickness = 0.0;
+    void add(const Border& other);
+  };
+  /// \return the borders of a region, by neighbor.
+  const std::map<int, Border>& borders(int region) const { return borders_[region]; }
+
+private:
+  int imageOf(int region, const Eigen::MatrixXf& shared) const;
+
+  std::vector<int> region_;                     ///< of each patch
+  std::vector<double> areas_;                   ///< shares of the surface
+  std::vector<double> log_thickness_;           ///< sums over patches, weighted by area
+  std::vector<double> perimeters_;              ///< input units
+  std::vector<Border> inside_;                  ///< sums over the borders between patches of one region
+  Eigen::MatrixXf sight_;                       ///< sums over pairs of patches, weighted by both areas
+  Eigen::MatrixXf support_;                     ///< planes x regions, sums over patches, weighted by area
+  std::vector<Eigen::MatrixXf> images_;         ///< per plane: area of the reflection of a region (column) in a region
+  std::vector<std::map<int, Border>> borders_;  ///< of each region, by neighbor
+};
 
 /// Region \p from became part of region \p into.
 struct Merge {

@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "core/segmentation/graph_cut.h"
+#include "core/segmentation/labels.h"
 
 namespace pcl_symmetry {
 
@@ -107,20 +108,13 @@ Pieces piecesOf(const SurfaceGraph& graph, const std::vector<int>& labels) {
   Pieces pieces;
   pieces.of_element = connectedPieces(graph, labels);
   const std::vector<int>& of = pieces.of_element;
-  const auto num_pieces = 1 + static_cast<std::size_t>(*std::max_element(of.begin(), of.end()));
-  pieces.areas.assign(num_pieces, 0.0);
+  pieces.areas = areasOf(graph, of);
+  const std::size_t num_pieces = pieces.areas.size();
   pieces.labels.assign(num_pieces, 0);
-  for (int i = 0; i < graph.size(); ++i) {
-    pieces.areas[of[i]] += graph.areas[i];
-    pieces.labels[of[i]] = labels[i];
-  }
-  std::map<int, std::size_t> largest;
-  for (std::size_t p = 0; p < num_pieces; ++p) {
-    const auto [entry, is_new] = largest.emplace(pieces.labels[p], p);
-    if (!is_new && pieces.areas[p] > pieces.areas[entry->second]) entry->second = p;
-  }
+  for (int i = 0; i < graph.size(); ++i) pieces.labels[of[i]] = labels[i];
+  std::set<int> seen;
   pieces.is_largest.assign(num_pieces, 0);
-  for (const auto& [label, piece] : largest) pieces.is_largest[piece] = 1;
+  for (const int p : byFallingArea(pieces.areas)) pieces.is_largest[p] = seen.insert(pieces.labels[p]).second;
   pieces.contacts.resize(num_pieces);
   for (const SurfaceGraph::Edge& edge : graph.edges) {
     const int a = of[edge.from], b = of[edge.to];
@@ -129,6 +123,12 @@ Pieces piecesOf(const SurfaceGraph& graph, const std::vector<int>& labels) {
     pieces.contacts[b][pieces.labels[a]] += edge.length;
   }
   return pieces;
+}
+
+/// \param lengths by label, not empty.
+int labelOfMost(const std::map<int, double>& lengths) {
+  const auto shorter = [](const auto& a, const auto& b) { return a.second < b.second; };
+  return std::max_element(lengths.begin(), lengths.end(), shorter)->first;
 }
 
 }  // namespace
@@ -155,9 +155,7 @@ std::vector<int> joinCrumbs(const SurfaceGraph& graph, const std::vector<int>& l
   for (std::size_t p = 0; p < moved.size(); ++p) {
     const std::map<int, double>& contacts = pieces.contacts[p];
     if (pieces.is_largest[p] || pieces.areas[p] >= least_area || contacts.empty()) continue;
-    moved[p] = std::max_element(contacts.begin(), contacts.end(), [](const auto& a, const auto& b) {
-                 return a.second < b.second;
-               })->first;
+    moved[p] = labelOfMost(contacts);
   }
   std::vector<int> result(labels.size());
   for (std::size_t i = 0; i < result.size(); ++i) result[i] = moved[pieces.of_element[i]];
@@ -192,9 +190,7 @@ public:
   int hostOf(int segment) const {
     const auto found = contacts_.find(segment);
     if (found == contacts_.end() || found->second.empty()) return closestTo(segment);
-    return std::max_element(found->second.begin(), found->second.end(),
-                            [](const auto& a, const auto& b) { return a.second < b.second; })
-        ->first;
+    return labelOfMost(found->second);
   }
 
   void join(int host, int segment) {

@@ -4,6 +4,8 @@
 #include <numeric>
 #include <utility>
 
+#include "core/segmentation/labels.h"
+
 namespace pcl_symmetry {
 
 namespace {
@@ -87,11 +89,8 @@ std::vector<int> segmentsOfPatches(const SurfaceGraph& graph, const Patches& pat
 }
 
 Segmentation numberedByArea(const SurfaceGraph& graph, Segmentation segmentation) {
-  std::vector<double> areas(static_cast<std::size_t>(segmentation.num_segments), 0.0);
-  for (int i = 0; i < graph.size(); ++i) areas[segmentation.labels[i]] += graph.areas[i];
-  std::vector<int> order(areas.size()), number(areas.size());
-  std::iota(order.begin(), order.end(), 0);
-  std::stable_sort(order.begin(), order.end(), [&](int a, int b) { return areas[a] > areas[b]; });
+  const std::vector<int> order = byFallingArea(areasOf(graph, segmentation.labels));
+  std::vector<int> number(order.size());
   for (std::size_t i = 0; i < order.size(); ++i) number[order[i]] = static_cast<int>(i);
   for (int& label : segmentation.labels) label = number[label];
   for (SegmentNode& node : segmentation.tree)

@@ -6,10 +6,10 @@
 #include <functional>
 #include <limits>
 #include <map>
-#include <numeric>
 #include <queue>
 #include <utility>
 
+#include "core/segmentation/labels.h"
 #include "pcl_symmetry/core/closest_point_search.h"
 
 namespace pcl_symmetry {
@@ -19,52 +19,29 @@ namespace {
 /// Elements of the num_pieces largest connected pieces.
 std::vector<int> elementsOfLargestPieces(const SurfaceGraph& graph, int num_pieces) {
   const std::vector<int> piece = connectedPieces(graph, std::vector<int>(static_cast<std::size_t>(graph.size()), 0));
-  std::vector<double> areas(1 + static_cast<std::size_t>(*std::max_element(piece.begin(), piece.end())), 0.0);
-  for (int i = 0; i < graph.size(); ++i) areas[piece[i]] += graph.areas[i];
-  std::vector<int> order(areas.size());
-  std::iota(order.begin(), order.end(), 0);
-  std::stable_sort(order.begin(), order.end(), [&](int a, int b) { return areas[a] > areas[b]; });
+  const std::vector<double> areas = areasOf(graph, piece);
+  std::vector<int> largest = byFallingArea(areas);
+  largest.resize(std::min(largest.size(), static_cast<std::size_t>(num_pieces)));
   std::vector<char> large(areas.size(), 0);
-  for (std::size_t k = 0; k < order.size() && k < static_cast<std::size_t>(num_pieces); ++k)
-    large[order[k]] = areas[order[k]] > 0.0;
+  for (const int p : largest) large[p] = areas[p] > 0.0;
   std::vector<int> elements;
   for (int i = 0; i < graph.size(); ++i)
     if (large[piece[i]]) elements.push_back(i);
   return elements;
 }
 
-/// Steps between neighboring elements, element by element as SurfaceGraph::edge_of.
-struct Steps {
-  struct Step {
-    int to;
-    float length;  ///< with the detour across concave edges, input units
-  };
-  const std::vector<int>& first;  ///< where the steps of each element begin
-  std::vector<Step> steps;
-
-  Steps(const SurfaceGraph& graph, float concave_detour) : first(graph.first_edge), steps(graph.edge_of.size()) {
-    std::vector<float> lengths;
-    lengths.reserve(graph.edges.size());
-    for (const SurfaceGraph::Edge& edge : graph.edges) {
-      const float step = (graph.centers.col(edge.to) - graph.centers.col(edge.from)).norm();
-      lengths.push_back(step * (1.0f + concave_detour * std::max(0.0f, edge.concavity)));
-    }
-    for (int element = 0; element < graph.size(); ++element) {
-      for (int i = first[element]; i < first[element + 1]; ++i) {
-        const SurfaceGraph::Edge& edge = graph.edges[graph.edge_of[i]];
-        steps[i] = {edge.from == element ? edge.to : edge.from, lengths[graph.edge_of[i]]};
-      }
-    }
-  }
-};
-
 /// Patches that grow around seeds; each element belongs to the seed with the shortest way along the surface.
 class GrowingPatches {
 public:
   GrowingPatches(const SurfaceGraph& graph, float concave_detour)
-      : steps_(graph, concave_detour),
+      : graph_(graph),
         distance_(static_cast<std::size_t>(graph.size()), std::numeric_limits<float>::infinity()),
-        patch_(distance_.size(), -1) {}
+        patch_(distance_.size(), -1) {
+    for (const SurfaceGraph::Edge& edge : graph.edges) {
+      const float step = (graph.centers.col(edge.to) - graph.centers.col(edge.from)).norm();
+      lengths_.push_back(step * (1.0f + concave_detour * std::max(0.0f, edge.concavity)));
+    }
+  }
 
   /// \return length of the way from the closest seed; infinite if no patch has reached the element.
   float distance(int element) const { return distance_[element]; }
@@ -79,24 +56,24 @@ public:
     patch_[seed] = patch;
     front_.emplace(0.0f, seed);
     while (!front_.empty()) {
-      const auto [reached, element] = front_.top();
+      const Way way = front_.top();
       front_.pop();
-      if (reached > distance_[element]) continue;
-      for (int i = steps_.first[element]; i < steps_.first[element + 1]; ++i) {
-        const auto [to, length] = steps_.steps[i];
-        const float there = reached + length;
-        if (there >= distance_[to]) continue;
+      if (way.first > distance_[way.second]) continue;
+      graph_.visitNeighbors(way.second, [&](int to, const SurfaceGraph::Edge& edge) {
+        const float there = way.first + lengths_[&edge - graph_.edges.data()];
+        if (there >= distance_[to]) return;
         distance_[to] = there;
         patch_[to] = patch;
         front_.emplace(there, to);
-      }
+      });
     }
   }
 
   int size() const { return num_patches_; }
 
 private:
-  const Steps steps_;
+  const SurfaceGraph& graph_;
+  std::vector<float> lengths_;  ///< of the steps across edges, with the detour across concave ones, input units
   std::vector<float> distance_;
   std::vector<int> patch_;
   using Way = std::pair<float, int>;  ///< length and element
@@ -110,10 +87,8 @@ std::vector<int> filledFromClosest(const SurfaceGraph& graph, std::vector<int> p
   std::vector<int> reached, missed;
   for (int i = 0; i < graph.size(); ++i) (patch[i] >= 0 ? reached : missed).push_back(i);
   if (missed.empty()) return patch;
-  std::vector<int> closest;
-  std::vector<float> sq_distances;
-  const Points centers = graph.centers(Eigen::all, reached);
-  makeFlannSearch(centers)->search(graph.centers(Eigen::all, missed), 1, closest, sq_distances);
+  const std::vector<int> closest =
+      makeFlannSearch(graph.centers(Eigen::all, reached))->closest(graph.centers(Eigen::all, missed));
   for (std::size_t k = 0; k < missed.size(); ++k) patch[missed[k]] = patch[reached[closest[k]]];
   return patch;
 }

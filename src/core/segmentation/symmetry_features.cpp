@@ -40,15 +40,11 @@ bool isNew(const ReflectionPlane& plane, const std::vector<ReflectionPlane>& kno
   });
 }
 
-PlaneGrid gridOf(const GaussianEdt& edt) {
-  return PlaneGrid(kSegmentation.num_theta, kSegmentation.num_phi, kSegmentation.num_radius, edt.center(),
-                   edt.radius());
-}
-
 /// The strongest significant maxima of the transform, one of each basin (Section 4.4).
 std::vector<ReflectionPlane> significantMaxima(const Points& samples, const GaussianEdt& edt,
                                                const SplittingOptions& options, std::uint64_t seed, int num_threads) {
-  const PlaneGrid grid = gridOf(edt);
+  const PlaneGrid grid(kSegmentation.num_theta, kSegmentation.num_phi, kSegmentation.num_radius, edt.center(),
+                       edt.radius());
   PlanarTransformOptions transform;
   transform.sampled.num_samples = kSegmentation.num_map_samples;
   transform.sampled.seed = seed;

@@ -21,7 +21,6 @@ struct SymmetryFeatures {
 /// \param elements those of the part, with an area > 0.
 /// \param options strength and max_planes choose the planes.
 /// \param seed of the samples of the part.
-/// \param num_threads 0: one per core.
 /// \param make_search over the samples of the part; null = FLANN's.
 SymmetryFeatures symmetryFeatures(const SurfaceGraph& graph, const std::vector<int>& elements,
                                   const SplittingOptions& options, std::uint64_t seed, int num_threads,

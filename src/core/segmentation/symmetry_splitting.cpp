@@ -2,12 +2,13 @@
 
 #include <algorithm>
 #include <cstdint>
-#include <numeric>
 #include <optional>
 #include <utility>
 #include <vector>
 
 #include "core/base/k_means.h"
+#include "core/geometry/point_samples.h"
+#include "core/segmentation/labels.h"
 #include "core/segmentation/segment_borders.h"
 #include "core/segmentation/segment_tree.h"
 #include "core/segmentation/segmentation_rules.h"
@@ -22,23 +23,6 @@ namespace {
 struct SplitPart {
   std::vector<int> first, second;
 };
-
-/// The two pieces with the largest areas; -1 for a missing one.
-std::pair<int, int> largestPieces(const SurfaceGraph& graph, const std::vector<int>& pieces) {
-  std::vector<double> areas(1 + *std::max_element(pieces.begin(), pieces.end()), 0.0);
-  for (int i = 0; i < graph.size(); ++i)
-    if (pieces[i] >= 0) areas[pieces[i]] += graph.areas[i];
-  int first = -1, second = -1;
-  for (int p = 0; p < static_cast<int>(areas.size()); ++p) {
-    if (first < 0 || areas[p] > areas[first]) {
-      second = first;
-      first = p;
-    } else if (second < 0 || areas[p] > areas[second]) {
-      second = p;
-    }
-  }
-  return {first, second};
-}
 
 /// Splits a part in two by its symmetries (Section 5.3): k-means with k = 2 on the support, the two largest connected
 /// components, and the minimum cut between them.
@@ -58,8 +42,9 @@ std::optional<SplitPart> splitByTwoMeans(const SurfaceGraph& graph, const std::v
 
   // "the two largest connected components": the cut assigns the smaller ones; as published, the closer of the two does
   const std::vector<int> pieces = connectedPieces(graph, side);
-  const auto [first, second] = largestPieces(graph, pieces);
-  if (second < 0) return std::nullopt;
+  const std::vector<int> largest = byFallingArea(areasOf(graph, pieces));
+  if (largest.size() < 2) return std::nullopt;
+  const int first = largest[0], second = largest[1];
   std::vector<int> open;
   for (const int element : elements) {
     side[element] = pieces[element] == second ? 1 : 0;
@@ -95,9 +80,7 @@ bool hasDistinctSymmetries(const std::vector<PartPlane>& planes, const Splitting
 class SplittingTree {
 public:
   SplittingTree(const SurfaceGraph& graph, const SegmentationOptions& options) : graph_(graph), options_(options) {
-    std::vector<int> all(static_cast<std::size_t>(graph.size()));
-    std::iota(all.begin(), all.end(), 0);
-    add(-1, 0, std::move(all));
+    add(-1, 0, allOf(graph.size()));
   }
 
   /// \return the largest leaf that may be split; -1 for none.
