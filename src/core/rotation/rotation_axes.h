@@ -31,7 +31,6 @@ std::vector<Line3d> principalLines(const RotationFit& fit);
 /// surface.
 /// \param num_directions of lines through each center, on a half sphere.
 /// \param max_fold greatest order of a rotation.
-/// \param num_threads >= 0; 0 = one per core.
 std::vector<Line3d> axisLineCandidates(const RotationFit& fit, int num_directions, int max_fold, int num_threads);
 
 /// Angle between two lines, in [0, pi/2].
