@@ -11,6 +11,8 @@
 
 namespace PCL_SYMMETRY_EXPORTS pcl_symmetry {
 
+class GaussianEdt;
+
 /// Estimators of the transform. All give the same normalized quantity.
 enum class TransformMethod {
   Sampled,      ///< draws one point of each pair and looks up the other; the default and the fastest
@@ -40,6 +42,9 @@ struct SymmetryMap {
   std::size_t strongest() const;
 
   bool empty() const { return values.empty(); }  ///< no transform was computed
+
+  /// \return a map of \p edt whose values are 0, with the center of the grid as center of mass.
+  static SymmetryMap zero(const GaussianEdt& edt, const PlaneGrid& grid, TransformMethod method);
 };
 
 /// The transform mapped back from planes to points (Figures 1 and 2): for each point the greatest D of any plane

@@ -1,14 +1,18 @@
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdint>
 #include <cstring>
 #include <limits>
+#include <utility>
+#include <vector>
 
 #include "core/base/check.h"
 #include "core/base/parallel.h"
 #include "core/base/simd.h"
-#include "core/transform/bundle_lattice.h"
 #include "core/transform/lookup_table.h"
+#include "core/transform/transform_rules.h"
 #include "pcl_symmetry/core/planar_transform.h"
 
 namespace pcl_symmetry {
@@ -20,6 +24,174 @@ constexpr std::size_t convolved_per_block = 16;  // directions
 // Steps of the R2 sequence, which fills the unit square evenly: 1 / g and 1 / g^2 with the plastic number
 // g = 1.3247..., the root of g^3 = g + 1.
 constexpr double kPhaseSteps[2] = {0.7548776662466927, 0.5698402909980532};
+
+constexpr int kRowLanes = 8;    ///< lines of a bundle through cells of the same row, which are looked up by one load
+constexpr int kBundleRows = 2;  ///< rows whose lanes make a bundle
+constexpr int kBundleLanes = kBundleRows * kRowLanes;
+
+/// Parallel lines of equally spaced points, through kRowLanes cells of each of some rows: point l of the first one of
+/// row r is start[r] + l * step, in fixed-point cells, for l in [first, last). What lies beyond the cube is 0.
+struct Bundle {
+  std::int32_t start[kBundleRows][3];
+  std::int32_t step[3];
+  int first, last;
+};
+
+/// The lattice that the EDT is resampled on, and the bins of r, common to all directions. Lengths are in cells;
+/// positions are relative to the middle of the EDT's cube, beyond whose inscribed ball f is taken as 0.
+struct BundleLattice {
+  BundleLattice(const GaussianEdt& edt, const PlaneGrid& grid, double spacing_in_sigmas);
+
+  /// \return from the middle of a row of a bundle to its first and last line.
+  double half() const { return 0.5 * (kRowLanes - 1) * step; }
+
+  Eigen::AlignedBox3d filled;  ///< around the centers of the cells in which f is not 0
+  double middle;               ///< coordinate of the middle in cells from the first cell center
+  double clip;                 ///< radius of the ball beyond which f is taken as 0
+  Eigen::Vector3d center;      ///< of the grid of planes
+  double grid_offset;          ///< of the first bin from the center of the grid
+  double radius_step;
+  double spacing;  ///< between parallel lines
+  int step;        ///< between the lines of a bundle, along an axis of the cells
+  /// Points at t0 + l * along have the planes between them at t0 + (a + b) * along / 2: every refine-th one is a bin.
+  int refine;
+  double along;       ///< between the points of a line
+  double most_ahead;  ///< from the middle of a row to its first and last line, along the normal
+  int num_along;      ///< points of a line
+};
+
+/// The bundles of one direction: lines along the normal n through every step-th cell of rows of cells. Rows lie along
+/// the axis e that is the farthest from n, at equal distances along v, which is across both. Vectors have e first.
+///
+/// Point l of the middle of a row of a bundle has the height t = t0 + l * along, and lies at x e + b v + tau n with
+/// tau = t - x n.x.
+class BundlesOfDirection {
+public:
+  BundlesOfDirection(const BundleLattice& lattice, const Eigen::Vector3d& normal);
+
+  int axis() const { return axis_; }  ///< of the rows
+  /// \return bins from t0 to the first one, times -1.
+  double numSkipped() const { return num_skipped_; }
+  double between() const { return between_; }  ///< rows
+  /// \return height of a line above the one before in its row, in cells.
+  double ahead() const { return lattice_.step * n_.x(); }
+  /// \return volume that each point represents, in cells.
+  double volume() const { return lattice_.along * between_ * lattice_.step * across_; }
+  int numRows() const;  ///< on each side of the middle
+
+  /// Where a row of the lattice lies.
+  struct Row {
+    double b;
+    double shift;  ///< along it
+  };
+  /// Adds the bundles of kBundleRows rows, each cut to where it can meet what is not 0. Those of which nothing is left
+  /// are not added.
+  void addBundles(const Row* rows, std::vector<Bundle>& bundles) const;
+
+private:
+  std::pair<double, double> filledPart(double x, double b) const;
+
+  const BundleLattice& lattice_;
+  int axis_ = 0;
+  Eigen::Vector3d n_, v_;
+  double across_;       ///< distance of lines whose feet are one cell apart on a row
+  double between_;      ///< rows
+  double num_skipped_;  ///< bins from t0 to the first one, times -1
+  double t0_;           ///< height of the first points of all bundles
+  std::int32_t step_[3];
+};
+
+bool isNearlyWhole(double cells) {
+  return std::abs(cells - std::round(cells)) < kTransform.near_whole;
+}
+
+BundleLattice::BundleLattice(const GaussianEdt& edt, const PlaneGrid& grid, double spacing_in_sigmas) {
+  middle = 0.5 * (edt.numCells() - 1);
+  clip = middle - 0.5;
+  center = ((grid.center() - edt.origin()) / edt.cellSize()).array() - middle;
+  grid_offset = grid.offset(0) / edt.cellSize();
+  radius_step = grid.radiusStep() / edt.cellSize();
+  spacing = spacing_in_sigmas * edt.sigma() / edt.cellSize();
+  step = std::max(1, static_cast<int>(kTransform.most_stretch * spacing));
+  refine = static_cast<int>(std::ceil(2.0 * radius_step / spacing));
+  if (isNearlyWhole(2.0 * radius_step / refine)) ++refine;
+  along = 2.0 * radius_step / refine;
+  most_ahead = half() / std::sqrt(3.0);  // the axis that is the farthest from n has at most 1 / sqrt(3) of it
+  num_along = static_cast<int>(std::ceil(2.0 * (clip + most_ahead + radius_step) / along)) + 2;
+  const int n = edt.numCells();
+  for (int row = 0; row < n * n; ++row) {
+    const GaussianEdt::Range range = edt.filledRanges()[static_cast<std::size_t>(row)];
+    if (range.begin == range.end) continue;
+    for (const int x : {range.begin, range.end - 1})
+      filled.extend((Eigen::Vector3d(x, row % n, row / n).array() - middle).matrix());
+  }
+}
+
+BundlesOfDirection::BundlesOfDirection(const BundleLattice& lattice, const Eigen::Vector3d& normal)
+    : lattice_(lattice) {
+  normal.cwiseAbs().minCoeff(&axis_);
+  n_ = {normal[axis_], normal[(axis_ + 1) % 3], normal[(axis_ + 2) % 3]};
+  across_ = std::hypot(n_.y(), n_.z());
+  v_ = Eigen::Vector3d(0.0, -n_.z(), n_.y()) / across_;
+  between_ = std::min(lattice.spacing, lattice.spacing * lattice.spacing / (lattice.step * across_));
+  if (isNearlyWhole(between_)) between_ *= kTransform.less_than_whole;
+  const double first_offset = normal.dot(lattice.center) + lattice.grid_offset;
+  num_skipped_ = std::floor((-lattice.clip - lattice.most_ahead - first_offset) / lattice.radius_step);
+  t0_ = first_offset + num_skipped_ * lattice.radius_step;
+  for (int i = 0; i < 3; ++i) step_[i] = LookupTable::toFixed(lattice.along * n_[i]);
+}
+
+int BundlesOfDirection::numRows() const {
+  return static_cast<int>(std::ceil(lattice_.clip / between_));
+}
+
+/// The heights tau between which the lines of a bundle of a row can meet what is not 0.
+/// \param x of the middle of the bundle.
+std::pair<double, double> BundlesOfDirection::filledPart(double x, double b) const {
+  // A look-up takes the whole cell; fixed-point steps are rounded.
+  const double of_cell = 0.51, least_slope = 1e-5;
+  const double radius = lattice_.clip + lattice_.half() + std::sqrt(3.0) * of_cell;
+  const double chord = std::sqrt(std::max(0.0, radius * radius - x * x - b * b + x * n_.x() * x * n_.x()));
+  double from = -x * n_.x() - chord, to = -x * n_.x() + chord;
+  for (int k = 0; k < 3; ++k) {
+    const int axis = (axis_ + k) % 3;
+    const double foot = (k == 0 ? x : b * v_[k]), reach = of_cell + (k == 0 ? lattice_.half() : 0.0);
+    const double slope = std::copysign(std::max(std::abs(n_[k]), least_slope), n_[k]);
+    const auto [enter, leave] = std::minmax(
+        {(lattice_.filled.min()[axis] - reach - foot) / slope, (lattice_.filled.max()[axis] + reach - foot) / slope});
+    from = std::max(from, enter);
+    to = std::min(to, leave);
+  }
+  return {from, to};
+}
+
+void BundlesOfDirection::addBundles(const Row* rows, std::vector<Bundle>& bundles) const {
+  // The ball casts an ellipse along n. Rows are shifted by up to half a step.
+  const double width = kRowLanes * lattice_.step;
+  const int num_side = static_cast<int>(std::ceil(lattice_.clip / (across_ * width) + 0.5 / kRowLanes));
+  for (int c = -num_side; c < num_side; ++c) {
+    Bundle bundle;
+    double first = lattice_.num_along, last = -1.0;
+    for (int r = 0; r < kBundleRows; ++r) {
+      const double x = static_cast<float>((c + 0.5) * width + rows[r].shift);
+      const double tau = t0_ - x * n_.x();  // of point 0
+      const auto [from, to] = filledPart(x, rows[r].b);
+      if (from <= to) {
+        first = std::min(first, (from - tau) / lattice_.along);
+        last = std::max(last, (to - tau) / lattice_.along);
+      }
+      const Eigen::Vector3d start(x - lattice_.half() + tau * n_.x(), rows[r].b * v_.y() + tau * n_.y(),
+                                  rows[r].b * v_.z() + tau * n_.z());
+      for (int axis = 0; axis < 3; ++axis)
+        bundle.start[r][axis] = LookupTable::toFixed(start[axis] + lattice_.middle + 0.5);
+    }
+    bundle.first = static_cast<int>(std::max(0.0, first));
+    bundle.last = std::min(lattice_.num_along, static_cast<int>(last) + 1);
+    if (bundle.first >= bundle.last) continue;
+    std::copy_n(step_, 3, bundle.step);
+    bundles.push_back(bundle);
+  }
+}
 
 /// \return in [-0.5, 0.5).
 double phase(double turns) {
@@ -34,7 +206,6 @@ public:
   /// \param f num_cells^3 values in [0, 255 / LookupTable::kOne], x fastest.
   /// \param clip cells whose centers are farther from the middle of the cube are 0, in cells.
   /// \param step between the cells of a row that lie side by side, >= 1.
-  /// \param num_threads 0 = one per core.
   RowTable(const std::vector<float>& f, int num_cells, double clip, int step, int num_threads);
 
   /// Rows along one axis. Cell (x, y, z) has x along it, y along the next axis and z along the one after that,
@@ -319,12 +490,7 @@ SymmetryMap convolutionTransform(const GaussianEdt& edt, const PlaneGrid& grid,
                        options.num_threads);
   const double norm = edt.sqNorm() * LookupTable::kOne * LookupTable::kOne;
   const int num_radius = grid.numRadius();
-  SymmetryMap map;
-  map.grid = grid;
-  map.method = TransformMethod::Convolution;
-  map.sigma = edt.sigma();
-  map.center_of_mass = grid.center();
-  map.values.resize(grid.size());
+  SymmetryMap map = SymmetryMap::zero(edt, grid, TransformMethod::Convolution);
   parallelRanges(grid.numDirections(), convolved_per_block, options.num_threads,
                  [&](std::size_t begin, std::size_t end) {
                    DirectionConvolution convolution(lattice, table);

@@ -12,7 +12,6 @@ namespace pcl_symmetry {
 /// D of Equation 2 for one motion of space, a reflection or a rotation: the full sum over the cells of the EDT.
 /// \param image maps a position to its image, both in cells from the center of cell (0, 0, 0).
 /// \param step image of the unit vector along x, as a direction.
-/// \param num_threads 0 = one per core; D does not depend on it.
 /// \return D in [0, 1].
 template <typename Image>
 double correlation(const GaussianEdt& edt, const Image& image, const Eigen::Vector3d& step, int num_threads) {

@@ -9,7 +9,6 @@ namespace pcl_symmetry {
 
 /// Free space on the cells of a distance transform: 1 - f where the scanner looked through the cell, 0 elsewhere.
 /// \param visibility in the frame of the EDT.
-/// \param num_threads 0 = one per core; the values do not depend on it.
 /// \return one value in [0, 1] per cell, x fastest.
 std::vector<float> freeSpace(const GaussianEdt& edt, const Visibility& visibility, int num_threads = 0);
 

@@ -2,13 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 #include <limits>
 #include <numeric>
 
 #include "core/base/check.h"
 #include "core/base/parallel.h"
 #include "core/base/simd.h"
-#include "core/transform/cell_distances.h"
 #include "core/transform/gaussian_width.h"
 #include "core/transform/transform_rules.h"
 #include "pcl_symmetry/core/scalar_grid.h"
@@ -20,6 +20,70 @@ namespace {
 /// A float clamped to [low, high], as an integer; rounded toward zero.
 int clampedInt(float value, int low, int high) {
   return static_cast<int>(std::clamp(value, static_cast<float>(low), static_cast<float>(high)));
+}
+
+constexpr int kLanes = 16;  // floats in an AVX-512 register
+
+/// Cells from begin to before end along an axis.
+struct CellSpan {
+  int begin, end;
+};
+
+/// Lowers the squared distances of cells to those from a point.
+/// \param x,y,z spans around the point.
+/// \param stride of the rows of \p layer, whose first slice is number \p first_slice. Some cells behind \p x are lowered,
+/// too: a row ends with kLanes of them.
+PCL_SYMMETRY_MULTIVERSION
+void lowerAround(const float* point, CellSpan x, CellSpan y, CellSpan z, float sq_reach, std::ptrdiff_t stride,
+                 std::ptrdiff_t num_rows, float* layer, int first_slice) {
+  typedef float Lanes __attribute__((vector_size(kLanes * sizeof(float))));
+  const float px = point[0], py = point[1], pz = point[2];
+  Lanes first;
+  for (int l = 0; l < kLanes; ++l) first[l] = static_cast<float>(x.begin + l) - px;
+  for (int k = z.begin; k < z.end; ++k) {
+    for (int j = y.begin; j < y.end; ++j) {
+      const float dy = static_cast<float>(j) - py, dz = static_cast<float>(k) - pz, sq_across = dz * dz + dy * dy;
+      if (sq_across >= sq_reach) continue;
+      float* cells = layer + ((k - first_slice) * num_rows + j) * stride + x.begin;
+      Lanes dx = first, low;
+      for (int i = x.begin; i < x.end; i += kLanes, cells += kLanes, dx += static_cast<float>(kLanes)) {
+        std::memcpy(&low, cells, sizeof low);
+        const Lanes sq_distance = sq_across + dx * dx;
+        low = sq_distance < low ? sq_distance : low;
+        std::memcpy(cells, &low, sizeof low);
+      }
+    }
+  }
+}
+
+/// Squared distances of the cells of a cube from the nearest of some points, exact up to a reach (Section 4.1).
+/// \param points 3 x N, in cells from the center of cell (0, 0, 0).
+/// \param reach beyond which distances do not matter, cells, > 0.
+/// \return num_cells^3 values, x fastest: at most reach^2.
+std::vector<float> sqCellDistances(const Points& points, int num_cells, float reach, int num_threads) {
+  const auto n = static_cast<std::size_t>(num_cells), stride = n + kLanes;
+  const auto span = [&](float at, int low, int high) {
+    const auto clamped = [&](float cell) {
+      return static_cast<int>(std::clamp(cell, static_cast<float>(low), static_cast<float>(high)));
+    };
+    return CellSpan{clamped(std::ceil(at - reach)), clamped(std::floor(at + reach) + 1.0f)};
+  };
+  std::vector<float> result(n * n * n);
+  constexpr std::size_t num_slices = 8;  // of a layer, whose cells stay in the second cache
+  parallelRanges(n, num_slices, num_threads, [&](std::size_t begin, std::size_t end) {
+    const int first = static_cast<int>(begin);
+    std::vector<float> layer((end - begin) * n * stride, reach * reach);
+    for (Eigen::Index i = 0; i < points.cols(); ++i) {
+      const Eigen::Vector3f p = points.col(i);
+      const CellSpan z = span(p.z(), first, static_cast<int>(end));
+      if (z.begin == z.end) continue;
+      lowerAround(p.data(), span(p.x(), 0, num_cells), span(p.y(), 0, num_cells), z, reach * reach, stride, n,
+                  layer.data(), first);
+    }
+    for (std::size_t row = 0; row < (end - begin) * n; ++row)
+      std::copy_n(&layer[row * stride], n, &result[(begin * n + row) * n]);
+  });
+  return result;
 }
 
 /// One row of GaussianEdt::sharpened(), without its ends.

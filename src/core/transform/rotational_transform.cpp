@@ -217,12 +217,7 @@ void RotationalTransformOptions::validate() const {
 SymmetryMap rotationalTransform(const GaussianEdt& edt, const PlaneGrid& grid,
                                 const RotationalTransformOptions& options) {
   options.validate();
-  SymmetryMap map;
-  map.grid = grid;
-  map.method = TransformMethod::Rotational;
-  map.sigma = edt.sigma();
-  map.center_of_mass = grid.center();
-  map.values.resize(grid.size());
+  SymmetryMap map = SymmetryMap::zero(edt, grid, TransformMethod::Rotational);
   const RotationalTransform transform(edt, grid, options);
   std::vector<std::size_t> bins(grid.size());
   std::iota(bins.begin(), bins.end(), std::size_t{0});

@@ -81,12 +81,7 @@ SymmetryMap sampledTransform(const GaussianEdt& edt, const PlaneGrid& grid, cons
   if (!free_space.empty()) functions.push_back(checkedFreeSpace(edt, free_space));
   const LookupTable table(functions, edt.numCells(), options.num_threads);
   std::vector<std::vector<float>> means = sampleMeans(edt, grid, options, table);
-  SymmetryMap map;
-  map.grid = grid;
-  map.values = std::move(means[0]);
-  map.method = TransformMethod::Sampled;
-  map.sigma = edt.sigma();
-  map.center_of_mass = grid.center();
+  SymmetryMap map{grid, std::move(means[0]), TransformMethod::Sampled, edt.sigma(), grid.center()};
   if (!free_space.empty()) weighSeen(map, means[1]);
   return map;
 }

@@ -2,6 +2,7 @@
 #include "pcl_symmetry/core/planar_transform.h"
 
 #include <algorithm>
+#include <boost/random/discrete_distribution.hpp>
 #include <cmath>
 #include <numeric>
 
@@ -14,47 +15,6 @@ namespace pcl_symmetry {
 
 namespace {
 
-/// Draws indices with given probabilities in constant time, by Walker's alias method.
-class AliasTable {
-public:
-  AliasTable() = default;
-
-  /// \param shares > 0, proportional to the probabilities.
-  explicit AliasTable(std::vector<double> shares) : threshold_(shares.size(), 1.0f), alias_(shares.size()) {
-    sum_ = std::accumulate(shares.begin(), shares.end(), 0.0);
-    const double mean = sum_ / static_cast<double>(shares.size());
-    std::vector<std::uint32_t> small, large;
-    for (std::uint32_t i = 0; i < shares.size(); ++i) {
-      alias_[i] = i;
-      shares[i] /= mean;
-      (shares[i] < 1.0 ? small : large).push_back(i);
-    }
-    while (!small.empty() && !large.empty()) {
-      const std::uint32_t s = small.back(), l = large.back();
-      small.pop_back();
-      threshold_[s] = static_cast<float>(shares[s]);
-      alias_[s] = l;
-      shares[l] -= 1.0 - shares[s];
-      if (shares[l] < 1.0) {
-        large.pop_back();
-        small.push_back(l);
-      }
-    }
-  }
-
-  std::size_t draw(RandomStream& random) const {
-    const auto slot = random.below(alias_.size());
-    return random.uniform() < threshold_[slot] ? slot : alias_[slot];
-  }
-
-  double sum() const { return sum_; }  ///< of the shares
-
-private:
-  double sum_ = 0.0;
-  std::vector<float> threshold_;
-  std::vector<std::uint32_t> alias_;
-};
-
 /// Draws points of the EDT with probability f: a cell, then a uniform place in it, whose blur f is sharpened against.
 class PointSampler {
 public:
@@ -66,22 +26,24 @@ public:
       cells_.push_back(edt.cellCenter(i).cast<float>());
       shares.push_back(f[i]);
     }
-    table_ = AliasTable(std::move(shares));
+    sum_ = std::accumulate(shares.begin(), shares.end(), 0.0);
+    draw_cell_ = boost::random::discrete_distribution<std::size_t>(shares);
   }
 
   /// \return a point in the input frame.
   Eigen::Vector3d draw(RandomStream& random) const {
-    const std::size_t cell = table_.draw(random);
+    const std::size_t cell = draw_cell_(random);
     const double z = random.uniform() - 0.5, y = random.uniform() - 0.5, x = random.uniform() - 0.5;
     return cells_[cell].cast<double>() + edt_.cellSize() * Eigen::Vector3d(x, y, z);
   }
 
-  double sum() const { return table_.sum(); }  ///< S, the sum of f over the cells
+  double sum() const { return sum_; }  ///< S, of f over the cells
 
 private:
   const GaussianEdt& edt_;
   std::vector<Eigen::Vector3f> cells_;
-  AliasTable table_;
+  double sum_;
+  boost::random::discrete_distribution<std::size_t> draw_cell_;
 };
 
 /// The votes of Section 4.3, and those for planes between near points.
@@ -165,12 +127,7 @@ SymmetryMap votingTransform(const GaussianEdt& edt, const PlaneGrid& grid, const
     for (std::int64_t i = shareOf(block, votes.numFar()); i > 0; --i) votes.voteFar(random, values);
     for (std::int64_t i = shareOf(block, votes.numNear()); i > 0; --i) votes.voteNear(random, values);
   });
-  SymmetryMap map;
-  map.grid = grid;
-  map.method = TransformMethod::Voting;
-  map.sigma = edt.sigma();
-  map.center_of_mass = grid.center();
-  map.values.assign(grid.size(), 0.0f);
+  SymmetryMap map = SymmetryMap::zero(edt, grid, TransformMethod::Voting);
   for (const auto& values : partial)
     for (std::size_t i = 0; i < values.size(); ++i) map.values[i] += values[i];
   return map;
