@@ -32,7 +32,6 @@ struct PairSearchOptions {
 class PointPairIndex {
 public:
   /// \param shapes the points of each, about MatchingRules::num_pair_points.
-  /// \param num_threads >= 0; 0 = one per core.
   explicit PointPairIndex(const std::vector<SurfacePoints>& shapes, int num_threads = 0);
 
   int numShapes() const { return static_cast<int>(radii_.size()); }

@@ -1,7 +1,6 @@
 #include "core/matching/pose_screening.h"
 
 #include <algorithm>
-#include <cmath>
 #include <cstddef>
 #include <utility>
 
@@ -17,17 +16,6 @@ struct Trial {
   std::size_t shape;
   RankedPose pose;
 };
-
-void improveAndJudge(RankedPose& pose, const PoseScorer& scorer, double radius) {
-  PoseScorer::Detail detail{kMatching.num_improved_points, 0.0};
-  detail.unit = radius;
-  for (int i = 0; i < kMatching.num_steps; ++i) {
-    const double share = static_cast<double>(i) / (kMatching.num_steps - 1);
-    detail.width = kMatching.first_width * std::pow(kMatching.last_width / kMatching.first_width, share) * radius;
-    pose.T_model_scan = scorer.step(pose.T_model_scan, detail);
-  }
-  pose.score = scorer.score(pose.T_model_scan, {kMatching.num_improved_points, kMatching.last_width * radius});
-}
 
 /// Calls judge(pose, scorer, radius of the shape) for each trial and sorts them, best first.
 template <typename Judge>
@@ -82,7 +70,11 @@ std::vector<ScreenedShape> screenPoses(const ScreenedSurface& scan, const std::v
     pose.score = scorer.score(pose.T_model_scan, {kMatching.num_judged_points, kMatching.judged_width * radius});
   });
   trials.resize(std::min<std::size_t>(trials.size(), kMatching.num_improved));
-  judgeAll(trials, scan, shapes, options.num_threads, improveAndJudge);
+  const PoseImprovement improvement{kMatching.num_steps, kMatching.num_improved_points, kMatching.first_width,
+                                    kMatching.last_width};
+  judgeAll(trials, scan, shapes, options.num_threads, [&](RankedPose& pose, const PoseScorer& scorer, double radius) {
+    pose.improve(scorer, improvement, radius);
+  });
 
   std::vector<std::vector<RankedPose>> of_shape(shapes.size());
   std::vector<ScreenedShape> found;

@@ -3,18 +3,148 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 
 #include "core/base/check.h"
 #include "core/base/constants.h"
 #include "core/base/parallel.h"
 #include "core/geometry/directions.h"
 #include "core/geometry/viewing_frame.h"
-#include "core/matching/depth_picture.h"
 #include "core/matching/matching_rules.h"
 
 namespace pcl_symmetry {
 
 namespace {
+
+/// Points by coordinates, N x 3: all x, then all y, then all z.
+using PointColumns = Eigen::Matrix<float, Eigen::Dynamic, 3>;
+
+/// Points seen from far away: the nearest depth in each cell of a square picture. The viewer looks along z.
+class DepthPicture {
+public:
+  /// Depth of a cell where nothing is seen.
+  static constexpr float kNothing = std::numeric_limits<float>::infinity();
+
+  /// \param side cells along each side, >= 1.
+  /// \param corner least x and y of the picture.
+  /// \param cell width of a cell, > 0, units of the points.
+  DepthPicture(int side, const Eigen::Array2f& corner, float cell)
+      : side_(side), corner_(corner), cell_(cell), depths_(static_cast<std::size_t>(side) * side, kNothing) {}
+
+  /// Points beyond the picture are left out.
+  void add(const PointColumns& points);
+
+  int side() const { return side_; }
+  Eigen::Array2f center(int u, int v) const { return corner_ + cell_ * (Eigen::Array2i(u, v).cast<float>() + 0.5f); }
+  /// \return kNothing also beyond the picture.
+  float depth(int u, int v) const {
+    const bool inside = u >= 0 && v >= 0 && u < side_ && v < side_;
+    return inside ? depths_[static_cast<std::size_t>(v * side_ + u)] : kNothing;
+  }
+
+private:
+  int side_;
+  Eigen::Array2f corner_;
+  float cell_;
+  std::vector<float> depths_;  // x fastest
+};
+
+/// The outline of what is seen.
+struct ViewOutline {
+  Eigen::Vector3d middle = Eigen::Vector3d::Zero();  ///< mean of the cells inside the outline, and of their depths
+  double radius = 0.0;  ///< root mean square distance of the inside from the middle, in the picture
+};
+
+/// A picture smoothed over neighboring cells, sampled between their centers.
+class SmoothPicture {
+public:
+  /// \param middle the depth that becomes 0.
+  /// \param unit of depths, > 0.
+  SmoothPicture(const DepthPicture& picture, float middle, float unit);
+
+  /// \param at in cells from the corner.
+  /// \return outline (1 inside) and depth, both 0 beyond the picture.
+  Eigen::Array2f sample(const Eigen::Array2f& at) const {
+    const Eigen::Array2f corner = (at - 0.5f).floor(), t = at - 0.5f - corner;
+    const int u = static_cast<int>(corner.x()), v = static_cast<int>(corner.y());
+    return (1.0f - t.y()) * ((1.0f - t.x()) * value(u, v) + t.x() * value(u + 1, v)) +
+           t.y() * ((1.0f - t.x()) * value(u, v + 1) + t.x() * value(u + 1, v + 1));
+  }
+
+private:
+  Eigen::Array2f value(int u, int v) const {
+    if (u < 0 || v < 0 || u >= side_ || v >= side_) return Eigen::Array2f::Zero();
+    return values_[static_cast<std::size_t>(v * side_ + u)];
+  }
+
+  int side_;
+  std::vector<Eigen::Array2f> values_;
+};
+
+template <typename Visit>
+void forEachSeenCell(const DepthPicture& picture, const Visit& visit) {
+  for (int v = 0; v < picture.side(); ++v) {
+    for (int u = 0; u < picture.side(); ++u) {
+      const float depth = picture.depth(u, v);
+      if (depth != DepthPicture::kNothing) visit(picture.center(u, v).cast<double>().matrix(), depth);
+    }
+  }
+}
+
+void DepthPicture::add(const PointColumns& points) {
+  for (Eigen::Index i = 0; i < points.rows(); ++i) {
+    const float u = (points(i, 0) - corner_.x()) / cell_, v = (points(i, 1) - corner_.y()) / cell_;
+    const auto side = static_cast<float>(side_);
+    if (!(u >= 0.0f && v >= 0.0f && u < side && v < side)) continue;
+    float& depth = depths_[static_cast<std::size_t>(static_cast<int>(v) * side_ + static_cast<int>(u))];
+    depth = std::min(depth, points(i, 2));
+  }
+}
+
+/// \param in_view N >= 1 points, z away from the viewer.
+/// \throws std::invalid_argument for points that are seen as one.
+ViewOutline outlineOf(const PointColumns& in_view) {
+  const Eigen::Array2f low = in_view.leftCols<2>().colwise().minCoeff().transpose();
+  const Eigen::Array2f high = in_view.leftCols<2>().colwise().maxCoeff().transpose();
+  const float extent = (high - low).maxCoeff();
+  check(extent > 0.0f, "extent of the points across the view", extent, "> 0");
+  const int cells = kMatching.outline_cells;
+  DepthPicture picture(cells + 1, low, extent / cells);
+  picture.add(in_view);
+
+  ViewOutline outline;
+  double count = 0.0, sq_radius = 0.0;
+  forEachSeenCell(picture, [&](const Eigen::Vector2d& at, float depth) {
+    outline.middle += Eigen::Vector3d(at.x(), at.y(), depth);
+    count += 1.0;
+  });
+  outline.middle /= count;
+  forEachSeenCell(
+      picture, [&](const Eigen::Vector2d& at, float) { sq_radius += (at - outline.middle.head<2>()).squaredNorm(); });
+  // The mean square distance from the center of a square cell is 1/6 of its squared side.
+  outline.radius = std::sqrt(sq_radius / count + extent * extent / (6.0 * cells * cells));
+  return outline;
+}
+
+SmoothPicture::SmoothPicture(const DepthPicture& picture, float middle, float unit) : side_(picture.side()) {
+  const float weights[3] = {0.25f, 0.5f, 0.25f};
+  const float deepest = kMatching.deepest;
+  values_.resize(static_cast<std::size_t>(side_) * side_);
+  for (int v = 0; v < side_; ++v) {
+    for (int u = 0; u < side_; ++u) {
+      Eigen::Array2f& value = values_[static_cast<std::size_t>(v * side_ + u)];
+      value.setZero();
+      for (int j = -1; j <= 1; ++j) {
+        for (int i = -1; i <= 1; ++i) {
+          const float depth = picture.depth(u + i, v + j);
+          if (depth == DepthPicture::kNothing) continue;
+          value += weights[i + 1] * weights[j + 1] *
+                   Eigen::Array2f(1.0f, std::clamp((depth - middle) / unit, -deepest, deepest));
+        }
+      }
+    }
+  }
+}
 
 constexpr int kNumAngles = 48;        // samples on a ring, and rotations that are compared: 7.5 degrees
 constexpr int kRow = 2 * kViewRings;  // values of the real or imaginary part of a harmonic: outline and depth

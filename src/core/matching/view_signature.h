@@ -38,7 +38,6 @@ View viewOf(const PointsRef& points, const Eigen::Vector3d& forward);
 /// Views from directions that are spread evenly over the sphere.
 /// \param points 3 x N, finite, input units.
 /// \param num_views >= 1: of 80, the nearest is within 12 degrees of any direction.
-/// \param num_threads >= 0; 0 = one per core.
 /// \throws std::invalid_argument for points without extent.
 std::vector<View> viewsAround(const PointsRef& points, int num_views = 80, int num_threads = 0);
 

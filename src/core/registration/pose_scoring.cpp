@@ -30,7 +30,7 @@ Matches match(const PosedSurface& from, const PosedSurface& to, const Eigen::Iso
     std::vector<float> sq_distances;
     to.search->search(matches.positions, 1, matches.closest, sq_distances);
   } else {
-    const ClosestPointGrid& grid = to.grid->of(to.points);
+    const ClosestPointGrid& grid = to.grid.get();
     for (Eigen::Index i = 0; i < size; ++i) matches.closest[i] = grid.closest(matches.positions.col(i));
   }
   return matches;

@@ -43,22 +43,8 @@ std::vector<RankedPose> screened(const PoseStarts& starts, const PoseScorer& sco
   return poses;
 }
 
-/// Steps with a Gaussian whose width shrinks geometrically.
-struct Improvement {
-  int num_steps, num_points;
-  double first_width, last_width;
-};
-
-void improve(std::vector<RankedPose>& poses, const PoseScorer& scorer, const Improvement& how, int num_threads) {
-  forEach(poses, num_threads, [&](RankedPose& pose) {
-    for (int i = 0; i < how.num_steps; ++i) {
-      const double width =
-          how.first_width * std::pow(how.last_width / how.first_width, static_cast<double>(i) / (how.num_steps - 1));
-      pose.T_model_scan = scorer.step(pose.T_model_scan, {how.num_points, width});
-    }
-    pose.score = scorer.score(pose.T_model_scan, {how.num_points, how.last_width});
-    pose.num_points = how.num_points;
-  });
+void improve(std::vector<RankedPose>& poses, const PoseScorer& scorer, const PoseImprovement& how, int num_threads) {
+  forEach(poses, num_threads, [&](RankedPose& pose) { pose.improve(scorer, how); });
 }
 
 }  // namespace
@@ -69,6 +55,18 @@ void PoseSearchOptions::validate() const {
   check(num_refined >= 1, "num_refined", num_refined, ">= 1");
   check(max_poses >= 1, "max_poses", max_poses, ">= 1");
   checkNumThreads(num_threads);
+}
+
+void RankedPose::improve(const PoseScorer& scorer, const PoseImprovement& how, double unit) {
+  PoseScorer::Detail detail{how.num_points, 0.0};
+  detail.unit = unit;
+  for (int i = 0; i < how.num_steps; ++i) {
+    const double share = static_cast<double>(i) / (how.num_steps - 1);
+    detail.width = how.first_width * std::pow(how.last_width / how.first_width, share) * unit;
+    T_model_scan = scorer.step(T_model_scan, detail);
+  }
+  score = scorer.score(T_model_scan, {how.num_points, how.last_width * unit});
+  num_points = how.num_points;
 }
 
 std::vector<RankedPose> distinctPoses(std::vector<RankedPose> poses, std::size_t most, double radius) {

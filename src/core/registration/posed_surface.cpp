@@ -20,19 +20,18 @@ std::vector<int> randomOrder(int size, std::uint64_t seed) {
   return order;
 }
 
-}  // namespace
-
-const ClosestPointGrid& LateGrid::of(const PointsRef& points) {
-  std::call_once(made_, [&] { grid_.emplace(points, num_cells_); });
-  return *grid_;
+std::shared_future<ClosestPointGrid> lateGrid(const Points& points, int num_cells) {
+  return std::async(std::launch::deferred, [=] { return ClosestPointGrid(points, num_cells); });
 }
+
+}  // namespace
 
 PosedSurface::PosedSurface(const PointsRef& input, std::optional<Visibility> seen_space, std::uint64_t seed,
                            int num_threads)
     : points(input),
       order(randomOrder(static_cast<int>(input.cols()), seed)),
       seen(std::move(seen_space)),
-      grid(std::make_shared<LateGrid>(kRegistration.cells)),
+      grid(lateGrid(points, kRegistration.cells)),
       search(makeFlannSearch(input)) {
   LocalGeometry geometry = localGeometry(points, *search, kNumSupportNeighbors, num_threads);
   const double typical = median(geometry.spacing);
@@ -49,7 +48,7 @@ PosedSurface::PosedSurface(const PointsRef& input, const PointsRef& known_normal
       normals(known_normals),
       order(static_cast<std::size_t>(input.cols())),
       seen(std::move(seen_space)),
-      grid(std::make_shared<LateGrid>(kRegistration.few_cells)) {
+      grid(lateGrid(points, kRegistration.few_cells)) {
   std::iota(order.begin(), order.end(), 0);
 }
 

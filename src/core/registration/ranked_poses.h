@@ -4,15 +4,24 @@
 #include <cstddef>
 #include <vector>
 
-#include "core/registration/posed_surface.h"
+#include "core/registration/pose_scoring.h"
 #include "pcl_symmetry/core/pose_search.h"
 
 namespace pcl_symmetry {
+
+/// Steps with a Gaussian whose width shrinks geometrically.
+struct PoseImprovement {
+  int num_steps, num_points;
+  double first_width, last_width;  ///< radii
+};
 
 struct RankedPose {
   Eigen::Isometry3d T_model_scan = Eigen::Isometry3d::Identity();
   PoseScore score;
   int num_points = 0;  ///< of the scan that the pose was fitted to; 0 = it was not fitted
+
+  /// \param unit radius of the model, in the unit of the pose.
+  void improve(const PoseScorer& scorer, const PoseImprovement& how, double unit = 1.0);
 };
 
 /// The best poses, at most \p most, that differ from all better ones.
