@@ -129,11 +129,11 @@ void EquivalentFrames::addTied(const FrameCandidate& frame, const Eigen::Vector3
   } while (std::next_permutation(order.begin(), order.end()));
 }
 
-bool isRotatedAboutRevolution(const SymmetryFrame& result, const FrameCandidate& frame) {
-  if (result.revolution_axis < 0) return false;
-  if (result.revolution_axis == 3) return true;
-  const Eigen::Vector3f axis = result.axes.col(result.revolution_axis).cast<float>();
-  return (frame.axes.transpose() * axis).cwiseAbs().maxCoeff() > std::cos(kFrame.same_frame);
+bool isRotatedAboutRevolution(const Eigen::Matrix3f& axes, int revolution_axis, const Eigen::Matrix3f& frame) {
+  if (revolution_axis < 0) return false;
+  if (revolution_axis == 3) return true;
+  const Eigen::Vector3f axis = axes.col(revolution_axis);
+  return (frame.transpose() * axis).cwiseAbs().maxCoeff() > std::cos(kFrame.same_frame);
 }
 
 }  // namespace pcl_symmetry

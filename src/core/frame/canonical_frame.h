@@ -55,7 +55,9 @@ private:
   std::vector<Eigen::Isometry3d> poses_;
 };
 
-/// Whether a frame is the result rotated about its axis of revolution: all of these are equally good and not listed.
-bool isRotatedAboutRevolution(const SymmetryFrame& result, const FrameCandidate& frame);
+/// Whether a frame is one of \p axes rotated about its axis of revolution: all of these are equally good and not
+/// listed.
+/// \param revolution_axis as of SymmetryFrame.
+bool isRotatedAboutRevolution(const Eigen::Matrix3f& axes, int revolution_axis, const Eigen::Matrix3f& frame);
 
 }  // namespace pcl_symmetry

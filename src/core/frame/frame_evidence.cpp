@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "core/base/constants.h"
+#include "core/base/median.h"
 #include "core/transform/free_space.h"
 
 namespace pcl_symmetry {
@@ -79,11 +81,9 @@ double FrameEvidence::middleAlong(const Eigen::Vector3f& axis) const {
   std::vector<float> t(static_cast<std::size_t>(points_.cols()));
   for (std::size_t i = 0; i < t.size(); ++i)
     t[i] = axis.dot(toCells(points_.col(static_cast<Eigen::Index>(i)).cast<double>()));
-  const auto tail = static_cast<std::ptrdiff_t>(kFrame.tail * static_cast<double>(t.size() - 1));
-  std::nth_element(t.begin(), t.begin() + tail, t.end());
-  const float low = t[static_cast<std::size_t>(tail)];
-  std::nth_element(t.begin(), t.end() - 1 - tail, t.end());
-  return 0.5 * (low + *(t.end() - 1 - tail)) + axis.dot(push_);
+  const auto tail = static_cast<std::size_t>(kFrame.tail * static_cast<double>(t.size() - 1));
+  const auto [low, high] = trimmedExtent(std::move(t), tail);
+  return 0.5 * (low + high) + axis.dot(push_);
 }
 
 }  // namespace pcl_symmetry

@@ -1,7 +1,6 @@
 #include "core/frame/plane_profiles.h"
 
 #include <algorithm>
-#include <array>
 
 #include "core/base/simd.h"
 #include "core/transform/free_space.h"
@@ -26,36 +25,20 @@ PlaneProfiles::PlaneProfiles(const GaussianEdt& edt, const std::vector<float>& f
   cells_.push_back(outside_);
 }
 
-/// The images of all samples on their way through the grid.
-class PlaneProfiles::Walk {
-public:
-  explicit Walk(std::size_t size) : x_(size), y_(size), z_(size), cells_(size) {}
+namespace {
 
-  /// \param position in cells from the corner of the grid.
-  void start(std::size_t sample, const Eigen::Vector3f& position) {
-    x_[sample] = position.x();
-    y_[sample] = position.y();
-    z_[sample] = position.z();
-  }
+/// Images of the samples on their way through the grid, and the cells that they pass.
+struct Walk {
+  Eigen::ArrayX3f positions;  // in cells from the corner of the grid
+  std::vector<std::uint32_t> cells;
 
-  /// \return the cell of each image, size^3 outside the grid; afterwards each is moved.
-  const std::uint32_t* cellsThenMove(const Eigen::Vector3f& move, std::uint32_t size) {
-    step({x_.data(), y_.data(), z_.data()}, x_.size(), {move.x(), move.y(), move.z()}, size, cells_.data());
-    return cells_.data();
-  }
-
-private:
-  static void step(const std::array<float*, 3>& positions, std::size_t count, const std::array<float, 3>& move,
-                   std::uint32_t size, std::uint32_t* cells);
-
-  std::vector<float> x_, y_, z_;
-  std::vector<std::uint32_t> cells_;
+  explicit Walk(Eigen::Index size) : positions(size, 3), cells(static_cast<std::size_t>(size)) {}
 };
 
+/// Finds the cell of each image, size^3 outside the grid, then moves the images.
 PCL_SYMMETRY_MULTIVERSION
-void PlaneProfiles::Walk::step(const std::array<float*, 3>& positions, std::size_t count,
-                               const std::array<float, 3>& move, std::uint32_t size, std::uint32_t* cells) {
-  float *const x = positions[0], *const y = positions[1], *const z = positions[2];
+void advance(float* positions, std::size_t count, const float* move, std::uint32_t size, std::uint32_t* cells) {
+  float *const x = positions, *const y = x + count, *const z = y + count;
   const float dx = move[0], dy = move[1], dz = move[2];
   const std::uint32_t outside = size * size * size;
 #pragma GCC ivdep
@@ -70,6 +53,8 @@ void PlaneProfiles::Walk::step(const std::array<float*, 3>& positions, std::size
     z[s] += dz;
   }
 }
+
+}  // namespace
 
 /// Sums over the images of the samples.
 /// \param images cells of the images.
@@ -98,20 +83,20 @@ PlaneProfiles::Sums PlaneProfiles::sumsOf(const std::uint32_t* __restrict cells,
 /// grid along one straight line per sample.
 std::vector<float> PlaneProfiles::scores(const Eigen::Vector3f& normal, float first, float step, int count,
                                          const CellPlane* completed_across) const {
-  const auto num_samples = static_cast<std::size_t>(samples_.cols());
+  const Eigen::Index num_samples = samples_.cols();
   Walk images(num_samples), completed(completed_across ? num_samples : 0);
   int own = 0;
   const float to_index = middle_ + 0.5f;
-  for (std::size_t s = 0; s < num_samples; ++s) {
-    const Eigen::Vector3f x = samples_.col(static_cast<Eigen::Index>(s));
+  for (Eigen::Index s = 0; s < num_samples; ++s) {
+    const Eigen::Vector3f x = samples_.col(s);
     const float shift = 2.0f * (first - normal.dot(x));
-    images.start(s, (x + shift * normal).array() + to_index);
+    images.positions.row(s) = (x + shift * normal).array() + to_index;
     const Eigen::Vector3f here = x.array() + to_index;
     int surface = surfaceOf(at(here[0], here[1], here[2]));
     if (completed_across) {
       const Eigen::Vector3f y =
           x - 2.0f * (completed_across->normal.dot(x) - completed_across->offset) * completed_across->normal;
-      completed.start(s, (y + shift * normal).array() + to_index);
+      completed.positions.row(s) = (y + shift * normal).array() + to_index;
       const Eigen::Vector3f there = y.array() + to_index;
       surface = std::max(surface, surfaceOf(at(there[0], there[1], there[2])));
     }
@@ -122,9 +107,10 @@ std::vector<float> PlaneProfiles::scores(const Eigen::Vector3f& normal, float fi
   const double scale = 1.0 / std::max(own, 1);
   const Eigen::Vector3f move = 2.0f * step * normal;
   for (int k = 0; k < count; ++k) {
-    const std::uint32_t* const at_images = images.cellsThenMove(move, size_);
-    const std::uint32_t* const at_completed = completed_across ? completed.cellsThenMove(move, size_) : nullptr;
-    const Sums sums = sumsOf(cells_.data(), at_images, at_completed, static_cast<int>(num_samples));
+    for (Walk* const walk : {&images, &completed})
+      advance(walk->positions.data(), walk->cells.size(), move.data(), size_, walk->cells.data());
+    const Sums sums = sumsOf(cells_.data(), images.cells.data(), completed_across ? completed.cells.data() : nullptr,
+                             static_cast<int>(num_samples));
     result[k] =
         static_cast<float>(scanned_ ? seenSymmetry(scale * sums.surface, scale * sums.free) : scale * sums.surface);
   }

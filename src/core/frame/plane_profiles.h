@@ -27,7 +27,6 @@ public:
   /// sides.
   /// \param num_samples points drawn from the distance transform, >= 1.
   /// \param seed of the samples.
-  /// \param num_threads >= 0; 0 = one per core.
   PlaneProfiles(const GaussianEdt& edt, const std::vector<float>& free_space, int num_samples, std::uint64_t seed,
                 int num_threads);
 
@@ -46,7 +45,6 @@ public:
   float score(const CellPlane& plane) const { return scores(plane.normal, plane.offset, 0.0f, 1)[0]; }
 
 private:
-  class Walk;
   /// Over the images of the samples, 255 for one.
   struct Sums {
     int surface, free;

@@ -27,12 +27,8 @@ double angleBetween(const Eigen::Matrix3f& a, const Eigen::Matrix3f& b) {
 
 bool isKnown(const std::vector<FrameChoice>& known, const FrameCandidate& frame) {
   return std::any_of(known.begin(), known.end(), [&](const FrameChoice& other) {
-    if (other.revolution_axis == 3) return true;
-    if (other.revolution_axis >= 0) {
-      const Eigen::Vector3f axis = other.frame.axes.col(other.revolution_axis);
-      if ((frame.axes.transpose() * axis).cwiseAbs().maxCoeff() > std::cos(kFrame.same_frame)) return true;
-    }
-    return angleBetween(frame.axes, other.frame.axes) < kFrame.same_frame;
+    return isRotatedAboutRevolution(other.frame.axes, other.revolution_axis, frame.axes) ||
+           angleBetween(frame.axes, other.frame.axes) < kFrame.same_frame;
   });
 }
 

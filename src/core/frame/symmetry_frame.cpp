@@ -189,7 +189,8 @@ SymmetryFrame symmetryFrame(const PointsRef& points, const FrameOptions& options
     equivalent.addTied(frames[i], best.scores, options.tie, i == 0 ? frame.center : centers[i]);
   frame.num_maxima = equivalent.poses().size();
   for (const FrameCandidate& other : rotated)
-    if (!isRotatedAboutRevolution(frame, other)) equivalent.addTied(other, best.scores, options.tie, frame.center);
+    if (!isRotatedAboutRevolution(frame.axes.cast<float>(), frame.revolution_axis, other.axes))
+      equivalent.addTied(other, best.scores, options.tie, frame.center);
   frame.equivalent = equivalent.poses();
   done("equivalent");
   if (visibility && options.turns) {

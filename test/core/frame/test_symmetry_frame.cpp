@@ -344,16 +344,13 @@ TEST(EquivalentFrames, LeaveOutFramesThatScoreLess) {
 }
 
 TEST(RotationsAboutRevolution, AreNotListed) {
-  SymmetryFrame result;
-  const Eigen::Matrix3d rotated = Eigen::AngleAxisd(0.7, Eigen::Vector3d::UnitY()).toRotationMatrix();
-  const Eigen::Matrix3d tilted = Eigen::AngleAxisd(0.7, Eigen::Vector3d::Ones().normalized()).toRotationMatrix();
-  const Eigen::Vector3f scores = Eigen::Vector3f::Ones();
-  EXPECT_FALSE(isRotatedAboutRevolution(result, candidate(rotated, scores)));
-  result.revolution_axis = 1;
-  EXPECT_TRUE(isRotatedAboutRevolution(result, candidate(rotated, scores)));
-  EXPECT_FALSE(isRotatedAboutRevolution(result, candidate(tilted, scores)));
-  result.revolution_axis = 3;
-  EXPECT_TRUE(isRotatedAboutRevolution(result, candidate(tilted, scores)));
+  const Eigen::Matrix3f axes = Eigen::Matrix3f::Identity();
+  const Eigen::Matrix3f rotated = Eigen::AngleAxisf(0.7f, Eigen::Vector3f::UnitY()).toRotationMatrix();
+  const Eigen::Matrix3f tilted = Eigen::AngleAxisf(0.7f, Eigen::Vector3f::Ones().normalized()).toRotationMatrix();
+  EXPECT_FALSE(isRotatedAboutRevolution(axes, -1, rotated));
+  EXPECT_TRUE(isRotatedAboutRevolution(axes, 1, rotated));
+  EXPECT_FALSE(isRotatedAboutRevolution(axes, 1, tilted));
+  EXPECT_TRUE(isRotatedAboutRevolution(axes, 3, tilted));
 }
 
 FrameChoice choiceWith(double value) {
