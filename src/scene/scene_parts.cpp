@@ -5,7 +5,6 @@
 #include <pcl/sample_consensus/sac_model_plane.h>
 #include <pcl/segmentation/extract_clusters.h>
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -13,6 +12,7 @@
 
 #include "core/base/constants.h"
 #include "core/base/median.h"
+#include "core/geometry/principal_axes.h"
 #include "core/geometry/surface_normals.h"
 #include "core/scan/sensor_noise.h"
 #include "pcl_symmetry/impl/cloud_conversion.hpp"
@@ -63,23 +63,13 @@ Eigen::Vector4d fitted(const SymmetryScene::Cloud& scene, const Consensus& plane
     std::vector<double> heights;
     for (const pcl::index_t i : plane.inliers) heights.push_back(height(i));
     const double most = kScene.fit_deviations * median(std::move(heights));
-    Eigen::Vector3d sum = Eigen::Vector3d::Zero();
-    Eigen::Matrix3d squares = Eigen::Matrix3d::Zero();
-    const Eigen::Vector3d origin = scene[plane.inliers.front()].getVector3fMap().cast<double>();
-    double count = 0.0;
-    for (const pcl::index_t i : plane.inliers) {
-      if (height(i) > most) continue;
-      const Eigen::Vector3d x = scene[i].getVector3fMap().cast<double>() - origin;
-      sum += x;
-      squares += x * x.transpose();
-      count += 1.0;
-    }
-    const Eigen::Vector3d mean = sum / count;
-    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(squares / count - mean * mean.transpose());
-    const Eigen::Vector3d normal = solver.eigenvectors().col(0);
-    if (!normal.allFinite()) return plane.coefficients;
-    const double sign = normal.dot(coefficients.head<3>()) < 0.0 ? -1.0 : 1.0;
-    coefficients << sign * normal, -sign * normal.dot(mean + origin);
+    pcl::Indices near;
+    for (const pcl::index_t i : plane.inliers)
+      if (height(i) <= most) near.push_back(i);
+    const PrincipalAxes axes = principalAxes(pointsOf(scene, near));
+    Eigen::Vector3d normal = axes.axes.col(2);
+    if (normal.dot(coefficients.head<3>()) < 0.0) normal = -normal;
+    coefficients << normal, -normal.dot(axes.center);
   }
   return coefficients;
 }
@@ -98,12 +88,8 @@ Sides sidesOf(const SymmetryScene::Cloud& scene, const Consensus& plane, const p
   const auto extent = [&](const Eigen::Vector3d& axis) {
     std::vector<double> places;
     for (const pcl::index_t i : plane.inliers) places.push_back(along(i, axis));
-    const auto trim = static_cast<std::ptrdiff_t>(kScene.footprint_trim * static_cast<double>(places.size() - 1));
-    const auto first = places.begin() + trim, last = places.end() - 1 - trim;
-    std::nth_element(places.begin(), first, places.end());
-    const double low = *first;
-    std::nth_element(first, last, places.end());
-    return std::pair<double, double>(low, *last);
+    const auto num_cut = static_cast<std::size_t>(kScene.footprint_trim * static_cast<double>(places.size() - 1));
+    return trimmedExtent(std::move(places), num_cut);
   };
   const auto [u_low, u_high] = extent(u);
   const auto [v_low, v_high] = extent(v);
@@ -137,10 +123,15 @@ bool isRemainder(const SymmetryScene::Cloud& scene, const pcl::Indices& cluster,
 
 }  // namespace
 
+Points pointsOf(const SymmetryScene::Cloud& scene, const pcl::Indices& indices) {
+  Points points(3, static_cast<Eigen::Index>(indices.size()));
+  for (std::size_t i = 0; i < indices.size(); ++i)
+    points.col(static_cast<Eigen::Index>(i)) = scene[indices[i]].getVector3fMap();
+  return points;
+}
+
 SurfaceScale surfaceScale(const SymmetryScene::Cloud& scene, const pcl::Indices& points) {
-  Points surface(3, static_cast<Eigen::Index>(points.size()));
-  for (std::size_t i = 0; i < points.size(); ++i)
-    surface.col(static_cast<Eigen::Index>(i)) = scene[points[i]].getVector3fMap();
+  const Points surface = pointsOf(scene, points);
   const std::size_t stride = 1 + (points.size() - 1) / kScene.scale_samples;
   Points places(3, static_cast<Eigen::Index>((points.size() + stride - 1) / stride));
   for (Eigen::Index i = 0; i < places.cols(); ++i) places.col(i) = surface.col(i * static_cast<Eigen::Index>(stride));
@@ -169,9 +160,7 @@ SeenSpace seenOfObject(const SeenSpace& seen, const SymmetryScene::Cloud& scene,
                        const SceneDistances& distances, double tolerance) {
   SeenSpace result = seen.withoutSupport();
   if (!seen.visibility() || supports.empty()) return result;
-  Points points(3, static_cast<Eigen::Index>(object.size()));
-  for (std::size_t i = 0; i < object.size(); ++i)
-    points.col(static_cast<Eigen::Index>(i)) = scene[object[i]].getVector3fMap();
+  const Points points = pointsOf(scene, object);
   const double diagonal = (points.rowwise().maxCoeff() - points.rowwise().minCoeff()).cast<double>().norm();
   const double off = std::max(tolerance * diagonal, resolvedTolerance(points, *seen.visibility()));
   const double most = kScene.support_margin * distances.plane;

@@ -11,6 +11,9 @@
 
 namespace pcl_symmetry::detail {
 
+/// \return the positions of some points of a scene.
+Points pointsOf(const SymmetryScene::Cloud& scene, const pcl::Indices& indices);
+
 /// How far points of one surface are apart: what distances of a scene follow from.
 struct SurfaceScale {
   double spacing = 0.0;    ///< of neighboring points, median, input units

@@ -3,11 +3,12 @@
 #include <pcl/common/common.h>
 #include <pcl/common/point_tests.h>
 
-#include <Eigen/Eigenvalues>
-#include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <utility>
+
+#include "core/geometry/principal_axes.h"
+#include "scene/scene_parts.h"
 
 namespace pcl_symmetry::detail {
 
@@ -24,19 +25,7 @@ constexpr double kDepthErrors = 4.0;  // of the sensor, by which neighbors on on
 
 /// Root mean square distance of points from their plane of least squares.
 double thicknessOf(const SymmetryScene::Cloud& frame, const pcl::Indices& cluster) {
-  const Eigen::Vector3d origin = frame[cluster.front()].getVector3fMap().cast<double>();
-  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
-  Eigen::Matrix3d squares = Eigen::Matrix3d::Zero();
-  for (const pcl::index_t i : cluster) {
-    const Eigen::Vector3d x = frame[i].getVector3fMap().cast<double>() - origin;
-    sum += x;
-    squares += x * x.transpose();
-  }
-  const auto count = static_cast<double>(cluster.size());
-  const Eigen::Vector3d mean = sum / count;
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(squares / count - mean * mean.transpose(),
-                                                              Eigen::EigenvaluesOnly);
-  return std::sqrt(std::max(0.0, solver.eigenvalues()[0]));
+  return std::sqrt(principalAxes(pointsOf(frame, cluster)).variances[2]);
 }
 
 double diagonalOf(const SymmetryScene::Cloud& frame, const pcl::Indices& cluster) {

@@ -3,7 +3,6 @@
 #include <pcl/features/normal_3d.h>
 #include <pcl/kdtree/kdtree_flann.h>
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -14,8 +13,11 @@
 #include <utility>
 
 #include "core/base/constants.h"
+#include "core/base/median.h"
 #include "core/base/parallel.h"
+#include "core/geometry/principal_axes.h"
 #include "core/scan/sensor_noise.h"
+#include "scene/scene_parts.h"
 #include "scene/scene_rules.h"
 
 namespace pcl_symmetry::detail {
@@ -26,12 +28,6 @@ using Cloud = SymmetryScene::Cloud;
 
 Eigen::Vector3d positionOf(const Cloud& scene, pcl::index_t i) {
   return scene[i].getVector3fMap().cast<double>();
-}
-
-Eigen::Vector3d centroidOf(const Cloud& scene, const pcl::Indices& points) {
-  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
-  for (const pcl::index_t i : points) sum += positionOf(scene, i);
-  return sum / static_cast<double>(points.size());
 }
 
 /// Indices of both, ascending.
@@ -82,8 +78,7 @@ public:
       : scene_(scene), pieces_{&larger, &smaller}, indices_(indicesOf(larger, smaller)), reflected_(reflectedOf()) {
     tree_.setInputCloud(scene.frame, pcl::make_shared<pcl::Indices>(indices_));
     seen_ = scene.seen_of(indices_);
-    Points points(3, indices_.size());
-    for (std::size_t i = 0; i < indices_.size(); ++i) points.col(i) = (*scene.frame)[indices_[i]].getVector3fMap();
+    const Points points = pointsOf(*scene.frame, indices_);
     diagonal_ = (points.rowwise().maxCoeff() - points.rowwise().minCoeff()).cast<double>().norm();
     center_ = points.rowwise().mean().cast<double>();
     double tolerance = std::max(scene.spacing, scene.tolerance * diagonal_);
@@ -275,20 +270,15 @@ private:
   std::optional<ReflectionPlane> throughAxisOfLarger() const {
     if (pieces_[0]->axes.empty()) return std::nullopt;
     const SymmetryAxis& axis = pieces_[0]->axes.front();
-    const Eigen::Vector3d normal = axis.direction.cross(centroidOf(*scene_.frame, pieces_[1]->indices) - axis.point);
+    const Eigen::Vector3d normal =
+        axis.direction.cross(centerOfMass(pointsOf(*scene_.frame, pieces_[1]->indices)) - axis.point);
     if (!(normal.norm() > 0.0)) return std::nullopt;
     return planeThrough(axis, normal.normalized());
   }
 
   bool isFlat(const SceneObject& piece) const {
-    const Eigen::Vector3d center = centroidOf(*scene_.frame, piece.indices);
-    Eigen::Matrix3d squares = Eigen::Matrix3d::Zero();
-    for (const pcl::index_t i : piece.indices) {
-      const Eigen::Vector3d x = positionOf(*scene_.frame, i) - center;
-      squares += x * x.transpose() / static_cast<double>(piece.indices.size());
-    }
-    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(squares, Eigen::EigenvaluesOnly);
-    return solver.eigenvalues()[0] < std::pow(kScene.flat, 2) * solver.eigenvalues()[2];
+    const Eigen::Vector3d variances = principalAxes(pointsOf(*scene_.frame, piece.indices)).variances;
+    return variances[2] < std::pow(kScene.flat, 2) * variances[0];
   }
 
   /// The support that a piece comes closest to.
@@ -313,13 +303,9 @@ private:
     std::vector<double> heights;
     for (const pcl::index_t i : piece.indices)
       heights.push_back(support.coefficients.dot(positionOf(*scene_.frame, i).homogeneous().eval()));
-    const auto foot =
-        heights.begin() + static_cast<std::ptrdiff_t>(kScene.trimmed * static_cast<double>(heights.size()));
-    const auto top = heights.end() - 1 - (foot - heights.begin());
-    std::nth_element(heights.begin(), foot, heights.end());
-    const double lowest = *foot;
-    std::nth_element(heights.begin(), top, heights.end());
-    return {lowest, *top};
+    const auto num_cut = static_cast<std::size_t>(kScene.trimmed * static_cast<double>(heights.size()));
+    const auto [foot, top] = trimmedExtent(std::move(heights), num_cut);
+    return {foot, top};
   }
 
   double footOf(const SupportingPlane& support, const SceneObject& piece) const { return heightsOf(support, piece)[0]; }
