@@ -71,34 +71,6 @@ std::vector<RejectedRotation> inInputFrame(std::vector<RejectedAxis> axes, const
   return rejected;
 }
 
-/// Finds groups at one or more tolerances; the lines that axes may lie on are searched once.
-class GroupSearch {
-public:
-  GroupSearch(const RotationFit& fit, const ObjectSymmetryOptions& options) : fit_(fit), options_(options) {}
-
-  struct Found {
-    PlacedGroup group;
-    std::vector<RejectedAxis> rejected;
-  };
-
-  Found at(const RotationFit& fit) {
-    AxisFinder finder(fit, options_);
-    if (principal_.empty()) principal_ = principalLines(fit_);
-    finder.judge(principal_);
-    if (!finder.isRound()) {
-      if (others_.empty())
-        others_ = axisLineCandidates(fit_, options_.num_directions, options_.max_fold, options_.num_threads);
-      finder.judge(others_);
-    }
-    return {greatestGroup(fit, options_, finder.axes()), finder.rejected()};
-  }
-
-private:
-  const RotationFit& fit_;
-  const ObjectSymmetryOptions& options_;
-  std::vector<Line3d> principal_, others_;
-};
-
 }  // namespace
 
 void ObjectSymmetryOptions::validate() const {
@@ -135,15 +107,25 @@ ObjectSymmetries objectSymmetries(const PointsRef& points, const ObjectSymmetryO
   const double reach = (options.other_tolerances ? 2.0 : 1.0) * tolerance;
   const RotationFit fit(normalized, edt, limits, reach, options.seed, options.num_threads);
   done("surface");
-  GroupSearch search(fit, options);
-  GroupSearch::Found found = search.at(fit);
+  const std::vector<Line3d> principal = principalLines(fit);
+  std::vector<Line3d> others;  // searched once for all tolerances
+  const auto search = [&](const RotationFit& at) {
+    AxisFinder finder(at, options);
+    finder.judge(principal);
+    if (finder.isRound()) return finder;
+    if (others.empty()) others = axisLineCandidates(fit, options.num_directions, options.max_fold, options.num_threads);
+    finder.judge(others);
+    return finder;
+  };
+  const AxisFinder found = search(fit);
+  ObjectSymmetries result = inInputFrame(greatestGroup(fit, options, found.axes()), fit, ball);
   done("group");
-  ObjectSymmetries result = inInputFrame(found.group, fit, ball);
   result.tolerance = tolerance * ball.radius;
-  result.rejected = inInputFrame(std::move(found.rejected), fit, ball);
+  result.rejected = inInputFrame(found.rejected(), fit, ball);
   if (options.other_tolerances) {
     const auto name_at = [&](double factor) {
-      const PlacedGroup group = search.at(fit.withLimits({factor * tolerance, options.max_feature})).group;
+      const RotationFit at = fit.withLimits({factor * tolerance, options.max_feature});
+      const PlacedGroup group = greatestGroup(at, options, search(at).axes());
       return GroupName{group.kind, group.fold};
     };
     result.at_half_tolerance = name_at(0.5);

@@ -217,23 +217,12 @@ public:
 private:
   /// The segment with the element that is closest to the mean of a segment.
   int closestTo(int segment) const {
-    Eigen::Vector3d mean = Eigen::Vector3d::Zero();
-    int count = 0;
-    for (int i = 0; i < graph_.size(); ++i) {
-      if (labels_[i] != segment) continue;
-      mean += graph_.centers.col(i).cast<double>();
-      ++count;
-    }
-    const Eigen::Vector3f middle = (mean / count).cast<float>();
-    int closest = segment;
-    float least = std::numeric_limits<float>::infinity();
-    for (int i = 0; i < graph_.size(); ++i) {
-      const float sq_distance = (graph_.centers.col(i) - middle).squaredNorm();
-      if (labels_[i] == segment || sq_distance >= least) continue;
-      closest = labels_[i];
-      least = sq_distance;
-    }
-    return closest;
+    std::vector<int> own, others;
+    for (int i = 0; i < graph_.size(); ++i) (labels_[i] == segment ? own : others).push_back(i);
+    const Eigen::Vector3f mean = centerOfMass(graph_.centers(Eigen::all, own)).cast<float>();
+    Eigen::Index closest = 0;
+    (graph_.centers(Eigen::all, others).colwise() - mean).colwise().squaredNorm().minCoeff(&closest);
+    return labels_[others[closest]];
   }
 
   const SurfaceGraph& graph_;

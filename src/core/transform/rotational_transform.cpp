@@ -146,65 +146,51 @@ struct BinLookUp {
   double psi, delta;
 };
 
-class RotationalTransform {
-public:
-  RotationalTransform(const GaussianEdt& edt, const PlaneGrid& grid, const RotationalTransformOptions& options)
-      : edt_(edt), grid_(grid), options_(options) {}
-
-  /// \param step between points on an axis, and between planes of neighboring lines at the far end of the shape, cells.
-  /// \param bins that are computed.
-  void run(const std::vector<std::size_t>& bins, double step, std::vector<float>& values) const {
-    for (int axis = 0; axis < 3; ++axis) runAxis(axis, bins, step, values);
+/// Sets the values of the planes whose normals lie closest to one axis of the grid: each meets it in a point.
+/// \param bins that are computed.
+/// \param step between points on an axis, and between planes of neighboring lines at the far end of the shape, cells.
+void computeAboutAxis(int axis, const GaussianEdt& edt, const PlaneGrid& grid,
+                      const RotationalTransformOptions& options, const std::vector<std::size_t>& bins, double step,
+                      std::vector<float>& values) {
+  const Eigen::Vector3d center = (grid.center() - edt.origin()) / edt.cellSize();
+  const int half = static_cast<int>(std::ceil(std::sqrt(3.0) * grid.radius() / edt.cellSize() / step)) + 2;
+  const Eigen::Vector3d middle = Eigen::Vector3d::Constant(0.5 * (edt.numCells() - 1));
+  std::vector<PlanesThroughPoint> points;
+  for (int i = -half; i <= half; ++i) {
+    const Eigen::Vector3d point = center + i * step * Eigen::Vector3d::Unit(axis);
+    points.emplace_back(edt, axis, point, (point - middle).norm() + 0.5 * (edt.numCells() - 1),
+                        options.spacing * edt.sigma() / edt.cellSize(), step);
   }
-
-private:
-  /// The planes whose normals lie closest to one axis of the grid: each meets it in a point.
-  void runAxis(int axis, const std::vector<std::size_t>& bins, double step, std::vector<float>& values) const {
-    const Eigen::Vector3d center = (grid_.center() - edt_.origin()) / edt_.cellSize();
-    const int half = static_cast<int>(std::ceil(std::sqrt(3.0) * grid_.radius() / edt_.cellSize() / step)) + 2;
-    const Eigen::Vector3d middle = Eigen::Vector3d::Constant(0.5 * (edt_.numCells() - 1));
-    std::vector<PlanesThroughPoint> points;
-    for (int i = -half; i <= half; ++i) {
-      const Eigen::Vector3d point = center + i * step * Eigen::Vector3d::Unit(axis);
-      points.emplace_back(edt_, axis, point, (point - middle).norm() + 0.5 * (edt_.numCells() - 1),
-                          options_.spacing * edt_.sigma() / edt_.cellSize(), step);
-    }
-    std::vector<BinLookUp> look_ups;
-    for (const std::size_t bin : bins) {
-      const PlaneGrid::Bin position = grid_.bin(bin);
-      Eigen::Vector3d n = grid_.normal(position.theta, position.phi);
-      int nearest;
-      n.cwiseAbs().maxCoeff(&nearest);
-      if (nearest != axis) continue;
-      double offset = grid_.offset(position.radius) / edt_.cellSize();
-      if (n[axis] < 0.0) n = -n, offset = -offset;
-      const double x = n[(axis + 1) % 3], y = n[(axis + 2) % 3];
-      double psi = std::atan2(-x, y), delta = std::acos(std::min(1.0, n[axis]));  // b = (-sin psi, cos psi)
-      if (psi < 0.0) psi += kPi, delta = -delta;
-      if (psi >= kPi) psi -= kPi, delta = -delta;
-      look_ups.push_back({bin, offset / n[axis] / step + half, psi, delta});
-      for (int k = 0; k < 4; ++k)
-        points[static_cast<std::size_t>(std::floor(look_ups.back().position)) - 1 + k].mark(psi);
-    }
-    std::vector<std::pair<PlanesThroughPoint*, int>> lines;
-    for (PlanesThroughPoint& point : points)
-      for (int line = 0; line < point.numLines(); ++line)
-        if (point.isMarked(line)) lines.emplace_back(&point, line);
-    parallelBlocks(lines.size(), options_.num_threads,
-                   [&](std::size_t i) { lines[i].first->compute(lines[i].second); });
-    for (const BinLookUp& look_up : look_ups) {
-      const int first = static_cast<int>(std::floor(look_up.position));
-      const std::array<double, 4> weights = cubicWeights(look_up.position - first);
-      double sum = 0.0;
-      for (int k = 0; k < 4; ++k) sum += weights[k] * points[first - 1 + k].at(look_up.psi, look_up.delta);
-      values[look_up.bin] = static_cast<float>(sum);
-    }
+  std::vector<BinLookUp> look_ups;
+  for (const std::size_t bin : bins) {
+    const PlaneGrid::Bin position = grid.bin(bin);
+    Eigen::Vector3d n = grid.normal(position.theta, position.phi);
+    int nearest;
+    n.cwiseAbs().maxCoeff(&nearest);
+    if (nearest != axis) continue;
+    double offset = grid.offset(position.radius) / edt.cellSize();
+    if (n[axis] < 0.0) n = -n, offset = -offset;
+    const double x = n[(axis + 1) % 3], y = n[(axis + 2) % 3];
+    double psi = std::atan2(-x, y), delta = std::acos(std::min(1.0, n[axis]));  // b = (-sin psi, cos psi)
+    if (psi < 0.0) psi += kPi, delta = -delta;
+    if (psi >= kPi) psi -= kPi, delta = -delta;
+    look_ups.push_back({bin, offset / n[axis] / step + half, psi, delta});
+    for (int k = 0; k < 4; ++k)
+      points[static_cast<std::size_t>(std::floor(look_ups.back().position)) - 1 + k].mark(psi);
   }
-
-  const GaussianEdt& edt_;
-  const PlaneGrid& grid_;
-  const RotationalTransformOptions& options_;
-};
+  std::vector<std::pair<PlanesThroughPoint*, int>> lines;
+  for (PlanesThroughPoint& point : points)
+    for (int line = 0; line < point.numLines(); ++line)
+      if (point.isMarked(line)) lines.emplace_back(&point, line);
+  parallelBlocks(lines.size(), options.num_threads, [&](std::size_t i) { lines[i].first->compute(lines[i].second); });
+  for (const BinLookUp& look_up : look_ups) {
+    const int first = static_cast<int>(std::floor(look_up.position));
+    const std::array<double, 4> weights = cubicWeights(look_up.position - first);
+    double sum = 0.0;
+    for (int k = 0; k < 4; ++k) sum += weights[k] * points[first - 1 + k].at(look_up.psi, look_up.delta);
+    values[look_up.bin] = static_cast<float>(sum);
+  }
+}
 
 }  // namespace
 
@@ -218,18 +204,20 @@ SymmetryMap rotationalTransform(const GaussianEdt& edt, const PlaneGrid& grid,
                                 const RotationalTransformOptions& options) {
   options.validate();
   SymmetryMap map = SymmetryMap::zero(edt, grid, TransformMethod::Rotational);
-  const RotationalTransform transform(edt, grid, options);
+  const auto compute = [&](const std::vector<std::size_t>& of, double step) {
+    for (int axis = 0; axis < 3; ++axis) computeAboutAxis(axis, edt, grid, options, of, step, map.values);
+  };
   std::vector<std::size_t> bins(grid.size());
   std::iota(bins.begin(), bins.end(), std::size_t{0});
   if (options.refined_share < 1.0) {
-    transform.run(bins, kTransform.coarse_pivot_step, map.values);
+    compute(bins, kTransform.coarse_pivot_step);
     const auto num_refined = static_cast<std::ptrdiff_t>(options.refined_share * static_cast<double>(bins.size()));
     std::nth_element(bins.begin(), bins.begin() + num_refined, bins.end(), [&](std::size_t i, std::size_t j) {
       return std::pair(map.values[j], i) < std::pair(map.values[i], j);
     });
     bins.resize(num_refined);
   }
-  transform.run(bins, kTransform.pivot_step, map.values);
+  compute(bins, kTransform.pivot_step);
   return map;
 }
 
