@@ -9,7 +9,6 @@
 #include <cmath>
 
 #include "core/base/check.h"
-#include "core/base/parallel.h"
 #include "core/geometry/answerable_points.h"
 #include "core/geometry/point_samples.h"
 #include "core/scan/depth_filter.h"
@@ -51,11 +50,6 @@ std::string reasonForNoAnswer(const Points& points, const std::string& input, in
 
 void warnOfNoAnswer(const std::string& source, const std::string& reason) {
   PCL_WARN("[pcl_symmetry::%s] %s.\n", source.c_str(), reason.c_str());
-}
-
-void forPieces(std::size_t size, int num_threads, const std::function<void(std::size_t, std::size_t)>& range) {
-  constexpr std::size_t points_of_block = 1 << 14;
-  parallelRanges(size, points_of_block, num_threads, range);
 }
 
 std::vector<std::size_t> drawOneOfEachRun(std::size_t num_points, std::size_t max_points, std::uint64_t seed) {
@@ -149,15 +143,14 @@ std::optional<Visibility> seenByOrganizedCloud(const Points& pixels, int width, 
   pcl::Indices used;
   for (std::size_t i = 0; i < finite.size(); i += stride) used.push_back(finite[i]);
   Points points(3, static_cast<Eigen::Index>(used.size()));
-  for (std::size_t i = 0; i < used.size(); ++i) points.col(static_cast<Eigen::Index>(i)) = pixels.col(used[i]);
+  for (std::size_t i = 0; i < used.size(); ++i) points.col(i) = pixels.col(used[i]);
   const BoundingBall ball = boundingBall(points);
   if (!(ball.radius > 0.0)) return std::nullopt;
 
   // The estimate depends on the units: it is made from coordinates near 1.
   auto cloud = pcl::make_shared<pcl::PointCloud<pcl::PointXYZ>>(width, height);
   const Points normalized = normalizePoints(points, ball.center, ball.radius);
-  for (std::size_t i = 0; i < used.size(); ++i)
-    (*cloud)[used[i]].getVector3fMap() = normalized.col(static_cast<Eigen::Index>(i));
+  for (std::size_t i = 0; i < used.size(); ++i) (*cloud)[used[i]].getVector3fMap() = normalized.col(i);
   Eigen::Matrix<float, 3, 4, Eigen::RowMajor> estimate;
   // The residual that it returns may be slightly negative. The error in pixels decides, below.
   pcl::estimateProjectionMatrix<pcl::PointXYZ>(cloud, estimate, used);
@@ -170,8 +163,7 @@ std::optional<Visibility> seenByOrganizedCloud(const Points& pixels, int width, 
 
   double sq_error = 0.0;
   for (std::size_t i = 0; i < used.size(); ++i) {
-    const Eigen::Vector3d image =
-        projection * Eigen::Vector4d(normalized.col(static_cast<Eigen::Index>(i)).cast<double>().homogeneous());
+    const Eigen::Vector3d image = projection * Eigen::Vector4d(normalized.col(i).cast<double>().homogeneous());
     if (!(image.z() > 0.0)) return std::nullopt;
     const Eigen::Vector2d pixel(used[i] % width, used[i] / width);
     sq_error += (image.head<2>() / image.z() - pixel).squaredNorm();

@@ -142,7 +142,7 @@ void SymmetrySegmentation<PointT>::segmentMesh() {
 
 template <typename PointT>
 void SymmetrySegmentation<PointT>::segmentCloud() {
-  const Points points = this->selectInput(options_.seed, options_.num_threads);
+  const Points points = this->selectInput(options_.seed);
   if (points.cols() == 0) return;
   const pcl::Indices& used = this->getUsedIndices();
   SegmentationOptions options = options_;

@@ -90,20 +90,19 @@ protected:
   const VolumeLevels& levels() const { return levels_; }          ///< of the volume
 
   /// Begins an analysis: clears the results of the last one and selects the points of the input.
-  /// \param num_threads 0 = one per core.
   /// \return 3 x N points; N = 0 where the input holds no answer.
-  Points selectInput(std::uint64_t seed, int num_threads = 1) {
-    if (input_) return selectFrom(*input_, seed, num_threads);
+  Points selectInput(std::uint64_t seed) {
+    if (input_) return selectFrom(*input_, seed);
     clearResults();
     return giveNoAnswer("input cloud: not set");
   }
 
   /// The same from another cloud with the points of the input, such as a filtered one.
   template <typename OtherPointT>
-  Points selectFrom(const pcl::PointCloud<OtherPointT>& cloud, std::uint64_t seed, int num_threads) {
+  Points selectFrom(const pcl::PointCloud<OtherPointT>& cloud, std::uint64_t seed) {
     clearResults();
     detail::SelectedPoints selected =
-        detail::selectPoints(cloud, use_indices_ ? indices_.get() : nullptr, max_points_, seed, num_threads);
+        detail::selectPoints(cloud, use_indices_ ? indices_.get() : nullptr, max_points_, seed);
     std::string reason = detail::reasonForNoAnswer(selected.points);
     if (!reason.empty()) return giveNoAnswer(std::move(reason));
     used_indices_ = std::move(selected.indices);
@@ -176,13 +175,12 @@ protected:
   }
 
   /// Selects points without the errors of a depth camera, which its rows and columns tell.
-  Points selectInput(std::uint64_t seed, int num_threads = 1) {
+  Points selectInput(std::uint64_t seed, int num_threads = 0) {
     const bool asks_data = !seen_space_ && viewpoint_.mode == Viewpoint::Mode::Auto;
     frame_ = asks_data && this->input_ && this->input_->isOrganized() && this->input_->width > 1
                  ? detail::depthFrame(detail::ScannerOutput(*this->input_), num_threads)
                  : detail::DepthFrame();
-    return frame_.filtered ? this->selectFrom(*frame_.filtered, seed, num_threads)
-                           : CloudAnalysis<PointT>::selectInput(seed, num_threads);
+    return frame_.filtered ? this->selectFrom(*frame_.filtered, seed) : CloudAnalysis<PointT>::selectInput(seed);
   }
 
   /// \return whether the caller may have told what the object stands on, by setGround() or setSeenSpace().

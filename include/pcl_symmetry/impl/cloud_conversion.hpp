@@ -5,11 +5,8 @@
 #include <pcl/point_cloud.h>
 #include <pcl/type_traits.h>
 
-#include <algorithm>
-#include <atomic>
 #include <cstddef>
 #include <cstdint>
-#include <functional>
 #include <limits>
 #include <optional>
 #include <stdexcept>
@@ -82,51 +79,31 @@ struct SelectedPoints {
 /// \return max_points positions in the sequence, rising.
 std::vector<std::size_t> drawOneOfEachRun(std::size_t num_points, std::size_t max_points, std::uint64_t seed);
 
-/// Calls range(begin, end) for pieces of [0, size).
-/// \param num_threads 0 = one per core.
-void forPieces(std::size_t size, int num_threads, const std::function<void(std::size_t, std::size_t)>& range);
-
 /// The finite points of a cloud. Of more than \p max_points, one of each of max_points equal runs is drawn, so that the
 /// time and memory of an analysis do not grow with the cloud.
 /// \param indices the points of the cloud to choose from; null: all.
-/// \param num_threads 0 = one per core.
 /// \throws pcl::BadArgumentException for an index that the cloud does not have.
 template <typename PointT>
 SelectedPoints selectPoints(const pcl::PointCloud<PointT>& cloud, const pcl::Indices* indices, std::size_t max_points,
-                            std::uint64_t seed, int num_threads = 1) {
+                            std::uint64_t seed) {
+  SelectedPoints selected;
   const std::size_t size = indices ? indices->size() : cloud.size();
-  const auto at = [&](std::size_t i) { return indices ? (*indices)[i] : static_cast<pcl::index_t>(i); };
-  for (std::size_t i = 0; indices && i < size; ++i) {
-    if (at(i) < 0 || static_cast<std::size_t>(at(i)) >= cloud.size())
-      throwBadArgument("indices[" + std::to_string(i) + "] = " + std::to_string(at(i)) + ", must be in [0, " +
+  for (std::size_t i = 0; i < size; ++i) {
+    const pcl::index_t index = indices ? (*indices)[i] : static_cast<pcl::index_t>(i);
+    if (index < 0 || static_cast<std::size_t>(index) >= cloud.size())
+      throwBadArgument("indices[" + std::to_string(i) + "] = " + std::to_string(index) + ", must be in [0, " +
                        std::to_string(cloud.size()) + ")");
+    if (pcl::isXYZFinite(cloud[index])) selected.indices.push_back(index);
   }
-  std::atomic<std::size_t> num_finite{0};
-  forPieces(size, num_threads, [&](std::size_t begin, std::size_t end) {
-    std::size_t count = 0;
-    for (std::size_t i = begin; i < end; ++i) count += pcl::isXYZFinite(cloud[at(i)]) ? 1 : 0;
-    num_finite += count;
-  });
-  std::vector<std::size_t> drawn;
-  if (num_finite > max_points) drawn = drawOneOfEachRun(num_finite, max_points, seed);
-  const std::size_t count = std::min(num_finite.load(), max_points);
-  SelectedPoints selected{Points(3, count), pcl::Indices(count)};
-  const auto select = [&](std::size_t slot, std::size_t i) {
-    selected.points.col(slot) = cloud[at(i)].getVector3fMap();
-    selected.indices[slot] = at(i);
-  };
-  if (num_finite == size && !drawn.empty()) {
-    forPieces(count, num_threads, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t slot = begin; slot < end; ++slot) select(slot, drawn[slot]);
-    });
-    return selected;
+  if (selected.indices.size() > max_points) {
+    pcl::Indices drawn;
+    for (const std::size_t position : drawOneOfEachRun(selected.indices.size(), max_points, seed))
+      drawn.push_back(selected.indices[position]);
+    selected.indices = std::move(drawn);
   }
-  std::size_t slot = 0, position = 0;  // among the chosen and the finite points
-  for (std::size_t i = 0; i < size && slot < count; ++i) {
-    if (!pcl::isXYZFinite(cloud[at(i)])) continue;
-    if (drawn.empty() || position == drawn[slot]) select(slot++, i);
-    ++position;
-  }
+  selected.points.resize(3, static_cast<Eigen::Index>(selected.indices.size()));
+  for (std::size_t i = 0; i < selected.indices.size(); ++i)
+    selected.points.col(static_cast<Eigen::Index>(i)) = cloud[selected.indices[i]].getVector3fMap();
   return selected;
 }
 
