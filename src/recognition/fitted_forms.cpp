@@ -190,7 +190,7 @@ std::vector<std::string> allForms(ModelStore& store, const std::vector<StoredMod
     const auto model =
         std::lower_bound(models.begin(), models.end(), id, [](const auto& a, std::int64_t b) { return a.id < b; });
     if (model == models.end() || model->id != id) fail(id, " is that of another model");
-    all[static_cast<std::size_t>(model - models.begin())] = bytes;
+    all[model - models.begin()] = bytes;
   };
   if (stored != 0) store.each(part, stored, take);
   const std::vector<StoredModel> without = stored != 0 ? store.modelsWithoutForms() : models;

@@ -57,7 +57,7 @@ std::vector<ModelOfView> PairSearch::nearest(const Points& scan, const Visibilit
     if (const std::size_t model = indexOf(other.model.id); model < poses.size()) add(model, other.T_model_scan);
   std::vector<ModelOfView> found;
   for (ScreenedShape& shape : screenPoses(ScreenedSurface(points, seen), poses, options))
-    found.push_back({models_[static_cast<std::size_t>(shape.shape)], std::move(shape.T_shape_scan)});
+    found.push_back({models_[shape.shape], std::move(shape.T_shape_scan)});
   return found;
 }
 

@@ -51,7 +51,7 @@ std::vector<ShapeSearch::Found> ShapeSearch::nearest(const Points& points, const
   const CompactForm form = forms_->formOf(describeShape(points, options, seen).signatures, 0);
   const double root = std::sqrt(form.typical);
   for (const auto& [model, distance] : index_.nearest(forms_->rotations(form), num_nearest))
-    found.push_back({models_[static_cast<std::size_t>(model)], distance / root});
+    found.push_back({models_[model], distance / root});
   return found;
 }
 

@@ -53,13 +53,12 @@ std::vector<ModelOfView> ViewSearch::nearest(const View& scan, int num_nearest, 
   if (coder_) {
     const auto count = std::max(kRecognition.num_view_models, static_cast<std::size_t>(num_nearest));
     for (const int model : codes_.nearest(coder_->codeOf(scan), static_cast<int>(count), num_threads))
-      candidates.push_back(models_[static_cast<std::size_t>(model)]);
+      candidates.push_back(models_[model]);
     index = indexOf(candidates, read, num_threads);
   }
   std::vector<ModelOfView> found;
   for (ShapeOfView& shape : (coder_ ? index : all_).nearest(scan, num_nearest, num_threads))
-    found.push_back(
-        {(coder_ ? candidates : models_)[static_cast<std::size_t>(shape.shape)], std::move(shape.T_shape_scan)});
+    found.push_back({(coder_ ? candidates : models_)[shape.shape], std::move(shape.T_shape_scan)});
   return found;
 }
 

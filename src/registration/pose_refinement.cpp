@@ -59,8 +59,7 @@ public:
   void determineCorrespondences(pcl::Correspondences& pairs, double max_distance) override {
     const NormalCloud& scan = *getInputSource();
     Points positions(3, static_cast<Eigen::Index>(scan.size()));
-    for (std::size_t i = 0; i < scan.size(); ++i)
-      positions.col(static_cast<Eigen::Index>(i)) = scan[i].getVector3fMap();
+    for (std::size_t i = 0; i < scan.size(); ++i) positions.col(i) = scan[i].getVector3fMap();
     pairs.clear();
     closest_.resize(scan.size(), -1);
     std::vector<float> sq_distances;

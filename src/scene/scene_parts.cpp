@@ -105,10 +105,10 @@ Sides sidesOf(const SymmetryScene::Cloud& scene, const Consensus& plane, const p
 
 pcl::Indices without(const pcl::Indices& points, const pcl::Indices& removed, std::size_t scene_size) {
   std::vector<char> gone(scene_size, 0);
-  for (const pcl::index_t i : removed) gone[static_cast<std::size_t>(i)] = 1;
+  for (const pcl::index_t i : removed) gone[i] = 1;
   pcl::Indices rest;
   for (const pcl::index_t i : points)
-    if (!gone[static_cast<std::size_t>(i)]) rest.push_back(i);
+    if (!gone[i]) rest.push_back(i);
   return rest;
 }
 
@@ -125,8 +125,7 @@ bool isRemainder(const SymmetryScene::Cloud& scene, const pcl::Indices& cluster,
 
 Points pointsOf(const SymmetryScene::Cloud& scene, const pcl::Indices& indices) {
   Points points(3, static_cast<Eigen::Index>(indices.size()));
-  for (std::size_t i = 0; i < indices.size(); ++i)
-    points.col(static_cast<Eigen::Index>(i)) = scene[indices[i]].getVector3fMap();
+  for (std::size_t i = 0; i < indices.size(); ++i) points.col(i) = scene[indices[i]].getVector3fMap();
   return points;
 }
 
@@ -182,7 +181,7 @@ SeenSpace standingInScene(const SeenSpace& seen, const ScannerOutput& scanned, c
   const SymmetryScene::Cloud::ConstPtr scene = cloudOf(scanned);
   // A face of the object is no table.
   std::vector<char> is_part(scene->size(), 0);
-  for (const pcl::index_t i : part) is_part[static_cast<std::size_t>(i)] = 1;
+  for (const pcl::index_t i : part) is_part[i] = 1;
   pcl::Indices object, others;
   for (std::size_t i = 0; i < scene->size(); ++i)
     if (pcl::isXYZFinite((*scene)[i])) (is_part[i] ? object : others).push_back(static_cast<pcl::index_t>(i));

@@ -37,7 +37,7 @@ double diagonalOf(const SymmetryScene::Cloud& frame, const pcl::Indices& cluster
 /// Whether the surface goes on at the outline of a cluster, and is seen to end nowhere before something farther.
 bool goesOn(const SymmetryScene::Cloud& frame, const pcl::Indices& cluster, const Visibility& seen, double distance) {
   std::vector<char> is_inside(frame.size(), 0);
-  for (const pcl::index_t i : cluster) is_inside[static_cast<std::size_t>(i)] = 1;
+  for (const pcl::index_t i : cluster) is_inside[i] = 1;
   const Eigen::Vector3d viewpoint = seen.viewpoint();
   const auto width = static_cast<std::ptrdiff_t>(frame.width), height = static_cast<std::ptrdiff_t>(frame.height);
   double num_ends = 0.0, num_going_on = 0.0, num_before_farther = 0.0;

@@ -22,7 +22,6 @@ Eigen::Vector3d centerOfSymmetry(const FrameEvidence& evidence, const FrameCandi
 
 /// The center where several frames are nearly as good: the mean of their centers, weighted by their values. Frames of a
 /// symmetric shape have one center, but where a shape has no symmetry chance and what was seen decide which is best.
-/// \param centers of the frames, input frame.
 /// \param frames best first, at least one.
 Eigen::Vector3d meanCenter(const std::vector<Eigen::Vector3d>& centers, const std::vector<FrameCandidate>& frames);
 
@@ -33,7 +32,6 @@ int revolutionAxis(const FrameEvidence& evidence, const FrameCandidate& frame, d
 
 /// The pose that takes the center to the origin and the axes to x, y and z.
 /// \param axes orthonormal columns.
-/// \return T_canonical_input.
 Eigen::Isometry3d canonicalPose(const Eigen::Matrix3d& axes, const Eigen::Vector3d& center);
 
 /// The frames that symmetry leaves equally good. Frames closer than 5 degrees are one.

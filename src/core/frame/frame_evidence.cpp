@@ -79,8 +79,7 @@ double FrameEvidence::spreadAlong(const Eigen::Vector3f& axis) const {
 
 double FrameEvidence::middleAlong(const Eigen::Vector3f& axis) const {
   std::vector<float> t(static_cast<std::size_t>(points_.cols()));
-  for (std::size_t i = 0; i < t.size(); ++i)
-    t[i] = axis.dot(toCells(points_.col(static_cast<Eigen::Index>(i)).cast<double>()));
+  for (std::size_t i = 0; i < t.size(); ++i) t[i] = axis.dot(toCells(points_.col(i).cast<double>()));
   const auto tail = static_cast<std::size_t>(kFrame.tail * static_cast<double>(t.size() - 1));
   const auto [low, high] = trimmedExtent(std::move(t), tail);
   return 0.5 * (low + high) + axis.dot(push_);

@@ -100,7 +100,6 @@ public:
   double quality(const CellPlane& plane) const { return score(plane) + agreement(plane.normal); }
   /// By which frames are compared: the score of the first plane, a share of those of the others, and agreement.
   /// \param scores of the first, second and third plane.
-  /// \param agreement sum of agreement() of the three axes.
   double value(const Eigen::Vector3f& scores, double agreement) const {
     return scores[0] + weight_ * (scores[1] + scores[2]) + agreement;
   }

@@ -48,7 +48,6 @@ FrameCandidate frameOfAxes(const FrameEvidence& evidence, const Eigen::Matrix3f&
 /// Moves each frame to the nearest maximum of its value, all three planes together. Then orders the second and third
 /// axis by score, or where scores tie by the spread of the points.
 /// \param tie scores that differ by no more than this are equal, >= 0.
-/// \return the frames, best first.
 std::vector<FrameCandidate> refinedFrames(const FrameEvidence& evidence, std::vector<FrameCandidate> frames, double tie,
                                           int num_threads);
 

@@ -22,11 +22,9 @@ struct CellPlane {
 /// sampling.
 class PlaneProfiles {
 public:
-  /// \param edt distance transform of the points.
   /// \param free_space one value in [0, 1] per cell, from freeSpace(); empty: the points show the object from all
   /// sides.
   /// \param num_samples points drawn from the distance transform, >= 1.
-  /// \param seed of the samples.
   PlaneProfiles(const GaussianEdt& edt, const std::vector<float>& free_space, int num_samples, std::uint64_t seed,
                 int num_threads);
 
@@ -34,7 +32,6 @@ public:
   /// \param normal unit.
   /// \param first first offset, cells from the middle of the grid.
   /// \param step distance of two offsets, cells.
-  /// \param count number of offsets, >= 1.
   /// \param completed_across a plane perpendicular to \p normal. The surface and the free space on each side of it then
   /// also count on the other side: the completed cloud of a scan. Null: the points are taken as they are.
   /// \return \p count values: D for a whole cloud, seenSymmetry() of D and F for a scan.

@@ -41,7 +41,6 @@ struct FrameChoice {
 std::vector<FrameChoice> frameChoices(const FrameEvidence& evidence, const std::vector<FrameCandidate>& frames,
                                       double tie, int num_threads);
 
-/// \param choices of one shape.
 /// \return one probability each; their sum is less than 1.
 std::vector<double> frameProbabilities(const std::vector<FrameChoice>& choices, const FrameTerms& weights);
 

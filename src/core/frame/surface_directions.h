@@ -24,7 +24,6 @@ public:
   double agreement(const Eigen::Vector3f& axis) const;
 
   /// Directions that many normals share: the normals of the faces of a shape.
-  /// \param max_peaks greatest number of directions.
   /// \return unit directions, those shared by most of the surface first.
   std::vector<Eigen::Vector3f> peaks(int max_peaks) const;
 

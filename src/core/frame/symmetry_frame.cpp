@@ -95,8 +95,8 @@ std::vector<SymmetryTurn> turnsAlong(const SymmetryFrame& frame, const PointsRef
   detection.num_threads = options.num_threads;
   std::vector<SymmetryAxis> axes(3);
   for (int k = 0; k < 3; ++k) {
-    axes[static_cast<std::size_t>(k)].point = frame.center;
-    axes[static_cast<std::size_t>(k)].direction = frame.axes.col(k);
+    axes[k].point = frame.center;
+    axes[k].direction = frame.axes.col(k);
   }
   return turnsOfScan(points, edt, visibility, axes, detection, make_search);
 }

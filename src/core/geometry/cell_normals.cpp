@@ -38,14 +38,14 @@ public:
   int add(const Eigen::Vector3d& x) {
     const Eigen::Array3i at = (x.array() + 1.0).max(1.0).min(static_cast<double>(side_ - 2)).cast<int>();
     const int index = (at.z() * side_ + at.y()) * side_ + at.x();
-    int& slot = slot_of_cells_[static_cast<std::size_t>(index)];
+    int& slot = slot_of_cells_[index];
     if (slot < 0) {
       slot = static_cast<int>(occupied_.size());
       occupied_.push_back(index);
       moments_.emplace_back();
     }
     // Relative to the middle of the cube: floats are precise enough there.
-    moments_[static_cast<std::size_t>(slot)].add((x - Eigen::Vector3d::Constant(0.5 * (side_ - 2))).cast<float>());
+    moments_[slot].add((x - Eigen::Vector3d::Constant(0.5 * (side_ - 2))).cast<float>());
     return slot;
   }
 
@@ -57,8 +57,8 @@ public:
     for (int z = -1; z <= 1; ++z)
       for (int y = -1; y <= 1; ++y)
         for (int x = -1; x <= 1; ++x) {
-          const int near = slot_of_cells_[static_cast<std::size_t>(occupied_[slot] + (z * side_ + y) * side_ + x)];
-          if (near >= 0) sum += moments_[static_cast<std::size_t>(near)];
+          const int near = slot_of_cells_[occupied_[slot] + (z * side_ + y) * side_ + x];
+          if (near >= 0) sum += moments_[near];
         }
     return sum;
   }
@@ -77,7 +77,7 @@ CellNormals cellNormals(const PointsRef& points, const Eigen::Vector3d& origin, 
   CellNormals result;
   result.cell_of_points.resize(static_cast<std::size_t>(points.cols()));
   for (Eigen::Index i = 0; i < points.cols(); ++i)
-    result.cell_of_points[static_cast<std::size_t>(i)] = cells.add((points.col(i).cast<double>() - origin) / cell_size);
+    result.cell_of_points[i] = cells.add((points.col(i).cast<double>() - origin) / cell_size);
   result.normals.resize(3, static_cast<Eigen::Index>(cells.numOccupied()));
   result.flatness.setZero(result.normals.cols());
   for (std::size_t c = 0; c < cells.numOccupied(); ++c) {

@@ -27,7 +27,7 @@ inline std::vector<int> firstCopies(const PointsRef& points) {
   while (num_slots < 2 * first.size()) num_slots *= 2;
   std::vector<int> first_of_slot(num_slots, -1);
   for (std::size_t i = 0; i < first.size(); ++i) {
-    const Eigen::Vector3f point = points.col(static_cast<Eigen::Index>(i));
+    const Eigen::Vector3f point = points.col(i);
     std::size_t slot = hash(point) & (num_slots - 1);
     while (first_of_slot[slot] >= 0 && points.col(first_of_slot[slot]) != point) slot = (slot + 1) & (num_slots - 1);
     if (first_of_slot[slot] < 0) first_of_slot[slot] = static_cast<int>(i);

@@ -84,7 +84,7 @@ void FlannSearch::search(const PointsRef& queries, int num_neighbors, std::vecto
   sq_distances.assign(num_queries * count, kInfinity);
   for (std::size_t i = 0; i < num_queries; ++i) {
     NearestPoints nearest(&indices[i * count], &sq_distances[i * count], num_neighbors);
-    tree_->index.findNeighbors(nearest, queries.col(static_cast<Eigen::Index>(i)).data(), tree_->params);
+    tree_->index.findNeighbors(nearest, queries.col(i).data(), tree_->params);
   }
 }
 
@@ -95,7 +95,7 @@ void FlannSearch::searchWithin(const PointsRef& queries, float max_sq_distance, 
   if (lists_) seen = lists_->search(queries, indices);
   sq_distances.resize(indices.size());
   for (std::size_t i = 0; i < indices.size(); ++i) {
-    const Eigen::Vector3f query = queries.col(static_cast<Eigen::Index>(i));
+    const Eigen::Vector3f query = queries.col(i);
     const float guessed = indices[i] < 0 ? limit : (points_.col(indices[i]) - query).squaredNorm();
     ClosestPoint closest(guessed < limit ? indices[i] : -1, std::min(guessed, limit));
     const bool is_proven = lists_ && seen[i].is_closest;

@@ -22,12 +22,12 @@ bool NeighborLists::isUseful(Eigen::Index num_points) {
 NeighborLists::NeighborLists(const Points& points, const std::vector<int>& nearest, const std::vector<float>& sq_reach)
     : lists_(sq_reach.size()), grid_(points, 32) {
   for (int i = 0; i < static_cast<int>(lists_.size()); ++i) {
-    List& list = lists_[static_cast<std::size_t>(i)];
+    List& list = lists_[i];
     list.own_x = points(0, i);
     list.own_y = points(1, i);
     list.own_z = points(2, i);
     // (1 / 2)^2, less what distances are rounded by
-    list.most_sq_distance = 0.2499f * sq_reach[static_cast<std::size_t>(i)];
+    list.most_sq_distance = 0.2499f * sq_reach[i];
     // The point itself is among the nearest, unless as many others are at the same position.
     for (int k = 0, count = 0; k <= kNeighbors && count < kNeighbors; ++k) {
       const int j = nearest[static_cast<std::size_t>(i) * (kNeighbors + 1) + static_cast<std::size_t>(k)];
@@ -50,9 +50,9 @@ __attribute__((target("avx2"))) std::vector<NeighborLists::Found> NeighborLists:
   for (std::size_t begin = 0; begin < found.size(); begin += together) {
     std::size_t num_walking = 0;
     for (std::size_t i = begin; i < std::min(begin + together, found.size()); ++i) {
-      const Eigen::Vector3f query = queries.col(static_cast<Eigen::Index>(i));
+      const Eigen::Vector3f query = queries.col(i);
       found[i].index = guesses[i] >= 0 ? guesses[i] : grid_.closest(query);
-      const List& list = lists_[static_cast<std::size_t>(found[i].index)];
+      const List& list = lists_[found[i].index];
       const float dx = query.x() - list.own_x, dy = query.y() - list.own_y, dz = query.z() - list.own_z;
       found[i].sq_distance = dx * dx + dy * dy + dz * dz;
       walking[num_walking++] = i;
@@ -62,7 +62,7 @@ __attribute__((target("avx2"))) std::vector<NeighborLists::Found> NeighborLists:
       for (std::size_t w = 0; w < num_walking; ++w) {
         const std::size_t i = walking[w];
         Found& at = found[i];
-        const List& list = lists_[static_cast<std::size_t>(at.index)];
+        const List& list = lists_[at.index];
         const float* const query = queries.data() + queries.outerStride() * static_cast<Eigen::Index>(i);
         const __m256 ax = _mm256_sub_ps(_mm256_broadcast_ss(query), _mm256_load_ps(list.x)),
                      ay = _mm256_sub_ps(_mm256_broadcast_ss(query + 1), _mm256_load_ps(list.y)),
@@ -82,8 +82,8 @@ __attribute__((target("avx2"))) std::vector<NeighborLists::Found> NeighborLists:
         at.index += change & -static_cast<int>(is_closer);  // no branch: half of the guesses are the closest points
         at.sq_distance = _mm_cvtss_f32(_mm_min_ss(least, _mm_set_ss(sq_before)));
         at.is_closest = decides & ((is_closer & is_alone) | (sq_least > sq_before));
-        __builtin_prefetch(lists_[static_cast<std::size_t>(at.index)].x);  // for the next round
-        __builtin_prefetch(lists_[static_cast<std::size_t>(at.index)].z);
+        __builtin_prefetch(lists_[at.index].x);  // for the next round
+        __builtin_prefetch(lists_[at.index].z);
         walking[num_on] = i;
         num_on += is_closer & is_alone & !decides;
       }

@@ -53,7 +53,7 @@ inline std::vector<std::size_t> oneOfEachRun(std::size_t size, std::size_t num_d
 /// \return 3 x samples.size(), the points with these indices.
 inline Points pointsAt(const PointsRef& points, const std::vector<int>& samples) {
   Points chosen(3, static_cast<Eigen::Index>(samples.size()));
-  for (std::size_t i = 0; i < samples.size(); ++i) chosen.col(static_cast<Eigen::Index>(i)) = points.col(samples[i]);
+  for (std::size_t i = 0; i < samples.size(); ++i) chosen.col(i) = points.col(samples[i]);
   return chosen;
 }
 
@@ -80,7 +80,7 @@ inline std::vector<int> curveOrder(const PointsRef& points) {
     ++next[cell[i] + 1];
   }
   std::partial_sum(next.begin(), next.end(), next.begin());
-  for (std::size_t i = 0; i < count; ++i) order[static_cast<std::size_t>(next[cell[i]]++)] = static_cast<int>(i);
+  for (std::size_t i = 0; i < count; ++i) order[next[cell[i]]++] = static_cast<int>(i);
   return order;
 }
 
@@ -102,7 +102,7 @@ inline SpreadSubset spreadSubset(const PointsRef& points, std::size_t size, std:
   for (std::size_t position = 0, k = 0; position < count; ++position) {
     // The middle between two points that are kept is near either.
     while (k + 1 < size && positions[k] + positions[k + 1] < 2 * position) ++k;
-    subset.beside[static_cast<std::size_t>(order[position])] = static_cast<int>(k);
+    subset.beside[order[position]] = static_cast<int>(k);
   }
   return subset;
 }

@@ -29,7 +29,7 @@ class SearchAmong : public ClosestPointSearch {
 public:
   SearchAmong(Ptr search, std::size_t num_points, const std::vector<int>& kept)
       : search_(std::move(search)), index_of_(num_points, -1) {
-    for (std::size_t i = 0; i < kept.size(); ++i) index_of_[static_cast<std::size_t>(kept[i])] = static_cast<int>(i);
+    for (std::size_t i = 0; i < kept.size(); ++i) index_of_[kept[i]] = static_cast<int>(i);
   }
 
   /// Asks for more neighbors until enough of them are kept.
@@ -48,7 +48,7 @@ public:
         indices.resize(end - wanted);
         sq_distances.resize(end - wanted);
         for (std::size_t k = 0; k < count && indices.size() < end; ++k) {
-          const int index = index_of_[static_cast<std::size_t>(found[k])];
+          const int index = index_of_[found[k]];
           if (index < 0) continue;
           indices.push_back(index);
           sq_distances.push_back(sq_found[k]);

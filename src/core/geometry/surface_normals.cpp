@@ -107,7 +107,7 @@ GeometryAtPlaces localGeometryAt(const Points& points, const ClosestPointSearch&
     const TangentPlane plane = tangentPlane(points, positions.col(k), indices.data() + k * count, count);
     geometry.normals.col(k) = plane.normal;
     geometry.roughness.push_back(plane.roughness);
-    geometry.spacing.push_back(spacingOf(sq_distances[static_cast<std::size_t>((k + 1) * count - 1)], count));
+    geometry.spacing.push_back(spacingOf(sq_distances[(k + 1) * count - 1], count));
   }
   return geometry;
 }

@@ -22,7 +22,7 @@ struct TriangleTree::Builder {
         middles(3, static_cast<Eigen::Index>(all_triangles.size())),
         order(all_triangles.size()) {
     for (std::size_t t = 0; t < triangles.size(); ++t)
-      middles.col(static_cast<Eigen::Index>(t)) =
+      middles.col(t) =
           (corners.col(triangles[t][0]) + corners.col(triangles[t][1]) + corners.col(triangles[t][2])) / 3.0f;
     std::iota(order.begin(), order.end(), 0);
   }

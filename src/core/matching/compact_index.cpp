@@ -79,7 +79,7 @@ std::vector<int> CompactIndex::candidates(const Eigen::MatrixXf& rotations, std:
           nearest[static_cast<Eigen::Index>(i - begin)] / typical_[i / static_cast<std::size_t>(forms_per_shape_)];
   });
   std::nth_element(forms.begin(), forms.begin() + static_cast<std::ptrdiff_t>(count), forms.end(), [&](int a, int b) {
-    const float near_a = nearness[static_cast<std::size_t>(a)], near_b = nearness[static_cast<std::size_t>(b)];
+    const float near_a = nearness[a], near_b = nearness[b];
     return near_a != near_b ? near_a > near_b : a < b;
   });
   forms.resize(count);
@@ -96,10 +96,10 @@ std::vector<std::pair<int, float>> CompactIndex::nearest(const Eigen::MatrixXf& 
       rotations,
       static_cast<std::size_t>(std::max({options_.num_candidates, share, 2 * num_nearest * forms_per_shape_})));
   Eigen::MatrixXf near(compact_.rows(), static_cast<Eigen::Index>(forms.size()));
-  for (std::size_t i = 0; i < forms.size(); ++i) near.col(static_cast<Eigen::Index>(i)) = compact_.col(forms[i]);
+  for (std::size_t i = 0; i < forms.size(); ++i) near.col(i) = compact_.col(forms[i]);
   const Eigen::RowVectorXf cosines = (rotations.transpose() * near).colwise().maxCoeff();
   std::vector<std::pair<int, float>> found = leastDistances(forms, cosines, forms_per_shape_);
-  for (auto& [shape, distance] : found) distance /= std::sqrt(typical_[static_cast<std::size_t>(shape)]);
+  for (auto& [shape, distance] : found) distance /= std::sqrt(typical_[shape]);
   std::stable_sort(found.begin(), found.end(), [](const auto& a, const auto& b) { return a.second < b.second; });
   found.resize(std::min(found.size(), static_cast<std::size_t>(num_nearest)));
   return found;

@@ -195,13 +195,13 @@ PointPairIndex::PointPairIndex(const std::vector<SurfacePoints>& shapes, int num
 PointPairIndex::Block PointPairIndex::blockOf(int first_shape, int end_shape) const {
   std::vector<std::uint32_t> keys, pairs;
   for (int k = first_shape; k < end_shape; ++k) {
-    const double radius = radii_[static_cast<std::size_t>(k)];
+    const double radius = radii_[k];
     if (!(radius > 0.0)) continue;
-    const int begin = begins_[static_cast<std::size_t>(k)], size = begins_[static_cast<std::size_t>(k) + 1] - begin;
+    const int begin = begins_[k], size = begins_[static_cast<std::size_t>(k) + 1] - begin;
     const PairedSurface surface(points_.middleCols(begin, size), normals_.middleCols(begin, size), radius);
     for (int i = 0; i < size; ++i) {
       const PairRow row = surface.row(i);
-      const auto point = static_cast<std::uint32_t>(begin + i - begins_[static_cast<std::size_t>(first_shape)]);
+      const auto point = static_cast<std::uint32_t>(begin + i - begins_[first_shape]);
       for (int j = 0; j < size; ++j) {
         if (!(row.distance[j] > kMatching.min_pair_distance)) continue;
         keys.push_back(static_cast<std::uint32_t>(keyOf(std::max(row.distance_step[j], first_distance_),
@@ -236,8 +236,6 @@ void PointPairIndex::fillWeights() {
   }
 }
 
-/// \param index of the point.
-/// \param sign of its normal.
 PointPairIndex::Reference PointPairIndex::referenceOf(const SurfacePoints& scan, int index, int sign) const {
   Reference reference{
       frameOf(sign * scan.normals.col(index).cast<double>().normalized()), scan.points.col(index).cast<double>(), {}};
@@ -283,7 +281,7 @@ void PointPairIndex::collect(int shape, const Reference& reference, const Eigen:
     int weight, point, rotation;
   };
   std::array<Peak, 3> best{};
-  const int begin = begins_[static_cast<std::size_t>(shape)], end = begins_[static_cast<std::size_t>(shape) + 1];
+  const int begin = begins_[shape], end = begins_[static_cast<std::size_t>(shape) + 1];
   for (int i = begin; i < end; ++i, votes += kNumRotations) {
     std::int32_t most = 0;
     for (int t = 0; t < kNumRotations; ++t) most = std::max(most, votes[t]);
@@ -320,8 +318,7 @@ ShapeOfPairs PointPairIndex::clustered(int shape, std::vector<Vote> votes, const
     Eigen::Vector3d position;
     double weight;
   };
-  const double cosine = std::cos(0.5 * kMatching.same_angle),
-               distance = kMatching.same_position * radii_[static_cast<std::size_t>(shape)];
+  const double cosine = std::cos(0.5 * kMatching.same_angle), distance = kMatching.same_position * radii_[shape];
   std::vector<Cluster> clusters;
   for (const Vote& vote : votes) {
     const auto same = std::find_if(clusters.begin(), clusters.end(), [&](const Cluster& cluster) {

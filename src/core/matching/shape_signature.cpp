@@ -63,8 +63,8 @@ std::vector<FineCell> fineCells(const Points& points, const Eigen::Matrix3Xf& no
   for (Eigen::Index i = 0; i < points.cols(); ++i) {
     const Eigen::Array3i at = ((points.col(i).array() + reach) * to_fine).floor().cast<int>();
     if ((at < 0).any() || (at >= kFineSide).any()) continue;
-    FineCell& cell = fine[static_cast<std::size_t>((at.z() * kFineSide + at.y()) * kFineSide + at.x())];
-    cell.sum += orientationOf(normals.col(normal_of_points[static_cast<std::size_t>(i)]));
+    FineCell& cell = fine[(at.z() * kFineSide + at.y()) * kFineSide + at.x()];
+    cell.sum += orientationOf(normals.col(normal_of_points[i]));
     ++cell.count;
   }
   return fine;
@@ -79,7 +79,7 @@ void fillCube(const Points& points, const Eigen::Matrix3Xf& normals, const std::
   const float reach = static_cast<float>(kMatching.signature_reach) * points.colwise().norm().mean();
   const std::vector<FineCell> fine = fineCells(points, normals, normal_of_points, reach);
   for (int i = 0; i < kNumFineCells; ++i) {
-    const FineCell& cell = fine[static_cast<std::size_t>(i)];
+    const FineCell& cell = fine[i];
     if (cell.count == 0) continue;
     const Eigen::Array3f at(static_cast<float>(i % kFineSide), static_cast<float>(i / kFineSide % kFineSide),
                             static_cast<float>(i / (kFineSide * kFineSide)));
@@ -112,14 +112,14 @@ CubeRotation makeCubeRotation(const Eigen::Matrix3i& rotation) {
   for (int c = 0; c < kNumOrientations; ++c) {
     const int a = kPairs[c][0], b = kPairs[c][1];
     const int from_orientation = orientationIndex(from_axis[a], from_axis[b]);
-    result.sign[static_cast<std::size_t>(c)] = static_cast<float>(axis_sign[a] * axis_sign[b]);
+    result.sign[c] = static_cast<float>(axis_sign[a] * axis_sign[b]);
     for (int i = 0; i < kNumCells; ++i) {
       const int at[3] = {i % kSignatureCells, i / kSignatureCells % kSignatureCells,
                          i / (kSignatureCells * kSignatureCells)};
       int from[3];
       for (int axis = 0; axis < 3; ++axis)
         from[from_axis[axis]] = axis_sign[axis] > 0 ? at[axis] : kSignatureCells - 1 - at[axis];
-      result.source[static_cast<std::size_t>(c * kNumCells + i)] =
+      result.source[c * kNumCells + i] =
           from_orientation * kNumCells + (from[2] * kSignatureCells + from[1]) * kSignatureCells + from[0];
     }
   }
@@ -132,7 +132,7 @@ const CubeRotation& cubeRotation(int rotation) {
     for (const Eigen::Matrix3i& matrix : axisRotations()) made.push_back(makeCubeRotation(matrix));
     return made;
   }();
-  return rotations[static_cast<std::size_t>(rotation)];
+  return rotations[rotation];
 }
 
 /// Points about the center of their bounding ball, in units of its radius: squares neither overflow nor underflow.
@@ -217,7 +217,7 @@ void rotateSignature(const float* signature, int rotation, float* rotated) {
   for (int cube = 0; cube < 2; ++cube) {
     const float* from = signature + cube * kNumOrientations * kNumCells;
     for (int c = 0; c < kNumOrientations; ++c) {
-      const float sign = table.sign[static_cast<std::size_t>(c)];
+      const float sign = table.sign[c];
       const std::int32_t* source = table.source.data() + c * kNumCells;
       for (int i = 0; i < kNumCells; ++i) *rotated++ = sign * from[source[i]];
     }
@@ -236,8 +236,7 @@ ShapeDescription describeShape(const PointsRef& points, const DescriptionOptions
   result.signatures.resize(kSignatureSize, static_cast<Eigen::Index>(frames.size()));
   for (std::size_t i = 0; i < frames.size(); ++i) {
     const std::vector<float> signature = shapeSignature(used, frames[i]);
-    result.signatures.col(static_cast<Eigen::Index>(i)) =
-        Eigen::Map<const Eigen::VectorXf>(signature.data(), kSignatureSize);
+    result.signatures.col(i) = Eigen::Map<const Eigen::VectorXf>(signature.data(), kSignatureSize);
   }
   return result;
 }

@@ -19,8 +19,7 @@ namespace {
 /// Index of the rotation a^T b.
 int quotient(int a, int b) {
   const auto& rotations = axisRotations();
-  const Eigen::Matrix3i product =
-      rotations[static_cast<std::size_t>(a)].transpose() * rotations[static_cast<std::size_t>(b)];
+  const Eigen::Matrix3i product = rotations[a].transpose() * rotations[b];
   return static_cast<int>(std::find(rotations.begin(), rotations.end(), product) - rotations.begin());
 }
 
@@ -45,8 +44,7 @@ Eigen::MatrixXf innerProducts(const Eigen::MatrixXf& signatures, SignatureRotati
   });
   Eigen::MatrixXf products(kNumAxisRotations * n, kNumAxisRotations * n);
   for (int g = 0; g < kNumAxisRotations; ++g)
-    for (int h = 0; h < kNumAxisRotations; ++h)
-      products.block(g * n, h * n, n, n) = with_rotated[static_cast<std::size_t>(quotient(g, h))];
+    for (int h = 0; h < kNumAxisRotations; ++h) products.block(g * n, h * n, n, n) = with_rotated[quotient(g, h)];
   const Eigen::VectorXf means = products.rowwise().mean();
   products.colwise() -= means;
   products.rowwise() -= means.transpose();
@@ -159,8 +157,7 @@ Eigen::MatrixXf SignatureProjection::rotations(const Eigen::Ref<const Eigen::Mat
   Eigen::MatrixXf result(numDimensions(), kNumAxisRotations * compact.cols());
   for (int r = 0; r < kNumAxisRotations; ++r)
     for (Eigen::Index i = 0; i < compact.cols(); ++i)
-      result.col(kNumAxisRotations * i + r) =
-          (rotations_[static_cast<std::size_t>(r)] * compact.col(i)).stableNormalized();
+      result.col(kNumAxisRotations * i + r) = (rotations_[r] * compact.col(i)).stableNormalized();
   return result;
 }
 

@@ -27,7 +27,6 @@ public:
   SignatureProjection() = default;
 
   /// \param signatures S x N, one reference shape per column, N >= 1.
-  /// \param rotate rotates such a column.
   /// \throws std::invalid_argument for no shape, or shapes that are all alike.
   static SignatureProjection fit(const Eigen::MatrixXf& signatures, const ProjectionOptions& options = {},
                                  SignatureRotation rotate = rotateSignature);

@@ -15,8 +15,6 @@ struct SurfacePoints {
 
 /// A few points of a surface, evenly spread: none is much closer to another than their number allows.
 /// \param points 3 x N, finite, N >= 1.
-/// \param count >= 1.
-/// \param seed of the choice.
 /// \return about \p count points, at most that many, in random order: the first k are spread over the surface too. All
 /// points where there are no more.
 SurfacePoints evenSurfacePoints(const Points& points, int count, std::uint64_t seed);

@@ -50,16 +50,12 @@ SymmetryDescriptors symmetryDescriptors(const PointsRef& points, const Eigen::Is
                                         const DescriptorOptions& options = {});
 
 /// Sum of squared differences.
-/// \param a \p size values.
-/// \param b \p size values.
 float sqDistance(const float* a, const float* b, std::size_t size);
 
 /// L2 distance of two PRST or two PRSD descriptors, differences weighted by sqrt(sin theta), the size of the bins
 /// (Section 5.2).
 ///
 /// Departure for PRSD: Kazhdan et al. (2004) take the maximum difference. L2 compares both descriptors alike.
-/// \param a \p size values.
-/// \param b \p size values.
 /// \param size kPRSTSize or kPRSDSize.
 /// \throws std::invalid_argument for a size that is no multiple of kDescriptorBins.
 float planeDescriptorDistance(const float* a, const float* b, std::size_t size);

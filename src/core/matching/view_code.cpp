@@ -81,8 +81,7 @@ std::string packedViewCodes(const std::vector<ViewCode>& codes) {
 ViewCoder ViewCoder::fit(const std::vector<View>& views) {
   check(!views.empty(), "number of views", static_cast<double>(views.size()), ">= 1");
   Eigen::MatrixXd magnitudes(kViewMagnitudes, static_cast<Eigen::Index>(views.size()));
-  for (std::size_t i = 0; i < views.size(); ++i)
-    magnitudes.col(static_cast<Eigen::Index>(i)) = magnitudesOf(views[i].values).cast<double>();
+  for (std::size_t i = 0; i < views.size(); ++i) magnitudes.col(i) = magnitudesOf(views[i].values).cast<double>();
   const Eigen::VectorXd mean = magnitudes.rowwise().mean();
   magnitudes.colwise() -= mean;
   const Eigen::MatrixXd products = magnitudes * magnitudes.transpose();
@@ -97,8 +96,7 @@ ViewCode ViewCoder::codeOf(const View& view) const {
   const Eigen::VectorXf components = basis_.transpose() * (magnitudesOf(view.values) - mean_);
   ViewCode code;
   for (int k = 0; k < kViewCodeSize; ++k)
-    code.values[static_cast<std::size_t>(k)] =
-        inSteps<std::int8_t>(static_cast<double>(components[k]), static_cast<double>(kViewCodeStep));
+    code.values[k] = inSteps<std::int8_t>(static_cast<double>(components[k]), static_cast<double>(kViewCodeStep));
   code.size = inSteps<std::int16_t>(std::log(view.radius), static_cast<double>(kViewSizeStep));
   return code;
 }
@@ -146,7 +144,7 @@ std::vector<int> ViewCodeIndex::nearest(const ViewCode& scan, int count, int num
     if (std::isfinite(distances[i])) shapes.push_back(static_cast<int>(i));
   const std::size_t kept = std::min(shapes.size(), static_cast<std::size_t>(count));
   std::nth_element(shapes.begin(), shapes.begin() + static_cast<std::ptrdiff_t>(kept), shapes.end(), [&](int a, int b) {
-    const float near_a = distances[static_cast<std::size_t>(a)], near_b = distances[static_cast<std::size_t>(b)];
+    const float near_a = distances[a], near_b = distances[b];
     return near_a != near_b ? near_a < near_b : a < b;
   });
   shapes.resize(kept);
@@ -204,14 +202,14 @@ std::vector<ShapeOfView> ViewIndex::nearest(const View& scan, int num_nearest, i
   std::vector<int> order;
   for (std::size_t i = 0; i < views.size(); ++i)
     if (!views[i].empty()) order.push_back(static_cast<int>(i));
-  const auto distance = [&](int shape) { return meanDistance(views[static_cast<std::size_t>(shape)]); };
+  const auto distance = [&](int shape) { return meanDistance(views[shape]); };
   std::stable_sort(order.begin(), order.end(), [&](int a, int b) { return distance(a) < distance(b); });
   order.resize(std::min(order.size(), static_cast<std::size_t>(num_nearest)));
 
   std::vector<ShapeOfView> found;
   for (const int shape : order) {
     found.push_back({shape, distance(shape), {}});
-    for (const NearView& pose : views[static_cast<std::size_t>(shape)])
+    for (const NearView& pose : views[shape])
       found.back().T_shape_scan.push_back(poseOfView(scan, *pose.view, pose.angle));
   }
   return found;

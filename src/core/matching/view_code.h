@@ -33,7 +33,6 @@ std::string packedViewCodes(const std::vector<ViewCode>& codes);
 class ViewCoder {
 public:
   ViewCoder() = default;
-  /// \param views of shapes, at least one.
   static ViewCoder fit(const std::vector<View>& views);
 
   ViewCode codeOf(const View& view) const;

@@ -39,7 +39,7 @@ public:
   /// \return kNothing also beyond the picture.
   float depth(int u, int v) const {
     const bool inside = u >= 0 && v >= 0 && u < side_ && v < side_;
-    return inside ? depths_[static_cast<std::size_t>(v * side_ + u)] : kNothing;
+    return inside ? depths_[v * side_ + u] : kNothing;
   }
 
 private:
@@ -74,7 +74,7 @@ public:
 private:
   Eigen::Array2f value(int u, int v) const {
     if (u < 0 || v < 0 || u >= side_ || v >= side_) return Eigen::Array2f::Zero();
-    return values_[static_cast<std::size_t>(v * side_ + u)];
+    return values_[v * side_ + u];
   }
 
   int side_;
@@ -96,7 +96,7 @@ void DepthPicture::add(const PointColumns& points) {
     const float u = (points(i, 0) - corner_.x()) / cell_, v = (points(i, 1) - corner_.y()) / cell_;
     const auto side = static_cast<float>(side_);
     if (!(u >= 0.0f && v >= 0.0f && u < side && v < side)) continue;
-    float& depth = depths_[static_cast<std::size_t>(static_cast<int>(v) * side_ + static_cast<int>(u))];
+    float& depth = depths_[static_cast<int>(v) * side_ + static_cast<int>(u)];
     depth = std::min(depth, points(i, 2));
   }
 }
@@ -132,7 +132,7 @@ SmoothPicture::SmoothPicture(const DepthPicture& picture, float middle, float un
   values_.resize(static_cast<std::size_t>(side_) * side_);
   for (int v = 0; v < side_; ++v) {
     for (int u = 0; u < side_; ++u) {
-      Eigen::Array2f& value = values_[static_cast<std::size_t>(v * side_ + u)];
+      Eigen::Array2f& value = values_[v * side_ + u];
       value.setZero();
       for (int j = -1; j <= 1; ++j) {
         for (int i = -1; i <= 1; ++i) {

@@ -43,7 +43,6 @@ std::vector<View> viewsAround(const PointsRef& points, int num_views = 80, int n
 
 /// Means of the rings and magnitudes of the harmonics, in the order of View::values: the same for all rotations of
 /// the picture.
-/// \param values View::values.
 /// \return kViewMagnitudes values. Their L2 distance is at most that of the signatures at any rotation.
 Eigen::VectorXf magnitudesOf(const Eigen::VectorXf& values);
 
@@ -58,10 +57,8 @@ struct ViewAgreement {
 /// Compares one view with many, at all rotations of the picture in steps of 7.5 degrees.
 class ViewComparison {
 public:
-  /// \param view of a scan.
   explicit ViewComparison(const View& view);
 
-  /// \param values View::values of another view.
   /// \param enough distances from this one on are not needed: the comparison stops early.
   /// \return the default where the distance is at least \p enough at all rotations.
   ViewAgreement compare(const float* values, float enough) const;

@@ -48,7 +48,7 @@ float nearnessOfSurface(const Matches& matches, Eigen::Index i, const PosedSurfa
   const Eigen::Vector3f apart = matches.positions.col(i) - to.points.col(j);
   const float height = apart.dot(to.normals.col(j)), sq_height = height * height;
   const float across = std::sqrt(std::max(0.0f, apart.squaredNorm() - sq_height));
-  const float beyond = std::max(0.0f, across - to.spacing[static_cast<std::size_t>(j)]);
+  const float beyond = std::max(0.0f, across - to.spacing[j]);
   return std::exp(static_cast<float>(-1.0 / (width * width)) * (sq_height + beyond * beyond));
 }
 

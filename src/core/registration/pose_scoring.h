@@ -33,7 +33,6 @@ public:
 
   /// One Gauss-Newton step. It shortens the distances of the scan's points from the tangent planes at their closest
   /// points, weighted by the Gaussian, and those of the model's points in free space from the scan.
-  /// \return the improved T_model_scan.
   Eigen::Isometry3d step(const Eigen::Isometry3d& T_model_scan, const Detail& detail) const;
 
 private:

@@ -21,7 +21,6 @@ class PoseStarts {
 public:
   PoseStarts(const PosedSurface& scan, const PosedSurface& model);
 
-  /// \return T_model_scan of this rotation.
   Eigen::Isometry3d pose(const Eigen::Matrix3d& R_model_scan) const;
 
 private:

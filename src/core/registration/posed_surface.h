@@ -27,7 +27,6 @@ struct PosedSurface {
 
   /// \param points 3 x N, finite, N >= 1.
   /// \param seen what the scanner saw, in the frame of the points.
-  /// \param seed of the order.
   PosedSurface(const PointsRef& points, std::optional<Visibility> seen, std::uint64_t seed, int num_threads);
   /// A surface of a few points in random order, whose normals are known, for poses that are judged coarsely: the grid
   /// of closest points is coarser, and there are no search, spacing and accuracy, which exact judgments need.

@@ -30,7 +30,6 @@ std::vector<Line3d> principalLines(const RotationFit& fit);
 /// Lines through these centers, in all directions, about which a rotation of prime order overlaps most with the
 /// surface.
 /// \param num_directions of lines through each center, on a half sphere.
-/// \param max_fold greatest order of a rotation.
 std::vector<Line3d> axisLineCandidates(const RotationFit& fit, int num_directions, int max_fold, int num_threads);
 
 /// Angle between two lines, in [0, pi/2].
@@ -69,7 +68,6 @@ private:
 };
 
 /// The greatest group that axes are part of and that the surface supports as a whole.
-/// \param axes from AxisFinder.
 /// \return C_1 where there is no axis.
 PlacedGroup greatestGroup(const RotationFit& fit, const ObjectSymmetryOptions& options,
                           const std::vector<FoldAxis>& axes);

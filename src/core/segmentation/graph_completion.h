@@ -11,7 +11,6 @@ namespace pcl_symmetry {
 /// \param graph with everything but first_edge, edge_of and the concavity of the edges; normals of any sign.
 /// \param agreement one per edge: > 0 if the normals at both ends point to the same side, < 0 if they do not; a larger
 /// magnitude is more certain.
-/// \return the complete graph.
 SurfaceGraph completedGraph(SurfaceGraph graph, const std::vector<float>& agreement);
 
 /// Refuses points whose distances have no squares in float: areas and neighbors would be infinite or zero.

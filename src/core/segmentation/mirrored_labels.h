@@ -30,7 +30,6 @@ std::vector<std::vector<int>> segmentImages(const PartEvidence& evidence, const 
 /// kept is the one that leaves more of the surface unchanged. Segments that lie across the plane are their own
 /// reflections.
 /// \param labels one per element, from 0.
-/// \param reflected as from reflectedElements().
 /// \return new labels, from 0 without gaps.
 std::vector<int> mirroredLabels(const SurfaceGraph& graph, const std::vector<int>& labels, const ReflectionPlane& plane,
                                 const std::vector<int>& reflected);

@@ -104,8 +104,6 @@ Eigen::MatrixXf linesOfSight(const Points& positions, const TriangleTree& tree) 
 }
 
 /// Sets thickness and sight by rays through the body behind each patch.
-/// \param tree of the triangles of the graph.
-/// \param seed of rays and samples.
 void measureBody(const SurfaceGraph& graph, const TriangleTree& tree, std::uint64_t seed, PartEvidence& evidence) {
   const Patches& patches = evidence.patches;
   const auto radius = static_cast<float>(boundingBall(graph.centers).radius);

@@ -25,7 +25,6 @@ struct PartEvidence {
   /// For each plane with share >= kMappedShare: the patch at the reflection of the center of each patch.
   std::vector<std::vector<int>> images;
 
-  /// \return K.
   int size() const { return patches.size(); }
 };
 

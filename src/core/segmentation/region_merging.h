@@ -60,7 +60,6 @@ struct Merge {
 
 /// Merges neighboring regions, the pair that is most likely one part first, until no two regions are neighbors. Log
 /// odds are updated after each merge.
-/// \param regions by value: the merges are made on a copy.
 std::vector<Merge> mergeRegions(Regions regions, const MergeWeights& weights);
 
 /// What the merges of one division into patches say about pairs of elements.

@@ -17,24 +17,20 @@ struct BorderCutOptions {
 
 /// Moves the border between two sides of a surface to the minimum cut (Section 5.3: "a weighted min-cut along the edges
 /// of the mesh").
-/// \param graph N elements.
 /// \param side N values: 0 or 1; -1 for an element of neither side, which stays.
 /// \param open elements that may change sides at any distance from the border.
 /// \param options band and costs. If a whole side lies within the band, its farthest element stays.
-/// \return N sides.
 std::vector<int> cutBorder(const SurfaceGraph& graph, std::vector<int> side, const std::vector<int>& open,
                            const BorderCutOptions& options);
 
 /// Moves the border of each pair of neighboring labels to a minimum cut, so that it follows the surface instead of the
 /// patches.
 /// \param labels one per element, >= 0.
-/// \return new labels.
 std::vector<int> smoothBorders(const SurfaceGraph& graph, std::vector<int> labels, const BorderCutOptions& options);
 
 /// Gives small pieces that are cut off from the rest of their label to the neighboring label with the longest border.
 /// \param labels one per element, >= 0. The largest piece of each label stays.
 /// \param least_area of a piece that stays, input units squared.
-/// \return new labels.
 std::vector<int> joinCrumbs(const SurfaceGraph& graph, const std::vector<int>& labels, double least_area);
 
 /// Joins segments that are too small to be parts with the neighbor that they share most border with, or with the

@@ -29,7 +29,7 @@ Joins joinsOf(const std::vector<int>& region_of_patch, const std::vector<int>& s
     std::replace(current.begin(), current.end(), from, into);
   };
   for (const Merge& merge : merges) join(current[merge.into], current[merge.from]);
-  for (const int region : std::vector<int>(current)) join(current[0], current[static_cast<std::size_t>(region)]);
+  for (const int region : std::vector<int>(current)) join(current[0], current[region]);
   joins.root = node[current[0]];
   return joins;
 }

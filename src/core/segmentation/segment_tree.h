@@ -12,7 +12,6 @@ namespace pcl_symmetry {
 /// root. Regions that no merge connects are joined at the top.
 /// \param region_of_patch the region of each patch; regions are numbered as patches.
 /// \param segment_of_region number of the segment of each region; -1 for a region that does not exist.
-/// \param merges of neighboring regions, in order.
 /// \return the root first, children after their parents.
 std::vector<SegmentNode> segmentTree(const std::vector<int>& region_of_patch, const std::vector<int>& segment_of_region,
                                      const std::vector<Merge>& merges);

@@ -9,7 +9,6 @@ namespace pcl_symmetry {
 /// Divides a surface into small patches of about equal size, whose borders prefer concave edges (over-segmentation).
 ///
 /// Each of the num_patches largest connected pieces has at least one patch; smaller pieces belong to the closest patch.
-/// \param graph N elements.
 /// \param num_patches >= 1; there may be a few more or fewer patches.
 /// \param concave_detour >= 0, per radian: a step across an edge of concavity c > 0 is 1 + concave_detour * c times as
 /// long.
@@ -28,7 +27,6 @@ struct Patches {
   Points centers;               ///< 3 x K, means weighted by area, input frame
   Points normals;               ///< 3 x K, means weighted by area, unit
 
-  /// \return K.
   int size() const { return static_cast<int>(areas.size()); }
 };
 

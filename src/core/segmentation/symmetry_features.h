@@ -17,7 +17,6 @@ struct SymmetryFeatures {
 
 /// Finds the significant maxima of the transform of a part (Section 4.4) and the support of every element for them
 /// ("how well does the face map onto the surface after reflection across the plane", Section 5.3).
-/// \param graph the whole surface.
 /// \param elements those of the part, with an area > 0.
 /// \param options strength and max_planes choose the planes.
 /// \param seed of the samples of the part.

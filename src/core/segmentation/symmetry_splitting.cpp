@@ -26,7 +26,6 @@ struct SplitPart {
 
 /// Splits a part in two by its symmetries (Section 5.3): k-means with k = 2 on the support, the two largest connected
 /// components, and the minimum cut between them.
-/// \param elements those of the part.
 /// \param features of the part, one column of support per element.
 /// \return both sides; nothing if all elements have the same support or one side is empty.
 std::optional<SplitPart> splitByTwoMeans(const SurfaceGraph& graph, const std::vector<int>& elements,
@@ -118,7 +117,6 @@ public:
     return std::clamp(1.0 - open / (graph_.area() * std::max(1, depth)), 0.0, 1.0);
   }
 
-  /// \return the leaves as segments.
   Segmentation segments() const {
     Segmentation result;
     result.labels.assign(static_cast<std::size_t>(graph_.size()), 0);

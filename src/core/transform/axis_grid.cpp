@@ -110,7 +110,7 @@ std::vector<float> axialPointSymmetry(const AxisMap& map, const PointsRef& point
       const DirectionValues values(map, direction);
       const Eigen::Matrix3f frame = map.grid.frame(direction).cast<float>();
       for (std::size_t i = begin; i < end; ++i) {
-        const auto x = centered.col(static_cast<Eigen::Index>(i));
+        const auto x = centered.col(i);
         greatest[i] = std::max(greatest[i], values(frame.col(0).dot(x), frame.col(1).dot(x)));
       }
     }

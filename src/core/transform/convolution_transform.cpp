@@ -120,7 +120,7 @@ BundleLattice::BundleLattice(const GaussianEdt& edt, const PlaneGrid& grid, doub
   num_along = static_cast<int>(std::ceil(2.0 * (clip + most_ahead + radius_step) / along)) + 2;
   const int n = edt.numCells();
   for (int row = 0; row < n * n; ++row) {
-    const GaussianEdt::Range range = edt.filledRanges()[static_cast<std::size_t>(row)];
+    const GaussianEdt::Range range = edt.filledRanges()[row];
     if (range.begin == range.end) continue;
     for (const int x : {range.begin, range.end - 1})
       filled.extend((Eigen::Vector3d(x, row % n, row / n).array() - middle).matrix());
@@ -349,7 +349,6 @@ void addLane(const float* values, int size, const float* weights, float* sums) {
 /// the distance, and what they add up to at common positions, by quintic splines (Unser, Splines: a perfect fit, 1999).
 class LaneSums {
 public:
-  /// \param size positions of each lane.
   /// \param most_ahead distances that the first and the last lane of a row are from its middle, at most.
   LaneSums(int size, double most_ahead)
       : size_(size),

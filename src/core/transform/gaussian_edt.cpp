@@ -30,7 +30,6 @@ struct CellSpan {
 };
 
 /// Lowers the squared distances of cells to those from a point.
-/// \param x,y,z spans around the point.
 /// \param stride of the rows of \p layer, whose first slice is number \p first_slice. Some cells behind \p x are lowered,
 /// too: a row ends with kLanes of them.
 PCL_SYMMETRY_MULTIVERSION

@@ -38,7 +38,6 @@ public:
   }
 
   /// Computes D of the lines with a normal at offsets first, first + step, ... from the middle, in cells.
-  /// \param[out] sums num_lines values of D.
   void accumulate(const Eigen::Vector2d& normal, double first, double step, int num_lines, double* sums) const {
     const auto nx = static_cast<float>(normal.x()), ny = static_cast<float>(normal.y());
     const auto start = static_cast<float>(first), stride = static_cast<float>(step);

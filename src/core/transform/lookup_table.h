@@ -21,7 +21,6 @@ public:
 
   /// \param functions one or two functions, each num_cells^3 values in [0, 255 / kOne], x fastest; f is to be sharpened
   /// for the blur of the look-ups.
-  /// \param num_cells cells along each side.
   LookupTable(const std::vector<const float*>& functions, int num_cells, int num_threads);
 
   /// \return n of the 2^n cells along each side of the table.

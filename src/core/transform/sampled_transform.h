@@ -25,7 +25,6 @@ void weighSeen(SymmetryMap& map, const std::vector<float>& free_overlap);
 ///
 /// Stratified: one point falls in each of num_samples equal shares of the sum of f along a space-filling curve, so that
 /// the points are spread evenly over the surface.
-/// \param num_samples >= 1.
 /// \return 3 x num_samples, in cells from the center of cell (0, 0, 0).
 Eigen::Matrix3Xf drawPoints(const GaussianEdt& edt, int num_samples, std::uint64_t seed, int num_threads);
 

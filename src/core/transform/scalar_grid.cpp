@@ -132,7 +132,7 @@ VolumeLevels levelsOf(const ScalarGrid& volume, const VolumeLevels& given) {
   const std::vector<float> values = someValues(volume.values());
   if (values.empty()) throw std::invalid_argument("volume: no finite value");
   if (given.low < given.high) return given;
-  const double highest = values[static_cast<std::size_t>(0.995 * static_cast<double>(values.size() - 1))];
+  const double highest = values[0.995 * static_cast<double>(values.size() - 1)];
   VolumeLevels levels{TwoClasses(values).low_mean, highest};
   if (!(levels.low < levels.high)) levels.high = values.back();  // a body of less than half a percent
   if (!(levels.low < levels.high)) throw std::invalid_argument("volume: all values are equal");

@@ -30,7 +30,6 @@ public:
     draw_cell_ = boost::random::discrete_distribution<std::size_t>(shares);
   }
 
-  /// \return a point in the input frame.
   Eigen::Vector3d draw(RandomStream& random) const {
     const std::size_t cell = draw_cell_(random);
     const double z = random.uniform() - 0.5, y = random.uniform() - 0.5, x = random.uniform() - 0.5;
