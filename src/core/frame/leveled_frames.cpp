@@ -2,11 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <boost/geometry/algorithms/convex_hull.hpp>
-#include <boost/geometry/geometries/multi_point.hpp>
-#include <boost/geometry/geometries/point_xy.hpp>
-#include <boost/geometry/geometries/ring.hpp>
-#include <boost/geometry/strategies/strategies.hpp>
 #include <cmath>
 #include <functional>
 #include <limits>
@@ -16,6 +11,29 @@
 namespace pcl_symmetry {
 
 namespace {
+
+/// Twice the area of a triangle, positive where its corners run counterclockwise.
+float signedArea(const Eigen::Vector2f& a, const Eigen::Vector2f& b, const Eigen::Vector2f& c) {
+  return (b.x() - a.x()) * (c.y() - a.y()) - (b.y() - a.y()) * (c.x() - a.x());
+}
+
+/// Andrew's monotone chain (1979).
+std::vector<Eigen::Vector2f> convexHull(std::vector<Eigen::Vector2f> points) {
+  std::sort(points.begin(), points.end(), [](const Eigen::Vector2f& a, const Eigen::Vector2f& b) {
+    return a.x() < b.x() || (a.x() == b.x() && a.y() < b.y());
+  });
+  std::vector<Eigen::Vector2f> hull;
+  for (int side = 0; side < 2; ++side) {
+    const std::size_t first = hull.size();
+    for (const Eigen::Vector2f& point : points) {
+      while (hull.size() >= first + 2 && signedArea(hull[hull.size() - 2], hull.back(), point) <= 0.0f) hull.pop_back();
+      hull.push_back(point);
+    }
+    hull.pop_back();
+    std::reverse(points.begin(), points.end());
+  }
+  return hull;
+}
 
 struct Extent {
   float low = std::numeric_limits<float>::infinity(), high = -std::numeric_limits<float>::infinity();
@@ -68,12 +86,10 @@ double contactOf(const Outline& outline, const FrameCandidate& frame) {
 
 Outline::Outline(const PointsRef& points, const Eigen::Vector3f& along)
     : u_(along.unitOrthogonal()), v_(along.cross(u_)) {
-  using Point = boost::geometry::model::d2::point_xy<float>;
-  boost::geometry::model::multi_point<Point> seen;
+  std::vector<Eigen::Vector2f> seen;
+  seen.reserve(static_cast<std::size_t>(points.cols()));
   for (Eigen::Index i = 0; i < points.cols(); ++i) seen.emplace_back(u_.dot(points.col(i)), v_.dot(points.col(i)));
-  boost::geometry::model::ring<Point> hull;
-  boost::geometry::convex_hull(seen, hull);
-  for (const Point& corner : hull) corners_.emplace_back(corner.x(), corner.y());
+  corners_ = convexHull(std::move(seen));
 }
 
 Eigen::Vector3f Outline::direction(double angle) const {
