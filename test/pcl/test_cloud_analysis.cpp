@@ -122,6 +122,8 @@ TEST(ScanAnalysis, KeepsTheViewpoint) {
   copy.setViewpointMode(Viewpoint::Mode::None);
   EXPECT_EQ(copy.getViewpoint().mode, Viewpoint::Mode::None);
   EXPECT_FALSE(copy.usedViewpoint());
+  copy.setViewpoint(Viewpoint());
+  EXPECT_EQ(copy.getViewpoint().mode, Viewpoint::Mode::Auto);
 }
 
 TEST(CloudConversion, MessagesHoldTheirTextAlone) {

@@ -4,6 +4,7 @@
 
 #include "pcl/clouds.h"
 #include "pcl/pcl_meshes.h"
+#include "shapes/threads.h"
 #include "shapes/turning_shapes.h"
 
 namespace pcl_symmetry {
@@ -11,8 +12,7 @@ namespace {
 
 void expectSame(const ObjectSymmetries& a, const ObjectSymmetries& b) {
   EXPECT_EQ(a.name(), b.name());
-  ASSERT_EQ(a.discrete.size(), b.discrete.size());
-  for (std::size_t i = 0; i < a.discrete.size(); ++i) EXPECT_EQ(a.discrete[i].matrix(), b.discrete[i].matrix());
+  EXPECT_EQ(test::matricesOf(a.discrete), test::matricesOf(b.discrete));
 }
 
 TEST(DetectObjectSymmetries, OfACloudAreThoseOfItsFinitePoints) {
