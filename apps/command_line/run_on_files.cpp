@@ -73,7 +73,7 @@ int numToStandardOutput(const BatchOptions& batch, const CommonOptions& common) 
 }
 
 int runOnOne(const std::string& path, const BatchOptions& batch, const CommonOptions& common,
-             const std::vector<std::string>& columns, const std::function<void(FileJob&)>& analyze) {
+             const std::string& csv_header, const std::function<void(FileJob&)>& analyze) {
   const bool text_wanted = numToStandardOutput(batch, common) == 0;
   if (batch.resume) throw UsageError("-resume needs several inputs: a folder, a pattern, a list or more arguments");
   for (const std::optional<std::string>* output : batch.outputs)
@@ -86,10 +86,7 @@ int runOnOne(const std::string& path, const BatchOptions& batch, const CommonOpt
     const FileReport& report = *job.reported();
     if (text_wanted) writeText("-", report.text);
     if (common.json_path) writeText(*common.json_path, jsonText(report.json) + "\n");
-    if (!batch.csv_path) return;
-    std::vector<nlohmann::json> header{"file"};
-    header.insert(header.end(), columns.begin(), columns.end());
-    writeText(*batch.csv_path, csvLine(header) + csvLines(path, report));
+    if (batch.csv_path) writeText(*batch.csv_path, csv_header + csvLines(path, report));
   };
   try {
     analyze(job);
@@ -111,13 +108,7 @@ void checkOutputs(const BatchOptions& batch, const std::vector<InputFile>& files
     if (pattern.find("{}") == std::string::npos)
       throw UsageError(pattern + ": with several inputs the name must hold {}, which stands for the name of the input");
   }
-  if (pattern.empty()) return;
-  std::map<std::string, std::size_t> input_of_name;
-  for (std::size_t i = 0; i < files.size(); ++i) {
-    const auto [known, added] = input_of_name.emplace(stemOf(files[i].path), i);
-    if (!added)
-      throw InputError(files[i].path + ": has the name of " + files[known->second].path + ", names must differ");
-  }
+  if (!pattern.empty()) checkNames(files);
 }
 
 /// Calls use(line) for each line of a file that has an end, which is left out; for none where there is no file.
@@ -193,7 +184,7 @@ class ResultFiles {
 public:
   /// Opens the files. JSON goes to standard output where neither a JSON nor a CSV file is named.
   /// \throws InputError where one cannot be written, or holds something else than results and -resume is given.
-  ResultFiles(const BatchOptions& batch, const CommonOptions& common, const std::vector<std::string>& columns) {
+  ResultFiles(const BatchOptions& batch, const CommonOptions& common, const std::string& csv_header) {
     has_csv_ = batch.csv_path.has_value();
     has_json_ = common.json_path || !has_csv_;
     const std::string json_path = common.json_path.value_or("-");
@@ -210,10 +201,7 @@ public:
     const auto keeps_line = [&](const std::string&) { return is_kept[number++]; };
     const auto keeps_row = [&](const std::string& line) { return holds(firstCell(line)); };
     if (has_json_) json_.open(json_path, "", keeps_line, !kept_.empty());
-    if (!has_csv_) return;
-    std::vector<nlohmann::json> header{"file"};
-    header.insert(header.end(), columns.begin(), columns.end());
-    csv_.open(*batch.csv_path, csvLine(header), keeps_row, !kept_.empty());
+    if (has_csv_) csv_.open(*batch.csv_path, csv_header, keeps_row, !kept_.empty());
   }
 
   /// \return whether -resume found the result of the input; failed inputs are tried again.
@@ -237,9 +225,9 @@ private:
 class Batch {
 public:
   Batch(const std::vector<InputFile>& files, const BatchOptions& batch, const CommonOptions& common,
-        const std::vector<std::string>& columns)
+        const std::string& csv_header)
       : files_(files),
-        results_(batch, common, columns),
+        results_(batch, common, csv_header),
         num_threads_(static_cast<std::size_t>(resolveNumThreads(common.threads))),
         console_(common.quiet),
         step_(console_, "Working on " + std::to_string(files.size()) + " files") {}
@@ -338,18 +326,45 @@ std::string csvLine(const std::vector<nlohmann::json>& cells) {
   return line + "\n";
 }
 
+void checkNames(const std::vector<InputFile>& files) {
+  std::map<std::string, std::string> path_of_name;
+  for (const InputFile& file : files) {
+    const auto [known, added] = path_of_name.emplace(stemOf(file.path), file.path);
+    if (!added) throw InputError(file.path + ": has the name of " + known->second + ", names must differ");
+  }
+}
+
+std::vector<std::string> workOnAll(std::size_t num_items, int num_threads, Step& step,
+                                   const std::function<void(std::size_t)>& work) {
+  std::vector<std::string> failures(num_items);
+  std::mutex mutex;
+  std::size_t num_done = 0;
+  parallelBlocks(num_items, num_threads, [&](std::size_t i) {
+    try {
+      work(i);
+    } catch (const InputError& error) {
+      failures[i] = error.what();
+    }
+    const std::lock_guard<std::mutex> lock(mutex);
+    step.progress(static_cast<double>(++num_done) / static_cast<double>(num_items));
+  });
+  return failures;
+}
+
 std::string FileJob::output(const std::string& pattern) const {
   return boost::algorithm::replace_all_copy(pattern, "{}", stemOf(path_));
 }
 
 int runOnFiles(const BatchOptions& batch, const CommonOptions& common, const std::vector<std::string>& columns,
                const std::function<void(FileJob&)>& analyze) {
+  std::vector<nlohmann::json> header{"file"};
+  header.insert(header.end(), columns.begin(), columns.end());
   if (batch.inputs.size() == 1 && !standsForSeveral(batch.inputs.front()))
-    return runOnOne(batch.inputs.front(), batch, common, columns, analyze);
+    return runOnOne(batch.inputs.front(), batch, common, csvLine(header), analyze);
   const std::vector<InputFile> files = inputFiles(batch.inputs);
   numToStandardOutput(batch, common);
   checkOutputs(batch, files);
-  return Batch(files, batch, common, columns).run(analyze);
+  return Batch(files, batch, common, csvLine(header)).run(analyze);
 }
 
 }  // namespace pcl_symmetry::apps

@@ -14,6 +14,7 @@
 
 #include "command_line/command_line.h"
 #include "command_line/console.h"
+#include "command_line/input_files.h"
 
 namespace pcl_symmetry::apps {
 
@@ -78,6 +79,15 @@ private:
 /// \param cells strings and numbers; null is an empty cell.
 /// \return a line of comma-separated values (RFC 4180) that ends with a line feed.
 std::string csvLine(const std::vector<nlohmann::json>& cells);
+
+/// \throws InputError where two files have one name, without folder and extension.
+void checkNames(const std::vector<InputFile>& files);
+
+/// Works on items side by side, and shows in the step how far that is.
+/// \param work throws InputError for an item that fails.
+/// \return what is wrong with each item; empty where nothing is.
+std::vector<std::string> workOnAll(std::size_t num_items, int num_threads, Step& step,
+                                   const std::function<void(std::size_t)>& work);
 
 /// \param columns of the CSV table, after "file".
 /// \param analyze called once for each input, from several threads at once; throws what stops this input.

@@ -5,7 +5,6 @@
 #include <cctype>
 #include <cstdio>
 #include <map>
-#include <mutex>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
@@ -17,6 +16,7 @@
 #include "command_line/command_line.h"
 #include "command_line/console.h"
 #include "command_line/input_files.h"
+#include "command_line/run_on_files.h"
 #include "command_line/tool_errors.h"
 #include "core/base/constants.h"
 #include "core/base/parallel.h"
@@ -155,26 +155,17 @@ Results analyzeAll(const std::vector<ModelFile>& files, const BopOptions& option
   ModelOptions model_options = options.models;
   const auto num_threads = static_cast<std::size_t>(resolveNumThreads(options.common.threads));
   model_options.symmetries.num_threads = static_cast<int>(std::max<std::size_t>(1, num_threads / files.size()));
-  std::vector<std::optional<ModelInfo>> infos(files.size());
-  std::vector<std::string> errors(files.size());
+  std::vector<ModelInfo> infos(files.size());
   const Console console(options.common.quiet);
   Step searching(console, "Searching rotations of " + counted(files.size(), "model"));
-  std::mutex progress;
-  std::size_t num_done = 0;
-  parallelBlocks(files.size(), options.common.threads, [&](std::size_t i) {
-    try {
-      infos[i] = analyzeModel(files[i].path, model_options, givenFor(given, files[i].key));
-      infos[i]->key = files[i].key;
-    } catch (const InputError& error) {
-      errors[i] = error.what();
-    }
-    const std::lock_guard<std::mutex> lock(progress);
-    searching.progress(static_cast<double>(++num_done) / static_cast<double>(files.size()));
+  const auto errors = workOnAll(files.size(), options.common.threads, searching, [&](std::size_t i) {
+    infos[i] = analyzeModel(files[i].path, model_options, givenFor(given, files[i].key));
+    infos[i].key = files[i].key;
   });
   Results results;
   for (std::size_t i = 0; i < files.size(); ++i) {
-    if (infos[i])
-      results.infos.push_back(std::move(*infos[i]));
+    if (errors[i].empty())
+      results.infos.push_back(std::move(infos[i]));
     else
       results.errors.push_back(errors[i]);
   }

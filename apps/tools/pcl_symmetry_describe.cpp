@@ -2,13 +2,10 @@
 #include <pcl/conversions.h>
 
 #include <algorithm>
-#include <atomic>
 #include <boost/filesystem.hpp>
 #include <cstdio>
 #include <cstring>
 #include <fstream>
-#include <map>
-#include <mutex>
 #include <optional>
 #include <string>
 #include <utility>
@@ -16,10 +13,8 @@
 
 #include "command_line/command_line.h"
 #include "command_line/console.h"
-#include "command_line/input_files.h"
 #include "command_line/run_on_files.h"
 #include "command_line/tool_errors.h"
-#include "core/base/parallel.h"
 #include "core/matching/shape_signature.h"
 #include "core/matching/symmetry_descriptor.h"
 #include "io/answers.h"
@@ -113,13 +108,9 @@ pcl::PCLPointCloud2 describe(const InputShape& input, const DescribeOptions& opt
 }
 
 std::vector<std::string> outputPaths(const DescribeOptions& options) {
-  std::map<std::string, std::string> input_of_outputs;
   std::vector<std::string> paths;
-  for (const std::string& input : options.inputs) {
+  for (const std::string& input : options.inputs)
     paths.push_back((fs::path(options.output) / (fs::path(input).stem().string() + ".pcd")).string());
-    const auto [known, added] = input_of_outputs.emplace(paths.back(), input);
-    if (!added) throw InputError(input + ": has the name of " + known->second + ", names must differ");
-  }
   makeFolder(options.output);
   return paths;
 }
@@ -172,17 +163,11 @@ void writeTable(const DescribeOptions& options, const std::vector<std::string>& 
   });
 }
 
-/// \return what is wrong with the input, or nothing.
-std::string describeFile(const std::string& input, const std::string& output, const DescribeOptions& options) {
-  try {
-    if (options.resume && !valuesIn(output, options.type).empty()) return "";
-    const pcl::PCLPointCloud2 blob =
-        namingFile(input, [&] { return describe(loadInput(input, options.num_points, kMeshSeed), options); });
-    saveCloud(output, blob, Eigen::Vector4f::Zero(), Eigen::Quaternionf::Identity(), PCDEncoding::Binary);
-  } catch (const InputError& error) {
-    return error.what();
-  }
-  return "";
+void describeFile(const std::string& input, const std::string& output, const DescribeOptions& options) {
+  if (options.resume && !valuesIn(output, options.type).empty()) return;
+  const pcl::PCLPointCloud2 blob =
+      namingFile(input, [&] { return describe(loadInput(input, options.num_points, kMeshSeed), options); });
+  saveCloud(output, blob, Eigen::Vector4f::Zero(), Eigen::Quaternionf::Identity(), PCDEncoding::Binary);
 }
 
 int run(int argc, char** argv) {
@@ -190,20 +175,15 @@ int run(int argc, char** argv) {
   CommandLine line = commandLine(options);
   if (!line.parse(argc, argv)) return 0;
   const Console console(options.common.quiet);
-  std::vector<std::string> paths;
-  for (const InputFile& file : inputFiles(options.inputs)) paths.push_back(file.path);
-  options.inputs = std::move(paths);
+  const std::vector<InputFile> files = inputFiles(options.inputs);
+  checkNames(files);
+  options.inputs.clear();
+  for (const InputFile& file : files) options.inputs.push_back(file.path);
   const std::vector<std::string> outputs = outputPaths(options);
-  std::vector<std::string> failures(options.inputs.size());
-  std::atomic<std::size_t> num_done{0};
-  std::mutex mutex;
   Step step(console, "Describing " + counted(options.inputs.size(), "shape"));
-  parallelBlocks(options.inputs.size(), options.common.threads, [&](std::size_t i) {
-    failures[i] = describeFile(options.inputs[i], outputs[i], options);
-    const double share = static_cast<double>(++num_done) / static_cast<double>(options.inputs.size());
-    const std::lock_guard<std::mutex> lock(mutex);
-    step.progress(share);
-  });
+  std::vector<std::string> failures =
+      workOnAll(options.inputs.size(), options.common.threads, step,
+                [&](std::size_t i) { describeFile(options.inputs[i], outputs[i], options); });
   if (options.csv_path) writeTable(options, outputs, failures);
   failures.erase(std::remove(failures.begin(), failures.end(), ""), failures.end());
   step.done(counted(options.inputs.size() - failures.size(), "descriptor"));
