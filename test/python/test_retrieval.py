@@ -5,7 +5,7 @@ import unittest
 try:
     import open3d  # noqa: F401
     import scipy  # noqa: F401
-    import pcl_symmetry  # noqa: F401
+    import pcl_symmetry
 except ImportError as error:
     print(f"skipped: {error}")
     sys.exit(77)
@@ -34,6 +34,12 @@ class Rankings(unittest.TestCase):
         judged = retrieval.judge(np.array([[0, 1, 2], [1, 0, 3], [2, 3, 0.0]]), np.array(["a", "a", "b"]))
         self.assertEqual(list(judged["class"]), ["a", "a"])
         self.assertEqual(judged["nearest"].mean(), 1)
+
+    def test_distances_of_all_pairs_are_those_of_the_library(self):
+        roots = np.random.default_rng(1).uniform(size=(3, 8, 6, 4))
+        for weights, of_planes in ((retrieval.plane_weights(roots.shape[1:]), True), (1, False)):
+            expected = [[pcl_symmetry.descriptor_distance(a, b, of_planes=of_planes) for b in roots] for a in roots]
+            np.testing.assert_allclose(retrieval.l2(weights * roots), expected, atol=0.01)  # roots of rounding errors
 
 
 class Rotations(unittest.TestCase):
