@@ -28,8 +28,8 @@ struct FrameOptions {
   /// the angle of the plane.
   double tie = 0.06;
   /// The paper's own method: the plane of greatest D among the maxima of the exact map of 64 x 64 x 64 bins, refined by
-  /// publishedPlanes(); then two more picked greedily by D, at 64 angles within the plane across the first axis. It
-  /// ignores what a scanner saw, and no scores tie.
+  /// publishedPlanes(); then two more picked greedily by D, of 256 samples (to 1 %), at 64 angles across the first
+  /// axis. It ignores what a scanner saw, and no scores tie.
   bool as_published = false;
   /// Searches the axes of rotation of scans too, SymmetryFrame::turns; false saves about a third of the time.
   bool turns = true;
