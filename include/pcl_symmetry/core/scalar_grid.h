@@ -47,8 +47,7 @@ public:
 
   /// Trilinear interpolation.
   /// \param p indices, where contains().
-  /// \param gradient per voxel, unless null.
-  double at(const Eigen::Vector3d& p, Eigen::Vector3d* gradient = nullptr) const;
+  double at(const Eigen::Vector3d& p) const;
 
 private:
   friend struct VolumeFunction;

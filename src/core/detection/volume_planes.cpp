@@ -85,16 +85,15 @@ public:
     T_index_input_ = f_.T_input_index().inverse();
     // Smoothing has mixed the outermost voxels with what lies beyond the volume.
     for (int a = 0; a < 3; ++a) margin_[a] = f_.size()[a] >= 16 ? 2.0 : 0.0;
+    is_thick_ = f_.spacing().array() > 1.5 * f_.spacing().minCoeff();
   }
 
   /// \param stride every stride-th voxel along each axis is reflected.
   Comparison compare(const ReflectionPlane& plane, int stride, bool with_step) const {
     const int nz = f_.size()[2], num_slices = (nz + stride - 1) / stride;
     std::vector<PairSums> slices(num_slices);
-    parallelBlocks(num_slices, num_threads_, [&](std::size_t k) {
-      slices[k] = with_step ? ofSlice<true>(plane, static_cast<int>(k) * stride, stride)
-                            : ofSlice<false>(plane, static_cast<int>(k) * stride, stride);
-    });
+    parallelBlocks(num_slices, num_threads_,
+                   [&](std::size_t k) { slices[k] = ofSlice(plane, static_cast<int>(k) * stride, stride, with_step); });
     PairSums sum;
     for (const PairSums& slice : slices) sum += slice;
     Comparison result;
@@ -134,21 +133,38 @@ public:
   }
 
 private:
-  /// What a trilinear look-up adds to f between voxels, to second order. Left in, it draws planes to where voxels fall
-  /// on voxels, by up to a degree.
-  double blurAt(const Eigen::Vector3d& p) const {
-    const Eigen::Array3d t = p.array() - p.array().floor();
-    const auto [nx, ny, nz] = f_.size();
-    const std::ptrdiff_t steps[] = {1, nx, std::ptrdiff_t{nx} * ny};
-    const Eigen::Array3i c = (p.array() + 0.5).cast<int>().max(1).min(Eigen::Array3i(nx, ny, nz) - 2);
-    const float* const v = f_.values().data() + c.x() + c.y() * steps[1] + c.z() * steps[2];
-    double blur = 0.0;
-    for (int a = 0; a < 3; ++a) blur += 0.5 * t[a] * (1.0 - t[a]) * (v[steps[a]] - 2.0 * v[0] + v[-steps[a]]);
-    return blur;
+  /// The gradient per voxel and f, with the voxels as coefficients of a cubic B-spline: smooth everywhere. The kinks of
+  /// trilinear look-ups would draw planes to where voxels fall on voxels, by up to a degree. Across thick slices, which
+  /// are not to be blurred any more, f passes through the voxels (cubic convolution, Keys 1981).
+  Eigen::Vector4d splineAt(const Eigen::Vector3d& p) const {
+    static const Eigen::Matrix4d spline =
+        (Eigen::Matrix4d() << 1, -3, 3, -1, 4, 0, -6, 3, 1, 3, 3, -3, 0, 0, 0, 1).finished() / 6;
+    static const Eigen::Matrix4d convolution =
+        (Eigen::Matrix4d() << 0, -1, 2, -1, 2, 0, -5, 3, 0, 1, 4, -3, 0, 0, -1, 1).finished() / 2;
+    Eigen::Array4d weights[3], slopes[3];
+    std::ptrdiff_t offsets[3][4], step = 1;
+    for (int a = 0; a < 3; step *= f_.size()[a++]) {
+      const double whole = std::floor(p[a]), t = p[a] - whole;
+      const Eigen::Matrix4d& basis = is_thick_[a] ? convolution : spline;
+      weights[a] = basis * Eigen::Vector4d(1.0, t, t * t, t * t * t);
+      slopes[a] = basis * Eigen::Vector4d(0.0, 1.0, 2.0 * t, 3.0 * t * t);
+      for (int k = 0; k < 4; ++k)
+        offsets[a][k] = step * std::clamp(static_cast<int>(whole) + k - 1, 0, f_.size()[a] - 1);
+    }
+    Eigen::Vector4d sum = Eigen::Vector4d::Zero();
+    for (int z = 0; z < 4; ++z)
+      for (int y = 0; y < 4; ++y) {
+        const float* const row = f_.values().data() + offsets[2][z] + offsets[1][y];
+        const Eigen::Array4d v(row[offsets[0][0]], row[offsets[0][1]], row[offsets[0][2]], row[offsets[0][3]]);
+        const double along_x = (weights[0] * v).sum();
+        const double weight = weights[2][z] * weights[1][y];
+        sum += Eigen::Vector4d(weight * (slopes[0] * v).sum(), weights[2][z] * slopes[1][y] * along_x,
+                               slopes[2][z] * weights[1][y] * along_x, weight * along_x);
+      }
+    return sum;
   }
 
-  template <bool kWithStep>
-  PairSums ofSlice(const ReflectionPlane& plane, int z, int stride) const {
+  PairSums ofSlice(const ReflectionPlane& plane, int z, int stride, bool with_step) const {
     const Chart chart(plane, pivot_);
     const Eigen::Affine3d& T = f_.T_input_index();
     const Eigen::Affine3d image = T_index_input_ * plane.reflection() * T;  // from indices to indices
@@ -166,21 +182,21 @@ private:
         sum.body += in_body;
         const Eigen::Vector3d index(x, y, z), p = image * index;
         if (!f_.contains(p, margin_) || !f_.contains(index, margin_)) continue;
-        Eigen::Vector3d gradient;
-        const double other = f_.at(p, kWithStep ? &gradient : nullptr);
+        const double other = f_.at(p);
         sum.product += own * other;
         sum.seen_body += in_body;
         if (!in_body && other <= body) continue;
         sum.n += 1.0;
         sum.f += own, sum.g += other, sum.ff += own * own, sum.gg += other * other, sum.fg += own * other;
-        if (!kWithStep) continue;
+        if (!with_step) continue;
         // The derivatives of f(x) - f(x - 2 (n.x - r) n) by angles about v and u and by r.
-        const Eigen::Vector3d g = to_input * gradient, from_pivot = T * index - pivot_;
+        const Eigen::Vector4d here = splineAt(index), there = splineAt(p);
+        const Eigen::Vector3d g = to_input * there.head<3>(), from_pivot = T * index - pivot_;
         const double d = chart.n.dot(from_pivot) - chart.s, along = g.dot(chart.n);
         const Eigen::Vector3d j(2.0 * (chart.u.dot(from_pivot) * along + d * g.dot(chart.u)),
                                 2.0 * (chart.v.dot(from_pivot) * along + d * g.dot(chart.v)), -2.0 * along);
         sum.normal += j * j.transpose();
-        sum.rhs += (own - other + blurAt(p)) * j;
+        sum.rhs += (here[3] - there[3]) * j;
       }
     }
     return sum;
@@ -192,6 +208,7 @@ private:
   int num_threads_;
   Eigen::Affine3d T_index_input_;
   Eigen::Vector3d margin_;
+  Eigen::Array<bool, 3, 1> is_thick_;
 };
 
 /// A stride that reflects about this number of voxels.
@@ -258,9 +275,7 @@ Detection detectVolumePlanes(const ScalarGrid& input, const DetectionOptions& op
     found.diameter = 2.0 * edt.radius();
     found.timing_ms.emplace_back("transform", watch.lap());
 
-    // Smoothed once more: what second differences do not tell about f between voxels falls by half.
-    const VolumeFunction soft(fine, kRules.fine_voxels, options.num_threads);
-    const ReflectedVolume few(coarse, center, 1), all(soft, center, options.num_threads);
+    const ReflectedVolume few(coarse, center, 1), all(fine, center, options.num_threads);
     const int stride = strideFor(coarse.f, 30'000);
     const PlaneTolerance one{kRules.merge_angle, kRules.merge_offset * edt.radius()};
     const std::vector<ReflectionPlane> starts = startsOf(found.map, body, options.expert.max_candidates);
@@ -294,7 +309,7 @@ Detection detectVolumePlanes(const ScalarGrid& input, const DetectionOptions& op
     for (SymmetryPlane& plane : maxima) {
       if (!options.approximate && confidence(plane) < options.min_confidence) continue;
       const int before = plane.iterations;
-      plane = all.refined(plane, strideFor(soft.f, 500'000), 10, 1e-4);
+      plane = all.refined(plane, strideFor(fine.f, 500'000), 10, 1e-4);
       const Comparison comparison = few.compare(plane, 1, false);
       plane.iterations += before;
       plane.support = std::max(0.0, comparison.merit());

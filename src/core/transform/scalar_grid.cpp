@@ -173,7 +173,7 @@ Eigen::Affine3d ScalarGrid::placed(const Eigen::Vector3d& spacing, const Eigen::
   return T_input_index;
 }
 
-double ScalarGrid::at(const Eigen::Vector3d& p, Eigen::Vector3d* gradient) const {
+double ScalarGrid::at(const Eigen::Vector3d& p) const {
   const Eigen::Vector3i c = p.cast<int>().cwiseMin((last_.array() - 1.0).max(0.0).matrix().cast<int>());
   const Eigen::Vector3d t = p - c.cast<double>();
   const float* const v = values_.data() + (static_cast<std::size_t>(c.z()) * size_[1] + c.y()) * size_[0] + c.x();
@@ -181,13 +181,7 @@ double ScalarGrid::at(const Eigen::Vector3d& p, Eigen::Vector3d* gradient) const
   const auto between = [](double a, double b, double s) { return a + s * (b - a); };
   const double x00 = between(v[0], v[dx], t.x()), x10 = between(v[dy], v[dy + dx], t.x());
   const double x01 = between(v[dz], v[dz + dx], t.x()), x11 = between(v[dz + dy], v[dz + dy + dx], t.x());
-  const double near = between(x00, x10, t.y()), far = between(x01, x11, t.y());
-  if (gradient) {
-    const double near_x = between(v[dx] - v[0], v[dy + dx] - v[dy], t.y());
-    const double far_x = between(v[dz + dx] - v[dz], v[dz + dy + dx] - v[dz + dy], t.y());
-    *gradient << between(near_x, far_x, t.z()), between(x10 - x00, x11 - x01, t.z()), far - near;
-  }
-  return between(near, far, t.z());
+  return between(between(x00, x10, t.y()), between(x01, x11, t.y()), t.z());
 }
 
 void VolumeLevels::validate() const {

@@ -33,9 +33,7 @@ TEST(ScalarGrid, InterpolatesLinearFunctionsExactly) {
     for (int y = 0; y < 4; ++y)
       for (int x = 0; x < 5; ++x) values.push_back(static_cast<float>(1.0 + 2.0 * x - y + 0.5 * z));
   const ScalarGrid grid({5, 4, 3}, Eigen::Affine3d::Identity(), values);
-  Eigen::Vector3d gradient;
-  EXPECT_NEAR(grid.at({3.25, 1.5, 1.75}, &gradient), 1.0 + 6.5 - 1.5 + 0.875, 1e-6);
-  EXPECT_LT((gradient - Eigen::Vector3d(2.0, -1.0, 0.5)).norm(), 1e-6);
+  EXPECT_NEAR(grid.at({3.25, 1.5, 1.75}), 1.0 + 6.5 - 1.5 + 0.875, 1e-6);
   EXPECT_NEAR(grid.at({4.0, 3.0, 2.0}), 1.0 + 8.0 - 3.0 + 1.0, 1e-6) << "the last voxel";
   EXPECT_TRUE(grid.contains({4.0, 3.0, 2.0}));
   EXPECT_FALSE(grid.contains({4.01, 3.0, 2.0}));
