@@ -55,16 +55,25 @@ def parts_of(models, folder, size):
     return parts
 
 
+@contextlib.contextmanager
 def cluster_of(options):
     if options.scheduler:
-        return contextlib.nullcontext(options.scheduler)
-    if options.slurm is None:
-        return LocalCluster(n_workers=options.workers, threads_per_worker=1, dashboard_address=None)
-    cluster = LocalCluster(n_workers=0, host=socket.gethostname(), dashboard_address=None)
-    for _ in range(options.workers):
+        yield options.scheduler
+        return
+    here = dict(n_workers=options.workers, threads_per_worker=1)
+    if options.slurm is not None:  # all addresses of this machine: its name may be one of its own alone
+        here = dict(n_workers=0, host="0.0.0.0")
+    with LocalCluster(dashboard_address=None, **here) as cluster:
+        if options.slurm is None:
+            yield cluster
+            return
         worker = f"dask worker {cluster.scheduler_address} --nthreads 1 --no-dashboard --death-timeout 600"
-        subprocess.run(["sbatch", "--cpus-per-task=1", *options.slurm.split(), f"--wrap={worker}"], check=True)
-    return cluster
+        jobs = ["sbatch", "--parsable", f"--array=1-{options.workers}", "--cpus-per-task=1", *options.slurm.split()]
+        number = subprocess.run([*jobs, f"--wrap={worker}"], stdout=subprocess.PIPE, text=True, check=True).stdout
+        try:
+            yield cluster
+        finally:  # also those that have not begun
+            subprocess.run(["scancel", number.split(";")[0].strip()], check=False)
 
 
 def describe_all(options, parts):

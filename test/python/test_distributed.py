@@ -101,15 +101,20 @@ class Distributed(unittest.TestCase):
         self.check_answers()
 
     def test_jobs_of_slurm(self):
-        sbatch = self.folder / "sbatch"  # starts the job here
-        sbatch.write_text("""#!/bin/bash\necho "$@" >>"$(dirname "$0")/jobs"\nfor word; do [[ $word != --wrap=* ]] || ${word#--wrap=} &>/dev/null & done\n""")
-        sbatch.chmod(0o755)
+        """With programs that start the jobs here; those that are left over are taken from the queue."""
+        for name, text in (
+            ("sbatch", 'echo "$@" >>"${0%/*}/jobs"; echo "7;cluster"; last=${@: -1}; for i in 1 2; do ${last#--wrap=} &>/dev/null & done'),
+            ("scancel", 'echo "$@" >>"${0%/*}/cancelled"'),
+        ):
+            (self.folder / name).write_text(f"#!/bin/bash\n{text}\n")
+            (self.folder / name).chmod(0o755)
         run = self.start("--slurm=--partition=cpu --mem=1G")
         output, _ = run.communicate(timeout=100)
         self.assertEqual(run.returncode, 0, output)
         jobs = (self.folder / "jobs").read_text().splitlines()
-        self.assertEqual(len(jobs), 2)
-        self.assertRegex(jobs[0], "--cpus-per-task=1 --partition=cpu --mem=1G --wrap=dask worker tcp://")
+        self.assertEqual(len(jobs), 1)
+        self.assertRegex(jobs[0], "--parsable --array=1-2 --cpus-per-task=1 --partition=cpu --mem=1G --wrap=dask worker tcp://")
+        self.assertEqual((self.folder / "cancelled").read_text(), "7\n")
         self.check_answers()
 
     def test_says_what_is_wrong(self):
