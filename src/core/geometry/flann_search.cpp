@@ -13,6 +13,12 @@ namespace {
 
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
 
+// FLANN visits all that may be as close as the worst of what it has. Equal points, as those at the origin for pixels
+// without a depth, would then cost the square of their number. Nothing is closer than 0, there it ends.
+float visitedUpTo(float worst_sq_distance) {
+  return worst_sq_distance > 0.0f ? worst_sq_distance : -1.0f;
+}
+
 /// The closest of all points that FLANN shows it.
 class ClosestPoint : public flann::ResultSet<float> {
 public:
@@ -24,9 +30,10 @@ public:
     sq_distance_ = sq_distance;
     index_ = static_cast<int>(index);
   }
-  float worstDist() const override { return sq_distance_; }
+  float worstDist() const override { return visitedUpTo(sq_distance_); }
 
   int index() const { return index_; }
+  float sqDistance() const { return sq_distance_; }
 
 private:
   int index_;
@@ -52,7 +59,7 @@ public:
     indices_[i] = static_cast<int>(index);
     if (size_ == most_) worst_ = sq_distances_[most_ - 1];
   }
-  float worstDist() const override { return worst_; }
+  float worstDist() const override { return visitedUpTo(worst_); }
 
 private:
   int* indices_;
@@ -82,9 +89,11 @@ void FlannSearch::search(const PointsRef& queries, int num_neighbors, std::vecto
   const auto num_queries = static_cast<std::size_t>(queries.cols()), count = static_cast<std::size_t>(num_neighbors);
   indices.assign(num_queries * count, 0);
   sq_distances.assign(num_queries * count, kInfinity);
+  flann::SearchParams params = tree_->params;
+  params.eps = 4.0f * std::numeric_limits<float>::epsilon();  // leaves out what is no closer but for rounding
   for (std::size_t i = 0; i < num_queries; ++i) {
     NearestPoints nearest(&indices[i * count], &sq_distances[i * count], num_neighbors);
-    tree_->index.findNeighbors(nearest, queries.col(i).data(), tree_->params);
+    tree_->index.findNeighbors(nearest, queries.col(i).data(), params);
   }
 }
 
@@ -99,16 +108,16 @@ void FlannSearch::searchWithin(const PointsRef& queries, float max_sq_distance, 
     const float guessed = indices[i] < 0 ? limit : (points_.col(indices[i]) - query).squaredNorm();
     ClosestPoint closest(guessed < limit ? indices[i] : -1, std::min(guessed, limit));
     const bool is_proven = lists_ && seen[i].is_closest;
-    if (is_proven && seen[i].sq_distance < closest.worstDist()) {
+    if (is_proven && seen[i].sq_distance < closest.sqDistance()) {
       closest.addPoint(seen[i].sq_distance, static_cast<std::size_t>(seen[i].index));
     } else if (!is_proven) {
       // Just beyond what the lists found: of several points at that distance, FLANN chooses.
       const float beyond = lists_ ? std::nextafter(seen[i].sq_distance, kInfinity) : kInfinity;
-      if (beyond < closest.worstDist()) closest = ClosestPoint(-1, beyond);
+      if (beyond < closest.sqDistance()) closest = ClosestPoint(-1, beyond);
       tree_->index.findNeighbors(closest, query.data(), tree_->params);
     }
     indices[i] = closest.index();
-    sq_distances[i] = indices[i] < 0 ? kInfinity : closest.worstDist();
+    sq_distances[i] = indices[i] < 0 ? kInfinity : closest.sqDistance();
   }
 }
 
