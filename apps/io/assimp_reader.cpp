@@ -129,6 +129,7 @@ void readMesh(const std::string& path, std::string& text, const std::string& kin
   const aiScene* const scene = importer.ReadFileFromMemory(text.data(), text.size(), 0, kind.c_str());
   if (!scene || !scene->mRootNode) {
     std::string reason = boost::algorithm::replace_all_copy(std::string(importer.GetErrorString()), "\n", " ");
+    boost::algorithm::erase_all(reason, " for $$$___magic___$$$." + kind);  // what it calls memory
     boost::algorithm::trim(reason);
     throw InputError(path + ": cannot be read as " + kind + (reason.empty() ? "" : ", " + reason));
   }

@@ -191,9 +191,10 @@ void writeText(const std::string& path, const std::string& text) {
 }
 
 void makeFolder(const std::string& path) {
-  boost::system::error_code error;  // Boost 1.74 has one for ".", which is there
+  boost::system::error_code error, ignored;  // Boost 1.74 has an error for ".", which is there
   fs::create_directories(path, error);
-  if (!fs::is_directory(path)) throw InputError(path + ": cannot be made, must be a folder");
+  if (!fs::is_directory(path, ignored))
+    throw InputError(path + ": cannot be made, " + (fs::exists(path, ignored) ? "must be a folder" : error.message()));
 }
 
 void checkCloudExtension(const std::string& path) {

@@ -68,7 +68,7 @@ class Merging {
 public:
   Merging(const AnyArray& points, const std::vector<std::vector<int>>& faces, std::uint64_t seed, int threads) {
     const InputPoints input("points", points, 0, seed);
-    if (!input.rows().empty()) throw std::invalid_argument("points: vertices not all finite, must be");
+    if (!input.usesAllRows()) throw std::invalid_argument("points: vertices not all finite, must be");
     SegmentationOptions options;
     options.seed = seed;
     options.num_threads = threads;

@@ -52,13 +52,15 @@ void checkRounding(const char* name, const py::array& array) {
   }
   if (box.isEmpty()) return;
   const double greatest = std::max(box.min().cwiseAbs().maxCoeff(), box.max().cwiseAbs().maxCoeff());
+  if (greatest > std::numeric_limits<float>::max() || (greatest > 0.0 && greatest < std::numeric_limits<float>::min()))
+    throw std::invalid_argument(std::string(name) + " = coordinates that float32 cannot hold, must have another unit");
   if (greatest * std::numeric_limits<float>::epsilon() > kMostRounding * box.diagonal().norm())
     throw std::invalid_argument(std::string(name) +
                                 " = coordinates too large for the extent of the points, must be moved near the origin");
 }
 
 bool isInPlace(const Rows& array) {
-  return array.strides(1) == static_cast<py::ssize_t>(sizeof(float)) && array.strides(0) >= 0 &&
+  return array.strides(1) == static_cast<py::ssize_t>(sizeof(float)) && array.strides(0) > 0 &&
          array.strides(0) % static_cast<py::ssize_t>(sizeof(float)) == 0;
 }
 
@@ -120,7 +122,7 @@ Points InputPoints::atPoints(const char* name, const py::array& normals) const {
                                 std::to_string(num_rows_) + ", 3), one for each point");
   const Rows rows(normals);
   const auto value = rows.unchecked<2>();
-  const std::size_t size = rows_.empty() ? num_rows_ : rows_.size();
+  const auto size = static_cast<std::size_t>(points().cols());
   Points result(3, static_cast<Eigen::Index>(size));
   for (std::size_t i = 0; i < size; ++i)
     for (int k = 0; k < 3; ++k)

@@ -41,7 +41,9 @@ public:
   PointsRef answerablePoints() const;
   /// \return number of rows of the array.
   std::size_t numRows() const { return num_rows_; }
-  /// \return the row of each point; empty where all rows are used.
+  /// \return whether all rows are finite and used.
+  bool usesAllRows() const { return static_cast<std::size_t>(points().cols()) == num_rows_; }
+  /// \return the row of each point; empty where all rows are used, or none.
   const std::vector<std::size_t>& rows() const { return rows_; }
 
   /// \param normals (N, 3).

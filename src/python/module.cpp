@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <stdexcept>
 #include <string>
 #include <utility>
@@ -47,20 +48,28 @@ py::array_t<float> rowsOf(const PointsRef& points) {
   return result;
 }
 
-std::vector<std::vector<int>> polygonsOf(const py::array_t<int, py::array::c_style | py::array::forcecast>& faces) {
-  if (faces.ndim() != 2 || faces.shape(1) < 3)
-    throw std::invalid_argument("faces = array of another shape, must be (F, 3), indices into the vertices");
-  const auto index = faces.unchecked<2>();
+std::vector<std::vector<int>> polygonsOf(const py::array& faces) {
+  const char kind = faces.dtype().kind();
+  if (faces.ndim() != 2 || faces.shape(1) < 3 || (kind != 'i' && kind != 'u' && kind != 'f'))
+    throw std::invalid_argument("faces = array of another shape or kind, must be (F, 3), indices into the vertices");
+  const py::array_t<double, py::array::forcecast> rows(faces);
+  const auto index = rows.unchecked<2>();
   std::vector<std::vector<int>> polygons(static_cast<std::size_t>(faces.shape(0)));
   for (py::ssize_t i = 0; i < faces.shape(0); ++i)
-    for (py::ssize_t k = 0; k < faces.shape(1); ++k) polygons[static_cast<std::size_t>(i)].push_back(index(i, k));
+    for (py::ssize_t k = 0; k < faces.shape(1); ++k) {
+      const double corner = index(i, k);
+      if (!(corner >= 0.0 && corner <= std::numeric_limits<int>::max() && corner == std::floor(corner)))
+        throw std::invalid_argument("faces: " + py::str(py::float_(corner)).cast<std::string>() +
+                                    ", must be an index of a vertex");
+      polygons[static_cast<std::size_t>(i)].push_back(static_cast<int>(corner));
+    }
   return polygons;
 }
 
 /// Vertices and triangles of a mesh.
 struct MeshInput {
   MeshInput(const AnyArray& vertex_rows, const AnyArray& faces) : vertices("vertices", vertex_rows, 0, 0) {
-    if (!vertices.rows().empty()) throw std::invalid_argument("vertices: not all finite, must be");
+    if (!vertices.usesAllRows()) throw std::invalid_argument("vertices: not all finite, must be");
     for (const std::vector<int>& polygon : polygonsOf(faces.array))
       for (std::size_t k = 2; k < polygon.size(); ++k) triangles.emplace_back(polygon[0], polygon[k - 1], polygon[k]);
   }
@@ -114,7 +123,7 @@ SymmetrizedShape symmetrize(const AnyArray& points, const py::object& faces, con
     return symmetrizedMesh(mesh.vertices.points(), mesh.triangles, plane, kept, threads);
   }
   const InputPoints input("points", points, 0, 0);
-  if (!input.rows().empty()) throw std::invalid_argument("points: not all finite, must be");
+  if (!input.usesAllRows()) throw std::invalid_argument("points: not all finite, must be");
   const py::gil_scoped_release release;
   return symmetrizedCloud(input.points(), plane, kept, threads);
 }
@@ -290,7 +299,7 @@ std::vector<int> segment(const AnyArray& points, const py::object& faces, int pa
     };
   if (faces.is_none()) return segmentCloud(points, options);
   const InputPoints input("points", points, 0, seed);
-  if (!input.rows().empty()) throw std::invalid_argument("points: vertices not all finite, must be");
+  if (!input.usesAllRows()) throw std::invalid_argument("points: vertices not all finite, must be");
   const std::vector<std::vector<int>> polygons = polygonsOf(arrayOf("faces", faces));
   const py::gil_scoped_release release;
   return segmentSurface(meshGraph(input.points(), polygons), options).labels;

@@ -94,9 +94,12 @@ TEST_F(SymmetryRegistrationTest, StandsWhereAnyRegistrationOfPCLStands) {
 TEST_F(SymmetryRegistrationTest, MeasuresTheFitOfPointsThatAreThere) {
   const auto scan = chairScan(randomPose(3)), with_gaps = pcl::make_shared<pcl::PointCloud<pcl::PointXYZ>>(*scan);
   const float none = std::numeric_limits<float>::quiet_NaN();
-  for (int i = 0; i < 100; ++i) with_gaps->push_back(pcl::PointXYZ(none, none, none));
-  with_gaps->is_dense = false;
-  registration_.setInputTarget(chairModel());
+  const auto model = chairModel();
+  for (const auto& cloud : {with_gaps, model}) {
+    for (int i = 0; i < 100; ++i) cloud->push_back(pcl::PointXYZ(none, none, none));
+    cloud->is_dense = false;
+  }
+  registration_.setInputTarget(model);
   registration_.setInputSource(scan);
   registration_.align(aligned_);
   const double expected = registration_.getFitnessScore();

@@ -97,12 +97,27 @@ class Planes(unittest.TestCase):
             found = pcl_symmetry.planes(np.asarray(same))
             np.testing.assert_allclose([plane.coefficients for plane in found], expected, atol=1e-9)
 
+    def test_rows_of_one_memory_are_read_as_their_copies(self):
+        row, plane = np.broadcast_to(np.float32([1, 2, 3]), (1000, 3)), pcl_symmetry.ReflectionPlane([1, 0, 0], 0.0)
+        for same, other in zip(pcl_symmetry.complete(row, plane), pcl_symmetry.complete(row.copy(), plane)):
+            np.testing.assert_array_equal(same, other)
+
     def test_rows_that_are_not_finite_are_left_out(self):
         points = np.vstack([box(), [[np.nan, 0, 0]]]).astype(np.float32)
-        found = pcl_symmetry.planes(points)
-        self.assertEqual(len(found), 3)
-        self.assertTrue(np.isnan(found.point_support(0)[-1]))
-        self.assertFalse(np.isnan(found.point_support(0)[:-1]).any())
+        masked = np.ma.masked_array(np.vstack([box(), [[9, 9, 9]]]), mask=~np.isfinite(points))
+        for found in (pcl_symmetry.planes(points), pcl_symmetry.planes(masked)):
+            self.assertEqual(len(found), 3)
+            self.assertTrue(np.isnan(found.point_support(0)[-1]))
+            self.assertFalse(np.isnan(found.point_support(0)[:-1]).any())
+
+    def test_equal_points_do_not_cost_the_square_of_their_number(self):
+        """As the pixels without a depth of an organized cloud, which some drivers put at the origin."""
+        plane, times = pcl_symmetry.ReflectionPlane([1, 2, 3], 0.1), []
+        for points in (np.random.default_rng(1).random((40_000, 3)), np.zeros((40_000, 3))):
+            start = time.monotonic()
+            self.assertEqual(len(plane.pairs(points)[0]), len(points))
+            times.append(time.monotonic() - start)
+        self.assertLess(times[1], 20 * times[0])
 
     def test_a_scan_of_a_block_has_its_turns(self):
         """A square block, seen from above and one side."""
@@ -159,11 +174,18 @@ class Planes(unittest.TestCase):
                 function(box(num_points=5))
             with self.assertRaisesRegex(ValueError, "points: 1 distinct point"):
                 function(np.ones((1000, 3)))
+        for points, words in ((np.zeros((0, 3)), "number of points = 0, must be > 0"), (np.full((50, 3), np.nan), "not all finite")):
+            with self.assertRaisesRegex(ValueError, words):
+                pcl_symmetry.symmetrize(points, pcl_symmetry.ReflectionPlane([1, 0, 0], 0.0))
+        with self.assertRaisesRegex(ValueError, "vertices: not all finite"):
+            pcl_symmetry.sample_mesh(np.full((8, 3), np.nan), box_mesh()[1])
 
     def test_wrong_parameters_name_field_value_and_rule(self):
         for arguments, words in (
             (dict(points=np.zeros((5, 2))), "points = array of shape \\(5, 2\\), must be \\(N, 3\\)"),
             (dict(points=np.zeros((5, 3), dtype="U3")), "points = array of kind U"),
+            (dict(points=1e300 * box().astype(float)), "coordinates that float32 cannot hold"),
+            (dict(points=1e-300 * box().astype(float)), "coordinates that float32 cannot hold"),
             (dict(points=box(), tolerance=0.5), "tolerance = 0.5, must be"),
             (dict(points=box(), threads=-1), "num_threads = -1"),
             (dict(points=box(), viewpoint="here"), "viewpoint = here, must be"),
@@ -172,6 +194,17 @@ class Planes(unittest.TestCase):
         ):
             with self.assertRaisesRegex(ValueError, words):
                 pcl_symmetry.planes(**arguments)
+        for nothing in ("cloud.pcd", b"cloud", 5, {"x": 1}, (row for row in box())):
+            with self.assertRaisesRegex(TypeError, "points = .*, must be an array"):
+                pcl_symmetry.planes(nothing)
+
+    def test_faces_are_indices(self):
+        vertices, faces = box_mesh()
+        expected = pcl_symmetry.sample_mesh(vertices, faces)
+        np.testing.assert_array_equal(pcl_symmetry.sample_mesh(vertices, faces.astype(float)), expected)  # of loadtxt()
+        for wrong in (0.5, -1.0, np.nan, 2**32, 8, "a"):
+            with self.assertRaisesRegex(ValueError, "faces|vertex"):
+                pcl_symmetry.sample_mesh(vertices, np.where(faces == 0, wrong, faces))
 
     def test_large_arrays_are_not_copied(self):
         import resource
@@ -825,6 +858,17 @@ class Package(unittest.TestCase):
     def test_wrong_arguments_are_named(self):
         with self.assertRaisesRegex(TypeError, "tolerence"):
             pcl_symmetry.planes(box(), tolerence=0.1)
+        volume = np.random.default_rng(1).random((8, 8, 8))
+        for arguments, words in (
+            (dict(points=box(), seed=1.5), "seed = 1.5, must be int, 0 to "),
+            (dict(points=box(), max_planes=2**40), "max_planes = 1099511627776, must be int, -2147483648 to 2147483647"),
+            (dict(points=box(), tolerance="small"), "tolerance = 'small', must be float"),
+            (dict(volume=volume, spacing=2.0), r"spacing = 2, must be numbers of shape \(3,\)"),
+            (dict(volume=volume, direction=np.eye(2)), r"direction = (.|\n)* must be numbers of shape \(3, 3\)"),
+            (dict(volume=volume, levels=5), r"levels = 5, must be numbers of shape \(2,\)"),
+        ):
+            with self.assertRaisesRegex(TypeError, words):
+                pcl_symmetry.planes(**arguments)
 
     def test_types_are_those_that_mypy_finds(self):
         if subprocess.run([sys.executable, "-m", "mypy", "--version"], capture_output=True).returncode:

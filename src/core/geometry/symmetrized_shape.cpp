@@ -234,6 +234,7 @@ MirroredMesh mirroredHalf(const PointsRef& vertices, const std::vector<Eigen::Ve
 
 SymmetrizedShape symmetrizedCloud(const PointsRef& points, const ReflectionPlane& plane, SymmetrizedHalf half,
                                   int num_threads) {
+  check(points.cols() > 0, "number of points", points.cols(), "> 0");
   SymmetrizedShape result;
   result.points = points;
   result.asymmetry.assign(points.cols(), kNone);

@@ -5,13 +5,15 @@ from __future__ import annotations
 import os
 from typing import TYPE_CHECKING, Any, Callable, Iterable, Iterator, List, Mapping, Optional, Sequence, Tuple, Union
 
-from . import _recognition as core
-from .functions import Viewpoint, _fields, _seen_from, prepare
+from . import _recognition
+from .functions import Core, Viewpoint, _fields, _seen_from, prepare
 from .results import BuildReport, Match, PoseScore, Recognized, Registration
 
 if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import ArrayLike, NDArray
+
+core = Core(_recognition)
 
 Path = Union[str, "os.PathLike[str]"]
 

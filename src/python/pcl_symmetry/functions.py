@@ -5,7 +5,7 @@ from __future__ import annotations
 import warnings
 from typing import TYPE_CHECKING, Any, Callable, Dict, List, Optional, Sequence, Tuple, Union
 
-from . import _pcl_symmetry as core
+from . import _pcl_symmetry
 from .results import (
     Axis,
     Center,
@@ -19,6 +19,7 @@ from .results import (
     Symmetrized,
     Turn,
     View,
+    _text,
 )
 
 if TYPE_CHECKING:
@@ -26,6 +27,61 @@ if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
 
     Shift = Optional[NDArray[np.float64]]
+
+
+class Core:
+    """A module of pybind11; where that lists all its types, the argument that has another one is named."""
+
+    def __init__(self, module: Any) -> None:
+        self._module = module
+
+    def __getattr__(self, name: str) -> Any:
+        found = getattr(self._module, name)
+        return self._named(found) if callable(found) and not isinstance(found, type) else found
+
+    @staticmethod
+    def _named(function: Callable[..., Any]) -> Callable[..., Any]:
+        def call(*points: Any, **arguments: Any) -> Any:
+            try:
+                return function(*points, **arguments)
+            except TypeError as error:
+                if "incompatible function arguments" not in str(error):
+                    raise
+                raise TypeError(_wrong_argument(str(error), arguments)) from None
+
+        return call
+
+
+core = Core(_pcl_symmetry)
+
+
+def _wrong_argument(text: str, arguments: Dict[str, Any]) -> str:
+    """Names the first one that does not have the type that a message of pybind11 lists for it."""
+    import re
+
+    import numpy as np
+
+    types: Dict[str, Any] = {"bool": (bool, np.bool_), "str": str, "int": (int, np.integer), "float": (int, float, np.number)}
+    for name, value in arguments.items():
+        rule = re.search(rf"\b{name}: (?:({'|'.join(types)})\b|numpy\.ndarray\[\S+\[(\d), (\d)\]|Tuple\[(float), float\])", text)
+        if not rule:
+            continue
+        kind, rows, columns, pair = rule.groups()
+        low, high = (0, 2**64) if name in ("seed", "max_points") else (-(2**31), 2**31)
+        if kind:
+            fits = isinstance(value, types[kind]) and (kind != "int" or low <= value < high)
+            words = f"int, {low} to {high - 1}" if kind == "int" else kind
+        else:
+            shape = (2,) if pair else (int(rows),) if columns == "1" else (int(rows), int(columns))
+            try:
+                fits = np.asarray(value, dtype=float).shape == shape
+            except (TypeError, ValueError):
+                fits = False
+            words = f"numbers of shape {shape}"
+        if not fits:
+            return f"{name} = {_text(value)}, must be {words}"
+    return " ".join(text.split())
+
 
 Viewpoint = Union[str, None, "ArrayLike"]
 """Where a scanner stood: "auto" (the points decide), None (seen from all sides) or (x, y, z), input frame."""
@@ -53,6 +109,11 @@ def prepare(name: str, points: Any, num_mesh_points: int = _NUM_MESH_POINTS) -> 
         array = np.asarray(points)
     except ValueError as error:
         raise ValueError(f"{name}: {error}, must be (N, 3)") from None
+    if array.ndim == 0 and not isinstance(points, np.ndarray):  # a number, a dict, a generator
+        raise TypeError(f"{name} = {type(points).__name__}, must be an array of shape (N, 3)")
+    masked: Any = np.ma
+    if isinstance(points, masked.MaskedArray) and array.dtype.kind in "fiu":
+        array = np.where(masked.getmaskarray(points), np.nan, array)
     if array.ndim != 2 or array.shape[1] != 3 or array.dtype.kind not in "fiu" or not len(array):
         return array, None  # the core says what is wrong
     # A few rows tell how far away the points are; the whole array is looked at only where that is far.
