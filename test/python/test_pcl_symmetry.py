@@ -174,9 +174,11 @@ class Planes(unittest.TestCase):
                 function(box(num_points=5))
             with self.assertRaisesRegex(ValueError, "points: 1 distinct point"):
                 function(np.ones((1000, 3)))
+        plane = pcl_symmetry.ReflectionPlane([1, 0, 0], 0.0)
         for points, words in ((np.zeros((0, 3)), "number of points = 0, must be > 0"), (np.full((50, 3), np.nan), "not all finite")):
             with self.assertRaisesRegex(ValueError, words):
-                pcl_symmetry.symmetrize(points, pcl_symmetry.ReflectionPlane([1, 0, 0], 0.0))
+                pcl_symmetry.symmetrize(points, plane)
+            self.assertEqual([len(each) for each in plane.pairs(points)], 2 * [len(points)])
         with self.assertRaisesRegex(ValueError, "vertices: not all finite"):
             pcl_symmetry.sample_mesh(np.full((8, 3), np.nan), box_mesh()[1])
 
@@ -194,6 +196,9 @@ class Planes(unittest.TestCase):
         ):
             with self.assertRaisesRegex(ValueError, words):
                 pcl_symmetry.planes(**arguments)
+            if set(arguments) == {"points"}:
+                with self.assertRaisesRegex(ValueError, words):
+                    pcl_symmetry.ReflectionPlane([1, 0, 0], 0.0).pairs(**arguments)
         for nothing in ("cloud.pcd", b"cloud", 5, {"x": 1}, (row for row in box())):
             with self.assertRaisesRegex(TypeError, "points = .*, must be an array"):
                 pcl_symmetry.planes(nothing)

@@ -172,6 +172,8 @@ class ReflectionPlane(Result):
         from .functions import prepare
 
         array, shift = prepare("points", points)
+        if array.ndim != 2 or array.shape[1] != 3 or array.dtype.kind not in "fiu":
+            core.closest(array, array)  # says what is wrong
         plane = self if shift is None else self._moved(-shift)
         used = np.isfinite(array).all(axis=1)
         if max_distance < 0 or not np.isfinite(max_distance):
@@ -179,7 +181,9 @@ class ReflectionPlane(Result):
         index, distance = np.full(len(array), -1), np.full(len(array), np.inf)
         if not used.any():
             return index, distance
-        kept = np.ascontiguousarray(array[used], dtype=np.float32)
+        kept = array[used]
+        if kept.dtype.kind != "f" or kept.dtype.itemsize <= 4:
+            kept = kept.astype(np.float32)
         limit = max_distance or 0.01 * float(np.linalg.norm(np.ptp(kept.astype(float), axis=0)))
         closest, length = core.closest(kept, plane.reflect(kept))
         near = length <= limit
