@@ -196,9 +196,9 @@ class Planes(unittest.TestCase):
         ):
             with self.assertRaisesRegex(ValueError, words):
                 pcl_symmetry.planes(**arguments)
-            if set(arguments) == {"points"}:
-                with self.assertRaisesRegex(ValueError, words):
-                    pcl_symmetry.ReflectionPlane([1, 0, 0], 0.0).pairs(**arguments)
+        for points in (1e300 * box().astype(float), np.zeros((5, 2)), np.zeros((5, 3), dtype="U3")):
+            with self.assertRaisesRegex(ValueError, "points = "):
+                pcl_symmetry.ReflectionPlane([1, 0, 0], 0.0).pairs(points)
         for nothing in ("cloud.pcd", b"cloud", 5, {"x": 1}, (row for row in box())):
             with self.assertRaisesRegex(TypeError, "points = .*, must be an array"):
                 pcl_symmetry.planes(nothing)
@@ -870,10 +870,19 @@ class Package(unittest.TestCase):
             (dict(points=box(), tolerance="small"), "tolerance = 'small', must be float"),
             (dict(volume=volume, spacing=2.0), r"spacing = 2, must be numbers of shape \(3,\)"),
             (dict(volume=volume, direction=np.eye(2)), r"direction = (.|\n)* must be numbers of shape \(3, 3\)"),
+            (dict(points=box(), viewpoint=dict(x=1)), "viewpoint = dict, must be"),
             (dict(volume=volume, levels=5), r"levels = 5, must be numbers of shape \(2,\)"),
         ):
             with self.assertRaisesRegex(TypeError, words):
                 pcl_symmetry.planes(**arguments)
+        with self.assertRaisesRegex(ValueError, r"viewpoint = array of shape \(2, 3\), must be"):
+            pcl_symmetry.planes(box(), viewpoint=np.eye(3)[:2])
+        with self.assertRaisesRegex(ValueError, r"points = array of shape \(10, 3\), must be \(6000, 3\)"):
+            pcl_symmetry.planes(box()).show(box()[:10])
+        with self.assertRaisesRegex(TypeError, r"pose = .*, must be numbers of shape \(4, 4\)"):
+            pcl_symmetry.rotations(box()).canonical(np.eye(3))
+        with self.assertRaisesRegex(TypeError, "planes = other objects, must be"):
+            pcl_symmetry.viewpoints(box())
 
     def test_types_are_those_that_mypy_finds(self):
         if subprocess.run([sys.executable, "-m", "mypy", "--version"], capture_output=True).returncode:

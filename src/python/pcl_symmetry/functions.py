@@ -161,12 +161,18 @@ def _prepare_with_mesh(name: str, points: Any) -> Tuple["NDArray[Any]", "Shift",
     return core.sample_mesh(vertices, faces, _NUM_MESH_POINTS), shift, core.MeshSurface(vertices, faces)
 
 
-def _seen_from(viewpoint: Viewpoint, shift: "Shift") -> Any:
+def _seen_from(viewpoint: Viewpoint, shift: "Shift", name: str = "viewpoint") -> Any:
     import numpy as np
 
-    if shift is None or viewpoint is None or isinstance(viewpoint, str):
+    if viewpoint is None or isinstance(viewpoint, str):
         return viewpoint
-    return np.asarray(viewpoint, dtype=float) - shift
+    try:
+        position = np.asarray(viewpoint, dtype=float)
+    except (TypeError, ValueError):
+        raise TypeError(f'{name} = {type(viewpoint).__name__}, must be "auto", None or (x, y, z)') from None
+    if position.shape != (3,):
+        raise ValueError(f'{name} = array of shape {position.shape}, must be "auto", None or (x, y, z)')
+    return position if shift is None else position - shift
 
 
 def _fields(found: Any, *names: str) -> Dict[str, Any]:
@@ -373,6 +379,8 @@ def symmetrize(
 
 def viewpoints(planes: Union[Planes, Sequence[Plane]]) -> List[View]:
     """Directions from the object to the camera that show the least repetition (Section 5.4), best first."""
+    if not all(isinstance(plane, Plane) for plane in planes):
+        raise TypeError("planes = other objects, must be Planes or a list of Plane")
     return [View(v.direction, v.score) for v in core.viewpoints([(p.normal, p.score) for p in planes])]
 
 
@@ -518,7 +526,7 @@ def transform(
     sigma: width of the Gaussian, input units; 0: two cells of a grid of 64.
     """
     array, shift = prepare("points", points)
-    options = dict(center=_seen_from(center, shift), radius=radius, sigma=sigma, as_published=as_published)
+    options = dict(center=_seen_from(center, shift, "center"), radius=radius, sigma=sigma, as_published=as_published)
     found = core.transform(array, tuple(bins), method=method, seed=seed, threads=threads, **options)
     result = Map(**_fields(found, "sigma", "center", "radius", "values"))
     return result if shift is None else result._moved(shift)

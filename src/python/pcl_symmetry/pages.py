@@ -50,6 +50,8 @@ def page_of_planes(found: "Planes", points: Any) -> Page:
     from .plots import _diagonal, _square
 
     every = np.asarray(points, dtype=float)
+    if every.shape != (found._num_rows, 3):
+        raise ValueError(f"points = array of shape {every.shape}, must be ({found._num_rows}, 3), those of the planes")
     rows = np.flatnonzero(np.isfinite(every).all(axis=1))
     rows = rows[:: -(-len(rows) // _MOST_POINTS) or 1]
     used = every[rows]

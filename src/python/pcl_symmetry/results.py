@@ -181,11 +181,13 @@ class ReflectionPlane(Result):
         index, distance = np.full(len(array), -1), np.full(len(array), np.inf)
         if not used.any():
             return index, distance
-        kept = array[used]
-        if kept.dtype.kind != "f" or kept.dtype.itemsize <= 4:
-            kept = kept.astype(np.float32)
+        with np.errstate(over="ignore", invalid="ignore"):
+            kept = np.ascontiguousarray(array[used], dtype=np.float32)
+            images = plane.reflect(kept)
+        if not (np.isfinite(kept).all() and np.isfinite(images).all()):
+            raise ValueError("points = coordinates that float32 cannot hold, must have another unit")
         limit = max_distance or 0.01 * float(np.linalg.norm(np.ptp(kept.astype(float), axis=0)))
-        closest, length = core.closest(kept, plane.reflect(kept))
+        closest, length = core.closest(kept, images)
         near = length <= limit
         rows = np.flatnonzero(used)
         index[rows[near]], distance[rows[near]] = rows[closest[near]], length[near]
@@ -553,17 +555,17 @@ class Rotations(Result):
         pose: (4, 4) from the input frame to any other, as that of a camera. step: radians between rotations about an axis
         of revolution.
         """
-        result: "Doubles" = self._group().equivalents(pose, step)
+        result: "Doubles" = self._group().equivalents(pose=pose, step=step)
         return result
 
     def canonical(self, pose: "ArrayLike") -> "Doubles":
         """(4, 4) one pose for all that look the same: the one that is rotated least."""
-        result: "Doubles" = self._group().canonical(pose)
+        result: "Doubles" = self._group().canonical(pose=pose)
         return result
 
     def closest_to(self, pose: "ArrayLike", previous: "ArrayLike") -> "Doubles":
         """(4, 4) the pose that looks like the first and is rotated least from the second: what continues a track."""
-        result: "Doubles" = self._group().closest_to(pose, previous)
+        result: "Doubles" = self._group().closest_to(pose=pose, previous=previous)
         return result
 
     def mssd(self, estimate: "ArrayLike", truth: "ArrayLike", points: "ArrayLike") -> float:
@@ -571,12 +573,14 @@ class Rotations(Result):
 
         points: (N, 3), such as the vertices of the model.
         """
-        return float(self._group().mssd(estimate, truth, points))
+        import numpy as np
+
+        return float(self._group().mssd(estimate=estimate, truth=truth, points=np.asarray(points)))
 
     def _group(self) -> Any:
-        from . import _pcl_symmetry as core
+        from .functions import Core, core
 
-        return core.rotations_of(self.discrete, self.continuous)
+        return Core(core.rotations_of(self.discrete, self.continuous))
 
     def _moved(self, shift: "Doubles") -> "Rotations":
         continuous = [(point + shift, direction) for point, direction in self.continuous]
