@@ -15,12 +15,12 @@ struct ConfidenceFit {
 };
 
 // clang-format off
-// Fitted to candidates of 250 models and shapes; symmetries among them: 1611 of 3949, 1577 of 7230, 995 of 2031.
+// Fitted to candidates of 250 models and shapes; symmetries among them: 1610 of 3945, 1580 of 7193, 995 of 2031.
 inline const ConfidenceFit kConfidenceFit{
-    {{{4.24, -1.331, -0.850, -4.91, -0.717, -3.55, -5.53},
-      {0.535, -0.876, -0.954, -12.44, -4.207, -1.150},
+    {{{4.78, -1.370, -0.857, -5.18, -1.083, -3.76, -5.57},
+      {0.571, -0.886, -0.930, -12.24, -4.185, -1.194},
       {5.780, -0.288, -1.440, -1.984, -2.429}}},
-    {{{-5.78, 0.551}, {-9.79, 0.366}, {-20, 0.817}}}};
+    {{{-6.47, 0.539}, {-9.81, 0.367}, {-20, 0.817}}}};
 // clang-format on
 
 }  // namespace pcl_symmetry
