@@ -1,18 +1,14 @@
 #include "pcl_symmetry/impl/cloud_conversion.hpp"
 
-#include <pcl/common/projection_matrix.h>
 #include <pcl/console/print.h>
 #include <pcl/point_types.h>
 
-#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 
 #include "core/base/check.h"
 #include "core/geometry/answerable_points.h"
 #include "core/geometry/point_samples.h"
-#include "core/scan/depth_filter.h"
-#include "core/scan/sensor_noise.h"
 #include "core/scan/single_view.h"
 #include "core/scan/viewpoint_inference.h"
 
@@ -56,47 +52,6 @@ std::vector<std::size_t> drawOneOfEachRun(std::size_t num_points, std::size_t ma
   return oneOfEachRun(num_points, max_points, seed);
 }
 
-namespace {
-
-constexpr double largest_error = 0.7;  // pixels, root mean square; more are rows and columns that are no picture
-constexpr double largest_skew =
-    0.05;  // share of the focal length, also between the two: cameras that fit a flat cloud have no square pixels
-constexpr std::size_t fewest_points = 50;    // fewer leave the 11 parameters of a projection to noise
-constexpr std::size_t most_points = 20'000;  // that the 11 parameters gain from
-constexpr double small_hole = 0.01;  // share of the picture; smaller ones are missing measurements, not background
-
-/// Fills the pixels without a point: large regions and regions at the border are background, small regions are missing
-/// measurements.
-void fillEmptyPixels(int width, int height, std::vector<float>& depths) {
-  const std::size_t size = depths.size();
-  std::vector<char> visited(size, 0);
-  std::vector<std::size_t> region;
-  for (std::size_t start = 0; start < size; ++start) {
-    if (visited[start] || !std::isnan(depths[start])) continue;
-    region.assign(1, start);
-    visited[start] = 1;
-    bool at_border = false;
-    for (std::size_t next = 0; next < region.size(); ++next) {
-      const std::size_t at = region[next];
-      const int u = static_cast<int>(at % width), v = static_cast<int>(at / width);
-      at_border |= u == 0 || v == 0 || u + 1 == width || v + 1 == height;
-      const auto visit = [&](bool inside, std::size_t to) {
-        if (!inside || visited[to] || !std::isnan(depths[to])) return;
-        visited[to] = 1;
-        region.push_back(to);
-      };
-      visit(u > 0, at - 1);
-      visit(u + 1 < width, at + 1);
-      visit(v > 0, at - width);
-      visit(v + 1 < height, at + width);
-    }
-    const bool background = at_border || static_cast<double>(region.size()) > small_hole * static_cast<double>(size);
-    for (const std::size_t at : region) depths[at] = background ? Visibility::kBackground : Visibility::kNoRay;
-  }
-}
-
-}  // namespace
-
 SeenSpace seenFrom(const Points& points, const Viewpoint& viewpoint, const StoredPose& stored) {
   if (viewpoint.mode == Viewpoint::Mode::None) return {};
   if (viewpoint.mode == Viewpoint::Mode::Given) {
@@ -132,59 +87,6 @@ pcl::PointCloud<pcl::PointXYZ>::Ptr cloudOf(const ScannerOutput& scanned) {
   for (std::size_t i = 0; i < cloud->size(); ++i)
     (*cloud)[i].getVector3fMap() = scanned.pixels.col(static_cast<Eigen::Index>(i));
   return cloud;
-}
-
-std::optional<Visibility> seenByOrganizedCloud(const Points& pixels, int width, int height) {
-  pcl::Indices finite;
-  for (Eigen::Index i = 0; i < pixels.cols(); ++i)
-    if (pixels.col(i).allFinite()) finite.push_back(static_cast<pcl::index_t>(i));
-  if (finite.size() < fewest_points) return std::nullopt;
-  const std::size_t stride = 1 + finite.size() / most_points;
-  pcl::Indices used;
-  for (std::size_t i = 0; i < finite.size(); i += stride) used.push_back(finite[i]);
-  Points points(3, static_cast<Eigen::Index>(used.size()));
-  for (std::size_t i = 0; i < used.size(); ++i) points.col(i) = pixels.col(used[i]);
-  const BoundingBall ball = boundingBall(points);
-  if (!(ball.radius > 0.0)) return std::nullopt;
-
-  // The estimate depends on the units: it is made from coordinates near 1.
-  auto cloud = pcl::make_shared<pcl::PointCloud<pcl::PointXYZ>>(width, height);
-  const Points normalized = normalizePoints(points, ball.center, ball.radius);
-  for (std::size_t i = 0; i < used.size(); ++i) (*cloud)[used[i]].getVector3fMap() = normalized.col(i);
-  Eigen::Matrix<float, 3, 4, Eigen::RowMajor> estimate;
-  // The residual that it returns may be slightly negative. The error in pixels decides, below.
-  pcl::estimateProjectionMatrix<pcl::PointXYZ>(cloud, estimate, used);
-  if (!estimate.allFinite()) return std::nullopt;
-  Visibility::Projection projection = estimate.cast<double>();
-  const double length = projection.block<1, 3>(2, 0).norm();
-  if (!(length > 0.0)) return std::nullopt;
-  const Eigen::Vector4d first = normalized.col(0).cast<double>().homogeneous();
-  projection *= (projection.row(2).dot(first) < 0.0 ? -1.0 : 1.0) / length;
-
-  double sq_error = 0.0;
-  for (std::size_t i = 0; i < used.size(); ++i) {
-    const Eigen::Vector3d image = projection * Eigen::Vector4d(normalized.col(i).cast<double>().homogeneous());
-    if (!(image.z() > 0.0)) return std::nullopt;
-    const Eigen::Vector2d pixel(used[i] % width, used[i] / width);
-    sq_error += (image.head<2>() / image.z() - pixel).squaredNorm();
-  }
-  if (!(sq_error <= largest_error * largest_error * static_cast<double>(used.size()))) return std::nullopt;
-  // A flat cloud fits cameras that do not exist. The pixels of real ones are square.
-  const Eigen::Vector3d across = projection.block<1, 3>(0, 0), down = projection.block<1, 3>(1, 0),
-                        forward = projection.block<1, 3>(2, 0);
-  const Eigen::Vector3d x = across - across.dot(forward) * forward, y = down - down.dot(forward) * forward;
-  const double focal = std::max(x.norm(), y.norm());
-  if (!(std::abs(x.norm() - y.norm()) <= largest_skew * focal && std::abs(x.dot(y)) <= largest_skew * focal * focal))
-    return std::nullopt;
-
-  // Back to the input frame; depths are in its units.
-  projection.col(3) = projection.col(3) * ball.radius - projection.leftCols<3>() * ball.center;
-  std::vector<float> depths(pixels.cols(), std::numeric_limits<float>::quiet_NaN());
-  for (const pcl::index_t i : finite)
-    depths[i] = static_cast<float>(projection.row(2).dot(Eigen::Vector4d(pixels.col(i).cast<double>().homogeneous())));
-  const DepthImage image{width, height, depths, 1.0 / focal};
-  fillEmptyPixels(width, height, depths);
-  return Visibility(projection, width, height, std::move(depths)).withDepthErrors(sensorError(image));
 }
 
 }  // namespace pcl_symmetry::detail

@@ -1,11 +1,16 @@
 #include <pcl/common/point_tests.h>
+#include <pcl/common/projection_matrix.h>
+#include <pcl/point_types.h>
 
+#include <Eigen/LU>
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <utility>
 
 #include "core/base/median.h"
 #include "core/scan/depth_filter.h"
+#include "core/scan/sensor_noise.h"
 #include "pcl_symmetry/impl/cloud_conversion.hpp"
 
 namespace pcl_symmetry {
@@ -14,10 +19,10 @@ namespace {
 
 using Cloud = pcl::PointCloud<pcl::PointXYZ>;
 
-constexpr float kNone = std::numeric_limits<float>::quiet_NaN();  // the depth of a pixel without a point
+constexpr float no_depth = std::numeric_limits<float>::quiet_NaN();  // the depth of a pixel without a point
 // Radius of the filter in pixels. Of 2 and 3, the one that leaves the least errors on the objects of five scenes; 1
 // leaves a third of the noise.
-constexpr int kRadius = 2;
+constexpr int filter_radius = 2;
 
 /// Angle between the rays of neighboring pixels; 0 where there are none.
 double pixelAngle(const Cloud& frame, const Eigen::Vector3d& viewpoint) {
@@ -40,12 +45,12 @@ Cloud::ConstPtr withoutDepthErrors(const Cloud::ConstPtr& frame, const SeenSpace
       visibility->height() != static_cast<int>(frame->height))
     return frame;
   const Eigen::Vector3d viewpoint = visibility->viewpoint();
-  DepthImage image{visibility->width(), visibility->height(), std::vector<float>(frame->size(), kNone),
+  DepthImage image{visibility->width(), visibility->height(), std::vector<float>(frame->size(), no_depth),
                    pixelAngle(*frame, viewpoint)};
   for (std::size_t i = 0; i < frame->size(); ++i)
     if (pcl::isXYZFinite((*frame)[i]))
       image.depths[i] = visibility->depth(static_cast<int>(i % frame->width), static_cast<int>(i / frame->width));
-  const FilteredDepths filtered = filterDepths(image, kRadius, num_threads);
+  const FilteredDepths filtered = filterDepths(image, filter_radius, num_threads);
   if (!(filtered.inverse_error > 0.0)) return frame;
   auto result = pcl::make_shared<Cloud>(*frame);
   for (std::size_t i = 0; i < result->size(); ++i) {
@@ -58,6 +63,100 @@ Cloud::ConstPtr withoutDepthErrors(const Cloud::ConstPtr& frame, const SeenSpace
 }
 
 namespace detail {
+
+namespace {
+
+constexpr double largest_error = 0.7;  // pixels, root mean square; more are rows and columns that are no picture
+constexpr double largest_skew =
+    0.05;  // share of the focal length, also between the two: cameras that fit a flat cloud have no square pixels
+constexpr std::size_t fewest_points = 50;    // fewer leave the 11 parameters of a projection to noise
+constexpr std::size_t most_points = 20'000;  // that the 11 parameters gain from
+constexpr double small_hole = 0.01;  // share of the picture; smaller ones are missing measurements, not background
+
+/// Fills the pixels without a point: large regions and regions at the border are background, small regions are missing
+/// measurements.
+void fillEmptyPixels(int width, int height, std::vector<float>& depths) {
+  const std::size_t size = depths.size();
+  std::vector<char> visited(size, 0);
+  std::vector<std::size_t> region;
+  for (std::size_t start = 0; start < size; ++start) {
+    if (visited[start] || !std::isnan(depths[start])) continue;
+    region.assign(1, start);
+    visited[start] = 1;
+    bool at_border = false;
+    for (std::size_t next = 0; next < region.size(); ++next) {
+      const std::size_t at = region[next];
+      const int u = static_cast<int>(at % width), v = static_cast<int>(at / width);
+      at_border |= u == 0 || v == 0 || u + 1 == width || v + 1 == height;
+      const auto visit = [&](bool inside, std::size_t to) {
+        if (!inside || visited[to] || !std::isnan(depths[to])) return;
+        visited[to] = 1;
+        region.push_back(to);
+      };
+      visit(u > 0, at - 1);
+      visit(u + 1 < width, at + 1);
+      visit(v > 0, at - width);
+      visit(v + 1 < height, at + width);
+    }
+    const bool background = at_border || static_cast<double>(region.size()) > small_hole * static_cast<double>(size);
+    for (const std::size_t at : region) depths[at] = background ? Visibility::kBackground : Visibility::kNoRay;
+  }
+}
+
+}  // namespace
+
+std::optional<Visibility> seenByOrganizedCloud(const Points& pixels, int width, int height) {
+  pcl::Indices finite;
+  for (Eigen::Index i = 0; i < pixels.cols(); ++i)
+    if (pixels.col(i).allFinite()) finite.push_back(static_cast<pcl::index_t>(i));
+  if (finite.size() < fewest_points) return std::nullopt;
+  const std::size_t stride = 1 + finite.size() / most_points;
+  pcl::Indices used;
+  for (std::size_t i = 0; i < finite.size(); i += stride) used.push_back(finite[i]);
+  Points points(3, static_cast<Eigen::Index>(used.size()));
+  for (std::size_t i = 0; i < used.size(); ++i) points.col(i) = pixels.col(used[i]);
+  const BoundingBall ball = boundingBall(points);
+  if (!(ball.radius > 0.0)) return std::nullopt;
+
+  // The estimate depends on the units: it is made from coordinates near 1.
+  auto cloud = pcl::make_shared<pcl::PointCloud<pcl::PointXYZ>>(width, height);
+  const Points normalized = normalizePoints(points, ball.center, ball.radius);
+  for (std::size_t i = 0; i < used.size(); ++i) (*cloud)[used[i]].getVector3fMap() = normalized.col(i);
+  Eigen::Matrix<float, 3, 4, Eigen::RowMajor> estimate;
+  // The residual that it returns may be slightly negative. The error in pixels decides, below.
+  pcl::estimateProjectionMatrix<pcl::PointXYZ>(cloud, estimate, used);
+  if (!estimate.allFinite()) return std::nullopt;
+  Visibility::Projection projection = estimate.cast<double>();
+  const double length = projection.block<1, 3>(2, 0).norm();
+  if (!(length > 0.0)) return std::nullopt;
+  const Eigen::Vector4d first = normalized.col(0).cast<double>().homogeneous();
+  projection *= (projection.row(2).dot(first) < 0.0 ? -1.0 : 1.0) / length;
+
+  double sq_error = 0.0;
+  for (std::size_t i = 0; i < used.size(); ++i) {
+    const Eigen::Vector3d image = projection * Eigen::Vector4d(normalized.col(i).cast<double>().homogeneous());
+    if (!(image.z() > 0.0)) return std::nullopt;
+    const Eigen::Vector2d pixel(used[i] % width, used[i] / width);
+    sq_error += (image.head<2>() / image.z() - pixel).squaredNorm();
+  }
+  if (!(sq_error <= largest_error * largest_error * static_cast<double>(used.size()))) return std::nullopt;
+  // A flat cloud fits cameras that do not exist. The pixels of real ones are square.
+  const Eigen::Vector3d across = projection.block<1, 3>(0, 0), down = projection.block<1, 3>(1, 0),
+                        forward = projection.block<1, 3>(2, 0);
+  const Eigen::Vector3d x = across - across.dot(forward) * forward, y = down - down.dot(forward) * forward;
+  const double focal = std::max(x.norm(), y.norm());
+  if (!(std::abs(x.norm() - y.norm()) <= largest_skew * focal && std::abs(x.dot(y)) <= largest_skew * focal * focal))
+    return std::nullopt;
+
+  // Back to the input frame; depths are in its units.
+  projection.col(3) = projection.col(3) * ball.radius - projection.leftCols<3>() * ball.center;
+  std::vector<float> depths(pixels.cols(), std::numeric_limits<float>::quiet_NaN());
+  for (const pcl::index_t i : finite)
+    depths[i] = static_cast<float>(projection.row(2).dot(Eigen::Vector4d(pixels.col(i).cast<double>().homogeneous())));
+  const DepthImage image{width, height, depths, 1.0 / focal};
+  fillEmptyPixels(width, height, depths);
+  return Visibility(projection, width, height, std::move(depths)).withDepthErrors(sensorError(image));
+}
 
 DepthFrame depthFrame(const ScannerOutput& scanned, int num_threads) {
   std::optional<Visibility> seen = seenByOrganizedCloud(scanned.pixels, scanned.width, scanned.height);

@@ -56,7 +56,8 @@ Eigen::Isometry3d elsewhere(double scale) {
 /// The points that are kept, scaled and then moved.
 template <typename IsKept>
 Points scaledPart(const Points& all, double scale, const Eigen::Isometry3d& motion, const IsKept& is_kept) {
-  return (motion * (scale * test::pointsWhere(all, is_kept).cast<double>())).cast<float>();
+  const Points part = test::pointsWhere(all, is_kept);
+  return (motion * (scale * part.cast<double>())).cast<float>();
 }
 
 /// The side of a shape that faces a viewer above it, without what lies beyond a plane: about half of what is
