@@ -118,9 +118,9 @@ std::vector<Eigen::Matrix3d> tiltsCovering(const Eigen::Vector3d& axis, double a
   const int num_tilts = angle == kPi ? 1 : std::max(2, static_cast<int>(std::ceil(std::pow(2.74 / angle, 2))));
   const std::vector<Eigen::Vector3d> directions = evenDirections(num_tilts);
   const auto to_axis = Eigen::Quaterniond::FromTwoVectors(directions[0], axis);
-  std::vector<Eigen::Matrix3d> tilts{Eigen::Matrix3d::Identity()};
-  for (int k = 1; k < num_tilts; ++k)
-    tilts.push_back(Eigen::Quaterniond::FromTwoVectors(to_axis * directions[k], axis).toRotationMatrix());
+  std::vector<Eigen::Matrix3d> tilts;
+  for (const Eigen::Vector3d& direction : directions)
+    tilts.push_back(Eigen::Quaterniond::FromTwoVectors(to_axis * direction, axis).toRotationMatrix());
   return tilts;
 }
 
