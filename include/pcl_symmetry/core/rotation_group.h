@@ -63,9 +63,8 @@ struct RotationAxis {
 
 /// The axes of a group.
 /// \param elements closed under composition.
-/// \param same_axis radians: axes that differ by less are one.
 /// \return each axis once.
-std::vector<RotationAxis> axesOf(const std::vector<Eigen::Matrix3d>& elements, double same_axis = 4.5e-5);
+std::vector<RotationAxis> axesOf(const std::vector<Eigen::Matrix3d>& elements);
 
 /// Name of a group after Schoenflies.
 /// \return C3, D4, T, O or I; for the continuous groups Cinf, Dinf and SO3.

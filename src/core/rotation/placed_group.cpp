@@ -6,7 +6,6 @@
 #include <limits>
 #include <utility>
 
-#include "core/base/check.h"
 #include "core/base/constants.h"
 #include "core/geometry/directions.h"
 
@@ -110,18 +109,6 @@ RotationSet rotationsOfSphere(const Eigen::Vector3d& center) {
     set.rotations.push_back(rotationAbout(spiralDirection(k, num_rotations, kGoldenAngle * k), angle));
   }
   return set;
-}
-
-std::vector<Eigen::Matrix3d> tiltsCovering(const Eigen::Vector3d& axis, double angle) {
-  check(angle > 0.0 && angle <= kPi, "angle", angle, "in (0, pi]");
-  // No direction is farther from the nearest of n > 1 even ones than 2.74 / sqrt(n), measured for n up to 5000.
-  const int num_tilts = angle == kPi ? 1 : std::max(2, static_cast<int>(std::ceil(std::pow(2.74 / angle, 2))));
-  const std::vector<Eigen::Vector3d> directions = evenDirections(num_tilts);
-  const auto to_axis = Eigen::Quaterniond::FromTwoVectors(directions[0], axis);
-  std::vector<Eigen::Matrix3d> tilts;
-  for (const Eigen::Vector3d& direction : directions)
-    tilts.push_back(Eigen::Quaterniond::FromTwoVectors(to_axis * direction, axis).toRotationMatrix());
-  return tilts;
 }
 
 }  // namespace pcl_symmetry

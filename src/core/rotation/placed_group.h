@@ -34,12 +34,6 @@ Eigen::Matrix3d frameAlong(const Eigen::Vector3d& z, const Eigen::Vector3d& x);
 /// Axis of a rotation, unit.
 Eigen::Vector3d axisOf(const Eigen::Matrix3d& rotation);
 
-/// All products of rotations, the identity first.
-/// \param same_rotation radians: products that differ by less are one.
-/// \throws std::invalid_argument where there are more than \p most.
-std::vector<Eigen::Matrix3d> productsOf(const std::vector<Eigen::Matrix3d>& generators, double same_rotation,
-                                        std::size_t most);
-
 /// All elements of a group but the identity, placed by \p frame. The generators are judged and, about a main axis, the
 /// rotations by about a quarter and a half of a full one: where there are many folds, one step cannot be told from that
 /// of one fold more or less.
@@ -57,14 +51,5 @@ RotationSet rotationsAbout(const Line3d& line);
 
 /// Rotations about a center that represent all: axes in all directions, angles from 120 to 180 degrees.
 RotationSet rotationsOfSphere(const Eigen::Vector3d& center);
-
-/// Rotations D that tilt an axis everywhere: every rotation is C D H with a rotation C about the axis and a rotation H
-/// by at most an angle. With one axis of revolution they represent a sphere where axes cannot be combined with each
-/// other.
-/// \param axis unit.
-/// \param angle radians, in (0, pi].
-/// \return the identity first; about 7.5 / angle^2 rotations.
-/// \throws std::invalid_argument for an angle out of range.
-std::vector<Eigen::Matrix3d> tiltsCovering(const Eigen::Vector3d& axis, double angle);
 
 }  // namespace pcl_symmetry

@@ -12,7 +12,7 @@
 
 #include "core/base/check.h"
 #include "core/base/constants.h"
-#include "core/rotation/placed_group.h"
+#include "core/rotation/rotation_cover.h"
 #include "pcl_symmetry/core/rotational_symmetry.h"
 
 namespace pcl_symmetry {

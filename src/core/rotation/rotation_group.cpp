@@ -3,18 +3,33 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
-#include <limits>
-#include <stdexcept>
 
 #include "core/base/check.h"
 #include "core/base/constants.h"
-#include "core/rotation/placed_group.h"
 
 namespace pcl_symmetry {
 
 namespace {
 
-constexpr double kSameRotation = 1e-6;  // radians; elements of C_n differ by 2 pi / n
+// Frobenius norm of the difference of equal matrices: elements of C_n differ by 2 sqrt(2) sin(pi / n).
+constexpr double kSameRotation = 1e-6;
+
+bool holds(const std::vector<Eigen::Matrix3d>& rotations, const Eigen::Matrix3d& rotation) {
+  return std::any_of(rotations.begin(), rotations.end(),
+                     [&](const Eigen::Matrix3d& other) { return (other - rotation).norm() < kSameRotation; });
+}
+
+/// All products of the generators, the identity first.
+std::vector<Eigen::Matrix3d> closureOf(const std::vector<Eigen::Matrix3d>& generators) {
+  std::vector<Eigen::Matrix3d> elements{Eigen::Matrix3d::Identity()};
+  for (std::size_t i = 0; i < elements.size(); ++i) {
+    for (const Eigen::Matrix3d& generator : generators) {
+      const Eigen::Matrix3d product = generator * elements[i];
+      if (!holds(elements, product)) elements.push_back(product);
+    }
+  }
+  return elements;
+}
 
 }  // namespace
 
@@ -59,39 +74,19 @@ std::vector<Eigen::Matrix3d> RotationGroup::generators() const {
 
 std::vector<Eigen::Matrix3d> RotationGroup::elements() const {
   check(fold >= 1, "fold", fold, ">= 1");
-  return productsOf(generators(), kSameRotation, std::numeric_limits<std::size_t>::max());
+  return closureOf(generators());
 }
 
-std::vector<Eigen::Matrix3d> productsOf(const std::vector<Eigen::Matrix3d>& generators, double same_rotation,
-                                        std::size_t most) {
-  // Frobenius norm of the difference of two rotations by an angle.
-  const double apart = std::sqrt(8.0) * std::sin(0.5 * same_rotation);
-  std::vector<Eigen::Matrix3d> elements{Eigen::Matrix3d::Identity()};
-  for (std::size_t i = 0; i < elements.size(); ++i) {
-    for (const Eigen::Matrix3d& generator : generators) {
-      const Eigen::Matrix3d product = generator * elements[i];
-      const auto is_same = [&](const Eigen::Matrix3d& other) { return (other - product).norm() < apart; };
-      if (std::any_of(elements.begin(), elements.end(), is_same)) continue;
-      elements.push_back(product);
-      if (elements.size() > most)
-        throw std::invalid_argument("discrete: the rotations generate no group of at most " + std::to_string(most) +
-                                    " rotations");
-    }
-  }
-  return elements;
-}
-
-std::vector<RotationAxis> axesOf(const std::vector<Eigen::Matrix3d>& elements, double same_axis) {
+std::vector<RotationAxis> axesOf(const std::vector<Eigen::Matrix3d>& elements) {
   std::vector<RotationAxis> axes;
   for (const Eigen::Matrix3d& element : elements) {
     const Eigen::AngleAxisd rotation(element);
     if (std::abs(rotation.angle()) < kSameRotation) continue;
-    const Eigen::Vector3d& direction = rotation.axis();
     const auto known = std::find_if(axes.begin(), axes.end(), [&](const RotationAxis& axis) {
-      return axis.direction.cross(direction).norm() < std::sin(same_axis);
+      return std::abs(axis.direction.dot(rotation.axis())) > 1.0 - 1e-9;
     });
     if (known == axes.end())
-      axes.push_back({signedDirection(direction), 2});
+      axes.push_back({signedDirection(rotation.axis()), 2});
     else
       ++known->order;
   }
