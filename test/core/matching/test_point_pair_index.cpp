@@ -181,10 +181,13 @@ double angleUpToHalfTurns(const Eigen::Matrix3d& rotation) {
 /// Poses anywhere, behind the given ones.
 std::vector<Eigen::Isometry3d> amongOthers(std::vector<Eigen::Isometry3d> poses, int count, double scale) {
   RandomStream random(5);
+  const auto direction = [&] {
+    return Eigen::Vector3d(Eigen::Vector3d::NullaryExpr([&] { return 2.0 * random.uniform() - 1.0; }));
+  };
   for (int i = 0; i < count; ++i) {
     Eigen::Isometry3d pose = scannedBox(scale);
-    pose.prerotate(Eigen::AngleAxisd(0.8 + 2.0 * random.uniform(), test::randomDirection(random)));
-    pose.pretranslate(Eigen::Vector3d(0.5 * scale * test::randomDirection(random)));
+    pose.prerotate(Eigen::AngleAxisd(0.8 + 2.0 * random.uniform(), direction().normalized()));
+    pose.pretranslate(Eigen::Vector3d(0.5 * scale * direction()));
     poses.insert(poses.begin(), pose);
   }
   return poses;
