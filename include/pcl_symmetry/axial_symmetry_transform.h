@@ -113,7 +113,7 @@ private:
       if (f) edt_ = std::make_shared<const GaussianEdt>(*f, edt_options_);
       return f.has_value();
     }
-    const Points points = this->selectInput(transform_.seed);
+    const Points points = this->selectInput(transform_.seed, transform_.num_threads);
     if (points.cols() == 0) return false;
     visibility_ = this->seenSpace(points);
     edt_ = std::make_shared<const GaussianEdt>(points, edt_options_);

@@ -144,7 +144,7 @@ SymmetryMap PlanarSymmetryTransform<PointT>::compute() {
       const PlaneGrid grid(num_theta_, num_phi_, num_radius_, edt_->center(), edt_->radius());
       return planarTransform(*edt_, grid, centerOfMass(f->bodyPoints(false)), transform_);
     }
-    const Points points = this->selectInput(transform_.sampled.seed);
+    const Points points = this->selectInput(transform_.sampled.seed, transform_.sampled.num_threads);
     if (points.cols() == 0) return SymmetryMap();
     const std::optional<Visibility> seen = this->seenSpace(points);
     edt_ = std::make_shared<const GaussianEdt>(points, edt_options_);

@@ -76,7 +76,7 @@ template <typename PointT>
 SymmetryFrame SymmetryAlignment<PointT>::compute() {
   return detail::withBadArguments([&] {
     const auto start = std::chrono::steady_clock::now();
-    const Points points = this->selectInput(options_.seed);
+    const Points points = this->selectInput(options_.seed, options_.num_threads, options_.as_published);
     if (points.cols() == 0) return SymmetryFrame();
     const std::optional<Visibility> seen = this->seenSpace(points);
     const std::chrono::duration<double, std::milli> seen_ms = std::chrono::steady_clock::now() - start;

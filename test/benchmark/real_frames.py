@@ -6,7 +6,8 @@ real_frames.py lidar SUSTechPOINTS --tools build/apps   SUSTechPOINTS: a clone o
 
 kinect: the learn frames of segmentation/mOSD, in which people labeled boxes and cylinders on a table. References are the
 middle planes of boxes and the axes of cylinders, fitted to the labeled points. Each object is given alone, with its rows
-and columns, and in the whole frame, where the object found counts that overlaps the label the most, by half and more.
+and columns, by its label in the frame (--tools), and in the whole frame, where the object found counts that overlaps the
+label the most, by half and more.
 lidar: vehicles in the frames 000950 and 000965, in boxes that people drew: the reference is the middle plane along the
 vehicle. The points in a box are given with the viewpoint of the sensor and the ground, and without.
 Right is what lies within 5 degrees and 3 % of the extent of the object (vehicles: 4 %). Without --tools, the Python module

@@ -26,7 +26,7 @@ using test::messageOf;
 class Copy : public ScanAnalysis<pcl::PointXYZ> {
 public:
   Copy() : ScanAnalysis<pcl::PointXYZ>("Copy", 100) {}
-  Points compute() { return selectInput(1); }
+  Points compute() { return selectInput(1, 1); }
 };
 
 pcl::PointCloud<pcl::PointXYZ>::Ptr grid(int size) {

@@ -157,6 +157,9 @@ TEST(SymmetryMaximaRefinement, ErrorsOfAFrameAreTakenOutOfItsParts) {
   EXPECT_LT(own.getUsedIndices().size(), twoBoxes().pixelsOf(1).size()) << "pixels that fly are left out";
   ASSERT_EQ(planes.size(), of_filtered.size());
   for (std::size_t i = 0; i < planes.size(); ++i) EXPECT_EQ(planes[i].coefficients(), of_filtered[i].coefficients());
+  own.setAsPublished(true);
+  own.compute();
+  EXPECT_EQ(own.getUsedIndices().size(), twoBoxes().pixelsOf(1).size()) << "the paper leaves them in";
 }
 
 TEST(SymmetryMaximaRefinement, DecidesAtWhatTheSensorResolves) {

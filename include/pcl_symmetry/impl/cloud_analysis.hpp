@@ -174,9 +174,11 @@ protected:
     used_viewpoint_.reset();
   }
 
-  /// Selects points without the errors of a depth camera, which its rows and columns tell.
-  Points selectInput(std::uint64_t seed, int num_threads = 0) {
-    const bool asks_data = !seen_space_ && viewpoint_.mode == Viewpoint::Mode::Auto;
+  /// Selects points, from which the errors of a depth camera are taken out: rows and columns tell them.
+  /// \param num_threads 0 = one per core.
+  /// \param as_measured leaves them in.
+  Points selectInput(std::uint64_t seed, int num_threads, bool as_measured = false) {
+    const bool asks_data = !as_measured && !seen_space_ && viewpoint_.mode == Viewpoint::Mode::Auto;
     frame_ = asks_data && this->input_ && this->input_->isOrganized() && this->input_->width > 1
                  ? detail::depthFrame(detail::ScannerOutput(*this->input_), num_threads)
                  : detail::DepthFrame();

@@ -53,7 +53,7 @@ std::vector<SymmetryPlane> SymmetryMaximaRefinement<PointT>::compute() {
       if (!found_.reason.empty()) this->giveNoAnswer(found_.reason);
       return std::move(found_.planes);
     }
-    Points points = this->selectInput(options_.seed);
+    Points points = this->selectInput(options_.seed, options_.num_threads, as_published_);
     if (points.cols() == 0) return std::vector<SymmetryPlane>();
     if (as_published_) {
       found_ = detail::planesAsPublished(std::move(points), edt_.get(), map_, options_);

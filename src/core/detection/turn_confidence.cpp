@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "core/base/constants.h"
+#include "core/base/logistic.h"
 #include "core/base/parallel.h"
 #include "core/detection/detection_rules.h"
 #include "core/detection/turn_confidence_fit.h"
@@ -120,7 +121,7 @@ double turnConfidence(const SymmetryTurn& turn, const TurnSigns& signs) {
   const std::vector<double>& numbers = kTurnConfidenceFit[static_cast<std::size_t>(kindOf(turn))];
   double log_odds = 0.0;
   for (std::size_t k = 0; k < terms.size(); ++k) log_odds += numbers[k] * terms[k];
-  return 1.0 / (1.0 + std::exp(-log_odds));
+  return logistic(log_odds);
 }
 
 }  // namespace pcl_symmetry

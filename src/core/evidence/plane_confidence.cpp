@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numeric>
 
+#include "core/base/logistic.h"
 #include "core/evidence/confidence_fit.h"
 #include "core/evidence/evidence_rules.h"
 #include "core/geometry/geometry_rules.h"
@@ -130,7 +131,7 @@ double planeConfidence(const PlaneEvidence& evidence) {
   const double coarsest = kEvidence.coarsest + tells_little * (kEvidence.coarsest_part - kEvidence.coarsest);
   const double unresolved = kEvidence.lost_per_coarseness * std::max(0.0, coarseness(evidence) - coarsest);
   const double log_odds = std::inner_product(terms.begin(), terms.end(), coefficients.begin(), 0.0) - unresolved;
-  return 1.0 / (1.0 + std::exp(-log_odds));
+  return logistic(log_odds);
 }
 
 double furtherConfidence(double confidence, CloudKind kind, double unknown) {

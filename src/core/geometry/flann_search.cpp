@@ -89,9 +89,11 @@ void FlannSearch::search(const PointsRef& queries, int num_neighbors, std::vecto
   const auto num_queries = static_cast<std::size_t>(queries.cols()), count = static_cast<std::size_t>(num_neighbors);
   indices.assign(num_queries * count, 0);
   sq_distances.assign(num_queries * count, kInfinity);
+  flann::SearchParams params = tree_->params;
+  params.eps = 4.0f * std::numeric_limits<float>::epsilon();  // leaves out what is no closer but for rounding
   for (std::size_t i = 0; i < num_queries; ++i) {
     NearestPoints nearest(&indices[i * count], &sq_distances[i * count], num_neighbors);
-    tree_->index.findNeighbors(nearest, queries.col(i).data(), tree_->params);
+    tree_->index.findNeighbors(nearest, queries.col(i).data(), params);
   }
 }
 
