@@ -69,7 +69,7 @@ Fields fieldsOf(const std::string& path, bool is_nrrd) {
     const std::string key = is_nrrd ? line.substr(0, at) : boost::algorithm::trim_copy(line.substr(0, at));
     const std::string value = boost::algorithm::trim_copy(line.substr(at + sign.size()));
     is_whole = !value.empty() && fields.emplace(key, value).second && (key != "sizes" || fields.count("dimension"));
-    if (key == "ElementDataFile") return fields;
+    if (is_whole && key == "ElementDataFile") return fields;
   }
   if (!is_whole || is_nrrd) throw InputError(path + ": cannot be read, a line of its header is no field with a value");
   return fields;
@@ -237,7 +237,14 @@ Image imageOf(const std::string& path, const VtkMessages& messages) {
     // VTK's reader makes room for three axes, and MetaIO fills all.
     if (valueOf(fields, "NDims") != "3" || numbersIn(valueOf(fields, "DimSize")).size() != 3)
       throw InputError(path + ": cannot be read, NDims must be 3, with three numbers of DimSize");
-    if (valueOf(fields, "ElementDataFile").find('%') != std::string::npos) throwSeveralFiles(path);
+    const std::string file = valueOf(fields, "ElementDataFile");
+    if (file.find('%') != std::string::npos) throwSeveralFiles(path);
+    // MetaIO makes room for the number of bytes that the header names.
+    const boost::filesystem::path data = file == "LOCAL" ? path : boost::filesystem::path(path).parent_path() / file;
+    boost::system::error_code missing;
+    for (const double size : numbersIn(valueOf(fields, "CompressedDataSize")))
+      if (!(size >= 0.0 && size <= static_cast<double>(boost::filesystem::file_size(data, missing))))
+        throw InputError(path + ": cannot be read, it is cut off or its header does not fit its data");
     vtkNew<vtkMetaImageReader> reader;
     image.data = updated(*reader, path, messages);
     Eigen::Matrix3d direction = Eigen::Matrix3d::Identity();

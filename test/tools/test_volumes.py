@@ -112,6 +112,8 @@ class Volumes(ToolTest):
         zero, nan = (np.full(np.prod(SHAPE), value, "<f4").tobytes() for value in (0, np.nan))
         files = [("text.nii.gz", b"no volume", "text.nii.gz"),
                  ("axes.mha", meta_image(BODY).replace(b"NDims = 3", b"NDims = 4"), "NDims must be 3"),
+                 ("blank.mha", meta_image(BODY).replace(b"DataFile = LOCAL", b"DataFile = \nA = B\nElementDataFile = LOCAL"), "no field with a value"),
+                 ("packed.mha", meta_image(BODY).replace(b"CompressedData = False", b"CompressedData = True\nCompressedDataSize = -1"), "does not fit its data"),
                  ("minus.mha", meta_image(BODY).replace(b"NDims = 3", b"NDims = -3"), "NDims must be 3"),
                  ("empty.nrrd", b"NRRD0004\ntype: float\nsizes:\n\n", "with a value"),
                  ("type.nii", nifti(BODY, kind=12345), "unknown type"),
