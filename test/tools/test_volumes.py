@@ -114,6 +114,7 @@ class Volumes(ToolTest):
                  ("axes.mha", meta_image(BODY).replace(b"NDims = 3", b"NDims = 4"), "NDims must be 3"),
                  ("blank.mha", meta_image(BODY).replace(b"DataFile = LOCAL", b"DataFile = \nA = B\nElementDataFile = LOCAL"), "no field with a value"),
                  ("packed.mha", meta_image(BODY).replace(b"CompressedData = False", b"CompressedData = True\nCompressedDataSize = -1"), "does not fit its data"),
+                 ("deflated.mha", meta_image(BODY).replace(b"CompressedData = False", b"CompressedData = True"), "compressed data are damaged"),
                  ("minus.mha", meta_image(BODY).replace(b"NDims = 3", b"NDims = -3"), "NDims must be 3"),
                  ("empty.nrrd", b"NRRD0004\ntype: float\nsizes:\n\n", "with a value"),
                  ("type.nii", nifti(BODY, kind=12345), "unknown type"),
