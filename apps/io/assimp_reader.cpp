@@ -80,6 +80,20 @@ void prepareSTL(std::string& text) {
   if (text.rfind("solid", 0) != 0 && line != std::string::npos) text.erase(0, line + 1);
 }
 
+/// Assimp subtracts one or two from the number of vertices of a line, a strip or a fan.
+void checkPrimitives(const std::string& path, const nlohmann::json& scene) {
+  const nlohmann::json none = nlohmann::json::array(), accessors = scene.value("accessors", none);
+  for (const nlohmann::json& mesh : scene.value("meshes", none))
+    for (const nlohmann::json& primitive : mesh.value("primitives", none)) {
+      const nlohmann::json attributes = primitive.value("attributes", nlohmann::json::object());
+      const std::size_t list = primitive.value("indices", attributes.value("POSITION", accessors.size()));
+      const std::size_t num_vertices = list < accessors.size() ? accessors[list].value("count", std::size_t{0}) : 0;
+      const int mode = primitive.value("mode", 4);
+      if (num_vertices < (mode == 0 || mode == 1 || mode == 4 ? 0 : mode < 4 ? 2 : 3))
+        throw InputError(path + ": a line, strip or fan of a mesh has " + std::to_string(num_vertices) + " vertices");
+    }
+}
+
 /// Assimp trusts the sizes of chunks, follows values and nodes by recursion, and reads a node again for each of its
 /// parents.
 void checkGLB(const std::string& path, const std::string& text) {
@@ -114,6 +128,7 @@ void checkGLB(const std::string& path, const std::string& text) {
     for (int i = first; i >= 0; i = parents[i])
       if (++levels > kMostLevels) throw InputError(path + ": its nodes are nested too deeply, or in a circle");
   }
+  checkPrimitives(path, scene);
 }
 
 }  // namespace
@@ -124,7 +139,11 @@ void readMesh(const std::string& path, std::string& text, const std::string& kin
   for (const char* extension : {"KHR_mesh_quantization", "EXT_meshopt_compression"})
     if (kind == "glb" && text.find(extension) != std::string::npos)
       throw InputError(path + ": is compressed by " + extension + ", which is not supported");
-  if (kind == "glb") checkGLB(path, text);
+  try {
+    if (kind == "glb") checkGLB(path, text);
+  } catch (const nlohmann::json::exception&) {  // a value is not of the kind that it must be
+    throw InputError(path + ": cannot be read as glb, its JSON is damaged");
+  }
   Assimp::Importer importer;
   const aiScene* const scene = importer.ReadFileFromMemory(text.data(), text.size(), 0, kind.c_str());
   if (!scene || !scene->mRootNode) {

@@ -110,8 +110,9 @@ void checkEnd(const std::string& path) {
   if (end.find("</VTKFile>") == std::string::npos) throw InputError(path + ": cannot be read, it is cut off");
 }
 
-/// MetaIO runs in circles where compressed data are damaged.
-void checkDeflated(const std::string& path, const boost::filesystem::path& data, bool is_behind_header) {
+/// MetaIO runs in circles where compressed data are damaged, and leaves voxels at zero where they are too few.
+/// \return bytes of the data.
+double checkDeflated(const std::string& path, const boost::filesystem::path& data, bool is_behind_header) {
   std::ifstream file(data.string(), std::ios::binary);
   std::string line;
   while (is_behind_header && std::getline(file, line) && line.find("ElementDataFile") != 0) continue;
@@ -131,6 +132,7 @@ void checkDeflated(const std::string& path, const boost::filesystem::path& data,
   }
   inflateEnd(&stream);
   if (state != Z_STREAM_END) throw InputError(path + ": cannot be read, its compressed data are damaged or cut off");
+  return static_cast<double>(stream.total_out);
 }
 
 /// The numbers of a text, whatever stands between them; "none" is none.
@@ -268,10 +270,13 @@ Image imageOf(const std::string& path, const VtkMessages& messages) {
     for (const double size : numbersIn(valueOf(fields, "CompressedDataSize")))
       if (!(size >= 0.0 && size <= static_cast<double>(boost::filesystem::file_size(data, missing))))
         throw InputError(path + ": cannot be read, it is cut off or its header does not fit its data");
-    const std::string is_compressed = valueOf(fields, "CompressedData");
-    if (is_compressed.find_first_of("TtYy1") == 0) checkDeflated(path, data, file == "LOCAL");
+    const bool is_compressed = valueOf(fields, "CompressedData").find_first_of("TtYy1") == 0;
+    const double num_bytes = is_compressed ? checkDeflated(path, data, file == "LOCAL") : 0.0;
     vtkNew<vtkMetaImageReader> reader;
     image.data = updated(*reader, path, messages);
+    vtkDataArray* const voxels = image.data->GetPointData()->GetScalars();
+    if (is_compressed && voxels && num_bytes < 1.0 * voxels->GetNumberOfValues() * voxels->GetDataTypeSize())
+      throw InputError(path + ": cannot be read, its data hold fewer voxels than its header says");
     Eigen::Matrix3d direction = Eigen::Matrix3d::Identity();
     for (const char* key : {"TransformMatrix", "Orientation", "Rotation"})
       if (direction.isIdentity()) direction = directionIn(fields, key);

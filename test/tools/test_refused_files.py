@@ -126,6 +126,8 @@ FILES = {
     "offset.glb": (changed_glb('"buffer":0,"byteOffset":0,', '"buffer":0,"byteOffset":9,'), "out of range"),
     "circle.glb": (changed_glb('"translation":[0,0,5]', '"children":[0]'), "in a circle"),
     "parents.glb": (changed_glb('"translation":[0,0,5]', '"children":[0,0]'), "node 0 has two parents"),
+    "strip.glb": (glb('{"attributes":{"POSITIOF":0},"mode":5}'), "strip or fan of a mesh has 0 vertices"),
+    "mode.glb": (glb('{"attributes":{"POSITION":0},"mode":"4"}'), "its JSON is damaged"),
     "mesh.glb": (changed_glb('"mesh":0', '"mesh":7'), "out of bounds"),
     "type.glb": (changed_glb('"componentType":5126', '"componentType":5127'), "Unsupported Component Type"),
     "no_view.glb": (changed_glb('{"bufferView":0,"componentType":5126,', '{"componentType":5126,'), "accessors[0]"),

@@ -1,6 +1,7 @@
 """CT and MR volumes as files: the same plane from every format, and a sentence for bad ones."""
 import struct
 import unittest
+import zlib
 
 import tool_run
 from tool_run import ToolTest, np
@@ -19,6 +20,7 @@ def body():
 
 
 BODY = body()
+FEW = zlib.compress(BODY[:9999])
 
 
 def meta_image(data, slices=40, thickness=3):
@@ -115,6 +117,7 @@ class Volumes(ToolTest):
                  ("blank.mha", meta_image(BODY).replace(b"DataFile = LOCAL", b"DataFile = \nA = B\nElementDataFile = LOCAL"), "no field with a value"),
                  ("packed.mha", meta_image(BODY).replace(b"CompressedData = False", b"CompressedData = True\nCompressedDataSize = -1"), "does not fit its data"),
                  ("deflated.mha", meta_image(BODY).replace(b"CompressedData = False", b"CompressedData = True"), "compressed data are damaged"),
+                 ("few.mha", meta_image(FEW).replace(b"CompressedData = False", b"CompressedData = True\nCompressedDataSize = %d" % len(FEW)), "fewer voxels"),
                  ("minus.mha", meta_image(BODY).replace(b"NDims = 3", b"NDims = -3"), "NDims must be 3"),
                  ("empty.nrrd", b"NRRD0004\ntype: float\nsizes:\n\n", "with a value"),
                  ("type.nii", nifti(BODY, kind=12345), "unknown type"),
