@@ -5,19 +5,15 @@
 
 #include <algorithm>
 #include <limits>
-#include <utility>
 
-#include "core/detection/upright_box.h"
 #include "core/evidence/plane_support.h"
 #include "pcl_symmetry/core/published_planes.h"
-#include "pcl_symmetry/core/volume_planes.h"
 
 namespace pcl_symmetry::detail {
 
-DetectedPlanes foundPlanes(Points points, const GaussianEdt* edt, const SymmetryMap& map,
-                           const DetectionOptions& options, const MakeSearch& search,
-                           const std::optional<Visibility>& seen, const std::optional<Points>& normals,
-                           bool may_be_rings) {
+Detection foundPlanes(const Points& points, const GaussianEdt* edt, const SymmetryMap& map,
+                      const DetectionOptions& options, const MakeSearch& search, const std::optional<Visibility>& seen,
+                      const std::optional<Points>& normals, bool may_be_rings) {
   PlaneInput input(points, seen ? &*seen : nullptr);
   if (normals) input.normals = &*normals;
   if (edt) {
@@ -25,23 +21,13 @@ DetectedPlanes foundPlanes(Points points, const GaussianEdt* edt, const Symmetry
     input.map = &map;
   }
   input.make_search = search;
-  DetectedPlanes found;
-  static_cast<Detection&>(found) = detectPlanes(input, options);
-  found.points = std::move(points);
-  if (may_be_rings && seen && !seen->supports().empty() && found.reason.empty())
-    decideByUprightBox(found.points, *seen, options, found);
-  return found;
+  input.may_be_rings = may_be_rings;
+  return detectPlanes(input, options);
 }
 
-DetectedPlanes planesOfVolume(const ScalarGrid& volume, const DetectionOptions& options, const VolumeLevels& levels) {
-  DetectedPlanes found;
-  static_cast<Detection&>(found) = detectVolumePlanes(volume, options, levels);
-  return found;
-}
-
-DetectedPlanes planesAsPublished(Points points, const GaussianEdt* edt, const SymmetryMap& map,
-                                 const DetectionOptions& options) {
-  DetectedPlanes found;
+Detection planesAsPublished(const Points& points, const GaussianEdt* edt, const SymmetryMap& map,
+                            const DetectionOptions& options) {
+  Detection found;
   std::optional<GaussianEdt> own;
   if (!edt) own.emplace(points, options.edtOptions());
   if (!edt) found.map = publishedMap(points, *own, TransformMethod::Convolution, options.seed, options.num_threads);
@@ -52,7 +38,6 @@ DetectedPlanes planesAsPublished(Points points, const GaussianEdt* edt, const Sy
   published.num_threads = options.num_threads;
   found.planes = publishedPlanes(points, edt ? *edt : *own, edt ? map : found.map, published);
   if (static_cast<int>(found.planes.size()) > options.max_planes) found.planes.resize(options.max_planes);
-  found.points = std::move(points);
   return found;
 }
 

@@ -34,5 +34,5 @@ int main(int argc, char** argv) {
   for (const pcl_symmetry::SymmetryAxis& axis : refinement.getAxes())
     std::cout << "axis of revolution through " << axis.point.transpose() << " along " << axis.direction.transpose()
               << "\n";
-  for (const auto& [stage, ms] : refinement.getTiming()) std::cout << stage << " " << ms << " ms\n";
+  for (const auto& [stage, ms] : refinement.getDetection().timing_ms) std::cout << stage << " " << ms << " ms\n";
 }

@@ -132,9 +132,9 @@ ReflectionPlane bestPlane(const Console& console, const InputShape& input, const
         refinement.getAxes().front(),
         refinement.getUsedViewpoint().value_or(input.shape.points->sensor_origin_.head<3>().cast<double>().eval()));
   }
-  if (planes.empty() && refinement.getBestPlane()) {
+  if (const auto& best = refinement.getDetection().best; planes.empty() && best) {
     step.done("no symmetry; the best plane is used");
-    return *refinement.getBestPlane();
+    return *best;
   }
   if (planes.empty()) throw InputError(input.path + ": has no plane of symmetry to complete it across");
   step.done("confidence " + std::to_string(std::lround(100.0 * planes.front().confidence)) + " %");

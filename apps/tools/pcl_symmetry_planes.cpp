@@ -88,21 +88,11 @@ CommandLine commandLine(PlanesOptions& options) {
 }
 
 /// What was found, best first, in the frame of the shifted points.
-struct Findings {
-  std::vector<SymmetryPlane> planes;
-  std::vector<SymmetryAxis> axes;
-  std::vector<SymmetryCenter> centers;
-  std::vector<SymmetryTurn> turns;  ///< of orders from 2 on, at least as confident as a symmetry
+struct Findings : Detection {  // turns: of orders from 2 on, at least as confident as a symmetry
   ViewpointSource viewpoint_source = ViewpointSource::None;
   std::optional<Eigen::Vector3d> viewpoint;  ///< that was used
-  std::optional<SymmetryPlane> best;         ///< where nothing else was found
-  std::optional<ReflectionPlane> flat;       ///< that all points lie near
-  double tolerance = 0.0;                    ///< that was decided at, input units
-  double resolution = 0.0;                   ///< least tolerance that is resolved, input units; 0: not known
-  double diameter = 0.0;                     ///< greatest distance between two points used, input units
   std::size_t num_points = 0;                ///< that were used
-  std::vector<std::pair<std::string, double>> timing_ms;
-  std::vector<std::vector<float>> support;  ///< of each plane, by every point; empty where no output shows it
+  std::vector<std::vector<float>> support;   ///< of each plane, by every point; empty where no output shows it
 
   bool empty() const { return planes.empty() && axes.empty() && centers.empty() && turns.empty(); }
 };
@@ -319,23 +309,17 @@ Findings search(const FileJob& job, const InputShape& input, const PlanesOptions
       refinement.setIndices(pcl::make_shared<pcl::Indices>(labeledPoints(input.shape.cloud, *options.label)));
     if (input.shape.mesh) refinement.setMesh(meshSurface(*input.shape.mesh));
     if (options.method_given && !input.volume) giveMap(refinement, input, options);
-    findings.planes = refinement.compute();
+    refinement.compute();
     if (!refinement.getReason().empty()) throw InputError(input.path + ": " + refinement.getReason());
   });
-  findings.axes = refinement.getAxes();
-  // Those of any angle are among the axes.
-  for (const SymmetryTurn& turn : refinement.getTurns())
-    if (turn.fold > 0 && turn.confidence >= options.detection.min_confidence) findings.turns.push_back(turn);
-  findings.centers = refinement.getCenters();
-  findings.best = refinement.getBestPlane();
-  findings.flat = refinement.getFlatPlane();
-  findings.tolerance = refinement.getUsedTolerance();
-  findings.resolution = refinement.getResolution();
-  findings.diameter = refinement.getDiameter();
+  static_cast<Detection&>(findings) = refinement.getDetection();
+  const auto is_other = [&](const SymmetryTurn& turn) {  // those of any angle are among the axes
+    return turn.fold == 0 || turn.confidence < options.detection.min_confidence;
+  };
+  findings.turns.erase(std::remove_if(findings.turns.begin(), findings.turns.end(), is_other), findings.turns.end());
   findings.viewpoint_source = refinement.getViewpointSource();
   findings.viewpoint = refinement.getUsedViewpoint();
   findings.num_points = refinement.getUsedIndices().size();
-  findings.timing_ms = refinement.getTiming();
   std::string summary = counted(findings.planes.size(), "plane");
   if (!findings.axes.empty()) summary += ", " + std::to_string(findings.axes.size()) + " axes";
   if (findings.viewpoint)

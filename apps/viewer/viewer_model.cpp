@@ -119,7 +119,7 @@ ViewerModel makeViewerModel(const Shape& shape, const ViewerModelOptions& option
   model.planes = refinement.compute();
   if (!refinement.getReason().empty()) detail::throwBadArgument(refinement.getReason());
   model.axes = refinement.getAxes();
-  model.centers = refinement.getCenters();
+  model.centers = refinement.getDetection().centers;
   model.frame = frameOf(cloud, options);
 
   pcl::Indices finite;

@@ -5,8 +5,6 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
-#include <string>
-#include <utility>
 #include <vector>
 
 #include "pcl_symmetry/core/detect_planes.h"
@@ -14,15 +12,6 @@
 #include "pcl_symmetry/impl/cloud_analysis.hpp"
 
 namespace PCL_SYMMETRY_EXPORTS pcl_symmetry {
-
-namespace detail {
-
-/// What was found, and the points that were used.
-struct DetectedPlanes : Detection {
-  Points points = Points(3, 0);
-};
-
-}  // namespace detail
 
 /// Finds the planes of symmetry of a cloud: local maxima of the transform, refined by Iterative Symmetric Points
 /// (Section 4.4 of the paper).
@@ -125,31 +114,12 @@ public:
   /// [0, 1]; NaN for points that are not finite, and for all points where compute() has not given an answer.
   std::vector<float> computePointSupport(const ReflectionPlane& plane) const;
 
-  /// \return the axes of revolution that the last compute() found, best first, in the frame of the input.
-  const std::vector<SymmetryAxis>& getAxes() const { return found_.axes; }
-  /// \return the centers of spheres that the last compute() found.
-  const std::vector<SymmetryCenter>& getCenters() const { return found_.centers; }
-  /// \return the axes of turns that the last compute() found in a scan, most confident first: of nuts, wheels and
-  /// bottles seen from one side, with their order. Empty for clouds without a viewpoint, see detectObjectSymmetries().
-  const std::vector<SymmetryTurn>& getTurns() const { return found_.turns; }
-  /// \return where the last compute() found neither a symmetry nor a possible one, the plane that maps the greatest share
-  /// of the surface to within the tolerance; empty otherwise, and where the input holds no answer.
-  const std::optional<SymmetryPlane>& getBestPlane() const { return found_.best; }
-  /// \return where the input of the last compute() is flat, as a sheet or a disc is, the plane that 97 % of its points lie
-  /// within the tolerance of; empty otherwise.
-  const std::optional<ReflectionPlane>& getFlatPlane() const { return found_.flat; }
-  /// \return the tolerance that the last compute() decided at, input units.
-  double getUsedTolerance() const { return found_.tolerance; }
-  /// \return the greatest distance between two points of the last compute(), which the tolerance is a share of, input
-  /// units.
-  double getDiameter() const { return found_.diameter; }
-  /// \return the least tolerance that the sensor or the spacing of the points of the last compute() resolves, input
-  /// units; 0 where it is not known.
-  double getResolution() const { return found_.resolution; }
+  /// \return all that the last compute() found, with the planes, in the frame of the input: axes and centers, rotations
+  /// of scans, the best plane where there is no symmetry, what the tolerance was, and the time of each stage.
+  const Detection& getDetection() const { return found_; }
+  const std::vector<SymmetryAxis>& getAxes() const { return found_.axes; }  ///< Detection::axes
   /// \return the map that was given, or else the map that the last compute() made.
   const SymmetryMap& getSymmetryMap() const { return edt_ ? map_ : found_.map; }
-  /// \return stages of the last compute() and their milliseconds, in order.
-  const std::vector<std::pair<std::string, double>>& getTiming() const { return found_.timing_ms; }
 
 protected:
   using pcl::PCLBase<PointT>::input_;
@@ -157,6 +127,7 @@ protected:
   void clearResults() override {
     ScanAnalysis<PointT>::clearResults();
     found_ = {};
+    samples_.resize(3, 0);
   }
 
 private:
@@ -172,7 +143,8 @@ private:
   SymmetryMap map_;  // that was given
   std::shared_ptr<const GaussianEdt> edt_;
   std::optional<MeshSurface> mesh_;
-  detail::DetectedPlanes found_;  // without the planes, which compute() returns
+  Detection found_;
+  Points samples_ = Points(3, 0);  // that were used
 };
 
 }  // namespace pcl_symmetry

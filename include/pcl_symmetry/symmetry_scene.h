@@ -57,16 +57,9 @@ struct SupportingPlane {
 };
 
 /// A cluster of a scene, and what was found.
-struct SceneObject {
-  pcl::Indices indices;                 ///< of its points, into the scene
-  std::string reason;                   ///< why the cluster holds no answer, one sentence; empty where it was analyzed
-  std::vector<SymmetryPlane> planes;    ///< as in Detection, frame of the scene
-  std::vector<SymmetryAxis> axes;       ///< as in Detection
-  std::vector<SymmetryCenter> centers;  ///< as in Detection
-  double tolerance = 0.0;               ///< that was decided at, input units
-  double resolution = 0.0;              ///< as Detection::resolution
-  double diameter = 0.0;                ///< greatest distance between two points, input units
-  std::optional<SymmetryFrame> frame;   ///< nothing without SceneOptions::frames
+struct SceneObject : Detection {       // frame of the scene
+  pcl::Indices indices;                ///< of its points, into the scene
+  std::optional<SymmetryFrame> frame;  ///< nothing without SceneOptions::frames
   /// The plane that the object was completed by: the best one, or through the axis and across the view. Nothing where
   /// no plane decides.
   std::optional<ReflectionPlane> completed_by;

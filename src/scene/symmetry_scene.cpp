@@ -83,12 +83,9 @@ public:
     detection.folds = false;  // an object has planes, axes of revolution and centers
     refinement.setOptions(detection);
     prepare(refinement, object, std::make_shared<const SeenSpace>(seenOf(indices)));
-    object.planes = refinement.compute();
-    object.axes = refinement.getAxes();
-    object.centers = refinement.getCenters();
-    object.tolerance = refinement.getUsedTolerance();
-    object.resolution = refinement.getResolution();
-    object.diameter = refinement.getDiameter();
+    refinement.compute();
+    static_cast<Detection&>(object) = refinement.getDetection();
+    object.map = {};  // large, and not asked for
     object.reason = refinement.getReason();
     return object;
   }

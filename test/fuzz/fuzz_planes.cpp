@@ -18,11 +18,9 @@ DetectionOptions quickOptions(fuzz::ByteSource& source) {
   options.expert.num_radius = 1 + source.below(8);
   options.expert.num_samples = 1 + source.below(16);
   options.expert.max_candidates = 1 + source.below(4);
-  options.expert.num_coarse_samples = 10;
   options.expert.num_refine_samples = 10 + source.below(90);
   options.expert.max_iterations = 1 + source.below(4);
   options.approximate = source.flag();
-  options.families = source.flag();
   options.turns = source.flag();
   options.num_threads = 1;
   return options;

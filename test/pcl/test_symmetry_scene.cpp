@@ -168,18 +168,18 @@ TEST(SymmetryMaximaRefinement, DecidesAtWhatTheSensorResolves) {
   for (const int box : {1, 2}) {
     auto clean = ofBox(exact, box);
     clean.compute();
-    EXPECT_LT(clean.getResolution(), 0.01 * clean.getDiameter());
-    EXPECT_NEAR(clean.getUsedTolerance(), 0.01 * clean.getDiameter(), 1e-9);
+    EXPECT_LT(clean.getDetection().resolution, 0.01 * clean.getDetection().diameter);
+    EXPECT_NEAR(clean.getDetection().tolerance, 0.01 * clean.getDetection().diameter, 1e-9);
     auto blurred = ofBox(noisy, box);
     const auto planes = blurred.compute();
-    EXPECT_GT(blurred.getUsedTolerance(), 0.015 * blurred.getDiameter()) << "errors of 4 mm at 1.8 m";
+    EXPECT_GT(blurred.getDetection().tolerance, 0.015 * blurred.getDetection().diameter) << "errors of 4 mm at 1.8 m";
     ASSERT_FALSE(planes.empty());
     EXPECT_EQ(planes[0].kind, PlaneKind::Symmetry) << "left and right of a box";
     auto fixed = ofBox(noisy, box);
     fixed.setTolerance(0.01);
     for (const SymmetryPlane& plane : fixed.compute())
       EXPECT_NE(plane.kind, PlaneKind::Symmetry) << "the sensor does not show whether it is";
-    EXPECT_NEAR(fixed.getUsedTolerance(), 0.01 * fixed.getDiameter(), 1e-9);
+    EXPECT_NEAR(fixed.getDetection().tolerance, 0.01 * fixed.getDetection().diameter, 1e-9);
   }
 }
 

@@ -1,8 +1,6 @@
 #pragma once
 
-#include <cstddef>
 #include <cstdint>
-#include <functional>
 
 #include "pcl_symmetry/core/closest_point_search.h"
 #include "pcl_symmetry/core/exports.h"
@@ -27,8 +25,8 @@ struct PlaneInput {
       : points(points_of_cloud.data(), 3, points_of_cloud.cols(), points_of_cloud.outerStride()),
         visibility(seen_space) {}
 
-  /// 3 x N, finite, input units. Fewer than 20 distinct points, at one point or on one line give an empty result with a
-  /// reason. Of more than 20 000, as many decide as the tolerance needs.
+  /// 3 x N, finite, input units. Fewer than 20 distinct points, or points on one line, have no answer, but a reason. Of
+  /// more than 20 000, a subset that resolves the tolerance is used.
   Eigen::Map<const Eigen::Matrix3Xf, 0, Eigen::OuterStride<>> points;
   /// What a scanner saw, input frame; null = the points show the object from all sides.
   const Visibility* visibility = nullptr;
@@ -39,6 +37,9 @@ struct PlaneInput {
   const SymmetryMap* map = nullptr;
   const GaussianEdt* edt = nullptr;  ///< see map
   MakeSearch make_search;            ///< makes the search for the points that are used, once; empty = FLANN's
+  /// The points may be too sparse for a surface, as the rings of a LiDAR scanner on a car: with a visibility that has a
+  /// support, the object gets the middle plane of an upright box where nothing else is decided.
+  bool may_be_rings = false;
 };
 
 /// Options of detectPlanes(); the defaults suit any shape and unit.
@@ -46,9 +47,9 @@ struct DetectionOptions {
   /// How far a symmetric surface may be off, as a share of the greatest distance between two points, in (0, 0.1]: a
   /// symmetry maps 97 % of the surface to within this of the surface.
   double tolerance = 0.01;
-  /// Where the errors of a depth camera or few points hide a tolerance, planes are decided at what is resolved, up to
-  /// this share, in (0, 0.1]; at most `tolerance`: that one decides, and where the camera does not resolve it,
-  /// symmetries are possible ones.
+  /// Greatest tolerance, as a share of the same, in (0, 0.1]: where a depth camera or few points do not resolve
+  /// `tolerance`, the resolved tolerance decides, up to this one. At most `tolerance`: that one always decides, and
+  /// symmetries that the camera does not resolve are possible ones.
   double most_tolerance = 0.03;
   double absolute_tolerance = 0.0;  ///< a tolerance in input units in place of both, >= 0; 0 = they decide
   double min_confidence = 0.5;      ///< a plane is a symmetry if confidence >= min_confidence; in [0, 1]
@@ -56,11 +57,9 @@ struct DetectionOptions {
   /// Reports the other maxima too, after the symmetries: approximate ones of the whole, and symmetries of parts.
   bool approximate = false;
   bool evidence = false;  ///< fills Detection::evidence; takes about as long again as the detection
-  bool families = true;   ///< planes through one axis or one center are reported as such in place of single planes
   bool turns = true;      ///< axes of rotations of scans are searched too; false saves about a third of the time
   bool folds = true;      ///< of these also axes of rotations by a part of a turn; false saves most of that time
   int max_planes = 64;    ///< >= 1; folds of rotations go up to 60
-  int max_possible = 5;   ///< symmetries and possible planes together, where there are possible ones, >= 1
   int num_cells = 64;     ///< cells of the distance transform along each side, in [8, 512]
   double sigma = 0.0;     ///< its width, input units, >= 0; 0 = two cells, or the spacing of the points if that is more
   std::uint64_t seed = 1;  ///< of all random draws; the same seed gives the same answer
@@ -70,22 +69,15 @@ struct DetectionOptions {
   struct Expert {
     /// Bins of the map that candidates come from: as many as the paper's 64 x 64 directions, but as fine in phi
     /// at the equator as in theta, because a peak of D is narrower than a bin of 5.6 degrees.
-    int num_theta = 32;            ///< >= 1
-    int num_phi = 128;             ///< even, >= 2
-    int num_radius = 64;           ///< >= 1
-    int num_samples = 64;          ///< samples of the transform, >= 1: the error is 1 % of PRST, enough to find maxima
-    LocalMaximaOptions maxima;     ///< of the maxima of the map that become candidates
-    int max_candidates = 24;       ///< strongest maxima that are refined, >= 1
-    bool principal_planes = true;  ///< planes across the principal axes are candidates too
-    /// A candidate that refinement moves by more than this many bins beyond its own is unstable and dropped, >= 0.
-    /// Departure from the paper, which has 0: one bin leaves room for the noise of the sampled map.
-    double max_drift = 1.0;
+    int num_theta = 32;         ///< >= 1
+    int num_phi = 128;          ///< even, >= 2
+    int num_radius = 64;        ///< >= 1
+    int num_samples = 64;       ///< samples of the transform, >= 1: the error is 1 % of PRST, enough to find maxima
+    LocalMaximaOptions maxima;  ///< of the maxima of the map that become candidates
+    int max_candidates = 24;    ///< strongest maxima that are refined, >= 1
     IspUpdate update = IspUpdate::PointToPlane;  ///< what a step of the refinement makes least
-    int num_coarse_samples = 100;                ///< points reflected in early iterations, >= 10
     int num_refine_samples = 10'000;             ///< points reflected in late iterations (the paper's figure), >= 10
     int max_iterations = 30;                     ///< of each stage, >= 1
-    double merge_angle = 0.035;  ///< radians, >= 0: planes that differ by no more than this in angle ...
-    double merge_offset = 0.02;  ///< ... and by this share of the radius in offset are one, >= 0
   };
   Expert expert;  ///< see Expert
 
@@ -99,17 +91,5 @@ struct DetectionOptions {
 /// From points to planes: transform, maxima, refinement, decision (Sections 4.1 to 4.4).
 /// \throws std::invalid_argument for bad options, coordinates that are not finite, or another number of normals.
 Detection detectPlanes(const PlaneInput& input, const DetectionOptions& options = {});
-
-/// The planes of many clouds: each thread takes the next cloud and works on it alone. This keeps all cores busy, where
-/// threads that share one cloud wait for each other between its stages.
-/// \param num_clouds number of clouds.
-/// \param cloud gives the points of cloud i in [0, num_clouds). Called once for each i, from several threads at once.
-/// \param found takes what detectPlanes() returns for cloud i. Called once for each i, by one thread at a time, in the
-/// order in which the clouds are done.
-/// \param options num_threads is the number of clouds that are worked on at once; 0 = one per core.
-/// \throws std::invalid_argument as detectPlanes() does, and whatever cloud() and found() throw: the first exception,
-/// when no thread works any more. Which of the other clouds are done then is not said.
-void detectPlanesOfMany(std::size_t num_clouds, const std::function<Points(std::size_t)>& cloud,
-                        const std::function<void(std::size_t, Detection)>& found, const DetectionOptions& options = {});
 
 }  // namespace pcl_symmetry

@@ -77,17 +77,6 @@ struct IspResult {
 ReflectionPlane fitReflectionPlane(const PointsRef& x, const PointsRef& y, const std::vector<double>& weights,
                                    const ReflectionPlane& fallback);
 
-/// The plane after one Gauss-Newton step on sum w (m . (x' - y))^2, where m is the mean direction of the normal at y
-/// and the reflected normal at x.
-///
-/// Directions that this leaves free (a flat piece of surface is uninformative about planes across it) move by a step on
-/// sum w |x' - y|^2. Departure from the paper, which minimizes the latter alone: it needs many more iterations.
-/// \param x,y,x_normals,y_normals 3 x M.
-/// \param weights M values >= 0.
-ReflectionPlane stepReflectionPlane(const PointsRef& x, const PointsRef& y, const PointsRef& x_normals,
-                                    const PointsRef& y_normals, const std::vector<double>& weights,
-                                    const ReflectionPlane& plane);
-
 /// One iteration of Iterative Symmetric Points (Section 4.4): reflect, match, weight, move the plane.
 /// \param samples indices of the points of the surface to reflect.
 /// \param plane,sigma in the units of the surface.

@@ -56,4 +56,8 @@ private:
   double offset_ = 0.0;
 };
 
+/// \param angle about the line, radians: at 0, the normal is line.direction().unitOrthogonal().
+/// \return a plane that contains a line.
+ReflectionPlane planeThrough(const Line3d& line, double angle);
+
 }  // namespace pcl_symmetry

@@ -4,6 +4,7 @@
 
 #include <optional>
 
+#include "pcl_symmetry/core/volume_planes.h"
 #include "pcl_symmetry/impl/pcl_search.hpp"
 #include "pcl_symmetry/symmetry_maxima_refinement.h"
 
@@ -15,17 +16,13 @@ namespace detail {
 /// \param edt,map of these points; edt null: the map is computed.
 /// \param search null: the library's own.
 /// \param may_be_rings the points may be those of a LiDAR's rings: their upright box decides where they are no surface.
-DetectedPlanes foundPlanes(Points points, const GaussianEdt* edt, const SymmetryMap& map,
-                           const DetectionOptions& options, const MakeSearch& search,
-                           const std::optional<Visibility>& seen, const std::optional<Points>& normals,
-                           bool may_be_rings);
-
-/// The same for a volume.
-DetectedPlanes planesOfVolume(const ScalarGrid& volume, const DetectionOptions& options, const VolumeLevels& levels);
+Detection foundPlanes(const Points& points, const GaussianEdt* edt, const SymmetryMap& map,
+                      const DetectionOptions& options, const MakeSearch& search, const std::optional<Visibility>& seen,
+                      const std::optional<Points>& normals, bool may_be_rings);
 
 /// The same as published.
-DetectedPlanes planesAsPublished(Points points, const GaussianEdt* edt, const SymmetryMap& map,
-                                 const DetectionOptions& options);
+Detection planesAsPublished(const Points& points, const GaussianEdt* edt, const SymmetryMap& map,
+                            const DetectionOptions& options);
 
 /// \param all finite points of a cloud.
 /// \param cloud_size points of the cloud.
@@ -49,24 +46,24 @@ std::vector<SymmetryPlane> SymmetryMaximaRefinement<PointT>::compute() {
   return detail::withBadArguments([&] {
     if (this->volume()) {
       clearResults();
-      found_ = detail::planesOfVolume(*this->volume(), options_, this->levels());
+      found_ = detectVolumePlanes(*this->volume(), options_, this->levels());
       if (!found_.reason.empty()) this->giveNoAnswer(found_.reason);
-      return std::move(found_.planes);
+      return found_.planes;
     }
-    Points points = this->selectInput(options_.seed, options_.num_threads, as_published_);
-    if (points.cols() == 0) return std::vector<SymmetryPlane>();
+    samples_ = this->selectInput(options_.seed, options_.num_threads, as_published_);
+    if (samples_.cols() == 0) return found_.planes;
     if (as_published_) {
-      found_ = detail::planesAsPublished(std::move(points), edt_.get(), map_, options_);
-      return std::move(found_.planes);
+      found_ = detail::planesAsPublished(samples_, edt_.get(), map_, options_);
+      return found_.planes;
     }
     const MakeSearch search = detail::searchOf<PointT>(search_, "SymmetryMaximaRefinement", options_.num_threads);
-    const std::optional<Visibility> seen = this->seenSpace(points);
+    const std::optional<Visibility> seen = this->seenSpace(samples_);
     const std::optional<Points> normals =
         use_input_normals_ ? detail::normalsOf(*input_, this->getUsedIndices()) : std::nullopt;
     const bool may_be_rings = this->hasGivenSupport() && this->getViewpointSource() != ViewpointSource::Rays;
-    found_ = detail::foundPlanes(std::move(points), edt_.get(), map_, options_, search, seen, normals, may_be_rings);
+    found_ = detail::foundPlanes(samples_, edt_.get(), map_, options_, search, seen, normals, may_be_rings);
     if (mesh_ && !seen) refineOnMesh(*mesh_, found_, options_);
-    return std::move(found_.planes);
+    return found_.planes;
   });
 }
 
@@ -74,7 +71,7 @@ template <typename PointT>
 std::vector<float> SymmetryMaximaRefinement<PointT>::computePointSupport(const ReflectionPlane& plane) const {
   if (!input_) return {};
   const detail::SelectedPoints all = detail::selectPoints(*input_, nullptr, input_->size(), 0);
-  return detail::pointSupport(all, input_->size(), found_.points, plane, options_.num_threads);
+  return detail::pointSupport(all, input_->size(), samples_, plane, options_.num_threads);
 }
 
 }  // namespace pcl_symmetry

@@ -1,22 +1,9 @@
 #include "core/detection/candidates.h"
 
-#include "core/detection/detection_rules.h"
 #include "core/detection/plane_lattice.h"
 #include "core/geometry/principal_axes.h"
 
 namespace pcl_symmetry {
-
-namespace {
-
-// Radians, and radii. A peak of D is about 0.1 radians wide at the default sigma; smaller values refine a peak more
-// than once, larger ones merge planes of a regular polygon with many sides.
-constexpr PlaneTolerance kBasin{0.1, 0.06};
-
-}  // namespace
-
-PlaneTolerance basinTolerance() {
-  return kBasin;
-}
 
 std::vector<Candidate> gatherCandidates(const NormalizedCloud& cloud, const SymmetryMap& map,
                                         const DetectionOptions& options) {
@@ -26,11 +13,10 @@ std::vector<Candidate> gatherCandidates(const NormalizedCloud& cloud, const Symm
   for (const LocalMaximum& maximum : findLocalMaxima(map, maxima)) {
     if (static_cast<int>(candidates.size()) >= options.expert.max_candidates) break;
     const ReflectionPlane plane = cloud.toNormalized(maximum.plane);
-    if (kBasin.anySame(candidates, plane, [](const Candidate& candidate) { return candidate.plane; })) continue;
+    if (kSameBasin.anySame(candidates, plane, [](const Candidate& candidate) { return candidate.plane; })) continue;
     candidates.push_back({plane, true});
   }
-  if (options.expert.principal_planes)
-    for (const ReflectionPlane& plane : principalPlanes(cloud.principal_axes)) candidates.push_back({plane, false});
+  for (const ReflectionPlane& plane : principalPlanes(cloud.principal_axes)) candidates.push_back({plane, false});
   return candidates;
 }
 
@@ -42,14 +28,14 @@ std::vector<Candidate> GroupClosure::next(const std::vector<SymmetryPlane>& plan
   if (!cloud_.rules().completes_groups) return found;
   tried_.insert(tried_.end(), symmetries.begin(), symmetries.end());
   const auto add = [&](const ReflectionPlane& plane) {
-    if (tolerance_.anySame(tried_, plane)) return;
+    if (kSamePlane.anySame(tried_, plane)) return;
     tried_.push_back(plane);
     found.push_back({plane, false});
   };
   // The planes of a regular polygon, from those of them that are known.
   if (const std::optional<PlaneLattice> lattice = findLattice(symmetries))
     for (int k = 0; k < lattice->fold; ++k) add(lattice->plane(k));
-  if (symmetries.size() > kDetection.max_closed) return found;
+  if (symmetries.size() > kDetection.candidates.most_closed) return found;
   for (const ReflectionPlane& plane : symmetries) {
     for (const ReflectionPlane& across : symmetries) {
       const Eigen::Vector3d normal = plane.normal() - 2.0 * plane.normal().dot(across.normal()) * across.normal();

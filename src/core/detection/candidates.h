@@ -2,33 +2,29 @@
 
 #include <vector>
 
+#include "core/detection/detection_rules.h"
 #include "core/detection/plane_fit.h"
 #include "pcl_symmetry/core/detect_planes.h"
 
 namespace pcl_symmetry {
-
-/// Where candidate planes come from: maxima of the map, principal axes, and symmetries that imply others.
 
 /// The strongest local maxima of the map, each basin of refinement once, and the planes across the principal axes.
 /// \param map over planes in the input frame.
 std::vector<Candidate> gatherCandidates(const NormalizedCloud& cloud, const SymmetryMap& map,
                                         const DetectionOptions& options);
 
-/// Limits within which two planes are one.
-inline PlaneTolerance mergeTolerance(const DetectionOptions& options) {
-  return {options.expert.merge_angle, options.expert.merge_offset};
-}
+/// Limits within which two planes are one, normalized frame.
+inline constexpr PlaneTolerance kSamePlane{kDetection.stages.same_angle, kDetection.stages.same_offset};
 
 /// Limits within which two maxima share one basin of refinement, normalized frame.
-PlaneTolerance basinTolerance();
+inline constexpr PlaneTolerance kSameBasin{kDetection.stages.same_basin_angle, kDetection.stages.same_basin_offset};
 
 /// The reflection of one symmetry in another is a symmetry too: completes the group that some symmetries generate, and
 /// the planes of a regular polygon of which some are known.
 class GroupClosure {
 public:
   /// \param cloud must outlive this object.
-  /// \param tolerance planes within it are one.
-  GroupClosure(const NormalizedCloud& cloud, const PlaneTolerance& tolerance) : cloud_(cloud), tolerance_(tolerance) {}
+  explicit GroupClosure(const NormalizedCloud& cloud) : cloud_(cloud) {}
 
   /// \param planes found up to now, input frame; those that are symmetries count.
   /// \return such planes that neither are known nor were returned before; none for scans.
@@ -36,7 +32,6 @@ public:
 
 private:
   const NormalizedCloud& cloud_;
-  PlaneTolerance tolerance_;
   std::vector<ReflectionPlane> tried_;  ///< normalized frame
 };
 

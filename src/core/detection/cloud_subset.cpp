@@ -23,8 +23,8 @@ namespace {
 double mostPoints(const PointsRef& points, const DetectionOptions& options) {
   const double tolerance =
       options.absolute_tolerance > 0.0 ? options.absolute_tolerance / farthestPair(points) : options.tolerance;
-  const double finer = std::max(1.0, kDetection.usual_tolerance / tolerance);
-  return kDetection.most_points * finer * finer;
+  const double finer = std::max(1.0, kDetection.points.usual_tolerance / tolerance);
+  return kDetection.points.most_points * finer * finer;
 }
 
 }  // namespace
@@ -34,11 +34,12 @@ std::vector<int> CloudSubset::nearTo(const PointsRef& all, int num_threads) cons
   std::vector<char> is_far(near.size(), 0);
   const Eigen::Index last = points.cols() - 1;
   const Eigen::Vector3f extent = points.rowwise().maxCoeff() - points.rowwise().minCoeff();
-  const float sq_reach = kDetection.subset_reach * kDetection.subset_reach * extent.maxCoeff() * extent.maxCoeff();
+  const float sq_reach =
+      kDetection.points.subset_reach * kDetection.points.subset_reach * extent.maxCoeff() * extent.maxCoeff();
   parallelRanges(near.size(), 4096, num_threads, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
-      const Eigen::Index from = std::max<Eigen::Index>(0, near[i] - kDetection.along_curve),
-                         to = std::min<Eigen::Index>(last, near[i] + kDetection.along_curve);
+      const Eigen::Index from = std::max<Eigen::Index>(0, near[i] - kDetection.points.along_curve),
+                         to = std::min<Eigen::Index>(last, near[i] + kDetection.points.along_curve);
       const Eigen::Vector3f x = all.col(static_cast<Eigen::Index>(i));
       float least = std::numeric_limits<float>::infinity();
       for (Eigen::Index k = from; k <= to; ++k) {
@@ -62,7 +63,7 @@ std::vector<int> CloudSubset::nearTo(const PointsRef& all, int num_threads) cons
 }
 
 std::optional<CloudSubset> subsetOf(const PointsRef& points, const DetectionOptions& options) {
-  if (static_cast<double>(points.cols()) <= kDetection.most_points) return std::nullopt;
+  if (static_cast<double>(points.cols()) <= kDetection.points.most_points) return std::nullopt;
   const double most = mostPoints(points, options);
   if (!(static_cast<double>(points.cols()) > most)) return std::nullopt;
   const DistinctPoints distinct(points);
@@ -91,24 +92,24 @@ void spreadSupport(Detection& detection, const std::vector<int>& place_of) {
 
 std::vector<int> evenlyDense(const NormalizedCloud& cloud, std::uint64_t seed) {
   const Eigen::Index size = cloud.points.cols();
-  const std::vector<int> samples = drawSamples(size, kDetection.density_samples, seed);
-  if (size <= kDetection.most_counted) return allOf(size);
+  const std::vector<int> samples = drawSamples(size, kDetection.points.density_samples, seed);
+  if (size <= kDetection.points.most_counted) return allOf(size);
   std::vector<int> unused;
   std::vector<float> sq_distances;
   const Points at = pointsAt(cloud.points, samples);
-  cloud.search->search(at, kDetection.most_counted, unused, sq_distances);
+  cloud.search->search(at, kDetection.points.most_counted, unused, sq_distances);
   std::vector<float> to_neighbor(samples.size());
   for (std::size_t i = 0; i < samples.size(); ++i)
-    to_neighbor[i] = sq_distances[i * kDetection.most_counted + kDetection.neighbors];
+    to_neighbor[i] = sq_distances[i * kDetection.points.most_counted + kDetection.points.neighbors];
   const float sq_radius = median(to_neighbor);
   const auto num_samples = static_cast<Eigen::Index>(samples.size());
   Eigen::MatrixX4d places(num_samples, 4);
   Eigen::VectorXd logs(num_samples);
   for (Eigen::Index i = 0; i < num_samples; ++i) {
-    const auto first = sq_distances.begin() + i * kDetection.most_counted;
+    const auto first = sq_distances.begin() + i * kDetection.points.most_counted;
     places.row(i) << at.col(i).cast<double>().transpose(), 1.0;
-    logs[i] =
-        std::log(static_cast<double>(std::upper_bound(first, first + kDetection.most_counted, sq_radius) - first));
+    logs[i] = std::log(
+        static_cast<double>(std::upper_bound(first, first + kDetection.points.most_counted, sq_radius) - first));
   }
   const Eigen::Vector3d slope = places.colPivHouseholderQr().solve(logs).head<3>();
   std::vector<double> along(samples.size());
@@ -116,10 +117,10 @@ std::vector<int> evenlyDense(const NormalizedCloud& cloud, std::uint64_t seed) {
     along[i] = slope.dot(at.col(static_cast<Eigen::Index>(i)).cast<double>());
   std::sort(along.begin(), along.end());
   const auto last = static_cast<double>(along.size() - 1);
-  const double low = along[static_cast<std::size_t>(kDetection.end * last)],
-               high = along[static_cast<std::size_t>((1.0 - kDetection.end) * last)];
-  const double strength =
-      std::clamp((high - low - kDetection.uneven) / (kDetection.fully_uneven - kDetection.uneven), 0.0, 1.0);
+  const double low = along[static_cast<std::size_t>(kDetection.points.trimmed * last)],
+               high = along[static_cast<std::size_t>((1.0 - kDetection.points.trimmed) * last)];
+  const double strength = std::clamp(
+      (high - low - kDetection.points.uneven) / (kDetection.points.fully_uneven - kDetection.points.uneven), 0.0, 1.0);
   if (strength == 0.0) return allOf(size);
   RandomStream random(seed);
   std::vector<int> kept;

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <iterator>
 #include <memory>
-#include <mutex>
 #include <utility>
 #include <vector>
 
@@ -20,6 +19,7 @@
 #include "core/detection/plane_fit.h"
 #include "core/detection/scan_axes.h"
 #include "core/detection/staged_refinement.h"
+#include "core/detection/upright_box.h"
 #include "core/geometry/answerable_points.h"
 #include "core/geometry/distinct_points.h"
 #include "core/geometry/point_samples.h"
@@ -86,7 +86,7 @@ std::vector<SymmetryPlane> PlaneSettler::judged(std::vector<Candidate> candidate
   std::vector<Candidate> climbing;
   std::vector<std::size_t> places;
   for (std::size_t i = 0; i < planes.size(); ++i) {
-    if (planes[i].confidence < kDetection.climbing_confidence) continue;
+    if (planes[i].confidence < kDetection.fit.climbing_confidence) continue;
     climbing.push_back(std::move(candidates[i]));
     places.push_back(i);
   }
@@ -120,15 +120,14 @@ PlaneFitOptions fitOptions(const DetectionOptions& options) {
 /// The evidence of all candidates, also of those that the detection leaves out early.
 /// \param candidates after the second stage.
 std::vector<JudgedPlane> evidenceOf(std::vector<Candidate> candidates, const StagedRefinement& refinement,
-                                    const PlaneJudge& judge, const DetectionOptions& options) {
+                                    const PlaneJudge& judge) {
   candidates = refinement.full(std::move(candidates));
   refinement.climb(candidates);
   std::stable_sort(candidates.begin(), candidates.end(),
                    [](const Candidate& a, const Candidate& b) { return a.merit > b.merit; });
-  const PlaneTolerance same = mergeTolerance(options);
   std::vector<Candidate> distinct;
   for (Candidate& candidate : candidates)
-    if (!same.anySame(distinct, candidate.plane, [](const Candidate& other) { return other.plane; }))
+    if (!kSamePlane.anySame(distinct, candidate.plane, [](const Candidate& other) { return other.plane; }))
       distinct.push_back(std::move(candidate));
   return judge.judgeWithEvidence(distinct);
 }
@@ -168,7 +167,7 @@ Detection planesOfCloud(const NormalizedCloud& cloud, const Points& all, const S
   timed("close_refinement");
   if (options.evidence) {
     detection.evidence = std::make_shared<DetectionEvidence>();
-    detection.evidence->planes = evidenceOf(candidates, refinement, judge, options);
+    detection.evidence->planes = evidenceOf(candidates, refinement, judge);
     timed("evidence");
   }
   PlaneSettler settler(refinement, judge, !options.approximate && cloud.rules().may_lack_piece);
@@ -176,7 +175,7 @@ Detection planesOfCloud(const NormalizedCloud& cloud, const Points& all, const S
   timed("full_refinement");
 
   // Planes that follow from others: reflections of one symmetry in another, and those of a polygon.
-  GroupClosure closure(cloud, mergeTolerance(options));
+  GroupClosure closure(cloud);
   while (!(candidates = refinement.closeSymmetries(closure.next(planes))).empty())
     append(planes, settler.planes(std::move(candidates)));
   decision.preferWhole(planes);
@@ -185,7 +184,7 @@ Detection planesOfCloud(const NormalizedCloud& cloud, const Points& all, const S
   timed("closure");
 
   // Families: bodies of revolution, spheres, and what only rotations of a scan show.
-  if (options.families && !decision.isCutAllAround()) {
+  if (!decision.isCutAllAround()) {
     PlanesAndFamilies found = collectFamilies(std::move(planes), cloud, all, *fit, judge, options);
     planes = std::move(found.planes);
     detection.axes = std::move(found.axes);
@@ -282,11 +281,7 @@ Detection planesOfPoints(const PlaneInput& input, const DetectionOptions& option
   timing.emplace_back("free_space", watch.lap());
   const DetectionOptions::Expert& expert = options.expert;
   const PlaneGrid grid(expert.num_theta, expert.num_phi, expert.num_radius, edt.center(), edt.radius());
-  SampledTransformOptions sampling;
-  sampling.num_samples = expert.num_samples;
-  sampling.seed = options.seed;
-  sampling.num_threads = options.num_threads;
-  SymmetryMap map = sampledTransform(edt, grid, sampling, free_space);
+  SymmetryMap map = sampledTransform(edt, grid, {expert.num_samples, options.seed, options.num_threads}, free_space);
   map.center_of_mass = centerOfMass(input.points);
   timing.emplace_back("transform", watch.lap());
   Detection detection = planesOfMap(input, edt, map, options);
@@ -327,7 +322,6 @@ void DetectionOptions::validate() const {
   check(min_confidence >= 0.0 && min_confidence <= 1.0, "min_confidence", min_confidence, "in [0, 1]");
   check(min_possible >= 0.0 && min_possible <= 1.0, "min_possible", min_possible, "in [0, 1]");
   check(max_planes >= 1, "max_planes", max_planes, ">= 1");
-  check(max_possible >= 1, "max_possible", max_possible, ">= 1");
   edtOptions().validate();
   checkNumThreads(num_threads);
   expert.maxima.validate();
@@ -336,12 +330,8 @@ void DetectionOptions::validate() const {
   check(expert.num_radius >= 1, "num_radius", expert.num_radius, ">= 1");
   check(expert.num_samples >= 1, "num_samples", expert.num_samples, ">= 1");
   check(expert.max_candidates >= 1, "max_candidates", expert.max_candidates, ">= 1");
-  check(expert.max_drift >= 0.0, "max_drift", expert.max_drift, ">= 0");
-  check(expert.num_coarse_samples >= 10, "num_coarse_samples", expert.num_coarse_samples, ">= 10");
   check(expert.num_refine_samples >= 10, "num_refine_samples", expert.num_refine_samples, ">= 10");
   check(expert.max_iterations >= 1, "max_iterations", expert.max_iterations, ">= 1");
-  check(expert.merge_angle >= 0.0, "merge_angle", expert.merge_angle, ">= 0");
-  check(expert.merge_offset >= 0.0, "merge_offset", expert.merge_offset, ">= 0");
 }
 
 Detection detectPlanes(const PlaneInput& input, const DetectionOptions& options) {
@@ -351,26 +341,17 @@ Detection detectPlanes(const PlaneInput& input, const DetectionOptions& options)
           "the number of points");
   if (std::string reason = whyUnanswerable(input.points); !reason.empty()) return unanswered(std::move(reason));
   Stopwatch watch;
+  Detection detection;
   if (const std::optional<CloudSubset> subset = subsetOf(input.points, options)) {
     const double subset_ms = watch.lap();
-    Detection detection = planesOfSubset(input, *subset, options);
+    detection = planesOfSubset(input, *subset, options);
     detection.timing_ms.insert(detection.timing_ms.begin(), {"subset", subset_ms});
-    return detection;
+  } else {
+    detection = input.map ? planesOfMap(input, *input.edt, *input.map, options) : planesOfPoints(input, options);
   }
-  return input.map ? planesOfMap(input, *input.edt, *input.map, options) : planesOfPoints(input, options);
-}
-
-void detectPlanesOfMany(std::size_t num_clouds, const std::function<Points(std::size_t)>& cloud,
-                        const std::function<void(std::size_t, Detection)>& found, const DetectionOptions& options) {
-  options.validate();
-  DetectionOptions alone = options;
-  alone.num_threads = 1;
-  std::mutex one_at_a_time;
-  parallelBlocks(num_clouds, options.num_threads, [&](std::size_t i) {
-    Detection detection = detectPlanes(cloud(i), alone);
-    const std::lock_guard<std::mutex> lock(one_at_a_time);
-    found(i, std::move(detection));
-  });
+  if (input.may_be_rings && input.visibility && detection.reason.empty())
+    decideByUprightBox(input.points, *input.visibility, options, detection);
+  return detection;
 }
 
 }  // namespace pcl_symmetry

@@ -8,180 +8,209 @@
 
 namespace pcl_symmetry {
 
-/// The numbers that answers of detection depend on (Section 4.4). Lengths are in radii of the cloud where no unit is
-/// given, angles in radians. At half or twice of most of them, either more symmetries are lost or more planes are
-/// reported that are none; none of them is fitted.
+/// The numbers that answers of detection depend on (Section 4.4). Lengths are in radii of the cloud, angles in radians,
+/// where no unit is given.
 struct DetectionRules {
-  // Which points are used.
-  double most_points = 20'000.0, usual_tolerance = 0.01;  ///< points that represent a cloud at that tolerance
-  Eigen::Index along_curve = 4;                           ///< points compared before and after one along the curve
-  float subset_reach = 1.0f / 64.0f;      ///< share of the extent from which a point is far, and its nearest searched
-  int density_samples = 1000;             ///< samples of the density; its slope has an error of 2 %
-  int most_counted = 48, neighbors = 16;  ///< neighbors that are counted, and that a neighborhood has on average
-  double end = 0.05;                      ///< share of the points at either end that the range of densities leaves out
-  double uneven = 0.4, fully_uneven = 0.7;  ///< logarithm of the ratio of densities evened, from none to all of it
+  /// Which points are used.
+  struct {
+    double most_points = 20'000.0, usual_tolerance = 0.01;  ///< points that represent a cloud at that tolerance
+    Eigen::Index along_curve = 4;                           ///< points compared before and after one along the curve
+    float subset_reach = 1.0f / 64.0f;      ///< share of the extent from which a point is far, and its nearest searched
+    int density_samples = 1000;             ///< samples of the density; its slope has an error of 2 %
+    int most_counted = 48, neighbors = 16;  ///< neighbors that are counted, and that a neighborhood has on average
+    double trimmed = 0.05;  ///< share of the points at either end that the range of densities leaves out
+    double uneven = 0.4, fully_uneven = 0.7;  ///< logarithm of the ratio of densities evened, from none to all of it
+  } points;
 
-  // The normalized cloud.
-  double final_sigma_in_spacings = 3.0;  ///< narrowest weights; less leaves reflections between samples without any
-  double volume_roughness = 0.36;        ///< spacings; points that fill a volume evenly have 0.42
+  /// The normalized cloud.
+  struct {
+    double final_sigma_in_spacings = 3.0;  ///< narrowest weights; less leaves reflections between samples without any
+    double volume_roughness = 0.36;        ///< spacings; points that fill a volume evenly have 0.42
+  } cloud;
 
-  // Candidates.
-  std::size_t max_closed = 16;  ///< symmetries whose group is completed: a cube has 9, an icosahedron 15
+  /// Candidates.
+  struct {
+    std::size_t most_closed = 16;  ///< symmetries whose group is completed: a cube has 9, an icosahedron 15
+  } candidates;
 
-  // Iterative Symmetric Points.
-  double least_stiffness = 1e-3;  ///< share of the stiffest direction below which a direction is free
-  double longest_step = 0.2;      ///< radians, or extents of the samples; longer steps leave the basin
-  double reach = 3.0;             ///< sigmas beyond which pairs have no weight
-  double rest = 0.1;              ///< sigmas; a shorter step lets the weights narrow
-  double hidden_depth = 0.1;      ///< sigmas behind the surface seen over which a pair loses its weight
+  /// Iterative Symmetric Points.
+  struct {
+    double least_stiffness = 1e-3;  ///< share of the stiffest direction below which a direction is free
+    double longest_step = 0.2;      ///< radians, or extents of the samples; longer steps leave the basin
+    double reach_sigmas = 3.0;      ///< sigmas beyond which pairs have no weight
+    double rest_sigmas = 0.1;       ///< sigmas; a shorter step lets the weights narrow
+    double hidden_depth = 0.1;      ///< sigmas behind the surface seen over which a pair loses its weight
+  } isp;
 
-  // Stages of refinement.
-  double symmetric_merit = 0.93;  ///< of a symmetry: support of 97 % and conflict of 3 % have 0.97
-  int coarse_iterations = 5, close_iterations = 6, full_iterations = 8, rough_iterations = 4;
-  double close_slack = 0.1;   ///< below the merit of a symmetry that a candidate may be after the second stage
-  double coarse_slack = 0.2;  ///< the same after the first stage, beside a symmetry
-  std::size_t kept_coarsely = 8, kept_closely = 4;  ///< candidates of less merit that go on after either stage
-  int close_sample_factor = 4;                      ///< samples of the second stage per sample of the first
-  double narrowest_coarsely = 0.5;                  ///< sigmas at the end of the first stage
-  double settled_error_share = 3.0;                 ///< standard errors; a shorter step of a symmetry is the last
+  /// Stages of refinement.
+  struct {
+    /// Bins beyond its own that refinement may move a candidate by. Departure from the paper, which has 0: one bin
+    /// leaves room for the noise of the sampled map.
+    double most_drift = 1.0;
+    int first_samples = 100;                                  ///< points reflected in the first stage
+    double same_angle = 0.035, same_offset = 0.02;            ///< within which two planes are one
+    double same_basin_angle = 0.1, same_basin_offset = 0.06;  ///< the same of maxima: a peak of D is 0.1 radians wide
+    double symmetric_merit = 0.93;  ///< of a symmetry: support of 97 % and conflict of 3 % have 0.97
+    int coarse_iterations = 5, close_iterations = 6, full_iterations = 8, rough_iterations = 4;
+    double close_slack = 0.1;   ///< below the merit of a symmetry that a candidate may be after the second stage
+    double coarse_slack = 0.2;  ///< the same after the first stage, beside a symmetry
+    std::size_t kept_coarsely = 8, kept_closely = 4;  ///< candidates of less merit that go on after either stage
+    int close_sample_factor = 4;                      ///< samples of the second stage per sample of the first
+    double narrowest_coarsely = 0.5;                  ///< sigmas at the end of the first stage
+    double settled_error_share = 3.0;                 ///< standard errors; a shorter step of a symmetry is the last
+  } stages;
 
-  // Planes on surfaces and in volumes.
-  double surface_allowance = 0.015;                ///< share of the surface by which planes of a family may differ
-  double first_climb = 0.02, last_climb = 0.0025;  ///< steps of a climb, radians and radii
-  int most_climbs = 24;                            ///< steps of a climb, of all lengths
-  int climb_samples = 500;                         ///< points by which planes of whole clouds climb
-  double least_gain = 0.005;                       ///< merit that a climb has to gain
-  double climbing_merit = 0.5;                     ///< merit of planes that climb; those of less are no symmetries
-  double climbing_confidence = 0.01;               ///< the same by confidence
-  double noisy_depth = 0.1;  ///< roughness, spacings, from which planes of scans climb: noise looks hidden
-  double bandwidth = 1.5;    ///< of the density, spacings; less shows single points, more blurs the shape
-  int max_iterations = 6;    ///< Newton steps in a density
-  int sample_factor = 10;    ///< samples of a density per sample of a surface
-  double volume_allowance = 0.012, points_of_allowance = 10'000;  ///< as surface_allowance, at that many points
+  /// Planes on surfaces and in volumes.
+  struct {
+    double first_climb = 0.02, last_climb = 0.0025;  ///< steps of a climb, radians and radii
+    int most_climbs = 24;                            ///< steps of a climb, of all lengths
+    int climb_samples = 500;                         ///< points by which planes of whole clouds climb
+    double least_gain = 0.005;                       ///< merit that a climb has to gain
+    double climbing_merit = 0.5;                     ///< merit of planes that climb; those of less are no symmetries
+    double climbing_confidence = 0.01;               ///< the same by confidence
+    double noisy_depth = 0.1;  ///< roughness, spacings, from which planes of scans climb: noise looks hidden
+    double bandwidth = 1.5;    ///< of the density, spacings; less shows single points, more blurs the shape
+    int max_iterations = 6;    ///< Newton steps in a density
+    int sample_factor = 10;    ///< samples of a density per sample of a surface
+  } fit;
 
-  // Measuring a plane.
-  double surely_whole = 0.985;   ///< share within the tolerance from which nothing needs to be missing
-  int deviation_samples = 2000;  ///< samples of SymmetryPlane::deviation
-  double held = 0.02;            ///< offset stiffness from which an open border begins to excuse; at twice, in full
-  double still = 2.0;            ///< tolerances by which a plane has to move a sample of a scan to tell something
-  double noisy_thinness = 3.0;   ///< tolerances within which a volume of points is a sheet or a line
-  double round_spacings = 2.0;   ///< spacings within which points of a line do not resolve its cross-section
-  int look_samples = 2000;       ///< samples of a quick look
-  std::array<double, 2> tolerances{1.0, 2.0};  ///< at which shares are measured, see PlaneEvidence
+  /// Measuring a plane.
+  struct {
+    double surely_whole = 0.985;    ///< share within the tolerance from which nothing needs to be missing
+    int deviation_samples = 2000;   ///< samples of SymmetryPlane::deviation
+    double held_stiffness = 0.02;   ///< offset stiffness from which an open border begins to excuse; at twice, in full
+    double moved_tolerances = 2.0;  ///< tolerances by which a plane has to move a sample of a scan to tell something
+    double noisy_thinness = 3.0;    ///< tolerances within which a volume of points is a sheet or a line
+    double round_spacings = 2.0;    ///< spacings within which points of a line do not resolve its cross-section
+    int look_samples = 2000;        ///< samples of a quick look
+    std::array<double, 2> tolerances{1.0, 2.0};  ///< at which shares are measured, see PlaneEvidence
+    double beside_outline = 0.1;  ///< share of its radius beside an outline at which the picture is looked up
+  } measure;
 
-  double beside_outline = 0.1;  ///< share of its radius beside an outline at which the picture is looked up
+  /// Deciding.
+  struct {
+    double most_cut = 0.3;               ///< share of the outline that the picture may cut off; tables in frames: 0.36
+    double look_errors = 2.0;            ///< standard errors that a quick look allows
+    double still_share = 0.5;            ///< share of the points that an uninformative plane leaves in place
+    double nothing_missing = 0.01;       ///< share of the surface; less is missing by chance
+    double piece_missing = 0.03;         ///< share of the surface; more is a piece
+    double odds_of_a_piece = 0.2;        ///< that a cloud lacks a piece although a plane explains all of it
+    double as_likely = 0.05;             ///< difference of the confidences that other samples of a cloud make
+    double least_told = 0.1;             ///< share of samples that tell something below which confidence falls
+    double coarsest_tolerance = 0.03;    ///< share of the diameter; a sensor that resolves less decides at this
+    double coarsest_resolution = 0.09;   ///< three times that; a sensor that resolves less decides nothing
+    double upright = 5.0 * kPi / 180.0;  ///< from upright or level within which a plane does not slant
+    double touching = 0.05;              ///< diameters beyond the nearest support within which others carry, too
+    double slanted_odds = 0.1;           ///< of a plane that slants over one that does not
+    int most_possible = 5;               ///< symmetries and possible planes together, where there are possible ones
+    double slope_dip = 0.005;            ///< difference of D that rounding makes of a level slope
+  } decide;
 
-  // Deciding.
-  double most_cut = 0.3;               ///< share of the outline that the picture may cut off; tables in frames: 0.36
-  double look_errors = 2.0;            ///< standard errors that a quick look allows
-  double still_share = 0.5;            ///< share of the points that an uninformative plane leaves in place
-  double nothing_missing = 0.01;       ///< share of the surface; less is missing by chance
-  double piece_missing = 0.03;         ///< share of the surface; more is a piece
-  double odds_of_a_piece = 0.2;        ///< that a cloud lacks a piece although a plane explains all of it
-  double as_likely = 0.05;             ///< difference of the confidences that other samples of a cloud make
-  double least_told = 0.1;             ///< share of samples that tell something below which confidence falls
-  double coarsest_tolerance = 0.03;    ///< share of the diameter; a sensor that resolves less decides at this
-  double coarsest_resolution = 0.09;   ///< three times that; a sensor that resolves less decides nothing
-  double upright = 5.0 * kPi / 180.0;  ///< from upright or level within which a plane does not slant
-  double touching = 0.05;              ///< diameters beyond the nearest support within which others carry, too
-  double slanted_odds = 0.1;           ///< of a plane that slants over one that does not
-  double slope_dip = 0.005;            ///< difference of D that rounding makes of a level slope
+  /// Polygons and families.
+  struct {
+    double contained_offset = 0.03, contained_angle = 0.0524;  ///< by which a plane may miss a line that it contains
+    int most_fold = 60;                                        ///< as rotations of objects
+    std::size_t least_planes = 4;                              ///< of a lattice; three fit too many by chance
+    std::size_t most_pairs = 6;                                ///< planes whose common lines are tried for a lattice
+    double least_pair_angle = 0.1;                             ///< between two planes; less moves their line too far
+    double most_folded = 0.2;      ///< share of the angle between planes of a lattice by which one may be off
+    double most_off_angle = 0.05;  ///< the same in radians
+    double most_chance = 1e-3;     ///< probability of a lattice by chance
+    std::size_t most_planes = 8;   ///< planes whose common lines are tried for an axis
+    double least_angle = 0.17;     ///< between two of them
+    int screening_planes = 3, fitted_planes = 6,
+        tested_planes = 8;       ///< planes of a family that screen it, fit its line, test it
+    double rough_factor = 2.0;   ///< allowances in the screening
+    double coplanar = 0.05;      ///< share of the largest singular value below which normals are coplanar
+    double least_spread = 0.02;  ///< least eigenvalue of the mean outer product of normals, at most 1/3
+    int rough_sample_share = 5;  ///< one sample in this many screens a family
+    double worst_share = 0.5;    ///< confidence of the worst plane of a family, shares of that of a symmetry
+    int refine_iterations = 6;   ///< of a plane of a family
+  } families;
 
-  // Polygons and families.
-  double contained_offset = 0.03, contained_angle = 0.0524;  ///< by which a plane may miss a line that it contains
-  int most_fold = 60;                                        ///< as rotations of objects
-  std::size_t least_planes = 4;                              ///< of a lattice; three fit too many by chance
-  std::size_t most_pairs = 6;                                ///< planes whose common lines are tried for a lattice
-  double least_pair_angle = 0.1;                             ///< between two planes; less moves their line too far
-  double most_folded = 0.2;      ///< share of the angle between planes of a lattice by which one may be off
-  double most_off_angle = 0.05;  ///< the same in radians
-  double most_chance = 1e-3;     ///< probability of a lattice by chance
-  std::size_t most_planes = 8;   ///< planes whose common lines are tried for an axis
-  double least_angle = 0.17;     ///< between two of them
-  int screening = 3, fitted = 6, tested = 8;  ///< planes of a family that screen it, fit its line, test it
-  double rough_factor = 2.0;                  ///< allowances in the screening
-  double coplanar = 0.05;                     ///< share of the largest singular value below which normals are coplanar
-  double least_spread = 0.02;                 ///< least eigenvalue of the mean outer product of normals, at most 1/3
-  int rough_sample_share = 5;                 ///< one sample in this many screens a family
-  double worst_share = 0.5;   ///< confidence of the worst plane of a family, shares of that of a symmetry
-  int refine_iterations = 6;  ///< of a plane of a family
+  /// Folds of noisy clouds, by their spectrum.
+  struct {
+    int most_frequency = 60, least_fold = 3;  ///< a cloud that is thinner on one side, or flat, has folds one and two
+    int rings = 8, slabs = 4;                 ///< about the line; rings tell folds, slabs the angle of the planes
+    int spectrum_samples = 20'000, angles = 192, phase_samples = 5000;
+    double reflections_stand_out = 20.0;   ///< powers beside it from which reflections tell the angle better than rings
+    int compared_frequencies = 12;         ///< frequencies on either side that one is compared with
+    double least_power = 20.0;             ///< round bodies in noise have 15 at most
+    double stands_out = 4.0;               ///< medians of the powers beside it
+    double odds_of_polygon = 4.0;          ///< of planes of a polygon over other planes of the same evidence
+    std::size_t most_line_pairs = 4;       ///< planes whose common lines are tried
+    double least_line_angle = 0.1;         ///< between two of them
+    std::array<int, 3> divisors{2, 3, 5};  ///< of parts of a polygon whose planes may differ
+  } folds;
 
-  // Folds of noisy clouds, by their spectrum.
-  int most_frequency = 60, least_fold = 3;  ///< a cloud that is thinner on one side, or flat, has folds one and two
-  int rings = 8, slabs = 4;                 ///< about the line; rings tell folds, slabs the angle of the planes
-  int spectrum_samples = 20'000, angles = 192, phase_samples = 5000;
-  double reflections_stand_out = 20.0;   ///< powers beside it from which reflections tell the angle better than rings
-  int beside = 12;                       ///< frequencies on either side that one is compared with
-  double least_power = 20.0;             ///< round bodies in noise have 15 at most
-  double stands_out = 4.0;               ///< medians of the powers beside it
-  double odds_of_polygon = 4.0;          ///< of planes of a polygon over other planes of the same evidence
-  std::size_t most_line_pairs = 4;       ///< planes whose common lines are tried
-  double least_line_angle = 0.1;         ///< between two of them
-  std::array<int, 3> divisors{2, 3, 5};  ///< of parts of a polygon whose planes may differ
+  /// Symmetries of parts.
+  struct {
+    int num_seeds = 24, num_directions = 8;        ///< balls of each radius, and directions beside their principal axes
+    std::array<double, 3> radii{0.25, 0.35, 0.5};  ///< of the balls: limbs to halves of a shape
+    double least_ball = 0.04, largest_ball = 0.6;  ///< share of the points of a ball
+    double least_support = 0.7;                    ///< share of the points of a ball that match
+    double farthest_plane = 0.5;                   ///< radii of the ball, from its middle
+    double least_part = 0.04, largest_part = 0.9;  ///< share of the points of a part
+    double least_edge = 0.4, edge_per_share = 0.5;  ///< longest edge of a part, edges of a disc, and more per share
+    double longer_edge = 0.15, shared_part = 0.5;   ///< by how much longer, if better parts hold at most that share
+    double same_part_angle = 0.07, same_part_offset = 0.04;  ///< within which planes of parts are one
+    double same_part = 0.5;                                ///< share that regions of planes of one part have in common
+    std::size_t most_planes_of_part = 9;                   ///< those of a cube
+    std::array<double, 2> longest_edges_before{1.0, 0.6};  ///< more than that of a part before either round, as above
+    int iterations = 6;                                    ///< of a plane of a part
+    std::size_t ball_samples = 200, region_samples = 400;  ///< points that are reflected
+    int num_region_samples = 4000;                         ///< of a cloud: a part of 4 % has 160
+    int num_smoothing = 11, num_connecting = 6;            ///< neighbors that smooth what matches, and that connect it
+    double matched_support = 0.8;                          ///< mean support of a neighborhood that matches
+    float counterpart = 0.5f;                              ///< support that connects a sample with its counterpart
+  } parts;
 
-  // Symmetries of parts.
-  int num_seeds = 24, num_directions = 8;         ///< balls of each radius, and directions beside their principal axes
-  std::array<double, 3> radii{0.25, 0.35, 0.5};   ///< of the balls: limbs to halves of a shape
-  double least_ball = 0.04, largest_ball = 0.6;   ///< share of the points of a ball
-  double least_support = 0.7;                     ///< share of the points of a ball that match
-  double farthest_plane = 0.5;                    ///< radii of the ball, from its middle
-  double least_part = 0.04, largest_part = 0.9;   ///< share of the points of a part
-  double least_edge = 0.4, edge_per_share = 0.5;  ///< longest edge of a part, edges of a disc, and more per share
-  double longer_edge = 0.15, shared_part = 0.5;   ///< by how much longer, if better parts hold at most that share
-  double same_part = 0.5;                         ///< share that regions of planes of one part have in common
-  std::size_t most_planes_of_part = 9;            ///< those of a cube
-  std::array<double, 2> longest_edges_before{1.0, 0.6};  ///< more than that of a part before either round, as above
-  int iterations = 6;                                    ///< of a plane of a part
-  std::size_t ball_samples = 200, region_samples = 400;  ///< points that are reflected
-  int num_region_samples = 4000;                         ///< of a cloud: a part of 4 % has 160
-  int num_smoothing = 11, num_connecting = 6;            ///< neighbors that smooth what matches, and that connect it
-  double matched = 0.8;                                  ///< mean support of a neighborhood that matches
-  float counterpart = 0.5f;                              ///< support that connects a sample with its counterpart
-
-  // Rotations of scans.
-  int normal_samples = 600, normal_draws = 60, normals_in_draw = 8;  ///< that lines of bodies of revolution are from
-  int from_normals = 3;                                              ///< lines kept of these
-  double meets = 0.1, least_lever = 0.05;                            ///< radians and radii by which normals meet a line
-  double same_start_angle = 0.1, same_start_offset = 0.06;           ///< lines within both are one start
-  double angle_of_fold = 3.0 * kDegree;                              ///< by which planes of scans are off
-  double least_plane_angle = 0.13;                                   ///< between two planes that share a line
-  int coarse_cells = 24, coarse_theta = 8, coarse_phi = 32, coarse_offset = 12, coarse_samples = 32;
-  std::size_t coarse_maxima = 10;                         ///< of that axial transform
-  double coarse_angle = 0.3, coarse_distance = 0.3;       ///< within which two of them are one
-  double coarse_equal = 0.05;                             ///< D by which they are off their peaks
-  int most_turn_fold = 12;                                ///< bodies of more folds are nearly round to a scan
-  int round_turns = 10;                                   ///< rotations that represent all, besides small ones
-  double small_turn = 0.26, larger_turn = 0.7;            ///< angles that the fit of a round body uses
-  double rough_turns = 3.0, rough_slack = 2.0;            ///< of most_off and most_far in screening; tolerances
-  std::size_t most_planes_of_axes = 8;                    ///< planes whose common lines are starts
-  double plane_share = 0.85;                              ///< share of such planes
-  double same_turn_angle = 0.12, same_turn_offset = 0.1;  ///< no body has two axes nearer
-  double fitted_angle = 0.02, fitted_offset = 0.02;       ///< lines within both are judged once
-  std::size_t most_turns = 5;                             ///< axes; a polyhedron seen from a corner shows as many
-  int most_scan_turn_points = 10'000;                     ///< points that rotations are judged by
-  int scored_planes = 4;                                  ///< that D of a round body is the mean of
-  int samples_of_turn = 1000, few_samples_of_turn = 300;  ///< points that judge a rotation exactly, and roughly
-  double far_turn = 10.0;                                 ///< tolerances, as ObjectSymmetryOptions::max_feature
-  std::array<double, 6> fit_widths{8.0, 5.0, 3.0, 2.0, 1.5, 1.5};        ///< of the weights of a fit, tolerances
-  std::array<double, 6> close_fit_widths{3.0, 2.0, 1.5, 1.0, 0.7, 0.7};  ///< the same, from a first fit on
-  double least_empty_miss = 0.5;                              ///< tolerances beside the rim from which points pull
-  double fit_reach = 2.0;                                     ///< widths beyond which a match has no weight
-  double fit_ridge = 1e-3;                                    ///< share of the trace that keeps free directions at rest
-  double fit_step = 1e-4;                                     ///< of derivatives, radians and radii
-  double least_turn_f = 1e-6;                                 ///< below any f that is not 0
-  double slack_of_reach = 1.001;                              ///< more than what distances are rounded by
-  double most_off = 0.05, most_far = 0.0125;                  ///< shares thrown into empty space, of folds
-  double most_round_off = 0.015, most_round_far = 0.004;      ///< the same of round bodies
-  double round_on = 0.6, fold_on = 0.3, half_turn_on = 0.75;  ///< shares that land on the surface, by kind
-  double halfway_more = 0.06;  ///< share that rotations halfway throw more into empty space
-  int num_plane_pairs = 24;    ///< pairs of perpendicular planes through a line that are screened
-  double plane_slack = 2.0;    ///< tolerances of that screening
-  double upright_angle = 6.0 * kDegree, crossing_gap = 0.06;  ///< by which lines may miss a right angle, each other
-  double landed_counts = 0.1;                                 ///< what lands on the surface, of what is thrown off it
-  double most_halfway = 0.3;                                  ///< share of the points from which on all folds are alike
-  double little_share = 2e-3;                                 ///< share of the points that is little: two of a thousand
-  double little_of_planes = 5e-3;                             ///< the same of planes, which are screened at steps
-  double little_hold = 1e-3;  ///< stiffness of a line that is hardly held; boxes have 0.05
+  /// Rotations of scans.
+  struct {
+    int normal_samples = 600, normal_draws = 60, normals_in_draw = 8;  ///< that lines of bodies of revolution are from
+    int from_normals = 3;                                              ///< lines kept of these
+    double normal_miss = 0.1, least_lever = 0.05;             ///< radians and radii by which normals meet a line
+    double same_start_angle = 0.1, same_start_offset = 0.06;  ///< lines within both are one start
+    double angle_of_fold = 3.0 * kDegree;                     ///< by which planes of scans are off
+    double least_plane_angle = 0.13;                          ///< between two planes that share a line
+    int coarse_cells = 24, coarse_theta = 8, coarse_phi = 32, coarse_offset = 12, coarse_samples = 32;
+    std::size_t coarse_maxima = 10;                         ///< of that axial transform
+    double coarse_angle = 0.3, coarse_distance = 0.3;       ///< within which two of them are one
+    double coarse_equal = 0.05;                             ///< D by which they are off their peaks
+    int most_turn_fold = 12;                                ///< bodies of more folds are nearly round to a scan
+    int round_turns = 10;                                   ///< rotations that represent all, besides small ones
+    double small_turn = 0.26, larger_turn = 0.7;            ///< angles that the fit of a round body uses
+    double rough_turns = 3.0, rough_slack = 2.0;            ///< of most_off and most_far in screening; tolerances
+    std::size_t most_planes_of_axes = 8;                    ///< planes whose common lines are starts
+    double plane_share = 0.85;                              ///< share of such planes
+    double same_turn_angle = 0.12, same_turn_offset = 0.1;  ///< no body has two axes nearer
+    double fitted_angle = 0.02, fitted_offset = 0.02;       ///< lines within both are judged once
+    std::size_t most_turns = 5;                             ///< axes; a polyhedron seen from a corner shows as many
+    int most_scan_turn_points = 10'000;                     ///< points that rotations are judged by
+    int scored_planes = 4;                                  ///< that D of a round body is the mean of
+    int samples_of_turn = 1000, few_samples_of_turn = 300;  ///< points that judge a rotation exactly, and roughly
+    double far_turn = 10.0;                                 ///< tolerances, as ObjectSymmetryOptions::max_feature
+    std::array<double, 6> fit_widths{8.0, 5.0, 3.0, 2.0, 1.5, 1.5};        ///< of the weights of a fit, tolerances
+    std::array<double, 6> close_fit_widths{3.0, 2.0, 1.5, 1.0, 0.7, 0.7};  ///< the same, from a first fit on
+    double least_empty_miss = 0.5;                          ///< tolerances beside the rim from which points pull
+    double fit_reach = 2.0;                                 ///< widths beyond which a match has no weight
+    double fit_ridge = 1e-3;                                ///< share of the trace that keeps free directions at rest
+    double fit_step = 1e-4;                                 ///< of derivatives, radians and radii
+    double least_turn_f = 1e-6;                             ///< below any f that is not 0
+    double slack_of_reach = 1.001;                          ///< more than what distances are rounded by
+    double most_off = 0.05, most_far = 0.0125;              ///< shares thrown into empty space, of folds
+    double most_round_off = 0.015, most_round_far = 0.004;  ///< the same of round bodies
+    double round_on = 0.6, fold_on = 0.3, half_turn_on = 0.75;  ///< shares that land on the surface, by kind
+    double halfway_more = 0.06;  ///< share that rotations halfway throw more into empty space
+    int num_plane_pairs = 24;    ///< pairs of perpendicular planes through a line that are screened
+    double plane_slack = 2.0;    ///< tolerances of that screening
+    double upright_angle = 6.0 * kDegree, crossing_gap = 0.06;  ///< by which lines may miss a right angle, each other
+    double landed_counts = 0.1;                                 ///< what lands on the surface, of what is thrown off it
+    double most_halfway = 0.3;       ///< share of the points from which on all folds are alike
+    double little_share = 2e-3;      ///< share of the points that is little: two of a thousand
+    double little_of_planes = 5e-3;  ///< the same of planes, which are screened at steps
+    double little_hold = 1e-3;       ///< stiffness of a line that is hardly held; boxes have 0.05
+  } rotations;
 };
 
 inline constexpr DetectionRules kDetection;

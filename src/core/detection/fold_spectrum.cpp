@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "core/base/constants.h"
+#include "core/base/logistic.h"
 #include "core/base/median.h"
 #include "core/base/parallel.h"
 #include "core/detection/candidates.h"
@@ -24,7 +25,8 @@ namespace {
 template <typename Power>
 double aboveBeside(int m, const Power& power) {
   std::vector<double> beside;
-  for (int k = std::max(1, m - kDetection.beside); k <= m + kDetection.beside; ++k)
+  for (int k = std::max(1, m - kDetection.folds.compared_frequencies); k <= m + kDetection.folds.compared_frequencies;
+       ++k)
     if (k != m) beside.push_back(power(k));
   return power(m) / std::max(median(beside), 1e-30);
 }
@@ -34,17 +36,19 @@ class FoldSpectrum {
 public:
   /// \param num_slabs across the line, each of which is cut into rings of its own.
   FoldSpectrum(const Points& points, const Line3d& line, int num_slabs)
-      : squares_(kDetection.most_frequency + kDetection.beside + 1, 0.0), powers_(squares_.size(), 0.0) {
+      : squares_(kDetection.folds.most_frequency + kDetection.folds.compared_frequencies + 1, 0.0),
+        powers_(squares_.size(), 0.0) {
     const Eigen::Vector3d u = line.direction().unitOrthogonal(), v = line.direction().cross(u);
     std::vector<Place> places;
-    for (const int i : drawSamples(points.cols(), kDetection.spectrum_samples, 1)) {
+    for (const int i : drawSamples(points.cols(), kDetection.folds.spectrum_samples, 1)) {
       const Eigen::Vector3d x = points.col(i).cast<double>() - line.origin();
       const std::complex<double> across(x.dot(u), x.dot(v));
       const double distance = std::abs(across);
       if (distance > 0.0) places.push_back({x.dot(line.direction()), distance, across / distance});
     }
     inParts(places.begin(), places.end(), num_slabs, &Place::height, [&](Places first, Places last) {
-      inParts(first, last, kDetection.rings, &Place::distance, [&](Places from, Places to) { addRing(from, to); });
+      inParts(first, last, kDetection.folds.rings, &Place::distance,
+              [&](Places from, Places to) { addRing(from, to); });
     });
   }
 
@@ -53,7 +57,7 @@ public:
   /// By how much the frequency has more power than those beside it; 0 where that may be chance.
   double prominence(int m) const {
     const double now = aboveBeside(m, [this](int k) { return power(k); });
-    return power(m) >= kDetection.least_power && now >= kDetection.stands_out ? now : 0.0;
+    return power(m) >= kDetection.folds.least_power && now >= kDetection.folds.stands_out ? now : 0.0;
   }
   /// Angle of the normal of a plane, radians.
   double phase(int m) const { return 0.5 * kPi + std::arg(squares_[m]) / (2.0 * m); }
@@ -96,21 +100,21 @@ private:
 /// the line reflect the cloud best there.
 /// \return none where the frequency does not stand out of the mean.
 std::optional<double> phaseByReflections(const NormalizedCloud& cloud, const Line3d& line, int fold, int num_threads) {
-  const std::vector<int> samples = drawSamples(cloud.points.cols(), kDetection.phase_samples, 1);
-  const PlaneLattice fan{line, kDetection.angles, 0.0, 0};
-  std::vector<double> mean(kDetection.angles, 0.0);
-  parallelBlocks(kDetection.angles, num_threads, [&](std::size_t k) {
+  const std::vector<int> samples = drawSamples(cloud.points.cols(), kDetection.folds.phase_samples, 1);
+  const PlaneLattice fan{line, kDetection.folds.angles, 0.0, 0};
+  std::vector<double> mean(kDetection.folds.angles, 0.0);
+  parallelBlocks(kDetection.folds.angles, num_threads, [&](std::size_t k) {
     const ReflectionPlane plane = cloud.toInput(fan.plane(static_cast<double>(k)));
     for (const int i : samples) mean[k] += cloud.edt(plane.reflect(cloud.toInput(cloud.points.col(i).cast<double>())));
   });
   const auto coefficient = [&](int m) {
     std::complex<double> sum = 0.0;
-    for (int k = 0; k < kDetection.angles; ++k)
-      sum += mean[k] * std::polar(1.0, 2.0 * kPi * static_cast<double>(m) * k / kDetection.angles);
+    for (int k = 0; k < kDetection.folds.angles; ++k)
+      sum += mean[k] * std::polar(1.0, 2.0 * kPi * static_cast<double>(m) * k / kDetection.folds.angles);
     return sum;
   };
   const double prominence = aboveBeside(fold, [&](int m) { return std::norm(coefficient(m)); });
-  if (prominence < kDetection.reflections_stand_out) return std::nullopt;
+  if (prominence < kDetection.folds.reflections_stand_out) return std::nullopt;
   return std::arg(coefficient(fold)) / (2.0 * fold);
 }
 
@@ -135,7 +139,7 @@ double confidenceTogether(const std::vector<JudgedPlane>& judged, int first, int
 /// The least confidence of parts of a polygon that may be symmetries while the others are not.
 double leastTogether(const std::vector<JudgedPlane>& judged) {
   double least = confidenceTogether(judged, 0, 1);
-  for (const int divisor : kDetection.divisors)
+  for (const int divisor : kDetection.folds.divisors)
     if (judged.size() % divisor == 0 && judged.size() > static_cast<std::size_t>(divisor))
       for (int first = 0; first < divisor; ++first) least = std::min(least, confidenceTogether(judged, first, divisor));
   return least;
@@ -145,8 +149,9 @@ double leastTogether(const std::vector<JudgedPlane>& judged) {
 Line3d lineThrough(const std::vector<ReflectionPlane>& planes, const ReflectionPlane& a, const ReflectionPlane& b) {
   const Line3d line = commonLine({a, b});
   std::vector<ReflectionPlane> through;
-  std::copy_if(planes.begin(), planes.end(), std::back_inserter(through),
-               [&](const ReflectionPlane& plane) { return contains(plane, line, kDetection.contained_offset); });
+  std::copy_if(planes.begin(), planes.end(), std::back_inserter(through), [&](const ReflectionPlane& plane) {
+    return contains(plane, line, kDetection.families.contained_offset);
+  });
   return commonLine(through.size() > 2 ? through : std::vector<ReflectionPlane>{a, b});
 }
 
@@ -156,13 +161,12 @@ std::optional<PlaneLattice> bestLattice(const std::vector<SymmetryPlane>& planes
   std::vector<ReflectionPlane> likely;
   for (const SymmetryPlane& plane : planes)
     if (const ReflectionPlane normalized = cloud.toNormalized(plane);
-        (plane.kind == PlaneKind::Symmetry || plane.kind == PlaneKind::Possible) &&
-        !basinTolerance().anySame(likely, normalized))
+        isDecided(plane) && !kSameBasin.anySame(likely, normalized))
       likely.push_back(normalized);
-  const std::size_t size = std::min(likely.size(), kDetection.most_line_pairs);
+  const std::size_t size = std::min(likely.size(), kDetection.folds.most_line_pairs);
   for (std::size_t i = 0; i < size; ++i)
     for (std::size_t j = 0; j < i; ++j)
-      if (likely[i].angleTo(likely[j]) >= kDetection.least_line_angle)
+      if (likely[i].angleTo(likely[j]) >= kDetection.folds.least_line_angle)
         if (const auto lattice = latticeBySpectrum(cloud, all, lineThrough(likely, likely[i], likely[j]), num_threads))
           return lattice;
   return std::nullopt;
@@ -175,7 +179,7 @@ std::optional<PlaneLattice> latticeBySpectrum(const NormalizedCloud& cloud, cons
   const FoldSpectrum spectrum(all, line, 1);
   int fold = 0;
   double most = 0.0;
-  for (int m = kDetection.least_fold; m <= kDetection.most_frequency; ++m) {
+  for (int m = kDetection.folds.least_fold; m <= kDetection.folds.most_frequency; ++m) {
     const double now = spectrum.prominence(m);
     if (now <= most) continue;
     most = now;
@@ -188,9 +192,9 @@ std::optional<PlaneLattice> latticeBySpectrum(const NormalizedCloud& cloud, cons
       fold = m;
       break;
     }
-  if (fold < kDetection.least_fold) return std::nullopt;
+  if (fold < kDetection.folds.least_fold) return std::nullopt;
   const std::optional<double> phase = phaseByReflections(cloud, line, fold, num_threads);
-  return PlaneLattice{line, fold, phase ? *phase : FoldSpectrum(all, line, kDetection.slabs).phase(fold), 0};
+  return PlaneLattice{line, fold, phase ? *phase : FoldSpectrum(all, line, kDetection.folds.slabs).phase(fold), 0};
 }
 
 PlanesAndPolygon withPolygon(std::vector<SymmetryPlane> planes, const NormalizedCloud& cloud, const Points& all,
@@ -203,13 +207,13 @@ PlanesAndPolygon withPolygon(std::vector<SymmetryPlane> planes, const Normalized
   std::vector<Candidate> candidates;
   for (int k = 0; k < lattice->fold; ++k) candidates.push_back({lattice->plane(k), false});
   std::vector<JudgedPlane> judged = judge.judgeWithEvidence(candidates);
-  const double least = kDetection.odds_of_polygon * leastTogether(judged);
-  const double together = least / (least + 1.0 - least / kDetection.odds_of_polygon);
+  const double together = withOdds(leastTogether(judged), kDetection.folds.odds_of_polygon);
   if (together < options.min_confidence) return {std::move(planes), std::nullopt};
   // All planes tell where the polygon lies: those that noise moved away are dropped.
   planes.erase(std::remove_if(planes.begin(), planes.end(),
                               [&](const SymmetryPlane& plane) {
-                                return contains(cloud.toNormalized(plane), lattice->line, kDetection.contained_offset);
+                                return contains(cloud.toNormalized(plane), lattice->line,
+                                                kDetection.families.contained_offset);
                               }),
                planes.end());
   for (JudgedPlane& one : judged) {

@@ -3,7 +3,6 @@
 #include <Eigen/Eigenvalues>
 #include <Eigen/QR>
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 #include <numeric>
@@ -19,64 +18,6 @@
 #include "pcl_symmetry/core/visibility.h"
 
 namespace pcl_symmetry {
-
-namespace {
-
-/// The frame of the cells, as plain numbers.
-struct CellFrame {
-  double center[3], origin[3];
-  double scale, cell_size;
-  int num_cells;
-};
-
-/// Indices of the cells that contain points; -1 where a point lies outside the grid.
-/// \param points three coordinates each.
-PCL_SYMMETRY_MULTIVERSION
-void cellsOf(const float* points, int size, const CellFrame& frame, std::int32_t* cells) {
-  const double scale = frame.scale, cell_size = frame.cell_size, end = frame.num_cells, last = end - 1.0;
-  const double c0 = frame.center[0], c1 = frame.center[1], c2 = frame.center[2];
-  const double o0 = frame.origin[0], o1 = frame.origin[1], o2 = frame.origin[2];
-  const std::int32_t n = frame.num_cells;
-#pragma GCC ivdep
-  for (int i = 0; i < size; ++i) {
-    const double x = (static_cast<double>(points[3 * i]) * scale + c0 - o0) / cell_size + 0.5,
-                 y = (static_cast<double>(points[3 * i + 1]) * scale + c1 - o1) / cell_size + 0.5,
-                 z = (static_cast<double>(points[3 * i + 2]) * scale + c2 - o2) / cell_size + 0.5;
-    const bool inside = (x >= 0.0) & (y >= 0.0) & (z >= 0.0) & (x < end) & (y < end) & (z < end);
-    const auto at = [=](double coordinate) {
-      const double kept = coordinate < 0.0 ? 0.0 : coordinate;
-      return static_cast<std::int32_t>(kept > last ? last : kept);
-    };
-    const std::int32_t cell = (at(z) * n + at(y)) * n + at(x);
-    cells[i] = inside ? cell : -1;
-  }
-}
-
-}  // namespace
-
-std::vector<Eigen::Index> FarTest::nearOf(const PointsRef& points, float bound) const {
-  constexpr int kTogether = 256;  // points. Their cells stay in the first cache
-  CellFrame frame{{}, {}, scale_, edt_.cellSize(), edt_.numCells()};
-  for (int k = 0; k < 3; ++k) {
-    frame.center[k] = center_[k];
-    frame.origin[k] = edt_.origin()[k];
-  }
-  const float least = std::min(bound, kFarthest);
-  const float* const values = edt_.values().data();
-  std::array<std::int32_t, kTogether> cells;
-  std::vector<Eigen::Index> near(static_cast<std::size_t>(points.cols()));
-  std::size_t count = 0;
-  for (Eigen::Index begin = 0; begin < points.cols(); begin += kTogether) {
-    const int size = static_cast<int>(std::min<Eigen::Index>(kTogether, points.cols() - begin));
-    cellsOf(points.data() + 3 * begin, size, frame, cells.data());
-    for (int i = 0; i < size; ++i) {
-      near[count] = begin + i;
-      count += cells[i] >= 0 && values[cells[i]] > least ? 1 : 0;
-    }
-  }
-  near.resize(count);
-  return near;
-}
 
 namespace {
 
@@ -126,7 +67,12 @@ void addAll(StepEquations& equations, const std::vector<double>& weights, const 
   if (block.size > 0) use();
 }
 
-/// stepReflectionPlane() of pairs that \p fill writes, see addAll().
+/// The plane after one Gauss-Newton step on sum w (m . (x' - y))^2, where m is the mean direction of the normal at y
+/// and the reflected normal at x.
+///
+/// Directions that this leaves free (a flat piece of surface is uninformative about planes across it) move by a step on
+/// sum w |x' - y|^2. Departure from the paper, which minimizes the latter alone: it needs many more iterations.
+/// \param fill writes the pairs, see addAll().
 template <typename Fill>
 ReflectionPlane steppedPlane(const PointsRef& x, const std::vector<double>& weights, const ReflectionPlane& plane,
                              const Fill& fill) {
@@ -137,7 +83,7 @@ ReflectionPlane steppedPlane(const PointsRef& x, const std::vector<double>& weig
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(across.h);  // reads the lower half
   const Eigen::Vector3d& stiffness = solver.eigenvalues();                // ascending
   int num_soft = 0;
-  while (num_soft < 3 && !(stiffness[num_soft] > kDetection.least_stiffness * stiffness[2])) ++num_soft;
+  while (num_soft < 3 && !(stiffness[num_soft] > kDetection.isp.least_stiffness * stiffness[2])) ++num_soft;
   Eigen::Vector3d step = Eigen::Vector3d::Zero();
   for (int i = num_soft; i < 3; ++i)
     step -= solver.eigenvectors().col(i) * (solver.eigenvectors().col(i).dot(across.g) / stiffness[i]);
@@ -150,19 +96,20 @@ ReflectionPlane steppedPlane(const PointsRef& x, const std::vector<double>& weig
   }
   const double length = step.norm();
   if (!std::isfinite(length)) return plane;
-  if (length > kDetection.longest_step) step *= kDetection.longest_step / length;
+  if (length > kDetection.isp.longest_step) step *= kDetection.isp.longest_step / length;
   return across.moved(step);
 }
 
-/// The closest points to the reflections, where there are any within reach of the weights.
+/// The closest points to the reflections, where there are any within reach of the weights: FLANN's, unless the caller
+/// has a search of its own.
 IspStep matchReflections(const IspSurface& surface, const Points& reflected, double sigma,
                          const std::vector<int>* guesses) {
   IspStep step;
   const auto size = static_cast<std::size_t>(reflected.cols());
   step.closest.assign(size, -1);
   step.sq_distances.assign(size, std::numeric_limits<float>::infinity());
-  const float bound = surface.far ? surface.far->bound(kDetection.reach * sigma) : 0.0f;
-  const auto sq_reach = static_cast<float>(kDetection.reach * kDetection.reach * sigma * sigma);
+  const float bound = surface.far ? surface.far->bound(kDetection.isp.reach_sigmas * sigma) : 0.0f;
+  const auto sq_reach = static_cast<float>(kDetection.isp.reach_sigmas * kDetection.isp.reach_sigmas * sigma * sigma);
   parallelRanges(size, 1024, surface.num_threads, [&](std::size_t begin, std::size_t end) {
     if (!surface.far && size <= 1024) {  // all at once
       if (guesses) step.closest = *guesses;
@@ -219,7 +166,7 @@ Points reflections(const Points& points, const ReflectionPlane& plane) {
 /// taken instead, draw a plane away from the symmetry, to where more of what was seen overlaps.
 double seenWeight(const Visibility* visibility, const Eigen::Vector3d& reflection, double sigma) {
   if (!visibility) return 1.0;
-  const double depth = std::max(0.0, visibility->depthBehind(reflection)) / (kDetection.hidden_depth * sigma);
+  const double depth = std::max(0.0, visibility->depthBehind(reflection)) / (kDetection.isp.hidden_depth * sigma);
   return std::exp(-depth * depth);
 }
 
@@ -280,17 +227,6 @@ ReflectionPlane fitReflectionPlane(const PointsRef& x, const PointsRef& y, const
   return ReflectionPlane(normal, normal.dot(middle));
 }
 
-ReflectionPlane stepReflectionPlane(const PointsRef& x, const PointsRef& y, const PointsRef& x_normals,
-                                    const PointsRef& y_normals, const std::vector<double>& weights,
-                                    const ReflectionPlane& plane) {
-  return steppedPlane(x, weights, plane, [&](Eigen::Index i, PairBlock& block, int place) {
-    put(x.col(i), block.x, place);
-    put(y.col(i), block.y, place);
-    put(x_normals.col(i), block.x_normals, place);
-    put(y_normals.col(i), block.y_normals, place);
-  });
-}
-
 IspStep iterateSymmetricPoints(const IspSurface& surface, const std::vector<int>& samples, const ReflectionPlane& plane,
                                double sigma, IspUpdate update, const std::vector<int>* guesses) {
   WeightedPairs pairs(surface, samples, plane, sigma, guesses);
@@ -346,7 +282,8 @@ IspResult refineSymmetricPoints(const IspSurface& surface, const std::vector<int
     result.converged = sigma == options.final_sigma && moved <= tolerance && angle * extent <= tolerance;
     result.plane = next;
     // Narrower weights only where the plane has come to rest at these: it must not lose what it moves toward.
-    if (moved + angle * extent <= kDetection.rest * sigma) sigma = std::max(options.final_sigma, 0.5 * sigma);
+    if (moved + angle * extent <= kDetection.isp.rest_sigmas * sigma)
+      sigma = std::max(options.final_sigma, 0.5 * sigma);
   }
   return result;
 }

@@ -24,8 +24,10 @@ struct KindRules {
   double thin_tolerances = 1.0;  ///< tolerances within which points are a sheet
 
   // Families of planes.
-  bool normals_tell = true;      ///< normals point to axes and centers
-  double family_share = 0.92;    ///< of the surface seen, that the planes of a family map on average
+  bool normals_tell = true;    ///< normals point to axes and centers
+  double family_share = 0.92;  ///< of the surface seen, that the planes of a family map on average
+  /// Share of the surface by which planes of a family may differ, at that many points or more.
+  double family_allowance = 0.015, points_of_allowance = 0.0;
   int family_samples = 1500;     ///< points that judge a family; a look-up in a density costs a tenth of a search
   bool family_needs_all = true;  ///< the worst plane of a family has to be a symmetry; a scan shows some too badly
   bool has_polygons = false;     ///< planes of a polygon are judged together, as noise hides single ones
@@ -57,6 +59,8 @@ constexpr KindRules volumeRules() {
   rules.may_lack_piece = false;
   rules.thin_tolerances = 3.0;
   rules.normals_tell = false;
+  rules.family_allowance = 0.012;
+  rules.points_of_allowance = 10'000.0;
   rules.family_samples = 15'000;
   rules.has_polygons = true;
   rules.evens_density = true;

@@ -20,19 +20,19 @@ namespace {
 /// K neighbors lie within rho = sqrt(k / pi) spacings. Of the neighbors of samples within rho of a straight edge, 2 rho
 /// / (3 pi) per spacing of edge lie beyond it. A disc of n samples has an edge of 2 sqrt(pi n) spacings.
 double edgeOfDisc() {
-  const double reach = std::sqrt((kDetection.num_smoothing + 1) / kPi);
+  const double reach = std::sqrt((kDetection.parts.num_smoothing + 1) / kPi);
   return 2.0 * reach / (3.0 * kPi) * 2.0 * std::sqrt(kPi);
 }
 
 }  // namespace
 
 MatchedRegions::MatchedRegions(const NormalizedCloud& cloud, const PlaneFit& fit, std::uint64_t seed, int num_threads)
-    : cloud_(cloud), fit_(fit), samples_(drawSamples(cloud.points.cols(), kDetection.num_region_samples, seed)) {
+    : cloud_(cloud), fit_(fit), samples_(drawSamples(cloud.points.cols(), kDetection.parts.num_region_samples, seed)) {
   std::sort(samples_.begin(), samples_.end());
   const Points places = pointsAt(cloud.points, samples_);
   const ClosestPointSearch::Ptr search = makeFlannSearch(places);
   std::vector<float> sq_distances;
-  const int num_neighbors = std::min<int>(kDetection.num_smoothing + 1, static_cast<int>(samples_.size()));
+  const int num_neighbors = std::min<int>(kDetection.parts.num_smoothing + 1, static_cast<int>(samples_.size()));
   search->search(places, num_neighbors, neighbors_, sq_distances);
   closest_sample_.resize(static_cast<std::size_t>(cloud.points.cols()));
   parallelRanges(closest_sample_.size(), 1024, num_threads, [&](std::size_t begin, std::size_t end) {
@@ -52,7 +52,7 @@ MatchedRegion MatchedRegions::largest(const ReflectionPlane& plane, const std::v
   for (std::size_t i = 0; i < size; ++i) {
     double sum = 0.0;
     for (std::size_t k = 0; k < num_neighbors; ++k) sum += support[neighbors_[i * num_neighbors + k]];
-    matched[i] = sum >= kDetection.matched * static_cast<double>(num_neighbors);
+    matched[i] = sum >= kDetection.parts.matched_support * static_cast<double>(num_neighbors);
   }
   const std::vector<char> inside = inLargest(matched, step, support);
   MatchedRegion region;
@@ -78,14 +78,14 @@ std::vector<char> MatchedRegions::inLargest(const std::vector<char>& matched, co
   std::vector<int> rank(size, 0), parent(size);
   std::iota(parent.begin(), parent.end(), 0);
   boost::disjoint_sets<int*, int*> sets(rank.data(), parent.data());
-  const std::size_t num_connecting = std::min<std::size_t>(kDetection.num_connecting + 1, num_neighbors);
+  const std::size_t num_connecting = std::min<std::size_t>(kDetection.parts.num_connecting + 1, num_neighbors);
   for (std::size_t i = 0; i < size; ++i) {
     if (!matched[i]) continue;
     for (std::size_t k = 0; k < num_connecting; ++k) {
       const int j = neighbors_[i * num_neighbors + k];
       if (matched[j]) sets.union_set(static_cast<int>(i), j);
     }
-    if (step.closest[i] < 0 || support[i] < kDetection.counterpart) continue;
+    if (step.closest[i] < 0 || support[i] < kDetection.parts.counterpart) continue;
     const int j = closest_sample_[step.closest[i]];
     if (matched[j]) sets.union_set(static_cast<int>(i), j);
   }

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <utility>
 
+#include "core/detection/candidates.h"
 #include "core/detection/plane_decision.h"
 #include "core/geometry/geometry_rules.h"
 
@@ -33,10 +34,11 @@ void refine(const MeshSurface& mesh, SymmetryPlane& plane, double tolerance, con
   plane.kind = kindOf(plane.confidence, options);
 }
 
-bool areOne(const SymmetryPlane& a, const SymmetryPlane& b, const BoundingBall& ball, const DetectionOptions& options) {
-  return a.angleTo(b) <= options.expert.merge_angle &&
-         std::abs(std::abs(a.signedDistance(ball.center)) - std::abs(b.signedDistance(ball.center))) <=
-             options.expert.merge_offset * ball.radius;
+bool areOne(const ReflectionPlane& a, const ReflectionPlane& b, const BoundingBall& ball) {
+  const auto normalized = [&](const ReflectionPlane& plane) {
+    return ReflectionPlane(plane.normal(), -plane.signedDistance(ball.center) / ball.radius);
+  };
+  return kSamePlane.same(normalized(a), normalized(b));
 }
 
 }  // namespace
@@ -47,10 +49,10 @@ void refineOnMesh(const MeshSurface& mesh, Detection& found, const DetectionOpti
   std::vector<SymmetryPlane> kept;
   std::optional<SymmetryPlane> dropped;
   for (SymmetryPlane& plane : found.planes) {
-    if (plane.kind == PlaneKind::Symmetry || plane.kind == PlaneKind::Possible) {
+    if (isDecided(plane)) {
       if (!(found.flat && plane.angleTo(*found.flat) < kSameAsFlat)) refine(mesh, plane, found.tolerance, options);
       if (std::any_of(kept.begin(), kept.end(),
-                      [&](const SymmetryPlane& other) { return areOne(other, plane, mesh.ball(), options); }))
+                      [&](const SymmetryPlane& other) { return areOne(other, plane, mesh.ball()); }))
         continue;
       if (plane.kind == PlaneKind::Approximate && !options.approximate) {
         if (!dropped || plane.share > dropped->share) dropped = std::move(plane);

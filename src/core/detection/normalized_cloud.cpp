@@ -68,10 +68,10 @@ NormalizedCloud::NormalizedCloud(const PointsRef& input, const GaussianEdt& edt_
       roughness(measures_.roughness / std::max(spacing, 1e-6)),
       baseline(std::max(meanSupport(ownSupport(samples, num_threads)), 1e-3)),
       sigma(edt.sigma() / scale),
-      final_sigma(std::min(sigma, std::max(1e-6, kDetection.final_sigma_in_spacings * spacing))),
-      kind_(visibility                                ? CloudKind::Scan
-            : roughness > kDetection.volume_roughness ? CloudKind::Volume
-                                                      : CloudKind::Surface) {}
+      final_sigma(std::min(sigma, std::max(1e-6, kDetection.cloud.final_sigma_in_spacings * spacing))),
+      kind_(visibility                                      ? CloudKind::Scan
+            : roughness > kDetection.cloud.volume_roughness ? CloudKind::Volume
+                                                            : CloudKind::Surface) {}
 
 NormalizedCloud::Measures::Measures(const Points& points, const LocalGeometry& geometry, int num_threads) {
   const std::array<std::function<void()>, 4> measurements{
@@ -89,10 +89,7 @@ ReflectionPlane NormalizedCloud::toInput(const ReflectionPlane& plane) const {
 }
 
 double NormalizedCloud::score(const ReflectionPlane& input_plane) const {
-  const ReflectionPlane cells(input_plane.normal(), input_plane.signedDistance(edt.origin()) / -edt.cellSize());
-  const Eigen::Vector3d step = Eigen::Vector3d::UnitX() - 2.0 * input_plane.normal().x() * input_plane.normal();
-  return correlation(
-      edt, [&](const Eigen::Vector3d& x) { return cells.reflect(x); }, step, surface.num_threads);
+  return correlation(edt, input_plane, surface.num_threads);
 }
 
 }  // namespace pcl_symmetry

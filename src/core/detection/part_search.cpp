@@ -25,13 +25,13 @@ namespace pcl_symmetry {
 namespace {
 
 // Planes that are one: radians, and radii of the points. Half of what is between the planes of a prism of 24 sides.
-constexpr PlaneTolerance kSamePlane{0.07, 0.04};
+constexpr PlaneTolerance kSamePlaneOfPart{kDetection.parts.same_part_angle, kDetection.parts.same_part_offset};
 
 /// Farthest-point sampling: each seed is the point farthest from those before.
 std::vector<Eigen::Vector3f> spreadSeeds(const Points& points) {
   std::vector<Eigen::Vector3f> seeds;
   Eigen::VectorXf sq_distances = Eigen::VectorXf::Constant(points.cols(), std::numeric_limits<float>::infinity());
-  for (int next = 0, k = 0; k < kDetection.num_seeds; ++k) {
+  for (int next = 0, k = 0; k < kDetection.parts.num_seeds; ++k) {
     seeds.push_back(points.col(next));
     sq_distances = sq_distances.cwiseMin((points.colwise() - seeds.back()).colwise().squaredNorm().transpose());
     sq_distances.maxCoeff(&next);
@@ -69,7 +69,7 @@ std::vector<int> within(const Points& points, const Eigen::Vector3f& center, dou
 
 bool isBall(std::size_t count, const Points& points) {
   const auto part = static_cast<double>(count), whole = static_cast<double>(points.cols());
-  return part >= kDetection.least_ball * whole && part <= kDetection.largest_ball * whole;
+  return part >= kDetection.parts.least_ball * whole && part <= kDetection.parts.largest_ball * whole;
 }
 
 /// Evenly chosen samples, at most \p most and at least half as many where there are enough.
@@ -83,8 +83,8 @@ std::vector<int> thinned(const std::vector<int>& samples, std::size_t most) {
 /// Planes through the middle of a ball: across the principal axes of its points, and in directions all around.
 std::vector<ReflectionPlane> startingPlanes(const Points& ball, const Eigen::Vector3d& middle) {
   std::vector<ReflectionPlane> planes = principalPlanes(principalAxes(ball));
-  for (int k = 0; k < kDetection.num_directions; ++k) {
-    const Eigen::Vector3d n = spiralDirection(k, kDetection.num_directions, 2.0 * kPi * kGoldenSection * k);
+  for (int k = 0; k < kDetection.parts.num_directions; ++k) {
+    const Eigen::Vector3d n = spiralDirection(k, kDetection.parts.num_directions, 2.0 * kPi * kGoldenSection * k);
     planes.emplace_back(n, n.dot(middle));
   }
   return planes;
@@ -113,29 +113,29 @@ struct BallSearch {
     isp.update = update;
     isp.sigma = cloud.sigma;
     isp.final_sigma = cloud.final_sigma;
-    isp.max_iterations = kDetection.iterations;
+    isp.max_iterations = kDetection.parts.iterations;
   }
 
   /// Refines a plane on the points of a ball, moves the ball to the plane, and refines the plane again.
   /// \return nothing where the ball has too few or too many points, the plane leaves the ball, or little matches.
   std::optional<SymmetricPart> refined(const ReflectionPlane& start, const std::vector<int>& ball,
                                        const Eigen::Vector3d& middle, double radius) const {
-    IspResult result = refineSymmetricPoints(surface, thinned(ball, kDetection.ball_samples), start, isp);
+    IspResult result = refineSymmetricPoints(surface, thinned(ball, kDetection.parts.ball_samples), start, isp);
     // A ball about a point of the plane is cut into equal halves.
     const Eigen::Vector3d center = middle - result.plane.signedDistance(middle) * result.plane.normal();
     const std::vector<int> moved = within(cloud.points, center.cast<float>(), radius);
     if (!isBall(moved.size(), cloud.points)) return std::nullopt;
-    const std::vector<int> samples = thinned(moved, kDetection.ball_samples);
+    const std::vector<int> samples = thinned(moved, kDetection.parts.ball_samples);
     IspOptions fine = isp;
     fine.sigma = fine.final_sigma;
     const int num_before = result.iterations;
     result = refineSymmetricPoints(surface, samples, result.plane, fine);
-    if (std::abs(result.plane.signedDistance(middle)) > kDetection.farthest_plane * radius) return std::nullopt;
+    if (std::abs(result.plane.signedDistance(middle)) > kDetection.parts.farthest_plane * radius) return std::nullopt;
     SymmetricPart part{result.plane, {}, 0.0, 0.0, num_before + result.iterations, 0.0};
     const IspStep step = matchReflectionsOnly(surface, samples, part.plane, cloud.final_sigma, &result.last.closest);
     part.support = fit.relativeSupport(fit.shares(part.plane, samples, step));
     part.share = static_cast<double>(moved.size()) / static_cast<double>(cloud.points.cols());
-    if (part.support < kDetection.least_support) return std::nullopt;
+    if (part.support < kDetection.parts.least_support) return std::nullopt;
     return part;
   }
 
@@ -159,7 +159,7 @@ std::vector<SymmetricPart> distinct(std::vector<SymmetricPart> parts) {
   });
   std::vector<SymmetricPart> kept;
   for (SymmetricPart& part : parts)
-    if (!kSamePlane.anySame(kept, part.plane, [](const SymmetricPart& other) { return other.plane; }))
+    if (!kSamePlaneOfPart.anySame(kept, part.plane, [](const SymmetricPart& other) { return other.plane; }))
       kept.push_back(std::move(part));
   return kept;
 }
@@ -174,15 +174,15 @@ struct RegionSearch {
 
   /// By how much the edge of a region is longer than that of a part of its size, edges of a disc.
   static double longerEdge(const MatchedRegion& region) {
-    return region.edge - kDetection.least_edge - kDetection.edge_per_share * region.share;
+    return region.edge - kDetection.parts.least_edge - kDetection.parts.edge_per_share * region.share;
   }
 
   /// Moves the plane to the best one on a region.
   void refine(SymmetricPart& part, const MatchedRegion& region, double sigma) const {
     IspOptions isp = balls.isp;
     isp.sigma = sigma;
-    const IspResult result =
-        refineSymmetricPoints(balls.cloud.surface, thinned(region.points, kDetection.region_samples), part.plane, isp);
+    const IspResult result = refineSymmetricPoints(
+        balls.cloud.surface, thinned(region.points, kDetection.parts.region_samples), part.plane, isp);
     part.plane = result.plane;
     part.iterations += result.iterations;
   }
@@ -194,14 +194,15 @@ struct RegionSearch {
     MatchedRegion region = regions.largest(part.plane);
     int round = 0;
     for (const double sigma : {balls.isp.sigma, balls.isp.final_sigma}) {
-      if (region.share < kDetection.least_part || longerEdge(region) > kDetection.longest_edges_before[round++])
+      if (region.share < kDetection.parts.least_part ||
+          longerEdge(region) > kDetection.parts.longest_edges_before[round++])
         return std::nullopt;
       refine(part, region, sigma);
       region = regions.largest(part.plane, &region.closest);
     }
-    if (region.share < kDetection.least_part || region.share > kDetection.largest_part) return std::nullopt;
+    if (region.share < kDetection.parts.least_part || region.share > kDetection.parts.largest_part) return std::nullopt;
     part.longer_edge = longerEdge(region);
-    if (part.longer_edge > kDetection.longer_edge) return std::nullopt;
+    if (part.longer_edge > kDetection.parts.longer_edge) return std::nullopt;
     part.points = std::move(region.points);
     part.share = region.share;
     part.support = region.support;
@@ -219,7 +220,7 @@ std::vector<SymmetricPart> withoutRemains(std::vector<SymmetricPart> parts, Eige
   for (SymmetricPart& part : parts) {
     const auto num_taken = std::count_if(part.points.begin(), part.points.end(), [&](int i) { return taken[i] != 0; });
     if (part.longer_edge > 0.0 &&
-        static_cast<double>(num_taken) > kDetection.shared_part * static_cast<double>(part.points.size()))
+        static_cast<double>(num_taken) > kDetection.parts.shared_part * static_cast<double>(part.points.size()))
       continue;
     for (const int i : part.points) taken[i] = 1;
     kept.push_back(std::move(part));
@@ -232,7 +233,7 @@ bool isSamePart(const SymmetricPart& a, const SymmetricPart& b) {
   std::vector<int> both;
   std::set_intersection(a.points.begin(), a.points.end(), b.points.begin(), b.points.end(), std::back_inserter(both));
   const auto either = static_cast<double>(a.points.size() + b.points.size() - both.size());
-  return static_cast<double>(both.size()) > kDetection.same_part * either;
+  return static_cast<double>(both.size()) > kDetection.parts.same_part * either;
 }
 
 /// Leaves one plane of each part that has more planes than a part without axis has.
@@ -248,7 +249,7 @@ std::vector<SymmetricPart> withoutFamilies(std::vector<SymmetricPart> parts) {
   }
   std::vector<SymmetricPart> kept;
   for (std::vector<SymmetricPart>& group : groups) {
-    if (group.size() > kDetection.most_planes_of_part) group.resize(1);
+    if (group.size() > kDetection.parts.most_planes_of_part) group.resize(1);
     std::move(group.begin(), group.end(), std::back_inserter(kept));
   }
   return kept;
@@ -260,9 +261,10 @@ std::vector<SymmetricPart> findSymmetricParts(const NormalizedCloud& cloud, cons
                                               const PartSearchOptions& options) {
   const BallSearch search(cloud, fit, options.update);
   const std::vector<Eigen::Vector3f> seeds = spreadSeeds(cloud.points);
-  std::vector<std::vector<SymmetricPart>> of_balls(seeds.size() * kDetection.radii.size());
+  std::vector<std::vector<SymmetricPart>> of_balls(seeds.size() * kDetection.parts.radii.size());
   parallelBlocks(of_balls.size(), options.num_threads, [&](std::size_t i) {
-    of_balls[i] = search.planes(seeds[i / kDetection.radii.size()], kDetection.radii[i % kDetection.radii.size()]);
+    of_balls[i] = search.planes(seeds[i / kDetection.parts.radii.size()],
+                                kDetection.parts.radii[i % kDetection.parts.radii.size()]);
   });
   std::vector<SymmetricPart> planes;
   for (std::vector<SymmetricPart>& found : of_balls) std::move(found.begin(), found.end(), std::back_inserter(planes));
@@ -288,7 +290,7 @@ std::vector<SymmetryPlane> localPlanes(const std::vector<SymmetryPlane>& known, 
   std::vector<std::optional<SymmetryPlane>> of_parts(parts.size());
   parallelBlocks(parts.size(), options.num_threads, [&](std::size_t i) {
     const auto normalized = [&](const SymmetryPlane& plane) { return cloud.toNormalized(plane); };
-    if (basinTolerance().anySame(decided, parts[i].plane, normalized)) return;
+    if (kSameBasin.anySame(decided, parts[i].plane, normalized)) return;
     SymmetryPlane plane = judge.decision.decide(judge.measure.of(parts[i].plane, all));
     if (plane.kind == PlaneKind::Symmetry) return;  // one of a family, which is known as its axis or center
     plane.kind = PlaneKind::Local;

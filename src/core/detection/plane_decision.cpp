@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "core/base/constants.h"
+#include "core/base/logistic.h"
 #include "core/base/parallel.h"
 #include "core/detection/candidates.h"
 #include "core/detection/detection_rules.h"
@@ -32,8 +33,8 @@ std::vector<Eigen::Vector3d> carryingNormals(const PointsRef& points, const Visi
   std::vector<double> heights;
   for (const Eigen::Vector4d& support : seen.supports()) heights.push_back(heightOf(points, support));
   if (heights.empty()) return {};
-  const double reach =
-      *std::min_element(heights.begin(), heights.end()) + kDetection.touching * 2.0 * boundingBall(points).radius;
+  const double reach = *std::min_element(heights.begin(), heights.end()) +
+                       kDetection.decide.touching * 2.0 * boundingBall(points).radius;
   std::vector<Eigen::Vector3d> normals;
   for (std::size_t i = 0; i < heights.size(); ++i)
     if (heights[i] <= reach) normals.push_back(seen.supports()[i].head<3>().normalized());
@@ -43,18 +44,10 @@ std::vector<Eigen::Vector3d> carryingNormals(const PointsRef& points, const Visi
 bool slants(const ReflectionPlane& plane, const std::vector<Eigen::Vector3d>& carrying_normals) {
   const auto is_along = [&](const Eigen::Vector3d& normal) {
     const double angle = std::acos(std::min(1.0, std::abs(normal.dot(plane.normal()))));
-    return angle <= kDetection.upright || angle >= 0.5 * kPi - kDetection.upright;
+    return angle <= kDetection.decide.upright || angle >= 0.5 * kPi - kDetection.decide.upright;
   };
   return !carrying_normals.empty() && std::none_of(carrying_normals.begin(), carrying_normals.end(), is_along);
 }
-
-namespace {
-
-double withOdds(double confidence, double factor) {
-  return factor * confidence / (1.0 - confidence + factor * confidence);
-}
-
-}  // namespace
 
 SymmetryPlane PlaneDecision::decide(PlaneRecord record) const {
   SymmetryPlane plane(cloud_.toInput(record.plane));
@@ -71,7 +64,7 @@ SymmetryPlane PlaneDecision::decide(PlaneRecord record) const {
   plane.iterations = record.iterations;
   plane.converged = record.converged;
   plane.residual = record.residual * cloud_.scale;
-  decideBy(planeConfidence(evidence) * std::min(1.0, record.told / kDetection.least_told), plane);
+  decideBy(planeConfidence(evidence) * std::min(1.0, record.told / kDetection.decide.least_told), plane);
   return plane;
 }
 
@@ -86,7 +79,7 @@ PlaneKind PlaneDecision::kindOf(const ReflectionPlane& plane, double confidence)
   const auto is_uninformative = [&] {
     if (measure_.thinness() == Thinness::Solid) return false;
     return measure_.thinness() == Thinness::Line ||
-           measure_.movedShare(cloud_.toNormalized(plane)) < 1.0 - kDetection.still_share;
+           measure_.movedShare(cloud_.toNormalized(plane)) < 1.0 - kDetection.decide.still_share;
   };
   const PlaneKind kind = pcl_symmetry::kindOf(confidence, options_);
   return kind == PlaneKind::Symmetry && (!isResolved() || isCutAllAround() || is_uninformative()) ? PlaneKind::Possible
@@ -95,33 +88,31 @@ PlaneKind PlaneDecision::kindOf(const ReflectionPlane& plane, double confidence)
 
 bool PlaneDecision::isResolved() const {
   return measure_.tolerance() >= measure_.resolution() ||
-         (measure_.tolerance() >= kDetection.coarsest_tolerance * cloud_.extent &&
-          measure_.resolution() <= kDetection.coarsest_resolution * cloud_.extent);
+         (measure_.tolerance() >= kDetection.decide.coarsest_tolerance * cloud_.extent &&
+          measure_.resolution() <= kDetection.decide.coarsest_resolution * cloud_.extent);
 }
 
 bool PlaneDecision::isCutAllAround() const {
-  return measure_.cutShare() > kDetection.most_cut;
+  return measure_.cutShare() > kDetection.decide.most_cut;
 }
 
 bool PlaneDecision::explainsAll(const SymmetryPlane& plane) const {
   return cloud_.rules().may_lack_piece && plane.kind == PlaneKind::Symmetry &&
-         1.0 - plane.seen <= kDetection.nothing_missing;
+         1.0 - plane.seen <= kDetection.decide.nothing_missing;
 }
 
 bool PlaneDecision::isHopeless(const Candidate& candidate) const {
-  if (!cloud_.rules().may_lack_piece || candidate.merit >= kDetection.symmetric_merit) return false;
+  if (!cloud_.rules().may_lack_piece || candidate.merit >= kDetection.stages.symmetric_merit) return false;
   const PlaneMeasure::QuickShare quick = measure_.quickShare(candidate);
-  return quick.share + kDetection.look_errors * quick.error < kDetection.symmetric_merit;
+  return quick.share + kDetection.decide.look_errors * quick.error < kDetection.stages.symmetric_merit;
 }
 
 void PlaneDecision::preferWhole(std::vector<SymmetryPlane>& planes) const {
   if (std::none_of(planes.begin(), planes.end(), [&](const SymmetryPlane& plane) { return explainsAll(plane); }))
     return;
-  for (SymmetryPlane& plane : planes) {
-    if (1.0 - plane.seen <= kDetection.piece_missing) continue;
-    const double odds = kDetection.odds_of_a_piece * plane.confidence;
-    decideBy(odds / (odds + 1.0 - plane.confidence), plane);
-  }
+  for (SymmetryPlane& plane : planes)
+    if (1.0 - plane.seen > kDetection.decide.piece_missing)
+      decideBy(withOdds(plane.confidence, kDetection.decide.odds_of_a_piece), plane);
 }
 
 void PlaneDecision::preferBest(std::vector<SymmetryPlane>& planes, bool has_family) const {
@@ -129,8 +120,8 @@ void PlaneDecision::preferBest(std::vector<SymmetryPlane>& planes, bool has_fami
   for (const SymmetryPlane& plane : planes) most = std::max(most, plane.confidence);
   // Among planes that are as likely, D decides.
   const auto best = std::max_element(planes.begin(), planes.end(), [&](const SymmetryPlane& a, const SymmetryPlane& b) {
-    const bool a_likely = a.confidence >= most - kDetection.as_likely,
-               b_likely = b.confidence >= most - kDetection.as_likely;
+    const bool a_likely = a.confidence >= most - kDetection.decide.as_likely,
+               b_likely = b.confidence >= most - kDetection.decide.as_likely;
     return a_likely != b_likely ? b_likely : a.score < b.score;
   });
   for (auto plane = planes.begin(); plane != planes.end(); ++plane)
@@ -143,7 +134,7 @@ void PlaneDecision::doubtSlanted(std::vector<SymmetryPlane>& planes) const {
   const std::vector<Eigen::Vector3d> normals = carryingNormals(cloud_.points, *cloud_.seen());
   for (SymmetryPlane& plane : planes)
     if (isDecided(plane) && slants(plane, normals))
-      decideBy(withOdds(plane.confidence, kDetection.slanted_odds), plane);
+      decideBy(withOdds(plane.confidence, kDetection.decide.slanted_odds), plane);
   if (!options_.approximate)
     planes.erase(std::remove_if(planes.begin(), planes.end(), [](const SymmetryPlane& p) { return !isDecided(p); }),
                  planes.end());
@@ -226,12 +217,12 @@ bool isOnSlopeOf(const SymmetryPlane& better, const SymmetryPlane& plane, const 
   const double sign = a.normal().dot(b.normal()) < 0.0 ? -1.0 : 1.0;
   const Eigen::Vector3d normal = a.normal() + sign * b.normal();
   const ReflectionPlane between(normal, 0.5 * normal.norm() * (a.offset() + sign * b.offset()));
-  return cloud.score(cloud.toInput(between)) > plane.score - kDetection.slope_dip;
+  return cloud.score(cloud.toInput(between)) > plane.score - kDetection.decide.slope_dip;
 }
 
 /// Whether a plane is of a polygon, between whose planes noise may leave no dip.
 bool isOf(const std::optional<PlaneLattice>& polygon, const SymmetryPlane& plane, const NormalizedCloud& cloud) {
-  return polygon && contains(cloud.toNormalized(plane), polygon->line, kDetection.contained_offset);
+  return polygon && contains(cloud.toNormalized(plane), polygon->line, kDetection.families.contained_offset);
 }
 
 /// Judges every point, where the plane was judged by some of them.
@@ -241,13 +232,12 @@ void completeSupport(SymmetryPlane& plane, const NormalizedCloud& cloud, const P
 }
 
 /// An approximate plane that is a symmetry of a part is reported as that.
-std::vector<SymmetryPlane> withoutPlanesOfParts(std::vector<SymmetryPlane> planes, const NormalizedCloud& cloud,
-                                                const PlaneTolerance& tolerance) {
+std::vector<SymmetryPlane> withoutPlanesOfParts(std::vector<SymmetryPlane> planes, const NormalizedCloud& cloud) {
   std::vector<ReflectionPlane> local;
   for (const SymmetryPlane& plane : planes)
     if (plane.kind == PlaneKind::Local) local.push_back(cloud.toNormalized(plane));
   const auto is_of_part = [&](const SymmetryPlane& plane) {
-    return plane.kind == PlaneKind::Approximate && tolerance.anySame(local, cloud.toNormalized(plane));
+    return plane.kind == PlaneKind::Approximate && kSamePlane.anySame(local, cloud.toNormalized(plane));
   };
   planes.erase(std::remove_if(planes.begin(), planes.end(), is_of_part), planes.end());
   return planes;
@@ -258,17 +248,16 @@ std::vector<SymmetryPlane> withoutPlanesOfParts(std::vector<SymmetryPlane> plane
 std::vector<SymmetryPlane> rankedPlanes(std::vector<SymmetryPlane> planes, const std::optional<PlaneLattice>& polygon,
                                         const NormalizedCloud& cloud, const PlaneFit& fit,
                                         const DetectionOptions& options) {
-  const PlaneTolerance tolerance = mergeTolerance(options);
-  planes = withoutPlanesOfParts(std::move(planes), cloud, tolerance);
+  planes = withoutPlanesOfParts(std::move(planes), cloud);
   std::stable_sort(planes.begin(), planes.end(), isBetter);
   std::vector<SymmetryPlane> ranked;
   for (SymmetryPlane& plane : planes) {
     if (static_cast<int>(ranked.size()) >= options.max_planes) break;
     if (rankOf(plane) == 2 && !options.approximate) continue;
-    if (rankOf(plane) == 1 && static_cast<int>(ranked.size()) >= options.max_possible) continue;
+    if (rankOf(plane) == 1 && static_cast<int>(ranked.size()) >= kDetection.decide.most_possible) continue;
     const bool of_polygon = isOf(polygon, plane, cloud);
     const bool is_known = std::any_of(ranked.begin(), ranked.end(), [&](const SymmetryPlane& other) {
-      if (tolerance.same(cloud.toNormalized(other), cloud.toNormalized(plane))) return true;
+      if (kSamePlane.same(cloud.toNormalized(other), cloud.toNormalized(plane))) return true;
       // D is of the whole shape: planes of a part need not be maxima of it.
       if (plane.kind == PlaneKind::Local) return false;
       return !(of_polygon && isOf(polygon, other, cloud)) && isOnSlopeOf(other, plane, cloud);

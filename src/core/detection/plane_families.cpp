@@ -23,10 +23,7 @@ namespace {
 
 /// Plane \p k of a sequence of planes through a line whose angles no regular polygon has.
 ReflectionPlane planeThrough(const Line3d& line, int k) {
-  const Eigen::Vector3d u = line.direction().unitOrthogonal(), v = line.direction().cross(u);
-  const double angle = kPi * goldenFraction(k + 1);
-  const Eigen::Vector3d n = std::cos(angle) * u + std::sin(angle) * v;
-  return ReflectionPlane(n, n.dot(line.origin()));
+  return pcl_symmetry::planeThrough(line, kPi * goldenFraction(k + 1));
 }
 
 /// Plane \p k of \p count planes through a point, their normals spread over the half sphere.
@@ -44,7 +41,7 @@ Eigen::Vector3d commonPoint(const std::vector<ReflectionPlane>& planes, const Ei
     distances[i] = -planes[i].signedDistance(start);
   }
   Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixX3d> solver;
-  solver.setThreshold(kDetection.coplanar);
+  solver.setThreshold(kDetection.families.coplanar);
   solver.compute(normals);
   return start + solver.solve(distances);
 }
@@ -65,19 +62,21 @@ double meanShare(const PlaneAt& plane_at, int count, double least,
 template <typename PlaneAt>
 std::vector<ReflectionPlane> planesAt(const PlaneAt& plane_at) {
   std::vector<ReflectionPlane> planes;
-  for (int k = 0; k < kDetection.tested; ++k) planes.push_back(plane_at(k));
+  for (int k = 0; k < kDetection.families.tested_planes; ++k) planes.push_back(plane_at(k));
   return planes;
 }
 
 /// The family of all planes through a point, or through one nearby.
 std::optional<CenterFamily> centerAt(Eigen::Vector3d point, double least, const FamilyTest& test) {
-  const auto at = [&](int k) { return planeThrough(point, k, kDetection.tested); };
-  if (meanShare(at, kDetection.screening, least - kDetection.rough_factor * test.allowance, test.rough_share) == 0.0)
+  const auto at = [&](int k) { return planeThrough(point, k, kDetection.families.tested_planes); };
+  if (meanShare(at, kDetection.families.screening_planes, least - kDetection.families.rough_factor * test.allowance,
+                test.rough_share) == 0.0)
     return std::nullopt;
   std::vector<ReflectionPlane> refined;
-  for (int k = 0; k < kDetection.fitted; ++k) refined.push_back(test.refine(planeThrough(point, k, kDetection.fitted)));
+  for (int k = 0; k < kDetection.families.fitted_planes; ++k)
+    refined.push_back(test.refine(planeThrough(point, k, kDetection.families.fitted_planes)));
   point = commonPoint(refined, point);
-  const double share = meanShare(at, kDetection.tested, least, test.share);
+  const double share = meanShare(at, kDetection.families.tested_planes, least, test.share);
   if (share < least) return std::nullopt;
   return CenterFamily{point, share, planesAt(at)};
 }
@@ -87,16 +86,17 @@ std::optional<AxisFamily> axisAt(const Line3d& start, double least, const Family
   Line3d line = start;
   const auto at = [&](int k) { return planeThrough(line, k); };
   // The line through two rough planes may be off by a little: the refined line has to pass the full test.
-  if (meanShare(at, kDetection.screening, least - kDetection.rough_factor * test.allowance, test.rough_share) == 0.0)
+  if (meanShare(at, kDetection.families.screening_planes, least - kDetection.families.rough_factor * test.allowance,
+                test.rough_share) == 0.0)
     return std::nullopt;
   std::vector<ReflectionPlane> refined;
-  for (int k = 0; k < kDetection.fitted; ++k) refined.push_back(test.refine(planeThrough(line, k)));
+  for (int k = 0; k < kDetection.families.fitted_planes; ++k) refined.push_back(test.refine(planeThrough(line, k)));
   line = commonLine(refined);
-  double share = meanShare(at, kDetection.tested, least, test.share);
+  double share = meanShare(at, kDetection.families.tested_planes, least, test.share);
   // Planes that map a scan to what was not seen drift when they are refined.
   if (share < least) {
     line = start;
-    share = meanShare(at, kDetection.tested, least, test.share);
+    share = meanShare(at, kDetection.families.tested_planes, least, test.share);
   }
   if (share < least) return std::nullopt;
   return AxisFamily{line, share, planesAt(at)};
@@ -122,7 +122,7 @@ std::optional<CenterFamily> findCenter(const std::vector<ReflectionPlane>& plane
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(sum / static_cast<double>(planes.size()),
                                                               Eigen::EigenvaluesOnly);
   const bool has_point =
-      planes.size() >= 3 && solver.eigenvalues()[0] >= kDetection.least_spread;  // or else all hold one line
+      planes.size() >= 3 && solver.eigenvalues()[0] >= kDetection.families.least_spread;  // or else all hold one line
   if (has_point) points.push_back(commonPoint(planes, Eigen::Vector3d::Zero()));
   points.insert(points.end(), guesses.begin(), guesses.end());
   const double least = std::max(test.min_share, test.share(planes[0]) - test.allowance);
@@ -137,7 +137,7 @@ std::vector<AxisFamily> findAxes(const std::vector<ReflectionPlane>& planes, con
   std::vector<Line3d> tried;
   const auto attempt = [&](const Line3d& line, double best_share) {
     const bool known = std::any_of(tried.begin(), tried.end(), [&](const Line3d& other) {
-      return std::abs(other.direction().dot(line.direction())) > std::cos(kDetection.contained_angle) &&
+      return std::abs(other.direction().dot(line.direction())) > std::cos(kDetection.families.contained_angle) &&
              other.distance(line.origin()) < test.tolerance;
     });
     if (known) return;
@@ -149,10 +149,10 @@ std::vector<AxisFamily> findAxes(const std::vector<ReflectionPlane>& planes, con
   };
   if (!planes.empty())
     for (const Line3d& guess : guesses) attempt(guess, test.share(planes[0]));
-  const std::size_t size = std::min(planes.size(), kDetection.most_planes);
+  const std::size_t size = std::min(planes.size(), kDetection.families.most_planes);
   for (std::size_t i = 0; i < size; ++i) {
     for (std::size_t j = 0; j < i; ++j) {
-      if (planes[i].angleTo(planes[j]) < kDetection.least_angle) continue;
+      if (planes[i].angleTo(planes[j]) < kDetection.families.least_angle) continue;
       attempt(commonLine({planes[i], planes[j]}), std::max(test.share(planes[i]), test.share(planes[j])));
     }
   }
@@ -177,15 +177,18 @@ FamilyTest familyTest(const NormalizedCloud& cloud, const PlaneFit& fit, const s
   // Samples may be all points in the order of the file, whose first fifth is one end of the shape.
   std::vector<int> fewer;
   const auto num_samples = static_cast<Eigen::Index>(samples.size());
-  for (const int i : drawSamples(num_samples, static_cast<int>(num_samples) / kDetection.rough_sample_share, seed))
+  for (const int i :
+       drawSamples(num_samples, static_cast<int>(num_samples) / kDetection.families.rough_sample_share, seed))
     fewer.push_back(samples[i]);
   test.rough_share = share_of(fewer);
   test.refine = [&fit, samples](const ReflectionPlane& plane) {
-    return fit.refined(plane, samples, kDetection.refine_iterations);
+    return fit.refined(plane, samples, kDetection.families.refine_iterations);
   };
-  test.min_share = cloud.rules().family_share;
-  test.allowance = fit.familyAllowance();
-  test.tolerance = kDetection.contained_offset;
+  const KindRules& rules = cloud.rules();
+  test.min_share = rules.family_share;
+  test.allowance = rules.family_allowance *
+                   std::sqrt(std::max(1.0, rules.points_of_allowance / static_cast<double>(cloud.points.cols())));
+  test.tolerance = kDetection.families.contained_offset;
   return test;
 }
 
@@ -209,8 +212,7 @@ FamilyGuesses guessFamilies(const NormalizedCloud& cloud, const std::vector<int>
 }
 
 /// Different symmetries among planes, most confident first, normalized frame.
-std::vector<ReflectionPlane> symmetriesOf(const std::vector<SymmetryPlane>& planes, const NormalizedCloud& cloud,
-                                          const PlaneTolerance& tolerance) {
+std::vector<ReflectionPlane> symmetriesOf(const std::vector<SymmetryPlane>& planes, const NormalizedCloud& cloud) {
   std::vector<const SymmetryPlane*> symmetries;
   for (const SymmetryPlane& plane : planes)
     if (plane.kind == PlaneKind::Symmetry) symmetries.push_back(&plane);
@@ -219,7 +221,7 @@ std::vector<ReflectionPlane> symmetriesOf(const std::vector<SymmetryPlane>& plan
   std::vector<ReflectionPlane> distinct;
   for (const SymmetryPlane* plane : symmetries) {
     const ReflectionPlane normalized = cloud.toNormalized(*plane);
-    if (!tolerance.anySame(distinct, normalized)) distinct.push_back(normalized);
+    if (!kSamePlane.anySame(distinct, normalized)) distinct.push_back(normalized);
   }
   return distinct;
 }
@@ -236,14 +238,14 @@ PlanesAndFamilies collectFamilies(std::vector<SymmetryPlane> planes, const Norma
                                   const PlaneFit& fit, const PlaneJudge& judge, const DetectionOptions& options) {
   PlanesAndFamilies found;
   found.planes = std::move(planes);
-  const std::vector<ReflectionPlane> symmetries = symmetriesOf(found.planes, cloud, mergeTolerance(options));
+  const std::vector<ReflectionPlane> symmetries = symmetriesOf(found.planes, cloud);
   const bool is_line = judge.measure.thinness() == Thinness::Line;
   if (symmetries.empty() && !is_line) return found;
   const std::vector<int> samples = drawSamples(cloud.points.cols(), cloud.rules().family_samples, options.seed);
   if (is_line) {
     const Line3d line = longestAxis(cloud.principal_axes);
     std::vector<ReflectionPlane> through;
-    for (int k = 0; k < kDetection.tested; ++k) through.push_back(planeThrough(line, k));
+    for (int k = 0; k < kDetection.families.tested_planes; ++k) through.push_back(planeThrough(line, k));
     const JudgedFamily judged = judge.judgeFamily(through, samples);
     if (judged.confidence >= options.min_confidence)
       found.axes.push_back(
@@ -262,7 +264,7 @@ PlanesAndFamilies collectFamilies(std::vector<SymmetryPlane> planes, const Norma
   const auto isFamily = [&](const JudgedFamily& judged) {
     return judged.confidence >= options.min_confidence &&
            (!cloud.rules().family_needs_all ||
-            judged.least_confidence >= kDetection.worst_share * options.min_confidence);
+            judged.least_confidence >= kDetection.families.worst_share * options.min_confidence);
   };
   if (const std::optional<CenterFamily> center = findCenter(symmetries, test, guesses.centers)) {
     const JudgedFamily judged = judge.judgeFamily(center->planes, samples);
@@ -282,7 +284,7 @@ PlanesAndFamilies collectFamilies(std::vector<SymmetryPlane> planes, const Norma
     // No bounded shape has two parallel axes, but a thin disc seems to within the tolerance: the best is the
     // axis.
     const bool is_known = std::any_of(found.axes.begin(), found.axes.end(), [&](const SymmetryAxis& axis) {
-      return std::abs(axis.direction.dot(family.line.direction())) > std::cos(kDetection.contained_angle);
+      return std::abs(axis.direction.dot(family.line.direction())) > std::cos(kDetection.families.contained_angle);
     });
     if (!is_known)
       found.axes.push_back({cloud.toInput(family.line.origin()), family.line.direction(), judged.confidence,
@@ -296,7 +298,7 @@ std::vector<SymmetryPlane> withoutPlanesOf(std::vector<SymmetryPlane> planes, co
                                            const NormalizedCloud& cloud) {
   const auto belongs = [&](const SymmetryPlane& plane) {
     return std::any_of(axes.begin(), axes.end(), [&](const SymmetryAxis& axis) {
-      return contains(cloud.toNormalized(plane), cloud.lineOf(axis), kDetection.contained_offset);
+      return contains(cloud.toNormalized(plane), cloud.lineOf(axis), kDetection.families.contained_offset);
     });
   };
   planes.erase(std::remove_if(planes.begin(), planes.end(), belongs), planes.end());

@@ -30,7 +30,6 @@ public:
   PlaneShares shares(const ReflectionPlane& plane, const std::vector<int>& samples, const IspStep& step) const override;
   double relativeSupport(const PlaneShares& shares) const override;
   double merit(const PlaneShares& shares) const override;
-  double familyAllowance() const override;
   PlaneEvidence evidence(double support, double conflict, double score) const override;
 
 private:
@@ -59,7 +58,8 @@ void SurfaceFit::refine(std::vector<Candidate>& candidates, const RefinementStag
     candidate.merit = merit(shares(candidate.plane, used, candidate.last.last));
     if (!stage.undo_slides) return;
     undoSlide(candidate, start, used, stage.isp.final_sigma);
-    if (stage.climbs && cloud_.roughness > kDetection.noisy_depth && candidate.merit >= kDetection.climbing_merit)
+    if (stage.climbs && cloud_.roughness > kDetection.fit.noisy_depth &&
+        candidate.merit >= kDetection.fit.climbing_merit)
       climbOne(candidate, used, fewer);
   });
 }
@@ -67,11 +67,11 @@ void SurfaceFit::refine(std::vector<Candidate>& candidates, const RefinementStag
 void SurfaceFit::climb(std::vector<Candidate>& candidates, const RefinementStage& stage) const {
   const std::vector<int> samples = drawSamples(cloud_.points.cols(), stage.num_samples, options_.seed);
   const std::vector<int> fewer =
-      drawSamples(cloud_.points.cols(), std::min(stage.num_rough_samples, kDetection.climb_samples), options_.seed);
+      drawSamples(cloud_.points.cols(), std::min(stage.num_rough_samples, kDetection.fit.climb_samples), options_.seed);
   parallelBlocks(candidates.size(), options_.num_threads, [&](std::size_t i) {
     Candidate& candidate = candidates[i];
-    const bool is_at_rest = candidate.merit >= kDetection.symmetric_merit;  // nothing pulls at it
-    if (candidate.merit >= kDetection.climbing_merit && !is_at_rest) climbOne(candidate, samples, fewer);
+    const bool is_at_rest = candidate.merit >= kDetection.stages.symmetric_merit;  // nothing pulls at it
+    if (candidate.merit >= kDetection.fit.climbing_merit && !is_at_rest) climbOne(candidate, samples, fewer);
   });
 }
 
@@ -103,8 +103,8 @@ void SurfaceFit::climbOne(Candidate& candidate, const std::vector<int>& samples,
   IspStep here = matched(plane, nullptr);
   double best = merit(shares(plane, fewer, here));
   int num_climbs = 0;
-  for (double step = kDetection.first_climb; step >= kDetection.last_climb; step *= 0.5) {
-    for (int fails = 0, k = 0; fails < 6 && num_climbs < kDetection.most_climbs; k = (k + 1) % 6) {
+  for (double step = kDetection.fit.first_climb; step >= kDetection.fit.last_climb; step *= 0.5) {
+    for (int fails = 0, k = 0; fails < 6 && num_climbs < kDetection.fit.most_climbs; k = (k + 1) % 6) {
       const ReflectionPlane next = moved(plane, k / 2, k % 2 == 0 ? step : -step);
       IspStep there = matched(next, &here.closest);
       const double value = merit(shares(next, fewer, there));
@@ -120,7 +120,7 @@ void SurfaceFit::climbOne(Candidate& candidate, const std::vector<int>& samples,
   if (num_climbs == 0) return;
   IspStep step = matches(plane, samples);
   const double value = merit(shares(plane, samples, step));
-  if (value <= candidate.merit + kDetection.least_gain) return;
+  if (value <= candidate.merit + kDetection.fit.least_gain) return;
   candidate.plane = plane;
   candidate.merit = value;
   candidate.last.last = std::move(step);
@@ -163,10 +163,6 @@ double SurfaceFit::merit(const PlaneShares& shares) const {
   return seenSymmetry(relativeSupport(shares), shares.conflict);
 }
 
-double SurfaceFit::familyAllowance() const {
-  return kDetection.surface_allowance;
-}
-
 PlaneEvidence SurfaceFit::evidence(double support, double conflict, double score) const {
   PlaneEvidence evidence;
   evidence.support = support;
@@ -195,7 +191,6 @@ public:
   PlaneShares shares(const ReflectionPlane& plane, const std::vector<int>& samples, const IspStep& step) const override;
   double relativeSupport(const PlaneShares& shares) const override;
   double merit(const PlaneShares& shares) const override;
-  double familyAllowance() const override;
   PlaneEvidence evidence(double support, double conflict, double score) const override;
 
 private:
@@ -210,12 +205,12 @@ VolumeFit::VolumeFit(const NormalizedCloud& cloud, const PlaneFitOptions& option
     : PlaneFit(cloud),
       options_(options),
       surface_(cloud, options),
-      density_(cloud.points, kDetection.bandwidth * cloud.spacing, options.num_threads) {}
+      density_(cloud.points, kDetection.fit.bandwidth * cloud.spacing, options.num_threads) {}
 
 void VolumeFit::refine(std::vector<Candidate>& candidates, const RefinementStage& stage) const {
-  const int num_samples = std::min(kDetection.sample_factor * stage.num_samples, options_.max_samples);
+  const int num_samples = std::min(kDetection.fit.sample_factor * stage.num_samples, options_.max_samples);
   const Points samples = pointsAt(cloud_.points, drawSamples(cloud_.points.cols(), num_samples, options_.seed));
-  const int max_iterations = std::min(kDetection.max_iterations, options_.max_iterations);
+  const int max_iterations = std::min(kDetection.fit.max_iterations, options_.max_iterations);
   parallelBlocks(candidates.size(), options_.num_threads, [&](std::size_t i) {
     Candidate& candidate = candidates[i];
     const PointDensity::Refined refined = density_.refine(samples, candidate.plane, max_iterations);
@@ -245,11 +240,6 @@ double VolumeFit::relativeSupport(const PlaneShares& shares) const {
 
 double VolumeFit::merit(const PlaneShares& shares) const {
   return shares.support;
-}
-
-double VolumeFit::familyAllowance() const {
-  return kDetection.volume_allowance *
-         std::sqrt(std::max(1.0, kDetection.points_of_allowance / static_cast<double>(cloud_.points.cols())));
 }
 
 PlaneEvidence VolumeFit::evidence(double support, double conflict, double score) const {

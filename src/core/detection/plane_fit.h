@@ -105,9 +105,6 @@ public:
   /// One number to rank candidates by: high support, low conflict; about 1 for a symmetry, and may exceed it.
   virtual double merit(const PlaneShares& shares) const = 0;
 
-  /// By how much the planes of a family may have less support than the best single plane.
-  virtual double familyAllowance() const = 0;
-
   /// \param support,conflict mean shares.
   /// \param score D of the plane.
   virtual PlaneEvidence evidence(double support, double conflict, double score) const = 0;

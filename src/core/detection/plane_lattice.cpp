@@ -23,20 +23,20 @@ double angleAbout(const Line3d& line, const ReflectionPlane& plane) {
 std::optional<PlaneLattice> latticeAbout(const Line3d& line, const std::vector<ReflectionPlane>& planes) {
   std::vector<double> angles;
   for (const ReflectionPlane& plane : planes)
-    if (contains(plane, line, kDetection.contained_offset)) angles.push_back(angleAbout(line, plane));
-  if (angles.size() < kDetection.least_planes) return std::nullopt;
-  for (int fold = 3; fold <= kDetection.most_fold; ++fold) {
+    if (contains(plane, line, kDetection.families.contained_offset)) angles.push_back(angleAbout(line, plane));
+  if (angles.size() < kDetection.families.least_planes) return std::nullopt;
+  for (int fold = 3; fold <= kDetection.families.most_fold; ++fold) {
     std::complex<double> sum = 0.0;
     for (const double angle : angles) sum += std::polar(1.0, 2.0 * fold * angle);
     const double phase = std::arg(sum) / (2.0 * fold), step = kPi / fold;
     double most = 0.0;
     for (const double angle : angles) most = std::max(most, std::abs(std::remainder(angle - phase, step)));
-    if (most > std::min(kDetection.most_folded * step, kDetection.most_off_angle)) continue;
+    if (most > std::min(kDetection.families.most_folded * step, kDetection.families.most_off_angle)) continue;
     // Two of the angles give line and phase; each other one falls this close to a plane by chance, and the folds below
     // were tried before.
-    const double by_chance = std::min(1.0, 2.0 * std::max(most, 0.25 * kDetection.most_folded * step) / step);
+    const double by_chance = std::min(1.0, 2.0 * std::max(most, 0.25 * kDetection.families.most_folded * step) / step);
     const double chance = fold * std::pow(by_chance, static_cast<double>(angles.size()) - 1.0);
-    if (chance > kDetection.most_chance) return std::nullopt;
+    if (chance > kDetection.families.most_chance) return std::nullopt;
     return PlaneLattice{line, fold, phase, static_cast<int>(angles.size())};
   }
   return std::nullopt;
@@ -45,28 +45,25 @@ std::optional<PlaneLattice> latticeAbout(const Line3d& line, const std::vector<R
 }  // namespace
 
 bool contains(const ReflectionPlane& plane, const Line3d& line, double tolerance) {
-  return std::abs(plane.normal().dot(line.direction())) <= std::sin(kDetection.contained_angle) &&
+  return std::abs(plane.normal().dot(line.direction())) <= std::sin(kDetection.families.contained_angle) &&
          std::abs(plane.signedDistance(line.origin())) <= tolerance;
 }
 
 ReflectionPlane PlaneLattice::plane(double k) const {
-  const Eigen::Vector3d u = line.direction().unitOrthogonal(), v = line.direction().cross(u);
-  const double angle = phase + k * kPi / fold;
-  const Eigen::Vector3d n = std::cos(angle) * u + std::sin(angle) * v;
-  return ReflectionPlane(n, n.dot(line.origin()));
+  return planeThrough(line, phase + k * kPi / fold);
 }
 
 std::optional<PlaneLattice> findLattice(const std::vector<ReflectionPlane>& planes) {
   std::optional<PlaneLattice> best;
-  const std::size_t size = std::min(planes.size(), kDetection.most_pairs);
+  const std::size_t size = std::min(planes.size(), kDetection.families.most_pairs);
   for (std::size_t i = 0; i < size; ++i)
     for (std::size_t j = 0; j < i; ++j) {
-      if (planes[i].angleTo(planes[j]) < kDetection.least_pair_angle) continue;
+      if (planes[i].angleTo(planes[j]) < kDetection.families.least_pair_angle) continue;
       Line3d line = commonLine({planes[i], planes[j]});
       std::vector<ReflectionPlane> through;
       for (const ReflectionPlane& plane : planes)
-        if (contains(plane, line, kDetection.contained_offset)) through.push_back(plane);
-      if (through.size() < kDetection.least_planes) continue;
+        if (contains(plane, line, kDetection.families.contained_offset)) through.push_back(plane);
+      if (through.size() < kDetection.families.least_planes) continue;
       line = commonLine(through);
       const std::optional<PlaneLattice> lattice = latticeAbout(line, planes);
       if (lattice && (!best || lattice->num_planes > best->num_planes)) best = lattice;

@@ -12,6 +12,7 @@
 #include "core/evidence/surface_samples.h"
 #include "core/geometry/geometry_rules.h"
 #include "core/geometry/point_samples.h"
+#include "core/geometry/reflected_points.h"
 #include "core/scan/sensor_noise.h"
 #include "core/scan/single_view.h"
 
@@ -22,7 +23,7 @@ namespace {
 std::array<double, 2> sharesWithin(const std::vector<float>& distances, double tolerance) {
   std::array<double, 2> shares{};
   for (std::size_t k = 0; k < shares.size(); ++k)
-    shares[k] = std::max(0.1, shareWithin(distances, kDetection.tolerances[k] * tolerance));
+    shares[k] = std::max(0.1, shareWithin(distances, kDetection.measure.tolerances[k] * tolerance));
   return shares;
 }
 
@@ -30,7 +31,7 @@ std::array<double, 2> sharesWithin(const std::vector<float>& distances, double t
 /// resolve no surface.
 double sampledTolerance(const NormalizedCloud& cloud, double tolerance) {
   if (cloud.rules().by_halves) return 0.0;
-  return std::min(cloud.spacing / kEvidence.coarsest, kDetection.tolerances.back() * tolerance * cloud.extent);
+  return std::min(cloud.spacing / kEvidence.coarsest, kDetection.measure.tolerances.back() * tolerance * cloud.extent);
 }
 
 }  // namespace
@@ -45,8 +46,9 @@ PlaneMeasure::PlaneMeasure(const NormalizedCloud& cloud, const PlaneFit& fit, co
                      : std::max(options.tolerance * cloud.extent,
                                 std::min(std::max(resolution_, sampledTolerance(cloud, options.tolerance)),
                                          options.most_tolerance * cloud.extent))),
-      cut_share_(resolution_ > 0.0 ? pcl_symmetry::cutShare(cloud.points, *cloud.seen(), kDetection.beside_outline)
-                                   : 0.0),
+      cut_share_(resolution_ > 0.0
+                     ? pcl_symmetry::cutShare(cloud.points, *cloud.seen(), kDetection.measure.beside_outline)
+                     : 0.0),
       thinness_(
           thinnessOf(cloud.points, cloud.principal_axes, cloud.rules().thin_tolerances * tolerance_, lineTolerance())),
       halves_(cloud.rules().by_halves
@@ -59,9 +61,10 @@ PlaneMeasure::PlaneMeasure(const NormalizedCloud& cloud, const PlaneFit& fit, co
                          : 1.0) {}
 
 double PlaneMeasure::lineTolerance() const {
-  const double noisy = kDetection.noisy_thinness * tolerance_;
-  return cloud_.kind() == CloudKind::Volume ? noisy
-                                            : std::clamp(kDetection.round_spacings * cloud_.spacing, tolerance_, noisy);
+  const double noisy = kDetection.measure.noisy_thinness * tolerance_;
+  return cloud_.kind() == CloudKind::Volume
+             ? noisy
+             : std::clamp(kDetection.measure.round_spacings * cloud_.spacing, tolerance_, noisy);
 }
 
 std::vector<int> PlaneMeasure::samples() const {
@@ -119,10 +122,8 @@ PlaneMeasure::Reflected PlaneMeasure::reflected(const ReflectionPlane& plane, co
   Reflected result{Points(3, static_cast<Eigen::Index>(samples.size())), std::vector<float>(samples.size())};
   parallelRanges(samples.size(), 1024, options_.num_threads, [&](std::size_t begin, std::size_t end) {
     const auto size = static_cast<Eigen::Index>(end - begin), first = static_cast<Eigen::Index>(begin);
-    Points some(3, size);
-    for (Eigen::Index i = 0; i < size; ++i)
-      some.col(i) =
-          plane.reflect(cloud_.points.col(samples[static_cast<std::size_t>(first + i)]).cast<double>()).cast<float>();
+    const std::vector<int> of_range(samples.begin() + first, samples.begin() + first + size);
+    const Points some = reflectedPoints(pointsAt(cloud_.points, of_range), plane);
     const std::vector<int> closest(step.closest.begin() + first, step.closest.begin() + first + size);
     const std::vector<float> distances = surfaceDistances(some, closest, cloud_.samples);
     std::copy(distances.begin(), distances.end(), result.distances.begin() + first);
@@ -164,7 +165,7 @@ std::vector<float> PlaneMeasure::unknownMatches(const Reflected& reflected, cons
       }
     return unknown;
   }
-  const double held = std::clamp(offset_stiffness / kDetection.held - 1.0, 0.0, 1.0);
+  const double held = std::clamp(offset_stiffness / kDetection.measure.held_stiffness - 1.0, 0.0, 1.0);
   if (held <= 0.0 || static_cast<Eigen::Index>(size) != cloud_.points.cols()) return unknown;
   const auto trust = static_cast<float>(held * ends().trust());
   if (trust <= 0.0f) return unknown;
@@ -180,12 +181,12 @@ PlaneMeasure::Agreement PlaneMeasure::agreement(const ReflectionPlane& plane, co
   const std::vector<float> moved = halves_ ? of_halves : movedOnly(reflected.distances, plane, reflected.points);
   std::array<double, 2> within{};
   for (std::size_t k = 0; k < within.size() && !moved.empty(); ++k)
-    within[k] = std::min(1.0, shareWithin(moved, kDetection.tolerances[k] * tolerance_) / own_shares_[k]);
+    within[k] = std::min(1.0, shareWithin(moved, kDetection.measure.tolerances[k] * tolerance_) / own_shares_[k]);
   std::vector<char> matched(size);
   for (std::size_t i = 0; i < size; ++i) matched[i] = reflected.distances[i] <= tolerance_;
   Eigen::Matrix3d stiffness = Eigen::Matrix3d::Zero();
   std::vector<float> unknown(size, 0.0f);
-  if (cloud_.seen() || (cloud_.rules().may_lack_piece && within[0] < kDetection.surely_whole)) {
+  if (cloud_.seen() || (cloud_.rules().may_lack_piece && within[0] < kDetection.measure.surely_whole)) {
     stiffness = motionStiffness(reflected.points, matchedNormals(step), matched, plane);
     unknown = unknownMatches(reflected, step, matched, offsetStiffness(stiffness), rim);
   }
@@ -197,7 +198,7 @@ PlaneMeasure::Agreement PlaneMeasure::agreement(const ReflectionPlane& plane, co
     if (unknown[i] < 0.5f) telling.push_back(reflected.distances[i]);
     if (unknown[i] < 0.5f && moves(plane, reflected.points.col(static_cast<Eigen::Index>(i)))) ++num_told;
     for (std::size_t k = 0; k < missing.size(); ++k)
-      if (reflected.distances[i] > kDetection.tolerances[k] * tolerance_) missing[k] += unknown[i] / count;
+      if (reflected.distances[i] > kDetection.measure.tolerances[k] * tolerance_) missing[k] += unknown[i] / count;
   }
   const auto share = [&](std::size_t k) {
     const double good = within[k], bad = std::max(0.0, 1.0 - good - missing[k]);
@@ -210,7 +211,7 @@ PlaneMeasure::Agreement PlaneMeasure::agreement(const ReflectionPlane& plane, co
 }
 
 bool PlaneMeasure::moves(const ReflectionPlane& plane, const Eigen::Vector3f& x) const {
-  return 2.0 * std::abs(plane.signedDistance(x.cast<double>())) > kDetection.still * tolerance_;
+  return 2.0 * std::abs(plane.signedDistance(x.cast<double>())) > kDetection.measure.moved_tolerances * tolerance_;
 }
 
 std::vector<float> PlaneMeasure::movedOnly(const std::vector<float>& distances, const ReflectionPlane& plane,
@@ -231,7 +232,8 @@ double PlaneMeasure::deviationOf(std::vector<float> distances) const {
 }
 
 double PlaneMeasure::deviation(const ReflectionPlane& plane) const {
-  const std::vector<int> samples = drawSamples(cloud_.points.cols(), kDetection.deviation_samples, options_.seed);
+  const std::vector<int> samples =
+      drawSamples(cloud_.points.cols(), kDetection.measure.deviation_samples, options_.seed);
   IspStep step;
   step.closest.assign(samples.size(), -1);
   Reflected all = reflected(plane, samples, step);
@@ -247,7 +249,7 @@ double PlaneMeasure::deviation(const ReflectionPlane& plane) const {
 }
 
 PlaneMeasure::QuickShare PlaneMeasure::quickShare(const Candidate& candidate) const {
-  const std::vector<int> samples = drawSamples(cloud_.points.cols(), kDetection.look_samples, options_.seed);
+  const std::vector<int> samples = drawSamples(cloud_.points.cols(), kDetection.measure.look_samples, options_.seed);
   const Reflected some = reflected(candidate.plane, samples, fit_.matches(candidate.plane, samples));
   const double share = std::min(1.0, shareWithin(some.distances, tolerance_) / own_shares_[0]);
   return {share, std::sqrt(share * (1.0 - share) / static_cast<double>(samples.size()))};

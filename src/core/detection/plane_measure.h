@@ -56,8 +56,7 @@ public:
   /// \param rim how far beside a reflection the scanner must have seen nothing, too, for the reflection to contradict.
   PlaneRecord of(const ReflectionPlane& plane, const std::vector<int>& samples, double rim = 0.0) const;
 
-  /// What is known of the cloud, and what is not said of a plane by support, conflict and D alone is left at its
-  /// default.
+  /// Evidence of the cloud; fields of the plane beyond support, conflict and D keep their defaults.
   PlaneEvidence evidenceOf(double support, double conflict, double score) const;
 
   /// Share of the surface that a plane maps to within the tolerance, by a look at some points, and its standard error.

@@ -9,17 +9,6 @@
 
 namespace pcl_symmetry {
 
-namespace {
-
-double scoreOf(const ReflectionPlane& plane, const GaussianEdt& edt) {
-  const ReflectionPlane cells(plane.normal(), plane.signedDistance(edt.origin()) / -edt.cellSize());
-  const Eigen::Vector3d step = Eigen::Vector3d::UnitX() - 2.0 * plane.normal().x() * plane.normal();
-  return correlation(
-      edt, [&](const Eigen::Vector3d& x) { return cells.reflect(x); }, step, 1);
-}
-
-}  // namespace
-
 void PublishedOptions::validate() const {
   maxima.validate();
   check(num_points >= 10, "num_points", num_points, ">= 10");
@@ -53,7 +42,7 @@ std::vector<SymmetryPlane> publishedPlanes(const PointsRef& points, const Gaussi
     refined[i].converged = end.converged;
     refined[i].residual = end.last.residual;
     refined[i].support = end.last.weight;
-    refined[i].score = scoreOf(end.plane, edt);
+    refined[i].score = correlation(edt, end.plane, 1);
   });
   std::vector<SymmetryPlane> planes;
   for (std::size_t i = 0; i < refined.size(); ++i)

@@ -30,26 +30,27 @@ bool isOne(const Line3d& a, const Line3d& b, double angle, double offset) {
 
 double missAt(const Line3d& line, const Eigen::Vector3d& x, const Eigen::Vector3d& normal) {
   const Eigen::Vector3d velocity = line.direction().cross(x - line.origin());
-  return std::abs(velocity.dot(normal)) / std::max(kDetection.least_lever, velocity.norm());
+  return std::abs(velocity.dot(normal)) / std::max(kDetection.rotations.least_lever, velocity.norm());
 }
 
 }  // namespace
 
 std::vector<AxisStart> startsFromNormals(const NormalizedCloud& cloud, std::uint64_t seed, int num_threads) {
-  const std::vector<int> samples = drawSamples(cloud.points.cols(), kDetection.normal_samples, seed);
+  const std::vector<int> samples = drawSamples(cloud.points.cols(), kDetection.rotations.normal_samples, seed);
   const Points& normals = cloud.geometry.normals;
   const auto inliersOf = [&](const Line3d& line) {
     std::vector<int> inliers;
     for (const int i : samples)
-      if (missAt(line, cloud.points.col(i).cast<double>(), normals.col(i).cast<double>()) < kDetection.meets)
+      if (missAt(line, cloud.points.col(i).cast<double>(), normals.col(i).cast<double>()) <
+          kDetection.rotations.normal_miss)
         inliers.push_back(i);
     return inliers;
   };
   std::vector<std::vector<int>> draws(1, samples);
   RandomStream random(seed);
-  for (int draw = 0; draw < kDetection.normal_draws; ++draw) {
+  for (int draw = 0; draw < kDetection.rotations.normal_draws; ++draw) {
     std::vector<int> few;
-    for (int k = 0; k < kDetection.normals_in_draw; ++k) few.push_back(samples[random.below(samples.size())]);
+    for (int k = 0; k < kDetection.rotations.normals_in_draw; ++k) few.push_back(samples[random.below(samples.size())]);
     draws.push_back(std::move(few));
   }
   std::vector<std::pair<double, Line3d>> found(draws.size());
@@ -64,12 +65,12 @@ std::vector<AxisStart> startsFromNormals(const NormalizedCloud& cloud, std::uint
   std::stable_sort(found.begin(), found.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
   std::vector<AxisStart> starts;
   for (const auto& [unused, line] : found) {
-    if (starts.size() == kDetection.from_normals) break;
+    if (starts.size() == kDetection.rotations.from_normals) break;
     const std::vector<int> inliers = inliersOf(line);
     if (inliers.empty()) break;
     const Line3d fitted = axisOfNormals(cloud.points, normals, inliers);
     const bool is_known = std::any_of(starts.begin(), starts.end(), [&](const AxisStart& other) {
-      return isOne(other.line, fitted, kDetection.same_start_angle, kDetection.same_start_offset);
+      return isOne(other.line, fitted, kDetection.rotations.same_start_angle, kDetection.rotations.same_start_offset);
     });
     if (!is_known && fitted.origin().norm() < 2.0) starts.push_back({fitted, 0});
   }
@@ -81,7 +82,7 @@ std::vector<AxisStart> startsFromPlanes(const std::vector<ReflectionPlane>& plan
   for (std::size_t i = 0; i < planes.size(); ++i)
     for (std::size_t j = 0; j < i; ++j) {
       const double angle = planes[i].angleTo(planes[j]);
-      if (angle < kDetection.least_plane_angle) continue;
+      if (angle < kDetection.rotations.least_plane_angle) continue;
       const Eigen::Vector3d& a = planes[i].normal();
       const Eigen::Vector3d& b = planes[j].normal();
       const double cosine = a.dot(b), sq_sine = 1.0 - cosine * cosine;
@@ -91,7 +92,7 @@ std::vector<AxisStart> startsFromPlanes(const std::vector<ReflectionPlane>& plan
       // The least fold whose planes have this angle: two planes at k pi / n rotate by 2 k pi / n.
       for (int n = 2; n <= max_fold; ++n) {
         const double step = kPi / n, off = std::abs(angle - step * std::round(angle / step));
-        if (off > kDetection.angle_of_fold * std::min(1.0, 6.0 / n)) continue;
+        if (off > kDetection.rotations.angle_of_fold * std::min(1.0, 6.0 / n)) continue;
         starts.push_back({line, n});
         break;
       }
@@ -101,16 +102,16 @@ std::vector<AxisStart> startsFromPlanes(const std::vector<ReflectionPlane>& plan
 
 std::vector<AxisStart> startsFromTransform(const NormalizedCloud& cloud, std::uint64_t seed, int num_threads) {
   GaussianEdtOptions coarse;
-  coarse.num_cells = kDetection.coarse_cells;
+  coarse.num_cells = kDetection.rotations.coarse_cells;
   coarse.num_threads = num_threads;
   const GaussianEdt edt(cloud.points, coarse);
   AxialTransformOptions options;
   options.folds = {2, 3, 4, 5, 6};
-  options.num_samples = kDetection.coarse_samples;
+  options.num_samples = kDetection.rotations.coarse_samples;
   options.seed = seed;
   options.num_threads = num_threads;
-  const AxisGrid grid(kDetection.coarse_theta, kDetection.coarse_phi, kDetection.coarse_offset, edt.center(),
-                      edt.radius());
+  const AxisGrid grid(kDetection.rotations.coarse_theta, kDetection.rotations.coarse_phi,
+                      kDetection.rotations.coarse_offset, edt.center(), edt.radius());
   const AxisMap map = axialTransform(edt, grid, options, &*cloud.visibility);
   std::vector<std::size_t> bins;  // a heap: the greatest first, of equal ones the one with the least index
   for (std::size_t i = 0; i < map.greatest.size(); ++i)
@@ -120,18 +121,19 @@ std::vector<AxisStart> startsFromTransform(const NormalizedCloud& cloud, std::ui
   };
   std::make_heap(bins.begin(), bins.end(), isBehind);
   std::vector<AxisStart> starts;
-  while (!bins.empty() && starts.size() < kDetection.coarse_maxima) {
+  while (!bins.empty() && starts.size() < kDetection.rotations.coarse_maxima) {
     const std::size_t bin = bins.front();
     std::pop_heap(bins.begin(), bins.end(), isBehind);
     bins.pop_back();
     const Line3d line = grid.axis(grid.bin(bin));
     const bool is_known = std::any_of(starts.begin(), starts.end(), [&](const AxisStart& other) {
-      return isOne(other.line, line, kDetection.coarse_angle, kDetection.coarse_distance);
+      return isOne(other.line, line, kDetection.rotations.coarse_angle, kDetection.rotations.coarse_distance);
     });
     if (is_known) continue;
     int fold = 2;
     for (std::size_t i = 0; i < map.folds.size(); ++i)
-      if (map.values[i][bin] >= map.greatest[bin] - kDetection.coarse_equal) fold = std::max(fold, map.folds[i]);
+      if (map.values[i][bin] >= map.greatest[bin] - kDetection.rotations.coarse_equal)
+        fold = std::max(fold, map.folds[i]);
     starts.push_back({line, fold});
   }
   return starts;
@@ -161,8 +163,10 @@ struct TurnLimits {
 template <typename Shares>
 TurnsTogether roundTurns(const Shares& shares, const TurnLimits& limits = {}) {
   TurnsTogether all;
-  for (int k = 1; k <= kDetection.round_turns && limits.allow(all); ++k) all.add(shares(2.0 * kPi * goldenFraction(k)));
-  if (limits.allow(all)) all.on = 0.5 * (shares(kDetection.small_turn).on + shares(-kDetection.small_turn).on);
+  for (int k = 1; k <= kDetection.rotations.round_turns && limits.allow(all); ++k)
+    all.add(shares(2.0 * kPi * goldenFraction(k)));
+  if (limits.allow(all))
+    all.on = 0.5 * (shares(kDetection.rotations.small_turn).on + shares(-kDetection.rotations.small_turn).on);
   return all;
 }
 
@@ -190,10 +194,11 @@ public:
 
   /// The best rotations about a line.
   std::optional<JudgedTurns> judged(const Line3d& line) const {
-    constexpr TurnLimits kRough{kDetection.rough_turns * kDetection.most_off,
-                                kDetection.rough_turns * kDetection.most_far};  // from both
+    constexpr TurnLimits kRough{kDetection.rotations.rough_turns * kDetection.rotations.most_off,
+                                kDetection.rotations.rough_turns * kDetection.rotations.most_far};  // from both
     const auto roughly = [&](double angle) {
-      return evidence_.roughly(Eigen::Affine3d(turnAbout(line, angle)), kDetection.rough_slack, kRough.off, kRough.far);
+      return evidence_.roughly(Eigen::Affine3d(turnAbout(line, angle)), kDetection.rotations.rough_slack, kRough.off,
+                               kRough.far);
     };
     std::optional<JudgedTurns> best;
     const auto take = [&](JudgedTurns&& turns) {
@@ -219,7 +224,8 @@ public:
 private:
   static std::vector<double> fitAngles(int fold) {
     if (fold == 0)
-      return {kDetection.small_turn, -kDetection.small_turn, kDetection.larger_turn, -kDetection.larger_turn};
+      return {kDetection.rotations.small_turn, -kDetection.rotations.small_turn, kDetection.rotations.larger_turn,
+              -kDetection.rotations.larger_turn};
     const double step = 2.0 * kPi / fold;
     return fold == 2 ? std::vector<double>{step} : std::vector<double>{step, -step};
   }
@@ -232,18 +238,18 @@ private:
 std::vector<ReflectionPlane> planesOfAxes(const std::vector<SymmetryPlane>& planes, const NormalizedCloud& cloud) {
   std::vector<ReflectionPlane> found;
   for (const SymmetryPlane& plane : planes)
-    if (plane.kind != PlaneKind::Local && plane.share >= kDetection.plane_share &&
-        found.size() < kDetection.most_planes_of_axes)
+    if (plane.kind != PlaneKind::Local && plane.share >= kDetection.rotations.plane_share &&
+        found.size() < kDetection.rotations.most_planes_of_axes)
       found.push_back(cloud.toNormalized(plane));
   return found;
 }
 
 bool isNearly(const Line3d& a, const Line3d& b) {
-  return isOne(a, b, kDetection.fitted_angle, kDetection.fitted_offset);
+  return isOne(a, b, kDetection.rotations.fitted_angle, kDetection.rotations.fitted_offset);
 }
 
 bool isSameLine(const Line3d& a, const Line3d& b) {
-  return isOne(a, b, kDetection.same_turn_angle, kDetection.same_turn_offset);
+  return isOne(a, b, kDetection.rotations.same_turn_angle, kDetection.rotations.same_turn_offset);
 }
 
 }  // namespace
@@ -258,10 +264,10 @@ std::vector<SymmetryTurn> scanAxes(const TurnEvidence& evidence, const std::vect
   };
   for (const SymmetryAxis& axis : axes) starts.push_back({cloud.lineOf(axis), 0});
   if (options.folds) {
-    append(startsFromPlanes(planesOfAxes(planes, cloud), kDetection.most_turn_fold));
+    append(startsFromPlanes(planesOfAxes(planes, cloud), kDetection.rotations.most_turn_fold));
     append(startsFromTransform(cloud, options.seed, options.num_threads));
   }
-  const AxisJudge judge(evidence, options.folds ? kDetection.most_turn_fold : 1);
+  const AxisJudge judge(evidence, options.folds ? kDetection.rotations.most_turn_fold : 1);
   std::vector<Line3d> fitted(starts.size());
   parallelBlocks(starts.size(), options.num_threads, [&](std::size_t i) { fitted[i] = judge.fitted(starts[i]); });
   std::vector<Line3d> lines;
@@ -275,7 +281,7 @@ std::vector<SymmetryTurn> scanAxes(const TurnEvidence& evidence, const std::vect
                    [](const auto& a, const auto& b) { return a && (!b || a->margin > b->margin); });
   std::vector<JudgedTurns> found;
   for (const std::optional<JudgedTurns>& turns : judged) {
-    if (!turns || found.size() == kDetection.most_turns) break;
+    if (!turns || found.size() == kDetection.rotations.most_turns) break;
     if (std::none_of(found.begin(), found.end(), [&](const JudgedTurns& o) { return isSameLine(o.line, turns->line); }))
       found.push_back(*turns);
   }
@@ -303,7 +309,8 @@ std::vector<SymmetryTurn> turnsOfScan(const PointsRef& points, const GaussianEdt
                                       const MakeSearch& make_search) {
   if (!whyUnanswerable(points).empty()) return {};
   const Points distinct = DistinctPoints(points).points;
-  const Points used = pointsAt(distinct, drawSamples(distinct.cols(), kDetection.most_scan_turn_points, options.seed));
+  const Points used =
+      pointsAt(distinct, drawSamples(distinct.cols(), kDetection.rotations.most_scan_turn_points, options.seed));
   const ClosestPointSearch::Ptr search = make_search ? inFrame(make_search(used), edt.center(), edt.radius()) : nullptr;
   const NormalizedCloud cloud(used, edt, search, &visibility, options.num_threads);
   return scanAxes(TurnEvidence(cloud, options.tolerance * cloud.extent, options.seed), {}, axes, options);
@@ -317,12 +324,13 @@ std::vector<SymmetryAxis> withRoundTurns(const TurnEvidence& evidence, std::vect
                               const TurnsTogether all = roundTurns([&](double angle) {
                                 return evidence.exactly(Eigen::Affine3d(turnAbout(cloud.lineOf(axis), angle)));
                               });
-                              return all.far > kDetection.most_round_far;
+                              return all.far > kDetection.rotations.most_round_far;
                             }),
              axes.end());
   for (const SymmetryTurn& turn : turns) {
     // However probable: a handle that was seen contradicts.
-    const bool is_contradicted = turn.off > kDetection.most_round_off || turn.far > kDetection.most_round_far;
+    const bool is_contradicted =
+        turn.off > kDetection.rotations.most_round_off || turn.far > kDetection.rotations.most_round_far;
     if (turn.fold != 0 || is_contradicted || turn.confidence < options.min_confidence) continue;
     const auto known = std::find_if(axes.begin(), axes.end(), [&](const SymmetryAxis& axis) {
       return isSameLine(cloud.lineOf(axis), cloud.lineOf(turn));
@@ -332,12 +340,9 @@ std::vector<SymmetryAxis> withRoundTurns(const TurnEvidence& evidence, std::vect
       known->direction = turn.direction;
     } else {
       double score = 0.0;
-      for (int k = 0; k < kDetection.scored_planes; ++k) {
-        const double angle = kPi * k / kDetection.scored_planes;
-        const Eigen::Vector3d u = turn.direction.unitOrthogonal(), v = turn.direction.cross(u);
-        const Eigen::Vector3d normal = std::cos(angle) * u + std::sin(angle) * v;
-        score += cloud.score(ReflectionPlane(normal, normal.dot(turn.point))) / kDetection.scored_planes;
-      }
+      for (int k = 0; k < kDetection.rotations.scored_planes; ++k)
+        score += cloud.score(planeThrough({turn.point, turn.direction}, kPi * k / kDetection.rotations.scored_planes)) /
+                 kDetection.rotations.scored_planes;
       axes.push_back({turn.point, turn.direction, turn.confidence, score, turn.support});
     }
   }

@@ -13,30 +13,34 @@ StagedRefinement::StagedRefinement(const NormalizedCloud& cloud, const PlaneFit&
     : cloud_(cloud), fit_(fit), options_(options) {}
 
 std::vector<Candidate> StagedRefinement::coarse(std::vector<Candidate> candidates, const PlaneGrid& grid) const {
-  const double narrow = std::clamp(cloud_.final_sigma, kDetection.narrowest_coarsely * cloud_.sigma, cloud_.sigma);
+  const double narrow =
+      std::clamp(cloud_.final_sigma, kDetection.stages.narrowest_coarsely * cloud_.sigma, cloud_.sigma);
   const std::vector<Candidate> moved = refined(
-      candidates, stage(options_.expert.num_coarse_samples, cloud_.sigma, narrow, kDetection.coarse_iterations));
-  return distinct(withinCells(moved, candidates, grid), -1.0, kDetection.kept_coarsely);
+      candidates, stage(kDetection.stages.first_samples, cloud_.sigma, narrow, kDetection.stages.coarse_iterations));
+  return distinct(withinCells(moved, candidates, grid), -1.0, kDetection.stages.kept_coarsely);
 }
 
 std::vector<Candidate> StagedRefinement::close(std::vector<Candidate> candidates) const {
-  const auto isSymmetry = [](const Candidate& candidate) { return candidate.merit >= kDetection.symmetric_merit; };
+  const auto isSymmetry = [](const Candidate& candidate) {
+    return candidate.merit >= kDetection.stages.symmetric_merit;
+  };
   const bool all = cloud_.rules().keeps_unlikely || options_.approximate;
-  const auto likely = all ? candidates.end()
-                          : std::stable_partition(candidates.begin(), candidates.end(), [](const Candidate& candidate) {
-                              return candidate.merit >= kDetection.symmetric_merit - kDetection.coarse_slack;
-                            });
+  const auto likely =
+      all ? candidates.end()
+          : std::stable_partition(candidates.begin(), candidates.end(), [](const Candidate& candidate) {
+              return candidate.merit >= kDetection.stages.symmetric_merit - kDetection.stages.coarse_slack;
+            });
   std::vector<Candidate> found = refined({candidates.begin(), likely}, closeStage());
   // Beside a symmetry of a whole cloud, the others are of no use.
   if (!all && std::any_of(found.begin(), found.end(), isSymmetry)) return distinct(std::move(found), -1.0, 0);
   for (Candidate& other : refined({likely, candidates.end()}, closeStage())) found.push_back(std::move(other));
   const bool is_whole = std::any_of(found.begin(), found.end(), isSymmetry);
-  return distinct(std::move(found), -1.0, all || !is_whole ? kDetection.kept_closely : 0);
+  return distinct(std::move(found), -1.0, all || !is_whole ? kDetection.stages.kept_closely : 0);
 }
 
 std::vector<Candidate> StagedRefinement::closeSymmetries(std::vector<Candidate> candidates) const {
-  return distinct(refined(std::move(candidates), closeStage()), kDetection.symmetric_merit - kDetection.close_slack,
-                  kDetection.kept_closely);
+  return distinct(refined(std::move(candidates), closeStage()),
+                  kDetection.stages.symmetric_merit - kDetection.stages.close_slack, kDetection.stages.kept_closely);
 }
 
 std::vector<Candidate> StagedRefinement::full(std::vector<Candidate> candidates) const {
@@ -54,16 +58,16 @@ std::vector<bool> StagedRefinement::climb(std::vector<Candidate>& candidates) co
 
 RefinementStage StagedRefinement::fullStage() const {
   RefinementStage full = stage(options_.expert.num_refine_samples / cloud_.rules().full_share, cloud_.final_sigma,
-                               cloud_.final_sigma, kDetection.full_iterations);
+                               cloud_.final_sigma, kDetection.stages.full_iterations);
   full.climbs = true;
   return full;
 }
 
 RefinementStage StagedRefinement::closeStage() const {
-  return stage(
-      std::min(kDetection.close_sample_factor * options_.expert.num_coarse_samples, options_.expert.num_refine_samples),
-      std::clamp(cloud_.final_sigma, kDetection.narrowest_coarsely * cloud_.sigma, cloud_.sigma), cloud_.final_sigma,
-      kDetection.close_iterations);
+  return stage(std::min(kDetection.stages.close_sample_factor * kDetection.stages.first_samples,
+                        options_.expert.num_refine_samples),
+               std::clamp(cloud_.final_sigma, kDetection.stages.narrowest_coarsely * cloud_.sigma, cloud_.sigma),
+               cloud_.final_sigma, kDetection.stages.close_iterations);
 }
 
 RefinementStage StagedRefinement::stage(int num_samples, double sigma, double final_sigma, int max_iterations) const {
@@ -74,14 +78,14 @@ RefinementStage StagedRefinement::stage(int num_samples, double sigma, double fi
   stage.least_merit = rules.settled_merit;
   stage.undo_slides = rules.slides && final_sigma == sigma;
   // On the way to narrow weights, point-to-plane steps would slide a scan along its flat pieces.
-  const bool slides = rules.slides && num_samples > options_.expert.num_coarse_samples && final_sigma < sigma;
+  const bool slides = rules.slides && num_samples > kDetection.stages.first_samples && final_sigma < sigma;
   stage.isp.update = slides ? IspUpdate::PointToPoint : options_.expert.update;
   stage.isp.sigma = sigma;
   stage.isp.final_sigma = final_sigma;
   stage.isp.max_iterations = std::min(max_iterations, options_.expert.max_iterations);
   stage.rough_isp = stage.isp;
-  stage.rough_isp.max_iterations = std::min(stage.isp.max_iterations, kDetection.rough_iterations);
-  if (options_.expert.update == IspUpdate::PointToPlane) stage.isp.error_share = kDetection.settled_error_share;
+  stage.rough_isp.max_iterations = std::min(stage.isp.max_iterations, kDetection.stages.rough_iterations);
+  if (options_.expert.update == IspUpdate::PointToPlane) stage.isp.error_share = kDetection.stages.settled_error_share;
   return stage;
 }
 
@@ -92,11 +96,11 @@ std::vector<Candidate> StagedRefinement::refined(std::vector<Candidate> candidat
 }
 
 /// The candidates that stayed near the cell they came from. Departure from the paper, which drops all that leave their
-/// cell: a map of few samples has its maxima up to one cell off, hence DetectionOptions::max_drift.
+/// cell: a map of few samples has its maxima up to one cell off, hence kDetection.stages.most_drift.
 std::vector<Candidate> StagedRefinement::withinCells(const std::vector<Candidate>& candidates,
                                                      const std::vector<Candidate>& starts,
                                                      const PlaneGrid& grid) const {
-  const double reach = 0.5 + options_.expert.max_drift;
+  const double reach = 0.5 + kDetection.stages.most_drift;
   const PlaneTolerance cell{std::sqrt(2.0) * reach * std::max(grid.thetaStep(), grid.phiStep()),
                             reach * grid.radiusStep() / cloud_.scale};
   std::vector<Candidate> kept;
@@ -109,14 +113,14 @@ std::vector<Candidate> StagedRefinement::withinCells(const std::vector<Candidate
 /// \p most.
 std::vector<Candidate> StagedRefinement::distinct(std::vector<Candidate> candidates, double least_merit,
                                                   std::size_t most) const {
-  const PlaneTolerance tolerance = mergeTolerance(options_);
   std::stable_sort(candidates.begin(), candidates.end(),
                    [](const Candidate& a, const Candidate& b) { return a.merit > b.merit; });
   std::vector<Candidate> kept;
   for (Candidate& candidate : candidates) {
     if (candidate.merit < least_merit) break;
-    if (candidate.merit < kDetection.symmetric_merit - kDetection.close_slack && kept.size() >= most) break;
-    if (!tolerance.anySame(kept, candidate.plane, [](const Candidate& other) { return other.plane; }))
+    if (candidate.merit < kDetection.stages.symmetric_merit - kDetection.stages.close_slack && kept.size() >= most)
+      break;
+    if (!kSamePlane.anySame(kept, candidate.plane, [](const Candidate& other) { return other.plane; }))
       kept.push_back(std::move(candidate));
   }
   return kept;

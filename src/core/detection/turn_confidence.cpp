@@ -15,24 +15,16 @@ namespace pcl_symmetry {
 
 namespace {
 
-/// Reflection in the plane through a line.
-Eigen::Affine3d mirrorThrough(const Line3d& line, double angle) {
-  const Eigen::Vector3d u = line.direction().unitOrthogonal(), v = line.direction().cross(u);
-  const Eigen::Vector3d normal = std::cos(angle) * u + std::sin(angle) * v;
-  Eigen::Affine3d mirror = Eigen::Affine3d::Identity();
-  mirror.linear() -= 2.0 * normal * normal.transpose();
-  mirror.translation() = 2.0 * normal.dot(line.origin()) * normal;
-  return mirror;
-}
-
 /// TurnSigns::planes_off.
 double planesOff(const TurnEvidence& evidence, const Line3d& line) {
-  constexpr double kStep = 0.5 * kPi / kDetection.num_plane_pairs;  // radians. Pairs repeat after a right angle
+  constexpr double kStep =
+      0.5 * kPi / kDetection.rotations.num_plane_pairs;  // radians. Pairs repeat after a right angle
   const auto cost = [&](double angle) {
     double sum = 0.0;
     for (const double turned : {angle, angle + 0.5 * kPi}) {
-      const TurnShares shares = evidence.roughly(mirrorThrough(line, turned), kDetection.plane_slack, 1.0, 1.0);
-      sum += shares.off - kDetection.landed_counts * shares.on;
+      const TurnShares shares =
+          evidence.roughly(planeThrough(line, turned).reflection(), kDetection.rotations.plane_slack, 1.0, 1.0);
+      sum += shares.off - kDetection.rotations.landed_counts * shares.on;
     }
     return sum;
   };
@@ -43,11 +35,11 @@ double planesOff(const TurnEvidence& evidence, const Line3d& line) {
     least = of_angle;
     best = angle;
   };
-  for (int k = 1; k < kDetection.num_plane_pairs; ++k) take(k * kStep);
+  for (int k = 1; k < kDetection.rotations.num_plane_pairs; ++k) take(k * kStep);
   const double coarse = best;
   for (const double beside : {-0.5 * kStep, 0.5 * kStep}) take(coarse + beside);
-  return std::max(evidence.exactly(mirrorThrough(line, best)).off,
-                  evidence.exactly(mirrorThrough(line, best + 0.5 * kPi)).off);
+  return std::max(evidence.exactly(planeThrough(line, best).reflection()).off,
+                  evidence.exactly(planeThrough(line, best + 0.5 * kPi).reflection()).off);
 }
 
 /// TurnSigns::grown.
@@ -62,8 +54,8 @@ double grownBy(const NormalizedCloud& cloud, const Eigen::Affine3d& turn) {
 /// Whether two lines, normalized frame, cross at a right angle.
 bool crossesUpright(const Line3d& a, const Line3d& b) {
   const Eigen::Vector3d across = a.direction().cross(b.direction()).normalized();
-  return std::abs(a.direction().dot(b.direction())) < std::sin(kDetection.upright_angle) &&
-         std::abs(across.dot(a.origin() - b.origin())) < kDetection.crossing_gap;
+  return std::abs(a.direction().dot(b.direction())) < std::sin(kDetection.rotations.upright_angle) &&
+         std::abs(across.dot(a.origin() - b.origin())) < kDetection.rotations.crossing_gap;
 }
 
 }  // namespace
@@ -93,23 +85,23 @@ TurnKind kindOf(const SymmetryTurn& turn) {
 }
 
 std::vector<double> turnOddsTerms(const SymmetryTurn& turn, const TurnSigns& signs) {
-  const double off = std::log1p(turn.off / kDetection.little_share),
-               far = std::log1p(turn.far / kDetection.little_share);
+  const double off = std::log1p(turn.off / kDetection.rotations.little_share),
+               far = std::log1p(turn.far / kDetection.rotations.little_share);
   switch (kindOf(turn)) {
     case TurnKind::Half:  // without what is far off: what the object grows by says that, and off does
       return {1.0,
               off,
               1.0 - turn.support,
               std::log(signs.grown),
-              -std::log1p(signs.hold / kDetection.little_hold),
-              std::log1p(signs.planes_off / kDetection.little_of_planes),
+              -std::log1p(signs.hold / kDetection.rotations.little_hold),
+              std::log1p(signs.planes_off / kDetection.rotations.little_of_planes),
               signs.beside};
     case TurnKind::Folds:
       return {1.0,
               off,
               far,
               1.0 - turn.support,
-              std::min(kDetection.most_halfway, turn.halfway - turn.off),
+              std::min(kDetection.rotations.most_halfway, turn.halfway - turn.off),
               1.0 / turn.fold};
     default:
       return {1.0, off, far, 1.0 - turn.support};

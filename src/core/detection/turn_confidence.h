@@ -12,8 +12,8 @@ namespace pcl_symmetry {
 struct TurnSigns {
   double grown = 1.0;  ///< extent of the points and their images, in extents of the points; >= 1
   double hold = 1.0;   ///< TurnEvidence::hold()
-  /// Share of the points that the worse of two perpendicular planes through the line mirrors to where the scanner saw
-  /// nothing, of the pair with the least: most objects with a twofold axis have such planes.
+  /// Least, over pairs of perpendicular planes through the line, of the greater share of the points that one of the two
+  /// reflects into free space: most objects with a twofold axis have such planes.
   double planes_off = 0.0;
   /// 1 if a rotation of the same scan fits better, whose line it does not cross at a right angle as twofold axes of
   /// prisms do.

@@ -34,11 +34,11 @@ Line3d movedLine(const Line3d& line, const Eigen::Vector4d& by) {
   return {line.origin() + by[2] * u + by[3] * v, (line.direction() + by[0] * u + by[1] * v).normalized()};
 }
 
-/// The rotations about the lines beside a line, by kDetection.fit_step.
+/// The rotations about the lines beside a line, by kDetection.rotations.fit_step.
 std::array<Eigen::Isometry3d, 4> turnsBeside(const Line3d& line, double angle) {
   std::array<Eigen::Isometry3d, 4> beside;
   for (int k = 0; k < 4; ++k)
-    beside[k] = turnAbout(movedLine(line, kDetection.fit_step * Eigen::Vector4d::Unit(k)), angle);
+    beside[k] = turnAbout(movedLine(line, kDetection.rotations.fit_step * Eigen::Vector4d::Unit(k)), angle);
   return beside;
 }
 
@@ -46,7 +46,7 @@ std::array<Eigen::Isometry3d, 4> turnsBeside(const Line3d& line, double angle) {
 Eigen::Vector4d slopeOf(const std::array<Eigen::Isometry3d, 4>& beside, const Eigen::Vector3d& x,
                         const Eigen::Vector3d& turned, const Eigen::Vector3d& along) {
   Eigen::Vector4d slope;
-  for (int k = 0; k < 4; ++k) slope[k] = along.dot(beside[k] * x - turned) / kDetection.fit_step;
+  for (int k = 0; k < 4; ++k) slope[k] = along.dot(beside[k] * x - turned) / kDetection.rotations.fit_step;
   return slope;
 }
 
@@ -63,10 +63,10 @@ TurnEvidence::TurnEvidence(const NormalizedCloud& cloud, double tolerance, std::
     : cloud_(cloud),
       tolerance_(tolerance),
       viewpoint_(cloud.visibility->viewpoint()),
-      far_(kDetection.far_turn * tolerance),
-      reach_(kDetection.slack_of_reach * (far_ + greatestDisc(cloud.geometry))),
-      samples_(drawSamples(cloud.points.cols(), kDetection.samples_of_turn, seed)),
-      few_samples_(drawSamples(cloud.points.cols(), kDetection.few_samples_of_turn, seed)),
+      far_(kDetection.rotations.far_turn * tolerance),
+      reach_(kDetection.rotations.slack_of_reach * (far_ + greatestDisc(cloud.geometry))),
+      samples_(drawSamples(cloud.points.cols(), kDetection.rotations.samples_of_turn, seed)),
+      few_samples_(drawSamples(cloud.points.cols(), kDetection.rotations.few_samples_of_turn, seed)),
       facing_(facingNormals(cloud, viewpoint_)) {}
 
 bool TurnEvidence::isSeenEmpty(const Eigen::Vector3d& x) const {
@@ -87,7 +87,7 @@ TurnShares TurnEvidence::roughly(const Eigen::Affine3d& motion, double slack, do
   for (const int sample : few_samples_) {
     if (shares.off > most_off || shares.far > most_far) break;
     const Eigen::Vector3d x = motion * cloud_.points.col(sample).cast<double>();
-    const double f = std::max(kDetection.least_turn_f, cloud_.edt(cloud_.toInput(x)));
+    const double f = std::max(kDetection.rotations.least_turn_f, cloud_.edt(cloud_.toInput(x)));
     if (f >= near_f) {
       shares.on += one;
     } else if (isSeenEmpty(x)) {
@@ -151,8 +151,9 @@ void TurnEvidence::addPulls(const Line3d& line, double angle, const std::vector<
     turned.col(static_cast<Eigen::Index>(i)) = (turn * cloud_.points.col(samples[i]).cast<double>()).cast<float>();
   std::vector<int> closest(samples.size(), -1);
   std::vector<float> sq_distances;
-  cloud_.search->searchWithin(turned, static_cast<float>(kDetection.fit_reach * kDetection.fit_reach * sq_width),
-                              closest, sq_distances);
+  cloud_.search->searchWithin(
+      turned, static_cast<float>(kDetection.rotations.fit_reach * kDetection.rotations.fit_reach * sq_width), closest,
+      sq_distances);
   for (std::size_t i = 0; i < samples.size(); ++i) {
     if (closest[i] < 0) continue;
     const Eigen::Vector3d x = cloud_.points.col(samples[i]).cast<double>(), y = turn * x;
@@ -160,7 +161,8 @@ void TurnEvidence::addPulls(const Line3d& line, double angle, const std::vector<
     Eigen::Vector3d along;
     double weight = std::exp(-sq_distances[i] / sq_width);
     if (cloud_.geometry.at_border[closest[i]]) {
-      if (miss.norm() < kDetection.least_empty_miss * tolerance_ || cloud_.visibility->depthBehind(y) >= 0.0) continue;
+      if (miss.norm() < kDetection.rotations.least_empty_miss * tolerance_ || cloud_.visibility->depthBehind(y) >= 0.0)
+        continue;
       along = miss.normalized();
     } else {
       const Eigen::Vector3d there = facing_.col(closest[i]).cast<double>(),
@@ -183,21 +185,22 @@ Line3d TurnEvidence::fitted(const Line3d& start, const std::vector<double>& angl
   for (const double width : widths) {
     Pulls pulls;
     for (const double angle : angles) addPulls(line, angle, samples, width, pulls);
-    pulls.squares.diagonal().array() += kDetection.fit_ridge * pulls.squares.trace() + kDetection.least_turn_f;
+    pulls.squares.diagonal().array() +=
+        kDetection.rotations.fit_ridge * pulls.squares.trace() + kDetection.rotations.least_turn_f;
     const Eigen::Vector4d step = pulls.squares.ldlt().solve(pulls.sum);
     constexpr double kMostStep = 0.1;  // radians, radii; starts are closer, larger steps leave the basin
-    line = movedLine(line, step * std::min(1.0, kMostStep / std::max(kDetection.fit_step, step.norm())));
+    line = movedLine(line, step * std::min(1.0, kMostStep / std::max(kDetection.rotations.fit_step, step.norm())));
     line.origin() = line.projection(Eigen::Vector3d::Zero());
   }
   return line;
 }
 
 Line3d TurnEvidence::refined(const Line3d& start, const std::vector<double>& angles) const {
-  return fitted(start, angles, few_samples_, kDetection.fit_widths);
+  return fitted(start, angles, few_samples_, kDetection.rotations.fit_widths);
 }
 
 Line3d TurnEvidence::closelyRefined(const Line3d& start, const std::vector<double>& angles) const {
-  return fitted(start, angles, samples_, kDetection.close_fit_widths);
+  return fitted(start, angles, samples_, kDetection.rotations.close_fit_widths);
 }
 
 }  // namespace pcl_symmetry

@@ -17,13 +17,14 @@ namespace pcl_symmetry {
 /// reported is turnConfidence(), which is fitted to lines that were chosen so.
 /// \param turn with the shares that were seen.
 inline double marginOf(const SymmetryTurn& turn) {
-  const double least_on = turn.fold == 0   ? kDetection.round_on
-                          : turn.fold == 2 ? kDetection.half_turn_on
-                                           : kDetection.fold_on;
-  const double most_off = turn.fold == 0 ? kDetection.most_round_off : kDetection.most_off,
-               most_far = turn.fold == 0 ? kDetection.most_round_far : kDetection.most_far;
+  const double least_on = turn.fold == 0   ? kDetection.rotations.round_on
+                          : turn.fold == 2 ? kDetection.rotations.half_turn_on
+                                           : kDetection.rotations.fold_on;
+  const double most_off = turn.fold == 0 ? kDetection.rotations.most_round_off : kDetection.rotations.most_off,
+               most_far = turn.fold == 0 ? kDetection.rotations.most_round_far : kDetection.rotations.most_far;
   const double margin = std::min({1.0 - turn.off / most_off, 1.0 - turn.far / most_far, turn.support / least_on - 1.0});
-  return turn.fold == 0 ? margin : std::min(margin, (turn.halfway - turn.off) / kDetection.halfway_more - 1.0);
+  return turn.fold == 0 ? margin
+                        : std::min(margin, (turn.halfway - turn.off) / kDetection.rotations.halfway_more - 1.0);
 }
 
 /// What a scan tells about one rotation about a line, shares of the points seen. The rest lands where nothing was seen.

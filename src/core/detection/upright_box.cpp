@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "core/base/constants.h"
+#include "core/base/logistic.h"
 #include "core/base/median.h"
 #include "core/detection/plane_decision.h"
 #include "core/geometry/reflected_points.h"
@@ -23,24 +24,12 @@ struct UprightBoxRules {
   double meets = 0.03;      // diagonals within which a reflection meets what a beam met
   double beam_reach = 2.0;  // distances of neighboring beams within which a beam is informative
   int beams = 3;            // nearest a reflection
-  // Tolerances from which neighboring points are so far apart that they are no surface. 5 000 points of one side of an
-  // object are one tolerance apart, the points of a car in a LiDAR's sweep three.
+  // Tolerances from which neighboring points are so far apart that they are no surface.
   double no_surface = 1.5;
-  // Logit of the confidence, by the share near a side and the root of the share in free space, fitted to 284 virtual
-  // scans with 16 to 64 rings at 5 to 25 m; cross-validated, 3 % of asymmetric shapes are called symmetric.
+  // Logit of the confidence, by the share near a side and the root of the share in free space, fitted to virtual scans.
   double confidence = 0.7, of_near = 4.15, of_free = -15.6;
 };
 constexpr UprightBoxRules kBox;
-
-/// The extent of some values without a share at both ends.
-std::array<double, 2> extentOf(std::vector<double>& values) {
-  const auto trim = static_cast<std::ptrdiff_t>(std::lround(kBox.trimmed * static_cast<double>(values.size() - 1)));
-  const auto low = values.begin() + trim, high = values.end() - 1 - trim;
-  std::nth_element(values.begin(), low, values.end());
-  const double least = *low;
-  std::nth_element(values.begin(), high, values.end());
-  return {least, *high};
-}
 
 double distanceFrom(const std::array<double, 2>& sides, double value) {
   return std::min(std::abs(value - sides[0]), std::abs(value - sides[1]));
@@ -58,8 +47,9 @@ Rectangle rectangleAt(const PointsRef& points, const Eigen::Vector3d& u, const E
   Rectangle rectangle{{u, v}, {}, std::vector<double>(points.cols(), 0.0), 0.0};
   for (std::size_t k = 0; k < 2; ++k) {
     const Eigen::RowVectorXf along = rectangle.axes[k].cast<float>().transpose() * points;
-    std::vector<double> values(along.data(), along.data() + along.size());
-    rectangle.sides[k] = extentOf(values);
+    const auto num_cut = static_cast<std::size_t>(std::lround(kBox.trimmed * static_cast<double>(along.size() - 1)));
+    const auto [low, high] = trimmedExtent(std::vector<double>(along.data(), along.data() + along.size()), num_cut);
+    rectangle.sides[k] = {low, high};
     for (Eigen::Index i = 0; i < along.size(); ++i) {
       double& distance = rectangle.distances[i];
       const double off = distanceFrom(rectangle.sides[k], along[i]);
@@ -165,8 +155,7 @@ std::optional<SymmetryPlane> middlePlaneOfBox(const PointsRef& points, const Eig
   const auto num_near = std::count_if(box.distances.begin(), box.distances.end(),
                                       [&](double distance) { return distance < kBox.near * width(across); });
   const double near = static_cast<double>(num_near) / static_cast<double>(points.cols());
-  plane.confidence =
-      1.0 / (1.0 + std::exp(-(kBox.confidence + kBox.of_near * near + kBox.of_free * std::sqrt(num_free / num_moved))));
+  plane.confidence = logistic(kBox.confidence + kBox.of_near * near + kBox.of_free * std::sqrt(num_free / num_moved));
   plane.share = num_met / (num_met + num_free);
   plane.share_low = num_met / num_moved;
   plane.share_high = 1.0 - num_free / num_moved;

@@ -135,8 +135,8 @@ double planeConfidence(const PlaneEvidence& evidence) {
 }
 
 double furtherConfidence(double confidence, CloudKind kind, double unknown) {
-  const double odds = std::exp(byFurther(kind, unknown) * kConfidenceFit.log_odds[static_cast<int>(kind)].back());
-  return confidence * odds / (confidence * odds + (1.0 - confidence));
+  return withOdds(confidence,
+                  std::exp(byFurther(kind, unknown) * kConfidenceFit.log_odds[static_cast<int>(kind)].back()));
 }
 
 }  // namespace pcl_symmetry

@@ -37,9 +37,8 @@ struct PlaneEvidence {
 /// \return min(1, support / ((support + conflict) * baseline)), in [0, 1]; 0 where nothing was seen.
 double seenSupport(const PlaneEvidence& evidence);
 
-/// What the evidence is divided by before it counts: how exactly it is known. The values were chosen by
-/// cross-validation over the models of the fit; half and twice of each hardly change a decision, but for
-/// hidden_loss.
+/// What the evidence is divided by before it counts: how exactly it is known. Chosen by cross-validation
+/// over the models of the fit.
 struct EvidenceUnits {
   double off = 0.005;                    ///< error of the share that is off, of clouds without noise
   double off_per_spacing = 0.002;        ///< the same per spacing in tolerances

@@ -7,8 +7,6 @@
 namespace pcl_symmetry {
 
 /// Fewer distinct points hold no symmetry that could be told from chance.
-// Of 100 clouds of points drawn uniformly from a cube, 40 got a plane with 10 points each, 12 with 20 and 5
-// with 40.
 constexpr int kMinDistinctPoints = 20;
 
 /// Why points hold no answer: too few distinct ones, all at one position, or all on one line (a line is symmetric in

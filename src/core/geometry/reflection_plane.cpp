@@ -49,4 +49,10 @@ double ReflectionPlane::angleTo(const ReflectionPlane& other) const {
   return std::atan2(sine, std::abs(normal_.dot(other.normal_)));
 }
 
+ReflectionPlane planeThrough(const Line3d& line, double angle) {
+  const Eigen::Vector3d u = line.direction().unitOrthogonal(), v = line.direction().cross(u);
+  const Eigen::Vector3d n = std::cos(angle) * u + std::sin(angle) * v;
+  return ReflectionPlane(n, n.dot(line.origin()));
+}
+
 }  // namespace pcl_symmetry

@@ -13,9 +13,9 @@ struct ScanRules {
   double trimmed_deviation = 0.6616;
   double least_error = 0.1;  ///< pixel sizes; smaller errors do no harm to shapes
   double most_growth = 2.0;  ///< of second differences at twice the distance; a Kinect has up to 1.6, shapes 4
-  /// Tangent of the slant up to which neighbors count at the start; best on five scenes.
+  /// Tangent of the slant up to which neighbors count at the start.
   double slant_at_start = 1.0;
-  /// Errors of an inverse depth beyond which a pixel shows another surface; best on five scenes.
+  /// Errors of an inverse depth beyond which a pixel shows another surface.
   float surface_cut = 3.0f;
   /// The same from the plane of the neighbors, beyond which a pixel flies: 1.2 % of normal errors are greater.
   float flying_cut = 2.5f;
@@ -32,7 +32,7 @@ struct ScanRules {
   double most_side_angle = 0.044;
   double side_angle_step = 0.0044;  ///< radians
   int least_row = 10;               ///< points of the last row; round ends of objects have fewer
-  /// Points of the last row over the mean of the next two rows: 82 of 89 cut sides pass, 62 of 437 ends of objects.
+  /// Points of the last row over the mean of the next two rows: less at the ends of most objects.
   double least_row_ratio = 0.8;
 
   // Depth images made of points

@@ -6,6 +6,7 @@
 
 #include "core/base/parallel.h"
 #include "pcl_symmetry/core/gaussian_edt.h"
+#include "pcl_symmetry/core/reflection_plane.h"
 
 namespace pcl_symmetry {
 
@@ -33,6 +34,14 @@ double correlation(const GaussianEdt& edt, const Image& image, const Eigen::Vect
     slabs[slab] = std::accumulate(sums, sums + num_sums, 0.0);
   });
   return std::clamp(std::accumulate(slabs.begin(), slabs.end(), 0.0) / edt.sqNorm(), 0.0, 1.0);
+}
+
+/// The same for a reflection across a plane, input frame.
+inline double correlation(const GaussianEdt& edt, const ReflectionPlane& plane, int num_threads) {
+  const ReflectionPlane cells(plane.normal(), plane.signedDistance(edt.origin()) / -edt.cellSize());
+  const Eigen::Vector3d step = Eigen::Vector3d::UnitX() - 2.0 * plane.normal().x() * plane.normal();
+  return correlation(
+      edt, [&](const Eigen::Vector3d& x) { return cells.reflect(x); }, step, num_threads);
 }
 
 }  // namespace pcl_symmetry

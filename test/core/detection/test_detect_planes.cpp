@@ -279,13 +279,6 @@ TEST(DetectPlanes, SameBytesForAnyNumberOfThreads) {
   });
 }
 
-TEST(DetectPlanes, NeedsNoPrincipalAxes) {
-  const Shape shape = moved(box(10'000, Sampling::Mirrored, 15), randomPose(15));
-  DetectionOptions options;
-  options.expert.principal_planes = false;
-  EXPECT_EQ(compare(detectPlanes(shape.cloud(), options), shape).num_matched, 3u);
-}
-
 TEST(DetectPlanes, MaxPlanesKeepsTheBest) {
   const Points cloud = cube(5000, Sampling::Random, 16).cloud();
   DetectionOptions options;

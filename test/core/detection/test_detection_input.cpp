@@ -96,42 +96,6 @@ TEST(DetectPlanes, ARodWhosePointsShowItsCrossSectionHasItsPlanes) {
   ASSERT_EQ(detection.axes.size(), 1u);
 }
 
-TEST(DetectPlanesOfMany, FindsTheSameBytesAsOneCloudAtATime) {
-  const auto cloud = [](std::size_t i) {
-    return moved(box({1.0, 0.7, 0.4}, 2000, Sampling::Mirrored, 30 + i), randomPose(static_cast<int>(i))).cloud();
-  };
-  constexpr std::size_t kNum = 6;
-  for (const int num_threads : {1, 3}) {
-    DetectionOptions options;
-    options.num_threads = num_threads;
-    std::vector<std::vector<SymmetryPlane>> planes(kNum);
-    std::vector<int> num_calls(kNum, 0);
-    const auto keep = [&](std::size_t i, Detection detection) {
-      ++num_calls[i];
-      planes[i] = std::move(detection.planes);
-    };
-    detectPlanesOfMany(kNum, cloud, keep, options);
-    EXPECT_EQ(num_calls, std::vector<int>(kNum, 1));
-    for (std::size_t i = 0; i < kNum; ++i) {
-      EXPECT_GE(planes[i].size(), 1u);
-      expectSamePlanes(planes[i], detectPlanes(cloud(i)).planes);
-    }
-  }
-}
-
-TEST(DetectPlanesOfMany, HandsOnWhatFails) {
-  const auto keep = [](std::size_t, const Detection&) {};
-  const auto fails = [](std::size_t i) -> Points {
-    if (i == 2) throw std::runtime_error("cloud 2 cannot be read");
-    return box(100, Sampling::Random, 22).cloud();
-  };
-  EXPECT_THROW(detectPlanesOfMany(4, fails, keep), std::runtime_error);
-  DetectionOptions bad;
-  bad.num_threads = -1;
-  EXPECT_THROW(detectPlanesOfMany(0, fails, keep, bad), std::invalid_argument);
-  EXPECT_NO_THROW(detectPlanesOfMany(0, fails, keep));
-}
-
 TEST(DetectionOptions, RefusesBadOnes) {
   const Points cloud = box(100, Sampling::Random, 22).cloud();
   const auto refused = [&](auto&& change) {
@@ -145,17 +109,12 @@ TEST(DetectionOptions, RefusesBadOnes) {
   refused([](auto& o) { o.expert.num_phi = 3; });
   refused([](auto& o) { o.expert.num_radius = 0; });
   refused([](auto& o) { o.expert.max_candidates = 0; });
-  refused([](auto& o) { o.expert.max_drift = -1.0; });
-  refused([](auto& o) { o.expert.num_coarse_samples = 9; });
   refused([](auto& o) { o.expert.num_refine_samples = 9; });
   refused([](auto& o) { o.expert.max_iterations = 0; });
-  refused([](auto& o) { o.expert.merge_angle = -1.0; });
-  refused([](auto& o) { o.expert.merge_offset = -1.0; });
   refused([](auto& o) { o.min_confidence = 1.5; });
   refused([](auto& o) { o.min_confidence = -0.1; });
   refused([](auto& o) { o.min_possible = -0.1; });
   refused([](auto& o) { o.min_possible = 1.1; });
-  refused([](auto& o) { o.max_possible = 0; });
   refused([](auto& o) { o.max_planes = 0; });
   refused([](auto& o) { o.num_threads = -1; });
 }

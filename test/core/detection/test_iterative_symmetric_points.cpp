@@ -255,7 +255,7 @@ TEST(IterateSymmetricPoints, ReportsWhatItSaw) {
   EXPECT_NEAR(step.residual, 0.1, 1e-6);
 }
 
-TEST(StepReflectionPlane, LeavesTheFreeDirectionsOfASphere) {
+TEST(IterateSymmetricPoints, LeavesTheFreeDirectionsOfASphere) {
   // Pairs on a sphere say nothing about the direction of a plane through its center: only the offset may move.
   const Points points = sphere(3000, 5).cloud();
   const auto search = makeFlannSearch(points);
@@ -271,13 +271,16 @@ TEST(StepReflectionPlane, LeavesTheFreeDirectionsOfASphere) {
   EXPECT_LT(std::abs(plane.offset()), 0.01);
 }
 
-TEST(StepReflectionPlane, DoesNotMoveWithoutWeightsOrExtent) {
-  const ReflectionPlane plane({1.0, 2.0, 3.0}, 0.5);
-  const Points x = sphere(10, 6).cloud();
-  EXPECT_EQ(stepReflectionPlane(x, x, x, x, std::vector<double>(10, 0.0), plane).coefficients(), plane.coefficients());
+TEST(IterateSymmetricPoints, DoesNotMoveWithoutWeightsOrExtent) {
   const Points one = Points::Constant(3, 5, 1.0f), up = Points::Constant(3, 5, std::sqrt(1.0f / 3.0f));
-  EXPECT_EQ(stepReflectionPlane(one, one, up, up, std::vector<double>(5, 1.0), plane).coefficients(),
-            plane.coefficients());
+  const auto search = makeFlannSearch(one);
+  const ReflectionPlane through({1.0, 2.0, 3.0}, 6.0), far({1.0, 2.0, 3.0}, 60.0);
+  for (const ReflectionPlane& plane : {through, far})
+    for (const IspUpdate update : {IspUpdate::PointToPlane, IspUpdate::PointToPoint}) {
+      if (update == IspUpdate::PointToPoint && plane.offset() < 10.0) continue;  // any plane through the point fits
+      const IspStep step = iterateSymmetricPoints({one, up, *search}, {0, 1, 2, 3, 4}, plane, 0.1, update);
+      EXPECT_EQ(step.plane.coefficients(), plane.coefficients());
+    }
 }
 
 TEST(IspOptions, RefusesBadOnes) {

@@ -153,17 +153,6 @@ TEST(Families, AHandleLeavesACupItsOnePlane) {
   }
 }
 
-TEST(Families, PlanesComeSinglyWhereFamiliesAreOff) {
-  DetectionOptions options;
-  options.families = false;
-  const Detection detection = detectPlanes(cylinder(5000, 1).cloud(), options);
-  EXPECT_TRUE(detection.axes.empty());
-  EXPECT_GE(detection.planes.size(), 3u);
-  const Detection round = detectPlanes(sphere(5000, 1).cloud(), options);
-  EXPECT_TRUE(round.centers.empty());
-  EXPECT_GE(round.planes.size(), 3u);
-}
-
 const Line3d kPolygonLine(Eigen::Vector3d(0.1, -0.05, 0.2), Eigen::Vector3d(0.3, 0.2, 1.0).normalized());
 
 std::vector<ReflectionPlane> planesAt(const std::vector<double>& places, int fold) {
