@@ -1,7 +1,10 @@
 #include "core/detection/far_test.h"
 
 #include <array>
+#include <limits>
+#include <numeric>
 
+#include "core/base/parallel.h"
 #include "core/base/simd.h"
 
 namespace pcl_symmetry {
@@ -62,6 +65,41 @@ std::vector<Eigen::Index> FarTest::nearOf(const PointsRef& points, float bound) 
   }
   near.resize(count);
   return near;
+}
+
+ClosestPoints closestWithin(const IspSurface& surface, const Points& queries, double reach,
+                            const std::vector<int>* guesses) {
+  const auto size = static_cast<std::size_t>(queries.cols());
+  ClosestPoints found{std::vector<int>(size, -1), std::vector<float>(size, std::numeric_limits<float>::infinity())};
+  const float bound = surface.far ? surface.far->bound(reach) : 0.0f;
+  const auto sq_reach = static_cast<float>(reach * reach);
+  parallelRanges(size, 1024, surface.num_threads, [&](std::size_t begin, std::size_t end) {
+    if (!surface.far && size <= 1024) {  // all at once
+      if (guesses) found.indices = *guesses;
+      surface.search.searchWithin(queries, sq_reach, found.indices, found.sq_distances);
+      return;
+    }
+    const auto some = queries.middleCols(static_cast<Eigen::Index>(begin), static_cast<Eigen::Index>(end - begin));
+    std::vector<Eigen::Index> near;  // from begin on
+    if (surface.far) {
+      near = surface.far->nearOf(some, bound);
+    } else {
+      near.resize(end - begin);
+      std::iota(near.begin(), near.end(), Eigen::Index{0});
+    }
+    Points asked(3, near.size());
+    for (std::size_t i = 0; i < near.size(); ++i) asked.col(i) = some.col(near[i]);
+    std::vector<int> closest(near.size(), -1);
+    std::vector<float> sq_distances;
+    if (guesses)
+      for (std::size_t i = 0; i < near.size(); ++i) closest[i] = (*guesses)[begin + near[i]];
+    surface.search.searchWithin(asked, sq_reach, closest, sq_distances);
+    for (std::size_t i = 0; i < near.size(); ++i) {
+      found.indices[begin + near[i]] = closest[i];
+      found.sq_distances[begin + near[i]] = sq_distances[i];
+    }
+  });
+  return found;
 }
 
 }  // namespace pcl_symmetry

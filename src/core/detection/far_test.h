@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "pcl_symmetry/core/gaussian_edt.h"
+#include "pcl_symmetry/core/iterative_symmetric_points.h"
 
 namespace pcl_symmetry {
 
@@ -37,5 +38,17 @@ private:
   Eigen::Vector3d center_;
   double scale_;
 };
+
+/// Closest points to some positions.
+struct ClosestPoints {
+  std::vector<int> indices;         ///< -1: none is near
+  std::vector<float> sq_distances;  ///< infinite where none is near
+};
+
+/// \param queries positions in the frame of the surface.
+/// \param reach beyond which points are not near.
+/// \param guesses indices of points that are likely to be near, which makes the search faster; null = not known.
+ClosestPoints closestWithin(const IspSurface& surface, const Points& queries, double reach,
+                            const std::vector<int>* guesses = nullptr);
 
 }  // namespace pcl_symmetry

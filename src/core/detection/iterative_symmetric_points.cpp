@@ -4,8 +4,7 @@
 #include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
-#include <limits>
-#include <numeric>
+#include <utility>
 
 #include "core/base/check.h"
 #include "core/base/parallel.h"
@@ -105,37 +104,9 @@ ReflectionPlane steppedPlane(const PointsRef& x, const std::vector<double>& weig
 IspStep matchReflections(const IspSurface& surface, const Points& reflected, double sigma,
                          const std::vector<int>* guesses) {
   IspStep step;
-  const auto size = static_cast<std::size_t>(reflected.cols());
-  step.closest.assign(size, -1);
-  step.sq_distances.assign(size, std::numeric_limits<float>::infinity());
-  const float bound = surface.far ? surface.far->bound(kDetection.isp.reach_sigmas * sigma) : 0.0f;
-  const auto sq_reach = static_cast<float>(kDetection.isp.reach_sigmas * kDetection.isp.reach_sigmas * sigma * sigma);
-  parallelRanges(size, 1024, surface.num_threads, [&](std::size_t begin, std::size_t end) {
-    if (!surface.far && size <= 1024) {  // all at once
-      if (guesses) step.closest = *guesses;
-      surface.search.searchWithin(reflected, sq_reach, step.closest, step.sq_distances);
-      return;
-    }
-    const auto some = reflected.middleCols(static_cast<Eigen::Index>(begin), static_cast<Eigen::Index>(end - begin));
-    std::vector<Eigen::Index> near;  // from begin on
-    if (surface.far) {
-      near = surface.far->nearOf(some, bound);
-    } else {
-      near.resize(end - begin);
-      std::iota(near.begin(), near.end(), Eigen::Index{0});
-    }
-    Points queries(3, near.size());
-    for (std::size_t i = 0; i < near.size(); ++i) queries.col(i) = some.col(near[i]);
-    std::vector<int> closest(near.size(), -1);
-    std::vector<float> sq_distances;
-    if (guesses)
-      for (std::size_t i = 0; i < near.size(); ++i) closest[i] = (*guesses)[begin + near[i]];
-    surface.search.searchWithin(queries, sq_reach, closest, sq_distances);
-    for (std::size_t i = 0; i < near.size(); ++i) {
-      step.closest[begin + near[i]] = closest[i];
-      step.sq_distances[begin + near[i]] = sq_distances[i];
-    }
-  });
+  ClosestPoints found = closestWithin(surface, reflected, kDetection.isp.reach_sigmas * sigma, guesses);
+  step.closest = std::move(found.indices);
+  step.sq_distances = std::move(found.sq_distances);
   return step;
 }
 

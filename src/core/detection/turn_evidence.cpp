@@ -99,16 +99,16 @@ TurnShares TurnEvidence::roughly(const Eigen::Affine3d& motion, double slack, do
 }
 
 TurnEvidence::Moved TurnEvidence::moved(const Eigen::Affine3d& motion) const {
-  Moved moved{Points(3, static_cast<Eigen::Index>(samples_.size())), std::vector<int>(samples_.size(), -1), {}};
+  Moved moved{Points(3, static_cast<Eigen::Index>(samples_.size())), {}, {}};
   for (std::size_t i = 0; i < samples_.size(); ++i)
     moved.points.col(static_cast<Eigen::Index>(i)) =
         (motion * cloud_.points.col(samples_[i]).cast<double>()).cast<float>();
   // Points beyond the reach only need to be known as far.
-  std::vector<float> sq_distances;
-  cloud_.search->searchWithin(moved.points, static_cast<float>(reach_ * reach_), moved.closest, sq_distances);
+  ClosestPoints near = closestWithin(cloud_.surface, moved.points, reach_);
+  moved.closest = std::move(near.indices);
   moved.distances = surfaceDistances(moved.points, moved.closest, cloud_.samples);
   for (std::size_t i = 0; i < samples_.size(); ++i)
-    moved.distances[i] = std::min(moved.distances[i], std::sqrt(sq_distances[i]));
+    moved.distances[i] = std::min(moved.distances[i], std::sqrt(near.sq_distances[i]));
   return moved;
 }
 
@@ -142,24 +142,22 @@ double TurnEvidence::hold(const Line3d& line, double angle) const {
 }
 
 void TurnEvidence::addPulls(const Line3d& line, double angle, const std::vector<int>& samples, double width,
-                            Pulls& pulls) const {
+                            std::vector<int>& closest, Pulls& pulls) const {
   const double sq_width = width * width * tolerance_ * tolerance_;
   const Eigen::Isometry3d turn = turnAbout(line, angle);
   const std::array<Eigen::Isometry3d, 4> beside = turnsBeside(line, angle);
   Points turned(3, static_cast<Eigen::Index>(samples.size()));
   for (std::size_t i = 0; i < samples.size(); ++i)
     turned.col(static_cast<Eigen::Index>(i)) = (turn * cloud_.points.col(samples[i]).cast<double>()).cast<float>();
-  std::vector<int> closest(samples.size(), -1);
-  std::vector<float> sq_distances;
-  cloud_.search->searchWithin(
-      turned, static_cast<float>(kDetection.rotations.fit_reach * kDetection.rotations.fit_reach * sq_width), closest,
-      sq_distances);
+  const ClosestPoints found =
+      closestWithin(cloud_.surface, turned, kDetection.rotations.fit_reach * width * tolerance_, &closest);
+  closest = found.indices;
   for (std::size_t i = 0; i < samples.size(); ++i) {
     if (closest[i] < 0) continue;
     const Eigen::Vector3d x = cloud_.points.col(samples[i]).cast<double>(), y = turn * x;
     const Eigen::Vector3d miss = y - cloud_.points.col(closest[i]).cast<double>();
     Eigen::Vector3d along;
-    double weight = std::exp(-sq_distances[i] / sq_width);
+    double weight = std::exp(-found.sq_distances[i] / sq_width);
     if (cloud_.geometry.at_border[closest[i]]) {
       if (miss.norm() < kDetection.rotations.least_empty_miss * tolerance_ || cloud_.visibility->depthBehind(y) >= 0.0)
         continue;
@@ -182,9 +180,10 @@ Line3d TurnEvidence::fitted(const Line3d& start, const std::vector<double>& angl
                             const std::array<double, 6>& widths) const {
   // Tilts about the point of the line among the points, so that they and the shifts are independent.
   Line3d line(start.projection(Eigen::Vector3d::Zero()), start.direction());
+  std::vector<std::vector<int>> closest(angles.size(), std::vector<int>(samples.size(), -1));
   for (const double width : widths) {
     Pulls pulls;
-    for (const double angle : angles) addPulls(line, angle, samples, width, pulls);
+    for (std::size_t k = 0; k < angles.size(); ++k) addPulls(line, angles[k], samples, width, closest[k], pulls);
     pulls.squares.diagonal().array() +=
         kDetection.rotations.fit_ridge * pulls.squares.trace() + kDetection.rotations.least_turn_f;
     const Eigen::Vector4d step = pulls.squares.ldlt().solve(pulls.sum);

@@ -83,7 +83,9 @@ private:
 
   Moved moved(const Eigen::Affine3d& motion) const;
   /// \param width of the weights, tolerances.
-  void addPulls(const Line3d& line, double angle, const std::vector<int>& samples, double width, Pulls& pulls) const;
+  /// \param[in,out] closest points to the moved samples, of a line nearby; -1 where none is known.
+  void addPulls(const Line3d& line, double angle, const std::vector<int>& samples, double width,
+                std::vector<int>& closest, Pulls& pulls) const;
   Line3d fitted(const Line3d& start, const std::vector<double>& angles, const std::vector<int>& samples,
                 const std::array<double, 6>& widths) const;
   bool isSeenEmpty(const Eigen::Vector3d& x) const;

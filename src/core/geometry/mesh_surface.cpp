@@ -22,15 +22,16 @@ namespace {
 // Lengths are in radii of the bounding ball.
 struct MeshRules {
   int samples = 4000;          // that shares are measured on: an error of 0.3 % at the limit of 97 %
-  int fitted_samples = 2000;   // that motions are fitted to
+  int fitted_samples = 1000;   // that motions are fitted to, a part of them
   int border_samples = 1000;   // of the open borders
   int iterations = 40;         // at most; exact surfaces take three to six
   int most_worse = 3;          // iterations after the best one, at the narrowest weights: the fit does not return to it
   double settled = 1e-9;       // length of a step that ends the fit: below what float coordinates resolve
   double longest_step = 0.05;  // radians and radii: samples of the other side are not reached in one step
   double widths = 2.5;         // medians of the distances, the width of the weights: most samples of a symmetry agree
-  double first_width = 0.05;   // of the weights, halved after each short step: the ends of a bar are few, and far off
-  double short_step = 0.1;     // of the width
+  double first_width = 0.05;   // of the weights at first: the ends of a bar are few, and far off
+  double short_step = 0.1;     // of the width, after which it is multiplied by
+  double narrower = 0.25;
   double least_width = 1e-4;   // of the weights, far above rounding
   double exact_cost = 1e-6;    // of all samples: rounding
   double touching = 1e-5;      // distance below which its direction is rounding, and the normal counts
@@ -148,11 +149,12 @@ MeshSurface::MeshSurface(const PointsRef& vertices, const std::vector<Eigen::Vec
   check(parts_->ball.radius > 0.0, "extent of the mesh", parts_->ball.radius, "> 0");
   parts_->corners = normalizePoints(corners, parts_->ball.center, parts_->ball.radius);
   parts_->triangles = std::move(faces);
-  // Every second sample is fitted to first, spread over the surface.
+  // Samples that are fitted to are the first, spread over the surface.
+  constexpr int kStride = kMesh.samples / kMesh.fitted_samples;
   const Points samples = sampleTriangles(parts_->corners, parts_->triangles, kMesh.samples);
   parts_->faces.samples = samples;
   for (int i = 0; i < kMesh.samples; ++i)
-    parts_->faces.samples.col(i / 2 + (i % 2) * kMesh.fitted_samples) = samples.col(i);
+    parts_->faces.samples.col(i / kStride + (i % kStride) * kMesh.fitted_samples) = samples.col(i);
 }
 
 const MeshSurface::Parts& MeshSurface::Parts::withTrees() {
@@ -216,7 +218,7 @@ MeshSurface::Placement MeshSurface::fitted(const MotionsAbout& motions) const {
     const Vector6d step = smallMotion(sums.h, sums.g, kMesh.stiffness, kMesh.longest_step);
     const bool is_done = step.norm() < kMesh.settled && (width == kMesh.least_width || sums.cost < kMesh.exact_cost);
     if (is_done || !step.allFinite()) break;
-    if (step.norm() < kMesh.short_step * width) width = std::max(kMesh.least_width, 0.5 * width);
+    if (step.norm() < kMesh.short_step * width) width = std::max(kMesh.least_width, kMesh.narrower * width);
     const Eigen::Matrix3d next = rotationBy(step.head<3>());
     rotation = next * rotation;
     for (Eigen::Matrix3d& linear : moving.linear) linear = next * linear * next.transpose();
