@@ -339,6 +339,7 @@ Detection detectPlanes(const PlaneInput& input, const DetectionOptions& options)
   if (input.normals)
     check(input.normals->cols() == input.points.cols(), "number of normals", input.normals->cols(),
           "the number of points");
+  check(!input.map == !input.edt, "map", input.map ? "given" : "missing", "given together with edt");
   if (std::string reason = whyUnanswerable(input.points); !reason.empty()) return unanswered(std::move(reason));
   Stopwatch watch;
   Detection detection;

@@ -90,6 +90,7 @@ struct DetectionRules {
   /// Deciding.
   struct {
     double most_cut = 0.3;               ///< share of the outline that the picture may cut off; tables in frames: 0.36
+    double hopeful_share = 0.93;         ///< of a quick look; less is no possible symmetry
     double look_errors = 2.0;            ///< standard errors that a quick look allows
     double still_share = 0.5;            ///< share of the points that an uninformative plane leaves in place
     double nothing_missing = 0.01;       ///< share of the surface; less is missing by chance

@@ -104,7 +104,7 @@ bool PlaneDecision::explainsAll(const SymmetryPlane& plane) const {
 bool PlaneDecision::isHopeless(const Candidate& candidate) const {
   if (!cloud_.rules().may_lack_piece || candidate.merit >= kDetection.stages.symmetric_merit) return false;
   const PlaneMeasure::QuickShare quick = measure_.quickShare(candidate);
-  return quick.share + kDetection.decide.look_errors * quick.error < kDetection.stages.symmetric_merit;
+  return quick.share + kDetection.decide.look_errors * quick.error < kDetection.decide.hopeful_share;
 }
 
 void PlaneDecision::preferWhole(std::vector<SymmetryPlane>& planes) const {

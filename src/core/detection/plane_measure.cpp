@@ -12,7 +12,6 @@
 #include "core/evidence/surface_samples.h"
 #include "core/geometry/geometry_rules.h"
 #include "core/geometry/point_samples.h"
-#include "core/geometry/reflected_points.h"
 #include "core/scan/sensor_noise.h"
 #include "core/scan/single_view.h"
 

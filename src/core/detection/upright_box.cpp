@@ -9,7 +9,7 @@
 #include "core/base/logistic.h"
 #include "core/base/median.h"
 #include "core/detection/plane_decision.h"
-#include "core/geometry/reflected_points.h"
+#include "core/geometry/point_samples.h"
 #include "core/geometry/surface_normals.h"
 #include "pcl_symmetry/core/closest_point_search.h"
 

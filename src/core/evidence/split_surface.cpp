@@ -10,7 +10,6 @@
 
 #include "core/evidence/surface_samples.h"
 #include "core/geometry/point_samples.h"
-#include "core/geometry/reflected_points.h"
 #include "pcl_symmetry/core/gaussian_edt.h"
 
 namespace pcl_symmetry {

@@ -3,8 +3,6 @@
 #include <array>
 #include <vector>
 
-#include "core/evidence/evidence_rules.h"
-#include "core/evidence/surface_samples.h"
 #include "core/geometry/surface_normals.h"
 #include "pcl_symmetry/core/point_set.h"
 

@@ -10,7 +10,7 @@
 #include "core/base/parallel.h"
 #include "core/geometry/diameter.h"
 #include "core/geometry/mesh_sampling.h"
-#include "core/geometry/reflected_points.h"
+#include "core/geometry/point_samples.h"
 #include "core/geometry/surface_normals.h"
 #include "core/geometry/triangle_tree.h"
 #include "pcl_symmetry/core/closest_point_search.h"

@@ -3,7 +3,7 @@
 #include <cmath>
 
 #include "core/base/check.h"
-#include "core/geometry/reflected_points.h"
+#include "core/geometry/point_samples.h"
 #include "core/geometry/surface_normals.h"
 
 namespace pcl_symmetry {

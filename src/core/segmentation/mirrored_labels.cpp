@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <map>
 
-#include "core/geometry/reflected_points.h"
+#include "core/geometry/point_samples.h"
 #include "core/segmentation/labels.h"
 #include "core/segmentation/segmentation_rules.h"
 #include "pcl_symmetry/core/closest_point_search.h"

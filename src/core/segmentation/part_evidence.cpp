@@ -12,7 +12,6 @@
 #include "core/base/median.h"
 #include "core/base/random.h"
 #include "core/geometry/point_samples.h"
-#include "core/geometry/reflected_points.h"
 #include "core/geometry/triangle_tree.h"
 #include "core/segmentation/segmentation_rules.h"
 #include "core/segmentation/surface_patches.h"

@@ -96,6 +96,14 @@ TEST(DetectPlanes, ARodWhosePointsShowItsCrossSectionHasItsPlanes) {
   ASSERT_EQ(detection.axes.size(), 1u);
 }
 
+TEST(PlaneInput, HasAMapWithItsDistanceTransform) {
+  const Points cloud = box(100, Sampling::Random, 22).cloud();
+  const SymmetryMap map;
+  PlaneInput input(cloud);
+  input.map = &map;
+  EXPECT_THROW(detectPlanes(input), std::invalid_argument);
+}
+
 TEST(DetectionOptions, RefusesBadOnes) {
   const Points cloud = box(100, Sampling::Random, 22).cloud();
   const auto refused = [&](auto&& change) {

@@ -14,7 +14,7 @@
 #include "core/evidence/split_surface.h"
 #include "core/evidence/surface_samples.h"
 #include "core/geometry/open_borders.h"
-#include "core/geometry/reflected_points.h"
+#include "core/geometry/point_samples.h"
 #include "core/geometry/surface_normals.h"
 #include "pcl_symmetry/core/gaussian_edt.h"
 #include "shapes/shapes.h"
