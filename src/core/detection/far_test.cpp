@@ -68,20 +68,21 @@ std::vector<Eigen::Index> FarTest::nearOf(const PointsRef& points, float bound) 
 }
 
 ClosestPoints closestWithin(const IspSurface& surface, const Points& queries, double reach,
-                            const std::vector<int>* guesses) {
+                            const std::vector<int>* guesses, bool leaves_out) {
   const auto size = static_cast<std::size_t>(queries.cols());
   ClosestPoints found{std::vector<int>(size, -1), std::vector<float>(size, std::numeric_limits<float>::infinity())};
   const float bound = surface.far ? surface.far->bound(reach) : 0.0f;
+  const bool has_far = surface.far && (leaves_out || FarTest::isExact(bound));
   const auto sq_reach = static_cast<float>(reach * reach);
   parallelRanges(size, 1024, surface.num_threads, [&](std::size_t begin, std::size_t end) {
-    if (!surface.far && size <= 1024) {  // all at once
+    if (!has_far && size <= 1024) {  // all at once
       if (guesses) found.indices = *guesses;
       surface.search.searchWithin(queries, sq_reach, found.indices, found.sq_distances);
       return;
     }
     const auto some = queries.middleCols(static_cast<Eigen::Index>(begin), static_cast<Eigen::Index>(end - begin));
     std::vector<Eigen::Index> near;  // from begin on
-    if (surface.far) {
+    if (has_far) {
       near = surface.far->nearOf(some, bound);
     } else {
       near.resize(end - begin);

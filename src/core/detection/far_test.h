@@ -27,6 +27,10 @@ public:
     return static_cast<float>(std::exp(-reach * reach));
   }
 
+  /// Whether the distance transform reaches as far as that, so that no point within is taken for far.
+  /// \param bound what bound() returned for a distance.
+  static bool isExact(float bound) { return bound > 1.2e-3f; }  // below it, f is 0
+
   /// \param points 3 x M, side by side.
   /// \param bound what bound() returned for a distance.
   /// \return indices of the points that lie inside the grid and may be as near to the surface as that, rising.
@@ -48,7 +52,8 @@ struct ClosestPoints {
 /// \param queries positions in the frame of the surface.
 /// \param reach beyond which points are not near.
 /// \param guesses indices of points that are likely to be near, which makes the search faster; null = not known.
+/// \param leaves_out points beyond what the distance transform reaches may be taken for far, as their weight is little.
 ClosestPoints closestWithin(const IspSurface& surface, const Points& queries, double reach,
-                            const std::vector<int>* guesses = nullptr);
+                            const std::vector<int>* guesses = nullptr, bool leaves_out = false);
 
 }  // namespace pcl_symmetry

@@ -104,7 +104,7 @@ ReflectionPlane steppedPlane(const PointsRef& x, const std::vector<double>& weig
 IspStep matchReflections(const IspSurface& surface, const Points& reflected, double sigma,
                          const std::vector<int>* guesses) {
   IspStep step;
-  ClosestPoints found = closestWithin(surface, reflected, kDetection.isp.reach_sigmas * sigma, guesses);
+  ClosestPoints found = closestWithin(surface, reflected, kDetection.isp.reach_sigmas * sigma, guesses, true);
   step.closest = std::move(found.indices);
   step.sq_distances = std::move(found.sq_distances);
   return step;
