@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "core/detection/detection_rules.h"
+#include "core/evidence/evidence_rules.h"
 #include "core/evidence/surface_samples.h"
 #include "core/geometry/point_samples.h"
 

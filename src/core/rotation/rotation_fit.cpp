@@ -8,6 +8,7 @@
 #include "core/base/logistic.h"
 #include "core/base/median.h"
 #include "core/base/parallel.h"
+#include "core/evidence/evidence_rules.h"
 #include "core/evidence/surface_samples.h"
 #include "core/geometry/point_samples.h"
 #include "core/geometry/small_motion.h"
