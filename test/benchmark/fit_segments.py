@@ -123,7 +123,7 @@ def program(arguments):
         results = {name: fit_kind(meshes, cues, pool) for name, cues in KINDS.items()}
     lines = [[name, num, f"{rand:.4f}", " ".join(fits.rounded(w, e))] for name, (w, e, rand, num) in results.items()]
     bench.print_table(f"{len(meshes)} meshes", ["evidence", "merges", "Rand distance of patches", "weights"], lines)
-    fits.write_header(arguments, header(results, len(meshes)), (['"core/segmentation/merge_cues.h"'],))
+    fits.write_header(arguments, header(results, len(meshes)), (['"core/segmentation/region_merging.h"'],))
 
 
 if __name__ == "__main__":

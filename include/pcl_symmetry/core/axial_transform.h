@@ -3,7 +3,6 @@
 #include <Eigen/Geometry>
 #include <cstddef>
 #include <cstdint>
-#include <optional>
 #include <vector>
 
 #include "pcl_symmetry/core/exports.h"
@@ -58,8 +57,6 @@ public:
 
   /// \return the axis at the bin center, its origin in the plane across it through center().
   Line3d axis(const Bin& bin) const;
-  /// \return the bin that contains an axis; none if its u or v is greater than radius().
-  std::optional<Bin> find(const Line3d& axis) const;
 
 private:
   int num_theta_ = 0, num_phi_ = 0, num_offset_ = 0;

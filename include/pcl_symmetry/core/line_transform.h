@@ -88,9 +88,6 @@ public:
   /// \return the line at the bin center, input frame.
   ReflectionLine line(const Bin& bin) const;
 
-  /// \return the bin that contains the line; none if the line is farther than radius() from the center.
-  std::optional<Bin> find(const ReflectionLine& line) const;
-
   /// \param dt,dk steps, dt in {-1, 0, 1}.
   /// \return the bin at (t + dt, k + dk), across the seam; none beyond the ends of r.
   std::optional<Bin> step(const Bin& bin, int dt, int dk) const;
@@ -129,10 +126,6 @@ struct LineMap {
 /// \return D at the bin centers.
 LineMap lineTransform(const GaussianEdt2D& edt, const LineGrid& grid, const Eigen::Vector2d& center_of_mass,
                       int num_threads = 0);
-
-/// \param line in the frame of the EDT.
-/// \return D(f, gamma) at exactly this line.
-double lineSymmetry(const GaussianEdt2D& edt, const ReflectionLine& line);
 
 /// A line with a greater D than all lines near it.
 struct LineMaximum {

@@ -73,14 +73,11 @@ public:
   /// \return the bin at (t + dt, p + dp, k + dk), across the seams; none beyond the ends of r.
   std::optional<Bin> step(const Bin& bin, int dt, int dp, int dk) const;
 
-  /// The bins around a bin: one step in theta and r, and as many steps in phi as cover the angle of one step in theta.
+  /// Calls visit(index) for the bins around a bin, some of them twice, until a call returns false: those one step away
+  /// in theta and r, and as many steps in phi as cover the angle of one step in theta.
   ///
   /// At the equator these are the 26 neighbors of the paper. Departure near the pole: bins are slivers in phi there,
   /// and one peak would be a maximum in many of them.
-  /// \return ascending indices, without that of the bin itself.
-  std::vector<std::size_t> neighbors(const Bin& bin) const;
-
-  /// Calls visit(index) for the bins of neighbors(), some of them twice, until a call returns false.
   /// \return whether all calls returned true.
   template <typename Visit>
   bool visitNeighbors(const Bin& bin, const Visit& visit) const {
@@ -111,7 +108,6 @@ private:
   Eigen::Vector3d center_ = Eigen::Vector3d::Zero();
   double radius_ = 0.0;
   std::vector<int> phi_reach_;
-  std::vector<Eigen::Vector2d> of_theta_, of_phi_;  // cosine and sine at the bin centers
 };
 
 }  // namespace pcl_symmetry

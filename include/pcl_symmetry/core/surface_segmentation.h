@@ -25,21 +25,13 @@ enum class MergingEvidence {
   All  ///< also thickness of the body and lines of sight within it
 };
 
-/// Options of SegmentationMethod::Splitting (Section 5.3). A part is split if a plane maps at least min_share and at
-/// most max_share of it onto itself. This rule hardly ever ends the splitting, so that the depth decides.
+/// Options of SegmentationMethod::Splitting (Section 5.3). A part is split if a plane maps between the paper's 10 % and
+/// 90 % of it onto itself. This rule hardly ever ends the splitting, so that the depth decides.
 struct SplittingOptions {
   /// Splits in a row at most, in [0, 30]: the paper's "user-supplied depth". There are up to 2^depth parts.
   /// 1 - Rand index is 0.339, 0.295 and 0.284 at depths 2, 3 and 4 (`segmentation.py`,
   /// models of the Princeton Segmentation Benchmark with ids 1 modulo 4).
   int depth = 3;
-  double min_share = 0.1;  ///< of the area of a part, in [0, max_share]; the paper's 10 %
-  double max_share = 0.9;  ///< of the area of a part, in [min_share, 1]; the paper's 90 %
-
-  /// Maxima are significant if D >= strength * (1 - r / R) * strongest D, as LocalMaximaOptions; in [0, 1].
-  double strength = 0.1;
-
-  /// Strongest maxima that serve as features, >= 1.
-  int max_planes = 20;
 
   /// An edge of concavity c > 0 radians costs length * exp(-concavity_weight * c) to cut; >= 0. With the paper's 0 the
   /// length alone counts: cuts take the shortest way, as through the thighs in the paper's Figure 15.
@@ -59,7 +51,7 @@ struct SplittingOptions {
 struct SegmentationOptions {
   SegmentationMethod method = SegmentationMethod::Merging;  ///< how parts are found
   MergingEvidence evidence = MergingEvidence::All;          ///< with SegmentationMethod::Merging
-  SplittingOptions splitting;                               ///< strength and max_planes are used by merging, too
+  SplittingOptions splitting;                               ///< with SegmentationMethod::Splitting
   int num_parts = 0;       ///< >= 0; 0: the method finds the number. Splitting then splits the largest part first.
   std::uint64_t seed = 1;  ///< of the random samples
   int num_threads = 0;     ///< >= 0; 0: one per core

@@ -24,9 +24,6 @@ struct FrameOptions {
   int num_phi = 128;     ///< even, >= 2
   int num_radius = 64;   ///< >= 1
   int num_samples = 64;  ///< samples of that map's transform, >= 1
-  /// Scores that differ by no more than this are equal, >= 0. The sampled D of a symmetry varies by 0.02 to 0.03 with
-  /// the angle of the plane.
-  double tie = 0.06;
   /// The paper's own method: the plane of greatest D among the maxima of the exact map of 64 x 64 x 64 bins, refined by
   /// publishedPlanes(); then two more picked greedily by D, of 256 samples (to 1 %), at 64 angles across the first
   /// axis. It ignores what a scanner saw, and no scores tie.
@@ -104,7 +101,7 @@ struct SymmetryFrame {
 /// has no direction of its own. Along an axis of symmetry the moment vanishes and chance decides; a scan
 /// has the moments of the side that was seen. SymmetryFrame::equivalent lists all signs.
 /// \param points 3 x N, finite, input units; at least two different ones.
-/// \param options numbers of bins and samples, tie, threads.
+/// \param options numbers of bins and samples, threads.
 /// \param visibility what a scanner saw, input frame; null = the points show the object from all sides.
 /// \param make_search makes the search that looks for the axes of rotation of a scan; null = FLANN's.
 /// \return the frame, in the input frame.

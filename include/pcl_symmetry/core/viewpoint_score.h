@@ -32,10 +32,8 @@ double viewpointScore(const std::vector<ViewPlane>& planes, const Eigen::Vector3
 /// S(v) = v . sum of +-M(u) u is largest in the direction of that sum. From each of many even directions the step to
 /// the direction of the sum is repeated until no sign changes; no step lowers S.
 /// \param planes W.
-/// \param num_directions starts of the search, >= 1: fewer may miss a maximum of a small cell between many planes.
 /// \return none if no plane has a weight > 0: then all directions are equal.
-/// \throws std::invalid_argument if num_directions < 1 and a plane has a weight > 0.
-std::vector<RankedView> bestViews(const std::vector<ViewPlane>& planes, int num_directions = 4096);
+std::vector<RankedView> bestViews(const std::vector<ViewPlane>& planes);
 
 /// The direction with the least S.
 ///

@@ -76,7 +76,7 @@ Eigen::Vector3d meanCenter(const std::vector<Eigen::Vector3d>& centers, const st
   return centers.front() + mean / sum;
 }
 
-int revolutionAxis(const FrameEvidence& evidence, const FrameCandidate& frame, double tie) {
+int revolutionAxis(const FrameEvidence& evidence, const FrameCandidate& frame) {
   const Eigen::Vector3f center = frame.axes * frame.offsets;
   int axis = -1, count = 0;
   for (int k = 0; k < 3; ++k) {
@@ -89,7 +89,7 @@ int revolutionAxis(const FrameEvidence& evidence, const FrameCandidate& frame, d
       lowest = std::min(lowest, score);
       highest = std::max(highest, score);
     }
-    if (lowest < highest - tie) continue;
+    if (lowest < highest - kFrame.tie) continue;
     axis = k;
     ++count;
   }
@@ -115,14 +115,14 @@ void EquivalentFrames::addWithSigns(const Eigen::Matrix3d& axes, const Eigen::Ve
   }
 }
 
-void EquivalentFrames::addTied(const FrameCandidate& frame, const Eigen::Vector3f& scores, double tie,
+void EquivalentFrames::addTied(const FrameCandidate& frame, const Eigen::Vector3f& scores,
                                const Eigen::Vector3d& center) {
   std::array<int, 3> order{0, 1, 2};
   do {
     bool tied = true;
     Eigen::Matrix3f axes;
     for (int k = 0; k < 3; ++k) {
-      tied &= frame.scores[order[k]] >= scores[k] - tie;
+      tied &= frame.scores[order[k]] >= scores[k] - kFrame.tie;
       axes.col(k) = frame.axes.col(order[k]);
     }
     if (tied) addWithSigns(orthonormal(axes), center);

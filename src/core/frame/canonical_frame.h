@@ -26,9 +26,8 @@ Eigen::Vector3d centerOfSymmetry(const FrameEvidence& evidence, const FrameCandi
 Eigen::Vector3d meanCenter(const std::vector<Eigen::Vector3d>& centers, const std::vector<FrameCandidate>& frames);
 
 /// The axis of revolution among the axes of a frame: planes at all angles about it have equal scores.
-/// \param tie scores that differ by no more than this are equal.
 /// \return column of the axis; -1 for none, 3 where two axes are axes of revolution: a sphere.
-int revolutionAxis(const FrameEvidence& evidence, const FrameCandidate& frame, double tie);
+int revolutionAxis(const FrameEvidence& evidence, const FrameCandidate& frame);
 
 /// The pose that takes the center to the origin and the axes to x, y and z.
 /// \param axes orthonormal columns.
@@ -43,8 +42,7 @@ public:
 
   /// Adds a frame in all orders of its axes in which none of its planes scores less than the one it replaces.
   /// \param scores those of the best frame.
-  /// \param tie scores that differ by no more than this are equal.
-  void addTied(const FrameCandidate& frame, const Eigen::Vector3f& scores, double tie, const Eigen::Vector3d& center);
+  void addTied(const FrameCandidate& frame, const Eigen::Vector3f& scores, const Eigen::Vector3d& center);
 
   /// Each T_canonical_input, in the order in which they were added.
   const std::vector<Eigen::Isometry3d>& poses() const { return poses_; }

@@ -40,7 +40,7 @@ Eigen::Vector3f FrameEvidence::push(const Visibility* visibility) const {
 
 GaussianEdtOptions FrameEvidence::edtOptions(const PointsRef& points, GaussianEdtOptions options, bool scanned) {
   if (options.sigma > 0.0 || points.cols() == 0) return options;
-  const double radius = options.radius > 0.0 ? options.radius : boundingBall(points).radius;
+  const double radius = boundingBall(points).radius;
   const double cell = 2.2 * radius / options.num_cells;  // the side of the grid is 2 (1 + 2 sigma) radii
   // Point spacing if the points covered a sphere, or a hemisphere for a scan.
   const double spacing = radius * std::sqrt((scanned ? 2.0 : 4.0) * kPi / static_cast<double>(points.cols()));

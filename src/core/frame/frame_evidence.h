@@ -39,7 +39,8 @@ struct FrameRules {
   std::size_t max_refined = 6;             // frames that are refined
   int max_frame_moves = 3;                 // steps of one size of a frame
   double half_way_weight = 0.15;           // of the half-way plane of scans
-  double same_frame = 5.0 * kDegree;       // closer frames are one
+  double tie = 0.06;  // scores that differ by no more are equal: D of a symmetry varies by 0.03 with the angle
+  double same_frame = 5.0 * kDegree;  // closer frames are one
 
   // Center, measured on models of PSB
   double offset_sharpness = 15.0;    // weight exp(15 s) of an offset of score s

@@ -139,9 +139,9 @@ FrameCandidate climbed(const FrameEvidence& evidence, const FrameCandidate& star
 }
 
 /// The frame whose second axis has the greater score or, where the scores tie, the greater spread of the points.
-FrameCandidate ordered(const FrameEvidence& evidence, FrameCandidate frame, double tie) {
+FrameCandidate ordered(const FrameEvidence& evidence, FrameCandidate frame) {
   const float ahead = frame.scores[1] - frame.scores[2];
-  const bool tied = std::abs(ahead) <= tie;
+  const bool tied = std::abs(ahead) <= kFrame.tie;
   const bool swapped =
       tied ? evidence.spreadAlong(frame.axes.col(2)) > evidence.spreadAlong(frame.axes.col(1)) : ahead < 0.0f;
   if (swapped) {
@@ -186,11 +186,10 @@ std::vector<CellPlane> bestFirstPlanes(const FrameEvidence& evidence, const std:
   return best;
 }
 
-FrameCandidate frameOfAxes(const FrameEvidence& evidence, const Eigen::Matrix3f& axes, double tie) {
+FrameCandidate frameOfAxes(const FrameEvidence& evidence, const Eigen::Matrix3f& axes) {
   const CellPlane first{axes.col(0), evidence.bestOffset(axes.col(0)).offset};
-  return ordered(evidence,
-                 frameOf(evidence, first, planeOf(evidence, first, axes.col(1)), planeOf(evidence, first, axes.col(2))),
-                 tie);
+  return ordered(
+      evidence, frameOf(evidence, first, planeOf(evidence, first, axes.col(1)), planeOf(evidence, first, axes.col(2))));
 }
 
 std::vector<FrameCandidate> framesAbout(const FrameEvidence& evidence, const std::vector<CellPlane>& first_planes,
@@ -226,10 +225,10 @@ std::vector<FrameCandidate> frameMaxima(const std::vector<FrameCandidate>& rotat
   return maxima;
 }
 
-std::vector<FrameCandidate> refinedFrames(const FrameEvidence& evidence, std::vector<FrameCandidate> frames, double tie,
+std::vector<FrameCandidate> refinedFrames(const FrameEvidence& evidence, std::vector<FrameCandidate> frames,
                                           int num_threads) {
   parallelBlocks(frames.size(), num_threads,
-                 [&](std::size_t i) { frames[i] = ordered(evidence, climbed(evidence, frames[i]), tie); });
+                 [&](std::size_t i) { frames[i] = ordered(evidence, climbed(evidence, frames[i])); });
   std::stable_sort(frames.begin(), frames.end(), better);
   return frames;
 }

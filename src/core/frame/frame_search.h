@@ -1,7 +1,6 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <functional>
 #include <vector>
 
 #include "core/frame/frame_evidence.h"
@@ -43,23 +42,11 @@ std::vector<FrameCandidate> frameMaxima(const std::vector<FrameCandidate>& rotat
 
 /// The frame of given axes, each plane at its best offset, in the order of refinedFrames().
 /// \param axes orthonormal columns, the first that of the first plane.
-FrameCandidate frameOfAxes(const FrameEvidence& evidence, const Eigen::Matrix3f& axes, double tie);
+FrameCandidate frameOfAxes(const FrameEvidence& evidence, const Eigen::Matrix3f& axes);
 
 /// Moves each frame to the nearest maximum of its value, all three planes together. Then orders the second and third
 /// axis by score, or where scores tie by the spread of the points.
-/// \param tie scores that differ by no more than this are equal, >= 0.
-std::vector<FrameCandidate> refinedFrames(const FrameEvidence& evidence, std::vector<FrameCandidate> frames, double tie,
+std::vector<FrameCandidate> refinedFrames(const FrameEvidence& evidence, std::vector<FrameCandidate> frames,
                                           int num_threads);
-
-/// All frames of a search.
-struct FoundFrames {
-  std::vector<FrameCandidate> rotated;  ///< result of framesAbout()
-  std::vector<FrameCandidate> refined;  ///< their maxima, best first, or before them the best one when it is leveled
-};
-
-/// The steps above, one after the other.
-/// \param done called with the name of each stage when it ends.
-FoundFrames findFrames(const FrameEvidence& evidence, const FrameOptions& options,
-                       const std::function<void(const char*)>& done);
 
 }  // namespace pcl_symmetry

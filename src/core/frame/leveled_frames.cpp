@@ -72,10 +72,10 @@ double angleOfPrincipalAxes(const FrameEvidence& evidence, const Outline& outlin
 }
 
 FrameCandidate frameAt(const FrameEvidence& evidence, const Outline& outline, const Eigen::Vector3f& first,
-                       double angle, double tie) {
+                       double angle) {
   Eigen::Matrix3f axes;
   axes << first, outline.direction(angle), first.cross(outline.direction(angle));
-  return frameOfAxes(evidence, axes, tie);
+  return frameOfAxes(evidence, axes);
 }
 
 double contactOf(const Outline& outline, const FrameCandidate& frame) {
@@ -123,22 +123,21 @@ Outline::Box Outline::boxAt(double angle) const {
   return box;
 }
 
-std::vector<FrameCandidate> leveledFrames(const FrameEvidence& evidence, const Eigen::Vector3f& first, double tie) {
+std::vector<FrameCandidate> leveledFrames(const FrameEvidence& evidence, const Eigen::Vector3f& first) {
   const Outline outline(evidence.points(), first);
   std::vector<FrameCandidate> frames;
   for (const double angle : {angleOfGreatest([&](double a) { return -outline.boxAt(a).area; }),
                              angleOfGreatest([&](double a) { return outline.boxAt(a).contact; }),
                              angleOfFaces(evidence, outline), angleOfPrincipalAxes(evidence, outline)})
-    frames.push_back(frameAt(evidence, outline, first, angle, tie));
+    frames.push_back(frameAt(evidence, outline, first, angle));
   return frames;
 }
 
-std::vector<FrameCandidate> leveledFirst(const FrameEvidence& evidence, std::vector<FrameCandidate> frames,
-                                         double tie) {
+std::vector<FrameCandidate> leveledFirst(const FrameEvidence& evidence, std::vector<FrameCandidate> frames) {
   const FrameCandidate& best = frames.front();
   const Eigen::Vector3f first = best.axes.col(0);
   const Outline outline(evidence.points(), first);
-  const FrameCandidate leveled = frameAt(evidence, outline, first, angleOfFaces(evidence, outline), tie);
+  const FrameCandidate leveled = frameAt(evidence, outline, first, angleOfFaces(evidence, outline));
   if (leveled.value >= best.value - kFrame.max_lost_value &&
       contactOf(outline, leveled) >= contactOf(outline, best) + kFrame.min_gained_contact)
     frames.insert(frames.begin(), leveled);

@@ -38,12 +38,11 @@ private:
 /// Frames rotated about their first axis to the smallest box around the outline, to its longest contact, to the faces
 /// of the surface, and to the principal axes of the outline.
 /// \param first unit, the first axis.
-/// \param tie scores that differ by no more than this are equal.
-std::vector<FrameCandidate> leveledFrames(const FrameEvidence& evidence, const Eigen::Vector3f& first, double tie);
+std::vector<FrameCandidate> leveledFrames(const FrameEvidence& evidence, const Eigen::Vector3f& first);
 
 /// Puts the best frame, rotated to the faces of the surface, before all others where its value is nearly as great and
 /// the shape then stands on more of its outline.
 /// \param frames best first, at least one.
-std::vector<FrameCandidate> leveledFirst(const FrameEvidence& evidence, std::vector<FrameCandidate> frames, double tie);
+std::vector<FrameCandidate> leveledFirst(const FrameEvidence& evidence, std::vector<FrameCandidate> frames);
 
 }  // namespace pcl_symmetry

@@ -48,18 +48,18 @@ std::vector<Eigen::Vector3f> firstAxes(const std::vector<FrameCandidate>& frames
 }  // namespace
 
 std::vector<FrameChoice> frameChoices(const FrameEvidence& evidence, const std::vector<FrameCandidate>& frames,
-                                      double tie, int num_threads) {
+                                      int num_threads) {
   std::vector<FrameCandidate> tried = frames;
   const std::vector<Eigen::Vector3f> axes = firstAxes(frames);
   std::vector<std::vector<FrameCandidate>> leveled(axes.size());
-  parallelBlocks(axes.size(), num_threads, [&](std::size_t i) { leveled[i] = leveledFrames(evidence, axes[i], tie); });
+  parallelBlocks(axes.size(), num_threads, [&](std::size_t i) { leveled[i] = leveledFrames(evidence, axes[i]); });
   for (const std::vector<FrameCandidate>& some : leveled) tried.insert(tried.end(), some.begin(), some.end());
 
   std::vector<FrameChoice> choices;
   double best = -std::numeric_limits<double>::infinity();
   for (const FrameCandidate& frame : tried) {
     if (isKnown(choices, frame)) continue;
-    choices.push_back({frame, revolutionAxis(evidence, frame, tie), FrameTerms::Zero()});
+    choices.push_back({frame, revolutionAxis(evidence, frame), FrameTerms::Zero()});
     best = std::max(best, frame.value);
   }
   const Eigen::Matrix3f principal = evidence.principalAxes().axes.cast<float>();

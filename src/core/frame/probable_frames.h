@@ -36,10 +36,9 @@ struct FrameChoice {
 /// about their first axes: to the smallest box around the outline, to its longest contact, to the faces, and to the
 /// principal axes of the outline.
 /// \param frames from refinedFrames(), best first.
-/// \param tie scores that differ by no more than this are equal.
 /// \return the best frame first; all that was found by the search before all others.
 std::vector<FrameChoice> frameChoices(const FrameEvidence& evidence, const std::vector<FrameCandidate>& frames,
-                                      double tie, int num_threads);
+                                      int num_threads);
 
 /// \return one probability each; their sum is less than 1.
 std::vector<double> frameProbabilities(const std::vector<FrameChoice>& choices, const FrameTerms& weights);

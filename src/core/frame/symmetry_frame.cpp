@@ -130,34 +130,7 @@ void FrameOptions::validate() const {
   check(num_phi >= 2 && num_phi % 2 == 0, "num_phi", num_phi, "even and >= 2");
   check(num_radius >= 1, "num_radius", num_radius, ">= 1");
   check(num_samples >= 1, "num_samples", num_samples, ">= 1");
-  check(tie >= 0.0, "tie", tie, ">= 0");
   checkNumThreads(num_threads);
-}
-
-FoundFrames findFrames(const FrameEvidence& evidence, const FrameOptions& options,
-                       const std::function<void(const char*)>& done) {
-  const GaussianEdt& edt = evidence.edt();
-  const PlaneGrid grid(options.num_theta, options.num_phi, options.num_radius, edt.center(), edt.radius());
-  SampledTransformOptions sampling;
-  sampling.num_samples = options.num_samples;
-  sampling.seed = options.seed;
-  sampling.num_threads = options.num_threads;
-  SymmetryMap map = sampledTransform(edt, grid, sampling, evidence.freeSpace());
-  map.center_of_mass = centerOfMass(evidence.points());
-  done("transform");
-
-  // First plane: several candidates, as the best one depends on the frame that it leads to.
-  const std::vector<CellPlane> candidates = firstPlaneCandidates(evidence, map, options.num_threads);
-  done("candidates");
-
-  // Second and third plane: perpendicular to the first, at all angles, on the completed cloud of a scan. The best
-  // frames are refined as a whole.
-  FoundFrames found;
-  found.rotated = framesAbout(evidence, bestFirstPlanes(evidence, candidates), options.num_threads);
-  found.refined = refinedFrames(evidence, frameMaxima(found.rotated), options.tie, options.num_threads);
-  found.refined = leveledFirst(evidence, std::move(found.refined), options.tie);
-  done("frames");
-  return found;
 }
 
 SymmetryFrame symmetryFrame(const PointsRef& points, const FrameOptions& options, const Visibility* visibility,
@@ -170,7 +143,27 @@ SymmetryFrame symmetryFrame(const PointsRef& points, const FrameOptions& options
 
   const FrameEvidence evidence(points, options, visibility);
   done("surface");
-  const auto [rotated, frames] = findFrames(evidence, options, done);
+  const GaussianEdt& edt = evidence.edt();
+  const PlaneGrid grid(options.num_theta, options.num_phi, options.num_radius, edt.center(), edt.radius());
+  SampledTransformOptions sampling;
+  sampling.num_samples = options.num_samples;
+  sampling.seed = options.seed;
+  sampling.num_threads = options.num_threads;
+  SymmetryMap map = sampledTransform(edt, grid, sampling, evidence.freeSpace());
+  map.center_of_mass = centerOfMass(points);
+  done("transform");
+
+  // First plane: several candidates, as the best one depends on the frame that it leads to.
+  const std::vector<CellPlane> candidates = firstPlaneCandidates(evidence, map, options.num_threads);
+  done("candidates");
+
+  // Second and third plane: perpendicular to the first, at all angles, on the completed cloud of a scan. The best
+  // frames are refined as a whole.
+  const std::vector<FrameCandidate> rotated =
+      framesAbout(evidence, bestFirstPlanes(evidence, candidates), options.num_threads);
+  const std::vector<FrameCandidate> frames =
+      leveledFirst(evidence, refinedFrames(evidence, frameMaxima(rotated), options.num_threads));
+  done("frames");
 
   // Principal symmetry axes, center of symmetry and axis of revolution of the best frame.
   const FrameCandidate& best = frames.front();
@@ -179,26 +172,26 @@ SymmetryFrame symmetryFrame(const PointsRef& points, const FrameOptions& options
   for (const FrameCandidate& other : frames) centers.push_back(centerOfSymmetry(evidence, other));
   frame.center = meanCenter(centers, frames);
   frame.scores = best.scores.cast<double>().cwiseMin(1.0);
-  frame.revolution_axis = revolutionAxis(evidence, best, options.tie);
+  frame.revolution_axis = revolutionAxis(evidence, best);
   frame.T_canonical_input = canonicalPose(frame.axes, frame.center);
 
   // Equally good frames: first the maxima, then the angles between them where the second plane hardly matters.
   EquivalentFrames equivalent;
   equivalent.addWithSigns(frame.axes, frame.center);
   for (std::size_t i = 0; i < frames.size(); ++i)
-    equivalent.addTied(frames[i], best.scores, options.tie, i == 0 ? frame.center : centers[i]);
+    equivalent.addTied(frames[i], best.scores, i == 0 ? frame.center : centers[i]);
   frame.num_maxima = equivalent.poses().size();
   for (const FrameCandidate& other : rotated)
     if (!isRotatedAboutRevolution(frame.axes.cast<float>(), frame.revolution_axis, other.axes))
-      equivalent.addTied(other, best.scores, options.tie, frame.center);
+      equivalent.addTied(other, best.scores, frame.center);
   frame.equivalent = equivalent.poses();
   done("equivalent");
   if (visibility && options.turns) {
-    frame.turns = turnsAlong(frame, points, evidence.edt(), options, *visibility, make_search);
+    frame.turns = turnsAlong(frame, points, edt, options, *visibility, make_search);
     done("turns");
   }
   if (options.probabilities) {
-    frame.probable = probableFrames(evidence, frame, frameChoices(evidence, frames, options.tie, options.num_threads));
+    frame.probable = probableFrames(evidence, frame, frameChoices(evidence, frames, options.num_threads));
     done("probabilities");
   }
   return frame;

@@ -25,43 +25,13 @@ Eigen::Matrix3d closestRotation(const Eigen::Matrix3d& matrix) {
   return Eigen::Affine3d(matrix).rotation();
 }
 
-bool isListed(const Rotations& rotations, const Eigen::Matrix3d& rotation) {
-  // Frobenius norm of the difference of two rotations by an angle: sqrt(8) sin(angle / 2).
-  const double greatest = std::sqrt(8.0) * std::sin(0.5 * kOneRotation);
-  return std::any_of(rotations.begin(), rotations.end(),
-                     [&](const Eigen::Matrix3d& other) { return (other - rotation).norm() < greatest; });
-}
-
-/// All products, the identity first.
-/// \throws std::invalid_argument where there are more than those of D_120.
-Rotations productsOf(const Rotations& generators) {
-  const std::size_t max_rotations = 240;
-  Rotations elements{Eigen::Matrix3d::Identity()};
-  for (std::size_t i = 0; i < elements.size(); ++i) {
-    for (const Eigen::Matrix3d& generator : generators) {
-      const Eigen::Matrix3d product = generator * elements[i];
-      if (isListed(elements, product)) continue;
-      elements.push_back(product);
-      if (elements.size() > max_rotations)
-        throw std::invalid_argument("discrete: the rotations generate no group of at most " +
-                                    std::to_string(max_rotations) + " rotations");
-    }
-  }
-  return elements;
-}
-
-/// An axis of products that differ by rounding.
-struct GeneratedAxis {
-  Eigen::Vector3d direction;
-  int order;
-};
-
-std::vector<GeneratedAxis> axesOfProducts(const Rotations& elements) {
-  std::vector<GeneratedAxis> axes;
+/// Axes of products that differ by rounding.
+std::vector<RotationAxis> axesOfProducts(const Rotations& elements) {
+  std::vector<RotationAxis> axes;
   for (std::size_t i = 1; i < elements.size(); ++i) {
     const Eigen::Vector3d direction = Eigen::AngleAxisd(elements[i]).axis();
     // Axes of a group with at most 240 rotations are at least 1.5 degrees apart.
-    const auto known = std::find_if(axes.begin(), axes.end(), [&](const GeneratedAxis& axis) {
+    const auto known = std::find_if(axes.begin(), axes.end(), [&](const RotationAxis& axis) {
       return axis.direction.cross(direction).norm() < std::sin(0.7 * kDegree);
     });
     if (known == axes.end())
@@ -72,9 +42,9 @@ std::vector<GeneratedAxis> axesOfProducts(const Rotations& elements) {
   return axes;
 }
 
-RotationGroup groupOf(std::size_t size, const std::vector<GeneratedAxis>& axes) {
+RotationGroup groupOf(std::size_t size, const std::vector<RotationAxis>& axes) {
   std::map<int, int> num_axes;
-  for (const GeneratedAxis& axis : axes) ++num_axes[axis.order];
+  for (const RotationAxis& axis : axes) ++num_axes[axis.order];
   if (axes.empty()) return {Kind::Cyclic, 1};
   if (axes.size() == 1) return {Kind::Cyclic, static_cast<int>(size)};
   if (size == 12 && num_axes[3] == 4) return {Kind::Tetrahedral, 3};
@@ -84,7 +54,7 @@ RotationGroup groupOf(std::size_t size, const std::vector<GeneratedAxis>& axes) 
 }
 
 /// A rotation that takes the axes z and x of a group's own frame to axes of the generated one.
-Eigen::Matrix3d roughFrame(const RotationGroup& group, const std::vector<GeneratedAxis>& axes) {
+Eigen::Matrix3d roughFrame(const RotationGroup& group, const std::vector<RotationAxis>& axes) {
   const int main_order = group.kind == Kind::Cyclic || group.kind == Kind::Dihedral ? group.fold
                          : group.kind == Kind::Octahedral                           ? 4
                                                                                     : 2;
@@ -94,7 +64,7 @@ Eigen::Matrix3d roughFrame(const RotationGroup& group, const std::vector<Generat
   if (group.kind != Kind::Cyclic) {
     const int across_order = group.kind == Kind::Octahedral ? 4 : 2;
     double least = 1.0;
-    for (const GeneratedAxis& axis : axes) {
+    for (const RotationAxis& axis : axes) {
       const double along = std::abs(axis.direction.dot(z));
       if (axis.order != across_order || along >= least) continue;
       least = along;
@@ -132,7 +102,7 @@ Eigen::Matrix3d closeFrame(const Rotations& own, const Rotations& generated, con
 }
 
 /// The generated group, exact.
-Rotations placed(const RotationGroup& group, const Rotations& generated, const std::vector<GeneratedAxis>& axes) {
+Rotations placed(const RotationGroup& group, const Rotations& generated, const std::vector<RotationAxis>& axes) {
   const Rotations own = group.elements();
   if (axes.empty()) return own;
   Eigen::Matrix3d frame = roughFrame(group, axes);
@@ -218,8 +188,13 @@ ObjectSymmetries ObjectSymmetries::from(const std::vector<Eigen::Isometry3d>& di
     setRound(result, continuous, rotations);
     return result;
   }
-  const Rotations products = productsOf(rotations);
-  const std::vector<GeneratedAxis> axes = axesOfProducts(products);
+  const std::size_t most = 240;  // those of D_120
+  // Frobenius norm of the difference of two rotations by an angle: sqrt(8) sin(angle / 2).
+  const Rotations products = productsOf(rotations, std::sqrt(8.0) * std::sin(0.5 * kOneRotation), most);
+  if (products.size() > most)
+    throw std::invalid_argument("discrete: the rotations generate no group of at most " + std::to_string(most) +
+                                " rotations");
+  const std::vector<RotationAxis> axes = axesOfProducts(products);
   const RotationGroup group = groupOf(products.size(), axes);
   result.kind = group.kind;
   result.fold = group.fold;

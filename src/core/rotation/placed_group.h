@@ -1,6 +1,8 @@
 #pragma once
 
+#include <limits>
 #include <optional>
+#include <vector>
 
 #include "core/rotation/rotation_fit.h"
 #include "pcl_symmetry/core/axial_transform.h"
@@ -30,6 +32,11 @@ bool beatsOthers(double excess, double others);
 /// The rotation that takes z to \p z, and x as near as can be to \p x.
 /// \param z,x not parallel.
 Eigen::Matrix3d frameAlong(const Eigen::Vector3d& z, const Eigen::Vector3d& x);
+
+/// All products of rotations, the identity first; more than \p most where they generate no group of that size.
+/// \param same Frobenius norm below which two matrices are one rotation.
+std::vector<Eigen::Matrix3d> productsOf(const std::vector<Eigen::Matrix3d>& generators, double same,
+                                        std::size_t most = std::numeric_limits<std::size_t>::max() - 1);
 
 /// Axis of a rotation, unit.
 Eigen::Vector3d axisOf(const Eigen::Matrix3d& rotation);

@@ -53,11 +53,6 @@ RotationTraces rotationTraces(const Eigen::Matrix3d& M, const Eigen::Vector3d& a
   return {along, std::hypot(cosine, sine), std::atan2(sine, cosine)};
 }
 
-/// The trace of a product, which is the greater the smaller the angle of the product is.
-double traceOf(const Eigen::Matrix3d& a, const Eigen::Matrix3d& b) {
-  return a.cwiseProduct(b.transpose()).sum();
-}
-
 /// The symmetry D or D C of an object that takes a rotation closest to another one.
 struct ClosestSymmetry {
   int element = -1;    ///< D, index into discrete; -1 is the identity
@@ -70,11 +65,9 @@ ClosestSymmetry closestSymmetry(const ObjectSymmetries& symmetries, const Eigen:
   ClosestSymmetry closest;
   double best = -std::numeric_limits<double>::infinity();
   for (int k = -1; k < static_cast<int>(symmetries.discrete.size()); ++k) {
-    double trace = 0.0, angle = 0.0;
-    if (symmetries.continuous.empty()) {
-      trace = k < 0 ? M.trace() : traceOf(M, symmetries.discrete[k].linear());
-    } else {
-      const Eigen::Matrix3d MD = k < 0 ? M : Eigen::Matrix3d(M * symmetries.discrete[k].linear());
+    const Eigen::Matrix3d MD = k < 0 ? M : Eigen::Matrix3d(M * symmetries.discrete[k].linear());
+    double trace = MD.trace(), angle = 0.0;
+    if (!symmetries.continuous.empty()) {
       const RotationTraces about = rotationTraces(MD, symmetries.continuous.front().axis);
       trace = about.along + about.swing;
       angle = about.angle;

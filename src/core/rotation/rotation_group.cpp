@@ -6,6 +6,7 @@
 
 #include "core/base/check.h"
 #include "core/base/constants.h"
+#include "core/rotation/placed_group.h"
 
 namespace pcl_symmetry {
 
@@ -14,24 +15,20 @@ namespace {
 // Frobenius norm of the difference of equal matrices: elements of C_n differ by 2 sqrt(2) sin(pi / n).
 constexpr double kSameRotation = 1e-6;
 
-bool holds(const std::vector<Eigen::Matrix3d>& rotations, const Eigen::Matrix3d& rotation) {
-  return std::any_of(rotations.begin(), rotations.end(),
-                     [&](const Eigen::Matrix3d& other) { return (other - rotation).norm() < kSameRotation; });
-}
+}  // namespace
 
-/// All products of the generators, the identity first.
-std::vector<Eigen::Matrix3d> closureOf(const std::vector<Eigen::Matrix3d>& generators) {
+std::vector<Eigen::Matrix3d> productsOf(const std::vector<Eigen::Matrix3d>& generators, double same, std::size_t most) {
   std::vector<Eigen::Matrix3d> elements{Eigen::Matrix3d::Identity()};
-  for (std::size_t i = 0; i < elements.size(); ++i) {
+  for (std::size_t i = 0; i < elements.size() && elements.size() <= most; ++i) {
     for (const Eigen::Matrix3d& generator : generators) {
       const Eigen::Matrix3d product = generator * elements[i];
-      if (!holds(elements, product)) elements.push_back(product);
+      if (std::none_of(elements.begin(), elements.end(),
+                       [&](const Eigen::Matrix3d& other) { return (other - product).norm() < same; }))
+        elements.push_back(product);
     }
   }
   return elements;
 }
-
-}  // namespace
 
 Eigen::Matrix3d rotationAbout(const Eigen::Vector3d& axis, double angle) {
   return Eigen::AngleAxisd(angle, axis).toRotationMatrix();
@@ -74,7 +71,7 @@ std::vector<Eigen::Matrix3d> RotationGroup::generators() const {
 
 std::vector<Eigen::Matrix3d> RotationGroup::elements() const {
   check(fold >= 1, "fold", fold, ">= 1");
-  return closureOf(generators());
+  return productsOf(generators(), kSameRotation);
 }
 
 std::vector<RotationAxis> axesOf(const std::vector<Eigen::Matrix3d>& elements) {

@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "pcl_symmetry/core/surface_graph.h"
+#include "pcl_symmetry/core/surface_segmentation.h"
 
 namespace pcl_symmetry {
 
@@ -15,5 +15,12 @@ std::vector<int> byFallingArea(const std::vector<double>& areas);
 
 /// \return the labels numbered from 0 in the order in which they appear.
 std::vector<int> renumbered(std::vector<int> labels);
+
+/// Gives the elements without a label, which is -1, that of the closest element which has one. One element has a label.
+std::vector<int> filledFromClosest(const SurfaceGraph& graph, std::vector<int> labels);
+
+/// Numbers segments by falling area, in labels and tree.
+/// \param segmentation without images.
+Segmentation numberedByArea(const SurfaceGraph& graph, Segmentation segmentation);
 
 }  // namespace pcl_symmetry

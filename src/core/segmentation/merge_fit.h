@@ -1,7 +1,7 @@
 // Written by test/benchmark/fit_segments.py --every 1; do not edit.
 #pragma once
 
-#include "core/segmentation/merge_cues.h"
+#include "core/segmentation/region_merging.h"
 
 namespace pcl_symmetry {
 

@@ -55,13 +55,9 @@ CopiedLabels copySide(bool copy_above, const SurfaceGraph& graph, const std::vec
 
 }  // namespace
 
-std::optional<GlobalPlane> globalPlane(const std::vector<PartPlane>& planes) {
-  std::size_t index = 0;  // among the planes with images
-  for (const PartPlane& plane : planes) {
-    if (plane.share < kMappedShare) continue;
-    if (plane.share >= kSegmentation.global_share) return GlobalPlane{plane.plane, index};
-    ++index;
-  }
+std::optional<ReflectionPlane> globalPlane(const std::vector<PartPlane>& planes) {
+  for (const PartPlane& plane : planes)
+    if (plane.share >= kSegmentation.global_share) return plane.plane;
   return std::nullopt;
 }
 

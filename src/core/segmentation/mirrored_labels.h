@@ -1,6 +1,5 @@
 #pragma once
 
-#include <cstddef>
 #include <optional>
 #include <vector>
 
@@ -8,14 +7,8 @@
 
 namespace pcl_symmetry {
 
-/// A plane that maps nearly all of the surface onto itself.
-struct GlobalPlane {
-  ReflectionPlane plane;
-  std::size_t index;  ///< among the planes with share >= kMappedShare
-};
-
 /// The strongest plane that maps at least 95 % of the surface onto itself.
-std::optional<GlobalPlane> globalPlane(const std::vector<PartPlane>& planes);
+std::optional<ReflectionPlane> globalPlane(const std::vector<PartPlane>& planes);
 
 /// \return for each element the one whose center is closest to its reflection.
 std::vector<int> reflectedElements(const SurfaceGraph& graph, const ReflectionPlane& plane);

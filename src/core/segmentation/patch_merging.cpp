@@ -14,7 +14,6 @@
 #include "core/segmentation/mirrored_labels.h"
 #include "core/segmentation/part_evidence.h"
 #include "core/segmentation/segment_borders.h"
-#include "core/segmentation/segment_tree.h"
 #include "core/segmentation/segmentation_rules.h"
 #include "core/segmentation/surface_patches.h"
 
@@ -24,15 +23,15 @@ namespace {
 
 /// The plane across which labels have to agree, and the element at the reflection of each.
 struct Mirror {
-  GlobalPlane global;
+  ReflectionPlane plane;
   std::vector<int> reflected;
 };
 
 std::optional<Mirror> mirrorOf(const WholeEvidence& whole, const SegmentationOptions& options) {
   if (options.num_parts > 0) return std::nullopt;
-  const std::optional<GlobalPlane> global = globalPlane(whole.planes());
-  if (!global) return std::nullopt;
-  return Mirror{*global, reflectedElements(whole.graph(), global->plane)};
+  const std::optional<ReflectionPlane> plane = globalPlane(whole.planes());
+  if (!plane) return std::nullopt;
+  return Mirror{*plane, reflectedElements(whole.graph(), *plane)};
 }
 
 /// Borders that follow the surface instead of the patches, equal on both sides of the mirror, and no small segments.
@@ -42,8 +41,91 @@ std::vector<int> refinedLabels(const SurfaceGraph& graph, std::vector<int> label
   labels = joinSmallSegments(graph, std::move(labels), least_area, most_segments);
   const BorderCutOptions cut{kSegmentation.part_cut_band * std::sqrt(graph.area()), kSegmentation.part_concavity};
   labels = joinCrumbs(graph, smoothBorders(graph, std::move(labels), cut), crumb);
-  if (mirror) labels = mirroredLabels(graph, labels, mirror->global.plane, mirror->reflected);
+  if (mirror) labels = mirroredLabels(graph, labels, mirror->plane, mirror->reflected);
   return joinSmallSegments(graph, std::move(labels), least_area, most_segments);
+}
+
+/// Binary joins of leaves. A node below num_leaves is a leaf, node num_leaves + i is join i.
+struct Joins {
+  int num_leaves = 0, root = 0;
+  std::vector<std::pair<int, int>> children;  ///< of each join
+};
+
+Joins joinsOf(const std::vector<int>& region_of_patch, const std::vector<int>& segment_of_region,
+              const std::vector<Merge>& merges) {
+  Joins joins;
+  joins.num_leaves = 1 + *std::max_element(segment_of_region.begin(), segment_of_region.end());
+  std::vector<int> node = segment_of_region;   // the topmost node that a region belongs to
+  std::vector<int> current = region_of_patch;  // the region that each patch belongs to by now
+  const auto join = [&](int into, int from) {
+    if (into == from) return;
+    joins.children.emplace_back(node[into], node[from]);
+    node[into] = joins.num_leaves + static_cast<int>(joins.children.size()) - 1;
+    std::replace(current.begin(), current.end(), from, into);
+  };
+  for (const Merge& merge : merges) join(current[merge.into], current[merge.from]);
+  for (const int region : std::vector<int>(current)) join(current[0], current[region]);
+  joins.root = node[current[0]];
+  return joins;
+}
+
+/// The tree of segments whose leaves are regions and whose inner nodes are their further merges, the last merge at the
+/// root. Regions that no merge connects are joined at the top.
+/// \param region_of_patch the region of each patch; regions are numbered as patches.
+/// \param segment_of_region number of the segment of each region; -1 for a region that does not exist.
+/// \return the root first, children after their parents.
+std::vector<SegmentNode> segmentTree(const std::vector<int>& region_of_patch, const std::vector<int>& segment_of_region,
+                                     const std::vector<Merge>& merges) {
+  const Joins joins = joinsOf(region_of_patch, segment_of_region, merges);
+  std::vector<SegmentNode> tree;
+  std::vector<std::pair<int, int>> open{{joins.root, -1}};  // nodes with the index of their parent in the tree
+  for (std::size_t i = 0; i < open.size(); ++i) {
+    const auto [join, parent] = open[i];
+    const int index = static_cast<int>(tree.size());
+    SegmentNode node;
+    node.parent = parent;
+    if (parent >= 0) {
+      SegmentNode& above = tree[parent];
+      node.depth = above.depth + 1;
+      above.children[above.children[0] < 0 ? 0 : 1] = index;
+    }
+    if (join < joins.num_leaves) {
+      node.segment = join;
+    } else {
+      const auto [first, second] = joins.children[join - joins.num_leaves];
+      open.emplace_back(first, index);
+      open.emplace_back(second, index);
+    }
+    tree.push_back(node);
+  }
+  return tree;
+}
+
+/// A segment for each patch: the one that holds most of it, but each segment has at least one patch.
+/// \param labels one per element, from 0; at most as many segments as patches.
+std::vector<int> segmentsOfPatches(const SurfaceGraph& graph, const Patches& patches, const std::vector<int>& labels) {
+  const int num_segments = 1 + *std::max_element(labels.begin(), labels.end());
+  Eigen::MatrixXd shared = Eigen::MatrixXd::Zero(num_segments, patches.size());
+  for (int i = 0; i < graph.size(); ++i) shared(labels[i], patches.of_element[i]) += graph.areas[i];
+  std::vector<int> segment(static_cast<std::size_t>(patches.size()), -1);
+  // The segment with the smallest hold on any patch chooses first.
+  std::vector<int> order(static_cast<std::size_t>(num_segments));
+  std::iota(order.begin(), order.end(), 0);
+  const Eigen::VectorXd most = shared.rowwise().maxCoeff();
+  std::stable_sort(order.begin(), order.end(), [&](int a, int b) { return most[a] < most[b]; });
+  for (const int s : order) {
+    int best = -1;
+    for (int p = 0; p < patches.size(); ++p)
+      if (segment[p] < 0 && (best < 0 || shared(s, p) > shared(s, best))) best = p;
+    if (best >= 0) segment[best] = s;
+  }
+  for (int p = 0; p < patches.size(); ++p) {
+    if (segment[p] >= 0) continue;
+    Eigen::Index largest = 0;
+    shared.col(p).maxCoeff(&largest);
+    segment[p] = static_cast<int>(largest);
+  }
+  return segment;
 }
 
 /// Segments with the tree of their further merges and their images, by the patches of one division.

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <array>
+#include <boost/graph/adjacency_list.hpp>
+#include <boost/graph/boykov_kolmogorov_max_flow.hpp>
 #include <cmath>
 #include <limits>
 #include <map>
@@ -9,7 +11,6 @@
 #include <set>
 #include <utility>
 
-#include "core/segmentation/graph_cut.h"
 #include "core/segmentation/labels.h"
 
 namespace pcl_symmetry {
@@ -60,26 +61,59 @@ std::vector<int> movableElements(const std::vector<int>& side, const std::vector
   return movable;
 }
 
-/// The network of the cut: movable elements are nodes, side 0 is the source and side 1 the sink.
-GraphCut networkOf(const SurfaceGraph& graph, const std::vector<int>& side, const std::vector<int>& movable,
-                   double concavity_weight) {
+using Traits = boost::adjacency_list_traits<boost::vecS, boost::vecS, boost::directedS>;
+
+/// One direction of an edge, as Boost.Graph wants it.
+struct Arc {
+  double capacity = 0.0, residual = 0.0;
+  Traits::edge_descriptor reverse = {};
+};
+
+struct Node {
+  boost::default_color_type color = boost::white_color;
+  Traits::edge_descriptor predecessor = {};
+  long distance = 0;
+};
+
+using Network = boost::adjacency_list<boost::vecS, boost::vecS, boost::directedS, Node, Arc>;
+
+/// Adds an edge as two arcs that know each other.
+void connect(Network& network, std::size_t from, std::size_t to, double forth, double back) {
+  const auto arc = boost::add_edge(from, to, network).first, reverse = boost::add_edge(to, from, network).first;
+  network[arc].capacity = forth;
+  network[reverse].capacity = back;
+  network[arc].reverse = reverse;
+  network[reverse].reverse = arc;
+}
+
+/// The network of the cut: movable elements are nodes, followed by side 0 as the source and side 1 as the sink.
+Network networkOf(const SurfaceGraph& graph, const std::vector<int>& side, const std::vector<int>& movable,
+                  double concavity_weight) {
+  const int size = static_cast<int>(movable.size());
   std::vector<int> node(side.size(), -1);
-  for (std::size_t i = 0; i < movable.size(); ++i) node[movable[i]] = static_cast<int>(i);
-  GraphCut cut;
-  cut.to_source.assign(movable.size(), 0.0);
-  cut.to_sink.assign(movable.size(), 0.0);
+  for (int i = 0; i < size; ++i) node[movable[i]] = i;
+  struct Edge {
+    int from, to;
+    double capacity;
+  };
+  std::vector<Edge> edges;
+  std::array<std::vector<double>, 2> to_side{std::vector<double>(size, 0.0), std::vector<double>(size, 0.0)};
   for (const SurfaceGraph::Edge& edge : graph.edges) {
     const int from = node[edge.from], to = node[edge.to];
     if (side[edge.from] < 0 || side[edge.to] < 0 || (from < 0 && to < 0)) continue;
     const double capacity = edge.length * std::exp(-concavity_weight * std::max(0.0f, edge.concavity));
-    if (from >= 0 && to >= 0) {
-      cut.edges.push_back({from, to, capacity});
-    } else {
-      const int fixed = from >= 0 ? edge.to : edge.from;
-      (side[fixed] == 0 ? cut.to_source : cut.to_sink)[std::max(from, to)] += capacity;
-    }
+    if (from >= 0 && to >= 0)
+      edges.push_back({from, to, capacity});
+    else
+      to_side[side[from >= 0 ? edge.to : edge.from]][std::max(from, to)] += capacity;
   }
-  return cut;
+  Network network(size + 2);
+  for (int i = 0; i < size; ++i) {
+    if (to_side[0][i] > 0.0) connect(network, size, i, to_side[0][i], 0.0);
+    if (to_side[1][i] > 0.0) connect(network, i, size + 1, to_side[1][i], 0.0);
+  }
+  for (const Edge& edge : edges) connect(network, edge.from, edge.to, edge.capacity, edge.capacity);
+  return network;
 }
 
 }  // namespace
@@ -88,8 +122,12 @@ std::vector<int> cutBorder(const SurfaceGraph& graph, std::vector<int> side, con
                            const BorderCutOptions& options) {
   const std::vector<float> distance = distanceFromBorder(graph, side, static_cast<float>(options.band));
   const std::vector<int> movable = movableElements(side, distance, open);
-  const std::vector<bool> with_first = networkOf(graph, side, movable, options.concavity_weight).solve();
-  for (std::size_t i = 0; i < movable.size(); ++i) side[movable[i]] = with_first[i] ? 0 : 1;
+  Network network = networkOf(graph, side, movable, options.concavity_weight);
+  boost::boykov_kolmogorov_max_flow(network, boost::get(&Arc::capacity, network), boost::get(&Arc::residual, network),
+                                    boost::get(&Arc::reverse, network), boost::get(&Node::predecessor, network),
+                                    boost::get(&Node::color, network), boost::get(&Node::distance, network),
+                                    boost::get(boost::vertex_index, network), movable.size(), movable.size() + 1);
+  for (std::size_t i = 0; i < movable.size(); ++i) side[movable[i]] = network[i].color == boost::black_color ? 0 : 1;
   return side;
 }
 

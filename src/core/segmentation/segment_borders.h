@@ -16,7 +16,7 @@ struct BorderCutOptions {
 };
 
 /// Moves the border between two sides of a surface to the minimum cut (Section 5.3: "a weighted min-cut along the edges
-/// of the mesh").
+/// of the mesh"; Boykov and Kolmogorov 2004).
 /// \param side N values: 0 or 1; -1 for an element of neither side, which stays.
 /// \param open elements that may change sides at any distance from the border.
 /// \param options band and costs. If a whole side lies within the band, its farthest element stays.

@@ -21,7 +21,9 @@ struct SegmentationRules {
   double part_concavity = 3.0;    ///< SplittingOptions::concavity_weight of that; more lets borders follow every crease
 
   // Splitting
-  double cut_band = 0.1;  ///< radii of the part, within which the minimum cut may lie
+  double cut_band = 0.1;   ///< radii of the part, within which the minimum cut may lie
+  double min_share = 0.1;  ///< of a part that a plane maps onto itself if the part is split; the paper's 10 %
+  double max_share = 0.9;  ///< the same, at most; the paper's 90 %
 
   // Divisions
   /// Share of the surface; smaller intersections of divisions join the closest larger one.
@@ -51,6 +53,7 @@ struct SegmentationRules {
   Eigen::Index fewest_points = 20;  ///< distinct ones
 
   // Symmetries of parts
+  std::size_t max_planes = 20;            ///< strongest maxima that are features
   int feature_samples = 4000;             ///< on the surface of a part
   int published_samples = 1000;           ///< reflected as published; the paper's 10 000 take minutes a mesh
   int refined_samples = 400;              ///< that Iterative Symmetric Points reflects

@@ -15,7 +15,6 @@
 #include "core/base/random.h"
 #include "core/geometry/distinct_points.h"
 #include "core/geometry/triangle_tree.h"
-#include "core/segmentation/labels.h"
 #include "core/segmentation/segmentation_rules.h"
 
 namespace pcl_symmetry {
@@ -360,26 +359,6 @@ SurfaceGraph meshGraph(const PointsRef& vertices, const Polygons& polygons) {
 
 double SurfaceGraph::area() const {
   return std::accumulate(areas.begin(), areas.end(), 0.0);
-}
-
-std::vector<double> areasOf(const SurfaceGraph& graph, const std::vector<int>& labels) {
-  std::vector<double> areas(1 + static_cast<std::size_t>(*std::max_element(labels.begin(), labels.end())), 0.0);
-  for (int i = 0; i < graph.size(); ++i)
-    if (labels[i] >= 0) areas[labels[i]] += graph.areas[i];
-  return areas;
-}
-
-std::vector<int> byFallingArea(const std::vector<double>& areas) {
-  std::vector<int> order(areas.size());
-  std::iota(order.begin(), order.end(), 0);
-  std::stable_sort(order.begin(), order.end(), [&](int a, int b) { return areas[a] > areas[b]; });
-  return order;
-}
-
-std::vector<int> renumbered(std::vector<int> labels) {
-  std::map<int, int> number;
-  for (int& label : labels) label = number.emplace(label, static_cast<int>(number.size())).first->second;
-  return labels;
 }
 
 std::vector<int> connectedPieces(const SurfaceGraph& graph, const std::vector<int>& labels) {

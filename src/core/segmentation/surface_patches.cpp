@@ -10,7 +10,6 @@
 #include <utility>
 
 #include "core/segmentation/labels.h"
-#include "pcl_symmetry/core/closest_point_search.h"
 
 namespace pcl_symmetry {
 
@@ -82,16 +81,6 @@ private:
 };
 
 }  // namespace
-
-std::vector<int> filledFromClosest(const SurfaceGraph& graph, std::vector<int> patch) {
-  std::vector<int> reached, missed;
-  for (int i = 0; i < graph.size(); ++i) (patch[i] >= 0 ? reached : missed).push_back(i);
-  if (missed.empty()) return patch;
-  const std::vector<int> closest =
-      makeFlannSearch(graph.centers(Eigen::all, reached))->closest(graph.centers(Eigen::all, missed));
-  for (std::size_t k = 0; k < missed.size(); ++k) patch[missed[k]] = patch[reached[closest[k]]];
-  return patch;
-}
 
 std::vector<int> growPatches(const SurfaceGraph& graph, int num_patches, float concave_detour, int first) {
   GrowingPatches patches(graph, concave_detour);

@@ -16,10 +16,6 @@ namespace pcl_symmetry {
 /// \return the patch of each element, from 0.
 std::vector<int> growPatches(const SurfaceGraph& graph, int num_patches, float concave_detour, int first = -1);
 
-/// Gives the elements of no patch that of the closest element which has one.
-/// \param patch one per element; -1 for none. One element has a patch.
-std::vector<int> filledFromClosest(const SurfaceGraph& graph, std::vector<int> patch);
-
 /// K small patches of a surface.
 struct Patches {
   std::vector<int> of_element;  ///< the patch of each element, in [0, K)

@@ -27,10 +27,6 @@ Segmentation oneSegment(const SurfaceGraph& graph) {
 
 void SplittingOptions::validate() const {
   check(depth >= 0 && depth <= 30, "depth", depth, "in [0, 30]");
-  check(min_share >= 0.0 && min_share <= max_share, "min_share", min_share, "in [0, max_share]");
-  check(max_share <= 1.0, "max_share", max_share, "<= 1");
-  check(strength >= 0.0 && strength <= 1.0, "strength", strength, "in [0, 1]");
-  check(max_planes >= 1, "max_planes", max_planes, ">= 1");
   check(concavity_weight >= 0.0, "concavity_weight", concavity_weight, ">= 0");
 }
 

@@ -41,8 +41,8 @@ bool isNew(const ReflectionPlane& plane, const std::vector<ReflectionPlane>& kno
 }
 
 /// The strongest significant maxima of the transform, one of each basin (Section 4.4).
-std::vector<ReflectionPlane> significantMaxima(const Points& samples, const GaussianEdt& edt,
-                                               const SplittingOptions& options, std::uint64_t seed, int num_threads) {
+std::vector<ReflectionPlane> significantMaxima(const Points& samples, const GaussianEdt& edt, std::uint64_t seed,
+                                               int num_threads) {
   const PlaneGrid grid(kSegmentation.num_theta, kSegmentation.num_phi, kSegmentation.num_radius, edt.center(),
                        edt.radius());
   PlanarTransformOptions transform;
@@ -50,12 +50,11 @@ std::vector<ReflectionPlane> significantMaxima(const Points& samples, const Gaus
   transform.sampled.seed = seed;
   transform.sampled.num_threads = num_threads;
   LocalMaximaOptions significant;
-  significant.strength = options.strength;
   significant.num_threads = num_threads;
   const SymmetryMap map = planarTransform(edt, grid, centerOfMass(samples), transform);
   std::vector<ReflectionPlane> maxima;
   for (const LocalMaximum& maximum : findLocalMaxima(map, significant)) {
-    if (static_cast<int>(maxima.size()) == options.max_planes) break;
+    if (maxima.size() == kSegmentation.max_planes) break;
     if (isNew(maximum.plane, maxima, edt)) maxima.push_back(maximum.plane);
   }
   return maxima;
@@ -87,16 +86,15 @@ std::vector<ReflectionPlane> refined(const std::vector<ReflectionPlane>& starts,
 
 }  // namespace
 
-SymmetryFeatures symmetryFeatures(const SurfaceGraph& graph, const std::vector<int>& elements,
-                                  const SplittingOptions& options, std::uint64_t seed, int num_threads,
-                                  const MakeSearch& make_search) {
+SymmetryFeatures symmetryFeatures(const SurfaceGraph& graph, const std::vector<int>& elements, bool as_published,
+                                  std::uint64_t seed, int num_threads, const MakeSearch& make_search) {
   const Points samples = sampleElements(graph, elements, seed);
   GaussianEdtOptions edt_options;
   edt_options.num_threads = num_threads;
   const GaussianEdt edt(samples, edt_options);
   SymmetryFeatures features;
   features.radius = boundingBall(samples).radius;
-  if (options.as_published) {
+  if (as_published) {
     const SymmetryMap map = publishedMap(samples, edt, TransformMethod::Convolution, seed, num_threads);
     PublishedOptions published;
     published.num_points = kSegmentation.published_samples;
@@ -105,7 +103,7 @@ SymmetryFeatures symmetryFeatures(const SurfaceGraph& graph, const std::vector<i
     for (const SymmetryPlane& plane : publishedPlanes(samples, edt, map, published))
       features.planes.push_back({plane, 0.0});
   } else {
-    const std::vector<ReflectionPlane> maxima = significantMaxima(samples, edt, options, seed, num_threads);
+    const std::vector<ReflectionPlane> maxima = significantMaxima(samples, edt, seed, num_threads);
     for (const ReflectionPlane& plane : refined(maxima, samples, edt, num_threads, make_search))
       features.planes.push_back({plane, 0.0});
   }

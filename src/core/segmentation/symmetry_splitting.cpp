@@ -10,7 +10,6 @@
 #include "core/geometry/point_samples.h"
 #include "core/segmentation/labels.h"
 #include "core/segmentation/segment_borders.h"
-#include "core/segmentation/segment_tree.h"
 #include "core/segmentation/segmentation_rules.h"
 #include "core/segmentation/surface_patches.h"
 #include "core/segmentation/symmetry_features.h"
@@ -69,9 +68,9 @@ std::optional<SplitPart> splitByTwoMeans(const SurfaceGraph& graph, const std::v
 
 /// The splitting rule of Section 5.3. "Segmentation is terminated ... when the only planes of local maxima reflect
 /// either more than 90 % or less than 10 % of the surface onto itself": a plane between the two keeps it going.
-bool hasDistinctSymmetries(const std::vector<PartPlane>& planes, const SplittingOptions& options) {
+bool hasDistinctSymmetries(const std::vector<PartPlane>& planes) {
   return std::any_of(planes.begin(), planes.end(), [&](const PartPlane& plane) {
-    return plane.share >= options.min_share && plane.share <= options.max_share;
+    return plane.share >= kSegmentation.min_share && plane.share <= kSegmentation.max_share;
   });
 }
 
@@ -95,10 +94,10 @@ public:
   bool split(int leaf) {
     is_open_[leaf] = false;
     const std::uint64_t seed = options_.seed + leaf;
-    const SymmetryFeatures features =
-        symmetryFeatures(graph_, elements_[leaf], options_.splitting, seed, options_.num_threads, options_.make_search);
+    const SymmetryFeatures features = symmetryFeatures(graph_, elements_[leaf], options_.splitting.as_published, seed,
+                                                       options_.num_threads, options_.make_search);
     nodes_[leaf].planes = features.planes;
-    if (!hasDistinctSymmetries(features.planes, options_.splitting)) return false;
+    if (!hasDistinctSymmetries(features.planes)) return false;
     auto sides = splitByTwoMeans(graph_, elements_[leaf], features, options_.splitting, seed);
     if (!sides) return false;
     const int depth = nodes_[leaf].depth + 1;

@@ -54,25 +54,6 @@ Line3d AxisGrid::axis(const Bin& bin) const {
   return {center_ + offset(bin.u) * axes.col(0) + offset(bin.v) * axes.col(1), axes.col(2)};
 }
 
-std::optional<AxisGrid::Bin> AxisGrid::find(const Line3d& axis) const {
-  Eigen::Vector3d n = axis.direction().normalized();
-  if (n.z() < 0.0) n = -n;
-  const double phi = std::atan2(n.y(), n.x());
-  const int t =
-      std::clamp(static_cast<int>(std::acos(std::min(1.0, n.z())) / (0.5 * kPi) * num_theta_), 0, num_theta_ - 1);
-  const int p =
-      std::clamp(static_cast<int>((phi < 0.0 ? phi + 2.0 * kPi : phi) / (2.0 * kPi) * num_phi_), 0, num_phi_ - 1);
-  const Eigen::Matrix3d axes = frame(static_cast<std::size_t>(t) * num_phi_ + p);
-  Eigen::Vector3d foot = axis.origin() - center_;
-  foot -= n.dot(foot) * n;
-  const double u = axes.col(0).dot(foot), v = axes.col(1).dot(foot);
-  if (std::max(std::abs(u), std::abs(v)) > radius_) return std::nullopt;
-  const auto bin_of = [&](double x) {
-    return std::clamp(static_cast<int>((x + radius_) / offsetStep()), 0, num_offset_ - 1);
-  };
-  return Bin{t, p, bin_of(u), bin_of(v)};
-}
-
 namespace {
 
 constexpr std::size_t points_at_a_time = 1024;  // their values stay in the first cache

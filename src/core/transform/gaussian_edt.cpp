@@ -62,10 +62,7 @@ void lowerAround(const float* point, CellSpan x, CellSpan y, CellSpan z, float s
 std::vector<float> sqCellDistances(const Points& points, int num_cells, float reach, int num_threads) {
   const auto n = static_cast<std::size_t>(num_cells), stride = n + kLanes;
   const auto span = [&](float at, int low, int high) {
-    const auto clamped = [&](float cell) {
-      return static_cast<int>(std::clamp(cell, static_cast<float>(low), static_cast<float>(high)));
-    };
-    return CellSpan{clamped(std::ceil(at - reach)), clamped(std::floor(at + reach) + 1.0f)};
+    return CellSpan{clampedInt(std::ceil(at - reach), low, high), clampedInt(std::floor(at + reach) + 1.0f, low, high)};
   };
   std::vector<float> result(n * n * n);
   constexpr std::size_t num_slices = 8;  // of a layer, whose cells stay in the second cache
@@ -230,7 +227,6 @@ Eigen::Vector3d GaussianEdt::cellCenter(std::size_t index) const {
 std::vector<float> GaussianEdt::sharpened(double c, int num_threads) const {
   const int n = num_cells_;
   const std::size_t slice_size = static_cast<std::size_t>(n) * n;
-  if (c == kTransform.of_interpolation && !interpolation_.empty()) return interpolation_;
   std::vector<float> result(values_);
   parallelBlocks(n - 2, num_threads, [&](std::size_t slice) {
     for (int y = 1; y + 1 < n; ++y) {

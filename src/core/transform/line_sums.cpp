@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/base/parallel.h"
 #include "core/base/simd.h"
 #include "core/transform/free_space.h"
 #include "core/transform/sampled_transform.h"
@@ -146,6 +147,28 @@ auto* kernelOf(bool scalar) {
 }
 
 }  // namespace
+
+LookupTable::LookupTable(const std::vector<const float*>& functions, int num_cells, int num_threads)
+    : num_functions_(static_cast<int>(functions.size())) {
+  const int n = num_cells;
+  if (n == 0) return;
+  while ((1 << bits_) < n) ++bits_;
+  padding_ = ((1 << bits_) - n) / 2;
+  const std::size_t side = std::size_t{1} << bits_;
+  table_.assign(num_functions_ * side * side * side + sizeof(std::uint32_t), 0);  // a gather reads four bytes
+  parallelBlocks(n - 2, num_threads, [&](std::size_t slice) {
+    for (int y = 1; y + 1 < n; ++y) {
+      const std::size_t cell = ((slice + 1 + padding_) * side + (y + padding_)) * side + padding_;
+      for (int g = 0; g < num_functions_; ++g) {
+        const float* const values = functions[g] + ((slice + 1) * n + y) * n;
+        for (int x = 1; x + 1 < n; ++x) {
+          const float scaled = values[x] * static_cast<float>(kOne) + 0.5f;
+          table_[num_functions_ * (cell + x) + g] = static_cast<std::uint8_t>(std::min(scaled, 255.0f));
+        }
+      }
+    }
+  });
+}
 
 LineSums::LineSums(const GaussianEdt& edt, const LookupTable& table, int num_steps, bool scalar)
     : table_(table),

@@ -35,14 +35,6 @@ ReflectionLine LineGrid::line(const Bin& bin) const {
   return {angle, offset(bin.radius) + center_.dot(Eigen::Vector2d(std::cos(angle), std::sin(angle)))};
 }
 
-std::optional<LineGrid::Bin> LineGrid::find(const ReflectionLine& line) const {
-  const ReflectionLine c = line.canonical();
-  const double r = -c.signedDistance(center_);
-  if (std::abs(r) > radius_) return std::nullopt;
-  return Bin{std::clamp(static_cast<int>(c.theta() / thetaStep()), 0, num_theta_ - 1),
-             std::clamp(static_cast<int>((r + radius_) / radiusStep()), 0, num_radius_ - 1)};
-}
-
 std::optional<LineGrid::Bin> LineGrid::step(const Bin& bin, int dt, int dk) const {
   Bin to{bin.theta + dt, bin.radius + dk};
   if (to.radius < 0 || to.radius >= num_radius_) return std::nullopt;
@@ -231,10 +223,6 @@ LineMap lineTransform(const GaussianEdt2D& edt, const LineGrid& grid, const Eige
     std::copy(sums.begin(), sums.end(), map.values.begin() + t * grid.numRadius());
   });
   return map;
-}
-
-double lineSymmetry(const GaussianEdt2D& edt, const ReflectionLine& line) {
-  return symmetryAt(FullSum(edt), edt, line);
 }
 
 std::vector<LineMaximum> findLineMaxima(const GaussianEdt2D& edt, const LineMap& map,

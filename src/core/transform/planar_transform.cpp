@@ -1,5 +1,7 @@
 #include "pcl_symmetry/core/planar_transform.h"
 
+#include <algorithm>
+
 #include "core/transform/free_space.h"
 #include "core/transform/sampled_transform.h"
 
@@ -22,6 +24,14 @@ SymmetryMap mapWithoutSight(const GaussianEdt& edt, const PlaneGrid& grid, const
 }
 
 }  // namespace
+
+std::size_t SymmetryMap::strongest() const {
+  return std::max_element(values.begin(), values.end()) - values.begin();
+}
+
+SymmetryMap SymmetryMap::zero(const GaussianEdt& edt, const PlaneGrid& grid, TransformMethod method) {
+  return {grid, std::vector<float>(grid.size(), 0.0f), method, edt.sigma(), grid.center()};
+}
 
 void PlanarTransformOptions::validate() const {
   sampled.validate();

@@ -18,9 +18,7 @@ PlaneGrid::PlaneGrid(int num_theta, int num_phi, int num_radius, const Eigen::Ve
   for (int t = 0; t < num_theta; ++t) {
     const double width = phiStep() * std::sin(theta(t));
     phi_reach_.push_back(std::clamp(static_cast<int>(std::ceil(thetaStep() / width)), 1, num_phi / 2));
-    of_theta_.emplace_back(std::cos(theta(t)), std::sin(theta(t)));
   }
-  for (int p = 0; p < num_phi; ++p) of_phi_.emplace_back(std::cos(phi(p)), std::sin(phi(p)));
 }
 
 double PlaneGrid::thetaStep() const {
@@ -40,9 +38,8 @@ PlaneGrid::Bin PlaneGrid::bin(std::size_t index) const {
 }
 
 Eigen::Vector3d PlaneGrid::normal(int t, int p) const {
-  const Eigen::Vector2d& polar = of_theta_[t];
-  const Eigen::Vector2d& around = of_phi_[p];
-  return {polar.y() * around.x(), polar.y() * around.y(), polar.x()};
+  const double across = std::sin(theta(t));
+  return {across * std::cos(phi(p)), across * std::sin(phi(p)), std::cos(theta(t))};
 }
 
 Eigen::Vector3d PlaneGrid::normal(std::size_t direction) const {
@@ -80,17 +77,6 @@ std::optional<PlaneGrid::Bin> PlaneGrid::step(const Bin& bin, int dt, int dp, in
   }
   to.phi = ((to.phi % num_phi_) + num_phi_) % num_phi_;
   return to;
-}
-
-std::vector<std::size_t> PlaneGrid::neighbors(const Bin& bin) const {
-  std::vector<std::size_t> found;
-  visitNeighbors(bin, [&](std::size_t index) {
-    found.push_back(index);
-    return true;
-  });
-  std::sort(found.begin(), found.end());
-  found.erase(std::unique(found.begin(), found.end()), found.end());
-  return found;
 }
 
 }  // namespace pcl_symmetry

@@ -31,10 +31,11 @@ double viewpointScore(const std::vector<ViewPlane>& planes, const Eigen::Vector3
   return score;
 }
 
-std::vector<RankedView> bestViews(const std::vector<ViewPlane>& planes, int num_directions) {
+std::vector<RankedView> bestViews(const std::vector<ViewPlane>& planes) {
   std::vector<RankedView> views;
   const bool all_equal = std::none_of(planes.begin(), planes.end(), [](const ViewPlane& p) { return p.weight > 0.0; });
   if (all_equal) return views;
+  const int num_directions = 4096;  // fewer may miss a maximum of a small cell between many planes
   for (const Eigen::Vector3d& start : evenDirections(num_directions)) {
     const Eigen::Vector3d v = climb(planes, start);
     const bool known = std::any_of(views.begin(), views.end(),

@@ -304,13 +304,6 @@ TEST(ObjectSymmetries, OptionsNameFieldValueAndRule) {
   EXPECT_NO_THROW(Options().validate());
   EXPECT_EQ(message([](Options& o) { o.max_feature = 2.0; }), "max_feature = 2, must be in [0, 1]");
   EXPECT_EQ(message([](Options& o) { o.tolerance = 0.0; }), "tolerance = 0, must be in (0, 0.1]");
-  EXPECT_EQ(message([](Options& o) { o.absolute_tolerance = -1.0; }), "absolute_tolerance = -1, must be >= 0");
-  EXPECT_EQ(message([](Options& o) { o.max_fold = 1; }), "max_fold = 1, must be >= 2");
-  EXPECT_EQ(message([](Options& o) { o.num_directions = 10; }), "num_directions = 10, must be >= 100");
-  EXPECT_EQ(message([](Options& o) { o.max_points = 5; }), "max_points = 5, must be >= 100");
-  EXPECT_EQ(message([](Options& o) { o.num_cells = 4; }), "num_cells = 4, must be in [8, 512]");
-  EXPECT_EQ(message([](Options& o) { o.min_confidence = -1.0; }), "min_confidence = -1, must be in [0, 1]");
-  EXPECT_EQ(message([](Options& o) { o.num_threads = -1; }), "num_threads = -1, must be >= 0");
 }
 
 using Poses = std::vector<Eigen::Isometry3d>;

@@ -4,12 +4,9 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <limits>
 #include <set>
 #include <stdexcept>
 
-#include "core/base/random.h"
-#include "core/segmentation/graph_cut.h"
 #include "core/segmentation/mirrored_labels.h"
 #include "core/segmentation/patch_merging.h"
 #include "core/segmentation/segment_borders.h"
@@ -87,15 +84,6 @@ TEST(Splitting, DepthAndPartsBoundTheNumberOfSegments) {
   SegmentationOptions three = splittingTo(1);
   three.num_parts = 3;
   EXPECT_EQ(segmentSurface(graph, three).num_segments, 3) << "parts overrule the depth";
-}
-
-TEST(Splitting, EndsIfNoPlaneMapsAShareBetweenTheTwo) {
-  const SurfaceGraph graph = mug().graph();
-  SegmentationOptions options = splittingTo(3);
-  options.splitting.min_share = options.splitting.max_share = 0.5;
-  const Segmentation segmentation = segmentSurface(graph, options);
-  EXPECT_EQ(segmentation.num_segments, 1) << "no plane maps exactly half of it";
-  EXPECT_FALSE(segmentation.tree[0].planes.empty());
 }
 
 /// Segment of the face whose center is closest to a position.
@@ -258,9 +246,6 @@ TEST(SurfaceSegmentation, RefusesBadOptions) {
   const SurfaceGraph graph = mug().graph();
   EXPECT_THROW(segmentSurface(graph, splittingTo(-1)), std::invalid_argument);
   SegmentationOptions options;
-  options.splitting.min_share = 0.95;
-  EXPECT_THROW(segmentSurface(graph, options), std::invalid_argument);
-  options = {};
   options.num_parts = -1;
   EXPECT_THROW(segmentSurface(graph, options), std::invalid_argument);
   EXPECT_THROW(segmentSurface(SurfaceGraph(), {}), std::invalid_argument);
@@ -281,10 +266,6 @@ SurfaceGraph stripOfSquares(int size) {
 MergedDivision divisionOf(std::vector<int> cells) {
   const Eigen::Index size = 1 + *std::max_element(cells.begin(), cells.end());
   return {std::move(cells), Eigen::MatrixXf::Identity(size, size)};
-}
-
-TEST(Consensus, OfOneDivisionIsThatDivision) {
-  EXPECT_EQ(consensus(stripOfSquares(6), {divisionOf({0, 0, 1, 1, 2, 2})}, 0), (std::vector<int>{0, 0, 1, 1, 2, 2}));
 }
 
 TEST(Consensus, FollowsTheMajority) {
@@ -395,55 +376,6 @@ TEST(BorderCut, OtherPartsStayAndNoSideVanishes) {
   EXPECT_EQ(cut[9], -1);
   EXPECT_EQ(cut[1], 0) << "the farthest of its side";
   EXPECT_EQ(cut[8], 1) << "the farthest of its side";
-}
-
-double costOf(const GraphCut& cut, const std::vector<bool>& with_source) {
-  double cost = 0.0;
-  for (std::size_t i = 0; i < with_source.size(); ++i) cost += with_source[i] ? cut.to_sink[i] : cut.to_source[i];
-  for (const GraphCut::Edge& edge : cut.edges)
-    if (with_source[edge.from] != with_source[edge.to]) cost += edge.capacity;
-  return cost;
-}
-
-TEST(GraphCut, CutsAChainAtItsWeakestEdge) {
-  constexpr double kNever = std::numeric_limits<double>::max();
-  GraphCut cut;
-  cut.to_source = {kNever, 0, 0, 0, 0};
-  cut.to_sink = {0, 0, 0, 0, kNever};
-  cut.edges = {{0, 1, 3.0}, {1, 2, 2.0}, {3, 2, 1.0}, {3, 4, 5.0}};
-  EXPECT_EQ(cut.solve(), (std::vector<bool>{true, true, true, false, false}));
-}
-
-TEST(GraphCut, NoAssignmentOfASmallGraphCostsLess) {
-  RandomStream random(5);
-  for (int trial = 0; trial < 20; ++trial) {
-    const int size = 8;
-    GraphCut cut;
-    for (int i = 0; i < size; ++i) {
-      cut.to_source.push_back(random.uniform());
-      cut.to_sink.push_back(random.uniform());
-      for (int j = 0; j < i; ++j)
-        if (random.uniform() < 0.5) cut.edges.push_back({i, j, 0.5 * random.uniform()});
-    }
-    const double cost = costOf(cut, cut.solve());
-    for (int code = 0; code < 1 << size; ++code) {
-      std::vector<bool> other(size);
-      for (int i = 0; i < size; ++i) other[i] = (code >> i & 1) != 0;
-      EXPECT_LE(cost, costOf(cut, other) + 1e-12);
-    }
-  }
-}
-
-TEST(GraphCut, RefusesWhatMakesNoSense) {
-  GraphCut cut;
-  cut.to_source = {1.0, 0.0};
-  cut.to_sink = {0.0};
-  EXPECT_THROW(cut.solve(), std::invalid_argument);
-  cut.to_sink = {0.0, 1.0};
-  cut.edges = {{0, 2, 1.0}};
-  EXPECT_THROW(cut.solve(), std::invalid_argument);
-  cut.edges = {{0, 1, -1.0}};
-  EXPECT_THROW(cut.solve(), std::invalid_argument);
 }
 
 int numPatches(const std::vector<int>& patches) {

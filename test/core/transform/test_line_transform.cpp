@@ -67,7 +67,6 @@ TEST(LineTransform, AgreesWithTheSumOverExactDistances) {
     }
     // f is not smooth where two points of the contour are equally near.
     EXPECT_NEAR(map[i], sum / edt.sqNorm(), 2e-3);
-    EXPECT_NEAR(map[i], lineSymmetry(edt, line), 1e-4);
   }
 }
 
@@ -151,16 +150,6 @@ TEST(PointSymmetry2D, TheCenterOfACircleIsTheDarkestPoint) {
   // Its two lines lie half a bin from the directions of the map.
   EXPECT_GT(of_rectangle[0], 0.85f);
   EXPECT_LT(of_rectangle[1], 0.6f);
-}
-
-TEST(LineGrid, FindsTheBinOfEveryBinCenterAndItsOtherForm) {
-  const LineGrid grid(12, 10, {0.3, -0.2}, 1.5);
-  for (std::size_t i = 0; i < grid.size(); ++i) {
-    const ReflectionLine line = grid.line(grid.bin(i));
-    EXPECT_EQ(grid.index(*grid.find(line)), i);
-    EXPECT_EQ(grid.index(*grid.find(ReflectionLine(line.theta() + kPi, -line.offset()))), i);
-  }
-  EXPECT_FALSE(grid.find(ReflectionLine(0.0, 2.0)));
 }
 
 TEST(LineGrid, SeamLeadsToTheSameLinesTurned) {
