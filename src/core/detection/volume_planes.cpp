@@ -29,8 +29,10 @@ struct VolumeRules {
   double chance_quantile = 0.75;         ///< of their correlations: c0
   double most_chance = 0.97;             ///< a body whose planes correlate like this is round
   double least_seen = 0.5;               ///< share of the body that a plane has to compare
-  double merge_angle = 0.07;             ///< radians: maxima closer than this, and ...
-  double merge_offset = 0.04;            ///< ... than this share of the radius in offset, are one
+  /// Squared residuals that the squared slope of f per voxel has to exceed for a pair to count more than half.
+  double flat = 2.0;
+  double merge_angle = 0.07;   ///< radians: maxima closer than this, and ...
+  double merge_offset = 0.04;  ///< ... than this share of the radius in offset, are one
 };
 constexpr VolumeRules kRules;
 
@@ -89,11 +91,14 @@ public:
   }
 
   /// \param stride every stride-th voxel along each axis is reflected.
-  Comparison compare(const ReflectionPlane& plane, int stride, bool with_step) const {
+  /// \param residual of the plane, as far as it is known: where f is as flat as its noise, pairs say little about the
+  /// step and count little. Without weights, the noise of all the inside of a body adds up.
+  Comparison compare(const ReflectionPlane& plane, int stride, bool with_step, double residual = 0.0) const {
     const int nz = f_.size()[2], num_slices = (nz + stride - 1) / stride;
     std::vector<PairSums> slices(num_slices);
-    parallelBlocks(num_slices, num_threads_,
-                   [&](std::size_t k) { slices[k] = ofSlice(plane, static_cast<int>(k) * stride, stride, with_step); });
+    parallelBlocks(num_slices, num_threads_, [&](std::size_t k) {
+      slices[k] = ofSlice(plane, static_cast<int>(k) * stride, stride, with_step, residual);
+    });
     PairSums sum;
     for (const PairSums& slice : slices) sum += slice;
     Comparison result;
@@ -119,14 +124,17 @@ public:
   SymmetryPlane refined(const ReflectionPlane& start, int stride, int max_iterations, double tolerance) const {
     const double spacing = f_.spacing().minCoeff(), most_step = 4.0 * stride * spacing;
     SymmetryPlane result(start);
+    double residual = compare(start, stride, false).residual;
     for (; result.iterations < max_iterations && !result.converged; ++result.iterations) {
       const Chart chart(result, pivot_);
-      Eigen::Vector3d step = compare(result, stride, true).step;
+      const Comparison comparison = compare(result, stride, true, residual);
+      Eigen::Vector3d step = comparison.step;
       step *=
           std::min({1.0, 0.1 / std::max(1e-12, step.head<2>().norm()), most_step / std::max(1e-12, std::abs(step[2]))});
       const int iterations = result.iterations;
       result = SymmetryPlane(chart.moved(step));
       result.iterations = iterations;
+      residual = comparison.residual;
       result.converged = step.head<2>().norm() < tolerance && std::abs(step[2]) < 10.0 * tolerance * spacing;
     }
     return result;
@@ -164,7 +172,7 @@ private:
     return sum;
   }
 
-  PairSums ofSlice(const ReflectionPlane& plane, int z, int stride, bool with_step) const {
+  PairSums ofSlice(const ReflectionPlane& plane, int z, int stride, bool with_step, double residual) const {
     const Chart chart(plane, pivot_);
     const Eigen::Affine3d& T = f_.T_input_index();
     const Eigen::Affine3d image = T_index_input_ * plane.reflection() * T;  // from indices to indices
@@ -195,8 +203,11 @@ private:
         const double d = chart.n.dot(from_pivot) - chart.s, along = g.dot(chart.n);
         const Eigen::Vector3d j(2.0 * (chart.u.dot(from_pivot) * along + d * g.dot(chart.u)),
                                 2.0 * (chart.v.dot(from_pivot) * along + d * g.dot(chart.v)), -2.0 * along);
-        sum.normal += j * j.transpose();
-        sum.rhs += (here[3] - there[3]) * j;
+        const Eigen::Vector3d slope = 0.5 * (here.head<3>() + image.linear().transpose() * there.head<3>());
+        const double sq_slope = slope.squaredNorm(), sq_noise = kRules.flat * residual * residual;
+        const double weight = sq_noise > 0.0 ? sq_slope / (sq_slope + sq_noise) : 1.0;
+        sum.normal += weight * j * j.transpose();
+        sum.rhs += weight * (here[3] - there[3]) * j;
       }
     }
     return sum;

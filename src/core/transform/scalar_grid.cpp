@@ -84,10 +84,12 @@ void smoothAlong(int axis, const ScalarGrid::Size& size, std::vector<float>& val
   });
 }
 
-/// A Gaussian whose standard deviation is the smallest spacing, where the voxels are that small.
-void smooth(const ScalarGrid::Size& size, const Eigen::Vector3d& spacing, std::vector<float>& values, int num_threads) {
+/// A Gaussian, where the voxels are small enough.
+/// \param variance in units of the smallest spacing.
+void smooth(const ScalarGrid::Size& size, const Eigen::Vector3d& spacing, double variance, std::vector<float>& values,
+            int num_threads) {
   for (int a = 0; a < 3; ++a) {
-    const double sq_width = std::pow(spacing.minCoeff() / spacing[a], 2);
+    const double sq_width = variance * std::pow(spacing.minCoeff() / spacing[a], 2);
     for (int pass = 0; pass < static_cast<int>(std::lround(2.0 * sq_width)); ++pass)
       smoothAlong(a, size, values, num_threads);
   }
@@ -197,7 +199,7 @@ VolumeFunction::VolumeFunction(const ScalarGrid& volume, const VolumeLevels& giv
   const float least = given.low < given.high ? 0.0f : -1.0f;
   f = averaged(volume, factorsFor(volume, most_voxels, 8.0), num_threads,
                [&](float value) { return value > -1e30f ? std::clamp((value - low) * scale, least, 1.0f) : 0.0f; });
-  smooth(f.size(), f.spacing(), f.values_, num_threads);
+  smooth(f.size(), f.spacing(), 0.5, f.values_, num_threads);
   for (float& value : f.values_) value = std::max(0.0f, value);
   body = bodyThreshold(f.values());
 }
@@ -205,7 +207,7 @@ VolumeFunction::VolumeFunction(const ScalarGrid& volume, const VolumeLevels& giv
 VolumeFunction::VolumeFunction(const VolumeFunction& finer, std::size_t most_voxels, int num_threads)
     : f(averaged(finer.f, factorsFor(finer.f, most_voxels, 2.0), num_threads, [](float value) { return value; })),
       levels(finer.levels) {
-  smooth(f.size(), f.spacing(), f.values_, num_threads);
+  smooth(f.size(), f.spacing(), 1.0, f.values_, num_threads);
   body = bodyThreshold(f.values());
 }
 

@@ -136,6 +136,17 @@ TEST(VolumePlanes, OfATiltedHeadAreExactAndOfANoisyOneWithinHalfADegreeAndVoxel)
   }
 }
 
+TEST(VolumePlanes, OfSmallNoisyHeadsAreWithinHalfADegreeAndVoxel) {
+  // Of 140 heads the worst was 0.48 degrees off; the head itself as a template, which nobody has, would leave 0.28.
+  for (const std::uint64_t seed : {142, 155, 204, 211}) {
+    Phantom phantom;
+    phantom.seed = seed;
+    phantom.size = 64;
+    phantom.signal_to_noise = 3.0;
+    expectPlane(phantom, 0.5, 0.5);
+  }
+}
+
 TEST(VolumePlanes, OfHeadsThatAreCroppedOrHaveALesionOnOneSideAreExact) {
   Phantom cropped, lesion;
   cropped.cropped = 45.0;
