@@ -56,6 +56,35 @@ def textured_cube(texture, is_printed):
                 f"comment TextureFile {texture}\n")
 
 
+def pyramid(n):
+    corners = [(np.cos(a), np.sin(a), 0) for a in 2 * np.pi * np.arange(n) / n]
+    return tool_run.off([*corners, (0, 0, 1.3)], [list(range(n))[::-1], *([k, (k + 1) % n, n] for k in range(n))])
+
+
+def prism(n):
+    return tool_run.lathe([(0.001, -0.7), (1, -0.7), (1, 0.7), (0.001, 0.7)], n)
+
+
+def deltahedron(corners, edge):
+    """The triangles whose edges have this length."""
+    corners = np.array(corners, float)
+    near = np.linalg.norm(corners[:, None] - corners, axis=2) < 1.01 * edge
+    count = range(len(corners))
+    return tool_run.off(corners, [(i, j, k) for i in count for j in range(i) for k in range(j) if near[i, j] and near[j, k] and near[k, i]])
+
+
+GOLDEN = (1 + np.sqrt(5)) / 2
+ICOSAHEDRON = deltahedron([np.roll((0, a, b), k) for k in range(3) for a in (-1, 1) for b in (-GOLDEN, GOLDEN)], 2)
+
+
+def num_composed(axes):
+    """How many rotations Isaac composes: a turn about z with one about y and one about x, the identity among each."""
+    about = [[np.eye(3)] for _ in range(3)]
+    for text in axes:
+        about["xyz".index(text[0])].append(tool_run.rotation(np.eye(3)["xyz".index(text[0])], np.radians(float(text[2:]))))
+    return len({tuple((z @ y @ x).round(3).ravel() + 0.0) for x in about[0] for y in about[1] for z in about[2]})
+
+
 class Bop(ToolTest):
     tool = "bop"
 
@@ -130,7 +159,7 @@ class Bop(ToolTest):
     def test_says_where_a_file_disagrees_with_the_surface(self):
         """The box has D2; its file lists one of three half turns."""
         half_turn = [1, 0, 0, 0, 0, -1, 0, 0, 0, 0, -1, 0, 0, 0, 0, 1]
-        given = {"3": {"symmetries_discrete": [half_turn]}, "12": {"symmetries_continuous": [{"axis": [0, 0, 1], "offset": [0, 0, 0]}]}}
+        given = {"3": {"symmetries_discrete": [np.reshape(half_turn, (4, 4)).tolist()]}, "5": {"diameter": 3.0}, "12": {"symmetries_continuous": [{"axis": [0, 0, 1], "offset": [0, 0, 0]}]}}
         found = self.check(given, self.box, self.vase, self.write("plain.off", tool_run.box()))
         self.assertIn("model 12     file Cinf  surface Cinf  agree", self.output)
         self.assertIn("1 of 2 models disagree", self.output)
@@ -156,11 +185,64 @@ class Bop(ToolTest):
         self.run_tool(self.box, self.vase, "-quiet -check given.json", code=1)  # a file of one model
 
     def test_agrees_with_what_it_wrote_in_every_format(self):
-        self.run_tool(self.box, FEW, "-json bop.json -isaac isaac.yaml -dope dope")
+        models = self.box, self.vase, self.write("obj_000013.off", prism(6)), self.write("obj_000014.off", tool_run.TETRAHEDRON)
+        self.run_tool(*models, FEW, "-json bop.json -isaac isaac.yaml -dope dope")
         self.assertIn('"3": ["x_180", "y_180", "z_180"]  # D2', self.text("isaac.yaml"))
-        for path in ("bop.json", "isaac.yaml", "dope/obj_000003/model_info.json"):
-            self.check(path, self.box)
-            self.assertIn("0 of 1 models disagree", self.output, path)
+        for path in ("bop.json", "isaac.yaml"):
+            self.check(path, *models)
+            self.assertIn("0 of 4 models disagree", self.output, path)
+        for model in models[:3]:
+            self.check(f"dope/{model.stem}/model_info.json", model)
+            self.assertIn("0 of 1 models disagree", self.output, model)
+
+    def test_writes_axes_for_dope_to_choose_from(self):
+        self.run_tool(self.write("can.off", tool_run.CYLINDER), self.write("none.off", tool_run.TETRAHEDRON), FEW, "-dope dope")
+        across, along = (entry["object"] for entry in json.loads(self.text("dope/can/model_info.json"))["align_axes"])
+        np.testing.assert_allclose(np.abs(along), (0, 0, 1), atol=1e-3)
+        self.assertAlmostEqual(np.dot(across, along), 0, delta=1e-9)
+        self.assertEqual(json.loads(self.text("dope/none/model_info.json")), {}, "nothing to choose from")
+
+    def test_writes_axes_for_isaac_that_compose_the_group(self):
+        slanted = tool_run.off(tool_run.box_corners(1, 1.5, 2) @ tool_run.rotation(np.array([1.0, 2, 3]), 0.7).T, tool_run.BOX_FACES)
+        bodies = {"C1": tool_run.TETRAHEDRON, "C4": pyramid(4), "C7": pyramid(7), "D2": tool_run.box(), "D3": prism(3), "D6": prism(6),
+                  "O": tool_run.box(1, 1), "T": deltahedron([(1, 1, 1), (1, -1, -1), (-1, 1, -1), (-1, -1, 1)], np.sqrt(8)), "I": ICOSAHEDRON,
+                  "Cinf": tool_run.VASE, "Dinf": tool_run.CYLINDER, "O(3)": tool_run.SPHERE, "slanted": slanted}
+        self.run_tool(*(self.write(f"{k + 1}.off", content) for k, content in enumerate(bodies.values())), "-quiet -isaac axes.yaml")
+        orders = {"C1": 1, "C4": 4, "C7": 7, "D2": 4, "D3": 6, "D6": 12, "O": 24}
+        for group, line in zip(bodies, self.text("axes.yaml").splitlines(), strict=True):
+            axes = json.loads(line.split(": ")[1].split("  #")[0])
+            self.assertEqual(group in ("T", "I", "slanted"), "are only a part" in line, line)
+            if group in orders:
+                self.assertIn(f"# {group}", line)
+                self.assertEqual(num_composed(axes), orders[group], line)
+        for line in ('["z_full"]  # Cinf', '["x_full", "y_full", "z_full"]'):
+            self.assertIn(line, self.text("axes.yaml"))
+
+    def test_reads_what_others_write_of_isaac(self):
+        self.write("two.yaml", '# two models\n"3": ["z_90", "z_180", "z_-90"]  # C4\n12: [\'x_full\', y_180]\n')
+        found = self.check("two.yaml", self.box, self.vase)["models"]
+        self.assertEqual([found[key]["file"] for key in ("3", "12")], ["C4", "Dinf"])
+        self.write("node.yaml", '/**:\n  ros__parameters:\n    symmetry_axes: ["z_180"]\n    max_hypothesis: 252\n')
+        self.assertEqual(self.check("node.yaml", self.box)["models"]["3"]["file"], "C2")
+        # A long line takes memory in proportion to it, and no more of the stack than a short one.
+        self.write("long.yaml", "a: [z_1" + ", z_1" * 100_000 + "]\n")
+        self.assertEqual(self.check("long.yaml", self.box)["missing"], ["3"])
+
+    def test_refuses_files_that_list_no_motions(self):
+        reflection, stretch = ("[[%d,0,0,0, 0,1,0,0, 0,0,1,0, 0,0,0,1]]" % x for x in (-1, 2))
+        for name, content, said in (
+                ("a.json", "[1]", "a.json: must be a JSON object"),
+                ("a.json", '{"3": {"symmetries_discrete": [[1, 2]]}}', "model 3: symmetries_discrete[0], must be 16"),
+                ("a.json", '{"3": {"symmetries_discrete": %s}}' % stretch, "rigid motion"),
+                ("a.json", '{"3": {"symmetries_discrete": %s}}' % reflection, "rigid motion"),
+                ("a.json", '{"3": {"symmetries_continuous": [{"axis": [0,0,0]}]}}', "must not be zero"),
+                ("a.json", '{"3": {"symmetries_continuous": {"axis": [0,0,1]}}}', "must be a list"),
+                ("a.yaml", 'symmetry_axes: ["w_180"]\n', "w_180, must be x, y or z"), ("a.yaml", 'symmetry_axes: ["z_half"]\n', "z_half, must be"),
+                ("a.yaml", "a: 1\n", "a.yaml: must be JSON, or have lines such as"), ("a.yaml", "symmetry_axes: [z 180]\n", "z 180, must be"),
+                ("a.yaml", "a" * 1_000_000 + "\n", "a.yaml: must be JSON, or have lines such as")):
+            self.write(name, content)
+            self.fails(1, said, self.box, "-check", name)
+            self.assertEqual(self.error.count("\n"), 1)
 
     def test_asks_for_colors_only_when_it_is_told(self):
         plain, red = self.write("obj_1.ply", colored_cube(False)), self.write("obj_2.ply", colored_cube(True))

@@ -2,6 +2,8 @@
 import csv
 import io
 import json
+import resource
+import subprocess
 import unittest
 
 import tool_run
@@ -71,6 +73,15 @@ class Flags(ToolTest):
         self.fails(2, "-direction = 1,nan,0, must be three finite numbers X,Y,Z", "a b.pcd -direction 1,nan,0", tool="scan")
         self.fails(2, "-up = 0,0,0, must not be zero", "a -up 0,0,0", tool="segment")
         self.fails(1, "missing.off: no such file", "missing.off -png OUT.PNG")  # the name of the picture is one
+
+    def test_too_little_memory_is_one_line(self):
+        def limit_memory():
+            resource.setrlimit(resource.RLIMIT_AS, (1 << 29, 1 << 29))
+
+        if subprocess.run([tool_run.TOOLS / "pcl_symmetry_scan", "-h"], stdout=subprocess.DEVNULL, preexec_fn=limit_memory, check=False).returncode:
+            self.skipTest("sanitizers take all addresses")
+        self.run_tool("box.off a.pcd -points 20000000 -quiet", code=1, tool="scan", preexec_fn=limit_memory)
+        self.assertRegex(self.error, r"^pcl_symmetry_scan: .*memory.*\n$")
 
     def test_standard_input_is_known_by_its_content(self):
         binary_stl = bytes(80).replace(b"\0", b"x") + b"\1\0\0\0" + bytes(50)

@@ -34,6 +34,10 @@ class Pages(ToolTest):
         scene = self.scene("a.html")
         self.assertEqual((scene["title"], scene["text"]), (str(path), self.output))
         self.assertEqual([self.num_bytes(scene[key]) for key in ("points", "normals")], [120_000, 30_000])
+        colors = np.array([color[4:-1].split(",") for color in scene["support_colors"]], float)
+        self.assertLess(colors[0].sum(), 130, "dark blue")
+        self.assertEqual(colors[-1].tolist(), [255, 234, 70], "yellow")
+        self.assertGreater(np.diff(colors @ (0.2126, 0.7152, 0.0722)).min(), 0, "ever lighter")
         self.assertEqual(len(scene["panels"]), 3)
         for k, panel in enumerate(scene["panels"], 1):
             self.assertTrue(panel["label"].startswith(f"plane {k} (symmetry): "), panel["label"])
@@ -76,6 +80,30 @@ class Pictures(ToolTest):
             self.assertEqual(tool_run.png_size(self.folder / "a.png"), (320, 240))
             pictures.add((self.folder / "a.png").read_bytes())
         self.assertEqual(len(pictures), 4)
+        cloud = self.write("a.xyz", "".join(f"{x} {y} {z}\n" for x in range(4) for y in range(5) for z in range(9)))
+        pictures = set()
+        for keys in ("", "-keys c -parts 2"):
+            self.run_tool(cloud, "-quiet -width 320 -height 240 -screenshot a.png", keys, env=self.no_display)
+            pictures.add((self.folder / "a.png").read_bytes())
+        self.assertEqual(len(pictures), 2, "parts of a cloud")
+
+    def test_keys_do_what_the_help_says(self):
+        def shown(keys):
+            self.run_tool(self.box, "-quiet -points 1000 -symmetries -width 200 -height 150 -screenshot a.png", f"-keys {keys}" if keys else "",
+                          env=self.no_display)
+            return (self.folder / "a.png").read_bytes()
+
+        start, second, third = shown(""), shown("n"), shown("b,Left,b,Left")
+        self.assertEqual(len({start, second, third}), 3, "three planes")
+        for same, keys in ((third, "Right,n"), (start, "b,Right"), (start, "n,n,n"), (shown("i"), "i,i,u"), (second, "i,i,n"), (start, "w,v")):
+            self.assertEqual(shown(keys), same, keys)
+        for key in "gsoamch":
+            once = shown(key)
+            self.assertNotEqual(once, start, key)
+            self.assertEqual(shown(f"{key},{key},{key}"), once, f"{key} is on and off")
+        self.assertEqual(len({start, shown("w"), shown("e"), shown("i"), shown("i,i")}), 5)
+        for key in ("p", "q", "Escape"):
+            self.run_tool(self.box, "-quiet -points 1000 -width 200 -height 150 -screenshot a.png -keys", key, env=self.no_display)
 
     def test_hold_panels_of_several_scenes(self):
         self.run_tool(self.box, "-quiet -points 2000 -size 100 -png views.png -icon best.png", tool="viewpoint")

@@ -17,7 +17,6 @@ XYZ = "property float x\nproperty float y\nproperty float z\n"
 VERTEX = "element vertex 1\n" + XYZ
 FACE = "element face 1\nproperty list uint int vertex_indices\n"
 SQUARE_PLY = "element vertex 4\n" + XYZ + "element face 1\nproperty list uchar int vertex_indices\n"
-CORNERS = np.array([0, 0, 0, 2, 0, 0, 2, 1, 0], "<f4").tobytes()
 
 
 def joined(*parts):
@@ -40,14 +39,16 @@ def ply(kind, elements, *body):
     return joined(f"ply\nformat {kind} 1.0\n{elements}end_header\n", *body)
 
 
-def glb(primitive='{"attributes":{"POSITION":0},"mode":4}'):
+def glb(primitive='{"attributes":{"POSITION":0},"mode":4}', corners=((0, 0, 0), (2, 0, 0), (2, 1, 0))):
     """Binary glTF: 12 bytes of header, a chunk of JSON, a chunk of values."""
+    values = np.array(corners, "<f4").tobytes()
     text = ('{"asset":{"version":"2.0"},"scene":0,"scenes":[{"nodes":[0]}],"nodes":[{"mesh":0,"translation":[0,0,5]}],'
-            f'"meshes":[{{"primitives":[{primitive}]}}],"buffers":[{{"byteLength":36}}],'
-            '"bufferViews":[{"buffer":0,"byteOffset":0,"byteLength":36}],'
-            '"accessors":[{"bufferView":0,"componentType":5126,"count":3,"type":"VEC3","min":[0,0,0],"max":[2,1,0]}]}')
+            f'"meshes":[{{"primitives":[{primitive}]}}],"buffers":[{{"byteLength":{len(values)}}}],'
+            f'"bufferViews":[{{"buffer":0,"byteOffset":0,"byteLength":{len(values)}}}],'
+            f'"accessors":[{{"bufferView":0,"componentType":5126,"count":{len(corners)},"type":"VEC3","min":[0,0,0],"max":[2,1,0]}}]}}')
     text += " " * (-len(text) % 4)
-    return joined(struct.pack("<4s3I4s", b"glTF", 2, 64 + len(text), len(text), b"JSON"), text, struct.pack("<I4s", 36, b"BIN\0"), CORNERS)
+    return joined(struct.pack("<4s3I4s", b"glTF", 2, 28 + len(text) + len(values), len(text), b"JSON"), text,
+                  struct.pack("<I4s", len(values), b"BIN\0"), values)
 
 
 def changed_glb(before, after):

@@ -127,6 +127,21 @@ class BoxScan(ToolTest):
             scan, = self.report(mesh, "a.ply")["scans"]
             self.assertAlmostEqual(scan["num_points"], 10000, delta=500)
 
+    def test_random_poses_are_uniform(self):
+        """The mean of uniformly distributed rotation matrices is zero; each entry has variance 1/3."""
+        poses = []
+        for seed in range(60):
+            scan, = self.report(self.mesh, f"a.pcd -random_pose -points 10 -quiet -seed {seed}")["scans"]
+            poses.append(np.reshape(scan["transform"], (4, 4)))
+            np.testing.assert_allclose(poses[-1][:3, :3] @ poses[-1][:3, :3].T, np.eye(3), atol=1e-12)
+        self.assertLess(abs(np.mean(poses, axis=0)[:3, :3]).max(), 5 * np.sqrt(1 / 3 / len(poses)))
+
+    def test_refuses_what_it_cannot_scan(self):
+        flat = "OFF\n3 1 0\n1 2 3\n1 2 3\n1 2 3\n3 0 1 2\n"
+        for name, content in (("points.off", "OFF\n1 0 0\n1 2 3\n"), ("flat.off", flat), ("nan.off", flat.replace("3\n3", "nan\n3"))):
+            self.fails(1, name, self.write(name, content), "never.pcd")
+        self.assertFalse((self.folder / "never.pcd").exists())
+
     def test_says_when_the_model_reaches_beyond_the_picture(self):
         self.mesh = self.write("cube.off", tool_run.box(1.0, 1.0))
         # 0.47 diagonals from the axis, the picture shows 0.41.

@@ -123,6 +123,48 @@ def pcd_header(path):
     return {line.split()[0]: line.split()[1:] for line in lines}
 
 
+def unpacked(data, size):
+    """What the compression of PCD (LZF) packed."""
+    out, at = bytearray(), 0
+    while len(out) < size:
+        code, at = data[at], at + 1
+        if code < 32:
+            out += data[at:at + code + 1]
+            at += code + 1
+            continue
+        length = (code >> 5) + (data[at] if code >> 5 == 7 else 0) + 2
+        at += code >> 5 == 7
+        start = len(out) - ((code & 31) << 8) - data[at] - 1
+        at += 1
+        for k in range(length):
+            out.append(out[start + k])
+    return bytes(out)
+
+
+def pcd_points(path):
+    """The points of a PCD file, with all fields."""
+    header = pcd_header(path)
+    count, counts = int(header["POINTS"][0]), list(map(int, header["COUNT"]))
+    fields = [(name, f"<{kind.lower()}{size}", (number,) if number > 1 else ())
+              for name, kind, size, number in zip(header["FIELDS"], header["TYPE"], header["SIZE"], counts)]
+    encoding, body = Path(path).read_bytes().split(b"\nDATA ")[1].split(b"\n", 1)
+    if encoding == b"binary":
+        return np.frombuffer(body, fields, count)
+    points, at = np.zeros(count, fields), 0
+    if encoding == b"ascii":
+        values = np.array(body.split(), float).reshape(count, -1)
+        for (name, _, shape), number in zip(fields, counts):
+            points[name] = values[:, at:at + number].reshape((count, *shape))
+            at += number
+        return points
+    packed, size = struct.unpack("<II", body[:8])
+    body = unpacked(body[8:8 + packed], size)  # field by field
+    for name, kind, shape in fields:
+        points[name] = np.frombuffer(body, kind, count * int(np.prod(shape)), at).reshape((count, *shape))
+        at += points[name].nbytes
+    return points
+
+
 def ply_points(path):
     """The vertices of a binary PLY file, with all properties, and its header."""
     header, body = Path(path).read_bytes().split(b"end_header\n", 1)

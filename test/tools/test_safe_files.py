@@ -1,0 +1,106 @@
+"""Files that are written hold all fields, and survive kills, signals and full disks."""
+import os
+import resource
+import signal
+import subprocess
+import unittest
+
+import tool_run
+from tool_run import ToolTest, np
+
+WRITERS = {"ascii.pcd": "scan box.off OUT -format ascii", "binary.pcd": "scan box.off OUT -format binary", "compressed.pcd": "scan box.off OUT",
+           "cloud.ply": "scan box.off OUT", "labels.seg": "segment box.off OUT", "mesh.ply": "segment box.off OUT"}
+
+
+class SafeFiles(ToolTest):
+    def setUp(self):
+        super().setUp()
+        self.write("box.off", tool_run.box())
+
+    def interrupt(self, number):
+        """Sends a signal to the scanner while it writes big.pcd. Returns its exit status; None where it was done before."""
+        command = [tool_run.TOOLS / "pcl_symmetry_scan", *"box.off big.pcd -points 1500000 -format binary -quiet -threads 1".split()]
+        with subprocess.Popen(command, cwd=self.folder) as process:
+            while process.poll() is None:
+                if any(name.startswith(".big.") for name in os.listdir(self.folder)):
+                    process.send_signal(number)
+                    break
+            return None if process.wait() == 0 else process.returncode
+
+    def test_killed_writers_leave_whole_files(self):
+        self.write("big.pcd", "old")
+        num_killed = 0
+        for _ in range(20):
+            if self.interrupt(signal.SIGKILL) is None:
+                self.assertEqual(len(tool_run.pcd_points(self.folder / "big.pcd")), int(tool_run.pcd_header(self.folder / "big.pcd")["POINTS"][0]))
+                self.write("big.pcd", "old")
+            else:
+                num_killed += 1
+                self.assertEqual(self.text("big.pcd"), "old")
+            for left in self.folder.glob(".big.*"):
+                left.unlink()
+            if num_killed == 5:
+                return
+        self.fail("no kill came while the file was written")
+
+    def test_signals_remove_what_is_half_written(self):
+        for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
+            for _ in range(20):
+                status = self.interrupt(number)
+                if status is not None:
+                    break
+                (self.folder / "big.pcd").unlink()
+            self.assertEqual((status, os.listdir(self.folder)), (-number, ["box.off"]))
+
+    def test_full_disks_leave_the_old_file(self):
+        """The size of files is limited: the kernel then answers a write as on a full disk, with another error number."""
+        for name, command in WRITERS.items():
+            tool, *arguments = command.replace("OUT", name).split()
+            command = " ".join(arguments) + (" -points 3000" if tool == "scan" else "")
+            self.run_tool(command, tool=tool)
+            whole = (self.folder / name).read_bytes()
+            for limit in (1, len(whole) // 2, len(whole) - 1):
+                def limited(limit=limit):
+                    signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
+                    resource.setrlimit(resource.RLIMIT_FSIZE, (limit, limit))
+
+                self.fails(1, f"{name}: cannot be written", command, tool=tool, preexec_fn=limited)
+                self.assertEqual((self.folder / name).read_bytes(), whole)
+        self.assertEqual(set(os.listdir(self.folder)), {"box.off", *WRITERS}, "nothing half-written stays")
+
+    def test_names_that_cannot_be_written_are_named(self):
+        for name in ("missing/a.json", ".", "/dev/full", "/proc/a.json"):
+            self.fails(1, f"{name}: cannot be written", "box.off -quiet -json", name, tool="planes")
+        self.run_tool("a/b/ box.off -type prsd -points 500", tool="describe")
+        self.run_tool("a/. box.off -type prsd -points 500", tool="describe")
+        self.write("file", "")
+        for folder in ("file", "file/below"):
+            self.fails(1, f"{folder}: cannot be made", folder, "box.off", tool="describe")
+
+    def test_clouds_keep_fields_organization_and_pose(self):
+        i = np.arange(60)
+        values = {"x": np.float32(1e9) / 7 * (i % 5), "y": np.float32(1e-20) / 3 + i // 5 % 4, "z": np.where(i == 5, np.nan, 1e8 * (i // 20)),
+                  "curvature": i, "rgb": (i << 8 | i << 16).astype("<u4").view("<f4")}
+        cloud = np.rec.fromarrays([column.astype("<f4") for column in values.values()], names=list(values))
+        header = f"VERSION 0.7\nFIELDS {' '.join(values)}\nSIZE 4 4 4 4 4\nTYPE F F F F F\nCOUNT 1 1 1 1 1\nWIDTH 20\nHEIGHT 3\n"
+        self.write("a.pcd", (header + "VIEWPOINT 1 -2 0.5 0.5 0.5 -0.5 0.5\nPOINTS 60\nDATA binary\n").encode() + cloud.tobytes())
+        for source, target in (("a.pcd", "b.pcd"), ("b.pcd", "c.ply"), ("c.ply", "d.pcd")):
+            self.run_tool(source, target, "-parts 1 -threads 1", tool="segment")
+            file = self.folder / target
+            file.write_bytes(file.read_bytes().replace(b"label", b"in_" + target[0].encode() + b"_", 1))  # makes room for the next one
+        for name in ("b.pcd", "d.pcd"):
+            found = tool_run.pcd_header(self.folder / name)
+            self.assertEqual([found[key] for key in ("WIDTH", "HEIGHT")], [["20"], ["3"]])
+            np.testing.assert_allclose(np.array(found["VIEWPOINT"], float), [1, -2, 0.5, 0.5, 0.5, -0.5, 0.5], atol=1e-5)
+            points = tool_run.pcd_points(self.folder / name)
+            for field in "x", "y", "z", "curvature":
+                np.testing.assert_array_equal(points[field], cloud[field], f"{field} of {name}")
+            np.testing.assert_array_equal(points["rgb"].view("<u4") & 0xffffff, cloud["rgb"].view("<u4") & 0xffffff, name)
+
+    def test_clouds_have_no_other_kind(self):
+        self.fails(2, "a.xyz", "box.off a.xyz", tool="scan")
+        self.run_tool("box.off a.PCD -points 500", tool="scan")
+
+
+if __name__ == "__main__":
+    unittest.main()
