@@ -4,9 +4,6 @@
 #include <gtest/gtest.h>
 #include <pcl/common/transforms.h>
 
-#include <algorithm>
-#include <string>
-
 #include "core/base/random.h"
 #include "pcl/clouds.h"
 #include "pcl_symmetry/impl/cloud_conversion.hpp"
@@ -38,30 +35,6 @@ void setOrigin(Cloud& cloud, const Eigen::Vector3d& origin) {
   cloud.sensor_origin_ << origin.cast<float>(), 0.0f;
 }
 
-bool recognized(const Cloud::ConstPtr& cloud) {
-  return detail::seenSpace(*cloud, detail::selectPoints(*cloud, nullptr, cloud->size(), 0).points, Viewpoint{})
-      .has_value();
-}
-
-ViewpointSource sourceOf(const Cloud::ConstPtr& cloud) {
-  return detail::findSeenSpace(*cloud, detail::selectPoints(*cloud, nullptr, cloud->size(), 0).points, Viewpoint{})
-      .source();
-}
-
-TEST(Viewpoint, AnOrganizedCloudTellsByItsOwnRays) {
-  for (std::uint64_t seed = 1; seed <= 8; ++seed) {
-    const Scan scan = randomScan(seed);
-    EXPECT_TRUE(recognized(pictureOf(scan, scan.T_camera_object))) << seed << ": in the frame of the camera";
-    const Eigen::Isometry3d away = test::randomPose(seed, 0.2) * scan.T_camera_object;
-    EXPECT_TRUE(
-        detail::seenByOrganizedCloud((away * scan.pixels.cast<double>()).cast<float>(), scan.width, scan.height))
-        << seed << ": from the rays alone";
-    // Here sensor_origin_ = 0 lies in the middle of the box.
-    EXPECT_TRUE(recognized(pictureOf(scan))) << seed << ": in the frame of the object";
-    EXPECT_TRUE(recognized(pictureOf(scan, test::randomPose(seed)))) << seed << ": in any other";
-  }
-}
-
 TEST(Viewpoint, TheRaysOfAnOrganizedCloudAreThoseOfItsCamera) {
   for (std::uint64_t seed = 1; seed <= 4; ++seed) {
     const Scan scan = randomScan(seed);
@@ -85,70 +58,6 @@ TEST(Viewpoint, TheRaysOfAnOrganizedCloudAreThoseOfItsCamera) {
                     truth.depth(static_cast<int>(i % scan.width), static_cast<int>(i / scan.width)), 0.02)
             << seed;
       }
-  }
-}
-
-TEST(Viewpoint, RowsAndColumnsThatAreNoPictureAreNone) {
-  auto whole = toCloud(test::box(4000, Sampling::Random, 1));
-  whole->width = 80;
-  whole->height = 50;
-  EXPECT_FALSE(recognized(whole));
-  // The pixels of a scan in a wrong order.
-  const Scan scan = randomScan(1);
-  auto shuffled = pictureOf(scan);
-  RandomStream random(3);
-  for (std::size_t i = shuffled->size() - 1; i > 0; --i) std::swap((*shuffled)[i], (*shuffled)[random.below(i + 1)]);
-  EXPECT_NE(sourceOf(shuffled), ViewpointSource::Rays);
-  EXPECT_FALSE(detail::seenByOrganizedCloud(Points::Constant(3, 200, NAN), 20, 10));
-}
-
-TEST(Viewpoint, AnUnorganizedScanWithoutViewpointTellsByItsDensity) {
-  for (std::uint64_t seed = 1; seed <= 4; ++seed) {
-    const Scan scan = test::scan(test::blockL(), randomScan(seed).viewpoint);
-    auto cloud = toCloud(scan.cloud());
-    EXPECT_EQ(sourceOf(cloud), ViewpointSource::Inferred) << seed;
-    pcl::transformPointCloud(*cloud, *cloud, scan.T_camera_object.cast<float>().matrix());
-    setOrigin(*cloud, Eigen::Vector3d::Zero());
-    EXPECT_EQ(sourceOf(cloud), ViewpointSource::Stored) << seed << ": 0 0 0 is true in the frame of the camera";
-  }
-}
-
-TEST(Viewpoint, ADefaultOriginIsNotBelievedByItself) {
-  // An open shell that is seen once from the origin. Its even density is not that of a scan.
-  const Points whole = test::sphere(20'000, 1).cloud();
-  const Points shell = test::facing(whole, {0.0, 0.0, 5.0}).colwise() - Eigen::Vector3f(0.0f, 0.0f, 5.0f);
-  const auto cloud = toCloud(shell);
-  EXPECT_EQ(sourceOf(cloud), ViewpointSource::None);
-  // Who turns the sensor has set its pose.
-  cloud->sensor_orientation_ = Eigen::Quaternionf(0.0f, 1.0f, 0.0f, 0.0f);
-  EXPECT_EQ(sourceOf(cloud), ViewpointSource::Stored);
-  cloud->sensor_orientation_ = Eigen::Quaternionf::Identity();
-  setOrigin(*cloud, {0.0, 0.0, 0.1});
-  EXPECT_EQ(sourceOf(cloud), ViewpointSource::Stored);
-}
-
-TEST(SymmetryMaximaRefinement, UsesTheRaysOfAnOrganizedCloud) {
-  const Scan scan = test::scan(test::blockBox(), {2.5, -3.0, 2.0});
-  for (const Eigen::Isometry3d& pose :
-       {Eigen::Isometry3d(Eigen::Isometry3d::Identity()), scan.T_camera_object, test::randomPose(9)}) {
-    SymmetryMaximaRefinement<pcl::PointXYZ> refinement;
-    refinement.setInputCloud(pictureOf(scan, pose));
-    const auto planes = refinement.compute();
-    EXPECT_TRUE(refinement.usedViewpoint());
-    for (const ReflectionPlane& plane : scan.planes)
-      EXPECT_TRUE(isAmong(planes, plane.transformed(pose), 2.0 * test::kDegree, 0.05, pose.translation()));
-    for (const SymmetryPlane& plane : planes) {
-      EXPECT_TRUE(plane.kind == PlaneKind::Symmetry || plane.kind == PlaneKind::Possible);
-      EXPECT_LE(plane.seen, 1.0);
-    }
-    refinement.setViewpointMode(Viewpoint::Mode::None);
-    const auto without = refinement.compute();
-    EXPECT_FALSE(refinement.usedViewpoint());
-    // Half a box may be a box of which a half is missing; it is no whole one.
-    for (const SymmetryPlane& plane : without) EXPECT_LT(plane.seen, 0.9);
-    refinement.setViewpointMode(Viewpoint::Mode::Auto);
-    refinement.compute();
-    EXPECT_TRUE(refinement.usedViewpoint());
   }
 }
 

@@ -493,6 +493,32 @@ class Meshes(unittest.TestCase):
         self.assertAlmostEqual(mean.greatest_asymmetry, height, delta=0.1 * height)
         self.assertAlmostEqual(mean.points[:, 0].max(), 1.01, delta=0.001)
 
+    def test_what_is_made_symmetric_is_its_own_reflection(self):
+        """Vertices that the plane maps onto each other, with a bump on the right side: half of it on both, none, or all of it."""
+        vertices, faces = bumped(100, 200, 0.05, 0.6)
+        plane = pcl_symmetry.ReflectionPlane((1, 0, 0), 0.0)
+        for half, reach in (("mean", 1.025), ("left", 1.0), ("right", 1.05)):
+            found = pcl_symmetry.symmetrize(vertices, plane, half, faces=faces)
+            index, distance = plane.pairs(found.points)
+            self.assertLess(distance.max(), 1e-5 * 2, "of the diameter")
+            np.testing.assert_array_equal(index[index], np.arange(len(index)))
+            np.testing.assert_allclose(np.abs(found.points[:, 0]).max(), reach, atol=1e-3)
+            np.testing.assert_allclose([found.points[:, 0].min(), found.points[:, 0].max()], [-reach, reach], atol=1e-3)
+
+    def test_a_half_and_its_reflection_fit_whatever_the_triangles(self):
+        """A ball whose triangles the plane x = 0.3 z does not map onto each other."""
+        vertices, faces = bumped(100, 200, 0.0, 0.6)
+        plane = pcl_symmetry.ReflectionPlane((1, 0, -0.3), 0.0)
+        for half in ("left", "right"):
+            cut = pcl_symmetry.symmetrize(vertices, plane, half, faces=faces, cut=True)
+            self.assertLess(plane.pairs(cut.points)[1].max(), 1e-6)
+            source = vertices[cut.rows]
+            off = [np.linalg.norm(points - source, axis=1) for points in (cut.points, plane.reflect(cut.points))]
+            self.assertLess(np.minimum(*off).max(), 0.04, "an edge")
+            edges = np.sort(cut.faces[:, [0, 1, 1, 2, 2, 0]].reshape(-1, 2), axis=1)
+            _, counts = np.unique(edges, axis=0, return_counts=True)
+            self.assertEqual((counts == 1).sum(), 2 * 200, "the holes at the poles, or their reflections")
+
     def test_a_vase_with_noise_has_its_profile(self):
         rng = np.random.default_rng(4)
 

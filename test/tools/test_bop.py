@@ -159,7 +159,8 @@ class Bop(ToolTest):
     def test_says_where_a_file_disagrees_with_the_surface(self):
         """The box has D2; its file lists one of three half turns."""
         half_turn = [1, 0, 0, 0, 0, -1, 0, 0, 0, 0, -1, 0, 0, 0, 0, 1]
-        given = {"3": {"symmetries_discrete": [np.reshape(half_turn, (4, 4)).tolist()]}, "5": {"diameter": 3.0}, "12": {"symmetries_continuous": [{"axis": [0, 0, 1], "offset": [0, 0, 0]}]}}
+        given = {"3": {"symmetries_discrete": [np.reshape(half_turn, (4, 4)).tolist()]}, "5": {"diameter": 3.0},
+                 "12": {"symmetries_continuous": [{"axis": [0, 0, 1], "offset": [0, 0, 0]}]}}
         found = self.check(given, self.box, self.vase, self.write("plain.off", tool_run.box()))
         self.assertIn("model 12     file Cinf  surface Cinf  agree", self.output)
         self.assertIn("1 of 2 models disagree", self.output)
@@ -237,8 +238,10 @@ class Bop(ToolTest):
                 ("a.json", '{"3": {"symmetries_discrete": %s}}' % reflection, "rigid motion"),
                 ("a.json", '{"3": {"symmetries_continuous": [{"axis": [0,0,0]}]}}', "must not be zero"),
                 ("a.json", '{"3": {"symmetries_continuous": {"axis": [0,0,1]}}}', "must be a list"),
-                ("a.yaml", 'symmetry_axes: ["w_180"]\n', "w_180, must be x, y or z"), ("a.yaml", 'symmetry_axes: ["z_half"]\n', "z_half, must be"),
-                ("a.yaml", "a: 1\n", "a.yaml: must be JSON, or have lines such as"), ("a.yaml", "symmetry_axes: [z 180]\n", "z 180, must be"),
+                ("a.yaml", 'symmetry_axes: ["w_180"]\n', "w_180, must be x, y or z"),
+                ("a.yaml", 'symmetry_axes: ["z_half"]\n', "z_half, must be"),
+                ("a.yaml", "symmetry_axes: [z 180]\n", "z 180, must be"),
+                ("a.yaml", "a: 1\n", "a.yaml: must be JSON, or have lines such as"),
                 ("a.yaml", "a" * 1_000_000 + "\n", "a.yaml: must be JSON, or have lines such as")):
             self.write(name, content)
             self.fails(1, said, self.box, "-check", name)

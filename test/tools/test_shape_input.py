@@ -69,7 +69,8 @@ class ShapeInput(ToolTest):
 
     def test_corners_of_stl_are_joined(self):
         def facet(*corners):
-            return f" facet normal 0 0 1\n  outer loop\n{rows('   vertex {} {} {}' + chr(10), CORNERS[list(corners)])}  endloop\n endfacet\n"
+            vertices = rows("   vertex {} {} {}\n", CORNERS[list(corners)])
+            return f" facet normal 0 0 1\n  outer loop\n{vertices}  endloop\n endfacet\n"
 
         text = f"solid s\n{facet(0, 1, 2)}{facet(0, 2, 3)}endsolid s\n"
         for content in (text, text.upper(), "\n\n" + text, "# made by hand\n" + text, "\t" + text):
@@ -82,7 +83,8 @@ class ShapeInput(ToolTest):
             np.testing.assert_array_equal(vertices[polygons[0]], CORNERS[:3])
 
     def test_points_of_range_grids(self):
-        elements = f"obj_info num_cols 31\nobj_info num_rows 1\nelement vertex 30\n{XYZ}element range_grid 31\nproperty list uchar int vertex_indices\n"
+        elements = (f"obj_info num_cols 31\nobj_info num_rows 1\nelement vertex 30\n{XYZ}"
+                    "element range_grid 31\nproperty list uchar int vertex_indices\n")
         self.assert_points("grid.ply", ply("ascii", elements, rows(), "0\n", "".join(f"1 {k}\n" for k in range(30))))
 
     def test_binary_gltf(self):
@@ -99,12 +101,14 @@ class ShapeInput(ToolTest):
         """Map coordinates in meters; the spacing of float there is half a meter. The shift is exact."""
         far = np.array([500000.25, 5000000.125, 100])
         corners, doubles = CORNERS + far, XYZ.replace("float", "double")
-        for name, content in (("a.off", "OFF\n4 2 0\n" + rows(points=corners) + FACES), ("a.obj", rows("v {} {} {}\n", corners) + "f 1 2 3\nf 1 2 3 4\n"),
+        for name, content in (("a.off", "OFF\n4 2 0\n" + rows(points=corners) + FACES),
+                              ("a.obj", rows("v {} {} {}\n", corners) + "f 1 2 3\nf 1 2 3 4\n"),
                               ("a.ply", ply("ascii", "element vertex 4\n" + doubles + FACE_LIST, rows(points=corners), FACES))):
             vertices, _, kind = self.mesh(name, content)
             np.testing.assert_array_equal(vertices, corners, name)
             self.assertEqual(kind, "double", "of the input frame")
-        for name, content in (("b.xyz", rows(points=POINTS + far)), ("b.pcd", pcd(30, "ascii\n", rows(points=POINTS + far), sizes="8 8 8"))):
+        lines = rows(points=POINTS + far)
+        for name, content in (("b.xyz", lines), ("b.pcd", pcd(30, "ascii\n", lines, sizes="8 8 8"))):
             self.assert_points(name, content, POINTS + far)
 
     def test_extents_that_are_no_normal_numbers_do_no_harm(self):
@@ -135,8 +139,9 @@ class ShapeInput(ToolTest):
     def test_ply_properties_of_any_type_and_order(self):
         body = b"".join(little("u1", 9) + little("f4", *point) for point in POINTS)
         self.assert_points("a.ply", ply("binary_little_endian", "element vertex 30\nproperty uchar red\n" + XYZ, body))
-        names = "".join(f"property {each}\n" for each in ("uchar red", "uchar green", "uchar blue", "float z", "float nx", "float x", "float y"))
-        points = self.assert_points("b.ply", ply("ascii", "element vertex 30\n" + names, rows("1 2 3 {} 0.5 {} {}\n", POINTS[:, [2, 0, 1]])))
+        names = "uchar red", "uchar green", "uchar blue", "float z", "float nx", "float x", "float y"
+        elements = "element vertex 30\n" + "".join(f"property {name}\n" for name in names)
+        points = self.assert_points("b.ply", ply("ascii", elements, rows("1 2 3 {} 0.5 {} {}\n", POINTS[:, [2, 0, 1]])))
         self.assertEqual(points.dtype.names, ("label", "rgb", "z", "normal_x", "x", "y"))
         self.assertEqual((points["rgb"].tobytes()[:4], points["normal_x"][0]), (b"\3\2\1\0", 0.5))
         whole = POINTS.round() * (-1, 1, 1)
@@ -170,7 +175,8 @@ class ShapeInput(ToolTest):
 
     def test_obj_that_names_textures_and_normals_it_does_not_have(self):
         vertices = rows("v {} {} {}\n", CORNERS)
-        for faces in ("f 1/1/1 2/2/2 3/3/3 4/4/4\n", "f 1//7 2//7 3//7 4//7\n", "f 1/5 2/6 3/7 4/8\n", "f -4 -3 -2 -1\n", "f 1 2 \\\n 3 4\r\n"):
+        for faces in ("f 1/1/1 2/2/2 3/3/3 4/4/4\n", "f 1//7 2//7 3//7 4//7\n", "f 1/5 2/6 3/7 4/8\n", "f -4 -3 -2 -1\n",
+                      "f 1 2 \\\n 3 4\r\n"):
             found, polygons, _ = self.mesh("a.obj", f"mtllib no_such.mtl\no part\n{vertices}usemtl red\ns off\n{faces}")
             np.testing.assert_array_equal(found, CORNERS)
             self.assertEqual(polygons, [[0, 1, 2, 3]], faces)

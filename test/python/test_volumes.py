@@ -1,0 +1,132 @@
+"""Planes of volumes: phantoms with known planes, tilted, cropped, noisy, with a lesion on one side; and none."""
+
+import sys
+import unittest
+
+try:
+    import numpy as np
+except ImportError:
+    print("skipped: NumPy is not installed for " + sys.executable)
+    sys.exit(77)
+
+import pcl_symmetry
+
+
+def rotation(axis, angle):
+    x, y, z = np.array(axis) / np.linalg.norm(axis)
+    cross = np.array([[0, -z, y], [z, 0, -x], [-y, x, 0]])
+    return np.eye(3) + np.sin(angle) * cross + (1 - np.cos(angle)) * cross @ cross
+
+
+def soft(distance, width):
+    return 1 / (1 + np.exp(np.clip(distance / width, -50, 50)))
+
+
+def in_ellipsoid(x, center, radii):
+    return soft((np.linalg.norm((x - center) / radii, axis=-1) - 1) * np.mean(radii), 0.6)
+
+
+def head(x):
+    """130 x 160 x 140 units: skull, brain, pairs of nuclei, ventricles and eyes, a nose; symmetric in x = 0."""
+    side = abs(x) * (1, 0, 0) + x * (0, 1, 1)
+    return (0.9 * in_ellipsoid(x, (0, 0, 0), (65, 80, 70)) - 0.4 * in_ellipsoid(x, (0, 0, 0), (59, 74, 64))
+            + 0.3 * in_ellipsoid(side, (20, 10, 10), (10, 25, 12)) - 0.3 * in_ellipsoid(side, (9, -15, 5), (6, 18, 8))
+            + 0.4 * in_ellipsoid(side, (25, 55, -20), (10, 8, 9)) + 0.6 * in_ellipsoid(side, (0, 80, -20), (8, 14, 10)))  # fmt: skip
+
+
+def with_lesion(x):
+    return head(x) + 0.4 * in_ellipsoid(x, (30, -20, 20), (12, 12, 12))
+
+
+def spiral(x):
+    """A tube that winds about z as it rises."""
+    angle = np.arctan2(x[..., 1], x[..., 0])[..., None] + 2 * np.pi * np.arange(-2, 3)
+    off = np.hypot(np.hypot(x[..., 0], x[..., 1])[..., None] - 38 - 2 * angle, x[..., 2:] - 7 * angle)
+    return soft(np.where(abs(angle) < 9, off, 1e9).min(axis=-1) - 9, 1)
+
+
+def texture(x):
+    """Blobs of random place, size and sign."""
+    random, total = np.random.default_rng(5), 0
+    for *center, size, weight in random.uniform((-60, -60, -60, 8, -1), (60, 60, 60, 18, 1), (60, 5)):
+        total = total + weight * np.exp(-((x - center) ** 2).sum(axis=-1) / size**2)
+    return total
+
+
+def ball(x):
+    return soft(np.linalg.norm(x, axis=-1) - 60, 1)
+
+
+class Volumes(unittest.TestCase):
+    direction = rotation((1, 2, 2), 0.4)
+
+    def phantom(self, function=head, size=80, seed=1, noise=0.0, cropped=0.0, slices=1, pose=None):
+        """Sets the arguments of planes(), the turn and the shift of the phantom, and the size of a voxel.
+
+        noise: standard deviation. cropped: units that are cut off on one side. slices: their thickness in voxels.
+        """
+        random = np.random.default_rng(seed)
+        self.turn = rotation(random.uniform(-1, 1, 3), random.uniform(0.1, 0.4)) if pose is None else pose
+        self.shift, self.voxel = random.uniform(-4, 4, 3) * (pose is None), 200 / size
+        origin, spacing = self.direction @ (cropped - 100, -100, -100), self.voxel * np.array([1, 1, slices])
+        parts = 4 if slices > 1 else 1
+        volume = np.zeros((size, size, size // slices))
+        for k in range(parts):
+            index = np.stack(np.indices(volume.shape), axis=-1) + (0, 0, (k + 0.5) / parts - 0.5)
+            volume += function((index * spacing @ self.direction.T + origin - self.shift) @ self.turn) / parts
+        volume += noise * random.normal(size=volume.shape)
+        self.arguments = dict(volume=volume.astype(np.float32), spacing=spacing, origin=origin, direction=self.direction)
+
+    def assert_plane(self, degrees, voxels):
+        found = pcl_symmetry.planes(**self.arguments)
+        self.assertTrue(len(found), found.reason)
+        self.assertEqual(found[0].kind, "symmetry")
+        self.assertLess(np.linalg.norm(np.cross(found[0].normal, self.turn[:, 0])), np.radians(degrees))
+        self.assertLess(abs(found[0].distance(self.shift)), voxels * self.voxel)
+        self.assertGreater(found[0].confidence, 0.75 * 0.75)
+
+    def test_of_a_tilted_head_are_exact_and_of_a_noisy_one_within_half_a_degree_and_voxel(self):
+        for seed in (1, 2, 4):
+            # The last plane is nearly parallel to an axis of the grid, where voxels fall on voxels.
+            pose = self.direction @ rotation((0, 0, 1), 0.115) @ rotation((0, 1, 0), 0.012) if seed == 4 else None
+            self.phantom(size=64, seed=seed, pose=pose)
+            self.assert_plane(0.1, 0.2)
+            self.phantom(seed=seed, pose=pose, noise=0.5 / 3)  # a third of the signal of the brain
+            self.assert_plane(0.5, 0.5)
+
+    def test_of_small_noisy_heads_are_within_half_a_degree_and_voxel(self):
+        for seed in range(1, 5):
+            self.phantom(size=64, seed=seed, noise=0.5 / 3)
+            self.assert_plane(0.5, 0.5)
+
+    def test_of_heads_that_are_cropped_or_have_a_lesion_on_one_side_are_exact(self):
+        self.phantom(cropped=45)
+        self.assert_plane(0.1, 0.2)
+        self.phantom(with_lesion)
+        self.assert_plane(0.1, 0.2)
+
+    def test_of_thick_slices_are_right(self):
+        self.phantom(size=240, slices=10)
+        self.assert_plane(1.5, 1)
+
+    def test_of_a_spiral_and_a_random_texture_are_none(self):
+        for function in (spiral, texture):
+            self.phantom(function, size=56)
+            found = pcl_symmetry.planes(**self.arguments)
+            self.assertEqual((len(found), found.reason), (0, ""))
+            every = pcl_symmetry.planes(**self.arguments, approximate=True)
+            self.assertLessEqual({plane.kind for plane in every}, {"approximate"})
+
+    def test_of_a_ball_are_all_and_said_so(self):
+        self.phantom(ball)
+        found = pcl_symmetry.planes(**self.arguments)
+        self.assertEqual((len(found), found.reason), (0, "volume: the body is round, planes in all directions map it onto itself"))
+
+    def test_leave_out_voxels_that_are_not_known(self):
+        self.phantom()
+        self.arguments["volume"][self.arguments["volume"] < 0.05] = np.nan
+        self.assert_plane(0.1, 0.2)
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,185 @@
+"""Where the scanner stood: told by the rays of an organized cloud, by the header, by the density of the points, or by the user."""
+import json
+import unittest
+
+import tool_run
+from test_scene_objects import block, camera, frame, look
+from tool_run import ToolTest, np
+
+WIDTH, HEIGHT = 160, 120
+BOX = [((0, 0, 0), (1, 0.7, 0.45))]  # centers and half sizes
+L = [((0, 0, 0), (1, 0.25, 0.45)), ((-0.7, 0.85, 0), (0.3, 0.6, 0.45))]
+CHAIR = [((0, 0, 0), (0.5, 0.5, 0.06)), ((0, 0.44, 0.55), (0.5, 0.06, 0.5)),
+         *(((a * 0.43, b * 0.43, -0.45), (0.07, 0.07, 0.4)) for a in (1, -1) for b in (1, -1))]
+
+
+def scan(blocks, eye):
+    """The pixels that a camera sees which looks at the origin, and its motion from the object to the camera."""
+    eye = np.array(eye, float)
+    reach, distance = max(np.linalg.norm(np.abs(center) + half) for center, half in map(np.array, blocks)), np.linalg.norm(eye)
+    rays = camera(eye, (0, 0, 0), WIDTH, HEIGHT, 0.48 * HEIGHT * np.sqrt(distance ** 2 - reach ** 2) / reach, 0.3)
+    points, _ = look(eye, rays, [block(*each) for each in blocks])
+    forward = -eye / distance
+    right = (rays[1] - rays[0]) / np.linalg.norm(rays[1] - rays[0])
+    turn = np.stack([right, np.cross(forward, right), forward])
+    return points, (turn, -turn @ eye)
+
+
+def finite(points):
+    return points[np.isfinite(points).all(axis=1)]
+
+
+def moved(points, pose):
+    return points @ pose[0].T + pose[1]
+
+
+def random_pose(seed):
+    random = np.random.default_rng(seed)
+    return tool_run.rotation(random.normal(size=3), random.uniform(0, np.pi)), random.uniform(-3, 3, 3)
+
+
+def random_direction(seed):
+    direction = np.random.default_rng(seed).normal(size=3)
+    return direction / np.linalg.norm(direction)
+
+
+def on_sphere(count, seed=1):
+    points = np.random.default_rng(seed).normal(size=(count, 3))
+    return points / np.linalg.norm(points, axis=1, keepdims=True)
+
+
+def on_box(count, half=(1, 0.7, 0.45), seed=1):
+    random, half = np.random.default_rng(seed), np.array(half)
+    axis = random.choice(3, count, p=(1 / half) / (1 / half).sum())
+    points = random.uniform(-1, 1, (count, 3)) * half
+    points[np.arange(count), axis] = half[axis] * random.choice([-1, 1], count)
+    return points
+
+
+class SeenFrom(ToolTest):
+    tool = "planes"
+
+    def answers(self, *clouds, flags=""):
+        """What is found of each cloud: its points, organized where they are pixels, and the viewpoint of its header."""
+        names = []
+        for k, (points, viewpoint) in enumerate(clouds):
+            width = WIDTH if len(points) == WIDTH * HEIGHT else len(points)
+            names.append(str(self.write(f"{k}.pcd", frame(points, width, viewpoint=viewpoint))))
+        if len(names) == 1:
+            return [self.report(*names, "-quiet", flags)]
+        self.run_tool(*names, "-quiet -json all.json", flags)
+        return [json.loads(line) for line in self.text("all.json").splitlines()]
+
+    def sources(self, *clouds):
+        return [answer["viewpoint"]["from"] for answer in self.answers(*clouds)]
+
+    def test_is_told_by_the_rays_of_an_organized_cloud(self):
+        for seed in range(8):
+            random = np.random.default_rng(seed)
+            # From a side that shows three faces: one alone fits many cameras.
+            pixels, to_camera = scan(BOX, random.choice([-1, 1], 3) * random.uniform(1.6, 3.6, 3))
+            poses = to_camera, (np.eye(3), np.zeros(3)), random_pose(seed)  # of the second 0 0 0 lies in the middle of the box
+            self.assertEqual(self.sources(*((moved(pixels, pose), (0, 0, 0)) for pose in poses)), ["rays"] * 3, seed)
+
+    def test_of_rows_and_columns_that_are_no_picture_is_none(self):
+        pixels, _ = scan(BOX, (2.5, -3, 2))
+        whole, shuffled = self.sources((on_box(WIDTH * HEIGHT), (0, 0, 0)), (np.random.default_rng(3).permutation(pixels), (0, 0, 0)))
+        self.assertEqual(whole, "none")
+        self.assertNotEqual(shuffled, "rays")
+
+    def test_makes_the_planes_of_a_scan_symmetries(self):
+        pixels, to_camera = scan(BOX, (2.5, -3, 2))
+        for turn, shift in ((np.eye(3), np.zeros(3)), to_camera, random_pose(9)):
+            cloud = moved(pixels, (turn, shift)), (0, 0, 0)
+            seen, = self.answers(cloud)
+            planes = np.array([plane["coefficients"] for plane in seen["planes"]])
+            for axis in turn.T:
+                near = (abs(planes[:, :3] @ axis) > np.cos(np.radians(2))) & (abs(planes @ np.append(shift, 1)) < 0.05)
+                self.assertTrue(near.any(), axis)
+            self.assertLessEqual({plane["kind"] for plane in seen["planes"]}, {"symmetry", "possible"})
+            without, = self.answers(cloud, flags="-viewpoint none")
+            self.assertEqual(without["viewpoint"], {"from": "none"})
+            # Half a box may be a box of which a half is missing; it is no whole one.
+            self.assertTrue(all(plane["seen"] < 0.9 for plane in without["planes"]))
+        points = finite(pixels)
+        given, = self.answers((points, (0, 0, 0)), flags="-viewpoint 2.5,-3,2")
+        self.assertEqual(given["viewpoint"]["from"], "given")
+        np.testing.assert_allclose(given["viewpoint"]["position"], (2.5, -3, 2), atol=1e-9)
+        planes = abs(np.array([plane["coefficients"][:3] for plane in given["planes"]]))
+        self.assertGreater(planes.max(axis=0).min(), np.cos(np.radians(2)), "all three")
+
+    def test_gives_true_planes_more_confidence_than_others(self):
+        """Views that show two or three sides of everything."""
+        num_wrong, views = 0, [(blocks, axes, eye) for blocks, axes in ((BOX, (0, 1, 2)), (L, (2,)), (CHAIR, (0,)))
+                               for eye in ((2.5, -3, 2), (1.5, 3, 2.5), (-2, 3.2, -1.8))]
+        clouds = [scan(blocks, eye)[0] for blocks, _, eye in views]
+        for (_, axes, eye), cloud, answer in zip(views, clouds, self.answers(*((cloud, (0, 0, 0)) for cloud in clouds))):
+            points = finite(cloud)
+            center, size = points.mean(axis=0), np.linalg.norm(np.ptp(points, axis=0))
+            true, wrong = {}, []
+            for plane in answer["planes"]:
+                self.assertIn(plane["kind"], ("symmetry", "possible"))
+                self.assertTrue(0 < plane["seen"] <= 1)
+                c = np.array(plane["coefficients"])
+                axis = abs(c[:3]).argmax()
+                off = abs(c @ np.append(center, 1) - c[axis] * center[axis])
+                if axis in axes and abs(c[axis]) > np.cos(np.radians(2)) and off < 0.02 * size:
+                    true[axis] = max(true.get(axis, 0), plane["confidence"])
+                else:
+                    wrong.append(plane["confidence"])
+                    num_wrong += plane["kind"] == "symmetry"
+            self.assertEqual(len(true), len(axes), eye)
+            self.assertGreater(max(true.values()), max(wrong, default=0), eye)
+        # The README's rate of scans of asymmetric objects that are called symmetric is 21 %: 1.9 of nine scans.
+        self.assertLessEqual(num_wrong, 1)
+
+    def test_is_inferred_from_the_density_of_a_scan_in_any_pose(self):
+        for seed in range(6):
+            eye = 4 * random_direction(seed)
+            clouds, expected = [], []
+            for blocks in (L, CHAIR):
+                pixels, _ = scan(blocks, eye)
+                pose = random_pose(seed)
+                points = moved(finite(pixels), pose)
+                clouds += [(points, (0, 0, 0)), (finite(pixels), eye)]
+                expected.append(moved(eye, pose) - (points.min(axis=0) + points.max(axis=0)) / 2)
+            answers = self.answers(*clouds)
+            self.assertEqual([answer["viewpoint"]["from"] for answer in answers], 2 * ["inferred", "stored"], seed)
+            for answer, (points, _), direction in zip(answers[::2], clouds[::2], expected):
+                found = np.array(answer["viewpoint"]["position"]) - (points.min(axis=0) + points.max(axis=0)) / 2
+                cosine = found @ direction / np.linalg.norm(found) / np.linalg.norm(direction)
+                self.assertGreater(cosine, np.cos(np.radians(20)), seed)  # 17 degrees were measured
+
+    def test_is_none_for_wires_whole_objects_and_views_put_together(self):
+        clouds = []
+        for seed in range(10):
+            t = np.random.default_rng(seed).random(80 + 40 * seed)
+            wire = np.stack([(0.3 + t) * np.cos(5 * t), (0.3 + t) * np.sin(5 * t), t], axis=1)
+            wire[:, 2] += 0.003 * np.random.default_rng(seed + 99).normal(size=len(t))
+            clouds.append((wire, (0.1, 0.2, 0.3)))
+        for count in (1000, 10_000):
+            for seed in range(3):
+                clouds += [(on_box(count, seed=seed), viewpoint) for viewpoint in ((0, 0, 0), (3, 1, 2))]
+                clouds.append((on_sphere(count, seed), (3, 1, 2)))
+        for second in ((-2.5, -3, 2), (-2.5, 3, -2)):
+            for blocks in (BOX, L, CHAIR):
+                clouds.append((np.vstack([finite(scan(blocks, eye)[0]) for eye in ((2.5, -3, 2), second)]), (0.1, 0.2, 0.3)))
+        # Half a sphere and a sheet are seen once from many positions. Their even density is not that of a scan.
+        half = on_sphere(20_000)
+        half = half[half[:, 2] > 0.01]
+        clouds += [(half, (0, 0, 0)), (np.c_[np.random.default_rng(6).uniform(-1, 1, (4000, 2)), np.zeros(4000)], (0, 0, 0))]
+        self.assertEqual(self.sources(*clouds), ["none"] * len(clouds))
+
+    def test_is_believed_where_somebody_set_it(self):
+        """0 0 0 is believed in the frame of the camera, where it is true, but for an open shell that is merely seen once from there."""
+        clouds = [scan(L, eye) for eye in ((2.5, -3, 2), (-2, 2.5, 2), (2.2, 3, -1.8))]
+        self.assertEqual(self.sources(*((moved(finite(pixels), to_camera), (0, 0, 0)) for pixels, to_camera in clouds)), ["stored"] * 3)
+        shell = on_sphere(20_000)
+        shell = shell[(shell * ((0, 0, 5) - shell)).sum(axis=1) > 0] - (0, 0, 5)
+        self.assertEqual(self.sources((shell, (0, 0, 0)), (shell, (0, 0, 0.1))), ["none", "stored"])
+        path = self.write("turned.pcd", frame(shell, len(shell)).replace(b"0 0 0 1 0 0 0", b"0 0 0 0 1 0 0"))
+        self.assertEqual(self.report(path, "-quiet")["viewpoint"]["from"], "stored", "who turns the sensor has set its pose")
+
+
+if __name__ == "__main__":
+    unittest.main()
