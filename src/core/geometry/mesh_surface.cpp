@@ -150,11 +150,11 @@ MeshSurface::MeshSurface(const PointsRef& vertices, const std::vector<Eigen::Vec
   parts_->corners = normalizePoints(corners, parts_->ball.center, parts_->ball.radius);
   parts_->triangles = std::move(faces);
   // Samples that are fitted to are the first, spread over the surface.
-  constexpr int kStride = kMesh.samples / kMesh.fitted_samples;
+  const int stride = kMesh.samples / kMesh.fitted_samples;
   const Points samples = sampleTriangles(parts_->corners, parts_->triangles, kMesh.samples);
   parts_->faces.samples = samples;
   for (int i = 0; i < kMesh.samples; ++i)
-    parts_->faces.samples.col(i / kStride + (i % kStride) * kMesh.fitted_samples) = samples.col(i);
+    parts_->faces.samples.col(i / stride + (i % stride) * kMesh.fitted_samples) = samples.col(i);
 }
 
 const MeshSurface::Parts& MeshSurface::Parts::withTrees() {
