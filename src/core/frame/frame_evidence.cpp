@@ -18,6 +18,21 @@ GaussianEdtOptions edtOptionsOf(const FrameOptions& options) {
   return edt;
 }
 
+namespace {
+
+/// As narrow as the grid and the spacing of the points allow, unless the width is given.
+GaussianEdtOptions edtOptions(const PointsRef& points, GaussianEdtOptions options, bool scanned) {
+  if (options.sigma > 0.0 || points.cols() == 0) return options;
+  const double radius = boundingBall(points).radius;
+  const double cell = 2.2 * radius / options.num_cells;  // the side of the grid is 2 (1 + 2 sigma) radii
+  // Point spacing if the points covered a sphere, or a hemisphere for a scan.
+  const double spacing = radius * std::sqrt((scanned ? 2.0 : 4.0) * kPi / static_cast<double>(points.cols()));
+  options.sigma = std::max((scanned ? kFrame.scan_sigma : kFrame.whole_sigma) * cell, kFrame.min_sigma * spacing);
+  return options;
+}
+
+}  // namespace
+
 FrameEvidence::FrameEvidence(const PointsRef& points, const FrameOptions& options, const Visibility* visibility)
     : points_(points),
       scanned_(visibility != nullptr),
@@ -30,23 +45,9 @@ FrameEvidence::FrameEvidence(const PointsRef& points, const FrameOptions& option
       reach_(static_cast<float>(edt_.radius() / edt_.cellSize())),
       principal_axes_(pcl_symmetry::principalAxes(points)),
       center_of_mass_(toCells(principal_axes_.center)),
-      push_(push(visibility)) {}
-
-Eigen::Vector3f FrameEvidence::push(const Visibility* visibility) const {
-  if (!visibility) return Eigen::Vector3f::Zero();
-  return static_cast<float>(kFrame.push) * reach_ *
-         (principal_axes_.center - visibility->viewpoint()).normalized().cast<float>();
-}
-
-GaussianEdtOptions FrameEvidence::edtOptions(const PointsRef& points, GaussianEdtOptions options, bool scanned) {
-  if (options.sigma > 0.0 || points.cols() == 0) return options;
-  const double radius = boundingBall(points).radius;
-  const double cell = 2.2 * radius / options.num_cells;  // the side of the grid is 2 (1 + 2 sigma) radii
-  // Point spacing if the points covered a sphere, or a hemisphere for a scan.
-  const double spacing = radius * std::sqrt((scanned ? 2.0 : 4.0) * kPi / static_cast<double>(points.cols()));
-  options.sigma = std::max((scanned ? kFrame.scan_sigma : kFrame.whole_sigma) * cell, kFrame.min_sigma * spacing);
-  return options;
-}
+      push_(visibility ? Eigen::Vector3f(static_cast<float>(kFrame.push) * reach_ *
+                                         (principal_axes_.center - visibility->viewpoint()).normalized().cast<float>())
+                       : Eigen::Vector3f::Zero()) {}
 
 CellPlane FrameEvidence::toCells(const ReflectionPlane& plane) const {
   return {plane.normal().cast<float>(), static_cast<float>(-plane.signedDistance(middle_) / edt_.cellSize())};

@@ -125,10 +125,6 @@ public:
   double middleAlong(const Eigen::Vector3f& axis) const;
 
 private:
-  /// What the middle of a scan's extent is pushed by, cells; 0 for whole clouds.
-  Eigen::Vector3f push(const Visibility* visibility) const;
-  static GaussianEdtOptions edtOptions(const PointsRef& points, GaussianEdtOptions options, bool scanned);
-
   const PointsRef& points_;
   const bool scanned_;
   const double weight_;
@@ -140,7 +136,7 @@ private:
   const float reach_;
   const PrincipalAxes principal_axes_;
   const Eigen::Vector3f center_of_mass_;
-  const Eigen::Vector3f push_;
+  const Eigen::Vector3f push_;  // that the middle of a scan's extent is moved by, cells
 };
 
 }  // namespace pcl_symmetry

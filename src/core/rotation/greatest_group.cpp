@@ -5,11 +5,23 @@
 #include <optional>
 
 #include "core/base/constants.h"
+#include "core/geometry/directions.h"
 #include "core/rotation/rotation_axes.h"
 
 namespace pcl_symmetry {
 
 namespace {
+
+/// Rotations about a center that represent all: axes in all directions, angles from 120 to 180 degrees.
+RotationSet rotationsOfSphere(const Eigen::Vector3d& center) {
+  const int num_rotations = 16;  // fewer take polyhedra for balls
+  RotationSet set{{}, center, static_cast<std::size_t>(num_rotations)};
+  for (int k = 0; k < num_rotations; ++k) {
+    const double angle = 2.0 * kPi / 3.0 + kPi / 3.0 * goldenFraction(k);
+    set.rotations.push_back(rotationAbout(spiralDirection(k, num_rotations, kGoldenAngle * k), angle));
+  }
+  return set;
+}
 
 /// Rotations about axes in all directions have to hold: two axes of revolution could be one.
 std::optional<PlacedGroup> sphericalGroup(const RotationFit& fit, const ObjectSymmetryOptions& options,

@@ -37,10 +37,6 @@ double greatestExcess(const RotationLimits& limits, int num_samples) {
   return 1.0 + (kRotation.gain_of_fit + kRotation.max_errors * std::sqrt(phi / num_samples)) / phi;
 }
 
-bool beatsOthers(double excess, double others) {
-  return others >= kRotation.clear_factor * excess && others >= excess + kRotation.clear_excess;
-}
-
 std::optional<PlacedGroup> placedGroup(const RotationFit& fit, const ObjectSymmetryOptions& options,
                                        RotationGroupKind kind, int fold, RotationSet set) {
   if (fit.overlap(set) < kRotation.rough_overlap) return std::nullopt;
@@ -84,30 +80,11 @@ RotationSet elementsOf(const RotationGroup& group, const Eigen::Matrix3d& frame,
   return set;
 }
 
-RotationSet cyclicSet(const Line3d& line, int fold) {
-  const Eigen::Matrix3d frame = frameAlong(line.direction(), line.direction().unitOrthogonal());
-  return elementsOf(RotationGroup{RotationGroupKind::Cyclic, fold}, frame, line.origin());
-}
-
-RotationSet singleRotation(const Line3d& line, int fold) {
-  return {{rotationAbout(line.direction(), 2.0 * kPi / fold)}, line.origin(), 1};
-}
-
 RotationSet rotationsAbout(const Line3d& line) {
   const int num_rotations = 8;  // fewer take polygons for round
   RotationSet set{{}, line.origin(), static_cast<std::size_t>(num_rotations)};
   for (int k = 1; k <= num_rotations; ++k)
     set.rotations.push_back(rotationAbout(line.direction(), 2.0 * kPi * goldenFraction(k)));
-  return set;
-}
-
-RotationSet rotationsOfSphere(const Eigen::Vector3d& center) {
-  const int num_rotations = 16;  // fewer take polyhedra for balls
-  RotationSet set{{}, center, static_cast<std::size_t>(num_rotations)};
-  for (int k = 0; k < num_rotations; ++k) {
-    const double angle = 2.0 * kPi / 3.0 + kPi / 3.0 * goldenFraction(k);
-    set.rotations.push_back(rotationAbout(spiralDirection(k, num_rotations, kGoldenAngle * k), angle));
-  }
   return set;
 }
 

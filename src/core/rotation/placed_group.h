@@ -26,9 +26,6 @@ double greatestExcess(const RotationLimits& limits, int num_samples);
 std::optional<PlacedGroup> placedGroup(const RotationFit& fit, const ObjectSymmetryOptions& options,
                                        RotationGroupKind kind, int fold, RotationSet set);
 
-/// Whether an excess is clearly smaller than that of other rotations: else chance decides between them.
-bool beatsOthers(double excess, double others);
-
 /// The rotation that takes z to \p z, and x as near as can be to \p x.
 /// \param z,x not parallel.
 Eigen::Matrix3d frameAlong(const Eigen::Vector3d& z, const Eigen::Vector3d& x);
@@ -47,16 +44,6 @@ Eigen::Vector3d axisOf(const Eigen::Matrix3d& rotation);
 /// \param frame rotation from the frame of the group to that of the points.
 RotationSet elementsOf(const RotationGroup& group, const Eigen::Matrix3d& frame, const Eigen::Vector3d& center);
 
-/// The rotations by multiples of 2 pi / \p fold about a line.
-RotationSet cyclicSet(const Line3d& line, int fold);
-
-/// The rotation by 2 pi / \p fold about a line.
-RotationSet singleRotation(const Line3d& line, int fold);
-
 /// Rotations about a line that represent all about it: their angles fit no polygon.
 RotationSet rotationsAbout(const Line3d& line);
-
-/// Rotations about a center that represent all: axes in all directions, angles from 120 to 180 degrees.
-RotationSet rotationsOfSphere(const Eigen::Vector3d& center);
-
 }  // namespace pcl_symmetry

@@ -149,7 +149,7 @@ std::optional<RotationSet> fittedRotation(const RotationFit& fit, const Line3d& 
   RotationSet best;
   double overlap = 0.0;
   for (const int fold : likelyFolds(fit, start, max_fold)) {
-    RotationSet other = singleRotation(start, fold);
+    RotationSet other{{rotationAbout(start.direction(), 2.0 * kPi / fold)}, start.origin(), 1};
     if (fit.overlap(other) < kRotation.min_overlap) continue;
     other = fit.roughlyFitted(other);
     const double its_overlap = fit.overlap(other);
@@ -207,7 +207,10 @@ std::vector<int> foldsOf(const RotationFit& fit, RotationProfile& profile, const
   for (int n = max_fold; n >= 2; --n) {
     if (fit.overlap(profile.rotation(1, n), line.origin()) < kRotation.rough_overlap) continue;
     const double excess = excessOfFold(profile, n, most);
-    if (excess <= most && beatsOthers(excess, excessBetween(profile, n))) folds.push_back(n);
+    if (excess > most) continue;
+    // Where others fail hardly more, chance decides between them.
+    const double others = excessBetween(profile, n);
+    if (others >= kRotation.clear_factor * excess && others >= excess + kRotation.clear_excess) folds.push_back(n);
   }
   return folds;
 }
@@ -265,8 +268,9 @@ Line3d bestAcross(const RotationFit& fit, const Line3d& line, double width, int 
 
 std::optional<FoldAxis> AxisFinder::foldAbout(const RotationFit& fit, const Line3d& line,
                                               const std::vector<int>& folds) const {
+  const Eigen::Matrix3d frame = frameAlong(line.direction(), line.direction().unitOrthogonal());
   for (std::size_t i = 0; i < folds.size() && i < kRotation.max_folds; ++i) {
-    const RotationSet rotations = cyclicSet(line, folds[i]);
+    const RotationSet rotations = elementsOf({RotationGroupKind::Cyclic, folds[i]}, frame, line.origin());
     auto axis = axisFrom(placedGroup(fit, options_, RotationGroupKind::Cyclic, folds[i], rotations), folds[i]);
     if (axis) return axis;
   }

@@ -17,33 +17,16 @@ namespace {
 
 constexpr std::size_t sampled_per_block = 32;  // directions
 
-/// Bins of a grid in cells of the EDT, relative to the middle of the EDT's cube.
-struct GridInCells {
-  GridInCells(const GaussianEdt& edt, const PlaneGrid& bins) : grid(bins) {
-    const double middle = 0.5 * (edt.numCells() - 1);
-    center = ((grid.center() - edt.origin()) / edt.cellSize()).cast<float>() - Eigen::Vector3f::Constant(middle);
-    radius_step = static_cast<float>(grid.radiusStep() / edt.cellSize());
-    first_offset = static_cast<float>(grid.offset(0) / edt.cellSize());
-  }
-
-  /// The planes at the bin centers of one direction.
-  ParallelPlanes planes(std::size_t direction) const {
-    const Eigen::Vector3f n = grid.normal(direction).cast<float>();
-    return {{n.x(), n.y(), n.z()}, n.dot(center) + first_offset, radius_step, grid.numRadius()};
-  }
-
-  const PlaneGrid& grid;
-  Eigen::Vector3f center;
-  float radius_step;
-  float first_offset;  ///< of the first bin center from the center of the grid
-};
-
 /// D(gamma) = (S / |f|^2) mean g(gamma x_i) at every bin, for each function g of the table.
 std::vector<std::vector<float>> sampleMeans(const GaussianEdt& edt, const PlaneGrid& grid,
                                             const SampledTransformOptions& options, const LookupTable& table) {
   options.validate();
   const CoordinateRows points = drawPoints(edt, options.num_samples, options.seed, options.num_threads);
-  const GridInCells bins(edt, grid);
+  // Of the grid, in cells from the middle of the cube of cells.
+  const Eigen::Vector3f center = ((grid.center() - edt.origin()) / edt.cellSize()).cast<float>() -
+                                 Eigen::Vector3f::Constant(0.5f * static_cast<float>(edt.numCells() - 1));
+  const auto radius_step = static_cast<float>(grid.radiusStep() / edt.cellSize());
+  const auto first_offset = static_cast<float>(grid.offset(0) / edt.cellSize());
   const double scale = edt.sum() / (edt.sqNorm() * options.num_samples * LookupTable::kOne);
   const int num_radius = grid.numRadius();
   std::vector<std::vector<float>> means(table.numFunctions(), std::vector<float>(grid.size()));
@@ -52,7 +35,8 @@ std::vector<std::vector<float>> sampleMeans(const GaussianEdt& edt, const PlaneG
     LineSums::Totals totals(table.numFunctions(), std::vector<double>(num_radius));
     for (std::size_t direction = begin; direction < end; ++direction) {
       for (auto& total : totals) std::fill(total.begin(), total.end(), 0.0);
-      sums.addReflected(points, bins.planes(direction), totals);
+      const Eigen::Vector3f n = grid.normal(direction).cast<float>();
+      sums.addReflected(points, {{n.x(), n.y(), n.z()}, n.dot(center) + first_offset, radius_step, num_radius}, totals);
       for (std::size_t g = 0; g < means.size(); ++g)
         for (int k = 0; k < num_radius; ++k)
           means[g][direction * num_radius + k] = static_cast<float>(scale * totals[g][k]);
