@@ -88,6 +88,21 @@ bool isOneModel(const json& file) {
   return false;
 }
 
+/// Reads what symmetriesJson() writes.
+/// \param where names the entry in errors, e.g. "models_info.json: model 3".
+/// \throws InputError naming field, value and rule.
+ListedSymmetries symmetriesFromJson(const json& entry, const std::string& where) {
+  if (!entry.is_object()) throw InputError(where + " must be an object");
+  ListedSymmetries listed;
+  const json &discrete = listOf(entry, "symmetries_discrete", where),
+             &continuous = listOf(entry, "symmetries_continuous", where);
+  for (std::size_t i = 0; i < discrete.size(); ++i)
+    listed.discrete.push_back(motionFrom(discrete[i], where + ": symmetries_discrete[" + std::to_string(i) + "]"));
+  for (std::size_t i = 0; i < continuous.size(); ++i)
+    listed.continuous.push_back(axisFrom(continuous[i], where + ": symmetries_continuous[" + std::to_string(i) + "]"));
+  return listed;
+}
+
 }  // namespace
 
 ListedSymmetries bopSymmetries(const ObjectSymmetries& symmetries, double sphere_angle) {
@@ -131,18 +146,6 @@ ordered_json dopeJson(const ObjectSymmetries& symmetries, double sphere_angle) {
   entry["align_axes"] = {{{"object", numbersOf(across)}, {"camera", forward}},
                          {{"object", numbersOf(main)}, {"camera", up}}};
   return entry;
-}
-
-ListedSymmetries symmetriesFromJson(const json& entry, const std::string& where) {
-  if (!entry.is_object()) throw InputError(where + " must be an object");
-  ListedSymmetries listed;
-  const json &discrete = listOf(entry, "symmetries_discrete", where),
-             &continuous = listOf(entry, "symmetries_continuous", where);
-  for (std::size_t i = 0; i < discrete.size(); ++i)
-    listed.discrete.push_back(motionFrom(discrete[i], where + ": symmetries_discrete[" + std::to_string(i) + "]"));
-  for (std::size_t i = 0; i < continuous.size(); ++i)
-    listed.continuous.push_back(axisFrom(continuous[i], where + ": symmetries_continuous[" + std::to_string(i) + "]"));
-  return listed;
 }
 
 std::map<std::string, ListedSymmetries> readModelsInfo(const std::string& path) {
@@ -220,25 +223,8 @@ std::size_t numComposed(const ListedSymmetries& listed) {
   }
 }
 
-}  // namespace
-
-IsaacAxes isaacAxes(const ObjectSymmetries& symmetries) {
-  IsaacAxes result;
-  for (int k = 0; k < 3; ++k) {
-    const int order = orderAbout(symmetries, Eigen::Vector3d::Unit(k));
-    if (order == 0) result.axes.push_back(kNames.substr(k, 1) + "_full");
-    for (int i = 1; i < order; ++i) result.axes.push_back(kNames.substr(k, 1) + "_" + shortest(360.0 * i / order));
-  }
-  const ListedSymmetries listed = symmetriesFromIsaac(result.axes, "axes");
-  if (symmetries.continuous.empty()) {
-    result.is_complete = numComposed(listed) == symmetries.discrete.size() + 1;
-  } else {
-    const ObjectSymmetries composed = ObjectSymmetries::from(listed.discrete, listed.continuous);
-    result.is_complete = composed.kind == symmetries.kind;
-  }
-  return result;
-}
-
+/// \return turns about the origin.
+/// \throws InputError naming the string and the rule.
 ListedSymmetries symmetriesFromIsaac(const std::vector<std::string>& axes, const std::string& where) {
   ListedSymmetries listed;
   listed.is_composed = true;
@@ -257,6 +243,25 @@ ListedSymmetries symmetriesFromIsaac(const std::vector<std::string>& axes, const
       listed.discrete.emplace_back(Eigen::AngleAxisd(degrees * kDegree, direction));
   }
   return listed;
+}
+
+}  // namespace
+
+IsaacAxes isaacAxes(const ObjectSymmetries& symmetries) {
+  IsaacAxes result;
+  for (int k = 0; k < 3; ++k) {
+    const int order = orderAbout(symmetries, Eigen::Vector3d::Unit(k));
+    if (order == 0) result.axes.push_back(kNames.substr(k, 1) + "_full");
+    for (int i = 1; i < order; ++i) result.axes.push_back(kNames.substr(k, 1) + "_" + shortest(360.0 * i / order));
+  }
+  const ListedSymmetries listed = symmetriesFromIsaac(result.axes, "axes");
+  if (symmetries.continuous.empty()) {
+    result.is_complete = numComposed(listed) == symmetries.discrete.size() + 1;
+  } else {
+    const ObjectSymmetries composed = ObjectSymmetries::from(listed.discrete, listed.continuous);
+    result.is_complete = composed.kind == symmetries.kind;
+  }
+  return result;
 }
 
 std::string isaacLine(const std::string& name, const std::vector<std::string>& axes) {

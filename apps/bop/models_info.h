@@ -32,11 +32,6 @@ nlohmann::ordered_json symmetriesJson(const ListedSymmetries& listed);
 /// main axis of the object upright in the image, a line across it toward the camera.
 nlohmann::ordered_json dopeJson(const ObjectSymmetries& symmetries, double sphere_angle);
 
-/// Reads what symmetriesJson() writes.
-/// \param where names the entry in errors, e.g. "models_info.json: model 3".
-/// \throws InputError naming field, value and rule.
-ListedSymmetries symmetriesFromJson(const nlohmann::json& entry, const std::string& where);
-
 /// Reads models_info.json, or a file of one model.
 /// \return symmetries by the number of the model; for a file of one model by an empty name.
 /// \throws InputError naming the file, the entry, field, value and rule.
@@ -51,10 +46,6 @@ struct IsaacAxes {
 
 /// \param symmetries axes up to 5 degrees off a coordinate axis count as this one.
 IsaacAxes isaacAxes(const ObjectSymmetries& symmetries);
-
-/// \return turns about the origin.
-/// \throws InputError naming the string and the rule.
-ListedSymmetries symmetriesFromIsaac(const std::vector<std::string>& axes, const std::string& where);
 
 /// A YAML line `name: ["z_90", "z_180", "z_270"]`.
 std::string isaacLine(const std::string& name, const std::vector<std::string>& axes);

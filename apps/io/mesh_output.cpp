@@ -70,15 +70,11 @@ pcl::PCLPointCloud2 facesAsPoints(const Shape& shape) {
 
 }  // namespace
 
-void writeFaceLabels(const std::string& path, const std::vector<int>& labels) {
-  std::string text;
-  for (const int label : labels) text += std::to_string(label) + "\n";
-  writeText(path, text);
-}
-
 void saveLabeled(const std::string& path, const Shape& shape, const std::vector<int>& labels) {
   if (boost::algorithm::iends_with(path, ".seg")) {
-    writeFaceLabels(path, labels);
+    std::string text;
+    for (const int label : labels) text += std::to_string(label) + "\n";
+    writeText(path, text);
   } else if (shape.mesh && boost::algorithm::iends_with(path, ".ply")) {
     writePLY(path, *shape.mesh, shape.shift.isZero(0.0) ? "float" : "double",
              [&](const Eigen::Vector3d& x) { return shiftedBack(x, shape.shift); }, {},

@@ -11,13 +11,10 @@
 
 namespace pcl_symmetry::apps {
 
-/// Writes a file of the Princeton Segmentation Benchmark: the segment of each face of a mesh, one whole number a line.
-void writeFaceLabels(const std::string& path, const std::vector<int>& labels);
-
 /// Writes the segments of a shape.
-/// \param path .seg: the labels of a mesh, one a line. .pcd or .ply of a cloud: with all its fields, and `label`
-/// (unsigned; 4294967295 where there is none). .pcd of a mesh: the middles of its faces with `label`. .ply of a mesh:
-/// its faces with `label` and a color each.
+/// \param path .seg: the labels of a mesh, one whole number a line, as in the Princeton Segmentation Benchmark. .pcd or
+/// .ply of a cloud: with all its fields, and `label` (unsigned; 4294967295 where there is none). .pcd of a mesh: the
+/// middles of its faces with `label`. .ply of a mesh: its faces with `label` and a color each.
 /// \param labels one per face of a mesh or point of a cloud; below 0: none.
 void saveLabeled(const std::string& path, const Shape& shape, const std::vector<int>& labels);
 

@@ -46,8 +46,6 @@ std::pair<double, double> reachAlong(const AxisLine& axis, const PictureScene& s
   return {low - margin, high + margin};
 }
 
-}  // namespace
-
 std::array<Eigen::Vector3d, 4> fittedCorners(const PlanePatch& plane, const pcl::PointCloud<pcl::PointXYZ>& points) {
   const Eigen::Vector3d normal = plane.normal.normalized(), s = normal.unitOrthogonal(), t = normal.cross(s);
   std::vector<Eigen::Vector2d> projections;
@@ -73,6 +71,8 @@ std::array<Eigen::Vector3d, 4> fittedCorners(const PlanePatch& plane, const pcl:
   return {corner(box.min().x(), box.min().y()), corner(box.max().x(), box.min().y()),
           corner(box.max().x(), box.max().y()), corner(box.min().x(), box.max().y())};
 }
+
+}  // namespace
 
 Normalization normalizationOf(const PictureScene& scene) {
   Eigen::AlignedBox3d box;

@@ -22,10 +22,8 @@ struct Normalization {
 /// \throws InputError where no point is finite.
 Normalization normalizationOf(const PictureScene& scene);
 
-/// \return the corners of the rectangle in the plane, along the principal axes of the points' projections.
-std::array<Eigen::Vector3d, 4> fittedCorners(const PlanePatch& plane, const pcl::PointCloud<pcl::PointXYZ>& points);
-
-/// \return the same, or the corners of a square where the patch has a size of its own.
+/// \return the corners of the rectangle in the plane, along the principal axes of the points' projections; or of a square
+/// where the patch has a size of its own.
 std::array<Eigen::Vector3d, 4> patchCorners(const PlanePatch& plane, const PictureScene& scene);
 
 /// \return the ends of the line: as long as the points reach along it, and a tenth more, unless it has a length of its

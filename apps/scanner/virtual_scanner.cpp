@@ -242,6 +242,19 @@ pcl::PointCloud<pcl::PointXYZ>::Ptr cloudOf(const Picture& picture, const Virtua
   return cloud;
 }
 
+/// A rotation drawn uniformly and a translation drawn from the cube [-extent, extent]^3: Shoemake, Uniform random
+/// rotations, Graphics Gems III.
+Eigen::Isometry3d randomPose(std::uint64_t seed, double extent) {
+  std::mt19937_64 generator(seed);
+  const double u = uniform(generator), v = 2 * kPi * uniform(generator), w = 2 * kPi * uniform(generator);
+  const Eigen::Quaterniond rotation(std::sqrt(u) * std::cos(w), std::sqrt(1 - u) * std::sin(v),
+                                    std::sqrt(1 - u) * std::cos(v), std::sqrt(u) * std::sin(w));
+  Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
+  pose.linear() = rotation.normalized().toRotationMatrix();
+  for (int k = 0; k < 3; ++k) pose.translation()[k] = extent * (2 * uniform(generator) - 1);
+  return pose;
+}
+
 }  // namespace
 
 VirtualScanner::VirtualScanner(const pcl::PolygonMesh& mesh) : scene_(std::make_unique<Scene>(mesh)) {}
@@ -284,18 +297,6 @@ std::array<Eigen::Vector3d, 8> cubeCorners() {
     corners[i] = Eigen::Vector3d(i & 1 ? 1 : -1, i & 2 ? 1 : -1, i & 4 ? 1 : -1).normalized();
   }
   return corners;
-}
-
-/// Shoemake, Uniform random rotations, Graphics Gems III.
-Eigen::Isometry3d randomPose(std::uint64_t seed, double extent) {
-  std::mt19937_64 generator(seed);
-  const double u = uniform(generator), v = 2 * kPi * uniform(generator), w = 2 * kPi * uniform(generator);
-  const Eigen::Quaterniond rotation(std::sqrt(u) * std::cos(w), std::sqrt(1 - u) * std::sin(v),
-                                    std::sqrt(1 - u) * std::cos(v), std::sqrt(u) * std::sin(w));
-  Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
-  pose.linear() = rotation.normalized().toRotationMatrix();
-  for (int k = 0; k < 3; ++k) pose.translation()[k] = extent * (2 * uniform(generator) - 1);
-  return pose;
 }
 
 }  // namespace pcl_symmetry::apps

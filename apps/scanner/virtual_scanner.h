@@ -59,7 +59,4 @@ private:
 /// positive.
 std::array<Eigen::Vector3d, 8> cubeCorners();
 
-/// A rotation drawn uniformly and a translation drawn from the cube [-extent, extent]^3.
-Eigen::Isometry3d randomPose(std::uint64_t seed, double extent);
-
 }  // namespace pcl_symmetry::apps

@@ -1,6 +1,7 @@
 #include "viewer/viewer_state.h"
 
 #include <algorithm>
+#include <vector>
 
 namespace pcl_symmetry::apps {
 
@@ -12,8 +13,13 @@ void stepPlane(ViewerState& state, int by) {
   state.step = -1;
 }
 
-}  // namespace
+struct ViewerKey {
+  std::vector<std::string> symbols;  ///< as X names them; the first one is shown
+  std::string help;
+  void (*press)(ViewerState& state);
+};
 
+/// All keys, in the order of the help.
 const std::vector<ViewerKey>& viewerKeys() {
   static const std::vector<ViewerKey> keys = {
       {{"n", "Right"}, "next plane", [](ViewerState& s) { stepPlane(s, 1); }},
@@ -35,6 +41,8 @@ const std::vector<ViewerKey>& viewerKeys() {
   };
   return keys;
 }
+
+}  // namespace
 
 bool pressKey(ViewerState& state, const std::string& symbol) {
   for (const ViewerKey& key : viewerKeys()) {

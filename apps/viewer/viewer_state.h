@@ -2,7 +2,6 @@
 #pragma once
 
 #include <string>
-#include <vector>
 
 namespace pcl_symmetry::apps {
 
@@ -26,15 +25,6 @@ struct ViewerState {
   bool save = false;  ///< a picture is wanted
   bool quit = false;
 };
-
-struct ViewerKey {
-  std::vector<std::string> symbols;  ///< as X names them; the first one is shown
-  std::string help;
-  void (*press)(ViewerState& state);
-};
-
-/// All keys, in the order of the help.
-const std::vector<ViewerKey>& viewerKeys();
 
 /// \return whether the key does anything.
 bool pressKey(ViewerState& state, const std::string& symbol);

@@ -22,13 +22,10 @@ pcl::PolygonMesh toMesh(const Points& vertices, const Polygons& polygons) {
   return mesh;
 }
 
-/// A box of six quads, the simplest mesh whose scans are known exactly.
-inline pcl::PolygonMesh boxMesh(const Eigen::Vector3f& half = {1.0f, 0.7f, 0.4f},
-                                const Eigen::Vector3f& center = Eigen::Vector3f::Zero()) {
+/// A box of six quads about the origin.
+inline pcl::PolygonMesh boxMesh() {
   Points corners(3, 8);
-  for (int i = 0; i < 8; ++i)
-    corners.col(i) =
-        center + half.cwiseProduct(Eigen::Vector3f(i & 1 ? 1.0f : -1.0f, i & 2 ? 1.0f : -1.0f, i & 4 ? 1.0f : -1.0f));
+  for (int i = 0; i < 8; ++i) corners.col(i) << (i & 1 ? 1.0f : -1.0f), (i & 2 ? 0.7f : -0.7f), (i & 4 ? 0.4f : -0.4f);
   return toMesh(corners, std::vector<pcl::Indices>{
                              {0, 2, 3, 1}, {4, 5, 7, 6}, {0, 1, 5, 4}, {2, 6, 7, 3}, {0, 4, 6, 2}, {1, 3, 7, 5}});
 }
