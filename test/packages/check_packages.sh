@@ -76,7 +76,7 @@ if [[ -z $root ]]; then
   for word in database:merge map:voting; do
     grep -qw "${word#*:}" "$usr/share/bash-completion/completions/pcl_symmetry_${word%:*}" || fail "completion lacks $word"
   done
-  descriptions=$(for deb in "$packages"/*.deb; do dpkg-deb -f "$deb" Description | head -1; done | sort | uniq -d)
+  descriptions=$(for deb in "$packages"/*.deb; do dpkg-deb -f "$deb" Description | sed -n 1p; done | sort | uniq -d)
   [[ -z $descriptions ]] || fail "packages share the description $descriptions"
   ! find "$usr" -name '*test*' | grep . || fail "tests are in the packages"
   # Shared libraries have a package of their own, and say of each symbol which of them it belongs to.
@@ -88,7 +88,7 @@ if [[ -z $root ]]; then
     soname=$(objdump -p "$library" | awk '/SONAME/ { print $2 }')
     unversioned=$(nm -D --defined-only --with-symbol-versions "$library" | grep -v " A $soname\$" | grep -vc "@@\?$soname" || true)
     ((unversioned == 0)) || fail "$library has $unversioned symbols without a version"
-    dpkg-deb -I "$packages"/libpcl-symmetry[0-9]*.deb shlibs | grep -q "^${soname%%.so*} " || fail "no shlibs for $soname"
+    dpkg-deb -I "$packages"/libpcl-symmetry[0-9]*.deb shlibs | grep "^${soname%%.so*} " >/dev/null || fail "no shlibs for $soname"
   done
   say "All is there"
   exit
