@@ -20,7 +20,7 @@ namespace {
 using Cloud = pcl::PointCloud<pcl::PointXYZ>;
 
 constexpr float no_depth = std::numeric_limits<float>::quiet_NaN();  // the depth of a pixel without a point
-constexpr int filter_radius = 2;  // pixels; 1 leaves a third of the noise
+constexpr int filter_radius = 2;                                     // pixels; 1 leaves a third of the noise
 
 /// Angle between the rays of neighboring pixels; 0 where there are none.
 double pixelAngle(const Cloud& frame, const Eigen::Vector3d& viewpoint) {
