@@ -87,8 +87,9 @@ CommandLine commandLine(PlanesOptions& options) {
   return line;
 }
 
-/// What was found, best first, in the frame of the shifted points.
-struct Findings : Detection {  // turns: of orders from 2 on, at least as confident as a symmetry
+/// What was found, best first, in the frame of the shifted points. Its turns have orders from 2 on, and are at least as
+/// confident as a symmetry.
+struct Findings : Detection {
   ViewpointSource viewpoint_source = ViewpointSource::None;
   std::optional<Eigen::Vector3d> viewpoint;  ///< that was used
   std::size_t num_points = 0;                ///< that were used

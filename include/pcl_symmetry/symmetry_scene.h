@@ -56,8 +56,8 @@ struct SupportingPlane {
   pcl::Indices indices;          ///< of its points, into the scene
 };
 
-/// A cluster of a scene, and what was found.
-struct SceneObject : Detection {       // frame of the scene
+/// A cluster of a scene, and what was found, in the frame of the scene; without the map.
+struct SceneObject : Detection {
   pcl::Indices indices;                ///< of its points, into the scene
   std::optional<SymmetryFrame> frame;  ///< nothing without SceneOptions::frames
   /// The plane that the object was completed by: the best one, or through the axis and across the view. Nothing where

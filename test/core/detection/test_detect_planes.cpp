@@ -1,5 +1,5 @@
-/// What detection takes: searches, threads, options that are refused, large clouds, and many in one call. What it finds
-/// is tested through the Python module.
+/// What detection takes: searches, threads, options that are refused, large clouds. What it finds is tested through the
+/// Python module.
 #include "pcl_symmetry/core/detect_planes.h"
 
 #include <gtest/gtest.h>
@@ -44,6 +44,19 @@ TEST(DetectionInput, AGivenSearchIsAskedForEveryKindOfCloud) {
     detectPlanes(input);
     EXPECT_GT(asked_with_map.num_queries, 2 * num_used);
   }
+}
+
+TEST(DetectPlanes, AFlatRectangleHasThree) {
+  const Shape flat = moved(box({1.0, 0.6, 0.0}, 4000, Sampling::Mirrored, 21), randomPose(21));
+  const Points cloud = flat.cloud();
+  const Detection detection = detectPlanes(cloud);
+  EXPECT_EQ(detection.planes.size(), 3u);
+  EXPECT_EQ(numFound(flat, detection.planes, 0.001 * kDegree, 1e-5 * diagonal(cloud)), 3);
+  ASSERT_TRUE(detection.flat) << "its own plane is named";
+  EXPECT_LT((detection.flat->normal().cast<float>().transpose() * cloud).array().maxCoeff() - detection.flat->offset(),
+            1e-4);
+  EXPECT_GT((detection.flat->normal().cast<float>().transpose() * cloud).array().minCoeff() - detection.flat->offset(),
+            -1e-4);
 }
 
 TEST(DetectPlanes, SameBytesForAnyNumberOfThreads) {

@@ -25,6 +25,28 @@ using namespace pcl_symmetry::test;
 
 const Eigen::Vector3d kElsewhere(0.1, 0.2, 0.3);  // among the points: explains none of the clouds
 
+double angleBetween(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
+  return std::acos(std::min(1.0, a.normalized().dot(b.normalized()))) / kDegree;
+}
+
+TEST(InferView, FindsTheViewpointOfAScanInAnyPose) {
+  for (std::uint64_t seed = 1; seed <= 6; ++seed) {
+    RandomStream random(seed);
+    const Eigen::Vector3d viewpoint = 4.0 * randomDirection(random);
+    for (const BlockObject& object : {blockL(), blockChair()}) {
+      const Eigen::Isometry3d pose = randomPose(seed, 3.0);
+      const Points points = (pose * scan(object, viewpoint).cloud().cast<double>()).cast<float>();
+      const auto view = inferView(points, kElsewhere);
+      ASSERT_TRUE(view) << seed;
+      EXPECT_FALSE(view->as_stored);
+      const Eigen::Vector3d center = boundingBall(points).center;
+      // Measured: at most 11 degrees with three directions of the surface, 1 in the middle for curved objects.
+      EXPECT_LT(angleBetween(view->position - center, pose * viewpoint - center), 15.0) << seed;
+      EXPECT_LT((view->seen.viewpoint() - view->position).norm(), 1e-9) << seed;
+    }
+  }
+}
+
 TEST(InferView, FewOrDegeneratePointsHaveNone) {
   EXPECT_FALSE(inferView(Points(3, 0), kElsewhere));
   EXPECT_FALSE(inferView(Points::Ones(3, 100), kElsewhere));
