@@ -44,11 +44,11 @@ struct DatabaseOptions {
 
 /// What SymmetryDatabase::recognize() tries, and what it accepts.
 struct RecognitionOptions {
-  int num_candidates = 10;  ///< models that are brought to the scan coarsely, >= 1
+  int num_candidates = 10;  ///< models that look most like the scan and are tried, >= 1
   /// For scans from a viewpoint, in databases of more than 300 models: models that are tried where none of the first
   /// num_candidates is accepted, those included, >= 1. Unknown objects take the time of all.
   int max_candidates = 70;
-  /// For scans from a viewpoint: models with the best coarse poses, whose poses are refined, >= 1, of num_candidates
+  /// For scans from a viewpoint: models with the best poses, which are refined, >= 1, of num_candidates
   /// and again of the others.
   int num_refined = 4;
   double min_confidence = 0.5;  ///< of an accepted model, in [0, 1], see RecognizedModel::confidence

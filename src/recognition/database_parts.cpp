@@ -3,6 +3,7 @@
 #include <ctime>
 #include <utility>
 
+#include "core/geometry/point_samples.h"
 #include "core/matching/shape_signature.h"
 #include "core/matching/view_signature.h"
 
@@ -47,6 +48,9 @@ DescribedModel describedModel(const Points& points, const DatabaseOptions& optio
   DescribedModel model;
   model.packed.signatures = packedSignatures(describeShape(points, description).signatures);
   model.packed.views = packedViews(viewsAround(points, options.num_views, options.num_threads));
+  const Points some = pointsAt(points, drawSamples(points.cols(), kMatching.num_surface_points, 1));
+  model.packed.surfaces =
+      packedSurfaces(evenSurfacePoints(some, {kMatching.num_pair_points, kMatching.num_screened_points}, 1));
   PositionCloud cloud(static_cast<std::uint32_t>(points.cols()), 1);
   cloud.getMatrixXfMap(3, 4, 0) = points;
   model.packed.cloud = packedCloud(cloud);
@@ -92,11 +96,7 @@ std::shared_ptr<const PairSearch> DatabaseParts::pairs() {
   const std::vector<StoredModel> models = store.models();
   const std::shared_ptr<const PairSearch> before = pairs_;
   lock.unlock();  // clouds are read under it, one at a time
-  const auto read = [&](const StoredModel& model) {
-    const PositionCloud stored = cloud(model);
-    return ModelPoints{finitePoints(stored, kRecognition.num_fine_points),
-                       finitePoints(stored, kRecognition.num_coarse_points)};
-  };
+  const auto read = [&](const StoredModel& model) { return shape(model); };
   const auto made = std::make_shared<const PairSearch>(models, read, before.get(), options.num_threads);
   lock.lock();
   pairs_version_ = version;
@@ -117,6 +117,20 @@ PositionCloud DatabaseParts::cloud(const StoredModel& model) {
 
 Points DatabaseParts::points(const StoredModel& model, std::size_t max_points) {
   return finitePoints(cloud(model), max_points);
+}
+
+std::shared_ptr<const ModelShape> DatabaseParts::shape(const StoredModel& model) {
+  const std::string bytes = [&] {
+    const std::lock_guard<std::mutex> lock(mutex);
+    return store.part(ModelPart::Surfaces, model);
+  }();
+  try {
+    std::vector<SurfacePoints> surfaces = unpackedSurfaces(bytes);
+    if (surfaces.size() != 2) throw std::invalid_argument("have another number than two");
+    return std::make_shared<const ModelShape>(ModelShape{std::move(surfaces[0]), ScreenedSurface(surfaces[1])});
+  } catch (const std::invalid_argument& error) {
+    failIO(store.file(), "the surfaces of model '" + model.name + "' " + error.what());
+  }
 }
 
 void DatabaseParts::add(const ModelInfo& info, const PackedModel& model, const Eigen::MatrixXf& signatures) {

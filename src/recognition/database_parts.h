@@ -36,6 +36,7 @@ struct DatabaseParts {
   PositionCloud cloud(const StoredModel& model);
   /// The points of a model, at most \p max_points.
   Points points(const StoredModel& model, std::size_t max_points);
+  std::shared_ptr<const ModelShape> shape(const StoredModel& model);
 
   /// Stores a model with its compact form where there is a projection.
   void add(const ModelInfo& info, const PackedModel& model, const Eigen::MatrixXf& signatures);

@@ -22,7 +22,7 @@ struct Table {
   const char* definition;
 };
 // A table for each part of a model, so that a query reads what it needs.
-constexpr std::array<Table, 9> kTables = {{
+constexpr std::array<Table, 10> kTables = {{
     {"facts", "CREATE TABLE facts (key TEXT PRIMARY KEY, value TEXT NOT NULL) WITHOUT ROWID"},
     {"models",
      "CREATE TABLE models (id INTEGER PRIMARY KEY AUTOINCREMENT, name TEXT NOT NULL UNIQUE, time INTEGER NOT NULL, "
@@ -36,6 +36,9 @@ constexpr std::array<Table, 9> kTables = {{
      "checksum INTEGER NOT NULL)"},
     {"views",
      "CREATE TABLE views (model INTEGER PRIMARY KEY REFERENCES models ON DELETE CASCADE, data BLOB NOT NULL, "
+     "checksum INTEGER NOT NULL)"},
+    {"surfaces",
+     "CREATE TABLE surfaces (model INTEGER PRIMARY KEY REFERENCES models ON DELETE CASCADE, data BLOB NOT NULL, "
      "checksum INTEGER NOT NULL)"},
     {"projections",
      "CREATE TABLE projections (id INTEGER PRIMARY KEY AUTOINCREMENT, num_references INTEGER NOT NULL, "
@@ -68,7 +71,7 @@ void compareBlobs(const SQLiteConnection& connection, const std::string& table, 
   while (row.next())
     if (checksumOf(table, row.integer(0), row.blob(1)) != row.integer(2))
       damages.push_back("the " + table + " of number " + std::to_string(row.integer(0)) + " are damaged");
-  if (table != "clouds" && table != "signatures" && table != "views") return;
+  if (table != "clouds" && table != "signatures" && table != "views" && table != "surfaces") return;
   SQLiteStatement missing =
       connection.prepare("SELECT name FROM models WHERE id NOT IN (SELECT model FROM " + table + ")");
   while (missing.next()) damages.push_back("the " + table + " of model '" + missing.text(0) + "' are missing");
@@ -141,7 +144,7 @@ std::vector<std::string> damagesOf(const SQLiteConnection& connection, std::vect
     while (row.next())
       if (row.text(0) != "ok") damages.push_back("structure of the file: " + row.text(0));
   }
-  for (const char* table : {"clouds", "signatures", "views", "compact", "view_codes"})
+  for (const char* table : {"clouds", "signatures", "views", "surfaces", "compact", "view_codes"})
     compareBlobs(connection, table, "model", damages);
   compareBlobs(connection, "projections", "id", damages);
   compareBlobs(connection, "view_coders", "projection", damages);

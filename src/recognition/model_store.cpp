@@ -40,9 +40,15 @@ ModelInfo checkedInfo(const SQLiteStatement& row, const std::string& file) {
   return info;
 }
 
-const char* tableOf(ModelPart part) {
-  return part == ModelPart::Cloud ? "clouds" : part == ModelPart::Signatures ? "signatures" : "views";
-}
+struct PartTable {
+  ModelPart part;
+  const char* name;
+  std::string PackedModel::*data;
+};
+const PartTable kPartTables[] = {{ModelPart::Cloud, "clouds", &PackedModel::cloud},
+                                 {ModelPart::Signatures, "signatures", &PackedModel::signatures},
+                                 {ModelPart::Views, "views", &PackedModel::views},
+                                 {ModelPart::Surfaces, "surfaces", &PackedModel::surfaces}};
 
 /// \return the id of the new model.
 std::int64_t insertModel(const SQLiteConnection& connection, const ModelInfo& info, const PackedModel& model) {
@@ -58,13 +64,11 @@ std::int64_t insertModel(const SQLiteConnection& connection, const ModelInfo& in
       .bind(7, static_cast<std::int64_t>(info.num_points))
       .bind(8, checksumOf(id, info))
       .run();
-  for (const auto& [kind, data] :
-       {std::pair(ModelPart::Cloud, &model.cloud), std::pair(ModelPart::Signatures, &model.signatures),
-        std::pair(ModelPart::Views, &model.views)})
-    connection.prepare(std::string("INSERT INTO ") + tableOf(kind) + " VALUES (?, ?, ?)")
+  for (const PartTable& table : kPartTables)
+    connection.prepare(std::string("INSERT INTO ") + table.name + " VALUES (?, ?, ?)")
         .bind(1, id)
-        .bindBlob(2, *data)
-        .bind(3, checksumOf(tableOf(kind), id, *data))
+        .bindBlob(2, model.*table.data)
+        .bind(3, checksumOf(table.name, id, model.*table.data))
         .run();
   return id;
 }
@@ -186,7 +190,7 @@ std::optional<std::pair<std::int64_t, ModelInfo>> ModelStore::find(const std::st
 
 std::string ModelStore::part(ModelPart part, const StoredModel& model) {
   startReading();
-  const std::string table = tableOf(part);
+  const std::string table = kPartTables[static_cast<std::size_t>(part)].name;
   const std::string what = "the " + table + " of model '" + model.name + "' ";
   SQLiteStatement row = connection_->prepare("SELECT data, checksum FROM " + table + " WHERE model = ?");
   if (!row.bind(1, model.id).next()) failIO(file_, what + "are missing");
@@ -309,9 +313,10 @@ std::optional<std::size_t> ModelStore::merge(const std::vector<std::string>& fil
       ModelStore other(file, lock_timeout_, "");
       for (const StoredModel& model : other.models()) {
         const ModelInfo info = other.find(model.name).value().second;
-        insertModel(connection, info,
-                    {other.part(ModelPart::Cloud, model), other.part(ModelPart::Signatures, model),
-                     other.part(ModelPart::Views, model), info.num_points});
+        PackedModel parts;
+        parts.num_points = info.num_points;
+        for (const PartTable& table : kPartTables) parts.*table.data = other.part(table.part, model);
+        insertModel(connection, info, parts);
         if (progress && !progress(static_cast<double>(++num_done) / static_cast<double>(num_models))) throw Stopped();
       }
     }

@@ -15,11 +15,11 @@ namespace pcl_symmetry::detail {
 
 /// What a model is found and recognized by, as bytes of packed_model.h.
 struct PackedModel {
-  std::string cloud, signatures, views;
+  std::string cloud, signatures, views, surfaces;
   std::size_t num_points = 0;
 };
 
-enum class ModelPart { Cloud, Signatures, Views };
+enum class ModelPart { Cloud, Signatures, Views, Surfaces };
 
 struct StoredModel {
   std::int64_t id;  ///< of one model that was added once; never used again

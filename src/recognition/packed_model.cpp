@@ -256,4 +256,30 @@ std::vector<View> unpackedViews(const std::string& bytes) {
   return views;
 }
 
+std::string packedSurfaces(const std::vector<SurfacePoints>& surfaces) {
+  PackedBytes packed;
+  for (const SurfacePoints& surface : surfaces) {
+    const Eigen::Vector3f center = centerOfMass(surface.points).cast<float>();
+    Eigen::MatrixXf rows(surface.points.cols(), 6);
+    rows << (surface.points.colwise() - center).transpose(), surface.normals.transpose();
+    for (const float coordinate : center) packed.put(coordinate);
+    packed.putText(packedMatrix(rows, MatrixBits::Sixteen));
+  }
+  return packed.bytes();
+}
+
+std::vector<SurfacePoints> unpackedSurfaces(const std::string& bytes) {
+  UnpackedBytes packed(bytes);
+  std::vector<SurfacePoints> surfaces;
+  while (packed.left() > 0) {
+    Eigen::Vector3f center;
+    for (float& coordinate : center) coordinate = packed.get<float>();
+    const Eigen::MatrixXf rows = unpackedMatrix(packed.text());
+    if (rows.cols() != 6 || rows.rows() == 0) throw std::invalid_argument("has another size than it says");
+    if (!rows.allFinite() || !center.allFinite()) throw std::invalid_argument("has points that are not finite");
+    surfaces.push_back({rows.leftCols<3>().transpose().colwise() + center, rows.rightCols<3>().transpose()});
+  }
+  return surfaces;
+}
+
 }  // namespace pcl_symmetry::detail

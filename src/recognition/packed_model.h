@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "core/matching/surface_points.h"
 #include "core/matching/view_signature.h"
 
 namespace pcl_symmetry::detail {
@@ -105,5 +106,9 @@ Eigen::MatrixXf unpackedSignatures(const std::string& bytes);
 /// Values in steps of 1/96, rotations in steps of 1/32767.
 std::string packedViews(const std::vector<View>& views);
 std::vector<View> unpackedViews(const std::string& bytes);
+
+/// Coordinates and normals in steps of 1/32767 of the greatest one from the center of mass, in their order.
+std::string packedSurfaces(const std::vector<SurfacePoints>& surfaces);
+std::vector<SurfacePoints> unpackedSurfaces(const std::string& bytes);
 
 }  // namespace pcl_symmetry::detail

@@ -35,56 +35,36 @@ PosedScan::PosedScan(const Points& points, const std::optional<Visibility>& seen
       surface_(surfaceOf(points, ball_.center,
                          seen ? std::optional(seen->normalized(ball_.center, scale_)) : std::nullopt)) {}
 
-void PosedScan::bringTo(const std::string& name, const Points& points, const std::vector<Eigen::Isometry3d>& poses,
-                        PointReader read) {
+PosedModel PosedScan::fitted(const std::string& name, const Points& points,
+                             const std::vector<Eigen::Isometry3d>& poses) const {
   const SearchFrames frames{ball_.center, boundingBall(points).center, scale_};
-  std::vector<Eigen::Isometry3d> hypotheses;
-  for (const Eigen::Isometry3d& pose : poses) hypotheses.push_back(frames.toSearch(pose));
+  const auto surface = std::make_shared<const PosedSurface>(surfaceOf(points, frames.target_center, std::nullopt));
+  std::vector<Eigen::Isometry3d> starts;
+  for (const Eigen::Isometry3d& pose : poses) starts.push_back(frames.toSearch(pose));
+  return fitted(name, surface, frames, starts);
+}
+
+PosedModel PosedScan::fitted(const std::string& name, const std::shared_ptr<const PosedSurface>& surface,
+                             const SearchFrames& frames, const std::vector<Eigen::Isometry3d>& T_surface_scan) const {
   PoseSearchOptions search = options_.search;
   search.num_threads = options_.num_threads;
   search.num_rotations = 0;
-  const PosedSurface surface = surfaceOf(points, frames.target_center, std::nullopt);
-  std::vector<RankedPose> found = searchPoses(surface_, surface, hypotheses, search);
-  if (!found.empty()) models_.push_back({name, frames, std::move(found), std::move(read)});
-}
-
-std::vector<PosedModel> PosedScan::refined(int num_refined) {
-  const auto merit = [](const SearchedModel& model) { return model.poses.front().score.merit(); };
-  std::stable_sort(models_.begin(), models_.end(),
-                   [&](const SearchedModel& a, const SearchedModel& b) { return merit(a) > merit(b); });
-  std::vector<PosedModel> found;
-  for (const SearchedModel& model : models_) {
-    if (found.size() == static_cast<std::size_t>(num_refined)) break;
-    if (found.size() >= kRecognition.min_refined && merit(model) < merit(models_.front()) - kRecognition.hopeless)
-      break;
-    found.push_back(refined(model, std::make_shared<const PosedSurface>(
-                                       surfaceOf(model.read(), model.frames.target_center, std::nullopt))));
-  }
-  models_.clear();
-  return found;
-}
-
-PosedModel PosedScan::refined(const SearchedModel& model, std::shared_ptr<const PosedSurface> surface) const {
-  const Eigen::Isometry3d pose = refinePoses(surface_, *surface, model.poses, options_).front().T_model_scan;
-  return {{model.name, model.frames.toInput(pose), scoreOf(*surface, pose), 0.0}, surface, pose, model.frames};
+  const std::vector<RankedPose> poses = searchPoses(surface_, *surface, T_surface_scan, search);
+  const Eigen::Isometry3d pose = refinePoses(surface_, *surface, poses, options_).front().T_model_scan;
+  return {{name, frames.toInput(pose), scoreOf(*surface, pose), 0.0}, surface, pose, frames};
 }
 
 PosedModel PosedScan::rotated(const PosedModel& found) const {
   const PrincipalAxes principal = principalAxes(found.surface->points);
-  std::vector<Eigen::Isometry3d> hypotheses;
+  std::vector<Eigen::Isometry3d> starts;
   for (int k = 0; k < 3; ++k) {
     for (int i = 1; i < kRecognition.num_rotations; ++i) {
       const Eigen::AngleAxisd rotation(2.0 * kPi * i / kRecognition.num_rotations, principal.axes.col(k));
-      hypotheses.push_back(Eigen::Translation3d(principal.center) * rotation * Eigen::Translation3d(-principal.center) *
-                           found.T_surface_scan);
+      starts.push_back(Eigen::Translation3d(principal.center) * rotation * Eigen::Translation3d(-principal.center) *
+                       found.T_surface_scan);
     }
   }
-  PoseSearchOptions search = options_.search;
-  search.num_threads = options_.num_threads;
-  search.num_rotations = 0;
-  const std::vector<RankedPose> poses = searchPoses(surface_, *found.surface, hypotheses, search);
-  if (poses.empty()) return found;
-  PosedModel other = refined({found.model.name, found.frames, poses, nullptr}, found.surface);
+  PosedModel other = fitted(found.model.name, found.surface, found.frames, starts);
   other.model.confidence = found.model.confidence;
   return other.model.score.merit() > found.model.score.merit() ? other : found;
 }

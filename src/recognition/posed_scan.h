@@ -1,7 +1,6 @@
 #pragma once
 
 #include <Eigen/Geometry>
-#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -32,48 +31,31 @@ double sharedSurface(const PosedModel& a, const PosedModel& b);
 /// their own.
 CloudRegistrationOptions quickRegistration(int num_threads);
 
-/// A scan that is brought to many models: every model is searched for poses, the models with the best poses are
-/// refined.
+/// A scan that is brought to models.
 class PosedScan {
 public:
   /// \param points 3 x N, finite, input units, not all equal.
   /// \param seen what the scanner saw; nothing = the points show the object from all sides.
   PosedScan(const Points& points, const std::optional<Visibility>& seen, int num_threads);
 
-  /// Reads the points of a model, 3 x M, finite, units of the scan.
-  using PointReader = std::function<Points()>;
-
-  /// Searches a model for poses of the scan.
-  /// \param points of the model that poses are searched by, as many as refined() reads or fewer.
-  /// \param poses T_model_scan to try; without one the model is left out.
-  /// \param read all points that poses are refined and judged with.
-  void bringTo(const std::string& name, const Points& points, const std::vector<Eigen::Isometry3d>& poses,
-               PointReader read);
-
-  /// Refines and judges the poses of the models with the best ones, at most \p num_refined, and forgets all models.
-  /// Models far behind the best one are left out, but for one.
-  /// \return these models, in any order.
-  std::vector<PosedModel> refined(int num_refined);
+  /// Brings the scan to a model: the best of some poses, refined and judged.
+  /// \param points of the model, 3 x M, finite, units of the scan.
+  /// \param poses T_model_scan to start from, at least one.
+  PosedModel fitted(const std::string& name, const Points& points, const std::vector<Eigen::Isometry3d>& poses) const;
 
   /// Tries rotations of a model about its principal axes: a mug fits nearly as well with its handle elsewhere, and no
   /// step leads from there to the true pose.
   /// \return the best pose, with the confidence of the model as it was.
   PosedModel rotated(const PosedModel& found) const;
 
-  /// Judges a pose that was found elsewhere, as refined() does: by the distances of the scan from the surface between
+  /// Judges a pose that was found elsewhere, as fitted() does: by the distances of the scan from the surface between
   /// the points of the model, so that it does not count how densely the model was sampled.
   /// \param points of the model, 3 x M, finite, units of the scan.
   PosedModel judged(const std::string& name, const Points& points, const Eigen::Isometry3d& T_model_scan) const;
 
 private:
-  struct SearchedModel {
-    std::string name;
-    SearchFrames frames;
-    std::vector<RankedPose> poses;  // best first
-    PointReader read;
-  };
-
-  PosedModel refined(const SearchedModel& model, std::shared_ptr<const PosedSurface> surface) const;
+  PosedModel fitted(const std::string& name, const std::shared_ptr<const PosedSurface>& surface,
+                    const SearchFrames& frames, const std::vector<Eigen::Isometry3d>& T_surface_scan) const;
   PoseScore scoreOf(const PosedSurface& model, const Eigen::Isometry3d& T_model_scan) const;
   PosedSurface surfaceOf(const Points& points, const Eigen::Vector3d& center, std::optional<Visibility> seen) const;
 
@@ -81,7 +63,6 @@ private:
   BoundingBall ball_;
   double scale_;  // input units: estimated radius of the whole object
   PosedSurface surface_;
-  std::vector<SearchedModel> models_;
 };
 
 }  // namespace pcl_symmetry::detail

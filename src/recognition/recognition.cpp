@@ -4,6 +4,7 @@
 
 #include "core/base/check.h"
 #include "core/base/logistic.h"
+#include "core/base/parallel.h"
 #include "core/matching/shape_signature.h"
 #include "core/matching/view_signature.h"
 #include "pcl_symmetry/impl/cloud_conversion.hpp"
@@ -19,22 +20,23 @@ using detail::DatabaseParts;
 using detail::kRecognition;
 using detail::PosedModel;
 using detail::PosedScan;
+using detail::PossibleModel;
 using detail::StoredModel;
 
-/// Models that look like the scan from some side, each with poses to try. With a search by pairs: of all models those
-/// that fit best in some pose that pairs of points or the looks of the scan suggest.
-/// \param num_alike how many that look like it.
-std::vector<detail::ModelOfView> candidatesFor(DatabaseParts& database, const detail::PairSearch* pairs,
-                                               const Points& points, const Points& scan_points, const Visibility& seen,
-                                               const RecognitionOptions& options, int num_alike) {
-  const View view = viewOf(points, boundingBall(points).center - seen.viewpoint());
-  const auto read = [&](const StoredModel& model) { return database.viewsOf(model); };
-  std::vector<detail::ModelOfView> candidates = database.views()->nearest(view, num_alike, options.num_threads, read);
-  if (!pairs) return candidates;
-  PoseScreeningOptions screening;
-  screening.num_shapes = options.num_candidates;
-  screening.num_threads = options.num_threads;
-  return pairs->nearest(scan_points, seen, candidates, screening);
+/// The models with the best poses, best first, at most \p num_models, each with its best poses.
+std::vector<PossibleModel> screened(const ScreenedSurface& scan, const std::vector<PossibleModel>& models,
+                                    int num_models, int num_threads) {
+  std::vector<PosesOfShape> poses;
+  for (const PossibleModel& model : models) poses.push_back({&model.shape->screened, model.T_model_scan});
+  PoseScreeningOptions options;
+  options.num_shapes = num_models;
+  options.num_threads = num_threads;
+  std::vector<PossibleModel> best;
+  for (ScreenedShape& shape : screenPoses(scan, poses, options)) {
+    best.push_back(models[shape.shape]);
+    best.back().T_model_scan = std::move(shape.T_shape_scan);
+  }
+  return best;
 }
 
 /// For each model the first one of the same shape.
@@ -81,39 +83,47 @@ bool isAccepted(const RecognizedModel& model, const RecognitionOptions& options)
   return model.score.merit() >= options.min_merit && model.confidence >= options.min_confidence;
 }
 
-/// Candidates brought to the scan from their poses. In a large database, which has no search by pairs, many look more
-/// like a scan than the model that it shows: more are tried where none of the first is accepted.
+/// Models brought to the scan from poses that its looks suggest, and in a small database pairs of its points. In a
+/// large one, many look more like a scan than the model that it shows: more are tried where none of the first is
+/// accepted.
 /// \return models, best first.
 std::vector<PosedModel> fitLikeViews(DatabaseParts& database, const Points& points, const Points& scan_points,
                                      const Visibility& seen, const RecognitionOptions& options) {
   const std::shared_ptr<const detail::PairSearch> pairs = database.pairs();
-  const int num_alike = pairs ? options.num_candidates : std::max(options.num_candidates, options.max_candidates);
-  const std::vector<detail::ModelOfView> candidates =
-      candidatesFor(database, pairs.get(), points, scan_points, seen, options, num_alike);
-  PosedScan scan(scan_points, seen, options.num_threads);
-  const auto points_of = [&](const StoredModel& model, Points detail::ModelPoints::*part, std::size_t max_points) {
-    const detail::ModelPoints* const kept = pairs ? pairs->pointsOf(model) : nullptr;
-    return kept ? kept->*part : database.points(model, max_points);
-  };
+  const View view = viewOf(points, boundingBall(points).center - seen.viewpoint());
+  const std::vector<detail::ModelOfView> alike = database.views()->nearest(
+      view, pairs ? options.num_candidates : std::max(options.num_candidates, options.max_candidates),
+      options.num_threads, [&](const StoredModel& model) { return database.viewsOf(model); });
+  const std::vector<SurfacePoints> few =
+      evenSurfacePoints(scan_points, {kMatching.num_scan_points, kMatching.num_improved_points}, 1);
+  const ScreenedSurface screened_scan(few[1], seen);
+  const PosedScan scan(scan_points, seen, options.num_threads);
+
   std::vector<PosedModel> found;
-  const auto fit = [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) {
-      const StoredModel& model = candidates[i].model;
-      scan.bringTo(model.name, points_of(model, &detail::ModelPoints::coarse, kRecognition.num_coarse_points),
-                   candidates[i].T_model_scan,
-                   [&] { return points_of(model, &detail::ModelPoints::fine, kRecognition.num_fine_points); });
-    }
-    const std::vector<PosedModel> fitted = scan.refined(options.num_refined);
-    found.insert(found.end(), fitted.begin(), fitted.end());
+  const auto fit = [&](const std::vector<PossibleModel>& models) {
+    for (const PossibleModel& model : screened(screened_scan, models, options.num_refined, options.num_threads))
+      found.push_back(scan.fitted(model.model.name, database.points(model.model, kRecognition.num_fine_points),
+                                  model.T_model_scan));
     rank(found);
   };
-  const std::size_t first =
-      pairs ? candidates.size() : std::min(candidates.size(), static_cast<std::size_t>(options.num_candidates));
-  fit(0, first);
-  if (first < candidates.size() && (found.empty() || !isAccepted(found.front().model, options)))
-    fit(first, candidates.size());
+  const auto isFound = [&] { return !found.empty() && isAccepted(found.front().model, options); };
+  const auto fitAlike = [&](std::size_t begin, std::size_t end) {
+    std::vector<PossibleModel> models(end - begin);
+    parallelBlocks(models.size(), options.num_threads, [&](std::size_t i) {
+      const detail::ModelOfView& other = alike[begin + i];
+      models[i] = {other.model, database.shape(other.model), other.T_model_scan};
+    });
+    fit(models);
+  };
+  if (pairs) {
+    fit(pairs->possibleModels(few[0], alike, options.num_threads));
+  } else {
+    const std::size_t num_first = std::min(alike.size(), static_cast<std::size_t>(options.num_candidates));
+    fitAlike(0, num_first);
+    if (!isFound()) fitAlike(num_first, alike.size());
+  }
   // The confidence is that of the merit before this step.
-  if (!found.empty() && isAccepted(found.front().model, options)) found.front() = scan.rotated(found.front());
+  if (isFound()) found.front() = scan.rotated(found.front());
   return found;
 }
 

@@ -7,20 +7,17 @@ namespace pcl_symmetry::detail {
 /// Numbers of recognition that decide which models are found. Lengths are radii of the object, shares those of points.
 struct RecognitionRules {
   // Candidates
-  int num_shape_forms = 2048;             // compact forms, at least, whose components are all compared
-  std::size_t num_view_models = 200;      // models with the nearest codes, whose views are compared in full
-  std::size_t max_pair_models = 300;      // larger databases have no pairs, which take 0.4 MB and 5 ms a model
-  int num_pair_poses = 48;                // of each model that pairs vote for and that are tried
-  std::size_t num_scan_points = 10'000;   // that poses are refined and judged by
-  std::size_t num_fine_points = 5'000;    // of a model, that poses are refined and judged by
-  std::size_t num_coarse_points = 1'250;  // of a model, that poses are searched by
+  int num_shape_forms = 2048;            // compact forms, at least, whose components are all compared
+  std::size_t num_view_models = 200;     // models with the nearest codes, whose views are compared in full
+  std::size_t max_pair_models = 300;     // larger databases have no pairs, which take 0.3 MB and 2 ms a model
+  int num_pair_poses = 48;               // of each model that pairs vote for and that are tried
+  std::size_t num_scan_points = 10'000;  // that poses are refined and judged by
+  std::size_t num_fine_points = 5'000;   // of a model, that poses are refined and judged by
 
   // Poses
   double seen_radius = 0.95;     // radius of a scan over that of the whole object
   int num_judged_points = 3000;  // that decide whether a model fits,
   double min_width = 0.015;      // with a Gaussian of this width, or of the accuracy of the scan
-  double hopeless = 0.15;        // merit behind the best model at which a model is not refined,
-  std::size_t min_refined = 2;   // unless it is one of the first: the confidence needs a second one
   int num_rotations = 12;        // about each principal axis that are tried at last
 
   // Confidence: a logistic function of merit plus lead, from 267 answers in scenes of fold 0

@@ -34,9 +34,10 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
                                                [](const std::string& part) { detail::unpackedViews(part); },
                                                [](const std::string& part) { detail::CompactForm::unpacked(part); },
                                                [](const std::string& part) { detail::CompactForms::unpacked(part); },
-                                               compareCodes};
+                                               compareCodes,
+                                               [](const std::string& part) { detail::unpackedSurfaces(part); }};
   fuzz::ByteSource source(data, size);
-  const int kind = source.below(6);
+  const int kind = source.below(7);
   readPart(source.rest(), parts[kind]);
   return 0;
 }

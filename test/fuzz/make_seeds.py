@@ -177,8 +177,10 @@ def packed_parts():
     cloud = struct.pack("<I3fd", 4, -1, -1, -1, 1e-4) + bytes(range(24))
     view = struct.pack("<f4h3f", 1.0, 0, 0, 0, 32767, 0, 0, 0)
     part = struct.pack("<I", len(matrix)) + matrix
+    rows = struct.pack("<BII", 2, 2, 6) + 6 * struct.pack("<f2h", 0.01, 5, -7)
+    surface = struct.pack("<3fI", 1, 2, 3, len(rows)) + rows
     yield "packed", [b"\0" + cloud, b"\1" + matrix, b"\2" + struct.pack("<I", 1) + view + bytes(200),
-                     b"\3" + matrix + struct.pack("<f", 0.5), b"\4" + struct.pack("<Iq", 1, 7) + 3 * part, b"\5" + bytes(68)]  # fmt: skip
+                     b"\3" + matrix + struct.pack("<f", 0.5), b"\4" + struct.pack("<Iq", 1, 7) + 3 * part, b"\5" + bytes(68), b"\6" + 2 * surface]  # fmt: skip
 
 
 def main(folder):

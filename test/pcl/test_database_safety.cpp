@@ -32,7 +32,7 @@ protected:
   void TearDown() override { fs::permissions(folder_ / "", fs::perms::owner_all); }
 
   static void add(ModelStore& store, const std::string& name, const std::string& part = "a part of a model") {
-    store.add({name, 7, {"source of " + name, "", {}}, 1}, {part, part, part, 1}, 0, {});
+    store.add({name, 7, {"source of " + name, "", {}}, 1}, {part, part, part, part, 1}, 0, {});
   }
 
   /// A file of one model.
@@ -51,7 +51,7 @@ std::vector<std::string> contentsIn(const std::string& file) {
   std::vector<std::string> contents;
   for (const auto& model : store.models()) {
     contents.push_back(model.name);
-    for (const auto part : {ModelPart::Cloud, ModelPart::Signatures, ModelPart::Views})
+    for (const auto part : {ModelPart::Cloud, ModelPart::Signatures, ModelPart::Views, ModelPart::Surfaces})
       contents.push_back(store.part(part, model));
     if (const auto info = store.find(model.name)) contents.push_back(info->second.source.path);
   }

@@ -32,6 +32,19 @@ TEST(PackedModel, ViewsKeepWhatTheyTellApart) {
   }
 }
 
+TEST(PackedModel, SurfacesKeepTheirOrder) {
+  const test::Cloud cloud = test::rodOnBox({1.0, 0.8, 0.1}, 0.6, test::elsewhere(), 1);
+  const std::vector<SurfacePoints> surfaces = evenSurfacePoints(cloud.getMatrixXfMap(3, 4, 0), {20, 200}, 1);
+  const std::vector<SurfacePoints> read = detail::unpackedSurfaces(detail::packedSurfaces(surfaces));
+  ASSERT_EQ(read.size(), 2u);
+  for (std::size_t k = 0; k < 2; ++k) {
+    ASSERT_EQ(read[k].points.cols(), surfaces[k].points.cols());
+    // Half a step of coordinates of at most 2, and of the floats about them.
+    EXPECT_LT((read[k].points - surfaces[k].points).cwiseAbs().maxCoeff(), 1.0f / 32767 + 1e-5f);
+    EXPECT_LT((read[k].normals - surfaces[k].normals).cwiseAbs().maxCoeff(), 1.0f / 32767);
+  }
+}
+
 TEST(PackedModel, MatricesKeepHalfAStep) {
   RandomStream random(1);
   const Eigen::MatrixXf matrix =
@@ -58,6 +71,8 @@ TEST(PackedModel, OtherBytesAreRefused) {
     EXPECT_THROW(detail::unpackedCloud(bytes), std::invalid_argument);
     EXPECT_THROW(detail::unpackedSignatures(bytes), std::invalid_argument);
     EXPECT_THROW(detail::unpackedViews(bytes), std::invalid_argument);
+    if (bytes.empty()) continue;
+    EXPECT_THROW(detail::unpackedSurfaces(bytes), std::invalid_argument);
   }
 }
 
@@ -103,30 +118,14 @@ double angleOf(const detail::PosedModel& posed) {
 TEST(PosedScan, TriesRotationsAboutTheAxesOfAModel) {
   const Points points = mug();
   for (const double degrees : {50.0, 120.0, 180.0}) {
-    detail::PosedScan scan(points, std::nullopt, 0);
-    scan.bringTo("mug", points, {Eigen::Isometry3d(Eigen::AngleAxisd(degrees * kDegree, Eigen::Vector3d::UnitZ()))},
-                 [&] { return points; });
-    const std::vector<detail::PosedModel> found = scan.refined(1);
-    ASSERT_EQ(found.size(), 1u);
-    EXPECT_GT(angleOf(found.front()), 45.0 * kDegree) << degrees;
-    const detail::PosedModel rotated = scan.rotated(found.front());
+    const detail::PosedScan scan(points, std::nullopt, 0);
+    const detail::PosedModel found =
+        scan.fitted("mug", points, {Eigen::Isometry3d(Eigen::AngleAxisd(degrees * kDegree, Eigen::Vector3d::UnitZ()))});
+    EXPECT_GT(angleOf(found), 45.0 * kDegree) << degrees;
+    const detail::PosedModel rotated = scan.rotated(found);
     EXPECT_LT(angleOf(rotated), 2.0 * kDegree) << degrees;
     EXPECT_GT(rotated.model.score.support, 0.95) << degrees;
   }
-}
-
-/// All but the best two: the confidence needs a second one.
-TEST(PosedScan, RefinesNoModelsFarBehindTheBest) {
-  const Points points = mug();
-  Points flat = points;
-  flat.row(0) *= 0.2f;
-  detail::PosedScan scan(points, std::nullopt, 0);
-  for (const char* name : {"flat 1", "flat 2", "flat 3"})
-    scan.bringTo(name, flat, {Eigen::Isometry3d::Identity()}, [&] { return flat; });
-  scan.bringTo("mug", points, {Eigen::Isometry3d::Identity()}, [&] { return points; });
-  const std::vector<detail::PosedModel> found = scan.refined(4);
-  ASSERT_EQ(found.size(), 2u);
-  EXPECT_EQ(found[0].model.name, "mug");
 }
 
 }  // namespace

@@ -205,9 +205,9 @@ TEST_F(SymmetryDatabaseTest, ModelsOfAnotherSizeHaveNoPairsInCommon) {
 /// \param views of which it has the looks.
 void addCopies(detail::ModelStore& source, const detail::StoredModel& model, const detail::StoredModel& views,
                int count, detail::ModelStore& target) {
-  const detail::PackedModel packed{source.part(detail::ModelPart::Cloud, model),
-                                   source.part(detail::ModelPart::Signatures, model),
-                                   source.part(detail::ModelPart::Views, views), 5000};
+  const detail::PackedModel packed{
+      source.part(detail::ModelPart::Cloud, model), source.part(detail::ModelPart::Signatures, model),
+      source.part(detail::ModelPart::Views, views), source.part(detail::ModelPart::Surfaces, model), 5000};
   for (int i = 0; i < count; ++i) target.add({model.name + std::to_string(i), 0, {}, packed.num_points}, packed, 0, {});
 }
 

@@ -33,6 +33,9 @@ struct MatchingRules {
   double size_weight = 0.25;       // distance that radii a factor of e apart add; parts that are hidden change them
   std::size_t num_view_poses = 6;  // of each shape: its nearest views
 
+  // A few points of a surface
+  int num_surface_points = 5000;  // that they are chosen from
+
   // Pairs of points
   int num_neighbors = 16;          // that give a normal
   int num_pair_points = 250;       // of a shape
@@ -48,9 +51,9 @@ struct MatchingRules {
   int num_screened_points = 1000;  // of a shape
   int num_judged_points = 60;      // that all poses are judged by,
   double judged_width = 0.2;       // radii, with this width of the Gaussian
-  int num_improved = 400;          // best poses of all shapes that are improved,
-  int num_improved_points = 120;   // by this many points,
-  int num_steps = 6;               // in as many steps,
+  int num_improved = 250;          // best poses of all shapes that are improved,
+  int num_improved_points = 240;   // by this many points,
+  int num_steps = 10;              // in as many steps,
   double first_width = 0.25;       // radii, from this width
   double last_width = 0.1;         // radii, to this one
 };

@@ -258,6 +258,7 @@ TEST(PoseScreening, ThreadsDoNotChangeIt) {
   test::compareThreads([&](int num_threads) {
     PoseScreeningOptions options;
     options.num_threads = num_threads;
+    options.most_behind = 2.0;  // no shape is left out
     const std::vector<ScreenedShape> found = screenPoses(scan, shapes, options);
     EXPECT_EQ(found.size(), 3u);
     return test::valuesOf(found, &ScreenedShape::shape,
