@@ -1,10 +1,9 @@
 #include "python/input_points.h"
 
-#include <pybind11/stl.h>
+#include <pybind11/eigen.h>
 
 #include <Eigen/Geometry>
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 #include <stdexcept>
@@ -130,26 +129,37 @@ Points InputPoints::atPoints(const char* name, const py::array& normals) const {
   return result;
 }
 
+std::optional<Eigen::Vector3d> positionOf(const py::object& viewpoint) {
+  if (!py::isinstance<py::str>(viewpoint)) {
+    try {
+      return viewpoint.cast<Eigen::Vector3d>();
+    } catch (const py::cast_error&) {
+    }
+  } else if (viewpoint.cast<std::string>() == "auto") {
+    return std::nullopt;
+  }
+  throw std::invalid_argument("viewpoint = " + py::str(viewpoint).cast<std::string>() +
+                              ", must be \"auto\", None or (x, y, z)");
+}
+
 std::optional<Visibility> seenFrom(const PointsRef& points, const py::object& viewpoint) {
   if (viewpoint.is_none() || points.cols() == 0) return std::nullopt;
-  if (py::isinstance<py::str>(viewpoint)) {
-    const auto word = viewpoint.cast<std::string>();
-    if (word != "auto") throw std::invalid_argument("viewpoint = " + word + ", must be \"auto\", None or (x, y, z)");
-    const py::gil_scoped_release release;
+  const std::optional<Eigen::Vector3d> position = positionOf(viewpoint);
+  const py::gil_scoped_release release;
+  if (!position) {
     std::optional<InferredView> view = inferView(points, Eigen::Vector3d::Zero());
     return view ? std::optional<Visibility>(std::move(view->seen)) : std::nullopt;
   }
-  std::array<double, 3> position{};
-  try {
-    position = viewpoint.cast<std::array<double, 3>>();
-  } catch (const py::cast_error&) {
-    throw std::invalid_argument("viewpoint = " + py::str(viewpoint).cast<std::string>() +
-                                ", must be \"auto\", None or (x, y, z)");
-  }
-  std::optional<Visibility> seen = Visibility::fromPoints(points, {position[0], position[1], position[2]});
+  std::optional<Visibility> seen = Visibility::fromPoints(points, *position);
   if (!seen)
     throw std::invalid_argument("viewpoint: among the points, must see them within 75 degrees of one direction");
   return seen;
+}
+
+py::array_t<float> toRows(const PointsRef& points) {
+  py::array_t<float> result({static_cast<py::ssize_t>(points.cols()), py::ssize_t{3}});
+  Eigen::Map<Points>(result.mutable_data(), 3, points.cols()) = points;
+  return result;
 }
 
 }  // namespace pcl_symmetry::python

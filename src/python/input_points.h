@@ -57,10 +57,23 @@ private:
   Points copied_ = Points(3, 0);
 };
 
-/// Where the scanner stood: "auto" (the points decide), None, or x, y, z.
-/// \return what it saw; nothing without a viewpoint.
+/// \param viewpoint where the scanner stood: "auto" (the points decide) or x, y, z.
+/// \return nothing for "auto".
+/// \throws std::invalid_argument for another value.
+std::optional<Eigen::Vector3d> positionOf(const pybind11::object& viewpoint);
+
+/// \param viewpoint as of positionOf(), or None.
+/// \return what the scanner saw; nothing without a viewpoint.
 /// \throws std::invalid_argument for another value, and where the points surround the viewpoint.
 std::optional<Visibility> seenFrom(const PointsRef& points, const pybind11::object& viewpoint);
+
+/// Points as rows.
+pybind11::array_t<float> toRows(const PointsRef& points);
+
+template <typename Value>
+pybind11::array_t<Value> toArray(const std::vector<Value>& values) {
+  return pybind11::array_t<Value>(static_cast<pybind11::ssize_t>(values.size()), values.data());
+}
 
 }  // namespace pcl_symmetry::python
 

@@ -1,5 +1,5 @@
-/// The Python module: the functions of the core on arrays of NumPy. Formulas stand in the core; here are names,
-/// defaults, shapes and words.
+/// The core of the Python package: its functions on arrays of NumPy. The package gives them defaults and documents
+/// them.
 #include <pybind11/eigen.h>
 #include <pybind11/functional.h>
 #include <pybind11/pybind11.h>
@@ -23,6 +23,7 @@
 #include "pcl_symmetry/core/planar_transform.h"
 #include "pcl_symmetry/core/published_planes.h"
 #include "pcl_symmetry/core/revolution_profile.h"
+#include "pcl_symmetry/core/rotational_symmetry.h"
 #include "pcl_symmetry/core/surface_segmentation.h"
 #include "pcl_symmetry/core/symmetric_completion.h"
 #include "pcl_symmetry/core/symmetrized_shape.h"
@@ -32,21 +33,13 @@
 #include "python/evidence.h"
 #include "python/input_points.h"
 #include "python/motions.h"
-#include "python/plane_results.h"
-#include "python/rotations.h"
+#include "python/results.h"
 
 namespace py = pybind11;
 
 namespace pcl_symmetry::python {
 
 namespace {
-
-/// Points as rows.
-py::array_t<float> rowsOf(const PointsRef& points) {
-  py::array_t<float> result({static_cast<py::ssize_t>(points.cols()), py::ssize_t{3}});
-  Eigen::Map<Points>(result.mutable_data(), 3, points.cols()) = points;
-  return result;
-}
 
 std::vector<std::vector<int>> polygonsOf(const py::array& faces) {
   const char kind = faces.dtype().kind();
@@ -80,7 +73,7 @@ struct MeshInput {
 
 py::array_t<float> sampleMesh(const AnyArray& vertices, const AnyArray& faces, int num_points, std::uint64_t seed) {
   const MeshInput mesh(vertices, faces);
-  return rowsOf(sampleTriangles(mesh.vertices.points(), mesh.triangles, num_points, seed));
+  return toRows(sampleTriangles(mesh.vertices.points(), mesh.triangles, num_points, seed));
 }
 
 MeshSurface meshSurface(const AnyArray& vertices, const AnyArray& faces) {
@@ -134,7 +127,7 @@ py::tuple mirroredHalfOf(const AnyArray& vertices, const py::object& faces, cons
   const MirroredMesh half = mirroredHalf(mesh.vertices.points(), mesh.triangles, plane, left);
   Eigen::MatrixX3i triangles(half.triangles.size(), 3);
   for (std::size_t i = 0; i < half.triangles.size(); ++i) triangles.row(i) = half.triangles[i];
-  return py::make_tuple(rowsOf(half.vertices), triangles, half.sources);
+  return py::make_tuple(toRows(half.vertices), triangles, half.sources);
 }
 
 /// \return (K, 4): radius, height, spread, count.
@@ -152,24 +145,28 @@ Eigen::MatrixXd revolutionProfileOf(const AnyArray& points, const Eigen::Vector3
   return rows;
 }
 
-PlaneSearch planes(const py::array& points, const py::object& viewpoint, DetectionOptions options,
-                   std::size_t max_points, const py::object& normals, const std::optional<MeshSurface>& mesh) {
-  const InputPoints input("points", points, max_points, options.seed);
+PlaneSearch planes(const AnyArray& points, const py::object& viewpoint, double tolerance, double absolute_tolerance,
+                   bool approximate, int max_planes, const py::object& normals, std::size_t max_points, bool evidence,
+                   std::uint64_t seed, int threads, const std::optional<MeshSurface>& mesh) {
+  auto options = optionsWith<DetectionOptions>(seed, threads);
+  options.tolerance = tolerance;
+  options.absolute_tolerance = absolute_tolerance;
+  options.approximate = approximate;
+  options.max_planes = max_planes;
+  options.evidence = evidence;
+  const InputPoints input("points", points, max_points, seed);
   std::optional<Points> given;
   if (!normals.is_none()) given = input.atPoints("normals", arrayOf("normals", normals));
-  const std::optional<Visibility> seen = seenFrom(input.points(), viewpoint);
   const PointsRef used = input.points();
+  const std::optional<Visibility> seen = seenFrom(used, viewpoint);
   PlaneInput cloud(used, seen ? &*seen : nullptr);
   if (given) cloud.normals = &*given;
   PlaneSearch search;
   if (seen) search.viewpoint = seen->viewpoint();
-  {
-    const py::gil_scoped_release release;
-    search.found = detectPlanes(cloud, options);
-    if (mesh && !seen) refineOnMesh(*mesh, search.found, options);
-  }
-  search.num_rows = input.numRows();
   search.rows = input.rows();
+  const py::gil_scoped_release release;
+  search.found = detectPlanes(cloud, options);
+  if (mesh && !seen) refineOnMesh(*mesh, search.found, options);
   return search;
 }
 
@@ -247,6 +244,27 @@ SymmetryFrame frame(const AnyArray& points, const py::object& viewpoint, std::si
   return found;
 }
 
+ObjectSymmetries rotations(const AnyArray& points, double tolerance, double absolute_tolerance, double max_feature,
+                           std::uint64_t seed, int threads, const std::optional<MeshSurface>& mesh) {
+  auto options = optionsWith<ObjectSymmetryOptions>(seed, threads);
+  options.tolerance = tolerance;
+  options.absolute_tolerance = absolute_tolerance;
+  options.max_feature = max_feature;
+  const InputPoints input("points", points, 0, seed);
+  const py::gil_scoped_release release;
+  return mesh ? objectSymmetries(input.points(), *mesh, options) : objectSymmetries(input.points(), options);
+}
+
+/// \param continuous point and direction of axes.
+ObjectSymmetries rotationsOf(const std::vector<RowMajor4>& discrete,
+                             const std::vector<std::pair<Eigen::Vector3d, Eigen::Vector3d>>& continuous) {
+  std::vector<Eigen::Isometry3d> motions;
+  for (const RowMajor4& motion : discrete) motions.push_back(motionOf("discrete", motion));
+  std::vector<ContinuousSymmetry> axes;
+  for (const auto& [point, direction] : continuous) axes.push_back({direction, point});
+  return ObjectSymmetries::from(motions, axes);
+}
+
 /// \return the added points, and the rows that they are the reflections of.
 std::pair<py::array_t<float>, std::vector<std::size_t>> complete(const AnyArray& points, const ReflectionPlane& plane,
                                                                  const py::object& viewpoint, int threads) {
@@ -267,7 +285,7 @@ std::pair<py::array_t<float>, std::vector<std::size_t>> complete(const AnyArray&
       rows.push_back(input.rows().empty() ? source : input.rows()[source]);
     }
   }
-  return {rowsOf(added), rows};
+  return {toRows(added), rows};
 }
 
 std::vector<int> segmentCloud(const py::array& points, const SegmentationOptions& options) {
@@ -349,158 +367,44 @@ std::pair<py::array_t<int>, py::array_t<float>> closest(const AnyArray& points, 
     makeFlannSearch(input.points())->search(asked.points(), 1, indices, distances);
     for (float& distance : distances) distance = std::sqrt(distance);
   }
-  const auto size = static_cast<py::ssize_t>(indices.size());
-  return {py::array_t<int>(size, indices.data()), py::array_t<float>(size, distances.data())};
+  return {toArray(indices), toArray(distances)};
 }
 
-void addFrame(py::module_& module) {
-  py::class_<ProbableFrame>(module, "ProbableFrame", "A frame that may be the shape's own.")
-      .def_readonly("center", &ProbableFrame::center, "(3,) center of symmetry, frame and units of the input")
-      .def_readonly("axes", &ProbableFrame::axes, "(3, 3) axes in columns, orthonormal, right-handed")
-      .def_readonly("revolution_axis", &ProbableFrame::revolution_axis, "as of `Frame`")
-      .def_readonly(
-          "probability", &ProbableFrame::probability,
-          "that the axes are the shape's own, in any order and sign, at any angle about an axis of revolution");
-  py::class_<SymmetryFrame>(module, "Frame",
-                            "Canonical frame of a shape (Section 5.1): center and principal symmetry axes.")
-      .def_readonly("center", &SymmetryFrame::center, "(3,) center of symmetry, frame and units of the input")
-      .def_readonly("axes", &SymmetryFrame::axes, "(3, 3) axes in columns, orthonormal, right-handed, best first")
-      .def_readonly("scores", &SymmetryFrame::scores, "(3,) score of the plane across each axis, in [0, 1]")
-      .def_readonly("revolution_axis", &SymmetryFrame::revolution_axis,
-                    "column that is an axis of revolution; -1: none, 3: every line through the center")
-      .def_property_readonly(
-          "transform", [](const SymmetryFrame& f) { return RowMajor4(f.T_canonical_input.matrix()); },
-          "(4, 4) from the input to the canonical frame")
-      .def_property_readonly(
-          "equivalent", [](const SymmetryFrame& f) { return stacked(f.equivalent); },
-          "(K, 4, 4) all transforms that symmetry leaves equally good, `transform` first")
-      .def_property_readonly(
-          "turns", [](const SymmetryFrame& f) { return f.turns; },
-          "list of Turn, of scans from one side, most confident first")
-      .def_readonly("probable", &SymmetryFrame::probable,
-                    "list of `ProbableFrame`: this frame, then others by falling probability")
-      .def_property_readonly("evidence", &frameEvidence);
-}
-
-void addMap(py::module_& module) {
-  py::class_<SymmetryMap>(module, "Map", "The transform D(f, gamma) of equation 2 on a grid of planes.")
-      .def_property_readonly(
-          "values",
-          [](const py::object& self) {
-            const auto& map = self.cast<const SymmetryMap&>();
-            const std::vector<py::ssize_t> shape{map.grid.numTheta(), map.grid.numPhi(), map.grid.numRadius()};
-            return py::array_t<float>(shape, map.values.data(), self);
-          },
-          "(theta, phi, r) values of D, 1 for a perfect symmetry; a view of the map's memory")
-      .def_property_readonly("center", [](const SymmetryMap& map) { return map.grid.center(); })
-      .def_property_readonly("radius", [](const SymmetryMap& map) { return map.grid.radius(); })
-      .def_readonly("sigma", &SymmetryMap::sigma, "width of the Gaussian, input units");
-}
-
-void addPlaneFunctions(py::module_& module) {
-  const DetectionOptions standard;
-  module.def(
-      "planes",
-      [](const AnyArray& points, const py::object& viewpoint, double tolerance, double absolute_tolerance,
-         bool approximate, int max_planes, const py::object& normals, std::size_t max_points, bool evidence,
-         std::uint64_t seed, int threads, const std::optional<MeshSurface>& mesh) {
-        auto options = optionsWith<DetectionOptions>(seed, threads);
-        options.tolerance = tolerance;
-        options.absolute_tolerance = absolute_tolerance;
-        options.approximate = approximate;
-        options.max_planes = max_planes;
-        options.evidence = evidence;
-        return planes(points, viewpoint, options, max_points, normals, mesh);
-      },
-      py::arg("points"), py::kw_only(), py::arg("viewpoint") = "auto", py::arg("tolerance") = standard.tolerance,
-      py::arg("absolute_tolerance") = 0.0, py::arg("approximate") = false, py::arg("max_planes") = standard.max_planes,
-      py::arg("normals") = py::none(), py::arg("max_points") = 50'000, py::arg("evidence") = false, py::arg("seed") = 1,
-      py::arg("threads") = 0, py::arg("mesh") = py::none(),
-      "Planes of symmetry of a cloud (Sections 4.1 to 4.4).\n\n"
-      "points: (N, 3), input units; float32 rows are not copied. Rows that are not finite are left out.\n"
-      "viewpoint: where the scanner stood: \"auto\" (the points decide), None (seen from all sides) or (x, y, z).\n"
-      "tolerance: how far a symmetric surface may be off, share of the greatest distance between two points, in (0, "
-      "0.1].\n"
-      "absolute_tolerance: the same in input units; 0: tolerance decides.\n"
-      "approximate: also the other maxima of the transform, and symmetries of parts.\n"
-      "normals: (N, 3), of any length and sign; None: estimated.\n"
-      "max_points: larger clouds are thinned to that number. threads: 0 = one per core.\n"
-      "evidence: also what the decisions are taken from, `evidence` and `turn_evidence` of the result; takes about as\n"
-      "long again.\n"
-      "Returns Planes. Raises ValueError for bad parameters.");
-  module.def("descriptors", &descriptors, py::arg("points"), py::kw_only(), py::arg("input_axes"),
-             py::arg("by_equation_1"), py::arg("seed"), py::arg("threads"));
-  module.def("volume_planes", &volumePlanes, py::arg("volume"), py::kw_only(), py::arg("spacing"), py::arg("origin"),
-             py::arg("direction"), py::arg("levels"), py::arg("approximate"), py::arg("max_planes"), py::arg("seed"),
-             py::arg("threads"));
-  module.def("published_planes", &publishedPlanesOf, py::arg("points"), py::kw_only(), py::arg("method"),
-             py::arg("num_points"), py::arg("seed"), py::arg("threads"));
-  module.def("local_symmetry", &localSymmetryOf, py::arg("points"), py::arg("scale"), py::kw_only(), py::arg("seed"),
-             py::arg("threads"));
-  module.def(
-      "complete", &complete, py::arg("points"), py::arg("plane"), py::kw_only(), py::arg("viewpoint") = "auto",
-      py::arg("threads") = 0,
-      "Completes a scan by its reflection in a plane.\n\n"
-      "Returns (added, rows): (M, 3) points that neither fall onto the measured surface nor into space that was\n"
-      "seen to be empty, and the row of the point that each is the reflection of.");
-  module.def("viewpoints", &viewpoints, py::arg("planes"),
-             "Directions from the object to the camera that show the least repetition (Section 5.4).\n\n"
-             "planes: list of Plane. Returns a list of View, best first.");
-}
-
-void addMeshFunctions(py::module_& module) {
-  py::class_<MeshSurface>(module, "MeshSurface", "A mesh as the exact surface that symmetries are refined on.")
-      .def(py::init(&meshSurface), py::arg("vertices"), py::arg("faces"));
-  py::class_<SymmetrizedShape>(module, "Symmetrized")
-      .def_property_readonly("points", [](const SymmetrizedShape& s) { return rowsOf(s.points); })
-      .def_readonly("kept", &SymmetrizedShape::kept)
-      .def_property_readonly(
-          "asymmetry",
-          [](const SymmetrizedShape& s) { return py::array_t<float>(s.asymmetry.size(), s.asymmetry.data()); })
-      .def_readonly("mean_asymmetry", &SymmetrizedShape::mean_asymmetry)
-      .def_readonly("greatest_asymmetry", &SymmetrizedShape::greatest_asymmetry)
-      .def_readonly("deviation", &SymmetrizedShape::deviation);
-  module.def("symmetrize", &symmetrize, py::arg("points"), py::arg("faces"), py::arg("plane"), py::arg("half"),
-             py::arg("threads"));
-  module.def("mirrored_half", &mirroredHalfOf, py::arg("vertices"), py::arg("faces"), py::arg("plane"),
-             py::arg("left"));
-  module.def("profile", &revolutionProfileOf, py::arg("points"), py::arg("point"), py::arg("direction"),
-             py::arg("num_points"));
-}
-
-void addShapeFunctions(py::module_& module) {
-  module.def("sample_mesh", &sampleMesh, py::arg("vertices"), py::arg("faces"), py::arg("num_points") = 10'000,
-             py::kw_only(), py::arg("seed") = 1,
-             "(num_points, 3) points spread evenly over a mesh of (V, 3) vertices and (F, 3) faces.");
-  module.def("frame", &frame, py::arg("points"), py::kw_only(), py::arg("viewpoint") = "auto",
-             py::arg("max_points") = 50'000, py::arg("as_published") = false, py::arg("seed") = 1,
-             py::arg("threads") = 0, py::arg("mesh") = py::none(),
-             "Canonical frame of a cloud (Section 5.1). Parameters as in planes(). Returns Frame.");
-  module.def("closest", &closest, py::arg("points"), py::arg("queries"));
-  module.def("segment", &segment, py::arg("points"), py::arg("faces") = py::none(), py::kw_only(), py::arg("parts") = 0,
-             py::arg("method") = "merging", py::arg("depth") = 3, py::arg("as_published") = false,
-             py::arg("progress") = py::none(), py::arg("seed") = 1, py::arg("threads") = 0,
-             "Cuts a surface into parts by its symmetries (Section 5.3). See pcl_symmetry.segment.");
-  module.def("describe", &describe, py::arg("points"), py::kw_only(), py::arg("viewpoint") = "auto",
-             py::arg("seed") = 1, py::arg("threads") = 0,
-             "(2, K) signatures of unit norm, the same in all poses and sizes (Section 5.2).");
-  module.def("transform", &transform, py::arg("points"), py::arg("bins") = std::array<int, 3>{64, 64, 64},
-             py::kw_only(), py::arg("method") = "sampled", py::arg("center") = py::make_tuple(0.0, 0.0, 0.0),
-             py::arg("radius") = 0.0, py::arg("sigma") = 0.0, py::arg("as_published") = false, py::arg("seed") = 1,
-             py::arg("threads") = 0);
+/// Adds a function with these names of parameters, which all are given by the package.
+template <typename Function, typename... Names>
+void add(py::module_& module, const char* name, const Function& function, Names... parameters) {
+  module.def(name, function, py::arg(parameters)...);
 }
 
 }  // namespace
 
 PYBIND11_MODULE(_pcl_symmetry, module) {
   addEvidence(module);
-  addPlaneResults(module);
-  addFrame(module);
-  addMap(module);
-  addMeshFunctions(module);
-  addPlaneFunctions(module);
-  addShapeFunctions(module);
-  addRotations(module);
+  py::class_<MeshSurface>(module, "MeshSurface").def(py::init(&meshSurface));
+  addResults(module);
+  add(module, "planes", &planes, "points", "viewpoint", "tolerance", "absolute_tolerance", "approximate", "max_planes",
+      "normals", "max_points", "evidence", "seed", "threads", "mesh");
+  add(module, "volume_planes", &volumePlanes, "volume", "spacing", "origin", "direction", "levels", "approximate",
+      "max_planes", "seed", "threads");
+  add(module, "published_planes", &publishedPlanesOf, "points", "method", "num_points", "seed", "threads");
+  add(module, "frame", &frame, "points", "viewpoint", "max_points", "as_published", "seed", "threads", "mesh");
+  add(module, "rotations", &rotations, "points", "tolerance", "absolute_tolerance", "max_feature", "seed", "threads",
+      "mesh");
+  add(module, "rotations_of", &rotationsOf, "discrete", "continuous");
+  add(module, "transform", &transform, "points", "bins", "method", "center", "radius", "sigma", "as_published", "seed",
+      "threads");
+  add(module, "local_symmetry", &localSymmetryOf, "points", "scale", "seed", "threads");
+  add(module, "descriptors", &descriptors, "points", "input_axes", "by_equation_1", "seed", "threads");
+  add(module, "describe", &describe, "points", "viewpoint", "seed", "threads");
+  add(module, "segment", &segment, "points", "faces", "parts", "method", "depth", "as_published", "progress", "seed",
+      "threads");
+  add(module, "complete", &complete, "points", "plane", "viewpoint", "threads");
+  add(module, "symmetrize", &symmetrize, "points", "faces", "plane", "half", "threads");
+  add(module, "mirrored_half", &mirroredHalfOf, "vertices", "faces", "plane", "left");
+  add(module, "profile", &revolutionProfileOf, "points", "point", "direction", "num_points");
+  add(module, "viewpoints", &viewpoints, "planes");
+  add(module, "sample_mesh", &sampleMesh, "vertices", "faces", "num_points", "seed");
+  add(module, "closest", &closest, "points", "queries");
   module.attr("__version__") = PCL_SYMMETRY_VERSION;
 }
 

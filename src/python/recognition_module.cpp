@@ -5,13 +5,10 @@
 #include <pybind11/functional.h>
 #include <pybind11/pybind11.h>
 #include <pybind11/stl.h>
-#include <pybind11/stl/filesystem.h>
 
 #include <exception>
-#include <filesystem>
 #include <memory>
 #include <optional>
-#include <stdexcept>
 #include <string>
 #include <utility>
 #include <vector>
@@ -46,8 +43,8 @@ CloudRegistration registerPoints(const AnyArray& source, const AnyArray& target,
                         options);
 }
 
-Cloud cloudOf(const char* name, const py::array& points) {
-  const InputPoints input(name, points, 0, 0);
+Cloud cloudOf(const py::array& points) {
+  const InputPoints input("points", points, 0, 0);
   Cloud cloud;
   const PointsRef used = input.points();
   cloud.reserve(static_cast<std::size_t>(used.cols()));
@@ -70,7 +67,7 @@ std::vector<ModelInput> modelsOf(const py::object& models) {
     const auto held = std::make_shared<py::object>(std::move(model.second));
     inputs.push_back({model.first, {}, [held] {
                         const py::gil_scoped_acquire acquire;
-                        return cloudOf("points", arrayOf("points", *held));
+                        return cloudOf(arrayOf("points", *held));
                       }});
   }
   return inputs;
@@ -89,140 +86,91 @@ BuildReport build(SymmetryDatabase& database, const py::object& models, const py
   return database.build(inputs, told);
 }
 
-std::size_t merge(SymmetryDatabase& database, const std::vector<std::filesystem::path>& files) {
-  const std::vector<std::string> names(files.begin(), files.end());
-  const py::gil_scoped_release release;
-  return database.merge(names);
-}
-
-py::array_t<float> rowsOf(const Cloud& cloud) {
-  py::array_t<float> rows({static_cast<py::ssize_t>(cloud.size()), py::ssize_t{3}});
-  Eigen::Map<Points> columns(rows.mutable_data(), 3, static_cast<Eigen::Index>(cloud.size()));
-  for (std::size_t i = 0; i < cloud.size(); ++i) columns.col(static_cast<Eigen::Index>(i)) = cloud[i].getVector3fMap();
-  return rows;
-}
-
 Viewpoint viewpointOf(const py::object& viewpoint) {
   if (viewpoint.is_none()) return {Viewpoint::Mode::None, Eigen::Vector3d::Zero()};
-  if (!py::isinstance<py::str>(viewpoint)) {
-    try {
-      return {Viewpoint::Mode::Given, viewpoint.cast<Eigen::Vector3d>()};
-    } catch (const py::cast_error&) {
-    }
-  } else if (viewpoint.cast<std::string>() == "auto") {
-    return {};
-  }
-  throw std::invalid_argument("viewpoint = " + py::str(viewpoint).cast<std::string>() +
-                              ", must be \"auto\", None or (x, y, z)");
+  const std::optional<Eigen::Vector3d> position = positionOf(viewpoint);
+  return position ? Viewpoint{Viewpoint::Mode::Given, *position} : Viewpoint{};
 }
 
 void addRegistration(py::module_& module) {
-  py::class_<PoseScore>(module, "PoseScore", "What two clouds say about a pose.")
-      .def_readonly("support", &PoseScore::support, "share of the source that lies on the target, in [0, 1]")
-      .def_readonly("conflict", &PoseScore::conflict, "share of either that lies in space seen to be empty, in [0, 2]")
-      .def_property_readonly("merit", &PoseScore::merit, "support - conflict / 2; a perfect pose has 1");
-  py::class_<CloudRegistration>(module, "Registration", "The pose of one cloud relative to another.")
-      .def_property_readonly(
-          "transform", [](const CloudRegistration& r) { return RowMajor4(r.T_target_source.matrix()); },
-          "(4, 4) from the frame of the source to that of the target")
-      .def_property_readonly(
-          "score", [](const CloudRegistration& r) { return r.score; }, "PoseScore of the transform")
+  py::class_<PoseScore>(module, "PoseScore")
+      .def_readonly("support", &PoseScore::support)
+      .def_readonly("conflict", &PoseScore::conflict)
+      .def_property_readonly("merit", &PoseScore::merit);
+  py::class_<CloudRegistration>(module, "Registration")
+      .def_property_readonly("transform",
+                             [](const CloudRegistration& r) { return RowMajor4(r.T_target_source.matrix()); })
+      .def_property_readonly("score", [](const CloudRegistration& r) { return r.score; })
       .def_readonly("on_surface", &CloudRegistration::on_surface)
       .def_property_readonly("converged", [](const CloudRegistration& r) { return r.converged(); })
-      .def_property_readonly(
-          "poses",
-          [](const CloudRegistration& r) {
-            std::vector<std::pair<RowMajor4, PoseScore>> poses;
-            for (const RegisteredPose& pose : r.poses)
-              poses.emplace_back(RowMajor4(pose.T_target_source.matrix()), pose.score);
-            return poses;
-          },
-          "list of (transform, score), best first: poses that symmetry makes equal have like merits")
-      .def_property_readonly(
-          "covariance", [](const CloudRegistration& r) { return r.covariance; },
-          "(6, 6) of the small turn, radians, and way, input units, by which noise and sampling put the pose off, "
-          "frame\n"
-          "of the target; None where no pose was found");
-  module.def(
-      "register", &registerPoints, py::arg("source"), py::arg("target"), py::kw_only(),
-      py::arg("guess") = RowMajor4(RowMajor4::Identity()), py::arg("around") = py::none(),
-      py::arg("source_viewpoint") = "auto", py::arg("target_viewpoint") = "auto", py::arg("seed") = 1,
-      py::arg("threads") = 0,
-      "The pose of a scan, or a whole object, relative to another cloud of it, from any start (Section 5.1).\n\n"
-      "source, target: (N, 3) and (M, 3), same units. guess: (4, 4), tried beside many other poses.\n"
-      "around: (radians, input units), how far the pose may be from the guess, for tracks; None: all poses.\n"
-      "source_viewpoint, target_viewpoint: as in planes().\n"
-      "Returns Registration; poses of a wrong object have a merit below 0.32, those of the right one 0.5 or more.");
+      .def_property_readonly("poses",
+                             [](const CloudRegistration& r) {
+                               std::vector<std::pair<RowMajor4, PoseScore>> poses;
+                               for (const RegisteredPose& pose : r.poses)
+                                 poses.emplace_back(RowMajor4(pose.T_target_source.matrix()), pose.score);
+                               return poses;
+                             })
+      .def_property_readonly("covariance", [](const CloudRegistration& r) { return r.covariance; });
+  module.def("register", &registerPoints, py::arg("source"), py::arg("target"), py::arg("guess"), py::arg("around"),
+             py::arg("source_viewpoint"), py::arg("target_viewpoint"), py::arg("seed"), py::arg("threads"));
 }
 
 void addResults(py::module_& module) {
-  py::class_<ModelMatch>(module, "Match", "A model that is like a shape.")
+  py::class_<ModelMatch>(module, "Match")
       .def_readonly("name", &ModelMatch::name)
-      .def_readonly("distance", &ModelMatch::distance, "1 between shapes as far apart as from what is most like them");
-  py::class_<RecognizedModel>(module, "Recognized", "A model that a scan shows.")
+      .def_readonly("distance", &ModelMatch::distance);
+  py::class_<RecognizedModel>(module, "Recognized")
       .def_readonly("name", &RecognizedModel::name)
-      .def_readonly("score", &RecognizedModel::score, "PoseScore")
-      .def_readonly("confidence", &RecognizedModel::confidence, "probability that the scan shows this model")
-      .def_property_readonly(
-          "transform", [](const RecognizedModel& m) { return RowMajor4(m.T_model_scan.matrix()); },
-          "(4, 4) from the frame of the scan to that of the model");
-  py::class_<BuildReport>(module, "BuildReport", "What Database.build() did.")
-      .def_readonly("num_added", &BuildReport::num_added, "models that were stored")
+      .def_readonly("score", &RecognizedModel::score)
+      .def_readonly("confidence", &RecognizedModel::confidence)
+      .def_property_readonly("transform", [](const RecognizedModel& m) { return RowMajor4(m.T_model_scan.matrix()); });
+  py::class_<BuildReport>(module, "BuildReport")
+      .def_readonly("num_added", &BuildReport::num_added)
       .def_readonly("num_kept", &BuildReport::num_kept)
-      .def_readonly("failures", &BuildReport::failures, "list of (name, reason), in the order of the models")
-      .def_readonly("cancelled", &BuildReport::cancelled, "the progress function returned False");
+      .def_readonly("failures", &BuildReport::failures)
+      .def_readonly("cancelled", &BuildReport::cancelled);
 }
 
 void addDatabase(py::module_& module) {
-  py::class_<SymmetryDatabase>(module, "Database", "Models in one file, found by shape (Section 5.2).")
+  using Unlocked = py::call_guard<py::gil_scoped_release>;
+  py::class_<SymmetryDatabase>(module, "Database")
       .def(py::init([](const std::string& file, const std::string& unit, int threads) {
              DatabaseOptions options;
              options.unit = unit;
              options.num_threads = threads;
              return std::make_unique<SymmetryDatabase>(file, options);
            }),
-           py::arg("file"), py::kw_only(), py::arg("unit") = "", py::arg("threads") = 0,
-           "Opens the file, or makes it. Raises OSError where it is no database that can be used.")
-      .def_property_readonly("names", &SymmetryDatabase::names, "names of all models, sorted")
+           py::arg("file"), py::arg("unit"), py::arg("threads"))
+      .def_property_readonly("names", &SymmetryDatabase::names)
       .def("__len__", &SymmetryDatabase::size)
       .def("__contains__", &SymmetryDatabase::contains)
+      .def("add",
+           [](SymmetryDatabase& database, const std::string& name, const AnyArray& points) {
+             const Cloud cloud = cloudOf(points);
+             const py::gil_scoped_release release;
+             database.add(name, cloud);
+           })
+      .def("build", &build, py::arg("models"), py::arg("progress"))
       .def(
-          "add",
-          [](SymmetryDatabase& database, const std::string& name, const AnyArray& points) {
-            const Cloud cloud = cloudOf("points", points);
-            const py::gil_scoped_release release;
-            database.add(name, cloud);
-          },
-          py::arg("name"), py::arg("points"), "Stores a model, (N, 3) points all around it; on the disk on return.")
-      .def("build", &build, py::arg("models"), py::kw_only(), py::arg("progress") = py::none(),
-           "Stores many models, each as soon as it is described, on all threads.\n\n"
-           "models: dict of name to (N, 3) points, or pairs of both. progress: called with the share done, in [0, 1];\n"
-           "where it returns False the rest is left. Returns BuildReport; a model that cannot be used does not stop\n"
-           "the others.")
-      .def("merge", &merge, py::arg("files"),
-           "Adds all models of other databases, such as parts that several machines built; all of them or none.\n\n"
-           "Returns their number. Raises OSError, naming file and reason, where one is missing, damaged or of another\n"
-           "version or unit, or two have a model of the same name; nothing is changed then.")
-      .def("remove", &SymmetryDatabase::remove, py::arg("name"))
-      .def(
-          "cloud",
-          [](const SymmetryDatabase& database, const std::string& name) { return rowsOf(database.cloud(name)); },
-          py::arg("name"), "(N, 3) points of a model")
+          "merge", [](SymmetryDatabase& d, const std::vector<std::string>& files) { return d.merge(files); },
+          Unlocked())
+      .def("remove", &SymmetryDatabase::remove)
+      .def("cloud", [](const SymmetryDatabase& database,
+                       const std::string& name) { return toRows(database.cloud(name).getMatrixXfMap(3, 4, 0)); })
       .def(
           "match",
           [](const SymmetryDatabase& database, const AnyArray& points, int num_nearest, const py::object& viewpoint) {
-            const Cloud cloud = cloudOf("points", points);
+            const Cloud cloud = cloudOf(points);
             const Viewpoint from = viewpointOf(viewpoint);
             const py::gil_scoped_release release;
             return database.match(cloud, num_nearest, from);
           },
-          py::arg("points"), py::arg("num_nearest") = 10, py::kw_only(), py::arg("viewpoint") = "auto",
-          "The models most like a cloud, in any pose and size: list of Match, nearest first.")
+          py::arg("points"), py::arg("num_nearest"), py::arg("viewpoint"))
       .def(
           "recognize",
           [](const SymmetryDatabase& database, const AnyArray& points, const py::object& viewpoint,
              double min_confidence, int threads) {
-            const Cloud cloud = cloudOf("points", points);
+            const Cloud cloud = cloudOf(points);
             const Viewpoint from = viewpointOf(viewpoint);
             RecognitionOptions options;
             options.min_confidence = min_confidence;
@@ -230,11 +178,7 @@ void addDatabase(py::module_& module) {
             const py::gil_scoped_release release;
             return database.recognize(cloud, options, from);
           },
-          py::arg("points"), py::kw_only(), py::arg("viewpoint") = "auto",
-          py::arg("min_confidence") = RecognitionOptions().min_confidence, py::arg("threads") = 0,
-          "The model that a scan shows, in its own size: list of Recognized, best first; empty for an unknown "
-          "object.\n\n"
-          "min_confidence: least probability of a model that is accepted, in [0, 1].");
+          py::arg("points"), py::arg("viewpoint"), py::arg("min_confidence"), py::arg("threads"));
 }
 
 }  // namespace

@@ -101,7 +101,7 @@ def prepare(name: str, points: Any, num_mesh_points: int = _NUM_MESH_POINTS) -> 
     faces = _faces(points)
     if faces is not None:
         vertices, shift = prepare(name, np.asarray(points.vertices))
-        return core.sample_mesh(vertices, faces, num_mesh_points), shift
+        return core.sample_mesh(vertices, faces, num_mesh_points, seed=1), shift
     for member in ("points", "vertices"):
         if not hasattr(points, "__array__") and hasattr(points, member):
             points = getattr(points, member)
@@ -158,7 +158,7 @@ def _prepare_with_mesh(name: str, points: Any) -> Tuple["NDArray[Any]", "Shift",
     if faces is None:
         return (*prepare(name, points), None)
     vertices, shift = prepare(name, np.asarray(points.vertices))
-    return core.sample_mesh(vertices, faces, _NUM_MESH_POINTS), shift, core.MeshSurface(vertices, faces)
+    return core.sample_mesh(vertices, faces, _NUM_MESH_POINTS, seed=1), shift, core.MeshSurface(vertices, faces)
 
 
 def _seen_from(viewpoint: Viewpoint, shift: "Shift", name: str = "viewpoint") -> Any:

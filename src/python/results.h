@@ -1,4 +1,4 @@
-/// What planes() of the Python module returns.
+/// The classes of results: plain values, of which the package makes its own results.
 #pragma once
 
 #include <pybind11/numpy.h>
@@ -15,11 +15,10 @@ namespace pcl_symmetry::python {
 struct PlaneSearch {
   Detection found;
   std::optional<Eigen::Vector3d> viewpoint;  ///< that was used, frame of the points
-  std::size_t num_rows = 0;                  ///< of the array
   std::vector<std::size_t> rows;             ///< the row of each point; empty: all rows
 };
 
-/// Adds the classes Plane, Axis, Center, View and Planes to the module.
-void addPlaneResults(pybind11::module_& module);
+/// Adds the classes to the module.
+void addResults(pybind11::module_& module);
 
 }  // namespace pcl_symmetry::python
