@@ -52,7 +52,7 @@ std::vector<std::size_t> drawOneOfEachRun(std::size_t num_points, std::size_t ma
   return oneOfEachRun(num_points, max_points, seed);
 }
 
-SeenSpace seenFrom(const Points& points, const Viewpoint& viewpoint, const StoredPose& stored) {
+SeenSpace seenFrom(const Points& points, const Viewpoint& viewpoint, const Eigen::Vector3d& stored, bool is_default) {
   if (viewpoint.mode == Viewpoint::Mode::None) return {};
   if (viewpoint.mode == Viewpoint::Mode::Given) {
     std::optional<Visibility> seen = Visibility::fromPoints(points, viewpoint.position);
@@ -60,10 +60,10 @@ SeenSpace seenFrom(const Points& points, const Viewpoint& viewpoint, const Store
       throw std::invalid_argument("viewpoint: among the points, must see them within 75 degrees of one direction");
     return {std::move(*seen), ViewpointSource::Given};
   }
-  if (!stored.is_default)
-    if (std::optional<Visibility> seen = spaceSeenFrom(points, stored.origin))
+  if (!is_default)
+    if (std::optional<Visibility> seen = spaceSeenFrom(points, stored))
       return {std::move(*seen), ViewpointSource::Stored};
-  std::optional<InferredView> view = inferView(points, stored.origin);
+  std::optional<InferredView> view = inferView(points, stored);
   if (!view) return {};
   return {std::move(view->seen), view->as_stored ? ViewpointSource::Stored : ViewpointSource::Inferred};
 }
@@ -82,34 +82,18 @@ SeenSpace standingOn(const SeenSpace& seen, const Eigen::Vector4d& ground, const
   return seen.withSupport(sign * ground, tolerance * diagonal);
 }
 
-pcl::PointCloud<pcl::PointXYZ>::Ptr cloudOf(const ScannerOutput& scanned) {
-  auto cloud = pcl::make_shared<pcl::PointCloud<pcl::PointXYZ>>(scanned.width, scanned.height);
-  for (std::size_t i = 0; i < cloud->size(); ++i)
-    (*cloud)[i].getVector3fMap() = scanned.pixels.col(static_cast<Eigen::Index>(i));
-  return cloud;
-}
-
 }  // namespace pcl_symmetry::detail
 
 namespace pcl_symmetry {
 
 namespace {
 
-Points finiteOf(const Points& pixels) {
-  Points points(3, pixels.cols());
-  Eigen::Index size = 0;
-  for (Eigen::Index i = 0; i < pixels.cols(); ++i)
-    if (pixels.col(i).allFinite()) points.col(size++) = pixels.col(i);
-  points.conservativeResize(3, size);
-  return points;
-}
-
-SeenSpace spaceOfScene(const detail::ScannerOutput& scene, const Viewpoint& viewpoint, std::size_t max_pixels) {
+SeenSpace spaceOfScene(const pcl::PointCloud<pcl::PointXYZ>& scene, const Viewpoint& viewpoint,
+                       std::size_t max_pixels) {
   const bool asks_data = viewpoint.mode == Viewpoint::Mode::Auto;
-  if (asks_data && scene.height > 1 && scene.width > 1)
-    if (auto seen = detail::seenByOrganizedCloud(scene.pixels, scene.width, scene.height))
-      return {std::move(*seen), ViewpointSource::Rays};
-  const Points points = finiteOf(scene.pixels);
+  if (asks_data && scene.isOrganized() && scene.width > 1)
+    if (auto seen = detail::seenByOrganizedCloud(scene)) return {std::move(*seen), ViewpointSource::Rays};
+  const Points points = detail::selectPoints(scene, nullptr, scene.size(), 0).points;
   if (points.cols() == 0) return {};
   if (!asks_data) {
     auto seen = Visibility::ofScene(points, viewpoint.position, max_pixels);
@@ -117,18 +101,21 @@ SeenSpace spaceOfScene(const detail::ScannerOutput& scene, const Viewpoint& view
     return {std::move(*seen), ViewpointSource::Given};
   }
   // A default origin in the middle of a whole object would be seen once all around.
-  if (auto seen = sceneSeenFrom(points, scene.stored.origin, max_pixels))
-    if (!scene.stored.is_default || seen->numPictures() == 1) return {std::move(*seen), ViewpointSource::Stored};
-  const std::optional<InferredView> view = inferView(points, scene.stored.origin);
+  const Eigen::Vector3d stored = scene.sensor_origin_.head<3>().cast<double>();
+  if (auto seen = sceneSeenFrom(points, stored, max_pixels))
+    if (!detail::hasDefaultSensor(scene) || seen->numPictures() == 1)
+      return {std::move(*seen), ViewpointSource::Stored};
+  const std::optional<InferredView> view = inferView(points, stored);
   if (!view) return {};
   return {*Visibility::ofScene(points, view->position, max_pixels), ViewpointSource::Inferred};
 }
 
 }  // namespace
 
-SeenSpace::SeenSpace(const detail::ScannerOutput& scene, const Viewpoint& viewpoint, std::size_t max_pixels) {
-  if (viewpoint.mode == Viewpoint::Mode::None) return;
-  *this = detail::withBadArguments([&] { return spaceOfScene(scene, viewpoint, max_pixels); });
+SeenSpace SeenSpace::ofScene(const pcl::PointCloud<pcl::PointXYZ>& scene, const Viewpoint& viewpoint,
+                             std::size_t max_pixels) {
+  if (viewpoint.mode == Viewpoint::Mode::None) return {};
+  return detail::withBadArguments([&] { return spaceOfScene(scene, viewpoint, max_pixels); });
 }
 
 SeenSpace SeenSpace::together(const std::vector<SeenSpace>& spaces) {

@@ -103,16 +103,14 @@ void fillEmptyPixels(int width, int height, std::vector<float>& depths) {
 
 }  // namespace
 
-std::optional<Visibility> seenByOrganizedCloud(const Points& pixels, int width, int height) {
-  pcl::Indices finite;
-  for (Eigen::Index i = 0; i < pixels.cols(); ++i)
-    if (pixels.col(i).allFinite()) finite.push_back(static_cast<pcl::index_t>(i));
+std::optional<Visibility> seenByOrganizedCloud(const Cloud& frame) {
+  const auto width = static_cast<int>(frame.width), height = static_cast<int>(frame.height);
+  const pcl::Indices finite = selectPoints(frame, nullptr, frame.size(), 0).indices;
   if (finite.size() < fewest_points) return std::nullopt;
   const std::size_t stride = 1 + finite.size() / most_points;
   pcl::Indices used;
   for (std::size_t i = 0; i < finite.size(); i += stride) used.push_back(finite[i]);
-  Points points(3, static_cast<Eigen::Index>(used.size()));
-  for (std::size_t i = 0; i < used.size(); ++i) points.col(i) = pixels.col(used[i]);
+  const Points points = selectPoints(frame, &used, used.size(), 0).points;
   const BoundingBall ball = boundingBall(points);
   if (!(ball.radius > 0.0)) return std::nullopt;
 
@@ -148,19 +146,20 @@ std::optional<Visibility> seenByOrganizedCloud(const Points& pixels, int width, 
 
   // Back to the input frame; depths are in its units.
   projection.col(3) = projection.col(3) * ball.radius - projection.leftCols<3>() * ball.center;
-  std::vector<float> depths(pixels.cols(), std::numeric_limits<float>::quiet_NaN());
+  std::vector<float> depths(frame.size(), no_depth);
   for (const pcl::index_t i : finite)
-    depths[i] = static_cast<float>(projection.row(2).dot(Eigen::Vector4d(pixels.col(i).cast<double>().homogeneous())));
+    depths[i] = static_cast<float>(
+        projection.row(2).dot(Eigen::Vector4d(frame[i].getVector3fMap().cast<double>().homogeneous())));
   const DepthImage image{width, height, depths, 1.0 / focal};
   fillEmptyPixels(width, height, depths);
   return Visibility(projection, width, height, std::move(depths)).withDepthErrors(sensorError(image));
 }
 
-DepthFrame depthFrame(const ScannerOutput& scanned, int num_threads) {
-  std::optional<Visibility> seen = seenByOrganizedCloud(scanned.pixels, scanned.width, scanned.height);
+DepthFrame depthFrame(const Cloud::ConstPtr& cloud, int num_threads) {
+  std::optional<Visibility> seen = seenByOrganizedCloud(*cloud);
   if (!seen) return {};
   DepthFrame frame{nullptr, {std::move(*seen), ViewpointSource::Rays}};
-  const Cloud::ConstPtr cloud = cloudOf(scanned), filtered = withoutDepthErrors(cloud, frame.seen, num_threads);
+  const Cloud::ConstPtr filtered = withoutDepthErrors(cloud, frame.seen, num_threads);
   if (filtered != cloud) frame = {filtered, SeenSpace(*filtered)};
   return frame;
 }

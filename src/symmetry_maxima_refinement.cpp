@@ -11,20 +11,6 @@
 
 namespace pcl_symmetry::detail {
 
-Detection foundPlanes(const Points& points, const GaussianEdt* edt, const SymmetryMap& map,
-                      const DetectionOptions& options, const MakeSearch& search, const std::optional<Visibility>& seen,
-                      const std::optional<Points>& normals, bool may_be_rings) {
-  PlaneInput input(points, seen ? &*seen : nullptr);
-  if (normals) input.normals = &*normals;
-  if (edt) {
-    input.edt = edt;
-    input.map = &map;
-  }
-  input.make_search = search;
-  input.may_be_rings = may_be_rings;
-  return detectPlanes(input, options);
-}
-
 Detection planesAsPublished(const Points& points, const GaussianEdt* edt, const SymmetryMap& map,
                             const DetectionOptions& options) {
   Detection found;

@@ -2,7 +2,6 @@
 
 #include <cstdint>
 #include <memory>
-#include <optional>
 #include <vector>
 
 #include "pcl_symmetry/core/axial_transform.h"
@@ -76,7 +75,7 @@ public:
     return detail::withBadArguments([&] {
       if (!prepare()) return AxisMap();
       const AxisGrid grid(num_theta_, num_phi_, num_offset_, edt_->center(), edt_->radius());
-      map_ = axialTransform(*edt_, grid, transform_, seen());
+      map_ = axialTransform(*edt_, grid, transform_, this->seen());
       return map_;
     });
   }
@@ -86,7 +85,7 @@ public:
   /// \throws pcl::BadArgumentException as compute().
   CenterMap computeCenters(int num_centers = 64) {
     return detail::withBadArguments(
-        [&] { return prepare() ? centralTransform(*edt_, num_centers, transform_, seen()) : CenterMap(); });
+        [&] { return prepare() ? centralTransform(*edt_, num_centers, transform_, this->seen()) : CenterMap(); });
   }
 
   /// \param count greatest number of axes, >= 1.
@@ -102,7 +101,6 @@ protected:
     ScanAnalysis<PointT>::clearResults();
     edt_.reset();
     map_ = {};
-    visibility_.reset();
   }
 
 private:
@@ -115,19 +113,16 @@ private:
     }
     const Points points = this->selectInput(transform_.seed, transform_.num_threads);
     if (points.cols() == 0) return false;
-    visibility_ = this->seenSpace(points);
+    this->seenSpace(points);
     edt_ = std::make_shared<const GaussianEdt>(points, edt_options_);
     return true;
   }
-
-  const Visibility* seen() const { return visibility_ ? &*visibility_ : nullptr; }
 
   GaussianEdtOptions edt_options_;
   AxialTransformOptions transform_;
   int num_theta_ = 16, num_phi_ = 64, num_offset_ = 32;
   std::shared_ptr<const GaussianEdt> edt_;
   AxisMap map_;
-  std::optional<Visibility> visibility_;
 };
 
 }  // namespace pcl_symmetry

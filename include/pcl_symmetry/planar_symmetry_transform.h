@@ -4,7 +4,6 @@
 
 #include <cstdint>
 #include <memory>
-#include <optional>
 
 #include "pcl_symmetry/core/planar_transform.h"
 #include "pcl_symmetry/impl/cloud_analysis.hpp"
@@ -137,19 +136,21 @@ void PlanarSymmetryTransform<PointT>::setInputMesh(const pcl::PolygonMesh& mesh,
 template <typename PointT>
 SymmetryMap PlanarSymmetryTransform<PointT>::compute() {
   return detail::withBadArguments([&] {
+    Points points;
+    const Visibility* seen = nullptr;
     if (this->volume()) {
       const auto f = this->selectVolume(edt_options_.num_cells, transform_.sampled.num_threads);
       if (!f) return SymmetryMap();
+      points = f->bodyPoints(false);
       edt_ = std::make_shared<const GaussianEdt>(*f, edt_options_);
-      const PlaneGrid grid(num_theta_, num_phi_, num_radius_, edt_->center(), edt_->radius());
-      return planarTransform(*edt_, grid, centerOfMass(f->bodyPoints(false)), transform_);
+    } else {
+      points = this->selectInput(transform_.sampled.seed, transform_.sampled.num_threads);
+      if (points.cols() == 0) return SymmetryMap();
+      seen = this->seenSpace(points);
+      edt_ = std::make_shared<const GaussianEdt>(points, edt_options_);
     }
-    const Points points = this->selectInput(transform_.sampled.seed, transform_.sampled.num_threads);
-    if (points.cols() == 0) return SymmetryMap();
-    const std::optional<Visibility> seen = this->seenSpace(points);
-    edt_ = std::make_shared<const GaussianEdt>(points, edt_options_);
     const PlaneGrid grid(num_theta_, num_phi_, num_radius_, edt_->center(), edt_->radius());
-    return planarTransform(*edt_, grid, centerOfMass(points), transform_, seen ? &*seen : nullptr);
+    return planarTransform(*edt_, grid, centerOfMass(points), transform_, seen);
   });
 }
 

@@ -1,15 +1,12 @@
 #pragma once
 
-#include <pcl/search/search.h>
-
-#include <cstdint>
 #include <memory>
 #include <optional>
 #include <vector>
 
 #include "pcl_symmetry/core/detect_planes.h"
 #include "pcl_symmetry/core/mesh_refinement.h"
-#include "pcl_symmetry/impl/cloud_analysis.hpp"
+#include "pcl_symmetry/impl/pcl_search.hpp"
 
 namespace PCL_SYMMETRY_EXPORTS pcl_symmetry {
 
@@ -22,15 +19,15 @@ namespace PCL_SYMMETRY_EXPORTS pcl_symmetry {
 /// The library holds this class for PCL's point types with x, y and z. For other point types define PCL_NO_PRECOMPILE
 /// before the first include, as with PCL's own classes.
 template <typename PointT>
-class SymmetryMaximaRefinement : public ScanAnalysis<PointT> {
+class SymmetryMaximaRefinement : public SearchingAnalysis<ScanAnalysis<PointT>, DetectionOptions> {
 public:
   using Ptr = pcl::shared_ptr<SymmetryMaximaRefinement<PointT>>;
   using ConstPtr = pcl::shared_ptr<const SymmetryMaximaRefinement<PointT>>;
-  using SearchPtr = typename pcl::search::Search<PointT>::Ptr;
   using typename pcl::PCLBase<PointT>::PointCloudConstPtr;
 
   /// Uses at most 50 000 points, see setMaxPoints().
-  SymmetryMaximaRefinement() : ScanAnalysis<PointT>("SymmetryMaximaRefinement", 50'000) {}
+  SymmetryMaximaRefinement()
+      : SearchingAnalysis<ScanAnalysis<PointT>, DetectionOptions>("SymmetryMaximaRefinement", 50'000) {}
 
   /// Sets the cloud to analyze; clears the results of the last one, and the map that was given for it.
   void setInputCloud(const PointCloudConstPtr& cloud) override {
@@ -42,51 +39,32 @@ public:
 
   using CloudAnalysis<PointT>::setInputVolume;
 
-  /// Sets every option at once.
-  /// \throws pcl::BadArgumentException "field = value, must be rule", as all setters here.
-  void setOptions(const DetectionOptions& options) {
-    change([&](DetectionOptions& changed) { changed = options; });
-  }
-  const DetectionOptions& getOptions() const { return options_; }  ///< see setOptions()
-
   /// \param min_confidence a plane of at least this confidence is a symmetry, in [0, 1]; default 0.5.
   void setMinConfidence(double min_confidence) {
-    change([&](DetectionOptions& changed) { changed.min_confidence = min_confidence; });
+    this->change([&](DetectionOptions& changed) { changed.min_confidence = min_confidence; });
   }
   /// \param tolerance how far a symmetric surface may be off, as a share of the greatest distance between two points, in
   /// (0, 0.1], whatever the sensor resolves; default 0.01, or what a depth camera (up to 0.03) or sparse points (up to
   /// 0.02) resolve.
   void setTolerance(double tolerance) {
-    change([&](DetectionOptions& changed) { changed.tolerance = changed.most_tolerance = tolerance; });
+    this->change([&](DetectionOptions& changed) { changed.tolerance = changed.most_tolerance = tolerance; });
   }
   /// \param approximate also reports maxima of less confidence: approximate symmetries and symmetries of parts, marked
   /// by SymmetryPlane::kind; default false.
   void setApproximate(bool approximate) { options_.approximate = approximate; }
   /// \param max_planes greatest number of planes, >= 1; default 64.
   void setMaxPlanes(int max_planes) {
-    change([&](DetectionOptions& changed) { changed.max_planes = max_planes; });
+    this->change([&](DetectionOptions& changed) { changed.max_planes = max_planes; });
   }
   /// \param num_cells cells of the distance transform along each side, in [8, 512]; default 64.
   void setGridSize(int num_cells) {
-    change([&](DetectionOptions& changed) { changed.num_cells = num_cells; });
+    this->change([&](DetectionOptions& changed) { changed.num_cells = num_cells; });
   }
   /// \param sigma width of the Gaussian, input units, >= 0; 0 (default) = two cells, or the spacing of the points where
   /// that is more.
   void setSigma(double sigma) {
-    change([&](DetectionOptions& changed) { changed.sigma = sigma; });
+    this->change([&](DetectionOptions& changed) { changed.sigma = sigma; });
   }
-  void setRandomSeed(std::uint64_t seed) { options_.seed = seed; }  ///< of all random draws
-  /// \param num_threads >= 0; 0 = one per core (default). The result does not depend on it.
-  void setNumberOfThreads(int num_threads) {
-    change([&](DetectionOptions& changed) { changed.num_threads = num_threads; });
-  }
-
-  /// Finds the closest points of Iterative Symmetric Points by a search of PCL in place of FLANN's k-d tree.
-  /// \param search is given a cloud of the points that decide: the points used without copies, of large clouds a subset.
-  /// pcl::search::KdTree and FlannSearch are called from all threads, others from one at a time.
-  /// pcl::search::OrganizedNeighbor is not used, because reflected points lie behind what the sensor saw. PCL_WARN says
-  /// so. Null: FLANN (default).
-  void setSearchMethod(const SearchPtr& search) { search_ = search; }
 
   /// \param use_input_normals uses the normals of point types that have them (default), where they are finite and not
   /// zero; false, and for other point types: all normals are estimated from the neighbors.
@@ -131,13 +109,8 @@ protected:
   }
 
 private:
-  template <typename Change>
-  void change(const Change& change) {
-    detail::changeOptions(options_, change);
-  }
+  using SearchingAnalysis<ScanAnalysis<PointT>, DetectionOptions>::options_;
 
-  DetectionOptions options_;
-  SearchPtr search_;
   bool use_input_normals_ = true;
   bool as_published_ = false;
   SymmetryMap map_;  // that was given

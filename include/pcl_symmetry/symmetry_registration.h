@@ -55,11 +55,10 @@ struct CloudRegistration : RegisteredPose {
   /// Whether a pose was found that both clouds support: its merit, whose width grows with the spacing of the points,
   /// and the surface itself, so that points too few to tell a wrong object from the right one do not converge.
   bool converged(double min_merit = 0.4) const {
-    return covariance.has_value() && score.merit() >= min_merit && on_surface >= kLeastOnSurface;
+    constexpr double least_on_surface =
+        0.45;  // more than wrong objects of PSB reach, less than right ones of 1000 points
+    return covariance.has_value() && score.merit() >= min_merit && on_surface >= least_on_surface;
   }
-  /// measured: wrong whole objects of PSB reach 0.3 with 100 to 400 points and 0.4 with thousands; right ones have 0.2
-  /// to 0.3 with 100, which is not enough to know, 0.4 to 0.6 with 400 and 0.6 or more with 1000.
-  static constexpr double kLeastOnSurface = 0.45;
 
   /// Lower limit of the share of the source's points (of the target's, where that alone was seen from one side) that
   /// lie on the surface of the other cloud in the best pose, within 2 % of its radius or what noise asks for, in [0,
@@ -69,14 +68,11 @@ struct CloudRegistration : RegisteredPose {
   /// Distinct poses by falling merit, the best one first, at most PoseSearchOptions::max_poses: those that symmetry
   /// makes equal have like merits.
   std::vector<RegisteredPose> poses;
-  /// How uncertain the best pose is: the covariance of the small motion m = (w, t) of the target's frame for which
-  /// exp(m) T_target_source is the true pose, so that a point x of the aligned source belongs at x + w x x + t. Order:
-  /// rotation vector w about the axes of the target's frame through its origin, radians; translation t, input units of
-  /// the target. From the Hessian of the point-to-plane distances at the result and their scatter: it tells of noise
-  /// and sampling. A pose that symmetry makes equal, a wrong pose, and what both clouds have wrong in common are not in
-  /// it; where noise is a third of the spacing of the points, true deviations are about twice as large. Directions that
-  /// the surface leaves open have the variance of a uniform rotation and of a way by the radius. Nothing where no pose
-  /// was found.
+  /// How uncertain the best pose is: the covariance of the small motion (w, t) of the target's frame that makes it
+  /// true: a point x of the aligned source belongs at x + w x x + t. Rotation vector w, radians, then translation t,
+  /// input units. From the Hessian and the scatter of the point-to-plane distances: it tells of noise and sampling, not
+  /// of equal or wrong poses. Directions that the surface leaves open have the variance of a uniform rotation and of a
+  /// way by the radius. Nothing where no pose was found.
   std::optional<Eigen::Matrix<double, 6, 6>> covariance;
   std::vector<std::pair<std::string, double>> timing_ms;  ///< stages in order
 };
@@ -123,41 +119,18 @@ CloudRegistration registerClouds(const Points& source, const std::optional<Visib
 /// Registers a cloud to another one from any pose by their symmetries (Section 5.1 of the paper): a partial scan to a
 /// model of its object, two whole objects, or a whole object to a scan.
 ///
-/// This is a pcl::Registration that needs no guess: align() it like PCL's own classes. Candidates are the poses that
-/// bring the symmetry frames of both clouds together in one of the ways that symmetry leaves open, the guess, and
-/// rotations spread evenly. A candidate is judged by the points of one cloud that lie on the other, and by the points
-/// that lie where the scanner saw that there is nothing. The best candidates are refined by PCL's point-to-plane ICP.
+/// This is a pcl::Registration that needs no guess. It honors setIndices(), which chooses points of the source (the
+/// others tell what hides them), setMaxCorrespondenceDistance() (default: from the data), setMaximumIterations() and
+/// the epsilons of the refinement. Points that are not finite are left out, also by getFitnessScore(), unless
+/// setSearchMethodTarget() gave it another tree; align() uses no such tree. Estimations, rejectors, RANSAC, the
+/// Euclidean fitness epsilon and the visualization callback have no effect. The target is prepared by the first align()
+/// after it was set, and kept: a change of its points needs setInputTarget() again.
 ///
-/// Honors setIndices, setMaxCorrespondenceDistance (default: chosen from the data), setMaximumIterations and the
-/// epsilons of the refinement. Points that are not finite are left out. The target is prepared by the first align()
-/// after it was set, and kept: a change of the points in that cloud needs setInputTarget() again, as PCL's own classes
-/// need it.
-///
-/// "Nothing fits" is an answer: where nothing fits, or a cloud holds no answer, hasConverged() is false, the
-/// transformation is the identity, the output is the source as it was, getReason() says why, and getPoses() still lists
-/// the best poses that were found. Nothing is thrown; PCL_WARN prints the reason.
-///
-/// The contract of pcl::Registration holds with these exceptions:
-/// - align() without a guess does not start at the identity: it looks for the pose among all;
-/// - the output is not at the last pose of an iteration where align() has not converged, but the source as it was, and
-///   the transformation is the identity;
-/// - getFitnessScore() leaves out points that are not finite, unless setSearchMethodTarget() gave it another tree;
-/// - setEuclideanFitnessEpsilon(), setRANSACIterations(), setRANSACOutlierRejectionThreshold(),
-///   setTransformationEstimation(), setCorrespondenceEstimation(), correspondence rejectors and
-///   registerVisualizationCallback() have no effect, and the trees of setSearchMethodTarget() and
-///   setSearchMethodSource() are not used by align(); getFitnessScore() uses that of the target;
-/// - setIndices() chooses points of the source, and the output holds these points, as in PCL; where something lies
-///   beside them it tells what hides them.
+/// Where nothing fits, or a cloud holds no answer, hasConverged() is false, the transformation is the identity, the
+/// output is the source as it was, getReason() says why, which PCL_WARN prints, and getPoses() lists what was found.
 ///
 /// The library holds this class for PCL's point types with x, y and z. For other point types define PCL_NO_PRECOMPILE
 /// before the first include, as with PCL's own classes.
-///
-/// \code
-/// pcl_symmetry::SymmetryRegistration<pcl::PointXYZ, pcl::PointXYZ> registration;
-/// registration.setInputSource(scan);
-/// registration.setInputTarget(model);
-/// registration.align(aligned);
-/// \endcode
 template <typename PointSource, typename PointTarget, typename Scalar = float>
 class SymmetryRegistration : public pcl::Registration<PointSource, PointTarget, Scalar> {
 public:
@@ -183,9 +156,8 @@ public:
     target_viewpoint_ = viewpoint;
     prepared_target_.reset();
   }
-  /// \param min_merit a pose of at least this getScore().merit() has converged, if its points lie on the surface, too
-  /// (CloudRegistration::converged()), in [-1, 1]; default 0.4: scans of benchmark models, also scans with noise and
-  /// holes, reach 0.5 at their own model and stay below 0.32 at models of other kinds.
+  /// \param min_merit least getScore().merit() of a pose that has converged, see CloudRegistration::converged(), in
+  /// [-1, 1]; default 0.4, between scans at their own model and at models of other kinds.
   /// \throws pcl::BadArgumentException "field = value, must be rule", as all setters here.
   void setMinMerit(double min_merit) {
     if (!(min_merit >= -1.0 && min_merit <= 1.0)) {
@@ -223,17 +195,17 @@ public:
 
   /// \return how well the clouds agree with the transformation of the last align(), or with the best pose that was
   /// found where nothing fits.
-  const PoseScore& getScore() const { return score_; }
+  const PoseScore& getScore() const { return result_.score; }
   /// \return the best poses that the last align() found, see CloudRegistration::poses; that of the transformation is the
   /// first one. Empty where a cloud held no answer.
-  const std::vector<RegisteredPose>& getPoses() const { return poses_; }
+  const std::vector<RegisteredPose>& getPoses() const { return result_.poses; }
   /// \return how uncertain the transformation of the last align() is, see CloudRegistration::covariance; nothing where
   /// it did not converge.
-  const std::optional<Eigen::Matrix<double, 6, 6>>& getCovariance() const { return covariance_; }
+  const std::optional<Eigen::Matrix<double, 6, 6>>& getCovariance() const { return result_.covariance; }
   /// \return why the last align() did not converge, one sentence; empty where it did.
   const std::string& getReason() const { return reason_; }
   /// \return stages of the last align() and their milliseconds, in order.
-  const std::vector<std::pair<std::string, double>>& getTiming() const { return timing_ms_; }
+  const std::vector<std::pair<std::string, double>>& getTiming() const { return result_.timing_ms; }
 
 protected:
   using Base::converged_;
@@ -262,14 +234,10 @@ private:
   Viewpoint source_viewpoint_, target_viewpoint_;
   CloudRegistrationOptions options_;
   std::optional<RegistrationTarget> prepared_target_;
-  // A lower value calls models of other kinds a fit, a higher one refuses scans with noise and holes.
   double min_merit_ = 0.4;
   std::size_t max_points_ = 10'000;
-  PoseScore score_;
-  std::vector<RegisteredPose> poses_;
-  std::optional<Eigen::Matrix<double, 6, 6>> covariance_;
+  CloudRegistration result_;  // of the last align(); without covariance where it did not converge
   std::string reason_;
-  std::vector<std::pair<std::string, double>> timing_ms_;
 };
 
 }  // namespace pcl_symmetry

@@ -2,14 +2,11 @@
 
 #include <pcl/PointIndices.h>
 #include <pcl/PolygonMesh.h>
-#include <pcl/search/search.h>
 
-#include <cstdint>
 #include <vector>
 
 #include "pcl_symmetry/core/closest_point_search.h"
 #include "pcl_symmetry/core/surface_segmentation.h"
-#include "pcl_symmetry/impl/cloud_analysis.hpp"
 #include "pcl_symmetry/impl/pcl_search.hpp"
 
 namespace PCL_SYMMETRY_EXPORTS pcl_symmetry {
@@ -28,15 +25,15 @@ bool hasArea(const pcl::PolygonMesh& mesh);
 /// (setInputMesh(); indices and labels count its polygons then), whichever was set last. The cloud has to show the
 /// surface from all sides, because thickness and line of sight need an inside.
 template <typename PointT>
-class SymmetrySegmentation : public CloudAnalysis<PointT> {
+class SymmetrySegmentation : public SearchingAnalysis<CloudAnalysis<PointT>, SegmentationOptions> {
 public:
   using Ptr = pcl::shared_ptr<SymmetrySegmentation<PointT>>;
   using ConstPtr = pcl::shared_ptr<const SymmetrySegmentation<PointT>>;
-  using SearchPtr = typename pcl::search::Search<PointT>::Ptr;
   using typename pcl::PCLBase<PointT>::PointCloudConstPtr;
 
   /// Draws at most 30 000 points, see setMaxPoints(); the others follow the closest of them.
-  SymmetrySegmentation() : CloudAnalysis<PointT>("SymmetrySegmentation", 30'000, 20) {}
+  SymmetrySegmentation()
+      : SearchingAnalysis<CloudAnalysis<PointT>, SegmentationOptions>("SymmetrySegmentation", 30'000, 20) {}
 
   /// Sets the cloud to segment, in place of the last cloud or mesh.
   void setInputCloud(const PointCloudConstPtr& cloud) override {
@@ -49,28 +46,10 @@ public:
     clearResults();
   }
 
-  /// Sets every option at once.
-  /// \throws pcl::BadArgumentException "field = value, must be rule", as all setters here.
-  void setOptions(const SegmentationOptions& options) {
-    change([&](SegmentationOptions& changed) { changed = options; });
-  }
-  const SegmentationOptions& getOptions() const { return options_; }  ///< see setOptions()
-
   /// \param num_parts number of parts where the shape allows it, >= 0; 0 = as many as the method finds (default).
   void setNumberOfParts(int num_parts) {
-    change([&](SegmentationOptions& changed) { changed.num_parts = num_parts; });
+    this->change([&](SegmentationOptions& changed) { changed.num_parts = num_parts; });
   }
-  void setRandomSeed(std::uint64_t seed) { options_.seed = seed; }  ///< of all random draws
-  /// \param num_threads >= 0; 0 = one per core (default). The result does not depend on it.
-  void setNumberOfThreads(int num_threads) {
-    change([&](SegmentationOptions& changed) { changed.num_threads = num_threads; });
-  }
-
-  /// Finds neighbors and the closest points of Iterative Symmetric Points by a search of PCL in place of FLANN's k-d
-  /// tree.
-  /// \param search is given a cloud of the points used, then clouds of samples of the surface and of its parts, and is
-  /// called as in SymmetryMaximaRefinement::setSearchMethod(). Null: FLANN (default).
-  void setSearchMethod(const SearchPtr& search) { search_ = search; }
 
   /// \param segments is filled with the segments, by falling area: indices into the cloud or the polygons of the mesh.
   /// Empty where the input holds no answer, see getReason().
@@ -99,16 +78,12 @@ protected:
   }
 
 private:
-  template <typename Change>
-  void change(const Change& change) {
-    detail::changeOptions(options_, change);
-  }
+  using SearchingAnalysis<CloudAnalysis<PointT>, SegmentationOptions>::options_;
+
   void segmentMesh();
   void segmentCloud();
 
-  SegmentationOptions options_;
   pcl::PolygonMesh::ConstPtr mesh_;
-  SearchPtr search_;
   Segmentation segmentation_;
   std::vector<int> labels_;
 };
@@ -135,7 +110,7 @@ void SymmetrySegmentation<PointT>::segmentMesh() {
     return;
   }
   SegmentationOptions options = options_;
-  options.make_search = detail::searchOf<PointT>(search_, "SymmetrySegmentation", options_.num_threads);
+  options.make_search = this->makeSearch();
   segmentation_ = segmentSurface(meshGraph(*mesh_), options);
   labels_ = segmentation_.labels;
 }
@@ -146,7 +121,7 @@ void SymmetrySegmentation<PointT>::segmentCloud() {
   if (points.cols() == 0) return;
   const pcl::Indices& used = this->getUsedIndices();
   SegmentationOptions options = options_;
-  options.make_search = detail::searchOf<PointT>(search_, "SymmetrySegmentation", options_.num_threads);
+  options.make_search = this->makeSearch();
   const MakeSearch make_search = options.make_search ? options.make_search : makeFlannSearch;
   constexpr int num_neighbors = 12;  // that each point is joined with
   const std::vector<std::vector<int>> neighbors =

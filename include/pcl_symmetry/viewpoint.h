@@ -4,10 +4,10 @@
 #include <pcl/point_types.h>
 
 #include <Eigen/Core>
-#include <Eigen/Geometry>
 #include <cstddef>
 #include <memory>
 #include <optional>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
@@ -39,34 +39,23 @@ enum class ViewpointSource {
 
 namespace detail {
 
-/// The pose that a cloud stores for its sensor.
-struct StoredPose {
-  Eigen::Vector3d origin = Eigen::Vector3d::Zero();  ///< frame of the points
-  Eigen::Quaternionf orientation = Eigen::Quaternionf::Identity();
-  bool is_default = true;  ///< nobody may have set it: at 0 0 0, not turned. That is no evidence by itself.
-};
-
+/// \return the positions of a cloud with its rows, columns and sensor: of PointXYZ the cloud itself, which has to
+/// outlive them.
 template <typename PointT>
-StoredPose storedPose(const pcl::PointCloud<PointT>& cloud) {
-  const Eigen::Vector3d origin = cloud.sensor_origin_.template head<3>().template cast<double>();
-  return {origin, cloud.sensor_orientation_, origin.isZero(0.0) && cloud.sensor_orientation_.vec().isZero(0.0f)};
-}
-
-/// A cloud as its scanner delivered it.
-struct ScannerOutput {
-  Points pixels;          ///< 3 x (width * height), row by row, not finite where there is no point
-  int width, height = 1;  ///< height 1: points without order
-  StoredPose stored;
-
-  template <typename PointT>
-  explicit ScannerOutput(const pcl::PointCloud<PointT>& cloud)
-      : pixels(3, static_cast<Eigen::Index>(cloud.size())),
-        width(static_cast<int>(cloud.width)),
-        height(static_cast<int>(cloud.height)),
-        stored(storedPose(cloud)) {
-    for (std::size_t i = 0; i < cloud.size(); ++i) pixels.col(static_cast<Eigen::Index>(i)) = cloud[i].getVector3fMap();
+pcl::PointCloud<pcl::PointXYZ>::ConstPtr positionsOf(const pcl::PointCloud<PointT>& cloud) {
+  if constexpr (std::is_same_v<PointT, pcl::PointXYZ>) {
+    return {&cloud, [](const void*) {}};
+  } else {
+    auto positions = pcl::make_shared<pcl::PointCloud<pcl::PointXYZ>>();
+    positions->resize(cloud.size());
+    for (std::size_t i = 0; i < cloud.size(); ++i) (*positions)[i].getVector3fMap() = cloud[i].getVector3fMap();
+    positions->width = cloud.width;
+    positions->height = cloud.height;
+    positions->sensor_origin_ = cloud.sensor_origin_;
+    positions->sensor_orientation_ = cloud.sensor_orientation_;
+    return positions;
   }
-};
+}
 
 }  // namespace detail
 
@@ -93,7 +82,7 @@ public:
   template <typename PointT>
   explicit SeenSpace(const pcl::PointCloud<PointT>& scene, const Viewpoint& viewpoint = {},
                      std::size_t max_pixels = Visibility::kMaxPixels)
-      : SeenSpace(detail::ScannerOutput(scene), viewpoint, max_pixels) {}
+      : SeenSpace(ofScene(*detail::positionsOf(scene), viewpoint, max_pixels)) {}
 
   /// What several scanners saw, such as the scans of a turntable in one frame: free is what any of them saw to be free.
   /// \param spaces those without a viewpoint add nothing.
@@ -115,7 +104,8 @@ public:
   bool asksForSupport() const { return visibility_ && asks_for_support_; }
 
 private:
-  SeenSpace(const detail::ScannerOutput& scene, const Viewpoint& viewpoint, std::size_t max_pixels);
+  static SeenSpace ofScene(const pcl::PointCloud<pcl::PointXYZ>& scene, const Viewpoint& viewpoint,
+                           std::size_t max_pixels);
 
   std::optional<Visibility> visibility_;
   ViewpointSource source_ = ViewpointSource::None;

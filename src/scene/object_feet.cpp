@@ -26,28 +26,25 @@ Eigen::AlignedBox3f boxAround(const SymmetryScene::Cloud& scene, const pcl::Indi
   return box;
 }
 
-double heightOver(const SupportingPlane& support, const pcl::PointXYZ& point) {
-  return support.coefficients.dot(point.getVector3fMap().cast<double>().homogeneous().eval());
-}
-
 /// For each point of a scene the squared distance from the nearest cluster, and its number; -1: none.
 using NearestClusters = std::vector<std::pair<float, int>>;
 
 /// Offers a cluster the points of the supports that may be its feet.
 void offerFeet(const SymmetryScene::Cloud::ConstPtr& scene, const std::vector<SupportingPlane>& supports,
-               const pcl::Indices& cluster, int number, double spacing, double distance, NearestClusters& nearest) {
-  const Eigen::AlignedBox3f near = boxAround(*scene, cluster, distance);
+               const pcl::Indices& cluster, int number, const SceneDistances& distances, NearestClusters& nearest) {
+  const Eigen::AlignedBox3f near = boxAround(*scene, cluster, distances.cluster);
   pcl::KdTreeFLANN<pcl::PointXYZ> tree(false);
   tree.setInputCloud(scene, pcl::make_shared<pcl::Indices>(cluster));
   pcl::Indices closest(1);
   std::vector<float> sq_distance(1);
   for (const SupportingPlane& support : supports) {
-    const double least = riseOfNoise(*scene, support, cluster, spacing, distance);
+    const double least = riseOfNoise(*scene, support, cluster, distances);
     for (const pcl::index_t i : support.indices) {
-      if (!near.contains(Eigen::Vector3f((*scene)[i].getVector3fMap())) || heightOver(support, (*scene)[i]) <= least)
+      if (!near.contains(Eigen::Vector3f((*scene)[i].getVector3fMap())) ||
+          heightOver(support.coefficients, (*scene)[i]) <= least)
         continue;
       if (tree.nearestKSearch((*scene)[i], 1, closest, sq_distance) < 1) continue;
-      if (sq_distance[0] <= distance * distance && sq_distance[0] < nearest[i].first)
+      if (sq_distance[0] <= distances.cluster * distances.cluster && sq_distance[0] < nearest[i].first)
         nearest[i] = {sq_distance[0], number};
     }
   }
@@ -56,21 +53,22 @@ void offerFeet(const SymmetryScene::Cloud::ConstPtr& scene, const std::vector<Su
 }  // namespace
 
 double riseOfNoise(const SymmetryScene::Cloud& scene, const SupportingPlane& support, const pcl::Indices& cluster,
-                   double spacing, double distance) {
-  const Eigen::AlignedBox3f around = boxAround(scene, cluster, kScene.around * distance);
+                   const SceneDistances& distances) {
+  const Eigen::AlignedBox3f around = boxAround(scene, cluster, kScene.around * distances.cluster);
   std::vector<double> heights;
   for (const pcl::index_t i : support.indices)
     if (around.contains(Eigen::Vector3f(scene[i].getVector3fMap())))
-      heights.push_back(std::abs(heightOver(support, scene[i])));
+      heights.push_back(std::abs(heightOver(support.coefficients, scene[i])));
   if (heights.size() < kScene.least_around) return std::numeric_limits<double>::infinity();
-  return std::max(kScene.rises_at_least * spacing, kScene.rises * kDeviationPerMedian * median(std::move(heights)));
+  return std::max(kScene.rises_at_least * distances.spacing,
+                  kScene.rises * kDeviationPerMedian * median(std::move(heights)));
 }
 
 void returnFeet(const SymmetryScene::Cloud::ConstPtr& scene, std::vector<SupportingPlane>& supports,
-                std::vector<pcl::Indices>& clusters, double spacing, double distance) {
+                std::vector<pcl::Indices>& clusters, const SceneDistances& distances) {
   NearestClusters nearest(scene->size(), {std::numeric_limits<float>::max(), -1});
   for (std::size_t k = 0; k < clusters.size(); ++k)
-    offerFeet(scene, supports, clusters[k], static_cast<int>(k), spacing, distance, nearest);
+    offerFeet(scene, supports, clusters[k], static_cast<int>(k), distances, nearest);
   for (SupportingPlane& support : supports) {
     pcl::Indices rest;
     for (const pcl::index_t i : support.indices) {

@@ -57,9 +57,7 @@ std::optional<Consensus> greatestPlane(const SymmetryScene::Cloud::ConstPtr& sce
 Eigen::Vector4d fitted(const SymmetryScene::Cloud& scene, const Consensus& plane) {
   Eigen::Vector4d coefficients = plane.coefficients;
   for (int round = 0; round < kScene.fit_rounds; ++round) {
-    const auto height = [&](pcl::index_t i) {
-      return std::abs(coefficients.dot(scene[i].getVector3fMap().cast<double>().homogeneous().eval()));
-    };
+    const auto height = [&](pcl::index_t i) { return std::abs(heightOver(coefficients, scene[i])); };
     std::vector<double> heights;
     for (const pcl::index_t i : plane.inliers) heights.push_back(height(i));
     const double most = kScene.fit_deviations * median(std::move(heights));
@@ -115,13 +113,16 @@ pcl::Indices without(const pcl::Indices& points, const pcl::Indices& removed, st
 bool isRemainder(const SymmetryScene::Cloud& scene, const pcl::Indices& cluster, const SupportingPlane& support,
                  double distance) {
   const auto num_near = std::count_if(cluster.begin(), cluster.end(), [&](pcl::index_t i) {
-    const double height = support.coefficients.dot(scene[i].getVector3fMap().cast<double>().homogeneous().eval());
-    return std::abs(height) <= kScene.remainder * distance;
+    return std::abs(heightOver(support.coefficients, scene[i])) <= kScene.remainder * distance;
   });
   return static_cast<double>(num_near) > kScene.remainder_share * static_cast<double>(cluster.size());
 }
 
 }  // namespace
+
+double heightOver(const Eigen::Vector4d& plane, const pcl::PointXYZ& point) {
+  return plane.dot(point.getVector3fMap().cast<double>().homogeneous().eval());
+}
 
 Points pointsOf(const SymmetryScene::Cloud& scene, const pcl::Indices& indices) {
   Points points(3, static_cast<Eigen::Index>(indices.size()));
@@ -129,7 +130,7 @@ Points pointsOf(const SymmetryScene::Cloud& scene, const pcl::Indices& indices) 
   return points;
 }
 
-SurfaceScale surfaceScale(const SymmetryScene::Cloud& scene, const pcl::Indices& points) {
+SceneDistances sceneDistances(const SymmetryScene::Cloud& scene, const pcl::Indices& points) {
   const Points surface = pointsOf(scene, points);
   const std::size_t stride = 1 + (points.size() - 1) / kScene.scale_samples;
   Points places(3, static_cast<Eigen::Index>((points.size() + stride - 1) / stride));
@@ -139,19 +140,16 @@ SurfaceScale surfaceScale(const SymmetryScene::Cloud& scene, const pcl::Indices&
   std::vector<int> closest;
   std::vector<float> sq_distances;
   search->search(places, num_neighbors, closest, sq_distances);
-  std::vector<float> spacing(static_cast<std::size_t>(places.cols()));
-  for (std::size_t i = 0; i < spacing.size(); ++i)
+  std::vector<float> spacings(static_cast<std::size_t>(places.cols()));
+  for (std::size_t i = 0; i < spacings.size(); ++i)
     // As LocalGeometry::spacing: pi r^2 holds the neighbors within r.
-    spacing[i] =
+    spacings[i] =
         std::sqrt(static_cast<float>(kPi) * sq_distances[(i + 1) * static_cast<std::size_t>(num_neighbors) - 1] /
                   static_cast<float>(std::max(1, num_neighbors - 1)));
-  return {median(std::move(spacing)), median(localGeometryAt(surface, *search, places).roughness)};
-}
-
-SceneDistances sceneDistances(const SymmetryScene::Cloud& scene, const pcl::Indices& points) {
-  const SurfaceScale scale = surfaceScale(scene, points);
-  return {scale.spacing, kScene.plane_spacings * scale.spacing + kScene.plane_roughnesses * scale.roughness,
-          kScene.cluster_spacings * scale.spacing};
+  const double spacing = median(std::move(spacings));
+  const double roughness = median(localGeometryAt(surface, *search, places).roughness);
+  return {spacing, kScene.plane_spacings * spacing + kScene.plane_roughnesses * roughness,
+          kScene.cluster_spacings * spacing};
 }
 
 SeenSpace seenOfObject(const SeenSpace& seen, const SymmetryScene::Cloud& scene,
@@ -170,15 +168,14 @@ SeenSpace seenOfObject(const SeenSpace& seen, const SymmetryScene::Cloud& scene,
     if (static_cast<double>(num_above) < kScene.above_share * static_cast<double>(object.size())) continue;
     // A symmetric surface may be off by the tolerance, and by noise. A wider margin would leave unknown space below a
     // table, where a reflection costs nothing.
-    const double rise = riseOfNoise(scene, support, object, distances.spacing, distances.cluster);
+    const double rise = riseOfNoise(scene, support, object, distances);
     result = result.withSupport(support.coefficients, std::min(most, rise + off));
   }
   return result;
 }
 
-SeenSpace standingInScene(const SeenSpace& seen, const ScannerOutput& scanned, const pcl::Indices& part,
+SeenSpace standingInScene(const SeenSpace& seen, const SymmetryScene::Cloud::ConstPtr& scene, const pcl::Indices& part,
                           double tolerance) {
-  const SymmetryScene::Cloud::ConstPtr scene = cloudOf(scanned);
   // A face of the object is no table.
   std::vector<char> is_part(scene->size(), 0);
   for (const pcl::index_t i : part) is_part[i] = 1;
@@ -230,7 +227,7 @@ SupportingPlane supportOf(const SymmetryScene::Cloud& scene, const pcl::Indices&
   SupportingPlane support{plane, {}};
   std::size_t num_above = 0;
   for (const pcl::index_t i : points) {
-    const double height = plane.dot(scene[i].getVector3fMap().cast<double>().homogeneous().eval());
+    const double height = heightOver(plane, scene[i]);
     if (std::abs(height) <= distance) support.indices.push_back(i);
     num_above += height > 0.0 ? 1 : 0;
   }
@@ -247,11 +244,11 @@ pcl::Indices withoutSupports(const pcl::Indices& points, const std::vector<Suppo
 }
 
 std::vector<pcl::Indices> findClusters(const SymmetryScene::Cloud::ConstPtr& scene, const pcl::Indices& points,
-                                       const std::vector<SupportingPlane>& supports, double plane_distance,
-                                       double distance, int min_points) {
+                                       const std::vector<SupportingPlane>& supports, const SceneDistances& distances,
+                                       int min_points) {
   if (points.empty()) return {};
   pcl::EuclideanClusterExtraction<pcl::PointXYZ> extraction;
-  extraction.setClusterTolerance(distance);
+  extraction.setClusterTolerance(distances.cluster);
   extraction.setMinClusterSize(min_points);
   extraction.setInputCloud(scene);
   extraction.setIndices(pcl::make_shared<pcl::Indices>(points));
@@ -260,7 +257,7 @@ std::vector<pcl::Indices> findClusters(const SymmetryScene::Cloud::ConstPtr& sce
   std::vector<pcl::Indices> clusters;
   for (pcl::PointIndices& cluster : found) {
     const bool is_remainder = std::any_of(supports.begin(), supports.end(), [&](const SupportingPlane& support) {
-      return isRemainder(*scene, cluster.indices, support, plane_distance);
+      return isRemainder(*scene, cluster.indices, support, distances.plane);
     });
     if (!is_remainder) clusters.push_back(std::move(cluster.indices));
   }

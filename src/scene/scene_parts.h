@@ -14,22 +14,18 @@ namespace pcl_symmetry::detail {
 /// \return the positions of some points of a scene.
 Points pointsOf(const SymmetryScene::Cloud& scene, const pcl::Indices& indices);
 
-/// How far points of one surface are apart: what distances of a scene follow from.
-struct SurfaceScale {
-  double spacing = 0.0;    ///< of neighboring points, median, input units
-  double roughness = 0.0;  ///< root mean square distance of neighbors from their tangent plane, median
-};
-
-/// \param points indices of finite points, at least one.
-SurfaceScale surfaceScale(const SymmetryScene::Cloud& scene, const pcl::Indices& points);
+/// \param plane unit normal and offset, frame of the scene.
+/// \return signed distance, input units.
+double heightOver(const Eigen::Vector4d& plane, const pcl::PointXYZ& point);
 
 /// Distances that decide what belongs together, input units.
 struct SceneDistances {
-  double spacing;  ///< of neighboring points
+  double spacing;  ///< of neighboring points, median
   double plane;    ///< of the points of a supporting plane
   double cluster;  ///< between the points of one object
 };
 
+/// From the spacing of the points and how far neighbors are from their tangent plane.
 /// \param points indices of finite points, at least one.
 SceneDistances sceneDistances(const SymmetryScene::Cloud& scene, const pcl::Indices& points);
 
@@ -58,12 +54,11 @@ SupportingPlane supportOf(const SymmetryScene::Cloud& scene, const pcl::Indices&
 pcl::Indices withoutSupports(const pcl::Indices& points, const std::vector<SupportingPlane>& supports,
                              std::size_t scene_size);
 
-/// Points closer to each other than \p distance, without what is left of the supporting planes.
+/// Points close to each other, without what is left of the supporting planes.
 /// \param points indices of finite points that belong to no supporting plane.
-/// \param plane_distance of the supporting planes.
 /// \return clusters of at least \p min_points, most points first.
 std::vector<pcl::Indices> findClusters(const SymmetryScene::Cloud::ConstPtr& scene, const pcl::Indices& points,
-                                       const std::vector<SupportingPlane>& supports, double plane_distance,
-                                       double distance, int min_points);
+                                       const std::vector<SupportingPlane>& supports, const SceneDistances& distances,
+                                       int min_points);
 
 }  // namespace pcl_symmetry::detail

@@ -17,7 +17,6 @@
 #include "core/base/parallel.h"
 #include "core/geometry/principal_axes.h"
 #include "core/scan/sensor_noise.h"
-#include "scene/scene_parts.h"
 #include "scene/scene_rules.h"
 
 namespace pcl_symmetry::detail {
@@ -81,7 +80,7 @@ public:
     const Points points = pointsOf(*scene.frame, indices_);
     diagonal_ = (points.rowwise().maxCoeff() - points.rowwise().minCoeff()).cast<double>().norm();
     center_ = points.rowwise().mean().cast<double>();
-    double tolerance = std::max(scene.spacing, scene.tolerance * diagonal_);
+    double tolerance = std::max(scene.distances.spacing, scene.tolerance * diagonal_);
     if (seen_.visibility()) tolerance = std::max(tolerance, resolvedTolerance(points, *seen_.visibility()));
     reach_ = 2.0 * tolerance;
   }
@@ -242,7 +241,8 @@ private:
       for (const pcl::index_t i : reflected_[k]) {
         Eigen::Vector4f normal;
         float curvature = 0.0f;
-        if (tree_.radiusSearch((*scene_.frame)[i], kScene.normal_spacings * scene_.spacing, around, sq_distances) < 3 ||
+        if (tree_.radiusSearch((*scene_.frame)[i], kScene.normal_spacings * scene_.distances.spacing, around,
+                               sq_distances) < 3 ||
             !pcl::computePointNormal(*scene_.frame, around, normal, curvature))
           continue;
         const Eigen::Vector3d aside = up.cross(normal.head<3>().cast<double>());
@@ -295,14 +295,13 @@ private:
     if (scene_.supports.empty()) return true;
     const SupportingPlane& support = nearestSupport();
     return footOf(support, *pieces_[1]) - footOf(support, *pieces_[0]) >
-           std::max(2.0 * scene_.plane_distance, kScene.hangs * diagonal_);
+           std::max(2.0 * scene_.distances.plane, kScene.hangs * diagonal_);
   }
 
   /// Heights of the foot and the top of a piece, without flying pixels.
   std::array<double, 2> heightsOf(const SupportingPlane& support, const SceneObject& piece) const {
     std::vector<double> heights;
-    for (const pcl::index_t i : piece.indices)
-      heights.push_back(support.coefficients.dot(positionOf(*scene_.frame, i).homogeneous().eval()));
+    for (const pcl::index_t i : piece.indices) heights.push_back(heightOver(support.coefficients, (*scene_.frame)[i]));
     const auto num_cut = static_cast<std::size_t>(kScene.trimmed * static_cast<double>(heights.size()));
     const auto [foot, top] = trimmedExtent(std::move(heights), num_cut);
     return {foot, top};
@@ -327,7 +326,7 @@ bool touch(const JoiningScene& scene, const SceneObject& larger, const SceneObje
   std::vector<float> sq_distance(1);
   return std::any_of(smaller.indices.begin(), smaller.indices.end(), [&](pcl::index_t i) {
     return tree.nearestKSearch((*scene.frame)[i], 1, closest, sq_distance) > 0 &&
-           sq_distance[0] <= scene.cluster_distance * scene.cluster_distance;
+           sq_distance[0] <= scene.distances.cluster * scene.distances.cluster;
   });
 }
 

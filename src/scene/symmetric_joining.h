@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "pcl_symmetry/symmetry_scene.h"
+#include "scene/scene_parts.h"
 
 namespace pcl_symmetry::detail {
 
@@ -11,11 +12,9 @@ namespace pcl_symmetry::detail {
 struct JoiningScene {
   SymmetryScene::Cloud::ConstPtr frame;
   const std::vector<SupportingPlane>& supports;
-  double spacing;           ///< of neighboring points, input units
-  double plane_distance;    ///< of the points of a supporting plane, input units
-  double cluster_distance;  ///< between points of one object, input units
-  double tolerance;         ///< how far a symmetric surface may be off, as a share of the diagonal
-  int num_threads;          ///< 0 = one per core
+  SceneDistances distances;
+  double tolerance;  ///< how far a symmetric surface may be off, as a share of the diagonal
+  int num_threads;   ///< 0 = one per core
   /// What the sensor saw, for an object with these points.
   std::function<SeenSpace(const pcl::Indices&)> seen_of;
   /// The planes and axes of an object with these points, one of several that are analyzed at once, by several threads.

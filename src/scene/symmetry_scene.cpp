@@ -64,14 +64,12 @@ std::optional<ReflectionPlane> completingPlane(const SceneObject& object, const 
 class ObjectAnalysis {
 public:
   /// \param found has what the sensor saw and the supporting planes.
-  /// \param spacing of the points, input units.
-  ObjectAnalysis(const Cloud::ConstPtr& scene, const SceneAnalysis& found, double spacing, SceneOptions options,
-                 const SymmetryDatabase* database)
-      : scene_(scene), found_(found), spacing_(spacing), options_(std::move(options)), database_(database) {}
+  ObjectAnalysis(const Cloud::ConstPtr& scene, const SceneAnalysis& found, const detail::SceneDistances& distances,
+                 SceneOptions options, const SymmetryDatabase* database)
+      : scene_(scene), found_(found), distances_(distances), options_(std::move(options)), database_(database) {}
 
   SeenSpace seenOf(const pcl::Indices& object) const {
-    return detail::seenOfObject(*found_.seen, *scene_, found_.supports, object,
-                                {spacing_, found_.plane_distance, found_.cluster_distance},
+    return detail::seenOfObject(*found_.seen, *scene_, found_.supports, object, distances_,
                                 options_.detection.tolerance);
   }
 
@@ -130,7 +128,7 @@ private:
 
   const Cloud::ConstPtr& scene_;
   const SceneAnalysis& found_;
-  const double spacing_;
+  const detail::SceneDistances& distances_;
   const SceneOptions options_;
   const SymmetryDatabase* database_;
 };
@@ -215,35 +213,36 @@ SceneAnalysis SymmetryScene::compute() const {
   }
   analysis.timing_ms = {{"seen_space", seen_ms}, {"filter", watch.lap()}};
   // The filter leaves the bends of a camera's picture: the distances follow from the frame as it was.
-  const detail::SceneDistances distances = detail::sceneDistances(*input_, points);
-  analysis.plane_distance = options_.plane_distance > 0.0 ? options_.plane_distance : distances.plane;
-  analysis.cluster_distance = options_.cluster_distance > 0.0 ? options_.cluster_distance : distances.cluster;
-  if (!(analysis.plane_distance > 0.0 && analysis.cluster_distance > 0.0)) {
+  detail::SceneDistances distances = detail::sceneDistances(*input_, points);
+  if (options_.plane_distance > 0.0) distances.plane = options_.plane_distance;
+  if (options_.cluster_distance > 0.0) distances.cluster = options_.cluster_distance;
+  analysis.plane_distance = distances.plane;
+  analysis.cluster_distance = distances.cluster;
+  if (!(distances.plane > 0.0 && distances.cluster > 0.0)) {
     detail::warnOfNoAnswer("SymmetryScene", "scene: all points at one place");
     return analysis;
   }
   if (ground_)
-    analysis.supports = {detail::supportOf(*frame, points, viewpoint, *ground_, analysis.plane_distance)};
+    analysis.supports = {detail::supportOf(*frame, points, viewpoint, *ground_, distances.plane)};
   else
-    analysis.supports = detail::findSupports(frame, points, viewpoint, analysis.plane_distance);
+    analysis.supports = detail::findSupports(frame, points, viewpoint, distances.plane);
   timed("supports");
   const pcl::Indices rest = detail::withoutSupports(points, analysis.supports, frame->size());
-  std::vector<pcl::Indices> clusters = detail::findClusters(frame, rest, analysis.supports, analysis.plane_distance,
-                                                            analysis.cluster_distance, options_.min_points);
+  std::vector<pcl::Indices> clusters =
+      detail::findClusters(frame, rest, analysis.supports, distances, options_.min_points);
   const auto is_bulge = [&](const pcl::Indices& cluster) {
     return detail::isBulge(*frame, cluster, analysis.seen->visibility(), options_.detection.tolerance,
-                           analysis.cluster_distance);
+                           distances.cluster);
   };
   clusters.erase(std::remove_if(clusters.begin(), clusters.end(), is_bulge), clusters.end());
   Pieces pieces = piecesOf(*frame, clusters, viewpoint, distances.spacing, options_);
-  detail::returnFeet(frame, analysis.supports, pieces.indices, distances.spacing, analysis.cluster_distance);
+  detail::returnFeet(frame, analysis.supports, pieces.indices, distances);
   timed("clusters");
   const auto of = [&](std::size_t num_objects) {
-    return ObjectAnalysis(frame, analysis, distances.spacing, ofOneObject(options_, num_objects), database_.get());
+    return ObjectAnalysis(frame, analysis, distances, ofOneObject(options_, num_objects), database_.get());
   };
   detail::JoinedPieces joined = detail::joinBySymmetry(
-      {frame, analysis.supports, distances.spacing, analysis.plane_distance, analysis.cluster_distance,
-       options_.detection.tolerance, options_.num_threads,
+      {frame, analysis.supports, distances, options_.detection.tolerance, options_.num_threads,
        [&](const pcl::Indices& object) { return of(1).seenOf(object); },
        [&](const pcl::Indices& object, std::size_t num_objects) { return of(num_objects).withPlanes(object); }},
       pieces.indices, pieces.cluster_of);

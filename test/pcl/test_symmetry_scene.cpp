@@ -53,16 +53,15 @@ SymmetryMaximaRefinement<pcl::PointXYZ> ofBox(const Cloud::ConstPtr& frame, int 
   return refinement;
 }
 
-TEST(SymmetryMaximaRefinement, APartOfAFrameKnowsTheTableThatItStandsOn) {
+TEST(StandingInScene, APartOfAFrameKnowsTheTableThatItStandsOn) {
   const Cloud::ConstPtr frame = pictureOf(twoBoxes().scan);
-  const SeenSpace seen =
-      detail::standingInScene(SeenSpace(*frame), detail::ScannerOutput(*frame), twoBoxes().pixelsOf(1), 0.01);
+  const SeenSpace seen = detail::standingInScene(SeenSpace(*frame), frame, twoBoxes().pixelsOf(1), 0.01);
   ASSERT_NE(seen.visibility(), nullptr);
   ASSERT_EQ(seen.visibility()->supports().size(), 1u);
   EXPECT_LT((seen.visibility()->supports()[0].head<3>() - Eigen::Vector3d::UnitZ()).norm(), 1e-3);
 }
 
-TEST(SymmetryMaximaRefinement, ErrorsOfAFrameAreTakenOutOfItsParts) {
+TEST(WithoutDepthErrors, IsWhatPartsOfAFrameDoThemselves) {
   const Cloud::ConstPtr noisy = withDepthErrors(twoBoxes().scan);
   auto own = ofBox(noisy, 1), shared = ofBox(withoutDepthErrors(noisy, SeenSpace(*noisy)), 1);
   const std::vector<SymmetryPlane> planes = own.compute(), of_filtered = shared.compute();

@@ -35,10 +35,10 @@ void setOrigin(Cloud& cloud, const Eigen::Vector3d& origin) {
   cloud.sensor_origin_ << origin.cast<float>(), 0.0f;
 }
 
-TEST(Viewpoint, TheRaysOfAnOrganizedCloudAreThoseOfItsCamera) {
+TEST(SeenByOrganizedCloud, TheRaysAreThoseOfItsCamera) {
   for (std::uint64_t seed = 1; seed <= 4; ++seed) {
     const Scan scan = randomScan(seed);
-    const auto seen = detail::seenByOrganizedCloud(scan.pixels, scan.width, scan.height);
+    const auto seen = detail::seenByOrganizedCloud(*pictureOf(scan));
     EXPECT_TRUE(seen) << seed;
     if (!seen) continue;
     const Visibility truth = scan.visibility();
@@ -61,7 +61,7 @@ TEST(Viewpoint, TheRaysOfAnOrganizedCloudAreThoseOfItsCamera) {
   }
 }
 
-TEST(SymmetryMaximaRefinement, UsesAViewpointThatIsGiven) {
+TEST(ScanAnalysis, UsesAViewpointThatIsGiven) {
   const Scan scan = test::scan(test::blockBox(), {2.5, -3.0, 2.0});
   SymmetryMaximaRefinement<pcl::PointXYZ> refinement;
   refinement.setInputCloud(toCloud(scan.cloud()));

@@ -55,6 +55,8 @@ protected:
   CloudAnalysis(std::string name, std::size_t max_points, std::int64_t least_max_points = 2)
       : name_(std::move(name)), max_points_(max_points), least_max_points_(least_max_points) {}
 
+  const std::string& getClassName() const { return name_; }
+
   /// Forgets everything that was found in the cloud; options stay.
   virtual void clearResults() {
     used_indices_.clear();
@@ -159,19 +161,21 @@ public:
   void setSeenSpace(const SeenSpace::ConstPtr& seen) { seen_space_ = seen; }
 
   /// \return whether the last analysis used a viewpoint.
-  bool usedViewpoint() const { return viewpoint_source_ != ViewpointSource::None; }
+  bool usedViewpoint() const { return used_space_.visibility() != nullptr; }
   /// \return where the last analysis had its viewpoint from.
-  ViewpointSource getViewpointSource() const { return viewpoint_source_; }
+  ViewpointSource getViewpointSource() const { return used_space_.source(); }
   /// \return the viewpoint that the last analysis used, input frame; nothing where it used none.
-  const std::optional<Eigen::Vector3d>& getUsedViewpoint() const { return used_viewpoint_; }
+  std::optional<Eigen::Vector3d> getUsedViewpoint() const {
+    if (!usedViewpoint()) return std::nullopt;
+    return used_space_.visibility()->viewpoint();
+  }
 
 protected:
   using CloudAnalysis<PointT>::CloudAnalysis;
 
   void clearResults() override {
     CloudAnalysis<PointT>::clearResults();
-    viewpoint_source_ = ViewpointSource::None;
-    used_viewpoint_.reset();
+    used_space_ = {};
   }
 
   /// Selects points, from which the errors of a depth camera are taken out: rows and columns tell them.
@@ -180,7 +184,7 @@ protected:
   Points selectInput(std::uint64_t seed, int num_threads, bool as_measured = false) {
     const bool asks_data = !as_measured && !seen_space_ && viewpoint_.mode == Viewpoint::Mode::Auto;
     frame_ = asks_data && this->input_ && this->input_->isOrganized() && this->input_->width > 1
-                 ? detail::depthFrame(detail::ScannerOutput(*this->input_), num_threads)
+                 ? detail::depthFrame(detail::positionsOf(*this->input_), num_threads)
                  : detail::DepthFrame();
     return frame_.filtered ? this->selectFrom(*frame_.filtered, seed) : CloudAnalysis<PointT>::selectInput(seed);
   }
@@ -189,31 +193,30 @@ protected:
   bool hasGivenSupport() const { return ground_ || (seen_space_ && !seen_space_->asksForSupport()); }
 
   /// \param points selected from the input, 3 x N, N >= 1.
-  /// \return what the scanner saw; nothing without a viewpoint.
+  /// \return what the scanner saw; null without a viewpoint.
   /// \throws std::invalid_argument where the points surround the viewpoint that was given.
-  std::optional<Visibility> seenSpace(const Points& points) {
+  const Visibility* seenSpace(const Points& points) {
     const bool is_part = this->use_indices_ && this->indices_->size() < this->input_->size();
     const double tolerance = DetectionOptions().tolerance;
     const detail::DepthFrame frame = std::exchange(frame_, {});
-    SeenSpace seen = seen_space_               ? *seen_space_
-                     : frame.seen.visibility() ? frame.seen
-                                               : detail::findSeenSpace(*this->input_, points, viewpoint_, is_part);
-    if (is_part && seen.asksForSupport())
-      seen = detail::standingInScene(seen, detail::ScannerOutput(*this->input_), *this->indices_, tolerance);
-    if (ground_) seen = detail::standingOn(seen, *ground_, points, tolerance);
-    viewpoint_source_ = seen.source();
-    used_viewpoint_.reset();
-    if (seen.visibility()) used_viewpoint_ = seen.visibility()->viewpoint();
-    return detail::visibilityOf(seen);
+    used_space_ = seen_space_               ? *seen_space_
+                  : frame.seen.visibility() ? frame.seen
+                                            : detail::findSeenSpace(*this->input_, points, viewpoint_, is_part);
+    if (is_part && used_space_.asksForSupport())
+      used_space_ =
+          detail::standingInScene(used_space_, detail::positionsOf(*this->input_), *this->indices_, tolerance);
+    if (ground_) used_space_ = detail::standingOn(used_space_, *ground_, points, tolerance);
+    return seen();
   }
+  /// \return what seenSpace() returned last; null where the input that was selected since then has none.
+  const Visibility* seen() const { return used_space_.visibility(); }
 
 private:
   Viewpoint viewpoint_;
   std::optional<Eigen::Vector4d> ground_;
   SeenSpace::ConstPtr seen_space_;
   detail::DepthFrame frame_;  // of the analysis that runs
-  ViewpointSource viewpoint_source_ = ViewpointSource::None;
-  std::optional<Eigen::Vector3d> used_viewpoint_;
+  SeenSpace used_space_;      // by the last analysis
 };
 
 }  // namespace pcl_symmetry

@@ -121,16 +121,22 @@ std::optional<Points> normalsOf(const pcl::PointCloud<PointT>& cloud, const pcl:
 }
 
 /// The rays of an organized cloud from a pinhole camera.
-/// \param pixels 3 x (width * height), row by row, NaN where there is no point.
 /// \return nothing where the rows and columns are not those of such a camera.
-std::optional<Visibility> seenByOrganizedCloud(const Points& pixels, int width, int height);
+std::optional<Visibility> seenByOrganizedCloud(const pcl::PointCloud<pcl::PointXYZ>& cloud);
 
 /// Seen, free and unknown space of points without rows and columns.
 /// \param points 3 x N, finite, N >= 1.
-/// \param stored is used by Viewpoint::Mode::Auto: where the points can be seen from there; a default one only where the
-/// points show by themselves that they are a single view, which the stored viewpoint explains as well as any.
+/// \param stored viewpoint, for Viewpoint::Mode::Auto: where the points can be seen from there; a default one only where
+/// the points show by themselves that they are a single view, which the stored viewpoint explains as well as any.
+/// \param is_default nobody may have set it: that is no evidence by itself.
 /// \throws std::invalid_argument where the points surround a viewpoint that was given.
-SeenSpace seenFrom(const Points& points, const Viewpoint& viewpoint, const StoredPose& stored);
+SeenSpace seenFrom(const Points& points, const Viewpoint& viewpoint, const Eigen::Vector3d& stored, bool is_default);
+
+/// \return whether a cloud has its sensor at 0 0 0, not rotated.
+template <typename PointT>
+bool hasDefaultSensor(const pcl::PointCloud<PointT>& cloud) {
+  return cloud.sensor_origin_.template head<3>().isZero(0.0f) && cloud.sensor_orientation_.vec().isZero(0.0f);
+}
 
 /// Seen, free and unknown space of a cloud.
 /// \param points the points of the cloud that are analyzed, 3 x N, finite, N >= 1.
@@ -141,16 +147,11 @@ SeenSpace findSeenSpace(const pcl::PointCloud<PointT>& cloud, const Points& poin
                         bool is_part = false) {
   if (viewpoint.mode == Viewpoint::Mode::None) return {};
   if (is_part) return SeenSpace(cloud, viewpoint);
-  if (viewpoint.mode == Viewpoint::Mode::Auto && cloud.isOrganized() && cloud.width > 1) {
-    const ScannerOutput scanned(cloud);
-    if (auto seen = seenByOrganizedCloud(scanned.pixels, scanned.width, scanned.height))
-      return {std::move(*seen), ViewpointSource::Rays};
-  }
-  return seenFrom(points, viewpoint, storedPose(cloud));
+  if (viewpoint.mode == Viewpoint::Mode::Auto && cloud.isOrganized() && cloud.width > 1)
+    if (auto seen = seenByOrganizedCloud(*positionsOf(cloud))) return {std::move(*seen), ViewpointSource::Rays};
+  return seenFrom(points, viewpoint, cloud.sensor_origin_.template head<3>().template cast<double>(),
+                  hasDefaultSensor(cloud));
 }
-
-/// \return the pixels as points with rows and columns.
-pcl::PointCloud<pcl::PointXYZ>::Ptr cloudOf(const ScannerOutput& scanned);
 
 /// An organized cloud whose rows and columns are those of a depth camera.
 struct DepthFrame {
@@ -159,7 +160,7 @@ struct DepthFrame {
 };
 
 /// \param num_threads 0 = one per core.
-DepthFrame depthFrame(const ScannerOutput& scanned, int num_threads);
+DepthFrame depthFrame(const pcl::PointCloud<pcl::PointXYZ>::ConstPtr& cloud, int num_threads);
 
 /// \return the plane with a unit normal.
 /// \throws pcl::BadArgumentException for a zero normal or a value that is not finite.
@@ -176,8 +177,8 @@ SeenSpace standingOn(const SeenSpace& seen, const Eigen::Vector4d& ground, const
 /// consensus finds among the other points, none of it is.
 /// \param part indices of its points, at least one of them finite.
 /// \param tolerance how far a symmetric surface may be off, as a share of the diameter.
-SeenSpace standingInScene(const SeenSpace& seen, const ScannerOutput& scene, const pcl::Indices& part,
-                          double tolerance);
+SeenSpace standingInScene(const SeenSpace& seen, const pcl::PointCloud<pcl::PointXYZ>::ConstPtr& scene,
+                          const pcl::Indices& part, double tolerance);
 
 /// \return nothing where there is no viewpoint.
 inline std::optional<Visibility> visibilityOf(const SeenSpace& seen) {

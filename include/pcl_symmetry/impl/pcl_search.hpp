@@ -5,14 +5,15 @@
 #include <pcl/search/kdtree.h>
 #include <pcl/search/organized.h>
 
+#include <cstdint>
 #include <mutex>
-#include <optional>
 #include <stdexcept>
 #include <string>
 #include <typeinfo>
 #include <vector>
 
 #include "pcl_symmetry/core/closest_point_search.h"
+#include "pcl_symmetry/impl/cloud_analysis.hpp"
 
 namespace PCL_SYMMETRY_EXPORTS pcl_symmetry {
 
@@ -87,5 +88,52 @@ MakeSearch searchOf(const typename pcl::search::Search<PointT>::Ptr& search, con
 }
 
 }  // namespace detail
+
+/// An analysis with a struct of options, which finds the closest points by a search.
+/// \param Analysis CloudAnalysis or ScanAnalysis of a point type.
+template <typename Analysis, typename Options>
+class SearchingAnalysis : public Analysis {
+public:
+  using PointT = typename Analysis::PointCloud::PointType;
+  using SearchPtr = typename pcl::search::Search<PointT>::Ptr;
+
+  /// Sets every option at once.
+  /// \throws pcl::BadArgumentException "field = value, must be rule", as all setters here.
+  void setOptions(const Options& options) {
+    change([&](Options& changed) { changed = options; });
+  }
+  const Options& getOptions() const { return options_; }            ///< see setOptions()
+  void setRandomSeed(std::uint64_t seed) { options_.seed = seed; }  ///< of all random draws
+  /// \param num_threads >= 0; 0 = one per core (default). The result does not depend on it.
+  void setNumberOfThreads(int num_threads) {
+    change([&](Options& changed) { changed.num_threads = num_threads; });
+  }
+
+  /// Finds the closest points by a search of PCL in place of FLANN's k-d tree: those of Iterative Symmetric Points, the
+  /// neighbors that SymmetrySegmentation joins, and for SymmetryAlignment those of the axes of turns of a scan
+  /// (FrameOptions::turns).
+  /// \param search is given clouds of the points used without copies, of large clouds a subset, and of parts of them.
+  /// pcl::search::KdTree and FlannSearch are called from all threads, others from one at a time.
+  /// pcl::search::OrganizedNeighbor is not used, because reflected points lie behind what the sensor saw. PCL_WARN says
+  /// so. Null: FLANN (default).
+  void setSearchMethod(const SearchPtr& search) { search_ = search; }
+
+protected:
+  using Analysis::Analysis;
+
+  template <typename Change>
+  void change(const Change& change) {
+    detail::changeOptions(options_, change);
+  }
+  /// \return null where the library's own search is used.
+  MakeSearch makeSearch() const {
+    return detail::searchOf<PointT>(search_, this->getClassName(), options_.num_threads);
+  }
+
+  Options options_;
+
+private:
+  SearchPtr search_;
+};
 
 }  // namespace pcl_symmetry

@@ -5,22 +5,14 @@
 #include <optional>
 
 #include "pcl_symmetry/core/volume_planes.h"
-#include "pcl_symmetry/impl/pcl_search.hpp"
 #include "pcl_symmetry/symmetry_maxima_refinement.h"
 
 namespace PCL_SYMMETRY_EXPORTS pcl_symmetry {
 
 namespace detail {
 
-/// What does not depend on the type of the points of SymmetryMaximaRefinement::compute().
+/// The planes as published.
 /// \param edt,map of these points; edt null: the map is computed.
-/// \param search null: the library's own.
-/// \param may_be_rings the points may be those of a LiDAR's rings: their upright box decides where they are no surface.
-Detection foundPlanes(const Points& points, const GaussianEdt* edt, const SymmetryMap& map,
-                      const DetectionOptions& options, const MakeSearch& search, const std::optional<Visibility>& seen,
-                      const std::optional<Points>& normals, bool may_be_rings);
-
-/// The same as published.
 Detection planesAsPublished(const Points& points, const GaussianEdt* edt, const SymmetryMap& map,
                             const DetectionOptions& options);
 
@@ -56,13 +48,16 @@ std::vector<SymmetryPlane> SymmetryMaximaRefinement<PointT>::compute() {
       found_ = detail::planesAsPublished(samples_, edt_.get(), map_, options_);
       return found_.planes;
     }
-    const MakeSearch search = detail::searchOf<PointT>(search_, "SymmetryMaximaRefinement", options_.num_threads);
-    const std::optional<Visibility> seen = this->seenSpace(samples_);
+    PlaneInput input(samples_, this->seenSpace(samples_));
     const std::optional<Points> normals =
         use_input_normals_ ? detail::normalsOf(*input_, this->getUsedIndices()) : std::nullopt;
-    const bool may_be_rings = this->hasGivenSupport() && this->getViewpointSource() != ViewpointSource::Rays;
-    found_ = detail::foundPlanes(samples_, edt_.get(), map_, options_, search, seen, normals, may_be_rings);
-    if (mesh_ && !seen) refineOnMesh(*mesh_, found_, options_);
+    if (normals) input.normals = &*normals;
+    input.edt = edt_.get();
+    input.map = edt_ ? &map_ : nullptr;
+    input.make_search = this->makeSearch();
+    input.may_be_rings = this->hasGivenSupport() && this->getViewpointSource() != ViewpointSource::Rays;
+    found_ = detectPlanes(input, options_);
+    if (mesh_ && !input.visibility) refineOnMesh(*mesh_, found_, options_);
     return found_.planes;
   });
 }

@@ -43,10 +43,7 @@ SymmetryRegistration<PointSource, PointTarget, Scalar>::SymmetryRegistration() {
 template <typename PointSource, typename PointTarget, typename Scalar>
 void SymmetryRegistration<PointSource, PointTarget, Scalar>::computeTransformation(PointCloudSource& output,
                                                                                    const Matrix4& guess) {
-  score_ = {};
-  poses_.clear();
-  covariance_.reset();
-  timing_ms_.clear();
+  result_ = {};
   const detail::SelectedPoints source = detail::selectPoints(*input_, indices_.get(), max_points_, options_.seed);
   reason_ = detail::reasonForNoAnswer(source.points, "source", kLeastRegistrationPoints);
   detail::withBadArguments([&] {
@@ -83,20 +80,17 @@ void SymmetryRegistration<PointSource, PointTarget, Scalar>::findPose(const Poin
     options.max_correspondence = corr_dist_threshold_;
   const bool is_part = this->use_indices_ && indices_->size() < input_->size();
   const std::optional<Visibility> source_seen = detail::seenSpace(*input_, source, source_viewpoint_, is_part);
-  const CloudRegistration result =
+  result_ =
       registerClouds(source, source_seen, *prepared_target_, Eigen::Isometry3d(guess.template cast<double>()), options);
-  poses_ = result.poses;
-  score_ = result.score;
-  timing_ms_ = result.timing_ms;
-  if (result.converged(min_merit_)) {
-    covariance_ = result.covariance;
-    final_transformation_ = transformation_ = result.T_target_source.matrix().template cast<Scalar>();
+  if (result_.converged(min_merit_)) {
+    final_transformation_ = transformation_ = result_.T_target_source.matrix().template cast<Scalar>();
     return;
   }
+  result_.covariance.reset();
   std::ostringstream reason;
   reason << "nothing fits" << (options_.around ? " around the guess" : "") << ": the best pose has support "
-         << score_.support << " and conflict " << score_.conflict << ", " << std::lround(100.0 * result.on_surface)
-         << " % of the points lie on the surface";
+         << result_.score.support << " and conflict " << result_.score.conflict << ", "
+         << std::lround(100.0 * result_.on_surface) << " % of the points lie on the surface";
   reason_ = reason.str();
 }
 
