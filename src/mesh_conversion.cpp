@@ -25,24 +25,18 @@ MeshArrays toArrays(const pcl::PolygonMesh& mesh) {
       const auto vertex = static_cast<Eigen::Index>(index);
       check(vertex >= 0 && vertex < arrays.vertices.cols(), "vertex of a polygon", vertex, "one that the mesh has");
     }
-    arrays.polygons.emplace_back(polygon.vertices.begin(), polygon.vertices.end());
+    const std::vector<int>& corners = arrays.polygons.emplace_back(polygon.vertices.begin(), polygon.vertices.end());
+    for (std::size_t i = 2; i < corners.size(); ++i)
+      arrays.triangles.emplace_back(corners[0], corners[i - 1], corners[i]);
   }
   return arrays;
 }
 
-std::vector<Eigen::Vector3i> fansOf(const MeshArrays& mesh) {
-  std::vector<Eigen::Vector3i> triangles;
-  for (const std::vector<int>& polygon : mesh.polygons)
-    for (std::size_t i = 2; i < polygon.size(); ++i) triangles.emplace_back(polygon[0], polygon[i - 1], polygon[i]);
-  return triangles;
-}
-
-bool hasArea(const MeshArrays& mesh) {
-  const std::vector<Eigen::Vector3i> triangles = fansOf(mesh);
+bool MeshArrays::hasArea() const {
   return std::any_of(triangles.begin(), triangles.end(), [&](const Eigen::Vector3i& triangle) {
-    const Eigen::Vector3d a = mesh.vertices.col(triangle[0]).cast<double>();
-    const Eigen::Vector3d b = mesh.vertices.col(triangle[1]).cast<double>();
-    const Eigen::Vector3d c = mesh.vertices.col(triangle[2]).cast<double>();
+    const Eigen::Vector3d a = vertices.col(triangle[0]).cast<double>();
+    const Eigen::Vector3d b = vertices.col(triangle[1]).cast<double>();
+    const Eigen::Vector3d c = vertices.col(triangle[2]).cast<double>();
     const double doubled_area = (b - a).cross(c - a).norm();
     return std::isfinite(doubled_area) && doubled_area > 0.0;
   });

@@ -12,11 +12,11 @@ pcl::PointCloud<pcl::PointXYZ>::Ptr sampleMesh(const pcl::PolygonMesh& mesh, int
     auto cloud = pcl::make_shared<pcl::PointCloud<pcl::PointXYZ>>();
     cloud->header = mesh.header;
     const MeshArrays arrays = toArrays(mesh);
-    if (!hasArea(arrays)) {
+    if (!arrays.hasArea()) {
       detail::warnOfNoAnswer("sampleMesh", "mesh: no polygon has an area");
       return cloud;
     }
-    const Points points = sampleTriangles(arrays.vertices, fansOf(arrays), num_points, seed);
+    const Points points = sampleTriangles(arrays.vertices, arrays.triangles, num_points, seed);
     cloud->resize(points.cols());
     cloud->getMatrixXfMap(3, 4, 0) = points;
     return cloud;
@@ -26,7 +26,7 @@ pcl::PointCloud<pcl::PointXYZ>::Ptr sampleMesh(const pcl::PolygonMesh& mesh, int
 MeshSurface meshSurface(const pcl::PolygonMesh& mesh) {
   return detail::withBadArguments([&] {
     const MeshArrays arrays = toArrays(mesh);
-    return MeshSurface(arrays.vertices, fansOf(arrays));
+    return MeshSurface(arrays.vertices, arrays.triangles);
   });
 }
 

@@ -26,7 +26,7 @@ SymmetrizedMesh symmetrize(const pcl::PolygonMesh& mesh, const ReflectionPlane& 
                            int num_threads) {
   return detail::withBadArguments([&] {
     const MeshArrays arrays = toArrays(mesh);
-    SymmetrizedShape shape = symmetrizedMesh(arrays.vertices, fansOf(arrays), plane, half, num_threads);
+    SymmetrizedShape shape = symmetrizedMesh(arrays.vertices, arrays.triangles, plane, half, num_threads);
     SymmetrizedMesh result{mesh, std::move(shape.asymmetry), shape.mean_asymmetry, shape.greatest_asymmetry,
                            shape.deviation};
     setPositions(result.mesh.cloud, shape.points);
@@ -38,7 +38,7 @@ pcl::PolygonMesh mirroredHalf(const pcl::PolygonMesh& mesh, const ReflectionPlan
                               std::vector<float>* values) {
   return detail::withBadArguments([&] {
     const MeshArrays arrays = toArrays(mesh);
-    const MirroredMesh half = mirroredHalf(arrays.vertices, fansOf(arrays), plane, left);
+    const MirroredMesh half = mirroredHalf(arrays.vertices, arrays.triangles, plane, left);
     pcl::PolygonMesh result;
     pcl::copyPointCloud(mesh.cloud, pcl::Indices(half.sources.begin(), half.sources.end()), result.cloud);
     setPositions(result.cloud, half.vertices);

@@ -5,7 +5,7 @@
 namespace pcl_symmetry {
 
 bool detail::hasArea(const pcl::PolygonMesh& mesh) {
-  return pcl_symmetry::hasArea(toArrays(mesh));
+  return toArrays(mesh).hasArea();
 }
 
 SurfaceGraph meshGraph(const pcl::PolygonMesh& mesh) {
