@@ -5,6 +5,7 @@
 #include <iostream>
 #include <numeric>
 #include <sstream>
+#include <type_traits>
 #include <utility>
 
 #include "io/shape_output.h"
@@ -35,7 +36,6 @@ std::size_t editDistance(const std::string& a, const std::string& b) {
 CommandLine::CommandLine(std::string tool, std::string summary, std::string example)
     : tool_(std::move(tool)), summary_(std::move(summary)), example_(std::move(example)) {
   flags_.add_options()("help,h", "print this text")("version", "print the version");
-  flag_names_ = {"help", "version"};
 }
 
 CommandLine& CommandLine::positional(const std::string& name, std::string& value, const std::string& help) {
@@ -56,17 +56,14 @@ CommandLine& CommandLine::positionals(const std::string& name, std::vector<std::
 }
 
 CommandLine& CommandLine::flag(const std::string& name, bool& value, const std::string& help) {
-  flags_.add_options()(name.c_str(), help.c_str());
-  flag_names_.push_back(name);
-  switches_.emplace_back(name, &value);
+  flags_.add_options()(name.c_str(), po::bool_switch(&value), help.c_str());
   return *this;
 }
 
 CommandLine& CommandLine::add(const std::string& name, const std::string& placeholder, const std::string& help,
                               Assign assign) {
-  flags_.add_options()(name.c_str(), po::value<std::string>()->value_name(placeholder), help.c_str());
-  flag_names_.push_back(name);
-  assignments_.emplace_back(name, std::move(assign));
+  flags_.add_options()(name.c_str(), po::value<std::string>()->value_name(placeholder)->notifier(std::move(assign)),
+                       help.c_str());
   return *this;
 }
 
@@ -105,27 +102,23 @@ CommandLine& CommandLine::plane(const std::string& name, std::optional<Eigen::Ve
   });
 }
 
-CommandLine& CommandLine::number(const std::string& name, double& value, const Range& range, const std::string& help) {
-  return add(name, "F", help + " (" + shortest(value) + ")",
-             [&value, range, name](const std::string& text) { value = parseNumber("-" + name, text, range); });
+template <typename Value>
+CommandLine& CommandLine::number(const std::string& name, Value& value, const Range& range, const std::string& help) {
+  constexpr bool is_whole = std::is_same_v<Value, int> || std::is_same_v<Value, std::optional<int>>;
+  std::string text = help;
+  if constexpr (std::is_arithmetic_v<Value>)
+    text += is_whole ? " (" + std::to_string(value) + ")" : " (" + shortest(value) + ")";
+  return add(name, is_whole ? "N" : "F", text, [&value, range, name](const std::string& given) {
+    if constexpr (is_whole)
+      value = parseInt("-" + name, given, range);
+    else
+      value = parseNumber("-" + name, given, range);
+  });
 }
-
-CommandLine& CommandLine::number(const std::string& name, std::optional<double>& value, const Range& range,
-                                 const std::string& help) {
-  return add(name, "F", help,
-             [&value, range, name](const std::string& text) { value = parseNumber("-" + name, text, range); });
-}
-
-CommandLine& CommandLine::number(const std::string& name, int& value, const Range& range, const std::string& help) {
-  return add(name, "N", help + " (" + std::to_string(value) + ")",
-             [&value, range, name](const std::string& text) { value = parseInt("-" + name, text, range); });
-}
-
-CommandLine& CommandLine::number(const std::string& name, std::optional<int>& value, const Range& range,
-                                 const std::string& help) {
-  return add(name, "N", help,
-             [&value, range, name](const std::string& text) { value = parseInt("-" + name, text, range); });
-}
+template CommandLine& CommandLine::number(const std::string&, double&, const Range&, const std::string&);
+template CommandLine& CommandLine::number(const std::string&, std::optional<double>&, const Range&, const std::string&);
+template CommandLine& CommandLine::number(const std::string&, int&, const Range&, const std::string&);
+template CommandLine& CommandLine::number(const std::string&, std::optional<int>&, const Range&, const std::string&);
 
 CommandLine& CommandLine::number(const std::string& name, std::uint64_t& value, const std::string& help) {
   return add(name, "N", help + " (" + std::to_string(value) + ")", [&value, name](const std::string& text) {
@@ -179,12 +172,11 @@ std::string CommandLine::closestFlag(const std::string& unknown) const {
   name = name.substr(0, name.find('='));
   std::string best;
   std::size_t best_distance = std::max<std::size_t>(2, name.size() / 3) + 1;
-  for (const std::string& candidate : flag_names_) {
-    const std::size_t distance = editDistance(name, candidate);
-    if (distance < best_distance) {
-      best = candidate;
-      best_distance = distance;
-    }
+  for (const auto& flag : flags_.options()) {
+    const std::size_t distance = editDistance(name, flag->long_name());
+    if (distance >= best_distance) continue;
+    best = flag->long_name();
+    best_distance = distance;
   }
   return best;
 }
@@ -200,7 +192,7 @@ bool CommandLine::parse(int argc, const char* const* argv) {
     return false;
   }
   assignPositionals();
-  assignFlags();
+  po::notify(values_);
   return true;
 }
 
@@ -241,13 +233,6 @@ void CommandLine::assignPositionals() const {
       throw UsageError("missing argument '" + positional.name + "'");
     }
   }
-}
-
-void CommandLine::assignFlags() const {
-  for (const auto& [name, target] : switches_)
-    if (given(name)) *target = true;
-  for (const auto& [name, assign] : assignments_)
-    if (given(name)) assign(values_[name].as<std::string>());
 }
 
 bool CommandLine::given(const std::string& name) const {

@@ -8,7 +8,6 @@
 #include <functional>
 #include <optional>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "command_line/flag_values.h"
@@ -95,11 +94,9 @@ public:
   CommandLine& picture(const std::string& name, std::optional<std::string>& value, const std::string& help);
   CommandLine& choice(const std::string& name, std::string& value, const std::vector<std::string>& allowed,
                       const std::string& help);
-  CommandLine& number(const std::string& name, double& value, const Range& range, const std::string& help);
-  CommandLine& number(const std::string& name, std::optional<double>& value, const Range& range,
-                      const std::string& help);
-  CommandLine& number(const std::string& name, int& value, const Range& range, const std::string& help);
-  CommandLine& number(const std::string& name, std::optional<int>& value, const Range& range, const std::string& help);
+  /// \param value double, int, or an optional of these, whose help tells the default.
+  template <typename Value>
+  CommandLine& number(const std::string& name, Value& value, const Range& range, const std::string& help);
   CommandLine& number(const std::string& name, std::uint64_t& value, const std::string& help);
   /// A vector that must not be zero.
   CommandLine& direction(const std::string& name, std::optional<Eigen::Vector3d>& value, const std::string& help);
@@ -132,13 +129,9 @@ private:
   std::string closestFlag(const std::string& unknown) const;
   void readTokens(int argc, const char* const* argv);
   void assignPositionals() const;
-  void assignFlags() const;
 
   std::string tool_, summary_, example_;
   std::vector<Positional> positionals_;
-  std::vector<std::string> flag_names_;
-  std::vector<std::pair<std::string, Assign>> assignments_;
-  std::vector<std::pair<std::string, bool*>> switches_;
   boost::program_options::options_description flags_{"Flags", 120, 60};  // widths of the help and of its right column
   boost::program_options::variables_map values_;
 };
