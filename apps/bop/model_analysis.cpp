@@ -173,9 +173,8 @@ void printModel(const ModelInfo& info) {
                 spelled(found.center, info.digits).c_str(), turns.c_str());
   };
   for (const ContinuousSymmetry& symmetry : found.continuous) print_axis(symmetry.axis, "any angle");
-  std::vector<Eigen::Matrix3d> rotations;
-  for (const Eigen::Isometry3d& symmetry : found.discrete) rotations.push_back(symmetry.linear());
-  for (const RotationAxis& axis : axesOf(rotations)) print_axis(axis.direction, "fold " + std::to_string(axis.order));
+  for (const RotationAxis& axis : axesOf(found.discrete))
+    print_axis(axis.direction, "fold " + std::to_string(axis.order));
   if (info.explain) printRejections(found, info.digits);
 }
 

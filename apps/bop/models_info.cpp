@@ -105,6 +105,12 @@ ListedSymmetries symmetriesFromJson(const json& entry, const std::string& where)
 
 }  // namespace
 
+std::vector<RotationAxis> axesOf(const std::vector<Eigen::Isometry3d>& motions) {
+  std::vector<Eigen::Matrix3d> rotations;
+  for (const Eigen::Isometry3d& motion : motions) rotations.push_back(motion.linear());
+  return pcl_symmetry::axesOf(rotations);
+}
+
 ListedSymmetries bopSymmetries(const ObjectSymmetries& symmetries, double sphere_angle) {
   if (symmetries.kind != RotationGroupKind::Spherical) return {symmetries.discrete, symmetries.continuous, false};
   ListedSymmetries listed;
@@ -130,11 +136,9 @@ ordered_json symmetriesJson(const ListedSymmetries& listed) {
 ordered_json dopeJson(const ObjectSymmetries& symmetries, double sphere_angle) {
   const ListedSymmetries listed = bopSymmetries(symmetries, sphere_angle);
   ordered_json entry = symmetriesJson(listed);
-  std::vector<Eigen::Matrix3d> rotations;
-  for (const Eigen::Isometry3d& motion : listed.discrete) rotations.push_back(motion.linear());
   Eigen::Vector3d main = Eigen::Vector3d::UnitZ();
   int greatest_order = 1;
-  for (const RotationAxis& axis : axesOf(rotations)) {
+  for (const RotationAxis& axis : axesOf(listed.discrete)) {
     if (axis.order <= greatest_order) continue;
     greatest_order = axis.order;
     main = axis.direction;
@@ -173,9 +177,7 @@ int orderAbout(const ObjectSymmetries& symmetries, const Eigen::Vector3d& axis) 
     const bool is_across = std::abs(axis.dot(symmetries.continuous.front().axis)) < std::sin(kAligned);
     return symmetries.kind == RotationGroupKind::Cylindrical && is_across ? 2 : 1;
   }
-  std::vector<Eigen::Matrix3d> rotations;
-  for (const Eigen::Isometry3d& motion : symmetries.discrete) rotations.push_back(motion.linear());
-  for (const RotationAxis& found : axesOf(rotations))
+  for (const RotationAxis& found : axesOf(symmetries.discrete))
     if (is_along(found.direction)) return found.order;
   return 1;
 }

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "command_line/tool_errors.h"
+#include "pcl_symmetry/core/rotation_group.h"
 #include "pcl_symmetry/core/rotational_symmetry.h"
 
 namespace pcl_symmetry::apps {
@@ -23,6 +24,9 @@ struct ListedSymmetries {
 /// Symmetries as BOP's files list them. A sphere becomes one axis and as many tilts of it as reach any rotation.
 /// \param sphere_angle radians, in (0, pi]: every rotation is within it of a composition of a turn and a tilt.
 ListedSymmetries bopSymmetries(const ObjectSymmetries& symmetries, double sphere_angle);
+
+/// \return the axes of the rotations of a group, without the identity.
+std::vector<RotationAxis> axesOf(const std::vector<Eigen::Isometry3d>& motions);
 
 /// The fields symmetries_discrete (4 x 4 row by row) and symmetries_continuous (axis and offset); what there is none of
 /// is left out.

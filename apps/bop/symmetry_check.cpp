@@ -162,9 +162,7 @@ void addMissing(const ObjectSymmetries& found, const ObjectSymmetries& given, co
                 std::vector<Disagreement>& disagreements) {
   for (const ContinuousSymmetry& symmetry : found.continuous)
     if (!comparison.hasAll(given, symmetry)) disagreements.push_back(comparison.aboutAxis("surface only", symmetry));
-  std::vector<Eigen::Matrix3d> rotations;
-  for (const Eigen::Isometry3d& motion : found.discrete) rotations.push_back(motion.linear());
-  for (const RotationAxis& axis : axesOf(rotations)) {
+  for (const RotationAxis& axis : axesOf(found.discrete)) {
     const Eigen::Isometry3d turn = turnOf({axis.direction, found.center}, 2.0 * kPi / axis.order);
     if (!comparison.has(given, turn)) disagreements.push_back(comparison.aboutTurn("surface only", turn));
   }

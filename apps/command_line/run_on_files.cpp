@@ -80,7 +80,7 @@ int runOnOne(const std::string& path, const BatchOptions& batch, const CommonOpt
     if (*output) checkTarget(**output);
   if (batch.csv_path) checkTarget(*batch.csv_path);
   const Console console(common.quiet);
-  FileJob job(path, console, common.threads);
+  FileJob job(path, console, common);
   const auto write = [&] {
     if (!job.reported()) return;
     const FileReport& report = *job.reported();
@@ -138,14 +138,11 @@ public:
     if (isStandardStream(path)) return add(header);
     if (resume) {
       // Line by line, because the file may be larger than what the tool needs besides.
-      writeAtomically(path, [&](const std::string& temporary) {
-        file_.open(temporary, std::ios::binary | std::ios::trunc);
-        file_ << header;
+      writeStream(path, [&](std::ostream& kept) {
+        kept << header;
         forWholeLines(path, [&](const std::string& line) {
-          if (keeps(line)) file_ << line << '\n';
+          if (keeps(line)) kept << line << '\n';
         });
-        file_.close();
-        if (!file_) fail();
       });
       file_.open(path, std::ios::binary | std::ios::app);
       size_ = boost::filesystem::file_size(path);
@@ -229,8 +226,11 @@ public:
       : files_(files),
         results_(batch, common, csv_header),
         num_threads_(static_cast<std::size_t>(resolveNumThreads(common.threads))),
+        common_(common),
         console_(common.quiet),
-        step_(console_, "Working on " + std::to_string(files.size()) + " files") {}
+        step_(console_, "Working on " + std::to_string(files.size()) + " files") {
+    common_.threads = 1;
+  }
 
   int run(const std::function<void(FileJob&)>& analyze) {
     parallelBlocks(std::min(num_threads_, files_.size()), static_cast<int>(num_threads_), [&](std::size_t) {
@@ -268,7 +268,7 @@ private:
 
   Result resultOf(const std::string& path, const std::function<void(FileJob&)>& analyze) const {
     const Console silent(true);
-    FileJob job(path, silent, 1);
+    FileJob job(path, silent, common_);
     Result result;
     try {
       namingFile(path, [&] { analyze(job); });
@@ -308,6 +308,7 @@ private:
   const std::vector<InputFile>& files_;
   ResultFiles results_;
   std::size_t num_threads_;
+  CommonOptions common_;
   Console console_;
   Step step_;
   std::mutex mutex_;

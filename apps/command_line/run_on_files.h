@@ -53,13 +53,13 @@ struct FileReport {
 class FileJob {
 public:
   /// \param console is silent where there are several inputs.
-  /// \param num_threads as -threads; 1 where there are several inputs, of which each has a thread.
-  FileJob(std::string path, const Console& console, int num_threads)
-      : path_(std::move(path)), console_(console), num_threads_(num_threads) {}
+  FileJob(std::string path, const Console& console, const CommonOptions& common)
+      : path_(std::move(path)), console_(console), common_(common) {}
 
   const std::string& path() const { return path_; }
   const Console& console() const { return console_; }
-  int numThreads() const { return num_threads_; }
+  /// The common flags, but of one thread where there are several inputs, of which each has a thread.
+  const CommonOptions& common() const { return common_; }
 
   /// \return the name of an output of this input: {} in the pattern becomes the name of the input without its folder and
   /// extension.
@@ -72,7 +72,7 @@ public:
 private:
   std::string path_;
   const Console& console_;
-  int num_threads_;
+  CommonOptions common_;
   std::optional<FileReport> report_;
 };
 

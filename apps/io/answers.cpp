@@ -18,15 +18,24 @@ std::string counted(std::size_t number, const std::string& one, const std::strin
 
 nlohmann::json turnsJson(const std::vector<SymmetryTurn>& turns, const Eigen::Vector3d& shift) {
   nlohmann::json json = nlohmann::json::array();
-  for (const SymmetryTurn& turn : turns)
-    json.push_back({{"point", numbersOf(shiftedBack(turn.point, shift))},
-                    {"direction", numbersOf(turn.direction)},
-                    {"fold", turn.fold},
-                    {"confidence", turn.confidence},
-                    {"support", turn.support},
-                    {"off", turn.off},
-                    {"far", turn.far},
-                    {"halfway", turn.halfway}});
+  for (const SymmetryTurn& turn : turns) {
+    json.push_back(axisJson(turn, shift));
+    json.back().update({{"fold", turn.fold},
+                        {"support", turn.support},
+                        {"off", turn.off},
+                        {"far", turn.far},
+                        {"halfway", turn.halfway}});
+  }
+  return json;
+}
+
+nlohmann::json frameJson(const SymmetryFrame& frame, const Eigen::Vector3d& shift) {
+  nlohmann::json json{{"center", numbersOf(shiftedBack(frame.center, shift))},
+                      {"axes", nlohmann::json::array()},
+                      {"scores", numbersOf(frame.scores)},
+                      {"revolution_axis", frame.revolution_axis},
+                      {"transform", rowMajor(shiftedBack(frame.T_canonical_input, shift, Eigen::Vector3d::Zero()))}};
+  for (int k = 0; k < 3; ++k) json["axes"].push_back(numbersOf(frame.axes.col(k)));
   return json;
 }
 

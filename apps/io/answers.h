@@ -10,6 +10,7 @@
 
 #include "io/exact_coordinates.h"
 #include "pcl_symmetry/core/detect_planes.h"
+#include "pcl_symmetry/core/symmetry_frame.h"
 #include "pcl_symmetry/viewpoint.h"
 
 namespace pcl_symmetry::apps {
@@ -22,10 +23,6 @@ const char* toString(ViewpointSource source);
 /// "1 plane", "2 planes".
 /// \param many where it is not that with an s.
 std::string counted(std::size_t number, const std::string& one, const std::string& many = "");
-
-/// Axes of turns of scans, one object for each, input frame.
-/// \param shift that was subtracted from the input.
-nlohmann::json turnsJson(const std::vector<SymmetryTurn>& turns, const Eigen::Vector3d& shift);
 
 /// JSON as text. Names of files are bytes: what is no UTF-8 is replaced, where nlohmann's default would throw.
 /// \param indent blanks a level; -1: one line
@@ -48,6 +45,27 @@ inline std::vector<double> rowMajor(const Eigen::Matrix4d& matrix) {
 inline std::vector<double> rowMajor(const Eigen::Isometry3d& transform) {
   return rowMajor(transform.matrix());
 }
+
+/// \param shift that was subtracted from the input.
+/// \return a, b, c and d, input frame.
+inline std::vector<double> numbersOf(const ReflectionPlane& plane, const Eigen::Vector3d& shift) {
+  return numbersOf(shiftedBack(plane, shift).coefficients());
+}
+
+/// Where an axis is, input frame, and how sure it is.
+/// \param axis SymmetryAxis or SymmetryTurn.
+template <typename Axis>
+nlohmann::json axisJson(const Axis& axis, const Eigen::Vector3d& shift) {
+  return {{"point", numbersOf(shiftedBack(axis.point, shift))},
+          {"direction", numbersOf(axis.direction)},
+          {"confidence", axis.confidence}};
+}
+
+/// The same of axes of turns of scans, and what was seen of them.
+nlohmann::json turnsJson(const std::vector<SymmetryTurn>& turns, const Eigen::Vector3d& shift);
+
+/// Center and axes, the transform to them, input frame.
+nlohmann::json frameJson(const SymmetryFrame& frame, const Eigen::Vector3d& shift);
 
 inline nlohmann::json timingJson(const std::vector<std::pair<std::string, double>>& timing_ms) {
   nlohmann::json json = nlohmann::json::object();

@@ -37,6 +37,22 @@ InputShape loadInput(const std::string& path, int mesh_points, std::uint64_t see
 /// The same with the number of points and the seed of the flags, as a step of a tool.
 InputShape loadInput(const Console& console, const std::string& path, const CommonOptions& common);
 
+/// Gives an analysis of points or volumes the input, and the viewpoint of the flags.
+template <typename Analysis>
+void setInput(Analysis& analysis, const InputShape& input, const CommonOptions& common) {
+  analysis.setViewpoint(shifted(common.viewpoint, input.shift()));
+  if (input.volume)
+    analysis.setInputVolume(input.volume, input.levels);
+  else
+    analysis.setInputCloud(input.points);
+}
+
+/// \throws InputError with the reason of an analysis that found no answer in the input.
+template <typename Analysis>
+void checkAnswer(const Analysis& analysis, const InputShape& input) {
+  if (!analysis.getReason().empty()) throw InputError(input.path + ": " + analysis.getReason());
+}
+
 /// Warns of what the file holds and the shape does not.
 void warnOfLeftOut(const Console& console, const std::string& path, const Shape& shape);
 

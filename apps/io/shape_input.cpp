@@ -23,9 +23,24 @@ namespace pcl_symmetry::apps {
 
 namespace {
 
-/// What follows from the points.
-Shape completed(const std::string& path, Shape shape) {
-  if (shape.points->empty()) throw InputError(path + ": has no points");
+/// \param shape with the fields of a cloud, or none: those are then the coordinates.
+/// \return the shape with its points, with a shift where float loses digits, and its mesh.
+Shape completed(const std::string& path, Shape shape, const std::vector<Eigen::Vector3d>& exact,
+                std::vector<pcl::Vertices> polygons) {
+  if (exact.empty()) throw InputError(path + ": has no points");
+  shape.shift = shiftFor(exact);
+  shape.points.reset(new pcl::PointCloud<pcl::PointXYZ>(shifted(exact, shape.shift)));
+  if (shape.cloud.fields.empty()) shape.cloud = toFields(*shape.points, shape.shift);
+  shape.points->width = shape.cloud.width;
+  shape.points->height = shape.cloud.height;
+  if (!polygons.empty()) {
+    shape.mesh.emplace();
+    shape.mesh->polygons = std::move(polygons);
+    shape.mesh->cloud = shape.cloud;
+    // Meshes are read as PointXYZ everywhere.
+    if (VectorField(shape.cloud).isDouble() || !shape.shift.isZero(0.0))
+      pcl::toPCLPointCloud2(*shape.points, shape.mesh->cloud);
+  }
   shape.points->is_dense = std::all_of(shape.points->begin(), shape.points->end(),
                                        [](const pcl::PointXYZ& point) { return point.getVector3fMap().allFinite(); });
   shape.points->sensor_origin_ = shape.sensor_origin;
@@ -36,42 +51,22 @@ Shape completed(const std::string& path, Shape shape) {
   return shape;
 }
 
-/// With a shift where float loses digits.
 Shape fromCloudFile(const std::string& path, CloudFile file) {
+  const VectorField xyz(file.cloud);
+  std::vector<Eigen::Vector3d> exact(std::size_t{file.cloud.width} * file.cloud.height);
+  for (std::size_t i = 0; i < exact.size(); ++i) exact[i] = xyz.get(file.cloud, i);
   Shape shape;
   shape.cloud = std::move(file.cloud);
   shape.sensor_origin = file.sensor_origin;
   shape.sensor_orientation = file.sensor_orientation;
   shape.left_out = std::move(file.left_out);
-  const VectorField xyz(shape.cloud);
-  std::vector<Eigen::Vector3d> exact(std::size_t{shape.cloud.width} * shape.cloud.height);
-  for (std::size_t i = 0; i < exact.size(); ++i) exact[i] = xyz.get(shape.cloud, i);
-  shape.shift = shiftFor(exact);
-  shape.points.reset(new pcl::PointCloud<pcl::PointXYZ>(shifted(exact, shape.shift)));
-  shape.points->width = shape.cloud.width;
-  shape.points->height = shape.cloud.height;
-  if (!file.polygons.empty()) {
-    shape.mesh.emplace();
-    shape.mesh->polygons = std::move(file.polygons);
-    shape.mesh->cloud = shape.cloud;
-    // Meshes are read as PointXYZ everywhere.
-    if (xyz.isDouble() || !shape.shift.isZero(0.0)) pcl::toPCLPointCloud2(*shape.points, shape.mesh->cloud);
-  }
-  return completed(path, std::move(shape));
+  return completed(path, std::move(shape), exact, std::move(file.polygons));
 }
 
 Shape fromExact(const std::string& path, ExactShape exact) {
   Shape shape;
-  shape.shift = shiftFor(exact.vertices);
-  shape.points.reset(new pcl::PointCloud<pcl::PointXYZ>(shifted(exact.vertices, shape.shift)));
-  shape.cloud = toFields(*shape.points, shape.shift);
   shape.left_out = std::move(exact.left_out);
-  if (!exact.polygons.empty()) {
-    shape.mesh.emplace();
-    shape.mesh->polygons = std::move(exact.polygons);
-    pcl::toPCLPointCloud2(*shape.points, shape.mesh->cloud);
-  }
-  return completed(path, std::move(shape));
+  return completed(path, std::move(shape), exact.vertices, std::move(exact.polygons));
 }
 
 /// Binary STL: 80 bytes, the number of triangles, 50 bytes each.

@@ -55,15 +55,6 @@ std::string toleranceOf(const SceneObject& object) {
   return text;
 }
 
-nlohmann::json describeFrame(const SymmetryFrame& frame, const Eigen::Vector3d& shift) {
-  nlohmann::json json{{"center", numbersOf(shiftedBack(frame.center, shift))}, {"axes", nlohmann::json::array()}};
-  for (int k = 0; k < 3; ++k) json["axes"].push_back(numbersOf(frame.axes.col(k)));
-  json["scores"] = numbersOf(frame.scores);
-  json["revolution_axis"] = frame.revolution_axis;
-  json["transform"] = rowMajor(shiftedBack(frame.T_canonical_input, shift, Eigen::Vector3d::Zero()));
-  return json;
-}
-
 nlohmann::json describeObject(const SceneObject& object, const Eigen::Vector3d& shift) {
   nlohmann::json json{{"num_points", object.indices.size()}, {"planes", nlohmann::json::array()},
                       {"axes", nlohmann::json::array()},     {"centers", nlohmann::json::array()},
@@ -71,24 +62,20 @@ nlohmann::json describeObject(const SceneObject& object, const Eigen::Vector3d& 
                       {"resolution", object.resolution},     {"diameter", object.diameter}};
   if (!object.reason.empty()) json["reason"] = object.reason;
   for (const SymmetryPlane& plane : object.planes)
-    json["planes"].push_back({{"coefficients", numbersOf(shiftedBack(plane, shift).coefficients())},
+    json["planes"].push_back({{"coefficients", numbersOf(plane, shift)},
                               {"kind", toString(plane.kind)},
                               {"confidence", plane.confidence},
                               {"share", plane.share},
                               {"support", plane.support},
                               {"seen", plane.seen},
                               {"score", plane.score}});
-  for (const SymmetryAxis& axis : object.axes)
-    json["axes"].push_back({{"point", numbersOf(shiftedBack(axis.point, shift))},
-                            {"direction", numbersOf(axis.direction)},
-                            {"confidence", axis.confidence}});
+  for (const SymmetryAxis& axis : object.axes) json["axes"].push_back(axisJson(axis, shift));
   for (const SymmetryCenter& center : object.centers)
     json["centers"].push_back(
         {{"point", numbersOf(shiftedBack(center.point, shift))}, {"confidence", center.confidence}});
-  if (object.frame) json["frame"] = describeFrame(*object.frame, shift);
+  if (object.frame) json["frame"] = frameJson(*object.frame, shift);
   if (object.completed_by)
-    json["completed"] = {{"by", numbersOf(shiftedBack(*object.completed_by, shift).coefficients())},
-                         {"num_added", object.added.size()}};
+    json["completed"] = {{"by", numbersOf(*object.completed_by, shift)}, {"num_added", object.added.size()}};
   for (const RecognizedModel& model : object.models)
     json["models"].push_back(
         {{"name", model.name},
@@ -233,8 +220,8 @@ nlohmann::json describeScene(const InputShape& input, const SceneAnalysis& scene
     json["viewpoint"]["position"] = numbersOf(shiftedBack(scene.seen->visibility()->viewpoint(), input.shift()));
   for (const SupportingPlane& support : scene.supports) {
     const ReflectionPlane plane(support.coefficients.head<3>(), -support.coefficients[3]);
-    json["supports"].push_back({{"coefficients", numbersOf(shiftedBack(plane, input.shift()).coefficients())},
-                                {"num_points", support.indices.size()}});
+    json["supports"].push_back(
+        {{"coefficients", numbersOf(plane, input.shift())}, {"num_points", support.indices.size()}});
   }
   for (const SceneObject& object : scene.objects) json["objects"].push_back(describeObject(object, input.shift()));
   for (const SceneJunction& junction : scene.junctions) json["junctions"].push_back(describeJunction(junction));

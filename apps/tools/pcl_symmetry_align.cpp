@@ -94,7 +94,7 @@ SymmetryFrame computeFrame(const Console& console, const InputShape& input, cons
     alignment.setViewpoint(shifted(common.viewpoint, input.shift()));
     alignment.setInputCloud(input.points);
     SymmetryFrame frame = alignment.compute();
-    if (!alignment.getReason().empty()) throw InputError(input.path + ": " + alignment.getReason());
+    checkAnswer(alignment, input);
     if (input.shape.mesh && !alignment.usedViewpoint()) refineOnMesh(meshSurface(*input.shape.mesh), frame);
     step.done(alignment.usedViewpoint() ? "seen from one side" : "");
     return frame;
@@ -119,11 +119,10 @@ ReflectionPlane bestPlane(const Console& console, const InputShape& input, const
   SymmetryMaximaRefinement<pcl::PointXYZ> refinement;
   const std::vector<SymmetryPlane> planes = namingFile(input.path, [&] {
     refinement.setOptions(detection);
-    refinement.setViewpoint(shifted(common.viewpoint, input.shift()));
-    refinement.setInputCloud(input.points);
+    setInput(refinement, input, common);
     if (input.shape.mesh) refinement.setMesh(meshSurface(*input.shape.mesh));
     std::vector<SymmetryPlane> found = refinement.compute();
-    if (!refinement.getReason().empty()) throw InputError(input.path + ": " + refinement.getReason());
+    checkAnswer(refinement, input);
     return found;
   });
   if (!refinement.getAxes().empty()) {
@@ -213,8 +212,7 @@ Symmetrized symmetrized(const Console& console, const InputShape& input, const A
                                : options.symmetrise == "right" ? SymmetrizedHalf::Right
                                                                : SymmetrizedHalf::Mean;
   Symmetrized result;
-  const Eigen::Vector4d coefficients = shiftedBack(plane, input.shift()).coefficients();
-  result.json = {{"half", options.symmetrise}, {"plane", numbersOf(coefficients)}};
+  result.json = {{"half", options.symmetrise}, {"plane", numbersOf(plane, input.shift())}};
   const auto report = [&](const auto& shape) {
     result.asymmetry = shape.asymmetry;
     result.json["mean_asymmetry"] = shape.mean_asymmetry;
@@ -339,19 +337,11 @@ std::string linesOf(const Eigen::Isometry3d& motion, int digits) {
 }
 
 nlohmann::json describe(const SymmetryFrame& frame, const Eigen::Vector3d& shift) {
-  const auto absolute = [&](const Eigen::Isometry3d& T_canonical_input) {
-    return rowMajor(shiftedBack(T_canonical_input, shift, Eigen::Vector3d::Zero()));
-  };
-  nlohmann::json json{{"center", numbersOf(shiftedBack(frame.center, shift))},
-                      {"axes", nlohmann::json::array()},
-                      {"scores", numbersOf(frame.scores)},
-                      {"revolution_axis", frame.revolution_axis},
-                      {"transform", absolute(frame.T_canonical_input)},
-                      {"timing_ms", timingJson(frame.timing_ms)}};
-  for (int k = 0; k < 3; ++k) json["axes"].push_back(numbersOf(frame.axes.col(k)));
+  nlohmann::json json = frameJson(frame, shift);
+  json["timing_ms"] = timingJson(frame.timing_ms);
   json["equivalent"] = nlohmann::json::array();
   for (const Eigen::Isometry3d& T_canonical_input : frame.equivalent)
-    json["equivalent"].push_back(absolute(T_canonical_input));
+    json["equivalent"].push_back(rowMajor(shiftedBack(T_canonical_input, shift, Eigen::Vector3d::Zero())));
   json["turns"] = turnsJson(frame.turns, shift);
   json["probable"] = nlohmann::json::array();
   for (const ProbableFrame& other : frame.probable) {
@@ -418,8 +408,7 @@ void save(const Console& console, const Shape& shape, pcl::PCLPointCloud2 fields
 
 void analyze(const AlignOptions& options, FileJob& job) {
   const Console& console = job.console();
-  CommonOptions common = options.common;
-  common.threads = job.numThreads();
+  const CommonOptions& common = job.common();
   const InputShape input = loadInput(console, job.path(), common);
   Motion motion =
       options.target ? toTarget(console, input, options, common) : toOwnFrame(console, input, options, common);

@@ -3,10 +3,9 @@
 
 #include <algorithm>
 #include <boost/filesystem.hpp>
-#include <cstdio>
 #include <cstring>
-#include <fstream>
 #include <optional>
+#include <ostream>
 #include <string>
 #include <utility>
 #include <vector>
@@ -139,8 +138,7 @@ std::size_t sizeOf(const std::string& type) {
 void writeTable(const DescribeOptions& options, const std::vector<std::string>& outputs,
                 const std::vector<std::string>& failures) {
   const std::size_t size = sizeOf(options.type);
-  writeAtomically(*options.csv_path, [&](const std::string& temporary) {
-    std::ofstream table(temporary, std::ios::binary);
+  writeStream(*options.csv_path, [&](std::ostream& table) {
     table << "file,number";
     for (std::size_t k = 1; k <= size; ++k) table << ',' << options.type << '_' << k;
     table << '\n';
@@ -150,16 +148,10 @@ void writeTable(const DescribeOptions& options, const std::vector<std::string>& 
       for (std::size_t first = 0; first + size <= values.size(); first += size) {
         std::string row = csvLine({options.inputs[i], first / size + 1});
         row.pop_back();
-        for (std::size_t k = first; k < first + size; ++k) {
-          char value[32];
-          std::snprintf(value, sizeof(value), ",%.9g", static_cast<double>(values[k]));
-          row += value;
-        }
+        for (std::size_t k = first; k < first + size; ++k) row += formatted(",%.9g", static_cast<double>(values[k]));
         table << row << '\n';
       }
     }
-    table.close();
-    if (!table) throw InputError(*options.csv_path + ": cannot be written");
   });
 }
 

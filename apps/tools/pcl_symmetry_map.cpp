@@ -60,16 +60,7 @@ void setUp(Transform& transform, const InputShape& input, const CommonOptions& c
   if (common.sigma) transform.setSigma(*common.sigma);
   transform.setRandomSeed(common.librarySeed());
   transform.setNumberOfThreads(common.threads);
-  transform.setViewpoint(shifted(common.viewpoint, input.shift()));
-  if (input.volume)
-    transform.setInputVolume(input.volume, input.levels);
-  else
-    transform.setInputCloud(input.points);
-}
-
-template <typename Transform>
-void checkAnswer(const Transform& transform, const InputShape& input) {
-  if (!transform.getReason().empty()) throw InputError(input.path + ": " + transform.getReason());
+  setInput(transform, input, common);
 }
 
 SymmetryMeasure ofPlanes(const InputShape& input, const CommonOptions& common, const MeasureOptions& options) {
@@ -346,24 +337,22 @@ void writeSpace(const MapOptions& options, const FileJob& job, const InputShape&
   if (options.volume_path) {
     const std::string path = job.output(*options.volume_path);
     Step writing(job.console(), "Writing " + path);
-    writeSymmetry(map, volume, input.shift(), job.numThreads(), path);
+    writeSymmetry(map, volume, input.shift(), job.common().threads, path);
     writing.done(std::to_string(volume.size.prod()) + " cells");
   }
   if (options.slices_path)
-    writeImage(drawSlices(map, volume, points, options.size, job.numThreads()), job.output(*options.slices_path));
+    writeImage(drawSlices(map, volume, points, options.size, job.common().threads), job.output(*options.slices_path));
 }
 
 void analyze(const MapOptions& options, FileJob& job) {
   const InputShape input = loadInput(job.console(), job.path(), options.common);
   Step transforming(job.console(), "Transforming");
-  CommonOptions common = options.common;
-  common.threads = job.numThreads();
-  SymmetryMeasure map = measureSymmetry(input, common, options.what);
+  SymmetryMeasure map = measureSymmetry(input, job.common(), options.what);
   if (options.measure == "prst") map = byEquation1(std::move(map));
   const double transforming_ms = transforming.done(std::to_string(map.num_tried) + " " + map.of);
 
   Step mapping(job.console(), "Mapping back to points");
-  const MappedCloud mapped(input.points, map, job.numThreads(), mapping);
+  const MappedCloud mapped(input.points, map, job.common().threads, mapping);
   const double mapping_ms = mapping.done(std::to_string(mapped.symmetry.size()) + " points");
 
   std::string text;

@@ -146,41 +146,8 @@ std::string tableOf(const Findings& findings, const Eigen::Vector3d& shift) {
   return table;
 }
 
-std::vector<std::vector<nlohmann::json>> rowsOf(const Findings& findings, const Eigen::Vector3d& shift) {
-  const nlohmann::json none;
-  std::vector<std::vector<nlohmann::json>> rows;
-  const auto add = [&](std::size_t number, const char* kind, const std::vector<double>& plane,
-                       const std::vector<double>& point, const std::vector<double>& direction,
-                       const std::vector<nlohmann::json>& measures) {
-    std::vector<nlohmann::json> row{number, kind};
-    for (std::size_t k = 0; k < 4; ++k) row.push_back(plane.empty() ? none : nlohmann::json(plane[k]));
-    for (std::size_t k = 0; k < 3; ++k) row.push_back(point.empty() ? none : nlohmann::json(point[k]));
-    for (std::size_t k = 0; k < 3; ++k) row.push_back(direction.empty() ? none : nlohmann::json(direction[k]));
-    row.insert(row.end(), measures.begin(), measures.end());
-    rows.push_back(row);
-  };
-  const auto addPlane = [&](std::size_t number, const char* kind, const SymmetryPlane& p) {
-    add(number, kind, numbersOf(shiftedBack(p, shift).coefficients()), {}, {},
-        {p.confidence, p.share, p.support, p.score, p.seen, p.deviation});
-  };
-  const auto at = [&](const Eigen::Vector3d& point) { return numbersOf(shiftedBack(point, shift)); };
-  std::size_t planes = 0, axes = 0, turns = 0, centers = 0;
-  for (const SymmetryPlane& plane : findings.planes) addPlane(++planes, toString(plane.kind), plane);
-  for (const SymmetryAxis& axis : findings.axes)
-    add(++axes, "axis", {}, at(axis.point), numbersOf(axis.direction),
-        {axis.confidence, none, axis.support, axis.score, none, none});
-  for (const SymmetryTurn& turn : findings.turns)
-    add(++turns, "turn", {}, at(turn.point), numbersOf(turn.direction),
-        {turn.confidence, none, none, none, none, none});
-  for (const SymmetryCenter& center : findings.centers)
-    add(++centers, "center", {}, at(center.point), {},
-        {center.confidence, none, center.support, center.score, none, none});
-  if (findings.best) addPlane(1, "best", *findings.best);
-  return rows;
-}
-
 nlohmann::json describe(const SymmetryPlane& plane, const Eigen::Vector3d& shift) {
-  return {{"coefficients", numbersOf(shiftedBack(plane, shift).coefficients())},
+  return {{"coefficients", numbersOf(plane, shift)},
           {"kind", toString(plane.kind)},
           {"confidence", plane.confidence},
           {"share", plane.share},
@@ -192,6 +159,38 @@ nlohmann::json describe(const SymmetryPlane& plane, const Eigen::Vector3d& shift
           {"residual", plane.residual},
           {"iterations", plane.iterations},
           {"converged", plane.converged}};
+}
+
+nlohmann::json describe(const SymmetryAxis& axis, const Eigen::Vector3d& shift) {
+  nlohmann::json json = axisJson(axis, shift);
+  json.update({{"score", axis.score}, {"support", axis.support}});
+  return json;
+}
+
+nlohmann::json describe(const SymmetryCenter& center, const Eigen::Vector3d& shift) {
+  return {{"point", numbersOf(shiftedBack(center.point, shift))},
+          {"confidence", center.confidence},
+          {"score", center.score},
+          {"support", center.support}};
+}
+
+std::vector<std::vector<nlohmann::json>> rowsOf(const Findings& findings, const Eigen::Vector3d& shift) {
+  std::vector<std::vector<nlohmann::json>> rows;
+  const auto add = [&](std::size_t number, const char* kind, const nlohmann::json& found) {
+    std::vector<nlohmann::json> row{number, kind};
+    for (const auto& [name, size] : {std::pair("coefficients", 4), std::pair("point", 3), std::pair("direction", 3)})
+      for (int k = 0; k < size; ++k) row.push_back(found.contains(name) ? found[name][k] : nlohmann::json());
+    for (const char* const name : {"confidence", "share", "support", "score", "seen", "deviation"})
+      row.push_back(found.value(name, nlohmann::json()));
+    rows.push_back(row);
+  };
+  std::size_t planes = 0, axes = 0, turns = 0, centers = 0;
+  for (const SymmetryPlane& plane : findings.planes) add(++planes, toString(plane.kind), describe(plane, shift));
+  for (const SymmetryAxis& axis : findings.axes) add(++axes, "axis", describe(axis, shift));
+  for (const SymmetryTurn& turn : findings.turns) add(++turns, "turn", axisJson(turn, shift));
+  for (const SymmetryCenter& center : findings.centers) add(++centers, "center", describe(center, shift));
+  if (findings.best) add(1, "best", describe(*findings.best, shift));
+  return rows;
 }
 
 nlohmann::json describe(const InputShape& input, const Findings& findings) {
@@ -209,21 +208,10 @@ nlohmann::json describe(const InputShape& input, const Findings& findings) {
   if (findings.viewpoint) json["viewpoint"]["position"] = numbersOf(shiftedBack(*findings.viewpoint, shift));
   for (const SymmetryPlane& plane : findings.planes) json["planes"].push_back(describe(plane, shift));
   if (findings.best) json["best"] = describe(*findings.best, shift);
-  if (findings.flat) json["flat"] = {{"coefficients", numbersOf(shiftedBack(*findings.flat, shift).coefficients())}};
-  for (const SymmetryAxis& axis : findings.axes) {
-    json["axes"].push_back({{"point", numbersOf(shiftedBack(axis.point, shift))},
-                            {"direction", numbersOf(axis.direction)},
-                            {"confidence", axis.confidence},
-                            {"score", axis.score},
-                            {"support", axis.support}});
-  }
+  if (findings.flat) json["flat"] = {{"coefficients", numbersOf(*findings.flat, shift)}};
+  for (const SymmetryAxis& axis : findings.axes) json["axes"].push_back(describe(axis, shift));
   if (findings.viewpoint) json["turns"] = turnsJson(findings.turns, shift);
-  for (const SymmetryCenter& center : findings.centers) {
-    json["centers"].push_back({{"point", numbersOf(shiftedBack(center.point, shift))},
-                               {"confidence", center.confidence},
-                               {"score", center.score},
-                               {"support", center.support}});
-  }
+  for (const SymmetryCenter& center : findings.centers) json["centers"].push_back(describe(center, shift));
   return json;
 }
 
@@ -268,8 +256,8 @@ PictureScene makeScene(const pcl::PointCloud<pcl::PointXYZ>::ConstPtr& cloud, co
   return scene;
 }
 
-/// Gives the refinement a map by the estimator that was named: of 64 x 64 x 64 bins as published, else as fine as that
-/// of the refinement itself.
+/// Gives the refinement a map by the estimator that was named: of 64 x 64 x 64 bins as published, else as fine as
+/// that of the refinement itself.
 void giveMap(SymmetryMaximaRefinement<pcl::PointXYZ>& refinement, const InputShape& input,
              const PlanesOptions& options) {
   PlanarSymmetryTransform<pcl::PointXYZ> transform;
@@ -295,23 +283,18 @@ Findings search(const FileJob& job, const InputShape& input, const PlanesOptions
   Findings findings;
   namingFile(input.path, [&] {
     DetectionOptions detection = options.detection;
-    options.common.applyTo(detection);
-    detection.num_threads = job.numThreads();
+    job.common().applyTo(detection);
     refinement.setOptions(detection);
     if (options.tolerance) refinement.setTolerance(*options.tolerance);
-    refinement.setViewpoint(shifted(options.common.viewpoint, input.shift()));
     refinement.setAsPublished(options.as_published);
     if (options.ground) refinement.setGround(shifted(*options.ground, input.shift()));
-    if (input.volume)
-      refinement.setInputVolume(input.volume, input.levels);
-    else
-      refinement.setInputCloud(input.points);
+    setInput(refinement, input, job.common());
     if (options.label)
       refinement.setIndices(pcl::make_shared<pcl::Indices>(labeledPoints(input.shape.cloud, *options.label)));
     if (input.shape.mesh) refinement.setMesh(meshSurface(*input.shape.mesh));
     if (options.method_given && !input.volume) giveMap(refinement, input, options);
     refinement.compute();
-    if (!refinement.getReason().empty()) throw InputError(input.path + ": " + refinement.getReason());
+    checkAnswer(refinement, input);
   });
   static_cast<Detection&>(findings) = refinement.getDetection();
   const auto is_other = [&](const SymmetryTurn& turn) {  // those of any angle are among the axes

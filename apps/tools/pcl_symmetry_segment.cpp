@@ -63,7 +63,7 @@ CommandLine commandLine(SegmentOptions& o) {
   return line;
 }
 
-SegmentationOptions segmentationOptions(const SegmentOptions& o, int num_threads) {
+SegmentationOptions segmentationOptions(const SegmentOptions& o, const CommonOptions& common) {
   SegmentationOptions options;
   options.method = o.method == "splitting" ? SegmentationMethod::Splitting : SegmentationMethod::Merging;
   options.evidence = o.evidence == "all" ? MergingEvidence::All : MergingEvidence::SymmetryAndConcavity;
@@ -71,8 +71,8 @@ SegmentationOptions segmentationOptions(const SegmentOptions& o, int num_threads
   options.splitting.concavity_weight = o.concavity;
   options.splitting.as_published = o.as_published;
   options.num_parts = o.num_parts;
-  options.seed = o.common.librarySeed();
-  options.num_threads = num_threads;
+  options.seed = common.librarySeed();
+  options.num_threads = common.threads;
   return options;
 }
 
@@ -101,10 +101,8 @@ nlohmann::json describe(const std::string& path, const Shape& shape, const std::
       entry["segment"] = node.segment;
     else
       entry["children"] = node.children;
-    for (const PartPlane& plane : node.planes) {
-      const Eigen::Vector4d c = shiftedBack(plane.plane, shape.shift).coefficients();
-      entry["planes"].push_back({{"coefficients", {c[0], c[1], c[2], c[3]}}, {"share", plane.share}});
-    }
+    for (const PartPlane& plane : node.planes)
+      entry["planes"].push_back({{"coefficients", numbersOf(plane.plane, shape.shift)}, {"share", plane.share}});
     json["tree"].push_back(entry);
   }
   json["images"] = images;
@@ -134,7 +132,7 @@ Shape load(const FileJob& job, const SegmentOptions& o) {
 std::vector<pcl::PointIndices> cut(const FileJob& job, const SegmentOptions& o, const Shape& shape,
                                    SymmetrySegmentation<pcl::PointXYZ>& segmentation, double& ms) {
   Step cutting(job.console(), "Cutting into parts");
-  SegmentationOptions how = segmentationOptions(o, job.numThreads());
+  SegmentationOptions how = segmentationOptions(o, job.common());
   how.progress = [&](double share) { cutting.progress(share); };
   std::vector<pcl::PointIndices> segments;
   namingFile(job.path(), [&] {

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "command_line/command_line.h"
@@ -60,11 +61,6 @@ nlohmann::json toJson(const SelectedView& view, const Eigen::Vector3d& shift) {
   return {{"direction", numbersOf(view.direction)}, {"score", view.score}, {"pose", rowMajor(pose)}};
 }
 
-std::string lineOf(const char* name, const SelectedView& view) {
-  return formatted("%-6s %9.6f %9.6f %9.6f %7.3f\n", name, view.direction.x(), view.direction.y(), view.direction.z(),
-                   view.score);
-}
-
 PictureScene sceneOf(const InputShape& input, const SelectedView& view, const std::string& label) {
   PicturePanel panel{label};
   panel.show_points = !input.shape.mesh;
@@ -112,17 +108,15 @@ double choose(ViewpointSelection& selection, const InputShape& input, const View
               const FileJob& job) {
   DetectionOptions detection;
   detection.approximate = true;
-  options.common.applyTo(detection);
-  detection.num_threads = job.numThreads();
+  job.common().applyTo(detection);
   Step searching(job.console(), "Searching planes");
   SymmetryMaximaRefinement<pcl::PointXYZ> refinement;
   const std::vector<SymmetryPlane> planes = namingFile(input.path, [&] {
     refinement.setOptions(detection);
     refinement.setAsPublished(options.as_published);
-    refinement.setViewpoint(shifted(options.common.viewpoint, input.shift()));
-    refinement.setInputCloud(input.points);
+    setInput(refinement, input, job.common());
     std::vector<SymmetryPlane> found = refinement.compute();
-    if (!refinement.getReason().empty()) throw InputError(input.path + ": " + refinement.getReason());
+    checkAnswer(refinement, input);
     return found;
   });
   if (options.as_published)
@@ -142,31 +136,26 @@ struct ChosenViews {
   SelectedView worst;
 };
 
-std::string tableOf(const ChosenViews& views) {
-  std::string table = formatted("%-6s %9s %9s %9s %7s\n", "view", "x", "y", "z", "score");
-  for (std::size_t i = 0; i < views.good.size(); ++i) table += lineOf(i == 0 ? "best" : "good", views.good[i]);
-  return table + lineOf("worst", views.worst);
-}
-
-/// One row a view.
-std::vector<std::vector<nlohmann::json>> rowsOf(const ChosenViews& views) {
-  std::vector<std::vector<nlohmann::json>> rows;
+/// A line of the table, an entry of the JSON and a row for each view.
+FileReport reportOf(const InputShape& input, const ViewpointSelection& selection, const ChosenViews& views) {
+  FileReport report;
+  report.text = formatted("%-6s %9s %9s %9s %7s\n", "view", "x", "y", "z", "score");
+  report.json = {{"file", input.path},
+                 {"up", numbersOf(selection.getUpAxis())},
+                 {"best", toJson(views.good[0], input.shift())},
+                 {"worst", toJson(views.worst, input.shift())},
+                 {"good", nlohmann::json::array()}};
   const auto add = [&](const char* kind, const SelectedView& view) {
-    rows.push_back({kind, view.direction.x(), view.direction.y(), view.direction.z(), view.score});
+    const Eigen::Vector3d& d = view.direction;
+    report.text += formatted("%-6s %9.6f %9.6f %9.6f %7.3f\n", kind, d.x(), d.y(), d.z(), view.score);
+    report.rows.push_back({kind, d.x(), d.y(), d.z(), view.score});
   };
-  for (std::size_t i = 0; i < views.good.size(); ++i) add(i == 0 ? "best" : "good", views.good[i]);
+  for (const SelectedView& view : views.good) {
+    add(report.rows.empty() ? "best" : "good", view);
+    report.json["good"].push_back(toJson(view, input.shift()));
+  }
   add("worst", views.worst);
-  return rows;
-}
-
-nlohmann::json describe(const InputShape& input, const ViewpointSelection& selection, const ChosenViews& views) {
-  nlohmann::json json{{"file", input.path},
-                      {"up", numbersOf(selection.getUpAxis())},
-                      {"best", toJson(views.good[0], input.shift())},
-                      {"worst", toJson(views.worst, input.shift())},
-                      {"good", nlohmann::json::array()}};
-  for (const SelectedView& view : views.good) json["good"].push_back(toJson(view, input.shift()));
-  return json;
+  return report;
 }
 
 void draw(const FileJob& job, const ViewpointToolOptions& options, const InputShape& input,
@@ -190,9 +179,9 @@ void analyze(const ViewpointToolOptions& options, FileJob& job) {
   Step choosing(job.console(), "Choosing views");
   const ChosenViews views{selection.getGoodViews(options.num_views), selection.getWorstView()};
   const double choosing_ms = choosing.done(counted(views.good.size(), "view"));
-  nlohmann::json json = describe(input, selection, views);
-  json["timing_ms"] = {{"load", input.loading_ms}, {"planes", searching_ms}, {"views", choosing_ms}};
-  job.report({tableOf(views), json, rowsOf(views)});
+  FileReport report = reportOf(input, selection, views);
+  report.json["timing_ms"] = {{"load", input.loading_ms}, {"planes", searching_ms}, {"views", choosing_ms}};
+  job.report(std::move(report));
   draw(job, options, input, selection, views);
 }
 
