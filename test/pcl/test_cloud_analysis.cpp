@@ -1,7 +1,6 @@
 #include "pcl_symmetry/impl/cloud_analysis.hpp"
 
 #include <gtest/gtest.h>
-#include <pcl/point_types.h>
 
 #include <algorithm>
 #include <cmath>
@@ -10,9 +9,11 @@
 #include "pcl/clouds.h"
 #include "pcl_symmetry/axial_symmetry_transform.h"
 #include "pcl_symmetry/impl/cloud_conversion.hpp"
+#include "pcl_symmetry/object_symmetries.h"
 #include "pcl_symmetry/planar_symmetry_transform.h"
 #include "pcl_symmetry/planar_symmetry_transform_2d.h"
 #include "pcl_symmetry/symmetry_alignment.h"
+#include "pcl_symmetry/symmetry_detection.h"
 #include "pcl_symmetry/symmetry_maxima_refinement.h"
 #include "pcl_symmetry/symmetry_segmentation.h"
 
@@ -104,12 +105,50 @@ TEST(CloudAnalysis, ForgetsTheLastCloud) {
   EXPECT_EQ(copy.compute().cols(), 60);
 }
 
-TEST(CloudAnalysis, RefusesWrongParameters) {
+TEST(CloudAnalysis, EveryClassNamesFieldValueAndRule) {
+  using P = pcl::PointXYZ;
   Copy copy;
   EXPECT_EQ(messageOf([&] { copy.setMaxPoints(1); }), "max_points = 1, must be >= 2");
   copy.setInputCloud(grid(60));
   copy.setIndices(pcl::make_shared<pcl::Indices>(1, 60));
   EXPECT_EQ(messageOf([&] { copy.compute(); }), "indices[0] = 60, must be in [0, 60)");
+  PlanarSymmetryTransform<P> planar;
+  EXPECT_EQ(messageOf([&] { planar.setGridSize(4); }), "num_cells = 4, must be in [8, 512]");
+  EXPECT_EQ(messageOf([&] { planar.setMapSize(8, 7, 8); }), "num_phi = 7, must be even and in [2, 4096]");
+  EXPECT_EQ(messageOf([&] { planar.setSigma(-1.0); }), "sigma = -1, must be finite and >= 0");
+  EXPECT_EQ(messageOf([&] { planar.setNumSamples(0); }), "num_samples = 0, must be in [1, 10000000]");
+  EXPECT_EQ(messageOf([&] { planar.setNumPairs(0); }), "num_pairs = 0, must be >= 1");
+  EXPECT_EQ(messageOf([&] { planar.setNumberOfThreads(-2); }), "num_threads = -2, must be >= 0");
+  EXPECT_EQ(messageOf([&] { planar.setBounds(Eigen::Vector3d::Zero(), 0.0); }), "radius = 0, must be finite and > 0");
+  PlanarSymmetryTransform2D<P> in_plane;
+  EXPECT_EQ(messageOf([&] { in_plane.setGridSize(2); }), "num_cells = 2, must be in [8, 4096]");
+  EXPECT_EQ(messageOf([&] { in_plane.setSigma(-1.0); }), "sigma = -1, must be finite and >= 0");
+  AxialSymmetryTransform<P> axial;
+  EXPECT_EQ(messageOf([&] { axial.setFolds({1}); }), "fold = 1, must be 0 or in [2, 60]");
+  EXPECT_EQ(messageOf([&] { axial.setNumCells(4); }), "num_cells = 4, must be in [8, 512]");
+  EXPECT_EQ(messageOf([&] { axial.setMapSize(8, 7, 8); }), "num_phi = 7, must be even and in [2, 1024]");
+  SymmetryAlignment<P> alignment;
+  EXPECT_EQ(messageOf([&] { alignment.setGridSize(2); }), "num_cells = 2, must be in [8, 512]");
+  SymmetryMaximaRefinement<P> refinement;
+  EXPECT_EQ(messageOf([&] { refinement.setMinConfidence(1.5); }), "min_confidence = 1.5, must be in [0, 1]");
+  EXPECT_EQ(messageOf([&] { refinement.setMaxPlanes(0); }), "max_planes = 0, must be >= 1");
+  EXPECT_NE(messageOf([&] { refinement.setSymmetryMap(SymmetryMap(), nullptr); }).find("symmetry map: empty"),
+            std::string::npos);
+  SymmetrySegmentation<P> segmentation;
+  SegmentationOptions options;
+  options.splitting.depth = -1;
+  EXPECT_EQ(messageOf([&] { segmentation.setOptions(options); }), "depth = -1, must be in [0, 30]");
+  EXPECT_EQ(messageOf([&] { segmentation.setMaxPoints(19); }), "max_points = 19, must be >= 20");
+  EXPECT_EQ(messageOf([&] { segmentation.setNumberOfParts(-2); }), "num_parts = -2, must be >= 0");
+}
+
+TEST(CloudAnalysis, FunctionsOfAnyCloudRefuseAlike) {
+  DetectionOptions detection;
+  detection.min_confidence = -1.0;
+  EXPECT_EQ(messageOf([&] { detectSymmetryPlanes(*grid(60), detection); }), "min_confidence = -1, must be in [0, 1]");
+  ObjectSymmetryOptions symmetries;
+  symmetries.max_fold = 0;
+  EXPECT_EQ(messageOf([&] { detectObjectSymmetries(*grid(60), symmetries); }), "max_fold = 0, must be >= 2");
 }
 
 TEST(ScanAnalysis, KeepsTheViewpoint) {

@@ -44,12 +44,5 @@ TEST(DetectObjectSymmetries, AreTheIdentityAloneWhereThereIsNoAnswer) {
   EXPECT_NE(detectObjectSymmetries(pcl::PolygonMesh()).reason, "");
 }
 
-TEST(DetectObjectSymmetries, RefuseWrongParameters) {
-  ObjectSymmetryOptions options;
-  options.max_fold = 0;
-  EXPECT_EQ(test::messageOf([&] { detectObjectSymmetries(*test::toCloud(test::sphere(500, 1)), options); }),
-            "max_fold = 0, must be >= 2");
-}
-
 }  // namespace
 }  // namespace pcl_symmetry

@@ -49,11 +49,5 @@ TEST(PlanarSymmetryTransform2D, HonorsIndicesAndTheGivenWidth) {
   EXPECT_EQ(transform.getSheetPoints().cols(), 800);
 }
 
-TEST(PlanarSymmetryTransform2D, NamesWhatIsWrong) {
-  Transform transform;
-  EXPECT_NE(messageOf([&] { transform.setSigma(-1.0); }).find("sigma = -1, must be"), std::string::npos);
-  EXPECT_NE(messageOf([&] { transform.setGridSize(2); }).find("num_cells = 2"), std::string::npos);
-}
-
 }  // namespace
 }  // namespace pcl_symmetry

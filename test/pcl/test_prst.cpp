@@ -44,7 +44,7 @@ TEST(PRSTEstimation, DescribesInTheCanonicalFrame) {
   EXPECT_GT(descriptorDistance(raw_a[0], raw_b[0]), 0.2f * norm(a[0]));
 }
 
-TEST(PRSDEstimation, AndGEDTEstimationGiveWhatThePaperComparesWith) {
+TEST(PaperDescriptors, PRSDAndGEDTAreThereToo) {
   PRSDEstimation<pcl::PointXYZ> prsd;
   GEDTEstimation<pcl::PointXYZ> gedt;
   PRSTEstimation<pcl::PointXYZ> by_equation_1;

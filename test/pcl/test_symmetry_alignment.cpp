@@ -56,10 +56,5 @@ TEST(SymmetryAlignment, SeesTheViewpointOfAScan) {
   EXPECT_TRUE(alignment.usedViewpoint());
 }
 
-TEST(SymmetryAlignment, RefusesWrongParameters) {
-  SymmetryAlignment<pcl::PointXYZ> alignment;
-  EXPECT_EQ(test::messageOf([&] { alignment.setGridSize(2); }), "num_cells = 2, must be in [8, 512]");
-}
-
 }  // namespace
 }  // namespace pcl_symmetry

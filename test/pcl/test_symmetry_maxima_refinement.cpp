@@ -183,14 +183,5 @@ TEST(SymmetryMaximaRefinement, AUsedObjectIsAsGoodAsANewOne) {
   EXPECT_TRUE(used.getUsedIndices().empty());
 }
 
-TEST(SymmetryMaximaRefinement, RefusesWrongParameters) {
-  using test::messageOf;
-  SymmetryMaximaRefinement<pcl::PointXYZ> refinement;
-  EXPECT_EQ(messageOf([&] { refinement.setMinConfidence(1.5); }), "min_confidence = 1.5, must be in [0, 1]");
-  EXPECT_EQ(messageOf([&] { refinement.setMaxPlanes(0); }), "max_planes = 0, must be >= 1");
-  EXPECT_NE(messageOf([&] { refinement.setSymmetryMap(SymmetryMap(), nullptr); }).find("symmetry map: empty"),
-            std::string::npos);
-}
-
 }  // namespace
 }  // namespace pcl_symmetry

@@ -107,16 +107,5 @@ TEST_F(SymmetrySegmentationTest, AUsedObjectIsAsGoodAsANewOne) {
   for (std::size_t i = 0; i < expected.size(); ++i) EXPECT_EQ(segments_[i].indices, expected[i].indices);
 }
 
-TEST_F(SymmetrySegmentationTest, SettersNameFieldValueAndRule) {
-  SegmentationOptions options;
-  options.splitting.depth = -1;
-  EXPECT_THAT(test::messageOf([&] { segmentation_.setOptions(options); }),
-              testing::HasSubstr("depth = -1, must be in [0, 30]"));
-  EXPECT_THAT(test::messageOf([&] { segmentation_.setMaxPoints(19); }),
-              testing::HasSubstr("max_points = 19, must be >= 20"));
-  EXPECT_THAT(test::messageOf([&] { segmentation_.setNumberOfParts(-2); }),
-              testing::HasSubstr("num_parts = -2, must be >= 0"));
-}
-
 }  // namespace
 }  // namespace pcl_symmetry

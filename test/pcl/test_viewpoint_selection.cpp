@@ -1,8 +1,8 @@
-#include "core/geometry/directions.h"
 #include "pcl_symmetry/viewpoint_selection.h"
 
 #include <gtest/gtest.h>
 
+#include "core/geometry/directions.h"
 #include "pcl/clouds.h"
 #include "pcl_symmetry/symmetry_maxima_refinement.h"
 
