@@ -1,6 +1,5 @@
 #include "core/base/k_means.h"
 
-#include <algorithm>
 #include <limits>
 
 #include "core/base/random.h"

@@ -1,7 +1,6 @@
 #include "core/geometry/answerable_points.h"
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
 #include <stdexcept>
 #include <vector>

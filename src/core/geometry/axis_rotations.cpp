@@ -5,20 +5,16 @@ namespace pcl_symmetry {
 namespace {
 
 std::array<Eigen::Matrix3i, kNumAxisRotations> makeRotations() {
-  // All orders of three axes, the three cyclic (even) ones first
+  // All orders of three axes, the three cyclic ones first
   constexpr int kOrders[6][3] = {{0, 1, 2}, {1, 2, 0}, {2, 0, 1}, {0, 2, 1}, {2, 1, 0}, {1, 0, 2}};
   std::array<Eigen::Matrix3i, kNumAxisRotations> rotations;
   std::size_t count = 0;
-  for (int order = 0; order < 6; ++order) {
+  for (const auto& order : kOrders)
     for (int signs = 0; signs < 8; ++signs) {
-      const int num_turned = (signs & 1) + (signs >> 1 & 1) + (signs >> 2);
-      const bool odd_order = order >= 3;
-      if ((num_turned % 2 == 1) != odd_order) continue;
       Eigen::Matrix3i rotation = Eigen::Matrix3i::Zero();
-      for (int axis = 0; axis < 3; ++axis) rotation(kOrders[order][axis], axis) = signs >> axis & 1 ? -1 : 1;
-      rotations[count++] = rotation;
+      for (int axis = 0; axis < 3; ++axis) rotation(order[axis], axis) = signs >> axis & 1 ? -1 : 1;
+      if (rotation.determinant() == 1) rotations[count++] = rotation;
     }
-  }
   return rotations;
 }
 

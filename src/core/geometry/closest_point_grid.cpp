@@ -1,6 +1,5 @@
 #include "core/geometry/closest_point_grid.h"
 
-#include <cmath>
 #include <limits>
 
 #include "core/base/check.h"

@@ -16,28 +16,11 @@ namespace {
 
 constexpr std::size_t points_of_block = 512;
 
-/// The eighth of a full turn that a direction points to, counted from 0 against the clock.
-int octantOf(float x, float y) {
-  const float ax = std::abs(x), ay = std::abs(y);
-  const int of_quadrant = ay > ax ? 1 : 0;
-  if (y < 0.0f) return x < 0.0f ? 4 + of_quadrant : 7 - of_quadrant;
-  return x < 0.0f ? 3 - of_quadrant : of_quadrant;
-}
-
-/// Whether no two neighboring octants are empty: gaps are of three octants (135 degrees) at most.
-bool leavesNoGap(unsigned octants) {
-  static_assert(kGeometry.border_gap > 2.4f, "a gap of three octants is 2.356");
-  const unsigned empty = ~octants & 0xFFu, next = (empty >> 1 | empty << 7) & 0xFFu;
-  return (empty & next) == 0u;
-}
-
 /// Whether the neighbors of a sample leave a gap in its tangent plane.
 bool isAtBorder(int self, const int* neighbors, int count, const Points& samples, const Points& normals) {
   const Eigen::Vector3f n = normals.col(self), u = n.unitOrthogonal(), v = n.cross(u);
-  std::array<Eigen::Vector2f, kGeometry.border_neighbors + 1> directions;
   std::array<float, kGeometry.border_neighbors + 1> angles;
   int num_angles = 0, num_off = 0;
-  unsigned octants = 0;
   for (int k = 0; k < count; ++k) {
     if (neighbors[k] == self) continue;
     const Eigen::Vector3f difference = samples.col(neighbors[k]) - samples.col(self);
@@ -45,12 +28,9 @@ bool isAtBorder(int self, const int* neighbors, int count, const Points& samples
       ++num_off;
       continue;
     }
-    Eigen::Vector2f& direction = directions[num_angles++];
-    direction = {u.dot(difference), v.dot(difference)};
-    octants |= 1u << octantOf(direction.x(), direction.y());
+    angles[num_angles++] = std::atan2(v.dot(difference), u.dot(difference));
   }
-  if (num_off > kGeometry.most_off_plane || num_angles == 0 || leavesNoGap(octants)) return false;
-  for (int k = 0; k < num_angles; ++k) angles[k] = std::atan2(directions[k].y(), directions[k].x());
+  if (num_off > kGeometry.most_off_plane || num_angles == 0) return false;
   std::sort(angles.begin(), angles.begin() + num_angles);
   float gap = angles[0] + 2.0f * static_cast<float>(kPi) - angles[num_angles - 1];
   for (int k = 1; k < num_angles; ++k) gap = std::max(gap, angles[k] - angles[k - 1]);

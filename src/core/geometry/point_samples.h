@@ -2,7 +2,6 @@
 #pragma once
 
 #include <algorithm>
-#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <numeric>
@@ -58,30 +57,30 @@ inline Points pointsAt(const PointsRef& points, const std::vector<int>& samples)
   return chosen;
 }
 
-/// Indices of points along a curve through the cells of a grid (Morton's): those that follow each other are near.
+/// The position of a cell along Morton's curve: the bits of its coordinates, interleaved.
+/// \param x,y,z in [0, 1024).
+inline std::uint32_t mortonCode(std::uint32_t x, std::uint32_t y, std::uint32_t z) {
+  std::uint32_t code = 0;
+  for (int bit = 0; bit < 10; ++bit)
+    code |= ((x >> bit & 1u) | (y >> bit & 1u) << 1 | (z >> bit & 1u) << 2) << (3 * bit);
+  return code;
+}
+
+/// Indices of points along Morton's curve through the cells of a grid: those that follow each other are near.
 /// \param points 3 x N, finite.
 inline std::vector<int> curveOrder(const PointsRef& points) {
-  constexpr int bits = 6;  // 64 cells along each side
-  constexpr auto cells = static_cast<std::size_t>(1) << bits;
-  std::array<std::uint32_t, cells> spread{};  // bits with room for those of two other axes before each
-  for (std::size_t i = 0; i < cells; ++i)
-    for (int bit = 0; bit < bits; ++bit) spread[i] |= static_cast<std::uint32_t>(i >> bit & 1u) << (3 * bit);
+  constexpr int num_cells = 64;  // along each side
   const Eigen::Vector3f low = points.rowwise().minCoeff(), high = points.rowwise().maxCoeff();
   const float extent = (high - low).maxCoeff();
-  const float scale = extent > 0.0f ? static_cast<float>(cells) / extent : 0.0f;
-  const auto at = [&](int axis, Eigen::Index i) {
-    return spread[std::min(cells - 1, static_cast<std::size_t>((points(axis, i) - low[axis]) * scale))];
-  };
-  const auto count = static_cast<std::size_t>(points.cols());
-  std::vector<std::uint32_t> cell(count);
-  std::vector<int> next(cells * cells * cells + 1, 0), order(count);
-  for (std::size_t i = 0; i < count; ++i) {
-    const auto column = static_cast<Eigen::Index>(i);
-    cell[i] = at(0, column) | at(1, column) << 1 | at(2, column) << 2;
-    ++next[cell[i] + 1];
+  const float scale = extent > 0.0f ? static_cast<float>(num_cells) / extent : 0.0f;
+  std::vector<std::pair<std::uint32_t, int>> cells;
+  for (int i = 0; i < static_cast<int>(points.cols()); ++i) {
+    const Eigen::Array3i cell = ((points.col(i) - low).array() * scale).cast<int>().min(num_cells - 1);
+    cells.emplace_back(mortonCode(cell.x(), cell.y(), cell.z()), i);
   }
-  std::partial_sum(next.begin(), next.end(), next.begin());
-  for (std::size_t i = 0; i < count; ++i) order[next[cell[i]]++] = static_cast<int>(i);
+  std::sort(cells.begin(), cells.end());
+  std::vector<int> order;
+  for (const auto& [cell, i] : cells) order.push_back(i);
   return order;
 }
 

@@ -1,6 +1,5 @@
 #include "pcl_symmetry/core/reflection_plane.h"
 
-#include <algorithm>
 #include <cmath>
 
 #include "core/base/check.h"

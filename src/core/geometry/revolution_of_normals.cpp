@@ -5,13 +5,12 @@
 #include <algorithm>
 
 #include "core/geometry/geometry_rules.h"
+#include "core/geometry/small_motion.h"
 #include "core/geometry/weighted_products.h"
 
 namespace pcl_symmetry {
 
 namespace {
-
-using Matrix6d = Eigen::Matrix<double, 6, 6>;
 
 double weightOf(double miss) {
   const double scaled = miss / kGeometry.normal_miss, sum = 1.0 + scaled * scaled;

@@ -1,4 +1,5 @@
-/// Gauss-Newton steps of small motions: a rotation vector omega, radians, then a translation t.
+/// Gauss-Newton steps of small motions: a rotation vector omega, radians, then a translation t, which move x to
+/// x + omega x x + t.
 #pragma once
 
 #include <Eigen/Eigenvalues>

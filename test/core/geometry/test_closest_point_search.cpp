@@ -8,7 +8,6 @@
 #include <limits>
 #include <stdexcept>
 #include <string>
-#include <vector>
 
 #include "core/base/random.h"
 #include "core/geometry/closest_point_grid.h"

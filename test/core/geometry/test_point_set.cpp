@@ -164,7 +164,7 @@ TEST(WhyUnanswerable, CountsDistinctPoints) {
   EXPECT_EQ(whyUnanswerable(Points(3, 0)), "0 distinct points, at least 20 are needed");
 }
 
-TEST(WhyUnanswerable, KnowsOnePlace) {
+TEST(WhyUnanswerable, KnowsOnePosition) {
   // Coordinates of 1e9 are multiples of 64: these points differ by the last bit alone.
   Points points(3, 27);
   for (int i = 0; i < 27; ++i)
@@ -230,7 +230,7 @@ TEST(SpreadSubset, KeepsTheShareOfEachSide) {
   EXPECT_NEAR(static_cast<double>(below), 200.0, 10.0);
 }
 
-TEST(SpreadSubset, OfPointsAtOnePlaceOrOnALine) {
+TEST(SpreadSubset, OfPointsAtOnePositionOrOnALine) {
   EXPECT_EQ(spreadSubset(Points::Ones(3, 100), 10, 1).kept.size(), 10u);
   const Points line = Eigen::Vector3f(1.0f, 2.0f, 2.0f) * Eigen::RowVectorXf::LinSpaced(1001, -1.0f, 1.0f);
   EXPECT_EQ(spreadSubset(line, 100, 1).kept.size(), 100u);
