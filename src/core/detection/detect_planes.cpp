@@ -276,8 +276,7 @@ Detection planesOfPoints(const PlaneInput& input, const DetectionOptions& option
   Timing timing;
   const GaussianEdt edt(input.points, options.edtOptions());
   timing.emplace_back("distance_transform", watch.lap());
-  std::vector<float> free_space;
-  if (input.visibility) free_space = freeSpace(edt, *input.visibility, options.num_threads);
+  const std::vector<float> free_space = freeSpace(edt, input.visibility, options.num_threads);
   timing.emplace_back("free_space", watch.lap());
   const DetectionOptions::Expert& expert = options.expert;
   const PlaneGrid grid(expert.num_theta, expert.num_phi, expert.num_radius, edt.center(), edt.radius());

@@ -24,9 +24,9 @@ Eigen::Matrix3d orthonormal(const Eigen::Matrix3f& axes) {
 /// \param score of the plane.
 float firstOffset(const FrameEvidence& evidence, const CellPlane& first, double score) {
   const double doubtful_radii =
-      evidence.scanned() ? kFrame.scan_first_radius : kFrame.whole_first_radius / std::max(1.0 - score, 0.01);
+      evidence.scanned ? kFrame.scan_first_radius : kFrame.whole_first_radius / std::max(1.0 - score, 0.01);
   const double away = evidence.middleAlong(first.normal) - first.offset;
-  const double doubtful = doubtful_radii * evidence.reach();
+  const double doubtful = doubtful_radii * evidence.reach;
   return first.offset + static_cast<float>(away * away * away / (away * away + doubtful * doubtful));
 }
 
@@ -54,8 +54,8 @@ Eigen::Vector3d centerOfSymmetry(const FrameEvidence& evidence, const FrameCandi
     const double middle = evidence.middleAlong(axis);
     double sum = 0.0, moment = 0.0;
     for (std::size_t i = 0; i < s.size(); ++i) {
-      const double r = static_cast<double>(i) - std::floor(evidence.reach());
-      const double away = (r - middle) / (kFrame.offset_width * evidence.reach());
+      const double r = static_cast<double>(i) - std::floor(evidence.reach);
+      const double away = (r - middle) / (kFrame.offset_width * evidence.reach);
       const double weight = std::exp(kFrame.offset_sharpness * (s[i] - top) - 0.5 * away * away);
       sum += weight;
       moment += weight * r;
@@ -103,20 +103,20 @@ Eigen::Isometry3d canonicalPose(const Eigen::Matrix3d& axes, const Eigen::Vector
   return T_canonical_input;
 }
 
-void EquivalentFrames::addWithSigns(const Eigen::Matrix3d& axes, const Eigen::Vector3d& center) {
+void addWithSigns(const Eigen::Matrix3d& axes, const Eigen::Vector3d& center, std::vector<Eigen::Isometry3d>& poses) {
   for (int kept = -1; kept < 3; ++kept) {
     Eigen::Vector3d signs = Eigen::Vector3d::Constant(kept < 0 ? 1.0 : -1.0);
     if (kept >= 0) signs[kept] = 1.0;
     const Eigen::Isometry3d T = canonicalPose(axes * signs.asDiagonal(), center);
-    const bool known = std::any_of(poses_.begin(), poses_.end(), [&](const Eigen::Isometry3d& other) {
+    const bool known = std::any_of(poses.begin(), poses.end(), [&](const Eigen::Isometry3d& other) {
       return Eigen::AngleAxisd(T.linear() * other.linear().transpose()).angle() < kFrame.same_frame;
     });
-    if (!known) poses_.push_back(T);
+    if (!known) poses.push_back(T);
   }
 }
 
-void EquivalentFrames::addTied(const FrameCandidate& frame, const Eigen::Vector3f& scores,
-                               const Eigen::Vector3d& center) {
+void addTied(const FrameCandidate& frame, const Eigen::Vector3f& scores, const Eigen::Vector3d& center,
+             std::vector<Eigen::Isometry3d>& poses) {
   std::array<int, 3> order{0, 1, 2};
   do {
     bool tied = true;
@@ -125,7 +125,7 @@ void EquivalentFrames::addTied(const FrameCandidate& frame, const Eigen::Vector3
       tied &= frame.scores[order[k]] >= scores[k] - kFrame.tie;
       axes.col(k) = frame.axes.col(order[k]);
     }
-    if (tied) addWithSigns(orthonormal(axes), center);
+    if (tied) addWithSigns(orthonormal(axes), center, poses);
   } while (std::next_permutation(order.begin(), order.end()));
 }
 

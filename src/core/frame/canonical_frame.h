@@ -33,23 +33,16 @@ int revolutionAxis(const FrameEvidence& evidence, const FrameCandidate& frame);
 /// \param axes orthonormal columns.
 Eigen::Isometry3d canonicalPose(const Eigen::Matrix3d& axes, const Eigen::Vector3d& center);
 
-/// The frames that symmetry leaves equally good. Frames closer than 5 degrees are one.
-class EquivalentFrames {
-public:
-  /// Adds a frame with all four choices of signs that are rotations: a plane has no sign.
-  /// \param axes orthonormal columns, right-handed.
-  void addWithSigns(const Eigen::Matrix3d& axes, const Eigen::Vector3d& center);
+/// Adds the poses of a frame with all four choices of signs that are rotations, as a plane has no sign, to equally good
+/// ones. Poses whose axes are closer than 5 degrees are one.
+/// \param axes orthonormal columns, right-handed.
+/// \param[in,out] poses each T_canonical_input.
+void addWithSigns(const Eigen::Matrix3d& axes, const Eigen::Vector3d& center, std::vector<Eigen::Isometry3d>& poses);
 
-  /// Adds a frame in all orders of its axes in which none of its planes scores less than the one it replaces.
-  /// \param scores those of the best frame.
-  void addTied(const FrameCandidate& frame, const Eigen::Vector3f& scores, const Eigen::Vector3d& center);
-
-  /// Each T_canonical_input, in the order in which they were added.
-  const std::vector<Eigen::Isometry3d>& poses() const { return poses_; }
-
-private:
-  std::vector<Eigen::Isometry3d> poses_;
-};
+/// The same for a frame in all orders of its axes in which none of its planes scores less than the one it replaces.
+/// \param scores those of the best frame.
+void addTied(const FrameCandidate& frame, const Eigen::Vector3f& scores, const Eigen::Vector3d& center,
+             std::vector<Eigen::Isometry3d>& poses);
 
 /// Whether a frame is one of \p axes rotated about its axis of revolution: all of these are equally good and not
 /// listed.

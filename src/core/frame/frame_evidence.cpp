@@ -4,7 +4,6 @@
 #include <cmath>
 #include <utility>
 
-#include "core/base/constants.h"
 #include "core/base/median.h"
 #include "core/transform/free_space.h"
 
@@ -33,35 +32,35 @@ GaussianEdtOptions edtOptions(const PointsRef& points, GaussianEdtOptions option
 
 }  // namespace
 
-FrameEvidence::FrameEvidence(const PointsRef& points, const FrameOptions& options, const Visibility* visibility)
-    : points_(points),
-      scanned_(visibility != nullptr),
-      weight_(scanned_ ? kFrame.scan_weight : kFrame.whole_weight),
-      edt_(points, edtOptions(points, edtOptionsOf(options), scanned_)),
-      free_space_(visibility ? pcl_symmetry::freeSpace(edt_, *visibility, options.num_threads) : std::vector<float>()),
-      profiles_(edt_, free_space_, kFrame.num_profile_samples, options.seed, options.num_threads),
-      directions_(points, edt_),
-      middle_(edt_.origin() + Eigen::Vector3d::Constant(0.5 * (edt_.numCells() - 1) * edt_.cellSize())),
-      reach_(static_cast<float>(edt_.radius() / edt_.cellSize())),
-      principal_axes_(pcl_symmetry::principalAxes(points)),
-      center_of_mass_(toCells(principal_axes_.center)),
-      push_(visibility ? Eigen::Vector3f(static_cast<float>(kFrame.push) * reach_ *
-                                         (principal_axes_.center - visibility->viewpoint()).normalized().cast<float>())
-                       : Eigen::Vector3f::Zero()) {}
+FrameEvidence::FrameEvidence(const PointsRef& cloud, const FrameOptions& options, const Visibility* visibility)
+    : points(cloud),
+      scanned(visibility != nullptr),
+      weight(scanned ? kFrame.scan_weight : kFrame.whole_weight),
+      edt(points, edtOptions(points, edtOptionsOf(options), scanned)),
+      free_space(freeSpace(edt, visibility, options.num_threads)),
+      profiles(edt, free_space, kFrame.num_profile_samples, options.seed, options.num_threads),
+      directions(points, edt),
+      middle(edt.origin() + Eigen::Vector3d::Constant(0.5 * (edt.numCells() - 1) * edt.cellSize())),
+      reach(static_cast<float>(edt.radius() / edt.cellSize())),
+      principal_axes(principalAxes(points)),
+      center_of_mass(toCells(principal_axes.center)),
+      push(visibility ? Eigen::Vector3f(static_cast<float>(kFrame.push) * reach *
+                                        (principal_axes.center - visibility->viewpoint()).normalized().cast<float>())
+                      : Eigen::Vector3f::Zero()) {}
 
 CellPlane FrameEvidence::toCells(const ReflectionPlane& plane) const {
-  return {plane.normal().cast<float>(), static_cast<float>(-plane.signedDistance(middle_) / edt_.cellSize())};
+  return {plane.normal().cast<float>(), static_cast<float>(-plane.signedDistance(middle) / edt.cellSize())};
 }
 
 std::vector<float> FrameEvidence::profile(const Eigen::Vector3f& normal, const CellPlane* completed_across) const {
-  const int half = static_cast<int>(reach_);
-  return profiles_.scores(normal, static_cast<float>(-half), 1.0f, 2 * half + 1, completed_across);
+  const int half = static_cast<int>(reach);
+  return profiles.scores(normal, static_cast<float>(-half), 1.0f, 2 * half + 1, completed_across);
 }
 
 ScoredOffset FrameEvidence::bestOffset(const Eigen::Vector3f& normal, const CellPlane* completed_across) const {
   const std::vector<float> s = profile(normal, completed_across);
   const auto at = std::max_element(s.begin(), s.end()) - s.begin();
-  return {static_cast<float>(at - static_cast<int>(reach_)), s[at]};
+  return {static_cast<float>(at - static_cast<int>(reach)), s[at]};
 }
 
 ScoredOffset FrameEvidence::nearbyOffset(const Eigen::Vector3f& normal, float offset,
@@ -69,21 +68,21 @@ ScoredOffset FrameEvidence::nearbyOffset(const Eigen::Vector3f& normal, float of
   // The longest step of the search, 3 degrees, moves a plane by 1.5 cells at the rim of the grid.
   const int side = 3;
   const float step = 0.5f;
-  const std::vector<float> s = profiles_.scores(normal, offset - side * step, step, 2 * side + 1, completed_across);
+  const std::vector<float> s = profiles.scores(normal, offset - side * step, step, 2 * side + 1, completed_across);
   const auto at = std::max_element(s.begin(), s.end()) - s.begin();
   return {offset + (static_cast<float>(at) - side) * step, s[at]};
 }
 
 double FrameEvidence::spreadAlong(const Eigen::Vector3f& axis) const {
-  return (principal_axes_.axes.transpose() * axis.cast<double>()).cwiseAbs2().dot(principal_axes_.variances);
+  return (principal_axes.axes.transpose() * axis.cast<double>()).cwiseAbs2().dot(principal_axes.variances);
 }
 
 double FrameEvidence::middleAlong(const Eigen::Vector3f& axis) const {
-  std::vector<float> t(static_cast<std::size_t>(points_.cols()));
-  for (std::size_t i = 0; i < t.size(); ++i) t[i] = axis.dot(toCells(points_.col(i).cast<double>()));
+  std::vector<float> t(static_cast<std::size_t>(points.cols()));
+  for (std::size_t i = 0; i < t.size(); ++i) t[i] = axis.dot(toCells(points.col(i).cast<double>()));
   const auto tail = static_cast<std::size_t>(kFrame.tail * static_cast<double>(t.size() - 1));
   const auto [low, high] = trimmedExtent(std::move(t), tail);
-  return 0.5 * (low + high) + axis.dot(push_);
+  return 0.5 * (low + high) + axis.dot(push);
 }
 
 }  // namespace pcl_symmetry

@@ -75,41 +75,44 @@ struct ScoredOffset {
 /// The score of a plane is D, or seenSymmetry() of D and free space for a scan. Departures from the paper: free space
 /// counts, and of nearly equal planes the one that the faces of the surface agree with is better. Offsets and positions
 /// are in cells from the middle of the grid, unless they are called input.
-class FrameEvidence {
-public:
+struct FrameEvidence {
   /// \param points 3 x N, finite, input units; must outlive this object.
   /// \param visibility what the scanner saw; null = the points show the object from all sides.
   FrameEvidence(const PointsRef& points, const FrameOptions& options, const Visibility* visibility);
 
-  const PointsRef& points() const { return points_; }
-  bool scanned() const { return scanned_; }
-  const GaussianEdt& edt() const { return edt_; }
-  const std::vector<float>& freeSpace() const { return free_space_; }
-  const SurfaceDirections& directions() const { return directions_; }
-  const PrincipalAxes& principalAxes() const { return principal_axes_; }  ///< of the points, input frame
-  const Eigen::Vector3f& centerOfMass() const { return center_of_mass_; }
-  float reach() const { return reach_; }  ///< radius of the grid, cells
+  const PointsRef& points;
+  const bool scanned;
+  const double weight;  ///< of the second and third plane, and of agreement
+  const GaussianEdt edt;
+  const std::vector<float> free_space;
+  const PlaneProfiles profiles;
+  const SurfaceDirections directions;
+  const Eigen::Vector3d middle;        ///< of the grid, input frame
+  const float reach;                   ///< radius of the grid, cells
+  const PrincipalAxes principal_axes;  ///< of the points, input frame
+  const Eigen::Vector3f center_of_mass;
+  const Eigen::Vector3f push;  ///< that the middle of a scan's extent is moved by, cells
 
-  Eigen::Vector3f toCells(const Eigen::Vector3d& x) const { return ((x - middle_) / edt_.cellSize()).cast<float>(); }
-  Eigen::Vector3d toInput(const Eigen::Vector3f& x) const { return middle_ + edt_.cellSize() * x.cast<double>(); }
+  Eigen::Vector3f toCells(const Eigen::Vector3d& x) const { return ((x - middle) / edt.cellSize()).cast<float>(); }
+  Eigen::Vector3d toInput(const Eigen::Vector3f& x) const { return middle + edt.cellSize() * x.cast<double>(); }
   CellPlane toCells(const ReflectionPlane& plane) const;
 
-  float score(const CellPlane& plane) const { return profiles_.score(plane); }
+  float score(const CellPlane& plane) const { return profiles.score(plane); }
   /// Weighted agreement of the surface with an axis.
-  double agreement(const Eigen::Vector3f& axis) const { return weight_ * directions_.agreement(axis); }
+  double agreement(const Eigen::Vector3f& axis) const { return weight * directions.agreement(axis); }
   /// By which candidates for the first plane are compared.
   double quality(const CellPlane& plane) const { return score(plane) + agreement(plane.normal); }
   /// By which frames are compared: the score of the first plane, a share of those of the others, and agreement.
   /// \param scores of the first, second and third plane.
   double value(const Eigen::Vector3f& scores, double agreement) const {
-    return scores[0] + weight_ * (scores[1] + scores[2]) + agreement;
+    return scores[0] + weight * (scores[1] + scores[2]) + agreement;
   }
 
   /// The cloud that planes perpendicular to \p first are judged on: a scan is completed across the first plane.
   /// \return what the functions below take as \p completed_across.
-  const CellPlane* completedAcross(const CellPlane& first) const { return scanned_ ? &first : nullptr; }
+  const CellPlane* completedAcross(const CellPlane& first) const { return scanned ? &first : nullptr; }
 
-  /// Scores at all offsets in steps of a cell, the first at -floor(reach()).
+  /// Scores at all offsets in steps of a cell, the first at -floor(reach).
   std::vector<float> profile(const Eigen::Vector3f& normal, const CellPlane* completed_across) const;
   /// The best offset of profile().
   ScoredOffset bestOffset(const Eigen::Vector3f& normal, const CellPlane* completed_across = nullptr) const;
@@ -123,20 +126,6 @@ public:
   /// silhouettes and rims are seen where surfaces behind them are not; the center of mass does not. It is pushed away
   /// from the scanner, because the extent ends where the back begins.
   double middleAlong(const Eigen::Vector3f& axis) const;
-
-private:
-  const PointsRef& points_;
-  const bool scanned_;
-  const double weight_;
-  const GaussianEdt edt_;
-  const std::vector<float> free_space_;
-  const PlaneProfiles profiles_;
-  const SurfaceDirections directions_;
-  const Eigen::Vector3d middle_;  // middle of the grid, input frame
-  const float reach_;
-  const PrincipalAxes principal_axes_;
-  const Eigen::Vector3f center_of_mass_;
-  const Eigen::Vector3f push_;  // that the middle of a scan's extent is moved by, cells
 };
 
 }  // namespace pcl_symmetry

@@ -29,7 +29,7 @@ CellPlane climbed(const FrameEvidence& evidence, CellPlane plane) {
         const Eigen::Vector3f normal =
             (plane.normal + static_cast<float>(std::tan(step * kDegree)) * side).normalized();
         const auto [offset, score] =
-            evidence.nearbyOffset(normal, plane.offset + (normal - plane.normal).dot(evidence.centerOfMass()));
+            evidence.nearbyOffset(normal, plane.offset + (normal - plane.normal).dot(evidence.center_of_mass));
         const double tried = score + evidence.agreement(normal);
         if (tried <= quality) continue;
         quality = tried;
@@ -63,7 +63,7 @@ PerpendicularPlane planeOf(const FrameEvidence& evidence, const CellPlane& first
   plane.normal = normal;
   plane.best = evidence.bestOffset(plane.normal, evidence.completedAcross(first));
   plane.agreement = evidence.agreement(plane.normal);
-  if (evidence.scanned()) plane.half_way = evidence.bestOffset(halfWay(first.normal, plane.normal));
+  if (evidence.scanned) plane.half_way = evidence.bestOffset(halfWay(first.normal, plane.normal));
   return plane;
 }
 
@@ -81,7 +81,7 @@ FrameCandidate frameOf(const FrameEvidence& evidence, const CellPlane& first, co
   frame.offsets << first.offset, second.best.offset, third.best.offset;
   frame.scores << evidence.score(first), second.best.score, third.best.score;
   frame.value = evidence.value(frame.scores, evidence.agreement(first.normal) + second.agreement + third.agreement);
-  if (evidence.scanned()) {
+  if (evidence.scanned) {
     frame.rotation_axis = second.half_way.score > third.half_way.score ? 2 : 1;
     const ScoredOffset& half_way = frame.rotation_axis == 2 ? second.half_way : third.half_way;
     frame.half_way_offset = half_way.offset;
@@ -97,7 +97,7 @@ FrameCandidate rotatedTo(const FrameEvidence& evidence, const FrameCandidate& fr
   double agreement = 0.0;
   CellPlane first{axes.col(0), 0.0f};
   for (int k = 0; k < 3; ++k) {
-    const float before = from.offsets[k] + (axes.col(k) - from.axes.col(k)).dot(evidence.centerOfMass());
+    const float before = from.offsets[k] + (axes.col(k) - from.axes.col(k)).dot(evidence.center_of_mass);
     const auto [offset, score] =
         evidence.nearbyOffset(axes.col(k), before, k > 0 ? evidence.completedAcross(first) : nullptr);
     frame.offsets[k] = offset;
@@ -111,7 +111,7 @@ FrameCandidate rotatedTo(const FrameEvidence& evidence, const FrameCandidate& fr
     const Eigen::Vector3f normal = halfWay(axes.col(0), axes.col(other));
     const Eigen::Vector3f before = halfWay(from.axes.col(0), from.axes.col(other));
     const ScoredOffset half_way =
-        evidence.nearbyOffset(normal, from.half_way_offset + (normal - before).dot(evidence.centerOfMass()));
+        evidence.nearbyOffset(normal, from.half_way_offset + (normal - before).dot(evidence.center_of_mass));
     frame.rotation_axis = from.rotation_axis;
     frame.half_way_offset = half_way.offset;
     frame.value += kFrame.half_way_weight * half_way.score;
@@ -164,8 +164,8 @@ std::vector<CellPlane> firstPlaneCandidates(const FrameEvidence& evidence, const
     if (!isKnown(candidates, plane.normal, kFrame.candidate_angle)) candidates.push_back(plane);
   }
   const std::size_t num_maxima = candidates.size();
-  for (int k = 0; k < 3; ++k) candidates.push_back({evidence.principalAxes().axes.col(k).cast<float>(), 0.0f});
-  for (const Eigen::Vector3f& peak : evidence.directions().peaks(kFrame.max_faces)) candidates.push_back({peak, 0.0f});
+  for (int k = 0; k < 3; ++k) candidates.push_back({evidence.principal_axes.axes.col(k).cast<float>(), 0.0f});
+  for (const Eigen::Vector3f& peak : evidence.directions.peaks(kFrame.max_faces)) candidates.push_back({peak, 0.0f});
   parallelBlocks(candidates.size(), num_threads, [&](std::size_t i) {
     CellPlane& plane = candidates[i];
     if (i >= num_maxima) plane.offset = evidence.bestOffset(plane.normal).offset;

@@ -124,7 +124,7 @@ Outline::Box Outline::boxAt(double angle) const {
 }
 
 std::vector<FrameCandidate> leveledFrames(const FrameEvidence& evidence, const Eigen::Vector3f& first) {
-  const Outline outline(evidence.points(), first);
+  const Outline outline(evidence.points, first);
   std::vector<FrameCandidate> frames;
   for (const double angle : {angleOfGreatest([&](double a) { return -outline.boxAt(a).area; }),
                              angleOfGreatest([&](double a) { return outline.boxAt(a).contact; }),
@@ -136,7 +136,7 @@ std::vector<FrameCandidate> leveledFrames(const FrameEvidence& evidence, const E
 std::vector<FrameCandidate> leveledFirst(const FrameEvidence& evidence, std::vector<FrameCandidate> frames) {
   const FrameCandidate& best = frames.front();
   const Eigen::Vector3f first = best.axes.col(0);
-  const Outline outline(evidence.points(), first);
+  const Outline outline(evidence.points, first);
   const FrameCandidate leveled = frameAt(evidence, outline, first, angleOfFaces(evidence, outline));
   if (leveled.value >= best.value - kFrame.max_lost_value &&
       contactOf(outline, leveled) >= contactOf(outline, best) + kFrame.min_gained_contact)

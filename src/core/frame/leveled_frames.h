@@ -32,9 +32,6 @@ private:
   std::vector<Eigen::Vector2f> corners_;  // of the outline, in order
 };
 
-/// Frames as people put a shape that has one plane of symmetry: rotated about its normal until the shape is level. Not
-/// in the paper, whose second axis is that of the greatest D even where no second plane is a symmetry.
-
 /// Frames rotated about their first axis to the smallest box around the outline, to its longest contact, to the faces
 /// of the surface, and to the principal axes of the outline.
 /// \param first unit, the first axis.

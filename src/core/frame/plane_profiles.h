@@ -4,7 +4,6 @@
 #include <cstdint>
 #include <vector>
 
-#include "core/transform/free_space.h"
 #include "pcl_symmetry/core/gaussian_edt.h"
 
 namespace pcl_symmetry {

@@ -4,7 +4,6 @@
 #include <cmath>
 #include <limits>
 
-#include "core/base/constants.h"
 #include "core/base/parallel.h"
 #include "core/frame/canonical_frame.h"
 #include "core/frame/frame_fit.h"
@@ -62,9 +61,9 @@ std::vector<FrameChoice> frameChoices(const FrameEvidence& evidence, const std::
     choices.push_back({frame, revolutionAxis(evidence, frame), FrameTerms::Zero()});
     best = std::max(best, frame.value);
   }
-  const Eigen::Matrix3f principal = evidence.principalAxes().axes.cast<float>();
+  const Eigen::Matrix3f principal = evidence.principal_axes.axes.cast<float>();
   for (FrameChoice& choice : choices) {
-    const Outline outline(evidence.points(), choice.frame.axes.col(0));
+    const Outline outline(evidence.points, choice.frame.axes.col(0));
     choice.terms << 1.0, choice.frame.value - best, choice.frame.scores[0],
         outline.boxAt(outline.angleOf(choice.frame.axes.col(1))).contact,
         std::min(angleBetween(choice.frame.axes, principal) / kFrame.far_from_principal, 1.0), 0.0,

@@ -9,8 +9,6 @@
 namespace pcl_symmetry {
 
 /// The directions that the surface of a shape faces: one normal for each cell of a coarse grid that the surface passes.
-///
-/// One normal per cell makes the result independent of the density of the points and of noise below the size of a cell.
 class SurfaceDirections {
 public:
   /// \param points 3 x N, finite, input units.

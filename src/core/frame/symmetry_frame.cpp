@@ -1,9 +1,7 @@
 #include "pcl_symmetry/core/symmetry_frame.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <utility>
 
 #include "core/base/check.h"
 #include "core/base/constants.h"
@@ -79,9 +77,7 @@ SymmetryFrame publishedFrame(const PointsRef& points, const FrameOptions& option
       grid.center() + frame.axes * Eigen::Vector3d(-first.signedDistance(grid.center()), second->offset, third.offset);
   frame.scores << (maxima.empty() ? map[map.strongest()] : maxima.front().score), second->score, third.score;
   frame.T_canonical_input = canonicalPose(frame.axes, frame.center);
-  EquivalentFrames equivalent;
-  equivalent.addWithSigns(frame.axes, frame.center);
-  frame.equivalent = equivalent.poses();
+  addWithSigns(frame.axes, frame.center, frame.equivalent);
   frame.num_maxima = frame.equivalent.size();
   return frame;
 }
@@ -104,14 +100,14 @@ std::vector<SymmetryTurn> turnsAlong(const SymmetryFrame& frame, const PointsRef
 /// The frame itself, then the others by falling probability.
 std::vector<ProbableFrame> probableFrames(const FrameEvidence& evidence, const SymmetryFrame& frame,
                                           const std::vector<FrameChoice>& choices) {
-  const std::vector<double> probabilities = frameProbabilities(choices, frameWeights(evidence.scanned()));
+  const std::vector<double> probabilities = frameProbabilities(choices, frameWeights(evidence.scanned));
   std::vector<ProbableFrame> probable;
   for (std::size_t i = 0; i < choices.size(); ++i) {
     const FrameChoice& choice = choices[i];
     ProbableFrame entry{frame.center, frame.axes, choice.revolution_axis, probabilities[i], {}};
     if (i > 0) {
       entry.center = centerOfSymmetry(evidence, choice.frame);
-      entry.axes = principalSymmetryAxes(evidence.points(), choice.frame.axes);
+      entry.axes = principalSymmetryAxes(evidence.points, choice.frame.axes);
     }
     std::copy(choice.terms.data(), choice.terms.data() + choice.terms.size(), entry.evidence.begin());
     probable.push_back(entry);
@@ -143,13 +139,10 @@ SymmetryFrame symmetryFrame(const PointsRef& points, const FrameOptions& options
 
   const FrameEvidence evidence(points, options, visibility);
   done("surface");
-  const GaussianEdt& edt = evidence.edt();
+  const GaussianEdt& edt = evidence.edt;
   const PlaneGrid grid(options.num_theta, options.num_phi, options.num_radius, edt.center(), edt.radius());
-  SampledTransformOptions sampling;
-  sampling.num_samples = options.num_samples;
-  sampling.seed = options.seed;
-  sampling.num_threads = options.num_threads;
-  SymmetryMap map = sampledTransform(edt, grid, sampling, evidence.freeSpace());
+  SymmetryMap map =
+      sampledTransform(edt, grid, {options.num_samples, options.seed, options.num_threads}, evidence.free_space);
   map.center_of_mass = centerOfMass(points);
   done("transform");
 
@@ -176,15 +169,13 @@ SymmetryFrame symmetryFrame(const PointsRef& points, const FrameOptions& options
   frame.T_canonical_input = canonicalPose(frame.axes, frame.center);
 
   // Equally good frames: first the maxima, then the angles between them where the second plane hardly matters.
-  EquivalentFrames equivalent;
-  equivalent.addWithSigns(frame.axes, frame.center);
+  addWithSigns(frame.axes, frame.center, frame.equivalent);
   for (std::size_t i = 0; i < frames.size(); ++i)
-    equivalent.addTied(frames[i], best.scores, i == 0 ? frame.center : centers[i]);
-  frame.num_maxima = equivalent.poses().size();
+    addTied(frames[i], best.scores, i == 0 ? frame.center : centers[i], frame.equivalent);
+  frame.num_maxima = frame.equivalent.size();
   for (const FrameCandidate& other : rotated)
     if (!isRotatedAboutRevolution(frame.axes.cast<float>(), frame.revolution_axis, other.axes))
-      equivalent.addTied(other, best.scores, frame.center);
-  frame.equivalent = equivalent.poses();
+      addTied(other, best.scores, frame.center, frame.equivalent);
   done("equivalent");
   if (visibility && options.turns) {
     frame.turns = turnsAlong(frame, points, edt, options, *visibility, make_search);

@@ -1,7 +1,6 @@
 #include "pcl_symmetry/core/axial_transform.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <map>
 #include <numeric>
@@ -111,52 +110,6 @@ namespace {
 
 constexpr std::size_t directions_per_block = 4;
 
-/// Sums of the table's functions over the rotated samples, for all axes of one direction.
-class AxesOfDirection {
-public:
-  AxesOfDirection(const GaussianEdt& edt, const AxisGrid& grid, const LookupTable& table)
-      : grid_(grid),
-        lines_(edt, table, grid.numOffset()),
-        cell_(edt.cellSize()),
-        center_(toCells(edt, grid.center())),
-        totals_(table.numFunctions(), std::vector<double>(grid.numOffset())) {}
-
-  /// Calls visit(v, u_begin, u_end, totals) with one sum per u for each row of axes.
-  template <typename Visit>
-  void sum(const Eigen::Matrix3d& frame, double angle, const Eigen::Matrix3Xf& samples, const Visit& visit) {
-    const Eigen::Matrix3d rotation = Eigen::AngleAxisd(angle, frame.col(2)).toRotationMatrix();
-    const Eigen::Matrix3d rest = Eigen::Matrix3d::Identity() - rotation;
-    moved_.noalias() = rotation.cast<float>() * samples;
-    const Eigen::Vector3d step = rest * frame.col(0) * (grid_.offsetStep() / cell_);
-    for (int v = 0; v < grid_.numOffset(); ++v) {
-      const auto [begin, end] = rowInBall(v);
-      if (begin == end) continue;
-      for (auto& total : totals_) std::fill(total.begin(), total.end(), 0.0);
-      const Eigen::Vector3d foot = (grid_.offset(0) * frame.col(0) + grid_.offset(v) * frame.col(1)) / cell_;
-      lines_.addMoved(moved_, (rest * (center_ + foot)).cast<float>(), step.cast<float>(), begin, end, totals_);
-      visit(v, begin, end, totals_);
-    }
-  }
-
-private:
-  /// The bins of u with u^2 + v^2 <= radius^2.
-  std::pair<int, int> rowInBall(int v) const {
-    const auto inside = [&](int u) {
-      return grid_.offset(u) * grid_.offset(u) + grid_.offset(v) * grid_.offset(v) <= grid_.radius() * grid_.radius();
-    };
-    int begin = 0;
-    while (begin < grid_.numOffset() && !inside(begin)) ++begin;
-    return {begin, std::max(begin, grid_.numOffset() - begin)};
-  }
-
-  const AxisGrid& grid_;
-  LineSums lines_;
-  double cell_;
-  Eigen::Vector3d center_;
-  Eigen::Matrix3Xf moved_;
-  LineSums::Totals totals_;
-};
-
 /// A rotation about an axis, and what it counts in D_n of each fold. Rotations by an angle and by its negative
 /// correlate equally; what they move into free space differs.
 struct AxialRotation {
@@ -218,10 +171,32 @@ int bestFold(const std::vector<int>& folds, const std::vector<double>& values) {
 
 namespace {
 
+/// The bins of u with u^2 + v^2 <= radius^2.
+std::pair<int, int> rowInBall(const AxisGrid& grid, int v) {
+  const auto inside = [&](int u) {
+    return grid.offset(u) * grid.offset(u) + grid.offset(v) * grid.offset(v) <= grid.radius() * grid.radius();
+  };
+  int begin = 0;
+  while (begin < grid.numOffset() && !inside(begin)) ++begin;
+  return {begin, std::max(begin, grid.numOffset() - begin)};
+}
+
 /// Adds what one rotation says about all axes of a direction to D, and to F where the table has free space.
-void addRotation(AxesOfDirection& axes, const AxisGrid& grid, std::size_t direction, const AxialRotation& rotation,
-                 double scale, const Eigen::Matrix3Xf& samples, std::vector<std::vector<std::vector<float>>>& sums) {
-  axes.sum(grid.frame(direction), rotation.angle, samples, [&](int v, int begin, int end, const auto& totals) {
+/// \param[in,out] sums D, and F, of each fold for all axes of the direction.
+void addRotation(LineSums& lines, const GaussianEdt& edt, const AxisGrid& grid, const Eigen::Matrix3d& frame,
+                 const AxialRotation& rotation, double scale, const Eigen::Matrix3Xf& samples,
+                 std::vector<std::vector<std::vector<float>>>& sums) {
+  const Eigen::Matrix3d matrix = Eigen::AngleAxisd(rotation.angle, frame.col(2)).toRotationMatrix();
+  const Eigen::Matrix3d rest = Eigen::Matrix3d::Identity() - matrix;
+  const Eigen::Matrix3Xf moved = matrix.cast<float>() * samples;
+  const Eigen::Vector3d center = toCells(edt, grid.center());
+  const Eigen::Vector3d step = rest * frame.col(0) * (grid.offsetStep() / edt.cellSize());
+  for (int v = 0; v < grid.numOffset(); ++v) {
+    const auto [begin, end] = rowInBall(grid, v);
+    if (begin == end) continue;
+    const Eigen::Vector3d foot = (grid.offset(0) * frame.col(0) + grid.offset(v) * frame.col(1)) / edt.cellSize();
+    const LineSums::Totals& totals =
+        lines.ofMoved(moved, (rest * (center + foot)).cast<float>(), step.cast<float>(), begin, end);
     const std::size_t row = static_cast<std::size_t>(v) * grid.numOffset();
     for (std::size_t g = 0; g < sums.size(); ++g)
       for (std::size_t i = 0; i < rotation.weights.size(); ++i) {
@@ -229,7 +204,7 @@ void addRotation(AxesOfDirection& axes, const AxisGrid& grid, std::size_t direct
         const double weight = scale * rotation.weights[i];
         for (int k = begin; k < end; ++k) sums[g][i][row + k] += static_cast<float>(weight * totals[g][k]);
       }
-  });
+  }
 }
 
 }  // namespace
@@ -237,7 +212,7 @@ void addRotation(AxesOfDirection& axes, const AxisGrid& grid, std::size_t direct
 AxisMap axialTransform(const GaussianEdt& edt, const AxisGrid& grid, const AxialTransformOptions& options,
                        const Visibility* visibility) {
   options.validate();
-  const LookupTable table = tableOf(edt, visibility, options.num_threads);
+  const LookupTable table(edt, freeSpace(edt, visibility, options.num_threads), options.num_threads);
   const Eigen::Matrix3Xf samples = centeredSamples(edt, options.num_samples, options.seed, options.num_threads);
   const std::vector<AxialRotation> rotations = rotationsOf(options.folds, visibility != nullptr);
   const double scale = edt.sum() / (edt.sqNorm() * options.num_samples * LookupTable::kOne);
@@ -245,12 +220,12 @@ AxisMap axialTransform(const GaussianEdt& edt, const AxisGrid& grid, const Axial
   AxisMap map{grid, options.folds, {}, std::vector<float>(grid.size(), 0.0f), edt.sigma()};
   map.values.assign(options.folds.size(), map.greatest);
   const auto run = [&](std::size_t begin, std::size_t end) {
-    AxesOfDirection axes(edt, grid, table);
+    LineSums lines(edt, table, grid.numOffset());
     const std::vector<std::vector<float>> nothing(options.folds.size(), std::vector<float>(per_direction, 0.0f));
     for (std::size_t direction = begin; direction < end; ++direction) {
       std::vector<std::vector<std::vector<float>>> sums(table.numFunctions(), nothing);
       for (const AxialRotation& rotation : rotations)
-        addRotation(axes, grid, direction, rotation, scale, samples, sums);
+        addRotation(lines, edt, grid, grid.frame(direction), rotation, scale, samples, sums);
       for (std::size_t i = 0; i < options.folds.size(); ++i) {
         float* const values = map.values[i].data() + direction * per_direction;
         float* const greatest = map.greatest.data() + direction * per_direction;

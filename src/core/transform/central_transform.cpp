@@ -38,7 +38,7 @@ CenterMap centralTransform(const GaussianEdt& edt, int num_centers, const AxialT
                            const Visibility* visibility) {
   options.validate();
   check(num_centers >= 2 && num_centers <= 512, "num_centers", num_centers, "in [2, 512]");
-  const LookupTable table = tableOf(edt, visibility, options.num_threads);
+  const LookupTable table(edt, freeSpace(edt, visibility, options.num_threads), options.num_threads);
   // The image of x is 2 c - x.
   const Eigen::Matrix3Xf mirrored = -centeredSamples(edt, options.num_samples, options.seed, options.num_threads);
   // |f|^2 / S by the same samples: their noise cancels, and takes D of no center beyond 1 by the 2 % of the draw.
@@ -55,13 +55,11 @@ CenterMap centralTransform(const GaussianEdt& edt, int num_centers, const AxialT
   map.values.resize(static_cast<std::size_t>(num_centers) * num_centers * num_centers);
   parallelBlocks(num_centers, options.num_threads, [&](std::size_t z) {
     LineSums lines(edt, table, num_centers);
-    LineSums::Totals totals(table.numFunctions(), std::vector<double>(num_centers));
     const Eigen::Vector3f step(static_cast<float>(2.0 * map.step / edt.cellSize()), 0.0f, 0.0f);
     for (int y = 0; y < num_centers; ++y) {
-      for (auto& total : totals) std::fill(total.begin(), total.end(), 0.0);
       const std::size_t first = (z * num_centers + y) * num_centers;
       const Eigen::Vector3d start = 2.0 * toCells(edt, map.center(first));
-      lines.addMoved(mirrored, start.cast<float>(), step, 0, num_centers, totals);
+      const LineSums::Totals& totals = lines.ofMoved(mirrored, start.cast<float>(), step, 0, num_centers);
       for (int x = 0; x < num_centers; ++x) {
         const double d = scale * totals[0][x];
         map.values[first + x] = static_cast<float>(visibility ? seenSymmetry(d, scale * totals[1][x]) : d);

@@ -37,10 +37,34 @@ struct Bundle {
   int first, last;
 };
 
+bool isNearlyWhole(double cells) {
+  return std::abs(cells - std::round(cells)) < kTransform.near_whole;
+}
+
 /// The lattice that the EDT is resampled on, and the bins of r, common to all directions. Lengths are in cells;
 /// positions are relative to the middle of the EDT's cube, beyond whose inscribed ball f is taken as 0.
 struct BundleLattice {
-  BundleLattice(const GaussianEdt& edt, const PlaneGrid& grid, double spacing_in_sigmas);
+  BundleLattice(const GaussianEdt& edt, const PlaneGrid& grid, double spacing_in_sigmas)
+      : middle(0.5 * (edt.numCells() - 1)),
+        clip(middle - 0.5),
+        center(((grid.center() - edt.origin()) / edt.cellSize()).array() - middle),
+        grid_offset(grid.offset(0) / edt.cellSize()),
+        radius_step(grid.radiusStep() / edt.cellSize()),
+        spacing(spacing_in_sigmas * edt.sigma() / edt.cellSize()),
+        step(std::max(1, static_cast<int>(kTransform.most_stretch * spacing))),
+        refine(static_cast<int>(std::ceil(2.0 * radius_step / spacing))) {
+    if (isNearlyWhole(2.0 * radius_step / refine)) ++refine;
+    along = 2.0 * radius_step / refine;
+    most_ahead = half() / std::sqrt(3.0);  // the axis that is the farthest from n has at most 1 / sqrt(3) of it
+    num_along = static_cast<int>(std::ceil(2.0 * (clip + most_ahead + radius_step) / along)) + 2;
+    const int n = edt.numCells();
+    for (int row = 0; row < n * n; ++row) {
+      const GaussianEdt::Range range = edt.filledRanges()[row];
+      if (range.begin == range.end) continue;
+      for (const int x : {range.begin, range.end - 1})
+        filled.extend((Eigen::Vector3d(x, row % n, row / n).array() - middle).matrix());
+    }
+  }
 
   /// \return from the middle of a row of a bundle to its first and last line.
   double half() const { return 0.5 * (kRowLanes - 1) * step; }
@@ -67,7 +91,18 @@ struct BundleLattice {
 /// tau = t - x n.x.
 class BundlesOfDirection {
 public:
-  BundlesOfDirection(const BundleLattice& lattice, const Eigen::Vector3d& normal);
+  BundlesOfDirection(const BundleLattice& lattice, const Eigen::Vector3d& normal) : lattice_(lattice) {
+    normal.cwiseAbs().minCoeff(&axis_);
+    n_ = {normal[axis_], normal[(axis_ + 1) % 3], normal[(axis_ + 2) % 3]};
+    across_ = std::hypot(n_.y(), n_.z());
+    v_ = Eigen::Vector3d(0.0, -n_.z(), n_.y()) / across_;
+    between_ = std::min(lattice.spacing, lattice.spacing * lattice.spacing / (lattice.step * across_));
+    if (isNearlyWhole(between_)) between_ *= kTransform.less_than_whole;
+    const double first_offset = normal.dot(lattice.center) + lattice.grid_offset;
+    num_skipped_ = std::floor((-lattice.clip - lattice.most_ahead - first_offset) / lattice.radius_step);
+    t0_ = first_offset + num_skipped_ * lattice.radius_step;
+    for (int i = 0; i < 3; ++i) step_[i] = LookupTable::toFixed(lattice.along * n_[i]);
+  }
 
   int axis() const { return axis_; }  ///< of the rows
   /// \return bins from t0 to the first one, times -1.
@@ -77,19 +112,66 @@ public:
   double ahead() const { return lattice_.step * n_.x(); }
   /// \return volume that each point represents, in cells.
   double volume() const { return lattice_.along * between_ * lattice_.step * across_; }
-  int numRows() const;  ///< on each side of the middle
+  /// \return rows on each side of the middle.
+  int numRows() const { return static_cast<int>(std::ceil(lattice_.clip / between_)); }
 
   /// Where a row of the lattice lies.
   struct Row {
     double b;
     double shift;  ///< along it
   };
-  /// Adds the bundles of kBundleRows rows, each cut to where it can meet what is not 0. Those of which nothing is left
-  /// are not added.
-  void addBundles(const Row* rows, std::vector<Bundle>& bundles) const;
+  /// The bundles of kBundleRows rows, each cut to where it can meet what is not 0, without those of which nothing is
+  /// left.
+  std::vector<Bundle> bundles(const Row* rows) const {
+    std::vector<Bundle> bundles;
+    // The ball casts an ellipse along n. Rows are shifted by up to half a step.
+    const double width = kRowLanes * lattice_.step;
+    const int num_side = static_cast<int>(std::ceil(lattice_.clip / (across_ * width) + 0.5 / kRowLanes));
+    for (int c = -num_side; c < num_side; ++c) {
+      Bundle bundle;
+      double first = lattice_.num_along, last = -1.0;
+      for (int r = 0; r < kBundleRows; ++r) {
+        const double x = static_cast<float>((c + 0.5) * width + rows[r].shift);
+        const double tau = t0_ - x * n_.x();  // of point 0
+        const auto [from, to] = filledPart(x, rows[r].b);
+        if (from <= to) {
+          first = std::min(first, (from - tau) / lattice_.along);
+          last = std::max(last, (to - tau) / lattice_.along);
+        }
+        const Eigen::Vector3d start(x - lattice_.half() + tau * n_.x(), rows[r].b * v_.y() + tau * n_.y(),
+                                    rows[r].b * v_.z() + tau * n_.z());
+        for (int axis = 0; axis < 3; ++axis)
+          bundle.start[r][axis] = LookupTable::toFixed(start[axis] + lattice_.middle + 0.5);
+      }
+      bundle.first = static_cast<int>(std::max(0.0, first));
+      bundle.last = std::min(lattice_.num_along, static_cast<int>(last) + 1);
+      if (bundle.first >= bundle.last) continue;
+      std::copy_n(step_, 3, bundle.step);
+      bundles.push_back(bundle);
+    }
+    return bundles;
+  }
 
 private:
-  std::pair<double, double> filledPart(double x, double b) const;
+  /// The heights tau between which the lines of a bundle of a row can meet what is not 0.
+  /// \param x of the middle of the bundle.
+  std::pair<double, double> filledPart(double x, double b) const {
+    // A look-up takes the whole cell; fixed-point steps are rounded.
+    const double of_cell = 0.51, least_slope = 1e-5;
+    const double radius = lattice_.clip + lattice_.half() + std::sqrt(3.0) * of_cell;
+    const double chord = std::sqrt(std::max(0.0, radius * radius - x * x - b * b + x * n_.x() * x * n_.x()));
+    double from = -x * n_.x() - chord, to = -x * n_.x() + chord;
+    for (int k = 0; k < 3; ++k) {
+      const int axis = (axis_ + k) % 3;
+      const double foot = (k == 0 ? x : b * v_[k]), reach = of_cell + (k == 0 ? lattice_.half() : 0.0);
+      const double slope = std::copysign(std::max(std::abs(n_[k]), least_slope), n_[k]);
+      const auto [enter, leave] = std::minmax(
+          {(lattice_.filled.min()[axis] - reach - foot) / slope, (lattice_.filled.max()[axis] + reach - foot) / slope});
+      from = std::max(from, enter);
+      to = std::min(to, leave);
+    }
+    return {from, to};
+  }
 
   const BundleLattice& lattice_;
   int axis_ = 0;
@@ -100,98 +182,6 @@ private:
   double t0_;           ///< height of the first points of all bundles
   std::int32_t step_[3];
 };
-
-bool isNearlyWhole(double cells) {
-  return std::abs(cells - std::round(cells)) < kTransform.near_whole;
-}
-
-BundleLattice::BundleLattice(const GaussianEdt& edt, const PlaneGrid& grid, double spacing_in_sigmas) {
-  middle = 0.5 * (edt.numCells() - 1);
-  clip = middle - 0.5;
-  center = ((grid.center() - edt.origin()) / edt.cellSize()).array() - middle;
-  grid_offset = grid.offset(0) / edt.cellSize();
-  radius_step = grid.radiusStep() / edt.cellSize();
-  spacing = spacing_in_sigmas * edt.sigma() / edt.cellSize();
-  step = std::max(1, static_cast<int>(kTransform.most_stretch * spacing));
-  refine = static_cast<int>(std::ceil(2.0 * radius_step / spacing));
-  if (isNearlyWhole(2.0 * radius_step / refine)) ++refine;
-  along = 2.0 * radius_step / refine;
-  most_ahead = half() / std::sqrt(3.0);  // the axis that is the farthest from n has at most 1 / sqrt(3) of it
-  num_along = static_cast<int>(std::ceil(2.0 * (clip + most_ahead + radius_step) / along)) + 2;
-  const int n = edt.numCells();
-  for (int row = 0; row < n * n; ++row) {
-    const GaussianEdt::Range range = edt.filledRanges()[row];
-    if (range.begin == range.end) continue;
-    for (const int x : {range.begin, range.end - 1})
-      filled.extend((Eigen::Vector3d(x, row % n, row / n).array() - middle).matrix());
-  }
-}
-
-BundlesOfDirection::BundlesOfDirection(const BundleLattice& lattice, const Eigen::Vector3d& normal)
-    : lattice_(lattice) {
-  normal.cwiseAbs().minCoeff(&axis_);
-  n_ = {normal[axis_], normal[(axis_ + 1) % 3], normal[(axis_ + 2) % 3]};
-  across_ = std::hypot(n_.y(), n_.z());
-  v_ = Eigen::Vector3d(0.0, -n_.z(), n_.y()) / across_;
-  between_ = std::min(lattice.spacing, lattice.spacing * lattice.spacing / (lattice.step * across_));
-  if (isNearlyWhole(between_)) between_ *= kTransform.less_than_whole;
-  const double first_offset = normal.dot(lattice.center) + lattice.grid_offset;
-  num_skipped_ = std::floor((-lattice.clip - lattice.most_ahead - first_offset) / lattice.radius_step);
-  t0_ = first_offset + num_skipped_ * lattice.radius_step;
-  for (int i = 0; i < 3; ++i) step_[i] = LookupTable::toFixed(lattice.along * n_[i]);
-}
-
-int BundlesOfDirection::numRows() const {
-  return static_cast<int>(std::ceil(lattice_.clip / between_));
-}
-
-/// The heights tau between which the lines of a bundle of a row can meet what is not 0.
-/// \param x of the middle of the bundle.
-std::pair<double, double> BundlesOfDirection::filledPart(double x, double b) const {
-  // A look-up takes the whole cell; fixed-point steps are rounded.
-  const double of_cell = 0.51, least_slope = 1e-5;
-  const double radius = lattice_.clip + lattice_.half() + std::sqrt(3.0) * of_cell;
-  const double chord = std::sqrt(std::max(0.0, radius * radius - x * x - b * b + x * n_.x() * x * n_.x()));
-  double from = -x * n_.x() - chord, to = -x * n_.x() + chord;
-  for (int k = 0; k < 3; ++k) {
-    const int axis = (axis_ + k) % 3;
-    const double foot = (k == 0 ? x : b * v_[k]), reach = of_cell + (k == 0 ? lattice_.half() : 0.0);
-    const double slope = std::copysign(std::max(std::abs(n_[k]), least_slope), n_[k]);
-    const auto [enter, leave] = std::minmax(
-        {(lattice_.filled.min()[axis] - reach - foot) / slope, (lattice_.filled.max()[axis] + reach - foot) / slope});
-    from = std::max(from, enter);
-    to = std::min(to, leave);
-  }
-  return {from, to};
-}
-
-void BundlesOfDirection::addBundles(const Row* rows, std::vector<Bundle>& bundles) const {
-  // The ball casts an ellipse along n. Rows are shifted by up to half a step.
-  const double width = kRowLanes * lattice_.step;
-  const int num_side = static_cast<int>(std::ceil(lattice_.clip / (across_ * width) + 0.5 / kRowLanes));
-  for (int c = -num_side; c < num_side; ++c) {
-    Bundle bundle;
-    double first = lattice_.num_along, last = -1.0;
-    for (int r = 0; r < kBundleRows; ++r) {
-      const double x = static_cast<float>((c + 0.5) * width + rows[r].shift);
-      const double tau = t0_ - x * n_.x();  // of point 0
-      const auto [from, to] = filledPart(x, rows[r].b);
-      if (from <= to) {
-        first = std::min(first, (from - tau) / lattice_.along);
-        last = std::max(last, (to - tau) / lattice_.along);
-      }
-      const Eigen::Vector3d start(x - lattice_.half() + tau * n_.x(), rows[r].b * v_.y() + tau * n_.y(),
-                                  rows[r].b * v_.z() + tau * n_.z());
-      for (int axis = 0; axis < 3; ++axis)
-        bundle.start[r][axis] = LookupTable::toFixed(start[axis] + lattice_.middle + 0.5);
-    }
-    bundle.first = static_cast<int>(std::max(0.0, first));
-    bundle.last = std::min(lattice_.num_along, static_cast<int>(last) + 1);
-    if (bundle.first >= bundle.last) continue;
-    std::copy_n(step_, 3, bundle.step);
-    bundles.push_back(bundle);
-  }
-}
 
 /// \return in [-0.5, 0.5).
 double phase(double turns) {
@@ -206,7 +196,40 @@ public:
   /// \param f num_cells^3 values in [0, 255 / LookupTable::kOne], x fastest.
   /// \param clip cells whose centers are farther from the middle of the cube are 0, in cells.
   /// \param step between the cells of a row that lie side by side, >= 1.
-  RowTable(const std::vector<float>& f, int num_cells, double clip, int step, int num_threads);
+  RowTable(const std::vector<float>& f, int num_cells, double clip, int step, int num_threads)
+      : num_cells_(num_cells), step_(step) {
+    const int n = num_cells;
+    stride_ = (n + step - 1) / step + kRowLanes;  // the lanes before a row are those after the one before
+    const std::size_t of_phase = static_cast<std::size_t>(n) * n * stride_;
+    size_ = of_phase * step;
+    for (int x = -kRowLanes * step; x < n; ++x) {
+      const int shifted = x + kRowLanes * step;
+      of_x_.push_back(static_cast<std::int32_t>((shifted % step) * of_phase) + shifted / step);
+    }
+    bytes_.assign(3 * size_ + 2 * kRowLanes, 0);
+    const double middle = 0.5 * (n - 1);
+    parallelBlocks(static_cast<std::size_t>(n), num_threads, [&](std::size_t slice) {
+      const int c = static_cast<int>(slice);
+      for (int b = 0; b < n; ++b) {
+        const double sq_left = clip * clip - (b - middle) * (b - middle) - (c - middle) * (c - middle);
+        if (sq_left < 0.0) continue;
+        const int first = static_cast<int>(std::ceil(middle - std::sqrt(sq_left)));
+        const int last = static_cast<int>(std::floor(middle + std::sqrt(sq_left)));
+        const float* row = f.data() + (slice * n + b) * n;
+        for (int a = first; a <= last; ++a) {
+          const float scaled = row[a] * static_cast<float>(LookupTable::kOne) + 0.5f;
+          const auto byte = static_cast<std::uint8_t>(static_cast<int>(std::min(scaled, 255.0f)));
+          const auto put = [&](int axis, int x, int y, int z) {
+            const Rows rows = along(axis);
+            bytes_[axis * size_ + static_cast<std::size_t>(z * rows.of_z + y * rows.of_y + rows.of_x[x])] = byte;
+          };
+          put(0, a, b, c);
+          put(1, b, c, a);
+          put(2, c, a, b);
+        }
+      }
+    });
+  }
 
   /// Rows along one axis. Cell (x, y, z) has x along it, y along the next axis and z along the one after that,
   /// cyclically. Its byte is bytes[z * of_z + y * of_y + of_x[x]]; x may lie in
@@ -231,41 +254,6 @@ private:
   std::vector<std::int32_t> of_x_;
   std::vector<std::uint8_t> bytes_;
 };
-
-RowTable::RowTable(const std::vector<float>& f, int num_cells, double clip, int step, int num_threads)
-    : num_cells_(num_cells), step_(step) {
-  const int n = num_cells;
-  stride_ = (n + step - 1) / step + kRowLanes;  // the lanes before a row are those after the one before
-  const std::size_t of_phase = static_cast<std::size_t>(n) * n * stride_;
-  size_ = of_phase * step;
-  for (int x = -kRowLanes * step; x < n; ++x) {
-    const int shifted = x + kRowLanes * step;
-    of_x_.push_back(static_cast<std::int32_t>((shifted % step) * of_phase) + shifted / step);
-  }
-  bytes_.assign(3 * size_ + 2 * kRowLanes, 0);
-  const double middle = 0.5 * (n - 1);
-  parallelBlocks(static_cast<std::size_t>(n), num_threads, [&](std::size_t slice) {
-    const int c = static_cast<int>(slice);
-    for (int b = 0; b < n; ++b) {
-      const double sq_left = clip * clip - (b - middle) * (b - middle) - (c - middle) * (c - middle);
-      if (sq_left < 0.0) continue;
-      const int first = static_cast<int>(std::ceil(middle - std::sqrt(sq_left)));
-      const int last = static_cast<int>(std::floor(middle + std::sqrt(sq_left)));
-      const float* row = f.data() + (slice * n + b) * n;
-      for (int a = first; a <= last; ++a) {
-        const float scaled = row[a] * static_cast<float>(LookupTable::kOne) + 0.5f;
-        const auto byte = static_cast<std::uint8_t>(static_cast<int>(std::min(scaled, 255.0f)));
-        const auto put = [&](int axis, int x, int y, int z) {
-          const Rows rows = along(axis);
-          bytes_[axis * size_ + static_cast<std::size_t>(z * rows.of_z + y * rows.of_y + rows.of_x[x])] = byte;
-        };
-        put(0, a, b, c);
-        put(1, b, c, a);
-        put(2, c, a, b);
-      }
-    }
-  });
-}
 
 /// Looks the points of a bundle up, each in the cell that contains it.
 /// \param[out] values of each point kBundleLanes of them.
@@ -445,9 +433,7 @@ private:
       for (int r = 0; r < kBundleRows; ++r)
         rows_of_bundle[r] = {(i + r + phase_of_rows) * bundles.between(),
                              phase(kPhaseSteps[1] * (index + i + r)) * lattice_.step};
-      some_.clear();
-      bundles.addBundles(rows_of_bundle, some_);
-      for (const Bundle& bundle : some_) {
+      for (const Bundle& bundle : bundles.bundles(rows_of_bundle)) {
         lookUp(bundle, rows, offsets_.data(), values_.data());
         int first = bundle.first, last = bundle.last;
         while (first < last && isZero(first)) ++first;
@@ -469,7 +455,6 @@ private:
   std::vector<std::int32_t> offsets_;  // of the points of a row of a bundle
   std::vector<float> values_;          // of the points of a bundle, lane by lane
   LaneSums sums_;
-  std::vector<Bundle> some_;
   int most_bundles_;
 };
 

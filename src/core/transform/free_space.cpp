@@ -4,7 +4,8 @@
 
 namespace pcl_symmetry {
 
-std::vector<float> freeSpace(const GaussianEdt& edt, const Visibility& visibility, int num_threads) {
+std::vector<float> freeSpace(const GaussianEdt& edt, const Visibility* visibility, int num_threads) {
+  if (!visibility) return {};
   const std::size_t n = edt.numCells();
   const std::vector<float>& f = edt.values();
   std::vector<float> free(f.size(), 0.0f);
@@ -12,7 +13,7 @@ std::vector<float> freeSpace(const GaussianEdt& edt, const Visibility& visibilit
     Eigen::Matrix3Xd centers(3, static_cast<Eigen::Index>(n));
     for (std::size_t first = slice * n * n; first < (slice + 1) * n * n; first += n) {
       for (std::size_t x = 0; x < n; ++x) centers.col(x) = edt.cellCenter(first + x);
-      const std::vector<char> is_free = visibility.areFree(centers);
+      const std::vector<char> is_free = visibility->areFree(centers);
       for (std::size_t x = 0; x < n; ++x)
         if (is_free[x] != 0) free[first + x] = 1.0f - f[first + x];
     }

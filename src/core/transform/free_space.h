@@ -8,9 +8,9 @@
 namespace pcl_symmetry {
 
 /// Free space on the cells of a distance transform: 1 - f where the scanner looked through the cell, 0 elsewhere.
-/// \param visibility in the frame of the EDT.
-/// \return one value in [0, 1] per cell, x fastest.
-std::vector<float> freeSpace(const GaussianEdt& edt, const Visibility& visibility, int num_threads = 0);
+/// \param visibility in the frame of the EDT; null for a whole object.
+/// \return one value in [0, 1] per cell, x fastest; none without visibility.
+std::vector<float> freeSpace(const GaussianEdt& edt, const Visibility* visibility, int num_threads = 0);
 
 /// Symmetry of a scan with respect to a plane. A departure from the paper, whose measure is D alone: reflected points
 /// in space that the scanner saw to be empty speak against the plane.

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
-#include <limits>
 #include <numeric>
 
 #include "core/base/check.h"
@@ -124,18 +123,10 @@ void GaussianEdtOptions::validate() const {
 
 GaussianEdt::GaussianEdt(const PointsRef& points, const GaussianEdtOptions& options) {
   options.validate();
-  if (points.cols() == 0) throw std::invalid_argument("points: 0 given, must be >= 1");
-  if (!points.allFinite()) throw std::invalid_argument("points: a coordinate is not finite");
   num_cells_ = options.num_cells;
-  center_ = options.center;
-  radius_ = options.radius;
-  if (radius_ == 0.0) {
-    const BoundingBall ball = boundingBall(points);
-    center_ = ball.center;
-    radius_ = ball.radius;
-  }
-  if (!(radius_ > std::numeric_limits<float>::epsilon() * center_.norm()))
-    throw std::invalid_argument("points: all at one place, must have an extent");
+  const BoundingBall ball = coveredBall(points, {options.center, options.radius});
+  center_ = ball.center;
+  radius_ = ball.radius;
   chooseWidth(points, options.sigma);
   origin_ = center_ - Eigen::Vector3d::Constant((0.5 * num_cells_ - 0.5) * cell_size_);
   computeValues(points, options.num_threads);

@@ -2,25 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "core/base/check.h"
 #include "core/geometry/principal_axes.h"
 #include "core/transform/gaussian_width.h"
-#include "pcl_symmetry/core/point_set.h"
 
 namespace pcl_symmetry {
-
-namespace {
-
-/// A disk around the points, as a ball.
-BoundingBall boundingDisk(const Points2D& points) {
-  Points embedded = Points::Zero(3, points.cols());
-  embedded.topRows<2>() = points;
-  return boundingBall(embedded);
-}
-
-}  // namespace
 
 void GaussianEdt2DOptions::validate() const {
   check(num_cells >= 8 && num_cells <= 4096, "num_cells", num_cells, "in [8, 4096]");
@@ -31,18 +18,12 @@ void GaussianEdt2DOptions::validate() const {
 
 GaussianEdt2D::GaussianEdt2D(const Points2D& points, const GaussianEdt2DOptions& options) {
   options.validate();
-  if (points.cols() == 0) throw std::invalid_argument("points: 0 given, must be >= 1");
-  if (!points.allFinite()) throw std::invalid_argument("points: a coordinate is not finite");
   num_cells_ = options.num_cells;
-  center_ = options.center;
-  radius_ = options.radius;
-  if (radius_ == 0.0) {
-    const BoundingBall disk = boundingDisk(points);
-    center_ = disk.center.head<2>();
-    radius_ = disk.radius;
-  }
-  if (!(radius_ > std::numeric_limits<float>::epsilon() * center_.norm()))
-    throw std::invalid_argument("points: all at one place, must have an extent");
+  Points embedded = Points::Zero(3, points.cols());
+  embedded.topRows<2>() = points;
+  const BoundingBall disk = coveredBall(embedded, {{options.center.x(), options.center.y(), 0.0}, options.radius});
+  center_ = disk.center.head<2>();
+  radius_ = disk.radius;
 
   const double half = 0.5 * num_cells_;
   sigma_ = options.sigma;

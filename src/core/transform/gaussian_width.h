@@ -1,13 +1,14 @@
 /// How wide the Gaussian of the distance transform is (Section 4.1), in space and in the plane.
 #pragma once
 
-#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <stdexcept>
 #include <vector>
 
 #include "core/base/median.h"
+#include "pcl_symmetry/core/point_set.h"
 
 namespace pcl_symmetry {
 
@@ -20,6 +21,18 @@ constexpr double kMarginInSigmas = 2.0;
 constexpr double kReachInSigmas = 2.6;
 // Greatest width for sparse points, of the radius: a surface of a dozen points has no gaps, and the shape is no ball.
 constexpr double kMostSpacing = 0.25;
+
+/// The ball that a grid of cells covers.
+/// \param given taken where its radius is > 0; otherwise the ball around the points is.
+/// \throws std::invalid_argument without a point, for a value that is not finite, and for a ball without extent.
+inline BoundingBall coveredBall(const PointsRef& points, const BoundingBall& given) {
+  if (points.cols() == 0) throw std::invalid_argument("points: 0 given, must be >= 1");
+  if (!points.allFinite()) throw std::invalid_argument("points: a coordinate is not finite");
+  const BoundingBall ball = given.radius > 0.0 ? given : boundingBall(points);
+  if (!(ball.radius > std::numeric_limits<float>::epsilon() * ball.center.norm()))
+    throw std::invalid_argument("points: all at one place, must have an extent");
+  return ball;
+}
 
 /// Typical distance between neighboring samples: twice the median distance to the nearest other point, over a fixed
 /// number of probes. For random samples this is 0.94 / sqrt(density) on a surface, and the median gap on a curve.

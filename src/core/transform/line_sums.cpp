@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/base/check.h"
 #include "core/base/parallel.h"
 #include "core/base/simd.h"
-#include "core/transform/free_space.h"
 #include "core/transform/sampled_transform.h"
 
 #if defined(__x86_64__)
@@ -148,10 +148,14 @@ auto* kernelOf(bool scalar) {
 
 }  // namespace
 
-LookupTable::LookupTable(const std::vector<const float*>& functions, int num_cells, int num_threads)
-    : num_functions_(static_cast<int>(functions.size())) {
-  const int n = num_cells;
-  if (n == 0) return;
+LookupTable::LookupTable(const GaussianEdt& edt, const std::vector<float>& free_space, int num_threads) {
+  std::vector<const float*> functions{edt.interpolation().data()};
+  if (!free_space.empty()) {
+    check(free_space.size() == edt.values().size(), "free_space size", free_space.size(), "one value per cell");
+    functions.push_back(free_space.data());
+  }
+  num_functions_ = static_cast<int>(functions.size());
+  const int n = edt.numCells();
   while ((1 << bits_) < n) ++bits_;
   padding_ = ((1 << bits_) - n) / 2;
   const std::size_t side = std::size_t{1} << bits_;
@@ -159,7 +163,7 @@ LookupTable::LookupTable(const std::vector<const float*>& functions, int num_cel
   parallelBlocks(n - 2, num_threads, [&](std::size_t slice) {
     for (int y = 1; y + 1 < n; ++y) {
       const std::size_t cell = ((slice + 1 + padding_) * side + (y + padding_)) * side + padding_;
-      for (int g = 0; g < num_functions_; ++g) {
+      for (std::size_t g = 0; g < functions.size(); ++g) {
         const float* const values = functions[g] + ((slice + 1) * n + y) * n;
         for (int x = 1; x + 1 < n; ++x) {
           const float scaled = values[x] * static_cast<float>(kOne) + 0.5f;
@@ -172,20 +176,22 @@ LookupTable::LookupTable(const std::vector<const float*>& functions, int num_cel
 
 LineSums::LineSums(const GaussianEdt& edt, const LookupTable& table, int num_steps, bool scalar)
     : table_(table),
-      accumulate_(table.numFunctions() == 1 ? kernelOf<1>(scalar) : kernelOf<LookupTable::kMaxFunctions>(scalar)),
+      accumulate_(table.numFunctions() == 1 ? kernelOf<1>(scalar) : kernelOf<2>(scalar)),
+      totals_(table.numFunctions(), std::vector<double>(num_steps)),
       sums_(table.numFunctions(), std::vector<std::int32_t>(num_steps + 2 * line_lanes)),
       storage_(5 * most_lines) {
   const double middle = 0.5 * (edt.numCells() - 1);
   cube_.middle = static_cast<float>(middle);
   cube_.sq_clip = static_cast<float>(std::pow(middle - 0.5, 2));
-  cube_.to_table = table.toTable(Eigen::Vector3d::Constant(middle)).cast<float>()[0];
+  cube_.to_table = static_cast<float>(middle + table.padding() + 0.5);
   for (auto& sums : sums_) sums_of_.push_back(sums.data());
 }
 
 /// \param set_up fills lines that begin at a sample; size and step are given.
 template <typename SetUp>
-void LineSums::add(int num_samples, const Eigen::Vector3f& step, int begin, int end, Totals& totals,
-                   const SetUp& set_up) {
+const LineSums::Totals& LineSums::add(int num_samples, const Eigen::Vector3f& step, int begin, int end,
+                                      const SetUp& set_up) {
+  for (auto& total : totals_) std::fill(total.begin(), total.end(), 0.0);
   std::int32_t* const data = storage_.data();
   Lines lines{data, data + most_lines, data + 2 * most_lines, data + 3 * most_lines, data + 4 * most_lines, 0, {}};
   for (int axis = 0; axis < 3; ++axis)
@@ -195,37 +201,29 @@ void LineSums::add(int num_samples, const Eigen::Vector3f& step, int begin, int 
     set_up(first, lines);
     for (auto& sums : sums_) std::fill(sums.begin(), sums.end(), 0);
     accumulate_(lines, table_.data(), table_.bits(), sums_of_.data());
-    for (std::size_t g = 0; g < totals.size(); ++g)
-      for (int k = begin; k < end; ++k) totals[g][k] += sums_[g][k];
+    for (std::size_t g = 0; g < totals_.size(); ++g)
+      for (int k = begin; k < end; ++k) totals_[g][k] += sums_[g][k];
   }
+  return totals_;
 }
 
-void LineSums::addReflected(const CoordinateRows& points, const ParallelPlanes& planes, Totals& totals) {
+const LineSums::Totals& LineSums::ofReflected(const CoordinateRows& points, const ParallelPlanes& planes) {
   // The image of a point moves by twice the step between planes.
   const Eigen::Vector3f step = 2.0f * planes.step * Eigen::Map<const Eigen::Vector3f>(planes.normal);
-  add(static_cast<int>(points.cols()), step, 0, planes.count, totals, [&](int first, Lines& lines) {
+  return add(static_cast<int>(points.cols()), step, 0, planes.count, [&](int first, Lines& lines) {
     setUpReflected(&points(0, first), &points(1, first), &points(2, first), planes, cube_, lines);
   });
 }
 
-void LineSums::addMoved(const Eigen::Matrix3Xf& moved, const Eigen::Vector3f& start, const Eigen::Vector3f& step,
-                        int begin, int end, Totals& totals) {
-  add(static_cast<int>(moved.cols()), step, begin, end, totals, [&](int first, Lines& lines) {
+const LineSums::Totals& LineSums::ofMoved(const Eigen::Matrix3Xf& moved, const Eigen::Vector3f& start,
+                                          const Eigen::Vector3f& step, int begin, int end) {
+  return add(static_cast<int>(moved.cols()), step, begin, end, [&](int first, Lines& lines) {
     float rounded[3];
     for (int axis = 0; axis < 3; ++axis)
       rounded[axis] = static_cast<float>(lines.step[axis]) / (1 << LookupTable::kFractionBits);
     setUpMoved(moved.data() + 3 * first, start.data(), rounded, static_cast<float>(begin), static_cast<float>(end),
                cube_, lines);
   });
-}
-
-LookupTable tableOf(const GaussianEdt& edt, const Visibility* visibility, int num_threads) {
-  // Sharpened by 1/12: a sample's uniform position in its cell and the look-up of the nearest cell are two boxes.
-  std::vector<const float*> functions{edt.interpolation().data()};
-  std::vector<float> free_space;
-  if (visibility) free_space = freeSpace(edt, *visibility, num_threads);
-  if (visibility) functions.push_back(free_space.data());
-  return LookupTable(functions, edt.numCells(), num_threads);
 }
 
 Eigen::Matrix3Xf centeredSamples(const GaussianEdt& edt, int num_samples, std::uint64_t seed, int num_threads) {

@@ -5,35 +5,32 @@
 #include <vector>
 
 #include "pcl_symmetry/core/gaussian_edt.h"
-#include "pcl_symmetry/core/visibility.h"
 
 namespace pcl_symmetry {
 
 /// Functions on the cells of an EDT as bytes, for the hot loops: a look-up is three shifts and a load.
 ///
 /// Positions are fixed-point numbers of cells. The table is padded to a power of two along each side and has at least
-/// one empty cell all around, so that a clipped line needs no further test. Values are multiplied by kOne. Two
-/// functions share a table, byte by byte, so that one load gets both.
+/// one empty cell all around, so that a clipped line needs no further test. Values are multiplied by kOne. f and the
+/// free space of a scan share a table, byte by byte, so that one load gets both.
 class LookupTable {
 public:
   static constexpr int kFractionBits = 16;  ///< 32 bits hold up to 2^15 cells with 1 / 65536 of a cell
-  /// Byte of f = 1: with a sigma of two cells, sharpening lifts f to 1.11 at most (an isolated point); 255 /
+  /// Value of f = 1: with a sigma of two cells, sharpening lifts f to 1.11 at most (an isolated point); 255 /
   /// 200 leaves room.
   static constexpr double kOne = 200.0;
-  static constexpr int kMaxFunctions = 2;  ///< f and the free space of a scan
 
-  /// \param functions one or two functions, each num_cells^3 values in [0, 255 / kOne], x fastest; f is to be sharpened
-  /// for the blur of the look-ups.
-  LookupTable(const std::vector<const float*>& functions, int num_cells, int num_threads);
+  /// Of f, sharpened for the blur of two boxes: a sample's uniform position in its cell and the look-up of the nearest
+  /// cell.
+  /// \param free_space one value per cell of the EDT; empty for a whole object.
+  /// \throws std::invalid_argument for free space of another size.
+  LookupTable(const GaussianEdt& edt, const std::vector<float>& free_space, int num_threads);
 
   /// \return n of the 2^n cells along each side of the table.
   int bits() const { return bits_; }
-  int numFunctions() const { return num_functions_; }
+  int padding() const { return padding_; }             ///< cells before the first one of the EDT
+  int numFunctions() const { return num_functions_; }  ///< 2 with free space, else 1
   const std::uint8_t* data() const { return table_.data(); }
-
-  /// \param p position in cells from the center of the EDT's cell (0, 0, 0).
-  /// \return position in cells from the corner of the table.
-  Eigen::Vector3d toTable(const Eigen::Vector3d& p) const { return p.array() + padding_ + 0.5; }
 
   /// \return index of the cell that contains a point, given in fixed-point table coordinates.
   static std::uint32_t index(std::int32_t x, std::int32_t y, std::int32_t z, int bits) {
@@ -45,7 +42,7 @@ public:
 
 private:
   int bits_ = 0;
-  int num_functions_;
+  int num_functions_ = 1;
   int padding_ = 0;
   std::vector<std::uint8_t> table_;
 };
@@ -73,16 +70,18 @@ public:
   /// For each function of the table one sum per step.
   using Totals = std::vector<std::vector<double>>;
 
-  /// Adds up the images of samples reflected in parallel planes.
+  /// Sums over the images of samples reflected in parallel planes.
   /// \param points in cells from the first cell center.
-  void addReflected(const CoordinateRows& points, const ParallelPlanes& planes, Totals& totals);
+  /// \return valid until the next call.
+  const Totals& ofReflected(const CoordinateRows& points, const ParallelPlanes& planes);
 
-  /// Adds up moved samples.
+  /// Sums over moved samples.
   /// \param moved 3 x N, the samples at step 0, relative to \p start, which is measured from the middle of the cube.
   /// \param start,step the image k of a sample is its moved position + start + k * step.
-  /// \param begin,end steps to add up, in [0, num_steps].
-  void addMoved(const Eigen::Matrix3Xf& moved, const Eigen::Vector3f& start, const Eigen::Vector3f& step, int begin,
-                int end, Totals& totals);
+  /// \param begin,end steps to add up, in [0, num_steps]; the sums of others are 0.
+  /// \return valid until the next call.
+  const Totals& ofMoved(const Eigen::Matrix3Xf& moved, const Eigen::Vector3f& start, const Eigen::Vector3f& step,
+                        int begin, int end);
 
   /// The EDT's cube of cells and its place in a LookupTable.
   struct Cube {
@@ -101,19 +100,16 @@ public:
 
 private:
   template <typename SetUp>
-  void add(int num_samples, const Eigen::Vector3f& step, int begin, int end, Totals& totals, const SetUp& set_up);
+  const Totals& add(int num_samples, const Eigen::Vector3f& step, int begin, int end, const SetUp& set_up);
 
   const LookupTable& table_;
   void (*accumulate_)(const Lines& lines, const std::uint8_t* table, int bits, std::int32_t* const* sums);
   Cube cube_;
+  Totals totals_;
   std::vector<std::vector<std::int32_t>> sums_;
   std::vector<std::int32_t*> sums_of_;
   std::vector<std::int32_t> storage_;
 };
-
-/// The table that the samples are looked up in: f, sharpened for the blur of two boxes, and the free space of a scan.
-/// \param visibility null for a whole object.
-LookupTable tableOf(const GaussianEdt& edt, const Visibility* visibility, int num_threads);
 
 /// Samples of f in cells from the middle of the cube.
 Eigen::Matrix3Xf centeredSamples(const GaussianEdt& edt, int num_samples, std::uint64_t seed, int num_threads);

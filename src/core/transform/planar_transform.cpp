@@ -9,7 +9,9 @@ namespace pcl_symmetry {
 
 namespace {
 
-SymmetryMap mapWithoutSight(const GaussianEdt& edt, const PlaneGrid& grid, const PlanarTransformOptions& options) {
+/// \param free_space of a scan, which the sampled transform alone takes.
+SymmetryMap transformed(const GaussianEdt& edt, const PlaneGrid& grid, const PlanarTransformOptions& options,
+                        const std::vector<float>& free_space) {
   switch (options.method) {
     case TransformMethod::Convolution:
       return convolutionTransform(edt, grid, options.convolution);
@@ -20,7 +22,7 @@ SymmetryMap mapWithoutSight(const GaussianEdt& edt, const PlaneGrid& grid, const
     case TransformMethod::Sampled:
       break;
   }
-  return sampledTransform(edt, grid, options.sampled);
+  return sampledTransform(edt, grid, options.sampled, free_space);
 }
 
 }  // namespace
@@ -42,15 +44,10 @@ void PlanarTransformOptions::validate() const {
 
 SymmetryMap planarTransform(const GaussianEdt& edt, const PlaneGrid& grid, const Eigen::Vector3d& center_of_mass,
                             const PlanarTransformOptions& options, const Visibility* visibility) {
-  std::vector<float> free_space;
-  if (visibility) free_space = freeSpace(edt, *visibility, options.sampled.num_threads);
-  SymmetryMap map;
-  if (visibility && options.method == TransformMethod::Sampled) {
-    map = sampledTransform(edt, grid, options.sampled, free_space);
-  } else {
-    map = mapWithoutSight(edt, grid, options);
-    if (visibility) weighSeen(map, freeOverlap(edt, grid, free_space, options.sampled));
-  }
+  const std::vector<float> free_space = freeSpace(edt, visibility, options.sampled.num_threads);
+  SymmetryMap map = transformed(edt, grid, options, free_space);
+  if (visibility && options.method != TransformMethod::Sampled)
+    weighSeen(map, freeOverlap(edt, grid, free_space, options.sampled));
   map.center_of_mass = center_of_mass;
   return map;
 }

@@ -21,23 +21,18 @@ struct PointBlock {
   int size;
 };
 
-/// A direction and its values, two bins of 0 before the first and beyond the last.
+/// A direction and its values: the middle of the row is at the center of the grid, its ends are 0.
 struct DirectionRow {
-  Eigen::Vector3f normal;
+  Eigen::Vector3f normal;  ///< of length one step of the row
   float greatest;
   std::vector<float> values;
 };
 
-/// Position of a point in a row: n.x * scale + shift, clamped to [0, last].
-struct PositionInRow {
-  float shift, scale, last;
-};
-
 /// best[i] = max(best[i], value of the row at point i), linear between its entries.
 PCL_SYMMETRY_MULTIVERSION
-void raise(const PointBlock& points, const DirectionRow& direction, const PositionInRow& position, float* best) {
-  const float shift = position.shift, scale = position.scale, last = position.last;
-  const float nx = direction.normal[0] * scale, ny = direction.normal[1] * scale, nz = direction.normal[2] * scale;
+void raise(const PointBlock& points, const DirectionRow& direction, float* best) {
+  const float last = static_cast<float>(direction.values.size() - 2), shift = 0.5f * last;
+  const float nx = direction.normal[0], ny = direction.normal[1], nz = direction.normal[2];
   const float *const x = points.x, *const y = points.y, *const z = points.z, *const row = direction.values.data();
   const int size = points.size;
   for (int i = 0; i < size; ++i) {
@@ -67,13 +62,12 @@ std::vector<float> refinedRow(const float* values, int num_radius) {
 /// \return the greatest value of any direction through each point, at least 0.
 std::vector<float> greatestThrough(const std::vector<float>& values, const std::vector<Eigen::Vector3f>& normals,
                                    int num_radius, double radius, const Points& points, int num_threads) {
-  const PositionInRow position{static_cast<float>(num_radius + 1), static_cast<float>(num_radius / radius),
-                               static_cast<float>(2 * num_radius + 2)};
+  const float steps_per_unit = static_cast<float>(num_radius / radius);
   std::vector<DirectionRow> rows;
   for (std::size_t d = 0; d < normals.size(); ++d) {
     std::vector<float> row = refinedRow(&values[d * num_radius], num_radius);
     const float greatest = *std::max_element(row.begin(), row.end());
-    rows.push_back({normals[d], greatest, std::move(row)});
+    rows.push_back({normals[d] * steps_per_unit, greatest, std::move(row)});
   }
   std::stable_sort(rows.begin(), rows.end(),
                    [](const DirectionRow& a, const DirectionRow& b) { return a.greatest > b.greatest; });
@@ -85,7 +79,7 @@ std::vector<float> greatestThrough(const std::vector<float>& values, const std::
     for (std::size_t d = 0; d < rows.size(); ++d) {
       // The directions left can no longer raise anything.
       if (d % stop_every == 0 && rows[d].greatest <= *std::min_element(best.begin() + begin, best.begin() + end)) break;
-      raise(coordinates, rows[d], position, best.data() + begin);
+      raise(coordinates, rows[d], best.data() + begin);
     }
   });
   return best;

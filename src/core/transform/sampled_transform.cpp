@@ -2,12 +2,12 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
-#include <vector>
+#include <utility>
 
 #include "core/base/check.h"
 #include "core/base/parallel.h"
 #include "core/base/random.h"
+#include "core/geometry/point_samples.h"
 #include "core/transform/free_space.h"
 #include "core/transform/line_sums.h"
 
@@ -17,10 +17,12 @@ namespace {
 
 constexpr std::size_t sampled_per_block = 32;  // directions
 
-/// D(gamma) = (S / |f|^2) mean g(gamma x_i) at every bin, for each function g of the table.
+/// (S / |f|^2) mean g(gamma x_i) at every bin: D for g = f and, with free space, F for that.
 std::vector<std::vector<float>> sampleMeans(const GaussianEdt& edt, const PlaneGrid& grid,
-                                            const SampledTransformOptions& options, const LookupTable& table) {
+                                            const SampledTransformOptions& options,
+                                            const std::vector<float>& free_space) {
   options.validate();
+  const LookupTable table(edt, free_space, options.num_threads);
   const CoordinateRows points = drawPoints(edt, options.num_samples, options.seed, options.num_threads);
   // Of the grid, in cells from the middle of the cube of cells.
   const Eigen::Vector3f center = ((grid.center() - edt.origin()) / edt.cellSize()).cast<float>() -
@@ -32,11 +34,10 @@ std::vector<std::vector<float>> sampleMeans(const GaussianEdt& edt, const PlaneG
   std::vector<std::vector<float>> means(table.numFunctions(), std::vector<float>(grid.size()));
   const auto run = [&](std::size_t begin, std::size_t end) {
     LineSums sums(edt, table, num_radius);
-    LineSums::Totals totals(table.numFunctions(), std::vector<double>(num_radius));
     for (std::size_t direction = begin; direction < end; ++direction) {
-      for (auto& total : totals) std::fill(total.begin(), total.end(), 0.0);
       const Eigen::Vector3f n = grid.normal(direction).cast<float>();
-      sums.addReflected(points, {{n.x(), n.y(), n.z()}, n.dot(center) + first_offset, radius_step, num_radius}, totals);
+      const LineSums::Totals& totals =
+          sums.ofReflected(points, {{n.x(), n.y(), n.z()}, n.dot(center) + first_offset, radius_step, num_radius});
       for (std::size_t g = 0; g < means.size(); ++g)
         for (int k = 0; k < num_radius; ++k)
           means[g][direction * num_radius + k] = static_cast<float>(scale * totals[g][k]);
@@ -44,11 +45,6 @@ std::vector<std::vector<float>> sampleMeans(const GaussianEdt& edt, const PlaneG
   };
   parallelRanges(grid.numDirections(), sampled_per_block, options.num_threads, run);
   return means;
-}
-
-const float* checkedFreeSpace(const GaussianEdt& edt, const std::vector<float>& free_space) {
-  check(free_space.size() == edt.values().size(), "free_space size", free_space.size(), "one value per cell");
-  return free_space.data();
 }
 
 }  // namespace
@@ -60,11 +56,7 @@ void SampledTransformOptions::validate() const {
 
 SymmetryMap sampledTransform(const GaussianEdt& edt, const PlaneGrid& grid, const SampledTransformOptions& options,
                              const std::vector<float>& free_space) {
-  // Sharpened by 1/12: a sample's uniform position in its cell and the look-up of the nearest cell are two boxes.
-  std::vector<const float*> functions{edt.interpolation().data()};
-  if (!free_space.empty()) functions.push_back(checkedFreeSpace(edt, free_space));
-  const LookupTable table(functions, edt.numCells(), options.num_threads);
-  std::vector<std::vector<float>> means = sampleMeans(edt, grid, options, table);
+  std::vector<std::vector<float>> means = sampleMeans(edt, grid, options, free_space);
   SymmetryMap map{grid, std::move(means[0]), TransformMethod::Sampled, edt.sigma(), grid.center()};
   if (!free_space.empty()) weighSeen(map, means[1]);
   return map;
@@ -72,8 +64,7 @@ SymmetryMap sampledTransform(const GaussianEdt& edt, const PlaneGrid& grid, cons
 
 std::vector<float> freeOverlap(const GaussianEdt& edt, const PlaneGrid& grid, const std::vector<float>& free_space,
                                const SampledTransformOptions& options) {
-  const LookupTable table({checkedFreeSpace(edt, free_space)}, edt.numCells(), options.num_threads);
-  return std::move(sampleMeans(edt, grid, options, table)[0]);
+  return std::move(sampleMeans(edt, grid, options, free_space).at(1));
 }
 
 void weighSeen(SymmetryMap& map, const std::vector<float>& free_overlap) {
@@ -83,30 +74,21 @@ void weighSeen(SymmetryMap& map, const std::vector<float>& free_overlap) {
 
 namespace {
 
-constexpr int block_bits = 3;
-constexpr int block_side = 1 << block_bits;  // cells
+constexpr int block_side = 8;  // cells
 
-/// Positions of a cube of 2^kBits cells along the Morton curve: the bits of three coordinates, interleaved.
-template <int kBits>
-std::array<std::array<std::uint8_t, 3>, (1 << 3 * kBits)> mortonCurve() {
-  std::array<std::array<std::uint8_t, 3>, (1 << 3 * kBits)> curve{};
-  for (std::size_t code = 0; code < curve.size(); ++code)
-    for (int bit = 0; bit < 3 * kBits; ++bit)
-      curve[code][bit % 3] |= static_cast<std::uint8_t>((code >> bit & 1) << (bit / 3));
-  return curve;
-}
-
-/// One coordinate's share of a Morton code: its bits, three places apart.
-std::uint32_t mortonPart(std::uint32_t v) {
-  std::uint32_t spread = 0;
-  for (int bit = 0; bit < 10; ++bit) spread |= (v >> bit & 1u) << (3 * bit);
-  return spread;
+/// The cells of a block along the Morton curve.
+std::array<Eigen::Vector3i, block_side * block_side * block_side> cellsOfBlock() {
+  std::array<Eigen::Vector3i, block_side * block_side * block_side> cells;
+  for (int z = 0; z < block_side; ++z)
+    for (int y = 0; y < block_side; ++y)
+      for (int x = 0; x < block_side; ++x) cells[mortonCode(x, y, z)] = {x, y, z};
+  return cells;
 }
 
 /// A cube of cells and its share of the sum of f.
 struct Block {
   std::uint32_t code;  ///< along the Morton curve
-  int x, y, z;         ///< first cell
+  Eigen::Vector3i first_cell;
   double sum;
 };
 
@@ -117,9 +99,8 @@ std::vector<Block> blocksOf(const GaussianEdt& edt, int num_threads) {
   for (int z = 0; z < side; ++z)
     for (int y = 0; y < side; ++y)
       for (int x = 0; x < side; ++x)
-        blocks[(static_cast<std::size_t>(z) * side + y) * side + x] = {
-            mortonPart(x) | mortonPart(y) << 1 | mortonPart(z) << 2, x * block_side, y * block_side, z * block_side,
-            0.0};
+        blocks[(static_cast<std::size_t>(z) * side + y) * side + x] = {mortonCode(x, y, z),
+                                                                       block_side * Eigen::Vector3i(x, y, z), 0.0};
   parallelBlocks(side, num_threads, [&](std::size_t layer) {
     for (int z = static_cast<int>(layer) * block_side; z < std::min(n, static_cast<int>(layer + 1) * block_side); ++z) {
       for (int y = 0; y < n; ++y) {
@@ -140,16 +121,16 @@ std::vector<Block> blocksOf(const GaussianEdt& edt, int num_threads) {
 /// The cell of a block at which the sum of f along the curve passes \p target.
 /// \param before sum before the block.
 Eigen::Vector3f cellAt(const GaussianEdt& edt, const Block& block, double before, double target) {
-  static const auto kCurve = mortonCurve<block_bits>();
+  static const auto kCells = cellsOfBlock();
   const int n = edt.numCells();
   double sum = before;
   Eigen::Vector3f chosen = Eigen::Vector3f::Zero();
-  for (const auto& place : kCurve) {
-    const int x = block.x + place[0], y = block.y + place[1], z = block.z + place[2];
-    if (x >= n || y >= n || z >= n) continue;
-    const float f = edt.values()[(static_cast<std::size_t>(z) * n + y) * n + x];
+  for (const Eigen::Vector3i& offset : kCells) {
+    const Eigen::Vector3i cell = block.first_cell + offset;
+    if ((cell.array() >= n).any()) continue;
+    const float f = edt.values()[(static_cast<std::size_t>(cell.z()) * n + cell.y()) * n + cell.x()];
     if (f == 0.0f) continue;
-    chosen = Eigen::Vector3f(x, y, z);
+    chosen = cell.cast<float>();
     sum += f;
     if (sum > target) break;
   }

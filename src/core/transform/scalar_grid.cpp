@@ -63,22 +63,18 @@ ScalarGrid averaged(const ScalarGrid& grid, const Factors& factors, int num_thre
 
 /// One pass of the weights 1/4, 1/2, 1/4 along an axis, a variance of half a voxel.
 void smoothAlong(int axis, const ScalarGrid::Size& size, std::vector<float>& values, int num_threads) {
-  const std::size_t slice = static_cast<std::size_t>(size[0]) * size[1];
-  const std::size_t step = axis == 0 ? 1 : axis == 1 ? size[0] : slice;
-  const int n = size[axis], across = axis == 0 ? 1 : size[0];  // rows of `across` values are filtered side by side
-  const int num_outer = axis == 2 ? size[1] : size[2];
-  parallelBlocks(num_outer, num_threads, [&](std::size_t outer) {
-    std::vector<float> before(across), here(across);
-    const int num_lines = axis == 0 ? size[1] : 1;
-    for (int line = 0; line < num_lines; ++line) {
-      float* row =
-          values.data() + (axis == 2 ? outer * size[0] : outer * slice + static_cast<std::size_t>(line) * size[0]);
-      std::copy(row, row + across, before.begin());
-      for (int i = 0; i < n; ++i, row += step) {
-        std::copy(row, row + across, here.begin());
-        const float* const next = i + 1 < n ? row + step : row;
-        for (int x = 0; x < across; ++x) row[x] = 0.25f * (before[x] + next[x]) + 0.5f * here[x];
-        std::swap(before, here);
+  const std::array<std::size_t, 3> steps{1, static_cast<std::size_t>(size[0]),
+                                         static_cast<std::size_t>(size[0]) * size[1]};
+  const int inner = axis == 0 ? 1 : 0, outer = axis == 2 ? 1 : 2;
+  const std::size_t step = steps[axis];
+  parallelBlocks(size[outer], num_threads, [&](std::size_t k) {
+    for (int line = 0; line < size[inner]; ++line) {
+      float* value = values.data() + k * steps[outer] + line * steps[inner];
+      float before = *value;
+      for (int i = 0; i < size[axis]; ++i, value += step) {
+        const float here = *value, next = i + 1 < size[axis] ? value[step] : here;
+        *value = 0.25f * (before + next) + 0.5f * here;
+        before = here;
       }
     }
   });

@@ -305,24 +305,24 @@ TEST(CenterOfSymmetry, OfAWholeFollowsTheFirstPlaneAsFarAsItIsASymmetry) {
 }
 
 TEST(EquivalentFrames, HaveEverySignThatIsARotation) {
-  EquivalentFrames frames;
+  std::vector<Eigen::Isometry3d> poses;
   const Eigen::Isometry3d pose = randomPose(2);
-  frames.addWithSigns(pose.linear(), pose.translation());
-  ASSERT_EQ(frames.poses().size(), 4u);
-  EXPECT_TRUE(frames.poses()[0].isApprox(canonicalPose(pose.linear(), pose.translation()), 1e-12)) << "itself first";
-  for (const Eigen::Isometry3d& T : frames.poses()) {
+  addWithSigns(pose.linear(), pose.translation(), poses);
+  ASSERT_EQ(poses.size(), 4u);
+  EXPECT_TRUE(poses[0].isApprox(canonicalPose(pose.linear(), pose.translation()), 1e-12)) << "itself first";
+  for (const Eigen::Isometry3d& T : poses) {
     EXPECT_NEAR(T.linear().determinant(), 1.0, 1e-12);
     EXPECT_LT((T * pose.translation()).norm(), 1e-12);
   }
-  frames.addWithSigns(pose.linear(), pose.translation());
-  EXPECT_EQ(frames.poses().size(), 4u) << "each once";
+  addWithSigns(pose.linear(), pose.translation(), poses);
+  EXPECT_EQ(poses.size(), 4u) << "each once";
 }
 
 TEST(EquivalentFrames, HaveEveryOrderOfAxesWhoseScoresTie) {
   const auto count = [](const Eigen::Vector3f& scores) {
-    EquivalentFrames frames;
-    frames.addTied(candidate(randomPose(3).linear(), scores), scores, Eigen::Vector3d::Zero());
-    return frames.poses().size();
+    std::vector<Eigen::Isometry3d> poses;
+    addTied(candidate(randomPose(3).linear(), scores), scores, Eigen::Vector3d::Zero(), poses);
+    return poses.size();
   };
   EXPECT_EQ(count({0.9f, 0.7f, 0.5f}), 4u) << "signs only";
   EXPECT_EQ(count({0.9f, 0.55f, 0.5f}), 8u) << "two orders";
@@ -331,11 +331,11 @@ TEST(EquivalentFrames, HaveEveryOrderOfAxesWhoseScoresTie) {
 
 TEST(EquivalentFrames, LeaveOutFramesThatScoreLess) {
   const Eigen::Vector3f best(0.9f, 0.7f, 0.5f);
-  EquivalentFrames frames;
-  frames.addTied(candidate(randomPose(4).linear(), {0.9f, 0.7f, 0.4f}), best, Eigen::Vector3d::Zero());
-  EXPECT_TRUE(frames.poses().empty());
-  frames.addTied(candidate(randomPose(4).linear(), {0.5f, 0.9f, 0.7f}), best, Eigen::Vector3d::Zero());
-  EXPECT_EQ(frames.poses().size(), 4u) << "in the order that scores enough";
+  std::vector<Eigen::Isometry3d> poses;
+  addTied(candidate(randomPose(4).linear(), {0.9f, 0.7f, 0.4f}), best, Eigen::Vector3d::Zero(), poses);
+  EXPECT_TRUE(poses.empty());
+  addTied(candidate(randomPose(4).linear(), {0.5f, 0.9f, 0.7f}), best, Eigen::Vector3d::Zero(), poses);
+  EXPECT_EQ(poses.size(), 4u) << "in the order that scores enough";
 }
 
 TEST(RotationsAboutRevolution, AreNotListed) {

@@ -195,7 +195,7 @@ TEST(AxialTransform, FreeSpaceSpeaksAgainstAxes) {
   options.folds = {3};
   const AxisGrid grid(4, 8, 8, edt.center(), edt.radius());
   const AxisMap map = axialTransform(edt, grid, options, &*seen);
-  const std::vector<float> free = freeSpace(edt, *seen);
+  const std::vector<float> free = freeSpace(edt, &*seen);
   RandomStream random(3);
   double greatest_f = 0.0;
   const double middle = 0.5 * (edt.numCells() - 1);

@@ -43,7 +43,7 @@ TEST(LocalSymmetry, OfAFlatPieceIsOneWhereverTheShapeIsNotSymmetric) {
   EXPECT_GT(localSymmetry(edt, asked, optionsFor(0.12 * edt.radius()))[0], 0.8f);
 }
 
-TEST(LocalSymmetry, RefusesBadOptionsAndIsTheSameForAnyNumberOfThreads) {
+TEST(LocalSymmetry, RefusesNoScaleAndIsTheSameForAnyNumberOfThreads) {
   const Points box = test::box(500, test::Sampling::Random, 4).cloud();
   const GaussianEdt edt(box);
   EXPECT_THROW(localSymmetry(edt, box, optionsFor(0.0)), std::invalid_argument);
@@ -62,7 +62,7 @@ TEST(FreeSpace, IsFreeInFrontAndBesideAndNothingBehind) {
   const auto seen = Visibility::fromPoints(points, kViewpoint);
   ASSERT_TRUE(seen);
   const GaussianEdt edt(points);
-  const std::vector<float> free = freeSpace(edt, *seen);
+  const std::vector<float> free = freeSpace(edt, &*seen);
   ASSERT_EQ(free.size(), edt.values().size());
   const Eigen::Vector3d forward = -kViewpoint.normalized();
   int num_front = 0, num_behind = 0, num_lost = 0, num_wrong = 0;
@@ -84,7 +84,7 @@ TEST(FreeSpace, IsFreeInFrontAndBesideAndNothingBehind) {
   EXPECT_GT(num_behind, 1000);
   EXPECT_EQ(num_lost, 0) << "of " << num_front << " cells in front";
   EXPECT_EQ(num_wrong, 0) << "of " << num_behind << " cells within the sphere and in its shadow";
-  for (const int num_threads : {1, 2, 8}) EXPECT_EQ(freeSpace(edt, *seen, num_threads), free) << num_threads;
+  for (const int num_threads : {1, 2, 8}) EXPECT_EQ(freeSpace(edt, &*seen, num_threads), free) << num_threads;
 }
 
 TEST(SeenSymmetry, HasTheLimitsThatItShould) {
