@@ -55,12 +55,6 @@ CopiedLabels copySide(bool copy_above, const SurfaceGraph& graph, const std::vec
 
 }  // namespace
 
-std::optional<ReflectionPlane> globalPlane(const std::vector<PartPlane>& planes) {
-  for (const PartPlane& plane : planes)
-    if (plane.share >= kSegmentation.global_share) return plane.plane;
-  return std::nullopt;
-}
-
 std::vector<int> reflectedElements(const SurfaceGraph& graph, const ReflectionPlane& plane) {
   return makeFlannSearch(graph.centers)->closest(reflectedPoints(graph.centers, plane));
 }

@@ -1,14 +1,10 @@
 #pragma once
 
-#include <optional>
 #include <vector>
 
 #include "core/segmentation/part_evidence.h"
 
 namespace pcl_symmetry {
-
-/// The strongest plane that maps at least 95 % of the surface onto itself.
-std::optional<ReflectionPlane> globalPlane(const std::vector<PartPlane>& planes);
 
 /// \return for each element the one whose center is closest to its reflection.
 std::vector<int> reflectedElements(const SurfaceGraph& graph, const ReflectionPlane& plane);

@@ -4,17 +4,13 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
-#include <cstdint>
 #include <utility>
-#include <vector>
 
 #include "core/base/constants.h"
 #include "core/base/median.h"
 #include "core/base/random.h"
 #include "core/geometry/point_samples.h"
-#include "core/geometry/triangle_tree.h"
 #include "core/segmentation/segmentation_rules.h"
-#include "core/segmentation/surface_patches.h"
 #include "pcl_symmetry/core/closest_point_search.h"
 
 namespace pcl_symmetry {

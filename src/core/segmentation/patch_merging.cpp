@@ -5,7 +5,6 @@
 #include <map>
 #include <numeric>
 #include <optional>
-#include <set>
 #include <utility>
 
 #include "core/base/parallel.h"
@@ -21,7 +20,8 @@ namespace pcl_symmetry {
 
 namespace {
 
-/// The plane across which labels have to agree, and the element at the reflection of each.
+/// The plane across which labels have to agree, the strongest that maps nearly the whole surface onto itself, and the
+/// element at the reflection of each.
 struct Mirror {
   ReflectionPlane plane;
   std::vector<int> reflected;
@@ -29,9 +29,10 @@ struct Mirror {
 
 std::optional<Mirror> mirrorOf(const WholeEvidence& whole, const SegmentationOptions& options) {
   if (options.num_parts > 0) return std::nullopt;
-  const std::optional<ReflectionPlane> plane = globalPlane(whole.planes());
-  if (!plane) return std::nullopt;
-  return Mirror{*plane, reflectedElements(whole.graph(), *plane)};
+  for (const PartPlane& plane : whole.planes())
+    if (plane.share >= kSegmentation.global_share)
+      return Mirror{plane.plane, reflectedElements(whole.graph(), plane.plane)};
+  return std::nullopt;
 }
 
 /// Borders that follow the surface instead of the patches, equal on both sides of the mirror, and no small segments.
@@ -242,9 +243,7 @@ public:
     std::iota(cluster_.begin(), cluster_.end(), 0);
     for (const SurfaceGraph::Edge& edge : graph.edges) {
       const int a = common.of_element[edge.from], b = common.of_element[edge.to];
-      if (a == b) continue;
-      neighbors_[a].insert(b);
-      neighbors_[b].insert(a);
+      if (a != b) neighbors_.add(a, b, 1);
     }
     for (int a = 0; a < common.size(); ++a) {
       for (int b = 0; b < common.size(); ++b) {
@@ -266,10 +265,11 @@ public:
   /// The neighbors that are most likely one part; a = -1 if no two clusters are neighbors.
   Pair likeliest() const {
     Pair best;
-    for (int a = 0; a < static_cast<int>(neighbors_.size()); ++a) {
-      for (auto b = neighbors_[a].upper_bound(a); b != neighbors_[a].end(); ++b) {
-        const double area = areas_[a] * areas_[*b], mean = area > 0.0 ? sums_(a, *b) / area : 1.0;
-        if (mean > best.probability) best = {a, *b, mean};
+    for (int a = 0; a < static_cast<int>(areas_.size()); ++a) {
+      for (const auto& [b, num_edges] : neighbors_.of(a)) {
+        if (b < a) continue;
+        const double area = areas_[a] * areas_[b], mean = area > 0.0 ? sums_(a, b) / area : 1.0;
+        if (mean > best.probability) best = {a, b, mean};
       }
     }
     return best;
@@ -280,21 +280,15 @@ public:
     sums_.col(a) += sums_.col(b);
     sums_.row(a) += sums_.row(b);
     areas_[a] += areas_[b];
-    for (const int c : neighbors_[b]) {
-      neighbors_[c].erase(b);
-      if (c == a) continue;
-      neighbors_[a].insert(c);
-      neighbors_[c].insert(a);
-    }
-    neighbors_[b].clear();
+    neighbors_.join(a, b);
     --num_clusters_;
   }
 
 private:
-  std::vector<int> cluster_;              ///< of each cell
-  std::vector<double> areas_;             ///< of clusters, shares of the surface
-  std::vector<std::set<int>> neighbors_;  ///< of clusters
-  Eigen::MatrixXf sums_;                  ///< mean probability times both areas
+  std::vector<int> cluster_;   ///< of each cell
+  std::vector<double> areas_;  ///< of clusters, shares of the surface
+  Adjacency<int> neighbors_;   ///< numbers of edges between clusters
+  Eigen::MatrixXf sums_;       ///< mean probability times both areas
   int num_clusters_;
 };
 

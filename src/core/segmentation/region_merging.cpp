@@ -29,7 +29,7 @@ std::vector<double> logThickness(const std::vector<double>& thickness) {
 
 }  // namespace
 
-void Regions::Border::add(const Border& other) {
+void Regions::Border::operator+=(const Border& other) {
   length += other.length;
   edge_concavity += other.edge_concavity;
   patch_concavity += other.patch_concavity;
@@ -60,9 +60,9 @@ Regions::Regions(const PartEvidence& evidence)
   for (const PatchBorder& b : evidence.borders) {
     perimeters_[b.from] += b.length;
     perimeters_[b.to] += b.length;
-    borders_[b.from][b.to] =
-        borders_[b.to][b.from] = {b.length, b.length * b.edge_concavity, b.length * b.patch_concavity,
-                                  b.length * 0.5 * (log_thickness[b.from] + log_thickness[b.to])};
+    borders_.add(b.from, b.to,
+                 {b.length, b.length * b.edge_concavity, b.length * b.patch_concavity,
+                  b.length * 0.5 * (log_thickness[b.from] + log_thickness[b.to])});
   }
 }
 
@@ -73,7 +73,7 @@ int Regions::imageOf(int region, const Eigen::MatrixXf& shared) const {
 }
 
 Cues Regions::cues(int a, int b) const {
-  const Border& between = borders_[a].at(b);
+  const Border& between = borders(a).at(b);
   const double area_a = std::max(kSegmentation.least_area, areas_[a]),
                area_b = std::max(kSegmentation.least_area, areas_[b]);
   Cues cues{};
@@ -104,7 +104,7 @@ Cues Regions::cues(int a, int b) const {
 }
 
 void Regions::merge(int a, int b) {
-  inside_[a].add(inside_[b]);
+  inside_[a] += inside_[b];
   perimeters_[a] += perimeters_[b];
   areas_[a] += areas_[b];
   log_thickness_[a] += log_thickness_[b];
@@ -117,17 +117,9 @@ void Regions::merge(int a, int b) {
   join(sight_);
   for (Eigen::MatrixXf& image : images_) join(image);
   std::replace(region_.begin(), region_.end(), b, a);
-  for (const auto& [c, border] : borders_[b]) {
-    borders_[c].erase(b);
-    if (c == a) {
-      inside_[a].add(border);
-      perimeters_[a] -= 2.0 * border.length;
-    } else {
-      borders_[a][c].add(border);
-      borders_[c][a].add(border);
-    }
-  }
-  borders_[b].clear();
+  const Border between = borders_.join(a, b);
+  inside_[a] += between;
+  perimeters_[a] -= 2.0 * between.length;
 }
 
 std::vector<Merge> mergeRegions(Regions regions, const MergeWeights& weights) {

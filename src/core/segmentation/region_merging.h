@@ -2,9 +2,9 @@
 
 #include <Eigen/Core>
 #include <array>
-#include <map>
 #include <vector>
 
+#include "core/segmentation/adjacency.h"
 #include "core/segmentation/part_evidence.h"
 
 namespace pcl_symmetry {
@@ -56,23 +56,23 @@ public:
   /// Sums along the border of two regions, weighted by length.
   struct Border {
     double length = 0.0, edge_concavity = 0.0, patch_concavity = 0.0, log_thickness = 0.0;
-    void add(const Border& other);
+    void operator+=(const Border& other);
   };
   /// \return the borders of a region, by neighbor.
-  const std::map<int, Border>& borders(int region) const { return borders_[region]; }
+  const std::map<int, Border>& borders(int region) const { return borders_.of(region); }
 
 private:
   int imageOf(int region, const Eigen::MatrixXf& shared) const;
 
-  std::vector<int> region_;                     ///< of each patch
-  std::vector<double> areas_;                   ///< shares of the surface
-  std::vector<double> log_thickness_;           ///< sums over patches, weighted by area
-  std::vector<double> perimeters_;              ///< input units
-  std::vector<Border> inside_;                  ///< sums over the borders between patches of one region
-  Eigen::MatrixXf sight_;                       ///< sums over pairs of patches, weighted by both areas
-  Eigen::MatrixXf support_;                     ///< planes x regions, sums over patches, weighted by area
-  std::vector<Eigen::MatrixXf> images_;         ///< per plane: area of the reflection of a region (column) in a region
-  std::vector<std::map<int, Border>> borders_;  ///< of each region, by neighbor
+  std::vector<int> region_;              ///< of each patch
+  std::vector<double> areas_;            ///< shares of the surface
+  std::vector<double> log_thickness_;    ///< sums over patches, weighted by area
+  std::vector<double> perimeters_;       ///< input units
+  std::vector<Border> inside_;           ///< sums over the borders between patches of one region
+  Eigen::MatrixXf sight_;                ///< sums over pairs of patches, weighted by both areas
+  Eigen::MatrixXf support_;              ///< planes x regions, sums over patches, weighted by area
+  std::vector<Eigen::MatrixXf> images_;  ///< per plane: area of the reflection of a region (column) in a region
+  Adjacency<Border> borders_;
 };
 
 /// Region \p from became part of region \p into.

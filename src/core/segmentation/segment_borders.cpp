@@ -11,6 +11,7 @@
 #include <set>
 #include <utility>
 
+#include "core/segmentation/adjacency.h"
 #include "core/segmentation/labels.h"
 
 namespace pcl_symmetry {
@@ -62,28 +63,22 @@ std::vector<int> movableElements(const std::vector<int>& side, const std::vector
 }
 
 using Traits = boost::adjacency_list_traits<boost::vecS, boost::vecS, boost::directedS>;
-
-/// One direction of an edge, as Boost.Graph wants it.
-struct Arc {
-  double capacity = 0.0, residual = 0.0;
-  Traits::edge_descriptor reverse = {};
-};
-
-struct Node {
-  boost::default_color_type color = boost::white_color;
-  Traits::edge_descriptor predecessor = {};
-  long distance = 0;
-};
-
-using Network = boost::adjacency_list<boost::vecS, boost::vecS, boost::directedS, Node, Arc>;
+using Network = boost::adjacency_list<
+    boost::vecS, boost::vecS, boost::directedS,
+    boost::property<boost::vertex_color_t, boost::default_color_type,
+                    boost::property<boost::vertex_predecessor_t, Traits::edge_descriptor,
+                                    boost::property<boost::vertex_distance_t, long>>>,
+    boost::property<boost::edge_capacity_t, double,
+                    boost::property<boost::edge_residual_capacity_t, double,
+                                    boost::property<boost::edge_reverse_t, Traits::edge_descriptor>>>>;
 
 /// Adds an edge as two arcs that know each other.
 void connect(Network& network, std::size_t from, std::size_t to, double forth, double back) {
   const auto arc = boost::add_edge(from, to, network).first, reverse = boost::add_edge(to, from, network).first;
-  network[arc].capacity = forth;
-  network[reverse].capacity = back;
-  network[arc].reverse = reverse;
-  network[reverse].reverse = arc;
+  boost::put(boost::edge_capacity, network, arc, forth);
+  boost::put(boost::edge_capacity, network, reverse, back);
+  boost::put(boost::edge_reverse, network, arc, reverse);
+  boost::put(boost::edge_reverse, network, reverse, arc);
 }
 
 /// The network of the cut: movable elements are nodes, followed by side 0 as the source and side 1 as the sink.
@@ -123,11 +118,9 @@ std::vector<int> cutBorder(const SurfaceGraph& graph, std::vector<int> side, con
   const std::vector<float> distance = distanceFromBorder(graph, side, static_cast<float>(options.band));
   const std::vector<int> movable = movableElements(side, distance, open);
   Network network = networkOf(graph, side, movable, options.concavity_weight);
-  boost::boykov_kolmogorov_max_flow(network, boost::get(&Arc::capacity, network), boost::get(&Arc::residual, network),
-                                    boost::get(&Arc::reverse, network), boost::get(&Node::predecessor, network),
-                                    boost::get(&Node::color, network), boost::get(&Node::distance, network),
-                                    boost::get(boost::vertex_index, network), movable.size(), movable.size() + 1);
-  for (std::size_t i = 0; i < movable.size(); ++i) side[movable[i]] = network[i].color == boost::black_color ? 0 : 1;
+  boost::boykov_kolmogorov_max_flow(network, movable.size(), movable.size() + 1);
+  for (std::size_t i = 0; i < movable.size(); ++i)
+    side[movable[i]] = boost::get(boost::vertex_color, network, i) == boost::black_color ? 0 : 1;
   return side;
 }
 
@@ -205,13 +198,14 @@ namespace {
 /// Segments with their areas and the lengths of their common borders, input units.
 class SmallSegments {
 public:
-  SmallSegments(const SurfaceGraph& graph, std::vector<int> labels) : graph_(graph), labels_(std::move(labels)) {
+  SmallSegments(const SurfaceGraph& graph, std::vector<int> labels)
+      : graph_(graph),
+        labels_(std::move(labels)),
+        borders_(1 + static_cast<std::size_t>(*std::max_element(labels_.begin(), labels_.end()))) {
     for (int i = 0; i < graph.size(); ++i) areas_[labels_[i]] += graph.areas[i];
     for (const SurfaceGraph::Edge& edge : graph.edges) {
       const int a = labels_[edge.from], b = labels_[edge.to];
-      if (a == b) continue;
-      contacts_[a][b] += edge.length;
-      contacts_[b][a] += edge.length;
+      if (a != b) borders_.add(a, b, edge.length);
     }
   }
 
@@ -226,22 +220,15 @@ public:
 
   /// The segment that a small one belongs to.
   int hostOf(int segment) const {
-    const auto found = contacts_.find(segment);
-    if (found == contacts_.end() || found->second.empty()) return closestTo(segment);
-    return labelOfMost(found->second);
+    const std::map<int, double>& lengths = borders_.of(segment);
+    return lengths.empty() ? closestTo(segment) : labelOfMost(lengths);
   }
 
   void join(int host, int segment) {
     areas_[host] += areas_[segment];
     areas_.erase(segment);
     std::replace(labels_.begin(), labels_.end(), segment, host);
-    for (const auto& [other, length] : contacts_[segment]) {
-      contacts_[other].erase(segment);
-      if (other == host) continue;
-      contacts_[other][host] += length;
-      contacts_[host][other] += length;
-    }
-    contacts_.erase(segment);
+    borders_.join(host, segment);
   }
 
   std::vector<int> labels() const {
@@ -265,8 +252,8 @@ private:
 
   const SurfaceGraph& graph_;
   std::vector<int> labels_;
-  std::map<int, double> areas_;                    ///< by segment
-  std::map<int, std::map<int, double>> contacts_;  ///< by both segments
+  std::map<int, double> areas_;  ///< by segment
+  Adjacency<double> borders_;    ///< lengths
 };
 
 }  // namespace

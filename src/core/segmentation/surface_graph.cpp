@@ -36,46 +36,42 @@ void checkExtent(const PointsRef& points) {
   check(extent <= greatest_extent, "extent of the points", extent, "<= 1e15");
 }
 
-struct AlignedNormals {
-  Points normals;          ///< 3 x N, neighbors of a piece agree
-  std::vector<int> piece;  ///< the connected piece of each element
-};
-
 /// Turns normals so that neighbors agree, along the most certain edges first (Hoppe et al. 1992).
-AlignedNormals alignNeighbors(const SurfaceGraph& graph, const std::vector<float>& agreement) {
+Points alignNeighbors(const SurfaceGraph& graph, const std::vector<float>& agreement) {
   struct Entry {
     float certainty;
     int element;
     float sign;
     bool operator<(const Entry& other) const { return certainty < other.certainty; }
   };
-  AlignedNormals aligned{graph.normals, std::vector<int>(static_cast<std::size_t>(graph.size()), -1)};
-  std::vector<int>& piece = aligned.piece;
-  int num_pieces = 0;
+  Points normals = graph.normals;
+  std::vector<char> is_aligned(static_cast<std::size_t>(graph.size()), 0);
+  std::priority_queue<Entry> queue;
   for (int start = 0; start < graph.size(); ++start) {
-    if (piece[start] >= 0) continue;
-    std::priority_queue<Entry> queue;
     queue.push({1.0f, start, 1.0f});
     while (!queue.empty()) {
       const Entry next = queue.top();
       queue.pop();
-      if (piece[next.element] >= 0) continue;
-      piece[next.element] = num_pieces;
-      aligned.normals.col(next.element) *= next.sign;
+      if (is_aligned[next.element]) continue;
+      is_aligned[next.element] = 1;
+      normals.col(next.element) *= next.sign;
       graph.visitNeighbors(next.element, [&](int neighbor, const SurfaceGraph::Edge& edge) {
         const float agrees = agreement[&edge - graph.edges.data()];
-        if (piece[neighbor] < 0) queue.push({std::abs(agrees), neighbor, agrees < 0.0f ? -next.sign : next.sign});
+        if (!is_aligned[neighbor]) queue.push({std::abs(agrees), neighbor, agrees < 0.0f ? -next.sign : next.sign});
       });
     }
-    ++num_pieces;
   }
-  return aligned;
+  return normals;
 }
 
-std::vector<std::vector<int>> membersOf(const std::vector<int>& piece) {
-  const int num_pieces = piece.empty() ? 0 : *std::max_element(piece.begin(), piece.end()) + 1;
-  std::vector<std::vector<int>> members(static_cast<std::size_t>(num_pieces));
-  for (std::size_t i = 0; i < piece.size(); ++i) members[piece[i]].push_back(static_cast<int>(i));
+/// The elements of each connected piece.
+std::vector<std::vector<int>> membersOfPieces(const SurfaceGraph& graph) {
+  const std::vector<int> piece = connectedPieces(graph, std::vector<int>(static_cast<std::size_t>(graph.size()), 0));
+  std::vector<std::vector<int>> members;
+  for (int i = 0; i < graph.size(); ++i) {
+    if (piece[i] == static_cast<int>(members.size())) members.emplace_back();
+    members[piece[i]].push_back(i);
+  }
   return members;
 }
 
@@ -103,10 +99,10 @@ double escapingArea(const SurfaceGraph& graph, const Points& normals, const Tria
 /// \param graph with normals of any sign and with the index of its edges.
 /// \return 3 x N, each normal of the graph or its opposite.
 Points outwardNormals(const SurfaceGraph& graph, const std::vector<float>& agreement) {
-  auto [normals, piece] = alignNeighbors(graph, agreement);
+  Points normals = alignNeighbors(graph, agreement);
   const TriangleTree tree(graph.corners, graph.triangles);
   RandomStream random(1);
-  for (const std::vector<int>& members : membersOf(piece)) {
+  for (const std::vector<int>& members : membersOfPieces(graph)) {
     if (escapingArea(graph, normals, tree, members, random) < 0.0)
       for (const int element : members) normals.col(element) *= -1.0f;
   }

@@ -1,6 +1,5 @@
 #include "core/segmentation/surface_patches.h"
 
-#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <functional>

@@ -45,13 +45,10 @@ std::vector<ReflectionPlane> significantMaxima(const Points& samples, const Gaus
                                                int num_threads) {
   const PlaneGrid grid(kSegmentation.num_theta, kSegmentation.num_phi, kSegmentation.num_radius, edt.center(),
                        edt.radius());
-  PlanarTransformOptions transform;
-  transform.sampled.num_samples = kSegmentation.num_map_samples;
-  transform.sampled.seed = seed;
-  transform.sampled.num_threads = num_threads;
   LocalMaximaOptions significant;
   significant.num_threads = num_threads;
-  const SymmetryMap map = planarTransform(edt, grid, centerOfMass(samples), transform);
+  SymmetryMap map = sampledTransform(edt, grid, {kSegmentation.num_map_samples, seed, num_threads});
+  map.center_of_mass = centerOfMass(samples);
   std::vector<ReflectionPlane> maxima;
   for (const LocalMaximum& maximum : findLocalMaxima(map, significant)) {
     if (maxima.size() == kSegmentation.max_planes) break;

@@ -11,7 +11,6 @@
 #include "core/segmentation/patch_merging.h"
 #include "core/segmentation/segment_borders.h"
 #include "core/segmentation/surface_patches.h"
-#include "pcl_symmetry/core/surface_graph.h"
 #include "shapes/meshes.h"
 #include "shapes/neighbors.h"
 #include "shapes/threads.h"
