@@ -43,23 +43,23 @@ public:
   }
   /// The covariance of a motion of the model's search frame as that of a motion of the target's input frame.
   /// \param T_model_scan between search frames, before the motion.
-  MotionCovariance toInput(const MotionCovariance& covariance, const Eigen::Isometry3d& T_model_scan) const {
+  Matrix6d toInput(const Matrix6d& covariance, const Eigen::Isometry3d& T_model_scan) const {
     // exp(m) T of the model's frame is T^-1 exp(-m) = exp(-Ad(T^-1) m) T^-1 of the scan's; a motion about the
     // center c in units s, x to x + w x (x - c) + s t, is w and s t + c x w about the origin.
-    MotionCovariance to_target = MotionCovariance::Identity();
+    Matrix6d to_target = Matrix6d::Identity();
     if (swapped_) to_target = adjoint(T_model_scan.inverse());
-    MotionCovariance to_input = MotionCovariance::Identity();
+    Matrix6d to_input = Matrix6d::Identity();
     to_input.bottomLeftCorner<3, 3>() = crossMatrix(frames_.target_center);
     to_input.bottomRightCorner<3, 3>() *= frames_.scale;
-    const MotionCovariance map = to_input * to_target;
+    const Matrix6d map = to_input * to_target;
     return map * covariance * map.transpose();
   }
 
 private:
   Eigen::Isometry3d swappedPose(const Eigen::Isometry3d& pose) const { return swapped_ ? pose.inverse() : pose; }
 
-  static MotionCovariance adjoint(const Eigen::Isometry3d& pose) {
-    MotionCovariance adjoint = MotionCovariance::Zero();
+  static Matrix6d adjoint(const Eigen::Isometry3d& pose) {
+    Matrix6d adjoint = Matrix6d::Zero();
     adjoint.topLeftCorner<3, 3>() = adjoint.bottomRightCorner<3, 3>() = pose.linear();
     adjoint.bottomLeftCorner<3, 3>() = crossMatrix(pose.translation()) * pose.linear();
     return adjoint;
@@ -129,7 +129,7 @@ void keepAround(const CloudPair& clouds, const Eigen::Isometry3d& guess, const P
   poses.erase(std::remove_if(poses.begin(), poses.end(), isFar), poses.end());
 }
 
-MotionCovariance covarianceOf(const CloudPair& clouds, const RankedPose& pose, const CloudRegistrationOptions& inner) {
+Matrix6d covarianceOf(const CloudPair& clouds, const RankedPose& pose, const CloudRegistrationOptions& inner) {
   const double reach = refinementReach(clouds.scan(), clouds.model(), inner.max_correspondence);
   return clouds.toInput(
       poseCovariance(clouds.scan(), clouds.model(), pose.T_model_scan, std::max(1, pose.num_points), reach),

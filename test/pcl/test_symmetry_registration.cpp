@@ -370,7 +370,7 @@ Points blockOnBox(std::uint64_t seed) {
 
 /// Errors of poses as small motions (w, t) of the target's frame, and the covariances that were said of them.
 struct PoseErrors {
-  MotionCovariance scatter = MotionCovariance::Zero(), said = MotionCovariance::Zero();
+  Matrix6d scatter = Matrix6d::Zero(), said = Matrix6d::Zero();
   double mean_sq_distance = 0.0;  ///< Mahalanobis
 };
 
@@ -391,7 +391,7 @@ PoseErrors errorsUnderNoise(double noise, int num_trials) {
         registerClouds(source, std::nullopt, target, std::nullopt, T_target_source, options);
     const Eigen::Isometry3d error = T_target_source * found.T_target_source.inverse();
     const Eigen::AngleAxisd turn(error.linear());
-    Motion6d motion;
+    Vector6d motion;
     motion << turn.angle() * turn.axis(), error.translation();
     errors.scatter += motion * motion.transpose() / num_trials;
     errors.said += *found.covariance / num_trials;

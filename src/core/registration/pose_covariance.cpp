@@ -8,7 +8,6 @@
 
 #include "core/base/constants.h"
 #include "core/base/median.h"
-#include "core/geometry/small_motion.h"
 #include "core/registration/registration_rules.h"
 
 namespace pcl_symmetry {
@@ -19,9 +18,9 @@ namespace {
 struct Residuals {
   double sum_squares = 0.0;
   int count = 0;
-  MotionCovariance hessian = MotionCovariance::Zero();
+  Matrix6d hessian = Matrix6d::Zero();
   /// What the Hessian gains per squared radian that the normals are off by.
-  MotionCovariance gain_of_noise = MotionCovariance::Zero();
+  Matrix6d gain_of_noise = Matrix6d::Zero();
   std::vector<double> sq_sines;  ///< between the normals of corresponding points
 };
 
@@ -55,11 +54,11 @@ Residuals residualsAt(const PosedSurface& scan, const PosedSurface& model, const
 
 /// What the residuals know of the motion: their Hessian without what noise of the normals adds, which would fix
 /// directions along which the surface slides on itself.
-MotionCovariance hessianWithoutNoise(Residuals residuals) {
+Matrix6d hessianWithoutNoise(Residuals residuals) {
   // The squares of errors in two directions have an exponential distribution; its mean is the median over
   // log 2.
   const double sq_noise = median(std::move(residuals.sq_sines)) / std::log(2.0);
-  const Eigen::SelfAdjointEigenSolver<MotionCovariance> solver(residuals.hessian - sq_noise * residuals.gain_of_noise);
+  const Eigen::SelfAdjointEigenSolver<Matrix6d> solver(residuals.hessian - sq_noise * residuals.gain_of_noise);
   return solver.eigenvectors() * solver.eigenvalues().cwiseMax(0.0).asDiagonal() * solver.eigenvectors().transpose();
 }
 
@@ -71,11 +70,11 @@ Eigen::Matrix3d crossMatrix(const Eigen::Vector3d& x) {
   return matrix;
 }
 
-MotionCovariance poseCovariance(const PosedSurface& scan, const PosedSurface& model,
-                                const Eigen::Isometry3d& T_model_scan, int num_points, double reach) {
+Matrix6d poseCovariance(const PosedSurface& scan, const PosedSurface& model, const Eigen::Isometry3d& T_model_scan,
+                        int num_points, double reach) {
   // The variance of an angle that is uniform in (-pi, pi), and a translation by the radius of the model.
   const double sq_angle = kPi * kPi / 3.0, sq_way = 1.0;
-  MotionCovariance information = MotionCovariance::Zero();
+  Matrix6d information = Matrix6d::Zero();
   information.diagonal().head<3>().setConstant(1.0 / sq_angle);
   information.diagonal().tail<3>().setConstant(1.0 / sq_way);
   Residuals residuals = residualsAt(scan, model, T_model_scan, num_points, reach);

@@ -2,14 +2,11 @@
 
 #include <Eigen/Geometry>
 
+#include "core/geometry/small_motion.h"
 #include "core/geometry/weighted_products.h"
 #include "core/registration/posed_surface.h"
 
 namespace pcl_symmetry {
-
-/// A small motion: rotation vector w, radians, then translation t. It moves x to x + w x x + t.
-using Motion6d = Eigen::Matrix<double, 6, 1>;
-using MotionCovariance = Eigen::Matrix<double, 6, 6>;
 
 /// \return the matrix that multiplies v to x x v.
 Eigen::Matrix3d crossMatrix(const Eigen::Vector3d& x);
@@ -21,8 +18,8 @@ Eigen::Matrix3d crossMatrix(const Eigen::Vector3d& x);
 /// \param num_points of the scan that the pose was fitted to, >= 1.
 /// \param reach greatest distance of points that corresponded, > 0, radii.
 /// \return covariance of the motion of the model's frame that takes the pose to the true one; radians and radii.
-MotionCovariance poseCovariance(const PosedSurface& scan, const PosedSurface& model,
-                                const Eigen::Isometry3d& T_model_scan, int num_points, double reach);
+Matrix6d poseCovariance(const PosedSurface& scan, const PosedSurface& model, const Eigen::Isometry3d& T_model_scan,
+                        int num_points, double reach);
 
 /// Least squares in a small motion (rotation vector, translation).
 class MotionEquations {

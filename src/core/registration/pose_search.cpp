@@ -15,18 +15,8 @@ namespace pcl_symmetry {
 
 namespace {
 
-constexpr std::size_t poses_of_block = 16;
-
 bool better(const RankedPose& a, const RankedPose& b) {
   return a.score.merit() > b.score.merit();
-}
-
-/// Calls improve(pose) for each pose.
-template <typename Improve>
-void forEach(std::vector<RankedPose>& poses, int num_threads, const Improve& improve) {
-  parallelRanges(poses.size(), poses_of_block, num_threads, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) improve(poses[i]);
-  });
 }
 
 /// The evenly spread rotations of greatest merit.
@@ -34,17 +24,13 @@ std::vector<RankedPose> screened(const PoseStarts& starts, const PoseScorer& sco
   std::vector<RankedPose> poses;
   for (const Eigen::Matrix3d& rotation : uniformRotations(options.num_rotations))
     poses.push_back({Eigen::Isometry3d(rotation), {}});
-  forEach(poses, options.num_threads, [&](RankedPose& pose) {
-    pose.T_model_scan = starts.pose(pose.T_model_scan.linear());
-    pose.score = scorer.score(pose.T_model_scan, {kRegistration.screen_points, kRegistration.screen_width});
+  parallelBlocks(poses.size(), options.num_threads, [&](std::size_t i) {
+    poses[i].T_model_scan = starts.pose(poses[i].T_model_scan.linear());
+    poses[i].score = scorer.score(poses[i].T_model_scan, {kRegistration.screen_points, kRegistration.screen_width});
   });
   std::stable_sort(poses.begin(), poses.end(), better);
   poses.resize(std::min<std::size_t>(poses.size(), options.num_screened));
   return poses;
-}
-
-void improve(std::vector<RankedPose>& poses, const PoseScorer& scorer, const PoseImprovement& how, int num_threads) {
-  forEach(poses, num_threads, [&](RankedPose& pose) { pose.improve(scorer, how); });
 }
 
 }  // namespace
@@ -94,10 +80,12 @@ std::vector<RankedPose> searchPoses(const PosedSurface& scan, const PosedSurface
 
   const auto& rules = kRegistration;
   const double middle_width = std::sqrt(rules.coarse_width * rules.fine_width);
-  improve(poses, scorer, {rules.coarse_steps, rules.coarse_points, rules.coarse_width, middle_width},
-          options.num_threads);
+  const auto improve = [&](const PoseImprovement& how) {
+    parallelBlocks(poses.size(), options.num_threads, [&](std::size_t i) { poses[i].improve(scorer, how); });
+  };
+  improve({rules.coarse_steps, rules.coarse_points, rules.coarse_width, middle_width});
   poses = distinctPoses(std::move(poses), options.num_refined);
-  improve(poses, scorer, {rules.fine_steps, rules.fine_points, middle_width, rules.fine_width}, options.num_threads);
+  improve({rules.fine_steps, rules.fine_points, middle_width, rules.fine_width});
   return distinctPoses(std::move(poses), options.max_poses);
 }
 
