@@ -15,8 +15,7 @@ namespace PCL_SYMMETRY_EXPORTS pcl_symmetry {
 
 /// The discrete space of axes, the counterpart of PlaneGrid: theta in [0, pi/2] and phi in [0, 2 pi) of the direction,
 /// and the point (u, v) in which the axis meets the plane across it through a center, both in [-radius, radius]. u runs
-/// along the direction of growing theta, v along that of growing phi. Bins are equal and their centers are half a bin
-/// from their edges. Beyond the paper, which leaves other symmetries to future work (Section 6).
+/// along the direction of growing theta, v along that of growing phi. Beyond the paper (Section 6).
 class AxisGrid {
 public:
   /// Indices of a cell of the grid.
@@ -80,9 +79,9 @@ struct AxialTransformOptions {
 ///
 ///   D_n(f, axis) = mean over k = 1 ... n - 1 of f . R_k(f) / |f|^2,   R_k: the turn by 2 pi k / n,
 ///
-/// 1 for a perfect symmetry. It is to these turns what D of Equation 2 is to a reflection: the part of f that is
-/// invariant under them has the squared length (1 + (n - 1) D_n) / n in units of |f|^2, which is Equation 1 for n = 2.
-/// For turns by any angle it is the mean over all angles.
+/// 1 for a perfect symmetry, as D of Equation 2 is for a reflection: the part of f that is invariant under these turns
+/// has the squared length (1 + (n - 1) D_n) / n in units of |f|^2, which is Equation 1 for n = 2. For turns by any
+/// angle it is the mean over all angles.
 struct AxisMap {
   AxisGrid grid;                           ///< the axes of the values
   std::vector<int> folds;                  ///< as asked for
@@ -101,9 +100,7 @@ struct AxisMap {
 int bestFold(const std::vector<int>& folds, const std::vector<double>& values);
 
 /// The axial symmetry transform by sampling, as sampledTransform() does for planes: D_n = (S / |f|^2) times the mean of
-/// f(R_k x_i), with points x_i drawn with probability f / S once for the whole map. The images of a point in the turns
-/// by one angle about parallel axes lie on a square lattice in the plane across them: its rows are straight lines
-/// through the grid of f.
+/// f(R_k x_i), with points x_i drawn with probability f / S once for the whole map.
 /// \param edt the function f.
 /// \param grid the axes, in the frame of the EDT.
 /// \param visibility what the scanner saw, in the same frame; null for a whole object. Values are then (1 + c) D / (D +

@@ -11,13 +11,8 @@ namespace PCL_SYMMETRY_EXPORTS pcl_symmetry {
 
 /// Finds the closest points of one fixed point set, for many queries at a time (Section 4.4).
 ///
-/// Iterative Symmetric Points finds its pairs here: iterateSymmetricPoints() reflects all samples and calls
-/// searchWithin() once for all of them. makeFlannSearch() answers by FLANN's k-d tree
-/// (src/core/geometry/flann_search.cpp).
-///
-/// Derive from it to use a search structure of your own. Implement search(); searchWithin() has a default that calls
-/// it. Both are called from several threads at once. Results are written into vectors of the caller, so that repeated
-/// searches reuse their memory.
+/// Derive from it to use a search structure of your own. Implement search(); searchWithin(), which Iterative Symmetric
+/// Points calls, has a default. Results are written into vectors of the caller, which repeated searches reuse.
 class ClosestPointSearch {
 public:
   using Ptr = std::shared_ptr<ClosestPointSearch>;

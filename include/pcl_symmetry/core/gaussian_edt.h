@@ -1,7 +1,6 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <cstdint>
 #include <vector>
 
 #include "pcl_symmetry/core/exports.h"
@@ -88,11 +87,8 @@ public:
   /// \return sharpened(1 / 12), between which this function interpolates.
   const std::vector<float>& interpolation() const { return interpolation_; }
 
-  /// Values that undo the blur of look-ups: f - c h^2 Laplace(f), at least 0, with h the size of a cell.
-  ///
-  /// A look-up of the nearest cell blurs f by a box, which adds h^2 / 24 times the Laplacian to its mean. Trilinear
-  /// interpolation adds twice as much. With a sigma of two cells, look-ups of f itself would understate D of a perfect
-  /// symmetry by 2 to 4 per cent.
+  /// Values that undo the blur of look-ups: f - c h^2 Laplace(f), at least 0, with h the size of a cell. Look-ups of f
+  /// itself would understate D of a perfect symmetry by 2 to 4 per cent.
   /// \param c 1/24 for each look-up of the nearest cell, 1/12 for trilinear interpolation.
   /// \param num_threads 0 = one per core.
   /// \return one value per cell, x fastest.

@@ -34,9 +34,8 @@ struct GaussianEdt2DOptions {
   void validate() const;
 };
 
-/// The Gaussian Euclidean distance transform of points in the plane, f(x) = exp(-dist^2(x, points) / sigma^2), on a
-/// square of cells around them (Section 4.1): the planar case of GaussianEdt. Where f would be less than 1.2e-3 it is
-/// 0.
+/// The planar case of GaussianEdt: f(x) = exp(-dist^2(x, points) / sigma^2) on a square of cells around points in the
+/// plane (Section 4.1), 0 where that would be less than 1.2e-3.
 class GaussianEdt2D {
 public:
   /// \param points 2 x N, finite, input units, N >= 1, not all equal unless options.radius is set.

@@ -14,7 +14,7 @@ namespace PCL_SYMMETRY_EXPORTS pcl_symmetry {
 /// A line of reflection in the plane, { x : n.x = r } with unit normal n = (cos theta, sin theta) and signed offset r:
 /// the planar case of ReflectionPlane (Section 4.2).
 ///
-/// Invariant: |n| = 1. (theta, r) and (theta + pi, -r) are the same line: compare canonical forms, or use angleTo().
+/// (theta, r) and (theta + pi, -r) are the same line: compare canonical forms, or use angleTo().
 class ReflectionLine {
 public:
   /// The line x = 0.
@@ -117,8 +117,7 @@ struct LineMap {
 
 /// The reflective symmetry of a planar shape with respect to every line (Sections 3 and 4.2).
 ///
-/// In the plane the full sum over cells and lines is cheap, so that no estimator is needed: a contour at 128 cells a
-/// side and 128 x 128 lines takes a tenth of a second.
+/// In the plane the full sum over cells and lines is cheap, so that no estimator is needed.
 /// \param edt the function f.
 /// \param grid the lines, in the frame of the EDT.
 /// \param center_of_mass mean of the points, in the same frame.

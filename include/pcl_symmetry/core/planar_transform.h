@@ -24,8 +24,7 @@ struct SampledTransformOptions {
 /// drawn with probability f / S, S = sum f, stratified in space, once for the whole map.
 ///
 /// Departure from the paper, which draws both points of a pair (Section 4.3): looking the second point up needs no
-/// weights, has no singularity at coincident points, gives values at bin centers, and is about a hundred times faster
-/// at equal error. The images of one point in all planes of a direction lie on a straight line through the grid.
+/// weights and has no singularity at coincident points.
 /// \param edt the function f.
 /// \param grid the planes, in the frame of the EDT.
 /// \param free_space for a scan one value per cell of the EDT, x fastest: 1 - f where the scanner looked through, else
@@ -49,13 +48,9 @@ struct ConvolutionTransformOptions {
 /// The exact transform by convolution over plane translations (Section 4.2): for each direction n the volume is
 /// resampled along n, and one correlation of each line with its reversal gives D for every r at once.
 ///
-/// Departures from the paper: the lines are resampled at `spacing` sigmas instead of every cell, for a tenth of the
-/// work. A Gaussian shell of width sigma holds less than 1 % of its spectrum beyond the Nyquist frequency of that
-/// lattice. Lines stand side by side, eight through cells of the same row of cells, whose values are looked up at
-/// once; what each line adds up to at its own heights is brought to the bins of r by quintic splines. PRST
-/// differs from the full sum by 0.1 % root mean square at 64 cells a side (0.17 % for boxes, whose faces can lie along
-/// the lattice) and by up to 0.3 % at 32 cells. Lines are correlated directly, because with about 36 values they are
-/// too short for a Fourier transform to pay.
+/// Departures from the paper: lines are resampled at `spacing` sigmas instead of every cell, because a Gaussian shell
+/// of width sigma holds less than 1 % of its spectrum beyond the Nyquist frequency of that lattice. They are correlated
+/// directly: about 36 values are too few for a Fourier transform to pay.
 /// \param edt the function f.
 /// \param grid the planes, in the frame of the EDT.
 /// \return D at the bin centers.
@@ -80,10 +75,9 @@ struct RotationalTransformOptions {
 /// each such line f is resampled in circles, whose correlations with their reversals add up in the frequency domain
 /// (Kazhdan et al. 2003).
 ///
-/// The points lie on the three axes of the grid, a cell apart, so that each plane meets an axis in a point at less than
-/// 55 degrees from its normal; bins are interpolated between points, lines and angles by cubics. PRST differs from the
-/// full sum by 0.1 % root mean square at 64 cells a side, with multiresolution by up to 1 %. 64^3 planes take 45 s of
-/// processor time, with multiresolution of a tenth 14 s: convolutionTransform() computes the same in 0.1 s.
+/// The points lie on the three axes of the grid, so that each plane meets an axis in a point at less than 55 degrees
+/// from its normal; bins are interpolated between points, lines and angles by cubics. convolutionTransform() computes
+/// the same several hundred times faster.
 /// \param edt the function f.
 /// \param grid the planes, in the frame of the EDT.
 /// \return D at the bin centers.
@@ -107,8 +101,7 @@ struct VotingTransformOptions {
 ///
 /// Departure from the paper: that weight has infinite variance as d -> 0, so pairs closer than near_distance do not
 /// vote. Their share of the integral is drawn the other way round: x by f, then a plane uniformly in (theta, phi, r) at
-/// less than near_distance / 2 from x, with weight f(x'). The same change of variables makes this weight bounded. The
-/// sum of both is unbiased.
+/// less than near_distance / 2 from x, with the bounded weight f(x').
 /// \param edt the function f.
 /// \param grid the planes, in the frame of the EDT.
 /// \return averages of D over the bins.

@@ -4,8 +4,7 @@
 
 namespace PCL_SYMMETRY_EXPORTS pcl_symmetry {
 
-/// Options of the search for poses that bring a scan, or a whole object, to a model of it (Section 5.1). Lengths are in
-/// radii of the model.
+/// Options of the search for poses that bring a scan, or a whole object, to a model of it (Section 5.1).
 struct PoseSearchOptions {
   int num_rotations = 1000;  ///< spread evenly over all rotations, tried beside the given poses, >= 0
   int num_screened = 60;     ///< the best of these that are improved coarsely, with all given poses, >= 1
@@ -24,11 +23,8 @@ struct PoseScore {
   /// to be empty; and of the scan's points, those that lie in space that the model's scanner saw to be empty.
   double conflict = 0.0;
 
-  /// Merit of a pose, by which poses are compared: support minus half the conflict, in [-1, 1]. A perfect pose has
-  /// merit
-  /// 1: scans of benchmark models, also noisy ones and ones with holes, reach 0.5 at their own model and stay
-  /// below 0.32 at models of other kinds. Conflict counts half, because holes in a scan look like space that the
-  /// scanner saw through.
+  /// Merit of a pose, by which poses are compared, in [-1, 1]: 1 for a perfect pose. Conflict counts half, because
+  /// holes in a scan look like space that the scanner saw through.
   double merit() const { return support - 0.5 * conflict; }
 };
 

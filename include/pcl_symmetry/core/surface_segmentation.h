@@ -26,21 +26,19 @@ enum class MergingEvidence {
 };
 
 /// Options of SegmentationMethod::Splitting (Section 5.3). A part is split if a plane maps between the paper's 10 % and
-/// 90 % of it onto itself. This rule hardly ever ends the splitting, so that the depth decides.
+/// 90 % of it onto itself; mostly the depth ends the splitting.
 struct SplittingOptions {
   /// Splits in a row at most, in [0, 30]: the paper's "user-supplied depth". There are up to 2^depth parts.
-  /// 1 - Rand index is 0.339, 0.295 and 0.284 at depths 2, 3 and 4 (`segmentation.py`,
-  /// models of the Princeton Segmentation Benchmark with ids 1 modulo 4).
   int depth = 3;
 
   /// An edge of concavity c > 0 radians costs length * exp(-concavity_weight * c) to cut; >= 0. With the paper's 0 the
-  /// length alone counts: cuts take the shortest way, as through the thighs in the paper's Figure 15.
+  /// length alone counts.
   double concavity_weight = 0.0;
 
   /// Keeps to the letter of Sections 4.4 and 5.3: the features are all maxima of the exact map as publishedPlanes()
   /// refines them, with 1000 points for the paper's 10 000, and elements outside the two largest components go to the
-  /// closer one. Otherwise such a maximum stays a feature at its place on the grid, maxima
-  /// of one basin count once, and the cut assigns the other elements.
+  /// closer one. Otherwise a maximum whose refinement leaves its basin keeps its position on the grid, maxima of one
+  /// basin count once, and the cut assigns the other elements.
   bool as_published = false;
 
   /// \throws std::invalid_argument naming field, value and rule.

@@ -74,9 +74,8 @@ struct SymmetryFrame {
   std::vector<Eigen::Isometry3d> equivalent;
   std::size_t num_maxima = 0;  ///< frames at the front of equivalent that are maxima
   /// Frames that may be the shape's own, each once up to order, signs and rotations about an axis of revolution: this
-  /// frame first, the others by falling probability. Besides maxima of symmetry they are leveled ones, which stand on
-  /// an edge of the outline, fit the smallest box or follow faces. The probabilities add up to less than 1: the rest is
-  /// that of none of them. Empty without FrameOptions::probabilities.
+  /// frame first, the others by falling probability. Besides maxima of symmetry they are leveled ones. The
+  /// probabilities add up to less than 1: the rest is that of none of them. Empty without FrameOptions::probabilities.
   std::vector<ProbableFrame> probable;
   /// Axes of rotation of a scan, through the center or not, most confident first: which poses look the same where the
   /// planes alone do not tell, as for a propeller.
@@ -88,18 +87,15 @@ struct SymmetryFrame {
 /// plane perpendicular to both (Section 5.1). The center of symmetry is where the three meet.
 ///
 /// Departures from the paper: of two nearly equal planes the one that faces of the surface agree with is taken. The
-/// second and third plane, often hardly symmetries at all, pass near the middle of the extent of the points. Where
-/// faces about the first axis make the shape stand level at little loss of symmetry, the other two axes follow them. A
-/// scan is completed by its reflection across the first plane before the other two are searched, and free space
-/// counts against planes. The center is a mean over frames that are nearly as good.
+/// second and third plane pass near the middle of the extent of the points. Where faces about the first axis make the
+/// shape stand level at little loss of symmetry, the other two axes follow them. A scan is completed by its reflection
+/// across the first plane before the other two are searched, and free space counts against planes. The center is a mean
+/// over frames that are nearly as good.
 ///
 /// Order: the first plane is that of the frame that is best as a whole. The second scores more than the third or, where
-/// the two tie, the points spread more along it.
-///
-/// Signs: the third central moment of the points along the second and third axis is positive: these axes point to the
-/// side where less of the shape reaches further. The sign of the first makes the frame right-handed, as the first axis
-/// has no direction of its own. Along an axis of symmetry the moment vanishes and chance decides; a scan
-/// has the moments of the side that was seen. SymmetryFrame::equivalent lists all signs.
+/// the two tie, the points spread more along it. Signs: the third central moment of the points along the second and
+/// third axis is positive; the first makes the frame right-handed. Along an axis of symmetry the moment vanishes and
+/// chance decides. SymmetryFrame::equivalent lists all signs.
 /// \param points 3 x N, finite, input units; at least two different ones.
 /// \param options numbers of bins and samples, threads.
 /// \param visibility what a scanner saw, input frame; null = the points show the object from all sides.

@@ -28,18 +28,16 @@ double viewpointScore(const std::vector<ViewPlane>& planes, const Eigen::Vector3
 
 /// The local maxima of S, best first, each with its opposite.
 ///
-/// A departure from the paper's exhaustive search, because it is exact: where no v . u changes its sign,
-/// S(v) = v . sum of +-M(u) u is largest in the direction of that sum. From each of many even directions the step to
-/// the direction of the sum is repeated until no sign changes; no step lowers S.
+/// A departure from the paper's exhaustive search: where no v . u changes its sign, S(v) = v . sum of +-M(u) u is
+/// largest in the direction of that sum. From each of many even directions this step is repeated; none lowers S.
 /// \param planes W.
 /// \return none if no plane has a weight > 0: then all directions are equal.
 std::vector<RankedView> bestViews(const std::vector<ViewPlane>& planes);
 
 /// The direction with the least S.
 ///
-/// Where no v . u changes its sign, S is least at a corner of the cell: a direction along two planes. The search over
-/// all pairs of planes is exact. If all planes are parallel, all directions along them are equal and one of them is
-/// returned.
+/// Where no v . u changes its sign, S is least at a corner of the cell, a direction along two planes: all pairs of
+/// planes are tried. If all planes are parallel, one of the directions along them is returned.
 /// \param planes W, at least one.
 /// \throws std::invalid_argument if there is no plane.
 RankedView worstView(const std::vector<ViewPlane>& planes);
