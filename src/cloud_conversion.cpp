@@ -10,7 +10,6 @@
 #include "core/geometry/answerable_points.h"
 #include "core/geometry/point_samples.h"
 #include "core/scan/single_view.h"
-#include "core/scan/viewpoint_inference.h"
 
 namespace pcl_symmetry::detail {
 

@@ -10,7 +10,6 @@
 
 #include "core/base/median.h"
 #include "core/scan/depth_filter.h"
-#include "core/scan/sensor_noise.h"
 #include "pcl_symmetry/impl/cloud_conversion.hpp"
 
 namespace pcl_symmetry {

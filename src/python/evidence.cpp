@@ -13,7 +13,6 @@
 #include <vector>
 
 #include "core/detection/plane_decision.h"
-#include "core/detection/turn_confidence.h"
 #include "core/segmentation/merge_fit.h"
 #include "core/segmentation/region_merging.h"
 #include "python/input_points.h"
@@ -48,12 +47,12 @@ auto rowOf(const JudgedPlane& judged) {
                          e.hold, e.spacing, e.roughness, e.tolerance, shareUnit(e), padded(logOddsTerms(further)));
 }
 
-auto rowOf(const JudgedTurn& judged) {
+auto rowOf(const JudgedRotation& judged) {
   const SymmetryTurn& turn = judged.turn;
-  const TurnSigns& signs = judged.signs;
+  const RotationSigns& signs = judged.signs;
   return std::make_tuple(turn.point, turn.direction, turn.fold, static_cast<int>(kindOf(turn)), turn.confidence,
                          turn.support, turn.off, turn.far, turn.halfway, signs.grown, signs.hold, signs.planes_off,
-                         signs.beside, padded(turnOddsTerms(turn, signs)));
+                         signs.beside, padded(rotationOddsTerms(turn, signs)));
 }
 
 template <typename Judged>
@@ -123,7 +122,7 @@ py::array turnEvidence(const Detection& found) {
   for (const char* name : {"confidence", "support", "off", "far", "halfway", "grown", "hold", "planes_off", "beside"})
     columns.emplace_back(name, "f8");
   columns.emplace_back("terms", "7f8");
-  return arrayOfRows(rowsOf(found.evidence ? found.evidence->turns : std::vector<JudgedTurn>{}), columns);
+  return arrayOfRows(rowsOf(found.evidence ? found.evidence->rotations : std::vector<JudgedRotation>{}), columns);
 }
 
 py::array frameEvidence(const SymmetryFrame& frame) {

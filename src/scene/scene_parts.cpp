@@ -14,7 +14,7 @@
 #include "core/base/median.h"
 #include "core/geometry/principal_axes.h"
 #include "core/geometry/surface_normals.h"
-#include "core/scan/sensor_noise.h"
+#include "core/scan/depth_filter.h"
 #include "pcl_symmetry/impl/cloud_conversion.hpp"
 #include "scene/object_feet.h"
 #include "scene/scene_rules.h"

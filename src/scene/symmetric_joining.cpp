@@ -16,7 +16,7 @@
 #include "core/base/median.h"
 #include "core/base/parallel.h"
 #include "core/geometry/principal_axes.h"
-#include "core/scan/sensor_noise.h"
+#include "core/scan/depth_filter.h"
 #include "scene/scene_rules.h"
 
 namespace pcl_symmetry::detail {

@@ -15,7 +15,7 @@ import references
 import rotations
 import solids
 
-OUTPUT = "src/core/detection/turn_confidence_fit.h"
+OUTPUT = "src/core/detection/rotation_confidence_fit.h"
 KINDS, NUM_TERMS = ("by any angle", "half turns", "of order 3 and more"), (4, 7, 6)
 NUM_SAMPLES = 5000  # of the mesh: a share of 0.1 is known to 0.004
 PULL = 0.5  # cases; half and twice change no confidence by 0.05, and without any separable cases would be certain
@@ -56,9 +56,9 @@ def sample_item(item, arguments):
 def header(fit, errors, counts):
     numbers = ["{" + ", ".join(fits.rounded(*both)) + "}" for both in zip(fit, errors)]
     return f"""
-// Coefficients of turnOddsTerms(), by TurnKind.
+// Coefficients of rotationOddsTerms(), by RotationKind.
 // Fitted; symmetries among the turns of each kind: {", ".join(counts)}.
-inline const std::array<std::vector<double>, 3> kTurnConfidenceFit{{
+inline const std::array<std::vector<double>, 3> kRotationConfidenceFit{{
     {{{(","+chr(10)+"     ").join(numbers)}}}}};
 """
 

@@ -9,14 +9,11 @@
 #include "core/base/check.h"
 #include "core/base/parallel.h"
 #include "core/base/stopwatch.h"
-#include "core/detection/candidates.h"
 #include "core/detection/cloud_subset.h"
-#include "core/detection/detection_rules.h"
-#include "core/detection/fold_spectrum.h"
 #include "core/detection/part_search.h"
 #include "core/detection/plane_decision.h"
 #include "core/detection/plane_families.h"
-#include "core/detection/plane_fit.h"
+#include "core/detection/plane_lattice.h"
 #include "core/detection/scan_axes.h"
 #include "core/detection/staged_refinement.h"
 #include "core/detection/upright_box.h"
@@ -31,74 +28,70 @@ namespace pcl_symmetry {
 
 namespace {
 
+void append(std::vector<SymmetryPlane>& planes, std::vector<SymmetryPlane> more) {
+  std::move(more.begin(), more.end(), std::back_inserter(planes));
+}
+
 /// The last stage of refinement and the judgment, with as little work as the answer needs: planes that cannot be
 /// symmetries beside the ones that were found are left out after a look at some points, and planes climb only where
 /// that may decide.
 class PlaneSettler {
 public:
-  /// \param refinement,judge must outlive this object.
+  /// \param refinement,decision must outlive this object.
   /// \param looks the cloud is a whole surface, and other planes than symmetries are not wanted where there are any.
-  PlaneSettler(const StagedRefinement& refinement, const PlaneJudge& judge, bool looks)
-      : refinement_(refinement), judge_(judge), looks_(looks) {}
+  PlaneSettler(const StagedRefinement& refinement, const PlaneDecision& decision, bool looks)
+      : refinement_(refinement), decision_(decision), looks_(looks) {}
 
   /// \param candidates after the second stage, best first.
   /// \return the planes that may be symmetries, and where there are none, the others too; input frame.
-  std::vector<SymmetryPlane> planes(std::vector<Candidate> candidates);
+  std::vector<SymmetryPlane> planes(std::vector<Candidate> candidates) {
+    std::vector<SymmetryPlane> found;
+    if (looks_ && !explained_ && candidates.size() > 1) {
+      found = judged({candidates.front()});
+      candidates.erase(candidates.begin());
+    }
+    // Nothing is missing then that could excuse what others leave off.
+    if (looks_ && explained_)
+      candidates.erase(std::remove_if(candidates.begin(), candidates.end(),
+                                      [&](const Candidate& other) { return decision_.isHopeless(other); }),
+                       candidates.end());
+    append(found, judged(std::move(candidates)));
+    return found;
+  }
 
 private:
-  std::vector<SymmetryPlane> judged(std::vector<Candidate> candidates) const;
-  void note(const std::vector<SymmetryPlane>& planes);
+  /// Refines candidates in full and judges them.
+  std::vector<SymmetryPlane> judged(std::vector<Candidate> candidates) {
+    candidates = refinement_.full(std::move(candidates));
+    std::vector<SymmetryPlane> planes;
+    std::vector<Candidate> climbing;
+    std::vector<std::size_t> index_of;
+    for (JudgedPlane& judged : decision_.judge(candidates)) {
+      if (judged.plane.confidence >= kDetection.fit.climbing_confidence) {
+        climbing.push_back(std::move(candidates[planes.size()]));
+        index_of.push_back(planes.size());
+      }
+      planes.push_back(std::move(judged.plane));
+    }
+    const std::vector<bool> moved = refinement_.climb(climbing);
+    std::vector<Candidate> again;
+    std::vector<std::size_t> index_of_again;
+    for (std::size_t k = 0; k < moved.size(); ++k) {
+      if (!moved[k]) continue;
+      again.push_back(std::move(climbing[k]));
+      index_of_again.push_back(index_of[k]);
+    }
+    std::vector<JudgedPlane> judged_again = decision_.judge(again);
+    for (std::size_t k = 0; k < again.size(); ++k) planes[index_of_again[k]] = std::move(judged_again[k].plane);
+    for (const SymmetryPlane& plane : planes) explained_ = explained_ || decision_.explainsAll(plane);
+    return planes;
+  }
 
   const StagedRefinement& refinement_;
-  const PlaneJudge& judge_;
+  const PlaneDecision& decision_;
   bool looks_;
   bool explained_ = false;  ///< a plane explains all of the cloud, so that nothing is missing
 };
-
-std::vector<SymmetryPlane> PlaneSettler::planes(std::vector<Candidate> candidates) {
-  std::vector<SymmetryPlane> found;
-  if (looks_ && !explained_ && candidates.size() > 1) {
-    found = judged({candidates.front()});
-    candidates.erase(candidates.begin());
-    note(found);
-  }
-  // Nothing is missing then that could excuse what others leave off.
-  if (looks_ && explained_)
-    candidates.erase(std::remove_if(candidates.begin(), candidates.end(),
-                                    [&](const Candidate& other) { return judge_.decision.isHopeless(other); }),
-                     candidates.end());
-  std::vector<SymmetryPlane> others = judged(std::move(candidates));
-  note(others);
-  std::move(others.begin(), others.end(), std::back_inserter(found));
-  return found;
-}
-
-void PlaneSettler::note(const std::vector<SymmetryPlane>& planes) {
-  explained_ = explained_ || std::any_of(planes.begin(), planes.end(), [&](const SymmetryPlane& plane) {
-                 return judge_.decision.explainsAll(plane);
-               });
-}
-
-/// Refines candidates in full and judges them.
-std::vector<SymmetryPlane> PlaneSettler::judged(std::vector<Candidate> candidates) const {
-  candidates = refinement_.full(std::move(candidates));
-  std::vector<SymmetryPlane> planes = judge_.judge(candidates);
-  std::vector<Candidate> climbing;
-  std::vector<std::size_t> places;
-  for (std::size_t i = 0; i < planes.size(); ++i) {
-    if (planes[i].confidence < kDetection.fit.climbing_confidence) continue;
-    climbing.push_back(std::move(candidates[i]));
-    places.push_back(i);
-  }
-  const std::vector<bool> moved = refinement_.climb(climbing);
-  std::vector<Candidate> again;
-  for (std::size_t k = 0; k < moved.size(); ++k)
-    if (moved[k]) again.push_back(std::move(climbing[k]));
-  std::vector<SymmetryPlane> judged_again = judge_.judge(again);
-  for (std::size_t k = 0, next = 0; k < moved.size(); ++k)
-    if (moved[k]) planes[places[k]] = std::move(judged_again[next++]);
-  return planes;
-}
 
 using Timing = std::vector<std::pair<std::string, double>>;
 
@@ -108,19 +101,10 @@ Detection unanswered(std::string reason) {
   return detection;
 }
 
-void append(std::vector<SymmetryPlane>& planes, std::vector<SymmetryPlane> more) {
-  std::move(more.begin(), more.end(), std::back_inserter(planes));
-}
-
-PlaneFitOptions fitOptions(const DetectionOptions& options) {
-  const DetectionOptions::Expert& expert = options.expert;
-  return {expert.update, expert.num_refine_samples, expert.max_iterations, options.seed, options.num_threads};
-}
-
 /// The evidence of all candidates, also of those that the detection leaves out early.
 /// \param candidates after the second stage.
 std::vector<JudgedPlane> evidenceOf(std::vector<Candidate> candidates, const StagedRefinement& refinement,
-                                    const PlaneJudge& judge) {
+                                    const PlaneDecision& decision) {
   candidates = refinement.full(std::move(candidates));
   refinement.climb(candidates);
   std::stable_sort(candidates.begin(), candidates.end(),
@@ -129,18 +113,18 @@ std::vector<JudgedPlane> evidenceOf(std::vector<Candidate> candidates, const Sta
   for (Candidate& candidate : candidates)
     if (!kSamePlane.anySame(distinct, candidate.plane, [](const Candidate& other) { return other.plane; }))
       distinct.push_back(std::move(candidate));
-  return judge.judgeWithEvidence(distinct);
+  return decision.judge(distinct);
 }
 
 /// Finds the axes of rotations of a scan, and brings axes of revolution and planes in line with them.
 std::vector<SymmetryPlane> withScanAxes(std::vector<SymmetryPlane> planes, const NormalizedCloud& cloud,
                                         double tolerance, const DetectionOptions& options, Detection& detection) {
   // A ball is symmetric about every line through its center.
-  if (!options.turns || !cloud.rules().has_turns || !detection.centers.empty()) return planes;
-  const TurnEvidence turns(cloud, tolerance, options.seed);
-  detection.turns =
-      scanAxes(turns, planes, detection.axes, options, detection.evidence ? &detection.evidence->turns : nullptr);
-  detection.axes = withRoundTurns(turns, std::move(detection.axes), detection.turns, options);
+  if (!options.turns || !cloud.rules().has_rotations || !detection.centers.empty()) return planes;
+  const RotationEvidence rotations(cloud, tolerance, options.seed);
+  detection.turns = scanAxes(rotations, planes, detection.axes, options,
+                             detection.evidence ? &detection.evidence->rotations : nullptr);
+  detection.axes = withRoundAxes(rotations, std::move(detection.axes), detection.turns, options);
   return withoutPlanesOf(std::move(planes), detection.axes, cloud);
 }
 
@@ -150,10 +134,9 @@ Detection planesOfCloud(const NormalizedCloud& cloud, const Points& all, const S
                         const DetectionOptions& options, Stopwatch& watch) {
   Detection detection;
   const auto timed = [&](const char* stage) { detection.timing_ms.emplace_back(stage, watch.lap()); };
-  const std::unique_ptr<PlaneFit> fit = makePlaneFit(cloud, fitOptions(options));
+  const std::unique_ptr<PlaneFit> fit = makePlaneFit(cloud, options);
   const StagedRefinement refinement(cloud, *fit, options);
-  const PlaneJudge judge(cloud, *fit, options);
-  const PlaneDecision& decision = judge.decision;
+  const PlaneDecision decision(cloud, *fit, options);
   timed("surface");
 
   // Candidates: local maxima of the transform and the planes across the principal axes.
@@ -167,10 +150,10 @@ Detection planesOfCloud(const NormalizedCloud& cloud, const Points& all, const S
   timed("close_refinement");
   if (options.evidence) {
     detection.evidence = std::make_shared<DetectionEvidence>();
-    detection.evidence->planes = evidenceOf(candidates, refinement, judge);
+    detection.evidence->planes = evidenceOf(candidates, refinement, decision);
     timed("evidence");
   }
-  PlaneSettler settler(refinement, judge, !options.approximate && cloud.rules().may_lack_piece);
+  PlaneSettler settler(refinement, decision, !options.approximate && cloud.rules().may_lack_piece);
   std::vector<SymmetryPlane> planes = settler.planes(std::move(candidates));
   timed("full_refinement");
 
@@ -179,37 +162,37 @@ Detection planesOfCloud(const NormalizedCloud& cloud, const Points& all, const S
   while (!(candidates = refinement.closeSymmetries(closure.next(planes))).empty())
     append(planes, settler.planes(std::move(candidates)));
   decision.preferWhole(planes);
-  PlanesAndPolygon completed = withPolygon(std::move(planes), cloud, all, judge, options);
+  PlanesAndPolygon completed = withPolygon(std::move(planes), cloud, all, decision, options);
   planes = std::move(completed.planes);
   timed("closure");
 
   // Families: bodies of revolution, spheres, and what only rotations of a scan show.
   if (!decision.isCutAllAround()) {
-    PlanesAndFamilies found = collectFamilies(std::move(planes), cloud, all, *fit, judge, options);
+    PlanesAndFamilies found = collectFamilies(std::move(planes), cloud, all, *fit, decision, options);
     planes = std::move(found.planes);
     detection.axes = std::move(found.axes);
     detection.centers = std::move(found.centers);
   }
   timed("families");
   if (!decision.isCutAllAround())
-    planes = withScanAxes(std::move(planes), cloud, judge.measure.tolerance(), options, detection);
+    planes = withScanAxes(std::move(planes), cloud, decision.measure.tolerance(), options, detection);
   const bool has_family = !detection.axes.empty() || !detection.centers.empty();
   decision.preferBest(planes, has_family);
   timed("turns");
 
-  if (options.approximate) append(planes, localPlanes(planes, cloud, *fit, judge, options));
+  if (options.approximate) append(planes, localPlanes(planes, cloud, *fit, decision, options));
   timed("parts");
 
   // The answer.
   if (!has_family) detection.best = bestApproximate(planes, cloud, *fit);
   if (detection.best)
-    detection.best->deviation = judge.measure.deviation(cloud.toNormalized(*detection.best)) * cloud.scale;
-  detection.flat = flatPlane(cloud, judge.measure.thinness());
-  detection.tolerance = judge.measure.tolerance() * cloud.scale;
+    detection.best->deviation = decision.measure.deviation(cloud.toNormalized(*detection.best)) * cloud.scale;
+  detection.flat = flatPlane(cloud, decision.measure.thinness());
+  detection.tolerance = decision.measure.tolerance() * cloud.scale;
   const bool is_raised =
-      options.absolute_tolerance == 0.0 && judge.measure.tolerance() > options.tolerance * cloud.extent;
+      options.absolute_tolerance == 0.0 && decision.measure.tolerance() > options.tolerance * cloud.extent;
   detection.resolution =
-      std::max(judge.measure.resolution(), is_raised ? judge.measure.tolerance() : 0.0) * cloud.scale;
+      std::max(decision.measure.resolution(), is_raised ? decision.measure.tolerance() : 0.0) * cloud.scale;
   detection.diameter = cloud.extent * cloud.scale;
   detection.planes = rankedPlanes(std::move(planes), completed.polygon, cloud, *fit, options);
   decision.doubtSlanted(detection.planes);
@@ -236,7 +219,7 @@ Detection planesOfEvenCloud(const NormalizedCloud& cloud, const Points& input, c
   const NormalizedCloud even(even_points, edt, search, nullptr, options.num_threads);
   Detection detection = planesOfCloud(even, cloud.points, map, options, watch);
   const auto complete = [&](SymmetryPlane& plane) {
-    plane.point_support = surfaceSupport(cloud, cloud.toNormalized(plane), fitOptions(options));
+    plane.point_support = surfaceSupport(cloud, cloud.toNormalized(plane), options);
   };
   for (SymmetryPlane& plane : detection.planes) complete(plane);
   if (detection.best) complete(*detection.best);

@@ -5,6 +5,7 @@
 #include <cstddef>
 
 #include "core/base/constants.h"
+#include "core/evidence/plane_confidence.h"
 
 namespace pcl_symmetry {
 
@@ -178,30 +179,30 @@ struct DetectionRules {
     std::size_t coarse_maxima = 10;                         ///< of that axial transform
     double coarse_angle = 0.3, coarse_distance = 0.3;       ///< within which two of them are one
     double coarse_equal = 0.05;                             ///< D by which they are off their peaks
-    int most_turn_fold = 12;                                ///< bodies of more folds are nearly round to a scan
-    int round_turns = 10;                                   ///< rotations that represent all, besides small ones
-    double small_turn = 0.26, larger_turn = 0.7;            ///< angles that the fit of a round body uses
-    double rough_turns = 3.0, rough_slack = 2.0;            ///< of most_off and most_far in screening; tolerances
+    int most_order = 12;                                    ///< bodies of more folds are nearly round to a scan
+    int round_rotations = 10;                               ///< rotations that represent all, besides small ones
+    double small_angle = 0.26, larger_angle = 0.7;          ///< angles that the fit of a round body uses
+    double rough_factor = 3.0, rough_slack = 2.0;           ///< of most_off and most_far in screening; tolerances
     std::size_t most_planes_of_axes = 8;                    ///< planes whose common lines are starts
     double plane_share = 0.85;                              ///< share of such planes
-    double same_turn_angle = 0.12, same_turn_offset = 0.1;  ///< no body has two axes nearer
+    double same_axis_angle = 0.12, same_axis_offset = 0.1;  ///< no body has two axes nearer
     double fitted_angle = 0.02, fitted_offset = 0.02;       ///< lines within both are judged once
-    std::size_t most_turns = 5;                             ///< axes; a polyhedron seen from a corner shows as many
-    int most_scan_turn_points = 10'000;                     ///< points that rotations are judged by
+    std::size_t most_axes = 5;                              ///< axes; a polyhedron seen from a corner shows as many
+    int most_points = 10'000;                               ///< points that rotations are judged by
     int scored_planes = 4;                                  ///< that D of a round body is the mean of
-    int samples_of_turn = 1000, few_samples_of_turn = 300;  ///< points that judge a rotation exactly, and roughly
-    double far_turn = 10.0;                                 ///< tolerances, as ObjectSymmetryOptions::max_feature
+    int num_samples = 1000, num_few_samples = 300;          ///< points that judge a rotation exactly, and roughly
+    double far_tolerances = 10.0;                           ///< tolerances, as ObjectSymmetryOptions::max_feature
     std::array<double, 6> fit_widths{8.0, 5.0, 3.0, 2.0, 1.5, 1.5};        ///< of the weights of a fit, tolerances
     std::array<double, 6> close_fit_widths{3.0, 2.0, 1.5, 1.0, 0.7, 0.7};  ///< the same, from a first fit on
-    double least_empty_miss = 0.5;                          ///< tolerances beside the rim from which points pull
-    double fit_reach = 2.0;                                 ///< widths beyond which a match has no weight
-    double fit_ridge = 1e-3;                                ///< share of the trace that keeps free directions at rest
-    double fit_step = 1e-4;                                 ///< of derivatives, radians and radii
-    double least_turn_f = 1e-6;                             ///< below any f that is not 0
-    double slack_of_reach = 1.001;                          ///< more than what distances are rounded by
-    double most_off = 0.05, most_far = 0.0125;              ///< shares thrown into empty space, of folds
-    double most_round_off = 0.015, most_round_far = 0.004;  ///< the same of round bodies
-    double round_on = 0.6, fold_on = 0.3, half_turn_on = 0.75;  ///< shares that land on the surface, by kind
+    double least_empty_miss = 0.5;                            ///< tolerances beside the rim from which points pull
+    double fit_reach = 2.0;                                   ///< widths beyond which a match has no weight
+    double fit_ridge = 1e-3;                                  ///< share of the trace that keeps free directions at rest
+    double fit_step = 1e-4;                                   ///< of derivatives, radians and radii
+    double least_f = 1e-6;                                    ///< below any f that is not 0
+    double slack_of_reach = 1.001;                            ///< more than what distances are rounded by
+    double most_off = 0.05, most_far = 0.0125;                ///< shares thrown into empty space, of folds
+    double most_round_off = 0.015, most_round_far = 0.004;    ///< the same of round bodies
+    double round_on = 0.6, fold_on = 0.3, twofold_on = 0.75;  ///< shares that land on the surface, by kind
     double halfway_more = 0.06;  ///< share that rotations halfway throw more into empty space
     int num_plane_pairs = 24;    ///< pairs of perpendicular planes through a line that are screened
     double plane_slack = 2.0;    ///< tolerances of that screening
@@ -215,5 +216,73 @@ struct DetectionRules {
 };
 
 inline constexpr DetectionRules kDetection;
+
+/// What differs between the kinds of cloud in detection (Section 4.4). The values here are those of a surface.
+struct KindRules {
+  // Candidates.
+  bool completes_groups = true;  ///< the reflection of one symmetry in another is tried; a scan shows too few for that
+  bool keeps_unlikely = false;  ///< candidates of little merit are refined beside symmetries, too: a scan's have little
+
+  // Refinement.
+  int full_share = 1;           ///< the last stage reflects one sample in this many: a scan is limited by what it shows
+  int rough_share = 10;         ///< candidates that never settle reflect one sample in this many
+  double settled_merit = 0.83;  ///< candidates with less never settle
+  bool slides = false;          ///< point-to-plane steps slide a plane along flat pieces that a scan has little beside
+  bool climbs = true;  ///< planes climb to their maximum after the last stage; those of noisy scans have done so in it
+
+  // Evidence.
+  int judged_share = 0;          ///< planes are judged by one sample in this many; 0 = by all points
+  bool by_halves = false;        ///< one half of the points is compared with the other, as no surface is resolved
+  bool may_lack_piece = true;    ///< open borders tell what was cut off
+  double thin_tolerances = 1.0;  ///< tolerances within which points are a sheet
+
+  // Families of planes.
+  bool normals_tell = true;    ///< normals point to axes and centers
+  double family_share = 0.92;  ///< of the surface seen, that the planes of a family map on average
+  /// Share of the surface by which planes of a family may differ, at that many points or more.
+  double family_allowance = 0.015, points_of_allowance = 0.0;
+  int family_samples = 1500;     ///< points that judge a family; a look-up in a density costs a tenth of a search
+  bool family_needs_all = true;  ///< the worst plane of a family has to be a symmetry; a scan shows some too badly
+  bool has_polygons = false;     ///< planes of a polygon are judged together, as noise hides single ones
+
+  bool has_rotations = false;  ///< axes of rotations are searched
+  bool evens_density = false;  ///< the denser side is thinned
+};
+
+constexpr KindRules scanRules() {
+  KindRules rules;
+  rules.completes_groups = false;
+  rules.keeps_unlikely = true;
+  rules.full_share = 4;
+  rules.rough_share = 20;
+  rules.settled_merit = 0.93;
+  rules.slides = true;
+  rules.climbs = false;
+  rules.judged_share = 4;
+  rules.may_lack_piece = false;
+  rules.family_share = 0.98;
+  rules.family_needs_all = false;
+  rules.has_rotations = true;
+  return rules;
+}
+
+constexpr KindRules volumeRules() {
+  KindRules rules;
+  rules.by_halves = true;
+  rules.may_lack_piece = false;
+  rules.thin_tolerances = 3.0;
+  rules.normals_tell = false;
+  rules.family_allowance = 0.012;
+  rules.points_of_allowance = 10'000.0;
+  rules.family_samples = 15'000;
+  rules.has_polygons = true;
+  rules.evens_density = true;
+  return rules;
+}
+
+inline const KindRules& rulesOf(CloudKind kind) {
+  static constexpr KindRules surface, scan = scanRules(), volume = volumeRules();
+  return kind == CloudKind::Scan ? scan : kind == CloudKind::Volume ? volume : surface;
+}
 
 }  // namespace pcl_symmetry

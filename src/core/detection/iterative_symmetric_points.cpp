@@ -3,16 +3,14 @@
 #include <Eigen/Eigenvalues>
 #include <Eigen/QR>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <utility>
 
 #include "core/base/check.h"
-#include "core/base/parallel.h"
-#include "core/base/simd.h"
 #include "core/detection/detection_rules.h"
 #include "core/detection/far_test.h"
-#include "core/detection/plane_fit.h"
-#include "core/detection/step_equations.h"
+#include "core/evidence/plane_motion.h"
 #include "core/geometry/point_samples.h"
 #include "pcl_symmetry/core/visibility.h"
 
@@ -39,98 +37,6 @@ struct WeightedExtent {
   }
 };
 
-/// Three coordinates of a point to an index of a block.
-template <typename Column>
-void put(const Column& from, PairBlock::Coordinates& to, int place) {
-  for (int k = 0; k < 3; ++k) to[k][place] = static_cast<double>(from[k]);
-}
-
-/// Adds the terms of all pairs with a weight, in their order.
-/// \param fill fill(i, block, index) writes the points and normals of pair i to an index of a block.
-/// \param terms_of terms_of(block, terms) works out what the pairs of a block add.
-template <typename Fill, typename TermsOf>
-void addAll(StepEquations& equations, const std::vector<double>& weights, const Fill& fill, const TermsOf& terms_of) {
-  PairBlock block;
-  StepTerms terms;
-  const auto use = [&] {
-    terms_of(block, terms);
-    equations.add(terms);
-    block.size = 0;
-  };
-  for (std::size_t i = 0; i < weights.size(); ++i) {
-    if (weights[i] == 0.0) continue;
-    block.weights[block.size] = weights[i];
-    fill(static_cast<Eigen::Index>(i), block, block.size++);
-    if (block.size == PairBlock::kMost) use();
-  }
-  if (block.size > 0) use();
-}
-
-/// The plane after one Gauss-Newton step on sum w (m . (x' - y))^2, where m is the mean direction of the normal at y
-/// and the reflected normal at x.
-///
-/// Directions that this leaves free (a flat piece of surface is uninformative about planes across it) move by a step on
-/// sum w |x' - y|^2. Departure from the paper, which minimizes the latter alone: it needs many more iterations.
-/// \param fill writes the pairs, see addAll().
-template <typename Fill>
-ReflectionPlane steppedPlane(const PointsRef& x, const std::vector<double>& weights, const ReflectionPlane& plane,
-                             const Fill& fill) {
-  const WeightedExtent samples(x, weights);
-  if (!(samples.extent > 0.0)) return plane;
-  StepEquations across(plane, samples.middle, samples.extent);
-  addAll(across, weights, fill, [&](const PairBlock& block, StepTerms& terms) { across.pointToPlane(block, terms); });
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(across.h);  // reads the lower half
-  const Eigen::Vector3d& stiffness = solver.eigenvalues();                // ascending
-  int num_soft = 0;
-  while (num_soft < 3 && !(stiffness[num_soft] > kDetection.isp.least_stiffness * stiffness[2])) ++num_soft;
-  Eigen::Vector3d step = Eigen::Vector3d::Zero();
-  for (int i = num_soft; i < 3; ++i)
-    step -= solver.eigenvectors().col(i) * (solver.eigenvectors().col(i).dot(across.g) / stiffness[i]);
-  if (num_soft > 0) {
-    StepEquations whole(plane, samples.middle, samples.extent);
-    addAll(whole, weights, fill, [&](const PairBlock& block, StepTerms& terms) { whole.pointToPoint(block, terms); });
-    const Eigen::Matrix3Xd soft = solver.eigenvectors().leftCols(num_soft);
-    const Eigen::MatrixXd reduced = soft.transpose() * whole.h * soft;
-    step -= soft * reduced.completeOrthogonalDecomposition().solve(soft.transpose() * whole.g);
-  }
-  const double length = step.norm();
-  if (!std::isfinite(length)) return plane;
-  if (length > kDetection.isp.longest_step) step *= kDetection.isp.longest_step / length;
-  return across.moved(step);
-}
-
-/// The closest points to the reflections, where there are any within reach of the weights: FLANN's, unless the caller
-/// has a search of its own.
-IspStep matchReflections(const IspSurface& surface, const Points& reflected, double sigma,
-                         const std::vector<int>* guesses) {
-  IspStep step;
-  ClosestPoints found = closestWithin(surface, reflected, kDetection.isp.reach_sigmas * sigma, guesses, true);
-  step.closest = std::move(found.indices);
-  step.sq_distances = std::move(found.sq_distances);
-  return step;
-}
-
-/// Reflects points, as ReflectionPlane::reflect() does.
-/// \param points,reflected three coordinates each.
-PCL_SYMMETRY_MULTIVERSION
-void reflectAll(const float* points, Eigen::Index size, const double* normal, double offset, float* reflected) {
-  const double n0 = normal[0], n1 = normal[1], n2 = normal[2];
-#pragma GCC ivdep
-  for (Eigen::Index i = 0; i < size; ++i) {
-    const double x0 = points[3 * i], x1 = points[3 * i + 1], x2 = points[3 * i + 2];
-    const double twice = 2.0 * (n0 * x0 + n1 * x1 + n2 * x2 - offset);
-    reflected[3 * i] = static_cast<float>(x0 - twice * n0);
-    reflected[3 * i + 1] = static_cast<float>(x1 - twice * n1);
-    reflected[3 * i + 2] = static_cast<float>(x2 - twice * n2);
-  }
-}
-
-Points reflections(const Points& points, const ReflectionPlane& plane) {
-  Points reflected(3, points.cols());
-  reflectAll(points.data(), points.cols(), plane.normal().data(), plane.offset(), reflected.data());
-  return reflected;
-}
-
 /// Weight of a pair by what the scanner saw where the reflection lies, in [0, 1].
 ///
 /// A departure from the paper, whose pairs all pull: many partners of a scan's points are hidden. The closest points,
@@ -149,9 +55,11 @@ struct WeightedPairs {
 
   WeightedPairs(const IspSurface& surface, const std::vector<int>& samples, const ReflectionPlane& plane, double sigma,
                 const std::vector<int>* guesses)
-      : x(pointsAt(surface.points, samples)), y(reflections(x, plane)), weights(samples.size()) {
-    step = matchReflections(surface, y, sigma, guesses);
+      : x(pointsAt(surface.points, samples)), y(reflectedPoints(x, plane)), weights(samples.size()) {
+    ClosestPoints found = closestWithin(surface, y, kDetection.isp.reach_sigmas * sigma, guesses, true);
     step.plane = plane;
+    step.closest = std::move(found.indices);
+    step.sq_distances = std::move(found.sq_distances);
     double sum = 0.0, sq_sum = 0.0;
     for (Eigen::Index i = 0; i < x.cols(); ++i) {
       if (step.closest[i] < 0) continue;
@@ -167,6 +75,81 @@ struct WeightedPairs {
     step.weight = x.cols() > 0 ? sum / static_cast<double>(x.cols()) : 0.0;
   }
 };
+
+/// Normal equations of a plane's step, in the parameters of its chart.
+struct StepEquations {
+  PlaneChart at;
+  Eigen::Matrix3d h = Eigen::Matrix3d::Zero();
+  Eigen::Vector3d g = Eigen::Vector3d::Zero();
+
+  /// Adds w (m . (x' - y))^2 of a pair, where m is the mean direction of the normal at y and the reflected normal at x.
+  void addPointToPlane(const Eigen::Vector3d& x, const Eigen::Vector3d& y, const Eigen::Vector3d& x_normal,
+                       const Eigen::Vector3d& y_normal, double pair_weight) {
+    const Eigen::Vector3d p = x - at.pivot, q = y - at.pivot;
+    const double height = at.n.dot(p) - at.offset;
+    const Eigen::Vector3d turned = x_normal - 2.0 * at.n.dot(x_normal) * at.n;
+    const double cosine = turned.dot(y_normal);
+    const Eigen::Vector3d m = (y_normal + (cosine < 0.0 ? -turned : turned)).normalized();
+    const double m_n = m.dot(at.n), weight = pair_weight * cosine * cosine;
+    const Eigen::Vector3d slope(-2.0 * (at.u.dot(p) * m_n + height * m.dot(at.u)),
+                                -2.0 * (at.v.dot(p) * m_n + height * m.dot(at.v)), 2.0 * at.extent * m_n);
+    h += slope * (weight * slope).transpose();
+    g += weight * m.dot(p - 2.0 * height * at.n - q) * slope;
+  }
+
+  /// Adds w |x' - y|^2 of a pair.
+  void addPointToPoint(const Eigen::Vector3d& x, const Eigen::Vector3d& y, double weight) {
+    const Eigen::Vector3d p = x - at.pivot, q = y - at.pivot;
+    const double height = at.n.dot(p) - at.offset;
+    const Eigen::Vector3d miss = p - 2.0 * height * at.n - q;
+    const std::array<Eigen::Vector3d, 3> slopes{-2.0 * (at.u.dot(p) * at.n + height * at.u),
+                                                -2.0 * (at.v.dot(p) * at.n + height * at.v), 2.0 * at.extent * at.n};
+    for (int i = 0; i < 3; ++i) {
+      const Eigen::Vector3d weighted = weight * slopes[i];
+      for (int j = 0; j < 3; ++j) h(i, j) += weighted.dot(slopes[j]);
+      g[i] += weighted.dot(miss);
+    }
+  }
+};
+
+/// The plane after one Gauss-Newton step on sum w (m . (x' - y))^2.
+///
+/// Directions that this leaves free (a flat piece of surface is uninformative about planes across it) move by a step on
+/// sum w |x' - y|^2. Departure from the paper, which minimizes the latter alone: it needs many more iterations.
+ReflectionPlane steppedPlane(const IspSurface& surface, const std::vector<int>& samples, const WeightedPairs& pairs) {
+  const ReflectionPlane& plane = pairs.step.plane;
+  const WeightedExtent extent(pairs.x, pairs.weights);
+  if (!(extent.extent > 0.0)) return plane;
+  const PlaneChart chart(plane, extent.middle, extent.extent);
+  StepEquations across{chart};
+  for (Eigen::Index i = 0; i < pairs.x.cols(); ++i) {
+    if (pairs.weights[i] == 0.0) continue;
+    const Eigen::Vector3d x_normal = surface.normals.col(samples[i]).cast<double>(),
+                          y_normal = surface.normals.col(pairs.step.closest[i]).cast<double>();
+    across.addPointToPlane(pairs.x.col(i).cast<double>(), pairs.y.col(i).cast<double>(), x_normal, y_normal,
+                           pairs.weights[i]);
+  }
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(across.h);
+  const Eigen::Vector3d& stiffness = solver.eigenvalues();  // ascending
+  int num_soft = 0;
+  while (num_soft < 3 && !(stiffness[num_soft] > kDetection.isp.least_stiffness * stiffness[2])) ++num_soft;
+  Eigen::Vector3d step = Eigen::Vector3d::Zero();
+  for (int i = num_soft; i < 3; ++i)
+    step -= solver.eigenvectors().col(i) * (solver.eigenvectors().col(i).dot(across.g) / stiffness[i]);
+  if (num_soft > 0) {
+    StepEquations whole{chart};
+    for (Eigen::Index i = 0; i < pairs.x.cols(); ++i)
+      if (pairs.weights[i] != 0.0)
+        whole.addPointToPoint(pairs.x.col(i).cast<double>(), pairs.y.col(i).cast<double>(), pairs.weights[i]);
+    const Eigen::Matrix3Xd soft = solver.eigenvectors().leftCols(num_soft);
+    const Eigen::MatrixXd reduced = soft.transpose() * whole.h * soft;
+    step -= soft * reduced.completeOrthogonalDecomposition().solve(soft.transpose() * whole.g);
+  }
+  const double length = step.norm();
+  if (!std::isfinite(length)) return plane;
+  if (length > kDetection.isp.longest_step) step *= kDetection.isp.longest_step / length;
+  return chart.moved(step);
+}
 
 }  // namespace
 
@@ -206,20 +189,8 @@ IspStep iterateSymmetricPoints(const IspSurface& surface, const std::vector<int>
     step.plane = fitReflectionPlane(pairs.x, pairs.y, pairs.weights, plane);
     return std::move(step);
   }
-  const auto fill = [&](Eigen::Index i, PairBlock& block, int place) {
-    put(pairs.x.col(i), block.x, place);
-    put(pairs.y.col(i), block.y, place);
-    put(surface.normals.col(samples[i]), block.x_normals, place);
-    put(surface.normals.col(step.closest[i]), block.y_normals, place);
-  };
-  step.plane = steppedPlane(pairs.x, pairs.weights, plane, fill);
+  step.plane = steppedPlane(surface, samples, pairs);
   return std::move(step);
-}
-
-IspStep matchReflectionsOnly(const IspSurface& surface, const std::vector<int>& samples, const ReflectionPlane& plane,
-                             double sigma, const std::vector<int>* guesses) {
-  const Points reflected = reflections(pointsAt(surface.points, samples), plane);
-  return matchReflections(surface, reflected, sigma, guesses);
 }
 
 IspStep matchSymmetricPoints(const IspSurface& surface, const std::vector<int>& samples, const ReflectionPlane& plane,

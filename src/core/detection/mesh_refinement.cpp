@@ -5,7 +5,6 @@
 #include <cmath>
 #include <utility>
 
-#include "core/detection/candidates.h"
 #include "core/detection/plane_decision.h"
 #include "core/geometry/geometry_rules.h"
 
@@ -30,8 +29,7 @@ void refine(const MeshSurface& mesh, SymmetryPlane& plane, double tolerance, con
   plane.share_high = std::min(1.0, shares.share + 2.0 * error);
   plane.deviation = shares.deviation;
   plane.residual = shares.residual;
-  plane.confidence = confidenceOf(shares.share, mesh.numSamples());
-  plane.kind = kindOf(plane.confidence, options);
+  decideBy(confidenceOf(shares.share, mesh.numSamples()), options, plane);
 }
 
 bool areOne(const ReflectionPlane& a, const ReflectionPlane& b, const BoundingBall& ball) {

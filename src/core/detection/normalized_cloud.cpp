@@ -1,14 +1,10 @@
 #include "core/detection/normalized_cloud.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <functional>
 #include <utility>
 
 #include "core/base/median.h"
-#include "core/base/parallel.h"
-#include "core/detection/detection_rules.h"
 #include "core/evidence/plane_support.h"
 #include "core/geometry/diameter.h"
 #include "core/geometry/flann_search.h"
@@ -61,24 +57,16 @@ NormalizedCloud::NormalizedCloud(const PointsRef& input, const GaussianEdt& edt_
               &far,
               num_threads,
               visibility ? &*visibility : nullptr},
-      measures_(points, geometry, num_threads),
-      principal_axes(measures_.principal_axes),
-      extent(measures_.extent),
-      spacing(measures_.spacing),
-      roughness(measures_.roughness / std::max(spacing, 1e-6)),
+      principal_axes(principalAxes(points)),
+      extent(farthestPair(points)),
+      spacing(median(geometry.spacing)),
+      roughness(median(geometry.roughness) / std::max(spacing, 1e-6)),
       baseline(std::max(meanSupport(ownSupport(samples, num_threads)), 1e-3)),
       sigma(edt.sigma() / scale),
       final_sigma(std::min(sigma, std::max(1e-6, kDetection.cloud.final_sigma_in_spacings * spacing))),
       kind_(visibility                                      ? CloudKind::Scan
             : roughness > kDetection.cloud.volume_roughness ? CloudKind::Volume
                                                             : CloudKind::Surface) {}
-
-NormalizedCloud::Measures::Measures(const Points& points, const LocalGeometry& geometry, int num_threads) {
-  const std::array<std::function<void()>, 4> measurements{
-      [&] { extent = farthestPair(points); }, [&] { principal_axes = principalAxes(points); },
-      [&] { spacing = median(geometry.spacing); }, [&] { roughness = median(geometry.roughness); }};
-  parallelBlocks(measurements.size(), num_threads, [&](std::size_t i) { measurements[i](); });
-}
 
 ReflectionPlane NormalizedCloud::toNormalized(const ReflectionPlane& input_plane) const {
   return ReflectionPlane(input_plane.normal(), input_plane.signedDistance(center) / -scale);

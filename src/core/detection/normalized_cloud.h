@@ -4,8 +4,8 @@
 #include <memory>
 #include <optional>
 
+#include "core/detection/detection_rules.h"
 #include "core/detection/far_test.h"
-#include "core/detection/kind_rules.h"
 #include "core/evidence/surface_samples.h"
 #include "core/geometry/principal_axes.h"
 #include "pcl_symmetry/core/iterative_symmetric_points.h"
@@ -44,17 +44,6 @@ struct NormalizedCloud {
   const FarTest far;
   const IspSurface surface;  ///< the above, as Iterative Symmetric Points wants it
 
-private:
-  /// What is measured by passes over all points, at the same time.
-  struct Measures {
-    Measures(const Points& points, const LocalGeometry& geometry, int num_threads);
-
-    PrincipalAxes principal_axes;
-    double extent = 0.0, spacing = 0.0, roughness = 0.0;
-  };
-  const Measures measures_;
-
-public:
   const PrincipalAxes principal_axes;  ///< of the points
   const double extent;                 ///< greatest distance between two points, by farthestPair()
   const double spacing;                ///< median of the points' spacing

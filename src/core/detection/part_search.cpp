@@ -1,6 +1,7 @@
 #include "core/detection/part_search.h"
 
 #include <algorithm>
+#include <boost/pending/disjoint_sets.hpp>
 #include <cmath>
 #include <iterator>
 #include <limits>
@@ -10,17 +11,108 @@
 
 #include "core/base/constants.h"
 #include "core/base/parallel.h"
-#include "core/base/simd.h"
-#include "core/detection/candidates.h"
-#include "core/detection/detection_rules.h"
-#include "core/detection/matched_region.h"
-#include "core/detection/plane_fit.h"
 #include "core/geometry/directions.h"
 #include "core/geometry/flann_search.h"
 #include "core/geometry/point_samples.h"
 #include "core/geometry/principal_axes.h"
 
 namespace pcl_symmetry {
+
+namespace {
+
+/// Edge of a flat disc: sum over its samples of the share of neighbors beyond the edge, over the root of their number.
+/// K neighbors lie within rho = sqrt(k / pi) spacings. Of the neighbors of samples within rho of a straight edge, 2 rho
+/// / (3 pi) per spacing of edge lie beyond it. A disc of n samples has an edge of 2 sqrt(pi n) spacings.
+double edgeOfDisc() {
+  const double reach = std::sqrt((kDetection.parts.num_smoothing + 1) / kPi);
+  return 2.0 * reach / (3.0 * kPi) * 2.0 * std::sqrt(kPi);
+}
+
+}  // namespace
+
+MatchedRegions::MatchedRegions(const NormalizedCloud& cloud, const PlaneFit& fit, const DetectionOptions& options)
+    : cloud_(cloud),
+      fit_(fit),
+      samples_(drawSamples(cloud.points.cols(), kDetection.parts.num_region_samples, options.seed)) {
+  std::sort(samples_.begin(), samples_.end());
+  const Points places = pointsAt(cloud.points, samples_);
+  const ClosestPointSearch::Ptr search = makeFlannSearch(places);
+  std::vector<float> sq_distances;
+  const int num_neighbors = std::min<int>(kDetection.parts.num_smoothing + 1, static_cast<int>(samples_.size()));
+  search->search(places, num_neighbors, neighbors_, sq_distances);
+  closest_sample_.resize(static_cast<std::size_t>(cloud.points.cols()));
+  parallelRanges(closest_sample_.size(), 1024, options.num_threads, [&](std::size_t begin, std::size_t end) {
+    std::vector<int> closest;
+    std::vector<float> ignored;
+    const auto first = static_cast<Eigen::Index>(begin), count = static_cast<Eigen::Index>(end - begin);
+    search->search(cloud_.points.middleCols(first, count), 1, closest, ignored);
+    std::copy(closest.begin(), closest.end(), closest_sample_.begin() + static_cast<std::ptrdiff_t>(begin));
+  });
+}
+
+MatchedRegion MatchedRegions::largest(const ReflectionPlane& plane, const std::vector<int>* guesses) const {
+  IspStep step = fit_.matches(plane, samples_, guesses);
+  const std::vector<float> support = fit_.shares(plane, samples_, step).point_support;
+  const std::size_t size = samples_.size(), num_neighbors = neighbors_.size() / size;
+  std::vector<char> matched(size);
+  for (std::size_t i = 0; i < size; ++i) {
+    double sum = 0.0;
+    for (std::size_t k = 0; k < num_neighbors; ++k) sum += support[neighbors_[i * num_neighbors + k]];
+    matched[i] = sum >= kDetection.parts.matched_support * static_cast<double>(num_neighbors);
+  }
+  const std::vector<char> inside = inLargest(matched, step, support);
+  MatchedRegion region;
+  region.closest = std::move(step.closest);
+  for (std::size_t i = 0; i < size; ++i) {
+    if (!inside[i]) continue;
+    region.points.push_back(samples_[i]);
+    region.support += support[i];
+  }
+  if (region.points.empty()) return region;
+  const auto count = static_cast<double>(region.points.size());
+  region.share = count / static_cast<double>(size);
+  region.support = std::min(1.0, region.support / (count * cloud_.baseline));
+  region.edge = edgeOf(inside, count);
+  return region;
+}
+
+/// Neighbors that match are in one region, and so are samples and what they are mapped to: two hands are a region of
+/// the plane between them.
+std::vector<char> MatchedRegions::inLargest(const std::vector<char>& matched, const IspStep& step,
+                                            const std::vector<float>& support) const {
+  const std::size_t size = samples_.size(), num_neighbors = neighbors_.size() / size;
+  std::vector<int> rank(size, 0), parent = allOf(static_cast<Eigen::Index>(size));
+  boost::disjoint_sets<int*, int*> sets(rank.data(), parent.data());
+  const std::size_t num_connecting = std::min<std::size_t>(kDetection.parts.num_connecting + 1, num_neighbors);
+  for (std::size_t i = 0; i < size; ++i) {
+    if (!matched[i]) continue;
+    for (std::size_t k = 0; k < num_connecting; ++k) {
+      const int j = neighbors_[i * num_neighbors + k];
+      if (matched[j]) sets.union_set(static_cast<int>(i), j);
+    }
+    if (step.closest[i] < 0 || support[i] < kDetection.parts.counterpart) continue;
+    const int j = closest_sample_[step.closest[i]];
+    if (matched[j]) sets.union_set(static_cast<int>(i), j);
+  }
+  std::vector<int> count(size, 0);
+  for (std::size_t i = 0; i < size; ++i)
+    if (matched[i]) ++count[sets.find_set(static_cast<int>(i))];
+  const auto largest = static_cast<int>(std::max_element(count.begin(), count.end()) - count.begin());
+  std::vector<char> inside(size, 0);
+  for (std::size_t i = 0; i < size; ++i) inside[i] = matched[i] && sets.find_set(static_cast<int>(i)) == largest;
+  return inside;
+}
+
+double MatchedRegions::edgeOf(const std::vector<char>& inside, double count) const {
+  const std::size_t size = samples_.size(), num_neighbors = neighbors_.size() / size;
+  std::size_t num_beyond = 0;
+  for (std::size_t i = 0; i < size; ++i) {
+    if (!inside[i]) continue;
+    for (std::size_t k = 0; k < num_neighbors; ++k) num_beyond += inside[neighbors_[i * num_neighbors + k]] ? 0 : 1;
+  }
+  const double share = static_cast<double>(num_beyond) / static_cast<double>(num_neighbors);
+  return share / (std::sqrt(count) * edgeOfDisc());
+}
 
 namespace {
 
@@ -39,31 +131,11 @@ std::vector<Eigen::Vector3f> spreadSeeds(const Points& points) {
   return seeds;
 }
 
-/// Tells of each point whether it is in a ball.
-PCL_SYMMETRY_MULTIVERSION
-void markWithin(const float* points, int size, const float* center, double sq_radius, char* inside) {
-  const float x = center[0], y = center[1], z = center[2];
-  for (int i = 0; i < size; ++i) {
-    const float dx = points[3 * i] - x, dy = points[3 * i + 1] - y, dz = points[3 * i + 2] - z;
-    inside[i] = dx * dx + (dy * dy + dz * dz) <= sq_radius;
-  }
-}
-
 /// Indices of the points in a ball.
 std::vector<int> within(const Points& points, const Eigen::Vector3f& center, double radius) {
-  constexpr int kBlock = 512;  // points. Marks of a block stay in the first cache
-  char inside[kBlock];
-  std::vector<int> found(static_cast<std::size_t>(points.cols()));
-  std::size_t count = 0;
-  for (Eigen::Index begin = 0; begin < points.cols(); begin += kBlock) {
-    const int size = static_cast<int>(std::min<Eigen::Index>(kBlock, points.cols() - begin));
-    markWithin(points.col(begin).data(), size, center.data(), radius * radius, inside);
-    for (int i = 0; i < size; ++i) {
-      found[count] = static_cast<int>(begin) + i;
-      count += inside[i];
-    }
-  }
-  found.resize(count);
+  std::vector<int> found;
+  for (Eigen::Index i = 0; i < points.cols(); ++i)
+    if ((points.col(i) - center).squaredNorm() <= radius * radius) found.push_back(static_cast<int>(i));
   return found;
 }
 
@@ -132,7 +204,7 @@ struct BallSearch {
     result = refineSymmetricPoints(surface, samples, result.plane, fine);
     if (std::abs(result.plane.signedDistance(middle)) > kDetection.parts.farthest_plane * radius) return std::nullopt;
     SymmetricPart part{result.plane, {}, 0.0, 0.0, num_before + result.iterations, 0.0};
-    const IspStep step = matchReflectionsOnly(surface, samples, part.plane, cloud.final_sigma, &result.last.closest);
+    const IspStep step = matchSymmetricPoints(surface, samples, part.plane, cloud.final_sigma, &result.last.closest);
     part.support = fit.relativeSupport(fit.shares(part.plane, samples, step));
     part.share = static_cast<double>(moved.size()) / static_cast<double>(cloud.points.cols());
     if (part.support < kDetection.parts.least_support) return std::nullopt;
@@ -169,8 +241,8 @@ struct RegionSearch {
   const BallSearch& balls;
   const MatchedRegions regions;
 
-  RegionSearch(const BallSearch& of_balls, const PartSearchOptions& options)
-      : balls(of_balls), regions(balls.cloud, balls.fit, options.seed, options.num_threads) {}
+  RegionSearch(const BallSearch& of_balls, const DetectionOptions& options)
+      : balls(of_balls), regions(balls.cloud, balls.fit, options) {}
 
   /// By how much the edge of a region is longer than that of a part of its size, edges of a disc.
   static double longerEdge(const MatchedRegion& region) {
@@ -258,8 +330,8 @@ std::vector<SymmetricPart> withoutFamilies(std::vector<SymmetricPart> parts) {
 }  // namespace
 
 std::vector<SymmetricPart> findSymmetricParts(const NormalizedCloud& cloud, const PlaneFit& fit,
-                                              const PartSearchOptions& options) {
-  const BallSearch search(cloud, fit, options.update);
+                                              const DetectionOptions& options) {
+  const BallSearch search(cloud, fit, options.expert.update);
   const std::vector<Eigen::Vector3f> seeds = spreadSeeds(cloud.points);
   std::vector<std::vector<SymmetricPart>> of_balls(seeds.size() * kDetection.parts.radii.size());
   parallelBlocks(of_balls.size(), options.num_threads, [&](std::size_t i) {
@@ -281,21 +353,22 @@ std::vector<SymmetricPart> findSymmetricParts(const NormalizedCloud& cloud, cons
 }
 
 std::vector<SymmetryPlane> localPlanes(const std::vector<SymmetryPlane>& known, const NormalizedCloud& cloud,
-                                       const PlaneFit& fit, const PlaneJudge& judge, const DetectionOptions& options) {
+                                       const PlaneFit& fit, const PlaneDecision& decision,
+                                       const DetectionOptions& options) {
   std::vector<SymmetryPlane> decided;
   std::copy_if(known.begin(), known.end(), std::back_inserter(decided), isDecided);
-  const std::vector<SymmetricPart> parts =
-      findSymmetricParts(cloud, fit, {options.expert.update, options.seed, options.num_threads});
+  const std::vector<SymmetricPart> parts = findSymmetricParts(cloud, fit, options);
   const std::vector<int> all = allOf(cloud.points.cols());
   std::vector<std::optional<SymmetryPlane>> of_parts(parts.size());
   parallelBlocks(parts.size(), options.num_threads, [&](std::size_t i) {
     const auto normalized = [&](const SymmetryPlane& plane) { return cloud.toNormalized(plane); };
     if (kSameBasin.anySame(decided, parts[i].plane, normalized)) return;
-    SymmetryPlane plane = judge.decision.decide(judge.measure.of(parts[i].plane, all));
-    if (plane.kind == PlaneKind::Symmetry) return;  // one of a family, which is known as its axis or center
-    plane.kind = PlaneKind::Local;
-    plane.iterations = parts[i].iterations;
-    of_parts[i] = std::move(plane);
+    JudgedPlane judged = decision.measure.of(parts[i].plane, all);
+    decision.decide(judged);
+    if (judged.plane.kind == PlaneKind::Symmetry) return;  // of a family, which is known as its axis or center
+    judged.plane.kind = PlaneKind::Local;
+    judged.plane.iterations = parts[i].iterations;
+    of_parts[i] = std::move(judged.plane);
   });
   std::vector<SymmetryPlane> planes;
   for (std::optional<SymmetryPlane>& plane : of_parts)

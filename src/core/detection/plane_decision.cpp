@@ -7,9 +7,6 @@
 #include "core/base/constants.h"
 #include "core/base/logistic.h"
 #include "core/base/parallel.h"
-#include "core/detection/candidates.h"
-#include "core/detection/detection_rules.h"
-#include "core/detection/plane_fit.h"
 #include "core/geometry/point_samples.h"
 
 namespace pcl_symmetry {
@@ -23,10 +20,11 @@ double heightOf(const PointsRef& points, const Eigen::Vector4d& support) {
 
 }  // namespace
 
-PlaneKind kindOf(double confidence, const DetectionOptions& options) {
-  return confidence >= options.min_confidence ? PlaneKind::Symmetry
-         : confidence >= options.min_possible ? PlaneKind::Possible
-                                              : PlaneKind::Approximate;
+void decideBy(double confidence, const DetectionOptions& options, SymmetryPlane& plane) {
+  plane.confidence = confidence;
+  plane.kind = confidence >= options.min_confidence ? PlaneKind::Symmetry
+               : confidence >= options.min_possible ? PlaneKind::Possible
+                                                    : PlaneKind::Approximate;
 }
 
 std::vector<Eigen::Vector3d> carryingNormals(const PointsRef& points, const Visibility& seen) {
@@ -49,51 +47,27 @@ bool slants(const ReflectionPlane& plane, const std::vector<Eigen::Vector3d>& ca
   return !carrying_normals.empty() && std::none_of(carrying_normals.begin(), carrying_normals.end(), is_along);
 }
 
-SymmetryPlane PlaneDecision::decide(PlaneRecord record) const {
-  SymmetryPlane plane(cloud_.toInput(record.plane));
-  const PlaneEvidence& evidence = record.evidence;
-  const ShareInterval interval = shareInterval(evidence);
-  plane.score = evidence.score;
-  plane.support = seenSupport(evidence);
-  plane.share = evidence.share;
-  plane.share_low = interval.low;
-  plane.share_high = interval.high;
-  plane.deviation = record.deviation * cloud_.scale;
-  plane.seen = record.seen;
-  plane.point_support = std::move(record.point_support);
-  plane.iterations = record.iterations;
-  plane.converged = record.converged;
-  plane.residual = record.residual * cloud_.scale;
-  decideBy(planeConfidence(evidence) * std::min(1.0, record.told / kDetection.decide.least_told), plane);
-  return plane;
+void PlaneDecision::decide(JudgedPlane& measured) const {
+  decideBy(planeConfidence(measured.evidence) * std::min(1.0, measured.told / kDetection.decide.least_told),
+           measured.plane);
 }
 
 void PlaneDecision::decideBy(double confidence, SymmetryPlane& plane) const {
-  plane.confidence = confidence;
-  plane.kind = kindOf(plane, confidence);
+  pcl_symmetry::decideBy(confidence, options_, plane);
+  if (plane.kind == PlaneKind::Symmetry && (!isResolved() || isCutAllAround() || movesNothing(plane)))
+    plane.kind = PlaneKind::Possible;
 }
 
-PlaneKind PlaneDecision::kindOf(const ReflectionPlane& plane, double confidence) const {
-  // A plane that moves nothing is uninformative: a sheet is mapped onto itself by its own plane, whatever it is a part
-  // of.
-  const auto is_uninformative = [&] {
-    if (measure_.thinness() == Thinness::Solid) return false;
-    return measure_.thinness() == Thinness::Line ||
-           measure_.movedShare(cloud_.toNormalized(plane)) < 1.0 - kDetection.decide.still_share;
-  };
-  const PlaneKind kind = pcl_symmetry::kindOf(confidence, options_);
-  return kind == PlaneKind::Symmetry && (!isResolved() || isCutAllAround() || is_uninformative()) ? PlaneKind::Possible
-                                                                                                  : kind;
+bool PlaneDecision::movesNothing(const ReflectionPlane& plane) const {
+  if (measure.thinness() == Thinness::Solid) return false;
+  return measure.thinness() == Thinness::Line ||
+         measure.movedShare(cloud_.toNormalized(plane)) < 1.0 - kDetection.decide.still_share;
 }
 
 bool PlaneDecision::isResolved() const {
-  return measure_.tolerance() >= measure_.resolution() ||
-         (measure_.tolerance() >= kDetection.decide.coarsest_tolerance * cloud_.extent &&
-          measure_.resolution() <= kDetection.decide.coarsest_resolution * cloud_.extent);
-}
-
-bool PlaneDecision::isCutAllAround() const {
-  return measure_.cutShare() > kDetection.decide.most_cut;
+  return measure.tolerance() >= measure.resolution() ||
+         (measure.tolerance() >= kDetection.decide.coarsest_tolerance * cloud_.extent &&
+          measure.resolution() <= kDetection.decide.coarsest_resolution * cloud_.extent);
 }
 
 bool PlaneDecision::explainsAll(const SymmetryPlane& plane) const {
@@ -103,7 +77,7 @@ bool PlaneDecision::explainsAll(const SymmetryPlane& plane) const {
 
 bool PlaneDecision::isHopeless(const Candidate& candidate) const {
   if (!cloud_.rules().may_lack_piece || candidate.merit >= kDetection.stages.symmetric_merit) return false;
-  const PlaneMeasure::QuickShare quick = measure_.quickShare(candidate);
+  const PlaneMeasure::QuickShare quick = measure.quickShare(candidate);
   return quick.share + kDetection.decide.look_errors * quick.error < kDetection.decide.hopeful_share;
 }
 
@@ -152,25 +126,18 @@ bool isBetter(const SymmetryPlane& a, const SymmetryPlane& b) {
   return a.support > b.support;
 }
 
-std::vector<SymmetryPlane> PlaneJudge::judge(const std::vector<Candidate>& candidates) const {
-  std::vector<SymmetryPlane> planes;
-  for (JudgedPlane& judged : judgeWithEvidence(candidates)) planes.push_back(std::move(judged.plane));
-  return planes;
-}
-
-std::vector<JudgedPlane> PlaneJudge::judgeWithEvidence(const std::vector<Candidate>& candidates) const {
+std::vector<JudgedPlane> PlaneDecision::judge(const std::vector<Candidate>& candidates) const {
   const std::vector<int> samples = measure.samples();
-  std::vector<JudgedPlane> planes(candidates.size());
+  std::vector<JudgedPlane> judged(candidates.size());
   parallelBlocks(candidates.size(), options_.num_threads, [&](std::size_t i) {
-    PlaneRecord record = measure.of(candidates[i], samples);
-    planes[i].evidence = record.evidence;
-    planes[i].plane = decision.decide(std::move(record));
+    judged[i] = measure.of(candidates[i], samples);
+    decide(judged[i]);
   });
-  return planes;
+  return judged;
 }
 
-JudgedFamily PlaneJudge::judgeFamily(const std::vector<ReflectionPlane>& planes,
-                                     const std::vector<int>& samples) const {
+JudgedFamily PlaneDecision::judgeFamily(const std::vector<ReflectionPlane>& planes,
+                                        const std::vector<int>& samples) const {
   const double count = static_cast<double>(planes.size());
   const bool is_scan = cloud_.seen() != nullptr;
   JudgedFamily family;

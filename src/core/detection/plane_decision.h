@@ -6,11 +6,8 @@
 #include "core/detection/plane_fit.h"
 #include "core/detection/plane_lattice.h"
 #include "core/detection/plane_measure.h"
-#include "core/detection/turn_confidence.h"
+#include "core/detection/rotation_evidence.h"
 #include "pcl_symmetry/core/detect_planes.h"
-#include "pcl_symmetry/core/point_set.h"
-#include "pcl_symmetry/core/reflection_plane.h"
-#include "pcl_symmetry/core/visibility.h"
 
 namespace pcl_symmetry {
 
@@ -19,29 +16,65 @@ namespace pcl_symmetry {
 /// \return their unit normals.
 std::vector<Eigen::Vector3d> carryingNormals(const PointsRef& points, const Visibility& seen);
 
-/// The kind that a confidence alone gives a plane.
-PlaneKind kindOf(double confidence, const DetectionOptions& options);
+/// Gives a plane a confidence, and the kind that follows from it.
+void decideBy(double confidence, const DetectionOptions& options, SymmetryPlane& plane);
 
 /// True where a plane is neither upright nor level on any of these supports; false without one.
 bool slants(const ReflectionPlane& plane, const std::vector<Eigen::Vector3d>& carrying_normals);
 
-/// From evidence to answers: the one place that says what is a symmetry, what is possible, and what comes first
-/// (core/evidence/README.md).
+/// Rank of a kind: 0 for symmetries, 1 for possible ones, 2 for others.
+int rankOf(const SymmetryPlane& plane);
+
+/// The order of answers: symmetries, then possible ones, both by falling confidence, then others by falling support.
+bool isBetter(const SymmetryPlane& a, const SymmetryPlane& b);
+
+/// True of symmetries and possible ones.
+inline bool isDecided(const SymmetryPlane& plane) {
+  return rankOf(plane) < 2;
+}
+
+/// What the decisions of one detection were taken from: what fits are made to.
+struct DetectionEvidence {
+  /// Candidates after all stages of refinement, each plane once, best merit first. No fitted number has a part in them.
+  std::vector<JudgedPlane> planes;
+  std::vector<JudgedRotation> rotations;  ///< of scans
+};
+
+/// What the planes of a family tell together.
+struct JudgedFamily {
+  double confidence = 0.0;        ///< of the mean evidence
+  double least_confidence = 1.0;  ///< of a single plane
+  double score = 0.0, support = 0.0;
+};
+
+/// From refined planes to answers: measures, then decides. The one place that says what is a symmetry, what is
+/// possible, and what comes first (core/evidence/README.md).
 class PlaneDecision {
 public:
-  /// \param cloud,measure,options must outlive this object.
-  PlaneDecision(const NormalizedCloud& cloud, const PlaneMeasure& measure, const DetectionOptions& options)
-      : cloud_(cloud), measure_(measure), options_(options) {}
+  /// \param cloud,fit,options must outlive this object.
+  PlaneDecision(const NormalizedCloud& cloud, const PlaneFit& fit, const DetectionOptions& options)
+      : measure(cloud, fit, options), cloud_(cloud), options_(options) {}
 
-  /// \return the plane in the input frame, with its confidence and kind.
-  SymmetryPlane decide(PlaneRecord record) const;
+  const PlaneMeasure measure;
 
-  /// Gives a plane another confidence, and the kind that follows from it.
+  /// \param candidates after the last stage of refinement.
+  /// \return one plane each, in the same order.
+  std::vector<JudgedPlane> judge(const std::vector<Candidate>& candidates) const;
+
+  /// Decides what a plane is by what was measured of it.
+  void decide(JudgedPlane& measured) const;
+
+  /// Planes of a family together.
+  /// \param planes normalized frame, at least one.
+  /// \param samples indices of the points that judge them.
+  JudgedFamily judgeFamily(const std::vector<ReflectionPlane>& planes, const std::vector<int>& samples) const;
+
+  /// Gives a plane another confidence, and the kind that follows from it and from what the cloud resolves.
   /// \param plane input frame.
   void decideBy(double confidence, SymmetryPlane& plane) const;
 
   /// Whether the picture cuts the cloud off all around: a place, such as a table, and no object.
-  bool isCutAllAround() const;
+  bool isCutAllAround() const { return measure.cutShare() > kDetection.decide.most_cut; }
 
   /// Whether a plane explains all of a whole cloud, so that nothing of it is missing.
   bool explainsAll(const SymmetryPlane& plane) const;
@@ -66,69 +99,10 @@ public:
 private:
   /// Whether the sensor resolves the tolerance, or no tolerance that counts.
   bool isResolved() const;
-  PlaneKind kindOf(const ReflectionPlane& plane, double confidence) const;
+  /// A plane that moves nothing is uninformative: a sheet is mapped onto itself by its own plane, whatever it is a part
+  /// of.
+  bool movesNothing(const ReflectionPlane& plane) const;
 
-  const NormalizedCloud& cloud_;
-  const PlaneMeasure& measure_;
-  const DetectionOptions& options_;
-};
-
-/// Rank of a kind: 0 for symmetries, 1 for possible ones, 2 for others.
-int rankOf(const SymmetryPlane& plane);
-
-/// The order of answers: symmetries, then possible ones, both by falling confidence, then others by falling support.
-bool isBetter(const SymmetryPlane& a, const SymmetryPlane& b);
-
-/// True of symmetries and possible ones.
-inline bool isDecided(const SymmetryPlane& plane) {
-  return rankOf(plane) < 2;
-}
-
-/// A plane, and what the decision was taken from.
-struct JudgedPlane {
-  SymmetryPlane plane;  ///< input frame
-  PlaneEvidence evidence;
-};
-
-/// What the decisions of one detection were taken from: what fits are made to.
-struct DetectionEvidence {
-  /// Candidates after all stages of refinement, each plane once, best merit first. No fitted number has a part in them.
-  std::vector<JudgedPlane> planes;
-  std::vector<JudgedTurn> turns;  ///< of scans
-};
-
-/// What the planes of a family tell together.
-struct JudgedFamily {
-  double confidence = 0.0;        ///< of the mean evidence
-  double least_confidence = 1.0;  ///< of a single plane
-  double score = 0.0, support = 0.0;
-};
-
-/// From refined planes to answers: measures, then decides.
-class PlaneJudge {
-public:
-  /// \param cloud,fit,options must outlive this object.
-  PlaneJudge(const NormalizedCloud& cloud, const PlaneFit& fit, const DetectionOptions& options)
-      : measure(cloud, fit, options), decision(cloud, measure, options), cloud_(cloud), options_(options) {}
-  PlaneJudge(const PlaneJudge&) = delete;  // parts refer to each other
-  PlaneJudge& operator=(const PlaneJudge&) = delete;
-
-  const PlaneMeasure measure;
-  const PlaneDecision decision;
-
-  /// \param candidates after the last stage of refinement.
-  /// \return one plane each, input frame, in the same order.
-  std::vector<SymmetryPlane> judge(const std::vector<Candidate>& candidates) const;
-
-  /// The same with the evidence.
-  std::vector<JudgedPlane> judgeWithEvidence(const std::vector<Candidate>& candidates) const;
-
-  /// Planes of a family together.
-  /// \param planes normalized frame, at least one.
-  /// \param samples indices of the points that judge them.
-  JudgedFamily judgeFamily(const std::vector<ReflectionPlane>& planes, const std::vector<int>& samples) const;
-
-private:
   const NormalizedCloud& cloud_;
   const DetectionOptions& options_;
 };

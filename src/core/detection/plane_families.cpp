@@ -5,13 +5,9 @@
 #include <algorithm>
 #include <cmath>
 #include <utility>
-#include "core/detection/candidates.h"
-#include "core/detection/detection_rules.h"
 
 #include "core/base/constants.h"
-#include "core/base/parallel.h"
-#include "core/detection/fold_spectrum.h"
-#include "core/detection/plane_fit.h"
+#include "core/detection/plane_lattice.h"
 #include "core/geometry/directions.h"
 #include "core/geometry/point_samples.h"
 #include "core/geometry/principal_axes.h"
@@ -192,25 +188,6 @@ FamilyTest familyTest(const NormalizedCloud& cloud, const PlaneFit& fit, const s
   return test;
 }
 
-/// Where the normals say that families may be.
-struct FamilyGuesses {
-  std::vector<Line3d> axes;
-  std::vector<Eigen::Vector3d> centers;
-};
-
-FamilyGuesses guessFamilies(const NormalizedCloud& cloud, const std::vector<int>& samples, int num_threads) {
-  if (!cloud.rules().normals_tell) return {};
-  const Points& normals = cloud.geometry.normals;
-  FamilyGuesses guesses{std::vector<Line3d>(1), std::vector<Eigen::Vector3d>(1)};
-  parallelBlocks(2, num_threads, [&](std::size_t part) {
-    if (part == 0)
-      guesses.axes[0] = axisOfNormals(cloud.points, normals, samples);
-    else
-      guesses.centers[0] = centerOfNormals(cloud.points, normals, samples);
-  });
-  return guesses;
-}
-
 /// Different symmetries among planes, most confident first, normalized frame.
 std::vector<ReflectionPlane> symmetriesOf(const std::vector<SymmetryPlane>& planes, const NormalizedCloud& cloud) {
   std::vector<const SymmetryPlane*> symmetries;
@@ -235,25 +212,30 @@ Line3d longestAxis(const PrincipalAxes& axes) {
 }  // namespace
 
 PlanesAndFamilies collectFamilies(std::vector<SymmetryPlane> planes, const NormalizedCloud& cloud, const Points& all,
-                                  const PlaneFit& fit, const PlaneJudge& judge, const DetectionOptions& options) {
+                                  const PlaneFit& fit, const PlaneDecision& decision, const DetectionOptions& options) {
   PlanesAndFamilies found;
   found.planes = std::move(planes);
   const std::vector<ReflectionPlane> symmetries = symmetriesOf(found.planes, cloud);
-  const bool is_line = judge.measure.thinness() == Thinness::Line;
+  const bool is_line = decision.measure.thinness() == Thinness::Line;
   if (symmetries.empty() && !is_line) return found;
   const std::vector<int> samples = drawSamples(cloud.points.cols(), cloud.rules().family_samples, options.seed);
   if (is_line) {
     const Line3d line = longestAxis(cloud.principal_axes);
     std::vector<ReflectionPlane> through;
     for (int k = 0; k < kDetection.families.tested_planes; ++k) through.push_back(planeThrough(line, k));
-    const JudgedFamily judged = judge.judgeFamily(through, samples);
+    const JudgedFamily judged = decision.judgeFamily(through, samples);
     if (judged.confidence >= options.min_confidence)
       found.axes.push_back(
           {cloud.toInput(line.origin()), line.direction(), judged.confidence, judged.score, judged.support});
     return found;
   }
   const FamilyTest test = familyTest(cloud, fit, samples, options.seed);
-  const FamilyGuesses guesses = guessFamilies(cloud, samples, options.num_threads);
+  std::vector<Line3d> likely_axes;
+  std::vector<Eigen::Vector3d> likely_centers;
+  if (cloud.rules().normals_tell) {
+    likely_axes.push_back(axisOfNormals(cloud.points, cloud.geometry.normals, samples));
+    likely_centers.push_back(centerOfNormals(cloud.points, cloud.geometry.normals, samples));
+  }
   const auto drop = [&](const auto& belongs) {
     found.planes.erase(std::remove_if(found.planes.begin(), found.planes.end(),
                                       [&](const SymmetryPlane& plane) { return belongs(cloud.toNormalized(plane)); }),
@@ -266,8 +248,8 @@ PlanesAndFamilies collectFamilies(std::vector<SymmetryPlane> planes, const Norma
            (!cloud.rules().family_needs_all ||
             judged.least_confidence >= kDetection.families.worst_share * options.min_confidence);
   };
-  if (const std::optional<CenterFamily> center = findCenter(symmetries, test, guesses.centers)) {
-    const JudgedFamily judged = judge.judgeFamily(center->planes, samples);
+  if (const std::optional<CenterFamily> center = findCenter(symmetries, test, likely_centers)) {
+    const JudgedFamily judged = decision.judgeFamily(center->planes, samples);
     if (isFamily(judged)) {
       found.centers.push_back({cloud.toInput(center->point), judged.confidence, judged.score, judged.support});
       drop([&](const ReflectionPlane& plane) {
@@ -276,10 +258,10 @@ PlanesAndFamilies collectFamilies(std::vector<SymmetryPlane> planes, const Norma
       return found;
     }
   }
-  for (const AxisFamily& family : findAxes(symmetries, test, guesses.axes)) {
+  for (const AxisFamily& family : findAxes(symmetries, test, likely_axes)) {
     // Noise blurs what lies between the planes of a polygon, but not alike at all of them.
     if (cloud.rules().has_polygons && latticeBySpectrum(cloud, all, family.line, options.num_threads)) continue;
-    const JudgedFamily judged = judge.judgeFamily(family.planes, samples);
+    const JudgedFamily judged = decision.judgeFamily(family.planes, samples);
     if (!isFamily(judged)) continue;
     // No bounded shape has two parallel axes, but a thin disc seems to within the tolerance: the best is the
     // axis.

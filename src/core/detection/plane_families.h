@@ -1,6 +1,5 @@
 #pragma once
 
-#include <Eigen/Geometry>
 #include <functional>
 #include <optional>
 #include <vector>
@@ -65,7 +64,7 @@ struct PlanesAndFamilies {
 /// \param planes input frame.
 /// \param all the points of the cloud and those that were left out to make it evenly dense, normalized frame.
 PlanesAndFamilies collectFamilies(std::vector<SymmetryPlane> planes, const NormalizedCloud& cloud, const Points& all,
-                                  const PlaneFit& fit, const PlaneJudge& judge, const DetectionOptions& options);
+                                  const PlaneFit& fit, const PlaneDecision& decision, const DetectionOptions& options);
 
 /// \param planes,axes input frame.
 /// \return the planes that contain no axis.

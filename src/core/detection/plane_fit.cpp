@@ -5,7 +5,6 @@
 #include <utility>
 
 #include "core/base/parallel.h"
-#include "core/detection/detection_rules.h"
 #include "core/evidence/plane_support.h"
 #include "core/evidence/point_density.h"
 #include "core/geometry/point_samples.h"
@@ -19,245 +18,183 @@ namespace {
 /// on the surface.
 class SurfaceFit : public PlaneFit {
 public:
-  /// \param cloud must outlive this object.
-  SurfaceFit(const NormalizedCloud& cloud, const PlaneFitOptions& options) : PlaneFit(cloud), options_(options) {}
+  SurfaceFit(const NormalizedCloud& cloud, const DetectionOptions& options) : PlaneFit(cloud, options) {}
 
-  void refine(std::vector<Candidate>& candidates, const RefinementStage& stage) const override;
-  void climb(std::vector<Candidate>& candidates, const RefinementStage& stage) const override;
+  void refine(std::vector<Candidate>& candidates, const RefinementStage& stage) const override {
+    const std::vector<int> samples = drawn(stage.num_samples), fewer = drawn(stage.num_rough_samples);
+    parallelBlocks(candidates.size(), options_.num_threads, [&](std::size_t i) {
+      Candidate& candidate = candidates[i];
+      const bool settles = candidate.iterations == 0 || candidate.merit >= stage.least_merit;
+      const std::vector<int>& used = settles ? samples : fewer;
+      const ReflectionPlane start = candidate.plane;
+      candidate.last = refineSymmetricPoints(cloud_.surface, used, start, settles ? stage.isp : stage.rough_isp);
+      candidate.plane = candidate.last.plane;
+      candidate.iterations += candidate.last.iterations;
+      candidate.merit = merit(shares(candidate.plane, used, candidate.last.last));
+      if (!stage.undo_slides) return;
+      undoSlide(candidate, start, used, stage.isp.final_sigma);
+      if (stage.climbs && cloud_.roughness > kDetection.fit.noisy_depth &&
+          candidate.merit >= kDetection.fit.climbing_merit)
+        climbOne(candidate, used, fewer);
+    });
+  }
+
+  void climb(std::vector<Candidate>& candidates, const RefinementStage& stage) const override {
+    const std::vector<int> samples = drawn(stage.num_samples),
+                           fewer = drawn(std::min(stage.num_rough_samples, kDetection.fit.climb_samples));
+    parallelBlocks(candidates.size(), options_.num_threads, [&](std::size_t i) {
+      Candidate& candidate = candidates[i];
+      const bool is_at_rest = candidate.merit >= kDetection.stages.symmetric_merit;  // nothing pulls at it
+      if (candidate.merit >= kDetection.fit.climbing_merit && !is_at_rest) climbOne(candidate, samples, fewer);
+    });
+  }
+
   ReflectionPlane refined(const ReflectionPlane& plane, const std::vector<int>& samples,
-                          int max_iterations) const override;
+                          int max_iterations) const override {
+    IspOptions isp;
+    isp.update = options_.expert.update;
+    isp.sigma = isp.final_sigma = cloud_.final_sigma;
+    isp.max_iterations = max_iterations;
+    return refineSymmetricPoints(cloud_.surface, samples, plane, isp).plane;
+  }
+
   using PlaneFit::shares;
-  PlaneShares shares(const ReflectionPlane& plane, const std::vector<int>& samples, const IspStep& step) const override;
-  double relativeSupport(const PlaneShares& shares) const override;
-  double merit(const PlaneShares& shares) const override;
-  PlaneEvidence evidence(double support, double conflict, double score) const override;
+  PlaneShares shares(const ReflectionPlane& plane, const std::vector<int>& samples,
+                     const IspStep& step) const override {
+    PointEvidence evidence{std::vector<float>(samples.size()), std::vector<float>(samples.size())};
+    const Eigen::Vector3f n = plane.normal().cast<float>();
+    parallelRanges(samples.size(), 1024, options_.num_threads, [&](std::size_t begin, std::size_t end) {
+      const auto size = static_cast<Eigen::Index>(end - begin), first = static_cast<Eigen::Index>(begin);
+      Points reflected(3, size), normals(3, size);
+      for (Eigen::Index i = 0; i < size; ++i) {
+        const SurfaceSample& sample = cloud_.samples[samples[static_cast<std::size_t>(first + i)]];
+        reflected.col(i) = plane.reflect(sample.point.cast<double>()).cast<float>();
+        normals.col(i) = sample.normal - 2.0f * n.dot(sample.normal) * n;
+      }
+      const std::vector<int> closest(step.closest.begin() + first, step.closest.begin() + first + size);
+      const PointEvidence some = pointEvidence(reflected, normals, closest, cloud_.samples, cloud_.seen());
+      std::copy(some.support.begin(), some.support.end(), evidence.support.begin() + first);
+      std::copy(some.conflict.begin(), some.conflict.end(), evidence.conflict.begin() + first);
+    });
+    return {meanSupport(evidence.support), meanSupport(evidence.conflict), std::move(evidence.support)};
+  }
+
+  double merit(const PlaneShares& shares) const override {
+    return seenSymmetry(relativeSupport(shares), shares.conflict);
+  }
 
 private:
+  std::vector<int> drawn(int num_samples) const {
+    return drawSamples(cloud_.points.cols(), num_samples, options_.seed);
+  }
+
+  /// Point-to-plane distances are uninformative along flat pieces, and a scan may have little else. The plane takes one
+  /// point-to-point step from its start instead if that has more merit.
+  void undoSlide(Candidate& candidate, const ReflectionPlane& start, const std::vector<int>& samples,
+                 double sigma) const {
+    IspStep step = iterateSymmetricPoints(cloud_.surface, samples, start, sigma, IspUpdate::PointToPoint,
+                                          &candidate.last.last.closest);
+    const double point_to_point_merit = merit(shares(step.plane, samples, step));
+    if (point_to_point_merit <= candidate.merit) return;
+    candidate.plane = step.plane;
+    candidate.merit = point_to_point_merit;
+    candidate.last.last = std::move(step);
+  }
+
+  /// Pairs whose true partners were cut off, or are hidden by noise, pull at a plane. It comes to rest beside the one
+  /// that explains most of what is there, and climbs from there on the merit itself, along its three parameters.
   /// \param samples that the final merit is taken of.
   /// \param fewer samples by which the plane climbs.
-  void climbOne(Candidate& candidate, const std::vector<int>& samples, const std::vector<int>& fewer) const;
-  void undoSlide(Candidate& candidate, const ReflectionPlane& start, const std::vector<int>& samples,
-                 double sigma) const;
-
-  PlaneFitOptions options_;
-};
-
-}  // namespace
-
-void SurfaceFit::refine(std::vector<Candidate>& candidates, const RefinementStage& stage) const {
-  const std::vector<int> samples = drawSamples(cloud_.points.cols(), stage.num_samples, options_.seed);
-  const std::vector<int> fewer = drawSamples(cloud_.points.cols(), stage.num_rough_samples, options_.seed);
-  parallelBlocks(candidates.size(), options_.num_threads, [&](std::size_t i) {
-    Candidate& candidate = candidates[i];
-    const bool settles = candidate.iterations == 0 || candidate.merit >= stage.least_merit;
-    const std::vector<int>& used = settles ? samples : fewer;
-    const ReflectionPlane start = candidate.plane;
-    candidate.last = refineSymmetricPoints(cloud_.surface, used, start, settles ? stage.isp : stage.rough_isp);
-    candidate.plane = candidate.last.plane;
-    candidate.iterations += candidate.last.iterations;
-    candidate.merit = merit(shares(candidate.plane, used, candidate.last.last));
-    if (!stage.undo_slides) return;
-    undoSlide(candidate, start, used, stage.isp.final_sigma);
-    if (stage.climbs && cloud_.roughness > kDetection.fit.noisy_depth &&
-        candidate.merit >= kDetection.fit.climbing_merit)
-      climbOne(candidate, used, fewer);
-  });
-}
-
-void SurfaceFit::climb(std::vector<Candidate>& candidates, const RefinementStage& stage) const {
-  const std::vector<int> samples = drawSamples(cloud_.points.cols(), stage.num_samples, options_.seed);
-  const std::vector<int> fewer =
-      drawSamples(cloud_.points.cols(), std::min(stage.num_rough_samples, kDetection.fit.climb_samples), options_.seed);
-  parallelBlocks(candidates.size(), options_.num_threads, [&](std::size_t i) {
-    Candidate& candidate = candidates[i];
-    const bool is_at_rest = candidate.merit >= kDetection.stages.symmetric_merit;  // nothing pulls at it
-    if (candidate.merit >= kDetection.fit.climbing_merit && !is_at_rest) climbOne(candidate, samples, fewer);
-  });
-}
-
-/// Point-to-plane distances are uninformative along flat pieces, and a scan may have little else. The plane
-/// takes one point-to-point step from its start instead if that has more merit.
-void SurfaceFit::undoSlide(Candidate& candidate, const ReflectionPlane& start, const std::vector<int>& samples,
-                           double sigma) const {
-  IspStep step = iterateSymmetricPoints(cloud_.surface, samples, start, sigma, IspUpdate::PointToPoint,
-                                        &candidate.last.last.closest);
-  const double point_to_point_merit = merit(shares(step.plane, samples, step));
-  if (point_to_point_merit <= candidate.merit) return;
-  candidate.plane = step.plane;
-  candidate.merit = point_to_point_merit;
-  candidate.last.last = std::move(step);
-}
-
-/// Pairs whose true partners were cut off, or are hidden by noise, pull at a plane. It comes to rest beside the one
-/// that explains most of what is there, and climbs from there on the merit itself, along its three parameters.
-void SurfaceFit::climbOne(Candidate& candidate, const std::vector<int>& samples, const std::vector<int>& fewer) const {
-  const auto moved = [](const ReflectionPlane& plane, int parameter, double by) {
-    const Eigen::Vector3d n = plane.normal(), u = n.unitOrthogonal();
-    if (parameter == 2) return ReflectionPlane(n, plane.offset() + by);
-    return ReflectionPlane((n + by * (parameter == 0 ? u : n.cross(u))).normalized(), plane.offset());
-  };
-  const auto matched = [&](const ReflectionPlane& at, const std::vector<int>* guesses) {
-    return matchReflectionsOnly(cloud_.surface, fewer, at, cloud_.final_sigma, guesses);
-  };
-  ReflectionPlane plane = candidate.plane;
-  IspStep here = matched(plane, nullptr);
-  double best = merit(shares(plane, fewer, here));
-  int num_climbs = 0;
-  for (double step = kDetection.fit.first_climb; step >= kDetection.fit.last_climb; step *= 0.5) {
-    for (int fails = 0, k = 0; fails < 6 && num_climbs < kDetection.fit.most_climbs; k = (k + 1) % 6) {
-      const ReflectionPlane next = moved(plane, k / 2, k % 2 == 0 ? step : -step);
-      IspStep there = matched(next, &here.closest);
-      const double value = merit(shares(next, fewer, there));
-      ++fails;
-      if (value <= best) continue;
-      best = value;
-      here = std::move(there);
-      plane = next;
-      ++num_climbs;
-      fails = 0;
+  void climbOne(Candidate& candidate, const std::vector<int>& samples, const std::vector<int>& fewer) const {
+    const auto moved = [](const ReflectionPlane& plane, int parameter, double by) {
+      const Eigen::Vector3d n = plane.normal(), u = n.unitOrthogonal();
+      if (parameter == 2) return ReflectionPlane(n, plane.offset() + by);
+      return ReflectionPlane((n + by * (parameter == 0 ? u : n.cross(u))).normalized(), plane.offset());
+    };
+    ReflectionPlane plane = candidate.plane;
+    IspStep here = matches(plane, fewer);
+    double best = merit(shares(plane, fewer, here));
+    int num_climbs = 0;
+    for (double step = kDetection.fit.first_climb; step >= kDetection.fit.last_climb; step *= 0.5) {
+      for (int fails = 0, k = 0; fails < 6 && num_climbs < kDetection.fit.most_climbs; k = (k + 1) % 6) {
+        const ReflectionPlane next = moved(plane, k / 2, k % 2 == 0 ? step : -step);
+        IspStep there = matches(next, fewer, &here.closest);
+        const double value = merit(shares(next, fewer, there));
+        ++fails;
+        if (value <= best) continue;
+        best = value;
+        here = std::move(there);
+        plane = next;
+        ++num_climbs;
+        fails = 0;
+      }
     }
+    if (num_climbs == 0) return;
+    IspStep step = matches(plane, samples);
+    const double value = merit(shares(plane, samples, step));
+    if (value <= candidate.merit + kDetection.fit.least_gain) return;
+    candidate.plane = plane;
+    candidate.merit = value;
+    candidate.last.last = std::move(step);
   }
-  if (num_climbs == 0) return;
-  IspStep step = matches(plane, samples);
-  const double value = merit(shares(plane, samples, step));
-  if (value <= candidate.merit + kDetection.fit.least_gain) return;
-  candidate.plane = plane;
-  candidate.merit = value;
-  candidate.last.last = std::move(step);
-}
-
-ReflectionPlane SurfaceFit::refined(const ReflectionPlane& plane, const std::vector<int>& samples,
-                                    int max_iterations) const {
-  IspOptions isp;
-  isp.update = options_.update;
-  isp.sigma = isp.final_sigma = cloud_.final_sigma;
-  isp.max_iterations = max_iterations;
-  return refineSymmetricPoints(cloud_.surface, samples, plane, isp).plane;
-}
-
-PlaneShares SurfaceFit::shares(const ReflectionPlane& plane, const std::vector<int>& samples,
-                               const IspStep& step) const {
-  PointEvidence evidence{std::vector<float>(samples.size()), std::vector<float>(samples.size())};
-  const Eigen::Vector3f n = plane.normal().cast<float>();
-  parallelRanges(samples.size(), 1024, options_.num_threads, [&](std::size_t begin, std::size_t end) {
-    const auto size = static_cast<Eigen::Index>(end - begin), first = static_cast<Eigen::Index>(begin);
-    Points reflected(3, size), normals(3, size);
-    for (Eigen::Index i = 0; i < size; ++i) {
-      const SurfaceSample& sample = cloud_.samples[samples[static_cast<std::size_t>(first + i)]];
-      reflected.col(i) = plane.reflect(sample.point.cast<double>()).cast<float>();
-      normals.col(i) = sample.normal - 2.0f * n.dot(sample.normal) * n;
-    }
-    const std::vector<int> closest(step.closest.begin() + first, step.closest.begin() + first + size);
-    const PointEvidence some = pointEvidence(reflected, normals, closest, cloud_.samples, cloud_.seen());
-    std::copy(some.support.begin(), some.support.end(), evidence.support.begin() + first);
-    std::copy(some.conflict.begin(), some.conflict.end(), evidence.conflict.begin() + first);
-  });
-  return {meanSupport(evidence.support), meanSupport(evidence.conflict), std::move(evidence.support)};
-}
-
-double SurfaceFit::relativeSupport(const PlaneShares& shares) const {
-  return std::min(1.0, shares.support / cloud_.baseline);
-}
-
-double SurfaceFit::merit(const PlaneShares& shares) const {
-  return seenSymmetry(relativeSupport(shares), shares.conflict);
-}
-
-PlaneEvidence SurfaceFit::evidence(double support, double conflict, double score) const {
-  PlaneEvidence evidence;
-  evidence.support = support;
-  evidence.conflict = conflict;
-  evidence.score = score;
-  evidence.baseline = cloud_.baseline;
-  evidence.spacing = cloud_.spacing;
-  evidence.roughness = cloud_.roughness;
-  evidence.kind = cloud_.kind();
-  return evidence;
-}
-
-namespace {
+};
 
 /// Planes of points that resolve no surface: the overlap of the points' density with its reflection.
 class VolumeFit : public PlaneFit {
 public:
-  /// \param cloud must outlive this object.
-  VolumeFit(const NormalizedCloud& cloud, const PlaneFitOptions& options);
+  VolumeFit(const NormalizedCloud& cloud, const DetectionOptions& options)
+      : PlaneFit(cloud, options),
+        surface_(cloud, options),
+        density_(cloud.points, kDetection.fit.bandwidth * cloud.spacing, options.num_threads) {}
 
-  void refine(std::vector<Candidate>& candidates, const RefinementStage& stage) const override;
+  void refine(std::vector<Candidate>& candidates, const RefinementStage& stage) const override {
+    const int num_samples =
+        std::min(kDetection.fit.sample_factor * stage.num_samples, options_.expert.num_refine_samples);
+    const Points samples = pointsAt(cloud_.points, drawSamples(cloud_.points.cols(), num_samples, options_.seed));
+    const int max_iterations = std::min(kDetection.fit.max_iterations, options_.expert.max_iterations);
+    parallelBlocks(candidates.size(), options_.num_threads, [&](std::size_t i) {
+      Candidate& candidate = candidates[i];
+      const PointDensity::Refined refined = density_.refine(samples, candidate.plane, max_iterations);
+      candidate.plane = refined.plane;
+      candidate.last.converged = refined.iterations < max_iterations;
+      candidate.iterations += refined.iterations;
+      candidate.merit = density_.overlap(samples, candidate.plane);
+    });
+  }
+
   void climb(std::vector<Candidate>&, const RefinementStage&) const override {}  ///< the density pulls at no plane
+
   ReflectionPlane refined(const ReflectionPlane& plane, const std::vector<int>& samples,
-                          int max_iterations) const override;
+                          int max_iterations) const override {
+    return density_.refine(pointsAt(cloud_.points, samples), plane, max_iterations).plane;
+  }
+
   using PlaneFit::shares;
-  PlaneShares shares(const ReflectionPlane& plane, const std::vector<int>& samples, const IspStep& step) const override;
-  double relativeSupport(const PlaneShares& shares) const override;
-  double merit(const PlaneShares& shares) const override;
-  PlaneEvidence evidence(double support, double conflict, double score) const override;
+  PlaneShares shares(const ReflectionPlane& plane, const std::vector<int>& samples,
+                     const IspStep& step) const override {
+    PlaneShares shares = surface_.shares(plane, samples, step);
+    shares.support = density_.overlap(pointsAt(cloud_.points, samples), plane);
+    shares.conflict = std::max(0.0, 1.0 - shares.support);
+    return shares;
+  }
+
+  double merit(const PlaneShares& shares) const override { return shares.support; }
 
 private:
-  PlaneFitOptions options_;
   SurfaceFit surface_;  ///< support of single points
   PointDensity density_;
 };
 
 }  // namespace
 
-VolumeFit::VolumeFit(const NormalizedCloud& cloud, const PlaneFitOptions& options)
-    : PlaneFit(cloud),
-      options_(options),
-      surface_(cloud, options),
-      density_(cloud.points, kDetection.fit.bandwidth * cloud.spacing, options.num_threads) {}
-
-void VolumeFit::refine(std::vector<Candidate>& candidates, const RefinementStage& stage) const {
-  const int num_samples = std::min(kDetection.fit.sample_factor * stage.num_samples, options_.max_samples);
-  const Points samples = pointsAt(cloud_.points, drawSamples(cloud_.points.cols(), num_samples, options_.seed));
-  const int max_iterations = std::min(kDetection.fit.max_iterations, options_.max_iterations);
-  parallelBlocks(candidates.size(), options_.num_threads, [&](std::size_t i) {
-    Candidate& candidate = candidates[i];
-    const PointDensity::Refined refined = density_.refine(samples, candidate.plane, max_iterations);
-    candidate.plane = refined.plane;
-    candidate.last.converged = refined.iterations < max_iterations;
-    candidate.iterations += refined.iterations;
-    candidate.merit = density_.overlap(samples, candidate.plane);
-  });
-}
-
-ReflectionPlane VolumeFit::refined(const ReflectionPlane& plane, const std::vector<int>& samples,
-                                   int max_iterations) const {
-  return density_.refine(pointsAt(cloud_.points, samples), plane, max_iterations).plane;
-}
-
-PlaneShares VolumeFit::shares(const ReflectionPlane& plane, const std::vector<int>& samples,
-                              const IspStep& step) const {
-  PlaneShares shares = surface_.shares(plane, samples, step);
-  shares.support = density_.overlap(pointsAt(cloud_.points, samples), plane);
-  shares.conflict = std::max(0.0, 1.0 - shares.support);
-  return shares;
-}
-
-double VolumeFit::relativeSupport(const PlaneShares& shares) const {
-  return std::min(1.0, shares.support);
-}
-
-double VolumeFit::merit(const PlaneShares& shares) const {
-  return shares.support;
-}
-
-PlaneEvidence VolumeFit::evidence(double support, double conflict, double score) const {
-  PlaneEvidence evidence = surface_.evidence(support, conflict, score);
-  evidence.baseline = 1.0;
-  return evidence;
-}
-
-std::unique_ptr<PlaneFit> makePlaneFit(const NormalizedCloud& cloud, const PlaneFitOptions& options) {
+std::unique_ptr<PlaneFit> makePlaneFit(const NormalizedCloud& cloud, const DetectionOptions& options) {
   if (cloud.kind() == CloudKind::Volume) return std::make_unique<VolumeFit>(cloud, options);
   return std::make_unique<SurfaceFit>(cloud, options);
 }
 
 std::vector<float> surfaceSupport(const NormalizedCloud& cloud, const ReflectionPlane& plane,
-                                  const PlaneFitOptions& options) {
-  const SurfaceFit fit(cloud, options);
-  const std::vector<int> all = allOf(cloud.points.cols());
-  return fit.shares(plane, all, fit.matches(plane, all)).point_support;
+                                  const DetectionOptions& options) {
+  return SurfaceFit(cloud, options).shares(plane, allOf(cloud.points.cols())).point_support;
 }
 
 }  // namespace pcl_symmetry

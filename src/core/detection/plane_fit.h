@@ -2,13 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdint>
 #include <memory>
 #include <vector>
 
+#include "core/detection/detection_rules.h"
 #include "core/detection/normalized_cloud.h"
-#include "core/evidence/plane_confidence.h"
-#include "pcl_symmetry/core/reflection_plane.h"
+#include "pcl_symmetry/core/detect_planes.h"
 
 namespace pcl_symmetry {
 
@@ -33,6 +32,12 @@ struct PlaneTolerance {
     return anySame(list, plane, [](const ReflectionPlane& entry) { return entry; });
   }
 };
+
+/// Limits within which two planes are one, normalized frame.
+inline constexpr PlaneTolerance kSamePlane{kDetection.stages.same_angle, kDetection.stages.same_offset};
+
+/// Limits within which two maxima share one basin of refinement, normalized frame.
+inline constexpr PlaneTolerance kSameBasin{kDetection.stages.same_basin_angle, kDetection.stages.same_basin_offset};
 
 /// What a set of samples says about one plane.
 struct PlaneShares {
@@ -99,41 +104,28 @@ public:
     return matchSymmetricPoints(cloud_.surface, samples, plane, cloud_.final_sigma, guesses);
   }
 
-  /// Support as a share of what the samples of a symmetry reach, in [0, 1].
-  virtual double relativeSupport(const PlaneShares& shares) const = 0;
-
   /// One number to rank candidates by: high support, low conflict; about 1 for a symmetry, and may exceed it.
   virtual double merit(const PlaneShares& shares) const = 0;
 
-  /// \param support,conflict mean shares.
-  /// \param score D of the plane.
-  virtual PlaneEvidence evidence(double support, double conflict, double score) const = 0;
+  /// Support that the samples of a symmetry reach.
+  double baseline() const { return cloud_.kind() == CloudKind::Volume ? 1.0 : cloud_.baseline; }
+
+  /// Support as a share of that, in [0, 1].
+  double relativeSupport(const PlaneShares& shares) const { return std::min(1.0, shares.support / baseline()); }
 
 protected:
-  explicit PlaneFit(const NormalizedCloud& cloud) : cloud_(cloud) {}
+  PlaneFit(const NormalizedCloud& cloud, const DetectionOptions& options) : cloud_(cloud), options_(options) {}
 
   const NormalizedCloud& cloud_;
-};
-
-struct PlaneFitOptions {
-  IspUpdate update;
-  int max_samples;     ///< of any stage
-  int max_iterations;  ///< of any stage
-  std::uint64_t seed;  ///< of the samples
-  int num_threads;     ///< 0 = one per core
+  const DetectionOptions& options_;
 };
 
 /// Support of each point by the surface, also where the points resolve none.
 std::vector<float> surfaceSupport(const NormalizedCloud& cloud, const ReflectionPlane& plane,
-                                  const PlaneFitOptions& options);
+                                  const DetectionOptions& options);
 
-/// What matchSymmetricPoints() finds, without weights: closest points and their distances only.
-/// \param guesses IspStep::closest of a plane nearby; null = not known.
-IspStep matchReflectionsOnly(const IspSurface& surface, const std::vector<int>& samples, const ReflectionPlane& plane,
-                             double sigma, const std::vector<int>* guesses);
-
-/// \param cloud must outlive the result.
+/// \param cloud,options must outlive the result.
 /// \return the form that fits the cloud.
-std::unique_ptr<PlaneFit> makePlaneFit(const NormalizedCloud& cloud, const PlaneFitOptions& options);
+std::unique_ptr<PlaneFit> makePlaneFit(const NormalizedCloud& cloud, const DetectionOptions& options);
 
 }  // namespace pcl_symmetry

@@ -1,12 +1,18 @@
 #include "core/detection/plane_lattice.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <complex>
+#include <iterator>
+#include <utility>
 
 #include "core/base/constants.h"
-#include "core/detection/detection_rules.h"
+#include "core/base/logistic.h"
+#include "core/base/median.h"
+#include "core/base/parallel.h"
 #include "core/detection/plane_families.h"
+#include "core/geometry/point_samples.h"
 
 namespace pcl_symmetry {
 
@@ -69,6 +75,211 @@ std::optional<PlaneLattice> findLattice(const std::vector<ReflectionPlane>& plan
       if (lattice && (!best || lattice->num_planes > best->num_planes)) best = lattice;
     }
   return best;
+}
+
+namespace {
+
+/// How strongly a frequency stands out of those on both sides of it.
+/// \param power of a frequency.
+template <typename Power>
+double aboveBeside(int m, const Power& power) {
+  std::vector<double> beside;
+  for (int k = std::max(1, m - kDetection.folds.compared_frequencies); k <= m + kDetection.folds.compared_frequencies;
+       ++k)
+    if (k != m) beside.push_back(power(k));
+  return power(m) / std::max(median(beside), 1e-30);
+}
+
+/// The folds of points about a line.
+class FoldSpectrum {
+public:
+  /// \param num_slabs across the line, each of which is cut into rings of its own.
+  FoldSpectrum(const Points& points, const Line3d& line, int num_slabs)
+      : squares_(kDetection.folds.most_frequency + kDetection.folds.compared_frequencies + 1, 0.0),
+        powers_(squares_.size(), 0.0) {
+    const Eigen::Vector3d u = line.direction().unitOrthogonal(), v = line.direction().cross(u);
+    std::vector<Place> places;
+    for (const int i : drawSamples(points.cols(), kDetection.folds.spectrum_samples, 1)) {
+      const Eigen::Vector3d x = points.col(i).cast<double>() - line.origin();
+      const std::complex<double> across(x.dot(u), x.dot(v));
+      const double distance = std::abs(across);
+      if (distance > 0.0) places.push_back({x.dot(line.direction()), distance, across / distance});
+    }
+    inParts(places.begin(), places.end(), num_slabs, &Place::height, [&](Places first, Places last) {
+      inParts(first, last, kDetection.folds.rings, &Place::distance,
+              [&](Places from, Places to) { addRing(from, to); });
+    });
+  }
+
+  /// What planes at the best angle explain of the density of all rings at a frequency; 4 by chance.
+  double power(int m) const { return 0.5 * (powers_[m] + std::abs(squares_[m])); }
+  /// By how much the frequency has more power than those beside it; 0 where that may be chance.
+  double prominence(int m) const {
+    const double now = aboveBeside(m, [this](int k) { return power(k); });
+    return power(m) >= kDetection.folds.least_power && now >= kDetection.folds.stands_out ? now : 0.0;
+  }
+  /// Angle of the normal of a plane, radians.
+  double phase(int m) const { return 0.5 * kPi + std::arg(squares_[m]) / (2.0 * m); }
+
+private:
+  /// Where a point lies about the line.
+  struct Place {
+    double height, distance;
+    std::complex<double> direction;
+  };
+  using Places = std::vector<Place>::iterator;
+
+  /// Sorts indices by a member, and calls for parts that have as many of them each.
+  template <typename Call>
+  static void inParts(Places first, Places last, int num_parts, double Place::*member, const Call& call) {
+    std::sort(first, last, [&](const Place& a, const Place& b) { return a.*member < b.*member; });
+    const std::ptrdiff_t size = last - first;
+    for (int part = 0; part < num_parts; ++part)
+      call(first + size * part / num_parts, first + size * (part + 1) / num_parts);
+  }
+
+  void addRing(Places first, Places last) {
+    std::vector<std::complex<double>> sums(squares_.size(), 0.0);
+    for (auto place = first; place != last; ++place) {
+      std::complex<double> turned = 1.0;
+      for (std::size_t m = 1; m < sums.size(); ++m) sums[m] += turned *= place->direction;
+    }
+    const auto count = static_cast<double>(last - first);
+    for (std::size_t m = 1; m < sums.size() && count > 0.0; ++m) {
+      squares_[m] += sums[m] * sums[m] / count;
+      powers_[m] += std::norm(sums[m]) / count;
+    }
+  }
+
+  std::vector<std::complex<double>> squares_;  ///< by frequency: sums over the rings
+  std::vector<double> powers_;                 ///< the same without their angles
+};
+
+/// Angle of the normal of a plane of a polygon by the mean of f at the reflected points: by their angle, planes through
+/// the line reflect the cloud best there.
+/// \return none where the frequency does not stand out of the mean.
+std::optional<double> phaseByReflections(const NormalizedCloud& cloud, const Line3d& line, int fold, int num_threads) {
+  const std::vector<int> samples = drawSamples(cloud.points.cols(), kDetection.folds.phase_samples, 1);
+  const PlaneLattice fan{line, kDetection.folds.angles, 0.0, 0};
+  std::vector<double> mean(kDetection.folds.angles, 0.0);
+  parallelBlocks(kDetection.folds.angles, num_threads, [&](std::size_t k) {
+    const ReflectionPlane plane = cloud.toInput(fan.plane(static_cast<double>(k)));
+    for (const int i : samples) mean[k] += cloud.edt(plane.reflect(cloud.toInput(cloud.points.col(i).cast<double>())));
+  });
+  const auto coefficient = [&](int m) {
+    std::complex<double> sum = 0.0;
+    for (int k = 0; k < kDetection.folds.angles; ++k)
+      sum += mean[k] * std::polar(1.0, 2.0 * kPi * static_cast<double>(m) * k / kDetection.folds.angles);
+    return sum;
+  };
+  const double prominence = aboveBeside(fold, [&](int m) { return std::norm(coefficient(m)); });
+  if (prominence < kDetection.folds.reflections_stand_out) return std::nullopt;
+  return std::arg(coefficient(fold)) / (2.0 * fold);
+}
+
+/// What several planes say together.
+double confidenceTogether(const std::vector<JudgedPlane>& judged, int first, int step) {
+  PlaneEvidence mean = judged[first].evidence;
+  // What differs from plane to plane of a cloud
+  static constexpr std::array kMeans{&PlaneEvidence::share,   &PlaneEvidence::double_share, &PlaneEvidence::hold,
+                                     &PlaneEvidence::support, &PlaneEvidence::conflict,     &PlaneEvidence::score,
+                                     &PlaneEvidence::unknown};
+  for (double PlaneEvidence::*member : kMeans) {
+    double sum = 0.0, count = 0.0;
+    for (std::size_t k = first; k < judged.size(); k += step) {
+      sum += judged[k].evidence.*member;
+      count += 1.0;
+    }
+    mean.*member = sum / count;
+  }
+  return planeConfidence(mean);
+}
+
+/// The least confidence of parts of a polygon that may be symmetries while the others are not.
+double leastTogether(const std::vector<JudgedPlane>& judged) {
+  double least = confidenceTogether(judged, 0, 1);
+  for (const int divisor : kDetection.folds.divisors)
+    if (judged.size() % divisor == 0 && judged.size() > static_cast<std::size_t>(divisor))
+      for (int first = 0; first < divisor; ++first) least = std::min(least, confidenceTogether(judged, first, divisor));
+  return least;
+}
+
+/// The line that two planes share, fitted to all planes that contain it.
+Line3d lineThrough(const std::vector<ReflectionPlane>& planes, const ReflectionPlane& a, const ReflectionPlane& b) {
+  const Line3d line = commonLine({a, b});
+  std::vector<ReflectionPlane> through;
+  std::copy_if(planes.begin(), planes.end(), std::back_inserter(through), [&](const ReflectionPlane& plane) {
+    return contains(plane, line, kDetection.families.contained_offset);
+  });
+  return commonLine(through.size() > 2 ? through : std::vector<ReflectionPlane>{a, b});
+}
+
+/// \param planes most confident first, input frame.
+std::optional<PlaneLattice> bestLattice(const std::vector<SymmetryPlane>& planes, const NormalizedCloud& cloud,
+                                        const Points& all, int num_threads) {
+  std::vector<ReflectionPlane> likely;
+  for (const SymmetryPlane& plane : planes)
+    if (const ReflectionPlane normalized = cloud.toNormalized(plane);
+        isDecided(plane) && !kSameBasin.anySame(likely, normalized))
+      likely.push_back(normalized);
+  const std::size_t size = std::min(likely.size(), kDetection.folds.most_line_pairs);
+  for (std::size_t i = 0; i < size; ++i)
+    for (std::size_t j = 0; j < i; ++j)
+      if (likely[i].angleTo(likely[j]) >= kDetection.folds.least_line_angle)
+        if (const auto lattice = latticeBySpectrum(cloud, all, lineThrough(likely, likely[i], likely[j]), num_threads))
+          return lattice;
+  return std::nullopt;
+}
+
+}  // namespace
+
+std::optional<PlaneLattice> latticeBySpectrum(const NormalizedCloud& cloud, const Points& all, const Line3d& line,
+                                              int num_threads) {
+  const FoldSpectrum spectrum(all, line, 1);
+  int fold = 0;
+  double most = 0.0;
+  for (int m = kDetection.folds.least_fold; m <= kDetection.folds.most_frequency; ++m) {
+    const double now = spectrum.prominence(m);
+    if (now <= most) continue;
+    most = now;
+    fold = m;
+  }
+  if (fold == 0) return std::nullopt;
+  // A polygon has the multiples of its frequency, too; and so have two planes across each other, with the frequency 2.
+  for (int m = 2; m < fold; ++m)
+    if (fold % m == 0 && spectrum.prominence(m) > 0.0) {
+      fold = m;
+      break;
+    }
+  if (fold < kDetection.folds.least_fold) return std::nullopt;
+  const std::optional<double> phase = phaseByReflections(cloud, line, fold, num_threads);
+  return PlaneLattice{line, fold, phase ? *phase : FoldSpectrum(all, line, kDetection.folds.slabs).phase(fold), 0};
+}
+
+PlanesAndPolygon withPolygon(std::vector<SymmetryPlane> planes, const NormalizedCloud& cloud, const Points& all,
+                             const PlaneDecision& decision, const DetectionOptions& options) {
+  if (!cloud.rules().has_polygons) return {std::move(planes), std::nullopt};
+  std::stable_sort(planes.begin(), planes.end(),
+                   [](const SymmetryPlane& a, const SymmetryPlane& b) { return a.confidence > b.confidence; });
+  const std::optional<PlaneLattice> lattice = bestLattice(planes, cloud, all, options.num_threads);
+  if (!lattice) return {std::move(planes), std::nullopt};
+  std::vector<Candidate> candidates;
+  for (int k = 0; k < lattice->fold; ++k) candidates.push_back({lattice->plane(k), false});
+  std::vector<JudgedPlane> judged = decision.judge(candidates);
+  const double together = withOdds(leastTogether(judged), kDetection.folds.odds_of_polygon);
+  if (together < options.min_confidence) return {std::move(planes), std::nullopt};
+  // All planes tell where the polygon lies: those that noise moved away are dropped.
+  planes.erase(std::remove_if(planes.begin(), planes.end(),
+                              [&](const SymmetryPlane& plane) {
+                                return contains(cloud.toNormalized(plane), lattice->line,
+                                                kDetection.families.contained_offset);
+                              }),
+               planes.end());
+  for (JudgedPlane& one : judged) {
+    decision.decideBy(std::max(one.plane.confidence, together), one.plane);
+    planes.push_back(std::move(one.plane));
+  }
+  return {std::move(planes), lattice};
 }
 
 }  // namespace pcl_symmetry

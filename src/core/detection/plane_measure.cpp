@@ -7,12 +7,11 @@
 #include "core/base/parallel.h"
 #include "core/detection/detection_rules.h"
 #include "core/evidence/evidence_rules.h"
-#include "core/evidence/plane_stiffness.h"
+#include "core/evidence/plane_motion.h"
 #include "core/evidence/plane_support.h"
-#include "core/evidence/surface_samples.h"
 #include "core/geometry/geometry_rules.h"
 #include "core/geometry/point_samples.h"
-#include "core/scan/sensor_noise.h"
+#include "core/scan/depth_filter.h"
 #include "core/scan/single_view.h"
 
 namespace pcl_symmetry {
@@ -73,41 +72,29 @@ std::vector<int> PlaneMeasure::samples() const {
                    : allOf(num_points);
 }
 
-PlaneRecord PlaneMeasure::of(const Candidate& candidate, const std::vector<int>& samples) const {
+JudgedPlane PlaneMeasure::of(const Candidate& candidate, const std::vector<int>& samples) const {
   // The last stage may have matched these very samples.
   const bool has_matches = candidate.last.last.closest.size() == samples.size();
   const IspStep step = has_matches ? candidate.last.last : fit_.matches(candidate.plane, samples);
-  PlaneRecord record = recordOf(candidate.plane, samples, step, 0.0);
-  record.iterations = candidate.iterations;
-  record.converged = candidate.last.converged;
-  return record;
+  JudgedPlane result = measured(candidate.plane, samples, step, 0.0);
+  result.plane.iterations = candidate.iterations;
+  result.plane.converged = candidate.last.converged;
+  return result;
 }
 
-PlaneRecord PlaneMeasure::of(const ReflectionPlane& plane, const std::vector<int>& samples, double rim) const {
-  return recordOf(plane, samples, fit_.matches(plane, samples), rim);
-}
-
-PlaneRecord PlaneMeasure::recordOf(const ReflectionPlane& plane, const std::vector<int>& samples, const IspStep& step,
-                                   double rim) const {
-  PlaneShares shares = fit_.shares(plane, samples, step);
-  const Agreement agreed = agreement(plane, reflected(plane, samples, step), step, rim);
-  PlaneRecord record;
-  record.plane = plane;
-  record.evidence = evidenceOf(shares.support, shares.conflict, cloud_.score(cloud_.toInput(plane).canonical()));
-  record.evidence.share = agreed.share;
-  record.evidence.double_share = agreed.double_share;
-  record.evidence.hold = agreed.hold;
-  record.evidence.unknown = agreed.unknown;
-  record.point_support = std::move(shares.point_support);
-  record.seen = cloud_.seen() ? std::min(1.0, shares.support + shares.conflict) : 1.0 - agreed.unknown;
-  record.told = agreed.told;
-  record.deviation = agreed.deviation;
-  record.residual = step.residual;
-  return record;
+JudgedPlane PlaneMeasure::of(const ReflectionPlane& plane, const std::vector<int>& samples, double rim) const {
+  return measured(plane, samples, fit_.matches(plane, samples), rim);
 }
 
 PlaneEvidence PlaneMeasure::evidenceOf(double support, double conflict, double score) const {
-  PlaneEvidence evidence = fit_.evidence(support, conflict, score);
+  PlaneEvidence evidence;
+  evidence.support = support;
+  evidence.conflict = conflict;
+  evidence.score = score;
+  evidence.baseline = fit_.baseline();
+  evidence.spacing = cloud_.spacing;
+  evidence.roughness = cloud_.roughness;
+  evidence.kind = cloud_.kind();
   evidence.tolerance = tolerance_;
   evidence.own_score = own_score_;
   evidence.flat = thinness_ == Thinness::Sheet;
@@ -131,26 +118,6 @@ PlaneMeasure::Reflected PlaneMeasure::reflected(const ReflectionPlane& plane, co
   return result;
 }
 
-Points PlaneMeasure::matchedNormals(const IspStep& step) const {
-  Points normals(3, static_cast<Eigen::Index>(step.closest.size()));
-  for (std::size_t i = 0; i < step.closest.size(); ++i)
-    normals.col(static_cast<Eigen::Index>(i)) = cloud_.geometry.normals.col(std::max(0, step.closest[i]));
-  return normals;
-}
-
-bool PlaneMeasure::isSeenEmpty(const Eigen::Vector3d& x, double rim) const {
-  const Visibility& visibility = *cloud_.visibility;
-  const double behind = visibility.depthBehind(x);
-  if (behind >= 0.0) return false;
-  // What a camera measured beside an object is off by its errors.
-  if (std::isfinite(behind)) rim = std::max(rim, resolution_);
-  if (rim <= 0.0) return true;
-  const Eigen::Vector3d ray = (x - visibility.viewpoint()).normalized(), u = ray.unitOrthogonal(), v = ray.cross(u);
-  for (const Eigen::Vector3d& aside : {u, v, Eigen::Vector3d(-u), Eigen::Vector3d(-v)})
-    if (visibility.depthBehind(x + rim * aside) >= 0.0) return false;
-  return true;
-}
-
 std::vector<float> PlaneMeasure::unknownMatches(const Reflected& reflected, const IspStep& step,
                                                 const std::vector<char>& matched, double offset_stiffness,
                                                 double rim) const {
@@ -160,7 +127,9 @@ std::vector<float> PlaneMeasure::unknownMatches(const Reflected& reflected, cons
     for (std::size_t i = 0; i < size; ++i)
       if (!matched[i]) {
         const Eigen::Vector3d x = reflected.points.col(i).cast<double>();
-        unknown[i] = isSeenEmpty(x, rim) ? 1.0f - emptiness(*cloud_.visibility, x) : 1.0f;
+        // What a camera measured beside an object is off by its errors.
+        const double beside = std::isfinite(cloud_.seen()->depthBehind(x)) ? std::max(rim, resolution_) : rim;
+        unknown[i] = isSeenEmpty(*cloud_.seen(), x, 0.0, beside) ? 1.0f - emptiness(*cloud_.seen(), x) : 1.0f;
       }
     return unknown;
   }
@@ -173,53 +142,68 @@ std::vector<float> PlaneMeasure::unknownMatches(const Reflected& reflected, cons
   return unknown;
 }
 
-PlaneMeasure::Agreement PlaneMeasure::agreement(const ReflectionPlane& plane, const Reflected& reflected,
-                                                const IspStep& step, double rim) const {
-  const std::size_t size = reflected.distances.size();
-  const std::vector<float> of_halves = halves_ ? halves_->reflectedDistances(plane) : std::vector<float>();
-  const std::vector<float> moved = halves_ ? of_halves : movedOnly(reflected.distances, plane, reflected.points);
+JudgedPlane PlaneMeasure::measured(const ReflectionPlane& plane, const std::vector<int>& samples, const IspStep& step,
+                                   double rim) const {
+  const Reflected image = reflected(plane, samples, step);
+  const std::size_t size = samples.size();
+  std::vector<char> matched(size), is_moved(size);
+  std::vector<float> moved;  // distances of the samples whose position is informative: of scans those that move
+  for (std::size_t i = 0; i < size; ++i) {
+    matched[i] = image.distances[i] <= tolerance_;
+    const Eigen::Vector3d x = image.points.col(static_cast<Eigen::Index>(i)).cast<double>();
+    is_moved[i] =
+        !cloud_.seen() || 2.0 * std::abs(plane.signedDistance(x)) > kDetection.measure.moved_tolerances * tolerance_;
+    if (is_moved[i]) moved.push_back(image.distances[i]);
+  }
+  if (halves_) moved = halves_->reflectedDistances(plane);
   std::array<double, 2> within{};
   for (std::size_t k = 0; k < within.size() && !moved.empty(); ++k)
     within[k] = std::min(1.0, shareWithin(moved, kDetection.measure.tolerances[k] * tolerance_) / own_shares_[k]);
-  std::vector<char> matched(size);
-  for (std::size_t i = 0; i < size; ++i) matched[i] = reflected.distances[i] <= tolerance_;
   Eigen::Matrix3d stiffness = Eigen::Matrix3d::Zero();
   std::vector<float> unknown(size, 0.0f);
   if (cloud_.seen() || (cloud_.rules().may_lack_piece && within[0] < kDetection.measure.surely_whole)) {
-    stiffness = motionStiffness(reflected.points, matchedNormals(step), matched, plane);
-    unknown = unknownMatches(reflected, step, matched, offsetStiffness(stiffness), rim);
+    std::vector<int> matches = step.closest;
+    for (int& match : matches) match = std::max(0, match);
+    stiffness = motionStiffness(image.points, pointsAt(cloud_.geometry.normals, matches), matched, plane);
+    unknown = unknownMatches(image, step, matched, offsetStiffness(stiffness), rim);
   }
   std::vector<float> telling;  // distances of the informative samples
   std::size_t num_told = 0;
   std::array<double, 2> missing{};
   const double count = static_cast<double>(halves_ ? size : std::max<std::size_t>(1, moved.size()));
   for (std::size_t i = 0; i < size; ++i) {
-    if (unknown[i] < 0.5f) telling.push_back(reflected.distances[i]);
-    if (unknown[i] < 0.5f && moves(plane, reflected.points.col(static_cast<Eigen::Index>(i)))) ++num_told;
+    if (unknown[i] < 0.5f) telling.push_back(image.distances[i]);
+    num_told += unknown[i] < 0.5f && is_moved[i] ? 1 : 0;
     for (std::size_t k = 0; k < missing.size(); ++k)
-      if (reflected.distances[i] > kDetection.measure.tolerances[k] * tolerance_) missing[k] += unknown[i] / count;
+      if (image.distances[i] > kDetection.measure.tolerances[k] * tolerance_) missing[k] += unknown[i] / count;
   }
   const auto share = [&](std::size_t k) {
     const double good = within[k], bad = std::max(0.0, 1.0 - good - missing[k]);
     return good + bad > 0.0 ? good / (good + bad) : 0.0;
   };
+
+  PlaneShares shares = fit_.shares(plane, samples, step);
+  JudgedPlane result;
+  result.plane = SymmetryPlane(cloud_.toInput(plane));
+  PlaneEvidence& evidence = result.evidence;
+  evidence = evidenceOf(shares.support, shares.conflict, cloud_.score(result.plane));
+  evidence.double_share = share(1);
   // Within the tolerance is within twice of it; few points, whose own share is small, make more of the former.
-  const double told = cloud_.seen() ? static_cast<double>(num_told) / static_cast<double>(size) : 1.0;
-  return {std::min(share(0), share(1)),    share(1), secondStiffness(stiffness), meanSupport(unknown),
-          deviationOf(std::move(telling)), told};
-}
-
-bool PlaneMeasure::moves(const ReflectionPlane& plane, const Eigen::Vector3f& x) const {
-  return 2.0 * std::abs(plane.signedDistance(x.cast<double>())) > kDetection.measure.moved_tolerances * tolerance_;
-}
-
-std::vector<float> PlaneMeasure::movedOnly(const std::vector<float>& distances, const ReflectionPlane& plane,
-                                           const Points& reflected) const {
-  if (!cloud_.seen()) return distances;
-  std::vector<float> moved;
-  for (std::size_t i = 0; i < distances.size(); ++i)
-    if (moves(plane, reflected.col(static_cast<Eigen::Index>(i)))) moved.push_back(distances[i]);
-  return moved;
+  evidence.share = std::min(share(0), share(1));
+  evidence.hold = secondStiffness(stiffness);
+  evidence.unknown = meanSupport(unknown);
+  result.told = cloud_.seen() ? static_cast<double>(num_told) / static_cast<double>(size) : 1.0;
+  const ShareInterval interval = shareInterval(evidence);
+  result.plane.score = evidence.score;
+  result.plane.support = seenSupport(evidence);
+  result.plane.share = evidence.share;
+  result.plane.share_low = interval.low;
+  result.plane.share_high = interval.high;
+  result.plane.deviation = deviationOf(std::move(telling)) * cloud_.scale;
+  result.plane.seen = cloud_.seen() ? std::min(1.0, shares.support + shares.conflict) : 1.0 - evidence.unknown;
+  result.plane.point_support = std::move(shares.point_support);
+  result.plane.residual = step.residual * cloud_.scale;
+  return result;
 }
 
 double PlaneMeasure::deviationOf(std::vector<float> distances) const {

@@ -7,23 +7,17 @@
 
 #include "core/detection/plane_fit.h"
 #include "core/evidence/missing_surface.h"
-#include "core/evidence/split_surface.h"
+#include "core/evidence/surface_samples.h"
 #include "core/geometry/principal_axes.h"
 #include "pcl_symmetry/core/detect_planes.h"
 
 namespace pcl_symmetry {
 
-/// What was measured of one plane: the evidence that decisions are taken from, and what is reported beside it.
-struct PlaneRecord {
-  ReflectionPlane plane;             ///< normalized frame
-  PlaneEvidence evidence;            ///< all that a decision reads
-  std::vector<float> point_support;  ///< of each sample, in [0, 1]
-  double seen = 1.0;                 ///< SymmetryPlane::seen
-  double told = 1.0;                 ///< share of the samples that move and land where something is known
-  double deviation = 0.0;            ///< SymmetryPlane::deviation, normalized frame
-  double residual = 0.0;             ///< SymmetryPlane::residual, normalized frame
-  int iterations = 0;                ///< SymmetryPlane::iterations
-  bool converged = false;            ///< SymmetryPlane::converged
+/// A plane, and what its decision is taken from.
+struct JudgedPlane {
+  SymmetryPlane plane;     ///< input frame
+  PlaneEvidence evidence;  ///< all that the decision reads, beside told
+  double told = 1.0;       ///< share of the samples that move and land where something is known; 1 of whole clouds
 };
 
 /// Measures how much of a cloud planes map onto the cloud, and how much of it is uninformative. It decides nothing.
@@ -49,12 +43,13 @@ public:
 
   /// \param candidate after the last stage of refinement.
   /// \param samples what samples() returned.
-  PlaneRecord of(const Candidate& candidate, const std::vector<int>& samples) const;
+  /// \return without confidence and kind, as below.
+  JudgedPlane of(const Candidate& candidate, const std::vector<int>& samples) const;
 
   /// \param plane normalized frame.
   /// \param samples indices of points.
   /// \param rim how far beside a reflection the scanner must have seen nothing, too, for the reflection to contradict.
-  PlaneRecord of(const ReflectionPlane& plane, const std::vector<int>& samples, double rim = 0.0) const;
+  JudgedPlane of(const ReflectionPlane& plane, const std::vector<int>& samples, double rim = 0.0) const;
 
   /// Evidence of the cloud; fields of the plane beyond support, conflict and D keep their defaults.
   PlaneEvidence evidenceOf(double support, double conflict, double score) const;
@@ -78,34 +73,15 @@ private:
     Points points;
     std::vector<float> distances;
   };
-  /// What the reflections tell at the tolerance.
-  struct Agreement {
-    double share;         ///< within the tolerance, of the informative ones
-    double double_share;  ///< the same within twice the tolerance
-    double hold;          ///< how firmly those within the tolerance hold the plane; 0 where nothing is missing
-    double unknown;       ///< uninformative
-    double deviation;     ///< distance that 97 % of the informative ones stay within
-    double told;          ///< of all samples, those that move and land where something is known; 1 of whole clouds
-  };
-
   /// How near to a line points are one: where there are few, noise of the line is wider than what they resolve.
   double lineTolerance() const;
   double deviationOf(std::vector<float> distances) const;
   Reflected reflected(const ReflectionPlane& plane, const std::vector<int>& samples, const IspStep& step) const;
-  Points matchedNormals(const IspStep& step) const;
-  /// Whether the scanner saw that nothing is at a point, nor within \p rim beside it: the rim of what was seen is as
-  /// exact as its pixels.
-  bool isSeenEmpty(const Eigen::Vector3d& x, double rim) const;
   /// For each sample without a match, whether nothing is known of its counterpart, in [0, 1].
   std::vector<float> unknownMatches(const Reflected& reflected, const IspStep& step, const std::vector<char>& matched,
                                     double offset_stiffness, double rim) const;
-  Agreement agreement(const ReflectionPlane& plane, const Reflected& reflected, const IspStep& step, double rim) const;
-  /// Whether a plane moves a point, or its reflection, so far that this is informative.
-  bool moves(const ReflectionPlane& plane, const Eigen::Vector3f& x) const;
-  /// The distances of those whose position is informative: of scans without what the plane leaves in place.
-  std::vector<float> movedOnly(const std::vector<float>& distances, const ReflectionPlane& plane,
-                               const Points& reflected) const;
-  PlaneRecord recordOf(const ReflectionPlane& plane, const std::vector<int>& samples, const IspStep& step,
+  /// \param rim as above.
+  JudgedPlane measured(const ReflectionPlane& plane, const std::vector<int>& samples, const IspStep& step,
                        double rim) const;
   const SurfaceEnds& ends() const;
 

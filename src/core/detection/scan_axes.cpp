@@ -8,9 +8,6 @@
 #include "core/base/constants.h"
 #include "core/base/parallel.h"
 #include "core/base/random.h"
-#include "core/detection/detection_rules.h"
-#include "core/detection/turn_confidence.h"
-#include "core/detection/turn_evidence.h"
 #include "core/geometry/answerable_points.h"
 #include "core/geometry/directions.h"
 #include "core/geometry/distinct_points.h"
@@ -23,9 +20,36 @@ namespace pcl_symmetry {
 
 namespace {
 
-bool isOne(const Line3d& a, const Line3d& b, double angle, double offset) {
-  return std::abs(a.direction().dot(b.direction())) > std::cos(angle) &&
-         a.distance(b.projection(Eigen::Vector3d::Zero())) < offset;
+/// Two lines within both limits are one.
+struct LineTolerance {
+  double angle;   ///< radians
+  double offset;  ///< between the lines near the middle of the points, normalized frame
+
+  bool same(const Line3d& a, const Line3d& b) const {
+    return std::abs(a.direction().dot(b.direction())) > std::cos(angle) &&
+           a.distance(b.projection(Eigen::Vector3d::Zero())) < offset;
+  }
+
+  /// \param line_of takes an entry of the list to its line.
+  template <typename List, typename LineOf>
+  bool anySame(const List& list, const Line3d& line, const LineOf& line_of) const {
+    return std::any_of(list.begin(), list.end(), [&](const auto& entry) { return same(line_of(entry), line); });
+  }
+};
+
+constexpr LineTolerance kSameStart{kDetection.rotations.same_start_angle, kDetection.rotations.same_start_offset},
+    kSameCoarsely{kDetection.rotations.coarse_angle, kDetection.rotations.coarse_distance},
+    kSameFitted{kDetection.rotations.fitted_angle, kDetection.rotations.fitted_offset},
+    kSameAxis{kDetection.rotations.same_axis_angle, kDetection.rotations.same_axis_offset};
+
+/// A line that may be an axis, and the order that it may have; 0: any angle.
+struct AxisStart {
+  Line3d line;
+  int fold;
+};
+
+const Line3d& lineOf(const AxisStart& start) {
+  return start.line;
 }
 
 double missAt(const Line3d& line, const Eigen::Vector3d& x, const Eigen::Vector3d& normal) {
@@ -33,8 +57,8 @@ double missAt(const Line3d& line, const Eigen::Vector3d& x, const Eigen::Vector3
   return std::abs(velocity.dot(normal)) / std::max(kDetection.rotations.least_lever, velocity.norm());
 }
 
-}  // namespace
-
+/// Lines that many normals of a scan meet or are parallel to: the best of all, and the best of small draws, so that a
+/// base or a handle does not decide.
 std::vector<AxisStart> startsFromNormals(const NormalizedCloud& cloud, std::uint64_t seed, int num_threads) {
   const std::vector<int> samples = drawSamples(cloud.points.cols(), kDetection.rotations.normal_samples, seed);
   const Points& normals = cloud.geometry.normals;
@@ -69,14 +93,14 @@ std::vector<AxisStart> startsFromNormals(const NormalizedCloud& cloud, std::uint
     const std::vector<int> inliers = inliersOf(line);
     if (inliers.empty()) break;
     const Line3d fitted = axisOfNormals(cloud.points, normals, inliers);
-    const bool is_known = std::any_of(starts.begin(), starts.end(), [&](const AxisStart& other) {
-      return isOne(other.line, fitted, kDetection.rotations.same_start_angle, kDetection.rotations.same_start_offset);
-    });
-    if (!is_known && fitted.origin().norm() < 2.0) starts.push_back({fitted, 0});
+    if (!kSameStart.anySame(starts, fitted, lineOf) && fitted.origin().norm() < 2.0) starts.push_back({fitted, 0});
   }
   return starts;
 }
 
+/// Common lines of planes at an angle of k pi / n.
+/// \param planes normalized frame.
+/// \param max_fold greatest n, >= 2.
 std::vector<AxisStart> startsFromPlanes(const std::vector<ReflectionPlane>& planes, int max_fold) {
   std::vector<AxisStart> starts;
   for (std::size_t i = 0; i < planes.size(); ++i)
@@ -100,6 +124,7 @@ std::vector<AxisStart> startsFromPlanes(const std::vector<ReflectionPlane>& plan
   return starts;
 }
 
+/// Maxima of an axial transform with few bins and the free space of the scan.
 std::vector<AxisStart> startsFromTransform(const NormalizedCloud& cloud, std::uint64_t seed, int num_threads) {
   GaussianEdtOptions coarse;
   coarse.num_cells = kDetection.rotations.coarse_cells;
@@ -113,23 +138,16 @@ std::vector<AxisStart> startsFromTransform(const NormalizedCloud& cloud, std::ui
   const AxisGrid grid(kDetection.rotations.coarse_theta, kDetection.rotations.coarse_phi,
                       kDetection.rotations.coarse_offset, edt.center(), edt.radius());
   const AxisMap map = axialTransform(edt, grid, options, &*cloud.visibility);
-  std::vector<std::size_t> bins;  // a heap: the greatest first, of equal ones the one with the least index
+  std::vector<std::size_t> bins;
   for (std::size_t i = 0; i < map.greatest.size(); ++i)
     if (map.greatest[i] > 0.0f) bins.push_back(i);
-  const auto isBehind = [&](std::size_t a, std::size_t b) {
-    return map.greatest[a] < map.greatest[b] || (map.greatest[a] == map.greatest[b] && a > b);
-  };
-  std::make_heap(bins.begin(), bins.end(), isBehind);
+  std::stable_sort(bins.begin(), bins.end(),
+                   [&](std::size_t a, std::size_t b) { return map.greatest[a] > map.greatest[b]; });
   std::vector<AxisStart> starts;
-  while (!bins.empty() && starts.size() < kDetection.rotations.coarse_maxima) {
-    const std::size_t bin = bins.front();
-    std::pop_heap(bins.begin(), bins.end(), isBehind);
-    bins.pop_back();
+  for (const std::size_t bin : bins) {
+    if (starts.size() == kDetection.rotations.coarse_maxima) break;
     const Line3d line = grid.axis(grid.bin(bin));
-    const bool is_known = std::any_of(starts.begin(), starts.end(), [&](const AxisStart& other) {
-      return isOne(other.line, line, kDetection.rotations.coarse_angle, kDetection.rotations.coarse_distance);
-    });
-    if (is_known) continue;
+    if (kSameCoarsely.anySame(starts, line, lineOf)) continue;
     int fold = 2;
     for (std::size_t i = 0; i < map.folds.size(); ++i)
       if (map.values[i][bin] >= map.greatest[bin] - kDetection.rotations.coarse_equal)
@@ -139,47 +157,39 @@ std::vector<AxisStart> startsFromTransform(const NormalizedCloud& cloud, std::ui
   return starts;
 }
 
-namespace {
-
-/// The worst of several rotations, and the greatest share on the surface.
-struct TurnsTogether {
-  double on = 0.0, off = 0.0, far = 0.0;
-
-  void add(const TurnShares& shares) {
-    on = std::max(on, shares.on);
-    off = std::max(off, shares.off);
-    far = std::max(far, shares.far);
-  }
-};
+/// The worst of two rotations, and the greatest share on the surface.
+RotationShares together(const RotationShares& a, const RotationShares& b) {
+  return {std::max(a.on, b.on), std::max(a.off, b.off), std::max(a.far, b.far)};
+}
 
 /// Shares that rotations may throw into empty space, and far into it: beyond, a line is refused.
-struct TurnLimits {
+struct OffLimits {
   double off = 1.0, far = 1.0;
 
-  bool allow(const TurnsTogether& turns) const { return turns.off <= off && turns.far <= far; }
+  bool allow(const RotationShares& all) const { return all.off <= off && all.far <= far; }
 };
 
 /// \param limits where more is off the rest is left out.
 template <typename Shares>
-TurnsTogether roundTurns(const Shares& shares, const TurnLimits& limits = {}) {
-  TurnsTogether all;
-  for (int k = 1; k <= kDetection.rotations.round_turns && limits.allow(all); ++k)
-    all.add(shares(2.0 * kPi * goldenFraction(k)));
+RotationShares roundRotations(const Shares& shares, const OffLimits& limits = {}) {
+  RotationShares all;
+  for (int k = 1; k <= kDetection.rotations.round_rotations && limits.allow(all); ++k)
+    all = together(all, shares(2.0 * kPi * goldenFraction(k)));
   if (limits.allow(all))
-    all.on = 0.5 * (shares(kDetection.rotations.small_turn).on + shares(-kDetection.rotations.small_turn).on);
+    all.on = 0.5 * (shares(kDetection.rotations.small_angle).on + shares(-kDetection.rotations.small_angle).on);
   return all;
 }
 
 template <typename Shares>
-TurnsTogether turnsOfFold(const Shares& shares, int fold, double first, const TurnLimits& limits = {}) {
-  TurnsTogether all;
+RotationShares rotationsOfFold(const Shares& shares, int fold, double first, const OffLimits& limits = {}) {
+  RotationShares all;
   for (int k = 0; k < fold && limits.allow(all); ++k)
-    if (k + first > 0.0) all.add(shares(2.0 * kPi * (k + first) / fold));
+    if (k + first > 0.0) all = together(all, shares(2.0 * kPi * (k + first) / fold));
   return all;
 }
 
 /// What a line is, as far as one scan can tell.
-struct JudgedTurns {
+struct JudgedLine {
   Line3d line;
   SymmetryTurn turn;  ///< without a place
   double margin;      ///< marginOf()
@@ -188,49 +198,49 @@ struct JudgedTurns {
 class AxisJudge {
 public:
   /// \param most_fold of the rotations that are tried besides those by any angle.
-  AxisJudge(const TurnEvidence& evidence, int most_fold) : evidence_(evidence), most_fold_(most_fold) {}
+  AxisJudge(const RotationEvidence& evidence, int most_fold) : evidence_(evidence), most_fold_(most_fold) {}
 
   Line3d fitted(const AxisStart& start) const { return evidence_.refined(start.line, fitAngles(start.fold)); }
 
   /// The best rotations about a line.
-  std::optional<JudgedTurns> judged(const Line3d& line) const {
-    constexpr TurnLimits kRough{kDetection.rotations.rough_turns * kDetection.rotations.most_off,
-                                kDetection.rotations.rough_turns * kDetection.rotations.most_far};  // from both
+  std::optional<JudgedLine> judged(const Line3d& line) const {
+    constexpr OffLimits kRough{kDetection.rotations.rough_factor * kDetection.rotations.most_off,
+                               kDetection.rotations.rough_factor * kDetection.rotations.most_far};  // from both
     const auto roughly = [&](double angle) {
-      return evidence_.roughly(Eigen::Affine3d(turnAbout(line, angle)), kDetection.rotations.rough_slack, kRough.off,
+      return evidence_.roughly(Eigen::Affine3d(motionAbout(line, angle)), kDetection.rotations.rough_slack, kRough.off,
                                kRough.far);
     };
-    std::optional<JudgedTurns> best;
-    const auto take = [&](JudgedTurns&& turns) {
-      if (!best || turns.margin > best->margin) best = turns;
+    std::optional<JudgedLine> best;
+    const auto take = [&](const JudgedLine& judged) {
+      if (!best || judged.margin > best->margin) best = judged;
     };
-    if (kRough.allow(roundTurns(roughly, kRough))) take(exactly(line, 0));
+    if (kRough.allow(roundRotations(roughly, kRough))) take(exactly(line, 0));
     for (int fold = most_fold_; fold >= 2; --fold) {
       if (best && best->margin > 0.0) break;
-      if (kRough.allow(turnsOfFold(roughly, fold, 0.0, kRough))) take(exactly(line, fold));
+      if (kRough.allow(rotationsOfFold(roughly, fold, 0.0, kRough))) take(exactly(line, fold));
     }
     return best;
   }
 
-  JudgedTurns exactly(Line3d line, int fold) const {
+  JudgedLine exactly(Line3d line, int fold) const {
     line = evidence_.closelyRefined(line, fitAngles(fold));
-    const auto shares = [&](double angle) { return evidence_.exactly(Eigen::Affine3d(turnAbout(line, angle))); };
-    const TurnsTogether own = fold == 0 ? roundTurns(shares) : turnsOfFold(shares, fold, 0.0);
+    const auto shares = [&](double angle) { return evidence_.exactly(Eigen::Affine3d(motionAbout(line, angle))); };
+    const RotationShares own = fold == 0 ? roundRotations(shares) : rotationsOfFold(shares, fold, 0.0);
     SymmetryTurn turn{Eigen::Vector3d::Zero(), line.direction(), fold, 0.0, own.on, own.off, own.far, 0.0};
-    if (fold > 0) turn.halfway = turnsOfFold(shares, fold, 0.5).off;
+    if (fold > 0) turn.halfway = rotationsOfFold(shares, fold, 0.5).off;
     return {line, turn, marginOf(turn)};
   }
 
 private:
   static std::vector<double> fitAngles(int fold) {
     if (fold == 0)
-      return {kDetection.rotations.small_turn, -kDetection.rotations.small_turn, kDetection.rotations.larger_turn,
-              -kDetection.rotations.larger_turn};
+      return {kDetection.rotations.small_angle, -kDetection.rotations.small_angle, kDetection.rotations.larger_angle,
+              -kDetection.rotations.larger_angle};
     const double step = 2.0 * kPi / fold;
     return fold == 2 ? std::vector<double>{step} : std::vector<double>{step, -step};
   }
 
-  const TurnEvidence& evidence_;
+  const RotationEvidence& evidence_;
   int most_fold_;
 };
 
@@ -244,19 +254,11 @@ std::vector<ReflectionPlane> planesOfAxes(const std::vector<SymmetryPlane>& plan
   return found;
 }
 
-bool isNearly(const Line3d& a, const Line3d& b) {
-  return isOne(a, b, kDetection.rotations.fitted_angle, kDetection.rotations.fitted_offset);
-}
-
-bool isSameLine(const Line3d& a, const Line3d& b) {
-  return isOne(a, b, kDetection.rotations.same_turn_angle, kDetection.rotations.same_turn_offset);
-}
-
 }  // namespace
 
-std::vector<SymmetryTurn> scanAxes(const TurnEvidence& evidence, const std::vector<SymmetryPlane>& planes,
+std::vector<SymmetryTurn> scanAxes(const RotationEvidence& evidence, const std::vector<SymmetryPlane>& planes,
                                    const std::vector<SymmetryAxis>& axes, const DetectionOptions& options,
-                                   std::vector<JudgedTurn>* evidence_of_all) {
+                                   std::vector<JudgedRotation>* evidence_of_all) {
   const NormalizedCloud& cloud = evidence.cloud();
   std::vector<AxisStart> starts = startsFromNormals(cloud, options.seed, options.num_threads);
   const auto append = [&](const std::vector<AxisStart>& more) {
@@ -264,36 +266,34 @@ std::vector<SymmetryTurn> scanAxes(const TurnEvidence& evidence, const std::vect
   };
   for (const SymmetryAxis& axis : axes) starts.push_back({cloud.lineOf(axis), 0});
   if (options.folds) {
-    append(startsFromPlanes(planesOfAxes(planes, cloud), kDetection.rotations.most_turn_fold));
+    append(startsFromPlanes(planesOfAxes(planes, cloud), kDetection.rotations.most_order));
     append(startsFromTransform(cloud, options.seed, options.num_threads));
   }
-  const AxisJudge judge(evidence, options.folds ? kDetection.rotations.most_turn_fold : 1);
+  const AxisJudge judge(evidence, options.folds ? kDetection.rotations.most_order : 1);
   std::vector<Line3d> fitted(starts.size());
   parallelBlocks(starts.size(), options.num_threads, [&](std::size_t i) { fitted[i] = judge.fitted(starts[i]); });
   std::vector<Line3d> lines;
   for (const Line3d& line : fitted)
     if (line.direction().allFinite() && line.origin().allFinite() &&
-        std::none_of(lines.begin(), lines.end(), [&](const Line3d& other) { return isNearly(other, line); }))
+        !kSameFitted.anySame(lines, line, [](const Line3d& other) { return other; }))
       lines.push_back(line);
-  std::vector<std::optional<JudgedTurns>> judged(lines.size());
+  std::vector<std::optional<JudgedLine>> judged(lines.size());
   parallelBlocks(lines.size(), options.num_threads, [&](std::size_t i) { judged[i] = judge.judged(lines[i]); });
   std::stable_sort(judged.begin(), judged.end(),
                    [](const auto& a, const auto& b) { return a && (!b || a->margin > b->margin); });
-  std::vector<JudgedTurns> found;
-  for (const std::optional<JudgedTurns>& turns : judged) {
-    if (!turns || found.size() == kDetection.rotations.most_turns) break;
-    if (std::none_of(found.begin(), found.end(), [&](const JudgedTurns& o) { return isSameLine(o.line, turns->line); }))
-      found.push_back(*turns);
-  }
+  std::vector<Line3d> found;
   std::vector<SymmetryTurn> result;
-  for (JudgedTurns& turns : found) {
-    turns.turn.point = cloud.toInput(turns.line.projection(Eigen::Vector3d::Zero()));
-    result.push_back(turns.turn);
+  for (const std::optional<JudgedLine>& best : judged) {
+    if (!best || found.size() == kDetection.rotations.most_axes) break;
+    if (kSameAxis.anySame(found, best->line, [](const Line3d& other) { return other; })) continue;
+    found.push_back(best->line);
+    result.push_back(best->turn);
+    result.back().point = cloud.toInput(best->line.projection(Eigen::Vector3d::Zero()));
   }
   const double least = evidence_of_all ? 0.0 : options.min_possible;
-  const std::vector<TurnSigns> signs = turnSigns(evidence, result, least, options.num_threads);
+  const std::vector<RotationSigns> signs = rotationSigns(evidence, result, least, options.num_threads);
   for (std::size_t i = 0; i < result.size(); ++i) {
-    result[i].confidence = turnConfidence(result[i], signs[i]);
+    result[i].confidence = rotationConfidence(result[i], signs[i]);
     if (evidence_of_all) evidence_of_all->push_back({result[i], signs[i]});
   }
   result.erase(std::remove_if(result.begin(), result.end(),
@@ -304,25 +304,24 @@ std::vector<SymmetryTurn> scanAxes(const TurnEvidence& evidence, const std::vect
   return result;
 }
 
-std::vector<SymmetryTurn> turnsOfScan(const PointsRef& points, const GaussianEdt& edt, const Visibility& visibility,
-                                      const std::vector<SymmetryAxis>& axes, const DetectionOptions& options,
-                                      const MakeSearch& make_search) {
+std::vector<SymmetryTurn> rotationsOfScan(const PointsRef& points, const GaussianEdt& edt, const Visibility& visibility,
+                                          const std::vector<SymmetryAxis>& axes, const DetectionOptions& options,
+                                          const MakeSearch& make_search) {
   if (!whyUnanswerable(points).empty()) return {};
   const Points distinct = DistinctPoints(points).points;
-  const Points used =
-      pointsAt(distinct, drawSamples(distinct.cols(), kDetection.rotations.most_scan_turn_points, options.seed));
+  const Points used = pointsAt(distinct, drawSamples(distinct.cols(), kDetection.rotations.most_points, options.seed));
   const ClosestPointSearch::Ptr search = make_search ? inFrame(make_search(used), edt.center(), edt.radius()) : nullptr;
   const NormalizedCloud cloud(used, edt, search, &visibility, options.num_threads);
-  return scanAxes(TurnEvidence(cloud, options.tolerance * cloud.extent, options.seed), {}, axes, options);
+  return scanAxes(RotationEvidence(cloud, options.tolerance * cloud.extent, options.seed), {}, axes, options);
 }
 
-std::vector<SymmetryAxis> withRoundTurns(const TurnEvidence& evidence, std::vector<SymmetryAxis> axes,
-                                         const std::vector<SymmetryTurn>& turns, const DetectionOptions& options) {
+std::vector<SymmetryAxis> withRoundAxes(const RotationEvidence& evidence, std::vector<SymmetryAxis> axes,
+                                        const std::vector<SymmetryTurn>& turns, const DetectionOptions& options) {
   const NormalizedCloud& cloud = evidence.cloud();
   axes.erase(std::remove_if(axes.begin(), axes.end(),
                             [&](const SymmetryAxis& axis) {
-                              const TurnsTogether all = roundTurns([&](double angle) {
-                                return evidence.exactly(Eigen::Affine3d(turnAbout(cloud.lineOf(axis), angle)));
+                              const RotationShares all = roundRotations([&](double angle) {
+                                return evidence.exactly(Eigen::Affine3d(motionAbout(cloud.lineOf(axis), angle)));
                               });
                               return all.far > kDetection.rotations.most_round_far;
                             }),
@@ -333,7 +332,7 @@ std::vector<SymmetryAxis> withRoundTurns(const TurnEvidence& evidence, std::vect
         turn.off > kDetection.rotations.most_round_off || turn.far > kDetection.rotations.most_round_far;
     if (turn.fold != 0 || is_contradicted || turn.confidence < options.min_confidence) continue;
     const auto known = std::find_if(axes.begin(), axes.end(), [&](const SymmetryAxis& axis) {
-      return isSameLine(cloud.lineOf(axis), cloud.lineOf(turn));
+      return kSameAxis.same(cloud.lineOf(axis), cloud.lineOf(turn));
     });
     if (known != axes.end()) {
       known->point = turn.point;

@@ -184,7 +184,7 @@ void decideByUprightBox(const PointsRef& points, const Visibility& seen, const D
     found.best = plane;
   }
   if (!plane || plane->confidence < (is_sparse ? options.min_possible : options.min_confidence)) return;
-  plane->kind = kindOf(plane->confidence, options);
+  decideBy(plane->confidence, options, *plane);
   found.planes.insert(found.planes.begin(), std::move(*plane));
   found.best.reset();
 }

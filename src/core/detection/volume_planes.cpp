@@ -10,7 +10,8 @@
 #include "core/base/constants.h"
 #include "core/base/parallel.h"
 #include "core/base/stopwatch.h"
-#include "core/detection/plane_fit.h"
+#include "core/detection/plane_decision.h"
+#include "core/evidence/plane_motion.h"
 #include "core/geometry/directions.h"
 #include "core/geometry/principal_axes.h"
 #include "pcl_symmetry/core/planar_transform.h"
@@ -35,22 +36,6 @@ struct VolumeRules {
   double merge_offset = 0.04;  ///< ... than this share of the radius in offset, are one
 };
 constexpr VolumeRules kRules;
-
-/// A plane with a tangent frame: n and offsets are measured from a point of the body.
-struct Chart {
-  Chart(const ReflectionPlane& plane, const Eigen::Vector3d& center)
-      : n(plane.normal()), s(-plane.signedDistance(center)), u(n.unitOrthogonal()), v(n.cross(u)), pivot(center) {}
-
-  /// \param step radians about v and u, and input units along n.
-  ReflectionPlane moved(const Eigen::Vector3d& step) const {
-    const Eigen::Vector3d normal = (n + step[0] * u + step[1] * v).normalized();
-    return ReflectionPlane(normal, normal.dot(pivot) + s + step[2]);
-  }
-
-  Eigen::Vector3d n;
-  double s;
-  Eigen::Vector3d u, v, pivot;
-};
 
 /// What a plane does to a volume.
 struct Comparison {
@@ -126,7 +111,7 @@ public:
     SymmetryPlane result(start);
     double residual = compare(start, stride, false).residual;
     for (; result.iterations < max_iterations && !result.converged; ++result.iterations) {
-      const Chart chart(result, pivot_);
+      const PlaneChart chart(result, pivot_);
       const Comparison comparison = compare(result, stride, true, residual);
       Eigen::Vector3d step = comparison.step;
       step *=
@@ -173,7 +158,7 @@ private:
   }
 
   PairSums ofSlice(const ReflectionPlane& plane, int z, int stride, bool with_step, double residual) const {
-    const Chart chart(plane, pivot_);
+    const PlaneChart chart(plane, pivot_);
     const Eigen::Affine3d& T = f_.T_input_index();
     const Eigen::Affine3d image = T_index_input_ * plane.reflection() * T;  // from indices to indices
     const Eigen::Matrix3d to_input = T_index_input_.linear().transpose();   // of gradients
@@ -200,7 +185,7 @@ private:
         // The derivatives of f(x) - f(x - 2 (n.x - r) n) by angles about v and u and by r.
         const Eigen::Vector4d here = splineAt(index), there = splineAt(p);
         const Eigen::Vector3d g = to_input * there.head<3>(), from_pivot = T * index - pivot_;
-        const double d = chart.n.dot(from_pivot) - chart.s, along = g.dot(chart.n);
+        const double d = chart.n.dot(from_pivot) - chart.offset, along = g.dot(chart.n);
         const Eigen::Vector3d j(2.0 * (chart.u.dot(from_pivot) * along + d * g.dot(chart.u)),
                                 2.0 * (chart.v.dot(from_pivot) * along + d * g.dot(chart.v)), -2.0 * along);
         const Eigen::Vector3d slope = 0.5 * (here.head<3>() + image.linear().transpose() * there.head<3>());
@@ -328,10 +313,11 @@ Detection detectVolumePlanes(const ScalarGrid& input, const DetectionOptions& op
       plane.seen = comparison.seen;
       plane.residual = comparison.residual;
     }
+    DetectionOptions without_possible = options;  // a volume shows all
+    without_possible.min_possible = options.min_confidence;
     for (SymmetryPlane& plane : distinct(maxima)) {
-      plane.confidence = confidence(plane);
+      decideBy(confidence(plane), without_possible, plane);
       plane.share = plane.share_low = plane.share_high = plane.support;
-      plane.kind = plane.confidence >= options.min_confidence ? PlaneKind::Symmetry : PlaneKind::Approximate;
       if (options.approximate || plane.kind == PlaneKind::Symmetry) found.planes.push_back(plane);
     }
     found.timing_ms.emplace_back("refinement", watch.lap());

@@ -5,7 +5,7 @@
 namespace pcl_symmetry {
 
 /// What a cloud shows of an object. Evidence counts by other coefficients for each kind, and detection goes by other
-/// rules (core/detection/kind_rules.h).
+/// rules (core/detection/detection_rules.h).
 enum class CloudKind {
   Surface,  ///< the surface from all sides; a piece may be missing
   Scan,     ///< the surface seen from one viewpoint, or from a few

@@ -8,6 +8,7 @@
 #include "core/base/constants.h"
 #include "core/base/parallel.h"
 #include "core/evidence/evidence_rules.h"
+#include "core/evidence/plane_motion.h"
 
 namespace pcl_symmetry {
 
@@ -168,13 +169,8 @@ PointDensity::Refined PointDensity::refine(const PointsRef& samples, const Refle
   double best_value = overlap(samples, best.plane);
   const double step = kEvidence.step * bandwidth_ / extent_;  // radians; times the extent in offset
   for (; best.iterations < max_iterations; ++best.iterations) {
-    const Eigen::Vector3d n = best.plane.normal(), u = n.unitOrthogonal(), v = n.cross(u);
-    const double offset = best.plane.signedDistance(middle_);
-    const auto moved = [&](const Eigen::Vector3d& by) {
-      const Eigen::Vector3d normal = (n + by[0] * u + by[1] * v).normalized();
-      return ReflectionPlane(normal, normal.dot(middle_) - offset + by[2] * extent_);
-    };
-    const auto value = [&](const Eigen::Vector3d& by) { return overlap(samples, moved(by)); };
+    const PlaneChart chart(best.plane, middle_, extent_);
+    const auto value = [&](const Eigen::Vector3d& by) { return overlap(samples, chart.moved(by)); };
     Eigen::Vector3d by = Quadric(value, best_value, step).stepUp();
     if (!by.allFinite()) break;
     if (by.norm() > kEvidence.longest_step * step) by *= kEvidence.longest_step * step / by.norm();
@@ -184,7 +180,7 @@ PointDensity::Refined PointDensity::refine(const PointsRef& samples, const Refle
       next = value(by);
     }
     if (next < best_value) break;
-    best.plane = moved(by);
+    best.plane = chart.moved(by);
     best_value = next;
     if (by.norm() * extent_ < kEvidence.settled * bandwidth_) break;
   }

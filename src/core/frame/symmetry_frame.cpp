@@ -94,7 +94,7 @@ std::vector<SymmetryTurn> turnsAlong(const SymmetryFrame& frame, const PointsRef
     axes[k].point = frame.center;
     axes[k].direction = frame.axes.col(k);
   }
-  return turnsOfScan(points, edt, visibility, axes, detection, make_search);
+  return rotationsOfScan(points, edt, visibility, axes, detection, make_search);
 }
 
 /// The frame itself, then the others by falling probability.

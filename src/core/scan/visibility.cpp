@@ -11,7 +11,6 @@
 #include "core/base/check.h"
 #include "core/base/constants.h"
 #include "core/geometry/viewing_frame.h"
-#include "core/scan/picture_frame.h"
 #include "core/scan/range_image.h"
 
 namespace pcl_symmetry {

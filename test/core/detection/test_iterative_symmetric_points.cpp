@@ -5,7 +5,6 @@
 #include <numeric>
 #include <stdexcept>
 
-#include "core/detection/step_equations.h"
 #include "core/geometry/surface_normals.h"
 #include "pcl_symmetry/core/visibility.h"
 #include "shapes/shapes.h"
@@ -73,58 +72,6 @@ TEST(FitReflectionPlane, IgnoresPairsWithoutWeight) {
   EXPECT_LT(fitReflectionPlane(pairs.x, pairs.y, pairs.weights, {}).angleTo(plane), 1e-6);
   const std::vector<double> none(200, 0.0);
   EXPECT_EQ(fitReflectionPlane(pairs.x, pairs.y, none, plane).normal(), plane.normal());
-}
-
-/// Normal equations of pairs, one after the other, as they are stated.
-struct SinglePairs {
-  Eigen::Matrix3d h = Eigen::Matrix3d::Zero();
-  Eigen::Vector3d g = Eigen::Vector3d::Zero();
-
-  void add(const StepEquations& at, const PairBlock& block, int i) {
-    const auto column = [i](const PairBlock::Coordinates& of) { return Eigen::Vector3d(of[0][i], of[1][i], of[2][i]); };
-    const Eigen::Vector3d p = column(block.x) - at.middle, q = column(block.y) - at.middle;
-    const Eigen::Vector3d x_normal = column(block.x_normals), y_normal = column(block.y_normals);
-    const double height = at.n.dot(p) - at.offset;
-    const Eigen::Vector3d turned = x_normal - 2.0 * at.n.dot(x_normal) * at.n;
-    const double cosine = turned.dot(y_normal);
-    const Eigen::Vector3d m = (y_normal + (cosine < 0.0 ? -turned : turned)).normalized();
-    const double m_n = m.dot(at.n), weight = block.weights[i] * cosine * cosine;
-    const Eigen::Vector3d slope(-2.0 * (at.u.dot(p) * m_n + height * m.dot(at.u)),
-                                -2.0 * (at.v.dot(p) * m_n + height * m.dot(at.v)), 2.0 * at.extent * m_n);
-    h.selfadjointView<Eigen::Lower>().rankUpdate(slope, weight);
-    g += weight * m.dot(p - 2.0 * height * at.n - q) * slope;
-  }
-};
-
-TEST(StepEquations, OfABlockAreThoseOfItsPairs) {
-  RandomStream random(4);
-  for (const int size : {1, 7, 100, PairBlock::kMost}) {
-    PairBlock block;
-    block.size = size;
-    for (int i = 0; i < size; ++i) {
-      const Eigen::Vector3d x_normal = randomDirection(random), y_normal = randomDirection(random);
-      for (int k = 0; k < 3; ++k) {
-        block.x[k][i] = symmetric(random);
-        block.y[k][i] = symmetric(random);
-        block.x_normals[k][i] = x_normal[k];
-        block.y_normals[k][i] = y_normal[k];
-      }
-      block.weights[i] = i % 5 == 3 ? 0.0 : random.uniform();
-    }
-    StepEquations equations(randomPlane(random), {0.1, -0.2, 0.3}, 0.7);
-    SinglePairs single;
-    // Two blocks: sums go on.
-    for (int repeat = 0; repeat < 2; ++repeat) {
-      StepTerms terms;
-      equations.pointToPlane(block, terms);
-      equations.add(terms);
-      for (int i = 0; i < size; ++i) single.add(equations, block, i);
-    }
-    // A sum of 2 size terms is rounded by as many units of its least digit; Eigen adds in an order of its own.
-    const double rounding = 1e-15 * size * (single.h.norm() + single.g.norm());
-    EXPECT_LE((equations.h - single.h).norm(), rounding);
-    EXPECT_LE((equations.g - single.g).norm(), rounding);
-  }
 }
 
 /// A shape, its normals and its search.

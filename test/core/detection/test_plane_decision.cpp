@@ -7,7 +7,6 @@
 #include <memory>
 #include <optional>
 
-#include "core/detection/matched_region.h"
 #include "core/detection/part_search.h"
 #include "pcl_symmetry/core/detect_planes.h"
 #include "shapes/shapes.h"
@@ -18,7 +17,7 @@ namespace {
 using namespace pcl_symmetry;
 using namespace pcl_symmetry::test;
 
-TEST(PlaneJudge, OfAScanWhatStaysInPlaceSaysNothing) {
+TEST(PlaneDecision, OfAScanWhatStaysInPlaceSaysNothing) {
   // A wall with a block on it, seen from the front. The plane of the wall maps the wall onto itself, and the block to
   // where the wall hides all.
   Points points(3, 5000);
@@ -33,13 +32,11 @@ TEST(PlaneJudge, OfAScanWhatStaysInPlaceSaysNothing) {
   const DetectionOptions options;
   const GaussianEdt edt(points);
   const NormalizedCloud cloud(points, edt, nullptr, &*seen, 1);
-  const std::unique_ptr<PlaneFit> fit =
-      makePlaneFit(cloud, {options.expert.update, options.expert.num_refine_samples, options.expert.max_iterations,
-                           options.seed, options.num_threads});
+  const std::unique_ptr<PlaneFit> fit = makePlaneFit(cloud, options);
   std::vector<Candidate> candidates(2);
   candidates[0].plane = cloud.toNormalized(ReflectionPlane(Eigen::Vector3d::UnitZ(), 0.0));
   candidates[1].plane = cloud.toNormalized(ReflectionPlane(Eigen::Vector3d::UnitX(), 0.0));
-  const std::vector<JudgedPlane> judged = PlaneJudge(cloud, *fit, options).judgeWithEvidence(candidates);
+  const std::vector<JudgedPlane> judged = PlaneDecision(cloud, *fit, options).judge(candidates);
   EXPECT_LT(judged[0].evidence.share, 0.1);
   EXPECT_LT(judged[0].plane.confidence, 0.1);
   EXPECT_GT(judged[1].evidence.share, 0.97);
@@ -48,14 +45,13 @@ TEST(PlaneJudge, OfAScanWhatStaysInPlaceSaysNothing) {
 /// What regions and parts are searched on.
 struct SearchedCloud {
   explicit SearchedCloud(const Points& points)
-      : edt(points, {}),
-        cloud(points, edt, nullptr, nullptr, 1),
-        fit(makePlaneFit(cloud, {IspUpdate::PointToPlane, 10'000, 30, 1, 1})) {}
+      : edt(points, {}), cloud(points, edt, nullptr, nullptr, 1), fit(makePlaneFit(cloud, options)) {}
 
   MatchedRegion region(const ReflectionPlane& plane) const {
-    return MatchedRegions(cloud, *fit, 1, 1).largest(cloud.toNormalized(plane));
+    return MatchedRegions(cloud, *fit, options).largest(cloud.toNormalized(plane));
   }
 
+  const DetectionOptions options;
   GaussianEdt edt;
   NormalizedCloud cloud;
   std::unique_ptr<PlaneFit> fit;
@@ -85,7 +81,9 @@ TEST(SymmetricParts, AreTheSameForAnyNumberOfThreads) {
   const TwoBoxes boxes;
   const SearchedCloud searched(boxes.points);
   compareThreads([&](int num_threads) {
-    const auto parts = findSymmetricParts(searched.cloud, *searched.fit, {IspUpdate::PointToPlane, 1, num_threads});
+    DetectionOptions options;
+    options.num_threads = num_threads;
+    const auto parts = findSymmetricParts(searched.cloud, *searched.fit, options);
     return valuesOf(
         parts, [](const SymmetricPart& part) { return part.plane.normal(); }, &SymmetricPart::points);
   });

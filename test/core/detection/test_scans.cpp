@@ -13,9 +13,7 @@
 #include "core/base/constants.h"
 #include "core/base/random.h"
 #include "core/detection/plane_decision.h"
-#include "core/detection/plane_fit.h"
 #include "core/detection/scan_axes.h"
-#include "core/detection/turn_confidence.h"
 #include "core/detection/upright_box.h"
 #include "pcl_symmetry/core/detect_planes.h"
 #include "pcl_symmetry/core/visibility.h"
@@ -155,9 +153,9 @@ TEST(StandingObject, SlantedPlanesAreDoubtedAndGoBehind) {
   DetectionOptions options;
   const auto doubted = [&](const Visibility& seen) {
     const NormalizedCloud cloud(points, edt, nullptr, &seen, 1);
-    const auto fit = makePlaneFit(cloud, {IspUpdate::PointToPlane, 100, 1, 1, 1});
+    const auto fit = makePlaneFit(cloud, options);
     std::vector<SymmetryPlane> planes = {planeAt(40.0, 0.0, 0.95), planeAt(90.0, 0.0, 0.7), planeAt(30.0, 0.0, 0.55)};
-    PlaneJudge(cloud, *fit, options).decision.doubtSlanted(planes);
+    PlaneDecision(cloud, *fit, options).doubtSlanted(planes);
     return planes;
   };
   const Visibility on_table = seenFromAbove(points).withSupport(kTable, 0.0);
@@ -244,8 +242,8 @@ SymmetryTurn turnOf(int fold, double support, double off, double far, double hal
 }
 
 /// What confirms a half turn.
-TurnSigns clearSigns() {
-  TurnSigns signs;
+RotationSigns clearSigns() {
+  RotationSigns signs;
   signs.grown = 1.0;
   signs.hold = 0.1;
   signs.planes_off = 0.0;
@@ -253,8 +251,8 @@ TurnSigns clearSigns() {
 }
 
 double confidenceOf(int fold, double support, double off, double far, double halfway,
-                    const TurnSigns& signs = clearSigns()) {
-  return turnConfidence(turnOf(fold, support, off, far, halfway), signs);
+                    const RotationSigns& signs = clearSigns()) {
+  return rotationConfidence(turnOf(fold, support, off, far, halfway), signs);
 }
 
 TEST(TurnConfidence, FallsWithWhatLandsInEmptySpaceAndGrowsWithWhatLandsOnTheSurface) {
@@ -270,14 +268,16 @@ TEST(TurnConfidence, FallsWithWhatLandsInEmptySpaceAndGrowsWithWhatLandsOnTheSur
 TEST(TurnConfidence, OfAHalfTurnFallsWithEachSignAgainstIt) {
   const double clear = confidenceOf(2, 0.9, 0.0, 0.0, 0.4);
   // Each sign alone, from clear to clearly against.
-  const std::array<std::pair<double TurnSigns::*, double>, 4> against{
-      {{&TurnSigns::grown, 1.5}, {&TurnSigns::hold, 1e-9}, {&TurnSigns::planes_off, 0.3}, {&TurnSigns::beside, 1.0}}};
+  const std::array<std::pair<double RotationSigns::*, double>, 4> against{{{&RotationSigns::grown, 1.5},
+                                                                           {&RotationSigns::hold, 1e-9},
+                                                                           {&RotationSigns::planes_off, 0.3},
+                                                                           {&RotationSigns::beside, 1.0}}};
   for (std::size_t k = 0; k < against.size(); ++k) {
     const auto [sign, worst] = against[k];
     const double best = clearSigns().*sign;
     double last = clear;
     for (int step = 1; step <= 5; ++step) {
-      TurnSigns signs = clearSigns();
+      RotationSigns signs = clearSigns();
       signs.*sign = best + (worst - best) * step / 5;
       const double confidence = confidenceOf(2, 0.9, 0.0, 0.0, 0.4, signs);
       EXPECT_LE(confidence, last) << "sign " << k << ", step " << step;
@@ -303,7 +303,7 @@ struct Scanned {
   SymmetryTurn turn(const Eigen::Vector3d& point, const Eigen::Vector3d& direction) const {
     SymmetryTurn turn{point, direction.normalized()};
     turn.fold = 2;
-    const TurnShares shares = evidence.exactly(Eigen::Affine3d(turnAbout(lineOf(turn), kPi)));
+    const RotationShares shares = evidence.exactly(Eigen::Affine3d(motionAbout(lineOf(turn), kPi)));
     turn.support = shares.on;
     turn.off = shares.off;
     turn.far = shares.far;
@@ -317,16 +317,16 @@ struct Scanned {
   SeenFromOneSide scan;
   GaussianEdt edt;
   NormalizedCloud cloud;
-  TurnEvidence evidence;
+  RotationEvidence evidence;
 };
 
 const Eigen::Vector3d kCorner(2.0, 3.0, 5.0);
 
-TEST(TurnSigns, AHalfTurnOfABoxHasPlanesAndStaysInItsPlace) {
+TEST(RotationSigns, AHalfTurnOfABoxHasPlanesAndStaysInItsPlace) {
   const Scanned scanned(box(), kCorner);
   const SymmetryTurn right = scanned.turn(Eigen::Vector3d::Zero(), Eigen::Vector3d::UnitZ());
   const SymmetryTurn wrong = scanned.turn({0.5, 0.0, 0.0}, {0.3, 0.0, 1.0});
-  const std::vector<TurnSigns> signs = turnSigns(scanned.evidence, {right, wrong});
+  const std::vector<RotationSigns> signs = rotationSigns(scanned.evidence, {right, wrong});
   ASSERT_EQ(signs.size(), 2u);
   EXPECT_LT(signs[0].planes_off, 0.02);
   EXPECT_GT(signs[1].planes_off, 0.1);
@@ -336,24 +336,24 @@ TEST(TurnSigns, AHalfTurnOfABoxHasPlanesAndStaysInItsPlace) {
   EXPECT_EQ(signs[0].beside, 0.0);
   EXPECT_EQ(signs[1].beside, 1.0);
   // A turn that the other signs leave too little confidence is not asked for planes.
-  const std::vector<TurnSigns> few = turnSigns(scanned.evidence, {right, wrong}, 0.2);
+  const std::vector<RotationSigns> few = rotationSigns(scanned.evidence, {right, wrong}, 0.2);
   EXPECT_EQ(few[0].planes_off, signs[0].planes_off);
   EXPECT_EQ(few[1].planes_off, 0.0);
-  EXPECT_LT(turnConfidence(wrong, few[1]), 0.2);
+  EXPECT_LT(rotationConfidence(wrong, few[1]), 0.2);
 }
 
-TEST(TurnSigns, AFlatSideHoldsNoLineAndABoxDoes) {
+TEST(RotationSigns, AFlatSideHoldsNoLineAndABoxDoes) {
   const Scanned flat(sheetShape(1.0, 0.7), {0.3, 0.5, 5.0});
   const SymmetryTurn over = flat.turn(Eigen::Vector3d::Zero(), Eigen::Vector3d::UnitX());
   EXPECT_GT(over.support, 0.95) << "the shares alone take the lower side for the upper one";
   const auto hold = [](const Scanned& scanned, const Eigen::Vector3d& direction) {
-    return turnSigns(scanned.evidence, {scanned.turn(Eigen::Vector3d::Zero(), direction)})[0].hold;
+    return rotationSigns(scanned.evidence, {scanned.turn(Eigen::Vector3d::Zero(), direction)})[0].hold;
   };
   EXPECT_LT(hold(flat, Eigen::Vector3d::UnitX()), 1e-3) << "it slides both ways along itself";
   EXPECT_GT(hold(Scanned(box(), kCorner), Eigen::Vector3d::UnitZ()), 1e-2);
 }
 
-TEST(TurnEvidence, ALineBesideTheAxisComesBackToIt) {
+TEST(RotationEvidence, ALineBesideTheAxisComesBackToIt) {
   for (const Eigen::Vector3d& viewpoint : {kCorner, Eigen::Vector3d(5.0, 1.0, 3.0), Eigen::Vector3d(1.0, -2.0, 5.0)}) {
     const Scanned scanned(box(), viewpoint);
     const SymmetryTurn beside = scanned.turn({0.03, -0.03, 0.0}, {0.03, 0.02, 1.0});
@@ -406,13 +406,13 @@ TEST(ScanAxes, ACupHasAnAxisUnlessAHandleIsInSight) {
 TEST(ScanAxes, AreFoundWithoutPlanesToo) {
   const SeenFromOneSide scan = seenFrom(prismShape(6, 0.5), {3.0, 4.0, 5.0});
   const GaussianEdt edt(scan.points);
-  const std::vector<SymmetryTurn> turns = turnsOfScan(scan.points, edt, *scan.seen, {}, {});
+  const std::vector<SymmetryTurn> turns = rotationsOfScan(scan.points, edt, *scan.seen, {}, {});
   ASSERT_FALSE(turns.empty());
   EXPECT_EQ(turns.front().fold, 6);
   EXPECT_GT(turns.front().confidence, 0.5);
   EXPECT_GT(std::abs(turns.front().direction.z()), std::cos(1.0 * kDegree));
   const Points few = scan.points.leftCols(5);
-  EXPECT_TRUE(turnsOfScan(few, GaussianEdt(few), *scan.seen, {}, {}).empty()) << "no answer";
+  EXPECT_TRUE(rotationsOfScan(few, GaussianEdt(few), *scan.seen, {}, {}).empty()) << "no answer";
 }
 
 TEST(ScanAxes, ThreadsDoNotMatterAndTurnsCanBeLeftOut) {

@@ -8,10 +8,8 @@
 #include <numeric>
 
 #include "core/base/constants.h"
-#include "core/evidence/cut_planes.h"
 #include "core/evidence/plane_support.h"
 #include "core/evidence/point_density.h"
-#include "core/evidence/split_surface.h"
 #include "core/evidence/surface_samples.h"
 #include "core/geometry/open_borders.h"
 #include "core/geometry/point_samples.h"

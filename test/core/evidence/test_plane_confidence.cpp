@@ -11,7 +11,7 @@
 
 #include "core/base/constants.h"
 #include "core/base/random.h"
-#include "core/evidence/plane_stiffness.h"
+#include "core/evidence/plane_motion.h"
 #include "core/evidence/plane_support.h"
 #include "shapes/shapes.h"
 

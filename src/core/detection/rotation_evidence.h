@@ -8,17 +8,18 @@
 
 #include "core/detection/detection_rules.h"
 #include "core/detection/normalized_cloud.h"
+#include "core/scan/single_view.h"
 #include "pcl_symmetry/core/detect_planes.h"
 #include "pcl_symmetry/core/reflection_plane.h"
 
 namespace pcl_symmetry {
 
 /// The least margin to a limit, >= 0 where all are kept: by it the orders of a line and the lines are compared. What is
-/// reported is turnConfidence(), which is fitted to lines that were chosen so.
+/// reported is rotationConfidence(), which is fitted to lines that were chosen so.
 /// \param turn with the shares that were seen.
 inline double marginOf(const SymmetryTurn& turn) {
   const double least_on = turn.fold == 0   ? kDetection.rotations.round_on
-                          : turn.fold == 2 ? kDetection.rotations.half_turn_on
+                          : turn.fold == 2 ? kDetection.rotations.twofold_on
                                            : kDetection.rotations.fold_on;
   const double most_off = turn.fold == 0 ? kDetection.rotations.most_round_off : kDetection.rotations.most_off,
                most_far = turn.fold == 0 ? kDetection.rotations.most_round_far : kDetection.rotations.most_far;
@@ -28,29 +29,29 @@ inline double marginOf(const SymmetryTurn& turn) {
 }
 
 /// What a scan tells about one rotation about a line, shares of the points seen. The rest lands where nothing was seen.
-struct TurnShares {
+struct RotationShares {
   double on = 0.0;   ///< lands within the tolerance of the surface seen
   double off = 0.0;  ///< lands where the scanner saw that there is nothing, beyond the tolerance
   double far = 0.0;  ///< the same, beyond ten tolerances: a handle, not a dent
 };
 
 /// The rotation about a line by an angle in radians.
-Eigen::Isometry3d turnAbout(const Line3d& line, double angle);
+Eigen::Isometry3d motionAbout(const Line3d& line, double angle);
 
 /// Judges rotations by what a scanner saw: the surface, and the space in front of it. Beyond the paper (Section 6).
-class TurnEvidence {
+class RotationEvidence {
 public:
   /// \param cloud of a scan; must outlive this.
   /// \param tolerance normalized frame.
-  TurnEvidence(const NormalizedCloud& cloud, double tolerance, std::uint64_t seed);
+  RotationEvidence(const NormalizedCloud& cloud, double tolerance, std::uint64_t seed);
 
   /// By distances that the EDT tells, of a few points: for screening.
   /// \param slack tolerances.
   /// \param most_off,most_far shares beyond which the rest of the points is left out.
-  TurnShares roughly(const Eigen::Affine3d& motion, double slack, double most_off, double most_far) const;
+  RotationShares roughly(const Eigen::Affine3d& motion, double slack, double most_off, double most_far) const;
 
   /// By distances from the surface.
-  TurnShares exactly(const Eigen::Affine3d& motion) const;
+  RotationShares exactly(const Eigen::Affine3d& motion) const;
 
   /// How fast the match of a rotation is lost as the line moves: second smallest eigenvalue of its stiffness, point to
   /// plane, under two tilts and two shifts; mean over the points, radii. The smallest is small for all that slides.
@@ -88,7 +89,10 @@ private:
                 std::vector<int>& closest, Pulls& pulls) const;
   Line3d fitted(const Line3d& start, const std::vector<double>& angles, const std::vector<int>& samples,
                 const std::array<double, 6>& widths) const;
-  bool isSeenEmpty(const Eigen::Vector3d& x) const;
+  /// The rim of what was seen is as exact as its pixels.
+  bool isEmpty(const Eigen::Vector3d& x) const {
+    return isSeenEmpty(*cloud_.visibility, x, tolerance_, std::max(tolerance_, cloud_.spacing));
+  }
 
   const NormalizedCloud& cloud_;
   double tolerance_;
@@ -97,5 +101,46 @@ private:
   std::vector<int> samples_, few_samples_;
   Points facing_;  ///< normals, toward the scanner
 };
+
+/// What a scan tells about a twofold rotation besides the shares of SymmetryTurn: most of what it maps is hidden, and a
+/// flat side that lands on itself confirms little.
+struct RotationSigns {
+  double grown = 1.0;  ///< extent of the points and their images, in extents of the points; >= 1
+  double hold = 1.0;   ///< RotationEvidence::hold()
+  /// Least, over pairs of perpendicular planes through the line, of the greater share of the points that one of the two
+  /// reflects into free space: most objects with a twofold axis have such planes.
+  double planes_off = 0.0;
+  /// 1 if a rotation of the same scan fits better, whose line it does not cross at a right angle as twofold axes of
+  /// prisms do.
+  double beside = 0.0;
+};
+
+/// A rotation that was judged, whatever its confidence.
+struct JudgedRotation {
+  SymmetryTurn turn;  ///< input frame
+  RotationSigns signs;
+};
+
+/// \param turns of one scan, input frame, with the shares that were seen.
+/// \param min_confidence planes are not looked for where the other signs leave a rotation less, see rotationConfidence().
+/// \param num_threads 0 = one per core.
+/// \return one each; other rotations than twofold ones have the defaults.
+std::vector<RotationSigns> rotationSigns(const RotationEvidence& evidence, const std::vector<SymmetryTurn>& turns,
+                                         double min_confidence = 0.0, int num_threads = 1);
+
+/// Rotations whose confidences have numbers of their own: a twofold one hides most of its evidence.
+enum class RotationKind { AnyAngle, Half, Folds };
+
+RotationKind kindOf(const SymmetryTurn& turn);
+
+/// Terms of the log odds that rotations which a scan shows are symmetries of the whole object; the first is 1. The
+/// numbers that they are multiplied with are fitted by test/benchmark/fit_turns.py.
+/// \param turn with the shares that were seen.
+std::vector<double> rotationOddsTerms(const SymmetryTurn& turn, const RotationSigns& signs);
+
+/// Probability that the rotations map at least 90 % of the whole surface to within 1 % of the diameter of the surface,
+/// and all but 1.25 % to within ten times that: the limits of ObjectSymmetryOptions.
+/// \param turn with the shares that were seen.
+double rotationConfidence(const SymmetryTurn& turn, const RotationSigns& signs);
 
 }  // namespace pcl_symmetry

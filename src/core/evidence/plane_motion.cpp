@@ -1,4 +1,4 @@
-#include "core/evidence/plane_stiffness.h"
+#include "core/evidence/plane_motion.h"
 
 #include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
@@ -7,6 +7,19 @@
 #include "core/evidence/evidence_rules.h"
 
 namespace pcl_symmetry {
+
+PlaneChart::PlaneChart(const ReflectionPlane& plane, const Eigen::Vector3d& about, double unit_of_shift)
+    : n(plane.normal()),
+      u(n.unitOrthogonal()),
+      v(n.cross(u)),
+      pivot(about),
+      extent(unit_of_shift),
+      offset(plane.offset() - n.dot(pivot)) {}
+
+ReflectionPlane PlaneChart::moved(const Eigen::Vector3d& step) const {
+  const Eigen::Vector3d normal = (n + step[0] * u + step[1] * v).normalized();
+  return ReflectionPlane(normal, normal.dot(pivot) + offset + step[2] * extent);
+}
 
 Eigen::Matrix3d motionStiffness(const Points& points, const Points& normals, const std::vector<char>& matched,
                                 const ReflectionPlane& plane) {

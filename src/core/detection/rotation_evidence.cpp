@@ -1,0 +1,303 @@
+#include "core/detection/rotation_evidence.h"
+
+#include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "core/base/constants.h"
+#include "core/base/logistic.h"
+#include "core/base/parallel.h"
+#include "core/detection/rotation_confidence_fit.h"
+#include "core/evidence/evidence_rules.h"
+#include "core/geometry/diameter.h"
+#include "core/geometry/point_samples.h"
+
+namespace pcl_symmetry {
+
+namespace {
+
+/// Radius of the greatest disc that represents a point.
+double greatestDisc(const LocalGeometry& geometry) {
+  return kEvidence.disc_radius *
+         static_cast<double>(*std::max_element(geometry.spacing.begin(), geometry.spacing.end()));
+}
+
+/// The normals of a scan, toward the scanner.
+Points facingNormals(const NormalizedCloud& cloud, const Eigen::Vector3d& viewpoint) {
+  Points facing = cloud.geometry.normals;
+  for (Eigen::Index i = 0; i < facing.cols(); ++i)
+    if (facing.col(i).dot(viewpoint.cast<float>() - cloud.points.col(i)) < 0.0f) facing.col(i) = -facing.col(i);
+  return facing;
+}
+
+/// The line moved by tilts about the two directions across it and by shifts along them.
+Line3d movedLine(const Line3d& line, const Eigen::Vector4d& by) {
+  const Eigen::Vector3d u = line.direction().unitOrthogonal(), v = line.direction().cross(u);
+  return {line.origin() + by[2] * u + by[3] * v, (line.direction() + by[0] * u + by[1] * v).normalized()};
+}
+
+/// The rotations about the lines beside a line, by kDetection.rotations.fit_step.
+std::array<Eigen::Isometry3d, 4> motionsBeside(const Line3d& line, double angle) {
+  std::array<Eigen::Isometry3d, 4> beside;
+  for (int k = 0; k < 4; ++k)
+    beside[k] = motionAbout(movedLine(line, kDetection.rotations.fit_step * Eigen::Vector4d::Unit(k)), angle);
+  return beside;
+}
+
+/// How fast a point moves along a direction as the line does.
+Eigen::Vector4d slopeOf(const std::array<Eigen::Isometry3d, 4>& beside, const Eigen::Vector3d& x,
+                        const Eigen::Vector3d& moved, const Eigen::Vector3d& along) {
+  Eigen::Vector4d slope;
+  for (int k = 0; k < 4; ++k) slope[k] = along.dot(beside[k] * x - moved) / kDetection.rotations.fit_step;
+  return slope;
+}
+
+}  // namespace
+
+Eigen::Isometry3d motionAbout(const Line3d& line, double angle) {
+  Eigen::Isometry3d motion = Eigen::Isometry3d::Identity();
+  motion.linear() = Eigen::AngleAxisd(angle, line.direction()).toRotationMatrix();
+  motion.translation() = line.origin() - motion.linear() * line.origin();
+  return motion;
+}
+
+RotationEvidence::RotationEvidence(const NormalizedCloud& cloud, double tolerance, std::uint64_t seed)
+    : cloud_(cloud),
+      tolerance_(tolerance),
+      viewpoint_(cloud.visibility->viewpoint()),
+      far_(kDetection.rotations.far_tolerances * tolerance),
+      reach_(kDetection.rotations.slack_of_reach * (far_ + greatestDisc(cloud.geometry))),
+      samples_(drawSamples(cloud.points.cols(), kDetection.rotations.num_samples, seed)),
+      few_samples_(drawSamples(cloud.points.cols(), kDetection.rotations.num_few_samples, seed)),
+      facing_(facingNormals(cloud, viewpoint_)) {}
+
+RotationShares RotationEvidence::roughly(const Eigen::Affine3d& motion, double slack, double most_off,
+                                         double most_far) const {
+  RotationShares shares;
+  const double one = 1.0 / static_cast<double>(few_samples_.size());
+  const auto fAt = [&](double distance) { return std::exp(-std::pow(distance / cloud_.sigma, 2)); };
+  const double near_f = fAt(slack * tolerance_), far_f = fAt(far_);
+  for (const int sample : few_samples_) {
+    if (shares.off > most_off || shares.far > most_far) break;
+    const Eigen::Vector3d x = motion * cloud_.points.col(sample).cast<double>();
+    const double f = std::max(kDetection.rotations.least_f, cloud_.edt(cloud_.toInput(x)));
+    if (f >= near_f) {
+      shares.on += one;
+    } else if (isEmpty(x)) {
+      shares.off += one;
+      shares.far += f < far_f ? one : 0.0;
+    }
+  }
+  return shares;
+}
+
+RotationEvidence::Moved RotationEvidence::moved(const Eigen::Affine3d& motion) const {
+  Moved moved{Points(3, static_cast<Eigen::Index>(samples_.size())), {}, {}};
+  for (std::size_t i = 0; i < samples_.size(); ++i)
+    moved.points.col(static_cast<Eigen::Index>(i)) =
+        (motion * cloud_.points.col(samples_[i]).cast<double>()).cast<float>();
+  // Points beyond the reach only need to be known as far.
+  ClosestPoints near = closestWithin(cloud_.surface, moved.points, reach_);
+  moved.closest = std::move(near.indices);
+  moved.distances = surfaceDistances(moved.points, moved.closest, cloud_.samples);
+  for (std::size_t i = 0; i < samples_.size(); ++i)
+    moved.distances[i] = std::min(moved.distances[i], std::sqrt(near.sq_distances[i]));
+  return moved;
+}
+
+RotationShares RotationEvidence::exactly(const Eigen::Affine3d& motion) const {
+  const Moved all = moved(motion);
+  RotationShares shares;
+  const double one = 1.0 / static_cast<double>(samples_.size());
+  for (std::size_t i = 0; i < samples_.size(); ++i) {
+    if (all.distances[i] <= tolerance_) {
+      shares.on += one;
+    } else if (isEmpty(all.points.col(static_cast<Eigen::Index>(i)).cast<double>())) {
+      shares.off += one;
+      shares.far += all.distances[i] > far_ ? one : 0.0;
+    }
+  }
+  return shares;
+}
+
+double RotationEvidence::hold(const Line3d& line, double angle) const {
+  const Eigen::Isometry3d motion = motionAbout(line, angle);
+  const std::array<Eigen::Isometry3d, 4> beside = motionsBeside(line, angle);
+  const Moved all = moved(Eigen::Affine3d(motion));
+  Eigen::Matrix4d stiffness = Eigen::Matrix4d::Zero();
+  for (std::size_t i = 0; i < samples_.size(); ++i) {
+    if (all.closest[i] < 0 || all.distances[i] > tolerance_) continue;
+    const Eigen::Vector3d x = cloud_.points.col(samples_[i]).cast<double>();
+    const Eigen::Vector4d slope = slopeOf(beside, x, motion * x, facing_.col(all.closest[i]).cast<double>());
+    stiffness += slope * slope.transpose() / static_cast<double>(samples_.size());
+  }
+  return std::max(0.0, Eigen::SelfAdjointEigenSolver<Eigen::Matrix4d>(stiffness).eigenvalues()[1]);
+}
+
+void RotationEvidence::addPulls(const Line3d& line, double angle, const std::vector<int>& samples, double width,
+                                std::vector<int>& closest, Pulls& pulls) const {
+  const double sq_width = width * width * tolerance_ * tolerance_;
+  const Eigen::Isometry3d motion = motionAbout(line, angle);
+  const std::array<Eigen::Isometry3d, 4> beside = motionsBeside(line, angle);
+  Points moved(3, static_cast<Eigen::Index>(samples.size()));
+  for (std::size_t i = 0; i < samples.size(); ++i)
+    moved.col(static_cast<Eigen::Index>(i)) = (motion * cloud_.points.col(samples[i]).cast<double>()).cast<float>();
+  const ClosestPoints found =
+      closestWithin(cloud_.surface, moved, kDetection.rotations.fit_reach * width * tolerance_, &closest);
+  closest = found.indices;
+  for (std::size_t i = 0; i < samples.size(); ++i) {
+    if (closest[i] < 0) continue;
+    const Eigen::Vector3d x = cloud_.points.col(samples[i]).cast<double>(), y = motion * x;
+    const Eigen::Vector3d miss = y - cloud_.points.col(closest[i]).cast<double>();
+    Eigen::Vector3d along;
+    double weight = std::exp(-found.sq_distances[i] / sq_width);
+    if (cloud_.geometry.at_border[closest[i]]) {
+      if (miss.norm() < kDetection.rotations.least_empty_miss * tolerance_ || cloud_.visibility->depthBehind(y) >= 0.0)
+        continue;
+      along = miss.normalized();
+    } else {
+      const Eigen::Vector3d there = facing_.col(closest[i]).cast<double>(),
+                            moved_normal = motion.linear() * facing_.col(samples[i]).cast<double>();
+      const double cosine = there.dot(moved_normal);
+      if (cosine <= 0.0) continue;
+      weight *= cosine * cosine;
+      along = (there + moved_normal).normalized();
+    }
+    const Eigen::Vector4d slope = slopeOf(beside, x, y, along);
+    pulls.squares += weight * slope * slope.transpose();
+    pulls.sum -= weight * along.dot(miss) * slope;
+  }
+}
+
+Line3d RotationEvidence::fitted(const Line3d& start, const std::vector<double>& angles, const std::vector<int>& samples,
+                                const std::array<double, 6>& widths) const {
+  // Tilts about the point of the line among the points, so that they and the shifts are independent.
+  Line3d line(start.projection(Eigen::Vector3d::Zero()), start.direction());
+  std::vector<std::vector<int>> closest(angles.size(), std::vector<int>(samples.size(), -1));
+  for (const double width : widths) {
+    Pulls pulls;
+    for (std::size_t k = 0; k < angles.size(); ++k) addPulls(line, angles[k], samples, width, closest[k], pulls);
+    pulls.squares.diagonal().array() +=
+        kDetection.rotations.fit_ridge * pulls.squares.trace() + kDetection.rotations.least_f;
+    const Eigen::Vector4d step = pulls.squares.ldlt().solve(pulls.sum);
+    constexpr double kMostStep = 0.1;  // radians, radii; starts are closer, larger steps leave the basin
+    line = movedLine(line, step * std::min(1.0, kMostStep / std::max(kDetection.rotations.fit_step, step.norm())));
+    line.origin() = line.projection(Eigen::Vector3d::Zero());
+  }
+  return line;
+}
+
+Line3d RotationEvidence::refined(const Line3d& start, const std::vector<double>& angles) const {
+  return fitted(start, angles, few_samples_, kDetection.rotations.fit_widths);
+}
+
+Line3d RotationEvidence::closelyRefined(const Line3d& start, const std::vector<double>& angles) const {
+  return fitted(start, angles, samples_, kDetection.rotations.close_fit_widths);
+}
+
+namespace {
+
+/// RotationSigns::planes_off.
+double planesOff(const RotationEvidence& evidence, const Line3d& line) {
+  constexpr double kStep =
+      0.5 * kPi / kDetection.rotations.num_plane_pairs;  // radians. Pairs repeat after a right angle
+  const auto cost = [&](double angle) {
+    double sum = 0.0;
+    for (const double turned : {angle, angle + 0.5 * kPi}) {
+      const RotationShares shares =
+          evidence.roughly(planeThrough(line, turned).reflection(), kDetection.rotations.plane_slack, 1.0, 1.0);
+      sum += shares.off - kDetection.rotations.landed_counts * shares.on;
+    }
+    return sum;
+  };
+  double best = 0.0, least = cost(0.0);
+  const auto take = [&](double angle) {
+    const double of_angle = cost(angle);
+    if (of_angle >= least) return;
+    least = of_angle;
+    best = angle;
+  };
+  for (int k = 1; k < kDetection.rotations.num_plane_pairs; ++k) take(k * kStep);
+  const double coarse = best;
+  for (const double beside : {-0.5 * kStep, 0.5 * kStep}) take(coarse + beside);
+  return std::max(evidence.exactly(planeThrough(line, best).reflection()).off,
+                  evidence.exactly(planeThrough(line, best + 0.5 * kPi).reflection()).off);
+}
+
+/// RotationSigns::grown.
+double grownBy(const NormalizedCloud& cloud, const Eigen::Affine3d& turn) {
+  const Eigen::Index size = cloud.points.cols();
+  Points both(3, 2 * size);
+  both.leftCols(size) = cloud.points;
+  both.rightCols(size) = turn.cast<float>() * cloud.points;
+  return std::max(1.0, diameter(both) / cloud.extent);
+}
+
+/// Whether two lines, normalized frame, cross at a right angle.
+bool crossesUpright(const Line3d& a, const Line3d& b) {
+  const Eigen::Vector3d across = a.direction().cross(b.direction()).normalized();
+  return std::abs(a.direction().dot(b.direction())) < std::sin(kDetection.rotations.upright_angle) &&
+         std::abs(across.dot(a.origin() - b.origin())) < kDetection.rotations.crossing_gap;
+}
+
+}  // namespace
+
+std::vector<RotationSigns> rotationSigns(const RotationEvidence& evidence, const std::vector<SymmetryTurn>& turns,
+                                         double min_confidence, int num_threads) {
+  const NormalizedCloud& cloud = evidence.cloud();
+  std::vector<RotationSigns> signs(turns.size());
+  const auto best = std::max_element(turns.begin(), turns.end(), [](const SymmetryTurn& a, const SymmetryTurn& b) {
+    return marginOf(a) < marginOf(b);
+  });
+  parallelBlocks(turns.size(), num_threads, [&](std::size_t i) {
+    if (turns[i].fold != 2) return;
+    const Line3d line = cloud.lineOf(turns[i]);
+    signs[i].grown = grownBy(cloud, Eigen::Affine3d(motionAbout(line, kPi)));
+    signs[i].hold = evidence.hold(line, kPi);
+    const bool is_best = marginOf(turns[i]) >= marginOf(*best);
+    signs[i].beside = is_best || crossesUpright(line, cloud.lineOf(*best)) ? 0.0 : 1.0;
+    // Planes are evidence only against a rotation, and take most of the time.
+    if (rotationConfidence(turns[i], signs[i]) >= min_confidence) signs[i].planes_off = planesOff(evidence, line);
+  });
+  return signs;
+}
+
+RotationKind kindOf(const SymmetryTurn& turn) {
+  return turn.fold == 0 ? RotationKind::AnyAngle : turn.fold == 2 ? RotationKind::Half : RotationKind::Folds;
+}
+
+std::vector<double> rotationOddsTerms(const SymmetryTurn& turn, const RotationSigns& signs) {
+  const double off = std::log1p(turn.off / kDetection.rotations.little_share),
+               far = std::log1p(turn.far / kDetection.rotations.little_share);
+  switch (kindOf(turn)) {
+    case RotationKind::Half:  // without what is far off: what the object grows by says that, and off does
+      return {1.0,
+              off,
+              1.0 - turn.support,
+              std::log(signs.grown),
+              -std::log1p(signs.hold / kDetection.rotations.little_hold),
+              std::log1p(signs.planes_off / kDetection.rotations.little_of_planes),
+              signs.beside};
+    case RotationKind::Folds:
+      return {1.0,
+              off,
+              far,
+              1.0 - turn.support,
+              std::min(kDetection.rotations.most_halfway, turn.halfway - turn.off),
+              1.0 / turn.fold};
+    default:
+      return {1.0, off, far, 1.0 - turn.support};
+  }
+}
+
+double rotationConfidence(const SymmetryTurn& turn, const RotationSigns& signs) {
+  const std::vector<double> terms = rotationOddsTerms(turn, signs);
+  const std::vector<double>& numbers = kRotationConfidenceFit[static_cast<std::size_t>(kindOf(turn))];
+  double log_odds = 0.0;
+  for (std::size_t k = 0; k < terms.size(); ++k) log_odds += numbers[k] * terms[k];
+  return logistic(log_odds);
+}
+
+}  // namespace pcl_symmetry
