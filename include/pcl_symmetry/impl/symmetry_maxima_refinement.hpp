@@ -11,7 +11,7 @@ namespace PCL_SYMMETRY_EXPORTS pcl_symmetry {
 
 namespace detail {
 
-/// The planes as published.
+/// The planes as published, of points whose transform may be known.
 /// \param edt,map of these points; edt null: the map is computed.
 Detection planesAsPublished(const Points& points, const GaussianEdt* edt, const SymmetryMap& map,
                             const DetectionOptions& options);

@@ -7,7 +7,6 @@
 #include <vector>
 
 #include "core/base/check.h"
-#include "core/base/parallel.h"
 #include "core/base/stopwatch.h"
 #include "core/detection/cloud_subset.h"
 #include "core/detection/part_search.h"
@@ -93,27 +92,13 @@ private:
   bool explained_ = false;  ///< a plane explains all of the cloud, so that nothing is missing
 };
 
-using Timing = std::vector<std::pair<std::string, double>>;
-
-Detection unanswered(std::string reason) {
-  Detection detection;
-  detection.reason = std::move(reason);
-  return detection;
-}
-
 /// The evidence of all candidates, also of those that the detection leaves out early.
 /// \param candidates after the second stage.
 std::vector<JudgedPlane> evidenceOf(std::vector<Candidate> candidates, const StagedRefinement& refinement,
                                     const PlaneDecision& decision) {
   candidates = refinement.full(std::move(candidates));
   refinement.climb(candidates);
-  std::stable_sort(candidates.begin(), candidates.end(),
-                   [](const Candidate& a, const Candidate& b) { return a.merit > b.merit; });
-  std::vector<Candidate> distinct;
-  for (Candidate& candidate : candidates)
-    if (!kSamePlane.anySame(distinct, candidate.plane, [](const Candidate& other) { return other.plane; }))
-      distinct.push_back(std::move(candidate));
-  return decision.judge(distinct);
+  return decision.judge(refinement.distinct(std::move(candidates)));
 }
 
 /// Finds the axes of rotations of a scan, and brings axes of revolution and planes in line with them.
@@ -256,7 +241,7 @@ Detection planesOfMap(const PlaneInput& input, const GaussianEdt& edt, const Sym
 /// Sections 4.1 to 4.3, then the rest.
 Detection planesOfPoints(const PlaneInput& input, const DetectionOptions& options) {
   Stopwatch watch;
-  Timing timing;
+  std::vector<std::pair<std::string, double>> timing;
   const GaussianEdt edt(input.points, options.edtOptions());
   timing.emplace_back("distance_transform", watch.lap());
   const std::vector<float> free_space = freeSpace(edt, input.visibility, options.num_threads);
@@ -322,9 +307,10 @@ Detection detectPlanes(const PlaneInput& input, const DetectionOptions& options)
     check(input.normals->cols() == input.points.cols(), "number of normals", input.normals->cols(),
           "the number of points");
   check(!input.map == !input.edt, "map", input.map ? "given" : "missing", "given together with edt");
-  if (std::string reason = whyUnanswerable(input.points); !reason.empty()) return unanswered(std::move(reason));
-  Stopwatch watch;
   Detection detection;
+  detection.reason = whyUnanswerable(input.points);
+  if (!detection.reason.empty()) return detection;
+  Stopwatch watch;
   if (const std::optional<CloudSubset> subset = subsetOf(input.points, options)) {
     const double subset_ms = watch.lap();
     detection = planesOfSubset(input, *subset, options);

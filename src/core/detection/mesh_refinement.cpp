@@ -1,6 +1,5 @@
 #include "pcl_symmetry/core/mesh_refinement.h"
 
-#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <utility>
@@ -32,25 +31,21 @@ void refine(const MeshSurface& mesh, SymmetryPlane& plane, double tolerance, con
   decideBy(confidenceOf(shares.share, mesh.numSamples()), options, plane);
 }
 
-bool areOne(const ReflectionPlane& a, const ReflectionPlane& b, const BoundingBall& ball) {
-  const auto normalized = [&](const ReflectionPlane& plane) {
-    return ReflectionPlane(plane.normal(), -plane.signedDistance(ball.center) / ball.radius);
-  };
-  return kSamePlane.same(normalized(a), normalized(b));
-}
-
 }  // namespace
 
 void refineOnMesh(const MeshSurface& mesh, Detection& found, const DetectionOptions& options) {
   constexpr double kSameAsFlat = 0.02;      // radians; a reflection across the plane of a flat shape is uninformative
   constexpr double kNearlySymmetric = 0.9;  // share of the best plane that may be a symmetry of the mesh itself
+  const auto inBall = [&](const ReflectionPlane& plane) {
+    return normalized(plane, mesh.ball().center, mesh.ball().radius);
+  };
   std::vector<SymmetryPlane> kept;
   std::optional<SymmetryPlane> dropped;
   for (SymmetryPlane& plane : found.planes) {
     if (isDecided(plane)) {
       if (!(found.flat && plane.angleTo(*found.flat) < kSameAsFlat)) refine(mesh, plane, found.tolerance, options);
       if (std::any_of(kept.begin(), kept.end(),
-                      [&](const SymmetryPlane& other) { return areOne(other, plane, mesh.ball()); }))
+                      [&](const SymmetryPlane& other) { return kSamePlane.same(inBall(other), inBall(plane)); }))
         continue;
       if (plane.kind == PlaneKind::Approximate && !options.approximate) {
         if (!dropped || plane.share > dropped->share) dropped = std::move(plane);

@@ -68,10 +68,6 @@ NormalizedCloud::NormalizedCloud(const PointsRef& input, const GaussianEdt& edt_
             : roughness > kDetection.cloud.volume_roughness ? CloudKind::Volume
                                                             : CloudKind::Surface) {}
 
-ReflectionPlane NormalizedCloud::toNormalized(const ReflectionPlane& input_plane) const {
-  return ReflectionPlane(input_plane.normal(), input_plane.signedDistance(center) / -scale);
-}
-
 ReflectionPlane NormalizedCloud::toInput(const ReflectionPlane& plane) const {
   return ReflectionPlane(plane.normal(), plane.offset() * scale + plane.normal().dot(center));
 }

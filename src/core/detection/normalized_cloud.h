@@ -15,6 +15,11 @@ namespace pcl_symmetry {
 
 class FlannSearch;
 
+/// A plane in the frame (x - center) / scale.
+inline ReflectionPlane normalized(const ReflectionPlane& plane, const Eigen::Vector3d& center, double scale = 1.0) {
+  return ReflectionPlane(plane.normal(), -plane.signedDistance(center) / scale);
+}
+
 /// The cloud as all stages of detection see it: in the unit ball about 0, with normals, spacing and roughness.
 ///
 /// The normalized frame is (x - center) / scale. Lengths below are in this frame.
@@ -59,7 +64,9 @@ struct NormalizedCloud {
   /// From the input frame to the normalized one and back. Lengths: times scale.
   Eigen::Vector3d toNormalized(const Eigen::Vector3d& input_point) const { return (input_point - center) / scale; }
   Eigen::Vector3d toInput(const Eigen::Vector3d& point) const { return point * scale + center; }
-  ReflectionPlane toNormalized(const ReflectionPlane& input_plane) const;
+  ReflectionPlane toNormalized(const ReflectionPlane& input_plane) const {
+    return normalized(input_plane, center, scale);
+  }
   ReflectionPlane toInput(const ReflectionPlane& plane) const;
   /// \param input_axis with a point and a direction, such as SymmetryAxis.
   template <typename Axis>

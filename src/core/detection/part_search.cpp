@@ -231,8 +231,7 @@ std::vector<SymmetricPart> distinct(std::vector<SymmetricPart> parts) {
   });
   std::vector<SymmetricPart> kept;
   for (SymmetricPart& part : parts)
-    if (!kSamePlaneOfPart.anySame(kept, part.plane, [](const SymmetricPart& other) { return other.plane; }))
-      kept.push_back(std::move(part));
+    if (!kSamePlaneOfPart.anySame(kept, part.plane, &SymmetricPart::plane)) kept.push_back(std::move(part));
   return kept;
 }
 

@@ -3,11 +3,9 @@
 #include <optional>
 #include <vector>
 
-#include "core/detection/plane_fit.h"
 #include "core/detection/plane_lattice.h"
 #include "core/detection/plane_measure.h"
 #include "core/detection/rotation_evidence.h"
-#include "pcl_symmetry/core/detect_planes.h"
 
 namespace pcl_symmetry {
 

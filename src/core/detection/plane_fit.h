@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <memory>
 #include <vector>
 
@@ -21,11 +22,12 @@ struct PlaneTolerance {
     return a.angleTo(b) <= angle && std::abs(a.offset() - sign * b.offset()) <= offset;
   }
 
-  /// \param plane_of takes an entry of the list to its plane.
+  /// \param plane_of the member of an entry of the list that is its plane, or a function that takes it there.
   /// \return whether an entry of the list has the same plane.
   template <typename List, typename PlaneOf>
   bool anySame(const List& list, const ReflectionPlane& plane, const PlaneOf& plane_of) const {
-    return std::any_of(list.begin(), list.end(), [&](const auto& entry) { return same(plane_of(entry), plane); });
+    return std::any_of(list.begin(), list.end(),
+                       [&](const auto& entry) { return same(std::invoke(plane_of, entry), plane); });
   }
 
   bool anySame(const std::vector<ReflectionPlane>& list, const ReflectionPlane& plane) const {

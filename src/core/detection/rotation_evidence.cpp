@@ -25,10 +25,11 @@ double greatestDisc(const LocalGeometry& geometry) {
 }
 
 /// The normals of a scan, toward the scanner.
-Points facingNormals(const NormalizedCloud& cloud, const Eigen::Vector3d& viewpoint) {
+Points facingNormals(const NormalizedCloud& cloud) {
+  const Eigen::Vector3f viewpoint = cloud.visibility->viewpoint().cast<float>();
   Points facing = cloud.geometry.normals;
   for (Eigen::Index i = 0; i < facing.cols(); ++i)
-    if (facing.col(i).dot(viewpoint.cast<float>() - cloud.points.col(i)) < 0.0f) facing.col(i) = -facing.col(i);
+    if (facing.col(i).dot(viewpoint - cloud.points.col(i)) < 0.0f) facing.col(i) = -facing.col(i);
   return facing;
 }
 
@@ -66,12 +67,11 @@ Eigen::Isometry3d motionAbout(const Line3d& line, double angle) {
 RotationEvidence::RotationEvidence(const NormalizedCloud& cloud, double tolerance, std::uint64_t seed)
     : cloud_(cloud),
       tolerance_(tolerance),
-      viewpoint_(cloud.visibility->viewpoint()),
       far_(kDetection.rotations.far_tolerances * tolerance),
       reach_(kDetection.rotations.slack_of_reach * (far_ + greatestDisc(cloud.geometry))),
       samples_(drawSamples(cloud.points.cols(), kDetection.rotations.num_samples, seed)),
       few_samples_(drawSamples(cloud.points.cols(), kDetection.rotations.num_few_samples, seed)),
-      facing_(facingNormals(cloud, viewpoint_)) {}
+      facing_(facingNormals(cloud)) {}
 
 RotationShares RotationEvidence::roughly(const Eigen::Affine3d& motion, double slack, double most_off,
                                          double most_far) const {
@@ -93,22 +93,26 @@ RotationShares RotationEvidence::roughly(const Eigen::Affine3d& motion, double s
   return shares;
 }
 
-RotationEvidence::Moved RotationEvidence::moved(const Eigen::Affine3d& motion) const {
-  Moved moved{Points(3, static_cast<Eigen::Index>(samples_.size())), {}, {}};
-  for (std::size_t i = 0; i < samples_.size(); ++i)
-    moved.points.col(static_cast<Eigen::Index>(i)) =
-        (motion * cloud_.points.col(samples_[i]).cast<double>()).cast<float>();
-  // Points beyond the reach only need to be known as far.
-  ClosestPoints near = closestWithin(cloud_.surface, moved.points, reach_);
-  moved.closest = std::move(near.indices);
-  moved.distances = surfaceDistances(moved.points, moved.closest, cloud_.samples);
-  for (std::size_t i = 0; i < samples_.size(); ++i)
-    moved.distances[i] = std::min(moved.distances[i], std::sqrt(near.sq_distances[i]));
+Points RotationEvidence::moved(const Eigen::Affine3d& motion, const std::vector<int>& samples) const {
+  Points moved(3, static_cast<Eigen::Index>(samples.size()));
+  for (std::size_t i = 0; i < samples.size(); ++i)
+    moved.col(static_cast<Eigen::Index>(i)) = (motion * cloud_.points.col(samples[i]).cast<double>()).cast<float>();
   return moved;
 }
 
+RotationEvidence::Moved RotationEvidence::matched(const Eigen::Affine3d& motion) const {
+  Moved result{moved(motion, samples_), {}, {}};
+  // Points beyond the reach only need to be known as far.
+  ClosestPoints near = closestWithin(cloud_.surface, result.points, reach_);
+  result.closest = std::move(near.indices);
+  result.distances = surfaceDistances(result.points, result.closest, cloud_.samples);
+  for (std::size_t i = 0; i < samples_.size(); ++i)
+    result.distances[i] = std::min(result.distances[i], std::sqrt(near.sq_distances[i]));
+  return result;
+}
+
 RotationShares RotationEvidence::exactly(const Eigen::Affine3d& motion) const {
-  const Moved all = moved(motion);
+  const Moved all = matched(motion);
   RotationShares shares;
   const double one = 1.0 / static_cast<double>(samples_.size());
   for (std::size_t i = 0; i < samples_.size(); ++i) {
@@ -125,7 +129,7 @@ RotationShares RotationEvidence::exactly(const Eigen::Affine3d& motion) const {
 double RotationEvidence::hold(const Line3d& line, double angle) const {
   const Eigen::Isometry3d motion = motionAbout(line, angle);
   const std::array<Eigen::Isometry3d, 4> beside = motionsBeside(line, angle);
-  const Moved all = moved(Eigen::Affine3d(motion));
+  const Moved all = matched(Eigen::Affine3d(motion));
   Eigen::Matrix4d stiffness = Eigen::Matrix4d::Zero();
   for (std::size_t i = 0; i < samples_.size(); ++i) {
     if (all.closest[i] < 0 || all.distances[i] > tolerance_) continue;
@@ -141,11 +145,8 @@ void RotationEvidence::addPulls(const Line3d& line, double angle, const std::vec
   const double sq_width = width * width * tolerance_ * tolerance_;
   const Eigen::Isometry3d motion = motionAbout(line, angle);
   const std::array<Eigen::Isometry3d, 4> beside = motionsBeside(line, angle);
-  Points moved(3, static_cast<Eigen::Index>(samples.size()));
-  for (std::size_t i = 0; i < samples.size(); ++i)
-    moved.col(static_cast<Eigen::Index>(i)) = (motion * cloud_.points.col(samples[i]).cast<double>()).cast<float>();
-  const ClosestPoints found =
-      closestWithin(cloud_.surface, moved, kDetection.rotations.fit_reach * width * tolerance_, &closest);
+  const ClosestPoints found = closestWithin(cloud_.surface, moved(Eigen::Affine3d(motion), samples),
+                                            kDetection.rotations.fit_reach * width * tolerance_, &closest);
   closest = found.indices;
   for (std::size_t i = 0; i < samples.size(); ++i) {
     if (closest[i] < 0) continue;

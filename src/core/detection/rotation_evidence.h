@@ -6,11 +6,9 @@
 #include <cstdint>
 #include <vector>
 
-#include "core/detection/detection_rules.h"
 #include "core/detection/normalized_cloud.h"
 #include "core/scan/single_view.h"
 #include "pcl_symmetry/core/detect_planes.h"
-#include "pcl_symmetry/core/reflection_plane.h"
 
 namespace pcl_symmetry {
 
@@ -82,7 +80,8 @@ private:
     std::vector<float> distances;  ///< from the surface
   };
 
-  Moved moved(const Eigen::Affine3d& motion) const;
+  Points moved(const Eigen::Affine3d& motion, const std::vector<int>& samples) const;
+  Moved matched(const Eigen::Affine3d& motion) const;
   /// \param width of the weights, tolerances.
   /// \param[in,out] closest points to the moved samples, of a line nearby; -1 where none is known.
   void addPulls(const Line3d& line, double angle, const std::vector<int>& samples, double width,
@@ -96,8 +95,7 @@ private:
 
   const NormalizedCloud& cloud_;
   double tolerance_;
-  Eigen::Vector3d viewpoint_;  ///< normalized frame
-  double far_, reach_;         ///< distance of what is far, and of points whose discs all are
+  double far_, reach_;  ///< distance of what is far, and of points whose discs all are
   std::vector<int> samples_, few_samples_;
   Points facing_;  ///< normals, toward the scanner
 };

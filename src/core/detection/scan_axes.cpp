@@ -20,6 +20,20 @@ namespace pcl_symmetry {
 
 namespace {
 
+/// A line that may be an axis, and the order that it may have; 0: any angle.
+struct AxisStart {
+  Line3d line;
+  int fold;
+};
+
+const Line3d& lineOf(const AxisStart& start) {
+  return start.line;
+}
+
+const Line3d& lineOf(const Line3d& line) {
+  return line;
+}
+
 /// Two lines within both limits are one.
 struct LineTolerance {
   double angle;   ///< radians
@@ -30,10 +44,9 @@ struct LineTolerance {
            a.distance(b.projection(Eigen::Vector3d::Zero())) < offset;
   }
 
-  /// \param line_of takes an entry of the list to its line.
-  template <typename List, typename LineOf>
-  bool anySame(const List& list, const Line3d& line, const LineOf& line_of) const {
-    return std::any_of(list.begin(), list.end(), [&](const auto& entry) { return same(line_of(entry), line); });
+  template <typename List>
+  bool anySame(const List& list, const Line3d& line) const {
+    return std::any_of(list.begin(), list.end(), [&](const auto& entry) { return same(lineOf(entry), line); });
   }
 };
 
@@ -41,16 +54,6 @@ constexpr LineTolerance kSameStart{kDetection.rotations.same_start_angle, kDetec
     kSameCoarsely{kDetection.rotations.coarse_angle, kDetection.rotations.coarse_distance},
     kSameFitted{kDetection.rotations.fitted_angle, kDetection.rotations.fitted_offset},
     kSameAxis{kDetection.rotations.same_axis_angle, kDetection.rotations.same_axis_offset};
-
-/// A line that may be an axis, and the order that it may have; 0: any angle.
-struct AxisStart {
-  Line3d line;
-  int fold;
-};
-
-const Line3d& lineOf(const AxisStart& start) {
-  return start.line;
-}
 
 double missAt(const Line3d& line, const Eigen::Vector3d& x, const Eigen::Vector3d& normal) {
   const Eigen::Vector3d velocity = line.direction().cross(x - line.origin());
@@ -93,7 +96,7 @@ std::vector<AxisStart> startsFromNormals(const NormalizedCloud& cloud, std::uint
     const std::vector<int> inliers = inliersOf(line);
     if (inliers.empty()) break;
     const Line3d fitted = axisOfNormals(cloud.points, normals, inliers);
-    if (!kSameStart.anySame(starts, fitted, lineOf) && fitted.origin().norm() < 2.0) starts.push_back({fitted, 0});
+    if (!kSameStart.anySame(starts, fitted) && fitted.origin().norm() < 2.0) starts.push_back({fitted, 0});
   }
   return starts;
 }
@@ -147,7 +150,7 @@ std::vector<AxisStart> startsFromTransform(const NormalizedCloud& cloud, std::ui
   for (const std::size_t bin : bins) {
     if (starts.size() == kDetection.rotations.coarse_maxima) break;
     const Line3d line = grid.axis(grid.bin(bin));
-    if (kSameCoarsely.anySame(starts, line, lineOf)) continue;
+    if (kSameCoarsely.anySame(starts, line)) continue;
     int fold = 2;
     for (std::size_t i = 0; i < map.folds.size(); ++i)
       if (map.values[i][bin] >= map.greatest[bin] - kDetection.rotations.coarse_equal)
@@ -274,8 +277,7 @@ std::vector<SymmetryTurn> scanAxes(const RotationEvidence& evidence, const std::
   parallelBlocks(starts.size(), options.num_threads, [&](std::size_t i) { fitted[i] = judge.fitted(starts[i]); });
   std::vector<Line3d> lines;
   for (const Line3d& line : fitted)
-    if (line.direction().allFinite() && line.origin().allFinite() &&
-        !kSameFitted.anySame(lines, line, [](const Line3d& other) { return other; }))
+    if (line.direction().allFinite() && line.origin().allFinite() && !kSameFitted.anySame(lines, line))
       lines.push_back(line);
   std::vector<std::optional<JudgedLine>> judged(lines.size());
   parallelBlocks(lines.size(), options.num_threads, [&](std::size_t i) { judged[i] = judge.judged(lines[i]); });
@@ -285,7 +287,7 @@ std::vector<SymmetryTurn> scanAxes(const RotationEvidence& evidence, const std::
   std::vector<SymmetryTurn> result;
   for (const std::optional<JudgedLine>& best : judged) {
     if (!best || found.size() == kDetection.rotations.most_axes) break;
-    if (kSameAxis.anySame(found, best->line, [](const Line3d& other) { return other; })) continue;
+    if (kSameAxis.anySame(found, best->line)) continue;
     found.push_back(best->line);
     result.push_back(best->turn);
     result.back().point = cloud.toInput(best->line.projection(Eigen::Vector3d::Zero()));

@@ -17,7 +17,7 @@ std::vector<Candidate> gatherCandidates(const NormalizedCloud& cloud, const Symm
   for (const LocalMaximum& maximum : findLocalMaxima(map, maxima)) {
     if (static_cast<int>(candidates.size()) >= options.expert.max_candidates) break;
     const ReflectionPlane plane = cloud.toNormalized(maximum.plane);
-    if (kSameBasin.anySame(candidates, plane, [](const Candidate& candidate) { return candidate.plane; })) continue;
+    if (kSameBasin.anySame(candidates, plane, &Candidate::plane)) continue;
     candidates.push_back({plane, true});
   }
   for (const ReflectionPlane& plane : principalPlanes(cloud.principal_axes)) candidates.push_back({plane, false});
@@ -124,8 +124,6 @@ std::vector<Candidate> StagedRefinement::withinCells(const std::vector<Candidate
   return kept;
 }
 
-/// The best candidate of each group of like planes, best first: all that may be symmetries, and others until there are
-/// \p most.
 std::vector<Candidate> StagedRefinement::distinct(std::vector<Candidate> candidates, double least_merit,
                                                   std::size_t most) const {
   std::stable_sort(candidates.begin(), candidates.end(),
@@ -135,8 +133,7 @@ std::vector<Candidate> StagedRefinement::distinct(std::vector<Candidate> candida
     if (candidate.merit < least_merit) break;
     if (candidate.merit < kDetection.stages.symmetric_merit - kDetection.stages.close_slack && kept.size() >= most)
       break;
-    if (!kSamePlane.anySame(kept, candidate.plane, [](const Candidate& other) { return other.plane; }))
-      kept.push_back(std::move(candidate));
+    if (!kSamePlane.anySame(kept, candidate.plane, &Candidate::plane)) kept.push_back(std::move(candidate));
   }
   return kept;
 }

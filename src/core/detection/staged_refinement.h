@@ -1,5 +1,7 @@
 #pragma once
 
+#include <cstddef>
+#include <limits>
 #include <vector>
 
 #include "core/detection/plane_fit.h"
@@ -39,13 +41,17 @@ public:
   /// \return for each whether it moved; of a scan none: those of noisy ones have climbed in full().
   std::vector<bool> climb(std::vector<Candidate>& candidates) const;
 
+  /// The best candidate of each group of like planes, best first: all that may be symmetries, and others until there
+  /// are \p most.
+  std::vector<Candidate> distinct(std::vector<Candidate> candidates, double least_merit = -1.0,
+                                  std::size_t most = std::numeric_limits<std::size_t>::max()) const;
+
 private:
   RefinementStage fullStage() const;
   RefinementStage stage(int num_samples, double sigma, double final_sigma, int max_iterations) const;
   std::vector<Candidate> refined(std::vector<Candidate> candidates, const RefinementStage& stage) const;
   std::vector<Candidate> withinCells(const std::vector<Candidate>& candidates, const std::vector<Candidate>& starts,
                                      const PlaneGrid& grid) const;
-  std::vector<Candidate> distinct(std::vector<Candidate> candidates, double least_merit, std::size_t most) const;
   RefinementStage closeStage() const;
 
   const NormalizedCloud& cloud_;

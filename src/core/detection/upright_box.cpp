@@ -73,63 +73,46 @@ Rectangle bestRectangle(const PointsRef& points, const Eigen::Vector3d& up) {
   return *best;
 }
 
-/// Whether the beams of a scanner met something at a point, passed freely, or did neither.
-class Beams {
-public:
-  enum class Meets { Surface, Nothing, Unknown };
-
-  Beams(const PointsRef& points, const Eigen::Vector3d& viewpoint, double distance)
-      : viewpoint_(viewpoint), distance_(distance) {
-    directions_ = directionsTo(points, ranges_);
-    search_ = makeFlannSearch(directions_);
-    surface_ = makeFlannSearch(points);
-    std::vector<int> closest;
-    std::vector<float> sq_distances, apart;
-    search_->search(directions_, kBox.beams + 2, closest, sq_distances);
-    for (std::size_t i = kBox.beams + 1; i < sq_distances.size(); i += kBox.beams + 2) apart.push_back(sq_distances[i]);
-    sq_reach_ = static_cast<float>(kBox.beam_reach * kBox.beam_reach) * median(std::move(apart));
+/// Directions from a viewpoint to points, and their ranges.
+Points directionsTo(const PointsRef& points, const Eigen::Vector3d& viewpoint, std::vector<double>& ranges) {
+  Points directions(3, points.cols());
+  for (Eigen::Index i = 0; i < points.cols(); ++i) {
+    const Eigen::Vector3d ray = points.col(i).cast<double>() - viewpoint;
+    ranges.push_back(ray.norm());
+    directions.col(i) = (ray / ranges.back()).cast<float>();
   }
+  return directions;
+}
 
-  std::vector<Meets> at(const Points& reflected) const {
-    Eigen::VectorXd ranges;
-    const Points directions = directionsTo(reflected, ranges);
-    std::vector<int> beams, closest;
-    std::vector<float> sq_aside, sq_distances;
-    search_->search(directions, kBox.beams, beams, sq_aside);
-    surface_->search(reflected, 1, closest, sq_distances);
-    std::vector<Meets> met(reflected.cols(), Meets::Unknown);
-    for (std::size_t i = 0; i < met.size(); ++i) {
-      bool meets = sq_distances[i] <= distance_ * distance_, all_pass = true;
-      for (std::size_t k = kBox.beams * i; k < kBox.beams * (i + 1); ++k) {
-        const double behind = ranges[i] - ranges_[beams[k]];
-        const bool is_close = sq_aside[k] <= sq_reach_;
-        meets |= is_close && std::abs(behind) <= distance_;
-        all_pass &= is_close && behind < -distance_;
-      }
-      met[i] = meets ? Meets::Surface : all_pass ? Meets::Nothing : Meets::Unknown;
+enum class Meets { Surface, Nothing, Unknown };
+
+/// Whether the beams of a scanner met something at reflected points, passed freely, or did neither.
+/// \param reach within which a beam meets a point.
+std::vector<Meets> meetingsAt(const Points& reflected, const PointsRef& points, const Eigen::Vector3d& viewpoint,
+                              double reach) {
+  std::vector<double> ranges, reflected_ranges;
+  const Points directions = directionsTo(points, viewpoint, ranges);
+  const ClosestPointSearch::Ptr search = makeFlannSearch(directions);
+  std::vector<int> beams, closest;
+  std::vector<float> sq_aside, sq_distances, apart;
+  search->search(directions, kBox.beams + 2, beams, sq_aside);
+  for (std::size_t i = kBox.beams + 1; i < sq_aside.size(); i += kBox.beams + 2) apart.push_back(sq_aside[i]);
+  const float sq_beam_reach = static_cast<float>(kBox.beam_reach * kBox.beam_reach) * median(std::move(apart));
+  search->search(directionsTo(reflected, viewpoint, reflected_ranges), kBox.beams, beams, sq_aside);
+  makeFlannSearch(points)->search(reflected, 1, closest, sq_distances);
+  std::vector<Meets> met(reflected_ranges.size(), Meets::Unknown);
+  for (std::size_t i = 0; i < met.size(); ++i) {
+    bool meets = sq_distances[i] <= reach * reach, all_pass = true;
+    for (std::size_t k = kBox.beams * i; k < kBox.beams * (i + 1); ++k) {
+      const double behind = reflected_ranges[i] - ranges[beams[k]];
+      const bool is_close = sq_aside[k] <= sq_beam_reach;
+      meets |= is_close && std::abs(behind) <= reach;
+      all_pass &= is_close && behind < -reach;
     }
-    return met;
+    met[i] = meets ? Meets::Surface : all_pass ? Meets::Nothing : Meets::Unknown;
   }
-
-private:
-  Points directionsTo(const PointsRef& points, Eigen::VectorXd& ranges) const {
-    Points directions(3, points.cols());
-    ranges.resize(points.cols());
-    for (Eigen::Index i = 0; i < points.cols(); ++i) {
-      const Eigen::Vector3d ray = points.col(i).cast<double>() - viewpoint_;
-      ranges[i] = ray.norm();
-      directions.col(i) = (ray / ranges[i]).cast<float>();
-    }
-    return directions;
-  }
-
-  Eigen::Vector3d viewpoint_;
-  double distance_;
-  Points directions_;
-  Eigen::VectorXd ranges_;
-  ClosestPointSearch::Ptr search_, surface_;
-  float sq_reach_ = 0.0f;
-};
+  return met;
+}
 
 }  // namespace
 
@@ -142,14 +125,14 @@ std::optional<SymmetryPlane> middlePlaneOfBox(const PointsRef& points, const Eig
   const double reach = kBox.meets * diagonal;
   if (!(width(across) > 2.0 * reach)) return std::nullopt;
   SymmetryPlane plane(ReflectionPlane(box.axes[across], 0.5 * (box.sides[across][0] + box.sides[across][1])));
-  const std::vector<Beams::Meets> met = Beams(points, viewpoint, reach).at(reflectedPoints(points, plane));
+  const std::vector<Meets> met = meetingsAt(reflectedPoints(points, plane), points, viewpoint, reach);
   double num_moved = 0.0, num_met = 0.0, num_free = 0.0;
   for (std::size_t i = 0; i < met.size(); ++i) {
-    plane.point_support.push_back(met[i] == Beams::Meets::Surface ? 1.0f : 0.0f);
+    plane.point_support.push_back(met[i] == Meets::Surface ? 1.0f : 0.0f);
     if (2.0 * std::abs(plane.signedDistance(points.col(i).cast<double>())) <= reach) continue;
     num_moved += 1.0;
-    num_met += met[i] == Beams::Meets::Surface ? 1.0 : 0.0;
-    num_free += met[i] == Beams::Meets::Nothing ? 1.0 : 0.0;
+    num_met += met[i] == Meets::Surface ? 1.0 : 0.0;
+    num_free += met[i] == Meets::Nothing ? 1.0 : 0.0;
   }
   if (!(num_met > 0.0)) return std::nullopt;
   const auto num_near = std::count_if(box.distances.begin(), box.distances.end(),

@@ -5,9 +5,7 @@
 #include <cmath>
 #include <stdexcept>
 #include <string>
-#include <utility>
 
-#include "core/base/constants.h"
 #include "core/base/parallel.h"
 #include "core/base/stopwatch.h"
 #include "core/detection/plane_decision.h"
@@ -240,11 +238,6 @@ std::vector<ReflectionPlane> startsOf(const SymmetryMap& map, const Points& body
   return starts;
 }
 
-/// The plane as seen from a point.
-ReflectionPlane about(const ReflectionPlane& plane, const Eigen::Vector3d& point) {
-  return ReflectionPlane(plane.normal(), -plane.signedDistance(point));
-}
-
 }  // namespace
 
 Detection detectVolumePlanes(const ScalarGrid& input, const DetectionOptions& options, const VolumeLevels& levels) {
@@ -286,8 +279,8 @@ Detection detectVolumePlanes(const ScalarGrid& input, const DetectionOptions& op
                        [](const auto& a, const auto& b) { return a.support > b.support; });
       std::vector<SymmetryPlane> kept;
       for (const SymmetryPlane& plane : planes)
-        if (plane.support > 0.0 &&
-            !one.anySame(kept, about(plane, center), [&](const SymmetryPlane& other) { return about(other, center); }))
+        if (plane.support > 0.0 && !one.anySame(kept, normalized(plane, center),
+                                                [&](const SymmetryPlane& other) { return normalized(other, center); }))
           kept.push_back(plane);
       if (static_cast<int>(kept.size()) > options.max_planes) kept.resize(options.max_planes);
       return kept;

@@ -19,12 +19,6 @@ namespace pcl_symmetry {
 
 namespace {
 
-/// A range image while it is made: depths row by row, Visibility::kBackground where no ray met anything.
-struct PartialImage {
-  int width, height;           ///< >= 1
-  std::vector<float>& depths;  ///< width * height
-};
-
 /// A step from pixel to pixel along a line of the picture.
 struct PixelStep {
   int du, dv;
@@ -34,11 +28,11 @@ struct PixelStep {
 
 /// Calls visit(from, to, count) for each two filled pixels of a line that follow each other, \p count steps apart.
 template <typename Visit>
-void visitLine(const PartialImage& image, int u, int v, const PixelStep& step, const Visit& visit) {
+void visitLine(const RangeImage& image, int u, int v, const PixelStep& step, const Visit& visit) {
   std::ptrdiff_t last = -1;
   int count = 0;
-  for (; u >= 0 && v >= 0 && u < image.width && v < image.height; u += step.du, v += step.dv, ++count) {
-    const std::ptrdiff_t at = static_cast<std::ptrdiff_t>(v) * image.width + u;
+  for (; u >= 0 && v >= 0 && u < image.grid.width && v < image.grid.height; u += step.du, v += step.dv, ++count) {
+    const std::ptrdiff_t at = static_cast<std::ptrdiff_t>(v) * image.grid.width + u;
     if (image.depths[at] == Visibility::kBackground) continue;
     if (last >= 0) visit(last, at, count);
     last = at;
@@ -48,17 +42,17 @@ void visitLine(const PartialImage& image, int u, int v, const PixelStep& step, c
 
 /// The same for all lines along a step.
 template <typename Visit>
-void visitLines(const PartialImage& image, const PixelStep& step, const Visit& visit) {
-  const int side = step.du < 0 ? image.width - 1 : 0;
+void visitLines(const RangeImage& image, const PixelStep& step, const Visit& visit) {
+  const int side = step.du < 0 ? image.grid.width - 1 : 0;
   if (step.du != 0)
-    for (int v = 0; v < image.height; ++v) visitLine(image, side, v, step, visit);
+    for (int v = 0; v < image.grid.height; ++v) visitLine(image, side, v, step, visit);
   if (step.dv != 0)
-    for (int u = 0; u < image.width; ++u)
+    for (int u = 0; u < image.grid.width; ++u)
       if (step.du == 0 || u != side) visitLine(image, u, 0, step, visit);
 }
 
 /// For each filled pixel, the distance to the next one along a step or against it.
-std::vector<float> distancesAlong(const PartialImage& image, const PixelStep& step) {
+std::vector<float> distancesAlong(const RangeImage& image, const PixelStep& step) {
   std::vector<float> distances(image.depths.size(), std::numeric_limits<float>::infinity());
   visitLines(image, step, [&](std::ptrdiff_t from, std::ptrdiff_t to, int count) {
     for (const std::ptrdiff_t at : {from, to}) distances[at] = std::min(distances[at], static_cast<float>(count));
@@ -70,7 +64,7 @@ std::vector<float> distancesAlong(const PartialImage& image, const PixelStep& st
 /// pixels apart, whose rays in a ring are neighbors.
 /// \return median over the pixels with a depth of the distance to the next such pixel in row or column, whichever is
 /// larger, pixels; 0 where no pixel has neighbors in row and column.
-double typicalGap(const PartialImage& image) {
+double typicalGap(const RangeImage& image) {
   const std::vector<float> in_row = distancesAlong(image, {1, 0}), in_column = distancesAlong(image, {0, 1});
   std::vector<double> gaps;
   for (std::size_t i = 0; i < in_row.size(); ++i)
@@ -83,7 +77,7 @@ double typicalGap(const PartialImage& image) {
 /// through it along rows, columns and diagonals, gets the nearer of their depths: what lies between two rays counts as
 /// seen to be free as far as both of them show it.
 /// \param longest gap that is closed, pixels.
-void bridgeGaps(PartialImage image, double longest) {
+void bridgeGaps(RangeImage& image, double longest) {
   std::vector<float> filled = image.depths, shortest(filled.size(), std::numeric_limits<float>::infinity());
   for (const PixelStep& step : {PixelStep{1, 0}, PixelStep{0, 1}, PixelStep{1, 1}, PixelStep{-1, 1}}) {
     visitLines(image, step, [&](std::ptrdiff_t from, std::ptrdiff_t to, int count) {
@@ -132,27 +126,28 @@ PixelGrid fitPixels(const std::vector<Eigen::Array2d>& positions, std::size_t ma
 
 /// Calls visit(index) for the pixels around (u, v) and itself that lie in the picture.
 template <typename Visit>
-void visitAround(int u, int v, int width, int height, const Visit& visit) {
-  for (int y = std::max(0, v - 1); y <= std::min(height - 1, v + 1); ++y)
-    for (int x = std::max(0, u - 1); x <= std::min(width - 1, u + 1); ++x)
-      visit(static_cast<std::size_t>(y) * width + x);
+void visitAround(int u, int v, const PixelGrid& grid, const Visit& visit) {
+  for (int y = std::max(0, v - 1); y <= std::min(grid.height - 1, v + 1); ++y)
+    for (int x = std::max(0, u - 1); x <= std::min(grid.width - 1, u + 1); ++x)
+      visit(static_cast<std::size_t>(y) * grid.width + x);
 }
 
 /// Fills empty pixels that most neighbors surround, with the depth nearest to the viewer: space counts as free only if
 /// a point lies behind it.
-void closeHoles(std::vector<float>& depths, int width, int height) {
-  const std::vector<float> before = depths;
-  for (int v = 1; v + 1 < height; ++v) {
+void closeHoles(RangeImage& image) {
+  const std::vector<float> before = image.depths;
+  const int width = image.grid.width;
+  for (int v = 1; v + 1 < image.grid.height; ++v) {
     for (int u = 1; u + 1 < width; ++u) {
       const std::size_t at = static_cast<std::size_t>(v) * width + u;
       if (before[at] != Visibility::kBackground) continue;
       int num_filled = 0;
       float nearest = Visibility::kBackground;
-      visitAround(u, v, width, height, [&](std::size_t near) {
+      visitAround(u, v, image.grid, [&](std::size_t near) {
         num_filled += before[near] != Visibility::kBackground ? 1 : 0;
         nearest = std::min(nearest, before[near]);
       });
-      if (num_filled >= kScan.closing_neighbors) depths[at] = nearest;
+      if (num_filled >= kScan.closing_neighbors) image.depths[at] = nearest;
     }
   }
 }
@@ -160,7 +155,9 @@ void closeHoles(std::vector<float>& depths, int width, int height) {
 /// Closes small holes whole, with the depth of their nearest border. A gap between sparse points does not show that the
 /// scanner looked through.
 /// \param largest_hole pixels, whatever the size of the picture.
-void closeGaps(std::vector<float>& depths, int width, int height, std::size_t largest_hole) {
+void closeGaps(RangeImage& image, std::size_t largest_hole) {
+  std::vector<float>& depths = image.depths;
+  const std::size_t width = image.grid.width;
   const auto is_empty = [&](std::size_t at) { return depths[at] == Visibility::kBackground; };
   const auto num_empty = std::count(depths.begin(), depths.end(), Visibility::kBackground);
   const double largest =
@@ -175,7 +172,7 @@ void closeGaps(std::vector<float>& depths, int width, int height, std::size_t la
     float nearest = Visibility::kBackground;
     for (std::size_t next = 0; next < region.size(); ++next) {
       const int u = static_cast<int>(region[next] % width), v = static_cast<int>(region[next] / width);
-      visitAround(u, v, width, height, [&](std::size_t to) {
+      visitAround(u, v, image.grid, [&](std::size_t to) {
         if (!is_empty(to)) nearest = std::min(nearest, depths[to]);
         if (visited[to] || !is_empty(to)) return;
         visited[to] = 1;
@@ -199,8 +196,8 @@ RangeImage nearestInPixels(const SeenPlaces& seen, std::size_t max_pixels, doubl
 
 /// Closes what is empty between the points of one surface.
 void closeSurfaces(RangeImage& image, std::size_t largest_hole) {
-  for (int pass = 0; pass < kScan.closing_passes; ++pass) closeHoles(image.depths, image.grid.width, image.grid.height);
-  closeGaps(image.depths, image.grid.width, image.grid.height, largest_hole);
+  for (int pass = 0; pass < kScan.closing_passes; ++pass) closeHoles(image);
+  closeGaps(image, largest_hole);
 }
 
 /// Turns empty pixels beyond the measured part of the picture to Visibility::kNoRay: those that have filled pixels in
@@ -255,15 +252,13 @@ RangeImage rangeImage(const SeenPlaces& seen, std::size_t max_pixels) {
 
 RangeImage sceneRangeImage(const SeenPlaces& seen, std::size_t max_pixels) {
   RangeImage image = nearestInPixels(seen, max_pixels, kScan.points_per_ring_pixel);
-  const PartialImage partial{image.grid.width, image.grid.height, image.depths};
-  const double gap = typicalGap(partial);
+  const double gap = typicalGap(image);
   if (gap < kScan.gap_of_rings) {
     image = nearestInPixels(seen, max_pixels, kScan.points_per_pixel);
     closeSurfaces(image, static_cast<std::size_t>(kScan.largest_scene_hole / kScan.points_per_pixel));
   } else {
-    bridgeGaps(partial, kScan.longest_bridge * gap);
-    closeGaps(image.depths, partial.width, partial.height,
-              static_cast<std::size_t>(kScan.largest_scene_hole / kScan.points_per_ring_pixel));
+    bridgeGaps(image, kScan.longest_bridge * gap);
+    closeGaps(image, static_cast<std::size_t>(kScan.largest_scene_hole / kScan.points_per_ring_pixel));
   }
   forgetOutside(image);
   return image;
