@@ -236,7 +236,7 @@ void CommandLine::assignPositionals() const {
 }
 
 bool CommandLine::given(const std::string& name) const {
-  return values_.count(name) > 0;
+  return values_.count(name) > 0 && !values_[name].defaulted();
 }
 
 std::string CommandLine::usage() const {

@@ -39,7 +39,7 @@ CommandLine commandLine(MatchOptions& options) {
       .number("max", options.num_matches, Range::closed(1, 1'000'000), "largest number of models shown")
       .flag("recognize", options.recognize, "bring the models to the scan and keep those that fit")
       .number("candidates", options.recognition.num_candidates, Range::closed(1, 1'000'000),
-              "number of models that are brought to the scan")
+              "number of models most like the scan that are tried")
       .number("min_confidence", options.recognition.min_confidence, Range::closed(0, 1),
               "least confidence of a known model")
       .number("min_merit", options.recognition.min_merit, Range::closed(-1, 1),

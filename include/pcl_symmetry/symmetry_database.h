@@ -48,8 +48,8 @@ struct RecognitionOptions {
   /// For scans from a viewpoint, in databases of more than 300 models: models that are tried where none of the first
   /// num_candidates is accepted, those included, >= 1. Unknown objects take the time of all.
   int max_candidates = 70;
-  /// For scans from a viewpoint: models with the best poses, which are refined, >= 1, of num_candidates
-  /// and again of the others.
+  /// For scans from a viewpoint: models with the best poses, which are refined, >= 1; in databases of more than 300
+  /// models of the first num_candidates, and again of the others.
   int num_refined = 4;
   double min_confidence = 0.5;  ///< of an accepted model, in [0, 1], see RecognizedModel::confidence
   double min_merit = 0.5;       ///< of the pose of an accepted model, in [-1, 1], see RecognizedModel::score

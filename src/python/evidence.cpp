@@ -38,7 +38,7 @@ std::vector<double> padded(std::vector<double> terms) {
   return terms;
 }
 
-auto rowOf(const JudgedPlane& judged) {
+auto rowOf(const MeasuredPlane& judged) {
   const PlaneEvidence& e = judged.evidence;
   PlaneEvidence further = e;
   further.further = true;
@@ -114,7 +114,7 @@ py::array planeEvidence(const Detection& found) {
                            "conflict", "baseline", "hold", "spacing", "roughness", "tolerance", "share_unit"})
     columns.emplace_back(name, "f8");
   columns.emplace_back("terms", "7f8");
-  return arrayOfRows(rowsOf(found.evidence ? found.evidence->planes : std::vector<JudgedPlane>{}), columns);
+  return arrayOfRows(rowsOf(found.evidence ? found.evidence->planes : std::vector<MeasuredPlane>{}), columns);
 }
 
 py::array turnEvidence(const Detection& found) {

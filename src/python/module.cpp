@@ -145,11 +145,12 @@ Eigen::MatrixXd revolutionProfileOf(const AnyArray& points, const Eigen::Vector3
   return rows;
 }
 
-PlaneSearch planes(const AnyArray& points, const py::object& viewpoint, double tolerance, double absolute_tolerance,
-                   bool approximate, int max_planes, const py::object& normals, std::size_t max_points, bool evidence,
-                   std::uint64_t seed, int threads, const std::optional<MeshSurface>& mesh) {
+PlaneSearch planes(const AnyArray& points, const py::object& viewpoint, std::optional<double> tolerance,
+                   double absolute_tolerance, bool approximate, int max_planes, const py::object& normals,
+                   std::size_t max_points, bool evidence, std::uint64_t seed, int threads,
+                   const std::optional<MeshSurface>& mesh) {
   auto options = optionsWith<DetectionOptions>(seed, threads);
-  options.tolerance = tolerance;
+  if (tolerance) options.tolerance = options.most_tolerance = *tolerance;
   options.absolute_tolerance = absolute_tolerance;
   options.approximate = approximate;
   options.max_planes = max_planes;

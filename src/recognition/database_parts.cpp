@@ -95,7 +95,7 @@ std::shared_ptr<const PairSearch> DatabaseParts::pairs() {
   if (store.models().size() > kRecognition.max_pair_models) return pairs_ = nullptr;
   const std::vector<StoredModel> models = store.models();
   const std::shared_ptr<const PairSearch> before = pairs_;
-  lock.unlock();  // clouds are read under it, one at a time
+  lock.unlock();  // models are read under it, one at a time
   const auto read = [&](const StoredModel& model) { return shape(model); };
   const auto made = std::make_shared<const PairSearch>(models, read, before.get(), options.num_threads);
   lock.lock();

@@ -31,26 +31,25 @@ void append(std::vector<SymmetryPlane>& planes, std::vector<SymmetryPlane> more)
   std::move(more.begin(), more.end(), std::back_inserter(planes));
 }
 
-/// The last stage of refinement and the judgment, with as little work as the answer needs: planes that cannot be
-/// symmetries beside the ones that were found are left out after a look at some points, and planes climb only where
-/// that may decide.
-class PlaneSettler {
+/// Refines candidates in full and decides them. In a whole cloud, once a plane explains everything, hopeless candidates
+/// are skipped; planes climb only where that may decide.
+class FinalRefinement {
 public:
   /// \param refinement,decision must outlive this object.
-  /// \param looks the cloud is a whole surface, and other planes than symmetries are not wanted where there are any.
-  PlaneSettler(const StagedRefinement& refinement, const PlaneDecision& decision, bool looks)
-      : refinement_(refinement), decision_(decision), looks_(looks) {}
+  /// \param skips_hopeless the cloud is a whole surface, and other planes than symmetries are not wanted where there are any.
+  FinalRefinement(const StagedRefinement& refinement, const PlaneDecision& decision, bool skips_hopeless)
+      : refinement_(refinement), decision_(decision), skips_hopeless_(skips_hopeless) {}
 
   /// \param candidates after the second stage, best first.
   /// \return the planes that may be symmetries, and where there are none, the others too; input frame.
   std::vector<SymmetryPlane> planes(std::vector<Candidate> candidates) {
     std::vector<SymmetryPlane> found;
-    if (looks_ && !explained_ && candidates.size() > 1) {
+    if (skips_hopeless_ && !explained_ && candidates.size() > 1) {
       found = judged({candidates.front()});
       candidates.erase(candidates.begin());
     }
     // Nothing is missing then that could excuse what others leave off.
-    if (looks_ && explained_)
+    if (skips_hopeless_ && explained_)
       candidates.erase(std::remove_if(candidates.begin(), candidates.end(),
                                       [&](const Candidate& other) { return decision_.isHopeless(other); }),
                        candidates.end());
@@ -65,7 +64,7 @@ private:
     std::vector<SymmetryPlane> planes;
     std::vector<Candidate> climbing;
     std::vector<std::size_t> index_of;
-    for (JudgedPlane& judged : decision_.judge(candidates)) {
+    for (MeasuredPlane& judged : decision_.judge(candidates)) {
       if (judged.plane.confidence >= kDetection.fit.climbing_confidence) {
         climbing.push_back(std::move(candidates[planes.size()]));
         index_of.push_back(planes.size());
@@ -80,7 +79,7 @@ private:
       again.push_back(std::move(climbing[k]));
       index_of_again.push_back(index_of[k]);
     }
-    std::vector<JudgedPlane> judged_again = decision_.judge(again);
+    std::vector<MeasuredPlane> judged_again = decision_.judge(again);
     for (std::size_t k = 0; k < again.size(); ++k) planes[index_of_again[k]] = std::move(judged_again[k].plane);
     for (const SymmetryPlane& plane : planes) explained_ = explained_ || decision_.explainsAll(plane);
     return planes;
@@ -88,14 +87,14 @@ private:
 
   const StagedRefinement& refinement_;
   const PlaneDecision& decision_;
-  bool looks_;
+  bool skips_hopeless_;
   bool explained_ = false;  ///< a plane explains all of the cloud, so that nothing is missing
 };
 
 /// The evidence of all candidates, also of those that the detection leaves out early.
 /// \param candidates after the second stage.
-std::vector<JudgedPlane> evidenceOf(std::vector<Candidate> candidates, const StagedRefinement& refinement,
-                                    const PlaneDecision& decision) {
+std::vector<MeasuredPlane> evidenceOf(std::vector<Candidate> candidates, const StagedRefinement& refinement,
+                                      const PlaneDecision& decision) {
   candidates = refinement.full(std::move(candidates));
   refinement.climb(candidates);
   return decision.judge(refinement.distinct(std::move(candidates)));
@@ -138,7 +137,7 @@ Detection planesOfCloud(const NormalizedCloud& cloud, const Points& all, const S
     detection.evidence->planes = evidenceOf(candidates, refinement, decision);
     timed("evidence");
   }
-  PlaneSettler settler(refinement, decision, !options.approximate && cloud.rules().may_lack_piece);
+  FinalRefinement settler(refinement, decision, !options.approximate && cloud.rules().may_lack_piece);
   std::vector<SymmetryPlane> planes = settler.planes(std::move(candidates));
   timed("full_refinement");
 

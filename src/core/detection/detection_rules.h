@@ -29,10 +29,10 @@ struct DetectionRules {
     double volume_roughness = 0.36;        ///< spacings; points that fill a volume evenly have 0.42
   } cloud;
 
-  /// Candidates.
+  /// Completion of groups.
   struct {
     std::size_t most_closed = 16;  ///< symmetries whose group is completed: a cube has 9, an icosahedron 15
-  } candidates;
+  } closure;
 
   /// Iterative Symmetric Points.
   struct {
@@ -90,22 +90,24 @@ struct DetectionRules {
 
   /// Deciding.
   struct {
-    double most_cut = 0.3;               ///< share of the outline that the picture may cut off; tables in frames: 0.36
-    double hopeful_share = 0.93;         ///< of a quick look; less is no possible symmetry
-    double look_errors = 2.0;            ///< standard errors that a quick look allows
-    double still_share = 0.5;            ///< share of the points that an uninformative plane leaves in place
-    double nothing_missing = 0.01;       ///< share of the surface; less is missing by chance
-    double piece_missing = 0.03;         ///< share of the surface; more is a piece
-    double odds_of_a_piece = 0.2;        ///< that a cloud lacks a piece although a plane explains all of it
-    double as_likely = 0.05;             ///< difference of the confidences that other samples of a cloud make
-    double least_told = 0.1;             ///< share of samples that tell something below which confidence falls
-    double coarsest_tolerance = 0.03;    ///< share of the diameter; a sensor that resolves less decides at this
-    double coarsest_resolution = 0.09;   ///< three times that; a sensor that resolves less decides nothing
+    double most_cut = 0.3;              ///< share of the outline that the picture may cut off; tables in frames: 0.36
+    double hopeful_share = 0.93;        ///< of a quick look; less is no possible symmetry
+    double look_errors = 2.0;           ///< standard errors that a quick look allows
+    double still_share = 0.5;           ///< share of the points that an uninformative plane leaves in place
+    double nothing_missing = 0.01;      ///< share of the surface; less is missing by chance
+    double piece_missing = 0.03;        ///< share of the surface; more is a piece
+    double odds_of_a_piece = 0.2;       ///< that a cloud lacks a piece although a plane explains all of it
+    double as_likely = 0.05;            ///< difference of the confidences that other samples of a cloud make
+    double least_told = 0.1;            ///< least share of informative samples; below it confidence falls in proportion
+    double coarsest_tolerance = 0.03;   ///< share of the diameter; a sensor that resolves less decides at this
+    double coarsest_resolution = 0.09;  ///< three times that; a sensor that resolves less decides nothing
     double upright = 5.0 * kPi / 180.0;  ///< from upright or level within which a plane does not slant
     double touching = 0.05;              ///< diameters beyond the nearest support within which others carry, too
     double slanted_odds = 0.1;           ///< of a plane that slants over one that does not
     int most_possible = 5;               ///< symmetries and possible planes together, where there are possible ones
     double slope_dip = 0.005;            ///< difference of D that rounding makes of a level slope
+    double slope_angle = 0.2,
+           slope_offset = 0.15;  ///< radians, radii: a plane and a better one may be on one slope within
   } decide;
 
   /// Polygons and families.
@@ -208,10 +210,10 @@ struct DetectionRules {
     double plane_slack = 2.0;    ///< tolerances of that screening
     double upright_angle = 6.0 * kDegree, crossing_gap = 0.06;  ///< by which lines may miss a right angle, each other
     double landed_counts = 0.1;                                 ///< what lands on the surface, of what is thrown off it
-    double most_halfway = 0.3;       ///< share of the points from which on all folds are alike
-    double little_share = 2e-3;      ///< share of the points that is little: two of a thousand
-    double little_of_planes = 5e-3;  ///< the same of planes, which are screened at steps
-    double little_hold = 1e-3;       ///< stiffness of a line that is hardly held; boxes have 0.05
+    double most_halfway = 0.3;           ///< share of the points from which on all folds are alike
+    double negligible_share = 2e-3;      ///< share of the points that is negligible
+    double negligible_of_planes = 5e-3;  ///< the same of planes, which are screened at steps
+    double least_hold = 1e-3;            ///< least stiffness of a line that the scan holds; boxes have 0.05
   } rotations;
 };
 

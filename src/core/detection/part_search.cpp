@@ -362,7 +362,7 @@ std::vector<SymmetryPlane> localPlanes(const std::vector<SymmetryPlane>& known, 
   parallelBlocks(parts.size(), options.num_threads, [&](std::size_t i) {
     const auto normalized = [&](const SymmetryPlane& plane) { return cloud.toNormalized(plane); };
     if (kSameBasin.anySame(decided, parts[i].plane, normalized)) return;
-    JudgedPlane judged = decision.measure.of(parts[i].plane, all);
+    MeasuredPlane judged = decision.measure.of(parts[i].plane, all);
     decision.decide(judged);
     if (judged.plane.kind == PlaneKind::Symmetry) return;  // of a family, which is known as its axis or center
     judged.plane.kind = PlaneKind::Local;

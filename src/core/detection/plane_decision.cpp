@@ -47,7 +47,7 @@ bool slants(const ReflectionPlane& plane, const std::vector<Eigen::Vector3d>& ca
   return !carrying_normals.empty() && std::none_of(carrying_normals.begin(), carrying_normals.end(), is_along);
 }
 
-void PlaneDecision::decide(JudgedPlane& measured) const {
+void PlaneDecision::decide(MeasuredPlane& measured) const {
   decideBy(planeConfidence(measured.evidence) * std::min(1.0, measured.told / kDetection.decide.least_told),
            measured.plane);
 }
@@ -126,9 +126,9 @@ bool isBetter(const SymmetryPlane& a, const SymmetryPlane& b) {
   return a.support > b.support;
 }
 
-std::vector<JudgedPlane> PlaneDecision::judge(const std::vector<Candidate>& candidates) const {
+std::vector<MeasuredPlane> PlaneDecision::judge(const std::vector<Candidate>& candidates) const {
   const std::vector<int> samples = measure.samples();
-  std::vector<JudgedPlane> judged(candidates.size());
+  std::vector<MeasuredPlane> judged(candidates.size());
   parallelBlocks(candidates.size(), options_.num_threads, [&](std::size_t i) {
     judged[i] = measure.of(candidates[i], samples);
     decide(judged[i]);
@@ -172,15 +172,11 @@ JudgedFamily PlaneDecision::judgeFamily(const std::vector<ReflectionPlane>& plan
 
 namespace {
 
-// Radians, and radii: how far the slope of a maximum may reach. Twice the limits of a basin of refinement; smaller
-// values report planes that came to rest on a slope, larger ones only cost a value of D each.
-constexpr PlaneTolerance kSlope{0.2, 0.15};
-
 /// Refinement can come to rest on the way to a maximum, where few points say how to go on (on flat pieces, for
 /// instance). A plane is a maximum of its own only if D falls on the way to a better plane nearby.
 bool isOnSlopeOf(const SymmetryPlane& better, const SymmetryPlane& plane, const NormalizedCloud& cloud) {
   const ReflectionPlane a = cloud.toNormalized(better), b = cloud.toNormalized(plane);
-  if (!kSlope.same(a, b)) return false;
+  if (!PlaneTolerance{kDetection.decide.slope_angle, kDetection.decide.slope_offset}.same(a, b)) return false;
   const double sign = a.normal().dot(b.normal()) < 0.0 ? -1.0 : 1.0;
   const Eigen::Vector3d normal = a.normal() + sign * b.normal();
   const ReflectionPlane between(normal, 0.5 * normal.norm() * (a.offset() + sign * b.offset()));

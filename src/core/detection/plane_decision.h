@@ -34,7 +34,7 @@ inline bool isDecided(const SymmetryPlane& plane) {
 /// What the decisions of one detection were taken from: what fits are made to.
 struct DetectionEvidence {
   /// Candidates after all stages of refinement, each plane once, best merit first. No fitted number has a part in them.
-  std::vector<JudgedPlane> planes;
+  std::vector<MeasuredPlane> planes;
   std::vector<JudgedRotation> rotations;  ///< of scans
 };
 
@@ -45,8 +45,9 @@ struct JudgedFamily {
   double score = 0.0, support = 0.0;
 };
 
-/// From refined planes to answers: measures, then decides. The one place that says what is a symmetry, what is
-/// possible, and what comes first (core/evidence/README.md).
+/// From refined planes to answers: measures, then decides what is a symmetry, what is possible, and what comes first
+/// (core/evidence/README.md). All planes get confidence and kind by decideBy(), also those of polygons, upright boxes,
+/// meshes and volumes, which bring evidence of their own.
 class PlaneDecision {
 public:
   /// \param cloud,fit,options must outlive this object.
@@ -57,10 +58,10 @@ public:
 
   /// \param candidates after the last stage of refinement.
   /// \return one plane each, in the same order.
-  std::vector<JudgedPlane> judge(const std::vector<Candidate>& candidates) const;
+  std::vector<MeasuredPlane> judge(const std::vector<Candidate>& candidates) const;
 
   /// Decides what a plane is by what was measured of it.
-  void decide(JudgedPlane& measured) const;
+  void decide(MeasuredPlane& measured) const;
 
   /// Planes of a family together.
   /// \param planes normalized frame, at least one.

@@ -178,7 +178,7 @@ std::optional<double> phaseByReflections(const NormalizedCloud& cloud, const Lin
 }
 
 /// What several planes say together.
-double confidenceTogether(const std::vector<JudgedPlane>& judged, int first, int step) {
+double confidenceTogether(const std::vector<MeasuredPlane>& judged, int first, int step) {
   PlaneEvidence mean = judged[first].evidence;
   // What differs from plane to plane of a cloud
   static constexpr std::array kMeans{&PlaneEvidence::share,   &PlaneEvidence::double_share, &PlaneEvidence::hold,
@@ -196,7 +196,7 @@ double confidenceTogether(const std::vector<JudgedPlane>& judged, int first, int
 }
 
 /// The least confidence of parts of a polygon that may be symmetries while the others are not.
-double leastTogether(const std::vector<JudgedPlane>& judged) {
+double leastTogether(const std::vector<MeasuredPlane>& judged) {
   double least = confidenceTogether(judged, 0, 1);
   for (const int divisor : kDetection.folds.divisors)
     if (judged.size() % divisor == 0 && judged.size() > static_cast<std::size_t>(divisor))
@@ -265,7 +265,7 @@ PlanesAndPolygon withPolygon(std::vector<SymmetryPlane> planes, const Normalized
   if (!lattice) return {std::move(planes), std::nullopt};
   std::vector<Candidate> candidates;
   for (int k = 0; k < lattice->fold; ++k) candidates.push_back({lattice->plane(k), false});
-  std::vector<JudgedPlane> judged = decision.judge(candidates);
+  std::vector<MeasuredPlane> judged = decision.judge(candidates);
   const double together = withOdds(leastTogether(judged), kDetection.folds.odds_of_polygon);
   if (together < options.min_confidence) return {std::move(planes), std::nullopt};
   // All planes tell where the polygon lies: those that noise moved away are dropped.
@@ -275,7 +275,7 @@ PlanesAndPolygon withPolygon(std::vector<SymmetryPlane> planes, const Normalized
                                                 kDetection.families.contained_offset);
                               }),
                planes.end());
-  for (JudgedPlane& one : judged) {
+  for (MeasuredPlane& one : judged) {
     decision.decideBy(std::max(one.plane.confidence, together), one.plane);
     planes.push_back(std::move(one.plane));
   }

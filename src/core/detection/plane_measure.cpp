@@ -72,17 +72,17 @@ std::vector<int> PlaneMeasure::samples() const {
                    : allOf(num_points);
 }
 
-JudgedPlane PlaneMeasure::of(const Candidate& candidate, const std::vector<int>& samples) const {
+MeasuredPlane PlaneMeasure::of(const Candidate& candidate, const std::vector<int>& samples) const {
   // The last stage may have matched these very samples.
   const bool has_matches = candidate.last.last.closest.size() == samples.size();
   const IspStep step = has_matches ? candidate.last.last : fit_.matches(candidate.plane, samples);
-  JudgedPlane result = measured(candidate.plane, samples, step, 0.0);
+  MeasuredPlane result = measured(candidate.plane, samples, step, 0.0);
   result.plane.iterations = candidate.iterations;
   result.plane.converged = candidate.last.converged;
   return result;
 }
 
-JudgedPlane PlaneMeasure::of(const ReflectionPlane& plane, const std::vector<int>& samples, double rim) const {
+MeasuredPlane PlaneMeasure::of(const ReflectionPlane& plane, const std::vector<int>& samples, double rim) const {
   return measured(plane, samples, fit_.matches(plane, samples), rim);
 }
 
@@ -142,8 +142,8 @@ std::vector<float> PlaneMeasure::unknownMatches(const Reflected& reflected, cons
   return unknown;
 }
 
-JudgedPlane PlaneMeasure::measured(const ReflectionPlane& plane, const std::vector<int>& samples, const IspStep& step,
-                                   double rim) const {
+MeasuredPlane PlaneMeasure::measured(const ReflectionPlane& plane, const std::vector<int>& samples, const IspStep& step,
+                                     double rim) const {
   const Reflected image = reflected(plane, samples, step);
   const std::size_t size = samples.size();
   std::vector<char> matched(size), is_moved(size);
@@ -183,7 +183,7 @@ JudgedPlane PlaneMeasure::measured(const ReflectionPlane& plane, const std::vect
   };
 
   PlaneShares shares = fit_.shares(plane, samples, step);
-  JudgedPlane result;
+  MeasuredPlane result;
   result.plane = SymmetryPlane(cloud_.toInput(plane));
   PlaneEvidence& evidence = result.evidence;
   evidence = evidenceOf(shares.support, shares.conflict, cloud_.score(result.plane));

@@ -14,7 +14,7 @@
 namespace pcl_symmetry {
 
 /// A plane, and what its decision is taken from.
-struct JudgedPlane {
+struct MeasuredPlane {
   SymmetryPlane plane;     ///< input frame
   PlaneEvidence evidence;  ///< all that the decision reads, beside told
   double told = 1.0;       ///< share of the samples that move and land where something is known; 1 of whole clouds
@@ -44,12 +44,12 @@ public:
   /// \param candidate after the last stage of refinement.
   /// \param samples what samples() returned.
   /// \return without confidence and kind, as below.
-  JudgedPlane of(const Candidate& candidate, const std::vector<int>& samples) const;
+  MeasuredPlane of(const Candidate& candidate, const std::vector<int>& samples) const;
 
   /// \param plane normalized frame.
   /// \param samples indices of points.
   /// \param rim how far beside a reflection the scanner must have seen nothing, too, for the reflection to contradict.
-  JudgedPlane of(const ReflectionPlane& plane, const std::vector<int>& samples, double rim = 0.0) const;
+  MeasuredPlane of(const ReflectionPlane& plane, const std::vector<int>& samples, double rim = 0.0) const;
 
   /// Evidence of the cloud; fields of the plane beyond support, conflict and D keep their defaults.
   PlaneEvidence evidenceOf(double support, double conflict, double score) const;
@@ -81,8 +81,8 @@ private:
   std::vector<float> unknownMatches(const Reflected& reflected, const IspStep& step, const std::vector<char>& matched,
                                     double offset_stiffness, double rim) const;
   /// \param rim as above.
-  JudgedPlane measured(const ReflectionPlane& plane, const std::vector<int>& samples, const IspStep& step,
-                       double rim) const;
+  MeasuredPlane measured(const ReflectionPlane& plane, const std::vector<int>& samples, const IspStep& step,
+                         double rim) const;
   const SurfaceEnds& ends() const;
 
   const NormalizedCloud& cloud_;

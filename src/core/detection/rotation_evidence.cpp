@@ -270,16 +270,16 @@ RotationKind kindOf(const SymmetryTurn& turn) {
 }
 
 std::vector<double> rotationOddsTerms(const SymmetryTurn& turn, const RotationSigns& signs) {
-  const double off = std::log1p(turn.off / kDetection.rotations.little_share),
-               far = std::log1p(turn.far / kDetection.rotations.little_share);
+  const double off = std::log1p(turn.off / kDetection.rotations.negligible_share),
+               far = std::log1p(turn.far / kDetection.rotations.negligible_share);
   switch (kindOf(turn)) {
     case RotationKind::Half:  // without what is far off: what the object grows by says that, and off does
       return {1.0,
               off,
               1.0 - turn.support,
               std::log(signs.grown),
-              -std::log1p(signs.hold / kDetection.rotations.little_hold),
-              std::log1p(signs.planes_off / kDetection.rotations.little_of_planes),
+              -std::log1p(signs.hold / kDetection.rotations.least_hold),
+              std::log1p(signs.planes_off / kDetection.rotations.negligible_of_planes),
               signs.beside};
     case RotationKind::Folds:
       return {1.0,

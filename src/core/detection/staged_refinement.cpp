@@ -153,7 +153,7 @@ std::vector<Candidate> GroupClosure::next(const std::vector<SymmetryPlane>& plan
   // The planes of a regular polygon, from those of them that are known.
   if (const std::optional<PlaneLattice> lattice = findLattice(symmetries))
     for (int k = 0; k < lattice->fold; ++k) add(lattice->plane(k));
-  if (symmetries.size() > kDetection.candidates.most_closed) return found;
+  if (symmetries.size() > kDetection.closure.most_closed) return found;
   for (const ReflectionPlane& plane : symmetries) {
     for (const ReflectionPlane& across : symmetries) {
       const Eigen::Vector3d normal = plane.normal() - 2.0 * plane.normal().dot(across.normal()) * across.normal();

@@ -223,7 +223,7 @@ def planes(
     direction: Optional["ArrayLike"] = None,
     levels: Optional[Tuple[float, float]] = None,
     viewpoint: Viewpoint = "auto",
-    tolerance: float = 0.01,
+    tolerance: "float | None" = None,
     absolute_tolerance: float = 0.0,
     approximate: bool = False,
     max_planes: int = 12,
@@ -241,6 +241,7 @@ def planes(
         finite are left out. The planes of a mesh are exact: the last step refines on the mesh itself.
     viewpoint: where the scanner stood: "auto" (the points decide), None (seen from all sides) or (x, y, z).
     tolerance: how far a symmetric surface may be off, share of the greatest distance between two points, in (0, 0.1].
+        None: 0.01, or what a depth camera or few points resolve, at most 0.03.
     absolute_tolerance: the same in input units; 0: tolerance decides.
     approximate: also the other maxima of the transform, and symmetries of parts.
     normals: (N, 3), of any length and sign; None: estimated.
