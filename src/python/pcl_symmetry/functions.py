@@ -63,10 +63,10 @@ def _wrong_argument(text: str, arguments: Dict[str, Any]) -> str:
 
     types: Dict[str, Any] = {"bool": (bool, np.bool_), "str": str, "int": (int, np.integer), "float": (int, float, np.number)}
     for name, value in arguments.items():
-        rule = re.search(rf"\b{name}: (?:({'|'.join(types)})\b|numpy\.ndarray\[\S+\[(\d), (\d)\]|Tuple\[(float), float\])", text)
-        if not rule:
+        rule = re.search(rf"\b{name}: (Optional\[)?(?:({'|'.join(types)})\b|numpy\.ndarray\[\S+\[(\d), (\d)\]|Tuple\[(float), float\])", text)
+        if not rule or (rule[1] and value is None):
             continue
-        kind, rows, columns, pair = rule.groups()
+        _, kind, rows, columns, pair = rule.groups()
         low, high = (0, 2**64) if name in ("seed", "max_points") else (-(2**31), 2**31)
         if kind:
             fits = isinstance(value, types[kind]) and (kind != "int" or low <= value < high)
@@ -223,7 +223,7 @@ def planes(
     direction: Optional["ArrayLike"] = None,
     levels: Optional[Tuple[float, float]] = None,
     viewpoint: Viewpoint = "auto",
-    tolerance: "float | None" = None,
+    tolerance: Optional[float] = None,
     absolute_tolerance: float = 0.0,
     approximate: bool = False,
     max_planes: int = 12,
