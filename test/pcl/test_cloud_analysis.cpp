@@ -145,7 +145,8 @@ TEST(CloudAnalysis, EveryClassNamesFieldValueAndRule) {
 TEST(CloudAnalysis, FunctionsOfAnyCloudRefuseAlike) {
   DetectionOptions detection;
   detection.min_confidence = -1.0;
-  EXPECT_EQ(messageOf([&] { detectSymmetryPlanes(*grid(60), detection); }), "min_confidence = -1, must be in [0, 1]");
+  for (const auto& cloud : {*grid(60), pcl::PointCloud<pcl::PointXYZ>()})
+    EXPECT_EQ(messageOf([&] { detectSymmetryPlanes(cloud, detection); }), "min_confidence = -1, must be in [0, 1]");
   ObjectSymmetryOptions symmetries;
   symmetries.max_fold = 0;
   EXPECT_EQ(messageOf([&] { detectObjectSymmetries(*grid(60), symmetries); }), "max_fold = 0, must be >= 2");

@@ -242,6 +242,7 @@ TEST(PoseScreening, ShapesThatFillEmptySpaceAreLeftBehind) {
   const auto found = screenPoses(scan, shapes);
   ASSERT_EQ(found.size(), 2u);
   EXPECT_EQ(found[0].shape, 1);
+  EXPECT_EQ(screenPoses(scan, {shapes[0], shapes[0], shapes[1]}).size(), 2u) << "one that is far behind is kept";
   PoseScreeningOptions options;
   options.least_shapes = 1;
   EXPECT_EQ(screenPoses(scan, shapes, options).size(), 1u) << "the wide box is far behind";

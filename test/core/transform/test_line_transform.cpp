@@ -210,6 +210,7 @@ TEST(ReflectionLine, AngleIsThatOfLines) {
 TEST(ReflectionLine, RefusesWhatIsNotFinite) {
   constexpr double kInfinity = std::numeric_limits<double>::infinity();
   EXPECT_THROW(ReflectionLine(std::numeric_limits<double>::quiet_NaN(), 0.0), std::invalid_argument);
+  EXPECT_THROW(ReflectionLine(kInfinity, 0.0), std::invalid_argument);
   EXPECT_THROW(ReflectionLine(0.0, kInfinity), std::invalid_argument);
 }
 
