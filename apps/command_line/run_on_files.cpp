@@ -98,7 +98,7 @@ int runOnOne(const std::string& path, const BatchOptions& batch, const CommonOpt
   return 0;
 }
 
-/// \throws UsageError or InputError where two inputs would write one file.
+/// \throws UsageError or InputError where two inputs would write one file, or the folder of an output is missing.
 void checkOutputs(const BatchOptions& batch, const std::vector<InputFile>& files) {
   std::string pattern;
   for (const std::optional<std::string>* output : batch.outputs) {
@@ -106,7 +106,8 @@ void checkOutputs(const BatchOptions& batch, const std::vector<InputFile>& files
     pattern = **output;
     if (isStandardStream(pattern)) throw UsageError("with several inputs only -json and -csv can be -");
     if (pattern.find("{}") == std::string::npos)
-      throw UsageError(pattern + ": with several inputs the name must hold {}, which stands for the name of the input");
+      throw UsageError(pattern + ": with several inputs the name must hold {}, which represents the name of the input");
+    if (boost::filesystem::path(pattern).parent_path().string().find("{}") == std::string::npos) checkTarget(pattern);
   }
   if (!pattern.empty()) checkNames(files);
 }
@@ -228,7 +229,7 @@ public:
         num_threads_(static_cast<std::size_t>(resolveNumThreads(common.threads))),
         common_(common),
         console_(common.quiet),
-        step_(console_, "Working on " + std::to_string(files.size()) + " files") {
+        step_(console_, "Working on " + counted(files.size(), "file")) {
     common_.threads = 1;
   }
 

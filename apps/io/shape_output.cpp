@@ -194,7 +194,8 @@ void makeFolder(const std::string& path) {
   boost::system::error_code error, ignored;  // Boost 1.74 has an error for ".", which is there
   fs::create_directories(path, error);
   if (!fs::is_directory(path, ignored))
-    throw InputError(path + ": cannot be made, " + (fs::exists(path, ignored) ? "must be a folder" : error.message()));
+    throw InputError(path + ": cannot be made, " +
+                     (fs::exists(path, ignored) ? "it is a file, must be a folder" : error.message()));
 }
 
 void checkCloudExtension(const std::string& path) {

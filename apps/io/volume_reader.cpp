@@ -290,6 +290,7 @@ Image imageOf(const std::string& path, const VtkMessages& messages) {
 void readVolume(const std::string& path, Volume& volume) {
   const std::lock_guard<std::mutex> lock(drawing_mutex);
   const VtkMessages messages;
+  if (!boost::filesystem::exists(path)) throw InputError(path + ": no such file");
   if (!boost::filesystem::is_regular_file(path)) throw InputError(path + ": is no file");
   Image image = imageOf(path, messages);
   int size[3];

@@ -173,8 +173,8 @@ SceneAnalysis analyze(const Console& console, SymmetryScene& scene, const InputS
   Step searching(console, "Searching objects");
   SceneAnalysis found;
   namingFile(input.path, [&] { found = scene.compute(); });
-  if (found.timing_ms.empty()) throw InputError(input.path + ": no point, must have some");
-  const double total = searching.done(std::to_string(found.objects.size()) + " objects");
+  if (found.timing_ms.empty()) throw InputError(input.path + ": input cloud: no finite point");
+  const double total = searching.done(counted(found.objects.size(), "object"));
   found.timing_ms.emplace_back("load", input.loading_ms);
   found.timing_ms.emplace_back("total", total);
   return found;

@@ -133,7 +133,7 @@ public:
     database_options.unit = options_.unit.value_or("");
     database_options.is_part = options_.is_part;
     const bool makes_file = isBuild() || options_.command == "merge";
-    if (!makes_file && !fs::exists(options_.file)) throw InputError(options_.file + ": there is no such file");
+    if (!makes_file && !fs::exists(options_.file)) throw InputError(options_.file + ": no such file");
     SymmetryDatabase database(options_.file, database_options);
     if (isBuild()) return build(database);
     if (options_.command == "merge") return merge(database);
@@ -231,7 +231,7 @@ private:
     std::vector<std::string> names(options_.arguments.begin() + 1, options_.arguments.end());
     if (names.empty()) names = database.names();
     makeFolder(folder.string());
-    Step step(console_, "Writing " + std::to_string(names.size()) + " clouds");
+    Step step(console_, "Writing " + counted(names.size(), "cloud"));
     std::vector<std::string> failures;
     for (const std::string& name : names) {
       const std::string path = (folder / (name + ".pcd")).string();
@@ -246,7 +246,7 @@ private:
         failures.emplace_back(reason.what());
       }
     }
-    step.done(std::to_string(names.size() - failures.size()) + " clouds");
+    step.done(counted(names.size() - failures.size(), "cloud"));
     for (const std::string& failure : failures) console_.error("left out: " + failure);
     return failures.empty() ? 0 : 1;
   }

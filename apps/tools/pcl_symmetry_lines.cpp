@@ -107,9 +107,10 @@ void checkFlat(const pcl::PointCloud<pcl::PointXYZ>& points, const Eigen::Isomet
 }
 
 /// Reads, transforms and prints one shape.
+/// \param is_first prints the head of the table, too.
 /// \return its entry of the JSON; its picture where one is wanted.
 std::pair<nlohmann::json, std::optional<RasterImage>> analyze(const std::string& input, const LinesOptions& options,
-                                                              const Console& console) {
+                                                              const Console& console, bool is_first) {
   Step loading(console, "Loading " + input);
   const pcl::PointCloud<pcl::PointXYZ>::Ptr contour = loadContour(input, options.filled);
   loading.done(std::to_string(contour->size()) + " points");
@@ -129,6 +130,7 @@ std::pair<nlohmann::json, std::optional<RasterImage>> analyze(const std::string&
   if (static_cast<int>(lines.size()) > options.max_lines) lines.resize(options.max_lines);
   const double ms = searching.done(counted(lines.size(), "line"));
 
+  if (is_first) std::printf("%5s %10s %10s %12s %7s  %s\n", "line", "a", "b", "c", "score", "shape");
   for (std::size_t i = 0; i < lines.size(); ++i) {
     const ReflectionLine& found = lines[i].line;
     std::printf("%5zu %10.6f %10.6f %12.6g %7.3f  %s\n", i + 1, found.normal().x(), found.normal().y(), -found.offset(),
@@ -149,9 +151,8 @@ int run(int argc, char** argv) {
   const Console console(options.common.quiet);
   nlohmann::json shapes = nlohmann::json::array();
   std::vector<RasterImage> panels;
-  std::printf("%5s %10s %10s %12s %7s  %s\n", "line", "a", "b", "c", "score", "shape");
   for (const std::string& input : options.inputs) {
-    auto [json, panel] = analyze(input, options, console);
+    auto [json, panel] = analyze(input, options, console, shapes.empty());
     shapes.push_back(std::move(json));
     if (panel) panels.push_back(std::move(*panel));
   }

@@ -2,6 +2,7 @@
 /// plane, axis or center there.
 #include <Eigen/Core>
 #include <algorithm>
+#include <boost/algorithm/string.hpp>
 #include <cmath>
 #include <functional>
 #include <limits>
@@ -172,14 +173,15 @@ CommandLine commandLine(MapOptions& options) {
   CommandLine line("pcl_symmetry_map", "Writes the greatest symmetry of any plane, axis or center at each point.",
                    "pcl_symmetry_map bull.off bull_symmetry.pcd -volume bull.vti -slices bull_slices.png");
   options.batch.outputs = {&options.output, &options.volume_path, &options.slices_path, &options.png_path};
-  line.positional("input", options.input, kOneOrManyInputs)
+  line.positional("input", options.input, kOneOrManyInputs + std::string("; or a volume (") + kVolumeFiles + ")")
       .positional("output", options.output, ".pcd or .ply: the points with one more field, intensity, about 0 to 1")
       .choice("of", options.what.of, {"planes", "axes", "centers"},
-              "what is symmetric: reflections, turns about axes, or point symmetry")
+              "what is symmetric: reflections, rotations about axes, or point symmetry")
       .choice("measure", options.measure, {"D", "prst"},
               "what is written: D of equation 2, or PRST = sqrt((1 + D) / 2) of equation 1, within 0.707 and 1")
-      .number("fold", options.fold, Range::closed(0, 60),
-              "with -of axes: order of the turns, 0 = by any angle, not 1; default: the best of 2 to 8 and any angle")
+      .number(
+          "fold", options.fold, Range::closed(0, 60),
+          "with -of axes: order of the rotations, 0 = by any angle, not 1; default: the best of 2 to 8 and any angle")
       .choice("method", options.what.method, kMethodNames, "estimator of planes (Sections 4.2 and 4.3)")
       .flag("as_published", options.what.as_published, "with -method voting: near pairs of points vote like all others")
       .number("scale", options.what.scale, Range::closed(0, 1),
@@ -376,10 +378,12 @@ int run(int argc, char** argv) {
   CommandLine line = commandLine(options);
   if (!line.parse(argc, argv)) return 0;
   if (options.output) checkCloudExtension(*options.output);
+  if (options.volume_path && !boost::algorithm::iends_with(*options.volume_path, ".vti"))
+    rejectValue("-volume", *options.volume_path, "must end in .vti");
   options.what.fold = options.fold.value_or(-1);
   if (options.what.scale > 0.0 && options.what.of != "planes") throw UsageError("-scale goes with -of planes");
   if (options.fold && options.what.of != "axes") throw UsageError("-fold goes with -of axes");
-  if (options.fold == 1) rejectValue("-fold", "1", "must be 0 or >= 2: a turn of order 1 changes nothing");
+  if (options.fold == 1) rejectValue("-fold", "1", "must be 0 or >= 2: a rotation of order 1 changes nothing");
   options.batch.inputs = {options.input};
   return runOnFiles(options.batch, options.common, {"points", "least", "greatest"},
                     [&](FileJob& job) { analyze(options, job); });

@@ -12,6 +12,7 @@
 #include "io/exact_coordinates.h"
 #include "io/input_shape.h"
 #include "io/shape_output.h"
+#include "pcl_symmetry/impl/cloud_conversion.hpp"
 #include "pcl_symmetry/symmetry_database.h"
 
 namespace {
@@ -90,8 +91,10 @@ int run(int argc, char** argv) {
   CommandLine line = commandLine(options);
   if (!line.parse(argc, argv)) return 0;
   const Console console(options.common.quiet);
-  if (!boost::filesystem::exists(options.database)) throw InputError(options.database + ": there is no such file");
+  if (!boost::filesystem::exists(options.database)) throw InputError(options.database + ": no such file");
   const InputShape input = loadInput(options.input, options.common.mesh_points, options.common.librarySeed());
+  if (const std::string reason = detail::reasonForNoAnswer(finitePoints(*input.points)); !reason.empty())
+    throw InputError(options.input + ": " + reason);
   DatabaseOptions database_options;
   database_options.num_threads = options.common.threads;
   const SymmetryDatabase database(options.database, database_options);

@@ -49,7 +49,7 @@ CommandLine commandLine(PlanesOptions& options) {
   CommandLine line("pcl_symmetry_planes", "Finds the planes of symmetry of clouds, meshes and volumes.",
                    "pcl_symmetry_planes chair.pcd -json planes.json -png planes.png");
   options.batch.outputs = {&options.png_path, &options.html_path, &options.support_path, &options.profile_path};
-  line.positionals("input", options.batch.inputs, kManyInputs)
+  line.positionals("input", options.batch.inputs, kManyInputs + std::string("; volumes (") + kVolumeFiles + ")")
       .picture("png", options.png_path,
                "picture: cloud, planes and support, best planes first; three slices of a volume and its asymmetry")
       .text("html", "FILE", options.html_path,
@@ -379,7 +379,8 @@ void analyze(const PlanesOptions& options, FileJob& job) {
   const InputShape input = loadInput(job.console(), job.path(), options.common);
   if (input.volume && (options.support_path || options.html_path))
     throw InputError(job.path() + ": -support and -html are of points; -surface VALUE makes some");
-  if (options.label && (input.volume || input.shape.mesh)) throw InputError(job.path() + ": -label is of clouds");
+  if (options.label && (input.volume || input.shape.mesh))
+    throw InputError(job.path() + ": -label needs a cloud with a field label");
   const Findings findings = search(job, input, options);
   job.report({tableOf(findings, input.shift()), describe(input, findings), rowsOf(findings, input.shift())});
   if (options.support_path) saveSupport(input, findings, job.output(*options.support_path));

@@ -117,6 +117,8 @@ int run(int argc, char** argv) {
   if (int(options.direction.has_value()) + int(options.corner.has_value()) + int(options.all) > 1)
     throw UsageError("only one of -direction, -corner and -all may be given");
   checkCloudExtension(options.output);
+  const std::vector<View> views = viewsOf(options);
+  for (const View& view : views) checkTarget(view.path);
   options.scanner.seed = options.common.seed;
   options.scanner.num_threads = options.common.threads;
   if (options.field_of_view) options.scanner.field_of_view = *options.field_of_view * kDegree;
@@ -128,7 +130,6 @@ int run(int argc, char** argv) {
   const double loading_ms = loading.done(std::to_string(shape.mesh->polygons.size()) + " faces");
   warnOfLeftOut(console, options.input, shape);
 
-  const std::vector<View> views = viewsOf(options);
   double scanning_ms = 0.0;
   const std::vector<VirtualScan> scans =
       namingFile(options.input, [&] { return scanAll(console, shape, views, options.scanner, scanning_ms); });

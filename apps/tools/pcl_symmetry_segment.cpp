@@ -143,7 +143,7 @@ std::vector<pcl::PointIndices> cut(const FileJob& job, const SegmentOptions& o, 
       segmentation.setInputCloud(shape.points);
     segmentation.segment(segments);
   });
-  if (segments.empty()) throw InputError(job.path() + ": has no surface to cut");
+  if (segments.empty()) throw InputError(job.path() + ": " + segmentation.getReason());
   ms = cutting.done(counted(segments.size(), "part"));
   return segments;
 }

@@ -82,7 +82,7 @@ class Planes(ToolTest):
         self.assertEqual(self.report(cloud, "-label 3 -viewpoint none")["num_points"], (points[:, 0] < 1).sum())
         self.fails(1, "l.pcd: has no point with the label 4", cloud, "-label 4")
         self.fails(1, "has no field label", self.write("n.pcd", tool_run.pcd("x:F y:F z:F", points.tolist())), "-label 3")
-        self.fails(1, "-label is of clouds", self.box, "-label 3")
+        self.fails(1, "-label needs a cloud", self.box, "-label 3")
 
     def test_writes_the_support_of_every_point_and_keeps_its_fields(self):
         i = np.arange(1200)
