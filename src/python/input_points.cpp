@@ -28,7 +28,7 @@ using Rows = py::array_t<float, py::array::forcecast>;
 std::string shapeOf(const py::array& array) {
   std::string shape = "(";
   for (py::ssize_t i = 0; i < array.ndim(); ++i) shape += (i ? ", " : "") + std::to_string(array.shape(i));
-  return shape + ")";
+  return shape + (array.ndim() == 1 ? ",)" : ")");
 }
 
 void checkShape(const char* name, const py::array& array) {
@@ -36,7 +36,8 @@ void checkShape(const char* name, const py::array& array) {
     throw std::invalid_argument(std::string(name) + " = array of shape " + shapeOf(array) + ", must be (N, 3)");
   const char kind = array.dtype().kind();
   if (kind != 'f' && kind != 'i' && kind != 'u')
-    throw std::invalid_argument(std::string(name) + " = array of kind " + kind + ", must hold real numbers");
+    throw std::invalid_argument(std::string(name) + " = array of type " + py::str(array.dtype()).cast<std::string>() +
+                                ", must hold real numbers");
 }
 
 /// \throws std::invalid_argument where float32 rounds more than results stand.

@@ -185,12 +185,14 @@ class Planes(unittest.TestCase):
     def test_wrong_parameters_name_field_value_and_rule(self):
         for arguments, words in (
             (dict(points=np.zeros((5, 2))), "points = array of shape \\(5, 2\\), must be \\(N, 3\\)"),
-            (dict(points=np.zeros((5, 3), dtype="U3")), "points = array of kind U"),
+            (dict(points=np.zeros((5, 3), dtype="U3")), "points = array of type <U3"),
             (dict(points=1e300 * box().astype(float)), "coordinates that float32 cannot hold"),
             (dict(points=1e-300 * box().astype(float)), "coordinates that float32 cannot hold"),
             (dict(points=box(), tolerance=0.5), "tolerance = 0.5, must be"),
-            (dict(points=box(), threads=-1), "num_threads = -1"),
+            (dict(points=box(), threads=-1), "threads = -1"),
             (dict(points=box(), viewpoint="here"), "viewpoint = here, must be"),
+            (dict(points=box(), method="voting"), "method = voting, must be convolution without as_published"),
+            (dict(volume=np.eye(8)[..., None] * np.ones(8), tolerance=0.02), "must be left out with volume"),
             (dict(points=box(), viewpoint=(0, 0, 0)), "viewpoint: among the points"),
             (dict(points=box(), normals=np.zeros((5, 3))), "normals = array of shape \\(5, 3\\), must be \\(6000, 3\\)"),
         ):
@@ -202,6 +204,13 @@ class Planes(unittest.TestCase):
         for nothing in ("cloud.pcd", b"cloud", 5, {"x": 1}, (row for row in box())):
             with self.assertRaisesRegex(TypeError, "points = .*, must be an array"):
                 pcl_symmetry.planes(nothing)
+
+        with self.assertRaisesRegex(TypeError, "plane = list, must be a ReflectionPlane"):
+            pcl_symmetry.complete(box(), [1, 0, 0, 0])
+        with self.assertRaisesRegex(TypeError, "bins = 64, must be three whole numbers"):
+            pcl_symmetry.transform(box(), 64)
+        with self.assertRaisesRegex(ValueError, "scale = 2, must be in"):
+            pcl_symmetry.local_symmetry(box(), 2)
 
     def test_faces_are_indices(self):
         vertices, faces = box_mesh()

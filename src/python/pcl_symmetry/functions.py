@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import warnings
 from typing import TYPE_CHECKING, Any, Callable, Dict, List, Optional, Sequence, Tuple, Union
 
@@ -44,6 +45,8 @@ class Core:
         def call(*points: Any, **arguments: Any) -> Any:
             try:
                 return function(*points, **arguments)
+            except ValueError as error:
+                raise ValueError(re.sub(r"^num_(threads|parts)\b", r"\1", str(error))) from None
             except TypeError as error:
                 if "incompatible function arguments" not in str(error):
                     raise
@@ -57,8 +60,6 @@ core = Core(_pcl_symmetry)
 
 def _wrong_argument(text: str, arguments: Dict[str, Any]) -> str:
     """Names the first one that does not have the type that a message of pybind11 lists for it."""
-    import re
-
     import numpy as np
 
     types: Dict[str, Any] = {"bool": (bool, np.bool_), "str": str, "int": (int, np.integer), "float": (int, float, np.number)}
@@ -191,8 +192,12 @@ def _turn(t: Any) -> Turn:
     return Turn(**_fields(t, "point", "direction", "fold", "confidence", "support", "off"))
 
 
-def _core_plane(plane: ReflectionPlane) -> Any:
-    return core.ReflectionPlane(plane.normal, plane.offset)
+def _core_plane(plane: ReflectionPlane, shift: "Shift") -> Any:
+    """The plane in the frame of points that prepare() moved."""
+    if not isinstance(plane, ReflectionPlane):
+        raise TypeError(f"plane = {type(plane).__name__}, must be a ReflectionPlane, such as one of planes()")
+    moved = plane if shift is None else plane._moved(-shift)
+    return core.ReflectionPlane(moved.normal, moved.offset)
 
 
 def _planes_of(found: Any, num_rows: int) -> Planes:
@@ -245,21 +250,26 @@ def planes(
     absolute_tolerance: the same in input units; 0: tolerance decides.
     approximate: also the other maxima of the transform, and symmetries of parts.
     normals: (N, 3), of any length and sign; None: estimated.
-    max_points: larger clouds are thinned to that number. threads: 0 = one per core.
+    max_points: larger clouds are thinned to that number; 0: never. threads: 0 = one per core.
     evidence: also what the decisions are taken from; takes about as long again.
-    as_published: refine the maxima of the map as the paper does (Section 4.4), without a decision; method: of the map,
-        sampled, convolution, rotational or voting.
+    as_published: refine the maxima of the map as the paper does (Section 4.4), without a decision; only then method, of
+        the map: sampled, convolution, rotational or voting.
     volume: (I, J, K) in place of points, such as a CT or MR image, first index along the first axis (as nibabel has it;
         arrays of SimpleITK are transposed). spacing, origin, direction: of its voxels, input units and frame; direction
         is (3, 3) with the axes of the grid in columns. levels: (low, high) intensities that count; None: chosen.
         confidence is then 0 for a plane like any other and 1 where both halves are equal, and support a correlation.
+        Of the other parameters approximate, max_planes, seed and threads count.
     Raises ValueError for bad parameters.
     """
     import numpy as np
 
     if (points is None) == (volume is None):
         raise TypeError("planes() takes points or volume")
+    if method != "convolution" and not as_published:
+        raise ValueError(f"method = {method}, must be convolution without as_published")
     if volume is not None:
+        if tolerance is not None or absolute_tolerance or normals is not None or as_published:
+            raise ValueError("tolerance, absolute_tolerance, normals, as_published: of points, must be left out with volume")
         return _volume_planes(volume, spacing, origin, direction, levels, approximate, max_planes, seed, threads)
     array, shift, mesh = _prepare_with_mesh("points", points)
     if as_published:
@@ -321,6 +331,8 @@ def local_symmetry(points: Any, scale: float, *, seed: int = 1, threads: int = 0
     """
     import numpy as np
 
+    if not 0 < scale <= 1:
+        raise ValueError(f"scale = {_text(scale)}, must be in (0, 1]")
     array, _ = prepare("points", points)
     return np.asarray(core.local_symmetry(array, scale, seed=seed, threads=threads), dtype=np.float32)
 
@@ -334,8 +346,7 @@ def complete(
     empty, and the row of the point that each is the reflection of.
     """
     array, shift = prepare("points", points)
-    moved = plane if shift is None else plane._moved(-shift)
-    added, rows = core.complete(array, _core_plane(moved), viewpoint=_seen_from(viewpoint, shift), threads=threads)
+    added, rows = core.complete(array, _core_plane(plane, shift), viewpoint=_seen_from(viewpoint, shift), threads=threads)
     return (added if shift is None else added + shift), list(rows)
 
 
@@ -362,8 +373,7 @@ def symmetrize(
     if own_faces is not None:
         points, faces = np.asarray(points.vertices), own_faces
     array, shift = prepare("points", points)
-    moved = plane if shift is None else plane._moved(-shift)
-    found = core.symmetrize(array, faces, _core_plane(moved), half, threads)
+    found = core.symmetrize(array, faces, _core_plane(plane, shift), half, threads)
     result = found.points if shift is None else found.points + shift
     rows, deviation = np.arange(len(array)), found.deviation
     if faces is None:
@@ -371,7 +381,7 @@ def symmetrize(
         result = np.concatenate([result[rows], plane.reflect(result[rows])])
         rows = np.concatenate([rows, rows])
     elif cut:
-        result, faces, rows = core.mirrored_half(found.points, faces, _core_plane(moved), half != "right")
+        result, faces, rows = core.mirrored_half(found.points, faces, _core_plane(plane, shift), half != "right")
         result, rows, deviation = result if shift is None else result + shift, np.asarray(rows), 0.0
     own = None if faces is None else np.asarray(faces)
     measures = _fields(found, "asymmetry", "mean_asymmetry", "greatest_asymmetry")
@@ -526,8 +536,13 @@ def transform(
     center, radius: of the ball whose planes are measured, input frame and units; radius 0: the bounding ball of the points.
     sigma: width of the Gaussian, input units; 0: two cells of a grid of 64.
     """
+    import numpy as np
+
+    sizes = np.asarray(bins)
+    if sizes.shape != (3,) or sizes.dtype.kind not in "iu":
+        raise TypeError(f"bins = {_text(bins)}, must be three whole numbers, of theta, phi and r")
     array, shift = prepare("points", points)
     options = dict(center=_seen_from(center, shift, "center"), radius=radius, sigma=sigma, as_published=as_published)
-    found = core.transform(array, tuple(bins), method=method, seed=seed, threads=threads, **options)
+    found = core.transform(array, sizes.tolist(), method=method, seed=seed, threads=threads, **options)
     result = Map(**_fields(found, "sigma", "center", "radius", "values"))
     return result if shift is None else result._moved(shift)

@@ -250,7 +250,7 @@ class Axis(Result):
         return result.astype(x.dtype)
 
     def profile(self, points: Any, num_points: int = 200) -> "Profile":
-        """The curve whose turn about the axis is the body of revolution, averaged over all angles.
+        """The curve that gives the body of revolution when it is rotated about the axis, averaged over all angles.
 
         points: (N, 3), or an object of Open3D or trimesh. num_points: of the curve, about.
         """
@@ -307,7 +307,7 @@ class Symmetrized(Result):
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Turn(Result):
-    """Rotations about a line map what a scanner saw onto itself or to unseen places."""
+    """Rotations about a line map what a scanner saw onto itself or into occluded space."""
 
     _in_repr = ("point", "direction", "fold", "confidence")
     point: "Doubles"
@@ -321,7 +321,7 @@ class Turn(Result):
     support: float
     """Share of the points that the best rotation maps onto the surface."""
     off: float
-    """Share that the worst rotation maps to where the scanner saw nothing."""
+    """Share that the worst rotation maps into free space."""
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -391,7 +391,7 @@ class Planes(Result):
 
     point, direction: (3,) each. fold: order of the rotations; 0: by any angle. kind: 0 by any angle, 1 half turns, 2 of
     order 3 and more. confidence: of the rotations. Shares of the points seen:
-    support: that the best rotation maps onto the surface. off, far: that the worst rotation maps to where nothing was seen,
+    support: that the best rotation maps onto the surface. off, far: that the worst rotation maps into free space,
     beyond one and ten tolerances. halfway: off of rotations halfway between those of the fold.
     Of half turns: grown, extent with the image over that without, >= 1. hold: how firmly what is matched holds the line,
     >= 0. planes_off: off of the best pair of planes through the line. beside: 1 where another rotation fits better.
@@ -441,6 +441,8 @@ class Planes(Result):
         return self.planes[index]
 
     def __repr__(self) -> str:
+        if self.reason:
+            return f"Planes([], reason={self.reason!r})"
         return "Planes([" + "".join(f"\n  {plane!r}," for plane in self.planes) + ("\n])" if self.planes else "])")
 
     def _moved(self, shift: "Doubles") -> "Planes":
