@@ -12,7 +12,8 @@ endif()
 
 # What to read, and programs to start from.
 install(FILES ${PROJECT_SOURCE_DIR}/README.md DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT development)
-install(DIRECTORY ${PROJECT_SOURCE_DIR}/apps/examples DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT development)
+install(DIRECTORY ${PROJECT_SOURCE_DIR}/apps/examples DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT development
+        PATTERN CMakeLists.txt EXCLUDE)  # it is a part of this project; README.md has one for a program
 if(tools)
   install(FILES ${PROJECT_SOURCE_DIR}/apps/README.md DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT tools RENAME tools.md)
 endif()

@@ -52,6 +52,7 @@ models=$PWD/build/pictures_models
 mkdir -p "$gallery" "$pictures" "$models"
 bash apps/fetch_meshes.sh "$models" bull camel cow dino elephant hand
 "$python" -B apps/gallery/shapes.py "$models"
+cp apps/gallery/contour.awk "$models"
 drawings=("$python" -B "$PWD/apps/gallery/drawings.py")
 contours=$PWD/apps/gallery/contour.awk
 cd "$models"
