@@ -72,7 +72,7 @@ InputShape loadInput(const Console& console, const std::string& path, const Comm
   if (common.surface && !is_volume) throw InputError(path + ": -surface is of volumes, " + kVolumeFiles);
   InputShape input =
       is_volume ? loadVolumeInput(path, common) : loadInput(path, common.mesh_points, common.librarySeed());
-  input.loading_ms = loading.done(std::to_string(input.points->size()) + " points");
+  input.loading_ms = loading.done(counted(finitePoints(*input.points).cols(), "point"));
   warnOfLeftOut(console, path, input.shape);
   return input;
 }

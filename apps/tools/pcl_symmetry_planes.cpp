@@ -59,7 +59,7 @@ CommandLine commandLine(PlanesOptions& options) {
       .text(
           "profile", "FILE", options.profile_path,
           "profile of a body of revolution, .csv or .svg: radius, height, spread and number of points along the curve "
-          "whose turn about the best axis is the body")
+          "that gives the body when it is rotated about the best axis")
       .flag("approximate", options.detection.approximate,
             "also report approximate symmetries and symmetries of parts, marked as such")
       .number("min_confidence", options.detection.min_confidence, Range::closed(0, 1),

@@ -122,8 +122,8 @@ Shape load(const FileJob& job, const SegmentOptions& o) {
   Shape shape = loadShape(job.path());
   if (o.output && boost::algorithm::iends_with(*o.output, ".seg") && !shape.mesh)
     throw InputError(job.path() + ": has no faces, must have for " + *o.output);
-  loading.done(shape.mesh ? std::to_string(shape.mesh->polygons.size()) + " faces"
-                          : std::to_string(shape.points->size()) + " points");
+  loading.done(shape.mesh ? counted(shape.mesh->polygons.size(), "face")
+                          : counted(finitePoints(*shape.points).cols(), "point"));
   warnOfLeftOut(job.console(), job.path(), shape);
   return shape;
 }
