@@ -9,6 +9,7 @@
 
 #include "core/base/constants.h"
 #include "core/geometry/directions.h"
+#include "core/geometry/geometry_rules.h"
 #include "io/answers.h"
 
 namespace pcl_symmetry::apps {
@@ -22,8 +23,6 @@ constexpr int kNumAngles = 8;  // rotations that represent all rotations about a
 // Spacings around a sample that count as its plane. No point of an even grid is farther than sqrt(1/2); samples drawn
 // at random leave gaps of twice that.
 constexpr float kReach = 1.5f;
-// Share of the points whose distance is reported. The share of the surface that a symmetry maps onto it.
-constexpr double kDeviationShare = 0.97;
 
 const Eigen::Isometry3d kIdentity = Eigen::Isometry3d::Identity();
 
@@ -251,7 +250,7 @@ MotionEvidence SurfaceEvidence::of(const Eigen::Isometry3d& motion) const {
     evidence.mean += distance / static_cast<double>(distances.size());
   }
   evidence.share = static_cast<double>(num_within) / static_cast<double>(distances.size());
-  const auto rank = static_cast<std::ptrdiff_t>(kDeviationShare * static_cast<double>(distances.size() - 1));
+  const auto rank = static_cast<std::ptrdiff_t>(kSymmetricShare * static_cast<double>(distances.size() - 1));
   std::nth_element(distances.begin(), distances.begin() + rank, distances.end());
   evidence.deviation = distances[rank];
   return evidence;

@@ -16,9 +16,9 @@ std::string counted(std::size_t number, const std::string& one, const std::strin
   return std::to_string(number) + " " + (number == 1 ? one : many.empty() ? one + "s" : many);
 }
 
-nlohmann::json turnsJson(const std::vector<SymmetryTurn>& turns, const Eigen::Vector3d& shift) {
+nlohmann::json turnsJson(const std::vector<SymmetryRotation>& turns, const Eigen::Vector3d& shift) {
   nlohmann::json json = nlohmann::json::array();
-  for (const SymmetryTurn& turn : turns) {
+  for (const SymmetryRotation& turn : turns) {
     json.push_back(axisJson(turn, shift));
     json.back().update({{"fold", turn.fold},
                         {"support", turn.support},

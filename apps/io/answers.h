@@ -53,7 +53,7 @@ inline std::vector<double> numbersOf(const ReflectionPlane& plane, const Eigen::
 }
 
 /// Where an axis is, input frame, and how sure it is.
-/// \param axis SymmetryAxis or SymmetryTurn.
+/// \param axis SymmetryAxis or SymmetryRotation.
 template <typename Axis>
 nlohmann::json axisJson(const Axis& axis, const Eigen::Vector3d& shift) {
   return {{"point", numbersOf(shiftedBack(axis.point, shift))},
@@ -62,7 +62,7 @@ nlohmann::json axisJson(const Axis& axis, const Eigen::Vector3d& shift) {
 }
 
 /// The same of axes of turns of scans, and what was seen of them.
-nlohmann::json turnsJson(const std::vector<SymmetryTurn>& turns, const Eigen::Vector3d& shift);
+nlohmann::json turnsJson(const std::vector<SymmetryRotation>& turns, const Eigen::Vector3d& shift);
 
 /// Center and axes, the transform to them, input frame.
 nlohmann::json frameJson(const SymmetryFrame& frame, const Eigen::Vector3d& shift);
@@ -82,7 +82,7 @@ std::string formatted(const char* format, Values... values) {
 }
 
 /// A line such as "axis of order 6: through 0 0 0 along 0.000000 0.000000 1.000000, confidence 0.973".
-/// \param axis SymmetryAxis or SymmetryTurn.
+/// \param axis SymmetryAxis or SymmetryRotation.
 /// \param fold order of the turns; 0: any angle.
 template <typename Axis>
 std::string lineOf(const Axis& axis, int fold, const Eigen::Vector3d& shift) {

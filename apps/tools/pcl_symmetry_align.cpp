@@ -360,7 +360,7 @@ std::string linesOf(const SymmetryFrame& frame, const Eigen::Vector3d& shift) {
   for (int k = 0; k < 3; ++k)
     lines += formatted("axis %d %9.6f %9.6f %9.6f  score %.3f%s\n", k + 1, frame.axes(0, k), frame.axes(1, k),
                        frame.axes(2, k), frame.scores[k], frame.revolution_axis == k ? "  axis of revolution" : "");
-  for (const SymmetryTurn& turn : frame.turns)
+  for (const SymmetryRotation& turn : frame.turns)
     if (turn.confidence >= DetectionOptions().min_confidence) lines += lineOf(turn, turn.fold, shift);
   double others = 0.0;
   for (std::size_t i = 1; i < frame.probable.size(); ++i) others += frame.probable[i].probability;

@@ -132,7 +132,7 @@ std::string tableOf(const Findings& findings, const Eigen::Vector3d& shift) {
     table += formatted("center of all planes: %s, confidence %.3f\n",
                        spelled(shiftedBack(center.point, shift), digits).c_str(), center.confidence);
   for (const SymmetryAxis& axis : findings.axes) table += lineOf(axis, 0, shift);
-  for (const SymmetryTurn& turn : findings.turns) table += lineOf(turn, turn.fold, shift);
+  for (const SymmetryRotation& turn : findings.turns) table += lineOf(turn, turn.fold, shift);
   const std::vector<SymmetryPlane>& planes = findings.planes;
   if (planes.empty()) return table;
   table += formatted("%5s %10s %10s %10s %12s %10s %7s %7s %7s %6s  %s\n", "plane", "a", "b", "c", "d", "confidence",
@@ -187,7 +187,7 @@ std::vector<std::vector<nlohmann::json>> rowsOf(const Findings& findings, const 
   std::size_t planes = 0, axes = 0, turns = 0, centers = 0;
   for (const SymmetryPlane& plane : findings.planes) add(++planes, toString(plane.kind), describe(plane, shift));
   for (const SymmetryAxis& axis : findings.axes) add(++axes, "axis", describe(axis, shift));
-  for (const SymmetryTurn& turn : findings.turns) add(++turns, "turn", axisJson(turn, shift));
+  for (const SymmetryRotation& turn : findings.turns) add(++turns, "turn", axisJson(turn, shift));
   for (const SymmetryCenter& center : findings.centers) add(++centers, "center", describe(center, shift));
   if (findings.best) add(1, "best", describe(*findings.best, shift));
   return rows;
@@ -224,7 +224,7 @@ std::vector<PicturePanel> panelsOf(const Findings& findings) {
   };
   for (const SymmetryAxis& axis : findings.axes)
     add(formatted("axis of revolution: confidence %.2f", axis.confidence)).axes = {{axis.point, axis.direction}};
-  for (const SymmetryTurn& turn : findings.turns)
+  for (const SymmetryRotation& turn : findings.turns)
     add(formatted("axis of order %d: confidence %.2f", turn.fold, turn.confidence)).axes = {
         {turn.point, turn.direction}};
   for (const SymmetryCenter& center : findings.centers) {
@@ -297,7 +297,7 @@ Findings search(const FileJob& job, const InputShape& input, const PlanesOptions
     checkAnswer(refinement, input);
   });
   static_cast<Detection&>(findings) = refinement.getDetection();
-  const auto is_other = [&](const SymmetryTurn& turn) {  // those of any angle are among the axes
+  const auto is_other = [&](const SymmetryRotation& turn) {  // those of any angle are among the axes
     return turn.fold == 0 || turn.confidence < options.detection.min_confidence;
   };
   findings.turns.erase(std::remove_if(findings.turns.begin(), findings.turns.end(), is_other), findings.turns.end());

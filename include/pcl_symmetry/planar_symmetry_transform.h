@@ -50,10 +50,7 @@ public:
   }
   /// \param num_theta,num_phi,num_radius bins of the map, each >= 1, num_phi even; default 64 each.
   void setMapSize(int num_theta, int num_phi, int num_radius) {
-    detail::withBadArguments([&] { PlaneGrid(num_theta, num_phi, num_radius, Eigen::Vector3d::Zero(), 1.0); });
-    num_theta_ = num_theta;
-    num_phi_ = num_phi;
-    num_radius_ = num_radius;
+    detail::changeOptions(map_size_, [&](MapSize& changed) { changed = {num_theta, num_phi, num_radius}; });
   }
 
   /// \param sigma width of the Gaussian, input units, >= 0; 0 (default) = two cells, or the spacing of the points where
@@ -119,7 +116,7 @@ protected:
 private:
   GaussianEdtOptions edt_options_;
   PlanarTransformOptions transform_;
-  int num_theta_ = 64, num_phi_ = 64, num_radius_ = 64;
+  MapSize map_size_{64, 64, 64};
   std::shared_ptr<const GaussianEdt> edt_;
 };
 
@@ -149,7 +146,7 @@ SymmetryMap PlanarSymmetryTransform<PointT>::compute() {
       seen = this->seenSpace(points);
       edt_ = std::make_shared<const GaussianEdt>(points, edt_options_);
     }
-    const PlaneGrid grid(num_theta_, num_phi_, num_radius_, edt_->center(), edt_->radius());
+    const PlaneGrid grid(map_size_, edt_->center(), edt_->radius());
     return planarTransform(*edt_, grid, centerOfMass(points), transform_, seen);
   });
 }

@@ -48,11 +48,12 @@ auto rowOf(const MeasuredPlane& judged) {
 }
 
 auto rowOf(const JudgedRotation& judged) {
-  const SymmetryTurn& turn = judged.turn;
+  const SymmetryRotation& rotation = judged.rotation;
   const RotationSigns& signs = judged.signs;
-  return std::make_tuple(turn.point, turn.direction, turn.fold, static_cast<int>(kindOf(turn)), turn.confidence,
-                         turn.support, turn.off, turn.far, turn.halfway, signs.grown, signs.hold, signs.planes_off,
-                         signs.beside, padded(rotationOddsTerms(turn, signs)));
+  return std::make_tuple(rotation.point, rotation.direction, rotation.fold, static_cast<int>(kindOf(rotation)),
+                         rotation.confidence, rotation.support, rotation.off, rotation.far, rotation.halfway,
+                         signs.grown, signs.hold, signs.planes_off, signs.beside,
+                         padded(rotationOddsTerms(rotation, signs)));
 }
 
 template <typename Judged>

@@ -50,13 +50,13 @@ void addPlanes(py::module_& module) {
       .def_readonly("confidence", &SymmetryCenter::confidence)
       .def_readonly("score", &SymmetryCenter::score)
       .def_readonly("support", &SymmetryCenter::support);
-  py::class_<SymmetryTurn>(module, "Turn")
-      .def_readonly("point", &SymmetryTurn::point)
-      .def_readonly("direction", &SymmetryTurn::direction)
-      .def_readonly("fold", &SymmetryTurn::fold)
-      .def_readonly("confidence", &SymmetryTurn::confidence)
-      .def_readonly("support", &SymmetryTurn::support)
-      .def_readonly("off", &SymmetryTurn::off);
+  py::class_<SymmetryRotation>(module, "Turn")
+      .def_readonly("point", &SymmetryRotation::point)
+      .def_readonly("direction", &SymmetryRotation::direction)
+      .def_readonly("fold", &SymmetryRotation::fold)
+      .def_readonly("confidence", &SymmetryRotation::confidence)
+      .def_readonly("support", &SymmetryRotation::support)
+      .def_readonly("off", &SymmetryRotation::off);
 }
 
 void addPlaneSearch(py::module_& module) {

@@ -102,8 +102,7 @@ void needsMap(benchmark::State& state, const Points& points, const GaussianEdt& 
 void needsDetection(benchmark::State& state, const Points& points, std::size_t num_planes, int num_maps = 1) {
   const DetectionOptions options;
   const GaussianEdt edt(points, edtOptions(1));
-  const PlaneGrid grid(options.expert.num_theta, options.expert.num_phi, options.expert.num_radius, edt.center(),
-                       edt.radius());
+  const PlaneGrid grid(options.expert, edt.center(), edt.radius());
   needsTransform(state, edt);
   for (int i = 0; i < num_maps; ++i) needsMap(state, points, edt, grid, options.expert.num_samples);
   needs(state, "nine_nearest", static_cast<double>(points.cols()));
@@ -209,8 +208,7 @@ void Description(benchmark::State& state) {
   const GaussianEdt edt(frame_points, edtOptions(1));
   const FrameOptions frame;
   needsTransform(state, edt);
-  needsMap(state, frame_points, edt,
-           PlaneGrid(frame.num_theta, frame.num_phi, frame.num_radius, edt.center(), edt.radius()), frame.num_samples);
+  needsMap(state, frame_points, edt, PlaneGrid(frame, edt.center(), edt.radius()), frame.num_samples);
   // Each point counts in eight cells of two signatures, with six numbers.
   needs(state, "byte_near", 2.0 * 8.0 * 6.0 * 4.0 * static_cast<double>(points.cols()));
 }

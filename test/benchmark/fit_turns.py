@@ -15,7 +15,7 @@ import references
 import rotations
 import solids
 
-OUTPUT = "src/core/detection/rotation_confidence_fit.h"
+OUTPUT = "src/core/rotation/rotation_confidence_fit.h"
 KINDS, NUM_TERMS = ("by any angle", "half turns", "of order 3 and more"), (4, 7, 6)
 NUM_SAMPLES = 5000  # of the mesh: a share of 0.1 is known to 0.004
 PULL = 0.5  # cases; half and twice change no confidence by 0.05, and without any separable cases would be certain

@@ -53,7 +53,7 @@ class Map(ToolTest):
 
     def test_refuses_folds_that_have_no_meaning(self):
         self.fails(2, "-fold goes with -of axes", self.box, "-fold 3")
-        self.fails(2, "a turn of order 1 changes nothing", self.box, "-of axes -fold 1")
+        self.fails(2, "a rotation of order 1 changes nothing", self.box, "-of axes -fold 1")
         self.run_tool(self.box, "-of lines", code=2)
 
 

@@ -65,13 +65,8 @@ struct DetectionOptions {
   std::uint64_t seed = 1;  ///< of all random draws; the same seed gives the same answer
   int num_threads = 0;     ///< >= 0; 0 = one per core; the answer does not depend on it
 
-  /// What only experts change.
-  struct Expert {
-    /// Bins of the map that candidates come from: as many as the paper's 64 x 64 directions, but as fine in phi
-    /// at the equator as in theta, because a peak of D is narrower than a bin of 5.6 degrees.
-    int num_theta = 32;         ///< >= 1
-    int num_phi = 128;          ///< even, >= 2
-    int num_radius = 64;        ///< >= 1
+  /// What only experts change, and the bins of the map that candidates come from.
+  struct Expert : MapSize {
     int num_samples = 64;       ///< samples of the transform, >= 1: the error is 1 % of PRST, enough to find maxima
     LocalMaximaOptions maxima;  ///< of the maxima of the map that become candidates
     int max_candidates = 24;    ///< strongest maxima that are refined, >= 1
@@ -88,7 +83,9 @@ struct DetectionOptions {
   void validate() const;
 };
 
-/// From points to planes: transform, maxima, refinement, decision (Sections 4.1 to 4.4).
+/// From points to planes: transform, maxima, refinement, decision (Sections 4.1 to 4.4). publishedPlanes() is
+/// Section 4.4 as the paper has it, in one screen; this is the default, which adds stages of refinement, the decision
+/// whether a plane is a symmetry, families of planes, rotations of scans and symmetries of parts.
 /// \throws std::invalid_argument for bad options, coordinates that are not finite, or another number of normals.
 Detection detectPlanes(const PlaneInput& input, const DetectionOptions& options = {});
 

@@ -10,6 +10,17 @@
 
 namespace PCL_SYMMETRY_EXPORTS pcl_symmetry {
 
+/// Numbers of bins of a map of planes. The defaults have as many directions as the paper's 64 x 64, but are as fine in
+/// phi at the equator as in theta, because a peak of D is narrower than a bin of 5.6 degrees.
+struct MapSize {
+  int num_theta = 32;   ///< in [1, 4096]
+  int num_phi = 128;    ///< even, in [2, 4096]
+  int num_radius = 64;  ///< in [1, 4096]
+
+  /// \throws std::invalid_argument naming field, value and rule.
+  void validate() const;
+};
+
 /// The discrete space of planes (Section 4.2): theta in [0, pi/2], phi in [0, 2 pi) and r in [-radius, radius] about a
 /// center, each cut into equal bins. Bin (t, p, k) has its center at theta = (t + 1/2) dtheta, phi = (p + 1/2) dphi,
 /// r = (k + 1/2) dr - radius.
@@ -27,12 +38,13 @@ public:
 
   PlaneGrid() = default;
 
-  /// \param num_theta,num_radius number of bins, each in [1, 4096].
-  /// \param num_phi number of bins, even, in [2, 4096].
   /// \param center finite, input frame; r is measured from it.
   /// \param radius finite and > 0, input units.
   /// \throws std::invalid_argument naming field, value and rule.
-  PlaneGrid(int num_theta, int num_phi, int num_radius, const Eigen::Vector3d& center, double radius);
+  PlaneGrid(const MapSize& size, const Eigen::Vector3d& center, double radius);
+  /// As above.
+  PlaneGrid(int num_theta, int num_phi, int num_radius, const Eigen::Vector3d& center, double radius)
+      : PlaneGrid(MapSize{num_theta, num_phi, num_radius}, center, radius) {}
 
   int numTheta() const { return num_theta_; }                                                    ///< bins of theta
   int numPhi() const { return num_phi_; }                                                        ///< bins of phi

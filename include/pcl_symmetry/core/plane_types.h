@@ -59,7 +59,7 @@ struct SymmetryAxis {
   Eigen::Vector3d point;      ///< of the axis, the closest to the center of the bounding ball; input frame
   Eigen::Vector3d direction;  ///< unit
   /// As that of SymmetryPlane, for planes at eight angles together; of axes of scans that only rotations show that of
-  /// SymmetryTurn.
+  /// SymmetryRotation.
   double confidence = 0.0;
   double score = 0.0;    ///< mean D of these planes
   double support = 0.0;  ///< mean support of these planes
@@ -67,7 +67,7 @@ struct SymmetryAxis {
 
 /// Rotations about a line map what a scanner saw onto itself or to unseen space: the axis of a nut, a wheel, a bottle
 /// seen from one side. Beyond the paper (Section 6).
-struct SymmetryTurn {
+struct SymmetryRotation {
   Eigen::Vector3d point;      ///< of the axis, the closest to the center of the bounding ball; input frame
   Eigen::Vector3d direction;  ///< unit
   int fold = 0;               ///< order of the rotations; 0: by any angle
@@ -79,6 +79,8 @@ struct SymmetryTurn {
   double far = 0.0;      ///< the same, beyond ten tolerances of the surface
   double halfway = 0.0;  ///< off of rotations halfway between those of the fold: evidence against other folds
 };
+
+using SymmetryTurn = SymmetryRotation;  ///< its former name
 
 /// What the decisions of one detection were taken from (core/detection/plane_decision.h); the Python module gives it as
 /// arrays.
@@ -109,7 +111,7 @@ struct Detection {
   double diameter = 0.0;                ///< greatest distance between two points, input units
   std::vector<SymmetryAxis> axes;       ///< best first; their planes are not among planes
   std::vector<SymmetryCenter> centers;  ///< of spheres
-  std::vector<SymmetryTurn> turns;      ///< of scans: axes of rotations, most confident first
+  std::vector<SymmetryRotation> turns;  ///< of scans: axes of rotations, most confident first
   SymmetryMap map;                      ///< that was made; empty where one was given
   std::shared_ptr<DetectionEvidence> evidence;            ///< with DetectionOptions::evidence; else null
   std::vector<std::pair<std::string, double>> timing_ms;  ///< stages in order

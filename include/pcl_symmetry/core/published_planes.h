@@ -23,10 +23,10 @@ struct PublishedOptions {
   void validate() const;
 };
 
-/// The refinement of Section 4.4 to the letter, where detectPlanes() departs from it: each local maximum of the map is
-/// refined by Iterative Symmetric Points with the closed form for pairs of points, weights of constant width sigma and
-/// closest points by FLANN; one whose plane leaves its cell is discarded. Nothing is added, merged or decided: kind is
-/// PlaneKind::Approximate and confidence 0.
+/// Section 4.4 as the paper has it, readable in one go; detectPlanes() is the default and adds what follows. Each local
+/// maximum of the map is refined by Iterative Symmetric Points with the closed form for pairs of points, weights of
+/// constant width sigma and closest points by FLANN; one whose plane leaves its cell is discarded. Nothing is added,
+/// merged or decided: kind is PlaneKind::Approximate and confidence 0.
 /// \param points 3 x N, finite, input units.
 /// \param edt,map of these points, by any estimator; the paper's has 64 x 64 x 64 bins.
 /// \return by falling score D; `support` is the mean weight of the pairs, `residual` as that of SymmetryPlane.

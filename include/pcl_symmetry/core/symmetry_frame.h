@@ -15,14 +15,11 @@
 
 namespace PCL_SYMMETRY_EXPORTS pcl_symmetry {
 
-/// Options of symmetryFrame().
-struct FrameOptions {
+/// Options of symmetryFrame(), and the bins of the map that candidates for the first plane come from.
+struct FrameOptions : MapSize {
   int num_cells = 64;  ///< cells of the distance transform along each side, in [8, 512]
   /// Its width, input units, >= 0; 0 = 1.5 cells, 2.25 for a scan, or 1.5 spacings of the points where that is more.
   double sigma = 0.0;
-  int num_theta = 32;    ///< bins of the map that candidates for the first plane come from, >= 1
-  int num_phi = 128;     ///< even, >= 2
-  int num_radius = 64;   ///< >= 1
   int num_samples = 64;  ///< samples of that map's transform, >= 1
   /// The paper's own method: the plane of greatest D among the maxima of the exact map of 64 x 64 x 64 bins, refined by
   /// publishedPlanes(); then two more picked greedily by D, of 256 samples (to 1 %), at 64 angles across the first
@@ -79,7 +76,7 @@ struct SymmetryFrame {
   std::vector<ProbableFrame> probable;
   /// Axes of rotation of a scan, through the center or not, most confident first: which poses look the same where the
   /// planes alone do not tell, as for a propeller.
-  std::vector<SymmetryTurn> turns;
+  std::vector<SymmetryRotation> turns;
   std::vector<std::pair<std::string, double>> timing_ms;  ///< stages in order
 };
 

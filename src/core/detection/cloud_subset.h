@@ -4,7 +4,7 @@
 #include <optional>
 #include <vector>
 
-#include "core/detection/normalized_cloud.h"
+#include "core/refinement/normalized_cloud.h"
 #include "pcl_symmetry/core/detect_planes.h"
 
 namespace pcl_symmetry {

@@ -13,13 +13,12 @@
 #include "core/detection/plane_decision.h"
 #include "core/detection/plane_families.h"
 #include "core/detection/plane_lattice.h"
-#include "core/detection/scan_axes.h"
 #include "core/detection/staged_refinement.h"
-#include "core/detection/upright_box.h"
 #include "core/geometry/answerable_points.h"
 #include "core/geometry/distinct_points.h"
 #include "core/geometry/point_samples.h"
 #include "core/geometry/search_views.h"
+#include "core/rotation/scan_axes.h"
 #include "core/transform/free_space.h"
 #include "pcl_symmetry/core/planar_transform.h"
 
@@ -42,10 +41,10 @@ public:
 
   /// \param candidates after the second stage, best first.
   /// \return the planes that may be symmetries, and where there are none, the others too; input frame.
-  std::vector<SymmetryPlane> planes(std::vector<Candidate> candidates) {
+  std::vector<SymmetryPlane> decide(std::vector<Candidate> candidates) {
     std::vector<SymmetryPlane> found;
     if (skips_hopeless_ && !explained_ && candidates.size() > 1) {
-      found = judged({candidates.front()});
+      found = refineAndJudge({candidates.front()});
       candidates.erase(candidates.begin());
     }
     // Nothing is missing then that could excuse what others leave off.
@@ -53,13 +52,13 @@ public:
       candidates.erase(std::remove_if(candidates.begin(), candidates.end(),
                                       [&](const Candidate& other) { return decision_.isHopeless(other); }),
                        candidates.end());
-    append(found, judged(std::move(candidates)));
+    append(found, refineAndJudge(std::move(candidates)));
     return found;
   }
 
 private:
   /// Refines candidates in full and judges them.
-  std::vector<SymmetryPlane> judged(std::vector<Candidate> candidates) {
+  std::vector<SymmetryPlane> refineAndJudge(std::vector<Candidate> candidates) {
     candidates = refinement_.full(std::move(candidates));
     std::vector<SymmetryPlane> planes;
     std::vector<Candidate> climbing;
@@ -93,8 +92,8 @@ private:
 
 /// The evidence of all candidates, also of those that the detection leaves out early.
 /// \param candidates after the second stage.
-std::vector<MeasuredPlane> evidenceOf(std::vector<Candidate> candidates, const StagedRefinement& refinement,
-                                      const PlaneDecision& decision) {
+std::vector<MeasuredPlane> judgeAll(std::vector<Candidate> candidates, const StagedRefinement& refinement,
+                                    const PlaneDecision& decision) {
   candidates = refinement.full(std::move(candidates));
   refinement.climb(candidates);
   return decision.judge(refinement.distinct(std::move(candidates)));
@@ -104,23 +103,27 @@ std::vector<MeasuredPlane> evidenceOf(std::vector<Candidate> candidates, const S
 std::vector<SymmetryPlane> withScanAxes(std::vector<SymmetryPlane> planes, const NormalizedCloud& cloud,
                                         double tolerance, const DetectionOptions& options, Detection& detection) {
   // A ball is symmetric about every line through its center.
-  if (!options.turns || !cloud.rules().has_rotations || !detection.centers.empty()) return planes;
+  if (!options.turns || !kKindRules.has_rotations[cloud.kind()] || !detection.centers.empty()) return planes;
+  const ScanAxesOptions scan_axes{options.folds, options.min_confidence, options.min_possible, options.seed,
+                                  options.num_threads};
   const RotationEvidence rotations(cloud, tolerance, options.seed);
-  detection.turns = scanAxes(rotations, planes, detection.axes, options,
+  detection.turns = scanAxes(rotations, planes, detection.axes, scan_axes,
                              detection.evidence ? &detection.evidence->rotations : nullptr);
-  detection.axes = withRoundAxes(rotations, std::move(detection.axes), detection.turns, options);
-  return withoutPlanesOf(std::move(planes), detection.axes, cloud);
+  detection.axes = withRoundAxes(rotations, std::move(detection.axes), detection.turns, scan_axes);
+  return withoutPlanesThrough(std::move(planes), detection.axes, cloud);
 }
 
-/// Section 4.4: the planes of a cloud, from the maxima of its map to the list.
+/// Section 4.4 and what follows: the planes of a cloud, from the maxima of its map to the list. publishedPlanes() is
+/// the section alone.
 /// \param all the points of the cloud and those that were left out to make it evenly dense, normalized frame.
-Detection planesOfCloud(const NormalizedCloud& cloud, const Points& all, const SymmetryMap& map,
-                        const DetectionOptions& options, Stopwatch& watch) {
+Detection refineAndDecide(const NormalizedCloud& cloud, const Points& all, const SymmetryMap& map,
+                          const DetectionOptions& options, Stopwatch& watch) {
   Detection detection;
   const auto timed = [&](const char* stage) { detection.timing_ms.emplace_back(stage, watch.lap()); };
   const std::unique_ptr<PlaneFit> fit = makePlaneFit(cloud, options);
   const StagedRefinement refinement(cloud, *fit, options);
-  const PlaneDecision decision(cloud, *fit, options);
+  const PlaneMeasure measure(cloud, *fit, options);
+  const PlaneDecision decision(cloud, measure, options);
   timed("surface");
 
   // Candidates: local maxima of the transform and the planes across the principal axes.
@@ -134,18 +137,19 @@ Detection planesOfCloud(const NormalizedCloud& cloud, const Points& all, const S
   timed("close_refinement");
   if (options.evidence) {
     detection.evidence = std::make_shared<DetectionEvidence>();
-    detection.evidence->planes = evidenceOf(candidates, refinement, decision);
+    detection.evidence->planes = judgeAll(candidates, refinement, decision);
     timed("evidence");
   }
-  FinalRefinement settler(refinement, decision, !options.approximate && cloud.rules().may_lack_piece);
-  std::vector<SymmetryPlane> planes = settler.planes(std::move(candidates));
+  FinalRefinement final_refinement(refinement, decision,
+                                   !options.approximate && kKindRules.may_lack_piece[cloud.kind()]);
+  std::vector<SymmetryPlane> planes = final_refinement.decide(std::move(candidates));
   timed("full_refinement");
 
   // Planes that follow from others: reflections of one symmetry in another, and those of a polygon.
   GroupClosure closure(cloud);
   while (!(candidates = refinement.closeSymmetries(closure.next(planes))).empty())
-    append(planes, settler.planes(std::move(candidates)));
-  decision.preferWhole(planes);
+    append(planes, final_refinement.decide(std::move(candidates)));
+  decision.adjustConfidences(planes, Found::Planes);
   PlanesAndPolygon completed = withPolygon(std::move(planes), cloud, all, decision, options);
   planes = std::move(completed.planes);
   timed("closure");
@@ -159,9 +163,9 @@ Detection planesOfCloud(const NormalizedCloud& cloud, const Points& all, const S
   }
   timed("families");
   if (!decision.isCutAllAround())
-    planes = withScanAxes(std::move(planes), cloud, decision.measure.tolerance(), options, detection);
+    planes = withScanAxes(std::move(planes), cloud, measure.tolerance(), options, detection);
   const bool has_family = !detection.axes.empty() || !detection.centers.empty();
-  decision.preferBest(planes, has_family);
+  decision.adjustConfidences(planes, Found::Families, has_family);
   timed("turns");
 
   if (options.approximate) append(planes, localPlanes(planes, cloud, *fit, decision, options));
@@ -169,17 +173,15 @@ Detection planesOfCloud(const NormalizedCloud& cloud, const Points& all, const S
 
   // The answer.
   if (!has_family) detection.best = bestApproximate(planes, cloud, *fit);
-  if (detection.best)
-    detection.best->deviation = decision.measure.deviation(cloud.toNormalized(*detection.best)) * cloud.scale;
-  detection.flat = flatPlane(cloud, decision.measure.thinness());
-  detection.tolerance = decision.measure.tolerance() * cloud.scale;
-  const bool is_raised =
-      options.absolute_tolerance == 0.0 && decision.measure.tolerance() > options.tolerance * cloud.extent;
-  detection.resolution =
-      std::max(decision.measure.resolution(), is_raised ? decision.measure.tolerance() : 0.0) * cloud.scale;
+  if (detection.best) detection.best->deviation = measure.deviation(cloud.toNormalized(*detection.best)) * cloud.scale;
+  detection.flat = flatPlane(cloud, measure.thinness());
+  detection.tolerance = measure.tolerance() * cloud.scale;
+  const bool is_raised = options.absolute_tolerance == 0.0 && measure.tolerance() > options.tolerance * cloud.extent;
+  detection.resolution = std::max(measure.resolution(), is_raised ? measure.tolerance() : 0.0) * cloud.scale;
   detection.diameter = cloud.extent * cloud.scale;
   detection.planes = rankedPlanes(std::move(planes), completed.polygon, cloud, *fit, options);
-  decision.doubtSlanted(detection.planes);
+  decision.adjustConfidences(detection.planes, Found::Answer);
+  detection.planes = reordered(std::move(detection.planes), options);
   timed("report");
   return detection;
 }
@@ -188,8 +190,8 @@ Detection planesOfCloud(const NormalizedCloud& cloud, const Points& all, const S
 /// support of all its points.
 /// \param input the points of the cloud in the input frame.
 /// \param kept indices of the points to judge by.
-Detection planesOfEvenCloud(const NormalizedCloud& cloud, const Points& input, const std::vector<int>& kept,
-                            const SymmetryMap& map, const DetectionOptions& options, Stopwatch& watch) {
+Detection detectOnEvenSubset(const NormalizedCloud& cloud, const Points& input, const std::vector<int>& kept,
+                             const SymmetryMap& map, const DetectionOptions& options, Stopwatch& watch) {
   GaussianEdtOptions edt_options;
   edt_options.num_cells = cloud.edt.numCells();
   edt_options.sigma = cloud.edt.sigma();
@@ -201,7 +203,7 @@ Detection planesOfEvenCloud(const NormalizedCloud& cloud, const Points& input, c
   const ClosestPointSearch::Ptr search =
       cloud.flann ? nullptr : among(cloud.search, static_cast<std::size_t>(cloud.points.cols()), kept);
   const NormalizedCloud even(even_points, edt, search, nullptr, options.num_threads);
-  Detection detection = planesOfCloud(even, cloud.points, map, options, watch);
+  Detection detection = refineAndDecide(even, cloud.points, map, options, watch);
   const auto complete = [&](SymmetryPlane& plane) {
     plane.point_support = surfaceSupport(cloud, cloud.toNormalized(plane), options);
   };
@@ -219,8 +221,8 @@ Points normalsOf(const DistinctPoints& distinct, const Points& normals) {
 }
 
 /// Each position counts once, and volumes of points are made evenly dense.
-Detection planesOfMap(const PlaneInput& input, const GaussianEdt& edt, const SymmetryMap& map,
-                      const DetectionOptions& options) {
+Detection detectFromMap(const PlaneInput& input, const GaussianEdt& edt, const SymmetryMap& map,
+                        const DetectionOptions& options) {
   Stopwatch watch;
   const DistinctPoints distinct(input.points);
   const Points normals = input.normals ? normalsOf(distinct, *input.normals) : Points();
@@ -229,16 +231,16 @@ Detection planesOfMap(const PlaneInput& input, const GaussianEdt& edt, const Sym
   const NormalizedCloud cloud(distinct.points, edt, std::move(search), input.visibility, options.num_threads,
                               input.normals ? &normals : nullptr);
   const std::vector<int> kept =
-      cloud.rules().evens_density ? evenlyDense(cloud, options.seed) : allOf(cloud.points.cols());
+      kKindRules.evens_density[cloud.kind()] ? evenlyDense(cloud, options.seed) : allOf(cloud.points.cols());
   Detection detection = static_cast<Eigen::Index>(kept.size()) < cloud.points.cols()
-                            ? planesOfEvenCloud(cloud, distinct.points, kept, map, options, watch)
-                            : planesOfCloud(cloud, cloud.points, map, options, watch);
+                            ? detectOnEvenSubset(cloud, distinct.points, kept, map, options, watch)
+                            : refineAndDecide(cloud, cloud.points, map, options, watch);
   if (distinct.points.cols() < input.points.cols()) spreadSupport(detection, distinct.index_of);
   return detection;
 }
 
 /// Sections 4.1 to 4.3, then the rest.
-Detection planesOfPoints(const PlaneInput& input, const DetectionOptions& options) {
+Detection detectFromPoints(const PlaneInput& input, const DetectionOptions& options) {
   Stopwatch watch;
   std::vector<std::pair<std::string, double>> timing;
   const GaussianEdt edt(input.points, options.edtOptions());
@@ -246,23 +248,24 @@ Detection planesOfPoints(const PlaneInput& input, const DetectionOptions& option
   const std::vector<float> free_space = freeSpace(edt, input.visibility, options.num_threads);
   timing.emplace_back("free_space", watch.lap());
   const DetectionOptions::Expert& expert = options.expert;
-  const PlaneGrid grid(expert.num_theta, expert.num_phi, expert.num_radius, edt.center(), edt.radius());
+  const PlaneGrid grid(expert, edt.center(), edt.radius());
   SymmetryMap map = sampledTransform(edt, grid, {expert.num_samples, options.seed, options.num_threads}, free_space);
   map.center_of_mass = centerOfMass(input.points);
   timing.emplace_back("transform", watch.lap());
-  Detection detection = planesOfMap(input, edt, map, options);
+  Detection detection = detectFromMap(input, edt, map, options);
   detection.map = std::move(map);
   detection.timing_ms.insert(detection.timing_ms.begin(), timing.begin(), timing.end());
   return detection;
 }
 
 /// Detects planes on a subset of a large cloud, and turns them into the answer of the whole cloud.
-Detection planesOfSubset(const PlaneInput& input, const CloudSubset& subset, const DetectionOptions& options) {
+Detection detectOnSubset(const PlaneInput& input, const CloudSubset& subset, const DetectionOptions& options) {
   const Points normals = input.normals ? pointsAt(*input.normals, subset.kept) : Points();
   PlaneInput kept(subset.points, input.visibility);
   kept.normals = input.normals ? &normals : nullptr;
   kept.make_search = input.make_search;
-  Detection detection = input.map ? planesOfMap(kept, *input.edt, *input.map, options) : planesOfPoints(kept, options);
+  Detection detection =
+      input.map ? detectFromMap(kept, *input.edt, *input.map, options) : detectFromPoints(kept, options);
   if (!input.map) detection.map.center_of_mass = centerOfMass(input.points);
   Stopwatch watch;
   if (!detection.planes.empty() || detection.best)
@@ -291,9 +294,7 @@ void DetectionOptions::validate() const {
   edtOptions().validate();
   checkNumThreads(num_threads);
   expert.maxima.validate();
-  check(expert.num_theta >= 1, "num_theta", expert.num_theta, ">= 1");
-  check(expert.num_phi >= 2 && expert.num_phi % 2 == 0, "num_phi", expert.num_phi, "even and >= 2");
-  check(expert.num_radius >= 1, "num_radius", expert.num_radius, ">= 1");
+  expert.MapSize::validate();
   check(expert.num_samples >= 1, "num_samples", expert.num_samples, ">= 1");
   check(expert.max_candidates >= 1, "max_candidates", expert.max_candidates, ">= 1");
   check(expert.num_refine_samples >= 10, "num_refine_samples", expert.num_refine_samples, ">= 10");
@@ -312,10 +313,10 @@ Detection detectPlanes(const PlaneInput& input, const DetectionOptions& options)
   Stopwatch watch;
   if (const std::optional<CloudSubset> subset = subsetOf(input.points, options)) {
     const double subset_ms = watch.lap();
-    detection = planesOfSubset(input, *subset, options);
+    detection = detectOnSubset(input, *subset, options);
     detection.timing_ms.insert(detection.timing_ms.begin(), {"subset", subset_ms});
   } else {
-    detection = input.map ? planesOfMap(input, *input.edt, *input.map, options) : planesOfPoints(input, options);
+    detection = input.map ? detectFromMap(input, *input.edt, *input.map, options) : detectFromPoints(input, options);
   }
   if (input.may_be_rings && input.visibility && detection.reason.empty())
     decideByUprightBox(input.points, *input.visibility, options, detection);

@@ -23,35 +23,21 @@ struct DetectionRules {
     double uneven = 0.4, fully_uneven = 0.7;  ///< logarithm of the ratio of densities evened, from none to all of it
   } points;
 
-  /// The normalized cloud.
-  struct {
-    double final_sigma_in_spacings = 3.0;  ///< narrowest weights; less leaves reflections between samples without any
-    double volume_roughness = 0.36;        ///< spacings; points that fill a volume evenly have 0.42
-  } cloud;
-
   /// Completion of groups.
   struct {
     std::size_t most_closed = 16;  ///< symmetries whose group is completed: a cube has 9, an icosahedron 15
   } closure;
-
-  /// Iterative Symmetric Points.
-  struct {
-    double least_stiffness = 1e-3;  ///< share of the stiffest direction below which a direction is free
-    double longest_step = 0.2;      ///< radians, or extents of the samples; longer steps leave the basin
-    double reach_sigmas = 3.0;      ///< sigmas beyond which pairs have no weight
-    double rest_sigmas = 0.1;       ///< sigmas; a shorter step lets the weights narrow
-    double hidden_depth = 0.1;      ///< sigmas behind the surface seen over which a pair loses its weight
-  } isp;
 
   /// Stages of refinement.
   struct {
     /// Bins beyond its own that refinement may move a candidate by. Departure from the paper, which has 0: one bin
     /// leaves room for the noise of the sampled map.
     double most_drift = 1.0;
-    int first_samples = 100;                                  ///< points reflected in the first stage
-    double same_angle = 0.035, same_offset = 0.02;            ///< within which two planes are one
-    double same_basin_angle = 0.1, same_basin_offset = 0.06;  ///< the same of maxima: a peak of D is 0.1 radians wide
-    double symmetric_merit = 0.93;  ///< of a symmetry: support of 97 % and conflict of 3 % have 0.97
+    int first_samples = 100;                        ///< points reflected in the first stage
+    double same_angle = 0.035, same_offset = 0.02;  ///< within which two planes are one
+    double same_maximum_angle = 0.1,
+           same_maximum_offset = 0.06;  ///< the same of maxima: a peak of D is 0.1 radians wide
+    double symmetric_merit = 0.93;      ///< of a symmetry: support of 97 % and conflict of 3 % have 0.97
     int coarse_iterations = 5, close_iterations = 6, full_iterations = 8, rough_iterations = 4;
     double close_slack = 0.1;   ///< below the merit of a symmetry that a candidate may be after the second stage
     double coarse_slack = 0.2;  ///< the same after the first stage, beside a symmetry
@@ -98,12 +84,13 @@ struct DetectionRules {
     double piece_missing = 0.03;        ///< share of the surface; more is a piece
     double odds_of_a_piece = 0.2;       ///< that a cloud lacks a piece although a plane explains all of it
     double as_likely = 0.05;            ///< difference of the confidences that other samples of a cloud make
-    double least_told = 0.1;            ///< least share of informative samples; below it confidence falls in proportion
+    double least_informative = 0.1;     ///< least share of informative samples; below it confidence falls in proportion
     double coarsest_tolerance = 0.03;   ///< share of the diameter; a sensor that resolves less decides at this
     double coarsest_resolution = 0.09;  ///< three times that; a sensor that resolves less decides nothing
     double upright = 5.0 * kPi / 180.0;  ///< from upright or level within which a plane does not slant
     double touching = 0.05;              ///< diameters beyond the nearest support within which others carry, too
     double slanted_odds = 0.1;           ///< of a plane that slants over one that does not
+    double no_surface = 1.5;             ///< tolerances from which neighboring points are too far apart for a surface
     int most_possible = 5;               ///< symmetries and possible planes together, where there are possible ones
     double slope_dip = 0.005;            ///< difference of D that rounding makes of a level slope
     double slope_angle = 0.2,
@@ -168,123 +155,71 @@ struct DetectionRules {
     double matched_support = 0.8;                          ///< mean support of a neighborhood that matches
     float counterpart = 0.5f;                              ///< support that connects a sample with its counterpart
   } parts;
-
-  /// Rotations of scans.
-  struct {
-    int normal_samples = 600, normal_draws = 60, normals_in_draw = 8;  ///< that lines of bodies of revolution are from
-    int from_normals = 3;                                              ///< lines kept of these
-    double normal_miss = 0.1, least_lever = 0.05;             ///< radians and radii by which normals meet a line
-    double same_start_angle = 0.1, same_start_offset = 0.06;  ///< lines within both are one start
-    double angle_of_fold = 3.0 * kDegree;                     ///< by which planes of scans are off
-    double least_plane_angle = 0.13;                          ///< between two planes that share a line
-    int coarse_cells = 24, coarse_theta = 8, coarse_phi = 32, coarse_offset = 12, coarse_samples = 32;
-    std::size_t coarse_maxima = 10;                         ///< of that axial transform
-    double coarse_angle = 0.3, coarse_distance = 0.3;       ///< within which two of them are one
-    double coarse_equal = 0.05;                             ///< D by which they are off their peaks
-    int most_order = 12;                                    ///< bodies of more folds are nearly round to a scan
-    int round_rotations = 10;                               ///< rotations that represent all, besides small ones
-    double small_angle = 0.26, larger_angle = 0.7;          ///< angles that the fit of a round body uses
-    double rough_factor = 3.0, rough_slack = 2.0;           ///< of most_off and most_far in screening; tolerances
-    std::size_t most_planes_of_axes = 8;                    ///< planes whose common lines are starts
-    double plane_share = 0.85;                              ///< share of such planes
-    double same_axis_angle = 0.12, same_axis_offset = 0.1;  ///< no body has two axes nearer
-    double fitted_angle = 0.02, fitted_offset = 0.02;       ///< lines within both are judged once
-    std::size_t most_axes = 5;                              ///< axes; a polyhedron seen from a corner shows as many
-    int most_points = 10'000;                               ///< points that rotations are judged by
-    int scored_planes = 4;                                  ///< that D of a round body is the mean of
-    int num_samples = 1000, num_few_samples = 300;          ///< points that judge a rotation exactly, and roughly
-    double far_tolerances = 10.0;                           ///< tolerances, as ObjectSymmetryOptions::max_feature
-    std::array<double, 6> fit_widths{8.0, 5.0, 3.0, 2.0, 1.5, 1.5};        ///< of the weights of a fit, tolerances
-    std::array<double, 6> close_fit_widths{3.0, 2.0, 1.5, 1.0, 0.7, 0.7};  ///< the same, from a first fit on
-    double least_empty_miss = 0.5;                            ///< tolerances beside the rim from which points pull
-    double fit_reach = 2.0;                                   ///< widths beyond which a match has no weight
-    double fit_ridge = 1e-3;                                  ///< share of the trace that keeps free directions at rest
-    double fit_step = 1e-4;                                   ///< of derivatives, radians and radii
-    double least_f = 1e-6;                                    ///< below any f that is not 0
-    double slack_of_reach = 1.001;                            ///< more than what distances are rounded by
-    double most_off = 0.05, most_far = 0.0125;                ///< shares thrown into empty space, of folds
-    double most_round_off = 0.015, most_round_far = 0.004;    ///< the same of round bodies
-    double round_on = 0.6, fold_on = 0.3, twofold_on = 0.75;  ///< shares that land on the surface, by kind
-    double halfway_more = 0.06;  ///< share that rotations halfway throw more into empty space
-    int num_plane_pairs = 24;    ///< pairs of perpendicular planes through a line that are screened
-    double plane_slack = 2.0;    ///< tolerances of that screening
-    double upright_angle = 6.0 * kDegree, crossing_gap = 0.06;  ///< by which lines may miss a right angle, each other
-    double landed_counts = 0.1;                                 ///< what lands on the surface, of what is thrown off it
-    double most_halfway = 0.3;           ///< share of the points from which on all folds are alike
-    double negligible_share = 2e-3;      ///< share of the points that is negligible
-    double negligible_of_planes = 5e-3;  ///< the same of planes, which are screened at steps
-    double least_hold = 1e-3;            ///< least stiffness of a line that the scan holds; boxes have 0.05
-  } rotations;
 };
 
 inline constexpr DetectionRules kDetection;
 
-/// What differs between the kinds of cloud in detection (Section 4.4). The values here are those of a surface.
-struct KindRules {
-  // Candidates.
-  bool completes_groups = true;  ///< the reflection of one symmetry in another is tried; a scan shows too few for that
-  bool keeps_unlikely = false;  ///< candidates of little merit are refined beside symmetries, too: a scan's have little
+/// A rule that differs between the kinds of cloud.
+template <typename T>
+struct KindRule {
+  T surface, scan, volume;  ///< of points
 
-  // Refinement.
-  int full_share = 1;           ///< the last stage reflects one sample in this many: a scan is limited by what it shows
-  int rough_share = 10;         ///< candidates that never settle reflect one sample in this many
-  double settled_merit = 0.83;  ///< candidates with less never settle
-  bool slides = false;          ///< point-to-plane steps slide a plane along flat pieces that a scan has little beside
-  bool climbs = true;  ///< planes climb to their maximum after the last stage; those of noisy scans have done so in it
-
-  // Evidence.
-  int judged_share = 0;          ///< planes are judged by one sample in this many; 0 = by all points
-  bool by_halves = false;        ///< one half of the points is compared with the other, as no surface is resolved
-  bool may_lack_piece = true;    ///< open borders tell what was cut off
-  double thin_tolerances = 1.0;  ///< tolerances within which points are a sheet
-
-  // Families of planes.
-  bool normals_tell = true;    ///< normals point to axes and centers
-  double family_share = 0.92;  ///< of the surface seen, that the planes of a family map on average
-  /// Share of the surface by which planes of a family may differ, at that many points or more.
-  double family_allowance = 0.015, points_of_allowance = 0.0;
-  int family_samples = 1500;     ///< points that judge a family; a look-up in a density costs a tenth of a search
-  bool family_needs_all = true;  ///< the worst plane of a family has to be a symmetry; a scan shows some too badly
-  bool has_polygons = false;     ///< planes of a polygon are judged together, as noise hides single ones
-
-  bool has_rotations = false;  ///< axes of rotations are searched
-  bool evens_density = false;  ///< the denser side is thinned
+  constexpr T operator[](CloudKind kind) const {
+    return kind == CloudKind::Scan ? scan : kind == CloudKind::Volume ? volume : surface;
+  }
 };
 
-constexpr KindRules scanRules() {
-  KindRules rules;
-  rules.completes_groups = false;
-  rules.keeps_unlikely = true;
-  rules.full_share = 4;
-  rules.rough_share = 20;
-  rules.settled_merit = 0.93;
-  rules.slides = true;
-  rules.climbs = false;
-  rules.judged_share = 4;
-  rules.may_lack_piece = false;
-  rules.family_share = 0.98;
-  rules.family_needs_all = false;
-  rules.has_rotations = true;
-  return rules;
-}
+/// What differs between the kinds of cloud in detection (Section 4.4).
+struct KindRules {
+  // clang-format off
+  //                                        surface     scan   volume
 
-constexpr KindRules volumeRules() {
-  KindRules rules;
-  rules.by_halves = true;
-  rules.may_lack_piece = false;
-  rules.thin_tolerances = 3.0;
-  rules.normals_tell = false;
-  rules.family_allowance = 0.012;
-  rules.points_of_allowance = 10'000.0;
-  rules.family_samples = 15'000;
-  rules.has_polygons = true;
-  rules.evens_density = true;
-  return rules;
-}
+  // Candidates: the reflection of one symmetry in another is tried; a scan shows too few for that.
+  KindRule<bool> completes_groups         {    true,   false,    true};
+  // Candidates of little merit are refined beside symmetries, too: those of a scan have little.
+  KindRule<bool> keeps_unlikely           {   false,    true,   false};
 
-inline const KindRules& rulesOf(CloudKind kind) {
-  static constexpr KindRules surface, scan = scanRules(), volume = volumeRules();
-  return kind == CloudKind::Scan ? scan : kind == CloudKind::Volume ? volume : surface;
-}
+  // Refinement: the last stage reflects one sample in this many: a scan is limited by what it shows.
+  KindRule<int> full_share                {       1,       4,       1};
+  // Candidates that never settle reflect one sample in this many; ...
+  KindRule<int> rough_share               {      10,      20,      10};
+  // ... those with less merit never settle.
+  KindRule<double> settled_merit          {    0.83,    0.93,    0.83};
+  // Point-to-plane steps slide a plane along flat pieces that a scan has little beside.
+  KindRule<bool> slides                   {   false,    true,   false};
+  // Planes climb to their maximum after the last stage; those of noisy scans have done so in it.
+  KindRule<bool> climbs                   {    true,   false,    true};
+
+  // Evidence: planes are judged by one sample in this many; 0 = by all points.
+  KindRule<int> judged_share              {       0,       4,       0};
+  // One half of the points is compared with the other, as no surface is resolved.
+  KindRule<bool> by_halves                {   false,   false,    true};
+  // Open borders tell what was cut off.
+  KindRule<bool> may_lack_piece           {    true,   false,   false};
+  // Tolerances within which points are a sheet.
+  KindRule<double> thin_tolerances        {     1.0,     1.0,     3.0};
+
+  // Families of planes: normals point to axes and centers.
+  KindRule<bool> normals_tell             {    true,    true,   false};
+  // Share of the surface seen that the planes of a family map on average.
+  KindRule<double> family_share           {    0.92,    0.98,    0.92};
+  // Share of the surface by which planes of a family may differ, at this many points or more.
+  KindRule<double> family_allowance       {   0.015,   0.015,   0.012};
+  KindRule<double> points_of_allowance    {     0.0,     0.0, 10000.0};
+  // Points that judge a family; a look-up in a density costs a tenth of a search.
+  KindRule<int> family_samples            {    1500,    1500,   15000};
+  // The worst plane of a family has to be a symmetry; a scan shows some too badly.
+  KindRule<bool> family_needs_all         {    true,   false,    true};
+  // Planes of a polygon are judged together, as noise hides single ones.
+  KindRule<bool> has_polygons             {   false,   false,    true};
+
+  // Axes of rotations are searched.
+  KindRule<bool> has_rotations            {   false,    true,   false};
+  // The denser side is thinned.
+  KindRule<bool> evens_density            {   false,   false,    true};
+  // clang-format on
+};
+
+inline constexpr KindRules kKindRules;
 
 }  // namespace pcl_symmetry

@@ -361,9 +361,8 @@ std::vector<SymmetryPlane> localPlanes(const std::vector<SymmetryPlane>& known, 
   std::vector<std::optional<SymmetryPlane>> of_parts(parts.size());
   parallelBlocks(parts.size(), options.num_threads, [&](std::size_t i) {
     const auto normalized = [&](const SymmetryPlane& plane) { return cloud.toNormalized(plane); };
-    if (kSameBasin.anySame(decided, parts[i].plane, normalized)) return;
-    MeasuredPlane judged = decision.measure.of(parts[i].plane, all);
-    decision.decide(judged);
+    if (kSameMaximum.anySame(decided, parts[i].plane, normalized)) return;
+    MeasuredPlane judged = decision.judge(parts[i].plane, all);
     if (judged.plane.kind == PlaneKind::Symmetry) return;  // of a family, which is known as its axis or center
     judged.plane.kind = PlaneKind::Local;
     judged.plane.iterations = parts[i].iterations;

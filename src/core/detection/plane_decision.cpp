@@ -6,8 +6,11 @@
 
 #include "core/base/constants.h"
 #include "core/base/logistic.h"
+#include "core/base/median.h"
 #include "core/base/parallel.h"
 #include "core/geometry/point_samples.h"
+#include "core/geometry/surface_normals.h"
+#include "core/scan/upright_box.h"
 
 namespace pcl_symmetry {
 
@@ -16,6 +19,29 @@ namespace {
 /// The least signed distance of the points from a support.
 double heightOf(const PointsRef& points, const Eigen::Vector4d& support) {
   return (support.head<3>().transpose().cast<float>() * points).minCoeff() + support[3];
+}
+
+/// The order of answers: symmetries, then possible ones, both by falling confidence, then others by falling support.
+bool isBetter(const SymmetryPlane& a, const SymmetryPlane& b) {
+  const auto rank = [](const SymmetryPlane& plane) {
+    return plane.kind == PlaneKind::Symmetry ? 0 : plane.kind == PlaneKind::Possible ? 1 : 2;
+  };
+  if (rank(a) != rank(b)) return rank(a) < rank(b);
+  if (isDecided(a) && a.confidence != b.confidence) return a.confidence > b.confidence;
+  return a.support > b.support;
+}
+
+/// Among the planes that are as likely as the likeliest, D decides.
+/// \return null where there is none.
+const SymmetryPlane* bestOf(const std::vector<SymmetryPlane>& planes) {
+  double most = 0.0;
+  for (const SymmetryPlane& plane : planes) most = std::max(most, plane.confidence);
+  const auto best = std::max_element(planes.begin(), planes.end(), [&](const SymmetryPlane& a, const SymmetryPlane& b) {
+    const bool a_likely = a.confidence >= most - kDetection.decide.as_likely,
+               b_likely = b.confidence >= most - kDetection.decide.as_likely;
+    return a_likely != b_likely ? b_likely : a.score < b.score;
+  });
+  return best == planes.end() ? nullptr : &*best;
 }
 
 }  // namespace
@@ -39,6 +65,42 @@ std::vector<Eigen::Vector3d> carryingNormals(const PointsRef& points, const Visi
   return normals;
 }
 
+void decideByUprightBox(const PointsRef& points, const Visibility& seen, const DetectionOptions& options,
+                        Detection& found) {
+  const std::vector<Eigen::Vector3d> up = carryingNormals(points, seen);
+  const float spacing =
+      median(localGeometry(points, *makeFlannSearch(points), kNumSupportNeighbors, options.num_threads).spacing);
+  const bool is_sparse = spacing > kDetection.decide.no_surface * found.tolerance;
+  const bool is_decided = !found.axes.empty() || !found.centers.empty() ||
+                          (!found.planes.empty() && found.planes.front().kind == PlaneKind::Symmetry);
+  if (up.empty() || (is_decided && !is_sparse)) return;
+  const std::optional<MiddlePlane> middle = middlePlaneOfBox(points, up.front(), seen.viewpoint());
+  std::optional<SymmetryPlane> plane;
+  if (middle) {
+    plane.emplace(middle->plane);
+    plane->confidence = middle->confidence;
+    plane->share = middle->num_met / (middle->num_met + middle->num_free);
+    plane->share_low = middle->num_met / middle->num_moved;
+    plane->share_high = 1.0 - middle->num_free / middle->num_moved;
+    plane->support = middle->num_met / middle->num_moved;
+    plane->seen = (middle->num_met + middle->num_free) / middle->num_moved;
+    plane->residual = middle->residual;
+    plane->converged = true;
+    plane->point_support = middle->point_support;
+  }
+  if (is_sparse) {
+    found.planes.clear();
+    found.axes.clear();
+    found.centers.clear();
+    found.turns.clear();
+    found.best = plane;
+  }
+  if (!plane || plane->confidence < (is_sparse ? options.min_possible : options.min_confidence)) return;
+  decideBy(plane->confidence, options, *plane);
+  found.planes.insert(found.planes.begin(), std::move(*plane));
+  found.best.reset();
+}
+
 bool slants(const ReflectionPlane& plane, const std::vector<Eigen::Vector3d>& carrying_normals) {
   const auto is_along = [&](const Eigen::Vector3d& normal) {
     const double angle = std::acos(std::min(1.0, std::abs(normal.dot(plane.normal()))));
@@ -47,9 +109,11 @@ bool slants(const ReflectionPlane& plane, const std::vector<Eigen::Vector3d>& ca
   return !carrying_normals.empty() && std::none_of(carrying_normals.begin(), carrying_normals.end(), is_along);
 }
 
-void PlaneDecision::decide(MeasuredPlane& measured) const {
-  decideBy(planeConfidence(measured.evidence) * std::min(1.0, measured.told / kDetection.decide.least_told),
-           measured.plane);
+MeasuredPlane PlaneDecision::decided(MeasuredPlane measured) const {
+  decideBy(
+      planeConfidence(measured.evidence) * std::min(1.0, measured.informative / kDetection.decide.least_informative),
+      measured.plane);
+  return measured;
 }
 
 void PlaneDecision::decideBy(double confidence, SymmetryPlane& plane) const {
@@ -59,81 +123,61 @@ void PlaneDecision::decideBy(double confidence, SymmetryPlane& plane) const {
 }
 
 bool PlaneDecision::movesNothing(const ReflectionPlane& plane) const {
-  if (measure.thinness() == Thinness::Solid) return false;
-  return measure.thinness() == Thinness::Line ||
-         measure.movedShare(cloud_.toNormalized(plane)) < 1.0 - kDetection.decide.still_share;
+  if (measure_.thinness() == Thinness::Solid) return false;
+  return isLine() || measure_.movedShare(cloud_.toNormalized(plane)) < 1.0 - kDetection.decide.still_share;
 }
 
 bool PlaneDecision::isResolved() const {
-  return measure.tolerance() >= measure.resolution() ||
-         (measure.tolerance() >= kDetection.decide.coarsest_tolerance * cloud_.extent &&
-          measure.resolution() <= kDetection.decide.coarsest_resolution * cloud_.extent);
+  return measure_.tolerance() >= measure_.resolution() ||
+         (measure_.tolerance() >= kDetection.decide.coarsest_tolerance * cloud_.extent &&
+          measure_.resolution() <= kDetection.decide.coarsest_resolution * cloud_.extent);
 }
 
 bool PlaneDecision::explainsAll(const SymmetryPlane& plane) const {
-  return cloud_.rules().may_lack_piece && plane.kind == PlaneKind::Symmetry &&
+  return kKindRules.may_lack_piece[cloud_.kind()] && plane.kind == PlaneKind::Symmetry &&
          1.0 - plane.seen <= kDetection.decide.nothing_missing;
 }
 
 bool PlaneDecision::isHopeless(const Candidate& candidate) const {
-  if (!cloud_.rules().may_lack_piece || candidate.merit >= kDetection.stages.symmetric_merit) return false;
-  const PlaneMeasure::QuickShare quick = measure.quickShare(candidate);
+  if (!kKindRules.may_lack_piece[cloud_.kind()] || candidate.merit >= kDetection.stages.symmetric_merit) return false;
+  const PlaneMeasure::QuickShare quick = measure_.quickShare(candidate);
   return quick.share + kDetection.decide.look_errors * quick.error < kDetection.decide.hopeful_share;
 }
 
-void PlaneDecision::preferWhole(std::vector<SymmetryPlane>& planes) const {
-  if (std::none_of(planes.begin(), planes.end(), [&](const SymmetryPlane& plane) { return explainsAll(plane); }))
-    return;
-  for (SymmetryPlane& plane : planes)
-    if (1.0 - plane.seen > kDetection.decide.piece_missing)
+void PlaneDecision::adjustConfidences(std::vector<SymmetryPlane>& planes, Found found, bool has_family) const {
+  const bool is_explained =
+      found == Found::Planes &&
+      std::any_of(planes.begin(), planes.end(), [&](const SymmetryPlane& plane) { return explainsAll(plane); });
+  const SymmetryPlane* const best = found == Found::Families ? bestOf(planes) : nullptr;
+  std::vector<Eigen::Vector3d> carrying_normals;
+  if (found == Found::Answer && cloud_.seen()) carrying_normals = carryingNormals(cloud_.points, *cloud_.seen());
+  for (SymmetryPlane& plane : planes) {
+    const double missing = 1.0 - plane.seen;
+    // Where a plane explains all of a cloud, nothing of it is missing: those that need a missing piece are doubted, as
+    // the plane across an open cup, which needs a lid.
+    if (is_explained && missing > kDetection.decide.piece_missing)
       decideBy(withOdds(plane.confidence, kDetection.decide.odds_of_a_piece), plane);
-}
-
-void PlaneDecision::preferBest(std::vector<SymmetryPlane>& planes, bool has_family) const {
-  double most = 0.0;
-  for (const SymmetryPlane& plane : planes) most = std::max(most, plane.confidence);
-  // Among planes that are as likely, D decides.
-  const auto best = std::max_element(planes.begin(), planes.end(), [&](const SymmetryPlane& a, const SymmetryPlane& b) {
-    const bool a_likely = a.confidence >= most - kDetection.decide.as_likely,
-               b_likely = b.confidence >= most - kDetection.decide.as_likely;
-    return a_likely != b_likely ? b_likely : a.score < b.score;
-  });
-  for (auto plane = planes.begin(); plane != planes.end(); ++plane)
-    if (plane != best || has_family)
-      decideBy(furtherConfidence(plane->confidence, cloud_.kind(), 1.0 - plane->seen), *plane);
-}
-
-void PlaneDecision::doubtSlanted(std::vector<SymmetryPlane>& planes) const {
-  if (!cloud_.seen() || cloud_.seen()->supports().empty()) return;
-  const std::vector<Eigen::Vector3d> normals = carryingNormals(cloud_.points, *cloud_.seen());
-  for (SymmetryPlane& plane : planes)
-    if (isDecided(plane) && slants(plane, normals))
+    // A scan or a cut hides a part of an object, and many planes are tried: those beside the best one, or beside a
+    // family, are symmetries less often.
+    if (found == Found::Families && (&plane != best || has_family))
+      decideBy(furtherConfidence(plane.confidence, cloud_.kind(), missing), plane);
+    // What stands on a table was made to stand there, or lies on one of its sides, and then its planes are upright or
+    // level, but for few. Where nothing is known of a support, no plane slants.
+    if (isDecided(plane) && slants(plane, carrying_normals))
       decideBy(withOdds(plane.confidence, kDetection.decide.slanted_odds), plane);
-  if (!options_.approximate)
-    planes.erase(std::remove_if(planes.begin(), planes.end(), [](const SymmetryPlane& p) { return !isDecided(p); }),
-                 planes.end());
-  std::stable_sort(planes.begin(), planes.end(), isBetter);
-}
-
-int rankOf(const SymmetryPlane& plane) {
-  return plane.kind == PlaneKind::Symmetry ? 0 : plane.kind == PlaneKind::Possible ? 1 : 2;
-}
-
-bool isBetter(const SymmetryPlane& a, const SymmetryPlane& b) {
-  const int rank = rankOf(a);
-  if (rank != rankOf(b)) return rank < rankOf(b);
-  if (rank < 2 && a.confidence != b.confidence) return a.confidence > b.confidence;
-  return a.support > b.support;
+  }
 }
 
 std::vector<MeasuredPlane> PlaneDecision::judge(const std::vector<Candidate>& candidates) const {
-  const std::vector<int> samples = measure.samples();
+  const std::vector<int> samples = measure_.samples();
   std::vector<MeasuredPlane> judged(candidates.size());
-  parallelBlocks(candidates.size(), options_.num_threads, [&](std::size_t i) {
-    judged[i] = measure.of(candidates[i], samples);
-    decide(judged[i]);
-  });
+  parallelBlocks(candidates.size(), options_.num_threads,
+                 [&](std::size_t i) { judged[i] = decided(measure_.of(candidates[i], samples)); });
   return judged;
+}
+
+MeasuredPlane PlaneDecision::judge(const ReflectionPlane& plane, const std::vector<int>& samples) const {
+  return decided(measure_.of(plane, samples));
 }
 
 JudgedFamily PlaneDecision::judgeFamily(const std::vector<ReflectionPlane>& planes,
@@ -143,15 +187,15 @@ JudgedFamily PlaneDecision::judgeFamily(const std::vector<ReflectionPlane>& plan
   JudgedFamily family;
   PlaneEvidence together;
   together.share = together.double_share = together.hold = 0.0;
-  double telling = 0.0, best_score = 0.0;
+  double informative = 0.0, best_score = 0.0;
   for (const ReflectionPlane& plane : planes) {
-    const PlaneEvidence one = measure.of(plane, samples, is_scan ? measure.tolerance() : 0.0).evidence;
+    const PlaneEvidence one = measure_.of(plane, samples, is_scan ? measure_.tolerance() : 0.0).evidence;
     together.support += one.support / count;
     together.conflict += one.conflict / count;
-    const double told = (1.0 - one.unknown) / count;
-    telling += told;
-    together.share += told * one.share;
-    together.double_share += told * one.double_share;
+    const double part = (1.0 - one.unknown) / count;
+    informative += part;
+    together.share += part * one.share;
+    together.double_share += part * one.double_share;
     together.hold += one.hold / count;
     best_score = std::max(best_score, one.score);
     family.score += one.score / count;
@@ -159,12 +203,12 @@ JudgedFamily PlaneDecision::judgeFamily(const std::vector<ReflectionPlane>& plan
   }
   // Planes of a family tell as much as the scan shows of them, and D falls with what it does not show: the plane that
   // is shown best represents it.
-  constexpr double kLeastTelling = 1e-3;  // avoids a division by 0
-  PlaneEvidence all = measure.evidenceOf(together.support, together.conflict, is_scan ? best_score : family.score);
-  all.share = together.share / std::max(kLeastTelling, telling);
-  all.double_share = together.double_share / std::max(kLeastTelling, telling);
+  constexpr double least = 1e-3;  // avoids a division by 0
+  PlaneEvidence all = measure_.evidenceOf(together.support, together.conflict, is_scan ? best_score : family.score);
+  all.share = together.share / std::max(least, informative);
+  all.double_share = together.double_share / std::max(least, informative);
   all.hold = together.hold;
-  all.unknown = 1.0 - telling;
+  all.unknown = 1.0 - informative;
   family.confidence = planeConfidence(all);
   family.support = seenSupport(all);
   return family;
@@ -216,8 +260,9 @@ std::vector<SymmetryPlane> rankedPlanes(std::vector<SymmetryPlane> planes, const
   std::vector<SymmetryPlane> ranked;
   for (SymmetryPlane& plane : planes) {
     if (static_cast<int>(ranked.size()) >= options.max_planes) break;
-    if (rankOf(plane) == 2 && !options.approximate) continue;
-    if (rankOf(plane) == 1 && static_cast<int>(ranked.size()) >= kDetection.decide.most_possible) continue;
+    if (!isDecided(plane) && !options.approximate) continue;
+    if (plane.kind == PlaneKind::Possible && static_cast<int>(ranked.size()) >= kDetection.decide.most_possible)
+      continue;
     const bool of_polygon = isOf(polygon, plane, cloud);
     const bool is_known = std::any_of(ranked.begin(), ranked.end(), [&](const SymmetryPlane& other) {
       if (kSamePlane.same(cloud.toNormalized(other), cloud.toNormalized(plane))) return true;
@@ -231,6 +276,14 @@ std::vector<SymmetryPlane> rankedPlanes(std::vector<SymmetryPlane> planes, const
   return ranked;
 }
 
+std::vector<SymmetryPlane> reordered(std::vector<SymmetryPlane> planes, const DetectionOptions& options) {
+  if (!options.approximate)
+    planes.erase(std::remove_if(planes.begin(), planes.end(), [](const SymmetryPlane& p) { return !isDecided(p); }),
+                 planes.end());
+  std::stable_sort(planes.begin(), planes.end(), isBetter);
+  return planes;
+}
+
 std::optional<ReflectionPlane> flatPlane(const NormalizedCloud& cloud, Thinness thinness) {
   if (thinness != Thinness::Sheet) return std::nullopt;
   const PrincipalAxes& axes = cloud.principal_axes;
@@ -241,7 +294,7 @@ std::optional<SymmetryPlane> bestApproximate(const std::vector<SymmetryPlane>& p
                                              const PlaneFit& fit) {
   const SymmetryPlane* best = nullptr;
   for (const SymmetryPlane& plane : planes) {
-    if (rankOf(plane) < 2) return std::nullopt;
+    if (isDecided(plane)) return std::nullopt;
     if (plane.kind == PlaneKind::Approximate && (!best || plane.share * plane.seen > best->share * best->seen))
       best = &plane;
   }

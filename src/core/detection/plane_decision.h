@@ -5,7 +5,7 @@
 
 #include "core/detection/plane_lattice.h"
 #include "core/detection/plane_measure.h"
-#include "core/detection/rotation_evidence.h"
+#include "core/rotation/rotation_evidence.h"
 
 namespace pcl_symmetry {
 
@@ -14,21 +14,20 @@ namespace pcl_symmetry {
 /// \return their unit normals.
 std::vector<Eigen::Vector3d> carryingNormals(const PointsRef& points, const Visibility& seen);
 
+/// Where points that stand on a ground are too far apart for a surface, as those of a LiDAR's rings, or where nothing
+/// was decided: the middle plane of their upright box decides in place of what was found.
+void decideByUprightBox(const PointsRef& points, const Visibility& seen, const DetectionOptions& options,
+                        Detection& found);
+
 /// Gives a plane a confidence, and the kind that follows from it.
 void decideBy(double confidence, const DetectionOptions& options, SymmetryPlane& plane);
 
 /// True where a plane is neither upright nor level on any of these supports; false without one.
 bool slants(const ReflectionPlane& plane, const std::vector<Eigen::Vector3d>& carrying_normals);
 
-/// Rank of a kind: 0 for symmetries, 1 for possible ones, 2 for others.
-int rankOf(const SymmetryPlane& plane);
-
-/// The order of answers: symmetries, then possible ones, both by falling confidence, then others by falling support.
-bool isBetter(const SymmetryPlane& a, const SymmetryPlane& b);
-
 /// True of symmetries and possible ones.
 inline bool isDecided(const SymmetryPlane& plane) {
-  return rankOf(plane) < 2;
+  return plane.kind == PlaneKind::Symmetry || plane.kind == PlaneKind::Possible;
 }
 
 /// What the decisions of one detection were taken from: what fits are made to.
@@ -45,23 +44,29 @@ struct JudgedFamily {
   double score = 0.0, support = 0.0;
 };
 
-/// From refined planes to answers: measures, then decides what is a symmetry, what is possible, and what comes first
+/// What has been found when confidences are corrected.
+enum class Found {
+  Planes,    ///< all planes of the whole, also those that follow from others
+  Families,  ///< axes and centers, too
+  Answer     ///< what is reported, in its order
+};
+
+/// From measured planes to answers: decides what is a symmetry, what is possible, and what comes first
 /// (core/evidence/README.md). All planes get confidence and kind by decideBy(), also those of polygons, upright boxes,
 /// meshes and volumes, which bring evidence of their own.
 class PlaneDecision {
 public:
-  /// \param cloud,fit,options must outlive this object.
-  PlaneDecision(const NormalizedCloud& cloud, const PlaneFit& fit, const DetectionOptions& options)
-      : measure(cloud, fit, options), cloud_(cloud), options_(options) {}
-
-  const PlaneMeasure measure;
+  /// \param cloud,measure,options must outlive this object.
+  PlaneDecision(const NormalizedCloud& cloud, const PlaneMeasure& measure, const DetectionOptions& options)
+      : cloud_(cloud), measure_(measure), options_(options) {}
 
   /// \param candidates after the last stage of refinement.
   /// \return one plane each, in the same order.
   std::vector<MeasuredPlane> judge(const std::vector<Candidate>& candidates) const;
 
-  /// Decides what a plane is by what was measured of it.
-  void decide(MeasuredPlane& measured) const;
+  /// \param plane normalized frame.
+  /// \param samples indices of the points that judge it.
+  MeasuredPlane judge(const ReflectionPlane& plane, const std::vector<int>& samples) const;
 
   /// Planes of a family together.
   /// \param planes normalized frame, at least one.
@@ -72,8 +77,13 @@ public:
   /// \param plane input frame.
   void decideBy(double confidence, SymmetryPlane& plane) const;
 
+  /// Corrects the confidences of planes, which were judged one by one, by what was found beside them.
+  /// \param planes input frame.
+  /// \param has_family an axis or a center was found, which is better than all planes.
+  void adjustConfidences(std::vector<SymmetryPlane>& planes, Found found, bool has_family = false) const;
+
   /// Whether the picture cuts the cloud off all around: a place, such as a table, and no object.
-  bool isCutAllAround() const { return measure.cutShare() > kDetection.decide.most_cut; }
+  bool isCutAllAround() const { return measure_.cutShare() > kDetection.decide.most_cut; }
 
   /// Whether a plane explains all of a whole cloud, so that nothing of it is missing.
   bool explainsAll(const SymmetryPlane& plane) const;
@@ -81,21 +91,12 @@ public:
   /// Whether too many points are off for a possible symmetry where nothing is missing.
   bool isHopeless(const Candidate& candidate) const;
 
-  /// Where a plane explains all of a cloud, nothing of it is missing: doubts planes that need a missing piece (the
-  /// plane across an open cup needs a lid).
-  void preferWhole(std::vector<SymmetryPlane>& planes) const;
-
-  /// A scan or a cut hides a part of an object, and many planes are tried: those beside the best one are symmetries
-  /// less often.
-  /// \param has_family an axis or a center was found, which is better than all planes.
-  void preferBest(std::vector<SymmetryPlane>& planes, bool has_family) const;
-
-  /// What stands on a table was made to stand there, or lies on one of its sides, and then its planes are upright or
-  /// level, but for few: doubts those that slant. Where nothing is known of a support, no plane does.
-  /// \param planes the answer; those that are doubted go behind the others, and out where they are not even possible.
-  void doubtSlanted(std::vector<SymmetryPlane>& planes) const;
+  /// Whether nothing but a line is left of the cloud at the tolerance.
+  bool isLine() const { return measure_.thinness() == Thinness::Line; }
 
 private:
+  /// Gives a plane the confidence that its evidence has.
+  MeasuredPlane decided(MeasuredPlane measured) const;
   /// Whether the sensor resolves the tolerance, or no tolerance that counts.
   bool isResolved() const;
   /// A plane that moves nothing is uninformative: a sheet is mapped onto itself by its own plane, whatever it is a part
@@ -103,6 +104,7 @@ private:
   bool movesNothing(const ReflectionPlane& plane) const;
 
   const NormalizedCloud& cloud_;
+  const PlaneMeasure& measure_;
   const DetectionOptions& options_;
 };
 
@@ -116,6 +118,9 @@ private:
 std::vector<SymmetryPlane> rankedPlanes(std::vector<SymmetryPlane> planes, const std::optional<PlaneLattice>& polygon,
                                         const NormalizedCloud& cloud, const PlaneFit& fit,
                                         const DetectionOptions& options);
+
+/// The planes of an answer without those that the last corrections left no possible ones, in their order.
+std::vector<SymmetryPlane> reordered(std::vector<SymmetryPlane> planes, const DetectionOptions& options);
 
 /// \return the plane of a cloud of which nothing but a sheet is left at the tolerance, input frame; else empty.
 std::optional<ReflectionPlane> flatPlane(const NormalizedCloud& cloud, Thinness thinness);

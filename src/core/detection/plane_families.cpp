@@ -180,10 +180,10 @@ FamilyTest familyTest(const NormalizedCloud& cloud, const PlaneFit& fit, const s
   test.refine = [&fit, samples](const ReflectionPlane& plane) {
     return fit.refined(plane, samples, kDetection.families.refine_iterations);
   };
-  const KindRules& rules = cloud.rules();
-  test.min_share = rules.family_share;
-  test.allowance = rules.family_allowance *
-                   std::sqrt(std::max(1.0, rules.points_of_allowance / static_cast<double>(cloud.points.cols())));
+  const CloudKind kind = cloud.kind();
+  const double few_points = kKindRules.points_of_allowance[kind] / static_cast<double>(cloud.points.cols());
+  test.min_share = kKindRules.family_share[kind];
+  test.allowance = kKindRules.family_allowance[kind] * std::sqrt(std::max(1.0, few_points));
   test.tolerance = kDetection.families.contained_offset;
   return test;
 }
@@ -216,10 +216,10 @@ PlanesAndFamilies collectFamilies(std::vector<SymmetryPlane> planes, const Norma
   PlanesAndFamilies found;
   found.planes = std::move(planes);
   const std::vector<ReflectionPlane> symmetries = symmetriesOf(found.planes, cloud);
-  const bool is_line = decision.measure.thinness() == Thinness::Line;
-  if (symmetries.empty() && !is_line) return found;
-  const std::vector<int> samples = drawSamples(cloud.points.cols(), cloud.rules().family_samples, options.seed);
-  if (is_line) {
+  if (symmetries.empty() && !decision.isLine()) return found;
+  const std::vector<int> samples =
+      drawSamples(cloud.points.cols(), kKindRules.family_samples[cloud.kind()], options.seed);
+  if (decision.isLine()) {
     const Line3d line = longestAxis(cloud.principal_axes);
     std::vector<ReflectionPlane> through;
     for (int k = 0; k < kDetection.families.tested_planes; ++k) through.push_back(planeThrough(line, k));
@@ -232,7 +232,7 @@ PlanesAndFamilies collectFamilies(std::vector<SymmetryPlane> planes, const Norma
   const FamilyTest test = familyTest(cloud, fit, samples, options.seed);
   std::vector<Line3d> likely_axes;
   std::vector<Eigen::Vector3d> likely_centers;
-  if (cloud.rules().normals_tell) {
+  if (kKindRules.normals_tell[cloud.kind()]) {
     likely_axes.push_back(axisOfNormals(cloud.points, cloud.geometry.normals, samples));
     likely_centers.push_back(centerOfNormals(cloud.points, cloud.geometry.normals, samples));
   }
@@ -245,7 +245,7 @@ PlanesAndFamilies collectFamilies(std::vector<SymmetryPlane> planes, const Norma
   // planes too badly for that.
   const auto isFamily = [&](const JudgedFamily& judged) {
     return judged.confidence >= options.min_confidence &&
-           (!cloud.rules().family_needs_all ||
+           (!kKindRules.family_needs_all[cloud.kind()] ||
             judged.least_confidence >= kDetection.families.worst_share * options.min_confidence);
   };
   if (const std::optional<CenterFamily> center = findCenter(symmetries, test, likely_centers)) {
@@ -260,7 +260,8 @@ PlanesAndFamilies collectFamilies(std::vector<SymmetryPlane> planes, const Norma
   }
   for (const AxisFamily& family : findAxes(symmetries, test, likely_axes)) {
     // Noise blurs what lies between the planes of a polygon, but not alike at all of them.
-    if (cloud.rules().has_polygons && latticeBySpectrum(cloud, all, family.line, options.num_threads)) continue;
+    if (kKindRules.has_polygons[cloud.kind()] && latticeBySpectrum(cloud, all, family.line, options.num_threads))
+      continue;
     const JudgedFamily judged = decision.judgeFamily(family.planes, samples);
     if (!isFamily(judged)) continue;
     // No bounded shape has two parallel axes, but a thin disc seems to within the tolerance: the best is the
@@ -276,8 +277,8 @@ PlanesAndFamilies collectFamilies(std::vector<SymmetryPlane> planes, const Norma
   return found;
 }
 
-std::vector<SymmetryPlane> withoutPlanesOf(std::vector<SymmetryPlane> planes, const std::vector<SymmetryAxis>& axes,
-                                           const NormalizedCloud& cloud) {
+std::vector<SymmetryPlane> withoutPlanesThrough(std::vector<SymmetryPlane> planes,
+                                                const std::vector<SymmetryAxis>& axes, const NormalizedCloud& cloud) {
   const auto belongs = [&](const SymmetryPlane& plane) {
     return std::any_of(axes.begin(), axes.end(), [&](const SymmetryAxis& axis) {
       return contains(cloud.toNormalized(plane), cloud.lineOf(axis), kDetection.families.contained_offset);

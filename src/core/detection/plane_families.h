@@ -68,7 +68,7 @@ PlanesAndFamilies collectFamilies(std::vector<SymmetryPlane> planes, const Norma
 
 /// \param planes,axes input frame.
 /// \return the planes that contain no axis.
-std::vector<SymmetryPlane> withoutPlanesOf(std::vector<SymmetryPlane> planes, const std::vector<SymmetryAxis>& axes,
-                                           const NormalizedCloud& cloud);
+std::vector<SymmetryPlane> withoutPlanesThrough(std::vector<SymmetryPlane> planes,
+                                                const std::vector<SymmetryAxis>& axes, const NormalizedCloud& cloud);
 
 }  // namespace pcl_symmetry

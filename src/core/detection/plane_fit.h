@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "core/detection/detection_rules.h"
-#include "core/detection/normalized_cloud.h"
+#include "core/refinement/normalized_cloud.h"
 #include "pcl_symmetry/core/detect_planes.h"
 
 namespace pcl_symmetry {
@@ -39,7 +39,8 @@ struct PlaneTolerance {
 inline constexpr PlaneTolerance kSamePlane{kDetection.stages.same_angle, kDetection.stages.same_offset};
 
 /// Limits within which two maxima share one basin of refinement, normalized frame.
-inline constexpr PlaneTolerance kSameBasin{kDetection.stages.same_basin_angle, kDetection.stages.same_basin_offset};
+inline constexpr PlaneTolerance kSameMaximum{kDetection.stages.same_maximum_angle,
+                                             kDetection.stages.same_maximum_offset};
 
 /// What a set of samples says about one plane.
 struct PlaneShares {

@@ -220,7 +220,7 @@ std::optional<PlaneLattice> bestLattice(const std::vector<SymmetryPlane>& planes
   std::vector<ReflectionPlane> likely;
   for (const SymmetryPlane& plane : planes)
     if (const ReflectionPlane normalized = cloud.toNormalized(plane);
-        isDecided(plane) && !kSameBasin.anySame(likely, normalized))
+        isDecided(plane) && !kSameMaximum.anySame(likely, normalized))
       likely.push_back(normalized);
   const std::size_t size = std::min(likely.size(), kDetection.folds.most_line_pairs);
   for (std::size_t i = 0; i < size; ++i)
@@ -258,7 +258,7 @@ std::optional<PlaneLattice> latticeBySpectrum(const NormalizedCloud& cloud, cons
 
 PlanesAndPolygon withPolygon(std::vector<SymmetryPlane> planes, const NormalizedCloud& cloud, const Points& all,
                              const PlaneDecision& decision, const DetectionOptions& options) {
-  if (!cloud.rules().has_polygons) return {std::move(planes), std::nullopt};
+  if (!kKindRules.has_polygons[cloud.kind()]) return {std::move(planes), std::nullopt};
   std::stable_sort(planes.begin(), planes.end(),
                    [](const SymmetryPlane& a, const SymmetryPlane& b) { return a.confidence > b.confidence; });
   const std::optional<PlaneLattice> lattice = bestLattice(planes, cloud, all, options.num_threads);

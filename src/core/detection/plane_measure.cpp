@@ -28,7 +28,7 @@ std::array<double, 2> sharesWithin(const std::vector<float>& distances, double t
 /// What the spacing of a surface resolves, up to the greatest tolerance at which shares are measured; 0 of points that
 /// resolve no surface.
 double sampledTolerance(const NormalizedCloud& cloud, double tolerance) {
-  if (cloud.rules().by_halves) return 0.0;
+  if (kKindRules.by_halves[cloud.kind()]) return 0.0;
   return std::min(cloud.spacing / kEvidence.coarsest, kDetection.measure.tolerances.back() * tolerance * cloud.extent);
 }
 
@@ -47,9 +47,9 @@ PlaneMeasure::PlaneMeasure(const NormalizedCloud& cloud, const PlaneFit& fit, co
       cut_share_(resolution_ > 0.0
                      ? pcl_symmetry::cutShare(cloud.points, *cloud.seen(), kDetection.measure.beside_outline)
                      : 0.0),
-      thinness_(
-          thinnessOf(cloud.points, cloud.principal_axes, cloud.rules().thin_tolerances * tolerance_, lineTolerance())),
-      halves_(cloud.rules().by_halves
+      thinness_(thinnessOf(cloud.points, cloud.principal_axes, kKindRules.thin_tolerances[cloud.kind()] * tolerance_,
+                           lineTolerance())),
+      halves_(kKindRules.by_halves[cloud.kind()]
                   ? std::make_optional<SplitSurface>(cloud.points, options.seed, options.num_threads)
                   : std::nullopt),
       own_shares_(sharesWithin(
@@ -67,7 +67,7 @@ double PlaneMeasure::lineTolerance() const {
 
 std::vector<int> PlaneMeasure::samples() const {
   const Eigen::Index num_points = cloud_.points.cols();
-  const int share = cloud_.rules().judged_share;
+  const int share = kKindRules.judged_share[cloud_.kind()];
   return share > 0 ? drawSamples(num_points, options_.expert.num_refine_samples / share, options_.seed)
                    : allOf(num_points);
 }
@@ -161,19 +161,19 @@ MeasuredPlane PlaneMeasure::measured(const ReflectionPlane& plane, const std::ve
     within[k] = std::min(1.0, shareWithin(moved, kDetection.measure.tolerances[k] * tolerance_) / own_shares_[k]);
   Eigen::Matrix3d stiffness = Eigen::Matrix3d::Zero();
   std::vector<float> unknown(size, 0.0f);
-  if (cloud_.seen() || (cloud_.rules().may_lack_piece && within[0] < kDetection.measure.surely_whole)) {
+  if (cloud_.seen() || (kKindRules.may_lack_piece[cloud_.kind()] && within[0] < kDetection.measure.surely_whole)) {
     std::vector<int> matches = step.closest;
     for (int& match : matches) match = std::max(0, match);
     stiffness = motionStiffness(image.points, pointsAt(cloud_.geometry.normals, matches), matched, plane);
     unknown = unknownMatches(image, step, matched, offsetStiffness(stiffness), rim);
   }
-  std::vector<float> telling;  // distances of the informative samples
-  std::size_t num_told = 0;
+  std::vector<float> informative;  // distances of the informative samples
+  std::size_t num_informative = 0;
   std::array<double, 2> missing{};
   const double count = static_cast<double>(halves_ ? size : std::max<std::size_t>(1, moved.size()));
   for (std::size_t i = 0; i < size; ++i) {
-    if (unknown[i] < 0.5f) telling.push_back(image.distances[i]);
-    num_told += unknown[i] < 0.5f && is_moved[i] ? 1 : 0;
+    if (unknown[i] < 0.5f) informative.push_back(image.distances[i]);
+    num_informative += unknown[i] < 0.5f && is_moved[i] ? 1 : 0;
     for (std::size_t k = 0; k < missing.size(); ++k)
       if (image.distances[i] > kDetection.measure.tolerances[k] * tolerance_) missing[k] += unknown[i] / count;
   }
@@ -192,14 +192,14 @@ MeasuredPlane PlaneMeasure::measured(const ReflectionPlane& plane, const std::ve
   evidence.share = std::min(share(0), share(1));
   evidence.hold = secondStiffness(stiffness);
   evidence.unknown = meanSupport(unknown);
-  result.told = cloud_.seen() ? static_cast<double>(num_told) / static_cast<double>(size) : 1.0;
+  result.informative = cloud_.seen() ? static_cast<double>(num_informative) / static_cast<double>(size) : 1.0;
   const ShareInterval interval = shareInterval(evidence);
   result.plane.score = evidence.score;
   result.plane.support = seenSupport(evidence);
   result.plane.share = evidence.share;
   result.plane.share_low = interval.low;
   result.plane.share_high = interval.high;
-  result.plane.deviation = deviationOf(std::move(telling)) * cloud_.scale;
+  result.plane.deviation = deviationOf(std::move(informative)) * cloud_.scale;
   result.plane.seen = cloud_.seen() ? std::min(1.0, shares.support + shares.conflict) : 1.0 - evidence.unknown;
   result.plane.point_support = std::move(shares.point_support);
   result.plane.residual = step.residual * cloud_.scale;
@@ -225,10 +225,10 @@ double PlaneMeasure::deviation(const ReflectionPlane& plane) const {
   std::vector<char> matched;
   for (const float distance : all.distances) matched.push_back(distance <= tolerance_);
   const std::vector<float> unknown = unknownMatches(all, step, matched, 0.0, 0.0);
-  std::vector<float> telling;
+  std::vector<float> informative;
   for (std::size_t i = 0; i < samples.size(); ++i)
-    if (unknown[i] < 0.5f) telling.push_back(all.distances[i]);
-  return deviationOf(std::move(telling));
+    if (unknown[i] < 0.5f) informative.push_back(all.distances[i]);
+  return deviationOf(std::move(informative));
 }
 
 PlaneMeasure::QuickShare PlaneMeasure::quickShare(const Candidate& candidate) const {
@@ -239,7 +239,7 @@ PlaneMeasure::QuickShare PlaneMeasure::quickShare(const Candidate& candidate) co
 }
 
 double PlaneMeasure::movedShare(const ReflectionPlane& plane) const {
-  const double still = cloud_.rules().thin_tolerances * tolerance_;
+  const double still = kKindRules.thin_tolerances[cloud_.kind()] * tolerance_;
   Eigen::Index num_moved = 0;
   for (Eigen::Index i = 0; i < cloud_.points.cols(); ++i)
     num_moved += 2.0 * std::abs(plane.signedDistance(cloud_.points.col(i).cast<double>())) > still ? 1 : 0;

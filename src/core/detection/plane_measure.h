@@ -15,9 +15,9 @@ namespace pcl_symmetry {
 
 /// A plane, and what its decision is taken from.
 struct MeasuredPlane {
-  SymmetryPlane plane;     ///< input frame
-  PlaneEvidence evidence;  ///< all that the decision reads, beside told
-  double told = 1.0;       ///< share of the samples that move and land where something is known; 1 of whole clouds
+  SymmetryPlane plane;       ///< input frame
+  PlaneEvidence evidence;    ///< all that the decision reads, beside informative
+  double informative = 1.0;  ///< share of the samples that move and land where something is known; 1 of whole clouds
 };
 
 /// Measures how much of a cloud planes map onto the cloud, and how much of it is uninformative. It decides nothing.

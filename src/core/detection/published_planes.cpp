@@ -17,6 +17,7 @@ void PublishedOptions::validate() const {
   checkNumThreads(num_threads);
 }
 
+/// Section 4.4 from top to bottom.
 std::vector<SymmetryPlane> publishedPlanes(const PointsRef& points, const GaussianEdt& edt, const SymmetryMap& map,
                                            const PublishedOptions& options) {
   options.validate();

@@ -17,7 +17,7 @@ std::vector<Candidate> gatherCandidates(const NormalizedCloud& cloud, const Symm
   for (const LocalMaximum& maximum : findLocalMaxima(map, maxima)) {
     if (static_cast<int>(candidates.size()) >= options.expert.max_candidates) break;
     const ReflectionPlane plane = cloud.toNormalized(maximum.plane);
-    if (kSameBasin.anySame(candidates, plane, &Candidate::plane)) continue;
+    if (kSameMaximum.anySame(candidates, plane, &Candidate::plane)) continue;
     candidates.push_back({plane, true});
   }
   for (const ReflectionPlane& plane : principalPlanes(cloud.principal_axes)) candidates.push_back({plane, false});
@@ -39,7 +39,7 @@ std::vector<Candidate> StagedRefinement::close(std::vector<Candidate> candidates
   const auto isSymmetry = [](const Candidate& candidate) {
     return candidate.merit >= kDetection.stages.symmetric_merit;
   };
-  const bool all = cloud_.rules().keeps_unlikely || options_.approximate;
+  const bool all = kKindRules.keeps_unlikely[cloud_.kind()] || options_.approximate;
   const auto likely =
       all ? candidates.end()
           : std::stable_partition(candidates.begin(), candidates.end(), [](const Candidate& candidate) {
@@ -64,7 +64,7 @@ std::vector<Candidate> StagedRefinement::full(std::vector<Candidate> candidates)
 
 std::vector<bool> StagedRefinement::climb(std::vector<Candidate>& candidates) const {
   std::vector<bool> moved(candidates.size(), false);
-  if (!cloud_.rules().climbs) return moved;
+  if (!kKindRules.climbs[cloud_.kind()]) return moved;
   const std::vector<Candidate> before = candidates;
   fit_.climb(candidates, fullStage());
   for (std::size_t i = 0; i < candidates.size(); ++i) moved[i] = candidates[i].merit != before[i].merit;
@@ -72,8 +72,8 @@ std::vector<bool> StagedRefinement::climb(std::vector<Candidate>& candidates) co
 }
 
 RefinementStage StagedRefinement::fullStage() const {
-  RefinementStage full = stage(options_.expert.num_refine_samples / cloud_.rules().full_share, cloud_.final_sigma,
-                               cloud_.final_sigma, kDetection.stages.full_iterations);
+  RefinementStage full = stage(options_.expert.num_refine_samples / kKindRules.full_share[cloud_.kind()],
+                               cloud_.final_sigma, cloud_.final_sigma, kDetection.stages.full_iterations);
   full.climbs = true;
   return full;
 }
@@ -86,14 +86,14 @@ RefinementStage StagedRefinement::closeStage() const {
 }
 
 RefinementStage StagedRefinement::stage(int num_samples, double sigma, double final_sigma, int max_iterations) const {
-  const KindRules& rules = cloud_.rules();
+  const CloudKind kind = cloud_.kind();
   RefinementStage stage;
   stage.num_samples = num_samples;
-  stage.num_rough_samples = std::min(num_samples, options_.expert.num_refine_samples / rules.rough_share);
-  stage.least_merit = rules.settled_merit;
-  stage.undo_slides = rules.slides && final_sigma == sigma;
+  stage.num_rough_samples = std::min(num_samples, options_.expert.num_refine_samples / kKindRules.rough_share[kind]);
+  stage.least_merit = kKindRules.settled_merit[kind];
+  stage.undo_slides = kKindRules.slides[kind] && final_sigma == sigma;
   // On the way to narrow weights, point-to-plane steps would slide a scan along its flat pieces.
-  const bool slides = rules.slides && num_samples > kDetection.stages.first_samples && final_sigma < sigma;
+  const bool slides = kKindRules.slides[kind] && num_samples > kDetection.stages.first_samples && final_sigma < sigma;
   stage.isp.update = slides ? IspUpdate::PointToPoint : options_.expert.update;
   stage.isp.sigma = sigma;
   stage.isp.final_sigma = final_sigma;
@@ -143,7 +143,7 @@ std::vector<Candidate> GroupClosure::next(const std::vector<SymmetryPlane>& plan
   for (const SymmetryPlane& plane : planes)
     if (plane.kind == PlaneKind::Symmetry) symmetries.push_back(cloud_.toNormalized(plane));
   std::vector<Candidate> found;
-  if (!cloud_.rules().completes_groups) return found;
+  if (!kKindRules.completes_groups[cloud_.kind()]) return found;
   tried_.insert(tried_.end(), symmetries.begin(), symmetries.end());
   const auto add = [&](const ReflectionPlane& plane) {
     if (kSamePlane.anySame(tried_, plane)) return;

@@ -256,10 +256,7 @@ Detection detectVolumePlanes(const ScalarGrid& input, const DetectionOptions& op
     sampled.seed = options.seed;
     sampled.num_threads = options.num_threads;
     const Eigen::Vector3d center = centerOfMass(body);
-    found.map = sampledTransform(edt,
-                                 PlaneGrid(options.expert.num_theta, options.expert.num_phi, options.expert.num_radius,
-                                           edt.center(), edt.radius()),
-                                 sampled);
+    found.map = sampledTransform(edt, PlaneGrid(options.expert, edt.center(), edt.radius()), sampled);
     found.map.center_of_mass = center;
     found.diameter = 2.0 * edt.radius();
     found.timing_ms.emplace_back("transform", watch.lap());

@@ -7,12 +7,12 @@
 #include "core/base/constants.h"
 #include "core/base/parallel.h"
 #include "core/base/stopwatch.h"
-#include "core/detection/scan_axes.h"
 #include "core/frame/canonical_frame.h"
 #include "core/frame/frame_evidence.h"
 #include "core/frame/frame_search.h"
 #include "core/frame/leveled_frames.h"
 #include "core/frame/probable_frames.h"
+#include "core/rotation/scan_axes.h"
 #include "pcl_symmetry/core/planar_transform.h"
 #include "pcl_symmetry/core/published_planes.h"
 
@@ -83,18 +83,18 @@ SymmetryFrame publishedFrame(const PointsRef& points, const FrameOptions& option
 }
 
 /// Axes of rotation of a scan; the axes of its frame are tried first.
-std::vector<SymmetryTurn> turnsAlong(const SymmetryFrame& frame, const PointsRef& points, const GaussianEdt& edt,
-                                     const FrameOptions& options, const Visibility& visibility,
-                                     const MakeSearch& make_search) {
-  DetectionOptions detection;
-  detection.seed = options.seed;
-  detection.num_threads = options.num_threads;
+std::vector<SymmetryRotation> rotationsAlong(const SymmetryFrame& frame, const PointsRef& points,
+                                             const GaussianEdt& edt, const FrameOptions& options,
+                                             const Visibility& visibility, const MakeSearch& make_search) {
+  ScanAxesOptions scan_axes;
+  scan_axes.seed = options.seed;
+  scan_axes.num_threads = options.num_threads;
   std::vector<SymmetryAxis> axes(3);
   for (int k = 0; k < 3; ++k) {
     axes[k].point = frame.center;
     axes[k].direction = frame.axes.col(k);
   }
-  return rotationsOfScan(points, edt, visibility, axes, detection, make_search);
+  return rotationsOfScan(points, edt, visibility, axes, scan_axes, make_search);
 }
 
 /// The frame itself, then the others by falling probability.
@@ -122,9 +122,7 @@ std::vector<ProbableFrame> probableFrames(const FrameEvidence& evidence, const S
 
 void FrameOptions::validate() const {
   edtOptionsOf(*this).validate();
-  check(num_theta >= 1, "num_theta", num_theta, ">= 1");
-  check(num_phi >= 2 && num_phi % 2 == 0, "num_phi", num_phi, "even and >= 2");
-  check(num_radius >= 1, "num_radius", num_radius, ">= 1");
+  MapSize::validate();
   check(num_samples >= 1, "num_samples", num_samples, ">= 1");
   checkNumThreads(num_threads);
 }
@@ -140,7 +138,7 @@ SymmetryFrame symmetryFrame(const PointsRef& points, const FrameOptions& options
   const FrameEvidence evidence(points, options, visibility);
   done("surface");
   const GaussianEdt& edt = evidence.edt;
-  const PlaneGrid grid(options.num_theta, options.num_phi, options.num_radius, edt.center(), edt.radius());
+  const PlaneGrid grid(options, edt.center(), edt.radius());
   SymmetryMap map =
       sampledTransform(edt, grid, {options.num_samples, options.seed, options.num_threads}, evidence.free_space);
   map.center_of_mass = centerOfMass(points);
@@ -178,7 +176,7 @@ SymmetryFrame symmetryFrame(const PointsRef& points, const FrameOptions& options
       addTied(other, best.scores, frame.center, frame.equivalent);
   done("equivalent");
   if (visibility && options.turns) {
-    frame.turns = turnsAlong(frame, points, edt, options, *visibility, make_search);
+    frame.turns = rotationsAlong(frame, points, edt, options, *visibility, make_search);
     done("turns");
   }
   if (options.probabilities) {

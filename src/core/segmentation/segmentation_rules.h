@@ -2,6 +2,8 @@
 
 #include <Eigen/Core>
 
+#include "pcl_symmetry/core/plane_grid.h"
+
 namespace pcl_symmetry {
 
 /// The numbers of this room that change answers.
@@ -62,9 +64,7 @@ struct SegmentationRules {
   double same_offset = 0.06;              ///< radii between them
   double most_moved = 2.0 * same_offset;  ///< radii that a plane may move in its refinement
   float mapped = 0.5f;       ///< f from which on an element counts as mapped onto the surface, 0.83 sigma away from it
-  int num_theta = 32;        ///< bins of the map
-  int num_phi = 128;         ///< the same
-  int num_radius = 64;       ///< the same
+  MapSize map_size;          ///< of the transform of a part
   int num_map_samples = 64;  ///< of each bin
   /// Sigmas of the distance transform, width of the weights at the end of the refinement.
   double final_sigma = 0.5;

@@ -43,8 +43,7 @@ bool isNew(const ReflectionPlane& plane, const std::vector<ReflectionPlane>& kno
 /// The strongest significant maxima of the transform, one of each basin (Section 4.4).
 std::vector<ReflectionPlane> significantMaxima(const Points& samples, const GaussianEdt& edt, std::uint64_t seed,
                                                int num_threads) {
-  const PlaneGrid grid(kSegmentation.num_theta, kSegmentation.num_phi, kSegmentation.num_radius, edt.center(),
-                       edt.radius());
+  const PlaneGrid grid(kSegmentation.map_size, edt.center(), edt.radius());
   LocalMaximaOptions significant;
   significant.num_threads = num_threads;
   SymmetryMap map = sampledTransform(edt, grid, {kSegmentation.num_map_samples, seed, num_threads});

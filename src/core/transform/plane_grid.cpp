@@ -8,16 +8,24 @@
 
 namespace pcl_symmetry {
 
-PlaneGrid::PlaneGrid(int num_theta, int num_phi, int num_radius, const Eigen::Vector3d& center, double radius)
-    : num_theta_(num_theta), num_phi_(num_phi), num_radius_(num_radius), center_(center), radius_(radius) {
+void MapSize::validate() const {
   check(num_theta >= 1 && num_theta <= 4096, "num_theta", num_theta, "in [1, 4096]");
   check(num_phi >= 2 && num_phi <= 4096 && num_phi % 2 == 0, "num_phi", num_phi, "even and in [2, 4096]");
   check(num_radius >= 1 && num_radius <= 4096, "num_radius", num_radius, "in [1, 4096]");
+}
+
+PlaneGrid::PlaneGrid(const MapSize& size, const Eigen::Vector3d& center, double radius)
+    : num_theta_(size.num_theta),
+      num_phi_(size.num_phi),
+      num_radius_(size.num_radius),
+      center_(center),
+      radius_(radius) {
+  size.validate();
   check(center.allFinite(), "center", center.transpose(), "finite");
   check(std::isfinite(radius) && radius > 0.0, "radius", radius, "finite and > 0");
-  for (int t = 0; t < num_theta; ++t) {
+  for (int t = 0; t < num_theta_; ++t) {
     const double width = phiStep() * std::sin(theta(t));
-    phi_reach_.push_back(std::clamp(static_cast<int>(std::ceil(thetaStep() / width)), 1, num_phi / 2));
+    phi_reach_.push_back(std::clamp(static_cast<int>(std::ceil(thetaStep() / width)), 1, num_phi_ / 2));
   }
 }
 

@@ -36,7 +36,8 @@ TEST(PlaneDecision, OfAScanWhatStaysInPlaceSaysNothing) {
   std::vector<Candidate> candidates(2);
   candidates[0].plane = cloud.toNormalized(ReflectionPlane(Eigen::Vector3d::UnitZ(), 0.0));
   candidates[1].plane = cloud.toNormalized(ReflectionPlane(Eigen::Vector3d::UnitX(), 0.0));
-  const std::vector<MeasuredPlane> judged = PlaneDecision(cloud, *fit, options).judge(candidates);
+  const PlaneMeasure measure(cloud, *fit, options);
+  const std::vector<MeasuredPlane> judged = PlaneDecision(cloud, measure, options).judge(candidates);
   EXPECT_LT(judged[0].evidence.share, 0.1);
   EXPECT_LT(judged[0].plane.confidence, 0.1);
   EXPECT_GT(judged[1].evidence.share, 0.97);

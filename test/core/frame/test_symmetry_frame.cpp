@@ -213,8 +213,8 @@ TEST(SymmetryFrame, IsTheSameForAnyNumberOfThreads) {
     };
     test::compareThreads(frame, [](const SymmetryFrame& many, const SymmetryFrame& one) {
       expectSame(many, one);
-      EXPECT_EQ(test::valuesOf(many.turns, &SymmetryTurn::point, &SymmetryTurn::confidence),
-                test::valuesOf(one.turns, &SymmetryTurn::point, &SymmetryTurn::confidence));
+      EXPECT_EQ(test::valuesOf(many.turns, &SymmetryRotation::point, &SymmetryRotation::confidence),
+                test::valuesOf(one.turns, &SymmetryRotation::point, &SymmetryRotation::confidence));
     });
   }
 }
@@ -254,7 +254,7 @@ TEST(FrameOptions, NamesFieldValueAndRule) {
   FrameOptions options;
   options.num_phi = 3;
   EXPECT_EQ(test::complaintOf<std::invalid_argument>([&] { options.validate(); }),
-            "num_phi = 3, must be even and >= 2");
+            "num_phi = 3, must be even and in [2, 4096]");
 }
 
 FrameCandidate candidate(const Eigen::Matrix3d& axes, const Eigen::Vector3f& scores) {

@@ -1,10 +1,20 @@
 #pragma once
 
+#include <cstdint>
 #include <vector>
 
-#include "core/detection/rotation_evidence.h"
+#include "core/rotation/rotation_evidence.h"
 
 namespace pcl_symmetry {
+
+/// What scanAxes() tries, and what it returns; the defaults are those of DetectionOptions.
+struct ScanAxesOptions {
+  bool folds = true;            ///< rotations by a part of a full one are tried, too
+  double min_confidence = 0.5;  ///< of a round body that adds its axis to those that planes show
+  double min_possible = 0.2;    ///< of what is returned
+  std::uint64_t seed = 1;
+  int num_threads = 0;  ///< 0 = one per core
+};
 
 /// Axes of a scan: lines about which rotations by any angle, or by 2 pi / n, map what was seen onto itself, to unseen
 /// space, and nowhere that the scanner saw to be empty. Beyond the paper, which leaves rotations to future work
@@ -17,9 +27,9 @@ namespace pcl_symmetry {
 /// \param planes found so far, input frame.
 /// \param evidence_of_all takes what was seen of each rotation, also of those that are not returned; may be null.
 /// \return input frame, most confident first; no two along one line.
-std::vector<SymmetryTurn> scanAxes(const RotationEvidence& evidence, const std::vector<SymmetryPlane>& planes,
-                                   const std::vector<SymmetryAxis>& axes, const DetectionOptions& options,
-                                   std::vector<JudgedRotation>* evidence_of_all = nullptr);
+std::vector<SymmetryRotation> scanAxes(const RotationEvidence& evidence, const std::vector<SymmetryPlane>& planes,
+                                       const std::vector<SymmetryAxis>& axes, const ScanAxesOptions& options,
+                                       std::vector<JudgedRotation>* evidence_of_all = nullptr);
 
 /// The same for points of which no planes are known.
 /// \param points 3 x N, finite, input units.
@@ -27,15 +37,15 @@ std::vector<SymmetryTurn> scanAxes(const RotationEvidence& evidence, const std::
 /// \param axes lines that are tried first, input frame.
 /// \param make_search as in detectPlanes().
 /// \return nothing where the points hold no answer.
-std::vector<SymmetryTurn> rotationsOfScan(const PointsRef& points, const GaussianEdt& edt, const Visibility& visibility,
-                                          const std::vector<SymmetryAxis>& axes, const DetectionOptions& options,
-                                          const MakeSearch& make_search = nullptr);
+std::vector<SymmetryRotation> rotationsOfScan(const PointsRef& points, const GaussianEdt& edt,
+                                              const Visibility& visibility, const std::vector<SymmetryAxis>& axes,
+                                              const ScanAxesOptions& options, const MakeSearch& make_search = nullptr);
 
 /// The axes of revolution of a scan, checked by rotations: those that throw a visible handle into empty space
 /// are dropped, the others moved to where rotations fit best, and round bodies added that showed too few planes.
 /// \param axes input frame, as from collectFamilies().
-/// \param turns as from scanAxes().
+/// \param rotations as from scanAxes().
 std::vector<SymmetryAxis> withRoundAxes(const RotationEvidence& evidence, std::vector<SymmetryAxis> axes,
-                                        const std::vector<SymmetryTurn>& turns, const DetectionOptions& options);
+                                        const std::vector<SymmetryRotation>& rotations, const ScanAxesOptions& options);
 
 }  // namespace pcl_symmetry

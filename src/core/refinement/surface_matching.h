@@ -49,11 +49,13 @@ struct ClosestPoints {
   std::vector<float> sq_distances;  ///< infinite where none is near
 };
 
-/// \param queries positions in the frame of the surface.
+/// The closest points of a surface to reflected or rotated ones: the one place where Iterative Symmetric Points asks
+/// FLANN (Section 4.4). Its body stands beside the steps, in iterative_symmetric_points.cpp.
+/// \param positions in the frame of the surface.
 /// \param reach beyond which points are not near.
 /// \param guesses indices of points that are likely to be near, which makes the search faster; null = not known.
 /// \param leaves_out points beyond what the distance transform reaches may be taken for far, as their weight is little.
-ClosestPoints closestWithin(const IspSurface& surface, const Points& queries, double reach,
-                            const std::vector<int>* guesses = nullptr, bool leaves_out = false);
+ClosestPoints matchToSurface(const IspSurface& surface, const Points& positions, double reach,
+                             const std::vector<int>* guesses = nullptr, bool leaves_out = false);
 
 }  // namespace pcl_symmetry

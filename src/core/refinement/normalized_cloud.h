@@ -4,10 +4,10 @@
 #include <memory>
 #include <optional>
 
-#include "core/detection/detection_rules.h"
-#include "core/detection/far_test.h"
+#include "core/evidence/plane_confidence.h"
 #include "core/evidence/surface_samples.h"
 #include "core/geometry/principal_axes.h"
+#include "core/refinement/surface_matching.h"
 #include "pcl_symmetry/core/iterative_symmetric_points.h"
 #include "pcl_symmetry/core/visibility.h"
 
@@ -58,7 +58,6 @@ struct NormalizedCloud {
   const double final_sigma;  ///< width at the end: as narrow as the spacing allows, <= sigma
 
   CloudKind kind() const { return kind_; }
-  const KindRules& rules() const { return rulesOf(kind_); }
   const Visibility* seen() const { return visibility ? &*visibility : nullptr; }  ///< null: from all sides
 
   /// From the input frame to the normalized one and back. Lengths: times scale.

@@ -1,4 +1,4 @@
-#include "core/detection/normalized_cloud.h"
+#include "core/refinement/normalized_cloud.h"
 
 #include <algorithm>
 #include <cmath>
@@ -8,6 +8,7 @@
 #include "core/evidence/plane_support.h"
 #include "core/geometry/diameter.h"
 #include "core/geometry/flann_search.h"
+#include "core/refinement/refinement_rules.h"
 #include "core/transform/edt_correlation.h"
 
 namespace pcl_symmetry {
@@ -63,10 +64,10 @@ NormalizedCloud::NormalizedCloud(const PointsRef& input, const GaussianEdt& edt_
       roughness(median(geometry.roughness) / std::max(spacing, 1e-6)),
       baseline(std::max(meanSupport(ownSupport(samples, num_threads)), 1e-3)),
       sigma(edt.sigma() / scale),
-      final_sigma(std::min(sigma, std::max(1e-6, kDetection.cloud.final_sigma_in_spacings * spacing))),
-      kind_(visibility                                      ? CloudKind::Scan
-            : roughness > kDetection.cloud.volume_roughness ? CloudKind::Volume
-                                                            : CloudKind::Surface) {}
+      final_sigma(std::min(sigma, std::max(1e-6, kRefinement.final_sigma_in_spacings * spacing))),
+      kind_(visibility                                 ? CloudKind::Scan
+            : roughness > kRefinement.volume_roughness ? CloudKind::Volume
+                                                       : CloudKind::Surface) {}
 
 ReflectionPlane NormalizedCloud::toInput(const ReflectionPlane& plane) const {
   return ReflectionPlane(plane.normal(), plane.offset() * scale + plane.normal().dot(center));

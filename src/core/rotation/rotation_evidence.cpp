@@ -1,4 +1,4 @@
-#include "core/detection/rotation_evidence.h"
+#include "core/rotation/rotation_evidence.h"
 
 #include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
@@ -9,10 +9,10 @@
 #include "core/base/constants.h"
 #include "core/base/logistic.h"
 #include "core/base/parallel.h"
-#include "core/detection/rotation_confidence_fit.h"
 #include "core/evidence/evidence_rules.h"
 #include "core/geometry/diameter.h"
 #include "core/geometry/point_samples.h"
+#include "core/rotation/rotation_confidence_fit.h"
 
 namespace pcl_symmetry {
 
@@ -39,11 +39,11 @@ Line3d movedLine(const Line3d& line, const Eigen::Vector4d& by) {
   return {line.origin() + by[2] * u + by[3] * v, (line.direction() + by[0] * u + by[1] * v).normalized()};
 }
 
-/// The rotations about the lines beside a line, by kDetection.rotations.fit_step.
+/// The rotations about the lines beside a line, by kScanAxes.fit_step.
 std::array<Eigen::Isometry3d, 4> motionsBeside(const Line3d& line, double angle) {
   std::array<Eigen::Isometry3d, 4> beside;
   for (int k = 0; k < 4; ++k)
-    beside[k] = motionAbout(movedLine(line, kDetection.rotations.fit_step * Eigen::Vector4d::Unit(k)), angle);
+    beside[k] = motionAboutLine(movedLine(line, kScanAxes.fit_step * Eigen::Vector4d::Unit(k)), angle);
   return beside;
 }
 
@@ -51,13 +51,13 @@ std::array<Eigen::Isometry3d, 4> motionsBeside(const Line3d& line, double angle)
 Eigen::Vector4d slopeOf(const std::array<Eigen::Isometry3d, 4>& beside, const Eigen::Vector3d& x,
                         const Eigen::Vector3d& moved, const Eigen::Vector3d& along) {
   Eigen::Vector4d slope;
-  for (int k = 0; k < 4; ++k) slope[k] = along.dot(beside[k] * x - moved) / kDetection.rotations.fit_step;
+  for (int k = 0; k < 4; ++k) slope[k] = along.dot(beside[k] * x - moved) / kScanAxes.fit_step;
   return slope;
 }
 
 }  // namespace
 
-Eigen::Isometry3d motionAbout(const Line3d& line, double angle) {
+Eigen::Isometry3d motionAboutLine(const Line3d& line, double angle) {
   Eigen::Isometry3d motion = Eigen::Isometry3d::Identity();
   motion.linear() = Eigen::AngleAxisd(angle, line.direction()).toRotationMatrix();
   motion.translation() = line.origin() - motion.linear() * line.origin();
@@ -67,10 +67,10 @@ Eigen::Isometry3d motionAbout(const Line3d& line, double angle) {
 RotationEvidence::RotationEvidence(const NormalizedCloud& cloud, double tolerance, std::uint64_t seed)
     : cloud_(cloud),
       tolerance_(tolerance),
-      far_(kDetection.rotations.far_tolerances * tolerance),
-      reach_(kDetection.rotations.slack_of_reach * (far_ + greatestDisc(cloud.geometry))),
-      samples_(drawSamples(cloud.points.cols(), kDetection.rotations.num_samples, seed)),
-      few_samples_(drawSamples(cloud.points.cols(), kDetection.rotations.num_few_samples, seed)),
+      far_(kScanAxes.far_tolerances * tolerance),
+      reach_(kScanAxes.slack_of_reach * (far_ + greatestDisc(cloud.geometry))),
+      samples_(drawSamples(cloud.points.cols(), kScanAxes.num_samples, seed)),
+      few_samples_(drawSamples(cloud.points.cols(), kScanAxes.num_few_samples, seed)),
       facing_(facingNormals(cloud)) {}
 
 RotationShares RotationEvidence::roughly(const Eigen::Affine3d& motion, double slack, double most_off,
@@ -82,7 +82,7 @@ RotationShares RotationEvidence::roughly(const Eigen::Affine3d& motion, double s
   for (const int sample : few_samples_) {
     if (shares.off > most_off || shares.far > most_far) break;
     const Eigen::Vector3d x = motion * cloud_.points.col(sample).cast<double>();
-    const double f = std::max(kDetection.rotations.least_f, cloud_.edt(cloud_.toInput(x)));
+    const double f = std::max(kScanAxes.least_f, cloud_.edt(cloud_.toInput(x)));
     if (f >= near_f) {
       shares.on += one;
     } else if (isEmpty(x)) {
@@ -103,7 +103,7 @@ Points RotationEvidence::moved(const Eigen::Affine3d& motion, const std::vector<
 RotationEvidence::Moved RotationEvidence::matched(const Eigen::Affine3d& motion) const {
   Moved result{moved(motion, samples_), {}, {}};
   // Points beyond the reach only need to be known as far.
-  ClosestPoints near = closestWithin(cloud_.surface, result.points, reach_);
+  ClosestPoints near = matchToSurface(cloud_.surface, result.points, reach_);
   result.closest = std::move(near.indices);
   result.distances = surfaceDistances(result.points, result.closest, cloud_.samples);
   for (std::size_t i = 0; i < samples_.size(); ++i)
@@ -127,7 +127,7 @@ RotationShares RotationEvidence::exactly(const Eigen::Affine3d& motion) const {
 }
 
 double RotationEvidence::hold(const Line3d& line, double angle) const {
-  const Eigen::Isometry3d motion = motionAbout(line, angle);
+  const Eigen::Isometry3d motion = motionAboutLine(line, angle);
   const std::array<Eigen::Isometry3d, 4> beside = motionsBeside(line, angle);
   const Moved all = matched(Eigen::Affine3d(motion));
   Eigen::Matrix4d stiffness = Eigen::Matrix4d::Zero();
@@ -143,10 +143,10 @@ double RotationEvidence::hold(const Line3d& line, double angle) const {
 void RotationEvidence::addPulls(const Line3d& line, double angle, const std::vector<int>& samples, double width,
                                 std::vector<int>& closest, Pulls& pulls) const {
   const double sq_width = width * width * tolerance_ * tolerance_;
-  const Eigen::Isometry3d motion = motionAbout(line, angle);
+  const Eigen::Isometry3d motion = motionAboutLine(line, angle);
   const std::array<Eigen::Isometry3d, 4> beside = motionsBeside(line, angle);
-  const ClosestPoints found = closestWithin(cloud_.surface, moved(Eigen::Affine3d(motion), samples),
-                                            kDetection.rotations.fit_reach * width * tolerance_, &closest);
+  const ClosestPoints found = matchToSurface(cloud_.surface, moved(Eigen::Affine3d(motion), samples),
+                                             kScanAxes.fit_reach * width * tolerance_, &closest);
   closest = found.indices;
   for (std::size_t i = 0; i < samples.size(); ++i) {
     if (closest[i] < 0) continue;
@@ -155,8 +155,7 @@ void RotationEvidence::addPulls(const Line3d& line, double angle, const std::vec
     Eigen::Vector3d along;
     double weight = std::exp(-found.sq_distances[i] / sq_width);
     if (cloud_.geometry.at_border[closest[i]]) {
-      if (miss.norm() < kDetection.rotations.least_empty_miss * tolerance_ || cloud_.visibility->depthBehind(y) >= 0.0)
-        continue;
+      if (miss.norm() < kScanAxes.least_empty_miss * tolerance_ || cloud_.visibility->depthBehind(y) >= 0.0) continue;
       along = miss.normalized();
     } else {
       const Eigen::Vector3d there = facing_.col(closest[i]).cast<double>(),
@@ -180,36 +179,33 @@ Line3d RotationEvidence::fitted(const Line3d& start, const std::vector<double>& 
   for (const double width : widths) {
     Pulls pulls;
     for (std::size_t k = 0; k < angles.size(); ++k) addPulls(line, angles[k], samples, width, closest[k], pulls);
-    pulls.squares.diagonal().array() +=
-        kDetection.rotations.fit_ridge * pulls.squares.trace() + kDetection.rotations.least_f;
+    pulls.squares.diagonal().array() += kScanAxes.fit_ridge * pulls.squares.trace() + kScanAxes.least_f;
     const Eigen::Vector4d step = pulls.squares.ldlt().solve(pulls.sum);
-    constexpr double kMostStep = 0.1;  // radians, radii; starts are closer, larger steps leave the basin
-    line = movedLine(line, step * std::min(1.0, kMostStep / std::max(kDetection.rotations.fit_step, step.norm())));
+    line = movedLine(line, step * std::min(1.0, kScanAxes.longest_step / std::max(kScanAxes.fit_step, step.norm())));
     line.origin() = line.projection(Eigen::Vector3d::Zero());
   }
   return line;
 }
 
 Line3d RotationEvidence::refined(const Line3d& start, const std::vector<double>& angles) const {
-  return fitted(start, angles, few_samples_, kDetection.rotations.fit_widths);
+  return fitted(start, angles, few_samples_, kScanAxes.fit_widths);
 }
 
 Line3d RotationEvidence::closelyRefined(const Line3d& start, const std::vector<double>& angles) const {
-  return fitted(start, angles, samples_, kDetection.rotations.close_fit_widths);
+  return fitted(start, angles, samples_, kScanAxes.close_fit_widths);
 }
 
 namespace {
 
 /// RotationSigns::planes_off.
 double planesOff(const RotationEvidence& evidence, const Line3d& line) {
-  constexpr double kStep =
-      0.5 * kPi / kDetection.rotations.num_plane_pairs;  // radians. Pairs repeat after a right angle
+  constexpr double kStep = 0.5 * kPi / kScanAxes.num_plane_pairs;  // radians. Pairs repeat after a right angle
   const auto cost = [&](double angle) {
     double sum = 0.0;
-    for (const double turned : {angle, angle + 0.5 * kPi}) {
+    for (const double rotated : {angle, angle + 0.5 * kPi}) {
       const RotationShares shares =
-          evidence.roughly(planeThrough(line, turned).reflection(), kDetection.rotations.plane_slack, 1.0, 1.0);
-      sum += shares.off - kDetection.rotations.landed_counts * shares.on;
+          evidence.roughly(planeThrough(line, rotated).reflection(), kScanAxes.plane_slack, 1.0, 1.0);
+      sum += shares.off - kScanAxes.landed_counts * shares.on;
     }
     return sum;
   };
@@ -220,7 +216,7 @@ double planesOff(const RotationEvidence& evidence, const Line3d& line) {
     least = of_angle;
     best = angle;
   };
-  for (int k = 1; k < kDetection.rotations.num_plane_pairs; ++k) take(k * kStep);
+  for (int k = 1; k < kScanAxes.num_plane_pairs; ++k) take(k * kStep);
   const double coarse = best;
   for (const double beside : {-0.5 * kStep, 0.5 * kStep}) take(coarse + beside);
   return std::max(evidence.exactly(planeThrough(line, best).reflection()).off,
@@ -228,74 +224,75 @@ double planesOff(const RotationEvidence& evidence, const Line3d& line) {
 }
 
 /// RotationSigns::grown.
-double grownBy(const NormalizedCloud& cloud, const Eigen::Affine3d& turn) {
+double grownBy(const NormalizedCloud& cloud, const Eigen::Affine3d& rotation) {
   const Eigen::Index size = cloud.points.cols();
   Points both(3, 2 * size);
   both.leftCols(size) = cloud.points;
-  both.rightCols(size) = turn.cast<float>() * cloud.points;
+  both.rightCols(size) = rotation.cast<float>() * cloud.points;
   return std::max(1.0, diameter(both) / cloud.extent);
 }
 
 /// Whether two lines, normalized frame, cross at a right angle.
 bool crossesUpright(const Line3d& a, const Line3d& b) {
   const Eigen::Vector3d across = a.direction().cross(b.direction()).normalized();
-  return std::abs(a.direction().dot(b.direction())) < std::sin(kDetection.rotations.upright_angle) &&
-         std::abs(across.dot(a.origin() - b.origin())) < kDetection.rotations.crossing_gap;
+  return std::abs(a.direction().dot(b.direction())) < std::sin(kScanAxes.upright_angle) &&
+         std::abs(across.dot(a.origin() - b.origin())) < kScanAxes.crossing_gap;
 }
 
 }  // namespace
 
-std::vector<RotationSigns> rotationSigns(const RotationEvidence& evidence, const std::vector<SymmetryTurn>& turns,
-                                         double min_confidence, int num_threads) {
+std::vector<RotationSigns> rotationSigns(const RotationEvidence& evidence,
+                                         const std::vector<SymmetryRotation>& rotations, double min_confidence,
+                                         int num_threads) {
   const NormalizedCloud& cloud = evidence.cloud();
-  std::vector<RotationSigns> signs(turns.size());
-  const auto best = std::max_element(turns.begin(), turns.end(), [](const SymmetryTurn& a, const SymmetryTurn& b) {
-    return marginOf(a) < marginOf(b);
-  });
-  parallelBlocks(turns.size(), num_threads, [&](std::size_t i) {
-    if (turns[i].fold != 2) return;
-    const Line3d line = cloud.lineOf(turns[i]);
-    signs[i].grown = grownBy(cloud, Eigen::Affine3d(motionAbout(line, kPi)));
+  std::vector<RotationSigns> signs(rotations.size());
+  const auto best =
+      std::max_element(rotations.begin(), rotations.end(),
+                       [](const SymmetryRotation& a, const SymmetryRotation& b) { return marginOf(a) < marginOf(b); });
+  parallelBlocks(rotations.size(), num_threads, [&](std::size_t i) {
+    if (rotations[i].fold != 2) return;
+    const Line3d line = cloud.lineOf(rotations[i]);
+    signs[i].grown = grownBy(cloud, Eigen::Affine3d(motionAboutLine(line, kPi)));
     signs[i].hold = evidence.hold(line, kPi);
-    const bool is_best = marginOf(turns[i]) >= marginOf(*best);
+    const bool is_best = marginOf(rotations[i]) >= marginOf(*best);
     signs[i].beside = is_best || crossesUpright(line, cloud.lineOf(*best)) ? 0.0 : 1.0;
     // Planes are evidence only against a rotation, and take most of the time.
-    if (rotationConfidence(turns[i], signs[i]) >= min_confidence) signs[i].planes_off = planesOff(evidence, line);
+    if (rotationConfidence(rotations[i], signs[i]) >= min_confidence) signs[i].planes_off = planesOff(evidence, line);
   });
   return signs;
 }
 
-RotationKind kindOf(const SymmetryTurn& turn) {
-  return turn.fold == 0 ? RotationKind::AnyAngle : turn.fold == 2 ? RotationKind::Half : RotationKind::Folds;
+RotationKind kindOf(const SymmetryRotation& rotation) {
+  return rotation.fold == 0 ? RotationKind::AnyAngle : rotation.fold == 2 ? RotationKind::Half : RotationKind::Folds;
 }
 
-std::vector<double> rotationOddsTerms(const SymmetryTurn& turn, const RotationSigns& signs) {
-  const double off = std::log1p(turn.off / kDetection.rotations.negligible_share),
-               far = std::log1p(turn.far / kDetection.rotations.negligible_share);
-  switch (kindOf(turn)) {
+std::vector<double> rotationOddsTerms(const SymmetryRotation& rotation, const RotationSigns& signs) {
+  const double off = std::log1p(rotation.off / kScanAxes.negligible_share),
+               far = std::log1p(rotation.far / kScanAxes.negligible_share);
+  switch (kindOf(rotation)) {
     case RotationKind::Half:  // without what is far off: what the object grows by says that, and off does
       return {1.0,
               off,
-              1.0 - turn.support,
+              1.0 - rotation.support,
               std::log(signs.grown),
-              -std::log1p(signs.hold / kDetection.rotations.least_hold),
-              std::log1p(signs.planes_off / kDetection.rotations.negligible_of_planes),
+              -std::log1p(signs.hold / kScanAxes.least_hold),
+              std::log1p(signs.planes_off / kScanAxes.negligible_of_planes),
               signs.beside};
     case RotationKind::Folds:
       return {1.0,
               off,
               far,
-              1.0 - turn.support,
-              std::min(kDetection.rotations.most_halfway, turn.halfway - turn.off),
-              1.0 / turn.fold};
+              1.0 - rotation.support,
+              std::min(kScanAxes.most_halfway, rotation.halfway - rotation.off),
+              1.0 / rotation.fold};
     default:
-      return {1.0, off, far, 1.0 - turn.support};
+      return {1.0, off, far, 1.0 - rotation.support};
   }
 }
 
-double rotationConfidence(const SymmetryTurn& turn, const RotationSigns& signs) {
-  const std::vector<double> terms = rotationOddsTerms(turn, signs);
-  const std::vector<double>& numbers = kRotationConfidenceFit[static_cast<std::size_t>(kindOf(turn))];
+double rotationConfidence(const SymmetryRotation& rotation, const RotationSigns& signs) {
+  const std::vector<double> terms = rotationOddsTerms(rotation, signs);
+  const std::vector<double>& numbers = kRotationConfidenceFit[static_cast<std::size_t>(kindOf(rotation))];
   double log_odds = 0.0;
   for (std::size_t k = 0; k < terms.size(); ++k) log_odds += numbers[k] * terms[k];
   return logistic(log_odds);

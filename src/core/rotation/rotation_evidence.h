@@ -6,24 +6,26 @@
 #include <cstdint>
 #include <vector>
 
-#include "core/detection/normalized_cloud.h"
+#include "core/refinement/normalized_cloud.h"
+#include "core/rotation/scan_axis_rules.h"
 #include "core/scan/single_view.h"
-#include "pcl_symmetry/core/detect_planes.h"
+#include "pcl_symmetry/core/plane_types.h"
 
 namespace pcl_symmetry {
 
 /// The least margin to a limit, >= 0 where all are kept: by it the orders of a line and the lines are compared. What is
 /// reported is rotationConfidence(), which is fitted to lines that were chosen so.
-/// \param turn with the shares that were seen.
-inline double marginOf(const SymmetryTurn& turn) {
-  const double least_on = turn.fold == 0   ? kDetection.rotations.round_on
-                          : turn.fold == 2 ? kDetection.rotations.twofold_on
-                                           : kDetection.rotations.fold_on;
-  const double most_off = turn.fold == 0 ? kDetection.rotations.most_round_off : kDetection.rotations.most_off,
-               most_far = turn.fold == 0 ? kDetection.rotations.most_round_far : kDetection.rotations.most_far;
-  const double margin = std::min({1.0 - turn.off / most_off, 1.0 - turn.far / most_far, turn.support / least_on - 1.0});
-  return turn.fold == 0 ? margin
-                        : std::min(margin, (turn.halfway - turn.off) / kDetection.rotations.halfway_more - 1.0);
+/// \param rotation with the shares that were seen.
+inline double marginOf(const SymmetryRotation& rotation) {
+  const double least_on = rotation.fold == 0   ? kScanAxes.round_on
+                          : rotation.fold == 2 ? kScanAxes.twofold_on
+                                               : kScanAxes.fold_on;
+  const double most_off = rotation.fold == 0 ? kScanAxes.most_round_off : kScanAxes.most_off,
+               most_far = rotation.fold == 0 ? kScanAxes.most_round_far : kScanAxes.most_far;
+  const double margin =
+      std::min({1.0 - rotation.off / most_off, 1.0 - rotation.far / most_far, rotation.support / least_on - 1.0});
+  return rotation.fold == 0 ? margin
+                            : std::min(margin, (rotation.halfway - rotation.off) / kScanAxes.halfway_more - 1.0);
 }
 
 /// What a scan tells about one rotation about a line, shares of the points seen. The rest lands where nothing was seen.
@@ -34,7 +36,7 @@ struct RotationShares {
 };
 
 /// The rotation about a line by an angle in radians.
-Eigen::Isometry3d motionAbout(const Line3d& line, double angle);
+Eigen::Isometry3d motionAboutLine(const Line3d& line, double angle);
 
 /// Judges rotations by what a scanner saw: the surface, and the space in front of it. Beyond the paper (Section 6).
 class RotationEvidence {
@@ -100,8 +102,8 @@ private:
   Points facing_;  ///< normals, toward the scanner
 };
 
-/// What a scan tells about a twofold rotation besides the shares of SymmetryTurn: most of what it maps is hidden, and a
-/// flat side that lands on itself confirms little.
+/// What a scan tells about a twofold rotation besides the shares of SymmetryRotation: most of what it maps is hidden,
+/// and a flat side that lands on itself confirms little.
 struct RotationSigns {
   double grown = 1.0;  ///< extent of the points and their images, in extents of the points; >= 1
   double hold = 1.0;   ///< RotationEvidence::hold()
@@ -115,30 +117,31 @@ struct RotationSigns {
 
 /// A rotation that was judged, whatever its confidence.
 struct JudgedRotation {
-  SymmetryTurn turn;  ///< input frame
+  SymmetryRotation rotation;  ///< input frame
   RotationSigns signs;
 };
 
-/// \param turns of one scan, input frame, with the shares that were seen.
+/// \param rotations of one scan, input frame, with the shares that were seen.
 /// \param min_confidence planes are not looked for where the other signs leave a rotation less, see rotationConfidence().
 /// \param num_threads 0 = one per core.
 /// \return one each; other rotations than twofold ones have the defaults.
-std::vector<RotationSigns> rotationSigns(const RotationEvidence& evidence, const std::vector<SymmetryTurn>& turns,
-                                         double min_confidence = 0.0, int num_threads = 1);
+std::vector<RotationSigns> rotationSigns(const RotationEvidence& evidence,
+                                         const std::vector<SymmetryRotation>& rotations, double min_confidence = 0.0,
+                                         int num_threads = 1);
 
 /// Rotations whose confidences have numbers of their own: a twofold one hides most of its evidence.
 enum class RotationKind { AnyAngle, Half, Folds };
 
-RotationKind kindOf(const SymmetryTurn& turn);
+RotationKind kindOf(const SymmetryRotation& rotation);
 
 /// Terms of the log odds that rotations which a scan shows are symmetries of the whole object; the first is 1. The
 /// numbers that they are multiplied with are fitted by test/benchmark/fit_turns.py.
-/// \param turn with the shares that were seen.
-std::vector<double> rotationOddsTerms(const SymmetryTurn& turn, const RotationSigns& signs);
+/// \param rotation with the shares that were seen.
+std::vector<double> rotationOddsTerms(const SymmetryRotation& rotation, const RotationSigns& signs);
 
 /// Probability that the rotations map at least 90 % of the whole surface to within 1 % of the diameter of the surface,
 /// and all but 1.25 % to within ten times that: the limits of ObjectSymmetryOptions.
-/// \param turn with the shares that were seen.
-double rotationConfidence(const SymmetryTurn& turn, const RotationSigns& signs);
+/// \param rotation with the shares that were seen.
+double rotationConfidence(const SymmetryRotation& rotation, const RotationSigns& signs);
 
 }  // namespace pcl_symmetry

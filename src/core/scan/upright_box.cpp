@@ -1,4 +1,4 @@
-#include "core/detection/upright_box.h"
+#include "core/scan/upright_box.h"
 
 #include <algorithm>
 #include <array>
@@ -8,9 +8,7 @@
 #include "core/base/constants.h"
 #include "core/base/logistic.h"
 #include "core/base/median.h"
-#include "core/detection/plane_decision.h"
 #include "core/geometry/point_samples.h"
-#include "core/geometry/surface_normals.h"
 #include "pcl_symmetry/core/closest_point_search.h"
 
 namespace pcl_symmetry {
@@ -24,8 +22,6 @@ struct UprightBoxRules {
   double meets = 0.03;      // diagonals within which a reflection meets what a beam met
   double beam_reach = 2.0;  // distances of neighboring beams within which a beam is informative
   int beams = 3;            // nearest a reflection
-  // Tolerances from which neighboring points are so far apart that they are no surface.
-  double no_surface = 1.5;
   // Logit of the confidence, by the share near a side and the root of the share in free space, fitted to virtual scans.
   double confidence = 0.7, of_near = 4.15, of_free = -15.6;
 };
@@ -116,60 +112,32 @@ std::vector<Meets> meetingsAt(const Points& reflected, const PointsRef& points, 
 
 }  // namespace
 
-std::optional<SymmetryPlane> middlePlaneOfBox(const PointsRef& points, const Eigen::Vector3d& up,
-                                              const Eigen::Vector3d& viewpoint) {
+std::optional<MiddlePlane> middlePlaneOfBox(const PointsRef& points, const Eigen::Vector3d& up,
+                                            const Eigen::Vector3d& viewpoint) {
   const Rectangle box = bestRectangle(points, up.normalized());
   const auto width = [&](std::size_t k) { return box.sides[k][1] - box.sides[k][0]; };
   const std::size_t across = width(0) <= width(1) ? 0 : 1;
   const double diagonal = (points.rowwise().maxCoeff() - points.rowwise().minCoeff()).cast<double>().norm();
   const double reach = kBox.meets * diagonal;
   if (!(width(across) > 2.0 * reach)) return std::nullopt;
-  SymmetryPlane plane(ReflectionPlane(box.axes[across], 0.5 * (box.sides[across][0] + box.sides[across][1])));
-  const std::vector<Meets> met = meetingsAt(reflectedPoints(points, plane), points, viewpoint, reach);
-  double num_moved = 0.0, num_met = 0.0, num_free = 0.0;
+  MiddlePlane middle;
+  middle.plane = ReflectionPlane(box.axes[across], 0.5 * (box.sides[across][0] + box.sides[across][1])).canonical();
+  const std::vector<Meets> met = meetingsAt(reflectedPoints(points, middle.plane), points, viewpoint, reach);
   for (std::size_t i = 0; i < met.size(); ++i) {
-    plane.point_support.push_back(met[i] == Meets::Surface ? 1.0f : 0.0f);
-    if (2.0 * std::abs(plane.signedDistance(points.col(i).cast<double>())) <= reach) continue;
-    num_moved += 1.0;
-    num_met += met[i] == Meets::Surface ? 1.0 : 0.0;
-    num_free += met[i] == Meets::Nothing ? 1.0 : 0.0;
+    middle.point_support.push_back(met[i] == Meets::Surface ? 1.0f : 0.0f);
+    if (2.0 * std::abs(middle.plane.signedDistance(points.col(i).cast<double>())) <= reach) continue;
+    middle.num_moved += 1.0;
+    middle.num_met += met[i] == Meets::Surface ? 1.0 : 0.0;
+    middle.num_free += met[i] == Meets::Nothing ? 1.0 : 0.0;
   }
-  if (!(num_met > 0.0)) return std::nullopt;
+  if (!(middle.num_met > 0.0)) return std::nullopt;
   const auto num_near = std::count_if(box.distances.begin(), box.distances.end(),
                                       [&](double distance) { return distance < kBox.near * width(across); });
   const double near = static_cast<double>(num_near) / static_cast<double>(points.cols());
-  plane.confidence = logistic(kBox.confidence + kBox.of_near * near + kBox.of_free * std::sqrt(num_free / num_moved));
-  plane.share = num_met / (num_met + num_free);
-  plane.share_low = num_met / num_moved;
-  plane.share_high = 1.0 - num_free / num_moved;
-  plane.support = num_met / num_moved;
-  plane.seen = (num_met + num_free) / num_moved;
-  plane.residual = std::sqrt(box.sq_error);
-  plane.converged = true;
-  return plane;
-}
-
-void decideByUprightBox(const PointsRef& points, const Visibility& seen, const DetectionOptions& options,
-                        Detection& found) {
-  const std::vector<Eigen::Vector3d> up = carryingNormals(points, seen);
-  const float spacing =
-      median(localGeometry(points, *makeFlannSearch(points), kNumSupportNeighbors, options.num_threads).spacing);
-  const bool is_sparse = spacing > kBox.no_surface * found.tolerance;
-  const bool is_decided = !found.axes.empty() || !found.centers.empty() ||
-                          (!found.planes.empty() && found.planes.front().kind == PlaneKind::Symmetry);
-  if (up.empty() || (is_decided && !is_sparse)) return;
-  std::optional<SymmetryPlane> plane = middlePlaneOfBox(points, up.front(), seen.viewpoint());
-  if (is_sparse) {
-    found.planes.clear();
-    found.axes.clear();
-    found.centers.clear();
-    found.turns.clear();
-    found.best = plane;
-  }
-  if (!plane || plane->confidence < (is_sparse ? options.min_possible : options.min_confidence)) return;
-  decideBy(plane->confidence, options, *plane);
-  found.planes.insert(found.planes.begin(), std::move(*plane));
-  found.best.reset();
+  middle.confidence =
+      logistic(kBox.confidence + kBox.of_near * near + kBox.of_free * std::sqrt(middle.num_free / middle.num_moved));
+  middle.residual = std::sqrt(box.sq_error);
+  return middle;
 }
 
 }  // namespace pcl_symmetry

@@ -1,4 +1,4 @@
-#include "core/detection/scan_axes.h"
+#include "core/rotation/scan_axes.h"
 
 #include <algorithm>
 #include <cmath>
@@ -50,34 +50,33 @@ struct LineTolerance {
   }
 };
 
-constexpr LineTolerance kSameStart{kDetection.rotations.same_start_angle, kDetection.rotations.same_start_offset},
-    kSameCoarsely{kDetection.rotations.coarse_angle, kDetection.rotations.coarse_distance},
-    kSameFitted{kDetection.rotations.fitted_angle, kDetection.rotations.fitted_offset},
-    kSameAxis{kDetection.rotations.same_axis_angle, kDetection.rotations.same_axis_offset};
+constexpr LineTolerance kSameStart{kScanAxes.same_start_angle, kScanAxes.same_start_offset},
+    kSameCoarsely{kScanAxes.coarse_angle, kScanAxes.coarse_distance},
+    kSameFitted{kScanAxes.fitted_angle, kScanAxes.fitted_offset},
+    kSameAxis{kScanAxes.same_axis_angle, kScanAxes.same_axis_offset};
 
 double missAt(const Line3d& line, const Eigen::Vector3d& x, const Eigen::Vector3d& normal) {
   const Eigen::Vector3d velocity = line.direction().cross(x - line.origin());
-  return std::abs(velocity.dot(normal)) / std::max(kDetection.rotations.least_lever, velocity.norm());
+  return std::abs(velocity.dot(normal)) / std::max(kScanAxes.least_lever, velocity.norm());
 }
 
 /// Lines that many normals of a scan meet or are parallel to: the best of all, and the best of small draws, so that a
 /// base or a handle does not decide.
 std::vector<AxisStart> startsFromNormals(const NormalizedCloud& cloud, std::uint64_t seed, int num_threads) {
-  const std::vector<int> samples = drawSamples(cloud.points.cols(), kDetection.rotations.normal_samples, seed);
+  const std::vector<int> samples = drawSamples(cloud.points.cols(), kScanAxes.normal_samples, seed);
   const Points& normals = cloud.geometry.normals;
   const auto inliersOf = [&](const Line3d& line) {
     std::vector<int> inliers;
     for (const int i : samples)
-      if (missAt(line, cloud.points.col(i).cast<double>(), normals.col(i).cast<double>()) <
-          kDetection.rotations.normal_miss)
+      if (missAt(line, cloud.points.col(i).cast<double>(), normals.col(i).cast<double>()) < kScanAxes.normal_miss)
         inliers.push_back(i);
     return inliers;
   };
   std::vector<std::vector<int>> draws(1, samples);
   RandomStream random(seed);
-  for (int draw = 0; draw < kDetection.rotations.normal_draws; ++draw) {
+  for (int draw = 0; draw < kScanAxes.normal_draws; ++draw) {
     std::vector<int> few;
-    for (int k = 0; k < kDetection.rotations.normals_in_draw; ++k) few.push_back(samples[random.below(samples.size())]);
+    for (int k = 0; k < kScanAxes.normals_in_draw; ++k) few.push_back(samples[random.below(samples.size())]);
     draws.push_back(std::move(few));
   }
   std::vector<std::pair<double, Line3d>> found(draws.size());
@@ -92,7 +91,7 @@ std::vector<AxisStart> startsFromNormals(const NormalizedCloud& cloud, std::uint
   std::stable_sort(found.begin(), found.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
   std::vector<AxisStart> starts;
   for (const auto& [unused, line] : found) {
-    if (starts.size() == kDetection.rotations.from_normals) break;
+    if (starts.size() == kScanAxes.from_normals) break;
     const std::vector<int> inliers = inliersOf(line);
     if (inliers.empty()) break;
     const Line3d fitted = axisOfNormals(cloud.points, normals, inliers);
@@ -109,7 +108,7 @@ std::vector<AxisStart> startsFromPlanes(const std::vector<ReflectionPlane>& plan
   for (std::size_t i = 0; i < planes.size(); ++i)
     for (std::size_t j = 0; j < i; ++j) {
       const double angle = planes[i].angleTo(planes[j]);
-      if (angle < kDetection.rotations.least_plane_angle) continue;
+      if (angle < kScanAxes.least_plane_angle) continue;
       const Eigen::Vector3d& a = planes[i].normal();
       const Eigen::Vector3d& b = planes[j].normal();
       const double cosine = a.dot(b), sq_sine = 1.0 - cosine * cosine;
@@ -119,7 +118,7 @@ std::vector<AxisStart> startsFromPlanes(const std::vector<ReflectionPlane>& plan
       // The least fold whose planes have this angle: two planes at k pi / n rotate by 2 k pi / n.
       for (int n = 2; n <= max_fold; ++n) {
         const double step = kPi / n, off = std::abs(angle - step * std::round(angle / step));
-        if (off > kDetection.rotations.angle_of_fold * std::min(1.0, 6.0 / n)) continue;
+        if (off > kScanAxes.angle_of_fold * std::min(1.0, 6.0 / n)) continue;
         starts.push_back({line, n});
         break;
       }
@@ -130,16 +129,16 @@ std::vector<AxisStart> startsFromPlanes(const std::vector<ReflectionPlane>& plan
 /// Maxima of an axial transform with few bins and the free space of the scan.
 std::vector<AxisStart> startsFromTransform(const NormalizedCloud& cloud, std::uint64_t seed, int num_threads) {
   GaussianEdtOptions coarse;
-  coarse.num_cells = kDetection.rotations.coarse_cells;
+  coarse.num_cells = kScanAxes.coarse_cells;
   coarse.num_threads = num_threads;
   const GaussianEdt edt(cloud.points, coarse);
   AxialTransformOptions options;
   options.folds = {2, 3, 4, 5, 6};
-  options.num_samples = kDetection.rotations.coarse_samples;
+  options.num_samples = kScanAxes.coarse_samples;
   options.seed = seed;
   options.num_threads = num_threads;
-  const AxisGrid grid(kDetection.rotations.coarse_theta, kDetection.rotations.coarse_phi,
-                      kDetection.rotations.coarse_offset, edt.center(), edt.radius());
+  const AxisGrid grid(kScanAxes.coarse_theta, kScanAxes.coarse_phi, kScanAxes.coarse_offset, edt.center(),
+                      edt.radius());
   const AxisMap map = axialTransform(edt, grid, options, &*cloud.visibility);
   std::vector<std::size_t> bins;
   for (std::size_t i = 0; i < map.greatest.size(); ++i)
@@ -148,13 +147,12 @@ std::vector<AxisStart> startsFromTransform(const NormalizedCloud& cloud, std::ui
                    [&](std::size_t a, std::size_t b) { return map.greatest[a] > map.greatest[b]; });
   std::vector<AxisStart> starts;
   for (const std::size_t bin : bins) {
-    if (starts.size() == kDetection.rotations.coarse_maxima) break;
+    if (starts.size() == kScanAxes.coarse_maxima) break;
     const Line3d line = grid.axis(grid.bin(bin));
     if (kSameCoarsely.anySame(starts, line)) continue;
     int fold = 2;
     for (std::size_t i = 0; i < map.folds.size(); ++i)
-      if (map.values[i][bin] >= map.greatest[bin] - kDetection.rotations.coarse_equal)
-        fold = std::max(fold, map.folds[i]);
+      if (map.values[i][bin] >= map.greatest[bin] - kScanAxes.coarse_equal) fold = std::max(fold, map.folds[i]);
     starts.push_back({line, fold});
   }
   return starts;
@@ -176,10 +174,9 @@ struct OffLimits {
 template <typename Shares>
 RotationShares roundRotations(const Shares& shares, const OffLimits& limits = {}) {
   RotationShares all;
-  for (int k = 1; k <= kDetection.rotations.round_rotations && limits.allow(all); ++k)
+  for (int k = 1; k <= kScanAxes.round_rotations && limits.allow(all); ++k)
     all = together(all, shares(2.0 * kPi * goldenFraction(k)));
-  if (limits.allow(all))
-    all.on = 0.5 * (shares(kDetection.rotations.small_angle).on + shares(-kDetection.rotations.small_angle).on);
+  if (limits.allow(all)) all.on = 0.5 * (shares(kScanAxes.small_angle).on + shares(-kScanAxes.small_angle).on);
   return all;
 }
 
@@ -194,8 +191,8 @@ RotationShares rotationsOfFold(const Shares& shares, int fold, double first, con
 /// What a line is, as far as one scan can tell.
 struct JudgedLine {
   Line3d line;
-  SymmetryTurn turn;  ///< without a place
-  double margin;      ///< marginOf()
+  SymmetryRotation rotation;  ///< without a place
+  double margin;              ///< marginOf()
 };
 
 class AxisJudge {
@@ -207,38 +204,37 @@ public:
 
   /// The best rotations about a line.
   std::optional<JudgedLine> judged(const Line3d& line) const {
-    constexpr OffLimits kRough{kDetection.rotations.rough_factor * kDetection.rotations.most_off,
-                               kDetection.rotations.rough_factor * kDetection.rotations.most_far};  // from both
+    constexpr OffLimits rough{kScanAxes.rough_factor * kScanAxes.most_off,
+                              kScanAxes.rough_factor * kScanAxes.most_far};  // from both
     const auto roughly = [&](double angle) {
-      return evidence_.roughly(Eigen::Affine3d(motionAbout(line, angle)), kDetection.rotations.rough_slack, kRough.off,
-                               kRough.far);
+      return evidence_.roughly(Eigen::Affine3d(motionAboutLine(line, angle)), kScanAxes.rough_slack, rough.off,
+                               rough.far);
     };
     std::optional<JudgedLine> best;
     const auto take = [&](const JudgedLine& judged) {
       if (!best || judged.margin > best->margin) best = judged;
     };
-    if (kRough.allow(roundRotations(roughly, kRough))) take(exactly(line, 0));
+    if (rough.allow(roundRotations(roughly, rough))) take(exactly(line, 0));
     for (int fold = most_fold_; fold >= 2; --fold) {
       if (best && best->margin > 0.0) break;
-      if (kRough.allow(rotationsOfFold(roughly, fold, 0.0, kRough))) take(exactly(line, fold));
+      if (rough.allow(rotationsOfFold(roughly, fold, 0.0, rough))) take(exactly(line, fold));
     }
     return best;
   }
 
   JudgedLine exactly(Line3d line, int fold) const {
     line = evidence_.closelyRefined(line, fitAngles(fold));
-    const auto shares = [&](double angle) { return evidence_.exactly(Eigen::Affine3d(motionAbout(line, angle))); };
+    const auto shares = [&](double angle) { return evidence_.exactly(Eigen::Affine3d(motionAboutLine(line, angle))); };
     const RotationShares own = fold == 0 ? roundRotations(shares) : rotationsOfFold(shares, fold, 0.0);
-    SymmetryTurn turn{Eigen::Vector3d::Zero(), line.direction(), fold, 0.0, own.on, own.off, own.far, 0.0};
-    if (fold > 0) turn.halfway = rotationsOfFold(shares, fold, 0.5).off;
-    return {line, turn, marginOf(turn)};
+    SymmetryRotation rotation{Eigen::Vector3d::Zero(), line.direction(), fold, 0.0, own.on, own.off, own.far, 0.0};
+    if (fold > 0) rotation.halfway = rotationsOfFold(shares, fold, 0.5).off;
+    return {line, rotation, marginOf(rotation)};
   }
 
 private:
   static std::vector<double> fitAngles(int fold) {
     if (fold == 0)
-      return {kDetection.rotations.small_angle, -kDetection.rotations.small_angle, kDetection.rotations.larger_angle,
-              -kDetection.rotations.larger_angle};
+      return {kScanAxes.small_angle, -kScanAxes.small_angle, kScanAxes.larger_angle, -kScanAxes.larger_angle};
     const double step = 2.0 * kPi / fold;
     return fold == 2 ? std::vector<double>{step} : std::vector<double>{step, -step};
   }
@@ -248,20 +244,20 @@ private:
 };
 
 /// Planes that may be symmetries, normalized frame.
-std::vector<ReflectionPlane> planesOfAxes(const std::vector<SymmetryPlane>& planes, const NormalizedCloud& cloud) {
+std::vector<ReflectionPlane> likelyPlanes(const std::vector<SymmetryPlane>& planes, const NormalizedCloud& cloud) {
   std::vector<ReflectionPlane> found;
   for (const SymmetryPlane& plane : planes)
-    if (plane.kind != PlaneKind::Local && plane.share >= kDetection.rotations.plane_share &&
-        found.size() < kDetection.rotations.most_planes_of_axes)
+    if (plane.kind != PlaneKind::Local && plane.share >= kScanAxes.plane_share &&
+        found.size() < kScanAxes.most_planes_of_axes)
       found.push_back(cloud.toNormalized(plane));
   return found;
 }
 
 }  // namespace
 
-std::vector<SymmetryTurn> scanAxes(const RotationEvidence& evidence, const std::vector<SymmetryPlane>& planes,
-                                   const std::vector<SymmetryAxis>& axes, const DetectionOptions& options,
-                                   std::vector<JudgedRotation>* evidence_of_all) {
+std::vector<SymmetryRotation> scanAxes(const RotationEvidence& evidence, const std::vector<SymmetryPlane>& planes,
+                                       const std::vector<SymmetryAxis>& axes, const ScanAxesOptions& options,
+                                       std::vector<JudgedRotation>* evidence_of_all) {
   const NormalizedCloud& cloud = evidence.cloud();
   std::vector<AxisStart> starts = startsFromNormals(cloud, options.seed, options.num_threads);
   const auto append = [&](const std::vector<AxisStart>& more) {
@@ -269,10 +265,10 @@ std::vector<SymmetryTurn> scanAxes(const RotationEvidence& evidence, const std::
   };
   for (const SymmetryAxis& axis : axes) starts.push_back({cloud.lineOf(axis), 0});
   if (options.folds) {
-    append(startsFromPlanes(planesOfAxes(planes, cloud), kDetection.rotations.most_order));
+    append(startsFromPlanes(likelyPlanes(planes, cloud), kScanAxes.most_order));
     append(startsFromTransform(cloud, options.seed, options.num_threads));
   }
-  const AxisJudge judge(evidence, options.folds ? kDetection.rotations.most_order : 1);
+  const AxisJudge judge(evidence, options.folds ? kScanAxes.most_order : 1);
   std::vector<Line3d> fitted(starts.size());
   parallelBlocks(starts.size(), options.num_threads, [&](std::size_t i) { fitted[i] = judge.fitted(starts[i]); });
   std::vector<Line3d> lines;
@@ -284,12 +280,12 @@ std::vector<SymmetryTurn> scanAxes(const RotationEvidence& evidence, const std::
   std::stable_sort(judged.begin(), judged.end(),
                    [](const auto& a, const auto& b) { return a && (!b || a->margin > b->margin); });
   std::vector<Line3d> found;
-  std::vector<SymmetryTurn> result;
+  std::vector<SymmetryRotation> result;
   for (const std::optional<JudgedLine>& best : judged) {
-    if (!best || found.size() == kDetection.rotations.most_axes) break;
+    if (!best || found.size() == kScanAxes.most_axes) break;
     if (kSameAxis.anySame(found, best->line)) continue;
     found.push_back(best->line);
-    result.push_back(best->turn);
+    result.push_back(best->rotation);
     result.back().point = cloud.toInput(best->line.projection(Eigen::Vector3d::Zero()));
   }
   const double least = evidence_of_all ? 0.0 : options.min_possible;
@@ -298,53 +294,54 @@ std::vector<SymmetryTurn> scanAxes(const RotationEvidence& evidence, const std::
     result[i].confidence = rotationConfidence(result[i], signs[i]);
     if (evidence_of_all) evidence_of_all->push_back({result[i], signs[i]});
   }
-  result.erase(std::remove_if(result.begin(), result.end(),
-                              [&](const SymmetryTurn& turn) { return turn.confidence < options.min_possible; }),
-               result.end());
+  result.erase(
+      std::remove_if(result.begin(), result.end(),
+                     [&](const SymmetryRotation& rotation) { return rotation.confidence < options.min_possible; }),
+      result.end());
   std::stable_sort(result.begin(), result.end(),
-                   [](const SymmetryTurn& a, const SymmetryTurn& b) { return a.confidence > b.confidence; });
+                   [](const SymmetryRotation& a, const SymmetryRotation& b) { return a.confidence > b.confidence; });
   return result;
 }
 
-std::vector<SymmetryTurn> rotationsOfScan(const PointsRef& points, const GaussianEdt& edt, const Visibility& visibility,
-                                          const std::vector<SymmetryAxis>& axes, const DetectionOptions& options,
-                                          const MakeSearch& make_search) {
+std::vector<SymmetryRotation> rotationsOfScan(const PointsRef& points, const GaussianEdt& edt,
+                                              const Visibility& visibility, const std::vector<SymmetryAxis>& axes,
+                                              const ScanAxesOptions& options, const MakeSearch& make_search) {
   if (!whyUnanswerable(points).empty()) return {};
   const Points distinct = DistinctPoints(points).points;
-  const Points used = pointsAt(distinct, drawSamples(distinct.cols(), kDetection.rotations.most_points, options.seed));
+  const Points used = pointsAt(distinct, drawSamples(distinct.cols(), kScanAxes.most_points, options.seed));
   const ClosestPointSearch::Ptr search = make_search ? inFrame(make_search(used), edt.center(), edt.radius()) : nullptr;
   const NormalizedCloud cloud(used, edt, search, &visibility, options.num_threads);
-  return scanAxes(RotationEvidence(cloud, options.tolerance * cloud.extent, options.seed), {}, axes, options);
+  return scanAxes(RotationEvidence(cloud, kScanAxes.usual_tolerance * cloud.extent, options.seed), {}, axes, options);
 }
 
 std::vector<SymmetryAxis> withRoundAxes(const RotationEvidence& evidence, std::vector<SymmetryAxis> axes,
-                                        const std::vector<SymmetryTurn>& turns, const DetectionOptions& options) {
+                                        const std::vector<SymmetryRotation>& rotations,
+                                        const ScanAxesOptions& options) {
   const NormalizedCloud& cloud = evidence.cloud();
   axes.erase(std::remove_if(axes.begin(), axes.end(),
                             [&](const SymmetryAxis& axis) {
                               const RotationShares all = roundRotations([&](double angle) {
-                                return evidence.exactly(Eigen::Affine3d(motionAbout(cloud.lineOf(axis), angle)));
+                                return evidence.exactly(Eigen::Affine3d(motionAboutLine(cloud.lineOf(axis), angle)));
                               });
-                              return all.far > kDetection.rotations.most_round_far;
+                              return all.far > kScanAxes.most_round_far;
                             }),
              axes.end());
-  for (const SymmetryTurn& turn : turns) {
+  for (const SymmetryRotation& rotation : rotations) {
     // However probable: a handle that was seen contradicts.
-    const bool is_contradicted =
-        turn.off > kDetection.rotations.most_round_off || turn.far > kDetection.rotations.most_round_far;
-    if (turn.fold != 0 || is_contradicted || turn.confidence < options.min_confidence) continue;
+    const bool is_contradicted = rotation.off > kScanAxes.most_round_off || rotation.far > kScanAxes.most_round_far;
+    if (rotation.fold != 0 || is_contradicted || rotation.confidence < options.min_confidence) continue;
     const auto known = std::find_if(axes.begin(), axes.end(), [&](const SymmetryAxis& axis) {
-      return kSameAxis.same(cloud.lineOf(axis), cloud.lineOf(turn));
+      return kSameAxis.same(cloud.lineOf(axis), cloud.lineOf(rotation));
     });
     if (known != axes.end()) {
-      known->point = turn.point;
-      known->direction = turn.direction;
+      known->point = rotation.point;
+      known->direction = rotation.direction;
     } else {
       double score = 0.0;
-      for (int k = 0; k < kDetection.rotations.scored_planes; ++k)
-        score += cloud.score(planeThrough({turn.point, turn.direction}, kPi * k / kDetection.rotations.scored_planes)) /
-                 kDetection.rotations.scored_planes;
-      axes.push_back({turn.point, turn.direction, turn.confidence, score, turn.support});
+      for (int k = 0; k < kScanAxes.scored_planes; ++k)
+        score += cloud.score(planeThrough({rotation.point, rotation.direction}, kPi * k / kScanAxes.scored_planes)) /
+                 kScanAxes.scored_planes;
+      axes.push_back({rotation.point, rotation.direction, rotation.confidence, score, rotation.support});
     }
   }
   return axes;

@@ -1,0 +1,78 @@
+/// From maxima to exact planes in three stages.
+#include "core/detection/staged_refinement.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <memory>
+#include <vector>
+
+#include "core/base/constants.h"
+#include "shapes/shapes.h"
+
+namespace {
+
+using namespace pcl_symmetry;
+
+/// A box, and what refines its planes.
+struct RefinedBox {
+  const DetectionOptions options;
+  const Points points = test::box({1.0, 0.7, 0.4}, 5000, test::Sampling::Random, 1).cloud();
+  const GaussianEdt edt{points};
+  const NormalizedCloud cloud{points, edt, nullptr, nullptr, 1};
+  const std::unique_ptr<PlaneFit> fit = makePlaneFit(cloud, options);
+  const StagedRefinement refinement{cloud, *fit, options};
+
+  Candidate candidate(const Eigen::Vector3d& normal, double offset) const {
+    return {cloud.toNormalized(ReflectionPlane(normal.normalized(), offset))};
+  }
+};
+
+TEST(StagedRefinement, EachStageComesNearer) {
+  const RefinedBox box;
+  const ReflectionPlane exact = box.cloud.toNormalized(ReflectionPlane(Eigen::Vector3d::UnitX(), 0.0));
+  std::vector<Candidate> candidates{box.candidate({1.0, 0.06, -0.04}, 0.03)};
+  const double at_start = candidates[0].plane.angleTo(exact);
+  candidates = box.refinement.coarse(candidates, PlaneGrid(box.options.expert, box.edt.center(), box.edt.radius()));
+  ASSERT_EQ(candidates.size(), 1u);
+  const double after_coarse = candidates[0].plane.angleTo(exact);
+  EXPECT_LT(after_coarse, 0.3 * at_start);
+  candidates = box.refinement.full(box.refinement.close(candidates));
+  ASSERT_EQ(candidates.size(), 1u);
+  EXPECT_LT(candidates[0].plane.angleTo(exact), 0.1 * kDegree);
+  EXPECT_GT(candidates[0].merit, kDetection.stages.symmetric_merit);
+}
+
+TEST(StagedRefinement, DistinctKeepsTheBestOfLikePlanes) {
+  const RefinedBox box;
+  std::vector<Candidate> candidates{box.candidate({1.0, 0.0, 0.0}, 0.0), box.candidate({1.0, 0.01, 0.0}, 0.0),
+                                    box.candidate({0.0, 1.0, 0.0}, 0.0)};
+  candidates[0].merit = 0.5;
+  candidates[1].merit = 0.6;
+  candidates[2].merit = 0.55;
+  const std::vector<Candidate> kept = box.refinement.distinct(candidates);
+  ASSERT_EQ(kept.size(), 2u);
+  EXPECT_EQ(kept[0].merit, 0.6);
+  EXPECT_EQ(kept[1].merit, 0.55);
+  EXPECT_EQ(box.refinement.distinct(candidates, -1.0, 1).size(), 1u) << "none may be a symmetry";
+}
+
+TEST(GroupClosure, TwoPlanesOfASquareTellTheOtherTwoOnce) {
+  const RefinedBox box;
+  std::vector<SymmetryPlane> known;
+  for (const double angle : {0.0, 0.25 * kPi})
+    known.emplace_back(ReflectionPlane(Eigen::Vector3d(std::cos(angle), std::sin(angle), 0.0), 0.0));
+  GroupClosure closure(box.cloud);
+  EXPECT_TRUE(closure.next(known).empty()) << "none is a symmetry yet";
+  for (SymmetryPlane& plane : known) plane.kind = PlaneKind::Symmetry;
+  const std::vector<Candidate> found = closure.next(known);
+  ASSERT_EQ(found.size(), 2u);
+  for (const Candidate& candidate : found)
+    for (const SymmetryPlane& plane : known) {
+      const double turns = candidate.plane.angleTo(box.cloud.toNormalized(plane)) / (0.25 * kPi);
+      EXPECT_NEAR(turns, std::round(turns), 1e-6);
+    }
+  EXPECT_TRUE(closure.next(known).empty()) << "they were returned before";
+}
+
+}  // namespace

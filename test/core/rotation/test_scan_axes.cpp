@@ -1,0 +1,242 @@
+/// Axes of rotations of what a scanner saw from one side.
+#include "core/rotation/scan_axes.h"
+
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "core/base/constants.h"
+#include "pcl_symmetry/core/detect_planes.h"
+#include "pcl_symmetry/core/visibility.h"
+#include "shapes/shapes.h"
+#include "shapes/threads.h"
+#include "shapes/turning_shapes.h"
+
+namespace pcl_symmetry {
+namespace {
+
+using namespace test;
+
+/// A shape as a scanner sees it from one side.
+struct SeenFromOneSide {
+  Points points;
+  std::optional<Visibility> seen;
+};
+
+/// The points of a shape that no other hides, as seen from a place.
+SeenFromOneSide seenFrom(const TurningShape& shape, const Eigen::Vector3d& viewpoint, std::uint64_t seed = 1) {
+  const Points all = shape.sampled(14000, seed).cloud();
+  const std::optional<Visibility> whole = Visibility::fromPoints(all, viewpoint);
+  EXPECT_TRUE(whole.has_value());
+  // Radii of the shapes
+  const Points kept =
+      pointsWhere(all, [&](const Eigen::Vector3f& x) { return whole->depthBehind(x.cast<double>()) < 0.08; });
+  return {kept, Visibility::fromPoints(kept, viewpoint)};
+}
+
+SymmetryRotation rotationOf(int fold, double support, double off, double far, double halfway) {
+  SymmetryRotation rotation{Eigen::Vector3d::Zero(), Eigen::Vector3d::UnitZ()};
+  rotation.fold = fold;
+  rotation.support = support;
+  rotation.off = off;
+  rotation.far = far;
+  rotation.halfway = halfway;
+  return rotation;
+}
+
+/// What confirms a half turn.
+RotationSigns clearSigns() {
+  RotationSigns signs;
+  signs.grown = 1.0;
+  signs.hold = 0.1;
+  signs.planes_off = 0.0;
+  return signs;
+}
+
+double confidenceOf(int fold, double support, double off, double far, double halfway,
+                    const RotationSigns& signs = clearSigns()) {
+  return rotationConfidence(rotationOf(fold, support, off, far, halfway), signs);
+}
+
+TEST(RotationConfidence, FallsWithWhatLandsInEmptySpaceAndGrowsWithWhatLandsOnTheSurface) {
+  for (const int fold : {0, 2, 6}) {
+    const double clear = confidenceOf(fold, 0.95, 0.0, 0.0, 0.4);
+    EXPECT_GT(clear, 0.5) << fold;
+    EXPECT_LT(clear, 1.0) << fold;
+    EXPECT_LT(confidenceOf(fold, 0.95, 0.1, 0.02, 0.5), 0.3) << fold << ": a tenth contradicts";
+    EXPECT_LT(confidenceOf(fold, 0.2, 0.0, 0.0, 0.4), clear) << fold << ": hardly anything confirms it";
+  }
+}
+
+TEST(RotationConfidence, OfAHalfTurnFallsWithEachSignAgainstIt) {
+  const double clear = confidenceOf(2, 0.9, 0.0, 0.0, 0.4);
+  // Each sign alone, from clear to clearly against.
+  const std::array<std::pair<double RotationSigns::*, double>, 4> against{{{&RotationSigns::grown, 1.5},
+                                                                           {&RotationSigns::hold, 1e-9},
+                                                                           {&RotationSigns::planes_off, 0.3},
+                                                                           {&RotationSigns::beside, 1.0}}};
+  for (std::size_t k = 0; k < against.size(); ++k) {
+    const auto [sign, worst] = against[k];
+    const double best = clearSigns().*sign;
+    double last = clear;
+    for (int step = 1; step <= 5; ++step) {
+      RotationSigns signs = clearSigns();
+      signs.*sign = best + (worst - best) * step / 5;
+      const double confidence = confidenceOf(2, 0.9, 0.0, 0.0, 0.4, signs);
+      EXPECT_LE(confidence, last) << "sign " << k << ", step " << step;
+      last = confidence;
+    }
+    EXPECT_LT(last, 0.95 * clear) << "sign " << k;
+  }
+}
+
+TurningShape box() {
+  return boxShape("box", {1.0, 0.7, 0.45}, RotationGroupKind::Dihedral, 2);
+}
+
+/// A scan of a shape, and what it says of half turns.
+struct Scanned {
+  Scanned(const TurningShape& shape, const Eigen::Vector3d& viewpoint)
+      : scan(seenFrom(shape, viewpoint)),
+        edt(scan.points),
+        cloud(scan.points, edt, nullptr, &scan.seen.value(), 1),
+        evidence(cloud, tolerance * cloud.extent, 0) {}
+
+  /// A half turn about a line of the shape's frame, with the shares that were seen.
+  SymmetryRotation rotation(const Eigen::Vector3d& point, const Eigen::Vector3d& direction) const {
+    SymmetryRotation rotation{point, direction.normalized()};
+    rotation.fold = 2;
+    const RotationShares shares = evidence.exactly(Eigen::Affine3d(motionAboutLine(lineOf(rotation), kPi)));
+    rotation.support = shares.on;
+    rotation.off = shares.off;
+    rotation.far = shares.far;
+    rotation.halfway = 1.0;
+    return rotation;
+  }
+
+  Line3d lineOf(const SymmetryRotation& rotation) const {
+    return {(rotation.point - cloud.center) / cloud.scale, rotation.direction};
+  }
+
+  static constexpr double tolerance = 0.01;
+  SeenFromOneSide scan;
+  GaussianEdt edt;
+  NormalizedCloud cloud;
+  RotationEvidence evidence;
+};
+
+const Eigen::Vector3d kCorner(2.0, 3.0, 5.0);
+
+TEST(RotationSigns, AHalfTurnOfABoxHasPlanesAndStaysInItsPlace) {
+  const Scanned scanned(box(), kCorner);
+  const SymmetryRotation right = scanned.rotation(Eigen::Vector3d::Zero(), Eigen::Vector3d::UnitZ());
+  const SymmetryRotation wrong = scanned.rotation({0.5, 0.0, 0.0}, {0.3, 0.0, 1.0});
+  const std::vector<RotationSigns> signs = rotationSigns(scanned.evidence, {right, wrong});
+  ASSERT_EQ(signs.size(), 2u);
+  EXPECT_LT(signs[0].planes_off, 0.02);
+  EXPECT_GT(signs[1].planes_off, 0.1);
+  // The box seen from a corner shows its longest diagonal.
+  EXPECT_LT(signs[0].grown, 1.05);
+  EXPECT_GT(signs[1].grown, 1.05);
+  EXPECT_EQ(signs[0].beside, 0.0);
+  EXPECT_EQ(signs[1].beside, 1.0);
+  // A rotation that the other signs leave too little confidence is not asked for planes.
+  const std::vector<RotationSigns> few = rotationSigns(scanned.evidence, {right, wrong}, 0.2);
+  EXPECT_EQ(few[0].planes_off, signs[0].planes_off);
+  EXPECT_EQ(few[1].planes_off, 0.0);
+  EXPECT_LT(rotationConfidence(wrong, few[1]), 0.2);
+}
+
+TEST(RotationSigns, AFlatSideHoldsNoLineAndABoxDoes) {
+  const Scanned flat(sheetShape(1.0, 0.7), {0.3, 0.5, 5.0});
+  const SymmetryRotation over = flat.rotation(Eigen::Vector3d::Zero(), Eigen::Vector3d::UnitX());
+  EXPECT_GT(over.support, 0.95) << "the shares alone take the lower side for the upper one";
+  const auto hold = [](const Scanned& scanned, const Eigen::Vector3d& direction) {
+    return rotationSigns(scanned.evidence, {scanned.rotation(Eigen::Vector3d::Zero(), direction)})[0].hold;
+  };
+  EXPECT_LT(hold(flat, Eigen::Vector3d::UnitX()), 1e-3) << "it slides both ways along itself";
+  EXPECT_GT(hold(Scanned(box(), kCorner), Eigen::Vector3d::UnitZ()), 1e-2);
+}
+
+TEST(RotationEvidence, ALineBesideTheAxisComesBackToIt) {
+  for (const Eigen::Vector3d& viewpoint : {kCorner, Eigen::Vector3d(5.0, 1.0, 3.0), Eigen::Vector3d(1.0, -2.0, 5.0)}) {
+    const Scanned scanned(box(), viewpoint);
+    const SymmetryRotation beside = scanned.rotation({0.03, -0.03, 0.0}, {0.03, 0.02, 1.0});
+    const Line3d line = scanned.evidence.closelyRefined(scanned.lineOf(beside), {kPi});
+    const Eigen::Vector3d center = -scanned.cloud.center / scanned.cloud.scale;
+    // Within the tolerance of the surface, by which a line that is half as far off moves it.
+    EXPECT_LT(line.distance(center), 0.5 * Scanned::tolerance * scanned.cloud.extent);
+    EXPECT_GT(std::abs(line.direction().z()), std::cos(0.5 * kDegree));
+  }
+}
+
+Detection detected(const TurningShape& shape, const Eigen::Vector3d& viewpoint) {
+  const SeenFromOneSide scan = seenFrom(shape, viewpoint);
+  return detectPlanes({scan.points, &*scan.seen});
+}
+
+TurningShape cup(bool with_handle) {
+  TurningShape shape = turningShape("cup", RotationGroupKind::Revolution);
+  shape.addLathe({{0.0, -1.0}, {0.6, -1.0}, {0.8, 0.2}, {0.75, 1.0}, {0.0, 1.0}}, 96);
+  if (with_handle)
+    for (const double z : {-0.35, 0.0, 0.35}) {
+      Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
+      pose.translation() << (z == 0.0 ? 1.3 : 1.0), 0.0, z;
+      shape.addBox(z == 0.0 ? Eigen::Vector3d(0.1, 0.1, 0.45) : Eigen::Vector3d(0.35, 0.1, 0.1), pose);
+    }
+  return shape;
+}
+
+TEST(ScanAxes, AHexagonalPrismHasOrderSix) {
+  const Detection found = detected(prismShape(6, 0.5), {3.0, 4.0, 5.0});
+  ASSERT_FALSE(found.turns.empty());
+  const SymmetryRotation& rotation = found.turns.front();
+  EXPECT_EQ(rotation.fold, 6);
+  EXPECT_GT(rotation.confidence, 0.5);
+  EXPECT_GT(std::abs(rotation.direction.z()), std::cos(1.0 * kDegree));
+  EXPECT_LT(rotation.point.head<2>().norm(), 0.03);
+  EXPECT_GT(rotation.halfway, rotation.off);
+  EXPECT_TRUE(found.axes.empty()) << "six sides are not round";
+}
+
+TEST(ScanAxes, ACupHasAnAxisUnlessAHandleIsInSight) {
+  const Detection plain = detected(cup(false), {1.0, 5.0, 1.5});
+  ASSERT_EQ(plain.axes.size(), 1u);
+  EXPECT_GT(std::abs(plain.axes[0].direction.z()), std::cos(1.0 * kDegree));
+  EXPECT_LT(plain.axes[0].point.head<2>().norm(), 0.03);
+  // From the side the handle is seen against the background.
+  EXPECT_TRUE(detected(cup(true), {1.0, 5.0, 1.5}).axes.empty());
+}
+
+TEST(ScanAxes, AreFoundWithoutPlanesToo) {
+  const SeenFromOneSide scan = seenFrom(prismShape(6, 0.5), {3.0, 4.0, 5.0});
+  const GaussianEdt edt(scan.points);
+  const std::vector<SymmetryRotation> turns = rotationsOfScan(scan.points, edt, *scan.seen, {}, {});
+  ASSERT_FALSE(turns.empty());
+  EXPECT_EQ(turns.front().fold, 6);
+  EXPECT_GT(turns.front().confidence, 0.5);
+  EXPECT_GT(std::abs(turns.front().direction.z()), std::cos(1.0 * kDegree));
+  const Points few = scan.points.leftCols(5);
+  EXPECT_TRUE(rotationsOfScan(few, GaussianEdt(few), *scan.seen, {}, {}).empty()) << "no answer";
+}
+
+TEST(ScanAxes, ThreadsDoNotMatterAndTurnsCanBeLeftOut) {
+  const SeenFromOneSide scan = seenFrom(prismShape(5, 0.4), {2.0, 3.0, 5.0});
+  DetectionOptions options;
+  compareThreads([&](int num_threads) {
+    options.num_threads = num_threads;
+    const Detection found = detectPlanes({scan.points, &*scan.seen}, options);
+    return valuesOf(found.turns, &SymmetryRotation::point, &SymmetryRotation::confidence);
+  });
+  options.turns = false;
+  EXPECT_TRUE(detectPlanes({scan.points, &*scan.seen}, options).turns.empty());
+  EXPECT_TRUE(detectPlanes(scan.points, options).turns.empty()) << "whole objects have objectSymmetries()";
+}
+
+}  // namespace
+}  // namespace pcl_symmetry
