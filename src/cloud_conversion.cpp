@@ -4,7 +4,6 @@
 #include <pcl/point_types.h>
 
 #include <algorithm>
-#include <cmath>
 
 #include "core/base/check.h"
 #include "core/geometry/answerable_points.h"

@@ -3,7 +3,6 @@
 #include <pcl/point_types.h>
 #include <pcl/impl/instantiate.hpp>
 
-#include <algorithm>
 #include <limits>
 
 #include "core/evidence/plane_support.h"

@@ -1,6 +1,5 @@
 #include "recognition/database_schema.h"
 
-#include <algorithm>
 #include <array>
 #include <cstring>
 #include <ctime>

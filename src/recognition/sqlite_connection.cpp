@@ -5,7 +5,6 @@
 
 #include <cctype>
 #include <cmath>
-#include <cstring>
 #include <filesystem>
 #include <system_error>
 

@@ -1,7 +1,6 @@
 #include "core/detection/plane_fit.h"
 
 #include <algorithm>
-#include <cmath>
 #include <utility>
 
 #include "core/base/parallel.h"

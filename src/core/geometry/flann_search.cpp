@@ -4,7 +4,6 @@
 #include <flann/algorithms/kdtree_single_index.h>
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
 
 namespace pcl_symmetry {

@@ -5,8 +5,6 @@
 #include <array>
 #include <cmath>
 #include <limits>
-#include <numeric>
-#include <utility>
 
 #include "core/base/check.h"
 #include "core/base/parallel.h"

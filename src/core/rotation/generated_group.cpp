@@ -6,7 +6,6 @@
 #include <map>
 #include <optional>
 #include <stdexcept>
-#include <utility>
 
 #include "core/base/constants.h"
 #include "core/rotation/placed_group.h"
