@@ -48,7 +48,7 @@ public:
   void setNumCells(int num_cells) {
     detail::changeOptions(edt_options_, [&](GaussianEdtOptions& changed) { changed.num_cells = num_cells; });
   }
-  /// \param num_theta,num_phi,num_radius bins of the map, each >= 1, num_phi even; default 64 each.
+  /// \param num_theta,num_phi,num_radius bins of the map, each in [1, 4096], num_phi even; default 64 each.
   void setMapSize(int num_theta, int num_phi, int num_radius) {
     detail::changeOptions(map_size_, [&](MapSize& changed) { changed = {num_theta, num_phi, num_radius}; });
   }
