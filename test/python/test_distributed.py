@@ -26,7 +26,7 @@ def tool(command, *arguments):
     return run.stdout.decode()
 
 
-def wait_for(condition, seconds=60):
+def wait_for(condition, seconds=300):
     end = time.monotonic() + seconds
     while not condition() and time.monotonic() < end:
         time.sleep(0.01)
@@ -79,7 +79,7 @@ class Distributed(unittest.TestCase):
         self.assertTrue(wait_for(lambda: some_work() or run.poll() is not None))
         self.assertIsNone(run.poll(), "it ended before a worker could be killed")
         working[0].send_signal(signal.SIGKILL)
-        output, _ = run.communicate(timeout=100)
+        output, _ = run.communicate(timeout=600)
         self.assertEqual(run.returncode, 0, output)
         self.check_answers()
 
@@ -93,7 +93,7 @@ class Distributed(unittest.TestCase):
         self.assertGreater(num_parts, 2)
         (self.models / "broken.off").write_text("OFF\n3 1 0\n0 0 0\n")
         run = self.start()
-        output, _ = run.communicate(timeout=100)
+        output, _ = run.communicate(timeout=600)
         self.assertIn(f"of {13 - num_parts} parts", output)
         self.assertEqual(run.returncode, 1)
         self.assertRegex(output, r"left out: .*broken.off: ")
@@ -109,7 +109,7 @@ class Distributed(unittest.TestCase):
             (self.folder / name).write_text(f"#!/bin/bash\n{text}\n")
             (self.folder / name).chmod(0o755)
         run = self.start("--slurm=--partition=cpu --mem=1G")
-        output, _ = run.communicate(timeout=100)
+        output, _ = run.communicate(timeout=600)
         self.assertEqual(run.returncode, 0, output)
         jobs = (self.folder / "jobs").read_text().splitlines()
         self.assertEqual(len(jobs), 1)
@@ -128,7 +128,7 @@ class Distributed(unittest.TestCase):
         self.assertIn("names must differ", run.communicate()[0])
         (self.models / "other/box_01.off").unlink()
         run = self.start("--tool", "no_such_tool")
-        output, _ = run.communicate(timeout=100)
+        output, _ = run.communicate(timeout=600)
         self.assertEqual(run.returncode, 1)
         self.assertIn("no_such_tool", output)
         self.assertNotIn("Traceback", output)

@@ -41,7 +41,7 @@ END
 browse() {
   local page=$1
   shift
-  timeout 100 "$chromium" --headless --no-sandbox --no-first-run --disable-background-networking --disable-component-update \
+  timeout 300 "$chromium" --headless --no-sandbox --no-first-run --disable-background-networking --disable-component-update \
     --disable-sync --disable-quic --proxy-server=127.0.0.1:9 --use-gl=angle --use-angle=swiftshader --enable-unsafe-swiftshader \
     --user-data-dir="$work/profile" --window-size=1300,800 --virtual-time-budget=4000 "$@" "file://$work/$page.html" 2>"$work/log"
 }
