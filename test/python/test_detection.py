@@ -480,6 +480,21 @@ class Decisions(Detection):
         self.assertEqual(plane.kind, "symmetry")
         self.assertLess(plane.seen, 0.97)
 
+    def test_find_thin_shells_in_few_points(self):
+        """A chair, whose seat, legs and back are as thin as the points are apart: no volume of points."""
+        width = 0.12
+        parts = [((0, 0, 0), (1, 0.8, width)), ((0, -0.8, 1.4), (1, width, width))]
+        parts += [((x, y, -1), (width, width, 1)) for x in (-0.95, 0.95) for y in (-0.75, 0.75)]
+        parts += [((x, -0.8, 0.7), (width, width, 0.7)) for x in np.linspace(-0.9, 0.9, 5)]
+        area = lambda half: half[0] * half[1] + half[1] * half[2] + half[2] * half[0]
+        points = np.vstack([box(int(5000 * area(half)), seed=i, half=half).points + at for i, (at, half) in enumerate(parts)])
+        num_called = 0
+        for seed in range(8):
+            found = pcl_symmetry.planes(points[np.random.default_rng(seed).choice(len(points), 512, replace=False)])
+            self.assertEqual(across_x(found)[:1], found[:1], seed)
+            num_called += calls(found)
+        self.assertGreaterEqual(num_called, 6)
+
     def test_are_not_left_to_chance(self):
         for seed in range(40):
             random = np.random.default_rng(seed)

@@ -36,6 +36,20 @@ LocalGeometry withNormals(LocalGeometry geometry, const Points* given) {
   return geometry;
 }
 
+/// The dimension that points fill within their neighborhoods, by maximum likelihood (Levina and Bickel 2004): 1 of a
+/// wire, 2 of a surface, 3 of a volume.
+double localDimension(const Points& points, const FoundNeighbors& neighbors) {
+  const std::size_t size = neighbors.sq_reach.size(), count = neighbors.indices.size() / std::max<std::size_t>(1, size);
+  double sum = 0.0;
+  for (std::size_t i = 0; i < size; ++i)
+    for (std::size_t k = i * count + 1; k + 1 < (i + 1) * count; ++k) {
+      const auto a = static_cast<Eigen::Index>(i), b = static_cast<Eigen::Index>(neighbors.indices[k]);
+      const float sq_distance = (points.col(a) - points.col(b)).squaredNorm();
+      sum += std::log(neighbors.sq_reach[i] / std::max(sq_distance, 1e-12f));
+    }
+  return 2.0 * static_cast<double>(size) * (static_cast<double>(count) - 2.0) / std::max(sum, 1e-6);
+}
+
 }  // namespace
 
 NormalizedCloud::NormalizedCloud(const PointsRef& input, const GaussianEdt& edt_of_input,
@@ -65,9 +79,11 @@ NormalizedCloud::NormalizedCloud(const PointsRef& input, const GaussianEdt& edt_
       baseline(std::max(meanSupport(ownSupport(samples, num_threads)), 1e-3)),
       sigma(edt.sigma() / scale),
       final_sigma(std::min(sigma, std::max(1e-6, kRefinement.final_sigma_in_spacings * spacing))),
-      kind_(visibility                                 ? CloudKind::Scan
-            : roughness > kRefinement.volume_roughness ? CloudKind::Volume
-                                                       : CloudKind::Surface) {}
+      kind_(visibility ? CloudKind::Scan
+            : roughness > kRefinement.volume_roughness &&
+                    localDimension(points, neighbors) > kRefinement.volume_dimension
+                ? CloudKind::Volume
+                : CloudKind::Surface) {}
 
 ReflectionPlane NormalizedCloud::toInput(const ReflectionPlane& plane) const {
   return ReflectionPlane(plane.normal(), plane.offset() * scale + plane.normal().dot(center));

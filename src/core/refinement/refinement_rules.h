@@ -7,6 +7,7 @@ struct RefinementRules {
   // The normalized cloud
   double final_sigma_in_spacings = 3.0;  ///< narrowest weights; less leaves reflections between samples without any
   double volume_roughness = 0.36;        ///< spacings; points that fill a volume evenly have 0.42
+  double volume_dimension = 2.6;         ///< of a few hundred points in a thin shell at most
 
   // Iterative Symmetric Points
   double least_stiffness = 1e-3;  ///< share of the stiffest direction below which a direction is free
