@@ -22,13 +22,13 @@ double heightOf(const PointsRef& points, const Eigen::Vector4d& support) {
 }
 
 /// The order of answers: symmetries, then possible ones, both by falling confidence, then others by falling support.
+/// Equally confident ones stay in their order.
 bool isBetter(const SymmetryPlane& a, const SymmetryPlane& b) {
   const auto rank = [](const SymmetryPlane& plane) {
     return plane.kind == PlaneKind::Symmetry ? 0 : plane.kind == PlaneKind::Possible ? 1 : 2;
   };
   if (rank(a) != rank(b)) return rank(a) < rank(b);
-  if (isDecided(a) && a.confidence != b.confidence) return a.confidence > b.confidence;
-  return a.support > b.support;
+  return isDecided(a) ? a.confidence > b.confidence : a.support > b.support;
 }
 
 /// Among the planes that are as likely as the likeliest, D decides.
@@ -256,6 +256,9 @@ std::vector<SymmetryPlane> rankedPlanes(std::vector<SymmetryPlane> planes, const
                                         const NormalizedCloud& cloud, const PlaneFit& fit,
                                         const DetectionOptions& options) {
   planes = withoutPlanesOfParts(std::move(planes), cloud);
+  // Of equally confident planes, such as those of a polygon, the best supported comes first.
+  std::stable_sort(planes.begin(), planes.end(),
+                   [](const SymmetryPlane& a, const SymmetryPlane& b) { return a.support > b.support; });
   std::stable_sort(planes.begin(), planes.end(), isBetter);
   std::vector<SymmetryPlane> ranked;
   for (SymmetryPlane& plane : planes) {
