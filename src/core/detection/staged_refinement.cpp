@@ -12,9 +12,7 @@ namespace pcl_symmetry {
 std::vector<Candidate> gatherCandidates(const NormalizedCloud& cloud, const SymmetryMap& map,
                                         const DetectionOptions& options) {
   std::vector<Candidate> candidates;
-  LocalMaximaOptions maxima = options.expert.maxima;
-  maxima.num_threads = options.num_threads;
-  for (const LocalMaximum& maximum : findLocalMaxima(map, maxima)) {
+  for (const LocalMaximum& maximum : findLocalMaxima(map, options.expert.maxima, options.num_threads)) {
     if (static_cast<int>(candidates.size()) >= options.expert.max_candidates) break;
     const ReflectionPlane plane = cloud.toNormalized(maximum.plane);
     if (kSameMaximum.anySame(candidates, plane, &Candidate::plane)) continue;

@@ -44,12 +44,10 @@ bool isNew(const ReflectionPlane& plane, const std::vector<ReflectionPlane>& kno
 std::vector<ReflectionPlane> significantMaxima(const Points& samples, const GaussianEdt& edt, std::uint64_t seed,
                                                int num_threads) {
   const PlaneGrid grid(kSegmentation.map_size, edt.center(), edt.radius());
-  LocalMaximaOptions significant;
-  significant.num_threads = num_threads;
   SymmetryMap map = sampledTransform(edt, grid, {kSegmentation.num_map_samples, seed, num_threads});
   map.center_of_mass = centerOfMass(samples);
   std::vector<ReflectionPlane> maxima;
-  for (const LocalMaximum& maximum : findLocalMaxima(map, significant)) {
+  for (const LocalMaximum& maximum : findLocalMaxima(map, {}, num_threads)) {
     if (maxima.size() == kSegmentation.max_planes) break;
     if (isNew(maximum.plane, maxima, edt)) maxima.push_back(maximum.plane);
   }
