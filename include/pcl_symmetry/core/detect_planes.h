@@ -5,7 +5,6 @@
 #include "pcl_symmetry/core/closest_point_search.h"
 #include "pcl_symmetry/core/exports.h"
 #include "pcl_symmetry/core/gaussian_edt.h"
-#include "pcl_symmetry/core/iterative_symmetric_points.h"
 #include "pcl_symmetry/core/local_maxima.h"
 #include "pcl_symmetry/core/plane_types.h"
 #include "pcl_symmetry/core/symmetry_map.h"
@@ -70,9 +69,7 @@ struct DetectionOptions {
     int num_samples = 64;       ///< samples of the transform, >= 1: the error is 1 % of PRST, enough to find maxima
     LocalMaximaOptions maxima;  ///< of the maxima of the map that become candidates
     int max_candidates = 24;    ///< strongest maxima that are refined, >= 1
-    IspUpdate update = IspUpdate::PointToPlane;  ///< what a step of the refinement makes least
-    int num_refine_samples = 10'000;             ///< points reflected in late iterations (the paper's figure), >= 10
-    int max_iterations = 30;                     ///< of each stage, >= 1
+    int num_refine_samples = 10'000;  ///< points reflected in late iterations (the paper's figure), >= 10
   };
   Expert expert;  ///< see Expert
 

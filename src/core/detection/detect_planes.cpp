@@ -298,7 +298,6 @@ void DetectionOptions::validate() const {
   check(expert.num_samples >= 1, "num_samples", expert.num_samples, ">= 1");
   check(expert.max_candidates >= 1, "max_candidates", expert.max_candidates, ">= 1");
   check(expert.num_refine_samples >= 10, "num_refine_samples", expert.num_refine_samples, ">= 10");
-  check(expert.max_iterations >= 1, "max_iterations", expert.max_iterations, ">= 1");
 }
 
 Detection detectPlanes(const PlaneInput& input, const DetectionOptions& options) {

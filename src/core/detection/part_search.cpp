@@ -171,7 +171,7 @@ struct BallSearch {
   const IspSurface surface;
   IspOptions isp;
 
-  BallSearch(const NormalizedCloud& the_cloud, const PlaneFit& the_fit, IspUpdate update)
+  BallSearch(const NormalizedCloud& the_cloud, const PlaneFit& the_fit)
       : cloud(the_cloud),
         fit(the_fit),
         walk(cloud.flann && cloud.flann->lists() ? std::make_unique<NeighborWalk>(*cloud.flann->lists(), *cloud.search)
@@ -182,7 +182,6 @@ struct BallSearch {
                 cloud.surface.at_border,
                 walk ? nullptr : cloud.surface.far,
                 1} {
-    isp.update = update;
     isp.sigma = cloud.sigma;
     isp.final_sigma = cloud.final_sigma;
     isp.max_iterations = kDetection.parts.iterations;
@@ -330,7 +329,7 @@ std::vector<SymmetricPart> withoutFamilies(std::vector<SymmetricPart> parts) {
 
 std::vector<SymmetricPart> findSymmetricParts(const NormalizedCloud& cloud, const PlaneFit& fit,
                                               const DetectionOptions& options) {
-  const BallSearch search(cloud, fit, options.expert.update);
+  const BallSearch search(cloud, fit);
   const std::vector<Eigen::Vector3f> seeds = spreadSeeds(cloud.points);
   std::vector<std::vector<SymmetricPart>> of_balls(seeds.size() * kDetection.parts.radii.size());
   parallelBlocks(of_balls.size(), options.num_threads, [&](std::size_t i) {

@@ -6,6 +6,7 @@
 #include "core/base/parallel.h"
 #include "core/geometry/point_samples.h"
 #include "core/transform/edt_correlation.h"
+#include "pcl_symmetry/core/iterative_symmetric_points.h"
 
 namespace pcl_symmetry {
 

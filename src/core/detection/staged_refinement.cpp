@@ -92,13 +92,13 @@ RefinementStage StagedRefinement::stage(int num_samples, double sigma, double fi
   stage.undo_slides = kKindRules.slides[kind] && final_sigma == sigma;
   // On the way to narrow weights, point-to-plane steps would slide a scan along its flat pieces.
   const bool slides = kKindRules.slides[kind] && num_samples > kDetection.stages.first_samples && final_sigma < sigma;
-  stage.isp.update = slides ? IspUpdate::PointToPoint : options_.expert.update;
+  if (slides) stage.isp.update = IspUpdate::PointToPoint;
   stage.isp.sigma = sigma;
   stage.isp.final_sigma = final_sigma;
-  stage.isp.max_iterations = std::min(max_iterations, options_.expert.max_iterations);
+  stage.isp.max_iterations = max_iterations;
   stage.rough_isp = stage.isp;
   stage.rough_isp.max_iterations = std::min(stage.isp.max_iterations, kDetection.stages.rough_iterations);
-  if (options_.expert.update == IspUpdate::PointToPlane) stage.isp.error_share = kDetection.stages.settled_error_share;
+  stage.isp.error_share = kDetection.stages.settled_error_share;
   return stage;
 }
 

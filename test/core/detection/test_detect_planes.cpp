@@ -95,7 +95,6 @@ TEST(DetectionOptions, RefusesBadOnes) {
   refused([](auto& o) { o.expert.num_radius = 0; });
   refused([](auto& o) { o.expert.max_candidates = 0; });
   refused([](auto& o) { o.expert.num_refine_samples = 9; });
-  refused([](auto& o) { o.expert.max_iterations = 0; });
   refused([](auto& o) { o.min_confidence = 1.5; });
   refused([](auto& o) { o.min_confidence = -0.1; });
   refused([](auto& o) { o.min_possible = -0.1; });
