@@ -149,7 +149,7 @@ Detection refineAndDecide(const NormalizedCloud& cloud, const Points& all, const
   GroupClosure closure(cloud);
   while (!(candidates = refinement.closeSymmetries(closure.next(planes))).empty())
     append(planes, final_refinement.decide(std::move(candidates)));
-  decision.adjustConfidences(planes, Found::Planes);
+  decision.doubtMissingPieces(planes);
   PlanesAndPolygon completed = withPolygon(std::move(planes), cloud, all, decision, options);
   planes = std::move(completed.planes);
   timed("closure");
@@ -165,7 +165,7 @@ Detection refineAndDecide(const NormalizedCloud& cloud, const Points& all, const
   if (!decision.isCutAllAround())
     planes = withScanAxes(std::move(planes), cloud, measure.tolerance(), options, detection);
   const bool has_family = !detection.axes.empty() || !detection.centers.empty();
-  decision.adjustConfidences(planes, Found::Families, has_family);
+  decision.doubtFurtherPlanes(planes, has_family);
   timed("turns");
 
   if (options.approximate) append(planes, localPlanes(planes, cloud, *fit, decision, options));
@@ -180,7 +180,7 @@ Detection refineAndDecide(const NormalizedCloud& cloud, const Points& all, const
   detection.resolution = std::max(measure.resolution(), is_raised ? measure.tolerance() : 0.0) * cloud.scale;
   detection.diameter = cloud.extent * cloud.scale;
   detection.planes = rankedPlanes(std::move(planes), completed.polygon, cloud, *fit, options);
-  decision.adjustConfidences(detection.planes, Found::Answer);
+  decision.doubtSlantedPlanes(detection.planes);
   detection.planes = reordered(std::move(detection.planes), options);
   timed("report");
   return detection;

@@ -144,28 +144,26 @@ bool PlaneDecision::isHopeless(const Candidate& candidate) const {
   return quick.share + kDetection.decide.look_errors * quick.error < kDetection.decide.hopeful_share;
 }
 
-void PlaneDecision::adjustConfidences(std::vector<SymmetryPlane>& planes, Found found, bool has_family) const {
-  const bool is_explained =
-      found == Found::Planes &&
-      std::any_of(planes.begin(), planes.end(), [&](const SymmetryPlane& plane) { return explainsAll(plane); });
-  const SymmetryPlane* const best = found == Found::Families ? bestOf(planes) : nullptr;
-  std::vector<Eigen::Vector3d> carrying_normals;
-  if (found == Found::Answer && cloud_.seen()) carrying_normals = carryingNormals(cloud_.points, *cloud_.seen());
-  for (SymmetryPlane& plane : planes) {
-    const double missing = 1.0 - plane.seen;
-    // Where a plane explains all of a cloud, nothing of it is missing: those that need a missing piece are doubted, as
-    // the plane across an open cup, which needs a lid.
-    if (is_explained && missing > kDetection.decide.piece_missing)
+void PlaneDecision::doubtMissingPieces(std::vector<SymmetryPlane>& planes) const {
+  if (std::none_of(planes.begin(), planes.end(), [&](const SymmetryPlane& plane) { return explainsAll(plane); }))
+    return;
+  for (SymmetryPlane& plane : planes)
+    if (1.0 - plane.seen > kDetection.decide.piece_missing)
       decideBy(withOdds(plane.confidence, kDetection.decide.odds_of_a_piece), plane);
-    // A scan or a cut hides a part of an object, and many planes are tried: those beside the best one, or beside a
-    // family, are symmetries less often.
-    if (found == Found::Families && (&plane != best || has_family))
-      decideBy(furtherConfidence(plane.confidence, cloud_.kind(), missing), plane);
-    // What stands on a table was made to stand there, or lies on one of its sides, and then its planes are upright or
-    // level, but for few. Where nothing is known of a support, no plane slants.
+}
+
+void PlaneDecision::doubtFurtherPlanes(std::vector<SymmetryPlane>& planes, bool has_family) const {
+  const SymmetryPlane* const best = has_family ? nullptr : bestOf(planes);
+  for (SymmetryPlane& plane : planes)
+    if (&plane != best) decideBy(furtherConfidence(plane.confidence, cloud_.kind(), 1.0 - plane.seen), plane);
+}
+
+void PlaneDecision::doubtSlantedPlanes(std::vector<SymmetryPlane>& planes) const {
+  if (!cloud_.seen()) return;
+  const std::vector<Eigen::Vector3d> carrying_normals = carryingNormals(cloud_.points, *cloud_.seen());
+  for (SymmetryPlane& plane : planes)
     if (isDecided(plane) && slants(plane, carrying_normals))
       decideBy(withOdds(plane.confidence, kDetection.decide.slanted_odds), plane);
-  }
 }
 
 std::vector<MeasuredPlane> PlaneDecision::judge(const std::vector<Candidate>& candidates) const {

@@ -44,13 +44,6 @@ struct JudgedFamily {
   double score = 0.0, support = 0.0;
 };
 
-/// What has been found when confidences are corrected.
-enum class Found {
-  Planes,    ///< all planes of the whole, also those that follow from others
-  Families,  ///< axes and centers, too
-  Answer     ///< what is reported, in its order
-};
-
 /// From measured planes to answers: decides what is a symmetry, what is possible, and what comes first
 /// (core/evidence/README.md). All planes get confidence and kind by decideBy(), also those of polygons, upright boxes,
 /// meshes and volumes, which bring evidence of their own.
@@ -77,10 +70,22 @@ public:
   /// \param plane input frame.
   void decideBy(double confidence, SymmetryPlane& plane) const;
 
-  /// Corrects the confidences of planes, which were judged one by one, by what was found beside them.
-  /// \param planes input frame.
+  // Planes are judged one by one; these lower their confidences by what was found beside them. Planes are in the input
+  // frame.
+
+  /// Where a plane explains all of a cloud, nothing of it is missing: those that need a missing piece are doubted, such
+  /// as the plane across an open cup, which needs a lid.
+  /// \param planes of the whole, also those that follow from others.
+  void doubtMissingPieces(std::vector<SymmetryPlane>& planes) const;
+
+  /// A scan or a cut hides a part of an object, and many planes are tried: those beside the best one, or beside a
+  /// family, are symmetries less often.
   /// \param has_family an axis or a center was found, which is better than all planes.
-  void adjustConfidences(std::vector<SymmetryPlane>& planes, Found found, bool has_family = false) const;
+  void doubtFurtherPlanes(std::vector<SymmetryPlane>& planes, bool has_family) const;
+
+  /// An object on a table was made to stand there, or lies on one of its sides: nearly all of its planes are upright or
+  /// level. Without a known support, no plane is slanted.
+  void doubtSlantedPlanes(std::vector<SymmetryPlane>& planes) const;
 
   /// Whether the picture cuts the cloud off all around: a place, such as a table, and no object.
   bool isCutAllAround() const { return measure_.cutShare() > kDetection.decide.most_cut; }
