@@ -18,12 +18,12 @@ namespace pcl_symmetry {
 namespace {
 
 /// Plane \p k of a sequence of planes through a line whose angles no regular polygon has.
-ReflectionPlane planeThrough(const Line3d& line, int k) {
-  return pcl_symmetry::planeThrough(line, kPi * goldenFraction(k + 1));
+ReflectionPlane planeOfFamily(const Line3d& line, int k) {
+  return planeThrough(line, kPi * goldenFraction(k + 1));
 }
 
 /// Plane \p k of \p count planes through a point, their normals spread over the half sphere.
-ReflectionPlane planeThrough(const Eigen::Vector3d& point, int k, int count) {
+ReflectionPlane planeOfFamily(const Eigen::Vector3d& point, int k, int count) {
   const Eigen::Vector3d n = spiralDirection(k, count, 2.0 * kPi * goldenFraction(k + 1));
   return ReflectionPlane(n, n.dot(point));
 }
@@ -64,13 +64,13 @@ std::vector<ReflectionPlane> planesAt(const PlaneAt& plane_at) {
 
 /// The family of all planes through a point, or through one nearby.
 std::optional<CenterFamily> centerAt(Eigen::Vector3d point, double least, const FamilyTest& test) {
-  const auto at = [&](int k) { return planeThrough(point, k, kDetection.families.tested_planes); };
+  const auto at = [&](int k) { return planeOfFamily(point, k, kDetection.families.tested_planes); };
   if (meanShare(at, kDetection.families.screening_planes, least - kDetection.families.rough_factor * test.allowance,
                 test.rough_share) == 0.0)
     return std::nullopt;
   std::vector<ReflectionPlane> refined;
   for (int k = 0; k < kDetection.families.fitted_planes; ++k)
-    refined.push_back(test.refine(planeThrough(point, k, kDetection.families.fitted_planes)));
+    refined.push_back(test.refine(planeOfFamily(point, k, kDetection.families.fitted_planes)));
   point = commonPoint(refined, point);
   const double share = meanShare(at, kDetection.families.tested_planes, least, test.share);
   if (share < least) return std::nullopt;
@@ -80,13 +80,13 @@ std::optional<CenterFamily> centerAt(Eigen::Vector3d point, double least, const 
 /// The family of all planes through a line, or through one nearby.
 std::optional<AxisFamily> axisAt(const Line3d& start, double least, const FamilyTest& test) {
   Line3d line = start;
-  const auto at = [&](int k) { return planeThrough(line, k); };
+  const auto at = [&](int k) { return planeOfFamily(line, k); };
   // The line through two rough planes may be off by a little: the refined line has to pass the full test.
   if (meanShare(at, kDetection.families.screening_planes, least - kDetection.families.rough_factor * test.allowance,
                 test.rough_share) == 0.0)
     return std::nullopt;
   std::vector<ReflectionPlane> refined;
-  for (int k = 0; k < kDetection.families.fitted_planes; ++k) refined.push_back(test.refine(planeThrough(line, k)));
+  for (int k = 0; k < kDetection.families.fitted_planes; ++k) refined.push_back(test.refine(planeOfFamily(line, k)));
   line = commonLine(refined);
   double share = meanShare(at, kDetection.families.tested_planes, least, test.share);
   // Planes that map a scan to what was not seen drift when they are refined.
@@ -222,7 +222,7 @@ PlanesAndFamilies collectFamilies(std::vector<SymmetryPlane> planes, const Norma
   if (decision.isLine()) {
     const Line3d line = longestAxis(cloud.principal_axes);
     std::vector<ReflectionPlane> through;
-    for (int k = 0; k < kDetection.families.tested_planes; ++k) through.push_back(planeThrough(line, k));
+    for (int k = 0; k < kDetection.families.tested_planes; ++k) through.push_back(planeOfFamily(line, k));
     const JudgedFamily judged = decision.judgeFamily(through, samples);
     if (judged.confidence >= options.min_confidence)
       found.axes.push_back(

@@ -51,8 +51,7 @@ std::vector<Oriented> orientedAt(const Points& points, const Points& normals, co
 
 }  // namespace
 
-Eigen::ParametrizedLine<double, 3> axisOfNormals(const Points& points, const Points& normals,
-                                                 const std::vector<int>& samples) {
+Line3d axisOfNormals(const Points& points, const Points& normals, const std::vector<int>& samples) {
   const std::vector<Oriented> oriented = orientedAt(points, normals, samples);
   std::vector<double> weights(oriented.size(), 1.0);
   Motion motion{Eigen::Vector3d::UnitZ(), Eigen::Vector3d::Zero()};
