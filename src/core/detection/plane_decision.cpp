@@ -227,7 +227,7 @@ bool isOnSlopeOf(const SymmetryPlane& better, const SymmetryPlane& plane, const 
 
 /// Whether a plane is of a polygon, between whose planes noise may leave no dip.
 bool isOf(const std::optional<PlaneLattice>& polygon, const SymmetryPlane& plane, const NormalizedCloud& cloud) {
-  return polygon && contains(cloud.toNormalized(plane), polygon->line, kDetection.families.contained_offset);
+  return polygon && contains(cloud.toNormalized(plane), polygon->line);
 }
 
 /// Judges every point, where the plane was judged by some of them.

@@ -134,7 +134,7 @@ std::vector<AxisFamily> findAxes(const std::vector<ReflectionPlane>& planes, con
   const auto attempt = [&](const Line3d& line, double best_share) {
     const bool known = std::any_of(tried.begin(), tried.end(), [&](const Line3d& other) {
       return std::abs(other.direction().dot(line.direction())) > std::cos(kDetection.families.contained_angle) &&
-             other.distance(line.origin()) < test.tolerance;
+             other.distance(line.origin()) < kDetection.families.contained_offset;
     });
     if (known) return;
     tried.push_back(line);
@@ -184,7 +184,6 @@ FamilyTest familyTest(const NormalizedCloud& cloud, const PlaneFit& fit, const s
   const double few_points = kKindRules.points_of_allowance[kind] / static_cast<double>(cloud.points.cols());
   test.min_share = kKindRules.family_share[kind];
   test.allowance = kKindRules.family_allowance[kind] * std::sqrt(std::max(1.0, few_points));
-  test.tolerance = kDetection.families.contained_offset;
   return test;
 }
 
@@ -253,7 +252,7 @@ PlanesAndFamilies collectFamilies(std::vector<SymmetryPlane> planes, const Norma
     if (isFamily(judged)) {
       found.centers.push_back({cloud.toInput(center->point), judged.confidence, judged.score, judged.support});
       drop([&](const ReflectionPlane& plane) {
-        return std::abs(plane.signedDistance(center->point)) <= test.tolerance;
+        return std::abs(plane.signedDistance(center->point)) <= kDetection.families.contained_offset;
       });
       return found;
     }
@@ -272,7 +271,7 @@ PlanesAndFamilies collectFamilies(std::vector<SymmetryPlane> planes, const Norma
     if (!is_known)
       found.axes.push_back({cloud.toInput(family.line.origin()), family.line.direction(), judged.confidence,
                             judged.score, judged.support});
-    drop([&](const ReflectionPlane& plane) { return contains(plane, family.line, test.tolerance); });
+    drop([&](const ReflectionPlane& plane) { return contains(plane, family.line); });
   }
   return found;
 }
@@ -281,7 +280,7 @@ std::vector<SymmetryPlane> withoutPlanesThrough(std::vector<SymmetryPlane> plane
                                                 const std::vector<SymmetryAxis>& axes, const NormalizedCloud& cloud) {
   const auto belongs = [&](const SymmetryPlane& plane) {
     return std::any_of(axes.begin(), axes.end(), [&](const SymmetryAxis& axis) {
-      return contains(cloud.toNormalized(plane), cloud.lineOf(axis), kDetection.families.contained_offset);
+      return contains(cloud.toNormalized(plane), cloud.lineOf(axis));
     });
   };
   planes.erase(std::remove_if(planes.begin(), planes.end(), belongs), planes.end());

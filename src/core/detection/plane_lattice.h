@@ -10,7 +10,8 @@ namespace pcl_symmetry {
 class PlaneDecision;
 
 /// Whether a plane contains a line, within 3 degrees and \p tolerance.
-bool contains(const ReflectionPlane& plane, const Line3d& line, double tolerance);
+bool contains(const ReflectionPlane& plane, const Line3d& line,
+              double tolerance = kDetection.families.contained_offset);
 
 /// The planes of a regular polygon: \p fold planes through a line, at equal angles.
 struct PlaneLattice {
