@@ -116,6 +116,16 @@ double MatchedRegions::edgeOf(const std::vector<char>& inside, double count) con
 
 namespace {
 
+/// A part of a surface, and a plane of symmetry of that part.
+struct SymmetricPart {
+  ReflectionPlane plane;     ///< normalized frame
+  std::vector<int> points;   ///< some points of the part, spread over it, as ascending indices
+  double share = 0.0;        ///< of the cloud, in [0, 1]
+  double support = 0.0;      ///< mean support of these points, in [0, 1]
+  int iterations = 0;        ///< of Iterative Symmetric Points
+  double longer_edge = 0.0;  ///< of its region than a part of its size has, edges of a disc
+};
+
 // Planes that are one: radians, and radii of the points. Half of what is between the planes of a prism of 24 sides.
 constexpr PlaneTolerance kSamePlaneOfPart{kDetection.parts.same_part_angle, kDetection.parts.same_part_offset};
 
@@ -325,8 +335,7 @@ std::vector<SymmetricPart> withoutFamilies(std::vector<SymmetricPart> parts) {
   return kept;
 }
 
-}  // namespace
-
+/// \return large and well supported parts first; no two with the same plane.
 std::vector<SymmetricPart> findSymmetricParts(const NormalizedCloud& cloud, const PlaneFit& fit,
                                               const DetectionOptions& options) {
   const BallSearch search(cloud, fit);
@@ -349,6 +358,8 @@ std::vector<SymmetricPart> findSymmetricParts(const NormalizedCloud& cloud, cons
     if (part) parts.push_back(std::move(*part));
   return withoutFamilies(distinct(withoutRemains(std::move(parts), cloud.points.cols())));
 }
+
+}  // namespace
 
 std::vector<SymmetryPlane> localPlanes(const std::vector<SymmetryPlane>& known, const NormalizedCloud& cloud,
                                        const PlaneFit& fit, const PlaneDecision& decision,

@@ -10,7 +10,6 @@
 #include "core/detection/part_search.h"
 #include "pcl_symmetry/core/detect_planes.h"
 #include "shapes/shapes.h"
-#include "shapes/threads.h"
 
 namespace {
 
@@ -77,18 +76,6 @@ struct TwoBoxes {
     }
   }
 };
-
-TEST(SymmetricParts, AreTheSameForAnyNumberOfThreads) {
-  const TwoBoxes boxes;
-  const SearchedCloud searched(boxes.points);
-  compareThreads([&](int num_threads) {
-    DetectionOptions options;
-    options.num_threads = num_threads;
-    const auto parts = findSymmetricParts(searched.cloud, *searched.fit, options);
-    return valuesOf(
-        parts, [](const SymmetricPart& part) { return part.plane.normal(); }, &SymmetricPart::points);
-  });
-}
 
 TEST(MatchedRegion, OfASymmetryIsAllOfTheSurfaceAndHasNoEdge) {
   const SearchedCloud searched(box({1.0, 0.7, 0.4}, 8000, Sampling::Random, 3).cloud());
