@@ -30,14 +30,14 @@ inline bool isDecided(const SymmetryPlane& plane) {
   return plane.kind == PlaneKind::Symmetry || plane.kind == PlaneKind::Possible;
 }
 
-/// What the decisions of one detection were taken from: what fits are made to.
+/// The evidence behind the decisions of one detection, to which confidences are fitted.
 struct DetectionEvidence {
   /// Candidates after all stages of refinement, each plane once, best merit first. No fitted number has a part in them.
   std::vector<MeasuredPlane> planes;
   std::vector<JudgedRotation> rotations;  ///< of scans
 };
 
-/// What the planes of a family tell together.
+/// Combined evidence of the planes of a family.
 struct JudgedFamily {
   double confidence = 0.0;        ///< of the mean evidence
   double least_confidence = 1.0;  ///< of a single plane
@@ -87,7 +87,8 @@ public:
   /// level. Without a known support, no plane is slanted.
   void doubtSlantedPlanes(std::vector<SymmetryPlane>& planes) const;
 
-  /// Whether the picture cuts the cloud off all around: a place, such as a table, and no object.
+  /// Whether the border of the picture cuts the cloud off all around: a piece of the surroundings, such as a table top,
+  /// not an object.
   bool isCutAllAround() const { return measure_.cutShare() > kDetection.decide.most_cut; }
 
   /// Whether a plane explains all of a whole cloud, so that nothing of it is missing.
@@ -96,7 +97,7 @@ public:
   /// Whether too many points are off for a possible symmetry where nothing is missing.
   bool isHopeless(const Candidate& candidate) const;
 
-  /// Whether nothing but a line is left of the cloud at the tolerance.
+  /// Whether all points lie within the tolerance of one line.
   bool isLine() const { return measure_.thinness() == Thinness::Line; }
 
 private:
@@ -113,18 +114,19 @@ private:
   const DetectionOptions& options_;
 };
 
-/// The planes that are reported: best first, each maximum once, as many as the options ask for.
+/// The planes that are reported: best first, each maximum once, at most DetectionOptions::max_planes.
 ///
 /// Order: symmetries, then possible ones, both by falling confidence, then approximate and local ones by falling
 /// support.
 /// \param planes input frame.
-/// \param polygon whose planes are all of them maxima, normalized frame.
+/// \param polygon normalized frame; each of its planes is a maximum.
 /// \return with the support of every point.
 std::vector<SymmetryPlane> rankedPlanes(std::vector<SymmetryPlane> planes, const std::optional<PlaneLattice>& polygon,
                                         const NormalizedCloud& cloud, const PlaneFit& fit,
                                         const DetectionOptions& options);
 
-/// The planes of an answer without those that the last corrections left no possible ones, in their order.
+/// The planes in their final order; without `approximate`, those that the last corrections left below `min_possible`
+/// are removed.
 std::vector<SymmetryPlane> reordered(std::vector<SymmetryPlane> planes, const DetectionOptions& options);
 
 /// \return the plane of a cloud of which nothing but a sheet is left at the tolerance, input frame; else empty.

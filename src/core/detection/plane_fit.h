@@ -10,7 +10,7 @@
 
 namespace pcl_symmetry {
 
-/// What a set of samples says about one plane.
+/// How samples support one plane.
 struct PlaneShares {
   double support;                    ///< mean over the samples: the reflection lies on the surface
   double conflict;                   ///< mean over the samples: the reflection lies where there is nothing
@@ -49,7 +49,7 @@ public:
   /// Moves each candidate to the best plane nearby, and updates its merit.
   virtual void refine(std::vector<Candidate>& candidates, const RefinementStage& stage) const = 0;
 
-  /// Moves each candidate that has settled beside its place there, and updates its merit; takes as long as all stages.
+  /// Moves each candidate that stopped near its optimum there, and updates its merit; takes as long as all stages.
   /// \param stage the last one.
   virtual void climb(std::vector<Candidate>& candidates, const RefinementStage& stage) const = 0;
 

@@ -40,7 +40,7 @@ std::optional<PlaneLattice> latticeBySpectrum(const NormalizedCloud& cloud, cons
 
 struct PlanesAndPolygon {
   std::vector<SymmetryPlane> planes;    ///< input frame
-  std::optional<PlaneLattice> polygon;  ///< normalized frame; whose planes are among them as they are symmetries
+  std::optional<PlaneLattice> polygon;  ///< normalized frame; its planes are in `planes`, since they are symmetries
 };
 
 /// Judges the planes of a polygon together, as they are symmetries together or not at all. Only of noisy clouds: where

@@ -44,7 +44,7 @@ std::vector<Candidate> StagedRefinement::close(std::vector<Candidate> candidates
               return candidate.merit >= kDetection.stages.symmetric_merit - kDetection.stages.coarse_slack;
             });
   std::vector<Candidate> found = refined({candidates.begin(), likely}, closeStage());
-  // Beside a symmetry of a whole cloud, the others are of no use.
+  // Once a whole cloud has a symmetry, candidates far below it are dropped.
   if (!all && std::any_of(found.begin(), found.end(), isSymmetry)) return distinct(std::move(found), -1.0, 0);
   for (Candidate& other : refined({likely, candidates.end()}, closeStage())) found.push_back(std::move(other));
   const bool is_whole = std::any_of(found.begin(), found.end(), isSymmetry);
