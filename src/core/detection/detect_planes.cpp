@@ -14,6 +14,7 @@
 #include "core/detection/plane_families.h"
 #include "core/detection/plane_lattice.h"
 #include "core/detection/staged_refinement.h"
+#include "core/detection/standing_object.h"
 #include "core/geometry/answerable_points.h"
 #include "core/geometry/distinct_points.h"
 #include "core/geometry/point_samples.h"

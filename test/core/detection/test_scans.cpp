@@ -10,6 +10,7 @@
 #include "core/base/constants.h"
 #include "core/base/random.h"
 #include "core/detection/plane_decision.h"
+#include "core/detection/standing_object.h"
 #include "pcl_symmetry/core/detect_planes.h"
 #include "pcl_symmetry/core/visibility.h"
 #include "shapes/found_planes.h"
