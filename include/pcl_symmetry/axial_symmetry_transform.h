@@ -9,8 +9,8 @@
 
 namespace PCL_SYMMETRY_EXPORTS pcl_symmetry {
 
-/// The axial symmetry transform of a point cloud: a measure of its symmetry with respect to turns about every axis, and
-/// with respect to every point. It carries PlanarSymmetryTransform over from reflections to rotations, which the paper
+/// The axial symmetry transform of a point cloud: a measure of its symmetry under rotations about every axis, and under
+/// reflection in every point. It carries PlanarSymmetryTransform over from reflections to rotations, which the paper
 /// leaves to future work (Section 6).
 ///
 /// The defaults depend neither on units nor on tuning. A map has 16 x 64 directions and 32 x 32 offsets for each; it
@@ -51,7 +51,7 @@ public:
   void setSigma(double sigma) {
     detail::changeOptions(edt_options_, [&](GaussianEdtOptions& changed) { changed.sigma = sigma; });
   }
-  /// \param folds orders of the turns, each 0 (any angle) or in [2, 60]; default 0 and 2 to 8.
+  /// \param folds orders of the rotations, each 0 (any angle) or in [2, 60]; default 0 and 2 to 8.
   void setFolds(const std::vector<int>& folds) {
     detail::changeOptions(transform_, [&](AxialTransformOptions& changed) { changed.folds = folds; });
   }

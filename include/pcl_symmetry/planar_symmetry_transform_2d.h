@@ -44,7 +44,8 @@ public:
   }
   /// \param num_threads >= 0; 0 = one per core (default). The result does not depend on it.
   void setNumberOfThreads(int num_threads) {
-    detail::changeOptions(maxima_, [&](LocalMaximaOptions& changed) { changed.num_threads = num_threads; });
+    detail::checkAtLeast("num_threads", num_threads, 0);
+    num_threads_ = num_threads;
   }
 
   /// \return the map, in the coordinates of the sheet; empty where the input holds no answer, see getReason().
@@ -75,7 +76,7 @@ protected:
 
 private:
   GaussianEdt2DOptions edt_options_;
-  LocalMaximaOptions maxima_;
+  int num_threads_ = 0;
   Sheet sheet_;
   std::shared_ptr<const GaussianEdt2D> edt_;
   std::vector<LineMaximum> lines_;
@@ -91,8 +92,8 @@ LineMap PlanarSymmetryTransform2D<PointT>::compute() {
     edt_ = std::make_shared<const GaussianEdt2D>(sheet_.points, edt_options_);
     const LineGrid grid(edt_options_.num_cells, edt_options_.num_cells, edt_->center(), edt_->radius());
     const Eigen::Vector2d center_of_mass = sheet_.points.template cast<double>().rowwise().mean();
-    LineMap map = lineTransform(*edt_, grid, center_of_mass, maxima_.num_threads);
-    lines_ = findLineMaxima(*edt_, map, maxima_);
+    LineMap map = lineTransform(*edt_, grid, center_of_mass, num_threads_);
+    lines_ = findLineMaxima(*edt_, map, {}, num_threads_);
     return map;
   });
 }

@@ -1,7 +1,6 @@
 /// Models in a file, found by shape or recognized in a scan (Section 5.2).
 #pragma once
 
-#include <pcl/common/io.h>
 #include <pcl/point_cloud.h>
 #include <pcl/point_types.h>
 
@@ -234,29 +233,22 @@ public:
   /// The same for clouds of other point types; colors and other fields are not used.
   template <typename PointT>
   void add(const std::string& name, const pcl::PointCloud<PointT>& cloud, const ModelSource& source = {}) {
-    add(name, positionsOf(cloud), source);
+    add(name, *detail::positionsOf(cloud), source);
   }
   /// As match() of a Cloud.
   template <typename PointT>
   std::vector<ModelMatch> match(const pcl::PointCloud<PointT>& cloud, int num_nearest = 10,
                                 const Viewpoint& viewpoint = {}) const {
-    return match(positionsOf(cloud), num_nearest, viewpoint);
+    return match(*detail::positionsOf(cloud), num_nearest, viewpoint);
   }
   /// As recognize() of a Cloud.
   template <typename PointT>
   Recognition recognize(const pcl::PointCloud<PointT>& scan, const RecognitionOptions& options = {},
                         const Viewpoint& viewpoint = {}) const {
-    return recognize(positionsOf(scan), options, viewpoint);
+    return recognize(*detail::positionsOf(scan), options, viewpoint);
   }
 
 private:
-  template <typename PointT>
-  static Cloud positionsOf(const pcl::PointCloud<PointT>& cloud) {
-    Cloud positions;
-    pcl::copyPointCloud(cloud, positions);
-    return positions;
-  }
-
   std::unique_ptr<detail::DatabaseParts> parts_;
 };
 

@@ -17,7 +17,7 @@ namespace {
 
 using NormalCloud = pcl::PointCloud<pcl::PointNormal>;
 
-struct RefinementRules {
+struct PoseRefinementRules {
   int refined_points = 1000;   ///< of the scan, that ICP uses
   int judged_points = 3000;    ///< of each cloud in the last comparison
   double reach = 4.0;          ///< accuracies, in which ICP looks for its first pairs
@@ -30,7 +30,7 @@ struct RefinementRules {
   /// most. On whole objects of PSB, a right pose has 0.41 of its points there with 400 points, a wrong one 0.29.
   double contact = 0.02, most_contact = 0.03;
 };
-constexpr RefinementRules kRefinement;
+constexpr PoseRefinementRules kPoseRefinement;
 
 /// \param points indices of those that are taken.
 NormalCloud::Ptr cloudOf(const PosedSurface& surface, const std::vector<int>& points) {
@@ -45,7 +45,7 @@ NormalCloud::Ptr cloudOf(const PosedSurface& surface, const std::vector<int>& po
 
 /// Points that are spread over the scan.
 NormalCloud::Ptr fewPoints(const PosedSurface& scan) {
-  const auto size = std::min<std::size_t>(scan.order.size(), kRefinement.refined_points);
+  const auto size = std::min<std::size_t>(scan.order.size(), kPoseRefinement.refined_points);
   return cloudOf(scan, {scan.order.begin(), scan.order.begin() + static_cast<std::ptrdiff_t>(size)});
 }
 
@@ -67,7 +67,7 @@ public:
       model_->searchWithin(positions, static_cast<float>(max_distance * max_distance), closest_, sq_distances);
     for (std::size_t i = 0; i < sq_distances.size(); ++i)
       if (closest_[i] >= 0) pairs.emplace_back(static_cast<int>(i), closest_[i], sq_distances[i]);
-    for (std::size_t i = 0; pairs.size() < std::min(kRefinement.least_pairs, scan.size()); ++i)
+    for (std::size_t i = 0; pairs.size() < std::min(kPoseRefinement.least_pairs, scan.size()); ++i)
       pairs.emplace_back(static_cast<int>(i), std::max(0, closest_[i]), 0.0f);
   }
 
@@ -109,7 +109,7 @@ private:
 
 double refinementReach(const PosedSurface& scan, const PosedSurface& model, std::optional<double> max_correspondence) {
   return max_correspondence.value_or(
-      std::max(kRefinement.least_reach, kRefinement.reach * std::max(scan.accuracy, model.accuracy)));
+      std::max(kPoseRefinement.least_reach, kPoseRefinement.reach * std::max(scan.accuracy, model.accuracy)));
 }
 
 Eigen::Isometry3d SearchFrames::toSearch(const Eigen::Isometry3d& T_target_source) const {
@@ -126,11 +126,11 @@ Eigen::Isometry3d SearchFrames::toInput(const Eigen::Isometry3d& T_target_source
 
 double shareOnSurface(const PosedSurface& scan, const PosedSurface& model, const Eigen::Isometry3d& T_model_scan) {
   const double width =
-      std::max(kRefinement.contact, std::min(kRefinement.most_contact, std::max(scan.noise, model.noise)));
+      std::max(kPoseRefinement.contact, std::min(kPoseRefinement.most_contact, std::max(scan.noise, model.noise)));
   const double share =
-      PoseScorer(scan, model).score(T_model_scan, {kRefinement.judged_points, width, true, true}).support;
+      PoseScorer(scan, model).score(T_model_scan, {kPoseRefinement.judged_points, width, true, true}).support;
   // Three standard errors of a share, at most half over the root of the number of points.
-  const auto size = std::min<double>(kRefinement.judged_points, static_cast<double>(scan.points.cols()));
+  const auto size = std::min<double>(kPoseRefinement.judged_points, static_cast<double>(scan.points.cols()));
   return std::max(0.0, share - 1.5 / std::sqrt(size));
 }
 
@@ -139,15 +139,15 @@ std::vector<RankedPose> refinePoses(const PosedSurface& scan, const PosedSurface
   const double accuracy = std::max(scan.accuracy, model.accuracy);
   PoseRefinement icp(scan, model, refinementReach(scan, model, options.max_correspondence), options);
   const PoseScorer scorer(scan, model);
-  const PoseScorer::Detail detail{kRefinement.judged_points, std::max(kRefinement.least_width, accuracy), true};
+  const PoseScorer::Detail detail{kPoseRefinement.judged_points, std::max(kPoseRefinement.least_width, accuracy), true};
   const auto judged = [&](const Eigen::Isometry3d& pose, int num_points) {
     return RankedPose{pose, scorer.score(pose, detail), num_points};
   };
   std::vector<RankedPose> refined;
   for (const RankedPose& pose : poses) {
-    if (pose.score.merit() < poses.front().score.merit() - kRefinement.hopeless) break;
+    if (pose.score.merit() < poses.front().score.merit() - kPoseRefinement.hopeless) break;
     const RankedPose before = judged(pose.T_model_scan, pose.num_points);
-    const RankedPose after = judged(icp.refined(pose.T_model_scan), kRefinement.refined_points);
+    const RankedPose after = judged(icp.refined(pose.T_model_scan), kPoseRefinement.refined_points);
     refined.push_back(after.score.merit() > before.score.merit() ? after : before);
   }
   const std::size_t size = refined.size();

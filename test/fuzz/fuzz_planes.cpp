@@ -19,7 +19,6 @@ DetectionOptions quickOptions(fuzz::ByteSource& source) {
   options.expert.num_samples = 1 + source.below(16);
   options.expert.max_candidates = 1 + source.below(4);
   options.expert.num_refine_samples = 10 + source.below(90);
-  options.expert.max_iterations = 1 + source.below(4);
   options.approximate = source.flag();
   options.turns = source.flag();
   options.num_threads = 1;

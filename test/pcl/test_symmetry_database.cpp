@@ -1,6 +1,7 @@
 #include "pcl_symmetry/symmetry_database.h"
 
 #include <gtest/gtest.h>
+#include <pcl/common/io.h>
 
 #include <Eigen/Geometry>
 #include <algorithm>

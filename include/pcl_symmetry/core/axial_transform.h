@@ -65,7 +65,7 @@ private:
 
 /// Options of axialTransform().
 struct AxialTransformOptions {
-  /// Orders of the turns, each 0 or in [2, 60], without repetition; 0 = turns by any angle.
+  /// Orders of the rotations, each 0 or in [2, 60], without repetition; 0 = rotations by any angle.
   std::vector<int> folds{0, 2, 3, 4, 5, 6, 7, 8};
   int num_samples = 192;   ///< points drawn for the whole map, in [1, 10^6]; the error falls about as num_samples^-0.7
   std::uint64_t seed = 1;  ///< of the points drawn
@@ -75,13 +75,13 @@ struct AxialTransformOptions {
   void validate() const;
 };
 
-/// The axial symmetry transform of a shape. For turns of order n about an axis
+/// The axial symmetry transform of a shape. For rotations of order n about an axis
 ///
-///   D_n(f, axis) = mean over k = 1 ... n - 1 of f . R_k(f) / |f|^2,   R_k: the turn by 2 pi k / n,
+///   D_n(f, axis) = mean over k = 1 ... n - 1 of f . R_k(f) / |f|^2,   R_k: the rotation by 2 pi k / n,
 ///
-/// 1 for a perfect symmetry, as D of Equation 2 is for a reflection: the part of f that is invariant under these turns
-/// has the squared length (1 + (n - 1) D_n) / n in units of |f|^2, which is Equation 1 for n = 2. For turns by any
-/// angle it is the mean over all angles.
+/// 1 for a perfect symmetry, as D of Equation 2 is for a reflection: the part of f that is invariant under these
+/// rotations has the squared length (1 + (n - 1) D_n) / n in units of |f|^2, which is Equation 1 for n = 2. For
+/// rotations by any angle it is the mean over all angles.
 struct AxisMap {
   AxisGrid grid;                           ///< the axes of the values
   std::vector<int> folds;                  ///< as asked for
@@ -94,8 +94,8 @@ struct AxisMap {
   bool empty() const { return greatest.empty(); }  ///< no transform was computed
 };
 
-/// The order of the turns that a shape has about an axis: any angle where these reach the greatest D, else the greatest
-/// fold that does. D that differ by 0.005 are equal: a shape with six equal parts has three and two as well.
+/// The order of the rotations that a shape has about an axis: any angle where these reach the greatest D, else the
+/// greatest fold that does. D that differ by 0.005 are equal: a shape with six equal parts has three and two as well.
 /// \param folds as in AxisMap; \p values D_n of each.
 int bestFold(const std::vector<int>& folds, const std::vector<double>& values);
 

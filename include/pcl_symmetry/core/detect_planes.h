@@ -5,7 +5,6 @@
 #include "pcl_symmetry/core/closest_point_search.h"
 #include "pcl_symmetry/core/exports.h"
 #include "pcl_symmetry/core/gaussian_edt.h"
-#include "pcl_symmetry/core/iterative_symmetric_points.h"
 #include "pcl_symmetry/core/local_maxima.h"
 #include "pcl_symmetry/core/plane_types.h"
 #include "pcl_symmetry/core/symmetry_map.h"
@@ -13,7 +12,7 @@
 
 namespace PCL_SYMMETRY_EXPORTS pcl_symmetry {
 
-/// What planes are looked for in. It refers to what it is made of, which must outlive it.
+/// The input of detectPlanes(). It refers to the arrays that it is made of, which must outlive it.
 struct PlaneInput {
   /// \param points_of_cloud 3 x N, finite, input units.
   /// \param seen_space see visibility.
@@ -33,7 +32,7 @@ struct PlaneInput {
   /// 3 x N, of any length and sign; one that is zero or not finite is estimated from the neighbors, as are all where
   /// this is null.
   const Points* normals = nullptr;
-  /// A transform of the points that was made before, and the distance transform that it was made from; both or neither.
+  /// A symmetry map of the points and the distance transform that it was computed from; both or neither.
   const SymmetryMap* map = nullptr;
   const GaussianEdt* edt = nullptr;  ///< see map
   MakeSearch make_search;            ///< makes the search for the points that are used, once; empty = FLANN's
@@ -57,8 +56,8 @@ struct DetectionOptions {
   /// Reports the other maxima too, after the symmetries: approximate ones of the whole, and symmetries of parts.
   bool approximate = false;
   bool evidence = false;  ///< fills Detection::evidence; takes about as long again as the detection
-  bool turns = true;      ///< axes of rotations of scans are searched too; false saves about a third of the time
-  bool folds = true;      ///< of these also axes of rotations by a part of a turn; false saves most of that time
+  bool turns = true;      ///< also searches axes of rotation of scans; false saves about a third of the time
+  bool folds = true;      ///< with `turns`: also axes of finite order; false finds bodies of revolution only, faster
   int max_planes = 64;    ///< >= 1; folds of rotations go up to 60
   int num_cells = 64;     ///< cells of the distance transform along each side, in [8, 512]
   double sigma = 0.0;     ///< its width, input units, >= 0; 0 = two cells, or the spacing of the points if that is more
@@ -70,9 +69,7 @@ struct DetectionOptions {
     int num_samples = 64;       ///< samples of the transform, >= 1: the error is 1 % of PRST, enough to find maxima
     LocalMaximaOptions maxima;  ///< of the maxima of the map that become candidates
     int max_candidates = 24;    ///< strongest maxima that are refined, >= 1
-    IspUpdate update = IspUpdate::PointToPlane;  ///< what a step of the refinement makes least
-    int num_refine_samples = 10'000;             ///< points reflected in late iterations (the paper's figure), >= 10
-    int max_iterations = 30;                     ///< of each stage, >= 1
+    int num_refine_samples = 10'000;  ///< points reflected in late iterations (the paper's figure), >= 10
   };
   Expert expert;  ///< see Expert
 

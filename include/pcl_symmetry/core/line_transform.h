@@ -135,10 +135,11 @@ struct LineMaximum {
 /// Local maxima of D: the maxima of the map that pass the three thresholds of Section 4.4, each refined to the maximum
 /// of D itself. A maximum on the seam is found once.
 /// \param edt the function that the map was made from.
+/// \param num_threads 0 = one per core; the maxima do not depend on it.
 /// \return maxima by falling D.
 /// \throws std::invalid_argument for bad options.
 std::vector<LineMaximum> findLineMaxima(const GaussianEdt2D& edt, const LineMap& map,
-                                        const LocalMaximaOptions& options = {});
+                                        const LocalMaximaOptions& options = {}, int num_threads = 0);
 
 /// The transform mapped back from lines to points (Figures 1 and 2): for each point the greatest D of any line through
 /// it.

@@ -11,7 +11,6 @@ namespace PCL_SYMMETRY_EXPORTS pcl_symmetry {
 struct LocalMaximaOptions {
   double strength = 0.1;   ///< keeps D >= strength * D_strongest * (1 - r / R), in [0, 1]; the paper's 1/10
   double laplacian = 0.1;  ///< keeps -Laplacian >= laplacian * -Laplacian_strongest, in [0, 1]; the paper's 1/10
-  int num_threads = 0;     ///< >= 0; 0 = one per core
 
   /// \throws std::invalid_argument naming field, value and rule.
   void validate() const;
@@ -30,8 +29,10 @@ struct LocalMaximum {
 /// of the second differences along theta, phi and r in steps of the grid. A maximum on a seam of the grid is found
 /// once.
 /// \param map may be empty.
+/// \param num_threads 0 = one per core; the maxima do not depend on it.
 /// \return strongest first.
 /// \throws std::invalid_argument for bad options.
-std::vector<LocalMaximum> findLocalMaxima(const SymmetryMap& map, const LocalMaximaOptions& options = {});
+std::vector<LocalMaximum> findLocalMaxima(const SymmetryMap& map, const LocalMaximaOptions& options = {},
+                                          int num_threads = 0);
 
 }  // namespace pcl_symmetry

@@ -80,8 +80,6 @@ struct SymmetryRotation {
   double halfway = 0.0;  ///< off of rotations halfway between those of the fold: evidence against other folds
 };
 
-using SymmetryTurn = SymmetryRotation;  ///< its former name
-
 /// What the decisions of one detection were taken from (core/detection/plane_decision.h); the Python module gives it as
 /// arrays.
 struct DetectionEvidence;

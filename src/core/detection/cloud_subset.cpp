@@ -79,11 +79,11 @@ std::optional<CloudSubset> subsetOf(const PointsRef& points, const DetectionOpti
   return subset;
 }
 
-void spreadSupport(Detection& detection, const std::vector<int>& place_of) {
+void spreadSupport(Detection& detection, const std::vector<int>& representative_of) {
   const auto spread = [&](SymmetryPlane& plane) {
-    std::vector<float> support(place_of.size());
+    std::vector<float> support(representative_of.size());
     for (std::size_t i = 0; i < support.size(); ++i)
-      support[i] = plane.point_support[static_cast<std::size_t>(place_of[i])];
+      support[i] = plane.point_support[static_cast<std::size_t>(representative_of[i])];
     plane.point_support = std::move(support);
   };
   for (SymmetryPlane& plane : detection.planes) spread(plane);

@@ -28,8 +28,8 @@ struct CloudSubset {
 std::optional<CloudSubset> subsetOf(const PointsRef& points, const DetectionOptions& options);
 
 /// Gives each point of a cloud the support of the point that represents it.
-/// \param place_of of each point of the cloud, the index of its support.
-void spreadSupport(Detection& detection, const std::vector<int>& place_of);
+/// \param representative_of for each point, the index of the point whose support it takes.
+void spreadSupport(Detection& detection, const std::vector<int>& representative_of);
 
 /// Points of a cloud such that they lie about equally dense on one side and on the other.
 ///

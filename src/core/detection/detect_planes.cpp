@@ -14,6 +14,7 @@
 #include "core/detection/plane_families.h"
 #include "core/detection/plane_lattice.h"
 #include "core/detection/staged_refinement.h"
+#include "core/detection/standing_object.h"
 #include "core/geometry/answerable_points.h"
 #include "core/geometry/distinct_points.h"
 #include "core/geometry/point_samples.h"
@@ -149,7 +150,7 @@ Detection refineAndDecide(const NormalizedCloud& cloud, const Points& all, const
   GroupClosure closure(cloud);
   while (!(candidates = refinement.closeSymmetries(closure.next(planes))).empty())
     append(planes, final_refinement.decide(std::move(candidates)));
-  decision.adjustConfidences(planes, Found::Planes);
+  decision.doubtMissingPieces(planes);
   PlanesAndPolygon completed = withPolygon(std::move(planes), cloud, all, decision, options);
   planes = std::move(completed.planes);
   timed("closure");
@@ -165,7 +166,7 @@ Detection refineAndDecide(const NormalizedCloud& cloud, const Points& all, const
   if (!decision.isCutAllAround())
     planes = withScanAxes(std::move(planes), cloud, measure.tolerance(), options, detection);
   const bool has_family = !detection.axes.empty() || !detection.centers.empty();
-  decision.adjustConfidences(planes, Found::Families, has_family);
+  decision.doubtFurtherPlanes(planes, has_family);
   timed("turns");
 
   if (options.approximate) append(planes, localPlanes(planes, cloud, *fit, decision, options));
@@ -180,7 +181,7 @@ Detection refineAndDecide(const NormalizedCloud& cloud, const Points& all, const
   detection.resolution = std::max(measure.resolution(), is_raised ? measure.tolerance() : 0.0) * cloud.scale;
   detection.diameter = cloud.extent * cloud.scale;
   detection.planes = rankedPlanes(std::move(planes), completed.polygon, cloud, *fit, options);
-  decision.adjustConfidences(detection.planes, Found::Answer);
+  decision.doubtSlantedPlanes(detection.planes);
   detection.planes = reordered(std::move(detection.planes), options);
   timed("report");
   return detection;
@@ -298,7 +299,6 @@ void DetectionOptions::validate() const {
   check(expert.num_samples >= 1, "num_samples", expert.num_samples, ">= 1");
   check(expert.max_candidates >= 1, "max_candidates", expert.max_candidates, ">= 1");
   check(expert.num_refine_samples >= 10, "num_refine_samples", expert.num_refine_samples, ">= 10");
-  check(expert.max_iterations >= 1, "max_iterations", expert.max_iterations, ">= 1");
 }
 
 Detection detectPlanes(const PlaneInput& input, const DetectionOptions& options) {

@@ -66,7 +66,7 @@ struct DetectionRules {
     double surely_whole = 0.985;    ///< share within the tolerance from which nothing needs to be missing
     int deviation_samples = 2000;   ///< samples of SymmetryPlane::deviation
     double held_stiffness = 0.02;   ///< offset stiffness from which an open border begins to excuse; at twice, in full
-    double moved_tolerances = 2.0;  ///< tolerances by which a plane has to move a sample of a scan to tell something
+    double moved_tolerances = 2.0;  ///< tolerances by which a plane has to move an informative sample of a scan
     double noisy_thinness = 3.0;    ///< tolerances within which a volume of points is a sheet or a line
     double round_spacings = 2.0;    ///< spacings within which points of a line do not resolve its cross-section
     int look_samples = 2000;        ///< samples of a quick look
@@ -122,9 +122,9 @@ struct DetectionRules {
   /// Folds of noisy clouds, by their spectrum.
   struct {
     int most_frequency = 60, least_fold = 3;  ///< a cloud that is thinner on one side, or flat, has folds one and two
-    int rings = 8, slabs = 4;                 ///< about the line; rings tell folds, slabs the angle of the planes
+    int rings = 8, slabs = 4;                 ///< about the line: rings for the fold, slabs for the angle of the planes
     int spectrum_samples = 20'000, angles = 192, phase_samples = 5000;
-    double reflections_stand_out = 20.0;   ///< powers beside it from which reflections tell the angle better than rings
+    double reflections_stand_out = 20.0;   ///< powers beside it from which reflections fix the angle better than rings
     int compared_frequencies = 12;         ///< frequencies on either side that one is compared with
     double least_power = 20.0;             ///< round bodies in noise have 15 at most
     double stands_out = 4.0;               ///< medians of the powers beside it

@@ -44,9 +44,7 @@ void refineOnMesh(const MeshSurface& mesh, Detection& found, const DetectionOpti
   for (SymmetryPlane& plane : found.planes) {
     if (isDecided(plane)) {
       if (!(found.flat && plane.angleTo(*found.flat) < kSameAsFlat)) refine(mesh, plane, found.tolerance, options);
-      if (std::any_of(kept.begin(), kept.end(),
-                      [&](const SymmetryPlane& other) { return kSamePlane.same(inBall(other), inBall(plane)); }))
-        continue;
+      if (kSamePlane.anySame(kept, inBall(plane), inBall)) continue;
       if (plane.kind == PlaneKind::Approximate && !options.approximate) {
         if (!dropped || plane.share > dropped->share) dropped = std::move(plane);
         continue;
@@ -54,19 +52,20 @@ void refineOnMesh(const MeshSurface& mesh, Detection& found, const DetectionOpti
     }
     kept.push_back(std::move(plane));
   }
-  std::stable_sort(kept.begin(), kept.end(), [](const SymmetryPlane& a, const SymmetryPlane& b) {
-    return a.kind != b.kind ? a.kind < b.kind : a.kind < PlaneKind::Approximate && a.confidence > b.confidence;
-  });
-  found.planes = std::move(kept);
   if (found.best && found.best->share >= kNearlySymmetric) {
     refine(mesh, *found.best, found.tolerance, options);
-    if (found.best->kind != PlaneKind::Approximate) {
-      found.planes.push_back(*found.best);
+    if (isDecided(*found.best)) {
+      const ReflectionPlane best = inBall(*found.best);
+      kept.erase(std::remove_if(kept.begin(), kept.end(),
+                                [&](const SymmetryPlane& plane) { return kSamePlane.same(inBall(plane), best); }),
+                 kept.end());
+      kept.push_back(*found.best);
       found.best.reset();
     }
-  } else if (dropped && found.planes.empty() && found.axes.empty() && found.centers.empty()) {
+  } else if (dropped && kept.empty() && found.axes.empty() && found.centers.empty()) {
     found.best = dropped;
   }
+  found.planes = reordered(std::move(kept), options);
   for (SymmetryAxis& axis : found.axes) {
     MotionsAbout motions{{}, axis.point};
     motions.addRotations(axis.direction);

@@ -116,6 +116,16 @@ double MatchedRegions::edgeOf(const std::vector<char>& inside, double count) con
 
 namespace {
 
+/// A part of a surface, and a plane of symmetry of that part.
+struct SymmetricPart {
+  ReflectionPlane plane;     ///< normalized frame
+  std::vector<int> points;   ///< some points of the part, spread over it, as ascending indices
+  double share = 0.0;        ///< of the cloud, in [0, 1]
+  double support = 0.0;      ///< mean support of these points, in [0, 1]
+  int iterations = 0;        ///< of Iterative Symmetric Points
+  double longer_edge = 0.0;  ///< of its region than a part of its size has, edges of a disc
+};
+
 // Planes that are one: radians, and radii of the points. Half of what is between the planes of a prism of 24 sides.
 constexpr PlaneTolerance kSamePlaneOfPart{kDetection.parts.same_part_angle, kDetection.parts.same_part_offset};
 
@@ -171,7 +181,7 @@ struct BallSearch {
   const IspSurface surface;
   IspOptions isp;
 
-  BallSearch(const NormalizedCloud& the_cloud, const PlaneFit& the_fit, IspUpdate update)
+  BallSearch(const NormalizedCloud& the_cloud, const PlaneFit& the_fit)
       : cloud(the_cloud),
         fit(the_fit),
         walk(cloud.flann && cloud.flann->lists() ? std::make_unique<NeighborWalk>(*cloud.flann->lists(), *cloud.search)
@@ -182,7 +192,6 @@ struct BallSearch {
                 cloud.surface.at_border,
                 walk ? nullptr : cloud.surface.far,
                 1} {
-    isp.update = update;
     isp.sigma = cloud.sigma;
     isp.final_sigma = cloud.final_sigma;
     isp.max_iterations = kDetection.parts.iterations;
@@ -326,11 +335,10 @@ std::vector<SymmetricPart> withoutFamilies(std::vector<SymmetricPart> parts) {
   return kept;
 }
 
-}  // namespace
-
+/// \return large and well supported parts first; no two with the same plane.
 std::vector<SymmetricPart> findSymmetricParts(const NormalizedCloud& cloud, const PlaneFit& fit,
                                               const DetectionOptions& options) {
-  const BallSearch search(cloud, fit, options.expert.update);
+  const BallSearch search(cloud, fit);
   const std::vector<Eigen::Vector3f> seeds = spreadSeeds(cloud.points);
   std::vector<std::vector<SymmetricPart>> of_balls(seeds.size() * kDetection.parts.radii.size());
   parallelBlocks(of_balls.size(), options.num_threads, [&](std::size_t i) {
@@ -350,6 +358,8 @@ std::vector<SymmetricPart> findSymmetricParts(const NormalizedCloud& cloud, cons
     if (part) parts.push_back(std::move(*part));
   return withoutFamilies(distinct(withoutRemains(std::move(parts), cloud.points.cols())));
 }
+
+}  // namespace
 
 std::vector<SymmetryPlane> localPlanes(const std::vector<SymmetryPlane>& known, const NormalizedCloud& cloud,
                                        const PlaneFit& fit, const PlaneDecision& decision,

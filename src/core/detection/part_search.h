@@ -6,16 +6,6 @@
 
 namespace pcl_symmetry {
 
-/// A part of a surface, and a plane of symmetry of that part.
-struct SymmetricPart {
-  ReflectionPlane plane;     ///< normalized frame
-  std::vector<int> points;   ///< some points of the part, spread over it, as ascending indices
-  double share = 0.0;        ///< of the cloud, in [0, 1]
-  double support = 0.0;      ///< mean support of these points, in [0, 1]
-  int iterations = 0;        ///< of Iterative Symmetric Points
-  double longer_edge = 0.0;  ///< of its region than a part of its size has, edges of a disc
-};
-
 /// A connected piece of the surface that a plane maps onto itself.
 struct MatchedRegion {
   std::vector<int> points;  ///< of the samples of MatchedRegions, as indices of points of the cloud, ascending
@@ -58,13 +48,7 @@ private:
 /// Departure from the paper, which takes them from the local maxima of the transform of the whole shape: a small part
 /// contributes too little to the transform to be a maximum. Here planes through the middles of balls, of several radii
 /// and spread over the surface, are refined on the points of their ball alone, and then on the region that they map
-/// onto itself (MatchedRegions), which tells a part from what matches by chance. A part has as many planes as it has.
-/// \param cloud,fit of the surface.
-/// \return large and well supported parts first; no two with the same plane.
-std::vector<SymmetricPart> findSymmetricParts(const NormalizedCloud& cloud, const PlaneFit& fit,
-                                              const DetectionOptions& options);
-
-/// Symmetries of parts of the surface.
+/// onto itself (MatchedRegions), which tells a part from what matches by chance.
 /// \param known planes that have been found, input frame.
 /// \return planes of PlaneKind::Local, input frame, unlike the symmetries and possible symmetries among those known.
 std::vector<SymmetryPlane> localPlanes(const std::vector<SymmetryPlane>& known, const NormalizedCloud& cloud,

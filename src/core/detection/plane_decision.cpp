@@ -1,34 +1,25 @@
 #include "core/detection/plane_decision.h"
 
 #include <algorithm>
-#include <cmath>
 #include <utility>
 
-#include "core/base/constants.h"
 #include "core/base/logistic.h"
-#include "core/base/median.h"
 #include "core/base/parallel.h"
+#include "core/detection/standing_object.h"
 #include "core/geometry/point_samples.h"
-#include "core/geometry/surface_normals.h"
-#include "core/scan/upright_box.h"
 
 namespace pcl_symmetry {
 
 namespace {
 
-/// The least signed distance of the points from a support.
-double heightOf(const PointsRef& points, const Eigen::Vector4d& support) {
-  return (support.head<3>().transpose().cast<float>() * points).minCoeff() + support[3];
-}
-
 /// The order of answers: symmetries, then possible ones, both by falling confidence, then others by falling support.
+/// Equally confident ones stay in their order.
 bool isBetter(const SymmetryPlane& a, const SymmetryPlane& b) {
   const auto rank = [](const SymmetryPlane& plane) {
     return plane.kind == PlaneKind::Symmetry ? 0 : plane.kind == PlaneKind::Possible ? 1 : 2;
   };
   if (rank(a) != rank(b)) return rank(a) < rank(b);
-  if (isDecided(a) && a.confidence != b.confidence) return a.confidence > b.confidence;
-  return a.support > b.support;
+  return isDecided(a) ? a.confidence > b.confidence : a.support > b.support;
 }
 
 /// Among the planes that are as likely as the likeliest, D decides.
@@ -51,62 +42,6 @@ void decideBy(double confidence, const DetectionOptions& options, SymmetryPlane&
   plane.kind = confidence >= options.min_confidence ? PlaneKind::Symmetry
                : confidence >= options.min_possible ? PlaneKind::Possible
                                                     : PlaneKind::Approximate;
-}
-
-std::vector<Eigen::Vector3d> carryingNormals(const PointsRef& points, const Visibility& seen) {
-  std::vector<double> heights;
-  for (const Eigen::Vector4d& support : seen.supports()) heights.push_back(heightOf(points, support));
-  if (heights.empty()) return {};
-  const double reach = *std::min_element(heights.begin(), heights.end()) +
-                       kDetection.decide.touching * 2.0 * boundingBall(points).radius;
-  std::vector<Eigen::Vector3d> normals;
-  for (std::size_t i = 0; i < heights.size(); ++i)
-    if (heights[i] <= reach) normals.push_back(seen.supports()[i].head<3>().normalized());
-  return normals;
-}
-
-void decideByUprightBox(const PointsRef& points, const Visibility& seen, const DetectionOptions& options,
-                        Detection& found) {
-  const std::vector<Eigen::Vector3d> up = carryingNormals(points, seen);
-  const float spacing =
-      median(localGeometry(points, *makeFlannSearch(points), kNumSupportNeighbors, options.num_threads).spacing);
-  const bool is_sparse = spacing > kDetection.decide.no_surface * found.tolerance;
-  const bool is_decided = !found.axes.empty() || !found.centers.empty() ||
-                          (!found.planes.empty() && found.planes.front().kind == PlaneKind::Symmetry);
-  if (up.empty() || (is_decided && !is_sparse)) return;
-  const std::optional<MiddlePlane> middle = middlePlaneOfBox(points, up.front(), seen.viewpoint());
-  std::optional<SymmetryPlane> plane;
-  if (middle) {
-    plane.emplace(middle->plane);
-    plane->confidence = middle->confidence;
-    plane->share = middle->num_met / (middle->num_met + middle->num_free);
-    plane->share_low = middle->num_met / middle->num_moved;
-    plane->share_high = 1.0 - middle->num_free / middle->num_moved;
-    plane->support = middle->num_met / middle->num_moved;
-    plane->seen = (middle->num_met + middle->num_free) / middle->num_moved;
-    plane->residual = middle->residual;
-    plane->converged = true;
-    plane->point_support = middle->point_support;
-  }
-  if (is_sparse) {
-    found.planes.clear();
-    found.axes.clear();
-    found.centers.clear();
-    found.turns.clear();
-    found.best = plane;
-  }
-  if (!plane || plane->confidence < (is_sparse ? options.min_possible : options.min_confidence)) return;
-  decideBy(plane->confidence, options, *plane);
-  found.planes.insert(found.planes.begin(), std::move(*plane));
-  found.best.reset();
-}
-
-bool slants(const ReflectionPlane& plane, const std::vector<Eigen::Vector3d>& carrying_normals) {
-  const auto is_along = [&](const Eigen::Vector3d& normal) {
-    const double angle = std::acos(std::min(1.0, std::abs(normal.dot(plane.normal()))));
-    return angle <= kDetection.decide.upright || angle >= 0.5 * kPi - kDetection.decide.upright;
-  };
-  return !carrying_normals.empty() && std::none_of(carrying_normals.begin(), carrying_normals.end(), is_along);
 }
 
 MeasuredPlane PlaneDecision::decided(MeasuredPlane measured) const {
@@ -144,28 +79,26 @@ bool PlaneDecision::isHopeless(const Candidate& candidate) const {
   return quick.share + kDetection.decide.look_errors * quick.error < kDetection.decide.hopeful_share;
 }
 
-void PlaneDecision::adjustConfidences(std::vector<SymmetryPlane>& planes, Found found, bool has_family) const {
-  const bool is_explained =
-      found == Found::Planes &&
-      std::any_of(planes.begin(), planes.end(), [&](const SymmetryPlane& plane) { return explainsAll(plane); });
-  const SymmetryPlane* const best = found == Found::Families ? bestOf(planes) : nullptr;
-  std::vector<Eigen::Vector3d> carrying_normals;
-  if (found == Found::Answer && cloud_.seen()) carrying_normals = carryingNormals(cloud_.points, *cloud_.seen());
-  for (SymmetryPlane& plane : planes) {
-    const double missing = 1.0 - plane.seen;
-    // Where a plane explains all of a cloud, nothing of it is missing: those that need a missing piece are doubted, as
-    // the plane across an open cup, which needs a lid.
-    if (is_explained && missing > kDetection.decide.piece_missing)
+void PlaneDecision::doubtMissingPieces(std::vector<SymmetryPlane>& planes) const {
+  if (std::none_of(planes.begin(), planes.end(), [&](const SymmetryPlane& plane) { return explainsAll(plane); }))
+    return;
+  for (SymmetryPlane& plane : planes)
+    if (1.0 - plane.seen > kDetection.decide.piece_missing)
       decideBy(withOdds(plane.confidence, kDetection.decide.odds_of_a_piece), plane);
-    // A scan or a cut hides a part of an object, and many planes are tried: those beside the best one, or beside a
-    // family, are symmetries less often.
-    if (found == Found::Families && (&plane != best || has_family))
-      decideBy(furtherConfidence(plane.confidence, cloud_.kind(), missing), plane);
-    // What stands on a table was made to stand there, or lies on one of its sides, and then its planes are upright or
-    // level, but for few. Where nothing is known of a support, no plane slants.
+}
+
+void PlaneDecision::doubtFurtherPlanes(std::vector<SymmetryPlane>& planes, bool has_family) const {
+  const SymmetryPlane* const best = has_family ? nullptr : bestOf(planes);
+  for (SymmetryPlane& plane : planes)
+    if (&plane != best) decideBy(furtherConfidence(plane.confidence, cloud_.kind(), 1.0 - plane.seen), plane);
+}
+
+void PlaneDecision::doubtSlantedPlanes(std::vector<SymmetryPlane>& planes) const {
+  if (!cloud_.seen()) return;
+  const std::vector<Eigen::Vector3d> carrying_normals = carryingNormals(cloud_.points, *cloud_.seen());
+  for (SymmetryPlane& plane : planes)
     if (isDecided(plane) && slants(plane, carrying_normals))
       decideBy(withOdds(plane.confidence, kDetection.decide.slanted_odds), plane);
-  }
 }
 
 std::vector<MeasuredPlane> PlaneDecision::judge(const std::vector<Candidate>& candidates) const {
@@ -229,7 +162,7 @@ bool isOnSlopeOf(const SymmetryPlane& better, const SymmetryPlane& plane, const 
 
 /// Whether a plane is of a polygon, between whose planes noise may leave no dip.
 bool isOf(const std::optional<PlaneLattice>& polygon, const SymmetryPlane& plane, const NormalizedCloud& cloud) {
-  return polygon && contains(cloud.toNormalized(plane), polygon->line, kDetection.families.contained_offset);
+  return polygon && contains(cloud.toNormalized(plane), polygon->line);
 }
 
 /// Judges every point, where the plane was judged by some of them.
@@ -256,6 +189,9 @@ std::vector<SymmetryPlane> rankedPlanes(std::vector<SymmetryPlane> planes, const
                                         const NormalizedCloud& cloud, const PlaneFit& fit,
                                         const DetectionOptions& options) {
   planes = withoutPlanesOfParts(std::move(planes), cloud);
+  // Of equally confident planes, such as those of a polygon, the best supported comes first.
+  std::stable_sort(planes.begin(), planes.end(),
+                   [](const SymmetryPlane& a, const SymmetryPlane& b) { return a.support > b.support; });
   std::stable_sort(planes.begin(), planes.end(), isBetter);
   std::vector<SymmetryPlane> ranked;
   for (SymmetryPlane& plane : planes) {

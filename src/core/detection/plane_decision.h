@@ -9,46 +9,26 @@
 
 namespace pcl_symmetry {
 
-/// The supports that carry an object, see Visibility::withSupport(): the nearest one and those that it touches, too.
-/// \param points of the object, 3 x N, finite, N >= 1.
-/// \return their unit normals.
-std::vector<Eigen::Vector3d> carryingNormals(const PointsRef& points, const Visibility& seen);
-
-/// Where points that stand on a ground are too far apart for a surface, as those of a LiDAR's rings, or where nothing
-/// was decided: the middle plane of their upright box decides in place of what was found.
-void decideByUprightBox(const PointsRef& points, const Visibility& seen, const DetectionOptions& options,
-                        Detection& found);
-
 /// Gives a plane a confidence, and the kind that follows from it.
 void decideBy(double confidence, const DetectionOptions& options, SymmetryPlane& plane);
-
-/// True where a plane is neither upright nor level on any of these supports; false without one.
-bool slants(const ReflectionPlane& plane, const std::vector<Eigen::Vector3d>& carrying_normals);
 
 /// True of symmetries and possible ones.
 inline bool isDecided(const SymmetryPlane& plane) {
   return plane.kind == PlaneKind::Symmetry || plane.kind == PlaneKind::Possible;
 }
 
-/// What the decisions of one detection were taken from: what fits are made to.
+/// The evidence behind the decisions of one detection, to which confidences are fitted.
 struct DetectionEvidence {
   /// Candidates after all stages of refinement, each plane once, best merit first. No fitted number has a part in them.
   std::vector<MeasuredPlane> planes;
   std::vector<JudgedRotation> rotations;  ///< of scans
 };
 
-/// What the planes of a family tell together.
+/// Combined evidence of the planes of a family.
 struct JudgedFamily {
   double confidence = 0.0;        ///< of the mean evidence
   double least_confidence = 1.0;  ///< of a single plane
   double score = 0.0, support = 0.0;
-};
-
-/// What has been found when confidences are corrected.
-enum class Found {
-  Planes,    ///< all planes of the whole, also those that follow from others
-  Families,  ///< axes and centers, too
-  Answer     ///< what is reported, in its order
 };
 
 /// From measured planes to answers: decides what is a symmetry, what is possible, and what comes first
@@ -77,12 +57,25 @@ public:
   /// \param plane input frame.
   void decideBy(double confidence, SymmetryPlane& plane) const;
 
-  /// Corrects the confidences of planes, which were judged one by one, by what was found beside them.
-  /// \param planes input frame.
-  /// \param has_family an axis or a center was found, which is better than all planes.
-  void adjustConfidences(std::vector<SymmetryPlane>& planes, Found found, bool has_family = false) const;
+  // Planes are judged one by one; these lower their confidences by what was found beside them. Planes are in the input
+  // frame.
 
-  /// Whether the picture cuts the cloud off all around: a place, such as a table, and no object.
+  /// Where a plane explains all of a cloud, nothing of it is missing: those that need a missing piece are doubted, such
+  /// as the plane across an open cup, which needs a lid.
+  /// \param planes of the whole, also those that follow from others.
+  void doubtMissingPieces(std::vector<SymmetryPlane>& planes) const;
+
+  /// A scan or a cut hides a part of an object, and many planes are tried: those beside the best one, or beside a
+  /// family, are symmetries less often.
+  /// \param has_family an axis or a center was found, which is better than all planes.
+  void doubtFurtherPlanes(std::vector<SymmetryPlane>& planes, bool has_family) const;
+
+  /// An object on a table was made to stand there, or lies on one of its sides: nearly all of its planes are upright or
+  /// level. Without a known support, no plane is slanted.
+  void doubtSlantedPlanes(std::vector<SymmetryPlane>& planes) const;
+
+  /// Whether the border of the picture cuts the cloud off all around: a piece of the surroundings, such as a table top,
+  /// not an object.
   bool isCutAllAround() const { return measure_.cutShare() > kDetection.decide.most_cut; }
 
   /// Whether a plane explains all of a whole cloud, so that nothing of it is missing.
@@ -91,7 +84,7 @@ public:
   /// Whether too many points are off for a possible symmetry where nothing is missing.
   bool isHopeless(const Candidate& candidate) const;
 
-  /// Whether nothing but a line is left of the cloud at the tolerance.
+  /// Whether all points lie within the tolerance of one line.
   bool isLine() const { return measure_.thinness() == Thinness::Line; }
 
 private:
@@ -108,18 +101,19 @@ private:
   const DetectionOptions& options_;
 };
 
-/// The planes that are reported: best first, each maximum once, as many as the options ask for.
+/// The planes that are reported: best first, each maximum once, at most DetectionOptions::max_planes.
 ///
 /// Order: symmetries, then possible ones, both by falling confidence, then approximate and local ones by falling
 /// support.
 /// \param planes input frame.
-/// \param polygon whose planes are all of them maxima, normalized frame.
+/// \param polygon normalized frame; each of its planes is a maximum.
 /// \return with the support of every point.
 std::vector<SymmetryPlane> rankedPlanes(std::vector<SymmetryPlane> planes, const std::optional<PlaneLattice>& polygon,
                                         const NormalizedCloud& cloud, const PlaneFit& fit,
                                         const DetectionOptions& options);
 
-/// The planes of an answer without those that the last corrections left no possible ones, in their order.
+/// The planes in their final order; without `approximate`, those that the last corrections left below `min_possible`
+/// are removed.
 std::vector<SymmetryPlane> reordered(std::vector<SymmetryPlane> planes, const DetectionOptions& options);
 
 /// \return the plane of a cloud of which nothing but a sheet is left at the tolerance, input frame; else empty.

@@ -18,12 +18,12 @@ namespace pcl_symmetry {
 namespace {
 
 /// Plane \p k of a sequence of planes through a line whose angles no regular polygon has.
-ReflectionPlane planeThrough(const Line3d& line, int k) {
-  return pcl_symmetry::planeThrough(line, kPi * goldenFraction(k + 1));
+ReflectionPlane planeOfFamily(const Line3d& line, int k) {
+  return planeThrough(line, kPi * goldenFraction(k + 1));
 }
 
 /// Plane \p k of \p count planes through a point, their normals spread over the half sphere.
-ReflectionPlane planeThrough(const Eigen::Vector3d& point, int k, int count) {
+ReflectionPlane planeOfFamily(const Eigen::Vector3d& point, int k, int count) {
   const Eigen::Vector3d n = spiralDirection(k, count, 2.0 * kPi * goldenFraction(k + 1));
   return ReflectionPlane(n, n.dot(point));
 }
@@ -64,13 +64,13 @@ std::vector<ReflectionPlane> planesAt(const PlaneAt& plane_at) {
 
 /// The family of all planes through a point, or through one nearby.
 std::optional<CenterFamily> centerAt(Eigen::Vector3d point, double least, const FamilyTest& test) {
-  const auto at = [&](int k) { return planeThrough(point, k, kDetection.families.tested_planes); };
+  const auto at = [&](int k) { return planeOfFamily(point, k, kDetection.families.tested_planes); };
   if (meanShare(at, kDetection.families.screening_planes, least - kDetection.families.rough_factor * test.allowance,
                 test.rough_share) == 0.0)
     return std::nullopt;
   std::vector<ReflectionPlane> refined;
   for (int k = 0; k < kDetection.families.fitted_planes; ++k)
-    refined.push_back(test.refine(planeThrough(point, k, kDetection.families.fitted_planes)));
+    refined.push_back(test.refine(planeOfFamily(point, k, kDetection.families.fitted_planes)));
   point = commonPoint(refined, point);
   const double share = meanShare(at, kDetection.families.tested_planes, least, test.share);
   if (share < least) return std::nullopt;
@@ -80,13 +80,13 @@ std::optional<CenterFamily> centerAt(Eigen::Vector3d point, double least, const 
 /// The family of all planes through a line, or through one nearby.
 std::optional<AxisFamily> axisAt(const Line3d& start, double least, const FamilyTest& test) {
   Line3d line = start;
-  const auto at = [&](int k) { return planeThrough(line, k); };
+  const auto at = [&](int k) { return planeOfFamily(line, k); };
   // The line through two rough planes may be off by a little: the refined line has to pass the full test.
   if (meanShare(at, kDetection.families.screening_planes, least - kDetection.families.rough_factor * test.allowance,
                 test.rough_share) == 0.0)
     return std::nullopt;
   std::vector<ReflectionPlane> refined;
-  for (int k = 0; k < kDetection.families.fitted_planes; ++k) refined.push_back(test.refine(planeThrough(line, k)));
+  for (int k = 0; k < kDetection.families.fitted_planes; ++k) refined.push_back(test.refine(planeOfFamily(line, k)));
   line = commonLine(refined);
   double share = meanShare(at, kDetection.families.tested_planes, least, test.share);
   // Planes that map a scan to what was not seen drift when they are refined.
@@ -134,7 +134,7 @@ std::vector<AxisFamily> findAxes(const std::vector<ReflectionPlane>& planes, con
   const auto attempt = [&](const Line3d& line, double best_share) {
     const bool known = std::any_of(tried.begin(), tried.end(), [&](const Line3d& other) {
       return std::abs(other.direction().dot(line.direction())) > std::cos(kDetection.families.contained_angle) &&
-             other.distance(line.origin()) < test.tolerance;
+             other.distance(line.origin()) < kDetection.families.contained_offset;
     });
     if (known) return;
     tried.push_back(line);
@@ -184,7 +184,6 @@ FamilyTest familyTest(const NormalizedCloud& cloud, const PlaneFit& fit, const s
   const double few_points = kKindRules.points_of_allowance[kind] / static_cast<double>(cloud.points.cols());
   test.min_share = kKindRules.family_share[kind];
   test.allowance = kKindRules.family_allowance[kind] * std::sqrt(std::max(1.0, few_points));
-  test.tolerance = kDetection.families.contained_offset;
   return test;
 }
 
@@ -222,7 +221,7 @@ PlanesAndFamilies collectFamilies(std::vector<SymmetryPlane> planes, const Norma
   if (decision.isLine()) {
     const Line3d line = longestAxis(cloud.principal_axes);
     std::vector<ReflectionPlane> through;
-    for (int k = 0; k < kDetection.families.tested_planes; ++k) through.push_back(planeThrough(line, k));
+    for (int k = 0; k < kDetection.families.tested_planes; ++k) through.push_back(planeOfFamily(line, k));
     const JudgedFamily judged = decision.judgeFamily(through, samples);
     if (judged.confidence >= options.min_confidence)
       found.axes.push_back(
@@ -253,7 +252,7 @@ PlanesAndFamilies collectFamilies(std::vector<SymmetryPlane> planes, const Norma
     if (isFamily(judged)) {
       found.centers.push_back({cloud.toInput(center->point), judged.confidence, judged.score, judged.support});
       drop([&](const ReflectionPlane& plane) {
-        return std::abs(plane.signedDistance(center->point)) <= test.tolerance;
+        return std::abs(plane.signedDistance(center->point)) <= kDetection.families.contained_offset;
       });
       return found;
     }
@@ -272,7 +271,7 @@ PlanesAndFamilies collectFamilies(std::vector<SymmetryPlane> planes, const Norma
     if (!is_known)
       found.axes.push_back({cloud.toInput(family.line.origin()), family.line.direction(), judged.confidence,
                             judged.score, judged.support});
-    drop([&](const ReflectionPlane& plane) { return contains(plane, family.line, test.tolerance); });
+    drop([&](const ReflectionPlane& plane) { return contains(plane, family.line); });
   }
   return found;
 }
@@ -281,7 +280,7 @@ std::vector<SymmetryPlane> withoutPlanesThrough(std::vector<SymmetryPlane> plane
                                                 const std::vector<SymmetryAxis>& axes, const NormalizedCloud& cloud) {
   const auto belongs = [&](const SymmetryPlane& plane) {
     return std::any_of(axes.begin(), axes.end(), [&](const SymmetryAxis& axis) {
-      return contains(cloud.toNormalized(plane), cloud.lineOf(axis), kDetection.families.contained_offset);
+      return contains(cloud.toNormalized(plane), cloud.lineOf(axis));
     });
   };
   planes.erase(std::remove_if(planes.begin(), planes.end(), belongs), planes.end());

@@ -21,7 +21,6 @@ struct FamilyTest {
   std::function<ReflectionPlane(const ReflectionPlane&)> refine;
   double min_share;  ///< of the planes of a family, on average, in [0, 1]
   double allowance;  ///< by how much that may be less than the best plane found: an effect of sampling, not of a handle
-  double tolerance;  ///< distance within which a plane passes through a point, units of the planes' frame
 };
 
 /// The line closest to all planes that have one in common.

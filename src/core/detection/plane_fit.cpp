@@ -51,7 +51,6 @@ public:
   ReflectionPlane refined(const ReflectionPlane& plane, const std::vector<int>& samples,
                           int max_iterations) const override {
     IspOptions isp;
-    isp.update = options_.expert.update;
     isp.sigma = isp.final_sigma = cloud_.final_sigma;
     isp.max_iterations = max_iterations;
     return refineSymmetricPoints(cloud_.surface, samples, plane, isp).plane;
@@ -150,12 +149,11 @@ public:
     const int num_samples =
         std::min(kDetection.fit.sample_factor * stage.num_samples, options_.expert.num_refine_samples);
     const Points samples = pointsAt(cloud_.points, drawSamples(cloud_.points.cols(), num_samples, options_.seed));
-    const int max_iterations = std::min(kDetection.fit.max_iterations, options_.expert.max_iterations);
     parallelBlocks(candidates.size(), options_.num_threads, [&](std::size_t i) {
       Candidate& candidate = candidates[i];
-      const PointDensity::Refined refined = density_.refine(samples, candidate.plane, max_iterations);
+      const PointDensity::Refined refined = density_.refine(samples, candidate.plane, kDetection.fit.max_iterations);
       candidate.plane = refined.plane;
-      candidate.last.converged = refined.iterations < max_iterations;
+      candidate.last.converged = refined.iterations < kDetection.fit.max_iterations;
       candidate.iterations += refined.iterations;
       candidate.merit = density_.overlap(samples, candidate.plane);
     });

@@ -25,11 +25,18 @@ double angleAbout(const Line3d& line, const ReflectionPlane& plane) {
   return angle < 0.0 ? angle + kPi : angle;
 }
 
+std::vector<ReflectionPlane> planesContaining(const Line3d& line, const std::vector<ReflectionPlane>& planes) {
+  std::vector<ReflectionPlane> through;
+  std::copy_if(planes.begin(), planes.end(), std::back_inserter(through),
+               [&](const ReflectionPlane& plane) { return contains(plane, line); });
+  return through;
+}
+
 /// The lattice of the planes that contain a line.
 std::optional<PlaneLattice> latticeAbout(const Line3d& line, const std::vector<ReflectionPlane>& planes) {
   std::vector<double> angles;
   for (const ReflectionPlane& plane : planes)
-    if (contains(plane, line, kDetection.families.contained_offset)) angles.push_back(angleAbout(line, plane));
+    if (contains(plane, line)) angles.push_back(angleAbout(line, plane));
   if (angles.size() < kDetection.families.least_planes) return std::nullopt;
   for (int fold = 3; fold <= kDetection.families.most_fold; ++fold) {
     std::complex<double> sum = 0.0;
@@ -66,9 +73,7 @@ std::optional<PlaneLattice> findLattice(const std::vector<ReflectionPlane>& plan
     for (std::size_t j = 0; j < i; ++j) {
       if (planes[i].angleTo(planes[j]) < kDetection.families.least_pair_angle) continue;
       Line3d line = commonLine({planes[i], planes[j]});
-      std::vector<ReflectionPlane> through;
-      for (const ReflectionPlane& plane : planes)
-        if (contains(plane, line, kDetection.families.contained_offset)) through.push_back(plane);
+      const std::vector<ReflectionPlane> through = planesContaining(line, planes);
       if (through.size() < kDetection.families.least_planes) continue;
       line = commonLine(through);
       const std::optional<PlaneLattice> lattice = latticeAbout(line, planes);
@@ -207,10 +212,7 @@ double leastTogether(const std::vector<MeasuredPlane>& judged) {
 /// The line that two planes share, fitted to all planes that contain it.
 Line3d lineThrough(const std::vector<ReflectionPlane>& planes, const ReflectionPlane& a, const ReflectionPlane& b) {
   const Line3d line = commonLine({a, b});
-  std::vector<ReflectionPlane> through;
-  std::copy_if(planes.begin(), planes.end(), std::back_inserter(through), [&](const ReflectionPlane& plane) {
-    return contains(plane, line, kDetection.families.contained_offset);
-  });
+  const std::vector<ReflectionPlane> through = planesContaining(line, planes);
   return commonLine(through.size() > 2 ? through : std::vector<ReflectionPlane>{a, b});
 }
 
@@ -269,12 +271,10 @@ PlanesAndPolygon withPolygon(std::vector<SymmetryPlane> planes, const Normalized
   const double together = withOdds(leastTogether(judged), kDetection.folds.odds_of_polygon);
   if (together < options.min_confidence) return {std::move(planes), std::nullopt};
   // All planes tell where the polygon lies: those that noise moved away are dropped.
-  planes.erase(std::remove_if(planes.begin(), planes.end(),
-                              [&](const SymmetryPlane& plane) {
-                                return contains(cloud.toNormalized(plane), lattice->line,
-                                                kDetection.families.contained_offset);
-                              }),
-               planes.end());
+  planes.erase(
+      std::remove_if(planes.begin(), planes.end(),
+                     [&](const SymmetryPlane& plane) { return contains(cloud.toNormalized(plane), lattice->line); }),
+      planes.end());
   for (MeasuredPlane& one : judged) {
     decision.decideBy(std::max(one.plane.confidence, together), one.plane);
     planes.push_back(std::move(one.plane));

@@ -10,7 +10,8 @@ namespace pcl_symmetry {
 class PlaneDecision;
 
 /// Whether a plane contains a line, within 3 degrees and \p tolerance.
-bool contains(const ReflectionPlane& plane, const Line3d& line, double tolerance);
+bool contains(const ReflectionPlane& plane, const Line3d& line,
+              double tolerance = kDetection.families.contained_offset);
 
 /// The planes of a regular polygon: \p fold planes through a line, at equal angles.
 struct PlaneLattice {
@@ -39,7 +40,7 @@ std::optional<PlaneLattice> latticeBySpectrum(const NormalizedCloud& cloud, cons
 
 struct PlanesAndPolygon {
   std::vector<SymmetryPlane> planes;    ///< input frame
-  std::optional<PlaneLattice> polygon;  ///< normalized frame; whose planes are among them as they are symmetries
+  std::optional<PlaneLattice> polygon;  ///< normalized frame; its planes are in `planes`, since they are symmetries
 };
 
 /// Judges the planes of a polygon together, as they are symmetries together or not at all. Only of noisy clouds: where

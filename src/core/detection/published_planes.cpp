@@ -6,6 +6,7 @@
 #include "core/base/parallel.h"
 #include "core/geometry/point_samples.h"
 #include "core/transform/edt_correlation.h"
+#include "pcl_symmetry/core/iterative_symmetric_points.h"
 
 namespace pcl_symmetry {
 
@@ -28,7 +29,7 @@ std::vector<SymmetryPlane> publishedPlanes(const PointsRef& points, const Gaussi
   isp.update = IspUpdate::PointToPoint;
   isp.sigma = isp.final_sigma = edt.sigma();
   isp.max_iterations = options.max_iterations;
-  std::vector<LocalMaximum> maxima = findLocalMaxima(map, options.maxima);
+  std::vector<LocalMaximum> maxima = findLocalMaxima(map, options.maxima, options.num_threads);
   if (options.max_maxima > 0 && maxima.size() > static_cast<std::size_t>(options.max_maxima))
     maxima.erase(maxima.begin() + options.max_maxima, maxima.end());
   std::vector<SymmetryPlane> refined(maxima.size());

@@ -12,9 +12,7 @@ namespace pcl_symmetry {
 std::vector<Candidate> gatherCandidates(const NormalizedCloud& cloud, const SymmetryMap& map,
                                         const DetectionOptions& options) {
   std::vector<Candidate> candidates;
-  LocalMaximaOptions maxima = options.expert.maxima;
-  maxima.num_threads = options.num_threads;
-  for (const LocalMaximum& maximum : findLocalMaxima(map, maxima)) {
+  for (const LocalMaximum& maximum : findLocalMaxima(map, options.expert.maxima, options.num_threads)) {
     if (static_cast<int>(candidates.size()) >= options.expert.max_candidates) break;
     const ReflectionPlane plane = cloud.toNormalized(maximum.plane);
     if (kSameMaximum.anySame(candidates, plane, &Candidate::plane)) continue;
@@ -46,7 +44,7 @@ std::vector<Candidate> StagedRefinement::close(std::vector<Candidate> candidates
               return candidate.merit >= kDetection.stages.symmetric_merit - kDetection.stages.coarse_slack;
             });
   std::vector<Candidate> found = refined({candidates.begin(), likely}, closeStage());
-  // Beside a symmetry of a whole cloud, the others are of no use.
+  // Once a whole cloud has a symmetry, candidates far below it are dropped.
   if (!all && std::any_of(found.begin(), found.end(), isSymmetry)) return distinct(std::move(found), -1.0, 0);
   for (Candidate& other : refined({likely, candidates.end()}, closeStage())) found.push_back(std::move(other));
   const bool is_whole = std::any_of(found.begin(), found.end(), isSymmetry);
@@ -94,13 +92,13 @@ RefinementStage StagedRefinement::stage(int num_samples, double sigma, double fi
   stage.undo_slides = kKindRules.slides[kind] && final_sigma == sigma;
   // On the way to narrow weights, point-to-plane steps would slide a scan along its flat pieces.
   const bool slides = kKindRules.slides[kind] && num_samples > kDetection.stages.first_samples && final_sigma < sigma;
-  stage.isp.update = slides ? IspUpdate::PointToPoint : options_.expert.update;
+  if (slides) stage.isp.update = IspUpdate::PointToPoint;
   stage.isp.sigma = sigma;
   stage.isp.final_sigma = final_sigma;
-  stage.isp.max_iterations = std::min(max_iterations, options_.expert.max_iterations);
+  stage.isp.max_iterations = max_iterations;
   stage.rough_isp = stage.isp;
   stage.rough_isp.max_iterations = std::min(stage.isp.max_iterations, kDetection.stages.rough_iterations);
-  if (options_.expert.update == IspUpdate::PointToPlane) stage.isp.error_share = kDetection.stages.settled_error_share;
+  stage.isp.error_share = kDetection.stages.settled_error_share;
   return stage;
 }
 

@@ -231,10 +231,10 @@ double chanceLevel(const ReflectedVolume& volume, const Eigen::Vector3d& center,
   return std::max(0.0, *at);
 }
 
-std::vector<ReflectionPlane> startsOf(const SymmetryMap& map, const Points& body, int max_candidates) {
+std::vector<ReflectionPlane> startsOf(const SymmetryMap& map, const Points& body, const DetectionOptions& options) {
   std::vector<ReflectionPlane> starts = principalPlanes(principalAxes(body));
-  for (const LocalMaximum& maximum : findLocalMaxima(map))
-    if (static_cast<int>(starts.size()) < max_candidates) starts.push_back(maximum.plane);
+  for (const LocalMaximum& maximum : findLocalMaxima(map, {}, options.num_threads))
+    if (static_cast<int>(starts.size()) < options.expert.max_candidates) starts.push_back(maximum.plane);
   return starts;
 }
 
@@ -264,7 +264,7 @@ Detection detectVolumePlanes(const ScalarGrid& input, const DetectionOptions& op
     const ReflectedVolume few(coarse, center, 1), all(fine, center, options.num_threads);
     const int stride = strideFor(coarse.f, 30'000);
     const PlaneTolerance one{kRules.merge_angle, kRules.merge_offset * edt.radius()};
-    const std::vector<ReflectionPlane> starts = startsOf(found.map, body, options.expert.max_candidates);
+    const std::vector<ReflectionPlane> starts = startsOf(found.map, body, options);
     std::vector<SymmetryPlane> maxima(starts.size());
     parallelBlocks(starts.size(), options.num_threads, [&](std::size_t i) {
       maxima[i] = few.refined(starts[i], stride, 15, 2e-3);

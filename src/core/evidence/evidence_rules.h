@@ -36,7 +36,7 @@ struct EvidenceRules {
   std::size_t least_of_piece = 8;                   ///< samples of it
   double far_view = 100.0;                          ///< radii, from where rays are parallel
   double layered_sheet = 0.1;                       ///< layered share of open sheets; 38 of 40 cut objects have more
-  double few_borders = 0.6, borders_everywhere = 0.75;  ///< share near borders up to which they tell, or nothing
+  double few_borders = 0.6, borders_everywhere = 0.75;  ///< share near borders to trust them fully, or not at all
   float in_front = 3.0f, behind = 4.0f;                 ///< spacings by which a piece reaches behind the last points
   float runs_into = 0.65f, closes = 0.8f;               ///< cosine of normals at a cut, and where a surface closes
   float last_points = 2.0f;                             ///< depth of these points, spacings

@@ -109,7 +109,7 @@ struct CutPlane {
 /// at open borders.
 ///
 /// Not in the paper. Where a piece was cut off by a plane, whole parts of the object may lack their counterpart: they
-/// have no edge to matched points that would tell so, but their reflections lie beyond the plane of the cut. The rim of
+/// share no border with matched points, but their reflections lie beyond the plane of the cut. The rim of
 /// an open vessel is such a plane too.
 /// \param borders whether each point is at an open border of the surface, as from openBorders().
 /// \param spacing median distance of the points.
@@ -131,12 +131,12 @@ public:
   SurfaceEnds(const Points& points, const LocalGeometry& geometry, const ClosestPointSearch& search,
               const FoundNeighbors& found, double spacing, std::uint64_t seed, int num_threads);
 
-  /// Whether the counterparts of samples are missing from the cloud, in [0, 1], by which ends of the cloud say so.
+  /// For each sample, how surely its counterpart is missing from the cloud, in [0, 1].
   /// \param matched,closest,reflected as of missingCounterparts(), for all points.
   std::vector<float> missing(const std::vector<char>& matched, const std::vector<int>& closest,
                              const Points& reflected) const;
 
-  /// How far ends say what is missing, in [0, 1]: not where the cloud is all borders, as a wire is.
+  /// How far open borders may excuse missing counterparts, in [0, 1]: 0 for a wire or an open sheet.
   double trust() const { return trust_; }
 
 private:

@@ -39,11 +39,6 @@ double byPrecision(const PlaneEvidence& evidence, const EvidenceUnits& units) {
   return std::min(resolvedOff(evidence, units), units.most_off) / unit;
 }
 
-/// \return log odds by the share of the surface that is off at twice the tolerance.
-double byDoubleShare(const PlaneEvidence& evidence, const EvidenceUnits& units) {
-  return std::log((1.0 - evidence.double_share + units.double_off) / (kOffShare + units.double_off));
-}
-
 /// \return log odds by how easily the plane slips along what it matches, more where much is hidden, >= 0.
 double bySlipping(const PlaneEvidence& evidence, const EvidenceUnits& units) {
   const double slips = std::max(0.0, std::log(units.slipping / (evidence.hold + units.least_slipping)));
@@ -90,7 +85,7 @@ std::vector<double> logOddsTerms(const PlaneEvidence& evidence) {
     case CloudKind::Scan:
       return {1.0,
               byShare(evidence, units.scan_off),
-              byDoubleShare(evidence, units),
+              byOff(1.0 - evidence.double_share, units.double_off),
               byUnexplainedLoss(evidence, units),
               bySlipping(evidence, units),
               further};

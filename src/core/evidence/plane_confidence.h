@@ -12,7 +12,7 @@ enum class CloudKind {
   Volume    ///< the points resolve no surface: they have neighbors on all sides, by noise beyond their spacing
 };
 
-/// What the points tell about one plane, and how finely they sample the surface.
+/// Evidence for and against one plane, and how finely the points sample the surface.
 struct PlaneEvidence {
   double support = 0.0;    ///< mean over the points: the reflection lies on the surface, in [0, 1]
   double conflict = 0.0;   ///< mean over the points: the reflection lies where there is nothing, in [0, 1]
@@ -28,7 +28,7 @@ struct PlaneEvidence {
   double hold = 1.0;          ///< of scans: how firmly what is matched holds the plane, see secondStiffness(), >= 0
   double tolerance = 0.02;    ///< of that share, divided by the radius of the points, > 0
   double unknown = 0.0;  ///< share of the surface that is uninformative: its reflection was not seen or was cut off
-  bool flat = false;     ///< all points lie in one plane: the outline alone tells
+  bool flat = false;     ///< all points lie in one plane, so that only their outline is informative
   double coarser = 0.0;  ///< share by which the spacing of the points raised the tolerance, >= 0
   bool further = false;  ///< another plane of the same cloud has better evidence
 };
@@ -37,8 +37,7 @@ struct PlaneEvidence {
 /// \return min(1, support / ((support + conflict) * baseline)), in [0, 1]; 0 where nothing was seen.
 double seenSupport(const PlaneEvidence& evidence);
 
-/// What the evidence is divided by before it counts: how exactly it is known. Chosen by cross-validation
-/// over the models of the fit.
+/// Uncertainties of the evidence, by which it is divided. Chosen by cross-validation over the models of the fit.
 struct EvidenceUnits {
   double off = 0.005;                    ///< error of the share that is off, of clouds without noise
   double off_per_spacing = 0.002;        ///< the same per spacing in tolerances

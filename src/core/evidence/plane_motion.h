@@ -32,7 +32,7 @@ struct PlaneChart {
 Eigen::Matrix3d motionStiffness(const Points& points, const Points& normals, const std::vector<char>& matched,
                                 const ReflectionPlane& plane);
 
-/// How firmly a plane is held along its normal: of a tube mirrored across, only its ends say where.
+/// How firmly the matches fix the offset of a plane: those of a tube fix it only at its ends.
 /// \param stiffness of motionStiffness().
 /// \return mean square of the change of a match's distance per change of the offset, after the best tilt, in [0, 4].
 double offsetStiffness(const Eigen::Matrix3d& stiffness);

@@ -15,8 +15,9 @@ struct PointEvidence {
   std::vector<float> conflict;  ///< the reflection lies where the scanner saw that there is nothing
 };
 
-/// How surely nothing is at a point. A pixel without a depth tells that nothing is there where the sensor is exact, and
-/// little where it has errors: it may be a shadow of the projector, or what hid the object was cut out of the picture.
+/// How surely a point lies in free space. A pixel without a depth means free space where the sensor is exact, and
+/// little where it has errors: it may be a shadow of the projector, or an occluder may have been cut out of the
+/// picture.
 /// \param x in the unit ball.
 /// \return in [0, 1]: 0 behind what was seen, 1 before it.
 float emptiness(const Visibility& visibility, const Eigen::Vector3d& x);

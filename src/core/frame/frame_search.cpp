@@ -155,10 +155,8 @@ FrameCandidate ordered(const FrameEvidence& evidence, FrameCandidate frame) {
 }  // namespace
 
 std::vector<CellPlane> firstPlaneCandidates(const FrameEvidence& evidence, const SymmetryMap& map, int num_threads) {
-  LocalMaximaOptions maxima;
-  maxima.num_threads = num_threads;
   std::vector<CellPlane> candidates;
-  for (const LocalMaximum& maximum : findLocalMaxima(map, maxima)) {
+  for (const LocalMaximum& maximum : findLocalMaxima(map, {}, num_threads)) {
     if (candidates.size() >= kFrame.max_candidates) break;
     const CellPlane plane = evidence.toCells(maximum.plane);
     if (!isKnown(candidates, plane.normal, kFrame.candidate_angle)) candidates.push_back(plane);

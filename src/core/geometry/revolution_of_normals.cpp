@@ -17,24 +17,24 @@ double weightOf(double miss) {
   return 1.0 / (sum * sum);
 }
 
-/// A motion of space: turn and shift, so that a point x moves by shift + turn x x.
+/// A motion of space: rotation and shift, so that a point x moves by shift + rotation x x.
 struct Motion {
-  Eigen::Vector3d turn, shift;
+  Eigen::Vector3d rotation, shift;
 
-  Eigen::Vector3d velocityAt(const Eigen::Vector3d& x) const { return shift + turn.cross(x); }
+  Eigen::Vector3d velocityAt(const Eigen::Vector3d& x) const { return shift + rotation.cross(x); }
 };
 
-/// The motion with a turn of length one that moves the samples the least along their normals.
+/// The motion with a rotation of length one that moves the samples the least along their normals.
 Motion slowestAlongNormals(const Matrix6d& sum) {
   Eigen::Matrix3d shifts = sum.bottomRightCorner<3, 3>();
   shifts.diagonal().array() += kGeometry.translation_ridge * std::max(1e-12, shifts.trace());
   const Eigen::Matrix3d coupling = sum.topRightCorner<3, 3>();
   const Eigen::Matrix3d best_shifts = -shifts.ldlt().solve(coupling.transpose());
-  const Eigen::Matrix3d turns = sum.topLeftCorner<3, 3>() + coupling * best_shifts;
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(0.5 * (turns + turns.transpose()));
-  const Eigen::Vector3d turn = solver.eigenvectors().col(0);
-  const Eigen::Vector3d shift = best_shifts * turn;
-  return {turn, shift - turn.dot(shift) * turn};  // without the translation along the axis
+  const Eigen::Matrix3d rotations = sum.topLeftCorner<3, 3>() + coupling * best_shifts;
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(0.5 * (rotations + rotations.transpose()));
+  const Eigen::Vector3d rotation = solver.eigenvectors().col(0);
+  const Eigen::Vector3d shift = best_shifts * rotation;
+  return {rotation, shift - rotation.dot(shift) * rotation};  // without the translation along the axis
 }
 
 /// A point of a surface.
@@ -51,13 +51,12 @@ std::vector<Oriented> orientedAt(const Points& points, const Points& normals, co
 
 }  // namespace
 
-Eigen::ParametrizedLine<double, 3> axisOfNormals(const Points& points, const Points& normals,
-                                                 const std::vector<int>& samples) {
+Line3d axisOfNormals(const Points& points, const Points& normals, const std::vector<int>& samples) {
   const std::vector<Oriented> oriented = orientedAt(points, normals, samples);
   std::vector<double> weights(oriented.size(), 1.0);
   Motion motion{Eigen::Vector3d::UnitZ(), Eigen::Vector3d::Zero()};
   for (int k = 0; k < kGeometry.reweightings; ++k) {
-    WeightedProducts products;  // of how fast points move along their normals, by turn and by shift
+    WeightedProducts products;  // of how fast points move along their normals, by rotation and by shift
     for (std::size_t i = 0; i < oriented.size(); ++i)
       products.add(oriented[i].point.cross(oriented[i].normal), oriented[i].normal, 0.0, weights[i]);
     motion = slowestAlongNormals(products.sums().topLeftCorner<6, 6>());
@@ -68,7 +67,7 @@ Eigen::ParametrizedLine<double, 3> axisOfNormals(const Points& points, const Poi
     }
   }
   // The axis is where the motion stands still.
-  return {motion.turn.cross(motion.shift), motion.turn};
+  return {motion.rotation.cross(motion.shift), motion.rotation};
 }
 
 Eigen::Vector3d centerOfNormals(const Points& points, const Points& normals, const std::vector<int>& samples) {

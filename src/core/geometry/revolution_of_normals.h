@@ -1,9 +1,10 @@
 #pragma once
 
-#include <Eigen/Geometry>
+#include <Eigen/Core>
 #include <vector>
 
 #include "pcl_symmetry/core/point_set.h"
+#include "pcl_symmetry/core/reflection_plane.h"
 
 namespace pcl_symmetry {
 
@@ -19,8 +20,7 @@ namespace pcl_symmetry {
 /// \param normals 3 x N, unit, of any sign.
 /// \param samples indices of points, at least one.
 /// \return the best line, whether the points lie on a body of revolution or not.
-Eigen::ParametrizedLine<double, 3> axisOfNormals(const Points& points, const Points& normals,
-                                                 const std::vector<int>& samples);
+Line3d axisOfNormals(const Points& points, const Points& normals, const std::vector<int>& samples);
 
 /// The point that most of the normals meet.
 /// \param points,normals,samples as in axisOfNormals().

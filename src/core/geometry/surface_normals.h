@@ -7,11 +7,11 @@
 
 namespace pcl_symmetry {
 
-/// Samples beside the closest one that are asked whether a point lies on the surface.
+/// Neighbors of the closest sample that also decide whether a point lies on the surface.
 /// A sample is within reach at 1.25 spacings, and that circle holds pi 1.25^2 = 5 samples on average.
 constexpr int kNumWitnesses = 4;
 
-/// What the neighborhood of each sample says about the surface.
+/// The surface at each sample, estimated from its neighbors.
 struct LocalGeometry {
   Points normals;                ///< 3 x N, unit, of arbitrary sign
   std::vector<float> roughness;  ///< N, root mean square distance of the neighbors from the tangent plane

@@ -69,7 +69,7 @@ struct NormalizedCloud {
   ReflectionPlane toInput(const ReflectionPlane& plane) const;
   /// \param input_axis with a point and a direction, such as SymmetryAxis.
   template <typename Axis>
-  Eigen::ParametrizedLine<double, 3> lineOf(const Axis& input_axis) const {
+  Line3d lineOf(const Axis& input_axis) const {
     return {toNormalized(input_axis.point), input_axis.direction};
   }
 

@@ -28,7 +28,7 @@ inline double marginOf(const SymmetryRotation& rotation) {
                             : std::min(margin, (rotation.halfway - rotation.off) / kScanAxes.halfway_more - 1.0);
 }
 
-/// What a scan tells about one rotation about a line, shares of the points seen. The rest lands where nothing was seen.
+/// Where one rotation about a line maps the points seen, as shares of them. The rest lands in occluded space.
 struct RotationShares {
   double on = 0.0;   ///< lands within the tolerance of the surface seen
   double off = 0.0;  ///< lands where the scanner saw that there is nothing, beyond the tolerance
@@ -45,7 +45,7 @@ public:
   /// \param tolerance normalized frame.
   RotationEvidence(const NormalizedCloud& cloud, double tolerance, std::uint64_t seed);
 
-  /// By distances that the EDT tells, of a few points: for screening.
+  /// By distances that are read from the EDT at a few points: for screening.
   /// \param slack tolerances.
   /// \param most_off,most_far shares beyond which the rest of the points is left out.
   RotationShares roughly(const Eigen::Affine3d& motion, double slack, double most_off, double most_far) const;
@@ -102,8 +102,8 @@ private:
   Points facing_;  ///< normals, toward the scanner
 };
 
-/// What a scan tells about a twofold rotation besides the shares of SymmetryRotation: most of what it maps is hidden,
-/// and a flat side that lands on itself confirms little.
+/// Evidence for a twofold rotation of a scan beside the shares of SymmetryRotation: it maps most points to occluded
+/// space, and a flat side that lands on itself confirms little.
 struct RotationSigns {
   double grown = 1.0;  ///< extent of the points and their images, in extents of the points; >= 1
   double hold = 1.0;   ///< RotationEvidence::hold()

@@ -8,9 +8,9 @@
 #include "core/base/median.h"
 #include "core/base/parallel.h"
 #include "core/evidence/evidence_rules.h"
-#include "core/evidence/surface_samples.h"
 #include "core/geometry/point_samples.h"
 #include "core/geometry/small_motion.h"
+#include "core/refinement/refinement_rules.h"
 
 namespace pcl_symmetry {
 
@@ -67,7 +67,7 @@ RotationFit::RotationFit(Points points, const GaussianEdt& edt, RotationLimits l
   surface->own_distances.resize(static_cast<std::size_t>(p.cols()));
   parallelRanges(surface->own_distances.size(), 512, num_threads, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i)
-      surface->own_distances[i] = surface->discs->ownDistance(static_cast<int>(i), kRotation.new_sample_factor);
+      surface->own_distances[i] = surface->discs->ownDistance(static_cast<int>(i), kEvidence.new_point_factor);
   });
   surface->order = drawSamples(p.cols(), static_cast<int>(p.cols()) - 1, seed);
   surface->overlap_points = pointsAt(p, drawSamples(p.cols(), kRotation.num_overlap_points, seed + 2));
@@ -163,7 +163,7 @@ RotationFit::NormalEquations RotationFit::equations(const RotationSet& set, std:
     } else {
       nearest = surface_->discs->nearest(image);
     }
-    if (nearest.disc < 0 || nearest.distance > kRotation.reach_sigmas * annealing.sigma) continue;
+    if (nearest.disc < 0 || nearest.distance > kRefinement.reach_sigmas * annealing.sigma) continue;
     const Eigen::Vector3d y = points.col(nearest.disc).cast<double>();
     const Eigen::Vector3d normal = geometry.normals.col(nearest.disc).cast<double>();
     const Eigen::Vector3d rotated = rotation * geometry.normals.col(sample).cast<double>();
@@ -190,14 +190,14 @@ RotationSet RotationFit::fitted(RotationSet set, const std::vector<std::size_t>&
       sums.h += part.h;
       sums.g += part.g;
     }
-    const Vector6d step = smallMotion(sums.h, sums.g, kRotation.min_stiffness, kRotation.max_step);
+    const Vector6d step = smallMotion(sums.h, sums.g, kRefinement.least_stiffness, kRefinement.longest_step);
     if (!step.allFinite()) break;
     const Eigen::Matrix3d change = rotationBy(step.head<3>());
     for (Eigen::Matrix3d& rotation : set.rotations) rotation = change * rotation * change.transpose();
     set.center += step.tail<3>();
     const double length = step.norm();
     if (annealing.sigma == annealing.final_sigma && length <= kRotation.settled_step) break;
-    if (length <= kRotation.rest_step * annealing.sigma)
+    if (length <= kRefinement.rest_sigmas * annealing.sigma)
       annealing.sigma = std::max(annealing.final_sigma, 0.5 * annealing.sigma);
   }
   return set;

@@ -27,7 +27,7 @@ struct RotationRules {
   double clear_factor = 1.5;      // rotations between those of a fold fail by this factor more,
   double clear_excess = 0.2;      // and by this much of what is allowed
 
-  // Fits
+  // Fits: Iterative Symmetric Points, whose steps and weights kRefinement limits
   int num_overlap_points = 256;   // points of overlap()
   int num_rough_points = 200;     // points of rough fits
   int num_close_points = 1000;    // points of close fits
@@ -38,16 +38,10 @@ struct RotationRules {
   double first_spacings = 1.0;    // and spacings of the points
   double last_tolerances = 0.7;   // width at last, the greater of this many tolerances
   double last_roughnesses = 3.0;  // and roughnesses
-  double reach_sigmas = 3.0;      // farther pairs have no weight
-  double min_stiffness = 1e-3;    // of the greatest eigenvalue: below, a direction is free, as about a cylinder's axis
-  double max_step = 0.2;          // longer steps leave the basin
-  double rest_step = 0.1;         // sigmas: a shorter step halves the width of the weights
   double settled_step = 2e-4;     // a shorter step ends the fit: a hundredth of the default tolerance
   std::size_t max_fitted = 6;     // rotations of a large group that are fitted, spread over it
-  float new_sample_factor =
-      1.41421356f;             // distance from a disc of new samples to that of fitted ones: 3 of 9 are used up
-  double rough_overlap = 0.6;  // that a set has to reach before its fit,
-  double fair_overlap = 0.7;   // and after its rough fit
+  double rough_overlap = 0.6;     // that a set has to reach before its fit,
+  double fair_overlap = 0.7;      // and after its rough fit
 
   // Axes
   double same_line = 0.05;         // closer lines are one

@@ -11,6 +11,7 @@
 #include "core/geometry/answerable_points.h"
 #include "core/geometry/directions.h"
 #include "core/geometry/distinct_points.h"
+#include "core/geometry/geometry_rules.h"
 #include "core/geometry/point_samples.h"
 #include "core/geometry/revolution_of_normals.h"
 #include "core/geometry/search_views.h"
@@ -57,7 +58,7 @@ constexpr LineTolerance kSameStart{kScanAxes.same_start_angle, kScanAxes.same_st
 
 double missAt(const Line3d& line, const Eigen::Vector3d& x, const Eigen::Vector3d& normal) {
   const Eigen::Vector3d velocity = line.direction().cross(x - line.origin());
-  return std::abs(velocity.dot(normal)) / std::max(kScanAxes.least_lever, velocity.norm());
+  return std::abs(velocity.dot(normal)) / std::max(kGeometry.least_lever, velocity.norm());
 }
 
 /// Lines that many normals of a scan meet or are parallel to: the best of all, and the best of small draws, so that a
@@ -68,7 +69,7 @@ std::vector<AxisStart> startsFromNormals(const NormalizedCloud& cloud, std::uint
   const auto inliersOf = [&](const Line3d& line) {
     std::vector<int> inliers;
     for (const int i : samples)
-      if (missAt(line, cloud.points.col(i).cast<double>(), normals.col(i).cast<double>()) < kScanAxes.normal_miss)
+      if (missAt(line, cloud.points.col(i).cast<double>(), normals.col(i).cast<double>()) < kGeometry.normal_miss)
         inliers.push_back(i);
     return inliers;
   };

@@ -13,7 +13,6 @@ struct ScanAxisRules {
   double usual_tolerance = 0.01;  ///< share of the diameter, where no planes are looked for
   int normal_samples = 600, normal_draws = 60, normals_in_draw = 8;  ///< that lines of bodies of revolution are from
   int from_normals = 3;                                              ///< lines kept of these
-  double normal_miss = 0.1, least_lever = 0.05;                      ///< radians and radii by which normals meet a line
   double same_start_angle = 0.1, same_start_offset = 0.06;           ///< lines within both are one start
   double angle_of_fold = 3.0 * kDegree;                              ///< by which planes of scans are off
   double least_plane_angle = 0.13;                                   ///< between two planes that share a line

@@ -52,7 +52,7 @@ struct InferredView {
 /// several, the one with the fewest layers. Where it leaves less than a quarter of the variance, more layers are
 /// allowed, and clouds as thin as wires.
 ///
-/// No viewpoint have
+/// No viewpoint is found for
 /// - whole objects, open shells, cut clouds, and several views put together;
 /// - flat sheets of even density, and wires: rays from everywhere meet them once;
 /// - single views whose density a voxel grid made even, as open shells look the same;

@@ -11,7 +11,7 @@
 
 namespace pcl_symmetry {
 
-/// What K small patches of a surface tell about its parts.
+/// Evidence of the parts of a surface, measured on K small patches.
 struct PartEvidence {
   Patches patches;
   std::vector<PatchBorder> borders;

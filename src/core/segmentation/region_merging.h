@@ -85,7 +85,7 @@ struct Merge {
 /// odds are updated after each merge.
 std::vector<Merge> mergeRegions(Regions regions, const MergeWeights& weights);
 
-/// What the merges of one division into patches say about pairs of elements.
+/// Probabilities that pairs of elements are in one part, by the merges of one division into patches.
 struct MergedDivision {
   std::vector<int> cell;        ///< of each element, from 0: regions that are surely one part
   Eigen::MatrixXf probability;  ///< cells x cells: that two of them are one part, in [0, 1]

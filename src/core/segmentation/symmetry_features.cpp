@@ -1,11 +1,12 @@
 #include "core/segmentation/symmetry_features.h"
 
 #include <algorithm>
-#include <cmath>
 
 #include "core/base/parallel.h"
+#include "core/detection/plane_tolerance.h"
 #include "core/geometry/mesh_sampling.h"
 #include "core/geometry/surface_normals.h"
+#include "core/refinement/normalized_cloud.h"
 #include "core/segmentation/segmentation_rules.h"
 #include "pcl_symmetry/core/closest_point_search.h"
 #include "pcl_symmetry/core/iterative_symmetric_points.h"
@@ -27,29 +28,24 @@ Points sampleElements(const SurfaceGraph& graph, const std::vector<int>& element
   return sampleTriangles(graph.corners, triangles, kSegmentation.feature_samples, seed);
 }
 
-bool isNear(const ReflectionPlane& a, const ReflectionPlane& b, const Eigen::Vector3d& center, double most_offset) {
-  const double sign = a.normal().dot(b.normal()) < 0.0 ? -1.0 : 1.0;
-  return a.angleTo(b) < kSegmentation.same_angle &&
-         std::abs(a.signedDistance(center) - sign * b.signedDistance(center)) < most_offset;
+ReflectionPlane inBall(const ReflectionPlane& plane, const GaussianEdt& edt) {
+  return normalized(plane, edt.center(), edt.radius());
 }
 
 /// Whether no known plane shares the basin of a plane.
 bool isNew(const ReflectionPlane& plane, const std::vector<ReflectionPlane>& known, const GaussianEdt& edt) {
-  return std::none_of(known.begin(), known.end(), [&](const ReflectionPlane& k) {
-    return isNear(plane, k, edt.center(), kSegmentation.same_offset * edt.radius());
-  });
+  return !kSameMaximum.anySame(known, inBall(plane, edt),
+                               [&](const ReflectionPlane& other) { return inBall(other, edt); });
 }
 
 /// The strongest significant maxima of the transform, one of each basin (Section 4.4).
 std::vector<ReflectionPlane> significantMaxima(const Points& samples, const GaussianEdt& edt, std::uint64_t seed,
                                                int num_threads) {
   const PlaneGrid grid(kSegmentation.map_size, edt.center(), edt.radius());
-  LocalMaximaOptions significant;
-  significant.num_threads = num_threads;
   SymmetryMap map = sampledTransform(edt, grid, {kSegmentation.num_map_samples, seed, num_threads});
   map.center_of_mass = centerOfMass(samples);
   std::vector<ReflectionPlane> maxima;
-  for (const LocalMaximum& maximum : findLocalMaxima(map, significant)) {
+  for (const LocalMaximum& maximum : findLocalMaxima(map, {}, num_threads)) {
     if (maxima.size() == kSegmentation.max_planes) break;
     if (isNew(maximum.plane, maxima, edt)) maxima.push_back(maximum.plane);
   }
@@ -69,10 +65,11 @@ std::vector<ReflectionPlane> refined(const std::vector<ReflectionPlane>& starts,
   IspOptions isp;
   isp.sigma = edt.sigma();
   isp.final_sigma = kSegmentation.final_sigma * edt.sigma();
+  const PlaneTolerance same_basin{kSameMaximum.angle, kSegmentation.most_moved};
   std::vector<ReflectionPlane> ends(starts.size()), moved(starts.size());
   parallelBlocks(starts.size(), num_threads, [&](std::size_t i) {
     ends[i] = refineSymmetricPoints(surface, reflected, starts[i], isp).plane;
-    moved[i] = isNear(ends[i], starts[i], edt.center(), kSegmentation.most_moved * edt.radius()) ? ends[i] : starts[i];
+    moved[i] = same_basin.same(inBall(ends[i], edt), inBall(starts[i], edt)) ? ends[i] : starts[i];
   });
   std::vector<ReflectionPlane> planes;
   for (const ReflectionPlane& plane : moved)

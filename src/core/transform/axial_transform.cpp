@@ -121,7 +121,7 @@ struct AxialRotation {
 /// \param folds as in AxialTransformOptions.
 /// \param both_ways also rotations by more than pi.
 std::vector<AxialRotation> rotationsOf(const std::vector<int>& folds, bool both_ways) {
-  const int num_turns = kTransform.num_turns;
+  const int num_rotations = kTransform.num_rotations;
   std::map<std::pair<int, int>, std::size_t> index_of;  // by reduced fraction of a full rotation
   std::vector<AxialRotation> rotations;
   const auto add = [&](int part, int whole, std::size_t fold, double weight) {
@@ -138,9 +138,9 @@ std::vector<AxialRotation> rotationsOf(const std::vector<int>& folds, bool both_
   for (std::size_t i = 0; i < folds.size(); ++i) {
     const int n = folds[i];
     for (int k = 1; 2 * k <= n; ++k) addPair(k, n, i, 1.0 / (n - 1));
-    // The middles of equal parts of a half rotation: the mean over all angles but for harmonics of 2 num_turns and
+    // The middles of equal parts of a half rotation: the mean over all angles but for harmonics of 2 num_rotations and
     // more.
-    for (int k = 0; n == 0 && k < num_turns; ++k) addPair(2 * k + 1, 4 * num_turns, i, 0.5 / num_turns);
+    for (int k = 0; n == 0 && k < num_rotations; ++k) addPair(2 * k + 1, 4 * num_rotations, i, 0.5 / num_rotations);
   }
   return rotations;
 }

@@ -225,9 +225,10 @@ LineMap lineTransform(const GaussianEdt2D& edt, const LineGrid& grid, const Eige
   return map;
 }
 
-std::vector<LineMaximum> findLineMaxima(const GaussianEdt2D& edt, const LineMap& map,
-                                        const LocalMaximaOptions& options) {
+std::vector<LineMaximum> findLineMaxima(const GaussianEdt2D& edt, const LineMap& map, const LocalMaximaOptions& options,
+                                        int num_threads) {
   options.validate();
+  checkNumThreads(num_threads);
   if (map.empty()) return {};
   const LineGrid& grid = map.grid;
   const std::size_t strongest = map.strongest();
@@ -242,7 +243,7 @@ std::vector<LineMaximum> findLineMaxima(const GaussianEdt2D& edt, const LineMap&
   }
   const FullSum sum(edt);
   std::vector<LineMaximum> maxima(bins.size());
-  parallelBlocks(bins.size(), options.num_threads,
+  parallelBlocks(bins.size(), num_threads,
                  [&](std::size_t i) { maxima[i] = climb(sum, edt, grid, grid.line(bins[i])); });
   std::stable_sort(maxima.begin(), maxima.end(), [](const auto& a, const auto& b) { return a.value > b.value; });
   return maxima;

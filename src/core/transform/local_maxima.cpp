@@ -32,12 +32,12 @@ double laplacian(const SymmetryMap& map, const PlaneGrid::Bin& bin) {
 
 void LocalMaximaOptions::validate() const {
   check(strength >= 0.0 && strength <= 1.0, "strength", strength, "in [0, 1]");
-  checkNumThreads(num_threads);
   check(laplacian >= 0.0 && laplacian <= 1.0, "laplacian", laplacian, "in [0, 1]");
 }
 
-std::vector<LocalMaximum> findLocalMaxima(const SymmetryMap& map, const LocalMaximaOptions& options) {
+std::vector<LocalMaximum> findLocalMaxima(const SymmetryMap& map, const LocalMaximaOptions& options, int num_threads) {
   options.validate();
+  checkNumThreads(num_threads);
   std::vector<LocalMaximum> maxima;
   if (map.empty()) return maxima;
   const std::size_t strongest = map.strongest();
@@ -45,7 +45,7 @@ std::vector<LocalMaximum> findLocalMaxima(const SymmetryMap& map, const LocalMax
   const double curvature = options.laplacian * -laplacian(map, map.grid.bin(strongest));
   const PlaneGrid& grid = map.grid;
   std::vector<std::vector<LocalMaximum>> rows(grid.numTheta());
-  parallelBlocks(rows.size(), options.num_threads, [&](std::size_t row) {
+  parallelBlocks(rows.size(), num_threads, [&](std::size_t row) {
     const int t = static_cast<int>(row);
     for (int p = 0; p < grid.numPhi(); ++p) {
       const float* const values = &map.values[grid.index({t, p, 0})];

@@ -1,7 +1,5 @@
 #include "pcl_symmetry/core/planar_transform.h"
 
-#include <algorithm>
-
 #include "core/transform/free_space.h"
 #include "core/transform/sampled_transform.h"
 
@@ -26,14 +24,6 @@ SymmetryMap transformed(const GaussianEdt& edt, const PlaneGrid& grid, const Pla
 }
 
 }  // namespace
-
-std::size_t SymmetryMap::strongest() const {
-  return std::max_element(values.begin(), values.end()) - values.begin();
-}
-
-SymmetryMap SymmetryMap::zero(const GaussianEdt& edt, const PlaneGrid& grid, TransformMethod method) {
-  return {grid, std::vector<float>(grid.size(), 0.0f), method, edt.sigma(), grid.center()};
-}
 
 void PlanarTransformOptions::validate() const {
   sampled.validate();

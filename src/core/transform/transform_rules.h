@@ -9,7 +9,7 @@ namespace pcl_symmetry {
 /// The numbers of this room that change answers.
 struct TransformRules {
   // Axes
-  int num_turns = 12;  ///< between 0 and pi that represent rotations by any angle
+  int num_rotations = 12;  ///< between 0 and pi that represent rotations by any angle
   /// D that count as equal: at the axis of a bottle they differ by 0.001, of a rim with five spokes by 0.010.
   double equal_orders = 0.005;
   std::size_t most_axis_bins = 50'000;  ///< that are looked at, strongest first

@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <stdexcept>
 #include <utility>
 #include <vector>
@@ -61,16 +62,28 @@ TEST(DetectPlanes, AFlatRectangleHasThree) {
 
 TEST(DetectPlanes, SameBytesForAnyNumberOfThreads) {
   const Points cloud = moved(prism(5, 4000, Sampling::Random, 13), randomPose(13)).cloud();
-  const auto detect = [&](int num_threads) {
+  const Points beside =
+      box({0.6, 0.5, 0.35}, 2900, Sampling::Random, 2).cloud().colwise() + Eigen::Vector3f(2.0, 0.2, 0.1);
+  Points parts(3, cloud.cols() + beside.cols());
+  parts << cloud, beside;
+  const auto detect = [](const Points& points, bool approximate, int num_threads) {
     DetectionOptions options;
+    options.approximate = approximate;
     options.num_threads = num_threads;
-    return detectPlanes(cloud, options);
+    return detectPlanes(points, options);
   };
-  compareThreads(detect, [](const Detection& many, const Detection& one) {
-    EXPECT_EQ(one.planes.size(), 6u);
+  const auto expectSame = [](const Detection& many, const Detection& one) {
     EXPECT_EQ(many.map.values, one.map.values);
     expectSamePlanes(many.planes, one.planes);
-  });
+  };
+  EXPECT_EQ(detect(cloud, false, 1).planes.size(), 6u);
+  compareThreads([&](int num_threads) { return detect(cloud, false, num_threads); }, expectSame);
+  compareThreads([&](int num_threads) { return detect(parts, true, num_threads); },
+                 [&](const Detection& many, const Detection& one) {
+                   EXPECT_TRUE(std::any_of(one.planes.begin(), one.planes.end(),
+                                           [](const auto& plane) { return plane.kind == PlaneKind::Local; }));
+                   expectSame(many, one);
+                 });
 }
 
 TEST(PlaneInput, HasAMapWithItsDistanceTransform) {
@@ -95,7 +108,6 @@ TEST(DetectionOptions, RefusesBadOnes) {
   refused([](auto& o) { o.expert.num_radius = 0; });
   refused([](auto& o) { o.expert.max_candidates = 0; });
   refused([](auto& o) { o.expert.num_refine_samples = 9; });
-  refused([](auto& o) { o.expert.max_iterations = 0; });
   refused([](auto& o) { o.min_confidence = 1.5; });
   refused([](auto& o) { o.min_confidence = -0.1; });
   refused([](auto& o) { o.min_possible = -0.1; });

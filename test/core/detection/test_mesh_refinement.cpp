@@ -64,5 +64,31 @@ TEST(RefineOnMesh, WhatIsNoSymmetryIsDropped) {
   EXPECT_LT(found.best->share, 0.97);
 }
 
+TEST(RefineOnMesh, KeepsTheOrderOfDetection) {
+  const TriangleMesh box = test::boxOfTriangles(4, 2, 1);
+  const auto plane = [](const Eigen::Vector3d& normal, double offset, PlaneKind kind, double support) {
+    SymmetryPlane made(ReflectionPlane(normal, offset));
+    made.kind = kind;
+    made.support = support;
+    made.share = 0.95;
+    return made;
+  };
+  // Samples showed the plane across the longest edge as nearly a symmetry: on the mesh it is one.
+  Detection found;
+  found.tolerance = 0.04;
+  found.best = plane(Eigen::Vector3d::UnitX(), 2.01, PlaneKind::Approximate, 0.9);
+  found.planes = {*found.best, plane({1.0, 1.0, 0.0}, 2.0, PlaneKind::Approximate, 0.5),
+                  plane(Eigen::Vector3d::UnitY(), 0.3, PlaneKind::Local, 0.7)};
+  DetectionOptions options;
+  options.approximate = true;
+  refineOnMesh(MeshSurface(box.vertices, box.triangles), found, options);
+  EXPECT_FALSE(found.best);
+  ASSERT_EQ(found.planes.size(), 3u);
+  EXPECT_EQ(found.planes[0].kind, PlaneKind::Symmetry);
+  expectPlane(found, Eigen::Vector3d::UnitX(), 2.0, 4.0);
+  EXPECT_EQ(found.planes[1].kind, PlaneKind::Local) << "by support";
+  EXPECT_EQ(found.planes[2].kind, PlaneKind::Approximate);
+}
+
 }  // namespace
 }  // namespace pcl_symmetry

@@ -6,11 +6,11 @@
 #include <cmath>
 #include <memory>
 #include <optional>
+#include <vector>
 
 #include "core/detection/part_search.h"
 #include "pcl_symmetry/core/detect_planes.h"
 #include "shapes/shapes.h"
-#include "shapes/threads.h"
 
 namespace {
 
@@ -58,6 +58,57 @@ struct SearchedCloud {
   std::unique_ptr<PlaneFit> fit;
 };
 
+/// A plane of a fan about z; its support names it.
+SymmetryPlane planeOfFan(int k, PlaneKind kind, double confidence, double support) {
+  const double angle = k * kPi / 6.0;
+  SymmetryPlane plane(ReflectionPlane(Eigen::Vector3d(std::cos(angle), std::sin(angle), 0.0), 0.0));
+  plane.kind = kind;
+  plane.confidence = confidence;
+  plane.support = support;
+  return plane;
+}
+
+TEST(RankedPlanes, BestFirstAndEachOnce) {
+  const SearchedCloud searched(box(500, Sampling::Random, 3).cloud());
+  const std::vector<SymmetryPlane> planes = {
+      planeOfFan(0, PlaneKind::Approximate, 0.1, 0.7),
+      planeOfFan(1, PlaneKind::Possible, 0.3, 0.1),
+      planeOfFan(2, PlaneKind::Symmetry, 0.6, 0.2),
+      planeOfFan(3, PlaneKind::Possible, 0.4, 0.4),  // the plane of the next one, which is better
+      planeOfFan(3, PlaneKind::Symmetry, 0.9, 0.3),
+      planeOfFan(4, PlaneKind::Local, 0.0, 0.8),
+      planeOfFan(4, PlaneKind::Approximate, 0.1, 0.85),  // is reported as the plane of a part
+      planeOfFan(5, PlaneKind::Symmetry, 0.6, 0.25),
+      planeOfFan(8, PlaneKind::Symmetry, 0.5, 0.9),  // the third one again
+  };
+  DetectionOptions options;
+  const auto supports = [&] {
+    std::vector<double> found;
+    for (const SymmetryPlane& plane : rankedPlanes(planes, std::nullopt, searched.cloud, *searched.fit, options)) {
+      EXPECT_EQ(plane.point_support.size(), 500u);
+      found.push_back(plane.support);
+    }
+    return found;
+  };
+  EXPECT_EQ(supports(), (std::vector<double>{0.3, 0.25, 0.2, 0.1})) << "equally confident ones by support";
+  options.approximate = true;
+  EXPECT_EQ(supports(), (std::vector<double>{0.3, 0.25, 0.2, 0.1, 0.8, 0.7}));
+  options.max_planes = 2;
+  EXPECT_EQ(supports(), (std::vector<double>{0.3, 0.25}));
+}
+
+TEST(RankedPlanes, FewPossibleOnes) {
+  const SearchedCloud searched(box(500, Sampling::Random, 3).cloud());
+  std::vector<SymmetryPlane> planes;
+  for (int k = 0; k < 6; ++k) planes.push_back(planeOfFan(k, PlaneKind::Possible, 0.3, 0.5));
+  const auto numRanked = [&] {
+    return rankedPlanes(planes, std::nullopt, searched.cloud, *searched.fit, DetectionOptions()).size();
+  };
+  EXPECT_EQ(numRanked(), static_cast<std::size_t>(kDetection.decide.most_possible));
+  for (SymmetryPlane& plane : planes) plane.kind = PlaneKind::Symmetry;
+  EXPECT_EQ(numRanked(), 6u);
+}
+
 /// Two boxes, one turned and put at the side of the other, as dense as that.
 struct TwoBoxes {
   Points points;
@@ -77,18 +128,6 @@ struct TwoBoxes {
     }
   }
 };
-
-TEST(SymmetricParts, AreTheSameForAnyNumberOfThreads) {
-  const TwoBoxes boxes;
-  const SearchedCloud searched(boxes.points);
-  compareThreads([&](int num_threads) {
-    DetectionOptions options;
-    options.num_threads = num_threads;
-    const auto parts = findSymmetricParts(searched.cloud, *searched.fit, options);
-    return valuesOf(
-        parts, [](const SymmetricPart& part) { return part.plane.normal(); }, &SymmetricPart::points);
-  });
-}
 
 TEST(MatchedRegion, OfASymmetryIsAllOfTheSurfaceAndHasNoEdge) {
   const SearchedCloud searched(box({1.0, 0.7, 0.4}, 8000, Sampling::Random, 3).cloud());

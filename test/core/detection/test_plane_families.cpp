@@ -22,18 +22,12 @@ const Line3d kLine(Eigen::Vector3d(0.1, -0.05, 0.0), Eigen::Vector3d(0.3, 0.2, 1
 /// Nothing is a symmetry but what \p is_symmetry says; refinement leaves planes alone.
 FamilyTest testOf(const std::function<bool(const ReflectionPlane&)>& is_symmetry) {
   const auto share = [is_symmetry](const ReflectionPlane& plane) { return is_symmetry(plane) ? 1.0 : 0.6; };
-  return {share, share, [](const ReflectionPlane& plane) { return plane; }, 0.92, 0.03, 0.03};
-}
-
-ReflectionPlane through(const Line3d& line, double angle) {
-  const Eigen::Vector3d u = line.direction().unitOrthogonal(), v = line.direction().cross(u);
-  const Eigen::Vector3d n = std::cos(angle) * u + std::sin(angle) * v;
-  return ReflectionPlane(n, n.dot(line.origin()));
+  return {share, share, [](const ReflectionPlane& plane) { return plane; }, 0.92, 0.03};
 }
 
 TEST(FindAxes, FindsTheLineOfAllPlanes) {
   const auto test = testOf([](const ReflectionPlane& plane) { return contains(plane, kLine, 0.01); });
-  const auto axes = findAxes({through(kLine, 0.3), through(kLine, 1.1), through(kLine, 2.0)}, test);
+  const auto axes = findAxes({planeThrough(kLine, 0.3), planeThrough(kLine, 1.1), planeThrough(kLine, 2.0)}, test);
   ASSERT_EQ(axes.size(), 1u);
   EXPECT_NEAR(std::abs(axes[0].line.direction().dot(kLine.direction())), 1.0, 1e-12);
   EXPECT_LT(kLine.distance(axes[0].line.origin()), 1e-12);
@@ -51,7 +45,7 @@ TEST(FindAxes, RefinesALineOfRoughPlanes) {
   const auto off = [](const ReflectionPlane& plane, double by) {
     return ReflectionPlane(plane.normal() + by * kLine.direction(), plane.offset() + 0.5 * by);
   };
-  const auto axes = findAxes({off(through(kLine, 0.3), 0.015), off(through(kLine, 1.6), -0.015)}, test);
+  const auto axes = findAxes({off(planeThrough(kLine, 0.3), 0.015), off(planeThrough(kLine, 1.6), -0.015)}, test);
   ASSERT_EQ(axes.size(), 1u);
   EXPECT_NEAR(std::abs(axes[0].line.direction().dot(kLine.direction())), 1.0, 1e-12);
   EXPECT_LT(kLine.distance(axes[0].line.origin()), 1e-9);
@@ -60,7 +54,7 @@ TEST(FindAxes, RefinesALineOfRoughPlanes) {
 TEST(FindAxes, APolygonHasNone) {
   for (const int n : {2, 3, 4, 6, 12, 24}) {
     std::vector<ReflectionPlane> planes;
-    for (int k = 0; k < n; ++k) planes.push_back(through(kLine, kPi * k / n));
+    for (int k = 0; k < n; ++k) planes.push_back(planeThrough(kLine, kPi * k / n));
     // A prism forgives half a degree.
     const auto test = testOf([&](const ReflectionPlane& plane) {
       return std::any_of(planes.begin(), planes.end(),
@@ -74,9 +68,9 @@ TEST(FindAxes, APolygonHasNone) {
 TEST(FindAxes, NeedsTwoPlanes) {
   const auto test = testOf([](const ReflectionPlane&) { return true; });
   EXPECT_TRUE(findAxes({}, test).empty());
-  EXPECT_TRUE(findAxes({through(kLine, 0.3)}, test).empty());
-  EXPECT_TRUE(findAxes({through(kLine, 0.3), through(kLine, 0.3)}, test).empty()) << "twice the same";
-  EXPECT_FALSE(findCenter({through(kLine, 0.3), through(kLine, 1.1)}, test));
+  EXPECT_TRUE(findAxes({planeThrough(kLine, 0.3)}, test).empty());
+  EXPECT_TRUE(findAxes({planeThrough(kLine, 0.3), planeThrough(kLine, 0.3)}, test).empty()) << "twice the same";
+  EXPECT_FALSE(findCenter({planeThrough(kLine, 0.3), planeThrough(kLine, 1.1)}, test));
 }
 
 TEST(FindCenter, FindsThePointOfAllPlanes) {

@@ -10,6 +10,7 @@
 #include "core/base/constants.h"
 #include "core/base/random.h"
 #include "core/detection/plane_decision.h"
+#include "core/detection/standing_object.h"
 #include "pcl_symmetry/core/detect_planes.h"
 #include "pcl_symmetry/core/visibility.h"
 #include "shapes/found_planes.h"
@@ -150,7 +151,7 @@ TEST(StandingObject, SlantedPlanesAreDoubtedAndGoBehind) {
     const auto fit = makePlaneFit(cloud, options);
     const PlaneMeasure measure(cloud, *fit, options);
     std::vector<SymmetryPlane> planes = {planeAt(40.0, 0.0, 0.95), planeAt(90.0, 0.0, 0.7), planeAt(30.0, 0.0, 0.55)};
-    PlaneDecision(cloud, measure, options).adjustConfidences(planes, Found::Answer);
+    PlaneDecision(cloud, measure, options).doubtSlantedPlanes(planes);
     return reordered(planes, options);
   };
   const Visibility on_table = seenFromAbove(points).withSupport(kTable, 0.0);
