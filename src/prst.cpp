@@ -29,7 +29,7 @@ SymmetryDescriptors described(const Points& points, const detail::PRSTParameters
     FrameOptions frame;
     frame.probabilities = false;
     frame.seed = parameters.seed;
-    frame.turns = false;
+    frame.rotations = false;
     frame.num_threads = parameters.num_threads;
     T_frame_input = symmetryFrame(points, frame, seen).T_canonical_input;
   }

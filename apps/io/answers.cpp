@@ -16,15 +16,15 @@ std::string counted(std::size_t number, const std::string& one, const std::strin
   return std::to_string(number) + " " + (number == 1 ? one : many.empty() ? one + "s" : many);
 }
 
-nlohmann::json turnsJson(const std::vector<SymmetryRotation>& turns, const Eigen::Vector3d& shift) {
+nlohmann::json rotationsJson(const std::vector<SymmetryRotation>& rotations, const Eigen::Vector3d& shift) {
   nlohmann::json json = nlohmann::json::array();
-  for (const SymmetryRotation& turn : turns) {
-    json.push_back(axisJson(turn, shift));
-    json.back().update({{"fold", turn.fold},
-                        {"support", turn.support},
-                        {"off", turn.off},
-                        {"far", turn.far},
-                        {"halfway", turn.halfway}});
+  for (const SymmetryRotation& rotation : rotations) {
+    json.push_back(axisJson(rotation, shift));
+    json.back().update({{"fold", rotation.fold},
+                        {"support", rotation.support},
+                        {"off", rotation.off},
+                        {"far", rotation.far},
+                        {"halfway", rotation.halfway}});
   }
   return json;
 }

@@ -61,8 +61,8 @@ nlohmann::json axisJson(const Axis& axis, const Eigen::Vector3d& shift) {
           {"confidence", axis.confidence}};
 }
 
-/// The same of axes of turns of scans, and what was seen of them.
-nlohmann::json turnsJson(const std::vector<SymmetryRotation>& turns, const Eigen::Vector3d& shift);
+/// The same of axes of rotations of scans, and what was seen of them.
+nlohmann::json rotationsJson(const std::vector<SymmetryRotation>& rotations, const Eigen::Vector3d& shift);
 
 /// Center and axes, the transform to them, input frame.
 nlohmann::json frameJson(const SymmetryFrame& frame, const Eigen::Vector3d& shift);
@@ -83,7 +83,7 @@ std::string formatted(const char* format, Values... values) {
 
 /// A line such as "axis of order 6: through 0 0 0 along 0.000000 0.000000 1.000000, confidence 0.973".
 /// \param axis SymmetryAxis or SymmetryRotation.
-/// \param fold order of the turns; 0: any angle.
+/// \param fold order of the rotations; 0: any angle.
 template <typename Axis>
 std::string lineOf(const Axis& axis, int fold, const Eigen::Vector3d& shift) {
   const std::string order = fold > 0 ? "axis of order " + std::to_string(fold) : "axis of revolution";

@@ -342,7 +342,7 @@ nlohmann::json describe(const SymmetryFrame& frame, const Eigen::Vector3d& shift
   json["equivalent"] = nlohmann::json::array();
   for (const Eigen::Isometry3d& T_canonical_input : frame.equivalent)
     json["equivalent"].push_back(rowMajor(shiftedBack(T_canonical_input, shift, Eigen::Vector3d::Zero())));
-  json["turns"] = turnsJson(frame.turns, shift);
+  json["rotations"] = rotationsJson(frame.rotations, shift);
   json["probable"] = nlohmann::json::array();
   for (const ProbableFrame& other : frame.probable) {
     nlohmann::json axes = nlohmann::json::array();
@@ -360,8 +360,8 @@ std::string linesOf(const SymmetryFrame& frame, const Eigen::Vector3d& shift) {
   for (int k = 0; k < 3; ++k)
     lines += formatted("axis %d %9.6f %9.6f %9.6f  score %.3f%s\n", k + 1, frame.axes(0, k), frame.axes(1, k),
                        frame.axes(2, k), frame.scores[k], frame.revolution_axis == k ? "  axis of revolution" : "");
-  for (const SymmetryRotation& turn : frame.turns)
-    if (turn.confidence >= DetectionOptions().min_confidence) lines += lineOf(turn, turn.fold, shift);
+  for (const SymmetryRotation& rotation : frame.rotations)
+    if (rotation.confidence >= DetectionOptions().min_confidence) lines += lineOf(rotation, rotation.fold, shift);
   double others = 0.0;
   for (std::size_t i = 1; i < frame.probable.size(); ++i) others += frame.probable[i].probability;
   if (!frame.probable.empty())

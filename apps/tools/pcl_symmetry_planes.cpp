@@ -87,15 +87,15 @@ CommandLine commandLine(PlanesOptions& options) {
   return line;
 }
 
-/// What was found, best first, in the frame of the shifted points. Its turns have orders from 2 on, and are at least as
-/// confident as a symmetry.
+/// What was found, best first, in the frame of the shifted points. Its rotations have orders from 2 on, and are at
+/// least as confident as a symmetry.
 struct Findings : Detection {
   ViewpointSource viewpoint_source = ViewpointSource::None;
   std::optional<Eigen::Vector3d> viewpoint;  ///< that was used
   std::size_t num_points = 0;                ///< that were used
   std::vector<std::vector<float>> support;   ///< of each plane, by every point; empty where no output shows it
 
-  bool empty() const { return planes.empty() && axes.empty() && centers.empty() && turns.empty(); }
+  bool empty() const { return planes.empty() && axes.empty() && centers.empty() && rotations.empty(); }
 };
 
 /// a, b, c and d of a plane.
@@ -132,7 +132,7 @@ std::string tableOf(const Findings& findings, const Eigen::Vector3d& shift) {
     table += formatted("center of all planes: %s, confidence %.3f\n",
                        spelled(shiftedBack(center.point, shift), digits).c_str(), center.confidence);
   for (const SymmetryAxis& axis : findings.axes) table += lineOf(axis, 0, shift);
-  for (const SymmetryRotation& turn : findings.turns) table += lineOf(turn, turn.fold, shift);
+  for (const SymmetryRotation& rotation : findings.rotations) table += lineOf(rotation, rotation.fold, shift);
   const std::vector<SymmetryPlane>& planes = findings.planes;
   if (planes.empty()) return table;
   table += formatted("%5s %10s %10s %10s %12s %10s %7s %7s %7s %6s  %s\n", "plane", "a", "b", "c", "d", "confidence",
@@ -184,10 +184,10 @@ std::vector<std::vector<nlohmann::json>> rowsOf(const Findings& findings, const 
       row.push_back(found.value(name, nlohmann::json()));
     rows.push_back(row);
   };
-  std::size_t planes = 0, axes = 0, turns = 0, centers = 0;
+  std::size_t planes = 0, axes = 0, rotations = 0, centers = 0;
   for (const SymmetryPlane& plane : findings.planes) add(++planes, toString(plane.kind), describe(plane, shift));
   for (const SymmetryAxis& axis : findings.axes) add(++axes, "axis", describe(axis, shift));
-  for (const SymmetryRotation& turn : findings.turns) add(++turns, "turn", axisJson(turn, shift));
+  for (const SymmetryRotation& rotation : findings.rotations) add(++rotations, "rotation", axisJson(rotation, shift));
   for (const SymmetryCenter& center : findings.centers) add(++centers, "center", describe(center, shift));
   if (findings.best) add(1, "best", describe(*findings.best, shift));
   return rows;
@@ -210,7 +210,7 @@ nlohmann::json describe(const InputShape& input, const Findings& findings) {
   if (findings.best) json["best"] = describe(*findings.best, shift);
   if (findings.flat) json["flat"] = {{"coefficients", numbersOf(*findings.flat, shift)}};
   for (const SymmetryAxis& axis : findings.axes) json["axes"].push_back(describe(axis, shift));
-  if (findings.viewpoint) json["turns"] = turnsJson(findings.turns, shift);
+  if (findings.viewpoint) json["rotations"] = rotationsJson(findings.rotations, shift);
   for (const SymmetryCenter& center : findings.centers) json["centers"].push_back(describe(center, shift));
   return json;
 }
@@ -224,9 +224,9 @@ std::vector<PicturePanel> panelsOf(const Findings& findings) {
   };
   for (const SymmetryAxis& axis : findings.axes)
     add(formatted("axis of revolution: confidence %.2f", axis.confidence)).axes = {{axis.point, axis.direction}};
-  for (const SymmetryRotation& turn : findings.turns)
-    add(formatted("axis of order %d: confidence %.2f", turn.fold, turn.confidence)).axes = {
-        {turn.point, turn.direction}};
+  for (const SymmetryRotation& rotation : findings.rotations)
+    add(formatted("axis of order %d: confidence %.2f", rotation.fold, rotation.confidence)).axes = {
+        {rotation.point, rotation.direction}};
   for (const SymmetryCenter& center : findings.centers) {
     PicturePanel& panel = add(formatted("every plane through the center: confidence %.2f", center.confidence));
     for (int k = 0; k < 3; ++k) panel.axes.push_back({center.point, Eigen::Vector3d::Unit(k)});
@@ -297,10 +297,11 @@ Findings search(const FileJob& job, const InputShape& input, const PlanesOptions
     checkAnswer(refinement, input);
   });
   static_cast<Detection&>(findings) = refinement.getDetection();
-  const auto is_other = [&](const SymmetryRotation& turn) {  // those of any angle are among the axes
-    return turn.fold == 0 || turn.confidence < options.detection.min_confidence;
+  const auto is_other = [&](const SymmetryRotation& rotation) {  // those of any angle are among the axes
+    return rotation.fold == 0 || rotation.confidence < options.detection.min_confidence;
   };
-  findings.turns.erase(std::remove_if(findings.turns.begin(), findings.turns.end(), is_other), findings.turns.end());
+  findings.rotations.erase(std::remove_if(findings.rotations.begin(), findings.rotations.end(), is_other),
+                           findings.rotations.end());
   findings.viewpoint_source = refinement.getViewpointSource();
   findings.viewpoint = refinement.getUsedViewpoint();
   findings.num_points = refinement.getUsedIndices().size();

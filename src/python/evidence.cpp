@@ -118,7 +118,7 @@ py::array planeEvidence(const Detection& found) {
   return arrayOfRows(rowsOf(found.evidence ? found.evidence->planes : std::vector<MeasuredPlane>{}), columns);
 }
 
-py::array turnEvidence(const Detection& found) {
+py::array rotationEvidence(const Detection& found) {
   Columns columns{{"point", "3f8"}, {"direction", "3f8"}, {"fold", "i4"}, {"kind", "i4"}};
   for (const char* name : {"confidence", "support", "off", "far", "halfway", "grown", "hold", "planes_off", "beside"})
     columns.emplace_back(name, "f8");

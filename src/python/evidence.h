@@ -11,7 +11,7 @@ namespace pcl_symmetry::python {
 /// \return one row for each candidate of planes(evidence=True); empty without evidence.
 pybind11::array planeEvidence(const Detection& found);
 /// \return one row for each turn of a scan; empty without evidence.
-pybind11::array turnEvidence(const Detection& found);
+pybind11::array rotationEvidence(const Detection& found);
 /// \return one row for each of SymmetryFrame::probable.
 pybind11::array frameEvidence(const SymmetryFrame& frame);
 

@@ -50,7 +50,7 @@ void addPlanes(py::module_& module) {
       .def_readonly("confidence", &SymmetryCenter::confidence)
       .def_readonly("score", &SymmetryCenter::score)
       .def_readonly("support", &SymmetryCenter::support);
-  py::class_<SymmetryRotation>(module, "Turn")
+  py::class_<SymmetryRotation>(module, "RotationAxis")
       .def_readonly("point", &SymmetryRotation::point)
       .def_readonly("direction", &SymmetryRotation::direction)
       .def_readonly("fold", &SymmetryRotation::fold)
@@ -64,7 +64,7 @@ void addPlaneSearch(py::module_& module) {
       .def_property_readonly("planes", [](const PlaneSearch& s) { return s.found.planes; })
       .def_property_readonly("axes", [](const PlaneSearch& s) { return s.found.axes; })
       .def_property_readonly("centers", [](const PlaneSearch& s) { return s.found.centers; })
-      .def_property_readonly("turns", [](const PlaneSearch& s) { return s.found.turns; })
+      .def_property_readonly("rotations", [](const PlaneSearch& s) { return s.found.rotations; })
       .def_property_readonly("best", [](const PlaneSearch& s) { return s.found.best; })
       .def_property_readonly("flat",
                              [](const PlaneSearch& s) {
@@ -84,7 +84,7 @@ void addPlaneSearch(py::module_& module) {
                              })
       .def_property_readonly("rows", [](const PlaneSearch& s) { return toArray(s.rows); })
       .def_property_readonly("evidence", [](const PlaneSearch& s) { return planeEvidence(s.found); })
-      .def_property_readonly("turn_evidence", [](const PlaneSearch& s) { return turnEvidence(s.found); });
+      .def_property_readonly("rotation_evidence", [](const PlaneSearch& s) { return rotationEvidence(s.found); });
 }
 
 void addFrame(py::module_& module) {
@@ -101,7 +101,7 @@ void addFrame(py::module_& module) {
       .def_property_readonly("transform",
                              [](const SymmetryFrame& f) { return RowMajor4(f.T_canonical_input.matrix()); })
       .def_property_readonly("equivalent", [](const SymmetryFrame& f) { return stacked(f.equivalent); })
-      .def_readonly("turns", &SymmetryFrame::turns)
+      .def_readonly("rotations", &SymmetryFrame::rotations)
       .def_readonly("probable", &SymmetryFrame::probable)
       .def_property_readonly("evidence", &frameEvidence);
 }

@@ -44,7 +44,7 @@ std::shared_ptr<const SymmetryFrame> PreparedCloud::frame(double unit) const {
   options.probabilities = false;
   options.num_threads = options_.num_threads;
   options.seed = options_.seed;
-  options.turns = false;
+  options.rotations = false;
   const Visibility* seen = surface.seen ? &*surface.seen : nullptr;
   return frame_ = std::make_shared<const SymmetryFrame>(symmetryFrame(surface.points, options, seen));
 }

@@ -110,7 +110,7 @@ private:
   void findFrame(SceneObject& object, const SeenSpace::ConstPtr& seen) const {
     SymmetryAlignment<pcl::PointXYZ> alignment;
     FrameOptions options = options_.frame;
-    options.turns = options.probabilities = false;
+    options.rotations = options.probabilities = false;
     alignment.setOptions(options);
     prepare(alignment, object, seen);
     SymmetryFrame frame = alignment.compute();

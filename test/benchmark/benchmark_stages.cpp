@@ -168,11 +168,11 @@ void PlanesOfModel(benchmark::State& state) {
   state.SetLabel(models()[model].name);
   detect(state, cloud(model, kManyPoints), detectionOptions(static_cast<int>(state.range(1))));
 }
-/// Arguments: turns about axes are looked for, threads.
+/// Arguments: rotations about axes are looked for, threads.
 void PlanesOfScan(benchmark::State& state) {
   const std::optional<Visibility> seen = Visibility::fromPoints(cowScan().points, cowScan().viewpoint);
   DetectionOptions options = detectionOptions(static_cast<int>(state.range(1)));
-  options.turns = state.range(0) != 0;
+  options.rotations = state.range(0) != 0;
   detect(state, cowScan().points, options, &*seen);
 }
 /// Nine planes, the most that a convex body of flat faces usually has. Argument: threads.
@@ -301,7 +301,7 @@ STAGE(Sampled)->ArgNames({"theta", "phi", "samples", "threads"})->Args({32, 128,
 STAGE(Convolution)->ArgName("threads")->Arg(1)->Arg(2);
 STAGE(Planes)->ArgNames({"points", "threads"})->ArgsProduct({{1'000, 10'000, 100'000, 1'000'000, 10'000'000}, {1, 2}});
 STAGE(PlanesOfModel)->ArgNames({"model", "threads"})->ArgsProduct({{0, 1, 2, 3, 4}, {1}});
-STAGE(PlanesOfScan)->ArgNames({"turns", "threads"})->ArgsProduct({{0, 1}, {1, 2}});
+STAGE(PlanesOfScan)->ArgNames({"rotations", "threads"})->ArgsProduct({{0, 1}, {1, 2}});
 STAGE(PlanesOfCube)->ArgName("threads")->Arg(1)->Arg(2);
 STAGE(Rotations)->ArgName("threads")->Arg(1)->Arg(2);
 STAGE(Description)->ArgName("threads")->Arg(1)->Arg(2);

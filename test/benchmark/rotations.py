@@ -2,7 +2,7 @@
 """Groups of rotations of solids made by code, of meshes, and of single scans, and the poses that they make equal.
 
 Without a folder: solids of known groups, in random poses (solids.py), and distances of poses under the groups that
-are found. With a folder: groups of clouds of meshes, judged by exact distances on the mesh. With --views: the turns
+are found. With a folder: groups of clouds of meshes, judged by exact distances on the mesh. With --views: the rotations
 that are found in this number of scans of each mesh, judged alike. A rotation is right where it maps at most 10 % of the
 area further off the surface than 1 % of the diameter, and at most 1.25 % further than ten times that.
 
@@ -191,7 +191,7 @@ def judge_mesh(model, arguments):
 
 
 def judge_scans(model, arguments):
-    """Turns that are found in scans from random sides."""
+    """Rotations that are found in scans from random sides."""
     mesh = bench.read_mesh(model.path)
     points = bench.sample(mesh, 5000, bench.generator(arguments.seed, model.key))
     rows = []
@@ -200,7 +200,7 @@ def judge_scans(model, arguments):
         pose = bench.random_pose(random, mesh)
         scan = bench.scan(mesh, bench.random_directions(random, 1)[0], random, pose=pose)
         found = pcl_symmetry.planes(scan.rows.astype("f"), viewpoint=tuple(scan.viewpoint), threads=1)
-        for turn in found.turns:
+        for turn in found.rotations:
             motions = about(turn.point, turn.direction, turn.fold)
             worst = excess(mesh, points, [in_frame_of(pose, motion) for motion in motions])
             row = {"mesh": model.name, "view": view, "fold": turn.fold}
@@ -223,7 +223,7 @@ def measure_meshes(arguments):
         names = [set(row["names"]) for row in rows]
         rates["the same group for all numbers of points"] = bench.Rate(len(n) == 1 for n in names)
         rates["the same, of meshes with a rotation"] = bench.Rate(len(n) == 1 for n in names if n != {"C1"})
-    what = "Turns of scans" if scans else "Groups of meshes"
+    what = "Rotations of scans" if scans else "Groups of meshes"
     bench.print_table(what, ["", "rate"], [[k, rate.text] for k, rate in rates.items()])
     text = "{answers} answers: calibration error {error:.3f} ({by_chance:.3f} by chance), Brier score {brier:.3f}"
     print(text.format(**reliability))
@@ -236,7 +236,7 @@ if __name__ == "__main__":
     parser.add_argument("--noise", type=bench.numbers(float), default="0,0.003", help="of solids, in diameters")
     parser.add_argument("--seeds", type=int, default=1, help="samplings and poses of each solid")
     parser.add_argument("--kind", help="solids of this kind alone")
-    parser.add_argument("--views", type=int, default=0, help="judge the turns found in this number of scans of each mesh")
+    parser.add_argument("--views", type=int, default=0, help="judge the rotations found in this number of scans of each mesh")
     asked = parser.parse_args()
     if asked.export or asked.judge:
         parser.error("--export and --judge: frames.py, registration.py and planes.py have them")

@@ -1,4 +1,4 @@
-/// Planes, axes, centers and turns of arbitrary points, as a whole cloud and as a scan.
+/// Planes, axes, centers and rotations of arbitrary points, as a whole cloud and as a scan.
 #include <stdexcept>
 
 #include "fuzz/byte_source.h"
@@ -20,7 +20,7 @@ DetectionOptions quickOptions(fuzz::ByteSource& source) {
   options.expert.max_candidates = 1 + source.below(4);
   options.expert.num_refine_samples = 10 + source.below(90);
   options.approximate = source.flag();
-  options.turns = source.flag();
+  options.rotations = source.flag();
   options.num_threads = 1;
   return options;
 }

@@ -25,13 +25,13 @@ TEST(SymmetryAlignment, IsSymmetryFrameOfTheFinitePoints) {
   EXPECT_EQ(frameOf(test::withHoles(*cloud, 7)).T_canonical_input.matrix(), expected.T_canonical_input.matrix());
 }
 
-TEST(SymmetryAlignment, AsksTheSearchMethodForTheTurnsOfAScan) {
+TEST(SymmetryAlignment, AsksTheSearchMethodForTheRotationsOfAScan) {
   const auto cloud = test::pictureOf(test::scan(test::blockBox(), {3.5, 4.2, 2.9}));
   const auto search = pcl::make_shared<test::CountingKdTree>();
   SymmetryAlignment<pcl::PointXYZ> alignment;
   alignment.setInputCloud(cloud);
   alignment.setSearchMethod(search);
-  EXPECT_EQ(alignment.compute().turns.size(), frameOf(cloud).turns.size());
+  EXPECT_EQ(alignment.compute().rotations.size(), frameOf(cloud).rotations.size());
   EXPECT_GT(search->num_queries, 1000);
 }
 

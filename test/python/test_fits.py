@@ -15,7 +15,7 @@ try:
     import fit_frames
     import fit_planes
     import fit_segments
-    import fit_turns
+    import fit_rotations
     import fits
 except ImportError as error:
     print(f"skipped: {error}")
@@ -48,8 +48,8 @@ class Fits(unittest.TestCase):
         np.testing.assert_allclose(shares, [0.5, 0.1, -2], atol=1e-3)
 
     def test_few_examples_are_refused(self):
-        with self.assertRaisesRegex(bench.BadInput, "turns: 34 examples of one of both kinds, must be 100"):
-            fits.logistic(np.ones((500, 2)), np.arange(500) < 34, name="turns")
+        with self.assertRaisesRegex(bench.BadInput, "rotations: 34 examples of one of both kinds, must be 100"):
+            fits.logistic(np.ones((500, 2)), np.arange(500) < 34, name="rotations")
 
     def test_numbers_are_rounded_by_their_errors(self):
         self.assertEqual(fits.rounded([1.23456, -12.3456, 0.5], [0.1, 4.0, 100]), ["1.235", "-12.35", "0"])
@@ -98,7 +98,7 @@ class Fits(unittest.TestCase):
 
     def test_headers_hold_all_numbers(self):
         two = np.array([1.0, 2.0]), np.array([0.1, 0.1])
-        self.assertIn("{1.000, 2.000}", fit_turns.header([two[0]] * 3, [two[1]] * 3, ["1 of 2"] * 3))
+        self.assertIn("{1.000, 2.000}", fit_rotations.header([two[0]] * 3, [two[1]] * 3, ["1 of 2"] * 3))
         self.assertIn("1.000, 2.000", fit_frames.header([two, two], 3, 1))
         weights = np.ones(9), np.full(9, 0.1), 0.1, 5
         self.assertEqual(fit_segments.header({"concavity": weights}, 1).count("1.000"), 9)

@@ -119,23 +119,23 @@ class Planes(unittest.TestCase):
             times.append(time.monotonic() - start)
         self.assertLess(times[1], 20 * times[0])
 
-    def test_a_scan_of_a_block_has_its_turns(self):
+    def test_a_scan_of_a_block_has_its_rotations(self):
         """A square block, seen from above and one side."""
         points = box((1.0, 1.0, 0.4), 40_000)
         viewpoint = np.array([1.6, 2.4, 3.2])
         seen = points[(points[:, 0] == 0.5) | (points[:, 1] == 0.5) | (points[:, 2] == np.float32(0.2))]
         found = pcl_symmetry.planes(seen, viewpoint=viewpoint)
-        self.assertGreaterEqual(len(found.turns), 1)
-        turn = found.turns[0]
+        self.assertGreaterEqual(len(found.rotations), 1)
+        turn = found.rotations[0]
         self.assertEqual(turn.fold, 4)
         self.assertGreater(abs(turn.direction[2]), np.cos(np.radians(1)))
         self.assertLess(np.linalg.norm(turn.point[:2]), 0.02)
         self.assertGreaterEqual(turn.confidence, 0.5)
         self.assertLessEqual(turn.off, 1.0)
-        self.assertEqual(pcl_symmetry.planes(points).turns, [], "whole clouds have rotations()")
+        self.assertEqual(pcl_symmetry.planes(points).rotations, [], "whole clouds have rotations()")
         frame = pcl_symmetry.frame(seen, viewpoint=viewpoint)
-        self.assertEqual(frame.turns[0].fold, 4)
-        self.assertEqual(pcl_symmetry.frame(points).turns, [])
+        self.assertEqual(frame.rotations[0].fold, 4)
+        self.assertEqual(pcl_symmetry.frame(points).rotations, [])
 
     def test_evidence_is_an_array_of_candidates(self):
         found = pcl_symmetry.planes(box(), evidence=True)
@@ -150,19 +150,19 @@ class Planes(unittest.TestCase):
             self.assertGreater(row["confidence"], 0.5)
             self.assertEqual(row["terms"][0], 1)
         self.assertEqual([plane.confidence for plane in found], [p.confidence for p in pcl_symmetry.planes(box())])
-        self.assertEqual((len(found.turn_evidence), len(pcl_symmetry.planes(box()).evidence)), (0, 0))
+        self.assertEqual((len(found.rotation_evidence), len(pcl_symmetry.planes(box()).evidence)), (0, 0))
 
-    def test_evidence_of_turns_holds_those_of_no_confidence_too(self):
+    def test_evidence_of_rotations_holds_those_of_no_confidence_too(self):
         points, viewpoint = box((1.0, 1.0, 0.4), 40_000), np.array([1.6, 2.4, 3.2])
         seen = points[(points[:, 0] == 0.5) | (points[:, 1] == 0.5) | (points[:, 2] == np.float32(0.2))]
         found = pcl_symmetry.planes(seen, viewpoint=viewpoint, evidence=True)
-        turns = found.turn_evidence
-        self.assertGreaterEqual(len(turns), len(found.turns))
+        turns = found.rotation_evidence
+        self.assertGreaterEqual(len(turns), len(found.rotations))
         self.assertEqual(set(found.evidence["kind"]), {1})
-        for turn in found.turns:
+        for turn in found.rotations:
             row = turns[np.argmin(np.abs(turns["confidence"] - turn.confidence))]
             self.assertEqual((row["fold"], row["off"], row["support"]), (turn.fold, turn.off, turn.support))
-        self.assertEqual(len(pcl_symmetry.planes(seen, viewpoint=viewpoint).turn_evidence), 0)
+        self.assertEqual(len(pcl_symmetry.planes(seen, viewpoint=viewpoint).rotation_evidence), 0)
 
     def test_data_without_an_answer_give_a_reason(self):
         for points in (np.zeros((0, 3), np.float32), np.zeros((100, 3), np.float32), box(num_points=12)):

@@ -109,8 +109,8 @@ struct Detection {
   double diameter = 0.0;                ///< greatest distance between two points, input units
   std::vector<SymmetryAxis> axes;       ///< best first; their planes are not among planes
   std::vector<SymmetryCenter> centers;  ///< of spheres
-  std::vector<SymmetryRotation> turns;  ///< of scans: axes of rotations, most confident first
-  SymmetryMap map;                      ///< that was made; empty where one was given
+  std::vector<SymmetryRotation> rotations;                ///< of scans: axes of rotations, most confident first
+  SymmetryMap map;                                        ///< that was made; empty where one was given
   std::shared_ptr<DetectionEvidence> evidence;            ///< with DetectionOptions::evidence; else null
   std::vector<std::pair<std::string, double>> timing_ms;  ///< stages in order
 };

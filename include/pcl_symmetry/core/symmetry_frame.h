@@ -25,8 +25,8 @@ struct FrameOptions : MapSize {
   /// publishedPlanes(); then two more picked greedily by D, of 256 samples (to 1 %), at 64 angles across the first
   /// axis. It ignores what a scanner saw, and no scores tie.
   bool as_published = false;
-  /// Searches the axes of rotation of scans too, SymmetryFrame::turns; false saves about a third of the time.
-  bool turns = true;
+  /// Searches the axes of rotation of scans too, SymmetryFrame::rotations; false saves about a third of the time.
+  bool rotations = true;
   bool probabilities = true;  ///< whether SymmetryFrame::probable is filled; takes about a seventh of the time
   std::uint64_t seed = 1;     ///< of all random draws
   int num_threads = 0;        ///< >= 0; 0 = one per core
@@ -76,7 +76,7 @@ struct SymmetryFrame {
   std::vector<ProbableFrame> probable;
   /// Axes of rotation of a scan, through the center or not, most confident first: which poses look the same where the
   /// planes alone do not tell, as for a propeller.
-  std::vector<SymmetryRotation> turns;
+  std::vector<SymmetryRotation> rotations;
   std::vector<std::pair<std::string, double>> timing_ms;  ///< stages in order
 };
 

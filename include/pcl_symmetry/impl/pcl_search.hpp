@@ -110,8 +110,8 @@ public:
   }
 
   /// Finds the closest points by a search of PCL in place of FLANN's k-d tree: those of Iterative Symmetric Points, the
-  /// neighbors that SymmetrySegmentation joins, and for SymmetryAlignment those of the axes of turns of a scan
-  /// (FrameOptions::turns).
+  /// neighbors that SymmetrySegmentation joins, and for SymmetryAlignment those of the axes of rotations of a scan
+  /// (FrameOptions::rotations).
   /// \param search is given clouds of the points used without copies, of large clouds a subset, and of parts of them.
   /// pcl::search::KdTree and FlannSearch are called from all threads, others from one at a time.
   /// pcl::search::OrganizedNeighbor is not used, because reflected points lie behind what the sensor saw. PCL_WARN says

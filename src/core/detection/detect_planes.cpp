@@ -104,13 +104,13 @@ std::vector<MeasuredPlane> judgeAll(std::vector<Candidate> candidates, const Sta
 std::vector<SymmetryPlane> withScanAxes(std::vector<SymmetryPlane> planes, const NormalizedCloud& cloud,
                                         double tolerance, const DetectionOptions& options, Detection& detection) {
   // A ball is symmetric about every line through its center.
-  if (!options.turns || !kKindRules.has_rotations[cloud.kind()] || !detection.centers.empty()) return planes;
+  if (!options.rotations || !kKindRules.has_rotations[cloud.kind()] || !detection.centers.empty()) return planes;
   const ScanAxesOptions scan_axes{options.folds, options.min_confidence, options.min_possible, options.seed,
                                   options.num_threads};
   const RotationEvidence rotations(cloud, tolerance, options.seed);
-  detection.turns = scanAxes(rotations, planes, detection.axes, scan_axes,
-                             detection.evidence ? &detection.evidence->rotations : nullptr);
-  detection.axes = withRoundAxes(rotations, std::move(detection.axes), detection.turns, scan_axes);
+  detection.rotations = scanAxes(rotations, planes, detection.axes, scan_axes,
+                                 detection.evidence ? &detection.evidence->rotations : nullptr);
+  detection.axes = withRoundAxes(rotations, std::move(detection.axes), detection.rotations, scan_axes);
   return withoutPlanesThrough(std::move(planes), detection.axes, cloud);
 }
 
@@ -167,7 +167,7 @@ Detection refineAndDecide(const NormalizedCloud& cloud, const Points& all, const
     planes = withScanAxes(std::move(planes), cloud, measure.tolerance(), options, detection);
   const bool has_family = !detection.axes.empty() || !detection.centers.empty();
   decision.doubtFurtherPlanes(planes, has_family);
-  timed("turns");
+  timed("rotations");
 
   if (options.approximate) append(planes, localPlanes(planes, cloud, *fit, decision, options));
   timed("parts");

@@ -70,7 +70,7 @@ void decideByUprightBox(const PointsRef& points, const Visibility& seen, const D
     found.planes.clear();
     found.axes.clear();
     found.centers.clear();
-    found.turns.clear();
+    found.rotations.clear();
     found.best = plane;
   }
   if (!plane || plane->confidence < (is_sparse ? options.min_possible : options.min_confidence)) return;

@@ -175,9 +175,9 @@ SymmetryFrame symmetryFrame(const PointsRef& points, const FrameOptions& options
     if (!isRotatedAboutRevolution(frame.axes.cast<float>(), frame.revolution_axis, other.axes))
       addTied(other, best.scores, frame.center, frame.equivalent);
   done("equivalent");
-  if (visibility && options.turns) {
-    frame.turns = rotationsAlong(frame, points, edt, options, *visibility, make_search);
-    done("turns");
+  if (visibility && options.rotations) {
+    frame.rotations = rotationsAlong(frame, points, edt, options, *visibility, make_search);
+    done("rotations");
   }
   if (options.probabilities) {
     frame.probable = probableFrames(evidence, frame, frameChoices(evidence, frames, options.num_threads));

@@ -207,7 +207,7 @@ FrameOptions signatureFrameOptions() {
   options.num_theta = 16;
   options.num_phi = 64;
   options.num_radius = 32;
-  options.turns = false;
+  options.rotations = false;
   options.probabilities = false;
   return options;
 }

@@ -135,7 +135,7 @@ enum class RotationKind { AnyAngle, Half, Folds };
 RotationKind kindOf(const SymmetryRotation& rotation);
 
 /// Terms of the log odds that rotations which a scan shows are symmetries of the whole object; the first is 1. The
-/// numbers that they are multiplied with are fitted by test/benchmark/fit_turns.py.
+/// numbers that they are multiplied with are fitted by test/benchmark/fit_rotations.py.
 /// \param rotation with the shares that were seen.
 std::vector<double> rotationOddsTerms(const SymmetryRotation& rotation, const RotationSigns& signs);
 

@@ -45,7 +45,7 @@ from .results import (
     Registration,
     Rotations,
     Symmetrized,
-    Turn,
+    RotationAxis,
     View,
 )
 
@@ -70,7 +70,7 @@ __all__ = [
     "Registration",
     "Rotations",
     "Symmetrized",
-    "Turn",
+    "RotationAxis",
     "View",
     "complete",
     "describe",

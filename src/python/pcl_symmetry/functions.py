@@ -18,7 +18,7 @@ from .results import (
     ReflectionPlane,
     Rotations,
     Symmetrized,
-    Turn,
+    RotationAxis,
     View,
     _text,
 )
@@ -188,8 +188,8 @@ def _plane(p: Any) -> Plane:
     return plane
 
 
-def _turn(t: Any) -> Turn:
-    return Turn(**_fields(t, "point", "direction", "fold", "confidence", "support", "off"))
+def _rotation_axis(t: Any) -> RotationAxis:
+    return RotationAxis(**_fields(t, "point", "direction", "fold", "confidence", "support", "off"))
 
 
 def _core_plane(plane: ReflectionPlane, shift: "Shift") -> Any:
@@ -208,10 +208,10 @@ def _planes_of(found: Any, num_rows: int) -> Planes:
         planes=[_plane(p) for p in found.planes],
         axes=[Axis(**_fields(a, "point", "direction", *scores)) for a in found.axes],
         centers=[Center(**_fields(c, "point", *scores)) for c in found.centers],
-        turns=[_turn(t) for t in found.turns],
+        rotations=[_rotation_axis(t) for t in found.rotations],
         best=None if found.best is None else _plane(found.best),
         evidence=found.evidence,
-        turn_evidence=found.turn_evidence,
+        rotation_evidence=found.rotation_evidence,
         _support=found.support,
         _rows=np.asarray(found.rows, dtype=np.int64),
         _num_rows=num_rows,
@@ -418,7 +418,7 @@ def frame(
     found = core.frame(array, viewpoint=seen_from, mesh=None if as_published else mesh, **options)
     result = Frame(
         probable=[ProbableFrame(**_fields(f, "center", "axes", "probability", "revolution_axis")) for f in found.probable],
-        turns=[_turn(t) for t in found.turns],
+        rotations=[_rotation_axis(t) for t in found.rotations],
         **_fields(found, "center", "axes", "scores", "revolution_axis", "transform", "equivalent", "evidence"),
     )
     return result if shift is None else result._moved(shift)

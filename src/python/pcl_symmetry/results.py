@@ -306,7 +306,7 @@ class Symmetrized(Result):
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class Turn(Result):
+class RotationAxis(Result):
     """Rotations about a line map what a scanner saw onto itself or into occluded space."""
 
     _in_repr = ("point", "direction", "fold", "confidence")
@@ -359,7 +359,7 @@ class Planes(Result):
     axes: List[Axis]
     """Best first."""
     centers: List[Center]
-    turns: List[Turn]
+    rotations: List[RotationAxis]
     """Of scans from one side, most confident first."""
     best: Optional[Plane]
     """Where there is no symmetry and no possible one: the plane that comes closest; else None."""
@@ -386,7 +386,7 @@ class Planes(Result):
     terms: (7,) summands of the log odds of the confidence before their coefficients, by kind 7, 6 and 5 of them, then 0;
         the last one of kinds 0 and 1 counts for planes beside the best of the cloud
     """
-    turn_evidence: "NDArray[Any]"
+    rotation_evidence: "NDArray[Any]"
     """The same for the rotations of scans, also those of no confidence.
 
     point, direction: (3,) each. fold: order of the rotations; 0: by any angle. kind: 0 by any angle, 1 half turns, 2 of
@@ -450,7 +450,7 @@ class Planes(Result):
         if self.flat is not None:
             changes["flat"] = self.flat.copy()
             changes["flat"][3] -= self.flat[:3] @ shift
-        for name in ("evidence", "turn_evidence"):
+        for name in ("evidence", "rotation_evidence"):
             rows = changes[name] = getattr(self, name).copy()
             if "coefficients" in rows.dtype.names:
                 rows["coefficients"][:, 3] -= rows["coefficients"][:, :3] @ shift
@@ -505,7 +505,7 @@ class Frame(Result):
     """(4, 4) from the input to the canonical frame."""
     equivalent: "Doubles"
     """(K, 4, 4) all transforms that symmetry leaves equally good, `transform` first."""
-    turns: List[Turn]
+    rotations: List[RotationAxis]
     """Of scans from one side, most confident first."""
     probable: List[ProbableFrame]
     """This frame, then others by falling probability."""

@@ -188,17 +188,17 @@ TEST(SymmetryFrame, OfAScanListsTurnsUnlessToldNotTo) {
   const Points cloud = scan.cloud();
   const Visibility visibility = scan.visibility();
   const SymmetryFrame frame = symmetryFrame(cloud, {}, &visibility);
-  for (std::size_t i = 0; i < frame.turns.size(); ++i) {
-    EXPECT_GE(frame.turns[i].confidence, DetectionOptions().min_possible);
-    EXPECT_LE(frame.turns[i].confidence, i == 0 ? 1.0 : frame.turns[i - 1].confidence);
-    EXPECT_NEAR(frame.turns[i].direction.norm(), 1.0, 1e-9);
-    EXPECT_EQ(frame.turns[i].fold % 2, 0) << "a box has no other turns";
+  for (std::size_t i = 0; i < frame.rotations.size(); ++i) {
+    EXPECT_GE(frame.rotations[i].confidence, DetectionOptions().min_possible);
+    EXPECT_LE(frame.rotations[i].confidence, i == 0 ? 1.0 : frame.rotations[i - 1].confidence);
+    EXPECT_NEAR(frame.rotations[i].direction.norm(), 1.0, 1e-9);
+    EXPECT_EQ(frame.rotations[i].fold % 2, 0) << "a box has no other turns";
   }
   FrameOptions options;
-  options.turns = false;
-  EXPECT_TRUE(symmetryFrame(cloud, options, &visibility).turns.empty());
+  options.rotations = false;
+  EXPECT_TRUE(symmetryFrame(cloud, options, &visibility).rotations.empty());
   expectSame(symmetryFrame(cloud, options, &visibility), frame);
-  EXPECT_TRUE(symmetryFrame(cloud).turns.empty()) << "whole objects have objectSymmetries()";
+  EXPECT_TRUE(symmetryFrame(cloud).rotations.empty()) << "whole objects have objectSymmetries()";
 }
 
 TEST(SymmetryFrame, IsTheSameForAnyNumberOfThreads) {
@@ -213,8 +213,8 @@ TEST(SymmetryFrame, IsTheSameForAnyNumberOfThreads) {
     };
     test::compareThreads(frame, [](const SymmetryFrame& many, const SymmetryFrame& one) {
       expectSame(many, one);
-      EXPECT_EQ(test::valuesOf(many.turns, &SymmetryRotation::point, &SymmetryRotation::confidence),
-                test::valuesOf(one.turns, &SymmetryRotation::point, &SymmetryRotation::confidence));
+      EXPECT_EQ(test::valuesOf(many.rotations, &SymmetryRotation::point, &SymmetryRotation::confidence),
+                test::valuesOf(one.rotations, &SymmetryRotation::point, &SymmetryRotation::confidence));
     });
   }
 }

@@ -194,8 +194,8 @@ TurningShape cup(bool with_handle) {
 
 TEST(ScanAxes, AHexagonalPrismHasOrderSix) {
   const Detection found = detected(prismShape(6, 0.5), {3.0, 4.0, 5.0});
-  ASSERT_FALSE(found.turns.empty());
-  const SymmetryRotation& rotation = found.turns.front();
+  ASSERT_FALSE(found.rotations.empty());
+  const SymmetryRotation& rotation = found.rotations.front();
   EXPECT_EQ(rotation.fold, 6);
   EXPECT_GT(rotation.confidence, 0.5);
   EXPECT_GT(std::abs(rotation.direction.z()), std::cos(1.0 * kDegree));
@@ -231,11 +231,11 @@ TEST(ScanAxes, ThreadsDoNotMatterAndTurnsCanBeLeftOut) {
   compareThreads([&](int num_threads) {
     options.num_threads = num_threads;
     const Detection found = detectPlanes({scan.points, &*scan.seen}, options);
-    return valuesOf(found.turns, &SymmetryRotation::point, &SymmetryRotation::confidence);
+    return valuesOf(found.rotations, &SymmetryRotation::point, &SymmetryRotation::confidence);
   });
-  options.turns = false;
-  EXPECT_TRUE(detectPlanes({scan.points, &*scan.seen}, options).turns.empty());
-  EXPECT_TRUE(detectPlanes(scan.points, options).turns.empty()) << "whole objects have objectSymmetries()";
+  options.rotations = false;
+  EXPECT_TRUE(detectPlanes({scan.points, &*scan.seen}, options).rotations.empty());
+  EXPECT_TRUE(detectPlanes(scan.points, options).rotations.empty()) << "whole objects have objectSymmetries()";
 }
 
 }  // namespace

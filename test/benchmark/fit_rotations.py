@@ -1,9 +1,9 @@
 """Fits the confidence of rotations that single scans show, and writes the header that holds its numbers.
 
-usage: PYTHONPATH=build/src/python python3 test/benchmark/fit_turns.py PSB --classes train.cla --fold 0
+usage: PYTHONPATH=build/src/python python3 test/benchmark/fit_rotations.py PSB --classes train.cla --fold 0
 
-Scans of models, and of solids made by code (round, with folds, with a handle), give turns about lines with their
-evidence; by exact distances, what they map off the mesh. Turns are right where they map all but 10 % of the surface to
+Scans of models, and of solids made by code (round, with folds, with a handle), give rotations about lines with their
+evidence; by exact distances, what they map off the mesh. Rotations are right where they map all but 10 % of the surface to
 within 1 % of the diameter of the surface, and all but 1.25 % to within ten times that. Half turns are fitted to the
 models alone: prisms have them more often than objects do.
 """
@@ -31,7 +31,7 @@ def solid(i, random):
 
 
 def sample_item(item, arguments):
-    """Rows of the turns of all scans of a model or solid: model, kind, excess and terms."""
+    """Rows of the rotations of all scans of a model or solid: model, kind, excess and terms."""
     import pcl_symmetry
 
     name = str(getattr(item, "name", item))
@@ -46,7 +46,7 @@ def sample_item(item, arguments):
         scan = bench.scan(mesh, bench.random_directions(random, 1)[0], random, pose=bench.random_pose(random, mesh))
         found = pcl_symmetry.planes(scan.rows.astype(np.float32), viewpoint=tuple(scan.viewpoint), evidence=True, threads=1)
         T_model_cloud = np.linalg.inv(scan.T_cloud_model)
-        for e in found.turn_evidence:
+        for e in found.rotation_evidence:
             line = bench.moved(T_model_cloud, e["point"]), T_model_cloud[:3, :3] @ e["direction"]
             right = rotations.excess(mesh, on_mesh, rotations.about(*line, e["fold"]))
             rows.append([name, int(e["kind"]), round(right, 4), *map(float, e["terms"])])
@@ -57,7 +57,7 @@ def header(fit, errors, counts):
     numbers = ["{" + ", ".join(fits.rounded(*both)) + "}" for both in zip(fit, errors)]
     return f"""
 // Coefficients of rotationOddsTerms(), by RotationKind.
-// Fitted; symmetries among the turns of each kind: {", ".join(counts)}.
+// Fitted; symmetries among the rotations of each kind: {", ".join(counts)}.
 inline const std::array<std::vector<double>, 3> kRotationConfidenceFit{{
     {{{(","+chr(10)+"     ").join(numbers)}}}}};
 """
@@ -81,7 +81,7 @@ def program(arguments):
         lines.append([KINDS[kind], f"{y.sum()} of {len(y)}", bench.Rate(y[p >= 0.5]).text, bench.Rate(y[p < 0.5]).text,
                       f"{bench.calibration(p, y)['error']:.3f}", loss])  # fmt: skip
         counts.append(f"{y.sum()} of {len(y)}")
-    bench.print_table("Turns of the fit", ["turns", "right", "of those above 0.5", "below", "calibration error", "nats, other models"], lines)
+    bench.print_table("Rotations of the fit", ["rotations", "right", "of those above 0.5", "below", "calibration error", "nats, other models"], lines)
     fits.write_header(arguments, header(*zip(*results), counts), (["<array>", "<vector>"],))
 
 
