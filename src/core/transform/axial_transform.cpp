@@ -157,18 +157,6 @@ void AxialTransformOptions::validate() const {
   checkNumThreads(num_threads);
 }
 
-std::size_t AxisMap::strongest() const {
-  return greatest.empty() ? 0 : std::max_element(greatest.begin(), greatest.end()) - greatest.begin();
-}
-
-int bestFold(const std::vector<int>& folds, const std::vector<double>& values) {
-  const double least = *std::max_element(values.begin(), values.end()) - kTransform.equal_orders;
-  int best = -1;
-  for (std::size_t i = 0; i < folds.size(); ++i)
-    if (values[i] >= least && best != 0 && (folds[i] == 0 || folds[i] > best)) best = folds[i];
-  return best;
-}
-
 namespace {
 
 /// The bins of u with u^2 + v^2 <= radius^2.
