@@ -1,5 +1,5 @@
 /// What a scan tells of its scanner: where it stood, which errors its depths have, and which sides its picture cuts.
-#include "core/scan/single_view.h"
+#include "core/scan/viewpoint_inference.h"
 
 #include <gtest/gtest.h>
 
@@ -11,6 +11,7 @@
 #include "core/scan/depth_filter.h"
 #include "core/scan/range_image.h"
 #include "core/scan/scan_density.h"
+#include "core/scan/single_view.h"
 #include "pcl_symmetry/core/visibility.h"
 #include "shapes/scans.h"
 #include "shapes/shapes.h"
