@@ -297,8 +297,8 @@ TEST(SensorNoise, ResolvesWhatItsErrorsLeave) {
   Points near(3, 2), far(3, 2);
   near << 0.0f, 0.1f, 0.0f, 0.0f, 1.0f, 1.0f;
   far = 2.0f * near;
-  EXPECT_NEAR(resolvedTolerance(near, seen), 2.17 * std::sqrt(2.0) * error, 1e-9);
-  EXPECT_NEAR(resolvedTolerance(far, seen), 4.0 * resolvedTolerance(near, seen), 1e-9);
+  EXPECT_NEAR(seen.resolvedTolerance(near), 2.17 * std::sqrt(2.0) * error, 1e-9);
+  EXPECT_NEAR(seen.resolvedTolerance(far), 4.0 * seen.resolvedTolerance(near), 1e-9);
 }
 
 TEST(DepthFilter, IsTheSameForAnyNumberOfThreads) {
