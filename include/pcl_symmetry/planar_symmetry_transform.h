@@ -34,7 +34,6 @@ public:
 
   /// \param method sampled (default), convolution, rotational or voting; all estimate the same normalized quantity.
   void setMethod(TransformMethod method) { transform_.method = method; }
-  TransformMethod getMethod() const { return transform_.method; }  ///< see setMethod()
 
   /// \param n cells of the distance transform along each side, and bins of theta, phi and r each, as in the paper;
   /// even, in [8, 512].
