@@ -33,7 +33,6 @@ double inverseDepthError(const DepthImage& image, int apart = 1);
 /// errors stay as they are, and those whose pixels share errors with their neighbors, as of stereo and structured
 /// light: the mean keeps these, and edges are rounded.
 /// \param radius of the square around a pixel, pixels, >= 1.
-/// \param num_threads 0 = one per core; the result does not depend on it.
 FilteredDepths filterDepths(const DepthImage& image, int radius, int num_threads);
 
 /// Errors of the inverse depths of a camera, from its picture alone.
