@@ -1,11 +1,10 @@
 #pragma once
 
 #include <cstdint>
-#include <memory>
 #include <vector>
 
 #include "pcl_symmetry/core/axial_transform.h"
-#include "pcl_symmetry/impl/cloud_analysis.hpp"
+#include "pcl_symmetry/impl/transform_analysis.hpp"
 
 namespace PCL_SYMMETRY_EXPORTS pcl_symmetry {
 
@@ -24,32 +23,22 @@ namespace PCL_SYMMETRY_EXPORTS pcl_symmetry {
 ///   std::cout << maximum.axis.direction().transpose() << " fold " << maximum.fold << " " << maximum.value << "\n";
 /// \endcode
 template <typename PointT>
-class AxialSymmetryTransform : public ScanAnalysis<PointT> {
+class AxialSymmetryTransform : public TransformAnalysis<PointT> {
 public:
   using Ptr = pcl::shared_ptr<AxialSymmetryTransform<PointT>>;
   using ConstPtr = pcl::shared_ptr<const AxialSymmetryTransform<PointT>>;
 
   /// Uses at most 200 000 points, see setMaxPoints().
-  AxialSymmetryTransform() : ScanAnalysis<PointT>("AxialSymmetryTransform", 200'000) { edt_options_.num_cells = 32; }
+  AxialSymmetryTransform() : TransformAnalysis<PointT>("AxialSymmetryTransform") { edt_options_.num_cells = 32; }
 
-  /// \param num_cells cells of the distance transform along each side, in [8, 512]; default 32. Twice as many see
-  /// details half as large, and need four times the bins.
-  /// \throws pcl::BadArgumentException "field = value, must be rule", as all setters here.
-  void setNumCells(int num_cells) {
-    detail::changeOptions(edt_options_, [&](GaussianEdtOptions& changed) { changed.num_cells = num_cells; });
-  }
   /// \param num_theta,num_phi,num_offset bins of the map, each >= 1, num_phi even; default 16, 64 and 32. It has
-  /// num_theta * num_phi * num_offset^2 axes.
+  /// num_theta * num_phi * num_offset^2 axes; twice as many cells need four times the bins.
+  /// \throws pcl::BadArgumentException "field = value, must be rule", as all setters here.
   void setMapSize(int num_theta, int num_phi, int num_offset) {
     detail::withBadArguments([&] { AxisGrid(num_theta, num_phi, num_offset, Eigen::Vector3d::Zero(), 1.0); });
     num_theta_ = num_theta;
     num_phi_ = num_phi;
     num_offset_ = num_offset;
-  }
-  /// \param sigma width of the Gaussian, input units, >= 0; 0 (default) = two cells, or the spacing of the points where
-  /// that is more.
-  void setSigma(double sigma) {
-    detail::changeOptions(edt_options_, [&](GaussianEdtOptions& changed) { changed.sigma = sigma; });
   }
   /// \param folds orders of the rotations, each 0 (any angle) or in [2, 60]; default 0 and 2 to 8.
   void setFolds(const std::vector<int>& folds) {
@@ -62,11 +51,8 @@ public:
   void setRandomSeed(std::uint64_t seed) { transform_.seed = seed; }  ///< of all random draws
   /// \param num_threads >= 0; 0 = one per core (default). The result does not depend on it.
   void setNumberOfThreads(int num_threads) {
-    detail::changeOptions(edt_options_, [&](GaussianEdtOptions& changed) { changed.num_threads = num_threads; });
-    transform_.num_threads = num_threads;
+    detail::changeOptions(transform_, [&](AxialTransformOptions& changed) { changed.num_threads = num_threads; });
   }
-
-  using CloudAnalysis<PointT>::setInputVolume;
 
   /// \return the map of all axes, in the frame and units of the input; empty where the input holds no answer, see
   /// getReason(). With a viewpoint it holds (1 + c) D / (D + F + c), as that of PlanarSymmetryTransform.
@@ -98,30 +84,19 @@ public:
 
 protected:
   void clearResults() override {
-    ScanAnalysis<PointT>::clearResults();
-    edt_.reset();
+    TransformAnalysis<PointT>::clearResults();
     map_ = {};
   }
 
 private:
-  /// \return whether the input holds an answer.
-  bool prepare() {
-    if (this->volume()) {
-      const auto f = this->selectVolume(edt_options_.num_cells, transform_.num_threads);
-      if (f) edt_ = std::make_shared<const GaussianEdt>(*f, edt_options_);
-      return f.has_value();
-    }
-    const Points points = this->selectInput(transform_.seed, transform_.num_threads);
-    if (points.cols() == 0) return false;
-    this->seenSpace(points);
-    edt_ = std::make_shared<const GaussianEdt>(points, edt_options_);
-    return true;
-  }
+  using TransformAnalysis<PointT>::edt_;
+  using TransformAnalysis<PointT>::edt_options_;
 
-  GaussianEdtOptions edt_options_;
+  /// \return whether the input holds an answer.
+  bool prepare() { return this->makeDistanceTransform(transform_.seed, transform_.num_threads).cols() > 0; }
+
   AxialTransformOptions transform_;
   int num_theta_ = 16, num_phi_ = 64, num_offset_ = 32;
-  std::shared_ptr<const GaussianEdt> edt_;
   AxisMap map_;
 };
 

@@ -3,10 +3,9 @@
 #include <pcl/PolygonMesh.h>
 
 #include <cstdint>
-#include <memory>
 
 #include "pcl_symmetry/core/planar_transform.h"
-#include "pcl_symmetry/impl/cloud_analysis.hpp"
+#include "pcl_symmetry/impl/transform_analysis.hpp"
 #include "pcl_symmetry/mesh_sampling.h"
 
 namespace PCL_SYMMETRY_EXPORTS pcl_symmetry {
@@ -25,39 +24,29 @@ namespace PCL_SYMMETRY_EXPORTS pcl_symmetry {
 /// if (!map.empty()) std::cout << map.grid.plane(map.grid.bin(map.strongest())).coefficients().transpose() << "\n";
 /// \endcode
 template <typename PointT>
-class PlanarSymmetryTransform : public ScanAnalysis<PointT> {
+class PlanarSymmetryTransform : public TransformAnalysis<PointT> {
 public:
   using Ptr = pcl::shared_ptr<PlanarSymmetryTransform<PointT>>;
   using ConstPtr = pcl::shared_ptr<const PlanarSymmetryTransform<PointT>>;
 
   /// Uses at most 200 000 points, see setMaxPoints().
-  PlanarSymmetryTransform() : ScanAnalysis<PointT>("PlanarSymmetryTransform", 200'000) {}
+  PlanarSymmetryTransform() : TransformAnalysis<PointT>("PlanarSymmetryTransform") {}
 
   /// \param method sampled (default), convolution, rotational or voting; all estimate the same normalized quantity.
   void setMethod(TransformMethod method) { transform_.method = method; }
-  TransformMethod getMethod() const { return transform_.method; }  ///< see setMethod()
 
   /// \param n cells of the distance transform along each side, and bins of theta, phi and r each, as in the paper;
   /// even, in [8, 512].
   /// \throws pcl::BadArgumentException "field = value, must be rule", as all setters here.
   void setGridSize(int n) {
-    setNumCells(n);
+    this->setNumCells(n);
     setMapSize(n, n, n);
-  }
-  /// \param num_cells cells of the distance transform along each side, in [8, 512]; default 64.
-  void setNumCells(int num_cells) {
-    detail::changeOptions(edt_options_, [&](GaussianEdtOptions& changed) { changed.num_cells = num_cells; });
   }
   /// \param num_theta,num_phi,num_radius bins of the map, each in [1, 4096], num_phi even; default 64 each.
   void setMapSize(int num_theta, int num_phi, int num_radius) {
     detail::changeOptions(map_size_, [&](MapSize& changed) { changed = {num_theta, num_phi, num_radius}; });
   }
 
-  /// \param sigma width of the Gaussian, input units, >= 0; 0 (default) = two cells, or the spacing of the points where
-  /// that is more.
-  void setSigma(double sigma) {
-    detail::changeOptions(edt_options_, [&](GaussianEdtOptions& changed) { changed.sigma = sigma; });
-  }
   /// Covers this ball in place of the bounding ball of the points.
   /// \param center,radius input frame and units; radius > 0.
   void setBounds(const Eigen::Vector3d& center, double radius) {
@@ -89,7 +78,6 @@ public:
   /// \param num_threads >= 0; 0 = one per core (default). The result does not depend on it.
   void setNumberOfThreads(int num_threads) {
     detail::checkAtLeast("num_threads", num_threads, 0);
-    edt_options_.num_threads = num_threads;
     transform_.setNumThreads(num_threads);
   }
 
@@ -98,26 +86,16 @@ public:
   /// \throws pcl::BadArgumentException where the mesh refers to vertices that it does not have.
   void setInputMesh(const pcl::PolygonMesh& mesh, int num_points = 50'000);
 
-  using CloudAnalysis<PointT>::setInputVolume;
-
   /// \return the map, in the frame and units of the input; empty where the input holds no answer, see getReason().
   /// \throws pcl::BadArgumentException where the points surround the viewpoint that was given.
   SymmetryMap compute();
 
-  /// \return the function f that the last map was made from; null without one.
-  std::shared_ptr<const GaussianEdt> getDistanceTransform() const { return edt_; }
-
-protected:
-  void clearResults() override {
-    ScanAnalysis<PointT>::clearResults();
-    edt_.reset();
-  }
-
 private:
-  GaussianEdtOptions edt_options_;
+  using TransformAnalysis<PointT>::edt_;
+  using TransformAnalysis<PointT>::edt_options_;
+
   PlanarTransformOptions transform_;
   MapSize map_size_{64, 64, 64};
-  std::shared_ptr<const GaussianEdt> edt_;
 };
 
 template <typename PointT>
@@ -133,21 +111,10 @@ void PlanarSymmetryTransform<PointT>::setInputMesh(const pcl::PolygonMesh& mesh,
 template <typename PointT>
 SymmetryMap PlanarSymmetryTransform<PointT>::compute() {
   return detail::withBadArguments([&] {
-    Points points;
-    const Visibility* seen = nullptr;
-    if (this->volume()) {
-      const auto f = this->selectVolume(edt_options_.num_cells, transform_.sampled.num_threads);
-      if (!f) return SymmetryMap();
-      points = f->bodyPoints(false);
-      edt_ = std::make_shared<const GaussianEdt>(*f, edt_options_);
-    } else {
-      points = this->selectInput(transform_.sampled.seed, transform_.sampled.num_threads);
-      if (points.cols() == 0) return SymmetryMap();
-      seen = this->seenSpace(points);
-      edt_ = std::make_shared<const GaussianEdt>(points, edt_options_);
-    }
+    const Points points = this->makeDistanceTransform(transform_.sampled.seed, transform_.sampled.num_threads);
+    if (points.cols() == 0) return SymmetryMap();
     const PlaneGrid grid(map_size_, edt_->center(), edt_->radius());
-    return planarTransform(*edt_, grid, centerOfMass(points), transform_, seen);
+    return planarTransform(*edt_, grid, centerOfMass(points), transform_, this->seen());
   });
 }
 

@@ -69,7 +69,6 @@ public:
   /// \param use_input_normals uses the normals of point types that have them (default), where they are finite and not
   /// zero; false, and for other point types: all normals are estimated from the neighbors.
   void setUseInputNormals(bool use_input_normals) { use_input_normals_ = use_input_normals; }
-  bool getUseInputNormals() const { return use_input_normals_; }  ///< see setUseInputNormals()
 
   /// Refines the maxima of this map in place of one that the class computes. Follows setInputCloud(), which forgets it.
   /// \param map,edt made by PlanarSymmetryTransform for the same cloud.

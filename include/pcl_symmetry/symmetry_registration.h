@@ -83,21 +83,13 @@ constexpr int kLeastRegistrationPoints = 100;
 class PreparedCloud;
 
 /// A cloud that others are registered to, again and again. Its normals, its trees, and its symmetry frame where that
-/// is needed, are made when they are first needed, and kept. Copies share them; several threads may use them.
-class RegistrationTarget {
-public:
-  /// \param points 3 x N, finite, not all equal, input units.
-  /// \param seen what the scanner saw of them; nothing = the cloud shows its object from all sides.
-  /// \param options of the preparation: frame, seed and num_threads count.
-  /// \throws std::invalid_argument for bad options or points without extent.
-  RegistrationTarget(const Points& points, const std::optional<Visibility>& seen,
-                     const CloudRegistrationOptions& options = {});
-
-private:
-  friend CloudRegistration registerClouds(const Points&, const std::optional<Visibility>&, const RegistrationTarget&,
-                                          const Eigen::Isometry3d&, const CloudRegistrationOptions&);
-  std::shared_ptr<const PreparedCloud> cloud_;
-};
+/// is needed, are made when they are first needed, and kept; several threads may use it.
+/// \param points 3 x N, finite, not all equal, input units.
+/// \param seen what the scanner saw of them; nothing = the cloud shows its object from all sides.
+/// \param options of the preparation: frame, seed and num_threads count.
+/// \throws std::invalid_argument for bad options or points without extent.
+std::shared_ptr<const PreparedCloud> registrationTarget(const Points& points, const std::optional<Visibility>& seen,
+                                                        const CloudRegistrationOptions& options = {});
 
 /// Finds the best pose of two clouds (Section 5.1): hypotheses from symmetry frames, search, refinement by ICP, and a
 /// last comparison with more points.
@@ -113,7 +105,7 @@ CloudRegistration registerClouds(const Points& source, const std::optional<Visib
 
 /// The same for a target that is prepared once. Its frame is that of the options it was made with.
 CloudRegistration registerClouds(const Points& source, const std::optional<Visibility>& source_seen,
-                                 const RegistrationTarget& target, const Eigen::Isometry3d& guess,
+                                 const PreparedCloud& target, const Eigen::Isometry3d& guess,
                                  const CloudRegistrationOptions& options = {});
 
 /// Registers a cloud to another one from any pose by their symmetries (Section 5.1 of the paper): a partial scan to a
@@ -233,7 +225,7 @@ private:
 
   Viewpoint source_viewpoint_, target_viewpoint_;
   CloudRegistrationOptions options_;
-  std::optional<RegistrationTarget> prepared_target_;
+  std::shared_ptr<const PreparedCloud> prepared_target_;
   double min_merit_ = 0.4;
   std::size_t max_points_ = 10'000;
   CloudRegistration result_;  // of the last align(); without covariance where it did not converge

@@ -11,7 +11,7 @@
 
 #include "core/geometry/answerable_points.h"
 #include "core/geometry/point_samples.h"
-#include "core/scan/single_view.h"
+#include "core/scan/viewpoint_inference.h"
 
 namespace py = pybind11;
 

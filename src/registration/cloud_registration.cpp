@@ -158,20 +158,20 @@ void CloudRegistrationOptions::validate() const {
   checkNumThreads(num_threads);
 }
 
-RegistrationTarget::RegistrationTarget(const Points& points, const std::optional<Visibility>& seen,
-                                       const CloudRegistrationOptions& options) {
+std::shared_ptr<const PreparedCloud> registrationTarget(const Points& points, const std::optional<Visibility>& seen,
+                                                        const CloudRegistrationOptions& options) {
   options.validate();
-  cloud_ = std::make_shared<const PreparedCloud>("target", points, seen, options);
+  return std::make_shared<const PreparedCloud>("target", points, seen, options);
 }
 
 CloudRegistration registerClouds(const Points& source, const std::optional<Visibility>& source_seen,
                                  const Points& target, const std::optional<Visibility>& target_seen,
                                  const Eigen::Isometry3d& guess, const CloudRegistrationOptions& options) {
-  return registerClouds(source, source_seen, RegistrationTarget(target, target_seen, options), guess, options);
+  return registerClouds(source, source_seen, *registrationTarget(target, target_seen, options), guess, options);
 }
 
 CloudRegistration registerClouds(const Points& source, const std::optional<Visibility>& source_seen,
-                                 const RegistrationTarget& target, const Eigen::Isometry3d& guess,
+                                 const PreparedCloud& target, const Eigen::Isometry3d& guess,
                                  const CloudRegistrationOptions& options) {
   options.validate();
   CloudRegistration result;
@@ -179,12 +179,12 @@ CloudRegistration registerClouds(const Points& source, const std::optional<Visib
   const auto done = [&](const char* stage) { result.timing_ms.emplace_back(stage, watch.lap()); };
 
   const PreparedCloud prepared_source("source", source, source_seen, options);
-  if (std::min(source.cols(), target.cloud_->size()) < kLeastRegistrationPoints) {
+  if (std::min(source.cols(), target.size()) < kLeastRegistrationPoints) {
     result.poses.push_back({guess, {}});
     result.T_target_source = guess;
     return result;
   }
-  const CloudPair clouds(prepared_source, *target.cloud_);
+  const CloudPair clouds(prepared_source, target);
   const CloudRegistrationOptions inner = inSearchUnits(options, clouds.frames().scale);
   done("prepare");
 

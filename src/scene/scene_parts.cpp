@@ -13,7 +13,6 @@
 #include "core/base/median.h"
 #include "core/geometry/principal_axes.h"
 #include "core/geometry/surface_normals.h"
-#include "core/scan/depth_filter.h"
 #include "pcl_symmetry/impl/cloud_conversion.hpp"
 #include "scene/object_feet.h"
 #include "scene/scene_rules.h"
@@ -158,7 +157,7 @@ SeenSpace seenOfObject(const SeenSpace& seen, const SymmetryScene::Cloud& scene,
   if (!seen.visibility() || supports.empty()) return result;
   const Points points = pointsOf(scene, object);
   const double diagonal = (points.rowwise().maxCoeff() - points.rowwise().minCoeff()).cast<double>().norm();
-  const double off = std::max(tolerance * diagonal, resolvedTolerance(points, *seen.visibility()));
+  const double off = std::max(tolerance * diagonal, seen.visibility()->resolvedTolerance(points));
   const double most = kScene.support_margin * distances.plane;
   for (const SupportingPlane& support : supports) {
     const Eigen::RowVector3f normal = support.coefficients.head<3>().cast<float>();

@@ -16,7 +16,6 @@
 #include "core/base/median.h"
 #include "core/base/parallel.h"
 #include "core/geometry/principal_axes.h"
-#include "core/scan/depth_filter.h"
 #include "scene/scene_rules.h"
 
 namespace pcl_symmetry::detail {
@@ -81,7 +80,7 @@ public:
     diagonal_ = (points.rowwise().maxCoeff() - points.rowwise().minCoeff()).cast<double>().norm();
     center_ = points.rowwise().mean().cast<double>();
     double tolerance = std::max(scene.distances.spacing, scene.tolerance * diagonal_);
-    if (seen_.visibility()) tolerance = std::max(tolerance, resolvedTolerance(points, *seen_.visibility()));
+    if (seen_.visibility()) tolerance = std::max(tolerance, seen_.visibility()->resolvedTolerance(points));
     reach_ = 2.0 * tolerance;
   }
 

@@ -112,7 +112,6 @@ TEST(SymmetryMaximaRefinement, UsesTheNormalsOfTheInput) {
 
   // Normals that are zero or not finite are estimated.
   SymmetryMaximaRefinement<pcl::PointNormal> refinement;
-  EXPECT_TRUE(refinement.getUseInputNormals());
   for (const float missing : {0.0f, std::numeric_limits<float>::quiet_NaN()}) {
     refinement.setInputCloud(withNormals(*cloud, Eigen::Vector3f::Constant(missing)));
     expectSamePlanes(refinement.compute(), estimated);

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <vector>
@@ -90,7 +91,7 @@ struct AxisMap {
   double sigma = 0.0;                      ///< width of the GEDT that the map was made from, input units
 
   /// \return index of the bin with the greatest value; 0 for an empty map.
-  std::size_t strongest() const;
+  std::size_t strongest() const { return std::max_element(greatest.begin(), greatest.end()) - greatest.begin(); }
   bool empty() const { return greatest.empty(); }  ///< no transform was computed
 };
 
@@ -140,7 +141,8 @@ struct CenterMap {
   std::vector<float> values;                         ///< num_centers^3, x fastest
 
   Eigen::Vector3d center(std::size_t index) const;  ///< input frame
-  std::size_t strongest() const;                    ///< index of the greatest value; 0 for an empty map
+  /// \return index of the greatest value; 0 for an empty map.
+  std::size_t strongest() const { return std::max_element(values.begin(), values.end()) - values.begin(); }
   /// \return trilinear between the centers; 0 outside the lattice.
   double operator()(const Eigen::Vector3d& x) const;
 };

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <algorithm>
 #include <cstddef>
 #include <optional>
 #include <vector>
@@ -112,7 +113,7 @@ struct LineMap {
   bool empty() const { return values.empty(); }  ///< no transform was computed
 
   /// \return index of the bin with the greatest value; 0 for an empty map.
-  std::size_t strongest() const;
+  std::size_t strongest() const { return std::max_element(values.begin(), values.end()) - values.begin(); }
 };
 
 /// The reflective symmetry of a planar shape with respect to every line (Sections 3 and 4.2).

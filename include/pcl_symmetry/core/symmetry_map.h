@@ -38,7 +38,7 @@ struct SymmetryMap {
   double prst(std::size_t index) const { return std::sqrt(std::max(0.0, 0.5 * (1.0 + values[index]))); }
 
   /// \return index of the bin with the greatest value; 0 for an empty map.
-  std::size_t strongest() const;
+  std::size_t strongest() const { return std::max_element(values.begin(), values.end()) - values.begin(); }
 
   bool empty() const { return values.empty(); }  ///< no transform was computed
 

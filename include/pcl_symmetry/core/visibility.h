@@ -77,6 +77,12 @@ public:
   /// \return standard deviation of the errors of a depth measured there, input units; 0 where it is not known.
   double depthError(const Eigen::Vector3d& x) const;
 
+  /// The least tolerance that a depth camera resolves: the reflection of a point and the surface that it is compared
+  /// with both have the error of a depth, and 97 % of the points of a true symmetry are to be within it.
+  /// \param points 3 x N, N >= 1, in the frame of the points.
+  /// \return input units; 0 where the errors are not known.
+  double resolvedTolerance(const PointsRef& points) const;
+
   /// \return these planes with their margins: below n . x + d = 0 is no object.
   const std::vector<Eigen::Vector4d>& supports() const { return supports_; }
 

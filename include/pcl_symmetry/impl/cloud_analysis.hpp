@@ -2,19 +2,32 @@
 
 #include <pcl/pcl_base.h>
 
-#include <algorithm>
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <optional>
-#include <stdexcept>
 #include <string>
 #include <utility>
 
 #include "pcl_symmetry/core/detect_planes.h"
-#include "pcl_symmetry/core/scalar_grid.h"
 #include "pcl_symmetry/impl/cloud_conversion.hpp"
 
 namespace PCL_SYMMETRY_EXPORTS pcl_symmetry {
+
+class ScalarGrid;
+struct VolumeLevels;
+
+namespace detail {
+
+struct InputVolume;
+
+/// \param levels null = chosen from the values.
+/// \return nothing without a grid.
+/// \throws pcl::BadArgumentException for bad levels.
+std::shared_ptr<const InputVolume> inputVolume(const std::shared_ptr<const ScalarGrid>& grid,
+                                               const VolumeLevels* levels);
+
+}  // namespace detail
 
 /// The input of every class that analyzes a cloud: which points it uses, and why they may hold no answer.
 ///
@@ -63,33 +76,20 @@ protected:
     reason_.clear();
   }
 
-  /// Analyzes a function on a grid in place of a cloud (Section 4.2), until a cloud is set.
+  /// Analyzes a function on a grid in place of a cloud (Section 4.2), until a cloud is set. The intensities that count
+  /// are chosen from the values.
   /// \param volume such as a CT or MR image; results are in its input frame.
-  /// \param levels the intensities that count; default: chosen from the values.
+  void setInputVolume(const std::shared_ptr<const ScalarGrid>& volume) {
+    analyze(detail::inputVolume(volume, nullptr));
+  }
+  /// \param levels the intensities that count.
   /// \throws pcl::BadArgumentException for bad levels.
-  void setInputVolume(const ScalarGrid::ConstPtr& volume, const VolumeLevels& levels = {}) {
-    detail::withBadArguments([&] { levels.validate(); });
-    pcl::PCLBase<PointT>::setInputCloud(nullptr);
-    volume_ = volume;
-    levels_ = levels;
-    clearResults();
+  void setInputVolume(const std::shared_ptr<const ScalarGrid>& volume, const VolumeLevels& levels) {
+    analyze(detail::inputVolume(volume, &levels));
   }
 
-  /// Begins an analysis of the volume.
-  /// \return f on about as many voxels as the distance transform would have cells; nothing where it holds no answer.
-  std::optional<VolumeFunction> selectVolume(int num_cells, int num_threads) {
-    clearResults();
-    try {
-      const std::size_t side = static_cast<std::size_t>(std::max(num_cells, 16));
-      return VolumeFunction(*volume_, levels_, side * side * side, num_threads);
-    } catch (const std::invalid_argument& error) {
-      giveNoAnswer(error.what());
-      return std::nullopt;
-    }
-  }
-
-  const ScalarGrid::ConstPtr& volume() const { return volume_; }  ///< null where a cloud is analyzed
-  const VolumeLevels& levels() const { return levels_; }          ///< of the volume
+  /// \return null where a cloud is analyzed.
+  const detail::InputVolume* volume() const { return volume_.get(); }
 
   /// Begins an analysis: clears the results of the last one and selects the points of the input.
   /// \return 3 x N points; N = 0 where the input holds no answer.
@@ -120,11 +120,16 @@ protected:
   }
 
 private:
+  void analyze(std::shared_ptr<const detail::InputVolume> volume) {
+    pcl::PCLBase<PointT>::setInputCloud(nullptr);
+    volume_ = std::move(volume);
+    clearResults();
+  }
+
   std::string name_;
   std::size_t max_points_;
   std::int64_t least_max_points_;
-  ScalarGrid::ConstPtr volume_;
-  VolumeLevels levels_;
+  std::shared_ptr<const detail::InputVolume> volume_;
   pcl::Indices used_indices_;
   std::string reason_;
 };

@@ -67,7 +67,8 @@ void SymmetryRegistration<PointSource, PointTarget, Scalar>::prepareTarget() {
   const detail::SelectedPoints target = detail::selectPoints(*target_, nullptr, max_points_, options_.seed);
   reason_ = detail::reasonForNoAnswer(target.points, "target", kLeastRegistrationPoints);
   if (!reason_.empty()) return;
-  prepared_target_.emplace(target.points, detail::seenSpace(*target_, target.points, target_viewpoint_), options_);
+  prepared_target_ =
+      registrationTarget(target.points, detail::seenSpace(*target_, target.points, target_viewpoint_), options_);
 }
 
 template <typename PointSource, typename PointTarget, typename Scalar>

@@ -3,7 +3,6 @@
 #include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <utility>
 
 #include "core/base/median.h"
@@ -29,37 +28,14 @@ double mostPoints(const PointsRef& points, const DetectionOptions& options) {
 
 }  // namespace
 
-std::vector<int> CloudSubset::nearTo(const PointsRef& all, int num_threads) const {
-  std::vector<int> near(beside);
-  std::vector<char> is_far(near.size(), 0);
-  const Eigen::Index last = points.cols() - 1;
-  const Eigen::Vector3f extent = points.rowwise().maxCoeff() - points.rowwise().minCoeff();
-  const float sq_reach =
-      kDetection.points.subset_reach * kDetection.points.subset_reach * extent.maxCoeff() * extent.maxCoeff();
-  parallelRanges(near.size(), 4096, num_threads, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) {
-      const Eigen::Index from = std::max<Eigen::Index>(0, near[i] - kDetection.points.along_curve),
-                         to = std::min<Eigen::Index>(last, near[i] + kDetection.points.along_curve);
-      const Eigen::Vector3f x = all.col(static_cast<Eigen::Index>(i));
-      float least = std::numeric_limits<float>::infinity();
-      for (Eigen::Index k = from; k <= to; ++k) {
-        const float sq_distance = (points.col(k) - x).squaredNorm();
-        if (sq_distance >= least) continue;
-        least = sq_distance;
-        near[i] = static_cast<int>(k);
-      }
-      is_far[i] = least > sq_reach ? 1 : 0;
-    }
+std::vector<int> CloudSubset::nearestTo(const PointsRef& all, int num_threads) const {
+  const ClosestPointSearch::Ptr search = makeFlannSearch(points);
+  std::vector<int> nearest(static_cast<std::size_t>(all.cols()));
+  parallelRanges(nearest.size(), 4096, num_threads, [&](std::size_t begin, std::size_t end) {
+    const std::vector<int> part = search->closest(all.middleCols(begin, end - begin));
+    std::copy(part.begin(), part.end(), nearest.begin() + static_cast<std::ptrdiff_t>(begin));
   });
-  std::vector<int> far;
-  for (std::size_t i = 0; i < near.size(); ++i)
-    if (is_far[i]) far.push_back(static_cast<int>(i));
-  if (far.empty()) return near;
-  std::vector<int> nearest;
-  std::vector<float> sq_distances;
-  makeFlannSearch(points)->search(pointsAt(all, far), 1, nearest, sq_distances);
-  for (std::size_t i = 0; i < far.size(); ++i) near[static_cast<std::size_t>(far[i])] = nearest[i];
-  return near;
+  return nearest;
 }
 
 std::optional<CloudSubset> subsetOf(const PointsRef& points, const DetectionOptions& options) {
@@ -71,10 +47,9 @@ std::optional<CloudSubset> subsetOf(const PointsRef& points, const DetectionOpti
   std::vector<int> first_of(static_cast<std::size_t>(distinct.points.cols()), -1);
   for (std::size_t i = 0; i < distinct.index_of.size(); ++i)
     if (int& first = first_of[static_cast<std::size_t>(distinct.index_of[i])]; first < 0) first = static_cast<int>(i);
-  const SpreadSubset spread = spreadSubset(distinct.points, static_cast<std::size_t>(most), options.seed);
   CloudSubset subset;
-  for (const int i : spread.kept) subset.kept.push_back(first_of[static_cast<std::size_t>(i)]);
-  for (const int i : distinct.index_of) subset.beside.push_back(spread.beside[static_cast<std::size_t>(i)]);
+  for (const int i : spreadSubset(distinct.points, static_cast<std::size_t>(most), options.seed))
+    subset.kept.push_back(first_of[static_cast<std::size_t>(i)]);
   subset.points = pointsAt(points, subset.kept);
   return subset;
 }

@@ -10,17 +10,14 @@
 namespace pcl_symmetry {
 
 /// The points that represent a large cloud: as many as the tolerance needs. Planes, decisions and support are theirs;
-/// all other points take the support of one near them.
+/// all other points take the support of the nearest one.
 struct CloudSubset {
   std::vector<int> kept;  ///< indices of points of the cloud
   Points points;          ///< 3 x kept.size(), these points
-  /// For each point of the cloud the index in kept of a point that is likely to be near.
-  std::vector<int> beside;
 
   /// \param all the points of the cloud.
-  /// \param num_threads 0 = one per core.
-  /// \return for each point of the cloud the index in kept of a point near it, mostly of the nearest.
-  std::vector<int> nearTo(const PointsRef& all, int num_threads) const;
+  /// \return for each point of the cloud the index in kept of the nearest one.
+  std::vector<int> nearestTo(const PointsRef& all, int num_threads) const;
 };
 
 /// \param points 3 x N, finite, that hold an answer.

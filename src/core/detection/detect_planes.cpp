@@ -270,7 +270,7 @@ Detection detectOnSubset(const PlaneInput& input, const CloudSubset& subset, con
   if (!input.map) detection.map.center_of_mass = centerOfMass(input.points);
   Stopwatch watch;
   if (!detection.planes.empty() || detection.best)
-    spreadSupport(detection, subset.nearTo(input.points, options.num_threads));
+    spreadSupport(detection, subset.nearestTo(input.points, options.num_threads));
   detection.timing_ms.emplace_back("support_of_all", watch.lap());
   return detection;
 }

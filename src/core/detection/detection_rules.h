@@ -15,9 +15,7 @@ struct DetectionRules {
   /// Which points are used.
   struct {
     double most_points = 20'000.0, usual_tolerance = 0.01;  ///< points that represent a cloud at that tolerance
-    Eigen::Index along_curve = 4;                           ///< points compared before and after one along the curve
-    float subset_reach = 1.0f / 64.0f;      ///< share of the extent from which a point is far, and its nearest searched
-    int density_samples = 1000;             ///< samples of the density; its slope has an error of 2 %
+    int density_samples = 1000;                             ///< samples of the density; its slope has an error of 2 %
     int most_counted = 48, neighbors = 16;  ///< neighbors that are counted, and that a neighborhood has on average
     double trimmed = 0.05;  ///< share of the points at either end that the range of densities leaves out
     double uneven = 0.4, fully_uneven = 0.7;  ///< logarithm of the ratio of densities evened, from none to all of it

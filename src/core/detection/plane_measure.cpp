@@ -11,7 +11,6 @@
 #include "core/evidence/plane_support.h"
 #include "core/geometry/geometry_rules.h"
 #include "core/geometry/point_samples.h"
-#include "core/scan/depth_filter.h"
 #include "core/scan/single_view.h"
 
 namespace pcl_symmetry {
@@ -38,7 +37,7 @@ PlaneMeasure::PlaneMeasure(const NormalizedCloud& cloud, const PlaneFit& fit, co
     : cloud_(cloud),
       fit_(fit),
       options_(options),
-      resolution_(cloud.seen() ? resolvedTolerance(cloud.points, *cloud.seen()) : 0.0),
+      resolution_(cloud.seen() ? cloud.seen()->resolvedTolerance(cloud.points) : 0.0),
       tolerance_(options.absolute_tolerance > 0.0
                      ? options.absolute_tolerance / cloud.scale
                      : std::max(options.tolerance * cloud.extent,

@@ -39,7 +39,6 @@ PointEvidence pointEvidence(const Points& reflected, const Points& reflected_nor
 
 /// Support of each sample on the surface that the other samples describe: what sampling alone leaves of a symmetry.
 /// \param samples N, normalized to the unit ball.
-/// \param num_threads 0 = one per core.
 /// \return N values in [0, 1].
 std::vector<float> ownSupport(const SurfaceSamples& samples, int num_threads);
 
@@ -51,7 +50,6 @@ double meanSupport(const std::vector<float>& support);
 /// \param points 3 x M, finite.
 /// \param samples 3 x N, finite, not all equal, in the same frame.
 /// \param plane in the same frame.
-/// \param num_threads 0 = one per core.
 /// \return M values in [0, 1].
 /// \throws std::invalid_argument where all samples coincide.
 std::vector<float> planeSupport(const PointsRef& points, const PointsRef& samples, const ReflectionPlane& plane,

@@ -15,7 +15,6 @@ class PointDensity {
 public:
   /// \param points 3 x N, finite, N >= 1.
   /// \param bandwidth standard deviation of the Gaussian around each point, units of the points, > 0.
-  /// \param num_threads 0 = one per core.
   PointDensity(const PointsRef& points, double bandwidth, int num_threads);
 
   /// Mean density at the reflections of samples, divided by the mean density that the other points have at a point.

@@ -25,7 +25,6 @@ class SurfaceSamples {
 public:
   /// \param points 3 x N.
   /// \param geometry of the points.
-  /// \param num_threads 0 = one per core.
   SurfaceSamples(const Points& points, const LocalGeometry& geometry, int num_threads = 1);
 
   int size() const { return static_cast<int>(samples_.size()); }
@@ -47,7 +46,6 @@ std::vector<float> surfaceDistances(const Points& points, const std::vector<int>
 /// Distance of each sample from the surface that the others describe: what sampling and noise alone make of a surface
 /// that is mapped onto itself.
 /// \param samples N >= 2 of them.
-/// \param num_threads 0 = one per core.
 /// \return N distances >= 0, units of the samples.
 std::vector<float> ownSurfaceDistances(const SurfaceSamples& samples, int num_threads = 1);
 
@@ -64,7 +62,6 @@ class SplitSurface {
 public:
   /// \param points 3 x N, finite, N >= 4.
   /// \param seed of the halves.
-  /// \param num_threads 0 = one per core.
   SplitSurface(const Points& points, std::uint64_t seed, int num_threads);
 
   /// \return distances of the first half from the surface of the second, units of the points, >= 0.

@@ -23,13 +23,7 @@ int countDistinct(const PointsRef& points, int most) {
 
 Eigen::Vector3d farthestFrom(const Eigen::Vector3d& position, const PointsRef& points) {
   Eigen::Index farthest = 0;
-  double sq_largest = -1.0;
-  for (Eigen::Index i = 0; i < points.cols(); ++i) {
-    const double sq_distance = (points.col(i).cast<double>() - position).squaredNorm();
-    if (sq_distance <= sq_largest) continue;
-    sq_largest = sq_distance;
-    farthest = i;
-  }
+  (points.cast<double>().colwise() - position).colwise().squaredNorm().maxCoeff(&farthest);
   return points.col(farthest).cast<double>();
 }
 

@@ -86,25 +86,14 @@ inline std::vector<int> curveOrder(const PointsRef& points) {
 
 /// Points spread over a cloud as its points are: one of each of equal runs along a curve through cells of a grid, so
 /// that each neighborhood keeps its share.
-struct SpreadSubset {
-  std::vector<int> kept;    ///< different indices, in the order of the curve: those that follow each other are near
-  std::vector<int> beside;  ///< N, a position in kept for each point of the cloud: mostly that of a point near it
-};
-
 /// \param points 3 x N, finite.
 /// \param size of the subset, < N.
-inline SpreadSubset spreadSubset(const PointsRef& points, std::size_t size, std::uint64_t seed) {
-  const auto count = static_cast<std::size_t>(points.cols());
+/// \return different indices, in the order of the curve: those that follow each other are near.
+inline std::vector<int> spreadSubset(const PointsRef& points, std::size_t size, std::uint64_t seed) {
   const std::vector<int> order = curveOrder(points);
-  SpreadSubset subset{{}, std::vector<int>(count)};
-  const std::vector<std::size_t> positions = oneOfEachRun(count, size, seed);
-  for (const std::size_t position : positions) subset.kept.push_back(order[position]);
-  for (std::size_t position = 0, k = 0; position < count; ++position) {
-    // The middle between two points that are kept is near either.
-    while (k + 1 < size && positions[k] + positions[k + 1] < 2 * position) ++k;
-    subset.beside[order[position]] = static_cast<int>(k);
-  }
-  return subset;
+  std::vector<int> kept;
+  for (const std::size_t position : oneOfEachRun(order.size(), size, seed)) kept.push_back(order[position]);
+  return kept;
 }
 
 /// \return 3 x N, the points reflected across a plane, in their order.

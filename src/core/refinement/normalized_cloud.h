@@ -28,7 +28,6 @@ struct NormalizedCloud {
   /// \param edt_of_input distance transform of these points; must outlive this object.
   /// \param input_search closest points among the normalized points; null = FLANN's.
   /// \param seen what a scanner saw, input frame; null = the points show the object from all sides.
-  /// \param num_threads 0 = one per core.
   /// \param given_normals 3 x N, of any length and sign, used where they are finite and not zero; null = all estimated.
   NormalizedCloud(const PointsRef& input, const GaussianEdt& edt_of_input, ClosestPointSearch::Ptr input_search,
                   const Visibility* seen, int num_threads, const Points* given_normals = nullptr);

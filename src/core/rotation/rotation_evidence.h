@@ -123,7 +123,6 @@ struct JudgedRotation {
 
 /// \param rotations of one scan, input frame, with the shares that were seen.
 /// \param min_confidence planes are not looked for where the other signs leave a rotation less, see rotationConfidence().
-/// \param num_threads 0 = one per core.
 /// \return one each; other rotations than twofold ones have the defaults.
 std::vector<RotationSigns> rotationSigns(const RotationEvidence& evidence,
                                          const std::vector<SymmetryRotation>& rotations, double min_confidence = 0.0,

@@ -177,12 +177,4 @@ double sensorError(const DepthImage& image) {
   return error > 0.0 ? std::min(kScan.most_shared * error, inverseDepthError(image, kScan.window)) : 0.0;
 }
 
-double resolvedTolerance(const PointsRef& points, const Visibility& seen) {
-  // 97 % of a normal distribution lie within 2.17 standard deviations; the difference of two errors has the root of 2
-  // times that of one.
-  const double deviations = 2.17 * std::sqrt(2.0);
-  const Eigen::Vector3d middle = points.cast<double>().rowwise().mean();
-  return deviations * seen.depthError(middle);
-}
-
 }  // namespace pcl_symmetry

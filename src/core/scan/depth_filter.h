@@ -3,8 +3,6 @@
 #include <cstddef>
 #include <vector>
 
-#include "pcl_symmetry/core/visibility.h"
-
 namespace pcl_symmetry {
 
 /// The picture of a depth camera, row by row.
@@ -35,7 +33,6 @@ double inverseDepthError(const DepthImage& image, int apart = 1);
 /// errors stay as they are, and those whose pixels share errors with their neighbors, as of stereo and structured
 /// light: the mean keeps these, and edges are rounded.
 /// \param radius of the square around a pixel, pixels, >= 1.
-/// \param num_threads 0 = one per core; the result does not depend on it.
 FilteredDepths filterDepths(const DepthImage& image, int radius, int num_threads);
 
 /// Errors of the inverse depths of a camera, from its picture alone.
@@ -44,12 +41,5 @@ FilteredDepths filterDepths(const DepthImage& image, int radius, int num_threads
 /// stereo and structured light match windows of pixels.
 /// \return standard deviation of the whole error, units of the inverse depths.
 double sensorError(const DepthImage& image);
-
-/// The least tolerance that a depth camera resolves: the reflection of a point and the surface that it is compared with
-/// both have the error of a depth, and 97 % of the points of a true symmetry are to be within it.
-/// \param points 3 x N, N >= 1.
-/// \param seen in the same frame.
-/// \return units of the points; 0 where the errors are not known.
-double resolvedTolerance(const PointsRef& points, const Visibility& seen);
 
 }  // namespace pcl_symmetry

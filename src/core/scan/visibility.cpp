@@ -136,6 +136,14 @@ double Visibility::depthError(const Eigen::Vector3d& x) const {
   return picture.inverse_depth_error * picture.unit * depth * depth;
 }
 
+double Visibility::resolvedTolerance(const PointsRef& points) const {
+  // 97 % of a normal distribution lie within 2.17 standard deviations; the difference of two errors has the root of 2
+  // times that of one.
+  const double deviations = 2.17 * std::sqrt(2.0);
+  const Eigen::Vector3d middle = points.cast<double>().rowwise().mean();
+  return deviations * depthError(middle);
+}
+
 double Visibility::Picture::depthBehind(const Eigen::Vector3d& x) const {
   const Eigen::Vector3d image = projection.leftCols<3>() * x + projection.col(3);
   if (!(image.z() > 0.0)) return std::numeric_limits<double>::infinity();

@@ -1,5 +1,3 @@
-#include <algorithm>
-
 #include "core/base/check.h"
 #include "core/base/parallel.h"
 #include "core/transform/free_space.h"
@@ -12,10 +10,6 @@ Eigen::Vector3d CenterMap::center(std::size_t index) const {
   const std::size_t n = num_centers;
   return origin + step * Eigen::Vector3d(static_cast<double>(index % n), static_cast<double>(index / n % n),
                                          static_cast<double>(index / n / n));
-}
-
-std::size_t CenterMap::strongest() const {
-  return values.empty() ? 0 : std::max_element(values.begin(), values.end()) - values.begin();
 }
 
 double CenterMap::operator()(const Eigen::Vector3d& x) const {

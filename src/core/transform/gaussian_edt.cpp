@@ -10,7 +10,6 @@
 #include "core/base/simd.h"
 #include "core/transform/gaussian_width.h"
 #include "core/transform/transform_rules.h"
-#include "pcl_symmetry/core/scalar_grid.h"
 
 namespace pcl_symmetry {
 
@@ -162,31 +161,6 @@ void GaussianEdt::computeValues(const PointsRef& points, int num_threads) {
   });
   sumValues(num_threads);
   if (sq_norm_ == 0.0) throw std::invalid_argument("points: none near the ball given by center and radius");
-}
-
-GaussianEdt::GaussianEdt(const VolumeFunction& volume, const GaussianEdtOptions& options) {
-  options.validate();
-  num_cells_ = options.num_cells;
-  const BoundingBall ball =
-      options.radius > 0.0 ? BoundingBall{options.center, options.radius} : boundingBall(volume.bodyPoints(false));
-  center_ = ball.center;
-  radius_ = ball.radius;
-  cell_size_ = radius_ / std::max(0.5 * num_cells_ - kMarginInSigmas * kSigmaInCells, 0.25 * num_cells_);
-  sigma_ = kSigmaInCells * cell_size_;
-  origin_ = center_ - Eigen::Vector3d::Constant((0.5 * num_cells_ - 0.5) * cell_size_);
-  const int n = num_cells_;
-  values_.assign(static_cast<std::size_t>(n) * n * n, 0.0f);
-  const Eigen::Affine3d T_index_input = volume.f.T_input_index().inverse();
-  parallelRanges(values_.size(), static_cast<std::size_t>(n) * n, options.num_threads,
-                 [&](std::size_t begin, std::size_t end) {
-                   for (std::size_t i = begin; i < end; ++i) {
-                     const Eigen::Vector3d p = T_index_input * cellCenter(i);
-                     if (volume.f.contains(p)) values_[i] = static_cast<float>(volume.f.at(p));
-                   }
-                 });
-  sumValues(options.num_threads);
-  if (sq_norm_ == 0.0) throw std::invalid_argument("volume: nothing in the ball given by center and radius");
-  interpolation_ = sharpened(kTransform.of_interpolation, options.num_threads);
 }
 
 void GaussianEdt::sumValues(int num_threads) {

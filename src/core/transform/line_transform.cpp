@@ -45,10 +45,6 @@ std::optional<LineGrid::Bin> LineGrid::step(const Bin& bin, int dt, int dk) cons
   return to;
 }
 
-std::size_t LineMap::strongest() const {
-  return values.empty() ? 0 : std::max_element(values.begin(), values.end()) - values.begin();
-}
-
 ReflectionLine::ReflectionLine(double theta, double offset)
     : theta_(theta), offset_(offset), normal_(std::cos(theta), std::sin(theta)) {
   check(std::isfinite(theta), "theta", theta, "finite");

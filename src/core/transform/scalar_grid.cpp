@@ -7,6 +7,9 @@
 
 #include "core/base/check.h"
 #include "core/base/parallel.h"
+#include "core/transform/gaussian_width.h"
+#include "core/transform/transform_rules.h"
+#include "pcl_symmetry/core/gaussian_edt.h"
 
 namespace pcl_symmetry {
 
@@ -226,6 +229,31 @@ Points VolumeFunction::bodyPoints(bool surface) const {
   Points result(3, points.size());
   for (std::size_t k = 0; k < points.size(); ++k) result.col(k) = points[k];
   return result;
+}
+
+GaussianEdt::GaussianEdt(const VolumeFunction& volume, const GaussianEdtOptions& options) {
+  options.validate();
+  num_cells_ = options.num_cells;
+  const BoundingBall ball =
+      options.radius > 0.0 ? BoundingBall{options.center, options.radius} : boundingBall(volume.bodyPoints(false));
+  center_ = ball.center;
+  radius_ = ball.radius;
+  cell_size_ = radius_ / std::max(0.5 * num_cells_ - kMarginInSigmas * kSigmaInCells, 0.25 * num_cells_);
+  sigma_ = kSigmaInCells * cell_size_;
+  origin_ = center_ - Eigen::Vector3d::Constant((0.5 * num_cells_ - 0.5) * cell_size_);
+  const int n = num_cells_;
+  values_.assign(static_cast<std::size_t>(n) * n * n, 0.0f);
+  const Eigen::Affine3d T_index_input = volume.f.T_input_index().inverse();
+  parallelRanges(values_.size(), static_cast<std::size_t>(n) * n, options.num_threads,
+                 [&](std::size_t begin, std::size_t end) {
+                   for (std::size_t i = begin; i < end; ++i) {
+                     const Eigen::Vector3d p = T_index_input * cellCenter(i);
+                     if (volume.f.contains(p)) values_[i] = static_cast<float>(volume.f.at(p));
+                   }
+                 });
+  sumValues(options.num_threads);
+  if (sq_norm_ == 0.0) throw std::invalid_argument("volume: nothing in the ball given by center and radius");
+  interpolation_ = sharpened(kTransform.of_interpolation, options.num_threads);
 }
 
 }  // namespace pcl_symmetry

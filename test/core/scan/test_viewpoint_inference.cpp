@@ -1,5 +1,5 @@
 /// What a scan tells of its scanner: where it stood, which errors its depths have, and which sides its picture cuts.
-#include "core/scan/single_view.h"
+#include "core/scan/viewpoint_inference.h"
 
 #include <gtest/gtest.h>
 
@@ -11,6 +11,7 @@
 #include "core/scan/depth_filter.h"
 #include "core/scan/range_image.h"
 #include "core/scan/scan_density.h"
+#include "core/scan/single_view.h"
 #include "pcl_symmetry/core/visibility.h"
 #include "shapes/scans.h"
 #include "shapes/shapes.h"
@@ -296,8 +297,8 @@ TEST(SensorNoise, ResolvesWhatItsErrorsLeave) {
   Points near(3, 2), far(3, 2);
   near << 0.0f, 0.1f, 0.0f, 0.0f, 1.0f, 1.0f;
   far = 2.0f * near;
-  EXPECT_NEAR(resolvedTolerance(near, seen), 2.17 * std::sqrt(2.0) * error, 1e-9);
-  EXPECT_NEAR(resolvedTolerance(far, seen), 4.0 * resolvedTolerance(near, seen), 1e-9);
+  EXPECT_NEAR(seen.resolvedTolerance(near), 2.17 * std::sqrt(2.0) * error, 1e-9);
+  EXPECT_NEAR(seen.resolvedTolerance(far), 4.0 * seen.resolvedTolerance(near), 1e-9);
 }
 
 TEST(DepthFilter, IsTheSameForAnyNumberOfThreads) {

@@ -1,0 +1,107 @@
+#include "core/scan/viewpoint_inference.h"
+
+#include <algorithm>
+#include <limits>
+#include <utility>
+#include <vector>
+
+#include "core/geometry/open_borders.h"
+#include "core/geometry/point_samples.h"
+#include "core/scan/scan_density.h"
+#include "core/scan/scan_rules.h"
+#include "core/scan/single_view.h"
+#include "pcl_symmetry/core/closest_point_search.h"
+
+namespace pcl_symmetry {
+
+namespace {
+
+// Shares of the points, stricter than for viewpoints that are stored: two scans put together pass those half as often
+// again.
+constexpr SingleViewLimits kLimits{0.12, 0.15};
+// The same where a viewpoint explains nearly all of the variance of the density: leaves and wires lie in layers from
+// the true viewpoint, too.
+constexpr SingleViewLimits kSureLimits{kScan.most_hidden, 0.4};
+
+/// Whether all points are at a border, as those of a wire: its density is uninformative, and it is seen once from
+/// everywhere.
+bool isWire(const PointsRef& points) {
+  const Points drawn = pointsAt(points, drawSamples(points.cols(), kScan.border_samples, 1));
+  const ClosestPointSearch::Ptr search = makeFlannSearch(drawn);
+  const LocalGeometry geometry = localGeometry(drawn, *search, kNumSupportNeighbors, 1);
+  return shareNearBorders(openBorders(drawn, *search, geometry.normals, 1), geometry) > kScan.wire;
+}
+
+/// Whether the surface bulges toward the viewer: on average it is farther away the farther it is from the middle of
+/// the picture.
+bool bulgesToward(const PointsRef& points, const Eigen::Vector3d& center, const Eigen::Vector3d& viewpoint) {
+  const Eigen::Vector3d forward = (center - viewpoint).normalized();
+  double depth_sum = 0.0, sq_across_sum = 0.0, product_sum = 0.0;
+  for (Eigen::Index i = 0; i < points.cols(); ++i) {
+    const Eigen::Vector3d x = points.col(i).cast<double>() - center;
+    const double depth = forward.dot(x), sq_across = x.squaredNorm() - depth * depth;
+    depth_sum += depth;
+    sq_across_sum += sq_across;
+    product_sum += depth * sq_across;
+  }
+  return product_sum * static_cast<double>(points.cols()) > depth_sum * sq_across_sum;
+}
+
+/// A scanner so far away that its rays are parallel leaves the same density from behind: then the bulge decides.
+Eigen::Vector3d onItsSide(const PointsRef& points, const ScanDensity& density, const Eigen::Vector3d& best) {
+  const Eigen::Vector3d center = density.ball().center, behind = 2.0 * center - best;
+  const bool as_good = density.unexplained(behind) <= kScan.as_good * density.unexplained(best) + kScan.as_good_beyond;
+  return as_good && bulgesToward(points, center, behind) ? behind : best;
+}
+
+/// The view from the position from which the points have the fewest layers, of those from which they may be seen at
+/// all. Two or three flat pieces are as dense as seen from several positions.
+template <typename SeenFrom>
+std::optional<InferredView> leastLayered(const PointsRef& points, const std::vector<Eigen::Vector3d>& positions,
+                                         const SeenFrom& seenFrom) {
+  std::optional<InferredView> view;
+  double least = std::numeric_limits<double>::infinity();
+  for (const Eigen::Vector3d& position : positions) {
+    const double layered = layeredShare(points, position);
+    if (layered >= least) continue;
+    if (std::optional<Visibility> seen = seenFrom(position, kScan.surely_even)) {
+      view = {std::move(*seen), position, false};
+      least = layered;
+    }
+  }
+  return view;
+}
+
+}  // namespace
+
+std::optional<InferredView> inferView(const PointsRef& points, const Eigen::Vector3d& stored) {
+  if (points.cols() < kScan.fewest_points) return std::nullopt;
+  const ScanDensity density(points);
+  const std::optional<Eigen::Vector3d> best = density.bestViewpoint();
+  if (!best) return std::nullopt;
+  const double left = density.unexplained(*best);
+  const auto leaves = [&](double share) {
+    return left + kScan.least_variance < share * (density.variance() + kScan.least_variance);
+  };
+  if (!leaves(kScan.most_unexplained)) return std::nullopt;
+  // Few points leave much to chance, and no chance lays them as evenly as a scanner does.
+  const bool surely =
+      left + kScan.least_variance <
+      kScan.surely_explained * std::min(density.variance() + kScan.least_variance, density.varianceAtRandom());
+  const double as_good = kScan.as_good * left + kScan.as_good_beyond;
+  const bool as_stored = density.unexplained(stored) <= as_good;
+  const auto seenFrom = [&](const Eigen::Vector3d& position, double most_uneven) {
+    const double by_patches = density.unexplainedByPatches(position);
+    if (by_patches > most_uneven) return std::optional<Visibility>();
+    return spaceSeenFrom(points, position, by_patches <= kScan.surely_even && surely ? kSureLimits : kLimits);
+  };
+  const Eigen::Vector3d position = as_stored ? stored : onItsSide(points, density, *best);
+  std::optional<InferredView> view;
+  if (std::optional<Visibility> seen = seenFrom(position, kScan.most_uneven))
+    view = {std::move(*seen), position, as_stored};
+  if (!view) view = leastLayered(points, density.viewpoints(std::min(as_good, kScan.most_of_several)), seenFrom);
+  if (!view || (!surely && isWire(points))) return std::nullopt;
+  return view;
+}
+
+}  // namespace pcl_symmetry

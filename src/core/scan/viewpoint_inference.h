@@ -1,0 +1,35 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <optional>
+
+#include "pcl_symmetry/core/visibility.h"
+
+namespace pcl_symmetry {
+
+/// A single view that the points themselves show.
+struct InferredView {
+  Visibility seen;           ///< from the viewpoint that was found
+  Eigen::Vector3d position;  ///< the viewpoint, frame of the points
+  bool as_stored = false;    ///< the viewpoint is the stored one, which explains the points as well as any
+};
+
+/// Finds out from the points alone whether they are a single view, and from where.
+///
+/// Not in the paper. The density of the points decides (ScanDensity): it has a direction, a side and a distance. A
+/// viewpoint is taken if it explains a good part of the variance of the density, and each ray meets the cloud once; of
+/// several, the one with the fewest layers. Where it leaves less than a quarter of the variance, more layers are
+/// allowed, and clouds as thin as wires.
+///
+/// No viewpoint is found for
+/// - whole objects, open shells, cut clouds, and several views put together;
+/// - flat sheets of even density, and wires: rays from everywhere meet them once;
+/// - single views whose density a voxel grid made even, as open shells look the same;
+/// - clouds of fewer than 300 points, whose density is not known well enough.
+/// \param points 3 x N, finite.
+/// \param stored a viewpoint that may be a default, frame of the points. It is preferred where it explains the points
+/// as well as the best.
+/// \return nothing where the points show no viewpoint.
+std::optional<InferredView> inferView(const PointsRef& points, const Eigen::Vector3d& stored);
+
+}  // namespace pcl_symmetry
