@@ -23,7 +23,7 @@ from pathlib import Path
 
 # What is allowed: lines of C++, lines in src and include, lines of Python, folders with C++, named constants, lines of the
 # longest page, and files and lines behind symmetry_detection.h.
-LIMITS = dict(cpp=64400, library=37300, python=5500, folders=60, constants=122, page=300, files_behind=147, lines_behind=14350)
+LIMITS = dict(cpp=64420, library=37310, python=5500, folders=60, constants=122, page=300, files_behind=147, lines_behind=14330)
 
 listed = subprocess.run(["git", "ls-files", "-co", "--exclude-standard"], capture_output=True, text=True, check=True).stdout
 files = [Path(name) for name in listed.splitlines() if os.path.isfile(name)]
