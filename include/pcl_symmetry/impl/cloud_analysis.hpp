@@ -68,7 +68,7 @@ protected:
   CloudAnalysis(std::string name, std::size_t max_points, std::int64_t least_max_points = 2)
       : name_(std::move(name)), max_points_(max_points), least_max_points_(least_max_points) {}
 
-  const std::string& getClassName() const { return name_; }
+  const std::string& getClassName() const { return name_; }  ///< for messages
 
   /// Forgets everything that was found in the cloud; options stay.
   virtual void clearResults() {
@@ -148,11 +148,12 @@ private:
 template <typename PointT>
 class ScanAnalysis : public CloudAnalysis<PointT> {
 public:
+  /// \param mode how the viewpoint is found; default Viewpoint::Mode::Auto.
   void setViewpointMode(Viewpoint::Mode mode) { viewpoint_.mode = mode; }
   /// \param position where the scanner stood, input frame; it must see the points within 75 degrees of one direction.
   void setViewpoint(const Eigen::Vector3d& position) { viewpoint_ = {Viewpoint::Mode::Given, position}; }
-  void setViewpoint(const Viewpoint& viewpoint) { viewpoint_ = viewpoint; }
-  const Viewpoint& getViewpoint() const { return viewpoint_; }
+  void setViewpoint(const Viewpoint& viewpoint) { viewpoint_ = viewpoint; }  ///< mode and position at once
+  const Viewpoint& getViewpoint() const { return viewpoint_; }               ///< see setViewpoint()
 
   /// The plane that the object stands on, a x + b y + c z + d = 0 in the frame of the input: nothing of it lies below.
   /// It counts where there is a viewpoint. Sparse points without order, as those of a LiDAR's rings, are then decided

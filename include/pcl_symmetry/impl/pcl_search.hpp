@@ -121,6 +121,7 @@ public:
 protected:
   using Analysis::Analysis;
 
+  /// Changes the options; bad ones are refused, and those of before stay.
   template <typename Change>
   void change(const Change& change) {
     detail::changeOptions(options_, change);
@@ -130,7 +131,7 @@ protected:
     return detail::searchOf<PointT>(search_, this->getClassName(), options_.num_threads);
   }
 
-  Options options_;
+  Options options_;  ///< see setOptions()
 
 private:
   SearchPtr search_;

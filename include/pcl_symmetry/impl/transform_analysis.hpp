@@ -79,8 +79,8 @@ protected:
     return points;
   }
 
-  GaussianEdtOptions edt_options_;
-  std::shared_ptr<const GaussianEdt> edt_;
+  GaussianEdtOptions edt_options_;          ///< of the distance transform
+  std::shared_ptr<const GaussianEdt> edt_;  ///< see getDistanceTransform()
 };
 
 }  // namespace pcl_symmetry
