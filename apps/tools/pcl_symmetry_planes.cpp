@@ -380,6 +380,10 @@ void analyze(const PlanesOptions& options, FileJob& job) {
   const InputShape input = loadInput(job.console(), job.path(), options.common);
   if (input.volume && (options.support_path || options.html_path))
     throw InputError(job.path() + ": -support and -html are of points; -surface VALUE makes some");
+  if (input.volume && (options.as_published || options.method_given || options.tolerance ||
+                       options.detection.absolute_tolerance > 0.0 || options.ground))
+    throw InputError(job.path() +
+                     ": -as_published, -method, -tolerance, -absolute_tolerance and -ground are of points");
   if (options.label && (input.volume || input.shape.mesh))
     throw InputError(job.path() + ": -label needs a cloud with a field label");
   const Findings findings = search(job, input, options);

@@ -75,11 +75,12 @@ public:
   void setSymmetryMap(const SymmetryMap& map, const std::shared_ptr<const GaussianEdt>& edt);
 
   /// Tells the mesh that the points of the cloud were spread over: the last step refines on it, see refineOnMesh(),
-  /// unless the points were seen from one side. Follows setInputCloud(), which forgets it.
+  /// unless the points were seen from one side or setAsPublished() is set. Follows setInputCloud(), which forgets it.
   void setMesh(const MeshSurface& mesh) { mesh_ = mesh; }
 
   /// Keeps to the letter of Section 4.4: local maxima of the map that was given, or of the exact one with 64 x 64 x 64
-  /// bins, refined by publishedPlanes() and not judged. What a scanner saw is not used.
+  /// bins, refined by publishedPlanes() and not judged. What a scanner saw, the mesh and normals are not used. Not of
+  /// volumes.
   void setAsPublished(bool as_published) { as_published_ = as_published; }
 
   /// \return the planes, best first, in the frame of the input; empty where the shape has no symmetry, and where the

@@ -167,6 +167,7 @@ Detection refineAndDecide(const NormalizedCloud& cloud, const Points& all, const
     planes = withScanAxes(std::move(planes), cloud, measure.tolerance(), options, detection);
   const bool has_family = !detection.axes.empty() || !detection.centers.empty();
   decision.doubtFurtherPlanes(planes, has_family);
+  decision.doubtSlantedPlanes(planes);
   timed("rotations");
 
   if (options.approximate) append(planes, localPlanes(planes, cloud, *fit, decision, options));
@@ -181,8 +182,6 @@ Detection refineAndDecide(const NormalizedCloud& cloud, const Points& all, const
   detection.resolution = std::max(measure.resolution(), is_raised ? measure.tolerance() : 0.0) * cloud.scale;
   detection.diameter = cloud.extent * cloud.scale;
   detection.planes = rankedPlanes(std::move(planes), completed.polygon, cloud, *fit, options);
-  decision.doubtSlantedPlanes(detection.planes);
-  detection.planes = reordered(std::move(detection.planes), options);
   timed("report");
   return detection;
 }

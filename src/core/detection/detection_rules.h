@@ -206,7 +206,7 @@ struct KindRules {
   KindRule<double> points_of_allowance    {     0.0,     0.0, 10000.0};
   // Points that judge a family; a look-up in a density costs a tenth of a search.
   KindRule<int> family_samples            {    1500,    1500,   15000};
-  // The worst plane of a family has to be a symmetry; a scan shows some too badly.
+  // The worst plane of a family needs worst_share of that confidence; a scan shows some too badly.
   KindRule<bool> family_needs_all         {    true,   false,    true};
   // Planes of a polygon are judged together, as noise hides single ones.
   KindRule<bool> has_polygons             {   false,   false,    true};

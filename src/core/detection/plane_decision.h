@@ -32,8 +32,8 @@ struct JudgedFamily {
 };
 
 /// From measured planes to answers: decides what is a symmetry, what is possible, and what comes first
-/// (core/evidence/README.md). All planes get confidence and kind by decideBy(), also those of polygons, upright boxes,
-/// meshes and volumes, which bring evidence of their own.
+/// (core/evidence/README.md). All planes but those of parts get confidence and kind by decideBy(), also those of
+/// polygons, upright boxes, meshes and volumes, which bring evidence of their own.
 class PlaneDecision {
 public:
   /// \param cloud,measure,options must outlive this object.
@@ -112,8 +112,7 @@ std::vector<SymmetryPlane> rankedPlanes(std::vector<SymmetryPlane> planes, const
                                         const NormalizedCloud& cloud, const PlaneFit& fit,
                                         const DetectionOptions& options);
 
-/// The planes in their final order; without `approximate`, those that the last corrections left below `min_possible`
-/// are removed.
+/// Planes in the order of answers, without `approximate` only those that are decided.
 std::vector<SymmetryPlane> reordered(std::vector<SymmetryPlane> planes, const DetectionOptions& options);
 
 /// \return the plane of a cloud of which nothing but a sheet is left at the tolerance, input frame; else empty.

@@ -253,7 +253,7 @@ def planes(
     max_points: larger clouds are thinned to that number; 0: never. threads: 0 = one per core.
     evidence: also what the decisions are taken from; takes about as long again.
     as_published: refine the maxima of the map as the paper does (Section 4.4), without a decision; only then method, of
-        the map: sampled, convolution, rotational or voting.
+        the map: sampled, convolution, rotational or voting. Of the other parameters seed and threads count.
     volume: (I, J, K) in place of points, such as a CT or MR image, first index along the first axis (as nibabel has it;
         arrays of SimpleITK are transposed). spacing, origin, direction: of its voxels, input units and frame; direction
         is (3, 3) with the axes of the grid in columns. levels: (low, high) intensities that count; None: chosen.
