@@ -382,8 +382,7 @@ void analyze(const PlanesOptions& options, FileJob& job) {
     throw InputError(job.path() + ": -support and -html are of points; -surface VALUE makes some");
   if (input.volume && (options.as_published || options.method_given || options.tolerance ||
                        options.detection.absolute_tolerance > 0.0 || options.ground))
-    throw InputError(job.path() +
-                     ": -as_published, -method, -tolerance, -absolute_tolerance and -ground are of points");
+    throw InputError(job.path() + ": -as_published, -method, -tolerance, -absolute_tolerance, -ground: of points");
   if (options.label && (input.volume || input.shape.mesh))
     throw InputError(job.path() + ": -label needs a cloud with a field label");
   const Findings findings = search(job, input, options);

@@ -79,8 +79,7 @@ public:
   void setMesh(const MeshSurface& mesh) { mesh_ = mesh; }
 
   /// Keeps to the letter of Section 4.4: local maxima of the map that was given, or of the exact one with 64 x 64 x 64
-  /// bins, refined by publishedPlanes() and not judged. What a scanner saw, the mesh and normals are not used. Not of
-  /// volumes.
+  /// bins, refined by publishedPlanes() and not judged. Viewpoint, mesh and normals are not used. Volumes ignore it.
   void setAsPublished(bool as_published) { as_published_ = as_published; }
 
   /// \return the planes, best first, in the frame of the input; empty where the shape has no symmetry, and where the

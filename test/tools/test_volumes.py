@@ -139,7 +139,10 @@ class Volumes(ToolTest):
             self.fails(1, said, self.write(name, content), "-quiet")
             self.assertEqual(self.error.count("\n"), 1, self.error)
         self.fails(1, "missing.nii", "missing.nii -quiet")
-        self.run_tool(self.write("a.mha", meta_image(BODY)), "-levels 5,3", code=2)
+        good = self.write("a.mha", meta_image(BODY))
+        self.run_tool(good, "-levels 5,3", code=2)
+        for flags in ("-as_published", "-tolerance 0.02", "-absolute_tolerance 1", "-ground 0,0,1,0"):
+            self.fails(1, "of points", good, flags)
 
 
 if __name__ == "__main__":
