@@ -47,6 +47,15 @@ class Planes(ToolTest):
         self.assertIn("symmetry", self.output)
         self.assertEqual(self.report(self.box, "-as_published")["planes"][0]["kind"], "approximate")
 
+    def test_tells_the_best_plane_where_all_are_doubted(self):
+        """On a ground that its plane slants against, a box in noise keeps no plane; the nearest to one is still reported."""
+        body = self.write("body.off", tool_run.off(tool_run.box_corners(1, 0.7, 0.45), tool_run.BOX_FACES))
+        self.run_tool(body, "scan.pcd -direction 1,1.3,0.9 -noise 0.003", tool="scan")
+        self.assertEqual(len(self.report("scan.pcd", "-tolerance 0.002")["planes"]), 1)
+        report = self.report("scan.pcd", "-tolerance 0.002 -ground 1,1,1,4")
+        self.assertEqual(report["planes"], [])
+        self.assertIsNotNone(report["best"])
+
     def test_keeps_coordinates_beyond_float_precision(self):
         """A box of 1 x 0.8 x 0.6 m at map coordinates, where the spacing of float is half a meter; its planes are oblique."""
         half, middle, turn = (0.5, 0.4, 0.3), np.array([500000.3, 5000000.7, 100.2]), tool_run.rotation(np.array([1.0, 2, 3]), 0.7)

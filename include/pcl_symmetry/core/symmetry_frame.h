@@ -18,7 +18,7 @@ namespace PCL_SYMMETRY_EXPORTS pcl_symmetry {
 /// Options of symmetryFrame(), and the bins of the map that candidates for the first plane come from.
 struct FrameOptions : MapSize {
   int num_cells = 64;  ///< cells of the distance transform along each side, in [8, 512]
-  /// Its width, input units, >= 0; 0 = the greater of 1.5 cells and 1.5 spacings; scans 2.25 cells; as published 2, 1.
+  /// Its width, input units, >= 0; 0 = 1.5 cells, of a scan 2.25, or 1.5 spacings if that is more; as published 2 or 1.
   double sigma = 0.0;
   int num_samples = 64;  ///< samples of that map's transform, >= 1
   /// The paper's own method: the plane of greatest D among the maxima of the exact map of 64 x 64 x 64 bins, refined by
