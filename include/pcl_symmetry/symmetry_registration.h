@@ -48,25 +48,22 @@ struct RegisteredPose {
   Eigen::Isometry3d T_target_source = Eigen::Isometry3d::Identity();  ///< moves the source onto the target
   /// How good this pose is. The source counts as the scan, unless only the target was seen from one side.
   PoseScore score;
+  double confidence = 0.0;  ///< estimated probability that this pose is right, in [0, 1]
+  PoseEvidence evidence;    ///< what the confidence follows from
 };
 
 /// The best pose of a cloud in another one, and the next ones.
 struct CloudRegistration : RegisteredPose {
-  /// Whether a pose was found that both clouds support: its merit, whose width grows with the spacing of the points,
-  /// and the surface itself, so that points too few to tell a wrong object from the right one do not converge.
-  bool converged(double min_merit = 0.4) const {
-    constexpr double least_on_surface =
-        0.45;  // more than wrong objects of PSB reach, less than right ones of 1000 points
-    return covariance.has_value() && score.merit() >= min_merit && on_surface >= least_on_surface;
+  /// \param min_confidence in [0, 1].
+  bool converged(double min_confidence = 0.5) const {
+    return covariance.has_value() && confidence >= min_confidence;
   }
 
-  /// Lower limit of the share of the source's points (of the target's, where that alone was seen from one side) that
-  /// lie on the surface of the other cloud in the best pose, within 2 % of its radius or what noise asks for, in [0,
-  /// 1].
-  double on_surface = 0.0;
+  /// \return what speaks against the best pose, one sentence without a full stop.
+  std::string doubt() const;
 
-  /// Distinct poses by falling merit, the best one first, at most PoseSearchOptions::max_poses: those that symmetry
-  /// makes equal have like merits.
+  /// Distinct poses by falling confidence, at most PoseSearchOptions::max_poses: those that symmetry makes equal have
+  /// like merits.
   std::vector<RegisteredPose> poses;
   /// How uncertain the best pose is: the covariance of the small motion (w, t) of the target's frame that makes it
   /// true: a point x of the aligned source belongs at x + w x x + t. Rotation vector w, radians, then translation t,
@@ -148,16 +145,15 @@ public:
     target_viewpoint_ = viewpoint;
     prepared_target_.reset();
   }
-  /// \param min_merit least getScore().merit() of a pose that has converged, see CloudRegistration::converged(), in
-  /// [-1, 1]; default 0.4, between scans at their own model and at models of other kinds.
+  /// \param min_confidence of a pose that has converged, in [0, 1]; default 0.5.
   /// \throws pcl::BadArgumentException "field = value, must be rule", as all setters here.
-  void setMinMerit(double min_merit) {
-    if (!(min_merit >= -1.0 && min_merit <= 1.0)) {
+  void setMinConfidence(double min_confidence) {
+    if (!(min_confidence >= 0.0 && min_confidence <= 1.0)) {
       std::ostringstream message;
-      message << "min_merit = " << min_merit << ", must be in [-1, 1]";
+      message << "min_confidence = " << min_confidence << ", must be in [0, 1]";
       detail::throwBadArgument(message.str());
     }
-    min_merit_ = min_merit;
+    min_confidence_ = min_confidence;
   }
   /// Searches only around the guess that align() is given: a moving object is tracked from one frame to the next, and
   /// does not turn to a pose farther away that symmetry makes equal. align() does not converge where nothing fits
@@ -188,6 +184,10 @@ public:
   /// \return how well the clouds agree with the transformation of the last align(), or with the best pose that was
   /// found where nothing fits.
   const PoseScore& getScore() const { return result_.score; }
+  /// \return estimated probability that the best pose of the last align() is right, in [0, 1].
+  double getConfidence() const { return result_.confidence; }
+  /// \return what that follows from: overlap, agreement, conflict.
+  const PoseEvidence& getEvidence() const { return result_.evidence; }
   /// \return the best poses that the last align() found, see CloudRegistration::poses; that of the transformation is the
   /// first one. Empty where a cloud held no answer.
   const std::vector<RegisteredPose>& getPoses() const { return result_.poses; }
@@ -226,7 +226,7 @@ private:
   Viewpoint source_viewpoint_, target_viewpoint_;
   CloudRegistrationOptions options_;
   std::shared_ptr<const PreparedCloud> prepared_target_;
-  double min_merit_ = 0.4;
+  double min_confidence_ = 0.5;
   std::size_t max_points_ = 10'000;
   CloudRegistration result_;  // of the last align(); without covariance where it did not converge
   std::string reason_;

@@ -97,11 +97,22 @@ void addRegistration(py::module_& module) {
       .def_readonly("support", &PoseScore::support)
       .def_readonly("conflict", &PoseScore::conflict)
       .def_property_readonly("merit", &PoseScore::merit);
+  py::class_<PoseEvidence>(module, "PoseEvidence")
+      .def_readonly("overlap_source", &PoseEvidence::overlap_source)
+      .def_readonly("overlap_target", &PoseEvidence::overlap_target)
+      .def_readonly("agreement", &PoseEvidence::agreement)
+      .def_readonly("on_surface", &PoseEvidence::on_surface)
+      .def_readonly("conflict", &PoseEvidence::conflict)
+      .def_readonly("noise", &PoseEvidence::noise)
+      .def_readonly("size_ratio", &PoseEvidence::size_ratio);
   py::class_<CloudRegistration>(module, "Registration")
       .def_property_readonly("transform",
                              [](const CloudRegistration& r) { return RowMajor4(r.T_target_source.matrix()); })
       .def_property_readonly("score", [](const CloudRegistration& r) { return r.score; })
-      .def_readonly("on_surface", &CloudRegistration::on_surface)
+      .def_readonly("confidence", &CloudRegistration::confidence)
+      .def_readonly("evidence", &CloudRegistration::evidence)
+      .def_property_readonly("reason",
+                             [](const CloudRegistration& r) { return r.converged() ? std::string() : r.doubt(); })
       .def_property_readonly("converged", [](const CloudRegistration& r) { return r.converged(); })
       .def_property_readonly("poses",
                              [](const CloudRegistration& r) {

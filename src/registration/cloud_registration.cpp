@@ -1,11 +1,13 @@
 #include "pcl_symmetry/symmetry_registration.h"
 
 #include <algorithm>
+#include <utility>
 
 #include "core/base/check.h"
 #include "core/base/constants.h"
 #include "core/base/stopwatch.h"
 #include "core/registration/pose_covariance.h"
+#include "core/registration/pose_evidence.h"
 #include "core/registration/pose_starts.h"
 #include "core/registration/ranked_poses.h"
 #include "registration/pose_refinement.h"
@@ -53,6 +55,17 @@ public:
     to_input.bottomRightCorner<3, 3>() *= frames_.scale;
     const Matrix6d map = to_input * to_target;
     return map * covariance * map.transpose();
+  }
+
+  /// The pose between input frames, with what decides whether it is right.
+  RegisteredPose judged(const RankedPose& pose) const {
+    PoseEvidence evidence = poseEvidence(*scan_, *model_, pose.T_model_scan, pose.score);
+    const double confidence = poseConfidence(evidence);
+    if (swapped_) {
+      std::swap(evidence.overlap_source, evidence.overlap_target);
+      evidence.size_ratio = 1.0 / evidence.size_ratio;
+    }
+    return {toInput(pose.T_model_scan), pose.score, confidence, evidence};
   }
 
 private:
@@ -158,6 +171,10 @@ void CloudRegistrationOptions::validate() const {
   checkNumThreads(num_threads);
 }
 
+std::string CloudRegistration::doubt() const {
+  return covariance ? doubtOf(evidence) : "no pose is left";
+}
+
 std::shared_ptr<const PreparedCloud> registrationTarget(const Points& points, const std::optional<Visibility>& seen,
                                                         const CloudRegistrationOptions& options) {
   options.validate();
@@ -206,10 +223,14 @@ CloudRegistration registerClouds(const Points& source, const std::optional<Visib
   if (!poses.empty()) poses = refinePoses(clouds.scan(), clouds.model(), poses, inner);
   if (options.around) keepAround(clouds, guess, *options.around, poses);
   done("refine");
-  for (const RankedPose& pose : poses) result.poses.push_back({clouds.toInput(pose.T_model_scan), pose.score});
+  for (const RankedPose& pose : poses) result.poses.push_back(clouds.judged(pose));
   if (!poses.empty()) {
-    result.covariance = covarianceOf(clouds, poses.front(), inner);
-    result.on_surface = shareOnSurface(clouds.scan(), clouds.model(), poses.front().T_model_scan);
+    const auto best = std::max_element(result.poses.begin(), result.poses.end(), [](const auto& a, const auto& b) {
+      return a.confidence < b.confidence;
+    });
+    result.covariance = covarianceOf(clouds, poses[best - result.poses.begin()], inner);
+    std::stable_sort(result.poses.begin(), result.poses.end(),
+                     [](const RegisteredPose& a, const RegisteredPose& b) { return a.confidence > b.confidence; });
   }
   if (poses.empty()) result.poses.push_back({guess, {}});
   static_cast<RegisteredPose&>(result) = result.poses.front();

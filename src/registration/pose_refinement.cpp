@@ -26,9 +26,6 @@ struct PoseRefinementRules {
   double hopeless = 0.2;       ///< merit behind the best pose at which poses are not refined
   /// Pairs that fix a motion of six unknowns; with fewer, PCL's ICP says so on stderr.
   std::size_t least_pairs = 6;
-  /// Radii, width within which points of one surface lie on each other: at least, and where noise asks for more, at
-  /// most. On whole objects of PSB, a right pose has 0.41 of its points there with 400 points, a wrong one 0.29.
-  double contact = 0.02, most_contact = 0.03;
 };
 constexpr PoseRefinementRules kPoseRefinement;
 
@@ -122,16 +119,6 @@ Eigen::Isometry3d SearchFrames::toInput(const Eigen::Isometry3d& T_target_source
   Eigen::Isometry3d pose = T_target_source;
   pose.translation() = target_center + scale * T_target_source.translation() - T_target_source.linear() * source_center;
   return pose;
-}
-
-double shareOnSurface(const PosedSurface& scan, const PosedSurface& model, const Eigen::Isometry3d& T_model_scan) {
-  const double width =
-      std::max(kPoseRefinement.contact, std::min(kPoseRefinement.most_contact, std::max(scan.noise, model.noise)));
-  const double share =
-      PoseScorer(scan, model).score(T_model_scan, {kPoseRefinement.judged_points, width, true, true}).support;
-  // Three standard errors of a share, at most half over the root of the number of points.
-  const auto size = std::min<double>(kPoseRefinement.judged_points, static_cast<double>(scan.points.cols()));
-  return std::max(0.0, share - 1.5 / std::sqrt(size));
 }
 
 std::vector<RankedPose> refinePoses(const PosedSurface& scan, const PosedSurface& model,

@@ -32,8 +32,4 @@ double refinementReach(const PosedSurface& scan, const PosedSurface& model, std:
 std::vector<RankedPose> refinePoses(const PosedSurface& scan, const PosedSurface& model,
                                     const std::vector<RankedPose>& poses, const CloudRegistrationOptions& options);
 
-/// \return a lower limit of the share of the scan's points that lie on the surface of the model, in [0, 1]: by a width that does not grow
-/// with the spacing of the points, so that few points on a wrong object do not count.
-double shareOnSurface(const PosedSurface& scan, const PosedSurface& model, const Eigen::Isometry3d& T_model_scan);
-
 }  // namespace pcl_symmetry

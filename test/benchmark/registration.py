@@ -22,7 +22,6 @@ from frames import by_mass, cloud_of, make_parser
 
 RIGHT_ANGLE, RIGHT_DISTANCE = 5.0, 0.02  # degrees, diagonals
 ACROSS = np.cos(np.radians(3.0))  # a plane that lies across an axis, within the angle at which planes count as found
-MIN_MERIT = 0.4  # a pose of at least this has converged, as in SymmetryRegistration
 SEARCHED = 1.5  # tracks are searched half as far again as the guess is off: the search has to find where to stop
 VOXEL = 0.015  # of ICP and features, diagonals of the target
 
@@ -75,7 +74,7 @@ def by_symmetry(source, target, guess):
     seen = [None if viewpoint is None else tuple(viewpoint) for _, viewpoint in (source, target)]
     more.update(source_viewpoint=seen[0], target_viewpoint=seen[1], threads=1)
     found = pcl_symmetry.register(source[0], target[0], **more)
-    return found.transform, found.score.merit >= MIN_MERIT
+    return found.transform, found.converged
 
 
 def open3d_cloud(points, viewpoint=None, voxel=None):

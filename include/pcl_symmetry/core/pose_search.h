@@ -28,4 +28,18 @@ struct PoseScore {
   double merit() const { return support - 0.5 * conflict; }
 };
 
+/// What decides whether a pose is right. Two scans need not show the same part of an object: only points that face the
+/// surface of the other cloud, and not its border, have to lie on it.
+struct PoseEvidence {
+  double overlap_source = 0.0;  ///< share of the source's points that lie on the surface of the target, in [0, 1]
+  double overlap_target = 0.0;  ///< share of the target's points that lie on the surface of the source, in [0, 1]
+  double agreement = 0.0;       ///< of the points that face the other surface, the share that lies on it, in [0, 1]
+  /// Lower limit of the share of the scan's points that lie on the surface of the model within 2 % of its radius or
+  /// what noise asks for, in [0, 1].
+  double on_surface = 0.0;
+  double conflict = 0.0;    ///< that of PoseScore, in [0, 2]
+  double noise = 0.0;       ///< of the noisier cloud, in diagonals of the smaller one
+  double size_ratio = 1.0;  ///< diagonal of the source over that of the target
+};
+
 }  // namespace pcl_symmetry

@@ -83,15 +83,14 @@ void SymmetryRegistration<PointSource, PointTarget, Scalar>::findPose(const Poin
   const std::optional<Visibility> source_seen = detail::seenSpace(*input_, source, source_viewpoint_, is_part);
   result_ =
       registerClouds(source, source_seen, *prepared_target_, Eigen::Isometry3d(guess.template cast<double>()), options);
-  if (result_.converged(min_merit_)) {
+  if (result_.converged(min_confidence_)) {
     final_transformation_ = transformation_ = result_.T_target_source.matrix().template cast<Scalar>();
     return;
   }
   result_.covariance.reset();
   std::ostringstream reason;
-  reason << "nothing fits" << (options_.around ? " around the guess" : "") << ": the best pose has support "
-         << result_.score.support << " and conflict " << result_.score.conflict << ", "
-         << std::lround(100.0 * result_.on_surface) << " % of the points lie on the surface";
+  reason << "nothing fits" << (options_.around ? " around the guess" : "") << ": in the best pose, with a confidence of "
+         << std::round(100.0 * result_.confidence) / 100.0 << ", " << result_.doubt();
   reason_ = reason.str();
 }
 

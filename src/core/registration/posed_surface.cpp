@@ -5,6 +5,7 @@
 
 #include "core/base/median.h"
 #include "core/base/random.h"
+#include "core/geometry/open_borders.h"
 #include "core/geometry/surface_normals.h"
 #include "core/registration/registration_rules.h"
 
@@ -41,6 +42,9 @@ PosedSurface::PosedSurface(const PointsRef& input, std::optional<Visibility> see
   normals = std::move(geometry.normals);
   noise = median(std::move(geometry.roughness));
   accuracy = typical + 2.0 * noise;
+  borders = std::async(std::launch::deferred, [points = points, normals = normals, search = search] {
+              return openBorders(points, *search, normals, 1);
+            }).share();
 }
 
 PosedSurface::PosedSurface(const PointsRef& input, const PointsRef& known_normals, std::optional<Visibility> seen_space)

@@ -23,13 +23,14 @@ struct PosedSurface {
   std::optional<Visibility> seen;  ///< what the scanner saw; nothing = the cloud shows its object from all sides
   /// Made when it is first asked for: a surface that is judged exactly needs none.
   std::shared_future<ClosestPointGrid> grid;
+  std::shared_future<std::vector<char>> borders;  ///< N, 1 at an open border; made when it is first asked for
   ClosestPointSearch::Ptr search;
 
   /// \param points 3 x N, finite, N >= 1.
   /// \param seen what the scanner saw, in the frame of the points.
   PosedSurface(const PointsRef& points, std::optional<Visibility> seen, std::uint64_t seed, int num_threads);
   /// A surface of a few points in random order, whose normals are known, for poses that are judged coarsely: the grid
-  /// of closest points is coarser, and there are no search, spacing and accuracy, which exact judgments need.
+  /// of closest points is coarser, and there are no search, borders, spacing and accuracy, which exact judgments need.
   PosedSurface(const PointsRef& points, const PointsRef& normals, std::optional<Visibility> seen);
 };
 

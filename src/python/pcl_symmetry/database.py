@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+import dataclasses
 import os
 from typing import TYPE_CHECKING, Any, Callable, Iterable, Iterator, List, Mapping, Optional, Sequence, Tuple, Union
 
 from . import _recognition
 from .functions import Core, Viewpoint, _fields, _seen_from, prepare
-from .results import BuildReport, Match, PoseScore, Recognized, Registration
+from .results import BuildReport, Match, PoseEvidence, PoseScore, Recognized, Registration
 
 if TYPE_CHECKING:
     import numpy as np
@@ -39,8 +40,8 @@ def register(
     guess: (4, 4), tried beside many other poses; None: the identity.
     around: (radians, input units), how far the pose may be from the guess, for tracks; None: all poses.
     source_viewpoint, target_viewpoint: as in planes().
-    With thousands of points, poses of a wrong object have a merit below 0.32, those of the right one 0.5 or more. Points
-    too few to tell do not converge: fewer than 100, or where less than 45 % of them lie on the surface of the other cloud.
+    Two scans need not show the same part: points that face the surface of the other cloud have to lie on it. A pose whose
+    confidence is below 0.5 does not converge, and its reason says what speaks against it.
     """
     import numpy as np
 
@@ -65,7 +66,8 @@ def register(
     result = Registration(
         score=_score(found.score),
         poses=[(pose, _score(score)) for pose, score in found.poses],
-        **_fields(found, "transform", "converged", "on_surface", "covariance"),
+        evidence=PoseEvidence(**_fields(found.evidence, *(f.name for f in dataclasses.fields(PoseEvidence)))),
+        **_fields(found, "transform", "converged", "confidence", "reason", "covariance"),
     )
     return result if source_shift is None and target_shift is None else result._moved_between(s, t)
 

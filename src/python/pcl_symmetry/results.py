@@ -637,18 +637,43 @@ class PoseScore(Result):
 
 
 @dataclass(frozen=True, eq=False, repr=False)
+class PoseEvidence(Result):
+    """What decides whether a pose is right: points that face the other surface have to lie on it."""
+
+    _in_repr = ("overlap_source", "overlap_target", "agreement", "conflict")
+    overlap_source: float
+    """Share of the source's points that lie on the surface of the target, in [0, 1]."""
+    overlap_target: float
+    """Share of the target's points that lie on the surface of the source, in [0, 1]."""
+    agreement: float
+    """Of the points that face the other surface, the share that lies on it, in [0, 1]."""
+    on_surface: float
+    """Lower limit of the share of the source's points that lie on the surface of the target, within 2 % of its radius."""
+    conflict: float
+    """That of the score, in [0, 2]."""
+    noise: float
+    """Of the noisier cloud, in diagonals of the smaller one."""
+    size_ratio: float
+    """Diagonal of the source over that of the target."""
+
+
+@dataclass(frozen=True, eq=False, repr=False)
 class Registration(Result):
     """The pose of one cloud relative to another."""
 
-    _in_repr = ("transform", "score", "converged")
+    _in_repr = ("transform", "confidence", "converged")
     transform: "Doubles"
     """(4, 4) from the frame of the source to that of the target."""
     score: PoseScore
     """Of the transform."""
     converged: bool
-    """Whether both clouds have 100 points, the merit is at least 0.4 and on_surface at least 0.45."""
-    on_surface: float
-    """Lower limit of the share of the source's points that lie on the surface of the target, within 2 % of its radius."""
+    """Whether both clouds have 100 points and the confidence is at least 0.5."""
+    confidence: float
+    """Estimated probability that the transform is right, in [0, 1]."""
+    evidence: PoseEvidence
+    """What the confidence follows from."""
+    reason: str
+    """What speaks against the pose; empty where it converged."""
     poses: List[Tuple["Doubles", PoseScore]]
     """(transform, score), best first: poses that symmetry makes equal have like merits."""
     covariance: Optional["Doubles"]

@@ -1,0 +1,113 @@
+#include "core/registration/pose_evidence.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <sstream>
+
+#include "core/registration/pose_scoring.h"
+#include "core/registration/registration_fit.h"
+#include "core/registration/registration_rules.h"
+
+namespace pcl_symmetry {
+
+namespace {
+
+/// Numbers of points of one surface that are looked at, that face the inside of another, and that lie on it.
+struct Overlap {
+  double num_points = 0.0, num_facing = 0.0, num_on = 0.0;
+
+  double share() const { return num_on / num_points; }
+  /// Laplace's rule: never 0 or 1.
+  double agreement() const { return (num_on + 1.0) / (num_facing + 2.0); }
+};
+
+Overlap overlapOf(const PosedSurface& from, const PosedSurface& to, const Eigen::Isometry3d& T_to_from,
+                  double tolerance, double size) {
+  const auto& rules = kRegistration;
+  const auto count = std::min<Eigen::Index>(rules.evidence_points, from.points.cols());
+  const Eigen::Isometry3f pose = T_to_from.cast<float>();
+  Points positions(3, count);
+  for (Eigen::Index i = 0; i < count; ++i) positions.col(i) = pose * from.points.col(from.order[i]);
+  std::vector<int> closest;
+  std::vector<float> sq_distances;
+  to.search->search(positions, 1, closest, sq_distances);
+  const std::vector<char>& borders = to.borders.get();
+  Overlap overlap;
+  overlap.num_points = static_cast<double>(count);
+  for (Eigen::Index i = 0; i < count; ++i) {
+    const int j = closest[i];
+    const double height = std::abs(to.normals.col(j).dot(positions.col(i) - to.points.col(j)));
+    const double across = std::sqrt(std::max(0.0, sq_distances[i] - height * height));
+    if (borders[j] || across > rules.facing_spacings * to.spacing[j] || height > rules.facing_reach * size) continue;
+    overlap.num_facing += 1.0;
+    const float cosine = std::abs(to.normals.col(j).dot(pose.linear() * from.normals.col(from.order[i])));
+    if (cosine > rules.agreeing_cosine && height < tolerance) overlap.num_on += 1.0;
+  }
+  return overlap;
+}
+
+}  // namespace
+
+double shareOnSurface(const PosedSurface& scan, const PosedSurface& model, const Eigen::Isometry3d& T_model_scan) {
+  const auto& rules = kRegistration;
+  const double width = std::max(rules.contact, std::min(rules.max_contact, std::max(scan.noise, model.noise)));
+  const double share =
+      PoseScorer(scan, model).score(T_model_scan, {rules.evidence_points, width, true, true}).support;
+  // Three standard errors of a share, at most half over the root of the number of points.
+  const auto size = std::min<double>(rules.evidence_points, static_cast<double>(scan.points.cols()));
+  return std::max(0.0, share - 1.5 / std::sqrt(size));
+}
+
+PoseEvidence poseEvidence(const PosedSurface& scan, const PosedSurface& model, const Eigen::Isometry3d& T_model_scan,
+                          const PoseScore& score) {
+  const auto diagonalOf = [](const PosedSurface& surface) {
+    return static_cast<double>((surface.points.rowwise().maxCoeff() - surface.points.rowwise().minCoeff()).norm());
+  };
+  const double scan_size = diagonalOf(scan), model_size = diagonalOf(model), size = std::min(scan_size, model_size);
+  const double noise = std::max(scan.noise, model.noise);
+  const double tolerance = std::max(kRegistration.tight_tolerance * size, kRegistration.tight_noises * noise);
+  const Overlap of_scan = overlapOf(scan, model, T_model_scan, tolerance, size);
+  const Overlap of_model = overlapOf(model, scan, T_model_scan.inverse(), tolerance, size);
+  PoseEvidence evidence;
+  evidence.overlap_source = of_scan.share();
+  evidence.overlap_target = of_model.share();
+  evidence.agreement = std::min(of_scan.agreement(), of_model.agreement());
+  evidence.on_surface = shareOnSurface(scan, model, T_model_scan);
+  evidence.conflict = score.conflict;
+  evidence.noise = noise / size;
+  evidence.size_ratio = scan_size / model_size;
+  return evidence;
+}
+
+std::string doubtOf(const PoseEvidence& evidence) {
+  const auto percent = [](double share) { return std::lround(100.0 * share); };
+  std::ostringstream doubt;
+  const double ratio = std::max(evidence.size_ratio, 1.0 / evidence.size_ratio);
+  if (ratio > kRegistration.other_unit) {
+    doubt << "one cloud is " << std::lround(ratio) << " times as large as the other (another unit?)";
+    return doubt.str();
+  }
+  doubt << percent(evidence.overlap_source) << " % of the source lie on the target and "
+        << percent(evidence.overlap_target) << " % of the target on the source; where they face each other, "
+        << percent(1.0 - evidence.agreement) << " % are apart";
+  if (evidence.conflict > kRegistration.some_conflict)
+    doubt << ", and " << percent(std::min(1.0, evidence.conflict)) << " % lie where a scanner saw empty space";
+  return doubt.str();
+}
+
+double poseConfidence(const PoseEvidence& evidence) {
+  const std::array<double, kRegistrationFit.size()> terms{
+      1.0,
+      std::log(evidence.agreement / (1.0 - evidence.agreement)),
+      std::log(std::min(evidence.overlap_source, evidence.overlap_target) + 0.01),
+      evidence.on_surface,
+      evidence.conflict,
+      std::log(evidence.noise + 5e-4),
+      std::abs(std::log(evidence.size_ratio))};
+  double log_odds = 0.0;
+  for (std::size_t k = 0; k < terms.size(); ++k) log_odds += kRegistrationFit[k] * terms[k];
+  return 1.0 / (1.0 + std::exp(-log_odds));
+}
+
+}  // namespace pcl_symmetry

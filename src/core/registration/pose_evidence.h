@@ -1,0 +1,31 @@
+#pragma once
+
+#include <Eigen/Geometry>
+#include <string>
+
+#include "core/registration/posed_surface.h"
+#include "pcl_symmetry/core/pose_search.h"
+
+namespace pcl_symmetry {
+
+/// What two surfaces say about a pose that was found: where they overlap, and whether they agree there.
+///
+/// Points that face the inside of the other surface have to lie on it; points beyond its border may lie anywhere that
+/// its scanner did not see to be empty. So a pose of two scans that share a third of their surface is decided as surely
+/// as that of a scan on a whole model.
+/// \param scan,model in search frames, made with exact search.
+/// \param score of the pose, for its conflict with free space.
+PoseEvidence poseEvidence(const PosedSurface& scan, const PosedSurface& model, const Eigen::Isometry3d& T_model_scan,
+                          const PoseScore& score);
+
+/// \return a lower limit of the share of the scan's points that lie on the surface of the model, in [0, 1]: by a width
+/// that does not grow with the spacing of the points, so that few points on a wrong object do not count.
+double shareOnSurface(const PosedSurface& scan, const PosedSurface& model, const Eigen::Isometry3d& T_model_scan);
+
+/// \return probability that the pose is right, in [0, 1], fitted by test/benchmark/fit_registration.py.
+double poseConfidence(const PoseEvidence& evidence);
+
+/// \return one sentence on what speaks against a pose.
+std::string doubtOf(const PoseEvidence& evidence);
+
+}  // namespace pcl_symmetry

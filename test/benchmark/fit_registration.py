@@ -1,0 +1,98 @@
+#!/usr/bin/env python3
+"""Fits the probability that a pose of one cloud in another is right, and writes the header of its weights.
+
+usage: PYTHONPATH=build/src/python python3 test/benchmark/fit_registration.py PSB --classes train.cla --fold 0 --real FILE...
+
+Scans of each model are brought to the model, to the scan from the next corner, and to the model and a scan of another
+object, where no pose is right, clean and with noise. --real adds poses of real scans that were judged elsewhere: lines of
+JSON with "good", "object" and the fields of PoseEvidence. Each of the two sources counts as much as the other.
+"""
+
+import argparse
+import dataclasses
+import json
+
+import numpy as np
+
+import bench
+import fits
+import references
+import registration
+
+OUTPUT = "src/core/registration/registration_fit.h"
+NOISES = (0.0, 0.005)  # diagonals
+
+
+def terms_of(e):
+    """The terms of poseConfidence() in src/core/registration/pose_evidence.cpp."""
+    overlap = min(e["overlap_source"], e["overlap_target"])
+    agreement = np.log(e["agreement"] / (1 - e["agreement"]))
+    return [1, agreement, np.log(overlap + 0.01), e["on_surface"], e["conflict"], np.log(e["noise"] + 5e-4),
+            abs(np.log(e["size_ratio"]))]  # fmt: skip
+
+
+def sample_item(item, arguments):
+    """A row for each pose: its terms, and whether it is right."""
+    import pcl_symmetry
+
+    mesh, rows = bench.read_mesh(item.path), []
+    other = bench.read_mesh(item.before.path) if item.before is not None else None
+    symmetries = references.references_of(item, mesh, arguments.references)
+    cloud_of = lambda *a, **k: registration.seen(*registration.cloud_of(*a, **k))
+    for view, noise in enumerate(NOISES):
+        asked = argparse.Namespace(**{**vars(arguments), "noise": noise, "points": 10_000, "missing": 0.0})
+        source, T_source_model = cloud_of(mesh, item, view, asked)
+        targets = [(cloud_of(mesh, item, -1, asked, clean=True), True), (cloud_of(mesh, item, view ^ 1, asked), True)]
+        if other is not None:
+            targets += [(cloud_of(other, item.before, -1, asked, clean=True), False), (cloud_of(other, item.before, view, asked), False)]
+        for (target, T_target_model), is_own in targets:
+            seen = [None if viewpoint is None else tuple(viewpoint) for _, viewpoint in (source, target)]
+            found = pcl_symmetry.register(source[0], target[0], source_viewpoint=seen[0], target_viewpoint=seen[1], threads=1)
+            if found.covariance is None:
+                continue
+            right = False
+            if is_own:
+                error = registration.pose_error(np.linalg.inv(T_target_model) @ found.transform, np.linalg.inv(T_source_model), symmetries)
+                right = error[0] <= registration.RIGHT_ANGLE and error[1] <= registration.RIGHT_DISTANCE
+            evidence = {f.name: float(getattr(found.evidence, f.name)) for f in dataclasses.fields(found.evidence)}
+            rows.append([bool(right), evidence])
+    return rows
+
+
+def main(arguments):
+    models = bench.list_models(arguments)
+    for model, before in zip(models, [None, *map(dataclasses.replace, models)]):
+        model.before = before
+    made = [(right, terms_of(e), "made") for right, e in fits.sampled(models, sample_item, arguments)]
+    real = []
+    for path in arguments.real or []:
+        with open(path) as lines:
+            real += [(row["good"], terms_of(row), row["object"]) for row in map(json.loads, lines)]
+    right, terms, names = map(np.array, zip(*(made + real)))
+    weights = np.r_[np.full(len(made), 1.0), np.full(len(real), len(made) / max(1, len(real)))] if made else np.ones(len(real))
+
+    def judged(train, test):
+        w, _ = fits.logistic(terms[train], right[train], weights[train], pull=1.0)
+        odds = terms[test] @ w
+        wrong, missed = ((odds > 0) & ~right[test]).sum(), ((odds <= 0) & right[test]).sum()
+        print(f"  {', '.join(sorted(set(names[test])))}: {right[test].sum()} right poses, {missed} of them refused;"
+              f" {(~right[test]).sum()} wrong poses, {wrong} of them accepted")
+        return wrong + missed
+
+    print("Each object judged by the fit to all others:")
+    for name in sorted(set(names)):
+        judged(names != name, names == name)
+    w, errors = fits.logistic(terms, right, weights, pull=1.0)
+    print("weights", w, "errors", errors)
+    texts = fits.rounded(w, errors)
+    fits.write_header(arguments, f"""
+/// Weights of the terms of poseConfidence().
+inline constexpr std::array<double, {len(texts)}> kRegistrationFit{{{", ".join(texts)}}};
+""", [["<array>"]])  # fmt: skip
+
+
+if __name__ == "__main__":
+    parser = fits.make_parser(__doc__, OUTPUT)
+    parser.add_argument("--references", metavar="DIR", help="keep the symmetries of the meshes here: a second each")
+    parser.add_argument("--real", nargs="+", metavar="FILE", help="JSON lines of judged poses of real scans")
+    bench.main(main, parser.parse_args())
