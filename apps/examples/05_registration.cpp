@@ -20,5 +20,5 @@ int main(int argc, char** argv) {
     std::cout << "the scan does not fit the model\n";
     return 0;
   }
-  std::cout << registration.getFinalTransformation() << "\nmerit " << registration.getScore().merit() << "\n";
+  std::cout << registration.getFinalTransformation() << "\nconfidence " << registration.getConfidence() << "\n";
 }

@@ -323,7 +323,16 @@ Motion registerTo(const Console& console, const InputShape& input, const InputSh
   result.converged = registration.hasConverged();
   result.json = {{"transform", rowMajor(result.transform)},      {"converged", result.converged},
                  {"fitness", registration.getFitnessScore()},    {"support", registration.getScore().support},
-                 {"conflict", registration.getScore().conflict}, {"timing_ms", timingJson(registration.getTiming())}};
+                 {"conflict", registration.getScore().conflict}, {"timing_ms", timingJson(registration.getTiming())},
+                 {"confidence", registration.getConfidence()}};
+  const PoseEvidence& evidence = registration.getEvidence();
+  result.json["evidence"] = {{"overlap_source", evidence.overlap_source},
+                             {"overlap_target", evidence.overlap_target},
+                             {"agreement", evidence.agreement},
+                             {"on_surface", evidence.on_surface},
+                             {"noise", evidence.noise},
+                             {"size_ratio", evidence.size_ratio}};
+  if (!result.converged) result.json["reason"] = registration.getReason();
   step.done(result.converged ? "converged" : "nothing fits");
   return result;
 }
@@ -426,7 +435,9 @@ void analyze(const AlignOptions& options, FileJob& job) {
     motion.scene = sceneOf(both, input.points->size(), "the input (1) and what completes it (2)");
   }
   job.report({motion.text, motion.json, rowsOf(motion)});
-  if (!motion.converged) throw InputError(job.path() + ": does not fit " + *options.target + " in any pose");
+  if (!motion.converged)
+    throw InputError(job.path() + ": does not fit " + *options.target + ": " +
+                     motion.json["reason"].get<std::string>());
   if (options.html_path) writePage(motion.scene, {job.path(), motion.text}, job.output(*options.html_path));
   if (options.png_path) renderPicture(motion.scene, job.output(*options.png_path), 800, 600);
   if (shape && shape->mesh) {

@@ -55,9 +55,7 @@ struct RegisteredPose {
 /// The best pose of a cloud in another one, and the next ones.
 struct CloudRegistration : RegisteredPose {
   /// \param min_confidence in [0, 1].
-  bool converged(double min_confidence = 0.5) const {
-    return covariance.has_value() && confidence >= min_confidence;
-  }
+  bool converged(double min_confidence = 0.5) const { return covariance.has_value() && confidence >= min_confidence; }
 
   /// \return what speaks against the best pose, one sentence without a full stop.
   std::string doubt() const;

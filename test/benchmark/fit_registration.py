@@ -5,7 +5,7 @@ usage: PYTHONPATH=build/src/python python3 test/benchmark/fit_registration.py PS
 
 Scans of each model are brought to the model, to the scan from the next corner, and to the model and a scan of another
 object, where no pose is right, clean and with noise. --real adds poses of real scans that were judged elsewhere: lines of
-JSON with "good", "object" and the fields of PoseEvidence. Each of the two sources counts as much as the other.
+JSON with "good", "object" and the fields of PoseEvidence. All scans of models together count half as much as these.
 """
 
 import argparse
@@ -27,7 +27,7 @@ def terms_of(e):
     """The terms of poseConfidence() in src/core/registration/pose_evidence.cpp."""
     overlap = min(e["overlap_source"], e["overlap_target"])
     agreement = np.log(e["agreement"] / (1 - e["agreement"]))
-    return [1, agreement, np.log(overlap + 0.01), e["on_surface"], e["conflict"], np.log(e["noise"] + 5e-4),
+    return [1, agreement, np.log(overlap + 0.01), e["on_surface"], e["conflict"], np.log(min(e["noise"], 0.01) / 0.001 + 0.5),
             abs(np.log(e["size_ratio"]))]  # fmt: skip
 
 
@@ -54,9 +54,12 @@ def sample_item(item, arguments):
             if is_own:
                 error = registration.pose_error(np.linalg.inv(T_target_model) @ found.transform, np.linalg.inv(T_source_model), symmetries)
                 right = error[0] <= registration.RIGHT_ANGLE and error[1] <= registration.RIGHT_DISTANCE
-            evidence = {f.name: float(getattr(found.evidence, f.name)) for f in dataclasses.fields(found.evidence)}
-            rows.append([bool(right), evidence])
+            rows.append([bool(right), evidence_of(found)])
     return rows
+
+
+def evidence_of(found):
+    return {f.name: float(getattr(found.evidence, f.name)) for f in dataclasses.fields(found.evidence)}
 
 
 def main(arguments):
@@ -69,7 +72,7 @@ def main(arguments):
         with open(path) as lines:
             real += [(row["good"], terms_of(row), row["object"]) for row in map(json.loads, lines)]
     right, terms, names = map(np.array, zip(*(made + real)))
-    weights = np.r_[np.full(len(made), 1.0), np.full(len(real), len(made) / max(1, len(real)))] if made else np.ones(len(real))
+    weights = np.r_[np.full(len(made), 0.5 * len(real) / len(made) if real else 1.0), np.ones(len(real))]
 
     def judged(train, test):
         w, _ = fits.logistic(terms[train], right[train], weights[train], pull=1.0)

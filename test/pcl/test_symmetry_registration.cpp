@@ -340,7 +340,7 @@ TEST_F(SymmetryRegistrationTest, DoesNotDependOnThreadsAndUnits) {
 }
 
 TEST_F(SymmetryRegistrationTest, RefusesWrongParameters) {
-  EXPECT_EQ(messageOf([&] { registration_.setMinMerit(1.5); }), "min_merit = 1.5, must be in [-1, 1]");
+  EXPECT_EQ(messageOf([&] { registration_.setMinConfidence(1.5); }), "min_confidence = 1.5, must be in [0, 1]");
   EXPECT_EQ(messageOf([&] { registration_.setMaxPoints(2); }), "max_points = 2, must be >= 3");
   EXPECT_EQ(messageOf([&] { registration_.setNumberOfThreads(-1); }), "num_threads = -1, must be >= 0");
   EXPECT_EQ(messageOf([&] { registration_.setSearchAround(0.0, 1.0); }), "around.angle = 0, must be in (0, pi]");

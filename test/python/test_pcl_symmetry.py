@@ -607,7 +607,7 @@ class WithPCL(unittest.TestCase):
         self.assertAlmostEqual(found.score.merit, found.score.support - found.score.conflict / 2)
         self.assertEqual(found.covariance.shape, (6, 6))
         self.assertTrue((np.linalg.eigvalsh(found.covariance) > 0).all())
-        self.assertRegex(repr(found), r"^Registration\(transform=\[\[.*score=PoseScore\(support=")
+        self.assertRegex(repr(found), r"^Registration\(transform=\[\[.*confidence=0\.[89]")
         tracked = pcl_symmetry.register(
             source, target, guess=truth, around=(0.2, 0.1), source_viewpoint=None, target_viewpoint=None
         )
@@ -701,17 +701,18 @@ class WithPCL(unittest.TestCase):
         self.assertEqual(far.merit, far.score.merit)
 
     def test_wrong_objects_do_not_converge(self):
-        """A few hundred points of any object reach the merit; what tells is the share of them on the surface."""
+        """A few hundred points of any object reach the merit; what tells is whether the surfaces agree."""
         target = lamp()
         for size in (100, 200, 400):
             for other in (box((1.0, 0.5, 0.3)), box((1.0, 0.9, 0.1))):
                 found = pcl_symmetry.register(other[:: len(other) // size][:size], target, source_viewpoint=None)
                 self.assertGreater(found.merit, 0.4)
-                self.assertLess(found.on_surface, 0.45)
+                self.assertLess(found.confidence, 0.5)
+                self.assertRegex(found.reason, "% of the source lie on the target")
                 self.assertFalse(found.converged, size)
             own = lamp(seed=9)[:: 4000 // size] @ motion()[:3, :3].T
             found = pcl_symmetry.register(own, target, source_viewpoint=None)
-            self.assertTrue(found.converged and found.on_surface > 0.6, size)
+            self.assertTrue(found.converged and found.evidence.on_surface > 0.6, size)
 
     def test_too_few_points_do_not_converge_and_pcl_keeps_silent(self):
         code = (

@@ -38,8 +38,8 @@ struct PoseEvidence {
   /// what noise asks for, in [0, 1].
   double on_surface = 0.0;
   double conflict = 0.0;    ///< that of PoseScore, in [0, 2]
-  double noise = 0.0;       ///< of the noisier cloud, in diagonals of the smaller one
-  double size_ratio = 1.0;  ///< diagonal of the source over that of the target
+  double noise = 0.0;       ///< of the noisier cloud, in diameters of the smaller one
+  double size_ratio = 1.0;  ///< diameter of the source over that of the target
 };
 
 }  // namespace pcl_symmetry

@@ -89,8 +89,9 @@ void SymmetryRegistration<PointSource, PointTarget, Scalar>::findPose(const Poin
   }
   result_.covariance.reset();
   std::ostringstream reason;
-  reason << "nothing fits" << (options_.around ? " around the guess" : "") << ": in the best pose, with a confidence of "
-         << std::round(100.0 * result_.confidence) / 100.0 << ", " << result_.doubt();
+  reason << "nothing fits" << (options_.around ? " around the guess" : "")
+         << ": in the best pose, with a confidence of " << std::round(100.0 * result_.confidence) / 100.0 << ", "
+         << result_.doubt();
   reason_ = reason.str();
 }
 

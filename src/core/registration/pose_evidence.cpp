@@ -52,8 +52,7 @@ Overlap overlapOf(const PosedSurface& from, const PosedSurface& to, const Eigen:
 double shareOnSurface(const PosedSurface& scan, const PosedSurface& model, const Eigen::Isometry3d& T_model_scan) {
   const auto& rules = kRegistration;
   const double width = std::max(rules.contact, std::min(rules.max_contact, std::max(scan.noise, model.noise)));
-  const double share =
-      PoseScorer(scan, model).score(T_model_scan, {rules.evidence_points, width, true, true}).support;
+  const double share = PoseScorer(scan, model).score(T_model_scan, {rules.evidence_points, width, true, true}).support;
   // Three standard errors of a share, at most half over the root of the number of points.
   const auto size = std::min<double>(rules.evidence_points, static_cast<double>(scan.points.cols()));
   return std::max(0.0, share - 1.5 / std::sqrt(size));
@@ -61,10 +60,8 @@ double shareOnSurface(const PosedSurface& scan, const PosedSurface& model, const
 
 PoseEvidence poseEvidence(const PosedSurface& scan, const PosedSurface& model, const Eigen::Isometry3d& T_model_scan,
                           const PoseScore& score) {
-  const auto diagonalOf = [](const PosedSurface& surface) {
-    return static_cast<double>((surface.points.rowwise().maxCoeff() - surface.points.rowwise().minCoeff()).norm());
-  };
-  const double scan_size = diagonalOf(scan), model_size = diagonalOf(model), size = std::min(scan_size, model_size);
+  const auto diameterOf = [](const PosedSurface& surface) { return 2.0 * boundingBall(surface.points).radius; };
+  const double scan_size = diameterOf(scan), model_size = diameterOf(model), size = std::min(scan_size, model_size);
   const double noise = std::max(scan.noise, model.noise);
   const double tolerance = std::max(kRegistration.tight_tolerance * size, kRegistration.tight_noises * noise);
   const Overlap of_scan = overlapOf(scan, model, T_model_scan, tolerance, size);
@@ -103,11 +100,12 @@ double poseConfidence(const PoseEvidence& evidence) {
       std::log(std::min(evidence.overlap_source, evidence.overlap_target) + 0.01),
       evidence.on_surface,
       evidence.conflict,
-      std::log(evidence.noise + 5e-4),
+      std::log(std::min(evidence.noise, kRegistration.max_noise) / 0.001 + 0.5),
       std::abs(std::log(evidence.size_ratio))};
   double log_odds = 0.0;
   for (std::size_t k = 0; k < terms.size(); ++k) log_odds += kRegistrationFit[k] * terms[k];
-  return 1.0 / (1.0 + std::exp(-log_odds));
+  // Where surfaces face each other, most of them have to agree, whatever else speaks for the pose.
+  return std::min(1.0 / (1.0 + std::exp(-log_odds)), evidence.agreement);
 }
 
 }  // namespace pcl_symmetry

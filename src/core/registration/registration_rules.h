@@ -38,11 +38,12 @@ struct RegistrationRules {
 
   // Evidence of a pose
   int evidence_points = 3000;       ///< of each cloud, that are looked at
-  double tight_tolerance = 0.004;   ///< of the smaller cloud's diagonal: distance within which surfaces agree, at least
+  double tight_tolerance = 0.004;   ///< of the smaller cloud's diameter: distance within which surfaces agree, at least
   double tight_noises = 4.0;        ///< the same in deviations of the noisier cloud
   double facing_spacings = 1.5;     ///< between a point and the middle of the disc that it faces
-  double facing_reach = 0.05;       ///< of the smaller cloud's diagonal; what is farther away is another layer
-  double other_unit = 5.0;          ///< ratio of diagonals from which a wrong unit is suspected
+  double facing_reach = 0.05;       ///< of the smaller cloud's diameter; what is farther away is another layer
+  double max_noise = 0.01;          ///< diameters; more is the curvature between few points
+  double other_unit = 5.0;          ///< ratio of diameters from which a wrong unit is suspected
   double some_conflict = 0.1;       ///< conflict with free space that is worth a word
   double agreeing_cosine = 0.7071;  ///< of the angle between normals of one surface: 45 degrees
   /// Radii, width within which points of one surface lie on each other: at least, and where noise asks for more, at

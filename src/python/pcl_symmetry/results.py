@@ -689,9 +689,9 @@ class PoseEvidence(Result):
     conflict: float
     """That of the score, in [0, 2]."""
     noise: float
-    """Of the noisier cloud, in diagonals of the smaller one."""
+    """Of the noisier cloud, in diameters of the smaller one."""
     size_ratio: float
-    """Diagonal of the source over that of the target."""
+    """Diameter of the source over that of the target."""
 
 
 @dataclass(frozen=True, eq=False, repr=False)

@@ -1,0 +1,111 @@
+"""Poses of scans of bodies without symmetry: what overlaps decides."""
+import unittest
+import warnings
+from pathlib import Path
+
+import numpy as np
+
+import pcl_symmetry
+
+
+def body(seed, num_points=40_000):
+    """(points, normals) of a potato without symmetry: a ball with bumps and dents, scaled along its axes."""
+    random = np.random.default_rng(seed)
+    bumps, heights = random.normal(size=(7, 3)), random.choice([-0.4, 0.5, 0.7], 7)
+    bumps /= np.linalg.norm(bumps, axis=1)[:, None]
+    radius = lambda d: 1 + (heights * np.exp(8 * (d @ bumps.T - 1))).sum(axis=-1)
+    directions = random.normal(size=(num_points, 3))
+    directions /= np.linalg.norm(directions, axis=1)[:, None]
+    u = np.cross(directions, directions[:, [1, 2, 0]])
+    u /= np.linalg.norm(u, axis=1)[:, None]
+    v, step = np.cross(directions, u), 1e-4
+
+    def at(moved):
+        moved = moved / np.linalg.norm(moved, axis=1)[:, None]
+        return radius(moved)[:, None] * moved * (1, 0.8, 0.65)
+
+    points = at(directions)
+    normals = np.cross(at(directions + step * u) - points, at(directions + step * v) - points)
+    return points, normals / np.linalg.norm(normals, axis=1)[:, None]
+
+
+def scan(shape, angle, noise=0.0, seed=0):
+    """What faces parallel rays from an angle about y, degrees: a third of the points, thinned where the surface slants."""
+    points, normals = shape
+    random, facing = np.random.default_rng(seed), normals @ [np.sin(np.radians(angle)), 0, np.cos(np.radians(angle))]
+    seen = facing > np.maximum(0.17, random.uniform(0, 1.6, len(points)))
+    return points[seen] + noise * random.normal(size=(seen.sum(), 3))
+
+
+def motion(seed):
+    random, T = np.random.default_rng(seed), np.eye(4)
+    q, _ = np.linalg.qr(random.normal(size=(3, 3)))
+    T[:3, :3], T[:3, 3] = q * np.linalg.det(q), random.normal(size=3)
+    return T
+
+
+def moved(T, points):
+    return points @ T[:3, :3].T + T[:3, 3]
+
+
+def degrees(a, b):
+    return np.degrees(np.arccos(np.clip((np.trace(a[:3, :3].T @ b[:3, :3]) - 1) / 2, -1, 1)))
+
+
+@unittest.skipUnless(any(Path(pcl_symmetry.__file__).parent.glob("_recognition*.so")), "the module was built without PCL")
+class Registration(unittest.TestCase):
+    def test_two_scans_that_share_a_half_converge(self):
+        for seed in range(4):
+            with self.subTest(seed=seed):
+                shape, truth = body(seed), motion(seed)
+                found = pcl_symmetry.register(scan(shape, 0), moved(truth, scan(shape, 60, seed=1)), threads=1)
+                self.assertTrue(found.converged, found.reason)
+                self.assertLess(degrees(found.transform, truth), 3)
+                self.assertEqual(found.reason, "")
+                for share in (found.evidence.overlap_source, found.evidence.overlap_target):
+                    self.assertTrue(0.25 < share < 0.9, share)
+                self.assertGreater(found.evidence.agreement, 0.8)
+
+    def test_noise_and_a_whole_model(self):
+        shape, truth = body(5), motion(5)
+        model = moved(truth, shape[0][::4])
+        found = pcl_symmetry.register(scan(shape, 20, noise=0.01), model, target_viewpoint=None, threads=1)
+        self.assertTrue(found.converged, found.reason)
+        self.assertLess(degrees(found.transform, truth), 3)
+
+    def test_scans_of_other_bodies_and_of_other_sides_are_refused(self):
+        for seed in range(4):
+            with self.subTest(seed=seed):
+                source = scan(body(seed), 0)
+                for target in (scan(body(seed + 50), 0, seed=1), scan(body(seed), 180, seed=1)):
+                    found = pcl_symmetry.register(source, moved(motion(seed), target), threads=1)
+                    self.assertFalse(found.converged, found.evidence)
+                    self.assertRegex(found.reason, r"^\d+ % of the source lie on the target and \d+ % of the target")
+
+    def test_a_mirrored_model_is_refused(self):
+        shape = body(7)
+        found = pcl_symmetry.register(scan(shape, 0), shape[0][::4] * (-1, 1, 1), target_viewpoint=None, threads=1)
+        self.assertFalse(found.converged, found.evidence)
+
+    def test_the_same_scan_twice(self):
+        source = scan(body(3), 0)
+        found = pcl_symmetry.register(source, source, threads=1)
+        self.assertTrue(found.converged)
+        np.testing.assert_allclose(found.transform, np.eye(4), atol=1e-3)
+
+    def test_another_unit_is_named(self):
+        shape = body(3)
+        found = pcl_symmetry.register(scan(shape, 0), 1000 * shape[0][::4], target_viewpoint=None, threads=1)
+        self.assertFalse(found.converged)
+        self.assertRegex(found.reason, r"one cloud is \d+ times as large as the other \(another unit\?\)")
+
+    def test_thirty_points_are_refused(self):
+        source = scan(body(3), 0)
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")
+            found = pcl_symmetry.register(source[:30], source, threads=1)
+        self.assertFalse(found.converged)
+
+
+if __name__ == "__main__":
+    unittest.main()
