@@ -1,0 +1,123 @@
+#!/usr/bin/env python3
+"""Registration of real scans with known poses, by what it is brought to: right, refused, wrong.
+
+usage: PYTHONPATH=build/src/python python3 test/benchmark/real_registration.py FOLDER [--kinds model scan impostor foreign] [--rows FILE]
+
+FOLDER/index.json lists scans (file, object, T_object_scan) and pairs: model_pairs and scan_pairs (scan, target, diameter,
+T_target_scan), impostor_pairs (scan, target: a model of another object). "foreign" are scans brought to scans of other
+objects. Right is within 5 degrees and 5 % of the diameter, up to the motions that map 97 % of the target to within 2 % of the
+diameter of itself. Clouds are brought together as the files are, without viewpoints, guess or options.
+
+--rows writes a line of JSON a pair, for fit_registration.py.
+"""
+
+import argparse
+import dataclasses
+import json
+import pathlib
+import time
+
+import numpy as np
+import pcl_symmetry
+from scipy.spatial import cKDTree
+from scipy.spatial.transform import Rotation
+
+import bench
+
+RIGHT_ANGLE, RIGHT_DISTANCE = 5.0, 0.05
+MAX_POINTS = 10_000
+SYMMETRIC_SHARE, SYMMETRIC_DISTANCE = 0.97, 0.02
+
+
+def read(path):
+    """10 000 points of a cloud, or on the surface of a mesh."""
+    import open3d
+
+    open3d.utility.set_verbosity_level(open3d.utility.VerbosityLevel.Error)
+    random = np.random.default_rng(0)
+    mesh = open3d.io.read_triangle_mesh(str(path)) if path.suffix == ".ply" else open3d.geometry.TriangleMesh()
+    if len(mesh.triangles):
+        open3d.utility.random.seed(0)
+        return np.asarray(mesh.sample_points_uniformly(MAX_POINTS).points), True
+    points = np.asarray(open3d.io.read_point_cloud(str(path)).points)
+    points = points[np.isfinite(points).all(axis=1)]
+    return points[random.permutation(len(points))[:MAX_POINTS]], False
+
+
+def moved(T, points):
+    return points @ T[:3, :3].T + T[:3, 3]
+
+
+def nearest_symmetry(S, points, diameter):
+    """The motion near S that maps the points onto themselves, by ICP; None if there is none."""
+    tree, some = cKDTree(points), points[::4]
+    for _ in range(30):
+        x = moved(S, some)
+        y = points[tree.query(x)[1]]
+        R, _ = Rotation.align_vectors(y - y.mean(axis=0), x - x.mean(axis=0))
+        step = np.eye(4)
+        step[:3, :3] = R.as_matrix()
+        step[:3, 3] = y.mean(axis=0) - step[:3, :3] @ x.mean(axis=0)
+        S = step @ S
+    reach = SYMMETRIC_DISTANCE * diameter + 0.5 * np.quantile(tree.query(points, k=2)[0][:, 1], 0.9)
+    return S if (tree.query(moved(S, points))[0] < reach).mean() >= SYMMETRIC_SHARE else None
+
+
+def is_right(found, truth, target, diameter, may_be_symmetric):
+    center = target.mean(axis=0)[None]
+
+    def is_near(a, b):
+        angle = np.degrees(Rotation.from_matrix(a[:3, :3] @ b[:3, :3].T).magnitude())
+        return angle < RIGHT_ANGLE and np.linalg.norm(moved(a, center) - moved(b, center)) < RIGHT_DISTANCE * diameter
+
+    S = found @ np.linalg.inv(truth)  # what the answer does to the target
+    if is_near(S, np.eye(4)):
+        return True
+    symmetry = nearest_symmetry(S, target, diameter) if may_be_symmetric else None
+    return symmetry is not None and is_near(S, symmetry)
+
+
+def pairs_of(index, kind):
+    if kind != "foreign":
+        return index[kind + "_pairs"]
+    random, scans = np.random.default_rng(1), index["scans"]
+    others = lambda pair: [name for name in scans if scans[name]["object"] != scans[pair["scan"]]["object"]]
+    return [{**pair, "scan": random.choice(others(pair))} for pair in index["scan_pairs"]]
+
+
+def main(arguments):
+    folder = pathlib.Path(arguments.folder)
+    index = json.loads((folder / "index.json").read_text())
+    lines, table = [], []
+    for kind in arguments.kinds:
+        right, wrong, refused, seconds = bench.Rate(), bench.Rate(), bench.Rate(), []
+        for pair in pairs_of(index, kind)[:: arguments.every]:
+            scan = index["scans"][pair["scan"]]
+            (source, _), (target, is_mesh) = read(folder / scan["file"]), read(folder / pair["target"])
+            start = time.process_time()
+            found = pcl_symmetry.register(source, target, target_viewpoint=None if is_mesh else "auto", threads=1)
+            seconds.append(time.process_time() - start)
+            good = False
+            if kind in ("model", "scan"):
+                truth = np.array(pair["T_target_scan"])
+                truth[:3, :3] = Rotation.from_matrix(truth[:3, :3]).as_matrix()
+                good = bool(is_right(found.transform, truth, target, pair["diameter"], is_mesh))
+            right.add(found.converged and good)
+            wrong.add(found.converged and not good)
+            refused.add(not found.converged)
+            evidence = {f.name: float(getattr(found.evidence, f.name)) for f in dataclasses.fields(found.evidence)}
+            lines.append({"kind": kind, "scan": pair["scan"], "object": scan["object"], "good": good, "confidence": found.confidence, **evidence})
+        table.append([kind, right.text, refused.text, wrong.text, f"{np.median(seconds):.2f}"])
+    bench.print_table("Real scans, by what they are brought to", ["", "right", "refused", "wrong", "s"], table)
+    if arguments.rows:
+        bench.write_whole(arguments.rows, "".join(json.dumps(line) + "\n" for line in lines))
+
+
+if __name__ == "__main__":
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("folder", help="with index.json")
+    kinds = ["model", "scan", "impostor", "foreign"]
+    parser.add_argument("--kinds", nargs="+", choices=kinds, default=kinds)
+    parser.add_argument("--every", type=int, default=1, help="only every N-th pair")
+    parser.add_argument("--rows", metavar="FILE", help="a line of JSON for each pair")
+    main(parser.parse_args())
