@@ -6,6 +6,23 @@
 >>> found = pcl_symmetry.planes((cloud * (1.0, 0.8, 0.5)).astype("float32"))
 >>> [plane.kind for plane in found]
 ['symmetry', 'symmetry', 'symmetry']
+
+Each has a help of its own, such as help(pcl_symmetry.planes):
+
+planes()               planes, axes and centers of a cloud, mesh, scan, depth image or volume
+scene()                the objects of one frame of a depth camera, each with its symmetry and completion
+from_depth()           points (H, W, 3) of a depth image
+frame()                center of symmetry and principal symmetry axes
+rotations()            the group of rotations that map an object onto itself
+register()             the pose of a scan relative to a model, without a guess
+complete()             what the reflection of a scan adds
+symmetrize()           a shape with equal halves, and its asymmetry
+segment()              parts of a cloud or mesh
+Database               models in a file: similar ones, and the one that a scan shows
+transform()            the symmetry of all planes; local_symmetry(): of each point
+viewpoints()           views that show little repetition
+describe()             signatures of a shape; descriptors(), descriptor_distance(): those of the paper
+sample_mesh()          points on a mesh
 """
 
 import importlib.util
@@ -19,6 +36,7 @@ from .functions import (
     descriptor_distance,
     descriptors,
     frame,
+    from_depth,
     local_symmetry,
     planes,
     rotations,
@@ -33,6 +51,7 @@ from .results import (
     BuildReport,
     Center,
     Frame,
+    Junction,
     Map,
     Match,
     Plane,
@@ -43,61 +62,70 @@ from .results import (
     Recognized,
     ReflectionPlane,
     Registration,
-    Rotations,
-    Symmetrized,
     RotationAxis,
+    Rotations,
+    Scene,
+    SceneObject,
+    Support,
+    Symmetrized,
     View,
 )
 
 if TYPE_CHECKING:
-    from .database import Database, register
+    from .database import Database, register, scene
 
+# Functions first: this is the order of help(pcl_symmetry).
 __all__ = [
-    "Axis",
-    "BuildReport",
-    "Center",
-    "Frame",
-    "Map",
-    "Match",
-    "Merging",
-    "Plane",
+    "planes",
+    "frame",
+    "rotations",
+    "segment",
+    "complete",
+    "symmetrize",
+    "from_depth",
+    "sample_mesh",
+    "transform",
+    "local_symmetry",
+    "viewpoints",
+    "describe",
+    "descriptors",
+    "descriptor_distance",
     "Planes",
-    "PoseScore",
-    "ProbableFrame",
-    "Profile",
-    "Recognized",
+    "Plane",
     "ReflectionPlane",
-    "Registration",
+    "Axis",
+    "Center",
+    "RotationAxis",
+    "Profile",
+    "Frame",
+    "ProbableFrame",
     "Rotations",
     "Symmetrized",
-    "RotationAxis",
+    "Map",
     "View",
-    "complete",
-    "describe",
-    "descriptor_distance",
-    "descriptors",
-    "frame",
-    "local_symmetry",
-    "planes",
-    "rotations",
-    "sample_mesh",
-    "segment",
-    "symmetrize",
-    "transform",
-    "viewpoints",
+    "Merging",
+    "Scene",
+    "SceneObject",
+    "Support",
+    "Junction",
+    "Registration",
+    "PoseScore",
+    "Match",
+    "Recognized",
+    "BuildReport",
 ]
 # The libraries of PCL take longer to load than the rest: what needs them is loaded when it is first used. It is missing where
 # the library was built without PCL.
 if importlib.util.find_spec("._recognition", __name__):
-    __all__ += ["Database", "register"]
+    __all__ += ["scene", "register", "Database"]
 
 
 def __getattr__(name: str) -> Any:
-    if name not in ("Database", "register") or name not in __all__:
+    if name not in ("Database", "register", "scene") or name not in __all__:
         raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
     from . import database
 
-    globals().update(Database=database.Database, register=database.register)
+    globals().update(Database=database.Database, register=database.register, scene=database.scene)
     return globals()[name]
 
 
