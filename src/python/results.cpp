@@ -122,6 +122,7 @@ void addRotations(py::module_& module) {
       .def_readonly("support", &ObjectSymmetries::support)
       .def_readonly("confidence", &ObjectSymmetries::confidence)
       .def_readonly("tolerance", &ObjectSymmetries::tolerance)
+      .def_readonly("reason", &ObjectSymmetries::reason)
       .def(
           "equivalents",
           [](const ObjectSymmetries& s, const RowMajor4& pose, double step) {

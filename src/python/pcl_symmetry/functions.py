@@ -653,6 +653,8 @@ def rotations(
 
     points, tolerance, absolute_tolerance, progress: as in planes().
     max_feature: share of the surface, such as a screw or a notch, that a symmetry may map off it, in [0, 1].
+    Points that show no surface at the tolerance, as solid samples, atoms and few points do, have a reason in place of a
+    group, with the least tolerance at which they do; a group that takes points to points is found all the same.
     Raises ValueError for bad parameters; fewer than 20 distinct points, and points on a line, are warned of.
     """
     import numpy as np
@@ -672,8 +674,9 @@ def rotations(
         threads=threads,
         mesh=cloud.surface(),
     )
-    names = ("name", "center", "support", "confidence", "fold", "discrete", "continuous", "tolerance")
-    result = Rotations(reason="", **_fields(found, *names))
+    names = ("name", "center", "support", "confidence", "fold", "discrete", "continuous", "tolerance", "reason")
+    fields = _fields(found, *names)
+    result = Rotations(**{**fields, "name": "" if fields["reason"] else fields["name"]})
     return result if cloud.shift is None else result._moved(cloud.shift)
 
 
