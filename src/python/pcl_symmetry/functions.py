@@ -215,6 +215,7 @@ def _planes_of(found: Any, num_rows: int) -> Planes:
         _support=found.support,
         _rows=np.asarray(found.rows, dtype=np.int64),
         _num_rows=num_rows,
+        _maxima=found.maxima,
         **_fields(found, "flat", "tolerance", "reason", "viewpoint"),
     )
 
@@ -389,10 +390,15 @@ def symmetrize(
 
 
 def viewpoints(planes: Union[Planes, Sequence[Plane]]) -> List[View]:
-    """Directions from the object to the camera that show the least repetition (Section 5.4), best first."""
+    """Directions from the object to the camera that show the least repetition (Section 5.4), best first.
+
+    planes: of planes(approximate=True), with their axes of revolution and the maxima of their map; or a list of planes alone.
+    """
     if not all(isinstance(plane, Plane) for plane in planes):
         raise TypeError("planes = other objects, must be Planes or a list of Plane")
-    return [View(v.direction, v.score) for v in core.viewpoints([(p.normal, p.score) for p in planes])]
+    axes, maxima = (planes.axes, planes._maxima) if isinstance(planes, Planes) else ([], [])
+    weighted = [(p.normal, p.score) for p in planes], [(a.direction, a.score) for a in axes], maxima
+    return [View(v.direction, v.score) for v in core.viewpoints(*weighted)]
 
 
 def sample_mesh(vertices: "ArrayLike", faces: "ArrayLike", num_points: int = 10_000, *, seed: int = 1) -> "NDArray[Any]":
@@ -486,18 +492,24 @@ def describe(points: Any, *, viewpoint: Viewpoint = "auto", seed: int = 1, threa
 
 
 def descriptors(
-    points: Any, *, input_axes: bool = False, by_equation_1: bool = False, seed: int = 1, threads: int = 0
+    points: Any,
+    *,
+    viewpoint: Viewpoint = "auto",
+    input_axes: bool = False,
+    by_equation_1: bool = False,
+    seed: int = 1,
+    threads: int = 0,
 ) -> Tuple["NDArray[np.float32]", "NDArray[np.float32]", "NDArray[np.float32]"]:
     """The descriptors that the paper compares (Section 5.2): PRST and GEDT, (32, 32, 32), and PRSD, (32, 32).
 
-    input_axes: about the center of mass in the axes of the input, as for models aligned by hand; False: in frame().
+    viewpoint: as in planes(). input_axes: about the center of mass in the axes of the input, as for models aligned by hand; False: in frame().
     by_equation_1: sqrt((1 + D) / 2) in place of sqrt(max(D, 0)). The paper's best distance is descriptor_distance() of PRST
     times that of GEDT.
     """
     import numpy as np
 
-    array, _ = prepare("points", points)
-    options = dict(input_axes=input_axes, by_equation_1=by_equation_1, seed=seed, threads=threads)
+    array, shift = prepare("points", points)
+    options = dict(viewpoint=_seen_from(viewpoint, shift), input_axes=input_axes, by_equation_1=by_equation_1, seed=seed, threads=threads)
     prst, prsd, gedt = (np.asarray(values, dtype=np.float32) for values in core.descriptors(array, **options))
     return prst.reshape(32, 32, 32), prsd.reshape(32, 32), gedt.reshape(32, 32, 32)
 
@@ -526,6 +538,9 @@ def transform(
     center: "ArrayLike" = (0.0, 0.0, 0.0),
     radius: float = 0.0,
     sigma: float = 0.0,
+    cells: int = 64,
+    samples: int = 0,
+    refined_share: float = 1.0,
     as_published: bool = False,
     seed: int = 1,
     threads: int = 0,
@@ -534,7 +549,9 @@ def transform(
 
     method: sampled, convolution, rotational or voting; as_published: near pairs of points vote like all others (Section 4.3).
     center, radius: of the ball whose planes are measured, input frame and units; radius 0: the bounding ball of the points.
-    sigma: width of the Gaussian, input units; 0: two cells of a grid of 64.
+    sigma: width of the Gaussian, input units; 0: two cells. cells: of its grid along each side, in [8, 512].
+    samples: points of sampled (0: 128), pairs of voting (0: two million). refined_share: of rotational, multiresolution: planes
+        with this share of the greatest D are computed finely, the others coarsely, in [0, 1].
     """
     import numpy as np
 
@@ -543,6 +560,7 @@ def transform(
         raise TypeError(f"bins = {_text(bins)}, must be three whole numbers, of theta, phi and r")
     array, shift = prepare("points", points)
     options = dict(center=_seen_from(center, shift, "center"), radius=radius, sigma=sigma, as_published=as_published)
+    options.update(cells=cells, samples=samples, refined_share=refined_share)
     found = core.transform(array, sizes.tolist(), method=method, seed=seed, threads=threads, **options)
     result = Map(**_fields(found, "sigma", "center", "radius", "values"))
     return result if shift is None else result._moved(shift)
