@@ -40,10 +40,6 @@ cmake --preset release --log-level=WARNING >/dev/null
 cmake --build build --parallel "$(nproc)" --target pcl_symmetry_lines pcl_symmetry_map pcl_symmetry_planes \
   pcl_symmetry_scan pcl_symmetry_scene pcl_symmetry_segment pcl_symmetry_viewer pcl_symmetry_viewpoint \
   pcl_symmetry_python pcl_symmetry_python_recognition
-if $estimators; then
-  cmake --preset benchmark --log-level=WARNING >/dev/null
-  cmake --build build-benchmark --parallel "$(nproc)" --target benchmark_accuracy
-fi
 repository=$PWD
 export PATH=$PWD/build/apps:$PATH PYTHONPATH=$PWD/build/src/python
 python=/usr/bin/python3
@@ -199,9 +195,9 @@ draw_figure_16
 draw_axes
 draw_failures_of_all
 if $estimators; then
-  export PCL_SYMMETRY_MODELS=$models
-  draw error_against_time /usr/bin/python3 "$repository/test/benchmark/error_against_time.py" \
-    "$repository/build-benchmark/test/benchmark/benchmark_accuracy" "$pictures/error_against_time.png"
+  bash "$repository/apps/fetch_meshes.sh" meshes bull cow elephant hand camel
+  draw error_against_time /usr/bin/python3 "$repository/test/benchmark/error_against_time.py" meshes \
+    --figure "$pictures/error_against_time.png"
 fi
 rm -f "$models/last.txt"
 echo "Pictures: $gallery $pictures"
