@@ -40,6 +40,10 @@ cmake --preset release --log-level=WARNING >/dev/null
 cmake --build build --parallel "$(nproc)" --target pcl_symmetry_lines pcl_symmetry_map pcl_symmetry_planes \
   pcl_symmetry_scan pcl_symmetry_scene pcl_symmetry_segment pcl_symmetry_viewer pcl_symmetry_viewpoint \
   pcl_symmetry_python pcl_symmetry_python_recognition
+if $estimators; then
+  cmake --preset benchmark --log-level=WARNING >/dev/null
+  cmake --build build-benchmark --parallel "$(nproc)" --target benchmark_accuracy
+fi
 repository=$PWD
 export PATH=$PWD/build/apps:$PATH PYTHONPATH=$PWD/build/src/python
 python=/usr/bin/python3
@@ -69,7 +73,7 @@ draw() {
 
 draw_scans_and_parts() {
   pcl_symmetry_scan cow.off cow_scan.pcd -quiet
-  draw cow_scan_plane pcl_symmetry_planes cow_scan.pcd -png "$pictures/cow_scan_plane.png"
+  draw first_look "${drawings[@]}" first_look "$pictures/first_look.png" cow.off
   draw bull_parts pcl_symmetry_planes bull.off -approximate -max_planes 6 -png "$pictures/bull_parts.png"
   draw frames "${drawings[@]}" frames "$pictures/frames.png"
 }
@@ -195,9 +199,9 @@ draw_figure_16
 draw_axes
 draw_failures_of_all
 if $estimators; then
-  bash "$repository/apps/fetch_meshes.sh" meshes bull cow elephant hand camel
-  draw error_against_time /usr/bin/python3 "$repository/test/benchmark/error_against_time.py" meshes \
-    --figure "$pictures/error_against_time.png"
+  export PCL_SYMMETRY_MODELS=$models
+  draw error_against_time /usr/bin/python3 "$repository/test/benchmark/error_against_time.py" \
+    "$repository/build-benchmark/test/benchmark/benchmark_accuracy" "$pictures/error_against_time.png"
 fi
 rm -f "$models/last.txt"
 echo "Pictures: $gallery $pictures"

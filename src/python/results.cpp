@@ -86,7 +86,7 @@ void addPlaneSearch(py::module_& module) {
       .def_property_readonly("maxima",
                              [](const PlaneSearch& s) {
                                std::vector<std::pair<Eigen::Vector3d, double>> maxima;
-                               for (const LocalMaximum& maximum : findLocalMaxima(s.found.map))
+                               for (const LocalMaximum& maximum : findLocalMaxima(s.found.map, {}, 1))
                                  maxima.emplace_back(maximum.plane.normal(), maximum.value);
                                return maxima;
                              })

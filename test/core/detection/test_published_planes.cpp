@@ -21,6 +21,7 @@ TEST(PublishedPlanes, FindTheThreePlanesOfABox) {
   const GaussianEdt edt(points);
   PublishedOptions options;
   options.num_points = 2000;
+  options.max_maxima = 30;
   const test::Shape box = test::moved(test::box(1, test::Sampling::Random, 4), pose);
   for (const auto method : {TransformMethod::Sampled, TransformMethod::Convolution, TransformMethod::Voting}) {
     const auto planes = publishedPlanes(points, edt, publishedMap(points, edt, method), options);
@@ -34,6 +35,7 @@ TEST(PublishedPlanes, AreNotLostAtBordersOfCells) {
   const test::Shape box = test::box(4000, test::Sampling::Random, 4);
   PublishedOptions options;
   options.num_points = 1000;
+  options.max_maxima = 30;
   for (int i = 0; i < 10; ++i) {
     Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
     pose.rotate(Eigen::AngleAxisd(0.1 * i * 2.0 * kPi / 64, Eigen::Vector3d::UnitZ()));
