@@ -5,6 +5,7 @@
 
 #include <utility>
 
+#include "pcl_symmetry/core/local_maxima.h"
 #include "pcl_symmetry/core/rotational_symmetry.h"
 #include "pcl_symmetry/core/symmetrized_shape.h"
 #include "pcl_symmetry/core/symmetry_map.h"
@@ -81,6 +82,13 @@ void addPlaneSearch(py::module_& module) {
                                for (const SymmetryPlane& plane : s.found.planes)
                                  supports.push_back(toArray(plane.point_support));
                                return supports;
+                             })
+      .def_property_readonly("maxima",
+                             [](const PlaneSearch& s) {
+                               std::vector<std::pair<Eigen::Vector3d, double>> maxima;
+                               for (const LocalMaximum& maximum : findLocalMaxima(s.found.map, {}, 1))
+                                 maxima.emplace_back(maximum.plane.normal(), maximum.value);
+                               return maxima;
                              })
       .def_property_readonly("rows", [](const PlaneSearch& s) { return toArray(s.rows); })
       .def_property_readonly("evidence", [](const PlaneSearch& s) { return planeEvidence(s.found); })
