@@ -60,7 +60,7 @@ struct CloudRegistration : RegisteredPose {
   /// \return what speaks against the best pose, one sentence without a full stop.
   std::string doubt() const;
 
-  /// Distinct poses by falling confidence, at most PoseSearchOptions::max_poses: those that symmetry makes equal have
+  /// Distinct poses by falling merit, at most PoseSearchOptions::max_poses: those that symmetry makes equal have
   /// like merits.
   std::vector<RegisteredPose> poses;
   /// How uncertain the best pose is: the covariance of the small motion (w, t) of the target's frame that makes it

@@ -224,13 +224,7 @@ CloudRegistration registerClouds(const Points& source, const std::optional<Visib
   if (options.around) keepAround(clouds, guess, *options.around, poses);
   done("refine");
   for (const RankedPose& pose : poses) result.poses.push_back(clouds.judged(pose));
-  if (!poses.empty()) {
-    const auto best = std::max_element(result.poses.begin(), result.poses.end(),
-                                       [](const auto& a, const auto& b) { return a.confidence < b.confidence; });
-    result.covariance = covarianceOf(clouds, poses[best - result.poses.begin()], inner);
-    std::stable_sort(result.poses.begin(), result.poses.end(),
-                     [](const RegisteredPose& a, const RegisteredPose& b) { return a.confidence > b.confidence; });
-  }
+  if (!poses.empty()) result.covariance = covarianceOf(clouds, poses.front(), inner);
   if (poses.empty()) result.poses.push_back({guess, {}});
   static_cast<RegisteredPose&>(result) = result.poses.front();
   return result;
