@@ -3,15 +3,16 @@
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
-#include <stdexcept>
-#include <string>
+#include <limits>
 
 #include "core/base/parallel.h"
 #include "core/base/stopwatch.h"
-#include "core/detection/plane_decision.h"
+#include "core/detection/plane_tolerance.h"
+#include "core/detection/set_confidence.h"
 #include "core/evidence/plane_motion.h"
 #include "core/geometry/directions.h"
 #include "core/geometry/principal_axes.h"
+#include "core/refinement/normalized_cloud.h"
 #include "pcl_symmetry/core/planar_transform.h"
 
 namespace pcl_symmetry {
@@ -286,8 +287,10 @@ Detection detectVolumePlanes(const ScalarGrid& input, const DetectionOptions& op
     found.timing_ms.emplace_back("maxima", watch.lap());
 
     const double chance = chanceLevel(few, center, stride, maxima, options.num_threads);
-    if (chance > kRules.most_chance)
-      throw std::invalid_argument("volume: the body is round, planes in all directions map it onto itself");
+    if (chance > kRules.most_chance) {
+      found.reason = "volume: the body is round, planes in all directions map it onto itself";
+      return found;
+    }
     const auto confidence = [&](const SymmetryPlane& plane) {
       const double beyond_chance = std::clamp((plane.support - chance) / (1.0 - chance), 0.0, 1.0);
       return beyond_chance * beyond_chance;
@@ -306,13 +309,13 @@ Detection detectVolumePlanes(const ScalarGrid& input, const DetectionOptions& op
     DetectionOptions without_possible = options;  // a volume shows all
     without_possible.min_possible = options.min_confidence;
     for (SymmetryPlane& plane : distinct(maxima)) {
-      decideBy(confidence(plane), without_possible, plane);
-      plane.share = plane.share_low = plane.share_high = plane.support;
+      setConfidence(plane, confidence(plane), "the correlation beyond that of planes in any direction",
+                    without_possible);
+      plane.share = plane.share_low = plane.share_high = std::numeric_limits<double>::quiet_NaN();
       if (options.approximate || plane.kind == PlaneKind::Symmetry) found.planes.push_back(plane);
     }
     found.timing_ms.emplace_back("refinement", watch.lap());
-  } catch (const std::invalid_argument& error) {
-    if (std::string(error.what()).rfind("volume: ", 0) != 0) throw;
+  } catch (const VolumeWithoutAnswer& error) {
     found.reason = error.what();
   }
   return found;
