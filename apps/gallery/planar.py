@@ -98,7 +98,7 @@ class LineTransform:
     def lines(self, least=0.5):
         """Local maxima: rows of theta in [0, pi), r in input units about the origin, and D, best first."""
         wrapped = np.vstack([self.values[-1:, ::-1], self.values, self.values[:1, ::-1]])  # past theta = pi lies (0, -r)
-        peaks = np.argwhere((maximum_filter(wrapped, 5)[1:-1] == self.values) & (self.values > least))
+        peaks = np.argwhere((maximum_filter(wrapped, 5)[1:-1] == self.values) & (self.values > 0.9 * least))
         found = []
         for t, k in peaks:
             best = minimize(lambda line: -self.value(*line), (self.theta[t], self.r[k]), method="Nelder-Mead",
@@ -108,7 +108,7 @@ class LineTransform:
             theta %= np.pi
             r = sign * r * self.cell + self.center @ (np.cos(theta), np.sin(theta))
             found.append((theta, r, -best.fun))
-        return np.array(sorted(found, key=lambda line: -line[2]))
+        return np.array(sorted((line for line in found if line[2] > least), key=lambda line: -line[2]))
 
     def picture(self, points, size):
         """For each pixel the greatest D of any line through it, dark where that is 1, with the contour on top."""
