@@ -26,12 +26,14 @@ Detection planesAsPublished(const Points& points, const GaussianEdt* edt, const 
   return found;
 }
 
-std::vector<float> pointSupport(const SelectedPoints& all, std::size_t cloud_size, const Points& samples,
-                                const ReflectionPlane& plane, int num_threads) {
-  std::vector<float> support(cloud_size, std::numeric_limits<float>::quiet_NaN());
+std::vector<std::vector<float>> pointSupport(const SelectedPoints& all, std::size_t cloud_size, const Points& samples,
+                                             const std::vector<ReflectionPlane>& planes, int num_threads) {
+  std::vector<std::vector<float>> support(planes.size(),
+                                          std::vector<float>(cloud_size, std::numeric_limits<float>::quiet_NaN()));
   if (samples.cols() == 0) return support;
-  const std::vector<float> finite = planeSupport(all.points, samples, plane, num_threads);
-  for (std::size_t i = 0; i < finite.size(); ++i) support[all.indices[i]] = finite[i];
+  const std::vector<std::vector<float>> finite = planeSupport(all.points, samples, planes, num_threads);
+  for (std::size_t k = 0; k < planes.size(); ++k)
+    for (std::size_t i = 0; i < finite[k].size(); ++i) support[k][all.indices[i]] = finite[k][i];
   return support;
 }
 

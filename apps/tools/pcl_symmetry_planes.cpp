@@ -34,7 +34,7 @@ struct PlanesOptions {
   DetectionOptions detection;
   std::optional<double> tolerance;
   std::string method = "sampled";
-  bool method_given = false, as_published = false;
+  bool method_given = false, as_published = false, explain = false;
   std::optional<Eigen::Vector4d> ground;
   std::optional<int> label;
   CommonOptions common;
@@ -74,6 +74,7 @@ CommandLine commandLine(PlanesOptions& options) {
               "the estimator of the map (Sections 4.2 and 4.3); exact with -as_published")
       .flag("as_published", options.as_published,
             "refine the maxima of the map as the paper does (Section 4.4), without a decision")
+      .flag("explain", options.explain, "also print why each plane has its confidence and kind")
       .plane("ground", options.ground,
              "what the object stands on: a x + b y + c z + d = 0; with a viewpoint, sparse points of a LiDAR are then "
              "decided by the box around them")
@@ -102,6 +103,29 @@ struct Findings : Detection {
 std::string coefficientsOf(const ReflectionPlane& plane, const Eigen::Vector3d& shift) {
   const Eigen::Vector4d c = printedCoefficients(plane, shift);
   return formatted("%.6f %.6f %.6f %.*g", c[0], c[1], c[2], lengthDigits(shift), c[3]);
+}
+
+/// Why a plane has its confidence and kind: what its evidence makes of it, then factors on the odds.
+std::string explained(const std::string& name, const SymmetryPlane& plane) {
+  std::string lines = formatted("%s: %s, confidence %.3f\n", name.c_str(), toString(plane.kind), plane.confidence);
+  bool is_first = true;
+  for (const Reason& reason : plane.reasons) {
+    if (!reason.odds)
+      lines += std::string("  possible at most: ") + reason.rule + "\n";
+    else if (std::exchange(is_first, false))
+      lines += formatted("  %.3f: %s\n", *reason.odds / (1.0 + *reason.odds), reason.rule);
+    else
+      lines += formatted("  odds x %.3g: %s\n", *reason.odds, reason.rule);
+  }
+  return lines;
+}
+
+std::string explained(const Findings& findings) {
+  std::string lines;
+  for (std::size_t i = 0; i < findings.planes.size(); ++i)
+    lines += explained("plane " + std::to_string(i + 1), findings.planes[i]);
+  if (findings.best) lines += explained("best plane", *findings.best);
+  return lines;
 }
 
 /// What the sensor and the points resolve.
@@ -147,9 +171,13 @@ std::string tableOf(const Findings& findings, const Eigen::Vector3d& shift) {
 }
 
 nlohmann::json describe(const SymmetryPlane& plane, const Eigen::Vector3d& shift) {
+  nlohmann::json reasons = nlohmann::json::array();
+  for (const Reason& reason : plane.reasons)
+    reasons.push_back({{"rule", reason.rule}, {"odds", reason.odds ? nlohmann::json(*reason.odds) : nullptr}});
   return {{"coefficients", numbersOf(plane, shift)},
           {"kind", toString(plane.kind)},
           {"confidence", plane.confidence},
+          {"reasons", reasons},
           {"share", plane.share},
           {"share_interval", nlohmann::json::array({plane.share_low, plane.share_high})},
           {"deviation", plane.deviation},
@@ -312,8 +340,8 @@ Findings search(const FileJob& job, const InputShape& input, const PlanesOptions
   findings.timing_ms.emplace_back("load", input.loading_ms);
   findings.timing_ms.emplace_back("total", searching_ms);
   if (!input.volume && (options.support_path || options.png_path || options.html_path))
-    for (const SymmetryPlane& plane : findings.planes)
-      findings.support.push_back(refinement.computePointSupport(plane));
+    findings.support =
+        refinement.computePointSupport(std::vector<ReflectionPlane>(findings.planes.begin(), findings.planes.end()));
   return findings;
 }
 
@@ -385,13 +413,13 @@ void analyze(const PlanesOptions& options, FileJob& job) {
   if (options.label && (input.volume || input.shape.mesh))
     throw InputError(job.path() + ": -label needs a cloud with a field label");
   const Findings findings = search(job, input, options);
-  job.report({tableOf(findings, input.shift()), describe(input, findings), rowsOf(findings, input.shift())});
+  const std::string table = tableOf(findings, input.shift()) + (options.explain ? explained(findings) : "");
+  job.report({table, describe(input, findings), rowsOf(findings, input.shift())});
   if (options.support_path) saveSupport(input, findings, job.output(*options.support_path));
   if (options.profile_path) saveProfile(input, findings, job.output(*options.profile_path));
   if (options.png_path) draw(job.console(), input, findings, job.output(*options.png_path));
   if (options.html_path)
-    writePage(makeScene(input.points, findings), {job.path(), tableOf(findings, input.shift())},
-              job.output(*options.html_path));
+    writePage(makeScene(input.points, findings), {job.path(), table}, job.output(*options.html_path));
 }
 
 int run(int argc, char** argv) {
@@ -399,6 +427,7 @@ int run(int argc, char** argv) {
   CommandLine line = commandLine(options);
   if (!line.parse(argc, argv)) return 0;
   options.method_given = line.given("method");
+  options.detection.min_possible = std::min(options.detection.min_possible, options.detection.min_confidence);
   if (options.support_path) checkCloudExtension(*options.support_path);
   if (options.profile_path && !boost::iends_with(*options.profile_path, ".csv") &&
       !boost::iends_with(*options.profile_path, ".svg"))

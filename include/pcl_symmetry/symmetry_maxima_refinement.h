@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <memory>
 #include <optional>
 #include <vector>
@@ -41,7 +42,10 @@ public:
 
   /// \param min_confidence a plane of at least this confidence is a symmetry, in [0, 1]; default 0.5.
   void setMinConfidence(double min_confidence) {
-    this->change([&](DetectionOptions& changed) { changed.min_confidence = min_confidence; });
+    this->change([&](DetectionOptions& changed) {
+      changed.min_confidence = min_confidence;
+      changed.min_possible = std::min(changed.min_possible, min_confidence);
+    });
   }
   /// \param tolerance how far a symmetric surface may be off, as a share of the greatest distance between two points, in
   /// (0, 0.1], whatever the sensor resolves; default 0.01, or what a depth camera (up to 0.03) or sparse points (up to
@@ -90,6 +94,8 @@ public:
   /// \return the support for a plane at each point of the input cloud, also at points that compute() did not use, in
   /// [0, 1]; NaN for points that are not finite, and for all points where compute() has not given an answer.
   std::vector<float> computePointSupport(const ReflectionPlane& plane) const;
+  /// The same of several planes, faster than one by one: the surface of the points is made once.
+  std::vector<std::vector<float>> computePointSupport(const std::vector<ReflectionPlane>& planes) const;
 
   /// \return all that the last compute() found, with the planes, in the frame of the input: axes and centers, rotations
   /// of scans, the best plane where there is no symmetry, what the tolerance was, and the time of each stage.

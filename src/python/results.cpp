@@ -33,6 +33,13 @@ void addPlanes(py::module_& module) {
                              })
       .def_property_readonly("share_interval",
                              [](const SymmetryPlane& p) { return std::pair(p.share_low, p.share_high); })
+      .def_property_readonly("reasons",
+                             [](const SymmetryPlane& p) {
+                               py::tuple reasons(p.reasons.size());
+                               for (std::size_t i = 0; i < p.reasons.size(); ++i)
+                                 reasons[i] = py::make_tuple(p.reasons[i].rule, p.reasons[i].odds);
+                               return reasons;
+                             })
       .def_readonly("confidence", &SymmetryPlane::confidence)
       .def_readonly("score", &SymmetryPlane::score)
       .def_readonly("support", &SymmetryPlane::support)

@@ -52,7 +52,7 @@ struct DetectionOptions {
   double most_tolerance = 0.03;
   double absolute_tolerance = 0.0;  ///< a tolerance in input units in place of both, >= 0; 0 = they decide
   double min_confidence = 0.5;      ///< a plane is a symmetry if confidence >= min_confidence; in [0, 1]
-  double min_possible = 0.2;        ///< a plane is reported as possible if confidence >= min_possible; in [0, 1]
+  double min_possible = 0.2;  ///< a plane is reported as possible if confidence >= min_possible; in [0, min_confidence]
   /// Reports the other maxima too, after the symmetries: approximate ones of the whole, and symmetries of parts.
   bool approximate = false;
   bool evidence = false;  ///< fills Detection::evidence; takes about as long again as the detection

@@ -21,6 +21,14 @@ enum class PlaneKind {
   Local         ///< a symmetry of a part: of the points that support it
 };
 
+/// Why a plane has its confidence and kind.
+struct Reason {
+  const char* rule = "";  ///< what was seen, in a few words
+  /// Factor on the odds of the confidence; of the first reason: the odds themselves. The product of all odds is
+  /// confidence / (1 - confidence). None: the plane is a possible symmetry at most, however confident.
+  std::optional<double> odds;
+};
+
 /// A refined local maximum of the transform. Canonical: theta of the normal in [0, pi/2].
 struct SymmetryPlane : ReflectionPlane {
   SymmetryPlane() = default;
@@ -35,7 +43,8 @@ struct SymmetryPlane : ReflectionPlane {
   /// Share of the surface seen that the plane maps onto the surface, relative to what sampling and noise allow, [0, 1].
   double support = 0.0;
   /// Estimate of the share of the surface that the plane maps to within the tolerance of the surface, in [0, 1]: of the
-  /// informative part of the surface. A plane is a symmetry of the object if that share is at least 0.97.
+  /// informative part of the surface. A plane is a symmetry of the object if that share is at least 0.97. NaN, with its
+  /// limits, for volumes: they have no surface.
   double share = 0.0;
   /// Lower limit of that share for the whole object: it lies between the limits in 95 of 100 cases, in [0, 1].
   double share_low = 0.0;
@@ -49,9 +58,10 @@ struct SymmetryPlane : ReflectionPlane {
   /// One value in [0, 1] per point used, in their order: 1 where the reflection is as close to the surface as samples
   /// of a surface are to each other, falling to 0 beyond. Of large clouds, points take that of one near them.
   std::vector<float> point_support;
-  int iterations = 0;      ///< of Iterative Symmetric Points, in all stages
-  bool converged = false;  ///< the plane stood still
-  double residual = 0.0;   ///< weighted root mean square distance of the reflected points from the surface, input units
+  std::vector<Reason> reasons;  ///< of confidence and kind, in the order of the rules; none as published
+  int iterations = 0;           ///< of Iterative Symmetric Points, in all stages
+  bool converged = false;       ///< the plane stood still
+  double residual = 0.0;  ///< weighted root mean square distance of the reflected points from the surface, input units
 };
 
 /// All planes through a line are symmetries: a body of revolution.

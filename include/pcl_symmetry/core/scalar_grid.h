@@ -4,6 +4,7 @@
 #include <array>
 #include <cstddef>
 #include <memory>
+#include <stdexcept>
 #include <vector>
 
 #include "pcl_symmetry/core/exports.h"
@@ -68,12 +69,16 @@ struct VolumeLevels {
   void validate() const;
 };
 
+/// Thrown where a volume holds no answer: too few voxels, no finite value, all values equal.
+struct VolumeWithoutAnswer : std::invalid_argument {
+  using std::invalid_argument::invalid_argument;
+};
+
 /// A volume as the function f of the transform, on no more voxels than wanted and a little smoothed.
 struct VolumeFunction {
   /// \param volume at least 4 voxels along each axis.
   /// \param most_voxels groups of voxels are averaged until there are no more than this, >= 4096.
-  /// \throws std::invalid_argument for bad levels, and where the volume holds no answer: too few voxels, no finite
-  /// value, all values equal.
+  /// \throws std::invalid_argument for bad levels; VolumeWithoutAnswer.
   VolumeFunction(const ScalarGrid& volume, const VolumeLevels& levels, std::size_t most_voxels, int num_threads = 0);
 
   /// The same function on fewer voxels.

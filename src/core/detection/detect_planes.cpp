@@ -11,6 +11,7 @@
 #include "core/detection/cloud_subset.h"
 #include "core/detection/part_search.h"
 #include "core/detection/plane_decision.h"
+#include "core/detection/plane_doubts.h"
 #include "core/detection/plane_families.h"
 #include "core/detection/plane_lattice.h"
 #include "core/detection/staged_refinement.h"
@@ -36,9 +37,13 @@ void append(std::vector<SymmetryPlane>& planes, std::vector<SymmetryPlane> more)
 class FinalRefinement {
 public:
   /// \param refinement,decision must outlive this object.
-  /// \param skips_hopeless the cloud is a whole surface, and other planes than symmetries are not wanted where there are any.
-  FinalRefinement(const StagedRefinement& refinement, const PlaneDecision& decision, bool skips_hopeless)
-      : refinement_(refinement), decision_(decision), skips_hopeless_(skips_hopeless) {}
+  /// \param skips_hopeless other planes than symmetries are not wanted where there are any.
+  FinalRefinement(const StagedRefinement& refinement, const PlaneDecision& decision, CloudKind kind,
+                  bool skips_hopeless)
+      : refinement_(refinement),
+        decision_(decision),
+        kind_(kind),
+        skips_hopeless_(skips_hopeless && kKindRules.may_lack_piece[kind]) {}
 
   /// \param candidates after the second stage, best first.
   /// \return the planes that may be symmetries, and where there are none, the others too; input frame.
@@ -71,7 +76,7 @@ private:
       }
       planes.push_back(std::move(judged.plane));
     }
-    const std::vector<bool> moved = refinement_.climb(climbing);
+    const std::vector<char> moved = refinement_.climb(climbing);
     std::vector<Candidate> again;
     std::vector<std::size_t> index_of_again;
     for (std::size_t k = 0; k < moved.size(); ++k) {
@@ -81,12 +86,13 @@ private:
     }
     std::vector<MeasuredPlane> judged_again = decision_.judge(again);
     for (std::size_t k = 0; k < again.size(); ++k) planes[index_of_again[k]] = std::move(judged_again[k].plane);
-    for (const SymmetryPlane& plane : planes) explained_ = explained_ || decision_.explainsAll(plane);
+    for (const SymmetryPlane& plane : planes) explained_ = explained_ || explainsAll(plane, kind_);
     return planes;
   }
 
   const StagedRefinement& refinement_;
   const PlaneDecision& decision_;
+  CloudKind kind_;
   bool skips_hopeless_;
   bool explained_ = false;  ///< a plane explains all of the cloud, so that nothing is missing
 };
@@ -100,19 +106,99 @@ std::vector<MeasuredPlane> judgeAll(std::vector<Candidate> candidates, const Sta
   return decision.judge(refinement.distinct(std::move(candidates)));
 }
 
-/// Finds the axes of rotations of a scan, and brings axes of revolution and planes in line with them.
-std::vector<SymmetryPlane> withScanAxes(std::vector<SymmetryPlane> planes, const NormalizedCloud& cloud,
-                                        double tolerance, const DetectionOptions& options, Detection& detection) {
+/// A cloud, and what judges its planes. Everything must outlive it.
+struct JudgedCloud {
+  const NormalizedCloud& cloud;
+  const Points& all;  ///< its points and those that were left out to make it evenly dense, normalized frame
+  const PlaneFit& fit;
+  const PlaneMeasure& measure;
+  const PlaneDecision& decision;
+  const StagedRefinement& refinement;
+  FinalRefinement& final_refinement;
+  const DetectionOptions& options;
+};
+
+/// What was found up to now.
+struct Found {
+  std::vector<SymmetryPlane> planes;    ///< input frame
+  std::optional<PlaneLattice> polygon;  ///< normalized frame; its planes are among them
+  std::vector<SymmetryAxis> axes;
+  std::vector<SymmetryCenter> centers;
+  std::vector<SymmetryRotation> rotations;
+  std::shared_ptr<DetectionEvidence> evidence;
+
+  bool hasFamily() const { return !axes.empty() || !centers.empty(); }
+};
+
+/// The reflection of one symmetry in another is a symmetry, and so are the missing planes of a regular polygon.
+void completeGroups(const JudgedCloud& judged, Found& found) {
+  GroupClosure closure(judged.cloud);
+  for (std::vector<Candidate> candidates;
+       !(candidates = judged.refinement.closeSymmetries(closure.next(found.planes))).empty();)
+    append(found.planes, judged.final_refinement.decide(std::move(candidates)));
+}
+
+void doubtWhatNeedsAPiece(const JudgedCloud& judged, Found& found) {
+  doubtMissingPieces(found.planes, judged.cloud.kind(), judged.options);
+}
+
+/// Where noise hides single planes of a polygon, all are judged together.
+void completePolygon(const JudgedCloud& judged, Found& found) {
+  PlanesAndPolygon completed =
+      withPolygon(std::move(found.planes), judged.cloud, judged.all, judged.decision, judged.options);
+  found.planes = std::move(completed.planes);
+  found.polygon = std::move(completed.polygon);
+}
+
+/// Bodies of revolution and spheres in place of their planes.
+void findFamilies(const JudgedCloud& judged, Found& found) {
+  if (judged.measure.limits().isCutAllAround()) return;
+  PlanesAndFamilies families =
+      collectFamilies(std::move(found.planes), judged.cloud, judged.all, judged.fit, judged.decision, judged.options);
+  found.planes = std::move(families.planes);
+  found.axes = std::move(families.axes);
+  found.centers = std::move(families.centers);
+}
+
+/// Axes of rotations of a scan; brings axes of revolution and planes in line with them.
+void findAxesOfScan(const JudgedCloud& judged, Found& found) {
+  const DetectionOptions& options = judged.options;
+  if (judged.measure.limits().isCutAllAround() || !options.rotations) return;
   // A ball is symmetric about every line through its center.
-  if (!options.rotations || !kKindRules.has_rotations[cloud.kind()] || !detection.centers.empty()) return planes;
+  if (!kKindRules.has_rotations[judged.cloud.kind()] || !found.centers.empty()) return;
   const ScanAxesOptions scan_axes{options.folds, options.min_confidence, options.min_possible, options.seed,
                                   options.num_threads};
-  const RotationEvidence rotations(cloud, tolerance, options.seed);
-  detection.rotations = scanAxes(rotations, planes, detection.axes, scan_axes,
-                                 detection.evidence ? &detection.evidence->rotations : nullptr);
-  detection.axes = withRoundAxes(rotations, std::move(detection.axes), detection.rotations, scan_axes);
-  return withoutPlanesThrough(std::move(planes), detection.axes, cloud);
+  const RotationEvidence rotations(judged.cloud, judged.measure.tolerance(), options.seed);
+  found.rotations =
+      scanAxes(rotations, found.planes, found.axes, scan_axes, found.evidence ? &found.evidence->rotations : nullptr);
+  found.axes = withRoundAxes(rotations, std::move(found.axes), found.rotations, scan_axes);
+  found.planes = withoutPlanesThrough(std::move(found.planes), found.axes, judged.cloud);
 }
+
+void doubtWhatIsNotBest(const JudgedCloud& judged, Found& found) {
+  doubtFurtherPlanes(found.planes, found.hasFamily(), judged.cloud.kind(), judged.options);
+}
+
+void doubtWhatSlants(const JudgedCloud& judged, Found& found) {
+  if (judged.cloud.seen())
+    doubtSlantedPlanes(found.planes, carryingNormals(judged.cloud.points, *judged.cloud.seen()), judged.options);
+}
+
+void findPlanesOfParts(const JudgedCloud& judged, Found& found) {
+  if (judged.options.approximate)
+    append(found.planes, localPlanes(found.planes, judged.cloud, judged.fit, judged.decision, judged.options));
+}
+
+/// What results say of each other, in this order. Beyond the paper.
+constexpr struct {
+  const char* name;  ///< in Detection::timing_ms
+  void (*apply)(const JudgedCloud& judged, Found& found);
+} kRules[] = {
+    {"groups", completeGroups},    {"missing_pieces", doubtWhatNeedsAPiece},
+    {"polygon", completePolygon},  {"families", findFamilies},
+    {"rotations", findAxesOfScan}, {"beside_best", doubtWhatIsNotBest},
+    {"slanted", doubtWhatSlants},  {"parts", findPlanesOfParts},
+};
 
 /// Section 4.4 and what follows: the planes of a cloud, from the maxima of its map to the list. publishedPlanes() is
 /// the section alone.
@@ -136,52 +222,35 @@ Detection refineAndDecide(const NormalizedCloud& cloud, const Points& all, const
   timed("coarse_refinement");
   candidates = refinement.close(std::move(candidates));
   timed("close_refinement");
+  Found found;
   if (options.evidence) {
-    detection.evidence = std::make_shared<DetectionEvidence>();
-    detection.evidence->planes = judgeAll(candidates, refinement, decision);
+    found.evidence = std::make_shared<DetectionEvidence>();
+    found.evidence->planes = judgeAll(candidates, refinement, decision);
     timed("evidence");
   }
-  FinalRefinement final_refinement(refinement, decision,
-                                   !options.approximate && kKindRules.may_lack_piece[cloud.kind()]);
-  std::vector<SymmetryPlane> planes = final_refinement.decide(std::move(candidates));
+  FinalRefinement final_refinement(refinement, decision, cloud.kind(), !options.approximate);
+  found.planes = final_refinement.decide(std::move(candidates));
   timed("full_refinement");
 
-  // Planes that follow from others: reflections of one symmetry in another, and those of a polygon.
-  GroupClosure closure(cloud);
-  while (!(candidates = refinement.closeSymmetries(closure.next(planes))).empty())
-    append(planes, final_refinement.decide(std::move(candidates)));
-  decision.doubtMissingPieces(planes);
-  PlanesAndPolygon completed = withPolygon(std::move(planes), cloud, all, decision, options);
-  planes = std::move(completed.planes);
-  timed("closure");
-
-  // Families: bodies of revolution, spheres, and what only rotations of a scan show.
-  if (!decision.isCutAllAround()) {
-    PlanesAndFamilies found = collectFamilies(std::move(planes), cloud, all, *fit, decision, options);
-    planes = std::move(found.planes);
-    detection.axes = std::move(found.axes);
-    detection.centers = std::move(found.centers);
+  const JudgedCloud judged{cloud, all, *fit, measure, decision, refinement, final_refinement, options};
+  for (const auto& rule : kRules) {
+    rule.apply(judged, found);
+    timed(rule.name);
   }
-  timed("families");
-  if (!decision.isCutAllAround())
-    planes = withScanAxes(std::move(planes), cloud, measure.tolerance(), options, detection);
-  const bool has_family = !detection.axes.empty() || !detection.centers.empty();
-  decision.doubtFurtherPlanes(planes, has_family);
-  decision.doubtSlantedPlanes(planes);
-  timed("rotations");
-
-  if (options.approximate) append(planes, localPlanes(planes, cloud, *fit, decision, options));
-  timed("parts");
 
   // The answer.
-  if (!has_family) detection.best = bestApproximate(planes, cloud, *fit);
+  if (!found.hasFamily()) detection.best = bestApproximate(found.planes, cloud, *fit);
   if (detection.best) detection.best->deviation = measure.deviation(cloud.toNormalized(*detection.best)) * cloud.scale;
-  detection.flat = flatPlane(cloud, measure.thinness());
+  detection.flat = flatPlane(cloud, measure.limits().thinness());
   detection.tolerance = measure.tolerance() * cloud.scale;
   const bool is_raised = options.absolute_tolerance == 0.0 && measure.tolerance() > options.tolerance * cloud.extent;
   detection.resolution = std::max(measure.resolution(), is_raised ? measure.tolerance() : 0.0) * cloud.scale;
   detection.diameter = cloud.extent * cloud.scale;
-  detection.planes = rankedPlanes(std::move(planes), completed.polygon, cloud, *fit, options);
+  detection.planes = rankedPlanes(std::move(found.planes), found.polygon, cloud, *fit, options);
+  detection.axes = std::move(found.axes);
+  detection.centers = std::move(found.centers);
+  detection.rotations = std::move(found.rotations);
+  detection.evidence = std::move(found.evidence);
   timed("report");
   return detection;
 }
@@ -289,7 +358,7 @@ void DetectionOptions::validate() const {
   check(most_tolerance > 0.0 && most_tolerance <= 0.1, "most_tolerance", most_tolerance, "in (0, 0.1]");
   check(absolute_tolerance >= 0.0, "absolute_tolerance", absolute_tolerance, ">= 0");
   check(min_confidence >= 0.0 && min_confidence <= 1.0, "min_confidence", min_confidence, "in [0, 1]");
-  check(min_possible >= 0.0 && min_possible <= 1.0, "min_possible", min_possible, "in [0, 1]");
+  check(min_possible >= 0.0 && min_possible <= min_confidence, "min_possible", min_possible, "in [0, min_confidence]");
   check(max_planes >= 1, "max_planes", max_planes, ">= 1");
   edtOptions().validate();
   checkNumThreads(num_threads);
@@ -317,8 +386,7 @@ Detection detectPlanes(const PlaneInput& input, const DetectionOptions& options)
   } else {
     detection = input.map ? detectFromMap(input, *input.edt, *input.map, options) : detectFromPoints(input, options);
   }
-  if (input.may_be_rings && input.visibility && detection.reason.empty())
-    decideByUprightBox(input.points, *input.visibility, options, detection);
+  if (input.may_be_rings && input.visibility && detection.reason.empty()) decideByUprightBox(input, options, detection);
   return detection;
 }
 

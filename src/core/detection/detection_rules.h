@@ -67,6 +67,7 @@ struct DetectionRules {
     double moved_tolerances = 2.0;  ///< tolerances by which a plane has to move an informative sample of a scan
     double noisy_thinness = 3.0;    ///< tolerances within which a volume of points is a sheet or a line
     double round_spacings = 2.0;    ///< spacings within which points of a line do not resolve its cross-section
+    double least_own_share = 0.1;   ///< of the points on the surface of the others; what divides shares is no less
     int look_samples = 2000;        ///< samples of a quick look
     std::array<double, 2> tolerances{1.0, 2.0};  ///< at which shares are measured, see PlaneEvidence
     double beside_outline = 0.1;  ///< share of its radius beside an outline at which the picture is looked up
@@ -74,17 +75,16 @@ struct DetectionRules {
 
   /// Deciding.
   struct {
-    double most_cut = 0.3;              ///< share of the outline that the picture may cut off; tables in frames: 0.36
-    double hopeful_share = 0.93;        ///< of a quick look; less is no possible symmetry
-    double look_errors = 2.0;           ///< standard errors that a quick look allows
-    double still_share = 0.5;           ///< share of the points that an uninformative plane leaves in place
-    double nothing_missing = 0.01;      ///< share of the surface; less is missing by chance
-    double piece_missing = 0.03;        ///< share of the surface; more is a piece
-    double odds_of_a_piece = 0.2;       ///< that a cloud lacks a piece although a plane explains all of it
-    double as_likely = 0.05;            ///< difference of the confidences that other samples of a cloud make
-    double least_informative = 0.1;     ///< least share of informative samples; below it confidence falls in proportion
-    double coarsest_tolerance = 0.03;   ///< share of the diameter; a sensor that resolves less decides at this
-    double coarsest_resolution = 0.09;  ///< three times that; a sensor that resolves less decides nothing
+    double most_cut = 0.3;           ///< share of the outline that the picture may cut off; tables in frames: 0.36
+    double hopeful_share = 0.93;     ///< of a quick look; less is no possible symmetry
+    double look_errors = 2.0;        ///< standard errors that a quick look allows
+    double still_share = 0.5;        ///< share of the points that an uninformative plane leaves in place
+    double nothing_missing = 0.01;   ///< share of the surface; less is missing by chance
+    double piece_missing = 0.03;     ///< share of the surface; more is a piece
+    double odds_of_a_piece = 0.2;    ///< that a cloud lacks a piece although a plane explains all of it
+    double as_likely = 0.05;         ///< difference of the confidences that other samples of a cloud make
+    double least_informative = 0.1;  ///< least share of informative samples; below it confidence falls in proportion
+    double coarsest = 3.0;           ///< greatest tolerances; a sensor that resolves less decides nothing
     double upright = 5.0 * kPi / 180.0;  ///< from upright or level within which a plane does not slant
     double touching = 0.05;              ///< diameters beyond the nearest support within which others carry, too
     double slanted_odds = 0.1;           ///< of a plane that slants over one that does not
@@ -97,16 +97,17 @@ struct DetectionRules {
 
   /// Polygons and families.
   struct {
-    double contained_offset = 0.03, contained_angle = 0.0524;  ///< by which a plane may miss a line that it contains
-    int most_fold = 60;                                        ///< as rotations of objects
-    std::size_t least_planes = 4;                              ///< of a lattice; three fit too many by chance
-    std::size_t most_pairs = 6;                                ///< planes whose common lines are tried for a lattice
-    double least_pair_angle = 0.1;                             ///< between two planes; less moves their line too far
-    double most_folded = 0.2;      ///< share of the angle between planes of a lattice by which one may be off
-    double most_off_angle = 0.05;  ///< the same in radians
-    double most_chance = 1e-3;     ///< probability of a lattice by chance
-    std::size_t most_planes = 8;   ///< planes whose common lines are tried for an axis
-    double least_angle = 0.17;     ///< between two of them
+    double contained_offset = 0.03,
+           contained_angle = 3.0 * kDegree;  ///< by which a plane may miss a line that it contains
+    int most_fold = 60;                      ///< as rotations of objects
+    std::size_t least_planes = 4;            ///< of a lattice; three fit too many by chance
+    std::size_t most_pairs = 6;              ///< planes whose common lines are tried for a lattice
+    double least_pair_angle = 0.1;           ///< between two planes; less moves their line too far
+    double most_folded = 0.2;                ///< share of the angle between planes of a lattice by which one may be off
+    double most_off_angle = 0.05;            ///< the same in radians
+    double most_chance = 1e-3;               ///< probability of a lattice by chance
+    std::size_t most_planes = 8;             ///< planes whose common lines are tried for an axis
+    double least_angle = 0.17;               ///< between two of them
     int screening_planes = 3, fitted_planes = 6,
         tested_planes = 8;       ///< planes of a family that screen it, fit its line, test it
     double rough_factor = 2.0;   ///< allowances in the screening

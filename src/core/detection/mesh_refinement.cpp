@@ -28,13 +28,14 @@ void refine(const MeshSurface& mesh, SymmetryPlane& plane, double tolerance, con
   plane.share_high = std::min(1.0, shares.share + 2.0 * error);
   plane.deviation = shares.deviation;
   plane.residual = shares.residual;
-  decideBy(confidenceOf(shares.share, mesh.numSamples()), options, plane);
+  // The mesh shows all of the surface: its share stands in place of the evidence of points and of what that left open.
+  setConfidence(plane, confidenceOf(shares.share, mesh.numSamples()),
+                "the share of the mesh that the plane maps onto it", options);
 }
 
 }  // namespace
 
 void refineOnMesh(const MeshSurface& mesh, Detection& found, const DetectionOptions& options) {
-  constexpr double kSameAsFlat = 0.02;      // radians; a reflection across the plane of a flat shape is uninformative
   constexpr double kNearlySymmetric = 0.9;  // share of the best plane that may be a symmetry of the mesh itself
   const auto inBall = [&](const ReflectionPlane& plane) {
     return normalized(plane, mesh.ball().center, mesh.ball().radius);
@@ -43,7 +44,7 @@ void refineOnMesh(const MeshSurface& mesh, Detection& found, const DetectionOpti
   std::optional<SymmetryPlane> dropped;
   for (SymmetryPlane& plane : found.planes) {
     if (isDecided(plane)) {
-      if (!(found.flat && plane.angleTo(*found.flat) < kSameAsFlat)) refine(mesh, plane, found.tolerance, options);
+      refine(mesh, plane, found.tolerance, options);
       if (kSamePlane.anySame(kept, inBall(plane), inBall)) continue;
       if (plane.kind == PlaneKind::Approximate && !options.approximate) {
         if (!dropped || plane.share > dropped->share) dropped = std::move(plane);

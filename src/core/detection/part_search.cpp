@@ -374,7 +374,7 @@ std::vector<SymmetryPlane> localPlanes(const std::vector<SymmetryPlane>& known, 
     if (kSameMaximum.anySame(decided, parts[i].plane, normalized)) return;
     MeasuredPlane judged = decision.judge(parts[i].plane, all);
     if (judged.plane.kind == PlaneKind::Symmetry) return;  // of a family, which is known as its axis or center
-    judged.plane.kind = PlaneKind::Local;
+    setLocal(judged.plane);
     judged.plane.iterations = parts[i].iterations;
     of_parts[i] = std::move(judged.plane);
   });

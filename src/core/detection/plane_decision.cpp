@@ -3,9 +3,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "core/base/logistic.h"
 #include "core/base/parallel.h"
-#include "core/detection/standing_object.h"
 #include "core/geometry/point_samples.h"
 
 namespace pcl_symmetry {
@@ -22,55 +20,18 @@ bool isBetter(const SymmetryPlane& a, const SymmetryPlane& b) {
   return isDecided(a) ? a.confidence > b.confidence : a.support > b.support;
 }
 
-/// Among the planes that are as likely as the likeliest, D decides.
-/// \return null where there is none.
-const SymmetryPlane* bestOf(const std::vector<SymmetryPlane>& planes) {
-  double most = 0.0;
-  for (const SymmetryPlane& plane : planes) most = std::max(most, plane.confidence);
-  const auto best = std::max_element(planes.begin(), planes.end(), [&](const SymmetryPlane& a, const SymmetryPlane& b) {
-    const bool a_likely = a.confidence >= most - kDetection.decide.as_likely,
-               b_likely = b.confidence >= most - kDetection.decide.as_likely;
-    return a_likely != b_likely ? b_likely : a.score < b.score;
-  });
-  return best == planes.end() ? nullptr : &*best;
-}
-
 }  // namespace
 
-void decideBy(double confidence, const DetectionOptions& options, SymmetryPlane& plane) {
-  plane.confidence = confidence;
-  plane.kind = confidence >= options.min_confidence ? PlaneKind::Symmetry
-               : confidence >= options.min_possible ? PlaneKind::Possible
-                                                    : PlaneKind::Approximate;
-}
-
-MeasuredPlane PlaneDecision::decided(MeasuredPlane measured) const {
-  decideBy(
-      planeConfidence(measured.evidence) * std::min(1.0, measured.informative / kDetection.decide.least_informative),
-      measured.plane);
+MeasuredPlane PlaneDecision::decided(MeasuredPlane measured, const ReflectionPlane& plane) const {
+  SymmetryPlane& result = measured.plane;
+  for (const char* rule : measure_.limits().of(plane, cloud_.points)) limitToPossible(result, rule);
+  setConfidence(result, planeConfidence(measured.evidence), "the points that the plane maps onto the surface",
+                options_);
+  const double informative = std::min(1.0, measured.informative / kDetection.decide.least_informative);
+  if (informative < 1.0)
+    changeConfidence(result, result.confidence * informative, "few points move and land where the scanner saw",
+                     options_);
   return measured;
-}
-
-void PlaneDecision::decideBy(double confidence, SymmetryPlane& plane) const {
-  pcl_symmetry::decideBy(confidence, options_, plane);
-  if (plane.kind == PlaneKind::Symmetry && (!isResolved() || isCutAllAround() || movesNothing(plane)))
-    plane.kind = PlaneKind::Possible;
-}
-
-bool PlaneDecision::movesNothing(const ReflectionPlane& plane) const {
-  if (measure_.thinness() == Thinness::Solid) return false;
-  return isLine() || measure_.movedShare(cloud_.toNormalized(plane)) < 1.0 - kDetection.decide.still_share;
-}
-
-bool PlaneDecision::isResolved() const {
-  return measure_.tolerance() >= measure_.resolution() ||
-         (measure_.tolerance() >= kDetection.decide.coarsest_tolerance * cloud_.extent &&
-          measure_.resolution() <= kDetection.decide.coarsest_resolution * cloud_.extent);
-}
-
-bool PlaneDecision::explainsAll(const SymmetryPlane& plane) const {
-  return kKindRules.may_lack_piece[cloud_.kind()] && plane.kind == PlaneKind::Symmetry &&
-         1.0 - plane.seen <= kDetection.decide.nothing_missing;
 }
 
 bool PlaneDecision::isHopeless(const Candidate& candidate) const {
@@ -79,38 +40,16 @@ bool PlaneDecision::isHopeless(const Candidate& candidate) const {
   return quick.share + kDetection.decide.look_errors * quick.error < kDetection.decide.hopeful_share;
 }
 
-void PlaneDecision::doubtMissingPieces(std::vector<SymmetryPlane>& planes) const {
-  if (std::none_of(planes.begin(), planes.end(), [&](const SymmetryPlane& plane) { return explainsAll(plane); }))
-    return;
-  for (SymmetryPlane& plane : planes)
-    if (1.0 - plane.seen > kDetection.decide.piece_missing)
-      decideBy(withOdds(plane.confidence, kDetection.decide.odds_of_a_piece), plane);
-}
-
-void PlaneDecision::doubtFurtherPlanes(std::vector<SymmetryPlane>& planes, bool has_family) const {
-  const SymmetryPlane* const best = has_family ? nullptr : bestOf(planes);
-  for (SymmetryPlane& plane : planes)
-    if (&plane != best) decideBy(furtherConfidence(plane.confidence, cloud_.kind(), 1.0 - plane.seen), plane);
-}
-
-void PlaneDecision::doubtSlantedPlanes(std::vector<SymmetryPlane>& planes) const {
-  if (!cloud_.seen()) return;
-  const std::vector<Eigen::Vector3d> carrying_normals = carryingNormals(cloud_.points, *cloud_.seen());
-  for (SymmetryPlane& plane : planes)
-    if (isDecided(plane) && slants(plane, carrying_normals))
-      decideBy(withOdds(plane.confidence, kDetection.decide.slanted_odds), plane);
-}
-
 std::vector<MeasuredPlane> PlaneDecision::judge(const std::vector<Candidate>& candidates) const {
   const std::vector<int> samples = measure_.samples();
   std::vector<MeasuredPlane> judged(candidates.size());
   parallelBlocks(candidates.size(), options_.num_threads,
-                 [&](std::size_t i) { judged[i] = decided(measure_.of(candidates[i], samples)); });
+                 [&](std::size_t i) { judged[i] = decided(measure_.of(candidates[i], samples), candidates[i].plane); });
   return judged;
 }
 
 MeasuredPlane PlaneDecision::judge(const ReflectionPlane& plane, const std::vector<int>& samples) const {
-  return decided(measure_.of(plane, samples));
+  return decided(measure_.of(plane, samples), plane);
 }
 
 JudgedFamily PlaneDecision::judgeFamily(const std::vector<ReflectionPlane>& planes,

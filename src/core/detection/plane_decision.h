@@ -5,17 +5,10 @@
 
 #include "core/detection/plane_lattice.h"
 #include "core/detection/plane_measure.h"
+#include "core/detection/set_confidence.h"
 #include "core/rotation/rotation_evidence.h"
 
 namespace pcl_symmetry {
-
-/// Gives a plane a confidence, and the kind that follows from it.
-void decideBy(double confidence, const DetectionOptions& options, SymmetryPlane& plane);
-
-/// True of symmetries and possible ones.
-inline bool isDecided(const SymmetryPlane& plane) {
-  return plane.kind == PlaneKind::Symmetry || plane.kind == PlaneKind::Possible;
-}
 
 /// The evidence behind the decisions of one detection, to which confidences are fitted.
 struct DetectionEvidence {
@@ -32,8 +25,7 @@ struct JudgedFamily {
 };
 
 /// From measured planes to answers: decides what is a symmetry, what is possible, and what comes first
-/// (core/evidence/README.md). All planes but those of parts get confidence and kind by decideBy(), also those of
-/// polygons, upright boxes, meshes and volumes, which bring evidence of their own.
+/// (core/evidence/README.md).
 class PlaneDecision {
 public:
   /// \param cloud,measure,options must outlive this object.
@@ -53,48 +45,19 @@ public:
   /// \param samples indices of the points that judge them.
   JudgedFamily judgeFamily(const std::vector<ReflectionPlane>& planes, const std::vector<int>& samples) const;
 
-  /// Gives a plane another confidence, and the kind that follows from it and from what the cloud resolves.
-  /// \param plane input frame.
-  void decideBy(double confidence, SymmetryPlane& plane) const;
-
-  // Planes are judged one by one; these lower their confidences by what was found beside them. Planes are in the input
-  // frame.
-
-  /// Where a plane explains all of a cloud, nothing of it is missing: those that need a missing piece are doubted, such
-  /// as the plane across an open cup, which needs a lid.
-  /// \param planes of the whole, also those that follow from others.
-  void doubtMissingPieces(std::vector<SymmetryPlane>& planes) const;
-
-  /// A scan or a cut hides a part of an object, and many planes are tried: those beside the best one, or beside a
-  /// family, are symmetries less often.
-  /// \param has_family an axis or a center was found, which is better than all planes.
-  void doubtFurtherPlanes(std::vector<SymmetryPlane>& planes, bool has_family) const;
-
-  /// An object on a table was made to stand there, or lies on one of its sides: nearly all of its planes are upright or
-  /// level. Without a known support, no plane is slanted.
-  void doubtSlantedPlanes(std::vector<SymmetryPlane>& planes) const;
-
-  /// Whether the border of the picture cuts the cloud off all around: a piece of the surroundings, such as a table top,
-  /// not an object.
-  bool isCutAllAround() const { return measure_.cutShare() > kDetection.decide.most_cut; }
-
-  /// Whether a plane explains all of a whole cloud, so that nothing of it is missing.
-  bool explainsAll(const SymmetryPlane& plane) const;
+  /// CloudLimits::isCutAllAround().
+  bool isCutAllAround() const { return measure_.limits().isCutAllAround(); }
 
   /// Whether too many points are off for a possible symmetry where nothing is missing.
   bool isHopeless(const Candidate& candidate) const;
 
   /// Whether all points lie within the tolerance of one line.
-  bool isLine() const { return measure_.thinness() == Thinness::Line; }
+  bool isLine() const { return measure_.limits().thinness() == Thinness::Line; }
 
 private:
-  /// Gives a plane the confidence that its evidence has.
-  MeasuredPlane decided(MeasuredPlane measured) const;
-  /// Whether the sensor resolves the tolerance, or no tolerance that counts.
-  bool isResolved() const;
-  /// A plane that moves nothing is uninformative: a sheet is mapped onto itself by its own plane, whatever it is a part
-  /// of.
-  bool movesNothing(const ReflectionPlane& plane) const;
+  /// Gives a plane the confidence that its evidence has, and the limits of the cloud.
+  /// \param plane normalized frame.
+  MeasuredPlane decided(MeasuredPlane measured, const ReflectionPlane& plane) const;
 
   const NormalizedCloud& cloud_;
   const PlaneMeasure& measure_;

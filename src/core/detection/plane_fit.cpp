@@ -20,11 +20,13 @@ public:
   SurfaceFit(const NormalizedCloud& cloud, const DetectionOptions& options) : PlaneFit(cloud, options) {}
 
   void refine(std::vector<Candidate>& candidates, const RefinementStage& stage) const override {
-    const std::vector<int> samples = drawn(stage.num_samples), fewer = drawn(stage.num_rough_samples);
+    const auto samples = std::make_shared<const std::vector<int>>(drawn(stage.num_samples)),
+               fewer = std::make_shared<const std::vector<int>>(drawn(stage.num_rough_samples));
     parallelBlocks(candidates.size(), options_.num_threads, [&](std::size_t i) {
       Candidate& candidate = candidates[i];
       const bool settles = candidate.iterations == 0 || candidate.merit >= stage.least_merit;
-      const std::vector<int>& used = settles ? samples : fewer;
+      candidate.samples = settles ? samples : fewer;
+      const std::vector<int>& used = *candidate.samples;
       const ReflectionPlane start = candidate.plane;
       candidate.last = refineSymmetricPoints(cloud_.surface, used, start, settles ? stage.isp : stage.rough_isp);
       candidate.plane = candidate.last.plane;
@@ -34,18 +36,22 @@ public:
       undoSlide(candidate, start, used, stage.isp.final_sigma);
       if (stage.climbs && cloud_.roughness > kDetection.fit.noisy_depth &&
           candidate.merit >= kDetection.fit.climbing_merit)
-        climbOne(candidate, used, fewer);
+        climbOne(candidate, used, *fewer);
     });
   }
 
-  void climb(std::vector<Candidate>& candidates, const RefinementStage& stage) const override {
-    const std::vector<int> samples = drawn(stage.num_samples),
-                           fewer = drawn(std::min(stage.num_rough_samples, kDetection.fit.climb_samples));
+  std::vector<char> climb(std::vector<Candidate>& candidates, const RefinementStage& stage) const override {
+    std::vector<char> has_moved(candidates.size(), false);
+    const auto samples = std::make_shared<const std::vector<int>>(drawn(stage.num_samples));
+    const std::vector<int> fewer = drawn(std::min(stage.num_rough_samples, kDetection.fit.climb_samples));
     parallelBlocks(candidates.size(), options_.num_threads, [&](std::size_t i) {
       Candidate& candidate = candidates[i];
       const bool is_at_rest = candidate.merit >= kDetection.stages.symmetric_merit;  // nothing pulls at it
-      if (candidate.merit >= kDetection.fit.climbing_merit && !is_at_rest) climbOne(candidate, samples, fewer);
+      if (candidate.merit < kDetection.fit.climbing_merit || is_at_rest) return;
+      has_moved[i] = climbOne(candidate, *samples, fewer);
+      if (has_moved[i]) candidate.samples = samples;
     });
+    return has_moved;
   }
 
   ReflectionPlane refined(const ReflectionPlane& plane, const std::vector<int>& samples,
@@ -103,7 +109,8 @@ private:
   /// that explains most of what is there, and climbs from there on the merit itself, along its three parameters.
   /// \param samples that the final merit is taken of.
   /// \param fewer samples by which the plane climbs.
-  void climbOne(Candidate& candidate, const std::vector<int>& samples, const std::vector<int>& fewer) const {
+  /// \return whether the plane moved.
+  bool climbOne(Candidate& candidate, const std::vector<int>& samples, const std::vector<int>& fewer) const {
     const auto moved = [](const ReflectionPlane& plane, int parameter, double by) {
       const Eigen::Vector3d n = plane.normal(), u = n.unitOrthogonal();
       if (parameter == 2) return ReflectionPlane(n, plane.offset() + by);
@@ -127,13 +134,14 @@ private:
         fails = 0;
       }
     }
-    if (num_climbs == 0) return;
+    if (num_climbs == 0) return false;
     IspStep step = matches(plane, samples);
     const double value = merit(shares(plane, samples, step));
-    if (value <= candidate.merit + kDetection.fit.least_gain) return;
+    if (value <= candidate.merit + kDetection.fit.least_gain) return false;
     candidate.plane = plane;
     candidate.merit = value;
     candidate.last.last = std::move(step);
+    return true;
   }
 };
 
@@ -159,7 +167,10 @@ public:
     });
   }
 
-  void climb(std::vector<Candidate>&, const RefinementStage&) const override {}  ///< the density pulls at no plane
+  /// The density pulls at no plane.
+  std::vector<char> climb(std::vector<Candidate>& candidates, const RefinementStage&) const override {
+    return std::vector<char>(candidates.size(), false);
+  }
 
   ReflectionPlane refined(const ReflectionPlane& plane, const std::vector<int>& samples,
                           int max_iterations) const override {

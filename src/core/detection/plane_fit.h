@@ -23,7 +23,8 @@ struct Candidate {
   bool from_map = false;  ///< a maximum of the map, whose cell it must not leave
   int iterations = 0;     ///< of all stages
   IspResult last = {};    ///< of the last stage; where points resolve no surface, only whether it converged
-  double merit = 0.0;     ///< PlaneFit::merit() after the last stage
+  std::shared_ptr<const std::vector<int>> samples = {};  ///< indices of the points that `last` reflected
+  double merit = 0.0;                                    ///< PlaneFit::merit() after the last stage
 };
 
 /// One stage of refinement: how many samples are reflected, how wide the weights are, how often.
@@ -51,7 +52,8 @@ public:
 
   /// Moves each candidate that stopped near its optimum there, and updates its merit; takes as long as all stages.
   /// \param stage the last one.
-  virtual void climb(std::vector<Candidate>& candidates, const RefinementStage& stage) const = 0;
+  /// \return for each candidate whether it moved.
+  virtual std::vector<char> climb(std::vector<Candidate>& candidates, const RefinementStage& stage) const = 0;
 
   /// The best plane nearby, at the narrowest weights.
   /// \param samples indices of points.

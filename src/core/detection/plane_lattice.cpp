@@ -276,7 +276,8 @@ PlanesAndPolygon withPolygon(std::vector<SymmetryPlane> planes, const Normalized
                      [&](const SymmetryPlane& plane) { return contains(cloud.toNormalized(plane), lattice->line); }),
       planes.end());
   for (MeasuredPlane& one : judged) {
-    decision.decideBy(std::max(one.plane.confidence, together), one.plane);
+    if (together > one.plane.confidence)
+      changeConfidence(one.plane, together, "the planes of a regular polygon together", options);
     planes.push_back(std::move(one.plane));
   }
   return {std::move(planes), lattice};

@@ -20,7 +20,8 @@ namespace {
 std::array<double, 2> sharesWithin(const std::vector<float>& distances, double tolerance) {
   std::array<double, 2> shares{};
   for (std::size_t k = 0; k < shares.size(); ++k)
-    shares[k] = std::max(0.1, shareWithin(distances, kDetection.measure.tolerances[k] * tolerance));
+    shares[k] = std::max(kDetection.measure.least_own_share,
+                         shareWithin(distances, kDetection.measure.tolerances[k] * tolerance));
   return shares;
 }
 
@@ -43,11 +44,8 @@ PlaneMeasure::PlaneMeasure(const NormalizedCloud& cloud, const PlaneFit& fit, co
                      : std::max(options.tolerance * cloud.extent,
                                 std::min(std::max(resolution_, sampledTolerance(cloud, options.tolerance)),
                                          options.most_tolerance * cloud.extent))),
-      cut_share_(resolution_ > 0.0
-                     ? pcl_symmetry::cutShare(cloud.points, *cloud.seen(), kDetection.measure.beside_outline)
-                     : 0.0),
-      thinness_(thinnessOf(cloud.points, cloud.principal_axes, kKindRules.thin_tolerances[cloud.kind()] * tolerance_,
-                           lineTolerance())),
+      limits_(cloud.points, cloud.principal_axes, cloud.kind(), cloud.seen(),
+              {tolerance_, resolution_, cloud.spacing, cloud.extent}),
       halves_(kKindRules.by_halves[cloud.kind()]
                   ? std::make_optional<SplitSurface>(cloud.points, options.seed, options.num_threads)
                   : std::nullopt),
@@ -56,13 +54,6 @@ PlaneMeasure::PlaneMeasure(const NormalizedCloud& cloud, const PlaneFit& fit, co
       own_score_(halves_ ? halves_->ownScore(cloud.edt.numCells(), cloud.sigma, {Eigen::Vector3d::Zero(), 1.0},
                                              options.num_threads)
                          : 1.0) {}
-
-double PlaneMeasure::lineTolerance() const {
-  const double noisy = kDetection.measure.noisy_thinness * tolerance_;
-  return cloud_.kind() == CloudKind::Volume
-             ? noisy
-             : std::clamp(kDetection.measure.round_spacings * cloud_.spacing, tolerance_, noisy);
-}
 
 std::vector<int> PlaneMeasure::samples() const {
   const Eigen::Index num_points = cloud_.points.cols();
@@ -73,7 +64,7 @@ std::vector<int> PlaneMeasure::samples() const {
 
 MeasuredPlane PlaneMeasure::of(const Candidate& candidate, const std::vector<int>& samples) const {
   // The last stage may have matched these very samples.
-  const bool has_matches = candidate.last.last.closest.size() == samples.size();
+  const bool has_matches = candidate.samples && *candidate.samples == samples;
   const IspStep step = has_matches ? candidate.last.last : fit_.matches(candidate.plane, samples);
   MeasuredPlane result = measured(candidate.plane, samples, step, 0.0);
   result.plane.iterations = candidate.iterations;
@@ -96,7 +87,7 @@ PlaneEvidence PlaneMeasure::evidenceOf(double support, double conflict, double s
   evidence.kind = cloud_.kind();
   evidence.tolerance = tolerance_;
   evidence.own_score = own_score_;
-  evidence.flat = thinness_ == Thinness::Sheet;
+  evidence.flat = limits_.thinness() == Thinness::Sheet;
   if (options_.absolute_tolerance == 0.0)
     evidence.coarser = std::max(0.0, tolerance_ / std::max(resolution_, options_.tolerance * cloud_.extent) - 1.0);
   return evidence;
@@ -235,14 +226,6 @@ PlaneMeasure::QuickShare PlaneMeasure::quickShare(const Candidate& candidate) co
   const Reflected some = reflected(candidate.plane, samples, fit_.matches(candidate.plane, samples));
   const double share = std::min(1.0, shareWithin(some.distances, tolerance_) / own_shares_[0]);
   return {share, std::sqrt(share * (1.0 - share) / static_cast<double>(samples.size()))};
-}
-
-double PlaneMeasure::movedShare(const ReflectionPlane& plane) const {
-  const double still = kKindRules.thin_tolerances[cloud_.kind()] * tolerance_;
-  Eigen::Index num_moved = 0;
-  for (Eigen::Index i = 0; i < cloud_.points.cols(); ++i)
-    num_moved += 2.0 * std::abs(plane.signedDistance(cloud_.points.col(i).cast<double>())) > still ? 1 : 0;
-  return static_cast<double>(num_moved) / static_cast<double>(cloud_.points.cols());
 }
 
 const SurfaceEnds& PlaneMeasure::ends() const {

@@ -5,10 +5,10 @@
 #include <optional>
 #include <vector>
 
+#include "core/detection/cloud_limits.h"
 #include "core/detection/plane_fit.h"
 #include "core/evidence/missing_surface.h"
 #include "core/evidence/surface_samples.h"
-#include "core/geometry/principal_axes.h"
 #include "pcl_symmetry/core/detect_planes.h"
 
 namespace pcl_symmetry {
@@ -32,11 +32,8 @@ public:
   /// The least tolerance that the sensor resolves, normalized frame; 0 where its errors are not known.
   double resolution() const { return resolution_; }
 
-  /// Share of the outline of an organized scan at which the picture cut it off; 0 of other clouds.
-  double cutShare() const { return cut_share_; }
-
-  /// What is left of the cloud at the tolerance.
-  Thinness thinness() const { return thinness_; }
+  /// What the cloud cannot decide.
+  const CloudLimits& limits() const { return limits_; }
 
   /// \return indices of the points that planes are judged by.
   std::vector<int> samples() const;
@@ -64,17 +61,12 @@ public:
   /// SymmetryPlane::deviation of a plane that maps many points far from the surface, normalized frame.
   double deviation(const ReflectionPlane& plane) const;
 
-  /// Share of the points that a plane moves by more than what is left of a thin cloud at the tolerance.
-  double movedShare(const ReflectionPlane& plane) const;
-
 private:
   /// The reflections of some samples, and how far they are off the surface.
   struct Reflected {
     Points points;
     std::vector<float> distances;
   };
-  /// How near to a line points are one: where there are few, noise of the line is wider than what they resolve.
-  double lineTolerance() const;
   double deviationOf(std::vector<float> distances) const;
   Reflected reflected(const ReflectionPlane& plane, const std::vector<int>& samples, const IspStep& step) const;
   /// For each sample without a match, whether nothing is known of its counterpart, in [0, 1].
@@ -88,8 +80,8 @@ private:
   const NormalizedCloud& cloud_;
   const PlaneFit& fit_;
   const DetectionOptions& options_;
-  double resolution_, tolerance_, cut_share_;
-  Thinness thinness_;
+  double resolution_, tolerance_;
+  CloudLimits limits_;
   std::optional<SplitSurface> halves_;  ///< of points that resolve no surface
   /// Within one and two tolerances, of the points themselves and the surface of the others.
   std::array<double, 2> own_shares_;

@@ -60,13 +60,9 @@ std::vector<Candidate> StagedRefinement::full(std::vector<Candidate> candidates)
   return refined(std::move(candidates), fullStage());
 }
 
-std::vector<bool> StagedRefinement::climb(std::vector<Candidate>& candidates) const {
-  std::vector<bool> moved(candidates.size(), false);
-  if (!kKindRules.climbs[cloud_.kind()]) return moved;
-  const std::vector<Candidate> before = candidates;
-  fit_.climb(candidates, fullStage());
-  for (std::size_t i = 0; i < candidates.size(); ++i) moved[i] = candidates[i].merit != before[i].merit;
-  return moved;
+std::vector<char> StagedRefinement::climb(std::vector<Candidate>& candidates) const {
+  if (!kKindRules.climbs[cloud_.kind()]) return std::vector<char>(candidates.size(), false);
+  return fit_.climb(candidates, fullStage());
 }
 
 RefinementStage StagedRefinement::fullStage() const {
@@ -86,8 +82,9 @@ RefinementStage StagedRefinement::closeStage() const {
 RefinementStage StagedRefinement::stage(int num_samples, double sigma, double final_sigma, int max_iterations) const {
   const CloudKind kind = cloud_.kind();
   RefinementStage stage;
-  stage.num_samples = num_samples;
-  stage.num_rough_samples = std::min(num_samples, options_.expert.num_refine_samples / kKindRules.rough_share[kind]);
+  stage.num_samples = std::max(1, num_samples);
+  stage.num_rough_samples =
+      std::clamp(options_.expert.num_refine_samples / kKindRules.rough_share[kind], 1, stage.num_samples);
   stage.least_merit = kKindRules.settled_merit[kind];
   stage.undo_slides = kKindRules.slides[kind] && final_sigma == sigma;
   // On the way to narrow weights, point-to-plane steps would slide a scan along its flat pieces.

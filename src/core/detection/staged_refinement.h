@@ -39,7 +39,7 @@ public:
   /// Moves planes of a whole cloud to their optimum where pairs without a true partner pull them aside.
   /// \param candidates after full(), those that may be symmetries.
   /// \return for each whether it moved; of a scan none: those of noisy ones have climbed in full().
-  std::vector<bool> climb(std::vector<Candidate>& candidates) const;
+  std::vector<char> climb(std::vector<Candidate>& candidates) const;
 
   /// The best candidate of each group of like planes, best first: all that may be symmetries, and others until there
   /// are \p most.

@@ -7,6 +7,7 @@
 
 #include "core/base/constants.h"
 #include "core/base/median.h"
+#include "core/detection/cloud_limits.h"
 #include "core/detection/detection_rules.h"
 #include "core/detection/plane_decision.h"
 #include "core/geometry/surface_normals.h"
@@ -43,20 +44,21 @@ bool slants(const ReflectionPlane& plane, const std::vector<Eigen::Vector3d>& ca
   return !carrying_normals.empty() && std::none_of(carrying_normals.begin(), carrying_normals.end(), is_along);
 }
 
-void decideByUprightBox(const PointsRef& points, const Visibility& seen, const DetectionOptions& options,
-                        Detection& found) {
+void decideByUprightBox(const PlaneInput& input, const DetectionOptions& options, Detection& found) {
+  const PointsRef points = input.points;
+  const Visibility& seen = *input.visibility;
   const std::vector<Eigen::Vector3d> up = carryingNormals(points, seen);
-  const float spacing =
-      median(localGeometry(points, *makeFlannSearch(points), kNumSupportNeighbors, options.num_threads).spacing);
+  if (up.empty()) return;
+  const ClosestPointSearch::Ptr search = input.make_search ? input.make_search(points) : makeFlannSearch(points);
+  const double spacing = median(localGeometry(points, *search, kNumSupportNeighbors, options.num_threads).spacing);
   const bool is_sparse = spacing > kDetection.decide.no_surface * found.tolerance;
   const bool is_decided = !found.axes.empty() || !found.centers.empty() ||
                           (!found.planes.empty() && found.planes.front().kind == PlaneKind::Symmetry);
-  if (up.empty() || (is_decided && !is_sparse)) return;
+  if (is_decided && !is_sparse) return;
   const std::optional<MiddlePlane> middle = middlePlaneOfBox(points, up.front(), seen.viewpoint());
   std::optional<SymmetryPlane> plane;
   if (middle) {
     plane.emplace(middle->plane);
-    plane->confidence = middle->confidence;
     plane->share = middle->num_met / (middle->num_met + middle->num_free);
     plane->share_low = middle->num_met / middle->num_moved;
     plane->share_high = 1.0 - middle->num_free / middle->num_moved;
@@ -65,6 +67,10 @@ void decideByUprightBox(const PointsRef& points, const Visibility& seen, const D
     plane->residual = middle->residual;
     plane->converged = true;
     plane->point_support = middle->point_support;
+    const CloudLimits limits(points, principalAxes(points), CloudKind::Scan, &seen,
+                             {found.tolerance, found.resolution, spacing, found.diameter});
+    for (const char* rule : limits.of(*plane, points)) limitToPossible(*plane, rule);
+    setConfidence(*plane, middle->confidence, "the sides of the upright box around the points", options);
   }
   if (is_sparse) {
     found.planes.clear();
@@ -74,8 +80,16 @@ void decideByUprightBox(const PointsRef& points, const Visibility& seen, const D
     found.best = plane;
   }
   if (!plane || plane->confidence < (is_sparse ? options.min_possible : options.min_confidence)) return;
-  decideBy(plane->confidence, options, *plane);
+  // Found before, it was no more than possible.
+  const BoundingBall ball = boundingBall(points);
+  const auto in_ball = [&](const ReflectionPlane& other) { return normalized(other, ball.center, ball.radius); };
+  found.planes.erase(
+      std::remove_if(found.planes.begin(), found.planes.end(),
+                     [&](const SymmetryPlane& other) { return kSamePlane.same(in_ball(other), in_ball(*plane)); }),
+      found.planes.end());
   found.planes.insert(found.planes.begin(), std::move(*plane));
+  found.planes = reordered(std::move(found.planes), options);
+  if (static_cast<int>(found.planes.size()) > options.max_planes) found.planes.resize(options.max_planes);
   found.best.reset();
 }
 

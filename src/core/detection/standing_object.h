@@ -18,7 +18,7 @@ bool slants(const ReflectionPlane& plane, const std::vector<Eigen::Vector3d>& ca
 
 /// Where points that stand on a ground are too far apart for a surface, as those of a LiDAR's rings, or where nothing
 /// was decided: the middle plane of their upright box decides in place of what was found.
-void decideByUprightBox(const PointsRef& points, const Visibility& seen, const DetectionOptions& options,
-                        Detection& found);
+/// \param input with a visibility.
+void decideByUprightBox(const PlaneInput& input, const DetectionOptions& options, Detection& found);
 
 }  // namespace pcl_symmetry

@@ -3,15 +3,17 @@
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
-#include <stdexcept>
-#include <string>
+#include <limits>
 
 #include "core/base/parallel.h"
 #include "core/base/stopwatch.h"
 #include "core/detection/plane_decision.h"
+#include "core/detection/plane_tolerance.h"
+#include "core/detection/set_confidence.h"
 #include "core/evidence/plane_motion.h"
 #include "core/geometry/directions.h"
 #include "core/geometry/principal_axes.h"
+#include "core/refinement/normalized_cloud.h"
 #include "pcl_symmetry/core/planar_transform.h"
 
 namespace pcl_symmetry {
@@ -318,8 +320,10 @@ Detection detectVolumePlanes(const ScalarGrid& input, const DetectionOptions& op
     found.timing_ms.emplace_back("maxima", watch.lap());
 
     const double chance = chanceLevel(few, center, stride, maxima, options.num_threads);
-    if (chance > kRules.most_chance)
-      throw std::invalid_argument("volume: the body is round, planes in all directions map it onto itself");
+    if (chance > kRules.most_chance) {
+      found.reason = "volume: the body is round, planes in all directions map it onto itself";
+      return found;
+    }
     const auto confidence = [&](const SymmetryPlane& plane, double level) {
       const double beyond_chance = std::clamp((plane.support - level) / (1.0 - level), 0.0, 1.0);
       return beyond_chance * beyond_chance;
@@ -350,14 +354,20 @@ Detection detectVolumePlanes(const ScalarGrid& input, const DetectionOptions& op
       const double least_left = 1.0 - planes.front().support + kRules.least_residual,
                    left = 1.0 - plane.support + kRules.least_residual,
                    shown = (plane.seen - kRules.nothing_seen) / (kRules.enough_seen - kRules.nothing_seen);
-      decideBy(confidence(plane, level) * std::pow(std::min(1.0, least_left / left), 2) * std::clamp(shown, 0.0, 1.0),
-               options, plane);
+      setConfidence(plane,
+                    confidence(plane, level) * std::pow(std::min(1.0, least_left / left), 2) * std::clamp(shown, 0.0, 1.0),
+                    "the correlation beyond that of planes in any direction", options);
     }
     if (std::none_of(planes.begin(), planes.end(), isDecided) && !planes.empty()) found.best = planes.front();
     found.planes = reordered(std::move(planes), options);
+    // A volume has no surface to be mapped.
+    const auto withoutShare = [](SymmetryPlane& plane) {
+      plane.share = plane.share_low = plane.share_high = std::numeric_limits<double>::quiet_NaN();
+    };
+    std::for_each(found.planes.begin(), found.planes.end(), withoutShare);
+    if (found.best) withoutShare(*found.best);
     found.timing_ms.emplace_back("refinement", watch.lap());
-  } catch (const std::invalid_argument& error) {
-    if (std::string(error.what()).rfind("volume: ", 0) != 0) throw;
+  } catch (const VolumeWithoutAnswer& error) {
     found.reason = error.what();
   }
   return found;

@@ -20,7 +20,7 @@ double coarseness(const PlaneEvidence& evidence) {
 
 /// \return log odds by a share of the surface that is off: 0 at that of a symmetry.
 double byOff(double off, double unit) {
-  return std::log((off + unit) / (kOffShare + unit));
+  return std::log((off + unit) / (1.0 - kSymmetricShare + unit));
 }
 
 double byShare(const PlaneEvidence& evidence, double unit) {
@@ -29,7 +29,8 @@ double byShare(const PlaneEvidence& evidence, double unit) {
 
 /// \return the share of the surface that finer points would show to be off.
 double resolvedOff(const PlaneEvidence& evidence, const EvidenceUnits& units) {
-  return (1.0 - evidence.share) * std::exp(units.reach * coarseness(evidence));
+  const double off = 1.0 - evidence.share;
+  return off > 0.0 ? off * std::exp(units.reach * coarseness(evidence)) : 0.0;  // not 0 times infinity
 }
 
 /// \return the share of the surface that is off, in units of what is known of it.
@@ -129,9 +130,8 @@ double planeConfidence(const PlaneEvidence& evidence) {
   return logistic(log_odds);
 }
 
-double furtherConfidence(double confidence, CloudKind kind, double unknown) {
-  return withOdds(confidence,
-                  std::exp(byFurther(kind, unknown) * kConfidenceFit.log_odds[static_cast<int>(kind)].back()));
+double furtherOdds(CloudKind kind, double unknown) {
+  return std::exp(byFurther(kind, unknown) * kConfidenceFit.log_odds[static_cast<int>(kind)].back());
 }
 
 }  // namespace pcl_symmetry

@@ -85,9 +85,9 @@ ShareInterval shareInterval(const PlaneEvidence& evidence);
 /// \return in [0, 1].
 double planeConfidence(const PlaneEvidence& evidence);
 
-/// What PlaneEvidence::further makes of a confidence: less for a scan, and for a cloud that may lack a piece.
-/// \param confidence of the plane by itself, in [0, 1].
+/// What PlaneEvidence::further makes of the odds: less for a scan, and for a cloud that may lack a piece.
 /// \param unknown as PlaneEvidence::unknown.
-double furtherConfidence(double confidence, CloudKind kind, double unknown);
+/// \return a factor, > 0.
+double furtherOdds(CloudKind kind, double unknown);
 
 }  // namespace pcl_symmetry

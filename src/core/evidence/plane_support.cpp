@@ -29,7 +29,8 @@ float sqDeviation(const SurfaceSample& sample, const Eigen::Vector3f& point, con
   if (sq_distance >= most) return most;
   const float cosine = std::min(1.0f, std::abs(sample.normal.dot(point_normal)));
   // Normals count as far as they can be trusted, without a jump.
-  if (cosine > kEvidence.agreeing_cosine || sample.normal_trust == 0.0f) return sq_distance;
+  static const float agreeing = std::cos(kEvidence.normal_angle);
+  if (cosine > agreeing || sample.normal_trust == 0.0f) return sq_distance;
   const float turned = sample.normal_trust * std::max(0.0f, std::acos(cosine) / kEvidence.normal_angle - 1.0f);
   return sq_distance + turned * turned;
 }
@@ -61,7 +62,7 @@ PointEvidence pointEvidence(const Points& reflected, const Points& reflected_nor
   for (std::size_t i = 0; i < size; ++i) {
     if (closest[i] >= 0)
       evidence.support[i] = supportNear(closest[i], -1, reflected.col(i), reflected_normals.col(i), samples);
-    // Where all is explained, nothing is in conflict, seen or not.
+    // Full support leaves no conflict.
     if (evidence.support[i] == 1.0f) continue;
     const float empty = visibility ? emptiness(*visibility, reflected.col(i).cast<double>()) : 1.0f;
     evidence.conflict[i] = empty * (1.0f - evidence.support[i]);
@@ -83,32 +84,31 @@ double meanSupport(const std::vector<float>& support) {
   return std::accumulate(support.begin(), support.end(), 0.0) / static_cast<double>(support.size());
 }
 
-std::vector<float> planeSupport(const PointsRef& points, const PointsRef& samples, const ReflectionPlane& plane,
-                                int num_threads) {
+std::vector<std::vector<float>> planeSupport(const PointsRef& points, const PointsRef& samples,
+                                             const std::vector<ReflectionPlane>& planes, int num_threads) {
   constexpr std::size_t kBlockSize = 4096;  // points. Large enough that threads start seldom
   const BoundingBall ball = boundingBall(samples);
   check(ball.radius > 0.0, "extent of the samples", ball.radius, "> 0");
   const Points surface = normalizePoints(samples, ball.center, ball.radius);
   const auto search = makeFlannSearch(surface);
   const SurfaceSamples described(surface, localGeometry(surface, *search, kNumSupportNeighbors, num_threads));
-  const Eigen::Vector3f n = plane.normal().cast<float>();
-  std::vector<float> support(points.cols());
+  std::vector<std::vector<float>> support(planes.size(), std::vector<float>(points.cols()));
   parallelRanges(points.cols(), kBlockSize, num_threads, [&](std::size_t begin, std::size_t end) {
     const auto size = static_cast<Eigen::Index>(end - begin);
-    const Points own = normalizePoints(points.middleCols(begin, size), ball.center, ball.radius);
+    const std::vector<int> own =
+        search->closest(normalizePoints(points.middleCols(begin, size), ball.center, ball.radius));
     Points reflected(3, size), normals(3, size);
-    std::vector<int> closest;
-    std::vector<float> sq_distances;
-    search->search(own, 1, closest, sq_distances);
-    for (Eigen::Index i = 0; i < size; ++i) {
-      const Eigen::Vector3d x = points.col(begin + i).cast<double>();
-      reflected.col(i) = ((plane.reflect(x) - ball.center) / ball.radius).cast<float>();
-      const Eigen::Vector3f normal = described[closest[i]].normal;
-      normals.col(i) = normal - 2.0f * n.dot(normal) * n;
+    for (std::size_t k = 0; k < planes.size(); ++k) {
+      const Eigen::Vector3f n = planes[k].normal().cast<float>();
+      for (Eigen::Index i = 0; i < size; ++i) {
+        const Eigen::Vector3d x = points.col(begin + i).cast<double>();
+        reflected.col(i) = ((planes[k].reflect(x) - ball.center) / ball.radius).cast<float>();
+        const Eigen::Vector3f normal = described[own[i]].normal;
+        normals.col(i) = normal - 2.0f * n.dot(normal) * n;
+      }
+      const PointEvidence part = pointEvidence(reflected, normals, search->closest(reflected), described, nullptr);
+      std::copy(part.support.begin(), part.support.end(), support[k].begin() + static_cast<std::ptrdiff_t>(begin));
     }
-    search->search(reflected, 1, closest, sq_distances);
-    const PointEvidence part = pointEvidence(reflected, normals, closest, described, nullptr);
-    std::copy(part.support.begin(), part.support.end(), support.begin() + static_cast<std::ptrdiff_t>(begin));
   });
   return support;
 }

@@ -46,13 +46,13 @@ std::vector<float> ownSupport(const SurfaceSamples& samples, int num_threads);
 /// \return the mean.
 double meanSupport(const std::vector<float>& support);
 
-/// Support of each of \p points for a plane, on the surface that \p samples describe.
+/// Support of each of \p points for planes, on the surface that \p samples describe.
 /// \param points 3 x M, finite.
 /// \param samples 3 x N, finite, not all equal, in the same frame.
-/// \param plane in the same frame.
-/// \return M values in [0, 1].
+/// \param planes in the same frame.
+/// \return for each plane M values in [0, 1].
 /// \throws std::invalid_argument where all samples coincide.
-std::vector<float> planeSupport(const PointsRef& points, const PointsRef& samples, const ReflectionPlane& plane,
-                                int num_threads = 0);
+std::vector<std::vector<float>> planeSupport(const PointsRef& points, const PointsRef& samples,
+                                             const std::vector<ReflectionPlane>& planes, int num_threads = 0);
 
 }  // namespace pcl_symmetry

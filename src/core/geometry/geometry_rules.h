@@ -25,9 +25,6 @@ struct GeometryRules {
   Eigen::Index ball_points = 2'500;  ///< that are tried as the outermost ones
   int ball_iterations = 60;          ///< leave the radius within 1 % of the smallest
 
-  // Axes
-  float flat = 1e-6f;  ///< share of the extent: some roundings of a float
-
   // Axes of normals
   /// Radians by which a normal may miss at half its weight: noise of a third of the spacing.
   double normal_miss = 0.1;
@@ -49,8 +46,8 @@ struct GeometryRules {
 
 inline constexpr GeometryRules kGeometry{};
 
-/// What symmetric means, in all rooms and tools: a plane is a symmetry at a tolerance if it maps this share of the
-/// surface to within the tolerance of the surface (core/evidence/README.md); and the rest.
-constexpr double kSymmetricShare = 0.97, kOffShare = 0.03;
+/// A plane is a symmetry if it maps at least this share of the surface to within the tolerance of the surface
+/// (core/evidence/README.md).
+constexpr double kSymmetricShare = 0.97;
 
 }  // namespace pcl_symmetry

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <utility>
 
+#include "core/base/check.h"
+
 namespace pcl_symmetry {
 
 namespace {
@@ -28,7 +30,7 @@ private:
 class SearchAmong : public ClosestPointSearch {
 public:
   SearchAmong(Ptr search, std::size_t num_points, const std::vector<int>& kept)
-      : search_(std::move(search)), index_of_(num_points, -1) {
+      : search_(std::move(search)), num_kept_(kept.size()), index_of_(num_points, -1) {
     for (std::size_t i = 0; i < kept.size(); ++i) index_of_[kept[i]] = static_cast<int>(i);
   }
 
@@ -36,6 +38,7 @@ public:
   void search(const PointsRef& queries, int num_neighbors, std::vector<int>& indices,
               std::vector<float>& sq_distances) const override {
     const auto wanted = static_cast<std::size_t>(num_neighbors);
+    check(wanted <= num_kept_, "num_neighbors", num_neighbors, "at most the number of points");
     indices.clear();
     sq_distances.clear();
     std::vector<int> found;
@@ -59,6 +62,7 @@ public:
 
 private:
   Ptr search_;
+  std::size_t num_kept_;
   std::vector<int> index_of_;  ///< among those kept, of each point; -1: not kept
 };
 

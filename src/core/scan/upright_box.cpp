@@ -69,6 +69,24 @@ Rectangle bestRectangle(const PointsRef& points, const Eigen::Vector3d& up) {
   return *best;
 }
 
+/// The diagonal of an upright box that holds the points, mean over its angles: kBox was fitted to boxes along the axes
+/// of clouds, which lay at any angle.
+double meanDiagonal(const PointsRef& points, const Eigen::Vector3d& up) {
+  const Eigen::Vector3d x = up.unitOrthogonal(), y = up.cross(x);
+  const auto width = [&](const Eigen::Vector3d& along) {
+    const Eigen::RowVectorXf positions = along.cast<float>().transpose() * points;
+    return static_cast<double>(positions.maxCoeff() - positions.minCoeff());
+  };
+  const double height = width(up);
+  double sum = 0.0;
+  for (int k = 0; k < kBox.num_angles; ++k) {
+    const double angle = 0.5 * kPi * k / kBox.num_angles;
+    const Eigen::Vector3d u = std::cos(angle) * x + std::sin(angle) * y;
+    sum += Eigen::Vector3d(width(u), width(up.cross(u)), height).norm();
+  }
+  return sum / kBox.num_angles;
+}
+
 /// Directions from a viewpoint to points, and their ranges.
 Points directionsTo(const PointsRef& points, const Eigen::Vector3d& viewpoint, std::vector<double>& ranges) {
   Points directions(3, points.cols());
@@ -117,8 +135,7 @@ std::optional<MiddlePlane> middlePlaneOfBox(const PointsRef& points, const Eigen
   const Rectangle box = bestRectangle(points, up.normalized());
   const auto width = [&](std::size_t k) { return box.sides[k][1] - box.sides[k][0]; };
   const std::size_t across = width(0) <= width(1) ? 0 : 1;
-  const double diagonal = (points.rowwise().maxCoeff() - points.rowwise().minCoeff()).cast<double>().norm();
-  const double reach = kBox.meets * diagonal;
+  const double reach = kBox.meets * meanDiagonal(points, up.normalized());
   if (!(width(across) > 2.0 * reach)) return std::nullopt;
   MiddlePlane middle;
   middle.plane = ReflectionPlane(box.axes[across], 0.5 * (box.sides[across][0] + box.sides[across][1])).canonical();

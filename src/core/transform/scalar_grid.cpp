@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
+#include <string>
 #include <utility>
 
 #include "core/base/check.h"
@@ -129,20 +130,21 @@ std::vector<float> someValues(const std::vector<float>& values) {
 
 VolumeLevels levelsOf(const ScalarGrid& volume, const VolumeLevels& given) {
   given.validate();
-  for (const int n : volume.size()) check(n >= 4, "volume: slices along an axis", n, ">= 4");
+  for (const int n : volume.size())
+    if (n < 4) throw VolumeWithoutAnswer("volume: slices along an axis = " + std::to_string(n) + ", must be >= 4");
   const std::vector<float> values = someValues(volume.values());
-  if (values.empty()) throw std::invalid_argument("volume: no finite value");
+  if (values.empty()) throw VolumeWithoutAnswer("volume: no finite value");
   if (given.low < given.high) return given;
   const double highest = values[0.995 * static_cast<double>(values.size() - 1)];
   VolumeLevels levels{TwoClasses(values).low_mean, highest};
   if (!(levels.low < levels.high)) levels.high = values.back();  // a body of less than half a percent
-  if (!(levels.low < levels.high)) throw std::invalid_argument("volume: all values are equal");
+  if (!(levels.low < levels.high)) throw VolumeWithoutAnswer("volume: all values are equal");
   return levels;
 }
 
 double bodyThreshold(const std::vector<float>& f) {
   const std::vector<float> values = someValues(f);
-  if (values.front() == values.back()) throw std::invalid_argument("volume: all values are equal between the levels");
+  if (values.front() == values.back()) throw VolumeWithoutAnswer("volume: all values are equal between the levels");
   return TwoClasses(values).threshold;
 }
 
@@ -252,7 +254,7 @@ GaussianEdt::GaussianEdt(const VolumeFunction& volume, const GaussianEdtOptions&
                    }
                  });
   sumValues(options.num_threads);
-  if (sq_norm_ == 0.0) throw std::invalid_argument("volume: nothing in the ball given by center and radius");
+  if (sq_norm_ == 0.0) throw VolumeWithoutAnswer("volume: nothing in the ball given by center and radius");
   interpolation_ = sharpened(kTransform.of_interpolation, options.num_threads);
 }
 

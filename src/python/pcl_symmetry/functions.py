@@ -290,7 +290,7 @@ def _fields(found: Any, *names: str) -> Dict[str, Any]:
 
 def _plane(p: Any) -> Plane:
     plane = object.__new__(Plane)
-    names = ("kind", "confidence", "share", "share_interval", "score", "support", "deviation", "seen", "residual")
+    names = ("kind", "confidence", "reasons", "share", "share_interval", "score", "support", "deviation", "seen", "residual")
     for name, value in _fields(p, "normal", "offset", *names).items():
         object.__setattr__(plane, name, value)
     plane.__post_init__()

@@ -217,8 +217,11 @@ class Plane(ReflectionPlane):
     """symmetry, possible, approximate or local."""
     confidence: float
     """Probability that it is a symmetry, in [0, 1]."""
+    reasons: Tuple[Tuple[str, Optional[float]], ...]
+    """Why it has confidence and kind: (rule, factor on the odds). The first factor is the odds of the evidence; None: the plane is a
+    possible symmetry at most, however confident. The product is confidence / (1 - confidence)."""
     share: float
-    """Estimated share of the surface that is mapped to within the tolerance, in [0, 1]."""
+    """Estimated share of the surface that is mapped to within the tolerance, in [0, 1]; NaN for volumes, which have no surface."""
     share_interval: Tuple[float, float]
     """Limits of that share for the whole object, 95 of 100 cases."""
     score: float

@@ -112,6 +112,7 @@ TEST(DetectionOptions, RefusesBadOnes) {
   refused([](auto& o) { o.min_confidence = -0.1; });
   refused([](auto& o) { o.min_possible = -0.1; });
   refused([](auto& o) { o.min_possible = 1.1; });
+  refused([](auto& o) { o.min_possible = 0.6; });  // above min_confidence
   refused([](auto& o) { o.max_planes = 0; });
   refused([](auto& o) { o.num_threads = -1; });
 }

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <cmath>
 
 #include "core/geometry/mesh_sampling.h"
@@ -62,6 +63,16 @@ TEST(RefineOnMesh, WhatIsNoSymmetryIsDropped) {
   EXPECT_TRUE(found.planes.empty());
   ASSERT_TRUE(found.best);
   EXPECT_LT(found.best->share, 0.97);
+}
+
+TEST(RefineOnMesh, WhatTheCloudCannotDecideStaysPossible) {
+  // A rod is a line at the tolerance, which all planes through it and the one across its middle map onto itself.
+  const Detection rod = planesOf(test::boxOfTriangles(100, 1, 1));
+  ASSERT_FALSE(rod.planes.empty());
+  for (const SymmetryPlane& plane : rod.planes) {
+    EXPECT_NE(plane.kind, PlaneKind::Symmetry);
+    EXPECT_TRUE(std::any_of(plane.reasons.begin(), plane.reasons.end(), [](const Reason& r) { return !r.odds; }));
+  }
 }
 
 TEST(RefineOnMesh, KeepsTheOrderOfDetection) {

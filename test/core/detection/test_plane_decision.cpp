@@ -109,6 +109,51 @@ TEST(RankedPlanes, FewPossibleOnes) {
   EXPECT_EQ(numRanked(), 6u);
 }
 
+TEST(RankedPlanes, APlaneOnTheSlopeOfABetterOneIsNoMaximum) {
+  const SearchedCloud searched(box(500, Sampling::Random, 3).cloud());
+  const auto numRanked = [&](double score) {
+    std::vector<SymmetryPlane> planes{planeOfFan(0, PlaneKind::Symmetry, 0.9, 0.9)};
+    planes.emplace_back(ReflectionPlane({std::cos(0.1), std::sin(0.1), 0.0}, 0.0));
+    planes.back().kind = PlaneKind::Symmetry;
+    planes.back().confidence = 0.8;
+    planes.back().score = score;
+    return rankedPlanes(planes, std::nullopt, searched.cloud, *searched.fit, DetectionOptions()).size();
+  };
+  EXPECT_EQ(numRanked(0.0), 1u) << "D between them is greater";
+  EXPECT_EQ(numRanked(1.1), 2u) << "D falls on the way";
+}
+
+TEST(BestApproximate, IsThePlaneOfTheGreatestShareWhereNothingIsDecided) {
+  const SearchedCloud searched(box(500, Sampling::Random, 3).cloud());
+  std::vector<SymmetryPlane> planes{planeOfFan(0, PlaneKind::Approximate, 0.1, 0.1),
+                                    planeOfFan(1, PlaneKind::Approximate, 0.1, 0.2),
+                                    planeOfFan(2, PlaneKind::Local, 0.0, 0.3)};
+  for (std::size_t k = 0; k < planes.size(); ++k) planes[k].share = 0.9 + 0.02 * static_cast<double>(k);
+  const auto best = [&] { return bestApproximate(planes, searched.cloud, *searched.fit); };
+  ASSERT_TRUE(best());
+  EXPECT_EQ(best()->support, 0.2);
+  EXPECT_EQ(best()->point_support.size(), 500u);
+  planes[1].seen = 0.5;
+  EXPECT_EQ(best()->support, 0.1) << "half of it was not seen";
+  planes[0].kind = PlaneKind::Possible;
+  EXPECT_FALSE(best());
+}
+
+TEST(PlaneDecision, SkipsWhatAQuickLookShowsToBeHopeless) {
+  const SearchedCloud searched(box({1.0, 0.7, 0.4}, 5000, Sampling::Random, 3).cloud());
+  const PlaneMeasure measure(searched.cloud, *searched.fit, searched.options);
+  const PlaneDecision decision(searched.cloud, measure, searched.options);
+  const auto isHopeless = [&](double offset, double merit) {
+    Candidate candidate;
+    candidate.plane = searched.cloud.toNormalized(ReflectionPlane(Eigen::Vector3d::UnitX(), offset));
+    candidate.merit = merit;
+    return decision.isHopeless(candidate);
+  };
+  EXPECT_FALSE(isHopeless(0.0, 0.5));
+  EXPECT_TRUE(isHopeless(0.3, 0.5));
+  EXPECT_FALSE(isHopeless(0.3, 0.95)) << "its merit is that of a symmetry";
+}
+
 /// Two boxes, one turned and put at the side of the other, as dense as that.
 struct TwoBoxes {
   Points points;

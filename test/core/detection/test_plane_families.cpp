@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
 
 #include "core/detection/cloud_subset.h"
 #include "core/detection/plane_lattice.h"
@@ -191,6 +192,62 @@ TEST(Polygons, AGivenSearchIsAskedWhereTheDensityIsUneven) {
   EXPECT_EQ(found.planes.size(), 13u);
   EXPECT_EQ(asked.num_made, 1);
   EXPECT_GT(asked.num_queries, 100'000);
+}
+
+/// A cloud, and what judges its planes.
+struct JudgedPoints {
+  explicit JudgedPoints(const Points& points) : edt(points), cloud(points, edt, nullptr, nullptr, 1) {}
+
+  SymmetryPlane symmetry(double angle) const {
+    SymmetryPlane plane(ReflectionPlane({std::cos(angle), std::sin(angle), 0.0}, 0.0));
+    setConfidence(plane, 0.9, "test", options);
+    return plane;
+  }
+
+  const DetectionOptions options = manyPlanes();
+  const GaussianEdt edt;
+  const NormalizedCloud cloud;
+  const std::unique_ptr<PlaneFit> fit = makePlaneFit(cloud, options);
+  const PlaneMeasure measure{cloud, *fit, options};
+  const PlaneDecision decision{cloud, measure, options};
+};
+
+TEST(CollectFamilies, ABodyOfRevolutionHasItsAxisInPlaceOfItsPlanes) {
+  const auto collected = [](const Points& points) {
+    const JudgedPoints judged(points);
+    return collectFamilies({judged.symmetry(0.1), judged.symmetry(1.0), judged.symmetry(2.2)}, judged.cloud,
+                           judged.cloud.points, *judged.fit, judged.decision, judged.options);
+  };
+  const PlanesAndFamilies can = collected(cylinder(5000, 1).cloud());
+  ASSERT_EQ(can.axes.size(), 1u);
+  EXPECT_GT(std::abs(can.axes[0].direction.z()), 0.9999);
+  EXPECT_TRUE(can.planes.empty());
+  const PlanesAndFamilies wheel_of_three = collected(wheel(3, 0.3, 0.0, false, 1));
+  EXPECT_TRUE(wheel_of_three.axes.empty());
+  EXPECT_EQ(wheel_of_three.planes.size(), 3u);
+}
+
+TEST(WithoutPlanesThrough, TakesThePlanesOfAnAxis) {
+  const JudgedPoints judged(cylinder(1000, 1).cloud());
+  SymmetryAxis axis;
+  axis.point = Eigen::Vector3d::Zero();
+  axis.direction = Eigen::Vector3d::UnitZ();
+  SymmetryPlane across(ReflectionPlane(Eigen::Vector3d::UnitZ(), 0.0));
+  const auto kept = withoutPlanesThrough({judged.symmetry(0.3), across, judged.symmetry(2.0)}, {axis}, judged.cloud);
+  ASSERT_EQ(kept.size(), 1u);
+  EXPECT_EQ(kept[0].angleTo(across), 0.0);
+}
+
+TEST(WithPolygon, PlanesOfANoisyPolygonAreJudgedTogether) {
+  const JudgedPoints judged(wheel(7, 0.1, 0.04, false, 6));
+  ASSERT_EQ(judged.cloud.kind(), CloudKind::Volume);
+  SymmetryPlane first = judged.symmetry(0.5 * kPi), second = judged.symmetry(0.5 * kPi + kPi / 7.0);
+  const PlanesAndPolygon completed =
+      withPolygon({first, second}, judged.cloud, judged.cloud.points, judged.decision, judged.options);
+  ASSERT_TRUE(completed.polygon);
+  EXPECT_EQ(completed.polygon->fold, 7);
+  EXPECT_EQ(completed.planes.size(), 7u);
+  for (const SymmetryPlane& plane : completed.planes) EXPECT_EQ(plane.kind, PlaneKind::Symmetry);
 }
 
 TEST(EvenDensity, LeavesEvenCloudsAloneAndEvensOthers) {

@@ -4,7 +4,9 @@
 #include <gtest/gtest.h>
 
 #include <memory>
+#include <vector>
 
+#include "core/geometry/point_samples.h"
 #include "shapes/shapes.h"
 
 namespace {
@@ -53,12 +55,40 @@ TEST(PlaneMeasure, ToleranceIsAShareOfTheExtentOrInInputUnits) {
   EXPECT_NEAR(given.measure.tolerance() * given.cloud.scale, 0.05, 1e-9);
 }
 
-TEST(PlaneMeasure, TheOwnPlaneOfASheetMovesNothing) {
+TEST(PlaneMeasure, MatchesOfOtherSamplesAreNotTaken) {
+  const MeasuredCloud box(test::box({1.0, 0.7, 0.4}, 5000, test::Sampling::Random, 1).cloud());
+  const auto drawn = [](std::uint64_t seed) { return drawSamples(5000, 500, seed); };
+  Candidate candidate;
+  candidate.plane = box.cloud.toNormalized(ReflectionPlane(Eigen::Vector3d::UnitX(), 0.0));
+  candidate.samples = std::make_shared<const std::vector<int>>(drawn(1));
+  candidate.last.last = box.fit->matches(candidate.plane, *candidate.samples);
+  EXPECT_EQ(box.measure.of(candidate, drawn(2)).evidence.share,
+            box.measure.of(candidate.plane, drawn(2)).evidence.share);
+}
+
+TEST(CloudLimits, TheOwnPlaneOfASheetMovesNothing) {
   const MeasuredCloud sheet(test::flatSquare(2000, 1));
-  EXPECT_EQ(sheet.measure.thinness(), Thinness::Sheet);
-  const Eigen::Matrix3d axes = sheet.cloud.principal_axes.axes;
-  EXPECT_EQ(sheet.measure.movedShare({axes.col(2), axes.col(2).dot(sheet.cloud.principal_axes.center)}), 0.0);
-  EXPECT_GT(sheet.measure.movedShare({axes.col(0), axes.col(0).dot(sheet.cloud.principal_axes.center)}), 0.9);
+  const CloudLimits& limits = sheet.measure.limits();
+  EXPECT_EQ(limits.thinness(), Thinness::Sheet);
+  const PrincipalAxes& axes = sheet.cloud.principal_axes;
+  const auto rulesOf = [&](int k) {
+    return limits.of({axes.axes.col(k), axes.axes.col(k).dot(axes.center)}, sheet.cloud.points).size();
+  };
+  EXPECT_EQ(rulesOf(0), 0u);
+  EXPECT_EQ(rulesOf(2), 1u);
+}
+
+TEST(CloudLimits, ASensorThatResolvesTooLittle) {
+  const Points points = test::box({1.0, 0.7, 0.4}, 500, test::Sampling::Random, 1).cloud();
+  const auto numRules = [&](double tolerance, double resolution) {
+    const CloudLimits limits(points, principalAxes(points), CloudKind::Scan, nullptr,
+                             {tolerance, resolution, 0.05, 1.0});
+    return limits.of(ReflectionPlane(Eigen::Vector3d::UnitX(), 0.0), points).size();
+  };
+  EXPECT_EQ(numRules(0.01, 0.005), 0u);
+  EXPECT_EQ(numRules(0.01, 0.02), 1u) << "the tolerance was given";
+  EXPECT_EQ(numRules(0.03, 0.08), 0u);
+  EXPECT_EQ(numRules(0.03, 0.1), 1u);
 }
 
 }  // namespace

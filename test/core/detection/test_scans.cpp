@@ -142,31 +142,57 @@ TEST(StandingObject, ItStandsOnTheNearestSupport) {
   EXPECT_TRUE(carryingNormals(points, seenFromAbove(points)).empty());
 }
 
-TEST(StandingObject, SlantedPlanesAreDoubtedAndGoBehind) {
-  const Points points = cubeAt(0.0);
-  const GaussianEdt edt(points);
-  DetectionOptions options;
-  const auto doubted = [&](const Visibility& seen) {
-    const NormalizedCloud cloud(points, edt, nullptr, &seen, 1);
-    const auto fit = makePlaneFit(cloud, options);
-    const PlaneMeasure measure(cloud, *fit, options);
-    std::vector<SymmetryPlane> planes = {planeAt(40.0, 0.0, 0.95), planeAt(90.0, 0.0, 0.7), planeAt(30.0, 0.0, 0.55)};
-    PlaneDecision(cloud, measure, options).doubtSlantedPlanes(planes);
-    return reordered(planes, options);
+/// Rows of points on two sides of a box of 4 x 2 x 1 on the ground, as rings of a LiDAR show it.
+Points ringsOnBox() {
+  Points points(3, 6 * 61);
+  for (int i = 0; i < points.cols(); ++i) {
+    const int k = i % 61;
+    const float z = 0.1f + 0.16f * static_cast<float>(i / 61);
+    const float along = 0.1f * static_cast<float>(k <= 40 ? k : k - 40);
+    points.col(i) << (k <= 40 ? along - 2.0f : -2.0f), (k <= 40 ? -1.0f : along - 1.0f), z;
+  }
+  return points;
+}
+
+TEST(DecideByUprightBox, ReplacesItsPlaneAndKeepsToTheNumberOfPlanes) {
+  const Points points = ringsOnBox();
+  const Visibility seen = Visibility::ofScene(points, {-6.0, -9.0, 1.5})->withSupport(kTable, 0.0);
+  const auto decided = [&](const Visibility& visibility, double resolution, int max_planes) {
+    Detection found;
+    found.tolerance = 0.1;
+    found.diameter = 4.5;
+    found.resolution = resolution;
+    for (const Eigen::Vector3d& normal : {Eigen::Vector3d(0.0, 1.0, 0.01), Eigen::Vector3d(1.0, 0.0, 0.0)}) {
+      found.planes.emplace_back(ReflectionPlane(normal, 0.0));
+      found.planes.back().kind = PlaneKind::Possible;
+      found.planes.back().confidence = 0.3;
+    }
+    DetectionOptions options;
+    options.max_planes = max_planes;
+    decideByUprightBox(PlaneInput(points, &visibility), options, found);
+    return found.planes;
   };
-  const Visibility on_table = seenFromAbove(points).withSupport(kTable, 0.0);
-  std::vector<SymmetryPlane> planes = doubted(on_table);
-  ASSERT_EQ(planes.size(), 2u) << "the last one is not even possible";
-  EXPECT_EQ(planes[0].confidence, 0.7);
+  const std::vector<SymmetryPlane> planes = decided(seen, 0.0, 64);
+  ASSERT_EQ(planes.size(), 2u) << "the same plane as possible one is gone";
   EXPECT_EQ(planes[0].kind, PlaneKind::Symmetry);
-  EXPECT_NEAR(planes[1].normal().z(), std::cos(40.0 * kPi / 180.0), 1e-6);
-  EXPECT_EQ(planes[1].kind, PlaneKind::Symmetry) << "0.95 is sure enough";
-  EXPECT_LT(planes[1].confidence, 0.7);
-  EXPECT_EQ(doubted(seenFromAbove(points))[0].confidence, 0.95) << "nothing carries it";
+  EXPECT_GT(std::abs(planes[0].normal().y()), 0.99);
+  EXPECT_EQ(planes[1].kind, PlaneKind::Possible);
+  EXPECT_EQ(decided(seen, 0.0, 1).size(), 1u);
+  EXPECT_EQ(decided(seen, 1.0, 1).front().kind, PlaneKind::Possible) << "the sensor resolves too little";
+  EXPECT_EQ(decided(seenFromAbove(points), 0.0, 64).front().confidence, 0.3) << "nothing carries it";
+}
+
+TEST(Scans, FewSamplesOfRefinementAreEnoughForNumbers) {
+  const Scan view = scan(blockL(), {2.5, -3.0, 2.0});
+  const Points cloud = view.cloud();
+  const Visibility seen = view.visibility();
+  DetectionOptions options;
   options.approximate = true;
-  planes = doubted(on_table);
-  ASSERT_EQ(planes.size(), 3u);
-  EXPECT_EQ(planes[2].kind, PlaneKind::Approximate);
+  options.expert.num_refine_samples = 10;
+  for (const SymmetryPlane& plane : detectPlanes({cloud, &seen}, options).planes) {
+    EXPECT_TRUE(std::isfinite(plane.confidence));
+    EXPECT_TRUE(std::isfinite(plane.support));
+  }
 }
 
 }  // namespace

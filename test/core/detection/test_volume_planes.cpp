@@ -28,6 +28,7 @@ TEST(VolumePlanes, TheOneThatAWedgeWasMadeWithIsFirst) {
   EXPECT_GT(std::abs(found.planes[0].normal().y()), std::cos(0.5 * std::acos(-1.0) / 180.0));
   EXPECT_LT(std::abs(found.planes[0].signedDistance({16.5, 17.5, 18.5})), 0.2);
   EXPECT_GT(found.planes[0].confidence, 0.9);
+  EXPECT_TRUE(std::isnan(found.planes[0].share)) << "a volume has no surface";
 }
 
 TEST(VolumePlanes, AVolumeWithoutContrastGivesAReason) {

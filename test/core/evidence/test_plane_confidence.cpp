@@ -1,4 +1,5 @@
 /// What speaks for a plane: its support, how it is fixed, and the probability that follows.
+#include "core/base/logistic.h"
 #include "core/evidence/plane_confidence.h"
 
 #include <gtest/gtest.h>
@@ -88,10 +89,17 @@ TEST(PlaneConfidence, OfFurtherPlanesIsLessWhereSomethingIsHidden) {
       const bool hidden = evidence.kind == CloudKind::Scan || (evidence.kind == CloudKind::Surface && unknown > 0.0);
       EXPECT_EQ(further < alone, hidden) << name << ", " << unknown;
       EXPECT_LE(further, alone) << name << ", " << unknown;
-      EXPECT_NEAR(furtherConfidence(alone, evidence.kind, unknown), further, 1e-12) << name << ", " << unknown;
+      EXPECT_NEAR(withOdds(alone, furtherOdds(evidence.kind, unknown)), further, 1e-12) << name << ", " << unknown;
     }
-    EXPECT_EQ(furtherConfidence(0.0, good.kind, 0.5), 0.0);
-    EXPECT_EQ(furtherConfidence(1.0, good.kind, 0.5), 1.0);
+  }
+}
+
+TEST(PlaneConfidence, IsKnownAtAnyTolerance) {
+  for (const auto& [name, good] : regimes()) {
+    PlaneEvidence evidence = good;
+    evidence.share = evidence.double_share = 1.0;
+    evidence.tolerance = 1e-9;  // of exactly symmetric points, far below their spacing
+    EXPECT_TRUE(planeConfidence(evidence) >= 0.0) << name;
   }
 }
 
@@ -259,7 +267,7 @@ TEST(PlaneSupport, IsOneOnTheSurfaceAndFallsOffIt) {
   const ReflectionPlane plane(Eigen::Vector3d::UnitX(), 0.0);
   const auto supportAt = [&](double x, double z) {
     const Points point = Eigen::Vector3d(x, 0.03, z).cast<float>();
-    return planeSupport(point, lattice, plane, 1)[0];
+    return planeSupport(point, lattice, {plane}, 1)[0][0];
   };
   EXPECT_EQ(supportAt(0.97, 0.0), 1.0f);
   EXPECT_EQ(supportAt(0.97, 0.009 * radius), 1.0f);
@@ -273,13 +281,15 @@ TEST(PlaneSupport, OfASymmetryIsThatOfASecondSample) {
   // 1 in 130 lies beyond the reach along the surface, where the second sample is independent.
   const Shape shape = box(6000, Sampling::Random, 8);
   const Points points = shape.cloud();
-  for (const ReflectionPlane& plane : shape.planes) {
-    const std::vector<float> support = planeSupport(points, points, plane, 1);
+  const auto supports = planeSupport(points, points, shape.planes, 1);
+  ASSERT_EQ(supports.size(), shape.planes.size());
+  for (const std::vector<float>& support : supports) {
     const double mean = std::accumulate(support.begin(), support.end(), 0.0) / static_cast<double>(support.size());
     EXPECT_GT(mean, 1.0 - 1.0 / 130.0);
-    EXPECT_EQ(planeSupport(points, points, plane, 8), support);
   }
-  const std::vector<float> wrong = planeSupport(points, points, ReflectionPlane({1.0, 1.0, 0.0}, 0.0), 1);
+  EXPECT_EQ(planeSupport(points, points, shape.planes, 8), supports);
+  EXPECT_EQ(planeSupport(points, points, {shape.planes[1]}, 1)[0], supports[1]) << "as one by one";
+  const std::vector<float> wrong = planeSupport(points, points, {ReflectionPlane({1.0, 1.0, 0.0}, 0.0)}, 1)[0];
   EXPECT_LT(std::accumulate(wrong.begin(), wrong.end(), 0.0) / static_cast<double>(wrong.size()), 0.7);
 }
 

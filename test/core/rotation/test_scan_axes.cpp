@@ -163,6 +163,38 @@ TEST(RotationSigns, AFlatSideHoldsNoLineAndABoxDoes) {
   EXPECT_GT(hold(Scanned(box(), kCorner), Eigen::Vector3d::UnitZ()), 1e-2);
 }
 
+TEST(MarginOf, IsTheLeastMarginToALimit) {
+  SymmetryRotation rotation;
+  rotation.support = 1.0;
+  EXPECT_NEAR(marginOf(rotation), 1.0 / kScanAxes.round_on - 1.0, 1e-12) << "nothing is off";
+  rotation.off = 2.0 * kScanAxes.most_round_off;
+  EXPECT_NEAR(marginOf(rotation), -1.0, 1e-12);
+  rotation.fold = 3;
+  rotation.off = rotation.halfway = 0.0;
+  EXPECT_NEAR(marginOf(rotation), -1.0, 1e-12) << "rotations halfway between are as good";
+}
+
+TEST(WithRoundAxes, AddsWhatOnlyRotationsShowAndNothingContradicts) {
+  const Scanned scanned(box(), kCorner);
+  SymmetryRotation round{Eigen::Vector3d::Zero(), Eigen::Vector3d::UnitZ()};
+  round.support = round.confidence = 0.9;
+  const auto numAxes = [&](const SymmetryRotation& rotation) {
+    return withRoundAxes(scanned.evidence, {}, {rotation}, {}).size();
+  };
+  EXPECT_EQ(numAxes(round), 1u);
+  SymmetryRotation other = round;
+  other.fold = 4;
+  EXPECT_EQ(numAxes(other), 0u);
+  other = round;
+  other.confidence = 0.4;
+  EXPECT_EQ(numAxes(other), 0u);
+  other = round;
+  other.far = 0.5;
+  EXPECT_EQ(numAxes(other), 0u) << "a handle was seen";
+  const SymmetryAxis across{Eigen::Vector3d::Zero(), Eigen::Vector3d::UnitX()};
+  EXPECT_TRUE(withRoundAxes(scanned.evidence, {across}, {}, {}).empty()) << "it throws the box into empty space";
+}
+
 TEST(RotationEvidence, ALineBesideTheAxisComesBackToIt) {
   for (const Eigen::Vector3d& viewpoint : {kCorner, Eigen::Vector3d(5.0, 1.0, 3.0), Eigen::Vector3d(1.0, -2.0, 5.0)}) {
     const Scanned scanned(box(), viewpoint);

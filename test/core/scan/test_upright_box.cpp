@@ -35,7 +35,7 @@ TEST(MiddlePlaneOfBox, IsAlongTheLongerSideAndTurnsWithThePoints) {
     ASSERT_TRUE(plane);
     EXPECT_LT(std::acos(std::abs(plane->plane.normal().dot(R * Eigen::Vector3d::UnitY()))), 0.01) << turn;
     EXPECT_LT(std::abs(plane->plane.signedDistance(Eigen::Vector3d::Zero())), 0.05) << turn;
-    EXPECT_GT(plane->confidence, 0.8) << "straight sides, and nothing in free space";
+    EXPECT_NEAR(plane->confidence, 0.94, 0.06) << "straight sides, and nothing in free space: " << turn;
   }
 }
 
@@ -46,9 +46,8 @@ TEST(MiddlePlaneOfBox, DoubtsWhatHasNoStraightSides) {
     cloud.col(i) << static_cast<float>(4.0 * random.uniform()), static_cast<float>(2.0 * random.uniform()),
         static_cast<float>(random.uniform());
   const auto plane = middlePlaneOfBox(cloud, Eigen::Vector3d::UnitZ(), kFrom);
-  if (plane) {
-    EXPECT_LT(plane->confidence, 0.5);
-  }
+  ASSERT_TRUE(plane);
+  EXPECT_LT(plane->confidence, 0.5);
 }
 
 }  // namespace
