@@ -8,6 +8,7 @@
 
 #include "core/base/parallel.h"
 #include "core/base/stopwatch.h"
+#include "core/base/symmetric_solvers.h"
 #include "core/detection/plane_decision.h"
 #include "core/evidence/plane_motion.h"
 #include "core/geometry/directions.h"
@@ -95,7 +96,7 @@ public:
       // Nearly round bodies leave an angle open: a little of the trace keeps the step short there.
       Eigen::Matrix3d normal = sum.normal;
       normal.diagonal() *= 1.0 + 1e-6;
-      result.step = normal.ldlt().solve(-sum.rhs);
+      result.step = -solveSymmetric(normal, sum.rhs);
       if (!result.step.allFinite()) result.step.setZero();
     }
     return result;
