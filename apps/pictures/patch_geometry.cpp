@@ -2,12 +2,12 @@
 
 #include <pcl/common/point_tests.h>
 
-#include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <limits>
 #include <vector>
 
+#include "core/base/symmetric_solvers.h"
 #include "core/geometry/surface_normals.h"
 #include "io/shape_input.h"
 #include "pcl_symmetry/core/closest_point_search.h"
@@ -59,7 +59,7 @@ std::array<Eigen::Vector3d, 4> fittedCorners(const PlanePatch& plane, const pcl:
   }
   mean /= static_cast<double>(projections.size());
   for (const Eigen::Vector2d& q : projections) second_moment += (q - mean) * (q - mean).transpose();
-  const Eigen::Matrix2d axes = Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d>(second_moment).eigenvectors();
+  const Eigen::Matrix2d axes = SymmetricEigen<Eigen::Matrix2d>(second_moment).eigenvectors();
   Eigen::AlignedBox2d box;
   for (const Eigen::Vector2d& q : projections) box.extend(axes.transpose() * q);
   const double margin = 0.06 * box.diagonal().norm();

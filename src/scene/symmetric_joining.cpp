@@ -15,6 +15,7 @@
 #include "core/base/constants.h"
 #include "core/base/median.h"
 #include "core/base/parallel.h"
+#include "core/base/symmetric_solvers.h"
 #include "core/geometry/principal_axes.h"
 #include "scene/scene_rules.h"
 
@@ -119,7 +120,7 @@ public:
         a += weight * wall.aside * wall.aside.transpose();
         b += weight * wall.aside.dot(wall.point) * wall.aside;
       }
-      at = a.ldlt().solve(b);
+      at = solveSymmetric(a, b);
       if (!at.allFinite() || (at - center_).norm() > diagonal_) return std::nullopt;
     }
     std::array<double, 2> num_walls{}, num_round{};

@@ -5,12 +5,12 @@
 #include <pcl/console/print.h>
 #include <pcl/registration/icp.h>
 
-#include <Eigen/Cholesky>
 #include <cmath>
 #include <set>
 
 #include "core/base/constants.h"
 #include "core/base/random.h"
+#include "core/base/symmetric_solvers.h"
 #include "core/registration/pose_covariance.h"
 #include "pcl/clouds.h"
 #include "shapes/scans.h"
@@ -395,7 +395,7 @@ PoseErrors errorsUnderNoise(double noise, int num_trials) {
     motion << turn.angle() * turn.axis(), error.translation();
     errors.scatter += motion * motion.transpose() / num_trials;
     errors.said += *found.covariance / num_trials;
-    errors.mean_sq_distance += motion.dot(found.covariance->ldlt().solve(motion)) / num_trials;
+    errors.mean_sq_distance += motion.dot(solveSymmetric(*found.covariance, motion)) / num_trials;
   }
   return errors;
 }

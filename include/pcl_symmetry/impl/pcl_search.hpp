@@ -3,7 +3,6 @@
 #include <pcl/console/print.h>
 #include <pcl/search/flann_search.h>
 #include <pcl/search/kdtree.h>
-#include <pcl/search/organized.h>
 
 #include <cstdint>
 #include <mutex>
@@ -69,7 +68,7 @@ MakeSearch searchOf(const typename pcl::search::Search<PointT>::Ptr& search, con
                     int num_threads) {
   if (!search) return nullptr;
   const pcl::search::Search<PointT>& given = *search;
-  if (dynamic_cast<const pcl::search::OrganizedNeighbor<PointT>*>(&given)) {
+  if (given.getName() == "OrganizedNeighbor") {
     PCL_WARN("[pcl_symmetry::%s] search method %s: finds no points behind what the sensor saw, FLANN is used instead\n",
              class_name.c_str(), given.getName().c_str());
     return nullptr;

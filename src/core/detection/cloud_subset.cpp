@@ -1,6 +1,5 @@
 #include "core/detection/cloud_subset.h"
 
-#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
 #include <utility>
@@ -8,6 +7,7 @@
 #include "core/base/median.h"
 #include "core/base/parallel.h"
 #include "core/base/random.h"
+#include "core/base/symmetric_solvers.h"
 #include "core/detection/detection_rules.h"
 #include "core/geometry/diameter.h"
 #include "core/geometry/distinct_points.h"
@@ -77,16 +77,17 @@ std::vector<int> evenlyDense(const NormalizedCloud& cloud, std::uint64_t seed) {
   for (std::size_t i = 0; i < samples.size(); ++i)
     to_neighbor[i] = sq_distances[i * kDetection.points.most_counted + kDetection.points.neighbors];
   const float sq_radius = median(to_neighbor);
-  const auto num_samples = static_cast<Eigen::Index>(samples.size());
-  Eigen::MatrixX4d places(num_samples, 4);
-  Eigen::VectorXd logs(num_samples);
-  for (Eigen::Index i = 0; i < num_samples; ++i) {
+  Eigen::Matrix4d squares = Eigen::Matrix4d::Zero();
+  Eigen::Vector4d pull = Eigen::Vector4d::Zero();
+  for (Eigen::Index i = 0; i < at.cols(); ++i) {
     const auto first = sq_distances.begin() + i * kDetection.points.most_counted;
-    places.row(i) << at.col(i).cast<double>().transpose(), 1.0;
-    logs[i] = std::log(
-        static_cast<double>(std::upper_bound(first, first + kDetection.points.most_counted, sq_radius) - first));
+    const auto count = std::upper_bound(first, first + kDetection.points.most_counted, sq_radius) - first;
+    const Eigen::Vector4d place = at.col(i).cast<double>().homogeneous();
+    squares += place * place.transpose();
+    pull += std::log(static_cast<double>(count)) * place;
   }
-  const Eigen::Vector3d slope = places.colPivHouseholderQr().solve(logs).head<3>();
+  squares.diagonal().array() += 1e-9 * squares.trace();  // the points of a plane have no slope across it
+  const Eigen::Vector3d slope = solveSymmetric(squares, pull).head<3>();
   std::vector<double> along(samples.size());
   for (std::size_t i = 0; i < samples.size(); ++i)
     along[i] = slope.dot(at.col(static_cast<Eigen::Index>(i)).cast<double>());

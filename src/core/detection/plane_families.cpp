@@ -1,12 +1,11 @@
 #include "core/detection/plane_families.h"
 
-#include <Eigen/Eigenvalues>
-#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
 #include <utility>
 
 #include "core/base/constants.h"
+#include "core/base/symmetric_solvers.h"
 #include "core/detection/plane_lattice.h"
 #include "core/geometry/directions.h"
 #include "core/geometry/point_samples.h"
@@ -30,16 +29,14 @@ ReflectionPlane planeOfFamily(const Eigen::Vector3d& point, int k, int count) {
 
 /// The point closest to all planes: if there are many such points, the one closest to \p start.
 Eigen::Vector3d commonPoint(const std::vector<ReflectionPlane>& planes, const Eigen::Vector3d& start) {
-  Eigen::MatrixX3d normals(planes.size(), 3);
-  Eigen::VectorXd distances(planes.size());
-  for (std::size_t i = 0; i < planes.size(); ++i) {
-    normals.row(i) = planes[i].normal();
-    distances[i] = -planes[i].signedDistance(start);
+  Eigen::Matrix3d squares = Eigen::Matrix3d::Zero();
+  Eigen::Vector3d pull = Eigen::Vector3d::Zero();
+  for (const ReflectionPlane& plane : planes) {
+    squares += plane.normal() * plane.normal().transpose();
+    pull += plane.normal() * plane.signedDistance(start);
   }
-  Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixX3d> solver;
-  solver.setThreshold(kDetection.families.coplanar);
-  solver.compute(normals);
-  return start + solver.solve(distances);
+  const double coplanar = kDetection.families.coplanar;
+  return start - SymmetricEigen<Eigen::Matrix3d>(squares).solve(pull, coplanar * coplanar);
 }
 
 /// Mean share of the planes of a family.
@@ -103,7 +100,7 @@ std::optional<AxisFamily> axisAt(const Line3d& start, double least, const Family
 Line3d commonLine(const std::vector<ReflectionPlane>& planes) {
   Eigen::Matrix3d sum = Eigen::Matrix3d::Zero();
   for (const ReflectionPlane& plane : planes) sum += plane.normal() * plane.normal().transpose();
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(sum);
+  const SymmetricEigen<Eigen::Matrix3d> solver(sum);
   const Eigen::Vector3d direction = solver.eigenvectors().col(0);
   const Eigen::Vector3d point = commonPoint(planes, Eigen::Vector3d::Zero());
   return Line3d(point - direction.dot(point) * direction, direction);
@@ -115,8 +112,7 @@ std::optional<CenterFamily> findCenter(const std::vector<ReflectionPlane>& plane
   std::vector<Eigen::Vector3d> points;
   Eigen::Matrix3d sum = Eigen::Matrix3d::Zero();
   for (const ReflectionPlane& plane : planes) sum += plane.normal() * plane.normal().transpose();
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(sum / static_cast<double>(planes.size()),
-                                                              Eigen::EigenvaluesOnly);
+  const SymmetricEigen<Eigen::Matrix3d> solver(sum / static_cast<double>(planes.size()));
   const bool has_point =
       planes.size() >= 3 && solver.eigenvalues()[0] >= kDetection.families.least_spread;  // or else all hold one line
   if (has_point) points.push_back(commonPoint(planes, Eigen::Vector3d::Zero()));

@@ -1,7 +1,5 @@
 #include "pcl_symmetry/core/revolution_profile.h"
 
-#include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
@@ -10,6 +8,7 @@
 
 #include "core/base/check.h"
 #include "core/base/median.h"
+#include "core/base/symmetric_solvers.h"
 
 namespace pcl_symmetry {
 
@@ -52,7 +51,7 @@ FittedPosition fittedPosition(const std::vector<Eigen::Vector2d>& points, Eigen:
     if (static_cast<int>(nearby.size()) < kProfile.least_points || !(sum > 0.0)) return {position, 0.0, 0};
     mean /= sum;
     for (const auto& [x, weight] : nearby) spread += weight * (x - mean) * (x - mean).transpose();
-    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> axes(spread);
+    const SymmetricEigen<Eigen::Matrix2d> axes(spread);
     const Eigen::Vector2d along = axes.eigenvectors().col(1), across = axes.eigenvectors().col(0);
     Eigen::Matrix3d h = Eigen::Matrix3d::Zero();
     Eigen::Vector3d g = Eigen::Vector3d::Zero();
@@ -62,7 +61,7 @@ FittedPosition fittedPosition(const std::vector<Eigen::Vector2d>& points, Eigen:
       h += weight * powers * powers.transpose();
       g += weight * across.dot(x - result.position) * powers;
     }
-    const Eigen::Vector3d parabola = h.ldlt().solve(g);
+    const Eigen::Vector3d parabola = solveSymmetric(h, g);
     if (!parabola.allFinite()) return {position, 0.0, 0};
     // Beside the curve as far as along it, so that the weights cut nothing off.
     double sq_sum = 0.0;

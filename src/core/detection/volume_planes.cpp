@@ -1,12 +1,13 @@
 #include "pcl_symmetry/core/volume_planes.h"
 
-#include <Eigen/Dense>
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
 #include "core/base/parallel.h"
 #include "core/base/stopwatch.h"
+#include "core/base/symmetric_solvers.h"
 #include "core/detection/plane_decision.h"
 #include "core/detection/plane_tolerance.h"
 #include "core/detection/set_confidence.h"
@@ -150,7 +151,7 @@ private:
       // Nearly round bodies leave an angle open: a little of the trace keeps the step short there.
       Eigen::Matrix3d normal = sum.normal;
       normal.diagonal() *= 1.0 + 1e-6;
-      result.step = normal.ldlt().solve(-sum.rhs);
+      result.step = -solveSymmetric(normal, sum.rhs);
       if (!result.step.allFinite()) result.step.setZero();
     }
     return result;

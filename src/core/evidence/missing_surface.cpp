@@ -1,6 +1,5 @@
 #include "core/evidence/missing_surface.h"
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <boost/pending/disjoint_sets.hpp>
 #include <cmath>
@@ -10,6 +9,7 @@
 #include <optional>
 
 #include "core/base/random.h"
+#include "core/base/symmetric_solvers.h"
 #include "core/evidence/evidence_rules.h"
 #include "core/geometry/open_borders.h"
 #include "core/geometry/point_samples.h"
@@ -306,7 +306,7 @@ private:
       const Eigen::Vector3d d = points_.col(i).cast<double>() - mean;
       squares += d * d.transpose() / static_cast<double>(at.size());
     }
-    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(squares);
+    const SymmetricEigen<Eigen::Matrix3d> solver(squares);
     const double least = kEvidence.least_spread * spacing_;
     if (!(solver.eigenvalues()[1] > least * least)) return std::nullopt;
     Eigen::Vector3f normal = solver.eigenvectors().col(0).cast<float>();

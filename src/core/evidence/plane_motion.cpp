@@ -1,9 +1,8 @@
 #include "core/evidence/plane_motion.h"
 
-#include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 
+#include "core/base/symmetric_solvers.h"
 #include "core/evidence/evidence_rules.h"
 
 namespace pcl_symmetry {
@@ -47,11 +46,11 @@ double offsetStiffness(const Eigen::Matrix3d& stiffness) {
   Eigen::Matrix2d tilts = stiffness.topLeftCorner<2, 2>();
   tilts.diagonal().array() += kEvidence.tilt_ridge;
   const Eigen::Vector2d coupling = stiffness.topRightCorner<2, 1>();
-  return std::max(0.0, stiffness(2, 2) - coupling.dot(tilts.ldlt().solve(coupling)));
+  return std::max(0.0, stiffness(2, 2) - coupling.dot(solveSymmetric(tilts, coupling)));
 }
 
 double secondStiffness(const Eigen::Matrix3d& stiffness) {
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(stiffness, Eigen::EigenvaluesOnly);
+  const SymmetricEigen<Eigen::Matrix3d> solver(stiffness);
   return std::max(0.0, solver.eigenvalues()[1]);
 }
 

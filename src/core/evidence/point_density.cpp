@@ -1,12 +1,12 @@
 #include "core/evidence/point_density.h"
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <array>
 #include <cmath>
 
 #include "core/base/constants.h"
 #include "core/base/parallel.h"
+#include "core/base/symmetric_solvers.h"
 #include "core/evidence/evidence_rules.h"
 #include "core/evidence/plane_motion.h"
 
@@ -55,7 +55,7 @@ struct Quadric {
 
   /// A Newton step upwards along every axis, also where the curvature is that of a minimum.
   Eigen::Vector3d stepUp() const {
-    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(hessian);
+    const SymmetricEigen<Eigen::Matrix3d> solver(hessian);
     Eigen::Vector3d step = Eigen::Vector3d::Zero();
     const double least = kEvidence.least_curvature * solver.eigenvalues().cwiseAbs().maxCoeff();
     for (int k = 0; k < 3; ++k) {

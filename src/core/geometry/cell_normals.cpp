@@ -1,8 +1,8 @@
 #include "core/geometry/cell_normals.h"
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 
+#include "core/base/symmetric_solvers.h"
 #include "core/geometry/geometry_rules.h"
 
 namespace pcl_symmetry {
@@ -85,11 +85,10 @@ CellNormals cellNormals(const PointsRef& points, const Eigen::Vector3d& origin, 
     result.normals.col(column).setUnit(2);
     const Moments near = cells.around(c);
     if (near.count < kGeometry.fewest_cell_points) continue;
-    Eigen::SelfAdjointEigenSolver<Eigen::Matrix3f> solver;
-    solver.computeDirect(near.squares - near.sum * near.sum.transpose() / near.count);
-    const Eigen::Vector3f values = solver.eigenvalues();
-    if (!(values[2] > 0.0f) || !solver.eigenvectors().allFinite()) continue;
-    result.normals.col(column) = solver.eigenvectors().col(0).normalized();
+    const SymmetricEigen<Eigen::Matrix3f> axes(near.squares - near.sum * near.sum.transpose() / near.count);
+    const Eigen::Vector3f& values = axes.eigenvalues();
+    if (!(values[2] > 0.0f) || !axes.eigenvectors().allFinite()) continue;
+    result.normals.col(column) = axes.eigenvectors().col(0).normalized();
     result.flatness[column] = std::max(0.0f, (values[1] - values[0]) / values[2]);
   }
   return result;

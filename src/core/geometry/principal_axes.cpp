@@ -1,9 +1,9 @@
 #include "core/geometry/principal_axes.h"
 
-#include <Eigen/Eigenvalues>
 #include <cmath>
 #include <stdexcept>
 
+#include "core/base/symmetric_solvers.h"
 #include "core/geometry/geometry_rules.h"
 
 namespace pcl_symmetry {
@@ -18,7 +18,7 @@ PrincipalAxes principalAxes(const PointsRef& points) {
     covariance += d * d.transpose();
   }
   covariance /= static_cast<double>(points.cols());
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(covariance);
+  const SymmetricEigen<Eigen::Matrix3d> solver(covariance);
   axes.axes = solver.eigenvectors().rowwise().reverse();
   axes.variances = solver.eigenvalues().reverse().cwiseMax(0.0);
   if (axes.axes.determinant() < 0.0) axes.axes.col(2) *= -1.0;

@@ -1,12 +1,10 @@
 #include "core/geometry/revolution_of_normals.h"
 
-#include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 
+#include "core/base/symmetric_solvers.h"
 #include "core/geometry/geometry_rules.h"
 #include "core/geometry/small_motion.h"
-#include "core/geometry/weighted_products.h"
 
 namespace pcl_symmetry {
 
@@ -29,9 +27,9 @@ Motion slowestAlongNormals(const Matrix6d& sum) {
   Eigen::Matrix3d shifts = sum.bottomRightCorner<3, 3>();
   shifts.diagonal().array() += kGeometry.translation_ridge * std::max(1e-12, shifts.trace());
   const Eigen::Matrix3d coupling = sum.topRightCorner<3, 3>();
-  const Eigen::Matrix3d best_shifts = -shifts.ldlt().solve(coupling.transpose());
+  const Eigen::Matrix3d best_shifts = -solveSymmetric(shifts, Eigen::Matrix3d(coupling.transpose()));
   const Eigen::Matrix3d rotations = sum.topLeftCorner<3, 3>() + coupling * best_shifts;
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(0.5 * (rotations + rotations.transpose()));
+  const SymmetricEigen<Eigen::Matrix3d> solver(0.5 * (rotations + rotations.transpose()));
   const Eigen::Vector3d rotation = solver.eigenvectors().col(0);
   const Eigen::Vector3d shift = best_shifts * rotation;
   return {rotation, shift - rotation.dot(shift) * rotation};  // without the translation along the axis
@@ -85,7 +83,7 @@ Eigen::Vector3d centerOfNormals(const Points& points, const Points& normals, con
     const Eigen::Matrix3d across =
         (sums(6, 6) + kGeometry.position_ridge) * Eigen::Matrix3d::Identity() - sums.topLeftCorner<3, 3>();
     const Eigen::Vector3d pull = sums.block<3, 1>(3, 6);
-    center = across.ldlt().solve(pull);
+    center = solveSymmetric(across, pull);
     for (std::size_t i = 0; i < oriented.size(); ++i) {
       const Eigen::Vector3d d = oriented[i].point - center;
       const double lever = std::max(kGeometry.least_lever, d.norm());

@@ -2,26 +2,39 @@
 /// x + omega x x + t.
 #pragma once
 
-#include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
+
+#include "core/base/symmetric_solvers.h"
 
 namespace pcl_symmetry {
 
 using Vector6d = Eigen::Matrix<double, 6, 1>;
 using Matrix6d = Eigen::Matrix<double, 6, 6>;
 
+/// The weighted sum of x x^T over rows x of seven numbers: six unknowns and a right side.
+class WeightedProducts {
+public:
+  using Matrix = Eigen::Matrix<double, 7, 7>;
+
+  void add(const Eigen::Vector3d& first, const Eigen::Vector3d& second, double last, double weight) {
+    Eigen::Matrix<double, 7, 1> row;
+    row << first, second, last;
+    sums_.noalias() += weight * row * row.transpose();
+  }
+
+  /// The weighted sum of the products of all rows that were added.
+  const Matrix& sums() const { return sums_; }
+
+private:
+  Matrix sums_ = Matrix::Zero();
+};
+
 /// The motion of least squares, -h^-1 g. Directions that nothing fixes stay as they are.
 /// \param h symmetric; its lower half is read.
 /// \param least_stiffness of a direction that is fixed, share of the greatest eigenvalue of \p h.
 /// \param longest a longer motion is cut to this length.
 inline Vector6d smallMotion(const Matrix6d& h, const Vector6d& g, double least_stiffness, double longest) {
-  const Eigen::SelfAdjointEigenSolver<Matrix6d> solver(h);
-  Vector6d motion = Vector6d::Zero();
-  for (int i = 0; i < 6; ++i) {
-    const double stiffness = solver.eigenvalues()[i];
-    if (!(stiffness > least_stiffness * solver.eigenvalues()[5])) continue;
-    motion -= solver.eigenvectors().col(i) * (solver.eigenvectors().col(i).dot(g) / stiffness);
-  }
+  Vector6d motion = -SymmetricEigen<Matrix6d>(h).solve(g, least_stiffness);
   const double length = motion.norm();
   return length > longest ? Vector6d(motion * (longest / length)) : motion;
 }

@@ -1,11 +1,11 @@
 #include "core/geometry/surface_normals.h"
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 
 #include "core/base/constants.h"
 #include "core/base/parallel.h"
+#include "core/base/symmetric_solvers.h"
 #include "core/geometry/geometry_rules.h"
 
 namespace pcl_symmetry {
@@ -52,9 +52,7 @@ TangentPlane tangentPlane(const Points& points, const Eigen::Vector3f& position,
     covariance += offset * offset.transpose();
   }
   covariance -= sum * sum.transpose() / static_cast<float>(count);
-  Eigen::SelfAdjointEigenSolver<Eigen::Matrix3f> solver;
-  solver.computeDirect(covariance);
-  Eigen::Vector3f normal = solver.eigenvectors().col(0);
+  Eigen::Vector3f normal = SymmetricEigen<Eigen::Matrix3f>(covariance).eigenvectors().col(0);
   const bool is_usable = std::abs(normal.squaredNorm() - 1.0f) < 0.1f;  // false where one is no number
   const float sq_residual = is_usable ? normal.dot(covariance * normal) : covariance.trace();
   if (!is_usable) normal = Eigen::Vector3f::UnitZ();

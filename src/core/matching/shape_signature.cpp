@@ -1,11 +1,11 @@
 #include "core/matching/shape_signature.h"
 
-#include <Eigen/Eigenvalues>
 #include <array>
 #include <cmath>
 #include <cstdint>
 
 #include "core/base/check.h"
+#include "core/base/symmetric_solvers.h"
 #include "core/geometry/axis_rotations.h"
 #include "core/geometry/cell_normals.h"
 #include "core/geometry/principal_axes.h"
@@ -189,11 +189,7 @@ std::vector<Eigen::Matrix3d> signatureFrames(const PointsRef& points, const Symm
   across << first.unitOrthogonal(), first.cross(first.unitOrthogonal());
   const Eigen::Matrix<double, 3, 2> rotated = principal.axes.transpose() * across;
   const Eigen::Matrix2d spread_across = rotated.transpose() * principal.variances.asDiagonal() * rotated;
-  // A matrix of two rows is tridiagonal as it is; Eigen's general way takes ten seconds to compile.
-  const double scale = spread_across.cwiseAbs().maxCoeff();
-  const Eigen::Matrix2d scaled = spread_across / (scale > 0.0 ? scale : 1.0);
-  Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> solver;
-  solver.computeFromTridiagonal(Eigen::Vector2d(scaled.diagonal()), Eigen::Matrix<double, 1, 1>(scaled(1, 0)));
+  const SymmetricEigen<Eigen::Matrix2d> solver(spread_across);
   Eigen::Matrix3d axes;
   axes.col(0) = first;
   axes.col(1) = across * solver.eigenvectors().col(1);

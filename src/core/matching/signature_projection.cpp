@@ -1,13 +1,12 @@
 #include "core/matching/signature_projection.h"
 
-#include <Eigen/Eigenvalues>
-#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
 
 #include "core/base/check.h"
 #include "core/base/parallel.h"
 #include "core/base/random.h"
+#include "core/base/symmetric_solvers.h"
 #include "core/geometry/axis_rotations.h"
 #include "core/matching/matching_rules.h"
 #include "core/matching/shape_signature.h"
@@ -63,19 +62,19 @@ Components principalComponents(const Eigen::MatrixXf& products, const Projection
   const Eigen::Index searched = std::min<Eigen::Index>(size, options.num_dimensions + 16);
   RandomStream random(1);
   const auto orthonormal = [&](const Eigen::MatrixXf& spanning) -> Eigen::MatrixXf {
-    return Eigen::HouseholderQR<Eigen::MatrixXf>(spanning).householderQ() * Eigen::MatrixXf::Identity(size, searched);
+    return orthonormalColumns(spanning.cast<double>()).cast<float>();
   };
   Eigen::MatrixXf space =
       Eigen::MatrixXf::NullaryExpr(size, searched, [&] { return static_cast<float>(random.uniform() - 0.5); });
   for (int i = 0; i < kMatching.num_iterations; ++i) space = product(products, orthonormal(space), options.num_threads);
   space = orthonormal(space);
   const Eigen::MatrixXf within = space.transpose() * product(products, space, options.num_threads);
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXf> solver(within);
-  const Eigen::VectorXf falling = solver.eigenvalues().reverse();
+  const SymmetricEigen<Eigen::MatrixXd> solver(within.cast<double>());
+  const Eigen::VectorXf falling = solver.eigenvalues().reverse().cast<float>();
   check(falling[0] > 0.0f, "variance of the shapes", falling[0], "> 0");
   Eigen::Index kept = 0;
   while (kept < std::min<Eigen::Index>(searched, options.num_dimensions) && falling[kept] > 1e-5f * falling[0]) ++kept;
-  return {space * solver.eigenvectors().rowwise().reverse().leftCols(kept), falling.head(kept)};
+  return {space * solver.eigenvectors().cast<float>().rowwise().reverse().leftCols(kept), falling.head(kept)};
 }
 
 /// The mean of all shapes in all rotations.

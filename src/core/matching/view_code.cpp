@@ -1,6 +1,5 @@
 #include "core/matching/view_code.h"
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -9,6 +8,7 @@
 #include "core/base/check.h"
 #include "core/base/parallel.h"
 #include "core/base/simd.h"
+#include "core/base/symmetric_solvers.h"
 #include "core/matching/matching_rules.h"
 
 namespace pcl_symmetry {
@@ -83,7 +83,7 @@ ViewCoder ViewCoder::fit(const std::vector<View>& views) {
   const Eigen::VectorXd mean = magnitudes.rowwise().mean();
   magnitudes.colwise() -= mean;
   const Eigen::MatrixXd products = magnitudes * magnitudes.transpose();
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(products);
+  const SymmetricEigen<Eigen::MatrixXd> solver(products);
   ViewCoder coder;
   coder.mean_ = mean.cast<float>();
   coder.basis_ = solver.eigenvectors().rowwise().reverse().leftCols(kViewCodeSize).cast<float>();

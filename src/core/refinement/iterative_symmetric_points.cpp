@@ -1,7 +1,5 @@
 #include "pcl_symmetry/core/iterative_symmetric_points.h"
 
-#include <Eigen/Eigenvalues>
-#include <Eigen/QR>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -11,6 +9,7 @@
 
 #include "core/base/check.h"
 #include "core/base/parallel.h"
+#include "core/base/symmetric_solvers.h"
 #include "core/evidence/plane_motion.h"
 #include "core/geometry/point_samples.h"
 #include "core/refinement/refinement_rules.h"
@@ -177,21 +176,20 @@ ReflectionPlane steppedPlane(const IspSurface& surface, const std::vector<int>& 
     across.addPointToPlane(pairs.x.col(i).cast<double>(), pairs.y.col(i).cast<double>(), x_normal, y_normal,
                            pairs.weights[i]);
   }
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(across.h);
+  const SymmetricEigen<Eigen::Matrix3d> solver(across.h);
   const Eigen::Vector3d& stiffness = solver.eigenvalues();  // ascending
   int num_soft = 0;
   while (num_soft < 3 && !(stiffness[num_soft] > kRefinement.least_stiffness * stiffness[2])) ++num_soft;
-  Eigen::Vector3d step = Eigen::Vector3d::Zero();
-  for (int i = num_soft; i < 3; ++i)
-    step -= solver.eigenvectors().col(i) * (solver.eigenvectors().col(i).dot(across.g) / stiffness[i]);
+  Eigen::Vector3d step = -solver.solve(across.g, kRefinement.least_stiffness);
   if (num_soft > 0) {
     StepEquations whole{chart};
     for (Eigen::Index i = 0; i < pairs.x.cols(); ++i)
       if (pairs.weights[i] != 0.0)
         whole.addPointToPoint(pairs.x.col(i).cast<double>(), pairs.y.col(i).cast<double>(), pairs.weights[i]);
-    const Eigen::Matrix3Xd soft = solver.eigenvectors().leftCols(num_soft);
-    const Eigen::MatrixXd reduced = soft.transpose() * whole.h * soft;
-    step -= soft * reduced.completeOrthogonalDecomposition().solve(soft.transpose() * whole.g);
+    Eigen::Matrix3d soft = Eigen::Matrix3d::Zero();  // projects onto what \p across leaves open
+    for (int i = 0; i < num_soft; ++i)
+      soft += solver.eigenvectors().col(i) * solver.eigenvectors().col(i).transpose();
+    step -= SymmetricEigen<Eigen::Matrix3d>(soft * whole.h * soft).solve(soft * whole.g, 1e-12);
   }
   const double length = step.norm();
   if (!std::isfinite(length)) return plane;
@@ -224,7 +222,7 @@ ReflectionPlane fitReflectionPlane(const PointsRef& x, const PointsRef& y, const
     const Eigen::Vector3d p = x.col(i).cast<double>() - middle, q = y.col(i).cast<double>() - middle;
     a += weights[i] * p * q.transpose();
   }
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(0.5 * (a + a.transpose()));
+  const SymmetricEigen<Eigen::Matrix3d> solver(0.5 * (a + a.transpose()));
   const Eigen::Vector3d normal = solver.eigenvectors().col(0);
   return ReflectionPlane(normal, normal.dot(middle));
 }

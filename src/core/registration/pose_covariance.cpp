@@ -1,13 +1,12 @@
 #include "core/registration/pose_covariance.h"
 
-#include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <utility>
 
 #include "core/base/constants.h"
 #include "core/base/median.h"
+#include "core/base/symmetric_solvers.h"
 #include "core/registration/registration_rules.h"
 
 namespace pcl_symmetry {
@@ -58,7 +57,7 @@ Matrix6d hessianWithoutNoise(Residuals residuals) {
   // The squares of errors in two directions have an exponential distribution; its mean is the median over
   // log 2.
   const double sq_noise = median(std::move(residuals.sq_sines)) / std::log(2.0);
-  const Eigen::SelfAdjointEigenSolver<Matrix6d> solver(residuals.hessian - sq_noise * residuals.gain_of_noise);
+  const SymmetricEigen<Matrix6d> solver(residuals.hessian - sq_noise * residuals.gain_of_noise);
   return solver.eigenvectors() * solver.eigenvalues().cwiseMax(0.0).asDiagonal() * solver.eigenvectors().transpose();
 }
 
@@ -98,7 +97,7 @@ Eigen::Isometry3d MotionEquations::motion() const {
       Eigen::Vector3d(turned(1, 2) - turned(2, 1), turned(2, 0) - turned(0, 2), turned(0, 1) - turned(1, 0));
   gradient.tail<3>() += points.block<3, 1>(3, 6);
   hessian.diagonal().array() += kRegistration.inertia + kRegistration.relative_inertia * hessian.diagonal().maxCoeff();
-  const Vector6d motion = hessian.selfadjointView<Eigen::Lower>().ldlt().solve(gradient);
+  const Vector6d motion = solveSymmetric(hessian, gradient);
   Eigen::Isometry3d moved = Eigen::Isometry3d::Identity();
   if (!motion.allFinite()) return moved;
   moved.linear() = rotationBy(motion.head<3>());

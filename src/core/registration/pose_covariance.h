@@ -3,7 +3,6 @@
 #include <Eigen/Geometry>
 
 #include "core/geometry/small_motion.h"
-#include "core/geometry/weighted_products.h"
 #include "core/registration/posed_surface.h"
 
 namespace pcl_symmetry {

@@ -1,6 +1,5 @@
 /// The group of rotations that motions and axes generate, placed exactly.
 #include <Eigen/Geometry>
-#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -8,6 +7,7 @@
 #include <stdexcept>
 
 #include "core/base/constants.h"
+#include "core/base/symmetric_solvers.h"
 #include "core/rotation/placed_group.h"
 
 namespace pcl_symmetry {
@@ -136,12 +136,11 @@ Eigen::Vector3d fixedPoint(const std::vector<Eigen::Isometry3d>& motions, const 
     size = std::max(size, symmetry.offset.norm());
     row += 3;
   }
-  Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixX3d> solver;
   const double off_center =
       0.02;  // misfit as a share of the translations: files are rounded, but a screw is no rotation
-  solver.setThreshold(off_center);
-  solver.compute(rows);
-  const Eigen::Vector3d center = solver.solve(right);
+  const Eigen::Matrix3d squares = rows.transpose().lazyProduct(rows);
+  const Eigen::Vector3d center =
+      SymmetricEigen<Eigen::Matrix3d>(squares).solve(rows.transpose() * right, off_center * off_center);
   if ((rows * center - right).cwiseAbs().maxCoeff() > off_center * size)
     throw std::invalid_argument("discrete: the motions and axes have no fixed point in common");
   return center;

@@ -1,7 +1,5 @@
 #include "core/rotation/rotation_evidence.h"
 
-#include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -9,6 +7,7 @@
 #include "core/base/constants.h"
 #include "core/base/logistic.h"
 #include "core/base/parallel.h"
+#include "core/base/symmetric_solvers.h"
 #include "core/evidence/evidence_rules.h"
 #include "core/geometry/diameter.h"
 #include "core/geometry/point_samples.h"
@@ -137,7 +136,7 @@ double RotationEvidence::hold(const Line3d& line, double angle) const {
     const Eigen::Vector4d slope = slopeOf(beside, x, motion * x, facing_.col(all.closest[i]).cast<double>());
     stiffness += slope * slope.transpose() / static_cast<double>(samples_.size());
   }
-  return std::max(0.0, Eigen::SelfAdjointEigenSolver<Eigen::Matrix4d>(stiffness).eigenvalues()[1]);
+  return std::max(0.0, SymmetricEigen<Eigen::Matrix4d>(stiffness).eigenvalues()[1]);
 }
 
 void RotationEvidence::addPulls(const Line3d& line, double angle, const std::vector<int>& samples, double width,
@@ -180,7 +179,7 @@ Line3d RotationEvidence::fitted(const Line3d& start, const std::vector<double>& 
     Pulls pulls;
     for (std::size_t k = 0; k < angles.size(); ++k) addPulls(line, angles[k], samples, width, closest[k], pulls);
     pulls.squares.diagonal().array() += kScanAxes.fit_ridge * pulls.squares.trace() + kScanAxes.least_f;
-    const Eigen::Vector4d step = pulls.squares.ldlt().solve(pulls.sum);
+    const Eigen::Vector4d step = solveSymmetric(pulls.squares, pulls.sum);
     line = movedLine(line, step * std::min(1.0, kScanAxes.longest_step / std::max(kScanAxes.fit_step, step.norm())));
     line.origin() = line.projection(Eigen::Vector3d::Zero());
   }

@@ -1,11 +1,11 @@
 #include "core/scan/depth_filter.h"
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
 #include "core/base/parallel.h"
+#include "core/base/symmetric_solvers.h"
 #include "core/scan/scan_rules.h"
 
 namespace pcl_symmetry {
@@ -43,7 +43,7 @@ public:
   Eigen::Vector3f solve() const {
     // One pixel in line has no slope across: any tiny ridge keeps it at 0.
     const Eigen::Vector3f ridge(0.0f, 1e-3f, 1e-3f);
-    return (squares_ + Eigen::Matrix3f(ridge.asDiagonal())).ldlt().solve(right_);
+    return solveSymmetric(Eigen::Matrix3f(squares_ + Eigen::Matrix3f(ridge.asDiagonal())), right_);
   }
 
 private:

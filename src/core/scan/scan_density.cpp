@@ -1,6 +1,5 @@
 #include "core/scan/scan_density.h"
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -8,6 +7,7 @@
 
 #include "core/base/median.h"
 #include "core/base/random.h"
+#include "core/base/symmetric_solvers.h"
 #include "core/geometry/directions.h"
 #include "core/scan/scan_rules.h"
 #include "pcl_symmetry/core/closest_point_search.h"
@@ -42,13 +42,12 @@ Patch fitPatch(const Points& points, const int* neighbors, int count) {
     sum += d;
     squares += d * d.transpose();
   }
-  Eigen::SelfAdjointEigenSolver<Eigen::Matrix3f> solver;
-  solver.computeDirect(squares - sum * sum.transpose() / static_cast<float>(count));
-  const Eigen::Vector3f moments = solver.eigenvalues();
+  const SymmetricEigen<Eigen::Matrix3f> axes(squares - sum * sum.transpose() / static_cast<float>(count));
+  const Eigen::Vector3f& moments = axes.eigenvalues();
   // The area of the ellipse: unlike the distance to the last neighbor, the moments about the mean are hardly larger at
   // a border.
   const float area = std::sqrt(moments[1] * moments[2]);
-  Patch patch{solver.eigenvectors().col(0), -std::log(area), false};
+  Patch patch{axes.eigenvectors().col(0), -std::log(area), false};
   patch.is_surface = patch.normal.allFinite() && std::isfinite(patch.log_density) &&
                      moments[1] > kScan.thinnest * kScan.thinnest * moments[2] &&
                      std::max(moments[0], 0.0f) < kScan.thickest * kScan.thickest * area;

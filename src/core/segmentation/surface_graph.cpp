@@ -1,6 +1,5 @@
 #include "pcl_symmetry/core/surface_graph.h"
 
-#include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
@@ -13,6 +12,7 @@
 #include "core/base/constants.h"
 #include "core/base/parallel.h"
 #include "core/base/random.h"
+#include "core/base/symmetric_solvers.h"
 #include "core/geometry/distinct_points.h"
 #include "core/geometry/triangle_tree.h"
 #include "core/segmentation/segmentation_rules.h"
@@ -161,8 +161,9 @@ LocalSurface localSurface(const PointsRef& points, Eigen::Index i, const std::ve
   for (std::size_t k = 0; k < neighbors.size(); ++k)
     around.col(static_cast<Eigen::Index>(k) + 1) = points.col(neighbors[k]);
   const Points offsets = around.colwise() - around.rowwise().mean();
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3f> axes(offsets * offsets.transpose());
-  LocalSurface local{axes.eigenvectors().col(0), axes.eigenvectors().col(1), axes.eigenvectors().col(2), 0.0f, 0.0f};
+  const Eigen::Matrix3f spread = offsets * offsets.transpose();
+  const Eigen::Matrix3f axes = SymmetricEigen<Eigen::Matrix3d>(spread.cast<double>()).eigenvectors().cast<float>();
+  LocalSurface local{axes.col(0), axes.col(1), axes.col(2), 0.0f, 0.0f};
   // A disc through the last of k neighbors holds k points: each represents pi r^2 / k.
   const auto count = static_cast<float>(neighbors.size());
   const float radius = (around.rightCols(1) - around.col(0)).norm();

@@ -3,7 +3,6 @@
 
 #include <gtest/gtest.h>
 
-#include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
 #include <Eigen/LU>
 #include <cmath>
@@ -11,6 +10,7 @@
 
 #include "core/base/constants.h"
 #include "core/base/random.h"
+#include "core/base/symmetric_solvers.h"
 #include "core/geometry/axis_rotations.h"
 #include "core/geometry/directions.h"
 #include "core/geometry/principal_axes.h"
@@ -60,7 +60,7 @@ TEST(LocalGeometry, FitsTheAxisOfLeastSpread) {
     Eigen::Matrix3Xd offsets(3, 9);
     for (int k = 0; k < 9; ++k) offsets.col(k) = points.col(nearest[i * 9 + k]).cast<double>();
     offsets.colwise() -= offsets.rowwise().mean().eval();
-    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(offsets * offsets.transpose());
+    const SymmetricEigen<Eigen::Matrix3d> solver(offsets * offsets.transpose());
     // Floats round the moments by 1e-6 of the largest: axes of nearly equal moments are free by that.
     const Eigen::Vector3d normal = geometry.normals.col(i).cast<double>();
     const double least = solver.eigenvalues()[0], found = normal.dot(offsets * offsets.transpose() * normal);
