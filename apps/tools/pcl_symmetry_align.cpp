@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <fstream>
 #include <nlohmann/json.hpp>
 #include <numeric>
 #include <optional>
@@ -21,6 +20,7 @@
 #include "io/answers.h"
 #include "io/cloud_fields.h"
 #include "io/exact_coordinates.h"
+#include "io/file_text.h"
 #include "io/input_shape.h"
 #include "io/mesh_output.h"
 #include "io/shape_output.h"
@@ -181,8 +181,7 @@ struct Landmarks {
 };
 
 Landmarks readLandmarks(const std::string& path, const Eigen::Vector3d& shift) {
-  std::ifstream file(path);
-  if (!file) throw InputError(path + ": cannot be opened");
+  std::istringstream file(readTextFile(path));
   Landmarks landmarks;
   std::string line;
   for (int number = 1; std::getline(file, line); ++number) {

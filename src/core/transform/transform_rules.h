@@ -41,7 +41,6 @@ struct TransformRules {
   // Votes
   double near_share = 0.2;          ///< of the pairs that are drawn plane first
   std::size_t num_vote_blocks = 8;  ///< partial maps, added up in their order
-  double least_sine = 1e-6;         ///< bounds the weight of pairs along z: one in 10^12 is closer to the pole
 };
 
 inline constexpr TransformRules kTransform{};
