@@ -8,7 +8,7 @@ to_build=(
   libsqlite3-dev zlib1g-dev                                               # its database of models
   libboost-filesystem-dev libboost-program-options-dev nlohmann-json3-dev # the tools: options, files, reports,
   libassimp-dev libembree-dev                                             # meshes, the virtual scanner,
-  libvtk9-dev python3-vtk9 libx11-dev xvfb xauth libgl1-mesa-dri          # pictures, also without a screen
+  libvtk9-dev python3-vtk9 libx11-dev xvfb libgl1-mesa-dri                # pictures, also without a screen
   pybind11-dev python3-dev python3-numpy                                  # the Python module
 )
 to_develop=(

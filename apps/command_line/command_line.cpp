@@ -1,8 +1,12 @@
 #include "command_line/command_line.h"
 
+#include <sys/ioctl.h>
+#include <unistd.h>
+
 #include <algorithm>
 #include <boost/algorithm/string.hpp>
 #include <iostream>
+#include <map>
 #include <numeric>
 #include <sstream>
 #include <type_traits>
@@ -15,6 +19,28 @@ namespace pcl_symmetry::apps {
 namespace po = boost::program_options;
 
 namespace {
+
+/// Former spellings, which stay for one version.
+const std::map<std::string, std::string> kRenamedFlags{
+    {"symmetrise", "symmetrize"}, {"colour", "color"}, {"colour_tolerance", "color_tolerance"}};
+
+/// Groups of the help, in order: what is written, what is read, how it is computed. Flags of the tool alone stand
+/// between the first two.
+const std::vector<std::pair<std::string, std::vector<std::string>>> kFlagGroups{
+    {"Output", {"json", "png", "html", "csv", "support", "profile", "report", "resume"}},
+    {"Analysis", {}},
+    {"Input", {"viewpoint", "ground", "label", "points", "levels", "surface"}},
+    {"Computation", {"grid", "sigma", "seed", "threads", "quiet"}},
+    {"Help", {"help", "version"}}};
+
+/// \return columns of the terminal, or those of a page.
+unsigned helpWidth() {
+  winsize size{};
+  const bool known = ::ioctl(STDOUT_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 0;
+  return known ? std::clamp<unsigned>(size.ws_col, 60, 160) : 100;
+}
+
+nlohmann::json made_by;  // of the command line that was parsed last
 
 std::size_t editDistance(const std::string& a, const std::string& b) {
   std::vector<std::size_t> row(b.size() + 1);
@@ -32,6 +58,10 @@ std::size_t editDistance(const std::string& a, const std::string& b) {
 }
 
 }  // namespace
+
+const nlohmann::json& madeBy() {
+  return made_by;
+}
 
 CommandLine::CommandLine(std::string tool, std::string summary, std::string example)
     : tool_(std::move(tool)), summary_(std::move(summary)), example_(std::move(example)) {
@@ -85,7 +115,8 @@ CommandLine& CommandLine::picture(const std::string& name, std::optional<std::st
 CommandLine& CommandLine::choice(const std::string& name, std::string& value, const std::vector<std::string>& allowed,
                                  const std::string& help) {
   const std::string list = boost::algorithm::join(allowed, "|");
-  return add(name, list, help + " (" + value + ")", [&value, allowed, list, name](const std::string& text) {
+  return add(name, list, help + " (" + value + ")", [&value, allowed, list, name](std::string text) {
+    if (name == "method" && text == "exact") text = "convolution";  // its name in versions before
     if (std::find(allowed.begin(), allowed.end(), text) == allowed.end())
       rejectValue("-" + name, text, "must be " + list);
     value = text;
@@ -156,14 +187,17 @@ CommandLine& CommandLine::common(CommonOptions& options, unsigned flags) {
     add("viewpoint", "auto|none|X,Y,Z", "where the scanner stood, input frame (auto)",
         [&options](const std::string& text) { options.viewpoint = parseViewpoint("-viewpoint", text); });
   }
-  if (flags & kSeed) number("seed", options.seed, "start of the random streams");
+  if (flags & kSeed) {
+    number("seed", options.seed, "start of the random streams");
+    seed_ = &options.seed;
+  }
   if (flags & kThreads) number("threads", options.threads, Range::closed(0, 4096), "number of threads, 0 = all");
   if (flags & kJson)
     add("json", "FILE", "write the result as JSON", [&options](const std::string& path) {
       checkTarget(path);
       options.json_path = path;
     });
-  if (flags & kQuiet) flag("quiet", options.quiet, "print errors only");
+  if (flags & kQuiet) flag("quiet", options.quiet, "print results and errors only");
   return *this;
 }
 
@@ -193,6 +227,14 @@ bool CommandLine::parse(int argc, const char* const* argv) {
   }
   assignPositionals();
   po::notify(values_);
+  nlohmann::json options = nlohmann::json::object();
+  for (const auto& [name, value] : values_) {
+    if (!given(name) || name == "positional arguments") continue;
+    const auto* const text = boost::any_cast<std::string>(&value.value());
+    options[name] = text ? nlohmann::json(*text) : nlohmann::json(true);
+  }
+  made_by = {{"tool", tool_}, {"version", PCL_SYMMETRY_VERSION}, {"options", options}};
+  if (seed_) made_by["seed"] = *seed_;
   return true;
 }
 
@@ -207,7 +249,14 @@ void CommandLine::readTokens(int argc, const char* const* argv) {
   try {
     const int style = allow_long | long_allow_adjacent | long_allow_next | allow_short | allow_dash_for_short |
                       short_allow_next | allow_long_disguise;
-    po::store(po::command_line_parser(argc, argv).options(all).positional(order).style(style).run(), values_);
+    std::vector<std::string> arguments(argv + std::min(argc, 1), argv + argc);
+    for (std::string& argument : arguments) {
+      const std::size_t begin = argument.find_first_not_of('-'), end = std::min(argument.find('='), argument.size());
+      if (begin == 0 || begin == std::string::npos || begin > end) continue;
+      const auto renamed = kRenamedFlags.find(argument.substr(begin, end - begin));
+      if (renamed != kRenamedFlags.end()) argument.replace(begin, end - begin, renamed->second);
+    }
+    po::store(po::command_line_parser(arguments).options(all).positional(order).style(style).run(), values_);
   } catch (const po::unknown_option& error) {
     const std::string unknown = error.get_option_name();
     const std::string closest = closestFlag(unknown);
@@ -252,9 +301,25 @@ std::string CommandLine::usage() const {
   for (const Positional& argument : positionals_) {
     text << "  " << argument.name << std::string(width - argument.name.size() + 2, ' ') << argument.help << "\n";
   }
-  std::ostringstream flags;
-  flags << flags_;
-  text << "\n" << boost::algorithm::replace_all_copy(flags.str(), " --", " -") << "\nExample:\n  " << example_ << "\n";
+  const auto groupOf = [](const std::string& flag) {
+    const auto found = std::find_if(kFlagGroups.begin(), kFlagGroups.end(), [&](const auto& group) {
+      return std::count(group.second.begin(), group.second.end(), flag) > 0;
+    });
+    return found == kFlagGroups.end() ? std::string("Analysis") : found->first;
+  };
+  for (const auto& [name, known] : kFlagGroups) {
+    po::options_description group(name, helpWidth(), helpWidth() / 2);
+    for (const std::string& first : known)
+      for (const auto& flag : flags_.options())
+        if (flag->long_name() == first) group.add(flag);
+    for (const auto& flag : flags_.options())
+      if (known.empty() && groupOf(flag->long_name()) == name) group.add(flag);
+    if (group.options().empty()) continue;
+    std::ostringstream flags;
+    flags << group;
+    text << "\n" << boost::algorithm::replace_all_copy(flags.str(), " --", " -");
+  }
+  text << "\nExample:\n  " << example_ << "\n";
   return text.str();
 }
 

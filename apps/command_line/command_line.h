@@ -6,6 +6,7 @@
 #include <boost/program_options.hpp>
 #include <cstdint>
 #include <functional>
+#include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
 #include <vector>
@@ -44,11 +45,11 @@ struct CommonOptions {
 };
 
 /// The estimators of the transform.
-inline const std::vector<std::string> kMethodNames{"sampled", "exact", "rotational", "voting"};
+inline const std::vector<std::string> kMethodNames{"sampled", "convolution", "rotational", "voting"};
 
 /// \param name one of kMethodNames.
 inline TransformMethod methodNamed(const std::string& name) {
-  return name == "exact"        ? TransformMethod::Convolution
+  return name == "convolution"  ? TransformMethod::Convolution
          : name == "rotational" ? TransformMethod::Rotational
          : name == "voting"     ? TransformMethod::Voting
                                 : TransformMethod::Sampled;
@@ -71,6 +72,9 @@ enum CommonFlag : unsigned {
   kAnalysisFlags = (1u << 6) - 1,             ///< all but -sigma and -points
   kShapeFlags = kAnalysisFlags | kMeshPoints  ///< of tools that analyze one cloud or mesh
 };
+
+/// \return what the JSON of a tool says of how it was made: tool, version, seed, and the options that were given.
+const nlohmann::json& madeBy();
 
 /// Declares the flags of a tool, each bound to a variable that holds its default, and reads them from argv.
 /// The bound variables must outlive parse().
@@ -132,6 +136,7 @@ private:
 
   std::string tool_, summary_, example_;
   std::vector<Positional> positionals_;
+  const std::uint64_t* seed_ = nullptr;                                  // of a tool that draws
   boost::program_options::options_description flags_{"Flags", 120, 60};  // widths of the help and of its right column
   boost::program_options::variables_map values_;
 };

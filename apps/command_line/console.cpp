@@ -40,6 +40,10 @@ Step::Step(const Console& console, const std::string& what)
   if (quiet_) return;
   std::fprintf(stderr, "%s ", what_.c_str());
   std::fflush(stderr);
+  if (terminal_)
+    loops_.emplace([this](double share) {
+      if (!told_) draw(share);
+    });
 }
 
 Step::~Step() {
@@ -54,6 +58,11 @@ void Step::clearBar() {
 }
 
 void Step::progress(double fraction) {
+  told_ = true;
+  draw(fraction);
+}
+
+void Step::draw(double fraction) {
   if (quiet_ || !terminal_ || !open_) return;
   const int percent = static_cast<int>(100.0 * std::clamp(fraction, 0.0, 1.0));
   if (percent == drawn_) return;
@@ -65,7 +74,7 @@ void Step::progress(double fraction) {
 }
 
 double Step::done(const std::string& result) {
-  const double elapsed = watch_.lap();
+  const double elapsed = time_.lap();
   if (!quiet_ && open_) {
     clearBar();
     char time[32];

@@ -1,9 +1,11 @@
 /// What a tool tells its user: PCL's `[done, 12.3 ms : 10000 points]` lines, and a progress bar on a terminal.
 #pragma once
 
+#include <optional>
 #include <string>
 
 #include "core/base/stopwatch.h"
+#include "core/base/watch.h"
 
 namespace pcl_symmetry::apps {
 
@@ -27,8 +29,8 @@ private:
   bool quiet_;
 };
 
-/// One step of a tool: prints "Loading a.pcd " when it begins and "[done, 12.3 ms : 10000 points]" when it is done; a
-/// step that is left by an exception ends its line with "[failed]".
+/// One step of a tool, of which a terminal shows how far its loops are: prints "Loading a.pcd " when it begins and
+/// "[done, 12.3 ms : 10000 points]" when it is done; a step that is left by an exception ends its line with "[failed]".
 class Step {
 public:
   Step(const Console& console, const std::string& what);
@@ -46,13 +48,16 @@ public:
 
 private:
   void clearBar();
+  void draw(double fraction);
 
   bool quiet_;
   bool terminal_;
   bool open_ = true;
   int drawn_ = -1;
   std::string what_;
-  Stopwatch watch_;
+  bool told_ = false;  ///< by progress(): the loops are not asked any more
+  Stopwatch time_;
+  std::optional<Watch> loops_;
 };
 
 }  // namespace pcl_symmetry::apps

@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "command_line/command_line.h"
 #include "io/exact_coordinates.h"
 #include "pcl_symmetry/core/detect_planes.h"
 #include "pcl_symmetry/core/symmetry_frame.h"
@@ -24,10 +25,12 @@ const char* toString(ViewpointSource source);
 /// \param many where it is not that with an s.
 std::string counted(std::size_t number, const std::string& one, const std::string& many = "");
 
-/// JSON as text. Names of files are bytes: what is no UTF-8 is replaced, where nlohmann's default would throw.
+/// JSON as text; an object says how it was made, see madeBy(). Names of files are bytes: what is no UTF-8 is replaced,
+/// where nlohmann's default would throw.
 /// \param indent blanks a level; -1: one line
 template <typename Json>
-std::string jsonText(const Json& json, int indent = 2) {
+std::string jsonText(Json json, int indent = 2) {
+  if (json.is_object()) json["made_by"] = Json::parse(madeBy().dump());
   return json.dump(indent, ' ', false, Json::error_handler_t::replace);
 }
 

@@ -20,8 +20,8 @@ void requireDisplay(const std::string& name) {
   const char* const display = std::getenv("DISPLAY");
   throw InputError(name + ": cannot be drawn, " +
                    (display ? "the display " + std::string(display) +
-                                  " cannot be reached or has no OpenGL; without DISPLAY xvfb-run is used"
-                            : "there is no display, and xvfb-run is missing (Debian package xvfb)"));
+                                  " cannot be reached or has no OpenGL; without DISPLAY Xvfb is used"
+                            : "there is no display, and Xvfb is missing (Debian package xvfb)"));
 }
 
 }  // namespace pcl_symmetry::apps

@@ -42,8 +42,8 @@ struct AlignOptions {
   BatchOptions batch;
   std::string input;
   std::optional<std::string> output, target, html_path, png_path, landmarks;
-  std::string symmetrise = "none";
-  bool complete = false, as_published = false, cut = false;
+  std::string symmetrize = "none";
+  bool complete = false, any_plane = false, as_published = false, cut = false;
   CommonOptions common;
 };
 
@@ -61,21 +61,23 @@ CommandLine commandLine(AlignOptions& options) {
             "page that shows the input in the target, or its center and axes, for any browser, without network")
       .picture("png", options.png_path, "picture of the same")
       .choice(
-          "symmetrise", options.symmetrise, {"none", "mean", "left", "right"},
+          "symmetrize", options.symmetrize, {"none", "mean", "left", "right"},
           "write the shape that its best plane maps onto itself, after the transform: its halves are the mean of both "
           "sides, or the side that the normal of the plane points away from (left) or to (right). A mesh keeps its "
           "faces and is written as .ply. The field asymmetry of a point tells how far the shape is outside of the "
           "reflection of its other side there, along the normal; -html and -png show it")
       .flag("cut", options.cut,
-            "with -symmetrise and a mesh: cut it at the plane, and write one side (of mean the left one) and its exact "
+            "with -symmetrize and a mesh: cut it at the plane, and write one side (of mean the left one) and its exact "
             "reflection. Without, faces of both sides that do not match leave a deviation, which the JSON tells")
       .text("landmarks", "FILE", options.landmarks,
-            "with -symmetrise: lines of six numbers, a landmark and its counterpart, or of three, one of the midline; "
+            "with -symmetrize: lines of six numbers, a landmark and its counterpart, or of three, one of the midline; "
             "their asymmetry is reported")
       .flag("as_published", options.as_published, "the frame by the paper's own method, to the letter of Section 5.1")
       .flag("complete", options.complete,
             "reflect the cloud across its best plane of symmetry, except into space that was seen to be empty; the "
             "field reflected_of of an added point is the index of its source, and -1 for all others")
+      .flag("any_plane", options.any_plane,
+            "with -complete: where there is no symmetry, reflect across the plane that comes closest")
       .common(options.common, kShapeFlags);
   options.batch.addTo(line);
   return line;
@@ -111,8 +113,19 @@ ReflectionPlane planeThrough(const SymmetryAxis& axis, const Eigen::Vector3d& sc
   return ReflectionPlane(normal, normal.dot(axis.point));
 }
 
-/// The best plane of symmetry, or one through the axis of a body of revolution; in the frame of the shifted points.
-ReflectionPlane bestPlane(const Console& console, const InputShape& input, const CommonOptions& common) {
+/// What a shape is completed or symmetrized by, in the frame of the shifted points.
+struct BestPlane {
+  ReflectionPlane plane;
+  std::string kind;
+  double confidence;
+
+  nlohmann::json json(const Eigen::Vector3d& shift) const {
+    return {{"plane", numbersOf(plane, shift)}, {"kind", kind}, {"confidence", confidence}};
+  }
+};
+
+/// The best plane of symmetry, or one through the axis of a body of revolution.
+BestPlane bestPlane(const Console& console, const InputShape& input, const CommonOptions& common) {
   Step step(console, "Searching planes");
   DetectionOptions detection;
   common.applyTo(detection);
@@ -127,30 +140,36 @@ ReflectionPlane bestPlane(const Console& console, const InputShape& input, const
   });
   if (!refinement.getAxes().empty()) {
     step.done("axis of revolution");
-    return planeThrough(
-        refinement.getAxes().front(),
-        refinement.getUsedViewpoint().value_or(input.shape.points->sensor_origin_.head<3>().cast<double>().eval()));
+    const SymmetryAxis& axis = refinement.getAxes().front();
+    const Eigen::Vector3d scanner =
+        refinement.getUsedViewpoint().value_or(input.shape.points->sensor_origin_.head<3>().cast<double>().eval());
+    return {planeThrough(axis, scanner), "through the axis", axis.confidence};
   }
   if (const auto& best = refinement.getDetection().best; planes.empty() && best) {
     step.done("no symmetry; the best plane is used");
-    return *best;
+    return {*best, toString(best->kind), best->confidence};
   }
   if (planes.empty()) throw InputError(input.path + ": has no plane of symmetry to complete it across");
   step.done("confidence " + std::to_string(std::lround(100.0 * planes.front().confidence)) + " %");
-  return planes.front();
+  return {planes.front(), toString(planes.front().kind), planes.front().confidence};
 }
 
 /// Adds to the fields what its symmetry shows of the side that was not seen.
 /// \return the points and what is added, in the frame of the shifted points.
 pcl::PointCloud<pcl::PointXYZ> complete(const Console& console, const InputShape& input, const CommonOptions& common,
-                                        pcl::PCLPointCloud2& fields) {
-  const ReflectionPlane plane = bestPlane(console, input, common);
+                                        bool by_any_plane, pcl::PCLPointCloud2& fields, nlohmann::json& json) {
+  const BestPlane best = bestPlane(console, input, common);
+  if (!by_any_plane && best.kind == toString(PlaneKind::Approximate))
+    throw InputError(input.path + ": has no plane of symmetry to complete it across; -any_plane takes the best one");
+  const ReflectionPlane& plane = best.plane;
   Step step(console, "Completing");
   CompletionOptions options;
   options.num_threads = common.threads;
   const auto completed = completeBySymmetry(*input.points, plane, options, shifted(common.viewpoint, input.shift()));
   fields = appendCopies(fields, completed.sources, "reflected_of");
   movePoints(fields, shiftedBack(plane, input.shift()).reflection(), input.points->size());
+  json = best.json(input.shift());
+  json["num_added"] = completed.added.size();
   step.done(std::to_string(completed.added.size()) + " points added");
   return completed.cloud;
 }
@@ -205,13 +224,15 @@ struct Symmetrized {
 
 Symmetrized symmetrized(const Console& console, const InputShape& input, const AlignOptions& options,
                         const CommonOptions& common) {
-  const ReflectionPlane plane = bestPlane(console, input, common);
+  const BestPlane best = bestPlane(console, input, common);
+  const ReflectionPlane& plane = best.plane;
   Step step(console, "Symmetrizing");
-  const SymmetrizedHalf half = options.symmetrise == "left"    ? SymmetrizedHalf::Left
-                               : options.symmetrise == "right" ? SymmetrizedHalf::Right
+  const SymmetrizedHalf half = options.symmetrize == "left"    ? SymmetrizedHalf::Left
+                               : options.symmetrize == "right" ? SymmetrizedHalf::Right
                                                                : SymmetrizedHalf::Mean;
   Symmetrized result;
-  result.json = {{"half", options.symmetrise}, {"plane", numbersOf(plane, input.shift())}};
+  result.json = best.json(input.shift());
+  result.json["half"] = options.symmetrize;
   const auto report = [&](const auto& shape) {
     result.asymmetry = shape.asymmetry;
     result.json["mean_asymmetry"] = shape.mean_asymmetry;
@@ -421,16 +442,17 @@ void analyze(const AlignOptions& options, FileJob& job) {
   Motion motion =
       options.target ? toTarget(console, input, options, common) : toOwnFrame(console, input, options, common);
   std::optional<Symmetrized> shape;
-  if (options.symmetrise != "none" && motion.converged) {
+  if (options.symmetrize != "none" && motion.converged) {
     if (options.output && input.shape.mesh) checkMeshExtension(job.output(*options.output));
     shape = symmetrized(console, input, options, common);
     motion.text += shape->text;
-    motion.json["symmetrised"] = shape->json;
+    motion.json["symmetrized"] = shape->json;
     motion.scene = sceneOf(input, *shape);
   }
   pcl::PCLPointCloud2 fields = shape ? std::move(shape->fields) : input.fields();
   if (options.complete && motion.converged) {
-    const pcl::PointCloud<pcl::PointXYZ> both = complete(console, input, common, fields);
+    const pcl::PointCloud<pcl::PointXYZ> both =
+        complete(console, input, common, options.any_plane, fields, motion.json["completed"]);
     motion.scene = sceneOf(both, input.points->size(), "the input (1) and what completes it (2)");
   }
   job.report({motion.text, motion.json, rowsOf(motion)});
@@ -453,10 +475,16 @@ int run(int argc, char** argv) {
   CommandLine line = commandLine(options);
   if (!line.parse(argc, argv)) return 0;
   if (options.output) checkCloudExtension(*options.output);
-  if (options.complete && options.symmetrise != "none")
-    throw UsageError("-complete and -symmetrise exclude each other");
-  if (options.cut && options.symmetrise == "none") throw UsageError("-cut needs -symmetrise");
-  if (options.landmarks && options.symmetrise == "none") throw UsageError("-landmarks needs -symmetrise");
+  if (options.complete && options.symmetrize != "none")
+    throw UsageError("-complete and -symmetrize exclude each other");
+  if (options.any_plane && !options.complete) throw UsageError("-any_plane needs -complete");
+  const bool is_written = options.output || options.html_path || options.png_path;
+  if (options.complete && !is_written)
+    throw UsageError("-complete needs an output, -html or -png to show what it adds");
+  if (options.symmetrize != "none" && !is_written && !options.common.json_path && !options.landmarks)
+    throw UsageError("-symmetrize needs an output, -html, -png, -json or -landmarks");
+  if (options.cut && options.symmetrize == "none") throw UsageError("-cut needs -symmetrize");
+  if (options.landmarks && options.symmetrize == "none") throw UsageError("-landmarks needs -symmetrize");
   options.batch.inputs = {options.input};
   std::vector<std::string> columns{"converged"};
   for (const char row : {'0', '1', '2', '3'})

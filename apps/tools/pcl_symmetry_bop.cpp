@@ -56,9 +56,9 @@ CommandLine commandLine(BopOptions& options) {
               "the same in the unit of the input; 0: the share decides")
       .number("min_confidence", options.models.symmetries.min_confidence, Range::closed(0, 1),
               "least confidence of rotations that are called symmetries")
-      .flag("colour", options.models.use_colors,
+      .flag("color", options.models.use_colors,
             "only rotations that keep the colors of the vertices, or of the texture of a PLY file")
-      .number("colour_tolerance", options.models.color_tolerance, Range::above(0),
+      .number("color_tolerance", options.models.color_tolerance, Range::above(0),
               "difference of colors that counts as none, in CIELAB")
       .number("sphere_angle", options.sphere_angle, Range::upTo(0, 180),
               "degrees within which the tilts that are written for a sphere reach any rotation")
@@ -182,7 +182,8 @@ std::string modelsInfo(std::vector<ModelInfo> infos, double sphere_angle) {
   });
   std::string text;
   for (const ModelInfo& info : infos)
-    text += (text.empty() ? "{\n  \"" : ",\n  \"") + info.key + "\": " + jsonText(toJson(info, sphere_angle), -1);
+    text += (text.empty() ? "{\n  \"" : ",\n  \"") + info.key +
+            "\": " + toJson(info, sphere_angle).dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
   return text + "\n}\n";
 }
 
@@ -192,7 +193,7 @@ void printColorNote(const std::vector<ModelInfo>& infos, bool use_colors) {
   if (num_colored == 0) return;
   std::printf("%td of %zu models have colors, which were not looked at: %s\n", num_colored, infos.size(),
               use_colors ? "only those of vertices, and textures that PLY files name, can be read"
-                         : "-colour asks for rotations that keep them");
+                         : "-color asks for rotations that keep them");
 }
 
 /// Prints how a given file compares, and writes that as JSON.

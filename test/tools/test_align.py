@@ -108,13 +108,33 @@ class Align(ToolTest):
         np.testing.assert_array_equal(after["label"][len(before):], added)
         self.assert_reflected(after, len(before))
 
+    def test_completes_nothing_that_has_no_symmetry_unless_told_to(self):
+        report = self.report(self.scan()[0], "out.ply -complete")["completed"]
+        self.assertIn(report["kind"], ("symmetry", "possible"))
+        self.assertGreater(report["confidence"], 0.2)
+        self.assertEqual(report["num_added"], (self.points("out.ply")["reflected_of"] >= 0).sum())
+        random = np.random.default_rng(1)
+        corners = np.array([[0, 0, 0], [3, 0, 0], [0, 2, 0], [0.3, 0.4, 1]])
+        weights = random.dirichlet((1, 1, 1), 6000)[:, :, None]
+        faces = corners[np.array([(0, 1, 2), (0, 1, 3), (1, 2, 3), (0, 2, 3)])[random.integers(4, size=6000)]]
+        rows = (weights * faces).sum(axis=1)
+        cloud = self.write("t.xyz", "".join("{} {} {}\n".format(*row) for row in rows))
+        self.fails(1, "has no plane of symmetry to complete it across; -any_plane", cloud, "t.ply -complete -quiet")
+        self.assertFalse((self.folder / "t.ply").exists())
+        forced = self.report(cloud, "t.ply -complete -any_plane")["completed"]
+        self.assertEqual(forced["kind"], "approximate")
+        self.assertLess(forced["confidence"], 0.2)
+        for flags in ("-complete", "-symmetrize mean", "t.ply -any_plane"):
+            self.run_tool(cloud, flags, code=2)
+        self.run_tool(cloud, "s.ply -symmetrise mean -quiet")  # the former spelling
+
     def test_makes_a_mesh_symmetric(self):
         """A box whose right end stands 0.02 further out than its left one, about x = 0.01."""
         corners = tool_run.box_corners(2, 1.5, 1)
         corners[[1, 5], 0] = 2.02
         mesh = self.write("m.off", tool_run.off(corners, tool_run.BOX_FACES))
         self.write("l.txt", "# ends\n-2 0 0, 2 0 0\n0 1.5 0\n")
-        found = self.report(mesh, "s.ply -symmetrise mean -landmarks l.txt")["symmetrised"]
+        found = self.report(mesh, "s.ply -symmetrize mean -landmarks l.txt")["symmetrized"]
         self.assertLess(found["deviation"], 1e-5 * 5)
         self.assertLess(found["greatest_asymmetry"], 0.025)
         self.assertEqual([len(found["landmarks"][key]) for key in ("paired", "midline")], [1, 1])
@@ -123,16 +143,16 @@ class Align(ToolTest):
         self.assertIn("element face 6\n", header)
         self.assertIn("property float asymmetry\n", header)
         self.assertTrue(np.isfinite(float(body.splitlines()[3].split()[3])))
-        self.run_tool(mesh, "c.ply -symmetrise mean -cut")
+        self.run_tool(mesh, "c.ply -symmetrize mean -cut")
         self.assertIn("element face 28\n", self.text("c.ply"), "two triangles of an end, twelve of four sides")
-        self.fails(2, ".ply", mesh, "s.pcd -symmetrise mean")
+        self.fails(2, ".ply", mesh, "s.pcd -symmetrize mean")
         self.write("bad.txt", "1 2 3\n1 2\n")
-        self.fails(1, "bad.txt: line 2", mesh, "-symmetrise mean -landmarks bad.txt")
-        self.run_tool(mesh, "-complete -symmetrise mean", code=2)
+        self.fails(1, "bad.txt: line 2", mesh, "-symmetrize mean -landmarks bad.txt")
+        self.run_tool(mesh, "-complete -symmetrize mean", code=2)
 
     def test_makes_a_cloud_symmetric(self):
         scan, _ = self.scan()
-        self.run_tool(scan, "out.ply -symmetrise left -target chair.off")
+        self.run_tool(scan, "out.ply -symmetrize left -target chair.off")
         points = self.points("out.ply")
         half = len(points) // 2
         np.testing.assert_array_equal(points["reflected_of"][half:], np.arange(half))

@@ -252,12 +252,12 @@ class Bop(ToolTest):
         self.run_tool(red, FEW)
         self.assertIn("1 of 1 models have colors, which were not looked at", self.output)
         self.assertIn("obj_2.ply  group O", self.output)
-        self.run_tool(plain, red, FEW, "-colour")
+        self.run_tool(plain, red, FEW, "-color")
         self.assertNotIn("not looked at", self.output)
         for said in ("obj_1.ply  group O", "obj_2.ply  group C4", "without its colors the group is O"):
             self.assertIn(said, self.output)
         # The same red cube with its colors as coordinates in a texture that it does not name.
-        self.run_tool(self.write("obj_3.ply", colored_cube(True, ("texture_u", "texture_v", "other"))), FEW, "-colour")
+        self.run_tool(self.write("obj_3.ply", colored_cube(True, ("texture_u", "texture_v", "other"))), FEW, "-color")
         self.assertIn("only those of vertices, and textures that PLY files name, can be read", self.output)
 
     def test_reads_the_texture_that_a_model_of_the_benchmark_names(self):
@@ -265,11 +265,11 @@ class Bop(ToolTest):
         pixels[:32] = (255, 0, 0)
         self.write("print.png", tool_run.png(pixels))
         white, red = (self.write(f"obj_{k + 1}.ply", textured_cube("print.png", k == 1)) for k in range(2))
-        self.run_tool(white, red, FEW, "-colour")
+        self.run_tool(white, red, FEW, "-color")
         self.assertNotIn("not looked at", self.output)
         self.assertIn("obj_1.ply  group O", self.output)
         self.assertIn("obj_2.ply  group C1", self.output, "v runs from bottom to top: half of that side is red")
-        self.fails(1, "missing.png", self.write("obj_3.ply", textured_cube("missing.png", True)), "-quiet -colour")
+        self.fails(1, "missing.png", self.write("obj_3.ply", textured_cube("missing.png", True)), "-quiet -color")
 
 
 if __name__ == "__main__":

@@ -35,6 +35,22 @@ class Flags(ToolTest):
             for default in ("of the distance field (64)", "0 = all (0)", "input frame (auto)", "over a mesh (10000)", "random streams (0)"):
                 self.assertIn(default, text)
 
+    def test_help_has_groups_and_fits_the_terminal(self):
+        self.run_tool("-h")
+        at = [self.output.index(f"\n{name}:\n") for name in ("Output", "Analysis", "Input", "Computation", "Help")]
+        self.assertEqual(at, sorted(at))
+        self.assertLess(at[0], self.output.index("-json"))
+        self.assertLess(self.output.index("-png"), at[1])
+        self.assertLessEqual(max(map(len, self.output.splitlines()[6:-2])), 100)
+
+    def test_json_says_how_it_was_made(self):
+        made = self.report(self.box, "-quiet -points 500 -seed 4 -approximate", "--tolerance=0.02")["made_by"]
+        self.assertEqual((made["tool"], made["seed"]), ("pcl_symmetry_planes", 4))
+        self.assertRegex(made["version"], r"^\d+\.\d+\.\d+$")
+        options = {key: made["options"][key] for key in ("points", "seed", "approximate", "tolerance", "quiet")}
+        self.assertEqual(options, {"points": "500", "seed": "4", "approximate": True, "tolerance": "0.02", "quiet": True})
+        self.assertNotIn("max_planes", made["options"])
+
     def test_negative_vectors_are_values_and_viewpoints_have_words(self):
         flags = "-quiet -points 500 -viewpoint"
         given = self.report(self.box, flags, "-10,20,-0.25")["viewpoint"]
@@ -60,7 +76,7 @@ class Flags(ToolTest):
                             ("-seed 1.5", "-seed = 1.5, must be a whole number"),
                             ("-seed -3", "-seed = -3, must be >= 0"),
                             ("-seed 99999999999999999999", "-seed = 99999999999999999999, is too large"),
-                            ("-method none", "-method = none, must be sampled|exact|rotational|voting"),
+                            ("-method none", "-method = none, must be sampled|convolution|rotational|voting"),
                             ("-ground 1,x,0,0", "-ground = x, must be a number"),
                             ("-sead 1", "unknown flag -sead, did you mean -seed?"),
                             ("--bogus", "unknown flag --bogus (see"),

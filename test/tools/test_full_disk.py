@@ -6,7 +6,7 @@ import tool_run
 from tool_run import ToolTest
 
 COMMANDS = {"o.pcd": "scan box.off OUT -format ascii", "binary.pcd": "scan box.off OUT -format binary", "packed.pcd": "segment box.off OUT",
-            "o.ply": "align box.off OUT", "mesh.ply": "align box.off OUT -symmetrise mean", "o.seg": "segment box.off OUT",
+            "o.ply": "align box.off OUT", "mesh.ply": "align box.off OUT -symmetrize mean", "o.seg": "segment box.off OUT",
             "o.json": "planes box.off -json OUT", "o.csv": "planes box.off -csv OUT", "lines.json": "planes @list -json OUT",
             "rows.csv": "planes @list -csv OUT", "o.html": "planes box.off -html OUT", "o.png": "viewpoint box.off -icon OUT",
             "support.pcd": "planes box.off -support OUT", "o.vti": "map box.off -volume OUT", "o.yaml": "bop box.off -isaac OUT",

@@ -1,7 +1,11 @@
 """Pictures and pages that tools write, with and without a display."""
 import json
 import os
+import signal
+import subprocess
+import time
 import unittest
+from pathlib import Path
 
 import tool_run
 from tool_run import ToolTest, np
@@ -115,12 +119,51 @@ class Pictures(ToolTest):
             self.assertGreater(np.unique(picture.reshape(-1, picture.shape[2]), axis=0).shape[0], 10, "not blank")
         self.assertTrue((again != worst).any() and (score != again).any())
 
+    def test_leave_nothing_behind_when_the_tool_is_stopped(self):
+        """The X server that a picture is drawn on ends with the tool, whatever ends that."""
+        names = [f"b{i}.off" for i in range(400)]
+        for name in names:
+            self.write(name, tool_run.box(1.4))
+        for stop in (signal.SIGTERM, signal.SIGKILL, signal.SIGINT):
+            command = [tool_run.TOOLS / "pcl_symmetry_planes", *names, "-png", "{}.png", "-quiet", "-threads", "1", "-json", "o.json"]
+            tool = subprocess.Popen(command, cwd=self.folder, env=self.no_display, stdout=subprocess.DEVNULL)
+            servers = []
+            for _ in range(600):
+                time.sleep(0.05)
+                servers = self.children_of(tool.pid)
+                if servers and list(self.folder.glob("*.png")):
+                    break
+            self.assertEqual(len(servers), 1)
+            tool.send_signal(stop)
+            begin = time.monotonic()
+            self.assertEqual(tool.wait(timeout=10), -stop)
+            self.assertLess(time.monotonic() - begin, 2)
+            for _ in range(200):
+                if not self.runs(servers[0]):
+                    break
+                time.sleep(0.05)
+            self.assertFalse(self.runs(servers[0]), stop)
+
+    @staticmethod
+    def runs(pid):
+        """Whether a process is there, and no zombie that nobody waited for."""
+        try:
+            return Path(f"/proc/{pid}/stat").read_text().rsplit(")", 1)[1].split()[0] != "Z"
+        except OSError:
+            return False
+
+    @staticmethod
+    def children_of(pid):
+        """Those that have become another program."""
+        children = Path(f"/proc/{pid}/task/{pid}/children").read_text().split()
+        return [int(child) for child in children if Path(f"/proc/{child}/comm").read_text().strip() == "Xvfb"]
+
     def test_say_why_nothing_can_be_drawn(self):
         self.fails(1, "there is no display", self.box, env=self.no_display)
         self.assertIn("-screenshot FILE needs none", self.error)
         self.fails(2, "there is no key F7", self.box, "-screenshot a.png -keys F7", env=self.no_display)
         for tool, flags in (("planes", "-png a.png"), ("viewer", "-screenshot a.png")):
-            self.fails(1, "xvfb-run is missing", self.box, "-quiet", flags, tool=tool, env={**self.no_display, "PATH": "/nowhere"})
+            self.fails(1, "Xvfb is missing", self.box, "-quiet", flags, tool=tool, env={**self.no_display, "PATH": "/nowhere"})
             self.assertEqual([path.name for path in self.folder.iterdir()], ["box.off"])
 
 
