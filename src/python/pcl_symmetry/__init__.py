@@ -42,6 +42,7 @@ from .results import (
     Profile,
     Recognized,
     ReflectionPlane,
+    RegisteredScans,
     Registration,
     Rotations,
     Symmetrized,
@@ -50,7 +51,7 @@ from .results import (
 )
 
 if TYPE_CHECKING:
-    from .database import Database, register
+    from .database import Database, register, register_all
 
 __all__ = [
     "Axis",
@@ -67,6 +68,7 @@ __all__ = [
     "Profile",
     "Recognized",
     "ReflectionPlane",
+    "RegisteredScans",
     "Registration",
     "Rotations",
     "Symmetrized",
@@ -89,15 +91,15 @@ __all__ = [
 # The libraries of PCL take longer to load than the rest: what needs them is loaded when it is first used. It is missing where
 # the library was built without PCL.
 if importlib.util.find_spec("._recognition", __name__):
-    __all__ += ["Database", "register"]
+    __all__ += ["Database", "register", "register_all"]
 
 
 def __getattr__(name: str) -> Any:
-    if name not in ("Database", "register") or name not in __all__:
+    if name not in ("Database", "register", "register_all") or name not in __all__:
         raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
     from . import database
 
-    globals().update(Database=database.Database, register=database.register)
+    globals().update(Database=database.Database, register=database.register, register_all=database.register_all)
     return globals()[name]
 
 
