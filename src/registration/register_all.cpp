@@ -3,10 +3,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdio>
-#include <cstdlib>
 #include <set>
-#include <sstream>
+#include <string>
+#include <utility>
 
 #include "core/base/constants.h"
 #include "core/base/median.h"
@@ -28,12 +27,12 @@ struct RegisterAllRules {
   double least_merit = -0.1, good_merit = 0.4;
   double least_votes = 0.6;  ///< that join scans: more than one pair that did not converge
   // Adjustment of all poses together
-  int adjust_points = 400;        ///< of each scan
-  int adjust_steps = 12;          ///< over which the reach shrinks
+  int adjust_points = 2000;       ///< of each scan
+  int adjust_steps = 16;          ///< over which the reach shrinks
   double first_reach = 0.06;      ///< radii, distance in which points correspond
-  double last_accuracies = 3.0;   ///< the same at the end, in distances that the scans resolve
+  double last_accuracies = 2.0;   ///< the same at the end, in distances that the scans resolve
   double least_cosine = 0.7;      ///< of the normals of corresponding points
-  double least_overlap = 0.1;     ///< share of the points that must correspond
+  double least_overlap = 0.03;    ///< share of the points that must correspond
   double around_angle = 5.0 * kDegree, around_distance = 0.06;  ///< radians, radii: where a scan must fit the others
 };
 constexpr RegisterAllRules kRegisterAll{};
@@ -138,7 +137,7 @@ public:
 
   /// \return the group of most scans, the first one of several.
   int largestGroup() const {
-    std::vector<int> sizes(size());
+    std::vector<int> sizes(2 * size());
     for (const int group : groups_.group) ++sizes[group];
     int best = groups_.group.front();
     for (const int group : groups_.group)
@@ -157,7 +156,6 @@ public:
         if (groups_.group[k] == largest) continue;
         const CloudRegistration found =
             registerClouds(scans_[k].scan.points, scans_[k].scan.seen, *whole, Eigen::Isometry3d::Identity(), options_);
-        if (std::getenv("DEBUG_ALL")) std::fprintf(stderr, "add %d: merit %.3f on %.3f\n", k, found.score.merit(), found.on_surface);
         if (!found.converged()) continue;
         groups_.group[k] = largest;
         groups_.T_group_scan[k] = found.T_target_source;
@@ -194,12 +192,21 @@ public:
     }
   }
 
-  /// How well a scan of a group fits the others of it.
-  CloudRegistration fitToOthers(int scan) const {
+  /// Takes scans out of the largest group that no converged pair connects with it, and that do not fit its others
+  /// together either.
+  void dropDoubtful() {
+    const int largest = largestGroup();
+    std::vector<char> is_connected(size());
+    for (const PairAnswer& answer : answers_)
+      if (answer.converged && agrees(answer)) is_connected[answer.source] = is_connected[answer.target] = true;
     CloudRegistrationOptions near = options_;
     near.around = PoseNeighborhood{kRegisterAll.around_angle, kRegisterAll.around_distance};
-    return registerClouds(scans_[scan].scan.points, scans_[scan].scan.seen,
-                          together(groups_.group[scan], scan), std::nullopt, groups_.T_group_scan[scan], near);
+    for (int k = 0; k < size(); ++k) {
+      if (is_connected[k] || groups_.group[k] != largest || alone(k)) continue;
+      const CloudRegistration found = registerClouds(scans_[k].scan.points, scans_[k].scan.seen, together(largest, k),
+                                                     std::nullopt, groups_.T_group_scan[k], near);
+      if (!found.converged()) groups_.group[k] = size() + k;
+    }
   }
 
   /// Share of the points of one scan that lie on another.
@@ -228,6 +235,10 @@ public:
   }
 
 private:
+  bool alone(int scan) const {
+    return std::count(groups_.group.begin(), groups_.group.end(), groups_.group[scan]) < 2;
+  }
+
   struct Matched {
     std::vector<std::pair<Eigen::Vector3d, int>> pairs;  ///< points in the target's frame, with those of the target
     int num_points;
@@ -343,6 +354,7 @@ RegisteredScans registerAll(const std::vector<ObjectScan>& scans, const CloudReg
   done("pairs");
   graph.adjust();
   graph.addToLargest();
+  graph.dropDoubtful();
   graph.adjust();
   done("adjust");
   const int group = graph.largestGroup();
@@ -352,10 +364,6 @@ RegisteredScans registerAll(const std::vector<ObjectScan>& scans, const CloudReg
     ScanPose& scan = result.scans[usable[k]];
     if (graph.groups().group[k] == group) {
       scan.T_first_scan = graph.pose(k, first);
-      if (std::getenv("DEBUG_ALL")) {
-        const CloudRegistration fit = graph.fitToOthers(k);
-        std::fprintf(stderr, "fit %d: merit %.3f support %.3f conflict %.3f on %.3f conv %d\n", usable[k], fit.score.merit(), fit.score.support, fit.score.conflict, fit.on_surface, fit.converged());
-      }
       continue;
     }
     const bool contradicts = std::any_of(graph.answers().begin(), graph.answers().end(), [&](const PairAnswer& a) {
