@@ -11,7 +11,7 @@ std::vector<SymmetryPlane> detectSymmetryPlanes(const pcl::PolygonMesh& mesh, co
   const auto points = sampleMesh(mesh, num_points, options.seed);
   refinement.setInputCloud(points);
   if (!points->empty()) refinement.setMesh(meshSurface(mesh));
-  return refinement.compute();
+  return detail::onlySymmetries(refinement.compute());
 }
 
 }  // namespace pcl_symmetry

@@ -1,4 +1,5 @@
-/// Scans of an object on a turntable as one cloud, its planes of symmetry, and what they show of the side that no scan saw.
+/// Scans of an object on a turntable as one cloud, its planes of symmetry, and what they show of the side that no scan
+/// saw.
 #include <pcl/io/pcd_io.h>
 #include <pcl/io/ply_io.h>
 #include <pcl_symmetry/completion.h>

@@ -218,12 +218,13 @@ def failure_completion(out, path):
     whole = sampled(load_mesh(path))
     points, viewpoint = scan(path, (1, 1, 1))
     found = pcl_symmetry.planes(points, viewpoint=viewpoint)
-    completed, added = pcl_symmetry.complete(points, found[0] if len(found) else found.best, viewpoint=viewpoint)
+    best = found[0] if found else found.best
+    added, _ = pcl_symmetry.complete(points, pcl_symmetry.ReflectionPlane(best.normal, best.offset), viewpoint=viewpoint)
     sheet = Sheet(1, 2, (-1.0, -1.4, 0.4), up="y")
     sheet.dots(sheet.panel("the hand", whole), whole, GRAY)
     axes = sheet.panel("measured (orange), added (blue)", whole)
-    sheet.dots(axes, np.delete(completed, added, axis=0), ORANGE)
-    sheet.dots(axes, completed[added], BLUE)
+    sheet.dots(axes, points, ORANGE)
+    sheet.dots(axes, added, BLUE)
     sheet.save(out)
 
 

@@ -14,8 +14,9 @@ uniform vec2 light;
 varying vec3 shade;
 void main() {
   vec4 p = modelViewMatrix * vec4(position, 1.0);
-  float facing = abs(dot(normalize(normalMatrix * normal), normalize(p.xyz)));
-  shade = color * (light.x + light.y * mix(1.0, facing, shaded));
+  // Without normals there is nothing to normalize: the result would not be a number, and the point black.
+  float facing = shaded > 0.5 ? abs(dot(normalize(normalMatrix * normal), normalize(p.xyz))) : 1.0;
+  shade = color * (light.x + light.y * facing);
   gl_Position = projectionMatrix * p;
   gl_PointSize = max(1.5, size / -p.z);
 }`;
@@ -63,10 +64,19 @@ function makePlane(plane) {
   return group;
 }
 
+// A rod, as lines are a pixel wide in most browsers. It shines through the surface that hides it.
 function makeAxis(axis) {
-  const line = new THREE.BufferGeometry();
-  attribute(line, 'position', new Float32Array(axis.ends.flat()), 3);
-  return new THREE.LineSegments(line, new THREE.LineBasicMaterial({color: new THREE.Color(axis.color)}));
+  const [a, b] = axis.ends.map(end => new THREE.Vector3(...end)), along = b.clone().sub(a).normalize();
+  const u = new THREE.Vector3(1, 0, 0).cross(along).lengthSq() > 0.1 ? new THREE.Vector3(1, 0, 0) : new THREE.Vector3(0, 1, 0);
+  u.cross(along).normalize();
+  const v = along.clone().cross(u), corners = [], sides = 12, radius = 0.007;
+  const corner = (end, i) => end.clone().addScaledVector(u, radius * Math.cos(2 * Math.PI * i / sides)).addScaledVector(v, radius * Math.sin(2 * Math.PI * i / sides)).toArray();
+  for (let i = 0; i < sides; ++i) corners.push(corner(a, i), corner(a, i + 1), corner(b, i), corner(b, i), corner(a, i + 1), corner(b, i + 1));
+  const rod = new THREE.BufferGeometry(), group = new THREE.Group();
+  attribute(rod, 'position', new Float32Array(corners.flat()), 3);
+  for (const [opacity, depthTest] of [[1, true], [0.35, false]])
+    group.add(new THREE.Mesh(rod, new THREE.MeshBasicMaterial({color: axis.color, transparent: !depthTest, opacity, depthTest, depthWrite: depthTest, side: THREE.DoubleSide})));
+  return group;
 }
 
 let renderer;
@@ -90,7 +100,7 @@ camera.position.copy(towards.multiplyScalar(2.7));
 const lamp = new THREE.DirectionalLight(0xffffff, 2.4);
 camera.add(lamp);
 world.add(camera, new THREE.HemisphereLight(0xffffff, 0xffffff, 0.8));
-const controls = new THREE.OrbitControls(camera, renderer.domElement);
+let controls = new THREE.OrbitControls(camera, renderer.domElement);
 const points = scene.points ? makePoints() : null, mesh = scene.mesh ? makeMesh() : null;
 for (const object of [points, mesh]) if (object) world.add(object);
 for (const panel of scene.panels) {
@@ -162,12 +172,33 @@ scene.panels.forEach((panel, i) => {
   button.addEventListener('click', () => show(i));
   document.getElementById('panels').appendChild(button);
 });
+// What is up is known of few files: the reader chooses.
+for (const [label, direction] of [['up: x', [1, 0, 0]], ['y', [0, 1, 0]], ['z', [0, 0, 1]], ['-y', [0, -1, 0]], ['as before', scene.up]]) {
+  const button = document.createElement('button');
+  button.textContent = label;
+  button.addEventListener('click', () => turnUp(new THREE.Vector3(...direction)));
+  document.getElementById('turns').appendChild(button);
+}
 window.addEventListener('keydown', event => {
   if (event.key === 'ArrowRight' || event.key === 'ArrowDown') show(shown + 1);
   if (event.key === 'ArrowLeft' || event.key === 'ArrowUp') show(shown - 1);
 });
 window.addEventListener('resize', resize);
 controls.addEventListener('change', draw);
+
+function turnUp(direction) {
+  camera.up.copy(direction);
+  const side = Math.abs(direction.x) < 0.5 ? new THREE.Vector3(1, 0, 0) : new THREE.Vector3(0, 1, 0);
+  const across = direction.clone().cross(side).normalize();
+  camera.position.copy(across.multiplyScalar(0.75).add(side.multiplyScalar(0.45)).addScaledVector(direction, 0.45).normalize().multiplyScalar(2.7));
+  if (direction.equals(up)) camera.position.copy(towards);
+  // The controls take what is up when they are made.
+  controls.dispose();
+  controls = new THREE.OrbitControls(camera, renderer.domElement);
+  controls.addEventListener('change', draw);
+  controls.update();
+  draw();
+}
 // A page opened as FILE.html#2 begins with the second entry of the list.
 show(Math.max(0, (parseInt(location.hash.slice(1), 10) || 1) - 1));
 resize();

@@ -62,11 +62,12 @@ CommandLine commandLine(AlignOptions& options) {
   line.positional("input", options.input, kOneOrManyInputs)
       .positional("output", options.output, ".pcd or .ply: the cloud after the transform")
       .positionals("more", options.more, "with -merge, where all arguments are scans", false)
-      .text("merge", "FILE", options.merge,
-            "bring the arguments, many scans of one object, together without a guess, and write them as one cloud, .pcd "
-            "or .ply, in the frame of the first one, thinned where they overlap; the field scan of a point is the index "
-            "of its file. Scans that fit no others are left out and named. Other flags: -complete, -viewpoint, which is "
-            "the same in the frame of each scan, and outputs")
+      .text(
+          "merge", "FILE", options.merge,
+          "bring the arguments, many scans of one object, together without a guess, and write them as one cloud, .pcd "
+          "or .ply, in the frame of the first one, thinned where they overlap; the field scan of a point is the index "
+          "of its file. Scans that fit no others are left out and named. Other flags: -complete, -viewpoint, which is "
+          "the same in the frame of each scan, and outputs")
       .text("target", "FILE", options.target, "cloud or mesh that the input is brought to")
       .text("html", "FILE", options.html_path,
             "page that shows the input in the target, or its center and axes, for any browser, without network")
@@ -455,8 +456,7 @@ std::vector<InputShape> loadScans(const Console& console, const AlignOptions& op
   if (options.output) arguments.push_back(*options.output);
   arguments.insert(arguments.end(), options.more.begin(), options.more.end());
   std::vector<InputShape> inputs;
-  for (const InputFile& file : inputFiles(arguments))
-    inputs.push_back(loadInput(console, file.path, options.common));
+  for (const InputFile& file : inputFiles(arguments)) inputs.push_back(loadInput(console, file.path, options.common));
   return inputs;
 }
 
@@ -484,9 +484,9 @@ nlohmann::json describe(const std::vector<InputShape>& inputs, const RegisteredS
 
 /// Scans of one object as one cloud.
 struct Merged {
-  InputShape shape;                  ///< its points in the frame of the first scan that is kept, minus its shift
-  pcl::PCLPointCloud2 fields;        ///< those of the scans and the index of each point's scan
-  std::vector<int> scans;            ///< of each point
+  InputShape shape;            ///< its points in the frame of the first scan that is kept, minus its shift
+  pcl::PCLPointCloud2 fields;  ///< those of the scans and the index of each point's scan
+  std::vector<int> scans;      ///< of each point
 };
 
 Merged merged(const std::vector<InputShape>& inputs, const std::vector<ObjectScan>& scans,

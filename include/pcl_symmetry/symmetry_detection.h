@@ -3,16 +3,30 @@
 #include <pcl/PolygonMesh.h>
 #include <pcl/point_cloud.h>
 
+#include <algorithm>
 #include <vector>
 
 #include "pcl_symmetry/symmetry_maxima_refinement.h"
 
 namespace PCL_SYMMETRY_EXPORTS pcl_symmetry {
 
+namespace detail {
+
+/// \return the planes of kind Symmetry.
+inline std::vector<SymmetryPlane> onlySymmetries(std::vector<SymmetryPlane> planes) {
+  planes.erase(std::remove_if(planes.begin(), planes.end(),
+                              [](const SymmetryPlane& plane) { return plane.kind != PlaneKind::Symmetry; }),
+               planes.end());
+  return planes;
+}
+
+}  // namespace detail
+
 /// Detects the planes of symmetry of a cloud in one call (Sections 4.1 to 4.4 of the paper).
 /// \param cloud points that are not finite are left out.
-/// \return the planes, best first, in the frame of the cloud. Empty where the shape has no symmetry; also where the
-/// cloud holds no answer, which PCL_WARN says.
+/// \param options those that ask for other planes, as approximate does, change nothing here.
+/// \return the symmetries, best first, in the frame of the cloud. Empty where the shape has no symmetry; also where the
+/// cloud holds no answer, which PCL_WARN says. Possible and approximate ones are given by SymmetryMaximaRefinement.
 /// \throws pcl::BadArgumentException for bad options.
 template <typename PointT>
 std::vector<SymmetryPlane> detectSymmetryPlanes(const pcl::PointCloud<PointT>& cloud,
@@ -21,7 +35,7 @@ std::vector<SymmetryPlane> detectSymmetryPlanes(const pcl::PointCloud<PointT>& c
   refinement.setOptions(options);
   // The cloud outlives this call: no copy.
   refinement.setInputCloud(typename pcl::PointCloud<PointT>::ConstPtr(&cloud, [](const void*) {}));
-  return refinement.compute();
+  return detail::onlySymmetries(refinement.compute());
 }
 
 /// The same for a mesh, whose planes are exact: see refineOnMesh().

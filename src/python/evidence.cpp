@@ -15,6 +15,7 @@
 #include "core/detection/plane_decision.h"
 #include "core/segmentation/merge_fit.h"
 #include "core/segmentation/region_merging.h"
+#include "python/computing.h"
 #include "python/input_points.h"
 
 namespace py = pybind11;
@@ -72,7 +73,7 @@ public:
     SegmentationOptions options;
     options.seed = seed;
     options.num_threads = threads;
-    const py::gil_scoped_release release;
+    const Computing computing;
     const SurfaceGraph graph = meshGraph(input.points(), faces);
     evidence_ = WholeEvidence(graph, options).ofDivision(0);
   }
@@ -87,7 +88,7 @@ public:
     if (given) std::copy(given->begin(), given->end(), weights.begin());
     std::vector<std::tuple<int, int, double, double, double, Cues>> rows;
     {
-      const py::gil_scoped_release release;
+      const Computing computing;
       Regions regions(evidence_);
       for (const Merge& merge : mergeRegions(regions, weights)) {
         rows.emplace_back(merge.into, merge.from, merge.log_odds, regions.area(merge.into), regions.area(merge.from),

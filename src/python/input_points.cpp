@@ -9,9 +9,9 @@
 #include <stdexcept>
 #include <string>
 
-#include "core/geometry/answerable_points.h"
 #include "core/geometry/point_samples.h"
 #include "core/scan/viewpoint_inference.h"
+#include "python/computing.h"
 
 namespace py = pybind11;
 
@@ -109,12 +109,6 @@ PointsRef InputPoints::points() const {
   return Eigen::Map<const Points, 0, Eigen::OuterStride<>>(array_.data(), 3, array_.shape(0), stride);
 }
 
-PointsRef InputPoints::answerablePoints() const {
-  if (const std::string reason = whyUnanswerable(points()); !reason.empty())
-    throw std::invalid_argument("points: " + reason);
-  return points();
-}
-
 Points InputPoints::atPoints(const char* name, const py::array& normals) const {
   checkShape(name, normals);
   if (static_cast<std::size_t>(normals.shape(0)) != num_rows_)
@@ -145,8 +139,9 @@ std::optional<Eigen::Vector3d> positionOf(const py::object& viewpoint) {
 
 std::optional<Visibility> seenFrom(const PointsRef& points, const py::object& viewpoint) {
   if (viewpoint.is_none() || points.cols() == 0) return std::nullopt;
+  if (py::isinstance<Visibility>(viewpoint)) return viewpoint.cast<Visibility>();
   const std::optional<Eigen::Vector3d> position = positionOf(viewpoint);
-  const py::gil_scoped_release release;
+  const Computing computing;
   if (!position) {
     std::optional<InferredView> view = inferView(points, Eigen::Vector3d::Zero());
     return view ? std::optional<Visibility>(std::move(view->seen)) : std::nullopt;

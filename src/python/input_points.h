@@ -37,8 +37,6 @@ public:
 
   /// \return 3 x M points, as long as this object lives.
   PointsRef points() const;
-  /// \throws std::invalid_argument with the reason where the points hold no answer, such as too few.
-  PointsRef answerablePoints() const;
   /// \return number of rows of the array.
   std::size_t numRows() const { return num_rows_; }
   /// \return whether all rows are finite and used.
@@ -62,7 +60,7 @@ private:
 /// \throws std::invalid_argument for another value.
 std::optional<Eigen::Vector3d> positionOf(const pybind11::object& viewpoint);
 
-/// \param viewpoint as of positionOf(), or None.
+/// \param viewpoint as of positionOf(), None, or the Visibility of an organized array.
 /// \return what the scanner saw; nothing without a viewpoint.
 /// \throws std::invalid_argument for another value, and where the points surround the viewpoint.
 std::optional<Visibility> seenFrom(const PointsRef& points, const pybind11::object& viewpoint);

@@ -14,6 +14,8 @@
 #include <utility>
 #include <vector>
 
+#include "core/base/parallel.h"
+#include "core/geometry/answerable_points.h"
 #include "core/geometry/mesh_sampling.h"
 #include "core/matching/shape_signature.h"
 #include "core/matching/symmetry_descriptor.h"
@@ -30,6 +32,7 @@
 #include "pcl_symmetry/core/symmetry_frame.h"
 #include "pcl_symmetry/core/viewpoint_score.h"
 #include "pcl_symmetry/core/volume_planes.h"
+#include "python/computing.h"
 #include "python/evidence.h"
 #include "python/input_points.h"
 #include "python/motions.h"
@@ -78,7 +81,7 @@ py::array_t<float> sampleMesh(const AnyArray& vertices, const AnyArray& faces, i
 
 MeshSurface meshSurface(const AnyArray& vertices, const AnyArray& faces) {
   const MeshInput mesh(vertices, faces);
-  const py::gil_scoped_release release;
+  const Computing computing;
   return {mesh.vertices.points(), mesh.triangles};
 }
 
@@ -112,12 +115,12 @@ SymmetrizedShape symmetrize(const AnyArray& points, const py::object& faces, con
   const auto kept = named<SymmetrizedHalf>("half", half, {"mean", "left", "right"});
   if (!faces.is_none()) {
     const MeshInput mesh(points, {arrayOf("faces", faces)});
-    const py::gil_scoped_release release;
+    const Computing computing;
     return symmetrizedMesh(mesh.vertices.points(), mesh.triangles, plane, kept, threads);
   }
   const InputPoints input("points", points, 0, 0);
   if (!input.usesAllRows()) throw std::invalid_argument("points: not all finite, must be");
-  const py::gil_scoped_release release;
+  const Computing computing;
   return symmetrizedCloud(input.points(), plane, kept, threads);
 }
 
@@ -137,7 +140,7 @@ Eigen::MatrixXd revolutionProfileOf(const AnyArray& points, const Eigen::Vector3
   SymmetryAxis axis;
   axis.point = point;
   axis.direction = direction;
-  const py::gil_scoped_release release;
+  const Computing computing;
   const std::vector<ProfilePoint> profile = revolutionProfile(input.points(), axis, num_points);
   Eigen::MatrixXd rows(profile.size(), 4);
   for (std::size_t i = 0; i < profile.size(); ++i)
@@ -148,7 +151,7 @@ Eigen::MatrixXd revolutionProfileOf(const AnyArray& points, const Eigen::Vector3
 PlaneSearch planes(const AnyArray& points, const py::object& viewpoint, std::optional<double> tolerance,
                    double absolute_tolerance, bool approximate, int max_planes, const py::object& normals,
                    std::size_t max_points, bool evidence, std::uint64_t seed, int threads,
-                   const std::optional<MeshSurface>& mesh) {
+                   const std::optional<MeshSurface>& mesh, bool may_be_rings) {
   auto options = optionsWith<DetectionOptions>(seed, threads);
   if (tolerance) options.tolerance = options.most_tolerance = *tolerance;
   options.absolute_tolerance = absolute_tolerance;
@@ -162,10 +165,11 @@ PlaneSearch planes(const AnyArray& points, const py::object& viewpoint, std::opt
   const std::optional<Visibility> seen = seenFrom(used, viewpoint);
   PlaneInput cloud(used, seen ? &*seen : nullptr);
   if (given) cloud.normals = &*given;
+  cloud.may_be_rings = may_be_rings;
   PlaneSearch search;
   if (seen) search.viewpoint = seen->viewpoint();
   search.rows = input.rows();
-  const py::gil_scoped_release release;
+  const Computing computing;
   search.found = detectPlanes(cloud, options);
   if (mesh && !seen) refineOnMesh(*mesh, search.found, options);
   return search;
@@ -187,7 +191,7 @@ PlaneSearch volumePlanes(const VolumeArray& volume, const Eigen::Vector3d& spaci
                          const Eigen::Matrix3d& direction, const std::pair<double, double>& levels, bool approximate,
                          int max_planes, std::uint64_t seed, int threads) {
   const ScalarGrid grid = gridOf(volume, spacing, origin, direction);
-  const py::gil_scoped_release release;
+  const Computing computing;
   auto options = optionsWith<DetectionOptions>(seed, threads);
   options.approximate = approximate;
   options.max_planes = max_planes;
@@ -200,7 +204,7 @@ PlaneSearch volumePlanes(const VolumeArray& volume, const Eigen::Vector3d& spaci
 std::vector<std::vector<float>> descriptors(const AnyArray& points, bool input_axes, bool by_equation_1,
                                             std::uint64_t seed, int threads) {
   const InputPoints input("points", points, 20'000, seed);
-  const py::gil_scoped_release release;
+  const Computing computing;
   auto options = optionsWith<DescriptorOptions>(seed, threads);
   options.by_equation_1 = by_equation_1;
   Eigen::Isometry3d T_frame_input(Eigen::Translation3d(-centerOfMass(input.points())));
@@ -214,7 +218,7 @@ PlaneSearch publishedPlanesOf(const AnyArray& points, const std::string& method,
                               int threads) {
   const InputPoints input("points", points, 0, seed);
   const TransformMethod estimator = methodNamed(method);
-  const py::gil_scoped_release release;
+  const Computing computing;
   const GaussianEdt edt(input.points());
   auto options = optionsWith<PublishedOptions>(seed, threads);
   options.num_points = num_points;
@@ -224,23 +228,28 @@ PlaneSearch publishedPlanesOf(const AnyArray& points, const std::string& method,
   return search;
 }
 
-std::vector<float> localSymmetryOf(const AnyArray& points, double scale, std::uint64_t seed, int threads) {
-  const InputPoints input("points", points, 0, seed);
-  const py::gil_scoped_release release;
+std::vector<float> localSymmetryOf(const AnyArray& points, const AnyArray& at, double scale, std::uint64_t seed,
+                                   int threads) {
+  const InputPoints input("points", points, 0, seed), asked("at", at, 0, seed);
+  const Computing computing;
   const GaussianEdt edt(input.points());
   auto options = optionsWith<LocalSymmetryOptions>(seed, threads);
   options.scale = scale * edt.radius();
-  return localSymmetry(edt, input.points(), options);
+  return localSymmetry(edt, asked.points(), options);
+}
+
+std::string whyUnanswerableOf(const AnyArray& points) {
+  return whyUnanswerable(InputPoints("points", points, 0, 0).points());
 }
 
 SymmetryFrame frame(const AnyArray& points, const py::object& viewpoint, std::size_t max_points, bool as_published,
                     std::uint64_t seed, int threads, const std::optional<MeshSurface>& mesh) {
   const InputPoints input("points", points, max_points, seed);
   const std::optional<Visibility> seen = seenFrom(input.points(), viewpoint);
-  const py::gil_scoped_release release;
+  const Computing computing;
   auto options = optionsWith<FrameOptions>(seed, threads);
   options.as_published = as_published;
-  SymmetryFrame found = symmetryFrame(input.answerablePoints(), options, seen ? &*seen : nullptr);
+  SymmetryFrame found = symmetryFrame(input.points(), options, seen ? &*seen : nullptr);
   if (mesh && !seen) refineOnMesh(*mesh, found);
   return found;
 }
@@ -252,7 +261,7 @@ ObjectSymmetries rotations(const AnyArray& points, double tolerance, double abso
   options.absolute_tolerance = absolute_tolerance;
   options.max_feature = max_feature;
   const InputPoints input("points", points, 0, seed);
-  const py::gil_scoped_release release;
+  const Computing computing;
   return mesh ? objectSymmetries(input.points(), *mesh, options) : objectSymmetries(input.points(), options);
 }
 
@@ -276,7 +285,7 @@ std::pair<py::array_t<float>, std::vector<std::size_t>> complete(const AnyArray&
   Points added;
   std::vector<std::size_t> rows;
   {
-    const py::gil_scoped_release release;
+    const Computing computing;
     const PointsRef all = input.points();
     const std::vector<int> completing = completingPoints(all, plane, options, seen ? &*seen : nullptr);
     added.resize(3, static_cast<Eigen::Index>(completing.size()));
@@ -292,7 +301,7 @@ std::pair<py::array_t<float>, std::vector<std::size_t>> complete(const AnyArray&
 std::vector<int> segmentCloud(const py::array& points, const SegmentationOptions& options) {
   constexpr int kMostPoints = 30'000, kNumNeighbors = 12;  // as in SymmetrySegmentation
   const InputPoints input("points", points, kMostPoints, options.seed);
-  const py::gil_scoped_release release;
+  const Computing computing;
   const PointsRef used = input.points();
   if (used.cols() <= kNumNeighbors) throw std::invalid_argument("points: too few to have parts, must be more than 12");
   const auto neighbors = nearestOthers(used, *makeFlannSearch(used), kNumNeighbors, options.num_threads);
@@ -320,16 +329,16 @@ std::vector<int> segment(const AnyArray& points, const py::object& faces, int pa
   const InputPoints input("points", points, 0, seed);
   if (!input.usesAllRows()) throw std::invalid_argument("points: vertices not all finite, must be");
   const std::vector<std::vector<int>> polygons = polygonsOf(arrayOf("faces", faces));
-  const py::gil_scoped_release release;
+  const Computing computing;
   return segmentSurface(meshGraph(input.points(), polygons), options).labels;
 }
 
 Eigen::MatrixXf describe(const AnyArray& points, const py::object& viewpoint, std::uint64_t seed, int threads) {
   const InputPoints input("points", points, 0, seed);
   const std::optional<Visibility> seen = seenFrom(input.points(), viewpoint);
-  const py::gil_scoped_release release;
+  const Computing computing;
   const auto options = optionsWith<DescriptionOptions>(seed, threads);
-  return describeShape(input.answerablePoints(), options, seen ? &*seen : nullptr).signatures.transpose();
+  return describeShape(input.points(), options, seen ? &*seen : nullptr).signatures.transpose();
 }
 
 SymmetryMap transform(const AnyArray& points, const std::array<int, 3>& bins, const std::string& method,
@@ -341,7 +350,7 @@ SymmetryMap transform(const AnyArray& points, const std::array<int, 3>& bins, co
   if (as_published) options.voting.near_distance = 0.0;
   options.setSeed(seed);
   options.setNumThreads(threads);
-  const py::gil_scoped_release release;
+  const Computing computing;
   GaussianEdtOptions edt_options;
   edt_options.center = center;
   edt_options.radius = radius;
@@ -361,12 +370,18 @@ std::vector<RankedView> viewpoints(const std::vector<std::pair<Eigen::Vector3d, 
 /// \return for each query the row of the closest point, and its distance in input units.
 std::pair<py::array_t<int>, py::array_t<float>> closest(const AnyArray& points, const AnyArray& queries) {
   const InputPoints input("points", points, 0, 0), asked("queries", queries, 0, 0);
-  std::vector<int> indices;
-  std::vector<float> distances;
+  std::vector<int> indices(static_cast<std::size_t>(asked.points().cols()));
+  std::vector<float> distances(indices.size());
   {
-    const py::gil_scoped_release release;
-    makeFlannSearch(input.points())->search(asked.points(), 1, indices, distances);
-    for (float& distance : distances) distance = std::sqrt(distance);
+    const Computing computing;
+    const auto search = makeFlannSearch(input.points());
+    parallelRanges(indices.size(), 4096, 0, [&](std::size_t begin, std::size_t end) {
+      std::vector<int> found;
+      std::vector<float> sq_distances;
+      search->search(asked.points().middleCols(begin, end - begin), 1, found, sq_distances);
+      std::copy(found.begin(), found.end(), indices.begin() + begin);
+      for (std::size_t i = begin; i < end; ++i) distances[i] = std::sqrt(sq_distances[i - begin]);
+    });
   }
   return {toArray(indices), toArray(distances)};
 }
@@ -380,11 +395,13 @@ void add(py::module_& module, const char* name, const Function& function, Names.
 }  // namespace
 
 PYBIND11_MODULE(_pcl_symmetry, module) {
+  addComputing(module);
+  py::class_<Visibility>(module, "Visibility").def_property_readonly("viewpoint", &Visibility::viewpoint);
   addEvidence(module);
   py::class_<MeshSurface>(module, "MeshSurface").def(py::init(&meshSurface));
   addResults(module);
   add(module, "planes", &planes, "points", "viewpoint", "tolerance", "absolute_tolerance", "approximate", "max_planes",
-      "normals", "max_points", "evidence", "seed", "threads", "mesh");
+      "normals", "max_points", "evidence", "seed", "threads", "mesh", "may_be_rings");
   add(module, "volume_planes", &volumePlanes, "volume", "spacing", "origin", "direction", "levels", "approximate",
       "max_planes", "seed", "threads");
   add(module, "published_planes", &publishedPlanesOf, "points", "method", "num_points", "seed", "threads");
@@ -394,7 +411,8 @@ PYBIND11_MODULE(_pcl_symmetry, module) {
   add(module, "rotations_of", &rotationsOf, "discrete", "continuous");
   add(module, "transform", &transform, "points", "bins", "method", "center", "radius", "sigma", "as_published", "seed",
       "threads");
-  add(module, "local_symmetry", &localSymmetryOf, "points", "scale", "seed", "threads");
+  add(module, "local_symmetry", &localSymmetryOf, "points", "at", "scale", "seed", "threads");
+  add(module, "why_unanswerable", &whyUnanswerableOf, "points");
   add(module, "descriptors", &descriptors, "points", "input_axes", "by_equation_1", "seed", "threads");
   add(module, "describe", &describe, "points", "viewpoint", "seed", "threads");
   add(module, "segment", &segment, "points", "faces", "parts", "method", "depth", "as_published", "progress", "seed",

@@ -1,5 +1,6 @@
 /// What the Python module needs PCL for: poses refined by its ICP, and the database of models. Loaded when one of these
 /// is asked for.
+#include <pcl/console/print.h>
 #include <pcl/exceptions.h>
 #include <pybind11/eigen.h>
 #include <pybind11/functional.h>
@@ -15,13 +16,18 @@
 #include <utility>
 #include <vector>
 
+#include "pcl_symmetry/impl/cloud_analysis.hpp"
 #include "pcl_symmetry/register_all.h"
 #include "pcl_symmetry/symmetry_database.h"
 #include "pcl_symmetry/symmetry_registration.h"
+#include "pcl_symmetry/symmetry_scene.h"
+#include "python/computing.h"
 #include "python/input_points.h"
 #include "python/motions.h"
+#include "python/results.h"
 
 namespace py = pybind11;
+using py::literals::operator""_a;
 
 namespace pcl_symmetry::python {
 
@@ -37,7 +43,7 @@ CloudRegistration registerPoints(const AnyArray& source, const AnyArray& target,
   const std::optional<Visibility> source_seen = seenFrom(source_input.points(), source_viewpoint);
   const std::optional<Visibility> target_seen = seenFrom(target_input.points(), target_viewpoint);
   const Eigen::Isometry3d T_target_source = motionOf("guess", guess);
-  const py::gil_scoped_release release;
+  const Computing computing;
   CloudRegistrationOptions options;
   options.seed = seed;
   options.num_threads = threads;
@@ -65,7 +71,7 @@ std::pair<RegisteredScans, py::array_t<int>> registerAllPoints(const std::vector
   RegisteredScans found;
   std::vector<ScanPoint> merged;
   {
-    const py::gil_scoped_release release;
+    const Computing computing;
     found = registerAll(scans, options);
     merged = found.mergedPoints(scans);
   }
@@ -78,13 +84,107 @@ std::pair<RegisteredScans, py::array_t<int>> registerAllPoints(const std::vector
   return {std::move(found), std::move(of_points)};
 }
 
+/// \param points (N, 3), without rows that are not finite, or (H, W, 3), as it is: rows and columns of a camera.
 Cloud cloudOf(const py::array& points) {
-  const InputPoints input("points", points, 0, 0);
+  const bool is_organized = points.ndim() == 3;
+  const InputPoints input("points", is_organized ? py::array(points.attr("reshape")(-1, points.shape(2))) : points, 0,
+                          0);
   Cloud cloud;
+  if (is_organized) {
+    const py::array_t<float, py::array::c_style | py::array::forcecast> rows(points);
+    cloud.resize(static_cast<std::uint32_t>(points.shape(1)), static_cast<std::uint32_t>(points.shape(0)));
+    for (std::size_t i = 0; i < cloud.size(); ++i)
+      cloud[i].getVector3fMap() = Eigen::Map<const Eigen::Vector3f>(rows.data() + 3 * i);
+    cloud.is_dense = false;
+    return cloud;
+  }
   const PointsRef used = input.points();
   cloud.reserve(static_cast<std::size_t>(used.cols()));
   for (Eigen::Index i = 0; i < used.cols(); ++i) cloud.emplace_back(used(0, i), used(1, i), used(2, i));
   return cloud;
+}
+
+Viewpoint viewpointOf(const py::object& viewpoint) {
+  if (viewpoint.is_none()) return {Viewpoint::Mode::None, Eigen::Vector3d::Zero()};
+  const std::optional<Eigen::Vector3d> position = positionOf(viewpoint);
+  return position ? Viewpoint{Viewpoint::Mode::Given, *position} : Viewpoint{};
+}
+
+/// What a class for PCL uses of a cloud, and what it knows of the scanner.
+class Look : public ScanAnalysis<pcl::PointXYZ> {
+public:
+  /// \param indices of the object in its scene; none: the whole cloud.
+  Look(const Cloud& cloud, const std::optional<pcl::Indices>& indices, const Viewpoint& viewpoint,
+       const std::optional<Eigen::Vector4d>& ground, std::size_t max_points, bool as_measured, std::uint64_t seed,
+       int threads)
+      : ScanAnalysis("points", max_points) {
+    setInputCloud(pcl::make_shared<Cloud>(cloud));
+    if (indices) setIndices(pcl::make_shared<pcl::Indices>(*indices));
+    setViewpoint(viewpoint);
+    if (ground) setGround(*ground);
+    detail::withBadArguments([&] {
+      points_ = selectInput(seed, threads, as_measured);
+      if (points_.cols() > 0) seenSpace(points_);
+    });
+  }
+
+  const Points& points() const { return points_; }
+  std::optional<Visibility> visibility() const { return seen() ? std::optional<Visibility>(*seen()) : std::nullopt; }
+  bool mayBeRings() const { return hasGivenSupport() && getViewpointSource() != ViewpointSource::Rays; }
+
+private:
+  Points points_;
+};
+
+/// \return (M, 3) points that are used, the row of each, what the scanner saw or None, whether they may be rings,
+/// and why there is no answer.
+py::tuple look(const AnyArray& points, const std::optional<pcl::Indices>& indices, const py::object& viewpoint,
+               const std::optional<Eigen::Vector4d>& ground, std::size_t max_points, bool as_measured,
+               std::uint64_t seed, int threads) {
+  const Cloud cloud = cloudOf(points);
+  const Viewpoint from = viewpointOf(viewpoint);
+  std::optional<Look> found;
+  {
+    const Computing computing;
+    const std::size_t most = max_points == 0 ? std::max<std::size_t>(2, cloud.size()) : max_points;
+    found.emplace(cloud, indices, from, ground, most, as_measured, seed, threads);
+  }
+  return py::make_tuple(toRows(found->points()), toArray(found->getUsedIndices()), found->visibility(),
+                        found->mayBeRings(), found->getReason());
+}
+
+/// The objects of a scene as a dict.
+py::dict sceneOf(const AnyArray& points, const py::object& viewpoint, const std::optional<Eigen::Vector4d>& ground,
+                 const SymmetryDatabase* database, const SceneOptions& options) {
+  SymmetryScene scene;
+  scene.setOptions(options);
+  scene.setViewpoint(viewpointOf(viewpoint));
+  if (ground) scene.setGround(*ground);
+  scene.setInputCloud(pcl::make_shared<Cloud>(cloudOf(points)));
+  // Not deleted here: Python holds it.
+  if (database) scene.setDatabase({database, [](const void*) {}});
+  SceneAnalysis found;
+  {
+    const Computing computing;
+    found = scene.compute();
+  }
+  py::list objects, supports, junctions;
+  for (const SceneObject& object : found.objects) {
+    PlaneSearch search;
+    static_cast<Detection&>(search.found) = object;
+    objects.append(py::dict("planes"_a = search, "indices"_a = toArray(object.indices), "frame"_a = object.frame,
+                            "completed_by"_a = object.completed_by,
+                            "added"_a = toRows(object.added.getMatrixXfMap(3, 4, 0)), "models"_a = object.models));
+  }
+  for (const SupportingPlane& support : found.supports)
+    supports.append(py::make_tuple(support.coefficients, toArray(support.indices)));
+  for (const SceneJunction& junction : found.junctions)
+    junctions.append(
+        py::make_tuple(junction.first, junction.second, junction.num_points, junction.together, junction.apart));
+  std::optional<Visibility> seen;
+  if (found.seen && found.seen->visibility()) seen = *found.seen->visibility();
+  return py::dict("objects"_a = objects, "supports"_a = supports, "junctions"_a = junctions, "seen"_a = seen,
+                  "plane_distance"_a = found.plane_distance, "cluster_distance"_a = found.cluster_distance);
 }
 
 /// Models of a mapping from names to points, or of pairs of both. Points become clouds when they are used.
@@ -117,14 +217,8 @@ BuildReport build(SymmetryDatabase& database, const py::object& models, const py
       const py::object go_on = progress(share);
       return go_on.is_none() || go_on.cast<bool>();
     };
-  const py::gil_scoped_release release;
+  const Computing computing;
   return database.build(inputs, told);
-}
-
-Viewpoint viewpointOf(const py::object& viewpoint) {
-  if (viewpoint.is_none()) return {Viewpoint::Mode::None, Eigen::Vector3d::Zero()};
-  const std::optional<Eigen::Vector3d> position = positionOf(viewpoint);
-  return position ? Viewpoint{Viewpoint::Mode::Given, *position} : Viewpoint{};
 }
 
 void addRegistration(py::module_& module) {
@@ -160,8 +254,7 @@ void addRegistration(py::module_& module) {
                              [](const RegisteredScans& r) {
                                std::map<int, std::string> left_out;
                                for (std::size_t k = 0; k < r.scans.size(); ++k)
-                                 if (!r.scans[k].left_out.empty())
-                                   left_out[static_cast<int>(k)] = r.scans[k].left_out;
+                                 if (!r.scans[k].left_out.empty()) left_out[static_cast<int>(k)] = r.scans[k].left_out;
                                return left_out;
                              })
       .def_property_readonly("pairs", [](const RegisteredScans& r) {
@@ -175,7 +268,7 @@ void addRegistration(py::module_& module) {
              py::arg("source_viewpoint"), py::arg("target_viewpoint"), py::arg("seed"), py::arg("threads"));
 }
 
-void addResults(py::module_& module) {
+void addModels(py::module_& module) {
   py::class_<ModelMatch>(module, "Match")
       .def_readonly("name", &ModelMatch::name)
       .def_readonly("distance", &ModelMatch::distance);
@@ -192,7 +285,7 @@ void addResults(py::module_& module) {
 }
 
 void addDatabase(py::module_& module) {
-  using Unlocked = py::call_guard<py::gil_scoped_release>;
+  using Unlocked = py::call_guard<Computing>;
   py::class_<SymmetryDatabase>(module, "Database")
       .def(py::init([](const std::string& file, const std::string& unit, int threads) {
              DatabaseOptions options;
@@ -207,7 +300,7 @@ void addDatabase(py::module_& module) {
       .def("add",
            [](SymmetryDatabase& database, const std::string& name, const AnyArray& points) {
              const Cloud cloud = cloudOf(points);
-             const py::gil_scoped_release release;
+             const Computing computing;
              database.add(name, cloud);
            })
       .def("build", &build, py::arg("models"), py::arg("progress"))
@@ -222,28 +315,57 @@ void addDatabase(py::module_& module) {
           [](const SymmetryDatabase& database, const AnyArray& points, int num_nearest, const py::object& viewpoint) {
             const Cloud cloud = cloudOf(points);
             const Viewpoint from = viewpointOf(viewpoint);
-            const py::gil_scoped_release release;
+            const Computing computing;
             return database.match(cloud, num_nearest, from);
           },
           py::arg("points"), py::arg("num_nearest"), py::arg("viewpoint"))
       .def(
           "recognize",
-          [](const SymmetryDatabase& database, const AnyArray& points, const py::object& viewpoint,
-             double min_confidence, int threads) {
+          [](const SymmetryDatabase& database, const AnyArray& points, const std::optional<pcl::Indices>& indices,
+             const py::object& viewpoint, double min_confidence, int threads) {
             const Cloud cloud = cloudOf(points);
             const Viewpoint from = viewpointOf(viewpoint);
             RecognitionOptions options;
             options.min_confidence = min_confidence;
             options.num_threads = threads;
-            const py::gil_scoped_release release;
-            return database.recognize(cloud, options, from);
+            const Computing computing;
+            if (!indices) return database.recognize(cloud, options, from);
+            const auto seen = std::make_shared<const SeenSpace>(cloud, from);
+            return database.recognize(cloud, *indices, options, seen);
           },
-          py::arg("points"), py::arg("viewpoint"), py::arg("min_confidence"), py::arg("threads"));
+          py::arg("points"), py::arg("indices"), py::arg("viewpoint"), py::arg("min_confidence"), py::arg("threads"));
+}
+
+void addScenes(py::module_& module) {
+  module.def("look", &look, py::arg("points"), py::arg("indices"), py::arg("viewpoint"), py::arg("ground"),
+             py::arg("max_points"), py::arg("as_measured"), py::arg("seed"), py::arg("threads"));
+  py::class_<SceneOptions> options(module, "SceneOptions");
+  options.def(py::init<>())
+      .def_readwrite("plane_distance", &SceneOptions::plane_distance)
+      .def_readwrite("cluster_distance", &SceneOptions::cluster_distance)
+      .def_readwrite("min_points", &SceneOptions::min_points)
+      .def_readwrite("max_range", &SceneOptions::max_range)
+      .def_readwrite("max_points", &SceneOptions::max_points)
+      .def_readwrite("separate", &SceneOptions::separate)
+      .def_readwrite("frames", &SceneOptions::frames)
+      .def_readwrite("complete", &SceneOptions::complete)
+      .def("set_common", [](SceneOptions& o, double min_confidence, double accept, std::uint64_t seed, int threads) {
+        o.detection.min_confidence = min_confidence;
+        o.recognition.min_confidence = accept;
+        o.detection.seed = o.frame.seed = seed;
+        o.num_threads = o.detection.num_threads = o.frame.num_threads = o.completion.num_threads =
+            o.recognition.num_threads = threads;
+      });
+  module.def("scene", &sceneOf, py::arg("points"), py::arg("viewpoint"), py::arg("ground"), py::arg("database"),
+             py::arg("options"));
 }
 
 }  // namespace
 
 PYBIND11_MODULE(_recognition, module) {
+  pcl::console::setVerbosityLevel(pcl::console::L_ALWAYS);  // the package tells the reasons
+  py::module_::import("pcl_symmetry._pcl_symmetry");        // has the classes of planes and frames
+  addComputing(module);
   // Messages of the library name the file or the parameter.
   py::register_exception_translator([](std::exception_ptr error) {
     try {
@@ -255,8 +377,9 @@ PYBIND11_MODULE(_recognition, module) {
     }
   });
   addRegistration(module);
-  addResults(module);
+  addModels(module);
   addDatabase(module);
+  addScenes(module);
 }
 
 }  // namespace pcl_symmetry::python

@@ -75,8 +75,7 @@ void adjustPoses(const std::vector<PoseConstraint>& constraints, std::vector<Eig
     double stiffness = 0.0;
     for (const PoseConstraint& known : constraints) {
       const Eigen::Isometry3d T_target_world = T_world_scan[known.target].inverse();
-      const Vector6d off =
-          smallMotionOf(T_target_world * T_world_scan[known.source] * known.T_target_source.inverse());
+      const Vector6d off = smallMotionOf(T_target_world * T_world_scan[known.source] * known.T_target_source.inverse());
       const Matrix6d to_target = adjoint(T_target_world);
       const Matrix6d pull = to_target.transpose() * known.information;
       const Matrix6d block = pull * to_target;
@@ -143,8 +142,8 @@ ScanGroups joinScans(int num_scans, const std::vector<PairAnswer>& answers, cons
       }
     }
     if (!best) break;
-    const Eigen::Isometry3d T_group_other = groups.T_group_scan[best->target] * best->T_target_source *
-                                            groups.T_group_scan[best->source].inverse();
+    const Eigen::Isometry3d T_group_other =
+        groups.T_group_scan[best->target] * best->T_target_source * groups.T_group_scan[best->source].inverse();
     const int group = groups.group[best->target], other = groups.group[best->source];
     for (int k = 0; k < num_scans; ++k) {
       if (groups.group[k] != other) continue;

@@ -27,12 +27,12 @@ struct RegisterAllRules {
   double least_merit = -0.1, good_merit = 0.4;
   double least_votes = 0.6;  ///< that join scans: more than one pair that did not converge
   // Adjustment of all poses together
-  int adjust_points = 2000;       ///< of each scan
-  int adjust_steps = 16;          ///< over which the reach shrinks
-  double first_reach = 0.06;      ///< radii, distance in which points correspond
-  double last_accuracies = 2.0;   ///< the same at the end, in distances that the scans resolve
-  double least_cosine = 0.7;      ///< of the normals of corresponding points
-  double least_overlap = 0.03;    ///< share of the points that must correspond
+  int adjust_points = 2000;      ///< of each scan
+  int adjust_steps = 16;         ///< over which the reach shrinks
+  double first_reach = 0.06;     ///< radii, distance in which points correspond
+  double last_accuracies = 2.0;  ///< the same at the end, in distances that the scans resolve
+  double least_cosine = 0.7;     ///< of the normals of corresponding points
+  double least_overlap = 0.03;   ///< share of the points that must correspond
   double around_angle = 5.0 * kDegree, around_distance = 0.06;  ///< radians, radii: where a scan must fit the others
 };
 constexpr RegisterAllRules kRegisterAll{};
@@ -99,7 +99,8 @@ public:
       NormalizedScan& scan = scans_[i];
       scan.scan.points = normalizePoints(drawn(input.points, options_.seed), balls_[i].center, unit_);
       if (input.seen) scan.scan.seen = input.seen->normalized(balls_[i].center, unit_);
-      scan.full_share = std::sqrt(static_cast<double>(scan.scan.points.cols()) / static_cast<double>(input.points.cols()));
+      scan.full_share =
+          std::sqrt(static_cast<double>(scan.scan.points.cols()) / static_cast<double>(input.points.cols()));
       scan.surface = std::make_shared<const PosedSurface>(scan.scan.points, scan.scan.seen, options_.seed, 1);
       scan.target = registrationTarget(scan.scan.points, scan.scan.seen, options_);
     });
@@ -235,9 +236,7 @@ public:
   }
 
 private:
-  bool alone(int scan) const {
-    return std::count(groups_.group.begin(), groups_.group.end(), groups_.group[scan]) < 2;
-  }
+  bool alone(int scan) const { return std::count(groups_.group.begin(), groups_.group.end(), groups_.group[scan]) < 2; }
 
   struct Matched {
     std::vector<std::pair<Eigen::Vector3d, int>> pairs;  ///< points in the target's frame, with those of the target
@@ -245,15 +244,14 @@ private:
   };
 
   PairAnswer registered(int target, int source) const {
-    const CloudRegistration found =
-        registerClouds(scans_[source].scan.points, scans_[source].scan.seen, *scans_[target].target,
-                       Eigen::Isometry3d::Identity(), options_);
+    const CloudRegistration found = registerClouds(scans_[source].scan.points, scans_[source].scan.seen,
+                                                   *scans_[target].target, Eigen::Isometry3d::Identity(), options_);
     PairAnswer answer{source, target, found.T_target_source, Matrix6d::Identity()};
     if (!found.covariance) return answer;
     answer.covariance = *found.covariance;
     answer.converged = found.converged();
-    const double doubtful = (found.score.merit() - kRegisterAll.least_merit) /
-                            (kRegisterAll.good_merit - kRegisterAll.least_merit);
+    const double doubtful =
+        (found.score.merit() - kRegisterAll.least_merit) / (kRegisterAll.good_merit - kRegisterAll.least_merit);
     answer.weight = answer.converged ? 1.0 : 0.5 * std::clamp(doubtful, 0.0, 1.0);
     return answer;
   }
@@ -280,7 +278,8 @@ private:
   /// The pose in which the surfaces of two scans meet, near that of now (point to plane).
   std::optional<PoseConstraint> meeting(int source, int target, double reach) const {
     const Matched matched = match(source, target, reach);
-    if (static_cast<double>(matched.pairs.size()) < kRegisterAll.least_overlap * matched.num_points) return std::nullopt;
+    if (static_cast<double>(matched.pairs.size()) < kRegisterAll.least_overlap * matched.num_points)
+      return std::nullopt;
     const PosedSurface& to = *scans_[target].surface;
     Matrix6d hessian = Matrix6d::Zero();
     Vector6d gradient = Vector6d::Zero();
@@ -376,8 +375,8 @@ RegisteredScans registerAll(const std::vector<ObjectScan>& scans, const CloudReg
     const bool kept = graph.groups().group[answer.source] == group && graph.groups().group[answer.target] == group;
     const bool used = kept && answer.weight > 0.0 && graph.agrees(answer);
     if (!used && !answer.converged) continue;
-    result.pairs.push_back({usable[answer.source], usable[answer.target],
-                            kept ? graph.overlap(answer.source, answer.target) : 0.0, used});
+    result.pairs.push_back(
+        {usable[answer.source], usable[answer.target], kept ? graph.overlap(answer.source, answer.target) : 0.0, used});
   }
   result.resolution = graph.resolution();
   done("report");

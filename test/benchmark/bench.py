@@ -451,7 +451,7 @@ def answers_of(found, milliseconds=None):
     numbers = lambda v: [float(x) for x in v]
     plane = lambda p: {"coefficients": numbers(p.coefficients), "kind": p.kind, "confidence": p.confidence}
     axis = lambda a: {"point": numbers(a.point), "direction": numbers(a.direction), "confidence": a.confidence}
-    return {"planes": [plane(p) for p in found], "axes": [axis(a) for a in found.axes],
+    return {"planes": [plane(p) for p in found.every], "axes": [axis(a) for a in found.axes],
             "centers": [{"point": numbers(c.point), "confidence": c.confidence} for c in found.centers],
             "best": plane(found.best) if found.best else None, "failed": bool(found.reason),
             "milliseconds": milliseconds}  # fmt: skip

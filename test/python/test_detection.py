@@ -153,7 +153,7 @@ def rows(planes):
 
 
 def kinds(found):
-    return [plane.kind for plane in found]
+    return [plane.kind for plane in getattr(found, "every", found)]
 
 
 def calls(found):
@@ -312,9 +312,9 @@ class Families(Detection):
             self.assertTrue(angle < 0.5 * DEGREE and offset < 0.01)
             self.assertEqual(found.centers, [])
             # Single planes of the family are not symmetries of parts.
-            every = pcl_symmetry.planes(cylinder(3000, seed).cloud, approximate=True)
-            self.assertEqual(len(every.axes), 1)
-            self.assertFalse([plane for plane in every if plane.kind == "local" and plane.confidence >= 0.5])
+            found = pcl_symmetry.planes(cylinder(3000, seed).cloud, approximate=True)
+            self.assertEqual(len(found.axes), 1)
+            self.assertFalse([plane for plane in found.every if plane.kind == "local" and plane.confidence >= 0.5])
 
     def test_of_a_sphere_are_one_center(self):
         for seed in range(3):
@@ -458,7 +458,7 @@ class Decisions(Detection):
         self.assertEqual((len(found), found.best.kind), (0, "approximate"))
         self.assertTrue(0.1 < found.best.share < 0.9)
         self.assertGreater(found.best.deviation, found.tolerance)
-        every = pcl_symmetry.planes(tetrahedron(5000).cloud, approximate=True)
+        every = pcl_symmetry.planes(tetrahedron(5000).cloud, approximate=True).every
         self.assertTrue(len(every) and "symmetry" not in kinds(every))
         self.assertLess(max(plane.confidence for plane in every), 0.5)
 
@@ -529,7 +529,7 @@ class Decisions(Detection):
         """Two boxes, one turned and put at the side of the other, as dense as that."""
         turn, place = random_pose(6)[0], np.array([1.68, 0.2, 0.1])  # a corner reaches 0.04 into the large box
         parts = [box(6000, half=(1, 0.7, 0.5)), box(2900, seed=2, half=(0.6, 0.5, 0.35)).moved((turn, place))]
-        found = pcl_symmetry.planes(np.vstack([part.points for part in parts]), approximate=True)
+        found = pcl_symmetry.planes(np.vstack([part.points for part in parts]), approximate=True).every
         local = rows(plane for plane in found if plane.kind == "local")
         planes = np.vstack([part.planes for part in parts])
 

@@ -69,7 +69,9 @@ class Planes(unittest.TestCase):
         np.testing.assert_allclose(np.abs(found[0].normal), [0, 1, 0], atol=1e-3)
         self.assertAlmostEqual(abs(found[0].offset), 48, delta=0.05)
         self.assertGreater(found[0].confidence, 0.9)
-        self.assertEqual(pcl_symmetry.planes(volume=np.zeros((8, 8, 8))).reason, "volume: all values are equal")
+        with self.assertWarnsRegex(RuntimeWarning, "^volume: all values are equal") as caught:
+            self.assertEqual(pcl_symmetry.planes(volume=np.zeros((8, 8, 8))).reason, "volume: all values are equal")
+        self.assertEqual(caught.filename, __file__)
         with self.assertRaisesRegex(ValueError, "spacing = .* must be finite and > 0"):
             pcl_symmetry.planes(volume=body, spacing=(1, 0, 1))
         with self.assertRaisesRegex(TypeError, "points or volume"):
@@ -165,15 +167,25 @@ class Planes(unittest.TestCase):
         self.assertEqual(len(pcl_symmetry.planes(seen, viewpoint=viewpoint).rotation_evidence), 0)
 
     def test_data_without_an_answer_give_a_reason(self):
+        """All of them warn with it, and their answer is empty."""
         for points in (np.zeros((0, 3), np.float32), np.zeros((100, 3), np.float32), box(num_points=12)):
-            found = pcl_symmetry.planes(points)
+            with self.assertWarnsRegex(RuntimeWarning, "points: .* distinct point"):
+                found = pcl_symmetry.planes(points)
             self.assertEqual(len(found), 0)
             self.assertNotEqual(found.reason, "")
-        for function in (pcl_symmetry.frame, pcl_symmetry.rotations, pcl_symmetry.describe):
-            with self.assertRaisesRegex(ValueError, "points: 5 distinct points, at least 20 are needed"):
-                function(box(num_points=5))
-            with self.assertRaisesRegex(ValueError, "points: 1 distinct point"):
-                function(np.ones((1000, 3)))
+        reasons = {
+            "frame": lambda f: (f.reason, bool(f), np.isnan(f.center).all(), len(f.equivalent)),
+            "rotations": lambda r: (r.reason, bool(r.name), np.isnan(r.center).all(), len(r.discrete)),
+        }
+        for number, points in ((5, box(num_points=5)), (1, np.ones((1000, 3)))):
+            words = f"{number} distinct point{'s' if number > 1 else ''}, at least 20 are needed"
+            for name in ("frame", "rotations", "describe", "segment"):
+                with self.assertWarnsRegex(RuntimeWarning, "points: " + words) as caught:
+                    found = getattr(pcl_symmetry, name)(points)
+                self.assertEqual(caught.filename, __file__, name)
+                if name in reasons:
+                    self.assertEqual(reasons[name](found), (words, False, True, 0))
+            self.assertEqual(found.tolist(), [-1] * len(points))
         plane = pcl_symmetry.ReflectionPlane([1, 0, 0], 0.0)
         for points, words in ((np.zeros((0, 3)), "number of points = 0, must be > 0"), (np.full((50, 3), np.nan), "not all finite")):
             with self.assertRaisesRegex(ValueError, words):

@@ -114,7 +114,7 @@ class Volumes(unittest.TestCase):
             self.phantom(function, size=56)
             found = pcl_symmetry.planes(**self.arguments)
             self.assertEqual((len(found), found.reason), (0, ""))
-            every = pcl_symmetry.planes(**self.arguments, approximate=True)
+            every = pcl_symmetry.planes(**self.arguments, approximate=True).every
             self.assertLessEqual({plane.kind for plane in every}, {"approximate"})
 
     def test_of_a_ball_are_all_and_said_so(self):

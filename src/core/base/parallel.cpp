@@ -1,93 +1,174 @@
 #include "core/base/parallel.h"
 
+#include <pthread.h>
+#include <sched.h>
+
 #include <algorithm>
 #include <atomic>
+#include <chrono>
+#include <condition_variable>
 #include <exception>
 #include <mutex>
 #include <thread>
+#include <utility>
 #include <vector>
-#if !defined(__SANITIZE_THREAD__)
-#include <omp.h>
-#include <pthread.h>
-#endif
+
+#include "core/base/watch.h"
 
 namespace pcl_symmetry {
 
+struct Loop;
+
 namespace {
 
-/// Starts threads that end with the loop. Loops inside a block run on the thread of the block.
-void runOnNewThreads(int num_threads, std::size_t num_blocks, const std::function<void(std::size_t)>& block) {
-  thread_local bool is_inside = false;
-  std::atomic<std::size_t> next{0};
-  const auto work = [&] {
-    const bool was_inside = is_inside;
-    is_inside = true;
-    for (std::size_t b; (b = next++) < num_blocks;) block(b);
-    is_inside = was_inside;
-  };
-  std::vector<std::thread> others;
-  for (int i = 1; i < num_threads && !is_inside; ++i) others.emplace_back(work);
-  work();
-  for (std::thread& other : others) other.join();
-}
+/// Between two looks at a watch: too short to be noticed by whoever ends a program, too long to cost time.
+constexpr std::chrono::milliseconds watch_interval(50);
 
-#if defined(__SANITIZE_THREAD__)
-// The thread sanitizer does not see how OpenMP's runtime synchronizes, and would report every loop.
-int numCores() {
-  return static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
-}
+using Clock = std::chrono::steady_clock;
 
-void runOnThreads(int num_threads, std::size_t num_blocks, const std::function<void(std::size_t)>& block) {
-  runOnNewThreads(num_threads, num_blocks, block);
-}
-#else
-int numCores() {
-  return std::max(1, omp_get_num_procs());
-}
+thread_local Watch* watch = nullptr;
+thread_local Loop* innermost = nullptr;  // whose block the thread runs
 
-// OpenMP's threads do not survive fork(): its next loop in the child would wait for them forever.
-std::atomic<bool> was_forked{false};
-[[maybe_unused]] const int is_registered = pthread_atfork(nullptr, nullptr, [] { was_forked = true; });
-
-void runOnThreads(int num_threads, std::size_t num_blocks, const std::function<void(std::size_t)>& block) {
-  if (was_forked) {
-    runOnNewThreads(num_threads, num_blocks, block);
-    return;
-  }
-  if (omp_in_parallel()) {
-    // Threads that have finished their own blocks take over some of these.
-#pragma omp taskloop grainsize(1) default(none) shared(num_blocks, block)
-    for (std::size_t b = 0; b < num_blocks; ++b) block(b);
-    return;
-  }
-#pragma omp parallel for schedule(dynamic, 1) num_threads(num_threads)
-  for (std::size_t b = 0; b < num_blocks; ++b) block(b);
-}
-#endif
+struct Ended {};  // thrown by a loop inside one that a watch has ended
 
 }  // namespace
 
-int resolveNumThreads(int num_threads) {
-  return num_threads > 0 ? num_threads : numCores();
+/// One call of parallelBlocks(). Threads take its blocks one by one.
+struct Loop {
+  Loop(std::size_t num_blocks_of_call, int num_threads, const std::function<void(std::size_t)>& block_of_call)
+      : num_blocks(num_blocks_of_call), num_free(num_threads - 1), outer(innermost), block(block_of_call) {}
+
+  void run();
+  void work();
+  void tell(double share);
+  bool hasEnded() const { return ended || (outer && outer->hasEnded()); }
+
+  const std::size_t num_blocks;
+  std::atomic<std::size_t> next{0};
+  std::atomic<bool> ended{false};  // by a watch
+  int num_free, num_helpers = 0;   // threads that may still help, and that do; under the lock of Threads
+  Loop* const outer;
+  const std::function<void(std::size_t)>& block;
+  std::mutex mutex;  // of failure
+  std::exception_ptr failure;
+};
+
+namespace {
+
+/// The threads that help with loops. They sleep while there is none: other programs have the cores.
+class Threads {
+public:
+  void add(Loop& loop) {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    loops_.push_back(&loop);
+    for (; num_threads_ < loop.num_free; ++num_threads_) std::thread([this] { serve(); }).detach();
+    for (int i = 0; i < loop.num_free; ++i) wake_.notify_one();
+  }
+
+  /// Returns when no thread works on the loop any more.
+  void remove(Loop& loop) {
+    std::unique_lock<std::mutex> lock(mutex_);
+    loops_.erase(std::find(loops_.begin(), loops_.end(), &loop));
+    while (!left_.wait_for(lock, watch_interval, [&] { return loop.num_helpers == 0; })) {
+      lock.unlock();
+      loop.tell(1.0);
+      lock.lock();
+    }
+  }
+
+private:
+  void serve() {
+    std::unique_lock<std::mutex> lock(mutex_);
+    for (;;) {
+      // The last one is the innermost: outer ones wait for it.
+      const auto loop = std::find_if(loops_.rbegin(), loops_.rend(), [](const Loop* each) {
+        return each->num_free > 0 && each->next < each->num_blocks;
+      });
+      if (loop == loops_.rend()) {
+        wake_.wait(lock);
+        continue;
+      }
+      Loop& helped = **loop;
+      --helped.num_free;
+      ++helped.num_helpers;
+      lock.unlock();
+      helped.work();
+      lock.lock();
+      if (--helped.num_helpers == 0) left_.notify_all();
+    }
+  }
+
+  std::mutex mutex_;
+  std::condition_variable wake_, left_;
+  std::vector<Loop*> loops_;
+  int num_threads_ = 0;
+};
+
+// Never deleted, as its threads may run until the program ends. The child of a fork has none of them.
+Threads* threads = new Threads;
+[[maybe_unused]] const int is_registered = pthread_atfork(nullptr, nullptr, [] { threads = new Threads; });
+
+}  // namespace
+
+void Loop::run() {
+  Watch* const watched = watch;
+  const bool is_shared = num_free > 0;
+  if (watched) ++watched->depth_;
+  if (is_shared) threads->add(*this);
+  work();
+  if (is_shared) threads->remove(*this);
+  if (watched) --watched->depth_;
+  if (failure) std::rethrow_exception(failure);
+  if (hasEnded()) throw Ended();
 }
 
-void parallelBlocks(std::size_t num_blocks, int num_threads, const std::function<void(std::size_t)>& block) {
-  const int threads = static_cast<int>(std::min<std::size_t>(resolveNumThreads(num_threads), num_blocks));
-  if (threads <= 1) {
-    for (std::size_t b = 0; b < num_blocks; ++b) block(b);
-    return;
-  }
-  std::exception_ptr failure;
-  std::mutex failure_mutex;
-  runOnThreads(threads, num_blocks, [&](std::size_t b) {
+void Loop::work() {
+  Loop* const former = std::exchange(innermost, this);
+  for (std::size_t b; !hasEnded() && (b = next++) < num_blocks;) {
     try {
       block(b);
     } catch (...) {
-      const std::lock_guard<std::mutex> lock(failure_mutex);
+      const std::lock_guard<std::mutex> lock(mutex);
       if (!failure) failure = std::current_exception();
     }
-  });
-  if (failure) std::rethrow_exception(failure);
+    tell(static_cast<double>(b + 1) / static_cast<double>(num_blocks));
+  }
+  innermost = former;
+}
+
+void Loop::tell(double share) {
+  if (!watch || hasEnded()) return;
+  if (watch->depth_ == 1) watch->share_ = share;
+  if (Clock::now() < watch->last_ + watch_interval) return;
+  try {
+    watch->tell_(watch->share_);
+  } catch (...) {
+    for (Loop* loop = this; loop; loop = loop->outer) {
+      const std::lock_guard<std::mutex> lock(loop->mutex);
+      loop->failure = std::current_exception();
+      loop->ended = true;
+    }
+  }
+  watch->last_ = Clock::now();
+}
+
+Watch::Watch(std::function<void(double)> tell) : tell_(std::move(tell)), former_(watch), last_(Clock::now()) {
+  watch = this;
+}
+
+Watch::~Watch() {
+  watch = former_;
+}
+
+int resolveNumThreads(int num_threads) {
+  if (num_threads > 0) return num_threads;
+  cpu_set_t cores;
+  return sched_getaffinity(0, sizeof(cores), &cores) == 0 ? CPU_COUNT(&cores) : 1;
+}
+
+void parallelBlocks(std::size_t num_blocks, int num_threads, const std::function<void(std::size_t)>& block) {
+  if (num_blocks == 0) return;
+  Loop(num_blocks, static_cast<int>(std::min<std::size_t>(resolveNumThreads(num_threads), num_blocks)), block).run();
 }
 
 void parallelRanges(std::size_t size, std::size_t block_size, int num_threads,

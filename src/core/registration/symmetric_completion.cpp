@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "core/base/check.h"
+#include "core/base/parallel.h"
 #include "core/geometry/point_samples.h"
 #include "core/geometry/surface_normals.h"
 
@@ -22,15 +23,20 @@ std::vector<int> completingPoints(const PointsRef& points, const ReflectionPlane
   const auto search = makeFlannSearch(points);
   const LocalGeometry geometry = localGeometry(points, *search, kNumSupportNeighbors, options.num_threads);
   const Points reflected = reflectedPoints(points, plane);
-  std::vector<int> closest;
-  std::vector<float> sq_distances;
-  search->search(reflected, 1, closest, sq_distances);
-  for (Eigen::Index i = 0; i < points.cols(); ++i) {
-    const double spacing = geometry.spacing[closest[i]];
-    if (!(std::sqrt(sq_distances[i]) > options.overlap * spacing)) continue;
-    if (visibility && visibility->depthBehind(reflected.col(i).cast<double>()) < -options.margin * spacing) continue;
-    completing.push_back(static_cast<int>(i));
-  }
+  std::vector<char> is_completing(static_cast<std::size_t>(points.cols()));
+  parallelRanges(is_completing.size(), 4096, options.num_threads, [&](std::size_t begin, std::size_t end) {
+    std::vector<int> closest;
+    std::vector<float> sq_distances;
+    search->search(reflected.middleCols(begin, end - begin), 1, closest, sq_distances);
+    for (std::size_t i = begin; i < end; ++i) {
+      const double spacing = geometry.spacing[closest[i - begin]];
+      is_completing[i] =
+          std::sqrt(sq_distances[i - begin]) > options.overlap * spacing &&
+          !(visibility && visibility->depthBehind(reflected.col(i).cast<double>()) < -options.margin * spacing);
+    }
+  });
+  for (std::size_t i = 0; i < is_completing.size(); ++i)
+    if (is_completing[i]) completing.push_back(static_cast<int>(i));
   return completing;
 }
 

@@ -19,6 +19,7 @@ from .functions import (
     descriptor_distance,
     descriptors,
     frame,
+    from_depth,
     local_symmetry,
     planes,
     rotations,
@@ -33,6 +34,7 @@ from .results import (
     BuildReport,
     Center,
     Frame,
+    Junction,
     Map,
     Match,
     Plane,
@@ -44,62 +46,71 @@ from .results import (
     ReflectionPlane,
     RegisteredScans,
     Registration,
-    Rotations,
-    Symmetrized,
     RotationAxis,
+    Rotations,
+    Scene,
+    SceneObject,
+    Support,
+    Symmetrized,
     View,
 )
 
 if TYPE_CHECKING:
-    from .database import Database, register, register_all
+    from .database import Database, register, register_all, scene
 
+# Functions first: this is the order of help(pcl_symmetry).
 __all__ = [
-    "Axis",
-    "BuildReport",
-    "Center",
-    "Frame",
-    "Map",
-    "Match",
-    "Merging",
-    "Plane",
+    "planes",
+    "frame",
+    "rotations",
+    "segment",
+    "complete",
+    "symmetrize",
+    "from_depth",
+    "sample_mesh",
+    "transform",
+    "local_symmetry",
+    "viewpoints",
+    "describe",
+    "descriptors",
+    "descriptor_distance",
     "Planes",
-    "PoseScore",
-    "ProbableFrame",
-    "Profile",
-    "Recognized",
+    "Plane",
     "ReflectionPlane",
-    "RegisteredScans",
-    "Registration",
+    "Axis",
+    "Center",
+    "RotationAxis",
+    "Profile",
+    "Frame",
+    "ProbableFrame",
     "Rotations",
     "Symmetrized",
-    "RotationAxis",
+    "Map",
     "View",
-    "complete",
-    "describe",
-    "descriptor_distance",
-    "descriptors",
-    "frame",
-    "local_symmetry",
-    "planes",
-    "rotations",
-    "sample_mesh",
-    "segment",
-    "symmetrize",
-    "transform",
-    "viewpoints",
+    "Merging",
+    "Scene",
+    "SceneObject",
+    "Support",
+    "Junction",
+    "Registration",
+    "RegisteredScans",
+    "PoseScore",
+    "Match",
+    "Recognized",
+    "BuildReport",
 ]
 # The libraries of PCL take longer to load than the rest: what needs them is loaded when it is first used. It is missing where
 # the library was built without PCL.
 if importlib.util.find_spec("._recognition", __name__):
-    __all__ += ["Database", "register", "register_all"]
+    __all__[3:3] = ["scene", "register", "register_all", "Database"]
 
 
 def __getattr__(name: str) -> Any:
-    if name not in ("Database", "register", "register_all") or name not in __all__:
+    if name not in ("Database", "register", "register_all", "scene") or name not in __all__:
         raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
     from . import database
 
-    globals().update(Database=database.Database, register=database.register, register_all=database.register_all)
+    globals().update({each: getattr(database, each) for each in ("Database", "register", "register_all", "scene")})
     return globals()[name]
 
 

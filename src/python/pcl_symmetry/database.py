@@ -1,13 +1,27 @@
-"""What needs the libraries of PCL: registration and the database of models."""
+"""What needs the libraries of PCL: registration, the database of models, and scenes."""
 
 from __future__ import annotations
 
 import os
+import warnings
 from typing import TYPE_CHECKING, Any, Callable, Iterable, Iterator, List, Mapping, Optional, Sequence, Tuple, Union
 
 from . import _recognition
-from .functions import Core, Viewpoint, _fields, _seen_from, prepare
-from .results import BuildReport, Match, PoseScore, Recognized, RegisteredScans, Registration
+from .functions import Cloud, Core, Viewpoint, _fields, _frame, _planes_of, _seen_from, prepare, rows_of
+from .progress import Progress, shares_of, telling
+from .results import (
+    BuildReport,
+    Junction,
+    Match,
+    PoseScore,
+    Recognized,
+    ReflectionPlane,
+    RegisteredScans,
+    Registration,
+    Scene,
+    SceneObject,
+    Support,
+)
 
 if TYPE_CHECKING:
     import numpy as np
@@ -44,8 +58,8 @@ def register(
     """
     import numpy as np
 
-    points, source_shift = prepare("source", source)
-    model, target_shift = prepare("target", target)
+    points, source_shift, *_ = prepare("source", source)
+    model, target_shift, *_ = prepare("target", target)
     s = np.zeros(3) if source_shift is None else source_shift
     t = np.zeros(3) if target_shift is None else target_shift
     start = np.eye(4) if guess is None else np.array(guess, dtype=float)
@@ -83,7 +97,7 @@ def register_all(
 
     arrays, shifts = [], []
     for k, cloud in enumerate(clouds):
-        array, shift = prepare(f"clouds[{k}]", cloud)
+        array, shift, *_ = prepare(f"clouds[{k}]", cloud)
         arrays.append(array)
         shifts.append(np.zeros(3) if shift is None else shift)
     viewpoints = [_seen_from(viewpoint, shift) for shift in shifts]
@@ -161,21 +175,24 @@ class Database:
         return f"Database({self._file!r}, " + ("closed)" if self._open is None else f"models={len(self)})")
 
     def add(self, name: str, points: Any) -> None:
-        """Stores a model, (N, 3) points all around it; on the disk on return."""
-        self._core.add(name, _near_origin(points))
+        """Stores a model, (N, 3) points all around it, or a cloud or mesh of Open3D or trimesh; on the disk on return."""
+        self._core.add(name, _near_origin(points).array)
 
     def build(
         self,
         models: Union[Mapping[str, Any], Iterable[Tuple[str, Any]]],
         *,
-        progress: Optional[Callable[[float], Optional[bool]]] = None,
+        progress: Union[bool, Callable[[float], Optional[bool]], None] = None,
     ) -> BuildReport:
         """Stores many models, each as soon as it is described, on all threads.
 
-        models: dict of name to (N, 3) points, or pairs of both. progress: called with the share done, in [0, 1]; where it
-        returns False the rest is left. A model that cannot be used does not stop the others.
+        models: dict of name to points as add() takes them, or pairs of both. progress: True shows a bar, a function is called
+        with the share done, in [0, 1]; where it returns False the rest is left. A model that cannot be used does not stop
+        the others. What is stored when Ctrl-C ends the call stays stored.
         """
-        return BuildReport(**_fields(self._core.build(models, progress=progress), "num_added", "num_kept", "failures", "cancelled"))
+        with shares_of(progress) as tell:
+            found = self._core.build(_models_of(models), progress=tell)
+        return BuildReport(**_fields(found, "num_added", "num_kept", "failures", "cancelled"))
 
     def merge(self, files: Sequence[Path]) -> int:
         """Adds all models of other databases, such as parts that several machines built; all of them or none.
@@ -194,27 +211,150 @@ class Database:
         result: "NDArray[np.float32]" = self._core.cloud(name)
         return result
 
-    def match(self, points: Any, num_nearest: int = 10, *, viewpoint: Viewpoint = "auto") -> List[Match]:
-        """The models most like a cloud, in any pose and size, nearest first."""
-        found = self._core.match(_near_origin(points), num_nearest, viewpoint=viewpoint)
+    def match(
+        self, points: Any, num_nearest: int = 10, *, viewpoint: Viewpoint = "auto", progress: Progress = None
+    ) -> List[Match]:
+        """The models most like a cloud, in any pose and size, nearest first. points, viewpoint: as in planes()."""
+        with telling(_recognition, progress):
+            found = self._core.match(_camera_points(_near_origin(points)), num_nearest, viewpoint=viewpoint)
         return [Match(m.name, m.distance) for m in found]
 
     def recognize(
-        self, points: Any, *, viewpoint: Viewpoint = "auto", min_confidence: float = 0.5, threads: int = 0
+        self,
+        points: Any,
+        *,
+        viewpoint: Viewpoint = "auto",
+        indices: Optional["ArrayLike"] = None,
+        min_confidence: float = 0.5,
+        progress: Progress = None,
+        threads: int = 0,
     ) -> List[Recognized]:
         """The model that a scan shows, in its own size, best first; empty for an unknown object.
 
-        min_confidence: least probability of a model that is accepted, in [0, 1].
+        points, viewpoint, indices: as in planes(). min_confidence: least probability of a model that is accepted, in [0, 1].
         """
-        found = self._core.recognize(
-            _near_origin(points), viewpoint=viewpoint, min_confidence=min_confidence, threads=threads
-        )
-        return [Recognized(m.name, m.confidence, m.transform, _score(m.score)) for m in found]
+        cloud = _near_origin(points)
+        with telling(_recognition, progress):
+            found = self._core.recognize(
+                _camera_points(cloud),
+                rows_of(indices, cloud.shape),
+                viewpoint=viewpoint,
+                min_confidence=min_confidence,
+                threads=threads,
+            )
+        return [_recognized(m) for m in found]
 
 
-def _near_origin(points: Any) -> Any:
+def _recognized(model: Any) -> Recognized:
+    return Recognized(model.name, model.confidence, model.transform, _score(model.score))
+
+
+def _camera_points(cloud: Cloud) -> "NDArray[Any]":
+    """(H, W, 3) where the points are the pixels of a camera."""
+    return cloud.array.reshape(*cloud.shape, 3) if len(cloud.shape) == 2 else cloud.array
+
+
+def _models_of(models: Any) -> Iterator[Any]:
+    """Pairs of names and points; meshes and clouds of other libraries become arrays."""
+    for pair in models.items() if hasattr(models, "items") else models:
+        if isinstance(pair, tuple) and len(pair) == 2 and any(hasattr(pair[1], m) for m in ("points", "vertices", "point", "vertex")):
+            pair = pair[0], _near_origin(pair[1]).array
+        yield pair
+
+
+def _near_origin(points: Any) -> Cloud:
     """Points as they are: the frames of models and scans stay those of the arrays."""
-    array, shift = prepare("points", points)
-    if shift is not None:
+    cloud = prepare("points", points)
+    if cloud.shift is not None:
         raise ValueError("points = coordinates too large for the extent of the points, must be moved near the origin")
-    return array
+    return cloud
+
+
+def scene(
+    points: Any,
+    *,
+    viewpoint: Viewpoint = "auto",
+    ground: Optional["ArrayLike"] = None,
+    database: Optional[Database] = None,
+    max_range: float = 0.0,
+    plane_distance: float = 0.0,
+    cluster_distance: float = 0.0,
+    min_points: int = 300,
+    max_points: int = 5_000,
+    separate: bool = True,
+    frames: bool = True,
+    complete: bool = True,
+    min_confidence: float = 0.5,
+    min_name_confidence: float = 0.5,
+    progress: Progress = None,
+    seed: int = 1,
+    threads: int = 0,
+) -> Scene:
+    """The objects of one frame of a depth camera or scanner, and their symmetries.
+
+    points: (H, W, 3), the pixels of a camera, see from_depth(), or (N, 3) with the viewpoint that they were seen from.
+    viewpoint: as in planes(). ground: (4,) a, b, c, d of what the objects stand on, in place of supporting planes that are
+    searched for.
+    database: names objects by its models that they show, of a confidence of at least min_name_confidence.
+    max_range: points at a greater depth are background; plane_distance: of points that belong to a supporting plane;
+    cluster_distance: between points of one object. Input units; 0: no background, and from the points.
+    min_points: of an object. max_points: of an object that are analyzed.
+    separate: cut objects that touch apart where their surface bends inwards, and join pieces that one symmetry explains.
+    frames, complete: also the frame of each object, and the points that its symmetry adds.
+    min_confidence: least probability of a plane that is called a symmetry.
+    Raises ValueError for bad parameters; points of which none is finite are warned of.
+    """
+    import numpy as np
+
+    cloud = prepare("points", points)
+    if len(cloud.shape) == 1 and (viewpoint is None or isinstance(viewpoint, str)):
+        raise ValueError("viewpoint: of rows without order must be (x, y, z), where the sensor stood; pixels (H, W, 3) show theirs")
+    options = _recognition.SceneOptions()
+    for name, value in dict(
+        max_range=float(max_range),
+        plane_distance=float(plane_distance),
+        cluster_distance=float(cluster_distance),
+        min_points=min_points,
+        max_points=max_points,
+        separate=separate,
+        frames=frames,
+        complete=complete,
+    ).items():
+        setattr(options, name, value)
+    options.set_common(min_confidence, min_name_confidence, seed, threads)
+    plane = None if ground is None else np.array(ground, dtype=float)
+    if plane is not None and cloud.shift is not None:
+        plane[3] += plane[:3] @ cloud.shift
+    seen_from = _seen_from(viewpoint, cloud.shift)
+    kept = None if database is None else database._core
+    found = core.scene(_camera_points(cloud), viewpoint=seen_from, ground=plane, database=kept, options=options, told=progress)
+    reason = "" if np.isfinite(cloud.array).all(axis=1).any() else "no finite point"
+    if reason:
+        warnings.warn(f"points: {reason}", RuntimeWarning, stacklevel=2)
+    result = Scene(
+        objects=[_scene_object(each) for each in found["objects"]],
+        supports=[Support(coefficients=c, rows=np.asarray(rows, dtype=np.int64)) for c, rows in found["supports"]],
+        junctions=[Junction((a, b), (sizes[0], sizes[1]), *shares) for a, b, sizes, *shares in found["junctions"]],
+        plane_distance=found["plane_distance"],
+        cluster_distance=found["cluster_distance"],
+        viewpoint=None if found["seen"] is None else found["seen"].viewpoint,
+        reason=reason,
+        _shape=cloud.shape,
+    )
+    return result if cloud.shift is None else result._moved(cloud.shift)
+
+
+def _scene_object(found: Any) -> SceneObject:
+    import numpy as np
+
+    rows = np.asarray(found["indices"], dtype=np.int64)
+    search, by, frame = found["planes"], found["completed_by"], found["frame"]
+    planes = _planes_of(search, Cloud(np.empty((0, 3)), shape=(0,)), quiet=True)
+    return SceneObject(
+        rows=rows,
+        planes=planes,
+        frame=None if frame is None else _frame(frame),
+        completed_by=None if by is None else ReflectionPlane(by.normal, by.offset),
+        added=found["added"],
+        models=[_recognized(m) for m in found["models"]],
+    )

@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import re
 import warnings
-from typing import TYPE_CHECKING, Any, Callable, Dict, List, Optional, Sequence, Tuple, Union
+from typing import TYPE_CHECKING, Any, Callable, Dict, List, NamedTuple, Optional, Sequence, Tuple, Union
 
 from . import _pcl_symmetry
+from .progress import Progress, shares_of, telling
 from .results import (
     Axis,
     Center,
@@ -40,11 +41,13 @@ class Core:
         found = getattr(self._module, name)
         return self._named(found) if callable(found) and not isinstance(found, type) else found
 
-    @staticmethod
-    def _named(function: Callable[..., Any]) -> Callable[..., Any]:
-        def call(*points: Any, **arguments: Any) -> Any:
+    def _named(self, function: Callable[..., Any]) -> Callable[..., Any]:
+        """The function; its parameter told is progress of the package's functions."""
+
+        def call(*points: Any, told: Progress = None, **arguments: Any) -> Any:
             try:
-                return function(*points, **arguments)
+                with telling(self._module, told):
+                    return function(*points, **arguments)
             except ValueError as error:
                 raise ValueError(re.sub(r"^num_(threads|parts)\b", r"\1", str(error))) from None
             except TypeError as error:
@@ -90,24 +93,65 @@ Viewpoint = Union[str, None, "ArrayLike"]
 _NUM_MESH_POINTS = 10_000
 
 
-def prepare(name: str, points: Any, num_mesh_points: int = _NUM_MESH_POINTS) -> Tuple["NDArray[Any]", "Shift"]:
-    """The points of an array or an object of Open3D or trimesh, and what was subtracted from them, if anything.
+class Cloud(NamedTuple):
+    """The points that a function was given."""
+
+    array: "NDArray[Any]"
+    """(N, 3); of a mesh those that were spread over it."""
+    shift: "Shift" = None
+    """What was subtracted from them, if anything."""
+    shape: Tuple[int, ...] = ()
+    """(H, W) of an organized array, which became rows; else (N,)."""
+    mesh: Any = None
+    """(vertices, faces) in the frame of the array; None for a cloud."""
+
+    def surface(self) -> Any:
+        """The mesh as the core has it, on which symmetries become exact."""
+        return None if self.mesh is None else core.MeshSurface(*self.mesh)
+
+
+def prepare(name: str, points: Any, num_mesh_points: int = _NUM_MESH_POINTS) -> Cloud:
+    """The points of an array or an object of Open3D or trimesh.
 
     Double coordinates far from the origin are centered before they become float32. Meshes are sampled.
     """
     import numpy as np
 
-    if points is None or isinstance(points, str):
-        raise TypeError(f"{name} = {points!r}, must be an array of shape (N, 3), or a cloud or mesh of Open3D or trimesh")
-    faces = _faces(points)
+    positions, faces = parts_of(name, points)
     if faces is not None:
-        vertices, shift = prepare(name, np.asarray(points.vertices))
-        return core.sample_mesh(vertices, faces, num_mesh_points, seed=1), shift
-    for member in ("points", "vertices"):
-        if not hasattr(points, "__array__") and hasattr(points, member):
-            points = getattr(points, member)
+        vertices, shift = _near_origin(name, positions)
+        sampled = core.sample_mesh(vertices, faces, num_mesh_points, seed=1)
+        return Cloud(sampled, shift, (len(sampled),), (vertices, np.asarray(faces)))
+    array, shift = _near_origin(name, positions.reshape(-1, 3) if positions.ndim == 3 and positions.shape[2] == 3 else positions)
+    return Cloud(array, shift, positions.shape[: max(1, positions.ndim - 1)])
+
+
+def of_vertices(name: str, points: Any) -> Cloud:
+    """The same with the vertices of a mesh in place of points on it: answers about single points then name the vertices."""
+    return prepare(name, parts_of(name, points)[0])
+
+
+def parts_of(name: str, points: Any) -> Tuple["NDArray[Any]", Any]:
+    """Points or vertices as an array, and the faces of a mesh, None for a cloud."""
+    import numpy as np
+
+    if points is None or isinstance(points, (str, bytes)):
+        raise TypeError(f"{name} = {points!r}, must be an array of shape (N, 3), or a cloud or mesh of Open3D or trimesh")
+    faces = None
+    for member, positions in (("point", "positions"), ("vertex", "positions"), ("points", ""), ("vertices", "")):
+        found = None if hasattr(points, "__array__") else getattr(points, member, None)
+        found = getattr(found, positions, None) if positions else found
+        if found is None:
+            continue
+        if member == "vertex":  # of a mesh of open3d.t
+            faces = getattr(getattr(points, "triangle", None), "indices", None)
+        elif member == "vertices":
+            faces = getattr(points, "triangles", getattr(points, "faces", None))
+        points = found
+        break
+    faces = None if faces is None or not len(faces) else _array(faces)
     try:
-        array = np.asarray(points)
+        array = _array(points)
     except ValueError as error:
         raise ValueError(f"{name}: {error}, must be (N, 3)") from None
     if array.ndim == 0 and not isinstance(points, np.ndarray):  # a number, a dict, a generator
@@ -115,6 +159,20 @@ def prepare(name: str, points: Any, num_mesh_points: int = _NUM_MESH_POINTS) -> 
     masked: Any = np.ma
     if isinstance(points, masked.MaskedArray) and array.dtype.kind in "fiu":
         array = np.where(masked.getmaskarray(points), np.nan, array)
+    return array, faces
+
+
+def _array(values: Any) -> "NDArray[Any]":
+    import numpy as np
+
+    if type(values).__module__.startswith("open3d") and hasattr(values, "cpu"):
+        values = values.cpu().numpy()  # a tensor, maybe of a graphics card
+    return np.asarray(values)
+
+
+def _near_origin(name: str, array: "NDArray[Any]") -> Tuple["NDArray[Any]", "Shift"]:
+    import numpy as np
+
     if array.ndim != 2 or array.shape[1] != 3 or array.dtype.kind not in "fiu" or not len(array):
         return array, None  # the core says what is wrong
     # A few rows tell how far away the points are; the whole array is looked at only where that is far.
@@ -136,7 +194,7 @@ def prepare(name: str, points: Any, num_mesh_points: int = _NUM_MESH_POINTS) -> 
                 f"{name}: float32 coordinates up to {greatest:.4g} leave {digits} digits of an extent of {extent:.4g}; "
                 "subtract an offset in float64 before they become float32",
                 RuntimeWarning,
-                stacklevel=3,
+                stacklevel=4,
             )
         return array, None
     if greatest <= 64 * extent:
@@ -145,21 +203,71 @@ def prepare(name: str, points: Any, num_mesh_points: int = _NUM_MESH_POINTS) -> 
     return (array - shift).astype(np.float32), shift
 
 
-def _faces(points: Any) -> Any:
-    """Those of a mesh of Open3D or trimesh; None for anything else."""
-    faces = getattr(points, "triangles", getattr(points, "faces", None))
-    return faces if faces is not None and len(faces) and hasattr(points, "vertices") else None
+class Used(NamedTuple):
+    """The points that an analysis uses, and what a scanner saw of them."""
+
+    array: "NDArray[Any]"
+    viewpoint: Any
+    """As the core takes it: "auto", None, a position, or what the pixels of an organized array show."""
+    rows: Any = None
+    """(M,) rows of the array that was given; None: the core selects them."""
+    may_be_rings: bool = False
+    reason: str = ""
+    """Why there is no answer; of selected rows only."""
 
 
-def _prepare_with_mesh(name: str, points: Any) -> Tuple["NDArray[Any]", "Shift", Any]:
-    """As prepare(), and the mesh itself, where symmetries become exact; None for a cloud."""
+def look(
+    cloud: Cloud,
+    viewpoint: Viewpoint,
+    indices: Optional["ArrayLike"] = None,
+    ground: Optional["ArrayLike"] = None,
+    max_points: int = 50_000,
+    as_measured: bool = False,
+    seed: int = 1,
+    threads: int = 0,
+) -> Used:
+    """What the classes for PCL select of an organized array, of a part of a scene, and of what stands on a ground."""
     import numpy as np
 
-    faces = _faces(points)
-    if faces is None:
-        return (*prepare(name, points), None)
-    vertices, shift = prepare(name, np.asarray(points.vertices))
-    return core.sample_mesh(vertices, faces, _NUM_MESH_POINTS, seed=1), shift, core.MeshSurface(vertices, faces)
+    seen_from = _seen_from(viewpoint, cloud.shift)
+    if len(cloud.shape) == 1 and indices is None and ground is None:
+        return Used(cloud.array, seen_from)
+    try:
+        from . import _recognition
+    except ImportError:
+        raise ValueError("organized arrays, indices and ground: of a module that was built with PCL") from None
+    plane = None
+    if ground is not None:
+        plane = np.array(ground, dtype=float)
+        if plane.shape == (4,) and cloud.shift is not None:
+            plane[3] += plane[:3] @ cloud.shift
+    points, rows, seen, may_be_rings, reason = Core(_recognition).look(
+        cloud.array.reshape(*cloud.shape, 3) if len(cloud.shape) == 2 else cloud.array,
+        rows_of(indices, cloud.shape),
+        viewpoint=seen_from,
+        ground=plane,
+        max_points=max_points,
+        as_measured=as_measured,
+        seed=seed,
+        threads=threads,
+    )
+    return Used(points, seen, rows, may_be_rings, re.sub("^input cloud: ", "", reason))
+
+
+def rows_of(indices: Optional["ArrayLike"], shape: Tuple[int, ...]) -> Optional[List[int]]:
+    """Of a mask of the shape of the points, or of row numbers."""
+    import numpy as np
+
+    if indices is None:
+        return None
+    chosen = np.asarray(indices)
+    if chosen.dtype == bool:
+        if chosen.shape != shape:
+            raise ValueError(f"indices = mask of shape {chosen.shape}, must be {shape}, as the points")
+        chosen = np.flatnonzero(chosen)
+    if chosen.ndim != 1 or (chosen.dtype.kind not in "iu" and chosen.size):
+        raise ValueError(f"indices = array of shape {chosen.shape} and type {chosen.dtype}, must be rows (K,) or a mask")
+    return [int(row) for row in chosen]
 
 
 def _seen_from(viewpoint: Viewpoint, shift: "Shift", name: str = "viewpoint") -> Any:
@@ -185,6 +293,7 @@ def _plane(p: Any) -> Plane:
     names = ("kind", "confidence", "share", "share_interval", "score", "support", "deviation", "seen", "residual")
     for name, value in _fields(p, "normal", "offset", *names).items():
         object.__setattr__(plane, name, value)
+    plane.__post_init__()
     return plane
 
 
@@ -200,22 +309,32 @@ def _core_plane(plane: ReflectionPlane, shift: "Shift") -> Any:
     return core.ReflectionPlane(moved.normal, moved.offset)
 
 
-def _planes_of(found: Any, num_rows: int) -> Planes:
+def _planes_of(found: Any, cloud: Cloud, used: Optional[Used] = None, judged: bool = True, quiet: bool = False) -> Planes:
+    """judged: only symmetries are in the list. quiet: whoever asked is not warned of what has no answer."""
     import numpy as np
 
     scores = ("confidence", "score", "support")
+    every = [_plane(p) for p in found.planes]
+    reason = used.reason if used is not None and used.reason else found.reason
+    if reason and not quiet:
+        of_volume = reason.startswith("volume")
+        warnings.warn(reason if of_volume else f"points: {reason}", RuntimeWarning, stacklevel=4 if of_volume else 3)
     return Planes(
-        planes=[_plane(p) for p in found.planes],
+        planes=[p for p in every if not judged or p.kind == "symmetry"],
+        possible=[p for p in every if p.kind == "possible"],
+        approximate=[p for p in every if judged and p.kind in ("approximate", "local")],
         axes=[Axis(**_fields(a, "point", "direction", *scores)) for a in found.axes],
         centers=[Center(**_fields(c, "point", *scores)) for c in found.centers],
         rotations=[_rotation_axis(t) for t in found.rotations],
         best=None if found.best is None else _plane(found.best),
         evidence=found.evidence,
         rotation_evidence=found.rotation_evidence,
+        samples=None if cloud.mesh is None else cloud.array if cloud.shift is None else cloud.array + cloud.shift,
+        reason=reason,
         _support=found.support,
-        _rows=np.asarray(found.rows, dtype=np.int64),
-        _num_rows=num_rows,
-        **_fields(found, "flat", "tolerance", "reason", "viewpoint"),
+        _rows=np.asarray(found.rows if used is None or used.rows is None else used.rows, dtype=np.int64),
+        _shape=cloud.shape,
+        **_fields(found, "flat", "tolerance", "viewpoint"),
     )
 
 
@@ -228,57 +347,75 @@ def planes(
     direction: Optional["ArrayLike"] = None,
     levels: Optional[Tuple[float, float]] = None,
     viewpoint: Viewpoint = "auto",
+    indices: Optional["ArrayLike"] = None,
+    ground: Optional["ArrayLike"] = None,
     tolerance: Optional[float] = None,
     absolute_tolerance: float = 0.0,
     approximate: bool = False,
-    max_planes: int = 12,
+    max_planes: int = 64,
     normals: Optional["ArrayLike"] = None,
     max_points: int = 50_000,
     evidence: bool = False,
     as_published: bool = False,
     method: str = "convolution",
+    progress: Progress = None,
     seed: int = 1,
     threads: int = 0,
 ) -> Planes:
-    """Planes of symmetry of a cloud or of a volume (Sections 4.1 to 4.4).
+    """Planes of symmetry of a cloud or of a volume (Sections 4.1 to 4.4): a list of symmetries, empty where there is none.
 
-    points: (N, 3), input units, or a cloud or mesh of Open3D or trimesh; float32 rows are not copied. Rows that are not
-        finite are left out. The planes of a mesh are exact: the last step refines on the mesh itself.
+    points: (N, 3), input units, or a cloud or mesh of Open3D or trimesh; float32 rows are not copied. (H, W, 3): the pixels of
+        a depth camera, see from_depth(), whose rays show what it saw. Rows that are not finite are left out. The planes of a
+        mesh are exact: the last step refines on the mesh itself.
     viewpoint: where the scanner stood: "auto" (the points decide), None (seen from all sides) or (x, y, z).
+    indices: the object is a part of the points, its scene: rows (K,), or a mask of the shape of the points, such as
+        labels == 3. The other points hide it, and it stands on them.
+    ground: (4,) a, b, c, d of the plane a x + b y + c z + d = 0 that the object stands on; with a viewpoint, sparse points of
+        a LiDAR are then decided by the box around them.
     tolerance: how far a symmetric surface may be off, share of the greatest distance between two points, in (0, 0.1].
         None: 0.01, or what a depth camera or few points resolve, at most 0.03.
     absolute_tolerance: the same in input units; 0: tolerance decides.
     approximate: also the other maxima of the transform, and symmetries of parts.
-    normals: (N, 3), of any length and sign; None: estimated.
+    normals: as the points, of any length and sign; None: estimated.
     max_points: larger clouds are thinned to that number; 0: never. threads: 0 = one per core.
     evidence: also what the decisions are taken from; takes about as long again.
-    as_published: refine the maxima of the map as the paper does (Section 4.4), without a decision; only then method, of
-        the map: sampled, convolution, rotational or voting. Of the other parameters seed and threads count.
+    as_published: refine the maxima of the map as the paper does (Section 4.4), without a decision: all planes are in the
+        list; only then method, of the map: sampled, convolution, rotational or voting. Of the other parameters seed and
+        threads count.
+    progress: True shows a bar, a function is called with the share of the running step that is done, in [0, 1].
     volume: (I, J, K) in place of points, such as a CT or MR image, first index along the first axis (as nibabel has it;
         arrays of SimpleITK are transposed). spacing, origin, direction: of its voxels, input units and frame; direction
         is (3, 3) with the axes of the grid in columns. levels: (low, high) intensities that count; None: chosen.
         confidence is then 0 for a plane like any other and 1 where both halves are equal, and support a correlation.
         Of the other parameters approximate, max_planes, seed and threads count.
-    Raises ValueError for bad parameters.
+    Raises ValueError for bad parameters; points that hold no answer, such as too few, are warned of (RuntimeWarning).
     """
-    import numpy as np
-
     if (points is None) == (volume is None):
         raise TypeError("planes() takes points or volume")
     if method != "convolution" and not as_published:
         raise ValueError(f"method = {method}, must be convolution without as_published")
     if volume is not None:
-        if tolerance is not None or absolute_tolerance or normals is not None or as_published:
-            raise ValueError("tolerance, absolute_tolerance, normals, as_published: of points, must be left out with volume")
-        return _volume_planes(volume, spacing, origin, direction, levels, approximate, max_planes, seed, threads)
-    array, shift, mesh = _prepare_with_mesh("points", points)
+        of_points = dict(viewpoint=viewpoint != "auto", indices=indices is not None, ground=ground is not None)
+        of_points.update(tolerance=tolerance is not None, absolute_tolerance=bool(absolute_tolerance))
+        of_points.update(normals=normals is not None, evidence=evidence, as_published=as_published)
+        if any(of_points.values()):
+            given = ", ".join(name for name, is_given in of_points.items() if is_given)
+            raise ValueError(f"{given}: of points, must be left out with volume")
+        return _volume_planes(volume, spacing, origin, direction, levels, approximate, max_planes, progress, seed, threads)
+    if levels is not None or direction is not None:
+        raise ValueError("levels, direction: of a volume, must be left out with points")
+    cloud = prepare("points", points)
     if as_published:
-        found = core.published_planes(array, method=method, num_points=10_000, seed=seed, threads=threads)
-        result = _planes_of(found, len(array))
-        return result if shift is None else result._moved(shift)
+        found = core.published_planes(cloud.array, method=method, num_points=10_000, told=progress, seed=seed, threads=threads)
+        result = _planes_of(found, cloud, judged=False)
+        return result if cloud.shift is None else result._moved(cloud.shift)
+    used = look(cloud, viewpoint, indices, ground, max_points, seed=seed, threads=threads)
+    if normals is not None:
+        normals = parts_of("normals", normals)[0].reshape(-1, 3) if len(cloud.shape) == 2 else normals
+        normals = normals if used.rows is None else parts_of("normals", normals)[0][used.rows]
     found = core.planes(
-        array,
-        viewpoint=_seen_from(viewpoint, shift),
+        used.array,
+        viewpoint=used.viewpoint,
         tolerance=tolerance,
         absolute_tolerance=absolute_tolerance,
         approximate=approximate,
@@ -286,12 +423,14 @@ def planes(
         normals=normals,
         max_points=max_points,
         evidence=evidence,
+        told=progress,
         seed=seed,
         threads=threads,
-        mesh=mesh,
+        mesh=cloud.surface(),
+        may_be_rings=used.may_be_rings,
     )
-    result = _planes_of(found, len(array))
-    return result if shift is None else result._moved(shift)
+    result = _planes_of(found, cloud, used)
+    return result if cloud.shift is None else result._moved(cloud.shift)
 
 
 def _volume_planes(
@@ -302,6 +441,7 @@ def _volume_planes(
     levels: Optional[Tuple[float, float]],
     approximate: bool,
     max_planes: int,
+    progress: Progress,
     seed: int,
     threads: int,
 ) -> Planes:
@@ -318,36 +458,61 @@ def _volume_planes(
         levels=(0.0, 0.0) if levels is None else levels,
         approximate=approximate,
         max_planes=max_planes,
+        told=progress,
         seed=seed,
         threads=threads,
     )
-    return _planes_of(found, 0)
+    return _planes_of(found, Cloud(np.empty((0, 3)), shape=(0,)))
 
 
-def local_symmetry(points: Any, scale: float, *, seed: int = 1, threads: int = 0) -> "NDArray[np.float32]":
+def local_symmetry(
+    points: Any, scale: float, *, progress: Progress = None, seed: int = 1, threads: int = 0
+) -> "NDArray[np.float32]":
     """(N,) for each point the greatest D of a plane through it, of the surface within scale (Section 6).
 
+    points: as in planes(); of a mesh the values of its vertices are returned, of an organized array (H, W) values. Rows that
+    are not finite have NaN.
     scale: radius of the window around each point as a share of the radius of the shape, in (0, 1].
     """
     import numpy as np
 
     if not 0 < scale <= 1:
         raise ValueError(f"scale = {_text(scale)}, must be in (0, 1]")
-    array, _ = prepare("points", points)
-    return np.asarray(core.local_symmetry(array, scale, seed=seed, threads=threads), dtype=np.float32)
+    cloud = prepare("points", points)
+    at = cloud.array if cloud.mesh is None else cloud.mesh[0]
+    values = core.local_symmetry(cloud.array, at, scale, told=progress, seed=seed, threads=threads)
+    result = np.full(len(at), np.nan, np.float32)
+    result[np.isfinite(at).all(axis=1)] = values
+    return result.reshape(cloud.shape) if cloud.mesh is None else result
 
 
 def complete(
-    points: Any, plane: ReflectionPlane, *, viewpoint: Viewpoint = "auto", threads: int = 0
+    points: Any,
+    plane: ReflectionPlane,
+    *,
+    viewpoint: Viewpoint = "auto",
+    indices: Optional["ArrayLike"] = None,
+    threads: int = 0,
 ) -> Tuple["NDArray[Any]", List[int]]:
     """Completes a scan by its reflection in a plane.
 
+    points, viewpoint, indices: as in planes(); of a mesh its vertices. plane: a symmetry, or a possible one, of planes(); any
+    other is refused, unless it comes as ReflectionPlane(plane.normal, plane.offset).
     Returns (added, rows): (M, 3) points that neither fall onto the measured surface nor into space that was seen to be
-    empty, and the row of the point that each is the reflection of.
+    empty, and the row of the point that each is the reflection of (of the flattened array, where it is organized).
     """
-    array, shift = prepare("points", points)
-    added, rows = core.complete(array, _core_plane(plane, shift), viewpoint=_seen_from(viewpoint, shift), threads=threads)
-    return (added if shift is None else added + shift), list(rows)
+    import numpy as np
+
+    cloud = of_vertices("points", points)
+    if isinstance(plane, Plane) and plane.kind not in ("symmetry", "possible"):
+        raise ValueError(
+            f"plane.kind = {plane.kind}, must be symmetry or possible; ReflectionPlane(plane.normal, plane.offset) is taken as it is"
+        )
+    used = look(cloud, viewpoint, indices, max_points=0, as_measured=True, threads=threads)
+    added, rows = core.complete(used.array, _core_plane(plane, cloud.shift), viewpoint=used.viewpoint, threads=threads)
+    if used.rows is not None:
+        rows = np.asarray(used.rows)[rows].tolist()
+    return (added if cloud.shift is None else added + cloud.shift), list(rows)
 
 
 def symmetrize(
@@ -369,10 +534,9 @@ def symmetrize(
     """
     import numpy as np
 
-    own_faces = _faces(points)
-    if own_faces is not None:
-        points, faces = np.asarray(points.vertices), own_faces
-    array, shift = prepare("points", points)
+    points, own_faces = parts_of("points", points)
+    faces = faces if own_faces is None else own_faces
+    array, shift, *_ = prepare("points", points)
     found = core.symmetrize(array, faces, _core_plane(plane, shift), half, threads)
     result = found.points if shift is None else found.points + shift
     rows, deviation = np.arange(len(array)), found.deviation
@@ -395,33 +559,84 @@ def viewpoints(planes: Union[Planes, Sequence[Plane]]) -> List[View]:
     return [View(v.direction, v.score) for v in core.viewpoints([(p.normal, p.score) for p in planes])]
 
 
-def sample_mesh(vertices: "ArrayLike", faces: "ArrayLike", num_points: int = 10_000, *, seed: int = 1) -> "NDArray[Any]":
-    """(num_points, 3) points spread evenly over a mesh of (V, 3) vertices and (F, 3) faces."""
-    array, shift = prepare("vertices", vertices)
-    points: "NDArray[Any]" = core.sample_mesh(array, faces, num_points, seed=seed)
+def sample_mesh(
+    vertices: Any, faces: Optional["ArrayLike"] = None, num_points: int = 10_000, *, seed: int = 1
+) -> "NDArray[Any]":
+    """(num_points, 3) points spread evenly over a mesh of (V, 3) vertices and (F, 3) faces, or of Open3D or trimesh."""
+    positions, own_faces = parts_of("vertices", vertices)
+    if own_faces is None and faces is None:
+        raise TypeError("faces = None, must be (F, 3), or vertices a mesh of Open3D or trimesh")
+    array, shift, *_ = prepare("vertices", positions)
+    points: "NDArray[Any]" = core.sample_mesh(array, own_faces if faces is None else faces, num_points, seed=seed)
     return points if shift is None else points + shift
+
+
+def from_depth(depth: "ArrayLike", intrinsics: "ArrayLike", *, unit: float = 1.0) -> "NDArray[np.float32]":
+    """(H, W, 3) points of a depth image in the frame of the camera: x to the right, y down, z forward.
+
+    depth: (H, W), along the optical axis; 0 and values that are not finite are missing, and become NaN.
+    intrinsics: (3, 3) matrix of the camera, or (fx, fy, cx, cy), pixels.
+    unit: of the depths, such as 0.001 where they are millimeters and points are to be in meters.
+    """
+    import numpy as np
+
+    z = np.asarray(depth)
+    if z.ndim != 2 or z.dtype.kind not in "fiu":
+        raise ValueError(f"depth = array of shape {z.shape} and type {z.dtype}, must be (H, W), numbers")
+    if not (np.isfinite(unit) and unit > 0):
+        raise ValueError(f"unit = {unit}, must be > 0")
+    k = np.asarray(intrinsics, dtype=float)
+    if k.shape == (3, 3):
+        k = k[[0, 1, 0, 1], [0, 1, 2, 2]]
+    if k.shape != (4,) or not np.isfinite(k).all() or not (k[:2] > 0).all():
+        raise ValueError(f"intrinsics = {_text(np.asarray(intrinsics))}, must be (3, 3) or (fx, fy, cx, cy), fx and fy > 0")
+    z = np.where(np.isfinite(z) & (z > 0), z, np.nan) * unit
+    v, u = np.indices(z.shape)
+    points: "NDArray[np.float32]" = np.stack([(u - k[2]) / k[0] * z, (v - k[3]) / k[1] * z, z], axis=2).astype(np.float32)
+    return points
+
+
+def _no_frame(reason: str) -> Frame:
+    import numpy as np
+
+    warnings.warn(f"points: {reason}", RuntimeWarning, stacklevel=3)
+    nothing = np.full((3, 3), np.nan)
+    return Frame(
+        center=nothing[0], axes=nothing, revolution_axis=-1, scores=nothing[0], transform=np.full((4, 4), np.nan),
+        equivalent=np.empty((0, 4, 4)), rotations=[], probable=[], evidence=np.empty(0), reason=reason,
+    )  # fmt: skip
 
 
 def frame(
     points: Any,
     *,
     viewpoint: Viewpoint = "auto",
+    indices: Optional["ArrayLike"] = None,
+    ground: Optional["ArrayLike"] = None,
     max_points: int = 50_000,
     as_published: bool = False,
+    progress: Progress = None,
     seed: int = 1,
     threads: int = 0,
 ) -> Frame:
     """Canonical frame of a cloud (Section 5.1). Parameters as in planes(); as_published: the paper's own method."""
-    array, shift, mesh = _prepare_with_mesh("points", points)
-    seen_from = _seen_from(viewpoint, shift)
-    options = dict(max_points=max_points, as_published=as_published, seed=seed, threads=threads)
-    found = core.frame(array, viewpoint=seen_from, mesh=None if as_published else mesh, **options)
-    result = Frame(
+    cloud = prepare("points", points)
+    used = look(cloud, viewpoint, indices, ground, max_points, as_published, seed, threads)
+    if reason := used.reason or core.why_unanswerable(used.array):
+        return _no_frame(reason)
+    options = dict(max_points=max_points, as_published=as_published, told=progress, seed=seed, threads=threads)
+    found = core.frame(used.array, viewpoint=used.viewpoint, mesh=None if as_published else cloud.surface(), **options)
+    result = _frame(found)
+    return result if cloud.shift is None else result._moved(cloud.shift)
+
+
+def _frame(found: Any) -> Frame:
+    return Frame(
         probable=[ProbableFrame(**_fields(f, "center", "axes", "probability", "revolution_axis")) for f in found.probable],
         rotations=[_rotation_axis(t) for t in found.rotations],
+        reason="",
         **_fields(found, "center", "axes", "scores", "revolution_axis", "transform", "equivalent", "evidence"),
     )
-    return result if shift is None else result._moved(shift)
 
 
 def rotations(
@@ -430,28 +645,36 @@ def rotations(
     tolerance: float = 0.01,
     absolute_tolerance: float = 0.0,
     max_feature: float = 0.15,
+    progress: Progress = None,
     seed: int = 1,
     threads: int = 0,
 ) -> Rotations:
     """The group of rotations that map a whole object onto itself (Section 6).
 
-    tolerance, absolute_tolerance: as in planes().
+    points, tolerance, absolute_tolerance, progress: as in planes().
     max_feature: share of the surface, such as a screw or a notch, that a symmetry may map off it, in [0, 1].
-    Raises ValueError for bad parameters, fewer than 20 distinct points, and points on a line.
+    Raises ValueError for bad parameters; fewer than 20 distinct points, and points on a line, are warned of.
     """
-    array, shift, mesh = _prepare_with_mesh("points", points)
+    import numpy as np
+
+    cloud = prepare("points", points)
+    if reason := core.why_unanswerable(cloud.array):
+        warnings.warn(f"points: {reason}", RuntimeWarning, stacklevel=2)
+        nothing: Dict[str, Any] = dict(support=0.0, confidence=0.0, fold=1, continuous=[], tolerance=0.0)
+        return Rotations(name="", center=np.full(3, np.nan), discrete=np.empty((0, 4, 4)), reason=reason, **nothing)
     found = core.rotations(
-        array,
+        cloud.array,
         tolerance=tolerance,
         absolute_tolerance=absolute_tolerance,
         max_feature=max_feature,
+        told=progress,
         seed=seed,
         threads=threads,
-        mesh=mesh,
+        mesh=cloud.surface(),
     )
     names = ("name", "center", "support", "confidence", "fold", "discrete", "continuous", "tolerance")
-    result = Rotations(**_fields(found, *names))
-    return result if shift is None else result._moved(shift)
+    result = Rotations(reason="", **_fields(found, *names))
+    return result if cloud.shift is None else result._moved(cloud.shift)
 
 
 def segment(
@@ -462,31 +685,57 @@ def segment(
     method: str = "merging",
     depth: int = 3,
     as_published: bool = False,
-    progress: Optional[Callable[[float], None]] = None,
+    progress: Progress = None,
     seed: int = 1,
     threads: int = 0,
-) -> List[int]:
+) -> "NDArray[np.int32]":
     """Cuts a surface into parts by its symmetries (Section 5.3).
 
-    points: (N, 3), points of a cloud or vertices of a mesh. faces: (F, 3), or None for a cloud.
+    points: (N, 3) of a cloud, (H, W, 3), the vertices of a mesh, or a cloud or mesh of Open3D or trimesh. faces: (F, 3), or
+    None for a cloud.
     parts: number of parts; 0: the method finds it. method: merging, or the paper's splitting; depth: splits in a row at
-    most; as_published: splitting to the letter of the paper. progress: called with the share done, in [0, 1].
+    most; as_published: splitting to the letter of the paper. progress: as in planes(), of the whole.
     Returns the label of each point or face; -1 for points that were left out. Raises ValueError for an unknown method.
     """
-    array, _ = prepare("points", points)
-    options = dict(parts=parts, method=method, depth=depth, as_published=as_published, progress=progress)
-    return list(core.segment(array, faces, **options, seed=seed, threads=threads))
+    import numpy as np
+
+    positions, own_faces = parts_of("points", points)
+    faces = own_faces if faces is None else faces
+    cloud = prepare("points", positions)
+    if faces is None and (reason := core.why_unanswerable(cloud.array)):
+        warnings.warn(f"points: {reason}", RuntimeWarning, stacklevel=2)
+        return np.full(cloud.shape, -1, np.int32)
+    options = dict(parts=parts, method=method, depth=depth, as_published=as_published, seed=seed, threads=threads)
+    with shares_of(progress) as tell:
+        labels = np.asarray(core.segment(cloud.array, faces, progress=tell, **options), dtype=np.int32)
+    return labels.reshape(cloud.shape) if faces is None else labels
 
 
-def describe(points: Any, *, viewpoint: Viewpoint = "auto", seed: int = 1, threads: int = 0) -> "NDArray[np.float32]":
-    """(2, K) signatures of unit norm, the same in all poses and sizes (Section 5.2)."""
-    array, shift = prepare("points", points)
-    result: "NDArray[np.float32]" = core.describe(array, viewpoint=_seen_from(viewpoint, shift), seed=seed, threads=threads)
+def describe(
+    points: Any, *, viewpoint: Viewpoint = "auto", progress: Progress = None, seed: int = 1, threads: int = 0
+) -> "NDArray[np.float32]":
+    """(2, K) signatures of unit norm, the same in all poses and sizes (Section 5.2); (0, 0) for too few points."""
+    import numpy as np
+
+    cloud = prepare("points", points)
+    used = look(cloud, viewpoint, max_points=0, as_measured=True, seed=seed, threads=threads)
+    if reason := used.reason or core.why_unanswerable(used.array):
+        warnings.warn(f"points: {reason}", RuntimeWarning, stacklevel=2)
+        return np.empty((0, 0), np.float32)
+    result: "NDArray[np.float32]" = core.describe(
+        used.array, viewpoint=used.viewpoint, told=progress, seed=seed, threads=threads
+    )
     return result
 
 
 def descriptors(
-    points: Any, *, input_axes: bool = False, by_equation_1: bool = False, seed: int = 1, threads: int = 0
+    points: Any,
+    *,
+    input_axes: bool = False,
+    by_equation_1: bool = False,
+    progress: Progress = None,
+    seed: int = 1,
+    threads: int = 0,
 ) -> Tuple["NDArray[np.float32]", "NDArray[np.float32]", "NDArray[np.float32]"]:
     """The descriptors that the paper compares (Section 5.2): PRST and GEDT, (32, 32, 32), and PRSD, (32, 32).
 
@@ -496,8 +745,8 @@ def descriptors(
     """
     import numpy as np
 
-    array, _ = prepare("points", points)
-    options = dict(input_axes=input_axes, by_equation_1=by_equation_1, seed=seed, threads=threads)
+    array = prepare("points", points).array
+    options = dict(input_axes=input_axes, by_equation_1=by_equation_1, told=progress, seed=seed, threads=threads)
     prst, prsd, gedt = (np.asarray(values, dtype=np.float32) for values in core.descriptors(array, **options))
     return prst.reshape(32, 32, 32), prsd.reshape(32, 32), gedt.reshape(32, 32, 32)
 
@@ -527,6 +776,7 @@ def transform(
     radius: float = 0.0,
     sigma: float = 0.0,
     as_published: bool = False,
+    progress: Progress = None,
     seed: int = 1,
     threads: int = 0,
 ) -> Map:
@@ -541,8 +791,8 @@ def transform(
     sizes = np.asarray(bins)
     if sizes.shape != (3,) or sizes.dtype.kind not in "iu":
         raise TypeError(f"bins = {_text(bins)}, must be three whole numbers, of theta, phi and r")
-    array, shift = prepare("points", points)
+    array, shift, *_ = prepare("points", points)
     options = dict(center=_seen_from(center, shift, "center"), radius=radius, sigma=sigma, as_published=as_published)
-    found = core.transform(array, sizes.tolist(), method=method, seed=seed, threads=threads, **options)
+    found = core.transform(array, sizes.tolist(), method=method, told=progress, seed=seed, threads=threads, **options)
     result = Map(**_fields(found, "sigma", "center", "radius", "values"))
     return result if shift is None else result._moved(shift)

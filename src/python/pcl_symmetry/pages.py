@@ -7,19 +7,19 @@ import html
 import json
 import os
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Dict, List, Union
+from typing import TYPE_CHECKING, Any, Dict, List, Tuple, Union
 
 import numpy as np
 
 if TYPE_CHECKING:
-    from .results import Planes
+    from .results import Planes, Scene
 
 # As in the pictures of the tools: the scale of cividis, the colors of planes (Okabe and Ito), and plain points and meshes.
 _SCALE = np.array([[int(c[k : k + 2], 16) for k in (0, 2, 4)] for c in (
     "00204D 00306F 2A406C 48526B 5E626E 727374 878479 9E9677 B6A971 D0BE67 EAD357 FFEA46".split())])  # fmt: skip
 _COLORS = [[0.90, 0.62, 0.0], [0.0, 0.45, 0.70], [0.0, 0.62, 0.45], [0.80, 0.47, 0.65], [0.34, 0.71, 0.91]]
 _AXIS_COLOR, _PLAIN_POINT, _PLAIN_MESH = [0.84, 0.37, 0.0], [76, 97, 133], [219, 219, 224]
-_MOST_POINTS = 200_000
+_GREY, _MOST_POINTS = np.array([170, 170, 170], np.uint8), 200_000
 
 
 class Page:
@@ -46,41 +46,117 @@ def _bytes(values: Any) -> str:
     return base64.b64encode(np.ascontiguousarray(values).tobytes()).decode()
 
 
+def rows_of_shown(points: Any, shape: Tuple[int, ...], what: str) -> Any:
+    """(N, 3) rows of the points that an answer is of."""
+    from .functions import parts_of
+
+    array = parts_of("points", points)[0]
+    if array.shape != (*shape, 3):
+        raise ValueError(f"points = array of shape {array.shape}, must be {(*shape, 3)}, those of the {what}")
+    return array.reshape(-1, 3).astype(float)
+
+
+class _Panels:
+    """The list of a page, in coordinates in which all points lie within half a unit of the origin."""
+
+    def __init__(self, every: Any) -> None:
+        from .plots import _diagonal
+
+        rows = np.flatnonzero(np.isfinite(every).all(axis=1))
+        self.rows = rows[:: -(-len(rows) // _MOST_POINTS) or 1]
+        self.used = every[self.rows]
+        self.empty = not len(self.used)
+        if self.empty:
+            self.used = np.zeros((1, 3))
+        self._middle = (self.used.max(axis=0) + self.used.min(axis=0)) / 2
+        self._half = _diagonal(self.used) / 2 or 1.0
+        self.panels: List[Dict[str, Any]] = []
+
+    def inside(self, x: Any) -> List[Any]:
+        return ((np.asarray(x) - self._middle) / self._half * 0.5).tolist()  # type: ignore[no-any-return]
+
+    def add(self, label: str, **shown: Any) -> None:
+        panel = dict(label=label, show_points=True, has_support=False, shade=[0.65, 0.35], point_colors=None, mesh_colors=None)
+        self.panels.append({**panel, "planes": [], "axes": [], "segments": [], **shown})
+
+    def axis(self, point: Any, direction: Any, half: float = 0.0) -> Dict[str, Any]:
+        ends = self.inside(point + np.array([[-1], [1]]) * (half or self._half) * direction)
+        return dict(ends=ends, color=_AXIS_COLOR)
+
+    def page(self, text: str, view: Any = (1.0, -1.6, 0.8), up: Any = (0.0, 0.0, 1.0)) -> Page:
+        scene = dict(title="pcl_symmetry", text=text, view=list(map(float, view)), up=list(map(float, up)), panels=self.panels)
+        scene.update(plain_point=_PLAIN_POINT, plain_mesh=_PLAIN_MESH, point_size=0.5 / max(1, len(self.used)) ** 0.5)
+        points = np.asarray(self.inside(self.used), dtype=np.float32)
+        scene.update(points=_bytes(points[: 0 if self.empty else None]), normals="", mesh="")
+        scene["support_colors"] = [f"rgb({r},{g},{b})" for r, g, b in _SCALE.tolist()]
+        return Page(scene)
+
+
 def page_of_planes(found: "Planes", points: Any) -> Page:
+    from .plots import _square
+
+    panels = _Panels(found.samples.astype(float) if found.samples is not None else rows_of_shown(points, found._shape, "planes"))
+    for axis in found.axes:
+        panels.add(f"axis of revolution: confidence {axis.confidence:.2f}", axes=[panels.axis(axis.point, axis.direction)])
+    for turn in found.rotations:
+        if turn.fold:
+            label = f"axis of order {turn.fold}: confidence {turn.confidence:.2f}"
+            panels.add(label, axes=[panels.axis(turn.point, turn.direction)])
+    for center in found.centers:
+        lines = [panels.axis(center.point, direction) for direction in np.eye(3)]
+        panels.add(f"every plane through the center: confidence {center.confidence:.2f}", axes=lines)
+    for k, plane in enumerate(found.every):
+        colors = support_colors(found.point_support(k).reshape(-1)[panels.rows])
+        square = dict(corners=panels.inside(_square(plane, panels.used)), color=_COLORS[k % len(_COLORS)])
+        label = f"plane {k + 1} ({plane.kind}): confidence {plane.confidence:.2f}, support {plane.support:.2f}"
+        panels.add(label, planes=[square], has_support=True, point_colors=_bytes(colors))
+    if not panels.panels:
+        panels.add("no symmetry plane")
+    if found.viewpoint is None:
+        return panels.page(repr(found))
+    return panels.page(repr(found), *_raised(found.viewpoint - panels.used.mean(axis=0), found.viewpoint))
+
+
+def support_colors(support: Any) -> Any:
+    """(N, 3) bytes for support in [0, 1]."""
+    at = np.clip(np.nan_to_num(support), 0, 1)[:, None] * (len(_SCALE) - 1)
+    low = np.minimum(at.astype(int), len(_SCALE) - 2)[:, 0]
+    return (_SCALE[low] + (at - low[:, None]) * (_SCALE[low + 1] - _SCALE[low])).round().astype(np.uint8)
+
+
+def _raised(towards: Any, viewpoint: Any) -> Tuple[Any, Any]:
+    """A view from slightly above that of a camera, and what is up: a camera at the origin has y down."""
+    up = np.array([0.0, -1.0, 0.0]) if not np.any(viewpoint) else np.array([0.0, 0.0, 1.0])
+    return towards / np.linalg.norm(towards) + 0.25 * up, up
+
+
+def page_of_scene(found: "Scene", points: Any) -> Page:
+    """All objects, each in a color with its best plane or axis, then one by one."""
     from .plots import _diagonal, _square
 
-    every = np.asarray(points, dtype=float)
-    if every.shape != (found._num_rows, 3):
-        raise ValueError(f"points = array of shape {every.shape}, must be ({found._num_rows}, 3), those of the planes")
-    rows = np.flatnonzero(np.isfinite(every).all(axis=1))
-    rows = rows[:: -(-len(rows) // _MOST_POINTS) or 1]
-    used = every[rows]
-    middle, half = (used.max(axis=0) + used.min(axis=0)) / 2, _diagonal(used) / 2 or 1.0
-
-    def inside(x: Any) -> List[Any]:
-        return ((np.asarray(x) - middle) / half * 0.5).tolist()  # type: ignore[no-any-return]
-
-    panels: List[Dict[str, Any]] = []
-
-    def add(label: str, **shown: Any) -> None:
-        panel = dict(label=label, show_points=True, has_support=False, shade=[0.65, 0.35], point_colors=None, mesh_colors=None)
-        panels.append({**panel, "planes": [], "axes": [], "segments": [], **shown})
-
-    for axis in found.axes:
-        ends = inside(axis.point + np.array([[-1], [1]]) * half * axis.direction)
-        add(f"axis of revolution: confidence {axis.confidence:.2f}", axes=[dict(ends=ends, color=_AXIS_COLOR)])
-    for k, plane in enumerate(found):
-        support = np.nan_to_num(found.point_support(k)[rows])
-        at = np.clip(support, 0, 1)[:, None] * (len(_SCALE) - 1)
-        low = np.minimum(at.astype(int), len(_SCALE) - 2)[:, 0]
-        colors = (_SCALE[low] + (at - low[:, None]) * (_SCALE[low + 1] - _SCALE[low])).round().astype(np.uint8)
-        square = dict(corners=inside(_square(plane, used)), color=_COLORS[k % len(_COLORS)])
-        label = f"plane {k + 1} ({plane.kind}): confidence {plane.confidence:.2f}, support {plane.support:.2f}"
-        add(label, planes=[square], has_support=True, point_colors=_bytes(colors))
-    if not panels:
-        add("no symmetry plane")
-    scene = dict(title="pcl_symmetry", text=repr(found), view=[1.0, -1.6, 0.8], up=[0.0, 0.0, 1.0], panels=panels)
-    scene.update(plain_point=_PLAIN_POINT, plain_mesh=_PLAIN_MESH, point_size=0.5 / max(1, len(used)) ** 0.5)
-    scene.update(points=_bytes(np.asarray(inside(used), dtype=np.float32)), normals="", mesh="")
-    scene["support_colors"] = [f"rgb({r},{g},{b})" for r, g, b in _SCALE.tolist()]
-    return Page(scene)
+    panels = _Panels(rows_of_shown(points, found._shape, "scene"))
+    labels = found.labels.reshape(-1)[panels.rows]
+    bright = (255 * np.array(_COLORS)).round().astype(np.uint8)
+    colors = np.where(labels[:, None] > 0, bright[(labels - 1) % len(bright)], _GREY)
+    drawn: List[Dict[str, Any]] = []
+    every = rows_of_shown(points, found._shape, "scene")
+    for k, each in enumerate(found.objects):
+        of_object, color = every[each.rows], _COLORS[k % len(_COLORS)]
+        of_object = of_object[np.isfinite(of_object).all(axis=1)]
+        reach = 0.7 * _diagonal(of_object)
+        lines = [panels.axis(axis.point, axis.direction, reach) for axis in each.planes.axes]
+        squares = [dict(corners=panels.inside(_square(plane, of_object)), color=color) for plane in each.planes]
+        drawn.append(dict(axes=lines, planes=squares[: not lines], planes_of_object=squares))
+    first = dict(axes=[a for d in drawn for a in d["axes"]], planes=[p for d in drawn for p in d["planes"]])
+    panels.add(f"{len(found)} objects", point_colors=_bytes(colors), **first)
+    for k, d in enumerate(drawn):
+        planes = found[k].planes
+        best = max([p.confidence for p in (*planes, *planes.axes)], default=0.0)
+        what = "axis of revolution" if planes.axes else f"{len(planes)} planes" if len(planes) > 1 else "1 plane" if planes else "no symmetry"
+        own = np.where((labels == k + 1)[:, None], colors, _GREY)
+        label = f"object {k + 1}: {what}" + (f", confidence {best:.2f}" if best else "")
+        panels.add(label, point_colors=_bytes(own), axes=d["axes"], planes=d["planes_of_object"])
+    text = f"Scene({len(found)} objects, {len(found.supports)} supporting planes)"
+    if found.viewpoint is None:
+        return panels.page(text)
+    return panels.page(text, *_raised(found.viewpoint - panels.used.mean(axis=0), found.viewpoint))

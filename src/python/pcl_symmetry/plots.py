@@ -14,7 +14,11 @@ if TYPE_CHECKING:
 COLORS = ["#E69F00", "#0072B2", "#009E73", "#CC79A7", "#D55E00", "#56B4E9", "#F0E442", "#595959"]
 
 
-def _axes_for(points: Any, axes: Any, title: str) -> Any:
+def _counted(number: int, what: str) -> str:
+    return f"{number} {what}" if number == 1 else f"{number} {what[:-2]}es" if what == "axis" else f"{number} {what}s"
+
+
+def _axes_for(points: Any, axes: Any, title: str, colors: Any = "#4D6185") -> Any:
     """Axes of projection 3d with the points in them, all directions to one scale."""
     if axes is None:
         axes = plt.figure(figsize=(6, 6), dpi=100).add_subplot(projection="3d")
@@ -24,7 +28,7 @@ def _axes_for(points: Any, axes: Any, title: str) -> Any:
     axes.set_zlim(middle[2] - half, middle[2] + half)
     axes.set_box_aspect((1, 1, 1))
     axes.set_axis_off()
-    axes.scatter(*points.T, s=1, c="#4D6185")
+    axes.scatter(*points.T, s=1, c=colors)
     return axes
 
 
@@ -44,18 +48,28 @@ def _square(plane: "ReflectionPlane", points: Any) -> Any:
 
 
 def plot_planes(found: "Planes", points: Any, axes: Any) -> Any:
-    points = np.asarray(points, dtype=float)
-    axes = _axes_for(points, axes, f"{len(found)} planes, {len(found.axes)} axes")
+    from .pages import rows_of_shown, support_colors
+
+    points = found.samples.astype(float) if found.samples is not None else rows_of_shown(points, found._shape, "planes")
+    colors: Any = "#4D6185"
+    if found.planes:  # as the pictures of the tools: the support for the best plane
+        colors = support_colors(found.point_support(0).reshape(-1)) / 255
+    counts = ((len(found), "plane"), (len(found.axes), "axis"))
+    title = ", ".join(_counted(number, what) for number, what in counts if number) or "no symmetry"
+    axes = _axes_for(points, axes, title, colors)
     for plane, color in zip(found, COLORS):
         axes.plot_trisurf(*_square(plane, points).T, triangles=[(0, 1, 2), (0, 2, 3)], color=color, alpha=0.25)
     for axis in found.axes:
-        reach = np.array([[-1], [1]]) * _diagonal(points) / 2
-        axes.plot(*(axis.point + reach * axis.direction).T, color=COLORS[4], linewidth=2)
+        reach = np.array([[-1], [1]]) * _diagonal(points) * 0.6
+        axes.plot(*(axis.point + reach * axis.direction).T, color=COLORS[4], linewidth=3, zorder=10)
     return axes
 
 
 def plot_frame(frame: "Frame", points: Any, axes: Any) -> Any:
-    points = np.asarray(points, dtype=float)
+    from .functions import of_vertices
+
+    array, shift, *_ = of_vertices("points", points)
+    points = array.astype(float) if shift is None else array + shift
     axes = _axes_for(points, axes, "center of symmetry and principal symmetry axes")
     for k in range(3):
         reach = np.array([[-1], [1]]) * _diagonal(points) / 2 * frame.scores[k]

@@ -48,7 +48,7 @@ def _same(a: Any, b: Any) -> bool:
 def _text(value: Any) -> str:
     if isinstance(value, Result):
         return repr(value)
-    value = _plain(value)
+    value = list(value) if isinstance(value, (list, tuple)) else _plain(value)
     if isinstance(value, list):
         return "[" + ", ".join(map(_text, value)) + "]"
     return f"{value:.4g}" if isinstance(value, float) else repr(value)
@@ -59,6 +59,16 @@ class Result:
     """What all results can do."""
 
     _in_repr: ClassVar[Tuple[str, ...]] = ()
+
+    def __post_init__(self) -> None:
+        import numpy as np
+
+        for f in dataclasses.fields(self):
+            value = getattr(self, f.name)
+            if isinstance(value, np.ndarray) and value.flags.writeable:
+                value = value.view()
+                value.flags.writeable = False
+                object.__setattr__(self, f.name, value)
 
     def to_dict(self) -> Dict[str, Any]:
         """Names and values; arrays become lists."""
@@ -116,6 +126,7 @@ class ReflectionPlane(Result):
             n, offset = n / length, offset / length
         object.__setattr__(self, "normal", n)
         object.__setattr__(self, "offset", float(offset))
+        self.__post_init__()
 
     @property
     def coefficients(self) -> "Doubles":
@@ -161,17 +172,17 @@ class ReflectionPlane(Result):
     def pairs(self, points: Any, *, max_distance: float = 0.0) -> Tuple["NDArray[np.int64]", "Doubles"]:
         """The counterpart of each point of a cloud: the point closest to its reflection.
 
-        points: (N, 3), or an object of Open3D or trimesh. max_distance: between a reflection and its counterpart, input
-        units; 0: 1 % of the diagonal of the bounding box.
+        points: (N, 3), (H, W, 3), or an object of Open3D or trimesh, of a mesh its vertices. max_distance: between a
+        reflection and its counterpart, input units; 0: 1 % of the diameter.
         Returns (index, distance), each (N,): the row of the counterpart and its distance from the reflection; -1 and
         infinity where there is none, as on the unseen side of a scan.
         """
         import numpy as np
 
         from . import _pcl_symmetry as core
-        from .functions import prepare
+        from .functions import of_vertices
 
-        array, shift = prepare("points", points)
+        array, shift, *_ = of_vertices("points", points)
         if array.ndim != 2 or array.shape[1] != 3 or array.dtype.kind not in "fiu":
             core.closest(array, array)  # says what is wrong
         plane = self if shift is None else self._moved(-shift)
@@ -257,7 +268,7 @@ class Axis(Result):
         from . import _pcl_symmetry as core
         from .functions import prepare
 
-        array, shift = prepare("points", points)
+        array, shift, *_ = prepare("points", points)
         point = self.point if shift is None else self.point - shift
         rows = core.profile(array, point, self.direction, num_points)
         return Profile(radius=rows[:, 0], height=rows[:, 1], spread=rows[:, 2], count=rows[:, 3].astype(int))
@@ -352,10 +363,14 @@ class View(Result):
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Planes(Result):
-    """What planes() found; behaves as the list of its planes."""
+    """What planes() found; behaves as the list of the symmetries, so that it is false where there is none."""
 
     planes: List[Plane]
-    """Symmetries, possible, approximate, local; each best first."""
+    """The symmetries, best first; with as_published all planes, which nothing judged."""
+    possible: List[Plane]
+    """What may be a symmetry: planes of a confidence of 0.2 to 0.5, best first."""
+    approximate: List[Plane]
+    """With planes(approximate=True): approximate symmetries, then those of parts (local); each best first."""
     axes: List[Axis]
     """Best first."""
     centers: List[Center]
@@ -397,31 +412,44 @@ class Planes(Result):
     >= 0. planes_off: off of the best pair of planes through the line. beside: 1 where another rotation fits better.
     terms: (7,) summands of the log odds before their coefficients, by kind 4, 7 and 6 of them, then 0
     """
+    samples: Optional["NDArray[Any]"]
+    """(M, 3) points that were spread over a mesh, which point_support() is of; None for a cloud."""
     _support: List["NDArray[np.float32]"]
     _rows: "NDArray[np.int64]"
-    _num_rows: int
+    _shape: Tuple[int, ...]
+
+    @property
+    def every(self) -> List[Plane]:
+        """Symmetries, possible, approximate and local planes."""
+        return [*self.planes, *self.possible, *self.approximate]
 
     def point_support(self, index: int) -> "NDArray[np.float32]":
-        """(N,) support for a plane at each row of the input, in [0, 1]; NaN for rows that were not used."""
+        """Support for one of `every` at each point of the input, in [0, 1]; NaN for points that were not used.
+
+        (N,) for rows, (H, W) for an organized array, (M,) for a mesh: that of its samples.
+        """
         import numpy as np
 
-        if not -len(self.planes) <= index < len(self.planes):
-            raise IndexError(f"index = {index}, must be that of one of {len(self.planes)} planes")
+        if not -len(self._support) <= index < len(self._support):
+            raise IndexError(f"index = {index}, must be that of one of {len(self._support)} planes with support")
         values = self._support[index]
-        result = np.full(self._num_rows, np.nan, np.float32)
+        result = np.full(int(np.prod(self._shape)), np.nan, np.float32)
         if len(self._rows):
             result[self._rows[: len(values)]] = values
         else:
             result[: len(values)] = values
-        return result
+        return result.reshape(self._shape)
 
-    def show(self, points: "ArrayLike") -> "Page":
-        """A page with the points and the planes in three dimensions, as the tools write with -html: a notebook shows it."""
+    def show(self, points: Any) -> "Page":
+        """A page with the points and the planes in three dimensions, as the tools write with -html: a notebook shows it.
+
+        points: those of planes().
+        """
         from .pages import page_of_planes
 
         return page_of_planes(self, points)
 
-    def plot(self, points: "ArrayLike", axes: Any = None) -> Any:
+    def plot(self, points: Any, axes: Any = None) -> Any:
         """Draws points, planes and axes with matplotlib into axes of projection 3d, by default new ones; returns them."""
         from .plots import plot_planes
 
@@ -443,7 +471,8 @@ class Planes(Result):
     def __repr__(self) -> str:
         if self.reason:
             return f"Planes([], reason={self.reason!r})"
-        return "Planes([" + "".join(f"\n  {plane!r}," for plane in self.planes) + ("\n])" if self.planes else "])")
+        others = "".join(f", {name}={len(getattr(self, name))}" for name in ("possible", "axes", "centers", "rotations") if getattr(self, name))
+        return "Planes([" + "".join(f"\n  {plane!r}," for plane in self.planes) + ("\n]" if self.planes else "]") + others + ")"
 
     def _moved(self, shift: "Doubles") -> "Planes":
         changes: Dict[str, Any] = {}
@@ -517,8 +546,13 @@ class Frame(Result):
     over 20 degrees, at most 1. best: 1 for the frame that the search put first. other_scores: sum of the scores of the
     other planes. best_score: first_score of the frame that the search put first, else 0.
     """
+    reason: str
+    """Why there is no answer: all numbers are NaN then. Else empty."""
 
-    def plot(self, points: "ArrayLike", axes: Any = None) -> Any:
+    def __bool__(self) -> bool:
+        return not self.reason
+
+    def plot(self, points: Any, axes: Any = None) -> Any:
         """Draws points and axes with matplotlib into axes of projection 3d, by default new ones; returns them."""
         from .plots import plot_frame
 
@@ -550,6 +584,8 @@ class Rotations(Result):
     """(point, direction) of axes of revolution."""
     tolerance: float
     """That was decided at, input units."""
+    reason: str
+    """Why there is no answer: the name is empty then. Else empty."""
 
     def equivalents(self, pose: "ArrayLike", step: float = 0.5) -> "Doubles":
         """(K, 4, 4) the poses that look like one, it first.
@@ -570,14 +606,15 @@ class Rotations(Result):
         result: "Doubles" = self._group().closest_to(pose=pose, previous=previous)
         return result
 
-    def mssd(self, estimate: "ArrayLike", truth: "ArrayLike", points: "ArrayLike") -> float:
+    def mssd(self, estimate: "ArrayLike", truth: "ArrayLike", points: Any) -> float:
         """Maximum surface distance of two poses under the symmetries (MSSD of the BOP benchmark), input units.
 
         points: (N, 3), such as the vertices of the model.
         """
-        import numpy as np
+        from .functions import of_vertices
 
-        return float(self._group().mssd(estimate=estimate, truth=truth, points=np.asarray(points)))
+        array, shift, *_ = of_vertices("points", points)
+        return float(self._group().mssd(estimate=estimate, truth=truth, points=array if shift is None else array + shift))
 
     def _group(self) -> Any:
         from .functions import Core, core
@@ -734,3 +771,108 @@ class BuildReport(Result):
     """(name, reason), in the order of the models."""
     cancelled: bool
     """The progress function returned False."""
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class SceneObject(Result):
+    """An object of a scene, and what was found, in the frame of the scene."""
+
+    _in_repr = ("planes", "completed_by")
+    rows: "NDArray[np.int64]"
+    """(K,) of its points in the flattened scene."""
+    planes: Planes
+    """As of planes(); without support of points."""
+    frame: Optional[Frame]
+    """None without scene(frames=True)."""
+    completed_by: Optional[ReflectionPlane]
+    """The plane that it was completed by: its best one, or through its axis and across the view; None where none decides."""
+    added: "NDArray[np.float32]"
+    """(M, 3) points that this reflection adds."""
+    models: List["Recognized"]
+    """Best first; empty without a database, and where the object is unknown."""
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Support(Result):
+    """A table, floor or wall."""
+
+    _in_repr = ("coefficients",)
+    coefficients: "Doubles"
+    """(4,) a, b, c, d; the normal points toward the viewer."""
+    rows: "NDArray[np.int64]"
+    """(K,) of its points in the flattened scene."""
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Junction(Result):
+    """Two pieces that touch, and what symmetry says of them: one object where one symmetry explains both."""
+
+    _in_repr = ("objects", "together", "apart")
+    objects: Tuple[int, int]
+    """Indices of the objects of the pieces: the same where symmetry joined them."""
+    num_points: Tuple[int, int]
+    """Of the pieces."""
+    together: float
+    """Share of their points that the best symmetry of both maps onto them, in [0, 1]; 0 where there is none."""
+    apart: float
+    """The same, each piece by its own symmetries."""
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Scene(Result):
+    """The objects of one frame of a sensor; behaves as the list of its objects."""
+
+    _in_repr = ("objects", "supports")
+    objects: List[SceneObject]
+    """Most points first."""
+    supports: List[Support]
+    """In the order in which they were found."""
+    junctions: List[Junction]
+    plane_distance: float
+    """Of points of a supporting plane, that was used, input units."""
+    cluster_distance: float
+    """Between points of one object, that was used, input units."""
+    viewpoint: Optional["Doubles"]
+    """(3,) where the sensor stood."""
+    reason: str
+    """Why there is no answer; empty where the search ran."""
+    _shape: Tuple[int, ...]
+
+    @property
+    def labels(self) -> "NDArray[np.int32]":
+        """For each point the object, counted from 1, -1 for supporting planes, 0 for others; of the shape of the points."""
+        import numpy as np
+
+        result = np.zeros(int(np.prod(self._shape)), np.int32)
+        for support in self.supports:
+            result[support.rows] = -1
+        for i, each in enumerate(self.objects):
+            result[each.rows] = i + 1
+        return result.reshape(self._shape)
+
+    def show(self, points: Any) -> "Page":
+        """A page with the scene, its objects, planes and axes in three dimensions: a notebook shows it.
+
+        points: those of scene().
+        """
+        from .pages import page_of_scene
+
+        return page_of_scene(self, points)
+
+    def __len__(self) -> int:
+        return len(self.objects)
+
+    def __iter__(self) -> Iterator[SceneObject]:
+        return iter(self.objects)
+
+    def __getitem__(self, index: int) -> SceneObject:
+        return self.objects[index]
+
+    def _moved(self, shift: "Doubles") -> "Scene":
+        objects = [dataclasses.replace(each._moved(shift), added=each.added + shift) for each in self.objects]
+        supports = []
+        for support in self.supports:
+            coefficients = support.coefficients.copy()
+            coefficients[3] -= coefficients[:3] @ shift
+            supports.append(dataclasses.replace(support, coefficients=coefficients))
+        return dataclasses.replace(super()._moved(shift), objects=objects, supports=supports)

@@ -5,8 +5,10 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <atomic>
+#include <chrono>
 #include <cmath>
 #include <set>
 #include <stdexcept>
@@ -15,6 +17,7 @@
 #include "core/base/k_means.h"
 #include "core/base/median.h"
 #include "core/base/random.h"
+#include "core/base/watch.h"
 
 namespace {
 
@@ -84,6 +87,38 @@ TEST(Parallel, ExceptionsOfBlocksInBlocksReachTheCaller) {
                  std::invalid_argument);
     EXPECT_EQ(num_caught, 4) << num_threads << " threads";
   }
+}
+
+TEST(Watch, IsToldHowFarTheOuterLoopIsAndEndsAllLoops) {
+  const auto until = [](double seconds) {
+    const auto end = std::chrono::steady_clock::now() + std::chrono::duration<double>(seconds);
+    while (std::chrono::steady_clock::now() < end) {
+    }
+  };
+  for (const int num_threads : {1, 4}) {
+    std::vector<double> shares;
+    std::atomic<int> num_blocks{0};
+    const auto loops = [&] {
+      const Watch watch([&](double share) {
+        shares.push_back(share);
+        if (shares.size() == 3) throw 5;
+      });
+      parallelBlocks(1000, num_threads, [&](std::size_t) {
+        parallelBlocks(10, num_threads, [&](std::size_t) {
+          until(0.001);
+          ++num_blocks;
+        });
+      });
+    };
+    EXPECT_THROW(loops(), int) << num_threads << " threads";
+    EXPECT_EQ(shares.size(), 3u);
+    EXPECT_TRUE(std::is_sorted(shares.begin(), shares.end()));
+    EXPECT_TRUE(shares.back() > 0.0 && shares.back() < 0.9) << "it ends before the loop";
+    EXPECT_LT(num_blocks, 9000);
+  }
+  std::atomic<int> sum{0};
+  parallelBlocks(100, 4, [&](std::size_t b) { sum += static_cast<int>(b); });
+  EXPECT_EQ(sum, 4950) << "loops work after one that was ended";
 }
 
 TEST(RandomStream, UniformIsUniform) {

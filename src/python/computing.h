@@ -1,0 +1,56 @@
+/// Long calls from Python: other threads of Python run meanwhile, Ctrl-C ends them, and their progress is told.
+#pragma once
+
+#include <pybind11/pybind11.h>
+
+#include <exception>
+#include <memory>
+
+#include "core/base/watch.h"
+
+namespace pcl_symmetry::python {
+
+/// What Python raised during a call. No std::exception, as those are collected where one of many models fails.
+struct RaisedMeanwhile {
+  std::shared_ptr<pybind11::error_already_set> error;
+};
+
+/// Called with the share done; null: nobody asks. The package sets it for the time of a call.
+inline thread_local PyObject* told_progress = nullptr;
+
+/// Stands in place of pybind11::gil_scoped_release around all that may take long.
+class Computing {
+public:
+  Computing() : watch_(&look) {}
+
+private:
+  static void look(double share) {
+    const pybind11::gil_scoped_acquire acquire;
+    if (PyErr_CheckSignals() == 0) {
+      if (!told_progress) return;
+      if (PyObject* result = PyObject_CallFunction(told_progress, "d", share)) {
+        Py_DECREF(result);
+        return;
+      }
+    }
+    throw RaisedMeanwhile{std::make_shared<pybind11::error_already_set>()};
+  }
+
+  pybind11::gil_scoped_release release_;
+  Watch watch_;
+};
+
+/// Adds what the package needs for it to a module.
+inline void addComputing(pybind11::module_& module) {
+  module.def("tell",
+             [](const pybind11::object& progress) { told_progress = progress.is_none() ? nullptr : progress.ptr(); });
+  pybind11::register_local_exception_translator([](std::exception_ptr thrown) {
+    try {
+      if (thrown) std::rethrow_exception(thrown);
+    } catch (const RaisedMeanwhile& raised) {
+      raised.error->restore();
+    }
+  });
+}
+
+}  // namespace pcl_symmetry::python

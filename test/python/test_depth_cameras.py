@@ -1,0 +1,371 @@
+"""What a depth camera needs of the Python module: organized arrays, parts of scenes, scenes, and calls that can be ended."""
+
+import json
+import os
+import signal
+import subprocess
+import sys
+import tempfile
+import threading
+import time
+import unittest
+import warnings
+from pathlib import Path
+
+try:
+    import numpy as np
+except ImportError:
+    print("skipped: NumPy is not installed for " + sys.executable)
+    sys.exit(77)
+
+import pcl_symmetry
+from test_pcl_symmetry import Mesh, bar, box, box_mesh, bumped, has_pcl
+
+INTRINSICS = (300.0, 300.0, 160.0, 120.0)
+
+
+def table(blocks=(((-0.35, -0.3, -0.1), (-0.05, 0, 0.15)), ((0.1, -0.2, -0.05), (0.35, 0, 0.1)))):
+    """(240, 320) depths of blocks on a table, seen from above and in front, and the block of each pixel, from 1."""
+    v, u = np.indices((240, 320))
+    fx, fy, cx, cy = INTRINSICS
+    rays = np.stack([(u - cx) / fx, (v - cy) / fy, np.ones(u.shape)], axis=2)
+    rays = rays @ np.array([[1, 0, 0], [0, 0.8, 0.6], [0, -0.6, 0.8]]).T
+    camera = np.array([0, -0.9, -1.2])
+    with np.errstate(divide="ignore", invalid="ignore"):
+        depth = np.where(rays[..., 1] > 1e-9, -camera[1] / rays[..., 1], np.inf)
+        labels = np.zeros(u.shape, int)
+        for k, corners in enumerate(blocks):
+            first, second = ((np.array(corner) - camera) / rays for corner in corners)
+            enters, leaves = np.minimum(first, second).max(axis=2), np.maximum(first, second).min(axis=2)
+            hit = (enters < leaves) & (enters > 0) & (enters < depth)
+            depth[hit], labels[hit] = enters[hit], k + 1
+    return np.where(depth < 4, depth, 0), labels
+
+
+def write_pcd(path, points, labels=None):
+    """Rows, or rows and columns of a camera, in binary."""
+    height, width = points.shape[:2] if points.ndim == 3 else (1, len(points))
+    fields = [("x", "F"), ("y", "F"), ("z", "F")] + ([("label", "U")] if labels is not None else [])
+    rows = np.zeros(height * width, [(name, "<f4" if kind == "F" else "<u4") for name, kind in fields])
+    for name, values in zip("xyz", points.reshape(-1, 3).T):
+        rows[name] = values
+    if labels is not None:
+        rows["label"] = labels.ravel()
+    names, kinds = zip(*fields)
+    head = ["VERSION .7", "FIELDS " + " ".join(names), "SIZE" + " 4" * len(names), "TYPE " + " ".join(kinds)]
+    head += ["COUNT" + " 1" * len(names), f"WIDTH {width}", f"HEIGHT {height}", "VIEWPOINT 0 0 0 1 0 0 0"]
+    Path(path).write_bytes("\n".join([*head, f"POINTS {len(rows)}", "DATA binary", ""]).encode() + rows.tobytes())
+
+
+def seen_half(points, viewpoint):
+    """The points of a box about the origin on the sides that face a viewpoint."""
+    half = np.abs(points).max(axis=0)
+    faces = np.isclose(np.abs(points), half, atol=1e-6) & (np.sign(points) * viewpoint > half)
+    return points[faces.any(axis=1)]
+
+
+@unittest.skipUnless(os.environ.get("TOOLS") and has_pcl(), "needs the tools")
+class SameBytes(unittest.TestCase):
+    """The tool is the C++ class with a command line: what it writes is what the module returns, to the last bit."""
+
+    NAMES = ("confidence", "share", "support", "score", "seen", "residual", "deviation")
+
+    def assert_same(self, name, file, flags, found):
+        with self.subTest(name), tempfile.TemporaryDirectory() as folder:
+            path = Path(folder) / ("cloud" + file.suffix)
+            path.write_bytes(file.read_bytes())
+            tool = Path(os.environ["TOOLS"]) / "pcl_symmetry_planes"
+            subprocess.run([tool, path, "-json", "found.json", "-quiet", *flags], cwd=folder, check=True, capture_output=True)
+            read = json.loads((Path(folder) / "found.json").read_text())
+            self.assertEqual([p["kind"] for p in read["planes"]], [p.kind for p in found.every])
+            self.assertEqual([p["coefficients"] for p in read["planes"]], [p.coefficients.tolist() for p in found.every])
+            for field in self.NAMES:
+                self.assertEqual([p[field] for p in read["planes"]], [getattr(p, field) for p in found.every], field)
+            self.assertEqual(read["tolerance"], found.tolerance)
+            self.assertEqual(len(read["axes"]), len(found.axes))
+
+    def test_of_twelve_inputs(self):
+        depth, labels = table()
+        random = np.random.default_rng(1)
+        frame = pcl_symmetry.from_depth(depth, INTRINSICS)
+        noisy_frame = pcl_symmetry.from_depth(depth + 0.002 * random.normal(size=depth.shape) * (depth > 0), INTRINSICS)
+        cloud, viewpoint = box(), np.array([2.0, 3.0, 2.5])
+        holes = cloud.copy()
+        holes[::7] = np.nan
+        noisy = (cloud + 0.004 * random.normal(size=cloud.shape)).astype(np.float32)
+        one_side = seen_half(box(num_points=20_000), viewpoint)
+        large = box(num_points=120_000)
+        at = ",".join(map(repr, viewpoint.tolist()))
+        with tempfile.TemporaryDirectory() as folder:
+            file = Path(folder) / "cloud.pcd"
+
+            def check(name, points, *flags, labels=None, **options):
+                write_pcd(file, points, labels)
+                self.assert_same(name, file, flags, pcl_symmetry.planes(points, **options))
+
+            check("cloud", cloud)
+            check("with NaN", holes)
+            check("with noise", noisy)
+            check("large", large)
+            check("one side", one_side)
+            check("viewpoint", one_side, "-viewpoint", at, viewpoint=viewpoint)
+            check("ground", one_side, "-viewpoint", at, "-ground", "0,0,1,0.2", viewpoint=viewpoint, ground=(0, 0, 1, 0.2))
+            check("organized", np.where((labels == 1)[..., None], frame, np.nan))
+            check("organized, without viewpoint", frame, "-viewpoint", "none", viewpoint=None)
+            check("label", frame, "-label", "1", labels=labels, indices=labels == 1)
+            check("label in noise", noisy_frame, "-label", "2", labels=labels, indices=labels == 2)
+            vertices, faces = box_mesh()
+            mesh = Path(folder) / "mesh.off"
+            rows = [" ".join(map(str, row)) for row in [*vertices.tolist(), *([3, *face] for face in faces.tolist())]]
+            mesh.write_text("\n".join(["OFF", f"{len(vertices)} {len(faces)} 0", *rows, ""]))
+            self.assert_same("mesh", mesh, (), pcl_symmetry.planes(Mesh(vertices, faces)))
+            x, y, z = np.meshgrid(np.arange(32), np.arange(36), np.arange(30), indexing="ij")
+            body = (((x - 15.5) / 11) ** 2 + ((y - 17) / 14) ** 2 + ((z - 14) / 9) ** 2 < 1).astype("<f4")
+            volume = Path(folder) / "body.nrrd"
+            head = "NRRD0004\ntype: float\ndimension: 3\nsizes: 32 36 30\nspace dimension: 3\nspace directions: (2,0,0) (0,2,0) (0,0,3)\n"
+            volume.write_bytes((head + "space origin: (5,7,-9)\nencoding: raw\nendian: little\n\n").encode() + body.tobytes(order="F"))
+            self.assert_same("volume", volume, (), pcl_symmetry.planes(volume=body, spacing=(2, 2, 3), origin=(5, 7, -9)))
+
+
+class DepthImages(unittest.TestCase):
+    def test_become_points_in_the_frame_of_the_camera(self):
+        depth, _ = table()
+        points = pcl_symmetry.from_depth(depth, INTRINSICS)
+        self.assertEqual((points.shape, points.dtype), ((240, 320, 3), np.float32))
+        np.testing.assert_array_equal(np.isnan(points[..., 2]), depth == 0)
+        fx, fy, cx, cy = INTRINSICS
+        v, u = np.indices(depth.shape)
+        seen = depth > 0
+        np.testing.assert_allclose((fx * points[..., 0] / points[..., 2] + cx)[seen], u[seen], atol=1e-3)
+        np.testing.assert_allclose((fy * points[..., 1] / points[..., 2] + cy)[seen], v[seen], atol=1e-3)
+        matrix = [[fx, 0, cx], [0, fy, cy], [0, 0, 1]]
+        millimeters = pcl_symmetry.from_depth((1000 * depth).round().astype(np.uint16), matrix, unit=0.001)
+        np.testing.assert_allclose(millimeters[seen], points[seen], atol=1e-3)
+        for wrong, words in (
+            ((depth[0], INTRINSICS), "depth = array of shape"),
+            ((depth, (0, 300, 1, 1)), "fx and fy > 0"),
+            ((depth, np.eye(4)), "intrinsics = "),
+        ):
+            with self.assertRaisesRegex(ValueError, words):
+                pcl_symmetry.from_depth(*wrong)
+
+
+@unittest.skipUnless(has_pcl(), "the module was built without PCL")
+class OrganizedArrays(unittest.TestCase):
+    def setUp(self):
+        depth, self.labels = table()
+        self.frame = pcl_symmetry.from_depth(depth, INTRINSICS)
+
+    def test_show_what_the_camera_saw(self):
+        object_alone = np.where((self.labels == 1)[..., None], self.frame, np.nan)
+        found = pcl_symmetry.planes(object_alone)
+        np.testing.assert_allclose(found.viewpoint, 0, atol=2e-3)
+        self.assertEqual(found.point_support(0).shape, (240, 320))
+        np.testing.assert_array_equal(np.isfinite(found.point_support(0)), self.labels == 1)
+        frame = pcl_symmetry.frame(object_alone)
+        self.assertTrue(frame)
+        values = pcl_symmetry.local_symmetry(object_alone[::2, ::2], 1.0)
+        np.testing.assert_array_equal(np.isfinite(values), self.labels[::2, ::2] == 1)
+        self.assertEqual(pcl_symmetry.segment(object_alone[::2, ::2]).shape, (120, 160))
+        self.assertEqual(pcl_symmetry.describe(object_alone).shape[0], 2)
+        index, _ = found[0].pairs(object_alone)
+        self.assertEqual(index.shape, (240 * 320,))
+
+    def test_a_part_stands_on_its_scene(self):
+        mask = self.labels == 2
+        found = pcl_symmetry.planes(self.frame, indices=mask)
+        self.assertTrue(found)
+        self.assertLess(np.abs(found[0].normal).argmax(), 1, "the plane across x")
+        self.assertEqual(found, pcl_symmetry.planes(self.frame, indices=np.flatnonzero(mask)))
+        np.testing.assert_array_equal(np.isfinite(found.point_support(0)), mask)
+        added, rows = pcl_symmetry.complete(self.frame, found[0], indices=mask)
+        self.assertTrue(mask.ravel()[rows].all())
+        np.testing.assert_allclose(found[0].reflect(self.frame.reshape(-1, 3)[rows]), added, atol=1e-6)
+        self.assertTrue(pcl_symmetry.frame(self.frame, indices=mask))
+        for wrong in (mask[:, :5], np.ones(5), [[1, 2]], [10**6]):
+            with self.assertRaisesRegex(ValueError, "indices"):
+                pcl_symmetry.planes(self.frame, indices=wrong)
+        with self.assertWarnsRegex(RuntimeWarning, "points: .*distinct point"):
+            self.assertIn("distinct point", pcl_symmetry.planes(self.frame, indices=[int(np.flatnonzero(mask)[0])]).reason)
+
+    def test_a_scene_has_objects_on_a_table(self):
+        scene = pcl_symmetry.scene(self.frame)
+        self.assertEqual((len(scene), len(scene.supports)), (2, 1))
+        for k in (1, 2):
+            found = scene.labels == next(i + 1 for i, each in enumerate(scene) if self.labels.ravel()[each.rows[0]] == k)
+            self.assertGreater((found & (self.labels == k)).sum(), 0.9 * (self.labels == k).sum())
+        for each in scene:
+            self.assertTrue(each.planes)
+            self.assertIsNotNone(each.completed_by)
+            self.assertGreater(len(each.added), 0)
+            self.assertTrue(each.frame)
+        self.assertLess(len(repr(scene)), 2000)
+        page = scene.show(self.frame)
+        shown = json.loads(page.html.split('id="scene">')[1].split("</script>")[0])
+        self.assertEqual(len(shown["panels"]), 3)
+        shifted = pcl_symmetry.scene(self.frame.astype(float) + (4e5, 5e6, 0), viewpoint=(4e5, 5e6, 0))
+        self.assertEqual(len(shifted), 2)
+        with self.assertRaisesRegex(ValueError, "viewpoint: of rows without order"):
+            pcl_symmetry.scene(box())
+        with self.assertWarnsRegex(RuntimeWarning, "points: no finite point"):
+            self.assertEqual(len(pcl_symmetry.scene(np.full((24, 32, 3), np.nan))), 0)
+        with self.assertRaisesRegex(ValueError, "min_points = 3, must be >= 20"):
+            pcl_symmetry.scene(self.frame, min_points=3)
+
+    def test_a_database_names_what_is_in_a_frame(self):
+        database = pcl_symmetry.Database(":memory:")
+        database.build({"first": box((0.3, 0.3, 0.25)), "second": box((0.25, 0.2, 0.15)), "bar": bar()})
+        self.assertEqual(database.names, ["bar", "first", "second"])
+        recognized = database.recognize(self.frame, indices=self.labels == 1, min_confidence=0.0)
+        self.assertEqual(recognized[0].name, "first")
+        self.assertEqual(len(database.match(np.where((self.labels == 1)[..., None], self.frame, np.nan))), 3)
+
+
+class Meshes(unittest.TestCase):
+    def test_answers_index_what_was_given(self):
+        mesh = bar()
+        self.assertEqual(pcl_symmetry.segment(mesh).shape, (len(mesh.faces),))
+        plane = pcl_symmetry.planes(mesh)[0]
+        self.assertEqual(len(plane.pairs(mesh)[0]), len(mesh.vertices))
+        self.assertEqual(pcl_symmetry.local_symmetry(mesh, 1.0).shape, (len(mesh.vertices),))
+        vertices, faces = bumped(40, 80, 0.0, 0.5)
+        half = Mesh(vertices[vertices[:, 0] > -0.2], [(0, 1, 2)])
+        _, rows = pcl_symmetry.complete(half, pcl_symmetry.ReflectionPlane((1, 0, 0), 0.0), viewpoint=None)
+        self.assertTrue(100 < max(rows) < len(half.vertices))
+        found = pcl_symmetry.planes(mesh)
+        self.assertEqual((found.samples.shape, found.point_support(0).shape), ((10_000, 3), (10_000,)))
+        self.assertIn("plane 3", found.show(mesh).html)
+        self.assertEqual(pcl_symmetry.sample_mesh(mesh).shape, (10_000, 3))
+
+    def test_of_open3d_pass_everywhere(self):
+        try:
+            import matplotlib
+            import open3d
+        except ImportError:
+            self.skipTest("Open3D or matplotlib is not installed (Debian packages python3-open3d, python3-matplotlib)")
+        matplotlib.use("Agg")
+        points = box().astype(float)
+        plain = pcl_symmetry.planes(points)
+        cloud = open3d.geometry.PointCloud(open3d.utility.Vector3dVector(points))
+        mesh = open3d.geometry.TriangleMesh.create_box(1.0, 2.0, 3.0)
+        objects = {"cloud": cloud, "mesh": mesh}
+        if hasattr(open3d, "t"):
+            objects["tensor cloud"] = open3d.t.geometry.PointCloud.from_legacy(cloud)
+            objects["tensor mesh"] = open3d.t.geometry.TriangleMesh.from_legacy(mesh)
+        for name, each in objects.items():
+            with self.subTest(name):
+                found = pcl_symmetry.planes(each)
+                self.assertEqual(len(found), 3)
+                if name == "cloud":
+                    self.assertEqual([p.coefficients.tolist() for p in found], [p.coefficients.tolist() for p in plain])
+                self.assertIn("plane 3", found.show(each).html)
+                found.plot(each)
+                pcl_symmetry.frame(each).plot(each)
+                self.assertEqual(pcl_symmetry.rotations(each).name, "D2")
+                pcl_symmetry.segment(each)
+                pcl_symmetry.describe(each)
+                found[0].pairs(each)
+                pcl_symmetry.symmetrize(each, found[0])
+                if has_pcl():
+                    report = pcl_symmetry.Database(":memory:").build({name: each})
+                    self.assertEqual((report.num_added, report.failures), (1, []))
+
+
+class Answers(unittest.TestCase):
+    def test_are_false_where_there_is_no_symmetry(self):
+        """Noise of half of the tolerance beside a bump: the plane may be one."""
+        random = np.random.default_rng(3)
+        blob = random.normal(size=(4000, 3))
+        blob /= np.linalg.norm(blob, axis=1, keepdims=True)
+        blob *= 1 + 0.3 * np.sin(3 * blob @ (1, 2, 0.5))[:, None] + 0.2 * blob[:, :1] * blob[:, 1:2]
+        found = pcl_symmetry.planes(blob)
+        self.assertFalse(found, found)
+        self.assertEqual({plane.kind for plane in found.possible} - {"possible"}, set())
+        every = pcl_symmetry.planes(blob, approximate=True)
+        self.assertFalse(every)
+        self.assertTrue(every.approximate)
+        plane = every.approximate[0]
+        with self.assertRaisesRegex(ValueError, "plane.kind = .*, must be symmetry or possible"):
+            pcl_symmetry.complete(blob, plane)
+        pcl_symmetry.complete(blob, pcl_symmetry.ReflectionPlane(plane.normal, plane.offset))
+        self.assertEqual(json.loads(every.to_json())["planes"], [])
+
+    def test_cannot_be_written_into(self):
+        found = pcl_symmetry.planes(box())
+        arrays = [found[0].normal, found._rows, pcl_symmetry.frame(box()).axes, pcl_symmetry.ReflectionPlane((1, 0, 0), 1).normal]
+        for array in arrays:
+            with self.assertRaisesRegex(ValueError, "read-only"):
+                array[...] = 0
+
+    def test_flags_of_other_inputs_are_refused(self):
+        volume = np.random.default_rng(1).random((8, 8, 8))
+        for arguments in (
+            dict(volume=volume, viewpoint=(0, 0, 5)),
+            dict(volume=volume, evidence=True),
+            dict(points=box(), levels=(0, 1)),
+        ):
+            with self.assertRaisesRegex(ValueError, "must be left out"):
+                pcl_symmetry.planes(**arguments)
+
+
+class LongCalls(unittest.TestCase):
+    CALLS = {
+        "local_symmetry": lambda s, p: s.local_symmetry(p, 1.0),
+        "transform": lambda s, p: [s.transform(p, (96, 96, 96), method="rotational", seed=i) for i in range(99)],
+        "planes": lambda s, p: [s.planes(p, seed=i) for i in range(999)],
+        "rotations": lambda s, p: [s.rotations(p, seed=i) for i in range(999)],
+        "segment": lambda s, p: [s.segment(p, seed=i) for i in range(999)],
+        "descriptors": lambda s, p: [s.descriptors(p, seed=i) for i in range(999)],
+        "pairs": lambda s, p: [s.ReflectionPlane((1, 0.1, 0), 0).pairs(p) for i in range(999)],
+    }
+
+    def seconds_to_stop(self, call):
+        sent = []
+
+        def interrupt():
+            time.sleep(1.0)
+            sent.append(time.monotonic())
+            os.kill(os.getpid(), signal.SIGINT)
+
+        threading.Thread(target=interrupt).start()
+        with self.assertRaises(KeyboardInterrupt):
+            call()
+        return time.monotonic() - sent[0]
+
+    def test_end_with_ctrl_c(self):
+        points = box(num_points=60_000)
+        for name, call in self.CALLS.items():
+            seconds = self.seconds_to_stop(lambda: call(pcl_symmetry, points))
+            print(f"{name} ended after {seconds:.2f} s")
+            self.assertLess(seconds, 2.0, name)  # four times the limit on an idle machine
+
+    @unittest.skipUnless(has_pcl(), "the module was built without PCL")
+    def test_keep_what_they_built(self):
+        with tempfile.TemporaryDirectory() as folder:
+            path = Path(folder) / "models.db"
+            models = {f"{i:04}": box((1, 0.5 + 0.001 * i, 0.3), 20_000, i) for i in range(400)}
+            with pcl_symmetry.Database(path, create=True) as database:
+                self.seconds_to_stop(lambda: database.build(models))
+                stored = database.names
+            self.assertTrue(0 < len(stored) < len(models), len(stored))
+            with pcl_symmetry.Database(path) as database:
+                self.assertEqual(database.names, stored)
+                self.assertEqual(len(database.match(models[stored[0]], 1)), 1)
+                few = {name: models[name] for name in list(models)[: len(stored) + 2]}
+                self.assertEqual(database.build(few).failures, [])
+
+    def test_tell_their_progress(self):
+        shares = []
+        pcl_symmetry.local_symmetry(box(num_points=4000), 1.0, progress=shares.append)
+        self.assertTrue(shares and all(0 <= share <= 1 for share in shares))
+        self.assertEqual(sorted(shares), shares)
+        with self.assertRaises(ZeroDivisionError):
+            pcl_symmetry.local_symmetry(box(num_points=4000), 1.0, progress=lambda share: 1 / 0)
+        with self.assertRaisesRegex(TypeError, "progress = str"):
+            pcl_symmetry.planes(box(), progress="yes")
+        pcl_symmetry.planes(box(), progress=True)
+
+
+if __name__ == "__main__":
+    warnings.simplefilter("ignore", RuntimeWarning)
+    unittest.main()
