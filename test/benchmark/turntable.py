@@ -12,6 +12,7 @@ import time
 from pathlib import Path
 
 import numpy as np
+import open3d
 import pcl_symmetry
 
 import bench
@@ -25,7 +26,7 @@ if not (arguments.folder / "index.json").exists():
 scans = json.loads((arguments.folder / "index.json").read_text())["scans"]
 for name in arguments.objects:
     names = [scan for scan in scans if scan.startswith(name + "_")]
-    clouds = [bench.load_points(arguments.folder / scans[scan]["file"]) for scan in names]
+    clouds = [np.asarray(open3d.io.read_point_cloud(str(arguments.folder / scans[scan]["file"])).points) for scan in names]
     poses = [np.array(scans[scan]["T_object_scan"]) for scan in names]
     start = time.process_time()
     found = pcl_symmetry.register_all(clouds)

@@ -67,7 +67,8 @@ TEST(RegisterAll, BringsScansFromAllAroundTogether) {
   ASSERT_EQ(merged.cloud.size(), merged.scans.size());
   EXPECT_LT(merged.cloud.size(), num_points) << "thinned where scans overlap";
   const Points model = surfaceOf(armchair(), 50'000);
-  const Points points = (table.T_scan_object[0].inverse().cast<float>() * merged.cloud.getMatrixXfMap(3, 4, 0)).eval();
+  const Points found = merged.cloud.getMatrixXfMap(3, 4, 0);
+  const Points points = table.T_scan_object[0].inverse().cast<float>() * found;
   for (Eigen::Index i = 0; i < points.cols(); i += 500)
     EXPECT_LT(std::sqrt((model.colwise() - points.col(i)).colwise().squaredNorm().minCoeff()), 0.04f) << i;
 }
@@ -100,7 +101,8 @@ TEST(RegisterAll, TakesTheSameScanTwiceAndOneAlone) {
 
 TEST(RegisterAll, LeavesOutWhatHoldsNoAnswer) {
   Turntable table = turntable(12);
-  const auto few = toCloud<pcl::PointXYZ>(table.scans[0]->getMatrixXfMap(3, 4, 0).leftCols(30));
+  const Points all = table.scans[0]->getMatrixXfMap(3, 4, 0);
+  const auto few = toCloud<pcl::PointXYZ>(all.leftCols(30).eval());
   const auto empty = pcl::make_shared<Cloud>();
   const RegisteredScans found = mergeScans<pcl::PointXYZ>({few, table.scans[0], empty, table.scans[1]}).registration;
   EXPECT_NE(found.scans[0].left_out, "");
