@@ -54,10 +54,10 @@ find_planes() {
 }
 
 say "Packages"
-bash cmake/install_dependencies.sh
+bash cmake/install_dependencies.sh --build-only
 
 say "Tools"
-cmake --preset release --log-level=WARNING >/dev/null
+cmake --preset release -DBUILD_TESTING=OFF --log-level=WARNING >/dev/null
 cmake --build build --parallel "$(nproc)" --target pcl_symmetry_scan pcl_symmetry_planes
 
 if [[ -n $file ]]; then

@@ -2,26 +2,31 @@
 # Installs the Debian packages that build, tests and demo need; without network and at once where all are installed.
 set -euo pipefail
 
-packages=(
-  build-essential cmake ninja-build ccache pkg-config
+to_build=(
+  build-essential cmake ninja-build pkg-config
   libpcl-dev libflann-dev libeigen3-dev libboost-dev                      # the library,
   libsqlite3-dev zlib1g-dev                                               # its database of models
   libboost-filesystem-dev libboost-program-options-dev nlohmann-json3-dev # the tools: options, files, reports,
   libassimp-dev libembree-dev                                             # meshes, the virtual scanner,
   libvtk9-dev python3-vtk9 libx11-dev xvfb xauth libgl1-mesa-dri          # pictures, also without a screen
-  pybind11-dev python3-dev python3-numpy mypy                             # the Python module and its types,
-  python3-dask python3-distributed                                        # work that several machines share,
+  pybind11-dev python3-dev python3-numpy                                  # the Python module
+)
+to_develop=(
+  ccache mypy python3-dask python3-distributed                            # types, work that several machines share,
   python3-scipy python3-sklearn python3-matplotlib python3-open3d         # what measures: fits, figures, distances to meshes
-  help2man file doxygen                                                   # manual pages, Debian packages, the reference of the classes
+  help2man file doxygen chromium                                          # manual pages, Debian packages, reference, pages of results
   libgtest-dev libgmock-dev libbenchmark-dev python3-jsonschema           # tests and benchmarks
 )
+packages=("${to_build[@]}" "${to_develop[@]}")
 
 usage() {
   cat <<END
-usage: bash cmake/install_dependencies.sh [-h]
+usage: bash cmake/install_dependencies.sh [-h] [--build-only]
 
 Installs what is missing of these packages with apt-get, as root or through sudo:
-$(printf '  %s\n' "${packages[@]}")
+$(printf '  %s\n' "${to_build[@]}")
+and without --build-only, for tests, measurements and pages:
+$(printf '  %s\n' "${to_develop[@]}")
 END
 }
 
@@ -53,6 +58,7 @@ apt() {
 
 case "${1-}" in
   -h | --help) usage; exit 0 ;;
+  --build-only) packages=("${to_build[@]}") ;;
   "") ;;
   *) usage >&2; exit 2 ;;
 esac

@@ -2,6 +2,7 @@
 
 usage: python3 apps/gallery/drawings.py PICTURE OUT.png [FILE ...]
 
+  first_look MESH      a scan, its plane of symmetry, and the completed scan (the page that is read first)
   frames               mugs and mailboxes with their axes, by center of mass and PCA, and by symmetry (Figure 10)
   scan_centers MESH    eight scans of a mesh, and the centers found in each, by symmetry and by mass (Figure 11)
   medial_axis CONTOUR… the medial axes of planar shapes, ASCII PCD (the other half of Figure 3)
@@ -31,8 +32,8 @@ AWAY_FROM_HANDLE = (-1, 0, 0.3)  # a little from above, as a camera looks at a t
 NUM_POINTS = 10000
 
 
-def scan(mesh, direction):
-    """A scan by the tool from a direction: points (N, 3) and the viewpoint (3,)."""
+def scan(mesh, direction, organized=False):
+    """A scan by the tool from a direction: points (N, 3), or its pixels (H, W, 3), and the viewpoint (3,)."""
     import open3d
 
     with tempfile.TemporaryDirectory() as folder:
@@ -44,8 +45,11 @@ def scan(mesh, direction):
         subprocess.run(["pcl_symmetry_scan", mesh, out, f"-direction={view}", "-quiet"], check=True)
         header = Path(out).read_bytes().split(b"DATA", 1)[0].decode()
         points = np.asarray(open3d.io.read_point_cloud(out).points)
+        if organized:
+            points = points.reshape(*(int(header.split(word)[1].split()[0]) for word in ("HEIGHT", "WIDTH")), 3)
     viewpoint = next(line.split()[1:4] for line in header.splitlines() if line.startswith("VIEWPOINT"))
-    return points[np.isfinite(points).all(axis=1)].astype(np.float32), np.array(viewpoint, float)
+    points = points if organized else points[np.isfinite(points).all(axis=1)]
+    return points.astype(np.float32), np.array(viewpoint, float)
 
 
 def load_mesh(path):
@@ -213,6 +217,31 @@ def failure_frame(out, path):
     sheet.save(out)
 
 
+def first_look(out, path):
+    """A scan from one side, the plane that is found in it, and what its reflection adds."""
+    pixels, _ = scan(path, (1, 1, 1), organized=True)
+    whole, found = sampled(load_mesh(path)), pcl_symmetry.planes(pixels)
+    added, _ = pcl_symmetry.complete(pixels, found[0])
+    points = pixels[np.isfinite(pixels).all(axis=2)]
+    sheet = Sheet(1, 3, (-0.75, 1.15, 0.4), up="y", size=3.4)
+    sheet.figure.set_size_inches(10.2, 3.0)
+    sheet.dots(sheet.panel("a scan from one side", whole), points, "#6B7A99")
+    axes = sheet.panel(f"its plane of symmetry, confidence {found[0].confidence:.2f}", whole)
+    sheet.dots(axes, points, "#6B7A99")
+    reach = np.ptp(whole, axis=0).max() * 0.46
+    along = np.cross(found[0].normal, [0, 1, 0])
+    up = np.cross(along, found[0].normal)
+    middle = whole.mean(axis=0) - found[0].distance(whole.mean(axis=0)) * found[0].normal
+    corners = [middle + reach * (a * along / np.linalg.norm(along) + 0.66 * b * up / np.linalg.norm(up)) for a, b in ((-1, -1), (1, -1), (1, 1), (-1, 1))]
+    axes.plot_trisurf(*sheet.upright(np.array(corners)).T, triangles=[(0, 1, 2), (0, 2, 3)], color=ORANGE, alpha=0.3)
+    axes = sheet.panel("completed by its reflection (blue)", whole)
+    sheet.dots(axes, points, "#6B7A99")
+    sheet.dots(axes, added, BLUE)
+    for axes in sheet.figure.axes:
+        axes.set_box_aspect((1, 1, 1), zoom=1.6)
+    sheet.save(out)
+
+
 def failure_completion(out, path):
     """The other half of a hand is not that of its best plane."""
     whole = sampled(load_mesh(path))
@@ -309,7 +338,7 @@ def failure_volume(out):
 
 
 if __name__ == "__main__":
-    pictures = {f.__name__: f for f in (frames, scan_centers, medial_axis, volume, failure_frame, failure_completion,
+    pictures = {f.__name__: f for f in (first_look, frames, scan_centers, medial_axis, volume, failure_frame, failure_completion,
                                         failure_pose, failure_name, failure_rotations, failure_volume)}
     if len(sys.argv) < 3 or sys.argv[1] not in pictures:
         print(__doc__)

@@ -1,7 +1,9 @@
 """What a depth camera needs of the Python module: organized arrays, parts of scenes, scenes, and calls that can be ended."""
 
+import importlib.util
 import json
 import os
+import shutil
 import signal
 import subprocess
 import sys
@@ -364,6 +366,64 @@ class LongCalls(unittest.TestCase):
         with self.assertRaisesRegex(TypeError, "progress = str"):
             pcl_symmetry.planes(box(), progress="yes")
         pcl_symmetry.planes(box(), progress=True)
+
+
+class Pages(unittest.TestCase):
+    def picture(self, page, folder, size=(700, 500)):
+        """(H, W, 3) pixels of a page in a browser, in [0, 1]."""
+        import matplotlib.image
+
+        path = Path(folder) / "page.html"
+        path.write_text(page)
+        flags = ["--headless", "--no-sandbox", "--use-gl=swiftshader", "--enable-unsafe-swiftshader", "--hide-scrollbars"]
+        shot = [f"--window-size={size[0]},{size[1]}", "--virtual-time-budget=8000", f"--screenshot={folder}/page.png", f"file://{path}"]
+        subprocess.run(["chromium", *flags, f"--user-data-dir={folder}/user", *shot], check=True, capture_output=True, timeout=300)
+        return matplotlib.image.imread(f"{folder}/page.png")[..., :3]
+
+    def test_show_support_in_colors(self):
+        """Yellow where a point has a counterpart, with and without normals; an axis is seen in front of what hides it."""
+        if not shutil.which("chromium") or not importlib.util.find_spec("matplotlib"):
+            self.skipTest("a browser or matplotlib is not installed (Debian packages chromium, python3-matplotlib)")
+        points = box()
+        random = np.random.default_rng(1)
+        angle, height = random.uniform(0, 2 * np.pi, 20_000), random.uniform(0, 1, 20_000)
+        can = np.stack([0.3 * np.cos(angle), 0.3 * np.sin(angle), height], axis=1)
+        pages = {"module": pcl_symmetry.planes(points).show(points).html}
+        with tempfile.TemporaryDirectory() as folder:
+            if os.environ.get("TOOLS"):
+                write_pcd(Path(folder) / "box.pcd", points)
+                tool = Path(os.environ["TOOLS"]) / "pcl_symmetry_planes"
+                subprocess.run([tool, "box.pcd", "-html", "box.html", "-quiet"], cwd=folder, check=True, capture_output=True)
+                pages["tool"] = (Path(folder) / "box.html").read_text()
+            for name, page in pages.items():
+                for size in ((700, 500), (420, 700)):
+                    red, green, blue = np.moveaxis(self.picture(page, folder, size), 2, 0)
+                    yellow = ((red > 0.55) & (green > 0.45) & (blue < 0.6 * red)).sum()
+                    black = ((red < 0.1) & (green < 0.1) & (blue < 0.1)).sum()
+                    self.assertGreater(yellow, 5000, (name, size))
+                    self.assertLess(black, 0.1 * yellow, (name, size))
+            red, green, blue = np.moveaxis(self.picture(pcl_symmetry.planes(can).show(can).html, folder), 2, 0)
+            rod = (red > 0.6) & (green < 0.6 * red) & (blue < 0.4 * red)
+            self.assertGreater(rod[:, : rod.shape[1] // 2].any(axis=1).sum(), 100, "rows of pixels that show the axis")
+
+
+class Example(unittest.TestCase):
+    def test_of_typical_use_runs_and_has_types(self):
+        example = Path(__file__).resolve().parents[2] / "apps/examples/14_depth_camera.py"
+        package = Path(pcl_symmetry.__file__).parent
+        with tempfile.TemporaryDirectory() as folder:
+            if has_pcl():
+                ran = subprocess.run([sys.executable, "-B", example, folder], capture_output=True, text=True)
+                self.assertEqual(ran.returncode, 0, ran.stderr)
+                self.assertIn("3 models stored, 3 in all\nobject 1: ", ran.stdout)
+                self.assertIn("is large, confidence", ran.stdout)
+                self.assertLessEqual({"models.db", "object_1.npy", "scene.html"}, set(os.listdir(folder)))
+            if not importlib.util.find_spec("mypy"):
+                self.skipTest("mypy is not installed (Debian package mypy)")
+            path = {} if package.parent.name.endswith("-packages") else {"MYPYPATH": str(package.parent)}
+            command = [sys.executable, "-m", "mypy", "--strict", "--ignore-missing-imports", "--cache-dir", folder, example]
+            checked = subprocess.run(command, env={**os.environ, **path}, capture_output=True, text=True)
+            self.assertEqual(checked.returncode, 0, checked.stdout)
 
 
 if __name__ == "__main__":

@@ -276,7 +276,7 @@ class Planes(Detection):
         flat = box(4000, mirrored=True, seed=22, half=(1, 0.6, 0)).moved(random_pose(22))
         found = pcl_symmetry.planes(flat.cloud)
         self.assert_consistent(found, 4000)
-        self.assert_planes(found, flat, 0.001 * DEGREE, 1e-5)
+        self.assert_planes(found.every, flat, 0.001 * DEGREE, 1e-5)
         self.assertLess(abs(np.c_[flat.points, np.ones(4000)] @ found.flat).max(), 1e-4)
         self.assertIsNotNone(pcl_symmetry.planes(prism(24, 4000, seed=22, half_height=0.002).moved(random_pose(22)).cloud).flat)
         self.assertIsNone(pcl_symmetry.planes(box(3000, seed=23).moved(random_pose(23)).cloud).flat)

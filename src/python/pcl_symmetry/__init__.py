@@ -6,6 +6,23 @@
 >>> found = pcl_symmetry.planes((cloud * (1.0, 0.8, 0.5)).astype("float32"))
 >>> [plane.kind for plane in found]
 ['symmetry', 'symmetry', 'symmetry']
+
+Each has a help of its own, such as help(pcl_symmetry.planes):
+
+planes()               planes, axes and centers of a cloud, mesh, scan, depth image or volume
+scene()                the objects of one frame of a depth camera, each with its symmetry and completion
+from_depth()           points (H, W, 3) of a depth image
+frame()                center of symmetry and principal symmetry axes
+rotations()            the group of rotations that map an object onto itself
+register()             the pose of a scan relative to a model, without a guess
+complete()             what the reflection of a scan adds
+symmetrize()           a shape with equal halves, and its asymmetry
+segment()              parts of a cloud or mesh
+Database               models in a file: similar ones, and the one that a scan shows
+transform()            the symmetry of all planes; local_symmetry(): of each point
+viewpoints()           views that show little repetition
+describe()             signatures of a shape; descriptors(), descriptor_distance(): those of the paper
+sample_mesh()          points on a mesh
 """
 
 import importlib.util
@@ -102,7 +119,7 @@ __all__ = [
 # The libraries of PCL take longer to load than the rest: what needs them is loaded when it is first used. It is missing where
 # the library was built without PCL.
 if importlib.util.find_spec("._recognition", __name__):
-    __all__[3:3] = ["scene", "register", "register_all", "Database"]
+    __all__ += ["scene", "register", "register_all", "Database"]
 
 
 def __getattr__(name: str) -> Any:

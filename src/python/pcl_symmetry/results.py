@@ -363,7 +363,7 @@ class View(Result):
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Planes(Result):
-    """What planes() found; behaves as the list of the symmetries, so that it is false where there is none."""
+    """What planes() found; behaves as the list of the planes of symmetry. It is false where there is no symmetry at all."""
 
     planes: List[Plane]
     """The symmetries, best first; with as_published all planes, which nothing judged."""
@@ -457,6 +457,9 @@ class Planes(Result):
 
     def __len__(self) -> int:
         return len(self.planes)
+
+    def __bool__(self) -> bool:
+        return bool(self.planes or self.axes or self.centers)
 
     def __iter__(self) -> Iterator[Plane]:
         return iter(self.planes)

@@ -19,7 +19,7 @@ int main(int argc, char** argv) {
     scans.push_back(scan);
   }
   if (scans.empty()) {
-    std::cerr << "usage: 14_turntable SCAN.pcd [SCAN.pcd ...] MERGED.pcd\n";
+    std::cerr << "usage: 15_turntable SCAN.pcd [SCAN.pcd ...] MERGED.pcd\n";
     return 2;
   }
   auto merged = pcl_symmetry::mergeScans<pcl::PointXYZ>(scans);
