@@ -80,8 +80,8 @@ CommandLine& CommandLine::positional(const std::string& name, std::optional<std:
 }
 
 CommandLine& CommandLine::positionals(const std::string& name, std::vector<std::string>& values,
-                                      const std::string& help) {
-  positionals_.push_back({name, help, true, [&values](const std::string& text) { values.push_back(text); }, true});
+                                      const std::string& help, bool required) {
+  positionals_.push_back({name, help, required, [&values](const std::string& text) { values.push_back(text); }, true});
   return *this;
 }
 
@@ -292,7 +292,8 @@ std::string CommandLine::usage() const {
   std::ostringstream text;
   text << summary_ << "\n\nUsage: " << tool_;
   for (const Positional& argument : positionals_) {
-    text << (argument.required ? " " + argument.name : " [" + argument.name + "]");
+    if (argument.required) text << " " << argument.name;
+    if (!argument.required && !argument.repeated) text << " [" << argument.name << "]";
     if (argument.repeated) text << " [" << argument.name << " ...]";
   }
   text << " [-flag value]\n\n";

@@ -88,8 +88,9 @@ public:
   /// Arguments without a flag, in the order of declaration; required ones come first.
   CommandLine& positional(const std::string& name, std::string& value, const std::string& help);
   CommandLine& positional(const std::string& name, std::optional<std::string>& value, const std::string& help);
-  /// One or more, to the end of the command line; declared last.
-  CommandLine& positionals(const std::string& name, std::vector<std::string>& values, const std::string& help);
+  /// All that follow, to the end of the command line, at least one where they are required; declared last.
+  CommandLine& positionals(const std::string& name, std::vector<std::string>& values, const std::string& help,
+                           bool required = true);
 
   CommandLine& flag(const std::string& name, bool& value, const std::string& help);
   CommandLine& text(const std::string& name, const std::string& placeholder, std::optional<std::string>& value,

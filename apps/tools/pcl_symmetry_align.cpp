@@ -1,10 +1,11 @@
-/// The canonical frame of a cloud by its symmetry, or the transform that brings it to another one; completion, and
-/// symmetrized shapes with their asymmetry.
+/// The canonical frame of a cloud by its symmetry, or the transform that brings it to another one; many scans of an
+/// object as one cloud; completion, and symmetrized shapes with their asymmetry.
 #include <pcl/common/io.h>
 #include <pcl/common/transforms.h>
 
 #include <algorithm>
 #include <cmath>
+#include <exception>
 #include <nlohmann/json.hpp>
 #include <numeric>
 #include <optional>
@@ -15,6 +16,7 @@
 
 #include "command_line/command_line.h"
 #include "command_line/console.h"
+#include "command_line/input_files.h"
 #include "command_line/run_on_files.h"
 #include "command_line/tool_errors.h"
 #include "io/answers.h"
@@ -26,6 +28,7 @@
 #include "io/shape_output.h"
 #include "pcl_symmetry/completion.h"
 #include "pcl_symmetry/mesh_sampling.h"
+#include "pcl_symmetry/register_all.h"
 #include "pcl_symmetry/symmetrization.h"
 #include "pcl_symmetry/symmetry_alignment.h"
 #include "pcl_symmetry/symmetry_maxima_refinement.h"
@@ -41,7 +44,8 @@ using namespace pcl_symmetry::apps;
 struct AlignOptions {
   BatchOptions batch;
   std::string input;
-  std::optional<std::string> output, target, html_path, png_path, landmarks;
+  std::optional<std::string> output, target, merge, html_path, png_path, landmarks;
+  std::vector<std::string> more;
   std::string symmetrize = "none";
   bool complete = false, any_plane = false, as_published = false, cut = false;
   CommonOptions common;
@@ -56,6 +60,13 @@ CommandLine commandLine(AlignOptions& options) {
   options.batch.outputs = {&options.output, &options.html_path, &options.png_path};
   line.positional("input", options.input, kOneOrManyInputs)
       .positional("output", options.output, ".pcd or .ply: the cloud after the transform")
+      .positionals("more", options.more, "with -merge, where all arguments are scans", false)
+      .text(
+          "merge", "FILE", options.merge,
+          "bring the arguments, many scans of one object, together without a guess, and write them as one cloud, .pcd "
+          "or .ply, in the frame of the first one, thinned where they overlap; the field scan of a point is the index "
+          "of its file. Scans that fit no others are left out and named. Other flags: -complete, -viewpoint, which is "
+          "the same in the frame of each scan, and outputs")
       .text("target", "FILE", options.target, "cloud or mesh that the input is brought to")
       .text("html", "FILE", options.html_path,
             "page that shows the input in the target, or its center and axes, for any browser, without network")
@@ -470,10 +481,143 @@ void analyze(const AlignOptions& options, FileJob& job) {
   if (options.output) save(console, input.shape, std::move(fields), motion.transform, job.output(*options.output));
 }
 
+/// The files of a command with -merge, in the order of their arguments.
+std::vector<InputShape> loadScans(const Console& console, const AlignOptions& options) {
+  std::vector<std::string> arguments{options.input};
+  if (options.output) arguments.push_back(*options.output);
+  arguments.insert(arguments.end(), options.more.begin(), options.more.end());
+  std::vector<InputShape> inputs;
+  for (const InputFile& file : inputFiles(arguments)) inputs.push_back(loadInput(console, file.path, options.common));
+  return inputs;
+}
+
+nlohmann::json describe(const std::vector<InputShape>& inputs, const RegisteredScans& registered,
+                        const std::vector<Eigen::Isometry3d>& motions) {
+  nlohmann::json json{{"scans", nlohmann::json::array()},
+                      {"pairs", nlohmann::json::array()},
+                      {"resolution", registered.resolution},
+                      {"timing_ms", timingJson(registered.timing_ms)}};
+  for (std::size_t k = 0; k < inputs.size(); ++k) {
+    nlohmann::json scan{{"file", inputs[k].path}};
+    if (registered.scans[k].left_out.empty())
+      scan["transform"] = rowMajor(motions[k]);
+    else
+      scan["left_out"] = registered.scans[k].left_out;
+    json["scans"].push_back(scan);
+  }
+  for (const ScanPair& pair : registered.pairs)
+    json["pairs"].push_back({{"source", inputs[pair.source].path},
+                             {"target", inputs[pair.target].path},
+                             {"overlap", pair.overlap},
+                             {"used", pair.used}});
+  return json;
+}
+
+/// Scans of one object as one cloud.
+struct Merged {
+  InputShape shape;            ///< its points in the frame of the first scan that is kept, minus its shift
+  pcl::PCLPointCloud2 fields;  ///< those of the scans and the index of each point's scan
+  std::vector<int> scans;      ///< of each point
+};
+
+Merged merged(const std::vector<InputShape>& inputs, const std::vector<ObjectScan>& scans,
+              const std::vector<pcl::Indices>& indices, const RegisteredScans& registered,
+              const std::vector<Eigen::Isometry3d>& motions, std::size_t first) {
+  Merged merged;
+  merged.shape.shape.points = merged.shape.points = pcl::make_shared<pcl::PointCloud<pcl::PointXYZ>>();
+  merged.shape.shape.shift = inputs[first].shift();
+  std::vector<pcl::Indices> kept(inputs.size());
+  for (const ScanPoint& point : registered.mergedPoints(scans))
+    kept[point.scan].push_back(indices[point.scan][point.index]);
+  for (std::size_t k = 0; k < inputs.size(); ++k) {
+    if (!registered.scans[k].left_out.empty()) continue;
+    pcl::PointCloud<pcl::PointXYZ> moved;
+    pcl::transformPointCloud(*inputs[k].points, kept[k], moved, registered.scans[k].T_first_scan.matrix());
+    *merged.shape.points += moved;
+    merged.scans.resize(merged.shape.points->size(), static_cast<int>(k));
+    pcl::PCLPointCloud2 part;
+    pcl::copyPointCloud(inputs[k].fields(), kept[k], part);
+    movePoints(part, Eigen::Affine3d(motions[k].matrix()));
+    part = withFields(part, {"scan"}, {std::vector<float>(kept[k].size(), static_cast<float>(k))});
+    if (k == first)
+      merged.fields = part;
+    else if (!pcl::concatenate(merged.fields, pcl::PCLPointCloud2(part), merged.fields))
+      throw InputError(inputs[k].path + ": has other fields than " + inputs[first].path);
+  }
+  return merged;
+}
+
+int mergeScans(const AlignOptions& options) {
+  const Console console(options.common.quiet);
+  checkCloudExtension(*options.merge);
+  for (const auto& output : {options.merge, options.html_path, options.png_path, options.common.json_path})
+    if (output) checkTarget(*output);
+  const std::vector<InputShape> inputs = loadScans(console, options);
+  std::vector<ObjectScan> scans;
+  std::vector<pcl::Indices> indices(inputs.size());
+  for (std::size_t k = 0; k < inputs.size(); ++k)
+    scans.push_back(namingFile(inputs[k].path, [&] {
+      return objectScan(*inputs[k].points, shifted(options.common.viewpoint, inputs[k].shift()), indices[k]);
+    }));
+  Step step(console, "Registering " + counted(inputs.size(), "scan"));
+  CloudRegistrationOptions registration;
+  registration.seed = options.common.librarySeed();
+  registration.num_threads = options.common.threads;
+  const RegisteredScans registered = registerAll(scans, registration);
+  std::size_t first = inputs.size(), num_kept = 0;
+  for (std::size_t k = inputs.size(); k-- > 0;) {
+    if (!registered.scans[k].left_out.empty()) continue;
+    first = k;
+    ++num_kept;
+  }
+  step.done(std::to_string(num_kept) + " kept");
+  if (num_kept == 0) throw InputError(inputs.front().path + ": " + registered.scans.front().left_out);
+  std::vector<Eigen::Isometry3d> motions;
+  std::string text;
+  for (std::size_t k = 0; k < inputs.size(); ++k) {
+    motions.push_back(shiftedBack(registered.scans[k].T_first_scan, inputs[k].shift(), inputs[first].shift()));
+    const std::string& reason = registered.scans[k].left_out;
+    text += inputs[k].path + ": " + (reason.empty() ? "kept" : "left out, " + reason) + "\n";
+  }
+  Merged cloud = merged(inputs, scans, indices, registered, motions, first);
+  cloud.shape.path = *options.merge;
+  nlohmann::json json = describe(inputs, registered, motions);
+  PicturePanel panel{"scans"};
+  panel.segments = cloud.scans;
+  PictureScene scene{cloud.shape.points, std::nullopt, {panel}};
+  std::exception_ptr incomplete;
+  if (options.complete) {
+    CommonOptions common = options.common;
+    common.viewpoint = {Viewpoint::Mode::None, Eigen::Vector3d::Zero()};
+    try {
+      const auto both = complete(console, cloud.shape, common, options.any_plane, cloud.fields, json["completed"]);
+      scene = sceneOf(both, cloud.shape.points->size(), "the scans (1) and what completes them (2)");
+    } catch (const InputError&) {
+      json.erase("completed");
+      incomplete = std::current_exception();
+    }
+  }
+  if (options.common.json_path)
+    writeText(*options.common.json_path, jsonText(json) + "\n");
+  else
+    writeText("-", text);
+  if (options.html_path) writePage(scene, {*options.merge, text}, *options.html_path);
+  if (options.png_path) renderPicture(scene, *options.png_path, 800, 600);
+  save(console, cloud.shape.shape, std::move(cloud.fields), Eigen::Isometry3d::Identity(), *options.merge);
+  if (incomplete) std::rethrow_exception(incomplete);
+  return 0;
+}
+
 int run(int argc, char** argv) {
   AlignOptions options;
   CommandLine line = commandLine(options);
   if (!line.parse(argc, argv)) return 0;
+  if (options.merge) {
+    for (const char* flag : {"target", "symmetrize", "cut", "landmarks", "as_published", "csv", "resume"})
+      if (line.given(flag)) throw UsageError(std::string("-merge and -") + flag + " exclude each other");
+    return mergeScans(options);
+  }
+  if (!options.more.empty()) throw UsageError("unexpected argument '" + options.more.front() + "' without -merge");
   if (options.output) checkCloudExtension(*options.output);
   if (options.complete && options.symmetrize != "none")
     throw UsageError("-complete and -symmetrize exclude each other");

@@ -8,13 +8,16 @@
 #include <pybind11/stl.h>
 
 #include <exception>
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
+#include <tuple>
 #include <utility>
 #include <vector>
 
 #include "pcl_symmetry/impl/cloud_analysis.hpp"
+#include "pcl_symmetry/register_all.h"
 #include "pcl_symmetry/symmetry_database.h"
 #include "pcl_symmetry/symmetry_registration.h"
 #include "pcl_symmetry/symmetry_scene.h"
@@ -47,6 +50,38 @@ CloudRegistration registerPoints(const AnyArray& source, const AnyArray& target,
   if (around) options.around = PoseNeighborhood{around->first, around->second};
   return registerClouds(source_input.points(), source_seen, target_input.points(), target_seen, T_target_source,
                         options);
+}
+
+/// The scans in one frame, and the rows of their merged points as pairs (scan, row).
+std::pair<RegisteredScans, py::array_t<int>> registerAllPoints(const std::vector<AnyArray>& clouds,
+                                                               const std::vector<py::object>& viewpoints,
+                                                               std::uint64_t seed, int threads) {
+  constexpr std::size_t judged = 10'000;  // points that tell what the scanner saw
+  std::vector<ObjectScan> scans;
+  std::vector<std::vector<std::size_t>> rows;
+  for (std::size_t k = 0; k < clouds.size(); ++k) {
+    const std::string name = "clouds[" + std::to_string(k) + "]";
+    const InputPoints all(name.c_str(), clouds[k], 0, seed), few(name.c_str(), clouds[k], judged, seed);
+    scans.push_back({all.points(), few.points().cols() > 0 ? seenFrom(few.points(), viewpoints[k]) : std::nullopt});
+    rows.push_back(all.rows());
+  }
+  CloudRegistrationOptions options;
+  options.seed = seed;
+  options.num_threads = threads;
+  RegisteredScans found;
+  std::vector<ScanPoint> merged;
+  {
+    const Computing computing;
+    found = registerAll(scans, options);
+    merged = found.mergedPoints(scans);
+  }
+  py::array_t<int> of_points({static_cast<py::ssize_t>(merged.size()), py::ssize_t{2}});
+  for (std::size_t i = 0; i < merged.size(); ++i) {
+    const auto& of = rows[merged[i].scan];
+    of_points.mutable_at(i, 0) = merged[i].scan;
+    of_points.mutable_at(i, 1) = of.empty() ? merged[i].index : static_cast<int>(of[merged[i].index]);
+  }
+  return {std::move(found), std::move(of_points)};
 }
 
 /// \param points (N, 3), without rows that are not finite, or (H, W, 3), as it is: rows and columns of a camera.
@@ -216,6 +251,30 @@ void addRegistration(py::module_& module) {
                                return poses;
                              })
       .def_property_readonly("covariance", [](const CloudRegistration& r) { return r.covariance; });
+  py::class_<RegisteredScans>(module, "RegisteredScans")
+      .def_property_readonly("transforms",
+                             [](const RegisteredScans& r) {
+                               std::vector<std::optional<RowMajor4>> transforms;
+                               for (const ScanPose& scan : r.scans)
+                                 transforms.push_back(scan.left_out.empty()
+                                                          ? std::optional(RowMajor4(scan.T_first_scan.matrix()))
+                                                          : std::nullopt);
+                               return transforms;
+                             })
+      .def_property_readonly("left_out",
+                             [](const RegisteredScans& r) {
+                               std::map<int, std::string> left_out;
+                               for (std::size_t k = 0; k < r.scans.size(); ++k)
+                                 if (!r.scans[k].left_out.empty()) left_out[static_cast<int>(k)] = r.scans[k].left_out;
+                               return left_out;
+                             })
+      .def_property_readonly("pairs", [](const RegisteredScans& r) {
+        std::vector<std::tuple<int, int, double, bool>> pairs;
+        for (const ScanPair& pair : r.pairs) pairs.emplace_back(pair.source, pair.target, pair.overlap, pair.used);
+        return pairs;
+      });
+  module.def("register_all", &registerAllPoints, py::arg("clouds"), py::arg("viewpoints"), py::arg("seed"),
+             py::arg("threads"));
   module.def("register", &registerPoints, py::arg("source"), py::arg("target"), py::arg("guess"), py::arg("around"),
              py::arg("source_viewpoint"), py::arg("target_viewpoint"), py::arg("seed"), py::arg("threads"));
 }

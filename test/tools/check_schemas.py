@@ -80,6 +80,7 @@ def main(apps, schemas):
         for tool, schema in (("align", "frame"), ("planes", "planes")):
             check.run([tool, at("scan.pcd"), *few, "-json", at("a.json")], schema)
         check.run(["align", at("scan.pcd"), *few, "-target", at("box.off"), "-json", at("a.json")], "pose")
+        check.run(["align", at("scan.pcd"), at("scan.pcd"), "-quiet", "-merge", at("all.pcd"), "-json", at("a.json")], "merged")
         check.run(["bop", at("box.off"), at("can.off"), "-quiet", "-json", at("a.json")], "models_info")
         turn = [0, -1, 0, 0, 1, 0, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1]
         axis = {"axis": [0, 0, 1], "offset": [0, 0, 0]}

@@ -62,6 +62,7 @@ from .results import (
     Profile,
     Recognized,
     ReflectionPlane,
+    RegisteredScans,
     Registration,
     RotationAxis,
     Rotations,
@@ -73,7 +74,7 @@ from .results import (
 )
 
 if TYPE_CHECKING:
-    from .database import Database, register, scene
+    from .database import Database, register, register_all, scene
 
 # Functions first: this is the order of help(pcl_symmetry).
 __all__ = [
@@ -110,6 +111,7 @@ __all__ = [
     "Support",
     "Junction",
     "Registration",
+    "RegisteredScans",
     "PoseScore",
     "PoseEvidence",
     "Match",
@@ -119,15 +121,15 @@ __all__ = [
 # The libraries of PCL take longer to load than the rest: what needs them is loaded when it is first used. It is missing where
 # the library was built without PCL.
 if importlib.util.find_spec("._recognition", __name__):
-    __all__ += ["scene", "register", "Database"]
+    __all__ += ["scene", "register", "register_all", "Database"]
 
 
 def __getattr__(name: str) -> Any:
-    if name not in ("Database", "register", "scene") or name not in __all__:
+    if name not in ("Database", "register", "register_all", "scene") or name not in __all__:
         raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
     from . import database
 
-    globals().update(Database=database.Database, register=database.register, scene=database.scene)
+    globals().update({each: getattr(database, each) for each in ("Database", "register", "register_all", "scene")})
     return globals()[name]
 
 

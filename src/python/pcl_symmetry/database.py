@@ -18,6 +18,7 @@ from .results import (
     PoseScore,
     Recognized,
     ReflectionPlane,
+    RegisteredScans,
     Registration,
     Scene,
     SceneObject,
@@ -84,6 +85,38 @@ def register(
         **_fields(found, "transform", "converged", "confidence", "reason", "covariance"),
     )
     return result if source_shift is None and target_shift is None else result._moved_between(s, t)
+
+
+def register_all(
+    clouds: Sequence[Any], *, viewpoint: Viewpoint = "auto", seed: int = 1, threads: int = 0
+) -> RegisteredScans:
+    """Brings many scans of one object together, such as those of a turntable, without a guess.
+
+    clouds: each (N, 3), same units, or clouds of Open3D; scans that follow each other are tried first.
+    viewpoint: as in planes(), in the frame of each scan.
+    Scans that fit no others are left out, with the reason. The poses are in the frame of the first scan that is kept.
+    """
+    import numpy as np
+
+    arrays, shifts = [], []
+    for k, cloud in enumerate(clouds):
+        array, shift, *_ = prepare(f"clouds[{k}]", cloud)
+        arrays.append(array)
+        shifts.append(np.zeros(3) if shift is None else shift)
+    viewpoints = [_seen_from(viewpoint, shift) for shift in shifts]
+    found, merged = core.register_all(arrays, viewpoints=viewpoints, seed=seed, threads=threads)
+    transforms, left_out, pairs = found.transforms, found.left_out, found.pairs
+    first = next((k for k, transform in enumerate(transforms) if transform is not None), 0)
+    for transform, shift in zip(transforms, shifts):
+        if transform is not None:
+            transform[:3, 3] += shifts[first] - transform[:3, :3] @ shift
+    scans, rows = merged[:, 0], merged[:, 1]
+    points = np.zeros((len(merged), 3))
+    for k, transform in enumerate(transforms):
+        if transform is not None:
+            from_scan = arrays[k][rows[scans == k]].astype(float) + shifts[k]
+            points[scans == k] = from_scan @ transform[:3, :3].T + transform[:3, 3]
+    return RegisteredScans(transforms=transforms, left_out=left_out, pairs=pairs, points=points, scans=scans, rows=rows)
 
 
 class Database:

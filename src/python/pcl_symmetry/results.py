@@ -708,6 +708,26 @@ class PoseEvidence(Result):
 
 
 @dataclass(frozen=True, eq=False, repr=False)
+class RegisteredScans(Result):
+    """Scans of one object in the frame of the first one that is kept."""
+
+    _in_repr = ("left_out", "pairs")
+    transforms: List[Optional["Doubles"]]
+    """(4, 4) from the frame of each scan to that of the first one that is kept; None where it is left out."""
+    left_out: Dict[int, str]
+    """Why each scan that is left out is, by its index."""
+    pairs: List[Tuple[int, int, float, bool]]
+    """(source, target, overlap, used): share of the source's points that lie on the target, and whether the registration of
+    the two alone agrees with the poses of all."""
+    points: "Doubles"
+    """(M, 3) points of all scans that are kept, thinned where they overlap."""
+    scans: "NDArray[Any]"
+    """(M,) index of the scan of each point."""
+    rows: "NDArray[Any]"
+    """(M,) row of each point in its scan."""
+
+
+@dataclass(frozen=True, eq=False, repr=False)
 class Registration(Result):
     """The pose of one cloud relative to another."""
 

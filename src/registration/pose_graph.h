@@ -1,0 +1,57 @@
+#pragma once
+
+#include <Eigen/Geometry>
+#include <vector>
+
+#include "core/geometry/small_motion.h"
+
+namespace pcl_symmetry {
+
+/// The motion of a small rotation vector w, radians, and a translation t: x to x + w x x + t.
+Eigen::Isometry3d motionBy(const Vector6d& motion);
+
+/// What is known of the pose of two scans.
+struct PoseConstraint {
+  int source, target;
+  Eigen::Isometry3d T_target_source;
+  Matrix6d information;  ///< inverse covariance of the small motion of the target's frame that makes the pose true
+};
+
+/// The poses that agree best with all constraints, by Gauss-Newton. Scans that constraints do not connect do not move
+/// against each other.
+/// \param T_world_scan of each scan, where the steps begin; changed.
+void adjustPoses(const std::vector<PoseConstraint>& constraints, std::vector<Eigen::Isometry3d>& T_world_scan,
+                 int num_steps);
+
+/// What the registration of two scans found.
+struct PairAnswer {
+  int source, target;
+  Eigen::Isometry3d T_target_source;
+  Matrix6d covariance;  ///< of the small motion of the target's frame
+  double weight = 0.0;  ///< 1 for a pose that converged, less for a doubtful one, 0 for a bad one
+  bool converged = false;
+};
+
+/// When two poses of scans are one.
+struct SamePose {
+  double angle, distance;  ///< radians and units of the scans
+  /// \param T_a_b,other compared where they bring the origin of b.
+  bool operator()(const Eigen::Isometry3d& T_a_b, const Eigen::Isometry3d& other) const;
+};
+
+/// Scans in groups, in each of which poses are known.
+struct ScanGroups {
+  std::vector<int> group;                       ///< of each scan
+  std::vector<Eigen::Isometry3d> T_group_scan;  ///< of each scan
+
+  /// \return whether the scans of an answer are in one group in which it is right.
+  bool agrees(const PairAnswer& answer, const SamePose& same) const;
+};
+
+/// Joins scans by the answers of their pairs, best known first: all answers between two groups vote for the pose that
+/// brings them together, for themselves and for what agrees with them, against what does not. At the start the votes of
+/// a pair are those of the triangles that it closes.
+/// \param least_votes sum of weights that joins two groups: 1 for one pair that converged.
+ScanGroups joinScans(int num_scans, const std::vector<PairAnswer>& answers, const SamePose& same, double least_votes);
+
+}  // namespace pcl_symmetry
