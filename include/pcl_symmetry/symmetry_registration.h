@@ -48,15 +48,16 @@ struct RegisteredPose {
   Eigen::Isometry3d T_target_source = Eigen::Isometry3d::Identity();  ///< moves the source onto the target
   /// How good this pose is. The source counts as the scan, unless only the target was seen from one side.
   PoseScore score;
-  double confidence = 0.0;  ///< estimated probability that this pose is right, in [0, 1]
-  PoseEvidence evidence;    ///< what the confidence follows from
 };
 
 /// The best pose of a cloud in another one, and the next ones.
 struct CloudRegistration : RegisteredPose {
   /// \param min_confidence in [0, 1].
+  /// \return whether both clouds have the points for an answer, and the best pose that confidence.
   bool converged(double min_confidence = 0.5) const { return covariance.has_value() && confidence >= min_confidence; }
 
+  double confidence = 0.0;  ///< estimated probability that the best pose is right, in [0, 1]
+  PoseEvidence evidence;    ///< what the confidence follows from
   /// \return what speaks against the best pose, one sentence without a full stop.
   std::string doubt() const;
 

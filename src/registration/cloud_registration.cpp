@@ -57,15 +57,14 @@ public:
     return map * covariance * map.transpose();
   }
 
-  /// The pose between input frames, with what decides whether it is right.
-  RegisteredPose judged(const RankedPose& pose) const {
+  /// What decides whether a pose is right, of source and target.
+  PoseEvidence evidence(const RankedPose& pose) const {
     PoseEvidence evidence = poseEvidence(*scan_, *model_, pose.T_model_scan, pose.score);
-    const double confidence = poseConfidence(evidence);
     if (swapped_) {
       std::swap(evidence.overlap_source, evidence.overlap_target);
       evidence.size_ratio = 1.0 / evidence.size_ratio;
     }
-    return {toInput(pose.T_model_scan), pose.score, confidence, evidence};
+    return evidence;
   }
 
 private:
@@ -223,8 +222,12 @@ CloudRegistration registerClouds(const Points& source, const std::optional<Visib
   if (!poses.empty()) poses = refinePoses(clouds.scan(), clouds.model(), poses, inner);
   if (options.around) keepAround(clouds, guess, *options.around, poses);
   done("refine");
-  for (const RankedPose& pose : poses) result.poses.push_back(clouds.judged(pose));
-  if (!poses.empty()) result.covariance = covarianceOf(clouds, poses.front(), inner);
+  for (const RankedPose& pose : poses) result.poses.push_back({clouds.toInput(pose.T_model_scan), pose.score});
+  if (!poses.empty()) {
+    result.covariance = covarianceOf(clouds, poses.front(), inner);
+    result.evidence = clouds.evidence(poses.front());
+    result.confidence = poseConfidence(result.evidence);
+  }
   if (poses.empty()) result.poses.push_back({guess, {}});
   static_cast<RegisteredPose&>(result) = result.poses.front();
   return result;
