@@ -6,7 +6,6 @@
 
 #include "core/matching/shape_signature.h"
 #include "core/matching/symmetry_descriptor.h"
-#include "pcl_symmetry/core/symmetry_frame.h"
 
 namespace pcl_symmetry {
 
@@ -22,17 +21,7 @@ SymmetryDescriptors described(const Points& points, const detail::PRSTParameters
   options.by_equation_1 = parameters.by_equation_1;
   options.seed = parameters.seed;
   options.num_threads = parameters.num_threads;
-  Eigen::Isometry3d T_frame_input = Eigen::Isometry3d::Identity();
-  if (parameters.use_input_axes) {
-    T_frame_input.translation() = -centerOfMass(points);
-  } else {
-    FrameOptions frame;
-    frame.probabilities = false;
-    frame.seed = parameters.seed;
-    frame.rotations = false;
-    frame.num_threads = parameters.num_threads;
-    T_frame_input = symmetryFrame(points, frame, seen).T_canonical_input;
-  }
+  const Eigen::Isometry3d T_frame_input = descriptorFrame(points, parameters.use_input_axes, seen, options);
   return symmetryDescriptors(points, T_frame_input, options);
 }
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "core/base/check.h"
 #include "core/base/constants.h"
@@ -17,8 +18,6 @@ struct ViewRules {
   double near_best = 0.98;                 // of the best score: views that show as much
   double camera_distance = 5.0;            // radii: from farther away, the same points are hidden
   double hidden_margin = 0.05;             // radii: depth behind others that hides a point
-  double min_score = 0.2;                  // of the best score: below, a direction is not seen
-  double max_across = 0.5;                 // cosine between a maximum that counts too and the planes so far
   double perpendicular = 0.05;             // cosine between two planes that were found with errors
   double near_up = 0.8;                    // cosine: axes farther from the given direction would tilt the object
   double from_above = 0.98;                // cosine between the direction of a view and up
@@ -53,12 +52,6 @@ std::vector<Eigen::Vector3d> mirrorImages(const Eigen::Vector3d& direction,
   return images;
 }
 
-/// \return whether no direction has less than min_score of the best score.
-bool seenFromEverywhere(const std::vector<ViewPlane>& planes) {
-  const std::vector<RankedView> best = bestViews(planes);
-  return !best.empty() && worstView(planes).score >= kView.min_score * best[0].score;
-}
-
 SelectedView noView() {
   return {{Eigen::Vector3d::Zero(), 0.0}, Eigen::Affine3f::Identity()};
 }
@@ -73,23 +66,10 @@ void ViewpointSelection::setPlanes(const std::vector<SymmetryPlane>& planes, con
     planes_.push_back({plane.normal(), plane.score});
     if (plane.kind == PlaneKind::Symmetry) symmetries_.push_back(plane.normal());
   }
-  const int fan = 8;  // planes that represent an axis: S varies about it by 2 %
-  for (const SymmetryAxis& axis : axes) {
-    const Eigen::Vector3d u = axis.direction.unitOrthogonal(), v = axis.direction.cross(u);
-    for (int k = 0; k < fan; ++k) {
-      const double angle = kPi * k / fan;
-      planes_.push_back({std::cos(angle) * u + std::sin(angle) * v, 2.0 * axis.score / fan});
-    }
-  }
-  for (const LocalMaximum& maximum : maxima) {
-    if (seenFromEverywhere(planes_)) break;
-    const Eigen::Vector3d n = maximum.plane.normal();
-    const bool near = std::any_of(planes_.begin(), planes_.end(), [&](const ViewPlane& plane) {
-      return std::abs(plane.normal.dot(n)) > kView.max_across;
-    });
-    if (!near) planes_.push_back({n, maximum.value});
-  }
-  std::stable_sort(planes_.begin(), planes_.end(), [](const auto& a, const auto& b) { return a.weight > b.weight; });
+  std::vector<ViewPlane> lines, across;
+  for (const SymmetryAxis& axis : axes) lines.push_back({axis.direction, axis.score});
+  for (const LocalMaximum& maximum : maxima) across.push_back({maximum.plane.normal(), maximum.value});
+  planes_ = viewPlanes(std::move(planes_), lines, across);
 }
 
 void ViewpointSelection::setInputCloud(const pcl::PointCloud<pcl::PointXYZ>::ConstPtr& cloud) {

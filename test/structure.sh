@@ -6,10 +6,10 @@ case "${1-}" in
     cat <<'END'
 usage: bash test/structure.sh [-h]
 
-Prints lines of C++, folders, named constants, the longest page, and how many files stand behind symmetry_detection.h, each with
-its limit; then what breaks a rule: includes that run up from a room of the core to one above it, includes of PCL by the core
-or of private headers by installed ones, and installed headers without a test of their name. Exit status 0 if nothing is over
-its limit and no rule is broken.
+Prints lines of C++ and Python, folders, the longest page, numbers set by hand, and how many files stand behind
+symmetry_detection.h, each with its goal; then what breaks a rule: includes that run up from a room of the core to one above it,
+includes of PCL by the core or of private headers by installed ones, and installed headers without a test of their name. Exit
+status 0 if nothing is over its limit and no rule is broken; goals are reported only.
 END
     exit 0 ;;
   *) echo "structure.sh: unknown option $1" >&2; exit 2 ;;
@@ -21,9 +21,9 @@ import subprocess
 import sys
 from pathlib import Path
 
-# What is allowed: lines of C++, lines in src and include, lines of Python, folders with C++, named constants, lines of the
-# longest page, and files and lines behind symmetry_detection.h.
-LIMITS = dict(cpp=64420, library=37310, python=5500, folders=60, constants=122, page=300, files_behind=147, lines_behind=14330)
+# What is allowed, and where we want to be, which is reported only.
+LIMITS = dict(folders=60, page=300)
+GOALS = dict(cpp=54000, library=30500, tests=11500, python=9800, numbers=560, files_behind=90)
 
 listed = subprocess.run(["git", "ls-files", "-co", "--exclude-standard"], capture_output=True, text=True, check=True).stdout
 files = [Path(name) for name in listed.splitlines() if os.path.isfile(name)]
@@ -43,6 +43,10 @@ def report(what, number, limit, findings=()):
     print(f"{number:7}  {what} (at most {limit}){'  TOO MANY' if over else ''}")
     for finding in findings:
         print("         " + finding)
+
+
+def reported(what, number, goal):
+    print(f"{number:7}  {what} (goal {goal}){'' if number <= goal else f', {number - goal} to go'}")
 
 
 def includes(f):
@@ -75,19 +79,29 @@ def behind(header):
     return found
 
 
-research = [f for f in text if f.suffix == ".py" and f.parts[:2] == ("test", "benchmark")]
-constants = [m for f in cpp if f.parts[0] in ("src", "include") for m in re.findall(r"constexpr [a-zA-Z_:<> ]+ k[A-Z]\w*", text[f])]
+def numbers_by_hand(source):
+    """Literals but 0, 1, 2, 3, 4, 8, 16, 32, 64, 0.25, 0.5, 180 and 360, without comments, strings and includes."""
+    source = re.sub(r'//[^\n]*|/\*.*?\*/|"(?:\\.|[^"\\\n])*"|\'(?:\\.|[^\'\\\n])\'|^#include[^\n]*', " ", source, flags=re.S | re.M)
+    literals = re.findall(r"(?<![\w.])(?:0[xX][\da-fA-F']+|(?:\d[\d']*\.?\d*|\.\d+)(?:[eE][-+]?\d+)?)(?=[fFlLuUzZ]*(?![\w.]))", source)
+    plain = {0, 1, 2, 3, 4, 8, 16, 32, 64, 0.25, 0.5, 180, 360}
+    values = [text.replace("'", "") for text in literals]
+    return sum((int(v, 16) if v[:2] in ("0x", "0X") else float(v)) not in plain for v in values)
+
+
+tests_of_python = [f for f in text if f.suffix == ".py" and f.parts[0] == "test"]
+library = [f for f in cpp if f.parts[0] in ("src", "include")]
+by_hand = [f for f in library if not text[f].startswith("// Written by")]
 pages = {f: n for f, n in lines.items() if f.suffix == ".md"}
 longest = max(pages, key=pages.get)
 reached = behind("pcl_symmetry/symmetry_detection.h")
-report("lines of C++", sum(lines[f] for f in cpp), LIMITS["cpp"])
-report("lines of C++ in src and include", sum(lines[f] for f in cpp if f.parts[0] in ("src", "include")), LIMITS["library"])
-report("lines of Python in test/benchmark", sum(lines[f] for f in research), LIMITS["python"])
+reported("lines of C++", sum(lines[f] for f in cpp), GOALS["cpp"])
+reported("lines of C++ in src and include", sum(lines[f] for f in library), GOALS["library"])
+reported("lines of C++ in test", sum(lines[f] for f in cpp if f.parts[0] == "test"), GOALS["tests"])
+reported("lines of Python in test", sum(lines[f] for f in tests_of_python), GOALS["python"])
+reported("numbers set by hand in src and include", sum(numbers_by_hand(text[f]) for f in by_hand), GOALS["numbers"])
+reported("files behind symmetry_detection.h", len(reached), GOALS["files_behind"])
 report("folders with C++", len({f.parent for f in cpp}), LIMITS["folders"])
-report("named constants in src and include", len(constants), LIMITS["constants"])
 report(f"lines of the longest page, {longest}", pages[longest], LIMITS["page"])
-report("files behind symmetry_detection.h", len(reached), LIMITS["files_behind"])
-report("lines of these files", sum(lines[f] for f in reached), LIMITS["lines_behind"])
 
 # The list of rooms in src/CMakeLists.txt, bottom first, is the order. An installed header belongs to the room of its source,
 # or of its test.

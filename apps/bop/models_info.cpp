@@ -153,7 +153,7 @@ ordered_json dopeJson(const ObjectSymmetries& symmetries, double sphere_angle) {
 }
 
 std::map<std::string, ListedSymmetries> readModelsInfo(const std::string& path) {
-  const json file = json::parse(readWholeFile(path), nullptr, false);
+  const json file = json::parse(readTextFile(path), nullptr, false);
   if (!file.is_object()) throw InputError(path + ": must be a JSON object of models");
   if (isOneModel(file)) return {{"", symmetriesFromJson(file, path)}};
   std::map<std::string, ListedSymmetries> models;
@@ -274,7 +274,7 @@ std::string isaacLine(const std::string& name, const std::vector<std::string>& a
 
 std::map<std::string, ListedSymmetries> readIsaacAxes(const std::string& path) {
   std::map<std::string, ListedSymmetries> models;
-  std::istringstream lines(readWholeFile(path));
+  std::istringstream lines(readTextFile(path));
   for (std::string line; std::getline(lines, line);) {
     const std::optional<AxesLine> entry = axesLineOf(line);
     if (!entry) continue;

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <boost/algorithm/string.hpp>
 #include <boost/filesystem.hpp>
-#include <fstream>
+#include <sstream>
 
 #include "io/file_text.h"
 #include "io/shape_input.h"
@@ -62,8 +62,7 @@ void addPattern(const std::string& pattern, std::vector<InputFile>& files) {
 void addArgument(const std::string& argument, std::vector<InputFile>& files);
 
 void addList(const std::string& path, std::vector<InputFile>& files) {
-  checkReadableFile(path);
-  std::ifstream text(path, std::ios::binary);
+  std::istringstream text(readTextFile(path));
   for (std::string line; std::getline(text, line);) {
     boost::algorithm::trim(line);
     if (!line.empty() && line.front() != '#') addArgument(line, files);

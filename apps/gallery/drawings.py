@@ -5,7 +5,7 @@ usage: python3 apps/gallery/drawings.py PICTURE OUT.png [FILE ...]
   first_look MESH      a scan, its plane of symmetry, and the completed scan (the page that is read first)
   frames               mugs and mailboxes with their axes, by center of mass and PCA, and by symmetry (Figure 10)
   scan_centers MESH    eight scans of a mesh, and the centers found in each, by symmetry and by mass (Figure 11)
-  medial_axis CONTOUR… the medial axes of planar shapes, ASCII PCD (the other half of Figure 3)
+  medial_axis SHAPE …  the medial axes of planar shapes, as planar.py takes them (the other half of Figure 3)
   volume               a head made of ellipsoids, tilted, with a lesion on one side: its plane and its asymmetry
   failure_frame MESH, failure_completion MESH, failure_pose, failure_name, failure_rotations, failure_volume
                        answers that the data do not tell, or that the tolerance passes over
@@ -25,6 +25,7 @@ import matplotlib.pyplot as plt
 import numpy as np
 
 import pcl_symmetry
+from planar import contour
 from shapes import Patches, mug, write_ply
 
 GRAY, ORANGE, BLUE, GREEN, VERMILION = "#B9C0CB", "#E69F00", "#0072B2", "#009E73", "#D55E00"
@@ -170,14 +171,14 @@ def scan_centers(out, path):
     sheet.save(out)
 
 
-def medial_axis(out, *contours):
+def medial_axis(out, *shapes):
     """Where the closest contour points of neighboring pixels lie in different directions."""
     from scipy.ndimage import label
     from scipy.spatial import cKDTree
 
-    size, figure = 220, plt.figure(figsize=(2.2 * len(contours), 2.2), dpi=100)
-    for k, path in enumerate(contours):
-        points = np.loadtxt(Path(path).read_text().split("DATA ascii\n", 1)[1].splitlines())[:, :2]
+    size, figure = 220, plt.figure(figsize=(2.2 * len(shapes), 2.2), dpi=100)
+    for k, shape in enumerate(shapes):
+        points = contour(shape)
         low, high = points.min(axis=0), points.max(axis=0)
         edge = 1.12 * (high - low).max()
         low = (low + high - edge) / 2
@@ -193,7 +194,7 @@ def medial_axis(out, *contours):
             apart = np.linalg.norm(points[index] - point, axis=-1) > 2 * step
             cosine = (offset * other).sum(-1) / np.maximum(np.linalg.norm(offset, axis=-1) * np.linalg.norm(other, axis=-1), 1e-12)
             axis |= inside & apart & (cosine < np.cos(np.radians(8)))
-        axes = figure.add_axes((k / len(contours), 0, 1 / len(contours), 1))
+        axes = figure.add_axes((k / len(shapes), 0, 1 / len(shapes), 1))
         axes.plot(x[axis], y[axis], "k.", markersize=1.5)
         axes.plot(*points.T, ".", color=VERMILION, markersize=1.5)
         axes.set(xlim=(low[0], low[0] + edge), ylim=(low[1], low[1] + edge), aspect="equal")

@@ -37,7 +37,7 @@ gallery=$folder/gallery pictures=$folder/pictures
 
 cd "$(dirname "${BASH_SOURCE[0]}")/../.."
 cmake --preset release --log-level=WARNING >/dev/null
-cmake --build build --parallel "$(nproc)" --target pcl_symmetry_lines pcl_symmetry_map pcl_symmetry_planes \
+cmake --build build --parallel "$(nproc)" --target pcl_symmetry_map pcl_symmetry_planes \
   pcl_symmetry_scan pcl_symmetry_scene pcl_symmetry_segment pcl_symmetry_viewer pcl_symmetry_viewpoint \
   pcl_symmetry_python pcl_symmetry_python_recognition
 if $estimators; then
@@ -52,15 +52,10 @@ models=$PWD/build/pictures_models
 mkdir -p "$gallery" "$pictures" "$models"
 bash apps/fetch_meshes.sh "$models" bull camel cow dino elephant hand
 "$python" -B apps/gallery/shapes.py "$models"
-cp apps/gallery/contour.awk "$models"
+cp apps/gallery/planar.py "$models"
 drawings=("$python" -B "$PWD/apps/gallery/drawings.py")
-contours=$PWD/apps/gallery/contour.awk
+planar=("$python" -B "$PWD/apps/gallery/planar.py")
 cd "$models"
-
-# contour NAME SHAPE: points of a planar shape as NAME.pcd.
-contour() {
-  awk -v shape="$2" -f "$contours" >"$1.pcd"
-}
 
 # draw PICTURE COMMAND...: prints and runs a command that draws the picture; its output only if it fails.
 draw() {
@@ -79,13 +74,7 @@ draw_scans_and_parts() {
 }
 
 draw_figure_1() {
-  contour mug "mug 0.45"
-  contour cup "mug 0"
-  contour flower "flower 5"
-  contour flower_4 "flower 4"
-  contour flower_3 "flower 3"
-  draw figure_1_contours pcl_symmetry_lines cup.pcd mug.pcd flower.pcd flower_4.pcd flower_3.pcd -size 150 \
-    -png "$gallery/figure_1_contours.png"
+  draw figure_1_contours "${planar[@]}" "$gallery/figure_1_contours.png" --size 150 "mug 0" "mug 0.45" "flower 5" "flower 4" "flower 3"
   local model
   for model in 0.2 0.5 1; do
     draw "scale_$model" pcl_symmetry_map bull.off -scale "$model" -size 280 -png "$gallery/scale_$model.png"
@@ -96,19 +85,13 @@ draw_figure_1() {
 }
 
 draw_figure_2() {
-  local n h noise
-  for n in 3 4 5 6 8 48; do contour "polygon_$n" "polygon $n"; done
-  for h in 1.0 0.9 0.8 0.7 0.6 0.5; do contour "rectangle_$h" "rectangle 1 $h"; done
-  for noise in 0.00 0.01 0.02 0.04 0.06 0.08; do contour "starfish_$noise" "starfish $noise"; done
-  draw figure_2 pcl_symmetry_lines polygon_{3,4,5,6,8,48}.pcd rectangle_{1.0,0.9,0.8,0.7,0.6,0.5}.pcd \
-    starfish_0.0{0,1,2,4,6,8}.pcd -columns 6 -size 100 -png "$gallery/figure_2.png"
+  draw figure_2 "${planar[@]}" "$gallery/figure_2.png" --columns 6 --size 100 "polygon "{3,4,5,6,8,48} \
+    "rectangle 1 "{1.0,0.9,0.8,0.7,0.6,0.5} "starfish 0.0"{0,1,2,4,6,8}
 }
 
 draw_figure_3() {
-  contour rectangle "rectangle 1 0.5"
-  contour bump "rectangle 1 0.5 0.1"
-  draw figure_3 pcl_symmetry_lines rectangle.pcd bump.pcd -size 220 -png "$gallery/figure_3.png"
-  draw figure_3_medial_axis "${drawings[@]}" medial_axis "$gallery/figure_3_medial_axis.png" rectangle.pcd bump.pcd
+  draw figure_3 "${planar[@]}" "$gallery/figure_3.png" "rectangle 1 0.5" "rectangle 1 0.5 0.1"
+  draw figure_3_medial_axis "${drawings[@]}" medial_axis "$gallery/figure_3_medial_axis.png" "rectangle 1 0.5" "rectangle 1 0.5 0.1"
 }
 
 # draw_view PICTURE MODEL KEYS: the window of the viewer after some keys.

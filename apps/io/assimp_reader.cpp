@@ -66,20 +66,6 @@ private:
   std::vector<Eigen::Vector3d> points_;  // of points and lines
 };
 
-/// Binary files may have bytes behind the last triangle, text may be in capitals and begin with blanks or comments.
-void prepareSTL(std::string& text) {
-  std::uint32_t num_triangles = 0;
-  if (text.size() >= 84) std::memcpy(&num_triangles, &text[80], sizeof(num_triangles));
-  const std::uint64_t size = 84 + 50 * std::uint64_t{num_triangles};
-  if (num_triangles > 0 && size <= text.size()) {
-    text.resize(size);
-    return;
-  }
-  boost::algorithm::to_lower(text);
-  const std::size_t line = text.find("\nsolid");
-  if (text.rfind("solid", 0) != 0 && line != std::string::npos) text.erase(0, line + 1);
-}
-
 /// Assimp subtracts one or two from the number of vertices of a line, a strip or a fan.
 void checkPrimitives(const std::string& path, const nlohmann::json& scene) {
   const nlohmann::json none = nlohmann::json::array(), accessors = scene.value("accessors", none);
@@ -105,6 +91,7 @@ void checkGLB(const std::string& path, const std::string& text) {
       throw InputError(path + ": cannot be read as glb, it is cut off");
     return std::string_view(text).substr(begin + 8, size);
   };
+  if (text.compare(0, 4, "glTF") != 0) throw InputError(path + ": cannot be read as glb, does not begin with glTF");
   const std::string_view chunk = chunkAt(12);
   const std::size_t next = (20 + chunk.size() + 3) / 4 * 4;
   if (next < text.size()) chunkAt(next);
@@ -133,24 +120,23 @@ void checkGLB(const std::string& path, const std::string& text) {
 
 }  // namespace
 
-void readMesh(const std::string& path, std::string& text, const std::string& kind, ExactShape& shape) {
-  if (kind == "stl") prepareSTL(text);
+void readGLB(const std::string& path, const std::string& content, ExactShape& shape) {
   // Assimp 5.2 reads the bytes of these as if they were plain numbers.
   for (const char* extension : {"KHR_mesh_quantization", "EXT_meshopt_compression"})
-    if (kind == "glb" && text.find(extension) != std::string::npos)
+    if (content.find(extension) != std::string::npos)
       throw InputError(path + ": is compressed by " + extension + ", which is not supported");
   try {
-    if (kind == "glb") checkGLB(path, text);
+    checkGLB(path, content);
   } catch (const nlohmann::json::exception&) {  // a value is not of the kind that it must be
     throw InputError(path + ": cannot be read as glb, its JSON is damaged");
   }
   Assimp::Importer importer;
-  const aiScene* const scene = importer.ReadFileFromMemory(text.data(), text.size(), 0, kind.c_str());
+  const aiScene* const scene = importer.ReadFileFromMemory(content.data(), content.size(), 0, "glb");
   if (!scene || !scene->mRootNode) {
     std::string reason = boost::algorithm::replace_all_copy(std::string(importer.GetErrorString()), "\n", " ");
-    boost::algorithm::erase_all(reason, " for $$$___magic___$$$." + kind);  // what it calls memory
+    boost::algorithm::erase_all(reason, " for $$$___magic___$$$.glb");  // what it calls memory
     boost::algorithm::trim(reason);
-    throw InputError(path + ": cannot be read as " + kind + (reason.empty() ? "" : ", " + reason));
+    throw InputError(path + ": cannot be read as glb" + (reason.empty() ? "" : ", " + reason));
   }
   shape = SceneReader(*scene).shape();
   if (shape.vertices.empty()) throw InputError(path + ": has neither faces nor points");

@@ -3,42 +3,18 @@
 #include <pcl/common/io.h>
 
 #include <algorithm>
+#include <boost/algorithm/string.hpp>
 #include <charconv>
 #include <cmath>
 #include <cstdlib>
 #include <cstring>
 #include <limits>
+#include <map>
+#include <utility>
 
 namespace pcl_symmetry::apps {
 
 namespace {
-
-/// Calls the function with a zero of the type.
-template <typename Function>
-auto withType(std::uint8_t type, const Function& function) {
-  switch (type) {
-    case pcl::PCLPointField::INT8:
-      return function(std::int8_t{});
-    case pcl::PCLPointField::UINT8:
-      return function(std::uint8_t{});
-    case pcl::PCLPointField::INT16:
-      return function(std::int16_t{});
-    case pcl::PCLPointField::UINT16:
-      return function(std::uint16_t{});
-    case pcl::PCLPointField::INT32:
-      return function(std::int32_t{});
-    case pcl::PCLPointField::UINT32:
-      return function(std::uint32_t{});
-    case pcl::PCLPointField::INT64:
-      return function(std::int64_t{});
-    case pcl::PCLPointField::UINT64:
-      return function(std::uint64_t{});
-    case pcl::PCLPointField::FLOAT32:
-      return function(float{});
-    default:
-      return function(double{});
-  }
-}
 
 template <typename Value>
 Value nearestOf(double number) {
@@ -78,6 +54,27 @@ void makeRoom(std::uint64_t width, std::uint64_t height, pcl::PCLPointCloud2& cl
   cloud.height = static_cast<pcl::uindex_t>(height);
   cloud.row_step = cloud.point_step * cloud.width;
   cloud.data.resize(width * height * cloud.point_step);
+}
+
+std::optional<std::uint8_t> typeNamed(std::string name) {
+  static const std::map<std::string, std::uint8_t> types = {
+      {"char", pcl::PCLPointField::INT8},         {"int8", pcl::PCLPointField::INT8},
+      {"uchar", pcl::PCLPointField::UINT8},       {"uint8", pcl::PCLPointField::UINT8},
+      {"short", pcl::PCLPointField::INT16},       {"int16", pcl::PCLPointField::INT16},
+      {"ushort", pcl::PCLPointField::UINT16},     {"uint16", pcl::PCLPointField::UINT16},
+      {"int", pcl::PCLPointField::INT32},         {"int32", pcl::PCLPointField::INT32},
+      {"uint", pcl::PCLPointField::UINT32},       {"uint32", pcl::PCLPointField::UINT32},
+      {"long long", pcl::PCLPointField::INT64},   {"int64", pcl::PCLPointField::INT64},
+      {"ulong long", pcl::PCLPointField::UINT64}, {"uint64", pcl::PCLPointField::UINT64},
+      {"float", pcl::PCLPointField::FLOAT32},     {"float32", pcl::PCLPointField::FLOAT32},
+      {"double", pcl::PCLPointField::FLOAT64},    {"float64", pcl::PCLPointField::FLOAT64}};
+  boost::algorithm::to_lower(name);
+  // Words of C, as NRRD has them, and of MetaImage.
+  for (const auto& [word, plain] : {std::pair("met_", ""), {"_", " "}, {" t", ""}, {"unsigned ", "u"}, {"signed ", ""}})
+    boost::algorithm::replace_all(name, word, plain);
+  if (boost::algorithm::ends_with(name, " int")) boost::algorithm::erase_tail(name, 4);
+  const auto type = types.find(name);
+  return type == types.end() ? std::nullopt : std::optional(type->second);
 }
 
 double numberAt(const void* source, std::uint8_t type) {

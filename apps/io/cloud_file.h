@@ -5,6 +5,7 @@
 #include <pcl/Vertices.h>
 
 #include <Eigen/Geometry>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -28,6 +29,42 @@ struct Column {
   std::uint8_t stored_type = 0;
   std::ptrdiff_t offset = -1;  ///< in a point of the cloud; negative: the values are left out
 };
+
+/// Calls the function with a zero of the type.
+template <typename Function>
+auto withType(std::uint8_t type, const Function& function) {
+  switch (type) {
+    case pcl::PCLPointField::INT8:
+      return function(std::int8_t{});
+    case pcl::PCLPointField::UINT8:
+      return function(std::uint8_t{});
+    case pcl::PCLPointField::INT16:
+      return function(std::int16_t{});
+    case pcl::PCLPointField::UINT16:
+      return function(std::uint16_t{});
+    case pcl::PCLPointField::INT32:
+      return function(std::int32_t{});
+    case pcl::PCLPointField::UINT32:
+      return function(std::uint32_t{});
+    case pcl::PCLPointField::INT64:
+      return function(std::int64_t{});
+    case pcl::PCLPointField::UINT64:
+      return function(std::uint64_t{});
+    case pcl::PCLPointField::FLOAT32:
+      return function(float{});
+    default:
+      return function(double{});
+  }
+}
+
+/// \return the type of pcl::PCLPointField that a word of PLY, NRRD or MetaImage names, such as uchar, "unsigned char" or
+/// MET_UCHAR.
+std::optional<std::uint8_t> typeNamed(std::string name);
+
+/// \return x, y or z where the name is that in capitals; else the name.
+inline std::string coordinateNamed(const std::string& name) {
+  return name == "X" ? "x" : name == "Y" ? "y" : name == "Z" ? "z" : name;
+}
 
 /// Adds a field of the column's name, type and count to the cloud; x, y and z of whole numbers become float or double.
 void addField(Column& column, pcl::PCLPointCloud2& cloud);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <boost/algorithm/string.hpp>
 #include <boost/filesystem.hpp>
+#include <boost/locale/encoding_utf.hpp>
 #include <cctype>
 #include <cerrno>
 #include <charconv>
@@ -59,6 +60,22 @@ std::string readStandardInput() {
   if (read_before) throw InputError("standard input: can be read only once");
   read_before = true;
   return readAll(stdin, "standard input");
+}
+
+std::string withoutMark(std::string text) {
+  const std::string mark = text.substr(0, 2);
+  if (text.compare(0, 3, "\xef\xbb\xbf") == 0) text.erase(0, 3);
+  if (mark != "\xff\xfe" && mark != "\xfe\xff") return text;
+  std::u16string units;
+  const std::size_t low = mark[0] == '\xff' ? 0 : 1;
+  for (std::size_t i = 2; i + 1 < text.size(); i += 2)
+    units += static_cast<char16_t>(static_cast<unsigned char>(text[i + low]) |
+                                   static_cast<unsigned char>(text[i + 1 - low]) << 8);
+  return boost::locale::conv::utf_to_utf<char>(units);
+}
+
+std::string readTextFile(const std::string& path) {
+  return withoutMark(readWholeFile(path));
 }
 
 void reject(const std::string& path, const std::string& what) {

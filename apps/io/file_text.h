@@ -23,9 +23,15 @@ void checkReadableFile(const std::string& path);
 /// \throws InputError if it cannot be read or is empty.
 std::string readWholeFile(const std::string& path);
 
+/// \return the whole text of a file, see withoutMark().
+std::string readTextFile(const std::string& path);
+
 /// \return all of standard input.
 /// \throws InputError where it is empty, cannot be read or was read before.
 std::string readStandardInput();
+
+/// \return text as UTF-8 without the mark of its encoding, which tells UTF-8 and UTF-16.
+std::string withoutMark(std::string text);
 
 /// Points of a file at most. PCL's indices are 32-bit integers.
 constexpr std::uint64_t kMaxPoints = std::numeric_limits<std::int32_t>::max();

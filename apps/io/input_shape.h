@@ -1,5 +1,5 @@
 /// A file as the tools analyze it: the points of a cloud, points spread over a mesh, or a volume of CT, MR and other
-/// devices, which VTK reads: NIfTI, NRRD, MetaImage and VTK images.
+/// devices: NIfTI, Analyze, MGH, NRRD, MetaImage and VTK images.
 #pragma once
 
 #include <cstdint>
@@ -57,12 +57,12 @@ void checkAnswer(const Analysis& analysis, const InputShape& input) {
 void warnOfLeftOut(const Console& console, const std::string& path, const Shape& shape);
 
 /// The endings of files that loadVolume() reads.
-inline const char* const kVolumeFiles = ".nii, .nii.gz, .nrrd, .nhdr, .mha, .mhd or .vti";
+inline const char* const kVolumeFiles = ".nii, .nii.gz, .hdr, .img, .mgh, .mgz, .nrrd, .nhdr, .mha, .mhd or .vti";
 
 /// \return whether the name ends in one of kVolumeFiles, in capitals or not.
 bool isVolumePath(const std::string& path);
 
-/// A volume in the physical frame of its file: RAS for NIfTI, that of the header otherwise.
+/// A volume in the physical frame of its file: RAS for NIfTI and MGH, that of the header otherwise.
 struct Volume {
   std::shared_ptr<ScalarGrid> grid;
   std::vector<std::string> left_out;  ///< what the file holds beyond that, such as later times
@@ -73,7 +73,7 @@ Volume loadVolume(const std::string& path);
 
 // In the module of VTK.
 extern "C" {
-void readVolume(const std::string& path, Volume& volume);
+void readVTI(const std::string& path, Volume& volume);
 /// The surface on which the volume has a value (flying edges).
 void contourVolume(const ScalarGrid& grid, double value, ExactShape& surface);
 }

@@ -62,6 +62,7 @@ ExactShape readOFF(const std::string& path, std::string_view text) {
     reader.skipLine();
     if (num_corners >= 3) shape.polygons.push_back(std::move(polygon));
   }
+  if (!reader.atEnd()) throw InputError(path + ": holds more faces than its header says, " + std::to_string(num_faces));
   return shape;
 }
 

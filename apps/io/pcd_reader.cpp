@@ -59,7 +59,10 @@ struct PCDLayout {
 };
 
 PCDLayout layoutOf(const std::string& path, const PCDHeader& header, pcl::PCLPointCloud2& cloud) {
-  const Words& fields = pcdEntry(path, header, "FIELDS");
+  Words fields = pcdEntry(path, header, "FIELDS");
+  for (std::string& field : fields)
+    if (const std::string name = coordinateNamed(field); std::count(fields.begin(), fields.end(), name) == 0)
+      field = name;
   const Words &sizes = pcdEntry(path, header, "SIZE"), &types = pcdEntry(path, header, "TYPE");
   const Words counts = header.count("COUNT") ? header.at("COUNT") : Words(fields.size(), "1");
   for (const auto& [key, words] : {std::pair("SIZE", &sizes), std::pair("TYPE", &types), std::pair("COUNT", &counts)})
@@ -143,6 +146,8 @@ void readPCDText(const std::string& path, std::string_view body, const PCDLayout
                        std::to_string(layout.num_values));
     ++row;
   }
+  while (lines.next(line))
+    if (!split(line).empty()) reject(path, "holds more points than POINTS = " + std::to_string(layout.num_points));
   if (row < layout.num_points)
     reject(path, "holds " + std::to_string(row) + " points, POINTS = " + std::to_string(layout.num_points));
 }
@@ -222,7 +227,10 @@ CloudFile readPCD(const std::string& path, std::string_view text) {
   if (data == "ascii") {
     need(boundedProduct(2 * layout.num_values, layout.num_points) - 1);
   } else if (data == "binary") {
-    need(boundedProduct(layout.point_size, layout.num_points));
+    const std::uint64_t size = boundedProduct(layout.point_size, layout.num_points);
+    need(size);
+    if (body.size() - size >= layout.point_size)
+      reject(path, "holds more points than POINTS = " + std::to_string(layout.num_points));
   } else if (data == "binary_compressed") {
     bytes = decompressed(path, body, layout);
   } else {

@@ -46,18 +46,9 @@ std::uint64_t sizeOfType(std::uint8_t type) {
 }
 
 std::uint8_t plyType(const std::string& path, const std::string& word) {
-  static const std::map<std::string, std::uint8_t> types = {
-      {"char", pcl::PCLPointField::INT8},      {"int8", pcl::PCLPointField::INT8},
-      {"uchar", pcl::PCLPointField::UINT8},    {"uint8", pcl::PCLPointField::UINT8},
-      {"short", pcl::PCLPointField::INT16},    {"int16", pcl::PCLPointField::INT16},
-      {"ushort", pcl::PCLPointField::UINT16},  {"uint16", pcl::PCLPointField::UINT16},
-      {"int", pcl::PCLPointField::INT32},      {"int32", pcl::PCLPointField::INT32},
-      {"uint", pcl::PCLPointField::UINT32},    {"uint32", pcl::PCLPointField::UINT32},
-      {"float", pcl::PCLPointField::FLOAT32},  {"float32", pcl::PCLPointField::FLOAT32},
-      {"double", pcl::PCLPointField::FLOAT64}, {"float64", pcl::PCLPointField::FLOAT64}};
-  const auto entry = types.find(word);
-  if (entry == types.end()) reject(path, "unknown PLY type " + word.substr(0, 40));
-  return entry->second;
+  const std::optional<std::uint8_t> type = typeNamed(word);
+  if (!type) reject(path, "unknown PLY type " + word.substr(0, 40));
+  return *type;
 }
 
 void addPLYProperty(const std::string& path, const std::vector<std::string>& words, PLYElement& element) {
@@ -113,6 +104,8 @@ public:
   /// \return bytes that a value takes at least.
   std::uint64_t leastSize(std::uint8_t type) const { return is_text_ ? 2 : sizeOfType(type); }
   std::uint64_t size() const { return body_.size(); }
+  /// \return whether more than a few bytes, such as the end of a line, follow.
+  bool hasMore() { return is_text_ ? !tokens_.atEnd() : body_.size() - position_ > 4; }
 
   /// \return the bytes of the next value.
   const std::uint8_t* next(const PLYElement& element, std::uint64_t index, const PLYProperty& property,
@@ -177,6 +170,7 @@ public:
         readLists(element);
       }
     }
+    if (body_.hasMore()) reject(path_, "holds more than its header says");
     file_.cloud.is_dense = isDense(file_.cloud);
     return std::move(file_);
   }
@@ -203,6 +197,8 @@ private:
     if (vertex == header_.elements.end()) reject(path_, "has no element vertex");
     if (vertex->count == 0) reject(path_, "element vertex = 0, must be > 0");
     num_vertices_ = vertex->count;
+    for (PLYProperty& property : vertex->properties)
+      if (const std::string name = coordinateNamed(property.name); !vertex->find(name)) property.name = name;
     for (const char* name : {"x", "y", "z"})
       if (!vertex->find(name) || vertex->find(name)->length_type)
         reject(path_, "has no vertex property " + std::string(name) + ", must have x, y and z");

@@ -6,7 +6,6 @@
 #include <boost/algorithm/string.hpp>
 #include <boost/filesystem.hpp>
 #include <cctype>
-#include <cstring>
 #include <new>
 #include <utility>
 #include <vector>
@@ -69,14 +68,6 @@ Shape fromExact(const std::string& path, ExactShape exact) {
   return completed(path, std::move(shape), exact.vertices, std::move(exact.polygons));
 }
 
-/// Binary STL: 80 bytes, the number of triangles, 50 bytes each.
-bool isBinarySTL(const std::string& content) {
-  if (content.size() < 84) return false;
-  std::uint32_t num_triangles = 0;
-  std::memcpy(&num_triangles, content.data() + 80, sizeof(num_triangles));
-  return num_triangles > 0 && content.size() >= 84 + 50 * std::uint64_t{num_triangles};
-}
-
 bool isOFF(const std::string& word) {
   const std::size_t tail = word.find("OFF");
   return tail != std::string::npos && tail <= 4 && word.find_first_not_of("STCN") >= tail;
@@ -87,16 +78,17 @@ bool isOneOf(const std::string& word, std::initializer_list<const char*> words) 
 }
 
 /// \param name of the file in errors.
-Shape shapeOf(const std::string& name, std::string text, const std::string& extension) {
+Shape shapeOf(const std::string& name, const std::string& text, const std::string& extension) {
   try {
     if (extension == ".pcd") return fromCloudFile(name, readPCD(name, text));
     if (extension == ".ply") return fromCloudFile(name, readPLY(name, text));
     if (extension == ".off") return fromExact(name, readOFF(name, text));
     if (extension == ".obj") return fromExact(name, readOBJ(name, text));
     if (isOneOf(extension, {".xyz", ".pts", ".asc", ".txt", ".csv"})) return fromExact(name, readColumns(name, text));
-    if (extension == ".stl" || extension == ".glb") {
+    if (extension == ".stl") return fromExact(name, readSTL(name, text));
+    if (extension == ".glb") {
       ExactShape shape;
-      functionOf<decltype(readMesh)>("pcl_symmetry_mesh_files", "readMesh")(name, text, extension.substr(1), shape);
+      functionOf<decltype(readGLB)>("pcl_symmetry_mesh_files", "readGLB")(name, text, shape);
       return fromExact(name, std::move(shape));
     }
   } catch (const InputError&) {
@@ -106,7 +98,8 @@ Shape shapeOf(const std::string& name, std::string text, const std::string& exte
   } catch (const std::exception& error) {
     throw InputError(name + ": cannot be read, " + error.what());
   }
-  throw InputError(name + ": unknown extension '" + extension + "', must be " + kShapeFiles);
+  throw InputError(name + ": unknown extension '" + extension + "', must be " + kShapeFiles +
+                   "; planes and map also read volumes, " + kVolumeFiles);
 }
 
 }  // namespace
@@ -137,7 +130,8 @@ Shape loadShape(const std::string& path) {
     extension = extensionOfContent(text);
     if (extension.empty()) throw InputError(name + ": is of no known kind, must be " + kShapeFiles);
   }
-  return shapeOf(name, std::move(text), extension);
+  if (extension != ".glb" && !isBinarySTL(text)) text = withoutMark(std::move(text));
+  return shapeOf(name, text, extension);
 }
 
 Shape surfaceOf(const std::string& path, const ScalarGrid& volume, double value) {

@@ -39,10 +39,15 @@ ExactShape readOBJ(const std::string& path, std::string_view text);
 /// there are. Lines that begin with # or // are comments.
 ExactShape readColumns(const std::string& path, std::string_view text);
 
-/// The triangles of the scene of a .stl or .glb file in its frame, by Assimp, or the vertices of a scene without
-/// triangles; those of equal coordinates are one. In the module pcl_symmetry_mesh_files.
-/// \param text changed.
-/// \param kind "stl" or "glb".
-extern "C" void readMesh(const std::string& path, std::string& text, const std::string& kind, ExactShape& shape);
+/// The triangles of an STL file, binary or text; corners of equal coordinates are one. Where the count of a binary file
+/// is not that of its size, as of programs that write it too early, the size counts.
+ExactShape readSTL(const std::string& path, std::string_view content);
+
+/// \return whether the content is a binary STL file whose count is that of its size.
+bool isBinarySTL(std::string_view content);
+
+/// The triangles of the scene of a .glb file in its frame, by Assimp, or the vertices of a scene without triangles;
+/// those of equal coordinates are one. In the module pcl_symmetry_mesh_files.
+extern "C" void readGLB(const std::string& path, const std::string& content, ExactShape& shape);
 
 }  // namespace pcl_symmetry::apps

@@ -1,9 +1,6 @@
-/// Pictures as arrays of pixels, read from PNG and binary PGM and written as PNG; the contours that they show; values
-/// on a box of cells, for ParaView and other viewers of volumes. Needs no display.
+/// Pictures as arrays of pixels, read from PNG and binary PGM and written as PNG; values on a box of cells, for
+/// ParaView and other viewers of volumes. Needs no display.
 #pragma once
-
-#include <pcl/point_cloud.h>
-#include <pcl/point_types.h>
 
 #include <Eigen/Core>
 #include <cstdint>
@@ -48,17 +45,6 @@ RasterImage readImage(const std::string& path);
 /// Writes a PNG whole.
 /// \throws InputError if the file cannot be written.
 void writeImage(const RasterImage& image, const std::string& path);
-
-/// The pixels of a picture that do not belong to the ground, at (x, height - 1 - y, 0) in pixels. The ground is what
-/// most pixels at the border are, dark or light (of two halves of the range).
-/// \param filled every such pixel; otherwise those beside the ground or the border: the outline.
-/// \throws InputError where there is none.
-/// \param name of the picture in the error.
-pcl::PointCloud<pcl::PointXYZ>::Ptr contourOfImage(const RasterImage& image, bool filled, const std::string& name);
-
-/// \param path a picture (.png, .pgm) or a cloud that loadShape() reads.
-/// \throws InputError naming the file, what is wrong and the rule.
-pcl::PointCloud<pcl::PointXYZ>::Ptr loadContour(const std::string& path, bool filled);
 
 struct VolumeImage {
   std::string name;           ///< of the values

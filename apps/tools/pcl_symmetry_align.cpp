@@ -5,8 +5,11 @@
 
 #include <algorithm>
 #include <cmath>
+<<<<<<< HEAD
 #include <exception>
 #include <fstream>
+=======
+>>>>>>> main
 #include <nlohmann/json.hpp>
 #include <numeric>
 #include <optional>
@@ -174,8 +177,7 @@ struct Landmarks {
 };
 
 Landmarks readLandmarks(const std::string& path, const Eigen::Vector3d& shift) {
-  std::ifstream file(path);
-  if (!file) throw InputError(path + ": cannot be opened");
+  std::istringstream file(readTextFile(path));
   Landmarks landmarks;
   std::string line;
   for (int number = 1; std::getline(file, line); ++number) {

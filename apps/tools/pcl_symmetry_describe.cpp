@@ -82,23 +82,20 @@ pcl::PCLPointCloud2 describe(const InputShape& input, const DescribeOptions& opt
     throw InputError(input.path + ": " + reason);
   const std::optional<Visibility> seen =
       detail::seenSpace(cloud, selected.points, shifted(options.common.viewpoint, input.shift()));
-  DescriptionOptions description;
-  description.seed = options.common.librarySeed();
-  description.num_threads = 1;
-  description.max_points = options.num_points;
-  Eigen::Isometry3d T_frame_input = Eigen::Isometry3d::Identity();
-  if (options.type == "signature" || !options.input_axes) {
-    const ShapeDescription shape = describeShape(selected.points, description, seen ? &*seen : nullptr);
-    if (options.type == "signature")
-      return toBlob({shape.signatures.col(0).data(), shape.signatures.col(1).data()}, &ShapeSignature20736::signature);
-    T_frame_input = shape.frame.T_canonical_input;
-  } else {
-    T_frame_input.translation() = -centerOfMass(selected.points);
+  const Visibility* const visibility = seen ? &*seen : nullptr;
+  if (options.type == "signature") {
+    DescriptionOptions description;
+    description.seed = options.common.librarySeed();
+    description.num_threads = 1;
+    description.max_points = options.num_points;
+    const ShapeDescription shape = describeShape(selected.points, description, visibility);
+    return toBlob({shape.signatures.col(0).data(), shape.signatures.col(1).data()}, &ShapeSignature20736::signature);
   }
   DescriptorOptions descriptor;
   descriptor.seed = options.common.librarySeed();
   descriptor.num_threads = 1;
   descriptor.by_equation_1 = options.by_equation_1;
+  const Eigen::Isometry3d T_frame_input = descriptorFrame(selected.points, options.input_axes, visibility, descriptor);
   const SymmetryDescriptors all = symmetryDescriptors(selected.points, T_frame_input, descriptor);
   if (options.type == "prst") return toBlob({all.prst.data()}, &PRSTSignature32768::prst);
   if (options.type == "prsd") return toBlob({all.prsd.data()}, &PRSDSignature1024::prsd);

@@ -267,7 +267,6 @@ void giveMap(SymmetryMaximaRefinement<pcl::PointXYZ>& refinement, const InputSha
   if (!options.as_published)
     transform.setMapSize(detection.expert.num_theta, detection.expert.num_phi, detection.expert.num_radius);
   transform.setMethod(methodNamed(options.method));
-  if (options.as_published) transform.setNearDistance(0.0);
   transform.setRandomSeed(detection.seed);
   transform.setNumberOfThreads(detection.num_threads);
   transform.setViewpoint(refinement.getViewpoint());

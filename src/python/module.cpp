@@ -201,15 +201,14 @@ PlaneSearch volumePlanes(const VolumeArray& volume, const Eigen::Vector3d& spaci
 }
 
 /// \return PRST, PRSD and GEDT.
-std::vector<std::vector<float>> descriptors(const AnyArray& points, bool input_axes, bool by_equation_1,
-                                            std::uint64_t seed, int threads) {
+std::vector<std::vector<float>> descriptors(const AnyArray& points, const py::object& viewpoint, bool input_axes,
+                                            bool by_equation_1, std::uint64_t seed, int threads) {
   const InputPoints input("points", points, 20'000, seed);
+  const std::optional<Visibility> seen = seenFrom(input.points(), viewpoint);
   const Computing computing;
   auto options = optionsWith<DescriptorOptions>(seed, threads);
   options.by_equation_1 = by_equation_1;
-  Eigen::Isometry3d T_frame_input(Eigen::Translation3d(-centerOfMass(input.points())));
-  if (!input_axes)
-    T_frame_input = symmetryFrame(input.points(), optionsWith<FrameOptions>(seed, threads)).T_canonical_input;
+  const Eigen::Isometry3d T_frame_input = descriptorFrame(input.points(), input_axes, seen ? &*seen : nullptr, options);
   SymmetryDescriptors all = symmetryDescriptors(input.points(), T_frame_input, options);
   return {std::move(all.prst), std::move(all.prsd), std::move(all.gedt)};
 }
@@ -342,11 +341,14 @@ Eigen::MatrixXf describe(const AnyArray& points, const py::object& viewpoint, st
 }
 
 SymmetryMap transform(const AnyArray& points, const std::array<int, 3>& bins, const std::string& method,
-                      const Eigen::Vector3d& center, double radius, double sigma, bool as_published, std::uint64_t seed,
-                      int threads) {
+                      const Eigen::Vector3d& center, double radius, double sigma, int cells, std::int64_t samples,
+                      double refined_share, bool as_published, std::uint64_t seed, int threads) {
   const InputPoints input("points", points, 0, seed);
   PlanarTransformOptions options;
   options.method = methodNamed(method);
+  if (samples != 0) options.voting.num_pairs = samples;
+  if (samples != 0) options.sampled.num_samples = static_cast<int>(std::min<std::int64_t>(samples, 10'000'000));
+  options.rotational.refined_share = refined_share;
   if (as_published) options.voting.near_distance = 0.0;
   options.setSeed(seed);
   options.setNumThreads(threads);
@@ -355,16 +357,23 @@ SymmetryMap transform(const AnyArray& points, const std::array<int, 3>& bins, co
   edt_options.center = center;
   edt_options.radius = radius;
   edt_options.sigma = sigma;
+  edt_options.num_cells = cells;
   edt_options.num_threads = threads;
   const GaussianEdt edt(input.points(), edt_options);
   const PlaneGrid grid(bins[0], bins[1], bins[2], edt.center(), edt.radius());
   return planarTransform(edt, grid, centerOfMass(input.points()), options);
 }
 
-std::vector<RankedView> viewpoints(const std::vector<std::pair<Eigen::Vector3d, double>>& planes) {
-  std::vector<ViewPlane> view_planes;
-  for (const auto& [normal, score] : planes) view_planes.push_back({normal, score});
-  return bestViews(view_planes);
+/// Normals or directions, and weights.
+using Weighted = std::vector<std::pair<Eigen::Vector3d, double>>;
+
+std::vector<RankedView> viewpoints(const Weighted& planes, const Weighted& axes, const Weighted& maxima) {
+  const auto weighted = [](const Weighted& rows) {
+    std::vector<ViewPlane> result;
+    for (const auto& [normal, weight] : rows) result.push_back({normal, weight});
+    return result;
+  };
+  return bestViews(viewPlanes(weighted(planes), weighted(axes), weighted(maxima)));
 }
 
 /// \return for each query the row of the closest point, and its distance in input units.
@@ -409,11 +418,11 @@ PYBIND11_MODULE(_pcl_symmetry, module) {
   add(module, "rotations", &rotations, "points", "tolerance", "absolute_tolerance", "max_feature", "seed", "threads",
       "mesh");
   add(module, "rotations_of", &rotationsOf, "discrete", "continuous");
-  add(module, "transform", &transform, "points", "bins", "method", "center", "radius", "sigma", "as_published", "seed",
-      "threads");
+  add(module, "transform", &transform, "points", "bins", "method", "center", "radius", "sigma", "cells", "samples",
+      "refined_share", "as_published", "seed", "threads");
   add(module, "local_symmetry", &localSymmetryOf, "points", "at", "scale", "seed", "threads");
   add(module, "why_unanswerable", &whyUnanswerableOf, "points");
-  add(module, "descriptors", &descriptors, "points", "input_axes", "by_equation_1", "seed", "threads");
+  add(module, "descriptors", &descriptors, "points", "viewpoint", "input_axes", "by_equation_1", "seed", "threads");
   add(module, "describe", &describe, "points", "viewpoint", "seed", "threads");
   add(module, "segment", &segment, "points", "faces", "parts", "method", "depth", "as_published", "progress", "seed",
       "threads");
@@ -421,7 +430,7 @@ PYBIND11_MODULE(_pcl_symmetry, module) {
   add(module, "symmetrize", &symmetrize, "points", "faces", "plane", "half", "threads");
   add(module, "mirrored_half", &mirroredHalfOf, "vertices", "faces", "plane", "left");
   add(module, "profile", &revolutionProfileOf, "points", "point", "direction", "num_points");
-  add(module, "viewpoints", &viewpoints, "planes");
+  add(module, "viewpoints", &viewpoints, "planes", "axes", "maxima");
   add(module, "sample_mesh", &sampleMesh, "vertices", "faces", "num_points", "seed");
   add(module, "closest", &closest, "points", "queries");
   module.attr("__version__") = PCL_SYMMETRY_VERSION;

@@ -5,6 +5,7 @@
 
 #include <utility>
 
+#include "pcl_symmetry/core/local_maxima.h"
 #include "pcl_symmetry/core/rotational_symmetry.h"
 #include "pcl_symmetry/core/symmetrized_shape.h"
 #include "pcl_symmetry/core/symmetry_map.h"
@@ -82,6 +83,13 @@ void addPlaneSearch(py::module_& module) {
                                  supports.push_back(toArray(plane.point_support));
                                return supports;
                              })
+      .def_property_readonly("maxima",
+                             [](const PlaneSearch& s) {
+                               std::vector<std::pair<Eigen::Vector3d, double>> maxima;
+                               for (const LocalMaximum& maximum : findLocalMaxima(s.found.map, {}, 1))
+                                 maxima.emplace_back(maximum.plane.normal(), maximum.value);
+                               return maxima;
+                             })
       .def_property_readonly("rows", [](const PlaneSearch& s) { return toArray(s.rows); })
       .def_property_readonly("evidence", [](const PlaneSearch& s) { return planeEvidence(s.found); })
       .def_property_readonly("rotation_evidence", [](const PlaneSearch& s) { return rotationEvidence(s.found); });
@@ -122,6 +130,7 @@ void addRotations(py::module_& module) {
       .def_readonly("support", &ObjectSymmetries::support)
       .def_readonly("confidence", &ObjectSymmetries::confidence)
       .def_readonly("tolerance", &ObjectSymmetries::tolerance)
+      .def_readonly("reason", &ObjectSymmetries::reason)
       .def(
           "equivalents",
           [](const ObjectSymmetries& s, const RowMajor4& pose, double step) {

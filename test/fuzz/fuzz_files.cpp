@@ -14,9 +14,9 @@
 #include "io/shape_input.h"
 #include "io/shape_readers.h"
 
-// The module is linked, not loaded.
-void* pcl_symmetry::apps::addressInModule(const std::string&, const char*) {
-  return reinterpret_cast<void*>(&readMesh);
+// The modules are linked, not loaded.
+void* pcl_symmetry::apps::addressInModule(const std::string&, const char* function) {
+  return std::string(function) == "readGLB" ? reinterpret_cast<void*>(&readGLB) : reinterpret_cast<void*>(&readVTI);
 }
 
 namespace {
@@ -43,8 +43,7 @@ void readModelsSymmetries(const std::string& path) {
 }
 
 void readVoxels(const std::string& path) {
-  Volume volume;
-  readVolume(path, volume);
+  const Volume volume = loadVolume(path);
   FUZZ_CHECK(volume.grid && volume.grid->numVoxels() > 0);
 }
 
@@ -57,6 +56,7 @@ Kind kindOf(const std::string& name) {
   static const std::map<std::string, Kind> kinds = {
       {"nii", {".nii", readVoxels}},
       {"nii.gz", {".nii.gz", readVoxels}},
+      {"mgh", {".mgh", readVoxels}},
       {"nrrd", {".nrrd", readVoxels}},
       {"mha", {".mha", readVoxels}},
       {"vti", {".vti", readVoxels}},

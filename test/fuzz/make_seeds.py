@@ -145,6 +145,8 @@ def volume_files():
     values, text = struct.pack("<240f", *numbers), " ".join(map(str, numbers))
     yield "nii", [nifti(values)]
     yield "nii.gz", [gzip.compress(nifti(values), mtime=0)]
+    frame = struct.pack(">7ih15f", 1, 12, 5, 4, 1, 3, 0, 1, 2, 2, 3, 0, 1, 0, -1, 0, 0, 0, 0, 1, 5, 7, -9)
+    yield "mgh", [frame.ljust(284, b"\0") + struct.pack(">240f", *numbers)]
     yield "nrrd", [nrrd("raw", values), nrrd("gzip", gzip.compress(values, mtime=0))]
     yield "mha", [meta_image(values), meta_image(zlib.compress(values), len(zlib.compress(values)))]
     yield "vti", [vtk_image(text)]

@@ -15,7 +15,7 @@ Checks README.md, CONTRIBUTING.md and the pages of apps, include, src and test, 
   links           relative links and pictures, and paths of the repository in code marks, lead to what exists.
 
 Commands run in FOLDER, page by page, in order. It holds cow.off, bull.off, elephant.off and hand.off (Debian package
-libcgal-demo), the shapes of apps/gallery/shapes.py, contour.awk and prism.awk, and the scans in $PCL_SYMMETRY_SCANS
+libcgal-demo), the shapes of apps/gallery/shapes.py, planar.py and prism.awk, and the scans in $PCL_SYMMETRY_SCANS
 (default ../shared/data/scans) where that folder exists. A block after <!-- needs: FILE --> is skipped where FILE is absent.
 With --no-models none of these files is made.
 
@@ -59,7 +59,7 @@ skipped() {
 models_into() {
   bash apps/fetch_meshes.sh "$1" cow bull elephant hand || { echo "check_pages.sh: no meshes, nothing checked"; exit 77; }
   /usr/bin/python3 apps/gallery/shapes.py "$1" || { echo "check_pages.sh: no shapes, nothing checked"; exit 77; }
-  cp apps/gallery/*.awk "$1"
+  cp apps/gallery/*.awk apps/gallery/planar.py "$1"
   if [[ -d $scans ]]; then cp "$scans"/*.pcd "$1"; fi
 }
 

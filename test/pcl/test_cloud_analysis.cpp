@@ -11,7 +11,6 @@
 #include "pcl_symmetry/impl/cloud_conversion.hpp"
 #include "pcl_symmetry/object_symmetries.h"
 #include "pcl_symmetry/planar_symmetry_transform.h"
-#include "pcl_symmetry/planar_symmetry_transform_2d.h"
 #include "pcl_symmetry/symmetry_alignment.h"
 #include "pcl_symmetry/symmetry_detection.h"
 #include "pcl_symmetry/symmetry_maxima_refinement.h"
@@ -72,8 +71,6 @@ TEST(CloudAnalysis, EveryClassSaysWhyDataHoldNoAnswer) {
     expectNone(Copy(), [](auto& copy) { return copy.compute().cols() == 0 && copy.getUsedIndices().empty(); });
     expectNone(PlanarSymmetryTransform<P>(),
                [](auto& transform) { return transform.compute().empty() && !transform.getDistanceTransform(); });
-    expectNone(PlanarSymmetryTransform2D<P>(),
-               [](auto& transform) { return transform.compute().empty() && transform.getLines().empty(); });
     expectNone(AxialSymmetryTransform<P>(), [](auto& transform) {
       return transform.compute().empty() && transform.computeCenters().values.empty();
     });
@@ -120,9 +117,6 @@ TEST(CloudAnalysis, EveryClassNamesFieldValueAndRule) {
   EXPECT_EQ(messageOf([&] { planar.setNumPairs(0); }), "num_pairs = 0, must be >= 1");
   EXPECT_EQ(messageOf([&] { planar.setNumberOfThreads(-2); }), "num_threads = -2, must be >= 0");
   EXPECT_EQ(messageOf([&] { planar.setBounds(Eigen::Vector3d::Zero(), 0.0); }), "radius = 0, must be finite and > 0");
-  PlanarSymmetryTransform2D<P> in_plane;
-  EXPECT_EQ(messageOf([&] { in_plane.setGridSize(2); }), "num_cells = 2, must be in [8, 4096]");
-  EXPECT_EQ(messageOf([&] { in_plane.setSigma(-1.0); }), "sigma = -1, must be finite and >= 0");
   AxialSymmetryTransform<P> axial;
   EXPECT_EQ(messageOf([&] { axial.setFolds({1}); }), "fold = 1, must be 0 or in [2, 60]");
   EXPECT_EQ(messageOf([&] { axial.setNumCells(4); }), "num_cells = 4, must be in [8, 512]");

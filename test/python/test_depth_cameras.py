@@ -21,7 +21,7 @@ except ImportError:
     sys.exit(77)
 
 import pcl_symmetry
-from test_pcl_symmetry import Mesh, bar, box, box_mesh, bumped, has_pcl
+from test_pcl_symmetry import Mesh, bar, box, box_mesh, bumped, has_pcl, lamp
 
 INTRINSICS = (300.0, 300.0, 160.0, 120.0)
 
@@ -127,6 +127,21 @@ class SameBytes(unittest.TestCase):
             head = "NRRD0004\ntype: float\ndimension: 3\nsizes: 32 36 30\nspace dimension: 3\nspace directions: (2,0,0) (0,2,0) (0,0,3)\n"
             volume.write_bytes((head + "space origin: (5,7,-9)\nencoding: raw\nendian: little\n\n").encode() + body.tobytes(order="F"))
             self.assert_same("volume", volume, (), pcl_symmetry.planes(volume=body, spacing=(2, 2, 3), origin=(5, 7, -9)))
+
+    def test_of_descriptors_of_twelve_shapes(self):
+        tool, kinds = Path(os.environ["TOOLS"]) / "pcl_symmetry_describe", ("prst", "prsd", "gedt")
+        random = np.random.default_rng(1)
+        for i in range(12):
+            points = lamp(2000, i) if i % 2 else box(random.uniform(0.2, 1, 3), 2000, i)
+            turn = np.linalg.qr(random.normal(size=(3, 3)))[0]
+            points = (points @ turn).astype(np.float32)
+            with self.subTest(i), tempfile.TemporaryDirectory() as folder:
+                write_pcd(Path(folder) / "cloud.pcd", points)
+                for kind, values in zip(kinds, pcl_symmetry.descriptors(points)):
+                    command = [tool, kind, "cloud.pcd", "-type", kind, "-quiet"]
+                    subprocess.run(command, cwd=folder, check=True, capture_output=True)
+                    body = (Path(folder) / kind / "cloud.pcd").read_bytes().split(b"DATA binary\n", 1)[1]
+                    np.testing.assert_array_equal(np.frombuffer(body, "<f4"), values.ravel(), err_msg=kind)
 
 
 class DepthImages(unittest.TestCase):

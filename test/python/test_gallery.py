@@ -18,6 +18,7 @@ import pcl_symmetry
 
 GALLERY = Path(__file__).resolve().parents[2] / "apps" / "gallery"
 sys.path.insert(0, str(GALLERY))
+import planar  # noqa: E402
 import shapes  # noqa: E402
 
 
@@ -43,6 +44,28 @@ class Shapes(unittest.TestCase):
         self.assertIn("usage", result.stderr)
 
 
+class Planar(unittest.TestCase):
+    def test_a_polygon_has_a_line_through_each_corner_and_edge(self):
+        for corners in (3, 4, 5):
+            lines = planar.LineTransform(planar.contour(f"polygon {corners}") + (2, 1)).lines(least=0.99)
+            self.assertEqual(len(lines), corners)
+            step = np.diff(np.sort(lines[:, 0]))
+            np.testing.assert_allclose(step, np.pi / corners, atol=1e-3)
+            normals = np.array([np.cos(lines[:, 0]), np.sin(lines[:, 0])]).T
+            np.testing.assert_allclose(normals @ (2, 1), lines[:, 1], atol=2e-3, err_msg="through the center")
+
+    def test_noise_lowers_and_a_handle_moves_no_line(self):
+        noise = [planar.LineTransform(planar.contour(f"starfish {size}")).lines()[0, 2] for size in (0, 0.02, 0.06)]
+        self.assertEqual(noise, sorted(noise, reverse=True))
+        mug = planar.LineTransform(planar.contour("mug 0.45")).lines()[:2]
+        np.testing.assert_allclose(mug[:, 0], (np.pi / 2, 0), atol=2e-3)
+
+    def test_the_transform_agrees_with_the_sum_over_cells(self):
+        transform = planar.LineTransform(planar.contour("flower 4"))
+        for t, k in ((0, 127), (31, 100), (90, 140)):
+            self.assertAlmostEqual(transform.values[t, k], transform.value(transform.theta[t], transform.r[k]), delta=2e-3)
+
+
 class MedialAxis(unittest.TestCase):
     def test_of_a_rectangle_is_a_ridge_with_a_branch_to_each_corner(self):
         try:
@@ -52,8 +75,8 @@ class MedialAxis(unittest.TestCase):
         across, along = np.arange(-1, 1.001, 0.01), np.arange(-0.49, 0.491, 0.01)
         border = [(x, y) for x in across for y in (0.5, -0.5)] + [(x, y) for y in along for x in (1, -1)]
         with tempfile.TemporaryDirectory() as folder:
-            contour, picture = Path(folder) / "rectangle.pcd", Path(folder) / "axis.png"
-            contour.write_text("DATA ascii\n" + "".join(f"{x:.2f} {y:.2f} 0\n" for x, y in border))
+            contour, picture = Path(folder) / "rectangle.txt", Path(folder) / "axis.png"
+            np.savetxt(contour, border)
             subprocess.run([sys.executable, "-B", GALLERY / "drawings.py", "medial_axis", picture, contour], check=True,
                            stdout=subprocess.DEVNULL)
             image = matplotlib.image.imread(picture)[:, :, :3].max(axis=2)

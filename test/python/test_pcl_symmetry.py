@@ -368,6 +368,7 @@ class OtherFunctions(unittest.TestCase):
             self.assertEqual(map_.values.shape, (32, 64, 33))
             best = np.unravel_index(map_.values.argmax(), map_.values.shape)
             self.assertGreater(np.abs(map_.plane(*map(int, best))[:3]).max(), 0.98)
+            np.testing.assert_allclose(map_.prst() ** 2, (1 + map_.values) / 2, atol=1e-6, err_msg="equation 1")
         with self.assertRaises(IndexError):
             map_.plane(32, 0, 0)
         with self.assertRaisesRegex(ValueError, "method = guess, must be"):
@@ -384,6 +385,16 @@ class OtherFunctions(unittest.TestCase):
     def test_views_show_three_sides_of_a_box(self):
         views = pcl_symmetry.viewpoints(pcl_symmetry.planes(box()).planes)
         self.assertGreater(np.abs(views[0].direction).min(), 0.3)
+
+    def test_a_body_of_revolution_is_seen_from_its_side_a_little_from_above(self):
+        random = np.random.default_rng(1)
+        height, angle = random.uniform(0, 1, 6000), random.uniform(0, 2 * np.pi, 6000)
+        radius = 0.3 + 0.2 * height
+        cone = np.c_[radius * np.cos(angle), radius * np.sin(angle), height].astype(np.float32)
+        found = pcl_symmetry.planes(cone, approximate=True)
+        self.assertEqual(len(found.axes), 1, "its planes through the axis are no planes of the list")
+        best = pcl_symmetry.viewpoints(found)[0].direction
+        self.assertLess(abs(best[2]), 0.8, "the axis is the strongest symmetry")
 
 
 def lamp(num_points=4000, seed=1):

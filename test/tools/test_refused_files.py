@@ -113,6 +113,14 @@ FILES = {
     "corner_0.obj": ("v 0 0 0\nv 2 0 0\nv 2 1 0\nv 0 1 0\nf 1 2 0\n", "a corner of face 0 = 0"),
     "garbage.stl": (GARBAGE, "cannot be read"),
     "cut.stl": (b" " * 80 + b"\xff\xff\xff\x7f" + RAW, "cannot be read"),
+    "half.stl": (b" " * 80 + struct.pack("<I", 4) + b"\0" * 100, "cut off: it holds 2 of 4 triangles"),
+    "tail.stl": (b" " * 80 + struct.pack("<I", 1) + b"\0" * 125, "its count is 1 triangles, but 125 bytes follow"),
+    "half_text.stl": ("solid s\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\nendloop\n", "ends before endsolid"),
+    "more.ply": (ply("binary_little_endian", VERTEX, RAW * 2), "holds more than its header says"),
+    "more_text.ply": (ply("ascii", VERTEX, "1 2 3\n4 5 6\n"), "holds more than its header says"),
+    "more.off": ("OFF\n3 1 0\n" + TRIANGLE + "3 0 1 2\n3 0 1 2\n", "more faces than its header says, 1"),
+    "more.pcd": (pcd(1, "ascii\n1 2 3\n4 5 6\n"), "holds more points than POINTS = 1"),
+    "more_binary.pcd": (pcd(1, "binary\n", RAW * 2), "holds more points than POINTS = 1"),
     "letters.csv": ("x,y,z\n1,2,3\n1,b,3\n", "line 3 has y = b, must be a number"),
     "short_row.csv": ("1,2,3\n1,2\n", "line 2 has 2 columns, must have at least 3"),
     "two_columns.xyz": ("1 2\n", "line 1 = 1 2, must hold three numbers"),
@@ -136,6 +144,7 @@ FILES = {
     "length.glb": (glb()[:12] + b"glTF" + glb()[16:], "is cut off"),
     "deep.glb": (glb('{"attributes":{"POSITION":0},"extras":' + "[" * 100000 + "]" * 100000 + "}"), "nested too deeply"),
     "unknown.abc": ("1 2 3\n", "unknown extension '.abc', must be .pcd"),
+    "known.xyy": ("1 2 3\n", "volumes, .nii"),
     "none": ("1 2 3\n", "unknown extension ''"),
     "missing.pcd": (None, "no such file")}
 for encoding in "ascii", "binary", "binary_compressed":

@@ -1,10 +1,4 @@
-"""The tool of scenes: objects on a table as a camera sees them, and frames that arrive in a folder."""
-import json
-import os
-import shutil
-import signal
-import subprocess
-import time
+"""The tool of scenes: objects on a table as a camera sees them."""
 import unittest
 
 import tool_run
@@ -88,60 +82,6 @@ class Scene(ToolTest):
         together = self.report(stack, flags, "-no_separation")
         self.assertEqual([len(together["objects"]), together["junctions"]], [1, []])
 
-    def watcher(self, folder):
-        """The tool as a program that runs beside the test."""
-        self.lines, messages = self.folder / "lines", self.folder / "messages"
-        with open(self.lines, "wb") as out, open(messages, "wb") as err:
-            process = subprocess.Popen([tool_run.TOOLS / "pcl_symmetry_scene", "-watch", folder, *"-max_points 300 -no_frames".split(),
-                                        "-threads", "1"], stdout=out, stderr=err)
-        self.addCleanup(process.kill)
-        self.wait_for(lambda: b"Watching" in messages.read_bytes())
-        return process
-
-    def wait_for(self, condition):
-        for _ in range(1200):
-            if condition():
-                return
-            time.sleep(0.05)
-        self.fail("not within a minute")
-
-    def test_watches_a_folder(self):
-        content = self.scene.read_bytes()
-        watched = self.write("frames/before.pcd", content).parent
-        process = self.watcher(watched)
-
-        def wait_for_lines(count):
-            self.wait_for(lambda: self.lines.read_bytes().count(b"\n") >= count)
-        with open(watched / "slow.pcd", "wb") as slow:  # a file is not read before it is closed
-            slow.write(content[:len(content) // 2])
-            slow.flush()
-            time.sleep(0.3)
-            self.assertEqual(self.lines.read_bytes(), b"")
-            slow.write(content[len(content) // 2:])
-        wait_for_lines(1)
-        for name in ("bad.pcd", "notes.txt", ".hidden.pcd"):
-            self.write(f"frames/{name}", "no cloud")
-        wait_for_lines(2)
-        shutil.copy(self.scene, watched / "part")
-        os.rename(watched / "part", watched / "slow.pcd")  # in place of the first one
-        wait_for_lines(3)
-        process.send_signal(signal.SIGTERM)
-        self.assertEqual(process.wait(), 0)
-        found = [json.loads(line) for line in self.lines.read_text().splitlines()]
-        self.assertEqual([line["file"] for line in found], [str(watched / name) for name in ("slow.pcd", "bad.pcd", "slow.pcd")])
-        self.assertEqual(len(found[0]["objects"]), 2)
-        self.assertIn("bad.pcd", found[1]["error"])
-        self.assertEqual(found[2]["objects"], found[0]["objects"])
-
-    def test_ends_its_watch_on_a_signal_and_with_its_folder(self):
-        for number in (signal.SIGINT, signal.SIGHUP):
-            process = self.watcher(self.folder)
-            process.send_signal(number)
-            self.assertEqual(process.wait(), 0)
-        self.fails(1, "none: cannot be watched", "-watch none")
-        self.run_tool(self.scene, "-watch .", code=2)
-        self.fails(2, "missing argument 'input'")
-
     def test_refuses_what_is_no_scene(self):
         mesh = self.write("t.off", "OFF\n3 1 3\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n")
         self.fails(1, f"{mesh}: is a mesh, must be a cloud as a sensor sees it", mesh)
@@ -149,6 +89,7 @@ class Scene(ToolTest):
         self.run_tool(self.scene, "-min_points 3", code=2)
         self.fails(2, "-ground = 0,0,1, must be four numbers A,B,C,D", self.scene, "-ground 0,0,1")
         self.run_tool(self.scene, "out.txt", code=2)
+        self.run_tool(code=2)
 
 
 if __name__ == "__main__":

@@ -82,6 +82,29 @@ class ShapeInput(ToolTest):
             vertices, polygons, _ = self.mesh("binary.stl", triangle + behind)
             np.testing.assert_array_equal(vertices[polygons[0]], CORNERS[:3])
 
+    def test_count_of_binary_stl_may_be_wrong_where_its_size_tells(self):
+        for count in (0, 1, 2**32 - 1):
+            triangles = b"".join(struct.pack("<12f 2x", 0, 0, 1, *CORNERS[corners].ravel()) for corners in ([0, 1, 2], [0, 2, 3]))
+            vertices, polygons, _ = self.mesh("count.stl", b"exported".ljust(80) + struct.pack("<I", count) + triangles)
+            self.assertEqual((len(vertices), len(polygons)), (4, 2))
+            self.assertIn(f"its count, {count} for 2 triangles", self.error)
+
+    def test_marks_of_text_are_no_text(self):
+        stl = "".join(f"facet normal 0 0 1\nouter loop\n{rows('vertex {} {} {}' + chr(10), CORNERS[corners])}endloop\nendfacet\n"
+                      for corners in ([0, 1, 2], [0, 2, 3]))
+        texts = {"a.obj": rows("v {} {} {}\n", CORNERS) + "f 1 2 3\nf 1 2 3 4\n", "a.off": "OFF\n4 2 0\n" + SQUARE + FACES,
+                 "a.ply": ply("ascii", "element vertex 4\n" + XYZ + FACE_LIST, SQUARE, FACES).decode(), "a.stl": f"solid s\n{stl}endsolid s\n"}
+        for encoding in ("utf-8-sig", "utf-16"):
+            for name, text in texts.items():
+                vertices, polygons, _ = self.mesh(name, text.encode(encoding))
+                self.assertEqual((len(vertices), len(polygons)), (4, 2), (name, encoding))
+            self.assert_points("a.xyz", rows().encode(encoding))
+            self.assert_points("a.pcd", pcd(30, "ascii\n", rows()).decode().encode(encoding))
+
+    def test_coordinates_may_be_in_capitals(self):
+        self.assert_points("a.ply", ply("ascii", "element vertex 30\n" + "".join(f"property float {c}\n" for c in "XYZ"), rows()))
+        self.assert_points("a.pcd", pcd(30, "ascii\n", rows(), fields="X Y Z"))
+
     def test_points_of_range_grids(self):
         elements = (f"obj_info num_cols 31\nobj_info num_rows 1\nelement vertex 30\n{XYZ}"
                     "element range_grid 31\nproperty list uchar int vertex_indices\n")

@@ -1,4 +1,5 @@
 """CT and MR volumes as files: the same plane from every format, and a sentence for bad ones."""
+import gzip
 import struct
 import unittest
 import zlib
@@ -70,6 +71,13 @@ class Maps(ToolTest):
             self.assertGreater(report["num_points"], 500, "the border of the body")
 
 
+def mgh(data):
+    """The frame of the others by its middle."""
+    center = np.array([5, 7, -9]) + np.array([[0, -2, 0], [2, 0, 0], [0, 0, 3]]) @ np.array([44, 48, 40]) / 2
+    header = struct.pack(">7ih15f", 1, 44, 48, 40, 1, 3, 0, 1, 2, 2, 3, 0, 1, 0, -1, 0, 0, 0, 0, 1, *center)
+    return header.ljust(284, b"\0") + np.frombuffer(data, "<f4").astype(">f4").tobytes() + b"tags"
+
+
 class Volumes(ToolTest):
     tool = "planes"
 
@@ -87,6 +95,31 @@ class Volumes(ToolTest):
                 self.assertAlmostEqual(abs(b), 1, delta=1e-4, msg=name)
                 self.assertAlmostEqual(d / b, -48, delta=0.05, msg=name)
                 self.assertGreater(planes[0]["confidence"], 0.8, name)
+
+    def test_frames_of_any_handedness_and_files_apart_are_read(self):
+        header = bytearray(nifti(BODY)[:348])
+        apart = header[:344] + b"ni1\0"
+        struct.pack_into("<f", apart, 108, 0)
+        flipped = bytearray(nifti(BODY))  # both frames: that of the map counts
+        struct.pack_into("<h", flipped, 252, 1)
+        turned = bytearray(nifti(BODY))  # a rotation by 90 degrees about z alone
+        struct.pack_into("<2h6f", turned, 252, 1, 0, 0, 0, 2 ** -0.5, 5, 7, -9)
+        times = bytearray(nifti(BODY + BODY[::-1]))
+        struct.pack_into("<8h", times, 40, 4, 44, 48, 40, 2, 1, 1, 1)
+        detached = nrrd(b"")[:-1] + b"data file: a.raw\n"
+        self.write("a.raw", BODY)
+        self.write("b.raw", b"0123456789" + BODY)
+        self.write("a.img", BODY)
+        self.write("a.hdr", bytes(apart))
+        for name, content in (("both.nii", flipped), ("turned.nii", turned), ("times.nii", times), ("a.mgh", mgh(BODY)),
+                              ("a.mgz", gzip.compress(mgh(BODY))), ("a.img", None), ("a.hdr", None), ("end.nhdr", detached),
+                              ("marked.nhdr", b"\xef\xbb\xbf" + detached), ("blank.nhdr", detached + b"\n"),
+                              ("skip.nhdr", detached.replace(b"a.raw", b"b.raw\nbyte skip: 10")),
+                              ("last.nhdr", detached.replace(b"a.raw", b"b.raw\nbyte skip: -1"))):
+            planes = self.planes(self.write(name, bytes(content)) if content is not None else name)
+            _, b, _, d = planes[0]["coefficients"]
+            self.assertAlmostEqual(abs(b), 1, delta=1e-4, msg=name)
+            self.assertAlmostEqual(d / b, -48, delta=0.05, msg=name)
 
     def test_are_drawn_as_slices_and_their_surface_is_a_mesh(self):
         path = self.write("a.mha", meta_image(BODY))
@@ -135,6 +168,7 @@ class Volumes(ToolTest):
                       ("zero" + ending, write(zero), "equal"),
                       ("nan" + ending, write(nan), "finite"),
                       ("one" + ending, write(BODY[:4 * SHAPE[1] * SHAPE[2]], 1), "slices along an axis = 1")]
+        files += [("more" + ending, write(BODY + BODY[:999]), "more than the") for ending, write in FORMATS[:3]]
         for name, content, said in files:
             self.fails(1, said, self.write(name, content), "-quiet")
             self.assertEqual(self.error.count("\n"), 1, self.error)

@@ -94,7 +94,9 @@ struct ObjectSymmetries {
   std::optional<GroupName> at_twice_tolerance;            ///< with ObjectSymmetryOptions::other_tolerances
   std::vector<RejectedRotation> rejected;                 ///< what was tried and failed, the least failure first
   std::vector<std::pair<std::string, double>> timing_ms;  ///< stages in order
-  std::string reason;  ///< why there is no answer, set by detectObjectSymmetries() for clouds; empty where there is one
+  /// Why there is no answer: the points hold none, or show no surface at the tolerance, as solid samples, atoms and few
+  /// points do, with the least tolerance at which they do. Empty where there is one.
+  std::string reason;
 
   std::string name() const { return nameOf(kind, fold); }  ///< as nameOf() gives it
 
@@ -147,7 +149,8 @@ struct ObjectSymmetries {
 /// \param points 3 x N, finite, input units; at least 20 distinct ones, not all on a line, that show the object from all
 /// sides.
 /// \param options what symmetric means, and limits of the search.
-/// \return the group, in the input frame; C_1 for a shape without symmetry.
+/// \return the group, in the input frame; C_1 for a shape without symmetry, and, with a reason, confidence 0 and support
+/// 0, for points that resolve no answer.
 /// \throws std::invalid_argument for bad options, values that are not finite, too few points and points on a line.
 ObjectSymmetries objectSymmetries(const PointsRef& points, const ObjectSymmetryOptions& options = {});
 

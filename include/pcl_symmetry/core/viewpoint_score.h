@@ -13,6 +13,14 @@ struct ViewPlane {
   double weight;           ///< M(u), the symmetry score of the plane, >= 0
 };
 
+/// W of Section 5.4: planes, and what they leave out, strongest first.
+/// \param axes directions and scores of axes of revolution. Each counts as a fan of planes that weighs as two planes.
+/// \param maxima normals and values of maxima of the map, strongest first. As long as some direction has less than a fifth
+/// of the best score, the strongest whose normal is more than 60 degrees from all planes so far counts too: without the
+/// weak maximum across its axis a mug would be best seen level from the side.
+std::vector<ViewPlane> viewPlanes(std::vector<ViewPlane> planes, const std::vector<ViewPlane>& axes,
+                                  const std::vector<ViewPlane>& maxima);
+
 /// A view direction and its score.
 struct RankedView {
   Eigen::Vector3d direction;  ///< v, unit, from the object to the camera

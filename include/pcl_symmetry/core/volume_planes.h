@@ -14,13 +14,17 @@ namespace PCL_SYMMETRY_EXPORTS pcl_symmetry {
 ///
 /// In the planes returned, `score` is D, `support` the correlation c (Pearson) of f with its reflection inside the body,
 /// `seen` the share of the body whose reflection lies within the volume, and `residual` the root mean square of
-/// f(x) - f(gamma x). `confidence` is no probability here: ((c - c0) / (1 - c0))^2, where c0 is what three quarters of
-/// the planes reach that pass through the center of mass in all directions, but for those near a maximum. It is 0 for a
-/// plane like any other and 1 where both halves are equal; squared, as the variance that a correlation explains.
-/// \param options num_cells, max_candidates, max_planes, min_confidence, approximate, seed and num_threads count.
+/// f(x) - f(gamma x). No share of a surface is measured: `share` is 0, its limits are 0 and 1. `confidence` is no
+/// probability here: ((c - c0) / (1 - c0))^2, squared as the variance that a correlation explains, where c0 is the
+/// greater of two: what three quarters of the planes reach that pass through the center of mass in all directions, but
+/// for those near a maximum; and what c is on average where the body is translated as far as the plane moves its
+/// points. It falls where less than 0.6 of the body is seen, and, for planes other than the best one, by the square of
+/// the ratio of what both leave, 1 - c: the best one tells the noise.
+/// \param options num_cells, max_candidates, max_planes, min_confidence, min_possible, approximate, seed and num_threads
+/// count.
 /// \param levels the intensities that count.
-/// \return planes at least as confident as min_confidence, and with `approximate` the other maxima; best first. A
-/// volume without an answer gives a reason.
+/// \return symmetries and possible ones, and with `approximate` the other maxima; best first; without any, Detection::best.
+/// A volume without an answer gives a reason.
 /// \throws std::invalid_argument for bad options or levels.
 Detection detectVolumePlanes(const ScalarGrid& volume, const DetectionOptions& options = {},
                              const VolumeLevels& levels = {});

@@ -1,14 +1,77 @@
 #include "pcl_symmetry/core/published_planes.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "core/base/check.h"
 #include "core/base/parallel.h"
 #include "core/geometry/point_samples.h"
+#include "core/refinement/surface_matching.h"
 #include "core/transform/edt_correlation.h"
 #include "pcl_symmetry/core/iterative_symmetric_points.h"
 
 namespace pcl_symmetry {
+
+namespace {
+
+/// Means over the neighbors of each bin, by the solid angle of the bins.
+///
+/// Voting leaves 7.6 votes a bin, and near the pole single votes that weigh as much as a symmetry. Departure from the
+/// paper, which looks for maxima and takes its thresholds of 1/10 in the map as it is.
+SymmetryMap smoothed(const SymmetryMap& map, int num_threads) {
+  const PlaneGrid& grid = map.grid;
+  SymmetryMap result = map;
+  parallelBlocks(grid.numDirections(), num_threads, [&](std::size_t direction) {
+    for (int k = 0; k < grid.numRadius(); ++k) {
+      const std::size_t index = direction * grid.numRadius() + k;
+      double sum = 0.0, weights = 0.0;
+      const auto add = [&](std::size_t i) {
+        const double weight = std::sin(grid.theta(grid.bin(i).theta));
+        sum += weight * map[i];
+        weights += weight;
+        return true;
+      };
+      add(index);
+      grid.visitNeighbors(grid.bin(index), add);
+      result.values[index] = static_cast<float>(sum / weights);
+    }
+  });
+  return result;
+}
+
+/// What belongs to a maximum of the map: its bin, the neighbors that it is higher than, across borders and seams and
+/// around the pole, and all bins whose steepest ascent ends at it.
+///
+/// This is how "leaves its cell" is read (Section 4.4): the sentence protects from a refinement that runs to another
+/// maximum. A peak near the border of a cell, or wider than the slivers at the pole, has its top in a neighbor.
+class MaximumRegion {
+public:
+  MaximumRegion(const SymmetryMap& map, const PlaneGrid::Bin& bin) : map_(map), top_(map.grid.index(bin)) {}
+
+  bool holds(const ReflectionPlane& plane) const {
+    const auto cell = map_.grid.find(plane);
+    if (!cell) return false;
+    const std::size_t start = map_.grid.index(*cell);
+    const bool is_neighbor = !map_.grid.visitNeighbors(map_.grid.bin(top_), [&](std::size_t i) { return i != start; });
+    return is_neighbor || ascent(start) == top_;
+  }
+
+private:
+  std::size_t ascent(std::size_t from) const {
+    for (std::size_t highest = from;; from = highest) {
+      map_.grid.visitNeighbors(map_.grid.bin(from), [&](std::size_t i) {
+        if (map_[i] > map_[highest] || (map_[i] == map_[highest] && i < highest)) highest = i;
+        return true;
+      });
+      if (highest == from) return from;
+    }
+  }
+
+  const SymmetryMap& map_;
+  std::size_t top_;
+};
+
+}  // namespace
 
 void PublishedOptions::validate() const {
   maxima.validate();
@@ -22,33 +85,52 @@ void PublishedOptions::validate() const {
 std::vector<SymmetryPlane> publishedPlanes(const PointsRef& points, const GaussianEdt& edt, const SymmetryMap& map,
                                            const PublishedOptions& options) {
   options.validate();
+  const bool is_noisy = map.method == TransformMethod::Voting;
+  const SymmetryMap even = is_noisy ? smoothed(smoothed(map, options.num_threads), options.num_threads) : SymmetryMap();
+  const SymmetryMap& tabulated = is_noisy ? even : map;
   const ClosestPointSearch::Ptr search = makeFlannSearch(points);
   const Points surface_points = points, no_normals(3, 0);
-  const IspSurface surface{surface_points, no_normals, *search};
-  IspOptions isp;
-  isp.update = IspUpdate::PointToPoint;
-  isp.sigma = isp.final_sigma = edt.sigma();
-  isp.max_iterations = options.max_iterations;
-  std::vector<LocalMaximum> maxima = findLocalMaxima(map, options.maxima, options.num_threads);
+  const FarTest far(edt, Eigen::Vector3d::Zero(), 1.0);
+  const IspSurface surface{surface_points, no_normals, *search, nullptr, &far};
+  std::vector<LocalMaximum> maxima = findLocalMaxima(tabulated, options.maxima, options.num_threads);
   if (options.max_maxima > 0 && maxima.size() > static_cast<std::size_t>(options.max_maxima))
     maxima.erase(maxima.begin() + options.max_maxima, maxima.end());
   std::vector<SymmetryPlane> refined(maxima.size());
   std::vector<char> is_stable(maxima.size());
   parallelBlocks(maxima.size(), options.num_threads, [&](std::size_t i) {
-    const std::vector<int> samples = drawSamples(points.cols(), options.num_points, options.seed + i);
-    const IspResult end = refineSymmetricPoints(surface, samples, maxima[i].plane, isp);
-    const auto cell = map.grid.find(end.plane);
-    is_stable[i] = cell && map.grid.index(*cell) == map.grid.index(maxima[i].bin);
-    refined[i] = SymmetryPlane(end.plane);
-    refined[i].iterations = end.iterations;
+    const MaximumRegion region(tabulated, maxima[i].bin);
+    ReflectionPlane plane = maxima[i].plane;
+    IspOptions isp;
+    isp.update = IspUpdate::PointToPoint;
+    isp.sigma = isp.final_sigma = edt.sigma();
+    isp.max_iterations = 8;  // between two looks whether the plane is still in the region
+    IspResult end;
+    int iterations = 0;
+    bool stays = true;
+    // Few points show at little cost where a plane goes; it ends where all of them let it rest.
+    for (const int count : {std::min(1000, options.num_points), options.num_points}) {
+      const std::vector<int> samples = drawSamples(points.cols(), count, options.seed + i);
+      isp.error_share = count == options.num_points ? 0.5 : 0.1;
+      end.converged = false;
+      for (int k = 0; k < options.max_iterations && !end.converged && stays; k += isp.max_iterations) {
+        end = refineSymmetricPoints(surface, samples, plane, isp);
+        plane = end.plane;
+        iterations += end.iterations;
+        stays = !options.discard_unstable || region.holds(plane);
+      }
+      if (!stays) return;
+    }
+    is_stable[i] = end.converged || !options.discard_unstable;
+    refined[i] = SymmetryPlane(plane);
+    refined[i].iterations = iterations;
     refined[i].converged = end.converged;
     refined[i].residual = end.last.residual;
     refined[i].support = end.last.weight;
-    refined[i].score = correlation(edt, end.plane, 1);
+    refined[i].score = correlation(edt, plane, 1);
   });
   std::vector<SymmetryPlane> planes;
   for (std::size_t i = 0; i < refined.size(); ++i)
-    if (is_stable[i] || !options.discard_unstable) planes.push_back(refined[i]);
+    if (is_stable[i]) planes.push_back(refined[i]);
   std::stable_sort(planes.begin(), planes.end(), [](const auto& a, const auto& b) { return a.score > b.score; });
   return planes;
 }
@@ -58,7 +140,6 @@ SymmetryMap publishedMap(const PointsRef& points, const GaussianEdt& edt, Transf
   constexpr int kNumBins = 64;
   PlanarTransformOptions options;
   options.method = method;
-  options.voting.near_distance = 0.0;
   options.setSeed(seed);
   options.setNumThreads(num_threads);
   const PlaneGrid grid(kNumBins, kNumBins, kNumBins, edt.center(), edt.radius());

@@ -27,10 +27,14 @@ struct VolumeRules {
   double chance_angle = 0.26;            ///< radians: planes closer to a maximum are left out of these
   double chance_quantile = 0.75;         ///< of their correlations: c0
   double most_chance = 0.97;             ///< a body whose planes correlate like this is round
-  double least_seen = 0.5;               ///< share of the body that a plane has to compare
+  double least_seen = 0.25;              ///< share of the body that a plane has to compare
+  double enough_seen = 0.6;              ///< share from which on it counts in full, in proportion from ...
+  double nothing_seen = 0.1;             ///< ... this one on: a small piece alone is symmetric by chance
+  int num_translations = 6;              ///< distances that a plane is compared with, each both ways
+  double least_residual = 0.01;          ///< 1 - c that interpolation leaves of equal halves
   /// Squared residuals that the squared slope of f per voxel has to exceed for a pair to count more than half.
   double flat = 2.0;
-  double merge_angle = 0.07;   ///< radians: maxima closer than this, and ...
+  double merge_angle = 0.12;   ///< radians: maxima closer than this, and ...
   double merge_offset = 0.04;  ///< ... than this share of the radius in offset, are one
 };
 constexpr VolumeRules kRules;
@@ -77,28 +81,28 @@ public:
   /// \param residual of the plane, as far as it is known: where f is as flat as its noise, pairs say little about the
   /// step and count little. Without weights, the noise of all the inside of a body adds up.
   Comparison compare(const ReflectionPlane& plane, int stride, bool with_step, double residual = 0.0) const {
-    const int nz = f_.size()[2], num_slices = (nz + stride - 1) / stride;
-    std::vector<PairSums> slices(num_slices);
-    parallelBlocks(num_slices, num_threads_, [&](std::size_t k) {
-      slices[k] = ofSlice(plane, static_cast<int>(k) * stride, stride, with_step, residual);
-    });
-    PairSums sum;
-    for (const PairSums& slice : slices) sum += slice;
-    Comparison result;
-    if (sum.n < 1.0 || sum.square == 0.0) return result;
-    const double var_f = sum.ff - sum.f * sum.f / sum.n, var_g = sum.gg - sum.g * sum.g / sum.n;
-    if (var_f > 0.0 && var_g > 0.0) result.correlation = (sum.fg - sum.f * sum.g / sum.n) / std::sqrt(var_f * var_g);
-    result.score = std::clamp(sum.product / sum.square, 0.0, 1.0);
-    result.seen = sum.seen_body / std::max(1.0, sum.body);
-    result.residual = std::sqrt(std::max(0.0, sum.ff + sum.gg - 2.0 * sum.fg) / sum.n);
-    if (with_step) {
-      // Nearly round bodies leave an angle open: a little of the trace keeps the step short there.
-      Eigen::Matrix3d normal = sum.normal;
-      normal.diagonal() *= 1.0 + 1e-6;
-      result.step = normal.ldlt().solve(-sum.rhs);
-      if (!result.step.allFinite()) result.step.setZero();
+    return compare(plane.reflection(), plane, stride, with_step, residual);
+  }
+
+  /// The correlation with a body that is moved along the normal of a plane, as far as the plane moves its points, but
+  /// all of it one way: where f changes slowly on that way, as through a thin slab, each plane across it seems a
+  /// symmetry.
+  /// \param distances of the body's points from the plane.
+  double translated(const ReflectionPlane& plane, std::vector<double> distances, int stride) const {
+    double sum = 0.0, num = 0.0;
+    for (int k = 0; k < kRules.num_translations && !distances.empty(); ++k) {
+      const auto at =
+          distances.begin() + static_cast<std::ptrdiff_t>((k + 0.5) / kRules.num_translations * distances.size());
+      std::nth_element(distances.begin(), at, distances.end());
+      for (const double way : {2.0 * *at, -2.0 * *at}) {
+        const Eigen::Affine3d motion(Eigen::Translation3d(way * plane.normal()));
+        const Comparison comparison = compare(motion, plane, stride, false, 0.0);
+        if (comparison.seen < kRules.least_seen) continue;
+        sum += comparison.correlation;
+        num += 1.0;
+      }
     }
-    return result;
+    return num > 0.0 ? sum / num : 0.0;
   }
 
   /// Gauss-Newton from a plane to the nearest maximum of D.
@@ -124,6 +128,32 @@ public:
   }
 
 private:
+  Comparison compare(const Eigen::Affine3d& motion, const ReflectionPlane& plane, int stride, bool with_step,
+                     double residual) const {
+    const int nz = f_.size()[2], num_slices = (nz + stride - 1) / stride;
+    std::vector<PairSums> slices(num_slices);
+    parallelBlocks(num_slices, num_threads_, [&](std::size_t k) {
+      slices[k] = ofSlice(motion, plane, static_cast<int>(k) * stride, stride, with_step, residual);
+    });
+    PairSums sum;
+    for (const PairSums& slice : slices) sum += slice;
+    Comparison result;
+    if (sum.n < 1.0 || sum.square == 0.0) return result;
+    const double var_f = sum.ff - sum.f * sum.f / sum.n, var_g = sum.gg - sum.g * sum.g / sum.n;
+    if (var_f > 0.0 && var_g > 0.0) result.correlation = (sum.fg - sum.f * sum.g / sum.n) / std::sqrt(var_f * var_g);
+    result.score = std::clamp(sum.product / sum.square, 0.0, 1.0);
+    result.seen = sum.seen_body / std::max(1.0, sum.body);
+    result.residual = std::sqrt(std::max(0.0, sum.ff + sum.gg - 2.0 * sum.fg) / sum.n);
+    if (with_step) {
+      // Nearly round bodies leave an angle open: a little of the trace keeps the step short there.
+      Eigen::Matrix3d normal = sum.normal;
+      normal.diagonal() *= 1.0 + 1e-6;
+      result.step = normal.ldlt().solve(-sum.rhs);
+      if (!result.step.allFinite()) result.step.setZero();
+    }
+    return result;
+  }
+
   /// The gradient per voxel and f, with the voxels as coefficients of a cubic B-spline: smooth everywhere. The kinks of
   /// trilinear look-ups would draw planes to where voxels fall on voxels, by up to a degree. Across thick slices, which
   /// are not to be blurred any more, f passes through the voxels (cubic convolution, Keys 1981).
@@ -155,11 +185,12 @@ private:
     return sum;
   }
 
-  PairSums ofSlice(const ReflectionPlane& plane, int z, int stride, bool with_step, double residual) const {
+  PairSums ofSlice(const Eigen::Affine3d& motion, const ReflectionPlane& plane, int z, int stride, bool with_step,
+                   double residual) const {
     const PlaneChart chart(plane, pivot_);
     const Eigen::Affine3d& T = f_.T_input_index();
-    const Eigen::Affine3d image = T_index_input_ * plane.reflection() * T;  // from indices to indices
-    const Eigen::Matrix3d to_input = T_index_input_.linear().transpose();   // of gradients
+    const Eigen::Affine3d image = T_index_input_ * motion * T;             // from indices to indices
+    const Eigen::Matrix3d to_input = T_index_input_.linear().transpose();  // of gradients
     const float* const values = f_.values().data();
     const auto [nx, ny, nz] = f_.size();
     const float body = static_cast<float>(body_);
@@ -170,9 +201,10 @@ private:
         const double own = row[x];
         const bool in_body = own > body;
         sum.square += own * own;
-        sum.body += in_body;
         const Eigen::Vector3d index(x, y, z), p = image * index;
-        if (!f_.contains(p, margin_) || !f_.contains(index, margin_)) continue;
+        if (!f_.contains(index, margin_)) continue;
+        sum.body += in_body;
+        if (!f_.contains(p, margin_)) continue;
         const double other = f_.at(p);
         sum.product += own * other;
         sum.seen_body += in_body;
@@ -288,12 +320,13 @@ Detection detectVolumePlanes(const ScalarGrid& input, const DetectionOptions& op
     const double chance = chanceLevel(few, center, stride, maxima, options.num_threads);
     if (chance > kRules.most_chance)
       throw std::invalid_argument("volume: the body is round, planes in all directions map it onto itself");
-    const auto confidence = [&](const SymmetryPlane& plane) {
-      const double beyond_chance = std::clamp((plane.support - chance) / (1.0 - chance), 0.0, 1.0);
+    const auto confidence = [&](const SymmetryPlane& plane, double level) {
+      const double beyond_chance = std::clamp((plane.support - level) / (1.0 - level), 0.0, 1.0);
       return beyond_chance * beyond_chance;
     };
     for (SymmetryPlane& plane : maxima) {
-      if (!options.approximate && confidence(plane) < options.min_confidence) continue;
+      if (!options.approximate && &plane != &maxima.front() && confidence(plane, chance) < options.min_possible)
+        continue;
       const int before = plane.iterations;
       plane = all.refined(plane, strideFor(fine.f, 500'000), 10, 1e-4);
       const Comparison comparison = few.compare(plane, 1, false);
@@ -303,13 +336,25 @@ Detection detectVolumePlanes(const ScalarGrid& input, const DetectionOptions& op
       plane.seen = comparison.seen;
       plane.residual = comparison.residual;
     }
-    DetectionOptions without_possible = options;  // a volume shows all
-    without_possible.min_possible = options.min_confidence;
-    for (SymmetryPlane& plane : distinct(maxima)) {
-      decideBy(confidence(plane), without_possible, plane);
-      plane.share = plane.share_low = plane.share_high = plane.support;
-      if (options.approximate || plane.kind == PlaneKind::Symmetry) found.planes.push_back(plane);
+    std::vector<SymmetryPlane> planes = distinct(maxima);
+    for (SymmetryPlane& plane : planes) {
+      double level = chance;
+      if (confidence(plane, level) >= options.min_possible) {
+        std::vector<double> distances(static_cast<std::size_t>(body.cols()));
+        for (std::size_t i = 0; i < distances.size(); ++i)
+          distances[i] = std::abs(plane.signedDistance(body.col(static_cast<Eigen::Index>(i)).cast<double>()));
+        level = std::clamp(few.translated(plane, std::move(distances), stride), chance, 0.999);
+      }
+      // The best plane shows how alike halves are at this noise. A body that is nearly an ellipsoid has others, which
+      // leave more of f.
+      const double least_left = 1.0 - planes.front().support + kRules.least_residual,
+                   left = 1.0 - plane.support + kRules.least_residual,
+                   shown = (plane.seen - kRules.nothing_seen) / (kRules.enough_seen - kRules.nothing_seen);
+      decideBy(confidence(plane, level) * std::pow(std::min(1.0, least_left / left), 2) * std::clamp(shown, 0.0, 1.0),
+               options, plane);
     }
+    if (std::none_of(planes.begin(), planes.end(), isDecided) && !planes.empty()) found.best = planes.front();
+    found.planes = reordered(std::move(planes), options);
     found.timing_ms.emplace_back("refinement", watch.lap());
   } catch (const std::invalid_argument& error) {
     if (std::string(error.what()).rfind("volume: ", 0) != 0) throw;

@@ -31,19 +31,6 @@ std::vector<ReflectionPlane> principalPlanes(const PrincipalAxes& axes) {
   return planes;
 }
 
-Eigen::Isometry3d sheetPose(const PointsRef& points) {
-  Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
-  const Eigen::Vector3f low = points.rowwise().minCoeff(), high = points.rowwise().maxCoeff();
-  if (high.z() - low.z() <= kGeometry.flat * (high - low).head<2>().norm()) {
-    pose.translation().z() = 0.5 * (static_cast<double>(low.z()) + high.z());
-    return pose;
-  }
-  const PrincipalAxes axes = principalAxes(points);
-  pose.linear() = axes.axes;
-  pose.translation() = axes.center;
-  return pose;
-}
-
 Thinness thinnessOf(const PointsRef& points, const PrincipalAxes& axes, double plane_tolerance, double line_tolerance) {
   Eigen::Index num_near_plane = 0, num_near_line = 0;
   for (Eigen::Index i = 0; i < points.cols(); ++i) {

@@ -23,13 +23,6 @@ PrincipalAxes principalAxes(const PointsRef& points);
 /// symmetry that cost next to nothing.
 std::vector<ReflectionPlane> principalPlanes(const PrincipalAxes& axes);
 
-/// The pose of the plane in which flat points lie.
-/// \param points 3 x N, finite, N >= 1.
-/// \return T_input_sheet, which takes (x, y, 0) to the frame of the points. If all z are equal to a millionth of the
-/// extent, the axes are those of the input and the plane is at that z. Otherwise origin and axes are center of mass and
-/// principal axes.
-Eigen::Isometry3d sheetPose(const PointsRef& points);
-
 /// What is left of a shape at a tolerance: reflections along its thin directions move nothing and are uninformative.
 enum class Thinness {
   Solid,

@@ -6,6 +6,7 @@
 #include "core/base/check.h"
 #include "core/base/constants.h"
 #include "core/matching/matching_rules.h"
+#include "pcl_symmetry/core/symmetry_frame.h"
 
 namespace pcl_symmetry {
 
@@ -30,6 +31,16 @@ std::vector<float> prstOf(const GaussianEdt& edt, int num_radius, const Descript
 void DescriptorOptions::validate() const {
   check(num_samples >= 1, "num_samples", num_samples, ">= 1");
   checkNumThreads(num_threads);
+}
+
+Eigen::Isometry3d descriptorFrame(const PointsRef& points, bool input_axes, const Visibility* seen,
+                                  const DescriptorOptions& options) {
+  if (input_axes) return Eigen::Isometry3d(Eigen::Translation3d(-centerOfMass(points)));
+  FrameOptions frame;
+  frame.probabilities = frame.rotations = false;
+  frame.seed = options.seed;
+  frame.num_threads = options.num_threads;
+  return symmetryFrame(points, frame, seen).T_canonical_input;
 }
 
 SymmetryDescriptors symmetryDescriptors(const PointsRef& points, const Eigen::Isometry3d& T_frame_input,

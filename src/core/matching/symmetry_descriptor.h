@@ -42,6 +42,14 @@ struct SymmetryDescriptors {
   std::vector<float> gedt;
 };
 
+class Visibility;
+
+/// The frame that descriptors of a shape are computed in: its canonical frame, or \p input_axes about the center of
+/// mass.
+/// \param seen what a scanner saw; null = the points show the object from all sides.
+Eigen::Isometry3d descriptorFrame(const PointsRef& points, bool input_axes, const Visibility* seen,
+                                  const DescriptorOptions& options);
+
 /// \param points 3 x N, finite, input units, not all at the origin of the frame.
 /// \param T_frame_input from the input to the frame of the descriptors: a canonical frame, or the axes of the input
 /// about the center of mass.

@@ -47,6 +47,7 @@ ObjectSymmetries objectSymmetries(const PointsRef& points, const MeshSurface& me
   const auto size = [](const ObjectSymmetries& group) {
     return std::make_pair(group.continuous.size(), group.discrete.size());
   };
+  if (greater.reason.empty() && size(greater).first + size(greater).second == 0) found = greater;  // nor at less
   if (size(greater) <= size(found)) return found;
   const MotionsAbout motions = movedOntoMesh(mesh, greater);
   const RotationLimits limits{found.tolerance, options.max_feature};

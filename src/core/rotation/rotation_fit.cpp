@@ -1,5 +1,6 @@
 #include "core/rotation/rotation_fit.h"
 
+#include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
@@ -45,13 +46,14 @@ struct RotationFit::NormalEquations {
 };
 
 RotationFit::RotationFit(Points points, const GaussianEdt& edt, RotationLimits limits, double reach, std::uint64_t seed,
-                         int num_threads)
+                         int num_threads, bool single)
     : edt_(edt), limits_(limits), own_share_(1.0), first_sigma_(0.0), last_sigma_(0.0), num_threads_(num_threads) {
   const auto surface = std::make_shared<Surface>();
   surface->points = std::move(points);
   const Points& p = surface->points;
   const auto search = makeFlannSearch(p);
   surface->geometry = localGeometry(p, *search, kNumSupportNeighbors, num_threads);
+  surface->single = single;
   const LocalGeometry& geometry = surface->geometry;
   surface->spacing = median(geometry.spacing);
   surface->roughness = median(geometry.roughness);
@@ -62,7 +64,8 @@ RotationFit::RotationFit(Points points, const GaussianEdt& edt, RotationLimits l
       {rounding, kRotation.last_tolerances * limits.tolerance, kRotation.last_roughnesses * surface->roughness});
   last_sigma_ = std::min(last_sigma_, first_sigma_);
   const double farthest = std::max(reach, first_sigma_);
-  surface->discs = std::make_unique<SurfaceDiscs>(p, geometry, kEvidence.disc_radius, static_cast<float>(farthest));
+  surface->discs =
+      std::make_unique<SurfaceDiscs>(p, geometry, single ? 0.0f : kEvidence.disc_radius, static_cast<float>(farthest));
   surface->grid = std::make_unique<ClosestPointGrid>(p, 32);
   surface->own_distances.resize(static_cast<std::size_t>(p.cols()));
   parallelRanges(surface->own_distances.size(), 512, num_threads, [&](std::size_t begin, std::size_t end) {
@@ -73,10 +76,13 @@ RotationFit::RotationFit(Points points, const GaussianEdt& edt, RotationLimits l
   surface->overlap_points = pointsAt(p, drawSamples(p.cols(), kRotation.num_overlap_points, seed + 2));
   // Under a symmetry the closest sample of a rotated sample is as far away as the closest other sample of a sample.
   double sum = 0.0;
+  std::vector<double> closest;
   for (Eigen::Index i = 0; i < p.cols(); ++i) {
     const double sq_distance = (p.col(i) - p.col(geometry.nearest[i][0])).squaredNorm();
     sum += std::exp(-sq_distance / (edt.sigma() * edt.sigma()));
+    closest.push_back(std::sqrt(sq_distance));
   }
+  surface->closest_distance = median(std::move(closest));
   surface->own_overlap = std::max(sum / static_cast<double>(p.cols()), 1e-3);
   surface_ = surface;
   own_share_ = ownShare();
@@ -89,7 +95,50 @@ RotationFit RotationFit::withLimits(RotationLimits limits) const {
   return other;
 }
 
+bool RotationFit::fillsBody() const {
+  const Points& points = surface_->points;
+  const int count = static_cast<int>(std::min<Eigen::Index>(kRotation.body_neighbors, points.cols() / 4));
+  if (count < 4) return false;
+  const Points some = pointsAt(points, drawSamples(points.cols(), kRotation.num_some_points, 1));
+  std::vector<int> indices;
+  std::vector<float> sq_distances;
+  makeFlannSearch(points)->search(some, count, indices, sq_distances);
+  std::vector<double> thickness;
+  for (Eigen::Index i = 0; i < some.cols(); ++i) {
+    const auto first = indices.begin() + i * count;
+    Eigen::Matrix3Xd near = pointsAt(points, {first, first + count}).cast<double>();
+    near.colwise() -= near.rowwise().mean().eval();
+    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(near * near.transpose(), Eigen::EigenvaluesOnly);
+    thickness.push_back(std::sqrt(std::max(0.0, solver.eigenvalues()[0]) / std::max(1e-30, solver.eigenvalues()[2])));
+  }
+  return median(std::move(thickness)) > kRotation.body_thickness;
+}
+
+Points RotationFit::borderPoints() const {
+  const Points& points = surface_->points;
+  const int count = std::min(kRotation.border_neighbors, static_cast<int>(points.cols()));
+  std::vector<int> indices, border;
+  std::vector<float> sq_distances;
+  makeFlannSearch(points)->search(points, count, indices, sq_distances);
+  for (int i = 0; i < static_cast<int>(points.cols()); ++i) {
+    Eigen::Vector3f mean = Eigen::Vector3f::Zero();
+    for (int k = 0; k < count; ++k) mean += points.col(indices[i * count + k]) / static_cast<float>(count);
+    const double farthest = std::sqrt(sq_distances[(i + 1) * count - 1]);
+    if ((mean - points.col(i)).norm() > kRotation.border_offset * farthest) border.push_back(i);
+  }
+  return pointsAt(points, border);
+}
+
+double RotationFit::resolution() const {
+  std::vector<float> distances = surface_->own_distances;
+  const auto last = distances.begin() +
+                    static_cast<std::ptrdiff_t>(kRotation.least_own_share * static_cast<double>(distances.size() - 1));
+  std::nth_element(distances.begin(), last, distances.end());
+  return *last;
+}
+
 double RotationFit::ownShare() const {
+  if (surface_->single) return 1.0;
   const std::vector<float>& distances = surface_->own_distances;
   const auto within =
       std::count_if(distances.begin(), distances.end(), [&](float distance) { return distance <= limits_.tolerance; });

@@ -27,6 +27,15 @@ struct RotationRules {
   double clear_factor = 1.5;      // rotations between those of a fold fail by this factor more,
   double clear_excess = 0.2;      // and by this much of what is allowed
 
+  // What points resolve
+  double least_own_share = 0.5;  // share of the points within the tolerance of the surface of the others
+  int body_neighbors = 50;       // at most a quarter of the points: in a body, they reach across as far as along;
+  double body_thickness = 0.55;  // 0.75 inside, solids of 200 points have 0.63, bowls as thin as their spacing 0.45
+  int border_neighbors = 30;     // of a point of a body:
+  double border_offset = 0.27;   // mean of them, radii of theirs: 3/8 at a flat border, inside 0.14 by chance
+  double single_distance = 0.5;  // distances between points within which images meet one by one: 8 % do by chance
+  Eigen::Index most_single_points = 50'000;  // that are compared one by one
+
   // Fits: Iterative Symmetric Points, whose steps and weights kRefinement limits
   int num_overlap_points = 256;   // points of overlap()
   int num_rough_points = 200;     // points of rough fits
@@ -108,8 +117,9 @@ public:
   /// \param limits what symmetric means; tolerance at most \p reach.
   /// \param reach greatest tolerance of withLimits().
   /// \param seed of the samples.
+  /// \param single each point has to meet another one: the points are judged, not the surface that they may show.
   RotationFit(Points points, const GaussianEdt& edt, RotationLimits limits, double reach, std::uint64_t seed,
-              int num_threads);
+              int num_threads, bool single = false);
 
   /// The same surface judged at other limits.
   /// \param limits tolerance at most the reach.
@@ -117,6 +127,15 @@ public:
 
   const Points& points() const { return surface_->points; }
   const RotationLimits& limits() const { return limits_; }
+
+  /// Whether the points fill a body, as solid samples and atoms do.
+  bool fillsBody() const;
+  /// Those of such points that lie at the border of the body.
+  Points borderPoints() const;
+  /// The least tolerance at which the points show a surface: half of them lie on that of the others.
+  double resolution() const;
+  /// Median distance between a point and the one closest to it.
+  double closestDistance() const { return surface_->closest_distance; }
 
   /// Mean of f at some rotated points: a rough and quick answer.
   /// \return about 1 for a symmetry.
@@ -166,6 +185,8 @@ private:
     double spacing = 0.0, roughness = 0.0;
     Points overlap_points;     ///< that overlap() asks about
     double own_overlap = 1.0;  ///< that a perfect symmetry reaches with this sampling
+    double closest_distance = 0.0;
+    bool single = false;
   };
 
   int closestSample(const Eigen::Vector3f& x) const;

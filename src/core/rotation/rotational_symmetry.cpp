@@ -1,6 +1,9 @@
 #include "pcl_symmetry/core/rotational_symmetry.h"
 
 #include <algorithm>
+#include <cstdio>
+#include <limits>
+#include <memory>
 #include <stdexcept>
 #include <utility>
 
@@ -71,6 +74,79 @@ std::vector<RejectedRotation> inInputFrame(std::vector<RejectedAxis> axes, const
   return rejected;
 }
 
+/// The group of points, judged by the surface that they show or one by one, at one tolerance or more.
+class GroupSearch {
+public:
+  /// \param points normalized.
+  /// \param options must outlive this object.
+  GroupSearch(Points points, RotationLimits limits, const ObjectSymmetryOptions& options, bool single)
+      : options_(options),
+        edt_(points, edtOptions(options)),
+        fit_(std::move(points), edt_, limits, (options.other_tolerances ? 2.0 : 1.0) * limits.tolerance, options.seed,
+             options.num_threads, single),
+        principal_(principalLines(fit_)) {}
+
+  const RotationFit& fit() const { return fit_; }
+  void limitTolerance(double most) { most_tolerance_ = most; }
+
+  struct Found {
+    PlacedGroup group;
+    std::vector<RejectedAxis> rejected;
+  };
+  Found at(RotationLimits limits) {
+    limits.tolerance = std::min(limits.tolerance, most_tolerance_);
+    const RotationFit fit = fit_.withLimits(limits);
+    AxisFinder finder(fit, options_);
+    finder.judge(principal_);
+    if (!finder.isRound()) {
+      if (others_.empty())  // searched once for all tolerances
+        others_ = axisLineCandidates(fit_, options_.num_directions, options_.max_fold, options_.num_threads);
+      finder.judge(others_);
+    }
+    return {greatestGroup(fit, options_, finder.axes()), finder.rejected()};
+  }
+
+private:
+  static GaussianEdtOptions edtOptions(const ObjectSymmetryOptions& options) {
+    GaussianEdtOptions edt;
+    edt.num_cells = options.num_cells;
+    edt.num_threads = options.num_threads;
+    return edt;
+  }
+
+  const ObjectSymmetryOptions& options_;
+  GaussianEdt edt_;
+  RotationFit fit_;
+  std::vector<Line3d> principal_, others_;
+  double most_tolerance_ = std::numeric_limits<double>::infinity();
+};
+
+/// The surface that points show or, where they fill a body, that of its border. Points that show none at the tolerance
+/// may still meet each other one by one: atoms, grids, the corners of a solid.
+/// \param[out] resolution the least tolerance at which the points show a surface.
+/// \return null where the points resolve no answer.
+std::unique_ptr<GroupSearch> searchThatResolves(const Points& points, const RotationLimits& limits,
+                                                const ObjectSymmetryOptions& options, double& resolution) {
+  const std::vector<int> drawn = drawSamples(points.cols(), options.max_points, options.seed);
+  auto search = std::make_unique<GroupSearch>(pointsAt(points, drawn), limits, options, false);
+  const bool fills_body = search->fit().fillsBody();
+  if (fills_body) {
+    const double distance = search->fit().closestDistance();  // the border of a body is as thick
+    search = std::make_unique<GroupSearch>(search->fit().borderPoints(), limits, options, false);
+    resolution = std::max(distance, search->fit().resolution());
+  } else {
+    resolution = search->fit().resolution();
+  }
+  const bool is_resolved = resolution <= limits.tolerance;
+  if ((!is_resolved || fills_body) && points.cols() <= kRotation.most_single_points) {
+    auto single = std::make_unique<GroupSearch>(points, limits, options, true);
+    single->limitTolerance(kRotation.single_distance * single->fit().closestDistance());
+    const PlacedGroup group = single->at(limits).group;
+    if (group.kind != RotationGroupKind::Cyclic || group.fold > 1) return single;
+  }
+  return is_resolved ? std::move(search) : nullptr;
+}
+
 }  // namespace
 
 void ObjectSymmetryOptions::validate() const {
@@ -94,44 +170,38 @@ ObjectSymmetries objectSymmetries(const PointsRef& points, const ObjectSymmetryO
   const auto done = [&](const char* stage) { timing_ms.emplace_back(stage, watch.lap()); };
 
   const Points distinct = DistinctPoints(points).points;
-  const Points used = pointsAt(distinct, drawSamples(distinct.cols(), options.max_points, options.seed));
-  const BoundingBall ball = boundingBall(used);
-  const Points normalized = normalizePoints(used, ball.center, ball.radius);
-  GaussianEdtOptions edt_options;
-  edt_options.num_cells = options.num_cells;
-  edt_options.num_threads = options.num_threads;
-  const GaussianEdt edt(normalized, edt_options);
+  const BoundingBall ball = boundingBall(distinct);
+  const Points normalized = normalizePoints(distinct, ball.center, ball.radius);
   const double tolerance = options.absolute_tolerance > 0.0 ? options.absolute_tolerance / ball.radius
                                                             : options.tolerance * farthestPair(normalized);
   const RotationLimits limits{tolerance, options.max_feature};
-  const double reach = (options.other_tolerances ? 2.0 : 1.0) * tolerance;
-  const RotationFit fit(normalized, edt, limits, reach, options.seed, options.num_threads);
+  ObjectSymmetries result;
+  double resolution = 0.0;
+  const std::unique_ptr<GroupSearch> search = searchThatResolves(normalized, limits, options, resolution);
   done("surface");
-  const std::vector<Line3d> principal = principalLines(fit);
-  std::vector<Line3d> others;  // searched once for all tolerances
-  const auto search = [&](const RotationFit& at) {
-    AxisFinder finder(at, options);
-    finder.judge(principal);
-    if (finder.isRound()) return finder;
-    if (others.empty()) others = axisLineCandidates(fit, options.num_directions, options.max_fold, options.num_threads);
-    finder.judge(others);
-    return finder;
-  };
-  const AxisFinder found = search(fit);
-  ObjectSymmetries result = inInputFrame(greatestGroup(fit, options, found.axes()), fit, ball);
-  done("group");
-  result.tolerance = tolerance * ball.radius;
-  result.rejected = inInputFrame(found.rejected(), fit, ball);
-  if (options.other_tolerances) {
-    const auto name_at = [&](double factor) {
-      const RotationFit at = fit.withLimits({factor * tolerance, options.max_feature});
-      const PlacedGroup group = greatestGroup(at, options, search(at).axes());
-      return GroupName{group.kind, group.fold};
-    };
-    result.at_half_tolerance = name_at(0.5);
-    result.at_twice_tolerance = name_at(2.0);
-    done("other tolerances");
+  if (search) {
+    const GroupSearch::Found found = search->at(limits);
+    result = inInputFrame(found.group, search->fit(), ball);
+    done("group");
+    result.rejected = inInputFrame(found.rejected, search->fit(), ball);
+    if (options.other_tolerances) {
+      const auto name_at = [&](double factor) {
+        const PlacedGroup group = search->at({factor * tolerance, options.max_feature}).group;
+        return GroupName{group.kind, group.fold};
+      };
+      result.at_half_tolerance = name_at(0.5);
+      result.at_twice_tolerance = name_at(2.0);
+      done("other tolerances");
+    }
+  } else {
+    char text[160];
+    std::snprintf(text, sizeof(text), "the points show no surface at the tolerance %.4g, which must be at least %.4g",
+                  tolerance * ball.radius, resolution * ball.radius);
+    result.reason = text;
+    result.center = ball.center;
+    result.support = result.confidence = 0.0;
   }
+  result.tolerance = tolerance * ball.radius;
   result.timing_ms = std::move(timing_ms);
   return result;
 }

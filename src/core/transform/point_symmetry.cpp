@@ -1,11 +1,9 @@
-/// The map back from planes or lines to points (Figures 1 and 2).
+/// The map back from planes to points (Figure 1).
 #include <algorithm>
-#include <cmath>
 #include <vector>
 
 #include "core/base/parallel.h"
 #include "core/base/simd.h"
-#include "pcl_symmetry/core/line_transform.h"
 #include "pcl_symmetry/core/symmetry_map.h"
 
 namespace pcl_symmetry {
@@ -94,17 +92,6 @@ std::vector<float> pointSymmetry(const SymmetryMap& map, const PointsRef& points
   for (std::size_t d = 0; d < grid.numDirections(); ++d) normals.push_back(grid.normal(d).cast<float>());
   return greatestThrough(map.values, normals, grid.numRadius(), grid.radius(),
                          normalizePoints(points, grid.center(), 1.0), num_threads);
-}
-
-std::vector<float> pointSymmetry(const LineMap& map, const Points2D& points, int num_threads) {
-  if (map.empty()) return std::vector<float>(points.cols(), 0.0f);
-  const LineGrid& grid = map.grid;
-  std::vector<Eigen::Vector3f> normals;
-  for (int t = 0; t < grid.numTheta(); ++t)
-    normals.push_back(Eigen::Vector3d(std::cos(grid.theta(t)), std::sin(grid.theta(t)), 0.0).cast<float>());
-  Points embedded = Points::Zero(3, points.cols());
-  embedded.topRows<2>() = (points.cast<double>().colwise() - grid.center()).cast<float>();
-  return greatestThrough(map.values, normals, grid.numRadius(), grid.radius(), embedded, num_threads);
 }
 
 }  // namespace pcl_symmetry

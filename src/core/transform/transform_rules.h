@@ -34,11 +34,6 @@ struct TransformRules {
   int slots_per_cell = 4;                ///< along a cell; thinning adds up to sqrt(3) / 4 cells to a distance
   double of_interpolation = 1.0 / 12.0;  ///< variance of a value between cells, a mean over a box of one cell
 
-  // Lines
-  double first_line_step = 0.5;   ///< bins, of the search for a maximum of D
-  double last_line_step = 0.002;  ///< bins, 0.003 degrees at 128 bins
-  int max_line_moves = 8;         ///< with one step size
-
   // Planes through points
   double pivot_step = 1.0;         ///< cells between points, and between planes at the far end of the shape
   double coarse_pivot_step = 3.0;  ///< the same of planes that multiresolution does not refine; PRST is right to 0.7 %
@@ -46,7 +41,6 @@ struct TransformRules {
   // Votes
   double near_share = 0.2;          ///< of the pairs that are drawn plane first
   std::size_t num_vote_blocks = 8;  ///< partial maps, added up in their order
-  double least_sine = 1e-6;         ///< bounds the weight of pairs along z: one in 10^12 is closer to the pole
 };
 
 inline constexpr TransformRules kTransform{};

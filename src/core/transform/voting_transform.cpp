@@ -59,6 +59,8 @@ public:
     if (num_far_ > 0) far_weight_ = sum * sum * cell_volume / (num_far_ * bin_measure * edt.sqNorm());
     // S V_near / (N V |f|^2), the factor of sum f(x').
     if (num_near_ > 0) near_weight_ = sum * (0.5 * kPi * 2.0 * kPi * near_) / (num_near_ * bin_measure * edt.sqNorm());
+    const double step = grid.thetaStep();
+    for (int t = 0; t < grid.numTheta(); ++t) sines_.push_back((std::cos(t * step) - std::cos((t + 1) * step)) / step);
   }
 
   std::int64_t numFar() const { return num_far_; }
@@ -67,16 +69,17 @@ public:
   /// Draws a pair (x, x') with probability f(x) f(x') and votes for the plane between its points.
   ///
   /// The weight is w_samp w_change-of-variables = 1 / (f(x) f(x')) * 1 / (2 d^2 sin theta) with d = |x - x'|; times the
-  /// product f(x) f(x') that the transform integrates it is 1 / (2 d^2 sin theta).
+  /// product f(x) f(x') that the transform integrates it is 1 / (2 d^2 sin theta). The sine is the mean of the bin, and
+  /// d at least a cell, as between the different cells that the paper draws: both bound the weight.
   void voteFar(RandomStream& random, std::vector<float>& values) const {
     const Eigen::Vector3d x = sampler_.draw(random), y = sampler_.draw(random);
-    const double sq_distance = (y - x).squaredNorm();
+    const double sq_distance = (y - x).squaredNorm(), least = edt_.cellSize() * edt_.cellSize();
     if (sq_distance <= near_ * near_ || sq_distance == 0.0) return;
     const ReflectionPlane plane = ReflectionPlane::between(x, y);
     const auto bin = grid_.find(plane);
     if (!bin) return;
-    const double sine = std::max(kTransform.least_sine, std::hypot(plane.normal().x(), plane.normal().y()));
-    values[grid_.index(*bin)] += static_cast<float>(far_weight_ / (2.0 * sq_distance * sine));
+    const double weight = far_weight_ / (2.0 * std::max(sq_distance, least) * sines_[bin->theta]);
+    values[grid_.index(*bin)] += static_cast<float>(weight);
   }
 
   /// Draws x with probability f(x) and a plane that is uniform in (theta, phi, r) at less than near / 2 from x; votes
@@ -87,7 +90,9 @@ public:
     const Eigen::Vector3d n(std::sin(theta) * std::cos(phi), std::sin(theta) * std::sin(phi), std::cos(theta));
     const double distance = near_ * (2.0 * random.uniform() - 1.0);
     const auto bin = grid_.find(ReflectionPlane(n, n.dot(x) + 0.5 * distance));
-    if (bin) values[grid_.index(*bin)] += static_cast<float>(near_weight_ * edt_(x + distance * n));
+    if (!bin) return;
+    const double weight = near_weight_ * std::sin(theta) / sines_[bin->theta];
+    values[grid_.index(*bin)] += static_cast<float>(weight * edt_(x + distance * n));
   }
 
 private:
@@ -97,6 +102,7 @@ private:
   double near_;  // pairs closer than this are drawn plane first, input units
   std::int64_t num_near_ = 0, num_far_ = 0;
   double far_weight_ = 0.0, near_weight_ = 0.0;
+  std::vector<double> sines_;  // mean of sin theta over the bins of each row
 };
 
 /// Number of a block's pairs if \p total pairs are shared among all blocks.

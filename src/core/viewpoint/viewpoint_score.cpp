@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "core/base/check.h"
+#include "core/base/constants.h"
 #include "core/geometry/directions.h"
 
 namespace pcl_symmetry {
@@ -24,6 +25,30 @@ Eigen::Vector3d climb(const std::vector<ViewPlane>& planes, Eigen::Vector3d v) {
 }
 
 }  // namespace
+
+std::vector<ViewPlane> viewPlanes(std::vector<ViewPlane> planes, const std::vector<ViewPlane>& axes,
+                                  const std::vector<ViewPlane>& maxima) {
+  const int fan = 8;              // planes that represent an axis: S varies about it by 2 %
+  const double min_score = 0.2;   // of the best score: below, a direction is not seen
+  const double max_across = 0.5;  // cosine between a maximum that counts too and the planes so far
+  for (const ViewPlane& axis : axes) {
+    const Eigen::Vector3d u = axis.normal.unitOrthogonal(), v = axis.normal.cross(u);
+    for (int k = 0; k < fan; ++k) {
+      const double angle = kPi * k / fan;
+      planes.push_back({std::cos(angle) * u + std::sin(angle) * v, 2.0 * axis.weight / fan});
+    }
+  }
+  for (const ViewPlane& maximum : maxima) {
+    const std::vector<RankedView> best = bestViews(planes);
+    if (!best.empty() && worstView(planes).score >= min_score * best[0].score) break;
+    const bool near = std::any_of(planes.begin(), planes.end(), [&](const ViewPlane& plane) {
+      return std::abs(plane.normal.dot(maximum.normal)) > max_across;
+    });
+    if (!near) planes.push_back(maximum);
+  }
+  std::stable_sort(planes.begin(), planes.end(), [](const auto& a, const auto& b) { return a.weight > b.weight; });
+  return planes;
+}
 
 double viewpointScore(const std::vector<ViewPlane>& planes, const Eigen::Vector3d& direction) {
   double score = 0.0;

@@ -334,6 +334,7 @@ def _planes_of(found: Any, cloud: Cloud, used: Optional[Used] = None, judged: bo
         _support=found.support,
         _rows=np.asarray(found.rows if used is None or used.rows is None else used.rows, dtype=np.int64),
         _shape=cloud.shape,
+        _maxima=found.maxima,
         **_fields(found, "flat", "tolerance", "viewpoint"),
     )
 
@@ -553,10 +554,16 @@ def symmetrize(
 
 
 def viewpoints(planes: Union[Planes, Sequence[Plane]]) -> List[View]:
-    """Directions from the object to the camera that show the least repetition (Section 5.4), best first."""
+    """Directions from the object to the camera that show the least repetition (Section 5.4), best first.
+
+    planes: of planes(approximate=True), with their axes of revolution and the maxima of their map; or a list of planes alone.
+    """
     if not all(isinstance(plane, Plane) for plane in planes):
         raise TypeError("planes = other objects, must be Planes or a list of Plane")
-    return [View(v.direction, v.score) for v in core.viewpoints([(p.normal, p.score) for p in planes])]
+    axes, maxima = (planes.axes, planes._maxima) if isinstance(planes, Planes) else ([], [])
+    every = planes.every if isinstance(planes, Planes) else planes
+    weighted = [(p.normal, p.score) for p in every], [(a.direction, a.score) for a in axes], maxima
+    return [View(v.direction, v.score) for v in core.viewpoints(*weighted)]
 
 
 def sample_mesh(
@@ -653,6 +660,8 @@ def rotations(
 
     points, tolerance, absolute_tolerance, progress: as in planes().
     max_feature: share of the surface, such as a screw or a notch, that a symmetry may map off it, in [0, 1].
+    Points that show no surface at the tolerance, as solid samples, atoms and few points do, have a reason in place of a
+    group, with the least tolerance at which they do; a group that takes points to points is found all the same.
     Raises ValueError for bad parameters; fewer than 20 distinct points, and points on a line, are warned of.
     """
     import numpy as np
@@ -672,8 +681,9 @@ def rotations(
         threads=threads,
         mesh=cloud.surface(),
     )
-    names = ("name", "center", "support", "confidence", "fold", "discrete", "continuous", "tolerance")
-    result = Rotations(reason="", **_fields(found, *names))
+    names = ("name", "center", "support", "confidence", "fold", "discrete", "continuous", "tolerance", "reason")
+    fields = _fields(found, *names)
+    result = Rotations(**{**fields, "name": "" if fields["reason"] else fields["name"]})
     return result if cloud.shift is None else result._moved(cloud.shift)
 
 
@@ -731,6 +741,7 @@ def describe(
 def descriptors(
     points: Any,
     *,
+    viewpoint: Viewpoint = "auto",
     input_axes: bool = False,
     by_equation_1: bool = False,
     progress: Progress = None,
@@ -739,14 +750,15 @@ def descriptors(
 ) -> Tuple["NDArray[np.float32]", "NDArray[np.float32]", "NDArray[np.float32]"]:
     """The descriptors that the paper compares (Section 5.2): PRST and GEDT, (32, 32, 32), and PRSD, (32, 32).
 
-    input_axes: about the center of mass in the axes of the input, as for models aligned by hand; False: in frame().
-    by_equation_1: sqrt((1 + D) / 2) in place of sqrt(max(D, 0)). The paper's best distance is descriptor_distance() of PRST
+    viewpoint: as in planes(). input_axes: about the center of mass in the axes of the input, as for models aligned by
+    hand; False: in frame(). by_equation_1: sqrt((1 + D) / 2) in place of sqrt(max(D, 0)). The paper's best distance is descriptor_distance() of PRST
     times that of GEDT.
     """
     import numpy as np
 
-    array = prepare("points", points).array
-    options = dict(input_axes=input_axes, by_equation_1=by_equation_1, told=progress, seed=seed, threads=threads)
+    used = look(prepare("points", points), viewpoint, max_points=0, as_measured=True, seed=seed, threads=threads)
+    array, options = used.array, dict(viewpoint=used.viewpoint, input_axes=input_axes, by_equation_1=by_equation_1)
+    options.update(told=progress, seed=seed, threads=threads)
     prst, prsd, gedt = (np.asarray(values, dtype=np.float32) for values in core.descriptors(array, **options))
     return prst.reshape(32, 32, 32), prsd.reshape(32, 32), gedt.reshape(32, 32, 32)
 
@@ -775,6 +787,9 @@ def transform(
     center: "ArrayLike" = (0.0, 0.0, 0.0),
     radius: float = 0.0,
     sigma: float = 0.0,
+    cells: int = 64,
+    samples: int = 0,
+    refined_share: float = 1.0,
     as_published: bool = False,
     progress: Progress = None,
     seed: int = 1,
@@ -784,7 +799,9 @@ def transform(
 
     method: sampled, convolution, rotational or voting; as_published: near pairs of points vote like all others (Section 4.3).
     center, radius: of the ball whose planes are measured, input frame and units; radius 0: the bounding ball of the points.
-    sigma: width of the Gaussian, input units; 0: two cells of a grid of 64.
+    sigma: width of the Gaussian, input units; 0: two cells. cells: of its grid along each side, in [8, 512].
+    samples: points of sampled (0: 128), pairs of voting (0: two million). refined_share: of rotational, multiresolution: planes
+        with this share of the greatest D are computed finely, the others coarsely, in [0, 1].
     """
     import numpy as np
 
@@ -793,6 +810,7 @@ def transform(
         raise TypeError(f"bins = {_text(bins)}, must be three whole numbers, of theta, phi and r")
     array, shift, *_ = prepare("points", points)
     options = dict(center=_seen_from(center, shift, "center"), radius=radius, sigma=sigma, as_published=as_published)
+    options.update(cells=cells, samples=samples, refined_share=refined_share)
     found = core.transform(array, sizes.tolist(), method=method, told=progress, seed=seed, threads=threads, **options)
     result = Map(**_fields(found, "sigma", "center", "radius", "values"))
     return result if shift is None else result._moved(shift)

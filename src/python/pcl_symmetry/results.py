@@ -416,6 +416,7 @@ class Planes(Result):
     """(M, 3) points that were spread over a mesh, which point_support() is of; None for a cloud."""
     _support: List["NDArray[np.float32]"]
     _rows: "NDArray[np.int64]"
+    _maxima: List[Tuple["Doubles", float]]
     _shape: Tuple[int, ...]
 
     @property
@@ -655,6 +656,12 @@ class Map(Result):
         normal = np.array([np.sin(t) * np.cos(p), np.sin(t) * np.sin(p), np.cos(t)])
         offset = (r + 0.5) * 2 * self.radius / shape[2] - self.radius
         return np.append(normal, -(offset + normal @ self.center))
+
+    def prst(self) -> "NDArray[np.float32]":
+        """(theta, phi, r) PRST by equation 1, sqrt((1 + D) / 2): 1 for a perfect symmetry, 0.71 for none."""
+        import numpy as np
+
+        return np.sqrt(np.maximum(0, (1 + self.values) / 2))
 
     def plot(self, axes: Any = None) -> Any:
         """Draws the greatest value of each direction of normals with matplotlib, by default into new axes; returns them."""

@@ -1,4 +1,4 @@
-/// The refinement as published: closed form, constant width, cells that may not be left, nothing added.
+/// The refinement as published: closed form, constant width, regions that may not be left, nothing added.
 #include "pcl_symmetry/core/published_planes.h"
 
 #include <gtest/gtest.h>
@@ -20,15 +20,36 @@ TEST(PublishedPlanes, FindTheThreePlanesOfABox) {
   const Eigen::Isometry3d pose = test::randomPose(4);
   const GaussianEdt edt(points);
   PublishedOptions options;
-  options.discard_unstable = false;
   options.num_points = 2000;
-  const auto planes = publishedPlanes(points, edt, publishedMap(points, edt), options);
+  options.max_maxima = 30;
   const test::Shape box = test::moved(test::box(1, test::Sampling::Random, 4), pose);
-  for (const ReflectionPlane& plane : box.planes)
-    EXPECT_TRUE(test::isAmong(planes, plane, kDegree, 0.02, pose.translation()));
+  for (const auto method : {TransformMethod::Sampled, TransformMethod::Convolution, TransformMethod::Voting}) {
+    const auto planes = publishedPlanes(points, edt, publishedMap(points, edt, method), options);
+    for (const ReflectionPlane& plane : box.planes)
+      EXPECT_TRUE(test::isAmong(planes, plane, kDegree, 0.02, pose.translation())) << static_cast<int>(method);
+  }
 }
 
-TEST(PublishedPlanes, StayInTheirCellsAndAreNotJudged) {
+TEST(PublishedPlanes, AreNotLostAtBordersOfCells) {
+  // A tenth of a bin of phi after the other: each plane passes through the borders of its cells.
+  const test::Shape box = test::box(4000, test::Sampling::Random, 4);
+  PublishedOptions options;
+  options.num_points = 1000;
+  options.max_maxima = 30;
+  for (int i = 0; i < 10; ++i) {
+    Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
+    pose.rotate(Eigen::AngleAxisd(0.1 * i * 2.0 * kPi / 64, Eigen::Vector3d::UnitZ()));
+    const test::Shape turned = test::moved(box, pose);
+    const Points points = turned.cloud();
+    const GaussianEdt edt(points);
+    const auto planes = publishedPlanes(points, edt, publishedMap(points, edt, TransformMethod::Sampled), options);
+    for (const ReflectionPlane& plane : turned.planes)
+      EXPECT_TRUE(test::isAmong(planes, plane, kDegree, 0.02, Eigen::Vector3d::Zero()))
+          << i << ": " << plane.normal().transpose();
+  }
+}
+
+TEST(PublishedPlanes, ConvergeInTheirRegionsAndAreNotJudged) {
   const Points points = boxCloud();
   const GaussianEdt edt(points);
   const SymmetryMap map = publishedMap(points, edt);
@@ -41,6 +62,7 @@ TEST(PublishedPlanes, StayInTheirCellsAndAreNotJudged) {
   EXPECT_LT(stable.size(), all.size());
   EXPECT_FALSE(stable.empty());
   for (const SymmetryPlane& plane : stable) {
+    EXPECT_TRUE(plane.converged);
     EXPECT_EQ(plane.kind, PlaneKind::Approximate);
     EXPECT_EQ(plane.confidence, 0.0);
   }
