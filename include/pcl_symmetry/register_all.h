@@ -31,14 +31,16 @@ struct ScanPose {
 
 /// Two scans that were registered to each other.
 struct ScanPair {
-  int source, target;    ///< indices of the scans
+  int source = 0;        ///< index of the scan that was brought to ...
+  int target = 0;        ///< ... this one
   double overlap = 0.0;  ///< share of the source's points that lie on the target in the poses of all scans, in [0, 1]
   bool used = false;     ///< whether their own registration agrees with the poses of all scans
 };
 
 /// A point of one of several scans.
 struct ScanPoint {
-  int scan, index;  ///< of the scan, and of the point in it
+  int scan;   ///< index of the scan
+  int index;  ///< of the point in it
 };
 
 /// Scans of one object in one frame.
@@ -69,7 +71,7 @@ RegisteredScans registerAll(const std::vector<ObjectScan>& scans, const CloudReg
 /// Scans of one object as one cloud.
 template <typename PointT>
 struct MergedCloud {
-  RegisteredScans registration;
+  RegisteredScans registration;  ///< poses, and what is left out
   /// Points of the scans, thinned, in the frame of the first scan that is kept; their normals are turned with them.
   pcl::PointCloud<PointT> cloud;
   std::vector<int> scans;  ///< of each point of the cloud, the index of its scan

@@ -33,7 +33,7 @@ struct RegisterAllRules {
   double last_accuracies = 2.0;  ///< the same at the end, in distances that the scans resolve
   double least_cosine = 0.7;     ///< of the normals of corresponding points
   double least_overlap = 0.03;   ///< share of the points that must correspond
-  double around_angle = 5.0 * kDegree, around_distance = 0.06;  ///< radians, radii: where a scan must fit the others
+  double around_angle = 15.0 * kDegree, around_distance = 0.2;  ///< radians, radii: where a scan must fit the others
 };
 constexpr RegisterAllRules kRegisterAll{};
 
@@ -193,20 +193,27 @@ public:
     }
   }
 
-  /// Takes scans out of the largest group that no converged pair connects with it, and that do not fit its others
-  /// together either.
-  void dropDoubtful() {
+  /// Registers the scans that fewer than two converged pairs connect with the largest group to its others together,
+  /// around where they are; those that do not fit are taken out.
+  void settleLoose() {
     const int largest = largestGroup();
-    std::vector<char> is_connected(size());
-    for (const PairAnswer& answer : answers_)
-      if (answer.converged && agrees(answer)) is_connected[answer.source] = is_connected[answer.target] = true;
+    std::vector<int> num_pairs(size());
+    for (const PairAnswer& answer : answers_) {
+      num_pairs[answer.source] += answer.converged && agrees(answer);
+      num_pairs[answer.target] += answer.converged && agrees(answer);
+    }
     CloudRegistrationOptions near = options_;
     near.around = PoseNeighborhood{kRegisterAll.around_angle, kRegisterAll.around_distance};
     for (int k = 0; k < size(); ++k) {
-      if (is_connected[k] || groups_.group[k] != largest || alone(k)) continue;
+      if (num_pairs[k] > 1 || groups_.group[k] != largest ||
+          std::count(groups_.group.begin(), groups_.group.end(), largest) < 3)
+        continue;
       const CloudRegistration found = registerClouds(scans_[k].scan.points, scans_[k].scan.seen, together(largest, k),
                                                      std::nullopt, groups_.T_group_scan[k], near);
-      if (!found.converged()) groups_.group[k] = size() + k;
+      if (found.converged())
+        groups_.T_group_scan[k] = found.T_target_source;
+      else if (num_pairs[k] == 0)
+        groups_.group[k] = size() + k;
     }
   }
 
@@ -236,8 +243,6 @@ public:
   }
 
 private:
-  bool alone(int scan) const { return std::count(groups_.group.begin(), groups_.group.end(), groups_.group[scan]) < 2; }
-
   struct Matched {
     std::vector<std::pair<Eigen::Vector3d, int>> pairs;  ///< points in the target's frame, with those of the target
     int num_points;
@@ -353,7 +358,7 @@ RegisteredScans registerAll(const std::vector<ObjectScan>& scans, const CloudReg
   done("pairs");
   graph.adjust();
   graph.addToLargest();
-  graph.dropDoubtful();
+  graph.settleLoose();
   graph.adjust();
   done("adjust");
   const int group = graph.largestGroup();

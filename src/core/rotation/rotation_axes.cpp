@@ -105,9 +105,9 @@ std::vector<int> likelyFolds(const RotationFit& fit, const Line3d& line, int max
   return any == small ? std::vector{small} : std::vector{small, any};
 }
 
-// Multiples of 1/127 of a full rotation tell whether a line is an axis of revolution: 127 is prime, so that they lie at
-// all phases of every fold up to 120.
-constexpr int kNumPhases = 127;
+// Multiples of 1/97 of a full rotation tell whether a line is an axis of revolution: 97 is prime, so that they lie at
+// all phases of every fold up to 60.
+constexpr int kNumPhases = 97;
 
 /// What rotations about a line map off the surface, judged by some of the points. Each is computed once.
 class RotationProfile {

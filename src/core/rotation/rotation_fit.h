@@ -29,6 +29,7 @@ struct RotationRules {
 
   // What points resolve
   double least_own_share = 0.5;  // share of the points within the tolerance of the surface of the others
+  double surface_slack = 1.5;    // tolerances that a sparse surface may resolve: what it leaves open lowers the confidence
   int body_neighbors = 50;       // at most a quarter of the points: in a body, they reach across as far as along;
   double body_thickness = 0.55;  // 0.75 inside, solids of 200 points have 0.63, bowls as thin as their spacing 0.45
   int border_neighbors = 30;     // of a point of a body:

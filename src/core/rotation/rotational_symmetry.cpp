@@ -137,7 +137,7 @@ std::unique_ptr<GroupSearch> searchThatResolves(const Points& points, const Rota
   } else {
     resolution = search->fit().resolution();
   }
-  const bool is_resolved = resolution <= limits.tolerance;
+  const bool is_resolved = resolution <= (fills_body ? 1.0 : kRotation.surface_slack) * limits.tolerance;
   if ((!is_resolved || fills_body) && points.cols() <= kRotation.most_single_points) {
     auto single = std::make_unique<GroupSearch>(points, limits, options, true);
     single->limitTolerance(kRotation.single_distance * single->fit().closestDistance());

@@ -664,7 +664,8 @@ class Map(Result):
         """(theta, phi, r) PRST by equation 1, sqrt((1 + D) / 2): 1 for a perfect symmetry, 0.71 for none."""
         import numpy as np
 
-        return np.sqrt(np.maximum(0, (1 + self.values) / 2))
+        prst: NDArray[np.float32] = np.sqrt(np.maximum(0, (1 + self.values) / 2))
+        return prst
 
     def plot(self, axes: Any = None) -> Any:
         """Draws the greatest value of each direction of normals with matplotlib, by default into new axes; returns them."""
