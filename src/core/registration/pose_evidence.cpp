@@ -100,7 +100,7 @@ double poseConfidence(const PoseEvidence& evidence) {
       std::log(std::min(evidence.overlap_source, evidence.overlap_target) + 0.01),
       evidence.on_surface,
       evidence.conflict,
-      std::log(std::min(evidence.noise, kRegistration.max_noise) / 0.001 + 0.5),
+      std::log(std::clamp(evidence.noise, kRegistration.min_noise, kRegistration.max_noise) / 0.001 + 0.5),
       std::abs(std::log(evidence.size_ratio))};
   double log_odds = 0.0;
   for (std::size_t k = 0; k < terms.size(); ++k) log_odds += kRegistrationFit[k] * terms[k];

@@ -6,6 +6,6 @@
 namespace pcl_symmetry {
 
 /// Weights of the terms of poseConfidence().
-inline constexpr std::array<double, 7> kRegistrationFit{-1.35, 0.484, 0.470, 5.23, -1.47, -0.714, -4.19};
+inline constexpr std::array<double, 7> kRegistrationFit{0.09, 0.424, 0.611, 5.08, -1.71, -1.433, -4.10};
 
 }  // namespace pcl_symmetry
