@@ -4,12 +4,14 @@
 #include <pcl/point_types.h>
 #include <pcl/kdtree/impl/kdtree_flann.hpp>
 #include <pcl/search/impl/kdtree.hpp>
+#include <pcl/search/impl/organized.hpp>
 #include <pcl/search/impl/search.hpp>
 
 #define PCL_SYMMETRY_COMPILE_SEARCHES(PointT) \
   template class pcl::KdTreeFLANN<PointT>;    \
   template class pcl::search::Search<PointT>; \
-  template class pcl::search::KdTree<PointT>;
+  template class pcl::search::KdTree<PointT>; \
+  template class pcl::search::OrganizedNeighbor<PointT>;
 
 PCL_SYMMETRY_COMPILE_SEARCHES(pcl::PointXYZ)
 PCL_SYMMETRY_COMPILE_SEARCHES(pcl::PointXYZI)
