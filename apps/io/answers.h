@@ -30,7 +30,7 @@ std::string counted(std::size_t number, const std::string& one, const std::strin
 /// \param indent blanks a level; -1: one line
 template <typename Json>
 std::string jsonText(Json json, int indent = 2) {
-  if (json.is_object()) json["made_by"] = Json::parse(madeBy().dump());
+  if (json.is_object()) json["made_by"] = Json::parse(madeBy().dump(-1, ' ', false, Json::error_handler_t::replace));
   return json.dump(indent, ' ', false, Json::error_handler_t::replace);
 }
 

@@ -392,7 +392,7 @@ class Pages(unittest.TestCase):
 
         path = Path(folder) / "page.html"
         path.write_text(page)
-        flags = ["--headless", "--no-sandbox", "--use-gl=swiftshader", "--enable-unsafe-swiftshader", "--hide-scrollbars"]
+        flags = ["--headless", "--no-sandbox", "--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"]
         shot = [f"--window-size={size[0]},{size[1]}", "--virtual-time-budget=8000", f"--screenshot={folder}/page.png", f"file://{path}"]
         subprocess.run(["chromium", *flags, f"--user-data-dir={folder}/user", *shot], check=True, capture_output=True, timeout=300)
         return matplotlib.image.imread(f"{folder}/page.png")[..., :3]

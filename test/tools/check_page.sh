@@ -56,6 +56,6 @@ for page in box pose; do
   }
 done
 grep -q 'data-cut="false"' "$work/box" || { echo "check_page.sh: the table of planes is cut off" >&2; exit 1; }
-[[ $(grep -o '<button' "$work/box" | wc -l) == 3 ]] || { echo "check_page.sh: the page does not list three planes" >&2; exit 1; }
+[[ $(grep -o '<button class=' "$work/box" | wc -l) == 3 ]] || { echo "check_page.sh: the page does not list three planes" >&2; exit 1; }
 [[ $(grep -o '<span class="swatch"' "$work/pose" | wc -l) == 2 ]] || { echo "check_page.sh: the pose has no two colors" >&2; exit 1; }
 echo "The pages open and list three planes, and two clouds in one frame."

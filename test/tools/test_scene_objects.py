@@ -169,7 +169,7 @@ class SceneObjects(ToolTest):
 
         def report(threads):
             found = self.report(f"s.pcd -quiet {FEW} -database models.db -accept 0 -threads {threads}")
-            return {**found, "timing_ms": {}}
+            return {**found, "timing_ms": {}, "made_by": {}}
 
         one = report(1)
         self.assertTrue(one["objects"][0]["models"])
