@@ -170,7 +170,8 @@ ObjectSymmetries objectSymmetries(const PointsRef& points, const ObjectSymmetryO
   const auto done = [&](const char* stage) { timing_ms.emplace_back(stage, watch.lap()); };
 
   const Points distinct = DistinctPoints(points).points;
-  const BoundingBall ball = boundingBall(distinct);
+  const BoundingBall ball =
+      boundingBall(pointsAt(distinct, drawSamples(distinct.cols(), options.max_points, options.seed)));
   const Points normalized = normalizePoints(distinct, ball.center, ball.radius);
   const double tolerance = options.absolute_tolerance > 0.0 ? options.absolute_tolerance / ball.radius
                                                             : options.tolerance * farthestPair(normalized);
