@@ -355,9 +355,9 @@ Detection detectVolumePlanes(const ScalarGrid& input, const DetectionOptions& op
       const double least_left = 1.0 - planes.front().support + kRules.least_residual,
                    left = 1.0 - plane.support + kRules.least_residual,
                    shown = (plane.seen - kRules.nothing_seen) / (kRules.enough_seen - kRules.nothing_seen);
-      setConfidence(plane,
-                    confidence(plane, level) * std::pow(std::min(1.0, least_left / left), 2) * std::clamp(shown, 0.0, 1.0),
-                    "the correlation beyond that of planes in any direction", options);
+      setConfidence(
+          plane, confidence(plane, level) * std::pow(std::min(1.0, least_left / left), 2) * std::clamp(shown, 0.0, 1.0),
+          "the correlation beyond that of planes in any direction", options);
     }
     if (std::none_of(planes.begin(), planes.end(), isDecided) && !planes.empty()) found.best = planes.front();
     found.planes = reordered(std::move(planes), options);

@@ -14,10 +14,10 @@ struct EvidenceRules {
   // Support.
   float normal_reach = 0.01f;  ///< reach across the surface, radii of the points
   float rough_reach = 3.0f;    ///< the same in units of the roughness: 99.7 % of Gaussian noise
-  float normal_angle = 0.5f;  ///< radians between normals that agree
-  float surely = 0.99999f;                               ///< share of a reach that rounding does not exceed
-  float most = 9.0f;                                     ///< squared deviation that counts as no support
-  double tilt_ridge = 1e-4;                              ///< far below the stiffness of tilts that are held
+  float normal_angle = 0.5f;   ///< radians between normals that agree
+  float surely = 0.99999f;     ///< share of a reach that rounding does not exceed
+  float most = 9.0f;           ///< squared deviation that counts as no support
+  double tilt_ridge = 1e-4;    ///< far below the stiffness of tilts that are held
 
   double exact_depth = 4e-3;          ///< error of a depth, radii, up to which a pixel without depth saw nothing
   float empty_without_depth = 0.15f;  ///< the same as a share where errors are larger

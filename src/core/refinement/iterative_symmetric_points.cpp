@@ -187,8 +187,7 @@ ReflectionPlane steppedPlane(const IspSurface& surface, const std::vector<int>& 
       if (pairs.weights[i] != 0.0)
         whole.addPointToPoint(pairs.x.col(i).cast<double>(), pairs.y.col(i).cast<double>(), pairs.weights[i]);
     Eigen::Matrix3d soft = Eigen::Matrix3d::Zero();  // projects onto what \p across leaves open
-    for (int i = 0; i < num_soft; ++i)
-      soft += solver.eigenvectors().col(i) * solver.eigenvectors().col(i).transpose();
+    for (int i = 0; i < num_soft; ++i) soft += solver.eigenvectors().col(i) * solver.eigenvectors().col(i).transpose();
     step -= SymmetricEigen<Eigen::Matrix3d>(soft * whole.h * soft).solve(soft * whole.g, 1e-12);
   }
   const double length = step.norm();

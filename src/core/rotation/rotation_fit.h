@@ -32,7 +32,7 @@ struct RotationRules {
   double surface_slack =
       1.5;                  // tolerances that a sparse surface may resolve: what it leaves open lowers the confidence
   int body_neighbors = 50;  // at most a quarter of the points: in a body, they reach across as far as along;
-  double body_thickness = 0.62;   // 0.75 inside, solids of 200 points have 0.63, bowls as thin as their spacing 0.45
+  double body_thickness = 0.62;  // 0.75 inside, solids of 200 points have 0.63, bowls as thin as their spacing 0.45
   int border_neighbors = 30;     // of a point of a body:
   double border_offset = 0.27;   // mean of them, radii of theirs: 3/8 at a flat border, inside 0.14 by chance
   double single_distance = 0.5;  // distances between points within which images meet one by one: 8 % do by chance
