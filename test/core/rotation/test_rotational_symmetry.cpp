@@ -47,7 +47,7 @@ void expectGroup(const std::vector<Eigen::Isometry3d>& motions, double size) {
 
 class KnownGroup : public testing::TestWithParam<TurningShape> {
 protected:
-  static constexpr double kAngleError = 0.6 * kDegree;  // two blades of 4000 points are 0.58 degrees off, others 0.5
+  static constexpr double kAngleError = 0.5 * kDegree;
 
   /// The group by name, each of its rotations, and the line of a continuous one.
   static void expectFound(const TurningShape& shape, const Eigen::Isometry3d& pose, double scale, int num_points,
