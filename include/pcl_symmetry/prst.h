@@ -110,6 +110,7 @@ protected:
     return true;
   }
 
+  /// Gives the indices back.
   bool deinitCompute() override {
     indices_ = all_indices_;
     all_indices_.reset();
@@ -118,6 +119,7 @@ protected:
     return pcl::PCLBase<PointInT>::deinitCompute();
   }
 
+  /// Fills the one point of the output.
   void computeFeature(PointCloudOut& output) override {
     output.width = output.height = 1;
     try {
