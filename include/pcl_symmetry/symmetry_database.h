@@ -37,6 +37,7 @@ struct DatabaseOptions {
   /// build() fits no compact forms: for a part of a database, as merge() fits those of the whole.
   bool is_part = false;
 
+  /// Checks all values.
   /// \throws std::invalid_argument naming field, value and rule.
   void validate() const;
 };
@@ -54,6 +55,7 @@ struct RecognitionOptions {
   double min_merit = 0.5;       ///< of the pose of an accepted model, in [-1, 1], see RecognizedModel::score
   int num_threads = 0;          ///< >= 0; 0 = one per core
 
+  /// Checks all values.
   /// \throws std::invalid_argument naming field, value and rule.
   void validate() const;
 };
@@ -151,6 +153,7 @@ public:
   std::vector<std::string> names() const;
   std::size_t size() const;                      ///< number of models
   bool contains(const std::string& name) const;  ///< whether there is such a model
+  /// What is known of a model besides its shape.
   /// \throws pcl::BadArgumentException where there is no such model.
   ModelInfo info(const std::string& name) const;
   /// \return the unit that the database was made with.
@@ -164,6 +167,7 @@ public:
   /// \throws pcl::BadArgumentException for another name or a cloud that holds no answer: it would never be found.
   /// \throws pcl::IOException naming file and reason; the database is unchanged then.
   void add(const std::string& name, const Cloud& cloud, const ModelSource& source = {});
+  /// Removes a model.
   /// \throws pcl::BadArgumentException where there is no such model.
   /// \throws pcl::IOException naming file and reason; the database is unchanged then.
   void remove(const std::string& name);

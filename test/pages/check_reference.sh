@@ -30,6 +30,10 @@ done
 for name in $(PYTHONPATH=$python /usr/bin/python3 -c 'import pcl_symmetry; print(*pcl_symmetry.__all__)'); do
   grep -q "id=\"pcl_symmetry.$name\"" "$html/python.html" || miss "not in the reference: $name of Python"
 done
+# Setters and computations say in a sentence what they do, before their parameters.
+for page in "$html"/cpp/symmetry_maxima_refinement.html "$html"/cpp/symmetry_registration.html; do
+  grep -qE '<dd><p>(Sets|Finds)' "$page" || miss "no summaries: $page"
+done
 for page in src/pages/algorithms/*.md; do
   for section in Idea Example Parameters Cost Limits 'Where it fails'; do
     grep -q "^[*][*]$section[.][*][*]" "$page" || miss "$page: no section '$section'"
