@@ -25,7 +25,7 @@ struct DatabaseParts;
 
 /// How a database is made and used.
 struct DatabaseOptions {
-  /// Models, spread evenly over all, that compact forms are fitted to and distances are scaled by, >= 1. Twice as many
+  /// Models, drawn by their names, that compact forms are fitted to and distances are scaled by, >= 1. Twice as many
   /// take four times the time and memory of the fit.
   int num_references = 200;
   /// Views of a model that scans are compared with, >= 1: one of 80 is within 12 degrees of any direction.
@@ -184,8 +184,9 @@ public:
   /// \throws pcl::IOException naming file and reason: missing, damaged, of another version or unit, or with a model whose
   /// name is that of another one; this database is unchanged then.
   std::size_t merge(const std::vector<std::string>& files, const BuildProgress& progress = {});
-  /// Fits the compact forms anew if they have less than half of the references of DatabaseOptions::num_references,
-  /// and stores those that are missing. Without it, each program that asks has to do so for itself.
+  /// Stores what models are found by: compact forms are fitted anew if they were fitted to other models than those that
+  /// DatabaseOptions::num_references draws now, and missing ones are added. Without it, each program that asks has to
+  /// do so for itself. Distances depend on the models that are there, not on how they came there.
   /// \throws pcl::IOException naming file and reason; the database is unchanged then.
   void save();
   /// Fits the compact forms anew to the models that are there now.
