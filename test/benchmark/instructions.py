@@ -1,0 +1,86 @@
+#!/usr/bin/env python3
+"""How many instructions does one thread of the tools take, and in which stages? By callgrind, which counts the same on any day.
+
+Callgrind runs programs as on a processor with AVX2, 50 times slower. Writes inputs and profiles to FOLDER: the demo's cow as a mesh
+and scanned from one side, and a cloud of 10 000 points without a plane. Shares of stages are inclusive: one may be part of another.
+
+example: instructions.py build/apps build/instructions
+"""
+import argparse
+import math
+import random
+import re
+import shutil
+import subprocess
+from pathlib import Path
+
+import bench
+
+STAGES = {  # functions, each with what it calls
+    "distance transform": r"pcl_symmetry::GaussianEdt::GaussianEdt\(",
+    "free space": r"pcl_symmetry::freeSpace\(",
+    "transform": r"pcl_symmetry::sampledTransform\(",
+    "geometry": r"pcl_symmetry::localGeometry\(",
+    "refinement": r"pcl_symmetry::refineSymmetricPoints\(",
+    "axes of scan": r"pcl_symmetry::scanAxes\(",
+    "on mesh": r"pcl_symmetry::refineOnMesh\(",
+    "FLANN": r"pcl_symmetry::FlannSearch::(search|searchWithin|FlannSearch)\(",
+}
+
+
+def write_blob(path, count):
+    """Points of a ball with waves that no plane reflects onto each other."""
+    draw = random.Random(1)
+    waves = [(draw.gauss(0, 1), draw.gauss(0, 1), draw.gauss(0, 1), draw.uniform(0, 6)) for _ in range(12)]
+    with open(path, "w") as file:
+        for _ in range(count):
+            x, y, z = (draw.gauss(0, 1) for _ in range(3))
+            length = math.sqrt(x * x + y * y + z * z)
+            x, y, z = x / length, y / length, z / length
+            radius = 1.0 + 0.08 * sum(math.sin(1.5 * (a * x + b * y + c * z) + phase) for a, b, c, phase in waves)
+            print(f"{radius * x:.6f} {radius * y:.6f} {radius * z:.6f}", file=file)
+
+
+def profile(tools, folder, name, command):
+    """Instructions in all, and of each stage."""
+    out = folder / f"{name}.callgrind"
+    bench.run_tool("/usr/bin", "valgrind", "--tool=callgrind", f"--callgrind-out-file={out}", tools / command[0], *command[1:], "-threads", "1", "-quiet")
+    listed = subprocess.run(["callgrind_annotate", "--inclusive=yes", "--threshold=100", out], capture_output=True, text=True, check=True).stdout
+    counts = {}  # a function that calls itself is listed twice
+    for count, function in re.findall(r"^ *([\d,]+) \([^)]*\) +(?:\?\?\?:)?(.*?)(?: \[.*)?$", listed, re.M):
+        counts[function] = max(int(count.replace(",", "")), counts.get(function, 0))
+    total = counts["PROGRAM TOTALS"]
+    return total, [sum(count for function, count in counts.items() if re.match(stage, function)) for stage in STAGES.values()]
+
+
+def report(options):
+    if not shutil.which("valgrind"):
+        raise bench.BadInput("valgrind is not installed")
+    tools, folder = Path(options.tools).resolve(), Path(options.folder).resolve()
+    folder.mkdir(parents=True, exist_ok=True)
+    fetch = Path(__file__).resolve().parents[2] / "apps/fetch_meshes.sh"
+    bench.run_tool("/usr/bin", "bash", fetch, folder, "cow")
+    mesh, scan, blob = folder / "cow.off", folder / "cow_scan.pcd", folder / "blob.xyz"
+    bench.run_tool(tools, "pcl_symmetry_scan", mesh, scan, "-quiet")
+    write_blob(blob, 10_000)
+    commands = {
+        "mesh": ["pcl_symmetry_planes", mesh],
+        "scan": ["pcl_symmetry_planes", scan],
+        "cloud": ["pcl_symmetry_planes", blob],
+        "frame": ["pcl_symmetry_align", mesh, folder / "aligned.pcd"],
+        "register": ["pcl_symmetry_align", scan, "-target", mesh],
+        "viewpoint": ["pcl_symmetry_viewpoint", mesh],
+    }
+    rows = []
+    for name in options.only or commands:
+        total, stages = profile(tools, folder, name, commands[name])
+        rows.append([name, f"{total / 1e6:.0f}", *(f"{100 * stage / total:.0f} %" if stage else "-" for stage in stages)])
+    bench.print_table("Instructions of one thread", ["input", "million", *STAGES], rows)
+
+
+if __name__ == "__main__":
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("tools", help="folder of the tools")
+    parser.add_argument("folder", help="for inputs and profiles")
+    parser.add_argument("--only", nargs="+", help="some of mesh, scan, cloud, frame, register, viewpoint")
+    bench.main(report, parser.parse_args())
