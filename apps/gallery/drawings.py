@@ -4,8 +4,11 @@ usage: python3 apps/gallery/drawings.py PICTURE OUT.png [FILE ...]
 
   first_look MESH      a scan, its plane of symmetry, and the completed scan (the page that is read first)
   decision FRAME N …   objects of a frame of a depth camera, by number: the evidence for their best planes, and the confidence
+  refinement MESH      Iterative Symmetric Points, from a plane that is off (Figure 7)
+  animals MESH …       shapes with their frames (Figure 10)
   frames               mugs and mailboxes with their axes, by center of mass and PCA, and by symmetry (Figure 10)
   scan_centers MESH    eight scans of a mesh, and the centers found in each, by symmetry and by mass (Figure 11)
+  turntable SCAN …     scans of one object as their files are, and brought together
   medial_axis SHAPE …  the medial axes of planar shapes, as planar.py takes them (the other half of Figure 3)
   volume               a head made of ellipsoids, tilted, with a lesion on one side: its plane and its asymmetry
   failure_frame MESH, failure_completion MESH, failure_pose, failure_name, failure_rotations, failure_volume
@@ -156,6 +159,45 @@ def frames(out):
     sheet.save(out)
 
 
+def animals(out, *paths):
+    sheet = Sheet(1, len(paths), (1.6, 0.9, 0.5), up="y")
+    for path in paths:
+        points = sampled(load_mesh(path))
+        frame = pcl_symmetry.frame(points)
+        axes = sheet.panel(Path(path).stem, points)
+        sheet.dots(axes, points, GRAY, 0.5)
+        sheet.cross(axes, frame.center, frame.axes, 0.5 * np.linalg.norm(np.ptp(points, axis=0)), (VERMILION, GREEN, BLUE))
+    sheet.save(out)
+
+
+def refinement(out, path):
+    """From a plane 12 degrees and a shift off back to rest: samples, their reflections, and the closest points (Section 4.4)."""
+    from scipy.spatial import cKDTree
+
+    points = sampled(load_mesh(path)).astype(float)
+    best = pcl_symmetry.planes(points)[0]
+    size = np.linalg.norm(np.ptp(points, axis=0))
+    tree, samples = cKDTree(points), points[::80]
+    normal = best.normal + np.tan(np.radians(12)) * np.cross(best.normal, [0.0, 0.0, 1.0])
+    plane = pcl_symmetry.ReflectionPlane(normal / np.linalg.norm(normal), best.offset + 0.02 * size)
+    sheet = Sheet(1, 4, (1.6, 0.9, 0.5), up="y", size=3.0)
+    for step in range(1, 31):
+        reflected = plane.reflect(samples)
+        distances, indices = tree.query(reflected)
+        if step in (1, 2, 4, 30):
+            axes = sheet.panel(f"step {step}: {100 * np.sqrt((distances**2).mean()) / size:.1f} % apart", points)
+            sheet.dots(axes, points[::4], GRAY, 0.3)
+            for dots, color in ((samples, BLUE), (reflected, VERMILION), (points[indices], GREEN)):
+                sheet.dots(axes, dots, color, 6)
+        # The plane that maps the samples best to the points that are closest to their reflections.
+        closest, weights = points[indices], np.exp(-((distances / (0.06 * size)) ** 2))
+        middle = np.average((samples + closest) / 2, axis=0, weights=weights)
+        x, y = samples - middle, closest - middle
+        products = np.einsum("n,ni,nj->ij", weights, x, y)
+        plane = pcl_symmetry.ReflectionPlane(normal := np.linalg.eigh(products + products.T)[1][:, 0], normal @ middle)
+    sheet.save(out)
+
+
 def scan_centers(out, path):
     whole = sampled(load_mesh(path))
     sheet = Sheet(2, 5, (1, 1, 0.8), size=2.2)
@@ -172,6 +214,23 @@ def scan_centers(out, path):
         sheet.dots(axes, whole, GRAY, 0.1)
         for centers in found:
             sheet.cross(axes, centers[which], np.eye(3), 0.04 * np.linalg.norm(np.ptp(whole, axis=0)), [color] * 3)
+    sheet.save(out)
+
+
+def turntable(out, *paths):
+    import open3d
+
+    scans = [np.asarray(open3d.io.read_point_cloud(path).points)[::10] for path in paths]
+    merged = pcl_symmetry.register_all(scans)
+    posed = [scan @ T[:3, :3].T + T[:3, 3] for scan, T in zip(scans, merged.transforms) if T is not None]
+    colors = [f"C{k % 10}" for k in range(len(scans))]
+    sheet = Sheet(1, 3, (1, 1, 0.35), up="y")
+    whole = np.concatenate(posed)
+    for title, clouds, view in (("scans as they are", scans, (0.5, 1.0)), ("brought together", posed, (0.5, 1.0)), ("from behind", posed, (-0.5, -1.0))):
+        axes = sheet.panel(title, whole if clouds is posed else np.concatenate(clouds))
+        axes.view_init(sheet.elevation, np.degrees(np.arctan2(*view)))
+        for cloud, color in zip(clouds, colors):
+            sheet.dots(axes, cloud, color, 0.6)
     sheet.save(out)
 
 
@@ -396,7 +455,7 @@ def failure_volume(out):
 
 
 if __name__ == "__main__":
-    pictures = {f.__name__: f for f in (first_look, decision, frames, scan_centers, medial_axis, volume, failure_frame, failure_completion,
+    pictures = {f.__name__: f for f in (first_look, decision, refinement, animals, frames, scan_centers, turntable, medial_axis, volume, failure_frame, failure_completion,
                                         failure_pose, failure_name, failure_rotations, failure_volume)}
     if len(sys.argv) < 3 or sys.argv[1] not in pictures:
         print(__doc__)

@@ -38,7 +38,7 @@ gallery=$folder/gallery pictures=$folder/pictures
 cd "$(dirname "${BASH_SOURCE[0]}")/../.."
 cmake --preset release --log-level=WARNING >/dev/null
 cmake --build build --parallel "$(nproc)" --target pcl_symmetry_map pcl_symmetry_planes \
-  pcl_symmetry_scan pcl_symmetry_scene pcl_symmetry_segment pcl_symmetry_viewer pcl_symmetry_viewpoint \
+  pcl_symmetry_scan pcl_symmetry_scene pcl_symmetry_segment pcl_symmetry_viewpoint \
   pcl_symmetry_python pcl_symmetry_python_recognition
 if $estimators; then
   cmake --preset benchmark --log-level=WARNING >/dev/null
@@ -92,24 +92,6 @@ draw_figure_2() {
 draw_figure_3() {
   draw figure_3 "${planar[@]}" "$gallery/figure_3.png" "rectangle 1 0.5" "rectangle 1 0.5 0.1"
   draw figure_3_medial_axis "${drawings[@]}" medial_axis "$gallery/figure_3_medial_axis.png" "rectangle 1 0.5" "rectangle 1 0.5 0.1"
-}
-
-# draw_view PICTURE MODEL KEYS: the window of the viewer after some keys.
-draw_view() {
-  draw "$1" pcl_symmetry_viewer "$2.off" -up 0,1,0 -width 480 -height 360 -keys "$3" -screenshot "$gallery/$1.png"
-}
-
-draw_figures_7_8_and_10() {
-  draw_view figure_7_step_1 cow i
-  draw_view figure_7_step_2 cow i,i
-  draw_view figure_7_step_5 cow i,i,i,i,i
-  draw_view figure_7_support cow g
-  draw_view figure_8_1 bull v
-  draw_view figure_8_2 bull n
-  draw_view figure_8_4 bull n,n,n
-  draw_view figure_8_6 bull n,n,n,n,n
-  draw_view figure_10_cow cow g,s,a
-  draw_view figure_10_elephant elephant g,s,a
 }
 
 # draw_parts PICTURE ARGUMENTS...
@@ -179,7 +161,8 @@ draw_scans_and_parts
 draw_figure_1
 draw_figure_2
 draw_figure_3
-draw_figures_7_8_and_10
+draw figure_7 "${drawings[@]}" refinement "$gallery/figure_7.png" cow.off
+draw figure_10 "${drawings[@]}" animals "$gallery/figure_10.png" cow.off elephant.off
 draw volume "${drawings[@]}" volume "$gallery/volume.png"
 draw figure_11 "${drawings[@]}" scan_centers "$gallery/figure_11.png" car.ply
 draw_figure_15

@@ -43,8 +43,6 @@ CommandLine commandLine(MatchOptions& options) {
               "number of models most like the scan that are tried")
       .number("min_confidence", options.recognition.min_confidence, Range::closed(0, 1),
               "least confidence of a known model")
-      .number("min_merit", options.recognition.min_merit, Range::closed(-1, 1),
-              "least merit of the pose of a known model")
       .common(options.common, kMeshPoints | kJson | kThreads | kViewpoint | kQuiet);
   return line;
 }

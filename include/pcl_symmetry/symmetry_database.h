@@ -52,7 +52,6 @@ struct RecognitionOptions {
   /// models of the first num_candidates, and again of the others.
   int num_refined = 4;
   double min_confidence = 0.5;  ///< of an accepted model, in [0, 1], see RecognizedModel::confidence
-  double min_merit = 0.5;       ///< of the pose of an accepted model, in [-1, 1], see RecognizedModel::score
   int num_threads = 0;          ///< >= 0; 0 = one per core
 
   /// Checks all values.
@@ -75,11 +74,12 @@ struct RecognizedModel {
   /// How well the scan fits there: support is the share of its points on the surface of the model, as wide as the
   /// points of the scan are apart and noisy. How densely the model was sampled does not count.
   PoseScore score;
-  /// Probability that the scan shows this model or one of the same shape, in [0, 1]: a logistic function of the merit
-  /// and of how far it is ahead of the best model of another shape, fitted to scenes with objects that are not in the
-  /// database. The sum over shapes is at most 1. Two models are of the same shape if they share 90 % of their surfaces
-  /// where the scan puts them. The best model is judged before rotations about its axes are tried for a better pose, so
-  /// that its score may be higher than its confidence suggests.
+  PoseEvidence evidence;  ///< what the confidence follows from; the scan is the source, the model the target
+  /// Probability that the scan shows this model or one of the same shape, in [0, 1]: from the share of the scan that
+  /// lies on the model, the merit, and how far it is ahead of the best model of another shape, fitted to virtual and
+  /// real scans of objects that are in the database and that are not. The sum over shapes is at most 1. Two models are
+  /// of the same shape if they share 90 % of their surfaces where the scan puts them. The best model is judged before
+  /// rotations about its axes are tried for a better pose.
   double confidence = 0.0;
 };
 

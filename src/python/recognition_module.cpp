@@ -286,6 +286,7 @@ void addModels(py::module_& module) {
   py::class_<RecognizedModel>(module, "Recognized")
       .def_readonly("name", &RecognizedModel::name)
       .def_readonly("score", &RecognizedModel::score)
+      .def_readonly("evidence", &RecognizedModel::evidence)
       .def_readonly("confidence", &RecognizedModel::confidence)
       .def_property_readonly("transform", [](const RecognizedModel& m) { return RowMajor4(m.T_model_scan.matrix()); });
   py::class_<BuildReport>(module, "BuildReport")

@@ -6,6 +6,7 @@
 #include "core/base/constants.h"
 #include "core/geometry/principal_axes.h"
 #include "core/matching/shape_signature.h"
+#include "core/registration/pose_evidence.h"
 #include "core/registration/pose_scoring.h"
 
 namespace pcl_symmetry::detail {
@@ -51,7 +52,7 @@ PosedModel PosedScan::fitted(const std::string& name, const std::shared_ptr<cons
   search.num_rotations = 0;
   const std::vector<RankedPose> poses = searchPoses(surface_, *surface, T_surface_scan, search);
   const Eigen::Isometry3d pose = refinePoses(surface_, *surface, poses, options_).front().T_model_scan;
-  return {{name, frames.toInput(pose), scoreOf(*surface, pose), 0.0}, surface, pose, frames};
+  return posed(name, surface, frames, pose);
 }
 
 PosedModel PosedScan::rotated(const PosedModel& found) const {
@@ -74,7 +75,17 @@ PosedModel PosedScan::judged(const std::string& name, const Points& points,
   const SearchFrames frames{ball_.center, boundingBall(points).center, scale_};
   const auto surface = std::make_shared<const PosedSurface>(surfaceOf(points, frames.target_center, std::nullopt));
   const Eigen::Isometry3d pose = frames.toSearch(T_model_scan);
-  return {{name, T_model_scan, scoreOf(*surface, pose), 0.0}, surface, pose, frames};
+  return posed(name, surface, frames, pose);
+}
+
+PosedModel PosedScan::posed(const std::string& name, const std::shared_ptr<const PosedSurface>& surface,
+                            const SearchFrames& frames, const Eigen::Isometry3d& T_surface_scan) const {
+  RecognizedModel model;
+  model.name = name;
+  model.T_model_scan = frames.toInput(T_surface_scan);
+  model.score = scoreOf(*surface, T_surface_scan);
+  model.evidence = poseEvidence(surface_, *surface, T_surface_scan, model.score);
+  return {model, surface, T_surface_scan, frames};
 }
 
 PoseScore PosedScan::scoreOf(const PosedSurface& model, const Eigen::Isometry3d& T_model_scan) const {

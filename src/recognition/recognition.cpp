@@ -1,4 +1,6 @@
 #include <algorithm>
+#include <array>
+#include <numeric>
 #include <optional>
 #include <utility>
 
@@ -11,6 +13,7 @@
 #include "pcl_symmetry/symmetry_database.h"
 #include "recognition/database_parts.h"
 #include "recognition/posed_scan.h"
+#include "recognition/recognition_fit.h"
 
 namespace pcl_symmetry {
 
@@ -62,9 +65,10 @@ void fillConfidences(std::vector<PosedModel>& found) {
     const double merit = found[i].model.score.merit();
     std::size_t other = 0;
     while (other < found.size() && firsts[other] == firsts[i]) ++other;
-    const double lead =
-        std::min(merit - (other < found.size() ? found[other].model.score.merit() : 0.0), kRecognition.max_lead);
-    found[i].model.confidence = logistic(-(kRecognition.even_sum - merit - lead) / kRecognition.odds_step);
+    const double rival = other < found.size() ? found[other].model.score.merit() : 0.0;
+    const std::array<double, 4> terms{1.0, found[i].model.evidence.on_surface, merit,
+                                      std::min(merit - rival, kRecognition.max_lead)};
+    found[i].model.confidence = logistic(std::inner_product(terms.begin(), terms.end(), kRecognitionFit.begin(), 0.0));
     if (firsts[i] == i) sum += found[i].model.confidence;
   }
   if (sum > 1.0)
@@ -77,10 +81,6 @@ void rank(std::vector<PosedModel>& found) {
     return a.model.score.merit() > b.model.score.merit();
   });
   fillConfidences(found);
-}
-
-bool isAccepted(const RecognizedModel& model, const RecognitionOptions& options) {
-  return model.score.merit() >= options.min_merit && model.confidence >= options.min_confidence;
 }
 
 /// Models brought to the scan from poses that its looks suggest, and in a small database pairs of its points. In a
@@ -106,7 +106,7 @@ std::vector<PosedModel> fitLikeViews(DatabaseParts& database, const Points& poin
                                   model.T_model_scan));
     rank(found);
   };
-  const auto isFound = [&] { return !found.empty() && isAccepted(found.front().model, options); };
+  const auto isFound = [&] { return !found.empty() && found.front().model.confidence >= options.min_confidence; };
   const auto fitAlike = [&](std::size_t begin, std::size_t end) {
     std::vector<PossibleModel> models(end - begin);
     parallelBlocks(models.size(), options.num_threads, [&](std::size_t i) {
@@ -122,7 +122,7 @@ std::vector<PosedModel> fitLikeViews(DatabaseParts& database, const Points& poin
     fitAlike(0, num_first);
     if (!isFound()) fitAlike(num_first, alike.size());
   }
-  // The confidence is that of the merit before this step.
+  // The confidence is that of the pose before this step.
   if (isFound()) found.front() = scan.rotated(found.front());
   return found;
 }
@@ -154,7 +154,7 @@ Recognition recognizeIn(DatabaseParts& database, const Points& points, const Poi
     Recognition accepted;
     for (PosedModel& posed : seen ? fitLikeViews(database, points, scan_points, *seen, options)
                                   : fitLikeShapes(database, points, scan_points, options))
-      if (isAccepted(posed.model, options)) accepted.push_back(std::move(posed.model));
+      if (posed.model.confidence >= options.min_confidence) accepted.push_back(std::move(posed.model));
     return accepted;
   });
 }
@@ -165,7 +165,6 @@ void RecognitionOptions::validate() const {
   check(num_candidates >= 1, "num_candidates", num_candidates, ">= 1");
   check(max_candidates >= 1, "max_candidates", max_candidates, ">= 1");
   check(num_refined >= 1, "num_refined", num_refined, ">= 1");
-  check(min_merit >= -1.0 && min_merit <= 1.0, "min_merit", min_merit, "in [-1, 1]");
   check(min_confidence >= 0.0 && min_confidence <= 1.0, "min_confidence", min_confidence, "in [0, 1]");
   checkNumThreads(num_threads);
 }

@@ -20,10 +20,8 @@ struct RecognitionRules {
   double min_width = 0.015;      // with a Gaussian of this width, or of the accuracy of the scan
   int num_rotations = 12;        // about each principal axis that are tried at last
 
-  // Confidence: a logistic function of merit plus lead, from 267 answers in scenes of fold 0
-  double even_sum = 0.894;        // at which an answer is right as often as wrong
-  double odds_step = 1.0 / 30.0;  // by which the odds grow by a factor of e
-  double max_lead = 0.3;          // over the best model of another shape that counts
+  // Confidence
+  double max_lead = 0.4;          // over the best model of another shape that counts, see fit_recognition.py
   double same_shape = 0.9;        // share of the surfaces that models of one shape have in common,
   double same_surface = 0.03;     // with a Gaussian of this width: each was brought to the scan by itself,
   int num_compared_points = 500;  // by this many points

@@ -79,35 +79,13 @@ class Pictures(ToolTest):
 
     def test_are_made_without_a_screen(self):
         pictures = set()
-        for keys in ("", "-keys n,o,h", "-keys i,i", "-keys c -parts 2"):
-            self.run_tool(self.box, "-quiet -symmetries -width 320 -height 240 -screenshot a.png", keys, env=self.no_display)
+        for plane in ("1", "2"):
+            self.run_tool(self.box, "-quiet -symmetries -width 320 -height 240 -screenshot a.png -plane", plane, env=self.no_display)
             self.assertEqual(tool_run.png_size(self.folder / "a.png"), (320, 240))
             pictures.add((self.folder / "a.png").read_bytes())
-        self.assertEqual(len(pictures), 4)
-        cloud = self.write("a.xyz", "".join(f"{x} {y} {z}\n" for x in range(4) for y in range(5) for z in range(9)))
-        pictures = set()
-        for keys in ("", "-keys c -parts 2"):
-            self.run_tool(cloud, "-quiet -width 320 -height 240 -screenshot a.png", keys, env=self.no_display)
-            pictures.add((self.folder / "a.png").read_bytes())
-        self.assertEqual(len(pictures), 2, "parts of a cloud")
-
-    def test_keys_do_what_the_help_says(self):
-        def shown(keys):
-            self.run_tool(self.box, "-quiet -points 1000 -symmetries -width 200 -height 150 -screenshot a.png", f"-keys {keys}" if keys else "",
-                          env=self.no_display)
-            return (self.folder / "a.png").read_bytes()
-
-        start, second, third = shown(""), shown("n"), shown("b,Left,b,Left")
-        self.assertEqual(len({start, second, third}), 3, "three planes")
-        for same, keys in ((third, "Right,n"), (start, "b,Right"), (start, "n,n,n"), (shown("i"), "i,i,u"), (second, "i,i,n"), (start, "w,v")):
-            self.assertEqual(shown(keys), same, keys)
-        for key in "gsoamch":
-            once = shown(key)
-            self.assertNotEqual(once, start, key)
-            self.assertEqual(shown(f"{key},{key},{key}"), once, f"{key} is on and off")
-        self.assertEqual(len({start, shown("w"), shown("e"), shown("i"), shown("i,i")}), 5)
-        for key in ("p", "q", "Escape"):
-            self.run_tool(self.box, "-quiet -points 1000 -width 200 -height 150 -screenshot a.png -keys", key, env=self.no_display)
+        self.assertEqual(len(pictures), 2)
+        self.run_tool(self.box, "-quiet -symmetries -screenshot b.png -plane 9", env=self.no_display, code=2)
+        self.assertIn("-plane: 9, must be <= 3", self.error)
 
     def test_hold_panels_of_several_scenes(self):
         self.run_tool(self.box, "-quiet -points 2000 -size 100 -png views.png -icon best.png", tool="viewpoint")

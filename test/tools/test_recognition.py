@@ -93,7 +93,7 @@ class Database(Recognition):
         self.assertNotIn("1 models", self.error)
         self.run_tool("remove models.db box vase")
         self.run_tool("rebuild models.db")
-        self.run_tool("models.db", self.box, "-recognize -min_merit 1", tool="match")
+        self.run_tool("models.db", self.box, "-recognize -min_confidence 1", tool="match")
         self.assertEqual(self.output, "unknown object\n")
 
     def test_go_on_take_folders_and_tell_what_they_hold(self):

@@ -36,6 +36,10 @@ Matches match(const PosedSurface& from, const PosedSurface& to, const Eigen::Iso
   return matches;
 }
 
+float gaussian(double distance, double width) {
+  return static_cast<float>(std::exp(-distance * distance / (width * width)));
+}
+
 /// The Gaussian of the distance of a match from its closest point.
 float nearness(const Matches& matches, Eigen::Index i, const PosedSurface& to, double width) {
   const float factor = static_cast<float>(-1.0 / (width * width));
@@ -81,10 +85,13 @@ PoseScore PoseScorer::score(const Eigen::Isometry3d& T_model_scan, const Detail&
   const Matches on_scan = match(model_, scan_, T_model_scan.inverse(), detail);
   double conflict = 0.0, judged = kRegistration.least_judged * static_cast<double>(on_scan.positions.cols());
   for (Eigen::Index i = 0; i < on_scan.positions.cols(); ++i) {
-    const float near = nearness(on_scan, i, scan_, detail.width);
-    const bool in_front = isInFreeSpace(on_scan, i, scan_);
-    conflict += in_front ? 1.0f - near : 0.0f;
-    judged += in_front ? 1.0f : near;
+    const double depth = scan_.seen->depthBehind(on_scan.positions.col(i).cast<double>());
+    // Beside the scan there may be more that the scanner measured: a piece of the object that was cut off.
+    const double on_surface = detail.from_surface ? std::max(nearnessOfSurface(on_scan, i, scan_, detail.width),
+                                                             gaussian(depth, detail.width))
+                                                  : nearness(on_scan, i, scan_, detail.width);
+    conflict += depth < 0.0 ? 1.0 - on_surface : 0.0;
+    judged += depth < 0.0 ? 1.0 : on_surface;
   }
   score.conflict += conflict / judged;
   return score;

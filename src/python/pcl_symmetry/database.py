@@ -38,6 +38,10 @@ def _score(score: Any) -> PoseScore:
     return PoseScore(score.support, score.conflict, score.merit)
 
 
+def _evidence(found: Any) -> PoseEvidence:
+    return PoseEvidence(**_fields(found, *(f.name for f in dataclasses.fields(PoseEvidence))))
+
+
 def register(
     source: Any,
     target: Any,
@@ -81,7 +85,7 @@ def register(
     result = Registration(
         score=_score(found.score),
         poses=[(pose, _score(score)) for pose, score in found.poses],
-        evidence=PoseEvidence(**_fields(found.evidence, *(f.name for f in dataclasses.fields(PoseEvidence)))),
+        evidence=_evidence(found.evidence),
         **_fields(found, "transform", "converged", "confidence", "reason", "covariance"),
     )
     return result if source_shift is None and target_shift is None else result._moved_between(s, t)
@@ -249,7 +253,7 @@ class Database:
 
 
 def _recognized(model: Any) -> Recognized:
-    return Recognized(model.name, model.confidence, model.transform, _score(model.score))
+    return Recognized(model.name, model.confidence, model.transform, _score(model.score), _evidence(model.evidence))
 
 
 def _camera_points(cloud: Cloud) -> NDArray[Any]:

@@ -793,6 +793,8 @@ class Recognized(Result):
     transform: NDArray[np.float64]
     """(4, 4) from the frame of the scan to that of the model."""
     score: PoseScore
+    evidence: PoseEvidence
+    """What the confidence follows from; the scan is the source."""
 
 
 @dataclass(frozen=True, eq=False, repr=False)

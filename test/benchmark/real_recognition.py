@@ -1,0 +1,119 @@
+#!/usr/bin/env python3
+"""Known objects in frames of depth cameras: names and poses found, wrong names, unknown objects called known.
+
+usage: PYTHONPATH=build/src/python python3 test/benchmark/real_recognition.py FOLDER [--unknown FRAME.pcd ...]
+
+FOLDER/index.json lists models (file), scenes (file of an organized cloud, max_range, objects: model, T_scene_model) and
+scans (file, object, T_object_scan). The database holds all models. Each frame is analyzed in one call of scene(), and each
+scan alone by recognize(). A pose is right within 5 degrees and 5 % of the diameter, up to the symmetries of the model. A
+frame given by --unknown shows none of the models.
+"""
+
+import argparse
+import json
+import pathlib
+import tempfile
+import time
+
+import numpy as np
+import pcl_symmetry
+from scipy.spatial import cKDTree
+
+import bench
+from fit_recognition import answer_of
+from real_registration import is_right, moved, read
+
+
+def read_frame(path):
+    """(H, W, 3) points of a camera."""
+    import open3d
+
+    with open(path, "rb") as file:
+        sizes = {name: int(number) for name, number in (line.split() for line in (file.readline().decode() for _ in range(9)) if line[0] in "WH")}
+    points = open3d.io.read_point_cloud(str(path), remove_nan_points=False, remove_infinite_points=False).points
+    return np.asarray(points, dtype=np.float32).reshape(sizes["HEIGHT"], sizes["WIDTH"], 3)
+
+
+def shown_by(points, scene, surfaces):
+    """The model whose surface 70 % of the points of an object lie on, to 8 mm; None if there is none."""
+    for model in scene["objects"]:
+        distances = cKDTree(moved(np.array(model["T_scene_model"]), surfaces[model["model"]])).query(points)[0]
+        if (distances < 0.008).mean() > 0.7:
+            return model["model"]
+    return None
+
+
+def main(arguments):
+    folder = pathlib.Path(arguments.folder)
+    index = json.loads((folder / "index.json").read_text())
+    surfaces = {name: read(folder / model["file"])[0] for name, model in index["models"].items()}
+    diameters = {name: model["diameter"] for name, model in index["models"].items()}
+    centers = {name: points.mean(axis=0) for name, points in surfaces.items()}
+
+    def pose_is_right(name, T, truth):
+        return bool(is_right(np.linalg.inv(T), np.linalg.inv(truth), surfaces[name], diameters[name], True))
+
+    rows = []
+    with tempfile.TemporaryDirectory() as temporary:
+        database = pcl_symmetry.Database(temporary + "/models.db", create=True)
+        database.build((name, points.astype(np.float32)) for name, points in surfaces.items())
+        table, total = [], {key: bench.Rate() for key in ("named", "right", "wrong")}
+        for name, scene in index["scenes"].items():
+            start = time.process_time()
+            frame = read_frame(folder / scene["file"])
+            found = pcl_symmetry.scene(frame, database=database, max_range=scene["max_range"] or 0.0, complete=False, min_name_confidence=0.0, threads=1)
+            seconds = time.process_time() - start
+            rows += [{"object": shown_by(frame[found.labels == k + 1], scene, surfaces), "models": answer_of(object.models)} for k, object in enumerate(found.objects)]
+            names = [object.models[0] for object in found.objects if object.models and object.models[0].confidence >= 0.5]
+            there = {model["model"]: np.array(model["T_scene_model"]) for model in scene["objects"]}
+            texts, seen = [], set()
+            for model, truth in there.items():
+                mine = [m for m in names if m.name == model and np.linalg.norm(moved(np.linalg.inv(m.transform), centers[model]) - moved(truth, centers[model])) < 0.6 * diameters[model]]
+                seen.update(id(m) for m in mine)
+                right = any(pose_is_right(model, np.linalg.inv(m.transform), truth) for m in mine)
+                total["named"].add(bool(mine))
+                total["right"].add(right)
+                texts.append(f"{model} {'right' if right else 'pose wrong' if mine else 'not named'}")
+            wrong = [m for m in names if id(m) not in seen]
+            total["wrong"].add(len(wrong) > 1)
+            table.append([name, len(found.objects), "; ".join(texts), "; ".join(f"{m.name} {m.confidence:.2f}" for m in wrong), f"{seconds:.1f}"])
+        bench.print_table("Frames", ["", "objects", "known", "wrong names", "s"], table)
+        bench.print_table("All frames", ["", "rate"], [["named", total["named"].text], ["with the right pose", total["right"].text], ["frames with more than one wrong name", total["wrong"].text]])
+        answers = {key: bench.Rate() for key in ("right", "pose wrong", "unknown", "wrong name")}
+        for name, scan in index["scans"].items():
+            if scan["object"] not in surfaces or arguments.frames_only:
+                continue
+            points = read(folder / scan["file"])[0].astype(np.float32)
+            models = database.recognize(points, viewpoint=tuple(scan["viewpoint"] or scan["sensor"]), min_confidence=0.0, threads=1)
+            rows.append({"object": scan["object"], "models": answer_of(models)})
+            models = [model for model in models if model.confidence >= 0.5]
+            if not models:
+                answer = "unknown"
+            elif models[0].name != scan["object"]:
+                answer = "wrong name"
+            else:
+                good = pose_is_right(scan["object"], np.linalg.inv(models[0].transform), np.linalg.inv(np.array(scan["T_object_scan"])))
+                answer = "right" if good else "pose wrong"
+            for key, rate in answers.items():
+                rate.add(key == answer)
+            if answer != "right" and arguments.list:
+                print(f"  {name}: {answer} {models[0].name if models else ''}")
+        bench.print_table("Scans alone", ["", "rate"], [[key, rate.text] for key, rate in answers.items()])
+        if arguments.rows:
+            bench.write_whole(arguments.rows, "".join(json.dumps(row) + "\n" for row in rows))
+        unknown = []
+        for path in arguments.unknown:
+            found = pcl_symmetry.scene(read_frame(path), database=database, max_range=1.3, complete=False)
+            unknown.append([pathlib.Path(path).stem, len(found.objects), "; ".join(o.models[0].name for o in found.objects if o.models)])
+        if unknown:
+            bench.print_table("Frames without known objects", ["", "objects", "named"], unknown)
+
+
+if __name__ == "__main__":
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("folder", help="with index.json")
+    parser.add_argument("--unknown", nargs="*", default=[], metavar="FRAME")
+    parser.add_argument("--rows", metavar="FILE", help="a line of JSON for each object, for fit_recognition.py")
+    parser.add_argument("--frames-only", action="store_true")
+    parser.add_argument("--list", action="store_true", help="scans that are not right")
+    main(parser.parse_args())
