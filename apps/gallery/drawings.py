@@ -180,7 +180,7 @@ def refinement(out, path):
     tree, samples = cKDTree(points), points[::80]
     normal = best.normal + np.tan(np.radians(12)) * np.cross(best.normal, [0.0, 0.0, 1.0])
     plane = pcl_symmetry.ReflectionPlane(normal / np.linalg.norm(normal), best.offset + 0.02 * size)
-    sheet = Sheet(1, 4, (1.6, 0.9, 0.5), up="y", size=3.0)
+    sheet = Sheet(1, 4, (0.5, 1.6, 0.4), up="y", size=3.0)
     for step in range(1, 31):
         reflected = plane.reflect(samples)
         distances, indices = tree.query(reflected)
@@ -195,6 +195,8 @@ def refinement(out, path):
         x, y = samples - middle, closest - middle
         products = np.einsum("n,ni,nj->ij", weights, x, y)
         plane = pcl_symmetry.ReflectionPlane(normal := np.linalg.eigh(products + products.T)[1][:, 0], normal @ middle)
+    for axes in sheet.figure.axes:
+        axes.set_box_aspect((1, 1, 1), zoom=1.5)
     sheet.save(out)
 
 

@@ -25,14 +25,14 @@ using namespace pcl_symmetry::apps;
 using Window = pcl::visualization::PCLVisualizer;
 
 constexpr const char* kKeys =
-    "n, b: next plane, plane before it   m: the reflected points   a: axes of revolution   q: quit   h: all keys of "
+    "n, b: next plane, plane before it   m: the reflected points   q: quit   h: all keys of "
     "PCL";
 
 struct ViewerOptions {
   std::string input;
   std::optional<std::string> screenshot_path;
   std::optional<Eigen::Vector3d> up;
-  int width = 1000, height = 750, plane = 1;
+  int plane = 1;
   bool symmetries_only = false;
   CommonOptions common;
 };
@@ -45,8 +45,6 @@ CommandLine commandLine(ViewerOptions& options) {
       .number("plane", options.plane, Range::closed(1, 1000), "number of the plane that is shown first")
       .flag("symmetries", options.symmetries_only, "no approximate symmetries and symmetries of parts")
       .direction("up", options.up, "direction that is about up, input frame (0,0,1)")
-      .number("width", options.width, Range::closed(200, 8192), "width of the window, pixels")
-      .number("height", options.height, Range::closed(150, 8192), "height of the window, pixels")
       .common(options.common, kShapeFlags & ~kJson);
   return line;
 }
@@ -66,8 +64,7 @@ public:
     if (key == "n") plane_ = std::min(plane_ + 1, num_planes);
     if (key == "b") plane_ = std::max(plane_ - 1, 1);
     if (key == "m") reflected_ = !reflected_;
-    if (key == "a") axes_ = !axes_;
-    if (key == "n" || key == "b" || key == "m" || key == "a") draw();
+    if (key == "n" || key == "b" || key == "m") draw();
   }
 
 private:
@@ -102,12 +99,10 @@ private:
                                           "plane");
       window_.setShapeRenderingProperties(PCL_VISUALIZER_OPACITY, 0.5, "plane");
     }
-    if (axes_)
-      for (const SymmetryAxis& axis : refinement_.getAxes()) {
-        const auto [from, to] = axisEnds({axis.point, axis.direction}, scene_);
-        window_.addLine(toPoint(from), toPoint(to), 0.0, 0.0, 0.0,
-                        formatted("axis %p", static_cast<const void*>(&axis)));
-      }
+    for (const SymmetryAxis& axis : refinement_.getAxes()) {
+      const auto [from, to] = axisEnds({axis.point, axis.direction}, scene_);
+      window_.addLine(toPoint(from), toPoint(to), 0.0, 0.0, 0.0, formatted("axis %p", static_cast<const void*>(&axis)));
+    }
     window_.addText(text, 10, 26, 14, 0.1, 0.1, 0.1, "title");
     window_.addText(kKeys, 10, 8, 12, 0.4, 0.4, 0.4, "keys");
   }
@@ -126,7 +121,7 @@ private:
   const std::vector<SymmetryPlane>& planes_;
   PictureScene scene_;
   int plane_;
-  bool reflected_ = false, axes_ = true;
+  bool reflected_ = false;
 };
 
 int run(int argc, char** argv) {
@@ -153,7 +148,7 @@ int run(int argc, char** argv) {
   if (options.screenshot_path) requireDisplay(*options.screenshot_path);
 
   Window window(options.input);
-  window.setSize(options.width, options.height);
+  window.setSize(1000, 750);
   window.setBackgroundColor(1.0, 1.0, 1.0);
   View view(window, input.points, refinement, options.plane);
   PictureScene upright;
