@@ -272,6 +272,16 @@ class OtherFunctions(unittest.TestCase):
         self.assertEqual(len(frame.evidence), len(frame.probable))
         self.assertEqual((frame.evidence["best"][0], frame.evidence["value"][0]), (1, 0))
         self.assertEqual(frame.evidence["constant"].min(), 1)
+
+    def test_the_center_of_a_mailbox_is_in_its_box_whatever_it_stands_on(self):
+        # Figure 10: a pole, a pole at the back, a pole at the front with a foot
+        pole = lambda y, low, high: box((0.24, 0.24, high - low), 600) + np.float32([0, y, (low + high) / 2])
+        foot = box((1.2, 1.2, 0.1), 1200, seed=2) + np.float32([0, -1.1, -2.65])
+        for stand in ([pole(0, -2.3, -0.7)], [pole(1, -3.3, -0.7)], [pole(-1.1, -2.6, -0.7), foot]):
+            points = np.concatenate([box((1.6, 3.0, 1.4), 8000), *stand])
+            frame = pcl_symmetry.frame(points)
+            self.assertLess(np.linalg.norm(frame.center), 0.01 * np.linalg.norm(np.ptp(points, axis=0)), len(points))
+            self.assertGreater(np.abs(frame.axes).max(axis=0).min(), np.cos(0.03))
         rotations = pcl_symmetry.rotations(box())
         self.assertEqual(rotations.name, "D2")
         self.assertEqual(rotations.discrete.shape, (3, 4, 4))

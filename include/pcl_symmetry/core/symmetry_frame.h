@@ -84,11 +84,11 @@ struct SymmetryFrame {
 /// Finds the canonical frame: the plane of greatest symmetry, the greatest among those perpendicular to it, and the
 /// plane perpendicular to both (Section 5.1). The center of symmetry is where the three meet.
 ///
-/// Departures from the paper: of two nearly equal planes the one that faces of the surface agree with is taken. The
-/// second and third plane pass near the middle of the extent of the points. Where faces about the first axis make the
-/// shape stand level at little loss of symmetry, the other two axes follow them. A scan is completed by its reflection
-/// across the first plane before the other two are searched, and free space counts against planes. The center is a mean
-/// over frames that are nearly as good.
+/// Departures from the paper: of two nearly equal planes the one that faces of the surface agree with is taken. Where
+/// no offset stands out, a plane passes near the middle of the extent. Where faces about the first axis make the shape
+/// stand level at little loss of symmetry, the other two axes follow them. A scan is completed by its reflection across
+/// the first plane before the other two are searched, and free space counts against planes. The center is a mean over
+/// frames that are nearly as good.
 ///
 /// Order: the first plane is that of the frame that is best as a whole. The second scores more than the third or, where
 /// the two tie, the points spread more along it. Signs: the third central moment of the points along the second and

@@ -20,14 +20,50 @@ Eigen::Matrix3d orthonormal(const Eigen::Matrix3f& axes) {
   return result;
 }
 
-/// The offset of the first plane, which may be a false one: the nearer to the middle the further it is from it.
-/// \param score of the plane.
-float firstOffset(const FrameEvidence& evidence, const CellPlane& first, double score) {
-  const double doubtful_radii =
-      evidence.scanned ? kFrame.scan_first_radius : kFrame.whole_first_radius / std::max(1.0 - score, 0.01);
+/// The offset of the first plane of a scan, which may be a false one: the nearer to the middle the further it is from
+/// it.
+float firstOffset(const FrameEvidence& evidence, const CellPlane& first) {
   const double away = evidence.middleAlong(first.normal) - first.offset;
-  const double doubtful = doubtful_radii * evidence.reach;
+  const double doubtful = kFrame.scan_first_radius * evidence.reach;
   return first.offset + static_cast<float>(away * away * away / (away * away + doubtful * doubtful));
+}
+
+/// The mean of offsets, weighted by score and by a second weight.
+template <typename Weight>
+double meanOffset(const FrameEvidence& evidence, const std::vector<float>& scores, const Weight& second_weight) {
+  const float top = *std::max_element(scores.begin(), scores.end());
+  double sum = 0.0, moment = 0.0;
+  for (std::size_t i = 0; i < scores.size(); ++i) {
+    const double r = static_cast<double>(i) - std::floor(evidence.reach);
+    const double weight = std::exp(kFrame.offset_sharpness * (scores[i] - top)) * second_weight(r);
+    sum += weight;
+    moment += weight * r;
+  }
+  return moment / sum;
+}
+
+/// Where a plane of some normal passes through the center of symmetry.
+float centralOffset(const FrameEvidence& evidence, const Eigen::Vector3f& axis, const CellPlane* completed_across) {
+  const std::vector<float> s = evidence.profile(axis, completed_across);
+  const double middle = evidence.middleAlong(axis);
+  const double of_flat = meanOffset(evidence, s, [&](double r) {
+    const double away = (r - middle) / (kFrame.offset_width * evidence.reach);
+    return std::exp(-0.5 * away * away);
+  });
+  if (evidence.scanned) return static_cast<float>(of_flat);
+  const auto at = std::max_element(s.begin(), s.end()) - s.begin();
+  const auto side = static_cast<std::ptrdiff_t>(kFrame.clear_side * evidence.reach);
+  float beside = 0.0f;  // the greatest score that is not of the peak
+  for (std::ptrdiff_t i = 0; i < static_cast<std::ptrdiff_t>(s.size()); ++i)
+    if (std::abs(i - at) > side) beside = std::max(beside, s[i]);
+  const double of_peak = meanOffset(evidence, s, [&](double r) {
+    return std::abs(r + std::floor(evidence.reach) - static_cast<double>(at)) <= static_cast<double>(side) ? 1.0 : 0.0;
+  });
+  const auto at_offset = static_cast<float>(at) - std::floor(evidence.reach);
+  const float top = evidence.nearbyOffset(axis, at_offset).score;  // profiles have steps of a cell
+  const double trust = std::clamp((top - kFrame.clear_score) / kFrame.clear_ramp, 0.0, 1.0) *
+                       std::clamp((top - beside - kFrame.clear_height) / kFrame.clear_ramp, 0.0, 1.0);
+  return static_cast<float>(trust * of_peak + (1.0 - trust) * of_flat);
 }
 
 }  // namespace
@@ -46,23 +82,10 @@ Eigen::Matrix3d principalSymmetryAxes(const PointsRef& points, const Eigen::Matr
 
 Eigen::Vector3d centerOfSymmetry(const FrameEvidence& evidence, const FrameCandidate& frame) {
   const CellPlane first{frame.axes.col(0), frame.offsets[0]};
-  Eigen::Vector3f center = firstOffset(evidence, first, frame.scores[0]) * first.normal;
-  for (int k = 1; k < 3; ++k) {
-    const Eigen::Vector3f axis = frame.axes.col(k);
-    const std::vector<float> s = evidence.profile(axis, evidence.completedAcross(first));
-    const float top = *std::max_element(s.begin(), s.end());
-    const double middle = evidence.middleAlong(axis);
-    double sum = 0.0, moment = 0.0;
-    for (std::size_t i = 0; i < s.size(); ++i) {
-      const double r = static_cast<double>(i) - std::floor(evidence.reach);
-      const double away = (r - middle) / (kFrame.offset_width * evidence.reach);
-      const double weight = std::exp(kFrame.offset_sharpness * (s[i] - top) - 0.5 * away * away);
-      sum += weight;
-      moment += weight * r;
-    }
-    center += static_cast<float>(sum > 0.0 ? moment / sum : middle) * axis;
-  }
-  return evidence.toInput(center);
+  Eigen::Vector3f offsets;
+  offsets[0] = evidence.scanned ? firstOffset(evidence, first) : centralOffset(evidence, first.normal, nullptr);
+  for (int k = 1; k < 3; ++k) offsets[k] = centralOffset(evidence, frame.axes.col(k), evidence.completedAcross(first));
+  return evidence.toInput(frame.axes * offsets);
 }
 
 Eigen::Vector3d meanCenter(const std::vector<Eigen::Vector3d>& centers, const std::vector<FrameCandidate>& frames) {

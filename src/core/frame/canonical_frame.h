@@ -14,9 +14,10 @@ Eigen::Matrix3d principalSymmetryAxes(const PointsRef& points, const Eigen::Matr
 
 /// The center of symmetry (COS): where the three planes meet.
 ///
-/// Departure from the paper: the profiles of the second and third plane are often flat, so each offset is the mean over
-/// all offsets, weighted by score and by closeness to the middle of the extent of the points. A first plane that may be
-/// no symmetry, as that of a scan or of a low score, counts less the further it is from that middle.
+/// Departure from the paper: across a direction in which little is symmetric the maximum of the profile is chance. Only
+/// where it is high and stands alone, as across the box of a mailbox, the plane is there; elsewhere the offset is the
+/// mean over all offsets, weighted by score and by closeness to the middle of the extent of the points. Of a scan all
+/// profiles count as flat, and the first plane counts less the further it is from that middle.
 /// \return input frame.
 Eigen::Vector3d centerOfSymmetry(const FrameEvidence& evidence, const FrameCandidate& frame);
 

@@ -11,6 +11,7 @@
 #include "core/frame/plane_profiles.h"
 #include "core/frame/probable_frames.h"
 #include "core/frame/surface_directions.h"
+#include "core/geometry/diameter.h"
 #include "shapes/complaint.h"
 #include "shapes/scans.h"
 #include "shapes/shapes.h"
@@ -101,8 +102,41 @@ TEST(SymmetryFrame, OfAMugDoesNotFollowTheHandle) {
     const Points cloud = test::moved(mug, pose).cloud();
     const SymmetryFrame frame = symmetryFrame(cloud);
     EXPECT_LT(axisError(frame.axes, pose.linear()), 3.0 * kDegree) << reach;
-    EXPECT_LT((frame.center - pose.translation()).norm(), 0.03 * test::diagonal(cloud)) << reach;
+    EXPECT_LT((frame.center - pose.translation()).norm(), 0.01 * diameter(cloud)) << reach;
     EXPECT_GT((centerOfMass(cloud) - pose.translation()).norm(), 0.03 * test::diagonal(cloud)) << reach;
+  }
+}
+
+/// A box about the origin on stands, as the mailboxes of Figure 10: (middle, half sizes) of each.
+test::Shape mailbox(const std::vector<std::pair<Eigen::Vector3d, Eigen::Vector3d>>& stands) {
+  constexpr double kPointsPerArea = 300.0;
+  test::Shape shape{Eigen::Matrix3Xd(3, 0), {}};
+  const auto add = [&](const Eigen::Vector3d& middle, const Eigen::Vector3d& half) {
+    const double area = 8.0 * (half.x() * half.y() + half.y() * half.z() + half.z() * half.x());
+    const test::Shape part =
+        test::box(half, static_cast<int>(kPointsPerArea * area), Sampling::Random, 1 + shape.points.cols());
+    shape.points.conservativeResize(3, shape.points.cols() + part.points.cols());
+    shape.points.rightCols(part.points.cols()) = part.points.colwise() + middle;
+  };
+  add(Eigen::Vector3d::Zero(), {0.8, 1.5, 0.7});
+  for (const auto& [middle, half] : stands) add(middle, half);
+  return shape;
+}
+
+/// Figure 10: the stand moves neither the axes nor the center.
+TEST(SymmetryFrame, OfAMailboxIsThatOfItsBox) {
+  const double half = 0.12;
+  const std::vector<test::Shape> mailboxes{
+      mailbox({{{0.0, 0.0, -1.5}, {half, half, 0.8}}}), mailbox({{{0.0, 1.0, -2.0}, {half, half, 1.3}}}),
+      mailbox({{{0.0, -1.1, -1.65}, {half, half, 0.95}}, {{0.0, -1.1, -2.65}, {0.6, 0.6, 0.05}}})};
+  for (std::size_t i = 0; i < mailboxes.size(); ++i) {
+    for (std::uint64_t seed = 1; seed <= 3; ++seed) {
+      const Eigen::Isometry3d pose = test::randomPose(seed);
+      const Points cloud = test::moved(mailboxes[i], pose).cloud();
+      const SymmetryFrame frame = symmetryFrame(cloud);
+      EXPECT_LT(axisError(frame.axes, pose.linear()), 1.5 * kDegree) << i << " " << seed;
+      EXPECT_LT((frame.center - pose.translation()).norm(), 0.01 * diameter(cloud)) << i << " " << seed;
+    }
   }
 }
 
@@ -288,20 +322,32 @@ TEST(MeanCenter, LiesBetweenFramesThatAreNearlyAsGood) {
   EXPECT_EQ(meanCenter({centers[1]}, {frames[1]}), centers[1]);
 }
 
-TEST(CenterOfSymmetry, OfAWholeFollowsTheFirstPlaneAsFarAsItIsASymmetry) {
-  const Points cloud = box({1.0, 0.6, 0.3}, 6000, Sampling::Random, 3).cloud();
+TEST(CenterOfSymmetry, OfAWholeIsWhereThePlanesMeetInAnyOrder) {
+  const Points cloud = mailbox({{{0.0, 1.0, -2.0}, {0.12, 0.12, 1.3}}}).cloud();
   const PointsRef points(cloud);
   const FrameEvidence evidence(points, FrameOptions(), nullptr);
-  constexpr float kAside = 5.0f;  // cells
-  const auto firstOffset = [&](float score) {
-    FrameCandidate frame = candidate(Eigen::Matrix3d::Identity(), Eigen::Vector3f::Constant(score));
-    frame.offsets[0] = kAside;
-    return evidence.toCells(centerOfSymmetry(evidence, frame)).x();
-  };
-  // From kAside to a middle within half a cell of 0, by 5^3 / (5^2 + d^2) cells: d is 0.06 of about 29 cells over 1 -
-  // score, 174 for a symmetry and 2.5 for a score of 0.3.
-  EXPECT_NEAR(firstOffset(1.0f), kAside, 0.01f);
-  EXPECT_NEAR(firstOffset(0.3f), 1.0f, 0.6f);
+  for (int k = 0; k < 3; ++k) {
+    Eigen::Matrix3d axes;
+    for (int i = 0; i < 3; ++i) axes.col(i) = Eigen::Vector3d::Unit((i + k) % 3);
+    const FrameCandidate frame = candidate(axes, Eigen::Vector3f::Ones());
+    EXPECT_LT(centerOfSymmetry(evidence, frame).norm(), 0.01 * diameter(points)) << k;
+  }
+}
+
+TEST(CenterOfSymmetry, AcrossNoSymmetryIsTheMiddleOfTheExtent) {
+  // A cone: its profile along the axis of z has no peak.
+  Points cloud(3, 6000);
+  RandomStream random(3);
+  for (Eigen::Index i = 0; i < cloud.cols(); ++i) {
+    const double r = std::sqrt(random.uniform()), angle = 2.0 * kPi * random.uniform();
+    cloud.col(i) = Eigen::Vector3d(r * std::cos(angle), r * std::sin(angle), 2.0 - 2.0 * r).cast<float>();
+  }
+  const PointsRef points(cloud);
+  const FrameEvidence evidence(points, FrameOptions(), nullptr);
+  const Eigen::Vector3d center =
+      centerOfSymmetry(evidence, candidate(Eigen::Matrix3d::Identity(), Eigen::Vector3f::Ones()));
+  EXPECT_LT(center.head<2>().norm(), 0.01 * diameter(points));
+  EXPECT_LT(std::abs(center.z() - 1.0), 0.2) << "between tip and rim";
 }
 
 TEST(EquivalentFrames, HaveEverySignThatIsARotation) {
