@@ -28,8 +28,8 @@ struct PublishedOptions {
 /// maximum of the map is refined by Iterative Symmetric Points with the closed form for pairs of points, weights of
 /// constant width sigma and closest points by FLANN, until it converges. The paper discards a plane that leaves its
 /// cell, which protects from a refinement that runs to another maximum: here a plane is discarded once its bin is
-/// neither a neighbor of its maximum nor led to it by steepest ascent. Nothing is added, merged or decided: kind is
-/// PlaneKind::Approximate and confidence 0.
+/// neither a neighbor of its maximum nor led to it by steepest ascent, and of planes that end in one bin the first
+/// stays. Nothing is added or decided: kind is PlaneKind::Approximate and confidence 0.
 ///
 /// Departure from the paper: maxima of a map by voting are those of means over neighbors, as its bins have few votes.
 /// \param points 3 x N, finite, input units.

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
+#include <utility>
 
 #include "core/base/check.h"
 #include "core/base/parallel.h"
@@ -71,6 +73,57 @@ private:
   std::size_t top_;
 };
 
+/// Iterative Symmetric Points with the closed form and weights of constant width (Section 4.4).
+class ConvergingPlane {
+public:
+  ConvergingPlane(const IspSurface& surface, double sigma, const ReflectionPlane& start)
+      : surface_(surface), sigma_(sigma) {
+    last.plane = start;
+  }
+
+  /// \param error_share,max_iterations as in IspOptions.
+  /// \param region that the plane may not leave; null = it may.
+  /// \return whether it is still there.
+  bool converge(const std::vector<int>& samples, double error_share, int max_iterations, const MaximumRegion* region) {
+    const Points x = pointsAt(surface_.points, samples);
+    const Eigen::Vector3d middle = centerOfMass(x);
+    const double size = static_cast<double>(samples.size());
+    const double extent = std::sqrt((x.cast<double>().colwise() - middle).colwise().squaredNorm().sum() / size);
+    last.closest.clear();
+    converged = false;
+    for (int k = 0; k < max_iterations && !converged; ++k) {
+      const IspStep before = std::move(last);
+      last = iterateSymmetricPoints(surface_, samples, before.plane, sigma_, IspUpdate::PointToPoint,
+                                    before.closest.empty() ? nullptr : &before.closest);
+      ++iterations;
+      if (region && !region->holds(last.plane)) return false;
+      const double tolerance = IspOptions().tolerance * extent + error_share * last.residual / std::sqrt(size);
+      const double moved =
+          std::abs(std::abs(last.plane.signedDistance(middle)) - std::abs(before.plane.signedDistance(middle)));
+      converged = moved <= tolerance && extent * last.plane.angleTo(before.plane) <= tolerance;
+    }
+    return true;
+  }
+
+  IspStep last;  ///< its plane is where the steps have led
+  int iterations = 0;
+  bool converged = false;
+
+private:
+  const IspSurface& surface_;
+  double sigma_;
+};
+
+/// Planes that may not leave their cells are one a cell: of those that came to one from its neighbors, the first stays.
+void keepOneOfEachCell(std::vector<SymmetryPlane>& planes, const PlaneGrid& grid) {
+  std::set<std::size_t> cells;
+  const auto is_known = [&](const SymmetryPlane& plane) {
+    const auto cell = grid.find(plane);
+    return cell && !cells.insert(grid.index(*cell)).second;
+  };
+  planes.erase(std::remove_if(planes.begin(), planes.end(), is_known), planes.end());
+}
+
 }  // namespace
 
 void PublishedOptions::validate() const {
@@ -99,39 +152,27 @@ std::vector<SymmetryPlane> publishedPlanes(const PointsRef& points, const Gaussi
   std::vector<char> is_stable(maxima.size());
   parallelBlocks(maxima.size(), options.num_threads, [&](std::size_t i) {
     const MaximumRegion region(tabulated, maxima[i].bin);
-    ReflectionPlane plane = maxima[i].plane;
-    IspOptions isp;
-    isp.update = IspUpdate::PointToPoint;
-    isp.sigma = isp.final_sigma = edt.sigma();
-    isp.max_iterations = 8;  // between two looks whether the plane is still in the region
-    IspResult end;
-    int iterations = 0;
-    bool stays = true;
+    ConvergingPlane isp(surface, edt.sigma(), maxima[i].plane);
     // Few points show at little cost where a plane goes; it ends where all of them let it rest.
     for (const int count : {std::min(1000, options.num_points), options.num_points}) {
       const std::vector<int> samples = drawSamples(points.cols(), count, options.seed + i);
-      isp.error_share = count == options.num_points ? 0.5 : 0.1;
-      end.converged = false;
-      for (int k = 0; k < options.max_iterations && !end.converged && stays; k += isp.max_iterations) {
-        end = refineSymmetricPoints(surface, samples, plane, isp);
-        plane = end.plane;
-        iterations += end.iterations;
-        stays = !options.discard_unstable || region.holds(plane);
-      }
-      if (!stays) return;
+      if (!isp.converge(samples, count == options.num_points ? 0.5 : 0.1, options.max_iterations,
+                        options.discard_unstable ? &region : nullptr))
+        return;
     }
-    is_stable[i] = end.converged || !options.discard_unstable;
-    refined[i] = SymmetryPlane(plane);
-    refined[i].iterations = iterations;
-    refined[i].converged = end.converged;
-    refined[i].residual = end.last.residual;
-    refined[i].support = end.last.weight;
-    refined[i].score = correlation(edt, plane, 1);
+    is_stable[i] = isp.converged || !options.discard_unstable;
+    refined[i] = SymmetryPlane(isp.last.plane);
+    refined[i].iterations = isp.iterations;
+    refined[i].converged = isp.converged;
+    refined[i].residual = isp.last.residual;
+    refined[i].support = isp.last.weight;
+    refined[i].score = correlation(edt, isp.last.plane, 1);
   });
   std::vector<SymmetryPlane> planes;
   for (std::size_t i = 0; i < refined.size(); ++i)
     if (is_stable[i]) planes.push_back(refined[i]);
   std::stable_sort(planes.begin(), planes.end(), [](const auto& a, const auto& b) { return a.score > b.score; });
+  if (options.discard_unstable) keepOneOfEachCell(planes, map.grid);
   return planes;
 }
 
