@@ -126,6 +126,7 @@ draw_figure_16() {
   for model in teapot mug chair car airplane carton; do
     draw "figure_16_$model" pcl_symmetry_viewpoint "$model.ply" -size 150 -png "$gallery/figure_16_$model.png"
   done
+  draw figure_16_published pcl_symmetry_viewpoint chair.ply -as_published -size 150 -png "$gallery/figure_16_published.png"
 }
 
 # Beyond the paper: the transform of turns about axes.

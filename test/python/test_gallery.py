@@ -44,6 +44,21 @@ class Shapes(unittest.TestCase):
         self.assertIn("usage", result.stderr)
 
 
+class Views(unittest.TestCase):
+    def test_as_published_the_worst_is_along_one_of_the_two_strongest_planes_and_the_best_along_none(self):  # Figure 16
+        angle, height = np.pi * (3 - 5**0.5) * np.arange(4000), np.linspace(-1, 1, 4000)
+        directions = np.stack([np.sqrt(1 - height**2) * np.cos(angle), np.sqrt(1 - height**2) * np.sin(angle), height], axis=1)
+        for shape in (shapes.car, shapes.chair):
+            planes = pcl_symmetry.planes(pcl_symmetry.sample_mesh(*shape()), as_published=True)
+            normals = np.array([plane.normal for plane in planes])
+            scores = np.abs(directions @ normals.T) @ [plane.score for plane in planes]
+            best, worst = pcl_symmetry.viewpoints(planes)[0], directions[scores.argmin()]
+            self.assertGreaterEqual(best.score, scores.max(), "of all directions")
+            self.assertGreater(abs(normals[0, 1]), 0.99, "between the sides")
+            self.assertLess(np.abs(normals[:2] @ worst).min(), 0.05, shape.__name__)
+            self.assertGreater(np.abs(normals[:2] @ best.direction).min(), 0.1, shape.__name__)
+
+
 class Planar(unittest.TestCase):
     def test_a_polygon_has_a_line_through_each_corner_and_edge(self):
         for corners in (3, 4, 5):

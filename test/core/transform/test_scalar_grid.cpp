@@ -7,6 +7,7 @@
 #include <stdexcept>
 
 #include "pcl_symmetry/core/gaussian_edt.h"
+#include "pcl_symmetry/core/local_symmetry.h"
 #include "pcl_symmetry/core/planar_transform.h"
 #include "shapes/complaint.h"
 
@@ -97,6 +98,15 @@ TEST(VolumeFunction, MakesTheTransformOfTheVolume) {
   for (std::size_t i = 0; i < grid.size(); ++i) sq_error += std::pow(a.prst(i) - b.prst(i), 2);
   EXPECT_LT(std::sqrt(sq_error / grid.size()), 0.01) << "the estimators take a volume as they take points";
   EXPECT_GT(a[a.strongest()], 0.95);
+
+  // At a scale: through the middle of the ellipsoid, and where there is nothing.
+  LocalSymmetryOptions local;
+  local.scale = 0.6 * edt.radius();
+  Points at = Points::Constant(3, 2, 31.5f);
+  at(2, 1) += static_cast<float>(3.0 * edt.radius());
+  const std::vector<float> values = localSymmetry(edt, at, local);
+  EXPECT_GT(values[0], 0.95);
+  EXPECT_EQ(values[1], 0.0f);
 }
 
 }  // namespace
