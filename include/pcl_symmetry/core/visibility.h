@@ -139,7 +139,8 @@ private:
     float depth(int u, int v) const {
       return static_cast<float>((*depths)[static_cast<std::size_t>(v) * width + u] / unit);
     }
-    double depthBehind(const Eigen::Vector3d& x) const;
+    /// \param image of a point by the projection.
+    double depthBehind(const Eigen::Vector3d& image) const;
   };
 
   Visibility() = default;

@@ -144,8 +144,7 @@ double Visibility::resolvedTolerance(const PointsRef& points) const {
   return deviations * depthError(middle);
 }
 
-double Visibility::Picture::depthBehind(const Eigen::Vector3d& x) const {
-  const Eigen::Vector3d image = projection.leftCols<3>() * x + projection.col(3);
+double Visibility::Picture::depthBehind(const Eigen::Vector3d& image) const {
   if (!(image.z() > 0.0)) return std::numeric_limits<double>::infinity();
   for (const Eigen::Vector3d& side : sides)
     if (side.dot(image) > 0.0) return std::numeric_limits<double>::infinity();
@@ -156,7 +155,8 @@ double Visibility::Picture::depthBehind(const Eigen::Vector3d& x) const {
 
 double Visibility::depthBehind(const Eigen::Vector3d& x) const {
   double behind = std::numeric_limits<double>::infinity();
-  for (const Picture& picture : pictures_) behind = std::min(behind, picture.depthBehind(x));
+  for (const Picture& picture : pictures_)
+    behind = std::min(behind, picture.depthBehind(picture.projection.leftCols<3>() * x + picture.projection.col(3)));
   for (const Eigen::Vector4d& support : supports_) {
     const double height = support.head<3>().dot(x) + support[3];
     if (height < 0.0) behind = std::min(behind, height);
@@ -173,8 +173,16 @@ bool Visibility::isInPicture(const Eigen::Vector3d& x) const {
 }
 
 std::vector<char> Visibility::areFree(const Eigen::Matrix3Xd& points) const {
-  std::vector<char> is_free;
-  for (Eigen::Index i = 0; i < points.cols(); ++i) is_free.push_back(depthBehind(points.col(i)) < 0.0);
+  std::vector<char> is_free(static_cast<std::size_t>(points.cols()), 0);
+  const auto addWhere = [&](const auto& isFree) {
+    for (std::size_t i = 0; i < is_free.size(); ++i) is_free[i] |= isFree(static_cast<Eigen::Index>(i));
+  };
+  for (const Picture& picture : pictures_) {
+    const Eigen::Matrix3Xd images = (picture.projection.leftCols<3>() * points).colwise() + picture.projection.col(3);
+    addWhere([&](Eigen::Index i) { return picture.depthBehind(images.col(i)) < 0.0; });
+  }
+  for (const Eigen::Vector4d& support : supports_)
+    addWhere([&](Eigen::Index i) { return support.head<3>().dot(points.col(i)) + support[3] < 0.0; });
   return is_free;
 }
 
