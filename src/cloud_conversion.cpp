@@ -34,8 +34,12 @@ void checkAtLeast(const char* field, std::int64_t value, std::int64_t least) {
   withBadArguments([&] { check(value >= least, field, value, rule.c_str()); });
 }
 
-std::string reasonForNoAnswer(const Points& points, const std::string& input, int min_points) {
-  std::string reason = points.cols() == 0 ? "no finite point" : whyUnanswerable(points);
+std::string reasonForNoAnswer(const Points& points, const std::string& input, int min_points,
+                              const pcl::Indices* indices) {
+  std::string reason = points.cols() > 0             ? whyUnanswerable(points)
+                       : indices && indices->empty() ? "the indices are empty"
+                       : indices                     ? "no finite point among the indices"
+                                                     : "no finite point";
   if (reason.empty() && points.cols() < min_points)
     reason = std::to_string(points.cols()) + " points, must be at least " + std::to_string(min_points);
   return reason.empty() ? reason : input + ": " + reason;

@@ -1,6 +1,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "core/base/check.h"
 #include "core/scan/single_view.h"
 #include "core/scan/viewpoint_inference.h"
 #include "pcl_symmetry/impl/cloud_conversion.hpp"
@@ -8,6 +9,10 @@
 namespace pcl_symmetry {
 
 namespace {
+
+void checkViewpoint(const Eigen::Vector3d& position) {
+  check(position.allFinite(), "viewpoint", position.transpose(), "finite");
+}
 
 SeenSpace spaceOfScene(const pcl::PointCloud<pcl::PointXYZ>& scene, const Viewpoint& viewpoint,
                        std::size_t max_pixels) {
@@ -17,6 +22,7 @@ SeenSpace spaceOfScene(const pcl::PointCloud<pcl::PointXYZ>& scene, const Viewpo
   const Points points = detail::selectPoints(scene, nullptr, scene.size(), 0).points;
   if (points.cols() == 0) return {};
   if (!asks_data) {
+    checkViewpoint(viewpoint.position);
     auto seen = Visibility::ofScene(points, viewpoint.position, max_pixels);
     if (!seen) throw std::invalid_argument("viewpoint: at all points of the scene, must see one");
     return {std::move(*seen), ViewpointSource::Given};
@@ -69,6 +75,7 @@ namespace detail {
 SeenSpace seenFrom(const Points& points, const Viewpoint& viewpoint, const Eigen::Vector3d& stored, bool is_default) {
   if (viewpoint.mode == Viewpoint::Mode::None) return {};
   if (viewpoint.mode == Viewpoint::Mode::Given) {
+    checkViewpoint(viewpoint.position);
     std::optional<Visibility> seen = Visibility::fromPoints(points, viewpoint.position);
     if (!seen)
       throw std::invalid_argument("viewpoint: among the points, must see them within 75 degrees of one direction");

@@ -105,7 +105,8 @@ protected:
     warnOfIgnoredSearch();
     if (!pcl::PCLBase<PointInT>::initCompute()) return warnOfNoAnswer("input cloud: not set");
     points_ = detail::selectPoints(*input_, indices_.get(), max_points_, parameters_.seed).points;
-    const std::string reason = detail::reasonForNoAnswer(points_);
+    const std::string reason =
+        detail::reasonForNoAnswer(points_, "input cloud", 0, this->use_indices_ ? indices_.get() : nullptr);
     if (!reason.empty()) return warnOfNoAnswer(reason);
     const bool is_part = this->use_indices_ && indices_->size() < input_->size();
     seen_ = detail::withBadArguments([&] { return detail::seenSpace(*input_, points_, viewpoint_, is_part); });

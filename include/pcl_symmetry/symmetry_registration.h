@@ -8,6 +8,7 @@
 #include <optional>
 #include <sstream>
 #include <string>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
@@ -119,8 +120,8 @@ CloudRegistration registerClouds(const Points& source, const std::optional<Visib
 /// Where nothing fits, or a cloud holds no answer, hasConverged() is false, the transformation is the identity, the
 /// output is the source as it was, getReason() says why, which PCL_WARN prints, and getPoses() lists what was found.
 ///
-/// The library holds this class for PCL's point types with x, y and z. For other point types define PCL_NO_PRECOMPILE
-/// before the first include, as with PCL's own classes.
+/// The class is compiled where it is used, for any point type with x, y and z. Source and target have the same one
+/// where PCL's own classes ask for that, as PCL 1.13 does.
 template <typename PointSource, typename PointTarget, typename Scalar = float>
 class SymmetryRegistration : public pcl::Registration<PointSource, PointTarget, Scalar> {
 public:
@@ -129,14 +130,26 @@ public:
   using ConstPtr = pcl::shared_ptr<const SymmetryRegistration<PointSource, PointTarget, Scalar>>;
   using typename Base::Matrix4;
   using typename Base::PointCloudSource;
+  using typename Base::PointCloudSourceConstPtr;
   using typename Base::PointCloudTargetConstPtr;
+
+  static_assert(std::is_convertible_v<typename Base::KdTreeReciprocalPtr,
+                                      typename pcl::registration::CorrespondenceEstimationBase<
+                                          PointSource, PointTarget, Scalar>::KdTreeReciprocalPtr>,
+                "pcl::Registration of this PCL takes one point type for source and target: use pcl::copyPointCloud");
 
   SymmetryRegistration();
 
+  /// The cloud whose pose is sought.
+  void setInputSource(const PointCloudSourceConstPtr& cloud) override {
+    Base::setInputSource(cloud);
+    forgetAnswer();
+  }
   /// The cloud that sources are brought to. It is prepared once, see above.
   void setInputTarget(const PointCloudTargetConstPtr& cloud) override {
     Base::setInputTarget(cloud);
     prepared_target_.reset();
+    forgetAnswer();
   }
 
   /// Where the scanner of each cloud stood; by default the data decide, see ScanAnalysis.
@@ -146,7 +159,7 @@ public:
     target_viewpoint_ = viewpoint;
     prepared_target_.reset();
   }
-  /// Sets how probable an accepted pose has to be.
+  /// Sets how probable an accepted answer has to be.
   /// \param min_confidence of a pose that has converged, in [0, 1]; default 0.5.
   /// \throws pcl::BadArgumentException "field = value, must be rule", as all setters here.
   void setMinConfidence(double min_confidence) {
@@ -198,8 +211,13 @@ public:
   /// \return how uncertain the transformation of the last align() is, see CloudRegistration::covariance; nothing where
   /// it did not converge.
   const std::optional<Eigen::Matrix<double, 6, 6>>& getCovariance() const { return result_.covariance; }
-  /// \return why the last align() did not converge, one sentence; empty where it did.
-  const std::string& getReason() const { return reason_; }
+  /// Why there is no pose, one sentence: the last align() did not converge or could not begin; empty where it
+  /// converged.
+  std::string getReason() const {
+    if (!input_ || input_->empty()) return "source: not set";
+    if (!target_ || target_->empty()) return "target: not set";
+    return reason_;
+  }
   /// \return stages of the last align() and their milliseconds, in order.
   const std::vector<std::pair<std::string, double>>& getTiming() const { return result_.timing_ms; }
 
@@ -223,6 +241,11 @@ protected:
   void computeTransformation(PointCloudSource& output, const Matrix4& guess) override;
 
 private:
+  void forgetAnswer() {
+    result_ = {};
+    converged_ = false;
+    reason_ = "align() was not called with these clouds";
+  }
   /// Prepares the target, or sets the reason why it holds no answer.
   void prepareTarget();
   /// Sets the transformation, or the reason where nothing fits.
@@ -234,11 +257,9 @@ private:
   double min_confidence_ = 0.5;
   std::size_t max_points_ = 10'000;
   CloudRegistration result_;  // of the last align(); without covariance where it did not converge
-  std::string reason_;
+  std::string reason_ = "align() was not called with these clouds";
 };
 
 }  // namespace pcl_symmetry
 
-#ifdef PCL_NO_PRECOMPILE
 #include "pcl_symmetry/impl/symmetry_registration.hpp"
-#endif

@@ -9,6 +9,7 @@
 #include <stdexcept>
 #include <string>
 
+#include "core/base/check.h"
 #include "core/geometry/point_samples.h"
 #include "core/scan/viewpoint_inference.h"
 #include "python/computing.h"
@@ -127,7 +128,9 @@ Points InputPoints::atPoints(const char* name, const py::array& normals) const {
 std::optional<Eigen::Vector3d> positionOf(const py::object& viewpoint) {
   if (!py::isinstance<py::str>(viewpoint)) {
     try {
-      return viewpoint.cast<Eigen::Vector3d>();
+      const auto position = viewpoint.cast<Eigen::Vector3d>();
+      check(position.allFinite(), "viewpoint", position.transpose(), "finite");
+      return position;
     } catch (const py::cast_error&) {
     }
   } else if (viewpoint.cast<std::string>() == "auto") {

@@ -80,9 +80,11 @@ inline Points finitePoints(const PositionCloud& cloud, std::size_t max_points) {
 
 /// Calls \p body if the points hold an answer. Else, and where the core finds that they do not (std::invalid_argument),
 /// the result is empty and a PCL_WARN says why.
+/// \param indices that the points were chosen by; null: all points were taken.
 template <typename Body>
-auto emptyWithoutAnswer(const Points& points, const Body& body) -> decltype(body()) {
-  std::string reason = reasonForNoAnswer(points);
+auto emptyWithoutAnswer(const Points& points, const Body& body, const pcl::Indices* indices = nullptr)
+    -> decltype(body()) {
+  std::string reason = reasonForNoAnswer(points, "input cloud", 0, indices);
   try {
     if (reason.empty()) return body();
   } catch (const std::invalid_argument& error) {

@@ -147,16 +147,18 @@ std::vector<PosedModel> fitLikeShapes(DatabaseParts& database, const Points& poi
 /// \param find_seen gives what the scanner saw.
 template <typename FindSeen>
 Recognition recognizeIn(DatabaseParts& database, const Points& points, const Points& scan_points,
-                        const RecognitionOptions& options, const FindSeen& find_seen) {
+                        const RecognitionOptions& options, const FindSeen& find_seen,
+                        const pcl::Indices* indices = nullptr) {
   detail::withBadArguments([&] { options.validate(); });
-  return detail::emptyWithoutAnswer(points, [&] {
+  const auto recognized = [&] {
     const std::optional<Visibility> seen = detail::withBadArguments(find_seen);
     Recognition accepted;
     for (PosedModel& posed : seen ? fitLikeViews(database, points, scan_points, *seen, options)
                                   : fitLikeShapes(database, points, scan_points, options))
       if (posed.model.confidence >= options.min_confidence) accepted.push_back(std::move(posed.model));
     return accepted;
-  });
+  };
+  return detail::emptyWithoutAnswer(points, recognized, indices);
 }
 
 }  // namespace
@@ -184,8 +186,9 @@ Recognition SymmetryDatabase::recognize(const Cloud& scan, const RecognitionOpti
 Recognition SymmetryDatabase::recognize(const Cloud& scene, const pcl::Indices& cluster,
                                         const RecognitionOptions& options, const SeenSpace::ConstPtr& seen) const {
   const Points points = detail::selectPoints(scene, &cluster, parts_->options.max_points, 1).points;
-  return recognizeIn(*parts_, points, detail::selectPoints(scene, &cluster, kRecognition.num_scan_points, 1).points,
-                     options, [&] { return detail::visibilityOf(seen ? *seen : SeenSpace(scene)); });
+  return recognizeIn(
+      *parts_, points, detail::selectPoints(scene, &cluster, kRecognition.num_scan_points, 1).points, options,
+      [&] { return detail::visibilityOf(seen ? *seen : SeenSpace(scene)); }, &cluster);
 }
 
 }  // namespace pcl_symmetry

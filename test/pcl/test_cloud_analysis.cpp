@@ -89,6 +89,20 @@ TEST(CloudAnalysis, EveryClassSaysWhyDataHoldNoAnswer) {
   }
 }
 
+TEST(CloudAnalysis, TellsEmptyIndicesFromPointsThatAreNotFinite) {
+  Copy copy;
+  copy.setInputCloud(grid(60));
+  copy.setIndices(pcl::make_shared<pcl::Indices>());
+  copy.compute();
+  EXPECT_EQ(copy.getReason(), "input cloud: the indices are empty");
+  const auto cloud = pcl::make_shared<pcl::PointCloud<pcl::PointXYZ>>(*grid(60));
+  (*cloud)[7].x = std::numeric_limits<float>::quiet_NaN();
+  copy.setInputCloud(cloud);
+  copy.setIndices(pcl::make_shared<pcl::Indices>(1, 7));
+  copy.compute();
+  EXPECT_EQ(copy.getReason(), "input cloud: no finite point among the indices");
+}
+
 TEST(CloudAnalysis, ForgetsTheLastCloud) {
   Copy copy;
   copy.setInputCloud(grid(60));

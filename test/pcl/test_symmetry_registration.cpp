@@ -1,6 +1,7 @@
 #include "pcl_symmetry/symmetry_registration.h"
 
 #include <gtest/gtest.h>
+#include <pcl/common/io.h>
 #include <pcl/common/transforms.h>
 #include <pcl/console/print.h>
 #include <pcl/registration/icp.h>
@@ -234,6 +235,45 @@ TEST_F(SymmetryRegistrationTest, SaysWhereNothingFits) {
   fails(toCloud(Points::Random(3, 19)), model);
   EXPECT_EQ(registration_.getReason().rfind("source: ", 0), 0u);
   EXPECT_EQ(registration_.getScore().support, 0.0) << "that of the last pair is gone";
+}
+
+TEST_F(SymmetryRegistrationTest, SaysWhyItDidNotBegin) {
+  EXPECT_EQ(registration_.getReason(), "source: not set");
+  const auto chair = chairScan(randomPose(1)), model = chairModel();
+  registration_.setInputSource(chair);
+  EXPECT_EQ(registration_.getReason(), "target: not set");
+  registration_.align(aligned_);
+  EXPECT_EQ(registration_.getReason(), "target: not set");
+  registration_.setInputTarget(model);
+  EXPECT_EQ(registration_.getReason(), "align() was not called with these clouds");
+  registration_.setIndices(pcl::make_shared<pcl::Indices>());
+  registration_.align(aligned_);
+  EXPECT_EQ(registration_.getReason(), "source: the indices are empty");
+}
+
+template <typename PointT>
+Eigen::Matrix4f registered(const Shape& source, const Shape& target) {
+  const auto of = [](const Shape& shape, auto& cloud) {
+    pcl::copyPointCloud(*test::toCloud(shape), cloud);
+    return cloud.makeShared();
+  };
+  SymmetryRegistration<PointT, PointT> registration;
+  pcl::PointCloud<PointT> aligned, points, model;
+  registration.setInputSource(of(source, points));
+  registration.setInputTarget(of(target, model));
+  registration.align(aligned);
+  EXPECT_TRUE(registration.hasConverged()) << registration.getReason();
+  return registration.getFinalTransformation();
+}
+
+TEST_F(SymmetryRegistrationTest, TakesAnyPointType) {
+  const Shape blob = asymmetricBlob(400, 1), model = asymmetricBlob(2000, 2);
+  const Eigen::Matrix4f pose = registered<pcl::PointXYZ>(blob, model);
+  EXPECT_EQ(registered<pcl::PointXYZL>(blob, model), pose);
+  EXPECT_EQ(registered<pcl::PointXYZINormal>(blob, model), pose);
+  EXPECT_EQ(registered<pcl::PointSurfel>(blob, model), pose);
+  EXPECT_EQ(registered<pcl::PointWithViewpoint>(blob, model), pose);
+  EXPECT_EQ(registered<pcl::InterestPoint>(blob, model), pose);
 }
 
 /// So few points fit any object at the distance that they are apart.

@@ -206,6 +206,7 @@ class Planes(unittest.TestCase):
             (dict(points=box(), method="voting"), "method = voting, must be convolution without as_published"),
             (dict(volume=np.eye(8)[..., None] * np.ones(8), tolerance=0.02), "must be left out with volume"),
             (dict(points=box(), viewpoint=(0, 0, 0)), "viewpoint: among the points"),
+            (dict(points=box(), viewpoint=(np.nan, 0, 0)), "viewpoint = nan +0 +0, must be finite"),
             (dict(points=box(), normals=np.zeros((5, 3))), "normals = array of shape \\(5, 3\\), must be \\(6000, 3\\)"),
         ):
             with self.assertRaisesRegex(ValueError, words):

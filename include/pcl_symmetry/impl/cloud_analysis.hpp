@@ -105,9 +105,9 @@ protected:
   template <typename OtherPointT>
   Points selectFrom(const pcl::PointCloud<OtherPointT>& cloud, std::uint64_t seed) {
     clearResults();
-    detail::SelectedPoints selected =
-        detail::selectPoints(cloud, use_indices_ ? indices_.get() : nullptr, max_points_, seed);
-    std::string reason = detail::reasonForNoAnswer(selected.points);
+    const pcl::Indices* indices = use_indices_ ? indices_.get() : nullptr;
+    detail::SelectedPoints selected = detail::selectPoints(cloud, indices, max_points_, seed);
+    std::string reason = detail::reasonForNoAnswer(selected.points, "input cloud", 0, indices);
     if (!reason.empty()) return giveNoAnswer(std::move(reason));
     used_indices_ = std::move(selected.indices);
     return std::move(selected.points);

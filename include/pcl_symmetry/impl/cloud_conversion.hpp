@@ -62,8 +62,10 @@ void checkAtLeast(const char* field, std::int64_t value, std::int64_t least);
 /// \param points 3 x N, finite.
 /// \param input what the points are called in the sentence.
 /// \param min_points that an answer needs.
+/// \param indices that the points were chosen by; null: all points were taken.
 /// \return why the points hold no answer, one sentence; empty where they can be analyzed.
-std::string reasonForNoAnswer(const Points& points, const std::string& input = "input cloud", int min_points = 0);
+std::string reasonForNoAnswer(const Points& points, const std::string& input = "input cloud", int min_points = 0,
+                              const pcl::Indices* indices = nullptr);
 
 /// Prints "[pcl_symmetry::SOURCE] REASON." by PCL_WARN.
 void warnOfNoAnswer(const std::string& source, const std::string& reason);

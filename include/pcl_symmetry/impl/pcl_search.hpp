@@ -22,6 +22,7 @@ namespace detail {
 template <typename PointT>
 class PCLPointSearch : public ClosestPointSearch {
 public:
+  /// Wraps a search of PCL.
   /// \param one_at_a_time queries wait for each other: the search may not be called from several threads at once.
   PCLPointSearch(const typename pcl::search::Search<PointT>::Ptr& search, const PointsRef& points, bool one_at_a_time)
       : search_(search), one_at_a_time_(one_at_a_time) {
@@ -103,6 +104,7 @@ public:
   }
   const Options& getOptions() const { return options_; }            ///< see setOptions()
   void setRandomSeed(std::uint64_t seed) { options_.seed = seed; }  ///< of all random draws
+  /// Sets the number of threads.
   /// \param num_threads >= 0; 0 = one per core (default). The result does not depend on it.
   void setNumberOfThreads(int num_threads) {
     change([&](Options& changed) { changed.num_threads = num_threads; });

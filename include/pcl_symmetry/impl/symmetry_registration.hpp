@@ -45,7 +45,8 @@ void SymmetryRegistration<PointSource, PointTarget, Scalar>::computeTransformati
                                                                                    const Matrix4& guess) {
   result_ = {};
   const detail::SelectedPoints source = detail::selectPoints(*input_, indices_.get(), max_points_, options_.seed);
-  reason_ = detail::reasonForNoAnswer(source.points, "source", kLeastRegistrationPoints);
+  reason_ = detail::reasonForNoAnswer(source.points, "source", kLeastRegistrationPoints,
+                                      this->use_indices_ ? indices_.get() : nullptr);
   detail::withBadArguments([&] {
     if (reason_.empty()) prepareTarget();
     if (reason_.empty()) findPose(source.points, guess);
@@ -96,7 +97,3 @@ void SymmetryRegistration<PointSource, PointTarget, Scalar>::findPose(const Poin
 }
 
 }  // namespace pcl_symmetry
-
-// The attribute of GNU, because Clang takes none in brackets here.
-#define PCL_INSTANTIATE_SymmetryRegistration(S, T, Scalar) \
-  template class __attribute__((visibility("default"))) pcl_symmetry::SymmetryRegistration<S, T, Scalar>;
