@@ -20,7 +20,7 @@ namespace pcl_symmetry::apps {
 /// The values of the flags that have the same meaning in every tool.
 struct CommonOptions {
   std::optional<std::string> json_path;
-  std::uint64_t seed = 0;
+  std::uint64_t seed = 1;
   int threads = 0;              ///< 0 = all
   int grid = 64;                ///< cells along an edge of the distance field
   std::optional<double> sigma;  ///< width of the Gaussian, input units; none: two cells
@@ -31,13 +31,10 @@ struct CommonOptions {
   std::optional<double> surface;  ///< the intensity whose surface is analyzed in place of the volume
   bool quiet = false;
 
-  /// \return the seed of the library, whose default is 1 where that of the flag is 0
-  std::uint64_t librarySeed() const { return seed + 1; }
-
   /// Sets seed, threads, grid and sigma of the library's options, e.g. DetectionOptions or FrameOptions.
   template <typename Options>
   void applyTo(Options& options) const {
-    options.seed = librarySeed();
+    options.seed = seed;
     options.num_threads = threads;
     options.num_cells = grid;
     options.sigma = sigma.value_or(0.0);

@@ -46,8 +46,7 @@ InputShape loadVolumeInput(const std::string& path, const CommonOptions& common)
   input.path = path;
   if (common.surface) {
     input.shape = surfaceOf(path, *volume.grid, *common.surface);
-    input.points =
-        namingFile(path, [&] { return sampleMesh(*input.shape.mesh, common.mesh_points, common.librarySeed()); });
+    input.points = namingFile(path, [&] { return sampleMesh(*input.shape.mesh, common.mesh_points, common.seed); });
   } else {
     if (!common.levels.empty()) input.levels = {common.levels[0], common.levels[1]};
     input.volume = volume.grid;
@@ -70,8 +69,7 @@ InputShape loadInput(const Console& console, const std::string& path, const Comm
   Step loading(console, "Loading " + path);
   const bool is_volume = common.takes_volumes && isVolumePath(path);
   if (common.surface && !is_volume) throw InputError(path + ": -surface is of volumes, " + kVolumeFiles);
-  InputShape input =
-      is_volume ? loadVolumeInput(path, common) : loadInput(path, common.mesh_points, common.librarySeed());
+  InputShape input = is_volume ? loadVolumeInput(path, common) : loadInput(path, common.mesh_points, common.seed);
   input.loading_ms = loading.done(counted(finitePoints(*input.points).cols(), "point"));
   warnOfLeftOut(console, path, input.shape);
   return input;

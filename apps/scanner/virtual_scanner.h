@@ -18,7 +18,7 @@ struct VirtualScannerOptions {
   double distance = 2.0;           ///< from the center of the bounding box, in its diagonals, > 0.5
   double noise = 0.0;              ///< standard deviation of the depth along the ray, in diagonals, >= 0
   bool random_pose = false;        ///< turn and move the model before it is scanned
-  std::uint64_t seed = 0;          ///< of pose and noise
+  std::uint64_t seed = 1;          ///< of pose and noise
   std::uint64_t noise_stream = 0;  ///< tells scans of one pose apart, so that their noise is not the same
   int num_threads = 0;             ///< 0 = all; does not change the result
   int max_resolution = 8192;       ///< pixels along the edge of the picture; thin shapes then give fewer points

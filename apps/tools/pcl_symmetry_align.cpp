@@ -342,7 +342,7 @@ Motion registerTo(const Console& console, const InputShape& input, const InputSh
   Step step(console, "Registering");
   SymmetryRegistration<pcl::PointXYZ, pcl::PointXYZ, double> registration;
   registration.setSourceViewpoint(shifted(common.viewpoint, input.shift()));
-  registration.setRandomSeed(common.librarySeed());
+  registration.setRandomSeed(common.seed);
   registration.setNumberOfThreads(common.threads);
   registration.setInputSource(input.points);
   registration.setInputTarget(target.points);
@@ -561,7 +561,7 @@ int mergeScans(const AlignOptions& options) {
     }));
   Step step(console, "Registering " + counted(inputs.size(), "scan"));
   CloudRegistrationOptions registration;
-  registration.seed = options.common.librarySeed();
+  registration.seed = options.common.seed;
   registration.num_threads = options.common.threads;
   const RegisteredScans registered = registerAll(scans, registration);
   std::size_t first = inputs.size(), num_kept = 0;

@@ -249,7 +249,7 @@ int run(int argc, char** argv) {
   symmetries.num_cells = options.common.grid;
   symmetries.other_tolerances = options.models.explain;
   symmetries.max_points = std::max(symmetries.max_points, options.common.mesh_points);
-  symmetries.seed = options.common.librarySeed();
+  symmetries.seed = options.common.seed;
   const Results results = analyzeAll(files, options, given);
   for (const ModelInfo& info : results.infos) printModel(info);
   printColorNote(results.infos, options.models.use_colors);

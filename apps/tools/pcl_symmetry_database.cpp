@@ -95,7 +95,7 @@ std::vector<ModelInput> modelInputs(const DatabaseToolOptions& options) {
                          fileChecksum(path) + "-" + std::to_string(num_points), tags};
     };
     const auto load = [path = files[i].path, &common = options.common] {
-      const InputShape input = loadInput(path, common.mesh_points, common.librarySeed());
+      const InputShape input = loadInput(path, common.mesh_points, common.seed);
       // Poses of recognition are those of the model's file; a shift would be lost.
       if (!input.shift().isZero(0.0))
         throw InputError(path + ": its coordinates are too large for its extent, must be moved near the origin");

@@ -76,8 +76,7 @@ pcl::PCLPointCloud2 toBlob(const std::vector<const float*>& values, float (Point
 pcl::PCLPointCloud2 describe(const InputShape& input, const DescribeOptions& options) {
   const pcl::PointCloud<pcl::PointXYZ>& cloud = *input.points;
   const auto max_points = static_cast<std::size_t>(options.num_points);
-  const detail::SelectedPoints selected =
-      detail::selectPoints(cloud, nullptr, max_points, options.common.librarySeed());
+  const detail::SelectedPoints selected = detail::selectPoints(cloud, nullptr, max_points, options.common.seed);
   if (const std::string reason = detail::reasonForNoAnswer(selected.points); !reason.empty())
     throw InputError(input.path + ": " + reason);
   const std::optional<Visibility> seen =
@@ -85,14 +84,14 @@ pcl::PCLPointCloud2 describe(const InputShape& input, const DescribeOptions& opt
   const Visibility* const visibility = seen ? &*seen : nullptr;
   if (options.type == "signature") {
     DescriptionOptions description;
-    description.seed = options.common.librarySeed();
+    description.seed = options.common.seed;
     description.num_threads = 1;
     description.max_points = options.num_points;
     const ShapeDescription shape = describeShape(selected.points, description, visibility);
     return toBlob({shape.signatures.col(0).data(), shape.signatures.col(1).data()}, &ShapeSignature20736::signature);
   }
   DescriptorOptions descriptor;
-  descriptor.seed = options.common.librarySeed();
+  descriptor.seed = options.common.seed;
   descriptor.num_threads = 1;
   descriptor.by_equation_1 = options.by_equation_1;
   const Eigen::Isometry3d T_frame_input = descriptorFrame(selected.points, options.input_axes, visibility, descriptor);

@@ -60,7 +60,7 @@ constexpr double kLeastListed = 0.6;  // D
 template <typename Transform>
 void setUp(Transform& transform, const InputShape& input, const CommonOptions& common) {
   if (common.sigma) transform.setSigma(*common.sigma);
-  transform.setRandomSeed(common.librarySeed());
+  transform.setRandomSeed(common.seed);
   transform.setNumberOfThreads(common.threads);
   setInput(transform, input, common);
 }
@@ -77,7 +77,7 @@ SymmetryMeasure ofPlanes(const InputShape& input, const CommonOptions& common, c
   if (options.scale > 0.0) {
     LocalSymmetryOptions local;
     local.scale = options.scale * map->grid.radius();
-    local.seed = common.librarySeed();
+    local.seed = common.seed;
     return {"planes", static_cast<std::size_t>(local.num_directions),
             [edt = transform.getDistanceTransform(), local](const Points& points, int threads) mutable {
               local.num_threads = threads;

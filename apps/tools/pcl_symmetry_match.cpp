@@ -90,7 +90,7 @@ int run(int argc, char** argv) {
   if (!line.parse(argc, argv)) return 0;
   const Console console(options.common.quiet);
   if (!boost::filesystem::exists(options.database)) throw InputError(options.database + ": no such file");
-  const InputShape input = loadInput(options.input, options.common.mesh_points, options.common.librarySeed());
+  const InputShape input = loadInput(options.input, options.common.mesh_points, options.common.seed);
   if (const std::string reason = detail::reasonForNoAnswer(finitePoints(*input.points)); !reason.empty())
     throw InputError(options.input + ": " + reason);
   DatabaseOptions database_options;

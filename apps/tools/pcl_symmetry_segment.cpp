@@ -71,7 +71,7 @@ SegmentationOptions segmentationOptions(const SegmentOptions& o, const CommonOpt
   options.splitting.concavity_weight = o.concavity;
   options.splitting.as_published = o.as_published;
   options.num_parts = o.num_parts;
-  options.seed = common.librarySeed();
+  options.seed = common.seed;
   options.num_threads = common.threads;
   return options;
 }

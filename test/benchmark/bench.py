@@ -507,7 +507,7 @@ def _detect_by_tool(points, sensor, seed, tool, options):
 
 def detect_labeled(path, label, seed, tool):
     """What the tool answers for the points of a frame with a label; the others hide and support them."""
-    command = [tool, path, "-label", str(label), "-quiet", "-threads", "1", "-seed", str(seed)]
+    command = [tool, path, "-label", str(label), "-quiet", "-threads", "1", "-seed", str(seed + 1)]
     with tempfile.TemporaryDirectory() as folder:
         done = subprocess.run([*command, "-json", f"{folder}/found.json"], capture_output=True)
         return NO_ANSWERS if done.returncode else read_answers(folder, "found")

@@ -251,7 +251,7 @@ def objects_found(name, points, arguments):
     with tempfile.TemporaryDirectory() as folder:
         bench.write_cloud(f"{folder}/frame.pcd", points)
         bench.run_tool(arguments.tools, "pcl_symmetry_scene", f"{folder}/frame.pcd", f"{folder}/out.pcd", "-quiet",
-                       "-json", f"{folder}/found.json", "-threads", "1", "-seed", str(arguments.seed + 1))  # fmt: skip
+                       "-json", f"{folder}/found.json", "-threads", "1", "-seed", str(arguments.seed + 2))  # fmt: skip
         objects = json.loads(pathlib.Path(folder, "found.json").read_text())["objects"]
         labels = scenes.read_frame(f"{folder}/out.pcd", "object")[1]
     pixels = np.flatnonzero(np.isfinite(points.reshape(-1, 3)).all(1))

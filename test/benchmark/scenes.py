@@ -271,7 +271,7 @@ def found_in_frame(frame, finite, truth, arguments):
         if not arguments.judge:
             flags = ["-database", f"{arguments.frames}/models.db"] if arguments.leave_out else []
             bench.run_tool(arguments.tools, "pcl_symmetry_scene", f"{arguments.frames}/{frame}.pcd", f"{folder}/{frame}.pcd", "-json",
-                           f"{folder}/{frame}.json", "-quiet", "-threads", "1", "-seed", str(arguments.seed + 1), *flags)  # fmt: skip
+                           f"{folder}/{frame}.json", "-quiet", "-threads", "1", "-seed", str(arguments.seed + 2), *flags)  # fmt: skip
         milliseconds = 1000 * (time.perf_counter() - start)
         try:
             found = json.loads(pathlib.Path(folder, f"{frame}.json").read_text())["objects"]

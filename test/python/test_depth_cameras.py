@@ -1,8 +1,10 @@
 """What a depth camera needs of the Python module: organized arrays, parts of scenes, scenes, and calls that can be ended."""
 
 import importlib.util
+import inspect
 import json
 import os
+import re
 import shutil
 import signal
 import subprocess
@@ -86,6 +88,16 @@ class SameBytes(unittest.TestCase):
                 np.testing.assert_array_equal(np.array([p[field] for p in read["planes"]], float), expected, field)
             self.assertEqual(read["tolerance"], found.tolerance)
             self.assertEqual(len(read["axes"]), len(found.axes))
+
+    def test_of_defaults(self):
+        functions = dict(planes=pcl_symmetry.planes, align=pcl_symmetry.frame, segment=pcl_symmetry.segment, map=pcl_symmetry.transform,
+                         bop=pcl_symmetry.rotations, scene=pcl_symmetry.scene, describe=pcl_symmetry.describe)  # fmt: skip
+        for tool, function in functions.items():
+            shown = subprocess.run([Path(os.environ["TOOLS"]) / f"pcl_symmetry_{tool}", "-h"], capture_output=True, text=True).stdout
+            for name in ("seed", "max_planes")[: 2 if tool == "planes" else 1]:
+                default = re.search(rf"-{name} N\s[^()]*\((\d+)\)", shown)
+                self.assertIsNotNone(default, tool)
+                self.assertEqual(int(default[1]), inspect.signature(function).parameters[name].default, tool)
 
     def test_of_twelve_inputs(self):
         depth, labels = table()

@@ -32,7 +32,7 @@ class Flags(ToolTest):
                 self.assertIn(part, self.output)
             self.assertNotIn(" --", self.output)
             text = " ".join(self.output.split())
-            for default in ("of the distance field (64)", "0 = all (0)", "input frame (auto)", "over a mesh (10000)", "random streams (0)"):
+            for default in ("of the distance field (64)", "0 = all (0)", "input frame (auto)", "over a mesh (10000)", "random streams (1)"):
                 self.assertIn(default, text)
 
     def test_help_has_groups_and_fits_the_terminal(self):
