@@ -1,7 +1,7 @@
-# What the libraries link. The tools find what they need besides in tools/CMakeLists.txt.
+# What the libraries link. The tools find what they need besides in apps/CMakeLists.txt.
 find_package(Eigen3 3.3 REQUIRED NO_MODULE)
 find_package(Boost REQUIRED)  # headers: Boost.Graph
-find_package(OpenMP REQUIRED COMPONENTS CXX)
+find_package(Threads REQUIRED)
 
 # PCL 1.13 exports no imported targets, so its variables are wrapped in a function here. flann.pc drags in MPI and HDF5,
 # so FLANN comes from the target that PCL's finder defines or, without PCL, from FLANN's own configuration.
