@@ -296,6 +296,47 @@ class Planes(Detection):
                     self.assertEqual((count, angle < DEGREE, offset < 0.01), (len(shape.planes), True, True), seed)
 
 
+def with_stray(points, count, seed):
+    """Points and some more at 2 to 20 sizes from their middle, somewhere among them."""
+    random = np.random.default_rng(seed)
+    directions = random.normal(size=(count, 3))
+    directions *= (random.uniform(2, 20, count) / np.linalg.norm(directions, axis=1))[:, None]
+    stray = points.mean(axis=0) + np.linalg.norm(np.ptp(points, axis=0)) * directions
+    return np.insert(points, random.integers(len(points), size=count), stray, axis=0)
+
+
+class StrayPoints(Detection):
+    SHAPES = (box(3000), prism(5, 3000), cylinder(3000, 2), tetrahedron(3000), blob(3000))
+
+    def test_change_no_plane_and_are_told(self):
+        for seed, shape in enumerate(2 * self.SHAPES):
+            points, count = shape.moved(random_pose(seed)).cloud, 1 + seed
+            expected, disturbed = pcl_symmetry.planes(points), with_stray(points, count, seed)
+            with self.assertWarnsRegex(RuntimeWarning, f"^points: {count} stray"):
+                found = pcl_symmetry.planes(disturbed)
+            self.assertEqual((found.stray_points, expected.stray_points), (count, 0))
+            self.assertEqual((kinds(found), len(found.axes)), (kinds(expected), len(expected.axes)), seed)
+            self.assertEqual(found.tolerance, expected.tolerance)
+            np.testing.assert_allclose(rows(found), rows(expected), atol=1e-6)
+            for i in range(len(found.every)):
+                self.assertEqual(len(found.point_support(i)), len(disturbed))
+
+    def test_change_neither_frame_nor_group_nor_pose(self):
+        shape = prism(5, 3000).moved(random_pose(1))
+        disturbed, turn = with_stray(shape.cloud, 4, 1), random_pose(2)
+        with self.assertWarnsRegex(RuntimeWarning, "^points: 4 stray"):
+            frame = pcl_symmetry.frame(disturbed)
+        np.testing.assert_allclose(frame.axes, pcl_symmetry.frame(shape.cloud).axes, atol=1e-6)
+        with self.assertWarnsRegex(RuntimeWarning, "^points: 4 stray"):
+            group = pcl_symmetry.rotations(disturbed)
+        expected = pcl_symmetry.rotations(shape.cloud)
+        self.assertEqual((group.name, group.stray_points), (expected.name, 4))
+        self.assertAlmostEqual(group.tolerance, expected.tolerance)
+        source, target = blob(3000, 1), blob(3000, 2).moved(turn)
+        pose = pcl_symmetry.register(with_stray(source.cloud, 3, 5), with_stray(target.cloud, 5, 6)).transform
+        self.assertLess(abs(pose[:3, :3] - turn[0]).max(), 0.05)
+
+
 class Families(Detection):
     def test_of_a_cylinder_are_one_axis_and_the_plane_across(self):
         for seed in range(3):

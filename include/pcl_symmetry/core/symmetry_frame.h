@@ -77,6 +77,7 @@ struct SymmetryFrame {
   /// Axes of rotation of a scan, through the center or not, most confident first: which poses look the same where the
   /// planes alone do not tell, as for a propeller.
   std::vector<SymmetryRotation> rotations;
+  int num_stray_points = 0;                               ///< far from all others, which were left out
   std::vector<std::pair<std::string, double>> timing_ms;  ///< stages in order
 };
 
