@@ -107,4 +107,9 @@ SymmetryFrame symmetryFrame(const PointsRef& points, const FrameOptions& options
 /// itself; axes across which no plane is a symmetry at 1 % of the diameter follow the others.
 void refineOnMesh(const MeshSurface& mesh, SymmetryFrame& frame);
 
+/// Makes a plane that was found otherwise the first plane of a frame: the axis nearest to its normal comes first and
+/// is turned onto it, the center moves onto the plane, and all else with them. The canonical frame has the plane at
+/// x = 0 then.
+void bringToPlane(const ReflectionPlane& plane, SymmetryFrame& frame);
+
 }  // namespace pcl_symmetry
