@@ -242,7 +242,7 @@ Detection refineAndDecide(const NormalizedCloud& cloud, const Points& all, const
   // The answer.
   if (!found.hasFamily()) detection.best = bestApproximate(found.planes, cloud, *fit);
   if (detection.best) detection.best->deviation = measure.deviation(cloud.toNormalized(*detection.best)) * cloud.scale;
-  detection.flat = flatPlane(cloud, measure.limits().thinness());
+  detection.flat = flatPlane(cloud, measure.limits());
   detection.tolerance = measure.tolerance() * cloud.scale;
   const bool is_raised = options.absolute_tolerance == 0.0 && measure.tolerance() > options.tolerance * cloud.extent;
   detection.resolution = std::max(measure.resolution(), is_raised ? measure.tolerance() : 0.0) * cloud.scale;

@@ -54,7 +54,7 @@ void refineOnMesh(const MeshSurface& mesh, Detection& found, const DetectionOpti
   for (SymmetryPlane& plane : found.planes) {
     if (isDecided(plane)) {
       refine(mesh, plane, found.tolerance, options);
-      if (kSamePlane.anySame(kept, inBall(plane), inBall)) continue;
+      if (kOnePlane.anySame(kept, inBall(plane), inBall)) continue;
       if (plane.kind == PlaneKind::Approximate && !options.approximate) {
         if (!dropped || plane.share > dropped->share) dropped = std::move(plane);
         continue;
@@ -75,6 +75,7 @@ void refineOnMesh(const MeshSurface& mesh, Detection& found, const DetectionOpti
   } else if (dropped && kept.empty() && found.axes.empty() && found.centers.empty()) {
     found.best = dropped;
   }
+  if (found.flat) found.flat = mesh.fitted(*found.flat);
   found.planes = reordered(std::move(kept), options);
   for (SymmetryAxis& axis : found.axes) {
     MotionsAbout motions{{}, axis.point};

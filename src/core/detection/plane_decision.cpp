@@ -159,10 +159,11 @@ std::vector<SymmetryPlane> reordered(std::vector<SymmetryPlane> planes, const De
   return planes;
 }
 
-std::optional<ReflectionPlane> flatPlane(const NormalizedCloud& cloud, Thinness thinness) {
-  if (thinness != Thinness::Sheet) return std::nullopt;
+std::optional<ReflectionPlane> flatPlane(const NormalizedCloud& cloud, const CloudLimits& limits) {
   const PrincipalAxes& axes = cloud.principal_axes;
-  return cloud.toInput(ReflectionPlane(axes.axes.col(2), axes.axes.col(2).dot(axes.center)));
+  const ReflectionPlane plane(axes.axes.col(2), axes.axes.col(2).dot(axes.center));
+  if (!limits.movesNothing(plane, cloud.points)) return std::nullopt;
+  return cloud.toInput(plane);
 }
 
 std::optional<SymmetryPlane> bestApproximate(const std::vector<SymmetryPlane>& planes, const NormalizedCloud& cloud,
