@@ -49,6 +49,7 @@ struct MeasureOptions {
   int fold = -1;                   ///< of axes: order of the turns, 0 = any angle; below 0: 2 to 8 and any angle
   std::string method = "sampled";  ///< of planes: the estimator, one of kMethodNames
   bool as_published = false;
+  std::optional<double> refined_share;  ///< of planes by method rotational
   double scale = 0.0;  ///< of planes: radius of the window around each point, of the shape's; 0: the whole
 };
 
@@ -69,6 +70,7 @@ SymmetryMeasure ofPlanes(const InputShape& input, const CommonOptions& common, c
   transform.setGridSize(common.grid);
   transform.setMethod(methodNamed(options.method));
   if (options.as_published) transform.setNearDistance(0.0);
+  if (options.refined_share) transform.setRefinedShare(*options.refined_share);
   setUp(transform, input, common);
   const auto map = std::make_shared<const SymmetryMap>(transform.compute());
   checkAnswer(transform, input);
@@ -184,6 +186,10 @@ CommandLine commandLine(MapOptions& options) {
           "with -of axes: order of the rotations, 0 = by any angle, not 1; default: the best of 2 to 8 and any angle")
       .choice("method", options.what.method, kMethodNames, "estimator of planes (Sections 4.2 and 4.3)")
       .flag("as_published", options.what.as_published, "with -method voting: near pairs of points vote like all others")
+      .number(
+          "refined_share", options.what.refined_share, Range::closed(0, 1),
+          "with -method rotational, multiresolution: this share of the planes, those of the greatest D, is computed "
+          "finely, the others coarsely; default 1")
       .number("scale", options.what.scale, Range::closed(0, 1),
               "local symmetry of planes: within this share of the shape's radius around each point; 0 = of the whole")
       .text("volume", "FILE", options.volume_path, "VTK image (.vti) of the space around, for ParaView")
@@ -382,6 +388,8 @@ int run(int argc, char** argv) {
     rejectValue("-volume", *options.volume_path, "must end in .vti");
   options.what.fold = options.fold.value_or(-1);
   if (options.what.scale > 0.0 && options.what.of != "planes") throw UsageError("-scale goes with -of planes");
+  if (options.what.refined_share && (options.what.of != "planes" || options.what.method != "rotational"))
+    throw UsageError("-refined_share goes with -method rotational");
   if (options.fold && options.what.of != "axes") throw UsageError("-fold goes with -of axes");
   if (options.fold == 1) rejectValue("-fold", "1", "must be 0 or >= 2: a rotation of order 1 changes nothing");
   options.batch.inputs = {options.input};

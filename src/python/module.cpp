@@ -178,26 +178,50 @@ PlaneSearch planes(const AnyArray& points, const py::object& viewpoint, std::opt
 /// First index along x, as nibabel has it.
 using VolumeArray = py::array_t<float, py::array::f_style | py::array::forcecast>;
 
-ScalarGrid gridOf(const VolumeArray& volume, const Eigen::Vector3d& spacing, const Eigen::Vector3d& origin,
-                  const Eigen::Matrix3d& direction) {
+/// A volume in place of points.
+struct GivenVolume {
+  ScalarGrid grid;
+  VolumeLevels levels;
+};
+
+GivenVolume volumeOf(const VolumeArray& volume, const Eigen::Vector3d& spacing, const Eigen::Vector3d& origin,
+                     const Eigen::Matrix3d& direction, const std::pair<double, double>& levels) {
   if (volume.ndim() != 3) throw std::invalid_argument("volume = array of another shape, must have three axes");
   const ScalarGrid::Size size{static_cast<int>(volume.shape(0)), static_cast<int>(volume.shape(1)),
                               static_cast<int>(volume.shape(2))};
-  return ScalarGrid(size, ScalarGrid::placed(spacing, origin, direction),
-                    std::vector<float>(volume.data(), volume.data() + volume.size()));
+  return {ScalarGrid(size, ScalarGrid::placed(spacing, origin, direction),
+                     std::vector<float>(volume.data(), volume.data() + volume.size())),
+          {levels.first, levels.second}};
 }
 
-PlaneSearch volumePlanes(const VolumeArray& volume, const Eigen::Vector3d& spacing, const Eigen::Vector3d& origin,
-                         const Eigen::Matrix3d& direction, const std::pair<double, double>& levels, bool approximate,
-                         int max_planes, std::uint64_t seed, int threads) {
-  const ScalarGrid grid = gridOf(volume, spacing, origin, direction);
+PlaneSearch volumePlanes(const GivenVolume& volume, bool approximate, int max_planes, std::uint64_t seed, int threads) {
   const Computing computing;
   auto options = optionsWith<DetectionOptions>(seed, threads);
   options.approximate = approximate;
   options.max_planes = max_planes;
   PlaneSearch search;
-  search.found = detectVolumePlanes(grid, options, {levels.first, levels.second});
+  search.found = detectVolumePlanes(volume.grid, options, volume.levels);
   return search;
+}
+
+/// What a transform is made from.
+struct TransformInput {
+  GaussianEdt edt;
+  Eigen::Vector3d center_of_mass;
+};
+
+/// \param shape points or a volume.
+TransformInput transformInput(const py::object& shape, const GaussianEdtOptions& options, std::uint64_t seed) {
+  if (py::isinstance<GivenVolume>(shape)) {
+    const auto& volume = shape.cast<const GivenVolume&>();
+    const Computing computing;
+    const auto side = static_cast<std::size_t>(std::max(options.num_cells, 16));  // as in TransformAnalysis
+    const VolumeFunction f(volume.grid, volume.levels, side * side * side, options.num_threads);
+    return {GaussianEdt(f, options), centerOfMass(f.bodyPoints(false))};
+  }
+  const InputPoints input("points", arrayOf("points", shape), 0, seed);
+  const Computing computing;
+  return {GaussianEdt(input.points(), options), centerOfMass(input.points())};
 }
 
 /// \return PRST, PRSD and GEDT.
@@ -227,11 +251,13 @@ PlaneSearch publishedPlanesOf(const AnyArray& points, const std::string& method,
   return search;
 }
 
-std::vector<float> localSymmetryOf(const AnyArray& points, const AnyArray& at, double scale, std::uint64_t seed,
+std::vector<float> localSymmetryOf(const py::object& shape, const AnyArray& at, double scale, std::uint64_t seed,
                                    int threads) {
-  const InputPoints input("points", points, 0, seed), asked("at", at, 0, seed);
+  const InputPoints asked("at", at, 0, seed);
+  GaussianEdtOptions edt_options;
+  edt_options.num_threads = threads;
+  const GaussianEdt edt = transformInput(shape, edt_options, seed).edt;
   const Computing computing;
-  const GaussianEdt edt(input.points());
   auto options = optionsWith<LocalSymmetryOptions>(seed, threads);
   options.scale = scale * edt.radius();
   return localSymmetry(edt, asked.points(), options);
@@ -340,10 +366,9 @@ Eigen::MatrixXf describe(const AnyArray& points, const py::object& viewpoint, st
   return describeShape(input.points(), options, seen ? &*seen : nullptr).signatures.transpose();
 }
 
-SymmetryMap transform(const AnyArray& points, const std::array<int, 3>& bins, const std::string& method,
+SymmetryMap transform(const py::object& shape, const std::array<int, 3>& bins, const std::string& method,
                       const Eigen::Vector3d& center, double radius, double sigma, int cells, std::int64_t samples,
                       double refined_share, bool as_published, std::uint64_t seed, int threads) {
-  const InputPoints input("points", points, 0, seed);
   PlanarTransformOptions options;
   options.method = methodNamed(method);
   if (samples != 0) options.voting.num_pairs = samples;
@@ -352,16 +377,16 @@ SymmetryMap transform(const AnyArray& points, const std::array<int, 3>& bins, co
   if (as_published) options.voting.near_distance = 0.0;
   options.setSeed(seed);
   options.setNumThreads(threads);
-  const Computing computing;
   GaussianEdtOptions edt_options;
   edt_options.center = center;
   edt_options.radius = radius;
   edt_options.sigma = sigma;
   edt_options.num_cells = cells;
   edt_options.num_threads = threads;
-  const GaussianEdt edt(input.points(), edt_options);
-  const PlaneGrid grid(bins[0], bins[1], bins[2], edt.center(), edt.radius());
-  return planarTransform(edt, grid, centerOfMass(input.points()), options);
+  const TransformInput input = transformInput(shape, edt_options, seed);
+  const Computing computing;
+  const PlaneGrid grid(bins[0], bins[1], bins[2], input.edt.center(), input.edt.radius());
+  return planarTransform(input.edt, grid, input.center_of_mass, options);
 }
 
 /// Normals or directions, and weights.
@@ -411,16 +436,17 @@ PYBIND11_MODULE(_pcl_symmetry, module) {
   addResults(module);
   add(module, "planes", &planes, "points", "viewpoint", "tolerance", "absolute_tolerance", "approximate", "max_planes",
       "normals", "max_points", "evidence", "seed", "threads", "mesh", "may_be_rings");
-  add(module, "volume_planes", &volumePlanes, "volume", "spacing", "origin", "direction", "levels", "approximate",
-      "max_planes", "seed", "threads");
+  py::class_<GivenVolume>(module, "Volume");
+  add(module, "volume", &volumeOf, "volume", "spacing", "origin", "direction", "levels");
+  add(module, "volume_planes", &volumePlanes, "volume", "approximate", "max_planes", "seed", "threads");
   add(module, "published_planes", &publishedPlanesOf, "points", "method", "num_points", "seed", "threads");
   add(module, "frame", &frame, "points", "viewpoint", "max_points", "as_published", "seed", "threads", "mesh");
   add(module, "rotations", &rotations, "points", "tolerance", "absolute_tolerance", "max_feature", "seed", "threads",
       "mesh");
   add(module, "rotations_of", &rotationsOf, "discrete", "continuous");
-  add(module, "transform", &transform, "points", "bins", "method", "center", "radius", "sigma", "cells", "samples",
+  add(module, "transform", &transform, "shape", "bins", "method", "center", "radius", "sigma", "cells", "samples",
       "refined_share", "as_published", "seed", "threads");
-  add(module, "local_symmetry", &localSymmetryOf, "points", "at", "scale", "seed", "threads");
+  add(module, "local_symmetry", &localSymmetryOf, "shape", "at", "scale", "seed", "threads");
   add(module, "why_unanswerable", &whyUnanswerableOf, "points");
   add(module, "descriptors", &descriptors, "points", "viewpoint", "input_axes", "by_equation_1", "seed", "threads");
   add(module, "describe", &describe, "points", "viewpoint", "seed", "threads");

@@ -127,6 +127,42 @@ class Volumes(unittest.TestCase):
         self.arguments["volume"][self.arguments["volume"] < 0.05] = np.nan
         self.assert_plane(0.1, 0.2)
 
+    def test_of_the_transform_are_those_of_the_search_by_every_method(self):
+        self.phantom(size=64)
+        for bins, options in (((16, 32, 33), dict(method="convolution")), ((16, 32, 33), dict(method="sampled")),
+                              ((16, 32, 17), dict(method="rotational", cells=24, refined_share=0.1))):  # fmt: skip
+            map_ = pcl_symmetry.transform(bins=bins, **options, **self.arguments)
+            planes = np.array([map_.plane(*index) for index in np.ndindex(*bins)])
+            off = np.abs(planes @ [*self.shift, 1])
+            across = np.linalg.norm(np.cross(planes[:, :3], self.turn[:, 0]), axis=1)
+            near = (across < 2 / bins[0]) & (off < 1.5 * map_.radius / bins[2])
+            aside = (across < 2 / bins[0]) & (off > 0.2 * map_.radius)
+            with self.subTest(**options):
+                self.assertGreater(map_.values.ravel()[near].max(), 0.85)
+                self.assertGreater(map_.values.ravel()[near].max(), map_.values.ravel()[aside].max() + 0.1)
+
+    def test_map_what_lies_on_them_onto_itself_at_any_scale(self):
+        self.phantom(size=64)
+        on_plane = self.shift + np.array([(0, 20, 10), (0, -30, 25), (0, 45, -20)]) @ self.turn.T
+        beside = on_plane + 12 * self.turn[:, 0]
+        for scale in (0.4, 1.0):
+            values = pcl_symmetry.local_symmetry(scale=scale, at=np.concatenate([on_plane, beside]), **self.arguments)
+            self.assertGreater(values[:3].min(), 0.9, scale)
+            self.assertGreater(values[:3].mean(), values[3:].mean(), scale)
+
+    def test_have_arguments_that_points_do_not_have(self):
+        self.phantom(size=16)
+        points = np.zeros((9, 3))
+        for function in (pcl_symmetry.transform, pcl_symmetry.local_symmetry):
+            with self.assertRaisesRegex(TypeError, "takes points or volume"):
+                function(points, volume=self.arguments["volume"])
+            with self.assertRaisesRegex(ValueError, "levels, direction: of a volume"):
+                function(points, levels=(0, 1))
+        with self.assertRaisesRegex(ValueError, "sigma: of points"):
+            pcl_symmetry.transform(**self.arguments, sigma=1)
+        with self.assertRaisesRegex(TypeError, "at: positions in a volume"):
+            pcl_symmetry.local_symmetry(**self.arguments)
+
 
 if __name__ == "__main__":
     unittest.main()

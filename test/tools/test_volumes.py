@@ -63,7 +63,7 @@ class Maps(ToolTest):
 
     def test_are_of_planes_axes_and_centers_and_seen_at_a_scale(self):
         path = self.write("a.mha", meta_image(BODY))
-        for flags in ("-method convolution", "-method rotational", "-method voting -as_published", "-of axes -fold 2", "-of centers", "-scale 0.4"):
+        for flags in ("-method convolution", "-method rotational", "-method rotational -refined_share 0.1", "-method voting -as_published", "-of axes -fold 2", "-of centers", "-scale 0.4"):
             report = self.report(path, "-quiet -grid 16", flags)
             # No center lies at the border, where the values of the map are read.
             greatest = report["centers"][0]["symmetry"] if flags == "-of centers" else report["greatest"]

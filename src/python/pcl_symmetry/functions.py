@@ -323,8 +323,7 @@ def _planes_of(found: Any, cloud: Cloud, used: Optional[Used] = None, judged: bo
     every = [_plane(p) for p in found.planes]
     reason = used.reason if used is not None and used.reason else found.reason
     if reason and not quiet:
-        of_volume = reason.startswith("volume")
-        warnings.warn(reason if of_volume else f"points: {reason}", RuntimeWarning, stacklevel=4 if of_volume else 3)
+        warnings.warn(reason if reason.startswith("volume") else f"points: {reason}", RuntimeWarning, stacklevel=3)
     if not quiet:
         _warn_of_stray(found, 4)
     return Planes(
@@ -399,8 +398,9 @@ def planes(
         Of the other parameters approximate, max_planes, seed and threads count.
     Raises ValueError for bad parameters; points that hold no answer, such as too few, are warned of (RuntimeWarning).
     """
-    if (points is None) == (volume is None):
-        raise TypeError("planes() takes points or volume")
+    import numpy as np
+
+    _check_one_of("planes", points, volume)
     if method != "convolution" and not as_published:
         raise ValueError(f"method = {method}, must be convolution without as_published")
     if volume is not None:
@@ -410,9 +410,10 @@ def planes(
         if any(of_points.values()):
             given = ", ".join(name for name, is_given in of_points.items() if is_given)
             raise ValueError(f"{given}: of points, must be left out with volume")
-        return _volume_planes(volume, spacing, origin, direction, levels, approximate, max_planes, progress, seed, threads)
-    if levels is not None or direction is not None:
-        raise ValueError("levels, direction: of a volume, must be left out with points")
+        options = dict(approximate=approximate, max_planes=max_planes, seed=seed, threads=threads)
+        found = core.volume_planes(_volume(volume, spacing, origin, direction, levels), told=progress, **options)
+        return _planes_of(found, Cloud(np.empty((0, 3)), shape=(0,)))
+    _check_no_volume(direction, levels)
     cloud = prepare("points", points)
     if as_published:
         found = core.published_planes(cloud.array, method=method, num_points=10_000, told=progress, seed=seed, threads=threads)
@@ -442,57 +443,65 @@ def planes(
     return result if cloud.shift is None else result._moved(cloud.shift)
 
 
-def _volume_planes(
-    volume: Any,
-    spacing: Any,
-    origin: Any,
-    direction: Any,
-    levels: Optional[Tuple[float, float]],
-    approximate: bool,
-    max_planes: int,
-    progress: Progress,
-    seed: int,
-    threads: int,
-) -> Planes:
+def _check_one_of(function: str, points: Any, volume: Any) -> None:
+    if (points is None) == (volume is None):
+        raise TypeError(f"{function}() takes points or volume")
+
+
+def _check_no_volume(direction: Any, levels: Any) -> None:
+    if levels is not None or direction is not None:
+        raise ValueError("levels, direction: of a volume, must be left out with points")
+
+
+def _volume(volume: Any, spacing: Any, origin: Any, direction: Any, levels: Optional[Tuple[float, float]]) -> Any:
     import numpy as np
 
     array = np.asarray(volume)
     if array.ndim != 3 or array.dtype.kind not in "fiub":
         raise ValueError(f"volume = array of shape {array.shape} and type {array.dtype}, must be (I, J, K), numbers")
-    found = core.volume_planes(
-        array,
-        spacing=spacing,
-        origin=origin,
-        direction=np.eye(3) if direction is None else direction,
-        levels=(0.0, 0.0) if levels is None else levels,
-        approximate=approximate,
-        max_planes=max_planes,
-        told=progress,
-        seed=seed,
-        threads=threads,
-    )
-    return _planes_of(found, Cloud(np.empty((0, 3)), shape=(0,)))
+    placed = dict(spacing=spacing, origin=origin, direction=np.eye(3) if direction is None else direction)
+    return core.volume(array, levels=(0.0, 0.0) if levels is None else levels, **placed)
 
 
 def local_symmetry(
-    points: Any, scale: float, *, progress: Progress = None, seed: int = 1, threads: int = 0
+    points: Any = None,
+    scale: float = 1.0,
+    *,
+    volume: Optional["ArrayLike"] = None,
+    spacing: "ArrayLike" = (1.0, 1.0, 1.0),
+    origin: "ArrayLike" = (0.0, 0.0, 0.0),
+    direction: Optional["ArrayLike"] = None,
+    levels: Optional[Tuple[float, float]] = None,
+    at: Optional["ArrayLike"] = None,
+    progress: Progress = None,
+    seed: int = 1,
+    threads: int = 0,
 ) -> "NDArray[np.float32]":
-    """(N,) for each point the greatest D of a plane through it, of the surface within scale (Section 6).
+    """(N,) for each point the greatest D of a plane through it, of the shape within scale (Section 6).
 
     points: as in planes(); of a mesh the values of its vertices are returned, of an organized array (H, W) values. Rows that
     are not finite have NaN.
     scale: radius of the window around each point as a share of the radius of the shape, in (0, 1].
+    volume, spacing, origin, direction, levels: as in planes(), with at: (N, 3) the positions, input frame.
     """
     import numpy as np
 
+    _check_one_of("local_symmetry", points, volume)
     if not 0 < scale <= 1:
         raise ValueError(f"scale = {_text(scale)}, must be in (0, 1]")
-    cloud = prepare("points", points)
-    at = cloud.array if cloud.mesh is None else cloud.mesh[0]
-    values = core.local_symmetry(cloud.array, at, scale, told=progress, seed=seed, threads=threads)
-    result = np.full(len(at), np.nan, np.float32)
-    result[np.isfinite(at).all(axis=1)] = values
-    return result.reshape(cloud.shape) if cloud.mesh is None else result
+    if (volume is None) != (at is None):
+        raise TypeError("at: positions in a volume, must be given with volume and left out with points")
+    cloud: Any = None
+    if volume is None:
+        _check_no_volume(direction, levels)
+        cloud = prepare("points", points)
+        shape, positions = cloud.array, cloud.array if cloud.mesh is None else cloud.mesh[0]
+    else:
+        shape, positions = _volume(volume, spacing, origin, direction, levels), parts_of("at", at)[0]
+    values = core.local_symmetry(shape, positions, scale, told=progress, seed=seed, threads=threads)
+    result = np.full(len(positions), np.nan, np.float32)
+    result[np.isfinite(positions).all(axis=1)] = values
+    return result.reshape(cloud.shape) if cloud and cloud.mesh is None else result
 
 
 def complete(
@@ -790,9 +799,14 @@ def descriptor_distance(a: "ArrayLike", b: "ArrayLike", *, of_planes: bool = Tru
 
 
 def transform(
-    points: Any,
+    points: Any = None,
     bins: Sequence[int] = (64, 64, 64),
     *,
+    volume: Optional["ArrayLike"] = None,
+    spacing: "ArrayLike" = (1.0, 1.0, 1.0),
+    origin: "ArrayLike" = (0.0, 0.0, 0.0),
+    direction: Optional["ArrayLike"] = None,
+    levels: Optional[Tuple[float, float]] = None,
     method: str = "sampled",
     center: "ArrayLike" = (0.0, 0.0, 0.0),
     radius: float = 0.0,
@@ -812,15 +826,25 @@ def transform(
     sigma: width of the Gaussian, input units; 0: two cells. cells: of its grid along each side, in [8, 512].
     samples: points of sampled (0: 128), pairs of voting (0: two million). refined_share: of rotational, multiresolution: planes
         with this share of the greatest D are computed finely, the others coarsely, in [0, 1].
+    volume, spacing, origin, direction, levels: as in planes(), in place of points; sigma is then left out.
     """
     import numpy as np
 
+    _check_one_of("transform", points, volume)
     sizes = np.asarray(bins)
     if sizes.shape != (3,) or sizes.dtype.kind not in "iu":
         raise TypeError(f"bins = {_text(bins)}, must be three whole numbers, of theta, phi and r")
-    array, shift, *_ = prepare("points", points)
+    shape: Any = None
+    shift: Any = None
+    if volume is None:
+        _check_no_volume(direction, levels)
+        shape, shift, *_ = prepare("points", points)
+    elif sigma:
+        raise ValueError("sigma: of points, must be left out with volume")
+    else:
+        shape = _volume(volume, spacing, origin, direction, levels)
     options = dict(center=_seen_from(center, shift, "center"), radius=radius, sigma=sigma, as_published=as_published)
     options.update(cells=cells, samples=samples, refined_share=refined_share)
-    found = core.transform(array, sizes.tolist(), method=method, told=progress, seed=seed, threads=threads, **options)
+    found = core.transform(shape, sizes.tolist(), method=method, told=progress, seed=seed, threads=threads, **options)
     result = Map(**_fields(found, "sigma", "center", "radius", "values"))
     return result if shift is None else result._moved(shift)
