@@ -14,7 +14,8 @@ to_build=(
 to_develop=(
   ccache mypy python3-dask python3-distributed                            # types, work that several machines share,
   python3-scipy python3-sklearn python3-matplotlib python3-open3d         # what measures: fits, figures, distances to meshes
-  help2man file doxygen chromium                                          # manual pages, Debian packages, reference, pages of results
+  doxygen python3-sphinx python3-breathe python3-myst-parser furo         # the reference
+  help2man file chromium                                                  # manual pages, Debian packages, pages of results
   libgtest-dev libgmock-dev libbenchmark-dev python3-jsonschema           # tests and benchmarks
 )
 packages=("${to_build[@]}" "${to_develop[@]}")

@@ -3,6 +3,7 @@
 usage: python3 apps/gallery/drawings.py PICTURE OUT.png [FILE ...]
 
   first_look MESH      a scan, its plane of symmetry, and the completed scan (the page that is read first)
+  decision FRAME N …   objects of a frame of a depth camera, by number: the evidence for their best planes, and the confidence
   frames               mugs and mailboxes with their axes, by center of mass and PCA, and by symmetry (Figure 10)
   scan_centers MESH    eight scans of a mesh, and the centers found in each, by symmetry and by mass (Figure 11)
   medial_axis SHAPE …  the medial axes of planar shapes, as planar.py takes them (the other half of Figure 3)
@@ -35,8 +36,6 @@ NUM_POINTS = 10000
 
 def scan(mesh, direction, organized=False):
     """A scan by the tool from a direction: points (N, 3), or its pixels (H, W, 3), and the viewpoint (3,)."""
-    import open3d
-
     with tempfile.TemporaryDirectory() as folder:
         if not isinstance(mesh, (str, Path)):
             write_ply(f"{folder}/mesh.ply", *mesh)
@@ -45,12 +44,17 @@ def scan(mesh, direction, organized=False):
         view = ",".join(map(str, direction))
         subprocess.run(["pcl_symmetry_scan", mesh, out, f"-direction={view}", "-quiet"], check=True)
         header = Path(out).read_bytes().split(b"DATA", 1)[0].decode()
-        points = np.asarray(open3d.io.read_point_cloud(out).points)
-        if organized:
-            points = points.reshape(*(int(header.split(word)[1].split()[0]) for word in ("HEIGHT", "WIDTH")), 3)
+        points = organized_points(out)
     viewpoint = next(line.split()[1:4] for line in header.splitlines() if line.startswith("VIEWPOINT"))
-    points = points if organized else points[np.isfinite(points).all(axis=1)]
-    return points.astype(np.float32), np.array(viewpoint, float)
+    return points if organized else points[np.isfinite(points).all(axis=2)], np.array(viewpoint, float)
+
+
+def organized_points(path):
+    import open3d
+
+    header = Path(path).read_bytes().split(b"DATA", 1)[0].decode()
+    points = np.asarray(open3d.io.read_point_cloud(str(path)).points, np.float32)
+    return points.reshape(*(int(header.split(word)[1].split()[0]) for word in ("HEIGHT", "WIDTH")), 3)
 
 
 def load_mesh(path):
@@ -243,6 +247,59 @@ def first_look(out, path):
     sheet.save(out)
 
 
+def decision(out, path, *numbers):
+    """Objects of a frame: where their points are reflected to, the share of the surface that maps, and the odds that follow."""
+    pixels = organized_points(path)
+    objects = pcl_symmetry.scene(pixels, max_range=1.2).objects
+    rows = np.flatnonzero(np.isfinite(pixels).all(axis=2))
+    points = pixels.reshape(-1, 3)
+    row, column = np.divmod(rows, pixels.shape[1])
+    focal = [np.polyfit(points[rows, k] / points[rows, 2], at, 1) for k, at in enumerate((column, row))]  # of a pinhole camera
+    figure, axes = plt.subplots(len(numbers), 3, figsize=(11, 3 * len(numbers)), dpi=100, layout="constrained", width_ratios=(1, 1, 1.5))
+    for line, number in zip(axes, map(int, numbers)):
+        cloud = points[objects[number - 1].rows].astype(float)
+        planes = objects[number - 1].planes
+        plane = planes.every[0] if planes.every else planes.best
+        # Where each reflection lands: on the surface, in space that the camera saw through, or where it could not see.
+        images = plane.reflect(cloud)
+        on = plane.pairs(cloud, max_distance=1.5 * planes.tolerance)[0] >= 0
+        u, v = (np.polyval(f, images[:, k] / images[:, 2]).round().astype(int) for k, f in enumerate(focal))
+        inside = (u >= 0) & (u < pixels.shape[1]) & (v >= 0) & (v < pixels.shape[0])
+        depth = pixels[v.clip(0, pixels.shape[0] - 1), u.clip(0, pixels.shape[1] - 1), 2]
+        empty = ~on & inside & (images[:, 2] < depth - 1.5 * planes.tolerance)
+        hidden = ~on & ~empty
+        for chosen, color in ((hidden, GRAY), (on, BLUE), (empty, VERMILION)):
+            line[0].scatter(cloud[chosen, 0], -cloud[chosen, 1], s=1, c=color, linewidths=0)
+        line[0].set(aspect="equal", xticks=[], yticks=[])
+        line[0].set_frame_on(False)
+        shares = [on.mean(), empty.mean(), hidden.mean()]
+        names = ["on the surface", "into space seen to be empty", "where the camera could not see"]
+        for k, (share, name, color) in enumerate(zip(shares, names, (BLUE, VERMILION, GRAY))):
+            line[1].barh(2.8 - k, share, height=0.4, color=color)
+            line[1].text(0.0, 3.04 - k, f"{name}: {share:.0%}", fontsize=9, va="bottom")
+        line[1].text(0.0, 0.0, f"share that maps: {plane.share:.0%} (a symmetry: 97%)", fontsize=9, weight="bold")
+        line[1].set(xlim=(0, 1), ylim=(-0.2, 3.4), xticks=[], yticks=[])
+        line[1].set_frame_on(False)
+        # From the odds of the evidence by each factor to those of the confidence.
+        odds, height = 1.0, len(plane.reasons)
+        for k, (reason, factor) in enumerate(plane.reasons):
+            before, odds = odds, odds * factor
+            at = height - k
+            ends = [o / (1 + o) for o in (before, odds)]
+            line[2].annotate("", (ends[1], at), (ends[0], at), arrowprops=dict(arrowstyle="-|>", color="#444444", lw=1.6))
+            line[2].text(0.5, at + 0.18, f"odds x {factor:.2g}: {reason}", fontsize=8, ha="center", va="bottom")
+        for low, high, name, color in ((0, 0.2, "no symmetry", "#EEEEEE"), (0.2, 0.5, "possible", "#FBE9C6"), (0.5, 1, "symmetry", "#CDE8DC")):
+            line[2].axvspan(low, high, color=color, zorder=0)
+            line[2].text((low + high) / 2, 0.08, name, ha="center", fontsize=8, color="#444444")
+        line[2].plot(plane.confidence, 0.6, "o", color="black")
+        line[2].text(plane.confidence, 0.7, f"{plane.confidence:.2f}", ha="center", va="bottom", fontsize=10, weight="bold")
+        line[2].set(xlim=(0, 1), ylim=(0, height + 0.7), yticks=[], xticks=[0, 0.2, 0.5, 1])
+    for title, each in zip(("1. reflect each point", "2. count where the reflections land", "3. odds, from even ones, and confidence"), axes[0]):
+        each.set_title(title, fontsize=11, loc="left")
+    figure.savefig(out)
+    print(out)
+
+
 def failure_completion(out, path):
     """The other half of a hand is not that of its best plane."""
     whole = sampled(load_mesh(path))
@@ -339,7 +396,7 @@ def failure_volume(out):
 
 
 if __name__ == "__main__":
-    pictures = {f.__name__: f for f in (first_look, frames, scan_centers, medial_axis, volume, failure_frame, failure_completion,
+    pictures = {f.__name__: f for f in (first_look, decision, frames, scan_centers, medial_axis, volume, failure_frame, failure_completion,
                                         failure_pose, failure_name, failure_rotations, failure_volume)}
     if len(sys.argv) < 3 or sys.argv[1] not in pictures:
         print(__doc__)

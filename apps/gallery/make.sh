@@ -154,6 +154,11 @@ draw_axes() {
   done
 }
 
+draw_decision() {
+  local frame=${PCL_SYMMETRY_SCANS-$repository/../shared/data/scans}/milk_cartoon_all_small_clorox.pcd
+  if [[ -f $frame ]]; then draw decision "${drawings[@]}" decision "$gallery/decision.png" "$frame" 1 4 3; fi
+}
+
 # Where algorithms go wrong, for their pages.
 draw_failures_of_all() {
   draw failure_transform pcl_symmetry_map hand.off -size 200 -slices "$gallery/failure_transform.png"
@@ -180,6 +185,7 @@ draw figure_11 "${drawings[@]}" scan_centers "$gallery/figure_11.png" car.ply
 draw_figure_15
 draw_figure_16
 draw_axes
+draw_decision
 draw_failures_of_all
 if $estimators; then
   export PCL_SYMMETRY_MODELS=$models

@@ -25,7 +25,7 @@ struct DatabaseParts;
 
 /// How a database is made and used.
 struct DatabaseOptions {
-  /// Models, spread evenly over all, that compact forms are fitted to and distances are scaled by, >= 1. Twice as many
+  /// Models, drawn by their names, that compact forms are fitted to and distances are scaled by, >= 1. Twice as many
   /// take four times the time and memory of the fit.
   int num_references = 200;
   /// Views of a model that scans are compared with, >= 1: one of 80 is within 12 degrees of any direction.
@@ -37,6 +37,7 @@ struct DatabaseOptions {
   /// build() fits no compact forms: for a part of a database, as merge() fits those of the whole.
   bool is_part = false;
 
+  /// Checks all values.
   /// \throws std::invalid_argument naming field, value and rule.
   void validate() const;
 };
@@ -54,6 +55,7 @@ struct RecognitionOptions {
   double min_merit = 0.5;       ///< of the pose of an accepted model, in [-1, 1], see RecognizedModel::score
   int num_threads = 0;          ///< >= 0; 0 = one per core
 
+  /// Checks all values.
   /// \throws std::invalid_argument naming field, value and rule.
   void validate() const;
 };
@@ -151,6 +153,7 @@ public:
   std::vector<std::string> names() const;
   std::size_t size() const;                      ///< number of models
   bool contains(const std::string& name) const;  ///< whether there is such a model
+  /// What is known of a model besides its shape.
   /// \throws pcl::BadArgumentException where there is no such model.
   ModelInfo info(const std::string& name) const;
   /// \return the unit that the database was made with.
@@ -164,6 +167,7 @@ public:
   /// \throws pcl::BadArgumentException for another name or a cloud that holds no answer: it would never be found.
   /// \throws pcl::IOException naming file and reason; the database is unchanged then.
   void add(const std::string& name, const Cloud& cloud, const ModelSource& source = {});
+  /// Removes a model.
   /// \throws pcl::BadArgumentException where there is no such model.
   /// \throws pcl::IOException naming file and reason; the database is unchanged then.
   void remove(const std::string& name);
@@ -180,8 +184,9 @@ public:
   /// \throws pcl::IOException naming file and reason: missing, damaged, of another version or unit, or with a model whose
   /// name is that of another one; this database is unchanged then.
   std::size_t merge(const std::vector<std::string>& files, const BuildProgress& progress = {});
-  /// Fits the compact forms anew if they have less than half of the references of DatabaseOptions::num_references,
-  /// and stores those that are missing. Without it, each program that asks has to do so for itself.
+  /// Stores what models are found by: compact forms are fitted anew if they were fitted to other models than those that
+  /// DatabaseOptions::num_references draws now, and missing ones are added. Without it, each program that asks has to
+  /// do so for itself. Distances depend on the models that are there, not on how they came there.
   /// \throws pcl::IOException naming file and reason; the database is unchanged then.
   void save();
   /// Fits the compact forms anew to the models that are there now.

@@ -39,6 +39,7 @@ struct CloudRegistrationOptions {
   std::uint64_t seed = 1;                ///< of all random draws
   int num_threads = 0;                   ///< >= 0; 0 = one per core
 
+  /// Checks all values.
   /// \throws std::invalid_argument naming field, value and rule.
   void validate() const;
 };
@@ -52,6 +53,7 @@ struct RegisteredPose {
 
 /// The best pose of a cloud in another one, and the next ones.
 struct CloudRegistration : RegisteredPose {
+  /// Whether the best pose is an answer.
   /// \param min_confidence in [0, 1].
   /// \return whether both clouds have the points for an answer, and the best pose that confidence.
   bool converged(double min_confidence = 0.5) const { return covariance.has_value() && confidence >= min_confidence; }
@@ -144,6 +146,7 @@ public:
     target_viewpoint_ = viewpoint;
     prepared_target_.reset();
   }
+  /// Sets how probable an accepted pose has to be.
   /// \param min_confidence of a pose that has converged, in [0, 1]; default 0.5.
   /// \throws pcl::BadArgumentException "field = value, must be rule", as all setters here.
   void setMinConfidence(double min_confidence) {
@@ -169,11 +172,13 @@ public:
     max_points_ = max_points;
     prepared_target_.reset();
   }
+  /// Sets the seed of all random draws.
   /// \param seed of all random draws.
   void setRandomSeed(std::uint64_t seed) {
     options_.seed = seed;
     prepared_target_.reset();
   }
+  /// Sets the number of threads.
   /// \param num_threads >= 0; 0 = one per core (default). The result does not depend on it.
   void setNumberOfThreads(int num_threads) {
     detail::checkAtLeast("num_threads", num_threads, 0);
@@ -213,6 +218,7 @@ protected:
   using Base::transformation_rotation_epsilon_;
   using Base::tree_;
 
+  /// Finds the pose, or the reason why there is none.
   /// \throws pcl::BadArgumentException where points surround the viewpoint that was given for them.
   void computeTransformation(PointCloudSource& output, const Matrix4& guess) override;
 

@@ -46,6 +46,7 @@ struct SceneOptions {
   RecognitionOptions recognition;  ///< of its name, with a database
   int num_threads = 0;             ///< >= 0; 0 = one per core
 
+  /// Checks all values.
   /// \throws std::invalid_argument naming field, value and rule.
   void validate() const;
 };
@@ -112,6 +113,7 @@ class SymmetryScene {
 public:
   using Cloud = pcl::PointCloud<pcl::PointXYZ>;
 
+  /// Sets all options at once.
   /// \throws pcl::BadArgumentException "field = value, must be rule".
   void setOptions(const SceneOptions& options);
   const SceneOptions& getOptions() const { return options_; }  ///< see setOptions()
@@ -128,6 +130,7 @@ public:
   /// Names objects by the models that they show. Null (default): objects have no names.
   void setDatabase(const std::shared_ptr<const SymmetryDatabase>& database) { database_ = database; }
 
+  /// Sets the frame to analyze.
   /// \param cloud one frame: organized, or points without order with the viewpoint that they were seen from.
   void setInputCloud(const Cloud::ConstPtr& cloud) { input_ = cloud; }
   /// The same for other point types; their other fields are not used.
@@ -138,6 +141,7 @@ public:
     input_ = positions;
   }
 
+  /// Finds the objects of the frame.
   /// \return what was found; no object where the scene holds no point, which PCL_WARN says.
   /// \throws pcl::BadArgumentException where all points lie at the viewpoint that was given.
   SceneAnalysis compute() const;

@@ -46,11 +46,13 @@ public:
     clearResults();
   }
 
+  /// Sets the number of parts.
   /// \param num_parts number of parts where the shape allows it, >= 0; 0 = as many as the method finds (default).
   void setNumberOfParts(int num_parts) {
     this->change([&](SegmentationOptions& changed) { changed.num_parts = num_parts; });
   }
 
+  /// Finds the parts.
   /// \param segments is filled with the segments, by falling area: indices into the cloud or the polygons of the mesh.
   /// Empty where the input holds no answer, see getReason().
   /// \throws pcl::BadArgumentException where the mesh refers to vertices that it does not have.

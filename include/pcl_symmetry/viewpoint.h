@@ -69,6 +69,7 @@ public:
   using ConstPtr = std::shared_ptr<const SeenSpace>;
 
   SeenSpace() = default;  ///< nothing is known: clouds show their objects from all sides
+  /// Takes what a scanner saw.
   /// \param source how the place of the scanner is known.
   SeenSpace(Visibility visibility, ViewpointSource source) : visibility_(std::move(visibility)), source_(source) {}
 

@@ -58,14 +58,17 @@ public:
   /// \throws pcl::BadArgumentException for other values.
   void setUp(const Eigen::Vector3d& up);
 
+  /// Sets how far apart good views are.
   /// \param separation angle that good views keep from each other, radians, in [0, pi]; default 0.7 (40 degrees).
   /// \throws pcl::BadArgumentException for other values.
   void setSeparation(double separation);
 
+  /// The view that shows most.
   /// \return the view of the greatest S. Where the cloud has no extent: score 0 at direction 0, and PCL_WARN says so.
   SelectedView getBestView() const;
   /// \return the view along the symmetries, which shows the least of the object; without extent as getBestView().
   SelectedView getWorstView() const;
+  /// Lists good views that differ.
   /// \param num_views >= 1.
   /// \return at most \p num_views local maxima of S, best first, apart from each other and from each other's mirror
   /// images in the symmetries of the whole object, which would show the same again. Empty where the cloud has no
@@ -73,11 +76,13 @@ public:
   /// \throws pcl::BadArgumentException where \p num_views is less than 1.
   std::vector<SelectedView> getGoodViews(int num_views) const;
 
+  /// The pose of a camera that looks from a direction.
   /// \param direction from the object to the camera, finite, of any length but zero.
   /// \return the pose of a camera that sees the whole object from this direction, see SelectedView::pose.
   /// \throws pcl::BadArgumentException for other directions.
   Eigen::Affine3f computePose(const Eigen::Vector3d& direction) const;
 
+  /// How much of the object a view repeats.
   /// \param direction unit.
   /// \return S(direction), see Figure 16 of the paper.
   double getScore(const Eigen::Vector3d& direction) const { return viewpointScore(planes_, direction); }

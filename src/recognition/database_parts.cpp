@@ -145,12 +145,11 @@ void DatabaseParts::add(const ModelInfo& info, const PackedModel& model, const E
 void DatabaseParts::save() {
   {
     const std::lock_guard<std::mutex> lock(mutex);
-    const auto size = static_cast<std::size_t>(store.size());
-    if (size == 0) return;
-    if (!isOutgrown(static_cast<std::size_t>(store.numReferences()), size, options.num_references)) {
+    if (store.size() == 0) return;
+    const FittedForms stored = storedForms();
+    if (stored.isOf(referencesOf(store, options.num_references))) {
       const std::vector<StoredModel> without = store.modelsWithoutForms();
       if (without.empty()) return;
-      const FittedForms stored = storedForms();
       store.addForms(stored.id,
                      formsOfModels(store, without, stored.forms.get(), stored.coder.get(), options.num_threads));
       return;

@@ -5,6 +5,7 @@
 #include <limits>
 #include <stdexcept>
 #include <string>
+#include <unordered_map>
 #include <utility>
 
 #include "core/base/check.h"
@@ -42,16 +43,27 @@ Eigen::MatrixXf signaturesOf(ModelStore& store, const StoredModel& model, std::m
   }
 }
 
-/// Models spread evenly over all.
-std::vector<StoredModel> referencesOf(ModelStore& store, int max_references) {
-  const std::vector<StoredModel>& all = store.models();
-  const std::size_t count = std::min(all.size(), static_cast<std::size_t>(max_references));
-  std::vector<StoredModel> references;
-  for (std::size_t r = 0; r < count; ++r) references.push_back(all[r * all.size() / count]);
-  return references;
+/// FNV-1a.
+std::uint64_t hashOf(const std::string& text) {
+  std::uint64_t hash = 0xcbf29ce484222325u;
+  for (const char c : text) hash = (hash ^ static_cast<unsigned char>(c)) * 0x100000001b3u;
+  return hash;
 }
 
 }  // namespace
+
+std::vector<StoredModel> referencesOf(ModelStore& store, int max_references) {
+  std::vector<StoredModel> references = store.models();
+  const auto count = static_cast<std::size_t>(max_references);
+  if (count >= references.size()) return references;
+  const auto byHash = [](const StoredModel& a, const StoredModel& b) {
+    return std::make_pair(hashOf(a.name), a.name) < std::make_pair(hashOf(b.name), b.name);
+  };
+  std::nth_element(references.begin(), references.begin() + max_references, references.end(), byHash);
+  references.resize(count);
+  std::sort(references.begin(), references.end(), [](const auto& a, const auto& b) { return a.name < b.name; });
+  return references;
+}
 
 std::string CompactForm::packed() const {
   PackedBytes bytes;
@@ -128,7 +140,8 @@ CompactForms CompactForms::unpacked(const std::string& bytes) {
 }
 
 PackedProjection FittedForms::packed() const {
-  return {id, forms->numReferences(), forms->packed(), packedMatrix(coder->toValues(), MatrixBits::Sixteen)};
+  return {id, static_cast<int>(forms->references().size()), forms->packed(),
+          packedMatrix(coder->toValues(), MatrixBits::Sixteen)};
 }
 
 FittedForms FittedForms::unpacked(const PackedProjection& packed) {
@@ -136,8 +149,10 @@ FittedForms FittedForms::unpacked(const PackedProjection& packed) {
           std::make_shared<const ViewCoder>(ViewCoder::fromValues(unpackedMatrix(packed.view_coder)))};
 }
 
-bool isOutgrown(std::size_t num_references, std::size_t num_models, int max_references) {
-  return num_references == 0 || 2 * num_references < std::min(num_models, static_cast<std::size_t>(max_references));
+bool FittedForms::isOf(const std::vector<StoredModel>& references) const {
+  return forms &&
+         std::equal(references.begin(), references.end(), forms->references().begin(), forms->references().end(),
+                    [](const StoredModel& model, std::int64_t reference) { return model.id == reference; });
 }
 
 std::shared_ptr<const CompactForms> fitForms(ModelStore& store, int max_references, int num_threads) {
@@ -186,11 +201,12 @@ std::vector<std::string> allForms(ModelStore& store, const std::vector<StoredMod
   const auto fail = [&](std::int64_t id, const std::string& reason) {
     failIO(store.file(), nameOf(part) + std::to_string(id) + reason + ", pcl_symmetry_database rebuild makes new ones");
   };
+  std::unordered_map<std::int64_t, std::size_t> index;
+  for (std::size_t i = 0; i < models.size(); ++i) index[models[i].id] = i;
   const auto take = [&](std::int64_t id, const std::string& bytes) {
-    const auto model =
-        std::lower_bound(models.begin(), models.end(), id, [](const auto& a, std::int64_t b) { return a.id < b; });
-    if (model == models.end() || model->id != id) fail(id, " is that of another model");
-    all[model - models.begin()] = bytes;
+    const auto model = index.find(id);
+    if (model == index.end()) fail(id, " is that of another model");
+    all[model->second] = bytes;
   };
   if (stored != 0) store.each(part, stored, take);
   const std::vector<StoredModel> without = stored != 0 ? store.modelsWithoutForms() : models;

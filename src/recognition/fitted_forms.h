@@ -34,7 +34,7 @@ public:
   /// \throws std::invalid_argument where all are alike.
   static CompactForms fit(std::vector<std::int64_t> ids, const Eigen::MatrixXf& signatures, int num_threads);
 
-  int numReferences() const { return static_cast<int>(ids_.size()); }
+  const std::vector<std::int64_t>& references() const { return ids_; }  ///< ids, in order
   Eigen::Index numDimensions() const { return projection_.numDimensions(); }
 
   /// \param signatures kSignatureSize x kFormsPerModel.
@@ -59,15 +59,19 @@ struct FittedForms {
   std::shared_ptr<const CompactForms> forms;
   std::shared_ptr<const ViewCoder> coder;
 
+  /// \return whether it was fitted to these models, see referencesOf().
+  bool isOf(const std::vector<StoredModel>& references) const;
+
   PackedProjection packed() const;
   /// \throws std::invalid_argument for other bytes.
   static FittedForms unpacked(const PackedProjection& packed);
 };
 
-/// True where there are no references, or less than half of those that would be taken now.
-bool isOutgrown(std::size_t num_references, std::size_t num_models, int max_references);
+/// The models that forms are fitted to, at most \p max_references, sorted by name: those whose names have the least
+/// hashes. They depend on what is in the database alone, and a new model is seldom one of them in a large one.
+std::vector<StoredModel> referencesOf(ModelStore& store, int max_references);
 
-/// Fits to up to \p max_references models, spread evenly over all.
+/// Fits to the referencesOf() a database.
 /// \throws std::invalid_argument where all models are alike.
 std::shared_ptr<const CompactForms> fitForms(ModelStore& store, int max_references, int num_threads);
 std::shared_ptr<const ViewCoder> fitViewCoder(ModelStore& store, int max_references, int num_threads);
@@ -77,7 +81,7 @@ std::vector<PackedForms> formsOfModels(ModelStore& store, const std::vector<Stor
                                        const CompactForms* forms, const ViewCoder* coder, int num_threads);
 
 /// What is fitted to each of some models, in their order: the bytes that are stored, or made where there are none.
-/// \param models by rising id, all of the store.
+/// \param models all of the store.
 /// \param stored the projection whose forms are read; 0: all are made.
 /// \param forms,coder one of them, of which compact forms or codes of views are wanted; the other is null.
 std::vector<std::string> allForms(ModelStore& store, const std::vector<StoredModel>& models, std::int64_t stored,

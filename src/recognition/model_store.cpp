@@ -214,11 +214,6 @@ std::int64_t ModelStore::projectionId() {
   return startReading() ? connection_->integer("SELECT max(id) FROM projections") : 0;
 }
 
-int ModelStore::numReferences() {
-  if (!startReading()) return 0;
-  return static_cast<int>(connection_->integer("SELECT num_references FROM projections ORDER BY id DESC LIMIT 1"));
-}
-
 std::int64_t ModelStore::size() {
   return startReading() ? connection_->integer("SELECT count(*) FROM models") : 0;
 }

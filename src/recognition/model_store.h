@@ -77,9 +77,8 @@ public:
   /// The id of a model, and where it comes from. It takes as long for many models as for few.
   std::optional<std::pair<std::int64_t, ModelInfo>> find(const std::string& name);
   std::string part(ModelPart part, const StoredModel& model);
-  /// The id of the projection that was stored last, 0 without one, and the models that it was fitted to.
+  /// The id of the projection that was stored last, 0 without one.
   std::int64_t projectionId();
-  int numReferences();
   std::vector<StoredModel> modelsWithoutForms();
   std::optional<PackedProjection> projection();
   /// What was made of the models with a projection, by rising id of the model.

@@ -1,6 +1,5 @@
 #include "recognition/shape_search.h"
 
-#include <algorithm>
 #include <cmath>
 #include <stdexcept>
 #include <string>
@@ -14,11 +13,9 @@ namespace pcl_symmetry::detail {
 ShapeSearch::ShapeSearch(ModelStore& store, const FittedForms& stored, const DatabaseOptions& options)
     : num_threads_(options.num_threads), forms_(stored.forms), models_(store.models()) {
   if (models_.empty()) return;
-  std::sort(models_.begin(), models_.end(), [](const auto& a, const auto& b) { return a.id < b.id; });
-  const auto num_references = static_cast<std::size_t>(forms_ ? forms_->numReferences() : 0);
-  const bool outgrown = isOutgrown(num_references, models_.size(), options.num_references);
-  if (outgrown) forms_ = fitForms(store, options.num_references, num_threads_);
-  makeIndex(store, outgrown ? 0 : stored.id, options);
+  const bool is_fitted = stored.isOf(referencesOf(store, options.num_references));
+  if (!is_fitted) forms_ = fitForms(store, options.num_references, num_threads_);
+  makeIndex(store, is_fitted ? stored.id : 0, options);
 }
 
 /// \param stored the projection whose forms are read, 0: all forms are made.

@@ -31,12 +31,10 @@ ViewSearch::ViewSearch(ModelStore& store, const FittedForms& stored, const Datab
         models_, [&](const StoredModel& model) { return viewsOf(store, model, mutex); }, options.num_threads);
     return;
   }
-  std::sort(models_.begin(), models_.end(), [](const auto& a, const auto& b) { return a.id < b.id; });
-  const auto num_references = static_cast<std::size_t>(stored.forms ? stored.forms->numReferences() : 0);
-  const bool outgrown = isOutgrown(num_references, models_.size(), options.num_references);
-  coder_ = outgrown ? fitViewCoder(store, options.num_references, options.num_threads) : stored.coder;
+  const bool is_fitted = stored.isOf(referencesOf(store, options.num_references));
+  coder_ = is_fitted ? stored.coder : fitViewCoder(store, options.num_references, options.num_threads);
   for (const std::string& bytes :
-       allForms(store, models_, outgrown ? 0 : stored.id, nullptr, coder_.get(), options.num_threads)) {
+       allForms(store, models_, is_fitted ? stored.id : 0, nullptr, coder_.get(), options.num_threads)) {
     try {
       codes_.add(bytes);
     } catch (const std::invalid_argument& error) {

@@ -18,6 +18,7 @@
 #include "core/geometry/axis_rotations.h"
 #include "core/matching/compact_index.h"
 #include "core/matching/shape_signature.h"
+#include "core/matching/symmetry_descriptor.h"
 #include "core/matching/view_code.h"
 #include "core/registration/ranked_poses.h"
 #include "models.h"
@@ -242,6 +243,14 @@ void Registration(benchmark::State& state) {
   needs(state, "nearest", kManyPoints);
 }
 
+/// Two descriptors compared (Section 5.2). Argument: their numbers.
+void DescriptorDistance(benchmark::State& state) {
+  const auto size = static_cast<std::size_t>(state.range(0));
+  const std::vector<float> a(size, 0.25f), b(size, 0.5f);
+  for (auto _ : state) benchmark::DoNotOptimize(planeDescriptorDistance(a.data(), b.data(), size));
+  needs(state, "byte_near", 2.0 * sizeof(float) * static_cast<double>(size));
+}
+
 /// The nearest views of 815 models. Argument: threads.
 void NearestViews(benchmark::State& state) {
   constexpr int kNumModels = 815, kNumViews = 80;
@@ -307,6 +316,7 @@ STAGE(Rotations)->ArgName("threads")->Arg(1)->Arg(2);
 STAGE(Description)->ArgName("threads")->Arg(1)->Arg(2);
 STAGE(Segmentation)->ArgName("threads")->Arg(1)->Arg(2);
 STAGE(Registration)->ArgName("threads")->Arg(1)->Arg(2);
+STAGE(DescriptorDistance)->ArgName("size")->Arg(kPRSDSize)->Arg(kPRSTSize);
 STAGE(NearestViews)->ArgName("threads")->Arg(1);
 STAGE(NearestShapes)->ArgName("shapes")->Arg(904)->Arg(100'000);
 

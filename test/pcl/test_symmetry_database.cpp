@@ -92,6 +92,38 @@ TEST_F(SymmetryDatabaseTest, FindsShapesOfAnySizeInAnyPose) {
   }
 }
 
+/// However the same models came there, in one order or another, again, or beside models that are gone.
+TEST_F(SymmetryDatabaseTest, DistancesDependOnWhatIsStored) {
+  const Cloud query = rodOnBox(kKinds[3].half, kKinds[3].rod, elsewhere(), 5);
+  for (const int num_references : {2, 200}) {
+    DatabaseOptions options = quick();
+    options.num_references = num_references;
+    const auto distances = [&](const std::vector<int>& order, const auto& afterTwo) {
+      SymmetryDatabase database(":memory:", options);
+      for (std::size_t i = 0; i < order.size(); ++i) {
+        database.add(kKinds[order[i]].name, modelOf(kKinds[order[i]]));
+        if (i == 1) afterTwo(database);
+      }
+      std::vector<std::pair<std::string, double>> found;
+      for (const ModelMatch& match : database.match(query, 10)) found.emplace_back(match.name, match.distance);
+      return found;
+    };
+    const auto nothing = [](SymmetryDatabase&) {};
+    const auto expected = distances({0, 1, 2, 3}, nothing);
+    ASSERT_EQ(expected.size(), 4u);
+    EXPECT_EQ(distances({3, 1, 0, 2}, nothing), expected);
+    EXPECT_EQ(distances({2, 3, 1, 0}, [](SymmetryDatabase& database) { database.save(); }), expected);
+    EXPECT_EQ(distances({0, 1, 2, 3, 3, 0}, [](SymmetryDatabase& database) { database.save(); }), expected);
+    EXPECT_EQ(distances({1, 0, 3, 2},
+                        [](SymmetryDatabase& database) {
+                          database.add("another", ball());
+                          database.save();
+                          database.remove("another");
+                        }),
+              expected);
+  }
+}
+
 TEST_F(SymmetryDatabaseTest, RecognizesAViewWithItsPose) {
   SymmetryDatabase database(":memory:");
   fill(database);

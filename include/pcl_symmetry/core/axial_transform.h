@@ -29,6 +29,7 @@ public:
 
   AxisGrid() = default;
 
+  /// Makes a grid of axes through a ball.
   /// \param num_theta,num_phi,num_offset number of bins, each in [1, 1024]; of phi even.
   /// \param center finite, input frame; u and v are measured from it.
   /// \param radius finite and > 0, input units.
@@ -51,6 +52,7 @@ public:
 
   /// \return u or v at the bin center, input units.
   double offset(int k) const { return (k + 0.5) * offsetStep() - radius_; }
+  /// The frame of a direction, whose third column it is.
   /// \param direction theta * num_phi + phi, in [0, numDirections()).
   /// \return columns: the directions of u and v, and that of the axes; right-handed.
   Eigen::Matrix3d frame(std::size_t direction) const;
@@ -72,6 +74,7 @@ struct AxialTransformOptions {
   std::uint64_t seed = 1;  ///< of the points drawn
   int num_threads = 0;     ///< >= 0; 0 = one per core; the map does not depend on it
 
+  /// Checks all values.
   /// \throws std::invalid_argument naming field, value and rule.
   void validate() const;
 };

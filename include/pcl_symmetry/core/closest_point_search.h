@@ -44,6 +44,7 @@ public:
                             std::vector<float>& sq_distances) const;
 };
 
+/// Builds a search tree of FLANN.
 /// \param points 3 x N, finite, N >= 1; they are copied.
 /// \return a search by a k-d tree of FLANN; exact. Several neighbors of many queries are found fastest where each query
 /// lies near the one before.

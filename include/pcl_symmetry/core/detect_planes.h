@@ -14,6 +14,7 @@ namespace PCL_SYMMETRY_EXPORTS pcl_symmetry {
 
 /// The input of detectPlanes(). It refers to the arrays that it is made of, which must outlive it.
 struct PlaneInput {
+  /// Points and what a scanner saw of them.
   /// \param points_of_cloud 3 x N, finite, input units.
   /// \param seen_space see visibility.
   PlaneInput(const PointsRef& points_of_cloud, const Visibility* seen_space = nullptr)
@@ -76,6 +77,7 @@ struct DetectionOptions {
   /// \return num_cells, sigma and num_threads as options of the distance transform.
   GaussianEdtOptions edtOptions() const;
 
+  /// Checks all values.
   /// \throws std::invalid_argument naming field, value and rule.
   void validate() const;
 };

@@ -18,6 +18,7 @@ struct GaussianEdtOptions {
   Eigen::Vector3d center = Eigen::Vector3d::Zero();  ///< center of that ball, input frame; used only with radius > 0
   int num_threads = 0;                               ///< >= 0; 0 = one per core
 
+  /// Checks all values.
   /// \throws std::invalid_argument naming field, value and rule.
   void validate() const;
 };
@@ -30,6 +31,7 @@ struct GaussianEdtOptions {
 /// adds at most 0.43 cells to a distance and lowers the sum of f by less than 1 % (at 32 cells a side and more).
 class GaussianEdt {
 public:
+  /// Computes the function on the grid.
   /// \param points 3 x N, finite, input units, N >= 1, not all equal unless options.radius is set.
   /// \throws std::invalid_argument for bad options, no point, points without extent, or a value that is not finite.
   explicit GaussianEdt(const PointsRef& points, const GaussianEdtOptions& options = {});
@@ -58,6 +60,7 @@ public:
   };
   /// \return num_cells^2 ranges, y fastest: f is 0 in all other cells of a row.
   const std::vector<Range>& filledRanges() const { return filled_; }
+  /// Where a cell lies.
   /// \param index of a cell, as in values().
   /// \return its center, input frame.
   Eigen::Vector3d cellCenter(std::size_t index) const;

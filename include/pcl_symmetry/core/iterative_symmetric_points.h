@@ -28,6 +28,7 @@ struct IspOptions {
   /// matches that change sides keep the plane of a sampled surface in motion without improving it.
   double error_share = 0.5;
 
+  /// Checks all values.
   /// \throws std::invalid_argument naming field, value and rule.
   void validate() const;
 };

@@ -12,6 +12,7 @@ struct LocalMaximaOptions {
   double strength = 0.1;   ///< keeps D >= strength * D_strongest * (1 - r / R), in [0, 1]; the paper's 1/10
   double laplacian = 0.1;  ///< keeps -Laplacian >= laplacian * -Laplacian_strongest, in [0, 1]; the paper's 1/10
 
+  /// Checks all values.
   /// \throws std::invalid_argument naming field, value and rule.
   void validate() const;
 };

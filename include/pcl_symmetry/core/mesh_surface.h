@@ -35,6 +35,7 @@ struct MeshShares {
 /// A mesh of triangles as the exact surface: its closest points are those of its triangles, not of samples.
 class MeshSurface {
 public:
+  /// Builds the tree of the triangles.
   /// \param vertices 3 x V, input units; triangles with a vertex that is not finite are left out.
   /// \param triangles indices of vertices.
   /// \throws std::invalid_argument for an index that is no vertex, and a mesh without area.

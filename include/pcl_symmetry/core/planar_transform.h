@@ -16,6 +16,7 @@ struct SampledTransformOptions {
   std::uint64_t seed = 1;  ///< of the points drawn
   int num_threads = 0;     ///< >= 0; 0 = one per core; the map does not depend on it
 
+  /// Checks all values.
   /// \throws std::invalid_argument naming field, value and rule.
   void validate() const;
 };
@@ -41,6 +42,7 @@ struct ConvolutionTransformOptions {
                          ///< axis; 0.5 halves the error and is slower
   int num_threads = 0;   ///< >= 0; 0 = one per core; the map does not depend on it
 
+  /// Checks all values.
   /// \throws std::invalid_argument naming field, value and rule.
   void validate() const;
 };
@@ -66,6 +68,7 @@ struct RotationalTransformOptions {
   double refined_share = 1.0;
   int num_threads = 0;  ///< >= 0; 0 = one per core; the map does not depend on it
 
+  /// Checks all values.
   /// \throws std::invalid_argument naming field, value and rule.
   void validate() const;
 };
@@ -92,6 +95,7 @@ struct VotingTransformOptions {
   std::uint64_t seed = 1;      ///< of the pairs drawn
   int num_threads = 0;         ///< >= 0; 0 = one per core; the map does not depend on it
 
+  /// Checks all values.
   /// \throws std::invalid_argument naming field, value and rule.
   void validate() const;
 };
@@ -123,6 +127,7 @@ struct PlanarTransformOptions {
   void setNumThreads(int n) {
     sampled.num_threads = convolution.num_threads = rotational.num_threads = voting.num_threads = n;
   }
+  /// Checks all values.
   /// \throws std::invalid_argument naming field, value and rule.
   void validate() const;
 };

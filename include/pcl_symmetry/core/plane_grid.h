@@ -17,6 +17,7 @@ struct MapSize {
   int num_phi = 128;    ///< even, in [2, 4096]
   int num_radius = 64;  ///< in [1, 4096]
 
+  /// Checks all values.
   /// \throws std::invalid_argument naming field, value and rule.
   void validate() const;
 };
@@ -38,6 +39,7 @@ public:
 
   PlaneGrid() = default;
 
+  /// Makes a grid of planes through a ball.
   /// \param center finite, input frame; r is measured from it.
   /// \param radius finite and > 0, input units.
   /// \throws std::invalid_argument naming field, value and rule.
@@ -72,6 +74,7 @@ public:
 
   /// \return unit normal at the center of direction bin (t, p).
   Eigen::Vector3d normal(int t, int p) const;
+  /// The normal of a direction.
   /// \param direction t * num_phi + p, in [0, numDirections()).
   Eigen::Vector3d normal(std::size_t direction) const;
 
@@ -81,6 +84,7 @@ public:
   /// \return the bin that contains the plane; none if the plane is farther than radius() from the center.
   std::optional<Bin> find(const ReflectionPlane& plane) const;
 
+  /// Goes from a bin to a neighbor, across the seams of the half-sphere.
   /// \param dt,dp,dk steps, dt in {-1, 0, 1}.
   /// \return the bin at (t + dt, p + dp, k + dk), across the seams; none beyond the ends of r.
   std::optional<Bin> step(const Bin& bin, int dt, int dp, int dk) const;

@@ -12,6 +12,7 @@ struct PoseSearchOptions {
   int max_poses = 4;         ///< the best of those that are returned, >= 1
   int num_threads = 0;       ///< >= 0; 0 = one per core
 
+  /// Checks all values.
   /// \throws std::invalid_argument naming field, value and rule.
   void validate() const;
 };

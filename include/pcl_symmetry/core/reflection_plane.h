@@ -17,6 +17,7 @@ public:
   /// The plane z = 0.
   ReflectionPlane() = default;
 
+  /// The plane normal . x = offset.
   /// \param normal finite and not zero; it is normalized, and the offset is divided by its length.
   /// \param offset normal.x for points x of the plane, input units times the length of the normal.
   /// \throws std::invalid_argument for a zero normal or a value that is not finite.
@@ -56,6 +57,7 @@ private:
   double offset_ = 0.0;
 };
 
+/// One of the planes through a line.
 /// \param angle about the line, radians: at 0, the normal is line.direction().unitOrthogonal().
 /// \return a plane that contains a line.
 ReflectionPlane planeThrough(const Line3d& line, double angle);

@@ -17,8 +17,9 @@ class ScalarGrid {
 public:
   using Ptr = std::shared_ptr<ScalarGrid>;
   using ConstPtr = std::shared_ptr<const ScalarGrid>;
-  using Size = std::array<int, 3>;
+  using Size = std::array<int, 3>;  ///< voxels along each axis
 
+  /// Takes the values of a volume.
   /// \param size voxels along each axis of the grid, >= 1.
   /// \param T_input_index from indices, voxel centers at whole numbers, to the input frame; finite and invertible. It
   /// holds spacing, origin and direction, see placed().
@@ -26,6 +27,7 @@ public:
   /// \throws std::invalid_argument naming what is wrong.
   ScalarGrid(const Size& size, const Eigen::Affine3d& T_input_index, std::vector<float> values);
 
+  /// The pose of a grid from spacing, origin and axes.
   /// \param spacing between voxel centers, input units, > 0.
   /// \param origin center of voxel (0, 0, 0), input frame.
   /// \param direction unit columns: where the axes of the grid point.
@@ -39,6 +41,7 @@ public:
   const Eigen::Affine3d& T_input_index() const { return T_input_index_; }  ///< from indices to the input frame
   Eigen::Vector3d spacing() const { return T_input_index_.linear().colwise().norm(); }  ///< input units
 
+  /// Whether a point lies in the grid.
   /// \param p indices, not only whole ones.
   /// \param margin voxels.
   /// \return whether p lies between voxel centers, the margin or more from the outermost ones.
@@ -65,6 +68,7 @@ struct VolumeLevels {
   double low = 0.0;   ///< input intensity
   double high = 0.0;  ///< input intensity; low = high = 0: background and brightest half percent of the voxels
 
+  /// Checks all values.
   /// \throws std::invalid_argument unless both are finite and low < high, or both are 0.
   void validate() const;
 };
@@ -76,6 +80,7 @@ struct VolumeWithoutAnswer : std::invalid_argument {
 
 /// A volume as the function f of the transform, on no more voxels than wanted and a little smoothed.
 struct VolumeFunction {
+  /// Makes the function whose symmetry is measured.
   /// \param volume at least 4 voxels along each axis.
   /// \param most_voxels groups of voxels are averaged until there are no more than this, >= 4096.
   /// \throws std::invalid_argument for bad levels; VolumeWithoutAnswer.

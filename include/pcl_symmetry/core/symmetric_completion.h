@@ -17,6 +17,7 @@ struct CompletionOptions {
   double margin = 3.0;
   int num_threads = 0;  ///< >= 0; 0 = one per core
 
+  /// Checks all values.
   /// \throws std::invalid_argument naming field, value and rule.
   void validate() const;
 };

@@ -67,6 +67,7 @@ struct ReflectedPairs {
   std::vector<float> sq_distances;  ///< N, of the counterpart from the reflection, squared input units
 };
 
+/// Pairs each point with the one closest to its reflection.
 /// \param points 3 x N, finite.
 /// \param max_distance of a counterpart from the reflection, input units, >= 0; 0 = 1 % of the diameter.
 ReflectedPairs reflectedPairs(const PointsRef& points, const ReflectionPlane& plane, double max_distance = 0.0);
@@ -82,6 +83,7 @@ struct LandmarkAsymmetry {
   double object_rms = 0.0;
 };
 
+/// Measures how far pairs of landmarks are from symmetric.
 /// \param pairs landmarks and their counterparts. \param midline landmarks that have none. Input frame, finite.
 /// \param plane of object symmetry.
 LandmarkAsymmetry landmarkAsymmetry(const std::vector<std::pair<Eigen::Vector3d, Eigen::Vector3d>>& pairs,

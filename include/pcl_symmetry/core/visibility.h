@@ -22,7 +22,7 @@ namespace PCL_SYMMETRY_EXPORTS pcl_symmetry {
 /// Copies share their pictures.
 class Visibility {
 public:
-  using Projection = Eigen::Matrix<double, 3, 4>;
+  using Projection = Eigen::Matrix<double, 3, 4>;  ///< homogeneous points to pixels and depth
 
   /// Depth of a ray that met nothing: all of its space is free. Farther than every point.
   static constexpr float kBackground = std::numeric_limits<float>::infinity();
@@ -73,6 +73,7 @@ public:
   /// \param inverse_depth_error standard deviation, 1 / input units, >= 0; 0 = not known.
   Visibility withDepthErrors(double inverse_depth_error) const;
 
+  /// The error of a depth measured at a point.
   /// \param x in the frame of the points.
   /// \return standard deviation of the errors of a depth measured there, input units; 0 where it is not known.
   double depthError(const Eigen::Vector3d& x) const;
@@ -89,6 +90,7 @@ public:
   /// Pixels of a picture that is made from points: 4 MB a picture.
   static constexpr std::size_t kMaxPixels = 1u << 20;
 
+  /// How far a point lies behind the surface that was seen.
   /// \param x in the frame of the points.
   /// \return distance of the point behind the surface, along its ray, input units: negative in free space, -infinity
   /// where the ray met nothing, +infinity where no ray passed.
@@ -97,10 +99,12 @@ public:
   /// \return whether a picture has a pixel at a point in the frame of the points, also one without a depth.
   bool isInPicture(const Eigen::Vector3d& x) const;
 
+  /// Tells which points lie in space that was seen to be empty.
   /// \param points 3 x M, in the frame of the points.
   /// \return for each whether depthBehind() is negative: M values, 1 in free space.
   std::vector<char> areFree(const Eigen::Matrix3Xd& points) const;
 
+  /// How much of a cloud hides behind itself.
   /// \param points 3 x N, finite, N >= 1.
   /// \param margin input units.
   /// \return share of the points that lie more than the margin behind the surface on their ray. From the viewpoint of a

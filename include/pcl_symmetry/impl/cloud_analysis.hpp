@@ -64,6 +64,7 @@ protected:
   using pcl::PCLBase<PointT>::indices_;
   using pcl::PCLBase<PointT>::use_indices_;
 
+  /// Begins with no cloud.
   /// \param name of the class, for messages.
   CloudAnalysis(std::string name, std::size_t max_points, std::int64_t least_max_points = 2)
       : name_(std::move(name)), max_points_(max_points), least_max_points_(least_max_points) {}
@@ -82,6 +83,7 @@ protected:
   void setInputVolume(const std::shared_ptr<const ScalarGrid>& volume) {
     analyze(detail::inputVolume(volume, nullptr));
   }
+  /// Analyzes a volume at given intensities.
   /// \param levels the intensities that count.
   /// \throws pcl::BadArgumentException for bad levels.
   void setInputVolume(const std::shared_ptr<const ScalarGrid>& volume, const VolumeLevels& levels) {
@@ -148,8 +150,10 @@ private:
 template <typename PointT>
 class ScanAnalysis : public CloudAnalysis<PointT> {
 public:
+  /// Sets how the viewpoint is found.
   /// \param mode how the viewpoint is found; default Viewpoint::Mode::Auto.
   void setViewpointMode(Viewpoint::Mode mode) { viewpoint_.mode = mode; }
+  /// Sets where the scanner stood.
   /// \param position where the scanner stood, input frame; it must see the points within 75 degrees of one direction.
   void setViewpoint(const Eigen::Vector3d& position) { viewpoint_ = {Viewpoint::Mode::Given, position}; }
   void setViewpoint(const Viewpoint& viewpoint) { viewpoint_ = viewpoint; }  ///< mode and position at once
@@ -198,6 +202,7 @@ protected:
   /// \return whether the caller may have told what the object stands on, by setGround() or setSeenSpace().
   bool hasGivenSupport() const { return ground_ || (seen_space_ && !seen_space_->asksForSupport()); }
 
+  /// Finds out what the scanner saw.
   /// \param points selected from the input, 3 x N, N >= 1.
   /// \return what the scanner saw; null without a viewpoint.
   /// \throws std::invalid_argument where the points surround the viewpoint that was given.

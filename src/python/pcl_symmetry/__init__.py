@@ -14,7 +14,7 @@ scene()                the objects of one frame of a depth camera, each with its
 from_depth()           points (H, W, 3) of a depth image
 frame()                center of symmetry and principal symmetry axes
 rotations()            the group of rotations that map an object onto itself
-register()             the pose of a scan relative to a model, without a guess
+register()             the pose of a scan relative to a model, without a guess; register_all(): of many scans
 complete()             what the reflection of a scan adds
 symmetrize()           a shape with equal halves, and its asymmetry
 segment()              parts of a cloud or mesh
@@ -79,19 +79,23 @@ if TYPE_CHECKING:
 # Functions first: this is the order of help(pcl_symmetry).
 __all__ = [
     "planes",
+    "scene",
+    "from_depth",
     "frame",
     "rotations",
-    "segment",
+    "register",
+    "register_all",
     "complete",
     "symmetrize",
-    "from_depth",
-    "sample_mesh",
+    "segment",
+    "Database",
     "transform",
     "local_symmetry",
     "viewpoints",
     "describe",
     "descriptors",
     "descriptor_distance",
+    "sample_mesh",
     "Planes",
     "Plane",
     "ReflectionPlane",
@@ -120,16 +124,17 @@ __all__ = [
 ]
 # The libraries of PCL take longer to load than the rest: what needs them is loaded when it is first used. It is missing where
 # the library was built without PCL.
-if importlib.util.find_spec("._recognition", __name__):
-    __all__ += ["scene", "register", "register_all", "Database"]
+_OF_PCL = ["scene", "register", "register_all", "Database"]
+if not importlib.util.find_spec("._recognition", __name__):
+    __all__ = [name for name in __all__ if name not in _OF_PCL]
 
 
 def __getattr__(name: str) -> Any:
-    if name not in ("Database", "register", "register_all", "scene") or name not in __all__:
+    if name not in _OF_PCL or name not in __all__:
         raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
     from . import database
 
-    globals().update({each: getattr(database, each) for each in ("Database", "register", "register_all", "scene")})
+    globals().update({each: getattr(database, each) for each in _OF_PCL})
     return globals()[name]
 
 

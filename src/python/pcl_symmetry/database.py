@@ -42,7 +42,7 @@ def register(
     source: Any,
     target: Any,
     *,
-    guess: Optional["ArrayLike"] = None,
+    guess: Optional[ArrayLike] = None,
     around: Optional[Tuple[float, float]] = None,
     source_viewpoint: Viewpoint = "auto",
     target_viewpoint: Viewpoint = "auto",
@@ -146,7 +146,7 @@ class Database:
         """Closes the file; what was stored is on the disk already."""
         self._open = None
 
-    def __enter__(self) -> "Database":
+    def __enter__(self) -> Database:
         return self
 
     def __exit__(self, *exception: object) -> None:
@@ -169,7 +169,7 @@ class Database:
     def __iter__(self) -> Iterator[str]:
         return iter(self.names)
 
-    def __getitem__(self, name: str) -> "NDArray[np.float32]":
+    def __getitem__(self, name: str) -> NDArray[np.float32]:
         if name not in self:
             raise KeyError(name)
         return self.cloud(name)
@@ -209,9 +209,9 @@ class Database:
         """Removes a model."""
         self._core.remove(name)
 
-    def cloud(self, name: str) -> "NDArray[np.float32]":
+    def cloud(self, name: str) -> NDArray[np.float32]:
         """(N, 3) points of a model."""
-        result: "NDArray[np.float32]" = self._core.cloud(name)
+        result: NDArray[np.float32] = self._core.cloud(name)
         return result
 
     def match(
@@ -227,7 +227,7 @@ class Database:
         points: Any,
         *,
         viewpoint: Viewpoint = "auto",
-        indices: Optional["ArrayLike"] = None,
+        indices: Optional[ArrayLike] = None,
         min_confidence: float = 0.5,
         progress: Progress = None,
         threads: int = 0,
@@ -252,7 +252,7 @@ def _recognized(model: Any) -> Recognized:
     return Recognized(model.name, model.confidence, model.transform, _score(model.score))
 
 
-def _camera_points(cloud: Cloud) -> "NDArray[Any]":
+def _camera_points(cloud: Cloud) -> NDArray[Any]:
     """(H, W, 3) where the points are the pixels of a camera."""
     return cloud.array.reshape(*cloud.shape, 3) if len(cloud.shape) == 2 else cloud.array
 
@@ -277,7 +277,7 @@ def scene(
     points: Any,
     *,
     viewpoint: Viewpoint = "auto",
-    ground: Optional["ArrayLike"] = None,
+    ground: Optional[ArrayLike] = None,
     database: Optional[Database] = None,
     max_range: float = 0.0,
     plane_distance: float = 0.0,

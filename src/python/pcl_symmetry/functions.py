@@ -96,9 +96,9 @@ _NUM_MESH_POINTS = 10_000
 class Cloud(NamedTuple):
     """The points that a function was given."""
 
-    array: "NDArray[Any]"
+    array: NDArray[Any]
     """(N, 3); of a mesh those that were spread over it."""
-    shift: "Shift" = None
+    shift: Shift = None
     """What was subtracted from them, if anything."""
     shape: Tuple[int, ...] = ()
     """(H, W) of an organized array, which became rows; else (N,)."""
@@ -131,7 +131,7 @@ def of_vertices(name: str, points: Any) -> Cloud:
     return prepare(name, parts_of(name, points)[0])
 
 
-def parts_of(name: str, points: Any) -> Tuple["NDArray[Any]", Any]:
+def parts_of(name: str, points: Any) -> Tuple[NDArray[Any], Any]:
     """Points or vertices as an array, and the faces of a mesh, None for a cloud."""
     import numpy as np
 
@@ -162,7 +162,7 @@ def parts_of(name: str, points: Any) -> Tuple["NDArray[Any]", Any]:
     return array, faces
 
 
-def _array(values: Any) -> "NDArray[Any]":
+def _array(values: Any) -> NDArray[Any]:
     import numpy as np
 
     if type(values).__module__.startswith("open3d") and hasattr(values, "cpu"):
@@ -170,7 +170,7 @@ def _array(values: Any) -> "NDArray[Any]":
     return np.asarray(values)
 
 
-def _near_origin(name: str, array: "NDArray[Any]") -> Tuple["NDArray[Any]", "Shift"]:
+def _near_origin(name: str, array: NDArray[Any]) -> Tuple[NDArray[Any], Shift]:
     import numpy as np
 
     if array.ndim != 2 or array.shape[1] != 3 or array.dtype.kind not in "fiu" or not len(array):
@@ -206,7 +206,7 @@ def _near_origin(name: str, array: "NDArray[Any]") -> Tuple["NDArray[Any]", "Shi
 class Used(NamedTuple):
     """The points that an analysis uses, and what a scanner saw of them."""
 
-    array: "NDArray[Any]"
+    array: NDArray[Any]
     viewpoint: Any
     """As the core takes it: "auto", None, a position, or what the pixels of an organized array show."""
     rows: Any = None
@@ -219,8 +219,8 @@ class Used(NamedTuple):
 def look(
     cloud: Cloud,
     viewpoint: Viewpoint,
-    indices: Optional["ArrayLike"] = None,
-    ground: Optional["ArrayLike"] = None,
+    indices: Optional[ArrayLike] = None,
+    ground: Optional[ArrayLike] = None,
     max_points: int = 50_000,
     as_measured: bool = False,
     seed: int = 1,
@@ -254,7 +254,7 @@ def look(
     return Used(points, seen, rows, may_be_rings, re.sub("^input cloud: ", "", reason))
 
 
-def rows_of(indices: Optional["ArrayLike"], shape: Tuple[int, ...]) -> Optional[List[int]]:
+def rows_of(indices: Optional[ArrayLike], shape: Tuple[int, ...]) -> Optional[List[int]]:
     """Of a mask of the shape of the points, or of row numbers."""
     import numpy as np
 
@@ -270,7 +270,7 @@ def rows_of(indices: Optional["ArrayLike"], shape: Tuple[int, ...]) -> Optional[
     return [int(row) for row in chosen]
 
 
-def _seen_from(viewpoint: Viewpoint, shift: "Shift", name: str = "viewpoint") -> Any:
+def _seen_from(viewpoint: Viewpoint, shift: Shift, name: str = "viewpoint") -> Any:
     import numpy as np
 
     if viewpoint is None or isinstance(viewpoint, str):
@@ -301,7 +301,7 @@ def _rotation_axis(t: Any) -> RotationAxis:
     return RotationAxis(**_fields(t, "point", "direction", "fold", "confidence", "support", "off"))
 
 
-def _core_plane(plane: ReflectionPlane, shift: "Shift") -> Any:
+def _core_plane(plane: ReflectionPlane, shift: Shift) -> Any:
     """The plane in the frame of points that prepare() moved."""
     if not isinstance(plane, ReflectionPlane):
         raise TypeError(f"plane = {type(plane).__name__}, must be a ReflectionPlane, such as one of planes()")
@@ -349,19 +349,19 @@ def _planes_of(found: Any, cloud: Cloud, used: Optional[Used] = None, judged: bo
 def planes(
     points: Any = None,
     *,
-    volume: Optional["ArrayLike"] = None,
-    spacing: "ArrayLike" = (1.0, 1.0, 1.0),
-    origin: "ArrayLike" = (0.0, 0.0, 0.0),
-    direction: Optional["ArrayLike"] = None,
+    volume: Optional[ArrayLike] = None,
+    spacing: ArrayLike = (1.0, 1.0, 1.0),
+    origin: ArrayLike = (0.0, 0.0, 0.0),
+    direction: Optional[ArrayLike] = None,
     levels: Optional[Tuple[float, float]] = None,
     viewpoint: Viewpoint = "auto",
-    indices: Optional["ArrayLike"] = None,
-    ground: Optional["ArrayLike"] = None,
+    indices: Optional[ArrayLike] = None,
+    ground: Optional[ArrayLike] = None,
     tolerance: Optional[float] = None,
     absolute_tolerance: float = 0.0,
     approximate: bool = False,
     max_planes: int = 128,
-    normals: Optional["ArrayLike"] = None,
+    normals: Optional[ArrayLike] = None,
     max_points: int = 50_000,
     evidence: bool = False,
     as_published: bool = False,
@@ -467,16 +467,16 @@ def local_symmetry(
     points: Any = None,
     scale: float = 1.0,
     *,
-    volume: Optional["ArrayLike"] = None,
-    spacing: "ArrayLike" = (1.0, 1.0, 1.0),
-    origin: "ArrayLike" = (0.0, 0.0, 0.0),
-    direction: Optional["ArrayLike"] = None,
+    volume: Optional[ArrayLike] = None,
+    spacing: ArrayLike = (1.0, 1.0, 1.0),
+    origin: ArrayLike = (0.0, 0.0, 0.0),
+    direction: Optional[ArrayLike] = None,
     levels: Optional[Tuple[float, float]] = None,
-    at: Optional["ArrayLike"] = None,
+    at: Optional[ArrayLike] = None,
     progress: Progress = None,
     seed: int = 1,
     threads: int = 0,
-) -> "NDArray[np.float32]":
+) -> NDArray[np.float32]:
     """(N,) for each point the greatest D of a plane through it, of the shape within scale (Section 6).
 
     points: as in planes(); of a mesh the values of its vertices are returned, of an organized array (H, W) values. Rows that
@@ -509,9 +509,9 @@ def complete(
     plane: ReflectionPlane,
     *,
     viewpoint: Viewpoint = "auto",
-    indices: Optional["ArrayLike"] = None,
+    indices: Optional[ArrayLike] = None,
     threads: int = 0,
-) -> Tuple["NDArray[Any]", List[int]]:
+) -> Tuple[NDArray[Any], List[int]]:
     """Completes a scan by its reflection in a plane.
 
     points, viewpoint, indices: as in planes(); of a mesh its vertices. plane: a symmetry, or a possible one, of planes(); any
@@ -538,7 +538,7 @@ def symmetrize(
     plane: ReflectionPlane,
     half: str = "mean",
     *,
-    faces: Optional["ArrayLike"] = None,
+    faces: Optional[ArrayLike] = None,
     cut: bool = False,
     threads: int = 0,
 ) -> Symmetrized:
@@ -584,18 +584,18 @@ def viewpoints(planes: Union[Planes, Sequence[Plane]]) -> List[View]:
 
 
 def sample_mesh(
-    vertices: Any, faces: Optional["ArrayLike"] = None, num_points: int = 10_000, *, seed: int = 1
-) -> "NDArray[Any]":
+    vertices: Any, faces: Optional[ArrayLike] = None, num_points: int = 10_000, *, seed: int = 1
+) -> NDArray[Any]:
     """(num_points, 3) points spread evenly over a mesh of (V, 3) vertices and (F, 3) faces, or of Open3D or trimesh."""
     positions, own_faces = parts_of("vertices", vertices)
     if own_faces is None and faces is None:
         raise TypeError("faces = None, must be (F, 3), or vertices a mesh of Open3D or trimesh")
     array, shift, *_ = prepare("vertices", positions)
-    points: "NDArray[Any]" = core.sample_mesh(array, own_faces if faces is None else faces, num_points, seed=seed)
+    points: NDArray[Any] = core.sample_mesh(array, own_faces if faces is None else faces, num_points, seed=seed)
     return points if shift is None else points + shift
 
 
-def from_depth(depth: "ArrayLike", intrinsics: "ArrayLike", *, unit: float = 1.0) -> "NDArray[np.float32]":
+def from_depth(depth: ArrayLike, intrinsics: ArrayLike, *, unit: float = 1.0) -> NDArray[np.float32]:
     """(H, W, 3) points of a depth image in the frame of the camera: x to the right, y down, z forward.
 
     depth: (H, W), along the optical axis; 0 and values that are not finite are missing, and become NaN.
@@ -616,7 +616,7 @@ def from_depth(depth: "ArrayLike", intrinsics: "ArrayLike", *, unit: float = 1.0
         raise ValueError(f"intrinsics = {_text(np.asarray(intrinsics))}, must be (3, 3) or (fx, fy, cx, cy), fx and fy > 0")
     z = np.where(np.isfinite(z) & (z > 0), z, np.nan) * unit
     v, u = np.indices(z.shape)
-    points: "NDArray[np.float32]" = np.stack([(u - k[2]) / k[0] * z, (v - k[3]) / k[1] * z, z], axis=2).astype(np.float32)
+    points: NDArray[np.float32] = np.stack([(u - k[2]) / k[0] * z, (v - k[3]) / k[1] * z, z], axis=2).astype(np.float32)
     return points
 
 
@@ -635,8 +635,8 @@ def frame(
     points: Any,
     *,
     viewpoint: Viewpoint = "auto",
-    indices: Optional["ArrayLike"] = None,
-    ground: Optional["ArrayLike"] = None,
+    indices: Optional[ArrayLike] = None,
+    ground: Optional[ArrayLike] = None,
     max_points: int = 50_000,
     as_published: bool = False,
     progress: Progress = None,
@@ -708,7 +708,7 @@ def rotations(
 
 def segment(
     points: Any,
-    faces: Optional["ArrayLike"] = None,
+    faces: Optional[ArrayLike] = None,
     *,
     parts: int = 0,
     method: str = "merging",
@@ -717,7 +717,7 @@ def segment(
     progress: Progress = None,
     seed: int = 1,
     threads: int = 0,
-) -> "NDArray[np.int32]":
+) -> NDArray[np.int32]:
     """Cuts a surface into parts by its symmetries (Section 5.3).
 
     points: (N, 3) of a cloud, (H, W, 3), the vertices of a mesh, or a cloud or mesh of Open3D or trimesh. faces: (F, 3), or
@@ -742,7 +742,7 @@ def segment(
 
 def describe(
     points: Any, *, viewpoint: Viewpoint = "auto", progress: Progress = None, seed: int = 1, threads: int = 0
-) -> "NDArray[np.float32]":
+) -> NDArray[np.float32]:
     """(2, K) signatures of unit norm, the same in all poses and sizes (Section 5.2); (0, 0) for too few points."""
     import numpy as np
 
@@ -751,7 +751,7 @@ def describe(
     if reason := used.reason or core.why_unanswerable(used.array):
         warnings.warn(f"points: {reason}", RuntimeWarning, stacklevel=2)
         return np.empty((0, 0), np.float32)
-    result: "NDArray[np.float32]" = core.describe(
+    result: NDArray[np.float32] = core.describe(
         used.array, viewpoint=used.viewpoint, told=progress, seed=seed, threads=threads
     )
     return result
@@ -766,7 +766,7 @@ def descriptors(
     progress: Progress = None,
     seed: int = 1,
     threads: int = 0,
-) -> Tuple["NDArray[np.float32]", "NDArray[np.float32]", "NDArray[np.float32]"]:
+) -> Tuple[NDArray[np.float32], NDArray[np.float32], NDArray[np.float32]]:
     """The descriptors that the paper compares (Section 5.2): PRST and GEDT, (32, 32, 32), and PRSD, (32, 32).
 
     viewpoint: as in planes(). input_axes: about the center of mass in the axes of the input, as for models aligned by
@@ -782,7 +782,7 @@ def descriptors(
     return prst.reshape(32, 32, 32), prsd.reshape(32, 32), gedt.reshape(32, 32, 32)
 
 
-def descriptor_distance(a: "ArrayLike", b: "ArrayLike", *, of_planes: bool = True) -> float:
+def descriptor_distance(a: ArrayLike, b: ArrayLike, *, of_planes: bool = True) -> float:
     """Distance of two descriptors() of one kind (Section 5.2), arrays of one shape: L2.
 
     of_planes: PRST or PRSD, whose values count by the size of their bins, sin(theta) along the first axis; False: GEDT.
@@ -802,13 +802,13 @@ def transform(
     points: Any = None,
     bins: Sequence[int] = (64, 64, 64),
     *,
-    volume: Optional["ArrayLike"] = None,
-    spacing: "ArrayLike" = (1.0, 1.0, 1.0),
-    origin: "ArrayLike" = (0.0, 0.0, 0.0),
-    direction: Optional["ArrayLike"] = None,
+    volume: Optional[ArrayLike] = None,
+    spacing: ArrayLike = (1.0, 1.0, 1.0),
+    origin: ArrayLike = (0.0, 0.0, 0.0),
+    direction: Optional[ArrayLike] = None,
     levels: Optional[Tuple[float, float]] = None,
     method: str = "sampled",
-    center: "ArrayLike" = (0.0, 0.0, 0.0),
+    center: ArrayLike = (0.0, 0.0, 0.0),
     radius: float = 0.0,
     sigma: float = 0.0,
     cells: int = 64,

@@ -92,7 +92,7 @@ class _Panels:
         return Page(scene)
 
 
-def page_of_planes(found: "Planes", points: Any) -> Page:
+def page_of_planes(found: Planes, points: Any) -> Page:
     from .plots import _square
 
     panels = _Panels(found.samples.astype(float) if found.samples is not None else rows_of_shown(points, found._shape, "planes"))
@@ -130,7 +130,7 @@ def _raised(towards: Any, viewpoint: Any) -> Tuple[Any, Any]:
     return towards / np.linalg.norm(towards) + 0.25 * up, up
 
 
-def page_of_scene(found: "Scene", points: Any) -> Page:
+def page_of_scene(found: Scene, points: Any) -> Page:
     """All objects, each in a color with its best plane or axis, then one by one."""
     from .plots import _diagonal, _square
 

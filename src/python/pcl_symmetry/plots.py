@@ -36,7 +36,7 @@ def _diagonal(points: Any) -> float:
     return float(np.linalg.norm(np.nanmax(points, axis=0) - np.nanmin(points, axis=0)))
 
 
-def _square(plane: "ReflectionPlane", points: Any) -> Any:
+def _square(plane: ReflectionPlane, points: Any) -> Any:
     """The corners of a square in the plane around the points, (4, 3)."""
     u = np.cross(plane.normal, np.eye(3)[np.abs(plane.normal).argmin()])
     u /= np.linalg.norm(u)
@@ -47,7 +47,7 @@ def _square(plane: "ReflectionPlane", points: Any) -> Any:
     return np.array([center + half * (a * u + b * v) for a, b in ((-1, -1), (1, -1), (1, 1), (-1, 1))])
 
 
-def plot_planes(found: "Planes", points: Any, axes: Any) -> Any:
+def plot_planes(found: Planes, points: Any, axes: Any) -> Any:
     from .pages import rows_of_shown, support_colors
 
     points = found.samples.astype(float) if found.samples is not None else rows_of_shown(points, found._shape, "planes")
@@ -65,7 +65,7 @@ def plot_planes(found: "Planes", points: Any, axes: Any) -> Any:
     return axes
 
 
-def plot_frame(frame: "Frame", points: Any, axes: Any) -> Any:
+def plot_frame(frame: Frame, points: Any, axes: Any) -> Any:
     from .functions import of_vertices
 
     array, shift, *_ = of_vertices("points", points)
@@ -77,7 +77,7 @@ def plot_frame(frame: "Frame", points: Any, axes: Any) -> Any:
     return axes
 
 
-def plot_profile(profile: "Profile", axes: Any) -> Any:
+def plot_profile(profile: Profile, axes: Any) -> Any:
     if axes is None:
         axes = plt.figure(figsize=(6, 6), dpi=100).add_subplot()
     axes.plot(profile.radius, profile.height, ".", markersize=3)
@@ -86,7 +86,7 @@ def plot_profile(profile: "Profile", axes: Any) -> Any:
     return axes
 
 
-def plot_map(found: "Map", axes: Any) -> Any:
+def plot_map(found: Map, axes: Any) -> Any:
     if axes is None:
         axes = plt.subplots(figsize=(6, 4), dpi=100)[1]
     shown = axes.imshow(found.values.max(axis=2), aspect="auto", cmap="cividis", extent=(0, 360, 90, 0))

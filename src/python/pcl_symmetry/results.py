@@ -17,8 +17,6 @@ if TYPE_CHECKING:
 
     from .pages import Page
 
-    Doubles = NDArray[np.float64]
-
 Self = TypeVar("Self", bound="Result")
 
 
@@ -90,7 +88,7 @@ class Result:
     def __repr__(self) -> str:
         return f"{type(self).__name__}({', '.join(f'{name}={_text(getattr(self, name))}' for name in self._in_repr)})"
 
-    def _moved(self: Self, shift: "Doubles") -> Self:
+    def _moved(self: Self, shift: NDArray[np.float64]) -> Self:
         """The result in a frame whose origin lies at -shift."""
         changes: Dict[str, Any] = {}
         for f in dataclasses.fields(self):
@@ -109,12 +107,12 @@ class ReflectionPlane(Result):
     """A plane of reflection: normal . x = offset."""
 
     _in_repr: ClassVar[Tuple[str, ...]] = ("normal", "offset")
-    normal: "Doubles"
+    normal: NDArray[np.float64]
     """(3,) unit."""
     offset: float
     """normal . x of points x in the plane, input units."""
 
-    def __init__(self, normal: "ArrayLike", offset: float) -> None:
+    def __init__(self, normal: ArrayLike, offset: float) -> None:
         """normal: (3,), finite, not zero; it is normalized, and the offset divided by its length."""
         import numpy as np
 
@@ -129,14 +127,14 @@ class ReflectionPlane(Result):
         self.__post_init__()
 
     @property
-    def coefficients(self) -> "Doubles":
+    def coefficients(self) -> NDArray[np.float64]:
         """(4,) a, b, c, d of a x + b y + c z + d = 0."""
         import numpy as np
 
         return np.append(self.normal, -self.offset)
 
     @property
-    def reflection(self) -> "Doubles":
+    def reflection(self) -> NDArray[np.float64]:
         """(4, 4) the reflection, x -> R x."""
         import numpy as np
 
@@ -145,31 +143,31 @@ class ReflectionPlane(Result):
         result[:3, 3] = 2.0 * self.offset * self.normal
         return result
 
-    def distance(self, x: "ArrayLike") -> Any:
+    def distance(self, x: ArrayLike) -> Any:
         """Signed distance of one point, (3,), or of each row, (N, 3); input units."""
         import numpy as np
 
         result = np.asarray(x, dtype=float) @ self.normal - self.offset
         return float(result) if result.ndim == 0 else result
 
-    def angle_to(self, other: "ReflectionPlane") -> float:
+    def angle_to(self, other: ReflectionPlane) -> float:
         """Angle between two planes, in [0, pi/2] radians."""
         import numpy as np
 
         cross = float(np.linalg.norm(np.cross(self.normal, other.normal)))
         return float(np.arctan2(cross, abs(float(self.normal @ other.normal))))
 
-    def reflect(self, points: "ArrayLike") -> "NDArray[Any]":
+    def reflect(self, points: ArrayLike) -> NDArray[Any]:
         """The reflections of points, (3,) or (N, 3); floating-point types are kept."""
         import numpy as np
 
         x = np.asarray(points)
         x = x if x.dtype.kind == "f" else x.astype(float)
         exact = x.astype(float)
-        result: "NDArray[Any]" = exact - 2.0 * (exact @ self.normal - self.offset)[..., None] * self.normal
+        result: NDArray[Any] = exact - 2.0 * (exact @ self.normal - self.offset)[..., None] * self.normal
         return result.astype(x.dtype)
 
-    def pairs(self, points: Any, *, max_distance: float = 0.0) -> Tuple["NDArray[np.int64]", "Doubles"]:
+    def pairs(self, points: Any, *, max_distance: float = 0.0) -> Tuple[NDArray[np.int64], NDArray[np.float64]]:
         """The counterpart of each point of a cloud: the point closest to its reflection.
 
         points: (N, 3), (H, W, 3), or an object of Open3D or trimesh, of a mesh its vertices. max_distance: between a
@@ -204,7 +202,7 @@ class ReflectionPlane(Result):
         index[rows[near]], distance[rows[near]] = rows[closest[near]], length[near]
         return index, distance
 
-    def _moved(self: Self, shift: "Doubles") -> Self:
+    def _moved(self: Self, shift: NDArray[np.float64]) -> Self:
         return dataclasses.replace(super()._moved(shift), offset=self.offset + float(self.normal @ shift))  # type: ignore
 
 
@@ -241,9 +239,9 @@ class Axis(Result):
     """All planes through a line are symmetries: a body of revolution."""
 
     _in_repr = ("point", "direction", "confidence")
-    point: "Doubles"
+    point: NDArray[np.float64]
     """(3,) of the axis."""
-    direction: "Doubles"
+    direction: NDArray[np.float64]
     """(3,) unit."""
     confidence: float
     """As that of Plane."""
@@ -252,7 +250,7 @@ class Axis(Result):
     support: float
     """As that of Plane."""
 
-    def rotate(self, points: "ArrayLike", angle: float) -> "NDArray[Any]":
+    def rotate(self, points: ArrayLike, angle: float) -> NDArray[Any]:
         """Points, (3,) or (N, 3), rotated about the axis by an angle in radians; floating-point types are kept."""
         import numpy as np
 
@@ -260,10 +258,10 @@ class Axis(Result):
         x = x if x.dtype.kind == "f" else x.astype(float)
         k, y = self.direction, x.astype(float) - self.point
         along = (y @ k)[..., None] * k
-        result: "NDArray[Any]" = self.point + along + np.cos(angle) * (y - along) + np.sin(angle) * np.cross(k, y)
+        result: NDArray[Any] = self.point + along + np.cos(angle) * (y - along) + np.sin(angle) * np.cross(k, y)
         return result.astype(x.dtype)
 
-    def profile(self, points: Any, num_points: int = 200) -> "Profile":
+    def profile(self, points: Any, num_points: int = 200) -> Profile:
         """The curve that gives the body of revolution when it is rotated about the axis, averaged over all angles.
 
         points: (N, 3), or an object of Open3D or trimesh. num_points: of the curve, about.
@@ -282,13 +280,13 @@ class Profile(Result):
     """The profile of a body of revolution: points of a curve, in order."""
 
     _in_repr = ("radius", "height")
-    radius: "Doubles"
+    radius: NDArray[np.float64]
     """(K,) distance from the axis."""
-    height: "Doubles"
+    height: NDArray[np.float64]
     """(K,) along the direction of the axis, from its point."""
-    spread: "Doubles"
+    spread: NDArray[np.float64]
     """(K,) standard deviation of the points about the curve."""
-    count: "NDArray[np.int64]"
+    count: NDArray[np.int64]
     """(K,) points that decide there."""
 
     def plot(self, axes: Any = None) -> Any:
@@ -303,13 +301,13 @@ class Symmetrized(Result):
     """A shape that a plane maps onto itself, and the asymmetry of the given one."""
 
     _in_repr = ("mean_asymmetry", "greatest_asymmetry")
-    points: "NDArray[Any]"
+    points: NDArray[Any]
     """(M, 3): the vertices of a mesh; of a cloud the points that stay, then their reflections."""
-    faces: Optional["NDArray[Any]"]
+    faces: Optional[NDArray[Any]]
     """(F, 3) rows of points, of a mesh."""
-    rows: "NDArray[np.int64]"
+    rows: NDArray[np.int64]
     """(M,) row of the given point that each is, or is the reflection of."""
-    asymmetry: "NDArray[np.float32]"
+    asymmetry: NDArray[np.float32]
     """(N,) how far the shape is outside of the reflection of its other side at each given point, along its normal; NaN where
     the other side has nothing."""
     mean_asymmetry: float
@@ -324,9 +322,9 @@ class RotationAxis(Result):
     """Rotations about a line map what a scanner saw onto itself or into occluded space."""
 
     _in_repr = ("point", "direction", "fold", "confidence")
-    point: "Doubles"
+    point: NDArray[np.float64]
     """(3,) of the axis."""
-    direction: "Doubles"
+    direction: NDArray[np.float64]
     """(3,) unit."""
     fold: int
     """Order of the rotations; 0: by any angle."""
@@ -343,7 +341,7 @@ class Center(Result):
     """All planes through a point are symmetries: a sphere."""
 
     _in_repr = ("point", "confidence")
-    point: "Doubles"
+    point: NDArray[np.float64]
     """(3,)"""
     confidence: float
     """As that of Plane."""
@@ -358,7 +356,7 @@ class View(Result):
     """A direction to look at an object from."""
 
     _in_repr = ("direction", "score")
-    direction: "Doubles"
+    direction: NDArray[np.float64]
     """(3,) unit, from the object to the camera."""
     score: float
     """S of Section 5.4, >= 0."""
@@ -381,7 +379,7 @@ class Planes(Result):
     """Of scans from one side, most confident first."""
     best: Optional[Plane]
     """Where there is no symmetry and no possible one: the plane that comes closest; else None."""
-    flat: Optional["Doubles"]
+    flat: Optional[NDArray[np.float64]]
     """(4,) plane that all points of a sheet or a disc lie near; None: the cloud is not flat."""
     tolerance: float
     """That was decided at, input units."""
@@ -389,9 +387,9 @@ class Planes(Result):
     """Number of points that were left out, as they are few and far from all others."""
     reason: str
     """Why there is no answer; empty where the search ran."""
-    viewpoint: Optional["Doubles"]
+    viewpoint: Optional[NDArray[np.float64]]
     """(3,) where the scanner stood; None: seen from all sides."""
-    evidence: "NDArray[Any]"
+    evidence: NDArray[Any]
     """With planes(evidence=True), what the decisions are taken from: structured array, one row a candidate, best first.
 
     coefficients: (4,) a, b, c, d. kind: 0 surface, 1 scan, 2 points that resolve no surface. flat: all points lie in one
@@ -406,7 +404,7 @@ class Planes(Result):
     terms: (7,) summands of the log odds of the confidence before their coefficients, by kind 7, 6 and 5 of them, then 0;
         the last one of kinds 0 and 1 counts for planes beside the best of the cloud
     """
-    rotation_evidence: "NDArray[Any]"
+    rotation_evidence: NDArray[Any]
     """The same for the rotations of scans, also those of no confidence.
 
     point, direction: (3,) each. fold: order of the rotations; 0: by any angle. kind: 0 by any angle, 1 half turns, 2 of
@@ -417,11 +415,11 @@ class Planes(Result):
     >= 0. planes_off: off of the best pair of planes through the line. beside: 1 where another rotation fits better.
     terms: (7,) summands of the log odds before their coefficients, by kind 4, 7 and 6 of them, then 0
     """
-    samples: Optional["NDArray[Any]"]
+    samples: Optional[NDArray[Any]]
     """(M, 3) points that were spread over a mesh, which point_support() is of; None for a cloud."""
-    _support: List["NDArray[np.float32]"]
-    _rows: "NDArray[np.int64]"
-    _maxima: List[Tuple["Doubles", float]]
+    _support: List[NDArray[np.float32]]
+    _rows: NDArray[np.int64]
+    _maxima: List[Tuple[NDArray[np.float64], float]]
     _shape: Tuple[int, ...]
 
     @property
@@ -429,7 +427,7 @@ class Planes(Result):
         """Symmetries, possible, approximate and local planes."""
         return [*self.planes, *self.possible, *self.approximate]
 
-    def point_support(self, index: int) -> "NDArray[np.float32]":
+    def point_support(self, index: int) -> NDArray[np.float32]:
         """Support for one of `every` at each point of the input, in [0, 1]; NaN for points that were not used.
 
         (N,) for rows, (H, W) for an organized array, (M,) for a mesh: that of its samples.
@@ -446,7 +444,7 @@ class Planes(Result):
             result[: len(values)] = values
         return result.reshape(self._shape)
 
-    def show(self, points: Any) -> "Page":
+    def show(self, points: Any) -> Page:
         """A page with the points and the planes in three dimensions, as the tools write with -html: a notebook shows it.
 
         points: those of planes().
@@ -483,7 +481,7 @@ class Planes(Result):
         others = "".join(f", {name}={len(getattr(self, name))}" for name in ("possible", "axes", "centers", "rotations") if getattr(self, name))
         return "Planes([" + "".join(f"\n  {plane!r}," for plane in self.planes) + ("\n]" if self.planes else "]") + others + ")"
 
-    def _moved(self, shift: "Doubles") -> "Planes":
+    def _moved(self, shift: NDArray[np.float64]) -> Planes:
         changes: Dict[str, Any] = {}
         if self.flat is not None:
             changes["flat"] = self.flat.copy()
@@ -497,14 +495,14 @@ class Planes(Result):
         return dataclasses.replace(super()._moved(shift), **changes)
 
 
-def _conjugated(motions: "Doubles", shift: "Doubles") -> "Doubles":
+def _conjugated(motions: NDArray[np.float64], shift: NDArray[np.float64]) -> NDArray[np.float64]:
     """Motions (..., 4, 4) of a frame whose origin lies at -shift."""
     moved = motions.copy()
     moved[..., :3, 3] += shift - motions[..., :3, :3] @ shift
     return moved
 
 
-def _from_moved(transforms: "Doubles", shift: "Doubles") -> "Doubles":
+def _from_moved(transforms: NDArray[np.float64], shift: NDArray[np.float64]) -> NDArray[np.float64]:
     """Transforms (..., 4, 4) of points x in place of x - shift."""
     moved = transforms.copy()
     moved[..., :3, 3] -= transforms[..., :3, :3] @ shift
@@ -516,9 +514,9 @@ class ProbableFrame(Result):
     """A frame that may be the shape's own."""
 
     _in_repr = ("center", "axes", "probability")
-    center: "Doubles"
+    center: NDArray[np.float64]
     """(3,) center of symmetry."""
-    axes: "Doubles"
+    axes: NDArray[np.float64]
     """(3, 3) axes in columns, orthonormal, right-handed."""
     probability: float
     """That the axes are the shape's own, in any order and sign, at any angle about an axis of revolution."""
@@ -531,23 +529,23 @@ class Frame(Result):
     """Canonical frame of a shape (Section 5.1): center and principal symmetry axes."""
 
     _in_repr = ("center", "axes", "revolution_axis")
-    center: "Doubles"
+    center: NDArray[np.float64]
     """(3,) center of symmetry."""
-    axes: "Doubles"
+    axes: NDArray[np.float64]
     """(3, 3) axes in columns, orthonormal, right-handed, best first."""
     revolution_axis: int
     """Column that is an axis of revolution; -1: none, 3: every line through the center."""
-    scores: "Doubles"
+    scores: NDArray[np.float64]
     """(3,) score of the plane across each axis, in [0, 1]."""
-    transform: "Doubles"
+    transform: NDArray[np.float64]
     """(4, 4) from the input to the canonical frame."""
-    equivalent: "Doubles"
+    equivalent: NDArray[np.float64]
     """(K, 4, 4) all transforms that symmetry leaves equally good, `transform` first."""
     rotations: List[RotationAxis]
     """Of scans from one side, most confident first."""
     probable: List[ProbableFrame]
     """This frame, then others by falling probability."""
-    evidence: "NDArray[Any]"
+    evidence: NDArray[Any]
     """What the probabilities are taken from: structured array, one row for each of `probable`.
 
     constant: 1. value: of the frame less that of the best one, <= 0. first_score: of the plane across the first axis.
@@ -569,7 +567,7 @@ class Frame(Result):
 
         return plot_frame(self, points, axes)
 
-    def _moved(self, shift: "Doubles") -> "Frame":
+    def _moved(self, shift: NDArray[np.float64]) -> Frame:
         transforms = {name: _from_moved(getattr(self, name), shift) for name in ("transform", "equivalent")}
         return dataclasses.replace(super()._moved(shift), **transforms)
 
@@ -581,7 +579,7 @@ class Rotations(Result):
     _in_repr = ("name", "center", "support", "confidence")
     name: str
     """After Schoenflies: C3, D4, T, O, I, Cinf, Dinf or SO3."""
-    center: "Doubles"
+    center: NDArray[np.float64]
     """(3,) point that all axes pass through."""
     support: float
     """Share of the surface that is mapped onto the surface."""
@@ -589,9 +587,9 @@ class Rotations(Result):
     """Probability that the whole surface, not its points alone, keeps to the limits."""
     fold: int
     """Order of the main axis; 0 where it is one of revolution."""
-    discrete: "Doubles"
+    discrete: NDArray[np.float64]
     """(K, 4, 4) motions of the input frame, without the identity."""
-    continuous: List[Tuple["Doubles", "Doubles"]]
+    continuous: List[Tuple[NDArray[np.float64], NDArray[np.float64]]]
     """(point, direction) of axes of revolution."""
     tolerance: float
     """That was decided at, input units."""
@@ -600,26 +598,26 @@ class Rotations(Result):
     reason: str
     """Why there is no answer: the name is empty then. Else empty."""
 
-    def equivalents(self, pose: "ArrayLike", step: float = 0.5) -> "Doubles":
+    def equivalents(self, pose: ArrayLike, step: float = 0.5) -> NDArray[np.float64]:
         """(K, 4, 4) the poses that look like one, it first.
 
         pose: (4, 4) from the input frame to any other, as that of a camera. step: radians between rotations about an axis
         of revolution.
         """
-        result: "Doubles" = self._group().equivalents(pose=pose, step=step)
+        result: NDArray[np.float64] = self._group().equivalents(pose=pose, step=step)
         return result
 
-    def canonical(self, pose: "ArrayLike") -> "Doubles":
+    def canonical(self, pose: ArrayLike) -> NDArray[np.float64]:
         """(4, 4) one pose for all that look the same: the one that is rotated least."""
-        result: "Doubles" = self._group().canonical(pose=pose)
+        result: NDArray[np.float64] = self._group().canonical(pose=pose)
         return result
 
-    def closest_to(self, pose: "ArrayLike", previous: "ArrayLike") -> "Doubles":
+    def closest_to(self, pose: ArrayLike, previous: ArrayLike) -> NDArray[np.float64]:
         """(4, 4) the pose that looks like the first and is rotated least from the second: what continues a track."""
-        result: "Doubles" = self._group().closest_to(pose=pose, previous=previous)
+        result: NDArray[np.float64] = self._group().closest_to(pose=pose, previous=previous)
         return result
 
-    def mssd(self, estimate: "ArrayLike", truth: "ArrayLike", points: Any) -> float:
+    def mssd(self, estimate: ArrayLike, truth: ArrayLike, points: Any) -> float:
         """Maximum surface distance of two poses under the symmetries (MSSD of the BOP benchmark), input units.
 
         points: (N, 3), such as the vertices of the model.
@@ -634,7 +632,7 @@ class Rotations(Result):
 
         return Core(core.rotations_of(self.discrete, self.continuous))
 
-    def _moved(self, shift: "Doubles") -> "Rotations":
+    def _moved(self, shift: NDArray[np.float64]) -> Rotations:
         continuous = [(point + shift, direction) for point, direction in self.continuous]
         changes: Dict[str, Any] = dict(discrete=_conjugated(self.discrete, shift), continuous=continuous)
         return dataclasses.replace(super()._moved(shift), **changes)
@@ -647,14 +645,14 @@ class Map(Result):
     _in_repr = ("sigma", "center", "radius")
     sigma: float
     """Width of the Gaussian, input units."""
-    center: "Doubles"
+    center: NDArray[np.float64]
     """(3,) that r is measured from."""
     radius: float
     """Greatest |r|, input units."""
-    values: "NDArray[np.float32]"
+    values: NDArray[np.float32]
     """(theta, phi, r) values of D, 1 for a perfect symmetry."""
 
-    def plane(self, theta: int, phi: int, r: int) -> "Doubles":
+    def plane(self, theta: int, phi: int, r: int) -> NDArray[np.float64]:
         """(4,) coefficients a, b, c, d of the plane at the center of a bin."""
         import numpy as np
 
@@ -666,7 +664,7 @@ class Map(Result):
         offset = (r + 0.5) * 2 * self.radius / shape[2] - self.radius
         return np.append(normal, -(offset + normal @ self.center))
 
-    def prst(self) -> "NDArray[np.float32]":
+    def prst(self) -> NDArray[np.float32]:
         """(theta, phi, r) PRST by equation 1, sqrt((1 + D) / 2): 1 for a perfect symmetry, 0.71 for none."""
         import numpy as np
 
@@ -719,18 +717,18 @@ class RegisteredScans(Result):
     """Scans of one object in the frame of the first one that is kept."""
 
     _in_repr = ("left_out", "pairs")
-    transforms: List[Optional["Doubles"]]
+    transforms: List[Optional[NDArray[np.float64]]]
     """(4, 4) from the frame of each scan to that of the first one that is kept; None where it is left out."""
     left_out: Dict[int, str]
     """Why each scan that is left out is, by its index."""
     pairs: List[Tuple[int, int, float, bool]]
     """(source, target, overlap, used): share of the source's points that lie on the target, and whether the registration of
     the two alone agrees with the poses of all."""
-    points: "Doubles"
+    points: NDArray[np.float64]
     """(M, 3) points of all scans that are kept, thinned where they overlap."""
-    scans: "NDArray[Any]"
+    scans: NDArray[Any]
     """(M,) index of the scan of each point."""
-    rows: "NDArray[Any]"
+    rows: NDArray[Any]
     """(M,) row of each point in its scan."""
 
 
@@ -739,7 +737,7 @@ class Registration(Result):
     """The pose of one cloud relative to another."""
 
     _in_repr = ("transform", "confidence", "converged")
-    transform: "Doubles"
+    transform: NDArray[np.float64]
     """(4, 4) from the frame of the source to that of the target."""
     score: PoseScore
     """Of the transform."""
@@ -751,9 +749,9 @@ class Registration(Result):
     """What the confidence follows from."""
     reason: str
     """What speaks against the pose; empty where it converged."""
-    poses: List[Tuple["Doubles", PoseScore]]
+    poses: List[Tuple[NDArray[np.float64], PoseScore]]
     """(transform, score), best first: poses that symmetry makes equal have like merits."""
-    covariance: Optional["Doubles"]
+    covariance: Optional[NDArray[np.float64]]
     """(6, 6) of the small rotation, radians, and translation, input units, by which noise and sampling put the pose off,
     frame of the target; None where no pose was found."""
 
@@ -762,10 +760,10 @@ class Registration(Result):
         """That of the score."""
         return self.score.merit
 
-    def _moved_between(self, source: "Doubles", target: "Doubles") -> "Registration":
+    def _moved_between(self, source: NDArray[np.float64], target: NDArray[np.float64]) -> "Registration":
         import numpy as np
 
-        def moved(transform: "Doubles") -> "Doubles":
+        def moved(transform: NDArray[np.float64]) -> NDArray[np.float64]:
             result = _from_moved(transform, source)
             result[:3, 3] += target
             return result
@@ -798,7 +796,7 @@ class Recognized(Result):
     name: str
     confidence: float
     """Probability that the scan shows this model."""
-    transform: "Doubles"
+    transform: NDArray[np.float64]
     """(4, 4) from the frame of the scan to that of the model."""
     score: PoseScore
 
@@ -823,7 +821,7 @@ class SceneObject(Result):
     """An object of a scene, and what was found, in the frame of the scene."""
 
     _in_repr = ("planes", "completed_by")
-    rows: "NDArray[np.int64]"
+    rows: NDArray[np.int64]
     """(K,) of its points in the flattened scene."""
     planes: Planes
     """As of planes(); without support of points."""
@@ -831,7 +829,7 @@ class SceneObject(Result):
     """None without scene(frames=True)."""
     completed_by: Optional[ReflectionPlane]
     """The plane that it was completed by: its best one, or through its axis and across the view; None where none decides."""
-    added: "NDArray[np.float32]"
+    added: NDArray[np.float32]
     """(M, 3) points that this reflection adds."""
     models: List["Recognized"]
     """Best first; empty without a database, and where the object is unknown."""
@@ -842,9 +840,9 @@ class Support(Result):
     """A table, floor or wall."""
 
     _in_repr = ("coefficients",)
-    coefficients: "Doubles"
+    coefficients: NDArray[np.float64]
     """(4,) a, b, c, d; the normal points toward the viewer."""
-    rows: "NDArray[np.int64]"
+    rows: NDArray[np.int64]
     """(K,) of its points in the flattened scene."""
 
 
@@ -877,14 +875,14 @@ class Scene(Result):
     """Of points of a supporting plane, that was used, input units."""
     cluster_distance: float
     """Between points of one object, that was used, input units."""
-    viewpoint: Optional["Doubles"]
+    viewpoint: Optional[NDArray[np.float64]]
     """(3,) where the sensor stood."""
     reason: str
     """Why there is no answer; empty where the search ran."""
     _shape: Tuple[int, ...]
 
     @property
-    def labels(self) -> "NDArray[np.int32]":
+    def labels(self) -> NDArray[np.int32]:
         """For each point the object, counted from 1, -1 for supporting planes, 0 for others; of the shape of the points."""
         import numpy as np
 
@@ -895,7 +893,7 @@ class Scene(Result):
             result[each.rows] = i + 1
         return result.reshape(self._shape)
 
-    def show(self, points: Any) -> "Page":
+    def show(self, points: Any) -> Page:
         """A page with the scene, its objects, planes and axes in three dimensions: a notebook shows it.
 
         points: those of scene().
@@ -913,7 +911,7 @@ class Scene(Result):
     def __getitem__(self, index: int) -> SceneObject:
         return self.objects[index]
 
-    def _moved(self, shift: "Doubles") -> "Scene":
+    def _moved(self, shift: NDArray[np.float64]) -> Scene:
         objects = [dataclasses.replace(each._moved(shift), added=each.added + shift) for each in self.objects]
         supports = []
         for support in self.supports:
