@@ -11,6 +11,7 @@
 
 #include "command_line/tool_errors.h"
 #include "core/geometry/diameter.h"
+#include "core/geometry/stray_points.h"
 #include "io/answers.h"
 #include "io/exact_coordinates.h"
 #include "io/shape_output.h"
@@ -132,7 +133,7 @@ void compare(ModelInfo& info, const Shape& shape, const Points& vertices, const 
 ModelInfo analyzeModel(const std::string& path, const ModelOptions& options,
                        const std::optional<ListedSymmetries>& given) {
   const Shape shape = loadShape(path);
-  const Points vertices = finitePoints(*shape.points);
+  const Points finite = finitePoints(*shape.points), vertices = shape.mesh ? finite : withoutStrayPoints(finite);
   if (vertices.cols() == 0) throw InputError(path + ": has no finite points");
   ModelInfo info;
   info.file = path;
@@ -167,6 +168,8 @@ void printModel(const ModelInfo& info) {
               found.confidence);
   if (!info.group_without_colors.empty())
     std::printf("  without its colors the group is %s\n", info.group_without_colors.c_str());
+  if (found.num_stray_points > 0)
+    std::printf("  %d stray points left out, far from all others\n", found.num_stray_points);
   std::printf("  diameter %.6g  size %.6g x %.6g x %.6g\n", info.diameter, info.size.x(), info.size.y(), info.size.z());
   const auto print_axis = [&](const Eigen::Vector3d& direction, const std::string& turns) {
     std::printf("  axis %9.6f %9.6f %9.6f through %s  %s\n", direction.x(), direction.y(), direction.z(),

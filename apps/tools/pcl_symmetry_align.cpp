@@ -165,13 +165,19 @@ BestPlane bestPlane(const Console& console, const InputShape& input, const Commo
   return {planes.front(), toString(planes.front().kind), planes.front().confidence};
 }
 
+/// The best plane to complete a shape across.
+BestPlane completingPlane(const Console& console, const InputShape& input, const CommonOptions& common,
+                          bool by_any_plane) {
+  BestPlane best = bestPlane(console, input, common);
+  if (!by_any_plane && best.kind == toString(PlaneKind::Approximate))
+    throw InputError(input.path + ": has no plane of symmetry to complete it across; -any_plane takes the best one");
+  return best;
+}
+
 /// Adds to the fields what its symmetry shows of the side that was not seen.
 /// \return the points and what is added, in the frame of the shifted points.
 pcl::PointCloud<pcl::PointXYZ> complete(const Console& console, const InputShape& input, const CommonOptions& common,
-                                        bool by_any_plane, pcl::PCLPointCloud2& fields, nlohmann::json& json) {
-  const BestPlane best = bestPlane(console, input, common);
-  if (!by_any_plane && best.kind == toString(PlaneKind::Approximate))
-    throw InputError(input.path + ": has no plane of symmetry to complete it across; -any_plane takes the best one");
+                                        const BestPlane& best, pcl::PCLPointCloud2& fields, nlohmann::json& json) {
   const ReflectionPlane& plane = best.plane;
   Step step(console, "Completing");
   CompletionOptions options;
@@ -234,8 +240,7 @@ struct Symmetrized {
 };
 
 Symmetrized symmetrized(const Console& console, const InputShape& input, const AlignOptions& options,
-                        const CommonOptions& common) {
-  const BestPlane best = bestPlane(console, input, common);
+                        const CommonOptions& common, const BestPlane& best) {
   const ReflectionPlane& plane = best.plane;
   Step step(console, "Symmetrizing");
   const SymmetrizedHalf half = options.symmetrize == "left"    ? SymmetrizedHalf::Left
@@ -378,6 +383,7 @@ std::string linesOf(const Eigen::Isometry3d& motion, int digits) {
 
 nlohmann::json describe(const SymmetryFrame& frame, const Eigen::Vector3d& shift) {
   nlohmann::json json = frameJson(frame, shift);
+  json["stray_points"] = frame.num_stray_points;
   json["timing_ms"] = timingJson(frame.timing_ms);
   json["equivalent"] = nlohmann::json::array();
   for (const Eigen::Isometry3d& T_canonical_input : frame.equivalent)
@@ -410,9 +416,11 @@ std::string linesOf(const SymmetryFrame& frame, const Eigen::Vector3d& shift) {
   return lines;
 }
 
+/// \param best plane that the frame has at x = 0; none: its own first one.
 Motion toOwnFrame(const Console& console, const InputShape& input, const AlignOptions& options,
-                  const CommonOptions& common) {
-  const SymmetryFrame frame = computeFrame(console, input, common, options.as_published);
+                  const CommonOptions& common, const std::optional<BestPlane>& best) {
+  SymmetryFrame frame = computeFrame(console, input, common, options.as_published);
+  if (best) bringToPlane(best->plane, frame);
   return {shiftedBack(frame.T_canonical_input, input.shift(), Eigen::Vector3d::Zero()), true,
           linesOf(frame, input.shift()), describe(frame, input.shift()), sceneOf(input, frame)};
 }
@@ -450,12 +458,21 @@ void analyze(const AlignOptions& options, FileJob& job) {
   const Console& console = job.console();
   const CommonOptions& common = job.common();
   const InputShape input = loadInput(console, job.path(), common);
+  const bool symmetrizes = options.symmetrize != "none";
+  if (symmetrizes && options.output && input.shape.mesh) checkMeshExtension(job.output(*options.output));
+  const auto find_plane = [&]() -> std::optional<BestPlane> {
+    if (symmetrizes) return bestPlane(console, input, common);
+    if (options.complete) return completingPlane(console, input, common, options.any_plane);
+    return std::nullopt;
+  };
+  std::optional<BestPlane> best;  // what is written is symmetric in the frame that it is written in
+  if (!options.target) best = find_plane();
   Motion motion =
-      options.target ? toTarget(console, input, options, common) : toOwnFrame(console, input, options, common);
+      options.target ? toTarget(console, input, options, common) : toOwnFrame(console, input, options, common, best);
+  if (options.target && motion.converged) best = find_plane();
   std::optional<Symmetrized> shape;
-  if (options.symmetrize != "none" && motion.converged) {
-    if (options.output && input.shape.mesh) checkMeshExtension(job.output(*options.output));
-    shape = symmetrized(console, input, options, common);
+  if (symmetrizes && motion.converged) {
+    shape = symmetrized(console, input, options, common, *best);
     motion.text += shape->text;
     motion.json["symmetrized"] = shape->json;
     motion.scene = sceneOf(input, *shape);
@@ -463,7 +480,7 @@ void analyze(const AlignOptions& options, FileJob& job) {
   pcl::PCLPointCloud2 fields = shape ? std::move(shape->fields) : input.fields();
   if (options.complete && motion.converged) {
     const pcl::PointCloud<pcl::PointXYZ> both =
-        complete(console, input, common, options.any_plane, fields, motion.json["completed"]);
+        complete(console, input, common, *best, fields, motion.json["completed"]);
     motion.scene = sceneOf(both, input.points->size(), "the input (1) and what completes it (2)");
   }
   job.report({motion.text, motion.json, rowsOf(motion)});
@@ -590,7 +607,8 @@ int mergeScans(const AlignOptions& options) {
     CommonOptions common = options.common;
     common.viewpoint = {Viewpoint::Mode::None, Eigen::Vector3d::Zero()};
     try {
-      const auto both = complete(console, cloud.shape, common, options.any_plane, cloud.fields, json["completed"]);
+      const BestPlane best = completingPlane(console, cloud.shape, common, options.any_plane);
+      const auto both = complete(console, cloud.shape, common, best, cloud.fields, json["completed"]);
       scene = sceneOf(both, cloud.shape.points->size(), "the scans (1) and what completes them (2)");
     } catch (const InputError&) {
       json.erase("completed");

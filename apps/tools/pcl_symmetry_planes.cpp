@@ -140,6 +140,8 @@ std::string lineOfTolerance(const Findings& findings) {
 std::string tableOf(const Findings& findings, const Eigen::Vector3d& shift) {
   const int digits = lengthDigits(shift);
   std::string table;
+  if (findings.num_stray_points > 0)
+    table += counted(findings.num_stray_points, "stray point") + " left out, far from all others\n";
   if (findings.flat)
     table += "flat: the points lie on the plane " + coefficientsOf(*findings.flat, shift) +
              "; a reflection across it is uninformative\n";
@@ -225,6 +227,7 @@ nlohmann::json describe(const InputShape& input, const Findings& findings) {
   const Eigen::Vector3d& shift = input.shift();
   nlohmann::json json{{"file", input.path},
                       {"num_points", findings.num_points},
+                      {"stray_points", findings.num_stray_points},
                       {"partial", findings.viewpoint.has_value()},
                       {"viewpoint", {{"from", toString(findings.viewpoint_source)}}},
                       {"tolerance", findings.tolerance},

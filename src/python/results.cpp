@@ -81,6 +81,7 @@ void addPlaneSearch(py::module_& module) {
                                return plane;
                              })
       .def_property_readonly("tolerance", [](const PlaneSearch& s) { return s.found.tolerance; })
+      .def_property_readonly("stray_points", [](const PlaneSearch& s) { return s.found.num_stray_points; })
       .def_property_readonly("reason", [](const PlaneSearch& s) { return s.found.reason; })
       .def_readonly("viewpoint", &PlaneSearch::viewpoint)
       .def_property_readonly("support",
@@ -117,6 +118,7 @@ void addFrame(py::module_& module) {
                              [](const SymmetryFrame& f) { return RowMajor4(f.T_canonical_input.matrix()); })
       .def_property_readonly("equivalent", [](const SymmetryFrame& f) { return stacked(f.equivalent); })
       .def_readonly("rotations", &SymmetryFrame::rotations)
+      .def_readonly("stray_points", &SymmetryFrame::num_stray_points)
       .def_readonly("probable", &SymmetryFrame::probable)
       .def_property_readonly("evidence", &frameEvidence);
 }
@@ -137,6 +139,7 @@ void addRotations(py::module_& module) {
       .def_readonly("support", &ObjectSymmetries::support)
       .def_readonly("confidence", &ObjectSymmetries::confidence)
       .def_readonly("tolerance", &ObjectSymmetries::tolerance)
+      .def_readonly("stray_points", &ObjectSymmetries::num_stray_points)
       .def_readonly("reason", &ObjectSymmetries::reason)
       .def(
           "equivalents",

@@ -2,6 +2,8 @@
 
 #include <stdexcept>
 
+#include "core/geometry/stray_points.h"
+
 namespace pcl_symmetry {
 
 namespace {
@@ -19,7 +21,7 @@ BoundingBall ballOf(const std::string& name, const Points& points) {
 
 PreparedCloud::PreparedCloud(const std::string& name, const Points& points, const std::optional<Visibility>& seen,
                              const CloudRegistrationOptions& options)
-    : points_(points), seen_(seen), options_(options), ball_(ballOf(name, points)) {}
+    : points_(withoutStrayPoints(points)), seen_(seen), options_(options), ball_(ballOf(name, points_)) {}
 
 const std::shared_ptr<const PosedSurface>& PreparedCloud::surfaceIn(double unit) const {
   if (surface_ && unit == unit_) return surface_;

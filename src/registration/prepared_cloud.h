@@ -16,7 +16,7 @@ namespace pcl_symmetry {
 class PreparedCloud {
 public:
   /// \param name of the cloud in messages.
-  /// \param points 3 x N, finite, input units.
+  /// \param points 3 x N, finite, input units; stray ones are left out.
   /// \param seen what the scanner saw of them, input frame.
   /// \param options frame, seed and num_threads count.
   /// \throws std::invalid_argument for points without extent.

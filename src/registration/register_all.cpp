@@ -11,6 +11,7 @@
 #include "core/base/median.h"
 #include "core/base/parallel.h"
 #include "core/base/stopwatch.h"
+#include "core/geometry/stray_points.h"
 #include "core/registration/posed_surface.h"
 #include "registration/pose_graph.h"
 
@@ -88,7 +89,7 @@ public:
     options_.num_threads = 1;
     std::vector<double> radii;
     for (const int k : usable) {
-      balls_.push_back(boundingBall(scans[k].points));
+      balls_.push_back(boundingBall(withoutStrayPoints(scans[k].points)));
       radii.push_back(balls_.back().radius);
     }
     unit_ = median(radii);
@@ -97,7 +98,8 @@ public:
     parallelBlocks(usable.size(), num_threads_, [&](std::size_t i) {
       const ObjectScan& input = scans[usable[i]];
       NormalizedScan& scan = scans_[i];
-      scan.scan.points = normalizePoints(drawn(input.points, options_.seed), balls_[i].center, unit_);
+      scan.scan.points =
+          normalizePoints(drawn(withoutStrayPoints(input.points), options_.seed), balls_[i].center, unit_);
       if (input.seen) scan.scan.seen = input.seen->normalized(balls_[i].center, unit_);
       scan.full_share =
           std::sqrt(static_cast<double>(scan.scan.points.cols()) / static_cast<double>(input.points.cols()));

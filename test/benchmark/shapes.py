@@ -5,6 +5,7 @@ shapes.py folds --half report       prisms, tubes, rims and cones of 2 to 24 fol
 shapes.py views --half report       round bodies, balls and prisms, seen from one side
 shapes.py random --half report      clouds without symmetry
 shapes.py composites --half report  two symmetric solids, or models of folders, stuck together
+shapes.py stray --half report       shapes with 1 to 10 points at 2 to 20 sizes, which must change nothing
 
 The two halves have different curves, profiles and random numbers: constants are chosen on one, figures given of the other.
 """
@@ -300,6 +301,24 @@ def composites(i, arguments, random):
     return [("all", *case) for case in [*cases, ("without a wrong plane", not any(wrong))]]
 
 
+def stray(i, arguments, random):
+    if i % 4 == 0:
+        mesh = round_shape(random.choice(ROUND_BODIES[arguments.half]), random).mesh
+    else:
+        mesh = folded_shape(("prism", "cone", "tube")[i % 4 - 1], random.integers(2, 9), arguments.half, random).mesh
+    points = bench.moved(bench.random_pose(random, mesh), bench.sample(mesh, arguments.points // 2, random))
+    if i % 5 == 0:  # no symmetry
+        points *= 1 + 0.3 * np.sin(points @ bench.random_directions(random, 1)[0] + 1)[:, None]
+    count = random.integers(1, 11)
+    far = bench.random_directions(random, count) * random.uniform(2, 20, (count, 1))
+    disturbed = np.r_[points, points.mean(axis=0) + bench.diameter(points) * far]
+    before, after = (bench.ask(f"stray_{i}_{k}", x, None, arguments) for k, x in enumerate((points, disturbed)))
+    numbers = lambda answers: [(p["kind"], *np.round(p["coefficients"], 4)) for p in answers["planes"]]
+    axes = lambda answers: [np.round(planes.line_of(axis), 4).tolist() for axis in answers["axes"]]
+    return [("all", "the same planes and axes", numbers(before) == numbers(after) and axes(before) == axes(after)),
+            ("all", "with a symmetry", calls(before))]  # fmt: skip
+
+
 def solid_part(_, arguments, random):
     """(points, planes) of a prism or a cone of 2 to 4 folds, centered and of unit diagonal."""
     body = "prism" if random.uniform() < 0.6 else "cone"
@@ -322,7 +341,7 @@ def unit_part(mesh, rows, arguments, random):
     return points, np.c_[rows[:, :3], (rows[:, 3] - rows[:, :3] @ mesh.center) / mesh.diagonal]
 
 
-KINDS = {"folds": (folds, 144), "views": (views, 180), "random": (random_clouds, 700), "composites": (composites, 40)}
+KINDS = {"folds": (folds, 144), "views": (views, 180), "random": (random_clouds, 700), "composites": (composites, 40), "stray": (stray, 40)}
 
 
 def evaluate(i, arguments):

@@ -195,6 +195,28 @@ class Align(ToolTest):
         self.fails(1, "bad.txt: line 2", mesh, "-symmetrize mean -landmarks bad.txt")
         self.run_tool(mesh, "-complete -symmetrize mean", code=2)
 
+    def test_writes_what_is_symmetric_about_its_own_frame(self):
+        """Chairs that lean to one side: none has a symmetry, and the plane of the frame is not the best one."""
+        for lean in (0.1, 0.2, 0.3):
+            corners = np.vstack([tool_run.box_corners(*half) + center for center, half in (SEAT, BACK)])
+            corners[:, 0] += lean * corners[:, 2] * (corners[:, 1] > 0.5) + lean * corners[:, 1] ** 2
+            faces = [[corner + first for corner in face] for first in (0, 8) for face in tool_run.BOX_FACES]
+            mesh = self.write("lean.off", tool_run.off(corners, faces))
+            for flags in ("-symmetrize mean", "-symmetrize left -cut"):
+                found = self.report(mesh, "c.ply -seed 3 " + flags)
+                body = self.text("c.ply").split("end_header\n")
+                count = int(body[0].split("element vertex ")[1].split()[0])
+                points = np.array([line.split()[:3] for line in body[1].splitlines()[:count]], float)
+                reflected = points * (-1, 1, 1)
+                if "-cut" in flags:  # without, vertices have no partners
+                    apart = np.linalg.norm(points[:, None] - reflected, axis=2).min(axis=1)
+                    self.assertLess(apart.max(), 1e-5, (lean, flags))
+                self.assertLess(abs(points[:, 0].max() + points[:, 0].min()), 1e-4 + 2 * found["symmetrized"]["deviation"], (lean, flags))
+                transform = np.reshape(found["transform"], (4, 4))
+                plane = np.array(found["symmetrized"]["plane"])
+                np.testing.assert_allclose(abs(transform[0] @ np.r_[plane[:3], 0]), 1, atol=1e-6)
+                np.testing.assert_allclose(found["axes"][0], transform[0, :3], atol=1e-6)
+
     def test_makes_a_cloud_symmetric(self):
         scan, _ = self.scan()
         self.run_tool(scan, "out.ply -symmetrize left -target chair.off")

@@ -117,6 +117,7 @@ struct Detection {
   double tolerance = 0.0;               ///< that was decided at, input units
   double resolution = 0.0;              ///< least tolerance that sensor or spacing resolve, input units; 0 = unknown
   double diameter = 0.0;                ///< greatest distance between two points, input units
+  int num_stray_points = 0;             ///< far from all others, which were left out; they support no plane
   std::vector<SymmetryAxis> axes;       ///< best first; their planes are not among planes
   std::vector<SymmetryCenter> centers;  ///< of spheres
   std::vector<SymmetryRotation> rotations;                ///< of scans: axes of rotations, most confident first

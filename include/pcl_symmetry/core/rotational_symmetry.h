@@ -89,8 +89,9 @@ struct ObjectSymmetries {
   /// Share of the surface that each rotation maps to within the tolerance of the surface, relative to what sampling and
   /// noise allow, in [0, 1]; for rotations by any angle their mean.
   double support = 1.0;
-  double confidence = 1.0;  ///< probability that the whole surface, not its points alone, keeps to the limits
-  double tolerance = 0.0;   ///< that was decided at, input units
+  double confidence = 1.0;   ///< probability that the whole surface, not its points alone, keeps to the limits
+  double tolerance = 0.0;    ///< that was decided at, input units
+  int num_stray_points = 0;  ///< far from all others, which were left out
   std::optional<GroupName> at_half_tolerance;             ///< with ObjectSymmetryOptions::other_tolerances
   std::optional<GroupName> at_twice_tolerance;            ///< with ObjectSymmetryOptions::other_tolerances
   std::vector<RejectedRotation> rejected;                 ///< what was tried and failed, the least failure first

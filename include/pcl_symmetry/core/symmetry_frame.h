@@ -78,6 +78,7 @@ struct SymmetryFrame {
   /// Axes of rotation of a scan, through the center or not, most confident first: which poses look the same where the
   /// planes alone do not tell, as for a propeller.
   std::vector<SymmetryRotation> rotations;
+  int num_stray_points = 0;                               ///< far from all others, which were left out
   std::vector<std::pair<std::string, double>> timing_ms;  ///< stages in order
 };
 
@@ -106,5 +107,10 @@ SymmetryFrame symmetryFrame(const PointsRef& points, const FrameOptions& options
 /// Moves the center and axes of a frame of points that were spread over a mesh to the planes of symmetry of the mesh
 /// itself; axes across which no plane is a symmetry at 1 % of the diameter follow the others.
 void refineOnMesh(const MeshSurface& mesh, SymmetryFrame& frame);
+
+/// Makes a plane that was found otherwise the first plane of a frame: the axis nearest to its normal comes first and
+/// is turned onto it, the center moves onto the plane, and all else with them. The canonical frame has the plane at
+/// x = 0 then.
+void bringToPlane(const ReflectionPlane& plane, SymmetryFrame& frame);
 
 }  // namespace pcl_symmetry

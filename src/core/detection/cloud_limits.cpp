@@ -45,13 +45,17 @@ CloudLimits::CloudLimits(const PointsRef& points, const PrincipalAxes& axes, Clo
       still_(kKindRules.thin_tolerances[kind] * lengths.tolerance),
       thinness_(thinnessOf(points, axes, still_, lineTolerance(kind, lengths))) {}
 
+bool CloudLimits::movesNothing(const ReflectionPlane& plane, const PointsRef& points) const {
+  return thinness_ == Thinness::Sheet && movedShare(plane, points, still_) < 1.0 - kDetection.decide.still_share;
+}
+
 std::vector<const char*> CloudLimits::of(const ReflectionPlane& plane, const PointsRef& points) const {
   std::vector<const char*> rules;
   if (!is_resolved_) rules.push_back("the sensor does not resolve the tolerance");
   if (is_cut_) rules.push_back("the border of the picture cuts the points off all around");
   if (thinness_ == Thinness::Line)
     rules.push_back("at the tolerance the points are a line");
-  else if (thinness_ == Thinness::Sheet && movedShare(plane, points, still_) < 1.0 - kDetection.decide.still_share)
+  else if (movesNothing(plane, points))
     rules.push_back("the plane moves the points by no more than the tolerance");
   return rules;
 }

@@ -34,6 +34,11 @@ public:
   /// not an object.
   bool isCutAllAround() const { return is_cut_; }
 
+  /// Whether a reflection leaves most points of a sheet where they are.
+  /// \param plane frame of the points.
+  /// \param points those of the cloud.
+  bool movesNothing(const ReflectionPlane& plane, const PointsRef& points) const;
+
   /// \param plane frame of the points.
   /// \param points those of the cloud.
   /// \return the rules that keep a plane from being more than possible, each in a few words.

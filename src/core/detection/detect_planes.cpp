@@ -20,6 +20,7 @@
 #include "core/geometry/distinct_points.h"
 #include "core/geometry/point_samples.h"
 #include "core/geometry/search_views.h"
+#include "core/geometry/stray_points.h"
 #include "core/rotation/scan_axes.h"
 #include "core/transform/free_space.h"
 #include "pcl_symmetry/core/planar_transform.h"
@@ -144,18 +145,19 @@ void doubtWhatNeedsAPiece(const JudgedCloud& judged, Found& found) {
 
 /// Where noise hides single planes of a polygon, all are judged together.
 void completePolygon(const JudgedCloud& judged, Found& found) {
-  PlanesAndPolygon completed =
-      withPolygon(std::move(found.planes), judged.cloud, judged.all, judged.decision, judged.options);
+  PlanesAndPolygon completed = withPolygon(std::move(found.planes), judged.cloud, judged.all, judged.decision,
+                                           judged.measure.tolerance(), judged.options);
   found.planes = std::move(completed.planes);
   found.polygon = std::move(completed.polygon);
 }
 
 /// Bodies of revolution and spheres in place of their planes.
 void findFamilies(const JudgedCloud& judged, Found& found) {
-  if (judged.measure.limits().isCutAllAround()) return;
-  PlanesAndFamilies families =
-      collectFamilies(std::move(found.planes), judged.cloud, judged.all, judged.fit, judged.decision, judged.options);
+  if (judged.measure.limits().isCutAllAround() || found.polygon) return;
+  PlanesAndFamilies families = collectFamilies(std::move(found.planes), judged.cloud, judged.all, judged.fit,
+                                               judged.decision, judged.measure.tolerance(), judged.options);
   found.planes = std::move(families.planes);
+  found.polygon = std::move(families.polygon);
   found.axes = std::move(families.axes);
   found.centers = std::move(families.centers);
 }
@@ -241,7 +243,7 @@ Detection refineAndDecide(const NormalizedCloud& cloud, const Points& all, const
   // The answer.
   if (!found.hasFamily()) detection.best = bestApproximate(found.planes, cloud, *fit);
   if (detection.best) detection.best->deviation = measure.deviation(cloud.toNormalized(*detection.best)) * cloud.scale;
-  detection.flat = flatPlane(cloud, measure.limits().thinness());
+  detection.flat = flatPlane(cloud, measure.limits());
   detection.tolerance = measure.tolerance() * cloud.scale;
   const bool is_raised = options.absolute_tolerance == 0.0 && measure.tolerance() > options.tolerance * cloud.extent;
   detection.resolution = std::max(measure.resolution(), is_raised ? measure.tolerance() : 0.0) * cloud.scale;
@@ -343,6 +345,48 @@ Detection detectOnSubset(const PlaneInput& input, const CloudSubset& subset, con
   return detection;
 }
 
+/// \param input without stray points.
+Detection detectInBulk(const PlaneInput& input, const DetectionOptions& options) {
+  Detection detection;
+  detection.reason = whyUnanswerable(input.points);
+  if (!detection.reason.empty()) return detection;
+  Stopwatch watch;
+  if (const std::optional<CloudSubset> subset = subsetOf(input.points, options)) {
+    const double subset_ms = watch.lap();
+    detection = detectOnSubset(input, *subset, options);
+    detection.timing_ms.insert(detection.timing_ms.begin(), {"subset", subset_ms});
+  } else {
+    detection = input.map ? detectFromMap(input, *input.edt, *input.map, options) : detectFromPoints(input, options);
+  }
+  if (input.may_be_rings && input.visibility && detection.reason.empty()) decideByUprightBox(input, options, detection);
+  return detection;
+}
+
+/// Detects planes without the stray points, which then support none.
+/// \param stray indices, rising.
+Detection detectWithout(const std::vector<int>& stray, const PlaneInput& input, const DetectionOptions& options) {
+  const std::vector<int> others = allBut(stray, input.points.cols());
+  const Points points = pointsAt(input.points, others);
+  const Points normals = input.normals ? pointsAt(*input.normals, others) : Points();
+  PlaneInput bulk(points, input.visibility);
+  bulk.normals = input.normals ? &normals : nullptr;
+  bulk.edt = input.edt;
+  bulk.map = input.map;
+  bulk.make_search = input.make_search;
+  bulk.may_be_rings = input.may_be_rings;
+  Detection detection = detectInBulk(bulk, options);
+  const auto spread = [&](SymmetryPlane& plane) {
+    std::vector<float> support(static_cast<std::size_t>(input.points.cols()), 0.0f);
+    for (std::size_t i = 0; i < others.size() && i < plane.point_support.size(); ++i)
+      support[static_cast<std::size_t>(others[i])] = plane.point_support[i];
+    plane.point_support = std::move(support);
+  };
+  for (SymmetryPlane& plane : detection.planes) spread(plane);
+  if (detection.best) spread(*detection.best);
+  detection.num_stray_points = static_cast<int>(stray.size());
+  return detection;
+}
+
 }  // namespace
 
 GaussianEdtOptions DetectionOptions::edtOptions() const {
@@ -375,19 +419,8 @@ Detection detectPlanes(const PlaneInput& input, const DetectionOptions& options)
     check(input.normals->cols() == input.points.cols(), "number of normals", input.normals->cols(),
           "the number of points");
   check(!input.map == !input.edt, "map", input.map ? "given" : "missing", "given together with edt");
-  Detection detection;
-  detection.reason = whyUnanswerable(input.points);
-  if (!detection.reason.empty()) return detection;
-  Stopwatch watch;
-  if (const std::optional<CloudSubset> subset = subsetOf(input.points, options)) {
-    const double subset_ms = watch.lap();
-    detection = detectOnSubset(input, *subset, options);
-    detection.timing_ms.insert(detection.timing_ms.begin(), {"subset", subset_ms});
-  } else {
-    detection = input.map ? detectFromMap(input, *input.edt, *input.map, options) : detectFromPoints(input, options);
-  }
-  if (input.may_be_rings && input.visibility && detection.reason.empty()) decideByUprightBox(input, options, detection);
-  return detection;
+  const std::vector<int> stray = strayPoints(input.points);
+  return stray.empty() ? detectInBulk(input, options) : detectWithout(stray, input, options);
 }
 
 }  // namespace pcl_symmetry

@@ -19,11 +19,19 @@ double confidenceOf(double share, int num_samples) {
   return std::clamp(confidence, kLeast, 1.0 - kLeast);
 }
 
+double errorOf(double share, int num_samples) {
+  return std::sqrt(share * (1.0 - share) / num_samples) + 1.0 / num_samples;
+}
+
+/// What is missing or added pulls at a fit: it stays where it was then.
 void refine(const MeshSurface& mesh, SymmetryPlane& plane, double tolerance, const DetectionOptions& options) {
-  static_cast<ReflectionPlane&>(plane) = mesh.fitted(static_cast<const ReflectionPlane&>(plane)).canonical();
-  const MeshShares shares = mesh.shares(plane, tolerance);
+  const ReflectionPlane fitted = mesh.fitted(static_cast<const ReflectionPlane&>(plane)).canonical();
+  const MeshShares before = mesh.shares(plane, tolerance), after = mesh.shares(fitted, tolerance);
+  const bool is_worse = after.share < before.share - errorOf(before.share, mesh.numSamples());
+  if (!is_worse) static_cast<ReflectionPlane&>(plane) = fitted;
+  const MeshShares& shares = is_worse ? before : after;
   plane.share = shares.share;
-  const double error = std::sqrt(shares.share * (1.0 - shares.share) / mesh.numSamples()) + 1.0 / mesh.numSamples();
+  const double error = errorOf(shares.share, mesh.numSamples());
   plane.share_low = std::max(0.0, shares.share - 2.0 * error);
   plane.share_high = std::min(1.0, shares.share + 2.0 * error);
   plane.deviation = shares.deviation;
@@ -36,7 +44,8 @@ void refine(const MeshSurface& mesh, SymmetryPlane& plane, double tolerance, con
 }  // namespace
 
 void refineOnMesh(const MeshSurface& mesh, Detection& found, const DetectionOptions& options) {
-  constexpr double kNearlySymmetric = 0.9;  // share of the best plane that may be a symmetry of the mesh itself
+  constexpr PlaneTolerance kOnePlane{0.01, 0.01};  // after refinement; those of 120 teeth are 0.026 apart
+  constexpr double kNearlySymmetric = 0.9;         // share of the best plane that may be a symmetry of the mesh itself
   const auto inBall = [&](const ReflectionPlane& plane) {
     return normalized(plane, mesh.ball().center, mesh.ball().radius);
   };
@@ -45,7 +54,7 @@ void refineOnMesh(const MeshSurface& mesh, Detection& found, const DetectionOpti
   for (SymmetryPlane& plane : found.planes) {
     if (isDecided(plane)) {
       refine(mesh, plane, found.tolerance, options);
-      if (kSamePlane.anySame(kept, inBall(plane), inBall)) continue;
+      if (kOnePlane.anySame(kept, inBall(plane), inBall)) continue;
       if (plane.kind == PlaneKind::Approximate && !options.approximate) {
         if (!dropped || plane.share > dropped->share) dropped = std::move(plane);
         continue;
@@ -66,6 +75,7 @@ void refineOnMesh(const MeshSurface& mesh, Detection& found, const DetectionOpti
   } else if (dropped && kept.empty() && found.axes.empty() && found.centers.empty()) {
     found.best = dropped;
   }
+  if (found.flat) found.flat = mesh.fitted(*found.flat);
   found.planes = reordered(std::move(kept), options);
   for (SymmetryAxis& axis : found.axes) {
     MotionsAbout motions{{}, axis.point};

@@ -140,10 +140,11 @@ std::vector<SymmetryPlane> rankedPlanes(std::vector<SymmetryPlane> planes, const
       continue;
     const bool of_polygon = isOf(polygon, plane, cloud);
     const bool is_known = std::any_of(ranked.begin(), ranked.end(), [&](const SymmetryPlane& other) {
+      if (of_polygon && isOf(polygon, other, cloud)) return plane.angleTo(other) < 0.5 * kPi / polygon->fold;
       if (kSamePlane.same(cloud.toNormalized(other), cloud.toNormalized(plane))) return true;
       // D is of the whole shape: planes of a part need not be maxima of it.
       if (plane.kind == PlaneKind::Local) return false;
-      return !(of_polygon && isOf(polygon, other, cloud)) && isOnSlopeOf(other, plane, cloud);
+      return isOnSlopeOf(other, plane, cloud);
     });
     if (!is_known) ranked.push_back(std::move(plane));
   }
@@ -159,10 +160,11 @@ std::vector<SymmetryPlane> reordered(std::vector<SymmetryPlane> planes, const De
   return planes;
 }
 
-std::optional<ReflectionPlane> flatPlane(const NormalizedCloud& cloud, Thinness thinness) {
-  if (thinness != Thinness::Sheet) return std::nullopt;
+std::optional<ReflectionPlane> flatPlane(const NormalizedCloud& cloud, const CloudLimits& limits) {
   const PrincipalAxes& axes = cloud.principal_axes;
-  return cloud.toInput(ReflectionPlane(axes.axes.col(2), axes.axes.col(2).dot(axes.center)));
+  const ReflectionPlane plane(axes.axes.col(2), axes.axes.col(2).dot(axes.center));
+  if (!limits.movesNothing(plane, cloud.points)) return std::nullopt;
+  return cloud.toInput(plane);
 }
 
 std::optional<SymmetryPlane> bestApproximate(const std::vector<SymmetryPlane>& planes, const NormalizedCloud& cloud,

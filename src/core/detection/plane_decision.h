@@ -79,7 +79,7 @@ std::vector<SymmetryPlane> rankedPlanes(std::vector<SymmetryPlane> planes, const
 std::vector<SymmetryPlane> reordered(std::vector<SymmetryPlane> planes, const DetectionOptions& options);
 
 /// \return the plane of a cloud of which nothing but a sheet is left at the tolerance, input frame; else empty.
-std::optional<ReflectionPlane> flatPlane(const NormalizedCloud& cloud, Thinness thinness);
+std::optional<ReflectionPlane> flatPlane(const NormalizedCloud& cloud, const CloudLimits& limits);
 
 /// The answer where nothing is a symmetry: of the planes of the whole, the one with the greatest share.
 /// \param planes input frame.

@@ -189,7 +189,7 @@ MeasuredPlane PlaneMeasure::measured(const ReflectionPlane& plane, const std::ve
   result.plane.share = evidence.share;
   result.plane.share_low = interval.low;
   result.plane.share_high = interval.high;
-  result.plane.deviation = deviationOf(std::move(informative)) * cloud_.scale;
+  result.plane.deviation = deviationOf(std::move(halves_ ? moved : informative)) * cloud_.scale;
   result.plane.seen = cloud_.seen() ? std::min(1.0, shares.support + shares.conflict) : 1.0 - evidence.unknown;
   result.plane.point_support = std::move(shares.point_support);
   result.plane.residual = step.residual * cloud_.scale;
@@ -198,13 +198,14 @@ MeasuredPlane PlaneMeasure::measured(const ReflectionPlane& plane, const std::ve
 
 double PlaneMeasure::deviationOf(std::vector<float> distances) const {
   if (distances.empty()) return 0.0;
-  const auto last =
-      distances.begin() + static_cast<std::ptrdiff_t>(kSymmetricShare * static_cast<double>(distances.size() - 1));
+  const auto last = distances.begin() + static_cast<std::ptrdiff_t>(kSymmetricShare * std::min(1.0, own_shares_[0]) *
+                                                                    static_cast<double>(distances.size() - 1));
   std::nth_element(distances.begin(), last, distances.end());
   return std::isfinite(*last) ? *last : cloud_.extent;
 }
 
 double PlaneMeasure::deviation(const ReflectionPlane& plane) const {
+  if (halves_) return deviationOf(halves_->reflectedDistances(plane));
   const std::vector<int> samples =
       drawSamples(cloud_.points.cols(), kDetection.measure.deviation_samples, options_.seed);
   IspStep step;

@@ -67,6 +67,7 @@ private:
     Points points;
     std::vector<float> distances;
   };
+  /// The distance within which as many lie as 97 % of those of a true plane do within the tolerance.
   double deviationOf(std::vector<float> distances) const;
   Reflected reflected(const ReflectionPlane& plane, const std::vector<int>& samples, const IspStep& step) const;
   /// For each sample without a match, whether nothing is known of its counterpart, in [0, 1].

@@ -7,6 +7,51 @@
 
 namespace pcl_symmetry {
 
+namespace {
+
+/// Moves all of a frame as its center and axes move.
+/// \param axes right-handed.
+void moveTo(const Eigen::Vector3d& center, const Eigen::Matrix3d& axes, SymmetryFrame& frame) {
+  Eigen::Isometry3d motion = Eigen::Isometry3d::Identity();  // of the frame
+  motion.linear() = axes * frame.axes.transpose();
+  motion.translation() = center - motion.linear() * frame.center;
+  frame.axes = axes;
+  frame.center = center;
+  frame.T_canonical_input = frame.T_canonical_input * motion.inverse();
+  for (Eigen::Isometry3d& other : frame.equivalent) other = other * motion.inverse();
+  if (frame.probable.empty()) return;
+  frame.probable.front().center = center;
+  frame.probable.front().axes = axes;
+}
+
+/// Puts axis \p first to the front; the others follow it in their cyclic order.
+void turnOrder(int first, SymmetryFrame& frame) {
+  if (first == 0) return;
+  Eigen::Isometry3d turn = Eigen::Isometry3d::Identity();
+  for (int k = 0; k < 3; ++k) turn.linear().row(k) = Eigen::RowVector3d::Unit((k + first) % 3);
+  const auto turned = [&](int axis) { return axis < 0 || axis > 2 ? axis : (axis - first + 3) % 3; };
+  frame.axes = frame.axes * turn.linear().transpose();
+  frame.scores = turn.linear() * frame.scores;
+  frame.revolution_axis = turned(frame.revolution_axis);
+  frame.T_canonical_input = turn * frame.T_canonical_input;
+  for (Eigen::Isometry3d& other : frame.equivalent) other = turn * other;
+  if (frame.probable.empty()) return;
+  frame.probable.front().axes = frame.axes;
+  frame.probable.front().revolution_axis = frame.revolution_axis;
+}
+
+}  // namespace
+
+void bringToPlane(const ReflectionPlane& plane, SymmetryFrame& frame) {
+  int across = 0;
+  (frame.axes.transpose() * plane.normal()).cwiseAbs().maxCoeff(&across);
+  turnOrder(across, frame);
+  const Eigen::Vector3d first = frame.axes.col(0);
+  const Eigen::Vector3d normal = first.dot(plane.normal()) < 0.0 ? Eigen::Vector3d(-plane.normal()) : plane.normal();
+  const Eigen::Matrix3d axes = Eigen::Quaterniond::FromTwoVectors(first, normal).toRotationMatrix() * frame.axes;
+  moveTo(frame.center - plane.signedDistance(frame.center) * plane.normal(), axes, frame);
+}
+
 void refineOnMesh(const MeshSurface& mesh, SymmetryFrame& frame) {
   Eigen::Matrix3d axes = frame.axes;
   Eigen::Vector3d center = frame.center;
@@ -34,16 +79,7 @@ void refineOnMesh(const MeshSurface& mesh, SymmetryFrame& frame) {
     axes.col(last) = axes.col((last + 1) % 3).cross(axes.col((last + 2) % 3));
   }
   if (axes.determinant() < 0.0) return;
-  Eigen::Isometry3d motion = Eigen::Isometry3d::Identity();  // of the frame
-  motion.linear() = axes * frame.axes.transpose();
-  motion.translation() = center - motion.linear() * frame.center;
-  frame.axes = axes;
-  frame.center = center;
-  frame.T_canonical_input = frame.T_canonical_input * motion.inverse();
-  for (Eigen::Isometry3d& other : frame.equivalent) other = other * motion.inverse();
-  if (frame.probable.empty()) return;
-  frame.probable.front().center = center;
-  frame.probable.front().axes = axes;
+  moveTo(center, axes, frame);
 }
 
 }  // namespace pcl_symmetry

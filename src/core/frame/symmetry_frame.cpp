@@ -12,6 +12,7 @@
 #include "core/frame/frame_search.h"
 #include "core/frame/leveled_frames.h"
 #include "core/frame/probable_frames.h"
+#include "core/geometry/stray_points.h"
 #include "core/rotation/scan_axes.h"
 #include "pcl_symmetry/core/planar_transform.h"
 #include "pcl_symmetry/core/published_planes.h"
@@ -127,11 +128,13 @@ void FrameOptions::validate() const {
   checkNumThreads(num_threads);
 }
 
-SymmetryFrame symmetryFrame(const PointsRef& points, const FrameOptions& options, const Visibility* visibility,
+SymmetryFrame symmetryFrame(const PointsRef& all, const FrameOptions& options, const Visibility* visibility,
                             const MakeSearch& make_search) {
   options.validate();
-  if (options.as_published) return publishedFrame(points, options);
+  if (options.as_published) return publishedFrame(all, options);
   SymmetryFrame frame;
+  const Points points = withoutStrayPoints(all);
+  frame.num_stray_points = static_cast<int>(all.cols() - points.cols());
   Stopwatch watch;
   const auto done = [&](const char* stage) { frame.timing_ms.emplace_back(stage, watch.lap()); };
 

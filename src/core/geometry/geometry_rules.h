@@ -11,6 +11,13 @@ struct GeometryRules {
   /// Share of the length of a line: five times the rounding of a line about the origin.
   double line_thickness = 1e-6;
 
+  // Stray points
+  double bulk = 0.9;             ///< share of the points whose distance from their middle is half the size of a cloud
+  double most_stray = 0.05;      ///< share of the points; more are a part of the shape
+  int most_stray_group = 16;     ///< distinct points; more are a part of the shape
+  float stray_spacings = 10.0f;  ///< of points evenly spread over a ball, that a gap is wider than
+  float least_stray_gap = 0.4f, most_stray_gap = 1.0f;  ///< the same in sizes
+
   // Normals
   int fewest_cell_points = 6;  ///< around a cell that make a normal: twice the three that span a plane
 

@@ -11,6 +11,7 @@
 #include "core/geometry/diameter.h"
 #include "core/geometry/mesh_sampling.h"
 #include "core/geometry/point_samples.h"
+#include "core/geometry/stray_points.h"
 #include "core/geometry/surface_normals.h"
 #include "core/geometry/triangle_tree.h"
 #include "pcl_symmetry/core/closest_point_search.h"
@@ -270,7 +271,7 @@ ReflectedPairs reflectedPairs(const PointsRef& points, const ReflectionPlane& pl
   check(max_distance >= 0.0, "max_distance", max_distance, ">= 0");
   ReflectedPairs pairs;
   if (points.cols() == 0) return pairs;
-  if (max_distance == 0.0) max_distance = kSymmetrizing.pair_share * farthestPair(points);
+  if (max_distance == 0.0) max_distance = kSymmetrizing.pair_share * farthestPair(withoutStrayPoints(points));
   makeFlannSearch(points)->search(reflectedPoints(points, plane), 1, pairs.index, pairs.sq_distances);
   for (std::size_t i = 0; i < pairs.index.size(); ++i)
     if (pairs.sq_distances[i] > max_distance * max_distance) pairs.index[i] = -1;

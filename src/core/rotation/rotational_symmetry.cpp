@@ -14,6 +14,7 @@
 #include "core/geometry/diameter.h"
 #include "core/geometry/distinct_points.h"
 #include "core/geometry/point_samples.h"
+#include "core/geometry/stray_points.h"
 #include "core/rotation/rotation_axes.h"
 #include "pcl_symmetry/core/gaussian_edt.h"
 
@@ -161,8 +162,9 @@ void ObjectSymmetryOptions::validate() const {
   checkNumThreads(num_threads);
 }
 
-ObjectSymmetries objectSymmetries(const PointsRef& points, const ObjectSymmetryOptions& options) {
+ObjectSymmetries objectSymmetries(const PointsRef& all, const ObjectSymmetryOptions& options) {
   options.validate();
+  const Points points = withoutStrayPoints(all);
   if (const std::string reason = whyUnanswerable(points); !reason.empty())
     throw std::invalid_argument("points: " + reason);
   std::vector<std::pair<std::string, double>> timing_ms;
@@ -203,6 +205,7 @@ ObjectSymmetries objectSymmetries(const PointsRef& points, const ObjectSymmetryO
     result.support = result.confidence = 0.0;
   }
   result.tolerance = tolerance * ball.radius;
+  result.num_stray_points = static_cast<int>(all.cols() - points.cols());
   result.timing_ms = std::move(timing_ms);
   return result;
 }

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "core/base/median.h"
+#include "core/geometry/stray_points.h"
 #include "pcl_symmetry/core/point_set.h"
 
 namespace pcl_symmetry {
@@ -23,12 +24,12 @@ constexpr double kReachInSigmas = 2.6;
 constexpr double kMostSpacing = 0.25;
 
 /// The ball that a grid of cells covers.
-/// \param given taken where its radius is > 0; otherwise the ball around the points is.
+/// \param given taken where its radius is > 0; otherwise the ball around the points is, without stray ones.
 /// \throws std::invalid_argument without a point, for a value that is not finite, and for a ball without extent.
 inline BoundingBall coveredBall(const PointsRef& points, const BoundingBall& given) {
   if (points.cols() == 0) throw std::invalid_argument("points: 0 given, must be >= 1");
   if (!points.allFinite()) throw std::invalid_argument("points: a coordinate is not finite");
-  const BoundingBall ball = given.radius > 0.0 ? given : boundingBall(points);
+  const BoundingBall ball = given.radius > 0.0 ? given : boundingBall(withoutStrayPoints(points));
   if (!(ball.radius > std::numeric_limits<float>::epsilon() * ball.center.norm()))
     throw std::invalid_argument("points: all at one place, must have an extent");
   return ball;

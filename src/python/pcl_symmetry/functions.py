@@ -309,6 +309,12 @@ def _core_plane(plane: ReflectionPlane, shift: Shift) -> Any:
     return core.ReflectionPlane(moved.normal, moved.offset)
 
 
+def _warn_of_stray(found: Any, level: int = 3) -> None:
+    if found.stray_points:
+        text = f"points: {found.stray_points} stray, far from all others, left out"
+        warnings.warn(text, RuntimeWarning, stacklevel=level)
+
+
 def _planes_of(found: Any, cloud: Cloud, used: Optional[Used] = None, judged: bool = True, quiet: bool = False) -> Planes:
     """judged: only symmetries are in the list. quiet: whoever asked is not warned of what has no answer."""
     import numpy as np
@@ -318,6 +324,8 @@ def _planes_of(found: Any, cloud: Cloud, used: Optional[Used] = None, judged: bo
     reason = used.reason if used is not None and used.reason else found.reason
     if reason and not quiet:
         warnings.warn(reason if reason.startswith("volume") else f"points: {reason}", RuntimeWarning, stacklevel=3)
+    if not quiet:
+        _warn_of_stray(found, 4)
     return Planes(
         planes=[p for p in every if not judged or p.kind == "symmetry"],
         possible=[p for p in every if p.kind == "possible"],
@@ -334,7 +342,7 @@ def _planes_of(found: Any, cloud: Cloud, used: Optional[Used] = None, judged: bo
         _rows=np.asarray(found.rows if used is None or used.rows is None else used.rows, dtype=np.int64),
         _shape=cloud.shape,
         _maxima=found.maxima,
-        **_fields(found, "flat", "tolerance", "viewpoint"),
+        **_fields(found, "flat", "tolerance", "viewpoint", "stray_points"),
     )
 
 
@@ -352,7 +360,7 @@ def planes(
     tolerance: Optional[float] = None,
     absolute_tolerance: float = 0.0,
     approximate: bool = False,
-    max_planes: int = 64,
+    max_planes: int = 128,
     normals: Optional[ArrayLike] = None,
     max_points: int = 50_000,
     evidence: bool = False,
@@ -619,7 +627,7 @@ def _no_frame(reason: str) -> Frame:
     nothing = np.full((3, 3), np.nan)
     return Frame(
         center=nothing[0], axes=nothing, revolution_axis=-1, scores=nothing[0], transform=np.full((4, 4), np.nan),
-        equivalent=np.empty((0, 4, 4)), rotations=[], probable=[], evidence=np.empty(0), reason=reason,
+        equivalent=np.empty((0, 4, 4)), rotations=[], probable=[], evidence=np.empty(0), stray_points=0, reason=reason,
     )  # fmt: skip
 
 
@@ -642,6 +650,7 @@ def frame(
         return _no_frame(reason)
     options = dict(max_points=max_points, as_published=as_published, told=progress, seed=seed, threads=threads)
     found = core.frame(used.array, viewpoint=used.viewpoint, mesh=None if as_published else cloud.surface(), **options)
+    _warn_of_stray(found)
     result = _frame(found)
     return result if cloud.shift is None else result._moved(cloud.shift)
 
@@ -651,7 +660,7 @@ def _frame(found: Any) -> Frame:
         probable=[ProbableFrame(**_fields(f, "center", "axes", "probability", "revolution_axis")) for f in found.probable],
         rotations=[_rotation_axis(t) for t in found.rotations],
         reason="",
-        **_fields(found, "center", "axes", "scores", "revolution_axis", "transform", "equivalent", "evidence"),
+        **_fields(found, "center", "axes", "scores", "revolution_axis", "transform", "equivalent", "evidence", "stray_points"),
     )
 
 
@@ -678,7 +687,7 @@ def rotations(
     cloud = prepare("points", points)
     if reason := core.why_unanswerable(cloud.array):
         warnings.warn(f"points: {reason}", RuntimeWarning, stacklevel=2)
-        nothing: Dict[str, Any] = dict(support=0.0, confidence=0.0, fold=1, continuous=[], tolerance=0.0)
+        nothing: Dict[str, Any] = dict(support=0.0, confidence=0.0, fold=1, continuous=[], tolerance=0.0, stray_points=0)
         return Rotations(name="", center=np.full(3, np.nan), discrete=np.empty((0, 4, 4)), reason=reason, **nothing)
     found = core.rotations(
         cloud.array,
@@ -690,7 +699,8 @@ def rotations(
         threads=threads,
         mesh=cloud.surface(),
     )
-    names = ("name", "center", "support", "confidence", "fold", "discrete", "continuous", "tolerance", "reason")
+    names = ("name", "center", "support", "confidence", "fold", "discrete", "continuous", "tolerance", "stray_points", "reason")
+    _warn_of_stray(found)
     fields = _fields(found, *names)
     result = Rotations(**{**fields, "name": "" if fields["reason"] else fields["name"]})
     return result if cloud.shift is None else result._moved(cloud.shift)

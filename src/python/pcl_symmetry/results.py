@@ -383,6 +383,8 @@ class Planes(Result):
     """(4,) plane that all points of a sheet or a disc lie near; None: the cloud is not flat."""
     tolerance: float
     """That was decided at, input units."""
+    stray_points: int
+    """Number of points that were left out, as they are few and far from all others."""
     reason: str
     """Why there is no answer; empty where the search ran."""
     viewpoint: Optional[NDArray[np.float64]]
@@ -551,6 +553,8 @@ class Frame(Result):
     over 20 degrees, at most 1. best: 1 for the frame that the search put first. other_scores: sum of the scores of the
     other planes. best_score: first_score of the frame that the search put first, else 0.
     """
+    stray_points: int
+    """Number of points that were left out, as they are few and far from all others."""
     reason: str
     """Why there is no answer: all numbers are NaN then. Else empty."""
 
@@ -589,6 +593,8 @@ class Rotations(Result):
     """(point, direction) of axes of revolution."""
     tolerance: float
     """That was decided at, input units."""
+    stray_points: int
+    """Number of points that were left out, as they are few and far from all others."""
     reason: str
     """Why there is no answer: the name is empty then. Else empty."""
 

@@ -1,0 +1,142 @@
+#include "core/geometry/stray_points.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/geometry/distinct_points.h"
+#include "core/geometry/geometry_rules.h"
+#include "core/geometry/point_samples.h"
+#include "pcl_symmetry/core/closest_point_search.h"
+
+namespace pcl_symmetry {
+
+namespace {
+
+/// The value that a share of the values are less than.
+float quantile(std::vector<float> values, double share) {
+  const auto at = values.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1));
+  std::nth_element(values.begin(), at, values.end());
+  return *at;
+}
+
+/// Distances of points from the middle of most of them.
+std::vector<float> distancesFromMiddle(const PointsRef& points) {
+  Eigen::Vector3f middle;
+  std::vector<float> values(static_cast<std::size_t>(points.cols()));
+  for (int axis = 0; axis < 3; ++axis) {
+    for (std::size_t i = 0; i < values.size(); ++i) values[i] = points(axis, static_cast<Eigen::Index>(i));
+    middle[axis] = quantile(values, 0.5);
+  }
+  for (std::size_t i = 0; i < values.size(); ++i)
+    values[i] = (points.col(static_cast<Eigen::Index>(i)) - middle).norm();
+  return values;
+}
+
+/// The points of a cloud beyond its bulk that gaps separate from it.
+class OuterGroups {
+public:
+  /// \param points distinct.
+  /// \param outer indices of the points beyond the bulk, rising.
+  OuterGroups(const Points& points, const std::vector<int>& outer, float gap)
+      : outer_(outer),
+        num_neighbors_(std::min<int>(kGeometry.most_stray_group + 1, static_cast<int>(points.cols()))),
+        sq_gap_(gap * gap),
+        is_seen_(outer.size(), false) {
+    makeFlannSearch(points)->search(pointsAt(points, outer), num_neighbors_, neighbors_, sq_distances_);
+  }
+
+  /// \return the points of groups that are tiny and touch nothing else.
+  std::vector<int> stray() {
+    std::vector<int> all;
+    for (std::size_t k = 0; k < outer_.size(); ++k) {
+      const std::vector<int> group = isolatedGroup(k);
+      all.insert(all.end(), group.begin(), group.end());
+    }
+    std::sort(all.begin(), all.end());
+    return all;
+  }
+
+private:
+  /// \return the group of an outer point, once; empty where it is large or touches the bulk.
+  std::vector<int> isolatedGroup(std::size_t first) {
+    std::vector<int> group;
+    bool is_isolated = true;
+    std::vector<std::size_t> open;
+    const auto add = [&](std::size_t k) {
+      if (is_seen_[k]) return;
+      is_seen_[k] = true;
+      open.push_back(k);
+      group.push_back(outer_[k]);
+    };
+    add(first);
+    while (!open.empty()) {
+      const std::size_t begin = open.back() * static_cast<std::size_t>(num_neighbors_);
+      open.pop_back();
+      for (std::size_t k = begin; k < begin + static_cast<std::size_t>(num_neighbors_); ++k) {
+        if (sq_distances_[k] > sq_gap_) break;
+        const auto at = std::lower_bound(outer_.begin(), outer_.end(), neighbors_[k]);
+        if (at != outer_.end() && *at == neighbors_[k])
+          add(static_cast<std::size_t>(at - outer_.begin()));
+        else
+          is_isolated = false;
+      }
+    }
+    if (!is_isolated || static_cast<int>(group.size()) > kGeometry.most_stray_group) group.clear();
+    return group;
+  }
+
+  const std::vector<int>& outer_;
+  const int num_neighbors_;
+  const float sq_gap_;
+  std::vector<bool> is_seen_;
+  std::vector<int> neighbors_;
+  std::vector<float> sq_distances_;
+};
+
+}  // namespace
+
+std::vector<int> strayPoints(const PointsRef& points) {
+  const auto size = static_cast<double>(points.cols());
+  const double most = kGeometry.most_stray * size;
+  if (most < 1.0 || !points.allFinite()) return {};
+  const std::vector<float> distances = distancesFromMiddle(points);
+  const float bulk = quantile(distances, kGeometry.bulk);
+  const float gap = 2.0f * bulk *
+                    std::clamp(kGeometry.stray_spacings * std::sqrt(3.0f / static_cast<float>(size)),
+                               kGeometry.least_stray_gap, kGeometry.most_stray_gap);
+  const auto is_outer = [&](int i) { return distances[static_cast<std::size_t>(i)] > bulk + gap; };
+  if (std::none_of(distances.begin(), distances.end(), [&](float distance) { return distance > bulk + gap; }))
+    return {};
+  // Copies of one position are one point.
+  const DistinctPoints distinct(points);
+  std::vector<int> first_of(static_cast<std::size_t>(distinct.points.cols())), outer, stray;
+  for (std::size_t i = distinct.index_of.size(); i-- > 0;)
+    first_of[static_cast<std::size_t>(distinct.index_of[i])] = static_cast<int>(i);
+  for (int k = 0; k < static_cast<int>(first_of.size()); ++k)
+    if (is_outer(first_of[static_cast<std::size_t>(k)])) outer.push_back(k);
+  const std::vector<int> alone = OuterGroups(distinct.points, outer, gap).stray();
+  for (int i = 0; i < static_cast<int>(points.cols()); ++i)
+    if (std::binary_search(alone.begin(), alone.end(), distinct.index_of[static_cast<std::size_t>(i)]))
+      stray.push_back(i);
+  if (static_cast<double>(stray.size()) > most) stray.clear();
+  return stray;
+}
+
+std::vector<int> allBut(const std::vector<int>& stray, Eigen::Index size) {
+  std::vector<int> others;
+  auto next = stray.begin();
+  for (int i = 0; i < static_cast<int>(size); ++i) {
+    if (next != stray.end() && *next == i)
+      ++next;
+    else
+      others.push_back(i);
+  }
+  return others;
+}
+
+Points withoutStrayPoints(const PointsRef& points) {
+  const std::vector<int> stray = strayPoints(points);
+  return stray.empty() ? Points(points) : pointsAt(points, allBut(stray, points.cols()));
+}
+
+}  // namespace pcl_symmetry
