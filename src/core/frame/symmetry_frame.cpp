@@ -133,7 +133,8 @@ SymmetryFrame symmetryFrame(const PointsRef& all, const FrameOptions& options, c
   options.validate();
   if (options.as_published) return publishedFrame(all, options);
   SymmetryFrame frame;
-  const Points points = withoutStrayPoints(all);
+  const Points bulk = withoutStrayPoints(all);
+  const PointsRef points(bulk);
   frame.num_stray_points = static_cast<int>(all.cols() - points.cols());
   Stopwatch watch;
   const auto done = [&](const char* stage) { frame.timing_ms.emplace_back(stage, watch.lap()); };
