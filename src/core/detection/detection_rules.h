@@ -131,6 +131,7 @@ struct DetectionRules {
     std::size_t most_line_pairs = 4;       ///< planes whose common lines are tried
     double least_line_angle = 0.1;         ///< between two of them
     std::size_t most_folds = 4;            ///< folds of a surface that are tried, and those that they have in common
+    double most_off = 0.05;                ///< angles between planes of a surface by which one that fits may be off
     double most_gap = 0.25;                ///< between angles of folded points, half angles between two planes
     std::array<int, 3> divisors{2, 3, 5};  ///< of parts of a polygon whose planes may differ
   } folds;

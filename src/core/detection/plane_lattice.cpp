@@ -332,7 +332,7 @@ std::optional<double> phaseOf(const Line3d& line, int fold, std::vector<Reflecti
     std::vector<ReflectionPlane> fitting;
     for (const ReflectionPlane& plane : known)
       if (std::abs(std::remainder(angleAbout(line, plane) - angleAbout(line, first), step)) <=
-          kDetection.families.most_folded * step)
+          kDetection.folds.most_off * step)
         fitting.push_back(plane);
     if (fitting.size() > best.size()) best = std::move(fitting);
   }
@@ -343,16 +343,11 @@ std::optional<double> phaseOf(const Line3d& line, int fold, std::vector<Reflecti
   return std::arg(sum) / (2.0 * fold);
 }
 
-/// Whether the planes halfway between those of a lattice are no symmetries.
-bool isPolygon(const PlaneLattice& lattice, const NormalizedCloud& cloud, double tolerance) {
-  const FoldedPoints folded(cloud.points, lattice);
-  return folded.areSpread() && folded.shareHalfway(tolerance) < kSymmetricShare;
-}
-
 /// The planes of a lattice, where all are symmetries and those halfway between are none.
 std::vector<SymmetryPlane> symmetriesOf(const PlaneLattice& lattice, const NormalizedCloud& cloud,
                                         const PlaneDecision& decision, double tolerance) {
-  if (!isPolygon(lattice, cloud, tolerance)) return {};
+  const FoldedPoints folded(cloud.points, lattice);
+  if (!folded.areSpread() || folded.shareHalfway(tolerance) >= kSymmetricShare) return {};
   std::vector<Candidate> candidates;
   for (int k = 0; k < lattice.fold; ++k) candidates.push_back({lattice.plane(k), false});
   std::vector<SymmetryPlane> planes;
@@ -372,11 +367,7 @@ std::optional<PolygonOfSurface> polygonAbout(const Line3d& line, const std::vect
     std::vector<ReflectionPlane> fitting = known;
     std::vector<double> phases;
     if (const std::optional<double> phase = phaseOf(line, fold, fitting)) {
-      if (fold <= static_cast<int>(fitting.size())) {
-        const PlaneLattice lattice{line, fold, *phase, static_cast<int>(fitting.size())};
-        if (isPolygon(lattice, cloud, tolerance)) return PolygonOfSurface{lattice, {}};
-        continue;
-      }
+      if (fold <= static_cast<int>(fitting.size())) continue;  // nothing is missing
       phases.push_back(*phase);
     }
     phases.push_back(FoldSpectrum(cloud.points, line, kDetection.folds.slabs).phase(fold));
@@ -429,7 +420,6 @@ PlanesAndPolygon completed(std::vector<SymmetryPlane> planes, const NormalizedCl
   if (known.size() < kDetection.families.least_planes) return {std::move(planes), std::nullopt};
   std::optional<PolygonOfSurface> polygon = polygonAbout(commonLine(known), known, cloud, decision, tolerance, options);
   if (!polygon) return {std::move(planes), std::nullopt};
-  if (polygon->planes.empty()) return {std::move(planes), polygon->lattice};
   planes.erase(std::remove_if(planes.begin(), planes.end(),
                               [&](const SymmetryPlane& plane) {
                                 return contains(cloud.toNormalized(plane), polygon->lattice.line);

@@ -46,7 +46,7 @@ struct PlanesAndPolygon {
 /// A regular polygon whose planes are all symmetries of a surface.
 struct PolygonOfSurface {
   PlaneLattice lattice;               ///< normalized frame
-  std::vector<SymmetryPlane> planes;  ///< all of it, input frame; empty where all are known
+  std::vector<SymmetryPlane> planes;  ///< all of it, input frame
 };
 
 /// The polygon about a line that the surface of a cloud has: many teeth leave single planes too close to each other to
@@ -55,7 +55,7 @@ struct PolygonOfSurface {
 /// too, as those of a body of revolution are.
 /// \param known symmetries that contain the line, normalized frame; may be none.
 /// \param tolerance normalized frame.
-/// \return none where no fold stands out, or the points do not tell it from a body of revolution.
+/// \return none where no fold has more planes than are known.
 std::optional<PolygonOfSurface> polygonAbout(const Line3d& line, const std::vector<ReflectionPlane>& known,
                                              const NormalizedCloud& cloud, const PlaneDecision& decision,
                                              double tolerance, const DetectionOptions& options);
