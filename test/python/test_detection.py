@@ -1,7 +1,6 @@
 """From points to planes: shapes whose planes are known, moved, scaled, disturbed, cut and flat."""
 
 import sys
-import types
 import unittest
 import warnings
 
@@ -373,20 +372,6 @@ class Families(Detection):
         axis, = pcl_symmetry.planes(np.stack([r * np.cos(angle), r * np.sin(angle), 0.001 * random.random(4000)], axis=1)).axes
         self.assertGreater(abs(axis.direction[2]), np.cos(0.5 * DEGREE))
 
-    def test_of_dented_vases_are_axes_at_a_coarse_tolerance(self):
-        for seed in range(4):
-            random = np.random.default_rng(seed)
-            angle, height = random.uniform(0, 2 * np.pi, 10_000), random.uniform(0, 2, 10_000)
-            radius = 0.5 + 0.1 * np.sin(3 * height + seed)  # the diameter is 2.4
-            dents = sum(0.02 * np.cos(k * angle + random.uniform(0, 7)) * np.sin(k * height) for k in (2, 3))
-            points = np.stack([(radius + dents) * np.cos(angle), (radius + dents) * np.sin(angle), height], axis=1)
-            turn, shift = random_pose(seed)
-            points = points @ turn.T + shift
-            self.assertEqual(pcl_symmetry.planes(points).axes, [], seed)
-            for options in (dict(tolerance=0.05), dict(absolute_tolerance=0.1)):
-                axis, = pcl_symmetry.planes(points, **options).axes
-                self.assertGreater(abs(axis.direction @ turn[:, 2]), np.cos(3 * DEGREE), seed)
-
     def test_of_a_cup_are_gone_with_a_handle(self):
         around, steps = 2 * np.pi * np.arange(96) / 96, np.linspace(-0.5, 0.5, 17) * np.pi
         cup = [(r * np.cos(a), r * np.sin(a), h) for r, h in ((0, 0), (0.7, 0), (0.75, 1.6)) for a in around]
@@ -426,57 +411,6 @@ def wheel(num_teeth, depth, noise, thinned=False, seed=1, count=10_000):
     if thinned:
         points = points[random.random(4 * count) < 0.625 + 0.375 * points[:, 0]]
     return points[:count] + noise * random.normal(size=(count, 3))
-
-
-def gear(num_teeth, radius=1.0, low=0.0, high=0.3, bore=0.3):
-    """Vertices and triangles of a spur gear about z with an in-plane normal at angle pi / 2; teeth are 2.25 modules deep."""
-    at = np.arange(num_teeth)[:, None] + (-0.3, -0.2, 0.2, 0.3)
-    inner = radius * (1 - 4.5 / num_teeth)
-    outline = (np.array([inner, radius, radius, inner]) * np.exp(2j * np.pi * at / num_teeth)).ravel()
-    rim = bore * radius * outline / abs(outline)
-    size = len(outline)
-    vertices = np.vstack([np.c_[c.real, c.imag, np.full(size, z)]
-                          for c, z in ((rim, low), (outline, low), (outline, high), (rim, high))])  # fmt: skip
-    k, next_k = np.arange(size), np.roll(np.arange(size), -1)
-    faces = [face for a, b in ((0, 1), (1, 2), (2, 3), (3, 0)) for face in
-             (np.c_[a * size + k, a * size + next_k, b * size + next_k], np.c_[a * size + k, b * size + next_k, b * size + k])]
-    return vertices, np.concatenate(faces)
-
-
-def moved_mesh(parts, pose):
-    first = np.cumsum([0] + [len(vertices) for vertices, _ in parts])
-    vertices = np.concatenate([vertices for vertices, _ in parts]) @ pose[0].T + pose[1]
-    return types.SimpleNamespace(vertices=vertices, faces=np.concatenate([f + n for (_, f), n in zip(parts, first)]))
-
-
-class Gears(Detection):
-    def assert_all(self, found, fold, pose, angle, across=True):
-        """The planes of all teeth, and the one across the axis, and no others."""
-        angles = np.pi / 2 + np.pi * np.arange(fold) / fold
-        normals = np.c_[np.cos(angles), np.sin(angles), 0 * angles]
-        normals = np.vstack([normals, [(0, 0, 1)] * across]) @ pose[0].T
-        self.assertEqual((len(found), found.axes), (len(normals), []), fold)
-        off = np.arccos(np.clip(abs(np.array([p.normal for p in found]) @ normals.T), 0, 1))
-        self.assertLess(max(off.min(axis=0).max(), off.min(axis=1).max()), angle, fold)
-
-    def test_have_all_their_planes(self):
-        for seed, fold in enumerate((8, 17, 30, 39, 48, 61, 72)):
-            pose = random_pose(seed)
-            self.assert_all(pcl_symmetry.planes(moved_mesh([gear(fold)], pose)), fold, pose, 1e-4)
-        for seed, fold in enumerate((12, 39, 61)):
-            pose, (vertices, faces) = random_pose(seed), gear(fold)
-            points = pcl_symmetry.sample_mesh(vertices, faces, 10_000, seed=seed) @ pose[0].T + pose[1]
-            self.assert_all(pcl_symmetry.planes(points), fold, pose, 0.1 * DEGREE)
-
-    def test_of_so_many_teeth_that_the_tolerance_forgives_them_are_round(self):
-        found = pcl_symmetry.planes(moved_mesh([gear(160)], random_pose(1)))
-        self.assertEqual((len(found.axes), len(found)), (1, 1))
-
-    def test_on_one_axis_have_the_planes_that_both_have(self):
-        for seed, (a, b) in enumerate(((12, 18), (20, 30), (24, 36))):
-            pose = random_pose(seed)
-            found = pcl_symmetry.planes(moved_mesh([gear(a), gear(b, 0.8, 0.35, 0.7)], pose))
-            self.assert_all(found, np.gcd(a, b), pose, 1e-4, across=False)
 
 
 class Polygons(Detection):

@@ -101,33 +101,6 @@ class Clouds(Field):
             self.assertEqual((len(found), report["axes"]), (0, []), name)
 
 
-    def test_a_stray_point_is_left_out_and_told(self):
-        found, report = self.symmetries("field/stray_point.xyz")
-        self.assertEqual((len(found), report["stray_points"]), (0, 1))
-        self.assertIn("1 stray point left out", self.tool("planes", "field/stray_point.xyz")[0])
-
-
-class Shapes(Field):
-    def test_a_gear_of_39_teeth_has_40_planes(self):
-        found, report = self.symmetries("field/gear39.off")
-        self.assertEqual((len(found), report["axes"]), (40, []))
-        angles = np.sort(np.arctan2(found[:, 1], found[:, 0])[abs(found[:, 2]) < 0.5] % np.pi)
-        np.testing.assert_allclose(np.diff(angles), np.pi / 39, atol=1e-5)
-
-    def test_a_dented_can_has_an_axis_and_a_profile_at_a_coarse_tolerance(self):
-        with tempfile.TemporaryDirectory() as folder:
-            self.tool("planes", "field/dented_can.off", "-tolerance", 0.05, "-profile", f"{folder}/x.svg", "-quiet")
-            self.assertIn("<svg", Path(folder, "x.svg").read_text())
-
-    def test_the_best_plane_of_a_scallop_is_the_best_for_all_seeds(self):
-        shares = [self.symmetries("field/scallop.off", "-seed", seed)[1]["best"]["share"] for seed in range(6)]
-        self.assertGreater(min(shares), 0.89)
-
-    def test_a_plate_that_its_own_plane_moves_is_not_flat(self):
-        self.assert_planes("field/plate_60_50_1.off", [X, Y, Z], (30, 25, 0.5))
-        self.assertNotIn("flat", self.symmetries("field/plate_60_50_1.off")[1])
-
-
 class FewPoints(Field):
     def test_get_one_sentence(self):
         random = np.random.default_rng(1)

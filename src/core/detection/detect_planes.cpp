@@ -145,19 +145,18 @@ void doubtWhatNeedsAPiece(const JudgedCloud& judged, Found& found) {
 
 /// Where noise hides single planes of a polygon, all are judged together.
 void completePolygon(const JudgedCloud& judged, Found& found) {
-  PlanesAndPolygon completed = withPolygon(std::move(found.planes), judged.cloud, judged.all, judged.decision,
-                                           judged.measure.tolerance(), judged.options);
+  PlanesAndPolygon completed =
+      withPolygon(std::move(found.planes), judged.cloud, judged.all, judged.decision, judged.options);
   found.planes = std::move(completed.planes);
   found.polygon = std::move(completed.polygon);
 }
 
 /// Bodies of revolution and spheres in place of their planes.
 void findFamilies(const JudgedCloud& judged, Found& found) {
-  if (judged.measure.limits().isCutAllAround() || found.polygon) return;
-  PlanesAndFamilies families = collectFamilies(std::move(found.planes), judged.cloud, judged.all, judged.fit,
-                                               judged.decision, judged.measure.tolerance(), judged.options);
+  if (judged.measure.limits().isCutAllAround()) return;
+  PlanesAndFamilies families =
+      collectFamilies(std::move(found.planes), judged.cloud, judged.all, judged.fit, judged.decision, judged.options);
   found.planes = std::move(families.planes);
-  found.polygon = std::move(families.polygon);
   found.axes = std::move(families.axes);
   found.centers = std::move(families.centers);
 }

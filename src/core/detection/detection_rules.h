@@ -99,7 +99,7 @@ struct DetectionRules {
   struct {
     double contained_offset = 0.03,
            contained_angle = 3.0 * kDegree;  ///< by which a plane may miss a line that it contains
-    int most_fold = 120;                     ///< of a polygon
+    int most_fold = 60;                      ///< as rotations of objects
     std::size_t least_planes = 4;            ///< of a lattice; three fit too many by chance
     std::size_t most_pairs = 6;              ///< planes whose common lines are tried for a lattice
     double least_pair_angle = 0.1;           ///< between two planes; less moves their line too far
@@ -120,8 +120,8 @@ struct DetectionRules {
 
   /// Folds of noisy clouds, by their spectrum.
   struct {
-    int most_frequency = 120, least_fold = 3;  ///< a cloud that is thinner on one side, or flat, has folds one and two
-    int rings = 8, slabs = 4;  ///< about the line: rings for the fold, slabs for the angle of the planes
+    int most_frequency = 60, least_fold = 3;  ///< a cloud that is thinner on one side, or flat, has folds one and two
+    int rings = 8, slabs = 4;                 ///< about the line: rings for the fold, slabs for the angle of the planes
     int spectrum_samples = 20'000, angles = 192, phase_samples = 5000;
     double reflections_stand_out = 20.0;   ///< powers beside it from which reflections fix the angle better than rings
     int compared_frequencies = 12;         ///< frequencies on either side that one is compared with
@@ -130,9 +130,6 @@ struct DetectionRules {
     double odds_of_polygon = 4.0;          ///< of planes of a polygon over other planes of the same evidence
     std::size_t most_line_pairs = 4;       ///< planes whose common lines are tried
     double least_line_angle = 0.1;         ///< between two of them
-    std::size_t most_folds = 4;            ///< folds of a surface that are tried, and those that they have in common
-    double most_off = 0.05;                ///< angles between planes of a surface by which one that fits may be off
-    double most_gap = 0.25;                ///< between angles of folded points, half angles between two planes
     std::array<int, 3> divisors{2, 3, 5};  ///< of parts of a polygon whose planes may differ
   } folds;
 

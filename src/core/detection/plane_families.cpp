@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <iterator>
 #include <utility>
 
 #include "core/base/constants.h"
@@ -155,20 +154,11 @@ std::vector<AxisFamily> findAxes(const std::vector<ReflectionPlane>& planes, con
 
 namespace {
 
-/// Whether a surface may be farther off than usual, and than its points are from each other.
-bool isCoarser(const DetectionOptions& options, double tolerance, const NormalizedCloud& cloud) {
-  const bool is_given = options.absolute_tolerance > 0.0 || options.tolerance > DetectionOptions().tolerance;
-  return cloud.kind() == CloudKind::Surface && is_given && tolerance > DetectionOptions().tolerance * cloud.extent;
-}
-
-FamilyTest familyTest(const NormalizedCloud& cloud, const PlaneFit& fit, const PlaneDecision& decision,
-                      const std::vector<int>& samples, double tolerance, const DetectionOptions& options) {
-  // A plane that maps most of a scan to what was not seen says little: only what contradicts counts. What a coarse
-  // tolerance forgives is not as close as samples to each other.
-  const auto share_of = [&, is_scan = cloud.seen() != nullptr,
-                         is_coarser = isCoarser(options, tolerance, cloud)](const std::vector<int>& used) {
-    return [&fit, &decision, used, is_scan, is_coarser](const ReflectionPlane& plane) {
-      if (is_coarser) return decision.judge(plane, used).evidence.share;
+FamilyTest familyTest(const NormalizedCloud& cloud, const PlaneFit& fit, const std::vector<int>& samples,
+                      std::uint64_t seed) {
+  // A plane that maps most of a scan to what was not seen says little: only what contradicts counts.
+  const auto share_of = [&fit, is_scan = cloud.seen() != nullptr](const std::vector<int>& used) {
+    return [&fit, used, is_scan](const ReflectionPlane& plane) {
       const PlaneShares shares = fit.shares(plane, used);
       const double support = fit.relativeSupport(shares);
       return is_scan ? 1.0 - shares.conflict : support / std::max(0.01, std::min(1.0, support + shares.conflict));
@@ -180,7 +170,7 @@ FamilyTest familyTest(const NormalizedCloud& cloud, const PlaneFit& fit, const P
   std::vector<int> fewer;
   const auto num_samples = static_cast<Eigen::Index>(samples.size());
   for (const int i :
-       drawSamples(num_samples, static_cast<int>(num_samples) / kDetection.families.rough_sample_share, options.seed))
+       drawSamples(num_samples, static_cast<int>(num_samples) / kDetection.families.rough_sample_share, seed))
     fewer.push_back(samples[i]);
   test.rough_share = share_of(fewer);
   test.refine = [&fit, samples](const ReflectionPlane& plane) {
@@ -217,8 +207,7 @@ Line3d longestAxis(const PrincipalAxes& axes) {
 }  // namespace
 
 PlanesAndFamilies collectFamilies(std::vector<SymmetryPlane> planes, const NormalizedCloud& cloud, const Points& all,
-                                  const PlaneFit& fit, const PlaneDecision& decision, double tolerance,
-                                  const DetectionOptions& options) {
+                                  const PlaneFit& fit, const PlaneDecision& decision, const DetectionOptions& options) {
   PlanesAndFamilies found;
   found.planes = std::move(planes);
   const std::vector<ReflectionPlane> symmetries = symmetriesOf(found.planes, cloud);
@@ -235,7 +224,7 @@ PlanesAndFamilies collectFamilies(std::vector<SymmetryPlane> planes, const Norma
           {cloud.toInput(line.origin()), line.direction(), judged.confidence, judged.score, judged.support});
     return found;
   }
-  const FamilyTest test = familyTest(cloud, fit, decision, samples, tolerance, options);
+  const FamilyTest test = familyTest(cloud, fit, samples, options.seed);
   std::vector<Line3d> likely_axes;
   std::vector<Eigen::Vector3d> likely_centers;
   if (kKindRules.normals_tell[cloud.kind()]) {
@@ -270,13 +259,6 @@ PlanesAndFamilies collectFamilies(std::vector<SymmetryPlane> planes, const Norma
       continue;
     const JudgedFamily judged = decision.judgeFamily(family.planes, samples);
     if (!isFamily(judged)) continue;
-    if (cloud.kind() == CloudKind::Surface && !found.polygon)
-      if (auto polygon = polygonAbout(family.line, {}, cloud, decision, tolerance, options)) {
-        drop([&](const ReflectionPlane& plane) { return contains(plane, family.line); });
-        std::move(polygon->planes.begin(), polygon->planes.end(), std::back_inserter(found.planes));
-        found.polygon = std::move(polygon->lattice);
-        continue;
-      }
     // No bounded shape has two parallel axes, but a thin disc seems to within the tolerance: the best is the
     // axis.
     const bool is_known = std::any_of(found.axes.begin(), found.axes.end(), [&](const SymmetryAxis& axis) {

@@ -5,7 +5,6 @@
 #include <vector>
 
 #include "core/detection/plane_decision.h"
-#include "core/detection/plane_lattice.h"
 
 namespace pcl_symmetry {
 
@@ -55,20 +54,16 @@ std::vector<AxisFamily> findAxes(const std::vector<ReflectionPlane>& planes, con
 
 /// Planes, and the families that some of them belonged to.
 struct PlanesAndFamilies {
-  std::vector<SymmetryPlane> planes;    ///< of no family
-  std::optional<PlaneLattice> polygon;  ///< in place of an axis, normalized frame; its planes are in `planes`
-  std::vector<SymmetryAxis> axes;       ///< best first
+  std::vector<SymmetryPlane> planes;  ///< of no family
+  std::vector<SymmetryAxis> axes;     ///< best first
   std::vector<SymmetryCenter> centers;
 };
 
-/// Finds the families that symmetries belong to, and takes their planes away. A line has its axis. Many teeth that
-/// single planes do not tell from a body of revolution are a polygon.
+/// Finds the families that symmetries belong to, and takes their planes away. A line has its axis.
 /// \param planes input frame.
 /// \param all the points of the cloud and those that were left out to make it evenly dense, normalized frame.
-/// \param tolerance normalized frame.
 PlanesAndFamilies collectFamilies(std::vector<SymmetryPlane> planes, const NormalizedCloud& cloud, const Points& all,
-                                  const PlaneFit& fit, const PlaneDecision& decision, double tolerance,
-                                  const DetectionOptions& options);
+                                  const PlaneFit& fit, const PlaneDecision& decision, const DetectionOptions& options);
 
 /// \param planes,axes input frame.
 /// \return the planes that contain no axis.

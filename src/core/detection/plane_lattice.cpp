@@ -5,7 +5,6 @@
 #include <cmath>
 #include <complex>
 #include <iterator>
-#include <numeric>
 #include <utility>
 
 #include "core/base/constants.h"
@@ -13,9 +12,7 @@
 #include "core/base/median.h"
 #include "core/base/parallel.h"
 #include "core/detection/plane_families.h"
-#include "core/geometry/geometry_rules.h"
 #include "core/geometry/point_samples.h"
-#include "pcl_symmetry/core/closest_point_search.h"
 
 namespace pcl_symmetry {
 
@@ -236,152 +233,7 @@ std::optional<PlaneLattice> bestLattice(const std::vector<SymmetryPlane>& planes
   return std::nullopt;
 }
 
-/// A polygon has the multiples of its frequency, too.
-/// \return the least frequency that stands out and divides one that does.
-int leastOf(const FoldSpectrum& spectrum, int fold) {
-  for (int m = 2; m < fold; ++m)
-    if (fold % m == 0 && spectrum.prominence(m) > 0.0) return m;
-  return fold;
-}
-
-/// The folds that a spectrum suggests, the most prominent first; then those that two of them have in common, as two
-/// wheels on one axis do.
-std::vector<int> likelyFolds(const FoldSpectrum& spectrum) {
-  std::vector<std::pair<double, int>> prominent;
-  for (int m = kDetection.folds.least_fold; m <= kDetection.folds.most_frequency; ++m)
-    if (const double now = spectrum.prominence(m); now > 0.0) prominent.emplace_back(-now, leastOf(spectrum, m));
-  std::sort(prominent.begin(), prominent.end());
-  std::vector<int> folds;
-  const auto add = [&](int fold) {
-    if (fold >= kDetection.folds.least_fold && std::find(folds.begin(), folds.end(), fold) == folds.end())
-      folds.push_back(fold);
-  };
-  for (const auto& [less, fold] : prominent) add(fold);
-  if (folds.size() > kDetection.folds.most_folds) folds.resize(kDetection.folds.most_folds);
-  const std::size_t size = folds.size();
-  for (std::size_t i = 0; i < size; ++i)
-    for (std::size_t j = 0; j < i; ++j) add(std::gcd(folds[i], folds[j]));
-  return folds;
-}
-
-/// The points that the planes of a lattice bring into the sector between two of them: denser by twice the fold, they
-/// resolve what lies between the planes.
-class FoldedPoints {
-public:
-  FoldedPoints(const Points& points, const PlaneLattice& lattice)
-      : width_(0.5 * kPi / lattice.fold), angles_(static_cast<std::size_t>(points.cols())), across_(3, points.cols()) {
-    const Eigen::Vector3d n = lattice.plane(0.0).normal(), up = lattice.line.direction(), along = n.cross(up);
-    for (Eigen::Index i = 0; i < points.cols(); ++i) {
-      const Eigen::Vector3d x = points.col(i).cast<double>() - lattice.line.origin();
-      const double angle = std::abs(std::remainder(std::atan2(x.dot(n), x.dot(along)), 4.0 * width_));
-      angles_[static_cast<std::size_t>(i)] = angle;
-      across_.col(i) << static_cast<float>(std::hypot(x.dot(n), x.dot(along))), 0.0f, static_cast<float>(x.dot(up));
-    }
-  }
-
-  /// Whether points lie at all angles between the planes. Those of the vertices of a mesh may not: then they tell
-  /// nothing about what lies between.
-  bool areSpread() const {
-    std::vector<double> sorted = angles_;
-    sorted.push_back(0.0);
-    sorted.push_back(2.0 * width_);
-    std::sort(sorted.begin(), sorted.end());
-    double gap = 0.0;
-    for (std::size_t i = 1; i < sorted.size(); ++i) gap = std::max(gap, sorted[i] - sorted[i - 1]);
-    return gap <= kDetection.folds.most_gap * width_;
-  }
-
-  /// Share of them that the plane halfway between two planes maps to within a distance of others.
-  double shareHalfway(double distance) const {
-    const Eigen::Index size = across_.cols();
-    Points all(3, 3 * size), halfway(3, size);  // the sector and its reflections on both sides
-    for (Eigen::Index i = 0; i < size; ++i) {
-      const double angle = angles_[static_cast<std::size_t>(i)];
-      all.col(3 * i) = at(i, angle);
-      all.col(3 * i + 1) = at(i, -angle);
-      all.col(3 * i + 2) = at(i, 4.0 * width_ - angle);
-      halfway.col(i) = at(i, 2.0 * width_ - angle);
-    }
-    const std::vector<int> samples = drawSamples(size, kDetection.folds.phase_samples, 1);
-    std::vector<int> closest;
-    std::vector<float> sq_distances;
-    makeFlannSearch(all)->search(pointsAt(halfway, samples), 1, closest, sq_distances);
-    const auto within = std::count_if(sq_distances.begin(), sq_distances.end(),
-                                      [&](float sq_distance) { return sq_distance <= distance * distance; });
-    return static_cast<double>(within) / static_cast<double>(samples.size());
-  }
-
-private:
-  Eigen::Vector3f at(Eigen::Index i, double angle) const {
-    const float radius = across_(0, i);
-    return {radius * static_cast<float>(std::cos(angle)), radius * static_cast<float>(std::sin(angle)), across_(2, i)};
-  }
-
-  double width_;                ///< half of the angle between two planes
-  std::vector<double> angles_;  ///< in [0, 2 width]
-  Points across_;               ///< radius, nothing, height
-};
-
-/// The angle of the planes of a lattice that most of the known planes fit.
-/// \param[in,out] known those that fit it are left.
-/// \return none where fewer than half of them do.
-std::optional<double> phaseOf(const Line3d& line, int fold, std::vector<ReflectionPlane>& known) {
-  const double step = kPi / fold;
-  std::vector<ReflectionPlane> best;
-  for (const ReflectionPlane& first : known) {
-    std::vector<ReflectionPlane> fitting;
-    for (const ReflectionPlane& plane : known)
-      if (std::abs(std::remainder(angleAbout(line, plane) - angleAbout(line, first), step)) <=
-          kDetection.folds.most_off * step)
-        fitting.push_back(plane);
-    if (fitting.size() > best.size()) best = std::move(fitting);
-  }
-  if (best.empty() || 2 * best.size() < known.size()) return std::nullopt;
-  known = std::move(best);
-  std::complex<double> sum = 0.0;
-  for (const ReflectionPlane& plane : known) sum += std::polar(1.0, 2.0 * fold * angleAbout(line, plane));
-  return std::arg(sum) / (2.0 * fold);
-}
-
-/// The planes of a lattice, where all are symmetries and those halfway between are none.
-std::vector<SymmetryPlane> symmetriesOf(const PlaneLattice& lattice, const NormalizedCloud& cloud,
-                                        const PlaneDecision& decision, double tolerance) {
-  const FoldedPoints folded(cloud.points, lattice);
-  if (!folded.areSpread() || folded.shareHalfway(tolerance) >= kSymmetricShare) return {};
-  std::vector<Candidate> candidates;
-  for (int k = 0; k < lattice.fold; ++k) candidates.push_back({lattice.plane(k), false});
-  std::vector<SymmetryPlane> planes;
-  for (MeasuredPlane& judged : decision.judge(candidates)) {
-    if (judged.plane.kind != PlaneKind::Symmetry) return {};
-    planes.push_back(std::move(judged.plane));
-  }
-  return planes;
-}
-
 }  // namespace
-
-std::optional<PolygonOfSurface> polygonAbout(const Line3d& line, const std::vector<ReflectionPlane>& known,
-                                             const NormalizedCloud& cloud, const PlaneDecision& decision,
-                                             double tolerance, const DetectionOptions& options) {
-  for (const int fold : likelyFolds(FoldSpectrum(cloud.points, line, 1))) {
-    std::vector<ReflectionPlane> fitting = known;
-    std::vector<double> phases;
-    if (const std::optional<double> phase = phaseOf(line, fold, fitting)) {
-      if (fold <= static_cast<int>(fitting.size())) continue;  // nothing is missing
-      phases.push_back(*phase);
-    }
-    phases.push_back(FoldSpectrum(cloud.points, line, kDetection.folds.slabs).phase(fold));
-    if (2 * (fold + kDetection.folds.compared_frequencies) < kDetection.folds.angles)
-      if (const std::optional<double> phase = phaseByReflections(cloud, line, fold, options.num_threads))
-        phases.push_back(*phase);
-    for (const double phase : phases) {
-      PolygonOfSurface polygon{{line, fold, phase, static_cast<int>(fitting.size())}, {}};
-      polygon.planes = symmetriesOf(polygon.lattice, cloud, decision, tolerance);
-      if (!polygon.planes.empty()) return polygon;
-    }
-  }
-  return std::nullopt;
-}
 
 std::optional<PlaneLattice> latticeBySpectrum(const NormalizedCloud& cloud, const Points& all, const Line3d& line,
                                               int num_threads) {
@@ -395,45 +247,19 @@ std::optional<PlaneLattice> latticeBySpectrum(const NormalizedCloud& cloud, cons
     fold = m;
   }
   if (fold == 0) return std::nullopt;
-  fold = leastOf(spectrum, fold);  // two planes across each other have the frequency 2 and its multiples
+  // A polygon has the multiples of its frequency, too; and so have two planes across each other, with the frequency 2.
+  for (int m = 2; m < fold; ++m)
+    if (fold % m == 0 && spectrum.prominence(m) > 0.0) {
+      fold = m;
+      break;
+    }
   if (fold < kDetection.folds.least_fold) return std::nullopt;
   const std::optional<double> phase = phaseByReflections(cloud, line, fold, num_threads);
   return PlaneLattice{line, fold, phase ? *phase : FoldSpectrum(all, line, kDetection.folds.slabs).phase(fold), 0};
 }
 
-namespace {
-
-/// Adds the missing planes of a polygon of which the planes of a surface show some.
-PlanesAndPolygon completed(std::vector<SymmetryPlane> planes, const NormalizedCloud& cloud,
-                           const PlaneDecision& decision, double tolerance, const DetectionOptions& options) {
-  std::vector<ReflectionPlane> symmetries;
-  for (const SymmetryPlane& plane : planes)
-    if (plane.kind == PlaneKind::Symmetry) symmetries.push_back(cloud.toNormalized(plane));
-  std::vector<ReflectionPlane> known;
-  const std::size_t size = std::min(symmetries.size(), kDetection.families.most_pairs);
-  for (std::size_t i = 0; i < size; ++i)
-    for (std::size_t j = 0; j < i; ++j) {
-      if (symmetries[i].angleTo(symmetries[j]) < kDetection.families.least_pair_angle) continue;
-      std::vector<ReflectionPlane> through = planesContaining(commonLine({symmetries[i], symmetries[j]}), symmetries);
-      if (through.size() > known.size()) known = std::move(through);
-    }
-  if (known.size() < kDetection.families.least_planes) return {std::move(planes), std::nullopt};
-  std::optional<PolygonOfSurface> polygon = polygonAbout(commonLine(known), known, cloud, decision, tolerance, options);
-  if (!polygon) return {std::move(planes), std::nullopt};
-  planes.erase(std::remove_if(planes.begin(), planes.end(),
-                              [&](const SymmetryPlane& plane) {
-                                return contains(cloud.toNormalized(plane), polygon->lattice.line);
-                              }),
-               planes.end());
-  std::move(polygon->planes.begin(), polygon->planes.end(), std::back_inserter(planes));
-  return {std::move(planes), polygon->lattice};
-}
-
-}  // namespace
-
 PlanesAndPolygon withPolygon(std::vector<SymmetryPlane> planes, const NormalizedCloud& cloud, const Points& all,
-                             const PlaneDecision& decision, double tolerance, const DetectionOptions& options) {
-  if (cloud.kind() == CloudKind::Surface) return completed(std::move(planes), cloud, decision, tolerance, options);
+                             const PlaneDecision& decision, const DetectionOptions& options) {
   if (!kKindRules.has_polygons[cloud.kind()]) return {std::move(planes), std::nullopt};
   std::stable_sort(planes.begin(), planes.end(),
                    [](const SymmetryPlane& a, const SymmetryPlane& b) { return a.confidence > b.confidence; });

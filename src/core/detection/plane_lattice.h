@@ -43,29 +43,11 @@ struct PlanesAndPolygon {
   std::optional<PlaneLattice> polygon;  ///< normalized frame; its planes are in `planes`, since they are symmetries
 };
 
-/// A regular polygon whose planes are all symmetries of a surface.
-struct PolygonOfSurface {
-  PlaneLattice lattice;               ///< normalized frame
-  std::vector<SymmetryPlane> planes;  ///< all of it, input frame
-};
-
-/// The polygon about a line that the surface of a cloud has: many teeth leave single planes too close to each other to
-/// be found one by one, and too close for the points to tell the planes from those between. The frequencies of the
-/// density suggest folds; the points of all sectors together tell whether the planes halfway between are symmetries,
-/// too, as those of a body of revolution are.
-/// \param known symmetries that contain the line, normalized frame; may be none.
-/// \param tolerance normalized frame.
-/// \return none where no fold has more planes than are known.
-std::optional<PolygonOfSurface> polygonAbout(const Line3d& line, const std::vector<ReflectionPlane>& known,
-                                             const NormalizedCloud& cloud, const PlaneDecision& decision,
-                                             double tolerance, const DetectionOptions& options);
-
-/// Completes polygons. Of noisy clouds, the planes of a polygon are judged together, as they are symmetries together or
-/// not at all; where points resolve a surface, each plane is judged well enough alone.
+/// Judges the planes of a polygon together, as they are symmetries together or not at all. Only of noisy clouds: where
+/// points resolve a surface, each plane is judged well enough alone.
 /// \param planes found before, input frame.
 /// \param all as above.
-/// \param tolerance normalized frame.
 PlanesAndPolygon withPolygon(std::vector<SymmetryPlane> planes, const NormalizedCloud& cloud, const Points& all,
-                             const PlaneDecision& decision, double tolerance, const DetectionOptions& options);
+                             const PlaneDecision& decision, const DetectionOptions& options);
 
 }  // namespace pcl_symmetry
