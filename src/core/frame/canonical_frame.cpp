@@ -56,10 +56,13 @@ float centralOffset(const FrameEvidence& evidence, const Eigen::Vector3f& axis, 
   float beside = 0.0f;  // the greatest score that is not of the peak
   for (std::ptrdiff_t i = 0; i < static_cast<std::ptrdiff_t>(s.size()); ++i)
     if (std::abs(i - at) > side) beside = std::max(beside, s[i]);
-  const double of_peak = meanOffset(evidence, s, [&](double r) {
-    return std::abs(r + std::floor(evidence.reach) - static_cast<double>(at)) <= static_cast<double>(side) ? 1.0 : 0.0;
-  });
   const auto at_offset = static_cast<float>(at) - std::floor(evidence.reach);
+  double of_peak = at_offset;
+  for (int i = 0; i < 5; ++i)  // from either of two cells that the plane passes between
+    of_peak = meanOffset(evidence, s, [&](double r) {
+      const double away = (r - of_peak) / (0.5 * kFrame.clear_side * evidence.reach);
+      return std::exp(-0.5 * away * away);
+    });
   const float top = evidence.nearbyOffset(axis, at_offset).score;  // profiles have steps of a cell
   const double trust = std::clamp((top - kFrame.clear_score) / kFrame.clear_ramp, 0.0, 1.0) *
                        std::clamp((top - beside - kFrame.clear_height) / kFrame.clear_ramp, 0.0, 1.0);

@@ -216,8 +216,7 @@ TEST(CollectFamilies, ABodyOfRevolutionHasItsAxisInPlaceOfItsPlanes) {
   const auto collected = [](const Points& points) {
     const JudgedPoints judged(points);
     return collectFamilies({judged.symmetry(0.1), judged.symmetry(1.0), judged.symmetry(2.2)}, judged.cloud,
-                           judged.cloud.points, *judged.fit, judged.decision, judged.measure.tolerance(),
-                           judged.options);
+                           judged.cloud.points, *judged.fit, judged.decision, judged.options);
   };
   const PlanesAndFamilies can = collected(cylinder(5000, 1).cloud());
   ASSERT_EQ(can.axes.size(), 1u);
@@ -243,8 +242,8 @@ TEST(WithPolygon, PlanesOfANoisyPolygonAreJudgedTogether) {
   const JudgedPoints judged(wheel(7, 0.1, 0.04, false, 6));
   ASSERT_EQ(judged.cloud.kind(), CloudKind::Volume);
   SymmetryPlane first = judged.symmetry(0.5 * kPi), second = judged.symmetry(0.5 * kPi + kPi / 7.0);
-  const PlanesAndPolygon completed = withPolygon({first, second}, judged.cloud, judged.cloud.points, judged.decision,
-                                                 judged.measure.tolerance(), judged.options);
+  const PlanesAndPolygon completed =
+      withPolygon({first, second}, judged.cloud, judged.cloud.points, judged.decision, judged.options);
   ASSERT_TRUE(completed.polygon);
   EXPECT_EQ(completed.polygon->fold, 7);
   EXPECT_EQ(completed.planes.size(), 7u);
