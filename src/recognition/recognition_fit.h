@@ -5,7 +5,7 @@
 
 namespace pcl_symmetry {
 
-/// Log odds that a scan shows a model: a constant, and the weights of PoseEvidence::on_surface, of the merit, and of its lead.
+/// Log odds that a scan shows a model: a constant, and the weights of PoseEvidence::on_surface, merit and lead.
 inline constexpr std::array<double, 4> kRecognitionFit{-11.52, 9.87, 5.09, 4.09};
 
 }  // namespace pcl_symmetry

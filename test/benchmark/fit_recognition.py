@@ -69,7 +69,7 @@ def main(arguments):
           f"{(~right & accepted).sum()} of them accepted; loss for objects left out {fits.cross_validated(loss, names):.3f} nats")  # fmt: skip
     texts = fits.rounded(weights, errors)
     fits.write_header(arguments, f"""
-/// Log odds that a scan shows a model: a constant, and the weights of PoseEvidence::on_surface, of the merit, and of its lead.
+/// Log odds that a scan shows a model: a constant, and the weights of PoseEvidence::on_surface, merit and lead.
 inline constexpr std::array<double, {len(texts)}> kRecognitionFit{{{", ".join(texts)}}};
 """, [["<array>"]])  # fmt: skip
 

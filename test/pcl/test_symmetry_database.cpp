@@ -218,6 +218,7 @@ TEST_F(SymmetryDatabaseTest, AModelThatIsStoredTwiceIsAsCertainAsOnce) {
   for (const RecognizedModel& model : twice) {
     EXPECT_EQ(model.name.substr(0, 4), "cube");
     EXPECT_NEAR(model.confidence, once[0].confidence, 0.1) << model.name;
+    EXPECT_LT(model.score.merit(), 0.84) << "it fits, but not well";
   }
 }
 
