@@ -5,14 +5,12 @@
 #include <cmath>
 #include <iterator>
 #include <limits>
-#include <memory>
 #include <optional>
 #include <utility>
 
 #include "core/base/constants.h"
 #include "core/base/parallel.h"
 #include "core/geometry/directions.h"
-#include "core/geometry/flann_search.h"
 #include "core/geometry/point_samples.h"
 #include "core/geometry/principal_axes.h"
 
@@ -176,7 +174,6 @@ std::vector<ReflectionPlane> startingPlanes(const Points& ball, const Eigen::Vec
 struct BallSearch {
   const NormalizedCloud& cloud;
   const PlaneFit& fit;
-  const std::unique_ptr<NeighborWalk> walk;  ///< null: the cloud has no lists of neighbors
   /// Planes of balls are matched by walks, as those that are kept are refined again on their regions.
   const IspSurface surface;
   IspOptions isp;
@@ -184,13 +181,11 @@ struct BallSearch {
   BallSearch(const NormalizedCloud& the_cloud, const PlaneFit& the_fit)
       : cloud(the_cloud),
         fit(the_fit),
-        walk(cloud.flann && cloud.flann->lists() ? std::make_unique<NeighborWalk>(*cloud.flann->lists(), *cloud.search)
-                                                 : nullptr),
         surface{cloud.points,
                 cloud.geometry.normals,
-                walk ? *walk : *cloud.search,
+                cloud.nearly.search,
                 cloud.surface.at_border,
-                walk ? nullptr : cloud.surface.far,
+                cloud.walk ? nullptr : cloud.surface.far,
                 1} {
     isp.sigma = cloud.sigma;
     isp.final_sigma = cloud.final_sigma;

@@ -28,7 +28,9 @@ public:
       candidate.samples = settles ? samples : fewer;
       const std::vector<int>& used = *candidate.samples;
       const ReflectionPlane start = candidate.plane;
-      candidate.last = refineSymmetricPoints(cloud_.surface, used, start, settles ? stage.isp : stage.rough_isp);
+      // The first steps have wide weights. Scans have many borders, at which walks end beside the closest point.
+      const IspSurface& surface = candidate.iterations == 0 && !cloud_.seen() ? cloud_.nearly : cloud_.surface;
+      candidate.last = refineSymmetricPoints(surface, used, start, settles ? stage.isp : stage.rough_isp);
       candidate.plane = candidate.last.plane;
       candidate.iterations += candidate.last.iterations;
       candidate.merit = merit(shares(candidate.plane, used, candidate.last.last));

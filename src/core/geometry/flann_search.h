@@ -1,7 +1,6 @@
 #pragma once
 
 #include <memory>
-#include <optional>
 #include <utility>
 #include <vector>
 
@@ -23,18 +22,15 @@ public:
                     std::vector<float>& sq_distances) const override;
 
   /// From now on, searchWithin() asks FLANN only where these lists do not prove the answer. The answers stay the same.
-  /// \param lists of the same points.
-  void use(NeighborLists lists) { lists_ = std::move(lists); }
-
-  /// \return what use() was given; null = nothing.
-  const NeighborLists* lists() const { return lists_ ? &*lists_ : nullptr; }
+  /// \param lists of the same points; null = none.
+  void use(std::shared_ptr<const NeighborLists> lists) { lists_ = std::move(lists); }
 
 private:
   struct Tree;  // of FLANN
 
   Points points_;
   std::unique_ptr<Tree> tree_;
-  std::optional<NeighborLists> lists_;
+  std::shared_ptr<const NeighborLists> lists_;
 };
 
 }  // namespace pcl_symmetry

@@ -15,18 +15,6 @@ namespace pcl_symmetry {
 
 namespace {
 
-/// The geometry of points, whose neighbors FLANN's search uses from then on.
-/// \param flann null: the search is of the caller.
-/// \param[out] neighbors of the points.
-LocalGeometry geometryOf(const Points& points, const ClosestPointSearch& search, FlannSearch* flann, int num_threads,
-                         FoundNeighbors& neighbors) {
-  LocalGeometry geometry = localGeometry(points, search, kNumSupportNeighbors, num_threads, &neighbors);
-  static_assert(kNumSupportNeighbors == NeighborLists::kNeighbors);
-  if (flann && NeighborLists::isUseful(points.cols()))
-    flann->use(NeighborLists(points, neighbors.indices, neighbors.sq_reach));
-  return geometry;
-}
-
 /// Replaces estimated normals by those that the input has.
 LocalGeometry withNormals(LocalGeometry geometry, const Points* given) {
   for (Eigen::Index i = 0; given && i < given->cols(); ++i) {
@@ -61,7 +49,11 @@ NormalizedCloud::NormalizedCloud(const PointsRef& input, const GaussianEdt& edt_
       points(normalizePoints(input, center, scale)),
       flann(input_search ? nullptr : std::make_shared<FlannSearch>(points)),
       search(input_search ? std::move(input_search) : flann),
-      geometry(withNormals(geometryOf(points, *search, flann.get(), num_threads, neighbors), given_normals)),
+      geometry(
+          withNormals(localGeometry(points, *search, kNumSupportNeighbors, num_threads, &neighbors), given_normals)),
+      lists(NeighborLists::isUseful(points.cols())
+                ? std::make_shared<NeighborLists>(points, neighbors.indices, neighbors.sq_reach)
+                : nullptr),
       samples(points, geometry, num_threads),
       visibility(seen ? std::optional<Visibility>(seen->normalized(center, scale)) : std::nullopt),
       far(edt, center, scale),
@@ -72,6 +64,9 @@ NormalizedCloud::NormalizedCloud(const PointsRef& input, const GaussianEdt& edt_
               &far,
               num_threads,
               visibility ? &*visibility : nullptr},
+      walk(lists ? std::make_unique<NeighborWalk>(*lists, *search) : nullptr),
+      nearly{points, geometry.normals, walk ? *walk : *search, surface.at_border,
+             &far,   num_threads,      surface.visibility},
       principal_axes(principalAxes(points)),
       extent(farthestPair(points)),
       spacing(median(geometry.spacing)),
@@ -83,7 +78,10 @@ NormalizedCloud::NormalizedCloud(const PointsRef& input, const GaussianEdt& edt_
             : roughness > kRefinement.volume_roughness &&
                     localDimension(points, neighbors) > kRefinement.volume_dimension
                 ? CloudKind::Volume
-                : CloudKind::Surface) {}
+                : CloudKind::Surface) {
+  static_assert(kNumSupportNeighbors == NeighborLists::kNeighbors);
+  if (flann) flann->use(lists);
+}
 
 ReflectionPlane NormalizedCloud::toInput(const ReflectionPlane& plane) const {
   return ReflectionPlane(plane.normal(), plane.offset() * scale + plane.normal().dot(center));

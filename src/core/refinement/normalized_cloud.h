@@ -6,6 +6,7 @@
 
 #include "core/evidence/plane_confidence.h"
 #include "core/evidence/surface_samples.h"
+#include "core/geometry/neighbor_lists.h"
 #include "core/geometry/principal_axes.h"
 #include "core/refinement/surface_matching.h"
 #include "pcl_symmetry/core/iterative_symmetric_points.h"
@@ -43,10 +44,13 @@ struct NormalizedCloud {
   const ClosestPointSearch::Ptr search;
   FoundNeighbors neighbors;  ///< of the points, found together with their geometry
   const LocalGeometry geometry;
-  const SurfaceSamples samples;                ///< the points and their geometry
-  const std::optional<Visibility> visibility;  ///< of a scan
+  const std::shared_ptr<const NeighborLists> lists;  ///< null: there are too many points, or no instructions for them
+  const SurfaceSamples samples;                      ///< the points and their geometry
+  const std::optional<Visibility> visibility;        ///< of a scan
   const FarTest far;
-  const IspSurface surface;  ///< the above, as Iterative Symmetric Points wants it
+  const IspSurface surface;                  ///< the above, as Iterative Symmetric Points wants it
+  const std::unique_ptr<NeighborWalk> walk;  ///< null: there are no lists
+  const IspSurface nearly;  ///< the surface matched by walks, for first steps, which others refine again
 
   const PrincipalAxes principal_axes;  ///< of the points
   const double extent;                 ///< greatest distance between two points, by farthestPair()

@@ -139,12 +139,13 @@ double RotationEvidence::hold(const Line3d& line, double angle) const {
   return std::max(0.0, SymmetricEigen<Eigen::Matrix4d>(stiffness).eigenvalues()[1]);
 }
 
-void RotationEvidence::addPulls(const Line3d& line, double angle, const std::vector<int>& samples, double width,
-                                std::vector<int>& closest, Pulls& pulls) const {
+void RotationEvidence::addPulls(const IspSurface& surface, const Line3d& line, double angle,
+                                const std::vector<int>& samples, double width, std::vector<int>& closest,
+                                Pulls& pulls) const {
   const double sq_width = width * width * tolerance_ * tolerance_;
   const Eigen::Isometry3d motion = motionAboutLine(line, angle);
   const std::array<Eigen::Isometry3d, 4> beside = motionsBeside(line, angle);
-  const ClosestPoints found = matchToSurface(cloud_.surface, moved(Eigen::Affine3d(motion), samples),
+  const ClosestPoints found = matchToSurface(surface, moved(Eigen::Affine3d(motion), samples),
                                              kScanAxes.fit_reach * width * tolerance_, &closest);
   closest = found.indices;
   for (std::size_t i = 0; i < samples.size(); ++i) {
@@ -170,14 +171,15 @@ void RotationEvidence::addPulls(const Line3d& line, double angle, const std::vec
   }
 }
 
-Line3d RotationEvidence::fitted(const Line3d& start, const std::vector<double>& angles, const std::vector<int>& samples,
-                                const std::array<double, 6>& widths) const {
+Line3d RotationEvidence::fitted(const IspSurface& surface, const Line3d& start, const std::vector<double>& angles,
+                                const std::vector<int>& samples, const std::array<double, 6>& widths) const {
   // Tilts about the point of the line among the points, so that they and the shifts are independent.
   Line3d line(start.projection(Eigen::Vector3d::Zero()), start.direction());
   std::vector<std::vector<int>> closest(angles.size(), std::vector<int>(samples.size(), -1));
   for (const double width : widths) {
     Pulls pulls;
-    for (std::size_t k = 0; k < angles.size(); ++k) addPulls(line, angles[k], samples, width, closest[k], pulls);
+    for (std::size_t k = 0; k < angles.size(); ++k)
+      addPulls(surface, line, angles[k], samples, width, closest[k], pulls);
     pulls.squares.diagonal().array() += kScanAxes.fit_ridge * pulls.squares.trace() + kScanAxes.least_f;
     const Eigen::Vector4d step = solveSymmetric(pulls.squares, pulls.sum);
     line = movedLine(line, step * std::min(1.0, kScanAxes.longest_step / std::max(kScanAxes.fit_step, step.norm())));
@@ -187,11 +189,11 @@ Line3d RotationEvidence::fitted(const Line3d& start, const std::vector<double>& 
 }
 
 Line3d RotationEvidence::refined(const Line3d& start, const std::vector<double>& angles) const {
-  return fitted(start, angles, few_samples_, kScanAxes.fit_widths);
+  return fitted(cloud_.nearly, start, angles, few_samples_, kScanAxes.fit_widths);
 }
 
 Line3d RotationEvidence::closelyRefined(const Line3d& start, const std::vector<double>& angles) const {
-  return fitted(start, angles, samples_, kScanAxes.close_fit_widths);
+  return fitted(cloud_.surface, start, angles, samples_, kScanAxes.close_fit_widths);
 }
 
 namespace {

@@ -86,10 +86,10 @@ private:
   Moved matched(const Eigen::Affine3d& motion) const;
   /// \param width of the weights, tolerances.
   /// \param[in,out] closest points to the moved samples, of a line nearby; -1 where none is known.
-  void addPulls(const Line3d& line, double angle, const std::vector<int>& samples, double width,
-                std::vector<int>& closest, Pulls& pulls) const;
-  Line3d fitted(const Line3d& start, const std::vector<double>& angles, const std::vector<int>& samples,
-                const std::array<double, 6>& widths) const;
+  void addPulls(const IspSurface& surface, const Line3d& line, double angle, const std::vector<int>& samples,
+                double width, std::vector<int>& closest, Pulls& pulls) const;
+  Line3d fitted(const IspSurface& surface, const Line3d& start, const std::vector<double>& angles,
+                const std::vector<int>& samples, const std::array<double, 6>& widths) const;
   /// The rim of what was seen is as exact as its pixels.
   bool isEmpty(const Eigen::Vector3d& x) const {
     return isSeenEmpty(*cloud_.visibility, x, tolerance_, std::max(tolerance_, cloud_.spacing));

@@ -153,7 +153,7 @@ TEST(FlannSearch, GivesTheSameAnswersWithLists) {
   for (const auto& [name, points] : pointSets()) {
     if (!NeighborLists::isUseful(points.cols())) continue;
     FlannSearch search(points);
-    search.use(listsOf(points, search));
+    search.use(std::make_shared<NeighborLists>(listsOf(points, search)));
     const ClosestPointSearch::Ptr without = makeFlannSearch(points);
     const Points queries = queriesFor(points);
     const auto size = static_cast<std::size_t>(queries.cols());
@@ -179,7 +179,7 @@ TEST(FlannSearch, GivesTheSameAnswersWithLists) {
 TEST(FlannSearch, QueriesThatAreNoNumbersEndWithoutHarm) {
   const Points points = Points::Random(3, 500);
   FlannSearch search(points);
-  if (NeighborLists::isUseful(points.cols())) search.use(listsOf(points, search));
+  if (NeighborLists::isUseful(points.cols())) search.use(std::make_shared<NeighborLists>(listsOf(points, search)));
   std::vector<int> indices;
   std::vector<float> sq_distances;
   const Points queries = Points::Constant(3, 4, std::numeric_limits<float>::quiet_NaN());
