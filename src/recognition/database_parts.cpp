@@ -46,7 +46,8 @@ DescribedModel describedModel(const Points& points, const DatabaseOptions& optio
   DescriptionOptions description;
   description.num_threads = options.num_threads;
   DescribedModel model;
-  model.packed.signatures = packedSignatures(describeShape(points, description).signatures);
+  model.signatures = describeShape(points, description).signatures;
+  model.packed.signatures = packedSignatures(model.signatures);
   model.packed.views = packedViews(viewsAround(points, options.num_views, options.num_threads));
   const Points some = pointsAt(points, drawSamples(points.cols(), kMatching.num_surface_points, 1));
   model.packed.surfaces =
@@ -55,7 +56,6 @@ DescribedModel describedModel(const Points& points, const DatabaseOptions& optio
   cloud.getMatrixXfMap(3, 4, 0) = points;
   model.packed.cloud = packedCloud(cloud);
   model.packed.num_points = cloud.size();
-  model.signatures = unpackedSignatures(model.packed.signatures);
   return model;
 }
 

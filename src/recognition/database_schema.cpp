@@ -1,12 +1,13 @@
 #include "recognition/database_schema.h"
 
+#include <zlib.h>
+
 #include <array>
 #include <cstring>
 #include <ctime>
 #include <filesystem>
 #include <fstream>
-
-#include "recognition/packed_model.h"
+#include <string_view>
 
 namespace pcl_symmetry::detail {
 
@@ -76,6 +77,16 @@ void compareBlobs(const SQLiteConnection& connection, const std::string& table, 
   while (missing.next()) damages.push_back("the " + table + " of model '" + missing.text(0) + "' are missing");
 }
 
+/// CRC-32 of texts, each with its end: any change of up to 32 neighboring bits changes it.
+std::int64_t checksumOf(std::initializer_list<std::string_view> texts) {
+  std::uint32_t value = 0;
+  for (const std::string_view text : texts) {
+    value = static_cast<std::uint32_t>(crc32_z(value, reinterpret_cast<const Bytef*>(text.data()), text.size()));
+    value = static_cast<std::uint32_t>(crc32_z(value, reinterpret_cast<const Bytef*>(""), 1));
+  }
+  return value;
+}
+
 }  // namespace
 
 void createSchema(const SQLiteConnection& connection, const std::string& unit) {
@@ -121,19 +132,12 @@ std::string joinedTags(const std::vector<std::string>& tags) {
 }
 
 std::int64_t checksumOf(std::int64_t id, const ModelInfo& info) {
-  return Checksum()
-      .add(id)
-      .add(info.name)
-      .add(info.time)
-      .add(info.source.path)
-      .add(info.source.checksum)
-      .add(joinedTags(info.source.tags))
-      .add(static_cast<std::int64_t>(info.num_points))
-      .value();
+  return checksumOf({std::to_string(id), info.name, std::to_string(info.time), info.source.path, info.source.checksum,
+                     joinedTags(info.source.tags), std::to_string(info.num_points)});
 }
 
 std::int64_t checksumOf(const std::string& table, std::int64_t id, const std::string& data) {
-  return Checksum().add(table).add(id).add(data).value();
+  return checksumOf({table, std::to_string(id), data});
 }
 
 std::vector<std::string> damagesOf(const SQLiteConnection& connection, std::vector<std::string> damages) {

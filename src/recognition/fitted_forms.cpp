@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 #include <limits>
 #include <stdexcept>
 #include <string>
@@ -17,15 +18,6 @@
 namespace pcl_symmetry::detail {
 
 namespace {
-
-/// Rows of a projection's numbers that belong together: mean and basis, then rotations.
-Eigen::Map<const Eigen::MatrixXf> columnsOf(const std::vector<float>& values, std::size_t first, Eigen::Index rows) {
-  return {values.data() + first, rows, static_cast<Eigen::Index>(values.size() - first) / rows};
-}
-
-void append(const Eigen::MatrixXf& matrix, std::vector<float>& values) {
-  values.insert(values.end(), matrix.data(), matrix.data() + matrix.size());
-}
 
 std::string partOf(ModelStore& store, ModelPart part, const StoredModel& model, std::mutex& mutex) {
   const std::lock_guard<std::mutex> lock(mutex);
@@ -66,20 +58,15 @@ std::vector<StoredModel> referencesOf(ModelStore& store, int max_references) {
 }
 
 std::string CompactForm::packed() const {
-  PackedBytes bytes;
-  bytes.put(typical);
-  bytes.append(packedMatrix(compact, MatrixBits::Sixteen));
-  return bytes.bytes();
+  return packedMatrices({compact, Eigen::MatrixXf::Constant(1, 1, typical)});
 }
 
 CompactForm CompactForm::unpacked(const std::string& bytes) {
-  UnpackedBytes packed(bytes);
-  CompactForm form;
-  form.typical = packed.get<float>();
-  form.compact = unpackedMatrix(bytes.substr(sizeof(float)));
-  check(form.compact.cols() == kFormsPerModel && form.typical > 0.0f, "compact form", form.compact.cols(),
-        "kFormsPerModel columns");
-  return form;
+  const std::vector<Eigen::MatrixXf> matrices = unpackedMatrices(bytes);
+  check(
+      matrices.size() == 2 && matrices[0].cols() == kFormsPerModel && matrices[1].size() == 1 && matrices[1](0) > 0.0f,
+      "compact form", matrices.size(), "that of a model");
+  return {matrices[0], matrices[1](0)};
 }
 
 CompactForms CompactForms::fit(std::vector<std::int64_t> ids, const Eigen::MatrixXf& signatures, int num_threads) {
@@ -92,7 +79,7 @@ CompactForms CompactForms::fit(std::vector<std::int64_t> ids, const Eigen::Matri
   forms.projection_ = SignatureProjection::fit(first, options);
   forms.ids_ = std::move(ids);
   forms.references_ = forms.projection_.project(signatures);
-  return unpacked(forms.packed());  // the same as those who read it
+  return forms;
 }
 
 CompactForm CompactForms::formOf(const Eigen::MatrixXf& signatures, std::int64_t id) const {
@@ -111,42 +98,41 @@ CompactForm CompactForms::formOf(const Eigen::MatrixXf& signatures, std::int64_t
 
 std::string CompactForms::packed() const {
   const std::vector<float> values = projection_.toValues();
-  const Eigen::Index k = numDimensions();
-  const std::size_t num_basis = static_cast<std::size_t>(kSignatureSize * (1 + k));
-  PackedBytes bytes;
-  bytes.put(static_cast<std::uint32_t>(ids_.size()));
-  for (const std::int64_t id : ids_) bytes.put(id);
-  const std::vector<float> basis(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(num_basis));
-  bytes.putText(packedMatrix(columnsOf(basis, 0, kSignatureSize), MatrixBits::Sixteen));
-  bytes.putText(packedMatrix(columnsOf(values, num_basis, k), MatrixBits::Sixteen));
-  bytes.putText(packedMatrix(references_, MatrixBits::Sixteen));
-  return bytes.bytes();
+  const auto size = static_cast<std::uint32_t>(ids_.size());
+  return std::string(reinterpret_cast<const char*>(&size), sizeof(size)) +
+         std::string(reinterpret_cast<const char*>(ids_.data()), ids_.size() * sizeof(ids_[0])) +
+         packedMatrices(
+             {Eigen::Map<const Eigen::VectorXf>(values.data(), static_cast<Eigen::Index>(values.size())), references_});
 }
 
 CompactForms CompactForms::unpacked(const std::string& bytes) {
-  UnpackedBytes packed(bytes);
   CompactForms forms;
-  const std::size_t count = packed.get<std::uint32_t>();
-  if (count > packed.left() / sizeof(std::int64_t)) throw std::invalid_argument("is incomplete");
-  for (std::size_t i = 0; i < count; ++i) forms.ids_.push_back(packed.get<std::int64_t>());
-  std::vector<float> values;
-  for (int i = 0; i < 2; ++i) append(unpackedMatrix(packed.text()), values);
-  forms.projection_ = SignatureProjection::fromValues(values);
-  forms.references_ = unpackedMatrix(packed.text());
+  std::uint32_t size = 0;
+  if (bytes.size() < sizeof(size)) throw std::invalid_argument("is incomplete");
+  std::memcpy(&size, bytes.data(), sizeof(size));
+  if (size > (bytes.size() - sizeof(size)) / sizeof(forms.ids_[0])) throw std::invalid_argument("is incomplete");
+  forms.ids_.resize(size);
+  const std::size_t size_of_ids = size * sizeof(forms.ids_[0]);
+  if (size > 0) std::memcpy(forms.ids_.data(), bytes.data() + sizeof(size), size_of_ids);
+  std::vector<Eigen::MatrixXf> matrices = unpackedMatrices(bytes.substr(sizeof(size) + size_of_ids));
+  if (matrices.size() != 2) throw std::invalid_argument("is incomplete");
+  forms.projection_ = SignatureProjection::fromValues({matrices[0].data(), matrices[0].data() + matrices[0].size()});
+  forms.references_ = std::move(matrices[1]);
   check(forms.references_.rows() == forms.numDimensions() &&
-            forms.references_.cols() == kFormsPerModel * static_cast<Eigen::Index>(count),
+            forms.references_.cols() == kFormsPerModel * static_cast<Eigen::Index>(size),
         "number of references", forms.references_.cols(), "that of their compact forms");
   return forms;
 }
 
 PackedProjection FittedForms::packed() const {
-  return {id, static_cast<int>(forms->references().size()), forms->packed(),
-          packedMatrix(coder->toValues(), MatrixBits::Sixteen)};
+  return {id, static_cast<int>(forms->references().size()), forms->packed(), packedMatrices({coder->toValues()})};
 }
 
 FittedForms FittedForms::unpacked(const PackedProjection& packed) {
+  const std::vector<Eigen::MatrixXf> coder = unpackedMatrices(packed.view_coder);
+  if (coder.size() != 1) throw std::invalid_argument("is incomplete");
   return {packed.id, std::make_shared<const CompactForms>(CompactForms::unpacked(packed.values)),
-          std::make_shared<const ViewCoder>(ViewCoder::fromValues(unpackedMatrix(packed.view_coder)))};
+          std::make_shared<const ViewCoder>(ViewCoder::fromValues(coder[0]))};
 }
 
 bool FittedForms::isOf(const std::vector<StoredModel>& references) const {
@@ -177,9 +163,7 @@ std::shared_ptr<const ViewCoder> fitViewCoder(ModelStore& store, int max_referen
   std::vector<View> all;
   for (std::vector<View>& of_model : views)
     all.insert(all.end(), std::make_move_iterator(of_model.begin()), std::make_move_iterator(of_model.end()));
-  // The same as those who read it.
-  const std::string bytes = packedMatrix(ViewCoder::fit(all).toValues(), MatrixBits::Sixteen);
-  return std::make_shared<const ViewCoder>(ViewCoder::fromValues(unpackedMatrix(bytes)));
+  return std::make_shared<const ViewCoder>(ViewCoder::fit(all));
 }
 
 std::vector<PackedForms> formsOfModels(ModelStore& store, const std::vector<StoredModel>& models,

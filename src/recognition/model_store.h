@@ -26,7 +26,7 @@ struct StoredModel {
   std::string name;
 };
 
-/// What is fitted to a database, as bytes: CompactForms, and the ViewCoder as packedMatrix().
+/// What is fitted to a database, as bytes: CompactForms, and the ViewCoder as packedMatrices().
 struct PackedProjection {
   std::int64_t id = 0;
   int num_references = 0;

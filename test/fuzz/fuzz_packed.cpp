@@ -10,13 +10,11 @@ namespace {
 
 using namespace pcl_symmetry;
 
-/// What may stand in a row of the database, once its checksum and its compression hold.
+/// What may stand in a row of the database, once its checksum holds.
 void readPart(const std::string& bytes, void (*unpack)(const std::string&)) {
-  for (const bool is_compressed : {false, true}) {
-    try {
-      unpack(is_compressed ? detail::compressed(bytes, detail::Effort::Low) : bytes);
-    } catch (const std::invalid_argument&) {
-    }
+  try {
+    unpack(bytes);
+  } catch (const std::invalid_argument&) {
   }
 }
 
