@@ -32,7 +32,9 @@ struct CloudRegistrationOptions {
   std::optional<PoseNeighborhood> around = {};
   FrameOptions frame;        ///< of the frames that poses come from, beside evenly spread rotations
   PoseSearchOptions search;  ///< of the search for poses
-  int max_iterations = 30;   ///< of the refinement by PCL's point-to-plane ICP, >= 1
+  /// Where no pose convinces, poses are looked for by pairs of points, as clouds that share a small part need it.
+  bool search_parts = true;
+  int max_iterations = 30;  ///< of the refinement by PCL's point-to-plane ICP, >= 1
   /// Greatest distance of corresponding points in the refinement, input units, > 0; not set: from the data.
   std::optional<double> max_correspondence = {};
   double transformation_epsilon = 1e-8;  ///< of the refinement, as in pcl::Registration, but in radii, >= 0
@@ -65,7 +67,7 @@ struct CloudRegistration : RegisteredPose {
   std::string doubt() const;
 
   /// Distinct poses by falling merit, at most PoseSearchOptions::max_poses: those that symmetry makes equal have
-  /// like merits.
+  /// like merits. Where the first convinces as little as those of parts of the clouds, by falling confidence.
   std::vector<RegisteredPose> poses;
   /// How uncertain the best pose is: the covariance of the small motion (w, t) of the target's frame that makes it
   /// true: a point x of the aligned source belongs at x + w x x + t. Rotation vector w, radians, then translation t,

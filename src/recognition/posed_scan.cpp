@@ -21,6 +21,7 @@ double sharedSurface(const PosedModel& a, const PosedModel& b) {
 CloudRegistrationOptions quickRegistration(int num_threads) {
   CloudRegistrationOptions options;
   options.frame = signatureFrameOptions();
+  options.search_parts = false;
   options.search.num_rotations = 200;
   options.search.num_screened = 16;
   options.search.num_refined = 6;

@@ -6,10 +6,12 @@
 #include "core/base/check.h"
 #include "core/base/constants.h"
 #include "core/base/stopwatch.h"
+#include "core/matching/point_pair_index.h"
 #include "core/registration/pose_covariance.h"
 #include "core/registration/pose_evidence.h"
 #include "core/registration/pose_starts.h"
 #include "core/registration/ranked_poses.h"
+#include "core/registration/registration_rules.h"
 #include "registration/pose_refinement.h"
 #include "registration/prepared_cloud.h"
 
@@ -128,6 +130,39 @@ std::vector<Eigen::Isometry3d> posesAround(const PosedSurface& scan, const Posed
   return poses;
 }
 
+/// Poses of two clouds that share a part of their surface, by pairs of points that are alike in both (Drost et al.
+/// 2010). A search by the share of the whole ends beside them: what the other cloud does not show pulls, too.
+std::vector<RankedPose> posesOfParts(const CloudPair& clouds, const CloudRegistrationOptions& options) {
+  const auto& rules = kRegistration;
+  PosedSurface scan = clouds.scan(), model = clouds.model();
+  scan.seen = model.seen = std::nullopt;  // while the pose is fitted: missing parts look like space that was seen empty
+  const PointPairIndex pairs({evenSurfacePoints(model.points, kMatching.num_pair_points, options.seed)},
+                             options.num_threads);
+  const SurfacePoints few = evenSurfacePoints(scan.points, kMatching.num_scan_points, options.seed);
+  const PoseScorer scorer(scan, model);
+  std::vector<RankedPose> poses;
+  const std::vector<ShapeOfPairs> found = pairs.nearest(few, {1, rules.num_part_poses, options.num_threads});
+  for (const Eigen::Isometry3d& pose : found.front().T_shape_scan) {
+    poses.push_back({pose, {}});
+    poses.back().improve(scorer, {rules.part_steps, rules.fine_points, rules.part_width, rules.fine_width});
+    poses.back().score = {};  // all are refined
+  }
+  if (poses.empty()) return poses;
+  poses = refinePoses(scan, model, poses, options);
+  for (RankedPose& pose : poses) pose.score = lastScore(clouds.scan(), clouds.model(), pose.T_model_scan);
+  return poses;
+}
+
+/// The distinct poses of greatest confidence.
+std::vector<RankedPose> mostConfident(const CloudPair& clouds, const std::vector<RankedPose>& poses, std::size_t most) {
+  std::vector<std::pair<double, RankedPose>> judged;
+  for (const RankedPose& pose : poses) judged.emplace_back(poseConfidence(clouds.evidence(pose)), pose);
+  std::stable_sort(judged.begin(), judged.end(), [](const auto& a, const auto& b) { return a.first > b.first; });
+  std::vector<RankedPose> ranked;
+  for (const auto& [unused, pose] : judged) ranked.push_back(pose);
+  return firstDistinct(ranked, most);
+}
+
 /// Leaves those of the poses that are around a guess.
 /// \param poses between search frames.
 void keepAround(const CloudPair& clouds, const Eigen::Isometry3d& guess, const PoseNeighborhood& around,
@@ -222,6 +257,13 @@ CloudRegistration registerClouds(const Points& source, const std::optional<Visib
   if (!poses.empty()) poses = refinePoses(clouds.scan(), clouds.model(), poses, inner);
   if (options.around) keepAround(clouds, guess, *options.around, poses);
   done("refine");
+  if (options.search_parts && !options.around && !poses.empty() &&
+      poseConfidence(clouds.evidence(poses.front())) < kRegistration.least_confidence) {
+    const std::vector<RankedPose> of_parts = posesOfParts(clouds, inner);
+    poses.insert(poses.end(), of_parts.begin(), of_parts.end());
+    poses = mostConfident(clouds, poses, static_cast<std::size_t>(search.max_poses));
+    done("parts");
+  }
   for (const RankedPose& pose : poses) result.poses.push_back({clouds.toInput(pose.T_model_scan), pose.score});
   if (!poses.empty()) {
     result.covariance = covarianceOf(clouds, poses.front(), inner);

@@ -121,14 +121,16 @@ Eigen::Isometry3d SearchFrames::toInput(const Eigen::Isometry3d& T_target_source
   return pose;
 }
 
+PoseScore lastScore(const PosedSurface& scan, const PosedSurface& model, const Eigen::Isometry3d& T_model_scan) {
+  const double width = std::max({kPoseRefinement.least_width, scan.accuracy, model.accuracy});
+  return PoseScorer(scan, model).score(T_model_scan, {kPoseRefinement.judged_points, width, true});
+}
+
 std::vector<RankedPose> refinePoses(const PosedSurface& scan, const PosedSurface& model,
                                     const std::vector<RankedPose>& poses, const CloudRegistrationOptions& options) {
-  const double accuracy = std::max(scan.accuracy, model.accuracy);
   PoseRefinement icp(scan, model, refinementReach(scan, model, options.max_correspondence), options);
-  const PoseScorer scorer(scan, model);
-  const PoseScorer::Detail detail{kPoseRefinement.judged_points, std::max(kPoseRefinement.least_width, accuracy), true};
   const auto judged = [&](const Eigen::Isometry3d& pose, int num_points) {
-    return RankedPose{pose, scorer.score(pose, detail), num_points};
+    return RankedPose{pose, lastScore(scan, model, pose), num_points};
   };
   std::vector<RankedPose> refined;
   for (const RankedPose& pose : poses) {

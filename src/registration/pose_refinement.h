@@ -24,6 +24,9 @@ struct SearchFrames {
 /// \return distance in which refinePoses() looks for corresponding points, units of the search.
 double refinementReach(const PosedSurface& scan, const PosedSurface& model, std::optional<double> max_correspondence);
 
+/// The last comparison of two surfaces in a pose, with more points than a search.
+PoseScore lastScore(const PosedSurface& scan, const PosedSurface& model, const Eigen::Isometry3d& T_model_scan);
+
 /// Poses and their refinements by PCL's point-to-plane ICP, of each the one of greater merit.
 /// \param scan,model in search frames.
 /// \param poses from searchPoses(), best first, at least one. Poses far behind the best are left out.

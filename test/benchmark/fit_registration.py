@@ -27,7 +27,7 @@ def terms_of(e):
     """The terms of poseConfidence() in src/core/registration/pose_evidence.cpp."""
     overlap = min(e["overlap_source"], e["overlap_target"])
     agreement = np.log(e["agreement"] / (1 - e["agreement"]))
-    return [1, agreement, np.log(overlap + 0.01), e["on_surface"], e["conflict"], np.log(np.clip(e["noise"], 0.0015, 0.01) / 0.001 + 0.5),
+    return [1, agreement, np.log(overlap + 0.01), e["on_surface"], min(e["conflict"], 0.5), np.log(np.clip(e["noise"], 0.0015, 0.01) / 0.001 + 0.5),
             abs(np.log(e["size_ratio"]))]  # fmt: skip
 
 

@@ -66,6 +66,15 @@ class Registration(unittest.TestCase):
                     self.assertTrue(0.25 < share < 0.9, share)
                 self.assertGreater(found.evidence.agreement, 0.8)
 
+    def test_two_scans_that_share_a_quarter_converge(self):
+        shape, truth = body(1), motion(1)
+        for angle in (90, 100):
+            with self.subTest(angle=angle):
+                found = pcl_symmetry.register(scan(shape, 0), moved(truth, scan(shape, angle, seed=1)), threads=1)
+                self.assertTrue(found.converged, found.reason)
+                self.assertLess(degrees(found.transform, truth), 3)
+                self.assertLess(found.evidence.overlap_source, 0.4)
+
     def test_noise_and_a_whole_model(self):
         shape, truth = body(5), motion(5)
         model = moved(truth, shape[0][::4])

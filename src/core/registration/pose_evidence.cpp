@@ -99,7 +99,7 @@ double poseConfidence(const PoseEvidence& evidence) {
       std::log(evidence.agreement / (1.0 - evidence.agreement)),
       std::log(std::min(evidence.overlap_source, evidence.overlap_target) + 0.01),
       evidence.on_surface,
-      evidence.conflict,
+      std::min(evidence.conflict, kRegistration.max_conflict),
       std::log(std::clamp(evidence.noise, kRegistration.min_noise, kRegistration.max_noise) / 0.001 + 0.5),
       std::abs(std::log(evidence.size_ratio))};
   double log_odds = 0.0;

@@ -55,8 +55,7 @@ void RankedPose::improve(const PoseScorer& scorer, const PoseImprovement& how, d
   num_points = how.num_points;
 }
 
-std::vector<RankedPose> distinctPoses(std::vector<RankedPose> poses, std::size_t most, double radius) {
-  std::stable_sort(poses.begin(), poses.end(), better);
+std::vector<RankedPose> firstDistinct(const std::vector<RankedPose>& poses, std::size_t most, double radius) {
   std::vector<RankedPose> kept;
   for (const RankedPose& pose : poses) {
     const auto same = [&](const RankedPose& other) {
@@ -68,6 +67,11 @@ std::vector<RankedPose> distinctPoses(std::vector<RankedPose> poses, std::size_t
     if (kept.size() == most) break;
   }
   return kept;
+}
+
+std::vector<RankedPose> distinctPoses(std::vector<RankedPose> poses, std::size_t most, double radius) {
+  std::stable_sort(poses.begin(), poses.end(), better);
+  return firstDistinct(poses, most, radius);
 }
 
 std::vector<RankedPose> searchPoses(const PosedSurface& scan, const PosedSurface& model,

@@ -24,8 +24,11 @@ struct RankedPose {
   void improve(const PoseScorer& scorer, const PoseImprovement& how, double unit = 1.0);
 };
 
-/// The best poses, at most \p most, that differ from all better ones.
+/// The first poses, at most \p most, that differ from all before them.
 /// \param radius of the model, in the unit of the poses.
+std::vector<RankedPose> firstDistinct(const std::vector<RankedPose>& poses, std::size_t most, double radius = 1.0);
+
+/// The poses of greatest merit, at most \p most, that differ from all better ones.
 std::vector<RankedPose> distinctPoses(std::vector<RankedPose> poses, std::size_t most, double radius = 1.0);
 
 /// A few distinct poses of greatest merit (Section 5.1). Evenly spread rotations are screened by merit. The best of

@@ -6,6 +6,6 @@
 namespace pcl_symmetry {
 
 /// Weights of the terms of poseConfidence().
-inline constexpr std::array<double, 7> kRegistrationFit{0.09, 0.424, 0.611, 5.08, -1.71, -1.433, -4.10};
+inline constexpr std::array<double, 7> kRegistrationFit{-0.61, 0.834, 0.082, 5.65, -3.69, -1.193, -8.67};
 
 }  // namespace pcl_symmetry

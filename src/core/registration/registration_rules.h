@@ -36,6 +36,12 @@ struct RegistrationRules {
   double merge_angle = 0.2;     ///< radians; poses closer than this and than merge_distance are one
   double merge_distance = 0.1;  ///< radii
 
+  // Poses of clouds that share a part, where no other pose convinces
+  double least_confidence = 0.5;  ///< of a pose that convinces, that of CloudRegistration::converged()
+  int num_part_poses = 12;        ///< by pairs of points
+  int part_steps = 3;             ///< of their first fit
+  double part_width = 0.1;        ///< radii, width of the Gaussian at its start
+
   // Evidence of a pose
   int evidence_points = 3000;       ///< of each cloud, that are looked at
   double tight_tolerance = 0.004;   ///< of the smaller cloud's diameter: distance within which surfaces agree, at least
@@ -46,6 +52,7 @@ struct RegistrationRules {
   double max_noise = 0.01;          ///< diameters; more is the curvature between few points
   double other_unit = 5.0;          ///< ratio of diameters from which a wrong unit is suspected
   double some_conflict = 0.1;       ///< conflict with free space that is worth a word
+  double max_conflict = 0.5;        ///< more says no more: scans lack parts that their scanner did not resolve
   double agreeing_cosine = 0.7071;  ///< of the angle between normals of one surface: 45 degrees
   /// Radii, width within which points of one surface lie on each other: at least, and where noise asks for more, at
   /// most. On whole objects of PSB, a right pose has 0.41 of its points there with 400 points, a wrong one 0.29.
