@@ -113,6 +113,10 @@ class Shapes(Field):
             self.tool("planes", "field/dented_can.off", "-tolerance", 0.05, "-profile", f"{folder}/x.svg", "-quiet")
             self.assertIn("<svg", Path(folder, "x.svg").read_text())
 
+    def test_the_best_plane_of_a_scallop_is_a_good_one_for_all_seeds(self):
+        for seed in range(1, 11):
+            self.assertGreater(self.symmetries("field/scallop.off", "-seed", seed)[1]["best"]["share"], 0.89, seed)
+
 
 class FewPoints(Field):
     def test_get_one_sentence(self):
