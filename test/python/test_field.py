@@ -101,6 +101,23 @@ class Clouds(Field):
             self.assertEqual((len(found), report["axes"]), (0, []), name)
 
 
+class Shapes(Field):
+    def test_a_gear_of_39_teeth_has_40_planes(self):
+        found, report = self.symmetries("field/gear39.off")
+        self.assertEqual((len(found), report["axes"]), (40, []))
+        angles = np.sort(np.arctan2(found[:, 1], found[:, 0])[abs(found[:, 2]) < 0.5] % np.pi)
+        np.testing.assert_allclose(np.diff(angles), np.pi / 39, atol=1e-5)
+
+    def test_a_dented_can_has_an_axis_and_a_profile_at_a_coarse_tolerance(self):
+        with tempfile.TemporaryDirectory() as folder:
+            self.tool("planes", "field/dented_can.off", "-tolerance", 0.05, "-profile", f"{folder}/x.svg", "-quiet")
+            self.assertIn("<svg", Path(folder, "x.svg").read_text())
+
+    def test_the_best_plane_of_a_scallop_is_a_good_one_for_all_seeds(self):
+        for seed in range(1, 11):
+            self.assertGreater(self.symmetries("field/scallop.off", "-seed", seed)[1]["best"]["share"], 0.89, seed)
+
+
 class FewPoints(Field):
     def test_get_one_sentence(self):
         random = np.random.default_rng(1)

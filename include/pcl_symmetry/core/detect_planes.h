@@ -58,10 +58,10 @@ struct DetectionOptions {
   bool approximate = false;
   bool evidence = false;  ///< fills Detection::evidence; takes about as long again as the detection
   bool rotations = true;  ///< also searches axes of rotation of scans; false saves about a third of the time
-  bool folds = true;    ///< with `rotations`: also axes of finite order; false finds bodies of revolution only, faster
-  int max_planes = 64;  ///< >= 1; folds of rotations go up to 60
-  int num_cells = 64;   ///< cells of the distance transform along each side, in [8, 512]
-  double sigma = 0.0;   ///< its width, input units, >= 0; 0 = two cells, or the spacing of the points if that is more
+  bool folds = true;     ///< with `rotations`: also axes of finite order; false finds bodies of revolution only, faster
+  int max_planes = 128;  ///< >= 1; a gear of 120 teeth has 121
+  int num_cells = 64;    ///< cells of the distance transform along each side, in [8, 512]
+  double sigma = 0.0;    ///< its width, input units, >= 0; 0 = two cells, or the spacing of the points if that is more
   std::uint64_t seed = 1;  ///< of all random draws; the same seed gives the same answer
   int num_threads = 0;     ///< >= 0; 0 = one per core; the answer does not depend on it
 

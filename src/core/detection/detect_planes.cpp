@@ -143,7 +143,7 @@ void doubtWhatNeedsAPiece(const JudgedCloud& judged, Found& found) {
   doubtMissingPieces(found.planes, judged.cloud.kind(), judged.options);
 }
 
-/// Where noise hides single planes of a polygon, all are judged together.
+/// The planes of a polygon that noise or the nearness of others hides.
 void completePolygon(const JudgedCloud& judged, Found& found) {
   PlanesAndPolygon completed =
       withPolygon(std::move(found.planes), judged.cloud, judged.all, judged.decision, judged.options);
@@ -153,7 +153,8 @@ void completePolygon(const JudgedCloud& judged, Found& found) {
 
 /// Bodies of revolution and spheres in place of their planes.
 void findFamilies(const JudgedCloud& judged, Found& found) {
-  if (judged.measure.limits().isCutAllAround()) return;
+  const bool is_polygon = found.polygon && judged.cloud.kind() == CloudKind::Surface;
+  if (judged.measure.limits().isCutAllAround() || is_polygon) return;
   PlanesAndFamilies families =
       collectFamilies(std::move(found.planes), judged.cloud, judged.all, judged.fit, judged.decision, judged.options);
   found.planes = std::move(families.planes);

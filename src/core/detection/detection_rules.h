@@ -120,13 +120,15 @@ struct DetectionRules {
 
   /// Folds of noisy clouds, by their spectrum.
   struct {
-    int most_frequency = 60, least_fold = 3;  ///< a cloud that is thinner on one side, or flat, has folds one and two
-    int rings = 8, slabs = 4;                 ///< about the line: rings for the fold, slabs for the angle of the planes
+    int most_frequency = 120, least_fold = 3;  ///< a cloud that is thinner on one side, or flat, has folds one and two
+    int rings = 8, slabs = 4;  ///< about the line: rings for the fold, slabs for the angle of the planes
     int spectrum_samples = 20'000, angles = 192, phase_samples = 5000;
     double reflections_stand_out = 20.0;   ///< powers beside it from which reflections fix the angle better than rings
     int compared_frequencies = 12;         ///< frequencies on either side that one is compared with
     double least_power = 20.0;             ///< round bodies in noise have 15 at most
     double stands_out = 4.0;               ///< medians of the powers beside it
+    double most_gap = 0.125;               ///< between angles of folded points, angles between two planes
+    double errors = 3.0;                   ///< standard errors by which the planes between those of a polygon are worse
     double odds_of_polygon = 4.0;          ///< of planes of a polygon over other planes of the same evidence
     std::size_t most_line_pairs = 4;       ///< planes whose common lines are tried
     double least_line_angle = 0.1;         ///< between two of them

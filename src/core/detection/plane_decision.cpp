@@ -140,10 +140,10 @@ std::vector<SymmetryPlane> rankedPlanes(std::vector<SymmetryPlane> planes, const
       continue;
     const bool of_polygon = isOf(polygon, plane, cloud);
     const bool is_known = std::any_of(ranked.begin(), ranked.end(), [&](const SymmetryPlane& other) {
+      if (of_polygon && isOf(polygon, other, cloud)) return plane.angleTo(other) < 0.5 * kPi / polygon->fold;
       if (kSamePlane.same(cloud.toNormalized(other), cloud.toNormalized(plane))) return true;
       // D is of the whole shape: planes of a part need not be maxima of it.
-      if (plane.kind == PlaneKind::Local) return false;
-      return !(of_polygon && isOf(polygon, other, cloud)) && isOnSlopeOf(other, plane, cloud);
+      return plane.kind != PlaneKind::Local && isOnSlopeOf(other, plane, cloud);
     });
     if (!is_known) ranked.push_back(std::move(plane));
   }

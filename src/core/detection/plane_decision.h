@@ -45,6 +45,9 @@ public:
   /// \param samples indices of the points that judge them.
   JudgedFamily judgeFamily(const std::vector<ReflectionPlane>& planes, const std::vector<int>& samples) const;
 
+  /// PlaneMeasure::tolerance().
+  double tolerance() const { return measure_.tolerance(); }
+
   /// CloudLimits::isCutAllAround().
   bool isCutAllAround() const { return measure_.limits().isCutAllAround(); }
 

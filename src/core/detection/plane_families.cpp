@@ -154,11 +154,16 @@ std::vector<AxisFamily> findAxes(const std::vector<ReflectionPlane>& planes, con
 
 namespace {
 
-FamilyTest familyTest(const NormalizedCloud& cloud, const PlaneFit& fit, const std::vector<int>& samples,
-                      std::uint64_t seed) {
+FamilyTest familyTest(const NormalizedCloud& cloud, const PlaneFit& fit, const PlaneDecision& decision,
+                      const std::vector<int>& samples, const DetectionOptions& options) {
+  // What a given tolerance forgives is farther off than samples are from each other.
+  const double usual = DetectionOptions().tolerance * cloud.extent;
+  const bool is_coarse = cloud.kind() == CloudKind::Surface &&
+                         std::max(options.tolerance * cloud.extent, options.absolute_tolerance / cloud.scale) > usual;
   // A plane that maps most of a scan to what was not seen says little: only what contradicts counts.
-  const auto share_of = [&fit, is_scan = cloud.seen() != nullptr](const std::vector<int>& used) {
-    return [&fit, used, is_scan](const ReflectionPlane& plane) {
+  const auto share_of = [&, is_coarse, is_scan = cloud.seen() != nullptr](const std::vector<int>& used) {
+    return [&, used, is_coarse, is_scan](const ReflectionPlane& plane) {
+      if (is_coarse) return decision.judge(plane, used).evidence.share;
       const PlaneShares shares = fit.shares(plane, used);
       const double support = fit.relativeSupport(shares);
       return is_scan ? 1.0 - shares.conflict : support / std::max(0.01, std::min(1.0, support + shares.conflict));
@@ -170,7 +175,7 @@ FamilyTest familyTest(const NormalizedCloud& cloud, const PlaneFit& fit, const s
   std::vector<int> fewer;
   const auto num_samples = static_cast<Eigen::Index>(samples.size());
   for (const int i :
-       drawSamples(num_samples, static_cast<int>(num_samples) / kDetection.families.rough_sample_share, seed))
+       drawSamples(num_samples, static_cast<int>(num_samples) / kDetection.families.rough_sample_share, options.seed))
     fewer.push_back(samples[i]);
   test.rough_share = share_of(fewer);
   test.refine = [&fit, samples](const ReflectionPlane& plane) {
@@ -224,7 +229,7 @@ PlanesAndFamilies collectFamilies(std::vector<SymmetryPlane> planes, const Norma
           {cloud.toInput(line.origin()), line.direction(), judged.confidence, judged.score, judged.support});
     return found;
   }
-  const FamilyTest test = familyTest(cloud, fit, samples, options.seed);
+  const FamilyTest test = familyTest(cloud, fit, decision, samples, options);
   std::vector<Line3d> likely_axes;
   std::vector<Eigen::Vector3d> likely_centers;
   if (kKindRules.normals_tell[cloud.kind()]) {

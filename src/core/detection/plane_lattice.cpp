@@ -12,7 +12,9 @@
 #include "core/base/median.h"
 #include "core/base/parallel.h"
 #include "core/detection/plane_families.h"
+#include "core/geometry/geometry_rules.h"
 #include "core/geometry/point_samples.h"
+#include "pcl_symmetry/core/closest_point_search.h"
 
 namespace pcl_symmetry {
 
@@ -258,8 +260,98 @@ std::optional<PlaneLattice> latticeBySpectrum(const NormalizedCloud& cloud, cons
   return PlaneLattice{line, fold, phase ? *phase : FoldSpectrum(all, line, kDetection.folds.slabs).phase(fold), 0};
 }
 
+namespace {
+
+/// Whether the planes halfway between those of a lattice are no symmetries of a surface. Folded into the sector between
+/// two planes, the points are denser by twice the fold, and resolve what single planes do not. The halfway plane has to
+/// bring fewer of them to within the tolerance of others than are so close without it, beyond chance.
+bool isPolygon(const PlaneLattice& lattice, const Points& points, double tolerance) {
+  const double step = kPi / lattice.fold;
+  const Eigen::Vector3d up = lattice.line.direction(), across = lattice.plane(0.0).normal(), along = across.cross(up);
+  Points folded(3, 3 * points.cols()), halfway(3, points.cols());  // the sector and its reflections on both sides
+  std::vector<double> angles{0.0, step};
+  for (Eigen::Index i = 0; i < points.cols(); ++i) {
+    const Eigen::Vector3d x = points.col(i).cast<double>() - lattice.line.origin();
+    const double angle = std::abs(std::remainder(std::atan2(x.dot(across), x.dot(along)), 2.0 * step));
+    const double radius = std::hypot(x.dot(across), x.dot(along));
+    const auto at = [&](double a) -> Eigen::Vector3f {
+      return Eigen::Vector3d(radius * std::cos(a), radius * std::sin(a), x.dot(up)).cast<float>();
+    };
+    angles.push_back(angle);
+    folded.col(3 * i) = at(angle);
+    folded.col(3 * i + 1) = at(-angle);
+    folded.col(3 * i + 2) = at(2.0 * step - angle);
+    halfway.col(i) = at(step - angle);
+  }
+  // Vertices of a mesh may lie at few angles, and tell nothing about those between.
+  std::sort(angles.begin(), angles.end());
+  for (std::size_t i = 1; i < angles.size(); ++i)
+    if (angles[i] - angles[i - 1] > kDetection.folds.most_gap * step) return false;
+  const std::vector<int> samples = drawSamples(points.cols(), kDetection.folds.phase_samples, 1);
+  const auto search = makeFlannSearch(folded);
+  const auto count = static_cast<double>(samples.size());
+  const auto shareWithin = [&](const Points& queries) {
+    constexpr int kNumClosest = 4;  // three may be the point itself
+    std::vector<int> closest;
+    std::vector<float> sq_distances;
+    search->search(queries, kNumClosest, closest, sq_distances);
+    double within = 0.0;
+    for (std::size_t i = 0; i < samples.size(); ++i) {
+      std::size_t k = kNumClosest * i;
+      while (k + 1 < kNumClosest * (i + 1) && closest[k] / 3 == samples[i]) ++k;
+      within += sq_distances[k] <= tolerance * tolerance ? 1.0 : 0.0;
+    }
+    return within / count;
+  };
+  std::vector<int> in_folded;
+  for (const int i : samples) in_folded.push_back(3 * i);
+  const double own = shareWithin(pointsAt(folded, in_folded)), mapped = shareWithin(pointsAt(halfway, samples));
+  const double error = std::sqrt((own * (1.0 - own) + mapped * (1.0 - mapped)) / count);
+  return mapped < kSymmetricShare * own - kDetection.folds.errors * error;
+}
+
+/// The polygon of a surface, whose planes are closer to each other than single ones are told apart.
+PlanesAndPolygon withClosePlanes(std::vector<SymmetryPlane> planes, const NormalizedCloud& cloud,
+                                 const PlaneDecision& decision, const DetectionOptions& options) {
+  std::vector<ReflectionPlane> symmetries, through;
+  for (const SymmetryPlane& plane : planes)
+    if (plane.kind == PlaneKind::Symmetry) symmetries.push_back(cloud.toNormalized(plane));
+  const std::size_t size = std::min(symmetries.size(), kDetection.families.most_pairs);
+  for (std::size_t i = 0; i < size; ++i)
+    for (std::size_t j = 0; j < i; ++j) {
+      if (symmetries[i].angleTo(symmetries[j]) < kDetection.families.least_pair_angle) continue;
+      auto containing = planesContaining(commonLine({symmetries[i], symmetries[j]}), symmetries);
+      if (containing.size() > through.size()) through = std::move(containing);
+    }
+  if (through.size() < kDetection.families.least_planes) return {std::move(planes), std::nullopt};
+  const Line3d line = commonLine(through);
+  std::optional<PlaneLattice> lattice = latticeBySpectrum(cloud, cloud.points, line, options.num_threads);
+  if (!lattice || kPi / lattice->fold > kDetection.decide.slope_angle ||
+      !isPolygon(*lattice, cloud.points, decision.tolerance()))
+    return {std::move(planes), std::nullopt};
+  std::complex<double> sum = 0.0;  // the planes that were found fix the angle better
+  for (const ReflectionPlane& plane : through)
+    if (const double angle = angleAbout(line, plane), step = kPi / lattice->fold;
+        std::abs(std::remainder(angle - lattice->phase, step)) <= kDetection.families.most_folded * step)
+      sum += std::polar(1.0, 2.0 * lattice->fold * angle);
+  if (std::abs(sum) > 0.0) lattice->phase = std::arg(sum) / (2.0 * lattice->fold);
+  std::vector<Candidate> candidates;
+  for (int k = 0; k < lattice->fold; ++k) candidates.push_back({lattice->plane(k), false});
+  std::vector<SymmetryPlane> completed;
+  for (MeasuredPlane& judged : decision.judge(candidates)) {
+    if (judged.plane.kind != PlaneKind::Symmetry) return {std::move(planes), std::nullopt};
+    completed.push_back(std::move(judged.plane));
+  }
+  for (SymmetryPlane& plane : planes)
+    if (!contains(cloud.toNormalized(plane), line)) completed.push_back(std::move(plane));
+  return {std::move(completed), lattice};
+}
+
+}  // namespace
+
 PlanesAndPolygon withPolygon(std::vector<SymmetryPlane> planes, const NormalizedCloud& cloud, const Points& all,
                              const PlaneDecision& decision, const DetectionOptions& options) {
+  if (cloud.kind() == CloudKind::Surface) return withClosePlanes(std::move(planes), cloud, decision, options);
   if (!kKindRules.has_polygons[cloud.kind()]) return {std::move(planes), std::nullopt};
   std::stable_sort(planes.begin(), planes.end(),
                    [](const SymmetryPlane& a, const SymmetryPlane& b) { return a.confidence > b.confidence; });

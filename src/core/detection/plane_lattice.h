@@ -43,8 +43,8 @@ struct PlanesAndPolygon {
   std::optional<PlaneLattice> polygon;  ///< normalized frame; its planes are in `planes`, since they are symmetries
 };
 
-/// Judges the planes of a polygon together, as they are symmetries together or not at all. Only of noisy clouds: where
-/// points resolve a surface, each plane is judged well enough alone.
+/// Completes polygons. The planes of noisy clouds are judged together, as they are symmetries together or not at all.
+/// Those of surfaces are judged well enough alone, but many teeth leave them too close to be found one by one.
 /// \param planes found before, input frame.
 /// \param all as above.
 PlanesAndPolygon withPolygon(std::vector<SymmetryPlane> planes, const NormalizedCloud& cloud, const Points& all,

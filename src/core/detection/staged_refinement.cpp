@@ -106,16 +106,20 @@ std::vector<Candidate> StagedRefinement::refined(std::vector<Candidate> candidat
 }
 
 /// The candidates that stayed near the cell they came from. Departure from the paper, which drops all that leave their
-/// cell: a map of few samples has its maxima up to one cell off, hence kDetection.stages.most_drift.
+/// cell: a map of few samples has its maxima up to one cell off, hence kDetection.stages.most_drift; and those that
+/// climbed to a greater D stay, as no other candidate need have come there.
 std::vector<Candidate> StagedRefinement::withinCells(const std::vector<Candidate>& candidates,
                                                      const std::vector<Candidate>& starts,
                                                      const PlaneGrid& grid) const {
   const double reach = 0.5 + kDetection.stages.most_drift;
   const PlaneTolerance cell{std::sqrt(2.0) * reach * std::max(grid.thetaStep(), grid.phiStep()),
                             reach * grid.radiusStep() / cloud_.scale};
+  const auto d = [&](const Candidate& candidate) { return cloud_.score(cloud_.toInput(candidate.plane)); };
   std::vector<Candidate> kept;
   for (std::size_t i = 0; i < candidates.size(); ++i)
-    if (!candidates[i].from_map || cell.same(starts[i].plane, candidates[i].plane)) kept.push_back(candidates[i]);
+    if (!candidates[i].from_map || cell.same(starts[i].plane, candidates[i].plane) ||
+        (kKindRules.climbs[cloud_.kind()] && d(candidates[i]) > d(starts[i])))
+      kept.push_back(candidates[i]);
   return kept;
 }
 

@@ -360,7 +360,7 @@ def planes(
     tolerance: Optional[float] = None,
     absolute_tolerance: float = 0.0,
     approximate: bool = False,
-    max_planes: int = 64,
+    max_planes: int = 128,
     normals: Optional[ArrayLike] = None,
     max_points: int = 50_000,
     evidence: bool = False,
