@@ -19,7 +19,7 @@ if(tools)
 endif()
 
 set(CPACK_PACKAGE_VENDOR "pcl_symmetry")
-set(CPACK_PACKAGE_CONTACT "pcl_symmetry contributors <maintainers@example.org>")  # as in package.xml
+set(CPACK_PACKAGE_CONTACT "pcl_symmetry contributors")
 # The text that CPack has by default, which it does not put before the description of each package.
 set(CPACK_PACKAGE_DESCRIPTION_SUMMARY "${CMAKE_PROJECT_NAME} built using CMake")
 set(CPACK_RESOURCE_FILE_LICENSE ${PROJECT_SOURCE_DIR}/LICENSE)

@@ -88,7 +88,6 @@ class Sheet:
         middle, half = (low + high) / 2, 0.5 * (high - low).max()
         axes.set(xlim=(middle[0] - half, middle[0] + half), ylim=(middle[1] - half, middle[1] + half))
         axes.set_zlim(middle[2] - half, middle[2] + half)
-        axes.set_box_aspect((1, 1, 1))
         axes.view_init(self.elevation, self.azimuth)
         axes.set_axis_off()
         axes.set_title(title, fontsize=9)
@@ -106,7 +105,9 @@ class Sheet:
             ends = self.upright(center + half_length * np.array([[-1], [1]]) * direction)
             axes.plot(*ends.T, color=color, linewidth=2)
 
-    def save(self, path):
+    def save(self, path, zoom=1.0):
+        for axes in self.figure.axes:
+            axes.set_box_aspect((1, 1, 1), zoom=zoom)
         self.figure.savefig(path)
         print(path)
 
@@ -202,7 +203,7 @@ def refinement(out, path):
 
 def scan_centers(out, path):
     whole = sampled(load_mesh(path))
-    sheet = Sheet(2, 5, (1, 1, 0.8), size=2.2)
+    sheet = Sheet(2, 5, (0.6, 1, 0.5), size=2.2)
     found = []
     corners = [[1 if k >> bit & 1 else -1 for bit in range(3)] for k in range(8)]
     for k, corner in enumerate(corners):
@@ -210,13 +211,13 @@ def scan_centers(out, path):
         found.append((pcl_symmetry.frame(points, viewpoint=viewpoint).center, points.mean(axis=0)))
         print("center of symmetry {:7.3f} {:7.3f} {:7.3f}".format(*found[-1][0]),
               "  center of mass {:7.3f} {:7.3f} {:7.3f}".format(*found[-1][1]))
-        sheet.dots(sheet.panel(f"scan {k + 1}", whole), points, GRAY, 0.5)
+        sheet.dots(sheet.panel(f"scan {k + 1}", whole), points, "#6B7A99", 0.5)
     for title, which, color in (("centers of symmetry", 0, VERMILION), ("centers of mass", 1, GREEN)):
         axes = sheet.panel(title, whole)
         sheet.dots(axes, whole, GRAY, 0.1)
         for centers in found:
             sheet.cross(axes, centers[which], np.eye(3), 0.04 * np.linalg.norm(np.ptp(whole, axis=0)), [color] * 3)
-    sheet.save(out)
+    sheet.save(out, zoom=1.7)
 
 
 def turntable(out, *paths):
@@ -303,9 +304,7 @@ def first_look(out, path):
     axes = sheet.panel("completed by its reflection (blue)", whole)
     sheet.dots(axes, points, "#6B7A99")
     sheet.dots(axes, added, BLUE)
-    for axes in sheet.figure.axes:
-        axes.set_box_aspect((1, 1, 1), zoom=1.6)
-    sheet.save(out)
+    sheet.save(out, zoom=1.6)
 
 
 def decision(out, path, *numbers):

@@ -68,7 +68,8 @@ InputShape loadVolumeInput(const std::string& path, const CommonOptions& common)
 InputShape loadInput(const Console& console, const std::string& path, const CommonOptions& common) {
   Step loading(console, "Loading " + path);
   const bool is_volume = common.takes_volumes && isVolumePath(path);
-  if (common.surface && !is_volume) throw InputError(path + ": -surface is of volumes, " + kVolumeFiles);
+  if (!is_volume && (common.surface || !common.levels.empty()))
+    throw InputError(path + (common.surface ? ": -surface" : ": -levels") + " is of volumes, " + kVolumeFiles);
   InputShape input = is_volume ? loadVolumeInput(path, common) : loadInput(path, common.mesh_points, common.seed);
   input.loading_ms = loading.done(counted(finitePoints(*input.points).cols(), "point"));
   warnOfLeftOut(console, path, input.shape);

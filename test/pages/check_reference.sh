@@ -27,7 +27,7 @@ miss() { echo "$*"; missing=1; }
 for name in $(grep -oE '`pcl_symmetry::[A-Za-z0-9]+`' src/pages/main_page.md | tr -d '`' | sort -u); do
   grep -qr --include='*.html' "<span class=\"pre\">${name#pcl_symmetry::}</span></span></span>.*<a class=\"headerlink\"" "$html/cpp" || miss "not in the reference: $name"
 done
-for name in $(PYTHONPATH=$python /usr/bin/python3 -c 'import pcl_symmetry; print(*pcl_symmetry.__all__)'); do
+for name in $(PYTHONPATH=$python /usr/bin/python3 -c 'import pcl_symmetry; print(*(n for n in dir(pcl_symmetry) if n[0] != "_"))'); do
   grep -q "id=\"pcl_symmetry.$name\"" "$html/python.html" || miss "not in the reference: $name of Python"
 done
 # Setters and computations say in a sentence what they do, before their parameters.

@@ -279,7 +279,9 @@ class Meshes(unittest.TestCase):
         plain = pcl_symmetry.planes(points)
         cloud = open3d.geometry.PointCloud(open3d.utility.Vector3dVector(points))
         mesh = open3d.geometry.TriangleMesh.create_box(1.0, 2.0, 3.0)
-        objects = {"cloud": cloud, "mesh": mesh}
+        objects = {"cloud": cloud, "mesh": mesh, "rows": cloud.points}
+        self.assertEqual(pcl_symmetry.sample_mesh(mesh.vertices, mesh.triangles, 500).shape, (500, 3))
+        self.assertEqual(len(pcl_symmetry.segment(mesh.vertices, mesh.triangles)), len(mesh.triangles))
         if hasattr(open3d, "t"):
             objects["tensor cloud"] = open3d.t.geometry.PointCloud.from_legacy(cloud)
             objects["tensor mesh"] = open3d.t.geometry.TriangleMesh.from_legacy(mesh)

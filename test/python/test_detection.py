@@ -570,14 +570,6 @@ class Decisions(Detection):
         absolute = pcl_symmetry.planes(points, absolute_tolerance=0.05)
         self.assertEqual((len(across_x(absolute)), absolute.tolerance), (1, 0.05))
 
-    def test_tell_share_and_deviation_of_the_surface(self):
-        found = pcl_symmetry.planes(box(seed=2).cloud)
-        for plane in found:
-            self.assertGreater(plane.share, 0.99)
-            self.assertTrue(plane.share_interval[0] <= plane.share <= plane.share_interval[1])
-            self.assertLess(plane.deviation, found.tolerance)
-        self.assertEqual((len(found), found.best), (3, None))
-
     def test_do_not_depend_on_the_number_of_points(self):
         for count in (3000, 10_000, 50_000):
             self.assertEqual(len(pcl_symmetry.planes(box(count, seed=5).cloud)), 3, count)

@@ -88,6 +88,7 @@ class Flags(ToolTest):
         self.fails(2, "unexpected argument 'c'", "a b c", tool="map")
         self.fails(2, "-direction = 1,nan,0, must be three finite numbers X,Y,Z", "a b.pcd -direction 1,nan,0", tool="scan")
         self.fails(2, "-up = 0,0,0, must not be zero", "a -up 0,0,0", tool="segment")
+        self.fails(1, "-levels is of volumes", self.box, "-levels 0,1")
         self.fails(1, "missing.off: no such file", "missing.off -png OUT.PNG")  # the name of the picture is one
 
     def test_too_little_memory_is_one_line(self):

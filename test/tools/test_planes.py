@@ -189,9 +189,6 @@ class Pipelines(ToolTest):
         self.run_tool("-", self.flags, "-json -", input=content)
         self.assertEqual(json.loads(self.output)["file"], "-")
         self.run_tool("- -quiet -csv - -json -", input=content, code=2)
-        for text, said in (("no shape", "is of no known kind"), ("", "is empty"),
-                           ("OFF\n3 1 0\n0 0 0\n0 0 0\n", "x of vertex 2 is missing")):
-            self.fails(1, "standard input: " + said, "- -quiet", input=text.encode())
 
     def test_take_names_in_any_language(self):
         """Names in UTF-8, and bytes that are none: file names are bytes."""

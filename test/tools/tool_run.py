@@ -57,14 +57,6 @@ class ToolTest(unittest.TestCase):
         self.assertIn(words, self.error)
 
 
-def data_file(name):
-    """Files that are no part of the repository: in the folder PCL_SYMMETRY_DATA, or beside the repository."""
-    path = Path(os.environ.get("PCL_SYMMETRY_DATA", Path(__file__).parents[3] / "shared/data")) / name
-    if not path.exists():
-        raise unittest.SkipTest(f"{path} is absent")
-    return path
-
-
 def off(vertices, faces):
     lines = ["OFF", f"{len(vertices)} {len(faces)} 0"]
     lines += [" ".join(f"{x:.12g}" for x in vertex) for vertex in vertices]

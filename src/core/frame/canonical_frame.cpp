@@ -20,14 +20,6 @@ Eigen::Matrix3d orthonormal(const Eigen::Matrix3f& axes) {
   return result;
 }
 
-/// The offset of the first plane of a scan, which may be a false one: the nearer to the middle the further it is from
-/// it.
-float firstOffset(const FrameEvidence& evidence, const CellPlane& first) {
-  const double away = evidence.middleAlong(first.normal) - first.offset;
-  const double doubtful = kFrame.scan_first_radius * evidence.reach;
-  return first.offset + static_cast<float>(away * away * away / (away * away + doubtful * doubtful));
-}
-
 /// The mean of offsets, weighted by score and by a second weight.
 template <typename Weight>
 double meanOffset(const FrameEvidence& evidence, const std::vector<float>& scores, const Weight& second_weight) {
@@ -48,7 +40,7 @@ float centralOffset(const FrameEvidence& evidence, const Eigen::Vector3f& axis, 
   const double middle = evidence.middleAlong(axis);
   const double of_flat = meanOffset(evidence, s, [&](double r) {
     const double away = (r - middle) / (kFrame.offset_width * evidence.reach);
-    return std::exp(-0.5 * away * away);
+    return std::pow(1.0 + away * away, -1.5);  // falls so slowly that a peak far out keeps its place
   });
   if (evidence.scanned) return static_cast<float>(of_flat);
   const auto at = std::max_element(s.begin(), s.end()) - s.begin();
@@ -86,8 +78,8 @@ Eigen::Matrix3d principalSymmetryAxes(const PointsRef& points, const Eigen::Matr
 Eigen::Vector3d centerOfSymmetry(const FrameEvidence& evidence, const FrameCandidate& frame) {
   const CellPlane first{frame.axes.col(0), frame.offsets[0]};
   Eigen::Vector3f offsets;
-  offsets[0] = evidence.scanned ? firstOffset(evidence, first) : centralOffset(evidence, first.normal, nullptr);
-  for (int k = 1; k < 3; ++k) offsets[k] = centralOffset(evidence, frame.axes.col(k), evidence.completedAcross(first));
+  for (int k = 0; k < 3; ++k)
+    offsets[k] = centralOffset(evidence, frame.axes.col(k), k > 0 ? evidence.completedAcross(first) : nullptr);
   return evidence.toInput(frame.axes * offsets);
 }
 

@@ -46,37 +46,13 @@ from .functions import (
     transform,
     viewpoints,
 )
-from .results import (
-    Axis,
-    BuildReport,
-    Center,
-    Frame,
-    Junction,
-    Map,
-    Match,
-    Plane,
-    Planes,
-    PoseEvidence,
-    PoseScore,
-    ProbableFrame,
-    Profile,
-    Recognized,
-    ReflectionPlane,
-    RegisteredScans,
-    Registration,
-    RotationAxis,
-    Rotations,
-    Scene,
-    SceneObject,
-    Support,
-    Symmetrized,
-    View,
-)
+from .results import *
+from .results import __all__ as _RESULTS
 
 if TYPE_CHECKING:
     from .database import Database, register, register_all, scene
 
-# Functions first: this is the order of help(pcl_symmetry).
+# What they return is public, too, but left out here: help(pcl_symmetry) would show 1800 lines of it before the functions.
 __all__ = [
     "planes",
     "scene",
@@ -96,31 +72,6 @@ __all__ = [
     "descriptors",
     "descriptor_distance",
     "sample_mesh",
-    "Planes",
-    "Plane",
-    "ReflectionPlane",
-    "Axis",
-    "Center",
-    "RotationAxis",
-    "Profile",
-    "Frame",
-    "ProbableFrame",
-    "Rotations",
-    "Symmetrized",
-    "Map",
-    "View",
-    "Merging",
-    "Scene",
-    "SceneObject",
-    "Support",
-    "Junction",
-    "Registration",
-    "RegisteredScans",
-    "PoseScore",
-    "PoseEvidence",
-    "Match",
-    "Recognized",
-    "BuildReport",
 ]
 # The libraries of PCL take longer to load than the rest: what needs them is loaded when it is first used. It is missing where
 # the library was built without PCL.
@@ -139,4 +90,4 @@ def __getattr__(name: str) -> Any:
 
 
 def __dir__() -> List[str]:
-    return sorted(__all__ + ["__all__", "__doc__", "__file__", "__name__", "__path__", "__version__"])
+    return sorted([*__all__, *_RESULTS, "Merging", "__all__", "__doc__", "__file__", "__name__", "__path__", "__version__"])

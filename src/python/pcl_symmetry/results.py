@@ -17,6 +17,12 @@ if TYPE_CHECKING:
 
     from .pages import Page
 
+__all__ = [
+    "Axis", "BuildReport", "Center", "Frame", "Junction", "Map", "Match", "Plane", "Planes", "PoseEvidence",
+    "PoseScore", "ProbableFrame", "Profile", "Recognized", "ReflectionPlane", "RegisteredScans", "Registration",
+    "RotationAxis", "Rotations", "Scene", "SceneObject", "Support", "Symmetrized", "View",
+]
+
 Self = TypeVar("Self", bound="Result")
 
 
