@@ -66,8 +66,8 @@ namespace {
 constexpr double largest_error = 0.7;  // pixels, root mean square; more are rows and columns that are no picture
 constexpr double largest_skew =
     0.05;  // share of the focal length, also between the two: cameras that fit a flat cloud have no square pixels
-constexpr std::size_t fewest_points = 50;    // fewer leave the 11 parameters of a projection to noise
-constexpr std::size_t most_points = 20'000;  // that the 11 parameters gain from
+constexpr std::size_t fewest_points = 50;   // fewer leave the 11 parameters of a projection to noise
+constexpr std::size_t max_points = 20'000;  // that the 11 parameters gain from
 constexpr double small_hole = 0.01;  // share of the picture; smaller ones are missing measurements, not background
 
 /// Fills the pixels without a point: large regions and regions at the border are background, small regions are missing
@@ -106,7 +106,7 @@ std::optional<Visibility> seenByOrganizedCloud(const Cloud& frame) {
   const auto width = static_cast<int>(frame.width), height = static_cast<int>(frame.height);
   const pcl::Indices finite = selectPoints(frame, nullptr, frame.size(), 0).indices;
   if (finite.size() < fewest_points) return std::nullopt;
-  const std::size_t stride = 1 + finite.size() / most_points;
+  const std::size_t stride = 1 + finite.size() / max_points;
   pcl::Indices used;
   for (std::size_t i = 0; i < finite.size(); i += stride) used.push_back(finite[i]);
   const Points points = selectPoints(frame, &used, used.size(), 0).points;

@@ -202,9 +202,9 @@ private:
     for (const char* name : {"x", "y", "z"})
       if (!vertex->find(name) || vertex->find(name)->length_type)
         reject(path_, "has no vertex property " + std::string(name) + ", must have x, y and z");
-    std::uint64_t least_size = 0;
+    std::uint64_t min_size = 0;
     for (const PLYProperty& property : vertex->properties) {
-      least_size += body_.leastSize(property.length_type.value_or(property.type));
+      min_size += body_.leastSize(property.length_type.value_or(property.type));
       Column column{property.name, property.type, 1, sizeOfType(property.type), property.type, -1};
       if (property.length_type) {
         file_.left_out.push_back("list " + property.name + " of the vertices");
@@ -227,7 +227,7 @@ private:
       }
       columns_.push_back(std::move(column));
     }
-    if (num_vertices_ > (body_.size() + 1) / least_size)
+    if (num_vertices_ > (body_.size() + 1) / min_size)
       reject(path_, "element vertex = " + std::to_string(num_vertices_) + ", but only " + std::to_string(body_.size()) +
                         " bytes follow the header");
     makeRoom(num_vertices_, 1, file_.cloud);

@@ -53,7 +53,7 @@ public:
   /// (0, 0.1], whatever the sensor resolves; default 0.01, or what a depth camera (up to 0.03) or sparse points (up to
   /// 0.02) resolve.
   void setTolerance(double tolerance) {
-    this->change([&](DetectionOptions& changed) { changed.tolerance = changed.most_tolerance = tolerance; });
+    this->change([&](DetectionOptions& changed) { changed.tolerance = changed.max_tolerance = tolerance; });
   }
   /// Also reports planes that are no symmetries.
   /// \param approximate also reports maxima of less confidence: approximate symmetries and symmetries of parts, marked

@@ -153,7 +153,7 @@ PlaneSearch planes(const AnyArray& points, const py::object& viewpoint, std::opt
                    std::size_t max_points, bool evidence, std::uint64_t seed, int threads,
                    const std::optional<MeshSurface>& mesh, bool may_be_rings) {
   auto options = optionsWith<DetectionOptions>(seed, threads);
-  if (tolerance) options.tolerance = options.most_tolerance = *tolerance;
+  if (tolerance) options.tolerance = options.max_tolerance = *tolerance;
   options.absolute_tolerance = absolute_tolerance;
   options.approximate = approximate;
   options.max_planes = max_planes;

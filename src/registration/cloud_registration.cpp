@@ -258,7 +258,7 @@ CloudRegistration registerClouds(const Points& source, const std::optional<Visib
   if (options.around) keepAround(clouds, guess, *options.around, poses);
   done("refine");
   if (options.search_parts && !options.around && !poses.empty() &&
-      poseConfidence(clouds.evidence(poses.front())) < kRegistration.least_confidence) {
+      poseConfidence(clouds.evidence(poses.front())) < kRegistration.min_confidence) {
     const std::vector<RankedPose> of_parts = posesOfParts(clouds, inner);
     poses.insert(poses.end(), of_parts.begin(), of_parts.end());
     poses = mostConfident(clouds, poses, static_cast<std::size_t>(search.max_poses));

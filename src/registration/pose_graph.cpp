@@ -108,7 +108,7 @@ bool ScanGroups::agrees(const PairAnswer& answer, const SamePose& same) const {
          same(answer.T_target_source, T_group_scan[answer.target].inverse() * T_group_scan[answer.source]);
 }
 
-ScanGroups joinScans(int num_scans, const std::vector<PairAnswer>& answers, const SamePose& same, double least_votes) {
+ScanGroups joinScans(int num_scans, const std::vector<PairAnswer>& answers, const SamePose& same, double min_votes) {
   ScanGroups groups{std::vector<int>(num_scans),
                     std::vector<Eigen::Isometry3d>(num_scans, Eigen::Isometry3d::Identity())};
   std::iota(groups.group.begin(), groups.group.end(), 0);
@@ -118,7 +118,7 @@ ScanGroups joinScans(int num_scans, const std::vector<PairAnswer>& answers, cons
   };
   while (true) {
     const PairAnswer* best = nullptr;
-    double best_sum = least_votes;
+    double best_sum = min_votes;
     for (std::size_t e = 0; e < answers.size(); ++e) {
       const auto between = groupsOf(answers[e]);
       if (between.first == between.second || votes[e] == 0.0) continue;
@@ -152,13 +152,13 @@ ScanGroups joinScans(int num_scans, const std::vector<PairAnswer>& answers, cons
     }
   }
   // The covariances of single pairs are those of noise alone: they meet their neighbors to this.
-  constexpr double least_deviation = 0.005;
+  constexpr double min_deviation = 0.005;
   std::vector<PoseConstraint> constraints;
   for (const PairAnswer& answer : answers)
     if (answer.weight > 0.0 && groups.agrees(answer, {2.0 * same.angle, 2.0 * same.distance}))
       constraints.push_back(
           {answer.source, answer.target, answer.T_target_source,
-           (answer.covariance + least_deviation * least_deviation * Matrix6d::Identity()).inverse() * answer.weight});
+           (answer.covariance + min_deviation * min_deviation * Matrix6d::Identity()).inverse() * answer.weight});
   adjustPoses(constraints, groups.T_group_scan, 3);
   return groups;
 }

@@ -51,7 +51,7 @@ struct ScanGroups {
 /// Joins scans by the answers of their pairs, best known first: all answers between two groups vote for the pose that
 /// brings them together, for themselves and for what agrees with them, against what does not. At the start the votes of
 /// a pair are those of the triangles that it closes.
-/// \param least_votes sum of weights that joins two groups: 1 for one pair that converged.
-ScanGroups joinScans(int num_scans, const std::vector<PairAnswer>& answers, const SamePose& same, double least_votes);
+/// \param min_votes sum of weights that joins two groups: 1 for one pair that converged.
+ScanGroups joinScans(int num_scans, const std::vector<PairAnswer>& answers, const SamePose& same, double min_votes);
 
 }  // namespace pcl_symmetry

@@ -18,14 +18,14 @@ namespace {
 using NormalCloud = pcl::PointCloud<pcl::PointNormal>;
 
 struct PoseRefinementRules {
-  int refined_points = 1000;   ///< of the scan, that ICP uses
-  int judged_points = 3000;    ///< of each cloud in the last comparison
-  double reach = 4.0;          ///< accuracies, in which ICP looks for its first pairs
-  double least_reach = 0.08;   ///< radii
-  double least_width = 0.015;  ///< radii, of the Gaussian of the last comparison; otherwise it is the accuracy
-  double hopeless = 0.2;       ///< merit behind the best pose at which poses are not refined
+  int refined_points = 1000;  ///< of the scan, that ICP uses
+  int judged_points = 3000;   ///< of each cloud in the last comparison
+  double reach = 4.0;         ///< accuracies, in which ICP looks for its first pairs
+  double min_reach = 0.08;    ///< radii
+  double min_width = 0.015;   ///< radii, of the Gaussian of the last comparison; otherwise it is the accuracy
+  double hopeless = 0.2;      ///< merit behind the best pose at which poses are not refined
   /// Pairs that fix a motion of six unknowns; with fewer, PCL's ICP says so on stderr.
-  std::size_t least_pairs = 6;
+  std::size_t min_pairs = 6;
 };
 constexpr PoseRefinementRules kPoseRefinement;
 
@@ -64,7 +64,7 @@ public:
       model_->searchWithin(positions, static_cast<float>(max_distance * max_distance), closest_, sq_distances);
     for (std::size_t i = 0; i < sq_distances.size(); ++i)
       if (closest_[i] >= 0) pairs.emplace_back(static_cast<int>(i), closest_[i], sq_distances[i]);
-    for (std::size_t i = 0; pairs.size() < std::min(kPoseRefinement.least_pairs, scan.size()); ++i)
+    for (std::size_t i = 0; pairs.size() < std::min(kPoseRefinement.min_pairs, scan.size()); ++i)
       pairs.emplace_back(static_cast<int>(i), std::max(0, closest_[i]), 0.0f);
   }
 
@@ -106,7 +106,7 @@ private:
 
 double refinementReach(const PosedSurface& scan, const PosedSurface& model, std::optional<double> max_correspondence) {
   return max_correspondence.value_or(
-      std::max(kPoseRefinement.least_reach, kPoseRefinement.reach * std::max(scan.accuracy, model.accuracy)));
+      std::max(kPoseRefinement.min_reach, kPoseRefinement.reach * std::max(scan.accuracy, model.accuracy)));
 }
 
 Eigen::Isometry3d SearchFrames::toSearch(const Eigen::Isometry3d& T_target_source) const {
@@ -122,7 +122,7 @@ Eigen::Isometry3d SearchFrames::toInput(const Eigen::Isometry3d& T_target_source
 }
 
 PoseScore lastScore(const PosedSurface& scan, const PosedSurface& model, const Eigen::Isometry3d& T_model_scan) {
-  const double width = std::max({kPoseRefinement.least_width, scan.accuracy, model.accuracy});
+  const double width = std::max({kPoseRefinement.min_width, scan.accuracy, model.accuracy});
   return PoseScorer(scan, model).score(T_model_scan, {kPoseRefinement.judged_points, width, true});
 }
 

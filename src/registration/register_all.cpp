@@ -25,15 +25,15 @@ struct RegisterAllRules {
   SamePose same{6.0 * kDegree, 0.08};
   /// Merit of a pair that did not converge at which it begins to count, and where it counts like half of one that did.
   /// Of pairs of real scans, all right ones that are above are many, and no wrong one is.
-  double least_merit = -0.1, good_merit = 0.4;
-  double least_votes = 0.6;  ///< that join scans: more than one pair that did not converge
+  double min_merit = -0.1, good_merit = 0.4;
+  double min_votes = 0.6;  ///< that join scans: more than one pair that did not converge
   // Adjustment of all poses together
   int adjust_points = 2000;      ///< of each scan
   int adjust_steps = 16;         ///< over which the reach shrinks
   double first_reach = 0.06;     ///< radii, distance in which points correspond
   double last_accuracies = 2.0;  ///< the same at the end, in distances that the scans resolve
-  double least_cosine = 0.7;     ///< of the normals of corresponding points
-  double least_overlap = 0.03;   ///< share of the points that must correspond
+  double min_cosine = 0.7;       ///< of the normals of corresponding points
+  double min_overlap = 0.03;     ///< share of the points that must correspond
   double around_angle = 15.0 * kDegree, around_distance = 0.2;  ///< radians, radii: where a scan must fit the others
 };
 constexpr RegisterAllRules kRegisterAll{};
@@ -74,7 +74,7 @@ std::vector<int> onePerCell(const Points& points, double edge) {
 /// A scan about its own center, in units that all scans share.
 struct NormalizedScan {
   ObjectScan scan;
-  double full_share = 1.0;  ///< spacing of all its points over that of those here
+  double spacing_ratio = 1.0;  ///< spacing of all its points over that of those here
   std::shared_ptr<const PosedSurface> surface;
   std::shared_ptr<const PreparedCloud> target;
 };
@@ -101,7 +101,7 @@ public:
       scan.scan.points =
           normalizePoints(drawn(withoutStrayPoints(input.points), options_.seed), balls_[i].center, unit_);
       if (input.seen) scan.scan.seen = input.seen->normalized(balls_[i].center, unit_);
-      scan.full_share =
+      scan.spacing_ratio =
           std::sqrt(static_cast<double>(scan.scan.points.cols()) / static_cast<double>(input.points.cols()));
       scan.surface = std::make_shared<const PosedSurface>(scan.scan.points, scan.scan.seen, options_.seed, 1);
       scan.target = registrationTarget(scan.scan.points, scan.scan.seen, options_);
@@ -115,7 +115,7 @@ public:
 
   /// Pairs of scans that are a step apart in their order, for growing steps, until all are connected.
   void registerPairs() {
-    groups_ = joinScans(size(), {}, kRegisterAll.same, kRegisterAll.least_votes);
+    groups_ = joinScans(size(), {}, kRegisterAll.same, kRegisterAll.min_votes);
     for (int step = 1; 2 * step <= size(); ++step) {
       std::vector<int> num_pairs(size());
       for (const PairAnswer& answer : answers_) {
@@ -134,7 +134,7 @@ public:
       parallelBlocks(order.size(), num_threads_,
                      [&](std::size_t k) { found[k] = registered(order[k].first, order[k].second); });
       answers_.insert(answers_.end(), found.begin(), found.end());
-      groups_ = joinScans(size(), answers_, kRegisterAll.same, kRegisterAll.least_votes);
+      groups_ = joinScans(size(), answers_, kRegisterAll.same, kRegisterAll.min_votes);
     }
   }
 
@@ -232,7 +232,7 @@ public:
     std::vector<double> resolved;
     for (const NormalizedScan& scan : scans_) {
       const double spacing = scan.surface->accuracy - 2.0 * scan.surface->noise;
-      resolved.push_back(unit_ * (spacing * scan.full_share + 2.0 * scan.surface->noise));
+      resolved.push_back(unit_ * (spacing * scan.spacing_ratio + 2.0 * scan.surface->noise));
     }
     return median(resolved);
   }
@@ -258,7 +258,7 @@ private:
     answer.covariance = *found.covariance;
     answer.converged = found.converged();
     const double doubtful =
-        (found.score.merit() - kRegisterAll.least_merit) / (kRegisterAll.good_merit - kRegisterAll.least_merit);
+        (found.score.merit() - kRegisterAll.min_merit) / (kRegisterAll.good_merit - kRegisterAll.min_merit);
     answer.weight = answer.converged ? 1.0 : 0.5 * std::clamp(doubtful, 0.0, 1.0);
     return answer;
   }
@@ -276,7 +276,7 @@ private:
     for (int i = 0; i < matched.num_points; ++i) {
       if (sq_distances[i] > reach * reach) continue;
       const Eigen::Vector3f normal = T_target_source.linear() * from.normals.col(from.order[i]);
-      if (std::abs(normal.dot(to.normals.col(closest[i]))) < kRegisterAll.least_cosine) continue;
+      if (std::abs(normal.dot(to.normals.col(closest[i]))) < kRegisterAll.min_cosine) continue;
       matched.pairs.emplace_back(positions.col(i).cast<double>(), closest[i]);
     }
     return matched;
@@ -285,8 +285,7 @@ private:
   /// The pose in which the surfaces of two scans meet, near that of now (point to plane).
   std::optional<PoseConstraint> meeting(int source, int target, double reach) const {
     const Matched matched = match(source, target, reach);
-    if (static_cast<double>(matched.pairs.size()) < kRegisterAll.least_overlap * matched.num_points)
-      return std::nullopt;
+    if (static_cast<double>(matched.pairs.size()) < kRegisterAll.min_overlap * matched.num_points) return std::nullopt;
     const PosedSurface& to = *scans_[target].surface;
     Matrix6d hessian = Matrix6d::Zero();
     Vector6d gradient = Vector6d::Zero();
@@ -300,11 +299,11 @@ private:
       gradient += distance * row;
       sum_squares += distance * distance;
     }
-    constexpr double least_stiffness = 1e-4, longest = 0.1;
+    constexpr double min_stiffness = 1e-4, longest = 0.1;
     const Eigen::Isometry3d T_target_source = groups_.T_group_scan[target].inverse() * groups_.T_group_scan[source];
     const double variance = sum_squares / static_cast<double>(matched.pairs.size()) + 0.01 * to.accuracy * to.accuracy;
     return PoseConstraint{source, target,
-                          motionBy(smallMotion(hessian, gradient, least_stiffness, longest)) * T_target_source,
+                          motionBy(smallMotion(hessian, gradient, min_stiffness, longest)) * T_target_source,
                           hessian / variance};
   }
 

@@ -59,7 +59,7 @@ double riseOfNoise(const SymmetryScene::Cloud& scene, const SupportingPlane& sup
   for (const pcl::index_t i : support.indices)
     if (around.contains(Eigen::Vector3f(scene[i].getVector3fMap())))
       heights.push_back(std::abs(heightOver(support.coefficients, scene[i])));
-  if (heights.size() < kScene.least_around) return std::numeric_limits<double>::infinity();
+  if (heights.size() < kScene.min_around) return std::numeric_limits<double>::infinity();
   return std::max(kScene.rises_at_least * distances.spacing,
                   kScene.rises * kDeviationPerMedian * median(std::move(heights)));
 }

@@ -192,12 +192,12 @@ std::vector<SupportingPlane> findSupports(const SymmetryScene::Cloud::ConstPtr& 
                                           const std::optional<Eigen::Vector3d>& viewpoint, double distance) {
   std::vector<SupportingPlane> supports;
   pcl::Indices candidates = points, others = points;
-  for (int round = 0; round < kScene.most_planes; ++round) {
+  for (int round = 0; round < kScene.max_planes; ++round) {
     std::optional<Consensus> plane = greatestPlane(scene, candidates, distance);
     const auto share = [&](std::size_t count) {
       return static_cast<double>(count) / static_cast<double>(points.size());
     };
-    if (!plane || share(plane->inliers.size()) < kScene.least_share) break;
+    if (!plane || share(plane->inliers.size()) < kScene.min_share) break;
     plane->coefficients = fitted(*scene, *plane);
     candidates = without(candidates, plane->inliers, scene->size());
     if (viewpoint && plane->coefficients.dot(viewpoint->homogeneous()) < 0.0) plane->coefficients *= -1.0;

@@ -13,8 +13,8 @@ struct SceneRules {
   std::size_t scale_samples = 1000;                      ///< points that spacing and roughness are measured at
   double plane_spacings = 2.0, plane_roughnesses = 4.0;  ///< from a supporting plane within which points belong to it
   double cluster_spacings = 4.0;                         ///< between points of one object
-  int most_planes = 6;                                   ///< a table, a floor, three walls and a large box
-  double least_share = 0.08;                             ///< of the points, of planes that are tried
+  int max_planes = 6;                                    ///< a table, a floor, three walls and a large box
+  double min_share = 0.08;                               ///< of the points, of planes that are tried
   double bare_share = 0.25;                              ///< the same of a support that nothing stands on
   double telling_share = 0.01;            ///< of the points of a plane, beside it, that show on which side the scene is
   double attached = 10.0;                 ///< plane distances behind a plane within which other faces of a body begin
@@ -26,12 +26,12 @@ struct SceneRules {
   double remainder = 2.0, remainder_share = 0.9;  ///< plane distances, and share of a cluster within: rest of a plane
 
   // Objects on supports.
-  double above_share = 0.98;      ///< of the points of an object above a plane that it stands on or before
-  double support_margin = 2.0;    ///< plane distances that an object may seem to reach into its support at most
-  double around = 10.0;           ///< cluster distances around an object in which the noise of its support is taken
-  std::size_t least_around = 50;  ///< points there; fewer take chance for noise
-  double rises = 4.0;             ///< deviations of that noise that the foot of an object rises above
-  double rises_at_least = 0.25;   ///< spacings, the same on exact planes
+  double above_share = 0.98;     ///< of the points of an object above a plane that it stands on or before
+  double support_margin = 2.0;   ///< plane distances that an object may seem to reach into its support at most
+  double around = 10.0;          ///< cluster distances around an object in which the noise of its support is taken
+  std::size_t min_around = 50;   ///< points there; fewer take chance for noise
+  double rises = 4.0;            ///< deviations of that noise that the foot of an object rises above
+  double rises_at_least = 0.25;  ///< spacings, the same on exact planes
 
   // Convex pieces: of 107 labeled objects in 37 frames 103 are found with an overlap of one half, 91 without
   // separation.

@@ -50,7 +50,7 @@ struct DetectionOptions {
   /// Greatest tolerance, as a share of the same, in (0, 0.1]: where a depth camera or few points do not resolve
   /// `tolerance`, the resolved tolerance decides, up to this one. At most `tolerance`: that one always decides, and
   /// symmetries that the camera does not resolve are possible ones.
-  double most_tolerance = 0.03;
+  double max_tolerance = 0.03;
   double absolute_tolerance = 0.0;  ///< a tolerance in input units in place of both, >= 0; 0 = they decide
   double min_confidence = 0.5;      ///< a plane is a symmetry if confidence >= min_confidence; in [0, 1]
   double min_possible = 0.2;  ///< a plane is reported as possible if confidence >= min_possible; in [0, min_confidence]

@@ -82,12 +82,12 @@ struct VolumeWithoutAnswer : std::invalid_argument {
 struct VolumeFunction {
   /// Makes the function whose symmetry is measured.
   /// \param volume at least 4 voxels along each axis.
-  /// \param most_voxels groups of voxels are averaged until there are no more than this, >= 4096.
+  /// \param max_voxels groups of voxels are averaged until there are no more than this, >= 4096.
   /// \throws std::invalid_argument for bad levels; VolumeWithoutAnswer.
-  VolumeFunction(const ScalarGrid& volume, const VolumeLevels& levels, std::size_t most_voxels, int num_threads = 0);
+  VolumeFunction(const ScalarGrid& volume, const VolumeLevels& levels, std::size_t max_voxels, int num_threads = 0);
 
   /// The same function on fewer voxels.
-  VolumeFunction(const VolumeFunction& finer, std::size_t most_voxels, int num_threads = 0);
+  VolumeFunction(const VolumeFunction& finer, std::size_t max_voxels, int num_threads = 0);
 
   ScalarGrid f;         ///< in [0, 1]
   double body = 0.5;    ///< f of the border between background and body (Otsu's threshold)

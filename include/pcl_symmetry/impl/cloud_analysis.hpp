@@ -50,7 +50,7 @@ public:
   /// \param max_points >= 2 (>= 20 in SymmetrySegmentation, as fewer hold no parts).
   /// \throws pcl::BadArgumentException for other values.
   void setMaxPoints(std::size_t max_points) {
-    detail::checkAtLeast("max_points", static_cast<std::int64_t>(max_points), least_max_points_);
+    detail::checkAtLeast("max_points", static_cast<std::int64_t>(max_points), min_max_points_);
     max_points_ = max_points;
   }
 
@@ -66,8 +66,8 @@ protected:
 
   /// Begins with no cloud.
   /// \param name of the class, for messages.
-  CloudAnalysis(std::string name, std::size_t max_points, std::int64_t least_max_points = 2)
-      : name_(std::move(name)), max_points_(max_points), least_max_points_(least_max_points) {}
+  CloudAnalysis(std::string name, std::size_t max_points, std::int64_t min_max_points = 2)
+      : name_(std::move(name)), max_points_(max_points), min_max_points_(min_max_points) {}
 
   const std::string& getClassName() const { return name_; }  ///< for messages
 
@@ -130,7 +130,7 @@ private:
 
   std::string name_;
   std::size_t max_points_;
-  std::int64_t least_max_points_;
+  std::int64_t min_max_points_;
   std::shared_ptr<const detail::InputVolume> volume_;
   pcl::Indices used_indices_;
   std::string reason_;

@@ -30,7 +30,7 @@ double movedShare(const ReflectionPlane& plane, const PointsRef& points, double 
 
 /// A sensor that resolves less than the tolerance decides at the greatest tolerance, if that counts.
 bool isResolved(const CloudLimits::Lengths& lengths) {
-  const double greatest = DetectionOptions().most_tolerance * lengths.diameter;
+  const double greatest = DetectionOptions().max_tolerance * lengths.diameter;
   return lengths.tolerance >= lengths.resolution ||
          (lengths.tolerance >= greatest && lengths.resolution <= kDetection.decide.coarsest * greatest);
 }
@@ -41,12 +41,12 @@ CloudLimits::CloudLimits(const PointsRef& points, const PrincipalAxes& axes, Clo
                          const Lengths& lengths)
     : is_resolved_(isResolved(lengths)),
       is_cut_(seen && lengths.resolution > 0.0 &&
-              cutShare(points, *seen, kDetection.measure.beside_outline) > kDetection.decide.most_cut),
+              cutShare(points, *seen, kDetection.measure.beside_outline) > kDetection.decide.max_cut),
       still_(kKindRules.thin_tolerances[kind] * lengths.tolerance),
       thinness_(thinnessOf(points, axes, still_, lineTolerance(kind, lengths))) {}
 
 bool CloudLimits::movesNothing(const ReflectionPlane& plane, const PointsRef& points) const {
-  return thinness_ == Thinness::Sheet && movedShare(plane, points, still_) < 1.0 - kDetection.decide.still_share;
+  return thinness_ == Thinness::Sheet && movedShare(plane, points, still_) < 1.0 - kDetection.decide.max_unmoved_share;
 }
 
 std::vector<const char*> CloudLimits::of(const ReflectionPlane& plane, const PointsRef& points) const {

@@ -23,7 +23,7 @@ double mostPoints(const PointsRef& points, const DetectionOptions& options) {
   const double tolerance =
       options.absolute_tolerance > 0.0 ? options.absolute_tolerance / farthestPair(points) : options.tolerance;
   const double finer = std::max(1.0, kDetection.points.usual_tolerance / tolerance);
-  return kDetection.points.most_points * finer * finer;
+  return kDetection.points.max_points * finer * finer;
 }
 
 }  // namespace
@@ -39,7 +39,7 @@ std::vector<int> CloudSubset::nearestTo(const PointsRef& all, int num_threads) c
 }
 
 std::optional<CloudSubset> subsetOf(const PointsRef& points, const DetectionOptions& options) {
-  if (static_cast<double>(points.cols()) <= kDetection.points.most_points) return std::nullopt;
+  if (static_cast<double>(points.cols()) <= kDetection.points.max_points) return std::nullopt;
   const double most = mostPoints(points, options);
   if (!(static_cast<double>(points.cols()) > most)) return std::nullopt;
   const DistinctPoints distinct(points);
@@ -68,20 +68,20 @@ void spreadSupport(Detection& detection, const std::vector<int>& representative_
 std::vector<int> evenlyDense(const NormalizedCloud& cloud, std::uint64_t seed) {
   const Eigen::Index size = cloud.points.cols();
   const std::vector<int> samples = drawSamples(size, kDetection.points.density_samples, seed);
-  if (size <= kDetection.points.most_counted) return allOf(size);
+  if (size <= kDetection.points.max_counted) return allOf(size);
   std::vector<int> unused;
   std::vector<float> sq_distances;
   const Points at = pointsAt(cloud.points, samples);
-  cloud.search->search(at, kDetection.points.most_counted, unused, sq_distances);
+  cloud.search->search(at, kDetection.points.max_counted, unused, sq_distances);
   std::vector<float> to_neighbor(samples.size());
   for (std::size_t i = 0; i < samples.size(); ++i)
-    to_neighbor[i] = sq_distances[i * kDetection.points.most_counted + kDetection.points.neighbors];
+    to_neighbor[i] = sq_distances[i * kDetection.points.max_counted + kDetection.points.neighbors];
   const float sq_radius = median(to_neighbor);
   Eigen::Matrix4d squares = Eigen::Matrix4d::Zero();
   Eigen::Vector4d pull = Eigen::Vector4d::Zero();
   for (Eigen::Index i = 0; i < at.cols(); ++i) {
-    const auto first = sq_distances.begin() + i * kDetection.points.most_counted;
-    const auto count = std::upper_bound(first, first + kDetection.points.most_counted, sq_radius) - first;
+    const auto first = sq_distances.begin() + i * kDetection.points.max_counted;
+    const auto count = std::upper_bound(first, first + kDetection.points.max_counted, sq_radius) - first;
     const Eigen::Vector4d place = at.col(i).cast<double>().homogeneous();
     squares += place * place.transpose();
     pull += std::log(static_cast<double>(count)) * place;

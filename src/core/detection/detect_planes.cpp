@@ -399,7 +399,7 @@ GaussianEdtOptions DetectionOptions::edtOptions() const {
 
 void DetectionOptions::validate() const {
   check(tolerance > 0.0 && tolerance <= 0.1, "tolerance", tolerance, "in (0, 0.1]");
-  check(most_tolerance > 0.0 && most_tolerance <= 0.1, "most_tolerance", most_tolerance, "in (0, 0.1]");
+  check(max_tolerance > 0.0 && max_tolerance <= 0.1, "max_tolerance", max_tolerance, "in (0, 0.1]");
   check(absolute_tolerance >= 0.0, "absolute_tolerance", absolute_tolerance, ">= 0");
   check(min_confidence >= 0.0 && min_confidence <= 1.0, "min_confidence", min_confidence, "in [0, 1]");
   check(min_possible >= 0.0 && min_possible <= min_confidence, "min_possible", min_possible, "in [0, min_confidence]");

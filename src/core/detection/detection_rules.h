@@ -14,23 +14,23 @@ namespace pcl_symmetry {
 struct DetectionRules {
   /// Which points are used.
   struct {
-    double most_points = 20'000.0, usual_tolerance = 0.01;  ///< points that represent a cloud at that tolerance
-    int density_samples = 1000;                             ///< samples of the density; its slope has an error of 2 %
-    int most_counted = 48, neighbors = 16;  ///< neighbors that are counted, and that a neighborhood has on average
-    double trimmed = 0.05;  ///< share of the points at either end that the range of densities leaves out
+    double max_points = 20'000.0, usual_tolerance = 0.01;  ///< points that represent a cloud at that tolerance
+    int density_samples = 1000;                            ///< samples of the density; its slope has an error of 2 %
+    int max_counted = 48, neighbors = 16;  ///< neighbors that are counted, and that a neighborhood has on average
+    double trimmed = 0.05;                 ///< share of the points at either end that the range of densities leaves out
     double uneven = 0.4, fully_uneven = 0.7;  ///< logarithm of the ratio of densities evened, from none to all of it
   } points;
 
   /// Completion of groups.
   struct {
-    std::size_t most_closed = 16;  ///< symmetries whose group is completed: a cube has 9, an icosahedron 15
+    std::size_t max_closed = 16;  ///< symmetries whose group is completed: a cube has 9, an icosahedron 15
   } closure;
 
   /// Stages of refinement.
   struct {
     /// Bins beyond its own that refinement may move a candidate by. Departure from the paper, which has 0: one bin
     /// leaves room for the noise of the sampled map.
-    double most_drift = 1.0;
+    double max_drift = 1.0;
     int first_samples = 100;                        ///< points reflected in the first stage
     double same_angle = 0.035, same_offset = 0.02;  ///< within which two planes are one
     double same_maximum_angle = 0.1,
@@ -48,9 +48,9 @@ struct DetectionRules {
   /// Planes on surfaces and in volumes.
   struct {
     double first_climb = 0.02, last_climb = 0.0025;  ///< steps of a climb, radians and radii
-    int most_climbs = 24;                            ///< steps of a climb, of all lengths
+    int max_climbs = 24;                             ///< steps of a climb, of all lengths
     int climb_samples = 500;                         ///< points by which planes of whole clouds climb
-    double least_gain = 0.005;                       ///< merit that a climb has to gain
+    double min_gain = 0.005;                         ///< merit that a climb has to gain
     double climbing_merit = 0.5;                     ///< merit of planes that climb; those of less are no symmetries
     double climbing_confidence = 0.01;               ///< the same by confidence
     double noisy_depth = 0.1;  ///< roughness, spacings, from which planes of scans climb: noise looks hidden
@@ -67,29 +67,29 @@ struct DetectionRules {
     double moved_tolerances = 2.0;  ///< tolerances by which a plane has to move an informative sample of a scan
     double noisy_thinness = 3.0;    ///< tolerances within which a volume of points is a sheet or a line
     double round_spacings = 2.0;    ///< spacings within which points of a line do not resolve its cross-section
-    double least_own_share = 0.1;   ///< of the points on the surface of the others; what divides shares is no less
-    int look_samples = 2000;        ///< samples of a quick look
+    double min_own_share = 0.1;     ///< of the points on the surface of the others; what divides shares is no less
+    int screening_samples = 2000;   ///< samples of a quick look
     std::array<double, 2> tolerances{1.0, 2.0};  ///< at which shares are measured, see PlaneEvidence
     double beside_outline = 0.1;  ///< share of its radius beside an outline at which the picture is looked up
   } measure;
 
   /// Deciding.
   struct {
-    double most_cut = 0.3;           ///< share of the outline that the picture may cut off; tables in frames: 0.36
+    double max_cut = 0.3;            ///< share of the outline that the picture may cut off; tables in frames: 0.36
     double hopeful_share = 0.93;     ///< of a quick look; less is no possible symmetry
-    double look_errors = 2.0;        ///< standard errors that a quick look allows
-    double still_share = 0.5;        ///< share of the points that an uninformative plane leaves in place
+    double screening_errors = 2.0;   ///< standard errors that a quick look allows
+    double max_unmoved_share = 0.5;  ///< share of the points that an uninformative plane leaves in place
     double nothing_missing = 0.01;   ///< share of the surface; less is missing by chance
     double piece_missing = 0.03;     ///< share of the surface; more is a piece
     double odds_of_a_piece = 0.2;    ///< that a cloud lacks a piece although a plane explains all of it
     double as_likely = 0.05;         ///< difference of the confidences that other samples of a cloud make
-    double least_informative = 0.1;  ///< least share of informative samples; below it confidence falls in proportion
+    double min_informative = 0.1;    ///< least share of informative samples; below it confidence falls in proportion
     double coarsest = 3.0;           ///< greatest tolerances; a sensor that resolves less decides nothing
     double upright = 5.0 * kPi / 180.0;  ///< from upright or level within which a plane does not slant
     double touching = 0.05;              ///< diameters beyond the nearest support within which others carry, too
     double slanted_odds = 0.1;           ///< of a plane that slants over one that does not
     double no_surface = 1.5;             ///< tolerances from which neighboring points are too far apart for a surface
-    int most_possible = 5;               ///< symmetries and possible planes together, where there are possible ones
+    int max_possible = 5;                ///< symmetries and possible planes together, where there are possible ones
     double slope_dip = 0.005;            ///< difference of D that rounding makes of a level slope
     double slope_angle = 0.2,
            slope_offset = 0.15;  ///< radians, radii: a plane and a better one may be on one slope within
@@ -99,20 +99,20 @@ struct DetectionRules {
   struct {
     double contained_offset = 0.03,
            contained_angle = 3.0 * kDegree;  ///< by which a plane may miss a line that it contains
-    int most_fold = 60;                      ///< as rotations of objects
-    std::size_t least_planes = 4;            ///< of a lattice; three fit too many by chance
-    std::size_t most_pairs = 6;              ///< planes whose common lines are tried for a lattice
-    double least_pair_angle = 0.1;           ///< between two planes; less moves their line too far
-    double most_folded = 0.2;                ///< share of the angle between planes of a lattice by which one may be off
-    double most_off_angle = 0.05;            ///< the same in radians
-    double most_chance = 1e-3;               ///< probability of a lattice by chance
-    std::size_t most_planes = 8;             ///< planes whose common lines are tried for an axis
-    double least_angle = 0.17;               ///< between two of them
+    int max_fold = 60;                       ///< as rotations of objects
+    std::size_t min_planes = 4;              ///< of a lattice; three fit too many by chance
+    std::size_t max_pairs = 6;               ///< planes whose common lines are tried for a lattice
+    double min_pair_angle = 0.1;             ///< between two planes; less moves their line too far
+    double max_folded = 0.2;                 ///< share of the angle between planes of a lattice by which one may be off
+    double max_off_angle = 0.05;             ///< the same in radians
+    double max_chance = 1e-3;                ///< probability of a lattice by chance
+    std::size_t max_planes = 8;              ///< planes whose common lines are tried for an axis
+    double min_angle = 0.17;                 ///< between two of them
     int screening_planes = 3, fitted_planes = 6,
         tested_planes = 8;       ///< planes of a family that screen it, fit its line, test it
     double rough_factor = 2.0;   ///< allowances in the screening
     double coplanar = 0.05;      ///< share of the largest singular value below which normals are coplanar
-    double least_spread = 0.02;  ///< least eigenvalue of the mean outer product of normals, at most 1/3
+    double min_spread = 0.02;    ///< least eigenvalue of the mean outer product of normals, at most 1/3
     int rough_sample_share = 5;  ///< one sample in this many screens a family
     double worst_share = 0.5;    ///< confidence of the worst plane of a family, shares of that of a symmetry
     int refine_iterations = 6;   ///< of a plane of a family
@@ -120,18 +120,18 @@ struct DetectionRules {
 
   /// Folds of noisy clouds, by their spectrum.
   struct {
-    int most_frequency = 120, least_fold = 3;  ///< a cloud that is thinner on one side, or flat, has folds one and two
-    int rings = 8, slabs = 4;  ///< about the line: rings for the fold, slabs for the angle of the planes
+    int max_frequency = 120, min_fold = 3;  ///< a cloud that is thinner on one side, or flat, has folds one and two
+    int rings = 8, slabs = 4;               ///< about the line: rings for the fold, slabs for the angle of the planes
     int spectrum_samples = 20'000, angles = 192, phase_samples = 5000;
     double reflections_stand_out = 20.0;   ///< powers beside it from which reflections fix the angle better than rings
     int compared_frequencies = 12;         ///< frequencies on either side that one is compared with
-    double least_power = 20.0;             ///< round bodies in noise have 15 at most
+    double min_power = 20.0;               ///< round bodies in noise have 15 at most
     double stands_out = 4.0;               ///< medians of the powers beside it
-    double most_gap = 0.125;               ///< between angles of folded points, angles between two planes
+    double max_gap = 0.125;                ///< between angles of folded points, angles between two planes
     double errors = 3.0;                   ///< standard errors by which the planes between those of a polygon are worse
     double odds_of_polygon = 4.0;          ///< of planes of a polygon over other planes of the same evidence
-    std::size_t most_line_pairs = 4;       ///< planes whose common lines are tried
-    double least_line_angle = 0.1;         ///< between two of them
+    std::size_t max_line_pairs = 4;        ///< planes whose common lines are tried
+    double min_line_angle = 0.1;           ///< between two of them
     std::array<int, 3> divisors{2, 3, 5};  ///< of parts of a polygon whose planes may differ
   } folds;
 
@@ -139,15 +139,15 @@ struct DetectionRules {
   struct {
     int num_seeds = 24, num_directions = 8;        ///< balls of each radius, and directions beside their principal axes
     std::array<double, 3> radii{0.25, 0.35, 0.5};  ///< of the balls: limbs to halves of a shape
-    double least_ball = 0.04, largest_ball = 0.6;  ///< share of the points of a ball
-    double least_support = 0.7;                    ///< share of the points of a ball that match
+    double min_ball = 0.04, largest_ball = 0.6;    ///< share of the points of a ball
+    double min_support = 0.7;                      ///< share of the points of a ball that match
     double farthest_plane = 0.5;                   ///< radii of the ball, from its middle
-    double least_part = 0.04, largest_part = 0.9;  ///< share of the points of a part
-    double least_edge = 0.4, edge_per_share = 0.5;  ///< longest edge of a part, edges of a disc, and more per share
-    double longer_edge = 0.15, shared_part = 0.5;   ///< by how much longer, if better parts hold at most that share
+    double min_part = 0.04, largest_part = 0.9;    ///< share of the points of a part
+    double min_edge = 0.4, edge_per_share = 0.5;   ///< longest edge of a part, edges of a disc, and more per share
+    double longer_edge = 0.15, shared_part = 0.5;  ///< by how much longer, if better parts hold at most that share
     double same_part_angle = 0.07, same_part_offset = 0.04;  ///< within which planes of parts are one
     double same_part = 0.5;                                ///< share that regions of planes of one part have in common
-    std::size_t most_planes_of_part = 9;                   ///< those of a cube
+    std::size_t max_planes_of_part = 9;                    ///< those of a cube
     std::array<double, 2> longest_edges_before{1.0, 0.6};  ///< more than that of a part before either round, as above
     int iterations = 6;                                    ///< of a plane of a part
     std::size_t ball_samples = 200, region_samples = 400;  ///< points that are reflected
@@ -181,9 +181,9 @@ struct KindRules {
   KindRule<bool> keeps_unlikely           {   false,    true,   false};
 
   // Refinement: the last stage reflects one sample in this many: a scan is limited by what it shows.
-  KindRule<int> full_share                {       1,       4,       1};
+  KindRule<int> full_stride               {       1,       4,       1};
   // Candidates that never settle reflect one sample in this many; ...
-  KindRule<int> rough_share               {      10,      20,      10};
+  KindRule<int> rough_stride              {      10,      20,      10};
   // ... those with less merit never settle.
   KindRule<double> settled_merit          {    0.83,    0.93,    0.83};
   // Point-to-plane steps slide a plane along flat pieces that a scan has little beside.
@@ -192,7 +192,7 @@ struct KindRules {
   KindRule<bool> climbs                   {    true,   false,    true};
 
   // Evidence: planes are judged by one sample in this many; 0 = by all points.
-  KindRule<int> judged_share              {       0,       4,       0};
+  KindRule<int> judged_stride             {       0,       4,       0};
   // One half of the points is compared with the other, as no surface is resolved.
   KindRule<bool> by_halves                {   false,   false,    true};
   // Open borders tell what was cut off.

@@ -149,7 +149,7 @@ std::vector<int> within(const Points& points, const Eigen::Vector3f& center, dou
 
 bool isBall(std::size_t count, const Points& points) {
   const auto part = static_cast<double>(count), whole = static_cast<double>(points.cols());
-  return part >= kDetection.parts.least_ball * whole && part <= kDetection.parts.largest_ball * whole;
+  return part >= kDetection.parts.min_ball * whole && part <= kDetection.parts.largest_ball * whole;
 }
 
 /// Evenly chosen samples, at most \p most and at least half as many where there are enough.
@@ -211,7 +211,7 @@ struct BallSearch {
     const IspStep step = matchSymmetricPoints(surface, samples, part.plane, cloud.final_sigma, &result.last.closest);
     part.support = fit.relativeSupport(fit.shares(part.plane, samples, step));
     part.share = static_cast<double>(moved.size()) / static_cast<double>(cloud.points.cols());
-    if (part.support < kDetection.parts.least_support) return std::nullopt;
+    if (part.support < kDetection.parts.min_support) return std::nullopt;
     return part;
   }
 
@@ -249,7 +249,7 @@ struct RegionSearch {
 
   /// By how much the edge of a region is longer than that of a part of its size, edges of a disc.
   static double longerEdge(const MatchedRegion& region) {
-    return region.edge - kDetection.parts.least_edge - kDetection.parts.edge_per_share * region.share;
+    return region.edge - kDetection.parts.min_edge - kDetection.parts.edge_per_share * region.share;
   }
 
   /// Moves the plane to the best one on a region.
@@ -269,13 +269,13 @@ struct RegionSearch {
     MatchedRegion region = regions.largest(part.plane);
     int round = 0;
     for (const double sigma : {balls.isp.sigma, balls.isp.final_sigma}) {
-      if (region.share < kDetection.parts.least_part ||
+      if (region.share < kDetection.parts.min_part ||
           longerEdge(region) > kDetection.parts.longest_edges_before[round++])
         return std::nullopt;
       refine(part, region, sigma);
       region = regions.largest(part.plane, &region.closest);
     }
-    if (region.share < kDetection.parts.least_part || region.share > kDetection.parts.largest_part) return std::nullopt;
+    if (region.share < kDetection.parts.min_part || region.share > kDetection.parts.largest_part) return std::nullopt;
     part.longer_edge = longerEdge(region);
     if (part.longer_edge > kDetection.parts.longer_edge) return std::nullopt;
     part.points = std::move(region.points);
@@ -324,7 +324,7 @@ std::vector<SymmetricPart> withoutFamilies(std::vector<SymmetricPart> parts) {
   }
   std::vector<SymmetricPart> kept;
   for (std::vector<SymmetricPart>& group : groups) {
-    if (group.size() > kDetection.parts.most_planes_of_part) group.resize(1);
+    if (group.size() > kDetection.parts.max_planes_of_part) group.resize(1);
     std::move(group.begin(), group.end(), std::back_inserter(kept));
   }
   return kept;

@@ -27,7 +27,7 @@ MeasuredPlane PlaneDecision::decided(MeasuredPlane measured, const ReflectionPla
   for (const char* rule : measure_.limits().of(plane, cloud_.points)) limitToPossible(result, rule);
   setConfidence(result, planeConfidence(measured.evidence), "the points that the plane maps onto the surface",
                 options_);
-  const double informative = std::min(1.0, measured.informative / kDetection.decide.least_informative);
+  const double informative = std::min(1.0, measured.informative / kDetection.decide.min_informative);
   if (informative < 1.0)
     changeConfidence(result, result.confidence * informative, "few points move and land where the scanner saw",
                      options_);
@@ -36,8 +36,8 @@ MeasuredPlane PlaneDecision::decided(MeasuredPlane measured, const ReflectionPla
 
 bool PlaneDecision::isHopeless(const Candidate& candidate) const {
   if (!kKindRules.may_lack_piece[cloud_.kind()] || candidate.merit >= kDetection.stages.symmetric_merit) return false;
-  const PlaneMeasure::QuickShare quick = measure_.quickShare(candidate);
-  return quick.share + kDetection.decide.look_errors * quick.error < kDetection.decide.hopeful_share;
+  const PlaneMeasure::ScreenedShare quick = measure_.screenedShare(candidate);
+  return quick.share + kDetection.decide.screening_errors * quick.error < kDetection.decide.hopeful_share;
 }
 
 std::vector<MeasuredPlane> PlaneDecision::judge(const std::vector<Candidate>& candidates) const {
@@ -71,7 +71,7 @@ JudgedFamily PlaneDecision::judgeFamily(const std::vector<ReflectionPlane>& plan
     together.hold += one.hold / count;
     best_score = std::max(best_score, one.score);
     family.score += one.score / count;
-    family.least_confidence = std::min(family.least_confidence, planeConfidence(one));
+    family.min_confidence = std::min(family.min_confidence, planeConfidence(one));
   }
   // Planes of a family tell as much as the scan shows of them, and D falls with what it does not show: the plane that
   // is shown best represents it.
@@ -136,7 +136,7 @@ std::vector<SymmetryPlane> rankedPlanes(std::vector<SymmetryPlane> planes, const
   for (SymmetryPlane& plane : planes) {
     if (static_cast<int>(ranked.size()) >= options.max_planes) break;
     if (!isDecided(plane) && !options.approximate) continue;
-    if (plane.kind == PlaneKind::Possible && static_cast<int>(ranked.size()) >= kDetection.decide.most_possible)
+    if (plane.kind == PlaneKind::Possible && static_cast<int>(ranked.size()) >= kDetection.decide.max_possible)
       continue;
     const bool of_polygon = isOf(polygon, plane, cloud);
     const bool is_known = std::any_of(ranked.begin(), ranked.end(), [&](const SymmetryPlane& other) {

@@ -19,8 +19,8 @@ struct DetectionEvidence {
 
 /// Combined evidence of the planes of a family.
 struct JudgedFamily {
-  double confidence = 0.0;        ///< of the mean evidence
-  double least_confidence = 1.0;  ///< of a single plane
+  double confidence = 0.0;      ///< of the mean evidence
+  double min_confidence = 1.0;  ///< of a single plane
   double score = 0.0, support = 0.0;
 };
 

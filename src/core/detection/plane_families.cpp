@@ -114,7 +114,7 @@ std::optional<CenterFamily> findCenter(const std::vector<ReflectionPlane>& plane
   for (const ReflectionPlane& plane : planes) sum += plane.normal() * plane.normal().transpose();
   const SymmetricEigen<Eigen::Matrix3d> solver(sum / static_cast<double>(planes.size()));
   const bool has_point =
-      planes.size() >= 3 && solver.eigenvalues()[0] >= kDetection.families.least_spread;  // or else all hold one line
+      planes.size() >= 3 && solver.eigenvalues()[0] >= kDetection.families.min_spread;  // or else all hold one line
   if (has_point) points.push_back(commonPoint(planes, Eigen::Vector3d::Zero()));
   points.insert(points.end(), guesses.begin(), guesses.end());
   const double least = std::max(test.min_share, test.share(planes[0]) - test.allowance);
@@ -141,10 +141,10 @@ std::vector<AxisFamily> findAxes(const std::vector<ReflectionPlane>& planes, con
   };
   if (!planes.empty())
     for (const Line3d& guess : guesses) attempt(guess, test.share(planes[0]));
-  const std::size_t size = std::min(planes.size(), kDetection.families.most_planes);
+  const std::size_t size = std::min(planes.size(), kDetection.families.max_planes);
   for (std::size_t i = 0; i < size; ++i) {
     for (std::size_t j = 0; j < i; ++j) {
-      if (planes[i].angleTo(planes[j]) < kDetection.families.least_angle) continue;
+      if (planes[i].angleTo(planes[j]) < kDetection.families.min_angle) continue;
       attempt(commonLine({planes[i], planes[j]}), std::max(test.share(planes[i]), test.share(planes[j])));
     }
   }
@@ -246,7 +246,7 @@ PlanesAndFamilies collectFamilies(std::vector<SymmetryPlane> planes, const Norma
   const auto isFamily = [&](const JudgedFamily& judged) {
     return judged.confidence >= options.min_confidence &&
            (!kKindRules.family_needs_all[cloud.kind()] ||
-            judged.least_confidence >= kDetection.families.worst_share * options.min_confidence);
+            judged.min_confidence >= kDetection.families.worst_share * options.min_confidence);
   };
   if (const std::optional<CenterFamily> center = findCenter(symmetries, test, likely_centers)) {
     const JudgedFamily judged = decision.judgeFamily(center->planes, samples);

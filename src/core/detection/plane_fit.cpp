@@ -24,7 +24,7 @@ public:
                fewer = std::make_shared<const std::vector<int>>(drawn(stage.num_rough_samples));
     parallelBlocks(candidates.size(), options_.num_threads, [&](std::size_t i) {
       Candidate& candidate = candidates[i];
-      const bool settles = candidate.iterations == 0 || candidate.merit >= stage.least_merit;
+      const bool settles = candidate.iterations == 0 || candidate.merit >= stage.min_merit;
       candidate.samples = settles ? samples : fewer;
       const std::vector<int>& used = *candidate.samples;
       const ReflectionPlane start = candidate.plane;
@@ -123,7 +123,7 @@ private:
     double best = merit(shares(plane, fewer, here));
     int num_climbs = 0;
     for (double step = kDetection.fit.first_climb; step >= kDetection.fit.last_climb; step *= 0.5) {
-      for (int fails = 0, k = 0; fails < 6 && num_climbs < kDetection.fit.most_climbs; k = (k + 1) % 6) {
+      for (int fails = 0, k = 0; fails < 6 && num_climbs < kDetection.fit.max_climbs; k = (k + 1) % 6) {
         const ReflectionPlane next = moved(plane, k / 2, k % 2 == 0 ? step : -step);
         IspStep there = matches(next, fewer, &here.closest);
         const double value = merit(shares(next, fewer, there));
@@ -139,7 +139,7 @@ private:
     if (num_climbs == 0) return false;
     IspStep step = matches(plane, samples);
     const double value = merit(shares(plane, samples, step));
-    if (value <= candidate.merit + kDetection.fit.least_gain) return false;
+    if (value <= candidate.merit + kDetection.fit.min_gain) return false;
     candidate.plane = plane;
     candidate.merit = value;
     candidate.last.last = std::move(step);

@@ -35,7 +35,7 @@ struct RefinementStage {
   int num_rough_samples;  ///< of the others
   IspOptions isp;         ///< of candidates that may be symmetries
   IspOptions rough_isp;   ///< of the others
-  double least_merit;     ///< of candidates that may be symmetries
+  double min_merit;       ///< of candidates that may be symmetries
   bool undo_slides;       ///< of scans, at the narrowest weights
   bool climbs = false;    ///< those of noisy scans, in the last stage
 };

@@ -39,19 +39,19 @@ std::optional<PlaneLattice> latticeAbout(const Line3d& line, const std::vector<R
   std::vector<double> angles;
   for (const ReflectionPlane& plane : planes)
     if (contains(plane, line)) angles.push_back(angleAbout(line, plane));
-  if (angles.size() < kDetection.families.least_planes) return std::nullopt;
-  for (int fold = 3; fold <= kDetection.families.most_fold; ++fold) {
+  if (angles.size() < kDetection.families.min_planes) return std::nullopt;
+  for (int fold = 3; fold <= kDetection.families.max_fold; ++fold) {
     std::complex<double> sum = 0.0;
     for (const double angle : angles) sum += std::polar(1.0, 2.0 * fold * angle);
     const double phase = std::arg(sum) / (2.0 * fold), step = kPi / fold;
     double most = 0.0;
     for (const double angle : angles) most = std::max(most, std::abs(std::remainder(angle - phase, step)));
-    if (most > std::min(kDetection.families.most_folded * step, kDetection.families.most_off_angle)) continue;
+    if (most > std::min(kDetection.families.max_folded * step, kDetection.families.max_off_angle)) continue;
     // Two of the angles give line and phase; each other one falls this close to a plane by chance, and the folds below
     // were tried before.
-    const double by_chance = std::min(1.0, 2.0 * std::max(most, 0.25 * kDetection.families.most_folded * step) / step);
+    const double by_chance = std::min(1.0, 2.0 * std::max(most, 0.25 * kDetection.families.max_folded * step) / step);
     const double chance = fold * std::pow(by_chance, static_cast<double>(angles.size()) - 1.0);
-    if (chance > kDetection.families.most_chance) return std::nullopt;
+    if (chance > kDetection.families.max_chance) return std::nullopt;
     return PlaneLattice{line, fold, phase, static_cast<int>(angles.size())};
   }
   return std::nullopt;
@@ -70,13 +70,13 @@ ReflectionPlane PlaneLattice::plane(double k) const {
 
 std::optional<PlaneLattice> findLattice(const std::vector<ReflectionPlane>& planes) {
   std::optional<PlaneLattice> best;
-  const std::size_t size = std::min(planes.size(), kDetection.families.most_pairs);
+  const std::size_t size = std::min(planes.size(), kDetection.families.max_pairs);
   for (std::size_t i = 0; i < size; ++i)
     for (std::size_t j = 0; j < i; ++j) {
-      if (planes[i].angleTo(planes[j]) < kDetection.families.least_pair_angle) continue;
+      if (planes[i].angleTo(planes[j]) < kDetection.families.min_pair_angle) continue;
       Line3d line = commonLine({planes[i], planes[j]});
       const std::vector<ReflectionPlane> through = planesContaining(line, planes);
-      if (through.size() < kDetection.families.least_planes) continue;
+      if (through.size() < kDetection.families.min_planes) continue;
       line = commonLine(through);
       const std::optional<PlaneLattice> lattice = latticeAbout(line, planes);
       if (lattice && (!best || lattice->num_planes > best->num_planes)) best = lattice;
@@ -102,7 +102,7 @@ class FoldSpectrum {
 public:
   /// \param num_slabs across the line, each of which is cut into rings of its own.
   FoldSpectrum(const Points& points, const Line3d& line, int num_slabs)
-      : squares_(kDetection.folds.most_frequency + kDetection.folds.compared_frequencies + 1, 0.0),
+      : squares_(kDetection.folds.max_frequency + kDetection.folds.compared_frequencies + 1, 0.0),
         powers_(squares_.size(), 0.0) {
     const Eigen::Vector3d u = line.direction().unitOrthogonal(), v = line.direction().cross(u);
     std::vector<Place> places;
@@ -123,7 +123,7 @@ public:
   /// By how much the frequency has more power than those beside it; 0 where that may be chance.
   double prominence(int m) const {
     const double now = aboveBeside(m, [this](int k) { return power(k); });
-    return power(m) >= kDetection.folds.least_power && now >= kDetection.folds.stands_out ? now : 0.0;
+    return power(m) >= kDetection.folds.min_power && now >= kDetection.folds.stands_out ? now : 0.0;
   }
   /// Angle of the normal of a plane, radians.
   double phase(int m) const { return 0.5 * kPi + std::arg(squares_[m]) / (2.0 * m); }
@@ -226,10 +226,10 @@ std::optional<PlaneLattice> bestLattice(const std::vector<SymmetryPlane>& planes
     if (const ReflectionPlane normalized = cloud.toNormalized(plane);
         isDecided(plane) && !kSameMaximum.anySame(likely, normalized))
       likely.push_back(normalized);
-  const std::size_t size = std::min(likely.size(), kDetection.folds.most_line_pairs);
+  const std::size_t size = std::min(likely.size(), kDetection.folds.max_line_pairs);
   for (std::size_t i = 0; i < size; ++i)
     for (std::size_t j = 0; j < i; ++j)
-      if (likely[i].angleTo(likely[j]) >= kDetection.folds.least_line_angle)
+      if (likely[i].angleTo(likely[j]) >= kDetection.folds.min_line_angle)
         if (const auto lattice = latticeBySpectrum(cloud, all, lineThrough(likely, likely[i], likely[j]), num_threads))
           return lattice;
   return std::nullopt;
@@ -242,7 +242,7 @@ std::optional<PlaneLattice> latticeBySpectrum(const NormalizedCloud& cloud, cons
   const FoldSpectrum spectrum(all, line, 1);
   int fold = 0;
   double most = 0.0;
-  for (int m = kDetection.folds.least_fold; m <= kDetection.folds.most_frequency; ++m) {
+  for (int m = kDetection.folds.min_fold; m <= kDetection.folds.max_frequency; ++m) {
     const double now = spectrum.prominence(m);
     if (now <= most) continue;
     most = now;
@@ -255,7 +255,7 @@ std::optional<PlaneLattice> latticeBySpectrum(const NormalizedCloud& cloud, cons
       fold = m;
       break;
     }
-  if (fold < kDetection.folds.least_fold) return std::nullopt;
+  if (fold < kDetection.folds.min_fold) return std::nullopt;
   const std::optional<double> phase = phaseByReflections(cloud, line, fold, num_threads);
   return PlaneLattice{line, fold, phase ? *phase : FoldSpectrum(all, line, kDetection.folds.slabs).phase(fold), 0};
 }
@@ -286,7 +286,7 @@ bool isPolygon(const PlaneLattice& lattice, const Points& points, double toleran
   // Vertices of a mesh may lie at few angles, and tell nothing about those between.
   std::sort(angles.begin(), angles.end());
   for (std::size_t i = 1; i < angles.size(); ++i)
-    if (angles[i] - angles[i - 1] > kDetection.folds.most_gap * step) return false;
+    if (angles[i] - angles[i - 1] > kDetection.folds.max_gap * step) return false;
   const std::vector<int> samples = drawSamples(points.cols(), kDetection.folds.phase_samples, 1);
   const auto search = makeFlannSearch(folded);
   const auto count = static_cast<double>(samples.size());
@@ -316,14 +316,14 @@ PlanesAndPolygon withClosePlanes(std::vector<SymmetryPlane> planes, const Normal
   std::vector<ReflectionPlane> symmetries, through;
   for (const SymmetryPlane& plane : planes)
     if (plane.kind == PlaneKind::Symmetry) symmetries.push_back(cloud.toNormalized(plane));
-  const std::size_t size = std::min(symmetries.size(), kDetection.families.most_pairs);
+  const std::size_t size = std::min(symmetries.size(), kDetection.families.max_pairs);
   for (std::size_t i = 0; i < size; ++i)
     for (std::size_t j = 0; j < i; ++j) {
-      if (symmetries[i].angleTo(symmetries[j]) < kDetection.families.least_pair_angle) continue;
+      if (symmetries[i].angleTo(symmetries[j]) < kDetection.families.min_pair_angle) continue;
       auto containing = planesContaining(commonLine({symmetries[i], symmetries[j]}), symmetries);
       if (containing.size() > through.size()) through = std::move(containing);
     }
-  if (through.size() < kDetection.families.least_planes) return {std::move(planes), std::nullopt};
+  if (through.size() < kDetection.families.min_planes) return {std::move(planes), std::nullopt};
   const Line3d line = commonLine(through);
   std::optional<PlaneLattice> lattice = latticeBySpectrum(cloud, cloud.points, line, options.num_threads);
   if (!lattice || kPi / lattice->fold > kDetection.decide.slope_angle ||
@@ -332,7 +332,7 @@ PlanesAndPolygon withClosePlanes(std::vector<SymmetryPlane> planes, const Normal
   std::complex<double> sum = 0.0;  // the planes that were found fix the angle better
   for (const ReflectionPlane& plane : through)
     if (const double angle = angleAbout(line, plane), step = kPi / lattice->fold;
-        std::abs(std::remainder(angle - lattice->phase, step)) <= kDetection.families.most_folded * step)
+        std::abs(std::remainder(angle - lattice->phase, step)) <= kDetection.families.max_folded * step)
       sum += std::polar(1.0, 2.0 * lattice->fold * angle);
   if (std::abs(sum) > 0.0) lattice->phase = std::arg(sum) / (2.0 * lattice->fold);
   std::vector<Candidate> candidates;

@@ -20,7 +20,7 @@ namespace {
 std::array<double, 2> sharesWithin(const std::vector<float>& distances, double tolerance) {
   std::array<double, 2> shares{};
   for (std::size_t k = 0; k < shares.size(); ++k)
-    shares[k] = std::max(kDetection.measure.least_own_share,
+    shares[k] = std::max(kDetection.measure.min_own_share,
                          shareWithin(distances, kDetection.measure.tolerances[k] * tolerance));
   return shares;
 }
@@ -43,7 +43,7 @@ PlaneMeasure::PlaneMeasure(const NormalizedCloud& cloud, const PlaneFit& fit, co
                      ? options.absolute_tolerance / cloud.scale
                      : std::max(options.tolerance * cloud.extent,
                                 std::min(std::max(resolution_, sampledTolerance(cloud, options.tolerance)),
-                                         options.most_tolerance * cloud.extent))),
+                                         options.max_tolerance * cloud.extent))),
       limits_(cloud.points, cloud.principal_axes, cloud.kind(), cloud.seen(),
               {tolerance_, resolution_, cloud.spacing, cloud.extent}),
       halves_(kKindRules.by_halves[cloud.kind()]
@@ -57,7 +57,7 @@ PlaneMeasure::PlaneMeasure(const NormalizedCloud& cloud, const PlaneFit& fit, co
 
 std::vector<int> PlaneMeasure::samples() const {
   const Eigen::Index num_points = cloud_.points.cols();
-  const int share = kKindRules.judged_share[cloud_.kind()];
+  const int share = kKindRules.judged_stride[cloud_.kind()];
   return share > 0 ? drawSamples(num_points, options_.expert.num_refine_samples / share, options_.seed)
                    : allOf(num_points);
 }
@@ -222,8 +222,9 @@ double PlaneMeasure::deviation(const ReflectionPlane& plane) const {
   return deviationOf(std::move(informative));
 }
 
-PlaneMeasure::QuickShare PlaneMeasure::quickShare(const Candidate& candidate) const {
-  const std::vector<int> samples = drawSamples(cloud_.points.cols(), kDetection.measure.look_samples, options_.seed);
+PlaneMeasure::ScreenedShare PlaneMeasure::screenedShare(const Candidate& candidate) const {
+  const std::vector<int> samples =
+      drawSamples(cloud_.points.cols(), kDetection.measure.screening_samples, options_.seed);
   const Reflected some = reflected(candidate.plane, samples, fit_.matches(candidate.plane, samples));
   const double share = std::min(1.0, shareWithin(some.distances, tolerance_) / own_shares_[0]);
   return {share, std::sqrt(share * (1.0 - share) / static_cast<double>(samples.size()))};

@@ -52,11 +52,11 @@ public:
   PlaneEvidence evidenceOf(double support, double conflict, double score) const;
 
   /// Share of the surface that a plane maps to within the tolerance, by a look at some points, and its standard error.
-  struct QuickShare {
+  struct ScreenedShare {
     double share, error;
   };
   /// \param candidate from the second stage of refinement on.
-  QuickShare quickShare(const Candidate& candidate) const;
+  ScreenedShare screenedShare(const Candidate& candidate) const;
 
   /// SymmetryPlane::deviation of a plane that maps many points far from the surface, normalized frame.
   double deviation(const ReflectionPlane& plane) const;

@@ -17,13 +17,13 @@ namespace {
 // Lengths are shares of the extent of the points in (radius, height).
 struct ProfileRules {
   double first_width = 0.04;  // of the fit: noise of 1 % leaves its direction clear
-  double least_width = 0.012, most_width = 0.05;
-  double widths = 3.0;         // spreads, that the fit then is wide
-  int moves = 4;               // of each point onto the curve
-  double apart = 0.5;          // of the step between two points of the curve; closer ones are one
-  double next = 4.0;           // steps to the next point of one piece
-  double least_density = 0.1;  // of the median, points over radius: fits beside the curve have less
-  int least_points = 6;        // of a parabola with a direction
+  double min_width = 0.012, max_width = 0.05;
+  double widths = 3.0;       // spreads, that the fit then is wide
+  int moves = 4;             // of each point onto the curve
+  double apart = 0.5;        // of the step between two points of the curve; closer ones are one
+  double next = 4.0;         // steps to the next point of one piece
+  double min_density = 0.1;  // of the median, points over radius: fits beside the curve have less
+  int min_points = 6;        // of a parabola with a direction
 };
 constexpr ProfileRules kProfile;
 
@@ -48,7 +48,7 @@ FittedPosition fittedPosition(const std::vector<Eigen::Vector2d>& points, Eigen:
       mean += weight * x;
       sum += weight;
     }
-    if (static_cast<int>(nearby.size()) < kProfile.least_points || !(sum > 0.0)) return {position, 0.0, 0};
+    if (static_cast<int>(nearby.size()) < kProfile.min_points || !(sum > 0.0)) return {position, 0.0, 0};
     mean /= sum;
     for (const auto& [x, weight] : nearby) spread += weight * (x - mean) * (x - mean).transpose();
     const SymmetricEigen<Eigen::Matrix2d> axes(spread);
@@ -114,14 +114,14 @@ std::vector<ProfilePoint> revolutionProfile(const PointsRef& points, const Symme
   // Points near the axis again with a negative radius: the curve continues beyond it.
   std::vector<Eigen::Vector2d> around = positions;
   for (const Eigen::Vector2d& position : positions)
-    if (position.x() < kProfile.most_width * extent) around.emplace_back(-position.x(), position.y());
+    if (position.x() < kProfile.max_width * extent) around.emplace_back(-position.x(), position.y());
   {
     std::vector<double> spreads;
     for (const Eigen::Vector2d& start : startsFor(width))
       if (const FittedPosition fit = fittedPosition(around, start, width); fit.count > 0) spreads.push_back(fit.spread);
     if (!spreads.empty())
-      width = std::min(kProfile.most_width * extent,
-                       std::max(kProfile.least_width * extent, kProfile.widths * median(std::move(spreads))));
+      width = std::min(kProfile.max_width * extent,
+                       std::max(kProfile.min_width * extent, kProfile.widths * median(std::move(spreads))));
   }
   const double step = 2.0 * extent / num_points;  // a vase is about twice as long as it is high
   std::vector<FittedPosition> curve;
@@ -139,7 +139,7 @@ std::vector<ProfilePoint> revolutionProfile(const PointsRef& points, const Symme
   const auto density = [&](const FittedPosition& fit) { return fit.count / std::max(fit.position.x(), width); };
   std::vector<double> densities;
   for (const FittedPosition& fit : curve) densities.push_back(density(fit));
-  const double least = kProfile.least_density * median(std::move(densities));
+  const double least = kProfile.min_density * median(std::move(densities));
   curve.erase(
       std::remove_if(curve.begin(), curve.end(), [&](const FittedPosition& fit) { return density(fit) < least; }),
       curve.end());

@@ -66,7 +66,7 @@ std::vector<char> StagedRefinement::climb(std::vector<Candidate>& candidates) co
 }
 
 RefinementStage StagedRefinement::fullStage() const {
-  RefinementStage full = stage(options_.expert.num_refine_samples / kKindRules.full_share[cloud_.kind()],
+  RefinementStage full = stage(options_.expert.num_refine_samples / kKindRules.full_stride[cloud_.kind()],
                                cloud_.final_sigma, cloud_.final_sigma, kDetection.stages.full_iterations);
   full.climbs = true;
   return full;
@@ -84,8 +84,8 @@ RefinementStage StagedRefinement::stage(int num_samples, double sigma, double fi
   RefinementStage stage;
   stage.num_samples = std::max(1, num_samples);
   stage.num_rough_samples =
-      std::clamp(options_.expert.num_refine_samples / kKindRules.rough_share[kind], 1, stage.num_samples);
-  stage.least_merit = kKindRules.settled_merit[kind];
+      std::clamp(options_.expert.num_refine_samples / kKindRules.rough_stride[kind], 1, stage.num_samples);
+  stage.min_merit = kKindRules.settled_merit[kind];
   stage.undo_slides = kKindRules.slides[kind] && final_sigma == sigma;
   // On the way to narrow weights, point-to-plane steps would slide a scan along its flat pieces.
   const bool slides = kKindRules.slides[kind] && num_samples > kDetection.stages.first_samples && final_sigma < sigma;
@@ -106,30 +106,33 @@ std::vector<Candidate> StagedRefinement::refined(std::vector<Candidate> candidat
 }
 
 /// The candidates that stayed near the cell they came from. Departure from the paper, which drops all that leave their
-/// cell: a map of few samples has its maxima up to one cell off, hence kDetection.stages.most_drift; and those that
-/// climbed to a greater D stay, as no other candidate need have come there.
+/// cell: a map of few samples has its maxima up to one cell off, hence kDetection.stages.max_drift; and those that map
+/// more of the shape than all that stayed are not lost.
 std::vector<Candidate> StagedRefinement::withinCells(const std::vector<Candidate>& candidates,
                                                      const std::vector<Candidate>& starts,
                                                      const PlaneGrid& grid) const {
-  const double reach = 0.5 + kDetection.stages.most_drift;
+  const double reach = 0.5 + kDetection.stages.max_drift;
   const PlaneTolerance cell{std::sqrt(2.0) * reach * std::max(grid.thetaStep(), grid.phiStep()),
                             reach * grid.radiusStep() / cloud_.scale};
-  const auto d = [&](const Candidate& candidate) { return cloud_.score(cloud_.toInput(candidate.plane)); };
-  std::vector<Candidate> kept;
-  for (std::size_t i = 0; i < candidates.size(); ++i)
-    if (!candidates[i].from_map || cell.same(starts[i].plane, candidates[i].plane) ||
-        (kKindRules.climbs[cloud_.kind()] && d(candidates[i]) > d(starts[i])))
-      kept.push_back(candidates[i]);
+  std::vector<Candidate> kept, left;
+  double best = 0.0;
+  for (std::size_t i = 0; i < candidates.size(); ++i) {
+    const bool stays = !candidates[i].from_map || cell.same(starts[i].plane, candidates[i].plane);
+    (stays ? kept : left).push_back(candidates[i]);
+    if (stays) best = std::max(best, candidates[i].merit);
+  }
+  for (const Candidate& candidate : left)
+    if (kKindRules.climbs[cloud_.kind()] && candidate.merit > best) kept.push_back(candidate);
   return kept;
 }
 
-std::vector<Candidate> StagedRefinement::distinct(std::vector<Candidate> candidates, double least_merit,
+std::vector<Candidate> StagedRefinement::distinct(std::vector<Candidate> candidates, double min_merit,
                                                   std::size_t most) const {
   std::stable_sort(candidates.begin(), candidates.end(),
                    [](const Candidate& a, const Candidate& b) { return a.merit > b.merit; });
   std::vector<Candidate> kept;
   for (Candidate& candidate : candidates) {
-    if (candidate.merit < least_merit) break;
+    if (candidate.merit < min_merit) break;
     if (candidate.merit < kDetection.stages.symmetric_merit - kDetection.stages.close_slack && kept.size() >= most)
       break;
     if (!kSamePlane.anySame(kept, candidate.plane, &Candidate::plane)) kept.push_back(std::move(candidate));
@@ -152,7 +155,7 @@ std::vector<Candidate> GroupClosure::next(const std::vector<SymmetryPlane>& plan
   // The planes of a regular polygon, from those of them that are known.
   if (const std::optional<PlaneLattice> lattice = findLattice(symmetries))
     for (int k = 0; k < lattice->fold; ++k) add(lattice->plane(k));
-  if (symmetries.size() > kDetection.closure.most_closed) return found;
+  if (symmetries.size() > kDetection.closure.max_closed) return found;
   for (const ReflectionPlane& plane : symmetries) {
     for (const ReflectionPlane& across : symmetries) {
       const Eigen::Vector3d normal = plane.normal() - 2.0 * plane.normal().dot(across.normal()) * across.normal();

@@ -43,7 +43,7 @@ public:
 
   /// The best candidate of each group of like planes, best first: all that may be symmetries, and others until there
   /// are \p most.
-  std::vector<Candidate> distinct(std::vector<Candidate> candidates, double least_merit = -1.0,
+  std::vector<Candidate> distinct(std::vector<Candidate> candidates, double min_merit = -1.0,
                                   std::size_t most = std::numeric_limits<std::size_t>::max()) const;
 
 private:

@@ -29,12 +29,12 @@ struct VolumeRules {
   int num_chance_planes = 256;           ///< in all directions; their quartile has a standard error of 3 %
   double chance_angle = 0.26;            ///< radians: planes closer to a maximum are left out of these
   double chance_quantile = 0.75;         ///< of their correlations: c0
-  double most_chance = 0.97;             ///< a body whose planes correlate like this is round
-  double least_seen = 0.25;              ///< share of the body that a plane has to compare
+  double max_chance = 0.97;              ///< a body whose planes correlate like this is round
+  double min_seen = 0.25;                ///< share of the body that a plane has to compare
   double enough_seen = 0.6;              ///< share from which on it counts in full, in proportion from ...
   double nothing_seen = 0.1;             ///< ... this one on: a small piece alone is symmetric by chance
   int num_translations = 6;              ///< distances that a plane is compared with, each both ways
-  double least_residual = 0.01;          ///< 1 - c that interpolation leaves of equal halves
+  double min_residual = 0.01;            ///< 1 - c that interpolation leaves of equal halves
   /// Squared residuals that the squared slope of f per voxel has to exceed for a pair to count more than half.
   double flat = 2.0;
   double merge_angle = 0.12;   ///< radians: maxima closer than this, and ...
@@ -51,7 +51,7 @@ struct Comparison {
   Eigen::Vector3d step = Eigen::Vector3d::Zero();  ///< of Gauss-Newton
 
   /// \return what planes are compared by.
-  double merit() const { return seen < kRules.least_seen ? -1.0 : correlation; }
+  double merit() const { return seen < kRules.min_seen ? -1.0 : correlation; }
 };
 
 /// Sums over pairs of a voxel and its reflection.
@@ -100,7 +100,7 @@ public:
       for (const double way : {2.0 * *at, -2.0 * *at}) {
         const Eigen::Affine3d motion(Eigen::Translation3d(way * plane.normal()));
         const Comparison comparison = compare(motion, plane, stride, false, 0.0);
-        if (comparison.seen < kRules.least_seen) continue;
+        if (comparison.seen < kRules.min_seen) continue;
         sum += comparison.correlation;
         num += 1.0;
       }
@@ -112,7 +112,7 @@ public:
   /// \param tolerance of the last step: radians, and voxels times ten.
   /// \return the plane, with iterations and converged.
   SymmetryPlane refined(const ReflectionPlane& start, int stride, int max_iterations, double tolerance) const {
-    const double spacing = f_.spacing().minCoeff(), most_step = 4.0 * stride * spacing;
+    const double spacing = f_.spacing().minCoeff(), max_step = 4.0 * stride * spacing;
     SymmetryPlane result(start);
     double residual = compare(start, stride, false).residual;
     for (; result.iterations < max_iterations && !result.converged; ++result.iterations) {
@@ -120,7 +120,7 @@ public:
       const Comparison comparison = compare(result, stride, true, residual);
       Eigen::Vector3d step = comparison.step;
       step *=
-          std::min({1.0, 0.1 / std::max(1e-12, step.head<2>().norm()), most_step / std::max(1e-12, std::abs(step[2]))});
+          std::min({1.0, 0.1 / std::max(1e-12, step.head<2>().norm()), max_step / std::max(1e-12, std::abs(step[2]))});
       const int iterations = result.iterations;
       result = SymmetryPlane(chart.moved(step));
       result.iterations = iterations;
@@ -321,7 +321,7 @@ Detection detectVolumePlanes(const ScalarGrid& input, const DetectionOptions& op
     found.timing_ms.emplace_back("maxima", watch.lap());
 
     const double chance = chanceLevel(few, center, stride, maxima, options.num_threads);
-    if (chance > kRules.most_chance) {
+    if (chance > kRules.max_chance) {
       found.reason = "volume: the body is round, planes in all directions map it onto itself";
       return found;
     }
@@ -352,11 +352,11 @@ Detection detectVolumePlanes(const ScalarGrid& input, const DetectionOptions& op
       }
       // The best plane shows how alike halves are at this noise. A body that is nearly an ellipsoid has others, which
       // leave more of f.
-      const double least_left = 1.0 - planes.front().support + kRules.least_residual,
-                   left = 1.0 - plane.support + kRules.least_residual,
+      const double min_left = 1.0 - planes.front().support + kRules.min_residual,
+                   left = 1.0 - plane.support + kRules.min_residual,
                    shown = (plane.seen - kRules.nothing_seen) / (kRules.enough_seen - kRules.nothing_seen);
       setConfidence(
-          plane, confidence(plane, level) * std::pow(std::min(1.0, least_left / left), 2) * std::clamp(shown, 0.0, 1.0),
+          plane, confidence(plane, level) * std::pow(std::min(1.0, min_left / left), 2) * std::clamp(shown, 0.0, 1.0),
           "the correlation beyond that of planes in any direction", options);
     }
     if (std::none_of(planes.begin(), planes.end(), isDecided) && !planes.empty()) found.best = planes.front();

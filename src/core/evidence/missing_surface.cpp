@@ -102,9 +102,9 @@ namespace {
 /// (Gilbert 1966). Where these overlap, a direction in which they overlap little.
 Eigen::Vector3f separatingDirection(const OutermostPoints& points, const OutermostPoints& piece, float spacing) {
   Eigen::Vector3f between = piece.mean() - points.mean();
-  for (int step = 0; step < kEvidence.most_steps; ++step) {
+  for (int step = 0; step < kEvidence.max_steps; ++step) {
     const Eigen::Vector3f nearest = piece.last(-between) - points.last(between);
-    if (between.dot(nearest) >= (1.0f - kEvidence.least_gain) * between.squaredNorm()) break;
+    if (between.dot(nearest) >= (1.0f - kEvidence.min_gain) * between.squaredNorm()) break;
     const Eigen::Vector3f change = nearest - between;
     const Eigen::Vector3f next = between - std::min(1.0f, between.dot(change) / change.squaredNorm()) * change;
     if (next.norm() < kEvidence.no_distance * spacing) break;
@@ -212,7 +212,7 @@ std::vector<float> missingCounterparts(const SampledSurface& surface, const std:
     }
   }
   const auto least =
-      std::max(kEvidence.least_of_piece, static_cast<std::size_t>(kEvidence.least_piece * static_cast<double>(size)));
+      std::max(kEvidence.min_of_piece, static_cast<std::size_t>(kEvidence.min_piece * static_cast<double>(size)));
   std::vector<float> missing(size, 0.0f);
   for (const std::vector<int>& members : membersOf(regions, matched)) {
     const int region = regions.find_set(members.front());
@@ -222,8 +222,8 @@ std::vector<float> missingCounterparts(const SampledSurface& surface, const std:
       // A region all of which lies near borders, as a wire, has its edge near them whatever the plane.
       const float chance = std::min(0.99f, static_cast<float>(at_borders) / static_cast<float>(members.size()));
       const float share = (lowerLimit(explained[region], edges[region]) - chance) / (1.0f - chance);
-      value = std::clamp((share - kEvidence.least_explained) / (kEvidence.explained - kEvidence.least_explained), 0.0f,
-                         1.0f);
+      value =
+          std::clamp((share - kEvidence.min_explained) / (kEvidence.explained - kEvidence.min_explained), 0.0f, 1.0f);
     }
     if (value < 1.0f && members.size() >= least)
       value = std::max(value, beyondEnd(surface.points, surface.geometry.normals,
@@ -258,7 +258,7 @@ public:
   /// The cut with most of the border points that no other cut has; nothing where there is none.
   std::optional<CutPlane> next(RandomStream& random) {
     std::optional<CutPlane> best;
-    std::size_t most = kEvidence.least_of_cut - 1;
+    std::size_t most = kEvidence.min_of_cut - 1;
     if (free_.size() <= most) return best;
     const auto any = [&]() -> Eigen::Vector3f { return points_.col(free_[random.below(free_.size())]); };
     for (int draw = 0; draw < kEvidence.cut_draws; ++draw) {
@@ -283,7 +283,7 @@ public:
 
 private:
   bool leavesPointsBeyond(const CutPlane& plane) const {
-    auto left = static_cast<Eigen::Index>(kEvidence.most_beyond * static_cast<double>(points_.cols()));
+    auto left = static_cast<Eigen::Index>(kEvidence.max_beyond * static_cast<double>(points_.cols()));
     for (Eigen::Index i = 0; i < points_.cols(); ++i)
       if (plane.normal.dot(points_.col(i)) > plane.offset + band_ && --left < 0) return true;
     return false;
@@ -307,7 +307,7 @@ private:
       squares += d * d.transpose() / static_cast<double>(at.size());
     }
     const SymmetricEigen<Eigen::Matrix3d> solver(squares);
-    const double least = kEvidence.least_spread * spacing_;
+    const double least = kEvidence.min_spread * spacing_;
     if (!(solver.eigenvalues()[1] > least * least)) return std::nullopt;
     Eigen::Vector3f normal = solver.eigenvectors().col(0).cast<float>();
     if (normal.dot(start.normal) < 0.0f) normal = -normal;
@@ -319,7 +319,7 @@ private:
       ++num_near;
       num_at_border += borders_[static_cast<std::size_t>(i)] ? 1 : 0;
     }
-    if (static_cast<double>(num_at_border) < kEvidence.least_at_border * static_cast<double>(num_near))
+    if (static_cast<double>(num_at_border) < kEvidence.min_at_border * static_cast<double>(num_near))
       return std::nullopt;
     return plane;
   }
@@ -338,7 +338,7 @@ std::vector<CutPlane> findCutPlanes(const Points& points, const std::vector<char
   std::vector<CutPlane> cuts;
   CutSearch search(points, borders, static_cast<float>(spacing));
   RandomStream random(seed);
-  while (cuts.size() < static_cast<std::size_t>(kEvidence.most_cuts)) {
+  while (cuts.size() < static_cast<std::size_t>(kEvidence.max_cuts)) {
     const std::optional<CutPlane> cut = search.next(random);
     if (!cut) break;
     cuts.push_back(*cut);

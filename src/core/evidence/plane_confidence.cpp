@@ -37,12 +37,12 @@ double resolvedOff(const PlaneEvidence& evidence, const EvidenceUnits& units) {
 double byPrecision(const PlaneEvidence& evidence, const EvidenceUnits& units) {
   const double unit = units.precision + units.precision_per_spacing * coarseness(evidence) +
                       units.precision_per_unknown * evidence.unknown;
-  return std::min(resolvedOff(evidence, units), units.most_off) / unit;
+  return std::min(resolvedOff(evidence, units), units.max_off) / unit;
 }
 
 /// \return log odds by how easily the plane slips along what it matches, more where much is hidden, >= 0.
 double bySlipping(const PlaneEvidence& evidence, const EvidenceUnits& units) {
-  const double slips = std::max(0.0, std::log(units.slipping / (evidence.hold + units.least_slipping)));
+  const double slips = std::max(0.0, std::log(units.slipping / (evidence.hold + units.min_slipping)));
   return (units.slipping_seen + evidence.unknown) * slips;
 }
 
@@ -53,7 +53,7 @@ double byUnexplainedLoss(const PlaneEvidence& evidence, const EvidenceUnits& uni
 
 /// \return log odds by what D loses beyond what noise explains.
 double byExcess(const PlaneEvidence& evidence, const EvidenceUnits& units) {
-  const double excess = evidence.own_score - evidence.score - units.least_excess;
+  const double excess = evidence.own_score - evidence.score - units.min_excess;
   return std::log(std::max(0.0, excess) / units.excess + 1.0);
 }
 

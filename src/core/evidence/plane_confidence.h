@@ -46,20 +46,20 @@ struct EvidenceUnits {
   double precision = 0.01;               ///< how exactly the share is known: half doubts nearly symmetric planes less
   double precision_per_spacing = 0.004;  ///< the same per spacing in tolerances
   double precision_per_unknown = 0.2;    ///< the same per share that is uninformative
-  double most_off = 0.1;                 ///< share from which on it does not matter
+  double max_off = 0.1;                  ///< share from which on it does not matter
   /// Logarithm of the factor per spacing in tolerances by which finer points of a whole cloud show more of the surface
   /// to be off, as samples reach beyond the edges of what is there: 0.3 to 0.6 for planes that map 96 to 97 %.
   double reach = 0.3;
-  double hidden_loss = 0.6;       ///< part of D that is lost per share that is uninformative
-  double slipping = 0.03;         ///< how firmly a scan has to hold a plane; nine of ten symmetries have more than 0.06
-  double least_slipping = 0.001;  ///< what is as good as free
-  double slipping_seen = 0.3;     ///< what slips where nothing is hidden, as a share that is
+  double hidden_loss = 0.6;     ///< part of D that is lost per share that is uninformative
+  double slipping = 0.03;       ///< how firmly a scan has to hold a plane; nine of ten symmetries have more than 0.06
+  double min_slipping = 0.001;  ///< what is as good as free
+  double slipping_seen = 0.3;   ///< what slips where nothing is hidden, as a share that is
   // Where points resolve no surface:
-  double volume_off = 0.003;    ///< error of the share that is off
-  double excess = 0.002;        ///< of what D lacks beyond its error
-  double least_excess = 0.002;  ///< error of D: it is 0.001 less than expected in the mean, deviation 0.002
-  double lost_overlap = 0.01;   ///< of the overlap of densities
-  double noise = 0.01;          ///< of what noise takes from D
+  double volume_off = 0.003;   ///< error of the share that is off
+  double excess = 0.002;       ///< of what D lacks beyond its error
+  double min_excess = 0.002;   ///< error of D: it is 0.001 less than expected in the mean, deviation 0.002
+  double lost_overlap = 0.01;  ///< of the overlap of densities
+  double noise = 0.01;         ///< of what noise takes from D
 };
 
 /// The summands of the log odds that a plane is a symmetry, before their coefficients. The first is 1; then

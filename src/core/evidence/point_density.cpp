@@ -57,7 +57,7 @@ struct Quadric {
   Eigen::Vector3d stepUp() const {
     const SymmetricEigen<Eigen::Matrix3d> solver(hessian);
     Eigen::Vector3d step = Eigen::Vector3d::Zero();
-    const double least = kEvidence.least_curvature * solver.eigenvalues().cwiseAbs().maxCoeff();
+    const double least = kEvidence.min_curvature * solver.eigenvalues().cwiseAbs().maxCoeff();
     for (int k = 0; k < 3; ++k) {
       const Eigen::Vector3d axis = solver.eigenvectors().col(k);
       step += axis * axis.dot(gradient) / std::max(std::abs(solver.eigenvalues()[k]), least);
@@ -73,7 +73,7 @@ PointDensity::PointDensity(const PointsRef& points, double bandwidth, int num_th
   const Eigen::Array3f low = points.rowwise().minCoeff().array() - static_cast<float>(kEvidence.margin * bandwidth);
   const Eigen::Array3f high = points.rowwise().maxCoeff().array() + static_cast<float>(kEvidence.margin * bandwidth);
   cell_size_ =
-      std::max(static_cast<float>(kEvidence.cell_size * bandwidth), (high - low).maxCoeff() / kEvidence.most_cells);
+      std::max(static_cast<float>(kEvidence.cell_size * bandwidth), (high - low).maxCoeff() / kEvidence.max_cells);
   origin_ = low.matrix();
   size_ = ((high - low) / cell_size_).ceil().cast<int>() + 2;
   spread(points);
@@ -118,7 +118,7 @@ double PointDensity::blur(double bandwidth, int num_threads) {
   const std::array<std::size_t, 3> stride{1, static_cast<std::size_t>(size_[0]),
                                           static_cast<std::size_t>(size_[0]) * size_[1]};
   const double sq_cells = std::pow(bandwidth / cell_size_, 2);
-  const double deviation = std::sqrt(std::max(kEvidence.least_variance, sq_cells - kEvidence.cell_variance));
+  const double deviation = std::sqrt(std::max(kEvidence.min_variance, sq_cells - kEvidence.cell_variance));
   const int reach = static_cast<int>(std::ceil(kEvidence.kernel_reach * deviation));
   const std::vector<float> kernel = gaussianKernel(deviation, reach);
   for (int axis = 0; axis < 3; ++axis) {

@@ -25,7 +25,7 @@ SurfaceSamples::SurfaceSamples(const Points& points, const LocalGeometry& geomet
           geometry.normals.col(i),
           kEvidence.disc_radius * spacing,
           geometry.roughness[i],
-          std::clamp((kEvidence.rough_share - rough) / kEvidence.trust_width, 0.0f, 1.0f),
+          std::clamp((kEvidence.max_roughness - rough) / kEvidence.trust_width, 0.0f, 1.0f),
           geometry.nearest[i]};
     }
   });

@@ -13,10 +13,10 @@ struct GeometryRules {
 
   // Stray points
   double bulk = 0.9;             ///< share of the points whose distance from their middle is half the size of a cloud
-  double most_stray = 0.05;      ///< share of the points; more are a part of the shape
-  int most_stray_group = 16;     ///< distinct points; more are a part of the shape
+  double max_stray = 0.05;       ///< share of the points; more are a part of the shape
+  int max_stray_group = 16;      ///< distinct points; more are a part of the shape
   float stray_spacings = 10.0f;  ///< of points evenly spread over a ball, that a gap is wider than
-  float least_stray_gap = 0.4f, most_stray_gap = 1.0f;  ///< the same in sizes
+  float min_stray_gap = 0.4f, max_stray_gap = 1.0f;  ///< the same in sizes
 
   // Normals
   int fewest_cell_points = 6;  ///< around a cell that make a normal: twice the three that span a plane
@@ -26,7 +26,7 @@ struct GeometryRules {
   /// Radians; inside the surface, 0.5 % of the gaps between 16 random directions are greater.
   float border_gap = 150.0f * static_cast<float>(kPi) / 180.0f;
   float off_plane = 0.5f;  ///< share of the distance by which a neighbor is off the tangent plane: 30 degrees
-  int most_off_plane = 2;  ///< neighbors off the plane; the surface folds where there are more
+  int max_off_plane = 2;   ///< neighbors off the plane; the surface folds where there are more
 
   // Balls
   Eigen::Index ball_points = 2'500;  ///< that are tried as the outermost ones
@@ -36,14 +36,14 @@ struct GeometryRules {
   /// Radians by which a normal may miss at half its weight: noise of a third of the spacing.
   double normal_miss = 0.1;
   int reweightings = 8;             ///< bodies with a base need as many
-  double least_lever = 0.05;        ///< radii; the speed of points nearer to the axis does not divide
+  double min_lever = 0.05;          ///< radii; the speed of points nearer to the axis does not divide
   double translation_ridge = 1e-6;  ///< share of the trace; keeps the translation along a cylinder at rest
   double position_ridge = 1e-9;     ///< parallel normals leave the position along them open
 
   // Discs
-  float disc_cell = 1.5f;          ///< spacings, edge of a cell
-  float most_disc_spacing = 3.0f;  ///< median spacings, greatest spacing that makes a disc
-  float most_disc_cells = 96.0f;   ///< along the longest edge
+  float disc_cell = 1.5f;         ///< spacings, edge of a cell
+  float max_disc_spacing = 3.0f;  ///< median spacings, greatest spacing that makes a disc
+  float max_disc_cells = 96.0f;   ///< along the longest edge
 
   // Local geometry
   /// Offset of the neighbors' mean from a point at the border, in distances to the last neighbor; 0.25 by chance, 0.42

@@ -25,14 +25,14 @@ struct MeshRules {
   int fitted_samples = 1000;   // that motions are fitted to, a part of them
   int border_samples = 1000;   // of the open borders
   int iterations = 40;         // at most; exact surfaces take three to six
-  int most_worse = 3;          // iterations after the best one, at the narrowest weights: the fit does not return to it
+  int max_worse = 3;           // iterations after the best one, at the narrowest weights: the fit does not return to it
   double settled = 1e-9;       // length of a step that ends the fit: below what float coordinates resolve
   double longest_step = 0.05;  // radians and radii: samples of the other side are not reached in one step
   double widths = 2.5;         // medians of the distances, the width of the weights: most samples of a symmetry agree
   double first_width = 0.05;   // of the weights at first: the ends of a bar are few, and far off
   double short_step = 0.1;     // of the width, after which it is multiplied by
   double narrower = 0.25;
-  double least_width = 1e-4;   // of the weights, far above rounding
+  double min_width = 1e-4;     // of the weights, far above rounding
   double exact_cost = 1e-6;    // of all samples: rounding
   double touching = 1e-5;      // distance below which its direction is rounding, and the normal counts
   double stiffness = 1e-9;     // of the greatest, below which nothing fixes a direction
@@ -100,9 +100,9 @@ struct MeshSurface::Parts {
     }
   }
 
-  /// \param least_width of the weights.
+  /// \param min_width of the weights.
   /// \param[in,out] matches of each motion.
-  void addTo(MotionSums& sums, const Surface& surface, const MotionsAbout& motions, double least_width,
+  void addTo(MotionSums& sums, const Surface& surface, const MotionsAbout& motions, double min_width,
              std::vector<Matches>& matches) const {
     for (std::size_t k = 0; k < matches.size(); ++k) {
       const Eigen::Matrix3d& linear = motions.linear[k];
@@ -110,7 +110,7 @@ struct MeshSurface::Parts {
       match(surface, linear, motions.center, found);
       std::vector<double> distances;
       for (const Match& match : found) distances.push_back(match.apart.norm());
-      const double sigma = std::max(least_width, kMesh.widths * median(distances));
+      const double sigma = std::max(min_width, kMesh.widths * median(distances));
       // x' = R (x - c) + c moves with exp(omega) R exp(-omega) and c + t by ((1 - R det R) omega) x (x' - c) +
       // (1 - R) t: a reflection is -1 times a rotation.
       const Eigen::Matrix3d one = Eigen::Matrix3d::Identity();
@@ -208,17 +208,17 @@ MeshSurface::Placement MeshSurface::fitted(const MotionsAbout& motions) const {
         Eigen::AngleAxisd(rotation).angle() < kMesh.farthest && (moving.center - start).norm() < kMesh.farthest;
     if (!is_near) break;
     // The last of equally good steps is the most exact.
-    if (sums.cost <= least * (1.0 + kMesh.least_width) + kMesh.exact_cost) {
+    if (sums.cost <= least * (1.0 + kMesh.min_width) + kMesh.exact_cost) {
       best = {rotation, ball.center + ball.radius * moving.center};
       least = std::min(least, sums.cost);
       num_worse = 0;
-    } else if (++num_worse >= kMesh.most_worse && width == kMesh.least_width) {
+    } else if (++num_worse >= kMesh.max_worse && width == kMesh.min_width) {
       break;
     }
     const Vector6d step = smallMotion(sums.h, sums.g, kMesh.stiffness, kMesh.longest_step);
-    const bool is_done = step.norm() < kMesh.settled && (width == kMesh.least_width || sums.cost < kMesh.exact_cost);
+    const bool is_done = step.norm() < kMesh.settled && (width == kMesh.min_width || sums.cost < kMesh.exact_cost);
     if (is_done || !step.allFinite()) break;
-    if (step.norm() < kMesh.short_step * width) width = std::max(kMesh.least_width, kMesh.narrower * width);
+    if (step.norm() < kMesh.short_step * width) width = std::max(kMesh.min_width, kMesh.narrower * width);
     const Eigen::Matrix3d next = rotationBy(step.head<3>());
     rotation = next * rotation;
     for (Eigen::Matrix3d& linear : moving.linear) linear = next * linear * next.transpose();

@@ -27,7 +27,7 @@ NeighborLists::NeighborLists(const Points& points, const std::vector<int>& neare
     list.own_y = points(1, i);
     list.own_z = points(2, i);
     // (1 / 2)^2, less what distances are rounded by
-    list.most_sq_distance = 0.2499f * sq_reach[i];
+    list.max_sq_distance = 0.2499f * sq_reach[i];
     // The point itself is among the nearest, unless as many others are at the same position.
     for (int k = 0, count = 0; k <= kNeighbors && count < kNeighbors; ++k) {
       const int j = nearest[static_cast<std::size_t>(i) * (kNeighbors + 1) + static_cast<std::size_t>(k)];
@@ -75,7 +75,7 @@ __attribute__((target("avx2"))) std::vector<NeighborLists::Found> NeighborLists:
         const auto lanes =
             static_cast<unsigned>(_mm256_movemask_ps(_mm256_cmp_ps(sq, _mm256_broadcastss_ps(least), _CMP_EQ_OQ)));
         const float sq_least = _mm_cvtss_f32(least), sq_before = at.sq_distance;
-        const bool decides = sq_before <= list.most_sq_distance;
+        const bool decides = sq_before <= list.max_sq_distance;
         const bool is_closer = sq_least < sq_before, is_alone = (lanes & (lanes - 1)) == 0;
         constexpr unsigned last = 1u << (kNeighbors - 1);  // where distances are no numbers, no lane is set
         const int change = list.index[__builtin_ctz(lanes | last)] - at.index;

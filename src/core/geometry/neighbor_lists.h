@@ -46,7 +46,7 @@ private:
     float x[kNeighbors], y[kNeighbors], z[kNeighbors];
     std::uint16_t index[kNeighbors];
     float own_x, own_y, own_z;
-    float most_sq_distance;  ///< from a query, so that the list decides
+    float max_sq_distance;  ///< from a query, so that the list decides
   };
   std::vector<List> lists_;
   ClosestPointGrid grid_;  // where walks without a guess begin

@@ -30,7 +30,7 @@ bool isAtBorder(int self, const int* neighbors, int count, const Points& samples
     }
     angles[num_angles++] = std::atan2(v.dot(difference), u.dot(difference));
   }
-  if (num_off > kGeometry.most_off_plane || num_angles == 0) return false;
+  if (num_off > kGeometry.max_off_plane || num_angles == 0) return false;
   std::sort(angles.begin(), angles.begin() + num_angles);
   float gap = angles[0] + 2.0f * static_cast<float>(kPi) - angles[num_angles - 1];
   for (int k = 1; k < num_angles; ++k) gap = std::max(gap, angles[k] - angles[k - 1]);

@@ -60,7 +60,7 @@ Line3d axisOfNormals(const Points& points, const Points& normals, const std::vec
     motion = slowestAlongNormals(products.sums().topLeftCorner<6, 6>());
     for (std::size_t i = 0; i < oriented.size(); ++i) {
       const Eigen::Vector3d velocity = motion.velocityAt(oriented[i].point);
-      const double lever = std::max(kGeometry.least_lever, velocity.norm());
+      const double lever = std::max(kGeometry.min_lever, velocity.norm());
       weights[i] = weightOf(velocity.dot(oriented[i].normal) / lever) / (lever * lever);
     }
   }
@@ -86,7 +86,7 @@ Eigen::Vector3d centerOfNormals(const Points& points, const Points& normals, con
     center = solveSymmetric(across, pull);
     for (std::size_t i = 0; i < oriented.size(); ++i) {
       const Eigen::Vector3d d = oriented[i].point - center;
-      const double lever = std::max(kGeometry.least_lever, d.norm());
+      const double lever = std::max(kGeometry.min_lever, d.norm());
       weights[i] = weightOf(d.cross(oriented[i].normal).norm() / lever) / (lever * lever);
     }
   }

@@ -31,10 +31,10 @@ private:
 
 /// The motion of least squares, -h^-1 g. Directions that nothing fixes stay as they are.
 /// \param h symmetric; its lower half is read.
-/// \param least_stiffness of a direction that is fixed, share of the greatest eigenvalue of \p h.
+/// \param min_stiffness of a direction that is fixed, share of the greatest eigenvalue of \p h.
 /// \param longest a longer motion is cut to this length.
-inline Vector6d smallMotion(const Matrix6d& h, const Vector6d& g, double least_stiffness, double longest) {
-  Vector6d motion = -SymmetricEigen<Matrix6d>(h).solve(g, least_stiffness);
+inline Vector6d smallMotion(const Matrix6d& h, const Vector6d& g, double min_stiffness, double longest) {
+  Vector6d motion = -SymmetricEigen<Matrix6d>(h).solve(g, min_stiffness);
   const double length = motion.norm();
   return length > longest ? Vector6d(motion * (longest / length)) : motion;
 }

@@ -39,7 +39,7 @@ public:
   /// \param outer indices of the points beyond the bulk, rising.
   OuterGroups(const Points& points, const std::vector<int>& outer, float gap)
       : outer_(outer),
-        num_neighbors_(std::min<int>(kGeometry.most_stray_group + 1, static_cast<int>(points.cols()))),
+        num_neighbors_(std::min<int>(kGeometry.max_stray_group + 1, static_cast<int>(points.cols()))),
         sq_gap_(gap * gap),
         is_seen_(outer.size(), false) {
     makeFlannSearch(points)->search(pointsAt(points, outer), num_neighbors_, neighbors_, sq_distances_);
@@ -81,7 +81,7 @@ private:
           is_isolated = false;
       }
     }
-    if (!is_isolated || static_cast<int>(group.size()) > kGeometry.most_stray_group) group.clear();
+    if (!is_isolated || static_cast<int>(group.size()) > kGeometry.max_stray_group) group.clear();
     return group;
   }
 
@@ -97,13 +97,13 @@ private:
 
 std::vector<int> strayPoints(const PointsRef& points) {
   const auto size = static_cast<double>(points.cols());
-  const double most = kGeometry.most_stray * size;
+  const double most = kGeometry.max_stray * size;
   if (most < 1.0 || !points.allFinite()) return {};
   const std::vector<float> distances = distancesFromMiddle(points);
   const float bulk = quantile(distances, kGeometry.bulk);
   const float gap = 2.0f * bulk *
                     std::clamp(kGeometry.stray_spacings * std::sqrt(3.0f / static_cast<float>(size)),
-                               kGeometry.least_stray_gap, kGeometry.most_stray_gap);
+                               kGeometry.min_stray_gap, kGeometry.max_stray_gap);
   const auto is_outer = [&](int i) { return distances[static_cast<std::size_t>(i)] > bulk + gap; };
   if (std::none_of(distances.begin(), distances.end(), [&](float distance) { return distance > bulk + gap; }))
     return {};

@@ -29,11 +29,11 @@ struct PosesOfShape {
 };
 
 struct PoseScreeningOptions {
-  int num_shapes = 10;        ///< shapes that are returned, >= 0
-  double most_behind = 0.15;  ///< merit behind the best pose of all shapes at which a shape is left out,
-  int least_shapes = 2;       ///< unless it is one of the first: a confidence needs a second one
-  int num_poses = 6;          ///< poses of each shape, >= 1
-  int num_threads = 0;        ///< >= 0; 0 = one per core
+  int num_shapes = 10;       ///< shapes that are returned, >= 0
+  double max_behind = 0.15;  ///< merit behind the best pose of all shapes at which a shape is left out,
+  int min_shapes = 2;        ///< unless it is one of the first: a confidence needs a second one
+  int num_poses = 6;         ///< poses of each shape, >= 1
+  int num_threads = 0;       ///< >= 0; 0 = one per core
 };
 
 /// A shape that is left, with its best poses.

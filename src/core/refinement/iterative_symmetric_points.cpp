@@ -179,8 +179,8 @@ ReflectionPlane steppedPlane(const IspSurface& surface, const std::vector<int>& 
   const SymmetricEigen<Eigen::Matrix3d> solver(across.h);
   const Eigen::Vector3d& stiffness = solver.eigenvalues();  // ascending
   int num_soft = 0;
-  while (num_soft < 3 && !(stiffness[num_soft] > kRefinement.least_stiffness * stiffness[2])) ++num_soft;
-  Eigen::Vector3d step = -solver.solve(across.g, kRefinement.least_stiffness);
+  while (num_soft < 3 && !(stiffness[num_soft] > kRefinement.min_stiffness * stiffness[2])) ++num_soft;
+  Eigen::Vector3d step = -solver.solve(across.g, kRefinement.min_stiffness);
   if (num_soft > 0) {
     StepEquations whole{chart};
     for (Eigen::Index i = 0; i < pairs.x.cols(); ++i)

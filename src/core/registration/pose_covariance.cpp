@@ -80,7 +80,7 @@ Matrix6d poseCovariance(const PosedSurface& scan, const PosedSurface& model, con
   if (residuals.count > 6) {
     const double variance = residuals.sum_squares / (residuals.count - 6);
     information += hessianWithoutNoise(std::move(residuals)) /
-                   std::max(kRegistration.least_deviation * kRegistration.least_deviation, variance);
+                   std::max(kRegistration.min_deviation * kRegistration.min_deviation, variance);
   }
   return information.inverse();
 }

@@ -83,7 +83,7 @@ PoseScore PoseScorer::score(const Eigen::Isometry3d& T_model_scan, const Detail&
   score.conflict = unexplained / static_cast<double>(on_model.positions.cols());
   if (!scan_.seen) return score;
   const Matches on_scan = match(model_, scan_, T_model_scan.inverse(), detail);
-  double conflict = 0.0, judged = kRegistration.least_judged * static_cast<double>(on_scan.positions.cols());
+  double conflict = 0.0, judged = kRegistration.min_judged * static_cast<double>(on_scan.positions.cols());
   for (Eigen::Index i = 0; i < on_scan.positions.cols(); ++i) {
     const double depth = scan_.seen->depthBehind(on_scan.positions.col(i).cast<double>());
     // Beside the scan there may be more that the scanner measured: a piece of the object that was cut off.

@@ -37,7 +37,7 @@ PosedSurface::PosedSurface(const PointsRef& input, std::optional<Visibility> see
   LocalGeometry geometry = localGeometry(points, *search, kNumSupportNeighbors, num_threads);
   const double typical = median(geometry.spacing);
   spacing = geometry.spacing;
-  if (median(geometry.roughness) > kRegistration.rough_share * typical)
+  if (median(geometry.roughness) > kRegistration.max_roughness * typical)
     geometry = localGeometry(points, *search, kRegistration.num_rough_neighbors, num_threads);
   normals = std::move(geometry.normals);
   noise = median(std::move(geometry.roughness));

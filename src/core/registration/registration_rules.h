@@ -13,13 +13,13 @@ struct RegistrationRules {
   // Steps
   /// Share of the greatest entry that is added to the diagonal: directions that nothing fixes stay where they are.
   double relative_inertia = 1e-4;
-  double inertia = 1e-6;          ///< the same, absolute
-  double least_deviation = 1e-7;  ///< radii; standard deviation of a residual, the rounding of floats
+  double inertia = 1e-6;        ///< the same, absolute
+  double min_deviation = 1e-7;  ///< radii; standard deviation of a residual, the rounding of floats
 
   // Merit of a pose
   float normal_share = 0.7f;      ///< of a point's support that depends on its normal
   double point_share = 0.1;       ///< of a residual along the surface: poses do not slide away on plain surfaces
-  double least_judged = 0.05;     ///< share of the model's points that the scan must be able to judge
+  double min_judged = 0.05;       ///< share of the model's points that the scan must be able to judge
   double silhouette_share = 0.5;  ///< weight of a model point in free space against one of the scan
 
   // Search
@@ -37,10 +37,10 @@ struct RegistrationRules {
   double merge_distance = 0.1;  ///< radii
 
   // Poses of clouds that share a part, where no other pose convinces
-  double least_confidence = 0.5;  ///< of a pose that convinces, that of CloudRegistration::converged()
-  int num_part_poses = 12;        ///< by pairs of points
-  int part_steps = 3;             ///< of their first fit
-  double part_width = 0.1;        ///< radii, width of the Gaussian at its start
+  double min_confidence = 0.5;  ///< of a pose that convinces, that of CloudRegistration::converged()
+  int num_part_poses = 12;      ///< by pairs of points
+  int part_steps = 3;           ///< of their first fit
+  double part_width = 0.1;      ///< radii, width of the Gaussian at its start
 
   // Evidence of a pose
   int evidence_points = 3000;       ///< of each cloud, that are looked at
@@ -59,7 +59,7 @@ struct RegistrationRules {
   double contact = 0.02, max_contact = 0.03;
 
   // Surfaces
-  double rough_share = 0.15;     ///< of the spacing; rougher surfaces take normals from more neighbors
+  double max_roughness = 0.15;   ///< of the spacing; rougher surfaces take normals from more neighbors
   int num_rough_neighbors = 32;  ///< they halve the error of the normals
   int cells = 48;                ///< along each side of the grid of closest points
   int few_cells = 24;            ///< the same for few points, as wide as a thousand points of a surface are apart

@@ -95,13 +95,13 @@ bool isKnown(const std::vector<Line3d>& lines, const Line3d& line) {
 /// \return one or two, rising.
 std::vector<int> likelyFolds(const RotationFit& fit, const Line3d& line, int max_fold) {
   const std::vector<double> overlaps = foldOverlaps(fit, line, max_fold);
-  const auto least_near_best = [&](int last) {
+  const auto min_near_best = [&](int last) {
     const double best = *std::max_element(overlaps.begin(), overlaps.begin() + last + 1);
     int n = 2;
     while (overlaps[n] < best - kRotation.near_best) ++n;
     return n;
   };
-  const int small = least_near_best(std::min(kRotation.small_fold, max_fold)), any = least_near_best(max_fold);
+  const int small = min_near_best(std::min(kRotation.small_fold, max_fold)), any = min_near_best(max_fold);
   return any == small ? std::vector{small} : std::vector{small, any};
 }
 

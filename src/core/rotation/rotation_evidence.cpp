@@ -72,16 +72,16 @@ RotationEvidence::RotationEvidence(const NormalizedCloud& cloud, double toleranc
       few_samples_(drawSamples(cloud.points.cols(), kScanAxes.num_few_samples, seed)),
       facing_(facingNormals(cloud)) {}
 
-RotationShares RotationEvidence::roughly(const Eigen::Affine3d& motion, double slack, double most_off,
-                                         double most_far) const {
+RotationShares RotationEvidence::roughly(const Eigen::Affine3d& motion, double slack, double max_off,
+                                         double max_far) const {
   RotationShares shares;
   const double one = 1.0 / static_cast<double>(few_samples_.size());
   const auto fAt = [&](double distance) { return std::exp(-std::pow(distance / cloud_.sigma, 2)); };
   const double near_f = fAt(slack * tolerance_), far_f = fAt(far_);
   for (const int sample : few_samples_) {
-    if (shares.off > most_off || shares.far > most_far) break;
+    if (shares.off > max_off || shares.far > max_far) break;
     const Eigen::Vector3d x = motion * cloud_.points.col(sample).cast<double>();
-    const double f = std::max(kScanAxes.least_f, cloud_.edt(cloud_.toInput(x)));
+    const double f = std::max(kScanAxes.min_f, cloud_.edt(cloud_.toInput(x)));
     if (f >= near_f) {
       shares.on += one;
     } else if (isEmpty(x)) {
@@ -155,7 +155,7 @@ void RotationEvidence::addPulls(const IspSurface& surface, const Line3d& line, d
     Eigen::Vector3d along;
     double weight = std::exp(-found.sq_distances[i] / sq_width);
     if (cloud_.geometry.at_border[closest[i]]) {
-      if (miss.norm() < kScanAxes.least_empty_miss * tolerance_ || cloud_.visibility->depthBehind(y) >= 0.0) continue;
+      if (miss.norm() < kScanAxes.min_empty_miss * tolerance_ || cloud_.visibility->depthBehind(y) >= 0.0) continue;
       along = miss.normalized();
     } else {
       const Eigen::Vector3d there = facing_.col(closest[i]).cast<double>(),
@@ -180,7 +180,7 @@ Line3d RotationEvidence::fitted(const IspSurface& surface, const Line3d& start, 
     Pulls pulls;
     for (std::size_t k = 0; k < angles.size(); ++k)
       addPulls(surface, line, angles[k], samples, width, closest[k], pulls);
-    pulls.squares.diagonal().array() += kScanAxes.fit_ridge * pulls.squares.trace() + kScanAxes.least_f;
+    pulls.squares.diagonal().array() += kScanAxes.fit_ridge * pulls.squares.trace() + kScanAxes.min_f;
     const Eigen::Vector4d step = solveSymmetric(pulls.squares, pulls.sum);
     line = movedLine(line, step * std::min(1.0, kScanAxes.longest_step / std::max(kScanAxes.fit_step, step.norm())));
     line.origin() = line.projection(Eigen::Vector3d::Zero());
@@ -276,7 +276,7 @@ std::vector<double> rotationOddsTerms(const SymmetryRotation& rotation, const Ro
               off,
               1.0 - rotation.support,
               std::log(signs.grown),
-              -std::log1p(signs.hold / kScanAxes.least_hold),
+              -std::log1p(signs.hold / kScanAxes.min_hold),
               std::log1p(signs.planes_off / kScanAxes.negligible_of_planes),
               signs.beside};
     case RotationKind::Folds:
@@ -284,7 +284,7 @@ std::vector<double> rotationOddsTerms(const SymmetryRotation& rotation, const Ro
               off,
               far,
               1.0 - rotation.support,
-              std::min(kScanAxes.most_halfway, rotation.halfway - rotation.off),
+              std::min(kScanAxes.max_halfway, rotation.halfway - rotation.off),
               1.0 / rotation.fold};
     default:
       return {1.0, off, far, 1.0 - rotation.support};

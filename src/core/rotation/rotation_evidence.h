@@ -17,13 +17,13 @@ namespace pcl_symmetry {
 /// reported is rotationConfidence(), which is fitted to lines that were chosen so.
 /// \param rotation with the shares that were seen.
 inline double marginOf(const SymmetryRotation& rotation) {
-  const double least_on = rotation.fold == 0   ? kScanAxes.round_on
-                          : rotation.fold == 2 ? kScanAxes.twofold_on
-                                               : kScanAxes.fold_on;
-  const double most_off = rotation.fold == 0 ? kScanAxes.most_round_off : kScanAxes.most_off,
-               most_far = rotation.fold == 0 ? kScanAxes.most_round_far : kScanAxes.most_far;
+  const double min_on = rotation.fold == 0   ? kScanAxes.round_on
+                        : rotation.fold == 2 ? kScanAxes.twofold_on
+                                             : kScanAxes.fold_on;
+  const double max_off = rotation.fold == 0 ? kScanAxes.max_round_off : kScanAxes.max_off,
+               max_far = rotation.fold == 0 ? kScanAxes.max_round_far : kScanAxes.max_far;
   const double margin =
-      std::min({1.0 - rotation.off / most_off, 1.0 - rotation.far / most_far, rotation.support / least_on - 1.0});
+      std::min({1.0 - rotation.off / max_off, 1.0 - rotation.far / max_far, rotation.support / min_on - 1.0});
   return rotation.fold == 0 ? margin
                             : std::min(margin, (rotation.halfway - rotation.off) / kScanAxes.halfway_more - 1.0);
 }
@@ -47,8 +47,8 @@ public:
 
   /// By distances that are read from the EDT at a few points: for screening.
   /// \param slack tolerances.
-  /// \param most_off,most_far shares beyond which the rest of the points is left out.
-  RotationShares roughly(const Eigen::Affine3d& motion, double slack, double most_off, double most_far) const;
+  /// \param max_off,max_far shares beyond which the rest of the points is left out.
+  RotationShares roughly(const Eigen::Affine3d& motion, double slack, double max_off, double max_far) const;
 
   /// By distances from the surface.
   RotationShares exactly(const Eigen::Affine3d& motion) const;

@@ -132,7 +132,7 @@ Points RotationFit::borderPoints() const {
 double RotationFit::resolution() const {
   std::vector<float> distances = surface_->own_distances;
   const auto last = distances.begin() +
-                    static_cast<std::ptrdiff_t>(kRotation.least_own_share * static_cast<double>(distances.size() - 1));
+                    static_cast<std::ptrdiff_t>(kRotation.min_own_share * static_cast<double>(distances.size() - 1));
   std::nth_element(distances.begin(), last, distances.end());
   return *last;
 }
@@ -239,7 +239,7 @@ RotationSet RotationFit::fitted(RotationSet set, const std::vector<std::size_t>&
       sums.h += part.h;
       sums.g += part.g;
     }
-    const Vector6d step = smallMotion(sums.h, sums.g, kRefinement.least_stiffness, kRefinement.longest_step);
+    const Vector6d step = smallMotion(sums.h, sums.g, kRefinement.min_stiffness, kRefinement.longest_step);
     if (!step.allFinite()) break;
     const Eigen::Matrix3d change = rotationBy(step.head<3>());
     for (Eigen::Matrix3d& rotation : set.rotations) rotation = change * rotation * change.transpose();

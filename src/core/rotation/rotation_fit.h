@@ -28,7 +28,7 @@ struct RotationRules {
   double clear_excess = 0.2;      // and by this much of what is allowed
 
   // What points resolve
-  double least_own_share = 0.5;  // share of the points within the tolerance of the surface of the others
+  double min_own_share = 0.5;  // share of the points within the tolerance of the surface of the others
   double surface_slack =
       1.5;                  // tolerances that a sparse surface may resolve: what it leaves open lowers the confidence
   int body_neighbors = 50;  // at most a quarter of the points: in a body, they reach across as far as along;
@@ -36,7 +36,7 @@ struct RotationRules {
   int border_neighbors = 30;     // of a point of a body:
   double border_offset = 0.27;   // mean of them, radii of theirs: 3/8 at a flat border, inside 0.14 by chance
   double single_distance = 0.5;  // distances between points within which images meet one by one: 8 % do by chance
-  Eigen::Index most_single_points = 50'000;  // that are compared one by one
+  Eigen::Index max_single_points = 50'000;  // that are compared one by one
 
   // Fits: Iterative Symmetric Points, whose steps and weights kRefinement limits
   int num_overlap_points = 256;   // points of overlap()

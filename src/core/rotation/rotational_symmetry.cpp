@@ -24,9 +24,9 @@ namespace {
 
 /// The direction across an axis that is closest to a coordinate axis.
 Eigen::Vector3d directionAcross(const Eigen::Vector3d& axis) {
-  int most_across = 0;
-  axis.cwiseAbs().minCoeff(&most_across);
-  const Eigen::Vector3d unit = Eigen::Vector3d::Unit(most_across);
+  int max_across = 0;
+  axis.cwiseAbs().minCoeff(&max_across);
+  const Eigen::Vector3d unit = Eigen::Vector3d::Unit(max_across);
   return (unit - axis.dot(unit) * axis).normalized();
 }
 
@@ -88,14 +88,14 @@ public:
         principal_(principalLines(fit_)) {}
 
   const RotationFit& fit() const { return fit_; }
-  void limitTolerance(double most) { most_tolerance_ = most; }
+  void limitTolerance(double most) { max_tolerance_ = most; }
 
   struct Found {
     PlacedGroup group;
     std::vector<RejectedAxis> rejected;
   };
   Found at(RotationLimits limits) {
-    limits.tolerance = std::min(limits.tolerance, most_tolerance_);
+    limits.tolerance = std::min(limits.tolerance, max_tolerance_);
     const RotationFit fit = fit_.withLimits(limits);
     AxisFinder finder(fit, options_);
     finder.judge(principal_);
@@ -119,7 +119,7 @@ private:
   GaussianEdt edt_;
   RotationFit fit_;
   std::vector<Line3d> principal_, others_;
-  double most_tolerance_ = std::numeric_limits<double>::infinity();
+  double max_tolerance_ = std::numeric_limits<double>::infinity();
 };
 
 /// The surface that points show or, where they fill a body, that of its border. Points that show none at the tolerance
@@ -139,7 +139,7 @@ std::unique_ptr<GroupSearch> searchThatResolves(const Points& points, const Rota
     resolution = search->fit().resolution();
   }
   const bool is_resolved = resolution <= (fills_body ? 1.0 : kRotation.surface_slack) * limits.tolerance;
-  if ((!is_resolved || fills_body) && points.cols() <= kRotation.most_single_points) {
+  if ((!is_resolved || fills_body) && points.cols() <= kRotation.max_single_points) {
     auto single = std::make_unique<GroupSearch>(points, limits, options, true);
     single->limitTolerance(kRotation.single_distance * single->fit().closestDistance());
     const PlacedGroup group = single->at(limits).group;

@@ -58,7 +58,7 @@ constexpr LineTolerance kSameStart{kScanAxes.same_start_angle, kScanAxes.same_st
 
 double missAt(const Line3d& line, const Eigen::Vector3d& x, const Eigen::Vector3d& normal) {
   const Eigen::Vector3d velocity = line.direction().cross(x - line.origin());
-  return std::abs(velocity.dot(normal)) / std::max(kGeometry.least_lever, velocity.norm());
+  return std::abs(velocity.dot(normal)) / std::max(kGeometry.min_lever, velocity.norm());
 }
 
 /// Lines that many normals of a scan meet or are parallel to: the best of all, and the best of small draws, so that a
@@ -109,7 +109,7 @@ std::vector<AxisStart> startsFromPlanes(const std::vector<ReflectionPlane>& plan
   for (std::size_t i = 0; i < planes.size(); ++i)
     for (std::size_t j = 0; j < i; ++j) {
       const double angle = planes[i].angleTo(planes[j]);
-      if (angle < kScanAxes.least_plane_angle) continue;
+      if (angle < kScanAxes.min_plane_angle) continue;
       const Eigen::Vector3d& a = planes[i].normal();
       const Eigen::Vector3d& b = planes[j].normal();
       const double cosine = a.dot(b), sq_sine = 1.0 - cosine * cosine;
@@ -198,15 +198,15 @@ struct JudgedLine {
 
 class AxisJudge {
 public:
-  /// \param most_fold of the rotations that are tried besides those by any angle.
-  AxisJudge(const RotationEvidence& evidence, int most_fold) : evidence_(evidence), most_fold_(most_fold) {}
+  /// \param max_fold of the rotations that are tried besides those by any angle.
+  AxisJudge(const RotationEvidence& evidence, int max_fold) : evidence_(evidence), max_fold_(max_fold) {}
 
   Line3d fitted(const AxisStart& start) const { return evidence_.refined(start.line, fitAngles(start.fold)); }
 
   /// The best rotations about a line.
   std::optional<JudgedLine> judged(const Line3d& line) const {
-    constexpr OffLimits rough{kScanAxes.rough_factor * kScanAxes.most_off,
-                              kScanAxes.rough_factor * kScanAxes.most_far};  // from both
+    constexpr OffLimits rough{kScanAxes.rough_factor * kScanAxes.max_off,
+                              kScanAxes.rough_factor * kScanAxes.max_far};  // from both
     const auto roughly = [&](double angle) {
       return evidence_.roughly(Eigen::Affine3d(motionAboutLine(line, angle)), kScanAxes.rough_slack, rough.off,
                                rough.far);
@@ -216,7 +216,7 @@ public:
       if (!best || judged.margin > best->margin) best = judged;
     };
     if (rough.allow(roundRotations(roughly, rough))) take(exactly(line, 0));
-    for (int fold = most_fold_; fold >= 2; --fold) {
+    for (int fold = max_fold_; fold >= 2; --fold) {
       if (best && best->margin > 0.0) break;
       if (rough.allow(rotationsOfFold(roughly, fold, 0.0, rough))) take(exactly(line, fold));
     }
@@ -241,7 +241,7 @@ private:
   }
 
   const RotationEvidence& evidence_;
-  int most_fold_;
+  int max_fold_;
 };
 
 /// Planes that may be symmetries, normalized frame.
@@ -249,7 +249,7 @@ std::vector<ReflectionPlane> likelyPlanes(const std::vector<SymmetryPlane>& plan
   std::vector<ReflectionPlane> found;
   for (const SymmetryPlane& plane : planes)
     if (plane.kind != PlaneKind::Local && plane.share >= kScanAxes.plane_share &&
-        found.size() < kScanAxes.most_planes_of_axes)
+        found.size() < kScanAxes.max_planes_of_axes)
       found.push_back(cloud.toNormalized(plane));
   return found;
 }
@@ -266,10 +266,10 @@ std::vector<SymmetryRotation> scanAxes(const RotationEvidence& evidence, const s
   };
   for (const SymmetryAxis& axis : axes) starts.push_back({cloud.lineOf(axis), 0});
   if (options.folds) {
-    append(startsFromPlanes(likelyPlanes(planes, cloud), kScanAxes.most_order));
+    append(startsFromPlanes(likelyPlanes(planes, cloud), kScanAxes.max_order));
     append(startsFromTransform(cloud, options.seed, options.num_threads));
   }
-  const AxisJudge judge(evidence, options.folds ? kScanAxes.most_order : 1);
+  const AxisJudge judge(evidence, options.folds ? kScanAxes.max_order : 1);
   std::vector<Line3d> fitted(starts.size());
   parallelBlocks(starts.size(), options.num_threads, [&](std::size_t i) { fitted[i] = judge.fitted(starts[i]); });
   std::vector<Line3d> lines;
@@ -283,7 +283,7 @@ std::vector<SymmetryRotation> scanAxes(const RotationEvidence& evidence, const s
   std::vector<Line3d> found;
   std::vector<SymmetryRotation> result;
   for (const std::optional<JudgedLine>& best : judged) {
-    if (!best || found.size() == kScanAxes.most_axes) break;
+    if (!best || found.size() == kScanAxes.max_axes) break;
     if (kSameAxis.anySame(found, best->line)) continue;
     found.push_back(best->line);
     result.push_back(best->rotation);
@@ -309,7 +309,7 @@ std::vector<SymmetryRotation> rotationsOfScan(const PointsRef& points, const Gau
                                               const ScanAxesOptions& options, const MakeSearch& make_search) {
   if (!whyUnanswerable(points).empty()) return {};
   const Points distinct = DistinctPoints(points).points;
-  const Points used = pointsAt(distinct, drawSamples(distinct.cols(), kScanAxes.most_points, options.seed));
+  const Points used = pointsAt(distinct, drawSamples(distinct.cols(), kScanAxes.max_points, options.seed));
   const ClosestPointSearch::Ptr search = make_search ? inFrame(make_search(used), edt.center(), edt.radius()) : nullptr;
   const NormalizedCloud cloud(used, edt, search, &visibility, options.num_threads);
   return scanAxes(RotationEvidence(cloud, kScanAxes.usual_tolerance * cloud.extent, options.seed), {}, axes, options);
@@ -324,12 +324,12 @@ std::vector<SymmetryAxis> withRoundAxes(const RotationEvidence& evidence, std::v
                               const RotationShares all = roundRotations([&](double angle) {
                                 return evidence.exactly(Eigen::Affine3d(motionAboutLine(cloud.lineOf(axis), angle)));
                               });
-                              return all.far > kScanAxes.most_round_far;
+                              return all.far > kScanAxes.max_round_far;
                             }),
              axes.end());
   for (const SymmetryRotation& rotation : rotations) {
     // However probable: a handle that was seen contradicts.
-    const bool is_contradicted = rotation.off > kScanAxes.most_round_off || rotation.far > kScanAxes.most_round_far;
+    const bool is_contradicted = rotation.off > kScanAxes.max_round_off || rotation.far > kScanAxes.max_round_far;
     if (rotation.fold != 0 || is_contradicted || rotation.confidence < options.min_confidence) continue;
     const auto known = std::find_if(axes.begin(), axes.end(), [&](const SymmetryAxis& axis) {
       return kSameAxis.same(cloud.lineOf(axis), cloud.lineOf(rotation));

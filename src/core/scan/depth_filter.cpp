@@ -139,7 +139,7 @@ double inverseDepthError(const DepthImage& image, int apart) {
   const std::vector<float> inverse = inverted(image.depths);
   const double error = deviationOfBends(inverse, image, apart);
   // Over twice the distance a shape bends four times as much, and errors are the same.
-  const bool is_error = apart > 1 || deviationOfBends(inverse, image, 2) < kScan.most_growth * error;
+  const bool is_error = apart > 1 || deviationOfBends(inverse, image, 2) < kScan.max_growth * error;
   return is_error ? error : 0.0;
 }
 
@@ -155,8 +155,8 @@ FilteredDepths filterDepths(const DepthImage& image, int radius, int num_threads
     count += 1.0;
   }
   // An error of depth over the size of a pixel, both at the mean inverse depth.
-  if (count == 0.0 || error < kScan.least_error * image.pixel_angle * sum / count) return result;
-  if (inverseDepthError(image, kScan.window) > kScan.most_own * error) return result;
+  if (count == 0.0 || error < kScan.min_error * image.pixel_angle * sum / count) return result;
+  if (inverseDepthError(image, kScan.window) > kScan.max_own * error) return result;
   result.inverse_error = error;
   const std::vector<float> before = result.depths;
   const DepthFilter filter(image, radius, error);
@@ -174,7 +174,7 @@ FilteredDepths filterDepths(const DepthImage& image, int radius, int num_threads
 
 double sensorError(const DepthImage& image) {
   const double error = inverseDepthError(image);
-  return error > 0.0 ? std::min(kScan.most_shared * error, inverseDepthError(image, kScan.window)) : 0.0;
+  return error > 0.0 ? std::min(kScan.max_shared * error, inverseDepthError(image, kScan.window)) : 0.0;
 }
 
 }  // namespace pcl_symmetry

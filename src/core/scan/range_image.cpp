@@ -292,8 +292,7 @@ std::optional<PixelRows> rowsOf(const Positions& positions) {
     sum += std::polar(1.0, 4.0 * std::atan2(d.y(), d.x()));
     distances.push_back(std::sqrt(sq_distances[k]));
   }
-  if (distances.empty() || std::abs(sum) < kScan.least_grid * static_cast<double>(distances.size()))
-    return std::nullopt;
+  if (distances.empty() || std::abs(sum) < kScan.min_grid * static_cast<double>(distances.size())) return std::nullopt;
   return PixelRows{std::arg(sum) / 4.0, median(distances)};
 }
 
@@ -303,7 +302,7 @@ struct LastRows {
   std::array<int, 3> counts{};
 
   bool areCut() const {
-    return counts[0] >= kScan.least_row && counts[0] >= kScan.least_row_ratio * 0.5 * (counts[1] + counts[2]);
+    return counts[0] >= kScan.min_row && counts[0] >= kScan.min_row_ratio * 0.5 * (counts[1] + counts[2]);
   }
 };
 
@@ -328,7 +327,7 @@ Positions nearSide(const Positions& positions, double angle, double pitch) {
     high = high.max(position);
     offset = std::max(offset, normal.dot(position.matrix()));
   }
-  const double depth = kScan.most_side_angle * (high - low).matrix().norm() + 4.0 * pitch;
+  const double depth = kScan.max_side_angle * (high - low).matrix().norm() + 4.0 * pitch;
   Positions near;
   for (const Eigen::Array2d& position : positions)
     if (normal.dot(position.matrix()) > offset - depth) near.push_back(position);
@@ -346,7 +345,7 @@ std::vector<FrameSide> frameSides(const Positions& positions) {
     const double ahead = rows->angle + 0.5 * kPi * quarter;
     const Positions near = nearSide(positions, ahead, rows->pitch);
     std::optional<LastRows> best;
-    const int num_steps = static_cast<int>(std::lround(kScan.most_side_angle / kScan.side_angle_step));
+    const int num_steps = static_cast<int>(std::lround(kScan.max_side_angle / kScan.side_angle_step));
     for (int step = -num_steps; step <= num_steps; ++step) {
       LastRows last = lastRows(near, ahead + kScan.side_angle_step * step, rows->pitch);
       if (!best || last.counts[0] > best->counts[0]) best = last;

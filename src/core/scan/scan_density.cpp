@@ -77,7 +77,7 @@ ScanDensity::ScanDensity(const PointsRef& points) : ball_(boundingBall(points)) 
   const auto num_samples = static_cast<Eigen::Index>(std::min(indices.size(), kScan.density_samples));
   const int count = static_cast<int>(
       std::min(indices.size(), 1 + std::clamp(indices.size() / kScan.neighborhoods, kScan.fewest_density_neighbors,
-                                              kScan.most_density_neighbors)));
+                                              kScan.max_density_neighbors)));
   num_neighbors_ = count - 1;
   std::vector<int> neighbors;
   std::vector<float> sq_distances;
@@ -120,7 +120,7 @@ double ScanDensity::trimmedVariance(Eigen::Index num_samples, const Value& value
 float ScanDensity::residual(Eigen::Index i, const Eigen::Vector3f& eye) const {
   const Eigen::Vector3f ray = samples_.col(i) - eye;
   const float sq_distance = ray.squaredNorm(), along = ray.dot(normals_.col(i));
-  const float sq_projected = std::max(along * along, kScan.least_sq_cosine * sq_distance);  // (d cos a)^2
+  const float sq_projected = std::max(along * along, kScan.min_sq_cosine * sq_distance);  // (d cos a)^2
   // log(density d^2 / cos a) with cos a = sqrt(sq_projected) / d
   return log_density_[i] - 0.5f * std::log(sq_projected / (sq_distance * sq_distance * sq_distance));
 }
@@ -171,14 +171,13 @@ ScanDensity::Candidate ScanDensity::climbed(Candidate best, double first_step, d
                                             Eigen::Index num_samples) const {
   const auto rated = [&](const Eigen::Vector3d& direction, double log_distance) {
     Candidate candidate{direction.normalized(),
-                        std::clamp(log_distance, std::log(kScan.least_distance), std::log(kScan.greatest_distance)),
-                        0.0};
+                        std::clamp(log_distance, std::log(kScan.min_distance), std::log(kScan.greatest_distance)), 0.0};
     candidate.unexplained = unexplainedFrom(candidate.eye(), num_samples);
     return candidate;
   };
   best = rated(best.direction, best.log_distance);
   for (double step = first_step; step >= last_step; step *= 0.5) {
-    for (int move = 0; move < kScan.most_moves; ++move) {
+    for (int move = 0; move < kScan.max_moves; ++move) {
       const Candidate start = best;
       const Eigen::Vector3d u = start.direction.unitOrthogonal(), v = start.direction.cross(u);
       for (const double sign : {-step, step}) {
@@ -203,12 +202,11 @@ std::vector<ScanDensity::Candidate> ScanDensity::coarseMinima(std::size_t most) 
   std::stable_sort(coarse.begin(), coarse.end(),
                    [](const Candidate& a, const Candidate& b) { return a.unexplained < b.unexplained; });
   std::vector<Candidate> minima;
-  if (!(coarse.front().unexplained <
-        kScan.hopeless * (varianceOf(kScan.coarse_density_samples) + kScan.least_variance)))
+  if (!(coarse.front().unexplained < kScan.hopeless * (varianceOf(kScan.coarse_density_samples) + kScan.min_variance)))
     return minima;
   for (const Candidate& candidate : coarse) {
     const bool apart = std::all_of(minima.begin(), minima.end(), [&](const Candidate& start) {
-      return start.direction.dot(candidate.direction) < kScan.least_apart;
+      return start.direction.dot(candidate.direction) < kScan.min_apart;
     });
     if (apart) minima.push_back(candidate);
     if (minima.size() == most) break;
@@ -229,12 +227,12 @@ std::optional<Eigen::Vector3d> ScanDensity::bestViewpoint() const {
   return Eigen::Vector3d(ball_.center + ball_.radius * eye);
 }
 
-std::vector<Eigen::Vector3d> ScanDensity::viewpoints(double most_unexplained) const {
+std::vector<Eigen::Vector3d> ScanDensity::viewpoints(double max_unexplained) const {
   std::vector<Eigen::Vector3d> found;
   if (samples_.cols() < static_cast<Eigen::Index>(kScan.fewest_density_samples)) return found;
-  for (const Candidate& start : coarseMinima(kScan.most_viewpoints)) {
+  for (const Candidate& start : coarseMinima(kScan.max_viewpoints)) {
     const Candidate minimum = climbed(start, kScan.middle_step, kScan.last_step, samples_.cols());
-    if (minimum.unexplained <= most_unexplained) found.push_back(ball_.center + ball_.radius * minimum.eye());
+    if (minimum.unexplained <= max_unexplained) found.push_back(ball_.center + ball_.radius * minimum.eye());
   }
   return found;
 }

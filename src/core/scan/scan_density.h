@@ -39,9 +39,9 @@ public:
   /// near to explaining the density.
   std::optional<Eigen::Vector3d> bestViewpoint() const;
 
-  /// \return viewpoints that leave at most \p most_unexplained, minima of what they leave, the most likely direction
+  /// \return viewpoints that leave at most \p max_unexplained, minima of what they leave, the most likely direction
   /// first. Two flat pieces are as dense from several positions.
-  std::vector<Eigen::Vector3d> viewpoints(double most_unexplained) const;
+  std::vector<Eigen::Vector3d> viewpoints(double max_unexplained) const;
 
   /// \return a ball around the points.
   const BoundingBall& ball() const { return ball_; }

@@ -43,8 +43,8 @@ double layeredShare(const PointsRef& points, const Eigen::Vector3d& viewpoint) {
   const BoundingBall ball = boundingBall(points);
   const double distance = (ball.center - viewpoint).norm();
   if (!(ball.radius > 0.0) || !(distance > 0.0)) return 0.0;
-  const Eigen::Index stride = 1 + (points.cols() - 1) / kScan.most_layer_samples;
-  const double least_gap =
+  const Eigen::Index stride = 1 + (points.cols() - 1) / kScan.max_layer_samples;
+  const double min_gap =
       kScan.roughnesses * typicalRoughness(normalizePoints(points, ball.center, ball.radius), stride);
 
   // The next point of each sample in the picture.
@@ -62,7 +62,7 @@ double layeredShare(const PointsRef& points, const Eigen::Vector3d& viewpoint) {
     const std::size_t other = closest[2 * s] == i ? 2 * s + 1 : 2 * s;
     const double across = std::sqrt(sq_distances[other]) * width * depth(i);
     const double along = std::abs(depth(i) - depth(closest[other]));
-    num_layered += along > std::max(kScan.steepest * across, least_gap) ? 1 : 0;
+    num_layered += along > std::max(kScan.steepest * across, min_gap) ? 1 : 0;
   }
   return static_cast<double>(num_layered) / static_cast<double>(num_samples);
 }
@@ -76,13 +76,13 @@ std::optional<Visibility> spaceSeenFrom(const PointsRef& points, const Eigen::Ve
   // The surface slants by as much as in layeredShare(), over half of a pixel.
   const double pixel = 2.0 / std::max(visibility->width(), visibility->height());
   const double margin = std::max(kScan.hidden_margin, 0.5 * kScan.steepest * pixel) * ball.radius;
-  if (visibility->hiddenShare(points, margin) > limits.most_hidden) return std::nullopt;
-  if (layeredShare(points, viewpoint) > limits.most_layered) return std::nullopt;
+  if (visibility->hiddenShare(points, margin) > limits.max_hidden) return std::nullopt;
+  if (layeredShare(points, viewpoint) > limits.max_layered) return std::nullopt;
   return visibility;
 }
 
 std::optional<Visibility> spaceSeenFrom(const PointsRef& points, const Eigen::Vector3d& viewpoint) {
-  return spaceSeenFrom(points, viewpoint, SingleViewLimits{kScan.most_hidden, kScan.most_layered});
+  return spaceSeenFrom(points, viewpoint, SingleViewLimits{kScan.max_hidden, kScan.max_layered});
 }
 
 std::optional<Visibility> sceneSeenFrom(const PointsRef& points, const Eigen::Vector3d& viewpoint,
@@ -90,9 +90,9 @@ std::optional<Visibility> sceneSeenFrom(const PointsRef& points, const Eigen::Ve
   const double radius = boundingBall(points).radius;
   if (!(radius > 0.0)) return std::nullopt;
   std::optional<Visibility> visibility = Visibility::ofScene(points, viewpoint, max_pixels);
-  if (!visibility || visibility->hiddenShare(points, kScan.hidden_margin * radius) > kScan.most_hidden)
+  if (!visibility || visibility->hiddenShare(points, kScan.hidden_margin * radius) > kScan.max_hidden)
     return std::nullopt;
-  if (layeredShare(points, viewpoint) > kScan.most_layered) return std::nullopt;
+  if (layeredShare(points, viewpoint) > kScan.max_layered) return std::nullopt;
   return visibility;
 }
 

@@ -19,8 +19,8 @@ std::optional<Visibility> sceneSeenFrom(const PointsRef& points, const Eigen::Ve
 
 /// What a single view may show at most, shares of the points.
 struct SingleViewLimits {
-  double most_hidden;   ///< that lie well behind others
-  double most_layered;  ///< layeredShare()
+  double max_hidden;   ///< that lie well behind others
+  double max_layered;  ///< layeredShare()
 };
 
 /// spaceSeenFrom() of visibility.h with other limits.

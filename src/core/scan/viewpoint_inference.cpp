@@ -21,7 +21,7 @@ namespace {
 constexpr SingleViewLimits kLimits{0.12, 0.15};
 // The same where a viewpoint explains nearly all of the variance of the density: leaves and wires lie in layers from
 // the true viewpoint, too.
-constexpr SingleViewLimits kSureLimits{kScan.most_hidden, 0.4};
+constexpr SingleViewLimits kSureLimits{kScan.max_hidden, 0.4};
 
 /// Whether all points are at a border, as those of a wire: its density is uninformative, and it is seen once from
 /// everywhere.
@@ -81,25 +81,25 @@ std::optional<InferredView> inferView(const PointsRef& points, const Eigen::Vect
   if (!best) return std::nullopt;
   const double left = density.unexplained(*best);
   const auto leaves = [&](double share) {
-    return left + kScan.least_variance < share * (density.variance() + kScan.least_variance);
+    return left + kScan.min_variance < share * (density.variance() + kScan.min_variance);
   };
-  if (!leaves(kScan.most_unexplained)) return std::nullopt;
+  if (!leaves(kScan.max_unexplained)) return std::nullopt;
   // Few points leave much to chance, and no chance lays them as evenly as a scanner does.
   const bool surely =
-      left + kScan.least_variance <
-      kScan.surely_explained * std::min(density.variance() + kScan.least_variance, density.varianceAtRandom());
+      left + kScan.min_variance <
+      kScan.surely_explained * std::min(density.variance() + kScan.min_variance, density.varianceAtRandom());
   const double as_good = kScan.as_good * left + kScan.as_good_beyond;
   const bool as_stored = density.unexplained(stored) <= as_good;
-  const auto seenFrom = [&](const Eigen::Vector3d& position, double most_uneven) {
+  const auto seenFrom = [&](const Eigen::Vector3d& position, double max_uneven) {
     const double by_patches = density.unexplainedByPatches(position);
-    if (by_patches > most_uneven) return std::optional<Visibility>();
+    if (by_patches > max_uneven) return std::optional<Visibility>();
     return spaceSeenFrom(points, position, by_patches <= kScan.surely_even && surely ? kSureLimits : kLimits);
   };
   const Eigen::Vector3d position = as_stored ? stored : onItsSide(points, density, *best);
   std::optional<InferredView> view;
-  if (std::optional<Visibility> seen = seenFrom(position, kScan.most_uneven))
+  if (std::optional<Visibility> seen = seenFrom(position, kScan.max_uneven))
     view = {std::move(*seen), position, as_stored};
-  if (!view) view = leastLayered(points, density.viewpoints(std::min(as_good, kScan.most_of_several)), seenFrom);
+  if (!view) view = leastLayered(points, density.viewpoints(std::min(as_good, kScan.max_of_several)), seenFrom);
   if (!view || (!surely && isWire(points))) return std::nullopt;
   return view;
 }

@@ -55,9 +55,9 @@ std::vector<Eigen::Matrix3d> cubeFaces() {
 /// The picture that a camera sees of points; nothing where it sees none, or not all that it has to see.
 std::optional<Visibility> pictureOf(const PointsRef& points, const Eigen::Vector3d& viewpoint,
                                     const Eigen::Matrix3d& R_camera_input, FieldOfView field, std::size_t max_pixels,
-                                    Eigen::Index least_seen) {
+                                    Eigen::Index min_seen) {
   const SeenPlaces seen = placesSeen(points, viewpoint, R_camera_input, field);
-  if (seen.positions.empty() || static_cast<Eigen::Index>(seen.positions.size()) < least_seen) return std::nullopt;
+  if (seen.positions.empty() || static_cast<Eigen::Index>(seen.positions.size()) < min_seen) return std::nullopt;
   RangeImage image = sceneRangeImage(seen, max_pixels);
   return Visibility(image.grid.toPixels() * cameraAt(viewpoint, R_camera_input), image.grid.width, image.grid.height,
                     std::move(image.depths), Visibility::kNoRay);

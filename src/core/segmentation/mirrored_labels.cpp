@@ -27,7 +27,7 @@ std::vector<char> liesAcross(const SurfaceGraph& graph, const std::vector<int>& 
     if (above[i]) areas_above[labels[i]] += graph.areas[i];
   std::vector<char> across;
   for (std::size_t s = 0; s < areas.size(); ++s)
-    across.push_back(std::min(areas_above[s], areas[s] - areas_above[s]) >= kSegmentation.least_across * areas[s]);
+    across.push_back(std::min(areas_above[s], areas[s] - areas_above[s]) >= kSegmentation.min_across * areas[s]);
   return across;
 }
 

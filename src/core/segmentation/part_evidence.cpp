@@ -39,7 +39,7 @@ std::vector<std::vector<SurfacePoint>> samplePatches(const SurfaceGraph& graph, 
     const Eigen::Vector3f u = corner(1) - corner(0), v = corner(2) - corner(0);
     so_far[p] += graph.is_cloud ? graph.areas[element] : 0.5 * u.cross(v).norm();
     for (; step[p] > 0.0 && next[p] < so_far[p]; next[p] += step[p]) {
-      SurfacePoint sample{graph.centers.col(element), graph.normals.col(element), kSegmentation.least_reach * radius};
+      SurfacePoint sample{graph.centers.col(element), graph.normals.col(element), kSegmentation.min_reach * radius};
       if (graph.is_cloud) {
         sample.reach = std::max(kSegmentation.cloud_reach * std::sqrt(graph.areas[element]), sample.reach);
       } else {

@@ -37,13 +37,13 @@ std::optional<Mirror> mirrorOf(const WholeEvidence& whole, const SegmentationOpt
 
 /// Borders that follow the surface instead of the patches, equal on both sides of the mirror, and no small segments.
 std::vector<int> refinedLabels(const SurfaceGraph& graph, std::vector<int> labels, const std::optional<Mirror>& mirror,
-                               int most_segments, const SegmentationOptions& options) {
-  const double crumb = kSegmentation.least_part * graph.area(), least_area = options.num_parts == 0 ? crumb : 0.0;
-  labels = joinSmallSegments(graph, std::move(labels), least_area, most_segments);
+                               int max_segments, const SegmentationOptions& options) {
+  const double crumb = kSegmentation.min_part * graph.area(), min_area = options.num_parts == 0 ? crumb : 0.0;
+  labels = joinSmallSegments(graph, std::move(labels), min_area, max_segments);
   const BorderCutOptions cut{kSegmentation.part_cut_band * std::sqrt(graph.area()), kSegmentation.part_concavity};
   labels = joinCrumbs(graph, smoothBorders(graph, std::move(labels), cut), crumb);
   if (mirror) labels = mirroredLabels(graph, labels, mirror->plane, mirror->reflected);
-  return joinSmallSegments(graph, std::move(labels), least_area, most_segments);
+  return joinSmallSegments(graph, std::move(labels), min_area, max_segments);
 }
 
 /// Binary joins of leaves. A node below num_leaves is a leaf, node num_leaves + i is join i.
@@ -215,7 +215,7 @@ CommonCells commonCells(const SurfaceGraph& graph, const std::vector<MergedDivis
   CommonCells common;
   common.of_element = intersections(divisions);
   const std::vector<double> areas = areaShares(graph, common.of_element);
-  const double least = std::min(kSegmentation.least_cell, *std::max_element(areas.begin(), areas.end()));
+  const double least = std::min(kSegmentation.min_cell, *std::max_element(areas.begin(), areas.end()));
   std::vector<int> number(areas.size(), -1);
   int size = 0;
   for (std::size_t c = 0; c < areas.size(); ++c)

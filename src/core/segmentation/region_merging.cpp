@@ -74,8 +74,8 @@ int Regions::imageOf(int region, const Eigen::MatrixXf& shared) const {
 
 Cues Regions::cues(int a, int b) const {
   const Border& between = borders(a).at(b);
-  const double area_a = std::max(kSegmentation.least_area, areas_[a]),
-               area_b = std::max(kSegmentation.least_area, areas_[b]);
+  const double area_a = std::max(kSegmentation.min_area, areas_[a]),
+               area_b = std::max(kSegmentation.min_area, areas_[b]);
   Cues cues{};
   cues[kAlways] = 1.0;
   cues[kContact] = std::min(1.0, ratio(between.length, std::min(perimeters_[a], perimeters_[b])));
@@ -98,7 +98,7 @@ Cues Regions::cues(int a, int b) const {
   const double within = std::sqrt(sight_(a, a) * sight_(b, b)) / (area_a * area_b);
   cues[kSight] = sight_(a, b) / (area_a * area_b);
   cues[kRelativeSight] =
-      std::min(kSegmentation.most_relative_sight, cues[kSight] / std::max(kSegmentation.least_inner_sight, within));
+      std::min(kSegmentation.max_relative_sight, cues[kSight] / std::max(kSegmentation.min_inner_sight, within));
   cues[kSightOfSmall] = cues[kSight] * cues[kSmallArea];
   return cues;
 }

@@ -180,12 +180,12 @@ std::vector<int> smoothBorders(const SurfaceGraph& graph, std::vector<int> label
   return labels;
 }
 
-std::vector<int> joinCrumbs(const SurfaceGraph& graph, const std::vector<int>& labels, double least_area) {
+std::vector<int> joinCrumbs(const SurfaceGraph& graph, const std::vector<int>& labels, double min_area) {
   const Pieces pieces = piecesOf(graph, labels);
   std::vector<int> moved = pieces.labels;
   for (std::size_t p = 0; p < moved.size(); ++p) {
     const std::map<int, double>& contacts = pieces.contacts[p];
-    if (pieces.is_largest[p] || pieces.areas[p] >= least_area || contacts.empty()) continue;
+    if (pieces.is_largest[p] || pieces.areas[p] >= min_area || contacts.empty()) continue;
     moved[p] = labelOfMost(contacts);
   }
   std::vector<int> result(labels.size());
@@ -258,12 +258,12 @@ private:
 
 }  // namespace
 
-std::vector<int> joinSmallSegments(const SurfaceGraph& graph, std::vector<int> labels, double least_area,
-                                   int most_segments) {
+std::vector<int> joinSmallSegments(const SurfaceGraph& graph, std::vector<int> labels, double min_area,
+                                   int max_segments) {
   SmallSegments segments(graph, std::move(labels));
   while (segments.size() > 1) {
     const int smallest = segments.smallest();
-    if (segments.area(smallest) >= least_area && segments.size() <= most_segments) break;
+    if (segments.area(smallest) >= min_area && segments.size() <= max_segments) break;
     segments.join(segments.hostOf(smallest), smallest);
   }
   return segments.labels();

@@ -30,16 +30,16 @@ std::vector<int> smoothBorders(const SurfaceGraph& graph, std::vector<int> label
 
 /// Gives small pieces that are cut off from the rest of their label to the neighboring label with the longest border.
 /// \param labels one per element, >= 0. The largest piece of each label stays.
-/// \param least_area of a piece that stays, input units squared.
-std::vector<int> joinCrumbs(const SurfaceGraph& graph, const std::vector<int>& labels, double least_area);
+/// \param min_area of a piece that stays, input units squared.
+std::vector<int> joinCrumbs(const SurfaceGraph& graph, const std::vector<int>& labels, double min_area);
 
 /// Joins segments that are too small to be parts with the neighbor that they share most border with, or with the
 /// closest segment if they have no neighbor; the smallest segment first.
 /// \param labels one per element, from 0.
-/// \param least_area of a segment that stays, input units squared.
-/// \param most_segments that may stay, >= 1.
+/// \param min_area of a segment that stays, input units squared.
+/// \param max_segments that may stay, >= 1.
 /// \return new labels, from 0 without gaps.
-std::vector<int> joinSmallSegments(const SurfaceGraph& graph, std::vector<int> labels, double least_area,
-                                   int most_segments);
+std::vector<int> joinSmallSegments(const SurfaceGraph& graph, std::vector<int> labels, double min_area,
+                                   int max_segments);
 
 }  // namespace pcl_symmetry

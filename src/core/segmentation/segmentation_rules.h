@@ -9,16 +9,16 @@ namespace pcl_symmetry {
 /// The numbers of this room that change answers.
 struct SegmentationRules {
   // Thickness of the body behind a patch
-  int samples_of_patch = 6;   ///< for one median per patch
-  int rays_of_sample = 6;     ///< into the body
-  double cone_angle = 0.61;   ///< radians between the rays and the inward normal: 35 degrees
-  float least_reach = 1e-4f;  ///< radii from the surface at which rays begin: beyond rounding, thinner than walls
-  float cloud_reach = 2.5f;   ///< the same for clouds, square roots of the area of a point, whose triangles overlap
+  int samples_of_patch = 6;  ///< for one median per patch
+  int rays_of_sample = 6;    ///< into the body
+  double cone_angle = 0.61;  ///< radians between the rays and the inward normal: 35 degrees
+  float min_reach = 1e-4f;   ///< radii from the surface at which rays begin: beyond rounding, thinner than walls
+  float cloud_reach = 2.5f;  ///< the same for clouds, square roots of the area of a point, whose triangles overlap
 
   // Merging
   int num_patches = 200;          ///< fewer lose small parts; time and memory grow with the square
   std::size_t num_divisions = 4;  ///< whose merges are averaged: a Rand distance of 0.134 with one, 0.124 with four
-  double least_part = 0.003;      ///< share of the surface of a part; ears are larger, fragments of noise smaller
+  double min_part = 0.003;        ///< share of the surface of a part; ears are larger, fragments of noise smaller
   double part_cut_band = 0.03;    ///< square roots of the area of the surface, within which borders of parts may move
   double part_concavity = 3.0;    ///< SplittingOptions::concavity_weight of that; more lets borders follow every crease
 
@@ -29,14 +29,14 @@ struct SegmentationRules {
 
   // Divisions
   /// Share of the surface; smaller intersections of divisions join the closest larger one.
-  double least_cell = 0.0005;
+  double min_cell = 0.0005;
   /// Angles of a cloud over those of a mesh: normals of points spread a crease over several rows.
   float sharpened = 1.5f;
   double surely_one = 1.0;  ///< log odds from which on two regions are one part: probability 0.73
 
   // Labels that agree across a plane
   double global_share = 0.95;  ///< of the surface that such a plane maps onto itself
-  double least_across = 0.2;   ///< share of a segment on the smaller side of a plane that it lies across
+  double min_across = 0.2;     ///< share of a segment on the smaller side of a plane that it lies across
 
   // Orientation
   int orientation_rays = 2000;  ///< for each connected piece at most
@@ -46,10 +46,10 @@ struct SegmentationRules {
   float concave_detour = 4.0f;  ///< length that a radian of a concave edge adds
 
   // Regions
-  double thinnest = 1e-3;            ///< radii; bound of the logarithm of the thickness
-  double least_area = 1e-9;          ///< share of the surface; keeps regions without area out of 0 / 0
-  double least_inner_sight = 0.05;   ///< the fitted weights know this bound
-  double most_relative_sight = 1.5;  ///< the fitted weights know this bound
+  double thinnest = 1e-3;           ///< radii; bound of the logarithm of the thickness
+  double min_area = 1e-9;           ///< share of the surface; keeps regions without area out of 0 / 0
+  double min_inner_sight = 0.05;    ///< the fitted weights know this bound
+  double max_relative_sight = 1.5;  ///< the fitted weights know this bound
 
   // Clouds that can have parts
   Eigen::Index fewest_points = 20;  ///< distinct ones
@@ -60,7 +60,7 @@ struct SegmentationRules {
   int published_samples = 1000;  ///< reflected as published; the paper's 10 000 take minutes a mesh
   int refined_samples = 400;     ///< that Iterative Symmetric Points reflects
   int normal_neighbors = 8;      ///< of a sample
-  double most_moved = 0.12;      ///< radii that a plane may move in its refinement, twice kSameMaximum.offset
+  double max_moved = 0.12;       ///< radii that a plane may move in its refinement, twice kSameMaximum.offset
   float mapped = 0.5f;       ///< f from which on an element counts as mapped onto the surface, 0.83 sigma away from it
   MapSize map_size;          ///< of the transform of a part
   int num_map_samples = 64;  ///< of each bin

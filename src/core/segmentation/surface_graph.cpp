@@ -21,7 +21,7 @@ namespace pcl_symmetry {
 
 namespace {
 
-constexpr double least_extent = 1e-15;  // input units; squares and sums stay within float
+constexpr double min_extent = 1e-15;  // input units; squares and sums stay within float
 constexpr double greatest_extent = 1e15;
 
 /// Refuses points whose distances have no squares in float: areas and neighbors would be infinite or zero.
@@ -32,7 +32,7 @@ void checkExtent(const PointsRef& points) {
   for (Eigen::Index i = 0; i < points.cols(); ++i)
     if (points.col(i).allFinite()) box.extend(Eigen::Vector3d(points.col(i).cast<double>()));
   const double extent = box.isEmpty() ? 0.0 : box.diagonal().norm();
-  check(extent == 0.0 || extent >= least_extent, "extent of the points", extent, ">= 1e-15");
+  check(extent == 0.0 || extent >= min_extent, "extent of the points", extent, ">= 1e-15");
   check(extent <= greatest_extent, "extent of the points", extent, "<= 1e15");
 }
 

@@ -15,12 +15,12 @@ namespace pcl_symmetry {
 
 AxisGrid::AxisGrid(int num_theta, int num_phi, int num_offset, const Eigen::Vector3d& center, double radius)
     : num_theta_(num_theta), num_phi_(num_phi), num_offset_(num_offset), center_(center), radius_(radius) {
-  constexpr int most = 1024;                     // 0.1 degrees
-  constexpr std::size_t most_bins = 1ull << 28;  // 1 GiB for each fold
+  constexpr int most = 1024;                    // 0.1 degrees
+  constexpr std::size_t max_bins = 1ull << 28;  // 1 GiB for each fold
   check(num_theta >= 1 && num_theta <= most, "num_theta", num_theta, "in [1, 1024]");
   check(num_phi >= 2 && num_phi <= most && num_phi % 2 == 0, "num_phi", num_phi, "even and in [2, 1024]");
   check(num_offset >= 1 && num_offset <= most, "num_offset", num_offset, "in [1, 1024]");
-  check(size() <= most_bins, "number of bins", size(), "at most 268435456");
+  check(size() <= max_bins, "number of bins", size(), "at most 268435456");
   check(center.allFinite(), "center", center.transpose(), "finite");
   check(std::isfinite(radius) && radius > 0.0, "radius", radius, "finite and > 0");
 }

@@ -107,7 +107,7 @@ std::vector<Line3d> startsOf(const AxisMap& map, std::size_t count, double least
   std::vector<std::size_t> bins;
   for (std::size_t i = 0; i < map.greatest.size(); ++i)
     if (map.greatest[i] >= least) bins.push_back(i);
-  const std::size_t kept = std::min(bins.size(), kTransform.most_axis_bins);
+  const std::size_t kept = std::min(bins.size(), kTransform.max_axis_bins);
   std::partial_sort(bins.begin(), bins.begin() + kept, bins.end(), [&](std::size_t a, std::size_t b) {
     return std::make_pair(-map.greatest[a], a) < std::make_pair(-map.greatest[b], b);
   });
@@ -132,8 +132,8 @@ std::vector<AxisMaximum> axisMaxima(const AxisMap& map, const GaussianEdt& edt, 
   check(count >= 1, "count", count, ">= 1");
   check(min_value >= 0.0 && min_value <= 1.0, "min_value", min_value, "in [0, 1]");
   if (map.empty()) return {};
-  const std::vector<Line3d> starts = startsOf(map, static_cast<std::size_t>(count) * kTransform.starts_per_maximum,
-                                              kTransform.least_of_bin * min_value);
+  const std::vector<Line3d> starts =
+      startsOf(map, static_cast<std::size_t>(count) * kTransform.starts_per_maximum, kTransform.min_of_bin * min_value);
   const AxisClimb climb(edt, map, options);
   std::vector<AxisMaximum> climbed(starts.size());
   parallelBlocks(starts.size(), options.num_threads, [&](std::size_t i) { climbed[i] = climb.climbed(starts[i]); });

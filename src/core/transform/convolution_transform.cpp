@@ -51,12 +51,12 @@ struct BundleLattice {
         grid_offset(grid.offset(0) / edt.cellSize()),
         radius_step(grid.radiusStep() / edt.cellSize()),
         spacing(spacing_in_sigmas * edt.sigma() / edt.cellSize()),
-        step(std::max(1, static_cast<int>(kTransform.most_stretch * spacing))),
+        step(std::max(1, static_cast<int>(kTransform.max_stretch * spacing))),
         refine(static_cast<int>(std::ceil(2.0 * radius_step / spacing))) {
     if (isNearlyWhole(2.0 * radius_step / refine)) ++refine;
     along = 2.0 * radius_step / refine;
-    most_ahead = half() / std::sqrt(3.0);  // the axis that is the farthest from n has at most 1 / sqrt(3) of it
-    num_along = static_cast<int>(std::ceil(2.0 * (clip + most_ahead + radius_step) / along)) + 2;
+    max_ahead = half() / std::sqrt(3.0);  // the axis that is the farthest from n has at most 1 / sqrt(3) of it
+    num_along = static_cast<int>(std::ceil(2.0 * (clip + max_ahead + radius_step) / along)) + 2;
     const int n = edt.numCells();
     for (int row = 0; row < n * n; ++row) {
       const GaussianEdt::Range range = edt.filledRanges()[row];
@@ -79,9 +79,9 @@ struct BundleLattice {
   int step;        ///< between the lines of a bundle, along an axis of the cells
   /// Points at t0 + l * along have the planes between them at t0 + (a + b) * along / 2: every refine-th one is a bin.
   int refine;
-  double along;       ///< between the points of a line
-  double most_ahead;  ///< from the middle of a row to its first and last line, along the normal
-  int num_along;      ///< points of a line
+  double along;      ///< between the points of a line
+  double max_ahead;  ///< from the middle of a row to its first and last line, along the normal
+  int num_along;     ///< points of a line
 };
 
 /// The bundles of one direction: lines along the normal n through every step-th cell of rows of cells. Rows lie along
@@ -99,7 +99,7 @@ public:
     between_ = std::min(lattice.spacing, lattice.spacing * lattice.spacing / (lattice.step * across_));
     if (isNearlyWhole(between_)) between_ *= kTransform.less_than_whole;
     const double first_offset = normal.dot(lattice.center) + lattice.grid_offset;
-    num_skipped_ = std::floor((-lattice.clip - lattice.most_ahead - first_offset) / lattice.radius_step);
+    num_skipped_ = std::floor((-lattice.clip - lattice.max_ahead - first_offset) / lattice.radius_step);
     t0_ = first_offset + num_skipped_ * lattice.radius_step;
     for (int i = 0; i < 3; ++i) step_[i] = LookupTable::toFixed(lattice.along * n_[i]);
   }
@@ -157,14 +157,14 @@ private:
   /// \param x of the middle of the bundle.
   std::pair<double, double> filledPart(double x, double b) const {
     // A look-up takes the whole cell; fixed-point steps are rounded.
-    const double of_cell = 0.51, least_slope = 1e-5;
+    const double of_cell = 0.51, min_slope = 1e-5;
     const double radius = lattice_.clip + lattice_.half() + std::sqrt(3.0) * of_cell;
     const double chord = std::sqrt(std::max(0.0, radius * radius - x * x - b * b + x * n_.x() * x * n_.x()));
     double from = -x * n_.x() - chord, to = -x * n_.x() + chord;
     for (int k = 0; k < 3; ++k) {
       const int axis = (axis_ + k) % 3;
       const double foot = (k == 0 ? x : b * v_[k]), reach = of_cell + (k == 0 ? lattice_.half() : 0.0);
-      const double slope = std::copysign(std::max(std::abs(n_[k]), least_slope), n_[k]);
+      const double slope = std::copysign(std::max(std::abs(n_[k]), min_slope), n_[k]);
       const auto [enter, leave] = std::minmax(
           {(lattice_.filled.min()[axis] - reach - foot) / slope, (lattice_.filled.max()[axis] + reach - foot) / slope});
       from = std::max(from, enter);
@@ -238,8 +238,8 @@ public:
     const std::uint8_t* bytes;
     const std::int32_t* of_x;
     int of_y, of_z;
-    int least_x;  ///< that x may have
-    int last;     ///< cell of a row
+    int min_x;  ///< that x may have
+    int last;   ///< cell of a row
   };
   Rows along(int axis) const {
     const int before = kRowLanes * step_;
@@ -261,14 +261,14 @@ PCL_SYMMETRY_MULTIVERSION
 void lookUp(Bundle bundle, const RowTable::Rows& rows, std::int32_t* __restrict offsets, float* __restrict values) {
   const int first = bundle.first, last = bundle.last;
   const std::int32_t* __restrict const of_x = rows.of_x;
-  const int of_y = rows.of_y, of_z = rows.of_z, least_x = rows.least_x, last_cell = rows.last;
+  const int of_y = rows.of_y, of_z = rows.of_z, min_x = rows.min_x, last_cell = rows.last;
   for (int r = 0; r < kBundleRows; ++r) {
     for (int l = first; l < last; ++l) {
       const auto cell = [&](int axis, int least) {
         const int at = (bundle.start[r][axis] + l * bundle.step[axis]) >> LookupTable::kFractionBits;
         return at < least ? least : at > last_cell ? last_cell : at;
       };
-      offsets[l] = cell(2, 0) * of_z + cell(1, 0) * of_y + of_x[cell(0, least_x)];
+      offsets[l] = cell(2, 0) * of_z + cell(1, 0) * of_y + of_x[cell(0, min_x)];
     }
     for (int l = first; l < last; ++l)
       for (int j = 0; j < kRowLanes; ++j)
@@ -337,10 +337,10 @@ void addLane(const float* values, int size, const float* weights, float* sums) {
 /// the distance, and what they add up to at common positions, by quintic splines (Unser, Splines: a perfect fit, 1999).
 class LaneSums {
 public:
-  /// \param most_ahead distances that the first and the last lane of a row are from its middle, at most.
-  LaneSums(int size, double most_ahead)
+  /// \param max_ahead distances that the first and the last lane of a row are from its middle, at most.
+  LaneSums(int size, double max_ahead)
       : size_(size),
-        margin_(static_cast<int>(std::ceil(most_ahead)) + num_taps),
+        margin_(static_cast<int>(std::ceil(max_ahead)) + num_taps),
         sums_(static_cast<std::size_t>(size) * kBundleLanes),
         lane_(size + 2 * margin_),
         coefficients_(size + 2 * reach_of_spline) {}
@@ -399,9 +399,9 @@ public:
         table_(table),
         offsets_(lattice.num_along),
         values_(static_cast<std::size_t>(lattice.num_along) * kBundleLanes),
-        sums_(2 * lattice.num_along, 2.0 * lattice.most_ahead / lattice.along) {
+        sums_(2 * lattice.num_along, 2.0 * lattice.max_ahead / lattice.along) {
     // The sums of these fit in 32 bits
-    most_bundles_ = static_cast<int>(std::max<std::int64_t>(
+    max_bundles_ = static_cast<int>(std::max<std::int64_t>(
         1, std::numeric_limits<std::int32_t>::max() / (std::int64_t{255} * 255 * lattice.num_along)));
   }
 
@@ -439,7 +439,7 @@ private:
         while (first < last && isZero(first)) ++first;
         while (first < last && isZero(last - 1)) --last;
         correlate(values_.data(), first, last, sums_.data());
-        if (++num_added % most_bundles_ == 0) sums_.bringTogether(ahead);
+        if (++num_added % max_bundles_ == 0) sums_.bringTogether(ahead);
       }
     }
     sums_.bringTogether(ahead);
@@ -455,7 +455,7 @@ private:
   std::vector<std::int32_t> offsets_;  // of the points of a row of a bundle
   std::vector<float> values_;          // of the points of a bundle, lane by lane
   LaneSums sums_;
-  int most_bundles_;
+  int max_bundles_;
 };
 
 }  // namespace

@@ -19,8 +19,8 @@ namespace {
 using Cube = LineSums::Cube;
 using Lines = LineSums::Lines;
 
-constexpr int line_lanes = 8;     // 32-bit integers in an AVX2 register; sums are padded by twice as many
-constexpr int most_lines = 1024;  // at a time: they stay in the first cache, and sums of bytes fit in 32 bits
+constexpr int line_lanes = 8;    // 32-bit integers in an AVX2 register; sums are padded by twice as many
+constexpr int max_lines = 1024;  // at a time: they stay in the first cache, and sums of bytes fit in 32 bits
 
 /// Fills the lines that the images of points run along when the points are reflected in parallel planes.
 PCL_SYMMETRY_MULTIVERSION
@@ -179,7 +179,7 @@ LineSums::LineSums(const GaussianEdt& edt, const LookupTable& table, int num_ste
       accumulate_(table.numFunctions() == 1 ? kernelOf<1>(scalar) : kernelOf<2>(scalar)),
       totals_(table.numFunctions(), std::vector<double>(num_steps)),
       sums_(table.numFunctions(), std::vector<std::int32_t>(num_steps + 2 * line_lanes)),
-      storage_(5 * most_lines) {
+      storage_(5 * max_lines) {
   const double middle = 0.5 * (edt.numCells() - 1);
   cube_.middle = static_cast<float>(middle);
   cube_.sq_clip = static_cast<float>(std::pow(middle - 0.5, 2));
@@ -193,11 +193,11 @@ const LineSums::Totals& LineSums::add(int num_samples, const Eigen::Vector3f& st
                                       const SetUp& set_up) {
   for (auto& total : totals_) std::fill(total.begin(), total.end(), 0.0);
   std::int32_t* const data = storage_.data();
-  Lines lines{data, data + most_lines, data + 2 * most_lines, data + 3 * most_lines, data + 4 * most_lines, 0, {}};
+  Lines lines{data, data + max_lines, data + 2 * max_lines, data + 3 * max_lines, data + 4 * max_lines, 0, {}};
   for (int axis = 0; axis < 3; ++axis)
     lines.step[axis] = static_cast<std::int32_t>(std::lround(step[axis] * (1 << LookupTable::kFractionBits)));
-  for (int first = 0; first < num_samples; first += most_lines) {
-    lines.size = std::min(most_lines, num_samples - first);
+  for (int first = 0; first < num_samples; first += max_lines) {
+    lines.size = std::min(max_lines, num_samples - first);
     set_up(first, lines);
     for (auto& sums : sums_) std::fill(sums.begin(), sums.end(), 0);
     accumulate_(lines, table_.data(), table_.bits(), sums_of_.data());

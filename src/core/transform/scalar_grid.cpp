@@ -19,12 +19,12 @@ namespace {
 using Factors = std::array<int, 3>;
 
 /// How many voxels along each axis are averaged, so that the voxels become alike and few.
-/// \param most_ratio of the greatest spacing to the least.
-Factors factorsFor(const ScalarGrid& grid, std::size_t most_voxels, double most_ratio) {
+/// \param max_ratio of the greatest spacing to the least.
+Factors factorsFor(const ScalarGrid& grid, std::size_t max_voxels, double max_ratio) {
   constexpr int kLeastSize = 16;  // voxels along an axis: fewer are not averaged
   const Eigen::Vector3d spacing = grid.spacing();
   Factors factors{1, 1, 1};
-  for (double wanted = std::max(spacing.minCoeff(), spacing.maxCoeff() / most_ratio);; wanted *= 1.26) {
+  for (double wanted = std::max(spacing.minCoeff(), spacing.maxCoeff() / max_ratio);; wanted *= 1.26) {
     std::size_t num_voxels = 1;
     bool can_grow = false;
     for (int a = 0; a < 3; ++a) {
@@ -33,7 +33,7 @@ Factors factorsFor(const ScalarGrid& grid, std::size_t most_voxels, double most_
       can_grow |= factors[a] < most;
       num_voxels *= grid.size()[a] / factors[a];
     }
-    if (num_voxels <= most_voxels || !can_grow) return factors;
+    if (num_voxels <= max_voxels || !can_grow) return factors;
   }
 }
 
@@ -192,21 +192,21 @@ void VolumeLevels::validate() const {
   check(low < high || (low == 0.0 && high == 0.0), "levels: high", high, "more than low");
 }
 
-VolumeFunction::VolumeFunction(const ScalarGrid& volume, const VolumeLevels& given, std::size_t most_voxels,
+VolumeFunction::VolumeFunction(const ScalarGrid& volume, const VolumeLevels& given, std::size_t max_voxels,
                                int num_threads)
     : f({1, 1, 1}, Eigen::Affine3d::Identity(), {0.0f}), levels(levelsOf(volume, given)) {
   // Noise of the background is left as it is until it is averaged: cut at 0 it would make the box of the volume a body.
   const float low = static_cast<float>(levels.low), scale = static_cast<float>(1.0 / (levels.high - levels.low));
   const float least = given.low < given.high ? 0.0f : -1.0f;
-  f = averaged(volume, factorsFor(volume, most_voxels, 8.0), num_threads,
+  f = averaged(volume, factorsFor(volume, max_voxels, 8.0), num_threads,
                [&](float value) { return value > -1e30f ? std::clamp((value - low) * scale, least, 1.0f) : 0.0f; });
   smooth(f.size(), f.spacing(), 0.5, f.values_, num_threads);
   for (float& value : f.values_) value = std::max(0.0f, value);
   body = bodyThreshold(f.values());
 }
 
-VolumeFunction::VolumeFunction(const VolumeFunction& finer, std::size_t most_voxels, int num_threads)
-    : f(averaged(finer.f, factorsFor(finer.f, most_voxels, 2.0), num_threads, [](float value) { return value; })),
+VolumeFunction::VolumeFunction(const VolumeFunction& finer, std::size_t max_voxels, int num_threads)
+    : f(averaged(finer.f, factorsFor(finer.f, max_voxels, 2.0), num_threads, [](float value) { return value; })),
       levels(finer.levels) {
   smooth(f.size(), f.spacing(), 1.0, f.values_, num_threads);
   body = bodyThreshold(f.values());

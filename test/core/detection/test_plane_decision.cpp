@@ -104,7 +104,7 @@ TEST(RankedPlanes, FewPossibleOnes) {
   const auto numRanked = [&] {
     return rankedPlanes(planes, std::nullopt, searched.cloud, *searched.fit, DetectionOptions()).size();
   };
-  EXPECT_EQ(numRanked(), static_cast<std::size_t>(kDetection.decide.most_possible));
+  EXPECT_EQ(numRanked(), static_cast<std::size_t>(kDetection.decide.max_possible));
   for (SymmetryPlane& plane : planes) plane.kind = PlaneKind::Symmetry;
   EXPECT_EQ(numRanked(), 6u);
 }

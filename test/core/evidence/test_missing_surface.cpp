@@ -352,7 +352,7 @@ TEST(PointDensity, OverlapIsOneAtASymmetryWhateverTheNoiseAndNumber) {
   for (const int num_points : {1000, 4000, 20'000}) {
     // Ten degrees move the points by up to 0.35, the density is 0.16 to 0.04 wide. 0.974, 0.933 and 0.882 were
     // measured.
-    const double most_off = num_points == 1000 ? 0.985 : num_points == 4000 ? 0.95 : 0.91;
+    const double max_off = num_points == 1000 ? 0.985 : num_points == 4000 ? 0.95 : 0.91;
     for (const Shape& shape : shapesOf(num_points)) {
       for (const double noise : {0.01, 0.02, 0.04}) {
         const Points points = noisy(shape, noise, 1);
@@ -361,7 +361,7 @@ TEST(PointDensity, OverlapIsOneAtASymmetryWhateverTheNoiseAndNumber) {
           const double at = density.overlap(points, plane), off = density.overlap(points, tilted(plane, 10 * kDegree));
           EXPECT_GT(at, 0.95) << num_points << " points, noise " << noise;
           EXPECT_LT(at, 1.1) << num_points << " points, noise " << noise;
-          EXPECT_LT(off, most_off * at) << num_points << " points, noise " << noise;
+          EXPECT_LT(off, max_off * at) << num_points << " points, noise " << noise;
         }
       }
     }

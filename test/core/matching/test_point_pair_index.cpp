@@ -206,7 +206,7 @@ TEST(PoseScreening, FindsTheShapeAndImprovesItsPose) {
       PoseScreeningOptions options;
       options.num_shapes = 2;
       options.num_poses = 3;
-      options.most_behind = 2.0;  // no shape is left out
+      options.max_behind = 2.0;  // no shape is left out
       const auto found = screenPoses(ScreenedSurface(scanOfHalfABox(kBoxes[k], scale)), shapes, options);
       ASSERT_EQ(found.size(), 2u);
       EXPECT_EQ(found[0].shape, k) << scale;
@@ -244,9 +244,9 @@ TEST(PoseScreening, ShapesThatFillEmptySpaceAreLeftBehind) {
   EXPECT_EQ(found[0].shape, 1);
   EXPECT_EQ(screenPoses(scan, {shapes[0], shapes[0], shapes[1]}).size(), 2u) << "one that is far behind is kept";
   PoseScreeningOptions options;
-  options.least_shapes = 1;
+  options.min_shapes = 1;
   EXPECT_EQ(screenPoses(scan, shapes, options).size(), 1u) << "the wide box is far behind";
-  options.most_behind = 2.0;
+  options.max_behind = 2.0;
   EXPECT_EQ(screenPoses(scan, shapes, options).size(), 2u);
 }
 
@@ -259,7 +259,7 @@ TEST(PoseScreening, ThreadsDoNotChangeIt) {
   test::compareThreads([&](int num_threads) {
     PoseScreeningOptions options;
     options.num_threads = num_threads;
-    options.most_behind = 2.0;  // no shape is left out
+    options.max_behind = 2.0;  // no shape is left out
     const std::vector<ScreenedShape> found = screenPoses(scan, shapes, options);
     EXPECT_EQ(found.size(), 3u);
     return test::valuesOf(found, &ScreenedShape::shape,

@@ -167,7 +167,7 @@ TEST(MarginOf, IsTheLeastMarginToALimit) {
   SymmetryRotation rotation;
   rotation.support = 1.0;
   EXPECT_NEAR(marginOf(rotation), 1.0 / kScanAxes.round_on - 1.0, 1e-12) << "nothing is off";
-  rotation.off = 2.0 * kScanAxes.most_round_off;
+  rotation.off = 2.0 * kScanAxes.max_round_off;
   EXPECT_NEAR(marginOf(rotation), -1.0, 1e-12);
   rotation.fold = 3;
   rotation.off = rotation.halfway = 0.0;
