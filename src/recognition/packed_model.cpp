@@ -42,7 +42,7 @@ std::vector<Eigen::MatrixXf> unpackedMatrices(const std::string& bytes) {
     const std::size_t left = (bytes.size() - at) / sizeof(float), rows = size[0], cols = size[1];
     if (cols > 0 && rows > left / cols) throw std::invalid_argument("has another size than it says");
     Eigen::MatrixXf& matrix = matrices.emplace_back(static_cast<Eigen::Index>(rows), static_cast<Eigen::Index>(cols));
-    std::memcpy(matrix.data(), bytes.data() + at, rows * cols * sizeof(float));
+    if (matrix.size() > 0) std::memcpy(matrix.data(), bytes.data() + at, rows * cols * sizeof(float));
     at += rows * cols * sizeof(float);
     if (!matrix.allFinite()) throw std::invalid_argument("has numbers that are not finite");
   }
