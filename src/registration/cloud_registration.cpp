@@ -257,19 +257,21 @@ CloudRegistration registerClouds(const Points& source, const std::optional<Visib
   if (!poses.empty()) poses = refinePoses(clouds.scan(), clouds.model(), poses, inner);
   if (options.around) keepAround(clouds, guess, *options.around, poses);
   done("refine");
-  if (options.search_parts && !options.around && !poses.empty() &&
-      poseConfidence(clouds.evidence(poses.front())) < kRegistration.min_confidence) {
+  const auto judge = [&] {
+    if (poses.empty()) return;
+    result.evidence = clouds.evidence(poses.front());
+    result.confidence = poseConfidence(result.evidence);
+  };
+  judge();
+  if (options.search_parts && !options.around && !poses.empty() && result.confidence < kRegistration.min_confidence) {
     const std::vector<RankedPose> of_parts = posesOfParts(clouds, inner);
     poses.insert(poses.end(), of_parts.begin(), of_parts.end());
     poses = mostConfident(clouds, poses, static_cast<std::size_t>(search.max_poses));
+    judge();
     done("parts");
   }
   for (const RankedPose& pose : poses) result.poses.push_back({clouds.toInput(pose.T_model_scan), pose.score});
-  if (!poses.empty()) {
-    result.covariance = covarianceOf(clouds, poses.front(), inner);
-    result.evidence = clouds.evidence(poses.front());
-    result.confidence = poseConfidence(result.evidence);
-  }
+  if (!poses.empty()) result.covariance = covarianceOf(clouds, poses.front(), inner);
   if (poses.empty()) result.poses.push_back({guess, {}});
   static_cast<RegisteredPose&>(result) = result.poses.front();
   return result;

@@ -174,15 +174,10 @@ def point_bytes(num_options, count):
 
 
 def packed_parts():
-    """The kind of the part, and matrices and points as the database packs them."""
-    matrix = struct.pack("<BII", 1, 4, 2) + b"".join(struct.pack("<f4b", 0.01, 1, -2, 3, 127) for _ in range(2))
-    cloud = struct.pack("<I3fd", 4, -1, -1, -1, 1e-4) + bytes(range(24))
-    view = struct.pack("<f4h3f", 1.0, 0, 0, 0, 32767, 0, 0, 0)
-    part = struct.pack("<I", len(matrix)) + matrix
-    rows = struct.pack("<BII", 2, 2, 6) + 6 * struct.pack("<f2h", 0.01, 5, -7)
-    surface = struct.pack("<3fI", 1, 2, 3, len(rows)) + rows
-    yield "packed", [b"\0" + cloud, b"\1" + matrix, b"\2" + struct.pack("<I", 1) + view + bytes(200),
-                     b"\3" + matrix + struct.pack("<f", 0.5), b"\4" + struct.pack("<Iq", 1, 7) + 3 * part, b"\5" + bytes(68), b"\6" + 2 * surface]  # fmt: skip
+    """The kind of the part, and matrices as the database packs them."""
+    matrix = lambda rows, cols, value=0.5: struct.pack(f"<II{rows * cols}f", rows, cols, *[value] * (rows * cols))
+    yield "packed", [b"\0" + matrix(3, 8), b"\1" + matrix(4, 2), b"\2" + matrix(280, 1), b"\3" + matrix(4, 2) + matrix(1, 1),
+                     b"\4" + struct.pack("<Iq", 1, 7) + matrix(12, 1) + matrix(4, 2), b"\5" + bytes(52), b"\6" + matrix(3, 2) + matrix(3, 2)]  # fmt: skip
 
 
 def main(folder):
