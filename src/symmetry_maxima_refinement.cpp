@@ -5,7 +5,7 @@
 
 #include <limits>
 
-#include "core/evidence/plane_support.h"
+#include "core/evidence/surface_samples.h"
 #include "pcl_symmetry/core/published_planes.h"
 
 namespace pcl_symmetry::detail {

@@ -265,19 +265,15 @@ private:
 
   Matched match(int source, int target, double reach) const {
     const PosedSurface &from = *scans_[source].surface, &to = *scans_[target].surface;
-    const Eigen::Isometry3f T_target_source =
-        (groups_.T_group_scan[target].inverse() * groups_.T_group_scan[source]).cast<float>();
-    Matched matched{{}, static_cast<int>(std::min<Eigen::Index>(kRegisterAll.adjust_points, from.points.cols()))};
-    Points positions(3, matched.num_points);
-    for (int i = 0; i < matched.num_points; ++i) positions.col(i) = T_target_source * from.points.col(from.order[i]);
-    std::vector<int> closest;
-    std::vector<float> sq_distances;
-    to.search->search(positions, 1, closest, sq_distances);
+    const Landing landing = land(from, to, groups_.T_group_scan[target].inverse() * groups_.T_group_scan[source],
+                                 kRegisterAll.adjust_points);
+    Matched matched{{}, static_cast<int>(landing.images.cols())};
     for (int i = 0; i < matched.num_points; ++i) {
-      if (sq_distances[i] > reach * reach) continue;
-      const Eigen::Vector3f normal = T_target_source.linear() * from.normals.col(from.order[i]);
-      if (std::abs(normal.dot(to.normals.col(closest[i]))) < kRegisterAll.min_cosine) continue;
-      matched.pairs.emplace_back(positions.col(i).cast<double>(), closest[i]);
+      const int j = landing.closest[i];
+      if (landing.sq_distances[i] > reach * reach ||
+          std::abs(landing.normals.col(i).dot(to.normals.col(j))) < kRegisterAll.min_cosine)
+        continue;
+      matched.pairs.emplace_back(landing.images.col(i).cast<double>(), j);
     }
     return matched;
   }

@@ -4,8 +4,8 @@
 #include <utility>
 
 #include "core/base/parallel.h"
-#include "core/evidence/plane_support.h"
 #include "core/evidence/point_density.h"
+#include "core/evidence/surface_samples.h"
 #include "core/geometry/point_samples.h"
 #include "core/transform/free_space.h"
 
@@ -67,21 +67,9 @@ public:
   using PlaneFit::shares;
   PlaneShares shares(const ReflectionPlane& plane, const std::vector<int>& samples,
                      const IspStep& step) const override {
-    PointEvidence evidence{std::vector<float>(samples.size()), std::vector<float>(samples.size())};
-    const Eigen::Vector3f n = plane.normal().cast<float>();
-    parallelRanges(samples.size(), 1024, options_.num_threads, [&](std::size_t begin, std::size_t end) {
-      const auto size = static_cast<Eigen::Index>(end - begin), first = static_cast<Eigen::Index>(begin);
-      Points reflected(3, size), normals(3, size);
-      for (Eigen::Index i = 0; i < size; ++i) {
-        const SurfaceSample& sample = cloud_.samples[samples[static_cast<std::size_t>(first + i)]];
-        reflected.col(i) = plane.reflect(sample.point.cast<double>()).cast<float>();
-        normals.col(i) = sample.normal - 2.0f * n.dot(sample.normal) * n;
-      }
-      const std::vector<int> closest(step.closest.begin() + first, step.closest.begin() + first + size);
-      const PointEvidence some = pointEvidence(reflected, normals, closest, cloud_.samples, cloud_.seen());
-      std::copy(some.support.begin(), some.support.end(), evidence.support.begin() + first);
-      std::copy(some.conflict.begin(), some.conflict.end(), evidence.conflict.begin() + first);
-    });
+    PointEvidence evidence = pointEvidence(reflectedPoints(pointsAt(cloud_.points, samples), plane),
+                                           reflectedNormals(pointsAt(cloud_.geometry.normals, samples), plane),
+                                           step.closest, cloud_.samples, cloud_.seen(), options_.num_threads);
     return {meanSupport(evidence.support), meanSupport(evidence.conflict), std::move(evidence.support)};
   }
 

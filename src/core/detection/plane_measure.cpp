@@ -8,7 +8,6 @@
 #include "core/detection/detection_rules.h"
 #include "core/evidence/evidence_rules.h"
 #include "core/evidence/plane_motion.h"
-#include "core/evidence/plane_support.h"
 #include "core/geometry/geometry_rules.h"
 #include "core/geometry/point_samples.h"
 #include "core/scan/single_view.h"
@@ -93,30 +92,21 @@ PlaneEvidence PlaneMeasure::evidenceOf(double support, double conflict, double s
   return evidence;
 }
 
-PlaneMeasure::Reflected PlaneMeasure::reflected(const ReflectionPlane& plane, const std::vector<int>& samples,
-                                                const IspStep& step) const {
-  Reflected result{Points(3, static_cast<Eigen::Index>(samples.size())), std::vector<float>(samples.size())};
-  parallelRanges(samples.size(), 1024, options_.num_threads, [&](std::size_t begin, std::size_t end) {
-    const auto size = static_cast<Eigen::Index>(end - begin), first = static_cast<Eigen::Index>(begin);
-    const std::vector<int> of_range(samples.begin() + first, samples.begin() + first + size);
-    const Points some = reflectedPoints(pointsAt(cloud_.points, of_range), plane);
-    const std::vector<int> closest(step.closest.begin() + first, step.closest.begin() + first + size);
-    const std::vector<float> distances = surfaceDistances(some, closest, cloud_.samples);
-    std::copy(distances.begin(), distances.end(), result.distances.begin() + first);
-    result.points.middleCols(first, size) = some;
-  });
-  return result;
+Landing PlaneMeasure::landed(const ReflectionPlane& plane, const std::vector<int>& samples,
+                             std::vector<int> closest) const {
+  Landing landing{reflectedPoints(pointsAt(cloud_.points, samples), plane), {}, std::move(closest), {}, {}};
+  landing.distances = surfaceDistances(landing.images, landing.closest, cloud_.samples, options_.num_threads);
+  return landing;
 }
 
-std::vector<float> PlaneMeasure::unknownMatches(const Reflected& reflected, const IspStep& step,
-                                                const std::vector<char>& matched, double offset_stiffness,
-                                                double rim) const {
+std::vector<float> PlaneMeasure::unknownMatches(const Landing& landing, const std::vector<char>& matched,
+                                                double offset_stiffness, double rim) const {
   const std::size_t size = matched.size();
   std::vector<float> unknown(size, 0.0f);
   if (cloud_.seen()) {
     for (std::size_t i = 0; i < size; ++i)
       if (!matched[i]) {
-        const Eigen::Vector3d x = reflected.points.col(i).cast<double>();
+        const Eigen::Vector3d x = landing.images.col(i).cast<double>();
         // What a camera measured beside an object is off by its errors.
         const double beside = std::isfinite(cloud_.seen()->depthBehind(x)) ? std::max(rim, resolution_) : rim;
         unknown[i] = isSeenEmpty(*cloud_.seen(), x, 0.0, beside) ? 1.0f - emptiness(*cloud_.seen(), x) : 1.0f;
@@ -127,23 +117,23 @@ std::vector<float> PlaneMeasure::unknownMatches(const Reflected& reflected, cons
   if (held <= 0.0 || static_cast<Eigen::Index>(size) != cloud_.points.cols()) return unknown;
   const auto trust = static_cast<float>(held * ends().trust());
   if (trust <= 0.0f) return unknown;
-  unknown = ends().missing(matched, step.closest, reflected.points);
+  unknown = ends().missing(matched, landing.closest, landing.images);
   for (float& value : unknown) value *= trust;
   return unknown;
 }
 
 MeasuredPlane PlaneMeasure::measured(const ReflectionPlane& plane, const std::vector<int>& samples, const IspStep& step,
                                      double rim) const {
-  const Reflected image = reflected(plane, samples, step);
+  const Landing landing = landed(plane, samples, step.closest);
   const std::size_t size = samples.size();
   std::vector<char> matched(size), is_moved(size);
   std::vector<float> moved;  // distances of the samples whose position is informative: of scans those that move
   for (std::size_t i = 0; i < size; ++i) {
-    matched[i] = image.distances[i] <= tolerance_;
-    const Eigen::Vector3d x = image.points.col(static_cast<Eigen::Index>(i)).cast<double>();
+    matched[i] = landing.distances[i] <= tolerance_;
+    const Eigen::Vector3d x = landing.images.col(static_cast<Eigen::Index>(i)).cast<double>();
     is_moved[i] =
         !cloud_.seen() || 2.0 * std::abs(plane.signedDistance(x)) > kDetection.measure.moved_tolerances * tolerance_;
-    if (is_moved[i]) moved.push_back(image.distances[i]);
+    if (is_moved[i]) moved.push_back(landing.distances[i]);
   }
   if (halves_) moved = halves_->reflectedDistances(plane);
   std::array<double, 2> within{};
@@ -154,18 +144,18 @@ MeasuredPlane PlaneMeasure::measured(const ReflectionPlane& plane, const std::ve
   if (cloud_.seen() || (kKindRules.may_lack_piece[cloud_.kind()] && within[0] < kDetection.measure.surely_whole)) {
     std::vector<int> matches = step.closest;
     for (int& match : matches) match = std::max(0, match);
-    stiffness = motionStiffness(image.points, pointsAt(cloud_.geometry.normals, matches), matched, plane);
-    unknown = unknownMatches(image, step, matched, offsetStiffness(stiffness), rim);
+    stiffness = motionStiffness(landing.images, pointsAt(cloud_.geometry.normals, matches), matched, plane);
+    unknown = unknownMatches(landing, matched, offsetStiffness(stiffness), rim);
   }
   std::vector<float> informative;  // distances of the informative samples
   std::size_t num_informative = 0;
   std::array<double, 2> missing{};
   const double count = static_cast<double>(halves_ ? size : std::max<std::size_t>(1, moved.size()));
   for (std::size_t i = 0; i < size; ++i) {
-    if (unknown[i] < 0.5f) informative.push_back(image.distances[i]);
+    if (unknown[i] < 0.5f) informative.push_back(landing.distances[i]);
     num_informative += unknown[i] < 0.5f && is_moved[i] ? 1 : 0;
     for (std::size_t k = 0; k < missing.size(); ++k)
-      if (image.distances[i] > kDetection.measure.tolerances[k] * tolerance_) missing[k] += unknown[i] / count;
+      if (landing.distances[i] > kDetection.measure.tolerances[k] * tolerance_) missing[k] += unknown[i] / count;
   }
   const auto share = [&](std::size_t k) {
     const double good = within[k], bad = std::max(0.0, 1.0 - good - missing[k]);
@@ -208,14 +198,11 @@ double PlaneMeasure::deviation(const ReflectionPlane& plane) const {
   if (halves_) return deviationOf(halves_->reflectedDistances(plane));
   const std::vector<int> samples =
       drawSamples(cloud_.points.cols(), kDetection.measure.deviation_samples, options_.seed);
-  IspStep step;
-  step.closest.assign(samples.size(), -1);
-  Reflected all = reflected(plane, samples, step);
-  cloud_.search->search(all.points, 1, step.closest, step.sq_distances);
-  all.distances = surfaceDistances(all.points, step.closest, cloud_.samples);
+  const Landing all =
+      landed(plane, samples, cloud_.search->closest(reflectedPoints(pointsAt(cloud_.points, samples), plane)));
   std::vector<char> matched;
   for (const float distance : all.distances) matched.push_back(distance <= tolerance_);
-  const std::vector<float> unknown = unknownMatches(all, step, matched, 0.0, 0.0);
+  const std::vector<float> unknown = unknownMatches(all, matched, 0.0, 0.0);
   std::vector<float> informative;
   for (std::size_t i = 0; i < samples.size(); ++i)
     if (unknown[i] < 0.5f) informative.push_back(all.distances[i]);
@@ -225,7 +212,7 @@ double PlaneMeasure::deviation(const ReflectionPlane& plane) const {
 PlaneMeasure::ScreenedShare PlaneMeasure::screenedShare(const Candidate& candidate) const {
   const std::vector<int> samples =
       drawSamples(cloud_.points.cols(), kDetection.measure.screening_samples, options_.seed);
-  const Reflected some = reflected(candidate.plane, samples, fit_.matches(candidate.plane, samples));
+  const Landing some = landed(candidate.plane, samples, fit_.matches(candidate.plane, samples).closest);
   const double share = std::min(1.0, shareWithin(some.distances, tolerance_) / own_shares_[0]);
   return {share, std::sqrt(share * (1.0 - share) / static_cast<double>(samples.size()))};
 }

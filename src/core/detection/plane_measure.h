@@ -62,17 +62,14 @@ public:
   double deviation(const ReflectionPlane& plane) const;
 
 private:
-  /// The reflections of some samples, and how far they are off the surface.
-  struct Reflected {
-    Points points;
-    std::vector<float> distances;
-  };
   /// The distance within which as many lie as 97 % of those of a true plane do within the tolerance.
   double deviationOf(std::vector<float> distances) const;
-  Reflected reflected(const ReflectionPlane& plane, const std::vector<int>& samples, const IspStep& step) const;
+  /// Where the reflections of some samples land.
+  /// \param closest points to them.
+  Landing landed(const ReflectionPlane& plane, const std::vector<int>& samples, std::vector<int> closest) const;
   /// For each sample without a match, whether nothing is known of its counterpart, in [0, 1].
-  std::vector<float> unknownMatches(const Reflected& reflected, const IspStep& step, const std::vector<char>& matched,
-                                    double offset_stiffness, double rim) const;
+  std::vector<float> unknownMatches(const Landing& landing, const std::vector<char>& matched, double offset_stiffness,
+                                    double rim) const;
   /// \param rim as above.
   MeasuredPlane measured(const ReflectionPlane& plane, const std::vector<int>& samples, const IspStep& step,
                          double rim) const;

@@ -8,7 +8,7 @@
 #include "core/base/check.h"
 #include "core/base/parallel.h"
 #include "core/geometry/point_samples.h"
-#include "core/refinement/surface_matching.h"
+#include "core/refinement/landing.h"
 #include "core/transform/edt_correlation.h"
 #include "pcl_symmetry/core/iterative_symmetric_points.h"
 

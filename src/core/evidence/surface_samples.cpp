@@ -8,6 +8,7 @@
 #include <tuple>
 #include <utility>
 
+#include "core/base/check.h"
 #include "core/base/parallel.h"
 #include "core/evidence/evidence_rules.h"
 #include "core/geometry/point_samples.h"
@@ -21,9 +22,7 @@ SurfaceSamples::SurfaceSamples(const Points& points, const LocalGeometry& geomet
     for (auto i = static_cast<Eigen::Index>(begin); i < static_cast<Eigen::Index>(end); ++i) {
       const float spacing = geometry.spacing[i], rough = geometry.roughness[i] / std::max(spacing, 1e-6f);
       samples_[static_cast<std::size_t>(i)] = {
-          points.col(i),
-          geometry.normals.col(i),
-          kEvidence.disc_radius * spacing,
+          {points.col(i), geometry.normals.col(i), kEvidence.disc_radius * spacing},
           geometry.roughness[i],
           std::clamp((kEvidence.max_roughness - rough) / kEvidence.trust_width, 0.0f, 1.0f),
           geometry.nearest[i]};
@@ -33,31 +32,24 @@ SurfaceSamples::SurfaceSamples(const Points& points, const LocalGeometry& geomet
 
 namespace {
 
-/// Squared distance of a point from the disc of a sample.
-float sqDistanceFromDisc(const SurfaceSample& sample, const Eigen::Vector3f& point, float across_factor) {
-  const Eigen::Vector3f difference = point - sample.point;
-  const float across = sample.normal.dot(difference);
-  const float along = std::sqrt(std::max(0.0f, difference.squaredNorm() - across * across));
-  const float beside = std::max(0.0f, along - sample.disc_radius);
-  return across_factor * across_factor * across * across + beside * beside;
-}
-
 /// Distance from the nearest of the discs of a sample and its neighbors, but not from that of \p self (-1: none).
 float distanceNear(int closest, int self, const Eigen::Vector3f& point, const SurfaceSamples& samples,
-                   float across_factor) {
-  float least = sqDistanceFromDisc(samples[closest], point, across_factor);
+                   float sq_across_factor = 1.0f) {
+  float least = samples[closest].sqDistance(point, sq_across_factor);
   for (const int j : samples[closest].nearest)
-    if (j != self) least = std::min(least, sqDistanceFromDisc(samples[j], point, across_factor));
+    if (j != self) least = std::min(least, samples[j].sqDistance(point, sq_across_factor));
   return std::sqrt(least);
 }
 
 }  // namespace
 
 std::vector<float> surfaceDistances(const Points& points, const std::vector<int>& closest,
-                                    const SurfaceSamples& samples) {
+                                    const SurfaceSamples& samples, int num_threads) {
   std::vector<float> distances(closest.size(), std::numeric_limits<float>::infinity());
-  for (std::size_t i = 0; i < closest.size(); ++i)
-    if (closest[i] >= 0) distances[i] = distanceNear(closest[i], -1, points.col(i), samples, 1.0f);
+  parallelRanges(closest.size(), 1024, num_threads, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i)
+      if (closest[i] >= 0) distances[i] = distanceNear(closest[i], -1, points.col(i), samples);
+  });
   return distances;
 }
 
@@ -65,7 +57,8 @@ std::vector<float> ownSurfaceDistances(const SurfaceSamples& samples, int num_th
   std::vector<float> distances(static_cast<std::size_t>(samples.size()));
   parallelRanges(distances.size(), 2048, num_threads, [&](std::size_t begin, std::size_t end) {
     for (auto i = static_cast<int>(begin); i < static_cast<int>(end); ++i)
-      distances[i] = distanceNear(samples[i].nearest[0], i, samples[i].point, samples, kEvidence.new_point_factor);
+      distances[i] = distanceNear(samples[i].nearest[0], i, samples[i].center, samples,
+                                  kEvidence.new_point_factor * kEvidence.new_point_factor);
   });
   return distances;
 }
@@ -75,6 +68,108 @@ double shareWithin(const std::vector<float>& distances, double tolerance) {
   const auto count =
       std::count_if(distances.begin(), distances.end(), [&](float distance) { return distance <= limit; });
   return static_cast<double>(count) / static_cast<double>(distances.size());
+}
+
+namespace {
+
+/// How far a point with a normal lies off the surface at a sample, squared, in units of what its support allows.
+/// \return \p most where it is not less.
+float sqDeviation(const SurfaceSample& sample, const Eigen::Vector3f& point, const Eigen::Vector3f& point_normal,
+                  float most) {
+  const Eigen::Vector3f difference = point - sample.center;
+  const float reach = std::max(1e-6f, sample.radius);
+  const float sq_length = difference.squaredNorm();
+  const float along =
+      sq_length < kEvidence.surely * reach * reach ? 0.0f : std::max(0.0f, std::sqrt(sq_length) / reach - 1.0f);
+  if (along * along >= most) return most;
+  const float normal_reach = std::max(kEvidence.normal_reach, kEvidence.rough_reach * sample.roughness);
+  const float height = std::abs(sample.normal.dot(difference));
+  const float across = height < kEvidence.surely * normal_reach ? 0.0f : std::max(0.0f, height / normal_reach - 1.0f);
+  const float sq_distance = along * along + across * across;
+  if (sq_distance >= most) return most;
+  const float cosine = std::min(1.0f, std::abs(sample.normal.dot(point_normal)));
+  // Normals count as far as they can be trusted, without a jump.
+  static const float agreeing = std::cos(kEvidence.normal_angle);
+  if (cosine > agreeing || sample.normal_trust == 0.0f) return sq_distance;
+  const float turned = sample.normal_trust * std::max(0.0f, std::acos(cosine) / kEvidence.normal_angle - 1.0f);
+  return sq_distance + turned * turned;
+}
+
+/// Support by the closest sample or one of those next to it, whichever is best, but not by sample \p self (-1 = none).
+float supportNear(int closest, int self, const Eigen::Vector3f& point, const Eigen::Vector3f& point_normal,
+                  const SurfaceSamples& samples) {
+  float least = sqDeviation(samples[closest], point, point_normal, kEvidence.most);
+  for (const int j : samples[closest].nearest) {
+    if (least == 0.0f) return 1.0f;
+    if (j != self) least = std::min(least, sqDeviation(samples[j], point, point_normal, least));
+  }
+  return least < kEvidence.most ? std::exp(-least) : 0.0f;
+}
+
+}  // namespace
+
+float emptiness(const Visibility& visibility, const Eigen::Vector3d& x) {
+  const double behind = visibility.depthBehind(x);
+  if (behind >= 0.0) return 0.0f;
+  const bool is_exact = visibility.depthError(x) < kEvidence.exact_depth;
+  return std::isfinite(behind) || is_exact ? 1.0f : kEvidence.empty_without_depth;
+}
+
+PointEvidence pointEvidence(const Points& reflected, const Points& reflected_normals, const std::vector<int>& closest,
+                            const SurfaceSamples& samples, const Visibility* visibility, int num_threads) {
+  const std::size_t size = closest.size();
+  PointEvidence evidence{std::vector<float>(size), std::vector<float>(size)};
+  parallelRanges(size, 1024, num_threads, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      if (closest[i] >= 0)
+        evidence.support[i] = supportNear(closest[i], -1, reflected.col(i), reflected_normals.col(i), samples);
+      // Full support leaves no conflict.
+      if (evidence.support[i] == 1.0f) continue;
+      const float empty = visibility ? emptiness(*visibility, reflected.col(i).cast<double>()) : 1.0f;
+      evidence.conflict[i] = empty * (1.0f - evidence.support[i]);
+    }
+  });
+  return evidence;
+}
+
+std::vector<float> ownSupport(const SurfaceSamples& samples, int num_threads) {
+  std::vector<float> support(static_cast<std::size_t>(samples.size()));
+  parallelRanges(support.size(), 2048, num_threads, [&](std::size_t begin, std::size_t end) {
+    for (auto i = static_cast<int>(begin); i < static_cast<int>(end); ++i)
+      support[i] = supportNear(samples[i].nearest[0], i, samples[i].center, samples[i].normal, samples);
+  });
+  return support;
+}
+
+double meanSupport(const std::vector<float>& support) {
+  return std::accumulate(support.begin(), support.end(), 0.0) / static_cast<double>(support.size());
+}
+
+std::vector<std::vector<float>> planeSupport(const PointsRef& points, const PointsRef& samples,
+                                             const std::vector<ReflectionPlane>& planes, int num_threads) {
+  constexpr std::size_t kBlockSize = 4096;  // points. Large enough that threads start seldom
+  const BoundingBall ball = boundingBall(samples);
+  check(ball.radius > 0.0, "extent of the samples", ball.radius, "> 0");
+  const Points surface = normalizePoints(samples, ball.center, ball.radius);
+  const auto search = makeFlannSearch(surface);
+  const SurfaceSamples described(surface, localGeometry(surface, *search, kNumSupportNeighbors, num_threads));
+  std::vector<std::vector<float>> support(planes.size(), std::vector<float>(points.cols()));
+  parallelRanges(points.cols(), kBlockSize, num_threads, [&](std::size_t begin, std::size_t end) {
+    const auto size = static_cast<Eigen::Index>(end - begin);
+    const std::vector<int> own =
+        search->closest(normalizePoints(points.middleCols(begin, size), ball.center, ball.radius));
+    Points normals(3, size), reflected(3, size);
+    for (Eigen::Index i = 0; i < size; ++i) normals.col(i) = described[own[i]].normal;
+    for (std::size_t k = 0; k < planes.size(); ++k) {
+      for (Eigen::Index i = 0; i < size; ++i)
+        reflected.col(i) =
+            ((planes[k].reflect(points.col(begin + i).cast<double>()) - ball.center) / ball.radius).cast<float>();
+      const PointEvidence part = pointEvidence(reflected, reflectedNormals(normals, planes[k]),
+                                               search->closest(reflected), described, nullptr);
+      std::copy(part.support.begin(), part.support.end(), support[k].begin() + static_cast<std::ptrdiff_t>(begin));
+    }
+  });
+  return support;
 }
 
 namespace {

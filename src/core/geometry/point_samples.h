@@ -104,4 +104,13 @@ inline Points reflectedPoints(const PointsRef& points, const ReflectionPlane& pl
   return reflected;
 }
 
+/// \return 3 x N, normals of points after the points were reflected across a plane.
+inline Points reflectedNormals(const PointsRef& normals, const ReflectionPlane& plane) {
+  const Eigen::Vector3f n = plane.normal().cast<float>();
+  Points reflected(3, normals.cols());
+  for (Eigen::Index i = 0; i < normals.cols(); ++i)
+    reflected.col(i) = normals.col(i) - 2.0f * n.dot(normals.col(i)) * n;
+  return reflected;
+}
+
 }  // namespace pcl_symmetry

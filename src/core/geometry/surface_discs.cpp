@@ -1,8 +1,5 @@
 #include "core/geometry/surface_discs.h"
 
-#include <algorithm>
-#include <cmath>
-
 #include "core/base/median.h"
 #include "core/geometry/geometry_rules.h"
 
@@ -32,7 +29,7 @@ SurfaceDiscs::SurfaceDiscs(const Points& samples, const LocalGeometry& geometry,
   size_ = (sides / cell_size_).cast<int>() + 1;
   // Counts, then positions: two passes over the same cells.
   first_.assign(static_cast<std::size_t>(size_.prod()) + 1, 0);
-  for (const Disc& disc : discs_) visitCells(disc, [&](std::size_t cell) { ++first_[cell + 1]; });
+  for (const SurfaceDisc& disc : discs_) visitCells(disc, [&](std::size_t cell) { ++first_[cell + 1]; });
   for (std::size_t cell = 1; cell < first_.size(); ++cell) first_[cell] += first_[cell - 1];
   entries_.resize(static_cast<std::size_t>(first_.back()));
   std::vector<int> next = first_;
@@ -42,7 +39,7 @@ SurfaceDiscs::SurfaceDiscs(const Points& samples, const LocalGeometry& geometry,
 
 /// Calls visit(cell) for the cells that hold points within reach of a disc, and for some more.
 template <typename Visit>
-void SurfaceDiscs::visitCells(const Disc& disc, const Visit& visit) const {
+void SurfaceDiscs::visitCells(const SurfaceDisc& disc, const Visit& visit) const {
   const float beside = disc.radius + reach_, slack = half_diagonal * cell_size_;
   const Eigen::Array3f low = (disc.center - origin_).array() - beside, high = low + 2.0f * beside;
   const Eigen::Array3i from = (low / cell_size_).max(0.0f).cast<int>();
@@ -71,22 +68,12 @@ SurfaceDiscs::Range SurfaceDiscs::discsNear(const Eigen::Vector3f& x) const {
   return {entries_.data() + first_[index], entries_.data() + first_[index + 1]};
 }
 
-float SurfaceDiscs::sqDistance(int disc, const Eigen::Vector3f& x, float sq_across_factor) const {
-  const Disc& d = discs_[disc];
-  const Eigen::Vector3f difference = x - d.center;
-  const float across = d.normal.dot(difference), sq_across = across * across;
-  const float sq_along = std::max(0.0f, difference.squaredNorm() - sq_across);
-  if (sq_along <= d.radius * d.radius) return sq_across_factor * sq_across;
-  const float beside = std::sqrt(sq_along) - d.radius;
-  return sq_across_factor * sq_across + beside * beside;
-}
-
 SurfaceDiscs::Nearest SurfaceDiscs::nearest(const Eigen::Vector3f& x) const {
   Nearest result;
   float least = reach_ * reach_;
   const Range range = discsNear(x);
   for (const int* disc = range.begin; disc != range.end; ++disc) {
-    const float sq_distance = sqDistance(*disc, x, 1.0f);
+    const float sq_distance = discs_[*disc].sqDistance(x);
     if (!(sq_distance <= least)) continue;
     least = sq_distance;
     result.disc = *disc;
@@ -99,7 +86,7 @@ bool SurfaceDiscs::isWithin(const Eigen::Vector3f& x, float distance) const {
   const float sq_limit = distance * distance;
   const Range range = discsNear(x);
   for (const int* disc = range.begin; disc != range.end; ++disc) {
-    const Disc& d = discs_[*disc];
+    const SurfaceDisc& d = discs_[*disc];
     const Eigen::Vector3f difference = x - d.center;
     const float across = d.normal.dot(difference), sq_room = sq_limit - across * across;
     if (sq_room < 0.0f) continue;
@@ -118,7 +105,7 @@ float SurfaceDiscs::ownDistance(int i, float across_factor) const {
   float least = std::numeric_limits<float>::infinity();
   const Range range = discsNear(x);
   for (const int* disc = range.begin; disc != range.end; ++disc)
-    if (*disc != i) least = std::min(least, sqDistance(*disc, x, across_factor * across_factor));
+    if (*disc != i) least = std::min(least, discs_[*disc].sqDistance(x, across_factor * across_factor));
   return std::sqrt(least);
 }
 

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <algorithm>
+#include <cmath>
 #include <limits>
 #include <vector>
 
@@ -7,6 +9,22 @@
 #include "pcl_symmetry/core/point_set.h"
 
 namespace pcl_symmetry {
+
+/// The piece of surface that a sample represents: a disc in its tangent plane.
+struct SurfaceDisc {
+  Eigen::Vector3f center, normal;  ///< unit normal
+  float radius;
+
+  /// \return squared distance of a point; distances across the disc count the root of \p sq_across_factor times.
+  float sqDistance(const Eigen::Vector3f& x, float sq_across_factor = 1.0f) const {
+    const Eigen::Vector3f difference = x - center;
+    const float across = normal.dot(difference), sq_across = across * across;
+    const float sq_along = std::max(0.0f, difference.squaredNorm() - sq_across);
+    if (sq_along <= radius * radius) return sq_across_factor * sq_across;
+    const float beside = std::sqrt(sq_along) - radius;
+    return sq_across_factor * sq_across + beside * beside;
+  }
+};
 
 /// The surface that samples describe, as a disc in the tangent plane of each sample. Cells of a grid list the discs
 /// near them, so that a point is compared with a few discs and needs no tree.
@@ -35,20 +53,15 @@ public:
   float ownDistance(int i, float across_factor) const;
 
 private:
-  struct Disc {
-    Eigen::Vector3f center, normal;
-    float radius;
-  };
   struct Range {
     const int *begin, *end;
   };
 
-  float sqDistance(int disc, const Eigen::Vector3f& x, float sq_across_factor) const;
   Range discsNear(const Eigen::Vector3f& x) const;
   template <typename Visit>
-  void visitCells(const Disc& disc, const Visit& visit) const;
+  void visitCells(const SurfaceDisc& disc, const Visit& visit) const;
 
-  std::vector<Disc> discs_;
+  std::vector<SurfaceDisc> discs_;
   float reach_;
   float cell_size_;
   Eigen::Vector3f origin_;  ///< corner of the grid

@@ -3,65 +3,17 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
-#include <numeric>
 #include <utility>
 
 #include "core/base/check.h"
-#include "core/base/parallel.h"
 #include "core/base/symmetric_solvers.h"
 #include "core/evidence/plane_motion.h"
 #include "core/geometry/point_samples.h"
+#include "core/refinement/landing.h"
 #include "core/refinement/refinement_rules.h"
-#include "core/refinement/surface_matching.h"
 #include "pcl_symmetry/core/visibility.h"
 
 namespace pcl_symmetry {
-
-std::vector<Eigen::Index> FarTest::nearOf(const PointsRef& points, float bound) const {
-  const float least = std::min(bound, kFarthest);
-  const std::ptrdiff_t size = edt_.numCells();
-  std::vector<Eigen::Index> near;
-  for (Eigen::Index i = 0; i < points.cols(); ++i) {
-    const Eigen::Vector3d x = points.col(i).cast<double>() * scale_ + center_ - edt_.origin();
-    const Eigen::Array3d cell = x.array() / edt_.cellSize() + 0.5;
-    if (!(cell >= 0.0).all() || !(cell < static_cast<double>(size)).all()) continue;
-    const Eigen::Array<std::ptrdiff_t, 3, 1> at = cell.cast<std::ptrdiff_t>();
-    if (edt_.values()[static_cast<std::size_t>((at[2] * size + at[1]) * size + at[0])] > least) near.push_back(i);
-  }
-  return near;
-}
-
-ClosestPoints matchToSurface(const IspSurface& surface, const Points& positions, double reach,
-                             const std::vector<int>* guesses, bool leaves_out) {
-  const auto size = static_cast<std::size_t>(positions.cols());
-  ClosestPoints found{std::vector<int>(size, -1), std::vector<float>(size, std::numeric_limits<float>::infinity())};
-  const float bound = surface.far ? surface.far->bound(reach) : 0.0f;
-  const bool has_far = surface.far && (leaves_out || FarTest::isExact(bound));
-  const auto sq_reach = static_cast<float>(reach * reach);
-  parallelRanges(size, 1024, surface.num_threads, [&](std::size_t begin, std::size_t end) {
-    const auto some = positions.middleCols(static_cast<Eigen::Index>(begin), static_cast<Eigen::Index>(end - begin));
-    std::vector<Eigen::Index> near;  // from begin on
-    if (has_far) {
-      near = surface.far->nearOf(some, bound);
-    } else {
-      near.resize(end - begin);
-      std::iota(near.begin(), near.end(), Eigen::Index{0});
-    }
-    Points asked(3, near.size());
-    for (std::size_t i = 0; i < near.size(); ++i) asked.col(i) = some.col(near[i]);
-    std::vector<int> closest(near.size(), -1);
-    std::vector<float> sq_distances;
-    if (guesses)
-      for (std::size_t i = 0; i < near.size(); ++i) closest[i] = (*guesses)[begin + near[i]];
-    surface.search.searchWithin(asked, sq_reach, closest, sq_distances);
-    for (std::size_t i = 0; i < near.size(); ++i) {
-      found.indices[begin + near[i]] = closest[i];
-      found.sq_distances[begin + near[i]] = sq_distances[i];
-    }
-  });
-  return found;
-}
 
 namespace {
 
@@ -102,11 +54,12 @@ struct WeightedPairs {
 
   WeightedPairs(const IspSurface& surface, const std::vector<int>& samples, const ReflectionPlane& plane, double sigma,
                 const std::vector<int>* guesses)
-      : x(pointsAt(surface.points, samples)), y(reflectedPoints(x, plane)), weights(samples.size()) {
-    ClosestPoints found = matchToSurface(surface, y, kRefinement.reach_sigmas * sigma, guesses, true);
+      : x(pointsAt(surface.points, samples)), weights(samples.size()) {
+    Landing landing = land(surface, reflectedPoints(x, plane), kRefinement.reach_sigmas * sigma, guesses, true);
+    y = std::move(landing.images);
     step.plane = plane;
-    step.closest = std::move(found.indices);
-    step.sq_distances = std::move(found.sq_distances);
+    step.closest = std::move(landing.closest);
+    step.sq_distances = std::move(landing.sq_distances);
     double sum = 0.0, sq_sum = 0.0;
     for (Eigen::Index i = 0; i < x.cols(); ++i) {
       if (step.closest[i] < 0) continue;

@@ -5,7 +5,6 @@
 #include <utility>
 
 #include "core/base/median.h"
-#include "core/evidence/plane_support.h"
 #include "core/geometry/diameter.h"
 #include "core/geometry/flann_search.h"
 #include "core/refinement/refinement_rules.h"

@@ -8,7 +8,7 @@
 #include "core/evidence/surface_samples.h"
 #include "core/geometry/neighbor_lists.h"
 #include "core/geometry/principal_axes.h"
-#include "core/refinement/surface_matching.h"
+#include "core/refinement/landing.h"
 #include "pcl_symmetry/core/iterative_symmetric_points.h"
 #include "pcl_symmetry/core/visibility.h"
 

@@ -25,22 +25,17 @@ struct Residuals {
 
 Residuals residualsAt(const PosedSurface& scan, const PosedSurface& model, const Eigen::Isometry3d& T_model_scan,
                       int num_points, double reach) {
-  const auto size = std::min<Eigen::Index>(num_points, scan.points.cols());
-  const Eigen::Isometry3f pose = T_model_scan.cast<float>();
-  Points positions(3, size);
-  for (Eigen::Index i = 0; i < size; ++i) positions.col(i) = pose * scan.points.col(scan.order[i]);
-  std::vector<int> closest;
-  std::vector<float> sq_distances;
-  model.search->search(positions, 1, closest, sq_distances);
+  const Landing landing = land(scan, model, T_model_scan, num_points);
   Residuals residuals;
-  for (Eigen::Index i = 0; i < size; ++i) {
-    if (sq_distances[i] > reach * reach) continue;
-    const Eigen::Vector3d x = positions.col(i).cast<double>(), n = model.normals.col(closest[i]).cast<double>();
+  for (Eigen::Index i = 0; i < landing.images.cols(); ++i) {
+    if (landing.sq_distances[i] > reach * reach) continue;
+    const int j = landing.closest[i];
+    const Eigen::Vector3d x = landing.images.col(i).cast<double>(), n = model.normals.col(j).cast<double>();
     const Eigen::Vector3d turned = T_model_scan.linear() * scan.normals.col(scan.order[i]).cast<double>();
     Eigen::Matrix<double, 6, 3> lever;
     lever << crossMatrix(x), Eigen::Matrix3d::Identity();
     const Vector6d row = lever * n;
-    const double distance = n.dot(x - model.points.col(closest[i]).cast<double>());
+    const double distance = n.dot(x - model.points.col(j).cast<double>());
     residuals.hessian += row * row.transpose();
     // A normal is off in the two directions across it, by half of the square in each.
     residuals.gain_of_noise += 0.5 * lever * (Eigen::Matrix3d::Identity() - n * n.transpose()) * lever.transpose();

@@ -25,23 +25,18 @@ struct Overlap {
 Overlap overlapOf(const PosedSurface& from, const PosedSurface& to, const Eigen::Isometry3d& T_to_from,
                   double tolerance, double size) {
   const auto& rules = kRegistration;
-  const auto count = std::min<Eigen::Index>(rules.evidence_points, from.points.cols());
-  const Eigen::Isometry3f pose = T_to_from.cast<float>();
-  Points positions(3, count);
-  for (Eigen::Index i = 0; i < count; ++i) positions.col(i) = pose * from.points.col(from.order[i]);
-  std::vector<int> closest;
-  std::vector<float> sq_distances;
-  to.search->search(positions, 1, closest, sq_distances);
+  const Landing landing = land(from, to, T_to_from, rules.evidence_points);
+  const Eigen::Index count = landing.images.cols();
   const std::vector<char>& borders = to.borders.get();
   Overlap overlap;
   overlap.num_points = static_cast<double>(count);
   for (Eigen::Index i = 0; i < count; ++i) {
-    const int j = closest[i];
-    const double height = std::abs(to.normals.col(j).dot(positions.col(i) - to.points.col(j)));
-    const double across = std::sqrt(std::max(0.0, sq_distances[i] - height * height));
+    const int j = landing.closest[i];
+    const double height = std::abs(to.normals.col(j).dot(landing.images.col(i) - to.points.col(j)));
+    const double across = std::sqrt(std::max(0.0, landing.sq_distances[i] - height * height));
     if (borders[j] || across > rules.facing_spacings * to.spacing[j] || height > rules.facing_reach * size) continue;
     overlap.num_facing += 1.0;
-    const float cosine = std::abs(to.normals.col(j).dot(pose.linear() * from.normals.col(from.order[i])));
+    const float cosine = std::abs(to.normals.col(j).dot(landing.normals.col(i)));
     if (cosine > rules.agreeing_cosine && height < tolerance) overlap.num_on += 1.0;
   }
   return overlap;

@@ -1,5 +1,6 @@
 #include "core/registration/posed_surface.h"
 
+#include <algorithm>
 #include <numeric>
 #include <utility>
 
@@ -54,6 +55,25 @@ PosedSurface::PosedSurface(const PointsRef& input, const PointsRef& known_normal
       seen(std::move(seen_space)),
       grid(lateGrid(points, kRegistration.few_cells)) {
   std::iota(order.begin(), order.end(), 0);
+}
+
+Landing land(const PosedSurface& from, const PosedSurface& onto, const Eigen::Isometry3d& T_onto_from, int num_points,
+             bool exact) {
+  const auto size = std::min<Eigen::Index>(num_points, from.points.cols());
+  const Eigen::Matrix3f rotation = T_onto_from.linear().cast<float>();
+  const Eigen::Vector3f translation = T_onto_from.translation().cast<float>();
+  Landing landing{Points(3, size), Points(3, size), std::vector<int>(size), {}, {}};
+  for (Eigen::Index i = 0; i < size; ++i) {
+    landing.images.col(i) = rotation * from.points.col(from.order[i]) + translation;
+    landing.normals.col(i) = rotation * from.normals.col(from.order[i]);
+  }
+  if (exact) {
+    onto.search->search(landing.images, 1, landing.closest, landing.sq_distances);
+  } else {
+    const ClosestPointGrid& grid = onto.grid.get();
+    for (Eigen::Index i = 0; i < size; ++i) landing.closest[i] = grid.closest(landing.images.col(i));
+  }
+  return landing;
 }
 
 }  // namespace pcl_symmetry

@@ -1,11 +1,13 @@
 #pragma once
 
+#include <Eigen/Geometry>
 #include <cstdint>
 #include <future>
 #include <optional>
 #include <vector>
 
 #include "core/geometry/closest_point_grid.h"
+#include "core/refinement/landing.h"
 #include "pcl_symmetry/core/closest_point_search.h"
 #include "pcl_symmetry/core/point_set.h"
 #include "pcl_symmetry/core/visibility.h"
@@ -33,5 +35,10 @@ struct PosedSurface {
   /// of closest points is coarser, and there are no search, borders, spacing and accuracy, which exact judgments need.
   PosedSurface(const PointsRef& points, const PointsRef& normals, std::optional<Visibility> seen);
 };
+
+/// Where the first points of a surface land on another, in its frame.
+/// \param exact closest points from the tree; otherwise from the grid, without distances.
+Landing land(const PosedSurface& from, const PosedSurface& onto, const Eigen::Isometry3d& T_onto_from, int num_points,
+             bool exact = true);
 
 }  // namespace pcl_symmetry

@@ -99,25 +99,20 @@ Points RotationEvidence::moved(const Eigen::Affine3d& motion, const std::vector<
   return moved;
 }
 
-RotationEvidence::Moved RotationEvidence::matched(const Eigen::Affine3d& motion) const {
-  Moved result{moved(motion, samples_), {}, {}};
-  // Points beyond the reach only need to be known as far.
-  ClosestPoints near = matchToSurface(cloud_.surface, result.points, reach_);
-  result.closest = std::move(near.indices);
-  result.distances = surfaceDistances(result.points, result.closest, cloud_.samples);
-  for (std::size_t i = 0; i < samples_.size(); ++i)
-    result.distances[i] = std::min(result.distances[i], std::sqrt(near.sq_distances[i]));
-  return result;
+Landing RotationEvidence::landed(const Eigen::Affine3d& motion) const {
+  Landing landing = land(cloud_.surface, moved(motion, samples_), reach_);
+  landing.distances = surfaceDistances(landing.images, landing.closest, cloud_.samples);
+  return landing;
 }
 
 RotationShares RotationEvidence::exactly(const Eigen::Affine3d& motion) const {
-  const Moved all = matched(motion);
+  const Landing all = landed(motion);
   RotationShares shares;
   const double one = 1.0 / static_cast<double>(samples_.size());
   for (std::size_t i = 0; i < samples_.size(); ++i) {
     if (all.distances[i] <= tolerance_) {
       shares.on += one;
-    } else if (isEmpty(all.points.col(static_cast<Eigen::Index>(i)).cast<double>())) {
+    } else if (isEmpty(all.images.col(static_cast<Eigen::Index>(i)).cast<double>())) {
       shares.off += one;
       shares.far += all.distances[i] > far_ ? one : 0.0;
     }
@@ -128,7 +123,7 @@ RotationShares RotationEvidence::exactly(const Eigen::Affine3d& motion) const {
 double RotationEvidence::hold(const Line3d& line, double angle) const {
   const Eigen::Isometry3d motion = motionAboutLine(line, angle);
   const std::array<Eigen::Isometry3d, 4> beside = motionsBeside(line, angle);
-  const Moved all = matched(Eigen::Affine3d(motion));
+  const Landing all = landed(Eigen::Affine3d(motion));
   Eigen::Matrix4d stiffness = Eigen::Matrix4d::Zero();
   for (std::size_t i = 0; i < samples_.size(); ++i) {
     if (all.closest[i] < 0 || all.distances[i] > tolerance_) continue;
@@ -145,15 +140,15 @@ void RotationEvidence::addPulls(const IspSurface& surface, const Line3d& line, d
   const double sq_width = width * width * tolerance_ * tolerance_;
   const Eigen::Isometry3d motion = motionAboutLine(line, angle);
   const std::array<Eigen::Isometry3d, 4> beside = motionsBeside(line, angle);
-  const ClosestPoints found = matchToSurface(surface, moved(Eigen::Affine3d(motion), samples),
-                                             kScanAxes.fit_reach * width * tolerance_, &closest);
-  closest = found.indices;
+  const Landing landing =
+      land(surface, moved(Eigen::Affine3d(motion), samples), kScanAxes.fit_reach * width * tolerance_, &closest);
+  closest = landing.closest;
   for (std::size_t i = 0; i < samples.size(); ++i) {
     if (closest[i] < 0) continue;
     const Eigen::Vector3d x = cloud_.points.col(samples[i]).cast<double>(), y = motion * x;
     const Eigen::Vector3d miss = y - cloud_.points.col(closest[i]).cast<double>();
     Eigen::Vector3d along;
-    double weight = std::exp(-found.sq_distances[i] / sq_width);
+    double weight = std::exp(-landing.sq_distances[i] / sq_width);
     if (cloud_.geometry.at_border[closest[i]]) {
       if (miss.norm() < kScanAxes.min_empty_miss * tolerance_ || cloud_.visibility->depthBehind(y) >= 0.0) continue;
       along = miss.normalized();

@@ -75,15 +75,9 @@ private:
     Eigen::Vector4d sum = Eigen::Vector4d::Zero();
   };
 
-  /// Points that a motion moved, and what they are near to.
-  struct Moved {
-    Points points;
-    std::vector<int> closest;      ///< -1: nothing within the reach
-    std::vector<float> distances;  ///< from the surface
-  };
-
   Points moved(const Eigen::Affine3d& motion, const std::vector<int>& samples) const;
-  Moved matched(const Eigen::Affine3d& motion) const;
+  /// Points beyond the reach only need to be known as far.
+  Landing landed(const Eigen::Affine3d& motion) const;
   /// \param width of the weights, tolerances.
   /// \param[in,out] closest points to the moved samples, of a line nearby; -1 where none is known.
   void addPulls(const IspSurface& surface, const Line3d& line, double angle, const std::vector<int>& samples,

@@ -13,7 +13,7 @@
 #include "core/base/constants.h"
 #include "core/base/random.h"
 #include "core/evidence/plane_motion.h"
-#include "core/evidence/plane_support.h"
+#include "core/evidence/surface_samples.h"
 #include "shapes/shapes.h"
 
 namespace {

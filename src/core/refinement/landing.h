@@ -43,19 +43,21 @@ private:
   double scale_;
 };
 
-/// Closest points to some positions.
-struct ClosestPoints {
-  std::vector<int> indices;         ///< -1: none is near
-  std::vector<float> sq_distances;  ///< infinite where none is near
+/// Where a motion maps points of a surface.
+struct Landing {
+  Points images, normals;           ///< the points and their normals after the motion; normals only where they are used
+  std::vector<int> closest;         ///< points of the surface that the images are closest to; -1: none is near
+  std::vector<float> sq_distances;  ///< from these points; infinite where none is near
+  std::vector<float> distances;     ///< from the discs of the surface, see surfaceDistances(); only where they are used
 };
 
-/// The closest points of a surface to reflected or rotated ones: the one place where Iterative Symmetric Points asks
-/// FLANN (Section 4.4). Its body stands beside the steps, in iterative_symmetric_points.cpp.
-/// \param positions in the frame of the surface.
+/// Where points land on a surface: the one place where Iterative Symmetric Points asks for closest points (Section
+/// 4.4).
+/// \param images the points after the motion, in the frame of the surface.
 /// \param reach beyond which points are not near.
 /// \param guesses indices of points that are likely to be near, which makes the search faster; null = not known.
 /// \param leaves_out points beyond what the distance transform reaches may be taken for far, as their weight is little.
-ClosestPoints matchToSurface(const IspSurface& surface, const Points& positions, double reach,
-                             const std::vector<int>* guesses = nullptr, bool leaves_out = false);
+Landing land(const IspSurface& surface, Points images, double reach, const std::vector<int>* guesses = nullptr,
+             bool leaves_out = false);
 
 }  // namespace pcl_symmetry
