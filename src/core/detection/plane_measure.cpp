@@ -4,7 +4,6 @@
 #include <cmath>
 #include <utility>
 
-#include "core/base/parallel.h"
 #include "core/detection/detection_rules.h"
 #include "core/evidence/evidence_rules.h"
 #include "core/evidence/plane_motion.h"

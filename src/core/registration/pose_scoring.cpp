@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/geometry/surface_discs.h"
+#include "core/evidence/surface_samples.h"
 #include "core/registration/pose_covariance.h"
 #include "core/registration/registration_rules.h"
 
