@@ -1,13 +1,12 @@
-#include "pcl_symmetry/impl/cloud_conversion.hpp"
-
 #include <pcl/console/print.h>
 #include <pcl/point_types.h>
 
 #include <algorithm>
 
 #include "core/base/check.h"
-#include "core/geometry/answerable_points.h"
 #include "core/geometry/point_samples.h"
+#include "core/geometry/usable_points.h"
+#include "pcl_symmetry/impl/cloud_conversion.hpp"
 
 namespace pcl_symmetry::detail {
 

@@ -1,6 +1,6 @@
 #include "pcl_symmetry/mesh_sampling.h"
 
-#include "core/geometry/mesh_sampling.h"
+#include "core/geometry/triangles.h"
 #include "mesh_conversion.h"
 #include "pcl_symmetry/impl/cloud_conversion.hpp"
 

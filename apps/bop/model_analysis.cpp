@@ -10,8 +10,8 @@
 #include <cstdio>
 
 #include "command_line/tool_errors.h"
-#include "core/geometry/diameter.h"
-#include "core/geometry/stray_points.h"
+#include "core/geometry/cloud_extent.h"
+#include "core/geometry/usable_points.h"
 #include "io/answers.h"
 #include "io/exact_coordinates.h"
 #include "io/shape_output.h"

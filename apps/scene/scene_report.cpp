@@ -4,7 +4,7 @@
 #include <cmath>
 #include <vector>
 
-#include "core/geometry/viewing_frame.h"
+#include "core/geometry/directions.h"
 #include "io/answers.h"
 #include "io/cloud_fields.h"
 #include "io/exact_coordinates.h"

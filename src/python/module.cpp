@@ -4,7 +4,6 @@
 #include <pybind11/functional.h>
 #include <pybind11/pybind11.h>
 #include <pybind11/stl.h>
-
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -15,8 +14,8 @@
 #include <vector>
 
 #include "core/base/parallel.h"
-#include "core/geometry/answerable_points.h"
-#include "core/geometry/mesh_sampling.h"
+#include "core/geometry/triangles.h"
+#include "core/geometry/usable_points.h"
 #include "core/matching/shape_signature.h"
 #include "core/matching/symmetry_descriptor.h"
 #include "pcl_symmetry/core/closest_point_search.h"

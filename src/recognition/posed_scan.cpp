@@ -4,7 +4,7 @@
 #include <utility>
 
 #include "core/base/constants.h"
-#include "core/geometry/principal_axes.h"
+#include "core/geometry/cloud_extent.h"
 #include "core/matching/shape_signature.h"
 #include "core/registration/pose_evidence.h"
 #include "core/registration/pose_scoring.h"

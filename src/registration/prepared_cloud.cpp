@@ -2,7 +2,7 @@
 
 #include <stdexcept>
 
-#include "core/geometry/stray_points.h"
+#include "core/geometry/usable_points.h"
 
 namespace pcl_symmetry {
 

@@ -11,7 +11,7 @@
 #include "core/base/median.h"
 #include "core/base/parallel.h"
 #include "core/base/stopwatch.h"
-#include "core/geometry/stray_points.h"
+#include "core/geometry/usable_points.h"
 #include "core/registration/posed_surface.h"
 #include "registration/pose_graph.h"
 

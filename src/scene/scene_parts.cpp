@@ -11,7 +11,7 @@
 
 #include "core/base/constants.h"
 #include "core/base/median.h"
-#include "core/geometry/principal_axes.h"
+#include "core/geometry/cloud_extent.h"
 #include "core/geometry/surface_normals.h"
 #include "pcl_symmetry/impl/cloud_conversion.hpp"
 #include "scene/object_feet.h"

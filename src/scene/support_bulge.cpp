@@ -7,7 +7,7 @@
 #include <cstddef>
 #include <utility>
 
-#include "core/geometry/principal_axes.h"
+#include "core/geometry/cloud_extent.h"
 #include "scene/scene_parts.h"
 
 namespace pcl_symmetry::detail {

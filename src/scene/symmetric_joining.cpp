@@ -16,7 +16,7 @@
 #include "core/base/median.h"
 #include "core/base/parallel.h"
 #include "core/base/symmetric_solvers.h"
-#include "core/geometry/principal_axes.h"
+#include "core/geometry/cloud_extent.h"
 #include "scene/scene_rules.h"
 
 namespace pcl_symmetry::detail {

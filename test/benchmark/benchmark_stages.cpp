@@ -15,7 +15,7 @@
 #include <vector>
 
 #include "core/base/random.h"
-#include "core/geometry/axis_rotations.h"
+#include "core/geometry/directions.h"
 #include "core/matching/compact_index.h"
 #include "core/matching/shape_signature.h"
 #include "core/matching/symmetry_descriptor.h"

@@ -11,7 +11,7 @@
 #include <utility>
 
 #include "core/base/constants.h"
-#include "core/geometry/mesh_sampling.h"
+#include "core/geometry/triangles.h"
 
 namespace pcl_symmetry::benchmarks {
 

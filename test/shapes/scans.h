@@ -6,7 +6,7 @@
 #include <limits>
 #include <vector>
 
-#include "core/geometry/viewing_frame.h"
+#include "core/geometry/directions.h"
 #include "pcl_symmetry/core/visibility.h"
 #include "shapes/shapes.h"
 

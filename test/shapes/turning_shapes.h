@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "core/geometry/mesh_sampling.h"
+#include "core/geometry/triangles.h"
 #include "pcl_symmetry/core/rotation_group.h"
 #include "shapes/shapes.h"
 

@@ -9,9 +9,9 @@
 #include "core/base/random.h"
 #include "core/base/symmetric_solvers.h"
 #include "core/detection/detection_rules.h"
-#include "core/geometry/diameter.h"
-#include "core/geometry/distinct_points.h"
+#include "core/geometry/cloud_extent.h"
 #include "core/geometry/point_samples.h"
+#include "core/geometry/usable_points.h"
 #include "pcl_symmetry/core/closest_point_search.h"
 
 namespace pcl_symmetry {

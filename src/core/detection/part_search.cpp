@@ -10,9 +10,9 @@
 
 #include "core/base/constants.h"
 #include "core/base/parallel.h"
+#include "core/geometry/cloud_extent.h"
 #include "core/geometry/directions.h"
 #include "core/geometry/point_samples.h"
-#include "core/geometry/principal_axes.h"
 
 namespace pcl_symmetry {
 

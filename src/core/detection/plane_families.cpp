@@ -7,9 +7,9 @@
 #include "core/base/constants.h"
 #include "core/base/symmetric_solvers.h"
 #include "core/detection/plane_lattice.h"
+#include "core/geometry/cloud_extent.h"
 #include "core/geometry/directions.h"
 #include "core/geometry/point_samples.h"
-#include "core/geometry/principal_axes.h"
 #include "core/geometry/revolution_of_normals.h"
 
 namespace pcl_symmetry {

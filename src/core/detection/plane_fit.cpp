@@ -7,7 +7,7 @@
 #include "core/evidence/point_density.h"
 #include "core/evidence/surface_samples.h"
 #include "core/geometry/point_samples.h"
-#include "core/transform/free_space.h"
+#include "core/transform/sampled_transform.h"
 
 namespace pcl_symmetry {
 

@@ -1,7 +1,12 @@
 /// The only functions that write the confidence, the kind and the reasons of a plane, whatever its evidence is of: a
-/// cloud, a mesh, a volume, an upright box or a polygon. Not in the paper.
+/// cloud, a mesh, a volume, an upright box or a polygon; and the rules that lower its odds by what was found beside it.
+/// Not in the paper.
 #pragma once
 
+#include <Eigen/Core>
+#include <vector>
+
+#include "core/evidence/plane_confidence.h"
 #include "pcl_symmetry/core/detect_planes.h"
 
 namespace pcl_symmetry {
@@ -30,5 +35,25 @@ void setLocal(SymmetryPlane& plane);
 inline bool isDecided(const SymmetryPlane& plane) {
   return plane.kind == PlaneKind::Symmetry || plane.kind == PlaneKind::Possible;
 }
+
+/// Whether a plane explains all of a whole cloud, so that nothing of it is missing.
+bool explainsAll(const SymmetryPlane& plane, CloudKind kind);
+
+/// Where a plane explains all of a cloud, nothing of it is missing: those that need a missing piece are doubted, such
+/// as the plane across an open cup, which needs a lid.
+/// \param planes of the whole, also those that follow from others.
+void doubtMissingPieces(std::vector<SymmetryPlane>& planes, CloudKind kind, const DetectionOptions& options);
+
+/// A scan or a cut hides a part of an object, and many planes are tried: those beside the best one, or beside a
+/// family, are symmetries less often.
+/// \param has_family an axis or a center was found, which is better than all planes.
+void doubtFurtherPlanes(std::vector<SymmetryPlane>& planes, bool has_family, CloudKind kind,
+                        const DetectionOptions& options);
+
+/// An object on a table was made to stand there, or lies on one of its sides: nearly all of its planes are upright or
+/// level. Without a known support, no plane is slanted.
+/// \param carrying_normals as from carryingNormals().
+void doubtSlantedPlanes(std::vector<SymmetryPlane>& planes, const std::vector<Eigen::Vector3d>& carrying_normals,
+                        const DetectionOptions& options);
 
 }  // namespace pcl_symmetry

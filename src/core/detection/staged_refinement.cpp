@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "core/detection/plane_lattice.h"
-#include "core/geometry/principal_axes.h"
+#include "core/geometry/cloud_extent.h"
 
 namespace pcl_symmetry {
 

@@ -7,9 +7,9 @@
 
 #include "core/base/constants.h"
 #include "core/base/median.h"
-#include "core/detection/cloud_limits.h"
 #include "core/detection/detection_rules.h"
 #include "core/detection/plane_decision.h"
+#include "core/detection/plane_measure.h"
 #include "core/geometry/surface_normals.h"
 #include "core/scan/upright_box.h"
 

@@ -12,8 +12,8 @@
 #include "core/detection/plane_tolerance.h"
 #include "core/detection/set_confidence.h"
 #include "core/evidence/plane_motion.h"
+#include "core/geometry/cloud_extent.h"
 #include "core/geometry/directions.h"
-#include "core/geometry/principal_axes.h"
 #include "core/refinement/normalized_cloud.h"
 #include "pcl_symmetry/core/planar_transform.h"
 

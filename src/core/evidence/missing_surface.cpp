@@ -11,9 +11,9 @@
 #include "core/base/random.h"
 #include "core/base/symmetric_solvers.h"
 #include "core/evidence/evidence_rules.h"
-#include "core/geometry/open_borders.h"
+#include "core/geometry/cloud_extent.h"
 #include "core/geometry/point_samples.h"
-#include "core/geometry/principal_axes.h"
+#include "core/geometry/surface_normals.h"
 #include "core/scan/single_view.h"
 
 namespace pcl_symmetry {

@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "core/base/median.h"
-#include "core/transform/free_space.h"
+#include "core/transform/sampled_transform.h"
 
 namespace pcl_symmetry {
 

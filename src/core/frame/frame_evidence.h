@@ -6,7 +6,7 @@
 #include "core/base/constants.h"
 #include "core/frame/plane_profiles.h"
 #include "core/frame/surface_directions.h"
-#include "core/geometry/principal_axes.h"
+#include "core/geometry/cloud_extent.h"
 #include "pcl_symmetry/core/symmetry_frame.h"
 
 namespace pcl_symmetry {

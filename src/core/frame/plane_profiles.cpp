@@ -3,7 +3,6 @@
 #include <algorithm>
 
 #include "core/base/simd.h"
-#include "core/transform/free_space.h"
 #include "core/transform/sampled_transform.h"
 #include "pcl_symmetry/core/visibility.h"
 

@@ -8,7 +8,7 @@
 #include "core/frame/canonical_frame.h"
 #include "core/frame/frame_fit.h"
 #include "core/frame/leveled_frames.h"
-#include "core/geometry/axis_rotations.h"
+#include "core/geometry/directions.h"
 
 namespace pcl_symmetry {
 

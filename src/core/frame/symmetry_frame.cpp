@@ -12,7 +12,7 @@
 #include "core/frame/frame_search.h"
 #include "core/frame/leveled_frames.h"
 #include "core/frame/probable_frames.h"
-#include "core/geometry/stray_points.h"
+#include "core/geometry/usable_points.h"
 #include "core/rotation/scan_axes.h"
 #include "pcl_symmetry/core/planar_transform.h"
 #include "pcl_symmetry/core/published_planes.h"

@@ -1,6 +1,8 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <Eigen/Geometry>
+#include <array>
 #include <vector>
 
 namespace pcl_symmetry {
@@ -31,5 +33,26 @@ Eigen::Vector3d spiralDirection(int k, int count, double angle);
 /// \return unit vectors by falling z.
 /// \throws std::invalid_argument for less than one direction.
 std::vector<Eigen::Vector3d> evenDirections(int num_directions);
+
+/// The axes of a camera: a right-handed frame whose third axis looks along a direction. The turn about that direction
+/// is arbitrary, but the same for the same direction.
+/// \param forward unit vector, input frame.
+/// \return rotation R_camera_input: rows right, down and forward in the input frame.
+inline Eigen::Matrix3d viewingFrame(const Eigen::Vector3d& forward) {
+  Eigen::Matrix3d R_camera_input;
+  R_camera_input.row(2) = forward;
+  R_camera_input.row(0) = forward.unitOrthogonal();
+  R_camera_input.row(1) = forward.cross(R_camera_input.row(0).transpose());
+  return R_camera_input;
+}
+
+/// Number of rotations that map the coordinate axes onto each other.
+/// 6 orders of the axes times 8 choices of sign, half of which are reflections.
+constexpr int kNumAxisRotations = 24;
+
+/// All rotations that map the coordinate axes onto each other. A frame whose axes have no known order and sign can be
+/// laid on another frame in these ways.
+/// \return signed permutation matrices of determinant 1, the identity first.
+const std::array<Eigen::Matrix3i, kNumAxisRotations>& axisRotations();
 
 }  // namespace pcl_symmetry

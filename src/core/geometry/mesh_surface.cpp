@@ -11,9 +11,8 @@
 #include "core/base/median.h"
 #include "core/geometry/directions.h"
 #include "core/geometry/geometry_rules.h"
-#include "core/geometry/mesh_sampling.h"
 #include "core/geometry/small_motion.h"
-#include "core/geometry/triangle_tree.h"
+#include "core/geometry/triangles.h"
 
 namespace pcl_symmetry {
 

@@ -8,12 +8,11 @@
 
 #include "core/base/check.h"
 #include "core/base/parallel.h"
-#include "core/geometry/diameter.h"
-#include "core/geometry/mesh_sampling.h"
+#include "core/geometry/cloud_extent.h"
 #include "core/geometry/point_samples.h"
-#include "core/geometry/stray_points.h"
 #include "core/geometry/surface_normals.h"
-#include "core/geometry/triangle_tree.h"
+#include "core/geometry/triangles.h"
+#include "core/geometry/usable_points.h"
 #include "pcl_symmetry/core/closest_point_search.h"
 
 namespace pcl_symmetry {

@@ -6,9 +6,9 @@
 
 #include "core/base/check.h"
 #include "core/base/symmetric_solvers.h"
-#include "core/geometry/axis_rotations.h"
 #include "core/geometry/cell_normals.h"
-#include "core/geometry/principal_axes.h"
+#include "core/geometry/cloud_extent.h"
+#include "core/geometry/directions.h"
 #include "core/matching/matching_rules.h"
 
 namespace pcl_symmetry {

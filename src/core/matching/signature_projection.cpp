@@ -7,7 +7,7 @@
 #include "core/base/parallel.h"
 #include "core/base/random.h"
 #include "core/base/symmetric_solvers.h"
-#include "core/geometry/axis_rotations.h"
+#include "core/geometry/directions.h"
 #include "core/matching/matching_rules.h"
 #include "core/matching/shape_signature.h"
 

@@ -9,7 +9,6 @@
 #include "core/base/constants.h"
 #include "core/base/parallel.h"
 #include "core/geometry/directions.h"
-#include "core/geometry/viewing_frame.h"
 #include "core/matching/matching_rules.h"
 
 namespace pcl_symmetry {

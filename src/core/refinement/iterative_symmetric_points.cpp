@@ -10,7 +10,6 @@
 #include "core/evidence/plane_motion.h"
 #include "core/geometry/point_samples.h"
 #include "core/refinement/landing.h"
-#include "core/refinement/refinement_rules.h"
 #include "pcl_symmetry/core/visibility.h"
 
 namespace pcl_symmetry {

@@ -5,9 +5,9 @@
 #include <utility>
 
 #include "core/base/median.h"
-#include "core/geometry/diameter.h"
+#include "core/geometry/cloud_extent.h"
 #include "core/geometry/flann_search.h"
-#include "core/refinement/refinement_rules.h"
+#include "core/refinement/landing.h"
 #include "core/transform/edt_correlation.h"
 
 namespace pcl_symmetry {

@@ -6,8 +6,8 @@
 
 #include "core/evidence/plane_confidence.h"
 #include "core/evidence/surface_samples.h"
+#include "core/geometry/cloud_extent.h"
 #include "core/geometry/neighbor_lists.h"
-#include "core/geometry/principal_axes.h"
 #include "core/refinement/landing.h"
 #include "pcl_symmetry/core/iterative_symmetric_points.h"
 #include "pcl_symmetry/core/visibility.h"

@@ -4,8 +4,7 @@
 #include <cmath>
 
 #include "core/base/constants.h"
-#include "core/geometry/axis_rotations.h"
-#include "core/geometry/viewing_frame.h"
+#include "core/geometry/directions.h"
 #include "core/registration/registration_rules.h"
 
 namespace pcl_symmetry {

@@ -6,7 +6,6 @@
 
 #include "core/base/median.h"
 #include "core/base/random.h"
-#include "core/geometry/open_borders.h"
 #include "core/geometry/surface_normals.h"
 #include "core/registration/registration_rules.h"
 

@@ -6,7 +6,7 @@
 #include <optional>
 #include <vector>
 
-#include "core/geometry/closest_point_grid.h"
+#include "core/geometry/neighbor_lists.h"
 #include "core/refinement/landing.h"
 #include "pcl_symmetry/core/closest_point_search.h"
 #include "pcl_symmetry/core/point_set.h"

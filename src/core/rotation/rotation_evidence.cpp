@@ -9,7 +9,7 @@
 #include "core/base/parallel.h"
 #include "core/base/symmetric_solvers.h"
 #include "core/evidence/evidence_rules.h"
-#include "core/geometry/diameter.h"
+#include "core/geometry/cloud_extent.h"
 #include "core/geometry/point_samples.h"
 #include "core/rotation/rotation_confidence_fit.h"
 

@@ -12,7 +12,7 @@
 #include "core/geometry/flann_search.h"
 #include "core/geometry/point_samples.h"
 #include "core/geometry/small_motion.h"
-#include "core/refinement/refinement_rules.h"
+#include "core/refinement/landing.h"
 
 namespace pcl_symmetry {
 

@@ -10,11 +10,9 @@
 #include "core/base/check.h"
 #include "core/base/constants.h"
 #include "core/base/stopwatch.h"
-#include "core/geometry/answerable_points.h"
-#include "core/geometry/diameter.h"
-#include "core/geometry/distinct_points.h"
+#include "core/geometry/cloud_extent.h"
 #include "core/geometry/point_samples.h"
-#include "core/geometry/stray_points.h"
+#include "core/geometry/usable_points.h"
 #include "core/rotation/rotation_axes.h"
 #include "pcl_symmetry/core/gaussian_edt.h"
 

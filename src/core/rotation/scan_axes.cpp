@@ -8,13 +8,12 @@
 #include "core/base/constants.h"
 #include "core/base/parallel.h"
 #include "core/base/random.h"
-#include "core/geometry/answerable_points.h"
 #include "core/geometry/directions.h"
-#include "core/geometry/distinct_points.h"
 #include "core/geometry/geometry_rules.h"
 #include "core/geometry/point_samples.h"
 #include "core/geometry/revolution_of_normals.h"
 #include "core/geometry/search_views.h"
+#include "core/geometry/usable_points.h"
 #include "pcl_symmetry/core/axial_transform.h"
 
 namespace pcl_symmetry {

@@ -5,8 +5,8 @@
 #include <utility>
 #include <vector>
 
-#include "core/geometry/open_borders.h"
 #include "core/geometry/point_samples.h"
+#include "core/geometry/surface_normals.h"
 #include "core/scan/scan_density.h"
 #include "core/scan/scan_rules.h"
 #include "core/scan/single_view.h"

@@ -9,7 +9,7 @@
 
 #include "core/base/check.h"
 #include "core/base/constants.h"
-#include "core/geometry/viewing_frame.h"
+#include "core/geometry/directions.h"
 #include "core/scan/range_image.h"
 
 namespace pcl_symmetry {

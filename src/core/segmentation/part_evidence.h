@@ -4,7 +4,7 @@
 #include <optional>
 #include <vector>
 
-#include "core/geometry/triangle_tree.h"
+#include "core/geometry/triangles.h"
 #include "core/segmentation/surface_patches.h"
 #include "core/segmentation/symmetry_features.h"
 #include "pcl_symmetry/core/surface_segmentation.h"

@@ -10,7 +10,6 @@
 #include "core/base/parallel.h"
 #include "core/segmentation/labels.h"
 #include "core/segmentation/merge_fit.h"
-#include "core/segmentation/mirrored_labels.h"
 #include "core/segmentation/part_evidence.h"
 #include "core/segmentation/segment_borders.h"
 #include "core/segmentation/segmentation_rules.h"
@@ -232,9 +231,9 @@ CommonCells commonCells(const SurfaceGraph& graph, const std::vector<MergedDivis
 }
 
 /// Clusters of common cells with the sums of the probabilities of their pairs.
-class Clusters {
+class PatchClusters {
 public:
-  Clusters(const SurfaceGraph& graph, const CommonCells& common, const std::vector<MergedDivision>& divisions)
+  PatchClusters(const SurfaceGraph& graph, const CommonCells& common, const std::vector<MergedDivision>& divisions)
       : cluster_(static_cast<std::size_t>(common.size())),
         areas_(common.areas),
         neighbors_(cluster_.size()),
@@ -296,9 +295,9 @@ private:
 
 std::vector<int> consensus(const SurfaceGraph& graph, const std::vector<MergedDivision>& divisions, int num_parts) {
   const CommonCells common = commonCells(graph, divisions);
-  Clusters clusters(graph, common, divisions);
+  PatchClusters clusters(graph, common, divisions);
   while (num_parts == 0 || clusters.size() > num_parts) {
-    const Clusters::Pair pair = clusters.likeliest();
+    const PatchClusters::Pair pair = clusters.likeliest();
     if (pair.a < 0 || (num_parts == 0 && pair.probability < 0.5)) break;
     clusters.merge(pair.a, pair.b);
   }

@@ -4,8 +4,8 @@
 
 #include "core/base/parallel.h"
 #include "core/detection/plane_tolerance.h"
-#include "core/geometry/mesh_sampling.h"
 #include "core/geometry/surface_normals.h"
+#include "core/geometry/triangles.h"
 #include "core/refinement/normalized_cloud.h"
 #include "core/segmentation/segmentation_rules.h"
 #include "pcl_symmetry/core/closest_point_search.h"

@@ -8,8 +8,8 @@
 #include "core/base/constants.h"
 #include "core/base/parallel.h"
 #include "core/transform/axial_rotations.h"
-#include "core/transform/free_space.h"
 #include "core/transform/line_sums.h"
+#include "core/transform/sampled_transform.h"
 
 namespace pcl_symmetry {
 

@@ -1,7 +1,7 @@
 #include "core/base/check.h"
 #include "core/base/parallel.h"
-#include "core/transform/free_space.h"
 #include "core/transform/line_sums.h"
+#include "core/transform/sampled_transform.h"
 #include "pcl_symmetry/core/axial_transform.h"
 
 namespace pcl_symmetry {

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "core/base/median.h"
-#include "core/geometry/stray_points.h"
+#include "core/geometry/usable_points.h"
 #include "pcl_symmetry/core/point_set.h"
 
 namespace pcl_symmetry {

@@ -1,6 +1,5 @@
 #include "pcl_symmetry/core/planar_transform.h"
 
-#include "core/transform/free_space.h"
 #include "core/transform/sampled_transform.h"
 
 namespace pcl_symmetry {

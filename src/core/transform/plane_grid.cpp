@@ -5,6 +5,8 @@
 
 #include "core/base/check.h"
 #include "core/base/constants.h"
+#include "pcl_symmetry/core/gaussian_edt.h"
+#include "pcl_symmetry/core/symmetry_map.h"
 
 namespace pcl_symmetry {
 
@@ -85,6 +87,10 @@ std::optional<PlaneGrid::Bin> PlaneGrid::step(const Bin& bin, int dt, int dp, in
   }
   to.phi = ((to.phi % num_phi_) + num_phi_) % num_phi_;
   return to;
+}
+
+SymmetryMap SymmetryMap::zero(const GaussianEdt& edt, const PlaneGrid& grid, TransformMethod method) {
+  return {grid, std::vector<float>(grid.size(), 0.0f), method, edt.sigma(), grid.center()};
 }
 
 }  // namespace pcl_symmetry

@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/geometry/mesh_sampling.h"
+#include "core/geometry/triangles.h"
 #include "shapes/meshes.h"
 
 namespace pcl_symmetry {

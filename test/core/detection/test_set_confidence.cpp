@@ -6,8 +6,6 @@
 #include <limits>
 #include <vector>
 
-#include "core/detection/plane_doubts.h"
-
 namespace {
 
 using namespace pcl_symmetry;

@@ -10,7 +10,6 @@
 #include "core/base/constants.h"
 #include "core/evidence/point_density.h"
 #include "core/evidence/surface_samples.h"
-#include "core/geometry/open_borders.h"
 #include "core/geometry/point_samples.h"
 #include "core/geometry/surface_normals.h"
 #include "pcl_symmetry/core/gaussian_edt.h"

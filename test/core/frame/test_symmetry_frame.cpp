@@ -11,7 +11,7 @@
 #include "core/frame/plane_profiles.h"
 #include "core/frame/probable_frames.h"
 #include "core/frame/surface_directions.h"
-#include "core/geometry/diameter.h"
+#include "core/geometry/cloud_extent.h"
 #include "shapes/complaint.h"
 #include "shapes/scans.h"
 #include "shapes/shapes.h"

@@ -11,8 +11,7 @@
 
 #include "core/base/constants.h"
 #include "core/base/random.h"
-#include "core/geometry/mesh_sampling.h"
-#include "core/geometry/triangle_tree.h"
+#include "core/geometry/triangles.h"
 #include "shapes/meshes.h"
 
 namespace pcl_symmetry {

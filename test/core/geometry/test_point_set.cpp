@@ -10,10 +10,9 @@
 #include <stdexcept>
 
 #include "core/base/random.h"
-#include "core/geometry/answerable_points.h"
-#include "core/geometry/diameter.h"
-#include "core/geometry/distinct_points.h"
+#include "core/geometry/cloud_extent.h"
 #include "core/geometry/point_samples.h"
+#include "core/geometry/usable_points.h"
 #include "shapes/shapes.h"
 
 namespace {

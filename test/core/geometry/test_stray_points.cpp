@@ -1,12 +1,12 @@
 /// Stray points: found wherever they lie, and never a part of a shape.
-#include "core/geometry/stray_points.h"
+#include "core/geometry/usable_points.h"
 
 #include <gtest/gtest.h>
 
 #include <vector>
 
 #include "core/base/random.h"
-#include "core/geometry/diameter.h"
+#include "core/geometry/cloud_extent.h"
 #include "shapes/shapes.h"
 
 namespace {

@@ -11,11 +11,9 @@
 #include "core/base/constants.h"
 #include "core/base/random.h"
 #include "core/base/symmetric_solvers.h"
-#include "core/geometry/axis_rotations.h"
+#include "core/geometry/cloud_extent.h"
 #include "core/geometry/directions.h"
-#include "core/geometry/principal_axes.h"
 #include "core/geometry/revolution_of_normals.h"
-#include "core/geometry/viewing_frame.h"
 #include "shapes/shapes.h"
 
 namespace pcl_symmetry {

@@ -13,7 +13,7 @@
 
 #include "core/base/constants.h"
 #include "core/base/random.h"
-#include "core/geometry/axis_rotations.h"
+#include "core/geometry/directions.h"
 #include "core/matching/compact_index.h"
 #include "core/matching/shape_signature.h"
 #include "core/matching/signature_projection.h"

@@ -7,7 +7,7 @@
 #include <set>
 #include <stdexcept>
 
-#include "core/segmentation/mirrored_labels.h"
+#include "core/segmentation/labels.h"
 #include "core/segmentation/patch_merging.h"
 #include "core/segmentation/segment_borders.h"
 #include "core/segmentation/surface_patches.h"

@@ -8,7 +8,7 @@
 #include <stdexcept>
 
 #include "core/base/constants.h"
-#include "core/transform/free_space.h"
+#include "core/transform/sampled_transform.h"
 #include "shapes/complaint.h"
 #include "shapes/scans.h"
 #include "shapes/threads.h"

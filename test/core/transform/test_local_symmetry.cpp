@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <stdexcept>
 
-#include "core/transform/free_space.h"
+#include "core/transform/sampled_transform.h"
 #include "shapes/scans.h"
 #include "shapes/shapes.h"
 
