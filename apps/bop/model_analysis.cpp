@@ -84,7 +84,7 @@ void writeRejections(const std::string& prefix, const ObjectSymmetries& symmetri
                      const Eigen::Vector3d& shift) {
   const std::size_t count = std::min<std::size_t>(kMostRejections, symmetries.rejected.size());
   for (std::size_t i = 0; i < count; ++i) {
-    const std::vector<double> distances = surface.distances(symmetries.rejected[i].motion);
+    const std::vector<float> distances = surface.distances(symmetries.rejected[i].motion);
     pcl::PointCloud<pcl::PointXYZRGB> points;
     for (std::size_t k = 0; k < distances.size(); ++k) {
       const Eigen::Vector3d x = surface.points().col(static_cast<Eigen::Index>(k)).cast<double>() + shift;

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "bop/models_info.h"
-#include "core/geometry/surface_normals.h"
+#include "core/evidence/surface_samples.h"
 #include "pcl_symmetry/core/closest_point_search.h"
 
 namespace pcl_symmetry::apps {
@@ -19,7 +19,7 @@ struct MotionEvidence {
   double deviation = 0.0;  ///< 97 % of the mapped points stay within it, input units
 };
 
-/// Samples of a surface, with the plane that each represents.
+/// Samples of a surface, as planes and rotations are judged by.
 class SurfaceEvidence {
 public:
   /// \param points 3 x N, finite, at least 20 distinct ones.
@@ -28,7 +28,7 @@ public:
 
   MotionEvidence of(const Eigen::Isometry3d& motion) const;
   /// \return distance of each moved point from the surface, input units.
-  std::vector<double> distances(const Eigen::Isometry3d& motion) const;
+  std::vector<float> distances(const Eigen::Isometry3d& motion) const;
 
   const Points& points() const { return points_; }
   double tolerance() const { return tolerance_; }
@@ -37,7 +37,7 @@ private:
   Points points_;
   double tolerance_;
   ClosestPointSearch::Ptr search_;
-  LocalGeometry geometry_;
+  SurfaceSamples samples_;
 };
 
 /// Turns on which a file and the surface disagree.
