@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <vector>
 
 #include "pcl_symmetry/core/closest_point_search.h"
@@ -95,8 +96,11 @@ IspStep matchSymmetricPoints(const IspSurface& surface, const std::vector<int>& 
 /// Iterates until the plane stands still (Section 4.4).
 /// \param samples indices of the points of the surface to reflect.
 /// \param plane where to start.
+/// \param stays tells whether the plane of a step is still one that is wanted: steps end at the first that is not; null =
+/// all are.
 /// \throws std::invalid_argument for bad options.
 IspResult refineSymmetricPoints(const IspSurface& surface, const std::vector<int>& samples,
-                                const ReflectionPlane& plane, const IspOptions& options);
+                                const ReflectionPlane& plane, const IspOptions& options,
+                                const std::function<bool(const ReflectionPlane&)>& stays = nullptr);
 
 }  // namespace pcl_symmetry

@@ -73,47 +73,6 @@ private:
   std::size_t top_;
 };
 
-/// Iterative Symmetric Points with the closed form and weights of constant width (Section 4.4).
-class ConvergingPlane {
-public:
-  ConvergingPlane(const IspSurface& surface, double sigma, const ReflectionPlane& start)
-      : surface_(surface), sigma_(sigma) {
-    last.plane = start;
-  }
-
-  /// \param error_share,max_iterations as in IspOptions.
-  /// \param region that the plane may not leave; null = it may.
-  /// \return whether it is still there.
-  bool converge(const std::vector<int>& samples, double error_share, int max_iterations, const MaximumRegion* region) {
-    const Points x = pointsAt(surface_.points, samples);
-    const Eigen::Vector3d middle = centerOfMass(x);
-    const double size = static_cast<double>(samples.size());
-    const double extent = std::sqrt((x.cast<double>().colwise() - middle).colwise().squaredNorm().sum() / size);
-    last.closest.clear();
-    converged = false;
-    for (int k = 0; k < max_iterations && !converged; ++k) {
-      const IspStep before = std::move(last);
-      last = iterateSymmetricPoints(surface_, samples, before.plane, sigma_, IspUpdate::PointToPoint,
-                                    before.closest.empty() ? nullptr : &before.closest);
-      ++iterations;
-      if (region && !region->holds(last.plane)) return false;
-      const double tolerance = IspOptions().tolerance * extent + error_share * last.residual / std::sqrt(size);
-      const double moved =
-          std::abs(std::abs(last.plane.signedDistance(middle)) - std::abs(before.plane.signedDistance(middle)));
-      converged = moved <= tolerance && extent * last.plane.angleTo(before.plane) <= tolerance;
-    }
-    return true;
-  }
-
-  IspStep last;  ///< its plane is where the steps have led
-  int iterations = 0;
-  bool converged = false;
-
-private:
-  const IspSurface& surface_;
-  double sigma_;
-};
-
 /// Planes that may not leave their cells are one a cell: of those that came to one from its neighbors, the first stays.
 void keepOneOfEachCell(std::vector<SymmetryPlane>& planes, const PlaneGrid& grid) {
   std::set<std::size_t> cells;
@@ -150,23 +109,33 @@ std::vector<SymmetryPlane> publishedPlanes(const PointsRef& points, const Gaussi
     maxima.erase(maxima.begin() + options.max_maxima, maxima.end());
   std::vector<SymmetryPlane> refined(maxima.size());
   std::vector<char> is_stable(maxima.size());
+  // The closed form, and weights of constant width.
+  IspOptions published;
+  published.update = IspUpdate::PointToPoint;
+  published.sigma = published.final_sigma = edt.sigma();
+  published.max_iterations = options.max_iterations;
   parallelBlocks(maxima.size(), options.num_threads, [&](std::size_t i) {
+    IspOptions isp = published;
     const MaximumRegion region(tabulated, maxima[i].bin);
-    ConvergingPlane isp(surface, edt.sigma(), maxima[i].plane);
+    const auto stays = [&](const ReflectionPlane& plane) { return !options.discard_unstable || region.holds(plane); };
+    IspResult found;
+    found.plane = maxima[i].plane;
+    int iterations = 0;
     // Few points show at little cost where a plane goes; it ends where all of them let it rest.
     for (const int count : {std::min(1000, options.num_points), options.num_points}) {
       const std::vector<int> samples = drawSamples(points.cols(), count, options.seed + i);
-      if (!isp.converge(samples, count == options.num_points ? 0.5 : 0.1, options.max_iterations,
-                        options.discard_unstable ? &region : nullptr))
-        return;
+      isp.error_share = count == options.num_points ? 0.5 : 0.1;
+      found = refineSymmetricPoints(surface, samples, found.plane, isp, stays);
+      iterations += found.iterations;
+      if (!stays(found.plane)) return;
     }
-    is_stable[i] = isp.converged || !options.discard_unstable;
-    refined[i] = SymmetryPlane(isp.last.plane);
-    refined[i].iterations = isp.iterations;
-    refined[i].converged = isp.converged;
-    refined[i].residual = isp.last.residual;
-    refined[i].support = isp.last.weight;
-    refined[i].score = correlation(edt, isp.last.plane, 1);
+    is_stable[i] = found.converged || !options.discard_unstable;
+    refined[i] = SymmetryPlane(found.plane);
+    refined[i].iterations = iterations;
+    refined[i].converged = found.converged;
+    refined[i].residual = found.last.residual;
+    refined[i].support = found.last.weight;
+    refined[i].score = correlation(edt, found.plane, 1);
   });
   std::vector<SymmetryPlane> planes;
   for (std::size_t i = 0; i < refined.size(); ++i)

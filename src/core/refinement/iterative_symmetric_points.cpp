@@ -196,15 +196,11 @@ IspStep matchSymmetricPoints(const IspSurface& surface, const std::vector<int>& 
 }
 
 IspResult refineSymmetricPoints(const IspSurface& surface, const std::vector<int>& samples,
-                                const ReflectionPlane& plane, const IspOptions& options) {
+                                const ReflectionPlane& plane, const IspOptions& options,
+                                const std::function<bool(const ReflectionPlane&)>& stays) {
   options.validate();
-  const double size = static_cast<double>(samples.size());
-  Eigen::Vector3d middle = Eigen::Vector3d::Zero();
-  for (const int i : samples) middle += surface.points.col(i).cast<double>() / size;
-  double sq_extent = 0.0;
-  for (const int i : samples) sq_extent += (surface.points.col(i).cast<double>() - middle).squaredNorm() / size;
-  const double extent = std::sqrt(sq_extent);
-
+  const WeightedExtent all(pointsAt(surface.points, samples), std::vector<double>(samples.size(), 1.0));
+  const double root_size = std::sqrt(static_cast<double>(samples.size()));
   IspResult result;
   result.plane = plane;
   double sigma = options.sigma;
@@ -215,13 +211,15 @@ IspResult refineSymmetricPoints(const IspSurface& surface, const std::vector<int
     ++result.iterations;
     const ReflectionPlane& next = result.last.plane;
     const double moved =
-        std::abs(std::abs(next.signedDistance(middle)) - std::abs(result.plane.signedDistance(middle)));
+        std::abs(std::abs(next.signedDistance(all.middle)) - std::abs(result.plane.signedDistance(all.middle)));
     const double angle = next.angleTo(result.plane);
-    const double tolerance = options.tolerance * extent + options.error_share * result.last.residual / std::sqrt(size);
-    result.converged = sigma == options.final_sigma && moved <= tolerance && angle * extent <= tolerance;
+    const double tolerance = options.tolerance * all.extent + options.error_share * result.last.residual / root_size;
+    result.converged = sigma == options.final_sigma && moved <= tolerance && angle * all.extent <= tolerance;
     result.plane = next;
+    if (stays && !stays(next)) break;
     // Narrower weights only where the plane has come to rest at these: it must not lose what it moves toward.
-    if (moved + angle * extent <= kRefinement.rest_sigmas * sigma) sigma = std::max(options.final_sigma, 0.5 * sigma);
+    if (moved + angle * all.extent <= kRefinement.rest_sigmas * sigma)
+      sigma = std::max(options.final_sigma, 0.5 * sigma);
   }
   return result;
 }
