@@ -1,5 +1,6 @@
 """Tests of what the programs of test/benchmark share, of the search for references, and of how planes are judged."""
 import contextlib
+import functools
 import io
 import json
 import os
@@ -31,6 +32,11 @@ BOX += "".join(f"4 {a} {b} {c} {d}\n" for a, b, c, d in FACES)
 
 def box():
     return bench.make_mesh([[x, y, z] for x in (0, 3) for y in (0, 2) for z in (0, 1)], FACES)
+
+
+@functools.cache
+def references_of_box():
+    return references.find_references(box())
 
 
 def beast(side_leg):
@@ -93,7 +99,7 @@ class Clouds(unittest.TestCase):
 
 class References(unittest.TestCase):
     def test_a_box_has_its_three_planes(self):
-        found = references.find_references(box())
+        found = references_of_box()
         self.assertEqual(found["kind"], "symmetric")
         normals = np.array([p["coefficients"][:3] for p in found["planes"]])
         np.testing.assert_allclose(np.sort(np.abs(normals).argmax(1)), [0, 1, 2])
@@ -116,7 +122,7 @@ class References(unittest.TestCase):
 class Judging(unittest.TestCase):
     def setUp(self):
         self.pose = bench.random_pose(np.random.default_rng(3), box())
-        self.truth = references.moved(references.find_references(box()), self.pose)
+        self.truth = references.moved(references_of_box(), self.pose)
 
     def judged(self, *rows):
         keys = ("coefficients", "kind", "confidence")

@@ -198,7 +198,7 @@ class Detection(unittest.TestCase):
 class Planes(Detection):
     def test_of_mirrored_samples_are_exact(self):
         for name, shape in symmetric_shapes(mirrored=True):
-            for pose in range(4):
+            for pose in range(2):
                 posed = shape.moved(random_pose(pose))
                 found = pcl_symmetry.planes(posed.cloud, max_planes=64)
                 self.assert_planes(found, posed, 0.001 * DEGREE, 1e-5, (name, pose))

@@ -34,16 +34,39 @@ def wait_for(condition, seconds=300):
 
 
 class Distributed(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        """The models, and the answers of a database that was built of them in one go."""
+        place = tempfile.TemporaryDirectory()
+        cls.addClassCleanup(place.cleanup)
+        cls.models = Path(place.name) / "models"
+        cls.models.mkdir()
+        for i in range(24):  # boxes, no two of one shape
+            x, y, z = 1.0, 1.1 + 0.1 * (i % 6), 1.2 + 0.3 * (i // 6)
+            corners = "".join(f"{a * x} {b * y} {c * z}\n" for c, (a, b) in itertools.product((-1, 1), ((-1, -1), (1, -1), (1, 1), (-1, 1))))
+            (cls.models / f"box_{i:02}.off").write_text(f"OFF\n8 6 0\n{corners}{FACES}")
+        alone = Path(place.name) / "alone.db"
+        tool("database", "build", alone, cls.models, "-quiet")
+        cls.expected = cls.answers(alone)
+
     def setUp(self):
         place = tempfile.TemporaryDirectory()
         self.addCleanup(place.cleanup)
         self.folder = Path(place.name)
-        self.models, self.database = self.folder / "models", self.folder / "models.db"
-        self.models.mkdir()
-        for i in range(24):  # boxes with a notch, no two of one shape
-            x, y, z = 1.0, 1.1 + 0.1 * (i % 6), 1.2 + 0.3 * (i // 6)
-            corners = "".join(f"{a * x} {b * y} {c * z}\n" for c, (a, b) in itertools.product((-1, 1), ((-1, -1), (1, -1), (1, 1), (-1, 1))))
-            (self.models / f"box_{i:02}.off").write_text(f"OFF\n8 6 0\n{corners}{FACES}")
+        self.database = self.folder / "models.db"
+
+    @classmethod
+    def answers(cls, database):
+        queries = [cls.models / "box_03.off", cls.models / "box_17.off"]
+        return [tool("database", "list", database), *(tool("match", database, query, "-quiet", "-max", "30") for query in queries)]
+
+    def add_model(self, name, text):
+        """A file among the models, until the test ends."""
+        path = self.models / name
+        path.parent.mkdir(exist_ok=True)
+        path.write_text(text)
+        self.addCleanup(path.unlink, missing_ok=True)
+        return path
 
     def start(self, *arguments):
         environment = dict(os.environ, PATH=f"{TOOLS}:{self.folder}:{os.environ['PATH']}")
@@ -56,14 +79,9 @@ class Distributed(unittest.TestCase):
 
     def check_answers(self):
         """The file is whole, and answers like one that was built in one go."""
-        alone = self.folder / "alone.db"
-        tool("database", "build", alone, self.models, "-quiet")
         self.assertIn("no damage", subprocess.run([f"{TOOLS}/pcl_symmetry_database", "check", self.database],
                                                   stderr=subprocess.STDOUT, stdout=subprocess.PIPE, text=True).stdout)
-        self.assertEqual(tool("database", "list", self.database), tool("database", "list", alone))
-        queries = [self.models / "box_03.off", self.models / "box_17.off"]
-        answers = [[tool("match", file, query, "-quiet", "-max", "30") for query in queries] for file in (self.database, alone)]
-        self.assertEqual(*answers)
+        self.assertEqual(self.answers(self.database), self.expected)
         self.assertFalse(Path(f"{self.database}.parts").exists())
 
     def test_a_killed_worker_costs_nothing(self):
@@ -91,13 +109,12 @@ class Distributed(unittest.TestCase):
         run.communicate()
         num_parts = len(self.parts())
         self.assertGreater(num_parts, 2)
-        (self.models / "broken.off").write_text("OFF\n3 1 0\n0 0 0\n")
+        self.add_model("broken.off", "OFF\n3 1 0\n0 0 0\n")
         run = self.start()
         output, _ = run.communicate(timeout=600)
         self.assertIn(f"of {13 - num_parts} parts", output)
         self.assertEqual(run.returncode, 1)
         self.assertRegex(output, r"left out: .*broken.off: ")
-        (self.models / "broken.off").unlink()
         self.check_answers()
 
     def test_jobs_of_slurm(self):
@@ -122,11 +139,10 @@ class Distributed(unittest.TestCase):
         run = self.start()
         self.assertIn("models.db: exists, must be a new file", run.communicate()[0])
         self.database.unlink()
-        (self.models / "other").mkdir()
-        (self.models / "other/box_01.off").write_text("")
+        again = self.add_model("other/box_01.off", "")
         run = self.start()
         self.assertIn("names must differ", run.communicate()[0])
-        (self.models / "other/box_01.off").unlink()
+        again.unlink()
         run = self.start("--tool", "no_such_tool")
         output, _ = run.communicate(timeout=600)
         self.assertEqual(run.returncode, 1)

@@ -69,14 +69,14 @@ class Planes(unittest.TestCase):
             pcl_symmetry.planes()
 
     def test_as_published_are_neither_added_nor_judged(self):
-        found = pcl_symmetry.planes(box(), as_published=True)
+        found = pcl_symmetry.planes(box(num_points=2000), as_published=True)
         self.assertTrue(len(found))
         self.assertEqual({plane.kind for plane in found}, {"approximate"})
-        frame = pcl_symmetry.frame(box(), as_published=True)
+        frame = pcl_symmetry.frame(box(num_points=2000), as_published=True)
         np.testing.assert_allclose(np.abs(frame.axes).max(axis=0), 1, atol=1e-3)
 
     def test_local_symmetry_of_a_large_window_is_that_of_the_whole(self):
-        points = box()
+        points = box(num_points=1500)
         local = pcl_symmetry.local_symmetry(points, 1.0)
         middle = np.abs(points).min(axis=1) < 0.02 * np.abs(points).max()
         self.assertGreater(local[middle].mean(), local[~middle].mean())
@@ -117,11 +117,11 @@ class Planes(unittest.TestCase):
         self.assertLess(times[1], 20 * times[0])
 
     def test_a_scan_of_a_block_has_its_rotations(self):
-        """A square block, seen from above and one side."""
+        """A square block, seen from above and one side. The evidence holds rotations of no confidence, too."""
         points = box((1.0, 1.0, 0.4), 40_000)
         viewpoint = np.array([1.6, 2.4, 3.2])
         seen = points[(points[:, 0] == 0.5) | (points[:, 1] == 0.5) | (points[:, 2] == np.float32(0.2))]
-        found = pcl_symmetry.planes(seen, viewpoint=viewpoint)
+        found = pcl_symmetry.planes(seen, viewpoint=viewpoint, evidence=True)
         self.assertGreaterEqual(len(found.rotations), 1)
         turn = found.rotations[0]
         self.assertEqual(turn.fold, 4)
@@ -129,6 +129,13 @@ class Planes(unittest.TestCase):
         self.assertLess(np.linalg.norm(turn.point[:2]), 0.02)
         self.assertGreaterEqual(turn.confidence, 0.5)
         self.assertLessEqual(turn.off, 1.0)
+        turns = found.rotation_evidence
+        self.assertGreaterEqual(len(turns), len(found.rotations))
+        self.assertEqual(set(found.evidence["kind"]), {1})
+        for turn in found.rotations:
+            row = turns[np.argmin(np.abs(turns["confidence"] - turn.confidence))]
+            self.assertEqual((row["fold"], row["off"], row["support"]), (turn.fold, turn.off, turn.support))
+        self.assertEqual(len(pcl_symmetry.planes(seen, viewpoint=viewpoint).rotation_evidence), 0)
         self.assertEqual(pcl_symmetry.planes(points).rotations, [], "whole clouds have rotations()")
         frame = pcl_symmetry.frame(seen, viewpoint=viewpoint)
         self.assertEqual(frame.rotations[0].fold, 4)
@@ -148,18 +155,6 @@ class Planes(unittest.TestCase):
             self.assertEqual(row["terms"][0], 1)
         self.assertEqual([plane.confidence for plane in found], [p.confidence for p in pcl_symmetry.planes(box())])
         self.assertEqual((len(found.rotation_evidence), len(pcl_symmetry.planes(box()).evidence)), (0, 0))
-
-    def test_evidence_of_rotations_holds_those_of_no_confidence_too(self):
-        points, viewpoint = box((1.0, 1.0, 0.4), 40_000), np.array([1.6, 2.4, 3.2])
-        seen = points[(points[:, 0] == 0.5) | (points[:, 1] == 0.5) | (points[:, 2] == np.float32(0.2))]
-        found = pcl_symmetry.planes(seen, viewpoint=viewpoint, evidence=True)
-        turns = found.rotation_evidence
-        self.assertGreaterEqual(len(turns), len(found.rotations))
-        self.assertEqual(set(found.evidence["kind"]), {1})
-        for turn in found.rotations:
-            row = turns[np.argmin(np.abs(turns["confidence"] - turn.confidence))]
-            self.assertEqual((row["fold"], row["off"], row["support"]), (turn.fold, turn.off, turn.support))
-        self.assertEqual(len(pcl_symmetry.planes(seen, viewpoint=viewpoint).rotation_evidence), 0)
 
     def test_data_without_an_answer_give_a_reason(self):
         """All of them warn with it, and their answer is empty."""
@@ -474,13 +469,12 @@ class Meshes(unittest.TestCase):
 
     def test_a_square_bar_has_four_folds_at_any_tolerance(self):
         mesh = bar(y=1.0)
-        for tolerance in (0.0003, 0.001, 0.003, 0.01):
-            for seed in (1, 2):
-                group = pcl_symmetry.rotations(mesh, tolerance=tolerance, seed=seed)
-                self.assertEqual(group.name, "D4", (tolerance, seed))
-                np.testing.assert_allclose(group.center, (15, 0.5, 0.5), atol=1e-4)
-                turns = np.abs(group.discrete[:, :3, :3])
-                self.assertLess(np.minimum(turns, abs(turns - 1)).max(), 1e-4, (tolerance, seed))
+        for seed, tolerance in enumerate((0.0003, 0.001, 0.003, 0.01), 1):
+            group = pcl_symmetry.rotations(mesh, tolerance=tolerance, seed=seed)
+            self.assertEqual(group.name, "D4", tolerance)
+            np.testing.assert_allclose(group.center, (15, 0.5, 0.5), atol=1e-4)
+            turns = np.abs(group.discrete[:, :3, :3])
+            self.assertLess(np.minimum(turns, abs(turns - 1)).max(), 1e-4, tolerance)
 
     def test_measures_a_bump_of_known_height(self):
         height, radius = 0.02, 0.5
@@ -586,17 +580,6 @@ class Meshes(unittest.TestCase):
         np.testing.assert_array_equal(left.rows[half:], left.rows[:half])
         with self.assertRaisesRegex(ValueError, "half = both, must be mean, left or right"):
             pcl_symmetry.symmetrize(mesh, plane, "both")
-
-    def test_a_body_of_revolution_has_a_profile(self):
-        rng = np.random.default_rng(2)
-        angle, height = rng.uniform(0, 2 * np.pi, 20_000), rng.uniform(0, 1, 20_000)
-        radius = 0.3 + 0.1 * np.cos(4 * height)
-        points = np.stack([radius * np.cos(angle), radius * np.sin(angle), height], axis=1)
-        axis = pcl_symmetry.planes(points).axes[0]
-        found = axis.profile(points)
-        expected = 0.3 + 0.1 * np.cos(4 * (axis.point + np.outer(found.height, axis.direction))[:, 2])
-        np.testing.assert_allclose(found.radius, expected, atol=0.01)
-        self.assertLess(np.median(found.spread), 0.005)
 
 
 def has_pcl():
@@ -709,31 +692,6 @@ class WithPCL(unittest.TestCase):
         np.testing.assert_allclose((x + shift_source) @ far.transform[:3, :3].T + far.transform[:3, 3], expected, atol=1e-2)
         self.assertEqual(far.merit, far.score.merit)
 
-    def test_wrong_objects_do_not_converge(self):
-        """A few hundred points of any object reach the merit; what tells is whether the surfaces agree."""
-        target = lamp()
-        for size in (100, 200, 400):
-            for other in (box((1.0, 0.5, 0.3)), box((1.0, 0.9, 0.1))):
-                found = pcl_symmetry.register(other[:: len(other) // size][:size], target, source_viewpoint=None)
-                self.assertGreater(found.merit, 0.4)
-                self.assertLess(found.confidence, 0.5)
-                self.assertRegex(found.reason, "% of the source lie on the target")
-                self.assertFalse(found.converged, size)
-            own = lamp(seed=9)[:: 4000 // size] @ motion()[:3, :3].T
-            found = pcl_symmetry.register(own, target, source_viewpoint=None)
-            self.assertTrue(found.converged and found.evidence.on_surface > 0.6, size)
-
-    def test_too_few_points_do_not_converge_and_pcl_keeps_silent(self):
-        code = (
-            "import numpy, pcl_symmetry, test_pcl_symmetry as t\n"
-            "target = t.lamp()\n"
-            "for size in (4, 20, 50):\n"
-            "    found = pcl_symmetry.register(target[:: len(target) // size][:size], target)\n"
-            "    print(found.converged, found.score.merit < 0.4, (found.transform == numpy.eye(4)).all())\n"
-        )
-        result = subprocess.run([sys.executable, "-B", "-c", code], cwd=Path(__file__).parent, capture_output=True, text=True)
-        self.assertEqual((result.stdout, result.stderr), (3 * "False True True\n", ""))
-
     def test_parts_become_one_database(self):
         models = {"box": box(), "lamp": lamp(), "plate": box((1.0, 0.9, 0.1))}
         with tempfile.TemporaryDirectory() as folder:
@@ -778,7 +736,8 @@ class FarFromTheOrigin(unittest.TestCase):
         np.testing.assert_allclose(pcl_symmetry.describe(far), pcl_symmetry.describe(near), atol=1e-5)
         for a, b in zip(pcl_symmetry.descriptors(far), pcl_symmetry.descriptors(near)):
             np.testing.assert_allclose(a, b, atol=1e-5)
-        np.testing.assert_allclose(pcl_symmetry.local_symmetry(far, 1.0), pcl_symmetry.local_symmetry(near, 1.0), atol=1e-5)
+        local_far, local_near = (pcl_symmetry.local_symmetry(points[::12], 1.0) for points in (far, near))
+        np.testing.assert_allclose(local_far, local_near, atol=1e-5)
         np.testing.assert_array_equal(pcl_symmetry.segment(far[:2000]), pcl_symmetry.segment(near[:2000]))
         plane, moved = (pcl_symmetry.ReflectionPlane((1, 0, 0), offset) for offset in (0.0, self.SHIFT[0]))
         half = near[near[:, 0] > -0.1]
@@ -920,7 +879,7 @@ class Package(unittest.TestCase):
             self.skipTest("mypy is not installed (Debian package mypy)")
         root = Path(__file__).resolve().parents[2]
         with tempfile.TemporaryDirectory() as folder:
-            checked = [Path(folder) / "uses.py"]
+            checked = [Path(folder) / "uses.py", root / "apps/examples/14_depth_camera.py"]
             checked[0].write_text(
                 "import pcl_symmetry as s\n"
                 "found = s.planes([[0.0, 0.0, 0.0]])\n"

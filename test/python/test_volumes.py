@@ -60,10 +60,10 @@ def ball(x):
 class Volumes(unittest.TestCase):
     direction = rotation((1, 2, 2), 0.4)
 
-    def phantom(self, function=head, size=80, seed=1, noise=0.0, cropped=0.0, slices=1, pose=None):
+    def phantom(self, function=head, size=64, seed=1, cropped=0.0, slices=1, pose=None):
         """Sets the arguments of planes(), the turn and the shift of the phantom, and the size of a voxel.
 
-        noise: standard deviation. cropped: units that are cut off on one side. slices: their thickness in voxels.
+        cropped: units that are cut off on one side. slices: their thickness in voxels.
         """
         random = np.random.default_rng(seed)
         self.turn = rotation(random.uniform(-1, 1, 3), random.uniform(0.1, 0.4)) if pose is None else pose
@@ -74,7 +74,6 @@ class Volumes(unittest.TestCase):
         for k in range(parts):
             index = np.stack(np.indices(volume.shape), axis=-1) + (0, 0, (k + 0.5) / parts - 0.5)
             volume += function((index * spacing @ self.direction.T + origin - self.shift) @ self.turn) / parts
-        volume += noise * random.normal(size=volume.shape)
         self.arguments = dict(volume=volume.astype(np.float32), spacing=spacing, origin=origin, direction=self.direction)
 
     def assert_plane(self, degrees, voxels):
@@ -86,17 +85,13 @@ class Volumes(unittest.TestCase):
         self.assertGreater(found[0].confidence, 0.75 * 0.75)
 
     def test_of_a_tilted_head_are_exact_and_of_a_noisy_one_within_half_a_degree_and_voxel(self):
-        for seed in (1, 2, 4):
+        for seed in range(1, 6):
             # The last plane is nearly parallel to an axis of the grid, where voxels fall on voxels.
-            pose = self.direction @ rotation((0, 0, 1), 0.115) @ rotation((0, 1, 0), 0.012) if seed == 4 else None
-            self.phantom(size=64, seed=seed, pose=pose)
+            pose = self.direction @ rotation((0, 0, 1), 0.115) @ rotation((0, 1, 0), 0.012) if seed == 5 else None
+            self.phantom(seed=seed, pose=pose)
             self.assert_plane(0.1, 0.2)
-            self.phantom(seed=seed, pose=pose, noise=0.5 / 3)  # a third of the signal of the brain
-            self.assert_plane(0.5, 0.5)
-
-    def test_of_small_noisy_heads_are_within_half_a_degree_and_voxel(self):
-        for seed in range(1, 5):
-            self.phantom(size=64, seed=seed, noise=0.5 / 3)
+            volume = self.arguments["volume"]
+            volume += 0.5 / 3 * np.random.default_rng(seed).normal(size=volume.shape)  # a third of the signal of the brain
             self.assert_plane(0.5, 0.5)
 
     def test_of_heads_that_are_cropped_or_have_a_lesion_on_one_side_are_exact(self):
@@ -111,11 +106,10 @@ class Volumes(unittest.TestCase):
 
     def test_of_a_spiral_and_a_random_texture_are_none(self):
         for function in (spiral, texture):
-            self.phantom(function, size=56)
-            found = pcl_symmetry.planes(**self.arguments)
+            self.phantom(function, size=48)
+            found = pcl_symmetry.planes(**self.arguments, approximate=True)
             self.assertEqual((len(found), found.reason), (0, ""))
-            every = pcl_symmetry.planes(**self.arguments, approximate=True).every
-            self.assertLessEqual({plane.kind for plane in every}, {"approximate"})
+            self.assertLessEqual({plane.kind for plane in found.every}, {"approximate"})
 
     def test_of_a_ball_are_all_and_said_so(self):
         self.phantom(ball)
@@ -128,7 +122,7 @@ class Volumes(unittest.TestCase):
         self.assert_plane(0.1, 0.2)
 
     def test_of_the_transform_are_those_of_the_search_by_every_method(self):
-        self.phantom(size=64)
+        self.phantom()
         for bins, options in (((16, 32, 33), dict(method="convolution")), ((16, 32, 33), dict(method="sampled")),
                               ((16, 32, 17), dict(method="rotational", cells=24, refined_share=0.1))):  # fmt: skip
             map_ = pcl_symmetry.transform(bins=bins, **options, **self.arguments)
@@ -142,7 +136,7 @@ class Volumes(unittest.TestCase):
                 self.assertGreater(map_.values.ravel()[near].max(), map_.values.ravel()[aside].max() + 0.1)
 
     def test_map_what_lies_on_them_onto_itself_at_any_scale(self):
-        self.phantom(size=64)
+        self.phantom()
         on_plane = self.shift + np.array([(0, 20, 10), (0, -30, 25), (0, 45, -20)]) @ self.turn.T
         beside = on_plane + 12 * self.turn[:, 0]
         for scale in (0.4, 1.0):

@@ -39,7 +39,7 @@ class SafeFiles(ToolTest):
                 self.assertEqual(self.text("big.pcd"), "old")
             for left in self.folder.glob(".big.*"):
                 left.unlink()
-            if num_killed == 5:
+            if num_killed == 3:
                 return
         self.fail("no kill came while the file was written")
 

@@ -3,7 +3,7 @@ import json
 import unittest
 
 import tool_run
-from test_scene_objects import block, camera, frame, look
+from test_scene import block, camera, frame, look
 from tool_run import ToolTest, np
 
 WIDTH, HEIGHT = 160, 120
@@ -74,7 +74,7 @@ class SeenFrom(ToolTest):
         return [answer["viewpoint"]["from"] for answer in self.answers(*clouds)]
 
     def test_is_told_by_the_rays_of_an_organized_cloud(self):
-        for seed in range(8):
+        for seed in range(4):
             random = np.random.default_rng(seed)
             # From a side that shows three faces: one alone fits many cameras.
             pixels, to_camera = scan(BOX, random.choice([-1, 1], 3) * random.uniform(1.6, 3.6, 3))
@@ -135,7 +135,7 @@ class SeenFrom(ToolTest):
 
     def test_is_inferred_from_the_density_of_a_scan_in_any_pose(self):
         """How far it is off is tested with the function itself."""
-        for seed in range(6):
+        for seed in range(3):
             eye = 4 * random_direction(seed)
             clouds = []
             for blocks in (L, CHAIR):
@@ -145,13 +145,13 @@ class SeenFrom(ToolTest):
 
     def test_is_none_for_wires_whole_objects_and_views_put_together(self):
         clouds = []
-        for seed in range(10):
+        for seed in range(5):
             t = np.random.default_rng(seed).random(80 + 40 * seed)
             wire = np.stack([(0.3 + t) * np.cos(5 * t), (0.3 + t) * np.sin(5 * t), t], axis=1)
             wire[:, 2] += 0.003 * np.random.default_rng(seed + 99).normal(size=len(t))
             clouds.append((wire, (0.1, 0.2, 0.3)))
         for count in (1000, 10_000):
-            for seed in range(3):
+            for seed in range(2):
                 clouds += [(on_box(count, seed=seed), viewpoint) for viewpoint in ((0, 0, 0), (3, 1, 2))]
                 clouds.append((on_sphere(count, seed), (3, 1, 2)))
         for second in ((-2.5, -3, 2), (-2.5, 3, -2)):

@@ -141,12 +141,12 @@ class ShapeInput(ToolTest):
 
     def test_ply_lists_of_any_type(self):
         faces = "".join(f"7 {face}\n" for face in FACES.splitlines())
-        for length in ("char", "uchar", "short", "ushort", "int", "uint", "int8", "uint32"):
-            for index in ("char", "uchar", "short", "ushort", "int", "uint", "uint16"):
-                elements = f"element vertex 4\n{XYZ}element face 2\nproperty uchar flags\nproperty list {length} {index} vertex_index\n"
-                _, polygons, _ = self.mesh("a.ply", ply("ascii", elements, SQUARE, faces))
-                self.assertEqual(polygons, [[0, 1, 2], [0, 1, 2, 3]], (length, index))
-                self.assertNotIn("left out", self.error)
+        lengths = "char", "uchar", "short", "ushort", "int", "uint", "int8", "uint32"
+        for length, index in zip(lengths, ("uint", "int", "uint16", "ushort", "char", "uchar", "short", "uint")):
+            elements = f"element vertex 4\n{XYZ}element face 2\nproperty uchar flags\nproperty list {length} {index} vertex_index\n"
+            _, polygons, _ = self.mesh("a.ply", ply("ascii", elements, SQUARE, faces))
+            self.assertEqual(polygons, [[0, 1, 2], [0, 1, 2, 3]], (length, index))
+            self.assertNotIn("left out", self.error)
         elements = f"element vertex 3\n{XYZ}element face 1\nproperty list ushort uint vertex_indices\n"
         for name, order in (("little", "<"), ("big", ">")):
             body = CORNERS[:3].astype(order + "f4").tobytes() + struct.pack(order + "H3I", 3, 2, 1, 0)
