@@ -481,7 +481,7 @@ class Gears(Detection):
                       vase=np.c_[0.5 + 0.15 * np.sin(3 * steps), steps],
                       bottle=((0, 0), (0.4, 0), (0.4, 1.2), (0.15, 1.6), (0.15, 2), (0, 2)))  # fmt: skip
         for name, profile in bodies.items():
-            for num_sides, count, size in ((96, 8000, 1), (96, 2000, 0.01), (96, 20_000, 100), (48, 8000, 1), (48, None, 1)):
+            for num_sides, count, size in ((96, 8000, 1), (96, 2000, 0.01), (48, 8000, 100), (48, None, 1)):
                 mesh = swept(size * np.exp(2j * np.pi * np.arange(num_sides) / num_sides), np.array(profile) * (1, size))
                 pose = random_pose(num_sides)
                 axis, = self.planes(mesh, pose, count).axes

