@@ -47,19 +47,6 @@ TEST(DetectionInput, AGivenSearchIsAskedForEveryKindOfCloud) {
   }
 }
 
-TEST(DetectPlanes, AFlatRectangleHasThree) {
-  const Shape flat = moved(box({1.0, 0.6, 0.0}, 4000, Sampling::Mirrored, 21), randomPose(21));
-  const Points cloud = flat.cloud();
-  const Detection detection = detectPlanes(cloud);
-  EXPECT_EQ(detection.planes.size(), 3u);
-  EXPECT_EQ(numFound(flat, detection.planes, 0.001 * kDegree, 1e-5 * diagonal(cloud)), 3);
-  ASSERT_TRUE(detection.flat) << "its own plane is named";
-  EXPECT_LT((detection.flat->normal().cast<float>().transpose() * cloud).array().maxCoeff() - detection.flat->offset(),
-            1e-4);
-  EXPECT_GT((detection.flat->normal().cast<float>().transpose() * cloud).array().minCoeff() - detection.flat->offset(),
-            -1e-4);
-}
-
 TEST(DetectPlanes, SameBytesForAnyNumberOfThreads) {
   const Points cloud = moved(prism(5, 4000, Sampling::Random, 13), randomPose(13)).cloud();
   const Points beside =

@@ -4,12 +4,12 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <memory>
 #include <optional>
 #include <vector>
 
 #include "core/detection/part_search.h"
 #include "pcl_symmetry/core/detect_planes.h"
+#include "shapes/judged_cloud.h"
 #include "shapes/shapes.h"
 
 namespace {
@@ -29,34 +29,15 @@ TEST(PlaneDecision, OfAScanWhatStaysInPlaceSaysNothing) {
   }
   const std::optional<Visibility> seen = Visibility::fromPoints(points, Eigen::Vector3d(0.0, 0.0, 6.0));
   ASSERT_TRUE(seen.has_value());
-  const DetectionOptions options;
-  const GaussianEdt edt(points);
-  const NormalizedCloud cloud(points, edt, nullptr, &*seen, 1);
-  const std::unique_ptr<PlaneFit> fit = makePlaneFit(cloud, options);
+  const JudgedCloud scan(points, {}, &*seen);
   std::vector<Candidate> candidates(2);
-  candidates[0].plane = cloud.toNormalized(ReflectionPlane(Eigen::Vector3d::UnitZ(), 0.0));
-  candidates[1].plane = cloud.toNormalized(ReflectionPlane(Eigen::Vector3d::UnitX(), 0.0));
-  const PlaneMeasure measure(cloud, *fit, options);
-  const std::vector<MeasuredPlane> judged = PlaneDecision(cloud, measure, options).judge(candidates);
+  candidates[0].plane = scan.normalized(Eigen::Vector3d::UnitZ(), 0.0);
+  candidates[1].plane = scan.normalized(Eigen::Vector3d::UnitX(), 0.0);
+  const std::vector<MeasuredPlane> judged = scan.decision.judge(candidates);
   EXPECT_LT(judged[0].evidence.share, 0.1);
   EXPECT_LT(judged[0].plane.confidence, 0.1);
   EXPECT_GT(judged[1].evidence.share, 0.97);
 }
-
-/// What regions and parts are searched on.
-struct SearchedCloud {
-  explicit SearchedCloud(const Points& points)
-      : edt(points, {}), cloud(points, edt, nullptr, nullptr, 1), fit(makePlaneFit(cloud, options)) {}
-
-  MatchedRegion region(const ReflectionPlane& plane) const {
-    return MatchedRegions(cloud, *fit, options).largest(cloud.toNormalized(plane));
-  }
-
-  const DetectionOptions options;
-  GaussianEdt edt;
-  NormalizedCloud cloud;
-  std::unique_ptr<PlaneFit> fit;
-};
 
 /// A plane of a fan about z; its support names it.
 SymmetryPlane planeOfFan(int k, PlaneKind kind, double confidence, double support) {
@@ -69,7 +50,7 @@ SymmetryPlane planeOfFan(int k, PlaneKind kind, double confidence, double suppor
 }
 
 TEST(RankedPlanes, BestFirstAndEachOnce) {
-  const SearchedCloud searched(box(500, Sampling::Random, 3).cloud());
+  const JudgedCloud searched(box(500, Sampling::Random, 3).cloud());
   const std::vector<SymmetryPlane> planes = {
       planeOfFan(0, PlaneKind::Approximate, 0.1, 0.7),
       planeOfFan(1, PlaneKind::Possible, 0.3, 0.1),
@@ -98,7 +79,7 @@ TEST(RankedPlanes, BestFirstAndEachOnce) {
 }
 
 TEST(RankedPlanes, FewPossibleOnes) {
-  const SearchedCloud searched(box(500, Sampling::Random, 3).cloud());
+  const JudgedCloud searched(box(500, Sampling::Random, 3).cloud());
   std::vector<SymmetryPlane> planes;
   for (int k = 0; k < 6; ++k) planes.push_back(planeOfFan(k, PlaneKind::Possible, 0.3, 0.5));
   const auto numRanked = [&] {
@@ -110,7 +91,7 @@ TEST(RankedPlanes, FewPossibleOnes) {
 }
 
 TEST(RankedPlanes, APlaneOnTheSlopeOfABetterOneIsNoMaximum) {
-  const SearchedCloud searched(box(500, Sampling::Random, 3).cloud());
+  const JudgedCloud searched(box(500, Sampling::Random, 3).cloud());
   const auto numRanked = [&](double score) {
     std::vector<SymmetryPlane> planes{planeOfFan(0, PlaneKind::Symmetry, 0.9, 0.9)};
     planes.emplace_back(ReflectionPlane({std::cos(0.1), std::sin(0.1), 0.0}, 0.0));
@@ -124,7 +105,7 @@ TEST(RankedPlanes, APlaneOnTheSlopeOfABetterOneIsNoMaximum) {
 }
 
 TEST(BestApproximate, IsThePlaneOfTheGreatestShareWhereNothingIsDecided) {
-  const SearchedCloud searched(box(500, Sampling::Random, 3).cloud());
+  const JudgedCloud searched(box(500, Sampling::Random, 3).cloud());
   std::vector<SymmetryPlane> planes{planeOfFan(0, PlaneKind::Approximate, 0.1, 0.1),
                                     planeOfFan(1, PlaneKind::Approximate, 0.1, 0.2),
                                     planeOfFan(2, PlaneKind::Local, 0.0, 0.3)};
@@ -140,14 +121,12 @@ TEST(BestApproximate, IsThePlaneOfTheGreatestShareWhereNothingIsDecided) {
 }
 
 TEST(PlaneDecision, SkipsWhatAQuickLookShowsToBeHopeless) {
-  const SearchedCloud searched(box({1.0, 0.7, 0.4}, 5000, Sampling::Random, 3).cloud());
-  const PlaneMeasure measure(searched.cloud, *searched.fit, searched.options);
-  const PlaneDecision decision(searched.cloud, measure, searched.options);
+  const JudgedCloud searched(box({1.0, 0.7, 0.4}, 5000, Sampling::Random, 3).cloud());
   const auto isHopeless = [&](double offset, double merit) {
     Candidate candidate;
-    candidate.plane = searched.cloud.toNormalized(ReflectionPlane(Eigen::Vector3d::UnitX(), offset));
+    candidate.plane = searched.normalized(Eigen::Vector3d::UnitX(), offset);
     candidate.merit = merit;
-    return decision.isHopeless(candidate);
+    return searched.decision.isHopeless(candidate);
   };
   EXPECT_FALSE(isHopeless(0.0, 0.5));
   EXPECT_TRUE(isHopeless(0.3, 0.5));
@@ -174,9 +153,13 @@ struct TwoBoxes {
   }
 };
 
+MatchedRegion regionOf(const JudgedCloud& searched, const ReflectionPlane& plane) {
+  return MatchedRegions(searched.cloud, *searched.fit, searched.options).largest(searched.cloud.toNormalized(plane));
+}
+
 TEST(MatchedRegion, OfASymmetryIsAllOfTheSurfaceAndHasNoEdge) {
-  const SearchedCloud searched(box({1.0, 0.7, 0.4}, 8000, Sampling::Random, 3).cloud());
-  const MatchedRegion region = searched.region(ReflectionPlane(Eigen::Vector3d::UnitX(), 0.0));
+  const JudgedCloud searched(box({1.0, 0.7, 0.4}, 8000, Sampling::Random, 3).cloud());
+  const MatchedRegion region = regionOf(searched, ReflectionPlane(Eigen::Vector3d::UnitX(), 0.0));
   EXPECT_GT(region.share, 0.99);
   EXPECT_LT(region.edge, 0.05);
   EXPECT_GT(region.support, 0.98);
@@ -184,9 +167,9 @@ TEST(MatchedRegion, OfASymmetryIsAllOfTheSurfaceAndHasNoEdge) {
 
 TEST(MatchedRegion, OfAPartEndsWhereThePartEnds) {
   const TwoBoxes boxes;
-  const SearchedCloud searched(boxes.points);
+  const JudgedCloud searched(boxes.points);
   for (std::size_t k = 0; k < boxes.planes.size(); ++k) {
-    const MatchedRegion region = searched.region(boxes.planes[k]);
+    const MatchedRegion region = regionOf(searched, boxes.planes[k]);
     EXPECT_NEAR(region.share, k % 2 == 0 ? 6000.0 / 8900.0 : 2900.0 / 8900.0, 0.08) << k;
     EXPECT_LT(region.edge, 0.5) << k;
   }
@@ -203,8 +186,8 @@ TEST(MatchedRegion, OfACapOfAnEllipsoidHasTheEdgeOfADisc) {
     while (x.norm() > 1.0 || x.norm() < 0.1);
     points.col(i) = x.normalized().cwiseProduct(Eigen::Vector3d(1.0, 0.8, 0.6)).cast<float>();
   }
-  const MatchedRegion region = SearchedCloud(points).region(
-      ReflectionPlane(Eigen::Vector3d(std::cos(kPi / 6.0), std::sin(kPi / 6.0), 0.0), 0.0));
+  const ReflectionPlane turned(Eigen::Vector3d(std::cos(kPi / 6.0), std::sin(kPi / 6.0), 0.0), 0.0);
+  const MatchedRegion region = regionOf(JudgedCloud(points), turned);
   EXPECT_GT(region.share, 0.05);
   EXPECT_LT(region.share, 0.9);
   EXPECT_GT(region.edge, 0.8);

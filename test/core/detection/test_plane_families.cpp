@@ -5,12 +5,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <memory>
 
 #include "core/detection/cloud_subset.h"
 #include "core/detection/plane_lattice.h"
 #include "pcl_symmetry/core/detect_planes.h"
 #include "shapes/counting_search.h"
+#include "shapes/judged_cloud.h"
 #include "shapes/shapes.h"
 
 namespace {
@@ -24,17 +24,6 @@ const Line3d kLine(Eigen::Vector3d(0.1, -0.05, 0.0), Eigen::Vector3d(0.3, 0.2, 1
 FamilyTest testOf(const std::function<bool(const ReflectionPlane&)>& is_symmetry) {
   const auto share = [is_symmetry](const ReflectionPlane& plane) { return is_symmetry(plane) ? 1.0 : 0.6; };
   return {share, share, [](const ReflectionPlane& plane) { return plane; }, 0.92, 0.03};
-}
-
-TEST(FindAxes, FindsTheLineOfAllPlanes) {
-  const auto test = testOf([](const ReflectionPlane& plane) { return contains(plane, kLine, 0.01); });
-  const auto axes = findAxes({planeThrough(kLine, 0.3), planeThrough(kLine, 1.1), planeThrough(kLine, 2.0)}, test);
-  ASSERT_EQ(axes.size(), 1u);
-  EXPECT_NEAR(std::abs(axes[0].line.direction().dot(kLine.direction())), 1.0, 1e-12);
-  EXPECT_LT(kLine.distance(axes[0].line.origin()), 1e-12);
-  EXPECT_EQ(axes[0].share, 1.0);
-  EXPECT_GE(axes[0].planes.size(), 8u);
-  for (const ReflectionPlane& plane : axes[0].planes) EXPECT_TRUE(contains(plane, kLine, 1e-9));
 }
 
 TEST(FindAxes, RefinesALineOfRoughPlanes) {
@@ -52,51 +41,12 @@ TEST(FindAxes, RefinesALineOfRoughPlanes) {
   EXPECT_LT(kLine.distance(axes[0].line.origin()), 1e-9);
 }
 
-TEST(FindAxes, APolygonHasNone) {
-  for (const int n : {2, 3, 4, 6, 12, 24}) {
-    std::vector<ReflectionPlane> planes;
-    for (int k = 0; k < n; ++k) planes.push_back(planeThrough(kLine, kPi * k / n));
-    // A prism forgives half a degree.
-    const auto test = testOf([&](const ReflectionPlane& plane) {
-      return std::any_of(planes.begin(), planes.end(),
-                         [&](const ReflectionPlane& own) { return own.angleTo(plane) < 0.5 * kDegree; });
-    });
-    EXPECT_TRUE(findAxes(planes, test).empty()) << n;
-    EXPECT_FALSE(findCenter(planes, test)) << n;
-  }
-}
-
 TEST(FindAxes, NeedsTwoPlanes) {
   const auto test = testOf([](const ReflectionPlane&) { return true; });
   EXPECT_TRUE(findAxes({}, test).empty());
   EXPECT_TRUE(findAxes({planeThrough(kLine, 0.3)}, test).empty());
   EXPECT_TRUE(findAxes({planeThrough(kLine, 0.3), planeThrough(kLine, 0.3)}, test).empty()) << "twice the same";
   EXPECT_FALSE(findCenter({planeThrough(kLine, 0.3), planeThrough(kLine, 1.1)}, test));
-}
-
-TEST(FindCenter, FindsThePointOfAllPlanes) {
-  const Eigen::Vector3d point(0.2, -0.1, 0.3);
-  const auto test = testOf([&](const ReflectionPlane& plane) { return std::abs(plane.signedDistance(point)) < 0.01; });
-  RandomStream random(1);
-  std::vector<ReflectionPlane> planes;
-  for (int k = 0; k < 5; ++k) {
-    const Eigen::Vector3d n = randomDirection(random);
-    planes.emplace_back(n, n.dot(point));
-  }
-  const auto center = findCenter(planes, test);
-  ASSERT_TRUE(center);
-  EXPECT_LT((center->point - point).norm(), 1e-9);
-  EXPECT_EQ(center->share, 1.0);
-}
-
-TEST(FindCenter, ThreePlanesOfABoxHaveNone) {
-  const std::vector<ReflectionPlane> planes = box(1, Sampling::Random, 1).planes;
-  const auto test = testOf([&](const ReflectionPlane& plane) {
-    return std::any_of(planes.begin(), planes.end(),
-                       [&](const ReflectionPlane& own) { return own.angleTo(plane) < 2.0 * kDegree; });
-  });
-  EXPECT_FALSE(findCenter(planes, test));
-  EXPECT_TRUE(findAxes(planes, test).empty());
 }
 
 TEST(Contains, IsThreeDegreesAndATolerance) {
@@ -149,21 +99,14 @@ DetectionOptions manyPlanes() {
 }
 
 TEST(PlaneLattice, AFewPlanesOfAPolygonTellTheOthers) {
-  const auto planes = planesAt({0, 3, 7, 8, 13, 14}, 17);
+  auto planes = planesAt({0, 3, 7, 8, 13, 14}, 17);
+  planes.insert(planes.begin(), ReflectionPlane(kPolygonLine.direction(), 0.4));  // across the line: does not matter
   const auto lattice = findLattice(planes);
   ASSERT_TRUE(lattice);
   EXPECT_EQ(lattice->fold, 17);
   EXPECT_EQ(lattice->num_planes, 6);
   for (const ReflectionPlane& plane : planesAt({0, 1, 2, 5, 11, 16}, 17)) EXPECT_TRUE(holds(*lattice, plane));
   EXPECT_FALSE(holds(*lattice, planesAt({0.5}, 17)[0]));
-}
-
-TEST(PlaneLattice, APlaneAcrossTheLineDoesNotMatter) {
-  auto planes = planesAt({0, 1, 2, 4, 6}, 7);
-  planes.insert(planes.begin(), ReflectionPlane(kPolygonLine.direction(), 0.4));
-  const auto lattice = findLattice(planes);
-  ASSERT_TRUE(lattice);
-  EXPECT_EQ(lattice->fold, 7);
 }
 
 TEST(PlaneLattice, PlanesAtRandomAnglesHaveNone) {
@@ -194,22 +137,15 @@ TEST(Polygons, AGivenSearchIsAskedWhereTheDensityIsUneven) {
   EXPECT_GT(asked.num_queries, 100'000);
 }
 
-/// A cloud, and what judges its planes.
-struct JudgedPoints {
-  explicit JudgedPoints(const Points& points) : edt(points), cloud(points, edt, nullptr, nullptr, 1) {}
+/// Whose planes are judged, upright ones through the origin among them.
+struct JudgedPoints : JudgedCloud {
+  explicit JudgedPoints(const Points& points) : JudgedCloud(points, manyPlanes()) {}
 
   SymmetryPlane symmetry(double angle) const {
     SymmetryPlane plane(ReflectionPlane({std::cos(angle), std::sin(angle), 0.0}, 0.0));
     setConfidence(plane, 0.9, "test", options);
     return plane;
   }
-
-  const DetectionOptions options = manyPlanes();
-  const GaussianEdt edt;
-  const NormalizedCloud cloud;
-  const std::unique_ptr<PlaneFit> fit = makePlaneFit(cloud, options);
-  const PlaneMeasure measure{cloud, *fit, options};
-  const PlaneDecision decision{cloud, measure, options};
 };
 
 TEST(CollectFamilies, ABodyOfRevolutionHasItsAxisInPlaceOfItsPlanes) {
@@ -262,12 +198,6 @@ TEST(EvenDensity, LeavesEvenCloudsAloneAndEvensOthers) {
   const auto all_dense = static_cast<double>((thinned.row(0).array() > 0.0f).count());
   EXPECT_GT(all_dense / (10'000.0 - all_dense), 1.8);
   EXPECT_LT(static_cast<double>(dense) / static_cast<double>(thin), 1.3);
-}
-
-TEST(EvenDensity, FewPointsStay) {
-  Points few = Points::Random(3, 30);
-  const GaussianEdt edt(few);
-  EXPECT_EQ(evenlyDense(NormalizedCloud(few, edt, nullptr, nullptr, 1), 1).size(), 30u);
 }
 
 TEST(FoldSpectrum, ToldFromARoundBody) {

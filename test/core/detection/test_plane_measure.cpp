@@ -7,38 +7,24 @@
 #include <vector>
 
 #include "core/geometry/point_samples.h"
+#include "shapes/judged_cloud.h"
 #include "shapes/shapes.h"
 
 namespace {
 
 using namespace pcl_symmetry;
 
-/// A cloud, and the measure of its planes.
-struct MeasuredCloud {
-  explicit MeasuredCloud(const Points& points, const DetectionOptions& given = {})
-      : options(given),
-        edt(points),
-        cloud(points, edt, nullptr, nullptr, 1),
-        fit(makePlaneFit(cloud, options)),
-        measure(cloud, *fit, options) {}
-
-  double shareOf(const ReflectionPlane& plane) const {
-    return measure.of(cloud.toNormalized(plane), measure.samples()).evidence.share;
-  }
-
-  const DetectionOptions options;
-  const GaussianEdt edt;
-  const NormalizedCloud cloud;
-  const std::unique_ptr<PlaneFit> fit;
-  const PlaneMeasure measure;
-};
+using test::JudgedCloud;
 
 TEST(PlaneMeasure, ShareFallsWithTheDistanceFromASymmetry) {
-  const MeasuredCloud box(test::box({1.0, 0.7, 0.4}, 5000, test::Sampling::Random, 1).cloud());
-  EXPECT_GT(box.shareOf({Eigen::Vector3d::UnitX(), 0.0}), 0.99);
+  const JudgedCloud box(test::box({1.0, 0.7, 0.4}, 5000, test::Sampling::Random, 1).cloud());
+  const auto shareAt = [&](double offset) {
+    return box.measure.of(box.normalized(Eigen::Vector3d::UnitX(), offset), box.measure.samples()).evidence.share;
+  };
+  EXPECT_GT(shareAt(0.0), 0.99);
   double last = 1.0;
   for (const double offset : {0.02, 0.1, 0.3}) {
-    const double share = box.shareOf({Eigen::Vector3d::UnitX(), offset});
+    const double share = shareAt(offset);
     EXPECT_LT(share, last) << offset;
     last = share;
   }
@@ -47,19 +33,19 @@ TEST(PlaneMeasure, ShareFallsWithTheDistanceFromASymmetry) {
 
 TEST(PlaneMeasure, ToleranceIsAShareOfTheExtentOrInInputUnits) {
   const Points points = test::box({1.0, 0.7, 0.4}, 5000, test::Sampling::Random, 1).cloud();
-  const MeasuredCloud usual(points);
+  const JudgedCloud usual(points);
   EXPECT_NEAR(usual.measure.tolerance(), 0.01 * usual.cloud.extent, 1e-9);
   DetectionOptions options;
   options.absolute_tolerance = 0.05;
-  const MeasuredCloud given(points, options);
+  const JudgedCloud given(points, options);
   EXPECT_NEAR(given.measure.tolerance() * given.cloud.scale, 0.05, 1e-9);
 }
 
 TEST(PlaneMeasure, MatchesOfOtherSamplesAreNotTaken) {
-  const MeasuredCloud box(test::box({1.0, 0.7, 0.4}, 5000, test::Sampling::Random, 1).cloud());
+  const JudgedCloud box(test::box({1.0, 0.7, 0.4}, 5000, test::Sampling::Random, 1).cloud());
   const auto drawn = [](std::uint64_t seed) { return drawSamples(5000, 500, seed); };
   Candidate candidate;
-  candidate.plane = box.cloud.toNormalized(ReflectionPlane(Eigen::Vector3d::UnitX(), 0.0));
+  candidate.plane = box.normalized(Eigen::Vector3d::UnitX(), 0.0);
   candidate.samples = std::make_shared<const std::vector<int>>(drawn(1));
   candidate.last.last = box.fit->matches(candidate.plane, *candidate.samples);
   EXPECT_EQ(box.measure.of(candidate, drawn(2)).evidence.share,
@@ -67,7 +53,7 @@ TEST(PlaneMeasure, MatchesOfOtherSamplesAreNotTaken) {
 }
 
 TEST(CloudLimits, TheOwnPlaneOfASheetMovesNothing) {
-  const MeasuredCloud sheet(test::flatSquare(2000, 1));
+  const JudgedCloud sheet(test::flatSquare(2000, 1));
   const CloudLimits& limits = sheet.measure.limits();
   EXPECT_EQ(limits.thinness(), Thinness::Sheet);
   const PrincipalAxes& axes = sheet.cloud.principal_axes;

@@ -4,10 +4,10 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <memory>
 #include <vector>
 
 #include "core/base/constants.h"
+#include "shapes/judged_cloud.h"
 #include "shapes/shapes.h"
 
 namespace {
@@ -15,22 +15,19 @@ namespace {
 using namespace pcl_symmetry;
 
 /// A box, and what refines its planes.
-struct RefinedBox {
-  const DetectionOptions options;
-  const Points points = test::box({1.0, 0.7, 0.4}, 5000, test::Sampling::Random, 1).cloud();
-  const GaussianEdt edt{points};
-  const NormalizedCloud cloud{points, edt, nullptr, nullptr, 1};
-  const std::unique_ptr<PlaneFit> fit = makePlaneFit(cloud, options);
-  const StagedRefinement refinement{cloud, *fit, options};
+struct RefinedBox : test::JudgedCloud {
+  RefinedBox() : JudgedCloud(test::box({1.0, 0.7, 0.4}, 5000, test::Sampling::Random, 1).cloud()) {}
 
   Candidate candidate(const Eigen::Vector3d& normal, double offset) const {
-    return {cloud.toNormalized(ReflectionPlane(normal.normalized(), offset))};
+    return {normalized(normal.normalized(), offset)};
   }
+
+  const StagedRefinement refinement{cloud, *fit, options};
 };
 
 TEST(StagedRefinement, EachStageComesNearer) {
   const RefinedBox box;
-  const ReflectionPlane exact = box.cloud.toNormalized(ReflectionPlane(Eigen::Vector3d::UnitX(), 0.0));
+  const ReflectionPlane exact = box.normalized(Eigen::Vector3d::UnitX(), 0.0);
   std::vector<Candidate> candidates{box.candidate({1.0, 0.06, -0.04}, 0.03)};
   const double at_start = candidates[0].plane.angleTo(exact);
   candidates = box.refinement.coarse(candidates, PlaneGrid(box.options.expert, box.edt.center(), box.edt.radius()));

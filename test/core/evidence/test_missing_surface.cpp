@@ -82,6 +82,7 @@ TEST(OpenBorders, AreNearEverywhereOnAWireAndNowhereOnAClosedSurface) {
 
 TEST(OpenBorders, OfAClosedSurfaceAreRareAndOfACutOneFollowTheCut) {
   EXPECT_LT(Surface(cap(2.0)).borderShare(), 0.03);
+  EXPECT_LT(Surface(box(8000, Sampling::Random, 4).cloud()).borderShare(), 0.05) << "edges are no borders";
   const Surface cut(cap(0.3));
   double along_cut = 0.0, num_along_cut = 0.0;
   for (Eigen::Index i = 0; i < cut.points.cols(); ++i) {
@@ -90,10 +91,6 @@ TEST(OpenBorders, OfAClosedSurfaceAreRareAndOfACutOneFollowTheCut) {
     ++num_along_cut;
   }
   EXPECT_GT(along_cut / num_along_cut, 0.6);
-}
-
-TEST(OpenBorders, AreNotAtTheEdgesOfABox) {
-  EXPECT_LT(Surface(box(8000, Sampling::Random, 4).cloud()).borderShare(), 0.05);
 }
 
 TEST(MissingCounterparts, ExplainWhatWasCutOff) {
@@ -144,37 +141,26 @@ Points plate(double half_height, std::uint64_t seed) {
 
 constexpr double kSphereSpacing = 0.04;  // 1 / sqrt(density) of 8000 points on the unit sphere
 
-TEST(SurfaceEnd, ExplainsWhatLiesBeyondACut) {
+TEST(SurfaceEnd, ExplainsWhatLiesBeyondACutAndNothingElse) {
   const Points ball = sphere(8000, 1).cloud();
   for (const float height : {-0.3f, 0.0f, 0.4f})
     EXPECT_EQ(explained(between(ball, -2.0f, height), between(ball, height + 0.03f, 2.0f), kSphereSpacing), 1.0f)
         << height;
-}
-
-TEST(SurfaceEnd, DoesNotExplainWhatStandsOnAClosedSurface) {
-  const Points ball = sphere(8000, 1).cloud();
+  EXPECT_EQ(explained(between(ball, -2.0f, 0.4f), between(ball, 0.0f, 2.0f), kSphereSpacing), 0.0f) << "a common zone";
   Points bump = between(sphere(2000, 2).cloud(), -0.5f, 2.0f);
   bump *= 0.2f;
   bump.row(2).array() += 1.15f;
-  EXPECT_EQ(explained(ball, bump, kSphereSpacing), 0.0f);
-}
-
-TEST(SurfaceEnd, DoesNotExplainWhatReachesIntoTheCloud) {
-  const Points ball = sphere(8000, 1).cloud();
-  EXPECT_EQ(explained(between(ball, -2.0f, 0.4f), between(ball, 0.0f, 2.0f), kSphereSpacing), 0.0f);
+  EXPECT_EQ(explained(ball, bump, kSphereSpacing), 0.0f) << "it stands on a closed surface";
+  const Points block = plate(0.5, 4);
+  Points above = block;
+  above.row(2).array() += 1.03f;
+  EXPECT_EQ(explained(block, above, 0.04), 0.0f) << "the face of a block is no end";
 }
 
 TEST(SurfaceEnd, IsSeenOfPlatesThinnerThanTheSpacing) {
   Points thin = plate(0.01, 3);  // spacing of both faces together: 0.03
   std::swap_ranges(thin.row(0).begin(), thin.row(0).end(), thin.row(2).begin());
   EXPECT_EQ(explained(between(thin, -2.0f, 0.5f), between(thin, 0.53f, 2.0f), 0.03), 1.0f);
-}
-
-TEST(SurfaceEnd, IsNotTheFaceOfABlock) {
-  const Points block = plate(0.5, 4);
-  Points above = block;
-  above.row(2).array() += 1.03f;
-  EXPECT_EQ(explained(block, above, 0.04), 0.0f);
 }
 
 /// Those of the points that lie before a plane.
@@ -242,12 +228,8 @@ TEST(SurfaceDistance, IsThatOfDiscsAroundTheSamples) {
   EXPECT_LT(beside, 0.5 - 0.1);
   EXPECT_GT(beside, 0.5 - 0.35);
   EXPECT_NEAR(distanceOf({2.6f, 0.0f, 0.0f}) - beside, 0.1, 1e-5);
-}
-
-TEST(SurfaceDistance, IsInfiniteWhereNoSampleIsNear) {
-  const Surface surface(lattice());
   const Points point = Eigen::Vector3f::Zero();
-  EXPECT_TRUE(std::isinf(surfaceDistances(point, {-1}, {surface.points, surface.geometry})[0]));
+  EXPECT_TRUE(std::isinf(surfaceDistances(point, {-1}, {surface.points, surface.geometry})[0])) << "no sample is near";
 }
 
 TEST(SurfaceDistance, OwnDistancesAreThoseOfASecondSampleOfANoisySurface) {
@@ -264,10 +246,6 @@ TEST(SurfaceDistance, OwnDistancesAreThoseOfASecondSampleOfANoisySurface) {
   const double other = shareWithin(surface.distancesTo(second), noise);
   // The standard error of either is 0.012. Without the factor for new points, own exceeds other by 0.1 and more.
   EXPECT_NEAR(own, other, 0.06);
-}
-
-TEST(SurfaceDistance, ShareCountsTheLimit) {
-  EXPECT_EQ(shareWithin({0.0f, 0.5f, 1.0f, 2.0f}, 0.5), 0.5);
 }
 
 constexpr double kTolerance = 0.04;

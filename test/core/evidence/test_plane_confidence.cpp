@@ -231,14 +231,11 @@ TEST(PlaneStiffness, ABallHoldsNothingButTheOffset) {
   EXPECT_NEAR(offsetStiffness(stiffness), 4.0 / 3.0, 0.1) << "mean square of 2 n.x over a ball";
 }
 
-TEST(PlaneStiffness, ATubeHoldsPlanesThroughItsAxisButForTurnsAboutIt) {
+TEST(PlaneStiffness, ATubeHoldsPlanesThroughItsAxisButNotThePlaneAcross) {
   const Eigen::Matrix3d stiffness = stiffnessOf(tube(), kAcrossX);
   EXPECT_GT(secondStiffness(stiffness), 0.05);
   EXPECT_GT(offsetStiffness(stiffness), 1.0);
-}
-
-TEST(PlaneStiffness, ATubeWithoutEndsDoesNotHoldThePlaneAcross) {
-  EXPECT_NEAR(offsetStiffness(stiffnessOf(tube(), {Eigen::Vector3d::UnitZ(), 0.0})), 0.0, 1e-9);
+  EXPECT_NEAR(offsetStiffness(stiffnessOf(tube(), {Eigen::Vector3d::UnitZ(), 0.0})), 0.0, 1e-9) << "it has no ends";
 }
 
 TEST(PlaneStiffness, ABoxHoldsItsPlanes) {

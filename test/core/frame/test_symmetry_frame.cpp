@@ -10,7 +10,6 @@
 #include "core/frame/leveled_frames.h"
 #include "core/frame/plane_profiles.h"
 #include "core/frame/probable_frames.h"
-#include "core/frame/surface_directions.h"
 #include "core/geometry/cloud_extent.h"
 #include "shapes/complaint.h"
 #include "shapes/scans.h"
@@ -299,20 +298,6 @@ FrameCandidate candidate(const Eigen::Matrix3d& axes, const Eigen::Vector3f& sco
   return frame;
 }
 
-TEST(PrincipalSymmetryAxes, AreOrthonormalAndPointToTheLongerTail) {
-  Points points = Points::Zero(3, 5);
-  points.row(0) << 0.0f, 0.0f, 1.0f, -1.0f, 0.0f;
-  points.row(1) << -1.0f, -1.0f, -1.0f, -1.0f, 4.0f;
-  points.row(2) << 1.0f, 1.0f, 1.0f, 1.0f, -4.0f;
-  Eigen::Matrix3f rough = Eigen::Matrix3f::Identity();
-  rough(0, 1) = 1e-4f;
-  const Eigen::Matrix3d axes = principalSymmetryAxes(points, rough);
-  EXPECT_LT((axes.transpose() * axes - Eigen::Matrix3d::Identity()).norm(), 1e-12);
-  EXPECT_GT(axes.determinant(), 0.0);
-  EXPECT_GT(axes(1, 1), 0.9) << "the tail of y is at 4";
-  EXPECT_LT(axes(2, 2), -0.9) << "the tail of z is at -4";
-}
-
 TEST(MeanCenter, LiesBetweenFramesThatAreNearlyAsGood) {
   std::vector<FrameCandidate> frames(3, candidate(Eigen::Matrix3d::Identity(), Eigen::Vector3f::Ones()));
   for (std::size_t i = 0; i < frames.size(); ++i) frames[i].value = 2.0 - (i == 2 ? 1.0 : 0.0);
@@ -320,18 +305,6 @@ TEST(MeanCenter, LiesBetweenFramesThatAreNearlyAsGood) {
                                              Eigen::Vector3d(100, 0, 0)};
   EXPECT_LT((meanCenter(centers, frames) - Eigen::Vector3d(1, 2, 3)).norm(), 1e-6) << "the third is far worse";
   EXPECT_EQ(meanCenter({centers[1]}, {frames[1]}), centers[1]);
-}
-
-TEST(CenterOfSymmetry, OfAWholeIsWhereThePlanesMeetInAnyOrder) {
-  const Points cloud = mailbox({{{0.0, 1.0, -2.0}, {0.12, 0.12, 1.3}}}).cloud();
-  const PointsRef points(cloud);
-  const FrameEvidence evidence(points, FrameOptions(), nullptr);
-  for (int k = 0; k < 3; ++k) {
-    Eigen::Matrix3d axes;
-    for (int i = 0; i < 3; ++i) axes.col(i) = Eigen::Vector3d::Unit((i + k) % 3);
-    const FrameCandidate frame = candidate(axes, Eigen::Vector3f::Ones());
-    EXPECT_LT(centerOfSymmetry(evidence, frame).norm(), 0.01 * diameter(points)) << k;
-  }
 }
 
 TEST(CenterOfSymmetry, AcrossNoSymmetryIsTheMiddleOfTheExtent) {
@@ -348,20 +321,6 @@ TEST(CenterOfSymmetry, AcrossNoSymmetryIsTheMiddleOfTheExtent) {
       centerOfSymmetry(evidence, candidate(Eigen::Matrix3d::Identity(), Eigen::Vector3f::Ones()));
   EXPECT_LT(center.head<2>().norm(), 0.01 * diameter(points));
   EXPECT_LT(std::abs(center.z() - 1.0), 0.2) << "between tip and rim";
-}
-
-TEST(EquivalentFrames, HaveEverySignThatIsARotation) {
-  std::vector<Eigen::Isometry3d> poses;
-  const Eigen::Isometry3d pose = randomPose(2);
-  addWithSigns(pose.linear(), pose.translation(), poses);
-  ASSERT_EQ(poses.size(), 4u);
-  EXPECT_TRUE(poses[0].isApprox(canonicalPose(pose.linear(), pose.translation()), 1e-12)) << "itself first";
-  for (const Eigen::Isometry3d& T : poses) {
-    EXPECT_NEAR(T.linear().determinant(), 1.0, 1e-12);
-    EXPECT_LT((T * pose.translation()).norm(), 1e-12);
-  }
-  addWithSigns(pose.linear(), pose.translation(), poses);
-  EXPECT_EQ(poses.size(), 4u) << "each once";
 }
 
 TEST(EquivalentFrames, HaveEveryOrderOfAxesWhoseScoresTie) {
@@ -442,21 +401,6 @@ TEST(ProbableFrames, AreEachThereOnce) {
   EXPECT_GT(level, std::cos(3.0 * kDegree));
 }
 
-TEST(PlaneProfiles, PeakAtThePlaneOfSymmetry) {
-  GaussianEdtOptions options;
-  options.radius = 1.4;
-  const GaussianEdt edt(box(6000, Sampling::Mirrored, 1).cloud(), options);
-  const PlaneProfiles profiles(edt, {}, 256, 1, 1);
-  for (int k = 0; k < 3; ++k) {
-    const Eigen::Vector3f normal = Eigen::Vector3f::Unit(k);
-    const std::vector<float> scores = profiles.scores(normal, -20.0f, 1.0f, 41);
-    EXPECT_EQ(std::max_element(scores.begin(), scores.end()) - scores.begin(), 20) << k;
-    EXPECT_GT(scores[20], 0.9f) << "D of a symmetry is 1 up to sampling";
-    EXPECT_EQ(scores[20], profiles.score({normal, 0.0f})) << "one plane as in a profile";
-    EXPECT_LT(std::max(scores[0], scores[40]), 0.5f);
-  }
-}
-
 /// Two opposite quarters of a box: no plane across x maps them onto each other, but it does once the cloud is completed
 /// across y.
 TEST(PlaneProfiles, CompletedCloudsHaveTheSymmetryOfTheWhole) {
@@ -469,27 +413,6 @@ TEST(PlaneProfiles, CompletedCloudsHaveTheSymmetryOfTheWhole) {
   const CellPlane across_y{Eigen::Vector3f::UnitY(), 0.0f};
   EXPECT_LT(profiles.score({x, 0.0f}), 0.4f);
   EXPECT_GT(profiles.scores(x, 0.0f, 0.0f, 1, &across_y)[0], 0.9f);
-}
-
-TEST(SurfaceDirections, OfABoxAreItsAxes) {
-  const Eigen::Isometry3d pose = randomPose(3);
-  const Points cloud = moved(box(6000, Sampling::Random, 1), pose).cloud();
-  const SurfaceDirections directions(cloud, GaussianEdt(cloud));
-  const std::vector<Eigen::Vector3f> peaks = directions.peaks(6);
-  ASSERT_EQ(peaks.size(), 3u);
-  for (const Eigen::Vector3f& peak : peaks) {
-    const Eigen::Vector3d cosines = (pose.linear().transpose() * peak.cast<double>()).cwiseAbs();
-    EXPECT_GT(cosines.maxCoeff(), std::cos(2.0 * kDegree));
-  }
-  const Eigen::Vector3d diagonal = pose.linear() * Eigen::Vector3d::Ones().normalized();
-  EXPECT_LT(directions.agreement(diagonal.cast<float>()), 0.1);
-  for (int k = 0; k < 3; ++k) EXPECT_GT(directions.agreement(pose.linear().col(k).cast<float>()), 0.6) << k;
-}
-
-TEST(SurfaceDirections, OfASphereAreNone) {
-  const Points cloud = sphere(6000, 1).cloud();
-  const SurfaceDirections directions(cloud, GaussianEdt(cloud));
-  EXPECT_LE(directions.agreement(Eigen::Vector3f::UnitX()), 0.2) << "a band of 6 degrees and two caps agree";
 }
 
 /// A house seen along y: 4 wide along x, 2 high up to its eaves and 3 up to its ridge.
@@ -509,16 +432,6 @@ TEST(Outline, HasTheBoxAndTheContactOfItsCorners) {
   const Outline::Box tilted = outline.boxAt(outline.angleOf(Eigen::Vector3f(1.0f, 0.0f, 0.3f)));
   EXPECT_GT(tilted.area, upright.area);
   EXPECT_LT(tilted.contact, 0.1) << "it stands on a corner";
-}
-
-TEST(Outline, AnglesAndDirectionsAreInverse) {
-  const Eigen::Vector3f along = randomPose(5).linear().col(0).cast<float>();
-  const Outline outline(house(), along);
-  for (const double angle : {-3.0, -1.0, 0.0, 0.5, 2.0}) {
-    EXPECT_NEAR(outline.angleOf(outline.direction(angle)), angle, 1e-5);
-    EXPECT_NEAR(outline.direction(angle).dot(along), 0.0f, 1e-6f);
-    EXPECT_NEAR(outline.direction(angle).norm(), 1.0f, 1e-6f);
-  }
 }
 
 TEST(Outline, OfPointsWithoutExtentHasNoContact) {

@@ -37,14 +37,11 @@ TEST(BoundingBall, HoldsEveryPointAndIsNearlyTheSmallest) {
   }
 }
 
-TEST(BoundingBall, OfOnePointHasNoRadius) {
-  const BoundingBall ball = boundingBall(Points::Constant(3, 4, 2.5f));
-  EXPECT_EQ(ball.radius, 0.0);
-  EXPECT_EQ(ball.center, Eigen::Vector3d::Constant(2.5));
+TEST(BoundingBall, OfOnePositionAndOfPointsThatAreNotFinite) {
+  const BoundingBall of_one = boundingBall(Points::Constant(3, 4, 2.5f));
+  EXPECT_EQ(of_one.radius, 0.0);
+  EXPECT_EQ(of_one.center, Eigen::Vector3d::Constant(2.5));
   EXPECT_EQ(boundingBall(Points(3, 0)).radius, 0.0);
-}
-
-TEST(BoundingBall, OfPointsThatAreNotFiniteHasNoCenter) {
   for (const float coordinate : {std::numeric_limits<float>::quiet_NaN(), -std::numeric_limits<float>::quiet_NaN(),
                                  std::numeric_limits<float>::infinity()}) {
     Points points = Points::Random(3, 4);
@@ -58,13 +55,6 @@ TEST(CenterOfMass, IsTheMeanFarFromTheOrigin) {
   points << 1e6f, 1e6f + 1.0f, 1e6f + 2.0f, -3.0f, 0.0f, 3.0f, 5.0f, 5.0f, 5.0f;
   EXPECT_LT((centerOfMass(points) - Eigen::Vector3d(1e6 + 1.0, 0.0, 5.0)).norm(), 1e-9);
   EXPECT_EQ(centerOfMass(Points(3, 0)), Eigen::Vector3d::Zero());
-}
-
-TEST(NormalizePoints, CentersAndScales) {
-  Points points(3, 2);
-  points << 3.0f, 5.0f, 0.0f, 2.0f, -1.0f, 1.0f;
-  const Points expected = (Points(3, 2) << 1.0f, 2.0f, -0.5f, 0.5f, -1.0f, 0.0f).finished();
-  EXPECT_EQ(normalizePoints(points, {1.0, 1.0, 1.0}, 2.0), expected);
 }
 
 double diameterByAllPairs(const Points& points) {
@@ -136,12 +126,6 @@ TEST(DistinctPoints, TakesBothZerosForOne) {
   const DistinctPoints distinct(all);
   EXPECT_EQ(distinct.index_of, (std::vector<int>{0, 0, 1}));
   EXPECT_EQ(distinct.points.cols(), 2);
-}
-
-TEST(DistinctPoints, LeavesDifferentPointsAlone) {
-  const Points points = asymmetricBlob(2000, 4).cloud();
-  const DistinctPoints distinct(points);
-  EXPECT_EQ(distinct.points, points);
   EXPECT_EQ(DistinctPoints(Points(3, 0)).points.cols(), 0);
 }
 

@@ -173,48 +173,18 @@ Points boxOf(const Eigen::Vector3f& size) {
   return points;
 }
 
-Thinness thinness(const Points& points, double plane_tolerance, double line_tolerance) {
-  return thinnessOf(points, principalAxes(points), plane_tolerance, line_tolerance);
-}
-
-Thinness thinness(const Points& points, double tolerance) {
-  return thinness(points, tolerance, tolerance);
-}
-
-TEST(Thinness, IsThatOfTheSizesBeyondTheTolerance) {
-  EXPECT_EQ(thinness(boxOf({2.0f, 1.0f, 0.5f}), 0.02), Thinness::Solid);
-  EXPECT_EQ(thinness(boxOf({2.0f, 1.0f, 0.03f}), 0.02), Thinness::Sheet);
-  EXPECT_EQ(thinness(boxOf({2.0f, 0.02f, 0.02f}), 0.02), Thinness::Line);
-  EXPECT_EQ(thinness(boxOf({2.0f, 1.0f, 0.03f}), 0.005), Thinness::Solid) << "another tolerance";
-}
-
-TEST(Thinness, ALineHasAToleranceOfItsOwn) {
-  const Points rod = boxOf({2.0f, 0.03f, 0.03f});
-  EXPECT_EQ(thinness(rod, 0.005, 0.03), Thinness::Line);
-  EXPECT_EQ(thinness(rod, 0.005, 0.005), Thinness::Solid);
-}
-
-TEST(Thinness, AFewPointsBesideDoNotCount) {
-  Points points = boxOf({2.0f, 1.0f, 0.0f});
-  points(2, 500) = 0.5f;
-  EXPECT_EQ(thinness(points, 0.02), Thinness::Sheet);
-}
-
-TEST(GoldenFraction, IsTheFractionalPartOfMultiples) {
-  EXPECT_EQ(goldenFraction(0), 0.0);
-  EXPECT_DOUBLE_EQ(kGoldenSection, 0.5 * (std::sqrt(5.0) - 1.0));
-  for (int k = 1; k < 1000; ++k) EXPECT_NEAR(goldenFraction(k), std::fmod(k * kGoldenSection, 1.0), 1e-12);
-}
-
-TEST(SpiralDirection, CutsTheHalfSphereIntoRingsOfEqualArea) {
-  EXPECT_DOUBLE_EQ(kGoldenAngle, 2.0 * kPi * (1.0 - kGoldenSection));
-  constexpr int kCount = 50;
-  for (int k = 0; k < kCount; ++k) {
-    const Eigen::Vector3d n = spiralDirection(k, kCount, 0.7);
-    EXPECT_NEAR(n.norm(), 1.0, 1e-15);
-    EXPECT_DOUBLE_EQ(n.z(), (k + 0.5) / kCount);
-    EXPECT_NEAR(std::atan2(n.y(), n.x()), 0.7, 1e-12);
-  }
+TEST(Thinness, IsThatOfTheSizesBeyondTheTolerances) {
+  const auto thinness = [](const Points& points, double plane_tolerance, double line_tolerance) {
+    return thinnessOf(points, principalAxes(points), plane_tolerance, line_tolerance);
+  };
+  Points sheet = boxOf({2.0f, 1.0f, 0.03f});
+  EXPECT_EQ(thinness(boxOf({2.0f, 1.0f, 0.5f}), 0.02, 0.02), Thinness::Solid);
+  EXPECT_EQ(thinness(sheet, 0.02, 0.02), Thinness::Sheet);
+  EXPECT_EQ(thinness(sheet, 0.005, 0.005), Thinness::Solid);
+  EXPECT_EQ(thinness(boxOf({2.0f, 0.03f, 0.03f}), 0.005, 0.03), Thinness::Line);
+  EXPECT_EQ(thinness(boxOf({2.0f, 0.03f, 0.03f}), 0.005, 0.005), Thinness::Solid);
+  sheet(2, 500) = 0.5f;
+  EXPECT_EQ(thinness(sheet, 0.02, 0.02), Thinness::Sheet) << "a few points beside do not count";
 }
 
 TEST(EvenDirections, LieAboutTheOriginAndApartFromEachOther) {
@@ -237,26 +207,6 @@ TEST(EvenDirections, LieAboutTheOriginAndApartFromEachOther) {
         EXPECT_GT((directions[i] - directions[j]).norm(), 0.75 * std::sqrt(4.0 * kPi / count));
     }
     EXPECT_LT(sum.norm() / count, 0.05);
-  }
-}
-
-TEST(AxisRotations, AreTheDifferentRotationsOfTheAxes) {
-  const auto& rotations = axisRotations();
-  EXPECT_EQ(rotations[0], Eigen::Matrix3i::Identity());
-  for (std::size_t i = 0; i < rotations.size(); ++i) {
-    const Eigen::Matrix3d matrix = rotations[i].cast<double>();
-    EXPECT_TRUE(matrix.isUnitary());
-    EXPECT_NEAR(matrix.determinant(), 1.0, 1e-12);
-    for (std::size_t j = 0; j < i; ++j) EXPECT_NE(rotations[i], rotations[j]);
-  }
-}
-
-TEST(ViewingFrame, IsARotationThatLooksForward) {
-  for (const Eigen::Vector3d& forward : evenDirections(50)) {
-    const Eigen::Matrix3d R = viewingFrame(forward);
-    EXPECT_TRUE((R * R.transpose()).isIdentity(1e-14));
-    EXPECT_NEAR(R.determinant(), 1.0, 1e-14);
-    EXPECT_TRUE((R * forward).isApprox(Eigen::Vector3d::UnitZ(), 1e-14));
   }
 }
 

@@ -254,26 +254,6 @@ TEST(TypicalDistance, IsTheMeanOfTheNearest) {
   EXPECT_GT(typicalDistance({0.0f, 0.0f}), 0.0f);
 }
 
-TEST(SymmetryDescriptors, PeakAtThePlanesOfABox) {
-  const Points points = test::box({1.0, 0.7, 0.4}, 4000, test::Sampling::Random, 1).cloud();
-  const SymmetryDescriptors descriptors = symmetryDescriptors(points, Eigen::Isometry3d::Identity());
-  ASSERT_EQ(descriptors.prst.size(), static_cast<std::size_t>(kPRSTSize));
-  ASSERT_EQ(descriptors.prsd.size(), static_cast<std::size_t>(kPRSDSize));
-  ASSERT_EQ(descriptors.gedt.size(), static_cast<std::size_t>(kGEDTSize));
-  const auto greatest = [](const std::vector<float>& values) {
-    const auto at = std::max_element(values.begin(), values.end());
-    return std::make_pair(at - values.begin(), *at);
-  };
-  // The planes of a box pass through its center: the bins of r on either side of 0.
-  const auto [bin, value] = greatest(descriptors.prst);
-  EXPECT_GT(value, 0.9f);
-  EXPECT_TRUE(bin % kDescriptorBins == 15 || bin % kDescriptorBins == 16);
-  EXPECT_GT(greatest(descriptors.prsd).second, 0.9f);
-  // Where a surface is, f is 1; it holds the box and is 0 far away from it.
-  EXPECT_GT(greatest(descriptors.gedt).second, 0.9f);
-  EXPECT_EQ(*std::min_element(descriptors.prst.begin(), descriptors.prst.end()) >= 0.0f, true);
-}
-
 TEST(SymmetryDescriptors, DoNotDependOnUnitsOrThreads) {
   const Points points = test::box({1.0, 0.7, 0.4}, 2000, test::Sampling::Random, 1).cloud();
   DescriptorOptions options;

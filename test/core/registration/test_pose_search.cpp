@@ -10,7 +10,6 @@
 #include <stdexcept>
 #include <utility>
 
-#include "core/registration/pose_covariance.h"
 #include "core/registration/pose_scoring.h"
 #include "core/registration/pose_starts.h"
 #include "core/registration/posed_surface.h"
@@ -26,14 +25,6 @@ using namespace test;
 
 PosedSurface surface(const Points& points, std::optional<Visibility> seen = {}) {
   return {points, std::move(seen), 1, 0};
-}
-
-TEST(PoseScore, MeritIsSupportMinusHalfTheConflict) {
-  PoseScore score;
-  EXPECT_EQ(score.merit(), 0.0);
-  score.support = 0.75;
-  score.conflict = 0.5;
-  EXPECT_EQ(score.merit(), 0.5);
 }
 
 TEST(PoseSearch, FindsAnyPoseOfAWhole) {
@@ -147,59 +138,6 @@ TEST(FrameHypotheses, StartFromEveryFrameThatIsAMaximum) {
   EXPECT_EQ(hypotheses.size(), 48u);
   EXPECT_TRUE(std::any_of(hypotheses.begin(), hypotheses.end(),
                           [&](const Eigen::Isometry3d& pose) { return pose.isApprox(turned, 1e-9); }));
-}
-
-TEST(FrameHypotheses, HoldTheMotionBetweenTwoPosesOfAShape) {
-  const Shape shape = box(4000, Sampling::Mirrored, 1);
-  const Eigen::Isometry3d T_b_a = randomPose(9);
-  const SymmetryFrame a = symmetryFrame(shape.cloud()), b = symmetryFrame(moved(shape, T_b_a).cloud());
-  const std::vector<Eigen::Isometry3d> hypotheses = frameHypotheses(a, b);
-  EXPECT_GE(hypotheses.size(), 24u);
-  double least = kPi;
-  for (const Eigen::Isometry3d& hypothesis : hypotheses)
-    least = std::min(least, angleOf((T_b_a.inverse() * hypothesis).linear()));
-  EXPECT_LT(least, 3.0 * kDegree);
-}
-
-enum class Pairs { Points, Planes, Both };
-
-/// \return the motion that brings \p num_pairs random points to where \p true_motion has them, lengths times \p scale.
-Eigen::Isometry3d solved(const Eigen::Isometry3d& true_motion, int num_pairs, Pairs pairs, double scale = 1.0) {
-  MotionEquations equations(scale);
-  for (int i = 0; i < num_pairs; ++i) {
-    const Eigen::Isometry3d random = randomPose(static_cast<std::uint64_t>(i) + 1, 1.0);
-    const Eigen::Vector3d x = random.translation(), y = true_motion * x;
-    const double weight = 0.5 + 0.5 * std::abs(random.linear()(0, 0));
-    if (pairs != Pairs::Planes) equations.addPoint(scale * x, scale * y, weight);
-    if (pairs != Pairs::Points) equations.addPlane(scale * x, scale * y, random.linear().col(1), weight);
-  }
-  Eigen::Isometry3d motion = equations.motion();
-  motion.translation() /= scale;
-  return motion;
-}
-
-Eigen::Isometry3d smallMotion() {
-  return Eigen::Translation3d(2e-4, -5e-4, 3e-4) *
-         Eigen::AngleAxisd(1e-3, Eigen::Vector3d(1.0, -2.0, 0.5).normalized());
-}
-
-TEST(MotionEquations, FindTheMotionOfAnyNumberOfPairs) {
-  const Eigen::Isometry3d motion = smallMotion();
-  for (const Pairs pairs : {Pairs::Points, Pairs::Planes, Pairs::Both})
-    for (const int num_pairs : {9, 127, 128, 129, 1000})
-      EXPECT_LT((solved(motion, num_pairs, pairs).matrix() - motion.matrix()).norm(), 1e-5)
-          << num_pairs << " pairs of kind " << static_cast<int>(pairs);
-}
-
-TEST(MotionEquations, DoNotDependOnTheUnitOfLength) {
-  const Eigen::Isometry3d motion = smallMotion();
-  for (const double scale : {1e-4, 1e4})
-    EXPECT_LT((solved(motion, 50, Pairs::Both, scale).matrix() - solved(motion, 50, Pairs::Both).matrix()).norm(), 1e-9)
-        << scale;
-}
-
-TEST(MotionEquations, WithoutPairsNothingMoves) {
-  EXPECT_TRUE(MotionEquations(1.0).motion().matrix().isIdentity());
 }
 
 TEST(PoseScorer, TheTruePoseIsBestAndStandsStill) {

@@ -254,14 +254,6 @@ TEST(DepthFilter, TakesFlyingPixelsOut) {
   EXPECT_LE(num_left, 0.1 * static_cast<double>(flying.size()));
 }
 
-TEST(DepthFilter, LeavesPicturesWithoutErrorsAsTheyAre) {
-  const DepthImage image = picture(step);
-  const FilteredDepths filtered = filterDepths(image, 2, 1);
-  EXPECT_EQ(filtered.depths, image.depths);
-  EXPECT_EQ(filtered.num_flying, 0u);
-  EXPECT_EQ(filtered.inverse_error, 0.0);
-}
-
 TEST(DepthFilter, PixelsWithoutAPointHaveNone) {
   DepthImage image = noisy(picture(slanted));
   image.depths[5] = std::numeric_limits<float>::quiet_NaN();

@@ -67,6 +67,9 @@ TEST(Visibility, FrontIsFreeBehindIsUnknownBesideIsFree) {
     EXPECT_EQ(seen->depthBehind(-distance * across), -kInfinity) << distance;
   }
   EXPECT_EQ(seen->depthBehind(2.0 * kViewpoint), kInfinity) << "behind the viewer";
+  EXPECT_LT((seen->viewpoint() - kViewpoint).norm(), 1e-12);
+  const Eigen::Vector3d center(0.3, -2.0, 7.0);
+  EXPECT_LT((seen->normalized(center, 3.5).viewpoint() - (kViewpoint - center) / 3.5).norm(), 1e-12);
 }
 
 TEST(Visibility, ASurfaceHasNoHoles) {
@@ -88,16 +91,15 @@ TEST(Visibility, ASurfaceHasNoHoles) {
   }
 }
 
-TEST(Visibility, SeesNothingFromInside) {
+TEST(Visibility, SeesNothingFromInsideAndOfNoPoints) {
   EXPECT_FALSE(Visibility::fromPoints(spherePoints(), Eigen::Vector3d::Zero()));
   EXPECT_FALSE(Visibility::fromPoints(spherePoints(), Eigen::Vector3d(0.5, 0.2, 0.1)));
   EXPECT_FALSE(Visibility::fromPoints(spherePoints(), Eigen::Vector3d(0.99, 0.0, 0.0)));
   // From a distance of 1.02 a sphere is seen within asin(1 / 1.02) = 79 degrees, from 1.05 within 72.
   EXPECT_FALSE(Visibility::fromPoints(spherePoints(), Eigen::Vector3d(1.02, 0.0, 0.0)));
   EXPECT_TRUE(Visibility::fromPoints(spherePoints(), Eigen::Vector3d(1.05, 0.0, 0.0)));
-}
-
-TEST(Visibility, OfPointsThatAreNotFiniteIsNone) {
+  EXPECT_FALSE(Visibility::fromPoints(Points(3, 0), Eigen::Vector3d::Ones()));
+  EXPECT_FALSE(spaceSeenFrom(Points(3, 0), Eigen::Vector3d::Ones()));
   Points points = sphereScan();
   points(0, 1) = std::numeric_limits<float>::quiet_NaN();
   EXPECT_FALSE(Visibility::fromPoints(points, kViewpoint));
@@ -111,19 +113,6 @@ TEST(Visibility, OnePointIsOnePixel) {
   EXPECT_LT(seen->depthBehind(Eigen::Vector3d::Constant(0.9)), 0.0);
   EXPECT_GT(seen->depthBehind(Eigen::Vector3d::Constant(1.1)), 0.0);
   EXPECT_TRUE(Visibility::fromPoints(Points::Constant(3, 100, 1.0f), Eigen::Vector3d::Zero()));
-}
-
-TEST(Visibility, WithoutPointsThereIsNone) {
-  EXPECT_FALSE(Visibility::fromPoints(Points(3, 0), Eigen::Vector3d::Ones()));
-  EXPECT_FALSE(spaceSeenFrom(Points(3, 0), Eigen::Vector3d::Ones()));
-}
-
-TEST(Visibility, KnowsItsViewpoint) {
-  const auto seen = Visibility::fromPoints(sphereScan(), kViewpoint);
-  ASSERT_TRUE(seen);
-  EXPECT_LT((seen->viewpoint() - kViewpoint).norm(), 1e-12);
-  const Eigen::Vector3d center(0.3, -2.0, 7.0);
-  EXPECT_LT((seen->normalized(center, 3.5).viewpoint() - (kViewpoint - center) / 3.5).norm(), 1e-12);
 }
 
 TEST(Visibility, UnknownRaysSayNothing) {

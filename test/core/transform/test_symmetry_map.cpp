@@ -11,17 +11,6 @@ namespace {
 
 using namespace test;
 
-TEST(SymmetryMap, StrongestIsTheFirstOfTheGreatest) {
-  SymmetryMap map;
-  EXPECT_TRUE(map.empty());
-  EXPECT_EQ(map.strongest(), 0u);
-  map.grid = PlaneGrid(1, 2, 2, Eigen::Vector3d::Zero(), 1.0);
-  map.values = {0.1f, 0.7f, -0.2f, 0.7f};
-  EXPECT_FALSE(map.empty());
-  EXPECT_EQ(map.strongest(), 1u);
-  EXPECT_EQ(map[2], -0.2f);
-}
-
 TEST(SymmetryMap, PrstIsThatOfEquation1) {
   SymmetryMap map;
   map.values = {1.0f, 0.0f, -1.0f, -1.01f};  // the last one: an estimate below -1
