@@ -160,45 +160,6 @@ TEST(CloudAnalysis, FunctionsOfAnyCloudRefuseAlike) {
   EXPECT_EQ(messageOf([&] { detectObjectSymmetries(*grid(60), symmetries); }), "max_fold = 0, must be >= 2");
 }
 
-TEST(ScanAnalysis, KeepsTheViewpoint) {
-  Copy copy;
-  EXPECT_EQ(copy.getViewpoint().mode, Viewpoint::Mode::Auto);
-  copy.setViewpoint(Eigen::Vector3d(1, 2, 3));
-  copy.setInputCloud(grid(60));
-  EXPECT_EQ(copy.getViewpoint().mode, Viewpoint::Mode::Given);
-  EXPECT_EQ(copy.getViewpoint().position, Eigen::Vector3d(1, 2, 3));
-  copy.setViewpointMode(Viewpoint::Mode::None);
-  EXPECT_EQ(copy.getViewpoint().mode, Viewpoint::Mode::None);
-  EXPECT_FALSE(copy.usedViewpoint());
-  copy.setViewpoint(Viewpoint());
-  EXPECT_EQ(copy.getViewpoint().mode, Viewpoint::Mode::Auto);
-}
-
-TEST(CloudConversion, MessagesHoldTheirTextAlone) {
-  EXPECT_EQ(messageOf([] { throwBadArgument("sigma = -1, must be > 0"); }), "sigma = -1, must be > 0");
-  EXPECT_EQ(messageOf([] { withBadArguments([] { throw std::invalid_argument("r = 0, must be > 0"); }); }),
-            "r = 0, must be > 0");
-  EXPECT_EQ(messageOf([] { checkAtLeast("n", 2, 3); }), "n = 2, must be >= 3");
-  EXPECT_NO_THROW(checkAtLeast("n", 3, 3));
-  EXPECT_EQ(withBadArguments([] { return 7; }), 7);
-}
-
-struct Options {
-  int size = 1;
-  void validate() const {
-    if (size < 1) throw std::invalid_argument("size = " + std::to_string(size) + ", must be >= 1");
-  }
-};
-
-TEST(CloudConversion, OptionsThatAreRefusedStayAsTheyWere) {
-  Options options;
-  changeOptions(options, [](Options& changed) { changed.size = 5; });
-  EXPECT_EQ(options.size, 5);
-  EXPECT_EQ(messageOf([&] { changeOptions(options, [](Options& changed) { changed.size = 0; }); }),
-            "size = 0, must be >= 1");
-  EXPECT_EQ(options.size, 5);
-}
-
 TEST(CloudConversion, DrawsTheSameOfTheFinitePointsWhateverElseIsThere) {
   pcl::PointCloud<pcl::PointXYZ> finite, mixed;
   pcl::Indices place_in_mixed;
@@ -220,12 +181,6 @@ TEST(CloudConversion, DrawsTheSameOfTheFinitePointsWhateverElseIsThere) {
     }
     EXPECT_EQ(selectPoints(mixed, &place_in_mixed, max_points, 3).indices, of_mixed.indices);
   }
-}
-
-TEST(CloudConversion, ReasonsNameTheInput) {
-  EXPECT_EQ(reasonForNoAnswer(Points(3, 0), "source"), "source: no finite point");
-  EXPECT_EQ(reasonForNoAnswer(Points::Random(3, 20)), "");
-  EXPECT_NE(reasonForNoAnswer(Points::Random(3, 19)).find("input cloud: 19 distinct points"), std::string::npos);
 }
 
 }  // namespace

@@ -66,28 +66,6 @@ TEST(SymmetryMaximaRefinement, TakesAnySearchMethod) {
   EXPECT_GT(counting->num_queries, 10'000);
 }
 
-TEST(SymmetryMaximaRefinement, AsksTheSearchMethodAlsoWherePointsRepeatOrAreMany) {
-  const auto few = test::toCloud(test::box(1500, Sampling::Random, 5));
-  const auto twice = pcl::make_shared<pcl::PointCloud<pcl::PointXYZ>>(*few + *few);
-  const auto many = test::toCloud(test::box(25'000, Sampling::Random, 6));
-  for (const auto& cloud : {few, twice, many}) {
-    const auto expected = detectSymmetryPlanes(*cloud);
-    for (const int num_threads : {1, 0}) {
-      const auto search = pcl::make_shared<test::CountingKdTree>();
-      SymmetryMaximaRefinement<pcl::PointXYZ> refinement;
-      refinement.setInputCloud(cloud);
-      refinement.setNumberOfThreads(num_threads);
-      refinement.setSearchMethod(search);
-      const auto planes = refinement.compute();
-      ASSERT_EQ(planes.size(), expected.size());
-      for (std::size_t i = 0; i < planes.size(); ++i) EXPECT_LT(planes[i].angleTo(expected[i]), 1e-3);
-      EXPECT_GT(search->num_queries, 10'000);
-      EXPECT_EQ(search->getInputCloud()->size(),
-                cloud == twice ? few->size() : std::min<std::size_t>(cloud->size(), 20'000));
-    }
-  }
-}
-
 TEST(SymmetryMaximaRefinement, FindsWithoutASearchMethodThatItCannotUse) {
   const auto cloud = test::toCloud(test::box(1500, Sampling::Random, 5));
   SymmetryMaximaRefinement<pcl::PointXYZ> refinement;

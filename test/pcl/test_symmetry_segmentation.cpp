@@ -69,6 +69,7 @@ TEST_F(SymmetrySegmentationTest, PointsThatWereNotDrawnFollowTheClosest) {
 TEST_F(SymmetrySegmentationTest, SplittingAsksTheSearchMethod) {
   SegmentationOptions options;
   options.method = SegmentationMethod::Splitting;
+  options.splitting.depth = 1;
   segmentation_.setOptions(options);
   segmentation_.setInputCloud(sampleMesh(*mesh_, 2000));
   segmentation_.segment(segments_);
