@@ -57,18 +57,23 @@ Turntable turntable(int num_scans) {
   return table;
 }
 
-TEST(RegisterAll, BringsScansFromAllAroundTogether) {
-  const Turntable table = turntable(9);
+TEST(RegisterAll, BringsScansFromAllAroundTogetherAndLeavesOutAScanOfSomethingElse) {
+  Turntable table = turntable(9);
+  const Scan foreign = test::scan(blockL(), {5.0, 3.0, 3.0});
+  table.add(foreign.cloud(), foreign.viewpoint);
+  std::swap(table.scans[3], table.scans[9]);
+  std::swap(table.T_scan_object[3], table.T_scan_object[9]);
   const MergedCloud<pcl::PointXYZ> merged = mergeScans<pcl::PointXYZ>(table.scans);
   std::size_t num_points = 0;
   for (std::size_t k = 0; k < table.scans.size(); ++k) {
-    ASSERT_EQ(merged.registration.scans[k].left_out, "") << k;
+    ASSERT_EQ(merged.registration.scans[k].left_out.empty(), k != 3) << k << merged.registration.scans[k].left_out;
+    if (k == 3) continue;
     const auto [degrees, way] = table.error(merged.registration, k);
     EXPECT_LT(degrees, 1.0) << k;
     EXPECT_LT(way, 0.02) << k;
     num_points += table.scans[k]->size();
   }
-  EXPECT_GE(merged.registration.pairs.size(), table.scans.size() - 1);
+  EXPECT_GE(merged.registration.pairs.size(), table.scans.size() - 2);
   for (const ScanPair& pair : merged.registration.pairs) EXPECT_TRUE(pair.overlap > 0.05 || !pair.used);
   ASSERT_EQ(merged.cloud.size(), merged.scans.size());
   EXPECT_LT(merged.cloud.size(), num_points) << "thinned where scans overlap";
@@ -77,19 +82,6 @@ TEST(RegisterAll, BringsScansFromAllAroundTogether) {
   const Points points = table.T_scan_object[0].inverse().cast<float>() * found;
   for (Eigen::Index i = 0; i < points.cols(); i += 500)
     EXPECT_LT(std::sqrt((model.colwise() - points.col(i)).colwise().squaredNorm().minCoeff()), 0.04f) << i;
-}
-
-TEST(RegisterAll, LeavesOutAScanOfSomethingElse) {
-  Turntable table = turntable(8);
-  const Scan foreign = test::scan(blockL(), {5.0, 3.0, 3.0});
-  table.add(foreign.cloud(), foreign.viewpoint);
-  std::swap(table.scans[3], table.scans[8]);
-  std::swap(table.T_scan_object[3], table.T_scan_object[8]);
-  const RegisteredScans found = mergeScans<pcl::PointXYZ>(table.scans).registration;
-  for (std::size_t k = 0; k < table.scans.size(); ++k) {
-    EXPECT_EQ(found.scans[k].left_out.empty(), k != 3) << k << " " << found.scans[k].left_out;
-    if (k != 3) EXPECT_LT(table.error(found, k).first, 1.0) << k;
-  }
 }
 
 TEST(RegisterAll, TakesTheSameScanTwiceAndOneAlone) {
@@ -125,7 +117,7 @@ TEST(RegisterAll, ScansWithoutOverlapAreLeftOutOrRight) {
   table.add(250.0);
   const RegisteredScans found = mergeScans<pcl::PointXYZ>(table.scans).registration;
   EXPECT_EQ(found.scans[0].left_out, "");
-  if (found.scans[1].left_out.empty()) EXPECT_LT(table.error(found, 1).first, 5.0);
+  EXPECT_TRUE(!found.scans[1].left_out.empty() || table.error(found, 1).first < 5.0);
 }
 
 TEST(RegisterAll, RefusesBadOptions) {
