@@ -19,7 +19,7 @@ namespace {
 using Cube = LineSums::Cube;
 using Lines = LineSums::Lines;
 
-constexpr int line_lanes = 8;    // 32-bit integers in an AVX2 register; sums are padded by twice as many
+constexpr int line_lanes = 8;    // 32-bit integers in an AVX2 register; sums are padded by as many
 constexpr int max_lines = 1024;  // at a time: they stay in the first cache, and sums of bytes fit in 32 bits
 
 /// Fills the lines that the images of points run along when the points are reflected in parallel planes.
@@ -96,7 +96,6 @@ void accumulateScalar(const Lines& lines, const std::uint8_t* table, int bits, s
 template <int kFunctions>
 __attribute__((target("avx2"))) void accumulateAvx2(const Lines& lines, const std::uint8_t* table, int bits,
                                                     std::int32_t* const* sums) {
-  constexpr int num_lanes = line_lanes;
   const __m256i lane = _mm256_setr_epi32(0, 1, 2, 3, 4, 5, 6, 7);
   const __m256i byte = _mm256_set1_epi32(0xFF);
   const __m256i zero = _mm256_setzero_si256();
@@ -105,18 +104,16 @@ __attribute__((target("avx2"))) void accumulateAvx2(const Lines& lines, const st
   __m256i ramp[3], stride[3];
   for (int axis = 0; axis < 3; ++axis) {
     ramp[axis] = _mm256_mullo_epi32(lane, _mm256_set1_epi32(lines.step[axis]));
-    stride[axis] = _mm256_set1_epi32(num_lanes * lines.step[axis]);
+    stride[axis] = _mm256_set1_epi32(line_lanes * lines.step[axis]);
   }
   for (int i = 0; i < lines.size; ++i) {
-    const std::int32_t k_begin = lines.k_begin[i], k_end = lines.k_end[i];
-    std::int32_t k = k_begin & ~(num_lanes - 1);
+    const std::int32_t k_end = lines.k_end[i];
+    std::int32_t k = lines.k_begin[i];
     __m256i x = _mm256_add_epi32(_mm256_set1_epi32(lines.x[i] + k * lines.step[0]), ramp[0]);
     __m256i y = _mm256_add_epi32(_mm256_set1_epi32(lines.y[i] + k * lines.step[1]), ramp[1]);
     __m256i z = _mm256_add_epi32(_mm256_set1_epi32(lines.z[i] + k * lines.step[2]), ramp[2]);
-    const __m256i before = _mm256_set1_epi32(k_begin - 1), behind = _mm256_set1_epi32(k_end);
-    for (; k < k_end; k += num_lanes) {
-      const __m256i at = _mm256_add_epi32(_mm256_set1_epi32(k), lane);
-      const __m256i inside = _mm256_and_si256(_mm256_cmpgt_epi32(at, before), _mm256_cmpgt_epi32(behind, at));
+    for (; k < k_end; k += line_lanes) {
+      const __m256i inside = _mm256_cmpgt_epi32(_mm256_set1_epi32(k_end - k), lane);
       const __m256i index = _mm256_add_epi32(_mm256_add_epi32(_mm256_sll_epi32(_mm256_sra_epi32(z, fraction), slice),
                                                               _mm256_sll_epi32(_mm256_sra_epi32(y, fraction), row)),
                                              _mm256_sra_epi32(x, fraction));
@@ -178,7 +175,7 @@ LineSums::LineSums(const GaussianEdt& edt, const LookupTable& table, int num_ste
     : table_(table),
       accumulate_(table.numFunctions() == 1 ? kernelOf<1>(scalar) : kernelOf<2>(scalar)),
       totals_(table.numFunctions(), std::vector<double>(num_steps)),
-      sums_(table.numFunctions(), std::vector<std::int32_t>(num_steps + 2 * line_lanes)),
+      sums_(table.numFunctions(), std::vector<std::int32_t>(num_steps + line_lanes)),
       storage_(5 * max_lines) {
   const double middle = 0.5 * (edt.numCells() - 1);
   cube_.middle = static_cast<float>(middle);
