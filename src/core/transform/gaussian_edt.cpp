@@ -141,9 +141,9 @@ void GaussianEdt::chooseWidth(const PointsRef& points, double sigma) {
   if (sigma > 0.0) return take(sigma);
   cell_size_ = radius_ / std::max(half - kMarginInSigmas * kSigmaInCells, 0.5 * half);
   sigma_ = kSigmaInCells * cell_size_;
-  const double spacing =
-      points.cols() > kTransform.num_dense ? 0.0 : std::min(sampleSpacing(points), kMostSpacing * radius_);
-  if (spacing > sigma_) take(spacing);
+  const double most = kMostSpacing * radius_;
+  if (points.cols() > kTransform.num_dense || sigma_ >= most) return;
+  if (const double spacing = std::min(sampleSpacing(points), most); spacing > sigma_) take(spacing);
 }
 
 void GaussianEdt::computeValues(const PointsRef& points, int num_threads) {
