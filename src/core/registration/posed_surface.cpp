@@ -34,7 +34,8 @@ PosedSurface::PosedSurface(const PointsRef& input, std::optional<Visibility> see
       seen(std::move(seen_space)),
       grid(lateGrid(points, kRegistration.cells)),
       search(makeFlannSearch(input)) {
-  LocalGeometry geometry = localGeometry(points, *search, kNumSupportNeighbors, num_threads);
+  FoundNeighbors neighbors;
+  LocalGeometry geometry = localGeometry(points, *search, kNumSupportNeighbors, num_threads, &neighbors);
   const double typical = median(geometry.spacing);
   spacing = geometry.spacing;
   if (median(geometry.roughness) > kRegistration.max_roughness * typical)
@@ -42,8 +43,8 @@ PosedSurface::PosedSurface(const PointsRef& input, std::optional<Visibility> see
   normals = std::move(geometry.normals);
   noise = median(std::move(geometry.roughness));
   accuracy = typical + 2.0 * noise;
-  borders = std::async(std::launch::deferred, [points = points, normals = normals, search = search] {
-              return openBorders(points, *search, normals, 1);
+  borders = std::async(std::launch::deferred, [points = points, normals = normals, search = search, neighbors] {
+              return openBorders(points, *search, normals, 1, &neighbors);
             }).share();
 }
 
