@@ -4,6 +4,7 @@
 #include <cmath>
 #include <utility>
 
+#include "core/base/parallel.h"
 #include "core/detection/detection_rules.h"
 #include "core/evidence/evidence_rules.h"
 #include "core/evidence/plane_motion.h"

@@ -1,34 +1,16 @@
 #pragma once
 
-#include <algorithm>
 #include <array>
-#include <cmath>
 #include <cstdint>
 #include <optional>
 #include <vector>
 
-#include "core/geometry/surface_normals.h"
+#include "core/geometry/surface_discs.h"
 #include "pcl_symmetry/core/point_set.h"
 #include "pcl_symmetry/core/reflection_plane.h"
 #include "pcl_symmetry/core/visibility.h"
 
 namespace pcl_symmetry {
-
-/// The piece of surface that a sample represents: a disc in its tangent plane.
-struct SurfaceDisc {
-  Eigen::Vector3f center, normal;  ///< unit normal
-  float radius;
-
-  /// \return squared distance of a point; distances across the disc count the root of \p sq_across_factor times.
-  float sqDistance(const Eigen::Vector3f& x, float sq_across_factor = 1.0f) const {
-    const Eigen::Vector3f difference = x - center;
-    const float across = normal.dot(difference), sq_across = across * across;
-    const float sq_along = std::max(0.0f, difference.squaredNorm() - sq_across);
-    if (sq_along <= radius * radius) return sq_across_factor * sq_across;
-    const float beside = std::sqrt(sq_along) - radius;
-    return sq_across_factor * sq_across + beside * beside;
-  }
-};
 
 /// A sample of a surface, the disc of surface that it represents, and its neighborhood.
 struct alignas(64) SurfaceSample : SurfaceDisc {

@@ -40,6 +40,11 @@ struct GeometryRules {
   double translation_ridge = 1e-6;  ///< share of the trace; keeps the translation along a cylinder at rest
   double position_ridge = 1e-9;     ///< parallel normals leave the position along them open
 
+  // Discs
+  float disc_cell = 1.5f;         ///< spacings, edge of a cell
+  float max_disc_spacing = 3.0f;  ///< median spacings, greatest spacing that makes a disc
+  float max_disc_cells = 96.0f;   ///< along the longest edge
+
   // Local geometry
   /// Offset of the neighbors' mean from a point at the border, in distances to the last neighbor; 0.25 by chance, 0.42
   /// beside half a disc.

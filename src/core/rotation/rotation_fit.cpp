@@ -9,7 +9,6 @@
 #include "core/base/median.h"
 #include "core/base/parallel.h"
 #include "core/evidence/evidence_rules.h"
-#include "core/geometry/flann_search.h"
 #include "core/geometry/point_samples.h"
 #include "core/geometry/small_motion.h"
 #include "core/refinement/landing.h"
@@ -46,34 +45,33 @@ struct RotationFit::NormalEquations {
   Vector6d g = Vector6d::Zero();
 };
 
-RotationFit::RotationFit(Points points, const GaussianEdt& edt, RotationLimits limits, std::uint64_t seed,
+RotationFit::RotationFit(Points points, const GaussianEdt& edt, RotationLimits limits, double reach, std::uint64_t seed,
                          int num_threads, bool single)
     : edt_(edt), limits_(limits), own_share_(1.0), first_sigma_(0.0), last_sigma_(0.0), num_threads_(num_threads) {
   const auto surface = std::make_shared<Surface>();
   surface->points = std::move(points);
   const Points& p = surface->points;
-  FoundNeighbors neighbors;
-  const auto flann = std::make_shared<FlannSearch>(p);
-  surface->search = surface->walk = flann;
-  surface->geometry = localGeometry(p, *flann, kNumSupportNeighbors, num_threads, &neighbors);
-  if (NeighborLists::isUseful(p.cols())) {
-    const auto lists = std::make_shared<NeighborLists>(p, neighbors.indices, neighbors.sq_reach);
-    flann->use(lists);
-    surface->walk = std::make_shared<NeighborWalk>(*lists, *flann);
-  }
-  surface->samples = std::make_unique<SurfaceSamples>(p, surface->geometry, num_threads);
+  const auto search = makeFlannSearch(p);
+  surface->geometry = localGeometry(p, *search, kNumSupportNeighbors, num_threads);
   surface->single = single;
   const LocalGeometry& geometry = surface->geometry;
   surface->spacing = median(geometry.spacing);
   surface->roughness = median(geometry.roughness);
-  surface->greatest_disc = kEvidence.disc_radius * *std::max_element(geometry.spacing.begin(), geometry.spacing.end());
   constexpr double rounding = 1e-6;  // radii: that of float coordinates
   first_sigma_ =
       std::max({rounding, kRotation.first_tolerances * limits.tolerance, kRotation.first_spacings * surface->spacing});
   last_sigma_ = std::max(
       {rounding, kRotation.last_tolerances * limits.tolerance, kRotation.last_roughnesses * surface->roughness});
   last_sigma_ = std::min(last_sigma_, first_sigma_);
-  surface->own_distances = ownSurfaceDistances(*surface->samples, num_threads);
+  const double farthest = std::max(reach, first_sigma_);
+  surface->discs =
+      std::make_unique<SurfaceDiscs>(p, geometry, single ? 0.0f : kEvidence.disc_radius, static_cast<float>(farthest));
+  surface->grid = std::make_unique<ClosestPointGrid>(p, 32);
+  surface->own_distances.resize(static_cast<std::size_t>(p.cols()));
+  parallelRanges(surface->own_distances.size(), 512, num_threads, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i)
+      surface->own_distances[i] = surface->discs->ownDistance(static_cast<int>(i), kEvidence.new_point_factor);
+  });
   surface->order = drawSamples(p.cols(), static_cast<int>(p.cols()) - 1, seed);
   surface->overlap_points = pointsAt(p, drawSamples(p.cols(), kRotation.num_overlap_points, seed + 2));
   // Under a symmetry the closest sample of a rotated sample is as far away as the closest other sample of a sample.
@@ -174,24 +172,22 @@ RotationSet RotationFit::closelyFitted(const RotationSet& set) const {
                 {first_sigma_, last_sigma_, kRotation.close_iterations, false});
 }
 
-Landing RotationFit::landed(const Eigen::Matrix3d& rotation, const Eigen::Vector3d& center, std::size_t num_samples,
-                            double reach, bool rough) const {
-  const Surface& on = *surface_;
-  const std::size_t size = std::min(on.order.size(), num_samples);
-  const Eigen::Matrix3f R = rotation.cast<float>();
-  const Eigen::Vector3f shift = (center - rotation * center).cast<float>();
-  Points images(3, size);
-  for (std::size_t k = 0; k < size; ++k) images.col(k) = R * on.points.col(on.order[k]) + shift;
-  const FarTest far(edt_, Eigen::Vector3d::Zero(), 1.0);
-  const bool by_discs = !rough && !on.single;
-  // The closest point lies beside the closest point of the surface.
-  Landing landing = land({on.points, on.geometry.normals, rough ? *on.walk : *on.search, nullptr, &far},
-                         std::move(images), by_discs ? reach + on.greatest_disc : reach);
-  if (by_discs)
-    landing.distances = surfaceDistances(landing.images, landing.closest, *on.samples);
-  else
-    for (const float sq_distance : landing.sq_distances) landing.distances.push_back(std::sqrt(sq_distance));
-  return landing;
+/// The sample that the grid names for the cell of a point, or a neighbor that is closer.
+int RotationFit::closestSample(const Eigen::Vector3f& x) const {
+  const Points& points = surface_->points;
+  int closest = surface_->grid->closest(x);
+  float least = (points.col(closest) - x).squaredNorm();
+  for (int hop = 0; hop < 4; ++hop) {
+    const int from = closest;
+    for (const int j : surface_->geometry.nearest[from]) {
+      const float sq_distance = (points.col(j) - x).squaredNorm();
+      if (sq_distance >= least) continue;
+      least = sq_distance;
+      closest = j;
+    }
+    if (closest == from) break;
+  }
+  return closest;
 }
 
 /// x' = R (x - c) + c moves with R' = exp(omega) R exp(-omega) and c' = c + t
@@ -203,20 +199,27 @@ RotationFit::NormalEquations RotationFit::equations(const RotationSet& set, std:
   const Eigen::Matrix3d& rotation = set.rotations[i];
   const Eigen::Matrix3d moves = (Eigen::Matrix3d::Identity() - rotation).transpose();
   const double sq_sigma = annealing.sigma * annealing.sigma;
-  double reach = kRefinement.reach_sigmas * annealing.sigma;
-  if (!annealing.rough) reach = std::min(reach, first_sigma_);
-  const Landing landing = landed(rotation, set.center, num_samples, reach, annealing.rough);
+  const std::size_t size = std::min(surface_->order.size(), static_cast<std::size_t>(num_samples));
   NormalEquations sums;
-  for (Eigen::Index k = 0; k < landing.images.cols(); ++k) {
-    const int sample = surface_->order[k], closest = landing.closest[k];
-    const double distance = landing.distances[k];
-    if (closest < 0 || distance > reach) continue;
-    const Eigen::Vector3d x = landing.images.col(k).cast<double>(), y = points.col(closest).cast<double>();
-    const Eigen::Vector3d normal = geometry.normals.col(closest).cast<double>();
+  for (std::size_t k = 0; k < size; ++k) {
+    const int sample = surface_->order[k];
+    const Eigen::Vector3d x = set.image(i, points.col(sample).cast<double>());
+    const Eigen::Vector3f image = x.cast<float>();
+    SurfaceDiscs::Nearest nearest;
+    if (annealing.rough) {
+      nearest.disc = closestSample(image);
+      nearest.distance = (points.col(nearest.disc) - image).norm();
+    } else {
+      nearest = surface_->discs->nearest(image);
+    }
+    if (nearest.disc < 0 || nearest.distance > kRefinement.reach_sigmas * annealing.sigma) continue;
+    const Eigen::Vector3d y = points.col(nearest.disc).cast<double>();
+    const Eigen::Vector3d normal = geometry.normals.col(nearest.disc).cast<double>();
     const Eigen::Vector3d rotated = rotation * geometry.normals.col(sample).cast<double>();
     const double cosine = rotated.dot(normal);
     const Eigen::Vector3d m = (normal + (cosine < 0.0 ? -rotated : rotated)).normalized();
-    const double weight = cosine * cosine * std::exp(-distance * distance / sq_sigma);
+    const double weight =
+        cosine * cosine * std::exp(-static_cast<double>(nearest.distance) * nearest.distance / sq_sigma);
     Vector6d slope;
     slope << moves * (x - set.center).cross(m), moves * m;
     sums.h.selfadjointView<Eigen::Lower>().rankUpdate(slope, weight);
@@ -251,16 +254,20 @@ RotationSet RotationFit::fitted(RotationSet set, const std::vector<std::size_t>&
 
 OffShares RotationFit::offShares(const Eigen::Matrix3d& rotation, const Eigen::Vector3d& center,
                                  int num_samples) const {
+  const Points& points = surface_->points;
+  const std::size_t size = std::min(surface_->order.size(), static_cast<std::size_t>(num_samples));
+  const Eigen::Matrix3f R = rotation.cast<float>();
+  const Eigen::Vector3f shift = (center - rotation * center).cast<float>();
   const auto tolerance = static_cast<float>(limits_.tolerance);
   // The closest sample lies beside the closest point of the surface.
-  const double far =
-      std::hypot(kRotation.far_tolerances * limits_.tolerance, kEvidence.disc_radius * surface_->spacing);
-  const Landing landing = landed(rotation, center, num_samples, far, false);
-  const std::size_t size = landing.distances.size();
+  const auto far = static_cast<float>(
+      std::hypot(kRotation.far_tolerances * limits_.tolerance, kEvidence.disc_radius * surface_->spacing));
   std::size_t num_off = 0, num_far = 0;
   for (std::size_t k = 0; k < size; ++k) {
-    num_off += landing.distances[k] > tolerance ? 1 : 0;
-    num_far += landing.sq_distances[k] > far * far ? 1 : 0;
+    const Eigen::Vector3f x = R * points.col(surface_->order[k]) + shift;
+    if (surface_->discs->isWithin(x, tolerance)) continue;
+    ++num_off;
+    num_far += (points.col(closestSample(x)) - x).squaredNorm() > far * far ? 1 : 0;
   }
   const double share_off = static_cast<double>(num_off) / static_cast<double>(size);
   return {std::max(0.0, 1.0 - (1.0 - share_off) / own_share_),
@@ -285,12 +292,13 @@ double RotationFit::confidence(const OffShares& shares) const {
 }
 
 Eigen::Vector3d RotationFit::whereOff(const Eigen::Matrix3d& rotation, const Eigen::Vector3d& center) const {
-  const Landing landing = landed(rotation, center, surface_->order.size(), limits_.tolerance, false);
   Eigen::Vector3d sum = Eigen::Vector3d::Zero();
   int count = 0;
-  for (std::size_t k = 0; k < landing.distances.size(); ++k) {
-    if (landing.distances[k] <= static_cast<float>(limits_.tolerance)) continue;
-    sum += points().col(surface_->order[k]).cast<double>();
+  for (Eigen::Index i = 0; i < points().cols(); ++i) {
+    const Eigen::Vector3d x = points().col(i).cast<double>();
+    const Eigen::Vector3d image = center + rotation * (x - center);
+    if (surface_->discs->isWithin(image.cast<float>(), static_cast<float>(limits_.tolerance))) continue;
+    sum += x;
     ++count;
   }
   return count > 0 ? Eigen::Vector3d(sum / count) : center;

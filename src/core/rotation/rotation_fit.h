@@ -5,8 +5,9 @@
 #include <memory>
 #include <vector>
 
-#include "core/evidence/surface_samples.h"
-#include "core/refinement/landing.h"
+#include "core/geometry/neighbor_lists.h"
+#include "core/geometry/surface_discs.h"
+#include "core/geometry/surface_normals.h"
 #include "pcl_symmetry/core/gaussian_edt.h"
 
 namespace pcl_symmetry {
@@ -115,13 +116,15 @@ class RotationFit {
 public:
   /// \param points 3 x N, normalized to the unit ball about 0.
   /// \param edt distance transform of these points; must outlive this object.
-  /// \param limits what symmetric means.
+  /// \param limits what symmetric means; tolerance at most \p reach.
+  /// \param reach greatest tolerance of withLimits().
   /// \param seed of the samples.
   /// \param single each point has to meet another one: the points are judged, not the surface that they may show.
-  RotationFit(Points points, const GaussianEdt& edt, RotationLimits limits, std::uint64_t seed, int num_threads,
-              bool single = false);
+  RotationFit(Points points, const GaussianEdt& edt, RotationLimits limits, double reach, std::uint64_t seed,
+              int num_threads, bool single = false);
 
   /// The same surface judged at other limits.
+  /// \param limits tolerance at most the reach.
   RotationFit withLimits(RotationLimits limits) const;
 
   const Points& points() const { return surface_->points; }
@@ -170,28 +173,25 @@ private:
   struct Annealing {
     double sigma, final_sigma;
     int max_iterations;
-    bool rough;  ///< nearly the closest points, and distances from them instead of from discs
+    bool rough;  ///< closest samples by grid instead of closest discs
   };
   struct NormalEquations;
   /// What does not depend on the tolerance.
   struct Surface {
     Points points;
     LocalGeometry geometry;
-    std::unique_ptr<SurfaceSamples> samples;
-    ClosestPointSearch::Ptr search, walk;  ///< exact, and nearly
+    std::unique_ptr<SurfaceDiscs> discs;
+    std::unique_ptr<ClosestPointGrid> grid;
     std::vector<float> own_distances;
     std::vector<int> order;  ///< a random order of the points
-    double spacing = 0.0, roughness = 0.0, greatest_disc = 0.0;
+    double spacing = 0.0, roughness = 0.0;
     Points overlap_points;     ///< that overlap() asks about
     double own_overlap = 1.0;  ///< that a perfect symmetry reaches with this sampling
     double closest_distance = 0.0;
     bool single = false;
   };
 
-  /// Where a rotation maps the first points of the random order.
-  /// \param reach of distances.
-  Landing landed(const Eigen::Matrix3d& rotation, const Eigen::Vector3d& center, std::size_t num_samples, double reach,
-                 bool rough) const;
+  int closestSample(const Eigen::Vector3f& x) const;
   double ownShare() const;
   NormalEquations equations(const RotationSet& set, std::size_t i, int num_samples, const Annealing& annealing) const;
   RotationSet fitted(RotationSet set, const std::vector<std::size_t>& used, int num_samples, Annealing annealing) const;

@@ -81,7 +81,8 @@ public:
   GroupSearch(Points points, RotationLimits limits, const ObjectSymmetryOptions& options, bool single)
       : options_(options),
         edt_(points, edtOptions(options)),
-        fit_(std::move(points), edt_, limits, options.seed, options.num_threads, single),
+        fit_(std::move(points), edt_, limits, (options.other_tolerances ? 2.0 : 1.0) * limits.tolerance, options.seed,
+             options.num_threads, single),
         principal_(principalLines(fit_)) {}
 
   const RotationFit& fit() const { return fit_; }
