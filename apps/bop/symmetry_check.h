@@ -19,7 +19,7 @@ struct MotionEvidence {
   double deviation = 0.0;  ///< 97 % of the mapped points stay within it, input units
 };
 
-/// Samples of a surface, as planes and rotations are judged by.
+/// Samples of a surface, and the distances from it that planes are judged by.
 class SurfaceEvidence {
 public:
   /// \param points 3 x N, finite, at least 20 distinct ones.

@@ -83,6 +83,16 @@ class Align(ToolTest):
         moved = np.array(tool_run.pcd_header(self.folder / "out.pcd")["VIEWPOINT"][:3], float)
         np.testing.assert_allclose(moved, turn @ viewpoint + transform[:3, 3], atol=1e-3)
 
+    def turntable(self):
+        """Scans of the chair from all around, and one of the box; where each stands."""
+        names, places = [], []
+        for k, (x, y) in enumerate([(-0.6, -1), (0.3, -1), (1, -0.4), (1, 0.6), (0.2, 1), (-0.8, 0.9), (-1, -0.2), (-0.6, -1)]):
+            what = self.box if k == 7 else self.chair
+            seen = self.report(what, f"s{k}.pcd -direction {x},{y},0.7 -points 4000 -random_pose -seed {k + 1}", tool="scan")["scans"][0]
+            names.append(str(self.folder / f"s{k}.pcd"))
+            places.append(np.reshape(seen["transform"], (4, 4)))
+        return names, places
+
     def test_merges_scans(self):
         """Of the chair from four sides, and one of the box."""
         names = []
@@ -95,6 +105,15 @@ class Align(ToolTest):
         self.assertEqual(set(self.points("all.ply")["scan"]), set(range(4)))
         self.fails(2, "-merge and -target", *names[:2], "-merge all.ply -target chair.off")
         self.fails(2, "unexpected argument", *names)
+
+    @unittest.expectedFailure  # flat faces slide on each other: a scan of the chair is 0.2 off
+    def test_merged_scans_stand_where_they_were(self):
+        names, places = self.turntable()
+        found = self.report(*names, "-merge all.ply")
+        for scan, place in zip(found["scans"][:7], places):
+            off = np.linalg.solve(places[0], np.reshape(scan["transform"], (4, 4)) @ place)
+            off = min((off, off @ np.diag([-1, -1, 1, 1])), key=lambda each: abs(each - np.eye(4)).max())
+            self.assertLess(abs(off - np.eye(4)).max(), 0.05)
 
     def test_says_that_nothing_fits(self):
         scan, _ = self.scan()
