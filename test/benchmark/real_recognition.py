@@ -3,10 +3,10 @@
 
 usage: PYTHONPATH=build/src/python python3 test/benchmark/real_recognition.py FOLDER [--unknown FRAME.pcd ...]
 
-FOLDER/index.json lists models (file), scenes (file of an organized cloud, max_range, objects: model, T_scene_model) and
-scans (file, object, T_object_scan). The database holds all models. Each frame is analyzed in one call of scene(), and each
-scan alone by recognize(). A pose is right within 5 degrees and 5 % of the diameter, up to the symmetries of the model. A
-frame given by --unknown shows none of the models.
+FOLDER/index.json lists models (file), scenes (file of an organized cloud, max_range, objects: model, T_scene_model, and
+unlabeled: models that stand there without a known pose) and scans (file, object, T_object_scan). The database holds all
+models. Each frame is analyzed in one call of scene(), and each scan alone by recognize(). A pose is right within 5 degrees
+and 5 % of the diameter, up to the symmetries of the model. A frame given by --unknown shows none of the models.
 """
 
 import argparse
@@ -34,13 +34,24 @@ def read_frame(path):
     return np.asarray(points, dtype=np.float32).reshape(sizes["HEIGHT"], sizes["WIDTH"], 3)
 
 
-def shown_by(points, scene, surfaces):
-    """The model whose surface 70 % of the points of an object lie on, to 8 mm; None if there is none."""
+def rows_of(frame, found, scene, surfaces):
+    """What the fit needs of each object; nothing of those that show several models or may be one without a label."""
+    rows = []
+    for k, object in enumerate(found.objects):
+        share, shown = max([(0.0, None), *shares_on(frame[found.labels == k + 1], scene, surfaces)], key=lambda pair: pair[0])
+        models = answer_of(object.models)
+        if share > 0.7:
+            rows.append({"object": shown, "models": models})
+        elif share < 0.1 and not any(model["name"] in scene.get("unlabeled", []) for model in models[:1]):
+            rows.append({"object": None, "models": models})
+    return rows
+
+
+def shares_on(points, scene, surfaces):
+    """(share, model) for each model: of the points of an object, those that lie on its surface to 8 mm."""
     for model in scene["objects"]:
         distances = cKDTree(moved(np.array(model["T_scene_model"]), surfaces[model["model"]])).query(points)[0]
-        if (distances < 0.008).mean() > 0.7:
-            return model["model"]
-    return None
+        yield (distances < 0.008).mean(), model["model"]
 
 
 def main(arguments):
@@ -63,7 +74,7 @@ def main(arguments):
             frame = read_frame(folder / scene["file"])
             found = pcl_symmetry.scene(frame, database=database, max_range=scene["max_range"] or 0.0, complete=False, min_name_confidence=0.0, threads=1)
             seconds = time.process_time() - start
-            rows += [{"object": shown_by(frame[found.labels == k + 1], scene, surfaces), "models": answer_of(object.models)} for k, object in enumerate(found.objects)]
+            rows += rows_of(frame, found, scene, surfaces)
             names = [object.models[0] for object in found.objects if object.models and object.models[0].confidence >= 0.5]
             there = {model["model"]: np.array(model["T_scene_model"]) for model in scene["objects"]}
             texts, seen = [], set()
@@ -74,7 +85,7 @@ def main(arguments):
                 total["named"].add(bool(mine))
                 total["right"].add(right)
                 texts.append(f"{model} {'right' if right else 'pose wrong' if mine else 'not named'}")
-            wrong = [m for m in names if id(m) not in seen]
+            wrong = [m for m in names if id(m) not in seen and m.name not in scene.get("unlabeled", [])]
             total["wrong"].add(len(wrong) > 1)
             table.append([name, len(found.objects), "; ".join(texts), "; ".join(f"{m.name} {m.confidence:.2f}" for m in wrong), f"{seconds:.1f}"])
         bench.print_table("Frames", ["", "objects", "known", "wrong names", "s"], table)
@@ -99,12 +110,14 @@ def main(arguments):
             if answer != "right" and arguments.list:
                 print(f"  {name}: {answer} {models[0].name if models else ''}")
         bench.print_table("Scans alone", ["", "rate"], [[key, rate.text] for key, rate in answers.items()])
-        if arguments.rows:
-            bench.write_whole(arguments.rows, "".join(json.dumps(row) + "\n" for row in rows))
         unknown = []
         for path in arguments.unknown:
-            found = pcl_symmetry.scene(read_frame(path), database=database, max_range=1.3, complete=False)
-            unknown.append([pathlib.Path(path).stem, len(found.objects), "; ".join(o.models[0].name for o in found.objects if o.models)])
+            frame = read_frame(path)
+            found = pcl_symmetry.scene(frame, database=database, max_range=1.3, complete=False, min_name_confidence=0.0)
+            rows += rows_of(frame, found, {"objects": []}, surfaces)
+            unknown.append([pathlib.Path(path).stem, len(found.objects), "; ".join(o.models[0].name for o in found.objects if o.models and o.models[0].confidence >= 0.5)])
+        if arguments.rows:
+            bench.write_whole(arguments.rows, "".join(json.dumps(row) + "\n" for row in rows))
         if unknown:
             bench.print_table("Frames without known objects", ["", "objects", "named"], unknown)
 
