@@ -67,6 +67,12 @@ struct ModelMatch {
   double distance;
 };
 
+/// What speaks for a model where a scan puts it. Surfaces are one within what the scanner resolves.
+struct ModelEvidence {
+  double on_model = 0.0;  ///< of the scan's points near the model, the share on its surface, in [0, 1]
+  double shown = 0.0;  ///< of the surface of the model that faces the scanner, the share that was measured, in [0, 1]
+};
+
 /// A model that a scan shows, and where.
 struct RecognizedModel {
   std::string name;                                                ///< of the model
@@ -74,12 +80,12 @@ struct RecognizedModel {
   /// How well the scan fits there: support is the share of its points on the surface of the model, as wide as the
   /// points of the scan are apart and noisy. How densely the model was sampled does not count.
   PoseScore score;
-  PoseEvidence evidence;  ///< what the confidence follows from; the scan is the source, the model the target
-  /// Probability that the scan shows this model or one of the same shape, in [0, 1]: from the share of the scan that
-  /// lies on the model, the merit, and how far it is ahead of the best model of another shape, fitted to virtual and
-  /// real scans of objects that are in the database and that are not. The sum over shapes is at most 1. Two models are
-  /// of the same shape if they share 90 % of their surfaces where the scan puts them. The best model is judged before
-  /// rotations about its axes are tried for a better pose.
+  ModelEvidence evidence;  ///< what the confidence follows from
+  /// Probability that the scan shows this model or one of the same shape, in [0, 1]: from the evidence, and how far its
+  /// merit is ahead of that of the best model of another shape, fitted to virtual and real scans of objects that are in
+  /// the database and that are not. The sum over shapes is at most 1. Two models are of the same shape if they share 90
+  /// % of their surfaces where the scan puts them. The best model is judged before rotations about its axes are tried
+  /// for a better pose.
   double confidence = 0.0;
 };
 

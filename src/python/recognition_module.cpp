@@ -283,6 +283,9 @@ void addModels(py::module_& module) {
   py::class_<ModelMatch>(module, "Match")
       .def_readonly("name", &ModelMatch::name)
       .def_readonly("distance", &ModelMatch::distance);
+  py::class_<ModelEvidence>(module, "ModelEvidence")
+      .def_readonly("on_model", &ModelEvidence::on_model)
+      .def_readonly("shown", &ModelEvidence::shown);
   py::class_<RecognizedModel>(module, "Recognized")
       .def_readonly("name", &RecognizedModel::name)
       .def_readonly("score", &RecognizedModel::score)

@@ -6,10 +6,22 @@
 #include "core/base/constants.h"
 #include "core/geometry/cloud_extent.h"
 #include "core/matching/shape_signature.h"
-#include "core/registration/pose_evidence.h"
 #include "core/registration/pose_scoring.h"
+#include "recognition/model_evidence.h"
 
 namespace pcl_symmetry::detail {
+
+namespace {
+
+/// Whether the second of two poses of a model explains more of the scan and of the picture.
+bool isWorse(const PosedModel& a, const PosedModel& b) {
+  const auto explained = [](const RecognizedModel& model) {
+    return model.evidence.on_model * model.evidence.shown * std::max(0.0, model.score.merit());
+  };
+  return explained(a.model) < explained(b.model);
+}
+
+}  // namespace
 
 double sharedSurface(const PosedModel& a, const PosedModel& b) {
   const Eigen::Isometry3d T_b_a = b.T_surface_scan * a.T_surface_scan.inverse();
@@ -52,8 +64,13 @@ PosedModel PosedScan::fitted(const std::string& name, const std::shared_ptr<cons
   search.num_threads = options_.num_threads;
   search.num_rotations = 0;
   const std::vector<RankedPose> poses = searchPoses(surface_, *surface, T_surface_scan, search);
-  const Eigen::Isometry3d pose = refinePoses(surface_, *surface, poses, options_).front().T_model_scan;
-  return posed(name, surface, frames, pose);
+  std::vector<PosedModel> posed_models;
+  for (const RankedPose& pose : refinePoses(surface_, *surface, poses, options_)) {
+    posed_models.push_back(posed(name, surface, frames, pose.T_model_scan));
+    if (surface_.seen)
+      posed_models.push_back(posed(name, surface, frames, posedInPicture(surface_, *surface, pose.T_model_scan)));
+  }
+  return *std::max_element(posed_models.begin(), posed_models.end(), isWorse);
 }
 
 PosedModel PosedScan::rotated(const PosedModel& found) const {
@@ -68,7 +85,7 @@ PosedModel PosedScan::rotated(const PosedModel& found) const {
   }
   PosedModel other = fitted(found.model.name, found.surface, found.frames, starts);
   other.model.confidence = found.model.confidence;
-  return other.model.score.merit() > found.model.score.merit() ? other : found;
+  return isWorse(found, other) ? other : found;
 }
 
 PosedModel PosedScan::judged(const std::string& name, const Points& points,
@@ -85,14 +102,14 @@ PosedModel PosedScan::posed(const std::string& name, const std::shared_ptr<const
   model.name = name;
   model.T_model_scan = frames.toInput(T_surface_scan);
   model.score = scoreOf(*surface, T_surface_scan);
-  model.evidence = poseEvidence(surface_, *surface, T_surface_scan, model.score);
+  model.evidence = modelEvidence(surface_, *surface, T_surface_scan);
   return {model, surface, T_surface_scan, frames};
 }
 
 PoseScore PosedScan::scoreOf(const PosedSurface& model, const Eigen::Isometry3d& T_model_scan) const {
-  return PoseScorer(surface_, model)
-      .score(T_model_scan,
-             {kRecognition.num_judged_points, std::max(kRecognition.min_width, surface_.accuracy), true, true});
+  const double error = surface_.seen ? surface_.seen->depthError(Eigen::Vector3d::Zero()) : 0.0;
+  const double width = std::max({kRecognition.min_width, surface_.accuracy, kRecognition.score_errors * error});
+  return PoseScorer(surface_, model).score(T_model_scan, {kRecognition.num_judged_points, width, true, true});
 }
 
 PosedSurface PosedScan::surfaceOf(const Points& points, const Eigen::Vector3d& center,

@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <numeric>
 #include <optional>
 #include <utility>
@@ -66,8 +67,12 @@ void fillConfidences(std::vector<PosedModel>& found) {
     std::size_t other = 0;
     while (other < found.size() && firsts[other] == firsts[i]) ++other;
     const double rival = other < found.size() ? found[other].model.score.merit() : 0.0;
-    const std::array<double, 4> terms{1.0, found[i].model.evidence.on_surface, merit,
-                                      std::min(merit - rival, kRecognition.max_lead)};
+    const ModelEvidence& evidence = found[i].model.evidence;
+    const double few = kRecognition.few;
+    const std::array<double, kRecognitionFit.size()> terms{
+        1.0, -std::log(1.0 + few - evidence.on_model),
+        std::log(std::min(evidence.shown, kRecognition.most_shown) + few),
+        std::min(merit - rival, kRecognition.max_lead)};
     found[i].model.confidence = logistic(std::inner_product(terms.begin(), terms.end(), kRecognitionFit.begin(), 0.0));
     if (firsts[i] == i) sum += found[i].model.confidence;
   }

@@ -18,10 +18,24 @@ struct RecognitionRules {
   double seen_radius = 0.95;     // radius of a scan over that of the whole object
   int num_judged_points = 3000;  // that decide whether a model fits,
   double min_width = 0.015;      // with a Gaussian of this width, or of the accuracy of the scan
+  double score_errors = 1.5;     // or of this many deviations of a camera's depths
   int num_rotations = 12;        // about each principal axis that are tried at last
 
-  // Confidence
-  double max_lead = 0.4;          // over the best model of another shape that counts, see fit_recognition.py
+  // Evidence
+  double min_tolerance = 0.02;  // within which surfaces are one, at least,
+  double noises = 4.0;          // deviations of the scan from its own surface,
+  double depth_errors = 2.0;    // or of the depths of a camera,
+  double max_tolerance = 0.08;  // and at most
+  double near = 0.24;           // a model, within which points are to be on it
+  double min_cosine = 0.17;     // between ray and normal of a visible point: 80 degrees
+  double hidden_depth = 0.08;   // behind the front of the model itself
+  int picture_steps = 8;        // that pose a model in the picture
+  double picture_reach = 3.0;   // tolerances, of the Gaussian at the first step
+
+  // Confidence, see fit_recognition.py
+  double few = 0.02;              // a share that is no evidence
+  double most_shown = 0.85;       // of a model; more says no more, as scanners miss parts
+  double max_lead = 0.4;          // over the best model of another shape that counts
   double same_shape = 0.9;        // share of the surfaces that models of one shape have in common,
   double same_surface = 0.03;     // with a Gaussian of this width: each was brought to the scan by itself,
   int num_compared_points = 500;  // by this many points

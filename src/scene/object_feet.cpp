@@ -16,8 +16,6 @@ namespace pcl_symmetry::detail {
 
 namespace {
 
-constexpr double kDeviationPerMedian = 1.4826;  // of absolute values, normal distribution
-
 Eigen::AlignedBox3f boxAround(const SymmetryScene::Cloud& scene, const pcl::Indices& points, double margin) {
   Eigen::AlignedBox3f box;
   for (const pcl::index_t i : points) box.extend(Eigen::Vector3f(scene[i].getVector3fMap()));

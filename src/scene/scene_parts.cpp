@@ -116,6 +116,24 @@ bool isRemainder(const SymmetryScene::Cloud& scene, const pcl::Indices& cluster,
   return static_cast<double>(num_near) > kScene.remainder_share * static_cast<double>(cluster.size());
 }
 
+bool carries(const SupportingPlane& support, const Points& object, double margin) {
+  const Eigen::RowVector3f normal = support.coefficients.head<3>().cast<float>();
+  const auto offset = static_cast<float>(support.coefficients[3] + margin);
+  const auto num_above = ((normal * object).array() > -offset).count();
+  return static_cast<double>(num_above) >= kScene.above_share * static_cast<double>(object.cols());
+}
+
+/// Standard deviation of the inverse depths of a camera, from the points of a plane.
+double inverseDepthErrorOn(const SupportingPlane& support, const SymmetryScene::Cloud& scene,
+                           const Eigen::Vector3d& viewpoint) {
+  std::vector<double> errors;
+  for (const pcl::index_t i : support.indices)
+    errors.push_back(std::abs(heightOver(support.coefficients, scene[i])) /
+                     (scene[i].getVector3fMap().cast<double>() - viewpoint).norm());
+  const double height = support.coefficients.dot(viewpoint.homogeneous());
+  return errors.empty() || !(height > 0.0) ? 0.0 : kDeviationPerMedian * median(std::move(errors)) / height;
+}
+
 }  // namespace
 
 double heightOver(const Eigen::Vector4d& plane, const pcl::PointXYZ& point) {
@@ -160,16 +178,27 @@ SeenSpace seenOfObject(const SeenSpace& seen, const SymmetryScene::Cloud& scene,
   const double off = std::max(tolerance * diagonal, seen.visibility()->resolvedTolerance(points));
   const double most = kScene.support_margin * distances.plane;
   for (const SupportingPlane& support : supports) {
-    const Eigen::RowVector3f normal = support.coefficients.head<3>().cast<float>();
-    const auto offset = static_cast<float>(support.coefficients[3] + most);
-    const auto num_above = ((normal * points).array() > -offset).count();
-    if (static_cast<double>(num_above) < kScene.above_share * static_cast<double>(object.size())) continue;
+    if (!carries(support, points, most)) continue;
     // A symmetric surface may be off by the tolerance, and by noise. A wider margin would leave unknown space below a
     // table, where a reflection costs nothing.
     const double rise = riseOfNoise(scene, support, object, distances);
     result = result.withSupport(support.coefficients, std::min(most, rise + off));
   }
   return result;
+}
+
+SeenSpace seenOfModel(const SeenSpace& seen, const SymmetryScene::Cloud& scene,
+                      const std::vector<SupportingPlane>& supports, const pcl::Indices& object,
+                      const SceneDistances& distances) {
+  const Points points = pointsOf(scene, object);
+  const auto support = std::find_if(supports.begin(), supports.end(), [&](const SupportingPlane& plane) {
+    return carries(plane, points, kScene.support_margin * distances.plane);
+  });
+  if (!seen.visibility() || support == supports.end()) return seen;
+  const SeenSpace standing = seen.withSupport(support->coefficients, kScene.model_margin * distances.plane);
+  if (seen.source() != ViewpointSource::Rays) return standing;
+  const double error = inverseDepthErrorOn(*support, scene, seen.visibility()->viewpoint());
+  return {standing.visibility()->withDepthErrors(error), seen.source()};
 }
 
 SeenSpace standingInScene(const SeenSpace& seen, const SymmetryScene::Cloud::ConstPtr& scene, const pcl::Indices& part,

@@ -36,6 +36,13 @@ SeenSpace seenOfObject(const SeenSpace& seen, const SymmetryScene::Cloud& scene,
                        const std::vector<SupportingPlane>& supports, const pcl::Indices& object,
                        const SceneDistances& distances, double tolerance);
 
+/// What speaks against a model of an object: depths, with errors as the points of the supports have them, and the
+/// greatest support that carries the object. Other planes may end before the object, and its hidden part pass them.
+/// \param object indices of its points, at least one.
+SeenSpace seenOfModel(const SeenSpace& seen, const SymmetryScene::Cloud& scene,
+                      const std::vector<SupportingPlane>& supports, const pcl::Indices& object,
+                      const SceneDistances& distances);
+
 /// The greatest planes of a scene that carry or back other points.
 /// \param points indices of finite points.
 /// \param viewpoint of the sensor; nothing: the normals point to where most of the other points are.

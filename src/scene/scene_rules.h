@@ -32,6 +32,9 @@ struct SceneRules {
   std::size_t min_around = 50;   ///< points there; fewer take chance for noise
   double rises = 4.0;            ///< deviations of that noise that the foot of an object rises above
   double rises_at_least = 0.25;  ///< spacings, the same on exact planes
+  /// Plane distances that a model may reach into the support of its object: cameras measure a table and what stands on
+  /// it with different errors, 10 mm apart at 1 m.
+  double model_margin = 3.0;
 
   // Convex pieces: of 107 labeled objects in 37 frames 103 are found with an overlap of one half, 91 without
   // separation.
@@ -64,5 +67,6 @@ struct SceneRules {
 };
 
 inline constexpr SceneRules kScene;
+inline constexpr double kDeviationPerMedian = 1.4826;  // of absolute values, normal distribution
 
 }  // namespace pcl_symmetry::detail

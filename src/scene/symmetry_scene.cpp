@@ -94,7 +94,10 @@ public:
     const auto seen = std::make_shared<const SeenSpace>(seenOf(object.indices));
     if (options_.frames) findFrame(object, seen);
     if (options_.complete) complete(object, *seen);
-    if (database_) object.models = database_->recognize(*scene_, object.indices, options_.recognition, seen);
+    if (!database_) return;
+    const SeenSpace of_model = detail::seenOfModel(*found_.seen, *scene_, found_.supports, object.indices, distances_);
+    object.models = database_->recognize(*scene_, object.indices, options_.recognition,
+                                         std::make_shared<const SeenSpace>(of_model));
   }
 
 private:

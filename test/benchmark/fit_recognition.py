@@ -1,11 +1,11 @@
 #!/usr/bin/env python3
 """Fits the probability that a scan shows the model that fits it best, and writes the header of its weights.
 
-usage: PYTHONPATH=build/src/python python3 test/benchmark/fit_recognition.py PSB --classes train.cla --fold 0 --every 3 --real FILE...
+usage: PYTHONPATH=build/src/python python3 test/benchmark/fit_recognition.py PSB --classes train.cla --fold 0 --every 6 --real FILE...
 
 Scans of each model, clean and with noise, are brought to a database of nine of ten of them: right is the model itself, wrong
 what fits best where it is not in the database, or is left out of the answer. --real adds the answers for real scans: lines of
-JSON with "object" and "models", as real_recognition.py --rows writes them.
+JSON with "object" and "models", as real_recognition.py --rows writes them. A file that is named twice counts twice.
 """
 
 import json
@@ -20,11 +20,12 @@ import recognition
 OUTPUT = "src/recognition/recognition_fit.h"
 NOISES = (0.0, 0.005)  # diagonals
 MAX_LEAD = 0.4
+FEW, MOST_SHOWN = 0.02, 0.85
 
 
 def answer_of(models):
     """What the fit needs of each model in an answer to a scan."""
-    return [{"name": m.name, "on_surface": m.evidence.on_surface, "merit": m.score.merit} for m in models]
+    return [{"name": m.name, "on_model": m.evidence.on_model, "shown": m.evidence.shown, "merit": m.score.merit} for m in models]
 
 
 def cases_of(row):
@@ -34,7 +35,8 @@ def cases_of(row):
         if models:
             best, second, *_ = sorted(models, key=lambda m: -m["merit"]) + [{"merit": 0.0}]
             lead = min(best["merit"] - second["merit"], MAX_LEAD)
-            yield [1, best["on_surface"], best["merit"], lead], best["name"] == row["object"]
+            terms = [1, -np.log(1 + FEW - best["on_model"]), np.log(min(best["shown"], MOST_SHOWN) + FEW), lead]
+            yield terms, best["name"] == row["object"]
 
 
 def sample_item(item, arguments):
@@ -69,7 +71,7 @@ def main(arguments):
           f"{(~right & accepted).sum()} of them accepted; loss for objects left out {fits.cross_validated(loss, names):.3f} nats")  # fmt: skip
     texts = fits.rounded(weights, errors)
     fits.write_header(arguments, f"""
-/// Log odds that a scan shows a model: a constant, and the weights of PoseEvidence::on_surface, merit and lead.
+/// Log odds that a scan shows a model: a constant, and the weights of what ModelEvidence says and of its lead.
 inline constexpr std::array<double, {len(texts)}> kRecognitionFit{{{", ".join(texts)}}};
 """, [["<array>"]])  # fmt: skip
 

@@ -11,6 +11,7 @@
 #include "core/base/constants.h"
 #include "core/matching/shape_signature.h"
 #include "pcl/kinds.h"
+#include "recognition/model_evidence.h"
 #include "recognition/posed_scan.h"
 
 namespace pcl_symmetry {
@@ -83,6 +84,33 @@ TEST(PosedScan, TriesRotationsAboutTheAxesOfAModel) {
     EXPECT_LT(angleOf(rotated), 2.0 * kDegree) << degrees;
     EXPECT_GT(rotated.model.score.support, 0.95) << degrees;
   }
+}
+
+/// A unit sphere seen from z = -5, of which a plate hides the half x < 0.
+TEST(ModelEvidence, WhatHidesAModelDoesNotSpeakAgainstIt) {
+  constexpr int kNumPoints = 12'000;
+  std::mt19937 random(1);
+  std::normal_distribution<float> normal;
+  std::uniform_real_distribution<float> uniform(-1.2f, 1.2f);
+  Points sphere(3, kNumPoints), seen(3, 0), all(3, 0);
+  const auto append = [](Points& points, const Eigen::Vector3f& point) {
+    points.conservativeResize(3, points.cols() + 1);
+    points.rightCols<1>() = point;
+  };
+  for (int i = 0; i < kNumPoints; ++i) {
+    sphere.col(i) = Eigen::Vector3f(normal(random), normal(random), normal(random)).normalized();
+    if (sphere(0, i) > 0.0f && sphere(2, i) < -0.2f) append(seen, sphere.col(i));
+    append(all, {0.5f * uniform(random) - 0.6f, uniform(random), -1.5f});
+  }
+  for (Eigen::Index i = 0; i < seen.cols(); ++i) append(all, seen.col(i));
+  const PosedSurface scan(seen, Visibility::fromPoints(all, {0.0, 0.0, -5.0}), 1, 1), model(sphere, std::nullopt, 1, 1);
+  const ModelEvidence right = detail::modelEvidence(scan, model, Eigen::Isometry3d::Identity());
+  EXPECT_GT(right.on_model, 0.98);
+  EXPECT_NEAR(right.shown, 0.5, 0.1);
+  const Eigen::Isometry3d before(Eigen::Translation3d(0.0, 0.0, 0.05)), behind(Eigen::Translation3d(0.0, 0.0, -0.3));
+  EXPECT_LT(detail::modelEvidence(scan, model, before).on_model, 0.5);
+  EXPECT_LT(detail::modelEvidence(scan, model, behind).shown, 0.2);
+  EXPECT_LT(detail::posedInPicture(scan, model, before).translation().norm(), 0.01);
 }
 
 }  // namespace

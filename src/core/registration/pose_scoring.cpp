@@ -34,9 +34,11 @@ float normalFactor(const Landing& landing, Eigen::Index i, const PosedSurface& t
   return 1.0f - kRegistration.normal_share + kRegistration.normal_share * cosine * cosine;
 }
 
-/// Whether a scanner looked through the position of a match.
-bool isInFreeSpace(const Landing& landing, Eigen::Index i, const PosedSurface& to) {
-  return to.seen->depthBehind(landing.images.col(i).cast<double>()) < 0.0;
+/// How far a match lies behind what a scanner saw. A depth camera misses surfaces: pixels without a depth say nothing.
+double depthBehind(const Landing& landing, Eigen::Index i, const PosedSurface& to) {
+  const Eigen::Vector3d x = landing.images.col(i).cast<double>();
+  const double depth = to.seen->depthBehind(x);
+  return std::isinf(depth) && to.seen->depthError(x) > 0.0 ? std::abs(depth) : depth;
 }
 
 }  // namespace
@@ -49,7 +51,7 @@ PoseScore PoseScorer::score(const Eigen::Isometry3d& T_model_scan, const Detail&
     const float near = detail.from_surface ? nearnessOfSurface(on_model, i, model_, detail.width)
                                            : nearness(on_model, i, model_, detail.width);
     score.support += detail.from_surface ? near : near * normalFactor(on_model, i, model_);
-    if (model_.seen && isInFreeSpace(on_model, i, model_)) unexplained += 1.0 - near;
+    if (model_.seen && depthBehind(on_model, i, model_) < 0.0) unexplained += 1.0 - near;
   }
   score.support /= static_cast<double>(on_model.images.cols());
   score.conflict = unexplained / static_cast<double>(on_model.images.cols());
@@ -57,7 +59,7 @@ PoseScore PoseScorer::score(const Eigen::Isometry3d& T_model_scan, const Detail&
   const Landing on_scan = land(model_, scan_, T_model_scan.inverse(), detail.num_points, detail.exact);
   double conflict = 0.0, judged = kRegistration.min_judged * static_cast<double>(on_scan.images.cols());
   for (Eigen::Index i = 0; i < on_scan.images.cols(); ++i) {
-    const double depth = scan_.seen->depthBehind(on_scan.images.col(i).cast<double>());
+    const double depth = depthBehind(on_scan, i, scan_);
     // Beside the scan there may be more that the scanner measured: a piece of the object that was cut off.
     const double on_surface = detail.from_surface ? std::max(nearnessOfSurface(on_scan, i, scan_, detail.width),
                                                              gaussian(depth, detail.width))
@@ -84,7 +86,7 @@ Eigen::Isometry3d PoseScorer::step(const Eigen::Isometry3d& T_model_scan, const 
     const double share =
         kRegistration.silhouette_share * static_cast<double>(on_model.images.cols()) / on_scan.images.cols();
     for (Eigen::Index i = 0; i < on_scan.images.cols(); ++i) {
-      if (!isInFreeSpace(on_scan, i, scan_)) continue;
+      if (depthBehind(on_scan, i, scan_) >= 0.0) continue;
       const double weight = nearness(on_scan, i, scan_, detail.width);
       const Eigen::Vector3d moving = T_model_scan * scan_.points.col(on_scan.closest[i]).cast<double>();
       equations.addPoint(moving, model_.points.col(model_.order[i]).cast<double>(), share * weight);

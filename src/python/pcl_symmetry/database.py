@@ -14,6 +14,7 @@ from .results import (
     BuildReport,
     Junction,
     Match,
+    ModelEvidence,
     PoseEvidence,
     PoseScore,
     Recognized,
@@ -38,8 +39,8 @@ def _score(score: Any) -> PoseScore:
     return PoseScore(score.support, score.conflict, score.merit)
 
 
-def _evidence(found: Any) -> PoseEvidence:
-    return PoseEvidence(**_fields(found, *(f.name for f in dataclasses.fields(PoseEvidence))))
+def _all_fields(kind: Any, found: Any) -> Any:
+    return kind(**_fields(found, *(f.name for f in dataclasses.fields(kind))))
 
 
 def register(
@@ -85,7 +86,7 @@ def register(
     result = Registration(
         score=_score(found.score),
         poses=[(pose, _score(score)) for pose, score in found.poses],
-        evidence=_evidence(found.evidence),
+        evidence=_all_fields(PoseEvidence, found.evidence),
         **_fields(found, "transform", "converged", "confidence", "reason", "covariance"),
     )
     return result if source_shift is None and target_shift is None else result._moved_between(s, t)
@@ -253,7 +254,7 @@ class Database:
 
 
 def _recognized(model: Any) -> Recognized:
-    return Recognized(model.name, model.confidence, model.transform, _score(model.score), _evidence(model.evidence))
+    return Recognized(model.name, model.confidence, model.transform, _score(model.score), _all_fields(ModelEvidence, model.evidence))
 
 
 def _camera_points(cloud: Cloud) -> NDArray[Any]:

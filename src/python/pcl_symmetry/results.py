@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from .pages import Page
 
 __all__ = [
-    "Axis", "BuildReport", "Center", "Frame", "Junction", "Map", "Match", "Plane", "Planes", "PoseEvidence",
+    "Axis", "BuildReport", "Center", "Frame", "Junction", "Map", "Match", "ModelEvidence", "Plane", "Planes", "PoseEvidence",
     "PoseScore", "ProbableFrame", "Profile", "Recognized", "ReflectionPlane", "RegisteredScans", "Registration",
     "RotationAxis", "Rotations", "Scene", "SceneObject", "Support", "Symmetrized", "View",
 ]
@@ -795,6 +795,17 @@ class Match(Result):
 
 
 @dataclass(frozen=True, eq=False, repr=False)
+class ModelEvidence(Result):
+    """What speaks for a model where a scan puts it. Surfaces are one within what the scanner resolves."""
+
+    _in_repr = ("on_model", "shown")
+    on_model: float
+    """Of the scan's points near the model, the share on its surface, in [0, 1]."""
+    shown: float
+    """Of the surface of the model that faces the scanner, the share that was measured, in [0, 1]."""
+
+
+@dataclass(frozen=True, eq=False, repr=False)
 class Recognized(Result):
     """A model that a scan shows."""
 
@@ -805,8 +816,8 @@ class Recognized(Result):
     transform: NDArray[np.float64]
     """(4, 4) from the frame of the scan to that of the model."""
     score: PoseScore
-    evidence: PoseEvidence
-    """What the confidence follows from; the scan is the source."""
+    evidence: ModelEvidence
+    """What the confidence follows from."""
 
 
 @dataclass(frozen=True, eq=False, repr=False)
