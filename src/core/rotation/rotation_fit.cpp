@@ -95,10 +95,10 @@ RotationFit RotationFit::withLimits(RotationLimits limits) const {
   return other;
 }
 
-bool RotationFit::fillsBody() const {
+double RotationFit::thickness(int num_neighbors) const {
   const Points& points = surface_->points;
-  const int count = static_cast<int>(std::min<Eigen::Index>(kRotation.body_neighbors, points.cols() / 4));
-  if (count < 4) return false;
+  const int count = static_cast<int>(std::min<Eigen::Index>(num_neighbors, points.cols() / 4));
+  if (count < 4) return 0.0;
   const Points some = pointsAt(points, drawSamples(points.cols(), kRotation.num_some_points, 1));
   std::vector<int> indices;
   std::vector<float> sq_distances;
@@ -111,7 +111,12 @@ bool RotationFit::fillsBody() const {
     const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(near * near.transpose(), Eigen::EigenvaluesOnly);
     thickness.push_back(std::sqrt(std::max(0.0, solver.eigenvalues()[0]) / std::max(1e-30, solver.eigenvalues()[2])));
   }
-  return median(std::move(thickness)) > kRotation.body_thickness;
+  return median(std::move(thickness));
+}
+
+bool RotationFit::fillsBody() const {
+  return thickness(kRotation.body_neighbors) > kRotation.body_thickness &&
+         thickness(kRotation.close_neighbors) > kRotation.close_thickness;
 }
 
 Points RotationFit::borderPoints() const {

@@ -32,10 +32,12 @@ struct RotationRules {
   double surface_slack =
       1.5;                  // tolerances that a sparse surface may resolve: what it leaves open lowers the confidence
   int body_neighbors = 50;  // at most a quarter of the points: in a body, they reach across as far as along;
-  double body_thickness = 0.62;  // 0.75 inside, solids of 200 points have 0.63, bowls as thin as their spacing 0.45
-  int border_neighbors = 30;     // of a point of a body:
-  double border_offset = 0.27;   // mean of them, radii of theirs: 3/8 at a flat border, inside 0.14 by chance
-  double single_distance = 0.5;  // distances between points within which images meet one by one: 8 % do by chance
+  double body_thickness = 0.62;   // 0.75 inside, solids of 200 points have 0.63, bowls as thin as their spacing 0.45;
+  int close_neighbors = 8;        // the same for these: walls a few spacings thick have two surfaces,
+  double close_thickness = 0.32;  // each of them flat: at most 0.25, 0.4 in a body
+  int border_neighbors = 30;      // of a point of a body:
+  double border_offset = 0.27;    // mean of them, radii of theirs: 3/8 at a flat border, inside 0.14 by chance
+  double single_distance = 0.5;   // distances between points within which images meet one by one: 8 % do by chance
   Eigen::Index max_single_points = 50'000;  // that are compared one by one
 
   // Fits: Iterative Symmetric Points, whose steps and weights kRefinement limits
@@ -169,6 +171,9 @@ public:
   Eigen::Vector3d whereOff(const Eigen::Matrix3d& rotation, const Eigen::Vector3d& center) const;
 
 private:
+  /// How thick the neighborhood of a point is, over how long it is, in [0, 1]: the median of some points.
+  double thickness(int num_neighbors) const;
+
   /// Widths of the Gaussian weights from first to last iteration.
   struct Annealing {
     double sigma, final_sigma;
