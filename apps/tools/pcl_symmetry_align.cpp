@@ -367,7 +367,8 @@ Motion registerTo(const Console& console, const InputShape& input, const InputSh
                              {"agreement", evidence.agreement},
                              {"on_surface", evidence.on_surface},
                              {"noise", evidence.noise},
-                             {"size_ratio", evidence.size_ratio}};
+                             {"size_ratio", evidence.size_ratio},
+                             {"uniqueness", evidence.uniqueness}};
   if (!result.converged) result.json["reason"] = registration.getReason();
   step.done(result.converged ? "converged" : "nothing fits");
   return result;

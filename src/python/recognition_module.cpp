@@ -233,7 +233,8 @@ void addRegistration(py::module_& module) {
       .def_readonly("on_surface", &PoseEvidence::on_surface)
       .def_readonly("conflict", &PoseEvidence::conflict)
       .def_readonly("noise", &PoseEvidence::noise)
-      .def_readonly("size_ratio", &PoseEvidence::size_ratio);
+      .def_readonly("size_ratio", &PoseEvidence::size_ratio)
+      .def_readonly("uniqueness", &PoseEvidence::uniqueness);
   py::class_<CloudRegistration>(module, "Registration")
       .def_property_readonly("transform",
                              [](const CloudRegistration& r) { return RowMajor4(r.T_target_source.matrix()); })

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "core/registration/pose_covariance.h"
+#include "core/registration/pose_evidence.h"
 #include "recognition/recognition_rules.h"
 
 namespace pcl_symmetry::detail {
@@ -53,20 +54,6 @@ std::vector<VisiblePoint> visiblePoints(const PosedSurface& scan, const PosedSur
   return visible;
 }
 
-/// Distances of some points of a surface, in its order, from the discs about their closest points of another one, each
-/// as wide as points are apart there.
-std::vector<float> distancesFrom(const PosedSurface& to, const PosedSurface& from, const Eigen::Isometry3d& T_to_from) {
-  const Landing landing = land(from, to, T_to_from, kRecognition.num_judged_points, true);
-  std::vector<float> distances;
-  for (Eigen::Index i = 0; i < landing.images.cols(); ++i) {
-    const int j = landing.closest[i];
-    const float height = std::abs(to.normals.col(j).dot(landing.images.col(i) - to.points.col(j)));
-    const float across = std::sqrt(std::max(0.0f, landing.sq_distances[i] - height * height));
-    distances.push_back(std::hypot(height, std::max(0.0f, across - to.spacing[j])));
-  }
-  return distances;
-}
-
 }  // namespace
 
 double modelTolerance(const PosedSurface& scan, double radius) {
@@ -102,12 +89,13 @@ ModelEvidence modelEvidence(const PosedSurface& scan, const PosedSurface& model,
   const auto share = [](double part, double rest) { return part + rest > 0.0 ? part / (part + rest) : 0.0; };
   ModelEvidence evidence;
   double num_on = 0.0, num_off = 0.0;
-  for (const float distance : distancesFrom(model, scan, T_model_scan))
+  for (const float distance : discDistances(scan, model, T_model_scan, kRecognition.num_judged_points))
     if (distance < kRecognition.near * radius) ++(distance < tolerance ? num_on : num_off);
   evidence.on_model = share(num_on, num_off);
 
   double measured = 0.0, missing = 0.0;
-  const std::vector<float> from_scan = distancesFrom(scan, model, T_model_scan.inverse());
+  const std::vector<float> from_scan =
+      discDistances(model, scan, T_model_scan.inverse(), kRecognition.num_judged_points);
   if (scan.seen) {
     // Pictures that are made of points have gaps between them.
     for (const VisiblePoint& point :

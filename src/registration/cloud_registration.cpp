@@ -163,6 +163,23 @@ std::vector<RankedPose> mostConfident(const CloudPair& clouds, const std::vector
   return firstDistinct(ranked, most);
 }
 
+/// See PoseEvidence::uniqueness.
+/// \param poses the judged one first.
+double uniquenessOf(const CloudPair& clouds, const std::vector<RankedPose>& poses) {
+  if (clouds.model().seen) return 1.0;  // symmetries of what was seen from one side are not known
+  const auto odds = [&](const RankedPose& pose) {
+    const double confidence = poseConfidence(clouds.evidence(pose));
+    return confidence / (1.0 - confidence);
+  };
+  const double best = odds(poses.front());
+  double sum = best;
+  for (std::size_t k = 1; k < poses.size(); ++k)
+    if (poses[k].score.merit() > poses.front().score.merit() - kRegistration.like_merit &&
+        !isSymmetry(poses[k].T_model_scan * poses.front().T_model_scan.inverse(), clouds.model()))
+      sum += odds(poses[k]);
+  return best / sum;
+}
+
 /// Leaves those of the poses that are around a guess.
 /// \param poses between search frames.
 void keepAround(const CloudPair& clouds, const Eigen::Isometry3d& guess, const PoseNeighborhood& around,
@@ -269,6 +286,10 @@ CloudRegistration registerClouds(const Points& source, const std::optional<Visib
     poses = mostConfident(clouds, poses, static_cast<std::size_t>(search.max_poses));
     judge();
     done("parts");
+  }
+  if (result.confidence >= kRegistration.min_confidence) {
+    result.evidence.uniqueness = uniquenessOf(clouds, poses);
+    result.confidence = poseConfidence(result.evidence);
   }
   for (const RankedPose& pose : poses) result.poses.push_back({clouds.toInput(pose.T_model_scan), pose.score});
   if (!poses.empty()) result.covariance = covarianceOf(clouds, poses.front(), inner);

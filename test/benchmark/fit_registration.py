@@ -3,9 +3,10 @@
 
 usage: PYTHONPATH=build/src/python python3 test/benchmark/fit_registration.py PSB --classes train.cla --fold 0 --real FILE...
 
-Scans of each model are brought to the model, to the scan from the next corner, and to the model and a scan of another
-object, where no pose is right, clean and with noise. --real adds poses of real scans that were judged elsewhere: lines of
-JSON with "good", "object" and the fields of PoseEvidence. All scans of models together count half as much as these.
+Scans of each model are brought to the model, to the scan from the next corner, and to the model and a scan of an object of
+another class, where no pose is right, clean and with noise. --real adds poses of real scans that were judged elsewhere: lines of
+JSON with "good", "object" and the fields of PoseEvidence. All scans of models together count half as much as these. Poses
+beside which another one fits as well are left out.
 """
 
 import argparse
@@ -21,6 +22,7 @@ import registration
 
 OUTPUT = "src/core/registration/registration_fit.h"
 NOISES = (0.0, 0.005)  # diagonals
+UNIQUE = 0.9
 
 
 def terms_of(e):
@@ -36,7 +38,7 @@ def sample_item(item, arguments):
     import pcl_symmetry
 
     mesh, rows = bench.read_mesh(item.path), []
-    other = bench.read_mesh(item.before.path) if item.before is not None else None
+    other = bench.read_mesh(item.other.path) if item.other is not None else None
     symmetries = references.references_of(item, mesh, arguments.references)
     cloud_of = lambda *a, **k: registration.seen(*registration.cloud_of(*a, **k))
     for view, noise in enumerate(NOISES):
@@ -44,7 +46,7 @@ def sample_item(item, arguments):
         source, T_source_model = cloud_of(mesh, item, view, asked)
         targets = [(cloud_of(mesh, item, -1, asked, clean=True), True), (cloud_of(mesh, item, view ^ 1, asked), True)]
         if other is not None:
-            targets += [(cloud_of(other, item.before, -1, asked, clean=True), False), (cloud_of(other, item.before, view, asked), False)]
+            targets += [(cloud_of(other, item.other, -1, asked, clean=True), False), (cloud_of(other, item.other, view, asked), False)]
         for (target, T_target_model), is_own in targets:
             seen = [None if viewpoint is None else tuple(viewpoint) for _, viewpoint in (source, target)]
             found = pcl_symmetry.register(source[0], target[0], source_viewpoint=seen[0], target_viewpoint=seen[1], threads=1)
@@ -64,13 +66,16 @@ def evidence_of(found):
 
 def main(arguments):
     models = bench.list_models(arguments)
-    for model, before in zip(models, [None, *map(dataclasses.replace, models)]):
-        model.before = before
-    made = [(right, terms_of(e), "made") for right, e in fits.sampled(models, sample_item, arguments)]
+    classes = bench.read_classes(arguments.classes) if arguments.classes else {}
+    class_of = lambda model: classes[model.name].name if classes else model.name
+    for i, model in enumerate(models):
+        others = (dataclasses.replace(other) for other in models[i::-1] if class_of(other) != class_of(model))
+        model.other = next(others, None)
+    made = [(right, terms_of(e), "made") for right, e in fits.sampled(models, sample_item, arguments) if e["uniqueness"] > UNIQUE]
     real = []
     for path in arguments.real or []:
         with open(path) as lines:
-            real += [(row["good"], terms_of(row), row["object"]) for row in map(json.loads, lines)]
+            real += [(row["good"], terms_of(row), row["object"]) for row in map(json.loads, lines) if row["uniqueness"] > UNIQUE]
     right, terms, names = map(np.array, zip(*(made + real)))
     weights = np.r_[np.full(len(made), 0.5 * len(real) / len(made) if real else 1.0), np.ones(len(real))]
 

@@ -237,6 +237,28 @@ TEST_F(SymmetryRegistrationTest, SaysWhereNothingFits) {
   EXPECT_EQ(registration_.getScore().support, 0.0) << "that of the last pair is gone";
 }
 
+/// A box with a knob at its back. From the front, the half turn that brings back to back cannot be told from none.
+TEST_F(SymmetryRegistrationTest, RefusesAPoseBesideWhichAnotherOneFitsAsWell) {
+  BlockObject box = blockBox();
+  box.blocks.push_back({{0.5, -1.0, 0.2}, {0.3, 0.3, 0.2}});
+  registration_.setInputTarget(toCloud(surfaceOf(box, 6000)));
+  const auto align = [&](const Eigen::Vector3d& viewpoint) {
+    const Scan scan = test::scan(box, viewpoint);
+    const auto cloud = toCloud(scan.cloud());
+    cloud->sensor_origin_.head<3>() = scan.viewpoint.cast<float>();
+    registration_.setInputSource(cloud);
+    registration_.align(aligned_);
+  };
+  align({3.0, 6.0, 4.0});
+  EXPECT_FALSE(registration_.hasConverged());
+  EXPECT_LT(registration_.getEvidence().uniqueness, 0.8);
+  EXPECT_EQ(registration_.getReason().rfind("another pose fits as well", 0), 0u) << registration_.getReason();
+  align({3.0, -6.0, 4.0});
+  EXPECT_TRUE(registration_.hasConverged()) << registration_.getReason();
+  EXPECT_GT(registration_.getEvidence().uniqueness, 0.9);
+  EXPECT_LT(angleOf(registration_.getFinalTransformation()), 2.0 * kDegree);
+}
+
 TEST_F(SymmetryRegistrationTest, SaysWhyItDidNotBegin) {
   EXPECT_EQ(registration_.getReason(), "source: not set");
   const auto chair = chairScan(randomPose(1)), model = chairModel();

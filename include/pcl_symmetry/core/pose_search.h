@@ -41,6 +41,9 @@ struct PoseEvidence {
   double conflict = 0.0;    ///< that of PoseScore, in [0, 2]
   double noise = 0.0;       ///< of the noisier cloud, in diameters of the smaller one
   double size_ratio = 1.0;  ///< diameter of the source over that of the target
+  /// Probability of the pose over that of all that were found, in (0, 1]: 0.5 where another one fits as well. Poses
+  /// that differ by a symmetry of the target are one.
+  double uniqueness = 1.0;
 };
 
 }  // namespace pcl_symmetry

@@ -44,6 +44,26 @@ Overlap overlapOf(const PosedSurface& from, const PosedSurface& to, const Eigen:
 
 }  // namespace
 
+std::vector<float> discDistances(const PosedSurface& from, const PosedSurface& to, const Eigen::Isometry3d& T_to_from,
+                                 int num_points) {
+  const Landing landing = land(from, to, T_to_from, num_points, true);
+  std::vector<float> distances;
+  for (Eigen::Index i = 0; i < landing.images.cols(); ++i) {
+    const int j = landing.closest[i];
+    const float height = std::abs(to.normals.col(j).dot(landing.images.col(i) - to.points.col(j)));
+    const float across = std::sqrt(std::max(0.0f, landing.sq_distances[i] - height * height));
+    distances.push_back(std::hypot(height, std::max(0.0f, across - to.spacing[j])));
+  }
+  return distances;
+}
+
+bool isSymmetry(const Eigen::Isometry3d& motion, const PosedSurface& model) {
+  const auto tolerance = static_cast<float>(kRegistration.same_pose * 2.0 * boundingBall(model.points).radius);
+  const std::vector<float> distances = discDistances(model, model, motion, kRegistration.evidence_points);
+  const auto num_on = std::count_if(distances.begin(), distances.end(), [&](float d) { return d < tolerance; });
+  return static_cast<double>(num_on) >= kRegistration.symmetric_share * static_cast<double>(distances.size());
+}
+
 double shareOnSurface(const PosedSurface& scan, const PosedSurface& model, const Eigen::Isometry3d& T_model_scan) {
   const auto& rules = kRegistration;
   const double width = std::max(rules.contact, std::min(rules.max_contact, std::max(scan.noise, model.noise)));
@@ -85,6 +105,8 @@ std::string doubtOf(const PoseEvidence& evidence) {
         << percent(1.0 - evidence.agreement) << " % are apart";
   if (evidence.conflict > kRegistration.some_conflict)
     doubt << ", and " << percent(std::min(1.0, evidence.conflict)) << " % lie where a scanner saw empty space";
+  if (evidence.uniqueness < kRegistration.some_uniqueness)
+    doubt << ", and it has " << percent(evidence.uniqueness) << " % of the odds of all poses that fit";
   return doubt.str();
 }
 
@@ -100,7 +122,7 @@ double poseConfidence(const PoseEvidence& evidence) {
   double log_odds = 0.0;
   for (std::size_t k = 0; k < terms.size(); ++k) log_odds += kRegistrationFit[k] * terms[k];
   // Where surfaces face each other, most of them have to agree, whatever else speaks for the pose.
-  return std::min(1.0 / (1.0 + std::exp(-log_odds)), evidence.agreement);
+  return std::min(1.0 / (1.0 + std::exp(-log_odds)), evidence.agreement) * evidence.uniqueness;
 }
 
 }  // namespace pcl_symmetry

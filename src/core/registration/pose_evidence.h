@@ -2,6 +2,7 @@
 
 #include <Eigen/Geometry>
 #include <string>
+#include <vector>
 
 #include "core/registration/posed_surface.h"
 #include "pcl_symmetry/core/pose_search.h"
@@ -17,6 +18,14 @@ namespace pcl_symmetry {
 /// \param score of the pose, for its conflict with free space.
 PoseEvidence poseEvidence(const PosedSurface& scan, const PosedSurface& model, const Eigen::Isometry3d& T_model_scan,
                           const PoseScore& score);
+
+/// Distances of some points of a surface, in its order, from the discs about their closest points of another one, each
+/// as wide as points are apart there.
+std::vector<float> discDistances(const PosedSurface& from, const PosedSurface& to, const Eigen::Isometry3d& T_to_from,
+                                 int num_points);
+
+/// \return whether a motion brings a whole model onto itself, as far as scans tell.
+bool isSymmetry(const Eigen::Isometry3d& motion, const PosedSurface& model);
 
 /// \return a lower limit of the share of the scan's points that lie on the surface of the model, in [0, 1]: by a width
 /// that does not grow with the spacing of the points, so that few points on a wrong object do not count.

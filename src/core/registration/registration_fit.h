@@ -6,6 +6,6 @@
 namespace pcl_symmetry {
 
 /// Weights of the terms of poseConfidence().
-inline constexpr std::array<double, 7> kRegistrationFit{-0.61, 0.834, 0.082, 5.65, -3.69, -1.193, -8.67};
+inline constexpr std::array<double, 7> kRegistrationFit{-0.43, 0.773, 0.268, 5.74, -2.91, -1.151, -8.14};
 
 }  // namespace pcl_symmetry

@@ -54,6 +54,10 @@ struct RegistrationRules {
   double some_conflict = 0.1;       ///< conflict with free space that is worth a word
   double max_conflict = 0.5;        ///< more says no more: scans lack parts that their scanner did not resolve
   double agreeing_cosine = 0.7071;  ///< of the angle between normals of one surface: 45 degrees
+  double like_merit = 0.05;         ///< between poses of which either may be right
+  double same_pose = 0.03;          ///< diameters of a model, within which a symmetry brings it onto itself,
+  double symmetric_share = 0.97;    ///< or so much of it
+  double some_uniqueness = 0.9;     ///< below it another pose is worth a word
   /// Radii, width within which points of one surface lie on each other: at least, and where noise asks for more, at
   /// most. On whole objects of PSB, a right pose has 0.41 of its points there with 400 points, a wrong one 0.29.
   double contact = 0.02, max_contact = 0.03;

@@ -716,6 +716,9 @@ class PoseEvidence(Result):
     """Of the noisier cloud, in diameters of the smaller one."""
     size_ratio: float
     """Diameter of the source over that of the target."""
+    uniqueness: float
+    """Probability of the pose over that of all of like merit, in (0, 1]: 0.5 where another one fits as well. Poses that
+    differ by a symmetry of the target are one."""
 
 
 @dataclass(frozen=True, eq=False, repr=False)
