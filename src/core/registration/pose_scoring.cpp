@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/evidence/surface_samples.h"
 #include "core/registration/pose_covariance.h"
 #include "core/registration/registration_rules.h"
 
@@ -11,21 +10,10 @@ namespace pcl_symmetry {
 
 namespace {
 
-float gaussian(double distance, double width) {
-  return static_cast<float>(std::exp(-distance * distance / (width * width)));
-}
-
 /// The Gaussian of the distance of a match from its closest point.
 float nearness(const Landing& landing, Eigen::Index i, const PosedSurface& to, double width) {
   const float factor = static_cast<float>(-1.0 / (width * width));
   return std::exp(factor * (to.points.col(landing.closest[i]) - landing.images.col(i)).squaredNorm());
-}
-
-/// The Gaussian of the distance of a match from the disc about its closest point: flat, as wide as points are apart.
-float nearnessOfSurface(const Landing& landing, Eigen::Index i, const PosedSurface& to, double width) {
-  const int j = landing.closest[i];
-  const SurfaceDisc disc{to.points.col(j), to.normals.col(j), to.spacing[j]};
-  return std::exp(static_cast<float>(-1.0 / (width * width)) * disc.sqDistance(landing.images.col(i)));
 }
 
 /// Share of a point's support that its normal leaves it: 1 where it is parallel to that of the closest point.
@@ -46,9 +34,8 @@ PoseScore PoseScorer::score(const Eigen::Isometry3d& T_model_scan, const Detail&
   const Landing on_model = land(scan_, model_, T_model_scan, detail.num_points, detail.exact);
   double unexplained = 0.0;
   for (Eigen::Index i = 0; i < on_model.images.cols(); ++i) {
-    const float near = detail.from_surface ? nearnessOfSurface(on_model, i, model_, detail.width)
-                                           : nearness(on_model, i, model_, detail.width);
-    score.support += detail.from_surface ? near : near * normalFactor(on_model, i, model_);
+    const float near = nearness(on_model, i, model_, detail.width);
+    score.support += near * normalFactor(on_model, i, model_);
     if (model_.seen && isInFreeSpace(on_model, i, model_)) unexplained += 1.0 - near;
   }
   score.support /= static_cast<double>(on_model.images.cols());
@@ -58,10 +45,7 @@ PoseScore PoseScorer::score(const Eigen::Isometry3d& T_model_scan, const Detail&
   double conflict = 0.0, judged = kRegistration.min_judged * static_cast<double>(on_scan.images.cols());
   for (Eigen::Index i = 0; i < on_scan.images.cols(); ++i) {
     const double depth = scan_.seen->depthBehind(on_scan.images.col(i).cast<double>());
-    // Beside the scan there may be more that the scanner measured: a piece of the object that was cut off.
-    const double on_surface = detail.from_surface ? std::max(nearnessOfSurface(on_scan, i, scan_, detail.width),
-                                                             gaussian(depth, detail.width))
-                                                  : nearness(on_scan, i, scan_, detail.width);
+    const double on_surface = nearness(on_scan, i, scan_, detail.width);
     conflict += depth < 0.0 ? 1.0 - on_surface : 0.0;
     judged += depth < 0.0 ? 1.0 : on_surface;
   }

@@ -19,11 +19,8 @@ public:
     int num_points;      ///< of each cloud, >= 1
     double width;        ///< of the Gaussian, > 0, in the unit of the clouds
     bool exact = false;  ///< closest points from the tree, not from the grid
-    /// Distances from the surface between the points of the model, and no normals: how densely the model was sampled
-    /// and how noisy the scan is does not count then. Otherwise distances from its points, less where normals differ.
-    bool from_surface = false;
-    double unit = 1.0;  ///< length in the unit of the clouds, > 0: of the model's size, so that rotations and
-                        ///< translations count alike
+    double unit = 1.0;   ///< length in the unit of the clouds, > 0: of the model's size, so that rotations and
+                         ///< translations count alike
   };
 
   /// \param scan,model must outlive this object.
