@@ -48,8 +48,9 @@ MatchedRegions::MatchedRegions(const NormalizedCloud& cloud, const PlaneFit& fit
   });
 }
 
-MatchedRegion MatchedRegions::largest(const ReflectionPlane& plane, const std::vector<int>* guesses) const {
-  IspStep step = fit_.matches(plane, samples_, guesses);
+MatchedRegion MatchedRegions::largest(const ReflectionPlane& plane, const std::vector<int>* guesses, bool walks) const {
+  const IspSurface& surface = walks && !cloud_.seen() ? cloud_.nearly : cloud_.surface;
+  IspStep step = matchSymmetricPoints(surface, samples_, plane, cloud_.final_sigma, guesses);
   const std::vector<float> support = fit_.shares(plane, samples_, step).point_support;
   const std::size_t size = samples_.size(), num_neighbors = neighbors_.size() / size;
   std::vector<char> matched(size);
@@ -266,14 +267,14 @@ struct RegionSearch {
   /// some degrees off, the second one by narrow weights. Most planes are refused on the way.
   /// \return nothing where that is no part.
   std::optional<SymmetricPart> onItsRegion(SymmetricPart part) const {
-    MatchedRegion region = regions.largest(part.plane);
+    MatchedRegion region = regions.largest(part.plane, nullptr, true);
     int round = 0;
     for (const double sigma : {balls.isp.sigma, balls.isp.final_sigma}) {
       if (region.share < kDetection.parts.min_part ||
           longerEdge(region) > kDetection.parts.longest_edges_before[round++])
         return std::nullopt;
       refine(part, region, sigma);
-      region = regions.largest(part.plane, &region.closest);
+      region = regions.largest(part.plane, &region.closest, round == 1);  // the last one exactly
     }
     if (region.share < kDetection.parts.min_part || region.share > kDetection.parts.largest_part) return std::nullopt;
     part.longer_edge = longerEdge(region);

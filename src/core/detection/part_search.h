@@ -28,8 +28,10 @@ public:
 
   /// \param plane normalized frame.
   /// \param guesses MatchedRegion::closest of a plane nearby, which makes the search faster; null = not known.
+  /// \param walks along lists of neighbors find closest points, where not all of them have to be right.
   /// \return the largest region, empty where nothing matches.
-  MatchedRegion largest(const ReflectionPlane& plane, const std::vector<int>* guesses = nullptr) const;
+  MatchedRegion largest(const ReflectionPlane& plane, const std::vector<int>* guesses = nullptr,
+                        bool walks = false) const;
 
 private:
   std::vector<char> inLargest(const std::vector<char>& matched, const IspStep& step,

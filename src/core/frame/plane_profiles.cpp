@@ -1,6 +1,7 @@
 #include "core/frame/plane_profiles.h"
 
 #include <algorithm>
+#include <numeric>
 
 #include "core/base/simd.h"
 #include "core/transform/sampled_transform.h"
@@ -15,13 +16,14 @@ PlaneProfiles::PlaneProfiles(const GaussianEdt& edt, const std::vector<float>& f
       scanned_(!free_space.empty()),
       outside_(scanned_ ? 255u << 8 : 0u),
       cells_(edt.values().size()),
-      samples_(drawPoints(edt, num_samples, seed, num_threads).array() - middle_) {
+      samples_(drawPoints(edt, num_samples, seed, num_threads).transpose().array() - middle_) {
   for (std::size_t i = 0; i < cells_.size(); ++i) {
     const auto surface = static_cast<std::uint32_t>(255.0f * edt.values()[i] + 0.5f);
     const auto free = free_space.empty() ? 0 : static_cast<std::uint32_t>(255.0f * free_space[i] + 0.5f);
     cells_[i] = free << 8 | surface;
   }
   cells_.push_back(outside_);
+  for (Eigen::Index s = 0; s < samples_.rows(); ++s) own_.push_back(surfaceAt(samples_, s));
 }
 
 namespace {
@@ -82,24 +84,25 @@ PlaneProfiles::Sums PlaneProfiles::sumsOf(const std::uint32_t* __restrict cells,
 /// grid along one straight line per sample.
 std::vector<float> PlaneProfiles::scores(const Eigen::Vector3f& normal, float first, float step, int count,
                                          const CellPlane* completed_across) const {
-  const Eigen::Index num_samples = samples_.cols();
+  const Eigen::Index num_samples = samples_.rows();
   Walk images(num_samples), completed(completed_across ? num_samples : 0);
-  int own = 0;
-  const float to_index = middle_ + 0.5f;
-  for (Eigen::Index s = 0; s < num_samples; ++s) {
-    const Eigen::Vector3f x = samples_.col(s);
-    const float shift = 2.0f * (first - normal.dot(x));
-    images.positions.row(s) = (x + shift * normal).array() + to_index;
-    const Eigen::Vector3f here = x.array() + to_index;
-    int surface = surfaceOf(at(here[0], here[1], here[2]));
-    if (completed_across) {
-      const Eigen::Vector3f y =
-          x - 2.0f * (completed_across->normal.dot(x) - completed_across->offset) * completed_across->normal;
-      completed.positions.row(s) = (y + shift * normal).array() + to_index;
-      const Eigen::Vector3f there = y.array() + to_index;
-      surface = std::max(surface, surfaceOf(at(there[0], there[1], there[2])));
-    }
-    own += surface;
+  const auto heights = [&](const Eigen::Vector3f& n) -> Eigen::ArrayXf {
+    return n[0] * samples_.col(0) + (n[1] * samples_.col(1) + n[2] * samples_.col(2));
+  };
+  const auto moved = [&](const Eigen::ArrayX3f& from, const Eigen::ArrayXf& way, const Eigen::Vector3f& n) {
+    Eigen::ArrayX3f to(num_samples, 3);
+    for (int axis = 0; axis < 3; ++axis) to.col(axis) = from.col(axis) + way * n[axis];
+    return to;
+  };
+  const Eigen::ArrayXf shift = 2.0f * (first - heights(normal));
+  images.positions = moved(samples_, shift, normal) + (middle_ + 0.5f);
+  int own = std::accumulate(own_.begin(), own_.end(), 0);
+  if (completed_across) {
+    const Eigen::Vector3f& n = completed_across->normal;
+    const Eigen::ArrayX3f other = moved(samples_, 2.0f * (completed_across->offset - heights(n)), n);
+    completed.positions = moved(other, shift, normal) + (middle_ + 0.5f);
+    own = 0;
+    for (Eigen::Index s = 0; s < num_samples; ++s) own += std::max(own_[s], surfaceAt(other, s));
   }
   // A plane that maps every sample onto the surface scores 1.
   std::vector<float> result(count);

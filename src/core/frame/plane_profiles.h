@@ -51,11 +51,12 @@ private:
   static int surfaceOf(std::uint32_t cell) { return static_cast<int>(cell & 255u); }
   static int freeOf(std::uint32_t cell) { return static_cast<int>(cell >> 8); }
 
-  std::uint32_t at(float x, float y, float z) const {
-    const auto i = static_cast<std::uint32_t>(static_cast<int>(x));
-    const auto j = static_cast<std::uint32_t>(static_cast<int>(y));
-    const auto k = static_cast<std::uint32_t>(static_cast<int>(z));
-    return i < size_ && j < size_ && k < size_ ? cells_[(k * size_ + j) * size_ + i] : outside_;
+  int surfaceAt(const Eigen::ArrayX3f& samples, Eigen::Index s) const {
+    const auto index = [&](int axis) {
+      return static_cast<std::uint32_t>(static_cast<int>(samples(s, axis) + (middle_ + 0.5f)));
+    };
+    const std::uint32_t i = index(0), j = index(1), k = index(2);
+    return surfaceOf(i < size_ && j < size_ && k < size_ ? cells_[(k * size_ + j) * size_ + i] : outside_);
   }
 
   std::uint32_t size_;
@@ -63,8 +64,9 @@ private:
   bool scanned_;
   std::uint32_t outside_;
   std::vector<std::uint32_t>
-      cells_;                 // 255 times f, and from bit 8 on 255 times free space; one for all outside at last
-  Eigen::Matrix3Xf samples_;  // cells from the middle
+      cells_;                // 255 times f, and from bit 8 on 255 times free space; one for all outside at last
+  Eigen::ArrayX3f samples_;  // cells from the middle
+  std::vector<int> own_;     // surface of each sample
 };
 
 }  // namespace pcl_symmetry

@@ -13,6 +13,7 @@ SurfaceDirections::SurfaceDirections(const PointsRef& points, const GaussianEdt&
   const Eigen::Vector3d corner = edt.origin() - Eigen::Vector3d::Constant(0.5 * edt.cellSize());
   CellNormals cells = cellNormals(points, corner, 2.0 * edt.cellSize(), (edt.numCells() + 1) / 2);
   normals_ = std::move(cells.normals);
+  by_axis_ = normals_.transpose();
   weights_ = std::move(cells.flatness);
   const float total = weights_.sum();
   if (total > 0.0f) weights_ /= total;
@@ -21,9 +22,10 @@ SurfaceDirections::SurfaceDirections(const PointsRef& points, const GaussianEdt&
 double SurfaceDirections::agreement(const Eigen::Vector3f& axis) const {
   const auto width = static_cast<float>(kFrame.face_width);
   const float inverse = 1.0f / (width * width);
-  const Eigen::ArrayXf cosines = (normals_.transpose() * axis).array().abs();
-  const Eigen::ArrayXf across = (1.0f - inverse * cosines.square()).max(0.0f);
-  const Eigen::ArrayXf along = (1.0f - 2.0f * inverse * (1.0f - cosines)).max(0.0f);
+  const Eigen::ArrayXf cosines =
+      (axis[0] * by_axis_.col(0) + (axis[1] * by_axis_.col(1) + axis[2] * by_axis_.col(2))).abs();
+  const auto across = (1.0f - inverse * cosines.square()).max(0.0f);
+  const auto along = (1.0f - 2.0f * inverse * (1.0f - cosines)).max(0.0f);
   return (weights_.array() * (across + along)).sum();
 }
 

@@ -12,7 +12,7 @@
 
 namespace pcl_symmetry {
 
-/// A distance transform with the index of the closest point: eight sweeps hand points on from cell to cell.
+/// A distance transform with the index of the closest point: sweeps from four corners hand points on to all cells.
 ClosestPointGrid::ClosestPointGrid(const PointsRef& points, int num_cells) : n_(num_cells) {
   check(points.cols() >= 1, "number of points", points.cols(), ">= 1");
   check(n_ >= 2, "num_cells", n_, ">= 2");
@@ -39,7 +39,7 @@ ClosestPointGrid::ClosestPointGrid(const PointsRef& points, int num_cells) : n_(
     const Eigen::Array3i cell = cellOf(points.col(i));
     offer(static_cast<int>(i), cell.x(), cell.y(), cell.z());
   }
-  for (int corner = 0; corner < 8; ++corner) {
+  for (const int corner : {0, 3, 5, 6}) {
     const int dx = corner & 1 ? -1 : 1, dy = corner & 2 ? -1 : 1, dz = corner & 4 ? -1 : 1;
     for (int k = 0, z = dz > 0 ? 0 : n_ - 1; k < n_; ++k, z += dz)
       for (int j = 0, y = dy > 0 ? 0 : n_ - 1; j < n_; ++j, y += dy)

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
+#include <vector>
 
 #include "core/geometry/geometry_rules.h"
 
@@ -9,20 +11,9 @@ namespace pcl_symmetry {
 
 namespace {
 
-struct Farthest {
-  Eigen::Index index = 0;
-  double sq_distance = -1.0;
-};
-
-/// The point that is the farthest from a center, of every stride-th one.
-Farthest farthestFrom(const Eigen::Vector3d& center, const PointsRef& points, Eigen::Index stride) {
-  Farthest farthest;
-  for (Eigen::Index i = 0; i < points.cols(); i += stride) {
-    const double dx = points(0, i) - center.x(), dy = points(1, i) - center.y(), dz = points(2, i) - center.z();
-    const double sq_distance = dx * dx + dy * dy + dz * dz;
-    if (sq_distance > farthest.sq_distance) farthest = {i, sq_distance};
-  }
-  return farthest;
+double sqDistance(const PointsRef& points, Eigen::Index i, const Eigen::Vector3d& center) {
+  const double dx = points(0, i) - center.x(), dy = points(1, i) - center.y(), dz = points(2, i) - center.z();
+  return dx * dx + dy * dy + dz * dz;
 }
 
 }  // namespace
@@ -32,11 +23,28 @@ BoundingBall boundingBall(const PointsRef& points) {
   if (points.cols() == 0) return ball;
   const Eigen::Index stride = std::max<Eigen::Index>(1, points.cols() / kGeometry.ball_points);
   ball.center = centerOfMass(points);
-  for (int i = 1; i <= kGeometry.ball_iterations; ++i) {
-    const Eigen::Index farthest = farthestFrom(ball.center, points, stride).index;
-    ball.center += (points.col(farthest).cast<double>() - ball.center) / (i + 1.0);
+  const Eigen::Vector3d start = ball.center;
+  std::vector<std::pair<double, Eigen::Index>> outermost;  // first: distances from the start
+  for (Eigen::Index i = 0; i < points.cols(); i += stride)
+    outermost.emplace_back(std::sqrt(sqDistance(points, i, start)), i);
+  std::stable_sort(outermost.begin(), outermost.end(), [](const auto& a, const auto& b) { return a.first > b.first; });
+  for (int k = 1; k <= kGeometry.ball_iterations; ++k) {
+    const double moved = (ball.center - start).norm();
+    double greatest = -1.0;
+    Eigen::Index farthest = 0;
+    for (const auto& [distance, i] : outermost) {
+      const double most = (1.0 + 1e-9) * (distance + moved);
+      if (most * most < greatest) break;  // nor is any that follows farther
+      const double sq_distance = sqDistance(points, i, ball.center);
+      if (sq_distance < greatest || (sq_distance == greatest && i > farthest)) continue;
+      greatest = sq_distance;
+      farthest = i;
+    }
+    ball.center += (points.col(farthest).cast<double>() - ball.center) / (k + 1.0);
   }
-  ball.radius = std::sqrt(farthestFrom(ball.center, points, 1).sq_distance);
+  double greatest = -1.0;
+  for (Eigen::Index i = 0; i < points.cols(); ++i) greatest = std::max(greatest, sqDistance(points, i, ball.center));
+  ball.radius = std::sqrt(greatest);
   return ball;
 }
 

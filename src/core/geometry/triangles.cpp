@@ -208,9 +208,9 @@ TriangleTree::Vectors TriangleTree::closestPoints(const Leaf& leaf, const Vector
   return start;
 }
 
-ClosestOnTriangles TriangleTree::closestTo(const Eigen::Vector3f& x, float sq_guess) const {
+ClosestOnTriangles TriangleTree::closestTo(const Eigen::Vector3f& x, float sq_reach) const {
   ClosestOnTriangles found;
-  found.sq_distance = sq_guess;
+  found.sq_distance = sq_reach;
   if (nodes_.empty()) return found;
   const Vectors all_x = same(x.data());
   OpenBoxes open;
@@ -238,7 +238,7 @@ ClosestOnTriangles TriangleTree::closestTo(const Eigen::Vector3f& x, float sq_gu
     for (int k = 0; k < node.num_children; ++k)
       if (sq_distances[k] < found.sq_distance) open.add(node.child[k], sq_distances[k], behind);
   }
-  return found.triangle < 0 && std::isfinite(sq_guess) ? closestTo(x) : found;
+  return found;
 }
 
 std::vector<Eigen::Vector3i> finiteTriangles(const PointsRef& vertices, const std::vector<Eigen::Vector3i>& triangles) {

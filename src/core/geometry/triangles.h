@@ -47,9 +47,9 @@ public:
     return search(from, to - from, 0.0f, 1.0f, true).triangle >= 0;
   }
 
-  /// \param sq_guess more than the squared distance, if it is right; the closer to it, the faster.
+  /// \param sq_reach squared distance beyond which there is no closest point; the less, the faster.
   /// \return the exact closest point of the triangles, also of those without area.
-  ClosestOnTriangles closestTo(const Eigen::Vector3f& x, float sq_guess = std::numeric_limits<float>::infinity()) const;
+  ClosestOnTriangles closestTo(const Eigen::Vector3f& x, float sq_reach = std::numeric_limits<float>::infinity()) const;
 
 private:
   static constexpr int kWidth = 4;  // floats in the smallest vector register of current processors

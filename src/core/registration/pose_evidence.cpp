@@ -5,7 +5,7 @@
 #include <cmath>
 #include <sstream>
 
-#include "core/registration/pose_scoring.h"
+#include "core/evidence/surface_samples.h"
 #include "core/registration/registration_fit.h"
 #include "core/registration/registration_rules.h"
 
@@ -22,10 +22,8 @@ struct Overlap {
   double agreement() const { return (num_on + 1.0) / (num_facing + 2.0); }
 };
 
-Overlap overlapOf(const PosedSurface& from, const PosedSurface& to, const Eigen::Isometry3d& T_to_from,
-                  double tolerance, double size) {
+Overlap overlapOf(const Landing& landing, const PosedSurface& to, double tolerance, double size) {
   const auto& rules = kRegistration;
-  const Landing landing = land(from, to, T_to_from, rules.evidence_points);
   const Eigen::Index count = landing.images.cols();
   const std::vector<char>& borders = to.borders.get();
   Overlap overlap;
@@ -42,18 +40,34 @@ Overlap overlapOf(const PosedSurface& from, const PosedSurface& to, const Eigen:
   return overlap;
 }
 
+/// A disc about a point of a surface, as wide as points are apart there.
+SurfaceDisc discAt(const PosedSurface& surface, int i) {
+  return {surface.points.col(i), surface.normals.col(i), surface.spacing[i]};
+}
+
+/// A lower limit of the share of points that lie on the surface: by a width that does not grow with the spacing of the
+/// points, so that few points on a wrong object do not count, and by the discs about the points of the surface, flat
+/// and as wide as these are apart, so that it does not count how densely they lie.
+double shareOnSurface(const Landing& landing, const PosedSurface& to, double noise) {
+  const double width = std::max(kRegistration.contact, std::min(kRegistration.max_contact, noise));
+  const auto size = static_cast<double>(landing.images.cols());
+  double sum = 0.0;
+  for (Eigen::Index i = 0; i < landing.images.cols(); ++i) {
+    const float sq_distance = discAt(to, landing.closest[i]).sqDistance(landing.images.col(i));
+    sum += std::exp(static_cast<float>(-1.0 / (width * width)) * sq_distance);
+  }
+  // Three standard errors of a share, at most half over the root of the number of points.
+  return std::max(0.0, sum / size - 1.5 / std::sqrt(size));
+}
+
 }  // namespace
 
 std::vector<float> discDistances(const PosedSurface& from, const PosedSurface& to, const Eigen::Isometry3d& T_to_from,
                                  int num_points) {
   const Landing landing = land(from, to, T_to_from, num_points, true);
   std::vector<float> distances;
-  for (Eigen::Index i = 0; i < landing.images.cols(); ++i) {
-    const int j = landing.closest[i];
-    const float height = std::abs(to.normals.col(j).dot(landing.images.col(i) - to.points.col(j)));
-    const float across = std::sqrt(std::max(0.0f, landing.sq_distances[i] - height * height));
-    distances.push_back(std::hypot(height, std::max(0.0f, across - to.spacing[j])));
-  }
+  for (Eigen::Index i = 0; i < landing.images.cols(); ++i)
+    distances.push_back(std::sqrt(discAt(to, landing.closest[i]).sqDistance(landing.images.col(i))));
   return distances;
 }
 
@@ -64,28 +78,21 @@ bool isSymmetry(const Eigen::Isometry3d& motion, const PosedSurface& model) {
   return static_cast<double>(num_on) >= kRegistration.symmetric_share * static_cast<double>(distances.size());
 }
 
-double shareOnSurface(const PosedSurface& scan, const PosedSurface& model, const Eigen::Isometry3d& T_model_scan) {
-  const auto& rules = kRegistration;
-  const double width = std::max(rules.contact, std::min(rules.max_contact, std::max(scan.noise, model.noise)));
-  const double share = PoseScorer(scan, model).score(T_model_scan, {rules.evidence_points, width, true, true}).support;
-  // Three standard errors of a share, at most half over the root of the number of points.
-  const auto size = std::min<double>(rules.evidence_points, static_cast<double>(scan.points.cols()));
-  return std::max(0.0, share - 1.5 / std::sqrt(size));
-}
-
 PoseEvidence poseEvidence(const PosedSurface& scan, const PosedSurface& model, const Eigen::Isometry3d& T_model_scan,
                           const PoseScore& score) {
   const auto diameterOf = [](const PosedSurface& surface) { return 2.0 * boundingBall(surface.points).radius; };
   const double scan_size = diameterOf(scan), model_size = diameterOf(model), size = std::min(scan_size, model_size);
   const double noise = std::max(scan.noise, model.noise);
   const double tolerance = std::max(kRegistration.tight_tolerance * size, kRegistration.tight_noises * noise);
-  const Overlap of_scan = overlapOf(scan, model, T_model_scan, tolerance, size);
-  const Overlap of_model = overlapOf(model, scan, T_model_scan.inverse(), tolerance, size);
+  const Landing on_model = land(scan, model, T_model_scan, kRegistration.evidence_points);
+  const Landing on_scan = land(model, scan, T_model_scan.inverse(), kRegistration.evidence_points);
+  const Overlap of_scan = overlapOf(on_model, model, tolerance, size),
+                of_model = overlapOf(on_scan, scan, tolerance, size);
   PoseEvidence evidence;
   evidence.overlap_source = of_scan.share();
   evidence.overlap_target = of_model.share();
   evidence.agreement = std::min(of_scan.agreement(), of_model.agreement());
-  evidence.on_surface = shareOnSurface(scan, model, T_model_scan);
+  evidence.on_surface = shareOnSurface(on_model, model, noise);
   evidence.conflict = score.conflict;
   evidence.noise = noise / size;
   evidence.size_ratio = scan_size / model_size;

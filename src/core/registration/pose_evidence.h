@@ -27,10 +27,6 @@ std::vector<float> discDistances(const PosedSurface& from, const PosedSurface& t
 /// \return whether a motion brings a whole model onto itself, as far as scans tell.
 bool isSymmetry(const Eigen::Isometry3d& motion, const PosedSurface& model);
 
-/// \return a lower limit of the share of the scan's points that lie on the surface of the model, in [0, 1]: by a width
-/// that does not grow with the spacing of the points, so that few points on a wrong object do not count.
-double shareOnSurface(const PosedSurface& scan, const PosedSurface& model, const Eigen::Isometry3d& T_model_scan);
-
 /// \return probability that the pose is right, in [0, 1], fitted by test/benchmark/fit_registration.py.
 double poseConfidence(const PoseEvidence& evidence);
 
