@@ -2,6 +2,7 @@
 
 #include <Eigen/Core>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "pcl_symmetry/core/exports.h"
@@ -25,7 +26,7 @@ struct MotionsAbout {
   void addRotations(const Eigen::Vector3d& unit_axis);
 };
 
-/// How much of a mesh a plane maps onto the mesh.
+/// How much of a mesh a motion maps onto the mesh.
 struct MeshShares {
   double share = 1.0;      ///< of the area, mapped to within the tolerance
   double deviation = 0.0;  ///< 97 % of the area stay within it, input units
@@ -54,21 +55,18 @@ public:
   /// The same for one plane.
   ReflectionPlane fitted(const ReflectionPlane& plane) const;
 
+  /// Shares of the worst of the motions.
   /// \param tolerance input units, > 0.
-  MeshShares shares(const ReflectionPlane& plane, double tolerance) const;
-  /// MeshShares::share of the worst of the motions, much faster where nothing else is needed.
-  /// \param least a share that is less may come out lower still, as the rest is left out.
-  double share(const MotionsAbout& motions, double tolerance, double least = 0.0) const;
-  double share(const ReflectionPlane& plane, double tolerance, double least = 0.0) const;
+  /// \param least where it is given, the share alone is measured, much faster; one that is less may come out lower still.
+  MeshShares shares(const MotionsAbout& motions, double tolerance, std::optional<double> least = {}) const;
+  /// The same for one plane.
+  MeshShares shares(const ReflectionPlane& plane, double tolerance, std::optional<double> least = {}) const;
 
   const BoundingBall& ball() const;  ///< of the triangles, input frame
   int numSamples() const;            ///< that shares are measured on
 
 private:
   struct Parts;
-  std::vector<double> distances(const Eigen::Matrix3d& linear, const Eigen::Vector3d& center, double reach,
-                                int max_far) const;
-
   std::shared_ptr<Parts> parts_;
 };
 

@@ -60,9 +60,9 @@ void refineOnMesh(const MeshSurface& mesh, SymmetryFrame& frame) {
   int exact[3], num_exact = 0;
   for (int k = 0; k < 3; ++k) {
     const ReflectionPlane start(frame.axes.col(k), frame.axes.col(k).dot(frame.center));
-    if (mesh.share(start, 2.0 * tolerance, nearly) < nearly) continue;
+    if (mesh.shares(start, 2.0 * tolerance, nearly).share < nearly) continue;
     const ReflectionPlane plane = mesh.fitted(start);
-    if (mesh.share(plane, tolerance, kSymmetricShare) < kSymmetricShare) continue;
+    if (mesh.shares(plane, tolerance, kSymmetricShare).share < kSymmetricShare) continue;
     axes.col(k) = plane.normal();
     for (int i = 0; i < num_exact; ++i) axes.col(k) -= axes.col(exact[i]).dot(axes.col(k)) * axes.col(exact[i]);
     axes.col(k).normalize();

@@ -28,15 +28,8 @@ PlaneProfiles::PlaneProfiles(const GaussianEdt& edt, const std::vector<float>& f
 
 namespace {
 
-/// Images of the samples on their way through the grid, and the cells that they pass.
-struct Walk {
-  Eigen::ArrayX3f positions;  // in cells from the corner of the grid
-  std::vector<std::uint32_t> cells;
-
-  explicit Walk(Eigen::Index size) : positions(size, 3), cells(static_cast<std::size_t>(size)) {}
-};
-
 /// Finds the cell of each image, size^3 outside the grid, then moves the images.
+/// \param positions in cells from the corner of the grid.
 PCL_SYMMETRY_MULTIVERSION
 void advance(float* positions, std::size_t count, const float* move, std::uint32_t size, std::uint32_t* cells) {
   float *const x = positions, *const y = x + count, *const z = y + count;
@@ -85,7 +78,7 @@ PlaneProfiles::Sums PlaneProfiles::sumsOf(const std::uint32_t* __restrict cells,
 std::vector<float> PlaneProfiles::scores(const Eigen::Vector3f& normal, float first, float step, int count,
                                          const CellPlane* completed_across) const {
   const Eigen::Index num_samples = samples_.rows();
-  Walk images(num_samples), completed(completed_across ? num_samples : 0);
+  std::vector<std::uint32_t> image_cells(num_samples), completed_cells(completed_across ? num_samples : 0);
   const auto heights = [&](const Eigen::Vector3f& n) -> Eigen::ArrayXf {
     return n[0] * samples_.col(0) + (n[1] * samples_.col(1) + n[2] * samples_.col(2));
   };
@@ -95,12 +88,12 @@ std::vector<float> PlaneProfiles::scores(const Eigen::Vector3f& normal, float fi
     return to;
   };
   const Eigen::ArrayXf shift = 2.0f * (first - heights(normal));
-  images.positions = moved(samples_, shift, normal) + (middle_ + 0.5f);
+  Eigen::ArrayX3f images = moved(samples_, shift, normal) + (middle_ + 0.5f), completed;
   int own = std::accumulate(own_.begin(), own_.end(), 0);
   if (completed_across) {
     const Eigen::Vector3f& n = completed_across->normal;
     const Eigen::ArrayX3f other = moved(samples_, 2.0f * (completed_across->offset - heights(n)), n);
-    completed.positions = moved(other, shift, normal) + (middle_ + 0.5f);
+    completed = moved(other, shift, normal) + (middle_ + 0.5f);
     own = 0;
     for (Eigen::Index s = 0; s < num_samples; ++s) own += std::max(own_[s], surfaceAt(other, s));
   }
@@ -109,9 +102,9 @@ std::vector<float> PlaneProfiles::scores(const Eigen::Vector3f& normal, float fi
   const double scale = 1.0 / std::max(own, 1);
   const Eigen::Vector3f move = 2.0f * step * normal;
   for (int k = 0; k < count; ++k) {
-    for (Walk* const walk : {&images, &completed})
-      advance(walk->positions.data(), walk->cells.size(), move.data(), size_, walk->cells.data());
-    const Sums sums = sumsOf(cells_.data(), images.cells.data(), completed_across ? completed.cells.data() : nullptr,
+    advance(images.data(), image_cells.size(), move.data(), size_, image_cells.data());
+    advance(completed.data(), completed_cells.size(), move.data(), size_, completed_cells.data());
+    const Sums sums = sumsOf(cells_.data(), image_cells.data(), completed_across ? completed_cells.data() : nullptr,
                              static_cast<int>(num_samples));
     result[k] =
         static_cast<float>(scanned_ ? seenSymmetry(scale * sums.surface, scale * sums.free) : scale * sums.surface);

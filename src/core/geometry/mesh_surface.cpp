@@ -87,26 +87,22 @@ struct MeshSurface::Parts {
   };
   using Matches = std::vector<Match>;
 
-  /// \param[in,out] matches as many as are wanted: their closest points by another motion are near to those by this,
-  /// and those of neighbors near to each other.
+  /// \param[in,out] matches as many as are wanted: their closest points by another motion are near to those by this.
   /// \param reach radii; what is farther from the surface keeps its match.
   /// \param max_far the rest keeps its match where more than this number is farther.
   static void match(const Surface& surface, const Eigen::Matrix3d& linear, const Eigen::Vector3d& center,
-                    Matches& matches, double reach = std::numeric_limits<double>::infinity(), int max_far = 0) {
+                    Matches& matches, double reach = std::numeric_limits<double>::infinity(),
+                    int max_far = kMesh.samples) {
     const double slack = 1e-4;  // radii, more than rounding: the closest point itself is within the guess
-    Eigen::Vector3d neighbor = matches.front().image - matches.front().apart;
     int num_far = 0;
     for (std::size_t i = 0; i < matches.size() && num_far <= max_far; ++i) {
       const Eigen::Vector3d x = center + linear * (surface.samples.col(i).cast<double>() - center);
-      const double known = (x - matches[i].image + matches[i].apart).norm();
-      const double guess = std::min({reach, known, (x - neighbor).norm()}) + slack;
+      const double guess = std::min(reach, (x - matches[i].image + matches[i].apart).norm()) + slack;
       const ClosestOnTriangles closest = surface.tree->closestTo(x.cast<float>(), static_cast<float>(guess * guess));
-      if (closest.triangle < 0) {
+      if (closest.triangle < 0)
         ++num_far;
-        continue;
-      }
-      neighbor = closest.point.cast<double>();
-      matches[i] = {x, x - neighbor, surface.directions.col(closest.triangle).cast<double>()};
+      else
+        matches[i] = {x, x - closest.point.cast<double>(), surface.directions.col(closest.triangle).cast<double>()};
     }
   }
 
@@ -243,47 +239,34 @@ ReflectionPlane MeshSurface::fitted(const ReflectionPlane& plane) const {
   return {normal, normal.dot(placed.center)};
 }
 
-std::vector<double> MeshSurface::distances(const Eigen::Matrix3d& linear, const Eigen::Vector3d& center, double reach,
-                                           int max_far) const {
+MeshShares MeshSurface::shares(const MotionsAbout& motions, double tolerance, std::optional<double> least) const {
   const Parts& parts = parts_->withTrees();
-  Parts::Matches matches(kMesh.samples);
-  Parts::match(parts.faces, linear, (center - parts.ball.center) / parts.ball.radius, matches,
-               reach / parts.ball.radius, max_far);
-  std::vector<double> distances;
-  for (const Parts::Match& match : matches) distances.push_back(parts.ball.radius * match.apart.norm());
-  return distances;
-}
-
-double MeshSurface::share(const MotionsAbout& motions, double tolerance, double least) const {
-  std::ptrdiff_t within = kMesh.samples;  // of the worst motion
-  const int max_far = 1 + static_cast<int>((1.0 - least) * kMesh.samples);
+  const double reach = least ? tolerance / parts.ball.radius : std::numeric_limits<double>::infinity();
+  const int max_far = 1 + static_cast<int>((1.0 - least.value_or(0.0)) * kMesh.samples);
+  MeshShares worst;
   for (const Eigen::Matrix3d& linear : motions.linear) {
-    const std::vector<double> apart = distances(linear, motions.center, tolerance, max_far);
-    within = std::min(within, std::count_if(apart.begin(), apart.end(), [&](double d) { return d <= tolerance; }));
+    std::vector<double> distances;
+    double sq_sum = 0.0, within = 0.0;
+    Parts::Matches matches(kMesh.samples);
+    Parts::match(parts.faces, linear, (motions.center - parts.ball.center) / parts.ball.radius, matches, reach,
+                 max_far);
+    for (const Parts::Match& match : matches) {
+      distances.push_back(parts.ball.radius * match.apart.norm());
+      if (distances.back() > tolerance) continue;
+      within += 1.0;
+      sq_sum += distances.back() * distances.back();
+    }
+    const auto quantile = distances.begin() + static_cast<std::ptrdiff_t>(kSymmetricShare * kMesh.samples);
+    std::nth_element(distances.begin(), quantile, distances.end());
+    worst.share = std::min(worst.share, within / kMesh.samples);
+    worst.deviation = std::max(worst.deviation, *quantile);
+    if (within > 0.0) worst.residual = std::max(worst.residual, std::sqrt(sq_sum / within));
   }
-  return static_cast<double>(within) / kMesh.samples;
+  return worst;
 }
 
-double MeshSurface::share(const ReflectionPlane& plane, double tolerance, double least) const {
-  return share(MotionsAbout::across(plane, parts_->ball.center), tolerance, least);
-}
-
-MeshShares MeshSurface::shares(const ReflectionPlane& plane, double tolerance) const {
-  const MotionsAbout across = MotionsAbout::across(plane, parts_->ball.center);
-  std::vector<double> apart = distances(across.linear[0], across.center, std::numeric_limits<double>::infinity(), 0);
-  MeshShares shares;
-  double sq_sum = 0.0, within = 0.0;
-  for (const double distance : apart) {
-    if (distance > tolerance) continue;
-    within += 1.0;
-    sq_sum += distance * distance;
-  }
-  const auto quantile = apart.begin() + static_cast<std::ptrdiff_t>(kSymmetricShare * kMesh.samples);
-  std::nth_element(apart.begin(), quantile, apart.end());
-  shares.share = within / kMesh.samples;
-  shares.deviation = *quantile;
-  if (within > 0.0) shares.residual = std::sqrt(sq_sum / within);
-  return shares;
+MeshShares MeshSurface::shares(const ReflectionPlane& plane, double tolerance, std::optional<double> least) const {
+  return shares(MotionsAbout::across(plane, parts_->ball.center), tolerance, least);
 }
 
 const BoundingBall& MeshSurface::ball() const {

@@ -51,8 +51,8 @@ ObjectSymmetries objectSymmetries(const PointsRef& points, const MeshSurface& me
   if (size(greater) <= size(found)) return found;
   const MotionsAbout motions = movedOntoMesh(mesh, greater);
   const RotationLimits limits{found.tolerance, options.max_feature};
-  const OffShares off{1.0 - mesh.share(motions, limits.tolerance),
-                      1.0 - mesh.share(motions, kRotation.far_tolerances * limits.tolerance)};
+  const OffShares off{1.0 - mesh.shares(motions, limits.tolerance, 0.0).share,
+                      1.0 - mesh.shares(motions, kRotation.far_tolerances * limits.tolerance, 0.0).share};
   const double confidence = limits.confidence(off, mesh.numSamples());
   if (confidence < options.min_confidence) return found;
   greater.support = 1.0 - off.off;

@@ -63,7 +63,7 @@ TEST(MeshSurface, MeasuresWhatAMotionMaps) {
   EXPECT_LT(shares(1.0).deviation, 1e-6);
   // A plane that is off by 0.1 maps a strip of 0.2 - 0.01 of 2 beyond the tolerance.
   EXPECT_NEAR(shares(1.1).share, 1.0 - 0.19 / 2.0, 0.01);
-  EXPECT_EQ(mesh.share({Eigen::Vector3d::UnitX(), 1.1}, 0.01, 0.9), shares(1.1).share);
+  EXPECT_EQ(mesh.shares({Eigen::Vector3d::UnitX(), 1.1}, 0.01, 0.9).share, shares(1.1).share);
 }
 
 TEST(MeshSurface, RefusesWhatIsNoSurface) {
