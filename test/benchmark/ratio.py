@@ -9,7 +9,6 @@ example: ratio.py ../before/build-benchmark build-benchmark cow.off
 """
 import argparse
 import resource
-import subprocess
 from pathlib import Path
 
 import bench

@@ -105,9 +105,9 @@ def by_principal_axes(source, target, guess):
     coarse = [open3d_cloud(*cloud, voxel) for cloud in (source, target)]
     frames = [by_mass(points, None, 0) for points, _ in (source, target)]
     tried = []
-    for axes in frames[1].equivalent:
+    for signs in ((1, 1, 1), (1, -1, -1), (-1, 1, -1), (-1, -1, 1)):
         pose = np.eye(4)
-        pose[:3, :3] = axes @ frames[0].axes.T
+        pose[:3, :3] = frames[1].axes * signs @ frames[0].axes.T
         pose[:3, 3] = frames[1].center - pose[:3, :3] @ frames[0].center
         tried.append(icp(*coarse, pose, 10 * voxel))
     pose = max(tried, key=lambda t: (round(t[1], 2), -t[2]))[0]
@@ -164,19 +164,13 @@ def guess_for(T_target_source, target, diagonal, random, arguments):
     return off @ T_target_source, (SEARCHED * angle, reach)
 
 
-def judged_answer(folder, name):
-    """What another program found, as `pcl_symmetry_align -json` writes it: `transform` and `converged`."""
-    answer = bench.read_answer(folder, name, transform=(4, 4), converged=())
-    return (answer["transform"], bool(answer["converged"])) if answer else (np.eye(4), False)
-
-
 def evaluate(item, arguments):
     mesh, impostor_mesh = bench.read_mesh(item.path), None
     if arguments.impostors and item.before is not None:
         with contextlib.suppress(bench.BadInput):  # its own item says so
             impostor_mesh = bench.read_mesh(item.before.path)
     symmetries = references.references_of(item, mesh, arguments.references)
-    rows, truths = [], {}
+    rows = []
     for view in range(arguments.views):
         source, T_source_model = seen(*cloud_of(mesh, item, view, arguments))
         tried = [(target_of(mesh, item, view, arguments), None)]
@@ -184,23 +178,13 @@ def evaluate(item, arguments):
             tried.append((target_of(impostor_mesh, item.before, view, arguments), item.before.name))
         for (target, T_target_model), impostor in tried:
             true = T_target_model @ np.linalg.inv(T_source_model)
-            name = f"{item.name}_{view}" + f"_to_{impostor}" * (impostor is not None)
-            if arguments.export:
-                for cloud, end in ((source, "source"), (target, "target")):
-                    sensor = np.eye(4)
-                    sensor[:3, 3] = np.zeros(3) if cloud[1] is None else cloud[1]
-                    bench.write_cloud(f"{arguments.export}/{name}_{end}.pcd", cloud[0], sensor)
-                truths[name] = {"impostor": impostor, "T_target_source": None if impostor else true.tolist()}
             guess = None
             if arguments.around and impostor is None:
                 random = bench.generator(arguments.seed, item.key, view, "guess")
                 guess = guess_for(true, target[0], mesh.diagonal, random, arguments)
             for method in arguments.methods:
                 start = time.process_time()
-                if method == "judged":
-                    pose, fits = judged_answer(arguments.judge, name)
-                else:
-                    pose, fits = METHODS[method](source, target, guess)
+                pose, fits = METHODS[method](source, target, guess)
                 row = {"scan": f"{item.name}_{view}", "impostor": impostor, "method": method, "fits": bool(fits)}
                 row["ms"] = 1000 * (time.process_time() - start)
                 if impostor is None:
@@ -209,7 +193,7 @@ def evaluate(item, arguments):
                     right = angle <= RIGHT_ANGLE and way <= RIGHT_DISTANCE
                     row.update(degrees=float(angle), distance=float(way), right=bool(right))
                 rows.append(row)
-    return {"rows": rows, "truths": truths}
+    return rows
 
 
 def summarize(rows):
@@ -232,8 +216,7 @@ def main(arguments):
     for model, before in zip(models, [None, *map(dataclasses.replace, models)]):
         model.before = before
     found, left_out = bench.run(models, evaluate, arguments)
-    rows = [row for each in found for row in each["rows"]]
-    bench.write_truth(arguments, {name: truth for each in found for name, truth in each["truths"].items()})
+    rows = [row for each in found for row in each]
     results = {m: summarize([row for row in rows if row["method"] == m]) for m in arguments.methods}
     number = lambda value, digits: "-" if value is None else f"{value:.{digits}f}"
     bench.print_table(
@@ -252,6 +235,4 @@ if __name__ == "__main__":
     parser.add_argument("--around", type=float, help="tracks: degrees that a guess is off; symmetry alone uses it")
     parser.add_argument("--around_distance", type=float, default=0.1, help="and how far, in diagonals")
     parser.add_argument("--impostors", action="store_true", help="also bring each scan to the model before its own")
-    asked = parser.parse_args()
-    asked.methods = ["judged"] if asked.judge else asked.methods
-    bench.main(main, asked)
+    bench.main(main, parser.parse_args())

@@ -231,13 +231,11 @@ def measure_meshes(arguments):
 
 
 if __name__ == "__main__":
-    parser = bench.make_parser(__doc__)
+    parser = bench.make_parser(__doc__, others=False)
     parser.add_argument("--counts", type=bench.numbers(int), default="2000,10000,50000", help="points of the clouds")
     parser.add_argument("--noise", type=bench.numbers(float), default="0,0.003", help="of solids, in diameters")
     parser.add_argument("--seeds", type=int, default=1, help="samplings and poses of each solid")
     parser.add_argument("--kind", help="solids of this kind alone")
     parser.add_argument("--views", type=int, default=0, help="judge the rotations found in this number of scans of each mesh")
     asked = parser.parse_args()
-    if asked.export or asked.judge:
-        parser.error("--export and --judge: frames.py, registration.py and planes.py have them")
     bench.main(measure_meshes if asked.models else measure_solids, asked)

@@ -219,6 +219,7 @@ def solids(kind=None):
 
 # Bodies of random sizes: a closed curve, complex numbers up to modulus 1, swept along a profile of (radius, height)
 
+TUNING_BODIES = ("bottle", "vase", "cup", "pin")  # round ones that numbers were chosen on
 FOLDED = {"prism": [(0, 0), (1, 0), (1, 1), (0, 1)], "tube": [(1, 0), (1, 1)], "cone": [(0, 0), (1, 0), (0, 1)],
           "rim": [(1, 0), (1, 1), (0.75, 1), (0.75, 0), (1, 0)], "open cone": [(1, 0), (0, 1)]}  # fmt: skip
 
@@ -236,6 +237,17 @@ def sweep(curve, profile):
     radius, height = np.transpose(profile)[..., None]
     vertices, quads = tube(np.stack(np.broadcast_arrays(radius * curve.real, radius * curve.imag, height), -1))
     return bench.make_mesh(vertices, quads.tolist())
+
+
+def folded_curve(folds, random):
+    """A polygon, or a flower with waves."""
+    if random.uniform() < 0.4:
+        aspect = random.uniform(0.5, 0.8)
+        corners = np.array([1 + aspect * 1j, -1 + aspect * 1j, -1 - aspect * 1j, 1 - aspect * 1j]) / abs(1 + aspect * 1j)
+        return corners if folds == 2 else np.exp(2j * np.pi * np.arange(folds) / folds)
+    depth, steps = random.uniform(0.1, 0.35), max(8, 192 // folds)
+    turn = np.arange(folds * steps) / steps
+    return (1 - 0.5 * depth * (1 - np.cos(2 * np.pi * turn))) * np.exp(2j * np.pi * turn / folds)
 
 
 def folded_body(body, curve, folds, random):
