@@ -23,6 +23,7 @@ from scipy.spatial import ConvexHull, QhullError
 from scipy.spatial.transform import Rotation
 
 MESH_FORMATS = (".off", ".ply", ".obj", ".stl")
+NUM_FOLDS = 3
 
 
 class BadInput(Exception):
@@ -187,7 +188,7 @@ class Model:
 
 
 def list_models(arguments):
-    """Meshes of the folders of the command line, by name, as --classes, --fold, --every, --first and --max select."""
+    """Meshes of the folders of the command line, by name, as --classes, --fold, --every and --first select."""
     classes = read_classes(arguments.classes) if arguments.classes else None
     if arguments.fold is not None and classes is None:
         raise BadInput("--fold needs --classes")
@@ -197,9 +198,9 @@ def list_models(arguments):
             raise BadInput(f"{folder}: must be a folder")
         paths = sorted(p for p in folder.iterdir() if p.suffix.lower() in MESH_FORMATS)
         if classes is not None:
-            folds = range(arguments.folds) if arguments.fold is None else [arguments.fold]
-            paths = [p for p in paths if p.stem in classes and classes[p.stem].number % arguments.folds in folds]
-        paths = paths[arguments.first :: arguments.every][: arguments.max]
+            folds = range(NUM_FOLDS) if arguments.fold is None else [arguments.fold]
+            paths = [p for p in paths if p.stem in classes and classes[p.stem].number % NUM_FOLDS in folds]
+        paths = paths[arguments.first :: arguments.every]
         models += [Model(p.stem, str(p), f"{folder.resolve().name}/{p.name}") for p in paths]
     if not models:
         raise BadInput(f"{' '.join(arguments.models) or 'the command line'}: no mesh ({', '.join(MESH_FORMATS)}) is selected")
@@ -479,12 +480,15 @@ def _answers_of_tool(tool, path, seed, options):
         return read_answers(folder, "found")
 
 
+PER_MILLISECOND = {"ns": 1e6, "us": 1e3, "ms": 1.0, "s": 1e-3}
+
+
 def google_benchmark(command, *flags):
-    """Rows that a program of Google Benchmark writes; command: its path, or words that end with it."""
+    """Rows, with `cpu_ms`, that a program of Google Benchmark writes; command: its path, or words that end with it."""
     command = [command] if isinstance(command, str) else command
     try:
         run = subprocess.run([*command, *flags, "--benchmark_format=json"], stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, check=True)
-        return json.loads(run.stdout)["benchmarks"]
+        return [{**row, "cpu_ms": row["cpu_time"] / PER_MILLISECOND[row["time_unit"]]} for row in json.loads(run.stdout)["benchmarks"]]
     except (OSError, ValueError, KeyError, TypeError, subprocess.CalledProcessError):
         raise BadInput(f"{command[-1]}: is no program of Google Benchmark that runs") from None
 
@@ -614,11 +618,9 @@ def make_parser(description, models=True, others=True):
     if models:
         add("models", nargs="*", help="folders of .off, .ply, .obj and .stl meshes")
         add("--classes", metavar="FILE", help="class file (.cla): take only the models that it names")
-        add("--fold", type=int, help="with --classes: only models whose leaf class number modulo --folds is this one")
-        add("--folds", type=natural, default=3, help="number of folds")
+        add("--fold", type=int, help="with --classes: only models whose leaf class number modulo 3 is this one")
         add("--every", type=natural, default=1, help="take every N-th mesh of each folder")
         add("--first", type=int, default=0, help="index of the first mesh that is taken")
-        add("--max", type=natural, help="greatest number of meshes of each folder")
     add("--jobs", type=natural, default=os.cpu_count(), help="number of processes, all cores by default")
     add("--json", metavar="FILE", help="write the results; an interrupted run goes on from FILE.journal")
     add("--seed", type=int, default=0, help="of all random numbers")

@@ -63,10 +63,7 @@ def evidence_of(found):
 
 
 def main(arguments):
-    models = bench.list_models(arguments)
-    for model, before in zip(models, [None, *map(dataclasses.replace, models)]):
-        model.before = before
-    made = [(right, terms_of(e), "made") for right, e in fits.sampled(models, sample_item, arguments)]
+    made = [(right, terms_of(e), "made") for right, e in fits.sampled(registration.models_in_turn(arguments), sample_item, arguments)]
     real = []
     for path in arguments.real or []:
         with open(path) as lines:

@@ -22,6 +22,7 @@ from frames import by_mass, cloud_of, make_parser
 
 RIGHT_ANGLE, RIGHT_DISTANCE = 5.0, 0.02  # degrees, diagonals
 ACROSS = np.cos(np.radians(3.0))  # a plane that lies across an axis, within the angle at which planes count as found
+AROUND_DISTANCE = 0.1  # diagonals that a guess is off
 SEARCHED = 1.5  # tracks are searched half as far again as the guess is off: the search has to find where to stop
 VOXEL = 0.015  # of ICP and features, diagonals of the target
 
@@ -155,7 +156,7 @@ def target_of(mesh, model, view, arguments):
 
 def guess_for(T_target_source, target, diagonal, random, arguments):
     """The true pose, turned about the middle of the target and moved, and how far a search around it goes."""
-    angle, distance = np.radians(arguments.around), arguments.around_distance * diagonal
+    angle, distance = np.radians(arguments.around), AROUND_DISTANCE * diagonal
     middle, (axis, way) = target.mean(axis=0), bench.random_directions(random, 2)
     off = bench.rotation_about(middle, axis, angle)
     off[:3, 3] += distance * way
@@ -211,11 +212,16 @@ def summarize(rows):
     }
 
 
-def main(arguments):
+def models_in_turn(arguments):
+    """The models of the command line, each with that `before` it in the list, or None."""
     models = bench.list_models(arguments)
     for model, before in zip(models, [None, *map(dataclasses.replace, models)]):
         model.before = before
-    found, left_out = bench.run(models, evaluate, arguments)
+    return models
+
+
+def main(arguments):
+    found, left_out = bench.run(models_in_turn(arguments), evaluate, arguments)
     rows = [row for each in found for row in each]
     results = {m: summarize([row for row in rows if row["method"] == m]) for m in arguments.methods}
     number = lambda value, digits: "-" if value is None else f"{value:.{digits}f}"
@@ -233,6 +239,5 @@ if __name__ == "__main__":
     parser = make_parser(__doc__, METHODS)
     parser.add_argument("--target", choices=["model", "scan"], default="model", help="what scans are brought to")
     parser.add_argument("--around", type=float, help="tracks: degrees that a guess is off; symmetry alone uses it")
-    parser.add_argument("--around_distance", type=float, default=0.1, help="and how far, in diagonals")
     parser.add_argument("--impostors", action="store_true", help="also bring each scan to the model before its own")
     bench.main(main, parser.parse_args())

@@ -33,7 +33,7 @@ import registration
 LEAST_DIAGONAL, GREATEST_DIAGONAL = 0.15, 0.30  # of models, meters
 BANDS = (0.0, 0.1, 0.3, 0.5, 0.7)  # of the share of an object that others hide
 RIGHT_POSE = 0.05  # of the diameter: the limit of the BOP benchmark
-MIN_IOU = 0.5
+MIN_IOU, MIN_POINTS = 0.5, 300  # points that are seen of an object
 DEVIATION, STEP, FLYING, EDGE = 1.425e-3, 2.85e-3, 0.5, 0.02  # structured light at 1 m (Khoshelham and Elberink 2012); shares
 TABLE_RIM = 0.4  # meters
 
@@ -289,11 +289,11 @@ def wanted_frames(truths, arguments):
         frame = types.SimpleNamespace(name=name, noise=float(name.rsplit("_", 1)[-1]), objects=[], known=known)
         for truth in truths[name]:
             band = band_of(occlusion(truth))
-            if band is None or truth.get("cropped") or truth["num_visible"] < arguments.min_points:
+            if band is None or truth.get("cropped") or truth["num_visible"] < MIN_POINTS:
                 continue
             key = (frame.noise, band)
-            in_band[key] = in_band.get(key, 0) + (occlusion(truth) >= arguments.least_occlusion)
-            if occlusion(truth) >= arguments.least_occlusion and in_band[key] <= (arguments.most_in_band or math.inf):
+            in_band[key] = in_band.get(key, 0) + 1
+            if in_band[key] <= (arguments.most_in_band or math.inf):
                 frame.objects.append(truth)
         frames += [frame] if frame.objects else []
     return frames
@@ -367,8 +367,6 @@ if __name__ == "__main__":
     add("--objects", type=int, default=12, help="greatest number of objects of a scene")
     add("--noise", type=bench.numbers(float), default="0,1", help="factors of the sensor's noise")
     add("--seen", type=bench.numbers(str, ("alone", "label", "scene")), default="alone,label,scene", help="how objects are asked for")
-    add("--min-points", type=int, default=300, help="least number of points of an object")
-    add("--least-occlusion", type=float, default=0.0, help="objects of which others hide less are passed over")
     add("--most-in-band", type=int, default=0, help="objects of a band after which others are passed over; 0: none are")
     add("--leave-out", type=int, default=0, help="also ask a database without every N-th model; 0: do not")
     add("--references", metavar="DIR", help="folder that keeps the reference symmetries of the models")

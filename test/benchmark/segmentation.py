@@ -220,9 +220,9 @@ def report(summary):
 
 
 def main(arguments):
-    every, arguments.every, largest, arguments.max = arguments.every, 1, arguments.max, None
+    every, arguments.every = arguments.every, 1
     wanted = lambda number: number % 2 == 1 and (number - 1) // 20 % 3 in arguments.remainders
-    models = [m for m in bench.list_models(arguments) if m.name.isdigit() and wanted(int(m.name))][::every][:largest]
+    models = [m for m in bench.list_models(arguments) if m.name.isdigit() and wanted(int(m.name))][::every]
     if not models:
         raise bench.BadInput(f"{arguments.models[0]}: no mesh with an odd number of these categories")
     results, left_out = bench.run(models, evaluate, arguments)

@@ -140,8 +140,7 @@ def cyclic(y, z):
     return [np.roll([0, y, z], k) for k in range(3)]
 
 
-def solids(kind=None):
-    """All solids, or those of one kind."""
+def solids():
     cup = turned([(0, 0), (1, 0), (1, 2.2), (0.9, 2.2), (0.9, 0.12), (0, 0.12)])
     wheel = [(0.2, -0.3), (1, -0.3), (0.85, 0), (1, 0.3), (0.5, 0.3), (0.5, 0.8), (0.2, 0.8), (0.2, -0.3)]
     can = turned([(0, -1), (1, -1), (1, 0.6), (0.7, 0.8), (0.7, 1.1), (0, 1.1)])
@@ -214,7 +213,7 @@ def solids(kind=None):
             ("propeller", "C3", joined(turned([(0, -0.1), (0.16, -0.1), (0.16, 0.5), (0, 0.5)]), *blades)),
         ],
     }  # fmt: skip
-    return [Solid(name, k, group, *part) for k, some in made.items() if kind in (None, k) for name, group, part in some]
+    return [Solid(name, k, group, *part) for k, some in made.items() for name, group, part in some]
 
 
 # Bodies of random sizes: a closed curve, complex numbers up to modulus 1, swept along a profile of (radius, height)
