@@ -10,13 +10,9 @@ import sys
 import tempfile
 import unittest
 
-try:
-    import open3d  # noqa: F401
-    import scipy  # noqa: F401
-    import pcl_symmetry  # noqa: F401
-except ImportError as error:
-    print(f"skipped: {error}")
-    sys.exit(77)
+from needed import need
+
+need("open3d", "scipy", "pcl_symmetry")
 import numpy as np
 
 import bench

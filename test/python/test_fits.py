@@ -3,24 +3,22 @@ import argparse
 import contextlib
 import io
 import pathlib
-import sys
 import tempfile
 import types
 import unittest
 
-try:
-    import numpy as np
+from needed import need
 
-    import bench
-    import fit_frames
-    import fit_planes
-    import fit_segments
-    import fit_rotations
-    import fits
-    import solids
-except ImportError as error:
-    print(f"skipped: {error}")
-    sys.exit(77)
+need("bench", "fits")
+import numpy as np
+
+import bench
+import fit_frames
+import fit_planes
+import fit_segments
+import fit_rotations
+import fits
+import solids
 
 
 def made_up_rows(random, num_models=60, per_cloud=6):
