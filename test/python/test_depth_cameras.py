@@ -368,7 +368,6 @@ class LongCalls(unittest.TestCase):
         points = box(num_points=60_000)
         for name, call in self.CALLS.items():
             seconds = self.seconds_to_stop(lambda: call(pcl_symmetry, points))
-            print(f"{name} ended after {seconds:.2f} s")
             self.assertLess(seconds, 2.0, name)  # four times the limit on an idle machine
 
     @unittest.skipUnless(has_pcl(), "the module was built without PCL")
