@@ -23,6 +23,7 @@ from scipy.spatial import ConvexHull, QhullError
 from scipy.spatial.transform import Rotation
 
 MESH_FORMATS = (".off", ".ply", ".obj", ".stl")
+NUM_FOLDS = 3
 
 
 class BadInput(Exception):
@@ -187,7 +188,7 @@ class Model:
 
 
 def list_models(arguments):
-    """Meshes of the folders of the command line, by name, as --classes, --fold, --every, --first and --max select."""
+    """Meshes of the folders of the command line, by name, as --classes, --fold, --every and --first select."""
     classes = read_classes(arguments.classes) if arguments.classes else None
     if arguments.fold is not None and classes is None:
         raise BadInput("--fold needs --classes")
@@ -197,10 +198,9 @@ def list_models(arguments):
             raise BadInput(f"{folder}: must be a folder")
         paths = sorted(p for p in folder.iterdir() if p.suffix.lower() in MESH_FORMATS)
         if classes is not None:
-            folds = range(arguments.folds) if arguments.fold is None else [arguments.fold]
-            paths = [p for p in paths if p.stem in classes and classes[p.stem].number % arguments.folds in folds]
-            paths = [p for p in paths if arguments.within in classes[p.stem].name.split("/") or not arguments.within]
-        paths = paths[arguments.first :: arguments.every][: arguments.max]
+            folds = range(NUM_FOLDS) if arguments.fold is None else [arguments.fold]
+            paths = [p for p in paths if p.stem in classes and classes[p.stem].number % NUM_FOLDS in folds]
+        paths = paths[arguments.first :: arguments.every]
         models += [Model(p.stem, str(p), f"{folder.resolve().name}/{p.name}") for p in paths]
     if not models:
         raise BadInput(f"{' '.join(arguments.models) or 'the command line'}: no mesh ({', '.join(MESH_FORMATS)}) is selected")
@@ -211,7 +211,7 @@ def list_models(arguments):
     return models
 
 
-# What a process keeps for its next item; here, as Dask cannot send functions with a cache that are part of a program
+# What a process keeps for its next item
 
 
 @functools.lru_cache(maxsize=2)
@@ -274,7 +274,7 @@ def moved(pose, points):
     return points @ pose[:3, :3].T + pose[:3, 3]
 
 
-def sample(mesh, count, random, even=True, with_triangles=False):
+def sample(mesh, count, random, even=True):
     """(count, 3) points of the surface, by area; even: one in each of `count` equal shares of the area."""
     shares = np.arange(count) if even else count * np.sort(random.uniform(size=count))
     up_to = np.cumsum(mesh.areas)
@@ -282,34 +282,24 @@ def sample(mesh, count, random, even=True, with_triangles=False):
     index = np.minimum(np.searchsorted(up_to, at, side="right"), len(up_to) - 1)
     root, along = np.sqrt(random.uniform(size=(count, 1))), random.uniform(size=(count, 1))
     a, b, c = mesh.corners[index].swapaxes(0, 1)
-    points = (1 - root) * a + root * (1 - along) * b + root * along * c
-    return (points, index) if with_triangles else points
+    return (1 - root) * a + root * (1 - along) * b + root * along * c
 
 
 def depth_picture(corners, size, half_width):
     """(size, size) depth z of the nearest of (T, 3, 3) triangles at each pixel, infinite where there is none.
 
     Frame of the sensor: x right, y down, z forward; the picture is 2 half_width wide at depth one. Exact at the middle
-    of each pixel.
+    of each pixel. (Rays of Open3D miss everything where Embree has ray masks, as in Debian 12.)
     """
     z = corners[..., 2]
     corners, z = corners[(z > 0).any(1)], z[(z > 0).any(1)]
     pixels = (corners[..., :2] / np.maximum(z, 1e-9)[..., None] / half_width + 1) * size / 2 - 0.5
     pixels[(z <= 0).any(1), 0], pixels[(z <= 0).any(1), 1] = -1, size  # reaches behind the sensor: all pixels are tried
     x, y = np.meshgrid(*2 * [(2 * (np.arange(size) + 0.5) / size - 1) * half_width])
-    return first_hits(corners, np.stack([x, y, np.ones_like(x)], -1), pixels.min(1), pixels.max(1))
-
-
-def first_hits(corners, rays, low, high):
-    """(H, W) lengths, in those of the rays (H, W, 3) from the origin, at which they first meet (T, 3, 3) triangles.
-
-    low, high: (T, 2) first and last column and row in which each triangle can be. Infinite where a ray meets nothing.
-    (Rays of Open3D miss everything where Embree has ray masks, as in Debian 12.)
-    """
-    height, width = rays.shape[:2]
-    lengths, rays = np.full(height * width, np.inf), rays.reshape(-1, 3)
-    low = np.clip(np.ceil(low), 0, [width, height]).astype(int)
-    high = np.clip(np.floor(high), -1, [width - 1, height - 1]).astype(int)
+    rays = np.stack([x, y, np.ones_like(x)], -1).reshape(-1, 3)
+    depths = np.full(size * size, np.inf)
+    low = np.clip(np.ceil(pixels.min(1)), 0, size).astype(int)  # first and last column and row in which a triangle can be
+    high = np.clip(np.floor(pixels.max(1)), -1, size - 1).astype(int)
     counts = np.prod(np.maximum(high - low + 1, 0), axis=1)
     order = np.flatnonzero(counts)
     blocks = np.cumsum(counts[order]) // 1_000_000
@@ -319,7 +309,7 @@ def first_hits(corners, rays, low, high):
         index = np.repeat(block, counts[block])
         within = np.arange(len(index)) - np.repeat(np.cumsum(counts[block]) - counts[block], counts[block])
         columns = (high - low + 1)[index, 0]
-        pixel = (low[index, 1] + within // columns) * width + low[index, 0] + within % columns
+        pixel = (low[index, 1] + within // columns) * size + low[index, 0] + within % columns
         a, b, c = corners[block].swapaxes(0, 1)
         edges = np.stack([np.cross(b, c), np.cross(c, a), np.cross(a, b)], 1)  # a ray hits where all signs agree
         volume = np.einsum("ij,ij->i", a, edges[:, 0])
@@ -329,8 +319,8 @@ def first_hits(corners, rays, low, high):
         sides *= np.sign(total)[:, None]
         hit = (sides >= -1e-12 * np.abs(total)[:, None]).all(1) & (total != 0)
         at = volume[position[hit]] / total[hit]
-        np.minimum.at(lengths, pixel[hit][at > 0], at[at > 0])
-    return lengths.reshape(height, width)
+        np.minimum.at(depths, pixel[hit][at > 0], at[at > 0])
+    return depths.reshape(size, size)
 
 
 def look_along(forward):
@@ -367,20 +357,19 @@ class Scan:
         return self.T_cloud_sensor[:3, 3]
 
 
-def scan(mesh, direction, random, num_points=10_000, noise=0.0, pose=None, distance=2.0, field_of_view=0.4, resolution=None):
-    """What a depth camera sees from `direction` (model frame, toward the camera), about `num_points` of it.
+def scan(mesh, direction, random, num_points=10_000, noise=0.0, pose=None):
+    """What a depth camera two diagonals away sees from `direction` (model frame, toward the camera), about `num_points` of it.
 
-    noise: standard deviation along the ray, in diagonals. pose: T_cloud_model. distance: of the camera from the center,
-    in diagonals. resolution: edge of the picture; None: found by the number of points, up to 1024.
+    noise: standard deviation along the ray, in diagonals. pose: T_cloud_model. The picture has up to 1024 rows.
     """
-    axes, half = look_along(-np.asarray(direction, float)), math.tan(field_of_view / 2)
-    origin = mesh.center - distance * mesh.diagonal * axes[:, 2]
+    axes, half = look_along(-np.asarray(direction, float)), math.tan(0.2)
+    origin = mesh.center - 2 * mesh.diagonal * axes[:, 2]
     corners = (mesh.corners - origin) @ axes
-    sizes, size = {}, resolution or 128
+    sizes, size = {}, 128
     error = lambda depth: abs(np.isfinite(depth).sum() / num_points - 1)
     while size not in sizes:
         sizes[size] = depth = depth_picture(corners, size, half)
-        if resolution or error(depth) < 0.01 or len(sizes) > 8:
+        if error(depth) < 0.01 or len(sizes) > 8:
             break
         num_hits = np.isfinite(depth).sum()
         size = round(size * math.sqrt(num_points / num_hits)) if num_hits else 4 * size
@@ -400,31 +389,6 @@ def scan(mesh, direction, random, num_points=10_000, noise=0.0, pose=None, dista
 
 
 CUBE_CORNERS = np.array([[x, y, z] for z in (-1, 1) for y in (-1, 1) for x in (-1, 1)]) / math.sqrt(3)
-PATTERNS = ("random", "voxel", "scanners", "rings")
-
-
-def sample_pattern(mesh, pattern, count, random):
-    """(about count, 3) points in the frame of the mesh: uniformly random ones; means of the cells of a voxel grid;
-    what scanners at the corners of a cube see; every eighth row of their pictures, as a spinning LiDAR has them."""
-    if pattern == "random":
-        return sample(mesh, count, random, even=False)
-    if pattern == "voxel":
-        dense, low, high = sample(mesh, 20 * count, random), 0.0, mesh.diagonal
-        for _ in range(20):
-            cell = np.floor((dense - dense.min(0)) / (0.5 * (low + high))).astype(np.int64)
-            keys = (cell[:, 0] << 42) + (cell[:, 1] << 21) + cell[:, 2]
-            cells, index, sizes = np.unique(keys, return_inverse=True, return_counts=True)
-            if abs(len(cells) / count - 1) < 0.02:
-                break
-            low, high = (0.5 * (low + high), high) if len(cells) > count else (low, 0.5 * (low + high))
-        return np.stack([np.bincount(index, dense[:, k]) for k in range(3)], 1) / sizes[:, None]
-    step = {"scanners": 1, "rings": 8}[pattern]
-    rotation, parts = random_rotation(random), []
-    for corner in CUBE_CORNERS:  # twice the points, so that enough are left where pictures overlap
-        seen = scan(mesh, rotation @ corner, random, 2 * step * count // 8).points[::step].reshape(-1, 3)
-        parts.append(seen[np.isfinite(seen[:, 0])])
-    points = np.concatenate(parts)
-    return points[np.sort(random.permutation(len(points))[:count])]
 
 
 # Files of clouds and of answers
@@ -496,29 +460,35 @@ def _detect_by_tool(points, sensor, seed, tool, options):
         write_cloud(f"{folder}/cloud.pcd", points, sensor)
         if sensor is not None and points.ndim == 2:
             options = {"viewpoint": ",".join(str(v) for v in sensor[:3, 3]), **options}
-        flags = [f for name, value in options.items() for f in (f"-{name}", str(value))]
-        command = [os.path.abspath(tool), "cloud.pcd", "-json", "found.json", "-quiet", "-threads", "1", "-seed", str(seed), *flags]
-        try:
-            run = subprocess.run(command, cwd=folder, capture_output=True)
-        except OSError as error:
-            raise BadProgram(f"{tool}: cannot be run, {error.strerror}") from None
-        return NO_ANSWERS if run.returncode else read_answers(folder, "found")
+        return _answers_of_tool(tool, f"{folder}/cloud.pcd", seed, options)
 
 
 def detect_labeled(path, label, seed, tool):
     """What the tool answers for the points of a frame with a label; the others hide and support them."""
-    command = [tool, path, "-label", str(label), "-quiet", "-threads", "1", "-seed", str(seed + 1)]
+    return _answers_of_tool(tool, path, seed + 1, {"label": label})
+
+
+def _answers_of_tool(tool, path, seed, options):
+    flags = [f for name, value in options.items() for f in (f"-{name}", str(value))]
     with tempfile.TemporaryDirectory() as folder:
-        done = subprocess.run([*command, "-json", f"{folder}/found.json"], capture_output=True)
-        return NO_ANSWERS if done.returncode else read_answers(folder, "found")
+        try:
+            run_tool("", tool, path, *flags, "-json", f"{folder}/found.json", "-quiet", "-threads", "1", "-seed", str(seed))
+        except BadProgram:
+            raise
+        except BadInput:
+            return NO_ANSWERS
+        return read_answers(folder, "found")
+
+
+PER_MILLISECOND = {"ns": 1e6, "us": 1e3, "ms": 1.0, "s": 1e-3}
 
 
 def google_benchmark(command, *flags):
-    """Rows that a program of Google Benchmark writes; command: its path, or words that end with it."""
+    """Rows, with `cpu_ms`, that a program of Google Benchmark writes; command: its path, or words that end with it."""
     command = [command] if isinstance(command, str) else command
     try:
         run = subprocess.run([*command, *flags, "--benchmark_format=json"], stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, check=True)
-        return json.loads(run.stdout)["benchmarks"]
+        return [{**row, "cpu_ms": row["cpu_time"] / PER_MILLISECOND[row["time_unit"]]} for row in json.loads(run.stdout)["benchmarks"]]
     except (OSError, ValueError, KeyError, TypeError, subprocess.CalledProcessError):
         raise BadInput(f"{command[-1]}: is no program of Google Benchmark that runs") from None
 
@@ -553,16 +523,6 @@ def read_answers(folder, name):
         return answers
     except (ValueError, IndexError, AttributeError, OSError):
         raise BadInput(f"{base}: is no list of planes") from None
-
-
-def read_answer(folder, name, **shapes):
-    """Arrays of the given shapes in NAME.json of another program, by their fields; None where there is no such file."""
-    path = pathlib.Path(folder) / f"{name}.json"
-    try:
-        content = json.loads(path.read_text()) if path.exists() else None
-        return content and {field: np.array(content[field], float).reshape(shape) for field, shape in shapes.items()}
-    except (ValueError, KeyError, TypeError, OSError):
-        raise BadInput(f"{path}: must have {' and '.join(shapes)}") from None
 
 
 # Rates, calibration and tables
@@ -641,27 +601,12 @@ def save_figure(path, draw):
     pyplot.close(figure)
 
 
-def rates_in(content, label=""):
-    """(label, Rate) of all rates in nested dicts, which are labels of their own."""
-    if isinstance(content, Rate):
-        return [(label.strip(), content)] if content.total else []
-    return [rate for key, value in content.items() for rate in rates_in(value, f"{label} {key}")] if isinstance(content, dict) else []
-
-
-def draw_rates(axes, rates):
-    """Dots with their intervals, one row a rate."""
-    for row, (label, rate) in enumerate(rates):
-        low, high = wilson(rate.count, rate.total)
-        axes.plot([100 * low, 100 * high], [-row, -row], "C0")
-        axes.plot(100 * rate.count / rate.total, -row, "C0o")
-    axes.set(yticks=range(0, -len(rates), -1), yticklabels=[label for label, _ in rates], xlim=(0, 100), xlabel="%")
-
-
 # Programs and runs
 
 
-def make_parser(description, models=True):
-    """Parser of the flags that all programs share; models: with those that choose meshes."""
+def make_parser(description, models=True, others=True):
+    """Parser of the flags that all programs share; models: with those that choose meshes; others: with those that hand clouds
+    to other programs."""
     parser = argparse.ArgumentParser(description=description, formatter_class=argparse.RawDescriptionHelpFormatter)
     add = parser.add_argument
 
@@ -673,19 +618,15 @@ def make_parser(description, models=True):
     if models:
         add("models", nargs="*", help="folders of .off, .ply, .obj and .stl meshes")
         add("--classes", metavar="FILE", help="class file (.cla): take only the models that it names")
-        add("--fold", type=int, help="with --classes: only models whose leaf class number modulo --folds is this one")
-        add("--within", metavar="CLASS", help="with --classes: only models of this class and of those below it")
-        add("--folds", type=natural, default=3, help="number of folds")
+        add("--fold", type=int, help="with --classes: only models whose leaf class number modulo 3 is this one")
         add("--every", type=natural, default=1, help="take every N-th mesh of each folder")
         add("--first", type=int, default=0, help="index of the first mesh that is taken")
-        add("--max", type=natural, help="greatest number of meshes of each folder")
     add("--jobs", type=natural, default=os.cpu_count(), help="number of processes, all cores by default")
-    add("--scheduler", metavar="ADDRESS", help="Dask scheduler that spreads the work in place of --jobs")
     add("--json", metavar="FILE", help="write the results; an interrupted run goes on from FILE.journal")
-    add("--figure", metavar="FILE", help="draw the rates with their intervals")
     add("--seed", type=int, default=0, help="of all random numbers")
-    add("--export", metavar="DIR", help="write each cloud as PCD, and truth.json")
-    add("--judge", metavar="DIR", help="judge what another program answered: a file NAME.json or NAME.txt a cloud")
+    if others:
+        add("--export", metavar="DIR", help="write each cloud as PCD, and truth.json")
+        add("--judge", metavar="DIR", help="judge what another program answered: a file NAME.json or NAME.txt a cloud")
     return parser
 
 
@@ -718,8 +659,6 @@ def main(program, arguments):
 
 def write_json(arguments, content):
     """Writes the results of --json, rates as numbers, whole or not at all; then the journal is not needed any more."""
-    if arguments.figure and rates_in(content):
-        save_figure(arguments.figure, lambda axes: draw_rates(axes, rates_in(content)))
     if arguments.json:
         write_whole(arguments.json, json.dumps(content, indent=1, default=lambda rate: rate.json) + "\n")
         for path in pathlib.Path(arguments.json).parent.glob(pathlib.Path(arguments.json).name + "*.journal"):
@@ -743,7 +682,7 @@ def write_whole(path, text):
 
 def _asked(arguments):
     """What the results of a run depend on."""
-    return {k: v for k, v in vars(arguments).items() if k not in ("jobs", "scheduler", "json", "figure")}
+    return {k: v for k, v in vars(arguments).items() if k not in ("jobs", "json", "figure")}
 
 
 def work_folder(arguments, given, temporary):
@@ -756,14 +695,14 @@ def work_folder(arguments, given, temporary):
 
 
 def run(items, function, arguments, stage=""):
-    """[function(item, arguments) for each item], spread over processes or a Dask scheduler.
+    """[function(item, arguments) for each item], spread over processes.
 
     Items have a `name`, or are their own name; results can be written as JSON. With --json, finished items are kept in
     a journal, and a run with the same arguments goes on from it. An item that fails costs one sentence and itself only.
     stage: tells several runs of one program apart. Returns (results in the order of the items, sentences of failures).
     """
     named = {getattr(item, "name", str(item)): item for item in items}
-    if arguments.export:
+    if getattr(arguments, "export", None):
         pathlib.Path(arguments.export).mkdir(parents=True, exist_ok=True)
     with _journal(arguments, stage) as (finished, keep):
         results = {name: result for name, result in finished.items() if name in named}
@@ -801,9 +740,7 @@ def _attempt(function, item, arguments, name):
 
 def _spread(waiting, function, arguments):
     """Yields (name, result, failure) as items end."""
-    if arguments.scheduler:
-        yield from _spread_by_dask(waiting, function, arguments)
-    elif arguments.jobs == 1:
+    if arguments.jobs == 1:
         for name, item in waiting.items():
             yield (name, *_attempt(function, item, arguments, name))
     else:
@@ -829,23 +766,6 @@ def _spread_over_processes(waiting, function, arguments, jobs, lost):
         except BaseException:
             pool.shutdown(cancel_futures=True)
             raise
-
-
-def _spread_by_dask(waiting, function, arguments):
-    import distributed
-
-    with distributed.Client(arguments.scheduler) as client:
-        here = pathlib.Path(__file__).parent
-        for module in list(sys.modules.values()):
-            path = getattr(module, "__file__", None)
-            if path and pathlib.Path(path).parent == here and module.__name__ != "__main__":
-                client.upload_file(path)
-        futures = {client.submit(_attempt, function, item, arguments, name, pure=False): name for name, item in waiting.items()}
-        for future in distributed.as_completed(futures):
-            if future.status == "error":
-                yield futures[future], None, f"{futures[future]}: {future.exception()}"
-            else:
-                yield (futures[future], *future.result())
 
 
 @contextlib.contextmanager

@@ -17,7 +17,7 @@ def program(arguments):
         method, setting = row["name"].split("/")[:2]
         voting = "voting" in method  # estimates averages over bins, and is judged by them
         error = row["rms_of_averages_percent" if voting else "rms_percent"]
-        curves[method.replace("Error_", "").replace("_", " ")][setting].append((row["cpu_time"], error))
+        curves[method.replace("Error_", "").replace("_", " ")][setting].append((row["cpu_ms"], error))
 
     def draw(axes):
         for method, settings in curves.items():

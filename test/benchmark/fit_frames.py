@@ -1,14 +1,12 @@
 """Fits the probabilities that a frame is the one in which people put a shape, and writes the header of their weights.
 
-usage: PYTHONPATH=build/src/python python3 test/benchmark/fit_frames.py PSB --classes train.cla --fold 0 --others 1
+usage: PYTHONPATH=build/src/python python3 test/benchmark/fit_frames.py PSB --classes train.cla --fold 0
 
 A whole cloud and two scans of each model, in random poses, give frames with their evidence x. A frame is right where
 its axes, in any order and sign, are within 5 degrees of those of the file; about an axis of revolution at any angle.
 The probability of a frame is exp(w.x) / (1 + the sum of exp(w.x) over all frames of the cloud), a conditional logit
 whose 1 counts for "none of them" (McFadden 1974); w maximizes the likelihood that one of the right frames is right.
 """
-import argparse
-
 import numpy as np
 from scipy.optimize import minimize
 from scipy.special import logsumexp
@@ -106,13 +104,9 @@ def program(arguments):
     fit = [fit_weights([row for row in rows if row[0] == scanned]) for scanned in (False, True)]
     weights = [one[0] for one in fit]
     print_rates(rows, weights, "Models of the fit")
-    if arguments.others is not None:
-        others = argparse.Namespace(**{**vars(arguments), "fold": arguments.others})
-        print_rates(fits.sampled(bench.list_models(others), sample_item, others, "others"), weights, f"Fold {arguments.others}")
     fits.write_header(arguments, header(fit, len(rows), len(rows) // (VIEWS + 1)), (["<array>"],))
 
 
 if __name__ == "__main__":
     parser = fits.make_parser(__doc__, OUTPUT)
-    parser.add_argument("--others", type=int, help="fold that the fit is judged on")
     bench.main(program, parser.parse_args())

@@ -5,9 +5,7 @@ usage: PYTHONPATH=build/src/python python3 test/benchmark/fit_planes.py PSB --cl
 Clouds of models, and of shapes with folds made by code, give candidates with their evidence; what each plane really
 maps is measured on the mesh. A plane is right where it lies within 3 degrees and 2 % of the diagonal of one that maps
 97 % of the mesh, of all candidates of all clouds of the model; where points resolve no surface, the plane itself has to.
-With --others it prints what the fit decides on clouds of models of another fold.
 """
-import argparse
 import math
 
 import numpy as np
@@ -60,7 +58,10 @@ def shape_clouds(i, seed):
     random = bench.generator(seed, "folds", i)
     body, noise, thinned = [*solids.FOLDED, "round"][i % 6], i // 6 % 3, i // 18 % 2
     folds, count = int(random.integers(2, 25)), (10_000, 3000, 30_000)[i // 36 % 3]
-    mesh = solids.round_body(fits.ROUND[random.integers(4)], random) if body == "round" else fits.folded_shape(body, folds, random)
+    if body == "round":
+        mesh = solids.round_body(solids.TUNING_BODIES[random.integers(4)], random)
+    else:
+        mesh = solids.folded_body(body, solids.folded_curve(folds, random), folds, random)
     points, pose = bench.sample(mesh, count, random), bench.random_pose(random, mesh)
     if thinned:
         along = (points - mesh.center) @ bench.random_directions(random, 1)[0] / mesh.diagonal
@@ -151,18 +152,17 @@ class Table:
         return self.odds(fit, np.ones(len(self.kind), bool))
 
 
-def fit_table(table, use=None, least=fits.LEAST_EXAMPLES):
-    """([coefficients], [errors]) by kind. use: mask of the rows."""
-    use = np.ones(len(table.kind), bool) if use is None else use
+def fit_table(table):
+    """([coefficients], [errors]) by kind."""
     best = table.best(-np.arange(len(table.kind), dtype=float))
     for _ in range(NUM_PASSES):
         fit, errors = [], []
         for kind, count in enumerate(NUM_TERMS):
-            of_kind = use & (table.kind == kind)
+            of_kind = table.kind == kind
             terms = table.terms[of_kind, :count].copy()
             if kind < 2:
                 terms[:, -1] *= ~best[of_kind]
-            one, error = fits.logistic(terms, table.right[of_kind], table.weight[of_kind], name=KINDS[kind], least=least)
+            one, error = fits.logistic(terms, table.right[of_kind], table.weight[of_kind], name=KINDS[kind])
             fit.append(one)
             errors.append(error)
         best = table.best(table.alone(fit))
@@ -174,12 +174,6 @@ def share_errors(table, kind):
     may_be = (table.kind == kind) & (table.share > ASYMMETRIC)
     low, high = np.quantile((table.on_mesh - table.share)[may_be] / table.unit[may_be], [0.025, 0.975])
     return min(0.0, low), max(0.0, high)
-
-
-def loss(table, fit, kind, use):
-    odds = table.odds(fit, table.best(table.alone(fit)))
-    use = use & (table.kind == kind)
-    return fits.log_loss(odds[use], table.right[use], table.weight[use])
 
 
 def print_fit(table, fit, title):
@@ -224,29 +218,16 @@ inline const ConfidenceFit kConfidenceFit{{
 """
 
 
-def sampled(arguments, fold, stage, num_shapes, every=1):
-    """Table of the models of a fold and of shapes made by code."""
-    chosen = argparse.Namespace(**{**vars(arguments), "fold": fold, "every": every * arguments.every})
-    items = [*bench.list_models(chosen), *(f"shape {i}" for i in range(num_shapes))]
-    return Table(fits.sampled(items, sample_item, chosen, stage))
-
-
 def program(arguments):
-    table = sampled(arguments, arguments.fold, "fit", arguments.shapes)
+    items = [*bench.list_models(arguments), *(f"shape {i}" for i in range(arguments.shapes))]
+    table = Table(fits.sampled(items, sample_item, arguments))
     fit, errors = fit_table(table)
     print_fit(table, fit, "Models of the fit")
-    if arguments.others is not None:
-        print_fit(sampled(arguments, arguments.others, "others", 0, 3), fit, f"Models of fold {arguments.others}, every third")
-    if arguments.cross_validation:
-        for kind, name in enumerate(KINDS):
-            one = lambda train, test: loss(table, fit_table(table, train)[0], kind, test)
-            print(f"{name}: {fits.cross_validated(one, table.models):.4f} nats a plane by fits to other models")
     includes = (["<array>", "<vector>"], ['"core/evidence/plane_confidence.h"'])
     fits.write_header(arguments, header(table, fit, errors), includes)
 
 
 if __name__ == "__main__":
     parser = fits.make_parser(__doc__, OUTPUT)
-    parser.add_argument("--others", type=int, help="fold that the fit is judged on")
     parser.add_argument("--shapes", type=int, default=NUM_SHAPES, help="number of clouds of shapes made by code")
     bench.main(program, parser.parse_args())

@@ -57,16 +57,15 @@ def cross_validated(fit, names, num_parts=5):
 
 
 def make_parser(description, output):
-    parser = bench.make_parser(description)
+    parser = bench.make_parser(description, others=False)
     parser.add_argument("--output", metavar="FILE.h", default=output, help="header that is written")
-    parser.add_argument("--cross_validation", action="store_true", help="print the loss of fits to other models")
     return parser
 
 
-def sampled(items, function, arguments, stage="fit"):
+def sampled(items, function, arguments):
     """Rows of function(item, arguments) of all items. With --json FILE, FILE.fit.journal keeps them for the next fit."""
-    asked = argparse.Namespace(**{**vars(arguments), "output": "", "others": None, "cross_validation": False})
-    return [row for rows in bench.run(items, function, asked, stage)[0] for row in rows]
+    asked = argparse.Namespace(**{**vars(arguments), "output": ""})
+    return [row for rows in bench.run(items, function, asked, "fit")[0] for row in rows]
 
 
 def write_header(arguments, body, includes=()):
@@ -80,24 +79,6 @@ def write_header(arguments, body, includes=()):
 
 
 # Shapes that fits are made with
-
-ROUND = ("bottle", "vase", "cup", "pin")
-
-
-def folded_curve(folds, random):
-    """A polygon, or a flower with waves."""
-    if random.uniform() < 0.4:
-        aspect = random.uniform(0.5, 0.8)
-        corners = np.array([1 + aspect * 1j, -1 + aspect * 1j, -1 - aspect * 1j, 1 - aspect * 1j]) / abs(1 + aspect * 1j)
-        return corners if folds == 2 else np.exp(2j * np.pi * np.arange(folds) / folds)
-    depth, steps = random.uniform(0.1, 0.35), max(8, 192 // folds)
-    turn = np.arange(folds * steps) / steps
-    return (1 - 0.5 * depth * (1 - np.cos(2 * np.pi * turn))) * np.exp(2j * np.pi * turn / folds)
-
-
-def folded_shape(body, folds, random):
-    return solids.folded_body(body, folded_curve(folds, random), folds, random)
-
 
 def with_handle(mesh):
     """The same with a handle, half an ellipse in the half plane x > 0, y = 0."""

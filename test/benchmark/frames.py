@@ -18,10 +18,8 @@ import bench
 import references
 
 RIGHT_ANGLE = 5.0  # degrees
-PUSH = 0.15  # of the radius of a scan: about as far as its hidden half moves the center of mass
 TIE_ANGLE = 5.0  # degrees: products of reference planes that differ by less are one rotation
 ORDERS = Rotation.create_group("O").as_matrix()  # orders and signs of three axes that make a rotation
-HALF_TURNS = [np.diag(signs) for signs in ((1, 1, 1), (1, -1, -1), (-1, 1, -1), (-1, -1, 1))]
 
 
 # How far frames differ
@@ -42,33 +40,14 @@ def least_angle(rotations, axis=None):
 class Frame:
     center: np.ndarray
     axes: np.ndarray  # columns
-    equivalent: list  # axes of the frames that are equally good, these among them
-    revolution: int = -1  # column that is an axis of revolution; -1: none, 3: all are
 
     def moved(self, motion):
-        axes, *equivalent = [motion[:3, :3] @ axes for axes in [self.axes, *self.equivalent]]
-        return Frame(bench.moved(motion, self.center), axes, equivalent, self.revolution)
+        return Frame(bench.moved(motion, self.center), motion[:3, :3] @ self.axes)
 
 
 def angle_of_axes(axes, others, revolution=None):
     """Degrees between axes and others in any order and with any sign, at any angle about an axis of revolution."""
     return least_angle(axes @ (others @ ORDERS).swapaxes(1, 2), revolution)
-
-
-def angle_of_frames(axes, whole):
-    """Degrees between axes as they stand and those of a frame or one that is equally good."""
-    if whole.revolution == 3:
-        return 0.0
-    about = lambda other: other[:, whole.revolution] if whole.revolution >= 0 else None
-    return min(least_angle(axes @ other.T, about(other)) for other in whole.equivalent)
-
-
-def own_revolution(whole):
-    """The axis of revolution of a frame where it is one of the axes that the model was made in, (3,)."""
-    if whole.revolution not in (0, 1, 2):
-        return None
-    cosines = np.abs(whole.axes[:, whole.revolution])
-    return np.eye(3)[cosines.argmax()] if cosines.max() > np.cos(np.radians(RIGHT_ANGLE)) else None
 
 
 class Ties:
@@ -105,41 +84,22 @@ class Ties:
 
 def by_symmetry(points, viewpoint, seed):
     found = pcl_symmetry.frame(points, viewpoint=None if viewpoint is None else tuple(viewpoint), seed=seed, threads=1)
-    return Frame(found.center, found.axes, list(found.equivalent[:, :3, :3].swapaxes(1, 2)), found.revolution_axis)
-
-
-def unsigned(center, axes):
-    return Frame(center, axes, [axes @ signs for signs in HALF_TURNS])
+    return Frame(found.center, found.axes)
 
 
 def as_published(points, viewpoint, seed):
     found = pcl_symmetry.frame(points, as_published=True, seed=seed, threads=1)
-    return unsigned(found.center, found.axes)
+    return Frame(found.center, found.axes)
 
 
 def by_mass(points, viewpoint, seed):
     center = points.mean(axis=0, dtype=float)
     axes = np.linalg.eigh(np.cov((points - center).T))[1][:, ::-1]
     axes[:, 2] = np.cross(axes[:, 0], axes[:, 1])
-    return unsigned(center, axes)
+    return Frame(center, axes)
 
 
-def by_pushed_mass(points, viewpoint, seed):
-    """The center of mass of a scan pushed away from the scanner."""
-    frame = by_mass(points, viewpoint, seed)
-    if viewpoint is not None:
-        away = frame.center - viewpoint
-        frame.center = frame.center + PUSH * 0.5 * bench.diameter(points) * away / np.linalg.norm(away)
-    return frame
-
-
-METHODS = {
-    "symmetry": by_symmetry,
-    "no free space": lambda points, viewpoint, seed: by_symmetry(points, None, seed),
-    "as published": as_published,
-    "mass": by_mass,
-    "pushed mass": by_pushed_mass,
-}
+METHODS = {"symmetry": by_symmetry, "as published": as_published, "mass": by_mass}
 
 
 # Evaluation
@@ -163,43 +123,26 @@ def judge(found, whole, diagonal, ties):
     """Errors of a frame; both in the frame of the model. Angles in degrees."""
     return {
         "own": angle_of_axes(found.axes, np.eye(3)),
-        "own_turned": 0.0 if whole.revolution == 3 else angle_of_axes(found.axes, np.eye(3), own_revolution(whole)),
         "center": float(np.linalg.norm(found.center - whole.center)) / diagonal,
         "axes": angle_of_axes(found.axes, whole.axes),
-        "frame": angle_of_frames(found.axes, whole),
         "tied": ties.angle(found.axes, whole.axes),
     }
-
-
-def judged_answer(folder, name):
-    """The frame that another program found: `center` and `axes`, as `pcl_symmetry_align -json` writes them."""
-    answer = bench.read_answer(folder, name, center=3, axes=(3, 3))
-    if answer is None:
-        raise bench.BadInput(f"{folder}/{name}.json: is missing")
-    return unsigned(answer["center"], answer["axes"].T)
 
 
 def evaluate(model, arguments):
     mesh = bench.read_mesh(model.path)
     ties = Ties(references.references_of(model, mesh, arguments.references))
-    rows, wholes, truths = [], {}, {}
+    rows, wholes = [], {}
     for view in range(-1, arguments.views):
         points, scan, pose = cloud_of(mesh, model, view, arguments)
-        name = f"{model.name}_{'whole' if view < 0 else view}"
-        if arguments.export:
-            bench.write_cloud(f"{arguments.export}/{name}.pcd", points, scan and scan.T_cloud_sensor)
-            truths[name] = {"model": model.name, "T_cloud_model": pose.tolist(), "diagonal": mesh.diagonal}
         for method in arguments.methods:
             start = time.process_time()
-            if method == "judged":
-                found = judged_answer(arguments.judge, name)
-            else:
-                found = METHODS[method](points, scan and scan.viewpoint, arguments.seed + 1)
+            found = METHODS[method](points, scan and scan.viewpoint, arguments.seed + 1)
             milliseconds = 1000 * (time.process_time() - start)
             found = found.moved(np.linalg.inv(pose))
             errors = judge(found, wholes.setdefault(method, found), mesh.diagonal, ties)
             rows.append({"model": model.name, "view": view, "method": method, **errors, "ms": milliseconds})
-    return {"rows": rows, "truths": truths}
+    return rows
 
 
 def summarize(rows, method):
@@ -219,9 +162,7 @@ def summarize(rows, method):
         "ratio": [by_mass.mean() / errors.mean(), *np.quantile(ratios, [0.025, 0.975])],
         "own_scans": rate(scans, "own"),
         "own_wholes": rate(wholes, "own"),
-        "own_wholes_turned": rate(wholes, "own_turned"),
         "like_for_like": rate(scans, "tied"),
-        "frames": rate(scans, "frame"),
         "median_ms": float(np.median([row["ms"] for row in scans])),
     }
 
@@ -246,34 +187,31 @@ def draw(rows, methods, key, scale, bins, label):
 
 def main(arguments):
     found, left_out = bench.run(bench.list_models(arguments), evaluate, arguments)
-    rows = [row for each in found for row in each["rows"]]
-    bench.write_truth(arguments, {name: truth for each in found for name, truth in each["truths"].items()})
+    rows = [row for each in found for row in each]
     results = {method: summarize(rows, method) for method in arguments.methods}
     num_models, num_scans = (len({r["model"] for r in rows}), sum(r["view"] >= 0 for r in rows) // len(results))
-    texts = ("closer_models", "closer_scans", "ratio", "own_scans", "own_wholes", "own_wholes_turned", "like_for_like")
+    texts = ("closer_models", "closer_scans", "ratio", "own_scans", "own_wholes", "like_for_like")
     text = lambda cell: "{:.2f} ({:.2f} to {:.2f})".format(*cell) if isinstance(cell, list) else cell.text
     bench.print_table(
         f"Frames of {num_scans} scans of {num_models} models",
         ["", "closer, models", "closer, scans", "times smaller than by mass", "own axes, scans", "own axes, wholes",
-         "the same at any angle about an axis", "like for like", "ms"],
+         "like for like", "ms"],
         [[m, *(text(r[key]) for key in texts), f"{r['median_ms']:.0f}"] for m, r in results.items()],
     )  # fmt: skip
     print("Closer: to the center of the whole than the center of mass is. Own axes: those that the model was made in,")
     print("in any order and sign. Like for like: those that the method gives the whole, up to symmetries of the mesh.")
     bench.write_json(arguments, {"methods": results, "left_out": left_out, "rows": rows})
     if arguments.figure:
-        drawn = [m for m in ("symmetry", "as published", "mass", "pushed mass") if m in results]
         stem, dot, ending = arguments.figure.rpartition(".")
-        centers = draw(rows, drawn, "center", 100, np.arange(0, 22.0), "distance of the centers, % of the diagonal")
-        drawn = [m for m in drawn if m != "pushed mass"]  # its axes are those of mass
-        axes = draw(rows, drawn, "axes", 1, np.arange(0, 65, 2.5), "angle of the axes in any order and sign, degrees")
+        centers = draw(rows, results, "center", 100, np.arange(0, 22.0), "distance of the centers, % of the diagonal")
+        axes = draw(rows, results, "axes", 1, np.arange(0, 65, 2.5), "angle of the axes in any order and sign, degrees")
         bench.save_figure(f"{stem}_translation{dot}{ending}", centers)
         bench.save_figure(f"{stem}_rotation{dot}{ending}", axes)
 
 
 def make_parser(description, methods):
     """Parser of the flags that frames.py and registration.py share."""
-    parser = bench.make_parser(description)
+    parser = bench.make_parser(description, others=False)
     parser.add_argument("--views", type=int, choices=range(1, 9), default=8, help="scans of a model")
     parser.add_argument("--points", type=int, default=10_000, help="of a cloud")
     parser.add_argument("--noise", type=float, default=0.0, help="standard deviation, along rays in scans, in diagonals")
@@ -286,6 +224,7 @@ def make_parser(description, methods):
 
 if __name__ == "__main__":
     parser = make_parser(__doc__, METHODS)
+    parser.add_argument("--figure", metavar="FILE.png", help="draw FILE_translation.png and FILE_rotation.png")
     asked = parser.parse_args()
-    asked.methods = [m for m in METHODS if m in {*asked.methods, "mass"}] if not asked.judge else ["judged", "mass"]
+    asked.methods = [m for m in METHODS if m in {*asked.methods, "mass"}]
     bench.main(main, asked)

@@ -16,8 +16,7 @@ import references
 
 MAX_ANGLE, MAX_AXIS_ANGLE, MAX_OFFSET = math.radians(3), math.radians(1), 0.02  # offset in diagonals
 MIN_CONFIDENCE = 0.5
-ROWS = ("whole", "noise", "scan", "moved", "crop", *bench.PATTERNS, "counts")
-SHARES = (0, 0.8, 0.9, 0.92, 0.94, 0.95, 0.96, 0.97, 0.99, 1.01)
+ROWS = ("whole", "noise", "scan", "moved", "crop", "random")
 
 
 # Clouds
@@ -41,36 +40,29 @@ def clouds_of(mesh, key, arguments):
     for noise in arguments.noise if "noise" in arguments.rows else ():
         yield whole(f"noise {100 * noise:g} %", even, noise=noise)
     for view in range(arguments.views if {"scan", "moved"} & set(arguments.rows) else 0):
-        for noise in arguments.scan_noise:
-            random = bench.generator(arguments.seed, key, "view", view)
-            direction, pose = bench.random_directions(random, 1)[0], bench.random_pose(random, mesh)
-            scan = bench.scan(mesh, direction, random, arguments.points, noise, pose)
-            after = f", noise {100 * noise:g} %" if noise else ""
-            name = f"{view}" + after.replace(", ", "_").replace(" ", "_").replace("%", "percent")
-            if "scan" in arguments.rows:
-                yield "scan" + after, "scan_" + name, scan.points, pose, scan
-            if "moved" in arguments.rows:
-                motion = bench.random_pose(random, mesh)
-                to = mesh.diagonal * random.uniform(-1, 1, 3)
-                motion[:3, 3] = to - motion[:3, :3] @ bench.moved(pose, mesh.center)
-                lost = bench.Scan(None, motion @ pose, motion @ scan.T_cloud_sensor, scan.half_width)
-                yield "moved scan" + after, "moved_" + name, bench.moved(motion, scan.rows), motion @ pose, lost
+        random = bench.generator(arguments.seed, key, "view", view)
+        direction, pose = bench.random_directions(random, 1)[0], bench.random_pose(random, mesh)
+        scan = bench.scan(mesh, direction, random, arguments.points, pose=pose)
+        if "scan" in arguments.rows:
+            yield "scan", f"scan_{view}", scan.points, pose, scan
+        if "moved" in arguments.rows:
+            motion = bench.random_pose(random, mesh)
+            to = mesh.diagonal * random.uniform(-1, 1, 3)
+            motion[:3, 3] = to - motion[:3, :3] @ bench.moved(pose, mesh.center)
+            lost = bench.Scan(None, motion @ pose, motion @ scan.T_cloud_sensor, scan.half_width)
+            yield "moved scan", f"moved_{view}", bench.moved(motion, scan.rows), motion @ pose, lost
     for cut in arguments.crops if "crop" in arguments.rows else ():
         yield whole(f"cut off {100 * cut:g} %", even, cut=cut)
-    for pattern in [row for row in bench.PATTERNS if row in arguments.rows]:
-        points = bench.sample_pattern(mesh, pattern, arguments.points, bench.generator(arguments.seed, key, pattern))
-        yield whole(pattern, points)
-    for count in arguments.counts if "counts" in arguments.rows else ():
-        yield whole(f"{count} points", bench.sample(mesh, count, bench.generator(arguments.seed, key, count)))
+    if "random" in arguments.rows:
+        yield whole("random", bench.sample(mesh, arguments.points, bench.generator(arguments.seed, key, "random"), even=False))
 
 
 # Judging
 
 
-def judge(answers, truth, slack=1.0):
-    """Judges the answers for a cloud by the references in its frame, within slack times the limits. Returns a dictionary of
-    what tables count."""
-    _within = lambda error: error[0] <= slack * error[2] and error[1] <= slack * MAX_OFFSET
+def judge(answers, truth):
+    """Judges the answers for a cloud by the references in its frame. Returns a dictionary of what tables count."""
+    is_within = lambda error: error[0] <= error[2] and error[1] <= MAX_OFFSET
     center, diagonal = np.array(truth["center"]), truth["diagonal"]
     refs = [("plane", r) for r in truth["planes"]] + [("axis", r) for r in truth["axes"]]
     refs += [("center", r) for r in truth["centers"]]
@@ -78,7 +70,7 @@ def judge(answers, truth, slack=1.0):
     found, family, rows, errors = set(), set(), [], []
     for kind, answer, called in _in_order(answers):
         matches = [(_error(kind, answer, r, center, diagonal), i) for i, r in enumerate(refs)]
-        matches = sorted((max(e[0] / e[2], e[1] / MAX_OFFSET), i, e) for e, i in matches if e and _within(e))[:1]
+        matches = sorted((max(e[0] / e[2], e[1] / MAX_OFFSET), i, e) for e, i in matches if e and is_within(e))[:1]
         if kind == "axis" and not matches:  # a prism that is round but for its corners: eight planes and more
             planes_of_refs = [(i, r) for i, (type_, r) in enumerate(refs) if type_ == "plane"]
             around = [(0, i, _error("plane", r, ("axis", answer), center, diagonal)) for i, r in planes_of_refs]
@@ -86,7 +78,7 @@ def judge(answers, truth, slack=1.0):
             matches = around if len(around) >= 8 else []
         new = {i for _, i, _ in matches} - found
         near_errors = [_error(kind, answer, r, center, diagonal) for r in near]
-        is_near = not matches and any(e and _within(e) for e in near_errors)
+        is_near = not matches and any(e and is_within(e) for e in near_errors)
         repeats = any(i in family for _, i, _ in matches)
         verdict = "right" if new else "neutral" if repeats or is_near else "false"
         found |= new
@@ -230,21 +222,10 @@ def summarize(rows):
         "false_per_cloud": sum(row["false"] for row in symmetric) / max(1, len(symmetric)),
         "recall": sum(row["found"] for row in symmetric) / max(1, sum(row["references"] for row in symmetric)),
         "calibration": bench.calibration([a["confidence"] for a in stated], [a["at_reference"] for a in stated]),
-        "called_by_share": [(low, high, bench.Rate(row["called"] for row in rows if low <= row["best_share"] < high))
-                            for low, high in zip(SHARES, SHARES[1:])],
-    }  # fmt: skip
+    }
 
 
-def same_decisions(rows, arguments):
-    """Models whose clouds of all sizes are decided alike."""
-    called = {}
-    for row in rows:
-        if row["group"].endswith(" points"):
-            called.setdefault(row["model"], []).append(row["called"])
-    return bench.Rate(len(set(c)) == 1 for c in called.values() if len(c) == len(arguments.counts))
-
-
-def report(rows, arguments):
+def report(rows):
     groups = list(dict.fromkeys(row["group"] for row in rows))
     sums = {group: summarize([row for row in rows if row["group"] == group]) for group in groups}
     models = {row["model"]: row["kind"] for row in rows}
@@ -265,13 +246,6 @@ def report(rows, arguments):
           bench.median(of_group(g, "offset")), s["calibration"]["answers"], number(s["calibration"]["error"]),
           number(s["calibration"]["by_chance"]), number(s["calibration"]["brier"]),
           bench.median(of_group(g, "milliseconds"), 0)] for g, s in sums.items()])  # fmt: skip
-    ranges = [f"{100 * low:.0f} to {min(100, 100 * high):.0f} %" for low, high in zip(SHARES, SHARES[1:])]
-    counts = [[g, *(f"{r.count} of {r.total}" for *_, r in s["called_by_share"])] for g, s in sums.items()]
-    title = "Clouds called symmetric, by the share of the surface that the best plane of the model maps"
-    bench.print_table(title, ["clouds", *ranges], counts)
-    if "counts" in arguments.rows:
-        sums["same decision at all numbers of points"] = {"rate": same_decisions(rows, arguments)}
-        print("Same decision at", *arguments.counts, "points:", same_decisions(rows, arguments).text)
     return sums
 
 
@@ -279,7 +253,7 @@ def program(arguments):
     results, left_out = bench.run(bench.list_models(arguments), evaluate, arguments)
     rows = [row for result in results for row in result["rows"]]
     bench.write_truth(arguments, {name: truth for result in results for name, truth in result["truths"].items()})
-    sums = report(rows, arguments)
+    sums = report(rows)
     bench.write_json(arguments, {"groups": sums, "left_out": left_out, "clouds": rows})
 
 
@@ -288,9 +262,7 @@ if __name__ == "__main__":
     parser.add_argument("--rows", type=bench.numbers(str, ROWS), default="whole,noise,scan,moved,crop", help="of " + ",".join(ROWS))
     parser.add_argument("--points", type=int, default=10_000, help="of a cloud")
     parser.add_argument("--noise", type=bench.numbers(float), default="0.02", help="standard deviations, diagonals")
-    parser.add_argument("--scan_noise", type=bench.numbers(float), default="0", help="of scans along the ray, diagonals")
     parser.add_argument("--crops", type=bench.numbers(float), default="0.05,0.2,0.5", help="shares of the points cut off")
-    parser.add_argument("--counts", type=bench.numbers(int), default="5000,20000,100000", help="numbers of points")
     parser.add_argument("--views", type=int, default=1, help="scans of each model, from random directions")
     parser.add_argument("--tolerance", type=float, default=0.01, help="of a symmetry, in diameters")
     parser.add_argument("--references", metavar="DIR", help="keeps the references of models here")

@@ -9,22 +9,18 @@ example: ratio.py ../before/build-benchmark build-benchmark cow.off
 """
 import argparse
 import resource
-import subprocess
 from pathlib import Path
 
 import bench
 
 ROWS = "^(Edt|Sampled|Planes|Rotations|Description|Segmentation|Registration|NearestViews).*/threads:1($|/)"
-PER_MILLISECOND = {"ns": 1e6, "us": 1e3, "ms": 1.0, "s": 1e-3}
-
-
 ON_ONE_CORE = ["taskset", "-c", "0"]
 
 
 def times_of(build, rows, files):
     """Milliseconds of processor time by row."""
     found = bench.google_benchmark([*ON_ONE_CORE, f"{build}/test/benchmark/benchmark_speed"], f"--benchmark_filter={rows}")
-    times = {each["name"]: each["cpu_time"] / PER_MILLISECOND[each["time_unit"]] for each in found}
+    times = {each["name"]: each["cpu_ms"] for each in found}
     for file in files:
         before = resource.getrusage(resource.RUSAGE_CHILDREN)
         bench.run_tool("/usr/bin", *ON_ONE_CORE, f"{build}/apps/pcl_symmetry_planes", file, "-threads", "1", "-quiet")

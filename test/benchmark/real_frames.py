@@ -78,7 +78,7 @@ def fit_plane(points):
     return n, n @ mean
 
 
-def ransac(random, count, draw, score):
+def ransac(count, draw, score):
     """The best of `count` drawn models; draw() may give None."""
     tried = [(score(model), i, model) for i, model in enumerate(draw() for _ in range(count)) if model is not None]
     return max(tried, default=(0, 0, None))
@@ -92,7 +92,7 @@ def support_plane(points, random):
         n = np.cross(b - a, c - a)
         return (n / np.linalg.norm(n), a) if np.linalg.norm(n) > 1e-6 else None
 
-    _, _, (n, a) = ransac(random, 200, draw, lambda m: (np.abs((points[::7] - m[1]) @ m[0]) < 0.008).sum())
+    _, _, (n, a) = ransac(200, draw, lambda m: (np.abs((points[::7] - m[1]) @ m[0]) < 0.008).sum())
     return fit_plane(points[np.abs((points - a) @ n) < 0.01])[0]
 
 
@@ -105,7 +105,7 @@ def visible_faces(points, normals, random):
             alike = np.abs(normals[left] @ normals[i]) > 0.9
             return (np.abs((points[left] - points[i]) @ normals[i]) < 0.006) & alike
 
-        count, _, seed = ransac(random, 120, lambda: random.choice(left), lambda i: on_face(i).sum())
+        count, _, seed = ransac(120, lambda: random.choice(left), lambda i: on_face(i).sum())
         if count < 0.06 * len(points):
             break
         n, offset = fit_plane(points[left[on_face(seed)]])
@@ -165,7 +165,7 @@ def fit_cylinder(points, normals, along, random):
         return (center, np.linalg.norm(a - center)) if 0.015 < np.linalg.norm(a - center) < 0.12 else None
 
     off = lambda circle: np.abs(np.linalg.norm(x - circle[0], axis=1) - circle[1])
-    count, _, circle = ransac(random, 300, draw, lambda c: (off(c) < 0.004).sum())
+    count, _, circle = ransac(300, draw, lambda c: (off(c) < 0.004).sum())
     if count < 0.6 * len(x):
         return None
     for _ in range(10):
@@ -250,10 +250,7 @@ def objects_found(name, points, arguments):
         return None
     with tempfile.TemporaryDirectory() as folder:
         bench.write_cloud(f"{folder}/frame.pcd", points)
-        bench.run_tool(arguments.tools, "pcl_symmetry_scene", f"{folder}/frame.pcd", f"{folder}/out.pcd", "-quiet",
-                       "-json", f"{folder}/found.json", "-threads", "1", "-seed", str(arguments.seed + 2))  # fmt: skip
-        objects = json.loads(pathlib.Path(folder, "found.json").read_text())["objects"]
-        labels = scenes.read_frame(f"{folder}/out.pcd", "object")[1]
+        objects, labels = scenes.analyzed(arguments.tools, f"{folder}/frame.pcd", arguments.seed)
     pixels = np.flatnonzero(np.isfinite(points.reshape(-1, 3)).all(1))
     labels = labels[: len(pixels)]  # points that the completion adds come behind
     return [{**o, "pixels": pixels[labels == i + 1].tolist()} for i, o in enumerate(objects)]

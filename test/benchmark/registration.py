@@ -22,6 +22,7 @@ from frames import by_mass, cloud_of, make_parser
 
 RIGHT_ANGLE, RIGHT_DISTANCE = 5.0, 0.02  # degrees, diagonals
 ACROSS = np.cos(np.radians(3.0))  # a plane that lies across an axis, within the angle at which planes count as found
+AROUND_DISTANCE = 0.1  # diagonals that a guess is off
 SEARCHED = 1.5  # tracks are searched half as far again as the guess is off: the search has to find where to stop
 VOXEL = 0.015  # of ICP and features, diagonals of the target
 
@@ -105,9 +106,9 @@ def by_principal_axes(source, target, guess):
     coarse = [open3d_cloud(*cloud, voxel) for cloud in (source, target)]
     frames = [by_mass(points, None, 0) for points, _ in (source, target)]
     tried = []
-    for axes in frames[1].equivalent:
+    for signs in ((1, 1, 1), (1, -1, -1), (-1, 1, -1), (-1, -1, 1)):
         pose = np.eye(4)
-        pose[:3, :3] = axes @ frames[0].axes.T
+        pose[:3, :3] = frames[1].axes * signs @ frames[0].axes.T
         pose[:3, 3] = frames[1].center - pose[:3, :3] @ frames[0].center
         tried.append(icp(*coarse, pose, 10 * voxel))
     pose = max(tried, key=lambda t: (round(t[1], 2), -t[2]))[0]
@@ -155,7 +156,7 @@ def target_of(mesh, model, view, arguments):
 
 def guess_for(T_target_source, target, diagonal, random, arguments):
     """The true pose, turned about the middle of the target and moved, and how far a search around it goes."""
-    angle, distance = np.radians(arguments.around), arguments.around_distance * diagonal
+    angle, distance = np.radians(arguments.around), AROUND_DISTANCE * diagonal
     middle, (axis, way) = target.mean(axis=0), bench.random_directions(random, 2)
     off = bench.rotation_about(middle, axis, angle)
     off[:3, 3] += distance * way
@@ -164,19 +165,13 @@ def guess_for(T_target_source, target, diagonal, random, arguments):
     return off @ T_target_source, (SEARCHED * angle, reach)
 
 
-def judged_answer(folder, name):
-    """What another program found, as `pcl_symmetry_align -json` writes it: `transform` and `converged`."""
-    answer = bench.read_answer(folder, name, transform=(4, 4), converged=())
-    return (answer["transform"], bool(answer["converged"])) if answer else (np.eye(4), False)
-
-
 def evaluate(item, arguments):
     mesh, impostor_mesh = bench.read_mesh(item.path), None
     if arguments.impostors and item.before is not None:
         with contextlib.suppress(bench.BadInput):  # its own item says so
             impostor_mesh = bench.read_mesh(item.before.path)
     symmetries = references.references_of(item, mesh, arguments.references)
-    rows, truths = [], {}
+    rows = []
     for view in range(arguments.views):
         source, T_source_model = seen(*cloud_of(mesh, item, view, arguments))
         tried = [(target_of(mesh, item, view, arguments), None)]
@@ -184,23 +179,13 @@ def evaluate(item, arguments):
             tried.append((target_of(impostor_mesh, item.before, view, arguments), item.before.name))
         for (target, T_target_model), impostor in tried:
             true = T_target_model @ np.linalg.inv(T_source_model)
-            name = f"{item.name}_{view}" + f"_to_{impostor}" * (impostor is not None)
-            if arguments.export:
-                for cloud, end in ((source, "source"), (target, "target")):
-                    sensor = np.eye(4)
-                    sensor[:3, 3] = np.zeros(3) if cloud[1] is None else cloud[1]
-                    bench.write_cloud(f"{arguments.export}/{name}_{end}.pcd", cloud[0], sensor)
-                truths[name] = {"impostor": impostor, "T_target_source": None if impostor else true.tolist()}
             guess = None
             if arguments.around and impostor is None:
                 random = bench.generator(arguments.seed, item.key, view, "guess")
                 guess = guess_for(true, target[0], mesh.diagonal, random, arguments)
             for method in arguments.methods:
                 start = time.process_time()
-                if method == "judged":
-                    pose, fits = judged_answer(arguments.judge, name)
-                else:
-                    pose, fits = METHODS[method](source, target, guess)
+                pose, fits = METHODS[method](source, target, guess)
                 row = {"scan": f"{item.name}_{view}", "impostor": impostor, "method": method, "fits": bool(fits)}
                 row["ms"] = 1000 * (time.process_time() - start)
                 if impostor is None:
@@ -209,7 +194,7 @@ def evaluate(item, arguments):
                     right = angle <= RIGHT_ANGLE and way <= RIGHT_DISTANCE
                     row.update(degrees=float(angle), distance=float(way), right=bool(right))
                 rows.append(row)
-    return {"rows": rows, "truths": truths}
+    return rows
 
 
 def summarize(rows):
@@ -227,13 +212,17 @@ def summarize(rows):
     }
 
 
-def main(arguments):
+def models_in_turn(arguments):
+    """The models of the command line, each with that `before` it in the list, or None."""
     models = bench.list_models(arguments)
     for model, before in zip(models, [None, *map(dataclasses.replace, models)]):
         model.before = before
-    found, left_out = bench.run(models, evaluate, arguments)
-    rows = [row for each in found for row in each["rows"]]
-    bench.write_truth(arguments, {name: truth for each in found for name, truth in each["truths"].items()})
+    return models
+
+
+def main(arguments):
+    found, left_out = bench.run(models_in_turn(arguments), evaluate, arguments)
+    rows = [row for each in found for row in each]
     results = {m: summarize([row for row in rows if row["method"] == m]) for m in arguments.methods}
     number = lambda value, digits: "-" if value is None else f"{value:.{digits}f}"
     bench.print_table(
@@ -250,8 +239,5 @@ if __name__ == "__main__":
     parser = make_parser(__doc__, METHODS)
     parser.add_argument("--target", choices=["model", "scan"], default="model", help="what scans are brought to")
     parser.add_argument("--around", type=float, help="tracks: degrees that a guess is off; symmetry alone uses it")
-    parser.add_argument("--around_distance", type=float, default=0.1, help="and how far, in diagonals")
     parser.add_argument("--impostors", action="store_true", help="also bring each scan to the model before its own")
-    asked = parser.parse_args()
-    asked.methods = ["judged"] if asked.judge else asked.methods
-    bench.main(main, asked)
+    bench.main(main, parser.parse_args())

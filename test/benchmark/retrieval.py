@@ -15,9 +15,6 @@ pcl_symmetry.descriptors(), about the center of mass, in a ball of twice the mea
 in axes of the files, and of each model turned at random, in the axes of its symmetry and in principal axes. "All turns"
 compares PRST and GEDT in all 24 orders and signs of the symmetry axes, each shape as it is and stretched to equal spread.
 Signatures are pcl_symmetry.describe() compared in the same way; "database" is Database.match().
-
---export writes distances as NAME.matrix, N x N float32, and the models in truth.json; --judge reads such files, the
-format of the benchmark's own programs.
 """
 import itertools
 import pathlib
@@ -277,27 +274,22 @@ def report(judged):
     bench.print_table(title, ["", *MEASURES.values()], rows)
     gains = {}
     for with_, without in GAINS:
-        if with_ in judged and without in judged:
-            a, b = judged[with_], judged[without]
-            gains[f"{with_} - {without}"] = {m: interval(a[m] - b[m], a["class"]) for m in ("nearest", "dcg")}
-    if gains:
-        points = lambda gain: "{:+.1f} ({:+.1f} to {:+.1f})".format(*(100 * v for v in gain))
-        rows = [[name, *map(points, gain.values())] for name, gain in gains.items()]
-        bench.print_table("What symmetry brings, points", ["", "nearest", "DCG"], rows)
+        a, b = judged[with_], judged[without]
+        gains[f"{with_} - {without}"] = {m: interval(a[m] - b[m], a["class"]) for m in ("nearest", "dcg")}
+    points = lambda gain: "{:+.1f} ({:+.1f} to {:+.1f})".format(*(100 * v for v in gain))
+    rows = [[name, *map(points, gain.values())] for name, gain in gains.items()]
+    bench.print_table("What symmetry brings, points", ["", "nearest", "DCG"], rows)
     by_class = classes_by_gain(judged)
-    if by_class:
-        ends = by_class[:5] + by_class[5:][-5:]
-        bench.print_table("Classes that PRST finds best and worst compared with GEDT (Figure 14), DCG in axes of the files",
-                          ["", "PRST", "GEDT", "product"], [[c["class"], *percent(c["dcg"])] for c in ends])  # fmt: skip
+    ends = by_class[:5] + by_class[5:][-5:]
+    bench.print_table("Classes that PRST finds best and worst compared with GEDT (Figure 14), DCG in axes of the files",
+                      ["", "PRST", "GEDT", "product"], [[c["class"], *percent(c["dcg"])] for c in ends])  # fmt: skip
     methods = {name: {**{m: float(q[m].mean()) for m in MEASURES}, "precision": q["precision"].mean(0).tolist(),
                       "nearest interval": interval(q["nearest"], q["class"])} for name, q in judged.items()}  # fmt: skip
     return {"queries": num_queries, "methods": methods, "gains": gains, "classes": by_class}
 
 
 def classes_by_gain(judged):
-    rows = [judged.get(f"{name}, axes of the files") for name in ("PRST", "GEDT", "PRST x GEDT")]
-    if None in rows:
-        return []
+    rows = [judged[f"{name}, axes of the files"] for name in ("PRST", "GEDT", "PRST x GEDT")]
     of_class = lambda c: [float(q["dcg"][q["class"] == c].mean()) for q in rows]
     found = [{"class": str(c), "dcg": of_class(c)} for c in np.unique(rows[0]["class"])]
     return sorted(found, key=lambda c: c["dcg"][1] - c["dcg"][0])
@@ -332,10 +324,9 @@ CURVES = {"files": ("axes of the files", [f"{name}, axes of the files" for name 
 
 def draw(judged, by_class, path):
     path = pathlib.Path(path)
-    for end, (title, names) in CURVES.items() if by_class else [("judged", ("precision against recall", judged))]:
+    for end, (title, names) in CURVES.items():
         bench.save_figure(path.with_stem(f"{path.stem}_{end}"), lambda axes: draw_curves(judged, names, title, axes))
-    if by_class:
-        bench.save_figure(path.with_stem(f"{path.stem}_classes"), lambda axes: draw_classes(by_class, axes))
+    bench.save_figure(path.with_stem(f"{path.stem}_classes"), lambda axes: draw_classes(by_class, axes))
 
 
 def distances_of(models, arguments):
@@ -358,27 +349,14 @@ def main(arguments):
 
 
 def evaluate(arguments):
-    models, left_out = bench.list_models(arguments), []
+    models = bench.list_models(arguments)
     class_of = bench.read_classes(arguments.classes)
-    if arguments.judge:
-        paths = sorted(pathlib.Path(arguments.judge).glob("*.matrix"))
-        matrices = {path.stem: np.fromfile(path, np.float32) for path in paths}
-        if not matrices or any(len(values) != len(models) ** 2 for values in matrices.values()):
-            raise bench.BadInput(f"{arguments.judge}: must have files .matrix of {len(models)} x {len(models)} float32")
-        rows = ((name, values.reshape(len(models), -1)) for name, values in matrices.items())
-    else:
-        _, left_out = bench.run(models, describe, arguments)
-        models = [m for m in models if pathlib.Path(arguments.descriptors, f"{m.name}.npz").exists()]
-        rows = distances_of(models, arguments)
+    _, left_out = bench.run(models, describe, arguments)
+    models = [m for m in models if pathlib.Path(arguments.descriptors, f"{m.name}.npz").exists()]
     classes = np.array([class_of[model.name].name for model in models])
     if np.unique(classes, return_counts=True)[1].max() < 2:
         raise bench.BadInput(f"{arguments.classes}: no class holds two of the meshes")
-    judged = {}
-    for name, distances in rows:
-        judged[name] = judge(distances, classes)
-        if arguments.export:
-            distances.astype(np.float32).tofile(pathlib.Path(arguments.export, f"{name}.matrix"))
-    bench.write_truth(arguments, {model.name: class_of[model.name].name for model in models})
+    judged = {name: judge(distances, classes) for name, distances in distances_of(models, arguments)}
     summary = report(judged)
     if arguments.figure:
         draw(judged, summary["classes"], arguments.figure)
@@ -386,6 +364,7 @@ def evaluate(arguments):
 
 
 if __name__ == "__main__":
-    parser = bench.make_parser(__doc__)
+    parser = bench.make_parser(__doc__, others=False)
+    parser.add_argument("--figure", metavar="FILE.png", help="draw FILE_files.png, FILE_turned.png and FILE_classes.png")
     parser.add_argument("--descriptors", metavar="DIR", help="folder that keeps descriptors, 1 MB a model")
     bench.main(main, parser.parse_args())

@@ -6,7 +6,7 @@ are found. With a folder: groups of clouds of meshes, judged by exact distances 
 that are found in this number of scans of each mesh, judged alike. A rotation is right where it maps at most 10 % of the
 area further off the surface than 1 % of the diameter, and at most 1.25 % further than ten times that.
 
-rotations.py --seeds 5
+rotations.py --counts 2000,10000
 rotations.py PSB --classes train.cla --fold 1
 rotations.py PSB --classes train.cla --fold 1 --every 4 --views 2
 """
@@ -109,11 +109,10 @@ class Trial:
     solid: solids.Solid
     count: int
     noise: float
-    seed: int
 
     @property
     def name(self):
-        return f"{self.solid.name}, {self.count} points, noise {self.noise:g}, seed {self.seed}"
+        return f"{self.solid.name}, {self.count} points, noise {self.noise:g}, seed 1"
 
 
 def find_group(trial, arguments):
@@ -125,28 +124,24 @@ def find_group(trial, arguments):
     points = bench.moved(pose, bench.sample(mesh, trial.count, random))
     points = (points + trial.noise * mesh.diameter * random.normal(size=points.shape)).astype("f")
     start = time.process_time()
-    group = pcl_symmetry.rotations(points, seed=trial.seed, threads=1)
+    group = pcl_symmetry.rotations(points, threads=1)
     milliseconds = 1000 * (time.process_time() - start)
     on_mesh = bench.sample(mesh, 2000, random)
     wrong = [excess(mesh, on_mesh, [in_frame_of(pose, motion)]) > 1 for motion in motions_of(group)]
     row = {"solid": solid.name, "kind": solid.kind, "group": solid.group, "points": trial.count, "noise": trial.noise}
-    row.update(seed=trial.seed, found=group.name, confidence=group.confidence, ms=milliseconds)
+    row.update(found=group.name, confidence=group.confidence, ms=milliseconds)
     row.update(rotations=len(wrong), false=int(sum(wrong)))
-    if trial.seed == 1 and trial.noise == 0 and trial.count == arguments.counts[0] and group.name == solid.group:
+    if trial.noise == 0 and trial.count == arguments.counts[0] and group.name == solid.group:
         row["poses"] = judge_poses(group, points[:: max(1, len(points) // 200)], random)
     return row
 
 
 def measure_solids(arguments):
-    seeds = range(1, arguments.seeds + 1)
-    cases = itertools.product(solids.solids(arguments.kind), arguments.counts, arguments.noise, seeds)
-    trials = [Trial(*case) for case in cases]
-    if not trials:
-        raise bench.BadInput(f"--kind {arguments.kind}: there is no such kind of solids")
+    trials = [Trial(*case) for case in itertools.product(solids.solids(), arguments.counts, arguments.noise)]
     rows, left_out = bench.run(trials, find_group, arguments)
     cells = {}
     for row in rows:
-        cells.setdefault((row["solid"], row["noise"], row["seed"]), set()).add(row["found"])
+        cells.setdefault((row["solid"], row["noise"]), set()).add(row["found"])
     is_right = lambda row: row["found"] == row["group"]
     rates = {"all": bench.Rate(map(is_right, rows))}
     others = [row for row in rows if row["kind"] not in solids.CHOSEN_ON]
@@ -159,9 +154,9 @@ def measure_solids(arguments):
     rates["false rotations, of all that are found"] = bench.Rate(k < num_false for k in range(num_rotations))
     rates["spheres that are none"] = bench.Rate(row["found"] == "SO3" for row in rows if row["group"] != "SO3")
     bench.print_table("Groups of solids made by code", ["", "rate"], [[k, rate.text] for k, rate in rates.items()])
-    wrong = [[r["solid"], r["group"], r["found"], r["points"], r["noise"], r["seed"]] for r in rows if not is_right(r)]
+    wrong = [[r["solid"], r["group"], r["found"], r["points"], r["noise"]] for r in rows if not is_right(r)]
     if wrong:
-        bench.print_table("Wrong answers", ["solid", "group", "found", "points", "noise", "seed"], wrong)
+        bench.print_table("Wrong answers", ["solid", "group", "found", "points", "noise"], wrong)
     poses = {}
     for row in rows:
         if "poses" in row:
@@ -231,13 +226,9 @@ def measure_meshes(arguments):
 
 
 if __name__ == "__main__":
-    parser = bench.make_parser(__doc__)
+    parser = bench.make_parser(__doc__, others=False)
     parser.add_argument("--counts", type=bench.numbers(int), default="2000,10000,50000", help="points of the clouds")
     parser.add_argument("--noise", type=bench.numbers(float), default="0,0.003", help="of solids, in diameters")
-    parser.add_argument("--seeds", type=int, default=1, help="samplings and poses of each solid")
-    parser.add_argument("--kind", help="solids of this kind alone")
     parser.add_argument("--views", type=int, default=0, help="judge the rotations found in this number of scans of each mesh")
     asked = parser.parse_args()
-    if asked.export or asked.judge:
-        parser.error("--export and --judge: frames.py, registration.py and planes.py have them")
     bench.main(measure_meshes if asked.models else measure_solids, asked)

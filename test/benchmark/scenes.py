@@ -1,14 +1,12 @@
 #!/usr/bin/env python3
-"""Objects among others: planes, names and poses in frames of a depth camera or a LiDAR scanner.
+"""Objects among others: planes, names and poses in frames of a depth camera.
 
 scenes.py PSB --classes train.cla --fold 1 --every 3 --scenes 45 --noise 0,1 --most-in-band 60 --json scenes.json
 
-Models of 0.15 to 0.3 m stand on a table or in a bin, none meets another, and a sensor looks at them; or they stand on
-a road, as large as vehicles, 5 to 30 m from a scanner, with y up as in most files of PSB; there, right is within 5 degrees
-and 3.3 % of the diagonal. Each object that shows enough points is asked for in three ways:
+Models of 0.15 to 0.3 m stand on a table, none meets another, and a camera looks at them. Each object that shows enough
+points is asked for in three ways:
 
-  alone   its points, cut out of the frame, with the viewpoint: pcl_symmetry.planes() and Database.recognize();
-          on a road pcl_symmetry_planes, which is told the ground, too
+  alone   its points, cut out of the frame, with the viewpoint: pcl_symmetry.planes() and Database.recognize()
   label   its points in the frame, as a segmentation names them: pcl_symmetry_planes -label; planes only
   scene   the whole frame: pcl_symmetry_scene; the object that it finds must share half of the points (IoU >= 0.5)
 
@@ -16,7 +14,6 @@ Answers of kind symmetry with a confidence of at least 0.5 decide, as in planes.
 point of the model is off by more than 5 % of its diameter, symmetries counted.
 
 --frames keeps the frames (PCD with a field label: -1 table, -2 nothing) and truth.json, or judges those that are there.
---judge reads what another program found in each: NAME.json and NAME.pcd as `pcl_symmetry_scene` writes them.
 """
 import json
 import math
@@ -36,11 +33,9 @@ import registration
 LEAST_DIAGONAL, GREATEST_DIAGONAL = 0.15, 0.30  # of models, meters
 BANDS = (0.0, 0.1, 0.3, 0.5, 0.7)  # of the share of an object that others hide
 RIGHT_POSE = 0.05  # of the diameter: the limit of the BOP benchmark
-MIN_IOU = 0.5
+MIN_IOU, MIN_POINTS = 0.5, 300  # points that are seen of an object
 DEVIATION, STEP, FLYING, EDGE = 1.425e-3, 2.85e-3, 0.5, 0.02  # structured light at 1 m (Khoshelham and Elberink 2012); shares
-RANGE_DEVIATION = 0.001  # of a LiDAR scanner: 2 cm at a car of 4.5 m, for an object of 0.22 m
-ROAD = 20  # a road is this many times smaller: 5 to 30 m from a scanner at a height of 1.8 m
-TABLE_RIM, BIN_HEIGHT, BIN_WALL, BIN_GAP = 0.4, 0.15, 0.01, 0.01  # meters
+TABLE_RIM = 0.4  # meters
 
 
 # Models in their size
@@ -60,13 +55,9 @@ def prepare(model, arguments):
 # Scenes
 
 
-def standing(random, model, place):
-    """Rotation that stands a model on one face of its bounding box, at any angle about the vertical; on a road with y up,
-    or with z where y is the normal of its plane."""
+def standing(random):
+    """Rotation that stands a model on one face of its bounding box, at any angle about the vertical."""
     up, sign, angle = random.integers(3), random.choice([1, -1]), random.uniform(0, 2 * np.pi)
-    if place == "road":
-        plane = next((p["coefficients"] for p in model["symmetries"]["planes"]), [0, 0, 0])
-        up, sign = 2 if abs(plane[1]) > 0.9 else 1, 1
     upright = np.roll(np.eye(3), 2 - up, axis=0)  # brings the axis to z
     upright = upright if sign > 0 else np.diag([1, -1, -1]) @ upright
     c, s = math.cos(angle), math.sin(angle)
@@ -79,7 +70,7 @@ def draw_scene(models, arguments, number):
     count = random.integers(1, arguments.objects + 1)
     half_side, placed = 0.02 + 0.08 * math.sqrt(count), []
     for index in random.integers(len(models), size=count):
-        rotation = standing(random, models[index], arguments.place)
+        rotation = standing(random)
         corners = bench.mesh_of_size(models[index]["path"], models[index]["diagonal"]).corners.reshape(-1, 3) @ rotation.T
         middle = 0.5 * (corners.min(0) + corners.max(0))[:2]
         radius = np.linalg.norm(corners[:, :2] - middle, axis=1).max()
@@ -92,7 +83,7 @@ def draw_scene(models, arguments, number):
     return placed, random
 
 
-def look_at_middle(placed, arguments, random):
+def look_at_middle(placed, random):
     """T_scene_sensor; most often along the line from an object to its nearest neighbor, which hides a part of it."""
     azimuth = random.uniform(0, 2 * np.pi)
     if len(placed) > 1 and random.uniform() < 0.8:
@@ -100,72 +91,41 @@ def look_at_middle(placed, arguments, random):
         away = np.array([other[2] - placed[hidden][2] for i, other in enumerate(placed) if i != hidden])
         nearest = away[np.argmin(np.linalg.norm(away, axis=1))]
         azimuth = math.atan2(nearest[1], nearest[0]) + random.uniform(-0.5, 0.5)
-    elevation = math.radians(random.uniform(45, 80) if arguments.place == "bin" else random.uniform(10, 40))
-    distance, aim = random.uniform(0.9, 1.3), 0.0
-    if arguments.place == "road":
-        distance, aim = random.uniform(5, 30) / ROAD, 0.75 / ROAD
-        elevation = math.asin(1.8 / ROAD / distance)
+    elevation, distance = math.radians(random.uniform(10, 40)), random.uniform(0.9, 1.3)
     toward = np.array([math.cos(elevation) * math.cos(azimuth), math.cos(elevation) * math.sin(azimuth), math.sin(elevation)])
     pose = np.eye(4)
-    pose[:3, :3], pose[:3, 3] = bench.look_along([0, 0, aim] - distance * toward), distance * toward
+    pose[:3, :3], pose[:3, 3] = bench.look_along(-toward), distance * toward
     return pose
 
 
-TURN, RING_FIELD = math.radians(0.1), math.radians(26.8)  # of a scanner: from column to column; from first to last ring
+def rays():
+    """(480, 640, 3) rays of the pixels in the frame of the camera, z = 1."""
+    x, y = np.meshgrid((np.arange(640) - 319.5) / 525, (np.arange(480) - 239.5) / 525)
+    return np.stack([x, y, np.ones_like(x)], -1)
 
 
-def rays_of(arguments):
-    """(H, W, 3) rays in the frame of the sensor: z = 1 for a camera of 640 x 480 pixels, of unit length for a scanner
-    (HDL-64E), of which a sixth of a turn is taken, a row of pixels for each ring."""
-    if arguments.sensor == "camera":
-        x, y = np.meshgrid((np.arange(640) - 319.5) / 525, (np.arange(480) - 239.5) / 525)
-        return np.stack([x, y, np.ones_like(x)], -1)
-    turn, fall = np.meshgrid(TURN * (np.arange(600) - 299.5), np.linspace(-RING_FIELD / 2, RING_FIELD / 2, arguments.rings))
-    return np.stack([np.cos(fall) * np.sin(turn), np.sin(fall), np.cos(fall) * np.cos(turn)], -1)
+def depths_of(corners):
+    """(480, 640) depths of (T, 3, 3) triangles in the frame of the camera."""
+    return bench.depth_picture(corners, 640, 320 / 525)[80:560]
 
 
-def depths_of(corners, rays, arguments):
-    """Lengths along the rays at which they meet (T, 3, 3) triangles in the frame of the sensor."""
-    if arguments.sensor == "camera":
-        return bench.depth_picture(corners, 640, 320 / 525)[80:560]
-    turn = np.arctan2(corners[..., 0], corners[..., 2]) / TURN + 299.5
-    fall = np.arctan2(corners[..., 1], np.hypot(corners[..., 0], corners[..., 2]))
-    bulge = 0.25 * np.square(np.ptp(turn, axis=1) * TURN)  # edges of wide triangles are arcs
-    ring = lambda angle: (angle / RING_FIELD + 0.5) * (arguments.rings - 1)
-    low = np.stack([turn.min(1), ring(fall.min(1) - bulge)], 1)
-    return bench.first_hits(corners, rays, low, np.stack([turn.max(1), ring(fall.max(1) + bulge)], 1))
-
-
-def box(low, high):
-    """(12, 3, 3) triangles of the faces of a box."""
-    corners = np.array([[x, y, z] for x in (0, 1) for y in (0, 1) for z in (0, 1)]) * np.subtract(high, low) + low
-    quads = [(0, 1, 3, 2), (4, 6, 7, 5), (0, 4, 5, 1), (2, 3, 7, 6), (0, 2, 6, 4), (1, 5, 7, 3)]
-    return corners[[t for a, b, c, d in quads for t in ((a, b, c), (a, c, d))]]
-
-
-def surroundings(placed, arguments):
-    """Triangles of the table, and of the walls of a bin as wide as its objects need."""
-    half = 0.02 + 0.08 * math.sqrt(max(1, len(placed))) + TABLE_RIM
-    parts = []
-    if arguments.place == "bin":
-        inner = max(np.abs(at).max() + radius for _, _, at, radius in placed) + BIN_GAP
-        outer, half = inner + BIN_WALL, max(half, inner + TABLE_RIM)
-        for low, high in ((-outer, -inner), (inner, outer)):
-            parts += [box((low, -outer, 0), (high, outer, BIN_HEIGHT)), box((-outer, low, 0), (outer, high, BIN_HEIGHT))]
+def table(num_objects):
+    """Triangles of the table."""
+    half = 0.02 + 0.08 * math.sqrt(max(1, num_objects)) + TABLE_RIM
     cuts = np.linspace(-half, half, 9)  # small triangles have small boxes in the picture
-    squares = [box((x, y, 0), (x + cuts[1] - cuts[0], y + cuts[1] - cuts[0], 0))[8:10] for x in cuts[:-1] for y in cuts[:-1]]
-    return np.concatenate(squares + parts)
+    (x, y), step = np.meshgrid(cuts[:-1], cuts[:-1], indexing="ij"), cuts[1] - cuts[0]
+    a, b, c, d = (np.stack([x + i * step, y + k * step, 0 * x], -1).reshape(-1, 3) for i, k in ((0, 0), (1, 0), (1, 1), (0, 1)))
+    return np.concatenate([np.stack([a, b, c], 1), np.stack([a, c, d], 1)])
 
 
-def render(models, placed, sensor, arguments):
+def render(models, placed, sensor):
     """(depths, ids, [(pixels of each object, pixels without the others, reaches beyond the picture)])"""
-    rays = rays_of(arguments)
-    inside = lambda corners: depths_of((corners - sensor[:3, 3]) @ sensor[:3, :3], rays, arguments)
+    inside = lambda corners: depths_of((corners - sensor[:3, 3]) @ sensor[:3, :3])
     alone = []
     for index, pose, _, _ in placed:
         mesh = bench.mesh_of_size(models[index]["path"], models[index]["diagonal"])
         alone.append(inside(bench.moved(pose, mesh.corners)))
-    layers = np.stack([*alone, inside(surroundings(placed, arguments))])
+    layers = np.stack([*alone, inside(table(len(placed)))])
     depths, ids = layers.min(0), layers.argmin(0)
     ids = np.where(ids == len(alone), -1, ids)
     ids[np.isinf(depths)] = -2
@@ -175,13 +135,11 @@ def render(models, placed, sensor, arguments):
     return depths, ids, [(int((ids == k).sum()), int(hit.sum()), bool((hit & border).any())) for k, hit in enumerate(hits)]
 
 
-def with_noise(depths, factor, sensor, random):
+def with_noise(depths, factor, random):
     """Errors of a depth camera with structured light, which measures disparities in whole steps and mixes the depths at
-    edges; or of the range of a scanner."""
+    edges."""
     if factor == 0:
         return depths
-    if sensor == "lidar":
-        return depths + factor * RANGE_DEVIATION * random.normal(size=depths.shape)
     noisy = depths.copy()
     for axis in (1, 0):
         beside = np.roll(depths, -1, axis)
@@ -198,8 +156,8 @@ def make(number, arguments):
     """Writes the frames of one scene; returns {name of the frame: its objects}."""
     models = bench.read_json(f"{arguments.frames}/models.json")
     placed, random = draw_scene(models, arguments, number)
-    sensor = look_at_middle(placed, arguments, random)
-    depths, ids, seen = render(models, placed, sensor, arguments)
+    sensor = look_at_middle(placed, random)
+    depths, ids, seen = render(models, placed, sensor)
     objects, frames = [], {}
     for k, (index, pose, _, _) in enumerate(placed):
         num_visible, num_alone, cropped = seen[k]
@@ -207,12 +165,10 @@ def make(number, arguments):
                         "T_scene_model": pose.ravel().tolist(), "num_visible": num_visible, "num_alone": num_alone,
                         "cropped": cropped, "symmetries": references.moved(models[index]["symmetries"], pose)})  # fmt: skip
     for noise in arguments.noise:
-        measured = with_noise(depths, noise, arguments.sensor, bench.generator(arguments.seed, "noise", number, noise))
-        points = bench.moved(sensor, np.where(np.isfinite(measured), measured, np.nan)[..., None] * rays_of(arguments))
-        labels, name = ids, f"scene_{int(number):04d}_noise_{noise:g}"
-        if arguments.sensor == "lidar":  # no rows: what met nothing is left out
-            points, labels = points[ids > -2], ids[ids > -2]
-        bench.write_cloud(f"{arguments.frames}/{name}.pcd", points, sensor, label=labels)
+        measured = with_noise(depths, noise, bench.generator(arguments.seed, "noise", number, noise))
+        points = bench.moved(sensor, np.where(np.isfinite(measured), measured, np.nan)[..., None] * rays())
+        name = f"scene_{int(number):04d}_noise_{noise:g}"
+        bench.write_cloud(f"{arguments.frames}/{name}.pcd", points, sensor, label=ids)
         frames[name] = objects
     return frames
 
@@ -263,24 +219,22 @@ def ask_database(points, viewpoint, arguments):
     return [{"name": m.name, "T_model_scene": m.transform} for m in found]
 
 
+def analyzed(tools, path, seed, *flags):
+    """(objects, (N,) number of the object of each point, 0 for none) that pcl_symmetry_scene finds in a frame."""
+    with tempfile.TemporaryDirectory() as folder:
+        bench.run_tool(tools, "pcl_symmetry_scene", path, f"{folder}/out.pcd", "-quiet", "-json", f"{folder}/found.json",
+                       "-threads", "1", "-seed", str(seed + 2), *flags)  # fmt: skip
+        objects = json.loads(pathlib.Path(folder, "found.json").read_text())["objects"]
+        return objects, read_frame(f"{folder}/out.pcd", "object")[1]
+
+
 def found_in_frame(frame, finite, truth, arguments):
     """([answers of each object found], IoU of each with each true one, milliseconds)"""
     start = time.perf_counter()
-    with tempfile.TemporaryDirectory() as temporary:
-        folder = arguments.judge or temporary
-        if not arguments.judge:
-            flags = ["-database", f"{arguments.frames}/models.db"] if arguments.leave_out else []
-            bench.run_tool(arguments.tools, "pcl_symmetry_scene", f"{arguments.frames}/{frame}.pcd", f"{folder}/{frame}.pcd", "-json",
-                           f"{folder}/{frame}.json", "-quiet", "-threads", "1", "-seed", str(arguments.seed + 2), *flags)  # fmt: skip
-        milliseconds = 1000 * (time.perf_counter() - start)
-        try:
-            found = json.loads(pathlib.Path(folder, f"{frame}.json").read_text())["objects"]
-        except (OSError, ValueError, KeyError, TypeError):
-            raise bench.BadInput(f"{folder}/{frame}.json: is no answer of pcl_symmetry_scene") from None
-        labels = read_frame(f"{folder}/{frame}.pcd", "object")[1]
-        labels = labels[: finite.sum()] - 1  # points that the completion adds come behind
-    if len(labels) < finite.sum() or labels.max() >= len(found):
-        raise bench.BadInput(f"{folder}/{frame}.pcd: must have the points of the frame, and objects of {frame}.json")
+    flags = ["-database", f"{arguments.frames}/models.db"] if arguments.leave_out else []
+    found, labels = analyzed(arguments.tools, f"{arguments.frames}/{frame}.pcd", arguments.seed, *flags)
+    milliseconds = 1000 * (time.perf_counter() - start)
+    labels = labels[: finite.sum()] - 1  # points that the completion adds come behind
     return found, overlaps(labels, truth[finite], (len(found), truth.max() + 1)), milliseconds
 
 
@@ -296,8 +250,7 @@ def judge_frame(frame, arguments):
         own = points[finite & (labels == k)]
         if "alone" in arguments.seen:
             models = ask_database(own, viewpoint, arguments) if arguments.leave_out else []
-            road = {"tool": f"{arguments.tools}/pcl_symmetry_planes", "ground": "0,0,1,0"} if arguments.place == "road" else {}
-            ways.append(("alone", True, {**bench.detect(own, sensor, arguments.seed + 1, **road), "models": models}))
+            ways.append(("alone", True, {**bench.detect(own, sensor, arguments.seed + 1), "models": models}))
         if "label" in arguments.seen:
             tool = f"{arguments.tools}/pcl_symmetry_planes"
             ways.append(("label", True, bench.detect_labeled(f"{arguments.frames}/{frame.name}.pcd", k, arguments.seed + 1, tool)))
@@ -306,7 +259,7 @@ def judge_frame(frame, arguments):
             is_found = best is not None and bool(iou[best, k] >= MIN_IOU)
             ways.append(("scene", is_found, found[best] if is_found else {**bench.NO_ANSWERS, "models": []}))
         for seen, is_found, answers in ways:
-            judged = planes.judge(answers, truth["symmetries"], 5 / 3 if arguments.place == "road" else 1)
+            judged = planes.judge(answers, truth["symmetries"])
             name = judge_name(answers["models"], truth, frame.known) if arguments.leave_out and seen != "label" else {}
             rows.append({"frame": frame.name, "noise": frame.noise, "object": k, "model": truth["model"],
                          "kind": truth["symmetries"]["kind"], "occlusion": occlusion(truth), "points": len(own), "seen": seen,
@@ -336,11 +289,11 @@ def wanted_frames(truths, arguments):
         frame = types.SimpleNamespace(name=name, noise=float(name.rsplit("_", 1)[-1]), objects=[], known=known)
         for truth in truths[name]:
             band = band_of(occlusion(truth))
-            if band is None or truth.get("cropped") or truth["num_visible"] < arguments.min_points:
+            if band is None or truth.get("cropped") or truth["num_visible"] < MIN_POINTS:
                 continue
             key = (frame.noise, band)
-            in_band[key] = in_band.get(key, 0) + (occlusion(truth) >= arguments.least_occlusion)
-            if occlusion(truth) >= arguments.least_occlusion and in_band[key] <= (arguments.most_in_band or math.inf):
+            in_band[key] = in_band.get(key, 0) + 1
+            if in_band[key] <= (arguments.most_in_band or math.inf):
                 frame.objects.append(truth)
         frames += [frame] if frame.objects else []
     return frames
@@ -349,7 +302,7 @@ def wanted_frames(truths, arguments):
 # Tables
 
 
-def summarize(rows, arguments):
+def summarize(rows):
     """Rates of each noise, band of occlusion and way of asking."""
     groups = {}
     for row in rows:
@@ -402,23 +355,18 @@ def program(arguments):
         frames = wanted_frames(json.loads(truth.read_text())["scenes"], arguments)
         judged, failures = bench.run(frames, judge_frame, arguments, "judged")
     rows = [row for frame in judged for row in frame["rows"]]
-    summary = summarize(rows, arguments)
+    summary = summarize(rows)
     report(summary, [frame["milliseconds"] for frame in judged if frame["milliseconds"]], arguments)
     bench.write_json(arguments, {"rows": summary, "objects": rows, "left_out": left_out + failures})
 
 
 if __name__ == "__main__":
-    parser = bench.make_parser(__doc__)
+    parser = bench.make_parser(__doc__, others=False)
     add = parser.add_argument
     add("--scenes", type=int, default=100, help="number of scenes")
     add("--objects", type=int, default=12, help="greatest number of objects of a scene")
     add("--noise", type=bench.numbers(float), default="0,1", help="factors of the sensor's noise")
-    add("--place", choices=("table", "bin", "road"), default="table")
-    add("--sensor", choices=("camera", "lidar"), default="camera")
-    add("--rings", type=int, default=64, help="of a LiDAR scanner")
     add("--seen", type=bench.numbers(str, ("alone", "label", "scene")), default="alone,label,scene", help="how objects are asked for")
-    add("--min-points", type=int, default=300, help="least number of points of an object")
-    add("--least-occlusion", type=float, default=0.0, help="objects of which others hide less are passed over")
     add("--most-in-band", type=int, default=0, help="objects of a band after which others are passed over; 0: none are")
     add("--leave-out", type=int, default=0, help="also ask a database without every N-th model; 0: do not")
     add("--references", metavar="DIR", help="folder that keeps the reference symmetries of the models")

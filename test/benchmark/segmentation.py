@@ -11,7 +11,6 @@ segmentations. Methods:
   one, k-means one segment; six clusters of the centers of the faces
   segment      pcl_symmetry.segment() on the mesh
   points       the same on 30 000 points; a face takes the label of the nearest one
-  concavity    pcl_symmetry_segment with less evidence
   paper-1 to paper-4        pcl_symmetry_segment by splitting as in the paper, by depth
 """
 import pathlib
@@ -27,9 +26,7 @@ from sklearn.cluster import KMeans
 import bench
 import references
 
-MEASURES = {"rand": "Rand", "cut": "cut", "hamming": "Hamming", "missing": "missing", "false": "false", "gce": "GCE", "lce": "LCE"}
-CATEGORIES = ("Human Cup Glasses Airplane Ant Chair Octopus Table Teddy Hand Plier Fish Bird Spring Armadillo Bust Mech "
-              "Bearing Vase Fourleg").split()  # fmt: skip
+MEASURES = {"rand": "Rand", "cut": "cut", "hamming": "Hamming"}
 NUM_POINTS = 30_000  # of "points": about one a face
 
 
@@ -88,9 +85,7 @@ def compare(surface, reference, other):
     both_cut = len(reference.cuts) and len(other.cuts)
     cut = cut_distance(surface, reference, other) + cut_distance(surface, other, reference) if both_cut else np.nan
     missing, false = max(0, 1 - areas.max(1).sum()), max(0, 1 - areas.max(0).sum())
-    own, others = 1 - areas / areas.sum(1, keepdims=True), 1 - areas / areas.sum(0)  # refinement errors, both ways
-    return {"rand": rand_distance(counts), "cut": cut, "hamming": (missing + false) / 2, "missing": missing, "false": false,
-            "gce": min((areas * own).sum(), (areas * others).sum()), "lce": (areas * np.minimum(own, others)).sum()}  # fmt: skip
+    return {"rand": rand_distance(counts), "cut": cut, "hamming": (missing + false) / 2}
 
 
 def mirror_agreement(surface, labels, plane):
@@ -139,9 +134,7 @@ def tool(*flags):
 
 METHODS = {"people": None, "one": lambda mesh, path, arguments: np.zeros(len(mesh.triangles), int), "k-means": k_means,
            "segment": segment, "points": segment_points,
-           "concavity": tool("-evidence", "concavity"),
-           **{f"paper-{depth}": tool("-method", "splitting", "-as_published", "-depth", str(depth)) for depth in (1, 2, 3, 4)},
-           "judged": lambda mesh, path, arguments: read_labels(f"{arguments.judge}/{pathlib.Path(path).stem}.seg", mesh)}  # fmt: skip
+           **{f"paper-{depth}": tool("-method", "splitting", "-as_published", "-depth", str(depth)) for depth in (1, 2, 3, 4)}}  # fmt: skip
 
 
 def read_labels(path, mesh):
@@ -178,7 +171,7 @@ def evaluate(model, arguments):
     plane = reference_plane(model, mesh, arguments)
     mirrored = lambda labels: np.nan if plane is None else mirror_agreement(surface, labels, plane)
     rows = {}
-    for method in arguments.methods + ["judged"] * bool(arguments.judge):
+    for method in arguments.methods:
         if method == "people":
             pairs = [compare(surface, a, b) for a in people for b in people if a is not b]
             own = [{"segments": p.num_segments, "mirrored": mirrored(p.labels), "milliseconds": np.nan} for p in people]
@@ -190,7 +183,7 @@ def evaluate(model, arguments):
         found = Segmentation(surface, labels)
         own = {"segments": found.num_segments, "mirrored": mirrored(labels), "milliseconds": milliseconds}
         rows[method] = {**mean([compare(surface, person, found) for person in people]), **mean([own])}
-    return {"model": model.name, "category": CATEGORIES[(int(model.name) - 1) // 20], "methods": rows}
+    return {"model": model.name, "methods": rows}
 
 
 def interval(values):
@@ -212,8 +205,6 @@ def summarize(results):
         others = {r["model"]: r["methods"].get("segment") for r in results}
         gains = [row["rand"] - others[model]["rand"] for model, row in rows.items() if others.get(model)]
         summary[method]["minus segment"] = interval(gains)
-        of = lambda category: [rows[r["model"]]["rand"] for r in results if r["category"] == category and r["model"] in rows]
-        summary[method]["by category"] = {c: interval(of(c))[0] for c in dict.fromkeys(r["category"] for r in results)}
     return summary
 
 
@@ -226,14 +217,12 @@ def report(summary):
              *(plain(s[m][0]) for m in list(MEASURES)[1:]), plain(s["segments"][0], 1), plain(s["mirrored"][0]),
              plain(s["milliseconds"][0], 0)] for name, s in summary.items()]  # fmt: skip
     bench.print_table("Distance from segmentations of people, means over models with 95 % intervals", header, rows)
-    rows = [[c, *(plain(s["by category"][c]) for s in summary.values())] for c in next(iter(summary.values()))["by category"]]
-    bench.print_table("Rand distance by category", ["", *summary], rows)
 
 
 def main(arguments):
-    every, arguments.every, largest, arguments.max = arguments.every, 1, arguments.max, None
+    every, arguments.every = arguments.every, 1
     wanted = lambda number: number % 2 == 1 and (number - 1) // 20 % 3 in arguments.remainders
-    models = [m for m in bench.list_models(arguments) if m.name.isdigit() and wanted(int(m.name))][::every][:largest]
+    models = [m for m in bench.list_models(arguments) if m.name.isdigit() and wanted(int(m.name))][::every]
     if not models:
         raise bench.BadInput(f"{arguments.models[0]}: no mesh with an odd number of these categories")
     results, left_out = bench.run(models, evaluate, arguments)
@@ -243,7 +232,7 @@ def main(arguments):
 
 
 if __name__ == "__main__":
-    parser = bench.make_parser(__doc__)
+    parser = bench.make_parser(__doc__, others=False)
     parser.add_argument("--people", metavar="DIR", required=True, help="folder of .seg files: 12/12_0.seg, ...")
     parser.add_argument("--methods", type=bench.numbers(str, METHODS), default="people,one,k-means,segment")
     parser.add_argument("--remainders", type=bench.numbers(int, (0, 1, 2)), default="0,1,2",

@@ -4,8 +4,7 @@
 shapes.py folds --half report       prisms, tubes, rims and cones of 2 to 24 folds, and round bodies, with noise
 shapes.py views --half report       round bodies, balls and prisms, seen from one side
 shapes.py random --half report      clouds without symmetry
-shapes.py composites --half report  two symmetric solids, or models of folders, stuck together
-shapes.py stray --half report       shapes with 1 to 10 points at 2 to 20 sizes, which must change nothing
+shapes.py composites --half report  two symmetric solids stuck together
 
 The two halves have different curves, profiles and random numbers: constants are chosen on one, figures given of the other.
 """
@@ -19,7 +18,7 @@ import planes
 import references
 import solids
 
-ROUND_BODIES = {"tuning": ("bottle", "vase", "cup", "pin"), "report": ("jar", "goblet", "bowl", "can")}
+ROUND_BODIES = {"tuning": solids.TUNING_BODIES, "report": ("jar", "goblet", "bowl", "can")}
 
 
 @dataclasses.dataclass
@@ -52,15 +51,14 @@ def along(angle):
 
 
 def folded_curve(folds, half, random):
-    """A polygon, or a flower (tuning), or a star or a gear (report); complex, up to modulus 1, one fold at angle 0."""
+    """Those of solids.py (tuning), or a polygon, a star or a gear (report); complex, up to modulus 1, one fold at angle 0."""
+    if half == "tuning":
+        return solids.folded_curve(folds, random)
     if random.uniform() < 0.4:
         if folds == 2:
             aspect = random.uniform(0.5, 0.8)
             return np.array([1 + aspect * 1j, -1 + aspect * 1j, -1 - aspect * 1j, 1 - aspect * 1j]) / math.hypot(1, aspect)
         radius, at = np.ones(1), np.zeros(1)
-    elif half == "tuning":
-        at = np.arange(max(8, 192 // folds)) / max(8, 192 // folds)
-        radius = 1 - 0.5 * random.uniform(0.1, 0.35) * (1 - np.cos(2 * math.pi * at))
     else:
         inner = 1 - random.uniform(0.1, 0.35)
         if random.uniform() < 0.5:
@@ -273,10 +271,7 @@ def random_clouds(i, arguments, random):
 
 
 def composites(i, arguments, random):
-    part = model_part if arguments.models else solid_part
-    parts = [part(2 * i + k, arguments, random) for k in (0, 1)]
-    if None in parts:
-        return []
+    parts = [part(arguments, random) for _ in range(2)]
     rotations, size = [bench.random_rotation(random) for _ in parts], random.uniform(0.6, 1)
     side, scales = bench.random_directions(random, 1)[0], (1.0, size)
     reach = [s * (x @ r.T @ (sign * side)).max() for (x, _), r, s, sign in zip(parts, rotations, scales, (1, -1))]
@@ -301,47 +296,16 @@ def composites(i, arguments, random):
     return [("all", *case) for case in [*cases, ("without a wrong plane", not any(wrong))]]
 
 
-def stray(i, arguments, random):
-    if i % 4 == 0:
-        mesh = round_shape(random.choice(ROUND_BODIES[arguments.half]), random).mesh
-    else:
-        mesh = folded_shape(("prism", "cone", "tube")[i % 4 - 1], random.integers(2, 9), arguments.half, random).mesh
-    points = bench.moved(bench.random_pose(random, mesh), bench.sample(mesh, arguments.points // 2, random))
-    if i % 5 == 0:  # no symmetry
-        points *= 1 + 0.3 * np.sin(points @ bench.random_directions(random, 1)[0] + 1)[:, None]
-    count = random.integers(1, 11)
-    far = bench.random_directions(random, count) * random.uniform(2, 20, (count, 1))
-    disturbed = np.r_[points, points.mean(axis=0) + bench.diameter(points) * far]
-    before, after = (bench.ask(f"stray_{i}_{k}", x, None, arguments) for k, x in enumerate((points, disturbed)))
-    numbers = lambda answers: [(p["kind"], *np.round(p["coefficients"], 4)) for p in answers["planes"]]
-    axes = lambda answers: [np.round(planes.line_of(axis), 4).tolist() for axis in answers["axes"]]
-    return [("all", "the same planes and axes", numbers(before) == numbers(after) and axes(before) == axes(after)),
-            ("all", "with a symmetry", calls(before))]  # fmt: skip
-
-
-def solid_part(_, arguments, random):
+def part(arguments, random):
     """(points, planes) of a prism or a cone of 2 to 4 folds, centered and of unit diagonal."""
     body = "prism" if random.uniform() < 0.6 else "cone"
     shape = folded_shape(body, random.integers(2, 5), arguments.half, random)
-    return unit_part(shape.mesh, shape.planes, arguments, random)
-
-
-def model_part(i, arguments, random):
-    """That of a model that has planes and no axis; None for others."""
-    models = bench.list_models(arguments)
-    mesh = bench.read_mesh(models[i % len(models)].path)
-    found = references.find_references(mesh)
-    if not found["planes"] or found["axes"] or found["centers"]:
-        return None
-    return unit_part(mesh, np.array([planes.plane_row(p) for p in found["planes"]]), arguments, random)
-
-
-def unit_part(mesh, rows, arguments, random):
+    mesh, rows = shape.mesh, shape.planes
     points = (bench.sample(mesh, arguments.points // 2, random) - mesh.center) / mesh.diagonal
     return points, np.c_[rows[:, :3], (rows[:, 3] - rows[:, :3] @ mesh.center) / mesh.diagonal]
 
 
-KINDS = {"folds": (folds, 144), "views": (views, 180), "random": (random_clouds, 700), "composites": (composites, 40), "stray": (stray, 40)}
+KINDS = {"folds": (folds, 144), "views": (views, 180), "random": (random_clouds, 700), "composites": (composites, 40)}
 
 
 def evaluate(i, arguments):
@@ -350,8 +314,6 @@ def evaluate(i, arguments):
 
 
 def program(arguments):
-    if arguments.models:
-        bench.list_models(arguments)  # says once what is amiss with them
     count = arguments.num or KINDS[arguments.kind][1]
     results, left_out = bench.run(range(count), evaluate, arguments)
     rates = {}
@@ -366,13 +328,10 @@ def program(arguments):
 
 
 if __name__ == "__main__":
-    parser = bench.make_parser(__doc__)
+    parser = bench.make_parser(__doc__, models=False)
+    parser.add_argument("kind", choices=KINDS)
     parser.add_argument("--half", choices=["tuning", "report"], default="tuning", help="half of the shapes")
     parser.add_argument("--num", type=int, help="number of clouds; about two minutes by default")
     parser.add_argument("--points", type=int, default=10_000, help="of a cloud")
     parser.add_argument("--tool", metavar="FILE", help="pcl_symmetry_planes: asked in place of the Python module")
-    arguments = parser.parse_args()
-    if not arguments.models or arguments.models[0] not in KINDS:
-        parser.error(f"the first argument must be one of {', '.join(KINDS)}")
-    arguments.kind, *arguments.models = arguments.models
-    bench.main(program, arguments)
+    bench.main(program, parser.parse_args())

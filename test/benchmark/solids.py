@@ -140,8 +140,7 @@ def cyclic(y, z):
     return [np.roll([0, y, z], k) for k in range(3)]
 
 
-def solids(kind=None):
-    """All solids, or those of one kind."""
+def solids():
     cup = turned([(0, 0), (1, 0), (1, 2.2), (0.9, 2.2), (0.9, 0.12), (0, 0.12)])
     wheel = [(0.2, -0.3), (1, -0.3), (0.85, 0), (1, 0.3), (0.5, 0.3), (0.5, 0.8), (0.2, 0.8), (0.2, -0.3)]
     can = turned([(0, -1), (1, -1), (1, 0.6), (0.7, 0.8), (0.7, 1.1), (0, 1.1)])
@@ -214,11 +213,12 @@ def solids(kind=None):
             ("propeller", "C3", joined(turned([(0, -0.1), (0.16, -0.1), (0.16, 0.5), (0, 0.5)]), *blades)),
         ],
     }  # fmt: skip
-    return [Solid(name, k, group, *part) for k, some in made.items() if kind in (None, k) for name, group, part in some]
+    return [Solid(name, k, group, *part) for k, some in made.items() for name, group, part in some]
 
 
 # Bodies of random sizes: a closed curve, complex numbers up to modulus 1, swept along a profile of (radius, height)
 
+TUNING_BODIES = ("bottle", "vase", "cup", "pin")  # round ones that numbers were chosen on
 FOLDED = {"prism": [(0, 0), (1, 0), (1, 1), (0, 1)], "tube": [(1, 0), (1, 1)], "cone": [(0, 0), (1, 0), (0, 1)],
           "rim": [(1, 0), (1, 1), (0.75, 1), (0.75, 0), (1, 0)], "open cone": [(1, 0), (0, 1)]}  # fmt: skip
 
@@ -236,6 +236,17 @@ def sweep(curve, profile):
     radius, height = np.transpose(profile)[..., None]
     vertices, quads = tube(np.stack(np.broadcast_arrays(radius * curve.real, radius * curve.imag, height), -1))
     return bench.make_mesh(vertices, quads.tolist())
+
+
+def folded_curve(folds, random):
+    """A polygon, or a flower with waves."""
+    if random.uniform() < 0.4:
+        aspect = random.uniform(0.5, 0.8)
+        corners = np.array([1 + aspect * 1j, -1 + aspect * 1j, -1 - aspect * 1j, 1 - aspect * 1j]) / abs(1 + aspect * 1j)
+        return corners if folds == 2 else np.exp(2j * np.pi * np.arange(folds) / folds)
+    depth, steps = random.uniform(0.1, 0.35), max(8, 192 // folds)
+    turn = np.arange(folds * steps) / steps
+    return (1 - 0.5 * depth * (1 - np.cos(2 * np.pi * turn))) * np.exp(2j * np.pi * turn / folds)
 
 
 def folded_body(body, curve, folds, random):

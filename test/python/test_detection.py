@@ -1,15 +1,13 @@
 """From points to planes: shapes whose planes are known, moved, scaled, disturbed, cut and flat."""
 
-import sys
 import types
 import unittest
 import warnings
 
-try:
-    import numpy as np
-except ImportError:
-    print("skipped: NumPy is not installed for " + sys.executable)
-    sys.exit(77)
+from needed import need
+
+need("numpy")
+import numpy as np
 
 import pcl_symmetry
 
@@ -461,9 +459,9 @@ class Gears(Detection):
         self.assertLess(max(off.min(axis=0).max(), off.min(axis=1).max()), angle, fold)
 
     def test_have_all_their_planes(self):
-        for seed, fold in enumerate((8, 17, 30, 39, 48, 61, 72)):
+        for seed, fold in enumerate((8, 17, 39, 72)):
             self.assert_all(fold, seed, 1e-4)
-        for seed, fold in enumerate((12, 18, 39, 61)):
+        for seed, fold in enumerate((12, 39)):
             self.assert_all(fold, seed, 0.1 * DEGREE, 10_000)
 
     def test_of_so_many_teeth_that_the_tolerance_forgives_them_are_round(self):
@@ -480,8 +478,9 @@ class Gears(Detection):
                       disc=((0, 0), (1, 0), (1, 0.2), (0, 0.2)), cup=((0, 0), (0.7, 0), (0.75, 1.6)),
                       vase=np.c_[0.5 + 0.15 * np.sin(3 * steps), steps],
                       bottle=((0, 0), (0.4, 0), (0.4, 1.2), (0.15, 1.6), (0.15, 2), (0, 2)))  # fmt: skip
-        for name, profile in bodies.items():
-            for num_sides, count, size in ((96, 8000, 1), (96, 2000, 0.01), (48, 8000, 100), (48, None, 1)):
+        kinds_of_mesh = ((96, 8000, 1), (48, None, 1)), ((96, 2000, 0.01), (48, 8000, 100))
+        for i, (name, profile) in enumerate(bodies.items()):
+            for num_sides, count, size in kinds_of_mesh[i % 2]:
                 mesh = swept(size * np.exp(2j * np.pi * np.arange(num_sides) / num_sides), np.array(profile) * (1, size))
                 pose = random_pose(num_sides)
                 axis, = self.planes(mesh, pose, count).axes
@@ -604,7 +603,7 @@ class Decisions(Detection):
         self.assertGreaterEqual(num_called, 6)
 
     def test_are_not_left_to_chance(self):
-        for seed in range(40):
+        for seed in range(20):
             random = np.random.default_rng(seed)
             self.assertFalse(calls(pcl_symmetry.planes(random.random((random.integers(20, 500), 3)))), seed)
 

@@ -9,12 +9,10 @@ import time
 import unittest
 from pathlib import Path
 
-try:
-    import dask.distributed  # noqa: F401
-    import psutil
-except ImportError:
-    print("skipped: there is no dask.distributed (python3-distributed)")
-    sys.exit(77)
+from needed import need
+
+need("dask.distributed", "psutil")
+import psutil
 
 TOOLS = os.environ["TOOLS"]
 EXAMPLE = str(Path(__file__).parents[2] / "apps/examples/13_distributed.py")

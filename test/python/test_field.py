@@ -6,16 +6,14 @@ skipped where a file is absent."""
 import json
 import os
 import subprocess
-import sys
 import tempfile
 import unittest
 from pathlib import Path
 
-try:
-    import numpy as np
-except ImportError:
-    print("skipped: NumPy is not installed for " + sys.executable)
-    sys.exit(77)
+from needed import need
+
+need("numpy")
+import numpy as np
 
 DATA = Path(os.environ.get("PCL_SYMMETRY_DATA", Path(__file__).resolve().parents[3] / "shared/data"))
 X, Y, Z = np.eye(3)

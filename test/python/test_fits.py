@@ -3,23 +3,22 @@ import argparse
 import contextlib
 import io
 import pathlib
-import sys
 import tempfile
 import types
 import unittest
 
-try:
-    import numpy as np
+from needed import need
 
-    import bench
-    import fit_frames
-    import fit_planes
-    import fit_segments
-    import fit_rotations
-    import fits
-except ImportError as error:
-    print(f"skipped: {error}")
-    sys.exit(77)
+need("bench", "fits")
+import numpy as np
+
+import bench
+import fit_frames
+import fit_planes
+import fit_segments
+import fit_rotations
+import fits
+import solids
 
 
 def made_up_rows(random, num_models=60, per_cloud=6):
@@ -74,7 +73,7 @@ class Fits(unittest.TestCase):
 
     def test_shapes_have_their_folds(self):
         random = np.random.default_rng(3)
-        mesh = fits.folded_shape("prism", 5, random)
+        mesh = solids.folded_body("prism", solids.folded_curve(5, random), 5, random)
         rotated = mesh.vertices @ np.array([[np.cos(a := 2 * np.pi / 5), -np.sin(a), 0], [np.sin(a), np.cos(a), 0], [0, 0, 1]]).T
         gaps = np.linalg.norm(rotated[:, None] - mesh.vertices[None], axis=2).min(1)
         self.assertLess(gaps.max(), 1e-9)

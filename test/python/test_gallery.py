@@ -8,11 +8,9 @@ from pathlib import Path
 
 import numpy as np
 
-try:
-    import vtkmodules  # noqa: F401
-except ImportError:
-    print("skipped: python3-vtk9 is not installed")
-    sys.exit(77)
+from needed import need
+
+need("vtkmodules")
 
 import pcl_symmetry
 

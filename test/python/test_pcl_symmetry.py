@@ -15,11 +15,10 @@ import time
 import unittest
 from pathlib import Path
 
-try:
-    import numpy as np
-except ImportError:
-    print("skipped: NumPy is not installed for " + sys.executable)
-    sys.exit(77)
+from needed import need
+
+need("numpy")
+import numpy as np
 
 import pcl_symmetry
 
@@ -475,19 +474,13 @@ class Meshes(unittest.TestCase):
         plain, faces = bumped(160, 320, 0.0, radius)
         vertices, _ = bumped(160, 320, height, radius)
         plane = pcl_symmetry.ReflectionPlane((1, 0, 0), 0.0)
-        start = time.perf_counter()
         found = pcl_symmetry.symmetrize(vertices, plane, faces=faces)
-        seconds = time.perf_counter() - start
         corners = vertices[faces]
         areas = np.linalg.norm(np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]), axis=1) / 2
         # Outside on the side of the bump, inside on the other one.
         across = np.abs(plain[faces].mean(axis=1)[:, :1]) * (1, 0, 0) + plain[faces].mean(axis=1) * (0, 1, 1)
         share = np.minimum(1, np.linalg.norm(across - (1, 0, 0), axis=1) / radius)
         expected = (areas * height * (1 + np.cos(np.pi * share))).sum() / 2 / areas.sum()
-        print(
-            f"{len(vertices)} vertices in {seconds:.2f} s, {found.deviation / 2:.1g} of the diameter from their reflection, "
-            f"mean asymmetry {100 * abs(found.mean_asymmetry / expected - 1):.2f} % off"
-        )
         self.assertAlmostEqual(found.mean_asymmetry, expected, delta=0.01 * expected)
         self.assertAlmostEqual(found.greatest_asymmetry, height, delta=0.01 * height)
         self.assertAlmostEqual(found.asymmetry[vertices[:, 0].argmax()], height, delta=0.02 * height)
@@ -553,9 +546,7 @@ class Meshes(unittest.TestCase):
         distance = np.hypot(found.radius[:, None] - radius(at), found.height[:, None] - at).min(axis=1)
         wall = (found.height > 0.05) & (found.height < 0.95)
         self.assertGreater(wall.sum(), 60)
-        rms = np.sqrt(np.mean(distance[wall] ** 2)) / diameter
-        print(f"profile {100 * rms:.2f} % of the diameter off")
-        self.assertLess(rms, 0.002)
+        self.assertLess(np.sqrt(np.mean(distance[wall] ** 2)) / diameter, 0.002)
         np.testing.assert_allclose(np.median(found.spread), 0.01 * diameter, rtol=0.2)
         steps = np.hypot(np.diff(found.radius), np.diff(found.height))
         self.assertLess(steps.max(), 0.1, "in order along the curve")
@@ -906,13 +897,9 @@ class Package(unittest.TestCase):
 
         self.assertEqual(doctest.testmod(pcl_symmetry).failed, 0)
 
-    def test_importing_is_quick(self):
-        code = "import sys, time; t = time.perf_counter(); import pcl_symmetry; print(time.perf_counter() - t, 'numpy' in sys.modules)"
-        runs = [subprocess.check_output([sys.executable, "-c", code], text=True).split() for _ in range(3)]
-        self.assertEqual(runs[0][1], "False", "NumPy is imported by the first call")
-        seconds = min(float(run[0]) for run in runs)
-        print(f"import: {1000 * seconds:.0f} ms")
-        self.assertLess(seconds, 0.5)  # ten times the limit on an idle machine
+    def test_numpy_is_imported_by_the_first_call(self):
+        code = "import sys, pcl_symmetry; print('numpy' in sys.modules)"
+        self.assertEqual(subprocess.check_output([sys.executable, "-c", code], text=True), "False\n")
 
 
 if __name__ == "__main__":

@@ -1,14 +1,10 @@
 """Measures of rankings that are known, and rotations of descriptors."""
-import sys
 import unittest
 
-try:
-    import open3d  # noqa: F401
-    import scipy  # noqa: F401
-    import pcl_symmetry
-except ImportError as error:
-    print(f"skipped: {error}")
-    sys.exit(77)
+from needed import need
+
+need("open3d", "scipy", "pcl_symmetry")
+import pcl_symmetry
 import numpy as np
 
 import retrieval

@@ -1,29 +1,16 @@
 """Groups of points that show no surface: samples of solids, atoms."""
 
-import sys
 import unittest
 
-try:
-    import numpy as np
-except ImportError:
-    print("skipped: NumPy is not installed for " + sys.executable)
-    sys.exit(77)
+from needed import need
+
+need("numpy")
+import numpy as np
 
 import pcl_symmetry
+from test_detection import random_pose
 
 HALF = np.array([1, 0.8, 0.55])
-
-
-def rotation(random):
-    """A rotation matrix drawn uniformly (Shoemake)."""
-    w, x, y, z = (lambda q: q / np.linalg.norm(q))(random.normal(size=4))
-    return np.array(
-        [
-            [1 - 2 * (y * y + z * z), 2 * (x * y - z * w), 2 * (x * z + y * w)],
-            [2 * (x * y + z * w), 1 - 2 * (x * x + z * z), 2 * (y * z - x * w)],
-            [2 * (x * z - y * w), 2 * (y * z + x * w), 1 - 2 * (x * x + y * y)],
-        ]
-    )
 
 
 def solid_ball(count, random, half=HALF):
@@ -51,7 +38,7 @@ class Solids(unittest.TestCase):
                 for seed in range(2):
                     with self.subTest(shape=shape.__name__, count=count, seed=seed):
                         random = np.random.default_rng(seed)
-                        found = pcl_symmetry.rotations(shape(count, random) @ rotation(random).T)
+                        found = pcl_symmetry.rotations(shape(count, random) @ random_pose(seed)[0].T)
                         self.assertTrue(found.reason or found.name in allowed, found.name)
 
     def test_say_at_which_tolerance_they_would_have_one(self):
@@ -67,7 +54,7 @@ class Solids(unittest.TestCase):
         random = np.random.default_rng(3)
         unit = solid_box(700, random, np.array([0.5, 0.45, 0.6])) + [0.8, 0.1, 0]
         third = np.array([[-0.5, -(0.75**0.5), 0], [0.75**0.5, -0.5, 0], [0, 0, 1]])
-        turn = rotation(random)
+        turn, _ = random_pose(3)
         atoms = np.concatenate([unit, unit @ third.T, unit @ third]) @ turn.T
         for seed in range(3):
             found = pcl_symmetry.rotations(atoms, seed=seed)

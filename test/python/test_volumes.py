@@ -1,13 +1,11 @@
 """Planes of volumes: phantoms with known planes, tilted, cropped, noisy, with a lesion on one side; and none."""
 
-import sys
 import unittest
 
-try:
-    import numpy as np
-except ImportError:
-    print("skipped: NumPy is not installed for " + sys.executable)
-    sys.exit(77)
+from needed import need
+
+need("numpy")
+import numpy as np
 
 import pcl_symmetry
 
@@ -85,7 +83,7 @@ class Volumes(unittest.TestCase):
         self.assertGreater(found[0].confidence, 0.75 * 0.75)
 
     def test_of_a_tilted_head_are_exact_and_of_a_noisy_one_within_half_a_degree_and_voxel(self):
-        for seed in range(1, 6):
+        for seed in (1, 2, 5):
             # The last plane is nearly parallel to an axis of the grid, where voxels fall on voxels.
             pose = self.direction @ rotation((0, 0, 1), 0.115) @ rotation((0, 1, 0), 0.012) if seed == 5 else None
             self.phantom(seed=seed, pose=pose)
@@ -101,8 +99,8 @@ class Volumes(unittest.TestCase):
         self.assert_plane(0.1, 0.2)
 
     def test_of_thick_slices_are_right(self):
-        self.phantom(size=240, slices=10)
-        self.assert_plane(1.5, 1)
+        self.phantom(size=160, slices=7)
+        self.assert_plane(1.5, 0.66)
 
     def test_of_a_spiral_and_a_random_texture_are_none(self):
         for function in (spiral, texture):
