@@ -37,7 +37,7 @@ TEST(PublishedPlanes, AreNotLostAtBordersOfCells) {
   PublishedOptions options;
   options.num_points = 500;
   options.max_maxima = 20;
-  for (int i = 0; i < 100; i += 7) {
+  for (int i = 0; i < 100; i += 3) {
     const double tenth = 0.1 * i / 64.0;
     const Eigen::Isometry3d pose = Eigen::AngleAxisd(2.0 * kPi * tenth, Eigen::Vector3d::UnitZ()) *
                                    Eigen::Isometry3d(Eigen::AngleAxisd(0.5 * kPi * tenth, Eigen::Vector3d::UnitX()));
