@@ -28,8 +28,8 @@ double mostPoints(const PointsRef& points, const DetectionOptions& options) {
 
 }  // namespace
 
-std::vector<int> CloudSubset::nearestTo(const PointsRef& all, int num_threads) const {
-  const ClosestPointSearch::Ptr search = makeFlannSearch(points);
+std::vector<int> nearestOf(const Points& kept, const PointsRef& all, int num_threads) {
+  const ClosestPointSearch::Ptr search = makeFlannSearch(kept);
   std::vector<int> nearest(static_cast<std::size_t>(all.cols()));
   parallelRanges(nearest.size(), 4096, num_threads, [&](std::size_t begin, std::size_t end) {
     const std::vector<int> part = search->closest(all.middleCols(begin, end - begin));
@@ -38,7 +38,7 @@ std::vector<int> CloudSubset::nearestTo(const PointsRef& all, int num_threads) c
   return nearest;
 }
 
-std::optional<CloudSubset> subsetOf(const PointsRef& points, const DetectionOptions& options) {
+std::optional<std::vector<int>> subsetOf(const PointsRef& points, const DetectionOptions& options) {
   if (static_cast<double>(points.cols()) <= kDetection.points.max_points) return std::nullopt;
   const double most = mostPoints(points, options);
   if (!(static_cast<double>(points.cols()) > most)) return std::nullopt;
@@ -47,18 +47,16 @@ std::optional<CloudSubset> subsetOf(const PointsRef& points, const DetectionOpti
   std::vector<int> first_of(static_cast<std::size_t>(distinct.points.cols()), -1);
   for (std::size_t i = 0; i < distinct.index_of.size(); ++i)
     if (int& first = first_of[static_cast<std::size_t>(distinct.index_of[i])]; first < 0) first = static_cast<int>(i);
-  CloudSubset subset;
-  for (const int i : spreadSubset(distinct.points, static_cast<std::size_t>(most), options.seed))
-    subset.kept.push_back(first_of[static_cast<std::size_t>(i)]);
-  subset.points = pointsAt(points, subset.kept);
-  return subset;
+  std::vector<int> kept = spreadSubset(distinct.points, static_cast<std::size_t>(most), options.seed);
+  for (int& i : kept) i = first_of[static_cast<std::size_t>(i)];
+  return kept;
 }
 
 void spreadSupport(Detection& detection, const std::vector<int>& representative_of) {
   const auto spread = [&](SymmetryPlane& plane) {
-    std::vector<float> support(representative_of.size());
+    std::vector<float> support(representative_of.size(), 0.0f);
     for (std::size_t i = 0; i < support.size(); ++i)
-      support[i] = plane.point_support[static_cast<std::size_t>(representative_of[i])];
+      if (representative_of[i] >= 0) support[i] = plane.point_support[static_cast<std::size_t>(representative_of[i])];
     plane.point_support = std::move(support);
   };
   for (SymmetryPlane& plane : detection.planes) spread(plane);

@@ -11,21 +11,16 @@ namespace pcl_symmetry {
 
 /// The points that represent a large cloud: as many as the tolerance needs. Planes, decisions and support are theirs;
 /// all other points take the support of the nearest one.
-struct CloudSubset {
-  std::vector<int> kept;  ///< indices of points of the cloud
-  Points points;          ///< 3 x kept.size(), these points
-
-  /// \param all the points of the cloud.
-  /// \return for each point of the cloud the index in kept of the nearest one.
-  std::vector<int> nearestTo(const PointsRef& all, int num_threads) const;
-};
-
 /// \param points 3 x N, finite, that hold an answer.
-/// \return the points that represent a cloud; empty where all of its points are needed.
-std::optional<CloudSubset> subsetOf(const PointsRef& points, const DetectionOptions& options);
+/// \return indices of points; empty where all of them are needed.
+std::optional<std::vector<int>> subsetOf(const PointsRef& points, const DetectionOptions& options);
+
+/// \param kept some of the points of a cloud.
+/// \return for each point of the cloud the index of the nearest one.
+std::vector<int> nearestOf(const Points& kept, const PointsRef& all, int num_threads);
 
 /// Gives each point of a cloud the support of the point that represents it.
-/// \param representative_of for each point, the index of the point whose support it takes.
+/// \param representative_of for each point, the index of the point whose support it takes; -1: it supports nothing.
 void spreadSupport(Detection& detection, const std::vector<int>& representative_of);
 
 /// Points of a cloud such that they lie about equally dense on one side and on the other.

@@ -12,9 +12,8 @@
 #include "core/detection/part_search.h"
 #include "core/detection/plane_decision.h"
 #include "core/detection/plane_families.h"
+#include "core/detection/plane_fit.h"
 #include "core/detection/plane_lattice.h"
-#include "core/detection/set_confidence.h"
-#include "core/detection/staged_refinement.h"
 #include "core/detection/standing_object.h"
 #include "core/geometry/point_samples.h"
 #include "core/geometry/search_views.h"
@@ -31,133 +30,59 @@ void append(std::vector<SymmetryPlane>& planes, std::vector<SymmetryPlane> more)
   std::move(more.begin(), more.end(), std::back_inserter(planes));
 }
 
-/// Refines candidates in full and decides them. In a whole cloud, once a plane explains everything, hopeless candidates
-/// are skipped; planes climb only where that may decide.
-class FinalRefinement {
-public:
-  /// \param refinement,decision must outlive this object.
-  /// \param skips_hopeless other planes than symmetries are not wanted where there are any.
-  FinalRefinement(const StagedRefinement& refinement, const PlaneDecision& decision, CloudKind kind,
-                  bool skips_hopeless)
-      : refinement_(refinement),
-        decision_(decision),
-        kind_(kind),
-        skips_hopeless_(skips_hopeless && kKindRules.may_lack_piece[kind]) {}
+/// Refines candidates in full and judges them; those that climb then, once more.
+std::vector<SymmetryPlane> refinedAndJudged(const JudgedCloud& judged, std::vector<Candidate> candidates) {
+  candidates = judged.refinement.full(std::move(candidates));
+  std::vector<MeasuredPlane> measured = judged.decision.judge(candidates);
+  std::vector<char> moves;
+  for (const MeasuredPlane& one : measured) moves.push_back(one.plane.confidence >= kDetection.fit.climbing_confidence);
+  judged.refinement.climb(candidates, moves);
+  judged.decision.judge(candidates, moves, measured);
+  std::vector<SymmetryPlane> planes;
+  for (MeasuredPlane& one : measured) planes.push_back(std::move(one.plane));
+  return planes;
+}
 
-  /// \param candidates after the second stage, best first.
-  /// \return the planes that may be symmetries, and where there are none, the others too; input frame.
-  std::vector<SymmetryPlane> decide(std::vector<Candidate> candidates) {
-    std::vector<SymmetryPlane> found;
-    if (skips_hopeless_ && !explained_ && candidates.size() > 1) {
-      found = refineAndJudge({candidates.front()});
-      candidates.erase(candidates.begin());
-    }
-    // Nothing is missing then that could excuse what others leave off.
-    if (skips_hopeless_ && explained_)
-      candidates.erase(std::remove_if(candidates.begin(), candidates.end(),
-                                      [&](const Candidate& other) { return decision_.isHopeless(other); }),
-                       candidates.end());
-    append(found, refineAndJudge(std::move(candidates)));
-    return found;
+/// Decides the planes that may be symmetries, and where there are none, the others too. In a whole cloud, once a plane
+/// explains everything, hopeless candidates are skipped: nothing is missing that could excuse what they leave off.
+/// \param candidates after the second stage, best first.
+void decide(const JudgedCloud& judged, std::vector<Candidate> candidates, Found& found) {
+  const CloudKind kind = judged.cloud.kind();
+  const bool skips_hopeless = !judged.options.approximate && kKindRules.may_lack_piece[kind];
+  const auto isExplained = [&] {
+    return std::any_of(found.planes.begin(), found.planes.end(),
+                       [&](const SymmetryPlane& plane) { return explainsAll(plane, kind); });
+  };
+  if (skips_hopeless && !isExplained() && candidates.size() > 1) {
+    append(found.planes, refinedAndJudged(judged, {candidates.front()}));
+    candidates.erase(candidates.begin());
   }
-
-private:
-  /// Refines candidates in full and judges them.
-  std::vector<SymmetryPlane> refineAndJudge(std::vector<Candidate> candidates) {
-    candidates = refinement_.full(std::move(candidates));
-    std::vector<SymmetryPlane> planes;
-    std::vector<Candidate> climbing;
-    std::vector<std::size_t> index_of;
-    for (MeasuredPlane& judged : decision_.judge(candidates)) {
-      if (judged.plane.confidence >= kDetection.fit.climbing_confidence) {
-        climbing.push_back(std::move(candidates[planes.size()]));
-        index_of.push_back(planes.size());
-      }
-      planes.push_back(std::move(judged.plane));
-    }
-    const std::vector<char> moved = refinement_.climb(climbing);
-    std::vector<Candidate> again;
-    std::vector<std::size_t> index_of_again;
-    for (std::size_t k = 0; k < moved.size(); ++k) {
-      if (!moved[k]) continue;
-      again.push_back(std::move(climbing[k]));
-      index_of_again.push_back(index_of[k]);
-    }
-    std::vector<MeasuredPlane> judged_again = decision_.judge(again);
-    for (std::size_t k = 0; k < again.size(); ++k) planes[index_of_again[k]] = std::move(judged_again[k].plane);
-    for (const SymmetryPlane& plane : planes) explained_ = explained_ || explainsAll(plane, kind_);
-    return planes;
-  }
-
-  const StagedRefinement& refinement_;
-  const PlaneDecision& decision_;
-  CloudKind kind_;
-  bool skips_hopeless_;
-  bool explained_ = false;  ///< a plane explains all of the cloud, so that nothing is missing
-};
+  if (skips_hopeless && isExplained())
+    candidates.erase(std::remove_if(candidates.begin(), candidates.end(),
+                                    [&](const Candidate& other) { return judged.decision.isHopeless(other); }),
+                     candidates.end());
+  append(found.planes, refinedAndJudged(judged, std::move(candidates)));
+}
 
 /// The evidence of all candidates, also of those that the detection leaves out early.
 /// \param candidates after the second stage.
-std::vector<MeasuredPlane> judgeAll(std::vector<Candidate> candidates, const StagedRefinement& refinement,
-                                    const PlaneDecision& decision) {
-  candidates = refinement.full(std::move(candidates));
-  refinement.climb(candidates);
-  return decision.judge(refinement.distinct(std::move(candidates)));
+std::vector<MeasuredPlane> judgeAll(const JudgedCloud& judged, std::vector<Candidate> candidates) {
+  candidates = judged.refinement.full(std::move(candidates));
+  std::vector<char> moves(candidates.size(), true);
+  judged.refinement.climb(candidates, moves);
+  return judged.decision.judge(judged.refinement.distinct(std::move(candidates)));
 }
-
-/// A cloud, and what judges its planes. Everything must outlive it.
-struct JudgedCloud {
-  const NormalizedCloud& cloud;
-  const Points& all;  ///< its points and those that were left out to make it evenly dense, normalized frame
-  const PlaneFit& fit;
-  const PlaneMeasure& measure;
-  const PlaneDecision& decision;
-  const StagedRefinement& refinement;
-  FinalRefinement& final_refinement;
-  const DetectionOptions& options;
-};
-
-/// What was found up to now.
-struct Found {
-  std::vector<SymmetryPlane> planes;    ///< input frame
-  std::optional<PlaneLattice> polygon;  ///< normalized frame; its planes are among them
-  std::vector<SymmetryAxis> axes;
-  std::vector<SymmetryCenter> centers;
-  std::vector<SymmetryRotation> rotations;
-  std::shared_ptr<DetectionEvidence> evidence;
-
-  bool hasFamily() const { return !axes.empty() || !centers.empty(); }
-};
 
 /// The reflection of one symmetry in another is a symmetry, and so are the missing planes of a regular polygon.
 void completeGroups(const JudgedCloud& judged, Found& found) {
-  GroupClosure closure(judged.cloud);
+  std::vector<ReflectionPlane> tried;
   for (std::vector<Candidate> candidates;
-       !(candidates = judged.refinement.closeSymmetries(closure.next(found.planes))).empty();)
-    append(found.planes, judged.final_refinement.decide(std::move(candidates)));
+       !(candidates = judged.refinement.closeSymmetries(impliedBy(found.planes, judged.cloud, tried))).empty();)
+    decide(judged, std::move(candidates), found);
 }
 
 void doubtWhatNeedsAPiece(const JudgedCloud& judged, Found& found) {
   doubtMissingPieces(found.planes, judged.cloud.kind(), judged.options);
-}
-
-/// The planes of a polygon that noise or the nearness of others hides.
-void completePolygon(const JudgedCloud& judged, Found& found) {
-  PlanesAndPolygon completed =
-      withPolygon(std::move(found.planes), judged.cloud, judged.all, judged.decision, judged.options);
-  found.planes = std::move(completed.planes);
-  found.polygon = std::move(completed.polygon);
-}
-
-/// Bodies of revolution and spheres in place of their planes.
-void findFamilies(const JudgedCloud& judged, Found& found) {
-  const bool is_polygon = found.polygon && judged.cloud.kind() == CloudKind::Surface;
-  if (judged.measure.limits().isCutAllAround() || is_polygon) return;
-  PlanesAndFamilies families =
-      collectFamilies(std::move(found.planes), judged.cloud, judged.all, judged.fit, judged.decision, judged.options);
-  found.planes = std::move(families.planes);
-  found.axes = std::move(families.axes);
-  found.centers = std::move(families.centers);
 }
 
 /// Axes of rotations of a scan; brings axes of revolution and planes in line with them.
@@ -186,7 +111,7 @@ void doubtWhatSlants(const JudgedCloud& judged, Found& found) {
 
 void findPlanesOfParts(const JudgedCloud& judged, Found& found) {
   if (judged.options.approximate)
-    append(found.planes, localPlanes(found.planes, judged.cloud, judged.fit, judged.decision, judged.options));
+    append(found.planes, localPlanes(found.planes, judged.cloud, *judged.fit, judged.decision, judged.options));
 }
 
 /// What results say of each other, in this order. Beyond the paper.
@@ -207,10 +132,8 @@ Detection refineAndDecide(const NormalizedCloud& cloud, const Points& all, const
                           const DetectionOptions& options, Stopwatch& watch) {
   Detection detection;
   const auto timed = [&](const char* stage) { detection.timing_ms.emplace_back(stage, watch.lap()); };
-  const std::unique_ptr<PlaneFit> fit = makePlaneFit(cloud, options);
-  const StagedRefinement refinement(cloud, *fit, options);
-  const PlaneMeasure measure(cloud, *fit, options);
-  const PlaneDecision decision(cloud, measure, options);
+  const JudgedCloud judged(cloud, all, options);
+  const PlaneMeasure& measure = judged.measure;
   timed("surface");
 
   // Candidates: local maxima of the transform and the planes across the principal axes.
@@ -218,35 +141,33 @@ Detection refineAndDecide(const NormalizedCloud& cloud, const Points& all, const
   timed("maxima");
 
   // Iterative Symmetric Points, with more samples and narrower weights in each stage; the last one with the decision.
-  candidates = refinement.coarse(std::move(candidates), map.grid);
+  candidates = judged.refinement.coarse(std::move(candidates), map.grid);
   timed("coarse_refinement");
-  candidates = refinement.close(std::move(candidates));
+  candidates = judged.refinement.close(std::move(candidates));
   timed("close_refinement");
   Found found;
   if (options.evidence) {
     found.evidence = std::make_shared<DetectionEvidence>();
-    found.evidence->planes = judgeAll(candidates, refinement, decision);
+    found.evidence->planes = judgeAll(judged, candidates);
     timed("evidence");
   }
-  FinalRefinement final_refinement(refinement, decision, cloud.kind(), !options.approximate);
-  found.planes = final_refinement.decide(std::move(candidates));
+  decide(judged, std::move(candidates), found);
   timed("full_refinement");
 
-  const JudgedCloud judged{cloud, all, *fit, measure, decision, refinement, final_refinement, options};
   for (const auto& rule : kRules) {
     rule.apply(judged, found);
     timed(rule.name);
   }
 
   // The answer.
-  if (!found.hasFamily()) detection.best = bestApproximate(found.planes, cloud, *fit);
+  if (!found.hasFamily()) detection.best = bestApproximate(found.planes, cloud, *judged.fit);
   if (detection.best) detection.best->deviation = measure.deviation(cloud.toNormalized(*detection.best)) * cloud.scale;
   detection.flat = flatPlane(cloud, measure.limits());
   detection.tolerance = measure.tolerance() * cloud.scale;
   const bool is_raised = options.absolute_tolerance == 0.0 && measure.tolerance() > options.tolerance * cloud.extent;
   detection.resolution = std::max(measure.resolution(), is_raised ? measure.tolerance() : 0.0) * cloud.scale;
   detection.diameter = cloud.extent * cloud.scale;
-  detection.planes = rankedPlanes(std::move(found.planes), found.polygon, cloud, *fit, options);
+  detection.planes = rankedPlanes(std::move(found.planes), found.polygon, cloud, *judged.fit, options);
   detection.axes = std::move(found.axes);
   detection.centers = std::move(found.centers);
   detection.rotations = std::move(found.rotations);
@@ -261,12 +182,11 @@ Detection refineAndDecide(const NormalizedCloud& cloud, const Points& all, const
 /// \param kept indices of the points to judge by.
 Detection detectOnEvenSubset(const NormalizedCloud& cloud, const Points& input, const std::vector<int>& kept,
                              const SymmetryMap& map, const DetectionOptions& options, Stopwatch& watch) {
-  GaussianEdtOptions edt_options;
+  GaussianEdtOptions edt_options = options.edtOptions();
   edt_options.num_cells = cloud.edt.numCells();
   edt_options.sigma = cloud.edt.sigma();
   edt_options.center = cloud.edt.center();
   edt_options.radius = cloud.edt.radius();
-  edt_options.num_threads = options.num_threads;
   const Points even_points = pointsAt(input, kept);
   const GaussianEdt edt(even_points, edt_options);
   const ClosestPointSearch::Ptr search =
@@ -327,18 +247,35 @@ Detection detectFromPoints(const PlaneInput& input, const DetectionOptions& opti
   return detection;
 }
 
-/// Detects planes on a subset of a large cloud, and turns them into the answer of the whole cloud.
-Detection detectOnSubset(const PlaneInput& input, const CloudSubset& subset, const DetectionOptions& options) {
-  const Points normals = input.normals ? pointsAt(*input.normals, subset.kept) : Points();
-  PlaneInput kept(subset.points, input.visibility);
-  kept.normals = input.normals ? &normals : nullptr;
-  kept.make_search = input.make_search;
-  Detection detection =
-      input.map ? detectFromMap(kept, *input.edt, *input.map, options) : detectFromPoints(kept, options);
-  if (!input.map) detection.map.center_of_mass = centerOfMass(input.points);
+/// Some of the points of an input, as an input.
+struct PartOfInput {
+  Points points, normals;
+  PlaneInput input;
+
+  PartOfInput(const PlaneInput& all, const std::vector<int>& kept)
+      : points(pointsAt(all.points, kept)),
+        normals(all.normals ? pointsAt(*all.normals, kept) : Points()),
+        input(points, all.visibility) {
+    input.normals = all.normals ? &normals : nullptr;
+    input.edt = all.edt;
+    input.map = all.map;
+    input.make_search = all.make_search;
+    input.may_be_rings = all.may_be_rings;
+  }
+};
+
+Detection detectFrom(const PlaneInput& input, const DetectionOptions& options) {
+  return input.map ? detectFromMap(input, *input.edt, *input.map, options) : detectFromPoints(input, options);
+}
+
+/// Detects planes on the points that represent a large cloud.
+Detection detectOnSubset(const PlaneInput& all, const std::vector<int>& kept, const DetectionOptions& options) {
+  const PartOfInput part(all, kept);
+  Detection detection = detectFrom(part.input, options);
+  if (!all.map) detection.map.center_of_mass = centerOfMass(all.points);
   Stopwatch watch;
   if (!detection.planes.empty() || detection.best)
-    spreadSupport(detection, subset.nearestTo(input.points, options.num_threads));
+    spreadSupport(detection, nearestOf(part.points, all.points, options.num_threads));
   detection.timing_ms.emplace_back("support_of_all", watch.lap());
   return detection;
 }
@@ -349,12 +286,12 @@ Detection detectInBulk(const PlaneInput& input, const DetectionOptions& options)
   detection.reason = whyUnanswerable(input.points);
   if (!detection.reason.empty()) return detection;
   Stopwatch watch;
-  if (const std::optional<CloudSubset> subset = subsetOf(input.points, options)) {
+  if (const std::optional<std::vector<int>> subset = subsetOf(input.points, options)) {
     const double subset_ms = watch.lap();
     detection = detectOnSubset(input, *subset, options);
     detection.timing_ms.insert(detection.timing_ms.begin(), {"subset", subset_ms});
   } else {
-    detection = input.map ? detectFromMap(input, *input.edt, *input.map, options) : detectFromPoints(input, options);
+    detection = detectFrom(input, options);
   }
   if (input.may_be_rings && input.visibility && detection.reason.empty()) decideByUprightBox(input, options, detection);
   return detection;
@@ -364,23 +301,10 @@ Detection detectInBulk(const PlaneInput& input, const DetectionOptions& options)
 /// \param stray indices, rising.
 Detection detectWithout(const std::vector<int>& stray, const PlaneInput& input, const DetectionOptions& options) {
   const std::vector<int> others = allBut(stray, input.points.cols());
-  const Points points = pointsAt(input.points, others);
-  const Points normals = input.normals ? pointsAt(*input.normals, others) : Points();
-  PlaneInput bulk(points, input.visibility);
-  bulk.normals = input.normals ? &normals : nullptr;
-  bulk.edt = input.edt;
-  bulk.map = input.map;
-  bulk.make_search = input.make_search;
-  bulk.may_be_rings = input.may_be_rings;
-  Detection detection = detectInBulk(bulk, options);
-  const auto spread = [&](SymmetryPlane& plane) {
-    std::vector<float> support(static_cast<std::size_t>(input.points.cols()), 0.0f);
-    for (std::size_t i = 0; i < others.size() && i < plane.point_support.size(); ++i)
-      support[static_cast<std::size_t>(others[i])] = plane.point_support[i];
-    plane.point_support = std::move(support);
-  };
-  for (SymmetryPlane& plane : detection.planes) spread(plane);
-  if (detection.best) spread(*detection.best);
+  Detection detection = detectInBulk(PartOfInput(input, others).input, options);
+  std::vector<int> index_of(static_cast<std::size_t>(input.points.cols()), -1);
+  for (std::size_t i = 0; i < others.size(); ++i) index_of[static_cast<std::size_t>(others[i])] = static_cast<int>(i);
+  spreadSupport(detection, index_of);
   detection.num_stray_points = static_cast<int>(stray.size());
   return detection;
 }

@@ -1,11 +1,16 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstddef>
+#include <functional>
+#include <vector>
 
 #include "core/base/constants.h"
 #include "core/evidence/plane_confidence.h"
+#include "pcl_symmetry/core/reflection_plane.h"
 
 namespace pcl_symmetry {
 
@@ -62,13 +67,12 @@ struct DetectionRules {
   /// Measuring a plane.
   struct {
     double surely_whole = 0.985;    ///< share within the tolerance from which nothing needs to be missing
-    int deviation_samples = 2000;   ///< samples of SymmetryPlane::deviation
     double held_stiffness = 0.02;   ///< offset stiffness from which an open border begins to excuse; at twice, in full
     double moved_tolerances = 2.0;  ///< tolerances by which a plane has to move an informative sample of a scan
     double noisy_thinness = 3.0;    ///< tolerances within which a volume of points is a sheet or a line
     double round_spacings = 2.0;    ///< spacings within which points of a line do not resolve its cross-section
     double min_own_share = 0.1;     ///< of the points on the surface of the others; what divides shares is no less
-    int screening_samples = 2000;   ///< samples of a quick look
+    int screening_samples = 2000;   ///< samples of a quick look, and of SymmetryPlane::deviation
     std::array<double, 2> tolerances{1.0, 2.0};  ///< at which shares are measured, see PlaneEvidence
     double beside_outline = 0.1;  ///< share of its radius beside an outline at which the picture is looked up
   } measure;
@@ -131,7 +135,6 @@ struct DetectionRules {
     double errors = 3.0;                   ///< standard errors by which the planes between those of a polygon are worse
     double odds_of_polygon = 4.0;          ///< of planes of a polygon over other planes of the same evidence
     std::size_t max_line_pairs = 4;        ///< planes whose common lines are tried
-    double min_line_angle = 0.1;           ///< between two of them
     std::array<int, 3> divisors{2, 3, 5};  ///< of parts of a polygon whose planes may differ
   } folds;
 
@@ -145,9 +148,8 @@ struct DetectionRules {
     double min_part = 0.04, largest_part = 0.9;    ///< share of the points of a part
     double min_edge = 0.4, edge_per_share = 0.5;   ///< longest edge of a part, edges of a disc, and more per share
     double longer_edge = 0.15, shared_part = 0.5;  ///< by how much longer, if better parts hold at most that share
-    double same_part_angle = 0.07, same_part_offset = 0.04;  ///< within which planes of parts are one
-    double same_part = 0.5;                                ///< share that regions of planes of one part have in common
-    std::size_t max_planes_of_part = 9;                    ///< those of a cube
+    double same_part = 0.5;                        ///< share that regions of planes of one part have in common
+    std::size_t max_planes_of_part = 9;            ///< those of a cube
     std::array<double, 2> longest_edges_before{1.0, 0.6};  ///< more than that of a part before either round, as above
     int iterations = 6;                                    ///< of a plane of a part
     std::size_t ball_samples = 200, region_samples = 400;  ///< points that are reflected
@@ -159,6 +161,36 @@ struct DetectionRules {
 };
 
 inline constexpr DetectionRules kDetection;
+
+/// Two planes within both limits are one plane.
+struct PlaneTolerance {
+  double angle;   ///< between the normals, radians
+  double offset;  ///< between the offsets from the origin of the planes' frame, its units
+
+  bool same(const ReflectionPlane& a, const ReflectionPlane& b) const {
+    const double sign = a.normal().dot(b.normal()) < 0.0 ? -1.0 : 1.0;
+    return a.angleTo(b) <= angle && std::abs(a.offset() - sign * b.offset()) <= offset;
+  }
+
+  /// \param plane_of the member of an entry of the list that is its plane, or a function that takes it there.
+  /// \return whether an entry of the list has the same plane.
+  template <typename List, typename PlaneOf>
+  bool anySame(const List& list, const ReflectionPlane& plane, const PlaneOf& plane_of) const {
+    return std::any_of(list.begin(), list.end(),
+                       [&](const auto& entry) { return same(std::invoke(plane_of, entry), plane); });
+  }
+
+  bool anySame(const std::vector<ReflectionPlane>& list, const ReflectionPlane& plane) const {
+    return anySame(list, plane, [](const ReflectionPlane& entry) { return entry; });
+  }
+};
+
+/// Limits within which two planes are one, normalized frame.
+inline constexpr PlaneTolerance kSamePlane{kDetection.stages.same_angle, kDetection.stages.same_offset};
+
+/// Limits within which two maxima share one basin of refinement, normalized frame.
+inline constexpr PlaneTolerance kSameMaximum{kDetection.stages.same_maximum_angle,
+                                             kDetection.stages.same_maximum_offset};
 
 /// A rule that differs between the kinds of cloud.
 template <typename T>

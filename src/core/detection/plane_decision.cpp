@@ -3,10 +3,104 @@
 #include <algorithm>
 #include <utility>
 
+#include "core/base/logistic.h"
 #include "core/base/parallel.h"
+#include "core/detection/standing_object.h"
 #include "core/geometry/point_samples.h"
 
 namespace pcl_symmetry {
+
+namespace {
+
+bool isLimit(const Reason& reason) {
+  return !reason.odds;
+}
+
+double oddsOf(double confidence) {
+  constexpr double least = 1e-9;  // keeps the odds of certainty finite
+  return std::max(least, confidence) / std::max(least, 1.0 - confidence);
+}
+
+void write(SymmetryPlane& plane, double confidence, const Reason& reason, const DetectionOptions& options) {
+  plane.reasons.push_back(reason);
+  plane.confidence = confidence;
+  const bool is_limited = std::any_of(plane.reasons.begin(), plane.reasons.end(), isLimit);
+  plane.kind = confidence >= options.min_confidence && !is_limited ? PlaneKind::Symmetry
+               : confidence >= options.min_possible                ? PlaneKind::Possible
+                                                                   : PlaneKind::Approximate;
+}
+
+}  // namespace
+
+void setConfidence(SymmetryPlane& plane, double confidence, const char* evidence, const DetectionOptions& options) {
+  std::vector<Reason>& reasons = plane.reasons;
+  reasons.erase(std::remove_if(reasons.begin(), reasons.end(), [](const Reason& reason) { return !isLimit(reason); }),
+                reasons.end());
+  write(plane, confidence, {evidence, oddsOf(confidence)}, options);
+}
+
+void changeConfidence(SymmetryPlane& plane, double confidence, const char* rule, const DetectionOptions& options) {
+  write(plane, confidence, {rule, oddsOf(confidence) / oddsOf(plane.confidence)}, options);
+}
+
+void multiplyOdds(SymmetryPlane& plane, double odds, const char* rule, const DetectionOptions& options) {
+  if (odds != 1.0) write(plane, withOdds(plane.confidence, odds), {rule, odds}, options);
+}
+
+void limitToPossible(SymmetryPlane& plane, const char* rule) {
+  plane.reasons.push_back({rule, std::nullopt});
+  if (plane.kind == PlaneKind::Symmetry) plane.kind = PlaneKind::Possible;
+}
+
+void setLocal(SymmetryPlane& plane) {
+  plane.kind = PlaneKind::Local;
+}
+
+namespace {
+
+/// Among the planes that are as likely as the likeliest, D decides.
+/// \return null where there is none.
+const SymmetryPlane* bestOf(const std::vector<SymmetryPlane>& planes) {
+  double most = 0.0;
+  for (const SymmetryPlane& plane : planes) most = std::max(most, plane.confidence);
+  const auto best = std::max_element(planes.begin(), planes.end(), [&](const SymmetryPlane& a, const SymmetryPlane& b) {
+    const bool a_likely = a.confidence >= most - kDetection.decide.as_likely,
+               b_likely = b.confidence >= most - kDetection.decide.as_likely;
+    return a_likely != b_likely ? b_likely : a.score < b.score;
+  });
+  return best == planes.end() ? nullptr : &*best;
+}
+
+}  // namespace
+
+bool explainsAll(const SymmetryPlane& plane, CloudKind kind) {
+  return kKindRules.may_lack_piece[kind] && plane.kind == PlaneKind::Symmetry &&
+         1.0 - plane.seen <= kDetection.decide.nothing_missing;
+}
+
+void doubtMissingPieces(std::vector<SymmetryPlane>& planes, CloudKind kind, const DetectionOptions& options) {
+  if (std::none_of(planes.begin(), planes.end(), [&](const SymmetryPlane& plane) { return explainsAll(plane, kind); }))
+    return;
+  for (SymmetryPlane& plane : planes)
+    if (1.0 - plane.seen > kDetection.decide.piece_missing)
+      multiplyOdds(plane, kDetection.decide.odds_of_a_piece, "needs a missing piece, but another plane explains all",
+                   options);
+}
+
+void doubtFurtherPlanes(std::vector<SymmetryPlane>& planes, bool has_family, CloudKind kind,
+                        const DetectionOptions& options) {
+  const SymmetryPlane* const best = has_family ? nullptr : bestOf(planes);
+  for (SymmetryPlane& plane : planes)
+    if (&plane != best)
+      multiplyOdds(plane, furtherOdds(kind, 1.0 - plane.seen), "another plane or axis is better", options);
+}
+
+void doubtSlantedPlanes(std::vector<SymmetryPlane>& planes, const std::vector<Eigen::Vector3d>& carrying_normals,
+                        const DetectionOptions& options) {
+  for (SymmetryPlane& plane : planes)
+    if (isDecided(plane) && slants(plane, carrying_normals))
+      multiplyOdds(plane, kDetection.decide.slanted_odds, "slants on what the object stands on", options);
+}
 
 namespace {
 
@@ -41,11 +135,17 @@ bool PlaneDecision::isHopeless(const Candidate& candidate) const {
 }
 
 std::vector<MeasuredPlane> PlaneDecision::judge(const std::vector<Candidate>& candidates) const {
-  const std::vector<int> samples = measure_.samples();
   std::vector<MeasuredPlane> judged(candidates.size());
-  parallelBlocks(candidates.size(), options_.num_threads,
-                 [&](std::size_t i) { judged[i] = decided(measure_.of(candidates[i], samples), candidates[i].plane); });
+  judge(candidates, std::vector<char>(candidates.size(), true), judged);
   return judged;
+}
+
+void PlaneDecision::judge(const std::vector<Candidate>& candidates, const std::vector<char>& some,
+                          std::vector<MeasuredPlane>& judged) const {
+  const std::vector<int> samples = measure_.samples();
+  parallelBlocks(candidates.size(), options_.num_threads, [&](std::size_t i) {
+    if (some[i]) judged[i] = decided(measure_.of(candidates[i], samples), candidates[i].plane);
+  });
 }
 
 MeasuredPlane PlaneDecision::judge(const ReflectionPlane& plane, const std::vector<int>& samples) const {

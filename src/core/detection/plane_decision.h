@@ -1,11 +1,11 @@
 #pragma once
 
+#include <memory>
 #include <optional>
 #include <vector>
 
 #include "core/detection/plane_lattice.h"
 #include "core/detection/plane_measure.h"
-#include "core/detection/set_confidence.h"
 #include "core/rotation/rotation_evidence.h"
 
 namespace pcl_symmetry {
@@ -36,6 +36,10 @@ public:
   /// \return one plane each, in the same order.
   std::vector<MeasuredPlane> judge(const std::vector<Candidate>& candidates) const;
 
+  /// The same for some of the candidates, in place of what they were judged before.
+  void judge(const std::vector<Candidate>& candidates, const std::vector<char>& some,
+             std::vector<MeasuredPlane>& judged) const;
+
   /// \param plane normalized frame.
   /// \param samples indices of the points that judge it.
   MeasuredPlane judge(const ReflectionPlane& plane, const std::vector<int>& samples) const;
@@ -45,17 +49,8 @@ public:
   /// \param samples indices of the points that judge them.
   JudgedFamily judgeFamily(const std::vector<ReflectionPlane>& planes, const std::vector<int>& samples) const;
 
-  /// PlaneMeasure::tolerance().
-  double tolerance() const { return measure_.tolerance(); }
-
-  /// CloudLimits::isCutAllAround().
-  bool isCutAllAround() const { return measure_.limits().isCutAllAround(); }
-
   /// Whether too many points are off for a possible symmetry where nothing is missing.
   bool isHopeless(const Candidate& candidate) const;
-
-  /// Whether all points lie within the tolerance of one line.
-  bool isLine() const { return measure_.limits().thinness() == Thinness::Line; }
 
 private:
   /// Gives a plane the confidence that its evidence has, and the limits of the cloud.
@@ -65,6 +60,32 @@ private:
   const NormalizedCloud& cloud_;
   const PlaneMeasure& measure_;
   const DetectionOptions& options_;
+};
+
+/// A cloud, and what fits, refines, measures and judges its planes. Cloud, points and options must outlive it.
+struct JudgedCloud {
+  const NormalizedCloud& cloud;
+  const Points& all;  ///< its points and those that were left out to make it evenly dense, normalized frame
+  const DetectionOptions& options;
+  const std::unique_ptr<PlaneFit> fit = makePlaneFit(cloud, options);
+  const StagedRefinement refinement{cloud, *fit, options};
+  const PlaneMeasure measure{cloud, *fit, options};
+  const PlaneDecision decision{cloud, measure, options};
+
+  JudgedCloud(const NormalizedCloud& of_cloud, const Points& all_points, const DetectionOptions& given)
+      : cloud(of_cloud), all(all_points), options(given) {}
+};
+
+/// What was found up to now.
+struct Found {
+  std::vector<SymmetryPlane> planes;    ///< input frame
+  std::optional<PlaneLattice> polygon;  ///< normalized frame; its planes are among them
+  std::vector<SymmetryAxis> axes;       ///< best first
+  std::vector<SymmetryCenter> centers;
+  std::vector<SymmetryRotation> rotations;
+  std::shared_ptr<DetectionEvidence> evidence;
+
+  bool hasFamily() const { return !axes.empty() || !centers.empty(); }
 };
 
 /// The planes that are reported: best first, each maximum once, at most DetectionOptions::max_planes.
@@ -89,5 +110,54 @@ std::optional<ReflectionPlane> flatPlane(const NormalizedCloud& cloud, const Clo
 /// \return with the support of every point; empty where a plane is a symmetry or a possible one, or there is none.
 std::optional<SymmetryPlane> bestApproximate(const std::vector<SymmetryPlane>& planes, const NormalizedCloud& cloud,
                                              const PlaneFit& fit);
+
+// The only functions that write the confidence, the kind and the reasons of a plane, whatever its evidence is of: a
+// cloud, a mesh, a volume, an upright box or a polygon; and the rules that lower its odds by what was found beside it.
+// Not in the paper.
+
+/// Sets the confidence of a plane, and its kind from min_confidence and min_possible. The evidence replaces all that
+/// came before; what limits the plane to a possible symmetry stays.
+/// \param confidence in [0, 1].
+/// \param evidence what it is of; Reason::rule.
+void setConfidence(SymmetryPlane& plane, double confidence, const char* evidence, const DetectionOptions& options);
+
+/// Sets another confidence by a rule that looks beside the evidence.
+/// \param confidence in [0, 1].
+void changeConfidence(SymmetryPlane& plane, double confidence, const char* rule, const DetectionOptions& options);
+
+/// The same by a factor on the odds.
+/// \param odds > 0; nothing changes at 1.
+void multiplyOdds(SymmetryPlane& plane, double odds, const char* rule, const DetectionOptions& options);
+
+/// From now on the plane is a possible symmetry at most, whatever sets its confidence.
+void limitToPossible(SymmetryPlane& plane, const char* rule);
+
+/// A symmetry of the points that support it.
+void setLocal(SymmetryPlane& plane);
+
+/// True of symmetries and possible ones.
+inline bool isDecided(const SymmetryPlane& plane) {
+  return plane.kind == PlaneKind::Symmetry || plane.kind == PlaneKind::Possible;
+}
+
+/// Whether a plane explains all of a whole cloud, so that nothing of it is missing.
+bool explainsAll(const SymmetryPlane& plane, CloudKind kind);
+
+/// Where a plane explains all of a cloud, nothing of it is missing: those that need a missing piece are doubted, such
+/// as the plane across an open cup, which needs a lid.
+/// \param planes of the whole, also those that follow from others.
+void doubtMissingPieces(std::vector<SymmetryPlane>& planes, CloudKind kind, const DetectionOptions& options);
+
+/// A scan or a cut hides a part of an object, and many planes are tried: those beside the best one, or beside a
+/// family, are symmetries less often.
+/// \param has_family an axis or a center was found, which is better than all planes.
+void doubtFurtherPlanes(std::vector<SymmetryPlane>& planes, bool has_family, CloudKind kind,
+                        const DetectionOptions& options);
+
+/// An object on a table was made to stand there, or lies on one of its sides: nearly all of its planes are upright or
+/// level. Without a known support, no plane is slanted.
+/// \param carrying_normals as from carryingNormals().
+void doubtSlantedPlanes(std::vector<SymmetryPlane>& planes, const std::vector<Eigen::Vector3d>& carrying_normals,
+                        const DetectionOptions& options);
 
 }  // namespace pcl_symmetry

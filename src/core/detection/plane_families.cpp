@@ -148,14 +148,18 @@ std::vector<AxisFamily> findAxes(const std::vector<ReflectionPlane>& planes, con
       attempt(commonLine({planes[i], planes[j]}), std::max(test.share(planes[i]), test.share(planes[j])));
     }
   }
-  std::stable_sort(axes.begin(), axes.end(), [](const auto& a, const auto& b) { return a.share > b.share; });
+  std::stable_sort(axes.begin(), axes.end(),
+                   [](const AxisFamily& a, const AxisFamily& b) { return a.share > b.share; });
   return axes;
 }
 
 namespace {
 
-FamilyTest familyTest(const NormalizedCloud& cloud, const PlaneFit& fit, const PlaneDecision& decision,
-                      const std::vector<int>& samples, const DetectionOptions& options) {
+FamilyTest familyTest(const JudgedCloud& judged, const std::vector<int>& samples) {
+  const NormalizedCloud& cloud = judged.cloud;
+  const PlaneFit& fit = *judged.fit;
+  const PlaneDecision& decision = judged.decision;
+  const DetectionOptions& options = judged.options;
   // What a given tolerance forgives is farther off than samples are from each other.
   const double usual = DetectionOptions().tolerance * cloud.extent;
   const bool is_coarse = cloud.kind() == CloudKind::Surface &&
@@ -211,25 +215,26 @@ Line3d longestAxis(const PrincipalAxes& axes) {
 
 }  // namespace
 
-PlanesAndFamilies collectFamilies(std::vector<SymmetryPlane> planes, const NormalizedCloud& cloud, const Points& all,
-                                  const PlaneFit& fit, const PlaneDecision& decision, const DetectionOptions& options) {
-  PlanesAndFamilies found;
-  found.planes = std::move(planes);
+void findFamilies(const JudgedCloud& judged, Found& found) {
+  const NormalizedCloud& cloud = judged.cloud;
+  const DetectionOptions& options = judged.options;
+  const CloudLimits& limits = judged.measure.limits();
+  if (limits.isCutAllAround() || (found.polygon && cloud.kind() == CloudKind::Surface)) return;
   const std::vector<ReflectionPlane> symmetries = symmetriesOf(found.planes, cloud);
-  if (symmetries.empty() && !decision.isLine()) return found;
+  const bool is_line = limits.thinness() == Thinness::Line;
+  if (symmetries.empty() && !is_line) return;
   const std::vector<int> samples =
       drawSamples(cloud.points.cols(), kKindRules.family_samples[cloud.kind()], options.seed);
-  if (decision.isLine()) {
+  if (is_line) {
     const Line3d line = longestAxis(cloud.principal_axes);
-    std::vector<ReflectionPlane> through;
-    for (int k = 0; k < kDetection.families.tested_planes; ++k) through.push_back(planeOfFamily(line, k));
-    const JudgedFamily judged = decision.judgeFamily(through, samples);
-    if (judged.confidence >= options.min_confidence)
+    const JudgedFamily family =
+        judged.decision.judgeFamily(planesAt([&](int k) { return planeOfFamily(line, k); }), samples);
+    if (family.confidence >= options.min_confidence)
       found.axes.push_back(
-          {cloud.toInput(line.origin()), line.direction(), judged.confidence, judged.score, judged.support});
-    return found;
+          {cloud.toInput(line.origin()), line.direction(), family.confidence, family.score, family.support});
+    return;
   }
-  const FamilyTest test = familyTest(cloud, fit, decision, samples, options);
+  const FamilyTest test = familyTest(judged, samples);
   std::vector<Line3d> likely_axes;
   std::vector<Eigen::Vector3d> likely_centers;
   if (kKindRules.normals_tell[cloud.kind()]) {
@@ -243,38 +248,37 @@ PlanesAndFamilies collectFamilies(std::vector<SymmetryPlane> planes, const Norma
   };
   // Between its planes, a regular polygon is not symmetric: the worst plane decides too. A scan shows some of the
   // planes too badly for that.
-  const auto isFamily = [&](const JudgedFamily& judged) {
-    return judged.confidence >= options.min_confidence &&
+  const auto isFamily = [&](const JudgedFamily& family) {
+    return family.confidence >= options.min_confidence &&
            (!kKindRules.family_needs_all[cloud.kind()] ||
-            judged.min_confidence >= kDetection.families.worst_share * options.min_confidence);
+            family.min_confidence >= kDetection.families.worst_share * options.min_confidence);
   };
   if (const std::optional<CenterFamily> center = findCenter(symmetries, test, likely_centers)) {
-    const JudgedFamily judged = decision.judgeFamily(center->planes, samples);
-    if (isFamily(judged)) {
-      found.centers.push_back({cloud.toInput(center->point), judged.confidence, judged.score, judged.support});
+    const JudgedFamily family = judged.decision.judgeFamily(center->planes, samples);
+    if (isFamily(family)) {
+      found.centers.push_back({cloud.toInput(center->point), family.confidence, family.score, family.support});
       drop([&](const ReflectionPlane& plane) {
         return std::abs(plane.signedDistance(center->point)) <= kDetection.families.contained_offset;
       });
-      return found;
+      return;
     }
   }
-  for (const AxisFamily& family : findAxes(symmetries, test, likely_axes)) {
+  for (const AxisFamily& axis : findAxes(symmetries, test, likely_axes)) {
     // Noise blurs what lies between the planes of a polygon, but not alike at all of them.
-    if (kKindRules.has_polygons[cloud.kind()] && latticeBySpectrum(cloud, all, family.line, options.num_threads))
+    if (kKindRules.has_polygons[cloud.kind()] && latticeBySpectrum(cloud, judged.all, axis.line, options.num_threads))
       continue;
-    const JudgedFamily judged = decision.judgeFamily(family.planes, samples);
-    if (!isFamily(judged)) continue;
+    const JudgedFamily family = judged.decision.judgeFamily(axis.planes, samples);
+    if (!isFamily(family)) continue;
     // No bounded shape has two parallel axes, but a thin disc seems to within the tolerance: the best is the
     // axis.
-    const bool is_known = std::any_of(found.axes.begin(), found.axes.end(), [&](const SymmetryAxis& axis) {
-      return std::abs(axis.direction.dot(family.line.direction())) > std::cos(kDetection.families.contained_angle);
+    const bool is_known = std::any_of(found.axes.begin(), found.axes.end(), [&](const SymmetryAxis& other) {
+      return std::abs(other.direction.dot(axis.line.direction())) > std::cos(kDetection.families.contained_angle);
     });
     if (!is_known)
-      found.axes.push_back({cloud.toInput(family.line.origin()), family.line.direction(), judged.confidence,
-                            judged.score, judged.support});
-    drop([&](const ReflectionPlane& plane) { return contains(plane, family.line); });
+      found.axes.push_back(
+          {cloud.toInput(axis.line.origin()), axis.line.direction(), family.confidence, family.score, family.support});
+    drop([&](const ReflectionPlane& plane) { return contains(plane, axis.line); });
   }
-  return found;
 }
 
 std::vector<SymmetryPlane> withoutPlanesThrough(std::vector<SymmetryPlane> planes,

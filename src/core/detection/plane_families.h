@@ -52,18 +52,9 @@ std::optional<CenterFamily> findCenter(const std::vector<ReflectionPlane>& plane
 std::vector<AxisFamily> findAxes(const std::vector<ReflectionPlane>& planes, const FamilyTest& test,
                                  const std::vector<Line3d>& guesses = {});
 
-/// Planes, and the families that some of them belonged to.
-struct PlanesAndFamilies {
-  std::vector<SymmetryPlane> planes;  ///< of no family
-  std::vector<SymmetryAxis> axes;     ///< best first
-  std::vector<SymmetryCenter> centers;
-};
-
-/// Finds the families that symmetries belong to, and takes their planes away. A line has its axis.
-/// \param planes input frame.
-/// \param all the points of the cloud and those that were left out to make it evenly dense, normalized frame.
-PlanesAndFamilies collectFamilies(std::vector<SymmetryPlane> planes, const NormalizedCloud& cloud, const Points& all,
-                                  const PlaneFit& fit, const PlaneDecision& decision, const DetectionOptions& options);
+/// Finds the families that symmetries belong to: bodies of revolution and spheres in place of their planes. A line has
+/// its axis.
+void findFamilies(const JudgedCloud& judged, Found& found);
 
 /// \param planes,axes input frame.
 /// \return the planes that contain no axis.

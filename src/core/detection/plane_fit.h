@@ -1,10 +1,12 @@
 #pragma once
 
 #include <algorithm>
+#include <cstddef>
+#include <limits>
 #include <memory>
 #include <vector>
 
-#include "core/detection/plane_tolerance.h"
+#include "core/detection/detection_rules.h"
 #include "core/refinement/normalized_cloud.h"
 #include "pcl_symmetry/core/detect_planes.h"
 
@@ -52,8 +54,9 @@ public:
 
   /// Moves each candidate that stopped near its optimum there, and updates its merit; takes as long as all stages.
   /// \param stage the last one.
-  /// \return for each candidate whether it moved.
-  virtual std::vector<char> climb(std::vector<Candidate>& candidates, const RefinementStage& stage) const = 0;
+  /// \param[in,out] moves for each candidate whether it may; then whether it did.
+  virtual void climb(std::vector<Candidate>& candidates, const RefinementStage& stage,
+                     std::vector<char>& moves) const = 0;
 
   /// The best plane nearby, at the narrowest weights.
   /// \param samples indices of points.
@@ -100,5 +103,65 @@ std::vector<float> surfaceSupport(const NormalizedCloud& cloud, const Reflection
 /// \param cloud,options must outlive the result.
 /// \return the form that fits the cloud.
 std::unique_ptr<PlaneFit> makePlaneFit(const NormalizedCloud& cloud, const DetectionOptions& options);
+
+/// The strongest local maxima of the map, each basin of refinement once, and the planes across the principal axes.
+/// \param map over planes in the input frame.
+std::vector<Candidate> gatherCandidates(const NormalizedCloud& cloud, const SymmetryMap& map,
+                                        const DetectionOptions& options);
+
+/// From candidates to precise planes in three stages, each with more samples and narrower weights than the one before
+/// (Section 4.4).
+///
+/// After the first two stages, candidates that ended at the same plane are merged, and of those that are no symmetries
+/// of a whole cloud only the best go on.
+class StagedRefinement {
+public:
+  /// \param cloud,fit,options must outlive this object.
+  StagedRefinement(const NormalizedCloud& cloud, const PlaneFit& fit, const DetectionOptions& options);
+
+  /// Few samples and wide weights: most candidates end in a basin that another one found, or leave their cell.
+  /// \param grid whose cells candidates from the map must not leave.
+  std::vector<Candidate> coarse(std::vector<Candidate> candidates, const PlaneGrid& grid) const;
+
+  /// More samples; the weights end as narrow as the spacing of the points allows.
+  std::vector<Candidate> close(std::vector<Candidate> candidates) const;
+
+  /// The same for reflections of symmetries, which must be symmetries themselves.
+  std::vector<Candidate> closeSymmetries(std::vector<Candidate> candidates) const;
+
+  /// All samples at the narrowest weights: this stage decides the precision of the planes.
+  std::vector<Candidate> full(std::vector<Candidate> candidates) const;
+
+  /// Moves planes of a whole cloud to their optimum where pairs without a true partner pull them aside.
+  /// \param candidates after full().
+  /// \param[in,out] moves for each whether it may be a symmetry; then whether it moved; of a scan none: those of noisy
+  /// ones have climbed in full().
+  void climb(std::vector<Candidate>& candidates, std::vector<char>& moves) const;
+
+  /// The best candidate of each group of like planes, best first: all that may be symmetries, and others until there
+  /// are \p most.
+  std::vector<Candidate> distinct(std::vector<Candidate> candidates, double min_merit = -1.0,
+                                  std::size_t most = std::numeric_limits<std::size_t>::max()) const;
+
+private:
+  RefinementStage fullStage() const;
+  RefinementStage stage(int num_samples, double sigma, double final_sigma, int max_iterations) const;
+  std::vector<Candidate> refined(std::vector<Candidate> candidates, const RefinementStage& stage) const;
+  std::vector<Candidate> withinCells(const std::vector<Candidate>& candidates, const std::vector<Candidate>& starts,
+                                     const PlaneGrid& grid) const;
+  RefinementStage closeStage() const;
+
+  const NormalizedCloud& cloud_;
+  const PlaneFit& fit_;
+  const DetectionOptions& options_;
+};
+
+/// The reflection of one symmetry in another is a symmetry too: completes the group that some symmetries generate, and
+/// the planes of a regular polygon of which some are known.
+/// \param planes found up to now, input frame; those that are symmetries count.
+/// \param[in,out] tried planes that were known or returned before, normalized frame.
+/// \return such planes that are not among these; none for scans.
+std::vector<Candidate> impliedBy(const std::vector<SymmetryPlane>& planes, const NormalizedCloud& cloud,
+                                 std::vector<ReflectionPlane>& tried);
 
 }  // namespace pcl_symmetry

@@ -34,6 +34,16 @@ std::vector<ReflectionPlane> planesContaining(const Line3d& line, const std::vec
   return through;
 }
 
+/// For the lines that each two of the first planes share: the planes that contain them, these two among them.
+std::vector<std::vector<ReflectionPlane>> bundlesOf(const std::vector<ReflectionPlane>& planes, std::size_t num_first) {
+  std::vector<std::vector<ReflectionPlane>> bundles;
+  for (std::size_t i = 0; i < std::min(planes.size(), num_first); ++i)
+    for (std::size_t j = 0; j < i; ++j)
+      if (planes[i].angleTo(planes[j]) >= kDetection.families.min_pair_angle)
+        bundles.push_back(planesContaining(commonLine({planes[i], planes[j]}), planes));
+  return bundles;
+}
+
 /// The lattice of the planes that contain a line.
 std::optional<PlaneLattice> latticeAbout(const Line3d& line, const std::vector<ReflectionPlane>& planes) {
   std::vector<double> angles;
@@ -70,17 +80,11 @@ ReflectionPlane PlaneLattice::plane(double k) const {
 
 std::optional<PlaneLattice> findLattice(const std::vector<ReflectionPlane>& planes) {
   std::optional<PlaneLattice> best;
-  const std::size_t size = std::min(planes.size(), kDetection.families.max_pairs);
-  for (std::size_t i = 0; i < size; ++i)
-    for (std::size_t j = 0; j < i; ++j) {
-      if (planes[i].angleTo(planes[j]) < kDetection.families.min_pair_angle) continue;
-      Line3d line = commonLine({planes[i], planes[j]});
-      const std::vector<ReflectionPlane> through = planesContaining(line, planes);
-      if (through.size() < kDetection.families.min_planes) continue;
-      line = commonLine(through);
-      const std::optional<PlaneLattice> lattice = latticeAbout(line, planes);
-      if (lattice && (!best || lattice->num_planes > best->num_planes)) best = lattice;
-    }
+  for (const std::vector<ReflectionPlane>& through : bundlesOf(planes, kDetection.families.max_pairs)) {
+    if (through.size() < kDetection.families.min_planes) continue;
+    const std::optional<PlaneLattice> lattice = latticeAbout(commonLine(through), planes);
+    if (lattice && (!best || lattice->num_planes > best->num_planes)) best = lattice;
+  }
   return best;
 }
 
@@ -211,13 +215,6 @@ double leastTogether(const std::vector<MeasuredPlane>& judged) {
   return least;
 }
 
-/// The line that two planes share, fitted to all planes that contain it.
-Line3d lineThrough(const std::vector<ReflectionPlane>& planes, const ReflectionPlane& a, const ReflectionPlane& b) {
-  const Line3d line = commonLine({a, b});
-  const std::vector<ReflectionPlane> through = planesContaining(line, planes);
-  return commonLine(through.size() > 2 ? through : std::vector<ReflectionPlane>{a, b});
-}
-
 /// \param planes most confident first, input frame.
 std::optional<PlaneLattice> bestLattice(const std::vector<SymmetryPlane>& planes, const NormalizedCloud& cloud,
                                         const Points& all, int num_threads) {
@@ -226,12 +223,8 @@ std::optional<PlaneLattice> bestLattice(const std::vector<SymmetryPlane>& planes
     if (const ReflectionPlane normalized = cloud.toNormalized(plane);
         isDecided(plane) && !kSameMaximum.anySame(likely, normalized))
       likely.push_back(normalized);
-  const std::size_t size = std::min(likely.size(), kDetection.folds.max_line_pairs);
-  for (std::size_t i = 0; i < size; ++i)
-    for (std::size_t j = 0; j < i; ++j)
-      if (likely[i].angleTo(likely[j]) >= kDetection.folds.min_line_angle)
-        if (const auto lattice = latticeBySpectrum(cloud, all, lineThrough(likely, likely[i], likely[j]), num_threads))
-          return lattice;
+  for (const std::vector<ReflectionPlane>& through : bundlesOf(likely, kDetection.folds.max_line_pairs))
+    if (const auto lattice = latticeBySpectrum(cloud, all, commonLine(through), num_threads)) return lattice;
   return std::nullopt;
 }
 
@@ -261,6 +254,12 @@ std::optional<PlaneLattice> latticeBySpectrum(const NormalizedCloud& cloud, cons
 }
 
 namespace {
+
+std::vector<Candidate> planesOf(const PlaneLattice& lattice) {
+  std::vector<Candidate> candidates;
+  for (int k = 0; k < lattice.fold; ++k) candidates.push_back({lattice.plane(k), false});
+  return candidates;
+}
 
 /// Whether the planes halfway between those of a lattice are no symmetries of a surface. Folded into the sector between
 /// two planes, the points are denser by twice the fold, and resolve what single planes do not. The halfway plane has to
@@ -311,68 +310,60 @@ bool isPolygon(const PlaneLattice& lattice, const Points& points, double toleran
 }
 
 /// The polygon of a surface, whose planes are closer to each other than single ones are told apart.
-PlanesAndPolygon withClosePlanes(std::vector<SymmetryPlane> planes, const NormalizedCloud& cloud,
-                                 const PlaneDecision& decision, const DetectionOptions& options) {
+void addClosePlanes(const JudgedCloud& judged, Found& found) {
+  const NormalizedCloud& cloud = judged.cloud;
   std::vector<ReflectionPlane> symmetries, through;
-  for (const SymmetryPlane& plane : planes)
+  for (const SymmetryPlane& plane : found.planes)
     if (plane.kind == PlaneKind::Symmetry) symmetries.push_back(cloud.toNormalized(plane));
-  const std::size_t size = std::min(symmetries.size(), kDetection.families.max_pairs);
-  for (std::size_t i = 0; i < size; ++i)
-    for (std::size_t j = 0; j < i; ++j) {
-      if (symmetries[i].angleTo(symmetries[j]) < kDetection.families.min_pair_angle) continue;
-      auto containing = planesContaining(commonLine({symmetries[i], symmetries[j]}), symmetries);
-      if (containing.size() > through.size()) through = std::move(containing);
-    }
-  if (through.size() < kDetection.families.min_planes) return {std::move(planes), std::nullopt};
+  for (std::vector<ReflectionPlane>& containing : bundlesOf(symmetries, kDetection.families.max_pairs))
+    if (containing.size() > through.size()) through = std::move(containing);
+  if (through.size() < kDetection.families.min_planes) return;
   const Line3d line = commonLine(through);
-  std::optional<PlaneLattice> lattice = latticeBySpectrum(cloud, cloud.points, line, options.num_threads);
+  std::optional<PlaneLattice> lattice = latticeBySpectrum(cloud, cloud.points, line, judged.options.num_threads);
   if (!lattice || kPi / lattice->fold > kDetection.decide.slope_angle ||
-      !isPolygon(*lattice, cloud.points, decision.tolerance()))
-    return {std::move(planes), std::nullopt};
+      !isPolygon(*lattice, cloud.points, judged.measure.tolerance()))
+    return;
   std::complex<double> sum = 0.0;  // the planes that were found fix the angle better
   for (const ReflectionPlane& plane : through)
     if (const double angle = angleAbout(line, plane), step = kPi / lattice->fold;
         std::abs(std::remainder(angle - lattice->phase, step)) <= kDetection.families.max_folded * step)
       sum += std::polar(1.0, 2.0 * lattice->fold * angle);
   if (std::abs(sum) > 0.0) lattice->phase = std::arg(sum) / (2.0 * lattice->fold);
-  std::vector<Candidate> candidates;
-  for (int k = 0; k < lattice->fold; ++k) candidates.push_back({lattice->plane(k), false});
   std::vector<SymmetryPlane> completed;
-  for (MeasuredPlane& judged : decision.judge(candidates)) {
-    if (judged.plane.kind != PlaneKind::Symmetry) return {std::move(planes), std::nullopt};
-    completed.push_back(std::move(judged.plane));
+  for (MeasuredPlane& one : judged.decision.judge(planesOf(*lattice))) {
+    if (one.plane.kind != PlaneKind::Symmetry) return;
+    completed.push_back(std::move(one.plane));
   }
-  for (SymmetryPlane& plane : planes)
+  for (SymmetryPlane& plane : found.planes)
     if (!contains(cloud.toNormalized(plane), line)) completed.push_back(std::move(plane));
-  return {std::move(completed), lattice};
+  found.planes = std::move(completed);
+  found.polygon = lattice;
 }
 
 }  // namespace
 
-PlanesAndPolygon withPolygon(std::vector<SymmetryPlane> planes, const NormalizedCloud& cloud, const Points& all,
-                             const PlaneDecision& decision, const DetectionOptions& options) {
-  if (cloud.kind() == CloudKind::Surface) return withClosePlanes(std::move(planes), cloud, decision, options);
-  if (!kKindRules.has_polygons[cloud.kind()]) return {std::move(planes), std::nullopt};
-  std::stable_sort(planes.begin(), planes.end(),
+void completePolygon(const JudgedCloud& judged, Found& found) {
+  const NormalizedCloud& cloud = judged.cloud;
+  if (cloud.kind() == CloudKind::Surface) return addClosePlanes(judged, found);
+  if (!kKindRules.has_polygons[cloud.kind()]) return;
+  std::stable_sort(found.planes.begin(), found.planes.end(),
                    [](const SymmetryPlane& a, const SymmetryPlane& b) { return a.confidence > b.confidence; });
-  const std::optional<PlaneLattice> lattice = bestLattice(planes, cloud, all, options.num_threads);
-  if (!lattice) return {std::move(planes), std::nullopt};
-  std::vector<Candidate> candidates;
-  for (int k = 0; k < lattice->fold; ++k) candidates.push_back({lattice->plane(k), false});
-  std::vector<MeasuredPlane> judged = decision.judge(candidates);
-  const double together = withOdds(leastTogether(judged), kDetection.folds.odds_of_polygon);
-  if (together < options.min_confidence) return {std::move(planes), std::nullopt};
+  const std::optional<PlaneLattice> lattice = bestLattice(found.planes, cloud, judged.all, judged.options.num_threads);
+  if (!lattice) return;
+  std::vector<MeasuredPlane> of_lattice = judged.decision.judge(planesOf(*lattice));
+  const double together = withOdds(leastTogether(of_lattice), kDetection.folds.odds_of_polygon);
+  if (together < judged.options.min_confidence) return;
   // All planes tell where the polygon lies: those that noise moved away are dropped.
-  planes.erase(
-      std::remove_if(planes.begin(), planes.end(),
+  found.planes.erase(
+      std::remove_if(found.planes.begin(), found.planes.end(),
                      [&](const SymmetryPlane& plane) { return contains(cloud.toNormalized(plane), lattice->line); }),
-      planes.end());
-  for (MeasuredPlane& one : judged) {
+      found.planes.end());
+  for (MeasuredPlane& one : of_lattice) {
     if (together > one.plane.confidence)
-      changeConfidence(one.plane, together, "the planes of a regular polygon together", options);
-    planes.push_back(std::move(one.plane));
+      changeConfidence(one.plane, together, "the planes of a regular polygon together", judged.options);
+    found.planes.push_back(std::move(one.plane));
   }
-  return {std::move(planes), lattice};
+  found.polygon = lattice;
 }
 
 }  // namespace pcl_symmetry

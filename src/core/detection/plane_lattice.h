@@ -38,16 +38,11 @@ std::optional<PlaneLattice> findLattice(const std::vector<ReflectionPlane>& plan
 std::optional<PlaneLattice> latticeBySpectrum(const NormalizedCloud& cloud, const Points& all, const Line3d& line,
                                               int num_threads);
 
-struct PlanesAndPolygon {
-  std::vector<SymmetryPlane> planes;    ///< input frame
-  std::optional<PlaneLattice> polygon;  ///< normalized frame; its planes are in `planes`, since they are symmetries
-};
+struct JudgedCloud;
+struct Found;
 
 /// Completes polygons. The planes of noisy clouds are judged together, as they are symmetries together or not at all.
 /// Those of surfaces are judged well enough alone, but many teeth leave them too close to be found one by one.
-/// \param planes found before, input frame.
-/// \param all as above.
-PlanesAndPolygon withPolygon(std::vector<SymmetryPlane> planes, const NormalizedCloud& cloud, const Points& all,
-                             const PlaneDecision& decision, const DetectionOptions& options);
+void completePolygon(const JudgedCloud& judged, Found& found);
 
 }  // namespace pcl_symmetry

@@ -4,7 +4,6 @@
 #include <cmath>
 #include <utility>
 
-#include "core/base/parallel.h"
 #include "core/detection/detection_rules.h"
 #include "core/evidence/evidence_rules.h"
 #include "core/evidence/plane_motion.h"
@@ -249,7 +248,7 @@ double PlaneMeasure::deviationOf(std::vector<float> distances) const {
 double PlaneMeasure::deviation(const ReflectionPlane& plane) const {
   if (halves_) return deviationOf(halves_->reflectedDistances(plane));
   const std::vector<int> samples =
-      drawSamples(cloud_.points.cols(), kDetection.measure.deviation_samples, options_.seed);
+      drawSamples(cloud_.points.cols(), kDetection.measure.screening_samples, options_.seed);
   const Landing all =
       landed(plane, samples, cloud_.search->closest(reflectedPoints(pointsAt(cloud_.points, samples), plane)));
   std::vector<char> matched;

@@ -1,17 +1,19 @@
 #include "core/detection/standing_object.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <optional>
 #include <utility>
 
 #include "core/base/constants.h"
+#include "core/base/logistic.h"
 #include "core/base/median.h"
 #include "core/detection/detection_rules.h"
 #include "core/detection/plane_decision.h"
 #include "core/detection/plane_measure.h"
+#include "core/geometry/point_samples.h"
 #include "core/geometry/surface_normals.h"
-#include "core/scan/upright_box.h"
 
 namespace pcl_symmetry {
 
@@ -42,6 +44,150 @@ bool slants(const ReflectionPlane& plane, const std::vector<Eigen::Vector3d>& ca
     return angle <= kDetection.decide.upright || angle >= 0.5 * kPi - kDetection.decide.upright;
   };
   return !carrying_normals.empty() && std::none_of(carrying_normals.begin(), carrying_normals.end(), is_along);
+}
+
+namespace {
+
+struct UprightBoxRules {
+  int num_angles = 180;     // in a quarter of a turn: half a degree each
+  double trimmed = 0.01;    // share of the points beyond each side
+  double near = 0.1;        // shorter sides of the box within which a point is near a side
+  double meets = 0.03;      // diagonals within which a reflection meets what a beam met
+  double beam_reach = 2.0;  // distances of neighboring beams within which a beam is informative
+  int beams = 3;            // nearest a reflection
+  // Logit of the confidence, by the share near a side and the root of the share in free space, fitted to virtual scans.
+  double confidence = 0.7, of_near = 4.15, of_free = -15.6;
+};
+constexpr UprightBoxRules kBox;
+
+double distanceFrom(const std::array<double, 2>& sides, double value) {
+  return std::min(std::abs(value - sides[0]), std::abs(value - sides[1]));
+}
+
+/// A rectangle around points seen from above, and how far they are off its sides.
+struct Rectangle {
+  std::array<Eigen::Vector3d, 2> axes;  // unit, horizontal
+  std::array<std::array<double, 2>, 2> sides;
+  std::vector<double> distances;  // of each point from the nearest side
+  double sq_error = 0.0;          // mean
+};
+
+Rectangle rectangleAt(const PointsRef& points, const Eigen::Vector3d& u, const Eigen::Vector3d& v) {
+  Rectangle rectangle{{u, v}, {}, std::vector<double>(points.cols(), 0.0), 0.0};
+  for (std::size_t k = 0; k < 2; ++k) {
+    const Eigen::RowVectorXf along = rectangle.axes[k].cast<float>().transpose() * points;
+    const auto num_cut = static_cast<std::size_t>(std::lround(kBox.trimmed * static_cast<double>(along.size() - 1)));
+    const auto [low, high] = trimmedExtent(std::vector<double>(along.data(), along.data() + along.size()), num_cut);
+    rectangle.sides[k] = {low, high};
+    for (Eigen::Index i = 0; i < along.size(); ++i) {
+      double& distance = rectangle.distances[i];
+      const double off = distanceFrom(rectangle.sides[k], along[i]);
+      distance = k == 0 ? off : std::min(distance, off);
+    }
+  }
+  for (const double distance : rectangle.distances) rectangle.sq_error += distance * distance;
+  rectangle.sq_error /= static_cast<double>(points.cols());
+  return rectangle;
+}
+
+Rectangle bestRectangle(const PointsRef& points, const Eigen::Vector3d& up) {
+  const Eigen::Vector3d x = up.unitOrthogonal(), y = up.cross(x);
+  std::optional<Rectangle> best;
+  for (int k = 0; k < kBox.num_angles; ++k) {
+    const double angle = 0.5 * kPi * k / kBox.num_angles;
+    const Eigen::Vector3d u = std::cos(angle) * x + std::sin(angle) * y;
+    Rectangle tried = rectangleAt(points, u, up.cross(u));
+    if (!best || tried.sq_error < best->sq_error) best = std::move(tried);
+  }
+  return *best;
+}
+
+/// The diagonal of an upright box that holds the points, mean over its angles: kBox was fitted to boxes along the axes
+/// of clouds, which lay at any angle.
+double meanDiagonal(const PointsRef& points, const Eigen::Vector3d& up) {
+  const Eigen::Vector3d x = up.unitOrthogonal(), y = up.cross(x);
+  const auto width = [&](const Eigen::Vector3d& along) {
+    const Eigen::RowVectorXf positions = along.cast<float>().transpose() * points;
+    return static_cast<double>(positions.maxCoeff() - positions.minCoeff());
+  };
+  const double height = width(up);
+  double sum = 0.0;
+  for (int k = 0; k < kBox.num_angles; ++k) {
+    const double angle = 0.5 * kPi * k / kBox.num_angles;
+    const Eigen::Vector3d u = std::cos(angle) * x + std::sin(angle) * y;
+    sum += Eigen::Vector3d(width(u), width(up.cross(u)), height).norm();
+  }
+  return sum / kBox.num_angles;
+}
+
+/// Directions from a viewpoint to points, and their ranges.
+Points directionsTo(const PointsRef& points, const Eigen::Vector3d& viewpoint, std::vector<double>& ranges) {
+  Points directions(3, points.cols());
+  for (Eigen::Index i = 0; i < points.cols(); ++i) {
+    const Eigen::Vector3d ray = points.col(i).cast<double>() - viewpoint;
+    ranges.push_back(ray.norm());
+    directions.col(i) = (ray / ranges.back()).cast<float>();
+  }
+  return directions;
+}
+
+enum class Meets { Surface, Nothing, Unknown };
+
+/// Whether the beams of a scanner met something at reflected points, passed freely, or did neither.
+/// \param reach within which a beam meets a point.
+std::vector<Meets> meetingsAt(const Points& reflected, const PointsRef& points, const Eigen::Vector3d& viewpoint,
+                              double reach) {
+  std::vector<double> ranges, reflected_ranges;
+  const Points directions = directionsTo(points, viewpoint, ranges);
+  const ClosestPointSearch::Ptr search = makeFlannSearch(directions);
+  std::vector<int> beams, closest;
+  std::vector<float> sq_aside, sq_distances, apart;
+  search->search(directions, kBox.beams + 2, beams, sq_aside);
+  for (std::size_t i = kBox.beams + 1; i < sq_aside.size(); i += kBox.beams + 2) apart.push_back(sq_aside[i]);
+  const float sq_beam_reach = static_cast<float>(kBox.beam_reach * kBox.beam_reach) * median(std::move(apart));
+  search->search(directionsTo(reflected, viewpoint, reflected_ranges), kBox.beams, beams, sq_aside);
+  makeFlannSearch(points)->search(reflected, 1, closest, sq_distances);
+  std::vector<Meets> met(reflected_ranges.size(), Meets::Unknown);
+  for (std::size_t i = 0; i < met.size(); ++i) {
+    bool meets = sq_distances[i] <= reach * reach, all_pass = true;
+    for (std::size_t k = kBox.beams * i; k < kBox.beams * (i + 1); ++k) {
+      const double behind = reflected_ranges[i] - ranges[beams[k]];
+      const bool is_close = sq_aside[k] <= sq_beam_reach;
+      meets |= is_close && std::abs(behind) <= reach;
+      all_pass &= is_close && behind < -reach;
+    }
+    met[i] = meets ? Meets::Surface : all_pass ? Meets::Nothing : Meets::Unknown;
+  }
+  return met;
+}
+
+}  // namespace
+
+std::optional<MiddlePlane> middlePlaneOfBox(const PointsRef& points, const Eigen::Vector3d& up,
+                                            const Eigen::Vector3d& viewpoint) {
+  const Rectangle box = bestRectangle(points, up.normalized());
+  const auto width = [&](std::size_t k) { return box.sides[k][1] - box.sides[k][0]; };
+  const std::size_t across = width(0) <= width(1) ? 0 : 1;
+  const double reach = kBox.meets * meanDiagonal(points, up.normalized());
+  if (!(width(across) > 2.0 * reach)) return std::nullopt;
+  MiddlePlane middle;
+  middle.plane = ReflectionPlane(box.axes[across], 0.5 * (box.sides[across][0] + box.sides[across][1])).canonical();
+  const std::vector<Meets> met = meetingsAt(reflectedPoints(points, middle.plane), points, viewpoint, reach);
+  for (std::size_t i = 0; i < met.size(); ++i) {
+    middle.point_support.push_back(met[i] == Meets::Surface ? 1.0f : 0.0f);
+    if (2.0 * std::abs(middle.plane.signedDistance(points.col(i).cast<double>())) <= reach) continue;
+    middle.num_moved += 1.0;
+    middle.num_met += met[i] == Meets::Surface ? 1.0 : 0.0;
+    middle.num_free += met[i] == Meets::Nothing ? 1.0 : 0.0;
+  }
+  if (!(middle.num_met > 0.0)) return std::nullopt;
+  const auto num_near = std::count_if(box.distances.begin(), box.distances.end(),
+                                      [&](double distance) { return distance < kBox.near * width(across); });
+  const double near = static_cast<double>(num_near) / static_cast<double>(points.cols());
+  middle.confidence =
+      logistic(kBox.confidence + kBox.of_near * near + kBox.of_free * std::sqrt(middle.num_free / middle.num_moved));
+  middle.residual = std::sqrt(box.sq_error);
+  return middle;
 }
 
 void decideByUprightBox(const PlaneInput& input, const DetectionOptions& options, Detection& found) {

@@ -9,8 +9,6 @@
 #include "core/base/stopwatch.h"
 #include "core/base/symmetric_solvers.h"
 #include "core/detection/plane_decision.h"
-#include "core/detection/plane_tolerance.h"
-#include "core/detection/set_confidence.h"
 #include "core/evidence/plane_motion.h"
 #include "core/geometry/cloud_extent.h"
 #include "core/geometry/directions.h"

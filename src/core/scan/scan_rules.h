@@ -77,9 +77,9 @@ struct ScanRules {
   double greatest_distance = 30.0;  ///< radii; rays from there are parallel to within 2 degrees
   /// Radians, and halves of the logarithm of the distance: the distance between directions.
   double first_step = 0.2;
-  double middle_step = 0.05;  ///< the same
-  double last_step = 0.0125;  ///< the same: half a degree, less than the error of the result
-  int max_moves = 4;          ///< of one size
+  double middle_step = 0.25 * first_step;
+  double last_step = 0.25 * middle_step;  ///< half a degree, less than the error of the result
+  int max_moves = 4;                      ///< of one size
 
   // Errors of a depth camera
   int window = 6;  ///< pixels between two whose errors are independent; a Kinect matches windows of up to 11
@@ -104,8 +104,8 @@ struct ScanRules {
   double max_uneven = 0.008;
   /// Share of the variance, and of that of points at random, left from which on more layers are allowed: leaves, wires.
   double surely_explained = 0.25;
-  double surely_even = 0.002;  ///< variance over patches for the same
-  double as_good = 1.3;        ///< what the true viewpoint of 1000 points leaves over what the best one leaves
+  double surely_even = 0.25 * max_uneven;  ///< variance over patches for the same
+  double as_good = 1.3;  ///< what the true viewpoint of 1000 points leaves over what the best one leaves
   double as_good_beyond =
       2.0 * min_variance;  ///< variance of the logarithm: a depth camera 3 degrees from the best viewpoint
   /// Variance that one of several viewpoints may leave; true ones leave 0.0023, two scans put together 0.006.

@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "core/base/parallel.h"
-#include "core/detection/plane_tolerance.h"
+#include "core/detection/detection_rules.h"
 #include "core/geometry/surface_normals.h"
 #include "core/geometry/triangles.h"
 #include "core/refinement/normalized_cloud.h"

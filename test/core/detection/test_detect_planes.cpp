@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "core/detection/cloud_subset.h"
+#include "core/geometry/point_samples.h"
 #include "shapes/counting_search.h"
 #include "shapes/found_planes.h"
 #include "shapes/threads.h"
@@ -107,9 +108,9 @@ TEST(DetectionOptions, RefusesBadOnes) {
 TEST(CloudSubset, TakesAsManyPointsAsTheToleranceNeeds) {
   const Points points = box(90'000, Sampling::Random, 1).cloud();
   DetectionOptions options;
-  EXPECT_EQ(subsetOf(points, options)->kept.size(), 20'000u);
+  EXPECT_EQ(subsetOf(points, options)->size(), 20'000u);
   options.tolerance = 0.005;  // half of the spacing: four times as many
-  EXPECT_EQ(subsetOf(points, options)->kept.size(), 80'000u);
+  EXPECT_EQ(subsetOf(points, options)->size(), 80'000u);
   options.tolerance = 0.002;
   EXPECT_FALSE(subsetOf(points, options));
   EXPECT_FALSE(subsetOf(points.leftCols(20'000), DetectionOptions()));
@@ -124,14 +125,13 @@ TEST(CloudSubset, LeavesCloudsOfFewDistinctPoints) {
 
 TEST(CloudSubset, NamesTheNearestPoint) {
   const Points points = moved(prism(5, 30'000, Sampling::Random, 2), randomPose(3)).cloud();
-  const CloudSubset subset = *subsetOf(points, DetectionOptions());
-  const std::vector<int> nearest = subset.nearestTo(points, 1);
+  const Points kept = pointsAt(points, *subsetOf(points, DetectionOptions()));
+  const std::vector<int> nearest = nearestOf(kept, points, 1);
   for (std::size_t i = 0; i < nearest.size(); i += 500) {
-    const auto sq_distances =
-        (subset.points.colwise() - points.col(static_cast<Eigen::Index>(i))).colwise().squaredNorm();
+    const auto sq_distances = (kept.colwise() - points.col(static_cast<Eigen::Index>(i))).colwise().squaredNorm();
     EXPECT_EQ(sq_distances[nearest[i]], sq_distances.minCoeff());
   }
-  EXPECT_EQ(nearest, subset.nearestTo(points, 2));
+  EXPECT_EQ(nearest, nearestOf(kept, points, 2));
 }
 
 TEST(CloudSubset, PlanesAndSupportAreOfTheWholeCloud) {

@@ -29,7 +29,7 @@ TEST(PlaneDecision, OfAScanWhatStaysInPlaceSaysNothing) {
   }
   const std::optional<Visibility> seen = Visibility::fromPoints(points, Eigen::Vector3d(0.0, 0.0, 6.0));
   ASSERT_TRUE(seen.has_value());
-  const JudgedCloud scan(points, {}, &*seen);
+  const JudgedShape scan(points, {}, &*seen);
   std::vector<Candidate> candidates(2);
   candidates[0].plane = scan.normalized(Eigen::Vector3d::UnitZ(), 0.0);
   candidates[1].plane = scan.normalized(Eigen::Vector3d::UnitX(), 0.0);
@@ -50,7 +50,7 @@ SymmetryPlane planeOfFan(int k, PlaneKind kind, double confidence, double suppor
 }
 
 TEST(RankedPlanes, BestFirstAndEachOnce) {
-  const JudgedCloud searched(box(500, Sampling::Random, 3).cloud());
+  const JudgedShape searched(box(500, Sampling::Random, 3).cloud());
   const std::vector<SymmetryPlane> planes = {
       planeOfFan(0, PlaneKind::Approximate, 0.1, 0.7),
       planeOfFan(1, PlaneKind::Possible, 0.3, 0.1),
@@ -79,7 +79,7 @@ TEST(RankedPlanes, BestFirstAndEachOnce) {
 }
 
 TEST(RankedPlanes, FewPossibleOnes) {
-  const JudgedCloud searched(box(500, Sampling::Random, 3).cloud());
+  const JudgedShape searched(box(500, Sampling::Random, 3).cloud());
   std::vector<SymmetryPlane> planes;
   for (int k = 0; k < 6; ++k) planes.push_back(planeOfFan(k, PlaneKind::Possible, 0.3, 0.5));
   const auto numRanked = [&] {
@@ -91,7 +91,7 @@ TEST(RankedPlanes, FewPossibleOnes) {
 }
 
 TEST(RankedPlanes, APlaneOnTheSlopeOfABetterOneIsNoMaximum) {
-  const JudgedCloud searched(box(500, Sampling::Random, 3).cloud());
+  const JudgedShape searched(box(500, Sampling::Random, 3).cloud());
   const auto numRanked = [&](double score) {
     std::vector<SymmetryPlane> planes{planeOfFan(0, PlaneKind::Symmetry, 0.9, 0.9)};
     planes.emplace_back(ReflectionPlane({std::cos(0.1), std::sin(0.1), 0.0}, 0.0));
@@ -105,7 +105,7 @@ TEST(RankedPlanes, APlaneOnTheSlopeOfABetterOneIsNoMaximum) {
 }
 
 TEST(BestApproximate, IsThePlaneOfTheGreatestShareWhereNothingIsDecided) {
-  const JudgedCloud searched(box(500, Sampling::Random, 3).cloud());
+  const JudgedShape searched(box(500, Sampling::Random, 3).cloud());
   std::vector<SymmetryPlane> planes{planeOfFan(0, PlaneKind::Approximate, 0.1, 0.1),
                                     planeOfFan(1, PlaneKind::Approximate, 0.1, 0.2),
                                     planeOfFan(2, PlaneKind::Local, 0.0, 0.3)};
@@ -121,7 +121,7 @@ TEST(BestApproximate, IsThePlaneOfTheGreatestShareWhereNothingIsDecided) {
 }
 
 TEST(PlaneDecision, SkipsWhatAQuickLookShowsToBeHopeless) {
-  const JudgedCloud searched(box({1.0, 0.7, 0.4}, 5000, Sampling::Random, 3).cloud());
+  const JudgedShape searched(box({1.0, 0.7, 0.4}, 5000, Sampling::Random, 3).cloud());
   const auto isHopeless = [&](double offset, double merit) {
     Candidate candidate;
     candidate.plane = searched.normalized(Eigen::Vector3d::UnitX(), offset);
@@ -153,12 +153,12 @@ struct TwoBoxes {
   }
 };
 
-MatchedRegion regionOf(const JudgedCloud& searched, const ReflectionPlane& plane) {
+MatchedRegion regionOf(const JudgedShape& searched, const ReflectionPlane& plane) {
   return MatchedRegions(searched.cloud, *searched.fit, searched.options).largest(searched.cloud.toNormalized(plane));
 }
 
 TEST(MatchedRegion, OfASymmetryIsAllOfTheSurfaceAndHasNoEdge) {
-  const JudgedCloud searched(box({1.0, 0.7, 0.4}, 8000, Sampling::Random, 3).cloud());
+  const JudgedShape searched(box({1.0, 0.7, 0.4}, 8000, Sampling::Random, 3).cloud());
   const MatchedRegion region = regionOf(searched, ReflectionPlane(Eigen::Vector3d::UnitX(), 0.0));
   EXPECT_GT(region.share, 0.99);
   EXPECT_LT(region.edge, 0.05);
@@ -167,7 +167,7 @@ TEST(MatchedRegion, OfASymmetryIsAllOfTheSurfaceAndHasNoEdge) {
 
 TEST(MatchedRegion, OfAPartEndsWhereThePartEnds) {
   const TwoBoxes boxes;
-  const JudgedCloud searched(boxes.points);
+  const JudgedShape searched(boxes.points);
   for (std::size_t k = 0; k < boxes.planes.size(); ++k) {
     const MatchedRegion region = regionOf(searched, boxes.planes[k]);
     EXPECT_NEAR(region.share, k % 2 == 0 ? 6000.0 / 8900.0 : 2900.0 / 8900.0, 0.08) << k;
@@ -187,7 +187,7 @@ TEST(MatchedRegion, OfACapOfAnEllipsoidHasTheEdgeOfADisc) {
     points.col(i) = x.normalized().cwiseProduct(Eigen::Vector3d(1.0, 0.8, 0.6)).cast<float>();
   }
   const ReflectionPlane turned(Eigen::Vector3d(std::cos(kPi / 6.0), std::sin(kPi / 6.0), 0.0), 0.0);
-  const MatchedRegion region = regionOf(JudgedCloud(points), turned);
+  const MatchedRegion region = regionOf(JudgedShape(points), turned);
   EXPECT_GT(region.share, 0.05);
   EXPECT_LT(region.share, 0.9);
   EXPECT_GT(region.edge, 0.8);

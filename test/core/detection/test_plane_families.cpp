@@ -3,7 +3,6 @@
 
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <cmath>
 
 #include "core/detection/cloud_subset.h"
@@ -138,8 +137,8 @@ TEST(Polygons, AGivenSearchIsAskedWhereTheDensityIsUneven) {
 }
 
 /// Whose planes are judged, upright ones through the origin among them.
-struct JudgedPoints : JudgedCloud {
-  explicit JudgedPoints(const Points& points) : JudgedCloud(points, manyPlanes()) {}
+struct JudgedPoints : JudgedShape {
+  explicit JudgedPoints(const Points& points) : JudgedShape(points, manyPlanes()) {}
 
   SymmetryPlane symmetry(double angle) const {
     SymmetryPlane plane(ReflectionPlane({std::cos(angle), std::sin(angle), 0.0}, 0.0));
@@ -148,17 +147,19 @@ struct JudgedPoints : JudgedCloud {
   }
 };
 
-TEST(CollectFamilies, ABodyOfRevolutionHasItsAxisInPlaceOfItsPlanes) {
+TEST(FindFamilies, ABodyOfRevolutionHasItsAxisInPlaceOfItsPlanes) {
   const auto collected = [](const Points& points) {
     const JudgedPoints judged(points);
-    return collectFamilies({judged.symmetry(0.1), judged.symmetry(1.0), judged.symmetry(2.2)}, judged.cloud,
-                           judged.cloud.points, *judged.fit, judged.decision, judged.options);
+    Found found;
+    found.planes = {judged.symmetry(0.1), judged.symmetry(1.0), judged.symmetry(2.2)};
+    findFamilies(judged, found);
+    return found;
   };
-  const PlanesAndFamilies can = collected(cylinder(5000, 1).cloud());
+  const Found can = collected(cylinder(5000, 1).cloud());
   ASSERT_EQ(can.axes.size(), 1u);
   EXPECT_GT(std::abs(can.axes[0].direction.z()), 0.9999);
   EXPECT_TRUE(can.planes.empty());
-  const PlanesAndFamilies wheel_of_three = collected(wheel(3, 0.3, 0.0, false, 1));
+  const Found wheel_of_three = collected(wheel(3, 0.3, 0.0, false, 1));
   EXPECT_TRUE(wheel_of_three.axes.empty());
   EXPECT_EQ(wheel_of_three.planes.size(), 3u);
 }
@@ -174,12 +175,13 @@ TEST(WithoutPlanesThrough, TakesThePlanesOfAnAxis) {
   EXPECT_EQ(kept[0].angleTo(across), 0.0);
 }
 
-TEST(WithPolygon, PlanesOfANoisyPolygonAreJudgedTogether) {
+TEST(CompletePolygon, PlanesOfANoisyPolygonAreJudgedTogether) {
   const JudgedPoints judged(wheel(7, 0.1, 0.04, false, 6));
   ASSERT_EQ(judged.cloud.kind(), CloudKind::Volume);
   SymmetryPlane first = judged.symmetry(0.5 * kPi), second = judged.symmetry(0.5 * kPi + kPi / 7.0);
-  const PlanesAndPolygon completed =
-      withPolygon({first, second}, judged.cloud, judged.cloud.points, judged.decision, judged.options);
+  Found completed;
+  completed.planes = {first, second};
+  completePolygon(judged, completed);
   ASSERT_TRUE(completed.polygon);
   EXPECT_EQ(completed.polygon->fold, 7);
   EXPECT_EQ(completed.planes.size(), 7u);

@@ -14,10 +14,10 @@ namespace {
 
 using namespace pcl_symmetry;
 
-using test::JudgedCloud;
+using test::JudgedShape;
 
 TEST(PlaneMeasure, ShareFallsWithTheDistanceFromASymmetry) {
-  const JudgedCloud box(test::box({1.0, 0.7, 0.4}, 5000, test::Sampling::Random, 1).cloud());
+  const JudgedShape box(test::box({1.0, 0.7, 0.4}, 5000, test::Sampling::Random, 1).cloud());
   const auto shareAt = [&](double offset) {
     return box.measure.of(box.normalized(Eigen::Vector3d::UnitX(), offset), box.measure.samples()).evidence.share;
   };
@@ -33,16 +33,16 @@ TEST(PlaneMeasure, ShareFallsWithTheDistanceFromASymmetry) {
 
 TEST(PlaneMeasure, ToleranceIsAShareOfTheExtentOrInInputUnits) {
   const Points points = test::box({1.0, 0.7, 0.4}, 5000, test::Sampling::Random, 1).cloud();
-  const JudgedCloud usual(points);
+  const JudgedShape usual(points);
   EXPECT_NEAR(usual.measure.tolerance(), 0.01 * usual.cloud.extent, 1e-9);
   DetectionOptions options;
   options.absolute_tolerance = 0.05;
-  const JudgedCloud given(points, options);
+  const JudgedShape given(points, options);
   EXPECT_NEAR(given.measure.tolerance() * given.cloud.scale, 0.05, 1e-9);
 }
 
 TEST(PlaneMeasure, MatchesOfOtherSamplesAreNotTaken) {
-  const JudgedCloud box(test::box({1.0, 0.7, 0.4}, 5000, test::Sampling::Random, 1).cloud());
+  const JudgedShape box(test::box({1.0, 0.7, 0.4}, 5000, test::Sampling::Random, 1).cloud());
   const auto drawn = [](std::uint64_t seed) { return drawSamples(5000, 500, seed); };
   Candidate candidate;
   candidate.plane = box.normalized(Eigen::Vector3d::UnitX(), 0.0);
@@ -53,7 +53,7 @@ TEST(PlaneMeasure, MatchesOfOtherSamplesAreNotTaken) {
 }
 
 TEST(CloudLimits, TheOwnPlaneOfASheetMovesNothing) {
-  const JudgedCloud sheet(test::flatSquare(2000, 1));
+  const JudgedShape sheet(test::flatSquare(2000, 1));
   const CloudLimits& limits = sheet.measure.limits();
   EXPECT_EQ(limits.thinness(), Thinness::Sheet);
   const PrincipalAxes& axes = sheet.cloud.principal_axes;

@@ -1,5 +1,5 @@
 /// The only writer of confidence and kind, and the rules that lower a plane by what was found beside it.
-#include "core/detection/set_confidence.h"
+#include "core/detection/plane_decision.h"
 
 #include <gtest/gtest.h>
 

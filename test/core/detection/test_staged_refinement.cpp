@@ -1,5 +1,5 @@
 /// From maxima to exact planes in three stages.
-#include "core/detection/staged_refinement.h"
+#include "core/detection/plane_fit.h"
 
 #include <gtest/gtest.h>
 
@@ -15,8 +15,8 @@ namespace {
 using namespace pcl_symmetry;
 
 /// A box, and what refines its planes.
-struct RefinedBox : test::JudgedCloud {
-  RefinedBox() : JudgedCloud(test::box({1.0, 0.7, 0.4}, 5000, test::Sampling::Random, 1).cloud()) {}
+struct RefinedBox : test::JudgedShape {
+  RefinedBox() : JudgedShape(test::box({1.0, 0.7, 0.4}, 5000, test::Sampling::Random, 1).cloud()) {}
 
   Candidate candidate(const Eigen::Vector3d& normal, double offset) const {
     return {normalized(normal.normalized(), offset)};
@@ -59,17 +59,17 @@ TEST(GroupClosure, TwoPlanesOfASquareTellTheOtherTwoOnce) {
   std::vector<SymmetryPlane> known;
   for (const double angle : {0.0, 0.25 * kPi})
     known.emplace_back(ReflectionPlane(Eigen::Vector3d(std::cos(angle), std::sin(angle), 0.0), 0.0));
-  GroupClosure closure(box.cloud);
-  EXPECT_TRUE(closure.next(known).empty()) << "none is a symmetry yet";
+  std::vector<ReflectionPlane> tried;
+  EXPECT_TRUE(impliedBy(known, box.cloud, tried).empty()) << "none is a symmetry yet";
   for (SymmetryPlane& plane : known) plane.kind = PlaneKind::Symmetry;
-  const std::vector<Candidate> found = closure.next(known);
+  const std::vector<Candidate> found = impliedBy(known, box.cloud, tried);
   ASSERT_EQ(found.size(), 2u);
   for (const Candidate& candidate : found)
     for (const SymmetryPlane& plane : known) {
       const double turns = candidate.plane.angleTo(box.cloud.toNormalized(plane)) / (0.25 * kPi);
       EXPECT_NEAR(turns, std::round(turns), 1e-6);
     }
-  EXPECT_TRUE(closure.next(known).empty()) << "they were returned before";
+  EXPECT_TRUE(impliedBy(known, box.cloud, tried).empty()) << "they were returned before";
 }
 
 }  // namespace

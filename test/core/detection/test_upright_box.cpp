@@ -1,5 +1,5 @@
 /// The middle plane of a vehicle in the rings of a LiDAR.
-#include "core/scan/upright_box.h"
+#include "core/detection/standing_object.h"
 
 #include <gtest/gtest.h>
 
