@@ -8,7 +8,7 @@
 #include <limits>
 #include <utility>
 
-#include "core/base/median.h"
+#include "core/base/statistics.h"
 #include "core/scan/depth_filter.h"
 #include "pcl_symmetry/impl/cloud_conversion.hpp"
 

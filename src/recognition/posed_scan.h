@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "core/registration/pose_scoring.h"
 #include "core/registration/posed_surface.h"
-#include "core/registration/ranked_poses.h"
 #include "pcl_symmetry/symmetry_database.h"
 #include "recognition/recognition_rules.h"
 #include "registration/pose_refinement.h"

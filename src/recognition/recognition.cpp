@@ -6,8 +6,8 @@
 #include <utility>
 
 #include "core/base/check.h"
-#include "core/base/logistic.h"
 #include "core/base/parallel.h"
+#include "core/base/statistics.h"
 #include "core/matching/shape_signature.h"
 #include "core/matching/view_signature.h"
 #include "pcl_symmetry/impl/cloud_conversion.hpp"

@@ -12,9 +12,11 @@ namespace {
 
 using Triplets = std::vector<Eigen::Triplet<double>>;
 
+constexpr int kSize = Vector6d::RowsAtCompileTime;  // of what moves a scan
+
 void addBlock(Triplets& matrix, int row, int column, const Matrix6d& block) {
-  for (int j = 0; j < 6; ++j)
-    for (int i = 0; i < 6; ++i) matrix.emplace_back(6 * row + i, 6 * column + j, block(i, j));
+  for (int j = 0; j < kSize; ++j)
+    for (int i = 0; i < kSize; ++i) matrix.emplace_back(kSize * row + i, kSize * column + j, block(i, j));
 }
 
 Vector6d smallMotionOf(const Eigen::Isometry3d& motion) {
@@ -58,17 +60,10 @@ std::vector<double> votesOf(int num_scans, const std::vector<PairAnswer>& answer
 
 }  // namespace
 
-Eigen::Isometry3d motionBy(const Vector6d& motion) {
-  Eigen::Isometry3d result = Eigen::Isometry3d::Identity();
-  result.linear() = rotationBy(motion.head<3>());
-  result.translation() = motion.tail<3>();
-  return result;
-}
-
 void adjustPoses(const std::vector<PoseConstraint>& constraints, std::vector<Eigen::Isometry3d>& T_world_scan,
                  int num_steps) {
   constexpr double inertia = 1e-6;  // share of the mean stiffness: what nothing fixes stays
-  const int size = 6 * static_cast<int>(T_world_scan.size());
+  const int size = kSize * static_cast<int>(T_world_scan.size());
   for (int step = 0; step < num_steps && !constraints.empty(); ++step) {
     Triplets entries;
     Eigen::VectorXd gradient = Eigen::VectorXd::Zero(size);
@@ -83,9 +78,9 @@ void adjustPoses(const std::vector<PoseConstraint>& constraints, std::vector<Eig
       addBlock(entries, known.target, known.target, block);
       addBlock(entries, known.source, known.target, -block);
       addBlock(entries, known.target, known.source, -block);
-      gradient.segment<6>(6 * known.source) += pull * off;
-      gradient.segment<6>(6 * known.target) -= pull * off;
-      stiffness += block.trace() / (6.0 * static_cast<double>(constraints.size()));
+      gradient.segment<kSize>(kSize * known.source) += pull * off;
+      gradient.segment<kSize>(kSize * known.target) -= pull * off;
+      stiffness += block.trace() / (kSize * static_cast<double>(constraints.size()));
     }
     for (int i = 0; i < size; ++i) entries.emplace_back(i, i, inertia * stiffness);
     Eigen::SparseMatrix<double> hessian(size, size);
@@ -94,7 +89,7 @@ void adjustPoses(const std::vector<PoseConstraint>& constraints, std::vector<Eig
     const Eigen::VectorXd motion = solver.solve(gradient);
     if (solver.info() != Eigen::Success || !motion.allFinite()) return;
     for (std::size_t k = 0; k < T_world_scan.size(); ++k)
-      T_world_scan[k] = motionBy(-motion.segment<6>(6 * static_cast<Eigen::Index>(k))) * T_world_scan[k];
+      T_world_scan[k] = motionBy(-motion.segment<kSize>(kSize * static_cast<Eigen::Index>(k))) * T_world_scan[k];
   }
 }
 

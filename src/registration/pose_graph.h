@@ -7,9 +7,6 @@
 
 namespace pcl_symmetry {
 
-/// The motion of a small rotation vector w, radians, and a translation t: x to x + w x x + t.
-Eigen::Isometry3d motionBy(const Vector6d& motion);
-
 /// What is known of the pose of two scans.
 struct PoseConstraint {
   int source, target;

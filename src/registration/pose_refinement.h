@@ -4,7 +4,7 @@
 #include <optional>
 #include <vector>
 
-#include "core/registration/ranked_poses.h"
+#include "core/registration/pose_scoring.h"
 #include "pcl_symmetry/symmetry_registration.h"
 
 namespace pcl_symmetry {

@@ -4,12 +4,11 @@
 #include <array>
 #include <cmath>
 #include <set>
-#include <string>
 #include <utility>
 
 #include "core/base/constants.h"
-#include "core/base/median.h"
 #include "core/base/parallel.h"
+#include "core/base/statistics.h"
 #include "core/base/stopwatch.h"
 #include "core/geometry/usable_points.h"
 #include "core/registration/posed_surface.h"

@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-#include "core/base/median.h"
+#include "core/base/statistics.h"
 #include "scene/scene_rules.h"
 
 namespace pcl_symmetry::detail {

@@ -10,7 +10,7 @@
 #include <utility>
 
 #include "core/base/constants.h"
-#include "core/base/median.h"
+#include "core/base/statistics.h"
 #include "core/geometry/cloud_extent.h"
 #include "core/geometry/surface_normals.h"
 #include "pcl_symmetry/impl/cloud_conversion.hpp"

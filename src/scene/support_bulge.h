@@ -1,7 +1,5 @@
 #pragma once
 
-#include <vector>
-
 #include "pcl_symmetry/symmetry_scene.h"
 
 namespace pcl_symmetry::detail {

@@ -13,8 +13,8 @@
 #include <utility>
 
 #include "core/base/constants.h"
-#include "core/base/median.h"
 #include "core/base/parallel.h"
+#include "core/base/statistics.h"
 #include "core/base/symmetric_solvers.h"
 #include "core/geometry/cloud_extent.h"
 #include "scene/scene_rules.h"
@@ -36,17 +36,10 @@ pcl::Indices indicesOf(const SceneObject& a, const SceneObject& b) {
   return all;
 }
 
-ReflectionPlane planeThrough(const SymmetryAxis& axis, const Eigen::Vector3d& normal) {
-  return {normal, normal.normalized().dot(axis.point) * normal.norm()};
-}
-
 std::vector<ReflectionPlane> planesThrough(const SymmetryAxis& axis) {
   std::vector<ReflectionPlane> planes;
-  const Eigen::Vector3d u = axis.direction.unitOrthogonal(), v = axis.direction.cross(u);
-  for (int k = 0; k < kScene.planes_of_axis; ++k) {
-    const double angle = kPi * k / kScene.planes_of_axis;
-    planes.push_back(planeThrough(axis, std::cos(angle) * u + std::sin(angle) * v));
-  }
+  for (int k = 0; k < kScene.planes_of_axis; ++k)
+    planes.push_back(planeThrough({axis.point, axis.direction}, kPi * k / kScene.planes_of_axis));
   return planes;
 }
 
@@ -273,7 +266,7 @@ private:
     const Eigen::Vector3d normal =
         axis.direction.cross(centerOfMass(pointsOf(*scene_.frame, pieces_[1]->indices)) - axis.point);
     if (!(normal.norm() > 0.0)) return std::nullopt;
-    return planeThrough(axis, normal.normalized());
+    return ReflectionPlane(normal, normal.dot(axis.point));
   }
 
   bool isFlat(const SceneObject& piece) const {

@@ -20,7 +20,7 @@
 #include "core/matching/shape_signature.h"
 #include "core/matching/symmetry_descriptor.h"
 #include "core/matching/view_code.h"
-#include "core/registration/ranked_poses.h"
+#include "core/registration/pose_scoring.h"
 #include "models.h"
 #include "pcl_symmetry/core/detect_planes.h"
 #include "pcl_symmetry/core/planar_transform.h"

@@ -177,4 +177,9 @@ void parallelRanges(std::size_t size, std::size_t block_size, int num_threads,
                  [&](std::size_t b) { range(b * block_size, std::min(size, (b + 1) * block_size)); });
 }
 
+void parallelPoints(std::size_t size, int num_threads, const std::function<void(std::size_t, std::size_t)>& range) {
+  constexpr std::size_t together = 1024;
+  parallelRanges(size, together, num_threads, range);
+}
+
 }  // namespace pcl_symmetry

@@ -22,4 +22,7 @@ void parallelBlocks(std::size_t num_blocks, int num_threads, const std::function
 void parallelRanges(std::size_t size, std::size_t block_size, int num_threads,
                     const std::function<void(std::size_t, std::size_t)>& range);
 
+/// The same for points, whose pieces are large enough that threads start seldom and small enough for the first cache.
+void parallelPoints(std::size_t size, int num_threads, const std::function<void(std::size_t, std::size_t)>& range);
+
 }  // namespace pcl_symmetry

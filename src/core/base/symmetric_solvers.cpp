@@ -40,7 +40,7 @@ template class SymmetricEigen<Eigen::Matrix3f>;
 template class SymmetricEigen<Eigen::Matrix2d>;
 template class SymmetricEigen<Eigen::Matrix3d>;
 template class SymmetricEigen<Eigen::Matrix4d>;
-template class SymmetricEigen<Eigen::Matrix<double, 6, 6>>;
+template class SymmetricEigen<Matrix6d>;
 template class SymmetricEigen<Eigen::MatrixXd>;
 
 template <typename Scalar, int size, int columns>
@@ -57,8 +57,7 @@ template Eigen::Vector2d solveSymmetric(const Eigen::Matrix2d&, const Eigen::Vec
 template Eigen::Vector3d solveSymmetric(const Eigen::Matrix3d&, const Eigen::Vector3d&);
 template Eigen::Matrix3d solveSymmetric(const Eigen::Matrix3d&, const Eigen::Matrix3d&);
 template Eigen::Vector4d solveSymmetric(const Eigen::Matrix4d&, const Eigen::Vector4d&);
-template Eigen::Matrix<double, 6, 1> solveSymmetric(const Eigen::Matrix<double, 6, 6>&,
-                                                    const Eigen::Matrix<double, 6, 1>&);
+template Vector6d solveSymmetric(const Matrix6d&, const Vector6d&);
 
 Eigen::MatrixXd orthonormalColumns(const Eigen::MatrixXd& spanning) {
   return Eigen::HouseholderQR<Eigen::MatrixXd>(spanning).householderQ() *

@@ -4,9 +4,9 @@
 #include <cmath>
 #include <utility>
 
-#include "core/base/median.h"
 #include "core/base/parallel.h"
 #include "core/base/random.h"
+#include "core/base/statistics.h"
 #include "core/base/symmetric_solvers.h"
 #include "core/detection/detection_rules.h"
 #include "core/geometry/cloud_extent.h"
@@ -31,7 +31,7 @@ double mostPoints(const PointsRef& points, const DetectionOptions& options) {
 std::vector<int> nearestOf(const Points& kept, const PointsRef& all, int num_threads) {
   const ClosestPointSearch::Ptr search = makeFlannSearch(kept);
   std::vector<int> nearest(static_cast<std::size_t>(all.cols()));
-  parallelRanges(nearest.size(), 4096, num_threads, [&](std::size_t begin, std::size_t end) {
+  parallelPoints(nearest.size(), num_threads, [&](std::size_t begin, std::size_t end) {
     const std::vector<int> part = search->closest(all.middleCols(begin, end - begin));
     std::copy(part.begin(), part.end(), nearest.begin() + static_cast<std::ptrdiff_t>(begin));
   });

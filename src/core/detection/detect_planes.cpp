@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "core/base/check.h"
+#include "core/base/statistics.h"
 #include "core/base/stopwatch.h"
 #include "core/detection/cloud_subset.h"
 #include "core/detection/part_search.h"
@@ -15,8 +16,8 @@
 #include "core/detection/plane_fit.h"
 #include "core/detection/plane_lattice.h"
 #include "core/detection/standing_object.h"
+#include "core/geometry/closest_points.h"
 #include "core/geometry/point_samples.h"
-#include "core/geometry/search_views.h"
 #include "core/geometry/usable_points.h"
 #include "core/rotation/scan_axes.h"
 #include "core/transform/sampled_transform.h"
@@ -58,9 +59,7 @@ void decide(const JudgedCloud& judged, std::vector<Candidate> candidates, Found&
     candidates.erase(candidates.begin());
   }
   if (skips_hopeless && isExplained())
-    candidates.erase(std::remove_if(candidates.begin(), candidates.end(),
-                                    [&](const Candidate& other) { return judged.decision.isHopeless(other); }),
-                     candidates.end());
+    eraseIf(candidates, [&](const Candidate& other) { return judged.decision.isHopeless(other); });
   append(found.planes, refinedAndJudged(judged, std::move(candidates)));
 }
 

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <utility>
 
+#include "core/base/statistics.h"
 #include "core/detection/plane_decision.h"
 #include "core/geometry/geometry_rules.h"
 
@@ -44,7 +45,7 @@ void refine(const MeshSurface& mesh, SymmetryPlane& plane, double tolerance, con
 }  // namespace
 
 void refineOnMesh(const MeshSurface& mesh, Detection& found, const DetectionOptions& options) {
-  constexpr PlaneTolerance kOnePlane{0.01, 0.01};  // after refinement; those of 120 teeth are 0.026 apart
+  constexpr MergeTolerance kOnePlane{0.01, 0.01};  // after refinement; those of 120 teeth are 0.026 apart
   constexpr double kNearlySymmetric = 0.9;         // share of the best plane that may be a symmetry of the mesh itself
   const auto inBall = [&](const ReflectionPlane& plane) {
     return normalized(plane, mesh.ball().center, mesh.ball().radius);
@@ -66,9 +67,7 @@ void refineOnMesh(const MeshSurface& mesh, Detection& found, const DetectionOpti
     refine(mesh, *found.best, found.tolerance, options);
     if (isDecided(*found.best)) {
       const ReflectionPlane best = inBall(*found.best);
-      kept.erase(std::remove_if(kept.begin(), kept.end(),
-                                [&](const SymmetryPlane& plane) { return kSamePlane.same(inBall(plane), best); }),
-                 kept.end());
+      eraseIf(kept, [&](const SymmetryPlane& plane) { return kSamePlane.same(inBall(plane), best); });
       kept.push_back(*found.best);
       found.best.reset();
     }

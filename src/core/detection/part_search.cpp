@@ -126,7 +126,7 @@ struct SymmetricPart {
 };
 
 // Planes that are one: radians, and radii of the points. Half of what is between the planes of a prism of 24 sides.
-constexpr PlaneTolerance kSamePlaneOfPart{2.0 * kSamePlane.angle, 2.0 * kSamePlane.offset};
+constexpr MergeTolerance kSamePlaneOfPart{2.0 * kSamePlane.angle, 2.0 * kSamePlane.offset};
 
 /// Farthest-point sampling: each seed is the point farthest from those before.
 std::vector<Eigen::Vector3f> spreadSeeds(const Points& points) {

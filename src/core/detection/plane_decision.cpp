@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <utility>
 
-#include "core/base/logistic.h"
 #include "core/base/parallel.h"
+#include "core/base/statistics.h"
 #include "core/detection/standing_object.h"
 #include "core/geometry/point_samples.h"
 
@@ -34,8 +34,7 @@ void write(SymmetryPlane& plane, double confidence, const Reason& reason, const 
 
 void setConfidence(SymmetryPlane& plane, double confidence, const char* evidence, const DetectionOptions& options) {
   std::vector<Reason>& reasons = plane.reasons;
-  reasons.erase(std::remove_if(reasons.begin(), reasons.end(), [](const Reason& reason) { return !isLimit(reason); }),
-                reasons.end());
+  eraseIf(reasons, [](const Reason& reason) { return !isLimit(reason); });
   write(plane, confidence, {evidence, oddsOf(confidence)}, options);
 }
 
@@ -192,7 +191,7 @@ namespace {
 /// instance). A plane is a maximum of its own only if D falls on the way to a better plane nearby.
 bool isOnSlopeOf(const SymmetryPlane& better, const SymmetryPlane& plane, const NormalizedCloud& cloud) {
   const ReflectionPlane a = cloud.toNormalized(better), b = cloud.toNormalized(plane);
-  if (!PlaneTolerance{kDetection.decide.slope_angle, kDetection.decide.slope_offset}.same(a, b)) return false;
+  if (!MergeTolerance{kDetection.decide.slope_angle, kDetection.decide.slope_offset}.same(a, b)) return false;
   const double sign = a.normal().dot(b.normal()) < 0.0 ? -1.0 : 1.0;
   const Eigen::Vector3d normal = a.normal() + sign * b.normal();
   const ReflectionPlane between(normal, 0.5 * normal.norm() * (a.offset() + sign * b.offset()));
@@ -218,7 +217,7 @@ std::vector<SymmetryPlane> withoutPlanesOfParts(std::vector<SymmetryPlane> plane
   const auto is_of_part = [&](const SymmetryPlane& plane) {
     return plane.kind == PlaneKind::Approximate && kSamePlane.anySame(local, cloud.toNormalized(plane));
   };
-  planes.erase(std::remove_if(planes.begin(), planes.end(), is_of_part), planes.end());
+  eraseIf(planes, is_of_part);
   return planes;
 }
 
@@ -229,8 +228,7 @@ std::vector<SymmetryPlane> rankedPlanes(std::vector<SymmetryPlane> planes, const
                                         const DetectionOptions& options) {
   planes = withoutPlanesOfParts(std::move(planes), cloud);
   // Of equally confident planes, such as those of a polygon, the best supported comes first.
-  std::stable_sort(planes.begin(), planes.end(),
-                   [](const SymmetryPlane& a, const SymmetryPlane& b) { return a.support > b.support; });
+  sortFalling(planes, &SymmetryPlane::support);
   std::stable_sort(planes.begin(), planes.end(), isBetter);
   std::vector<SymmetryPlane> ranked;
   for (SymmetryPlane& plane : planes) {
@@ -252,9 +250,7 @@ std::vector<SymmetryPlane> rankedPlanes(std::vector<SymmetryPlane> planes, const
 }
 
 std::vector<SymmetryPlane> reordered(std::vector<SymmetryPlane> planes, const DetectionOptions& options) {
-  if (!options.approximate)
-    planes.erase(std::remove_if(planes.begin(), planes.end(), [](const SymmetryPlane& p) { return !isDecided(p); }),
-                 planes.end());
+  if (!options.approximate) eraseIf(planes, [](const SymmetryPlane& p) { return !isDecided(p); });
   std::stable_sort(planes.begin(), planes.end(), isBetter);
   return planes;
 }

@@ -5,12 +5,13 @@
 #include <utility>
 
 #include "core/base/constants.h"
+#include "core/base/statistics.h"
 #include "core/base/symmetric_solvers.h"
 #include "core/detection/plane_lattice.h"
 #include "core/geometry/cloud_extent.h"
 #include "core/geometry/directions.h"
 #include "core/geometry/point_samples.h"
-#include "core/geometry/revolution_of_normals.h"
+#include "core/geometry/surface_normals.h"
 
 namespace pcl_symmetry {
 
@@ -125,14 +126,11 @@ std::optional<CenterFamily> findCenter(const std::vector<ReflectionPlane>& plane
 
 std::vector<AxisFamily> findAxes(const std::vector<ReflectionPlane>& planes, const FamilyTest& test,
                                  const std::vector<Line3d>& guesses) {
+  constexpr MergeTolerance kSameAxisOfFamily{kDetection.families.contained_angle, kDetection.families.contained_offset};
   std::vector<AxisFamily> axes;
   std::vector<Line3d> tried;
   const auto attempt = [&](const Line3d& line, double best_share) {
-    const bool known = std::any_of(tried.begin(), tried.end(), [&](const Line3d& other) {
-      return std::abs(other.direction().dot(line.direction())) > std::cos(kDetection.families.contained_angle) &&
-             other.distance(line.origin()) < kDetection.families.contained_offset;
-    });
-    if (known) return;
+    if (kSameAxisOfFamily.anySame(tried, line)) return;
     tried.push_back(line);
     std::optional<AxisFamily> axis = axisAt(line, std::max(test.min_share, best_share - test.allowance), test);
     if (!axis) return;
@@ -148,8 +146,7 @@ std::vector<AxisFamily> findAxes(const std::vector<ReflectionPlane>& planes, con
       attempt(commonLine({planes[i], planes[j]}), std::max(test.share(planes[i]), test.share(planes[j])));
     }
   }
-  std::stable_sort(axes.begin(), axes.end(),
-                   [](const AxisFamily& a, const AxisFamily& b) { return a.share > b.share; });
+  sortFalling(axes, &AxisFamily::share);
   return axes;
 }
 
@@ -242,9 +239,7 @@ void findFamilies(const JudgedCloud& judged, Found& found) {
     likely_centers.push_back(centerOfNormals(cloud.points, cloud.geometry.normals, samples));
   }
   const auto drop = [&](const auto& belongs) {
-    found.planes.erase(std::remove_if(found.planes.begin(), found.planes.end(),
-                                      [&](const SymmetryPlane& plane) { return belongs(cloud.toNormalized(plane)); }),
-                       found.planes.end());
+    eraseIf(found.planes, [&](const SymmetryPlane& plane) { return belongs(cloud.toNormalized(plane)); });
   };
   // Between its planes, a regular polygon is not symmetric: the worst plane decides too. A scan shows some of the
   // planes too badly for that.
@@ -288,7 +283,7 @@ std::vector<SymmetryPlane> withoutPlanesThrough(std::vector<SymmetryPlane> plane
       return contains(cloud.toNormalized(plane), cloud.lineOf(axis));
     });
   };
-  planes.erase(std::remove_if(planes.begin(), planes.end(), belongs), planes.end());
+  eraseIf(planes, belongs);
   return planes;
 }
 

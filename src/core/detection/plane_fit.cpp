@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "core/base/parallel.h"
+#include "core/base/statistics.h"
 #include "core/detection/plane_lattice.h"
 #include "core/evidence/point_density.h"
 #include "core/evidence/surface_samples.h"
@@ -302,7 +303,7 @@ std::vector<Candidate> StagedRefinement::withinCells(const std::vector<Candidate
                                                      const std::vector<Candidate>& starts,
                                                      const PlaneGrid& grid) const {
   const double reach = 0.5 + kDetection.stages.max_drift;
-  const PlaneTolerance cell{std::sqrt(2.0) * reach * std::max(grid.thetaStep(), grid.phiStep()),
+  const MergeTolerance cell{std::sqrt(2.0) * reach * std::max(grid.thetaStep(), grid.phiStep()),
                             reach * grid.radiusStep() / cloud_.scale};
   std::vector<Candidate> kept, left;
   double best = 0.0;
@@ -318,8 +319,7 @@ std::vector<Candidate> StagedRefinement::withinCells(const std::vector<Candidate
 
 std::vector<Candidate> StagedRefinement::distinct(std::vector<Candidate> candidates, double min_merit,
                                                   std::size_t most) const {
-  std::stable_sort(candidates.begin(), candidates.end(),
-                   [](const Candidate& a, const Candidate& b) { return a.merit > b.merit; });
+  sortFalling(candidates, &Candidate::merit);
   std::vector<Candidate> kept;
   for (Candidate& candidate : candidates) {
     if (candidate.merit < min_merit) break;

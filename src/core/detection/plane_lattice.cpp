@@ -8,9 +8,8 @@
 #include <utility>
 
 #include "core/base/constants.h"
-#include "core/base/logistic.h"
-#include "core/base/median.h"
 #include "core/base/parallel.h"
+#include "core/base/statistics.h"
 #include "core/detection/plane_families.h"
 #include "core/geometry/geometry_rules.h"
 #include "core/geometry/point_samples.h"
@@ -346,18 +345,14 @@ void completePolygon(const JudgedCloud& judged, Found& found) {
   const NormalizedCloud& cloud = judged.cloud;
   if (cloud.kind() == CloudKind::Surface) return addClosePlanes(judged, found);
   if (!kKindRules.has_polygons[cloud.kind()]) return;
-  std::stable_sort(found.planes.begin(), found.planes.end(),
-                   [](const SymmetryPlane& a, const SymmetryPlane& b) { return a.confidence > b.confidence; });
+  sortFalling(found.planes, &SymmetryPlane::confidence);
   const std::optional<PlaneLattice> lattice = bestLattice(found.planes, cloud, judged.all, judged.options.num_threads);
   if (!lattice) return;
   std::vector<MeasuredPlane> of_lattice = judged.decision.judge(planesOf(*lattice));
   const double together = withOdds(leastTogether(of_lattice), kDetection.folds.odds_of_polygon);
   if (together < judged.options.min_confidence) return;
   // All planes tell where the polygon lies: those that noise moved away are dropped.
-  found.planes.erase(
-      std::remove_if(found.planes.begin(), found.planes.end(),
-                     [&](const SymmetryPlane& plane) { return contains(cloud.toNormalized(plane), lattice->line); }),
-      found.planes.end());
+  eraseIf(found.planes, [&](const SymmetryPlane& plane) { return contains(cloud.toNormalized(plane), lattice->line); });
   for (MeasuredPlane& one : of_lattice) {
     if (together > one.plane.confidence)
       changeConfidence(one.plane, together, "the planes of a regular polygon together", judged.options);

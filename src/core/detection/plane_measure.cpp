@@ -5,8 +5,8 @@
 #include <utility>
 
 #include "core/detection/detection_rules.h"
-#include "core/evidence/evidence_rules.h"
 #include "core/evidence/plane_motion.h"
+#include "core/evidence/surface_samples.h"
 #include "core/geometry/geometry_rules.h"
 #include "core/geometry/point_samples.h"
 #include "core/scan/single_view.h"

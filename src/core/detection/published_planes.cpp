@@ -3,13 +3,12 @@
 #include <algorithm>
 #include <cmath>
 #include <set>
-#include <utility>
 
 #include "core/base/check.h"
 #include "core/base/parallel.h"
 #include "core/geometry/point_samples.h"
 #include "core/refinement/landing.h"
-#include "core/transform/edt_correlation.h"
+#include "core/transform/sampled_transform.h"
 #include "pcl_symmetry/core/iterative_symmetric_points.h"
 
 namespace pcl_symmetry {

@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "core/base/check.h"
-#include "core/base/median.h"
+#include "core/base/statistics.h"
 #include "core/base/symmetric_solvers.h"
 
 namespace pcl_symmetry {
@@ -140,9 +140,7 @@ std::vector<ProfilePoint> revolutionProfile(const PointsRef& points, const Symme
   std::vector<double> densities;
   for (const FittedPosition& fit : curve) densities.push_back(density(fit));
   const double least = kProfile.min_density * median(std::move(densities));
-  curve.erase(
-      std::remove_if(curve.begin(), curve.end(), [&](const FittedPosition& fit) { return density(fit) < least; }),
-      curve.end());
+  eraseIf(curve, [&](const FittedPosition& fit) { return density(fit) < least; });
 
   // In order along the curve, piece by piece.
   std::vector<ProfilePoint> profile;

@@ -7,8 +7,7 @@
 #include <utility>
 
 #include "core/base/constants.h"
-#include "core/base/logistic.h"
-#include "core/base/median.h"
+#include "core/base/statistics.h"
 #include "core/detection/detection_rules.h"
 #include "core/detection/plane_decision.h"
 #include "core/detection/plane_measure.h"
@@ -229,10 +228,7 @@ void decideByUprightBox(const PlaneInput& input, const DetectionOptions& options
   // Found before, it was no more than possible.
   const BoundingBall ball = boundingBall(points);
   const auto in_ball = [&](const ReflectionPlane& other) { return normalized(other, ball.center, ball.radius); };
-  found.planes.erase(
-      std::remove_if(found.planes.begin(), found.planes.end(),
-                     [&](const SymmetryPlane& other) { return kSamePlane.same(in_ball(other), in_ball(*plane)); }),
-      found.planes.end());
+  eraseIf(found.planes, [&](const SymmetryPlane& other) { return kSamePlane.same(in_ball(other), in_ball(*plane)); });
   found.planes.insert(found.planes.begin(), std::move(*plane));
   found.planes = reordered(std::move(found.planes), options);
   if (static_cast<int>(found.planes.size()) > options.max_planes) found.planes.resize(options.max_planes);

@@ -6,12 +6,14 @@
 #include <limits>
 
 #include "core/base/parallel.h"
+#include "core/base/statistics.h"
 #include "core/base/stopwatch.h"
 #include "core/base/symmetric_solvers.h"
 #include "core/detection/plane_decision.h"
 #include "core/evidence/plane_motion.h"
 #include "core/geometry/cloud_extent.h"
 #include "core/geometry/directions.h"
+#include "core/geometry/geometry_rules.h"
 #include "core/refinement/normalized_cloud.h"
 #include "pcl_symmetry/core/planar_transform.h"
 
@@ -216,9 +218,7 @@ private:
         // The derivatives of f(x) - f(x - 2 (n.x - r) n) by angles about v and u and by r.
         const Eigen::Vector4d here = splineAt(index), there = splineAt(p);
         const Eigen::Vector3d g = to_input * there.head<3>(), from_pivot = T * index - pivot_;
-        const double d = chart.n.dot(from_pivot) - chart.offset, along = g.dot(chart.n);
-        const Eigen::Vector3d j(2.0 * (chart.u.dot(from_pivot) * along + d * g.dot(chart.u)),
-                                2.0 * (chart.v.dot(from_pivot) * along + d * g.dot(chart.v)), -2.0 * along);
+        const Eigen::Vector3d j = -chart.slope(from_pivot, chart.n.dot(from_pivot) - chart.offset, g);
         const Eigen::Vector3d slope = 0.5 * (here.head<3>() + image.linear().transpose() * there.head<3>());
         const double sq_slope = slope.squaredNorm(), sq_noise = kRules.flat * residual * residual;
         const double weight = sq_noise > 0.0 ? sq_slope / (sq_slope + sq_noise) : 1.0;
@@ -296,7 +296,7 @@ Detection detectVolumePlanes(const ScalarGrid& input, const DetectionOptions& op
 
     const ReflectedVolume few(coarse, center, 1), all(fine, center, options.num_threads);
     const int stride = strideFor(coarse.f, 30'000);
-    const PlaneTolerance one{kRules.merge_angle, kRules.merge_offset * edt.radius()};
+    const MergeTolerance one{kRules.merge_angle, kRules.merge_offset * edt.radius()};
     const std::vector<ReflectionPlane> starts = startsOf(found.map, body, options);
     std::vector<SymmetryPlane> maxima(starts.size());
     parallelBlocks(starts.size(), options.num_threads, [&](std::size_t i) {
@@ -305,8 +305,7 @@ Detection detectVolumePlanes(const ScalarGrid& input, const DetectionOptions& op
     });
     // The best of those that ended at one plane, best first.
     const auto distinct = [&](std::vector<SymmetryPlane> planes) {
-      std::stable_sort(planes.begin(), planes.end(),
-                       [](const auto& a, const auto& b) { return a.support > b.support; });
+      sortFalling(planes, &SymmetryPlane::support);
       std::vector<SymmetryPlane> kept;
       for (const SymmetryPlane& plane : planes)
         if (plane.support > 0.0 && !one.anySame(kept, normalized(plane, center),

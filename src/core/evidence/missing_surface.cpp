@@ -9,8 +9,9 @@
 #include <optional>
 
 #include "core/base/random.h"
+#include "core/base/statistics.h"
 #include "core/base/symmetric_solvers.h"
-#include "core/evidence/evidence_rules.h"
+#include "core/evidence/surface_samples.h"
 #include "core/geometry/cloud_extent.h"
 #include "core/geometry/point_samples.h"
 #include "core/geometry/surface_normals.h"
@@ -275,9 +276,7 @@ public:
     if (best) best = fitted(*best);
     if (!best) return best;
     const std::vector<Eigen::Index> used = bordersAt(*best);
-    free_.erase(std::remove_if(free_.begin(), free_.end(),
-                               [&](Eigen::Index i) { return std::binary_search(used.begin(), used.end(), i); }),
-                free_.end());
+    eraseIf(free_, [&](Eigen::Index i) { return std::binary_search(used.begin(), used.end(), i); });
     return best;
   }
 

@@ -4,9 +4,9 @@
 #include <cmath>
 #include <numeric>
 
-#include "core/base/logistic.h"
+#include "core/base/statistics.h"
 #include "core/evidence/confidence_fit.h"
-#include "core/evidence/evidence_rules.h"
+#include "core/evidence/surface_samples.h"
 #include "core/geometry/geometry_rules.h"
 
 namespace pcl_symmetry {

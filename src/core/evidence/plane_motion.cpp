@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "core/base/symmetric_solvers.h"
-#include "core/evidence/evidence_rules.h"
+#include "core/evidence/surface_samples.h"
 
 namespace pcl_symmetry {
 
@@ -22,20 +22,15 @@ ReflectionPlane PlaneChart::moved(const Eigen::Vector3d& step) const {
 
 Eigen::Matrix3d motionStiffness(const Points& points, const Points& normals, const std::vector<char>& matched,
                                 const ReflectionPlane& plane) {
-  const Eigen::Vector3d n = plane.normal(), u = n.unitOrthogonal(), v = n.cross(u);
+  const PlaneChart chart(plane, Eigen::Vector3d::Zero());
   Eigen::Matrix3d information = Eigen::Matrix3d::Zero();
   double count = 0.0;
   for (std::size_t i = 0; i < matched.size(); ++i) {
     if (!matched[i]) continue;
     const auto column = static_cast<Eigen::Index>(i);
     const Eigen::Vector3d x = points.col(column).cast<double>(), normal = normals.col(column).cast<double>();
-    // x is a reflection: x = y - 2 (n.y - r) n. Its derivatives along the normal of the match, by tilt and by offset.
-    const double distance = -plane.signedDistance(x);
-    const Eigen::Vector3d y = x + 2.0 * distance * n;
-    const auto by_tilt = [&](const Eigen::Vector3d& axis) {
-      return -2.0 * (axis.dot(y) * normal.dot(n) + distance * normal.dot(axis));
-    };
-    const Eigen::Vector3d gradient(by_tilt(u), by_tilt(v), 2.0 * normal.dot(n));
+    const double height = -plane.signedDistance(x);  // of the point that x is the reflection of
+    const Eigen::Vector3d gradient = chart.slope(x + 2.0 * height * chart.n, height, normal);
     information += gradient * gradient.transpose();
     count += 1.0;
   }

@@ -7,8 +7,8 @@
 #include "core/base/constants.h"
 #include "core/base/parallel.h"
 #include "core/base/symmetric_solvers.h"
-#include "core/evidence/evidence_rules.h"
 #include "core/evidence/plane_motion.h"
+#include "core/evidence/surface_samples.h"
 
 namespace pcl_symmetry {
 

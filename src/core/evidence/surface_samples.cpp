@@ -10,15 +10,120 @@
 
 #include "core/base/check.h"
 #include "core/base/parallel.h"
-#include "core/evidence/evidence_rules.h"
+#include "core/base/statistics.h"
+#include "core/geometry/geometry_rules.h"
 #include "core/geometry/point_samples.h"
 #include "pcl_symmetry/core/gaussian_edt.h"
 
 namespace pcl_symmetry {
 
+namespace {
+
+constexpr float half_diagonal = 0.8660254f;  // cells: sqrt(3) / 2
+
+}  // namespace
+
+SurfaceDiscs::SurfaceDiscs(const Points& samples, const LocalGeometry& geometry, float disc_radius, float reach)
+    : reach_(reach) {
+  const auto spacing = static_cast<float>(median(geometry.spacing));
+  float greatest = 0.0f;
+  for (Eigen::Index i = 0; i < samples.cols(); ++i) {
+    discs_.push_back({samples.col(i), geometry.normals.col(i),
+                      disc_radius * std::min(geometry.spacing[i], kGeometry.max_disc_spacing * spacing)});
+    greatest = std::max(greatest, discs_.back().radius);
+  }
+  const float margin = reach + greatest;
+  const Eigen::Vector3f low = samples.rowwise().minCoeff(), high = samples.rowwise().maxCoeff();
+  const float extent = (high - low).maxCoeff() + 2.0f * margin;
+  cell_size_ = std::max(kGeometry.disc_cell * spacing, extent / kGeometry.max_disc_cells);
+  origin_ = low.array() - margin;
+  const Eigen::Array3f sides = (high - low).array() + 2.0f * margin;
+  size_ = (sides / cell_size_).cast<int>() + 1;
+  // Counts, then positions: two passes over the same cells.
+  first_.assign(static_cast<std::size_t>(size_.prod()) + 1, 0);
+  for (const SurfaceDisc& disc : discs_) visitCells(disc, [&](std::size_t cell) { ++first_[cell + 1]; });
+  for (std::size_t cell = 1; cell < first_.size(); ++cell) first_[cell] += first_[cell - 1];
+  entries_.resize(static_cast<std::size_t>(first_.back()));
+  std::vector<int> next = first_;
+  for (std::size_t i = 0; i < discs_.size(); ++i)
+    visitCells(discs_[i], [&](std::size_t cell) { entries_[next[cell]++] = static_cast<int>(i); });
+}
+
+/// Calls visit(cell) for the cells that hold points within reach of a disc, and for some more.
+template <typename Visit>
+void SurfaceDiscs::visitCells(const SurfaceDisc& disc, const Visit& visit) const {
+  const float beside = disc.radius + reach_, slack = half_diagonal * cell_size_;
+  const Eigen::Array3f low = (disc.center - origin_).array() - beside, high = low + 2.0f * beside;
+  const Eigen::Array3i from = (low / cell_size_).max(0.0f).cast<int>();
+  const Eigen::Array3i to = (high / cell_size_).cast<int>().min(size_ - 1);
+  for (int z = from.z(); z <= to.z(); ++z)
+    for (int y = from.y(); y <= to.y(); ++y)
+      for (int x = from.x(); x <= to.x(); ++x) {
+        const Eigen::Vector3f center =
+            origin_ +
+            cell_size_ *
+                (Eigen::Vector3f(static_cast<float>(x), static_cast<float>(y), static_cast<float>(z)).array() + 0.5f)
+                    .matrix();
+        const Eigen::Vector3f difference = center - disc.center;
+        if (std::abs(disc.normal.dot(difference)) > reach_ + slack) continue;
+        if (difference.squaredNorm() > (beside + slack) * (beside + slack)) continue;
+        visit((static_cast<std::size_t>(z) * size_.y() + y) * size_.x() + x);
+      }
+}
+
+SurfaceDiscs::Range SurfaceDiscs::discsNear(const Eigen::Vector3f& x) const {
+  const Eigen::Array3f position = (x - origin_).array() / cell_size_;
+  if (!(position >= 0.0f).all()) return {nullptr, nullptr};
+  const Eigen::Array3i cell = position.min(static_cast<float>(kGeometry.max_disc_cells) + 2.0f).cast<int>();
+  if (!(cell < size_).all()) return {nullptr, nullptr};
+  const std::size_t index = (static_cast<std::size_t>(cell.z()) * size_.y() + cell.y()) * size_.x() + cell.x();
+  return {entries_.data() + first_[index], entries_.data() + first_[index + 1]};
+}
+
+SurfaceDiscs::Nearest SurfaceDiscs::nearest(const Eigen::Vector3f& x) const {
+  Nearest result;
+  float least = reach_ * reach_;
+  const Range range = discsNear(x);
+  for (const int* disc = range.begin; disc != range.end; ++disc) {
+    const float sq_distance = discs_[*disc].sqDistance(x);
+    if (!(sq_distance <= least)) continue;
+    least = sq_distance;
+    result.disc = *disc;
+  }
+  if (result.disc >= 0) result.distance = std::sqrt(least);
+  return result;
+}
+
+bool SurfaceDiscs::isWithin(const Eigen::Vector3f& x, float distance) const {
+  const float sq_limit = distance * distance;
+  const Range range = discsNear(x);
+  for (const int* disc = range.begin; disc != range.end; ++disc) {
+    const SurfaceDisc& d = discs_[*disc];
+    const Eigen::Vector3f difference = x - d.center;
+    const float across = d.normal.dot(difference), sq_room = sq_limit - across * across;
+    if (sq_room < 0.0f) continue;
+    const float sq_along = difference.squaredNorm() - across * across;
+    if (sq_along <= d.radius * d.radius) return true;
+    const float most = d.radius + distance;
+    if (sq_along > most * most) continue;
+    const float beside = std::sqrt(sq_along) - d.radius;
+    if (beside * beside <= sq_room) return true;
+  }
+  return false;
+}
+
+float SurfaceDiscs::ownDistance(int i, float across_factor) const {
+  const Eigen::Vector3f& x = discs_[i].center;
+  float least = std::numeric_limits<float>::infinity();
+  const Range range = discsNear(x);
+  for (const int* disc = range.begin; disc != range.end; ++disc)
+    if (*disc != i) least = std::min(least, discs_[*disc].sqDistance(x, across_factor * across_factor));
+  return std::sqrt(least);
+}
+
 SurfaceSamples::SurfaceSamples(const Points& points, const LocalGeometry& geometry, int num_threads)
     : samples_(static_cast<std::size_t>(points.cols())) {
-  parallelRanges(samples_.size(), 2048, num_threads, [&](std::size_t begin, std::size_t end) {
+  parallelPoints(samples_.size(), num_threads, [&](std::size_t begin, std::size_t end) {
     for (auto i = static_cast<Eigen::Index>(begin); i < static_cast<Eigen::Index>(end); ++i) {
       const float spacing = geometry.spacing[i], rough = geometry.roughness[i] / std::max(spacing, 1e-6f);
       samples_[static_cast<std::size_t>(i)] = {
@@ -46,7 +151,7 @@ float distanceNear(int closest, int self, const Eigen::Vector3f& point, const Su
 std::vector<float> surfaceDistances(const Points& points, const std::vector<int>& closest,
                                     const SurfaceSamples& samples, int num_threads) {
   std::vector<float> distances(closest.size(), std::numeric_limits<float>::infinity());
-  parallelRanges(closest.size(), 1024, num_threads, [&](std::size_t begin, std::size_t end) {
+  parallelPoints(closest.size(), num_threads, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i)
       if (closest[i] >= 0) distances[i] = distanceNear(closest[i], -1, points.col(i), samples);
   });
@@ -55,7 +160,7 @@ std::vector<float> surfaceDistances(const Points& points, const std::vector<int>
 
 std::vector<float> ownSurfaceDistances(const SurfaceSamples& samples, int num_threads) {
   std::vector<float> distances(static_cast<std::size_t>(samples.size()));
-  parallelRanges(distances.size(), 2048, num_threads, [&](std::size_t begin, std::size_t end) {
+  parallelPoints(distances.size(), num_threads, [&](std::size_t begin, std::size_t end) {
     for (auto i = static_cast<int>(begin); i < static_cast<int>(end); ++i)
       distances[i] = distanceNear(samples[i].nearest[0], i, samples[i].center, samples,
                                   kEvidence.new_point_factor * kEvidence.new_point_factor);
@@ -119,7 +224,7 @@ PointEvidence pointEvidence(const Points& reflected, const Points& reflected_nor
                             const SurfaceSamples& samples, const Visibility* visibility, int num_threads) {
   const std::size_t size = closest.size();
   PointEvidence evidence{std::vector<float>(size), std::vector<float>(size)};
-  parallelRanges(size, 1024, num_threads, [&](std::size_t begin, std::size_t end) {
+  parallelPoints(size, num_threads, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       if (closest[i] >= 0)
         evidence.support[i] = supportNear(closest[i], -1, reflected.col(i), reflected_normals.col(i), samples);
@@ -134,7 +239,7 @@ PointEvidence pointEvidence(const Points& reflected, const Points& reflected_nor
 
 std::vector<float> ownSupport(const SurfaceSamples& samples, int num_threads) {
   std::vector<float> support(static_cast<std::size_t>(samples.size()));
-  parallelRanges(support.size(), 2048, num_threads, [&](std::size_t begin, std::size_t end) {
+  parallelPoints(support.size(), num_threads, [&](std::size_t begin, std::size_t end) {
     for (auto i = static_cast<int>(begin); i < static_cast<int>(end); ++i)
       support[i] = supportNear(samples[i].nearest[0], i, samples[i].center, samples[i].normal, samples);
   });
@@ -147,14 +252,13 @@ double meanSupport(const std::vector<float>& support) {
 
 std::vector<std::vector<float>> planeSupport(const PointsRef& points, const PointsRef& samples,
                                              const std::vector<ReflectionPlane>& planes, int num_threads) {
-  constexpr std::size_t kBlockSize = 4096;  // points. Large enough that threads start seldom
   const BoundingBall ball = boundingBall(samples);
   check(ball.radius > 0.0, "extent of the samples", ball.radius, "> 0");
   const Points surface = normalizePoints(samples, ball.center, ball.radius);
   const auto search = makeFlannSearch(surface);
   const SurfaceSamples described(surface, localGeometry(surface, *search, kNumSupportNeighbors, num_threads));
   std::vector<std::vector<float>> support(planes.size(), std::vector<float>(points.cols()));
-  parallelRanges(points.cols(), kBlockSize, num_threads, [&](std::size_t begin, std::size_t end) {
+  parallelPoints(points.cols(), num_threads, [&](std::size_t begin, std::size_t end) {
     const auto size = static_cast<Eigen::Index>(end - begin);
     const std::vector<int> own =
         search->closest(normalizePoints(points.middleCols(begin, size), ball.center, ball.radius));

@@ -5,7 +5,6 @@
 
 #include "core/base/simd.h"
 #include "core/transform/sampled_transform.h"
-#include "pcl_symmetry/core/visibility.h"
 
 namespace pcl_symmetry {
 

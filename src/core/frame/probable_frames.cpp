@@ -1,16 +1,152 @@
 #include "core/frame/probable_frames.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <functional>
 #include <limits>
 
+#include "core/base/constants.h"
 #include "core/base/parallel.h"
 #include "core/frame/canonical_frame.h"
 #include "core/frame/frame_fit.h"
-#include "core/frame/leveled_frames.h"
 #include "core/geometry/directions.h"
 
 namespace pcl_symmetry {
+
+namespace {
+
+/// Twice the area of a triangle, positive where its corners run counterclockwise.
+float signedArea(const Eigen::Vector2f& a, const Eigen::Vector2f& b, const Eigen::Vector2f& c) {
+  return (b.x() - a.x()) * (c.y() - a.y()) - (b.y() - a.y()) * (c.x() - a.x());
+}
+
+/// Andrew's monotone chain (1979).
+std::vector<Eigen::Vector2f> convexHull(std::vector<Eigen::Vector2f> points) {
+  std::sort(points.begin(), points.end(), [](const Eigen::Vector2f& a, const Eigen::Vector2f& b) {
+    return a.x() < b.x() || (a.x() == b.x() && a.y() < b.y());
+  });
+  std::vector<Eigen::Vector2f> hull;
+  for (int side = 0; side < 2; ++side) {
+    const std::size_t first = hull.size();
+    for (const Eigen::Vector2f& point : points) {
+      while (hull.size() >= first + 2 && signedArea(hull[hull.size() - 2], hull.back(), point) <= 0.0f) hull.pop_back();
+      hull.push_back(point);
+    }
+    hull.pop_back();
+    std::reverse(points.begin(), points.end());
+  }
+  return hull;
+}
+
+struct Extent {
+  float low = std::numeric_limits<float>::infinity(), high = -std::numeric_limits<float>::infinity();
+
+  void add(float value) {
+    low = std::min(low, value);
+    high = std::max(high, value);
+  }
+  float length() const { return std::max(high - low, 0.0f); }
+};
+
+/// The angle within 90 degrees at which a measure is greatest.
+double angleOfGreatest(const std::function<double(double)>& measure) {
+  const double step = kFrame.outline_step;
+  const int num_steps = static_cast<int>(std::lround(0.5 * kPi / step));
+  double greatest = -std::numeric_limits<double>::infinity(), at = 0.0;
+  for (int i = 0; i < num_steps; ++i) {
+    const double value = measure(i * step);
+    if (value <= greatest) continue;
+    greatest = value;
+    at = i * step;
+  }
+  return at;
+}
+
+double angleOfFaces(const FrameEvidence& evidence, const Outline& outline) {
+  return angleOfGreatest([&](double angle) {
+    return evidence.agreement(outline.direction(angle)) + evidence.agreement(outline.direction(angle + 0.5 * kPi));
+  });
+}
+
+/// Half the angle of the second moments.
+double angleOfPrincipalAxes(const FrameEvidence& evidence, const Outline& outline) {
+  const auto spread = [&](double angle) { return evidence.spreadAlong(outline.direction(angle)); };
+  return 0.5 * std::atan2(spread(0.25 * kPi) - spread(0.75 * kPi), spread(0.0) - spread(0.5 * kPi));
+}
+
+FrameCandidate frameAt(const FrameEvidence& evidence, const Outline& outline, const Eigen::Vector3f& first,
+                       double angle) {
+  Eigen::Matrix3f axes;
+  axes << first, outline.direction(angle), first.cross(outline.direction(angle));
+  return frameOfAxes(evidence, axes);
+}
+
+double contactOf(const Outline& outline, const FrameCandidate& frame) {
+  return outline.boxAt(outline.angleOf(frame.axes.col(1))).contact;
+}
+
+}  // namespace
+
+Outline::Outline(const PointsRef& points, const Eigen::Vector3f& along)
+    : u_(along.unitOrthogonal()), v_(along.cross(u_)) {
+  std::vector<Eigen::Vector2f> seen;
+  seen.reserve(static_cast<std::size_t>(points.cols()));
+  for (Eigen::Index i = 0; i < points.cols(); ++i) seen.emplace_back(u_.dot(points.col(i)), v_.dot(points.col(i)));
+  corners_ = convexHull(std::move(seen));
+}
+
+Eigen::Vector3f Outline::direction(double angle) const {
+  return static_cast<float>(std::cos(angle)) * u_ + static_cast<float>(std::sin(angle)) * v_;
+}
+
+double Outline::angleOf(const Eigen::Vector3f& vector) const {
+  return std::atan2(v_.dot(vector), u_.dot(vector));
+}
+
+Outline::Box Outline::boxAt(double angle) const {
+  const float c = static_cast<float>(std::cos(angle)), s = static_cast<float>(std::sin(angle));
+  const std::array<Eigen::Vector2f, 2> sides{Eigen::Vector2f(c, s), Eigen::Vector2f(-s, c)};
+  std::array<Extent, 2> extents;
+  for (const Eigen::Vector2f& corner : corners_)
+    for (std::size_t k = 0; k < 2; ++k) extents[k].add(sides[k].dot(corner));
+  const float longer = std::max(extents[0].length(), extents[1].length());
+  const float touch = static_cast<float>(kFrame.touch) * longer;
+  Box box;
+  box.area = static_cast<double>(extents[0].length()) * extents[1].length();
+  if (!(longer > 0.0f)) return box;
+  for (std::size_t k = 0; k < 2; ++k) {
+    Extent low, high;  // along the other side
+    for (const Eigen::Vector2f& corner : corners_) {
+      const float depth = sides[k].dot(corner), along = sides[1 - k].dot(corner);
+      if (depth <= extents[k].low + touch) low.add(along);
+      if (depth >= extents[k].high - touch) high.add(along);
+    }
+    box.contact = std::max<double>(box.contact, std::max(low.length(), high.length()) / longer);
+  }
+  return box;
+}
+
+std::vector<FrameCandidate> leveledFrames(const FrameEvidence& evidence, const Eigen::Vector3f& first) {
+  const Outline outline(evidence.points, first);
+  std::vector<FrameCandidate> frames;
+  for (const double angle : {angleOfGreatest([&](double a) { return -outline.boxAt(a).area; }),
+                             angleOfGreatest([&](double a) { return outline.boxAt(a).contact; }),
+                             angleOfFaces(evidence, outline), angleOfPrincipalAxes(evidence, outline)})
+    frames.push_back(frameAt(evidence, outline, first, angle));
+  return frames;
+}
+
+std::vector<FrameCandidate> leveledFirst(const FrameEvidence& evidence, std::vector<FrameCandidate> frames) {
+  const FrameCandidate& best = frames.front();
+  const Eigen::Vector3f first = best.axes.col(0);
+  const Outline outline(evidence.points, first);
+  const FrameCandidate leveled = frameAt(evidence, outline, first, angleOfFaces(evidence, outline));
+  if (leveled.value >= best.value - kFrame.max_lost_value &&
+      contactOf(outline, leveled) >= contactOf(outline, best) + kFrame.min_gained_contact)
+    frames.insert(frames.begin(), leveled);
+  return frames;
+}
 
 namespace {
 

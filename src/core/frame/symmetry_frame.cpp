@@ -10,7 +10,6 @@
 #include "core/frame/canonical_frame.h"
 #include "core/frame/frame_evidence.h"
 #include "core/frame/frame_search.h"
-#include "core/frame/leveled_frames.h"
 #include "core/frame/probable_frames.h"
 #include "core/geometry/usable_points.h"
 #include "core/rotation/scan_axes.h"

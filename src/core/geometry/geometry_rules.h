@@ -1,7 +1,13 @@
 #pragma once
 
-#include <Eigen/Core>
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <vector>
+
 #include "core/base/constants.h"
+#include "pcl_symmetry/core/reflection_plane.h"
 
 namespace pcl_symmetry {
 
@@ -56,5 +62,34 @@ inline constexpr GeometryRules kGeometry{};
 /// A plane is a symmetry if it maps at least this share of the surface to within the tolerance of the surface
 /// (core/evidence/README.md).
 constexpr double kSymmetricShare = 0.97;
+
+/// Two planes, or two lines, within both limits are one.
+struct MergeTolerance {
+  double angle;   ///< between the normals or directions, radians
+  double offset;  ///< between the offsets of planes, or between lines, at the origin of their frame; its units
+
+  bool same(const ReflectionPlane& a, const ReflectionPlane& b) const {
+    const double sign = a.normal().dot(b.normal()) < 0.0 ? -1.0 : 1.0;
+    return a.angleTo(b) <= angle && std::abs(a.offset() - sign * b.offset()) <= offset;
+  }
+
+  bool same(const Line3d& a, const Line3d& b) const {
+    return std::abs(a.direction().dot(b.direction())) > std::cos(angle) &&
+           a.distance(b.projection(Eigen::Vector3d::Zero())) < offset;
+  }
+
+  /// \param of the member of an entry of the list that is its plane or line, or a function that takes it there.
+  /// \return whether an entry of the list has the same.
+  template <typename List, typename Motion, typename Of>
+  bool anySame(const List& list, const Motion& motion, const Of& of) const {
+    return std::any_of(list.begin(), list.end(),
+                       [&](const auto& entry) { return same(std::invoke(of, entry), motion); });
+  }
+
+  template <typename Motion>
+  bool anySame(const std::vector<Motion>& list, const Motion& motion) const {
+    return anySame(list, motion, [](const Motion& entry) { return entry; });
+  }
+};
 
 }  // namespace pcl_symmetry

@@ -8,7 +8,7 @@
 #include <utility>
 
 #include "core/base/check.h"
-#include "core/base/median.h"
+#include "core/base/statistics.h"
 #include "core/geometry/directions.h"
 #include "core/geometry/geometry_rules.h"
 #include "core/geometry/small_motion.h"

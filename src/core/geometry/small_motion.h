@@ -8,22 +8,21 @@
 
 namespace pcl_symmetry {
 
-using Vector6d = Eigen::Matrix<double, 6, 1>;
-using Matrix6d = Eigen::Matrix<double, 6, 6>;
-
 /// The weighted sum of x x^T over rows x of seven numbers: six unknowns and a right side.
 class WeightedProducts {
 public:
-  using Matrix = Eigen::Matrix<double, 7, 7>;
+  static constexpr int kLast = 6;  ///< index of the right side
+  using Matrix = Eigen::Matrix<double, kLast + 1, kLast + 1>;
 
   void add(const Eigen::Vector3d& first, const Eigen::Vector3d& second, double last, double weight) {
-    Eigen::Matrix<double, 7, 1> row;
+    Eigen::Matrix<double, kLast + 1, 1> row;
     row << first, second, last;
     sums_.noalias() += weight * row * row.transpose();
   }
 
   /// The weighted sum of the products of all rows that were added.
   const Matrix& sums() const { return sums_; }
+  Matrix6d ofUnknowns() const { return sums_.topLeftCorner<kLast, kLast>(); }
 
 private:
   Matrix sums_ = Matrix::Zero();
@@ -43,6 +42,13 @@ inline Eigen::Matrix3d rotationBy(const Eigen::Vector3d& rotation_vector) {
   const double angle = rotation_vector.norm();
   if (angle == 0.0) return Eigen::Matrix3d::Identity();
   return Eigen::AngleAxisd(angle, rotation_vector / angle).toRotationMatrix();
+}
+
+inline Eigen::Isometry3d motionBy(const Vector6d& motion) {
+  Eigen::Isometry3d result = Eigen::Isometry3d::Identity();
+  result.linear() = rotationBy(motion.head<3>());
+  result.translation() = motion.tail<3>();
+  return result;
 }
 
 }  // namespace pcl_symmetry

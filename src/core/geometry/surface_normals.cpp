@@ -10,12 +10,11 @@
 #include "core/base/symmetric_solvers.h"
 #include "core/geometry/geometry_rules.h"
 #include "core/geometry/point_samples.h"
+#include "core/geometry/small_motion.h"
 
 namespace pcl_symmetry {
 
 namespace {
-
-constexpr std::size_t points_per_block = 512;
 
 /// Number of points to search for: the neighbors and the point itself, as far as there are any.
 int numToSearch(Eigen::Index size, int num_neighbors) {
@@ -75,7 +74,7 @@ LocalGeometry localGeometry(const Points& points, const ClosestPointSearch& sear
     neighbors->indices.resize(size * static_cast<std::size_t>(count));
     neighbors->sq_reach.resize(size);
   }
-  parallelRanges(size, points_per_block, num_threads, [&](std::size_t begin, std::size_t end) {
+  parallelPoints(size, num_threads, [&](std::size_t begin, std::size_t end) {
     std::vector<int> indices;
     std::vector<float> sq_distances;
     search.search(points.middleCols(begin, end - begin), count, indices, sq_distances);
@@ -115,8 +114,6 @@ GeometryAtPlaces localGeometryAt(const Points& points, const ClosestPointSearch&
 
 namespace {
 
-constexpr std::size_t points_of_block = 512;
-
 /// Whether the neighbors of a sample leave a gap in its tangent plane.
 bool isAtBorder(int self, const int* neighbors, int count, const Points& samples, const Points& normals) {
   const Eigen::Vector3f n = normals.col(self), u = n.unitOrthogonal(), v = n.cross(u);
@@ -146,7 +143,7 @@ std::vector<char> openBorders(const Points& samples, const ClosestPointSearch& s
   const int count = static_cast<int>(std::min<Eigen::Index>(samples.cols(), kGeometry.border_neighbors + 1));
   const int num_known = known ? std::min(count, static_cast<int>(known->indices.size() / size)) : 0;
   std::vector<char> borders(size);
-  parallelRanges(size, points_of_block, num_threads, [&](std::size_t begin, std::size_t end) {
+  parallelPoints(size, num_threads, [&](std::size_t begin, std::size_t end) {
     std::vector<int> open, indices;
     std::vector<float> sq_distances;
     // More neighbors only fill gaps, or fold the surface: what is inside by some of them is inside by all.
@@ -180,6 +177,92 @@ double shareNearBorders(const std::vector<char>& borders, const LocalGeometry& g
     for (const int j : geometry.nearest[i]) num_near += near[i] || near[j] ? 1 : 0;
   }
   return num_pairs > 0 ? static_cast<double>(num_near) / static_cast<double>(num_pairs) : 0.0;
+}
+
+namespace {
+
+double weightOf(double miss) {
+  const double scaled = miss / kGeometry.normal_miss, sum = 1.0 + scaled * scaled;
+  return 1.0 / (sum * sum);
+}
+
+/// A motion of space: rotation and shift, so that a point x moves by shift + rotation x x.
+struct Motion {
+  Eigen::Vector3d rotation, shift;
+
+  Eigen::Vector3d velocityAt(const Eigen::Vector3d& x) const { return shift + rotation.cross(x); }
+};
+
+/// The motion with a rotation of length one that moves the samples the least along their normals.
+Motion slowestAlongNormals(const Matrix6d& sum) {
+  Eigen::Matrix3d shifts = sum.bottomRightCorner<3, 3>();
+  shifts.diagonal().array() += kGeometry.translation_ridge * std::max(1e-12, shifts.trace());
+  const Eigen::Matrix3d coupling = sum.topRightCorner<3, 3>();
+  const Eigen::Matrix3d best_shifts = -solveSymmetric(shifts, Eigen::Matrix3d(coupling.transpose()));
+  const Eigen::Matrix3d rotations = sum.topLeftCorner<3, 3>() + coupling * best_shifts;
+  const SymmetricEigen<Eigen::Matrix3d> solver(0.5 * (rotations + rotations.transpose()));
+  const Eigen::Vector3d rotation = solver.eigenvectors().col(0);
+  const Eigen::Vector3d shift = best_shifts * rotation;
+  return {rotation, shift - rotation.dot(shift) * rotation};  // without the translation along the axis
+}
+
+/// A point of a surface.
+struct Oriented {
+  Eigen::Vector3d point, normal;
+};
+
+std::vector<Oriented> orientedAt(const Points& points, const Points& normals, const std::vector<int>& samples) {
+  std::vector<Oriented> oriented;
+  oriented.reserve(samples.size());
+  for (const int i : samples) oriented.push_back({points.col(i).cast<double>(), normals.col(i).cast<double>()});
+  return oriented;
+}
+
+}  // namespace
+
+Line3d axisOfNormals(const Points& points, const Points& normals, const std::vector<int>& samples) {
+  const std::vector<Oriented> oriented = orientedAt(points, normals, samples);
+  std::vector<double> weights(oriented.size(), 1.0);
+  Motion motion{Eigen::Vector3d::UnitZ(), Eigen::Vector3d::Zero()};
+  for (int k = 0; k < kGeometry.reweightings; ++k) {
+    WeightedProducts products;  // of how fast points move along their normals, by rotation and by shift
+    for (std::size_t i = 0; i < oriented.size(); ++i)
+      products.add(oriented[i].point.cross(oriented[i].normal), oriented[i].normal, 0.0, weights[i]);
+    motion = slowestAlongNormals(products.ofUnknowns());
+    for (std::size_t i = 0; i < oriented.size(); ++i) {
+      const Eigen::Vector3d velocity = motion.velocityAt(oriented[i].point);
+      const double lever = std::max(kGeometry.min_lever, velocity.norm());
+      weights[i] = weightOf(velocity.dot(oriented[i].normal) / lever) / (lever * lever);
+    }
+  }
+  // The axis is where the motion stands still.
+  return {motion.rotation.cross(motion.shift), motion.rotation};
+}
+
+Eigen::Vector3d centerOfNormals(const Points& points, const Points& normals, const std::vector<int>& samples) {
+  const std::vector<Oriented> oriented = orientedAt(points, normals, samples);
+  std::vector<double> weights(oriented.size(), 1.0);
+  Eigen::Vector3d center = Eigen::Vector3d::Zero();
+  for (int k = 0; k < kGeometry.reweightings; ++k) {
+    // The point with the least sum of w |(I - n n^T) (x - center)|^2.
+    WeightedProducts products;
+    for (std::size_t i = 0; i < oriented.size(); ++i) {
+      const auto& [x, n] = oriented[i];
+      products.add(n, x - n.dot(x) * n, 1.0, weights[i]);
+    }
+    const WeightedProducts::Matrix sums = products.sums();
+    constexpr int last = WeightedProducts::kLast;
+    const Eigen::Matrix3d across =
+        (sums(last, last) + kGeometry.position_ridge) * Eigen::Matrix3d::Identity() - sums.topLeftCorner<3, 3>();
+    const Eigen::Vector3d pull = sums.block<3, 1>(3, last);
+    center = solveSymmetric(across, pull);
+    for (std::size_t i = 0; i < oriented.size(); ++i) {
+      const Eigen::Vector3d d = oriented[i].point - center;
+      const double lever = std::max(kGeometry.min_lever, d.norm());
+      weights[i] = weightOf(d.cross(oriented[i].normal).norm() / lever) / (lever * lever);
+    }
+  }
+  return center;
 }
 
 }  // namespace pcl_symmetry

@@ -65,7 +65,7 @@ OtherSide otherSide(const Points& vertices, const std::vector<Eigen::Vector3i>& 
                     const Eigen::Vector3f& normal, const std::vector<char>& used, int num_threads) {
   const TriangleTree tree(vertices, triangles);
   OtherSide found{Points(3, vertices.cols()), std::vector<int>(used.size(), -1)};
-  parallelRanges(used.size(), 1024, num_threads, [&](std::size_t begin, std::size_t end) {
+  parallelPoints(used.size(), num_threads, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       if (!used[i]) continue;
       const Eigen::Vector3f x = reflected(vertices.col(i), normal);

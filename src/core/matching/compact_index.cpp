@@ -69,7 +69,7 @@ std::vector<int> CompactIndex::candidates(const Eigen::MatrixXf& rotations, std:
   const Eigen::MatrixXf queries = rotations.topRows(leading_.rows());
   const Eigen::VectorXf sq_norms = 0.5f * queries.colwise().squaredNorm().transpose();
   std::vector<float> nearness(forms.size());
-  parallelRanges(forms.size(), 4096, options_.num_threads, [&](std::size_t begin, std::size_t end) {
+  parallelPoints(forms.size(), options_.num_threads, [&](std::size_t begin, std::size_t end) {
     const auto block = leading_.middleCols(static_cast<Eigen::Index>(begin), static_cast<Eigen::Index>(end - begin));
     Eigen::MatrixXf products = queries.transpose() * block;
     products.colwise() -= sq_norms;

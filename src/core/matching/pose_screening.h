@@ -6,8 +6,8 @@
 
 #include "core/matching/matching_rules.h"
 #include "core/matching/surface_points.h"
+#include "core/registration/pose_scoring.h"
 #include "core/registration/posed_surface.h"
-#include "core/registration/ranked_poses.h"
 
 namespace pcl_symmetry {
 

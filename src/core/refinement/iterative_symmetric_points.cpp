@@ -89,9 +89,8 @@ struct StepEquations {
     const Eigen::Vector3d reflected = x_normal - 2.0 * at.n.dot(x_normal) * at.n;
     const double cosine = reflected.dot(y_normal);
     const Eigen::Vector3d m = (y_normal + (cosine < 0.0 ? -reflected : reflected)).normalized();
-    const double m_n = m.dot(at.n), weight = pair_weight * cosine * cosine;
-    const Eigen::Vector3d slope(-2.0 * (at.u.dot(p) * m_n + height * m.dot(at.u)),
-                                -2.0 * (at.v.dot(p) * m_n + height * m.dot(at.v)), 2.0 * at.extent * m_n);
+    const Eigen::Vector3d slope = at.slope(p, height, m);
+    const double weight = pair_weight * cosine * cosine;
     h += slope * (weight * slope).transpose();
     g += weight * m.dot(p - 2.0 * height * at.n - q) * slope;
   }

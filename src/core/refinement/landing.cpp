@@ -32,7 +32,7 @@ Landing land(const IspSurface& surface, Points images, double reach, const std::
   const float bound = surface.far ? surface.far->bound(reach) : 0.0f;
   const bool has_far = surface.far && (leaves_out || FarTest::isExact(bound));
   const auto sq_reach = static_cast<float>(reach * reach);
-  parallelRanges(size, 1024, surface.num_threads, [&](std::size_t begin, std::size_t end) {
+  parallelPoints(size, surface.num_threads, [&](std::size_t begin, std::size_t end) {
     const auto some =
         landing.images.middleCols(static_cast<Eigen::Index>(begin), static_cast<Eigen::Index>(end - begin));
     std::vector<Eigen::Index> near;  // from begin on

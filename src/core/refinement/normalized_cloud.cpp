@@ -4,11 +4,11 @@
 #include <cmath>
 #include <utility>
 
-#include "core/base/median.h"
+#include "core/base/statistics.h"
+#include "core/geometry/closest_points.h"
 #include "core/geometry/cloud_extent.h"
-#include "core/geometry/flann_search.h"
 #include "core/refinement/landing.h"
-#include "core/transform/edt_correlation.h"
+#include "core/transform/sampled_transform.h"
 
 namespace pcl_symmetry {
 

@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "core/base/constants.h"
-#include "core/base/median.h"
+#include "core/base/statistics.h"
 #include "core/base/symmetric_solvers.h"
 #include "core/registration/registration_rules.h"
 
@@ -32,7 +32,7 @@ Residuals residualsAt(const PosedSurface& scan, const PosedSurface& model, const
     const int j = landing.closest[i];
     const Eigen::Vector3d x = landing.images.col(i).cast<double>(), n = model.normals.col(j).cast<double>();
     const Eigen::Vector3d turned = T_model_scan.linear() * scan.normals.col(scan.order[i]).cast<double>();
-    Eigen::Matrix<double, 6, 3> lever;
+    Eigen::Matrix<double, WeightedProducts::kLast, 3> lever;
     lever << crossMatrix(x), Eigen::Matrix3d::Identity();
     const Vector6d row = lever * n;
     const double distance = n.dot(x - model.points.col(j).cast<double>());
@@ -72,8 +72,8 @@ Matrix6d poseCovariance(const PosedSurface& scan, const PosedSurface& model, con
   information.diagonal().head<3>().setConstant(1.0 / sq_angle);
   information.diagonal().tail<3>().setConstant(1.0 / sq_way);
   Residuals residuals = residualsAt(scan, model, T_model_scan, num_points, reach);
-  if (residuals.count > 6) {
-    const double variance = residuals.sum_squares / (residuals.count - 6);
+  if (residuals.count > WeightedProducts::kLast) {
+    const double variance = residuals.sum_squares / (residuals.count - WeightedProducts::kLast);
     information += hessianWithoutNoise(std::move(residuals)) /
                    std::max(kRegistration.min_deviation * kRegistration.min_deviation, variance);
   }
@@ -81,23 +81,22 @@ Matrix6d poseCovariance(const PosedSurface& scan, const PosedSurface& model, con
 }
 
 Eigen::Isometry3d MotionEquations::motion() const {
+  constexpr int last = WeightedProducts::kLast;
   const WeightedProducts::Matrix planes = of_planes_.sums(), points = of_points_.sums();
   const Eigen::Matrix3d arms = points.topLeftCorner<3, 3>(), turned = points.block<3, 3>(0, 3);
-  Matrix6d hessian = planes.topLeftCorner<6, 6>();
+  Matrix6d hessian = of_planes_.ofUnknowns();
   hessian.topLeftCorner<3, 3>() += arms.trace() * Eigen::Matrix3d::Identity() - arms;
-  hessian.block<3, 3>(3, 0) -= crossMatrix(points.block<3, 1>(0, 6));
-  hessian.bottomRightCorner<3, 3>().diagonal().array() += points(6, 6);
-  Vector6d gradient = planes.block<6, 1>(0, 6);
+  hessian.block<3, 3>(3, 0) -= crossMatrix(points.block<3, 1>(0, last));
+  hessian.bottomRightCorner<3, 3>().diagonal().array() += points(last, last);
+  Vector6d gradient = planes.block<last, 1>(0, last);
   gradient.head<3>() +=
       Eigen::Vector3d(turned(1, 2) - turned(2, 1), turned(2, 0) - turned(0, 2), turned(0, 1) - turned(1, 0));
-  gradient.tail<3>() += points.block<3, 1>(3, 6);
+  gradient.tail<3>() += points.block<3, 1>(3, last);
   hessian.diagonal().array() += kRegistration.inertia + kRegistration.relative_inertia * hessian.diagonal().maxCoeff();
-  const Vector6d motion = solveSymmetric(hessian, gradient);
-  Eigen::Isometry3d moved = Eigen::Isometry3d::Identity();
-  if (!motion.allFinite()) return moved;
-  moved.linear() = rotationBy(motion.head<3>());
-  moved.translation() = unit_ * motion.tail<3>();
-  return moved;
+  Vector6d motion = solveSymmetric(hessian, gradient);
+  if (!motion.allFinite()) return Eigen::Isometry3d::Identity();
+  motion.tail<3>() *= unit_;
+  return motionBy(motion);
 }
 
 }  // namespace pcl_symmetry

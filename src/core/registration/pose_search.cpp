@@ -8,7 +8,6 @@
 #include "core/base/parallel.h"
 #include "core/registration/pose_scoring.h"
 #include "core/registration/pose_starts.h"
-#include "core/registration/ranked_poses.h"
 #include "core/registration/registration_rules.h"
 
 namespace pcl_symmetry {

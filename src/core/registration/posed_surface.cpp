@@ -4,8 +4,8 @@
 #include <numeric>
 #include <utility>
 
-#include "core/base/median.h"
 #include "core/base/random.h"
+#include "core/base/statistics.h"
 #include "core/geometry/surface_normals.h"
 #include "core/registration/registration_rules.h"
 

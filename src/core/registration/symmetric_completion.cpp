@@ -24,7 +24,7 @@ std::vector<int> completingPoints(const PointsRef& points, const ReflectionPlane
   const LocalGeometry geometry = localGeometry(points, *search, kNumSupportNeighbors, options.num_threads);
   const Points reflected = reflectedPoints(points, plane);
   std::vector<char> is_completing(static_cast<std::size_t>(points.cols()));
-  parallelRanges(is_completing.size(), 4096, options.num_threads, [&](std::size_t begin, std::size_t end) {
+  parallelPoints(is_completing.size(), options.num_threads, [&](std::size_t begin, std::size_t end) {
     std::vector<int> closest;
     std::vector<float> sq_distances;
     search->search(reflected.middleCols(begin, end - begin), 1, closest, sq_distances);

@@ -10,8 +10,10 @@
 
 #include "core/base/constants.h"
 #include "core/base/parallel.h"
+#include "core/base/statistics.h"
 #include "core/geometry/cloud_extent.h"
 #include "core/geometry/directions.h"
+#include "core/geometry/geometry_rules.h"
 
 namespace pcl_symmetry {
 
@@ -64,10 +66,9 @@ std::vector<Line3d> linesThrough(const Eigen::Vector3d& center, const RotationFi
   for (const int prime : {2, 3, 5, 7}) {
     if (prime > max_fold) break;
     std::vector<double> overlaps(static_cast<std::size_t>(num_directions));
-    parallelRanges(overlaps.size(), 100, num_threads, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t k = begin; k < end; ++k)
-        overlaps[k] = overlapOrLess(
-            fit, rotationAbout(directionAt(static_cast<int>(k), num_directions), 2.0 * kPi / prime), center);
+    parallelBlocks(overlaps.size(), num_threads, [&](std::size_t k) {
+      overlaps[k] = overlapOrLess(
+          fit, rotationAbout(directionAt(static_cast<int>(k), num_directions), 2.0 * kPi / prime), center);
     });
     for (const int k : peaks(overlaps)) lines.emplace_back(center, directionAt(k, num_directions));
   }
@@ -82,13 +83,7 @@ std::vector<Eigen::Vector3d> axisCenters(const RotationFit& fit) {
                                            : std::vector{mass};
 }
 
-/// Whether a line is one of \p lines.
-bool isKnown(const std::vector<Line3d>& lines, const Line3d& line) {
-  return std::any_of(lines.begin(), lines.end(), [&](const Line3d& other) {
-    return angleBetweenLines(other.direction(), line.direction()) < kRotation.same_line &&
-           (line.origin() - other.origin()).cross(other.direction()).norm() < kRotation.same_line;
-  });
-}
+constexpr MergeTolerance kSameLine{kRotation.same_line, kRotation.same_line};
 
 /// Folds in [2, \p max_fold] whose rotations by 2 pi / n overlap best with the surface, of those that overlap as well
 /// as half the rotation: one of at most small_fold, and one of all where that is another.
@@ -157,7 +152,7 @@ std::optional<RotationSet> fittedRotation(const RotationFit& fit, const Line3d& 
     overlap = its_overlap;
     best = std::move(other);
   }
-  if (overlap < kRotation.rough_overlap || isKnown(tried, lineOf(best, start))) return std::nullopt;
+  if (overlap < kRotation.rough_overlap || kSameLine.anySame(tried, lineOf(best, start))) return std::nullopt;
   best = fit.closelyFitted(best);
   return fit.overlap(best) < kRotation.fair_overlap ? std::nullopt : std::optional(best);
 }
@@ -303,9 +298,9 @@ std::optional<FoldAxis> AxisFinder::axisAbout(const Line3d& line) {
 void AxisFinder::judge(const std::vector<Line3d>& lines) {
   for (const Line3d& start : lines) {
     if (isRound() || axes_.size() >= kRotation.max_axes) break;
-    if (isKnown(tried_, start)) continue;
+    if (kSameLine.anySame(tried_, start)) continue;
     const std::optional<RotationSet> rotation = fittedRotation(fit_, start, options_.max_fold, tried_);
-    const bool is_new = rotation && !isKnown(tried_, lineOf(*rotation, start));
+    const bool is_new = rotation && !kSameLine.anySame(tried_, lineOf(*rotation, start));
     tried_.push_back(start);
     if (!is_new) continue;
     const Line3d line = lineOf(*rotation, start);
@@ -321,7 +316,7 @@ void AxisFinder::judge(const std::vector<Line3d>& lines) {
     if (axis->fold == 0) axes_.clear();
     axes_.push_back(std::move(*axis));
   }
-  std::stable_sort(axes_.begin(), axes_.end(), [](const FoldAxis& a, const FoldAxis& b) { return a.fold > b.fold; });
+  sortFalling(axes_, &FoldAxis::fold);
 }
 
 }  // namespace pcl_symmetry

@@ -5,13 +5,14 @@
 #include <cmath>
 
 #include "core/base/constants.h"
-#include "core/base/logistic.h"
 #include "core/base/parallel.h"
+#include "core/base/statistics.h"
 #include "core/base/symmetric_solvers.h"
-#include "core/evidence/evidence_rules.h"
+#include "core/evidence/surface_samples.h"
 #include "core/geometry/cloud_extent.h"
 #include "core/geometry/point_samples.h"
 #include "core/rotation/rotation_confidence_fit.h"
+#include "pcl_symmetry/core/rotation_group.h"
 
 namespace pcl_symmetry {
 
@@ -57,10 +58,7 @@ Eigen::Vector4d slopeOf(const std::array<Eigen::Isometry3d, 4>& beside, const Ei
 }  // namespace
 
 Eigen::Isometry3d motionAboutLine(const Line3d& line, double angle) {
-  Eigen::Isometry3d motion = Eigen::Isometry3d::Identity();
-  motion.linear() = Eigen::AngleAxisd(angle, line.direction()).toRotationMatrix();
-  motion.translation() = line.origin() - motion.linear() * line.origin();
-  return motion;
+  return motionFixing(line.origin(), rotationAbout(line.direction(), angle));
 }
 
 RotationEvidence::RotationEvidence(const NormalizedCloud& cloud, double tolerance, std::uint64_t seed)
@@ -167,7 +165,7 @@ void RotationEvidence::addPulls(const IspSurface& surface, const Line3d& line, d
 }
 
 Line3d RotationEvidence::fitted(const IspSurface& surface, const Line3d& start, const std::vector<double>& angles,
-                                const std::vector<int>& samples, const std::array<double, 6>& widths) const {
+                                const std::vector<int>& samples, const ScanAxisRules::Widths& widths) const {
   // Tilts about the point of the line among the points, so that they and the shifts are independent.
   Line3d line(start.projection(Eigen::Vector3d::Zero()), start.direction());
   std::vector<std::vector<int>> closest(angles.size(), std::vector<int>(samples.size(), -1));

@@ -5,10 +5,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/base/logistic.h"
-#include "core/base/median.h"
 #include "core/base/parallel.h"
-#include "core/evidence/evidence_rules.h"
+#include "core/base/statistics.h"
+#include "core/evidence/surface_samples.h"
 #include "core/geometry/point_samples.h"
 #include "core/geometry/small_motion.h"
 #include "core/refinement/landing.h"
@@ -68,7 +67,7 @@ RotationFit::RotationFit(Points points, const GaussianEdt& edt, RotationLimits l
       std::make_unique<SurfaceDiscs>(p, geometry, single ? 0.0f : kEvidence.disc_radius, static_cast<float>(farthest));
   surface->grid = std::make_unique<ClosestPointGrid>(p, 32);
   surface->own_distances.resize(static_cast<std::size_t>(p.cols()));
-  parallelRanges(surface->own_distances.size(), 512, num_threads, [&](std::size_t begin, std::size_t end) {
+  parallelPoints(surface->own_distances.size(), num_threads, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i)
       surface->own_distances[i] = surface->discs->ownDistance(static_cast<int>(i), kEvidence.new_point_factor);
   });

@@ -5,8 +5,8 @@
 #include <memory>
 #include <vector>
 
+#include "core/evidence/surface_samples.h"
 #include "core/geometry/neighbor_lists.h"
-#include "core/geometry/surface_discs.h"
 #include "core/geometry/surface_normals.h"
 #include "pcl_symmetry/core/gaussian_edt.h"
 

@@ -8,11 +8,12 @@
 #include "core/base/constants.h"
 #include "core/base/parallel.h"
 #include "core/base/random.h"
+#include "core/base/statistics.h"
+#include "core/geometry/closest_points.h"
 #include "core/geometry/directions.h"
 #include "core/geometry/geometry_rules.h"
 #include "core/geometry/point_samples.h"
-#include "core/geometry/revolution_of_normals.h"
-#include "core/geometry/search_views.h"
+#include "core/geometry/surface_normals.h"
 #include "core/geometry/usable_points.h"
 #include "pcl_symmetry/core/axial_transform.h"
 
@@ -26,31 +27,7 @@ struct AxisStart {
   int fold;
 };
 
-const Line3d& lineOf(const AxisStart& start) {
-  return start.line;
-}
-
-const Line3d& lineOf(const Line3d& line) {
-  return line;
-}
-
-/// Two lines within both limits are one.
-struct LineTolerance {
-  double angle;   ///< radians
-  double offset;  ///< between the lines near the middle of the points, normalized frame
-
-  bool same(const Line3d& a, const Line3d& b) const {
-    return std::abs(a.direction().dot(b.direction())) > std::cos(angle) &&
-           a.distance(b.projection(Eigen::Vector3d::Zero())) < offset;
-  }
-
-  template <typename List>
-  bool anySame(const List& list, const Line3d& line) const {
-    return std::any_of(list.begin(), list.end(), [&](const auto& entry) { return same(lineOf(entry), line); });
-  }
-};
-
-constexpr LineTolerance kSameStart{kScanAxes.same_start_angle, kScanAxes.same_start_offset},
+constexpr MergeTolerance kSameStart{kScanAxes.same_start_angle, kScanAxes.same_start_offset},
     kSameCoarsely{kScanAxes.coarse_angle, kScanAxes.coarse_distance},
     kSameFitted{kScanAxes.fitted_angle, kScanAxes.fitted_offset},
     kSameAxis{kScanAxes.same_axis_angle, kScanAxes.same_axis_offset};
@@ -87,7 +64,7 @@ std::vector<AxisStart> startsFromNormals(const NormalizedCloud& cloud, std::uint
       found[i] = {is_line ? -static_cast<double>(inliersOf(line).size()) : 1.0, line};
     }
   });
-  found.erase(std::remove_if(found.begin(), found.end(), [](const auto& one) { return one.first > 0.0; }), found.end());
+  eraseIf(found, [](const auto& one) { return one.first > 0.0; });
   std::stable_sort(found.begin(), found.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
   std::vector<AxisStart> starts;
   for (const auto& [unused, line] : found) {
@@ -95,7 +72,8 @@ std::vector<AxisStart> startsFromNormals(const NormalizedCloud& cloud, std::uint
     const std::vector<int> inliers = inliersOf(line);
     if (inliers.empty()) break;
     const Line3d fitted = axisOfNormals(cloud.points, normals, inliers);
-    if (!kSameStart.anySame(starts, fitted) && fitted.origin().norm() < 2.0) starts.push_back({fitted, 0});
+    if (!kSameStart.anySame(starts, fitted, &AxisStart::line) && fitted.origin().norm() < 2.0)
+      starts.push_back({fitted, 0});
   }
   return starts;
 }
@@ -149,7 +127,7 @@ std::vector<AxisStart> startsFromTransform(const NormalizedCloud& cloud, std::ui
   for (const std::size_t bin : bins) {
     if (starts.size() == kScanAxes.coarse_maxima) break;
     const Line3d line = grid.axis(grid.bin(bin));
-    if (kSameCoarsely.anySame(starts, line)) continue;
+    if (kSameCoarsely.anySame(starts, line, &AxisStart::line)) continue;
     int fold = 2;
     for (std::size_t i = 0; i < map.folds.size(); ++i)
       if (map.values[i][bin] >= map.greatest[bin] - kScanAxes.coarse_equal) fold = std::max(fold, map.folds[i]);
@@ -207,8 +185,7 @@ public:
     constexpr OffLimits rough{kScanAxes.rough_factor * kScanAxes.max_off,
                               kScanAxes.rough_factor * kScanAxes.max_far};  // from both
     const auto roughly = [&](double angle) {
-      return evidence_.roughly(Eigen::Affine3d(motionAboutLine(line, angle)), kScanAxes.rough_slack, rough.off,
-                               rough.far);
+      return evidence_.roughly(Eigen::Affine3d(motionAboutLine(line, angle)), kScanAxes.rough_slack, rough.off, rough.far);
     };
     std::optional<JudgedLine> best;
     const auto take = [&](const JudgedLine& judged) {
@@ -294,12 +271,8 @@ std::vector<SymmetryRotation> scanAxes(const RotationEvidence& evidence, const s
     result[i].confidence = rotationConfidence(result[i], signs[i]);
     if (evidence_of_all) evidence_of_all->push_back({result[i], signs[i]});
   }
-  result.erase(
-      std::remove_if(result.begin(), result.end(),
-                     [&](const SymmetryRotation& rotation) { return rotation.confidence < options.min_possible; }),
-      result.end());
-  std::stable_sort(result.begin(), result.end(),
-                   [](const SymmetryRotation& a, const SymmetryRotation& b) { return a.confidence > b.confidence; });
+  eraseIf(result, [&](const SymmetryRotation& rotation) { return rotation.confidence < options.min_possible; });
+  sortFalling(result, &SymmetryRotation::confidence);
   return result;
 }
 
@@ -318,14 +291,11 @@ std::vector<SymmetryAxis> withRoundAxes(const RotationEvidence& evidence, std::v
                                         const std::vector<SymmetryRotation>& rotations,
                                         const ScanAxesOptions& options) {
   const NormalizedCloud& cloud = evidence.cloud();
-  axes.erase(std::remove_if(axes.begin(), axes.end(),
-                            [&](const SymmetryAxis& axis) {
-                              const RotationShares all = roundRotations([&](double angle) {
-                                return evidence.exactly(Eigen::Affine3d(motionAboutLine(cloud.lineOf(axis), angle)));
-                              });
-                              return all.far > kScanAxes.max_round_far;
-                            }),
-             axes.end());
+  eraseIf(axes, [&](const SymmetryAxis& axis) {
+    const RotationShares all = roundRotations(
+        [&](double angle) { return evidence.exactly(Eigen::Affine3d(motionAboutLine(cloud.lineOf(axis), angle))); });
+    return all.far > kScanAxes.max_round_far;
+  });
   for (const SymmetryRotation& rotation : rotations) {
     // However probable: a handle that was seen contradicts.
     const bool is_contradicted = rotation.off > kScanAxes.max_round_off || rotation.far > kScanAxes.max_round_far;

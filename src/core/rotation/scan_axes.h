@@ -43,7 +43,7 @@ std::vector<SymmetryRotation> rotationsOfScan(const PointsRef& points, const Gau
 
 /// The axes of revolution of a scan, checked by rotations: those that throw a visible handle into empty space
 /// are dropped, the others moved to where rotations fit best, and round bodies added that showed too few planes.
-/// \param axes input frame, as from collectFamilies().
+/// \param axes input frame, as from findFamilies().
 /// \param rotations as from scanAxes().
 std::vector<SymmetryAxis> withRoundAxes(const RotationEvidence& evidence, std::vector<SymmetryAxis> axes,
                                         const std::vector<SymmetryRotation>& rotations, const ScanAxesOptions& options);

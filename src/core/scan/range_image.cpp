@@ -10,7 +10,7 @@
 #include <utility>
 
 #include "core/base/constants.h"
-#include "core/base/median.h"
+#include "core/base/statistics.h"
 #include "core/scan/scan_rules.h"
 #include "pcl_symmetry/core/closest_point_search.h"
 #include "pcl_symmetry/core/visibility.h"

@@ -5,8 +5,8 @@
 #include <limits>
 #include <numeric>
 
-#include "core/base/median.h"
 #include "core/base/random.h"
+#include "core/base/statistics.h"
 #include "core/base/symmetric_solvers.h"
 #include "core/geometry/directions.h"
 #include "core/scan/scan_rules.h"

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "core/base/constants.h"
-#include "core/base/median.h"
+#include "core/base/statistics.h"
 #include "core/geometry/surface_normals.h"
 #include "core/scan/scan_rules.h"
 #include "pcl_symmetry/core/closest_point_search.h"

@@ -7,8 +7,8 @@
 #include <utility>
 
 #include "core/base/constants.h"
-#include "core/base/median.h"
 #include "core/base/random.h"
+#include "core/base/statistics.h"
 #include "core/geometry/point_samples.h"
 #include "core/segmentation/segmentation_rules.h"
 #include "pcl_symmetry/core/closest_point_search.h"

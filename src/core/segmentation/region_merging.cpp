@@ -6,7 +6,7 @@
 #include <numeric>
 #include <utility>
 
-#include "core/base/logistic.h"
+#include "core/base/statistics.h"
 #include "core/segmentation/labels.h"
 #include "core/segmentation/segmentation_rules.h"
 

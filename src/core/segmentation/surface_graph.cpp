@@ -305,7 +305,7 @@ std::vector<std::vector<int>> nearestOthers(const PointsRef& points, const Close
   const auto size = static_cast<std::size_t>(points.cols());
   const std::size_t num_others = std::min<std::size_t>(num_neighbors, size - 1), num_found = num_others + 1;
   std::vector<std::vector<int>> neighbors(size);
-  parallelRanges(size, 1024, num_threads, [&](std::size_t begin, std::size_t end) {
+  parallelPoints(size, num_threads, [&](std::size_t begin, std::size_t end) {
     std::vector<int> found;
     std::vector<float> sq_distances;
     search.search(points.middleCols(begin, end - begin), static_cast<int>(num_found), found, sq_distances);

@@ -65,7 +65,7 @@ std::vector<ReflectionPlane> refined(const std::vector<ReflectionPlane>& starts,
   IspOptions isp;
   isp.sigma = edt.sigma();
   isp.final_sigma = kSegmentation.final_sigma * edt.sigma();
-  const PlaneTolerance same_basin{kSameMaximum.angle, kSegmentation.max_moved};
+  const MergeTolerance same_basin{kSameMaximum.angle, kSegmentation.max_moved};
   std::vector<ReflectionPlane> ends(starts.size()), moved(starts.size());
   parallelBlocks(starts.size(), num_threads, [&](std::size_t i) {
     ends[i] = refineSymmetricPoints(surface, reflected, starts[i], isp).plane;

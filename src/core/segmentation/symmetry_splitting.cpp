@@ -11,7 +11,6 @@
 #include "core/segmentation/labels.h"
 #include "core/segmentation/segment_borders.h"
 #include "core/segmentation/segmentation_rules.h"
-#include "core/segmentation/surface_patches.h"
 #include "core/segmentation/symmetry_features.h"
 
 namespace pcl_symmetry {

@@ -7,7 +7,7 @@
 #include <stdexcept>
 #include <vector>
 
-#include "core/base/median.h"
+#include "core/base/statistics.h"
 #include "core/geometry/usable_points.h"
 #include "pcl_symmetry/core/point_set.h"
 

@@ -10,8 +10,7 @@ namespace pcl_symmetry {
 
 namespace {
 
-constexpr std::size_t points_together = 1024;  // they stay in the first cache
-constexpr std::size_t stop_every = 32;         // directions between two looks at the smallest value
+constexpr std::size_t stop_every = 32;  // directions between two looks at the smallest value
 
 /// Coordinates of points, each in an array of its own.
 struct PointBlock {
@@ -70,7 +69,7 @@ std::vector<float> greatestThrough(const std::vector<float>& values, const std::
   std::stable_sort(rows.begin(), rows.end(),
                    [](const DirectionRow& a, const DirectionRow& b) { return a.greatest > b.greatest; });
   std::vector<float> best(points.cols(), 0.0f);
-  parallelRanges(points.cols(), points_together, num_threads, [&](std::size_t begin, std::size_t end) {
+  parallelPoints(points.cols(), num_threads, [&](std::size_t begin, std::size_t end) {
     const int size = static_cast<int>(end - begin);
     const Eigen::MatrixX3f block = points.middleCols(begin, size).transpose();
     const PointBlock coordinates{block.col(0).data(), block.col(1).data(), block.col(2).data(), size};

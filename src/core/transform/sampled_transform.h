@@ -47,4 +47,8 @@ inline double seenSymmetry(double d, double f) {
   return (1.0 + kDoubt) * d / (d + f + kDoubt);
 }
 
+/// D of Equation 2 for one plane, input frame: the full sum over the cells of the EDT.
+/// \return D in [0, 1].
+double correlation(const GaussianEdt& edt, const ReflectionPlane& plane, int num_threads);
+
 }  // namespace pcl_symmetry

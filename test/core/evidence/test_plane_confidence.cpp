@@ -1,5 +1,5 @@
 /// What speaks for a plane: its support, how it is fixed, and the probability that follows.
-#include "core/base/logistic.h"
+#include "core/base/statistics.h"
 #include "core/evidence/plane_confidence.h"
 
 #include <gtest/gtest.h>

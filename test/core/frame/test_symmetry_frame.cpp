@@ -7,7 +7,6 @@
 #include <cmath>
 
 #include "core/frame/canonical_frame.h"
-#include "core/frame/leveled_frames.h"
 #include "core/frame/plane_profiles.h"
 #include "core/frame/probable_frames.h"
 #include "core/geometry/cloud_extent.h"

@@ -10,9 +10,8 @@
 #include <string>
 
 #include "core/base/random.h"
-#include "core/geometry/flann_search.h"
+#include "core/geometry/closest_points.h"
 #include "core/geometry/neighbor_lists.h"
-#include "core/geometry/search_views.h"
 #include "shapes/shapes.h"
 
 namespace {

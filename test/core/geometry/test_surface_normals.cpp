@@ -13,7 +13,6 @@
 #include "core/base/symmetric_solvers.h"
 #include "core/geometry/cloud_extent.h"
 #include "core/geometry/directions.h"
-#include "core/geometry/revolution_of_normals.h"
 #include "shapes/shapes.h"
 
 namespace pcl_symmetry {

@@ -5,7 +5,6 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
-#include <cmath>
 #include <optional>
 #include <stdexcept>
 #include <utility>
@@ -13,7 +12,6 @@
 #include "core/registration/pose_scoring.h"
 #include "core/registration/pose_starts.h"
 #include "core/registration/posed_surface.h"
-#include "core/registration/ranked_poses.h"
 #include "pcl_symmetry/core/visibility.h"
 #include "shapes/scans.h"
 #include "shapes/shapes.h"

@@ -1,11 +1,27 @@
 #pragma once
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
+#include <functional>
 #include <utility>
 #include <vector>
 
 namespace pcl_symmetry {
+
+/// Takes out the entries that something is true of.
+template <typename List, typename Predicate>
+void eraseIf(List& list, const Predicate& is_out) {
+  list.erase(std::remove_if(list.begin(), list.end(), is_out), list.end());
+}
+
+/// Sorts by a member of the entries or by what a function returns of them, the greatest first; equal ones keep their
+/// order.
+template <typename List, typename Value>
+void sortFalling(List& list, const Value& value) {
+  std::stable_sort(list.begin(), list.end(),
+                   [&](const auto& a, const auto& b) { return std::invoke(value, a) > std::invoke(value, b); });
+}
 
 /// The upper median: with an even number of values, the greater of the two in the middle.
 /// \param values at least one.
@@ -26,6 +42,16 @@ std::pair<T, T> trimmedExtent(std::vector<T> values, std::size_t num_cut) {
   const T least = *low;
   std::nth_element(values.begin(), high, values.end());
   return {least, *high};
+}
+
+/// \return the probability of log odds.
+inline double logistic(double log_odds) {
+  return 1.0 / (1.0 + std::exp(-log_odds));
+}
+
+/// \return a probability whose odds are multiplied by a factor.
+inline double withOdds(double probability, double factor) {
+  return factor * probability / (1.0 - probability + factor * probability);
 }
 
 }  // namespace pcl_symmetry
