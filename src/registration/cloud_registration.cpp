@@ -165,19 +165,16 @@ std::vector<RankedPose> mostConfident(const CloudPair& clouds, const std::vector
 
 /// See PoseEvidence::uniqueness.
 /// \param poses the judged one first.
-double uniquenessOf(const CloudPair& clouds, const std::vector<RankedPose>& poses) {
+/// \param confidence of that one.
+double uniquenessOf(const CloudPair& clouds, const std::vector<RankedPose>& poses, double confidence) {
   if (clouds.model().seen) return 1.0;  // symmetries of what was seen from one side are not known
-  const auto odds = [&](const RankedPose& pose) {
-    const double confidence = poseConfidence(clouds.evidence(pose));
-    return confidence / (1.0 - confidence);
-  };
-  const double best = odds(poses.front());
-  double sum = best;
+  const auto odds = [](double probability) { return probability / (1.0 - probability); };
+  double others = 0.0;
   for (std::size_t k = 1; k < poses.size(); ++k)
     if (poses[k].score.merit() > poses.front().score.merit() - kRegistration.like_merit &&
         !isSymmetry(poses[k].T_model_scan * poses.front().T_model_scan.inverse(), clouds.model()))
-      sum += odds(poses[k]);
-  return best / sum;
+      others += odds(poseConfidence(clouds.evidence(poses[k])));
+  return odds(confidence) / (odds(confidence) + others);
 }
 
 /// Leaves those of the poses that are around a guess.
@@ -288,7 +285,7 @@ CloudRegistration registerClouds(const Points& source, const std::optional<Visib
     done("parts");
   }
   if (result.confidence >= kRegistration.min_confidence) {
-    result.evidence.uniqueness = uniquenessOf(clouds, poses);
+    result.evidence.uniqueness = uniquenessOf(clouds, poses, result.confidence);
     result.confidence = poseConfidence(result.evidence);
   }
   for (const RankedPose& pose : poses) result.poses.push_back({clouds.toInput(pose.T_model_scan), pose.score});
