@@ -13,6 +13,15 @@ namespace pcl_symmetry::detail {
 
 namespace {
 
+/// Distance within which a scan and the surface of a model are one: what the scanner resolves.
+/// \param radius of the model, > 0.
+double modelTolerance(const PosedSurface& scan, double radius) {
+  const double error = scan.seen ? scan.seen->depthError(scan.points.rowwise().mean().cast<double>()) : 0.0;
+  const double tolerance = std::max(
+      {kRecognition.min_tolerance * radius, kRecognition.noises * scan.noise, kRecognition.depth_errors * error});
+  return std::min(tolerance, kRecognition.max_tolerance * radius);
+}
+
 /// A point of a model that nothing of the model hides from a scanner, in the frame of the scan.
 struct VisiblePoint {
   Eigen::Index index;  ///< in the order of the model
@@ -55,13 +64,6 @@ std::vector<VisiblePoint> visiblePoints(const PosedSurface& scan, const PosedSur
 }
 
 }  // namespace
-
-double modelTolerance(const PosedSurface& scan, double radius) {
-  const double error = scan.seen ? scan.seen->depthError(scan.points.rowwise().mean().cast<double>()) : 0.0;
-  const double tolerance = std::max(
-      {kRecognition.min_tolerance * radius, kRecognition.noises * scan.noise, kRecognition.depth_errors * error});
-  return std::min(tolerance, kRecognition.max_tolerance * radius);
-}
 
 Eigen::Isometry3d posedInPicture(const PosedSurface& scan, const PosedSurface& model,
                                  const Eigen::Isometry3d& T_model_scan) {

@@ -7,10 +7,6 @@
 
 namespace pcl_symmetry::detail {
 
-/// Distance within which a scan and the surface of a model are one: what the scanner resolves.
-/// \param radius of the model, > 0.
-double modelTolerance(const PosedSurface& scan, double radius);
-
 /// Steps of least squares that bring the visible surface of a model onto what a scanner measured along the same rays,
 /// also beside the points of the scan: what was cut off from an object helps to pose it.
 /// \param scan with what its scanner saw.

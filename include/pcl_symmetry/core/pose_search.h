@@ -41,8 +41,8 @@ struct PoseEvidence {
   double conflict = 0.0;    ///< that of PoseScore, in [0, 2]
   double noise = 0.0;       ///< of the noisier cloud, in diameters of the smaller one
   double size_ratio = 1.0;  ///< diameter of the source over that of the target
-  /// Probability of the pose over that of all that were found, in (0, 1]: 0.5 where another one fits as well. Poses
-  /// that differ by a symmetry of the target are one.
+  /// Share of the pose in the odds of all of like merit, in (0, 1]: 0.5 where another one fits as well. Poses that
+  /// differ by a symmetry of the model are one. 1 between two scans, and where the pose alone does not convince.
   double uniqueness = 1.0;
 };
 

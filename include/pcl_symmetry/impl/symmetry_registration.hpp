@@ -90,7 +90,8 @@ void SymmetryRegistration<PointSource, PointTarget, Scalar>::findPose(const Poin
   }
   result_.covariance.reset();
   std::ostringstream reason;
-  const bool fits = result_.confidence >= min_confidence_ * result_.evidence.uniqueness;
+  const double uniqueness = result_.evidence.uniqueness;
+  const bool fits = uniqueness < 1.0 && result_.confidence >= min_confidence_ * uniqueness;
   reason << (fits ? "another pose fits as well" : "nothing fits") << (options_.around ? " around the guess" : "")
          << ": in the best pose, with a confidence of " << std::round(100.0 * result_.confidence) / 100.0 << ", "
          << result_.doubt();

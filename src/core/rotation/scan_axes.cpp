@@ -185,7 +185,8 @@ public:
     constexpr OffLimits rough{kScanAxes.rough_factor * kScanAxes.max_off,
                               kScanAxes.rough_factor * kScanAxes.max_far};  // from both
     const auto roughly = [&](double angle) {
-      return evidence_.roughly(Eigen::Affine3d(motionAboutLine(line, angle)), kScanAxes.rough_slack, rough.off, rough.far);
+      return evidence_.roughly(Eigen::Affine3d(motionAboutLine(line, angle)), kScanAxes.rough_slack, rough.off,
+                               rough.far);
     };
     std::optional<JudgedLine> best;
     const auto take = [&](const JudgedLine& judged) {

@@ -717,8 +717,8 @@ class PoseEvidence(Result):
     size_ratio: float
     """Diameter of the source over that of the target."""
     uniqueness: float
-    """Probability of the pose over that of all of like merit, in (0, 1]: 0.5 where another one fits as well. Poses that
-    differ by a symmetry of the target are one."""
+    """Share of the pose in the odds of all of like merit, in (0, 1]: 0.5 where another one fits as well. Poses that differ by
+    a symmetry of the model are one. 1 between two scans, and where the pose alone does not convince."""
 
 
 @dataclass(frozen=True, eq=False, repr=False)

@@ -15,8 +15,8 @@
 #include <vector>
 
 #include "core/base/k_means.h"
-#include "core/base/statistics.h"
 #include "core/base/random.h"
+#include "core/base/statistics.h"
 #include "core/base/watch.h"
 
 namespace {
