@@ -32,36 +32,24 @@ bool isWire(const PointsRef& points) {
   return shareNearBorders(openBorders(drawn, *search, geometry.normals, 1), geometry) > kScan.wire;
 }
 
-/// Whether the surface bulges toward the viewer: on average it is farther away the farther it is from the middle of
-/// the picture.
-bool bulgesToward(const PointsRef& points, const Eigen::Vector3d& center, const Eigen::Vector3d& viewpoint) {
-  const Eigen::Vector3d forward = (center - viewpoint).normalized();
-  double depth_sum = 0.0, sq_across_sum = 0.0, product_sum = 0.0;
-  for (Eigen::Index i = 0; i < points.cols(); ++i) {
-    const Eigen::Vector3d x = points.col(i).cast<double>() - center;
-    const double depth = forward.dot(x), sq_across = x.squaredNorm() - depth * depth;
-    depth_sum += depth;
-    sq_across_sum += sq_across;
-    product_sum += depth * sq_across;
-  }
-  return product_sum * static_cast<double>(points.cols()) > depth_sum * sq_across_sum;
-}
-
 /// A scanner so far away that its rays are parallel leaves the same density from behind: then the bulge decides.
-Eigen::Vector3d onItsSide(const PointsRef& points, const ScanDensity& density, const Eigen::Vector3d& best) {
-  const Eigen::Vector3d center = density.ball().center, behind = 2.0 * center - best;
+Eigen::Vector3d onItsSide(const ScanDensity& density, const Eigen::Vector3d& best) {
+  const Eigen::Vector3d center = density.ball().center, mirrored = 2.0 * center - best;
+  const Eigen::Vector3d far = center + kScan.greatest_distance * density.ball().radius * (center - best).normalized();
+  const Eigen::Vector3d& behind = density.unexplained(far) < density.unexplained(mirrored) ? far : mirrored;
   const bool as_good = density.unexplained(behind) <= kScan.as_good * density.unexplained(best) + kScan.as_good_beyond;
-  return as_good && bulgesToward(points, center, behind) ? behind : best;
+  return as_good && !density.bulgesToward(best) ? behind : best;
 }
 
 /// The view from the position from which the points have the fewest layers, of those from which they may be seen at
 /// all. Two or three flat pieces are as dense as seen from several positions.
 template <typename SeenFrom>
-std::optional<InferredView> leastLayered(const PointsRef& points, const std::vector<Eigen::Vector3d>& positions,
+std::optional<InferredView> leastLayered(const PointsRef& points, const ScanDensity& density, double max_unexplained,
                                          const SeenFrom& seenFrom) {
   std::optional<InferredView> view;
   double least = std::numeric_limits<double>::infinity();
-  for (const Eigen::Vector3d& position : positions) {
+  for (const Eigen::Vector3d& best : density.viewpoints(max_unexplained)) {
+    const Eigen::Vector3d position = onItsSide(density, best);
     const double layered = layeredShare(points, position);
     if (layered >= least) continue;
     if (std::optional<Visibility> seen = seenFrom(position, kScan.surely_even)) {
@@ -95,11 +83,11 @@ std::optional<InferredView> inferView(const PointsRef& points, const Eigen::Vect
     if (by_patches > max_uneven) return std::optional<Visibility>();
     return spaceSeenFrom(points, position, by_patches <= kScan.surely_even && surely ? kSureLimits : kLimits);
   };
-  const Eigen::Vector3d position = as_stored ? stored : onItsSide(points, density, *best);
+  const Eigen::Vector3d position = as_stored ? stored : onItsSide(density, *best);
   std::optional<InferredView> view;
   if (std::optional<Visibility> seen = seenFrom(position, kScan.max_uneven))
     view = {std::move(*seen), position, as_stored};
-  if (!view) view = leastLayered(points, density.viewpoints(std::min(as_good, kScan.max_of_several)), seenFrom);
+  if (!view) view = leastLayered(points, density, std::min(as_good, kScan.max_of_several), seenFrom);
   if (!view || (!surely && isWire(points))) return std::nullopt;
   return view;
 }

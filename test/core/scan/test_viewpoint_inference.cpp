@@ -46,6 +46,23 @@ TEST(InferView, FindsTheViewpointOfAScanInAnyPose) {
   }
 }
 
+// A half pipe, bent so that its ends come toward the scanner: parallel rays leave the same density from behind.
+TEST(InferView, ParallelRaysCameFromTheSideThatTheSurfaceBulgesTo) {
+  constexpr int kRows = 41, kColumns = 121;
+  Points points(3, kRows * kColumns);
+  for (int i = 0; i < kRows * kColumns; ++i) {
+    const double x = 0.045 * (i % kColumns - 60), y = 0.045 * (i / kColumns - 20);
+    points.col(i) = Eigen::Vector3d(x, y, std::sqrt(1.0 - y * y) + 0.03 * x * x).cast<float>();
+  }
+  for (const double side : {1.0, -1.0}) {
+    Points turned = points;
+    turned.bottomRows<2>() *= static_cast<float>(side);
+    const auto view = inferView(turned, kElsewhere);
+    ASSERT_TRUE(view);
+    EXPECT_LT(angleBetween(view->position, {0.0, 0.0, side}), 15.0);
+  }
+}
+
 TEST(InferView, FewOrDegeneratePointsHaveNone) {
   EXPECT_FALSE(inferView(Points(3, 0), kElsewhere));
   EXPECT_FALSE(inferView(Points::Ones(3, 100), kElsewhere));
