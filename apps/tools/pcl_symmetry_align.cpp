@@ -366,6 +366,8 @@ Motion registerTo(const Console& console, const InputShape& input, const InputSh
                              {"overlap_target", evidence.overlap_target},
                              {"agreement", evidence.agreement},
                              {"on_surface", evidence.on_surface},
+                             {"contradicted", evidence.contradicted},
+                             {"missing", evidence.missing},
                              {"noise", evidence.noise},
                              {"size_ratio", evidence.size_ratio},
                              {"uniqueness", evidence.uniqueness}};

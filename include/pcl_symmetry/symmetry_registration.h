@@ -66,8 +66,8 @@ struct CloudRegistration : RegisteredPose {
   /// \return what speaks against the best pose, one sentence without a full stop.
   std::string doubt() const;
 
-  /// Distinct poses by falling merit, at most PoseSearchOptions::max_poses: those that symmetry makes equal have
-  /// like merits. Where the first convinces as little as those of parts of the clouds, by falling confidence.
+  /// Distinct poses, at most PoseSearchOptions::max_poses, best first: those of like merit by falling confidence, or
+  /// all where none of these convinced, then by falling merit. Poses that symmetry makes equal have like merits.
   std::vector<RegisteredPose> poses;
   /// How uncertain the best pose is: the covariance of the small motion (w, t) of the target's frame that makes it
   /// true: a point x of the aligned source belongs at x + w x x + t. Rotation vector w, radians, then translation t,

@@ -231,7 +231,8 @@ void addRegistration(py::module_& module) {
       .def_readonly("overlap_target", &PoseEvidence::overlap_target)
       .def_readonly("agreement", &PoseEvidence::agreement)
       .def_readonly("on_surface", &PoseEvidence::on_surface)
-      .def_readonly("conflict", &PoseEvidence::conflict)
+      .def_readonly("contradicted", &PoseEvidence::contradicted)
+      .def_readonly("missing", &PoseEvidence::missing)
       .def_readonly("noise", &PoseEvidence::noise)
       .def_readonly("size_ratio", &PoseEvidence::size_ratio)
       .def_readonly("uniqueness", &PoseEvidence::uniqueness);

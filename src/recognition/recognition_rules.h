@@ -27,8 +27,6 @@ struct RecognitionRules {
   double depth_errors = 2.0;    // or of the depths of a camera,
   double max_tolerance = 0.08;  // and at most
   double near = 0.24;           // a model, within which points are to be on it
-  double min_cosine = 0.17;     // between ray and normal of a visible point: 80 degrees
-  double hidden_depth = 0.08;   // behind the front of the model itself
   int picture_steps = 8;        // that pose a model in the picture
   double picture_reach = 3.0;   // tolerances, of the Gaussian at the first step
 

@@ -1,6 +1,7 @@
 #include "pcl_symmetry/symmetry_registration.h"
 
 #include <algorithm>
+#include <limits>
 #include <utility>
 
 #include "core/base/check.h"
@@ -61,7 +62,7 @@ public:
 
   /// What decides whether a pose is right, of source and target.
   PoseEvidence evidence(const RankedPose& pose) const {
-    PoseEvidence evidence = poseEvidence(*scan_, *model_, pose.T_model_scan, pose.score);
+    PoseEvidence evidence = poseEvidence(*scan_, *model_, pose.T_model_scan);
     if (swapped_) {
       std::swap(evidence.overlap_source, evidence.overlap_target);
       evidence.size_ratio = 1.0 / evidence.size_ratio;
@@ -153,28 +154,41 @@ std::vector<RankedPose> posesOfParts(const CloudPair& clouds, const CloudRegistr
   return poses;
 }
 
-/// The distinct poses of greatest confidence.
-std::vector<RankedPose> mostConfident(const CloudPair& clouds, const std::vector<RankedPose>& poses, std::size_t most) {
-  std::vector<std::pair<double, RankedPose>> judged;
-  for (const RankedPose& pose : poses) judged.emplace_back(poseConfidence(clouds.evidence(pose)), pose);
-  std::stable_sort(judged.begin(), judged.end(), [](const auto& a, const auto& b) { return a.first > b.first; });
-  std::vector<RankedPose> ranked;
-  for (const auto& [unused, pose] : judged) ranked.push_back(pose);
-  return firstDistinct(ranked, most);
+/// A pose with what speaks for it.
+struct JudgedPose {
+  RankedPose pose;
+  PoseEvidence evidence;
+  double confidence;
+};
+
+/// Poses by falling confidence.
+/// \param poses best first.
+/// \param within of the merit of the first; poses of less are left out.
+std::vector<JudgedPose> judgedPoses(const CloudPair& clouds, const std::vector<RankedPose>& poses, double within) {
+  std::vector<JudgedPose> judged;
+  for (const RankedPose& pose : poses) {
+    if (pose.score.merit() < poses.front().score.merit() - within) continue;
+    const PoseEvidence evidence = clouds.evidence(pose);
+    judged.push_back({pose, evidence, poseConfidence(evidence)});
+  }
+  std::stable_sort(judged.begin(), judged.end(),
+                   [](const auto& a, const auto& b) { return a.confidence > b.confidence; });
+  return judged;
 }
 
 /// See PoseEvidence::uniqueness.
-/// \param poses the judged one first.
-/// \param confidence of that one.
-double uniquenessOf(const CloudPair& clouds, const std::vector<RankedPose>& poses, double confidence) {
+/// \param judged best first, at least one.
+double uniquenessOf(const CloudPair& clouds, const std::vector<JudgedPose>& judged) {
   if (clouds.model().seen) return 1.0;  // symmetries of what was seen from one side are not known
-  const auto odds = [](double probability) { return probability / (1.0 - probability); };
-  double others = 0.0;
-  for (std::size_t k = 1; k < poses.size(); ++k)
-    if (poses[k].score.merit() > poses.front().score.merit() - kRegistration.like_merit &&
-        !isSymmetry(poses[k].T_model_scan * poses.front().T_model_scan.inverse(), clouds.model()))
-      others += odds(poseConfidence(clouds.evidence(poses[k])));
-  return odds(confidence) / (odds(confidence) + others);
+  const auto odds = [](const JudgedPose& pose) { return pose.confidence / (1.0 - pose.confidence); };
+  const RankedPose& best = judged.front().pose;
+  const double best_odds = odds(judged.front());
+  double all = best_odds;
+  for (std::size_t k = 1; k < judged.size(); ++k)
+    if (judged[k].pose.score.merit() > best.score.merit() - kRegistration.like_merit &&
+        !isSymmetry(judged[k].pose.T_model_scan * best.T_model_scan.inverse(), clouds.model()))
+      all += odds(judged[k]) > kRegistration.like_odds * best_odds ? best_odds : odds(judged[k]);
+  return best_odds / all;
 }
 
 /// Leaves those of the poses that are around a guess.
@@ -271,26 +285,27 @@ CloudRegistration registerClouds(const Points& source, const std::optional<Visib
   if (!poses.empty()) poses = refinePoses(clouds.scan(), clouds.model(), poses, inner);
   if (options.around) keepAround(clouds, guess, *options.around, poses);
   done("refine");
-  const auto judge = [&] {
-    if (poses.empty()) return;
-    result.evidence = clouds.evidence(poses.front());
-    result.confidence = poseConfidence(result.evidence);
-  };
-  judge();
-  if (options.search_parts && !options.around && !poses.empty() && result.confidence < kRegistration.min_confidence) {
+  std::vector<JudgedPose> judged = judgedPoses(clouds, poses, kRegistration.like_merit);
+  if (options.search_parts && !options.around && !poses.empty() &&
+      judged.front().confidence < kRegistration.min_confidence) {
     const std::vector<RankedPose> of_parts = posesOfParts(clouds, inner);
     poses.insert(poses.end(), of_parts.begin(), of_parts.end());
-    poses = mostConfident(clouds, poses, static_cast<std::size_t>(search.max_poses));
-    judge();
+    judged = judgedPoses(clouds, poses, std::numeric_limits<double>::infinity());
     done("parts");
   }
-  if (result.confidence >= kRegistration.min_confidence) {
-    result.evidence.uniqueness = uniquenessOf(clouds, poses, result.confidence);
+  if (!judged.empty()) {
+    result.evidence = judged.front().evidence;
+    if (judged.front().confidence >= kRegistration.min_confidence)
+      result.evidence.uniqueness = uniquenessOf(clouds, judged);
     result.confidence = poseConfidence(result.evidence);
+    std::vector<RankedPose> ranked;
+    for (const JudgedPose& one : judged) ranked.push_back(one.pose);
+    ranked.insert(ranked.end(), poses.begin(), poses.end());
+    for (const RankedPose& pose : firstDistinct(ranked, static_cast<std::size_t>(search.max_poses)))
+      result.poses.push_back({clouds.toInput(pose.T_model_scan), pose.score});
+    result.covariance = covarianceOf(clouds, ranked.front(), inner);
   }
-  for (const RankedPose& pose : poses) result.poses.push_back({clouds.toInput(pose.T_model_scan), pose.score});
-  if (!poses.empty()) result.covariance = covarianceOf(clouds, poses.front(), inner);
-  if (poses.empty()) result.poses.push_back({guess, {}});
+  if (result.poses.empty()) result.poses.push_back({guess, {}});
   static_cast<RegisteredPose&>(result) = result.poses.front();
   return result;
 }

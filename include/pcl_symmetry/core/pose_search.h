@@ -38,7 +38,11 @@ struct PoseEvidence {
   /// Lower limit of the share of the scan's points that lie on the surface of the model within 2 % of its radius or
   /// what noise asks for, in [0, 1].
   double on_surface = 0.0;
-  double conflict = 0.0;    ///< that of PoseScore, in [0, 2]
+  /// Of the surface of a cloud that the scanner of the other one would see at this pose, the share that lies in space
+  /// it saw to be empty, before what it measured, in [0, 1]. The greater one where both were scanned; 0 where none was.
+  double contradicted = 0.0;
+  /// The same, the share where it measured nothing, in [0, 1]: beside the cloud or in its holes.
+  double missing = 0.0;
   double noise = 0.0;       ///< of the noisier cloud, in diameters of the smaller one
   double size_ratio = 1.0;  ///< diameter of the source over that of the target
   /// Share of the pose in the odds of all of like merit, in (0, 1]: 0.5 where another one fits as well. Poses that

@@ -8,10 +8,15 @@
 #include "core/evidence/surface_samples.h"
 #include "core/registration/registration_fit.h"
 #include "core/registration/registration_rules.h"
+#include "core/registration/visible_points.h"
 
 namespace pcl_symmetry {
 
 namespace {
+
+double diameterOf(const PosedSurface& surface) {
+  return 2.0 * boundingBall(surface.points).radius;
+}
 
 /// Numbers of points of one surface that are looked at, that face the inside of another, and that lie on it.
 struct Overlap {
@@ -45,6 +50,32 @@ SurfaceDisc discAt(const PosedSurface& surface, int i) {
   return {surface.points.col(i), surface.normals.col(i), surface.spacing[i]};
 }
 
+/// What a scanner should have measured of a surface and did not.
+struct NotMeasured {
+  double contradicted = 0.0, missing = 0.0;  ///< see PoseEvidence
+};
+
+/// \param on_scan where the points of the surface land on the scan.
+NotMeasured notMeasured(const PosedSurface& surface, const PosedSurface& scan, const Eigen::Isometry3d& T_scan_surface,
+                        const Landing& on_scan, double tolerance) {
+  if (!scan.seen) return {};
+  NotMeasured area;
+  double measured = 0.0;
+  int num_judged = 0;
+  for (const VisiblePoint& point :
+       visiblePoints(surface, scan, T_scan_surface, static_cast<int>(on_scan.images.cols()), true)) {
+    const SurfaceDisc closest = discAt(scan, on_scan.closest[point.index]);
+    const double distance = std::sqrt(closest.sqDistance(on_scan.images.col(point.index)));
+    const bool is_measured = std::min(std::abs(point.height), distance) < tolerance;
+    if (!is_measured && point.height < 0.0) continue;  // behind what was measured: nothing is known
+    (is_measured ? measured : std::isinf(point.height) ? area.missing : area.contradicted) += point.cosine;
+    ++num_judged;
+  }
+  if (num_judged < kRegistration.min_visible) return {};
+  const double all = measured + area.contradicted + area.missing;
+  return {area.contradicted / all, area.missing / all};
+}
+
 /// A lower limit of the share of points that lie on the surface: by a width that does not grow with the spacing of the
 /// points, so that few points on a wrong object do not count, and by the discs about the points of the surface, flat
 /// and as wide as these are apart, so that it does not count how densely they lie.
@@ -72,15 +103,13 @@ std::vector<float> discDistances(const PosedSurface& from, const PosedSurface& t
 }
 
 bool isSymmetry(const Eigen::Isometry3d& motion, const PosedSurface& model) {
-  const auto tolerance = static_cast<float>(kRegistration.same_pose * 2.0 * boundingBall(model.points).radius);
+  const auto tolerance = static_cast<float>(kRegistration.same_pose * diameterOf(model));
   const std::vector<float> distances = discDistances(model, model, motion, kRegistration.evidence_points);
   const auto num_on = std::count_if(distances.begin(), distances.end(), [&](float d) { return d < tolerance; });
   return static_cast<double>(num_on) >= kRegistration.symmetric_share * static_cast<double>(distances.size());
 }
 
-PoseEvidence poseEvidence(const PosedSurface& scan, const PosedSurface& model, const Eigen::Isometry3d& T_model_scan,
-                          const PoseScore& score) {
-  const auto diameterOf = [](const PosedSurface& surface) { return 2.0 * boundingBall(surface.points).radius; };
+PoseEvidence poseEvidence(const PosedSurface& scan, const PosedSurface& model, const Eigen::Isometry3d& T_model_scan) {
   const double scan_size = diameterOf(scan), model_size = diameterOf(model), size = std::min(scan_size, model_size);
   const double noise = std::max(scan.noise, model.noise);
   const double tolerance = std::max(kRegistration.tight_tolerance * size, kRegistration.tight_noises * noise);
@@ -93,7 +122,11 @@ PoseEvidence poseEvidence(const PosedSurface& scan, const PosedSurface& model, c
   evidence.overlap_target = of_model.share();
   evidence.agreement = std::min(of_scan.agreement(), of_model.agreement());
   evidence.on_surface = shareOnSurface(on_model, model, noise);
-  evidence.conflict = score.conflict;
+  const double near = std::max(kRegistration.near_tolerance * size, kRegistration.tight_noises * noise);
+  const NotMeasured of_model_in_view = notMeasured(model, scan, T_model_scan.inverse(), on_scan, near),
+                    of_scan_in_view = notMeasured(scan, model, T_model_scan, on_model, near);
+  evidence.contradicted = std::max(of_model_in_view.contradicted, of_scan_in_view.contradicted);
+  evidence.missing = std::max(of_model_in_view.missing, of_scan_in_view.missing);
   evidence.noise = noise / size;
   evidence.size_ratio = scan_size / model_size;
   return evidence;
@@ -110,8 +143,9 @@ std::string doubtOf(const PoseEvidence& evidence) {
   doubt << percent(evidence.overlap_source) << " % of the source lie on the target and "
         << percent(evidence.overlap_target) << " % of the target on the source; where they face each other, "
         << percent(1.0 - evidence.agreement) << " % are apart";
-  if (evidence.conflict > kRegistration.some_conflict)
-    doubt << ", and " << percent(std::min(1.0, evidence.conflict)) << " % lie where a scanner saw empty space";
+  if (evidence.contradicted + evidence.missing > kRegistration.some_not_measured)
+    doubt << "; of the surface that a scanner should have seen, " << percent(evidence.contradicted)
+          << " % lie in space it saw to be empty, and " << percent(evidence.missing) << " % were not measured";
   if (evidence.uniqueness < kRegistration.some_uniqueness)
     doubt << ", and it has " << percent(evidence.uniqueness) << " % of the odds of all poses that fit";
   return doubt.str();
@@ -121,9 +155,9 @@ double poseConfidence(const PoseEvidence& evidence) {
   const std::array<double, kRegistrationFit.size()> terms{
       1.0,
       std::log(evidence.agreement / (1.0 - evidence.agreement)),
-      std::log(std::min(evidence.overlap_source, evidence.overlap_target) + 0.01),
       evidence.on_surface,
-      std::min(evidence.conflict, kRegistration.max_conflict),
+      evidence.contradicted,
+      evidence.missing,
       std::log(std::clamp(evidence.noise, kRegistration.min_noise, kRegistration.max_noise) / 0.001 + 0.5),
       std::abs(std::log(evidence.size_ratio))};
   double log_odds = 0.0;

@@ -15,9 +15,7 @@ namespace pcl_symmetry {
 /// its scanner did not see to be empty. So a pose of two scans that share a third of their surface is decided as surely
 /// as that of a scan on a whole model.
 /// \param scan,model in search frames, made with exact search.
-/// \param score of the pose, for its conflict with free space.
-PoseEvidence poseEvidence(const PosedSurface& scan, const PosedSurface& model, const Eigen::Isometry3d& T_model_scan,
-                          const PoseScore& score);
+PoseEvidence poseEvidence(const PosedSurface& scan, const PosedSurface& model, const Eigen::Isometry3d& T_model_scan);
 
 /// Distances of some points of a surface, in its order, from the discs about their closest points of another one, each
 /// as wide as points are apart there.

@@ -6,6 +6,6 @@
 namespace pcl_symmetry {
 
 /// Weights of the terms of poseConfidence().
-inline constexpr std::array<double, 7> kRegistrationFit{-0.43, 0.773, 0.268, 5.74, -2.91, -1.151, -8.14};
+inline constexpr std::array<double, 7> kRegistrationFit{-0.53, 0.786, 5.06, -26.2, -6.44, -0.915, -9.00};
 
 }  // namespace pcl_symmetry

@@ -51,10 +51,14 @@ struct RegistrationRules {
   double min_noise = 0.0015;        ///< diameters; that of a close depth camera, less does not speak for a pose
   double max_noise = 0.01;          ///< diameters; more is the curvature between few points
   double other_unit = 5.0;          ///< ratio of diameters from which a wrong unit is suspected
-  double some_conflict = 0.1;       ///< conflict with free space that is worth a word
-  double max_conflict = 0.5;        ///< more says no more: scans lack parts that their scanner did not resolve
+  double near_tolerance = 0.02;     ///< diameters, within which a surface that was to be seen was measured
+  double min_cosine = 0.17;         ///< between ray and normal of a point that is to be seen: 80 degrees
+  double hidden_depth = 0.08;       ///< radii of a surface, behind its own front
+  int min_visible = 20;             ///< points that are to be seen; fewer tell nothing
+  double some_not_measured = 0.1;   ///< share of the surface that is worth a word
   double agreeing_cosine = 0.7071;  ///< of the angle between normals of one surface: 45 degrees
-  double like_merit = 0.05;         ///< between poses of which either may be right
+  double like_merit = 0.05;         ///< between poses of which either may be right,
+  double like_odds = 0.5;           ///< and share of the odds from which on they are equal: sampling changes them
   double same_pose = 0.03;          ///< diameters of a model, within which a symmetry brings it onto itself,
   double symmetric_share = 0.97;    ///< or so much of it
   double some_uniqueness = 0.9;     ///< below it another pose is worth a word

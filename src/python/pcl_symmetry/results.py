@@ -701,7 +701,7 @@ class PoseScore(Result):
 class PoseEvidence(Result):
     """What decides whether a pose is right: points that face the other surface have to lie on it."""
 
-    _in_repr = ("overlap_source", "overlap_target", "agreement", "conflict")
+    _in_repr = ("overlap_source", "overlap_target", "agreement", "contradicted", "missing")
     overlap_source: float
     """Share of the source's points that lie on the surface of the target, in [0, 1]."""
     overlap_target: float
@@ -710,8 +710,11 @@ class PoseEvidence(Result):
     """Of the points that face the other surface, the share that lies on it, in [0, 1]."""
     on_surface: float
     """Lower limit of the share of the source's points that lie on the surface of the target, within 2 % of its radius."""
-    conflict: float
-    """That of the score, in [0, 2]."""
+    contradicted: float
+    """Of the surface of a cloud that the scanner of the other one would see at this pose, the share that lies in space it saw to
+    be empty, before what it measured, in [0, 1]. The greater one where both were scanned; 0 where none was."""
+    missing: float
+    """The same, the share where it measured nothing, in [0, 1]: beside the cloud or in its holes."""
     noise: float
     """Of the noisier cloud, in diameters of the smaller one."""
     size_ratio: float

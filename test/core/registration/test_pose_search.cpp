@@ -9,6 +9,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "core/registration/pose_evidence.h"
 #include "core/registration/pose_scoring.h"
 #include "core/registration/pose_starts.h"
 #include "core/registration/posed_surface.h"
@@ -166,6 +167,24 @@ TEST(PoseScorer, FreeSpaceSpeaksAgainstAPose) {
   EXPECT_EQ(PoseScorer(unseen, model).score(over, detail).conflict, 0.0);
   EXPECT_GT(PoseScorer(seen, model).score(over, detail).conflict, 0.1);
   EXPECT_LT(PoseScorer(seen, model).score(Eigen::Isometry3d::Identity(), detail).conflict, 0.02);
+}
+
+TEST(PoseEvidence, WhatAScannerShouldHaveSeenItHasMeasured) {
+  const BlockObject object = blockChair();
+  const Scan scan = test::scan(object, {3.0, -6.0, 4.0}), other = test::scan(object, {-3.0, -6.0, 4.0});
+  const PosedSurface seen = surface(scan.cloud(), scan.visibility()), unseen = surface(scan.cloud());
+  const Eigen::Isometry3d true_pose = Eigen::Isometry3d::Identity();
+  const Eigen::Isometry3d over(Eigen::AngleAxisd(kPi, Eigen::Vector3d::UnitX()));
+  for (const PosedSurface& onto : {surface(surfaceOf(object, 4000)), surface(other.cloud(), other.visibility())}) {
+    const PoseEvidence evidence = poseEvidence(seen, onto, true_pose), upside_down = poseEvidence(seen, onto, over);
+    EXPECT_LT(evidence.contradicted, 0.03);
+    EXPECT_LT(evidence.missing, 0.1);
+    EXPECT_GT(upside_down.contradicted + upside_down.missing, 0.3);
+    EXPECT_GT(poseConfidence(evidence), 0.5);
+    EXPECT_LT(poseConfidence(upside_down), 0.1);
+  }
+  const PoseEvidence nobody_looked = poseEvidence(unseen, surface(surfaceOf(object, 4000)), over);
+  EXPECT_EQ(nobody_looked.contradicted + nobody_looked.missing, 0.0);
 }
 
 }  // namespace
