@@ -395,6 +395,11 @@ class LongCalls(unittest.TestCase):
         with self.assertRaisesRegex(TypeError, "progress = str"):
             pcl_symmetry.planes(box(), progress="yes")
         pcl_symmetry.planes(box(), progress=True)
+        if has_pcl():
+            for function, clouds in ((pcl_symmetry.register, (lamp(), lamp(seed=5))), (pcl_symmetry.register_all, ([lamp(), lamp(seed=5)],))):
+                shares = []
+                function(*clouds, progress=shares.append)
+                self.assertTrue(shares and all(0 <= share <= 1 for share in shares), function.__name__)
 
 
 class Pages(unittest.TestCase):

@@ -159,16 +159,28 @@ class Planes(unittest.TestCase):
         reasons = {
             "frame": lambda f: (f.reason, bool(f), np.isnan(f.center).all(), len(f.equivalent)),
             "rotations": lambda r: (r.reason, bool(r.name), np.isnan(r.center).all(), len(r.discrete)),
+            "transform": lambda m: (m.reason, bool(m.radius), np.isnan(m.center).all(), m.values.size),
         }
         for number, points in ((5, box(num_points=5)), (1, np.ones((1000, 3)))):
             words = f"{number} distinct point{'s' if number > 1 else ''}, at least 20 are needed"
-            for name in ("frame", "rotations", "describe", "segment"):
+            for name in ("frame", "rotations", "transform", "describe", "descriptors", "local_symmetry", "segment"):
                 with self.assertWarnsRegex(RuntimeWarning, "points: " + words) as caught:
                     found = getattr(pcl_symmetry, name)(points)
                 self.assertEqual(caught.filename, __file__, name)
                 if name in reasons:
                     self.assertEqual(reasons[name](found), (words, False, True, 0))
+                if name == "local_symmetry":
+                    self.assertTrue(len(found) == len(points) and np.isnan(found).all())
             self.assertEqual(found.tolist(), [-1] * len(points))
+            if has_pcl():
+                with self.assertWarnsRegex(RuntimeWarning, "source: " + words):
+                    found = pcl_symmetry.register(points, box())
+                self.assertEqual((found.converged, found.reason, found.poses), (False, "source: " + words, []))
+                database = pcl_symmetry.Database(":memory:")
+                for question in (database.match, database.recognize):
+                    with self.assertWarnsRegex(RuntimeWarning, "points: " + words) as caught:
+                        self.assertEqual(question(points), [])
+                    self.assertEqual(caught.filename, __file__)
         plane = pcl_symmetry.ReflectionPlane([1, 0, 0], 0.0)
         for points, words in ((np.zeros((0, 3)), "number of points = 0, must be > 0"), (np.full((50, 3), np.nan), "not all finite")):
             with self.assertRaisesRegex(ValueError, words):
@@ -593,8 +605,6 @@ class WithPCL(unittest.TestCase):
             pcl_symmetry.register(source, target, around=(-1, 0.1))
         with self.assertRaisesRegex(ValueError, "guess"):
             pcl_symmetry.register(source, target, guess=np.ones((4, 4)))
-        with self.assertRaisesRegex(ValueError, "source"):
-            pcl_symmetry.register(np.zeros((5, 3), dtype=np.float32), target)
 
     def test_a_database_finds_what_it_holds(self):
         with tempfile.TemporaryDirectory() as folder:

@@ -8,7 +8,7 @@ import warnings
 from typing import TYPE_CHECKING, Any, Callable, Iterable, Iterator, List, Mapping, Optional, Sequence, Tuple, Union
 
 from . import _recognition
-from .functions import Cloud, Core, Viewpoint, _fields, _frame, _planes_of, _seen_from, prepare, rows_of
+from .functions import Cloud, Core, Viewpoint, _fields, _frame, _planes_of, _seen_from, no_answer, prepare, rows_of
 from .progress import Progress, shares_of, telling
 from .results import (
     BuildReport,
@@ -51,6 +51,7 @@ def register(
     around: Optional[Tuple[float, float]] = None,
     source_viewpoint: Viewpoint = "auto",
     target_viewpoint: Viewpoint = "auto",
+    progress: Progress = None,
     seed: int = 1,
     threads: int = 0,
 ) -> Registration:
@@ -59,7 +60,7 @@ def register(
     source, target: (N, 3) and (M, 3), same units, or clouds or meshes of Open3D or trimesh.
     guess: (4, 4), tried beside many other poses; None: the identity.
     around: (radians, input units), how far the pose may be from the guess, for tracks; None: all poses.
-    source_viewpoint, target_viewpoint: as in planes().
+    source_viewpoint, target_viewpoint, progress: as in planes().
     Two scans need not show the same part: points that face the surface of the other cloud have to lie on it. A pose whose
     confidence is below 0.5 does not converge, and its reason says what speaks against it.
     """
@@ -67,6 +68,12 @@ def register(
 
     points, source_shift, *_ = prepare("source", source)
     model, target_shift, *_ = prepare("target", target)
+    for name, cloud in (("source", points), ("target", model)):
+        if reason := no_answer(cloud, name=name):
+            return Registration(
+                transform=np.eye(4), score=PoseScore(0, 0, 0), converged=False, confidence=0.0, reason=f"{name}: {reason}", poses=[],
+                evidence=PoseEvidence(*(0.0 for _ in dataclasses.fields(PoseEvidence))), covariance=None,
+            )  # fmt: skip
     s = np.zeros(3) if source_shift is None else source_shift
     t = np.zeros(3) if target_shift is None else target_shift
     start = np.eye(4) if guess is None else np.array(guess, dtype=float)
@@ -80,6 +87,7 @@ def register(
         around=around,
         source_viewpoint=_seen_from(source_viewpoint, source_shift),
         target_viewpoint=_seen_from(target_viewpoint, target_shift),
+        told=progress,
         seed=seed,
         threads=threads,
     )
@@ -93,12 +101,12 @@ def register(
 
 
 def register_all(
-    clouds: Sequence[Any], *, viewpoint: Viewpoint = "auto", seed: int = 1, threads: int = 0
+    clouds: Sequence[Any], *, viewpoint: Viewpoint = "auto", progress: Progress = None, seed: int = 1, threads: int = 0
 ) -> RegisteredScans:
     """Brings many scans of one object together, such as those of a turntable, without a guess.
 
     clouds: each (N, 3), same units, or clouds of Open3D; scans that follow each other are tried first.
-    viewpoint: as in planes(), in the frame of each scan.
+    viewpoint: as in planes(), in the frame of each scan. progress: as there.
     Scans that fit no others are left out, with the reason. The poses are in the frame of the first scan that is kept.
     """
     import numpy as np
@@ -109,7 +117,7 @@ def register_all(
         arrays.append(array)
         shifts.append(np.zeros(3) if shift is None else shift)
     viewpoints = [_seen_from(viewpoint, shift) for shift in shifts]
-    found, merged = core.register_all(arrays, viewpoints=viewpoints, seed=seed, threads=threads)
+    found, merged = core.register_all(arrays, viewpoints=viewpoints, told=progress, seed=seed, threads=threads)
     transforms, left_out, pairs = found.transforms, found.left_out, found.pairs
     first = next((k for k, transform in enumerate(transforms) if transform is not None), 0)
     for transform, shift in zip(transforms, shifts):
@@ -223,8 +231,11 @@ class Database:
         self, points: Any, num_nearest: int = 10, *, viewpoint: Viewpoint = "auto", progress: Progress = None
     ) -> List[Match]:
         """The models most like a cloud, in any pose and size, nearest first. points, viewpoint: as in planes()."""
+        cloud = _near_origin(points)
+        if no_answer(cloud.array):
+            return []
         with telling(_recognition, progress):
-            found = self._core.match(_camera_points(_near_origin(points)), num_nearest, viewpoint=viewpoint)
+            found = self._core.match(_camera_points(cloud), num_nearest, viewpoint=viewpoint)
         return [Match(m.name, m.distance) for m in found]
 
     def recognize(
@@ -242,10 +253,13 @@ class Database:
         points, viewpoint, indices: as in planes(). min_confidence: least probability of a model that is accepted, in [0, 1].
         """
         cloud = _near_origin(points)
+        rows = rows_of(indices, cloud.shape)
+        if no_answer(cloud.array if rows is None else cloud.array[rows]):
+            return []
         with telling(_recognition, progress):
             found = self._core.recognize(
                 _camera_points(cloud),
-                rows_of(indices, cloud.shape),
+                rows,
                 viewpoint=viewpoint,
                 min_confidence=min_confidence,
                 threads=threads,
@@ -272,8 +286,10 @@ def _models_of(models: Any) -> Iterator[Any]:
 
 def _near_origin(points: Any) -> Cloud:
     """Points as they are: the frames of models and scans stay those of the arrays."""
+    import numpy as np
+
     cloud = prepare("points", points)
-    if cloud.shift is not None:
+    if cloud.shift is not None and np.nanmax(np.abs(cloud.array)) > 0:  # points at one place have no frame to keep
         raise ValueError("points = coordinates too large for the extent of the points, must be moved near the origin")
     return cloud
 

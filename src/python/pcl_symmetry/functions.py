@@ -498,9 +498,10 @@ def local_symmetry(
         shape, positions = cloud.array, cloud.array if cloud.mesh is None else cloud.mesh[0]
     else:
         shape, positions = _volume(volume, spacing, origin, direction, levels), parts_of("at", at)[0]
-    values = core.local_symmetry(shape, positions, scale, told=progress, seed=seed, threads=threads)
     result = np.full(len(positions), np.nan, np.float32)
-    result[np.isfinite(positions).all(axis=1)] = values
+    if cloud is None or not no_answer(shape):
+        values = core.local_symmetry(shape, positions, scale, told=progress, seed=seed, threads=threads)
+        result[np.isfinite(positions).all(axis=1)] = values
     return result.reshape(cloud.shape) if cloud and cloud.mesh is None else result
 
 
@@ -620,10 +621,17 @@ def from_depth(depth: ArrayLike, intrinsics: ArrayLike, *, unit: float = 1.0) ->
     return points
 
 
+def no_answer(points: Any, reason: str = "", name: str = "points") -> str:
+    """Why points hold no answer, if they do not; whoever asked for one is warned of it."""
+    reason = reason or core.why_unanswerable(points)
+    if reason:
+        warnings.warn(f"{name}: {reason}", RuntimeWarning, stacklevel=3)
+    return reason
+
+
 def _no_frame(reason: str) -> Frame:
     import numpy as np
 
-    warnings.warn(f"points: {reason}", RuntimeWarning, stacklevel=3)
     nothing = np.full((3, 3), np.nan)
     return Frame(
         center=nothing[0], axes=nothing, revolution_axis=-1, scores=nothing[0], transform=np.full((4, 4), np.nan),
@@ -646,7 +654,7 @@ def frame(
     """Canonical frame of a cloud (Section 5.1). Parameters as in planes(); as_published: the paper's own method."""
     cloud = prepare("points", points)
     used = look(cloud, viewpoint, indices, ground, max_points, as_published, seed, threads)
-    if reason := used.reason or core.why_unanswerable(used.array):
+    if reason := no_answer(used.array, used.reason):
         return _no_frame(reason)
     options = dict(max_points=max_points, as_published=as_published, told=progress, seed=seed, threads=threads)
     found = core.frame(used.array, viewpoint=used.viewpoint, mesh=None if as_published else cloud.surface(), **options)
@@ -685,8 +693,7 @@ def rotations(
     import numpy as np
 
     cloud = prepare("points", points)
-    if reason := core.why_unanswerable(cloud.array):
-        warnings.warn(f"points: {reason}", RuntimeWarning, stacklevel=2)
+    if reason := no_answer(cloud.array):
         nothing: Dict[str, Any] = dict(support=0.0, confidence=0.0, fold=1, continuous=[], tolerance=0.0, stray_points=0)
         return Rotations(name="", center=np.full(3, np.nan), discrete=np.empty((0, 4, 4)), reason=reason, **nothing)
     found = core.rotations(
@@ -731,8 +738,7 @@ def segment(
     positions, own_faces = parts_of("points", points)
     faces = own_faces if faces is None else faces
     cloud = prepare("points", positions)
-    if faces is None and (reason := core.why_unanswerable(cloud.array)):
-        warnings.warn(f"points: {reason}", RuntimeWarning, stacklevel=2)
+    if faces is None and no_answer(cloud.array):
         return np.full(cloud.shape, -1, np.int32)
     options = dict(parts=parts, method=method, depth=depth, as_published=as_published, seed=seed, threads=threads)
     with shares_of(progress) as tell:
@@ -748,8 +754,7 @@ def describe(
 
     cloud = prepare("points", points)
     used = look(cloud, viewpoint, max_points=0, as_measured=True, seed=seed, threads=threads)
-    if reason := used.reason or core.why_unanswerable(used.array):
-        warnings.warn(f"points: {reason}", RuntimeWarning, stacklevel=2)
+    if no_answer(used.array, used.reason):
         return np.empty((0, 0), np.float32)
     result: NDArray[np.float32] = core.describe(
         used.array, viewpoint=used.viewpoint, told=progress, seed=seed, threads=threads
@@ -767,15 +772,17 @@ def descriptors(
     seed: int = 1,
     threads: int = 0,
 ) -> Tuple[NDArray[np.float32], NDArray[np.float32], NDArray[np.float32]]:
-    """The descriptors that the paper compares (Section 5.2): PRST and GEDT, (32, 32, 32), and PRSD, (32, 32).
+    """The descriptors that the paper compares (Section 5.2): PRST, (32, 32, 32), PRSD, (32, 32), and GEDT, (32, 32, 32).
 
     viewpoint: as in planes(). input_axes: about the center of mass in the axes of the input, as for models aligned by
-    hand; False: in frame(). by_equation_1: sqrt((1 + D) / 2) in place of sqrt(max(D, 0)). The paper's best distance is descriptor_distance() of PRST
-    times that of GEDT.
+    hand; False: in frame(). by_equation_1: sqrt((1 + D) / 2) in place of sqrt(max(D, 0)). The paper's best distance is
+    descriptor_distance() of PRST times that of GEDT. All are empty for too few points.
     """
     import numpy as np
 
     used = look(prepare("points", points), viewpoint, max_points=0, as_measured=True, seed=seed, threads=threads)
+    if no_answer(used.array, used.reason):
+        return np.empty((0, 0, 0), np.float32), np.empty((0, 0), np.float32), np.empty((0, 0, 0), np.float32)
     array, options = used.array, dict(viewpoint=used.viewpoint, input_axes=input_axes, by_equation_1=by_equation_1)
     options.update(told=progress, seed=seed, threads=threads)
     prst, prsd, gedt = (np.asarray(values, dtype=np.float32) for values in core.descriptors(array, **options))
@@ -839,6 +846,8 @@ def transform(
     if volume is None:
         _check_no_volume(direction, levels)
         shape, shift, *_ = prepare("points", points)
+        if reason := no_answer(shape):
+            return Map(sigma=0.0, center=np.full(3, np.nan), radius=0.0, values=np.empty((0, 0, 0), np.float32), reason=reason)
     elif sigma:
         raise ValueError("sigma: of points, must be left out with volume")
     else:

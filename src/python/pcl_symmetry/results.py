@@ -657,6 +657,8 @@ class Map(Result):
     """Greatest |r|, input units."""
     values: NDArray[np.float32]
     """(theta, phi, r) values of D, 1 for a perfect symmetry."""
+    reason: str = ""
+    """Why there is no map; empty otherwise."""
 
     def plane(self, theta: int, phi: int, r: int) -> NDArray[np.float64]:
         """(4,) coefficients a, b, c, d of the plane at the center of a bin."""
