@@ -23,10 +23,10 @@ folder=$1 output=$2
 shift 2
 mkdir -p "$output/man1" "$output/completions"
 for tool in "$@"; do
-  help2man --no-info --name="$("$folder/$tool" -h | sed -n 1p)" --help-option=-h --version-option=-version "$folder/$tool" |
+  help2man --no-info --name="$("$folder/$tool" -h | sed '/^$/Q' | tr '\n' ' ' | sed 's/\. .*//')" --help-option=-h --version-option=-version "$folder/$tool" |
     gzip -9n >"$output/man1/$tool.1.gz"
   # Flags, their values such as a|b, and commands such as "a, b or c".
-  words=$("$folder/$tool" -h | sed -nE 's/^  (-[a-z_]+)( ([a-z]+(\|[a-z]+)+) .*| .*)?$/\1 \3/p; s/^  command +(.*)$/\1/p' |
+  words=$("$folder/$tool" -h | sed -nE 's/^  (-[a-z_]+)( ([a-z]+(\|[a-z]+)+)( .*)?| .*)?$/\1 \3/p; s/^  command +(.*)$/\1/p' |
     sed -E 's/[|,]/ /g; s/ or / /g' | tr '\n' ' ')
   printf 'complete -o default -W "%s" %s\n' "$words" "$tool" >"$output/completions/$tool"
 done

@@ -40,6 +40,26 @@ unsigned helpWidth() {
   return known ? std::clamp<unsigned>(size.ws_col, 60, 160) : 100;
 }
 
+constexpr std::size_t kHelpColumn = 26;  // where what a name means begins
+
+/// \return words, in lines that fit the terminal, from a column on; a name stands before them, or above where it is longer
+std::string inColumn(std::string line, std::size_t column, const std::string& words) {
+  std::string text;
+  if (line.size() + 1 > column && !line.empty()) text = std::exchange(line, "") + "\n";
+  line.resize(column, ' ');
+  std::istringstream paragraphs(words);
+  for (std::string paragraph; std::getline(paragraphs, paragraph); line.assign(column, ' ')) {
+    std::istringstream stream(paragraph);
+    for (std::string word; stream >> word; line += word + " ") {
+      if (line.size() == column || line.size() + word.size() <= helpWidth()) continue;
+      text += boost::algorithm::trim_right_copy(line) + "\n";
+      line.assign(column, ' ');
+    }
+    text += boost::algorithm::trim_right_copy(line) + "\n";
+  }
+  return text;
+}
+
 nlohmann::json made_by;  // of the command line that was parsed last
 
 std::size_t editDistance(const std::string& a, const std::string& b) {
@@ -288,20 +308,20 @@ bool CommandLine::given(const std::string& name) const {
   return values_.count(name) > 0 && !values_[name].defaulted();
 }
 
+void CommandLine::goWith(const std::string& what, bool there, std::initializer_list<const char*> flags) const {
+  for (const char* flag : flags)
+    if (!there && given(flag)) throw UsageError(std::string("-") + flag + " goes with " + what);
+}
+
 std::string CommandLine::usage() const {
-  std::ostringstream text;
-  text << summary_ << "\n\nUsage: " << tool_;
+  std::string synopsis = "Usage: " + tool_;
   for (const Positional& argument : positionals_) {
-    if (argument.required) text << " " << argument.name;
-    if (!argument.required && !argument.repeated) text << " [" << argument.name << "]";
-    if (argument.repeated) text << " [" << argument.name << " ...]";
+    if (argument.required) synopsis += " " + argument.name;
+    if (!argument.required && !argument.repeated) synopsis += " [" + argument.name + "]";
+    if (argument.repeated) synopsis += " [" + argument.name + " ...]";
   }
-  text << " [-flag value]\n\n";
-  std::size_t width = 0;
-  for (const Positional& argument : positionals_) width = std::max(width, argument.name.size());
-  for (const Positional& argument : positionals_) {
-    text << "  " << argument.name << std::string(width - argument.name.size() + 2, ' ') << argument.help << "\n";
-  }
+  std::string text = inColumn("", 0, summary_) + "\n" + inColumn("", 0, synopsis + " [-flag value]") + "\n";
+  for (const Positional& argument : positionals_) text += inColumn("  " + argument.name, kHelpColumn, argument.help);
   const auto groupOf = [](const std::string& flag) {
     const auto found = std::find_if(kFlagGroups.begin(), kFlagGroups.end(), [&](const auto& group) {
       return std::count(group.second.begin(), group.second.end(), flag) > 0;
@@ -309,19 +329,20 @@ std::string CommandLine::usage() const {
     return found == kFlagGroups.end() ? std::string("Analysis") : found->first;
   };
   for (const auto& [name, known] : kFlagGroups) {
-    po::options_description group(name, helpWidth(), helpWidth() / 2);
+    std::string group;
+    const auto addFlag = [&group](const po::option_description& flag) {
+      const std::string parameter = flag.format_parameter();
+      const std::string names = flag.long_name() == "help" ? "h, -help" : flag.long_name();
+      group += inColumn("  -" + names + (parameter.empty() ? "" : " " + parameter), kHelpColumn, flag.description());
+    };
     for (const std::string& first : known)
       for (const auto& flag : flags_.options())
-        if (flag->long_name() == first) group.add(flag);
+        if (flag->long_name() == first) addFlag(*flag);
     for (const auto& flag : flags_.options())
-      if (known.empty() && groupOf(flag->long_name()) == name) group.add(flag);
-    if (group.options().empty()) continue;
-    std::ostringstream flags;
-    flags << group;
-    text << "\n" << boost::algorithm::replace_all_copy(flags.str(), " --", " -");
+      if (known.empty() && groupOf(flag->long_name()) == name) addFlag(*flag);
+    if (!group.empty()) text += "\n" + name + ":\n" + group;
   }
-  text << "\nExample:\n  " << example_ << "\n";
-  return text.str();
+  return text + "\nExample:\n  " + example_ + "\n";
 }
 
 }  // namespace pcl_symmetry::apps

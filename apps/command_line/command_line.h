@@ -6,6 +6,7 @@
 #include <boost/program_options.hpp>
 #include <cstdint>
 #include <functional>
+#include <initializer_list>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
@@ -114,6 +115,11 @@ public:
   /// \return true if the flag stood on the parsed command line
   bool given(const std::string& name) const;
 
+  /// Refuses flags that would do nothing.
+  /// \param there whether what they go with was given
+  /// \throws UsageError for the first of the flags that stood on the command line without it
+  void goWith(const std::string& what, bool there, std::initializer_list<const char*> flags) const;
+
   /// \return synopsis, flags with their defaults, and the example
   std::string usage() const;
 
@@ -134,8 +140,8 @@ private:
 
   std::string tool_, summary_, example_;
   std::vector<Positional> positionals_;
-  const std::uint64_t* seed_ = nullptr;                                  // of a tool that draws
-  boost::program_options::options_description flags_{"Flags", 120, 60};  // widths of the help and of its right column
+  const std::uint64_t* seed_ = nullptr;  // of a tool that draws
+  boost::program_options::options_description flags_;
   boost::program_options::variables_map values_;
 };
 

@@ -46,7 +46,7 @@ CommandLine commandLine(SceneToolOptions& o) {
       .plane("ground", o.ground,
              "what the objects stand on, a x + b y + c z + d = 0, in place of supporting planes that are searched for")
       .number("max_range", o.scene.max_range, Range::atLeast(0),
-              "points farther from the sensor are left out, input units; 0 = none is")
+              "points farther from the sensor are left out, input units; 0 = no limit")
       .number("plane_distance", o.scene.plane_distance, Range::atLeast(0),
               "distance of points that belong to a supporting plane, input units; 0 = from the points")
       .number("cluster_distance", o.scene.cluster_distance, Range::atLeast(0),
@@ -112,6 +112,7 @@ int run(int argc, char** argv) {
   SceneToolOptions options;
   CommandLine line = commandLine(options);
   if (!line.parse(argc, argv)) return 0;
+  line.goWith("-database", options.database_path.has_value(), {"accept"});
   if (options.output) checkCloudExtension(*options.output);
   const Console console(options.common.quiet);
   const InputShape input = loadFrame(console, options.input, options.common);

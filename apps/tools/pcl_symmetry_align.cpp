@@ -642,14 +642,14 @@ int run(int argc, char** argv) {
   if (options.output) checkCloudExtension(*options.output);
   if (options.complete && options.symmetrize != "none")
     throw UsageError("-complete and -symmetrize exclude each other");
-  if (options.any_plane && !options.complete) throw UsageError("-any_plane needs -complete");
+  line.goWith("frames, without -target", !options.target, {"as_published"});
+  line.goWith("-complete", options.complete, {"any_plane"});
+  line.goWith("-symmetrize", options.symmetrize != "none", {"cut", "landmarks"});
   const bool is_written = options.output || options.html_path || options.png_path;
   if (options.complete && !is_written)
     throw UsageError("-complete needs an output, -html or -png to show what it adds");
   if (options.symmetrize != "none" && !is_written && !options.common.json_path && !options.landmarks)
     throw UsageError("-symmetrize needs an output, -html, -png, -json or -landmarks");
-  if (options.cut && options.symmetrize == "none") throw UsageError("-cut needs -symmetrize");
-  if (options.landmarks && options.symmetrize == "none") throw UsageError("-landmarks needs -symmetrize");
   options.batch.inputs = {options.input};
   std::vector<std::string> columns{"converged"};
   for (const char row : {'0', '1', '2', '3'})

@@ -241,7 +241,8 @@ int run(int argc, char** argv) {
   BopOptions options;
   CommandLine line = commandLine(options);
   if (!line.parse(argc, argv)) return 0;
-  if (options.report_path && !options.check_path) throw UsageError("-report needs -check");
+  line.goWith("-check", options.check_path.has_value(), {"report"});
+  line.goWith("-color", options.models.use_colors, {"color_tolerance"});
   const std::vector<ModelFile> files = modelFiles(options.inputs);
   const GivenSymmetries given = options.check_path ? readGiven(*options.check_path, files.size()) : GivenSymmetries{};
   ObjectSymmetryOptions& symmetries = options.models.symmetries;

@@ -43,10 +43,16 @@ struct DatabaseToolOptions {
 CommandLine commandLine(DatabaseToolOptions& options) {
   CommandLine line(
       "pcl_symmetry_database",
-      "Keeps models in a file to be found by their symmetry. Commands: build or add (files, folders, patterns, @LISTS; "
-      "goes on where it was interrupted: files that are stored and unchanged are kept), remove (names), list, info "
-      "(names, or none), check (is anything damaged?), export (a folder, and names or none: clouds as PCD files), "
-      "merge (other databases, or @LISTS of them; names of models must differ), rebuild (after many changes).",
+      "Keeps models in a file, to be found by their symmetry.\n\n"
+      "build, add DATABASE FILE ...: files, folders, patterns, @LISTS; an interrupted run goes on, as stored files "
+      "that did not change are kept\n"
+      "remove DATABASE NAME ...\n"
+      "list DATABASE\n"
+      "info DATABASE [NAME ...]\n"
+      "check DATABASE: is anything damaged?\n"
+      "export DATABASE FOLDER [NAME ...]: the clouds as PCD files\n"
+      "merge DATABASE OTHER ...: takes over the models of other databases, or @LISTS of them; names must differ\n"
+      "rebuild DATABASE: fits the compact forms anew, after many changes",
       "pcl_symmetry_database build models.db meshes/*.off");
   line.positional("command", options.command, "build, add, remove, list, info, check, export, merge or rebuild")
       .positionals("database", options.arguments, "the database, and what the command takes behind it")
@@ -277,6 +283,10 @@ int run(int argc, char** argv) {
     throw UsageError("missing argument behind the database");
   if (command->second == Nothing && !options.arguments.empty())
     throw UsageError("too many arguments behind the database");
+  const bool builds = options.command == "build" || options.command == "add";
+  line.goWith("build and add", builds, {"tag", "names", "part", "points"});
+  line.goWith("build, add and merge", builds || options.command == "merge", {"unit"});
+  line.goWith("list and info", options.command == "list" || options.command == "info", {"csv"});
   return DatabaseTool(options).run();
 }
 

@@ -161,6 +161,8 @@ int run(int argc, char** argv) {
   DescribeOptions options;
   CommandLine line = commandLine(options);
   if (!line.parse(argc, argv)) return 0;
+  line.goWith("-type prst, prsd and gedt", options.type != "signature", {"input_axes"});
+  line.goWith("-type prst and prsd", options.type == "prst" || options.type == "prsd", {"equation_1"});
   const Console console(options.common.quiet);
   const std::vector<InputFile> files = inputFiles(options.inputs);
   checkNames(files);

@@ -387,10 +387,12 @@ int run(int argc, char** argv) {
   if (options.volume_path && !boost::algorithm::iends_with(*options.volume_path, ".vti"))
     rejectValue("-volume", *options.volume_path, "must end in .vti");
   options.what.fold = options.fold.value_or(-1);
-  if (options.what.scale > 0.0 && options.what.of != "planes") throw UsageError("-scale goes with -of planes");
-  if (options.what.refined_share && (options.what.of != "planes" || options.what.method != "rotational"))
-    throw UsageError("-refined_share goes with -method rotational");
-  if (options.fold && options.what.of != "axes") throw UsageError("-fold goes with -of axes");
+  line.goWith("-of planes", options.what.of == "planes", {"scale", "method", "refined_share", "as_published"});
+  line.goWith("-method rotational", options.what.method == "rotational", {"refined_share"});
+  line.goWith("-method voting", options.what.method == "voting", {"as_published"});
+  line.goWith("-of axes", options.what.of == "axes", {"fold"});
+  line.goWith("-volume", options.volume_path.has_value(), {"cells"});
+  line.goWith("-png or -slices", options.png_path || options.slices_path, {"size"});
   if (options.fold == 1) rejectValue("-fold", "1", "must be 0 or >= 2: a rotation of order 1 changes nothing");
   options.batch.inputs = {options.input};
   return runOnFiles(options.batch, options.common, {"points", "least", "greatest"},

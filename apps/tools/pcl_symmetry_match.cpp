@@ -88,6 +88,7 @@ int run(int argc, char** argv) {
   MatchOptions options;
   CommandLine line = commandLine(options);
   if (!line.parse(argc, argv)) return 0;
+  line.goWith("-recognize", options.recognize, {"candidates", "min_confidence"});
   const Console console(options.common.quiet);
   if (!boost::filesystem::exists(options.database)) throw InputError(options.database + ": no such file");
   const InputShape input = loadInput(options.input, options.common.mesh_points, options.common.seed);

@@ -1,5 +1,6 @@
 /// Virtual range scanner: a mesh seen from one side, or from the eight corners of a cube (Section 5.1).
 #include <algorithm>
+#include <boost/algorithm/string/predicate.hpp>
 #include <boost/filesystem/path.hpp>
 #include <nlohmann/json.hpp>
 #include <string>
@@ -42,7 +43,7 @@ CommandLine commandLine(ScanOptions& options) {
                    "pcl_symmetry_scan bull.off bull.pcd -direction 1,-1,0.5 -noise 0.001");
   line.positional("mesh", options.input, ".off, .obj, .stl or .ply with faces")
       .positional("output", options.output, ".pcd or .ply; with -all eight files, NAME_0.pcd to NAME_7.pcd")
-      .direction("direction", options.direction, "from the object's center toward the scanner (as -corner 7)")
+      .direction("direction", options.direction, "from the object's center toward the scanner (1,1,1)")
       .number("corner", options.corner, Range::closed(0, 7),
               "corner of a cube around the object; bit 0, 1, 2 set: positive x, y, z")
       .flag("all", options.all, "scan from all eight corners")
@@ -117,6 +118,7 @@ int run(int argc, char** argv) {
   if (int(options.direction.has_value()) + int(options.corner.has_value()) + int(options.all) > 1)
     throw UsageError("only one of -direction, -corner and -all may be given");
   checkCloudExtension(options.output);
+  line.goWith("an output of PCD", !boost::algorithm::iends_with(options.output, ".ply"), {"format"});
   const std::vector<View> views = viewsOf(options);
   for (const View& view : views) checkTarget(view.path);
   options.scanner.seed = options.common.seed;

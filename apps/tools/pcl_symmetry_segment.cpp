@@ -77,9 +77,10 @@ SegmentationOptions segmentationOptions(const SegmentOptions& o, const CommonOpt
 }
 
 void checkOutput(const SegmentOptions& o, const CommandLine& line) {
-  if (o.method == "merging" && (line.given("depth") || line.given("concavity")))
-    throw UsageError("-depth and -concavity need -method splitting");
-  if (o.method == "splitting" && line.given("evidence")) throw UsageError("-evidence needs -method merging");
+  line.goWith("-method splitting", o.method == "splitting", {"depth", "concavity", "as_published"});
+  line.goWith("-method merging", o.method == "merging", {"evidence"});
+  line.goWith("-png", o.png_path.has_value(), {"size"});
+  line.goWith("-png or -html", o.png_path || o.html_path, {"up"});
   if (!o.output) return;
   const std::string extension =
       boost::algorithm::to_lower_copy(boost::filesystem::path(*o.output).extension().string());

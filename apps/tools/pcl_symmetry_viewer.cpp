@@ -43,7 +43,7 @@ CommandLine commandLine(ViewerOptions& options) {
   line.positional("input", options.input, kShapeFiles)
       .picture("screenshot", options.screenshot_path, "write a picture and open no window; needs no screen")
       .number("plane", options.plane, Range::closed(1, 1000), "number of the plane that is shown first")
-      .flag("symmetries", options.symmetries_only, "no approximate symmetries and symmetries of parts")
+      .flag("symmetries", options.symmetries_only, "leave out approximate symmetries and those of parts")
       .direction("up", options.up, "direction that is about up, input frame (0,0,1)")
       .common(options.common, kShapeFlags & ~kJson);
   return line;

@@ -189,6 +189,7 @@ int run(int argc, char** argv) {
   ViewpointToolOptions options;
   CommandLine line = commandLine(options);
   if (!line.parse(argc, argv)) return 0;
+  line.goWith("-png or -icon", options.png_path || options.icon_path, {"size"});
   return runOnFiles(options.batch, options.common, {"view", "x", "y", "z", "score"},
                     [&](FileJob& job) { analyze(options, job); });
 }

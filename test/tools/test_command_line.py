@@ -25,6 +25,19 @@ class Flags(ToolTest):
         self.assertEqual(scans[0], scans[1])
         self.assertNotEqual(scans[0], scans[2])
 
+    def test_former_spellings_stay_for_a_version(self):
+        self.run_tool(self.box, "-quiet -colour -colour_tolerance 3 -json m.json", tool="bop")
+        maps = [self.report(self.box, "-quiet -points 500 -grid 16 -method", name, tool="map") for name in ("exact", "convolution", "sampled")]
+        self.assertEqual(maps[0]["greatest"], maps[1]["greatest"])
+        self.assertNotEqual(maps[0]["greatest"], maps[2]["greatest"])
+
+    def test_quiet_leaves_the_results(self):
+        self.run_tool(self.box, "-points 500")
+        self.assertIn("[done, ", self.error)
+        shown = self.output
+        self.run_tool(self.box, "-points 500 -quiet")
+        self.assertEqual((self.output, self.error), (shown, ""))
+
     def test_help_shows_flags_with_their_defaults_and_an_example(self):
         for flag in ("-h", "-help", "--help"):
             self.run_tool(flag, tool="map")
@@ -41,7 +54,15 @@ class Flags(ToolTest):
         self.assertEqual(at, sorted(at))
         self.assertLess(at[0], self.output.index("-json"))
         self.assertLess(self.output.index("-png"), at[1])
-        self.assertLessEqual(max(map(len, self.output.splitlines()[6:-2])), 100)
+
+    def test_help_fits_the_terminal(self):
+        tools = [tool for tool in tool_run.TOOLS.glob("pcl_symmetry_*") if not tool.suffix]
+        for tool in tools:
+            for columns in (60, 90):
+                shown = subprocess.run(["script", "-qec", f"stty cols {columns}; {tool} -h", "/dev/null"], capture_output=True, text=True)
+                lines = shown.stdout.split("\nExample:")[0].splitlines()
+                self.assertTrue(columns - 15 < max(map(len, lines)) <= columns, (tool, columns))
+                self.assertEqual([line for line in lines if line.endswith(" ")], [], tool)
 
     def test_json_says_how_it_was_made(self):
         made = self.report(self.box, "-quiet -points 500 -seed 4 -approximate", "--tolerance=0.02")["made_by"]
@@ -90,6 +111,27 @@ class Flags(ToolTest):
         self.fails(2, "-up = 0,0,0, must not be zero", "a -up 0,0,0", tool="segment")
         self.fails(1, "-levels is of volumes", self.box, "-levels 0,1")
         self.fails(1, "missing.off: no such file", "missing.off -png OUT.PNG")  # the name of the picture is one
+
+    def test_flags_that_would_do_nothing_are_refused(self):
+        self.write("a.txt", "")
+        for tool, arguments, said in (
+            ("map", "a.txt -fold 3", "-fold goes with -of axes"), ("map", "a.txt -of axes -scale 0.5", "-scale goes with -of planes"),
+            ("map", "a.txt -of centers -method voting", "-method goes with -of planes"),
+            ("map", "a.txt -refined_share 0.1", "-refined_share goes with -method rotational"),
+            ("map", "a.txt -as_published", "-as_published goes with -method voting"), ("map", "a.txt -cells 9", "-cells goes with -volume"),
+            ("map", "a.txt -size 99", "-size goes with -png or -slices"), ("viewpoint", "a.txt -size 99", "-size goes with -png or -icon"),
+            ("segment", "a.txt -depth 2", "-depth goes with -method splitting"), ("segment", "a.txt -up 0,1,0", "-up goes with -png or -html"),
+            ("segment", "a.txt -method splitting -evidence all", "-evidence goes with -method merging"),
+            ("align", "a.txt -cut", "-cut goes with -symmetrize"), ("align", "a.txt -any_plane", "-any_plane goes with -complete"),
+            ("align", "a.txt -target a.txt -as_published", "-as_published goes with frames, without -target"),
+            ("planes", "a.txt -as_published -tolerance 0.02", "-tolerance goes with the decision"),
+            ("scan", "a.txt a.ply -format ascii", "-format goes with an output of PCD"), ("bop", "a.txt -report r", "-report goes with -check"),
+            ("bop", "a.txt -color_tolerance 3", "-color_tolerance goes with -color"), ("match", "a a.txt -candidates 3", "-candidates goes with -recognize"),
+            ("database", "list a -tag x", "-tag goes with build and add"), ("database", "check a -csv x", "-csv goes with list and info"),
+            ("database", "info a -unit m", "-unit goes with build, add and merge"), ("scene", "a.txt -accept 0.7", "-accept goes with -database"),
+            ("describe", "d a.txt -input_axes", "-input_axes goes with -type prst, prsd and gedt"),
+            ("describe", "d a.txt -type gedt -equation_1", "-equation_1 goes with -type prst and prsd")):  # fmt: skip
+            self.fails(2, f"pcl_symmetry_{tool}: {said}", arguments, tool=tool)
 
     def test_too_little_memory_is_one_line(self):
         def limit_memory():

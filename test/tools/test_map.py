@@ -51,10 +51,8 @@ class Map(ToolTest):
             self.assertGreater(axis["symmetry"], 0.9)
         np.testing.assert_allclose(self.report(self.box, common, "-of centers")["centers"][0]["point"], 0, atol=0.2)
 
-    def test_refuses_folds_and_shares_that_have_no_meaning(self):
-        self.fails(2, "-fold goes with -of axes", self.box, "-fold 3")
+    def test_refuses_folds_and_kinds_that_have_no_meaning(self):
         self.fails(2, "a rotation of order 1 changes nothing", self.box, "-of axes -fold 1")
-        self.fails(2, "-refined_share goes with -method rotational", self.box, "-refined_share 0.1")
         self.run_tool(self.box, "-of lines", code=2)
 
 
