@@ -105,10 +105,10 @@ class Sheet:
             ends = self.upright(center + half_length * np.array([[-1], [1]]) * direction)
             axes.plot(*ends.T, color=color, linewidth=2)
 
-    def save(self, path, zoom=1.0):
+    def save(self, path, zoom=1.0, says=""):
         for axes in self.figure.axes:
             axes.set_box_aspect((1, 1, 1), zoom=zoom)
-        self.figure.savefig(path)
+        self.figure.savefig(path, metadata={"Description": says})
         print(path)
 
 
@@ -293,7 +293,8 @@ def first_look(out, path):
     sheet = Sheet(1, 3, (-0.75, 1.15, 0.4), up="y", size=3.4)
     sheet.figure.set_size_inches(10.2, 3.0)
     sheet.dots(sheet.panel("a scan from one side", whole), points, "#6B7A99")
-    axes = sheet.panel(f"its plane of symmetry, confidence {found[0].confidence:.2f}", whole)
+    title = f"its plane of symmetry, confidence {found[0].confidence:.2f}"
+    axes = sheet.panel(title, whole)
     sheet.dots(axes, points, "#6B7A99")
     reach = np.ptp(whole, axis=0).max() * 0.46
     along = np.cross(found[0].normal, [0, 1, 0])
@@ -304,7 +305,7 @@ def first_look(out, path):
     axes = sheet.panel("completed by its reflection (blue)", whole)
     sheet.dots(axes, points, "#6B7A99")
     sheet.dots(axes, added, BLUE)
-    sheet.save(out, zoom=1.6)
+    sheet.save(out, zoom=1.6, says=title)
 
 
 def decision(out, path, *numbers):

@@ -1,5 +1,7 @@
 """Shapes and drawings of the gallery: what they make is what they say."""
 
+import importlib.util
+import os
 import subprocess
 import sys
 import tempfile
@@ -77,6 +79,24 @@ class Planar(unittest.TestCase):
         transform = planar.LineTransform(planar.contour("flower 4"))
         for t, k in ((0, 127), (31, 100), (90, 140)):
             self.assertAlmostEqual(transform.values[t, k], transform.value(transform.theta[t], transform.r[k]), delta=2e-3)
+
+
+class FirstLook(unittest.TestCase):
+    def test_of_the_first_page_is_what_is_found_today(self):
+        if not os.environ.get("TOOLS") or not all(map(importlib.util.find_spec, ("matplotlib", "open3d"))):
+            self.skipTest("needs the tools, matplotlib and Open3D (Debian packages python3-matplotlib, python3-open3d)")
+        from PIL import Image
+
+        with tempfile.TemporaryDirectory() as folder:
+            if subprocess.run(["bash", GALLERY.parent / "fetch_meshes.sh", folder, "cow"], stdout=subprocess.DEVNULL).returncode:
+                self.skipTest("the mesh cannot be fetched")
+            tools = {**os.environ, "PATH": f"{os.environ['TOOLS']}:{os.environ['PATH']}"}
+            drawing = [sys.executable, "-B", GALLERY / "drawings.py", "first_look", f"{folder}/now.png", f"{folder}/cow.off"]
+            subprocess.run(drawing, env=tools, check=True, stdout=subprocess.DEVNULL)
+            now, shown = (Image.open(path) for path in (f"{folder}/now.png", GALLERY.parent / "pictures/first_look.png"))
+            off = np.abs(np.asarray(now, float) - np.asarray(shown, float))[..., :3].mean() / 255
+        self.assertEqual((shown.text["Description"], shown.size), (now.text["Description"], now.size), "bash apps/gallery/make.sh --only first_look apps")
+        self.assertLess(off, 0.005)
 
 
 class MedialAxis(unittest.TestCase):
