@@ -6,7 +6,7 @@ usage() {
   cat <<'END'
 usage: bash test/bare_system.sh [-h] [--user] [--packages BUILD | COMMAND...]
 
-Makes a bare Debian 12 in a temporary folder (debootstrap's smallest system, git and sudo), clones the last commit of this
+Makes a bare Debian 12 in a temporary folder (debootstrap's smallest system, git, sudo and Python), clones the last commit of this
 checkout into it, and runs COMMAND there; by default `bash apps/demo.sh`. Needs root, debootstrap, a network and 4 GB under
 TMPDIR. What it made is removed. Exit status: that of the command; 77: not root, or no debootstrap.
 
@@ -73,7 +73,7 @@ if [[ -n $packages ]]; then
   exit
 fi
 
-in_namespace chroot "$root" bash -euc 'apt-get -q update && DEBIAN_FRONTEND=noninteractive apt-get -q -y install git sudo' >/dev/null
+in_namespace chroot "$root" bash -euc 'apt-get -q update && DEBIAN_FRONTEND=noninteractive apt-get -q -y install git sudo python3' >/dev/null
 user=root home=/root
 if $as_user; then
   user=tester home=/home/tester
