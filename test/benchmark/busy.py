@@ -1,12 +1,11 @@
 """Time of planes() on a machine that does other work: all threads against one.
 
-usage: python3 test/benchmark/busy.py [--loops N] [--rounds N]
+usage: python3 test/benchmark/busy.py
 
-Starts loops that keep N cores busy (2), then times a cloud of 10 000 points by turns with all threads and with one, N times
-(40). Prints the median times and their ratio.
+Keeps two cores busy with loops, then times a cloud of 10 000 points by turns with all threads and with one, 40 times. Prints
+the median times and their ratio.
 """
 
-import argparse
 import subprocess
 import sys
 import time
@@ -17,16 +16,12 @@ import pcl_symmetry
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
-    parser.add_argument("--loops", type=int, default=2, help="processes that keep a core busy")
-    parser.add_argument("--rounds", type=int, default=40, help="times that each is measured")
-    arguments = parser.parse_args()
     points = np.random.default_rng(1).normal(size=(10_000, 3))
     points = (points / np.linalg.norm(points, axis=1, keepdims=True) * (1.0, 0.7, 0.4) + 0.1 * (points[:, :1] > 0) * points).astype(np.float32)
-    loops = [subprocess.Popen([sys.executable, "-c", "while True: pass"]) for _ in range(arguments.loops)]
+    loops = [subprocess.Popen([sys.executable, "-c", "while True: pass"]) for _ in range(2)]
     try:
         times = {0: [], 1: []}
-        for _ in range(arguments.rounds):
+        for _ in range(40):
             for threads, measured in times.items():
                 begin = time.perf_counter()
                 pcl_symmetry.planes(points, threads=threads)
