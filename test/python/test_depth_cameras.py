@@ -335,6 +335,8 @@ class Answers(unittest.TestCase):
             dict(volume=volume, viewpoint=(0, 0, 5)),
             dict(volume=volume, evidence=True),
             dict(points=box(), levels=(0, 1)),
+            dict(points=box(), as_published=True, indices=[1, 2, 3]),
+            dict(points=box(), as_published=True, approximate=True),
         ):
             with self.assertRaisesRegex(ValueError, "must be left out"):
                 pcl_symmetry.planes(**arguments)

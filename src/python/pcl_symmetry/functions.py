@@ -389,7 +389,7 @@ def planes(
     evidence: also what the decisions are taken from; takes about as long again.
     as_published: refine the maxima of the map as the paper does (Section 4.4), without a decision: all planes are in the
         list; only then method, of the map: sampled, convolution, rotational or voting. Of the other parameters seed and
-        threads count.
+        threads count; those of parts and of the decision are refused.
     progress: True shows a bar, a function is called with the share of the running step that is done, in [0, 1].
     volume: (I, J, K) in place of points, such as a CT or MR image, first index along the first axis (as nibabel has it;
         arrays of SimpleITK are transposed). spacing, origin, direction: of its voxels, input units and frame; direction
@@ -403,13 +403,13 @@ def planes(
     _check_one_of("planes", points, volume)
     if method != "convolution" and not as_published:
         raise ValueError(f"method = {method}, must be convolution without as_published")
+    if volume is not None or as_published:
+        idle = dict(indices=indices is not None, ground=ground is not None, tolerance=tolerance is not None)
+        idle.update(absolute_tolerance=bool(absolute_tolerance), normals=normals is not None, evidence=evidence)
+        idle.update(dict(approximate=approximate) if volume is None else dict(viewpoint=viewpoint != "auto", as_published=as_published))
+        if given := ", ".join(name for name, is_given in idle.items() if is_given):
+            raise ValueError(f"{given}: must be left out with {'as_published' if volume is None else 'volume'}")
     if volume is not None:
-        of_points = dict(viewpoint=viewpoint != "auto", indices=indices is not None, ground=ground is not None)
-        of_points.update(tolerance=tolerance is not None, absolute_tolerance=bool(absolute_tolerance))
-        of_points.update(normals=normals is not None, evidence=evidence, as_published=as_published)
-        if any(of_points.values()):
-            given = ", ".join(name for name, is_given in of_points.items() if is_given)
-            raise ValueError(f"{given}: of points, must be left out with volume")
         options = dict(approximate=approximate, max_planes=max_planes, seed=seed, threads=threads)
         found = core.volume_planes(_volume(volume, spacing, origin, direction, levels), told=progress, **options)
         return _planes_of(found, Cloud(np.empty((0, 3)), shape=(0,)))
