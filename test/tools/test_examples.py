@@ -21,7 +21,8 @@ CASES = (("01_first_plane box.pcd", ["a b c d = ", "reflects to"], {}, ""),
          ("09_symmetric_poses box.pcd", ["group D2", "look 28.6"], {"the track by 5.7": 5}, ""),
          ("10_scene scene.pcd out.pcd", ["1 supporting planes", "  plane "], {"object of ": 1}, "FIELDS x y z"),
          ("11_completion scan.pcd out.pcd", [" points added to "], {}, "FIELDS x y z"),
-         ("12_viewpoint box.pcd", ["seen from ", "worst "], {}, ""))
+         ("12_viewpoint box.pcd", ["seen from ", "worst "], {}, ""),
+         ("15_turntable scan.pcd scan.pcd out.pcd", [" points, "], {"left out": 0}, "FIELDS x y z"))
 
 
 class Examples(ToolTest):
