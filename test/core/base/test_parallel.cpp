@@ -10,8 +10,10 @@
 #include <atomic>
 #include <chrono>
 #include <cmath>
+#include <ctime>
 #include <set>
 #include <stdexcept>
+#include <thread>
 #include <vector>
 
 #include "core/base/k_means.h"
@@ -90,6 +92,14 @@ TEST(Parallel, ExceptionsOfBlocksInBlocksReachTheCaller) {
                  std::invalid_argument);
     EXPECT_EQ(num_caught, 4) << num_threads << " threads";
   }
+}
+
+TEST(Parallel, WaitingTakesNoTimeOfACore) {
+  const std::clock_t begin = std::clock();
+  parallelBlocks(2, 4, [](std::size_t b) {
+    if (b == 0) std::this_thread::sleep_for(std::chrono::milliseconds(400));
+  });
+  EXPECT_LT(std::clock() - begin, 0.1 * CLOCKS_PER_SEC) << "of all threads";
 }
 
 TEST(Watch, IsToldHowFarTheOuterLoopIsAndEndsAllLoops) {
