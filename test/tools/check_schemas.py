@@ -51,6 +51,8 @@ class Checker:
             sys.exit(f"{tool} {' '.join(rest)}: no JSON was written")
         text = Path(rest[-1]).read_text()
         for document in map(json.loads, text.splitlines() if lines else [text]):
+            if schema != "models_info" and not {"tool", "version", "options"} <= set(document.get("made_by", ())):
+                sys.exit(f"{tool} {' '.join(rest)}: the JSON does not say how it was made")
             for error in self.validators[schema].iter_errors(document):
                 sys.exit(f"{tool} {' '.join(rest)}: against {schema}.schema.json: {error.json_path}: {error.message}")
         print(f"{tool}: {schema}")
