@@ -26,6 +26,19 @@ TEST(DetectSymmetryPlanes, NeedsOneLine) {
   }
 }
 
+TEST(DetectSymmetryPlanes, LeavesOutWhatIsOnlyPossible) {
+  DetectionOptions options;
+  options.min_confidence = 0.99999;
+  const auto cloud = test::toCloud(test::box(2000, Sampling::Random, 3));
+  SymmetryMaximaRefinement<pcl::PointXYZ> refinement;
+  refinement.setOptions(options);
+  refinement.setInputCloud(cloud);
+  const std::vector<SymmetryPlane> planes = refinement.compute();
+  ASSERT_EQ(planes.size(), 3u);
+  for (const SymmetryPlane& plane : planes) EXPECT_EQ(plane.kind, PlaneKind::Possible);
+  EXPECT_TRUE(detectSymmetryPlanes(*cloud, options).empty());
+}
+
 TEST(DetectSymmetryPlanes, WorksOnEveryPointTypeAlike) {
   const auto shape = test::box(2000, Sampling::Random, 3);
   const auto expected = detectSymmetryPlanes(*test::toCloud<pcl::PointXYZ>(shape));
