@@ -10,7 +10,7 @@ Builds the tools, fetches or makes the models (Debian package libcgal-demo, own 
 the pages to FOLDER/gallery and FOLDER/pictures (build/pictures). FOLDER = apps replaces the pictures of the pages.
 Prints each command. Needs no screen.
 
-  --estimators  also the chart of the estimators' error against time: builds the benchmarks
+  --estimators  also the chart of the estimators' error against time: minutes
   --only REGEX  only pictures whose name matches, such as figure_15
 
 example: bash apps/gallery/make.sh --only cow
@@ -40,10 +40,6 @@ cmake --preset release --log-level=WARNING >/dev/null
 cmake --build build --parallel "$(nproc)" --target pcl_symmetry_map pcl_symmetry_planes \
   pcl_symmetry_scan pcl_symmetry_scene pcl_symmetry_segment pcl_symmetry_viewpoint \
   pcl_symmetry_python pcl_symmetry_python_recognition
-if $estimators; then
-  cmake --preset benchmark --log-level=WARNING >/dev/null
-  cmake --build build-benchmark --parallel "$(nproc)" --target benchmark_accuracy
-fi
 repository=$PWD
 export PATH=$PWD/build/apps:$PATH PYTHONPATH=$PWD/build/src/python
 python=/usr/bin/python3
@@ -172,9 +168,8 @@ draw_axes
 draw_decision
 draw_failures_of_all
 if $estimators; then
-  export PCL_SYMMETRY_MODELS=$models
-  draw error_against_time /usr/bin/python3 "$repository/test/benchmark/error_against_time.py" \
-    "$repository/build-benchmark/test/benchmark/benchmark_accuracy" "$pictures/error_against_time.png"
+  draw error_against_time "$python" "$repository/test/benchmark/error_against_time.py" "$pictures/error_against_time.png" \
+    {bull,cow,elephant,hand,camel}.off
 fi
 rm -f "$models/last.txt"
 echo "Pictures: $gallery $pictures"
