@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 
+#include "core/matching/symmetry_descriptor.h"
 #include "pcl/clouds.h"
 #include "pcl_symmetry/prst.h"
 
@@ -44,25 +45,36 @@ TEST(PRSTEstimation, DescribesInTheCanonicalFrame) {
   EXPECT_GT(descriptorDistance(raw_a[0], raw_b[0]), 0.2f * norm(a[0]));
 }
 
-TEST(PaperDescriptors, PRSDAndGEDTAreThereToo) {
-  PRSDEstimation<pcl::PointXYZ> prsd;
-  GEDTEstimation<pcl::PointXYZ> gedt;
-  PRSTEstimation<pcl::PointXYZ> by_equation_1;
-  pcl::PointCloud<PRSDSignature1024> prsd_of_box;
-  pcl::PointCloud<GEDTSignature32768> gedt_of_box;
-  pcl::PointCloud<PRSTSignature32768> prst_of_box;
-  by_equation_1.setByEquation1(true);
-  const Cloud::Ptr box = boxCloud();
-  for (pcl::PCLBase<pcl::PointXYZ>* estimation :
-       std::initializer_list<pcl::PCLBase<pcl::PointXYZ>*>{&prsd, &gedt, &by_equation_1})
-    estimation->setInputCloud(box);
-  prsd.compute(prsd_of_box);
-  gedt.compute(gedt_of_box);
-  by_equation_1.compute(prst_of_box);
-  ASSERT_EQ(prsd_of_box.size() + gedt_of_box.size() + prst_of_box.size(), 3u);
-  EXPECT_GT(*std::max_element(prsd_of_box[0].prsd, prsd_of_box[0].prsd + 1024), 0.9f);
-  EXPECT_GT(*std::max_element(gedt_of_box[0].gedt, gedt_of_box[0].gedt + 32768), 0.9f);
-  EXPECT_GE(*std::min_element(prst_of_box[0].prst, prst_of_box[0].prst + 32768), std::sqrt(0.5f) - 1e-6f);
+/// The values that an estimation writes for a cloud.
+template <typename PointT>
+std::vector<float> valuesOf(PRSTEstimation<pcl::PointXYZ, PointT>& estimation, const Cloud::ConstPtr& cloud,
+                            float (PointT::*field)[PointT::descriptorSize()]) {
+  estimation.setInputCloud(cloud);
+  pcl::PointCloud<PointT> output;
+  estimation.compute(output);
+  const float* const values = output.at(0).*field;
+  return {values, values + PointT::descriptorSize()};
+}
+
+TEST(PaperDescriptors, AreThoseOfTheCoreToTheBit) {
+  for (std::uint64_t seed = 1; seed <= 12; ++seed) {
+    const test::Shape shape = seed % 3 == 0   ? test::cylinder(2000, seed)
+                              : seed % 3 == 1 ? test::asymmetricBlob(2000, seed)
+                                              : test::box(2000, test::Sampling::Random, seed);
+    const Points points = test::moved(shape, test::randomPose(seed)).cloud();
+    const Cloud::ConstPtr cloud = test::toCloud(points);
+    DescriptorOptions options;
+    options.by_equation_1 = seed % 2 == 0;
+    const auto core = symmetryDescriptors(points, descriptorFrame(points, seed > 6, nullptr, options), options);
+    const auto valuesBy = [&](auto estimation, auto field) {
+      estimation.setByEquation1(options.by_equation_1);
+      estimation.setUseInputAxes(seed > 6);
+      return valuesOf(estimation, cloud, field);
+    };
+    EXPECT_EQ(valuesBy(PRSTEstimation<pcl::PointXYZ>(), &PRSTSignature32768::prst), core.prst) << seed;
+    EXPECT_EQ(valuesBy(PRSDEstimation<pcl::PointXYZ>(), &PRSDSignature1024::prsd), core.prsd) << seed;
+    EXPECT_EQ(valuesBy(GEDTEstimation<pcl::PointXYZ>(), &GEDTSignature32768::gedt), core.gedt) << seed;
+  }
 }
 
 TEST(PRSTEstimation, HonorsIndicesAndWorksThroughTheBaseClass) {

@@ -140,21 +140,21 @@ class SameBytes(unittest.TestCase):
             volume.write_bytes((head + "space origin: (5,7,-9)\nencoding: raw\nendian: little\n\n").encode() + body.tobytes(order="F"))
             self.assert_same("volume", volume, (), pcl_symmetry.planes(volume=body, spacing=(2, 2, 3), origin=(5, 7, -9)))
 
-    def test_of_descriptors(self):
-        tool, kinds = Path(os.environ["TOOLS"]) / "pcl_symmetry_describe", ("prst", "prsd", "gedt")
-        random = np.random.default_rng(1)
-        for i in range(4):
-            points = lamp(2000, i) if i % 2 else box(random.uniform(0.2, 1, 3), 2000, i)
-            turn = np.linalg.qr(random.normal(size=(3, 3)))[0]
-            points = (points @ turn).astype(np.float32)
-            with self.subTest(i), tempfile.TemporaryDirectory() as folder:
-                write_pcd(Path(folder) / "cloud.pcd", points)
-                for kind, values in zip(kinds, pcl_symmetry.descriptors(points)):
-                    command = [tool, kind, "cloud.pcd", "-type", kind, "-quiet"]
-                    subprocess.run(command, cwd=folder, check=True, capture_output=True)
-                    body = (Path(folder) / kind / "cloud.pcd").read_bytes().split(b"DATA binary\n", 1)[1]
+    def test_of_descriptors_of_twelve_shapes(self):
+        tool, random = Path(os.environ["TOOLS"]) / "pcl_symmetry_describe", np.random.default_rng(1)
+        shapes = [lamp(2000, i) if i % 2 else box(random.uniform(0.2, 1, 3), 2000, i) for i in range(12)]
+        shapes = [(each @ np.linalg.qr(random.normal(size=(3, 3)))[0]).astype(np.float32) for each in shapes]
+        described = [pcl_symmetry.descriptors(each) for each in shapes]
+        with tempfile.TemporaryDirectory() as folder:
+            files = [f"{i}.pcd" for i in range(12)]
+            for file, points in zip(files, shapes):
+                write_pcd(Path(folder) / file, points)
+            for k, kind in enumerate(("prst", "prsd", "gedt")):
+                subprocess.run([tool, kind, *files, "-type", kind, "-quiet"], cwd=folder, check=True, capture_output=True)
+                for i, values in enumerate(each[k] for each in described):
+                    body = (Path(folder) / kind / files[i]).read_bytes().split(b"DATA binary\n", 1)[1]
                     read = np.frombuffer(body, "<f4", count=values.size)  # PCL fills the last page of the file
-                    np.testing.assert_array_equal(read, values.ravel(), err_msg=kind)
+                    np.testing.assert_array_equal(read, values.ravel(), err_msg=f"{kind} {i}")
 
 
 class DepthImages(unittest.TestCase):
