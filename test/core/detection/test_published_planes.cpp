@@ -31,20 +31,20 @@ TEST(PublishedPlanes, FindTheThreePlanesOfABox) {
 }
 
 TEST(PublishedPlanes, AreNotLostAtBordersOfCells) {
-  // A cube, turned by a tenth of a bin of phi and of theta after the other: its planes cross all borders of their
+  // A cube, turned a hundred times by a tenth of a bin of phi and of theta: its planes cross all borders of their
   // cells.
   const test::Shape cube = test::cube(3000, test::Sampling::Random, 4);
   PublishedOptions options;
   options.num_points = 500;
   options.max_maxima = 20;
-  for (int i = 0; i < 100; i += 3) {
+  for (int i = 0; i < 100; ++i) {
     const double tenth = 0.1 * i / 64.0;
     const Eigen::Isometry3d pose = Eigen::AngleAxisd(2.0 * kPi * tenth, Eigen::Vector3d::UnitZ()) *
                                    Eigen::Isometry3d(Eigen::AngleAxisd(0.5 * kPi * tenth, Eigen::Vector3d::UnitX()));
     const test::Shape turned = test::moved(cube, pose);
     const Points points = turned.cloud();
     const GaussianEdt edt(points);
-    const auto planes = publishedPlanes(points, edt, publishedMap(points, edt), options);
+    const auto planes = publishedPlanes(points, edt, publishedMap(points, edt, TransformMethod::Sampled), options);
     for (int axis = 0; axis < 3; ++axis)
       EXPECT_TRUE(
           test::isAmong(planes, ReflectionPlane(pose.linear().col(axis), 0.0), kDegree, 0.02, Eigen::Vector3d::Zero()))
