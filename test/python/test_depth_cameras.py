@@ -355,6 +355,7 @@ class LongCalls(unittest.TestCase):
 
     def seconds_to_stop(self, call, after=0.3):
         sent = []
+        signal.signal(signal.SIGINT, signal.default_int_handler)  # a shell's background ignores it
 
         def interrupt():
             time.sleep(after)
