@@ -139,11 +139,14 @@ def mailbox(stands):
     return mesh.mesh()
 
 
-def frames(out):
+def mugs_and_mailboxes():
     pole, back = ((-0.12, -0.12, -1.6), (0.24, 0.24, 1.6)), ((-0.12, 0.9, -2.6), (0.24, 0.24, 2.6))
     front = [((-0.12, -1.2, -2.0), (0.24, 0.24, 2.0)), ((-0.7, -1.8, -2.1), (1.4, 1.4, 0.1))]
-    shapes = [mug(0.5, 0.6), mug(0.9, 0.9), mug(1.5, 1.0), mailbox([pole]), mailbox([back]), mailbox(front)]
-    clouds = [sampled(shape) for shape in shapes]
+    return [mug(0.5, 0.6), mug(0.9, 0.9), mug(1.5, 1.0), mailbox([pole]), mailbox([back]), mailbox(front)]
+
+
+def frames(out):
+    clouds = [sampled(shape) for shape in mugs_and_mailboxes()]
     sheet = Sheet(2, len(clouds), (0.9, -1.6, 0.7), size=2.6)
     colors = (VERMILION, GREEN, BLUE)
     for k, cloud in enumerate(clouds):

@@ -48,6 +48,25 @@ class Shapes(unittest.TestCase):
         self.assertIn("usage", result.stderr)
 
 
+class Frames(unittest.TestCase):
+    def test_of_mugs_and_mailboxes_have_their_center_where_their_planes_meet(self):  # Figure 10
+        try:
+            import drawings
+        except ImportError:
+            self.skipTest("python3-matplotlib is not installed")
+        for i, points in enumerate(map(drawings.sampled, drawings.mugs_and_mailboxes())):
+            planes, some = pcl_symmetry.planes(points, as_published=True), points[::10]
+            diameter = np.linalg.norm(some[:, None] - some, axis=2).max()
+            across = [next(plane for plane in planes if abs(plane.normal[k]) > np.cos(np.radians(5))) for k in range(3)]
+            meet = np.linalg.solve([plane.normal for plane in across], [plane.offset for plane in across])
+            off = []
+            for seed in range(3):
+                turn = np.linalg.qr(np.random.default_rng(seed).normal(size=(3, 3)))[0]
+                turn = (turn * np.linalg.det(turn)).astype("f")
+                off.append(np.linalg.norm(pcl_symmetry.frame(points @ turn.T).center - turn @ meet) / diameter)
+            self.assertLess(np.mean(off), 0.01, i)
+
+
 class Views(unittest.TestCase):
     def test_of_animals_face_the_strongest_plane_and_the_worst_lie_in_it(self):  # Figure 16
         folder = Path(os.environ.get("PCL_SYMMETRY_MODELS", "build/pictures_models"))
