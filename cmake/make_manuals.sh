@@ -26,7 +26,7 @@ for tool in "$@"; do
   help2man --no-info --name="$("$folder/$tool" -h | sed '/^$/Q' | tr '\n' ' ' | sed 's/\. .*//')" --help-option=-h --version-option=-version "$folder/$tool" |
     gzip -9n >"$output/man1/$tool.1.gz"
   # Flags, their values such as a|b, and commands such as "a, b or c".
-  words=$("$folder/$tool" -h | sed -nE 's/^  (-[a-z_]+)( ([a-z]+(\|[a-z]+)+)( .*)?| .*)?$/\1 \3/p; s/^  command +(.*)$/\1/p' |
+  words=$("$folder/$tool" -h | sed -nE 's/^  (-h), (-help) .*/\1 \2/p; s/^  (-[a-z_0-9]+)( ([a-z]+(\|[a-z]+)+)( .*)?| .*)?$/\1 \3/p; s/^  command +(.*)$/\1/p' |
     sed -E 's/[|,]/ /g; s/ or / /g' | tr '\n' ' ')
   printf 'complete -o default -W "%s" %s\n' "$words" "$tool" >"$output/completions/$tool"
 done

@@ -66,8 +66,9 @@ struct CloudRegistration : RegisteredPose {
   /// \return what speaks against the best pose, one sentence without a full stop.
   std::string doubt() const;
 
-  /// Distinct poses, at most PoseSearchOptions::max_poses, best first: those of like merit by falling confidence, or
-  /// all where none of these convinced, then by falling merit. Poses that symmetry makes equal have like merits.
+  /// Distinct poses, at most PoseSearchOptions::max_poses, best first: those of like merit by falling confidence, then
+  /// by falling merit; where none convinced and pairs of points were tried, all by falling confidence. Poses that
+  /// symmetry makes equal have like merits.
   std::vector<RegisteredPose> poses;
   /// How uncertain the best pose is: the covariance of the small motion (w, t) of the target's frame that makes it
   /// true: a point x of the aligned source belongs at x + w x x + t. Rotation vector w, radians, then translation t,
@@ -205,7 +206,7 @@ public:
   const PoseScore& getScore() const { return result_.score; }
   /// \return estimated probability that the best pose of the last align() is right, in [0, 1].
   double getConfidence() const { return result_.confidence; }
-  /// \return what that follows from: overlap, agreement, conflict.
+  /// \return what that follows from: agreement, what was to be seen and was not measured, and more.
   const PoseEvidence& getEvidence() const { return result_.evidence; }
   /// \return the best poses that the last align() found, see CloudRegistration::poses; that of the transformation is the
   /// first one. Empty where a cloud held no answer.

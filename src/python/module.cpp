@@ -262,8 +262,8 @@ std::vector<float> localSymmetryOf(const py::object& shape, const AnyArray& at, 
   return localSymmetry(edt, asked.points(), options);
 }
 
-std::string whyUnanswerableOf(const AnyArray& points) {
-  return whyUnanswerable(InputPoints("points", points, 0, 0).points());
+std::string whyUnanswerableOf(const AnyArray& points, const std::string& name) {
+  return whyUnanswerable(InputPoints(name.c_str(), points, 0, 0).points());
 }
 
 SymmetryFrame frame(const AnyArray& points, const py::object& viewpoint, std::size_t max_points, bool as_published,
@@ -446,7 +446,7 @@ PYBIND11_MODULE(_pcl_symmetry, module) {
   add(module, "transform", &transform, "shape", "bins", "method", "center", "radius", "sigma", "cells", "samples",
       "refined_share", "as_published", "seed", "threads");
   add(module, "local_symmetry", &localSymmetryOf, "shape", "at", "scale", "seed", "threads");
-  add(module, "why_unanswerable", &whyUnanswerableOf, "points");
+  add(module, "why_unanswerable", &whyUnanswerableOf, "points", "name");
   add(module, "descriptors", &descriptors, "points", "viewpoint", "input_axes", "by_equation_1", "seed", "threads");
   add(module, "describe", &describe, "points", "viewpoint", "seed", "threads");
   add(module, "segment", &segment, "points", "faces", "parts", "method", "depth", "as_published", "progress", "seed",

@@ -162,7 +162,7 @@ struct JudgedPose {
 };
 
 /// Poses by falling confidence.
-/// \param poses best first.
+/// \param poses distinct, best first.
 /// \param within of the merit of the first; poses of less are left out.
 std::vector<JudgedPose> judgedPoses(const CloudPair& clouds, const std::vector<RankedPose>& poses, double within) {
   std::vector<JudgedPose> judged;
@@ -185,8 +185,7 @@ double uniquenessOf(const CloudPair& clouds, const std::vector<JudgedPose>& judg
   const double best_odds = odds(judged.front());
   double all = best_odds;
   for (std::size_t k = 1; k < judged.size(); ++k)
-    if (judged[k].pose.score.merit() > best.score.merit() - kRegistration.like_merit &&
-        !isSymmetry(judged[k].pose.T_model_scan * best.T_model_scan.inverse(), clouds.model()))
+    if (!isSymmetry(judged[k].pose.T_model_scan * best.T_model_scan.inverse(), clouds.model()))
       all += odds(judged[k]) > kRegistration.like_odds * best_odds ? best_odds : odds(judged[k]);
   return best_odds / all;
 }
@@ -290,6 +289,8 @@ CloudRegistration registerClouds(const Points& source, const std::optional<Visib
       judged.front().confidence < kRegistration.min_confidence) {
     const std::vector<RankedPose> of_parts = posesOfParts(clouds, inner);
     poses.insert(poses.end(), of_parts.begin(), of_parts.end());
+    const std::size_t size = poses.size();
+    poses = distinctPoses(std::move(poses), size);
     judged = judgedPoses(clouds, poses, std::numeric_limits<double>::infinity());
     done("parts");
   }

@@ -355,7 +355,8 @@ class LongCalls(unittest.TestCase):
 
     def seconds_to_stop(self, call, after=0.3):
         sent = []
-        signal.signal(signal.SIGINT, signal.default_int_handler)  # a shell's background ignores it
+        old = signal.signal(signal.SIGINT, signal.default_int_handler)  # a shell's background ignores it
+        self.addCleanup(signal.signal, signal.SIGINT, old)
 
         def interrupt():
             time.sleep(after)

@@ -22,7 +22,7 @@ CASES = (("01_first_plane box.pcd", ["a b c d = ", "reflects to"], {}, ""),
          ("10_scene scene.pcd out.pcd", ["1 supporting planes", "  plane "], {"object of ": 1}, "FIELDS x y z"),
          ("11_completion scan.pcd out.pcd", [" points added to "], {}, "FIELDS x y z"),
          ("12_viewpoint box.pcd", ["seen from ", "worst "], {}, ""),
-         ("15_turntable scan.pcd scan.pcd out.pcd", [" points, "], {"left out": 0}, "FIELDS x y z"))
+         ("15_turntable scan.pcd other.pcd out.pcd", [" points, "], {"left out": 0}, "FIELDS x y z"))
 
 
 class Examples(ToolTest):
@@ -31,6 +31,7 @@ class Examples(ToolTest):
         table = [(-6, -6, -2), (6, -6, -2), (6, 6, -2), (-6, 6, -2)]
         scene = tool_run.off([*tool_run.box_corners(1, 1.4, 2), *table], [*tool_run.BOX_FACES, (8, 9, 10, 11)])
         self.run_tool(mesh, "scan.pcd -quiet", tool="scan")
+        self.run_tool(mesh, "other.pcd -direction 1,-1,0.8 -quiet", tool="scan")
         self.run_tool(self.write("scene.off", scene), "scene.pcd -direction 1,1.5,1 -quiet", tool="scan")
         self.run_tool(mesh, "-support box.pcd -quiet", tool="planes")
         for arguments, printed, counted, written in CASES:

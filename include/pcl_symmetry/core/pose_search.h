@@ -39,13 +39,13 @@ struct PoseEvidence {
   /// what noise asks for, in [0, 1].
   double on_surface = 0.0;
   /// Of the surface of a cloud that the scanner of the other one would see at this pose, the share that lies in space
-  /// it saw to be empty, before what it measured, in [0, 1]. The greater one where both were scanned; 0 where none was.
+  /// it saw to be empty, before what it measured, in [0, 1]. Where both were scanned the greater one; 0 where none was.
   double contradicted = 0.0;
   /// The same, the share where it measured nothing, in [0, 1]: beside the cloud or in its holes.
   double missing = 0.0;
   double noise = 0.0;       ///< of the noisier cloud, in diameters of the smaller one
   double size_ratio = 1.0;  ///< diameter of the source over that of the target
-  /// Share of the pose in the odds of all of like merit, in (0, 1]: 0.5 where another one fits as well. Poses that
+  /// Share of the pose in the odds of all that were judged, in (0, 1]: 0.5 where another one fits as well. Poses that
   /// differ by a symmetry of the model are one. 1 between two scans, and where the pose alone does not convince.
   double uniqueness = 1.0;
 };

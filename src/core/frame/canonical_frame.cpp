@@ -51,7 +51,10 @@ float centralOffset(const FrameEvidence& evidence, const Eigen::Vector3f& axis, 
   const auto at_offset = static_cast<float>(at) - std::floor(evidence.reach);
   double of_peak = at_offset;
   for (int i = 0; i < 5; ++i)  // from either of two cells that the plane passes between
-    of_peak = meanOffset(evidence, s, [&](double r) { return std::exp(-0.5 * (r - of_peak) * (r - of_peak)); });
+    of_peak = meanOffset(evidence, s, [&](double r) {
+      const double away = (r - of_peak) / kFrame.clear_width;
+      return std::exp(-0.5 * away * away);
+    });
   const float top = evidence.nearbyOffset(axis, at_offset).score;  // profiles have steps of a cell
   const double trust = std::clamp((top - beside - kFrame.clear_height) / kFrame.clear_ramp, 0.0, 1.0);
   return static_cast<float>(trust * of_peak + (1.0 - trust) * of_flat);

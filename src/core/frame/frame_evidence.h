@@ -47,6 +47,7 @@ struct FrameRules {
   double offset_width = 0.07;      // radii, of the weight about the middle of the extent where no peak stands out
   double clear_height = 0.3;       // of a whole: a peak of the scores that is this much above all others
   double clear_side = 0.25;        // more than so many radii away
+  double clear_width = 1.0;        // cells, of the weight about the peak: the plane may pass between two of them
   double clear_ramp = 0.1;         // is where the plane is, fully so where it is higher by this
   double center_sharpness = 30.0;  // weight exp(30 v) of the center of a frame whose value is v less than the best
   int num_revolution_angles = 8;   // at which a revolution is tested

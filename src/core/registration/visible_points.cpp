@@ -1,5 +1,7 @@
 #include "core/registration/visible_points.h"
 
+#include <algorithm>
+#include <cmath>
 #include <optional>
 
 #include "core/registration/registration_rules.h"

@@ -34,9 +34,9 @@ bool isWire(const PointsRef& points) {
 
 /// A scanner so far away that its rays are parallel leaves the same density from behind: then the bulge decides.
 Eigen::Vector3d onItsSide(const ScanDensity& density, const Eigen::Vector3d& best) {
-  const Eigen::Vector3d center = density.ball().center, mirrored = 2.0 * center - best;
+  const Eigen::Vector3d center = density.ball().center, opposite = 2.0 * center - best;
   const Eigen::Vector3d far = center + kScan.greatest_distance * density.ball().radius * (center - best).normalized();
-  const Eigen::Vector3d& behind = density.unexplained(far) < density.unexplained(mirrored) ? far : mirrored;
+  const Eigen::Vector3d& behind = density.unexplained(far) < density.unexplained(opposite) ? far : opposite;
   const bool as_good = density.unexplained(behind) <= kScan.as_good * density.unexplained(best) + kScan.as_good_beyond;
   return as_good && !density.bulgesToward(best) ? behind : best;
 }
@@ -49,12 +49,13 @@ std::optional<InferredView> leastLayered(const PointsRef& points, const ScanDens
   std::optional<InferredView> view;
   double least = std::numeric_limits<double>::infinity();
   for (const Eigen::Vector3d& best : density.viewpoints(max_unexplained)) {
-    const Eigen::Vector3d position = onItsSide(density, best);
-    const double layered = layeredShare(points, position);
-    if (layered >= least) continue;
-    if (std::optional<Visibility> seen = seenFrom(position, kScan.surely_even)) {
-      view = {std::move(*seen), position, false};
-      least = layered;
+    for (const Eigen::Vector3d& position : {onItsSide(density, best), best}) {
+      const double layered = layeredShare(points, position);
+      if (layered >= least) continue;
+      if (std::optional<Visibility> seen = seenFrom(position, kScan.surely_even)) {
+        view = {std::move(*seen), position, false};
+        least = layered;
+      }
     }
   }
   return view;

@@ -62,7 +62,8 @@ def register(
     around: (radians, input units), how far the pose may be from the guess, for tracks; None: all poses.
     source_viewpoint, target_viewpoint, progress: as in planes().
     Two scans need not show the same part: points that face the surface of the other cloud have to lie on it. A pose whose
-    confidence is below 0.5 does not converge, and its reason says what speaks against it.
+    confidence is below 0.5 does not converge, and its reason says what speaks against it. Points that hold no answer, such as
+    too few, are warned of (RuntimeWarning): the identity is then returned, and does not converge.
     """
     import numpy as np
 
@@ -72,7 +73,7 @@ def register(
         if reason := no_answer(cloud, name=name):
             return Registration(
                 transform=np.eye(4), score=PoseScore(0, 0, 0), converged=False, confidence=0.0, reason=f"{name}: {reason}", poses=[],
-                evidence=PoseEvidence(*(0.0 for _ in dataclasses.fields(PoseEvidence))), covariance=None,
+                evidence=PoseEvidence(0, 0, 0, 0, 0, 0, 0, size_ratio=1, uniqueness=1), covariance=None,
             )  # fmt: skip
     s = np.zeros(3) if source_shift is None else source_shift
     t = np.zeros(3) if target_shift is None else target_shift
@@ -230,7 +231,10 @@ class Database:
     def match(
         self, points: Any, num_nearest: int = 10, *, viewpoint: Viewpoint = "auto", progress: Progress = None
     ) -> List[Match]:
-        """The models most like a cloud, in any pose and size, nearest first. points, viewpoint: as in planes()."""
+        """The models most like a cloud, in any pose and size, nearest first. points, viewpoint: as in planes().
+
+        Points that hold no answer are warned of (RuntimeWarning) and have none.
+        """
         cloud = _near_origin(points)
         if no_answer(cloud.array):
             return []
@@ -248,13 +252,15 @@ class Database:
         progress: Progress = None,
         threads: int = 0,
     ) -> List[Recognized]:
-        """The model that a scan shows, in its own size, best first; empty for an unknown object.
+        """The model that a scan shows, in its own size, best first; empty for an unknown object, and, with a warning
+        (RuntimeWarning), for points that hold no answer.
 
         points, viewpoint, indices: as in planes(). min_confidence: least probability of a model that is accepted, in [0, 1].
         """
         cloud = _near_origin(points)
         rows = rows_of(indices, cloud.shape)
-        if no_answer(cloud.array if rows is None else cloud.array[rows]):
+        of_cloud = rows is None or not all(0 <= row < len(cloud.array) for row in rows)  # the core refuses such rows
+        if no_answer(cloud.array if of_cloud else cloud.array[rows]):
             return []
         with telling(_recognition, progress):
             found = self._core.recognize(

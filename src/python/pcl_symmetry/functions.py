@@ -623,7 +623,7 @@ def from_depth(depth: ArrayLike, intrinsics: ArrayLike, *, unit: float = 1.0) ->
 
 def no_answer(points: Any, reason: str = "", name: str = "points") -> str:
     """Why points hold no answer, if they do not; whoever asked for one is warned of it."""
-    reason = reason or core.why_unanswerable(points)
+    reason = reason or core.why_unanswerable(points, name)
     if reason:
         warnings.warn(f"{name}: {reason}", RuntimeWarning, stacklevel=3)
     return reason
@@ -834,6 +834,7 @@ def transform(
     samples: points of sampled (0: 128), pairs of voting (0: two million). refined_share: of rotational, multiresolution: planes
         with this share of the greatest D are computed finely, the others coarsely, in [0, 1].
     volume, spacing, origin, direction, levels: as in planes(), in place of points; sigma is then left out.
+    Points that hold no answer are warned of (RuntimeWarning): the map is then empty, with a reason.
     """
     import numpy as np
 

@@ -722,7 +722,7 @@ class PoseEvidence(Result):
     size_ratio: float
     """Diameter of the source over that of the target."""
     uniqueness: float
-    """Share of the pose in the odds of all of like merit, in (0, 1]: 0.5 where another one fits as well. Poses that differ by
+    """Share of the pose in the odds of all that were judged, in (0, 1]: 0.5 where another one fits as well. Poses that differ by
     a symmetry of the model are one. 1 between two scans, and where the pose alone does not convince."""
 
 
