@@ -29,8 +29,8 @@ public:
   /// variance that random points have. What remains shows that the points are not those of one view from there.
   double unexplainedByPatches(const Eigen::Vector3d& viewpoint) const;
 
-  /// \return whether the surface bulges toward a viewer: normals turned to the viewer point away
-  /// from the middle of the surface.
+  /// \return whether the surface bulges toward a viewer: normals turned to the viewer point away from the middle of the
+  /// surface.
   /// \param viewpoint frame of the points.
   bool bulgesToward(const Eigen::Vector3d& viewpoint) const;
 
