@@ -1,7 +1,6 @@
 #include "pcl_symmetry/mesh_sampling.h"
 
 #include "core/geometry/triangles.h"
-#include "mesh_conversion.h"
 #include "pcl_symmetry/impl/cloud_conversion.hpp"
 
 namespace pcl_symmetry {
@@ -11,7 +10,7 @@ pcl::PointCloud<pcl::PointXYZ>::Ptr sampleMesh(const pcl::PolygonMesh& mesh, int
   return detail::withBadArguments([&] {
     auto cloud = pcl::make_shared<pcl::PointCloud<pcl::PointXYZ>>();
     cloud->header = mesh.header;
-    const MeshArrays arrays = toArrays(mesh);
+    const detail::MeshArrays arrays = detail::toArrays(mesh);
     if (!arrays.hasArea()) {
       detail::warnOfNoAnswer("sampleMesh", "mesh: no polygon has an area");
       return cloud;
@@ -25,7 +24,7 @@ pcl::PointCloud<pcl::PointXYZ>::Ptr sampleMesh(const pcl::PolygonMesh& mesh, int
 
 MeshSurface meshSurface(const pcl::PolygonMesh& mesh) {
   return detail::withBadArguments([&] {
-    const MeshArrays arrays = toArrays(mesh);
+    const detail::MeshArrays arrays = detail::toArrays(mesh);
     return MeshSurface(arrays.vertices, arrays.triangles);
   });
 }

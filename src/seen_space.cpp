@@ -2,7 +2,7 @@
 #include <utility>
 
 #include "core/base/check.h"
-#include "core/scan/single_view.h"
+#include "core/scan/range_image.h"
 #include "core/scan/viewpoint_inference.h"
 #include "pcl_symmetry/impl/cloud_conversion.hpp"
 

@@ -4,7 +4,7 @@
 
 #include <cstring>
 
-#include "mesh_conversion.h"
+#include "pcl_symmetry/impl/cloud_conversion.hpp"
 
 namespace pcl_symmetry {
 
@@ -25,7 +25,7 @@ void setPositions(pcl::PCLPointCloud2& cloud, const Points& points) {
 SymmetrizedMesh symmetrize(const pcl::PolygonMesh& mesh, const ReflectionPlane& plane, SymmetrizedHalf half,
                            int num_threads) {
   return detail::withBadArguments([&] {
-    const MeshArrays arrays = toArrays(mesh);
+    const detail::MeshArrays arrays = detail::toArrays(mesh);
     SymmetrizedShape shape = symmetrizedMesh(arrays.vertices, arrays.triangles, plane, half, num_threads);
     SymmetrizedMesh result{mesh, std::move(shape.asymmetry), shape.mean_asymmetry, shape.greatest_asymmetry,
                            shape.deviation};
@@ -37,7 +37,7 @@ SymmetrizedMesh symmetrize(const pcl::PolygonMesh& mesh, const ReflectionPlane& 
 pcl::PolygonMesh mirroredHalf(const pcl::PolygonMesh& mesh, const ReflectionPlane& plane, bool left,
                               std::vector<float>* values) {
   return detail::withBadArguments([&] {
-    const MeshArrays arrays = toArrays(mesh);
+    const detail::MeshArrays arrays = detail::toArrays(mesh);
     const MirroredMesh half = mirroredHalf(arrays.vertices, arrays.triangles, plane, left);
     pcl::PolygonMesh result;
     pcl::copyPointCloud(mesh.cloud, pcl::Indices(half.sources.begin(), half.sources.end()), result.cloud);

@@ -11,7 +11,7 @@
 
 #include "command_line/tool_errors.h"
 #include "core/geometry/cloud_extent.h"
-#include "core/geometry/usable_points.h"
+#include "core/geometry/point_samples.h"
 #include "io/answers.h"
 #include "io/exact_coordinates.h"
 #include "io/shape_output.h"

@@ -4,8 +4,8 @@
 #include <optional>
 #include <string>
 
+#include "core/base/parallel.h"
 #include "core/base/stopwatch.h"
-#include "core/base/watch.h"
 
 namespace pcl_symmetry::apps {
 

@@ -17,7 +17,7 @@
 #include "io/exact_coordinates.h"
 #include "io/input_shape.h"
 #include "io/shape_output.h"
-#include "pcl_symmetry/core/local_maxima.h"
+#include "pcl_symmetry/core/symmetry_map.h"
 #include "pcl_symmetry/symmetry_maxima_refinement.h"
 #include "pcl_symmetry/viewpoint_selection.h"
 #include "pictures/picture.h"

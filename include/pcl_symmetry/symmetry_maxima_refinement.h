@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "pcl_symmetry/core/detect_planes.h"
-#include "pcl_symmetry/core/mesh_refinement.h"
+#include "pcl_symmetry/core/mesh_surface.h"
 #include "pcl_symmetry/impl/pcl_search.hpp"
 
 namespace PCL_SYMMETRY_EXPORTS pcl_symmetry {

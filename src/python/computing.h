@@ -6,7 +6,7 @@
 #include <exception>
 #include <memory>
 
-#include "core/base/watch.h"
+#include "core/base/parallel.h"
 
 namespace pcl_symmetry::python {
 

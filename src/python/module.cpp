@@ -14,13 +14,14 @@
 #include <vector>
 
 #include "core/base/parallel.h"
+#include "core/geometry/point_samples.h"
 #include "core/geometry/triangles.h"
-#include "core/geometry/usable_points.h"
 #include "core/matching/shape_signature.h"
 #include "core/matching/symmetry_descriptor.h"
 #include "pcl_symmetry/core/closest_point_search.h"
+#include "pcl_symmetry/core/detect_planes.h"
 #include "pcl_symmetry/core/local_symmetry.h"
-#include "pcl_symmetry/core/mesh_refinement.h"
+#include "pcl_symmetry/core/mesh_surface.h"
 #include "pcl_symmetry/core/planar_transform.h"
 #include "pcl_symmetry/core/published_planes.h"
 #include "pcl_symmetry/core/revolution_profile.h"

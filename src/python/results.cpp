@@ -5,7 +5,6 @@
 
 #include <utility>
 
-#include "pcl_symmetry/core/local_maxima.h"
 #include "pcl_symmetry/core/rotational_symmetry.h"
 #include "pcl_symmetry/core/symmetrized_shape.h"
 #include "pcl_symmetry/core/symmetry_map.h"

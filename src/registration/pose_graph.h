@@ -3,7 +3,7 @@
 #include <Eigen/Geometry>
 #include <vector>
 
-#include "core/geometry/small_motion.h"
+#include "core/base/symmetric_solvers.h"
 
 namespace pcl_symmetry {
 

@@ -2,7 +2,7 @@
 
 #include <stdexcept>
 
-#include "core/geometry/usable_points.h"
+#include "core/geometry/point_samples.h"
 
 namespace pcl_symmetry {
 

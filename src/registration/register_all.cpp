@@ -10,7 +10,7 @@
 #include "core/base/parallel.h"
 #include "core/base/statistics.h"
 #include "core/base/stopwatch.h"
-#include "core/geometry/usable_points.h"
+#include "core/geometry/point_samples.h"
 #include "core/registration/posed_surface.h"
 #include "registration/pose_graph.h"
 

@@ -5,12 +5,13 @@
 #include "pcl_symmetry/core/closest_point_search.h"
 #include "pcl_symmetry/core/exports.h"
 #include "pcl_symmetry/core/gaussian_edt.h"
-#include "pcl_symmetry/core/local_maxima.h"
 #include "pcl_symmetry/core/plane_types.h"
 #include "pcl_symmetry/core/symmetry_map.h"
 #include "pcl_symmetry/core/visibility.h"
 
 namespace PCL_SYMMETRY_EXPORTS pcl_symmetry {
+
+class MeshSurface;
 
 /// The input of detectPlanes(). It refers to the arrays that it is made of, which must outlive it.
 struct PlaneInput {
@@ -87,5 +88,15 @@ struct DetectionOptions {
 /// whether a plane is a symmetry, families of planes, rotations of scans and symmetries of parts.
 /// \throws std::invalid_argument for bad options, coordinates that are not finite, or another number of normals.
 Detection detectPlanes(const PlaneInput& input, const DetectionOptions& options = {});
+
+/// Refines planes, axes and centers on the mesh itself: the last step of a search whose points were sampled from a
+/// mesh. Samples fix a plane to a share of their spacing, within which that of a slender or flat part can rotate far;
+/// the mesh fixes it exactly. Share, deviation, residual and confidence of symmetries and possible ones become those of
+/// the surface. Planes that coincide are reported once, in the order of Detection::planes, and those below
+/// DetectionOptions::min_possible are dropped unless approximate ones are reported.
+/// \param found by detectPlanes() on points of the mesh, without visibility; in the frame of the mesh. Its tolerance
+/// decides.
+/// \param options of that detection.
+void refineOnMesh(const MeshSurface& mesh, Detection& found, const DetectionOptions& options = {});
 
 }  // namespace pcl_symmetry

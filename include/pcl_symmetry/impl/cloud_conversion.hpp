@@ -1,5 +1,6 @@
 #pragma once
 
+#include <pcl/PolygonMesh.h>
 #include <pcl/common/point_tests.h>
 #include <pcl/exceptions.h>
 #include <pcl/point_cloud.h>
@@ -19,7 +20,7 @@
 #include "pcl_symmetry/core/visibility.h"
 #include "pcl_symmetry/viewpoint.h"
 
-/// PCL clouds become points of the core, and errors of the core become errors of PCL.
+/// PCL clouds and meshes become points of the core, and errors of the core become errors of PCL.
 ///
 /// All classes and functions for PCL users share one error policy:
 /// - Data that hold no answer give an empty result, and PCL_WARN prints the reason. Such data are: no input, no finite
@@ -29,6 +30,19 @@
 /// - Messages name neither a C++ function nor a source file.
 namespace PCL_SYMMETRY_EXPORTS pcl_symmetry {
 namespace detail {
+
+/// A polygon mesh of PCL as plain arrays.
+struct MeshArrays {
+  Points vertices;                         ///< 3 x V, input units; may be not finite
+  std::vector<std::vector<int>> polygons;  ///< indices of vertices, each valid
+  std::vector<Eigen::Vector3i> triangles;  ///< those of a polygon have its first corner in common
+
+  /// \return whether any polygon with finite corners has an area.
+  bool hasArea() const;
+};
+
+/// \throws std::invalid_argument where a polygon refers to a vertex that the mesh does not have.
+MeshArrays toArrays(const pcl::PolygonMesh& mesh);
 
 /// Throws pcl::BadArgumentException whose what() is \p message and nothing else. (PCL_THROW_EXCEPTION puts the
 /// function, the file and the line into the text.)

@@ -4,6 +4,7 @@
 /// in block order are therefore the same bytes for any number of threads.
 #pragma once
 
+#include <chrono>
 #include <cstddef>
 #include <functional>
 
@@ -24,5 +25,26 @@ void parallelRanges(std::size_t size, std::size_t block_size, int num_threads,
 
 /// The same for points, whose pieces are large enough that threads start seldom and small enough for the first cache.
 void parallelPoints(std::size_t size, int num_threads, const std::function<void(std::size_t, std::size_t)>& range);
+
+/// Tells, some times a second, how far the outermost loop of this thread is, as long as the object lives: a long call
+/// becomes one that shows its progress and that can be ended.
+class Watch {
+public:
+  /// \param tell takes the share of the blocks of parallelBlocks() that are done, in [0, 1]. What it throws ends that
+  /// loop and those inside.
+  explicit Watch(std::function<void(double)> tell);
+  ~Watch();
+  Watch(const Watch&) = delete;
+  Watch& operator=(const Watch&) = delete;
+
+private:
+  friend struct Loop;
+
+  std::function<void(double)> tell_;
+  Watch* former_;
+  std::chrono::steady_clock::time_point last_;
+  int depth_ = 0;  // of the loops that run
+  double share_ = 0.0;
+};
 
 }  // namespace pcl_symmetry

@@ -11,7 +11,6 @@
 #include "core/detection/detection_rules.h"
 #include "core/geometry/cloud_extent.h"
 #include "core/geometry/point_samples.h"
-#include "core/geometry/usable_points.h"
 #include "pcl_symmetry/core/closest_point_search.h"
 
 namespace pcl_symmetry {

@@ -7,7 +7,6 @@
 #include "core/base/constants.h"
 #include "core/base/statistics.h"
 #include "core/base/symmetric_solvers.h"
-#include "core/detection/plane_lattice.h"
 #include "core/geometry/cloud_extent.h"
 #include "core/geometry/directions.h"
 #include "core/geometry/point_samples.h"

@@ -6,8 +6,7 @@
 
 #include "core/base/parallel.h"
 #include "core/base/statistics.h"
-#include "core/detection/plane_lattice.h"
-#include "core/evidence/point_density.h"
+#include "core/detection/plane_families.h"
 #include "core/evidence/surface_samples.h"
 #include "core/geometry/cloud_extent.h"
 #include "core/geometry/point_samples.h"

@@ -1,4 +1,4 @@
-#include "core/detection/plane_lattice.h"
+#include "core/detection/plane_families.h"
 
 #include <algorithm>
 #include <array>
@@ -10,7 +10,6 @@
 #include "core/base/constants.h"
 #include "core/base/parallel.h"
 #include "core/base/statistics.h"
-#include "core/detection/plane_families.h"
 #include "core/geometry/geometry_rules.h"
 #include "core/geometry/point_samples.h"
 #include "pcl_symmetry/core/closest_point_search.h"

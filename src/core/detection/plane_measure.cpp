@@ -1,15 +1,15 @@
-#include "core/detection/plane_measure.h"
+#include "core/detection/plane_decision.h"
 
 #include <algorithm>
 #include <cmath>
 #include <utility>
 
 #include "core/detection/detection_rules.h"
-#include "core/evidence/plane_motion.h"
+#include "core/evidence/plane_confidence.h"
 #include "core/evidence/surface_samples.h"
 #include "core/geometry/geometry_rules.h"
 #include "core/geometry/point_samples.h"
-#include "core/scan/single_view.h"
+#include "core/scan/range_image.h"
 #include "pcl_symmetry/core/detect_planes.h"
 
 namespace pcl_symmetry {

@@ -7,7 +7,7 @@
 #include "core/base/check.h"
 #include "core/base/parallel.h"
 #include "core/geometry/point_samples.h"
-#include "core/refinement/landing.h"
+#include "core/refinement/normalized_cloud.h"
 #include "core/transform/sampled_transform.h"
 #include "pcl_symmetry/core/iterative_symmetric_points.h"
 

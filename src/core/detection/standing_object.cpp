@@ -10,7 +10,6 @@
 #include "core/base/statistics.h"
 #include "core/detection/detection_rules.h"
 #include "core/detection/plane_decision.h"
-#include "core/detection/plane_measure.h"
 #include "core/geometry/point_samples.h"
 #include "core/geometry/surface_normals.h"
 

@@ -15,7 +15,7 @@
 #include "core/geometry/cloud_extent.h"
 #include "core/geometry/point_samples.h"
 #include "core/geometry/surface_normals.h"
-#include "core/scan/single_view.h"
+#include "core/scan/range_image.h"
 
 namespace pcl_symmetry {
 

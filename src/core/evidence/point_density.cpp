@@ -1,4 +1,4 @@
-#include "core/evidence/point_density.h"
+#include "core/evidence/surface_samples.h"
 
 #include <algorithm>
 #include <array>
@@ -7,8 +7,7 @@
 #include "core/base/constants.h"
 #include "core/base/parallel.h"
 #include "core/base/symmetric_solvers.h"
-#include "core/evidence/plane_motion.h"
-#include "core/evidence/surface_samples.h"
+#include "core/evidence/plane_confidence.h"
 
 namespace pcl_symmetry {
 

@@ -6,7 +6,7 @@
 
 #include "core/base/constants.h"
 #include "core/base/parallel.h"
-#include "pcl_symmetry/core/local_maxima.h"
+#include "pcl_symmetry/core/symmetry_map.h"
 
 namespace pcl_symmetry {
 

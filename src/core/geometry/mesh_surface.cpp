@@ -9,9 +9,9 @@
 
 #include "core/base/check.h"
 #include "core/base/statistics.h"
+#include "core/base/symmetric_solvers.h"
 #include "core/geometry/directions.h"
 #include "core/geometry/geometry_rules.h"
-#include "core/geometry/small_motion.h"
 #include "core/geometry/triangles.h"
 
 namespace pcl_symmetry {

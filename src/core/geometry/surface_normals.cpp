@@ -10,7 +10,6 @@
 #include "core/base/symmetric_solvers.h"
 #include "core/geometry/geometry_rules.h"
 #include "core/geometry/point_samples.h"
-#include "core/geometry/small_motion.h"
 
 namespace pcl_symmetry {
 

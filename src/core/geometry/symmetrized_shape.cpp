@@ -12,7 +12,6 @@
 #include "core/geometry/point_samples.h"
 #include "core/geometry/surface_normals.h"
 #include "core/geometry/triangles.h"
-#include "core/geometry/usable_points.h"
 #include "pcl_symmetry/core/closest_point_search.h"
 
 namespace pcl_symmetry {

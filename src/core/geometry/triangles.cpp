@@ -7,7 +7,7 @@
 
 #include "core/base/check.h"
 #include "core/base/random.h"
-#include "core/geometry/usable_points.h"
+#include "core/geometry/point_samples.h"
 
 namespace pcl_symmetry {
 

@@ -7,9 +7,9 @@
 
 #include "core/base/check.h"
 #include "core/base/symmetric_solvers.h"
-#include "core/evidence/plane_motion.h"
+#include "core/evidence/plane_confidence.h"
 #include "core/geometry/point_samples.h"
-#include "core/refinement/landing.h"
+#include "core/refinement/normalized_cloud.h"
 #include "pcl_symmetry/core/visibility.h"
 
 namespace pcl_symmetry {

@@ -2,7 +2,7 @@
 
 #include <Eigen/Geometry>
 
-#include "core/geometry/small_motion.h"
+#include "core/base/symmetric_solvers.h"
 #include "core/registration/posed_surface.h"
 
 namespace pcl_symmetry {

@@ -6,8 +6,8 @@
 #include <optional>
 #include <vector>
 
-#include "core/geometry/neighbor_lists.h"
-#include "core/refinement/landing.h"
+#include "core/geometry/closest_points.h"
+#include "core/refinement/normalized_cloud.h"
 #include "pcl_symmetry/core/closest_point_search.h"
 #include "pcl_symmetry/core/point_set.h"
 #include "pcl_symmetry/core/visibility.h"

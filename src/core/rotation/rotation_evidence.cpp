@@ -12,7 +12,6 @@
 #include "core/geometry/cloud_extent.h"
 #include "core/geometry/point_samples.h"
 #include "core/rotation/rotation_confidence_fit.h"
-#include "pcl_symmetry/core/rotation_group.h"
 
 namespace pcl_symmetry {
 
@@ -58,7 +57,9 @@ Eigen::Vector4d slopeOf(const std::array<Eigen::Isometry3d, 4>& beside, const Ei
 }  // namespace
 
 Eigen::Isometry3d motionAboutLine(const Line3d& line, double angle) {
-  return motionFixing(line.origin(), rotationAbout(line.direction(), angle));
+  Eigen::Isometry3d motion(Eigen::AngleAxisd(angle, line.direction()));
+  motion.translation() = line.origin() - motion.linear() * line.origin();
+  return motion;
 }
 
 RotationEvidence::RotationEvidence(const NormalizedCloud& cloud, double tolerance, std::uint64_t seed)

@@ -7,10 +7,10 @@
 
 #include "core/base/parallel.h"
 #include "core/base/statistics.h"
+#include "core/base/symmetric_solvers.h"
 #include "core/evidence/surface_samples.h"
 #include "core/geometry/point_samples.h"
-#include "core/geometry/small_motion.h"
-#include "core/refinement/landing.h"
+#include "core/refinement/normalized_cloud.h"
 
 namespace pcl_symmetry {
 

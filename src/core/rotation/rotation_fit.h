@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "core/evidence/surface_samples.h"
-#include "core/geometry/neighbor_lists.h"
+#include "core/geometry/closest_points.h"
 #include "core/geometry/surface_normals.h"
 #include "pcl_symmetry/core/gaussian_edt.h"
 

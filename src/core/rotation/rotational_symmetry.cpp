@@ -12,7 +12,6 @@
 #include "core/base/stopwatch.h"
 #include "core/geometry/cloud_extent.h"
 #include "core/geometry/point_samples.h"
-#include "core/geometry/usable_points.h"
 #include "core/rotation/rotation_axes.h"
 #include "pcl_symmetry/core/gaussian_edt.h"
 

@@ -1,4 +1,4 @@
-#include "core/rotation/scan_axes.h"
+#include "core/rotation/rotation_evidence.h"
 
 #include <algorithm>
 #include <cmath>
@@ -14,7 +14,6 @@
 #include "core/geometry/geometry_rules.h"
 #include "core/geometry/point_samples.h"
 #include "core/geometry/surface_normals.h"
-#include "core/geometry/usable_points.h"
 #include "pcl_symmetry/core/axial_transform.h"
 
 namespace pcl_symmetry {

@@ -7,9 +7,9 @@
 
 #include "core/geometry/point_samples.h"
 #include "core/geometry/surface_normals.h"
+#include "core/scan/range_image.h"
 #include "core/scan/scan_density.h"
 #include "core/scan/scan_rules.h"
-#include "core/scan/single_view.h"
 #include "pcl_symmetry/core/closest_point_search.h"
 
 namespace pcl_symmetry {

@@ -2,7 +2,7 @@
 
 #include <Eigen/Core>
 
-#include "pcl_symmetry/core/plane_grid.h"
+#include "pcl_symmetry/core/symmetry_map.h"
 
 namespace pcl_symmetry {
 

@@ -13,8 +13,8 @@
 #include "core/base/parallel.h"
 #include "core/base/random.h"
 #include "core/base/symmetric_solvers.h"
+#include "core/geometry/point_samples.h"
 #include "core/geometry/triangles.h"
-#include "core/geometry/usable_points.h"
 #include "core/segmentation/segmentation_rules.h"
 
 namespace pcl_symmetry {

@@ -1,7 +1,7 @@
 #include "pcl_symmetry/core/surface_segmentation.h"
 
 #include "core/base/check.h"
-#include "core/geometry/usable_points.h"
+#include "core/geometry/point_samples.h"
 #include "core/segmentation/patch_merging.h"
 #include "core/segmentation/segmentation_rules.h"
 #include "core/segmentation/symmetry_splitting.h"

@@ -10,9 +10,9 @@
 #include "core/segmentation/segmentation_rules.h"
 #include "pcl_symmetry/core/closest_point_search.h"
 #include "pcl_symmetry/core/iterative_symmetric_points.h"
-#include "pcl_symmetry/core/local_maxima.h"
 #include "pcl_symmetry/core/planar_transform.h"
 #include "pcl_symmetry/core/published_planes.h"
+#include "pcl_symmetry/core/symmetry_map.h"
 
 namespace pcl_symmetry {
 

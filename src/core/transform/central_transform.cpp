@@ -1,6 +1,5 @@
 #include "core/base/check.h"
 #include "core/base/parallel.h"
-#include "core/transform/line_sums.h"
 #include "core/transform/sampled_transform.h"
 #include "pcl_symmetry/core/axial_transform.h"
 

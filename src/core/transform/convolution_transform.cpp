@@ -11,7 +11,7 @@
 #include "core/base/check.h"
 #include "core/base/parallel.h"
 #include "core/base/simd.h"
-#include "core/transform/line_sums.h"
+#include "core/transform/sampled_transform.h"
 #include "core/transform/transform_rules.h"
 #include "pcl_symmetry/core/planar_transform.h"
 

@@ -2,18 +2,150 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <numeric>
 #include <utility>
 
 #include "core/base/check.h"
 #include "core/base/parallel.h"
 #include "core/base/random.h"
+#include "core/base/simd.h"
 #include "core/geometry/point_samples.h"
-#include "core/transform/line_sums.h"
+
+#if defined(__x86_64__)
+#include <immintrin.h>
+#endif
 
 namespace pcl_symmetry {
 
 namespace {
+
+using Cube = LineSums::Cube;
+using Lines = LineSums::Lines;
+
+constexpr int line_lanes = 8;    // 32-bit integers in an AVX2 register; sums are padded by as many
+constexpr int max_lines = 1024;  // at a time: they stay in the first cache, and sums of bytes fit in 32 bits
+
+/// Fills the lines that the images of points run along when the points are reflected in parallel planes.
+PCL_SYMMETRY_MULTIVERSION
+void setUpReflected(const float* px, const float* py, const float* pz, const ParallelPlanes& planes, const Cube& cube,
+                    Lines& lines) {
+  const float nx = planes.normal[0], ny = planes.normal[1], nz = planes.normal[2];
+  const float offset = planes.offset, inverse_step = 1.0f / planes.step, last = static_cast<float>(planes.count);
+  const float middle = cube.middle, sq_clip = cube.sq_clip, to_table = cube.to_table;
+  const float one = static_cast<float>(1 << LookupTable::kFractionBits);
+  std::int32_t *const lx = lines.x, *const ly = lines.y, *const lz = lines.z;
+  std::int32_t *const k_begin = lines.k_begin, *const k_end = lines.k_end;
+  const int size = lines.size;
+#pragma GCC ivdep
+  for (int i = 0; i < size; ++i) {
+    const float x = px[i] - middle, y = py[i] - middle, z = pz[i] - middle;
+    const float along = nx * x + ny * y + nz * z;
+    const float shift = 2.0f * (offset - along);
+    lx[i] = static_cast<std::int32_t>((x + shift * nx + to_table) * one);
+    ly[i] = static_cast<std::int32_t>((y + shift * ny + to_table) * one);
+    lz[i] = static_cast<std::int32_t>((z + shift * nz + to_table) * one);
+    // The reflected point lies at 2 r - along on the line through x: inside the ball while |2 r - along| <= chord.
+    const float sq_chord = sq_clip - (x * x + y * y + z * z - along * along);
+    const float chord = std::sqrt(std::max(0.0f, sq_chord));
+    const float begin = std::ceil((0.5f * (along - chord) - offset) * inverse_step);
+    const float end = std::floor((0.5f * (along + chord) - offset) * inverse_step) + 1.0f;
+    const auto k = static_cast<std::int32_t>(std::min(std::max(begin, 0.0f), last));
+    const auto k_behind = static_cast<std::int32_t>(std::min(std::max(end, 0.0f), last));
+    k_begin[i] = k;
+    k_end[i] = (sq_chord > 0.0f) & (k_behind > k) ? k_behind : 0;
+  }
+}
+
+/// Fills lines that run along start + moved + k * step, within the ball of the cube.
+/// \param moved 3 x lines.size.
+PCL_SYMMETRY_MULTIVERSION
+void setUpMoved(const float* moved, const float* start, const float* step, float begin, float end, const Cube& cube,
+                Lines& lines) {
+  const float one = static_cast<float>(1 << LookupTable::kFractionBits);
+  const float sx = start[0], sy = start[1], sz = start[2], tx = step[0], ty = step[1], tz = step[2];
+  const float sq_clip = cube.sq_clip, to_table = cube.to_table;
+  const float inverse = 1.0f / (tx * tx + ty * ty + tz * tz);
+  std::int32_t *const lx = lines.x, *const ly = lines.y, *const lz = lines.z;
+  std::int32_t *const k_begin = lines.k_begin, *const k_end = lines.k_end;
+  const int size = lines.size;
+  for (int i = 0; i < size; ++i) {
+    const float x = moved[3 * i] + sx, y = moved[3 * i + 1] + sy, z = moved[3 * i + 2] + sz;
+    lx[i] = static_cast<std::int32_t>((x + to_table) * one);
+    ly[i] = static_cast<std::int32_t>((y + to_table) * one);
+    lz[i] = static_cast<std::int32_t>((z + to_table) * one);
+    // |x + k step|^2 <= sq_clip, a quadratic inequality in k
+    const float middle = -(x * tx + y * ty + z * tz) * inverse;
+    const float sq_reach = (sq_clip - (x * x + y * y + z * z)) * inverse + middle * middle;
+    const float reach = std::sqrt(std::max(0.0f, sq_reach));
+    const float first = std::ceil(middle - reach), last = std::floor(middle + reach) + 1.0f;
+    k_begin[i] = static_cast<std::int32_t>(std::min(std::max(first, begin), end));
+    k_end[i] = sq_reach > 0.0f ? static_cast<std::int32_t>(std::min(std::max(last, begin), end)) : 0;
+  }
+}
+
+template <int kFunctions>
+void accumulateScalar(const Lines& lines, const std::uint8_t* table, int bits, std::int32_t* const* sums) {
+  for (int i = 0; i < lines.size; ++i) {
+    for (std::int32_t k = lines.k_begin[i]; k < lines.k_end[i]; ++k) {
+      const std::size_t index = LookupTable::index(lines.x[i] + k * lines.step[0], lines.y[i] + k * lines.step[1],
+                                                   lines.z[i] + k * lines.step[2], bits);
+      for (int g = 0; g < kFunctions; ++g) sums[g][k] += table[kFunctions * index + g];
+    }
+  }
+}
+
+#if defined(__x86_64__)
+
+template <int kFunctions>
+__attribute__((target("avx2"))) void accumulateAvx2(const Lines& lines, const std::uint8_t* table, int bits,
+                                                    std::int32_t* const* sums) {
+  const __m256i lane = _mm256_setr_epi32(0, 1, 2, 3, 4, 5, 6, 7);
+  const __m256i byte = _mm256_set1_epi32(0xFF);
+  const __m256i zero = _mm256_setzero_si256();
+  const __m128i fraction = _mm_cvtsi32_si128(LookupTable::kFractionBits);
+  const __m128i row = _mm_cvtsi32_si128(bits), slice = _mm_cvtsi32_si128(2 * bits);
+  __m256i ramp[3], stride[3];
+  for (int axis = 0; axis < 3; ++axis) {
+    ramp[axis] = _mm256_mullo_epi32(lane, _mm256_set1_epi32(lines.step[axis]));
+    stride[axis] = _mm256_set1_epi32(line_lanes * lines.step[axis]);
+  }
+  for (int i = 0; i < lines.size; ++i) {
+    const std::int32_t k_end = lines.k_end[i];
+    std::int32_t k = lines.k_begin[i];
+    __m256i x = _mm256_add_epi32(_mm256_set1_epi32(lines.x[i] + k * lines.step[0]), ramp[0]);
+    __m256i y = _mm256_add_epi32(_mm256_set1_epi32(lines.y[i] + k * lines.step[1]), ramp[1]);
+    __m256i z = _mm256_add_epi32(_mm256_set1_epi32(lines.z[i] + k * lines.step[2]), ramp[2]);
+    for (; k < k_end; k += line_lanes) {
+      const __m256i inside = _mm256_cmpgt_epi32(_mm256_set1_epi32(k_end - k), lane);
+      const __m256i index = _mm256_add_epi32(_mm256_add_epi32(_mm256_sll_epi32(_mm256_sra_epi32(z, fraction), slice),
+                                                              _mm256_sll_epi32(_mm256_sra_epi32(y, fraction), row)),
+                                             _mm256_sra_epi32(x, fraction));
+      __m256i values =
+          _mm256_mask_i32gather_epi32(zero, reinterpret_cast<const int*>(table), index, inside, kFunctions);
+      for (int g = 0; g < kFunctions; ++g) {
+        auto* sum = reinterpret_cast<__m256i*>(sums[g] + k);
+        _mm256_storeu_si256(sum, _mm256_add_epi32(_mm256_loadu_si256(sum), _mm256_and_si256(values, byte)));
+        values = _mm256_srli_epi32(values, 8);
+      }
+      x = _mm256_add_epi32(x, stride[0]);
+      y = _mm256_add_epi32(y, stride[1]);
+      z = _mm256_add_epi32(z, stride[2]);
+    }
+  }
+}
+
+#endif
+
+/// sums[g][k] += sum over lines of function g of the table at point k. The sums are integers, so that both kernels give
+/// the same bytes.
+template <int kFunctions>
+auto* kernelOf(bool scalar) {
+#if defined(__x86_64__)
+  if (!scalar && __builtin_cpu_supports("avx2")) return accumulateAvx2<kFunctions>;
+#endif
+  return accumulateScalar<kFunctions>;
+}
 
 constexpr std::size_t sampled_per_block = 32;  // directions
 
@@ -48,6 +180,94 @@ std::vector<std::vector<float>> sampleMeans(const GaussianEdt& edt, const PlaneG
 }
 
 }  // namespace
+
+LookupTable::LookupTable(const GaussianEdt& edt, const std::vector<float>& free_space, int num_threads) {
+  std::vector<const float*> functions{edt.interpolation().data()};
+  if (!free_space.empty()) {
+    check(free_space.size() == edt.values().size(), "free_space size", free_space.size(), "one value per cell");
+    functions.push_back(free_space.data());
+  }
+  num_functions_ = static_cast<int>(functions.size());
+  const int n = edt.numCells();
+  while ((1 << bits_) < n) ++bits_;
+  padding_ = ((1 << bits_) - n) / 2;
+  const std::size_t side = std::size_t{1} << bits_;
+  table_.assign(num_functions_ * side * side * side + sizeof(std::uint32_t), 0);  // a gather reads four bytes
+  parallelBlocks(n - 2, num_threads, [&](std::size_t slice) {
+    for (int y = 1; y + 1 < n; ++y) {
+      const std::size_t cell = ((slice + 1 + padding_) * side + (y + padding_)) * side + padding_;
+      for (std::size_t g = 0; g < functions.size(); ++g) {
+        const float* const values = functions[g] + ((slice + 1) * n + y) * n;
+        for (int x = 1; x + 1 < n; ++x) {
+          const float scaled = values[x] * static_cast<float>(kOne) + 0.5f;
+          table_[num_functions_ * (cell + x) + g] = static_cast<std::uint8_t>(std::min(scaled, 255.0f));
+        }
+      }
+    }
+  });
+}
+
+LineSums::LineSums(const GaussianEdt& edt, const LookupTable& table, int num_steps, bool scalar)
+    : table_(table),
+      accumulate_(table.numFunctions() == 1 ? kernelOf<1>(scalar) : kernelOf<2>(scalar)),
+      totals_(table.numFunctions(), std::vector<double>(num_steps)),
+      sums_(table.numFunctions(), std::vector<std::int32_t>(num_steps + line_lanes)),
+      storage_(5 * max_lines) {
+  const double middle = 0.5 * (edt.numCells() - 1);
+  cube_.middle = static_cast<float>(middle);
+  cube_.sq_clip = static_cast<float>(std::pow(middle - 0.5, 2));
+  cube_.to_table = static_cast<float>(middle + table.padding() + 0.5);
+  for (auto& sums : sums_) sums_of_.push_back(sums.data());
+}
+
+/// \param set_up fills lines that begin at a sample; size and step are given.
+template <typename SetUp>
+const LineSums::Totals& LineSums::add(int num_samples, const Eigen::Vector3f& step, int begin, int end,
+                                      const SetUp& set_up) {
+  for (auto& total : totals_) std::fill(total.begin(), total.end(), 0.0);
+  std::int32_t* const data = storage_.data();
+  Lines lines{data, data + max_lines, data + 2 * max_lines, data + 3 * max_lines, data + 4 * max_lines, 0, {}};
+  for (int axis = 0; axis < 3; ++axis)
+    lines.step[axis] = static_cast<std::int32_t>(std::lround(step[axis] * (1 << LookupTable::kFractionBits)));
+  for (int first = 0; first < num_samples; first += max_lines) {
+    lines.size = std::min(max_lines, num_samples - first);
+    set_up(first, lines);
+    for (auto& sums : sums_) std::fill(sums.begin(), sums.end(), 0);
+    accumulate_(lines, table_.data(), table_.bits(), sums_of_.data());
+    for (std::size_t g = 0; g < totals_.size(); ++g)
+      for (int k = begin; k < end; ++k) totals_[g][k] += sums_[g][k];
+  }
+  return totals_;
+}
+
+const LineSums::Totals& LineSums::ofReflected(const CoordinateRows& points, const ParallelPlanes& planes) {
+  // The image of a point moves by twice the step between planes.
+  const Eigen::Vector3f step = 2.0f * planes.step * Eigen::Map<const Eigen::Vector3f>(planes.normal);
+  return add(static_cast<int>(points.cols()), step, 0, planes.count, [&](int first, Lines& lines) {
+    setUpReflected(&points(0, first), &points(1, first), &points(2, first), planes, cube_, lines);
+  });
+}
+
+const LineSums::Totals& LineSums::ofMoved(const Eigen::Matrix3Xf& moved, const Eigen::Vector3f& start,
+                                          const Eigen::Vector3f& step, int begin, int end) {
+  return add(static_cast<int>(moved.cols()), step, begin, end, [&](int first, Lines& lines) {
+    float rounded[3];
+    for (int axis = 0; axis < 3; ++axis)
+      rounded[axis] = static_cast<float>(lines.step[axis]) / (1 << LookupTable::kFractionBits);
+    setUpMoved(moved.data() + 3 * first, start.data(), rounded, static_cast<float>(begin), static_cast<float>(end),
+               cube_, lines);
+  });
+}
+
+Eigen::Matrix3Xf centeredSamples(const GaussianEdt& edt, int num_samples, std::uint64_t seed, int num_threads) {
+  Eigen::Matrix3Xf samples = drawPoints(edt, num_samples, seed, num_threads);
+  samples.array() -= 0.5f * static_cast<float>(edt.numCells() - 1);
+  return samples;
+}
+
+Eigen::Vector3d toCells(const GaussianEdt& edt, const Eigen::Vector3d& x) {
+  return ((x - edt.origin()) / edt.cellSize()).array() - 0.5 * (edt.numCells() - 1);
+}
 
 void SampledTransformOptions::validate() const {
   check(num_samples >= 1 && num_samples <= 10'000'000, "num_samples", num_samples, "in [1, 10000000]");

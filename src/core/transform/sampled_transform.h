@@ -10,6 +10,115 @@
 
 namespace pcl_symmetry {
 
+/// Functions on the cells of an EDT as bytes, for the hot loops: a look-up is three shifts and a load.
+///
+/// Positions are fixed-point numbers of cells. The table is padded to a power of two along each side and has at least
+/// one empty cell all around, so that a clipped line needs no further test. Values are multiplied by kOne. f and the
+/// free space of a scan share a table, byte by byte, so that one load gets both.
+class LookupTable {
+public:
+  static constexpr int kFractionBits = 16;  ///< 32 bits hold up to 2^15 cells with 1 / 65536 of a cell
+  /// Value of f = 1: with a sigma of two cells, sharpening lifts f to 1.11 at most (an isolated point); 255 /
+  /// 200 leaves room.
+  static constexpr double kOne = 200.0;
+
+  /// Of f, sharpened for the blur of two boxes: a sample's uniform position in its cell and the look-up of the nearest
+  /// cell.
+  /// \param free_space one value per cell of the EDT; empty for a whole object.
+  /// \throws std::invalid_argument for free space of another size.
+  LookupTable(const GaussianEdt& edt, const std::vector<float>& free_space, int num_threads);
+
+  /// \return n of the 2^n cells along each side of the table.
+  int bits() const { return bits_; }
+  int padding() const { return padding_; }             ///< cells before the first one of the EDT
+  int numFunctions() const { return num_functions_; }  ///< 2 with free space, else 1
+  const std::uint8_t* data() const { return table_.data(); }
+
+  /// \return index of the cell that contains a point, given in fixed-point table coordinates.
+  static std::uint32_t index(std::int32_t x, std::int32_t y, std::int32_t z, int bits) {
+    return (static_cast<std::uint32_t>(z >> kFractionBits) << (2 * bits)) +
+           (static_cast<std::uint32_t>(y >> kFractionBits) << bits) + static_cast<std::uint32_t>(x >> kFractionBits);
+  }
+  /// \return a number of cells in fixed point.
+  static std::int32_t toFixed(double cells) { return static_cast<std::int32_t>(cells * (1 << kFractionBits)); }
+
+private:
+  int bits_ = 0;
+  int num_functions_ = 1;
+  int padding_ = 0;
+  std::vector<std::uint8_t> table_;
+};
+
+/// Points, the coordinates along each axis side by side.
+using CoordinateRows = Eigen::Matrix<float, 3, Eigen::Dynamic, Eigen::RowMajor>;
+
+/// Equally spaced planes of one normal: n.x = offset + k * step for k in [0, count).
+struct ParallelPlanes {
+  float normal[3];
+  float offset;  ///< cells from the middle of the EDT's cube
+  float step;    ///< cells
+  int count;
+};
+
+/// Sums of a table's functions over images of samples that lie on straight lines through it: what the transforms of
+/// planes, of axes and of centers are made of. Lengths are cells. f is taken as 0 beyond the ball in the EDT's cube.
+class LineSums {
+public:
+  /// \param table of f, and for scans of the free space; outlives this.
+  /// \param num_steps greatest number of images of a sample.
+  /// \param scalar takes the plain loop, which vector instructions have to equal bit by bit.
+  LineSums(const GaussianEdt& edt, const LookupTable& table, int num_steps, bool scalar = false);
+
+  /// For each function of the table one sum per step.
+  using Totals = std::vector<std::vector<double>>;
+
+  /// Sums over the images of samples reflected in parallel planes.
+  /// \param points in cells from the first cell center.
+  /// \return valid until the next call.
+  const Totals& ofReflected(const CoordinateRows& points, const ParallelPlanes& planes);
+
+  /// Sums over moved samples.
+  /// \param moved 3 x N, the samples at step 0, relative to \p start, which is measured from the middle of the cube.
+  /// \param start,step the image k of a sample is its moved position + start + k * step.
+  /// \param begin,end steps to add up, in [0, num_steps]; the sums of others are 0.
+  /// \return valid until the next call.
+  const Totals& ofMoved(const Eigen::Matrix3Xf& moved, const Eigen::Vector3f& start, const Eigen::Vector3f& step,
+                        int begin, int end);
+
+  /// The EDT's cube of cells and its place in a LookupTable.
+  struct Cube {
+    float middle;    ///< coordinate of its middle, in cells from the first cell center
+    float sq_clip;   ///< squared radius of the ball about the middle
+    float to_table;  ///< table coordinate of the middle
+  };
+  /// Point k of line i is start_i + k * step, in fixed-point table coordinates, inside the ball for k in
+  /// [k_begin_i, k_end_i).
+  struct Lines {
+    std::int32_t *x, *y, *z;  ///< start of each line
+    std::int32_t *k_begin, *k_end;
+    int size;
+    std::int32_t step[3];  ///< of all lines
+  };
+
+private:
+  template <typename SetUp>
+  const Totals& add(int num_samples, const Eigen::Vector3f& step, int begin, int end, const SetUp& set_up);
+
+  const LookupTable& table_;
+  void (*accumulate_)(const Lines& lines, const std::uint8_t* table, int bits, std::int32_t* const* sums);
+  Cube cube_;
+  Totals totals_;
+  std::vector<std::vector<std::int32_t>> sums_;
+  std::vector<std::int32_t*> sums_of_;
+  std::vector<std::int32_t> storage_;
+};
+
+/// Samples of f in cells from the middle of the cube.
+Eigen::Matrix3Xf centeredSamples(const GaussianEdt& edt, int num_samples, std::uint64_t seed, int num_threads);
+
+/// A position of the input frame in cells from the middle of the cube.
+Eigen::Vector3d toCells(const GaussianEdt& edt, const Eigen::Vector3d& x);
+
 /// The estimate of sampledTransform() for the free space of a scan, which speaks against a plane:
 /// F = (S / |f|^2) mean free(gamma x_i).
 /// \param free_space one value in [0, 1] per cell of the EDT, as from freeSpace().

@@ -8,7 +8,6 @@
 
 #include "core/base/check.h"
 #include "core/base/parallel.h"
-#include "core/transform/gaussian_width.h"
 #include "core/transform/transform_rules.h"
 #include "pcl_symmetry/core/gaussian_edt.h"
 
@@ -240,8 +239,9 @@ GaussianEdt::GaussianEdt(const VolumeFunction& volume, const GaussianEdtOptions&
       options.radius > 0.0 ? BoundingBall{options.center, options.radius} : boundingBall(volume.bodyPoints(false));
   center_ = ball.center;
   radius_ = ball.radius;
-  cell_size_ = radius_ / std::max(0.5 * num_cells_ - kMarginInSigmas * kSigmaInCells, 0.25 * num_cells_);
-  sigma_ = kSigmaInCells * cell_size_;
+  cell_size_ =
+      radius_ / std::max(0.5 * num_cells_ - kTransform.margin_in_sigmas * kTransform.sigma_in_cells, 0.25 * num_cells_);
+  sigma_ = kTransform.sigma_in_cells * cell_size_;
   origin_ = center_ - Eigen::Vector3d::Constant((0.5 * num_cells_ - 0.5) * cell_size_);
   const int n = num_cells_;
   values_.assign(static_cast<std::size_t>(n) * n * n, 0.0f);

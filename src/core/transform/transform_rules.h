@@ -29,6 +29,14 @@ struct TransformRules {
   double less_than_whole = 0.87;  ///< by which rows then come closer
 
   // Distance transform
+  /// Width of the Gaussian in cells, unless the points are sparse. The paper: "according to the maximal frequency of
+  /// the grid in order to avoid aliasing". At one cell look-ups alias, at four the peaks of D are twice as wide.
+  double sigma_in_cells = 2.0;
+  double margin_in_sigmas = 2.0;  ///< empty, around the ball: f = exp(-2^2) = 0.018 at most outside the grid
+  /// Distance beyond which f is 0: f = exp(-2.6^2) = 1.16e-3 there, less than 3e-4 of its integral lies beyond.
+  double reach_in_sigmas = 2.6;
+  /// Greatest width for sparse points, radii: a surface of a dozen points has no gaps, and the shape is no ball.
+  double max_spacing = 0.25;
   Eigen::Index num_dense = 200'000;      ///< points of clouds that are dense enough for usual grids
   std::size_t dense_per_cell = 8;        ///< points for each cell of a slice from which thinning pays
   int slots_per_cell = 4;                ///< along a cell; thinning adds up to sqrt(3) / 4 cells to a distance

@@ -19,7 +19,6 @@
 #include "core/base/k_means.h"
 #include "core/base/random.h"
 #include "core/base/statistics.h"
-#include "core/base/watch.h"
 
 namespace {
 

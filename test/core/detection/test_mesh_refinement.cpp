@@ -1,4 +1,4 @@
-#include "pcl_symmetry/core/mesh_refinement.h"
+#include "pcl_symmetry/core/detect_planes.h"
 
 #include <gtest/gtest.h>
 
@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "core/geometry/triangles.h"
+#include "pcl_symmetry/core/mesh_surface.h"
 #include "shapes/meshes.h"
 
 namespace pcl_symmetry {

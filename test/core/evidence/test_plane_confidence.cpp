@@ -12,7 +12,6 @@
 
 #include "core/base/constants.h"
 #include "core/base/random.h"
-#include "core/evidence/plane_motion.h"
 #include "core/evidence/surface_samples.h"
 #include "shapes/shapes.h"
 

@@ -11,7 +11,6 @@
 
 #include "core/base/random.h"
 #include "core/geometry/closest_points.h"
-#include "core/geometry/neighbor_lists.h"
 #include "shapes/shapes.h"
 
 namespace {

@@ -12,7 +12,6 @@
 #include "core/base/random.h"
 #include "core/geometry/cloud_extent.h"
 #include "core/geometry/point_samples.h"
-#include "core/geometry/usable_points.h"
 #include "shapes/shapes.h"
 
 namespace {

@@ -1,5 +1,5 @@
 /// Stray points: found wherever they lie, and never a part of a shape.
-#include "core/geometry/usable_points.h"
+#include "core/geometry/point_samples.h"
 
 #include <gtest/gtest.h>
 

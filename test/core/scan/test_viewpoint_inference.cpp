@@ -11,7 +11,6 @@
 #include "core/scan/depth_filter.h"
 #include "core/scan/range_image.h"
 #include "core/scan/scan_density.h"
-#include "core/scan/single_view.h"
 #include "pcl_symmetry/core/visibility.h"
 #include "shapes/scans.h"
 #include "shapes/shapes.h"

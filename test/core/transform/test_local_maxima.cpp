@@ -1,4 +1,4 @@
-#include "pcl_symmetry/core/local_maxima.h"
+#include "pcl_symmetry/core/symmetry_map.h"
 
 #include <gtest/gtest.h>
 

@@ -7,7 +7,6 @@
 #include <numeric>
 #include <stdexcept>
 
-#include "core/transform/line_sums.h"
 #include "core/transform/sampled_transform.h"
 #include "pcl_symmetry/core/closest_point_search.h"
 #include "shapes/scans.h"

@@ -1,4 +1,4 @@
-#include "core/geometry/usable_points.h"
+#include "core/geometry/point_samples.h"
 
 #include <algorithm>
 #include <cmath>
@@ -7,7 +7,6 @@
 #include <vector>
 
 #include "core/geometry/geometry_rules.h"
-#include "core/geometry/point_samples.h"
 #include "pcl_symmetry/core/closest_point_search.h"
 
 namespace pcl_symmetry {
