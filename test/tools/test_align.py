@@ -30,9 +30,8 @@ class Align(ToolTest):
         points = points[np.isfinite(points).all(axis=1)]
         normals = scan["viewpoint"] - points
         normals /= np.linalg.norm(normals, axis=1, keepdims=True)
-        fields = "x:F y:F z:F normal_x:F normal_y:F normal_z:F label:U"
-        rows = [(*point, *normal, label) for label, (point, normal) in enumerate(zip(points, normals.astype(np.float32)))]
-        return self.write("scan.pcd", tool_run.pcd(fields, rows, scan["viewpoint"])), np.reshape(scan["transform"], (4, 4))
+        columns = dict(zip(("normal_x", "normal_y", "normal_z"), normals.T), label=np.arange(len(points)))
+        return self.write("scan.pcd", tool_run.pcd(points, viewpoint=scan["viewpoint"], **columns)), np.reshape(scan["transform"], (4, 4))
 
     def points(self, name):
         return tool_run.ply_points(self.folder / name)[0]
@@ -72,12 +71,13 @@ class Align(ToolTest):
         self.assertGreater(np.trace(error[:3, :3]), 1 + 2 * np.cos(0.02), "the chair has no rotation of its own")
         self.assertLess(np.linalg.norm(error[:3, 3]), 0.03)
         self.assertLess(found["fitness"], 0.03 ** 2, "mean squared distance")
-        before, after = np.loadtxt(scan, skiprows=10), self.points("out.ply")
+        before, after = tool_run.pcd_points(scan), self.points("out.ply")
         self.assertEqual(len(before), len(after))
         turn = transform[:3, :3]
-        np.testing.assert_allclose(tool_run.xyz(after), before[:, :3] @ turn.T + transform[:3, 3], atol=1e-4)
-        np.testing.assert_allclose(np.stack([after["nx"], after["ny"], after["nz"]], axis=1), before[:, 3:6] @ turn.T, atol=1e-4)
-        np.testing.assert_array_equal(after["label"], before[:, 6], "other fields stay")
+        np.testing.assert_allclose(tool_run.xyz(after), tool_run.xyz(before) @ turn.T + transform[:3, 3], atol=1e-4)
+        normals = np.stack([before[f"normal_{c}"] for c in "xyz"], axis=1)
+        np.testing.assert_allclose(np.stack([after["nx"], after["ny"], after["nz"]], axis=1), normals @ turn.T, atol=1e-4)
+        np.testing.assert_array_equal(after["label"], before["label"], "other fields stay")
         viewpoint = np.array(tool_run.pcd_header(scan)["VIEWPOINT"][:3], float)
         self.run_tool(scan, "out.pcd -quiet -target chair.off")
         moved = np.array(tool_run.pcd_header(self.folder / "out.pcd")["VIEWPOINT"][:3], float)
@@ -136,9 +136,9 @@ class Align(ToolTest):
         scan, model = self.scan()
         self.run_tool(scan, "out.ply -complete -target chair.off -html o.html")
         self.assertIn("what completes it", self.text("o.html"))
-        before, after = np.loadtxt(scan, skiprows=10), self.points("out.ply")
+        before, after = tool_run.pcd_points(scan), self.points("out.ply")
         viewpoint = np.array(tool_run.pcd_header(scan)["VIEWPOINT"][:3], float)
-        hidden = self.hidden(before[:, :3], model, viewpoint)
+        hidden = self.hidden(tool_run.xyz(before), model, viewpoint)
         self.assertGreater(hidden, 100, "a side of it was hidden")
         self.assertAlmostEqual(len(after) - len(before), hidden, delta=0.2 * hidden)
         np.testing.assert_array_equal(after["reflected_of"][:len(before)], -1)

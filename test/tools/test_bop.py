@@ -261,9 +261,9 @@ class Bop(ToolTest):
         self.assertIn("only those of vertices, and textures that PLY files name, can be read", self.output)
 
     def test_reads_the_texture_that_a_model_of_the_benchmark_names(self):
-        pixels = np.full((64, 64, 3), 255)
+        pixels = np.full((64, 64, 3), 255, np.uint8)
         pixels[:32] = (255, 0, 0)
-        self.write("print.png", tool_run.png(pixels))
+        tool_run.Image.fromarray(pixels).save(self.folder / "print.png")
         white, red = (self.write(f"obj_{k + 1}.ply", textured_cube("print.png", k == 1)) for k in range(2))
         self.run_tool(white, red, FEW, "-color")
         self.assertNotIn("not looked at", self.output)

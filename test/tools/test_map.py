@@ -37,7 +37,7 @@ class Map(ToolTest):
         self.run_tool(self.box, "-quiet -cells 20 -size 50 -volume a.vti -slices a.png")
         self.assertIn('WholeExtent="0 11 0 14 0 19"', self.text("a.vti"))
         self.assertIn('Name="symmetry"', self.text("a.vti"))
-        self.assertEqual(tool_run.png_size(self.folder / "a.png"), (158, 50))
+        self.assertEqual(tool_run.Image.open(self.folder / "a.png").size, (158, 50))
 
     def test_a_box_has_three_axes_of_half_turns_and_a_center(self):
         common = "-quiet -grid 32 -points 3000"
@@ -75,8 +75,8 @@ class Viewpoint(ToolTest):
 
     def test_draws_the_score_and_the_views(self):
         self.run_tool(self.box, "-size 120 -png a.png -icon b.png")
-        self.assertEqual(tool_run.png_size(self.folder / "a.png")[0], 360)
-        self.assertEqual(tool_run.png_size(self.folder / "b.png")[0], 120)
+        self.assertEqual(tool_run.Image.open(self.folder / "a.png").size[0], 360)
+        self.assertEqual(tool_run.Image.open(self.folder / "b.png").size[0], 120)
 
 
 def dumbbell():
@@ -120,7 +120,7 @@ class Segment(ToolTest):
         self.assertEqual(tree["tree"][0]["parent"], -1)
         self.assertNotEqual(tree["tree"][0]["planes"], [])
         self.assertIn("3 parts", self.error)
-        self.assertEqual(tool_run.png_size(self.folder / "p.png"), (300, 300))
+        self.assertEqual(tool_run.Image.open(self.folder / "p.png").size, (300, 300))
         self.run_tool(self.mesh, "-parts 3 -size 300 -up 1,0,0 -png q.png")
         self.assertNotEqual((self.folder / "p.png").read_bytes(), (self.folder / "q.png").read_bytes())
 
@@ -130,8 +130,8 @@ class Segment(ToolTest):
             self.assertEqual((self.labels().max(), self.error), (1, ""), flag)
 
     def test_labels_points_of_clouds_and_keeps_their_fields(self):
-        centers = [(*self.vertices[quad].mean(axis=0), 7) for quad in self.quads]
-        cloud = self.write("cloud.pcd", tool_run.pcd("x:F y:F z:F weight:F", centers))
+        centers = np.array([self.vertices[quad].mean(axis=0) for quad in self.quads])
+        cloud = self.write("cloud.pcd", tool_run.pcd(centers, weight=np.full(len(centers), 7.0)))
         self.run_tool(cloud, "labeled.pcd -parts 2 -png p.png")
         header = tool_run.pcd_header(self.folder / "labeled.pcd")
         self.assertCountEqual(header["FIELDS"], ["x", "y", "z", "weight", "label"])

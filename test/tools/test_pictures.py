@@ -54,9 +54,7 @@ class Pages(ToolTest):
         points = np.random.default_rng(1).normal(size=(450_000, 3)).astype("<f4")
         points /= np.linalg.norm(points, axis=1, keepdims=True)
         points[0, 0] = np.nan
-        header = tool_run.pcd("x:F y:F z:F", []).replace("WIDTH 0", "WIDTH 450000").replace("POINTS 0", "POINTS 450000")
-        cloud = self.write("a.pcd", header.replace("DATA ascii", "DATA binary").encode() + points.tobytes())
-        self.run_tool(cloud, "-quiet -html a.html")
+        self.run_tool(self.write("a.pcd", tool_run.pcd(points)), "-quiet -html a.html")
         self.assertEqual(self.num_bytes(self.scene("a.html")["points"]), 12 * 150_000, "every third")
 
     def test_show_the_parts_of_a_mesh(self):
@@ -81,7 +79,7 @@ class Pictures(ToolTest):
         pictures = set()
         for plane in ("1", "2"):
             self.run_tool(self.box, "-quiet -symmetries -screenshot a.png -plane", plane, env=self.no_display)
-            self.assertEqual(tool_run.png_size(self.folder / "a.png"), (1000, 750))
+            self.assertEqual(tool_run.Image.open(self.folder / "a.png").size, (1000, 750))
             pictures.add((self.folder / "a.png").read_bytes())
         self.assertEqual(len(pictures), 2)
         self.run_tool(self.box, "-quiet -symmetries -screenshot b.png -plane 9", env=self.no_display, code=2)
@@ -89,9 +87,9 @@ class Pictures(ToolTest):
 
     def test_hold_panels_of_several_scenes(self):
         self.run_tool(self.box, "-quiet -points 2000 -size 100 -png views.png -icon best.png", tool="viewpoint")
-        self.assertEqual([tool_run.png_size(self.folder / name) for name in ("views.png", "best.png")], [(300, 100), (100, 100)])
+        self.assertEqual([tool_run.Image.open(self.folder / name).size for name in ("views.png", "best.png")], [(300, 100), (100, 100)])
         self.assertEqual(sorted(path.name for path in self.folder.iterdir()), ["best.png", "box.off", "views.png"])
-        best, *panels = (tool_run.png_pixels(self.folder / name) for name in ("best.png", "views.png"))
+        best, *panels = (np.asarray(tool_run.Image.open(self.folder / name)) for name in ("best.png", "views.png"))
         score, again, worst = np.split(panels[0], 3, axis=1)
         for picture in (best, score, again, worst):
             self.assertGreater(np.unique(picture.reshape(-1, picture.shape[2]), axis=0).shape[0], 10, "not blank")

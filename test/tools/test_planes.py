@@ -87,10 +87,10 @@ class Planes(ToolTest):
     def test_a_label_names_the_object_in_its_scene(self):
         random = np.random.default_rng(3)
         points = random.uniform(-0.5, 0.5, (600, 3)) * (1, 0.8, 0.6) + np.repeat([[0, 0, 0], [4, 0, 0]], 300, axis=0)
-        cloud = self.write("l.pcd", tool_run.pcd("x:F y:F z:F label:U", [(*p, 3 if p[0] < 1 else 8) for p in points]))
+        cloud = self.write("l.pcd", tool_run.pcd(points, label=np.where(points[:, 0] < 1, 3, 8)))
         self.assertEqual(self.report(cloud, "-label 3 -viewpoint none")["num_points"], (points[:, 0] < 1).sum())
         self.fails(1, "l.pcd: has no point with the label 4", cloud, "-label 4")
-        self.fails(1, "has no field label", self.write("n.pcd", tool_run.pcd("x:F y:F z:F", points.tolist())), "-label 3")
+        self.fails(1, "has no field label", self.write("n.pcd", tool_run.pcd(points)), "-label 3")
         self.fails(1, "-label needs a cloud", self.box, "-label 3")
 
     def test_writes_the_support_of_every_point_and_keeps_its_fields(self):
@@ -99,8 +99,8 @@ class Planes(ToolTest):
         points = np.select([(i % 3 == k)[:, None] for k in range(3)],
                            [np.stack(p, axis=1) for p in ((side, 3 * v - 1.5, 4 * u - 2), (2 * u - 1, 1.5 * side, 4 * v - 2),
                                                           (2 * u - 1, 3 * v - 1.5, 2 * side))])
-        rows = [("nan", "nan", "nan", 7), *((*point, k) for k, point in enumerate(points))]
-        cloud = self.write("c.pcd", tool_run.pcd("x:F y:F z:F label:U", rows, (1, 2, 3)))
+        points = np.vstack([3 * [np.nan], points])
+        cloud = self.write("c.pcd", tool_run.pcd(points, viewpoint=(1, 2, 3), label=np.arange(len(points))))
         planes = self.report(cloud, "-support s.pcd")["planes"]
         self.assertGreaterEqual(len(planes), 1)
         header = tool_run.pcd_header(self.folder / "s.pcd")
@@ -127,7 +127,7 @@ class Planes(ToolTest):
         np.testing.assert_allclose(ball["centers"][0]["point"], 0, atol=0.01)
 
     def test_answers_bad_input_with_one_line_and_an_exit_code(self):
-        one = self.write("one.pcd", tool_run.pcd("x:F y:F z:F", [(1, 2, 3), (1, 2, 3)]))
+        one = self.write("one.pcd", tool_run.pcd([(1, 2, 3), (1, 2, 3)]))
         self.fails(1, "one.pcd", one, "-quiet -json never.json")
         self.assertEqual(self.error.count("\n"), 1, self.error)
         self.assertFalse((self.folder / "never.json").exists())

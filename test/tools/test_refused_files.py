@@ -39,13 +39,13 @@ def ply(kind, elements, *body):
     return joined(f"ply\nformat {kind} 1.0\n{elements}end_header\n", *body)
 
 
-def glb(primitive='{"attributes":{"POSITION":0},"mode":4}', corners=((0, 0, 0), (2, 0, 0), (2, 1, 0))):
-    """Binary glTF: 12 bytes of header, a chunk of JSON, a chunk of values."""
-    values = np.array(corners, "<f4").tobytes()
+def glb(primitive='{"attributes":{"POSITION":0},"mode":4}', corners=((0, 0, 0), (2, 0, 0), (2, 1, 0)), view="", accessor="", more=b""):
+    """Binary glTF: 12 bytes of header, a chunk of JSON, a chunk of values; another view of its buffer, with values of its own."""
+    values = np.array(corners, "<f4").tobytes() + more
     text = ('{"asset":{"version":"2.0"},"scene":0,"scenes":[{"nodes":[0]}],"nodes":[{"mesh":0,"translation":[0,0,5]}],'
             f'"meshes":[{{"primitives":[{primitive}]}}],"buffers":[{{"byteLength":{len(values)}}}],'
-            f'"bufferViews":[{{"buffer":0,"byteOffset":0,"byteLength":{len(values)}}}],'
-            f'"accessors":[{{"bufferView":0,"componentType":5126,"count":{len(corners)},"type":"VEC3","min":[0,0,0],"max":[2,1,0]}}]}}')
+            f'"bufferViews":[{{"buffer":0,"byteOffset":0,"byteLength":{len(values) - len(more)}}}{view}],'
+            f'"accessors":[{{"bufferView":0,"componentType":5126,"count":{len(corners)},"type":"VEC3","min":[0,0,0],"max":[2,1,0]}}{accessor}]}}')
     text += " " * (-len(text) % 4)
     return joined(struct.pack("<4s3I4s", b"glTF", 2, 28 + len(text) + len(values), len(text), b"JSON"), text,
                   struct.pack("<I4s", len(values), b"BIN\0"), values)

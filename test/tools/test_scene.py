@@ -2,7 +2,7 @@
 import unittest
 
 import tool_run
-from tool_run import ToolTest, np
+from tool_run import ToolTest, np, pcd
 
 EYE = np.array([0.1, -1.6, 1.0])
 TABLE = (0, 0, -0.02), (0.7, 0.7, 0.02)  # center and half size
@@ -60,17 +60,6 @@ def look(eye, rays, bodies):
     return points, np.where(np.isfinite(nearest), distances.argmin(axis=0), -1)
 
 
-def frame(points, width, viewpoint=(0, 0, 0), **columns):
-    """A binary PCD file, organized where there are rows; columns: whole numbers, as labels and colors are."""
-    fields = [("x", "<f4"), ("y", "<f4"), ("z", "<f4"), *((name, "<u4") for name in columns)]
-    cloud = np.rec.fromarrays([*points.T, *columns.values()], dtype=fields)
-    names = " ".join(name for name, _ in fields)
-    header = (f"VERSION 0.7\nFIELDS {names}\nSIZE{' 4' * len(fields)}\nTYPE F F F{' U' * len(columns)}\n"
-              f"COUNT{' 1' * len(fields)}\n"
-              f"WIDTH {width}\nHEIGHT {len(points) // width}\nVIEWPOINT {' '.join(map(str, viewpoint))} 1 0 0 0\nPOINTS {len(points)}\nDATA binary\n")
-    return header.encode() + cloud.tobytes()
-
-
 POINTS, IDS = look(EYE, RAYS, [block(*TABLE), *(block(*box) for box in BOXES)])
 
 
@@ -106,7 +95,7 @@ class SceneObjects(ToolTest):
                     self.assertGreater(np.abs(plane["coefficients"][:3]).max(), np.cos(np.radians(3)))
 
     def test_stand_on_the_table_with_their_feet(self):
-        report, points, numbers, completed = self.found(frame(POINTS, 320), "")
+        report, points, numbers, completed = self.found(pcd(POINTS, 320), "")
         self.assertEqual([len(report["supports"]), len(report["objects"]), report["viewpoint"]["from"]], [1, 2, "rays"])
         np.testing.assert_allclose(report["supports"][0]["coefficients"], (0, 0, 1, 0), atol=1e-5, err_msg="toward the viewer; no noise")
         near = 0.25 * report["plane_distance"]
@@ -124,7 +113,7 @@ class SceneObjects(ToolTest):
         self.assertLessEqual((on_table[:, 2] > near).sum(), 8, "single pixels on the sides of the boxes, far from their other points")
 
     def test_are_completed_into_space_that_was_not_seen(self):
-        report, points, numbers, completed = self.found(frame(POINTS, 320))
+        report, points, numbers, completed = self.found(pcd(POINTS, 320))
         for k, item in enumerate(report["objects"], 1):
             self.assertEqual("completed" in item, bool(item["planes"]) and item["planes"][0]["kind"] == "symmetry")
             added = points[(completed == 1) & (numbers == k)]
@@ -134,36 +123,36 @@ class SceneObjects(ToolTest):
             self.assertLessEqual(in_front.sum(), 0.02 * len(added))
 
     def test_are_decided_through_the_errors_of_a_camera(self):
-        report, *_ = self.found(frame(with_depth_errors(), 320))
+        report, *_ = self.found(pcd(with_depth_errors(), 320))
         self.assertEqual([len(report["supports"]), len(report["objects"])], [1, 2])
         self.assertEqual([item["planes"][0]["kind"] for item in report["objects"]], ["symmetry", "symmetry"], "left and right of a box")
         self.assert_planes_across_axes(report)
 
     def test_are_the_same_of_an_unorganized_scene(self):
         finite = POINTS[np.isfinite(POINTS).all(axis=1)]
-        report, *_ = self.found(frame(finite, len(finite), viewpoint=EYE))
+        report, *_ = self.found(pcd(finite, len(finite), viewpoint=EYE))
         self.assertEqual([report["viewpoint"]["from"], len(report["supports"]), len(report["objects"])], ["stored", 1, 2])
 
     def test_are_neither_tables_nor_bulges_nor_parts_of_a_large_box(self):
-        report, *_ = self.found(frame(look(EYE, camera(EYE, (0, 0, 0), 160, 120, 94), [block(*TABLE)])[0], 160))
+        report, *_ = self.found(pcd(look(EYE, camera(EYE, (0, 0, 0), 160, 120, 94), [block(*TABLE)])[0], 160))
         self.assertEqual([len(report["supports"]), report["objects"]], [1, []])
         # 45 mm high, as stereo cameras measure walls in waves; more than three times what belongs to the plane.
         bulged = POINTS.copy()
         bulged[IDS == 0, 2] += 0.045 * np.exp(-((POINTS[IDS == 0, :2] - (-0.2, -0.35)) ** 2).sum(axis=1) / 0.15 ** 2)
-        report, *_ = self.found(frame(bulged, 320))
+        report, *_ = self.found(pcd(bulged, 320))
         self.assertEqual([len(report["supports"]), len(report["objects"])], [1, 2], "the boxes")
         # Its front is more than half of the picture; what lies behind the front is the rest of the box.
         eye = np.array([0.8, -2.5, 1.2])
         box, ids = look(eye, camera(eye, (0, 0, 0), 160, 120, 110), [block((0, 0, 0), (1, 0.7, 0.45))])
-        report, *_ = self.found(frame(box, 160))
+        report, *_ = self.found(pcd(box, 160))
         self.assertEqual(len(report["objects"]), 1)
         self.assertGreater(report["objects"][0]["num_points"], 0.9 * (ids == 0).sum())
 
     def test_are_the_same_for_any_number_of_threads(self):
-        self.write("s.pcd", frame(POINTS, 320))
+        self.write("s.pcd", pcd(POINTS, 320))
         for k in (1, 2):
             own = POINTS[IDS == k]
-            self.write(f"box{k}.pcd", frame(own, len(own)))
+            self.write(f"box{k}.pcd", pcd(own, len(own)))
         self.run_tool("build models.db box1.pcd box2.pcd -quiet", tool="database")
 
         def report(threads):
@@ -180,7 +169,7 @@ class SceneObjects(ToolTest):
         eye = np.array([0.25, -0.75, 0.6])
         rays = camera(eye, (0, 0, 0.05), 640, 480, 700)
         points, ids = look(eye, rays, [*bodies, block((0, 0, -1), (0.5, 0.5, 1))])
-        report, _, numbers, completed = self.found(frame(points, 640))
+        report, _, numbers, completed = self.found(pcd(points, 640))
         shares = []
         for k in range(1, len(report["objects"]) + 1):
             counts = np.bincount(ids[ids >= 0][numbers[completed == 0] == k])
@@ -212,7 +201,7 @@ class SceneObjects(ToolTest):
             self.assertGreater(item["num_points"], 5000, "in a piece")
 
     def test_stand_on_the_ground_that_is_given(self):
-        report, *_ = self.found(frame(POINTS, 320), "-no_frames -ground 0,0,-2,0")
+        report, *_ = self.found(pcd(POINTS, 320), "-no_frames -ground 0,0,-2,0")
         self.assertEqual(report["supports"][0]["coefficients"], [0, 0, 1, 0], "toward the viewer")
         self.assertEqual([len(report["supports"]), len(report["objects"])], [1, 2])
 
@@ -222,7 +211,7 @@ class Scene(ToolTest):
 
     def setUp(self):
         super().setUp()
-        self.scene = self.write("scene.pcd", frame(POINTS, 320, rgb=np.full(len(POINTS), 200 << 16)))
+        self.scene = self.write("scene.pcd", pcd(POINTS, 320, rgb=np.full(len(POINTS), 200 << 16)))
 
     def test_writes_what_it_finds(self):
         report = self.report(self.scene, "completed.ply -max_points 1000 -png objects.png -html page.html")
@@ -233,14 +222,14 @@ class Scene(ToolTest):
         num_added = sum(item.get("completed", {"num_added": 0})["num_added"] for item in report["objects"])
         points, _ = tool_run.ply_points(self.folder / "completed.ply")
         self.assertEqual(len(points), np.isfinite(POINTS).all(axis=1).sum() + num_added)
-        self.assertGreater(min(tool_run.png_size(self.folder / "objects.png")), 100)
+        self.assertGreater(min(tool_run.Image.open(self.folder / "objects.png").size), 100)
         page = self.text("page.html")
         for part in ("1 supporting plane, 2 objects", "</html>", '"picture":{"pixels":"yAAA', "2: ", "decided at 1.0 % of the diameter"):
             self.assertIn(part, page)
 
     def test_tells_what_touches(self):
         stack = [block(*TABLE), block((0, 0.1, 0.12), (0.2, 0.1, 0.12)), block((0.05, 0.08, 0.34), (0.12, 0.08, 0.1))]
-        path = self.write("stack.pcd", frame(look(EYE, RAYS, stack)[0], 320))
+        path = self.write("stack.pcd", pcd(look(EYE, RAYS, stack)[0], 320))
         report = self.report(path, "-no_frames", FEW, "-ground 0,0,1,0")
         self.assertEqual(report["supports"][0]["coefficients"], [0, 0, 1, 0])
         for junction in report["junctions"]:
@@ -264,7 +253,7 @@ class PartsOfAFrame(ToolTest):
     tool = "planes"
 
     def box(self, points, label, flags=""):
-        return self.report(self.write("f.pcd", frame(points, 320, label=np.maximum(IDS, 0))), f"-label {label} -quiet", flags)
+        return self.report(self.write("f.pcd", pcd(points, 320, label=np.maximum(IDS, 0))), f"-label {label} -quiet", flags)
 
     def test_lose_the_errors_of_their_frame(self):
         count = (IDS == 1).sum()
@@ -309,7 +298,7 @@ class Vehicles(ToolTest):
     def test_are_found_around_a_lidar(self):
         poses = (9, 3, -0.6), (-9, 6, 0.3), (2, -12, -0.5)
         points = sweep([part for pose in poses for part in vehicle(*pose)])
-        report = self.report(self.write("l.pcd", frame(points, len(points))), "-no_frames -no_completion -quiet", tool="scene")
+        report = self.report(self.write("l.pcd", pcd(points, len(points))), "-no_frames -no_completion -quiet", tool="scene")
         self.assertEqual(report["viewpoint"]["from"], "stored", "amid the points")
         self.assertGreater(report["supports"][0]["coefficients"][2], 0.99)
         self.assertEqual(len(report["objects"]), len(poses))
@@ -323,7 +312,7 @@ class Vehicles(ToolTest):
     def test_need_a_ground_for_their_box(self):
         points = sweep(vehicle(12, 4, -0.3))
         car = points[points[:, 2] > -1.5]
-        path = self.write("c.pcd", frame(car, len(car)))
+        path = self.write("c.pcd", pcd(car, len(car)))
         report = self.report(path, "-viewpoint 0,0,0 -ground 0,0,1,1.7 -support s.ply -quiet", tool="planes")
         plane, = report["planes"]
         self.assertEqual(plane["kind"], "symmetry")

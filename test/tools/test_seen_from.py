@@ -3,8 +3,8 @@ import json
 import unittest
 
 import tool_run
-from test_scene import block, camera, frame, look
-from tool_run import ToolTest, np
+from test_scene import block, camera, look
+from tool_run import ToolTest, np, pcd
 
 WIDTH, HEIGHT = 160, 120
 BOX = [((0, 0, 0), (1, 0.7, 0.45))]  # centers and half sizes
@@ -64,7 +64,7 @@ class SeenFrom(ToolTest):
         names = []
         for k, (points, viewpoint) in enumerate(clouds):
             width = WIDTH if len(points) == WIDTH * HEIGHT else len(points)
-            names.append(str(self.write(f"{k}.pcd", frame(points, width, viewpoint=viewpoint))))
+            names.append(str(self.write(f"{k}.pcd", pcd(points, width, viewpoint=viewpoint))))
         if len(names) == 1:
             return [self.report(*names, "-quiet", flags)]
         self.run_tool(*names, "-quiet -json all.json", flags)
@@ -170,7 +170,7 @@ class SeenFrom(ToolTest):
         shell = on_sphere(20_000)
         shell = shell[(shell * ((0, 0, 5) - shell)).sum(axis=1) > 0] - (0, 0, 5)
         self.assertEqual(self.sources((shell, (0, 0, 0)), (shell, (0, 0, 0.1))), ["none", "stored"])
-        path = self.write("turned.pcd", frame(shell, len(shell)).replace(b"0 0 0 1 0 0 0", b"0 0 0 0 1 0 0"))
+        path = self.write("turned.pcd", pcd(shell, len(shell)).replace(b"0 0 0 1 0 0 0", b"0 0 0 0 1 0 0"))
         self.assertEqual(self.report(path, "-quiet")["viewpoint"]["from"], "stored", "who turns the sensor has set its pose")
 
 

@@ -7,12 +7,12 @@ import zlib
 import tool_run
 from tool_run import ToolTest, np
 
-SHAPE = (20, 24, 22)  # z, y, x
+SIZE = (22, 24, 20)  # x, y, z
 
 
 def body():
     """A body with a pair of spots, symmetric in the plane x = 10.25 of the grid."""
-    z, y, x = 2.0 * np.indices(SHAPE)
+    z, y, x = 2.0 * np.indices(SIZE[::-1])
     side, v, w = abs(x - 20.5), y - 23, z - 19
     hull = np.sqrt((side / 15) ** 2 + ((v + 0.004 * w * w) / 19) ** 2 + (w / 16) ** 2)
     spot = np.hypot(side - 7, np.hypot(v - 8, w - 3))
@@ -24,30 +24,30 @@ BODY = body()
 FEW = zlib.compress(BODY[:9999])
 
 
-def meta_image(data, slices=20, thickness=6):
+def meta_image(data, size=SIZE, thickness=6):
     """Axes of the grid along y, -x and z of the frame, spacing 4, 4 and 6: the plane is y = 4 * 10.25 + 7."""
     return (b"ObjectType = Image\nNDims = 3\nBinaryData = True\nBinaryDataByteOrderMSB = False\nCompressedData = False\n"
-            b"TransformMatrix = 0 1 0 -1 0 0 0 0 1\nOffset = 5 7 -9\nElementSpacing = 4 4 %d\nDimSize = 22 24 %d\n"
-            b"ElementType = MET_FLOAT\nElementDataFile = LOCAL\n" % (thickness, slices) + data)
+            b"TransformMatrix = 0 1 0 -1 0 0 0 0 1\nOffset = 5 7 -9\nElementSpacing = 4 4 %d\nDimSize = %d %d %d\n"
+            b"ElementType = MET_FLOAT\nElementDataFile = LOCAL\n" % (thickness, *size) + data)
 
 
-def nrrd(data, slices=20, thickness=6):
-    return (b"NRRD0004\ntype: float\ndimension: 3\nspace: left-posterior-superior\nsizes: 22 24 %d\nendian: little\nencoding: raw\n"
-            b"space directions: (0,4,0) (-4,0,0) (0,0,%d)\nspace origin: (5,7,-9)\n\n" % (slices, thickness) + data)
+def nrrd(data, size=SIZE, thickness=6):
+    return (b"NRRD0004\ntype: float\ndimension: 3\nspace: left-posterior-superior\nsizes: %d %d %d\nendian: little\nencoding: raw\n"
+            b"space directions: (0,4,0) (-4,0,0) (0,0,%d)\nspace origin: (5,7,-9)\n\n" % (*size, thickness) + data)
 
 
-def nifti(data, slices=20, thickness=6, kind=16):
+def nifti(data, size=SIZE, thickness=6, kind=16):
     """Its intensities are scaled by 2, minus 50."""
     header = bytearray(352)
-    for at, form, *values in ((0, "<i", 348), (40, "<8h", 3, 22, 24, slices, 1, 1, 1, 1), (70, "<2h", kind, 32),
+    for at, form, *values in ((0, "<i", 348), (40, "<8h", 3, *size, 1, 1, 1, 1), (70, "<2h", kind, 32),
                               (76, "<4f", 1, 4, 4, thickness), (108, "<3f", 352, 2, -50), (254, "<h", 1),
                               (280, "<12f", 0, -4, 0, 5, 4, 0, 0, 7, 0, 0, thickness, -9), (344, "<4s", b"n+1")):
         struct.pack_into(form, header, at, *values)
     return bytes(header) + data
 
 
-def vti(data, slices=20, thickness=6):
-    extent = b"0 21 0 23 0 %d" % (slices - 1)
+def vti(data, size=SIZE, thickness=6):
+    extent = b"0 %d 0 %d 0 %d" % (size[0] - 1, size[1] - 1, size[2] - 1)
     return (b'<VTKFile type="ImageData" version="1.0" byte_order="LittleEndian" header_type="UInt32">\n'
             b'<ImageData WholeExtent="%s" Origin="5 7 -9" Spacing="4 4 %d" Direction="0 -1 0 1 0 0 0 0 1"><Piece Extent="%s">'
             b'<PointData Scalars="f"><DataArray type="Float32" Name="f" format="appended" offset="0"/></PointData></Piece></ImageData>'
@@ -71,10 +71,10 @@ class Maps(ToolTest):
             self.assertGreater(report["num_points"], 500, "the border of the body")
 
 
-def mgh(data):
+def mgh(data, size=SIZE):
     """The frame of the others by its middle."""
-    center = np.array([5, 7, -9]) + np.array([[0, -4, 0], [4, 0, 0], [0, 0, 6]]) @ np.array([22, 24, 20]) / 2
-    header = struct.pack(">7ih15f", 1, 22, 24, 20, 1, 3, 0, 1, 4, 4, 6, 0, 1, 0, -1, 0, 0, 0, 0, 1, *center)
+    center = np.array([5, 7, -9]) + np.array([[0, -4, 0], [4, 0, 0], [0, 0, 6]]) @ np.array(size) / 2
+    header = struct.pack(">7ih15f", 1, *size, 1, 3, 0, 1, 4, 4, 6, 0, 1, 0, -1, 0, 0, 0, 0, 1, *center)
     return header.ljust(284, b"\0") + np.frombuffer(data, "<f4").astype(">f4").tobytes() + b"tags"
 
 
@@ -85,10 +85,9 @@ class Volumes(ToolTest):
         return self.report(path, "-quiet", flags)["planes"]
 
     def test_of_all_formats_have_the_same_plane_in_the_frame_of_the_file(self):
-        slice_size = 4 * SHAPE[1] * SHAPE[2]
-        one_in_five = b"".join(BODY[k * slice_size:(k + 1) * slice_size] for k in range(0, SHAPE[0], 5))
+        one_in_five = np.frombuffer(BODY, "<f4").reshape(SIZE[::-1])[::5].tobytes()
         for ending, write in FORMATS:
-            for name, content in (("a" + ending, write(BODY)), ("thick" + ending, write(one_in_five, 4, 20))):
+            for name, content in (("a" + ending, write(BODY)), ("thick" + ending, write(one_in_five, (22, 24, 4), 20))):
                 planes = self.planes(self.write(name, content))
                 self.assertGreaterEqual(len(planes), 1, name)
                 _, b, _, d = planes[0]["coefficients"]  # of either sign
@@ -124,7 +123,7 @@ class Volumes(ToolTest):
     def test_are_drawn_as_slices_and_their_surface_is_a_mesh(self):
         path = self.write("a.mha", meta_image(BODY))
         self.run_tool(path, "-quiet -png a.png")
-        width, height = tool_run.png_size(self.folder / "a.png")
+        width, height = tool_run.Image.open(self.folder / "a.png").size
         self.assertGreater(width, 3 * 400)
         self.assertGreater(height, 2 * 400)
         of_surface = self.planes(path, "-surface 50")
@@ -144,7 +143,7 @@ class Volumes(ToolTest):
         np.testing.assert_allclose(boxes[1], boxes[0], atol=0.2)
 
     def test_that_are_bad_get_a_sentence(self):
-        zero, nan = (np.full(np.prod(SHAPE), value, "<f4").tobytes() for value in (0, np.nan))
+        zero, nan = (np.full(np.prod(SIZE), value, "<f4").tobytes() for value in (0, np.nan))
         files = [("text.nii.gz", b"no volume", "text.nii.gz"),
                  ("axes.mha", meta_image(BODY).replace(b"NDims = 3", b"NDims = 4"), "NDims must be 3"),
                  ("blank.mha", meta_image(BODY).replace(b"DataFile = LOCAL", b"DataFile = \nA = B\nElementDataFile = LOCAL"), "no field with a value"),
@@ -164,10 +163,10 @@ class Volumes(ToolTest):
                  ("void.nrrd", b"NRRD0004\ntype: float\nsizes: 9 9 9\ndimension: 3\n\n", "with a value")]
         for ending, write in FORMATS:
             files += [("cut" + ending, write(BODY)[:30_000], "cut off"),
-                      ("larger" + ending, write(BODY, 400), "does not fit its data"),
+                      ("larger" + ending, write(BODY, (22, 24, 400)), "does not fit its data"),
                       ("zero" + ending, write(zero), "equal"),
                       ("nan" + ending, write(nan), "finite"),
-                      ("one" + ending, write(BODY[:4 * SHAPE[1] * SHAPE[2]], 1), "slices along an axis = 1")]
+                      ("one" + ending, write(BODY[:4 * 22 * 24], (22, 24, 1)), "slices along an axis = 1")]
         files += [("more" + ending, write(BODY + BODY[:999]), "more than the") for ending, write in FORMATS[:3]]
         for name, content, said in files:
             self.fails(1, said, self.write(name, content), "-quiet")
