@@ -1,4 +1,5 @@
-"""Seeds for the fuzzers: small files of every kind that the tools read, and bytes that become points."""
+"""Seeds for the fuzzers: whole files of every kind that the tools read, those that their tests find refused, and bytes that
+become points."""
 
 import gzip
 import json
@@ -8,15 +9,20 @@ import sys
 import zlib
 from pathlib import Path
 
+sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "tools"))
+import numpy as np
+import test_refused_files as shapes
+import test_volumes as volumes
+from tool_run import BOX_FACES, box_corners
+
 USAGE = "usage: python3 test/fuzz/make_seeds.py FOLDER\nWrites a folder of seeds for each target into FOLDER."
+CORNERS = box_corners(1.0, 2.0, 3.0)
+TRIANGLES = np.array([t for a, b, c, d in BOX_FACES for t in ((a, b, c), (a, c, d))])
+LARGEST_REFUSED = 4000  # bytes
 
-CORNERS = [(x, y, z) for x in (-1.0, 1.0) for y in (-2.0, 2.0) for z in (-3.0, 3.0)]
-FACES = [(0, 1, 3, 2), (4, 6, 7, 5), (0, 4, 5, 1), (2, 3, 7, 6), (0, 2, 6, 4), (1, 5, 7, 3)]
-TRIANGLES = [t for a, b, c, d in FACES for t in ((a, b, c), (a, c, d))]
 
-
-def text_of(rows):
-    return "".join(" ".join(map(str, row)) + "\n" for row in rows).encode()
+def rows(table):
+    return "".join(" ".join(map(str, row)) + "\n" for row in table)
 
 
 def literal_lzf(data):
@@ -24,141 +30,83 @@ def literal_lzf(data):
     return b"".join(bytes([len(data[i : i + 32]) - 1]) + data[i : i + 32] for i in range(0, len(data), 32))
 
 
-def pcd(data, rows=CORNERS, extra="", viewpoint="0 0 0 1 0 0 0"):
-    header = (
-        f"# .PCD v0.7\nVERSION 0.7\nFIELDS x y z{' _ rgb' if extra else ''}\nSIZE 4 4 4{' 1 4' if extra else ''}\n"
-        f"TYPE F F F{' U U' if extra else ''}\nCOUNT 1 1 1{' 4 1' if extra else ''}\nWIDTH {len(rows)}\nHEIGHT 1\n"
-        f"VIEWPOINT {viewpoint}\nPOINTS {len(rows)}\nDATA {data}\n"
-    ).encode()
-    if data == "ascii":
-        return header + text_of([*row, 0, 0, 0, 0, 255] if extra else row for row in rows)
-    if data == "binary":
-        return header + b"".join(struct.pack("<3f", *row) + (b"\0" * 8 if extra else b"") for row in rows)
-    columns = struct.pack(f"<{3 * len(rows)}f", *(row[k] for k in range(3) for row in rows))
-    packed = literal_lzf(columns)
-    return header + struct.pack("<II", len(packed), len(columns)) + packed
+def pcd():
+    values, columns = CORNERS.astype("<f4").tobytes(), CORNERS.T.astype("<f4").tobytes()
+    packed = struct.pack("<II", len(literal_lzf(columns)), len(columns)) + literal_lzf(columns)
+    more = dict(fields="x y z _ rgb", sizes="4 4 4 1 4", types="F F F U U\nCOUNT 1 1 1 4 1")
+    yield shapes.pcd(8, "ascii\n", rows(CORNERS))
+    yield shapes.pcd(8, "binary\n", values)
+    yield shapes.pcd(8, "binary_compressed\n", packed)
+    yield shapes.pcd(8, "ascii\n", rows([*row, 0, 0, 0, 0, 255] for row in CORNERS), **more)
+    yield shapes.pcd(8, "binary\n", b"".join(row.astype("<f4").tobytes() + bytes(8) for row in CORNERS), **more)
+    yield shapes.pcd(9, "ascii\nnan 0 0\n", rows(CORNERS)).replace(b"0 0 0 1 0 0 0", b"1 2 3 0.5 0.5 -0.5 0.5")
 
 
-def ply(kind, camera=False, scalar="float"):
-    header = f"ply\nformat {kind} 1.0\ncomment a box\nelement vertex 8\n" + "".join(f"property {scalar} {c}\n" for c in "xyz")
-    header += "element face 6\nproperty list uchar int vertex_indices\n"
-    names = [f"{v}_axis{c}" for v in "xyz" for c in "xyz"]
-    if camera:
-        header += "element camera 1\n" + "".join(f"property float {n}\n" for n in ["view_px", "view_py", "view_pz", *names])
-    header = (header + "end_header\n").encode()
-    pose = [5, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1]
-    if kind == "ascii":
-        return header + text_of(CORNERS) + text_of((4, *face) for face in FACES) + (text_of([pose]) if camera else b"")
-    order, letter = ("<" if "little" in kind else ">"), ("f" if scalar == "float" else "d")
-    body = b"".join(struct.pack(f"{order}3{letter}", *row) for row in CORNERS)
-    body += b"".join(struct.pack(f"{order}B4i", 4, *face) for face in FACES)
-    return header + body + (struct.pack(f"{order}12f", *pose) if camera else b"")
+def ply():
+    camera = "element camera 1\n" + "".join(f"property float {n}\n" for n in ("view_px", "view_py", "view_pz"))
+    camera += "".join(f"property float {v}_axis{c}\n" for v in "xyz" for c in "xyz")
+    pose = np.array([5, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1])
+    for kind, order in (("ascii", ""), ("binary_little_endian", "<"), ("binary_big_endian", ">")):
+        for scalar, more in (("float", ""), ("float", camera), ("double", "")):
+            elements = "comment a box\nelement vertex 8\n" + shapes.XYZ.replace("float", scalar)
+            elements += "element face 6\nproperty list uchar int vertex_indices\n" + more
+            body = [rows(CORNERS), rows((4, *face) for face in BOX_FACES), rows([pose] if more else [])]
+            if order:
+                faces = b"".join(struct.pack(order + "B4i", 4, *face) for face in BOX_FACES)
+                body = [CORNERS.astype(order + scalar[0]).tobytes(), faces, pose.astype(order + "f4").tobytes() if more else b""]
+            yield shapes.ply(kind, elements, *body)
 
 
 def stl():
-    body = b"".join(struct.pack("<12fH", 0, 0, 0, *(x for i in t for x in CORNERS[i]), 0) for t in TRIANGLES)
-    return b"\0" * 80 + struct.pack("<I", len(TRIANGLES)) + body
+    facets = [np.r_[0, 0, 0, CORNERS[t].ravel()].astype("<f4").tobytes() + bytes(2) for t in TRIANGLES]
+    yield bytes(80) + struct.pack("<I", len(TRIANGLES)) + b"".join(facets)
+    facets = ["facet normal 0 0 0\nouter loop\n" + rows(("vertex", *CORNERS[i]) for i in t) + "endloop\nendfacet\n" for t in TRIANGLES]
+    yield f"solid box\n{''.join(facets)}endsolid box\n"
 
 
-def stl_text():
-    facets = "".join(
-        "facet normal 0 0 0\nouter loop\n" + "".join("vertex %g %g %g\n" % CORNERS[i] for i in t) + "endloop\nendfacet\n"
-        for t in TRIANGLES
-    )
-    return f"solid box\n{facets}endsolid box\n".encode()
-
-
-def glb(points_only=False):
-    vertices = struct.pack("<24f", *(x for row in CORNERS for x in row))
-    indices = struct.pack(f"<{3 * len(TRIANGLES)}H", *(i for t in TRIANGLES for i in t))
-    primitive = {"attributes": {"POSITION": 0}, "mode": 0} if points_only else {"attributes": {"POSITION": 0}, "indices": 1}
-    document = {
-        "asset": {"version": "2.0"}, "scene": 0, "scenes": [{"nodes": [0]}],
-        "nodes": [{"mesh": 0, "translation": [1, 2, 3]}], "meshes": [{"primitives": [primitive]}],
-        "buffers": [{"byteLength": len(vertices + indices)}],
-        "bufferViews": [{"buffer": 0, "byteOffset": 0, "byteLength": len(vertices)},
-                        {"buffer": 0, "byteOffset": len(vertices), "byteLength": len(indices)}],
-        "accessors": [{"bufferView": 0, "componentType": 5126, "count": 8, "type": "VEC3", "min": [-1, -2, -3], "max": [1, 2, 3]},
-                      {"bufferView": 1, "componentType": 5123, "count": 3 * len(TRIANGLES), "type": "SCALAR"}],
-    }  # fmt: skip
-    text = json.dumps(document).encode()
-    text += b" " * (-len(text) % 4)
-    body = vertices + indices
-    body += b"\0" * (-len(body) % 4)
-    chunks = struct.pack("<II", len(text), 0x4E4F534A) + text + struct.pack("<II", len(body), 0x004E4942) + body
-    return struct.pack("<4sII", b"glTF", 2, 12 + len(chunks)) + chunks
+def glb():
+    view = ',{"buffer":0,"byteOffset":96,"byteLength":72}'
+    accessor = ',{"bufferView":1,"componentType":5123,"count":36,"type":"SCALAR"}'
+    yield shapes.glb('{"attributes":{"POSITION":0},"indices":1}', CORNERS, view, accessor, TRIANGLES.astype("<u2").tobytes())
+    yield shapes.glb('{"attributes":{"POSITION":0},"mode":0}', CORNERS)
 
 
 def obj():
-    yield text_of(("v", *row) for row in CORNERS) + text_of(("f", *(i + 1 for i in face)) for face in FACES)
-    yield text_of(("v", *row) for row in CORNERS)
-    yield b"o a\n" + text_of(("v", 500000.25 + x, y, z) for x, y, z in CORNERS) + b"vt 0 0\ng b\nf 1/1 2/1 3/1\nf -1 -2 -3\n"
+    vertices = rows(("v", *row) for row in CORNERS)
+    yield vertices + rows(("f", *(i + 1 for i in face)) for face in BOX_FACES)
+    yield vertices
+    yield "o a\n" + rows(("v", 500000.25 + x, y, z) for x, y, z in CORNERS) + "vt 0 0\ng b\nf 1/1 2/1 3/1\nf -1 -2 -3\n"
 
 
 def shape_files():
-    yield "pcd", [pcd("ascii"), pcd("binary"), pcd("binary_compressed"), pcd("ascii", extra="x"), pcd("binary", extra="x"),
-                  pcd("ascii", [(float("nan"), 0, 0), *CORNERS], viewpoint="1 2 3 0.5 0.5 -0.5 0.5")]  # fmt: skip
-    kinds = ("ascii", "binary_little_endian", "binary_big_endian")
-    yield "ply", [ply(k, c, s) for k in kinds for c, s in ((False, "float"), (True, "float"), (False, "double"))]
-    off = text_of(CORNERS) + text_of((4, *face) for face in FACES)
-    yield "off", [b"OFF\n8 6 0\n" + off, b"OFF8 6 12\n" + off, b"8 6 0\n# corners\n" + off, b"OFF BINARY\n"]
-    yield "csv", [b"x;y;z;t\n" + text_of(CORNERS).replace(b" ", b";"), b"3\n1,2,3,a\n4,5,6,b\n7,8,9,c\n"]
-    yield "xyz", [text_of(CORNERS), b"# points\n" + text_of((*row, 255) for row in CORNERS)]
-    yield "obj", list(obj())
-    yield "stl", [stl(), stl_text()]
-    yield "glb", [glb(), glb(True)]
-
-
-def nifti(values):
-    header = bytearray(352)
-    struct.pack_into("<i", header, 0, 348)
-    struct.pack_into("<8h", header, 40, 3, 12, 5, 4, 1, 1, 1, 1)
-    struct.pack_into("<2h8f3f", header, 70, 16, 32, 1, 2, 2, 3, 0, 0, 0, 0, 352, 2, -50)
-    struct.pack_into("<h", header, 254, 1)
-    struct.pack_into("<12f4s", header, 280, 0, -2, 0, 5, 2, 0, 0, 7, 0, 0, 3, -9, b"n+1")
-    return bytes(header) + values
-
-
-def nrrd(encoding, values):
-    header = "space: left-posterior-superior\nspace directions: (0,2,0) (-2,0,0) (0,0,3)\nspace origin: (5,7,-9)\n"
-    return f"NRRD0004\ntype: float\ndimension: 3\nsizes: 12 5 4\nendian: little\nencoding: {encoding}\n{header}\n".encode() + values
-
-
-def meta_image(values, size=None):
-    packed = f"CompressedData = {bool(size)}\n" + (f"CompressedDataSize = {size}\n" if size else "")
-    header = "ObjectType = Image\nNDims = 3\nBinaryData = True\nBinaryDataByteOrderMSB = False\n" + packed
-    header += "TransformMatrix = 0 1 0 -1 0 0 0 0 1\nOffset = 5 7 -9\nElementSpacing = 2 2 3\nDimSize = 12 5 4\n"
-    return (header + "ElementType = MET_FLOAT\nElementDataFile = LOCAL\n").encode() + values
-
-
-def vtk_image(text):
-    return (
-        '<VTKFile type="ImageData" version="1.0" byte_order="LittleEndian" header_type="UInt64">\n<ImageData WholeExtent='
-        '"0 11 0 4 0 3" Origin="5 7 -9" Spacing="2 2 3" Direction="0 -1 0 1 0 0 0 0 1"><Piece Extent="0 11 0 4 0 3">\n'
-        '<PointData Scalars="v"><DataArray type="Float32" Name="v" format="ascii">' + text + "</DataArray></PointData>\n"
-        "</Piece></ImageData></VTKFile>\n"
-    ).encode()
+    text, off = rows(CORNERS), rows(CORNERS) + rows((4, *face) for face in BOX_FACES)
+    found = {"pcd": [*pcd()], "ply": [*ply()], "stl": [*stl()], "glb": [*glb()], "obj": [*obj()],
+             "off": ["OFF\n8 6 0\n" + off, "OFF8 6 12\n" + off, "8 6 0\n# corners\n" + off, "OFF BINARY\n"],
+             "csv": ["x;y;z;t\n" + text.replace(" ", ";"), "3\n1,2,3,a\n4,5,6,b\n7,8,9,c\n"],
+             "xyz": [text, "# points\n" + rows((*row, 255) for row in CORNERS)]}  # fmt: skip
+    for name, (content, _) in shapes.FILES.items():
+        if Path(name).suffix[1:] in found and content and len(content) < LARGEST_REFUSED:
+            found[Path(name).suffix[1:]].append(content)
+    return found
 
 
 def volume_files():
-    numbers = [k * k % 7 - 1.5 for k in range(240)]
-    values, text = struct.pack("<240f", *numbers), " ".join(map(str, numbers))
-    yield "nii", [nifti(values)]
-    yield "nii.gz", [gzip.compress(nifti(values), mtime=0)]
-    frame = struct.pack(">7ih15f", 1, 12, 5, 4, 1, 3, 0, 1, 2, 2, 3, 0, 1, 0, -1, 0, 0, 0, 0, 1, 5, 7, -9)
-    yield "mgh", [frame.ljust(284, b"\0") + struct.pack(">240f", *numbers)]
-    yield "nrrd", [nrrd("raw", values), nrrd("gzip", gzip.compress(values, mtime=0))]
-    yield "mha", [meta_image(values), meta_image(zlib.compress(values), len(zlib.compress(values)))]
-    yield "vti", [vtk_image(text)]
+    size = (12, 5, 4)
+    values = (np.arange(240) ** 2 % 7 - 1.5).astype("<f4").tobytes()
+    nifti, packed = volumes.nifti(values, size), zlib.compress(values)
+    compressed = b"CompressedData = True\nCompressedDataSize = %d" % len(packed)
+    return {"nii": [nifti], "nii.gz": [gzip.compress(nifti, mtime=0)], "mgh": [volumes.mgh(values, size)], "vti": [volumes.vti(values, size)],
+            "nrrd": [volumes.nrrd(values, size), volumes.nrrd(gzip.compress(values, mtime=0), size).replace(b": raw", b": gzip", 1)],
+            "mha": [volumes.meta_image(values, size), volumes.meta_image(packed, size).replace(b"CompressedData = False", compressed)]}  # fmt: skip
 
 
 def symmetry_files():
     turn = [1, 0, 0, 0, 0, -1, 0, 4, 0, 0, -1, 0, 0, 0, 0, 1]
     axis = {"axis": [0, 0, 1], "offset": [0, 0.5, 0]}
     models = {"1": {"diameter": 10.0, "symmetries_discrete": [turn]}, "2": {"symmetries_continuous": [axis]}, "3": {}}
-    rows = [turn[i : i + 4] for i in range(0, 16, 4)]
-    yield "models_info", [json.dumps(models).encode(), json.dumps({"symmetries_discrete": [rows], "align_axes": []}).encode()]
-    yield "isaac", [b'obj_1: ["z_90", "z_180"]\nobj_2: ["x_full"] # any angle\n', b"symmetry_axes: ['y_full']\n"]
+    table = [turn[i : i + 4] for i in range(0, 16, 4)]
+    return {"models_info": [json.dumps(models), json.dumps({"symmetries_discrete": [table], "align_axes": []})],
+            "isaac": ['obj_1: ["z_90", "z_180"]\nobj_2: ["x_full"] # any angle\n', "symmetry_axes: ['y_full']\n"]}  # fmt: skip
 
 
 def point_bytes(num_options, count):
@@ -176,21 +124,16 @@ def point_bytes(num_options, count):
 def packed_parts():
     """The kind of the part, and matrices as the database packs them."""
     matrix = lambda rows, cols, value=0.5: struct.pack(f"<II{rows * cols}f", rows, cols, *[value] * (rows * cols))
-    yield "packed", [b"\0" + matrix(3, 8), b"\1" + matrix(4, 2), b"\2" + matrix(280, 1), b"\3" + matrix(4, 2) + matrix(1, 1),
-                     b"\4" + struct.pack("<Iq", 1, 7) + matrix(12, 1) + matrix(4, 2), b"\5" + bytes(52), b"\6" + matrix(3, 2) + matrix(3, 2)]  # fmt: skip
+    return {"packed": [b"\0" + matrix(3, 8), b"\1" + matrix(4, 2), b"\2" + matrix(280, 1), b"\3" + matrix(4, 2) + matrix(1, 1),
+                       b"\4" + struct.pack("<Iq", 1, 7) + matrix(12, 1) + matrix(4, 2), b"\5" + bytes(52), b"\6" + matrix(3, 2) + matrix(3, 2)]}  # fmt: skip
 
 
 def main(folder):
-    for name, files in [*shape_files(), *volume_files(), *symmetry_files(), *packed_parts()]:
-        write(Path(folder) / name, files)
-    for name, num_options in (("planes", 15), ("rotations", 4), ("segment", 7)):
-        write(Path(folder) / name, list(point_bytes(num_options, 8)))
-
-
-def write(folder, files):
-    folder.mkdir(parents=True, exist_ok=True)
-    for i, content in enumerate(files):
-        (folder / f"seed{i}").write_bytes(content)
+    of_points = {name: [*point_bytes(num_options, 8)] for name, num_options in (("planes", 15), ("rotations", 4), ("segment", 7))}
+    for name, files in {**shape_files(), **volume_files(), **symmetry_files(), **packed_parts(), **of_points}.items():
+        (Path(folder) / name).mkdir(parents=True, exist_ok=True)
+        for i, content in enumerate(files):
+            (Path(folder) / name / f"seed{i}").write_bytes(content.encode() if isinstance(content, str) else content)
 
 
 if __name__ == "__main__":
