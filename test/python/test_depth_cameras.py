@@ -22,6 +22,7 @@ need("numpy")
 import numpy as np
 
 import pcl_symmetry
+from tool_run import pcd
 from test_pcl_symmetry import Mesh, bar, box, box_mesh, bumped, has_pcl, lamp
 
 INTRINSICS = (300.0, 300.0, 160.0, 120.0)
@@ -43,21 +44,6 @@ def table(blocks=(((-0.35, -0.3, -0.1), (-0.05, 0, 0.15)), ((0.1, -0.2, -0.05), 
             hit = (enters < leaves) & (enters > 0) & (enters < depth)
             depth[hit], labels[hit] = enters[hit], k + 1
     return np.where(depth < 4, depth, 0), labels
-
-
-def write_pcd(path, points, labels=None):
-    """Rows, or rows and columns of a camera, in binary."""
-    height, width = points.shape[:2] if points.ndim == 3 else (1, len(points))
-    fields = [("x", "F"), ("y", "F"), ("z", "F")] + ([("label", "U")] if labels is not None else [])
-    rows = np.zeros(height * width, [(name, "<f4" if kind == "F" else "<u4") for name, kind in fields])
-    for name, values in zip("xyz", points.reshape(-1, 3).T):
-        rows[name] = values
-    if labels is not None:
-        rows["label"] = labels.ravel()
-    names, kinds = zip(*fields)
-    head = ["VERSION .7", "FIELDS " + " ".join(names), "SIZE" + " 4" * len(names), "TYPE " + " ".join(kinds)]
-    head += ["COUNT" + " 1" * len(names), f"WIDTH {width}", f"HEIGHT {height}", "VIEWPOINT 0 0 0 1 0 0 0"]
-    Path(path).write_bytes("\n".join([*head, f"POINTS {len(rows)}", "DATA binary", ""]).encode() + rows.tobytes())
 
 
 def seen_half(points, viewpoint):
@@ -114,7 +100,8 @@ class SameBytes(unittest.TestCase):
             file = Path(folder) / "cloud.pcd"
 
             def check(name, points, *flags, labels=None, **options):
-                write_pcd(file, points, labels)
+                width = points.shape[1] if points.ndim == 3 else 0
+                file.write_bytes(pcd(points.reshape(-1, 3), width, **({} if labels is None else {"label": labels.ravel()})))
                 self.assert_same(name, file, flags, pcl_symmetry.planes(points, **options))
 
             check("cloud", cloud)
@@ -148,7 +135,7 @@ class SameBytes(unittest.TestCase):
         with tempfile.TemporaryDirectory() as folder:
             files = [f"{i}.pcd" for i in range(12)]
             for file, points in zip(files, shapes):
-                write_pcd(Path(folder) / file, points)
+                (Path(folder) / file).write_bytes(pcd(points))
             for k, kind in enumerate(("prst", "prsd", "gedt")):
                 subprocess.run([tool, kind, *files, "-type", kind, "-quiet"], cwd=folder, check=True, capture_output=True)
                 for i, values in enumerate(each[k] for each in described):
@@ -429,7 +416,7 @@ class Pages(unittest.TestCase):
         pages = {"module": (pcl_symmetry.planes(points).show(points).html, (700, 500))}
         with tempfile.TemporaryDirectory() as folder:
             if os.environ.get("TOOLS"):
-                write_pcd(Path(folder) / "box.pcd", points)
+                (Path(folder) / "box.pcd").write_bytes(pcd(points))
                 tool = Path(os.environ["TOOLS"]) / "pcl_symmetry_planes"
                 subprocess.run([tool, "box.pcd", "-html", "box.html", "-quiet"], cwd=folder, check=True, capture_output=True)
                 pages["tool"] = ((Path(folder) / "box.html").read_text(), (420, 700))
