@@ -3,6 +3,7 @@ import os
 import resource
 import signal
 import subprocess
+import time
 import unittest
 
 import tool_run
@@ -25,6 +26,7 @@ class SafeFiles(ToolTest):
                 if any(name.startswith(".big.") for name in os.listdir(self.folder)):
                     process.send_signal(number)
                     break
+                time.sleep(0.002)
             return None if process.wait() == 0 else process.returncode
 
     def test_killed_writers_leave_whole_files(self):
