@@ -396,6 +396,26 @@ public:
     }
   }
 
+  /// Keeps objects apart that models explain, where none explains what they were united to.
+  /// \return whether there are any.
+  bool separateNamed(Joining& united) {
+    std::map<std::size_t, std::vector<std::size_t>> parts;
+    for (std::size_t i = 0; i < objects_.size(); ++i)
+      if (owners_[i] == i) parts[united.owner(i)].push_back(i);
+    std::set<std::size_t> named;
+    for (const auto& [object, of_object] : parts) {
+      if (of_object.size() < 2 || scene_.is_named(united.objects_[object])) continue;
+      for (const std::size_t i : of_object)
+        if (scene_.is_named(objects_[i])) named.insert(i);
+    }
+    for (auto pair = pairs_.begin(); pair != pairs_.end();) {
+      const bool stays = !named.count(pair->first.first) && !named.count(pair->first.second);
+      if (!stays) junctions_.push_back(junctionOf(pair->first));
+      pair = stays ? std::next(pair) : pairs_.erase(pair);
+    }
+    return !named.empty();
+  }
+
   JoinedPieces result() && {
     std::vector<std::size_t> order, numbers(objects_.size());
     for (std::size_t i = 0; i < objects_.size(); ++i)
@@ -469,8 +489,11 @@ JoinedPieces joinBySymmetry(const JoiningScene& scene, const std::vector<pcl::In
   joining.unite(are_round, true, false);
   joining.analyzeAll();
   joining.unite(are_one, true, true);
+  Joining apart = joining;
   joining.unite(are_not_cut, false, true);
-  return std::move(joining).result();
+  if (!scene.is_named || !apart.separateNamed(joining)) return std::move(joining).result();
+  apart.unite(are_not_cut, false, true);
+  return std::move(apart).result();
 }
 
 }  // namespace pcl_symmetry::detail

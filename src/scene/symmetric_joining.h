@@ -19,6 +19,8 @@ struct JoiningScene {
   std::function<SeenSpace(const pcl::Indices&)> seen_of;
   /// The planes and axes of an object with these points, one of several that are analyzed at once, by several threads.
   std::function<SceneObject(const pcl::Indices&, std::size_t num_objects)> analyze;
+  /// Notes the models that an object shows; returns whether one is accepted. Empty where no models are known.
+  std::function<bool(SceneObject&)> is_named;
 };
 
 struct JoinedPieces {
@@ -32,7 +34,8 @@ struct JoinedPieces {
 /// the inside of a bowl. A bottle and its neck are one where both have the same axis; a mug and its handle where the
 /// handle does not stand on the support of the mug, and the union has a plane through the axis of the mug, or that
 /// axis, that explains each piece by itself. Pieces stay apart if their own symmetries explain many of their points and
-/// neither is flat, as a face of a box or a part of a wall is; all others are united again.
+/// neither is flat, as a face of a box or a part of a wall is; all others are united again. Where no model explains
+/// what is united so, the pieces that a model explains stay apart: cameras blur the symmetries of objects that touch.
 /// \param pieces of clusters, ascending indices.
 /// \param cluster_of number of the cluster of each piece.
 JoinedPieces joinBySymmetry(const JoiningScene& scene, const std::vector<pcl::Indices>& pieces,

@@ -1,6 +1,7 @@
 #include "pcl_symmetry/symmetry_scene.h"
 
 #include <algorithm>
+#include <functional>
 #include <future>
 #include <utility>
 
@@ -94,10 +95,16 @@ public:
     const auto seen = std::make_shared<const SeenSpace>(seenOf(object.indices));
     if (options_.frames) findFrame(object, seen);
     if (options_.complete) complete(object, *seen);
-    if (!database_) return;
+    if (database_ && object.models.empty()) recognize(object);
+  }
+
+  /// \return whether a model of the database is accepted.
+  bool recognize(SceneObject& object) const {
     const SeenSpace of_model = detail::seenOfModel(*found_.seen, *scene_, found_.supports, object.indices, distances_);
     object.models = database_->recognize(*scene_, object.indices, options_.recognition,
                                          std::make_shared<const SeenSpace>(of_model));
+    const double accepted = std::max(options_.recognition.min_confidence, RecognitionOptions().min_confidence);
+    return !object.models.empty() && object.models.front().confidence >= accepted;
   }
 
 private:
@@ -202,7 +209,7 @@ SceneAnalysis SymmetryScene::compute() const {
   if (frame) analysis.seen = seenSpaceOf(*frame, viewpoint_);
   const double seen_ms = watch.lap();
   // What the database reads is ready when the clusters are: planes are searched for by one thread.
-  std::future<void> prepared;
+  std::shared_future<void> prepared;
   if (database_ && analysis.seen && analysis.seen->visibility() && resolveNumThreads(options_.num_threads) > 1)
     prepared = std::async(std::launch::async, [&] { database_->prepare(); });
   if (frame) frame = withoutDepthErrors(frame, *analysis.seen, options_.num_threads);
@@ -244,16 +251,24 @@ SceneAnalysis SymmetryScene::compute() const {
   const auto of = [&](std::size_t num_objects) {
     return ObjectAnalysis(frame, analysis, distances, ofOneObject(options_, num_objects), database_.get());
   };
+  const auto prepare = [&] { prepared.valid() ? prepared.get() : database_->prepare(); };
+  std::function<bool(SceneObject&)> is_named;
+  if (database_ && viewpoint)
+    is_named = [&](SceneObject& object) {
+      prepare();
+      return of(1).recognize(object);
+    };
   detail::JoinedPieces joined = detail::joinBySymmetry(
       {frame, analysis.supports, distances, options_.detection.tolerance, options_.num_threads,
        [&](const pcl::Indices& object) { return of(1).seenOf(object); },
-       [&](const pcl::Indices& object, std::size_t num_objects) { return of(num_objects).withPlanes(object); }},
+       [&](const pcl::Indices& object, std::size_t num_objects) { return of(num_objects).withPlanes(object); },
+       is_named},
       pieces.indices, pieces.cluster_of);
   analysis.objects = std::move(joined.objects);
   analysis.junctions = std::move(joined.junctions);
   timed("planes");
   if (database_ && !analysis.objects.empty() && viewpoint) {
-    prepared.valid() ? prepared.get() : database_->prepare();
+    prepare();
     timed("database");
   }
   const std::size_t num_objects = analysis.objects.size();
