@@ -357,7 +357,11 @@ Motion registerTo(const Console& console, const InputShape& input, const InputSh
   result.transform =
       shiftedBack(Eigen::Isometry3d(registration.getFinalTransformation()), input.shift(), target.shift());
   result.converged = registration.hasConverged();
-  result.json = {{"transform", rowMajor(result.transform)},      {"converged", result.converged},
+  // A refused answer gives the best pose, too.
+  const std::vector<RegisteredPose>& poses = registration.getPoses();
+  const Eigen::Isometry3d best = poses.empty() ? Eigen::Isometry3d::Identity() : poses.front().T_target_source;
+  result.json = {{"transform", rowMajor(shiftedBack(best, input.shift(), target.shift()))},
+                 {"converged", result.converged},
                  {"fitness", registration.getFitnessScore()},    {"support", registration.getScore().support},
                  {"conflict", registration.getScore().conflict}, {"timing_ms", timingJson(registration.getTiming())},
                  {"confidence", registration.getConfidence()}};

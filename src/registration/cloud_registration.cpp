@@ -178,14 +178,23 @@ std::vector<JudgedPose> judgedPoses(const CloudPair& clouds, const std::vector<R
 
 /// See PoseEvidence::uniqueness.
 /// \param judged best first, at least one.
-double uniquenessOf(const CloudPair& clouds, const std::vector<JudgedPose>& judged) {
-  if (clouds.model().seen) return 1.0;  // symmetries of what was seen from one side are not known
+double uniquenessOf(const CloudPair& clouds, const std::vector<JudgedPose>& judged,
+                    const CloudRegistrationOptions& options) {
+  const PosedSurface& model = clouds.model();
+  if (model.seen) return 1.0;  // symmetries of what was seen from one side are not known
+  // Poses that differ by a symmetry of the model, and by what ICP left of their errors, are one.
+  const auto isNearSymmetry = [&](const Eigen::Isometry3d& motion) {
+    if (!isSymmetry(motion, model, kRegistration.near_pose)) return false;
+    if (isSymmetry(motion, model, kRegistration.same_pose)) return true;
+    const RankedPose nearest = refinePoses(model, model, {{motion, {}}}, options).front();
+    return isSymmetry(nearest.T_model_scan, model, kRegistration.same_pose);
+  };
   const auto odds = [](const JudgedPose& pose) { return pose.confidence / (1.0 - pose.confidence); };
   const RankedPose& best = judged.front().pose;
   const double best_odds = odds(judged.front());
   double all = best_odds;
   for (std::size_t k = 1; k < judged.size(); ++k)
-    if (!isSymmetry(judged[k].pose.T_model_scan * best.T_model_scan.inverse(), clouds.model()))
+    if (!isNearSymmetry(judged[k].pose.T_model_scan * best.T_model_scan.inverse()))
       all += odds(judged[k]) > kRegistration.like_odds * best_odds ? best_odds : odds(judged[k]);
   return best_odds / all;
 }
@@ -297,7 +306,7 @@ CloudRegistration registerClouds(const Points& source, const std::optional<Visib
   if (!judged.empty()) {
     result.evidence = judged.front().evidence;
     if (judged.front().confidence >= kRegistration.min_confidence)
-      result.evidence.uniqueness = uniquenessOf(clouds, judged);
+      result.evidence.uniqueness = uniquenessOf(clouds, judged, inner);
     result.confidence = poseConfidence(result.evidence);
     std::vector<RankedPose> ranked;
     for (const JudgedPose& one : judged) ranked.push_back(one.pose);

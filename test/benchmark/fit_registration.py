@@ -5,8 +5,9 @@ usage: PYTHONPATH=build/src/python python3 test/benchmark/fit_registration.py PS
 
 Scans of each model are brought to the model, to the scan from the next corner, and to the model and a scan of an object of
 another class, where no pose is right, clean and with noise. --real adds poses of real scans that were judged elsewhere: lines of
-JSON with "good", "object" and the fields of PoseEvidence. All scans of models together count a fifth of these: of real objects that
-are left out, more make the fit worse (log loss 0.101; 0.113 with a half). Poses beside which another one fits as well are left out.
+JSON with "good", "object", "seed" and the fields of PoseEvidence; a pose with several seeds counts once. All scans of models
+together count a fifth of these: of real objects that are left out, more make the fit worse (log loss 0.101; 0.113 with a half).
+Poses beside which another one fits as well are left out.
 """
 
 import argparse
@@ -29,7 +30,7 @@ def terms_of(e):
     """The terms of poseConfidence() in src/core/registration/pose_evidence.cpp."""
     agreement = np.log(e["agreement"] / (1 - e["agreement"]))
     noise = np.log(np.clip(e["noise"], 0.0015, 0.01) / 0.001 + 0.5)
-    return [1, agreement, e["on_surface"], e["contradicted"], e["missing"], noise, abs(np.log(e["size_ratio"]))]
+    return [1, agreement, e["on_surface"], e["contradicted"], np.log(e["missing"] + 0.1), noise, abs(np.log(e["size_ratio"]))]
 
 
 def sample_item(item, arguments):
@@ -71,15 +72,17 @@ def main(arguments):
         others = (dataclasses.replace(other) for other in models[i::-1] if class_of(other) != class_of(model))
         model.other = next(others, None)
     made = [(right, terms_of(e), "made") for right, e in fits.sampled(models, sample_item, arguments) if e["uniqueness"] > UNIQUE]
-    real = []
+    rows = []
     for path in arguments.real or []:
         with open(path) as lines:
-            real += [(row["good"], terms_of(row), row["object"]) for row in map(json.loads, lines) if row["uniqueness"] > UNIQUE]
+            rows += [row for row in map(json.loads, lines) if row["uniqueness"] > UNIQUE]
+    real = [(row["good"], terms_of(row), row["object"]) for row in rows]
     right, terms, names = map(np.array, zip(*(made + real)))
     weights = np.r_[np.full(len(made), 0.2 * len(real) / len(made) if real else 1.0), np.ones(len(real))]
+    pull = float(max(1, len({row["seed"] for row in rows})))
 
     def judged(train, test):
-        w, _ = fits.logistic(terms[train], right[train], weights[train], pull=1.0)
+        w, _ = fits.logistic(terms[train], right[train], weights[train], pull=pull)
         odds = terms[test] @ w
         wrong, missed = ((odds > 0) & ~right[test]).sum(), ((odds <= 0) & right[test]).sum()
         print(f"  {', '.join(sorted(set(names[test])))}: {right[test].sum()} right poses, {missed} of them refused;"
@@ -89,7 +92,7 @@ def main(arguments):
     print("Each object judged by the fit to all others:")
     for name in sorted(set(names) - {"made"}):
         judged(names != name, names == name)
-    w, errors = fits.logistic(terms, right, weights, pull=1.0)
+    w, errors = fits.logistic(terms, right, weights, pull=pull)
     print("weights", w, "errors", errors)
     texts = fits.rounded(w, errors)
     fits.write_header(arguments, f"""

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Registration of real scans with known poses, by what it is brought to: right, refused, wrong.
 
-usage: PYTHONPATH=build/src/python python3 test/benchmark/real_registration.py FOLDER [--kinds model scan impostor foreign] [--rows FILE]
+usage: PYTHONPATH=build/src/python python3 test/benchmark/real_registration.py FOLDER [--kinds model scan impostor foreign] [--seed N] [--rows FILE]
 
 FOLDER/index.json lists scans (file, object, T_object_scan) and pairs: model_pairs and scan_pairs (scan, target, diameter,
 T_target_scan), impostor_pairs (scan, target: a model of another object). "foreign" are scans brought to scans of other
@@ -29,15 +29,15 @@ MAX_POINTS = 10_000
 SYMMETRIC_SHARE, SYMMETRIC_DISTANCE = 0.97, 0.02
 
 
-def read(path):
+def read(path, seed=0):
     """10 000 points of a cloud, or on the surface of a mesh."""
     import open3d
 
     open3d.utility.set_verbosity_level(open3d.utility.VerbosityLevel.Error)
-    random = np.random.default_rng(0)
+    random = np.random.default_rng(seed)
     mesh = open3d.io.read_triangle_mesh(str(path)) if path.suffix == ".ply" else open3d.geometry.TriangleMesh()
     if len(mesh.triangles):
-        open3d.utility.random.seed(0)
+        open3d.utility.random.seed(seed)
         return np.asarray(mesh.sample_points_uniformly(MAX_POINTS).points), True
     points = np.asarray(open3d.io.read_point_cloud(str(path)).points)
     points = points[np.isfinite(points).all(axis=1)]
@@ -93,9 +93,9 @@ def main(arguments):
         right, wrong, refused, seconds = bench.Rate(), bench.Rate(), bench.Rate(), []
         for pair in pairs_of(index, kind)[:: arguments.every]:
             scan = index["scans"][pair["scan"]]
-            (source, _), (target, is_mesh) = read(folder / scan["file"]), read(folder / pair["target"])
+            (source, _), (target, is_mesh) = (read(folder / file, arguments.seed) for file in (scan["file"], pair["target"]))
             start = time.process_time()
-            found = pcl_symmetry.register(source, target, target_viewpoint=None if is_mesh else "auto", threads=1)
+            found = pcl_symmetry.register(source, target, target_viewpoint=None if is_mesh else "auto", seed=arguments.seed, threads=1)
             seconds.append(time.process_time() - start)
             good = False
             if kind in ("model", "scan"):
@@ -106,7 +106,7 @@ def main(arguments):
             wrong.add(found.converged and not good)
             refused.add(not found.converged)
             evidence = {f.name: float(getattr(found.evidence, f.name)) for f in dataclasses.fields(found.evidence)}
-            lines.append({"kind": kind, "scan": pair["scan"], "object": scan["object"], "good": good, "confidence": found.confidence, **evidence})
+            lines.append({"kind": kind, "scan": pair["scan"], "object": scan["object"], "seed": arguments.seed, "good": good, "confidence": found.confidence, **evidence})
         table.append([kind, right.text, refused.text, wrong.text, f"{np.median(seconds):.2f}"])
     bench.print_table("Real scans, by what they are brought to", ["", "right", "refused", "wrong", "s"], table)
     if arguments.rows:
@@ -119,5 +119,6 @@ if __name__ == "__main__":
     kinds = ["model", "scan", "impostor", "foreign"]
     parser.add_argument("--kinds", nargs="+", choices=kinds, default=kinds)
     parser.add_argument("--every", type=int, default=1, help="only every N-th pair")
+    parser.add_argument("--seed", type=int, default=0, help="of the points that are taken, and of the search")
     parser.add_argument("--rows", metavar="FILE", help="a line of JSON for each pair")
     main(parser.parse_args())

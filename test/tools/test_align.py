@@ -119,6 +119,7 @@ class Align(ToolTest):
         scan, _ = self.scan()
         self.fails(1, "does not fit", scan, "never.pcd -quiet -target box.off -json report.json")
         self.assertEqual((self.error.count("\n"), '"converged": false' in self.text("report.json")), (1, True), self.error)
+        self.assertIn("of the source lie on the target", self.error)
         self.assertFalse((self.folder / "never.pcd").exists())
 
     def hidden(self, points, model, viewpoint):

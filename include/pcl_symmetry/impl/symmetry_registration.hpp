@@ -88,7 +88,6 @@ void SymmetryRegistration<PointSource, PointTarget, Scalar>::findPose(const Poin
     final_transformation_ = transformation_ = result_.T_target_source.matrix().template cast<Scalar>();
     return;
   }
-  result_.covariance.reset();
   std::ostringstream reason;
   const double uniqueness = result_.evidence.uniqueness;
   const bool fits = uniqueness < 1.0 && result_.confidence >= min_confidence_ * uniqueness;
@@ -96,6 +95,7 @@ void SymmetryRegistration<PointSource, PointTarget, Scalar>::findPose(const Poin
          << ": in the best pose, with a confidence of " << std::round(100.0 * result_.confidence) / 100.0 << ", "
          << result_.doubt();
   reason_ = reason.str();
+  result_.covariance.reset();
 }
 
 }  // namespace pcl_symmetry

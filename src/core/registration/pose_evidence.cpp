@@ -79,8 +79,8 @@ NotMeasured notMeasured(const PosedSurface& surface, const PosedSurface& scan, c
 /// A lower limit of the share of points that lie on the surface: by a width that does not grow with the spacing of the
 /// points, so that few points on a wrong object do not count, and by the discs about the points of the surface, flat
 /// and as wide as these are apart, so that it does not count how densely they lie.
-double shareOnSurface(const Landing& landing, const PosedSurface& to, double noise) {
-  const double width = std::max(kRegistration.contact, std::min(kRegistration.max_contact, noise));
+double shareOnSurface(const Landing& landing, const PosedSurface& to) {
+  const double width = kRegistration.contact;
   const auto size = static_cast<double>(landing.images.cols());
   double sum = 0.0;
   for (Eigen::Index i = 0; i < landing.images.cols(); ++i) {
@@ -102,10 +102,10 @@ std::vector<float> discDistances(const PosedSurface& from, const PosedSurface& t
   return distances;
 }
 
-bool isSymmetry(const Eigen::Isometry3d& motion, const PosedSurface& model) {
-  const auto tolerance = static_cast<float>(kRegistration.same_pose * diameterOf(model));
+bool isSymmetry(const Eigen::Isometry3d& motion, const PosedSurface& model, double tolerance) {
+  const auto most = static_cast<float>(tolerance * diameterOf(model));
   const std::vector<float> distances = discDistances(model, model, motion, kRegistration.evidence_points);
-  const auto num_on = std::count_if(distances.begin(), distances.end(), [&](float d) { return d < tolerance; });
+  const auto num_on = std::count_if(distances.begin(), distances.end(), [&](float d) { return d < most; });
   return static_cast<double>(num_on) >= kRegistration.symmetric_share * static_cast<double>(distances.size());
 }
 
@@ -121,7 +121,7 @@ PoseEvidence poseEvidence(const PosedSurface& scan, const PosedSurface& model, c
   evidence.overlap_source = of_scan.share();
   evidence.overlap_target = of_model.share();
   evidence.agreement = std::min(of_scan.agreement(), of_model.agreement());
-  evidence.on_surface = shareOnSurface(on_model, model, noise);
+  evidence.on_surface = shareOnSurface(on_model, model);
   const double near = std::max(kRegistration.near_tolerance * size, kRegistration.tight_noises * noise);
   const NotMeasured of_model_in_view = notMeasured(model, scan, T_model_scan.inverse(), on_scan, near),
                     of_scan_in_view = notMeasured(scan, model, T_model_scan, on_model, near);
@@ -157,7 +157,7 @@ double poseConfidence(const PoseEvidence& evidence) {
       std::log(evidence.agreement / (1.0 - evidence.agreement)),
       evidence.on_surface,
       evidence.contradicted,
-      evidence.missing,
+      std::log(evidence.missing + 0.1),
       std::log(std::clamp(evidence.noise, kRegistration.min_noise, kRegistration.max_noise) / 0.001 + 0.5),
       std::abs(std::log(evidence.size_ratio))};
   double log_odds = 0.0;

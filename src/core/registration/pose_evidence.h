@@ -22,8 +22,9 @@ PoseEvidence poseEvidence(const PosedSurface& scan, const PosedSurface& model, c
 std::vector<float> discDistances(const PosedSurface& from, const PosedSurface& to, const Eigen::Isometry3d& T_to_from,
                                  int num_points);
 
-/// \return whether a motion brings a whole model onto itself, as far as scans tell.
-bool isSymmetry(const Eigen::Isometry3d& motion, const PosedSurface& model);
+/// \param tolerance diameters.
+/// \return whether a motion brings a whole model, but for a few points, onto itself.
+bool isSymmetry(const Eigen::Isometry3d& motion, const PosedSurface& model, double tolerance);
 
 /// \return probability that the pose is right, in [0, 1], fitted by test/benchmark/fit_registration.py.
 double poseConfidence(const PoseEvidence& evidence);

@@ -6,6 +6,6 @@
 namespace pcl_symmetry {
 
 /// Weights of the terms of poseConfidence().
-inline constexpr std::array<double, 7> kRegistrationFit{-0.53, 0.786, 5.06, -26.2, -6.44, -0.915, -9.00};
+inline constexpr std::array<double, 7> kRegistrationFit{-2.77, 0.583, 3.71, -29.0, -1.424, -1.000, -7.53};
 
 }  // namespace pcl_symmetry

@@ -60,11 +60,10 @@ struct RegistrationRules {
   double like_merit = 0.05;         ///< between poses of which either may be right,
   double like_odds = 0.5;           ///< and share of the odds from which on they are equal: sampling changes them
   double same_pose = 0.03;          ///< diameters of a model, within which a symmetry brings it onto itself,
+  double near_pose = 0.05;          ///< and a pose that ICP left near one,
   double symmetric_share = 0.97;    ///< or so much of it
   double some_uniqueness = 0.9;     ///< below it another pose is worth a word
-  /// Radii, width within which points of one surface lie on each other: at least, and where noise asks for more, at
-  /// most. On whole objects of PSB, a right pose has 0.41 of its points there with 400 points, a wrong one 0.29.
-  double contact = 0.02, max_contact = 0.03;
+  double contact = 0.025;           ///< radii, width within which points of one surface lie on each other
 
   // Surfaces
   double max_roughness = 0.15;   ///< of the spacing; rougher surfaces take normals from more neighbors
