@@ -137,7 +137,7 @@ def unpacked(data, size):
 
 
 def pcd_points(path):
-    """The points of a PCD file, with all fields."""
+    """The points of a PCD file, binary or compressed, with all fields."""
     header = pcd_header(path)
     count, counts = int(header["POINTS"][0]), list(map(int, header["COUNT"]))
     fields = [(name, f"<{kind.lower()}{size}", (number,) if number > 1 else ())
@@ -145,15 +145,8 @@ def pcd_points(path):
     encoding, body = Path(path).read_bytes().split(b"\nDATA ")[1].split(b"\n", 1)
     if encoding == b"binary":
         return np.frombuffer(body, fields, count)
-    points, at = np.zeros(count, fields), 0
-    if encoding == b"ascii":
-        values = np.array(body.split(), float).reshape(count, -1)
-        for (name, _, shape), number in zip(fields, counts):
-            points[name] = values[:, at:at + number].reshape((count, *shape))
-            at += number
-        return points
     packed, size = struct.unpack("<II", body[:8])
-    body = unpacked(body[8:8 + packed], size)  # field by field
+    body, points, at = unpacked(body[8:8 + packed], size), np.zeros(count, fields), 0  # field by field
     for name, kind, shape in fields:
         points[name] = np.frombuffer(body, kind, count * int(np.prod(shape)), at).reshape((count, *shape))
         at += points[name].nbytes
