@@ -362,8 +362,10 @@ Motion registerTo(const Console& console, const InputShape& input, const InputSh
   const Eigen::Isometry3d best = poses.empty() ? Eigen::Isometry3d::Identity() : poses.front().T_target_source;
   result.json = {{"transform", rowMajor(shiftedBack(best, input.shift(), target.shift()))},
                  {"converged", result.converged},
-                 {"fitness", registration.getFitnessScore()},    {"support", registration.getScore().support},
-                 {"conflict", registration.getScore().conflict}, {"timing_ms", timingJson(registration.getTiming())},
+                 {"fitness", registration.getFitnessScore()},
+                 {"support", registration.getScore().support},
+                 {"conflict", registration.getScore().conflict},
+                 {"timing_ms", timingJson(registration.getTiming())},
                  {"confidence", registration.getConfidence()}};
   const PoseEvidence& evidence = registration.getEvidence();
   result.json["evidence"] = {{"overlap_source", evidence.overlap_source},
