@@ -99,13 +99,10 @@ struct DetectionRules {
   struct {
     double contained_offset = 0.03,
            contained_angle = 3.0 * kDegree;  ///< by which a plane may miss a line that it contains
-    int max_fold = 60;                       ///< as rotations of objects
     std::size_t min_planes = 4;              ///< of a lattice; three fit too many by chance
     std::size_t max_pairs = 6;               ///< planes whose common lines are tried for a lattice
     double min_pair_angle = 0.1;             ///< between two planes; less moves their line too far
     double max_folded = 0.2;                 ///< share of the angle between planes of a lattice by which one may be off
-    double max_off_angle = 0.05;             ///< the same in radians
-    double max_chance = 1e-3;                ///< probability of a lattice by chance
     std::size_t max_planes = 8;              ///< planes whose common lines are tried for an axis
     double min_angle = 0.17;                 ///< between two of them
     int screening_planes = 3, fitted_planes = 6,
@@ -122,8 +119,7 @@ struct DetectionRules {
   struct {
     int max_frequency = 120, min_fold = 3;  ///< a cloud that is thinner on one side, or flat, has folds one and two
     int rings = 8, slabs = 4;               ///< about the line: rings for the fold, slabs for the angle of the planes
-    int spectrum_samples = 20'000, angles = 192, phase_samples = 5000;
-    double reflections_stand_out = 20.0;   ///< powers beside it from which reflections fix the angle better than rings
+    int spectrum_samples = 20'000, halfway_samples = 5000;
     int compared_frequencies = 12;         ///< frequencies on either side that one is compared with
     double min_power = 20.0;               ///< round bodies in noise have 15 at most
     double stands_out = 4.0;               ///< medians of the powers beside it

@@ -259,8 +259,7 @@ void findFamilies(const JudgedCloud& judged, Found& found) {
   }
   for (const AxisFamily& axis : findAxes(symmetries, test, likely_axes)) {
     // Noise blurs what lies between the planes of a polygon, but not alike at all of them.
-    if (kKindRules.has_polygons[cloud.kind()] && latticeBySpectrum(cloud, judged.all, axis.line, options.num_threads))
-      continue;
+    if (kKindRules.has_polygons[cloud.kind()] && latticeBySpectrum(judged.all, axis.line)) continue;
     const JudgedFamily family = judged.decision.judgeFamily(axis.planes, samples);
     if (!isFamily(family)) continue;
     // No bounded shape has two parallel axes, but a thin disc seems to within the tolerance: the best is the

@@ -6,7 +6,6 @@
 
 #include "core/base/parallel.h"
 #include "core/base/statistics.h"
-#include "core/detection/plane_families.h"
 #include "core/evidence/surface_samples.h"
 #include "core/geometry/cloud_extent.h"
 #include "core/geometry/point_samples.h"
@@ -342,9 +341,6 @@ std::vector<Candidate> impliedBy(const std::vector<SymmetryPlane>& planes, const
     tried.push_back(plane);
     found.push_back({plane, false});
   };
-  // The planes of a regular polygon, from those of them that are known.
-  if (const std::optional<PlaneLattice> lattice = findLattice(symmetries))
-    for (int k = 0; k < lattice->fold; ++k) add(lattice->plane(k));
   if (symmetries.size() > kDetection.closure.max_closed) return found;
   for (const ReflectionPlane& plane : symmetries) {
     for (const ReflectionPlane& across : symmetries) {

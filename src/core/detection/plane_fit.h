@@ -156,8 +156,7 @@ private:
   const DetectionOptions& options_;
 };
 
-/// The reflection of one symmetry in another is a symmetry too: completes the group that some symmetries generate, and
-/// the planes of a regular polygon of which some are known.
+/// The reflection of one symmetry in another is a symmetry too: completes the group that some symmetries generate.
 /// \param planes found up to now, input frame; those that are symmetries count.
 /// \param[in,out] tried planes that were known or returned before, normalized frame.
 /// \return such planes that are not among these; none for scans.

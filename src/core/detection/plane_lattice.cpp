@@ -8,7 +8,6 @@
 #include <utility>
 
 #include "core/base/constants.h"
-#include "core/base/parallel.h"
 #include "core/base/statistics.h"
 #include "core/geometry/geometry_rules.h"
 #include "core/geometry/point_samples.h"
@@ -42,29 +41,6 @@ std::vector<std::vector<ReflectionPlane>> bundlesOf(const std::vector<Reflection
   return bundles;
 }
 
-/// The lattice of the planes that contain a line.
-std::optional<PlaneLattice> latticeAbout(const Line3d& line, const std::vector<ReflectionPlane>& planes) {
-  std::vector<double> angles;
-  for (const ReflectionPlane& plane : planes)
-    if (contains(plane, line)) angles.push_back(angleAbout(line, plane));
-  if (angles.size() < kDetection.families.min_planes) return std::nullopt;
-  for (int fold = 3; fold <= kDetection.families.max_fold; ++fold) {
-    std::complex<double> sum = 0.0;
-    for (const double angle : angles) sum += std::polar(1.0, 2.0 * fold * angle);
-    const double phase = std::arg(sum) / (2.0 * fold), step = kPi / fold;
-    double most = 0.0;
-    for (const double angle : angles) most = std::max(most, std::abs(std::remainder(angle - phase, step)));
-    if (most > std::min(kDetection.families.max_folded * step, kDetection.families.max_off_angle)) continue;
-    // Two of the angles give line and phase; each other one falls this close to a plane by chance, and the folds below
-    // were tried before.
-    const double by_chance = std::min(1.0, 2.0 * std::max(most, 0.25 * kDetection.families.max_folded * step) / step);
-    const double chance = fold * std::pow(by_chance, static_cast<double>(angles.size()) - 1.0);
-    if (chance > kDetection.families.max_chance) return std::nullopt;
-    return PlaneLattice{line, fold, phase, static_cast<int>(angles.size())};
-  }
-  return std::nullopt;
-}
-
 }  // namespace
 
 bool contains(const ReflectionPlane& plane, const Line3d& line, double tolerance) {
@@ -76,28 +52,7 @@ ReflectionPlane PlaneLattice::plane(double k) const {
   return planeThrough(line, phase + k * kPi / fold);
 }
 
-std::optional<PlaneLattice> findLattice(const std::vector<ReflectionPlane>& planes) {
-  std::optional<PlaneLattice> best;
-  for (const std::vector<ReflectionPlane>& through : bundlesOf(planes, kDetection.families.max_pairs)) {
-    if (through.size() < kDetection.families.min_planes) continue;
-    const std::optional<PlaneLattice> lattice = latticeAbout(commonLine(through), planes);
-    if (lattice && (!best || lattice->num_planes > best->num_planes)) best = lattice;
-  }
-  return best;
-}
-
 namespace {
-
-/// How strongly a frequency stands out of those on both sides of it.
-/// \param power of a frequency.
-template <typename Power>
-double aboveBeside(int m, const Power& power) {
-  std::vector<double> beside;
-  for (int k = std::max(1, m - kDetection.folds.compared_frequencies); k <= m + kDetection.folds.compared_frequencies;
-       ++k)
-    if (k != m) beside.push_back(power(k));
-  return power(m) / std::max(median(beside), 1e-30);
-}
 
 /// The folds of points about a line.
 class FoldSpectrum {
@@ -124,7 +79,11 @@ public:
   double power(int m) const { return 0.5 * (powers_[m] + std::abs(squares_[m])); }
   /// By how much the frequency has more power than those beside it; 0 where that may be chance.
   double prominence(int m) const {
-    const double now = aboveBeside(m, [this](int k) { return power(k); });
+    std::vector<double> beside;
+    for (int k = std::max(1, m - kDetection.folds.compared_frequencies); k <= m + kDetection.folds.compared_frequencies;
+         ++k)
+      if (k != m) beside.push_back(power(k));
+    const double now = power(m) / std::max(median(beside), 1e-30);
     return power(m) >= kDetection.folds.min_power && now >= kDetection.folds.stands_out ? now : 0.0;
   }
   /// Angle of the normal of a plane, radians.
@@ -164,28 +123,6 @@ private:
   std::vector<double> powers_;                 ///< the same without their angles
 };
 
-/// Angle of the normal of a plane of a polygon by the mean of f at the reflected points: by their angle, planes through
-/// the line reflect the cloud best there.
-/// \return none where the frequency does not stand out of the mean.
-std::optional<double> phaseByReflections(const NormalizedCloud& cloud, const Line3d& line, int fold, int num_threads) {
-  const std::vector<int> samples = drawSamples(cloud.points.cols(), kDetection.folds.phase_samples, 1);
-  const PlaneLattice fan{line, kDetection.folds.angles, 0.0, 0};
-  std::vector<double> mean(kDetection.folds.angles, 0.0);
-  parallelBlocks(kDetection.folds.angles, num_threads, [&](std::size_t k) {
-    const ReflectionPlane plane = cloud.toInput(fan.plane(static_cast<double>(k)));
-    for (const int i : samples) mean[k] += cloud.edt(plane.reflect(cloud.toInput(cloud.points.col(i).cast<double>())));
-  });
-  const auto coefficient = [&](int m) {
-    std::complex<double> sum = 0.0;
-    for (int k = 0; k < kDetection.folds.angles; ++k)
-      sum += mean[k] * std::polar(1.0, 2.0 * kPi * static_cast<double>(m) * k / kDetection.folds.angles);
-    return sum;
-  };
-  const double prominence = aboveBeside(fold, [&](int m) { return std::norm(coefficient(m)); });
-  if (prominence < kDetection.folds.reflections_stand_out) return std::nullopt;
-  return std::arg(coefficient(fold)) / (2.0 * fold);
-}
-
 /// What several planes say together.
 double confidenceTogether(const std::vector<MeasuredPlane>& judged, int first, int step) {
   PlaneEvidence mean = judged[first].evidence;
@@ -215,21 +152,20 @@ double leastTogether(const std::vector<MeasuredPlane>& judged) {
 
 /// \param planes most confident first, input frame.
 std::optional<PlaneLattice> bestLattice(const std::vector<SymmetryPlane>& planes, const NormalizedCloud& cloud,
-                                        const Points& all, int num_threads) {
+                                        const Points& all) {
   std::vector<ReflectionPlane> likely;
   for (const SymmetryPlane& plane : planes)
     if (const ReflectionPlane normalized = cloud.toNormalized(plane);
         isDecided(plane) && !kSameMaximum.anySame(likely, normalized))
       likely.push_back(normalized);
   for (const std::vector<ReflectionPlane>& through : bundlesOf(likely, kDetection.folds.max_line_pairs))
-    if (const auto lattice = latticeBySpectrum(cloud, all, commonLine(through), num_threads)) return lattice;
+    if (const auto lattice = latticeBySpectrum(all, commonLine(through))) return lattice;
   return std::nullopt;
 }
 
 }  // namespace
 
-std::optional<PlaneLattice> latticeBySpectrum(const NormalizedCloud& cloud, const Points& all, const Line3d& line,
-                                              int num_threads) {
+std::optional<PlaneLattice> latticeBySpectrum(const Points& all, const Line3d& line) {
   const FoldSpectrum spectrum(all, line, 1);
   int fold = 0;
   double most = 0.0;
@@ -247,8 +183,7 @@ std::optional<PlaneLattice> latticeBySpectrum(const NormalizedCloud& cloud, cons
       break;
     }
   if (fold < kDetection.folds.min_fold) return std::nullopt;
-  const std::optional<double> phase = phaseByReflections(cloud, line, fold, num_threads);
-  return PlaneLattice{line, fold, phase ? *phase : FoldSpectrum(all, line, kDetection.folds.slabs).phase(fold), 0};
+  return PlaneLattice{line, fold, FoldSpectrum(all, line, kDetection.folds.slabs).phase(fold)};
 }
 
 namespace {
@@ -284,7 +219,7 @@ bool isPolygon(const PlaneLattice& lattice, const Points& points, double toleran
   std::sort(angles.begin(), angles.end());
   for (std::size_t i = 1; i < angles.size(); ++i)
     if (angles[i] - angles[i - 1] > kDetection.folds.max_gap * step) return false;
-  const std::vector<int> samples = drawSamples(points.cols(), kDetection.folds.phase_samples, 1);
+  const std::vector<int> samples = drawSamples(points.cols(), kDetection.folds.halfway_samples, 1);
   const auto search = makeFlannSearch(folded);
   const auto count = static_cast<double>(samples.size());
   const auto shareWithin = [&](const Points& queries) {
@@ -317,7 +252,7 @@ void addClosePlanes(const JudgedCloud& judged, Found& found) {
     if (containing.size() > through.size()) through = std::move(containing);
   if (through.size() < kDetection.families.min_planes) return;
   const Line3d line = commonLine(through);
-  std::optional<PlaneLattice> lattice = latticeBySpectrum(cloud, cloud.points, line, judged.options.num_threads);
+  std::optional<PlaneLattice> lattice = latticeBySpectrum(cloud.points, line);
   if (!lattice || kPi / lattice->fold > kDetection.decide.slope_angle ||
       !isPolygon(*lattice, cloud.points, judged.measure.tolerance()))
     return;
@@ -345,7 +280,7 @@ void completePolygon(const JudgedCloud& judged, Found& found) {
   if (cloud.kind() == CloudKind::Surface) return addClosePlanes(judged, found);
   if (!kKindRules.has_polygons[cloud.kind()]) return;
   sortFalling(found.planes, &SymmetryPlane::confidence);
-  const std::optional<PlaneLattice> lattice = bestLattice(found.planes, cloud, judged.all, judged.options.num_threads);
+  const std::optional<PlaneLattice> lattice = bestLattice(found.planes, cloud, judged.all);
   if (!lattice) return;
   std::vector<MeasuredPlane> of_lattice = judged.decision.judge(planesOf(*lattice));
   const double together = withOdds(leastTogether(of_lattice), kDetection.folds.odds_of_polygon);

@@ -270,7 +270,7 @@ PlaneMeasure::ScreenedShare PlaneMeasure::screenedShare(const Candidate& candida
 
 const SurfaceEnds& PlaneMeasure::ends() const {
   std::call_once(ends_found_, [this] {
-    ends_.emplace(cloud_.points, cloud_.geometry, *cloud_.search, cloud_.neighbors, cloud_.spacing, options_.seed,
+    ends_.emplace(cloud_.points, cloud_.geometry, *cloud_.search, cloud_.neighbors, cloud_.spacing,
                   options_.num_threads);
   });
   return *ends_;

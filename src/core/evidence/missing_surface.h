@@ -2,7 +2,6 @@
 
 #include <array>
 #include <cstddef>
-#include <cstdint>
 #include <vector>
 
 #include "core/geometry/surface_normals.h"
@@ -99,26 +98,7 @@ struct SampledSurface {
 std::vector<float> missingCounterparts(const SampledSurface& surface, const std::vector<char>& matched,
                                        const std::vector<int>& closest, const Points& reflected);
 
-/// A plane at which a cloud was cut off: nothing is known where normal . x > offset.
-struct CutPlane {
-  Eigen::Vector3f normal;  ///< unit, away from the cloud
-  float offset;            ///< units of the points
-};
-
-/// Finds the planes at which a cloud was cut off: all points lie on one side, and where they come near to it they are
-/// at open borders.
-///
-/// Not in the paper. Where a piece was cut off by a plane, whole parts of the object may lack their counterpart: they
-/// share no border with matched points, but their reflections lie beyond the plane of the cut. The rim of
-/// an open vessel is such a plane too.
-/// \param borders whether each point is at an open border of the surface, as from openBorders().
-/// \param spacing median distance of the points.
-/// \param seed of the draws.
-/// \return at most four, those with most border points first.
-std::vector<CutPlane> findCutPlanes(const Points& points, const std::vector<char>& borders, double spacing,
-                                    std::uint64_t seed);
-
-/// Where a cloud ends although the object may go on: its open borders and the planes that it was cut by.
+/// Where a cloud ends although the object may go on: at open borders, and where its surface runs into its end.
 ///
 /// Beyond the paper, which has whole shapes. For a true plane the points without a counterpart begin where the cloud,
 /// or its reflection, ends; for a false one they begin in the middle of the surface.
@@ -129,12 +109,14 @@ public:
   /// \param spacing median distance of the points.
   /// \param num_threads 0 = one per core.
   SurfaceEnds(const Points& points, const LocalGeometry& geometry, const ClosestPointSearch& search,
-              const FoundNeighbors& found, double spacing, std::uint64_t seed, int num_threads);
+              const FoundNeighbors& found, double spacing, int num_threads);
 
   /// For each sample, how surely its counterpart is missing from the cloud, in [0, 1].
   /// \param matched,closest,reflected as of missingCounterparts(), for all points.
   std::vector<float> missing(const std::vector<char>& matched, const std::vector<int>& closest,
-                             const Points& reflected) const;
+                             const Points& reflected) const {
+    return missingCounterparts({outermost_, geometry_, borders_, spacing_}, matched, closest, reflected);
+  }
 
   /// How far open borders may excuse missing counterparts, in [0, 1]: 0 for a wire or an open sheet.
   double trust() const { return trust_; }
@@ -144,7 +126,6 @@ private:
   double spacing_;
   std::vector<char> borders_;
   OutermostPoints outermost_;
-  std::vector<CutPlane> cuts_;
   double trust_;
 };
 

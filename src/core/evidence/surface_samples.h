@@ -60,14 +60,6 @@ struct EvidenceRules {
   float min_gain = 0.02f;                               ///< share of the squared distance that a step shortens
   float no_distance = 1.0f;                             ///< spacings, of hulls that overlap
 
-  // Planes of cuts.
-  int cut_draws = 1000, max_cuts = 4;  ///< a box that crops a corner has three sides
-  float cut_band = 1.5f;               ///< spacings about the plane of a cut in which points belong to it
-  double max_beyond = 0.002;           ///< share of the points beyond it
-  std::size_t min_of_cut = 15;         ///< border points
-  double min_at_border = 0.12;         ///< share of the points in the band at borders; cuts have 0.6 to 0.9
-  double min_spread = 2.0;             ///< spacings that border points spread in both directions
-
   // Density of points that resolve no surface.
   int max_cells = 160;               ///< along the longest side
   double cell_size = 0.5;            ///< bandwidths

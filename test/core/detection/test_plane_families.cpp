@@ -57,23 +57,6 @@ TEST(Contains, IsThreeDegreesAndATolerance) {
   EXPECT_FALSE(contains(tilted(0.0, 0.021), z, 0.02));
 }
 
-const Line3d kPolygonLine(Eigen::Vector3d(0.1, -0.05, 0.2), Eigen::Vector3d(0.3, 0.2, 1.0).normalized());
-
-std::vector<ReflectionPlane> planesAt(const std::vector<double>& places, int fold) {
-  const PlaneLattice lattice{kPolygonLine, fold, 0.37, 0};
-  std::vector<ReflectionPlane> planes;
-  for (const double k : places) planes.push_back(lattice.plane(k));
-  return planes;
-}
-
-bool holds(const PlaneLattice& lattice, const ReflectionPlane& plane) {
-  for (int k = 0; k < lattice.fold; ++k)
-    if (lattice.plane(k).angleTo(plane) < 0.01 &&
-        std::abs(std::abs(lattice.plane(k).offset()) - std::abs(plane.offset())) < 0.01)
-      return true;
-  return false;
-}
-
 /// The wall of a wheel: a radius of 1 + depth cos(num_teeth angle), 0.6 high, with Gaussian noise. Where \p thinned,
 /// density falls to a quarter from one side to the other.
 Points wheel(int num_teeth, double depth, double noise, bool thinned, std::uint64_t seed) {
@@ -94,33 +77,6 @@ DetectionOptions manyPlanes() {
   options.max_planes = 64;
   options.num_threads = 1;
   return options;
-}
-
-TEST(PlaneLattice, AFewPlanesOfAPolygonTellTheOthers) {
-  auto planes = planesAt({0, 3, 7, 8, 13, 14}, 17);
-  planes.insert(planes.begin(), ReflectionPlane(kPolygonLine.direction(), 0.4));  // across the line: does not matter
-  const auto lattice = findLattice(planes);
-  ASSERT_TRUE(lattice);
-  EXPECT_EQ(lattice->fold, 17);
-  EXPECT_EQ(lattice->num_planes, 6);
-  for (const ReflectionPlane& plane : planesAt({0, 1, 2, 5, 11, 16}, 17)) EXPECT_TRUE(holds(*lattice, plane));
-  EXPECT_FALSE(holds(*lattice, planesAt({0.5}, 17)[0]));
-}
-
-TEST(PlaneLattice, PlanesAtRandomAnglesHaveNone) {
-  RandomStream random(3);
-  int num_found = 0;
-  for (int i = 0; i < 200; ++i) {
-    std::vector<double> places;
-    for (int k = 0; k < 8; ++k) places.push_back(random.uniform());
-    num_found += findLattice(planesAt(places, 1)) ? 1 : 0;
-  }
-  EXPECT_LE(num_found, 1);
-}
-
-TEST(PlaneLattice, FewPlanesSayNothing) {
-  EXPECT_FALSE(findLattice({}));
-  EXPECT_FALSE(findLattice(planesAt({0, 1, 2}, 5)));
 }
 
 /// Of a noisy cloud that is thinner on one side, fewer points decide: the search of the user finds these among all.
@@ -203,10 +159,7 @@ TEST(EvenDensity, LeavesEvenCloudsAloneAndEvensOthers) {
 
 TEST(FoldSpectrum, ToldFromARoundBody) {
   const auto foldOf = [](const Points& points) {
-    const GaussianEdt edt(points);
-    const NormalizedCloud cloud(points, edt, nullptr, nullptr, 1);
-    const Eigen::Vector3d middle = (Eigen::Vector3d(0.0, 0.0, 0.3) - cloud.center) / cloud.scale;
-    const auto lattice = latticeBySpectrum(cloud, cloud.points, Line3d(middle, Eigen::Vector3d::UnitZ()), 1);
+    const auto lattice = latticeBySpectrum(points, Line3d(Eigen::Vector3d(0.0, 0.0, 0.3), Eigen::Vector3d::UnitZ()));
     return lattice ? lattice->fold : 0;
   };
   for (const int n : {3, 7, 16}) EXPECT_EQ(foldOf(wheel(n, 0.1, 0.04, false, 6)), n);
