@@ -70,6 +70,7 @@ def report(options):
         "frame": ["pcl_symmetry_align", mesh, folder / "aligned.pcd"],
         "register": ["pcl_symmetry_align", scan, "-target", mesh],
         "viewpoint": ["pcl_symmetry_viewpoint", mesh],
+        "published": ["pcl_symmetry_planes", scan, "-as_published"],
     }
     rows = []
     for name in options.only or commands:
@@ -82,5 +83,5 @@ if __name__ == "__main__":
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("tools", help="folder of the tools")
     parser.add_argument("folder", help="for inputs and profiles")
-    parser.add_argument("--only", nargs="+", help="some of mesh, scan, cloud, frame, register, viewpoint")
+    parser.add_argument("--only", nargs="+", help="some of mesh, scan, cloud, frame, register, viewpoint, published")
     bench.main(report, parser.parse_args())
