@@ -140,6 +140,23 @@ TEST(RotationalTransform, IsWithinTwoPerMilleOfTheFullSum) {
     EXPECT_LE(scenes()[i].rmsError(rotationalTransform(scenes()[i].edt, scenes()[i].grid)), 0.002) << i;
 }
 
+TEST(Transforms, AtASharpMaximumConvolutionIsWithinThreePerCentOfDAndRotationsWithinAHalf) {
+  // A box whose plane of symmetry is that of a bin.
+  const std::size_t n = 16;
+  const PlaneGrid about_origin(n, n, n + 1, Eigen::Vector3d::Zero(), 1.0);
+  for (const int theta : {3, 8, 13}) {
+    const ReflectionPlane plane = about_origin.plane({theta, 5, n / 2});
+    const Eigen::Isometry3d pose(Eigen::Quaterniond::FromTwoVectors(Eigen::Vector3d::UnitX(), plane.normal()));
+    const Scene scene(moved(box(5000, Sampling::Random, 1), pose), 32, 0);
+    const PlaneGrid grid(n, n, n + 1, Eigen::Vector3d::Zero(), scene.edt.radius());
+    const std::size_t bin = grid.index({theta, 5, n / 2});
+    const double exact = FullSum(scene.points, scene.edt)(grid.plane(grid.bin(bin)));
+    EXPECT_GT(exact, 0.95);
+    EXPECT_NEAR(convolutionTransform(scene.edt, grid)[bin], exact, 0.03);
+    EXPECT_NEAR(rotationalTransform(scene.edt, grid)[bin], exact, 0.005);
+  }
+}
+
 TEST(SampledTransform, ErrorFallsWithTheSamples) {
   // Independent samples would give samples^-1/2, stratified ones give more: a factor of 2 at least for 16 times as many
   // is asked for, until the error of the table (0.2 %) is met.
@@ -225,6 +242,28 @@ TEST(VotingTransform, EstimatesTheBinAverageWithinItsStandardError) {
   // The normalized errors of 20 seeds follow Student's t with 19 degrees of freedom: squares have the mean 19 / 17, and
   // the mean of 80 of them is more than 1.66 one time in a hundred.
   EXPECT_LT(sum / n, 1.66);
+}
+
+TEST(VotingTransform, NoVoteAsPublishedWeighsMoreThanThatOfPointsACellApart) {
+  // Two points, so that many pairs are nearer than a cell.
+  Points points(3, 2);
+  points << -1.0f, 1.0f, 0.0f, 0.0f, 0.0f, 0.0f;
+  const GaussianEdt edt(points, Scene::cells(16));
+  const PlaneGrid grid(8, 8, 8, edt.center(), edt.radius());
+  const std::vector<float> f = edt.sharpened(1.0 / 24.0);
+  const double sum = std::accumulate(f.begin(), f.end(), 0.0);
+  const double flat = 0.5 * sum * sum * edt.cellSize() / edt.sqNorm() / (grid.phiStep() * grid.radiusStep());
+  int num_near = 0;
+  VotingTransformOptions one{1, 0.0, 1, 1};
+  for (; one.seed <= 2000; ++one.seed) {
+    const SymmetryMap map = votingTransform(edt, grid, one);
+    const std::size_t bin = map.strongest();
+    const double theta = grid.bin(bin).theta * grid.thetaStep();
+    const double greatest = flat / (std::cos(theta) - std::cos(theta + grid.thetaStep()));
+    EXPECT_LE(map[bin], greatest * 1.0001);
+    num_near += map[bin] > greatest * 0.9999;
+  }
+  EXPECT_GT(num_near, 0);
 }
 
 TEST(RotationalTransform, MultiresolutionRefinesTheGreatestValues) {
