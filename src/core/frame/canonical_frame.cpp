@@ -20,44 +20,57 @@ Eigen::Matrix3d orthonormal(const Eigen::Matrix3f& axes) {
   return result;
 }
 
-/// The mean of offsets, weighted by score and by a second weight.
-template <typename Weight>
-double meanOffset(const FrameEvidence& evidence, const std::vector<float>& scores, const Weight& second_weight) {
+/// The mean of offsets, weighted by score and by closeness to a middle.
+float meanOffset(const FrameEvidence& evidence, const std::vector<float>& scores, double middle) {
   const float top = *std::max_element(scores.begin(), scores.end());
   double sum = 0.0, moment = 0.0;
   for (std::size_t i = 0; i < scores.size(); ++i) {
     const double r = static_cast<double>(i) - std::floor(evidence.reach);
-    const double weight = std::exp(kFrame.offset_sharpness * (scores[i] - top)) * second_weight(r);
+    const double away = (r - middle) / (kFrame.offset_width * evidence.reach);
+    const double weight =  // falls so slowly that a peak far out keeps its place
+        std::exp(kFrame.offset_sharpness * (scores[i] - top)) * std::pow(1.0 + away * away, -1.5);
     sum += weight;
     moment += weight * r;
   }
-  return moment / sum;
+  return static_cast<float>(moment / sum);
+}
+
+/// The maximum of D near an offset, by parabolas. D is the mean of f over the images of the samples of the center,
+/// which unlike profiles has no steps of a cell.
+ScoredOffset peakNear(const FrameEvidence& evidence, const Eigen::Vector3d& axis, double offset) {
+  const Eigen::Array3d corner = Eigen::Array3d::Constant(-0.5 * (evidence.edt.numCells() - 1));
+  const Eigen::Matrix3Xd& samples = evidence.center_samples;
+  const Eigen::RowVectorXd heights = axis.transpose() * (samples.colwise() + corner.matrix());
+  const auto sum = [&](double r, double way) {
+    double f = 0.0;
+    for (Eigen::Index i = 0; i < samples.cols(); ++i)
+      f += evidence.edt.atCell(samples.col(i) + way * (r - heights[i]) * axis);
+    return f;
+  };
+  for (const double step : {1.0, 0.5}) {
+    const double below = sum(offset - step, 2.0), above = sum(offset + step, 2.0);
+    const double bend = below - 2.0 * sum(offset, 2.0) + above;
+    if (bend < 0.0) offset += step * std::clamp(0.5 * (below - above) / bend, -1.0, 1.0);
+  }
+  return {static_cast<float>(offset), static_cast<float>(sum(offset, 2.0) / sum(offset, 0.0))};
 }
 
 /// Where a plane of some normal passes through the center of symmetry.
 float centralOffset(const FrameEvidence& evidence, const Eigen::Vector3f& axis, const CellPlane* completed_across) {
   const std::vector<float> s = evidence.profile(axis, completed_across);
-  const double middle = evidence.middleAlong(axis);
-  const double of_flat = meanOffset(evidence, s, [&](double r) {
-    const double away = (r - middle) / (kFrame.offset_width * evidence.reach);
-    return std::pow(1.0 + away * away, -1.5);  // falls so slowly that a peak far out keeps its place
-  });
-  if (evidence.scanned) return static_cast<float>(of_flat);
+  const float of_flat = meanOffset(evidence, s, evidence.middleAlong(axis));
+  if (evidence.scanned) return of_flat;
   const auto at = std::max_element(s.begin(), s.end()) - s.begin();
   const auto side = static_cast<std::ptrdiff_t>(kFrame.clear_side * evidence.reach);
   float beside = 0.0f;  // the greatest score that is not of the peak
   for (std::ptrdiff_t i = 0; i < static_cast<std::ptrdiff_t>(s.size()); ++i)
     if (std::abs(i - at) > side) beside = std::max(beside, s[i]);
-  const auto at_offset = static_cast<float>(at) - std::floor(evidence.reach);
-  double of_peak = at_offset;
-  for (int i = 0; i < 5; ++i)  // from either of two cells that the plane passes between
-    of_peak = meanOffset(evidence, s, [&](double r) {
-      const double away = (r - of_peak) / kFrame.clear_width;
-      return std::exp(-0.5 * away * away);
-    });
-  const float top = evidence.nearbyOffset(axis, at_offset).score;  // profiles have steps of a cell
-  const double trust = std::clamp((top - beside - kFrame.clear_height) / kFrame.clear_ramp, 0.0, 1.0);
-  return static_cast<float>(trust * of_peak + (1.0 - trust) * of_flat);
+  const ScoredOffset peak =
+      peakNear(evidence, axis.cast<double>(), static_cast<double>(at) - std::floor(evidence.reach));
+  const double away = std::abs(peak.offset - of_flat) / (kFrame.offset_width * evidence.reach);
+  const double height = peak.score - beside - kFrame.clear_height * std::min(away, 1.0);
+  const auto trust = static_cast<float>(std::clamp(height / kFrame.clear_ramp, 0.0, 1.0));
+  return trust * peak.offset + (1.0f - trust) * of_flat;
 }
 
 }  // namespace

@@ -15,9 +15,9 @@ Eigen::Matrix3d principalSymmetryAxes(const PointsRef& points, const Eigen::Matr
 /// The center of symmetry (COS): where the three planes meet.
 ///
 /// Departure from the paper: across a direction in which little is symmetric the maximum of the profile is chance. Only
-/// where it is high and stands alone, as across the box of a mailbox, the plane is there; elsewhere the offset is the
-/// mean over all offsets, weighted by score and by closeness to the middle of the extent of the points. Of a scan all
-/// profiles count as flat.
+/// where it stands high above all others, as across the box of a mailbox, the plane is there; elsewhere the offset is
+/// the mean over all offsets, weighted by score and by closeness to the middle of the extent of the points. The nearer
+/// the maximum is to that mean, the less height it needs. Of a scan all profiles count as flat.
 /// \return input frame.
 Eigen::Vector3d centerOfSymmetry(const FrameEvidence& evidence, const FrameCandidate& frame);
 

@@ -95,6 +95,8 @@ FrameEvidence::FrameEvidence(const PointsRef& cloud, const FrameOptions& options
       free_space(freeSpace(edt, visibility, options.num_threads)),
       profiles(edt, free_space, kFrame.num_profile_samples, options.seed, options.num_threads),
       directions(points, edt),
+      center_samples(
+          drawPoints(edt, scanned ? 0 : kFrame.num_center_samples, options.seed, options.num_threads).cast<double>()),
       middle(edt.origin() + Eigen::Vector3d::Constant(0.5 * (edt.numCells() - 1) * edt.cellSize())),
       reach(static_cast<float>(edt.radius() / edt.cellSize())),
       principal_axes(principalAxes(points)),

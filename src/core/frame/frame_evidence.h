@@ -45,10 +45,10 @@ struct FrameRules {
   // Center, measured on models of PSB
   double offset_sharpness = 15.0;  // weight exp(15 s) of an offset of score s
   double offset_width = 0.07;      // radii, of the weight about the middle of the extent where no peak stands out
-  double clear_height = 0.3;       // of a whole: a peak of the scores that is this much above all others
-  double clear_side = 0.25;        // more than so many radii away
-  double clear_width = 1.0;        // cells, of the weight about the peak: the plane may pass between two of them
+  double clear_height = 0.3;       // of a whole: a peak that is this much above all others, less near the middle,
+  double clear_side = 0.25;        // which are more than so many radii away,
   double clear_ramp = 0.1;         // is where the plane is, fully so where it is higher by this
+  int num_center_samples = 2048;   // of the offset of the peak: to a tenth of a cell
   double center_sharpness = 30.0;  // weight exp(30 v) of the center of a frame whose value is v less than the best
   int num_revolution_angles = 8;   // at which a revolution is tested
 
@@ -112,9 +112,10 @@ struct FrameEvidence {
   const std::vector<float> free_space;
   const PlaneProfiles profiles;
   const SurfaceDirections directions;
-  const Eigen::Vector3d middle;        ///< of the grid, input frame
-  const float reach;                   ///< radius of the grid, cells
-  const PrincipalAxes principal_axes;  ///< of the points, input frame
+  const Eigen::Matrix3Xd center_samples;  ///< of a whole, drawn from f; cells from the center of cell (0, 0, 0)
+  const Eigen::Vector3d middle;           ///< of the grid, input frame
+  const float reach;                      ///< radius of the grid, cells
+  const PrincipalAxes principal_axes;     ///< of the points, input frame
   const Eigen::Vector3f center_of_mass;
   const Eigen::Vector3f push;  ///< that the middle of a scan's extent is moved by, cells
 
