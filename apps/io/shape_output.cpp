@@ -116,10 +116,12 @@ public:
       sigaction(signal, nullptr, &action);
       if (action.sa_handler == SIG_DFL) std::signal(signal, removePendingFile);
     }
+    pending_file = name_.c_str();  // before it exists: a signal may come at once
     const int descriptor = ::open(name_.c_str(), O_CREAT | O_EXCL | O_WRONLY | O_CLOEXEC, 0666);
-    if (descriptor < 0) return;
-    pending_file = name_.c_str();
-    ::close(descriptor);
+    if (descriptor < 0)
+      pending_file = nullptr;
+    else
+      ::close(descriptor);
   }
   ~TemporaryFile() {
     if (pending_file.exchange(nullptr)) ::unlink(name_.c_str());

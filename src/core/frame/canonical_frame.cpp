@@ -47,12 +47,17 @@ ScoredOffset peakNear(const FrameEvidence& evidence, const Eigen::Vector3d& axis
       f += evidence.edt.atCell(samples.col(i) + way * (r - heights[i]) * axis);
     return f;
   };
+  double top = 0.0;
   for (const double step : {1.0, 0.5}) {
     const double below = sum(offset - step, 2.0), above = sum(offset + step, 2.0);
-    const double bend = below - 2.0 * sum(offset, 2.0) + above;
-    if (bend < 0.0) offset += step * std::clamp(0.5 * (below - above) / bend, -1.0, 1.0);
+    top = sum(offset, 2.0);
+    const double bend = below - 2.0 * top + above;
+    if (!(bend < 0.0)) continue;
+    const double way = std::clamp(0.5 * (below - above) / bend, -1.0, 1.0);
+    offset += step * way;
+    top += 0.5 * way * (above - below + way * bend);
   }
-  return {static_cast<float>(offset), static_cast<float>(sum(offset, 2.0) / sum(offset, 0.0))};
+  return {static_cast<float>(offset), static_cast<float>(top / sum(offset, 0.0))};
 }
 
 /// Where a plane of some normal passes through the center of symmetry.
@@ -65,11 +70,15 @@ float centralOffset(const FrameEvidence& evidence, const Eigen::Vector3f& axis, 
   float beside = 0.0f;  // the greatest score that is not of the peak
   for (std::ptrdiff_t i = 0; i < static_cast<std::ptrdiff_t>(s.size()); ++i)
     if (std::abs(i - at) > side) beside = std::max(beside, s[i]);
-  const ScoredOffset peak =
-      peakNear(evidence, axis.cast<double>(), static_cast<double>(at) - std::floor(evidence.reach));
-  const double away = std::abs(peak.offset - of_flat) / (kFrame.offset_width * evidence.reach);
-  const double height = peak.score - beside - kFrame.clear_height * std::min(away, 1.0);
-  const auto trust = static_cast<float>(std::clamp(height / kFrame.clear_ramp, 0.0, 1.0));
+  const auto trustIn = [&](const ScoredOffset& peak) {
+    const double away = std::abs(peak.offset - of_flat) / (kFrame.offset_width * evidence.reach);
+    const double height = peak.score - beside - kFrame.clear_height * std::min(away, 1.0);
+    return static_cast<float>(std::clamp(height / kFrame.clear_ramp, 0.0, 1.0));
+  };
+  const float offset = static_cast<float>(at) - std::floor(evidence.reach);
+  if (trustIn({offset, s[at] + kFrame.lost_height}) == 0.0f) return of_flat;
+  const ScoredOffset peak = peakNear(evidence, axis.cast<double>(), offset);
+  const float trust = trustIn(peak);
   return trust * peak.offset + (1.0f - trust) * of_flat;
 }
 

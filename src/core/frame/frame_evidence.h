@@ -48,7 +48,8 @@ struct FrameRules {
   double clear_height = 0.3;       // of a whole: a peak that is this much above all others, less near the middle,
   double clear_side = 0.25;        // which are more than so many radii away,
   double clear_ramp = 0.1;         // is where the plane is, fully so where it is higher by this
-  int num_center_samples = 2048;   // of the offset of the peak: to a tenth of a cell
+  float lost_height = 0.15f;       // that a profile may miss of a peak between two cells
+  int num_center_samples = 1024;   // of the offset of the peak: to a tenth of a cell
   double center_sharpness = 30.0;  // weight exp(30 v) of the center of a frame whose value is v less than the best
   int num_revolution_angles = 8;   // at which a revolution is tested
 
