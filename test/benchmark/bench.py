@@ -446,13 +446,13 @@ def detect(points, sensor=None, seed=1, tool=None, **options):
     return answers_of(found, 1000 * (time.perf_counter() - start))
 
 
-def ask(name, points, sensor, arguments, **options):
+def ask(name, points, sensor, arguments, tool=None, **options):
     """Answers for one cloud, written for --export: those of --judge, of the tool or of the Python module."""
     if arguments.export:
         write_cloud(f"{arguments.export}/{name}.pcd", points, sensor)
     if arguments.judge:
         return read_answers(arguments.judge, name)
-    return detect(points, sensor, arguments.seed + 1, arguments.tool, **options)
+    return detect(points, sensor, arguments.seed + 1, tool, **options)
 
 
 def _detect_by_tool(points, sensor, seed, tool, options):

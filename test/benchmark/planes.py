@@ -17,6 +17,7 @@ import references
 MAX_ANGLE, MAX_AXIS_ANGLE, MAX_OFFSET = math.radians(3), math.radians(1), 0.02  # offset in diagonals
 MIN_CONFIDENCE = 0.5
 ROWS = ("whole", "noise", "scan", "moved", "crop", "random")
+NOISE, CROPS = 0.02, (0.05, 0.2, 0.5)  # standard deviation in diagonals; shares of the points cut off
 
 
 # Clouds
@@ -37,21 +38,21 @@ def clouds_of(mesh, key, arguments):
     even = bench.sample(mesh, arguments.points, bench.generator(arguments.seed, key, "sample"))
     if "whole" in arguments.rows:
         yield whole("whole", even)
-    for noise in arguments.noise if "noise" in arguments.rows else ():
-        yield whole(f"noise {100 * noise:g} %", even, noise=noise)
-    for view in range(arguments.views if {"scan", "moved"} & set(arguments.rows) else 0):
-        random = bench.generator(arguments.seed, key, "view", view)
+    if "noise" in arguments.rows:
+        yield whole(f"noise {100 * NOISE:g} %", even, noise=NOISE)
+    if {"scan", "moved"} & set(arguments.rows):
+        random = bench.generator(arguments.seed, key, "view", 0)
         direction, pose = bench.random_directions(random, 1)[0], bench.random_pose(random, mesh)
         scan = bench.scan(mesh, direction, random, arguments.points, pose=pose)
         if "scan" in arguments.rows:
-            yield "scan", f"scan_{view}", scan.points, pose, scan
+            yield "scan", "scan_0", scan.points, pose, scan
         if "moved" in arguments.rows:
             motion = bench.random_pose(random, mesh)
             to = mesh.diagonal * random.uniform(-1, 1, 3)
             motion[:3, 3] = to - motion[:3, :3] @ bench.moved(pose, mesh.center)
             lost = bench.Scan(None, motion @ pose, motion @ scan.T_cloud_sensor, scan.half_width)
-            yield "moved scan", f"moved_{view}", bench.moved(motion, scan.rows), motion @ pose, lost
-    for cut in arguments.crops if "crop" in arguments.rows else ():
+            yield "moved scan", "moved_0", bench.moved(motion, scan.rows), motion @ pose, lost
+    for cut in CROPS if "crop" in arguments.rows else ():
         yield whole(f"cut off {100 * cut:g} %", even, cut=cut)
     if "random" in arguments.rows:
         yield whole("random", bench.sample(mesh, arguments.points, bench.generator(arguments.seed, key, "random"), even=False))
@@ -167,34 +168,32 @@ def contradicted(surface, mesh, scan, kind, answer):
     return False
 
 
-def maps_at_twice(mesh, pose, answer, tolerance):
+def maps_at_twice(mesh, pose, answer):
     """Whether a plane maps as much of the mesh as a symmetry within twice the tolerance."""
     row = plane_row(answer)
     offset = row[:3] @ bench.moved(pose, mesh.center) - row[3]
     plane = np.r_[row[:3] @ pose[:3, :3], -offset / mesh.diagonal]
-    return bool(references.Surface(mesh, 2 * tolerance, 4000).share(plane, 4000)[0] >= references.MIN_SHARE)
+    return bool(references.Surface(mesh, 2 * references.TOLERANCE, 4000).share(plane, 4000)[0] >= references.MIN_SHARE)
 
 
 def evaluate(model, arguments):
     """Rows of the clouds of one model."""
     mesh = bench.read_mesh(model.path)
-    truth = references.references_of(model, mesh, arguments.references, arguments.tolerance)
+    truth = references.references_of(model, mesh, arguments.references)
     rows, truths = [], {}
     for group, suffix, points, pose, scan in clouds_of(mesh, model.key, arguments):
         name = f"{model.name}_{suffix}"
         here = references.moved(truth, pose)
         sensor = None if scan is None or scan.points is None else scan.T_cloud_sensor
         truths[name] = {**here, "model": model.name, "group": group}
-        asked = {} if arguments.tolerance == references.TOLERANCE else {"tolerance": arguments.tolerance}
-        if arguments.as_published:
-            asked = {"as_published": True, "method": arguments.as_published}
+        asked = {"as_published": True, "method": arguments.as_published} if arguments.as_published else {}
         answers = bench.ask(name, points, sensor, arguments, **asked)
         row = judge(answers, here)
         row["contradicted"] = 0
         called = [answer for kind, answer, is_called in _in_order(answers) if kind == "plane" and is_called]
-        row["at_twice"] = [maps_at_twice(mesh, pose, answer, arguments.tolerance) for answer in called]
+        row["at_twice"] = [maps_at_twice(mesh, pose, answer) for answer in called]
         if scan is not None and row["false"]:
-            surface = references.Surface(mesh, arguments.tolerance, 4000)
+            surface = references.Surface(mesh, references.TOLERANCE, 4000)
             wrong = [a for a, r in zip(_in_order(answers), row["answers"]) if r["called"] and r["verdict"] == "false"]
             row["contradicted"] = sum(contradicted(surface, mesh, scan, kind, answer) for kind, answer, _ in wrong)
         row.update(model=model.name, cloud=name, group=group, kind=truth["kind"], best_share=truth["best_share"],
@@ -261,12 +260,7 @@ if __name__ == "__main__":
     parser = bench.make_parser(__doc__)
     parser.add_argument("--rows", type=bench.numbers(str, ROWS), default="whole,noise,scan,moved,crop", help="of " + ",".join(ROWS))
     parser.add_argument("--points", type=int, default=10_000, help="of a cloud")
-    parser.add_argument("--noise", type=bench.numbers(float), default="0.02", help="standard deviations, diagonals")
-    parser.add_argument("--crops", type=bench.numbers(float), default="0.05,0.2,0.5", help="shares of the points cut off")
-    parser.add_argument("--views", type=int, default=1, help="scans of each model, from random directions")
-    parser.add_argument("--tolerance", type=float, default=0.01, help="of a symmetry, in diameters")
     parser.add_argument("--references", metavar="DIR", help="keeps the references of models here")
     methods = ("sampled", "convolution", "voting")
     parser.add_argument("--as_published", choices=methods, help="refine the maxima of this map as the paper does")
-    parser.add_argument("--tool", metavar="FILE", help="pcl_symmetry_planes: asked in place of the Python module")
     bench.main(program, parser.parse_args())

@@ -13,13 +13,14 @@ from pathlib import Path
 
 import bench
 
+NUM_ROUNDS = 5
 ROWS = "^(Edt|Sampled|Planes|Rotations|Description|Segmentation|Registration|NearestViews).*/threads:1($|/)"
 ON_ONE_CORE = ["taskset", "-c", "0"]
 
 
-def times_of(build, rows, files):
+def times_of(build, files):
     """Milliseconds of processor time by row."""
-    found = bench.google_benchmark([*ON_ONE_CORE, f"{build}/test/benchmark/benchmark_speed"], f"--benchmark_filter={rows}")
+    found = bench.google_benchmark([*ON_ONE_CORE, f"{build}/test/benchmark/benchmark_speed"], f"--benchmark_filter={ROWS}")
     times = {each["name"]: each["cpu_ms"] for each in found}
     for file in files:
         before = resource.getrusage(resource.RUSAGE_CHILDREN)
@@ -30,7 +31,7 @@ def times_of(build, rows, files):
 
 
 def report(options):
-    rounds = [[times_of(build, options.rows, options.files) for build in (options.before, options.after)] for _ in range(options.rounds)]
+    rounds = [[times_of(build, options.files) for build in (options.before, options.after)] for _ in range(NUM_ROUNDS)]
     print(f"{'row, processor time in ms':60} {'before':>9} {'after':>9} {'ratio':>6}  of single rounds")
     for row in rounds[0][1]:
         pairs = [(before[row], after[row]) for before, after in rounds if row in before]
@@ -46,6 +47,4 @@ if __name__ == "__main__":
     parser.add_argument("before", help="build folder")
     parser.add_argument("after", help="build folder")
     parser.add_argument("files", nargs="*", help="clouds or meshes for the fresh processes")
-    parser.add_argument("--rounds", type=int, default=5)
-    parser.add_argument("--rows", default=ROWS, help="regular expression of the benchmarks")
     bench.main(report, parser.parse_args())

@@ -44,17 +44,6 @@ def show(repository, path):
     return done.stdout
 
 
-def read_labeled_frame(repository, path):
-    """(H, W, 3) points, NaN where there are none, and (H, W) labels, of a compressed PCD file in a git folder."""
-    import open3d
-
-    with tempfile.NamedTemporaryFile(suffix=".pcd") as file:
-        file.write(show(repository, path))
-        file.flush()
-        cloud = open3d.t.io.read_point_cloud(file.name, remove_nan_points=False, remove_infinite_points=False).point
-    return cloud["positions"].numpy().astype(float).reshape(480, 640, 3), cloud["label"].numpy().reshape(480, 640)
-
-
 def read_sweep(repository, path):
     """(N, 3) points of a binary PCD file in a git folder, whose rows begin with x, y and z. (Open3D 0.16 ends at its
     empty fields.)"""
@@ -259,20 +248,21 @@ def objects_found(name, points, arguments):
 def kinect_frame(frame, arguments):
     """Rows of the objects of one frame: alone, by label, and in the whole."""
     path = f"segmentation/mOSD/learn/learn{frame}.pcd"
-    points, labels = read_labeled_frame(arguments.repository, path)
+    file = tempfile.NamedTemporaryFile(suffix=".pcd")
+    file.write(show(arguments.repository, path))
+    file.flush()
+    points, labels, _ = scenes.read_frame(file.name)
+    points, labels = points.astype(float).reshape(480, 640, 3), labels.reshape(480, 640)
     truths, rows, exported = objects_of(frame, points, labels), [], {}
     objects = objects_found(f"learn_{frame}", points, arguments)
     for label, truth in truths.items():
         name, mask = f"learn_{frame}_{label}", labels == label
         exported[name] = truth
         if truth["shape"]:
-            answers = bench.ask(name, np.where(mask[..., None], points, np.nan), None, arguments)
+            answers = bench.ask(name, np.where(mask[..., None], points, np.nan), None, arguments, arguments.tool)
             rows.append({"cloud": name, "way": "alone", "shape": truth["shape"], **judge(answers, truth)})
         if truth["shape"] and arguments.tool and not arguments.judge:
-            with tempfile.NamedTemporaryFile(suffix=".pcd") as file:
-                file.write(show(arguments.repository, path))
-                file.flush()
-                answers = bench.detect_labeled(file.name, label, arguments.seed + 1, arguments.tool)
+            answers = bench.detect_labeled(file.name, label, arguments.seed + 1, arguments.tool)
             rows.append({"cloud": name, "way": "label", "shape": truth["shape"], **judge(answers, truth)})
         if objects is None:
             continue
@@ -306,7 +296,7 @@ def lidar_frame(frame, arguments):
         for way, sensor, options in (("with viewpoint and ground", np.eye(4), ground), ("without", None, {})):
             name = f"{frame}_{number}_{way.split()[0]}"
             exported[name] = truth
-            answers = bench.ask(name, p, sensor, arguments, **options)
+            answers = bench.ask(name, p, sensor, arguments, arguments.tool, **options)
             rows.append({"cloud": name, "way": way, "shape": "vehicle", **judge(answers, truth, 0.04)})
     return {"rows": rows, "truths": exported}
 

@@ -4,10 +4,8 @@
 recognition.py PSB --classes train.cla --fold 1 --query-every 8 --json recognition.json
 
 Scans each model from a random direction in a random pose, and asks a database of all models but some which of them it
-is. --export writes the scans; --judge reads the answer of another program to each, NAME.json as
-`pcl_symmetry_match -recognize -json` writes it.
+is.
 """
-import json
 import pathlib
 import tempfile
 import time
@@ -45,30 +43,14 @@ def build_of_meshes(models, arguments):
 
 def ask(model, arguments):
     """What the database says about a scan of the model."""
-    if arguments.judge:
-        answer = read_answer(pathlib.Path(arguments.judge, f"{model.name}.json"))
-        return {"model": model.name, **answer, "milliseconds": None}
     mesh, random = bench.read_mesh(model.path), bench.generator(arguments.seed, model.key)
     direction, pose = bench.random_directions(random, 1)[0], bench.random_pose(random, mesh)
-    scan = bench.scan(mesh, direction, random, arguments.points, arguments.noise, pose)
-    if arguments.export:
-        bench.write_cloud(pathlib.Path(arguments.export, f"{model.name}.pcd"), scan.points, scan.T_cloud_sensor)
+    scan = bench.scan(mesh, direction, random, pose=pose)
     start = time.perf_counter()
-    found = bench.opened_database(arguments.database).recognize(scan.rows.astype(np.float32), viewpoint=scan.viewpoint,
-                                                 min_confidence=arguments.accept, threads=1)  # fmt: skip
+    found = bench.opened_database(arguments.database).recognize(scan.rows.astype(np.float32), viewpoint=scan.viewpoint, threads=1)
     milliseconds = 1000 * (time.perf_counter() - start)
     name, confidence = (found[0].name, found[0].confidence) if found else (None, None)
     return {"model": model.name, "answer": name, "confidence": confidence, "milliseconds": milliseconds}
-
-
-def read_answer(path):
-    try:
-        content = json.loads(path.read_text())
-        models = content["models"] if content.get("known", True) else []
-        name, confidence = (models[0]["name"], models[0].get("confidence", 1)) if models else (None, None)
-        return {"answer": name, "confidence": confidence}
-    except (OSError, ValueError, KeyError, TypeError):
-        raise bench.BadInput(f"{path}: is no answer of pcl_symmetry_match -recognize -json") from None
 
 
 def judge(results, known, class_of):
@@ -89,25 +71,19 @@ def main(arguments):
     inside = [model for i, model in enumerate(models) if not is_left_out(i)]
     asked = [model for i, model in enumerate(models) if is_left_out(i) or i % arguments.query_every == 0]
     with tempfile.TemporaryDirectory() as temporary:
-        arguments.database = arguments.database or bench.work_folder(arguments, None, temporary) + "/models.db"
-        built = arguments.judge or pathlib.Path(arguments.database).exists()
-        failures = [] if built else build_of_meshes(inside, arguments)
+        arguments.database = bench.work_folder(arguments, None, temporary) + "/models.db"
+        failures = [] if pathlib.Path(arguments.database).exists() else build_of_meshes(inside, arguments)
         results, left_out = bench.run(asked, ask, arguments)
     rates = judge(results, {model.name for model in inside}, class_of)
     times = [r["milliseconds"] for r in results]
     title = f"{len(results)} scans, {len(inside) - len(failures)} models; median {bench.median(times, 0)} ms"
     bench.print_table(title, ["", "rate"], [[name, rate.text] for name, rate in rates.items()])
-    bench.write_truth(arguments, {model.name: {"model": model.name, "known": model in inside} for model in asked})
     bench.write_json(arguments, {"rates": rates, "scans": results, "left_out": failures + left_out})
 
 
 if __name__ == "__main__":
-    parser = bench.make_parser(__doc__)
+    parser = bench.make_parser(__doc__, others=False)
     add = parser.add_argument
     add("--leave-out", type=int, default=10, help="every N-th model is not in the database")
     add("--query-every", type=int, default=1, help="scan every N-th model of the database only")
-    add("--points", type=int, default=10_000, help="points of a scan")
-    add("--noise", type=float, default=0.0, help="standard deviation of the depth, in diagonals")
-    add("--accept", type=float, default=0.5, help="least confidence of a model that is accepted")
-    add("--database", metavar="FILE", help="database to ask, built where it is missing")
     bench.main(main, parser.parse_args())

@@ -319,9 +319,9 @@ class Search:
             self.axes, self.centers = [], [(point, share)]
 
 
-def find_references(mesh, tolerance=TOLERANCE):
+def find_references(mesh):
     """The symmetries of a mesh, in its frame and units, as a dictionary that JSON can hold."""
-    search = Search(Surface(mesh, tolerance))
+    search = Search(Surface(mesh, TOLERANCE))
     search.run()
     at = lambda point: [float(v) for v in mesh.center + mesh.diagonal * np.asarray(point)]
     unit = lambda v: [float(x) for x in v]
@@ -334,20 +334,20 @@ def find_references(mesh, tolerance=TOLERANCE):
     found = any(map(whole, planes + axes + centers))
     return {"kind": "symmetric" if found else "nearly symmetric" if best >= NEAR_SHARE else "asymmetric",
             "best_share": float(best), "center": unit(mesh.center), "diagonal": mesh.diagonal,
-            "diameter": mesh.diameter, "tolerance": tolerance * mesh.diameter,
+            "diameter": mesh.diameter, "tolerance": TOLERANCE * mesh.diameter,
             "planes": list(filter(whole, planes)), "axes": list(filter(whole, axes)), "centers": centers,
             "near_planes": list(filter(near, planes)), "near_axes": list(filter(near, axes))}  # fmt: skip
 
 
-def references_of(model, mesh, folder=None, tolerance=TOLERANCE):
+def references_of(model, mesh, folder=None):
     """Those of a model, kept in a file of their own in the folder, where one is given."""
     if folder is None:
-        return find_references(mesh, tolerance)
-    state = hashlib.sha256(repr((tolerance, mesh.corners.tobytes())).encode()).hexdigest()[:16]
+        return find_references(mesh)
+    state = hashlib.sha256(repr((TOLERANCE, mesh.corners.tobytes())).encode()).hexdigest()[:16]
     path = pathlib.Path(folder) / f"{model.name}_{state}.json"
     if path.exists():
         return json.loads(path.read_text())
-    found = find_references(mesh, tolerance)
+    found = find_references(mesh)
     path.parent.mkdir(parents=True, exist_ok=True)
     bench.write_whole(path, json.dumps(found) + "\n")
     return found

@@ -18,6 +18,7 @@ import planes
 import references
 import solids
 
+NUM_POINTS = 10_000  # of a cloud
 ROUND_BODIES = {"tuning": solids.TUNING_BODIES, "report": ("jar", "goblet", "bowl", "can")}
 
 
@@ -116,13 +117,13 @@ def folds(i, arguments, random):
         shape = round_shape(random.choice(ROUND_BODIES[arguments.half]), random)
     else:
         shape = folded_shape(body, num_folds, arguments.half, random)
-    points, mesh = bench.sample(shape.mesh, arguments.points, random), shape.mesh
+    points, mesh = bench.sample(shape.mesh, NUM_POINTS, random), shape.mesh
     if thinned:  # to a quarter of the density along a direction
         side = (points - mesh.center) @ bench.random_directions(random, 1)[0] / (0.5 * mesh.diagonal)
         points = points[random.uniform(size=len(points)) < 0.25 + 0.75 * np.clip(0.5 * (1 + side), 0, 1)]
     pose = bench.random_pose(random, mesh)
     points = bench.moved(pose, points)
-    points += noise * math.sqrt(mesh.areas.sum() / arguments.points) * random.normal(size=points.shape)
+    points += noise * math.sqrt(mesh.areas.sum() / NUM_POINTS) * random.normal(size=points.shape)
     answers = bench.ask(f"folds_{i}", points, None, arguments, max_planes=64)
     size = next(name for most, name in FOLD_RANGES.items() if shape.folds <= most)
     rows = ["all", f"noise of {noise} spacings", size, *["thinned"] * thinned]
@@ -163,7 +164,7 @@ def views(i, arguments, random):
     else:
         shape = round_shape(body, random)
     view, pose = bench.random_directions(random, 1)[0], bench.random_pose(random, shape.mesh)
-    scan = bench.scan(shape.mesh, view, random, arguments.points, pose=pose)
+    scan = bench.scan(shape.mesh, view, random, NUM_POINTS, pose=pose)
     answers = bench.ask(f"views_{i}", scan.points, scan.T_cloud_sensor, arguments, max_planes=64)
     family = bool(answers["axes"] or answers["centers"])
     if body == "prism":
@@ -301,7 +302,7 @@ def part(arguments, random):
     body = "prism" if random.uniform() < 0.6 else "cone"
     shape = folded_shape(body, random.integers(2, 5), arguments.half, random)
     mesh, rows = shape.mesh, shape.planes
-    points = (bench.sample(mesh, arguments.points // 2, random) - mesh.center) / mesh.diagonal
+    points = (bench.sample(mesh, NUM_POINTS // 2, random) - mesh.center) / mesh.diagonal
     return points, np.c_[rows[:, :3], (rows[:, 3] - rows[:, :3] @ mesh.center) / mesh.diagonal]
 
 
@@ -332,6 +333,4 @@ if __name__ == "__main__":
     parser.add_argument("kind", choices=KINDS)
     parser.add_argument("--half", choices=["tuning", "report"], default="tuning", help="half of the shapes")
     parser.add_argument("--num", type=int, help="number of clouds; about two minutes by default")
-    parser.add_argument("--points", type=int, default=10_000, help="of a cloud")
-    parser.add_argument("--tool", metavar="FILE", help="pcl_symmetry_planes: asked in place of the Python module")
     bench.main(program, parser.parse_args())
