@@ -743,26 +743,14 @@ def _spread(waiting, function, arguments):
     if arguments.jobs == 1:
         for name, item in waiting.items():
             yield (name, *_attempt(function, item, arguments, name))
-    else:
-        lost = {}  # where a process died: those items once more, each in a process of its own
-        yield from _spread_over_processes(waiting, function, arguments, arguments.jobs, lost)
-        for name, item in list(lost.items()):
-            died = {}
-            yield from _spread_over_processes({name: item}, function, arguments, 1, died)
-            for _ in died:
-                yield name, None, f"{name}: its process died"
-
-
-def _spread_over_processes(waiting, function, arguments, jobs, lost):
-    context = multiprocessing.get_context("spawn")
-    with concurrent.futures.ProcessPoolExecutor(jobs, context) as pool:
+        return
+    with concurrent.futures.ProcessPoolExecutor(arguments.jobs, multiprocessing.get_context("spawn")) as pool:
         futures = {pool.submit(_attempt, function, item, arguments, name): name for name, item in waiting.items()}
         try:
             for future in concurrent.futures.as_completed(futures):
-                try:
-                    yield (futures[future], *future.result())
-                except concurrent.futures.process.BrokenProcessPool:
-                    lost[futures[future]] = waiting[futures[future]]
+                yield (futures[future], *future.result())
+        except concurrent.futures.process.BrokenProcessPool:
+            raise BadProgram("a process died; --jobs 1 ends at the item that it died of") from None
         except BaseException:
             pool.shutdown(cancel_futures=True)
             raise
