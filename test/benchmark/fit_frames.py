@@ -67,23 +67,6 @@ def fit_weights(rows):
     return found.x, np.sqrt(np.diag(found.hess_inv))
 
 
-def print_rates(rows, weights, title):
-    lines = []
-    for scanned, name in ((False, "whole"), (True, "scan")):
-        itself, probable, any_of, forecasts = bench.Rate(), bench.Rate(), bench.Rate(), []
-        for is_scan, right, x in rows:
-            if is_scan != scanned or not x:
-                continue
-            odds = np.r_[0, np.array(x) @ weights[scanned]]
-            p = np.exp(odds - logsumexp(odds))[1:]
-            itself.add(right[0])
-            probable.add(right[int(np.argmax(p))])
-            any_of.add(any(right))
-            forecasts += zip(p, right)
-        lines.append([name, itself.text, probable.text, any_of.text, f"{bench.calibration(*zip(*forecasts))['error']:.3f}"])
-    bench.print_table(title, ["clouds", "the frame is right", "the most probable one", "one of them", "calibration error"], lines)
-
-
 def header(fit, num_clouds, num_models):
     numbers = ["{" + ", ".join(fits.rounded(*both)) + "}" for both in fit]
     return f"""
@@ -102,8 +85,6 @@ def program(arguments):
     models = bench.list_models(arguments)
     rows = fits.sampled(models, sample_item, arguments)
     fit = [fit_weights([row for row in rows if row[0] == scanned]) for scanned in (False, True)]
-    weights = [one[0] for one in fit]
-    print_rates(rows, weights, "Models of the fit")
     fits.write_header(arguments, header(fit, len(rows), len(rows) // (VIEWS + 1)), (["<array>"],))
 
 

@@ -69,16 +69,12 @@ def program(arguments):
     rows = fits.sampled(items, sample_item, arguments)
     names, table = np.array([row[0] for row in rows]), np.array([row[1:] for row in rows])
     kinds, right, terms = table[:, 0], table[:, 1] <= 1, table[:, 2:]
-    results, lines, counts = [], [], []
+    results, counts = [], []
     for kind, count in enumerate(NUM_TERMS):
         use = (kinds == kind) & ~((kind == 1) & np.char.startswith(names, "solid "))
         x, y = terms[use, :count], right[use]
         results.append(fits.logistic(x, y, pull=PULL, name=KINDS[kind]))
-        p = 1 / (1 + np.exp(-x @ results[-1][0]))
-        lines.append([KINDS[kind], f"{y.sum()} of {len(y)}", bench.Rate(y[p >= 0.5]).text, bench.Rate(y[p < 0.5]).text,
-                      f"{bench.calibration(p, y)['error']:.3f}"])  # fmt: skip
         counts.append(f"{y.sum()} of {len(y)}")
-    bench.print_table("Rotations of the fit", ["rotations", "right", "of those above 0.5", "below", "calibration error"], lines)
     fits.write_header(arguments, header(*zip(*results), counts), (["<array>", "<vector>"],))
 
 

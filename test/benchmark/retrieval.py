@@ -254,13 +254,6 @@ def interval(values, classes):
     return float(np.mean(values)), float(means[50]), float(means[-51])
 
 
-GAINS = [("PRST x GEDT, axes of the files", "GEDT, axes of the files"), ("PRST by equation 1 x GEDT, axes of the files", "GEDT, axes of the files"),
-         ("PRST x GEDT, symmetry axes", "GEDT, symmetry axes"),
-         ("PRST by equation 1 x GEDT, symmetry axes", "GEDT, symmetry axes"),
-         ("GEDT, symmetry axes", "GEDT, principal axes"), ("PRST x GEDT, all turns", "GEDT, all turns"),
-         ("PRST x GEDT, all turns, scaled", "GEDT, all turns, scaled")]  # fmt: skip
-
-
 def report(judged):
     """Prints the tables of a run and returns what they hold."""
     percent = lambda values: [f"{100 * v:.1f}" for v in values]
@@ -272,20 +265,13 @@ def report(judged):
         rows.append([name, between[0], *percent(q[m].mean() for m in ("tier1", "tier2", "e")), between[1]])
     title = f"Per cent of {num_queries} queries, 95 % intervals by drawing classes anew"
     bench.print_table(title, ["", *MEASURES.values()], rows)
-    gains = {}
-    for with_, without in GAINS:
-        a, b = judged[with_], judged[without]
-        gains[f"{with_} - {without}"] = {m: interval(a[m] - b[m], a["class"]) for m in ("nearest", "dcg")}
-    points = lambda gain: "{:+.1f} ({:+.1f} to {:+.1f})".format(*(100 * v for v in gain))
-    rows = [[name, *map(points, gain.values())] for name, gain in gains.items()]
-    bench.print_table("What symmetry brings, points", ["", "nearest", "DCG"], rows)
     by_class = classes_by_gain(judged)
     ends = by_class[:5] + by_class[5:][-5:]
     bench.print_table("Classes that PRST finds best and worst compared with GEDT (Figure 14), DCG in axes of the files",
                       ["", "PRST", "GEDT", "product"], [[c["class"], *percent(c["dcg"])] for c in ends])  # fmt: skip
     methods = {name: {**{m: float(q[m].mean()) for m in MEASURES}, "precision": q["precision"].mean(0).tolist(),
                       "nearest interval": interval(q["nearest"], q["class"])} for name, q in judged.items()}  # fmt: skip
-    return {"queries": num_queries, "methods": methods, "gains": gains, "classes": by_class}
+    return {"queries": num_queries, "methods": methods, "classes": by_class}
 
 
 def classes_by_gain(judged):
@@ -344,7 +330,7 @@ def main(arguments):
     if not arguments.classes:
         raise bench.BadInput("--classes FILE is missing: it says which models belong together")
     with tempfile.TemporaryDirectory() as temporary:
-        arguments.descriptors = bench.work_folder(arguments, arguments.descriptors, temporary)
+        arguments.descriptors = bench.work_folder(arguments, None, temporary)
         evaluate(arguments)
 
 
@@ -366,5 +352,4 @@ def evaluate(arguments):
 if __name__ == "__main__":
     parser = bench.make_parser(__doc__, others=False)
     parser.add_argument("--figure", metavar="FILE.png", help="draw FILE_files.png, FILE_turned.png and FILE_classes.png")
-    parser.add_argument("--descriptors", metavar="DIR", help="folder that keeps descriptors, 1 MB a model")
     bench.main(main, parser.parse_args())
