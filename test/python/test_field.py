@@ -67,21 +67,6 @@ class Shapes(Field):
             self.assertGreater(self.symmetries("field/scallop.off", "-seed", seed)[1]["best"]["share"], 0.89, seed)
 
 
-class FewPoints(Field):
-    def test_get_one_sentence(self):
-        random = np.random.default_rng(1)
-        with tempfile.TemporaryDirectory() as folder:
-            names = {n: f"{folder}/{n}.xyz" for n in (5, 20, 50, 4000)}
-            for n, name in names.items():
-                points = random.uniform(-1, 1, (n, 3))
-                np.savetxt(name, points / np.abs(points).max(axis=1, keepdims=True) * (1.0, 0.7, 0.4))
-            _, error = self.tool("planes", names[5], "-quiet", status=1)
-            self.assertRegex(error, "^pcl_symmetry_planes: .*5.xyz: .*: 5 distinct points, at least 20 are needed\n$")
-            for n in (20, 50):
-                printed, error = self.tool("align", names[n], "-target", names[4000], "-quiet", status=1)
-                self.assertEqual((printed, len(error.splitlines())), ("", 1), error)
-
-
 class Terrain(Field):
     """Airborne laser scans of the public repository PointCloudLibrary/data."""
 

@@ -145,8 +145,6 @@ class Segment(ToolTest):
 
     def test_refuses_what_does_not_fit_together(self):
         self.run_tool(self.mesh, "out.obj", code=2)
-        self.run_tool(self.mesh, "-depth 2", code=2)  # needs the paper's method
-        self.run_tool(self.mesh, "-method splitting -evidence all", code=2)
         self.run_tool(self.mesh, "-parts -1", code=2)
         self.run_tool("none.off", code=1)
 

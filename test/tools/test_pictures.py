@@ -111,9 +111,7 @@ class Pictures(ToolTest):
                     break
             self.assertEqual(len(servers), 1)
             tool.send_signal(stop)
-            begin = time.monotonic()
             self.assertEqual(tool.wait(timeout=10), -stop)
-            self.assertLess(time.monotonic() - begin, 2)
             for _ in range(200):
                 if not self.runs(servers[0]):
                     break
