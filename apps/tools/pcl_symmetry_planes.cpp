@@ -1,6 +1,7 @@
 /// Symmetry planes of a cloud or mesh: a table, JSON, the support of every point, a picture.
 #include <algorithm>
 #include <boost/algorithm/string.hpp>
+#include <cmath>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <utility>
@@ -150,8 +151,10 @@ std::string tableOf(const Findings& findings, const Eigen::Vector3d& shift) {
     table += "no symmetry plane\n";
     if (const auto& best = findings.best)  // how far it is off
       table += "best plane " + coefficientsOf(*best, shift) +
-               formatted(" maps %.1f %% of the surface to within %.3g, 97 %% to within %.3g\n", 100.0 * best->share,
-                         findings.tolerance, best->deviation);
+               (std::isnan(best->share)  // of a volume
+                    ? formatted(", confidence %.3f\n", best->confidence)
+                    : formatted(" maps %.1f %% of the surface to within %.3g, 97 %% to within %.3g\n",
+                                100.0 * best->share, findings.tolerance, best->deviation));
     return table;
   }
   for (const SymmetryCenter& center : findings.centers)

@@ -95,6 +95,11 @@ class Volumes(ToolTest):
                 self.assertAlmostEqual(d / b, -48, delta=0.05, msg=name)
                 self.assertGreater(planes[0]["confidence"], 0.8, name)
 
+    def test_noise_has_no_plane_and_the_best_one_no_share(self):
+        noise = np.random.default_rng(0).random(SIZE[::-1]).astype("<f4").tobytes()
+        self.run_tool(self.write("noise.mha", meta_image(noise)), "-quiet")
+        self.assertRegex(self.output, r"no symmetry plane\nbest plane [-. 0-9]+, confidence 0\.\d+\n")
+
     def test_frames_of_any_handedness_and_files_apart_are_read(self):
         header = bytearray(nifti(BODY)[:348])
         apart = header[:344] + b"ni1\0"
