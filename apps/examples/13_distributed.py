@@ -81,11 +81,11 @@ def describe_all(options, parts):
     with cluster_of(options) as cluster, Client(cluster) as client:
         futures = {client.submit(describe, options.tool, files, part, pure=False): part for part, files in parts.items()}
         for future in as_completed(futures):
-            if future.status == "finished":
+            try:  # waits again where the worker died with its answer
                 failures += future.result()
                 num_done += 1
-            else:  # the tool could not run there, or several workers died of this part
-                lost.append(f"{futures[future]}: {future.exception()}\n")
+            except Exception as error:  # the tool could not run there, or several workers died of this part
+                lost.append(f"{futures[future]}: {error}\n")
             print(f"\r{num_done} of {len(parts)} parts", end="", file=sys.stderr, flush=True)
     print(file=sys.stderr)
     if lost:
