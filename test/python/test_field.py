@@ -55,6 +55,12 @@ class Clouds(Field):
         for seed in range(20):
             self.assertEqual(len(self.symmetries("field/open_sheet.off", "-seed", seed)[0]), 0, seed)
 
+    def test_a_car_that_the_picture_cuts_off_is_possible_at_most(self):
+        ground = DATA / "field/kitti_car_cut_by_frame.ground"
+        where = ["-viewpoint", "0,0,0", "-ground", ground.read_text().strip() if ground.exists() else "0,0,1,0"]
+        found, report = self.symmetries("field/kitti_car_cut_by_frame.xyz", *where)
+        self.assertEqual((len(found), len(report["axes"])), (0, 0))
+
     def test_frames_of_a_table_have_none(self):
         for name in ("milk_cartoon_all_small_clorox", "rs1", "table_scene_mug_stereo_textured"):
             found, report = self.symmetries(f"scans/{name}.pcd")

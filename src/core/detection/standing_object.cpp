@@ -53,6 +53,11 @@ struct UprightBoxRules {
   double meets = 0.03;      // diagonals within which a reflection meets what a beam met
   double beam_reach = 2.0;  // distances of neighboring beams within which a beam is informative
   int beams = 3;            // nearest a reflection
+  // Points cut off at a side of the picture
+  int rows = 12;            // between the lowest and the highest
+  int cut_rows = 4;         // that end in one upright line, at least,
+  double cut_width = 0.02;  // of the width seen,
+  double cut_depth = 0.25;  // of the width from above, the ranges at which they end
   // Logit of the confidence, by the share near a side and the root of the share in free space, fitted to virtual scans.
   double confidence = 0.7, of_near = 4.15, of_free = -15.6;
 };
@@ -116,6 +121,35 @@ double meanDiagonal(const PointsRef& points, const Eigen::Vector3d& up) {
     sum += Eigen::Vector3d(width(u), width(up.cross(u)), height).norm();
   }
   return sum / kBox.num_angles;
+}
+
+/// Whether points were cut off at a side of the scanner's picture: many of their rows end in one upright line of it, at
+/// very different ranges. No surface is seen so edge-on.
+bool endWithPicture(const PointsRef& points, const Eigen::Vector3d& up, const Eigen::Vector3d& viewpoint) {
+  const Eigen::Vector3d middle = centerOfMass(points) - viewpoint;
+  const Eigen::Vector3d ahead = (middle - middle.dot(up) * up).normalized(), aside = up.cross(ahead);
+  const auto along = [&](const Eigen::Vector3d& axis) -> Eigen::ArrayXd {
+    return (axis.transpose() * (points.cast<double>().colwise() - viewpoint)).transpose();
+  };
+  const Eigen::ArrayXd x = along(ahead), y = along(aside), range = (x.square() + y.square()).sqrt();
+  const Eigen::ArrayXd elevation = (along(up) / range).atan();
+  Eigen::ArrayXd azimuth = y.binaryExpr(x, [](double b, double a) { return std::atan2(b, a); });
+  const auto widthOf = [](const Eigen::ArrayXd& values) { return values.maxCoeff() - values.minCoeff(); };
+  const double depth = kBox.cut_depth * std::hypot(widthOf(x), widthOf(y)), width = kBox.cut_width * widthOf(azimuth);
+  const Eigen::ArrayXd row = (elevation - elevation.minCoeff()) * (kBox.rows / widthOf(elevation));
+  for (int side = 0; side < 2; ++side, azimuth = -azimuth) {
+    std::vector<Eigen::Index> ends(kBox.rows, -1);
+    for (Eigen::Index i = 0; i < points.cols(); ++i) {
+      Eigen::Index& end = ends[std::min(static_cast<int>(row[i]), kBox.rows - 1)];
+      if (end < 0 || azimuth[i] > azimuth[end]) end = i;
+    }
+    std::vector<double> ranges;
+    for (const Eigen::Index end : ends)
+      if (end >= 0 && azimuth[end] > azimuth.maxCoeff() - width) ranges.push_back(range[end]);
+    const auto [nearest, farthest] = std::minmax_element(ranges.begin(), ranges.end());
+    if (static_cast<int>(ranges.size()) >= kBox.cut_rows && *farthest - *nearest > depth) return true;
+  }
+  return false;
 }
 
 /// Directions from a viewpoint to points, and their ranges.
@@ -214,6 +248,8 @@ void decideByUprightBox(const PlaneInput& input, const DetectionOptions& options
     const CloudLimits limits(points, principalAxes(points), CloudKind::Scan, &seen,
                              {found.tolerance, found.resolution, spacing, found.diameter});
     for (const char* rule : limits.of(*plane, points)) limitToPossible(*plane, rule);
+    if (endWithPicture(points, up.front(), seen.viewpoint()))
+      limitToPossible(*plane, "the picture cuts the points off");
     setConfidence(*plane, middle->confidence, "the sides of the upright box around the points", options);
   }
   if (is_sparse) {

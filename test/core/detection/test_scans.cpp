@@ -182,6 +182,28 @@ TEST(DecideByUprightBox, ReplacesItsPlaneAndKeepsToTheNumberOfPlanes) {
   EXPECT_EQ(decided(seenFromAbove(points), 0.0, 64).front().confidence, 0.3) << "nothing carries it";
 }
 
+TEST(DecideByUprightBox, OfWhatThePictureCutsOffIsPossible) {
+  // Rows of points on the long side of a vehicle whose cabin stands back; a picture from x = -6, y = -3 ends there.
+  std::vector<Eigen::Vector3f> kept;
+  for (int i = 0; i < 12 * 81; ++i) {
+    const Eigen::Vector3f x(0.05f * static_cast<float>(i % 81) - 2.0f, i / 81 < 6 ? -1.0f : -0.4f,
+                            0.1f + 0.1f * static_cast<float>(i / 81));
+    if (std::atan2(x.x() + 6.0f, x.y() + 3.0f) > 1.13f) kept.push_back(x);
+  }
+  Points points(3, kept.size());
+  for (std::size_t i = 0; i < kept.size(); ++i) points.col(static_cast<Eigen::Index>(i)) = kept[i];
+  const auto kind = [&](const Eigen::Vector3d& viewpoint) {
+    const Visibility seen = Visibility::ofScene(points, viewpoint)->withSupport(kTable, 0.0);
+    Detection found;
+    found.tolerance = 0.02;
+    found.diameter = 4.5;
+    decideByUprightBox(PlaneInput(points, &seen), {}, found);
+    return found.planes.empty() ? PlaneKind::Local : found.planes.front().kind;
+  };
+  EXPECT_EQ(kind({-6.0, -3.0, 1.5}), PlaneKind::Possible);
+  EXPECT_EQ(kind({-6.0, -2.8, 1.5}), PlaneKind::Symmetry) << "not in one line from there";
+}
+
 TEST(Scans, FewSamplesOfRefinementAreEnoughForNumbers) {
   const Scan view = scan(blockL(), {2.5, -3.0, 2.0});
   const Points cloud = view.cloud();
