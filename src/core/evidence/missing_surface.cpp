@@ -3,9 +3,6 @@
 #include <algorithm>
 #include <boost/pending/disjoint_sets.hpp>
 #include <cmath>
-#include <functional>
-#include <limits>
-#include <numeric>
 
 #include "core/evidence/surface_samples.h"
 #include "core/geometry/cloud_extent.h"
@@ -17,90 +14,31 @@ namespace pcl_symmetry {
 
 namespace {
 
-/// The cell of each point, in a box that has as many cells along each side.
-std::vector<int> cellsOf(const Points& points, int cells_per_side) {
-  const Eigen::Vector3f least = points.rowwise().minCoeff(), extent = points.rowwise().maxCoeff() - least;
-  const auto sides = static_cast<float>(cells_per_side);
-  const Eigen::Vector3f per_unit = (extent.array() > 0.0f).select(sides / extent.array(), 0.0f);
-  std::vector<int> cells(static_cast<std::size_t>(points.cols()));
-  for (Eigen::Index i = 0; i < points.cols(); ++i) {
-    const Eigen::Vector3f place = (points.col(i) - least).cwiseProduct(per_unit);
-    int cell = 0;
-    for (int k = 0; k < 3; ++k)
-      cell = cell * cells_per_side + std::clamp(static_cast<int>(place[k]), 0, cells_per_side - 1);
-    cells[static_cast<std::size_t>(i)] = cell;
-  }
-  return cells;
+/// The coordinates of points, each side by side.
+using Coordinates = Eigen::Array<float, Eigen::Dynamic, 3>;
+
+Coordinates coordinatesOf(const Points& points) {
+  return points.transpose().array();
 }
 
-}  // namespace
-
-OutermostPoints::OutermostPoints(const Points& points) : mean_(points.rowwise().mean()) {
-  const auto size = static_cast<std::size_t>(points.cols());
-  const int cells_per_side =
-      std::max(1, static_cast<int>(std::sqrt(static_cast<double>(size) / kEvidence.points_per_square)));
-  const std::vector<int> cells = cellsOf(points, cells_per_side);
-  std::vector<std::size_t> place(static_cast<std::size_t>(cells_per_side * cells_per_side * cells_per_side) + 1, 0);
-  for (const int cell : cells) ++place[static_cast<std::size_t>(cell) + 1];
-  std::partial_sum(place.begin(), place.end(), place.begin());
-  for (std::size_t c = 0; c + 1 < place.size(); ++c)
-    if (place[c] < place[c + 1])
-      cells_.push_back({Eigen::Vector3f::Zero(), Eigen::Vector3f::Zero(), place[c], place[c + 1]});
-  index_of_.resize(size);
-  for (std::size_t i = 0; i < size; ++i)
-    index_of_[place[static_cast<std::size_t>(cells[i])]++] = static_cast<Eigen::Index>(i);
-  for (int k = 0; k < 3; ++k) {
-    std::vector<float>& coordinates = coordinates_[static_cast<std::size_t>(k)];
-    coordinates.resize(size);
-    for (std::size_t i = 0; i < size; ++i) coordinates[i] = points(k, index_of_[i]);
-    for (Cell& cell : cells_) {
-      const auto [least, most] = std::minmax_element(coordinates.begin() + static_cast<std::ptrdiff_t>(cell.begin),
-                                                     coordinates.begin() + static_cast<std::ptrdiff_t>(cell.end));
-      cell.least[k] = *least;
-      cell.most[k] = *most;
-    }
-  }
+Eigen::ArrayXf along(const Coordinates& points, const Eigen::Vector3f& direction) {
+  return direction.x() * points.col(0) + direction.y() * points.col(1) + direction.z() * points.col(2);
 }
 
-Eigen::Vector3f OutermostPoints::last(const Eigen::Vector3f& direction) const {
-  float most = -std::numeric_limits<float>::infinity();
-  std::size_t found = 0;
-  const auto lookAt = [&](const Cell& cell) {
-    for (std::size_t i = cell.begin; i < cell.end; ++i) {
-      const float value = along(direction, i);
-      if (value < most || (value == most && index_of_[i] > index_of_[found])) continue;
-      most = value;
-      found = i;
-    }
-  };
-  // The cell that may hold the farthest point first: it leaves few others.
-  const auto first = std::max_element(cells_.begin(), cells_.end(), [&](const Cell& a, const Cell& b) {
-    return a.bound(direction) < b.bound(direction);
-  });
-  lookAt(*first);
-  for (const Cell& cell : cells_)
-    if (cell.bound(direction) >= most) lookAt(cell);
-  return at(found);
+/// The point that is farthest along a direction; of several the first one.
+Eigen::Vector3f last(const Coordinates& points, const Eigen::Vector3f& direction) {
+  Eigen::Index farthest = 0;
+  along(points, direction).maxCoeff(&farthest);
+  return points.row(farthest);
 }
-
-bool OutermostPoints::reach(const Eigen::Vector3f& x, float distance) const {
-  const float sq_distance = distance * distance;
-  return std::any_of(cells_.begin(), cells_.end(), [&](const Cell& cell) {
-    if ((x - x.cwiseMax(cell.least).cwiseMin(cell.most)).squaredNorm() > sq_distance) return false;
-    for (std::size_t i = cell.begin; i < cell.end; ++i)
-      if ((x - at(i)).squaredNorm() <= sq_distance) return true;
-    return false;
-  });
-}
-
-namespace {
 
 /// The direction along which two clouds are farthest apart: that between the closest points of their convex hulls
 /// (Gilbert 1966). Where these overlap, a direction in which they overlap little.
-Eigen::Vector3f separatingDirection(const OutermostPoints& points, const OutermostPoints& piece, float spacing) {
-  Eigen::Vector3f between = piece.mean() - points.mean();
+Eigen::Vector3f separatingDirection(const Points& cloud, const Points& piece, float spacing) {
+  const Coordinates of_cloud = coordinatesOf(cloud), of_piece = coordinatesOf(piece);
+  Eigen::Vector3f between = piece.rowwise().mean() - cloud.rowwise().mean();
   for (int step = 0; step < kEvidence.max_steps; ++step) {
-    const Eigen::Vector3f nearest = piece.last(-between) - points.last(between);
+    const Eigen::Vector3f nearest = last(of_piece, -between) - last(of_cloud, between);
     if (between.dot(nearest) >= (1.0f - kEvidence.min_gain) * between.squaredNorm()) break;
     const Eigen::Vector3f change = nearest - between;
     const Eigen::Vector3f next = between - std::min(1.0f, between.dot(change) / change.squaredNorm()) * change;
@@ -110,22 +48,12 @@ Eigen::Vector3f separatingDirection(const OutermostPoints& points, const Outermo
   return between.normalized();
 }
 
-/// The distance along a direction that all but outliers stay behind.
-/// \param farthest that of all points.
-float lastOf(const OutermostPoints& points, const Eigen::Vector3f& direction, float farthest, float spacing) {
-  const auto size = static_cast<std::size_t>(points.size());
-  const std::size_t num_beyond =
-      size - 1 - static_cast<std::size_t>((1.0 - kEvidence.outliers) * static_cast<double>(size - 1));
-  std::vector<float> distances;
-  for (const float from : {farthest - kEvidence.outliers_within * spacing, -std::numeric_limits<float>::infinity()}) {
-    distances.clear();
-    points.visitFrom(direction, from,
-                     [&](Eigen::Index, const Eigen::Vector3f&, float distance) { distances.push_back(distance); });
-    if (distances.size() > num_beyond) break;
-  }
-  const auto last = distances.begin() + static_cast<std::ptrdiff_t>(num_beyond);
-  std::nth_element(distances.begin(), last, distances.end(), std::greater<float>());
-  return *last;
+/// The distance that all but outliers stay behind.
+float lastOf(Eigen::ArrayXf distances) {
+  const Eigen::Index before_last = distances.size() - 1;
+  const auto last = static_cast<Eigen::Index>((1.0 - kEvidence.outliers) * static_cast<double>(before_last));
+  std::nth_element(distances.begin(), distances.begin() + last, distances.end());
+  return distances[last];
 }
 
 /// 0 up to the first value, 1 from the second on.
@@ -135,25 +63,26 @@ float ramp(float value, float none, float all) {
 
 }  // namespace
 
-float beyondEnd(const OutermostPoints& cloud, const Points& normals, const OutermostPoints& piece, double spacing) {
+float beyondEnd(const Points& cloud, const Points& normals, const Points& piece, double spacing) {
   const auto unit = static_cast<float>(spacing);
   const Eigen::Vector3f normal = separatingDirection(cloud, piece, unit);
-  const float farthest = normal.dot(cloud.last(normal));
-  const float gap = (normal.dot(piece.last(-normal)) - farthest) / unit;
+  const Eigen::ArrayXf distances = along(coordinatesOf(cloud), normal);
+  const float gap = (along(coordinatesOf(piece), normal).minCoeff() - distances.maxCoeff()) / unit;
   const float is_beyond = ramp(gap, -kEvidence.behind, -kEvidence.in_front);
   if (is_beyond <= 0.0f) return 0.0f;
   // The surface has to end beside the piece, or within 60 degrees of the way to it.
   const float reach = (kEvidence.behind + 2.0f * std::max(0.0f, gap)) * unit;
+  const float end = lastOf(distances) - kEvidence.last_points * unit;
   float cosines = 0.0f, count = 0.0f, cosines_before = 0.0f, count_before = 0.0f;
-  cloud.visitFrom(normal, lastOf(cloud, normal, farthest, unit) - kEvidence.last_points * unit,
-                  [&](Eigen::Index i, const Eigen::Vector3f& x, float) {
-                    const float cosine = std::abs(normal.dot(normals.col(i)));
-                    cosines += cosine;
-                    count += 1.0f;
-                    if (!piece.reach(x, reach)) return;
-                    cosines_before += cosine;
-                    count_before += 1.0f;
-                  });
+  for (Eigen::Index i = 0; i < cloud.cols(); ++i) {
+    if (distances[i] < end) continue;
+    const float cosine = std::abs(normal.dot(normals.col(i)));
+    cosines += cosine;
+    count += 1.0f;
+    if ((piece.colwise() - cloud.col(i)).colwise().squaredNorm().minCoeff() > reach * reach) continue;
+    cosines_before += cosine;
+    count_before += 1.0f;
+  }
   if (count_before == 0.0f) return 0.0f;
   return is_beyond *
          ramp(-std::max(cosines / count, cosines_before / count_before), -kEvidence.closes, -kEvidence.runs_into);
@@ -223,8 +152,8 @@ std::vector<float> missingCounterparts(const SampledSurface& surface, const std:
           std::clamp((share - kEvidence.min_explained) / (kEvidence.explained - kEvidence.min_explained), 0.0f, 1.0f);
     }
     if (value < 1.0f && members.size() >= least)
-      value = std::max(value, beyondEnd(surface.points, surface.geometry.normals,
-                                        OutermostPoints(pointsAt(reflected, members)), surface.spacing));
+      value = std::max(
+          value, beyondEnd(surface.points, surface.geometry.normals, pointsAt(reflected, members), surface.spacing));
     for (const int i : members) missing[i] = value;
   }
   return missing;
@@ -244,10 +173,10 @@ bool isOpenSheet(const Points& points) {
 
 SurfaceEnds::SurfaceEnds(const Points& points, const LocalGeometry& geometry, const ClosestPointSearch& search,
                          const FoundNeighbors& found, double spacing, int num_threads)
-    : geometry_(geometry),
+    : points_(points),
+      geometry_(geometry),
       spacing_(spacing),
       borders_(openBorders(points, search, geometry.normals, num_threads, &found)),
-      outermost_(points),
       trust_(isOpenSheet(points) ? 0.0
                                  : std::clamp((kEvidence.borders_everywhere - shareNearBorders(borders_, geometry)) /
                                                   (kEvidence.borders_everywhere - kEvidence.few_borders),

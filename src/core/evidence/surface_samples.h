@@ -54,8 +54,6 @@ struct EvidenceRules {
   float runs_into = 0.65f, closes = 0.8f;               ///< cosine of normals at a cut, and where a surface closes
   float last_points = 2.0f;                             ///< depth of these points, spacings
   double outliers = 0.002;                              ///< share of the points
-  float outliers_within = 8.0f;                         ///< spacings in which they are looked for first
-  double points_per_square = 160.0;                     ///< for each square of the side of a box of cells
   int max_steps = 200;                                  ///< between convex hulls
   float min_gain = 0.02f;                               ///< share of the squared distance that a step shortens
   float no_distance = 1.0f;                             ///< spacings, of hulls that overlap

@@ -59,8 +59,8 @@ std::pair<double, double> matchedAndMissing(const Surface& surface, const Reflec
   std::vector<char> matched(closest.size());
   for (std::size_t i = 0; i < matched.size(); ++i) matched[i] = sq_distances[i] < 0.05 * 0.05;
   const double spacing = std::sqrt(4.0 * kPi / 8000.0);
-  const std::vector<float> missing = missingCounterparts(
-      {OutermostPoints(surface.points), surface.geometry, surface.borders, spacing}, matched, closest, reflected);
+  const std::vector<float> missing =
+      missingCounterparts({surface.points, surface.geometry, surface.borders, spacing}, matched, closest, reflected);
   const double count = static_cast<double>(matched.size());
   return {std::accumulate(matched.begin(), matched.end(), 0.0) / count,
           std::accumulate(missing.begin(), missing.end(), 0.0) / count};
@@ -130,7 +130,7 @@ Points between(const Points& points, float low, float high) {
 }
 
 float explained(const Points& points, const Points& piece, double spacing) {
-  return beyondEnd(OutermostPoints(points), Surface(points).geometry.normals, OutermostPoints(piece), spacing);
+  return beyondEnd(points, Surface(points).geometry.normals, piece, spacing);
 }
 
 /// A plate of half the size 1 x 1 x half_height: both faces and its four sides.
