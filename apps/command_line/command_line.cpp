@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <boost/algorithm/string.hpp>
+#include <boost/filesystem.hpp>
 #include <iostream>
 #include <map>
 #include <numeric>
@@ -12,6 +13,7 @@
 #include <type_traits>
 #include <utility>
 
+#include "io/file_text.h"
 #include "io/shape_output.h"
 
 namespace pcl_symmetry::apps {
@@ -32,6 +34,9 @@ const std::vector<std::pair<std::string, std::vector<std::string>>> kFlagGroups{
     {"Input", {"viewpoint", "ground", "label", "points", "levels", "surface"}},
     {"Computation", {"grid", "sigma", "seed", "threads", "quiet"}},
     {"Help", {"help", "version"}}};
+
+/// Flags that name files to read; the files of all others are written.
+const std::vector<std::string> kReadFlags{"target", "database", "check", "landmarks"};
 
 /// \return columns of the terminal, or those of a page.
 unsigned helpWidth() {
@@ -112,6 +117,7 @@ CommandLine& CommandLine::flag(const std::string& name, bool& value, const std::
 
 CommandLine& CommandLine::add(const std::string& name, const std::string& placeholder, const std::string& help,
                               Assign assign) {
+  if (boost::algorithm::starts_with(placeholder, "FILE")) file_flags_.push_back(name);
   flags_.add_options()(name.c_str(), po::value<std::string>()->value_name(placeholder)->notifier(std::move(assign)),
                        help.c_str());
   return *this;
@@ -247,6 +253,7 @@ bool CommandLine::parse(int argc, const char* const* argv) {
   }
   assignPositionals();
   po::notify(values_);
+  checkFiles();
   nlohmann::json options = nlohmann::json::object();
   for (const auto& [name, value] : values_) {
     if (!given(name) || name == "positional arguments") continue;
@@ -302,6 +309,36 @@ void CommandLine::assignPositionals() const {
       throw UsageError("missing argument '" + positional.name + "'");
     }
   }
+}
+
+void CommandLine::checkFiles() const {
+  namespace fs = boost::filesystem;
+  struct NamedFile {
+    std::string name;
+    fs::path path;
+    bool is_output;
+  };
+  std::vector<NamedFile> files;
+  const auto add = [&](const std::string& name, const std::string& text, bool is_output) {
+    boost::system::error_code ignored;
+    const bool is_special = fs::exists(text, ignored) && !fs::is_regular_file(text, ignored);
+    if (!isStandardStream(text) && !is_special) files.push_back({name, fs::weakly_canonical(text, ignored), is_output});
+  };
+  for (const std::string& flag : file_flags_)
+    if (given(flag))
+      add("-" + flag, values_[flag].as<std::string>(), std::count(kReadFlags.begin(), kReadFlags.end(), flag) == 0);
+  if (given("positional arguments")) {
+    const auto& arguments = values_["positional arguments"].as<std::vector<std::string>>();
+    for (std::size_t i = 0; i < arguments.size(); ++i) {
+      const std::string& name = positionals_[std::min(i, positionals_.size() - 1)].name;
+      add(name, arguments[i], name == "output" && !given("merge"));  // -merge: all arguments are scans
+    }
+  }
+  for (const NamedFile& output : files)
+    for (const NamedFile& other : files)
+      if (output.is_output && &other != &output && other.path == output.path)
+        throw UsageError(output.path.string() + ": is " + other.name + " and " + output.name +
+                         ", an output needs a name of its own");
 }
 
 bool CommandLine::given(const std::string& name) const {

@@ -137,9 +137,12 @@ private:
   std::string closestFlag(const std::string& unknown) const;
   void readTokens(int argc, const char* const* argv);
   void assignPositionals() const;
+  /// Refuses an output that is an input or another output.
+  void checkFiles() const;
 
   std::string tool_, summary_, example_;
   std::vector<Positional> positionals_;
+  std::vector<std::string> file_flags_;
   const std::uint64_t* seed_ = nullptr;  // of a tool that draws
   boost::program_options::options_description flags_;
   boost::program_options::variables_map values_;

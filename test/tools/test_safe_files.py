@@ -29,6 +29,18 @@ class SafeFiles(ToolTest):
                 time.sleep(0.002)
             return None if process.wait() == 0 else process.returncode
 
+    def test_an_output_that_is_an_input_or_another_output_is_refused(self):
+        self.write("models.db", "a database")
+        (self.folder / "link.off").symlink_to("box.off")
+        for arguments in ("planes box.off -json box.off", "planes box.off -csv link.off", "planes box.off -html ./box.off",
+                          "planes box.off -json a.json -csv a.json", "align box.off box.off", "align box.off box.off -target link.off",
+                          "align box.off out.pcd -json out.pcd", "match models.db box.off -json models.db", "bop box.off -json box.off",
+                          "align box.off link.off -merge box.off"):  # fmt: skip
+            tool, rest = arguments.split(" ", 1)
+            self.fails(2, "an output needs a name of its own", rest, tool=tool)
+        self.assertEqual((self.text("box.off"), self.text("models.db")), (tool_run.box(), "a database"))
+        self.assertEqual(sorted(os.listdir(self.folder)), ["box.off", "link.off", "models.db"])
+
     def test_killed_writers_leave_whole_files(self):
         self.write("big.pcd", "old")
         num_killed = 0
