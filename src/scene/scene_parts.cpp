@@ -27,6 +27,19 @@ struct Consensus {
   pcl::Indices inliers;  // into the scene
 };
 
+/// A factor, a power of two, that gives scenes of any unit one scale: PCL's models of planes and its search among the
+/// pixels of organized clouds have absolute limits, made for meters.
+/// \param distance of points that belong together.
+float unitScale(double distance) {
+  return static_cast<float>(std::exp2(std::round(-8.0 - std::log2(distance))));
+}
+
+SymmetryScene::Cloud::ConstPtr scaled(const SymmetryScene::Cloud& scene, float factor) {
+  auto cloud = pcl::make_shared<SymmetryScene::Cloud>(scene);
+  for (pcl::PointXYZ& point : *cloud) point.getVector3fMap() *= factor;
+  return cloud;
+}
+
 std::optional<Consensus> greatestPlane(const SymmetryScene::Cloud::ConstPtr& scene, const pcl::Indices& points,
                                        double distance) {
   if (points.size() < 3) return std::nullopt;
@@ -221,12 +234,15 @@ std::vector<SupportingPlane> findSupports(const SymmetryScene::Cloud::ConstPtr& 
                                           const std::optional<Eigen::Vector3d>& viewpoint, double distance) {
   std::vector<SupportingPlane> supports;
   pcl::Indices candidates = points, others = points;
+  const float scale = unitScale(distance);
+  const SymmetryScene::Cloud::ConstPtr in_unit = scaled(*scene, scale);
   for (int round = 0; round < kScene.max_planes; ++round) {
-    std::optional<Consensus> plane = greatestPlane(scene, candidates, distance);
+    std::optional<Consensus> plane = greatestPlane(in_unit, candidates, scale * distance);
     const auto share = [&](std::size_t count) {
       return static_cast<double>(count) / static_cast<double>(points.size());
     };
     if (!plane || share(plane->inliers.size()) < kScene.min_share) break;
+    plane->coefficients[3] /= scale;
     plane->coefficients = fitted(*scene, *plane);
     candidates = without(candidates, plane->inliers, scene->size());
     if (viewpoint && plane->coefficients.dot(viewpoint->homogeneous()) < 0.0) plane->coefficients *= -1.0;
@@ -274,10 +290,11 @@ std::vector<pcl::Indices> findClusters(const SymmetryScene::Cloud::ConstPtr& sce
                                        const std::vector<SupportingPlane>& supports, const SceneDistances& distances,
                                        int min_points) {
   if (points.empty()) return {};
+  const float scale = unitScale(distances.cluster);
   pcl::EuclideanClusterExtraction<pcl::PointXYZ> extraction;
-  extraction.setClusterTolerance(distances.cluster);
+  extraction.setClusterTolerance(scale * distances.cluster);
   extraction.setMinClusterSize(min_points);
-  extraction.setInputCloud(scene);
+  extraction.setInputCloud(scaled(*scene, scale));
   extraction.setIndices(pcl::make_shared<pcl::Indices>(points));
   std::vector<pcl::PointIndices> found;
   extraction.extract(found);

@@ -133,6 +133,15 @@ class SceneObjects(ToolTest):
         report, *_ = self.found(pcd(finite, len(finite), viewpoint=EYE))
         self.assertEqual([report["viewpoint"]["from"], len(report["supports"]), len(report["objects"])], ["stored", 1, 2])
 
+    def test_are_the_same_in_any_unit(self):
+        def answers(unit):
+            report, *_ = self.found(pcd(unit * POINTS, 320))
+            return len(report["supports"]), [[plane["confidence"] for plane in item["planes"]] for item in report["objects"]]
+        expected = answers(1.0)
+        self.assertEqual((expected[0], len(expected[1])), (1, 2))
+        for unit in (1024.0, 1.0 / 1024.0):
+            self.assertEqual(answers(unit), expected)
+
     def test_are_neither_tables_nor_bulges_nor_parts_of_a_large_box(self):
         report, *_ = self.found(pcd(look(EYE, camera(EYE, (0, 0, 0), 160, 120, 94), [block(*TABLE)])[0], 160))
         self.assertEqual([len(report["supports"]), report["objects"]], [1, []])
