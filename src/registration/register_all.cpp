@@ -10,6 +10,7 @@
 #include "core/base/parallel.h"
 #include "core/base/statistics.h"
 #include "core/base/stopwatch.h"
+#include "core/base/watched_steps.h"
 #include "core/geometry/point_samples.h"
 #include "core/registration/posed_surface.h"
 #include "registration/pose_graph.h"
@@ -57,7 +58,9 @@ std::vector<int> onePerCell(const Points& points, double edge) {
                       static_cast<std::int64_t>(cell.z())},
                      static_cast<int>(i)});
   }
+  lookAtWatch();
   std::sort(cells.begin(), cells.end());
+  lookAtWatch();
   std::vector<int> chosen;
   for (auto first = cells.begin(), last = first; first != cells.end(); first = last) {
     Eigen::Vector3f mean = Eigen::Vector3f::Zero();

@@ -3,6 +3,7 @@
 #include <limits>
 
 #include "core/base/random.h"
+#include "core/base/watched_steps.h"
 
 namespace pcl_symmetry {
 
@@ -32,6 +33,7 @@ Eigen::MatrixXf spreadCenters(const Eigen::MatrixXf& features, const std::vector
 /// Assigns every feature to its closest center.
 /// \return whether a label changed.
 bool assign(const Eigen::MatrixXf& features, const std::vector<float>& weights, Clusters& clusters) {
+  lookAtWatch();
   bool changed = false;
   clusters.sq_error = 0.0;
   for (Eigen::Index i = 0; i < features.cols(); ++i) {

@@ -13,6 +13,8 @@
 #include <utility>
 #include <vector>
 
+#include "core/base/watched_steps.h"
+
 namespace pcl_symmetry {
 
 struct Loop;
@@ -39,6 +41,8 @@ struct Loop {
   void run();
   void work();
   void tell(double share);
+  void look();
+  void leave() const;
   bool hasEnded() const { return ended || (outer && outer->hasEnded()); }
 
   const std::size_t num_blocks;
@@ -116,8 +120,7 @@ void Loop::run() {
   work();
   if (is_shared) threads->remove(*this);
   if (watched) --watched->depth_;
-  if (failure) std::rethrow_exception(failure);
-  if (hasEnded()) throw Ended();
+  leave();
 }
 
 void Loop::work() {
@@ -148,6 +151,23 @@ void Loop::tell(double share) {
     }
   }
   watch->last_ = Clock::now();
+}
+
+void lookAtWatch() {
+  static const std::function<void(std::size_t)> nothing;
+  Loop step(0, 1, nothing);
+  step.look();
+}
+
+void Loop::look() {
+  if (watch) tell(watch->share_);
+  leave();
+}
+
+/// Throws what has ended the loop.
+void Loop::leave() const {
+  if (failure) std::rethrow_exception(failure);
+  if (hasEnded()) throw Ended();
 }
 
 Watch::Watch(std::function<void(double)> tell) : tell_(std::move(tell)), former_(watch), last_(Clock::now()) {

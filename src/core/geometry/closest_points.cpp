@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "core/base/check.h"
+#include "core/base/watched_steps.h"
 
 #if defined(__x86_64__)
 #include <immintrin.h>
@@ -284,6 +285,7 @@ FlannSearch::FlannSearch(const PointsRef& points)
       tree_(new Tree{{flann::Matrix<float>(points_.data(), points_.cols(), 3), flann::KDTreeSingleIndexParams(24)}}) {
   tree_->params.cores = 1;
   tree_->index.buildIndex();
+  lookAtWatch();
 }
 
 FlannSearch::~FlannSearch() = default;

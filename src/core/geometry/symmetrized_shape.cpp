@@ -8,6 +8,7 @@
 
 #include "core/base/check.h"
 #include "core/base/parallel.h"
+#include "core/base/watched_steps.h"
 #include "core/geometry/cloud_extent.h"
 #include "core/geometry/point_samples.h"
 #include "core/geometry/surface_normals.h"
@@ -212,7 +213,9 @@ MirroredMesh mirroredHalf(const PointsRef& vertices, const std::vector<Eigen::Ve
     result.sources.resize(points.size(), share > 0.5 ? b : a);
     return entry->second;
   };
+  std::size_t num_done = 0;
   for (const Eigen::Vector3i& t : finite) {
+    if (++num_done % 1024 == 0) lookAtWatch();
     if (std::max({heights[t[0]], heights[t[1]], heights[t[2]]}) <= 0.0) continue;
     std::vector<int> corners;  // of the part that is kept
     for (int k = 0; k < 3; ++k) {
@@ -241,9 +244,11 @@ SymmetrizedShape symmetrizedCloud(const PointsRef& points, const ReflectionPlane
   const LocalGeometry geometry = localGeometry(result.points, *search, kNumSupportNeighbors, num_threads);
   const Eigen::Vector3d center = centerOfMass(points);
   const Points images = reflectedPoints(points, plane);
-  std::vector<int> closest;
-  std::vector<float> sq_distances;
-  search->search(images, 1, closest, sq_distances);
+  std::vector<int> closest(points.cols());
+  parallelPoints(closest.size(), num_threads, [&](std::size_t begin, std::size_t end) {
+    const std::vector<int> found = search->closest(images.middleCols(begin, end - begin));
+    std::copy(found.begin(), found.end(), closest.begin() + begin);
+  });
   for (Eigen::Index i = 0; i < points.cols(); ++i) {
     const Eigen::Vector3d x = points.col(i).cast<double>(), image = images.col(i).cast<double>();
     const bool is_left = plane.signedDistance(x) < 0.0;

@@ -7,6 +7,7 @@
 
 #include "core/base/check.h"
 #include "core/base/random.h"
+#include "core/base/watched_steps.h"
 #include "core/geometry/point_samples.h"
 
 namespace pcl_symmetry {
@@ -60,6 +61,7 @@ struct TriangleTree::Builder {
   }
 
   Eigen::AlignedBox3f addNode(int begin, int end) {
+    if (end - begin > 1000) lookAtWatch();
     const int node = static_cast<int>(tree.nodes_.size());
     tree.nodes_.emplace_back();
     std::vector<int> bounds{begin, end};

@@ -4,6 +4,7 @@
 #include <array>
 #include <boost/graph/adjacency_list.hpp>
 #include <boost/graph/boykov_kolmogorov_max_flow.hpp>
+#include <boost/property_map/function_property_map.hpp>
 #include <cmath>
 #include <limits>
 #include <map>
@@ -11,6 +12,7 @@
 #include <set>
 #include <utility>
 
+#include "core/base/watched_steps.h"
 #include "core/segmentation/adjacency.h"
 #include "core/segmentation/labels.h"
 
@@ -118,7 +120,17 @@ std::vector<int> cutBorder(const SurfaceGraph& graph, std::vector<int> side, con
   const std::vector<float> distance = distanceFromBorder(graph, side, static_cast<float>(options.band));
   const std::vector<int> movable = movableElements(side, distance, open);
   Network network = networkOf(graph, side, movable, options.concavity_weight);
-  boost::boykov_kolmogorov_max_flow(network, movable.size(), movable.size() + 1);
+  lookAtWatch();
+  std::size_t num_looked_up = 0;
+  const auto index = boost::make_function_property_map<std::size_t>([&](std::size_t node) {
+    if (++num_looked_up % 65536 == 0) lookAtWatch();
+    return node;
+  });
+  boost::boykov_kolmogorov_max_flow(
+      network, boost::get(boost::edge_capacity, network), boost::get(boost::edge_residual_capacity, network),
+      boost::get(boost::edge_reverse, network), boost::get(boost::vertex_predecessor, network),
+      boost::get(boost::vertex_color, network), boost::get(boost::vertex_distance, network), index, movable.size(),
+      movable.size() + 1);
   for (std::size_t i = 0; i < movable.size(); ++i)
     side[movable[i]] = boost::get(boost::vertex_color, network, i) == boost::black_color ? 0 : 1;
   return side;

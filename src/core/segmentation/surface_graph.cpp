@@ -3,9 +3,9 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
-#include <map>
 #include <numeric>
 #include <queue>
+#include <tuple>
 #include <utility>
 
 #include "core/base/check.h"
@@ -13,6 +13,7 @@
 #include "core/base/parallel.h"
 #include "core/base/random.h"
 #include "core/base/symmetric_solvers.h"
+#include "core/base/watched_steps.h"
 #include "core/geometry/point_samples.h"
 #include "core/geometry/triangles.h"
 #include "core/segmentation/segmentation_rules.h"
@@ -100,6 +101,7 @@ double escapingArea(const SurfaceGraph& graph, const Points& normals, const Tria
 /// \return 3 x N, each normal of the graph or its opposite.
 Points outwardNormals(const SurfaceGraph& graph, const std::vector<float>& agreement) {
   Points normals = alignNeighbors(graph, agreement);
+  lookAtWatch();
   const TriangleTree tree(graph.corners, graph.triangles);
   RandomStream random(1);
   for (const std::vector<int>& members : membersOfPieces(graph)) {
@@ -265,35 +267,34 @@ void measureFaces(SurfaceGraph& graph, const Polygons& faces) {
 
 /// A face at an edge of the mesh.
 struct FaceAtEdge {
+  int low, high;  ///< vertices of the edge
   int face;
-  bool upwards;  ///< whether the face runs from the lower to the higher index of the two vertices
-};
-using FacesOfEdges = std::map<std::pair<int, int>, std::vector<FaceAtEdge>>;
+  bool upwards;  ///< whether the face runs from the lower to the higher vertex
 
-FacesOfEdges facesOfEdges(const Polygons& faces) {
-  FacesOfEdges faces_of_edge;
-  for (std::size_t f = 0; f < faces.size(); ++f) {
-    for (std::size_t k = 0; k < faces[f].size(); ++k) {
-      const int a = faces[f][k], b = faces[f][(k + 1) % faces[f].size()];
-      if (a == b) continue;
-      std::vector<FaceAtEdge>& sharing = faces_of_edge[std::minmax(a, b)];
-      if (sharing.empty() || sharing.back().face != static_cast<int>(f))
-        sharing.push_back({static_cast<int>(f), a < b});
-    }
-  }
-  return faces_of_edge;
-}
+  auto key() const { return std::tie(low, high, face); }
+};
 
 /// Joins each face at an edge with the next one.
 /// \return the agreement of the two normals: faces of one orientation run through their edge in opposite directions.
-std::vector<float> joinFaces(SurfaceGraph& graph, const FacesOfEdges& faces_of_edge) {
-  std::vector<float> agreement;
-  for (const auto& [ends, sharing] : faces_of_edge) {
-    const float length = (graph.corners.col(ends.first) - graph.corners.col(ends.second)).norm();
-    for (std::size_t i = 1; i < sharing.size(); ++i) {
-      graph.edges.push_back({sharing[i - 1].face, sharing[i].face, length, 0.0f});
-      agreement.push_back(sharing[i - 1].upwards != sharing[i].upwards ? 1.0f : -1.0f);
+std::vector<float> joinFaces(SurfaceGraph& graph, const Polygons& faces) {
+  std::vector<FaceAtEdge> at;
+  for (std::size_t f = 0; f < faces.size(); ++f) {
+    for (std::size_t k = 0; k < faces[f].size(); ++k) {
+      const int a = faces[f][k], b = faces[f][(k + 1) % faces[f].size()];
+      if (a != b) at.push_back({std::min(a, b), std::max(a, b), static_cast<int>(f), a < b});
     }
+  }
+  lookAtWatch();
+  std::stable_sort(at.begin(), at.end(), [](const auto& a, const auto& b) { return a.key() < b.key(); });
+  lookAtWatch();
+  at.erase(std::unique(at.begin(), at.end(), [](const auto& a, const auto& b) { return a.key() == b.key(); }),
+           at.end());
+  std::vector<float> agreement;
+  for (std::size_t i = 1; i < at.size(); ++i) {
+    const FaceAtEdge &a = at[i - 1], &b = at[i];
+    if (a.low != b.low || a.high != b.high) continue;
+    graph.edges.push_back({a.face, b.face, (graph.corners.col(a.low) - graph.corners.col(a.high)).norm(), 0.0f});
+    agreement.push_back(a.upwards != b.upwards ? 1.0f : -1.0f);
   }
   return agreement;
 }
@@ -345,12 +346,14 @@ SurfaceGraph cloudGraph(const PointsRef& points, const std::vector<std::vector<i
 SurfaceGraph meshGraph(const PointsRef& vertices, const Polygons& polygons) {
   checkExtent(vertices);
   const Polygons faces = weldedPolygons(vertices, polygons);
+  lookAtWatch();
   SurfaceGraph graph;
   graph.corners = vertices;
   addTriangles(graph, faces);
   measureFaces(graph, faces);
   check(graph.area() > 0.0, "area of the mesh", graph.area(), "> 0");
-  const std::vector<float> agreement = joinFaces(graph, facesOfEdges(faces));
+  lookAtWatch();
+  const std::vector<float> agreement = joinFaces(graph, faces);
   return completedGraph(std::move(graph), agreement);
 }
 

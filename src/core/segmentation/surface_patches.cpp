@@ -8,6 +8,7 @@
 #include <queue>
 #include <utility>
 
+#include "core/base/watched_steps.h"
 #include "core/segmentation/labels.h"
 
 namespace pcl_symmetry {
@@ -49,6 +50,7 @@ public:
 
   /// Adds a patch, which takes the elements that are closer to its seed than to earlier ones.
   void addSeed(int seed) {
+    lookAtWatch();
     const int patch = num_patches_++;
     distance_[seed] = 0.0f;
     patch_[seed] = patch;

@@ -10,6 +10,7 @@
 #include "core/base/constants.h"
 #include "core/base/parallel.h"
 #include "core/base/random.h"
+#include "core/base/watched_steps.h"
 
 namespace pcl_symmetry {
 
@@ -129,8 +130,12 @@ SymmetryMap votingTransform(const GaussianEdt& edt, const PlaneGrid& grid, const
     std::vector<float>& values = partial[block];
     values.assign(grid.size(), 0.0f);
     RandomStream random(options.seed, block);
-    for (std::int64_t i = shareOf(block, votes.numFar()); i > 0; --i) votes.voteFar(random, values);
-    for (std::int64_t i = shareOf(block, votes.numNear()); i > 0; --i) votes.voteNear(random, values);
+    const auto look = [](std::int64_t i) {
+      if (i % 65536 == 0) lookAtWatch();
+      return i > 0;
+    };
+    for (std::int64_t i = shareOf(block, votes.numFar()); look(i); --i) votes.voteFar(random, values);
+    for (std::int64_t i = shareOf(block, votes.numNear()); look(i); --i) votes.voteNear(random, values);
   });
   SymmetryMap map = SymmetryMap::zero(edt, grid, TransformMethod::Voting);
   for (const auto& values : partial)

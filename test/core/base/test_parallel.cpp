@@ -133,6 +133,16 @@ TEST(Watch, IsToldHowFarTheOuterLoopIsAndEndsAllLoops) {
   EXPECT_EQ(sum, 4950) << "loops work after one that was ended";
 }
 
+TEST(Watch, EndsStepsOfOneThread) {
+  constexpr int kSize = 100'000;
+  const Eigen::MatrixXf features = Eigen::MatrixXf::Random(8, kSize);
+  const auto clusters = [&] {
+    const Watch watch([](double) { throw 5; });
+    kMeans(features, std::vector<float>(kSize, 1.0f), 2);
+  };
+  EXPECT_THROW(clusters(), int);
+}
+
 TEST(RandomStream, UniformIsUniform) {
   // Mean and variance of 1e5 uniform numbers have standard errors sqrt(1/12/n) = 9.1e-4 and sqrt(1/180/n) = 2.4e-4.
   constexpr int kNum = 100'000;

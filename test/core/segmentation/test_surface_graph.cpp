@@ -7,6 +7,8 @@
 #include <limits>
 #include <stdexcept>
 
+#include "core/base/parallel.h"
+#include "core/segmentation/surface_patches.h"
 #include "shapes/meshes.h"
 #include "shapes/neighbors.h"
 #include "shapes/shapes.h"
@@ -115,6 +117,23 @@ TEST(SurfaceGraph, CloudOfABoxHasItsAreaAndOutwardNormals) {
   int num_outward = 0;
   for (int i = 0; i < graph.size(); ++i) num_outward += graph.normals.col(i).dot(graph.centers.col(i)) > 0.0f;
   EXPECT_GT(num_outward, 0.99 * graph.size());
+}
+
+TEST(SurfaceGraph, AWatchEndsTheStepsOfOneThread) {
+  constexpr int kSide = 400;
+  Mesh sheet;
+  sheet.vertices.resize(3, kSide * kSide);
+  for (int i = 0; i < kSide * kSide; ++i)
+    sheet.vertices.col(i) << static_cast<float>(i % kSide), static_cast<float>(i / kSide), std::sin(0.1f * i);
+  for (int i = 0; i + kSide + 1 < kSide * kSide; ++i)
+    if ((i + 1) % kSide != 0) sheet.polygons.push_back({i, i + 1, i + kSide + 1, i + kSide});
+  const auto watched = [](const auto& step) {
+    const Watch watch([](double) { throw 5; });
+    step();
+  };
+  EXPECT_THROW(watched([&] { sheet.graph(); }), int);
+  const SurfaceGraph graph = sheet.graph();
+  EXPECT_THROW(watched([&] { growPatches(graph, 100, 1.0f); }), int);
 }
 
 TEST(SurfaceGraph, PiecesAreConnectedAndOfOneLabel) {
