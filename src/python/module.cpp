@@ -401,23 +401,24 @@ std::vector<RankedView> viewpoints(const Weighted& planes, const Weighted& axes,
   return bestViews(viewPlanes(weighted(planes), weighted(axes), weighted(maxima)));
 }
 
-/// \return for each query the row of the closest point, and its distance in input units.
-std::pair<py::array_t<int>, py::array_t<float>> closest(const AnyArray& points, const AnyArray& queries) {
-  const InputPoints input("points", points, 0, 0), asked("queries", queries, 0, 0);
-  std::vector<int> indices(static_cast<std::size_t>(asked.points().cols()));
-  std::vector<float> distances(indices.size());
+/// \return for each row the row of its counterpart, -1 for none, and its distance from the reflection.
+std::pair<py::array_t<std::int64_t>, py::array_t<double>> pairs(const AnyArray& points, const ReflectionPlane& plane,
+                                                                double max_distance) {
+  const InputPoints input("points", points, 0, 0);
+  ReflectedPairs found;
   {
     const Computing computing;
-    const auto search = makeFlannSearch(input.points());
-    parallelRanges(indices.size(), 4096, 0, [&](std::size_t begin, std::size_t end) {
-      std::vector<int> found;
-      std::vector<float> sq_distances;
-      search->search(asked.points().middleCols(begin, end - begin), 1, found, sq_distances);
-      std::copy(found.begin(), found.end(), indices.begin() + begin);
-      for (std::size_t i = begin; i < end; ++i) distances[i] = std::sqrt(sq_distances[i - begin]);
-    });
+    found = reflectedPairs(input.points(), plane, max_distance);
   }
-  return {toArray(indices), toArray(distances)};
+  std::vector<std::int64_t> index(input.numRows(), -1);
+  std::vector<double> distance(index.size(), std::numeric_limits<double>::infinity());
+  const auto row = [&](std::size_t i) { return input.rows().empty() ? i : input.rows()[i]; };
+  for (std::size_t i = 0; i < found.index.size(); ++i) {
+    if (found.index[i] < 0) continue;
+    index[row(i)] = static_cast<std::int64_t>(row(static_cast<std::size_t>(found.index[i])));
+    distance[row(i)] = std::sqrt(found.sq_distances[i]);
+  }
+  return {toArray(index), toArray(distance)};
 }
 
 /// Adds a function with these names of parameters, which all are given by the package.
@@ -458,7 +459,7 @@ PYBIND11_MODULE(_pcl_symmetry, module) {
   add(module, "profile", &revolutionProfileOf, "points", "point", "direction", "num_points");
   add(module, "viewpoints", &viewpoints, "planes", "axes", "maxima");
   add(module, "sample_mesh", &sampleMesh, "vertices", "faces", "num_points", "seed");
-  add(module, "closest", &closest, "points", "queries");
+  add(module, "pairs", &pairs, "points", "plane", "max_distance");
   module.attr("__version__") = PCL_SYMMETRY_VERSION;
 }
 

@@ -395,6 +395,7 @@ std::vector<ScanPoint> RegisteredScans::mergedPoints(const std::vector<ObjectSca
   Points all(3, total);
   for (std::size_t k = 0; k < input.size(); ++k) {
     if (!scans[k].left_out.empty()) continue;
+    lookAtWatch();
     all.middleCols(static_cast<Eigen::Index>(points.size()), input[k].points.cols()) =
         scans[k].T_first_scan.cast<float>() * input[k].points;
     for (Eigen::Index i = 0; i < input[k].points.cols(); ++i)

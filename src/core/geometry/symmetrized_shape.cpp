@@ -109,6 +109,21 @@ std::vector<char> movingVertices(const Points& vertices, const std::vector<Eigen
   return moves;
 }
 
+/// The closest point to each query, 3 x M.
+ReflectedPairs closestTo(const PointsRef& queries, const ClosestPointSearch& search, int num_threads) {
+  ReflectedPairs found;
+  found.index.resize(queries.cols());
+  found.sq_distances.resize(queries.cols());
+  parallelPoints(found.index.size(), num_threads, [&](std::size_t begin, std::size_t end) {
+    std::vector<int> index;
+    std::vector<float> sq_distances;
+    search.search(queries.middleCols(begin, end - begin), 1, index, sq_distances);
+    std::copy(index.begin(), index.end(), found.index.begin() + begin);
+    std::copy(sq_distances.begin(), sq_distances.end(), found.sq_distances.begin() + begin);
+  });
+  return found;
+}
+
 /// Mean and greatest absolute value of the asymmetry.
 void summarize(SymmetrizedShape& shape, const std::vector<double>& weights) {
   double sum = 0.0, weight = 0.0;
@@ -244,11 +259,7 @@ SymmetrizedShape symmetrizedCloud(const PointsRef& points, const ReflectionPlane
   const LocalGeometry geometry = localGeometry(result.points, *search, kNumSupportNeighbors, num_threads);
   const Eigen::Vector3d center = centerOfMass(points);
   const Points images = reflectedPoints(points, plane);
-  std::vector<int> closest(points.cols());
-  parallelPoints(closest.size(), num_threads, [&](std::size_t begin, std::size_t end) {
-    const std::vector<int> found = search->closest(images.middleCols(begin, end - begin));
-    std::copy(found.begin(), found.end(), closest.begin() + begin);
-  });
+  const std::vector<int> closest = closestTo(images, *search, num_threads).index;
   for (Eigen::Index i = 0; i < points.cols(); ++i) {
     const Eigen::Vector3d x = points.col(i).cast<double>(), image = images.col(i).cast<double>();
     const bool is_left = plane.signedDistance(x) < 0.0;
@@ -275,7 +286,7 @@ ReflectedPairs reflectedPairs(const PointsRef& points, const ReflectionPlane& pl
   ReflectedPairs pairs;
   if (points.cols() == 0) return pairs;
   if (max_distance == 0.0) max_distance = kSymmetrizing.pair_share * farthestPair(withoutStrayPoints(points));
-  makeFlannSearch(points)->search(reflectedPoints(points, plane), 1, pairs.index, pairs.sq_distances);
+  pairs = closestTo(reflectedPoints(points, plane), *makeFlannSearch(points), 0);
   for (std::size_t i = 0; i < pairs.index.size(); ++i)
     if (pairs.sq_distances[i] > max_distance * max_distance) pairs.index[i] = -1;
   return pairs;

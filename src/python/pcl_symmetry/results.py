@@ -181,31 +181,10 @@ class ReflectionPlane(Result):
         Returns (index, distance), each (N,): the row of the counterpart and its distance from the reflection; -1 and
         infinity where there is none, as on the unseen side of a scan.
         """
-        import numpy as np
-
-        from . import _pcl_symmetry as core
-        from .functions import of_vertices
+        from .functions import _core_plane, core, of_vertices
 
         array, shift, *_ = of_vertices("points", points)
-        if array.ndim != 2 or array.shape[1] != 3 or array.dtype.kind not in "fiu":
-            core.closest(array, array)  # says what is wrong
-        plane = self if shift is None else self._moved(-shift)
-        used = np.isfinite(array).all(axis=1)
-        if max_distance < 0 or not np.isfinite(max_distance):
-            raise ValueError(f"max_distance = {max_distance}, must be >= 0")
-        index, distance = np.full(len(array), -1), np.full(len(array), np.inf)
-        if not used.any():
-            return index, distance
-        with np.errstate(over="ignore", invalid="ignore"):
-            kept = np.ascontiguousarray(array[used], dtype=np.float32)
-            images = plane.reflect(kept)
-        if not (np.isfinite(kept).all() and np.isfinite(images).all()):
-            raise ValueError("points = coordinates that float32 cannot hold, must have another unit")
-        limit = max_distance or 0.01 * float(np.linalg.norm(np.ptp(kept.astype(float), axis=0)))
-        closest, length = core.closest(kept, images)
-        near = length <= limit
-        rows = np.flatnonzero(used)
-        index[rows[near]], distance[rows[near]] = rows[closest[near]], length[near]
+        index, distance = core.pairs(array, _core_plane(self, shift), max_distance=max_distance)
         return index, distance
 
     def _moved(self: Self, shift: NDArray[np.float64]) -> Self:
