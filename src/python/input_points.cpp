@@ -125,6 +125,11 @@ Points InputPoints::atPoints(const char* name, const py::array& normals) const {
   return result;
 }
 
+void checkAnswerable(const char* name, const PointsRef& points) {
+  if (const std::string reason = whyUnanswerable(points); !reason.empty())
+    throw NoAnswer(std::string(name) + ": " + reason);
+}
+
 std::optional<Eigen::Vector3d> positionOf(const py::object& viewpoint) {
   if (!py::isinstance<py::str>(viewpoint)) {
     try {
@@ -141,9 +146,10 @@ std::optional<Eigen::Vector3d> positionOf(const py::object& viewpoint) {
 }
 
 std::optional<Visibility> seenFrom(const PointsRef& points, const py::object& viewpoint) {
-  if (viewpoint.is_none() || points.cols() == 0) return std::nullopt;
+  if (viewpoint.is_none()) return std::nullopt;
   if (py::isinstance<Visibility>(viewpoint)) return viewpoint.cast<Visibility>();
   const std::optional<Eigen::Vector3d> position = positionOf(viewpoint);
+  if (points.cols() == 0) return std::nullopt;
   const Computing computing;
   if (!position) {
     std::optional<InferredView> view = inferView(points, Eigen::Vector3d::Zero());

@@ -5,6 +5,7 @@
 
 #include <cstdint>
 #include <optional>
+#include <stdexcept>
 #include <vector>
 
 #include "pcl_symmetry/core/point_set.h"
@@ -54,6 +55,15 @@ private:
   std::vector<std::size_t> rows_;
   Points copied_ = Points(3, 0);
 };
+
+/// Says which points hold no answer, and why. The package warns of it where C++ has a reason.
+struct NoAnswer : std::runtime_error {
+  using std::runtime_error::runtime_error;
+};
+
+/// Called once all parameters were checked: a bad one is refused whatever the points are.
+/// \throws NoAnswer where whyUnanswerable() has a reason.
+void checkAnswerable(const char* name, const PointsRef& points);
 
 /// \param viewpoint where the scanner stood: "auto" (the points decide) or x, y, z.
 /// \return nothing for "auto".

@@ -13,7 +13,7 @@
 #include <utility>
 #include <vector>
 
-#include "core/base/parallel.h"
+#include "core/base/check.h"
 #include "core/geometry/point_samples.h"
 #include "core/geometry/triangles.h"
 #include "core/matching/shape_signature.h"
@@ -113,6 +113,7 @@ TransformMethod methodNamed(const std::string& method) {
 SymmetrizedShape symmetrize(const AnyArray& points, const py::object& faces, const ReflectionPlane& plane,
                             const std::string& half, int threads) {
   const auto kept = named<SymmetrizedHalf>("half", half, {"mean", "left", "right"});
+  checkNumThreads(threads);
   if (!faces.is_none()) {
     const MeshInput mesh(points, {arrayOf("faces", faces)});
     const Computing computing;
@@ -211,6 +212,7 @@ struct TransformInput {
 };
 
 /// \param shape points or a volume.
+/// \throws NoAnswer, and std::invalid_argument for bad options.
 TransformInput transformInput(const py::object& shape, const GaussianEdtOptions& options, std::uint64_t seed) {
   if (py::isinstance<GivenVolume>(shape)) {
     const auto& volume = shape.cast<const GivenVolume&>();
@@ -219,7 +221,9 @@ TransformInput transformInput(const py::object& shape, const GaussianEdtOptions&
     const VolumeFunction f(volume.grid, volume.levels, side * side * side, options.num_threads);
     return {GaussianEdt(f, options), centerOfMass(f.bodyPoints(false))};
   }
+  options.validate();
   const InputPoints input("points", arrayOf("points", shape), 0, seed);
+  checkAnswerable("points", input.points());
   const Computing computing;
   return {GaussianEdt(input.points(), options), centerOfMass(input.points())};
 }
@@ -227,11 +231,13 @@ TransformInput transformInput(const py::object& shape, const GaussianEdtOptions&
 /// \return PRST, PRSD and GEDT.
 std::vector<std::vector<float>> descriptors(const AnyArray& points, const py::object& viewpoint, bool input_axes,
                                             bool by_equation_1, std::uint64_t seed, int threads) {
-  const InputPoints input("points", points, 20'000, seed);
-  const std::optional<Visibility> seen = seenFrom(input.points(), viewpoint);
-  const Computing computing;
   auto options = optionsWith<DescriptorOptions>(seed, threads);
   options.by_equation_1 = by_equation_1;
+  options.validate();
+  const InputPoints input("points", points, 20'000, seed);
+  const std::optional<Visibility> seen = seenFrom(input.points(), viewpoint);
+  checkAnswerable("points", input.points());
+  const Computing computing;
   const Eigen::Isometry3d T_frame_input = descriptorFrame(input.points(), input_axes, seen ? &*seen : nullptr, options);
   SymmetryDescriptors all = symmetryDescriptors(input.points(), T_frame_input, options);
   return {std::move(all.prst), std::move(all.prsd), std::move(all.gedt)};
@@ -239,13 +245,16 @@ std::vector<std::vector<float>> descriptors(const AnyArray& points, const py::ob
 
 PlaneSearch publishedPlanesOf(const AnyArray& points, const std::string& method, int num_points, std::uint64_t seed,
                               int threads) {
-  const InputPoints input("points", points, 0, seed);
   const TransformMethod estimator = methodNamed(method);
-  const Computing computing;
-  const GaussianEdt edt(input.points());
   auto options = optionsWith<PublishedOptions>(seed, threads);
   options.num_points = num_points;
+  options.validate();
+  const InputPoints input("points", points, 0, seed);
   PlaneSearch search;
+  search.found.reason = whyUnanswerable(input.points());
+  if (!search.found.reason.empty()) return search;
+  const Computing computing;
+  const GaussianEdt edt(input.points());
   search.found.planes =
       publishedPlanes(input.points(), edt, publishedMap(input.points(), edt, estimator, seed, threads), options);
   return search;
@@ -253,27 +262,25 @@ PlaneSearch publishedPlanesOf(const AnyArray& points, const std::string& method,
 
 std::vector<float> localSymmetryOf(const py::object& shape, const AnyArray& at, double scale, std::uint64_t seed,
                                    int threads) {
-  const InputPoints asked("at", at, 0, seed);
   GaussianEdtOptions edt_options;
   edt_options.num_threads = threads;
   const GaussianEdt edt = transformInput(shape, edt_options, seed).edt;
+  const InputPoints asked("at", at, 0, seed);
   const Computing computing;
   auto options = optionsWith<LocalSymmetryOptions>(seed, threads);
   options.scale = scale * edt.radius();
   return localSymmetry(edt, asked.points(), options);
 }
 
-std::string whyUnanswerableOf(const AnyArray& points, const std::string& name) {
-  return whyUnanswerable(InputPoints(name.c_str(), points, 0, 0).points());
-}
-
 SymmetryFrame frame(const AnyArray& points, const py::object& viewpoint, std::size_t max_points, bool as_published,
                     std::uint64_t seed, int threads, const std::optional<MeshSurface>& mesh) {
-  const InputPoints input("points", points, max_points, seed);
-  const std::optional<Visibility> seen = seenFrom(input.points(), viewpoint);
-  const Computing computing;
   auto options = optionsWith<FrameOptions>(seed, threads);
   options.as_published = as_published;
+  options.validate();
+  const InputPoints input("points", points, max_points, seed);
+  const std::optional<Visibility> seen = seenFrom(input.points(), viewpoint);
+  checkAnswerable("points", input.points());
+  const Computing computing;
   SymmetryFrame found = symmetryFrame(input.points(), options, seen ? &*seen : nullptr);
   if (mesh && !seen) refineOnMesh(*mesh, found);
   return found;
@@ -285,7 +292,9 @@ ObjectSymmetries rotations(const AnyArray& points, double tolerance, double abso
   options.tolerance = tolerance;
   options.absolute_tolerance = absolute_tolerance;
   options.max_feature = max_feature;
+  options.validate();
   const InputPoints input("points", points, 0, seed);
+  checkAnswerable("points", input.points());
   const Computing computing;
   return mesh ? objectSymmetries(input.points(), *mesh, options) : objectSymmetries(input.points(), options);
 }
@@ -303,10 +312,11 @@ ObjectSymmetries rotationsOf(const std::vector<RowMajor4>& discrete,
 /// \return the added points, and the rows that they are the reflections of.
 std::pair<py::array_t<float>, std::vector<std::size_t>> complete(const AnyArray& points, const ReflectionPlane& plane,
                                                                  const py::object& viewpoint, int threads) {
-  const InputPoints input("points", points, 0, 0);
-  const std::optional<Visibility> seen = seenFrom(input.points(), viewpoint);
   CompletionOptions options;
   options.num_threads = threads;
+  options.validate();
+  const InputPoints input("points", points, 0, 0);
+  const std::optional<Visibility> seen = seenFrom(input.points(), viewpoint);
   Points added;
   std::vector<std::size_t> rows;
   {
@@ -326,9 +336,9 @@ std::pair<py::array_t<float>, std::vector<std::size_t>> complete(const AnyArray&
 std::vector<int> segmentCloud(const py::array& points, const SegmentationOptions& options) {
   constexpr int kMostPoints = 30'000, kNumNeighbors = 12;  // as in SymmetrySegmentation
   const InputPoints input("points", points, kMostPoints, options.seed);
-  const Computing computing;
   const PointsRef used = input.points();
-  if (used.cols() <= kNumNeighbors) throw std::invalid_argument("points: too few to have parts, must be more than 12");
+  checkAnswerable("points", used);
+  const Computing computing;
   const auto neighbors = nearestOthers(used, *makeFlannSearch(used), kNumNeighbors, options.num_threads);
   const Segmentation parts = segmentSurface(cloudGraph(used, neighbors), options);
   std::vector<int> labels(input.numRows(), -1);
@@ -345,6 +355,7 @@ std::vector<int> segment(const AnyArray& points, const py::object& faces, int pa
   options.method = named<SegmentationMethod>("method", method, {"merging", "splitting"});
   options.splitting.depth = depth;
   options.splitting.as_published = as_published;
+  options.validate();
   if (progress)
     options.progress = [&progress](double share) {
       const py::gil_scoped_acquire acquire;
@@ -359,8 +370,10 @@ std::vector<int> segment(const AnyArray& points, const py::object& faces, int pa
 }
 
 Eigen::MatrixXf describe(const AnyArray& points, const py::object& viewpoint, std::uint64_t seed, int threads) {
+  checkNumThreads(threads);
   const InputPoints input("points", points, 0, seed);
   const std::optional<Visibility> seen = seenFrom(input.points(), viewpoint);
+  checkAnswerable("points", input.points());
   const Computing computing;
   const auto options = optionsWith<DescriptionOptions>(seed, threads);
   return describeShape(input.points(), options, seen ? &*seen : nullptr).signatures.transpose();
@@ -377,6 +390,9 @@ SymmetryMap transform(const py::object& shape, const std::array<int, 3>& bins, c
   if (as_published) options.voting.near_distance = 0.0;
   options.setSeed(seed);
   options.setNumThreads(threads);
+  options.validate();
+  const MapSize size{bins[0], bins[1], bins[2]};
+  size.validate();
   GaussianEdtOptions edt_options;
   edt_options.center = center;
   edt_options.radius = radius;
@@ -385,7 +401,7 @@ SymmetryMap transform(const py::object& shape, const std::array<int, 3>& bins, c
   edt_options.num_threads = threads;
   const TransformInput input = transformInput(shape, edt_options, seed);
   const Computing computing;
-  const PlaneGrid grid(bins[0], bins[1], bins[2], input.edt.center(), input.edt.radius());
+  const PlaneGrid grid(size, input.edt.center(), input.edt.radius());
   return planarTransform(input.edt, grid, input.center_of_mass, options);
 }
 
@@ -431,6 +447,7 @@ void add(py::module_& module, const char* name, const Function& function, Names.
 
 PYBIND11_MODULE(_pcl_symmetry, module) {
   addComputing(module);
+  py::register_exception<NoAnswer>(module, "NoAnswer");
   py::class_<Visibility>(module, "Visibility").def_property_readonly("viewpoint", &Visibility::viewpoint);
   addEvidence(module);
   py::class_<MeshSurface>(module, "MeshSurface").def(py::init(&meshSurface));
@@ -448,7 +465,6 @@ PYBIND11_MODULE(_pcl_symmetry, module) {
   add(module, "transform", &transform, "shape", "bins", "method", "center", "radius", "sigma", "cells", "samples",
       "refined_share", "as_published", "seed", "threads");
   add(module, "local_symmetry", &localSymmetryOf, "shape", "at", "scale", "seed", "threads");
-  add(module, "why_unanswerable", &whyUnanswerableOf, "points", "name");
   add(module, "descriptors", &descriptors, "points", "viewpoint", "input_axes", "by_equation_1", "seed", "threads");
   add(module, "describe", &describe, "points", "viewpoint", "seed", "threads");
   add(module, "segment", &segment, "points", "faces", "parts", "method", "depth", "as_published", "progress", "seed",

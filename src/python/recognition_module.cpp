@@ -39,15 +39,18 @@ CloudRegistration registerPoints(const AnyArray& source, const AnyArray& target,
                                  const std::optional<std::pair<double, double>>& around,
                                  const py::object& source_viewpoint, const py::object& target_viewpoint,
                                  std::uint64_t seed, int threads) {
-  const InputPoints source_input("source", source, 0, seed), target_input("target", target, 0, seed);
-  const std::optional<Visibility> source_seen = seenFrom(source_input.points(), source_viewpoint);
-  const std::optional<Visibility> target_seen = seenFrom(target_input.points(), target_viewpoint);
   const Eigen::Isometry3d T_target_source = motionOf("guess", guess);
-  const Computing computing;
   CloudRegistrationOptions options;
   options.seed = seed;
   options.num_threads = threads;
   if (around) options.around = PoseNeighborhood{around->first, around->second};
+  options.validate();
+  const InputPoints source_input("source", source, 0, seed), target_input("target", target, 0, seed);
+  const std::optional<Visibility> source_seen = seenFrom(source_input.points(), source_viewpoint);
+  const std::optional<Visibility> target_seen = seenFrom(target_input.points(), target_viewpoint);
+  checkAnswerable("source", source_input.points());
+  checkAnswerable("target", target_input.points());
+  const Computing computing;
   return registerClouds(source_input.points(), source_seen, target_input.points(), target_seen, T_target_source,
                         options);
 }
@@ -62,7 +65,7 @@ std::pair<RegisteredScans, py::array_t<int>> registerAllPoints(const std::vector
   for (std::size_t k = 0; k < clouds.size(); ++k) {
     const std::string name = "clouds[" + std::to_string(k) + "]";
     const InputPoints all(name.c_str(), clouds[k], 0, seed), few(name.c_str(), clouds[k], judged, seed);
-    scans.push_back({all.points(), few.points().cols() > 0 ? seenFrom(few.points(), viewpoints[k]) : std::nullopt});
+    scans.push_back({all.points(), seenFrom(few.points(), viewpoints[k])});
     rows.push_back(all.rows());
   }
   CloudRegistrationOptions options;
@@ -102,6 +105,18 @@ Cloud cloudOf(const py::array& points) {
   cloud.reserve(static_cast<std::size_t>(used.cols()));
   for (Eigen::Index i = 0; i < used.cols(); ++i) cloud.emplace_back(used(0, i), used(1, i), used(2, i));
   return cloud;
+}
+
+/// \return what was found; where that is nothing, the points may be the reason.
+/// \throws NoAnswer
+template <typename Found>
+Found answerFor(const Cloud& cloud, const pcl::Indices* indices, Found found) {
+  if (found.empty()) {
+    const Points points = detail::selectPoints(cloud, indices, cloud.size(), 1).points;
+    if (const std::string reason = detail::reasonForNoAnswer(points, "points", 0, indices); !reason.empty())
+      throw NoAnswer(reason);
+  }
+  return found;
 }
 
 Viewpoint viewpointOf(const py::object& viewpoint) {
@@ -333,7 +348,7 @@ void addDatabase(py::module_& module) {
             const Cloud cloud = cloudOf(points);
             const Viewpoint from = viewpointOf(viewpoint);
             const Computing computing;
-            return database.match(cloud, num_nearest, from);
+            return answerFor(cloud, nullptr, database.match(cloud, num_nearest, from));
           },
           py::arg("points"), py::arg("num_nearest"), py::arg("viewpoint"))
       .def(
@@ -346,9 +361,9 @@ void addDatabase(py::module_& module) {
             options.min_confidence = min_confidence;
             options.num_threads = threads;
             const Computing computing;
-            if (!indices) return database.recognize(cloud, options, from);
+            if (!indices) return answerFor(cloud, nullptr, database.recognize(cloud, options, from));
             const auto seen = std::make_shared<const SeenSpace>(cloud, from);
-            return database.recognize(cloud, *indices, options, seen);
+            return answerFor(cloud, &*indices, database.recognize(cloud, *indices, options, seen));
           },
           py::arg("points"), py::arg("indices"), py::arg("viewpoint"), py::arg("min_confidence"), py::arg("threads"));
 }
@@ -381,7 +396,7 @@ void addScenes(py::module_& module) {
 
 PYBIND11_MODULE(_recognition, module) {
   pcl::console::setVerbosityLevel(pcl::console::L_ALWAYS);  // the package tells the reasons
-  py::module_::import("pcl_symmetry._pcl_symmetry");        // has the classes of planes and frames
+  py::module_::import("pcl_symmetry._pcl_symmetry");        // has the classes of planes and frames, and NoAnswer
   addComputing(module);
   // Messages of the library name the file or the parameter.
   py::register_exception_translator([](std::exception_ptr error) {

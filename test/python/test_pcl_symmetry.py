@@ -213,6 +213,51 @@ class Planes(unittest.TestCase):
         with self.assertRaisesRegex(ValueError, "scale = 2, must be in"):
             pcl_symmetry.local_symmetry(box(), 2)
 
+    def test_wrong_parameters_are_refused_the_same_where_points_hold_no_answer(self):
+        s, guess = pcl_symmetry, np.ones((4, 4))
+        plane = s.ReflectionPlane([1, 0, 0], 0.0)
+        calls = [
+            lambda p: s.planes(p, tolerance=-1),
+            lambda p: s.planes(p, viewpoint="here"),
+            lambda p: s.planes(p, seed="one"),
+            lambda p: s.planes(p, as_published=True, method="guess"),
+            lambda p: s.frame(p, threads=-1),
+            lambda p: s.frame(p, viewpoint="here"),
+            lambda p: s.rotations(p, tolerance=-1),
+            lambda p: s.rotations(p, max_feature=2.0),
+            lambda p: s.segment(p, method="cutting"),
+            lambda p: s.segment(p, parts=-1),
+            lambda p: s.transform(p, method="guess"),
+            lambda p: s.transform(p, (0, 2, 2)),
+            lambda p: s.transform(p, cells=1),
+            lambda p: s.transform(p, samples=-1),
+            lambda p: s.local_symmetry(p, 2),
+            lambda p: s.local_symmetry(p, threads=-1),
+            lambda p: s.describe(p, threads=-1),
+            lambda p: s.descriptors(p, viewpoint=(np.inf, 0, 0)),
+            lambda p: s.complete(p, plane, threads=-1),
+            lambda p: s.symmetrize(p, plane, threads=-1),
+        ]
+        if has_pcl():
+            database = s.Database(":memory:")
+            calls += [
+                lambda p: s.register(p, box(), guess=guess),
+                lambda p: s.register(box(), p, around=(-1.0, 0.0)),
+                lambda p: s.register(p, box(), source_viewpoint="here"),
+                lambda p: s.register_all([p, p], viewpoint="here"),
+                lambda p: database.match(p, -1),
+                lambda p: database.match(p, 0.5),
+                lambda p: database.recognize(p, min_confidence=2.0),
+                lambda p: s.scene(p, viewpoint=(0, 0, 9), min_points=1),
+            ]
+        for number, call in enumerate(calls):
+            errors = []
+            for points in (box(), box(num_points=5), np.full((50, 3), np.nan)):
+                with self.assertRaises((TypeError, ValueError), msg=number) as caught:
+                    call(points)
+                errors.append((type(caught.exception), str(caught.exception)))
+            self.assertEqual(len(set(errors)), 1, errors)
+
     def test_faces_are_indices(self):
         vertices, faces = box_mesh()
         expected = pcl_symmetry.sample_mesh(vertices, faces)

@@ -8,8 +8,8 @@ import warnings
 from typing import TYPE_CHECKING, Any, Callable, Iterable, Iterator, List, Mapping, Optional, Sequence, Tuple, Union
 
 from . import _recognition
-from .functions import Cloud, Core, Viewpoint, _fields, _frame, _planes_of, _seen_from, no_answer, prepare, rows_of
-from .progress import Progress, shares_of, telling
+from .functions import Cloud, Core, NoAnswer, Viewpoint, _fields, _frame, _planes_of, _seen_from, no_answer, prepare, rows_of
+from .progress import Progress, shares_of
 from .results import (
     BuildReport,
     Junction,
@@ -69,29 +69,23 @@ def register(
 
     points, source_shift, *_ = prepare("source", source)
     model, target_shift, *_ = prepare("target", target)
-    for name, cloud in (("source", points), ("target", model)):
-        if reason := no_answer(cloud, name=name):
-            return Registration(
-                transform=np.eye(4), score=PoseScore(0, 0, 0), converged=False, confidence=0.0, reason=f"{name}: {reason}", poses=[],
-                evidence=PoseEvidence(0, 0, 0, 0, 0, 0, 0, size_ratio=1, uniqueness=1), covariance=None,
-            )  # fmt: skip
     s = np.zeros(3) if source_shift is None else source_shift
     t = np.zeros(3) if target_shift is None else target_shift
     start = np.eye(4) if guess is None else np.array(guess, dtype=float)
     if start.shape == (4, 4):
         start = start.copy()
         start[:3, 3] += start[:3, :3] @ s - t
-    found = core.register(
-        points,
-        model,
-        guess=start,
-        around=around,
-        source_viewpoint=_seen_from(source_viewpoint, source_shift),
-        target_viewpoint=_seen_from(target_viewpoint, target_shift),
-        told=progress,
-        seed=seed,
-        threads=threads,
+    viewpoints = dict(
+        source_viewpoint=_seen_from(source_viewpoint, source_shift), target_viewpoint=_seen_from(target_viewpoint, target_shift)
     )
+    try:
+        found = core.register(points, model, guess=start, around=around, told=progress, seed=seed, threads=threads, **viewpoints)
+    except NoAnswer as none:
+        no_answer(none)
+        return Registration(
+            transform=np.eye(4), score=PoseScore(0, 0, 0), converged=False, confidence=0.0, reason=str(none), poses=[],
+            evidence=PoseEvidence(0, 0, 0, 0, 0, 0, 0, size_ratio=1, uniqueness=1), covariance=None,
+        )  # fmt: skip
     result = Registration(
         score=_score(found.score),
         poses=[(pose, _score(score)) for pose, score in found.poses],
@@ -236,10 +230,11 @@ class Database:
         Points that hold no answer are warned of (RuntimeWarning) and have none.
         """
         cloud = _near_origin(points)
-        if no_answer(cloud.array):
+        try:
+            found = Core(self._core, _recognition).match(_camera_points(cloud), num_nearest=num_nearest, viewpoint=viewpoint, told=progress)
+        except NoAnswer as none:
+            no_answer(none)
             return []
-        with telling(_recognition, progress):
-            found = self._core.match(_camera_points(cloud), num_nearest, viewpoint=viewpoint)
         return [Match(m.name, m.distance) for m in found]
 
     def recognize(
@@ -258,18 +253,12 @@ class Database:
         points, viewpoint, indices: as in planes(). min_confidence: least probability of a model that is accepted, in [0, 1].
         """
         cloud = _near_origin(points)
-        rows = rows_of(indices, cloud.shape)
-        of_cloud = rows is None or not all(0 <= row < len(cloud.array) for row in rows)  # the core refuses such rows
-        if no_answer(cloud.array if of_cloud else cloud.array[rows]):
+        options = dict(viewpoint=viewpoint, min_confidence=min_confidence, told=progress, threads=threads)
+        try:
+            found = Core(self._core, _recognition).recognize(_camera_points(cloud), indices=rows_of(indices, cloud.shape), **options)
+        except NoAnswer as none:
+            no_answer(none)
             return []
-        with telling(_recognition, progress):
-            found = self._core.recognize(
-                _camera_points(cloud),
-                rows,
-                viewpoint=viewpoint,
-                min_confidence=min_confidence,
-                threads=threads,
-            )
         return [_recognized(m) for m in found]
 
 

@@ -32,13 +32,13 @@ if TYPE_CHECKING:
 
 
 class Core:
-    """A module of pybind11; where that lists all its types, the argument that has another one is named."""
+    """A module of pybind11, or an object of it; where that lists all its types, the argument that has another one is named."""
 
-    def __init__(self, module: Any) -> None:
-        self._module = module
+    def __init__(self, asked: Any, module: Any = None) -> None:
+        self._asked, self._module = asked, module or asked
 
     def __getattr__(self, name: str) -> Any:
-        found = getattr(self._module, name)
+        found = getattr(self._asked, name)
         return self._named(found) if callable(found) and not isinstance(found, type) else found
 
     def _named(self, function: Callable[..., Any]) -> Callable[..., Any]:
@@ -499,9 +499,11 @@ def local_symmetry(
     else:
         shape, positions = _volume(volume, spacing, origin, direction, levels), parts_of("at", at)[0]
     result = np.full(len(positions), np.nan, np.float32)
-    if cloud is None or not no_answer(shape):
-        values = core.local_symmetry(shape, positions, scale, told=progress, seed=seed, threads=threads)
+    try:
+        values = core.local_symmetry(shape, positions, scale=scale, told=progress, seed=seed, threads=threads)
         result[np.isfinite(positions).all(axis=1)] = values
+    except NoAnswer as none:
+        no_answer(none)
     return result.reshape(cloud.shape) if cloud and cloud.mesh is None else result
 
 
@@ -621,12 +623,15 @@ def from_depth(depth: ArrayLike, intrinsics: ArrayLike, *, unit: float = 1.0) ->
     return points
 
 
-def no_answer(points: Any, reason: str = "", name: str = "points") -> str:
-    """Why points hold no answer, if they do not; whoever asked for one is warned of it."""
-    reason = reason or core.why_unanswerable(points, name)
-    if reason:
-        warnings.warn(f"{name}: {reason}", RuntimeWarning, stacklevel=3)
-    return reason
+NoAnswer = _pcl_symmetry.NoAnswer
+"""Raised by the core, once all parameters are checked, for points that hold no answer."""
+
+
+def no_answer(found: Exception, reason: str = "") -> str:
+    """Why points hold no answer; whoever asked for one is warned of it. reason: of selected rows."""
+    name, why = str(found).split(": ", 1)
+    warnings.warn(f"{name}: {reason or why}", RuntimeWarning, stacklevel=3)
+    return reason or why
 
 
 def _no_frame(reason: str) -> Frame:
@@ -654,10 +659,11 @@ def frame(
     """Canonical frame of a cloud (Section 5.1). Parameters as in planes(); as_published: the paper's own method."""
     cloud = prepare("points", points)
     used = look(cloud, viewpoint, indices, ground, max_points, as_published, seed, threads)
-    if reason := no_answer(used.array, used.reason):
-        return _no_frame(reason)
     options = dict(max_points=max_points, as_published=as_published, told=progress, seed=seed, threads=threads)
-    found = core.frame(used.array, viewpoint=used.viewpoint, mesh=None if as_published else cloud.surface(), **options)
+    try:
+        found = core.frame(used.array, viewpoint=used.viewpoint, mesh=None if as_published else cloud.surface(), **options)
+    except NoAnswer as none:
+        return _no_frame(no_answer(none, used.reason))
     _warn_of_stray(found)
     result = _frame(found)
     return result if cloud.shift is None else result._moved(cloud.shift)
@@ -693,19 +699,12 @@ def rotations(
     import numpy as np
 
     cloud = prepare("points", points)
-    if reason := no_answer(cloud.array):
+    options = dict(tolerance=tolerance, absolute_tolerance=absolute_tolerance, max_feature=max_feature, seed=seed, threads=threads)
+    try:
+        found = core.rotations(cloud.array, told=progress, mesh=cloud.surface(), **options)
+    except NoAnswer as none:
         nothing: Dict[str, Any] = dict(support=0.0, confidence=0.0, fold=1, continuous=[], tolerance=0.0, stray_points=0)
-        return Rotations(name="", center=np.full(3, np.nan), discrete=np.empty((0, 4, 4)), reason=reason, **nothing)
-    found = core.rotations(
-        cloud.array,
-        tolerance=tolerance,
-        absolute_tolerance=absolute_tolerance,
-        max_feature=max_feature,
-        told=progress,
-        seed=seed,
-        threads=threads,
-        mesh=cloud.surface(),
-    )
+        return Rotations(name="", center=np.full(3, np.nan), discrete=np.empty((0, 4, 4)), reason=no_answer(none), **nothing)
     names = ("name", "center", "support", "confidence", "fold", "discrete", "continuous", "tolerance", "stray_points", "reason")
     _warn_of_stray(found)
     fields = _fields(found, *names)
@@ -738,11 +737,13 @@ def segment(
     positions, own_faces = parts_of("points", points)
     faces = own_faces if faces is None else faces
     cloud = prepare("points", positions)
-    if faces is None and no_answer(cloud.array):
-        return np.full(cloud.shape, -1, np.int32)
     options = dict(parts=parts, method=method, depth=depth, as_published=as_published, seed=seed, threads=threads)
-    with shares_of(progress) as tell:
-        labels = np.asarray(core.segment(cloud.array, faces, progress=tell, **options), dtype=np.int32)
+    try:
+        with shares_of(progress) as tell:
+            labels = np.asarray(core.segment(cloud.array, faces, progress=tell, **options), dtype=np.int32)
+    except NoAnswer as none:
+        no_answer(none)
+        return np.full(cloud.shape, -1, np.int32)
     return labels.reshape(cloud.shape) if faces is None else labels
 
 
@@ -754,11 +755,13 @@ def describe(
 
     cloud = prepare("points", points)
     used = look(cloud, viewpoint, max_points=0, as_measured=True, seed=seed, threads=threads)
-    if no_answer(used.array, used.reason):
-        return np.empty((0, 0), np.float32)
-    result: NDArray[np.float32] = core.describe(
-        used.array, viewpoint=used.viewpoint, told=progress, seed=seed, threads=threads
-    )
+    try:
+        result: NDArray[np.float32] = core.describe(
+            used.array, viewpoint=used.viewpoint, told=progress, seed=seed, threads=threads
+        )
+    except NoAnswer as none:
+        no_answer(none, used.reason)
+        result = np.empty((0, 0), np.float32)
     return result
 
 
@@ -781,11 +784,13 @@ def descriptors(
     import numpy as np
 
     used = look(prepare("points", points), viewpoint, max_points=0, as_measured=True, seed=seed, threads=threads)
-    if no_answer(used.array, used.reason):
+    options = dict(viewpoint=used.viewpoint, input_axes=input_axes, by_equation_1=by_equation_1, seed=seed, threads=threads)
+    try:
+        found = core.descriptors(used.array, told=progress, **options)
+    except NoAnswer as none:
+        no_answer(none, used.reason)
         return np.empty((0, 0, 0), np.float32), np.empty((0, 0), np.float32), np.empty((0, 0, 0), np.float32)
-    array, options = used.array, dict(viewpoint=used.viewpoint, input_axes=input_axes, by_equation_1=by_equation_1)
-    options.update(told=progress, seed=seed, threads=threads)
-    prst, prsd, gedt = (np.asarray(values, dtype=np.float32) for values in core.descriptors(array, **options))
+    prst, prsd, gedt = (np.asarray(values, dtype=np.float32) for values in found)
     return prst.reshape(32, 32, 32), prsd.reshape(32, 32), gedt.reshape(32, 32, 32)
 
 
@@ -847,14 +852,16 @@ def transform(
     if volume is None:
         _check_no_volume(direction, levels)
         shape, shift, *_ = prepare("points", points)
-        if reason := no_answer(shape):
-            return Map(sigma=0.0, center=np.full(3, np.nan), radius=0.0, values=np.empty((0, 0, 0), np.float32), reason=reason)
     elif sigma:
         raise ValueError("sigma: of points, must be left out with volume")
     else:
         shape = _volume(volume, spacing, origin, direction, levels)
     options = dict(center=_seen_from(center, shift, "center"), radius=radius, sigma=sigma, as_published=as_published)
     options.update(cells=cells, samples=samples, refined_share=refined_share)
-    found = core.transform(shape, sizes.tolist(), method=method, told=progress, seed=seed, threads=threads, **options)
+    try:
+        found = core.transform(shape, sizes.tolist(), method=method, told=progress, seed=seed, threads=threads, **options)
+    except NoAnswer as none:
+        nothing = np.empty((0, 0, 0), np.float32)
+        return Map(sigma=0.0, center=np.full(3, np.nan), radius=0.0, values=nothing, reason=no_answer(none))
     result = Map(**_fields(found, "sigma", "center", "radius", "values"))
     return result if shift is None else result._moved(shift)
