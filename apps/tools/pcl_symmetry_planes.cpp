@@ -434,7 +434,7 @@ int run(int argc, char** argv) {
   if (!line.parse(argc, argv)) return 0;
   options.method_given = line.given("method");
   line.goWith("the decision, which -as_published leaves out", !options.as_published,
-              {"explain", "approximate", "min_confidence", "tolerance", "absolute_tolerance"});
+              {"explain", "approximate", "min_confidence", "tolerance", "absolute_tolerance", "ground"});
   options.detection.min_possible = std::min(options.detection.min_possible, options.detection.min_confidence);
   if (options.support_path) checkCloudExtension(*options.support_path);
   if (options.profile_path && !boost::iends_with(*options.profile_path, ".csv") &&

@@ -435,7 +435,7 @@ def detect(points, sensor=None, seed=1, tool=None, **options):
         return _detect_by_tool(points, sensor, seed, tool, options)
     import pcl_symmetry
 
-    viewpoint = "auto" if sensor is None else tuple(sensor[:3, 3])
+    viewpoint = "auto" if sensor is None or "as_published" in options else tuple(sensor[:3, 3])
     rows = points.reshape(-1, 3)
     rows = np.ascontiguousarray(rows[np.isfinite(rows[:, 0])], np.float32)
     start = time.perf_counter()

@@ -316,18 +316,6 @@ class Answers(unittest.TestCase):
             with self.assertRaisesRegex(ValueError, "read-only"):
                 array[...] = 0
 
-    def test_flags_of_other_inputs_are_refused(self):
-        volume = np.random.default_rng(1).random((8, 8, 8))
-        for arguments in (
-            dict(volume=volume, viewpoint=(0, 0, 5)),
-            dict(volume=volume, evidence=True),
-            dict(points=box(), levels=(0, 1)),
-            dict(points=box(), as_published=True, indices=[1, 2, 3]),
-            dict(points=box(), as_published=True, approximate=True),
-        ):
-            with self.assertRaisesRegex(ValueError, "must be left out"):
-                pcl_symmetry.planes(**arguments)
-
 
 class LongCalls(unittest.TestCase):
     CALLS = {

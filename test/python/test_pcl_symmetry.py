@@ -12,6 +12,7 @@ import sys
 import tempfile
 import threading
 import time
+import types
 import unittest
 from pathlib import Path
 
@@ -257,6 +258,41 @@ class Planes(unittest.TestCase):
                     call(points)
                 errors.append((type(caught.exception), str(caught.exception)))
             self.assertEqual(len(set(errors)), 1, errors)
+
+    def test_parameters_that_would_do_nothing_are_refused(self):
+        s, points, volume, (vertices, faces) = pcl_symmetry, box(), np.random.default_rng(1).random((8, 8, 8)), box_mesh()
+        plane = s.ReflectionPlane([1, 0, 0], 0.0)
+        mesh = types.SimpleNamespace(vertices=vertices, faces=faces)
+        calls = [
+            *(lambda o=o: s.planes(points, as_published=True, **o)
+              for o in (dict(max_planes=3), dict(max_points=100), dict(viewpoint=np.ones(3)), dict(indices=[1, 2, 3]), dict(approximate=True))),
+            *(lambda o=o: s.planes(volume=volume, **o) for o in (dict(max_points=100), dict(viewpoint=(0, 0, 5)), dict(evidence=True))),
+            *(lambda f=f: f(points, spacing=(1, 1, 2)) for f in (s.planes, s.local_symmetry, s.transform)),
+            lambda: s.planes(points, levels=(0, 1)),
+            lambda: s.planes(mesh, indices=[1, 2, 3]),
+            lambda: s.planes(mesh, normals=vertices),
+            lambda: s.frame(mesh, indices=[1, 2, 3]),
+            lambda: s.frame(points, as_published=True, viewpoint=None),
+            lambda: s.planes(points, tolerance=0.02, absolute_tolerance=0.1),
+            lambda: s.rotations(points, tolerance=0.02, absolute_tolerance=0.1),
+            lambda: s.segment(points, depth=2),
+            lambda: s.segment(points, as_published=True),
+            lambda: s.segment(points, method="splitting", parts=2, depth=2),
+            lambda: s.segment(mesh, faces),
+            lambda: s.sample_mesh(mesh, faces),
+            lambda: s.symmetrize(mesh, plane, faces=faces),
+            lambda: s.symmetrize(points, plane, cut=True),
+            lambda: s.descriptors(points, input_axes=True, viewpoint=None),
+            lambda: s.transform(points, center=(1, 0, 0)),
+            lambda: s.transform(points, method="convolution", samples=5),
+            lambda: s.transform(points, refined_share=0.5),
+            lambda: s.transform(points, as_published=True),
+        ]
+        if has_pcl():
+            calls.append(lambda: s.scene(points, viewpoint=(0, 0, 9), min_name_confidence=0.9))
+        for number, call in enumerate(calls):
+            with self.assertRaisesRegex(ValueError, "must be left out with", msg=number):
+                call()
 
     def test_faces_are_indices(self):
         vertices, faces = box_mesh()

@@ -125,6 +125,7 @@ class Flags(ToolTest):
             ("align", "a.txt -cut", "-cut goes with -symmetrize"), ("align", "a.txt -any_plane", "-any_plane goes with -complete"),
             ("align", "a.txt -target a.txt -as_published", "-as_published goes with frames, without -target"),
             ("planes", "a.txt -as_published -tolerance 0.02", "-tolerance goes with the decision"),
+            ("planes", "a.txt -as_published -ground 0,0,1,0", "-ground goes with the decision"),
             ("scan", "a.txt a.ply -format ascii", "-format goes with an output of PCD"), ("bop", "a.txt -report r", "-report goes with -check"),
             ("bop", "a.txt -color_tolerance 3", "-color_tolerance goes with -color"), ("match", "a a.txt -candidates 3", "-candidates goes with -recognize"),
             ("database", "list a -tag x", "-tag goes with build and add"), ("database", "check a -csv x", "-csv goes with list and info"),

@@ -8,7 +8,7 @@ import warnings
 from typing import TYPE_CHECKING, Any, Callable, Iterable, Iterator, List, Mapping, Optional, Sequence, Tuple, Union
 
 from . import _recognition
-from .functions import Cloud, Core, NoAnswer, Viewpoint, _fields, _frame, _planes_of, _seen_from, no_answer, prepare, rows_of
+from .functions import Cloud, Core, NoAnswer, Viewpoint, _fields, _frame, _planes_of, _seen_from, left_out, no_answer, prepare, rows_of
 from .progress import Progress, shares_of
 from .results import (
     BuildReport,
@@ -325,6 +325,8 @@ def scene(
     """
     import numpy as np
 
+    if database is None:
+        left_out(scene, locals(), "no database", "min_name_confidence")
     cloud = prepare("points", points)
     if len(cloud.shape) == 1 and (viewpoint is None or isinstance(viewpoint, str)):
         raise ValueError("viewpoint: of rows without order must be (x, y, z), where the sensor stood; pixels (H, W, 3) show theirs")

@@ -230,6 +230,8 @@ def look(
     import numpy as np
 
     seen_from = _seen_from(viewpoint, cloud.shift)
+    if cloud.mesh is not None and indices is not None:
+        raise ValueError("indices: must be left out with a mesh")
     if len(cloud.shape) == 1 and indices is None and ground is None:
         return Used(cloud.array, seen_from)
     try:
@@ -389,33 +391,35 @@ def planes(
     evidence: also what the decisions are taken from; takes about as long again.
     as_published: refine the maxima of the map as the paper does (Section 4.4), without a decision: all planes are in the
         list; only then method, of the map: sampled, convolution, rotational or voting. Of the other parameters seed and
-        threads count; those of parts and of the decision are refused.
+        threads count; the rest is refused.
     progress: True shows a bar, a function is called with the share of the running step that is done, in [0, 1].
     volume: (I, J, K) in place of points, such as a CT or MR image, first index along the first axis (as nibabel has it;
         arrays of SimpleITK are transposed). spacing, origin, direction: of its voxels, input units and frame; direction
         is (3, 3) with the axes of the grid in columns. levels: (low, high) intensities that count; None: chosen.
         confidence is then 0 for a plane like any other and 1 where both halves are equal, and support a correlation.
-        Of the other parameters approximate, max_planes, seed and threads count.
+        Of the other parameters approximate, max_planes, seed and threads count; the rest is refused.
     Raises ValueError for bad parameters; points that hold no answer, such as too few, are warned of (RuntimeWarning).
     """
     import numpy as np
 
+    given = locals()
     _check_one_of("planes", points, volume)
     if method != "convolution" and not as_published:
         raise ValueError(f"method = {method}, must be convolution without as_published")
-    if volume is not None or as_published:
-        idle = dict(indices=indices is not None, ground=ground is not None, tolerance=tolerance is not None)
-        idle.update(absolute_tolerance=bool(absolute_tolerance), normals=normals is not None, evidence=evidence)
-        idle.update(dict(approximate=approximate) if volume is None else dict(viewpoint=viewpoint != "auto", as_published=as_published))
-        if given := ", ".join(name for name, is_given in idle.items() if is_given):
-            raise ValueError(f"{given}: must be left out with {'as_published' if volume is None else 'volume'}")
+    of_decision = "viewpoint indices ground tolerance absolute_tolerance normals max_points evidence"
     if volume is not None:
+        left_out(planes, given, "volume", of_decision + " as_published")
         options = dict(approximate=approximate, max_planes=max_planes, seed=seed, threads=threads)
         found = core.volume_planes(_volume(volume, spacing, origin, direction, levels), told=progress, **options)
         return _planes_of(found, Cloud(np.empty((0, 3)), shape=(0,)))
-    _check_no_volume(direction, levels)
+    _check_no_volume(planes, given)
     cloud = prepare("points", points)
+    if cloud.mesh is not None:
+        left_out(planes, given, "a mesh", "normals")
+    if absolute_tolerance:
+        left_out(planes, given, "absolute_tolerance", "tolerance")
     if as_published:
+        left_out(planes, given, "as_published", of_decision + " approximate max_planes")
         found = core.published_planes(cloud.array, method=method, num_points=10_000, told=progress, seed=seed, threads=threads)
         result = _planes_of(found, cloud, judged=False)
         return result if cloud.shift is None else result._moved(cloud.shift)
@@ -448,9 +452,30 @@ def _check_one_of(function: str, points: Any, volume: Any) -> None:
         raise TypeError(f"{function}() takes points or volume")
 
 
-def _check_no_volume(direction: Any, levels: Any) -> None:
-    if levels is not None or direction is not None:
-        raise ValueError("levels, direction: of a volume, must be left out with points")
+def _check_no_volume(function: Callable[..., Any], given: Dict[str, Any]) -> None:
+    names = "spacing origin levels direction"
+    if _not_default(function, given, names):
+        raise ValueError(f"{names.replace(' ', ', ')}: of a volume, must be left out with points")
+
+
+def _not_default(function: Callable[..., Any], given: Dict[str, Any], names: str) -> List[str]:
+    import numpy as np
+
+    defaults: Dict[str, Any] = function.__kwdefaults__
+    return [name for name in names.split() if not np.array_equal(given[name], defaults[name])]
+
+
+def left_out(function: Callable[..., Any], given: Dict[str, Any], beside: str, names: str) -> None:
+    """Refuses parameters that would do nothing beside another one: those of the names that do not have their default."""
+    if idle := _not_default(function, given, names):
+        raise ValueError(f"{', '.join(idle)}: must be left out with {beside}")
+
+
+def faces_of(own: Any, faces: Any) -> Any:
+    """The faces of a mesh, or those that are given beside vertices."""
+    if own is not None and faces is not None:
+        raise ValueError("faces: must be left out with a mesh, which has its own")
+    return faces if own is None else own
 
 
 def _volume(volume: Any, spacing: Any, origin: Any, direction: Any, levels: Optional[Tuple[float, float]]) -> Any:
@@ -486,6 +511,7 @@ def local_symmetry(
     """
     import numpy as np
 
+    given = locals()
     _check_one_of("local_symmetry", points, volume)
     if not 0 < scale <= 1:
         raise ValueError(f"scale = {_text(scale)}, must be in (0, 1]")
@@ -493,7 +519,7 @@ def local_symmetry(
         raise TypeError("at: positions in a volume, must be given with volume and left out with points")
     cloud: Any = None
     if volume is None:
-        _check_no_volume(direction, levels)
+        _check_no_volume(local_symmetry, given)
         cloud = prepare("points", points)
         shape, positions = cloud.array, cloud.array if cloud.mesh is None else cloud.mesh[0]
     else:
@@ -555,8 +581,11 @@ def symmetrize(
     """
     import numpy as np
 
+    given = locals()
     points, own_faces = parts_of("points", points)
-    faces = faces if own_faces is None else own_faces
+    faces = faces_of(own_faces, faces)
+    if faces is None:
+        left_out(symmetrize, given, "a cloud", "cut")
     array, shift, *_ = prepare("points", points)
     found = core.symmetrize(array, faces, _core_plane(plane, shift), half, threads)
     result = found.points if shift is None else found.points + shift
@@ -591,10 +620,11 @@ def sample_mesh(
 ) -> NDArray[Any]:
     """(num_points, 3) points spread evenly over a mesh of (V, 3) vertices and (F, 3) faces, or of Open3D or trimesh."""
     positions, own_faces = parts_of("vertices", vertices)
-    if own_faces is None and faces is None:
+    faces = faces_of(own_faces, faces)
+    if faces is None:
         raise TypeError("faces = None, must be (F, 3), or vertices a mesh of Open3D or trimesh")
     array, shift, *_ = prepare("vertices", positions)
-    points: NDArray[Any] = core.sample_mesh(array, own_faces if faces is None else faces, num_points, seed=seed)
+    points: NDArray[Any] = core.sample_mesh(array, faces, num_points, seed=seed)
     return points if shift is None else points + shift
 
 
@@ -657,6 +687,8 @@ def frame(
     threads: int = 0,
 ) -> Frame:
     """Canonical frame of a cloud (Section 5.1). Parameters as in planes(); as_published: the paper's own method."""
+    if as_published:
+        left_out(frame, locals(), "as_published", "viewpoint ground")
     cloud = prepare("points", points)
     used = look(cloud, viewpoint, indices, ground, max_points, as_published, seed, threads)
     options = dict(max_points=max_points, as_published=as_published, told=progress, seed=seed, threads=threads)
@@ -698,6 +730,8 @@ def rotations(
     """
     import numpy as np
 
+    if absolute_tolerance:
+        left_out(rotations, locals(), "absolute_tolerance", "tolerance")
     cloud = prepare("points", points)
     options = dict(tolerance=tolerance, absolute_tolerance=absolute_tolerance, max_feature=max_feature, seed=seed, threads=threads)
     try:
@@ -734,8 +768,12 @@ def segment(
     """
     import numpy as np
 
+    if method == "merging":
+        left_out(segment, locals(), "method merging", "depth as_published")
+    if parts:
+        left_out(segment, locals(), "parts", "depth")
     positions, own_faces = parts_of("points", points)
-    faces = own_faces if faces is None else faces
+    faces = faces_of(own_faces, faces)
     cloud = prepare("points", positions)
     options = dict(parts=parts, method=method, depth=depth, as_published=as_published, seed=seed, threads=threads)
     try:
@@ -783,6 +821,8 @@ def descriptors(
     """
     import numpy as np
 
+    if input_axes:
+        left_out(descriptors, locals(), "input_axes", "viewpoint")
     used = look(prepare("points", points), viewpoint, max_points=0, as_measured=True, seed=seed, threads=threads)
     options = dict(viewpoint=used.viewpoint, input_axes=input_axes, by_equation_1=by_equation_1, seed=seed, threads=threads)
     try:
@@ -843,14 +883,20 @@ def transform(
     """
     import numpy as np
 
+    given = locals()
     _check_one_of("transform", points, volume)
     sizes = np.asarray(bins)
     if sizes.shape != (3,) or sizes.dtype.kind not in "iu":
         raise TypeError(f"bins = {_text(bins)}, must be three whole numbers, of theta, phi and r")
     shape: Any = None
     shift: Any = None
+    for names, methods in (("samples", "sampled voting"), ("refined_share", "rotational"), ("as_published", "voting")):
+        if method not in methods.split():
+            left_out(transform, given, f"method {method}", names)
+    if not radius:
+        left_out(transform, given, "radius 0", "center")
     if volume is None:
-        _check_no_volume(direction, levels)
+        _check_no_volume(transform, given)
         shape, shift, *_ = prepare("points", points)
     elif sigma:
         raise ValueError("sigma: of points, must be left out with volume")
