@@ -1,6 +1,7 @@
 """The Python module: shapes, units, errors, and that it says what the C++ functions say."""
 
 import copy
+import dataclasses
 import inspect
 import json
 import pickle
@@ -375,6 +376,16 @@ class OtherFunctions(unittest.TestCase):
         self.assertGreater(len(added), 1000)
         np.testing.assert_allclose(added, half[rows] * (-1, 1, 1), atol=1e-6)
         self.assertLess(added[:, 0].max(), 0.0)
+        possible = dataclasses.replace(pcl_symmetry.planes(points)[0], normal=plane.normal, offset=0.0, kind="possible", confidence=0.3)
+        doubt = f"points: {len(added)} are added across a plane that is only possible, of confidence 0.30"
+        for cloud, by, words in (
+            (half, possible, doubt),
+            (np.concatenate([half, half * (-1, 1, 1)]), plane, "points: 0 are added: their reflections fall onto the points"),
+            (np.full((9, 3), np.nan), plane, "points: 0 are added: no finite point"),
+        ):
+            with self.assertWarnsRegex(RuntimeWarning, words) as caught:
+                pcl_symmetry.complete(cloud, by, viewpoint=None)
+            self.assertEqual(caught.filename, __file__)
 
     def test_parts_of_a_mesh_and_of_a_cloud(self):
         vertices, faces = box_mesh()

@@ -547,6 +547,7 @@ def complete(
     other is refused, unless it comes as ReflectionPlane(plane.normal, plane.offset).
     Returns (added, rows): (M, 3) points that neither fall onto the measured surface nor into space that was seen to be
     empty, and the row of the point that each is the reflection of (of the flattened array, where it is organized).
+    Warns (RuntimeWarning) where nothing is added, and where the plane is only possible, with its confidence.
     """
     import numpy as np
 
@@ -559,6 +560,13 @@ def complete(
     added, rows = core.complete(used.array, _core_plane(plane, cloud.shift), viewpoint=used.viewpoint, threads=threads)
     if used.rows is not None:
         rows = np.asarray(used.rows)[rows].tolist()
+    doubt = ""
+    if isinstance(plane, Plane) and plane.kind == "possible":
+        doubt = f" across a plane that is only possible, of confidence {plane.confidence:.2f}"
+    if doubt or not len(added):
+        found = np.isfinite(used.array).all(axis=1).any()
+        why = used.reason or ("their reflections fall onto the points or into space seen to be empty" if found else "no finite point")
+        warnings.warn(f"points: {len(added)} are added{doubt}" + ("" if len(added) else f": {why}"), RuntimeWarning, stacklevel=2)
     return (added if cloud.shift is None else added + cloud.shift), list(rows)
 
 
