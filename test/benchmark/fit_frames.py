@@ -89,5 +89,4 @@ def program(arguments):
 
 
 if __name__ == "__main__":
-    parser = fits.make_parser(__doc__, OUTPUT)
-    bench.main(program, parser.parse_args())
+    fits.main(program, __doc__, OUTPUT)

@@ -228,6 +228,4 @@ def program(arguments):
 
 
 if __name__ == "__main__":
-    parser = fits.make_parser(__doc__, OUTPUT)
-    parser.add_argument("--shapes", type=int, default=NUM_SHAPES, help="number of clouds of shapes made by code")
-    bench.main(program, parser.parse_args())
+    fits.main(program, __doc__, OUTPUT, shapes=dict(type=int, default=NUM_SHAPES, help="number of clouds of shapes made by code"))

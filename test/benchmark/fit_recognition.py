@@ -8,7 +8,6 @@ what fits best where it is not in the database, or is left out of the answer. --
 JSON with "object" and "models", as real_recognition.py --rows writes them. A file that is named twice counts twice.
 """
 
-import json
 import tempfile
 
 import numpy as np
@@ -56,9 +55,7 @@ def main(arguments):
         arguments.database = temporary + "/models.db"
         recognition.build_of_meshes([model for i, model in enumerate(models) if i % 10 != 9], arguments)
         rows = fits.sampled(models, sample_item, arguments)
-    for path in arguments.real or []:
-        with open(path) as lines:
-            rows += map(json.loads, lines)
+    rows += fits.rows_of(arguments.real)
     cases = [(terms, right, row["object"] or "unknown") for row in rows for terms, right in cases_of(row)]
     terms, right, names = map(np.array, zip(*cases))
 
@@ -77,6 +74,4 @@ inline constexpr std::array<double, {len(texts)}> kRecognitionFit{{{", ".join(te
 
 
 if __name__ == "__main__":
-    parser = fits.make_parser(__doc__, OUTPUT)
-    parser.add_argument("--real", nargs="+", metavar="FILE", help="JSON lines of answers for real scans")
-    bench.main(main, parser.parse_args())
+    fits.main(main, __doc__, OUTPUT, real=fits.REAL)

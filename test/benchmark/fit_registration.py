@@ -12,7 +12,6 @@ Poses beside which another one fits as well are left out.
 
 import argparse
 import dataclasses
-import json
 
 import numpy as np
 
@@ -72,10 +71,7 @@ def main(arguments):
         others = (dataclasses.replace(other) for other in models[i::-1] if class_of(other) != class_of(model))
         model.other = next(others, None)
     made = [(right, terms_of(e), "made") for right, e in fits.sampled(models, sample_item, arguments) if e["uniqueness"] > UNIQUE]
-    rows = []
-    for path in arguments.real or []:
-        with open(path) as lines:
-            rows += [row for row in map(json.loads, lines) if row["uniqueness"] > UNIQUE]
+    rows = [row for row in fits.rows_of(arguments.real) if row["uniqueness"] > UNIQUE]
     real = [(row["good"], terms_of(row), row["object"]) for row in rows]
     right, terms, names = map(np.array, zip(*(made + real)))
     weights = np.r_[np.full(len(made), 0.2 * len(real) / len(made) if real else 1.0), np.ones(len(real))]
@@ -102,7 +98,5 @@ inline constexpr std::array<double, {len(texts)}> kRegistrationFit{{{", ".join(t
 
 
 if __name__ == "__main__":
-    parser = fits.make_parser(__doc__, OUTPUT)
-    parser.add_argument("--references", metavar="DIR", help="keep the symmetries of the meshes here: a second each")
-    parser.add_argument("--real", nargs="+", metavar="FILE", help="JSON lines of judged poses of real scans")
-    bench.main(main, parser.parse_args())
+    references_flag = dict(metavar="DIR", help="keep the symmetries of the meshes here: a second each")
+    fits.main(main, __doc__, OUTPUT, references=references_flag, real=fits.REAL)

@@ -79,6 +79,4 @@ def program(arguments):
 
 
 if __name__ == "__main__":
-    parser = fits.make_parser(__doc__, OUTPUT)
-    parser.add_argument("--solids", type=int, default=NUM_SOLIDS, help="number of scans of solids made by code")
-    bench.main(program, parser.parse_args())
+    fits.main(program, __doc__, OUTPUT, solids=dict(type=int, default=NUM_SOLIDS, help="number of scans of solids made by code"))

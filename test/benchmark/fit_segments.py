@@ -127,6 +127,4 @@ def program(arguments):
 
 
 if __name__ == "__main__":
-    parser = fits.make_parser(__doc__, OUTPUT)
-    parser.add_argument("--people", required=True, help="folder with the segments of people: 12/12_0.seg or 12_0.seg")
-    bench.main(program, parser.parse_args())
+    fits.main(program, __doc__, OUTPUT, people=dict(required=True, help="folder with the segments of people: 12/12_0.seg or 12_0.seg"))

@@ -1,5 +1,6 @@
 """What the programs that fit decisions share: logistic regression, rounding, made-up shapes, and generated headers."""
 import argparse
+import json
 import math
 import pathlib
 import sys
@@ -56,10 +57,21 @@ def cross_validated(fit, names, num_parts=5):
     return np.mean([fit(part != k, part == k) for k in range(num_parts)])
 
 
-def make_parser(description, output):
+def main(program, description, output, **flags):
+    """Runs a program; flags: what add_argument() takes of each of its own."""
     parser = bench.make_parser(description, others=False)
     parser.add_argument("--output", metavar="FILE.h", default=output, help="header that is written")
-    return parser
+    for name, options in flags.items():
+        parser.add_argument(f"--{name}", **options)
+    bench.main(program, parser.parse_args())
+
+
+REAL = dict(nargs="+", default=[], metavar="FILE", help="JSON lines of real scans")
+
+
+def rows_of(paths):
+    """The rows of files of JSON lines."""
+    return [json.loads(line) for path in paths for line in pathlib.Path(path).read_text().splitlines()]
 
 
 def sampled(items, function, arguments):
