@@ -101,7 +101,9 @@ SceneAnalysis analyze(const Console& console, SymmetryScene& scene, const InputS
   Step searching(console, "Searching objects");
   SceneAnalysis found;
   namingFile(input.path, [&] { found = scene.compute(); });
-  if (found.timing_ms.empty()) throw InputError(input.path + ": input cloud: no finite point");
+  if (found.timing_ms.empty())
+    throw InputError(input.path + ": input cloud: no finite point" +
+                     (options.scene.max_range > 0.0 ? " within -max_range" : ""));
   const double total = searching.done(counted(found.objects.size(), "object"));
   found.timing_ms.emplace_back("load", input.loading_ms);
   found.timing_ms.emplace_back("total", total);

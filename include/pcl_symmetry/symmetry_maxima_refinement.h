@@ -60,7 +60,7 @@ public:
   /// by SymmetryPlane::kind; default false.
   void setApproximate(bool approximate) { options_.approximate = approximate; }
   /// Limits the number of planes.
-  /// \param max_planes greatest number of planes, >= 1; default 64.
+  /// \param max_planes greatest number of planes, >= 1; default 128.
   void setMaxPlanes(int max_planes) {
     this->change([&](DetectionOptions& changed) { changed.max_planes = max_planes; });
   }

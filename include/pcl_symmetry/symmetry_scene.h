@@ -10,6 +10,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
@@ -132,13 +133,16 @@ public:
 
   /// Sets the frame to analyze.
   /// \param cloud one frame: organized, or points without order with the viewpoint that they were seen from.
-  void setInputCloud(const Cloud::ConstPtr& cloud) { input_ = cloud; }
-  /// The same for other point types; their other fields are not used.
-  template <typename PointT>
-  void setInputCloud(const typename pcl::PointCloud<PointT>::ConstPtr& cloud) {
-    auto positions = pcl::make_shared<Cloud>();
-    pcl::copyPointCloud(*cloud, *positions);
-    input_ = positions;
+  /// Of points with other fields than x, y and z only these are used.
+  template <typename AnyCloud>
+  void setInputCloud(const pcl::shared_ptr<AnyCloud>& cloud) {
+    if constexpr (std::is_same_v<std::remove_const_t<AnyCloud>, Cloud>) {
+      input_ = cloud;
+    } else {
+      auto positions = pcl::make_shared<Cloud>();
+      pcl::copyPointCloud(*cloud, *positions);
+      input_ = positions;
+    }
   }
 
   /// Finds the objects of the frame.

@@ -218,7 +218,9 @@ SceneAnalysis SymmetryScene::compute() const {
   if (analysis.seen && analysis.seen->visibility()) viewpoint = analysis.seen->visibility()->viewpoint();
   const pcl::Indices points = frame ? nearPoints(*frame, viewpoint, options_.max_range) : pcl::Indices();
   if (points.empty()) {
-    detail::warnOfNoAnswer("SymmetryScene", input_ ? "scene: no finite point" : "scene: not set");
+    detail::warnOfNoAnswer("SymmetryScene", !input_                    ? "scene: not set"
+                                            : options_.max_range > 0.0 ? "scene: no finite point within max_range"
+                                                                       : "scene: no finite point");
     return analysis;
   }
   analysis.timing_ms = {{"seen_space", seen_ms}, {"filter", watch.lap()}};

@@ -56,7 +56,8 @@ struct ProbableFrame {
 /// The canonical frame of a shape: center of symmetry (COS) and principal symmetry axes (PSA, Section 5.1).
 struct SymmetryFrame {
   Eigen::Vector3d center = Eigen::Vector3d::Zero();  ///< center of symmetry: where the three planes meet, input frame
-  /// Principal symmetry axes in columns: normals of the planes, orthonormal, right-handed, best first.
+  /// Principal symmetry axes in columns, orthonormal, right-handed: the normal of the best plane, that of the best one
+  /// perpendicular to it, and of both.
   Eigen::Matrix3d axes = Eigen::Matrix3d::Identity();
   /// Score of the plane perpendicular to each axis, in [0, 1]. For a whole cloud it is D; for a scan it is
   /// seenSymmetry() of D and free space, for the second and third plane on the scan completed by its reflection across
