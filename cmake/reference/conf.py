@@ -60,7 +60,7 @@ for found in XML.glob("*_8h*.xml"):
 def as_rst(app, what, name, thing, options, lines):
     """Docstrings are plain text: a paragraph begins after an empty line and with the name of a parameter."""
     paragraphs, code = [[]], []
-    for line in lines:
+    for line in lines[: lines.index("Fields:") if "Fields:" in lines else None]:  # they stand below, each with its type
         row = re.match(r"(\w+\(\)|[A-Z]\w+)  +(.*)", line)
         if line.startswith((">>>", "[")) and what == "module":
             code.append(line)

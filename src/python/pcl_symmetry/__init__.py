@@ -23,6 +23,8 @@ transform()            the symmetry of all planes; local_symmetry(): of each poi
 viewpoints()           views that show little repetition
 describe()             signatures of a shape; descriptors(), descriptor_distance(): those of the paper
 sample_mesh()          points on a mesh
+
+What they return has one, too: help(pcl_symmetry.Planes), Plane, Axis, Frame, Rotations, Registration, Scene, SceneObject.
 """
 
 import importlib.util

@@ -92,7 +92,8 @@ class Result:
     __hash__ = None  # type: ignore[assignment]
 
     def __repr__(self) -> str:
-        return f"{type(self).__name__}({', '.join(f'{name}={_text(getattr(self, name))}' for name in self._in_repr)})"
+        names = (*self._in_repr, "reason") if getattr(self, "reason", "") else self._in_repr
+        return f"{type(self).__name__}({', '.join(f'{name}={_text(getattr(self, name))}' for name in names)})"
 
     def _moved(self: Self, shift: NDArray[np.float64]) -> Self:
         """The result in a frame whose origin lies at -shift."""
@@ -517,7 +518,7 @@ class Frame(Result):
     center: NDArray[np.float64]
     """(3,) center of symmetry."""
     axes: NDArray[np.float64]
-    """(3, 3) axes in columns, orthonormal, right-handed, best first."""
+    """(3, 3) axes in columns, orthonormal, right-handed: normals of the best plane, of the best one perpendicular to it, and of both."""
     revolution_axis: int
     """Column that is an axis of revolution; -1: none, 3: every line through the center."""
     scores: NDArray[np.float64]
@@ -925,3 +926,28 @@ class Scene(Result):
             coefficients[3] -= coefficients[:3] @ shift
             supports.append(dataclasses.replace(support, coefficients=coefficients))
         return dataclasses.replace(super()._moved(shift), objects=objects, supports=supports)
+
+
+def _show_fields() -> None:
+    """Puts the texts behind the fields of results into those of their classes, for help()."""
+    import ast
+
+    try:
+        with open(__file__, encoding="utf-8") as source:
+            body = ast.parse(source.read()).body
+    except OSError:  # the package is not in a folder
+        return
+    for node in body:
+        if not isinstance(node, ast.ClassDef) or node.name not in __all__:
+            continue
+        texts = [
+            f"{field.target.id}: {ast.get_docstring(ast.Module([text], []))}"
+            for field, text in zip(node.body, node.body[1:])
+            if isinstance(field, ast.AnnAssign) and isinstance(field.target, ast.Name) and isinstance(text, ast.Expr)
+        ]
+        if texts:
+            thing = globals()[node.name]
+            thing.__doc__ = "\n".join([thing.__doc__, "", "Fields:", *texts])
+
+
+_show_fields()
