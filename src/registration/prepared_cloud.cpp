@@ -43,7 +43,7 @@ std::shared_ptr<const SymmetryFrame> PreparedCloud::frame(double unit) const {
   const PosedSurface& surface = *surfaceIn(unit);
   if (frame_) return frame_;
   FrameOptions options = options_.frame;
-  options.probabilities = false;
+  options.probabilities = options.refined = false;
   options.num_threads = options_.num_threads;
   options.seed = options_.seed;
   options.rotations = false;

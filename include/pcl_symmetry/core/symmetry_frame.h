@@ -27,6 +27,8 @@ struct FrameOptions : MapSize {
   bool as_published = false;
   /// Searches the axes of rotation of scans too, SymmetryFrame::rotations; false saves about a third of the time.
   bool rotations = true;
+  /// Moves the center and axes of whole clouds to their planes of symmetry, by Iterative Symmetric Points.
+  bool refined = true;
   bool probabilities = true;  ///< whether SymmetryFrame::probable is filled; takes about a seventh of the time
   std::uint64_t seed = 1;     ///< of all random draws
   int num_threads = 0;        ///< >= 0; 0 = one per core

@@ -204,7 +204,7 @@ FrameOptions signatureFrameOptions() {
   options.num_phi = 64;
   options.num_radius = 32;
   options.rotations = false;
-  options.probabilities = false;
+  options.probabilities = options.refined = false;
   return options;
 }
 

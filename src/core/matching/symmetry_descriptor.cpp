@@ -37,7 +37,7 @@ Eigen::Isometry3d descriptorFrame(const PointsRef& points, bool input_axes, cons
                                   const DescriptorOptions& options) {
   if (input_axes) return Eigen::Isometry3d(Eigen::Translation3d(-centerOfMass(points)));
   FrameOptions frame;
-  frame.probabilities = frame.rotations = false;
+  frame.probabilities = frame.rotations = frame.refined = false;
   frame.seed = options.seed;
   frame.num_threads = options.num_threads;
   return symmetryFrame(points, frame, seen).T_canonical_input;

@@ -138,6 +138,19 @@ TEST(SymmetryFrame, OfAMailboxIsThatOfItsBox) {
   }
 }
 
+TEST(SymmetryFrame, OfAWholeCloudIsThatOfItsPlanes) {
+  const test::Shape box = test::box({1.0, 0.7, 0.4}, 8000, Sampling::Random, 3);
+  for (std::uint64_t seed = 1; seed <= 4; ++seed) {
+    const Eigen::Isometry3d pose = test::randomPose(seed);
+    const Points cloud = test::moved(box, pose).cloud();
+    const SymmetryFrame frame = symmetryFrame(cloud);
+    EXPECT_LT(axisError(frame.axes, pose.linear()), 0.5 * kDegree) << seed;
+    EXPECT_LT((frame.center - pose.translation()).norm(), 0.002 * diameter(cloud)) << seed;
+    EXPECT_LT((frame.T_canonical_input * frame.center).norm(), 1e-9) << seed;
+    EXPECT_LT((frame.T_canonical_input.linear() * frame.axes - Eigen::Matrix3d::Identity()).norm(), 1e-9) << seed;
+  }
+}
+
 TEST(SymmetryFrame, ListsTheFramesThatSymmetryLeavesEquallyGood) {
   // The frame itself is the first, all have its center at the origin, and all are rotations.
   const Eigen::Isometry3d pose = test::randomPose(2);

@@ -1,0 +1,141 @@
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <functional>
+#include <optional>
+
+#include "core/frame/canonical_frame.h"
+#include "core/frame/frame_evidence.h"
+#include "core/geometry/geometry_rules.h"
+#include "core/geometry/point_samples.h"
+#include "core/refinement/normalized_cloud.h"
+#include "pcl_symmetry/core/detect_planes.h"
+#include "pcl_symmetry/core/iterative_symmetric_points.h"
+#include "pcl_symmetry/core/mesh_surface.h"
+#include "pcl_symmetry/core/symmetry_frame.h"
+
+namespace pcl_symmetry {
+
+namespace {
+
+/// Moves all of a frame as its center and axes move.
+/// \param axes right-handed.
+void moveTo(const Eigen::Vector3d& center, const Eigen::Matrix3d& axes, SymmetryFrame& frame) {
+  Eigen::Isometry3d motion = Eigen::Isometry3d::Identity();  // of the frame
+  motion.linear() = axes * frame.axes.transpose();
+  motion.translation() = center - motion.linear() * frame.center;
+  frame.axes = axes;
+  frame.center = center;
+  frame.T_canonical_input = frame.T_canonical_input * motion.inverse();
+  for (Eigen::Isometry3d& other : frame.equivalent) other = other * motion.inverse();
+  if (frame.probable.empty()) return;
+  frame.probable.front().center = center;
+  frame.probable.front().axes = axes;
+}
+
+/// Puts axis \p first to the front; the others follow it in their cyclic order.
+void turnOrder(int first, SymmetryFrame& frame) {
+  if (first == 0) return;
+  Eigen::Isometry3d turn = Eigen::Isometry3d::Identity();
+  for (int k = 0; k < 3; ++k) turn.linear().row(k) = Eigen::RowVector3d::Unit((k + first) % 3);
+  const auto turned = [&](int axis) { return axis < 0 || axis > 2 ? axis : (axis - first + 3) % 3; };
+  frame.axes = frame.axes * turn.linear().transpose();
+  frame.scores = turn.linear() * frame.scores;
+  frame.revolution_axis = turned(frame.revolution_axis);
+  frame.T_canonical_input = turn * frame.T_canonical_input;
+  for (Eigen::Isometry3d& other : frame.equivalent) other = turn * other;
+  if (frame.probable.empty()) return;
+  frame.probable.front().axes = frame.axes;
+  frame.probable.front().revolution_axis = frame.revolution_axis;
+}
+
+}  // namespace
+
+void bringToPlane(const ReflectionPlane& plane, SymmetryFrame& frame) {
+  int across = 0;
+  (frame.axes.transpose() * plane.normal()).cwiseAbs().maxCoeff(&across);
+  turnOrder(across, frame);
+  const Eigen::Vector3d first = frame.axes.col(0);
+  const Eigen::Vector3d normal = first.dot(plane.normal()) < 0.0 ? Eigen::Vector3d(-plane.normal()) : plane.normal();
+  const Eigen::Matrix3d axes = Eigen::Quaterniond::FromTwoVectors(first, normal).toRotationMatrix() * frame.axes;
+  moveTo(frame.center - plane.signedDistance(frame.center) * plane.normal(), axes, frame);
+}
+
+namespace {
+
+/// Share, of twice the tolerance, of planes that are fitted: of 94 that became exact on meshes none had less than 0.96.
+constexpr double kNearly = 0.8;
+
+/// Moves the center and axes of a frame to planes of symmetry; axes across which there is none follow the others.
+/// \param exactly the plane of symmetry at a plane, or nothing.
+void bringToPlanes(const std::function<std::optional<ReflectionPlane>(const ReflectionPlane&)>& exactly,
+                   SymmetryFrame& frame) {
+  Eigen::Matrix3d axes = frame.axes;
+  Eigen::Vector3d center = frame.center;
+  int exact[3], num_exact = 0;
+  for (int k = 0; k < 3; ++k) {
+    const std::optional<ReflectionPlane> plane =
+        exactly(ReflectionPlane(frame.axes.col(k), frame.axes.col(k).dot(frame.center)));
+    if (!plane) continue;
+    const bool is_turned = plane->normal().dot(frame.axes.col(k)) < 0.0;
+    axes.col(k) = is_turned ? Eigen::Vector3d(-plane->normal()) : plane->normal();
+    for (int i = 0; i < num_exact; ++i) axes.col(k) -= axes.col(exact[i]).dot(axes.col(k)) * axes.col(exact[i]);
+    axes.col(k).normalize();
+    center -= (axes.col(k).dot(center) - axes.col(k).dot(plane->normal() * plane->offset())) * axes.col(k);
+    exact[num_exact++] = k;
+  }
+  if (num_exact == 0) return;
+  if (num_exact == 1) {
+    const int k = exact[0], next = (k + 1) % 3;
+    axes.col(next) = (axes.col(next) - axes.col(k).dot(axes.col(next)) * axes.col(k)).normalized();
+  }
+  if (num_exact < 3) {
+    const int last = num_exact == 2 ? 3 - exact[0] - exact[1] : (exact[0] + 2) % 3;
+    axes.col(last) = axes.col((last + 1) % 3).cross(axes.col((last + 2) % 3));
+  }
+  if (!(axes.determinant() > 0.5)) return;  // two of them fell together
+  moveTo(center, axes, frame);
+}
+
+}  // namespace
+
+void refineOnMesh(const MeshSurface& mesh, SymmetryFrame& frame) {
+  const double tolerance = 2.0 * DetectionOptions().tolerance * mesh.ball().radius;
+  bringToPlanes(
+      [&](const ReflectionPlane& start) -> std::optional<ReflectionPlane> {
+        if (mesh.shares(start, 2.0 * tolerance, kNearly).share < kNearly) return std::nullopt;
+        const ReflectionPlane plane = mesh.fitted(start);
+        if (mesh.shares(plane, tolerance, kSymmetricShare).share < kSymmetricShare) return std::nullopt;
+        return plane;
+      },
+      frame);
+}
+
+void refineOnPoints(const PointsRef& points, const GaussianEdt& edt, const FrameOptions& options,
+                    SymmetryFrame& frame) {
+  const Points surface_points = points, no_normals(3, 0);
+  const ClosestPointSearch::Ptr search = makeFlannSearch(points);
+  const FarTest far(edt, Eigen::Vector3d::Zero(), 1.0);
+  const IspSurface surface{surface_points, no_normals, *search, nullptr, &far, options.num_threads};
+  const std::vector<int> samples = drawSamples(points.cols(), kFrame.refined_samples, options.seed);
+  IspOptions isp;
+  isp.update = IspUpdate::PointToPoint;
+  isp.sigma = edt.sigma();
+  isp.final_sigma = 0.5 * edt.sigma();
+  isp.error_share = 0.02;  // the closed form slides slowly along flat faces
+  isp.max_iterations = 100;
+  const auto share = [&](const IspStep& step, double near) {
+    const auto num_near = std::count_if(step.sq_distances.begin(), step.sq_distances.end(),
+                                        [&](float sq_distance) { return sq_distance < near * near; });
+    return static_cast<double>(num_near) / static_cast<double>(samples.size());
+  };
+  bringToPlanes(
+      [&](const ReflectionPlane& start) -> std::optional<ReflectionPlane> {
+        if (share(matchSymmetricPoints(surface, samples, start, isp.sigma), isp.sigma) < kNearly) return std::nullopt;
+        const IspResult found = refineSymmetricPoints(surface, samples, start, isp);
+        if (share(found.last, isp.final_sigma) < kSymmetricShare) return std::nullopt;
+        return found.plane;
+      },
+      frame);
+}
+
+}  // namespace pcl_symmetry
