@@ -899,6 +899,7 @@ class Package(unittest.TestCase):
         self.assertLess({*pcl_symmetry.__all__, "Planes", "Scene", "Merging"}, {*public})
         self.assertFalse(hasattr(pcl_symmetry, "nothing"))
         self.assertLess(pydoc.plain(pydoc.render_doc(pcl_symmetry)).index("FUNCTIONS"), 20000, "not after the 1800 lines of what they return")
+        self.assertIn("\ntransform: (4, 4) from the input to the canonical frame.\n", pcl_symmetry.Frame.__doc__)
         for name in public:
             value = getattr(pcl_symmetry, name)
             self.assertTrue(value.__doc__, name)

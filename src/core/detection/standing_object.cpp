@@ -136,6 +136,7 @@ bool endWithPicture(const PointsRef& points, const Eigen::Vector3d& up, const Ei
   Eigen::ArrayXd azimuth = y.binaryExpr(x, [](double b, double a) { return std::atan2(b, a); });
   const auto widthOf = [](const Eigen::ArrayXd& values) { return values.maxCoeff() - values.minCoeff(); };
   const double depth = kBox.cut_depth * std::hypot(widthOf(x), widthOf(y)), width = kBox.cut_width * widthOf(azimuth);
+  if (!(widthOf(elevation) > 0.0)) return false;
   const Eigen::ArrayXd row = (elevation - elevation.minCoeff()) * (kBox.rows / widthOf(elevation));
   for (int side = 0; side < 2; ++side, azimuth = -azimuth) {
     std::vector<Eigen::Index> ends(kBox.rows, -1);
