@@ -52,11 +52,11 @@ struct AlignOptions {
 };
 
 CommandLine commandLine(AlignOptions& options) {
-  CommandLine line(
-      "pcl_symmetry_align",
-      "Turns a cloud into the frame of its symmetry: center to the origin, axes to x, y and z, that of the best plane first. "
-      "With -target, brings it to another cloud instead, from any pose.",
-      "pcl_symmetry_align scan.pcd aligned.pcd -target model.ply -json pose.json");
+  CommandLine line("pcl_symmetry_align",
+                   "Turns a cloud into the frame of its symmetry: center to the origin, axes to x, y and z, that of "
+                   "the best plane first. "
+                   "With -target, brings it to another cloud instead, from any pose.",
+                   "pcl_symmetry_align scan.pcd aligned.pcd -target model.ply -json pose.json");
   options.batch.outputs = {&options.output, &options.html_path, &options.png_path};
   line.positional("input", options.input, kOneOrManyInputs)
       .positional("output", options.output, ".pcd or .ply: the cloud after the transform")
