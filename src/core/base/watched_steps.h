@@ -3,8 +3,8 @@
 
 namespace pcl_symmetry {
 
-/// Looks at the Watch of the call, as loops do after each block. Costs little beside a microsecond.
-/// \throws what the watch throws, and in a block of a loop that was ended.
+/// Looks at the Watch of the call, as loops do after each block; for steps of some microseconds and more.
+/// \throws what the watch throws; in a block of a loop, also where the loop was ended.
 void lookAtWatch();
 
 }  // namespace pcl_symmetry

@@ -135,6 +135,11 @@ TEST(Transforms, SampledOnesAreWithinOnePerCentAndConvolutionWithinThreePerMille
   }
 }
 
+TEST(RotationalTransform, IsWithinTwoPerMilleOfTheFullSum) {
+  for (const std::size_t i : {1, 2})
+    EXPECT_LE(scenes()[i].rmsError(rotationalTransform(scenes()[i].edt, scenes()[i].grid)), 0.002) << i;
+}
+
 TEST(Transforms, AtASharpMaximumConvolutionIsWithinThreePerCentOfDAndRotationsWithinAHalf) {
   // A box whose plane of symmetry is that of a bin.
   const std::size_t n = 16;
@@ -261,10 +266,9 @@ TEST(VotingTransform, NoVoteAsPublishedWeighsMoreThanThatOfPointsACellApart) {
   EXPECT_GT(num_near, 0);
 }
 
-TEST(RotationalTransform, IsWithinTwoPerMilleOfTheFullSumAndRefinesTheGreatestValues) {
+TEST(RotationalTransform, MultiresolutionRefinesTheGreatestValues) {
   const Scene& scene = scenes()[1];
   const SymmetryMap full = rotationalTransform(scene.edt, scene.grid);
-  EXPECT_LE(scene.rmsError(full), 0.002);
   RotationalTransformOptions options;
   options.refined_share = 0.1;
   const SymmetryMap map = rotationalTransform(scene.edt, scene.grid, options);
