@@ -72,8 +72,10 @@ count() {
   ((passed += p, failed += f, skipped += s, 1))
 }
 
-configure() {  # with the tests, which apps/demo.sh leaves out of build/
-  cmake --preset "$1" -DBUILD_TESTING=ON --log-level=WARNING >/dev/null
+configure() {  # with the tests, which apps/demo.sh leaves out of build/; sanitizers link those that build/ compiled
+  local tests_of=
+  [[ $1 == release ]] || tests_of=$PWD/build
+  cmake --preset "$1" -DBUILD_TESTING=ON -DPCL_SYMMETRY_TESTS_OF="$tests_of" --log-level=WARNING >/dev/null
 }
 
 # build_and_test PRESET FOLDER TARGET [ctest options]

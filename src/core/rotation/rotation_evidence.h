@@ -23,7 +23,8 @@ struct ScanAxisRules {
   double same_start_angle = 0.1, same_start_offset = 0.06;           ///< lines within both are one start
   double angle_of_fold = 3.0 * kDegree;                              ///< by which planes of scans are off
   double min_plane_angle = 0.13;                                     ///< between two planes that share a line
-  int coarse_cells = 24, coarse_theta = 8, coarse_phi = 32, coarse_offset = 12, coarse_samples = 32;
+  int coarse_cells = 24, coarse_theta = 8, coarse_phi = 32, coarse_offset = 8, coarse_samples = 32;
+  double coarse_reach = 0.67;                             ///< radii of the cloud that axes are off its middle at most
   std::size_t coarse_maxima = 10;                         ///< of that axial transform
   double coarse_angle = 0.3, coarse_distance = 0.3;       ///< within which two of them are one
   double coarse_equal = 0.05;                             ///< D by which they are off their peaks

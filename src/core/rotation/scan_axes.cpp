@@ -115,7 +115,7 @@ std::vector<AxisStart> startsFromTransform(const NormalizedCloud& cloud, std::ui
   options.seed = seed;
   options.num_threads = num_threads;
   const AxisGrid grid(kScanAxes.coarse_theta, kScanAxes.coarse_phi, kScanAxes.coarse_offset, edt.center(),
-                      edt.radius());
+                      kScanAxes.coarse_reach * edt.radius());
   const AxisMap map = axialTransform(edt, grid, options, &*cloud.visibility);
   std::vector<std::size_t> bins;
   for (std::size_t i = 0; i < map.greatest.size(); ++i)
