@@ -171,7 +171,13 @@ std::vector<SelectedView> ViewpointSelection::getGoodViews(int num_views) const 
     remaining.push_back({(up + 2.0 * side + side.cross(up)).normalized(), 0.0});
   }
   std::vector<SelectedView> views;
-  while (!remaining.empty() && static_cast<int>(views.size()) < num_views) {
+  // A view that hides less may be chosen before one of a greater score: on until no other can be among the best.
+  const auto goes_on = [&] {
+    return !remaining.empty() && std::count_if(views.begin(), views.end(), [&](const SelectedView& view) {
+                                   return view.score >= remaining[0].score;
+                                 }) < num_views;
+  };
+  while (goes_on()) {
     std::vector<RankedView> equal;
     for (const RankedView& view : remaining)
       if (view.score >= kView.near_best * remaining[0].score) equal.push_back(view);
@@ -185,6 +191,8 @@ std::vector<SelectedView> ViewpointSelection::getGoodViews(int num_views) const 
     };
     remaining.erase(std::remove_if(remaining.begin(), remaining.end(), taken), remaining.end());
   }
+  std::stable_sort(views.begin(), views.end(), [](const auto& a, const auto& b) { return a.score > b.score; });
+  if (views.size() > static_cast<std::size_t>(num_views)) views.resize(num_views);
   return views;
 }
 

@@ -23,8 +23,8 @@ struct SelectedView : RankedView {
 /// Selects good and bad views of an object by the symmetries that they show (Section 5.4 of the paper).
 ///
 /// S(v) = sum M |v . n| over the planes of local maxima; the best view has the greatest S. Views that differ only in
-/// the signs of v . n can have equal S: among the views within 2 % of the best, the view from above that hides the
-/// fewest points is taken.
+/// the signs of v . n can have equal S: among views within 2 % of each other that show the same, the view from above
+/// that hides the fewest points is taken.
 ///
 /// \code
 /// pcl_symmetry::SymmetryMaximaRefinement<pcl::PointXYZ> refinement;
@@ -70,7 +70,7 @@ public:
   SelectedView getWorstView() const;
   /// Lists good views that differ.
   /// \param num_views >= 1.
-  /// \return at most \p num_views local maxima of S, best first, apart from each other and from each other's mirror
+  /// \return at most \p num_views local maxima of S, by falling S, of equal ones first the one that hides least, apart from each other and from each other's mirror
   /// images in the symmetries of the whole object, which would show the same again. Empty where the cloud has no
   /// extent, and PCL_WARN says so.
   /// \throws pcl::BadArgumentException where \p num_views is less than 1.

@@ -73,6 +73,11 @@ class Viewpoint(ToolTest):
         self.assertIn("worst", self.output)
         self.assertGreater(self.report(self.box, "-quiet -as_published")["best"]["score"], answer["best"]["score"], "all maxima")
 
+    def test_are_listed_by_their_score(self):
+        self.write("t.off", tool_run.TETRAHEDRON)
+        scores = [view["score"] for view in self.report("t.off -quiet -views 8 -separation 15")["good"]]
+        self.assertEqual((len(scores), scores), (8, sorted(scores, reverse=True)))
+
     def test_draws_the_score_and_the_views(self):
         self.run_tool(self.box, "-size 120 -png a.png -icon b.png")
         self.assertEqual(tool_run.Image.open(self.folder / "a.png").size[0], 360)
