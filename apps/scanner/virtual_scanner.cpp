@@ -267,10 +267,15 @@ double VirtualScanner::diagonal() const {
 
 VirtualScan VirtualScanner::scan(const Eigen::Vector3d& direction, const VirtualScannerOptions& options) const {
   const Eigen::Vector3d towards_scanner = direction.normalized();
-  const Picture picture = scene_->takePictureOfPoints(
-      {options.distance * towards_scanner, lookAlong(-towards_scanner), std::tan(options.field_of_view / 2),
-       std::min(kFirstResolution, options.max_resolution)},
-      options);
+  const auto pictureOf = [&](double tangent) {
+    return scene_->takePictureOfPoints({options.distance * towards_scanner, lookAlong(-towards_scanner), tangent,
+                                        std::min(kFirstResolution, options.max_resolution)},
+                                       options);
+  };
+  Picture picture = pictureOf(std::tan(options.field_of_view.value_or(0.4) / 2));
+  // The ball around the bounding box, whose radius is half a diagonal, and a border.
+  if (!options.field_of_view && picture.touchesBorder())
+    picture = pictureOf(1.05 * 0.5 / std::sqrt(options.distance * options.distance - 0.25));
   if (picture.num_hits == 0) throw std::runtime_error("no ray hits the model");
   VirtualScan result;
   result.num_points = picture.num_hits;

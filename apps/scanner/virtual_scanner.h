@@ -9,12 +9,14 @@
 #include <array>
 #include <cstdint>
 #include <memory>
+#include <optional>
 
 namespace pcl_symmetry::apps {
 
 struct VirtualScannerOptions {
-  int num_points = 10000;          ///< wanted number of hits, > 0
-  double field_of_view = 0.4;      ///< full angle of the square picture, radians, in (0, pi)
+  int num_points = 10000;  ///< wanted number of hits, > 0
+  /// Full angle of the square picture, radians, in (0, pi); none: 0.4, or more where that crops the model.
+  std::optional<double> field_of_view;
   double distance = 2.0;           ///< from the center of the bounding box, in its diagonals, > 0.5
   double noise = 0.0;              ///< standard deviation of the depth along the ray, in diagonals, >= 0
   bool random_pose = false;        ///< turn and move the model before it is scanned

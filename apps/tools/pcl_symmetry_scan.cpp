@@ -26,7 +26,7 @@ struct ScanOptions {
   std::optional<Eigen::Vector3d> direction;
   std::optional<int> corner;
   bool all = false;
-  std::optional<double> field_of_view;  ///< degrees
+  std::optional<double> field_of_view;  ///< degrees; none: wide enough
   std::string format = "binary_compressed";
   VirtualScannerOptions scanner;
   CommonOptions common;
@@ -48,7 +48,8 @@ CommandLine commandLine(ScanOptions& options) {
               "corner of a cube around the object; bit 0, 1, 2 set: positive x, y, z")
       .flag("all", options.all, "scan from all eight corners")
       .number("points", options.scanner.num_points, Range::closed(1, 20000000), "wanted number of points")
-      .number("fov", options.field_of_view, Range::open(0, 180), "field of view, degrees (22.9183)")
+      .number("fov", options.field_of_view, Range::open(0, 180),
+              "field of view, degrees (22.9183, or more where the mesh needs it)")
       .number("distance", options.scanner.distance, Range::above(0.5), "from the center, in bounding-box diagonals")
       .number("noise", options.scanner.noise, Range::closed(0, 1), "deviation of the depth, in diagonals")
       .flag("random_pose", options.scanner.random_pose, "turn and move the model at random first")

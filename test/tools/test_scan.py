@@ -65,7 +65,7 @@ class BoxScan(ToolTest):
         return scan, tool_run.xyz(tool_run.ply_points(self.folder / name)[0]).astype(float)
 
     def test_every_pixel_sees_the_first_surface_on_its_ray(self):
-        for scan in self.report(self.mesh, "a.ply -all")["scans"]:
+        for scan in self.report(self.mesh, "a.ply -all -fov 22.918311805232928")["scans"]:
             points = tool_run.xyz(tool_run.ply_points(self.folder / scan["file"])[0]).astype(float)
             n = scan["width"]
             self.assertEqual(scan["height"], n)
@@ -144,8 +144,8 @@ class BoxScan(ToolTest):
 
     def test_says_when_the_model_reaches_beyond_the_picture(self):
         self.mesh = self.write("cube.off", tool_run.box(1.0, 1.0))
-        # 0.47 diagonals from the axis, the picture shows 0.41.
-        for arguments, cropped in ("-corner 7", True), ("-direction 1,0,0", False), ("-corner 7 -fov 34.4", False):
+        # 0.47 diagonals from the axis, a picture of 22.9 degrees shows 0.41.
+        for arguments, cropped in ("-corner 7 -fov 22.9", True), ("-corner 7", False), ("-corner 7 -fov 34.4", False):
             self.assertEqual(self.scanned(arguments)[0]["cropped"], cropped)
             self.assertEqual("reaches beyond the picture" in self.error, cropped)
 
