@@ -20,7 +20,7 @@ void checkReadableFile(const std::string& path) {
   boost::system::error_code error;
   const fs::file_status status = fs::status(path, error);
   if (!fs::exists(status)) throw InputError(path + ": no such file");
-  if (fs::is_directory(status)) throw InputError(path + ": is a directory, must be a file");
+  if (fs::is_directory(status)) throw InputError(path + ": is a folder, must be a file");
   errno = 0;
   // Who opens a pipe takes it from the next one.
   if (fs::is_regular_file(status) && !std::ifstream(path, std::ios::binary))

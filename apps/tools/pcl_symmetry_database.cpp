@@ -20,6 +20,7 @@
 #include "command_line/run_on_files.h"
 #include "command_line/tool_errors.h"
 #include "io/answers.h"
+#include "io/file_text.h"
 #include "io/input_shape.h"
 #include "io/shape_output.h"
 #include "pcl_symmetry/symmetry_database.h"
@@ -72,6 +73,7 @@ std::string fileChecksum(const std::string& path) {
   // CRC-64/XZ of ECMA-182.
   boost::crc_optimal<64, 0x42F0E1EBA9EA3693, 0xFFFFFFFFFFFFFFFF, 0xFFFFFFFFFFFFFFFF, true, true> checksum;
   std::array<char, 1 << 16> piece;  // bytes read at once
+  checkReadableFile(path);
   std::ifstream file(path, std::ios::binary);
   while (file.read(piece.data(), piece.size()) || file.gcount() > 0)
     checksum.process_bytes(piece.data(), static_cast<std::size_t>(file.gcount()));
@@ -133,13 +135,13 @@ public:
 
   /// \return the exit code.
   int run() {
-    if (options_.command == "check") return check();
     DatabaseOptions database_options;
     database_options.num_threads = options_.common.threads;
     database_options.unit = options_.unit.value_or("");
     database_options.is_part = options_.is_part;
     const bool makes_file = isBuild() || options_.command == "merge";
-    if (!makes_file && !fs::exists(options_.file)) throw InputError(options_.file + ": no such file");
+    if (!makes_file) checkReadableFile(options_.file);
+    if (options_.command == "check") return check();
     SymmetryDatabase database(options_.file, database_options);
     if (isBuild()) return build(database);
     if (options_.command == "merge") return merge(database);

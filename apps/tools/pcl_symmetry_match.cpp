@@ -1,6 +1,5 @@
 /// Which models of a database a cloud is like, or shows.
 #include <algorithm>
-#include <boost/filesystem.hpp>
 #include <cstdio>
 #include <nlohmann/json.hpp>
 #include <string>
@@ -10,6 +9,7 @@
 #include "command_line/tool_errors.h"
 #include "io/answers.h"
 #include "io/exact_coordinates.h"
+#include "io/file_text.h"
 #include "io/input_shape.h"
 #include "io/shape_output.h"
 #include "pcl_symmetry/impl/cloud_conversion.hpp"
@@ -90,7 +90,7 @@ int run(int argc, char** argv) {
   if (!line.parse(argc, argv)) return 0;
   line.goWith("-recognize", options.recognize, {"candidates", "min_confidence"});
   const Console console(options.common.quiet);
-  if (!boost::filesystem::exists(options.database)) throw InputError(options.database + ": no such file");
+  checkReadableFile(options.database);
   const InputShape input = loadInput(options.input, options.common.mesh_points, options.common.seed);
   if (const std::string reason = detail::reasonForNoAnswer(finitePoints(*input.points)); !reason.empty())
     throw InputError(options.input + ": " + reason);

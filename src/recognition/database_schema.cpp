@@ -3,6 +3,7 @@
 #include <zlib.h>
 
 #include <array>
+#include <cerrno>
 #include <cstring>
 #include <ctime>
 #include <filesystem>
@@ -105,10 +106,9 @@ void refuseForeignFile(const std::string& file) {
   std::ifstream stream(file, std::ios::binary);
   std::array<unsigned char, 100> header{};
   stream.read(reinterpret_cast<char*>(header.data()), static_cast<std::streamsize>(header.size()));
-  if (!stream && !stream.eof()) failIO(file, "cannot be read");
+  if (!stream && !stream.eof()) failIO(file, std::string("cannot be read, ") + std::strerror(errno));
   std::int64_t id = 0;
   for (std::size_t i = 0; i < 4; ++i) id = id << 8 | header[68 + i];
-  if (stream.bad() || !stream.is_open()) failIO(file, "cannot be read");
   if (std::memcmp(header.data(), "SQLite format 3", 16) != 0 || id != kApplicationId)
     failIO(file, "is no database of pcl_symmetry, or its first 100 bytes are damaged; it is left as it is");
 }

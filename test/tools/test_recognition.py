@@ -81,7 +81,7 @@ class Database(Recognition):
 
     def test_build_ask_and_change(self):
         self.run_tool("build models.db", self.vase, self.box)
-        self.fails(1, "nothing.off", "add models.db nothing.off", self.other)
+        self.fails(1, "nothing.off: no such file", "add models.db nothing.off", self.other)
         self.assertNotIn("1 models", self.error)
         self.run_tool("list models.db")
         self.assertEqual(self.output, "box\ntetrahedron\nvase\n")

@@ -180,7 +180,7 @@ class RefusedFiles(ToolTest):
     def test_are_no_folders_and_may_be_read(self):
         self.write("box.off", tool_run.box())
         (self.folder / "folder.pcd").mkdir()
-        self.fails(1, "folder.pcd: is a directory", "box.off -target folder.pcd", tool="align")
+        self.fails(1, "folder.pcd: is a folder", "box.off -target folder.pcd", tool="align")
         if os.geteuid() != 0:
             self.write("locked.pcd", "x").chmod(0)
             self.fails(1, "locked.pcd: cannot be opened", "locked.pcd")
