@@ -19,10 +19,10 @@ SeenSpace spaceOfScene(const pcl::PointCloud<pcl::PointXYZ>& scene, const Viewpo
   const bool asks_data = viewpoint.mode == Viewpoint::Mode::Auto;
   if (asks_data && scene.isOrganized() && scene.width > 1)
     if (auto seen = detail::seenByOrganizedCloud(scene)) return {std::move(*seen), ViewpointSource::Rays};
+  if (!asks_data) checkViewpoint(viewpoint.position);
   const Points points = detail::selectPoints(scene, nullptr, scene.size(), 0).points;
   if (points.cols() == 0) return {};
   if (!asks_data) {
-    checkViewpoint(viewpoint.position);
     auto seen = Visibility::ofScene(points, viewpoint.position, max_pixels);
     if (!seen) throw std::invalid_argument("viewpoint: at all points of the scene, must see one");
     return {std::move(*seen), ViewpointSource::Given};
@@ -71,6 +71,11 @@ SeenSpace SeenSpace::withoutSupport() const {
 }
 
 namespace detail {
+
+const Viewpoint& checkedViewpoint(const Viewpoint& viewpoint) {
+  if (viewpoint.mode == Viewpoint::Mode::Given) withBadArguments([&] { checkViewpoint(viewpoint.position); });
+  return viewpoint;
+}
 
 SeenSpace seenFrom(const Points& points, const Viewpoint& viewpoint, const Eigen::Vector3d& stored, bool is_default) {
   if (viewpoint.mode == Viewpoint::Mode::None) return {};

@@ -93,7 +93,7 @@ public:
   }
 
   /// Sets where the scanner stood; by default the data decide, as in SymmetryAlignment.
-  void setViewpoint(const Viewpoint& viewpoint) { viewpoint_ = viewpoint; }
+  void setViewpoint(const Viewpoint& viewpoint) { viewpoint_ = detail::checkedViewpoint(viewpoint); }
 
 protected:
   using pcl::Feature<PointInT, PointOutT>::input_;

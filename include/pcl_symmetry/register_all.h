@@ -80,9 +80,11 @@ struct MergedCloud {
 /// The scan of a cloud.
 /// \param viewpoint where the scanner stood, frame of the cloud; by default the data decide, see ScanAnalysis.
 /// \param indices of the points of the scan in the cloud, set.
-/// \throws std::invalid_argument where the points surround a viewpoint that was given.
+/// \throws std::invalid_argument where the points surround a viewpoint that was given, pcl::BadArgumentException where
+/// that is not finite.
 template <typename PointT>
 ObjectScan objectScan(const pcl::PointCloud<PointT>& cloud, const Viewpoint& viewpoint, pcl::Indices& indices) {
+  detail::checkedViewpoint(viewpoint);
   constexpr std::size_t judged = 10'000;  // points that tell what the scanner saw
   detail::SelectedPoints all = detail::selectPoints(cloud, nullptr, cloud.size(), 0);
   ObjectScan scan{std::move(all.points), std::nullopt};

@@ -156,10 +156,10 @@ public:
   }
 
   /// Where the scanner of each cloud stood; by default the data decide, see ScanAnalysis.
-  void setSourceViewpoint(const Viewpoint& viewpoint) { source_viewpoint_ = viewpoint; }
+  void setSourceViewpoint(const Viewpoint& viewpoint) { source_viewpoint_ = detail::checkedViewpoint(viewpoint); }
   /// See setSourceViewpoint().
   void setTargetViewpoint(const Viewpoint& viewpoint) {
-    target_viewpoint_ = viewpoint;
+    target_viewpoint_ = detail::checkedViewpoint(viewpoint);
     prepared_target_.reset();
   }
   /// Sets how probable an accepted answer has to be.

@@ -121,7 +121,7 @@ public:
 
   /// Where the sensor stood; by default the rays of an organized cloud, or else its sensor_origin_, which may be in the
   /// middle of the scene, as that of a spinning LiDAR.
-  void setViewpoint(const Viewpoint& viewpoint) { viewpoint_ = viewpoint; }
+  void setViewpoint(const Viewpoint& viewpoint) { viewpoint_ = detail::checkedViewpoint(viewpoint); }
 
   /// The plane that objects stand on, a x + b y + c z + d = 0 in the frame of the scene, in place of supporting planes
   /// that are searched for: points within SceneOptions::plane_distance belong to it.

@@ -39,6 +39,10 @@ enum class ViewpointSource {
 
 namespace detail {
 
+/// \return the viewpoint.
+/// \throws pcl::BadArgumentException for a position that is not finite.
+const Viewpoint& checkedViewpoint(const Viewpoint& viewpoint);
+
 /// \return the positions of a cloud with its rows, columns and sensor: of PointXYZ the cloud itself, which has to
 /// outlive them.
 template <typename PointT>

@@ -155,8 +155,9 @@ Recognition recognizeIn(DatabaseParts& database, const Points& points, const Poi
                         const RecognitionOptions& options, const FindSeen& find_seen,
                         const pcl::Indices* indices = nullptr) {
   detail::withBadArguments([&] { options.validate(); });
+  std::optional<Visibility> seen;
+  if (points.cols() > 0) seen = detail::withBadArguments(find_seen);
   const auto recognized = [&] {
-    const std::optional<Visibility> seen = detail::withBadArguments(find_seen);
     Recognition accepted;
     for (PosedModel& posed : seen ? fitLikeViews(database, points, scan_points, *seen, options)
                                   : fitLikeShapes(database, points, scan_points, options))
@@ -183,6 +184,7 @@ void SymmetryDatabase::prepare() const {
 
 Recognition SymmetryDatabase::recognize(const Cloud& scan, const RecognitionOptions& options,
                                         const Viewpoint& viewpoint) const {
+  detail::checkedViewpoint(viewpoint);
   const Points points = detail::finitePoints(scan, parts_->options.max_points);
   return recognizeIn(*parts_, points, detail::finitePoints(scan, kRecognition.num_scan_points), options,
                      [&] { return detail::seenSpace(scan, points, viewpoint); });

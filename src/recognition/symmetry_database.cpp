@@ -130,10 +130,11 @@ SymmetryDatabase::Cloud SymmetryDatabase::cloud(const std::string& name) const {
 
 std::vector<ModelMatch> SymmetryDatabase::match(const Cloud& cloud, int num_nearest, const Viewpoint& viewpoint) const {
   detail::checkAtLeast("num_nearest", num_nearest, 0);
+  detail::checkedViewpoint(viewpoint);
   const Points points = detail::finitePoints(cloud, parts_->options.max_points);
+  std::optional<Visibility> seen;
+  if (points.cols() > 0) seen = detail::withBadArguments([&] { return detail::seenSpace(cloud, points, viewpoint); });
   return detail::emptyWithoutAnswer(points, [&] {
-    const std::optional<Visibility> seen =
-        detail::withBadArguments([&] { return detail::seenSpace(cloud, points, viewpoint); });
     std::vector<ModelMatch> matches;
     for (const auto& [model, distance] : parts_->shapes()->nearest(points, seen ? &*seen : nullptr, num_nearest))
       matches.push_back({model.name, distance});

@@ -414,6 +414,20 @@ TEST_F(SymmetryDatabaseTest, CloudsWithoutAnswerFindNothing) {
   }
 }
 
+TEST_F(SymmetryDatabaseTest, CloudsWithoutAnswerExcuseNoViewpoint) {
+  const SymmetryDatabase database(file_);
+  Cloud few;
+  for (const float x : {-1.0f, 1.0f}) few.push_back({x, x * x, 0.0f});
+  const Viewpoint nowhere{Viewpoint::Mode::Given, Eigen::Vector3d::Constant(std::nan(""))};
+  const Viewpoint among{Viewpoint::Mode::Given, Eigen::Vector3d(0.0, 1.0, 0.0)};
+  for (const auto& [cloud, viewpoint] : {std::pair{Cloud(), nowhere}, std::pair{few, nowhere}, std::pair{few, among}}) {
+    EXPECT_NE(test::messageOf([&, c = cloud, v = viewpoint] { database.match(c, 3, v); }).find("viewpoint"),
+              std::string::npos);
+    EXPECT_NE(test::messageOf([&, c = cloud, v = viewpoint] { database.recognize(c, {}, v); }).find("viewpoint"),
+              std::string::npos);
+  }
+}
+
 TEST_F(SymmetryDatabaseTest, EmptyOnesFindNothing) {
   SymmetryDatabase database(file_, quick());
   EXPECT_TRUE(database.match(cube()).empty());

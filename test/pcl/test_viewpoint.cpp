@@ -80,8 +80,9 @@ TEST(ScanAnalysis, UsesAViewpointThatIsGiven) {
   // A viewpoint among the points is none.
   refinement.setViewpoint(Eigen::Vector3d::Zero());
   EXPECT_NE(messageOf([&] { refinement.compute(); }).find("viewpoint"), std::string::npos);
-  refinement.setViewpoint(Eigen::Vector3d::Constant(std::numeric_limits<double>::quiet_NaN()));
-  EXPECT_EQ(messageOf([&] { refinement.compute(); }), "viewpoint = nan nan nan, must be finite");
+  const Viewpoint nowhere{Viewpoint::Mode::Given, Eigen::Vector3d::Constant(std::nan(""))};
+  EXPECT_EQ(messageOf([&] { refinement.setViewpoint(nowhere); }), "viewpoint = nan nan nan, must be finite");
+  EXPECT_EQ(messageOf([&] { SeenSpace(Cloud(), nowhere); }), "viewpoint = nan nan nan, must be finite");
 }
 
 /// The part of the first box's far side that the second box hides.

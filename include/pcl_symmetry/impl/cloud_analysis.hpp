@@ -155,9 +155,11 @@ public:
   void setViewpointMode(Viewpoint::Mode mode) { viewpoint_.mode = mode; }
   /// Sets where the scanner stood.
   /// \param position where the scanner stood, input frame; it must see the points within 75 degrees of one direction.
-  void setViewpoint(const Eigen::Vector3d& position) { viewpoint_ = {Viewpoint::Mode::Given, position}; }
-  void setViewpoint(const Viewpoint& viewpoint) { viewpoint_ = viewpoint; }  ///< mode and position at once
-  const Viewpoint& getViewpoint() const { return viewpoint_; }               ///< see setViewpoint()
+  /// \throws pcl::BadArgumentException where it is not finite.
+  void setViewpoint(const Eigen::Vector3d& position) { setViewpoint(Viewpoint{Viewpoint::Mode::Given, position}); }
+  /// Mode and position at once.
+  void setViewpoint(const Viewpoint& viewpoint) { viewpoint_ = detail::checkedViewpoint(viewpoint); }
+  const Viewpoint& getViewpoint() const { return viewpoint_; }  ///< see setViewpoint()
 
   /// The plane that the object stands on, a x + b y + c z + d = 0 in the frame of the input: nothing of it lies below.
   /// It counts where there is a viewpoint. Sparse points without order, as those of a LiDAR's rings, are then decided
