@@ -29,13 +29,14 @@ std::size_t numPlanes(const SceneObject& object, PlaneKind kind) {
 
 /// What was found of an object, in words.
 std::string summaryOf(const SceneObject& object) {
-  if (!object.reason.empty()) return object.reason;
   const auto sure = [](const std::string& what, double confidence) {
     return what + formatted(", confidence %.2f", confidence);
   };
   const std::size_t num_possible = numPlanes(object, PlaneKind::Possible);
   std::string text = num_possible > 0 ? counted(num_possible, "possible plane") : "no symmetry";
-  if (!object.centers.empty())
+  if (!object.reason.empty())
+    text = object.reason;
+  else if (!object.centers.empty())
     text = sure("sphere", object.centers.front().confidence);
   else if (!object.axes.empty())
     text = sure("axis of revolution", object.axes.front().confidence);
@@ -43,6 +44,8 @@ std::string summaryOf(const SceneObject& object) {
     text = sure(counted(numPlanes(object, PlaneKind::Symmetry), "plane"), object.planes.front().confidence);
   if (!object.models.empty())
     text += ", " + object.models.front().name + formatted(" (%.2f)", object.models.front().confidence);
+  else if (!object.model_reason.empty())
+    text += ", no model fits" + (object.reason.empty() ? ": " + object.model_reason : "");
   return text;
 }
 
@@ -61,6 +64,7 @@ nlohmann::json describeObject(const SceneObject& object, const Eigen::Vector3d& 
                       {"models", nlohmann::json::array()},   {"tolerance", object.tolerance},
                       {"resolution", object.resolution},     {"diameter", object.diameter}};
   if (!object.reason.empty()) json["reason"] = object.reason;
+  if (!object.model_reason.empty()) json["model_reason"] = object.model_reason;
   for (const SymmetryPlane& plane : object.planes)
     json["planes"].push_back({{"coefficients", numbersOf(plane, shift)},
                               {"kind", toString(plane.kind)},

@@ -67,6 +67,7 @@ struct SceneObject : Detection {
   std::optional<ReflectionPlane> completed_by;
   pcl::PointCloud<pcl::PointXYZ> added;  ///< points that this reflection adds to the cluster
   Recognition models;                    ///< best first; empty without a database, and where the object is unknown
+  std::string model_reason;              ///< why no model of the database fits; empty where one does
 };
 
 /// Two pieces that touch, cut apart where the surface bends inwards, and what symmetry says of them: one object where

@@ -189,7 +189,8 @@ py::dict sceneOf(const AnyArray& points, const py::object& viewpoint, const std:
     static_cast<Detection&>(search.found) = object;
     objects.append(py::dict("planes"_a = search, "indices"_a = toArray(object.indices), "frame"_a = object.frame,
                             "completed_by"_a = object.completed_by,
-                            "added"_a = toRows(object.added.getMatrixXfMap(3, 4, 0)), "models"_a = object.models));
+                            "added"_a = toRows(object.added.getMatrixXfMap(3, 4, 0)), "models"_a = object.models,
+                            "model_reason"_a = object.model_reason));
   }
   for (const SupportingPlane& support : found.supports)
     supports.append(py::make_tuple(support.coefficients, toArray(support.indices)));

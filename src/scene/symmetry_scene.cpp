@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <functional>
 #include <future>
+#include <sstream>
 #include <utility>
 
 #include "core/base/check.h"
@@ -91,11 +92,16 @@ public:
 
   /// Adds what follows from the planes.
   void finish(SceneObject& object) const {
+    if (database_) object.model_reason = object.reason;
     if (!object.reason.empty()) return;
     const auto seen = std::make_shared<const SeenSpace>(seenOf(object.indices));
     if (options_.frames) findFrame(object, seen);
     if (options_.complete) complete(object, *seen);
     if (database_ && object.models.empty()) recognize(object);
+    if (!database_ || !object.models.empty()) return;
+    std::ostringstream reason;
+    reason << "none of " << database_->size() << " reaches a confidence of " << options_.recognition.min_confidence;
+    object.model_reason = database_->size() > 0 ? reason.str() : "the database is empty";
   }
 
   /// \return whether a model of the database is accepted.

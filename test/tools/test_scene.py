@@ -170,6 +170,9 @@ class SceneObjects(ToolTest):
 
         one = report(1)
         self.assertTrue(one["objects"][0]["models"])
+        strict = self.report(f"s.pcd -quiet {FEW} -database models.db -accept 1")["objects"]
+        self.assertEqual({each["model_reason"] for each in strict}, {"none of 2 reaches a confidence of 1"})
+        self.assertEqual(self.output.count(", no model fits: none of 2 reaches a confidence of 1"), len(strict))
         for threads in (2, 3):  # with 3, one object after the other
             self.assertEqual(report(threads), one)
 

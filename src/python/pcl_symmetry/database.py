@@ -378,4 +378,5 @@ def _scene_object(found: Any) -> SceneObject:
         completed_by=None if by is None else ReflectionPlane(by.normal, by.offset),
         added=found["added"],
         models=[_recognized(m) for m in found["models"]],
+        model_reason=found["model_reason"],
     )

@@ -853,6 +853,8 @@ class Support(Result):
     """(K,) of its points in the flattened scene."""
 
 
+    model_reason: str
+    """Why no model of the database fits; empty where one does."""
 @dataclass(frozen=True, eq=False, repr=False)
 class Junction(Result):
     """Two pieces that touch, and what symmetry says of them: one object where one symmetry explains both."""
