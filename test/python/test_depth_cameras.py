@@ -220,6 +220,9 @@ class OrganizedArrays(unittest.TestCase):
         page = scene.show(self.frame)
         shown = json.loads(page.html.split('id="scene">')[1].split("</script>")[0])
         self.assertEqual(len(shown["panels"]), 3)
+        if importlib.util.find_spec("matplotlib"):
+            squares = sum(len(each.planes) for each in scene if not each.planes.axes)
+            self.assertEqual(len(scene.plot(self.frame).collections), 1 + squares)
         shifted = pcl_symmetry.scene(self.frame.astype(float) + (4e5, 5e6, 0), viewpoint=(4e5, 5e6, 0))
         self.assertEqual(len(shifted), 2)
         with self.assertRaisesRegex(ValueError, "viewpoint: of rows without order"):

@@ -8,7 +8,7 @@ import matplotlib.pyplot as plt
 import numpy as np
 
 if TYPE_CHECKING:
-    from .results import Frame, Map, Planes, Profile, ReflectionPlane
+    from .results import Frame, Map, Planes, Profile, ReflectionPlane, Scene
 
 # Colors that remain apart for color-blind eyes (Okabe and Ito), as in the pictures of the tools.
 COLORS = ["#E69F00", "#0072B2", "#009E73", "#CC79A7", "#D55E00", "#56B4E9", "#F0E442", "#595959"]
@@ -22,8 +22,10 @@ def _axes_for(points: Any, axes: Any, title: str, colors: Any = "#4D6185") -> An
     """Axes of projection 3d with the points in them, all directions to one scale."""
     if axes is None:
         axes = plt.figure(figsize=(6, 6), dpi=100).add_subplot(projection="3d")
+    if not np.isfinite(points).all(axis=1).any():
+        points, colors = np.zeros((1, 3)), "#4D6185"
     low, high = np.nanmin(points, axis=0), np.nanmax(points, axis=0)
-    middle, half = (low + high) / 2, (high - low).max() / 2
+    middle, half = (low + high) / 2, (high - low).max() / 2 or 1.0
     axes.set(xlim=(middle[0] - half, middle[0] + half), ylim=(middle[1] - half, middle[1] + half), title=title)
     axes.set_zlim(middle[2] - half, middle[2] + half)
     axes.set_box_aspect((1, 1, 1))
@@ -57,11 +59,27 @@ def plot_planes(found: Planes, points: Any, axes: Any) -> Any:
     counts = ((len(found), "plane"), (len(found.axes), "axis"))
     title = ", ".join(_counted(number, what) for number, what in counts if number) or "no symmetry"
     axes = _axes_for(points, axes, title, colors)
-    for plane, color in zip(found, COLORS):
+    _draw(axes, found, points, COLORS)
+    return axes
+
+
+def _draw(axes: Any, found: Planes, points: Any, colors: Any) -> None:
+    """The planes and axes of points."""
+    for plane, color in zip(found, colors):
         axes.plot_trisurf(*_square(plane, points).T, triangles=[(0, 1, 2), (0, 2, 3)], color=color, alpha=0.25)
     for axis in found.axes:
         reach = np.array([[-1], [1]]) * _diagonal(points) * 0.6
         axes.plot(*(axis.point + reach * axis.direction).T, color=COLORS[4], linewidth=3, zorder=10)
+
+
+def plot_scene(found: Scene, points: Any, axes: Any) -> Any:
+    from .pages import rows_of_shown
+
+    points, labels = rows_of_shown(points, found._shape, "scene"), found.labels.reshape(-1)
+    colors = np.where(labels > 0, np.array(COLORS)[(labels - 1) % len(COLORS)], "#AAAAAA")
+    axes = _axes_for(points, axes, _counted(len(found), "object"), colors)
+    for k, each in enumerate(found):
+        _draw(axes, each.planes, points[each.rows], () if each.planes.axes else len(each.planes) * [COLORS[k % len(COLORS)]])
     return axes
 
 

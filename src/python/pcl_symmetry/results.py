@@ -924,6 +924,15 @@ class Scene(Result):
         objects = [dataclasses.replace(each._moved(shift), added=each.added + shift) for each in self.objects]
         supports = []
         for support in self.supports:
+    def plot(self, points: Any, axes: Any = None) -> Any:
+        """Draws the scene, its objects, planes and axes with matplotlib, by default into new axes; returns them.
+
+        points: those of scene().
+        """
+        from .plots import plot_scene
+
+        return plot_scene(self, points, axes)
+
             coefficients = support.coefficients.copy()
             coefficients[3] -= coefficients[:3] @ shift
             supports.append(dataclasses.replace(support, coefficients=coefficients))
