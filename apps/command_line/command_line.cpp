@@ -253,6 +253,7 @@ bool CommandLine::parse(int argc, const char* const* argv) {
   }
   assignPositionals();
   po::notify(values_);
+  goWith("volumes, without -surface", !given("surface"), {"levels"});
   checkFiles();
   nlohmann::json options = nlohmann::json::object();
   for (const auto& [name, value] : values_) {
@@ -289,7 +290,7 @@ void CommandLine::readTokens(int argc, const char* const* argv) {
     const std::string closest = closestFlag(unknown);
     throw UsageError("unknown flag " + unknown + (closest.empty() ? "" : ", did you mean -" + closest + "?"));
   } catch (const po::error& error) {
-    throw UsageError(error.what());
+    throw UsageError(boost::algorithm::replace_all_copy(std::string(error.what()), "'--", "'-"));
   }
 }
 

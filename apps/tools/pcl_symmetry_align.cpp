@@ -468,6 +468,7 @@ void analyze(const AlignOptions& options, FileJob& job) {
   const CommonOptions& common = job.common();
   const InputShape input = loadInput(console, job.path(), common);
   const bool symmetrizes = options.symmetrize != "none";
+  if (options.cut && !input.shape.mesh) throw InputError(job.path() + ": has no faces, -cut needs a mesh");
   if (symmetrizes && options.output && input.shape.mesh) checkMeshExtension(job.output(*options.output));
   const auto find_plane = [&]() -> std::optional<BestPlane> {
     if (symmetrizes) return bestPlane(console, input, common);
@@ -639,6 +640,9 @@ int run(int argc, char** argv) {
   AlignOptions options;
   CommandLine line = commandLine(options);
   if (!line.parse(argc, argv)) return 0;
+  line.goWith("-complete", options.complete, {"any_plane"});
+  const bool searches_plane = options.complete || options.symmetrize != "none";
+  line.goWith("frames, -complete and -symmetrize", searches_plane || !(options.merge || options.target), {"grid"});
   if (options.merge) {
     for (const char* flag : {"target", "symmetrize", "cut", "landmarks", "as_published", "csv", "resume"})
       if (line.given(flag)) throw UsageError(std::string("-merge and -") + flag + " exclude each other");
@@ -649,7 +653,8 @@ int run(int argc, char** argv) {
   if (options.complete && options.symmetrize != "none")
     throw UsageError("-complete and -symmetrize exclude each other");
   line.goWith("frames, without -target", !options.target, {"as_published"});
-  line.goWith("-complete", options.complete, {"any_plane"});
+  line.goWith("-complete, -symmetrize and frames without -as_published", searches_plane || !options.as_published,
+              {"viewpoint"});
   line.goWith("-symmetrize", options.symmetrize != "none", {"cut", "landmarks"});
   const bool is_written = options.output || options.html_path || options.png_path;
   if (options.complete && !is_written)

@@ -242,6 +242,8 @@ int run(int argc, char** argv) {
   CommandLine line = commandLine(options);
   if (!line.parse(argc, argv)) return 0;
   line.goWith("-check", options.check_path.has_value(), {"report"});
+  line.goWith("-json or -dope", options.common.json_path || options.dope_folder, {"sphere_angle"});
+  line.goWith("-absolute_tolerance 0", options.models.symmetries.absolute_tolerance == 0.0, {"tolerance"});
   line.goWith("-color", options.models.use_colors, {"color_tolerance"});
   const std::vector<ModelFile> files = modelFiles(options.inputs);
   const GivenSymmetries given = options.check_path ? readGiven(*options.check_path, files.size()) : GivenSymmetries{};

@@ -288,6 +288,8 @@ int run(int argc, char** argv) {
   const bool builds = options.command == "build" || options.command == "add";
   line.goWith("build and add", builds, {"tag", "names", "part", "points"});
   line.goWith("build, add and merge", builds || options.command == "merge", {"unit"});
+  line.goWith("all commands but remove, export and rebuild",
+              options.command != "remove" && options.command != "export" && options.command != "rebuild", {"json"});
   line.goWith("list and info", options.command == "list" || options.command == "info", {"csv"});
   return DatabaseTool(options).run();
 }

@@ -163,6 +163,7 @@ int run(int argc, char** argv) {
   if (!line.parse(argc, argv)) return 0;
   line.goWith("-type prst, prsd and gedt", options.type != "signature", {"input_axes"});
   line.goWith("-type prst and prsd", options.type == "prst" || options.type == "prsd", {"equation_1"});
+  line.goWith("axes of the symmetry, without -input_axes", !options.input_axes, {"viewpoint"});
   const Console console(options.common.quiet);
   const std::vector<InputFile> files = inputFiles(options.inputs);
   checkNames(files);

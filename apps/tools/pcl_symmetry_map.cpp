@@ -388,6 +388,8 @@ int run(int argc, char** argv) {
     rejectValue("-volume", *options.volume_path, "must end in .vti");
   options.what.fold = options.fold.value_or(-1);
   line.goWith("-of planes", options.what.of == "planes", {"scale", "method", "refined_share", "as_published"});
+  line.goWith("the whole shape, without -scale", options.what.scale == 0.0,
+              {"method", "refined_share", "as_published"});
   line.goWith("-method rotational", options.what.method == "rotational", {"refined_share"});
   line.goWith("-method voting", options.what.method == "voting", {"as_published"});
   line.goWith("-of axes", options.what.of == "axes", {"fold"});

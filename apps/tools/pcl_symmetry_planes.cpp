@@ -434,7 +434,10 @@ int run(int argc, char** argv) {
   if (!line.parse(argc, argv)) return 0;
   options.method_given = line.given("method");
   line.goWith("the decision, which -as_published leaves out", !options.as_published,
-              {"explain", "approximate", "min_confidence", "tolerance", "absolute_tolerance", "ground"});
+              {"explain", "approximate", "min_confidence", "tolerance", "absolute_tolerance", "ground", "profile"});
+  line.goWith("the decision, which -as_published without -method leaves out",
+              !options.as_published || options.method_given, {"viewpoint"});
+  line.goWith("-absolute_tolerance 0", options.detection.absolute_tolerance == 0.0, {"tolerance"});
   options.detection.min_possible = std::min(options.detection.min_possible, options.detection.min_confidence);
   if (options.support_path) checkCloudExtension(*options.support_path);
   if (options.profile_path && !boost::iends_with(*options.profile_path, ".csv") &&

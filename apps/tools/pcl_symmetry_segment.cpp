@@ -77,7 +77,8 @@ SegmentationOptions segmentationOptions(const SegmentOptions& o, const CommonOpt
 }
 
 void checkOutput(const SegmentOptions& o, const CommandLine& line) {
-  line.goWith("-method splitting", o.method == "splitting", {"depth", "concavity", "as_published"});
+  line.goWith("-method splitting and -parts 0", o.method == "splitting" && o.num_parts == 0, {"depth"});
+  line.goWith("-method splitting", o.method == "splitting", {"concavity", "as_published"});
   line.goWith("-method merging", o.method == "merging", {"evidence"});
   line.goWith("-png", o.png_path.has_value(), {"size"});
   line.goWith("-png or -html", o.png_path || o.html_path, {"up"});

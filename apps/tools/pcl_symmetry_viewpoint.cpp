@@ -190,6 +190,8 @@ int run(int argc, char** argv) {
   CommandLine line = commandLine(options);
   if (!line.parse(argc, argv)) return 0;
   line.goWith("-png or -icon", options.png_path || options.icon_path, {"size"});
+  line.goWith("the decision, which -as_published leaves out", !options.as_published, {"viewpoint"});
+  line.goWith("-views 2 or more", options.num_views > 1, {"separation"});
   return runOnFiles(options.batch, options.common, {"view", "x", "y", "z", "score"},
                     [&](FileJob& job) { analyze(options, job); });
 }
