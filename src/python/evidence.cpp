@@ -67,14 +67,15 @@ auto rowsOf(const std::vector<Judged>& all) {
 /// Small patches of a mesh, and their merges by any weights.
 class Merging {
 public:
-  Merging(const AnyArray& points, const std::vector<std::vector<int>>& faces, std::uint64_t seed, int threads) {
+  Merging(const AnyArray& points, const py::object& faces, std::uint64_t seed, int threads) {
     const InputPoints input("points", points, 0, seed);
     if (!input.usesAllRows()) throw std::invalid_argument("points: vertices not all finite, must be");
     SegmentationOptions options;
     options.seed = seed;
     options.num_threads = threads;
+    const std::vector<std::vector<int>> polygons = polygonsOf(faces);
     const Computing computing;
-    const SurfaceGraph graph = meshGraph(input.points(), faces);
+    const SurfaceGraph graph = meshGraph(input.points(), polygons);
     evidence_ = WholeEvidence(graph, options).ofDivision(0);
   }
 
@@ -138,11 +139,9 @@ py::array frameEvidence(const SymmetryFrame& frame) {
 }
 
 void addEvidence(py::module_& module) {
-  py::class_<Merging>(module, "Merging", "Small patches of a mesh, and the merges that make parts of them.")
-      .def(py::init([](const AnyArray& points, const std::vector<std::vector<int>>& faces, std::uint64_t seed,
-                       int threads) { return std::make_unique<Merging>(points, faces, seed, threads); }),
-           py::arg("points"), py::arg("faces"), py::kw_only(), py::arg("seed") = 1, py::arg("threads") = 0,
-           "points: (V, 3) vertices. faces: lists of indices of vertices, three or more each.")
+  py::class_<Merging>(module, "Merging")
+      .def(py::init<const AnyArray&, const py::object&, std::uint64_t, int>(), py::arg("points"), py::arg("faces"),
+           py::arg("seed"), py::arg("threads"))
       .def_property_readonly("patches", &Merging::patches, "list with the patch of each face, from 0")
       .def("merges", &Merging::merges, py::arg("weights") = py::none(),
            "All merges until no two regions are neighbors, in their order, the likeliest first.\n\n"

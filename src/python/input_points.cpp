@@ -1,6 +1,7 @@
 #include "python/input_points.h"
 
 #include <pybind11/eigen.h>
+#include <pybind11/stl.h>
 
 #include <Eigen/Geometry>
 #include <algorithm>
@@ -102,6 +103,30 @@ py::array arrayOf(const char* name, const py::object& object) {
   py::array array = py::array::ensure(object);
   if (!array) throw std::invalid_argument(std::string(name) + " = no array, must be one");
   return array;
+}
+
+std::vector<std::vector<int>> polygonsOf(const py::object& all) {
+  const py::array faces = py::array::ensure(all);
+  if (!faces && py::detail::make_caster<std::vector<std::vector<int>>>().load(all, true))
+    return all.cast<std::vector<std::vector<int>>>();
+  const char kind = faces ? faces.dtype().kind() : 'O';
+  if (kind != 'i' && kind != 'u' && kind != 'f')
+    throw std::invalid_argument("faces = no numbers, must be (F, 3), indices into the vertices");
+  if (faces.ndim() != 2 || faces.shape(1) < 3)
+    throw std::invalid_argument("faces = array of shape " + shapeOf(faces) +
+                                ", must be (F, 3), indices into the vertices");
+  const py::array_t<double, py::array::forcecast> rows(faces);
+  const auto index = rows.unchecked<2>();
+  std::vector<std::vector<int>> polygons(static_cast<std::size_t>(faces.shape(0)));
+  for (py::ssize_t i = 0; i < faces.shape(0); ++i)
+    for (py::ssize_t k = 0; k < faces.shape(1); ++k) {
+      const double corner = index(i, k);
+      if (!(corner >= 0.0 && corner <= std::numeric_limits<int>::max() && corner == std::floor(corner)))
+        throw std::invalid_argument("faces: " + py::str(py::float_(corner)).cast<std::string>() +
+                                    ", must be an index of a vertex");
+      polygons[static_cast<std::size_t>(i)].push_back(static_cast<int>(corner));
+    }
+  return polygons;
 }
 
 PointsRef InputPoints::points() const {

@@ -22,6 +22,10 @@ struct AnyArray {
 /// \throws std::invalid_argument naming the parameter where the object is nothing like an array.
 pybind11::array arrayOf(const char* name, const pybind11::object& object);
 
+/// \param faces indices into the vertices: (F, 3) or more, or lists, which may be of different lengths.
+/// \throws std::invalid_argument for another shape, and what is no index.
+std::vector<std::vector<int>> polygonsOf(const pybind11::object& faces);
+
 /// The points of an array that an analysis uses.
 ///
 /// Rows of float32 are seen in place, without a copy, where all of them are used. Other rows are copied: those of other

@@ -44,29 +44,11 @@ namespace pcl_symmetry::python {
 
 namespace {
 
-std::vector<std::vector<int>> polygonsOf(const py::array& faces) {
-  const char kind = faces.dtype().kind();
-  if (faces.ndim() != 2 || faces.shape(1) < 3 || (kind != 'i' && kind != 'u' && kind != 'f'))
-    throw std::invalid_argument("faces = array of another shape or kind, must be (F, 3), indices into the vertices");
-  const py::array_t<double, py::array::forcecast> rows(faces);
-  const auto index = rows.unchecked<2>();
-  std::vector<std::vector<int>> polygons(static_cast<std::size_t>(faces.shape(0)));
-  for (py::ssize_t i = 0; i < faces.shape(0); ++i)
-    for (py::ssize_t k = 0; k < faces.shape(1); ++k) {
-      const double corner = index(i, k);
-      if (!(corner >= 0.0 && corner <= std::numeric_limits<int>::max() && corner == std::floor(corner)))
-        throw std::invalid_argument("faces: " + py::str(py::float_(corner)).cast<std::string>() +
-                                    ", must be an index of a vertex");
-      polygons[static_cast<std::size_t>(i)].push_back(static_cast<int>(corner));
-    }
-  return polygons;
-}
-
 /// Vertices and triangles of a mesh.
 struct MeshInput {
-  MeshInput(const AnyArray& vertex_rows, const AnyArray& faces) : vertices("vertices", vertex_rows, 0, 0) {
+  MeshInput(const AnyArray& vertex_rows, const py::object& faces) : vertices("vertices", vertex_rows, 0, 0) {
     if (!vertices.usesAllRows()) throw std::invalid_argument("vertices: not all finite, must be");
-    for (const std::vector<int>& polygon : polygonsOf(faces.array))
+    for (const std::vector<int>& polygon : polygonsOf(faces))
       for (std::size_t k = 2; k < polygon.size(); ++k) triangles.emplace_back(polygon[0], polygon[k - 1], polygon[k]);
   }
 
@@ -74,12 +56,12 @@ struct MeshInput {
   std::vector<Eigen::Vector3i> triangles;
 };
 
-py::array_t<float> sampleMesh(const AnyArray& vertices, const AnyArray& faces, int num_points, std::uint64_t seed) {
+py::array_t<float> sampleMesh(const AnyArray& vertices, const py::object& faces, int num_points, std::uint64_t seed) {
   const MeshInput mesh(vertices, faces);
   return toRows(sampleTriangles(mesh.vertices.points(), mesh.triangles, num_points, seed));
 }
 
-MeshSurface meshSurface(const AnyArray& vertices, const AnyArray& faces) {
+MeshSurface meshSurface(const AnyArray& vertices, const py::object& faces) {
   const MeshInput mesh(vertices, faces);
   const Computing computing;
   return {mesh.vertices.points(), mesh.triangles};
@@ -115,7 +97,7 @@ SymmetrizedShape symmetrize(const AnyArray& points, const py::object& faces, con
   const auto kept = named<SymmetrizedHalf>("half", half, {"mean", "left", "right"});
   checkNumThreads(threads);
   if (!faces.is_none()) {
-    const MeshInput mesh(points, {arrayOf("faces", faces)});
+    const MeshInput mesh(points, faces);
     const Computing computing;
     return symmetrizedMesh(mesh.vertices.points(), mesh.triangles, plane, kept, threads);
   }
@@ -127,7 +109,7 @@ SymmetrizedShape symmetrize(const AnyArray& points, const py::object& faces, con
 
 /// \return vertices, faces, and the row that each vertex comes from.
 py::tuple mirroredHalfOf(const AnyArray& vertices, const py::object& faces, const ReflectionPlane& plane, bool left) {
-  const MeshInput mesh(vertices, {arrayOf("faces", faces)});
+  const MeshInput mesh(vertices, faces);
   const MirroredMesh half = mirroredHalf(mesh.vertices.points(), mesh.triangles, plane, left);
   Eigen::MatrixX3i triangles(half.triangles.size(), 3);
   for (std::size_t i = 0; i < half.triangles.size(); ++i) triangles.row(i) = half.triangles[i];
@@ -364,7 +346,7 @@ std::vector<int> segment(const AnyArray& points, const py::object& faces, int pa
   if (faces.is_none()) return segmentCloud(points, options);
   const InputPoints input("points", points, 0, seed);
   if (!input.usesAllRows()) throw std::invalid_argument("points: vertices not all finite, must be");
-  const std::vector<std::vector<int>> polygons = polygonsOf(arrayOf("faces", faces));
+  const std::vector<std::vector<int>> polygons = polygonsOf(faces);
   const Computing computing;
   return segmentSurface(meshGraph(input.points(), polygons), options).labels;
 }
@@ -414,6 +396,7 @@ std::vector<RankedView> viewpoints(const Weighted& planes, const Weighted& axes,
     for (const auto& [normal, weight] : rows) result.push_back({normal, weight});
     return result;
   };
+  const Computing computing;
   return bestViews(viewPlanes(weighted(planes), weighted(axes), weighted(maxima)));
 }
 

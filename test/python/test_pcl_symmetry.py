@@ -405,6 +405,8 @@ class OtherFunctions(unittest.TestCase):
         merging = pcl_symmetry.Merging(vertices, faces)
         self.assertEqual(len(merging.patches), len(faces))
         merges = merging.merges()
+        for same in (faces.tolist(), [*faces[:-1].tolist(), tuple(faces[-1].tolist())]):
+            self.assertEqual(pcl_symmetry.Merging(vertices, same).merges().tobytes(), merges.tobytes())
         self.assertEqual(len(merges), max(merging.patches))
         self.assertEqual((merges["cues"].shape[1], merges["cues"][0, 0]), (14, 1))
         self.assertTrue((merging.merges([1] + [0] * 13)["log_odds"] == 1).all())
@@ -929,6 +931,9 @@ class Package(unittest.TestCase):
             (dict(points=box(), tolerance="small"), "tolerance = 'small', must be float"),
             (dict(volume=volume, spacing=2.0), r"spacing = 2, must be numbers of shape \(3,\)"),
             (dict(volume=volume, direction=np.eye(2)), r"direction = (.|\n)* must be numbers of shape \(3, 3\)"),
+            (dict(points=box(), seed=box()), r"seed = array of shape \(6000, 3\) and type float32, must be int"),
+            (dict(points=box(), seed=box().tolist()), r"seed = array of shape \(6000, 3\) and type float64, must be int"),
+            (dict(points=60 * "cloud"), "points = str of 302 characters, must be an array"),
             (dict(points=box(), viewpoint=dict(x=1)), "viewpoint = dict, must be"),
             (dict(volume=volume, levels=5), r"levels = 5, must be numbers of shape \(2,\)"),
         ):
@@ -942,6 +947,15 @@ class Package(unittest.TestCase):
             pcl_symmetry.rotations(box()).canonical(np.eye(3))
         with self.assertRaisesRegex(TypeError, "planes = other objects, must be"):
             pcl_symmetry.viewpoints(box())
+        vertices, faces = box_mesh()
+        for arguments, words in (
+            ((vertices, faces[:, :2]), r"faces = array of shape \(\d+, 2\), must be \(F, 3\)"),
+            ((vertices, [[0, 1, 2.5], [0, 1]]), "faces = no numbers, must be"),
+            (((vertices, faces[:9]), faces), "points: .*must be"),
+        ):
+            with self.assertRaisesRegex((ValueError, TypeError), words) as raised:
+                pcl_symmetry.Merging(*arguments)
+            self.assertLess(len(str(raised.exception)), 200)
 
     def test_types_are_those_that_mypy_finds(self):
         if subprocess.run([sys.executable, "-m", "mypy", "--version"], capture_output=True).returncode:

@@ -6,6 +6,7 @@
 
 #include "core/base/check.h"
 #include "core/base/constants.h"
+#include "core/base/watched_steps.h"
 #include "core/geometry/directions.h"
 
 namespace pcl_symmetry {
@@ -39,12 +40,13 @@ std::vector<ViewPlane> viewPlanes(std::vector<ViewPlane> planes, const std::vect
     }
   }
   for (const ViewPlane& maximum : maxima) {
-    const std::vector<RankedView> best = bestViews(planes);
-    if (!best.empty() && worstView(planes).score >= min_score * best[0].score) break;
     const bool near = std::any_of(planes.begin(), planes.end(), [&](const ViewPlane& plane) {
       return std::abs(plane.normal.dot(maximum.normal)) > max_across;
     });
-    if (!near) planes.push_back(maximum);
+    if (near) continue;
+    const std::vector<RankedView> best = bestViews(planes);
+    if (!best.empty() && worstView(planes).score >= min_score * best[0].score) break;
+    planes.push_back(maximum);
   }
   std::stable_sort(planes.begin(), planes.end(), [](const auto& a, const auto& b) { return a.weight > b.weight; });
   return planes;
@@ -62,6 +64,7 @@ std::vector<RankedView> bestViews(const std::vector<ViewPlane>& planes) {
   if (all_equal) return views;
   const int num_directions = 4096;  // fewer may miss a maximum of a small cell between many planes
   for (const Eigen::Vector3d& start : evenDirections(num_directions)) {
+    lookAtWatch();
     const Eigen::Vector3d v = climb(planes, start);
     const bool known = std::any_of(views.begin(), views.end(),
                                    [&](const RankedView& view) { return view.direction.dot(v) > 1.0 - 1e-9; });
@@ -79,6 +82,7 @@ RankedView worstView(const std::vector<ViewPlane>& planes) {
   RankedView worst{planes[0].normal.unitOrthogonal(), 0.0};
   worst.score = viewpointScore(planes, worst.direction);
   for (std::size_t i = 0; i < planes.size(); ++i) {
+    lookAtWatch();
     for (std::size_t j = i + 1; j < planes.size(); ++j) {
       const Eigen::Vector3d along = planes[i].normal.cross(planes[j].normal);
       if (along.norm() < 1e-6) continue;

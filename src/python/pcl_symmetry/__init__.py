@@ -30,8 +30,8 @@ What they return has one, too: help(pcl_symmetry.Planes), Plane, Axis, Frame, Ro
 import importlib.util
 from typing import TYPE_CHECKING, Any, List
 
-from ._pcl_symmetry import Merging as Merging
 from ._pcl_symmetry import __version__ as __version__
+from .functions import Merging as Merging
 from .functions import (
     complete,
     describe,

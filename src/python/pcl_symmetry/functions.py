@@ -21,7 +21,7 @@ from .results import (
     Symmetrized,
     RotationAxis,
     View,
-    _text,
+    shown,
 )
 
 if TYPE_CHECKING:
@@ -51,7 +51,7 @@ class Core:
             except ValueError as error:
                 raise ValueError(re.sub(r"^num_(threads|parts)\b", r"\1", str(error))) from None
             except TypeError as error:
-                if "incompatible function arguments" not in str(error):
+                if not re.search("incompatible (function|constructor) arguments", str(error)):
                     raise
                 raise TypeError(_wrong_argument(str(error), arguments)) from None
 
@@ -83,8 +83,8 @@ def _wrong_argument(text: str, arguments: Dict[str, Any]) -> str:
                 fits = False
             words = f"numbers of shape {shape}"
         if not fits:
-            return f"{name} = {_text(value)}, must be {words}"
-    return " ".join(text.split())
+            return f"{name} = {shown(value)}, must be {words}"
+    return " ".join(text.split("Invoked with:")[0].split())
 
 
 Viewpoint = Union[str, None, "ArrayLike"]
@@ -136,7 +136,7 @@ def parts_of(name: str, points: Any) -> Tuple[NDArray[Any], Any]:
     import numpy as np
 
     if points is None or isinstance(points, (str, bytes)):
-        raise TypeError(f"{name} = {points!r}, must be an array of shape (N, 3), or a cloud or mesh of Open3D or trimesh")
+        raise TypeError(f"{name} = {shown(points)}, must be an array of shape (N, 3), or a cloud or mesh of Open3D or trimesh")
     faces = None
     for member, positions in (("point", "positions"), ("vertex", "positions"), ("points", ""), ("vertices", "")):
         found = None if hasattr(points, "__array__") else getattr(points, member, None)
@@ -405,7 +405,7 @@ def planes(
     given = locals()
     _check_one_of("planes", points, volume)
     if method != "convolution" and not as_published:
-        raise ValueError(f"method = {method}, must be convolution without as_published")
+        raise ValueError(f"method = {method if isinstance(method, str) else shown(method)}, must be convolution without as_published")
     of_decision = "viewpoint indices ground tolerance absolute_tolerance normals max_points evidence"
     if volume is not None:
         left_out(planes, given, "volume", of_decision + " as_published")
@@ -514,7 +514,7 @@ def local_symmetry(
     given = locals()
     _check_one_of("local_symmetry", points, volume)
     if not 0 < scale <= 1:
-        raise ValueError(f"scale = {_text(scale)}, must be in (0, 1]")
+        raise ValueError(f"scale = {shown(scale)}, must be in (0, 1]")
     if (volume is None) != (at is None):
         raise TypeError("at: positions in a volume, must be given with volume and left out with points")
     cloud: Any = None
@@ -623,6 +623,14 @@ def viewpoints(planes: Union[Planes, Sequence[Plane]]) -> List[View]:
     return [View(v.direction, v.score) for v in core.viewpoints(*weighted)]
 
 
+class Merging(_pcl_symmetry.Merging):
+    """Small patches of a mesh, and the merges that make parts of them."""
+
+    def __init__(self, points: ArrayLike, faces: Any, *, seed: int = 1, threads: int = 0) -> None:
+        """points: (V, 3) vertices. faces: (F, 3), or lists of indices of vertices, three or more each."""
+        core._named(super().__init__)(parts_of("points", points)[0], faces, seed=seed, threads=threads)
+
+
 def sample_mesh(
     vertices: Any, faces: Optional[ArrayLike] = None, num_points: int = 10_000, *, seed: int = 1
 ) -> NDArray[Any]:
@@ -632,7 +640,7 @@ def sample_mesh(
     if faces is None:
         raise TypeError("faces = None, must be (F, 3), or vertices a mesh of Open3D or trimesh")
     array, shift, *_ = prepare("vertices", positions)
-    points: NDArray[Any] = core.sample_mesh(array, faces, num_points, seed=seed)
+    points: NDArray[Any] = core.sample_mesh(array, faces, num_points=num_points, seed=seed)
     return points if shift is None else points + shift
 
 
@@ -654,7 +662,7 @@ def from_depth(depth: ArrayLike, intrinsics: ArrayLike, *, unit: float = 1.0) ->
     if k.shape == (3, 3):
         k = k[[0, 1, 0, 1], [0, 1, 2, 2]]
     if k.shape != (4,) or not np.isfinite(k).all() or not (k[:2] > 0).all():
-        raise ValueError(f"intrinsics = {_text(np.asarray(intrinsics))}, must be (3, 3) or (fx, fy, cx, cy), fx and fy > 0")
+        raise ValueError(f"intrinsics = {shown(intrinsics)}, must be (3, 3) or (fx, fy, cx, cy), fx and fy > 0")
     z = np.where(np.isfinite(z) & (z > 0), z, np.nan) * unit
     v, u = np.indices(z.shape)
     points: NDArray[np.float32] = np.stack([(u - k[2]) / k[0] * z, (v - k[3]) / k[1] * z, z], axis=2).astype(np.float32)
@@ -895,7 +903,7 @@ def transform(
     _check_one_of("transform", points, volume)
     sizes = np.asarray(bins)
     if sizes.shape != (3,) or sizes.dtype.kind not in "iu":
-        raise TypeError(f"bins = {_text(bins)}, must be three whole numbers, of theta, phi and r")
+        raise TypeError(f"bins = {shown(bins)}, must be three whole numbers, of theta, phi and r")
     shape: Any = None
     shift: Any = None
     for names, methods in (("samples", "sampled voting"), ("refined_share", "rotational"), ("as_published", "voting")):

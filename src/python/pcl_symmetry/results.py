@@ -58,6 +58,20 @@ def _text(value: Any) -> str:
     return f"{value:.4g}" if isinstance(value, float) else repr(value)
 
 
+def shown(value: Any) -> str:
+    """A value in a message: of a large one the shape and type."""
+    import numpy as np
+
+    try:
+        array = np.asarray(value)
+    except ValueError:  # rows of different lengths
+        return f"{type(value).__name__} of length {len(value)}"
+    if array.ndim and (array.size > 16 or array.dtype == object):
+        return f"array of shape {array.shape} and type {array.dtype}"
+    text = _text(value)
+    return text if len(text) <= 250 else f"{type(value).__name__} of {len(text)} characters"
+
+
 @dataclass(frozen=True, eq=False, repr=False)
 class Result:
     """What all results can do."""
@@ -125,7 +139,7 @@ class ReflectionPlane(Result):
 
         n = np.array(normal, dtype=float)
         if n.shape != (3,) or not np.isfinite(n).all() or not n.any():
-            raise ValueError(f"normal = {_text(n)}, must be (3,), finite and not zero")
+            raise ValueError(f"normal = {shown(n)}, must be (3,), finite and not zero")
         length = float(np.linalg.norm(n))
         if abs(length - 1.0) > 1e-12:
             n, offset = n / length, offset / length
@@ -252,12 +266,11 @@ class Axis(Result):
 
         points: (N, 3), or an object of Open3D or trimesh. num_points: of the curve, about.
         """
-        from . import _pcl_symmetry as core
-        from .functions import prepare
+        from .functions import core, prepare
 
         array, shift, *_ = prepare("points", points)
         point = self.point if shift is None else self.point - shift
-        rows = core.profile(array, point, self.direction, num_points)
+        rows = core.profile(array, point, self.direction, num_points=num_points)
         return Profile(radius=rows[:, 0], height=rows[:, 1], spread=rows[:, 2], count=rows[:, 3].astype(int))
 
 
@@ -840,6 +853,8 @@ class SceneObject(Result):
     """(M, 3) points that this reflection adds."""
     models: List["Recognized"]
     """Best first; empty without a database, and where the object is unknown."""
+    model_reason: str
+    """Why no model of the database fits; empty where one does."""
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -853,8 +868,6 @@ class Support(Result):
     """(K,) of its points in the flattened scene."""
 
 
-    model_reason: str
-    """Why no model of the database fits; empty where one does."""
 @dataclass(frozen=True, eq=False, repr=False)
 class Junction(Result):
     """Two pieces that touch, and what symmetry says of them: one object where one symmetry explains both."""
@@ -911,6 +924,15 @@ class Scene(Result):
 
         return page_of_scene(self, points)
 
+    def plot(self, points: Any, axes: Any = None) -> Any:
+        """Draws the scene, its objects, planes and axes with matplotlib, by default into new axes; returns them.
+
+        points: those of scene().
+        """
+        from .plots import plot_scene
+
+        return plot_scene(self, points, axes)
+
     def __len__(self) -> int:
         return len(self.objects)
 
@@ -924,15 +946,6 @@ class Scene(Result):
         objects = [dataclasses.replace(each._moved(shift), added=each.added + shift) for each in self.objects]
         supports = []
         for support in self.supports:
-    def plot(self, points: Any, axes: Any = None) -> Any:
-        """Draws the scene, its objects, planes and axes with matplotlib, by default into new axes; returns them.
-
-        points: those of scene().
-        """
-        from .plots import plot_scene
-
-        return plot_scene(self, points, axes)
-
             coefficients = support.coefficients.copy()
             coefficients[3] -= coefficients[:3] @ shift
             supports.append(dataclasses.replace(support, coefficients=coefficients))
