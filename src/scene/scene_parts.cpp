@@ -11,6 +11,7 @@
 
 #include "core/base/constants.h"
 #include "core/base/statistics.h"
+#include "core/base/watched_steps.h"
 #include "core/geometry/cloud_extent.h"
 #include "core/geometry/surface_normals.h"
 #include "pcl_symmetry/impl/cloud_conversion.hpp"
@@ -51,6 +52,7 @@ std::optional<Consensus> greatestPlane(const SymmetryScene::Cloud::ConstPtr& sce
   pcl::RandomSampleConsensus<pcl::PointXYZ> consensus(pcl::make_shared<Model>(scene, some), distance);
   consensus.setMaxIterations(kScene.consensus_iterations);
   if (!consensus.computeModel()) return std::nullopt;
+  lookAtWatch();
   Consensus plane;
   Eigen::VectorXf found, coefficients;
   consensus.getModelCoefficients(found);
@@ -165,6 +167,7 @@ SceneDistances sceneDistances(const SymmetryScene::Cloud& scene, const pcl::Indi
   Points places(3, static_cast<Eigen::Index>((points.size() + stride - 1) / stride));
   for (Eigen::Index i = 0; i < places.cols(); ++i) places.col(i) = surface.col(i * static_cast<Eigen::Index>(stride));
   const auto search = makeFlannSearch(surface);
+  lookAtWatch();
   const int num_neighbors = static_cast<int>(std::min<std::size_t>(kNumSupportNeighbors + 1, points.size()));
   std::vector<int> closest;
   std::vector<float> sq_distances;
@@ -242,10 +245,12 @@ std::vector<SupportingPlane> findSupports(const SymmetryScene::Cloud::ConstPtr& 
       return static_cast<double>(count) / static_cast<double>(points.size());
     };
     if (!plane || share(plane->inliers.size()) < kScene.min_share) break;
+    lookAtWatch();
     plane->coefficients[3] /= scale;
     plane->coefficients = fitted(*scene, *plane);
     candidates = without(candidates, plane->inliers, scene->size());
     if (viewpoint && plane->coefficients.dot(viewpoint->homogeneous()) < 0.0) plane->coefficients *= -1.0;
+    lookAtWatch();
     Sides sides = sidesOf(*scene, *plane, others, distance);
     if (!viewpoint && sides.below > sides.above) {
       plane->coefficients *= -1.0;
@@ -296,8 +301,10 @@ std::vector<pcl::Indices> findClusters(const SymmetryScene::Cloud::ConstPtr& sce
   extraction.setMinClusterSize(min_points);
   extraction.setInputCloud(scaled(*scene, scale));
   extraction.setIndices(pcl::make_shared<pcl::Indices>(points));
+  lookAtWatch();
   std::vector<pcl::PointIndices> found;
   extraction.extract(found);
+  lookAtWatch();
   std::vector<pcl::Indices> clusters;
   for (pcl::PointIndices& cluster : found) {
     const bool is_remainder = std::any_of(supports.begin(), supports.end(), [&](const SupportingPlane& support) {

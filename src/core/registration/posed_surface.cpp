@@ -6,6 +6,7 @@
 
 #include "core/base/random.h"
 #include "core/base/statistics.h"
+#include "core/base/watched_steps.h"
 #include "core/geometry/surface_normals.h"
 #include "core/registration/registration_rules.h"
 
@@ -36,10 +37,12 @@ PosedSurface::PosedSurface(const PointsRef& input, std::optional<Visibility> see
       search(makeFlannSearch(input)) {
   FoundNeighbors neighbors;
   LocalGeometry geometry = localGeometry(points, *search, kNumSupportNeighbors, num_threads, &neighbors);
+  lookAtWatch();
   const double typical = median(geometry.spacing);
   spacing = geometry.spacing;
   if (median(geometry.roughness) > kRegistration.max_roughness * typical)
     geometry = localGeometry(points, *search, kRegistration.num_rough_neighbors, num_threads);
+  lookAtWatch();
   normals = std::move(geometry.normals);
   noise = median(std::move(geometry.roughness));
   accuracy = typical + 2.0 * noise;
