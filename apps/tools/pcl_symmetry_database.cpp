@@ -164,6 +164,8 @@ private:
   }
 
   int merge(SymmetryDatabase& database) const {
+    for (const std::string& argument : options_.arguments)
+      if (fs::is_directory(argument) || !standsForSeveral(argument)) checkReadableFile(argument);
     std::vector<std::string> files;
     for (const InputFile& file : inputFiles(options_.arguments)) files.push_back(file.path);
     Step step(console_, "Merging " + counted(files.size(), "database"));

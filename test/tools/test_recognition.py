@@ -150,6 +150,8 @@ class Database(Recognition):
         self.run_tool("build inches.db", self.box, flags, "-unit inch -part")
         self.fails(1, "inches.db: unit = 'inch', must be '' as in merged.db", "merge merged.db inches.db")
         self.assertEqual((self.folder / "merged.db").read_bytes(), before)
+        self.write("shapes/box.off", tool_run.box())
+        self.fails(1, "shapes: is a folder, must be a file", "merge new.db shapes")
         self.run_tool("merge new.db first.db inches.db", code=1)
         self.assertFalse(Path(self.folder / "new.db").exists())
 
