@@ -165,9 +165,13 @@ SelectedView ViewpointSelection::getWorstView() const {
 std::vector<SelectedView> ViewpointSelection::getGoodViews(int num_views) const {
   detail::withBadArguments([&] { check(num_views >= 1, "num_views", num_views, ">= 1"); });
   if (!hasExtent()) return {};
-  std::vector<RankedView> remaining = bestViews(planes_);
+  const Eigen::Vector3d up = getUpAxis();
+  std::vector<RankedView> remaining = bestViews(planes_);  // each with its opposite, of equal score: one is from below
+  remaining.erase(std::remove_if(remaining.begin(), remaining.end(),
+                                 [&](const RankedView& view) { return view.direction.dot(up) <= kView.level; }),
+                  remaining.end());
   if (remaining.empty()) {
-    const Eigen::Vector3d up = getUpAxis(), side = up.unitOrthogonal();
+    const Eigen::Vector3d side = up.unitOrthogonal();
     remaining.push_back({(up + 2.0 * side + side.cross(up)).normalized(), 0.0});
   }
   std::vector<SelectedView> views;

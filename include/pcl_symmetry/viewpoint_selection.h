@@ -23,8 +23,8 @@ struct SelectedView : RankedView {
 /// Selects good and bad views of an object by the symmetries that they show (Section 5.4 of the paper).
 ///
 /// S(v) = sum M |v . n| over the planes of local maxima; the best view has the greatest S. Views that differ only in
-/// the signs of v . n can have equal S: among views within 2 % of each other that show the same, the view from above
-/// that hides the fewest points is taken.
+/// the signs of v . n can have equal S: of a view and its opposite the one from above counts, and among views within
+/// 2 % of each other that are not apart the one that hides the fewest points.
 ///
 /// \code
 /// pcl_symmetry::SymmetryMaximaRefinement<pcl::PointXYZ> refinement;
