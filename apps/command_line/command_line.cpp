@@ -219,10 +219,11 @@ CommandLine& CommandLine::common(CommonOptions& options, unsigned flags) {
   }
   if (flags & kThreads) number("threads", options.threads, Range::closed(0, 4096), "number of threads, 0 = all");
   if (flags & kJson)
-    add("json", "FILE", "write the result as JSON", [&options](const std::string& path) {
-      checkTarget(path);
-      options.json_path = path;
-    });
+    add("json", "FILE", "write the result as JSON; of several inputs as JSON Lines",
+        [&options](const std::string& path) {
+          checkTarget(path);
+          options.json_path = path;
+        });
   if (flags & kQuiet) flag("quiet", options.quiet, "print results and errors only");
   return *this;
 }
@@ -340,6 +341,10 @@ void CommandLine::checkFiles() const {
       if (output.is_output && &other != &output && other.path == output.path)
         throw UsageError(output.path.string() + ": is " + other.name + " and " + output.name +
                          ", an output needs a name of its own");
+  for (const NamedFile& output : files)
+    if (output.is_output && isForeignCloud(output.path.string()))
+      throw UsageError(output.path.string() + ": is there and was not written by these tools, so it is not replaced" +
+                       (flags_.find_nothrow("merge", false) ? "; -merge FILE brings several scans together" : ""));
 }
 
 bool CommandLine::given(const std::string& name) const {

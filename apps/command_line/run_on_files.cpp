@@ -80,21 +80,13 @@ int runOnOne(const std::string& path, const BatchOptions& batch, const CommonOpt
     if (*output) checkTarget(**output);
   if (batch.csv_path) checkTarget(*batch.csv_path);
   const Console console(common.quiet);
-  FileJob job(path, console, common);
-  const auto write = [&] {
-    if (!job.reported()) return;
-    const FileReport& report = *job.reported();
+  // Before pictures are drawn, which takes longer, and which may fail.
+  FileJob job(path, console, common, [&](const FileReport& report) {
     if (text_wanted) writeText("-", report.text);
     if (common.json_path) writeText(*common.json_path, jsonText(report.json) + "\n");
     if (batch.csv_path) writeText(*batch.csv_path, csv_header + csvLines(path, report));
-  };
-  try {
-    analyze(job);
-  } catch (...) {
-    write();
-    throw;
-  }
-  write();
+  });
+  analyze(job);
   return 0;
 }
 
@@ -121,12 +113,26 @@ void forWholeLines(const std::string& path, const std::function<void(const std::
   if (!text.eof()) throw InputError(path + ": cannot be read");
 }
 
-/// \return the input whose result the line is; empty where it failed.
+/// \return how a result was made, but for flags that change no value of it.
+nlohmann::json analysisOf(nlohmann::json made_by) {
+  for (const char* flag : {"csv", "html", "json", "png", "profile", "quiet", "report", "resume", "support", "threads"})
+    if (made_by.contains("options")) made_by["options"].erase(flag);
+  return made_by;
+}
+
+/// \return the input whose result the line of a file is; empty where it failed, or has changed since.
 std::string inputOf(const std::string& line, const std::string& path) {
   const nlohmann::json json = nlohmann::json::parse(line, nullptr, false);
   if (!json.is_object() || !json.contains("file") || !json["file"].is_string())
     throw InputError(path + ": holds a line that is no result of this tool, -resume cannot go on with it");
-  return json.contains("error") ? "" : json["file"].get<std::string>();
+  if (json.contains("made_by") && analysisOf(json["made_by"]) != analysisOf(madeBy()))
+    throw InputError(path + ": was made by " + analysisOf(json["made_by"]).dump() +
+                     ", -resume goes on with the same version, options and seed");
+  const std::string input = json["file"];
+  boost::system::error_code missing;
+  const std::time_t changed = boost::filesystem::last_write_time(input, missing);
+  const bool is_older = !missing && changed > boost::filesystem::last_write_time(path);
+  return json.contains("error") || is_older ? "" : input;
 }
 
 /// A file that grows, or standard output.

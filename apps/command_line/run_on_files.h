@@ -53,8 +53,10 @@ struct FileReport {
 class FileJob {
 public:
   /// \param console is silent where there are several inputs.
-  FileJob(std::string path, const Console& console, const CommonOptions& common)
-      : path_(std::move(path)), console_(console), common_(common) {}
+  /// \param use is called with what is reported.
+  FileJob(std::string path, const Console& console, const CommonOptions& common,
+          std::function<void(const FileReport&)> use = {})
+      : path_(std::move(path)), console_(console), common_(common), use_(std::move(use)) {}
 
   const std::string& path() const { return path_; }
   const Console& console() const { return console_; }
@@ -66,13 +68,17 @@ public:
   std::string output(const std::string& pattern) const;
 
   /// What is reported stays reported if something later throws.
-  void report(FileReport report) { report_ = std::move(report); }
+  void report(FileReport report) {
+    report_ = std::move(report);
+    if (use_) use_(*report_);
+  }
   const std::optional<FileReport>& reported() const { return report_; }
 
 private:
   std::string path_;
   const Console& console_;
   CommonOptions common_;
+  std::function<void(const FileReport&)> use_;
   std::optional<FileReport> report_;
 };
 

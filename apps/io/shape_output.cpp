@@ -76,8 +76,9 @@ public:
 
   std::string name() const { return "/proc/self/fd/" + std::to_string(descriptor_); }
 
+  /// \param comment line of a header, written behind the first line of .pcd, the second of .ply.
   /// \return whether all of it was copied.
-  bool copyTo(std::ostream& out) const {
+  bool copyTo(std::ostream& out, const std::string& comment) const {
     const ::off_t size = ::lseek(descriptor_, 0, SEEK_END);
     // One byte more shows that no limit cut it off.
     if (size <= 0 || ::pwrite(descriptor_, "", 1, size) != 1) return false;
@@ -85,7 +86,15 @@ public:
     for (::off_t at = 0; at < size;) {
       const std::size_t wanted = std::min(piece.size(), static_cast<std::size_t>(size - at));
       const ::ssize_t got = ::pread(descriptor_, piece.data(), wanted, at);
-      if (got <= 0 || !out.write(piece.data(), got)) return false;
+      if (got <= 0) return false;
+      const char *begin = piece.data(), *end = begin + got;
+      if (at == 0 && !comment.empty()) {
+        const char* line_end = std::find(begin, end, '\n');
+        if (boost::starts_with(comment, "comment")) line_end = std::find(std::next(line_end), end, '\n');
+        out.write(begin, std::next(line_end) - begin) << comment;
+        begin = std::next(line_end);
+      }
+      if (!out.write(begin, end - begin)) return false;
       at += got;
     }
     return true;
@@ -179,12 +188,13 @@ void writeStream(const std::string& path, const std::function<void(std::ostream&
     failToWrite(path, std::strerror(errno));
 }
 
-void writeAtomically(const std::string& path, const std::function<void(const std::string&)>& writer) {
+void writeAtomically(const std::string& path, const std::function<void(const std::string&)>& writer,
+                     const std::string& comment) {
   checkTarget(path);  // before the work
   const MemoryFile memory;
   writer(memory.name());
   writeStream(path, [&](std::ostream& stream) {
-    if (!memory.copyTo(stream) && stream) failToWrite(path, "there is not enough memory");
+    if (!memory.copyTo(stream, comment) && stream) failToWrite(path, "there is not enough memory");
   });
 }
 
@@ -205,6 +215,16 @@ void checkCloudExtension(const std::string& path) {
   if (extension != ".pcd" && extension != ".ply") throw UsageError(path + ": unknown extension, must be .pcd or .ply");
 }
 
+bool isForeignCloud(const std::string& path) {
+  boost::system::error_code ignored;
+  const std::string extension = lowerExtension(path);
+  if (isStandardStream(path) || (extension != ".pcd" && extension != ".ply") || !fs::is_regular_file(path, ignored))
+    return false;
+  std::string head(256, '\0');
+  std::ifstream(path, std::ios::binary).read(head.data(), static_cast<std::streamsize>(head.size()));
+  return head.find(kMark) == std::string::npos;
+}
+
 void saveCloud(const std::string& path, const pcl::PCLPointCloud2& cloud, const Eigen::Vector4f& sensor_origin,
                const Eigen::Quaternionf& sensor_orientation, PCDEncoding encoding) {
   const std::string extension = lowerExtension(path);
@@ -214,15 +234,18 @@ void saveCloud(const std::string& path, const pcl::PCLPointCloud2& cloud, const 
     throw InputError(path + ": not written, the cloud holds fewer points than width * height");
   }
   const pcl::PCLPointCloud2 fields = packed(cloud);
-  writeAtomically(path, [&](const std::string& name) {
-    try {
-      auto* const write = functionOf<decltype(writeCloudFile)>("pcl_symmetry_cloud_files", "writeCloudFile");
-      if (!write(name, extension, fields, sensor_origin, sensor_orientation, encoding))
-        failToWrite(path, "there is not enough memory");
-    } catch (const pcl::PCLException&) {
-      failToWrite(path, "there is not enough memory");
-    }
-  });
+  writeAtomically(
+      path,
+      [&](const std::string& name) {
+        try {
+          auto* const write = functionOf<decltype(writeCloudFile)>("pcl_symmetry_cloud_files", "writeCloudFile");
+          if (!write(name, extension, fields, sensor_origin, sensor_orientation, encoding))
+            failToWrite(path, "there is not enough memory");
+        } catch (const pcl::PCLException&) {
+          failToWrite(path, "there is not enough memory");
+        }
+      },
+      std::string(extension == ".ply" ? "comment " : "# ") + kMark + "\n");
 }
 
 }  // namespace pcl_symmetry::apps

@@ -25,8 +25,10 @@ void checkTarget(const std::string& path);
 void writeStream(const std::string& path, const std::function<void(std::ostream&)>& writer);
 
 /// The same for writers of libraries, which want the name of a file: they get that of a file in memory.
+/// \param comment line that is put behind the first line of a PCD file, the second of a PLY file.
 /// \throws InputError also if the writer made no file.
-void writeAtomically(const std::string& path, const std::function<void(const std::string& file_in_memory)>& writer);
+void writeAtomically(const std::string& path, const std::function<void(const std::string& file_in_memory)>& writer,
+                     const std::string& comment = "");
 
 /// Makes a folder for outputs and those that hold it, unless they are there.
 /// \throws InputError if it cannot be made.
@@ -43,6 +45,12 @@ void saveCloud(const std::string& path, const pcl::PCLPointCloud2& cloud, const 
 
 /// \throws UsageError unless saveCloud() knows the extension; lets a tool refuse before the long work.
 void checkCloudExtension(const std::string& path);
+
+/// Stands in a comment of the header of the clouds and meshes that the tools write.
+inline const char* const kMark = "pcl_symmetry";
+
+/// \return whether a .pcd or .ply file without the mark is there, which may be an input.
+bool isForeignCloud(const std::string& path);
 
 /// PCL's writers, in the module pcl_symmetry_cloud_files.
 /// \param extension ".ply" or ".pcd"; the encoding is that of PCD.

@@ -157,7 +157,7 @@ BestPlane bestPlane(const Console& console, const InputShape& input, const Commo
     return {planeThrough(axis, scanner), "through the axis", axis.confidence};
   }
   if (const auto& best = refinement.getDetection().best; planes.empty() && best) {
-    step.done("no symmetry; the best plane is used");
+    step.done("no symmetry");
     return {*best, toString(best->kind), best->confidence};
   }
   if (planes.empty()) throw InputError(input.path + ": has no plane of symmetry to complete it across");

@@ -413,19 +413,25 @@ void analyze(const PlanesOptions& options, FileJob& job) {
   const InputShape input = loadInput(job.console(), job.path(), options.common);
   if (input.volume && (options.support_path || options.html_path))
     throw InputError(job.path() + ": -support and -html are of points; -surface VALUE makes some");
-  if (input.volume && (options.as_published || options.method_given || options.tolerance ||
-                       options.detection.absolute_tolerance > 0.0 || options.ground))
-    throw InputError(job.path() + ": -as_published, -method, -tolerance, -absolute_tolerance, -ground: of points");
+  const std::pair<bool, const char*> of_points[]{
+      {options.as_published, "-as_published"},
+      {options.method_given, "-method"},
+      {options.tolerance.has_value(), "-tolerance"},
+      {options.detection.absolute_tolerance > 0.0, "-absolute_tolerance"},
+      {options.ground.has_value(), "-ground"},
+      {options.common.viewpoint.mode != Viewpoint::Mode::Auto, "-viewpoint"}};
+  for (const auto& [is_given, flag] : of_points)
+    if (input.volume && is_given) throw InputError(job.path() + ": " + flag + " is of points, not of volumes");
   if (options.label && (input.volume || input.shape.mesh))
     throw InputError(job.path() + ": -label needs a cloud with a field label");
   const Findings findings = search(job, input, options);
   const std::string table = tableOf(findings, input.shift()) + (options.explain ? explained(findings) : "");
   job.report({table, describe(input, findings), rowsOf(findings, input.shift())});
   if (options.support_path) saveSupport(input, findings, job.output(*options.support_path));
-  if (options.profile_path) saveProfile(input, findings, job.output(*options.profile_path));
   if (options.png_path) draw(job.console(), input, findings, job.output(*options.png_path));
   if (options.html_path)
     writePage(makeScene(input.points, findings), {job.path(), table}, job.output(*options.html_path));
+  if (options.profile_path) saveProfile(input, findings, job.output(*options.profile_path));  // not all shapes have one
 }
 
 int run(int argc, char** argv) {

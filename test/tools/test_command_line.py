@@ -2,6 +2,7 @@
 import csv
 import io
 import json
+import os
 import resource
 import subprocess
 import unittest
@@ -211,6 +212,11 @@ class ManyInputs(ToolTest):
         done = self.text("out.jsonl")
         self.run_tool(*arguments, "-resume")
         self.assertEqual(self.text("out.jsonl"), done, "nothing is left to do")
+        self.fails(1, "goes on with the same version, options and seed", *arguments, "-resume -seed 9")
+        self.assertEqual(self.text("out.jsonl"), done)
+        os.utime(paths[0], (2e9, 2e9))
+        self.run_tool(*arguments, "-resume")
+        self.assertEqual([line["file"] for line in self.lines()], [str(paths[i]) for i in (1, 2, 3, 0)], "a changed")
         self.write("out.jsonl", '{"shapes": []}\n')
         self.fails(1, "holds a line that is no result of this tool", *arguments, "-resume")
         self.assertEqual(self.text("out.jsonl"), '{"shapes": []}\n', "something else is not overwritten")

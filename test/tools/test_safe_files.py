@@ -11,6 +11,7 @@ from tool_run import ToolTest, np
 
 WRITERS = {"ascii.pcd": "scan box.off OUT -format ascii", "binary.pcd": "scan box.off OUT -format binary",
            "compressed.pcd": "scan box.off OUT", "cloud.ply": "scan box.off OUT", "labels.seg": "segment box.off OUT", "mesh.ply": "segment box.off OUT"}
+OLD = "# pcl_symmetry, written before"
 
 
 class SafeFiles(ToolTest):
@@ -41,16 +42,30 @@ class SafeFiles(ToolTest):
         self.assertEqual((self.text("box.off"), self.text("models.db")), (tool_run.box(), "a database"))
         self.assertEqual(sorted(os.listdir(self.folder)), ["box.off", "link.off", "models.db"])
 
+    def test_a_cloud_of_somebody_else_is_not_replaced(self):
+        for _ in range(2):
+            self.run_tool("box.off mine.pcd -format ascii -quiet", tool="scan")
+        theirs = self.text("mine.pcd").replace("# pcl_symmetry\n", "")
+        self.write("theirs.pcd", theirs)
+        for tool in ("align", "segment", "scene", "map"):
+            self.fails(2, "was not written by these tools", "mine.pcd theirs.pcd", tool=tool)
+        self.fails(2, "not replaced; -merge FILE brings several scans together", "-merge theirs.pcd mine.pcd box.off", tool="align")
+        self.assertEqual(self.text("theirs.pcd"), theirs)
+
+    def test_what_can_be_written_is_written(self):
+        self.fails(1, "is no body of revolution", "box.off -json a.json -html a.html -profile a.svg", tool="planes")
+        self.assertTrue(self.text("a.html") and self.text("a.json"))
+
     def test_killed_writers_leave_whole_files(self):
-        self.write("big.pcd", "old")
+        self.write("big.pcd", OLD)
         num_killed = 0
         for _ in range(20):
             if self.interrupt(signal.SIGKILL) is None:
                 self.assertGreater(len(tool_run.pcd_points(self.folder / "big.pcd")), 1_000_000)
-                self.write("big.pcd", "old")
+                self.write("big.pcd", OLD)
             else:
                 num_killed += 1
-                self.assertEqual(self.text("big.pcd"), "old")
+                self.assertEqual(self.text("big.pcd"), OLD)
             for left in self.folder.glob(".big.*"):
                 left.unlink()
             if num_killed == 3:
