@@ -80,13 +80,21 @@ int runOnOne(const std::string& path, const BatchOptions& batch, const CommonOpt
     if (*output) checkTarget(**output);
   if (batch.csv_path) checkTarget(*batch.csv_path);
   const Console console(common.quiet);
-  // Before pictures are drawn, which takes longer, and which may fail.
+  // Files before pictures are drawn, which takes longer and may fail; the table after the steps that the console shows.
   FileJob job(path, console, common, [&](const FileReport& report) {
-    if (text_wanted) writeText("-", report.text);
     if (common.json_path) writeText(*common.json_path, jsonText(report.json) + "\n");
     if (batch.csv_path) writeText(*batch.csv_path, csv_header + csvLines(path, report));
   });
-  analyze(job);
+  const auto print = [&] {
+    if (text_wanted && job.reported()) writeText("-", job.reported()->text);
+  };
+  try {
+    analyze(job);
+  } catch (...) {
+    print();
+    throw;
+  }
+  print();
   return 0;
 }
 

@@ -2,6 +2,7 @@
 
 #include <boost/algorithm/string.hpp>
 #include <new>
+#include <sstream>
 
 #include "command_line/tool_errors.h"
 #include "io/answers.h"
@@ -40,7 +41,8 @@ void warnOfLeftOut(const Console& console, const std::string& path, const Shape&
 namespace {
 
 /// A volume, or a surface in it.
-InputShape loadVolumeInput(const std::string& path, const CommonOptions& common) {
+/// \param[out] summary the levels of a volume.
+InputShape loadVolumeInput(const std::string& path, const CommonOptions& common, std::string& summary) {
   const Volume volume = loadVolume(path);
   InputShape input;
   input.path = path;
@@ -52,8 +54,13 @@ InputShape loadVolumeInput(const std::string& path, const CommonOptions& common)
     input.volume = volume.grid;
     constexpr std::size_t kMostVoxels = 64 * 64 * 64;
     input.points = std::make_shared<pcl::PointCloud<pcl::PointXYZ>>();
-    const Points border = namingFile(
-        path, [&] { return VolumeFunction(*volume.grid, input.levels, kMostVoxels, common.threads).bodyPoints(true); });
+    const Points border = namingFile(path, [&] {
+      const VolumeFunction function(*volume.grid, input.levels, kMostVoxels, common.threads);
+      std::ostringstream levels;
+      levels << ", levels " << function.levels.low << " to " << function.levels.high;
+      summary = levels.str();
+      return function.bodyPoints(true);
+    });
     for (Eigen::Index i = 0; i < border.cols(); ++i)
       input.points->emplace_back(border(0, i), border(1, i), border(2, i));
     input.shape.points = input.points;
@@ -70,8 +77,10 @@ InputShape loadInput(const Console& console, const std::string& path, const Comm
   const bool is_volume = common.takes_volumes && isVolumePath(path);
   if (!is_volume && (common.surface || !common.levels.empty()))
     throw InputError(path + (common.surface ? ": -surface" : ": -levels") + " is of volumes, " + kVolumeFiles);
-  InputShape input = is_volume ? loadVolumeInput(path, common) : loadInput(path, common.mesh_points, common.seed);
-  input.loading_ms = loading.done(counted(finitePoints(*input.points).cols(), "point"));
+  std::string summary;
+  InputShape input =
+      is_volume ? loadVolumeInput(path, common, summary) : loadInput(path, common.mesh_points, common.seed);
+  input.loading_ms = loading.done(counted(finitePoints(*input.points).cols(), "point") + summary);
   warnOfLeftOut(console, path, input.shape);
   return input;
 }
