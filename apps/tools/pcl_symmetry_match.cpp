@@ -33,7 +33,7 @@ struct MatchOptions {
 CommandLine commandLine(MatchOptions& options) {
   CommandLine line("pcl_symmetry_match",
                    "Finds the models of a database that are most like a cloud or mesh, in any pose and of any size. "
-                   "With -recognize, the model that a scan shows, with its pose, or 'unknown object'.",
+                   "With -recognize, the model that a scan shows, with its pose (-json), or 'unknown object'.",
                    "pcl_symmetry_match models.db scan.pcd -recognize -json found.json");
   line.positional("database", options.database, "file of pcl_symmetry_database")
       .positional("input", options.input, kShapeFiles)
