@@ -37,10 +37,9 @@ void checkAtLeast(const char* field, std::int64_t value, std::int64_t least) {
 
 std::string reasonForNoAnswer(const Points& points, const std::string& input, int min_points,
                               const pcl::Indices* indices) {
-  std::string reason = points.cols() > 0             ? whyUnanswerable(points)
-                       : indices && indices->empty() ? "the indices are empty"
-                       : indices                     ? "no finite point among the indices"
-                                                     : "no finite point";
+  std::string reason = whyUnanswerable(points);
+  if (indices && points.cols() == 0)
+    reason = indices->empty() ? "the indices are empty" : reason + " among the indices";
   if (reason.empty() && points.cols() < min_points)
     reason = std::to_string(points.cols()) + " points, must be at least " + std::to_string(min_points);
   return reason.empty() ? reason : input + ": " + reason;

@@ -162,6 +162,7 @@ Eigen::Vector3d farthestFrom(const Eigen::Vector3d& position, const PointsRef& p
 
 std::string whyUnanswerable(const PointsRef& points) {
   if (!points.allFinite()) throw std::invalid_argument("points: a coordinate is not finite");
+  if (points.cols() == 0) return "no finite point";
   const int num_distinct = countDistinct(points, kMinDistinctPoints);
   if (num_distinct < kMinDistinctPoints)
     return std::to_string(num_distinct) +
