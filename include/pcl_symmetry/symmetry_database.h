@@ -211,7 +211,7 @@ public:
 
   /// Models of similar shape, whatever their size and pose.
   /// \param cloud the object seen from all sides, or a scan.
-  /// \param num_nearest >= 0.
+  /// \param num_nearest >= 1.
   /// \param viewpoint where the scanner stood.
   /// \return nearest first, at most \p num_nearest.
   /// \throws pcl::BadArgumentException for bad parameters.

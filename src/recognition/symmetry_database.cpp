@@ -129,7 +129,7 @@ SymmetryDatabase::Cloud SymmetryDatabase::cloud(const std::string& name) const {
 }
 
 std::vector<ModelMatch> SymmetryDatabase::match(const Cloud& cloud, int num_nearest, const Viewpoint& viewpoint) const {
-  detail::checkAtLeast("num_nearest", num_nearest, 0);
+  detail::checkAtLeast("num_nearest", num_nearest, 1);
   detail::checkedViewpoint(viewpoint);
   const Points points = detail::finitePoints(cloud, parts_->options.max_points);
   std::optional<Visibility> seen;

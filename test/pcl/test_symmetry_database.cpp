@@ -479,7 +479,7 @@ TEST_F(SymmetryDatabaseTest, SaysWhatIsWrong) {
   options = {};
   options.min_confidence = 1.5;
   EXPECT_EQ(test::messageOf([&] { database.recognize(cube(), options); }), "min_confidence = 1.5, must be in [0, 1]");
-  EXPECT_EQ(test::messageOf([&] { database.match(cube(), -1); }), "num_nearest = -1, must be >= 0");
+  EXPECT_EQ(test::messageOf([&] { database.match(cube(), 0); }), "num_nearest = 0, must be >= 1");
   EXPECT_EQ(test::complaintOf<pcl::IOException>([&] { SymmetryDatabase::check(file_); }),
             file_ + ": there is no such file");
 }
