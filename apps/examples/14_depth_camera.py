@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import sys
 from pathlib import Path
-from typing import Any, Dict, Tuple
+from typing import Any, Dict, Optional, Tuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -80,11 +80,13 @@ def describe(number: int, found: pcl_symmetry.SceneObject) -> None:
     print(f"object {number}: {len(found.rows)} points")
     for axis in found.planes.axes:
         print(f"  body of revolution about {axis.direction.round(3)}, confidence {axis.confidence:.2f}")
+    for center in found.planes.centers:
+        print(f"  every plane through {center.point.round(3)}, confidence {center.confidence:.2f}")
     for plane in found.planes:
         print(f"  plane {plane.coefficients.round(4)}, confidence {plane.confidence:.2f}")
     for plane in found.planes.possible:
         print(f"  perhaps a plane {plane.coefficients.round(4)}, confidence {plane.confidence:.2f}")
-    if not found.planes and not found.planes.possible:
+    if not (found.planes.every or found.planes.axes or found.planes.centers):
         print("  no symmetry")
     for model in found.models[:1]:
         print(f"  is {model.name}, confidence {model.confidence:.2f}, at {model.transform[:3, 3].round(3)} of its frame")
@@ -99,10 +101,15 @@ def completed(points: Array, found: pcl_symmetry.SceneObject) -> Array:
 def one_object(points: Array, mask: Array) -> None:
     """The same for an object that something else has found, such as a neural network: its mask is enough."""
     found = pcl_symmetry.planes(points, indices=mask)
-    if not found:
-        print("mask: no symmetry", found.reason)
+    plane: Optional[pcl_symmetry.ReflectionPlane] = found[0] if found else None
+    if not found and found.axes:  # every plane through the axis is a symmetry: the one that faces the camera
+        axis = found.axes[0]
+        normal = axis.point - axis.point @ axis.direction * axis.direction
+        plane = pcl_symmetry.ReflectionPlane(normal, float(normal @ axis.point))
+    if plane is None:
+        print("mask: no plane of symmetry", found.reason)
         return
-    added, _ = pcl_symmetry.complete(points, found[0], indices=mask)
+    added, _ = pcl_symmetry.complete(points, plane, indices=mask)
     frame = pcl_symmetry.frame(points, indices=mask)
     print(f"mask: {len(found)} planes, {len(added)} points added, center {frame.center.round(3)}")
 

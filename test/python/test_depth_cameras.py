@@ -28,8 +28,11 @@ from test_pcl_symmetry import Mesh, bar, box, box_mesh, bumped, has_pcl, lamp
 INTRINSICS = (300.0, 300.0, 160.0, 120.0)
 
 
-def table(blocks=(((-0.35, -0.3, -0.1), (-0.05, 0, 0.15)), ((0.1, -0.2, -0.05), (0.35, 0, 0.1)))):
-    """(240, 320) depths of blocks on a table, seen from above and in front, and the block of each pixel, from 1."""
+def table(blocks=(((-0.35, -0.3, -0.1), (-0.05, 0, 0.15)), ((0.1, -0.2, -0.05), (0.35, 0, 0.1))), dome=0.0):
+    """(240, 320) depths of blocks on a table, seen from above and in front, and the block of each pixel, from 1.
+
+    dome: where it is not 0, x^2 + z^2 = dome (0.4 - height) is on the table.
+    """
     v, u = np.indices((240, 320))
     fx, fy, cx, cy = INTRINSICS
     rays = np.stack([(u - cx) / fx, (v - cy) / fy, np.ones(u.shape)], axis=2)
@@ -43,6 +46,10 @@ def table(blocks=(((-0.35, -0.3, -0.1), (-0.05, 0, 0.15)), ((0.1, -0.2, -0.05), 
             enters, leaves = np.minimum(first, second).max(axis=2), np.maximum(first, second).min(axis=2)
             hit = (enters < leaves) & (enters > 0) & (enters < depth)
             depth[hit], labels[hit] = enters[hit], k + 1
+        if dome:
+            a, b, c = (rays[..., ::2] ** 2).sum(axis=2), -2.4 * rays[..., 2] - dome * rays[..., 1], 1.44 + 0.5 * dome
+            enters = (-b - np.sqrt(b**2 - 4 * a * c)) / (2 * a)
+            depth = np.where(enters < depth, enters, depth)
     return np.where(depth < 4, depth, 0), labels
 
 
@@ -432,6 +439,10 @@ class Example(unittest.TestCase):
             self.assertIn("3 models stored, 3 in all\nobject 1: ", ran.stdout)
             self.assertIn("is large, confidence", ran.stdout)
             self.assertLessEqual({"models.db", "object_1.npy", "scene.html"}, set(os.listdir(folder)))
+            depth = Path(folder) / "dome.npy"
+            np.save(depth, table((), 0.1)[0])
+            ran = subprocess.run([*ran.args, depth, *map(str, INTRINSICS)], capture_output=True, text=True)
+            self.assertRegex(ran.stdout, r"  body of revolution about (.|\n)*mask: 0 planes, [1-9]", ran.stderr)
 
 
 if __name__ == "__main__":

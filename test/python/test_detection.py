@@ -360,7 +360,7 @@ class Families(Detection):
         for seed in range(3):
             pose = random_pose(4 + seed)
             found = pcl_symmetry.planes(sphere(5000, seed).moved(pose).cloud)
-            self.assertEqual((len(found), found.axes), (0, []))
+            self.assertEqual((len(found), bool(found), found.axes), (0, False, []))
             center, = found.centers
             self.assertLess(np.linalg.norm(center.point - pose[1]), 0.01)
             self.assertTrue(center.confidence >= 0.5 and center.support > 0.95)

@@ -94,8 +94,9 @@ class Result:
         return {f.name: _plain(getattr(self, f.name)) for f in fields if not f.name.startswith("_")}
 
     def to_json(self, **options: Any) -> str:
-        """The text of to_dict(); options are those of json.dumps()."""
-        return json.dumps(self.to_dict(), **options)
+        """The text of to_dict(), with null for numbers that are not finite; options are those of json.dumps()."""
+        plain = json.loads(json.dumps(self.to_dict()), parse_constant=lambda name: None)
+        return json.dumps(plain, **options)
 
     def __eq__(self, other: object) -> bool:
         if type(self) is not type(other):
@@ -363,7 +364,7 @@ class View(Result):
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Planes(Result):
-    """What planes() found; behaves as the list of the planes of symmetry. It is false where there is no symmetry at all."""
+    """What planes() found; behaves as the list of the planes of symmetry: a sphere has an empty one, and a center."""
 
     planes: List[Plane]
     """The symmetries, best first; with as_published all planes, which nothing judged."""
@@ -460,9 +461,6 @@ class Planes(Result):
 
     def __len__(self) -> int:
         return len(self.planes)
-
-    def __bool__(self) -> bool:
-        return bool(self.planes or self.axes or self.centers)
 
     def __iter__(self) -> Iterator[Plane]:
         return iter(self.planes)
