@@ -330,19 +330,25 @@ void addDatabase(py::module_& module) {
       .def_property_readonly("names", &SymmetryDatabase::names)
       .def("__len__", &SymmetryDatabase::size)
       .def("__contains__", &SymmetryDatabase::contains)
-      .def("add",
-           [](SymmetryDatabase& database, const std::string& name, const AnyArray& points) {
-             const Cloud cloud = cloudOf(points);
-             const Computing computing;
-             database.add(name, cloud);
-           })
+      .def(
+          "add",
+          [](SymmetryDatabase& database, const std::string& name, const AnyArray& points) {
+            const Cloud cloud = cloudOf(points);
+            const Computing computing;
+            database.add(name, cloud);
+          },
+          py::arg("name"), py::arg("points"))
       .def("build", &build, py::arg("models"), py::arg("progress"))
       .def(
           "merge", [](SymmetryDatabase& d, const std::vector<std::string>& files) { return d.merge(files); },
           Unlocked())
-      .def("remove", &SymmetryDatabase::remove)
-      .def("cloud", [](const SymmetryDatabase& database,
-                       const std::string& name) { return toRows(database.cloud(name).getMatrixXfMap(3, 4, 0)); })
+      .def("remove", &SymmetryDatabase::remove, py::arg("name"))
+      .def(
+          "cloud",
+          [](const SymmetryDatabase& database, const std::string& name) {
+            return toRows(database.cloud(name).getMatrixXfMap(3, 4, 0));
+          },
+          py::arg("name"))
       .def(
           "match",
           [](const SymmetryDatabase& database, const AnyArray& points, int num_nearest, const py::object& viewpoint) {
@@ -372,23 +378,29 @@ void addDatabase(py::module_& module) {
 void addScenes(py::module_& module) {
   module.def("look", &look, py::arg("points"), py::arg("indices"), py::arg("viewpoint"), py::arg("ground"),
              py::arg("max_points"), py::arg("as_measured"), py::arg("seed"), py::arg("threads"));
-  py::class_<SceneOptions> options(module, "SceneOptions");
-  options.def(py::init<>())
-      .def_readwrite("plane_distance", &SceneOptions::plane_distance)
-      .def_readwrite("cluster_distance", &SceneOptions::cluster_distance)
-      .def_readwrite("min_points", &SceneOptions::min_points)
-      .def_readwrite("max_range", &SceneOptions::max_range)
-      .def_readwrite("max_points", &SceneOptions::max_points)
-      .def_readwrite("separate", &SceneOptions::separate)
-      .def_readwrite("frames", &SceneOptions::frames)
-      .def_readwrite("complete", &SceneOptions::complete)
-      .def("set_common", [](SceneOptions& o, double min_confidence, double accept, std::uint64_t seed, int threads) {
-        o.detection.min_confidence = min_confidence;
-        o.recognition.min_confidence = accept;
-        o.detection.seed = o.frame.seed = seed;
-        o.num_threads = o.detection.num_threads = o.frame.num_threads = o.completion.num_threads =
-            o.recognition.num_threads = threads;
-      });
+  py::class_<SceneOptions>(module, "SceneOptions")
+      .def(py::init([](double plane_distance, double cluster_distance, int min_points, double max_range, int max_points,
+                       bool separate, bool frames, bool complete, double min_confidence, double min_name_confidence,
+                       std::uint64_t seed, int threads) {
+             SceneOptions o;
+             o.plane_distance = plane_distance;
+             o.cluster_distance = cluster_distance;
+             o.min_points = min_points;
+             o.max_range = max_range;
+             o.max_points = max_points;
+             o.separate = separate;
+             o.frames = frames;
+             o.complete = complete;
+             o.detection.min_confidence = min_confidence;
+             o.recognition.min_confidence = min_name_confidence;
+             o.detection.seed = o.frame.seed = seed;
+             o.num_threads = o.detection.num_threads = o.frame.num_threads = o.completion.num_threads =
+                 o.recognition.num_threads = threads;
+             return o;
+           }),
+           py::arg("plane_distance"), py::arg("cluster_distance"), py::arg("min_points"), py::arg("max_range"),
+           py::arg("max_points"), py::arg("separate"), py::arg("frames"), py::arg("complete"),
+           py::arg("min_confidence"), py::arg("min_name_confidence"), py::arg("seed"), py::arg("threads"));
   module.def("scene", &sceneOf, py::arg("points"), py::arg("viewpoint"), py::arg("ground"), py::arg("database"),
              py::arg("options"));
 }

@@ -145,7 +145,7 @@ class Planes(unittest.TestCase):
     def test_data_without_an_answer_give_a_reason(self):
         """All of them warn with it, and their answer is empty."""
         for points in (np.zeros((0, 3), np.float32), np.zeros((100, 3), np.float32), box(num_points=12)):
-            with self.assertWarnsRegex(RuntimeWarning, "points: .* distinct point"):
+            with self.assertWarnsRegex(RuntimeWarning, "points: .* distinct point" if len(points) else "points: no finite point"):
                 found = pcl_symmetry.planes(points)
             self.assertEqual(len(found), 0)
             self.assertNotEqual(found.reason, "")
@@ -154,8 +154,8 @@ class Planes(unittest.TestCase):
             "rotations": lambda r: (r.reason, bool(r.name), np.isnan(r.center).all(), len(r.discrete)),
             "transform": lambda m: (m.reason, bool(m.radius), np.isnan(m.center).all(), m.values.size),
         }
-        for number, points in ((5, box(num_points=5)), (1, np.ones((1000, 3)))):
-            words = f"{number} distinct point{'s' if number > 1 else ''}, at least 20 are needed"
+        for number, points in ((5, box(num_points=5)), (1, np.ones((1000, 3))), (0, np.full((50, 3), np.nan))):
+            words = f"{number} distinct point{'s' if number > 1 else ''}, at least 20 are needed" if number else "no finite point"
             for name in ("frame", "rotations", "transform", "describe", "descriptors", "local_symmetry", "segment"):
                 with self.assertWarnsRegex(RuntimeWarning, "points: " + words) as caught:
                     found = getattr(pcl_symmetry, name)(points)
@@ -838,7 +838,10 @@ class Results(unittest.TestCase):
         read = json.loads(found.to_json())
         self.assertEqual(read["planes"][0]["kind"], "symmetry")
         np.testing.assert_array_equal(read["planes"][0]["normal"], found[0].normal)
-        self.assertEqual(json.loads(pcl_symmetry.frame(box()).to_json(indent=1))["revolution_axis"], -1)
+        with self.assertWarns(RuntimeWarning):
+            nothing = pcl_symmetry.frame(np.zeros((9, 3)))
+        read = json.loads(nothing.to_json(indent=1), parse_constant=self.fail)
+        self.assertEqual((read["revolution_axis"], read["center"]), (-1, [None] * 3))
 
     def test_planes_are_a_sequence(self):
         found = pcl_symmetry.planes(box())
@@ -925,28 +928,47 @@ class Package(unittest.TestCase):
         with self.assertRaisesRegex(TypeError, "tolerence"):
             pcl_symmetry.planes(box(), tolerence=0.1)
         volume = np.random.default_rng(1).random((8, 8, 8))
-        for arguments, words in (
-            (dict(points=box(), seed=1.5), "seed = 1.5, must be int, 0 to "),
-            (dict(points=box(), max_planes=2**40), "max_planes = 1099511627776, must be int, -2147483648 to 2147483647"),
-            (dict(points=box(), tolerance="small"), "tolerance = 'small', must be float"),
-            (dict(volume=volume, spacing=2.0), r"spacing = 2, must be numbers of shape \(3,\)"),
-            (dict(volume=volume, direction=np.eye(2)), r"direction = (.|\n)* must be numbers of shape \(3, 3\)"),
-            (dict(points=box(), seed=box()), r"seed = array of shape \(6000, 3\) and type float32, must be int"),
-            (dict(points=box(), seed=box().tolist()), r"seed = array of shape \(6000, 3\) and type float64, must be int"),
-            (dict(points=60 * "cloud"), "points = str of 302 characters, must be an array"),
-            (dict(points=box(), viewpoint=dict(x=1)), "viewpoint = dict, must be"),
-            (dict(volume=volume, levels=5), r"levels = 5, must be numbers of shape \(2,\)"),
+        for error, arguments, words in (
+            (ValueError, dict(points=box(), seed=-1), "seed = -1, must be int, 0 to "),
+            (TypeError, dict(points=box(), seed=1.5), "seed = 1.5, must be int, 0 to "),
+            (ValueError, dict(points=box(), max_planes=2**40), "max_planes = 1099511627776, must be int, -2147483648 to 2147483647"),
+            (TypeError, dict(points=box(), tolerance="small"), "tolerance = 'small', must be float"),
+            (ValueError, dict(volume=volume, spacing=2.0), r"spacing = 2, must be numbers of shape \(3,\)"),
+            (ValueError, dict(volume=volume, direction=np.eye(2)), r"direction = (.|\n)* must be numbers of shape \(3, 3\)"),
+            (TypeError, dict(points=box(), seed=box()), r"seed = array of shape \(6000, 3\) and type float32, must be int"),
+            (TypeError, dict(points=box(), seed=box().tolist()), r"seed = array of shape \(6000, 3\) and type float64, must be int"),
+            (TypeError, dict(points=60 * "cloud"), "points = str of 302 characters, must be an array"),
+            (TypeError, dict(points=box(), viewpoint=dict(x=1)), "viewpoint = dict, must be"),
+            (ValueError, dict(volume=volume, levels=5), r"levels = 5, must be numbers of shape \(2,\)"),
         ):
-            with self.assertRaisesRegex(TypeError, words):
+            with self.assertRaisesRegex(error, words):
                 pcl_symmetry.planes(**arguments)
         with self.assertRaisesRegex(ValueError, r"viewpoint = array of shape \(2, 3\), must be"):
             pcl_symmetry.planes(box(), viewpoint=np.eye(3)[:2])
         with self.assertRaisesRegex(ValueError, r"points = array of shape \(10, 3\), must be \(6000, 3\)"):
             pcl_symmetry.planes(box()).show(box()[:10])
-        with self.assertRaisesRegex(TypeError, r"pose = .*, must be numbers of shape \(4, 4\)"):
-            pcl_symmetry.rotations(box()).canonical(np.eye(3))
-        with self.assertRaisesRegex(TypeError, "planes = other objects, must be"):
-            pcl_symmetry.viewpoints(box())
+        s, rotations, plane = pcl_symmetry, pcl_symmetry.rotations(box()), pcl_symmetry.ReflectionPlane([1, 0, 0], 0.0)
+        calls = [
+            (ValueError, lambda: rotations.canonical(np.eye(3)), r"pose = .*, must be numbers of shape \(4, 4\)"),
+            (TypeError, lambda: s.viewpoints(box()), r"planes = array of shape \(6000, 3\) and type float32, must be Planes or"),
+            (TypeError, lambda: s.symmetrize(box(), plane, half=3), "half = 3, must be str"),
+        ]
+        if has_pcl():
+            database, frame = s.Database(":memory:"), box().reshape(60, 100, 3)
+            calls += [
+                (TypeError, lambda: s.Database(":memory:", unit=3), "unit = 3, must be str"),
+                (TypeError, lambda: database.add(3, box()), "name = 3, must be str"),
+                (TypeError, lambda: database.remove(3), "name = 3, must be str"),
+                (TypeError, lambda: database.cloud(3), "name = 3, must be str"),
+                (ValueError, lambda: database.match(box(), num_nearest=0), "num_nearest = 0, must be >= 1"),
+                (ValueError, lambda: s.register(box(), box(), guess=np.eye(3)), r"guess = .*, must be numbers of shape \(4, 4\)"),
+                (TypeError, lambda: s.scene(frame, database=3), "database = 3, must be a Database"),
+                (TypeError, lambda: s.scene(frame, min_points=30.5), "min_points = 30.5, must be int"),
+                (ValueError, lambda: s.scene(frame, seed=-1), "seed = -1, must be int, 0 to "),
+            ]
+        for error, call, words in calls:
+            with self.assertRaisesRegex(error, "(?s)^" + words):
+                call()
         vertices, faces = box_mesh()
         for arguments, words in (
             ((vertices, faces[:, :2]), r"faces = array of shape \(\d+, 2\), must be \(F, 3\)"),

@@ -24,6 +24,7 @@ from .results import (
     Scene,
     SceneObject,
     Support,
+    shown,
 )
 
 if TYPE_CHECKING:
@@ -141,7 +142,7 @@ class Database:
         name = os.fspath(file)
         if not create and name != ":memory:" and not os.path.exists(name):
             raise FileNotFoundError(f"{name}: no such database; create=True makes one")
-        self._open: Optional[Any] = core.Database(name, unit=unit, threads=threads)
+        self._open: Optional[Any] = Core(core.Database(name, unit=unit, threads=threads), _recognition)
         self._file = name
 
     @property
@@ -166,13 +167,13 @@ class Database:
         return list(self._core.names)
 
     def __len__(self) -> int:
-        return len(self._core)
+        return int(self._core.__len__())
 
     def __bool__(self) -> bool:
         return True
 
     def __contains__(self, name: object) -> bool:
-        return isinstance(name, str) and name in self._core
+        return isinstance(name, str) and bool(self._core.__contains__(name))
 
     def __iter__(self) -> Iterator[str]:
         return iter(self.names)
@@ -187,7 +188,7 @@ class Database:
 
     def add(self, name: str, points: Any) -> None:
         """Stores a model, (N, 3) points all around it, or a cloud or mesh of Open3D or trimesh; on the disk on return."""
-        self._core.add(name, _near_origin(points).array)
+        self._core.add(name=name, points=_near_origin(points).array)
 
     def build(
         self,
@@ -215,11 +216,11 @@ class Database:
 
     def remove(self, name: str) -> None:
         """Removes a model."""
-        self._core.remove(name)
+        self._core.remove(name=name)
 
     def cloud(self, name: str) -> NDArray[np.float32]:
         """(N, 3) points of a model."""
-        result: NDArray[np.float32] = self._core.cloud(name)
+        result: NDArray[np.float32] = self._core.cloud(name=name)
         return result
 
     def match(
@@ -231,7 +232,7 @@ class Database:
         """
         cloud = _near_origin(points)
         try:
-            found = Core(self._core, _recognition).match(_camera_points(cloud), num_nearest=num_nearest, viewpoint=viewpoint, told=progress)
+            found = self._core.match(_camera_points(cloud), num_nearest=num_nearest, viewpoint=viewpoint, told=progress)
         except NoAnswer as none:
             no_answer(none)
             return []
@@ -255,7 +256,7 @@ class Database:
         cloud = _near_origin(points)
         options = dict(viewpoint=viewpoint, min_confidence=min_confidence, told=progress, threads=threads)
         try:
-            found = Core(self._core, _recognition).recognize(_camera_points(cloud), indices=rows_of(indices, cloud.shape), **options)
+            found = self._core.recognize(_camera_points(cloud), indices=rows_of(indices, cloud.shape), **options)
         except NoAnswer as none:
             no_answer(none)
             return []
@@ -330,24 +331,27 @@ def scene(
     cloud = prepare("points", points)
     if len(cloud.shape) == 1 and (viewpoint is None or isinstance(viewpoint, str)):
         raise ValueError("viewpoint: of rows without order must be (x, y, z), where the sensor stood; pixels (H, W, 3) show theirs")
-    options = _recognition.SceneOptions()
-    for name, value in dict(
-        max_range=float(max_range),
-        plane_distance=float(plane_distance),
-        cluster_distance=float(cluster_distance),
+    if not isinstance(database, (Database, type(None))):
+        raise TypeError(f"database = {shown(database)}, must be a Database")
+    options = core.SceneOptions(
+        max_range=max_range,
+        plane_distance=plane_distance,
+        cluster_distance=cluster_distance,
         min_points=min_points,
         max_points=max_points,
         separate=separate,
         frames=frames,
         complete=complete,
-    ).items():
-        setattr(options, name, value)
-    options.set_common(min_confidence, min_name_confidence, seed, threads)
+        min_confidence=min_confidence,
+        min_name_confidence=min_name_confidence,
+        seed=seed,
+        threads=threads,
+    )
     plane = None if ground is None else np.array(ground, dtype=float)
     if plane is not None and cloud.shift is not None:
         plane[3] += plane[:3] @ cloud.shift
     seen_from = _seen_from(viewpoint, cloud.shift)
-    kept = None if database is None else database._core
+    kept = None if database is None else database._core._asked
     found = core.scene(_camera_points(cloud), viewpoint=seen_from, ground=plane, database=kept, options=options, told=progress)
     reason = "" if np.isfinite(cloud.array).all(axis=1).any() else "no finite point"
     if reason:
