@@ -255,6 +255,7 @@ bool CommandLine::parse(int argc, const char* const* argv) {
   assignPositionals();
   po::notify(values_);
   goWith("volumes, without -surface", !given("surface"), {"levels"});
+  toolName() = tool_;
   checkFiles();
   nlohmann::json options = nlohmann::json::object();
   for (const auto& [name, value] : values_) {
@@ -343,7 +344,7 @@ void CommandLine::checkFiles() const {
                          ", an output needs a name of its own");
   for (const NamedFile& output : files)
     if (output.is_output && isForeignCloud(output.path.string()))
-      throw UsageError(output.path.string() + ": is there and was not written by these tools, so it is not replaced" +
+      throw UsageError(output.path.string() + ": is there and was not written by this tool, so it is not replaced" +
                        (flags_.find_nothrow("merge", false) ? "; -merge FILE brings several scans together" : ""));
 }
 

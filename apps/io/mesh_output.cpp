@@ -37,7 +37,7 @@ void writePLY(const std::string& path, const pcl::PolygonMesh& mesh, const std::
   const pcl::PointCloud<pcl::PointXYZ> vertices = verticesOf(mesh);
   writeStream(path, [&](std::ostream& ply) {
     ply.precision(type == "double" ? 17 : 9);  // as many digits as the type holds
-    ply << "ply\nformat ascii 1.0\ncomment " << kMark << "\nelement vertex " << vertices.size() << "\n";
+    ply << "ply\nformat ascii 1.0\ncomment " << toolName() << "\nelement vertex " << vertices.size() << "\n";
     for (const char axis : {'x', 'y', 'z'}) ply << "property " << type << ' ' << axis << "\n";
     ply << of_vertices.header << "element face " << mesh.polygons.size() << "\nproperty list uchar int vertex_indices\n"
         << of_faces.header << "end_header\n";

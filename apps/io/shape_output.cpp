@@ -215,6 +215,11 @@ void checkCloudExtension(const std::string& path) {
   if (extension != ".pcd" && extension != ".ply") throw UsageError(path + ": unknown extension, must be .pcd or .ply");
 }
 
+std::string& toolName() {
+  static std::string name = "pcl_symmetry";
+  return name;
+}
+
 bool isForeignCloud(const std::string& path) {
   boost::system::error_code ignored;
   const std::string extension = lowerExtension(path);
@@ -222,7 +227,7 @@ bool isForeignCloud(const std::string& path) {
     return false;
   std::string head(256, '\0');
   std::ifstream(path, std::ios::binary).read(head.data(), static_cast<std::streamsize>(head.size()));
-  return head.find(kMark) == std::string::npos;
+  return head.find(toolName()) == std::string::npos;
 }
 
 void saveCloud(const std::string& path, const pcl::PCLPointCloud2& cloud, const Eigen::Vector4f& sensor_origin,
@@ -245,7 +250,7 @@ void saveCloud(const std::string& path, const pcl::PCLPointCloud2& cloud, const 
           failToWrite(path, "there is not enough memory");
         }
       },
-      std::string(extension == ".ply" ? "comment " : "# ") + kMark + "\n");
+      std::string(extension == ".ply" ? "comment " : "# ") + toolName() + "\n");
 }
 
 }  // namespace pcl_symmetry::apps

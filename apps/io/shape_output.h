@@ -46,10 +46,10 @@ void saveCloud(const std::string& path, const pcl::PCLPointCloud2& cloud, const 
 /// \throws UsageError unless saveCloud() knows the extension; lets a tool refuse before the long work.
 void checkCloudExtension(const std::string& path);
 
-/// Stands in a comment of the header of the clouds and meshes that the tools write.
-inline const char* const kMark = "pcl_symmetry";
+/// Name of the tool, which stands in a comment of the header of the clouds and meshes that it writes.
+std::string& toolName();
 
-/// \return whether a .pcd or .ply file without the mark is there, which may be an input.
+/// \return whether a .pcd or .ply file is there that this tool did not write: perhaps an input.
 bool isForeignCloud(const std::string& path);
 
 /// PCL's writers, in the module pcl_symmetry_cloud_files.

@@ -70,9 +70,9 @@ public:
   SelectedView getWorstView() const;
   /// Lists good views that differ.
   /// \param num_views >= 1.
-  /// \return at most \p num_views local maxima of S, by falling S, of equal ones first the one that hides least, apart from each other and from each other's mirror
-  /// images in the symmetries of the whole object, which would show the same again. Empty where the cloud has no
-  /// extent, and PCL_WARN says so.
+  /// \return at most \p num_views local maxima of S, by falling S, of equal ones first the one that hides least, apart
+  /// from each other and from each other's mirror images in the symmetries of the whole object, which would show the
+  /// same again. Empty where the cloud has no extent, and PCL_WARN says so.
   /// \throws pcl::BadArgumentException where \p num_views is less than 1.
   std::vector<SelectedView> getGoodViews(int num_views) const;
 

@@ -104,7 +104,7 @@ class Align(ToolTest):
         self.assertEqual(["left_out" in scan for scan in found["scans"]], [False] * 4 + [True])
         self.assertEqual(set(self.points("all.ply")["scan"]), set(range(4)))
         self.fails(2, "-merge and -target", *names[:2], "-merge all.ply -target chair.off")
-        self.fails(2, "unexpected argument", *names)
+        self.fails(2, "-merge FILE brings several scans together", *names)
 
     @unittest.expectedFailure  # flat faces slide on each other: a scan of the chair is 0.2 off
     def test_merged_scans_stand_where_they_were(self):

@@ -11,7 +11,7 @@ from tool_run import ToolTest, np
 
 WRITERS = {"ascii.pcd": "scan box.off OUT -format ascii", "binary.pcd": "scan box.off OUT -format binary",
            "compressed.pcd": "scan box.off OUT", "cloud.ply": "scan box.off OUT", "labels.seg": "segment box.off OUT", "mesh.ply": "segment box.off OUT"}
-OLD = "# pcl_symmetry, written before"
+OLD = "# pcl_symmetry_scan"
 
 
 class SafeFiles(ToolTest):
@@ -45,10 +45,11 @@ class SafeFiles(ToolTest):
     def test_a_cloud_of_somebody_else_is_not_replaced(self):
         for _ in range(2):
             self.run_tool("box.off mine.pcd -format ascii -quiet", tool="scan")
-        theirs = self.text("mine.pcd").replace("# pcl_symmetry\n", "")
+        theirs = self.text("mine.pcd").replace("# pcl_symmetry_scan\n", "")
         self.write("theirs.pcd", theirs)
         for tool in ("align", "segment", "scene", "map"):
-            self.fails(2, "was not written by these tools", "mine.pcd theirs.pcd", tool=tool)
+            self.fails(2, "was not written by this tool", "mine.pcd theirs.pcd", tool=tool)
+        self.fails(2, "was not written by this tool", "theirs.pcd mine.pcd", tool="align")  # scans of the virtual scanner
         self.fails(2, "not replaced; -merge FILE brings several scans together", "-merge theirs.pcd mine.pcd box.off", tool="align")
         self.assertEqual(self.text("theirs.pcd"), theirs)
 
