@@ -69,6 +69,7 @@ fi
 say "Fetching a cow and a bull (Debian package libcgal-demo)"
 bash apps/fetch_meshes.sh "$demo" cow bull
 say "Scanning the cow from one side"
+rm -f "$demo/cow_scan.pcd"  # of any version
 build/apps/pcl_symmetry_scan "$demo/cow.off" "$demo/cow_scan.pcd"
 find_planes "$demo/cow_scan.pcd" cow_scan
 find_planes "$demo/bull.off" bull -approximate -max_planes 6
