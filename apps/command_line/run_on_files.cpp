@@ -139,8 +139,8 @@ std::string inputOf(const std::string& line, const std::string& path) {
   const std::string input = json["file"];
   boost::system::error_code missing;
   const std::time_t changed = boost::filesystem::last_write_time(input, missing);
-  const bool is_older = !missing && changed > boost::filesystem::last_write_time(path);
-  return json.contains("error") || is_older ? "" : input;
+  const bool has_changed = !missing && changed > boost::filesystem::last_write_time(path);
+  return json.contains("error") || has_changed ? "" : input;
 }
 
 /// A file that grows, or standard output.

@@ -105,6 +105,7 @@ class Align(ToolTest):
         self.assertEqual(set(self.points("all.ply")["scan"]), set(range(4)))
         self.fails(2, "-merge and -target", *names[:2], "-merge all.ply -target chair.off")
         self.fails(2, "-merge FILE brings several scans together", *names)
+        self.fails(2, "unexpected argument", names[0], "new.pcd", names[1])
 
     @unittest.expectedFailure  # flat faces slide on each other: a scan of the chair is 0.2 off
     def test_merged_scans_stand_where_they_were(self):

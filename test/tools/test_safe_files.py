@@ -61,12 +61,13 @@ class SafeFiles(ToolTest):
         self.write("big.pcd", OLD)
         num_killed = 0
         for _ in range(20):
-            if self.interrupt(signal.SIGKILL) is None:
+            status = self.interrupt(signal.SIGKILL)
+            if status is None:
                 self.assertGreater(len(tool_run.pcd_points(self.folder / "big.pcd")), 1_000_000)
                 self.write("big.pcd", OLD)
             else:
                 num_killed += 1
-                self.assertEqual(self.text("big.pcd"), OLD)
+                self.assertEqual((status, self.text("big.pcd")), (-signal.SIGKILL, OLD))
             for left in self.folder.glob(".big.*"):
                 left.unlink()
             if num_killed == 3:
