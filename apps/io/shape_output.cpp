@@ -160,6 +160,7 @@ void checkTarget(const std::string& path) {
   if (path.empty()) throw InputError("output name is empty");
   boost::system::error_code ignored;
   if (fs::is_directory(path, ignored)) failToWrite(path, "it is a folder");
+  if (isForeignCloud(path)) failToWrite(path, "it is there and was not written by this tool");
   const fs::path folder = fs::path(path).has_parent_path() ? fs::path(path).parent_path() : fs::path(".");
   if (!fs::is_directory(folder, ignored)) failToWrite(path, "there is no directory " + folder.string());
 }

@@ -51,7 +51,9 @@ class SafeFiles(ToolTest):
             self.fails(2, "was not written by this tool", "mine.pcd theirs.pcd", tool=tool)
         self.fails(2, "was not written by this tool", "theirs.pcd mine.pcd", tool="align")  # scans of the virtual scanner
         self.fails(2, "not replaced; -merge FILE brings several scans together", "-merge theirs.pcd mine.pcd box.off", tool="align")
-        self.assertEqual(self.text("theirs.pcd"), theirs)
+        self.write("name_0.pcd", theirs)
+        self.fails(1, "name_0.pcd: cannot be written, it is there", "box.off name.pcd -all -quiet", tool="scan")
+        self.assertEqual([self.text(name) for name in ("theirs.pcd", "name_0.pcd")], [theirs, theirs])
 
     def test_what_can_be_written_is_written(self):
         self.fails(1, "is no body of revolution", "box.off -json a.json -html a.html -profile a.svg", tool="planes")
