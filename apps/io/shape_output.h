@@ -15,7 +15,7 @@ namespace pcl_symmetry::apps {
 enum class PCDEncoding { Ascii, Binary, BinaryCompressed };
 
 /// Lets a tool refuse before the long work.
-/// \throws InputError where no file of this name can be made: its folder is missing, it is a folder, or isForeignCloud().
+/// \throws InputError where no file of this name can be made: the folder is missing, it is a folder, isForeignCloud().
 void checkTarget(const std::string& path);
 
 /// Everything that tools write goes this way: into a temporary file beside `path`, which is renamed when it is whole.
