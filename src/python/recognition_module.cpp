@@ -125,6 +125,11 @@ Viewpoint viewpointOf(const py::object& viewpoint) {
   return position ? Viewpoint{Viewpoint::Mode::Given, *position} : Viewpoint{};
 }
 
+const char* toString(ViewpointSource source) {
+  static const char* const names[] = {"none", "given", "rays", "stored", "inferred"};
+  return names[static_cast<int>(source)];
+}
+
 /// What a class for PCL uses of a cloud, and what it knows of the scanner.
 class Look : public ScanAnalysis<pcl::PointXYZ> {
 public:
@@ -151,8 +156,8 @@ private:
   Points points_;
 };
 
-/// \return (M, 3) points that are used, the row of each, what the scanner saw or None, whether they may be rings,
-/// and why there is no answer.
+/// \return (M, 3) points that are used, the row of each, what the scanner saw or None, where its viewpoint is known
+/// from, whether they may be rings, and why there is no answer.
 py::tuple look(const AnyArray& points, const std::optional<pcl::Indices>& indices, const py::object& viewpoint,
                const std::optional<Eigen::Vector4d>& ground, std::size_t max_points, bool as_measured,
                std::uint64_t seed, int threads) {
@@ -165,7 +170,7 @@ py::tuple look(const AnyArray& points, const std::optional<pcl::Indices>& indice
     found.emplace(cloud, indices, from, ground, most, as_measured, seed, threads);
   }
   return py::make_tuple(toRows(found->points()), toArray(found->getUsedIndices()), found->visibility(),
-                        found->mayBeRings(), found->getReason());
+                        toString(found->getViewpointSource()), found->mayBeRings(), found->getReason());
 }
 
 /// The objects of a scene as a dict.
@@ -200,6 +205,7 @@ py::dict sceneOf(const AnyArray& points, const py::object& viewpoint, const std:
   std::optional<Visibility> seen;
   if (found.seen && found.seen->visibility()) seen = *found.seen->visibility();
   return py::dict("objects"_a = objects, "supports"_a = supports, "junctions"_a = junctions, "seen"_a = seen,
+                  "viewpoint_from"_a = toString(found.seen ? found.seen->source() : ViewpointSource::None),
                   "plane_distance"_a = found.plane_distance, "cluster_distance"_a = found.cluster_distance);
 }
 
@@ -270,6 +276,7 @@ void addRegistration(py::module_& module) {
                              })
       .def_property_readonly("covariance", [](const CloudRegistration& r) { return r.covariance; });
   py::class_<RegisteredScans>(module, "RegisteredScans")
+      .def_readonly("resolution", &RegisteredScans::resolution)
       .def_property_readonly("transforms",
                              [](const RegisteredScans& r) {
                                std::vector<std::optional<RowMajor4>> transforms;

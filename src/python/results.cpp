@@ -45,7 +45,9 @@ void addPlanes(py::module_& module) {
       .def_readonly("share", &SymmetryPlane::share)
       .def_readonly("deviation", &SymmetryPlane::deviation)
       .def_readonly("seen", &SymmetryPlane::seen)
-      .def_readonly("residual", &SymmetryPlane::residual);
+      .def_readonly("residual", &SymmetryPlane::residual)
+      .def_readonly("iterations", &SymmetryPlane::iterations)
+      .def_readonly("converged", &SymmetryPlane::converged);
   py::class_<SymmetryAxis>(module, "Axis")
       .def_readonly("point", &SymmetryAxis::point)
       .def_readonly("direction", &SymmetryAxis::direction)
@@ -63,7 +65,9 @@ void addPlanes(py::module_& module) {
       .def_readonly("fold", &SymmetryRotation::fold)
       .def_readonly("confidence", &SymmetryRotation::confidence)
       .def_readonly("support", &SymmetryRotation::support)
-      .def_readonly("off", &SymmetryRotation::off);
+      .def_readonly("off", &SymmetryRotation::off)
+      .def_readonly("far", &SymmetryRotation::far)
+      .def_readonly("halfway", &SymmetryRotation::halfway);
 }
 
 void addPlaneSearch(py::module_& module) {
@@ -80,6 +84,8 @@ void addPlaneSearch(py::module_& module) {
                                return plane;
                              })
       .def_property_readonly("tolerance", [](const PlaneSearch& s) { return s.found.tolerance; })
+      .def_property_readonly("resolution", [](const PlaneSearch& s) { return s.found.resolution; })
+      .def_property_readonly("diameter", [](const PlaneSearch& s) { return s.found.diameter; })
       .def_property_readonly("stray_points", [](const PlaneSearch& s) { return s.found.num_stray_points; })
       .def_property_readonly("reason", [](const PlaneSearch& s) { return s.found.reason; })
       .def_readonly("viewpoint", &PlaneSearch::viewpoint)

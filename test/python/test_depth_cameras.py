@@ -242,10 +242,51 @@ class OrganizedArrays(unittest.TestCase):
     def test_a_database_names_what_is_in_a_frame(self):
         database = pcl_symmetry.Database(":memory:")
         database.build({"first": box((0.3, 0.3, 0.25)), "second": box((0.25, 0.2, 0.15)), "bar": bar()})
+        self.assert_follow({"models": [each.to_dict() for each in database.recognize(self.frame, indices=self.labels == 1)], "known": True}, "recognition")
+        self.assert_follow(pcl_symmetry.scene(self.frame, database=database), "scene", file="-", timing_ms={})
         self.assertEqual(database.names, ["bar", "first", "second"])
         recognized = database.recognize(self.frame, indices=self.labels == 1, min_confidence=0.0)
         self.assertEqual(recognized[0].name, "first")
         self.assertEqual(len(database.match(np.where((self.labels == 1)[..., None], self.frame, np.nan))), 3)
+
+
+    def assert_follow(self, found, schema, **only_of_tools):
+        """The JSON of a result, or of a dict, is that of the tools."""
+        try:
+            import jsonschema
+        except ImportError:
+            self.skipTest("jsonschema is not installed (Debian package python3-jsonschema)")
+        text = found.to_json() if hasattr(found, "to_json") else json.dumps(found)
+        path = Path(__file__).resolve().parents[2] / f"apps/schemas/{schema}.schema.json"
+        jsonschema.Draft202012Validator(json.loads(path.read_text())).validate({**json.loads(text, parse_constant=self.fail), **only_of_tools})
+
+    def test_results_have_the_json_of_the_tools(self):
+        only = dict(file="-", timing_ms={})
+        z, y, x = np.indices((40, 40, 40)) - 19.5
+        ball = np.random.default_rng(1).normal(size=(3000, 3))
+        scan = np.where((self.labels == 1)[..., None], self.frame, np.nan)
+        points = [box(), ball / np.linalg.norm(ball, axis=1)[:, None], lamp(), scan]
+        searches = [pcl_symmetry.planes(each, approximate=True) for each in points]
+        searches.append(pcl_symmetry.planes(volume=(x**2 + 2 * y**2 + 3 * z**2 < 300).astype(float)))
+        with self.assertWarns(RuntimeWarning):
+            searches.append(pcl_symmetry.planes(np.zeros((9, 3))))
+        for found in searches:
+            self.assert_follow(found, "planes", **only)
+        of_scan = json.loads(searches[3].to_json())
+        self.assertEqual((of_scan["viewpoint"]["from"], of_scan["num_points"]), ("rays", (self.labels == 1).sum()))
+        np.testing.assert_array_equal(of_scan["planes"][0]["coefficients"], searches[3][0].coefficients)
+        for each in points:
+            frame = pcl_symmetry.frame(each)
+            self.assert_follow(frame, "frame", timing_ms={})
+            np.testing.assert_array_equal(json.loads(frame.to_json())["axes"][1], frame.axes[:, 1])
+            symmetries = json.loads(pcl_symmetry.rotations(each).to_json())
+            extent = {name: 1.0 for name in "diameter min_x min_y min_z size_x size_y size_z".split()}
+            self.assert_follow({"1": {**extent, **{k: v for k, v in symmetries.items() if k.startswith("symm")}}}, "models_info")
+        self.assert_follow(pcl_symmetry.register(scan, box((0.3, 0.3, 0.25))), "pose", fitness=0.0, timing_ms={})
+        scans = [box(seed=1), box(seed=2) + np.float32(1), np.array([[0, 0, k] for k in range(500)])]
+        self.assert_follow(pcl_symmetry.register_all(scans, viewpoint=None), "merged", timing_ms={})
+        self.assert_follow(pcl_symmetry.scene(self.frame), "scene", **only)
+        self.assert_follow(pcl_symmetry.Database(":memory:").build({"box": box(), "words": "none"}), "database_build")
 
 
 class Meshes(unittest.TestCase):

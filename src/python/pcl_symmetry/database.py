@@ -125,7 +125,7 @@ def register_all(
         if transform is not None:
             from_scan = arrays[k][rows[scans == k]].astype(float) + shifts[k]
             points[scans == k] = from_scan @ transform[:3, :3].T + transform[:3, 3]
-    return RegisteredScans(transforms=transforms, left_out=left_out, pairs=pairs, points=points, scans=scans, rows=rows)
+    return RegisteredScans(transforms=transforms, left_out=left_out, pairs=pairs, points=points, scans=scans, rows=rows, resolution=found.resolution)
 
 
 class Database:
@@ -365,6 +365,7 @@ def scene(
         viewpoint=None if found["seen"] is None else found["seen"].viewpoint,
         reason=reason,
         _shape=cloud.shape,
+        _viewpoint_from=found["viewpoint_from"],
     )
     return result if cloud.shift is None else result._moved(cloud.shift)
 

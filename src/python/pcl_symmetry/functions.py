@@ -210,6 +210,8 @@ class Used(NamedTuple):
     array: NDArray[Any]
     viewpoint: Any
     """As the core takes it: "auto", None, a position, or what the pixels of an organized array show."""
+    viewpoint_from: str
+    """given, rays or inferred, where there is one."""
     rows: Any = None
     """(M,) rows of the array that was given; None: the core selects them."""
     may_be_rings: bool = False
@@ -234,7 +236,7 @@ def look(
     if cloud.mesh is not None and indices is not None:
         raise ValueError("indices: must be left out with a mesh")
     if len(cloud.shape) == 1 and indices is None and ground is None:
-        return Used(cloud.array, seen_from)
+        return Used(cloud.array, seen_from, "inferred" if isinstance(seen_from, str) else "given")
     try:
         from . import _recognition
     except ImportError:
@@ -244,7 +246,7 @@ def look(
         plane = np.array(ground, dtype=float)
         if plane.shape == (4,) and cloud.shift is not None:
             plane[3] += plane[:3] @ cloud.shift
-    points, rows, seen, may_be_rings, reason = Core(_recognition).look(
+    points, rows, seen, viewpoint_from, may_be_rings, reason = Core(_recognition).look(
         cloud.array.reshape(*cloud.shape, 3) if len(cloud.shape) == 2 else cloud.array,
         rows_of(indices, cloud.shape),
         viewpoint=seen_from,
@@ -254,7 +256,7 @@ def look(
         seed=seed,
         threads=threads,
     )
-    return Used(points, seen, rows, may_be_rings, re.sub("^input cloud: ", "", reason))
+    return Used(points, seen, viewpoint_from, rows, may_be_rings, re.sub("^input cloud: ", "", reason))
 
 
 def rows_of(indices: Optional[ArrayLike], shape: Tuple[int, ...]) -> Optional[List[int]]:
@@ -294,14 +296,14 @@ def _fields(found: Any, *names: str) -> Dict[str, Any]:
 def _plane(p: Any) -> Plane:
     plane = object.__new__(Plane)
     names = ("kind", "confidence", "reasons", "share", "share_interval", "score", "support", "deviation", "seen", "residual")
-    for name, value in _fields(p, "normal", "offset", *names).items():
+    for name, value in _fields(p, "normal", "offset", *names, "iterations", "converged").items():
         object.__setattr__(plane, name, value)
     plane.__post_init__()
     return plane
 
 
 def _rotation_axis(t: Any) -> RotationAxis:
-    return RotationAxis(**_fields(t, "point", "direction", "fold", "confidence", "support", "off"))
+    return RotationAxis(**_fields(t, "point", "direction", "fold", "confidence", "support", "off", "far", "halfway"))
 
 
 def _core_plane(plane: ReflectionPlane, shift: Shift) -> Any:
@@ -345,7 +347,8 @@ def _planes_of(found: Any, cloud: Cloud, used: Optional[Used] = None, judged: bo
         _rows=np.asarray(found.rows if used is None or used.rows is None else used.rows, dtype=np.int64),
         _shape=cloud.shape,
         _maxima=found.maxima,
-        **_fields(found, "flat", "tolerance", "viewpoint", "stray_points"),
+        _viewpoint_from="none" if found.viewpoint is None or used is None else used.viewpoint_from,
+        **_fields(found, "flat", "tolerance", "resolution", "diameter", "viewpoint", "stray_points"),
     )
 
 

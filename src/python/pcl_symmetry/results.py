@@ -1,7 +1,7 @@
 """What the functions of pcl_symmetry return: frozen data classes that hold numbers, texts and arrays of NumPy.
 
-Each compares with ==, pickles, and has to_dict() and to_json(). Lengths are in input units, points and directions in the
-input frame, angles in radians.
+Each compares with ==, pickles, and has to_dict() and to_json(), with the keys of the tools' JSON. Lengths are in input
+units, points and directions in the input frame, angles in radians.
 """
 
 from __future__ import annotations
@@ -35,6 +35,21 @@ def _plain(value: Any) -> Any:
     if hasattr(value, "dtype") and value.dtype.names:
         return [dict(zip(value.dtype.names, map(_plain, row))) for row in value]
     return value.tolist() if hasattr(value, "tolist") else value
+
+
+def _numbers(matrices: NDArray[np.float64]) -> Any:
+    """Of matrices (..., 4, 4) 16 numbers each, row by row, as the tools write them."""
+    return matrices.reshape(*matrices.shape[:-2], 16).tolist()
+
+
+def _picked(found: Result, names: str) -> Dict[str, Any]:
+    values = found.to_dict()
+    return {name: values[name] for name in names.split()}
+
+
+def _viewpoint(found: Union[Planes, Scene]) -> Dict[str, Any]:
+    position = {} if found.viewpoint is None else {"position": found.viewpoint.tolist()}
+    return {"from": found._viewpoint_from, **position}
 
 
 def _same(a: Any, b: Any) -> bool:
@@ -89,7 +104,8 @@ class Result:
                 object.__setattr__(self, f.name, value)
 
     def to_dict(self) -> Dict[str, Any]:
-        """Names and values; arrays become lists."""
+        """What the tools write as JSON of it, but for file, times and fitness: the schemas in apps/schemas say what each key is. Of
+        what no tool writes, the fields. Arrays become lists."""
         fields = dataclasses.fields(self)
         return {f.name: _plain(getattr(self, f.name)) for f in fields if not f.name.startswith("_")}
 
@@ -147,6 +163,11 @@ class ReflectionPlane(Result):
         object.__setattr__(self, "normal", n)
         object.__setattr__(self, "offset", float(offset))
         self.__post_init__()
+
+    def to_dict(self) -> Dict[str, Any]:
+        others = super().to_dict()
+        del others["normal"], others["offset"]
+        return {"coefficients": self.coefficients.tolist(), **others}
 
     @property
     def coefficients(self) -> NDArray[np.float64]:
@@ -233,6 +254,13 @@ class Plane(ReflectionPlane):
     """Share of the points whose reflection the cloud could show."""
     residual: float
     """Root mean square distance of reflected points, input units."""
+    iterations: int
+    """Of the refinement."""
+    converged: bool
+    """The refinement came to rest."""
+
+    def to_dict(self) -> Dict[str, Any]:
+        return {**super().to_dict(), "reasons": [dict(rule=rule, odds=odds) for rule, odds in self.reasons]}
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -334,6 +362,10 @@ class RotationAxis(Result):
     """Share of the points that the best rotation maps onto the surface."""
     off: float
     """Share that the worst rotation maps into free space."""
+    far: float
+    """The same, beyond ten tolerances."""
+    halfway: float
+    """The same of rotations halfway between those of the fold."""
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -383,6 +415,10 @@ class Planes(Result):
     """(4,) plane that all points of a sheet or a disc lie near; None: the cloud is not flat."""
     tolerance: float
     """That was decided at, input units."""
+    resolution: float
+    """Least tolerance that the sensor and the spacing of the points resolve, input units; 0: not known."""
+    diameter: float
+    """Greatest distance between two points, input units."""
     stray_points: int
     """Number of points that were left out, as they are few and far from all others."""
     reason: str
@@ -421,6 +457,20 @@ class Planes(Result):
     _rows: NDArray[np.int64]
     _maxima: List[Tuple[NDArray[np.float64], float]]
     _shape: Tuple[int, ...]
+    _viewpoint_from: str
+
+    def to_dict(self) -> Dict[str, Any]:
+        num_points = 0 if self.reason else len(self._rows) or self._shape[0]
+        found: Dict[str, Any] = dict(num_points=num_points, partial=self.viewpoint is not None)
+        found.update(viewpoint=_viewpoint(self), planes=_plain(self.every))
+        found.update({name: _plain(getattr(self, name)) for name in "axes centers tolerance resolution stray_points".split()})
+        if self.viewpoint is not None:
+            found["rotations"] = _plain(self.rotations)
+        if self.best is not None:
+            found["best"] = self.best.to_dict()
+        if self.flat is not None:
+            found["flat"] = {"coefficients": self.flat.tolist()}
+        return {**found, "error": self.reason} if self.reason else found
 
     @property
     def every(self) -> List[Plane]:
@@ -520,6 +570,9 @@ class ProbableFrame(Result):
     revolution_axis: int
     """As of Frame."""
 
+    def to_dict(self) -> Dict[str, Any]:
+        return {**super().to_dict(), "axes": self.axes.T.tolist()}
+
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Frame(Result):
@@ -558,6 +611,13 @@ class Frame(Result):
     def __bool__(self) -> bool:
         return not self.reason
 
+    def to_dict(self) -> Dict[str, Any]:
+        if self.reason:
+            return {"error": self.reason}
+        found = super().to_dict()
+        del found["evidence"], found["reason"]
+        return {**found, "axes": self.axes.T.tolist(), "transform": _numbers(self.transform), "equivalent": _numbers(self.equivalent)}
+
     def plot(self, points: Any, axes: Any = None) -> Any:
         """Draws points and axes with matplotlib into axes of projection 3d, by default new ones; returns them."""
         from .plots import plot_frame
@@ -594,6 +654,13 @@ class Rotations(Result):
     """Number of points that were left out, as they are few and far from all others."""
     reason: str
     """Why there is no answer: the name is empty then. Else empty."""
+
+    def to_dict(self) -> Dict[str, Any]:
+        """The fields, with the symmetries as in models_info.json of the BOP benchmark, which pcl_symmetry_bop writes."""
+        found = super().to_dict()
+        del found["discrete"], found["continuous"]
+        axes = [dict(axis=direction.tolist(), offset=point.tolist()) for point, direction in self.continuous]
+        return {**found, "symmetries_discrete": _numbers(self.discrete), "symmetries_continuous": axes}
 
     def equivalents(self, pose: ArrayLike, step: float = 0.5) -> NDArray[np.float64]:
         """(K, 4, 4) the poses that look like one, it first.
@@ -721,7 +788,6 @@ class PoseEvidence(Result):
 class RegisteredScans(Result):
     """Scans of one object in the frame of the first one that is kept."""
 
-    _in_repr = ("left_out", "pairs")
     transforms: List[Optional[NDArray[np.float64]]]
     """(4, 4) from the frame of each scan to that of the first one that is kept; None where it is left out."""
     left_out: Dict[int, str]
@@ -735,6 +801,24 @@ class RegisteredScans(Result):
     """(M,) index of the scan of each point."""
     rows: NDArray[Any]
     """(M,) row of each point in its scan."""
+    resolution: float
+    """Distance that the scans resolve, input units: of the points in a cube as wide one is kept."""
+
+    def to_dict(self) -> Dict[str, Any]:
+        scans = [
+            dict(file=f"clouds[{k}]", **({"left_out": self.left_out[k]} if transform is None else {"transform": _numbers(transform)}))
+            for k, transform in enumerate(self.transforms)
+        ]
+        pairs = [
+            dict(source=f"clouds[{source}]", target=f"clouds[{target}]", overlap=overlap, used=used)
+            for source, target, overlap, used in self.pairs
+        ]
+        return dict(scans=scans, pairs=pairs, resolution=self.resolution)
+
+    def __repr__(self) -> str:
+        scans = [f"left out: {self.left_out[k]}" if t is None else _text(t) for k, t in enumerate(self.transforms)]
+        lines = "".join(f"\n  {scan}," for scan in scans)
+        return f"RegisteredScans([{lines}\n], pairs={_text(self.pairs)}, points={len(self.points)})"
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -759,6 +843,12 @@ class Registration(Result):
     covariance: Optional[NDArray[np.float64]]
     """(6, 6) of the small rotation, radians, and translation, input units, by which noise and sampling put the pose off,
     frame of the target; None where no pose was found."""
+
+    def to_dict(self) -> Dict[str, Any]:
+        found = _picked(self.score, "support conflict")
+        found.update(transform=_numbers(self.transform), converged=self.converged, confidence=self.confidence)
+        found["evidence"] = self.evidence.to_dict()
+        return found if self.converged else {**found, "reason": self.reason}
 
     @property
     def merit(self) -> float:
@@ -818,6 +908,10 @@ class Recognized(Result):
     evidence: ModelEvidence
     """What the confidence follows from."""
 
+    def to_dict(self) -> Dict[str, Any]:
+        known = dict(name=self.name, confidence=self.confidence, transform=_numbers(self.transform))
+        return {**known, **_picked(self.score, "support conflict")}
+
 
 @dataclass(frozen=True, eq=False, repr=False)
 class BuildReport(Result):
@@ -832,6 +926,10 @@ class BuildReport(Result):
     """(name, reason), in the order of the models."""
     cancelled: bool
     """The progress function returned False."""
+
+    def to_dict(self) -> Dict[str, Any]:
+        failures = [dict(name=name, reason=reason) for name, reason in self.failures]
+        return dict(added=self.num_added, kept=self.num_kept, failures=failures)
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -854,6 +952,24 @@ class SceneObject(Result):
     model_reason: str
     """Why no model of the database fits; empty where one does."""
 
+    def to_dict(self) -> Dict[str, Any]:
+        found: Dict[str, Any] = dict(
+            num_points=len(self.rows),
+            planes=[_picked(plane, "coefficients kind confidence share support seen score") for plane in self.planes.every],
+            axes=[_picked(axis, "point direction confidence") for axis in self.planes.axes],
+            centers=[_picked(center, "point confidence") for center in self.planes.centers],
+            models=[
+                dict(name=m.name, confidence=m.confidence, merit=m.score.merit, T_model_scene=_numbers(m.transform)) for m in self.models
+            ],
+            **{name: getattr(self.planes, name) for name in ("tolerance", "resolution", "diameter")},
+        )
+        if self.frame is not None:
+            found["frame"] = _picked(self.frame, "center axes scores revolution_axis transform")
+        if self.completed_by is not None:
+            found["completed"] = dict(by=self.completed_by.coefficients.tolist(), num_added=len(self.added))
+        reasons = dict(reason=self.planes.reason, model_reason=self.model_reason)
+        return {**found, **{name: why for name, why in reasons.items() if why}}
+
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Support(Result):
@@ -864,6 +980,9 @@ class Support(Result):
     """(4,) a, b, c, d; the normal points toward the viewer."""
     rows: NDArray[np.int64]
     """(K,) of its points in the flattened scene."""
+
+    def to_dict(self) -> Dict[str, Any]:
+        return dict(coefficients=self.coefficients.tolist(), num_points=len(self.rows))
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -879,6 +998,10 @@ class Junction(Result):
     """Share of their points that the best symmetry of both maps onto them, in [0, 1]; 0 where there is none."""
     apart: float
     """The same, each piece by its own symmetries."""
+
+    def to_dict(self) -> Dict[str, Any]:
+        first, second = self.objects
+        return {**super().to_dict(), "objects": [first + 1, second + 1], "joined": first == second}
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -900,6 +1023,15 @@ class Scene(Result):
     reason: str
     """Why there is no answer; empty where the search ran."""
     _shape: Tuple[int, ...]
+    _viewpoint_from: str
+
+    def to_dict(self) -> Dict[str, Any]:
+        import numpy as np
+
+        found = dict(num_points=int(np.prod(self._shape)), viewpoint=_viewpoint(self))
+        names = ("supports", "objects", "junctions", "plane_distance", "cluster_distance")
+        found.update({name: _plain(getattr(self, name)) for name in names})
+        return {**found, "error": self.reason} if self.reason else found
 
     @property
     def labels(self) -> NDArray[np.int32]:
