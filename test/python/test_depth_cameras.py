@@ -229,7 +229,12 @@ class OrganizedArrays(unittest.TestCase):
         self.assertEqual(len(shown["panels"]), 3)
         if importlib.util.find_spec("matplotlib"):
             squares = sum(len(each.planes) for each in scene if not each.planes.axes)
-            self.assertEqual(len(scene.plot(self.frame).collections), 1 + squares)
+            axes = scene.plot(self.frame)
+            self.assertEqual(len(axes.collections), 1 + squares)
+            self.assertEqual([text.get_text()[:9] for text in axes.get_legend().get_texts()], ["object 1:", "object 2:"])
+            middle, up = self.frame[self.labels == 1].mean(axis=0), scene.supports[0].coefficients[:3]
+            x, y, *_ = axes.get_proj() @ np.append(np.stack([middle, middle + 0.1 * up, middle + (0.1, 0, 0)], axis=1), np.ones((1, 3)), axis=0)
+            self.assertTrue(y[1] - y[0] > 10 * abs(x[1] - x[0]) and x[2] - x[0] > 10 * abs(y[2] - y[0]), "seen from the sensor, upright")
         shifted = pcl_symmetry.scene(self.frame.astype(float) + (4e5, 5e6, 0), viewpoint=(4e5, 5e6, 0))
         self.assertEqual(len(shifted), 2)
         with self.assertRaisesRegex(ValueError, "viewpoint: of rows without order"):

@@ -704,8 +704,11 @@ class WithPCL(unittest.TestCase):
             self.assertEqual(database.cloud("box").shape[1], 3)
             database.remove("plate")
             self.assertEqual(pcl_symmetry.Database(path).names, ["box", "lamp"])
-            with self.assertRaisesRegex(ValueError, "name"):
-                database.cloud("nothing")
+            for unknown in (database.cloud, database.remove, database.__getitem__):
+                with self.assertRaisesRegex(KeyError, "nothing"):
+                    unknown("nothing")
+            database.add("box", lamp())
+            self.assertEqual(len(database), 2, "a model of the same name is replaced")
             with self.assertRaisesRegex(ValueError, "viewpoint = there"):
                 database.match(seen, viewpoint="there")
             wrong = Path(folder) / "wrong.db"
@@ -740,6 +743,8 @@ class WithPCL(unittest.TestCase):
             with self.assertRaisesRegex(FileNotFoundError, "models.db: no such database; create=True makes one"):
                 pcl_symmetry.Database(path)
             self.assertFalse(path.exists())
+            with self.assertRaisesRegex(FileNotFoundError, "none/models.db: cannot be made: No such file or directory"):
+                pcl_symmetry.Database(path.parent / "none" / "models.db", create=True)
             with pcl_symmetry.Database(path, create=True) as database:
                 database.add("box", box())
                 self.assertEqual(list(database), ["box"])

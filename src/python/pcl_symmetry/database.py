@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import dataclasses
 import os
+import tempfile
 import warnings
 from typing import TYPE_CHECKING, Any, Callable, Iterable, Iterator, List, Mapping, Optional, Sequence, Tuple, Union
 
@@ -131,17 +132,24 @@ def register_all(
 class Database:
     """Models in one file, found by shape (Section 5.2).
 
-    Iterates over the names of its models; database[name] is the cloud of one. A context manager, which closes the file.
+    Iterates over the names of its models; database[name] is the cloud of one, and an unknown name a KeyError. A context manager, which
+    closes the file.
     """
 
     def __init__(self, file: Path, *, create: bool = False, unit: str = "", threads: int = 0) -> None:
-        """Opens a file. create: makes it where it is missing. unit: of the models, such as "m"; threads: 0 = one per core.
+        """Opens a file. create: where it is missing, the first model makes it. unit: of the models, such as "m"; threads: 0 = one per core.
 
-        Raises FileNotFoundError for a missing file without create, and OSError where it is no database that can be used.
+        Raises FileNotFoundError for a missing file without create, and OSError where it is no database that can be used, or cannot
+        be made.
         """
         name = os.fspath(file)
-        if not create and name != ":memory:" and not os.path.exists(name):
-            raise FileNotFoundError(f"{name}: no such database; create=True makes one")
+        if name != ":memory:" and not os.path.exists(name):
+            if not create:
+                raise FileNotFoundError(f"{name}: no such database; create=True makes one")
+            try:
+                tempfile.TemporaryFile(dir=os.path.dirname(name) or ".").close()
+            except OSError as error:
+                raise type(error)(f"{name}: cannot be made: {error.strerror}") from None
         self._open: Optional[Any] = Core(core.Database(name, unit=unit, threads=threads), _recognition)
         self._file = name
 
@@ -179,15 +187,16 @@ class Database:
         return iter(self.names)
 
     def __getitem__(self, name: str) -> NDArray[np.float32]:
-        if name not in self:
-            raise KeyError(name)
         return self.cloud(name)
 
     def __repr__(self) -> str:
         return f"Database({self._file!r}, " + ("closed)" if self._open is None else f"models={len(self)})")
 
     def add(self, name: str, points: Any) -> None:
-        """Stores a model, (N, 3) points all around it, or a cloud or mesh of Open3D or trimesh; on the disk on return."""
+        """Stores a model, (N, 3) points all around it, or a cloud or mesh of Open3D or trimesh; on the disk on return.
+
+        A model of the same name is replaced.
+        """
         self._core.add(name=name, points=_near_origin(points).array)
 
     def build(
@@ -198,7 +207,7 @@ class Database:
     ) -> BuildReport:
         """Stores many models, each as soon as it is described, on all threads.
 
-        models: dict of name to points as add() takes them, or pairs of both. progress: True shows a bar, a function is called
+        models: dict of name to points as add() takes them, or pairs of both. A model of the same name in the file is replaced. progress: True shows a bar, a function is called
         with the share done, in [0, 1]; where it returns False the rest is left. A model that cannot be used does not stop
         the others. What is stored when Ctrl-C ends the call stays stored.
         """
@@ -215,13 +224,18 @@ class Database:
         return int(self._core.merge([os.fspath(file) for file in files]))
 
     def remove(self, name: str) -> None:
-        """Removes a model."""
-        self._core.remove(name=name)
+        """Removes a model. Raises KeyError for an unknown name."""
+        self._known(name).remove(name=name)
 
     def cloud(self, name: str) -> NDArray[np.float32]:
-        """(N, 3) points of a model."""
-        result: NDArray[np.float32] = self._core.cloud(name=name)
+        """(N, 3) points of a model. Raises KeyError for an unknown name."""
+        result: NDArray[np.float32] = self._known(name).cloud(name=name)
         return result
+
+    def _known(self, name: str) -> Any:
+        if name not in self and name not in self.names:  # where the index of names is damaged, the core says so
+            raise KeyError(name)
+        return self._core
 
     def match(
         self, points: Any, num_nearest: int = 10, *, viewpoint: Viewpoint = "auto", progress: Progress = None

@@ -546,13 +546,13 @@ def complete(
     viewpoint: Viewpoint = "auto",
     indices: Optional[ArrayLike] = None,
     threads: int = 0,
-) -> Tuple[NDArray[Any], List[int]]:
+) -> Tuple[NDArray[Any], NDArray[np.int64]]:
     """Completes a scan by its reflection in a plane.
 
     points, viewpoint, indices: as in planes(); of a mesh its vertices. plane: a symmetry, or a possible one, of planes(); any
     other is refused, unless it comes as ReflectionPlane(plane.normal, plane.offset).
-    Returns (added, rows): (M, 3) points that neither fall onto the measured surface nor into space that was seen to be
-    empty, and the row of the point that each is the reflection of (of the flattened array, where it is organized).
+    Returns (added, rows). added: (M, 3) points that neither fall onto the measured surface nor into space that was seen to be
+    empty. rows: (M,) the row of the point that each is the reflection of: added is plane.reflect(points.reshape(-1, 3)[rows]).
     Warns (RuntimeWarning) where nothing is added, and where the plane is only possible, with its confidence.
     """
     import numpy as np
@@ -563,17 +563,18 @@ def complete(
             f"plane.kind = {plane.kind}, must be symmetry or possible; ReflectionPlane(plane.normal, plane.offset) is taken as it is"
         )
     used = look(cloud, viewpoint, indices, max_points=0, as_measured=True, threads=threads)
-    added, rows = core.complete(used.array, _core_plane(plane, cloud.shift), viewpoint=used.viewpoint, threads=threads)
+    added, found = core.complete(used.array, _core_plane(plane, cloud.shift), viewpoint=used.viewpoint, threads=threads)
+    rows = np.asarray(found, dtype=np.int64)
     if used.rows is not None:
-        rows = np.asarray(used.rows)[rows].tolist()
+        rows = np.asarray(used.rows, dtype=np.int64)[rows]
     doubt = ""
     if isinstance(plane, Plane) and plane.kind == "possible":
         doubt = f" across a plane that is only possible, of confidence {plane.confidence:.2f}"
     if doubt or not len(added):
-        found = np.isfinite(used.array).all(axis=1).any()
-        why = used.reason or ("their reflections fall onto the points or into space seen to be empty" if found else "no finite point")
+        finite = np.isfinite(used.array).all(axis=1).any()
+        why = used.reason or ("their reflections fall onto the points or into space seen to be empty" if finite else "no finite point")
         warnings.warn(f"points: {len(added)} are added{doubt}" + ("" if len(added) else f": {why}"), RuntimeWarning, stacklevel=2)
-    return (added if cloud.shift is None else added + cloud.shift), list(rows)
+    return (added if cloud.shift is None else added + cloud.shift), rows
 
 
 def symmetrize(

@@ -112,9 +112,7 @@ def page_of_planes(found: Planes, points: Any) -> Page:
         panels.add(label, planes=[square], has_support=True, point_colors=_bytes(colors))
     if not panels.panels:
         panels.add("no symmetry plane")
-    if found.viewpoint is None:
-        return panels.page(repr(found))
-    return panels.page(repr(found), *_raised(found.viewpoint - panels.used.mean(axis=0), found.viewpoint))
+    return panels.page(repr(found), *view_of(found, panels.used))
 
 
 def support_colors(support: Any) -> Any:
@@ -124,10 +122,29 @@ def support_colors(support: Any) -> Any:
     return (_SCALE[low] + (at - low[:, None]) * (_SCALE[low + 1] - _SCALE[low])).round().astype(np.uint8)
 
 
-def _raised(towards: Any, viewpoint: Any) -> Tuple[Any, Any]:
-    """A view from slightly above that of a camera, and what is up: a camera at the origin has y down."""
-    up = np.array([0.0, -1.0, 0.0]) if not np.any(viewpoint) else np.array([0.0, 0.0, 1.0])
-    return towards / np.linalg.norm(towards) + 0.25 * up, up
+def view_of(found: Union[Planes, Scene], points: Any) -> Tuple[Any, ...]:
+    """The direction to a camera slightly above the sensor, and what is up there: nothing where no sensor is known.
+
+    Up is away from the first supporting plane; else of a sensor at the origin -y, as of a camera, and of another one z.
+    """
+    if found.viewpoint is None or not len(points):
+        return ()
+    to_sensor = found.viewpoint - points.mean(axis=0)
+    is_camera = np.linalg.norm(found.viewpoint) < 1e-3 * np.linalg.norm(to_sensor)
+    to_sensor /= np.linalg.norm(to_sensor)
+    up = np.array([0.0, -1.0, 0.0] if is_camera else [0.0, 0.0, 1.0])
+    for support in getattr(found, "supports", ())[:1]:
+        if abs(support.coefficients[:3] @ to_sensor) < 0.95:  # a wall that faces the sensor is not below the objects
+            up = support.coefficients[:3]
+    return to_sensor + 0.25 * up, up
+
+
+def label_of(found: Scene, index: int) -> str:
+    planes = found[index].planes
+    best = max([p.confidence for p in (*planes, *planes.axes)], default=0.0)
+    what = "axis of revolution" if planes.axes else f"{len(planes)} planes" if len(planes) > 1 else "1 plane" if planes else "no symmetry"
+    name = found[index].models[0].name + ", " if found[index].models else ""
+    return f"object {index + 1}: {name}{what}" + (f", confidence {best:.2f}" if best else "")
 
 
 def page_of_scene(found: Scene, points: Any) -> Page:
@@ -150,13 +167,7 @@ def page_of_scene(found: Scene, points: Any) -> Page:
     first = dict(axes=[a for d in drawn for a in d["axes"]], planes=[p for d in drawn for p in d["planes"]])
     panels.add(f"{len(found)} objects", point_colors=_bytes(colors), **first)
     for k, d in enumerate(drawn):
-        planes = found[k].planes
-        best = max([p.confidence for p in (*planes, *planes.axes)], default=0.0)
-        what = "axis of revolution" if planes.axes else f"{len(planes)} planes" if len(planes) > 1 else "1 plane" if planes else "no symmetry"
         own = np.where((labels == k + 1)[:, None], colors, _GREY)
-        label = f"object {k + 1}: {what}" + (f", confidence {best:.2f}" if best else "")
-        panels.add(label, point_colors=_bytes(own), axes=d["axes"], planes=d["planes_of_object"])
-    text = f"Scene({len(found)} objects, {len(found.supports)} supporting planes)"
-    if found.viewpoint is None:
-        return panels.page(text)
-    return panels.page(text, *_raised(found.viewpoint - panels.used.mean(axis=0), found.viewpoint))
+        panels.add(label_of(found, k), point_colors=_bytes(own), axes=d["axes"], planes=d["planes_of_object"])
+    of_objects = panels.used[labels > 0] if (labels > 0).any() else panels.used
+    return panels.page(f"Scene({len(found)} objects, {len(found.supports)} supporting planes)", *view_of(found, of_objects))

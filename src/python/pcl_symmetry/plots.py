@@ -18,20 +18,36 @@ def _counted(number: int, what: str) -> str:
     return f"{number} {what}" if number == 1 else f"{number} {what[:-2]}es" if what == "axis" else f"{number} {what}s"
 
 
-def _axes_for(points: Any, axes: Any, title: str, colors: Any = "#4D6185") -> Any:
-    """Axes of projection 3d with the points in them, all directions to one scale."""
+def _axes_for(points: Any, axes: Any, title: str, colors: Any = "#4D6185", view: Any = (), around: Any = None) -> Any:
+    """Axes of projection 3d with the points in them, all directions to one scale.
+
+    view: direction to the camera, and what is up; empty: that of matplotlib. around: points that fill the picture; None: all.
+    """
     if axes is None:
         axes = plt.figure(figsize=(6, 6), dpi=100).add_subplot(projection="3d")
     if not np.isfinite(points).all(axis=1).any():
         points, colors = np.zeros((1, 3)), "#4D6185"
-    low, high = np.nanmin(points, axis=0), np.nanmax(points, axis=0)
+    around = points if around is None else around
+    low, high = np.nanmin(around, axis=0), np.nanmax(around, axis=0)
     middle, half = (low + high) / 2, (high - low).max() / 2 or 1.0
     axes.set(xlim=(middle[0] - half, middle[0] + half), ylim=(middle[1] - half, middle[1] + half), title=title)
     axes.set_zlim(middle[2] - half, middle[2] + half)
     axes.set_box_aspect((1, 1, 1))
+    if view:
+        _look(axes, *view)
     axes.set_axis_off()
     axes.scatter(*points.T, s=1, c=colors)
     return axes
+
+
+def _look(axes: Any, to_camera: Any, up: Any) -> None:
+    elevation = np.clip(np.arcsin(to_camera[2] / np.linalg.norm(to_camera)), -1.57, 1.57)  # 1.5708 would leave z no direction
+    azimuth = np.arctan2(to_camera[1], to_camera[0])
+    level = np.array([np.cos(azimuth), np.sin(azimuth), 0])
+    to_camera = np.cos(elevation) * level + np.sin(elevation) * np.eye(3)[2]
+    above = np.cos(elevation) * np.eye(3)[2] - np.sin(elevation) * level  # what is up without roll
+    roll = np.arctan2(up @ np.cross(to_camera, above), up @ above)
+    axes.view_init(*np.degrees([elevation, azimuth, -roll]))
 
 
 def _diagonal(points: Any) -> float:
@@ -50,7 +66,7 @@ def _square(plane: ReflectionPlane, points: Any) -> Any:
 
 
 def plot_planes(found: Planes, points: Any, axes: Any) -> Any:
-    from .pages import rows_of_shown, support_colors
+    from .pages import rows_of_shown, support_colors, view_of
 
     points = found.samples.astype(float) if found.samples is not None else rows_of_shown(points, found._shape, "planes")
     colors: Any = "#4D6185"
@@ -58,7 +74,7 @@ def plot_planes(found: Planes, points: Any, axes: Any) -> Any:
         colors = support_colors(found.point_support(0).reshape(-1)) / 255
     counts = ((len(found), "plane"), (len(found.axes), "axis"))
     title = ", ".join(_counted(number, what) for number, what in counts if number) or "no symmetry"
-    axes = _axes_for(points, axes, title, colors)
+    axes = _axes_for(points, axes, title, colors, view_of(found, points[np.isfinite(points).all(axis=1)]))
     _draw(axes, found, points, COLORS)
     return axes
 
@@ -73,13 +89,20 @@ def _draw(axes: Any, found: Planes, points: Any, colors: Any) -> None:
 
 
 def plot_scene(found: Scene, points: Any, axes: Any) -> Any:
-    from .pages import rows_of_shown
+    from .pages import label_of, rows_of_shown, view_of
 
     points, labels = rows_of_shown(points, found._shape, "scene"), found.labels.reshape(-1)
     colors = np.where(labels > 0, np.array(COLORS)[(labels - 1) % len(COLORS)], "#AAAAAA")
-    axes = _axes_for(points, axes, _counted(len(found), "object"), colors)
+    finite = np.isfinite(points).all(axis=1)
+    of_objects = points[finite & (labels > 0)] if len(found) else points[finite]
+    shown = finite if not len(found) else (np.abs(points - of_objects.mean(axis=0)) < 1.5 * _diagonal(of_objects)).all(axis=1)
+    axes = _axes_for(points[shown], axes, _counted(len(found), "object"), colors[shown], view_of(found, of_objects), of_objects)
     for k, each in enumerate(found):
-        _draw(axes, each.planes, points[each.rows], () if each.planes.axes else len(each.planes) * [COLORS[k % len(COLORS)]])
+        color = COLORS[k % len(COLORS)]
+        _draw(axes, each.planes, points[each.rows], () if each.planes.axes else len(each.planes) * [color])
+        axes.plot([], [], [], "o", color=color, label=label_of(found, k))
+    if len(found):
+        axes.legend(loc="lower center", fontsize="small", ncol=1 + (len(found) > 6))
     return axes
 
 
