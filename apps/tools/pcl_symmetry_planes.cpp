@@ -72,7 +72,7 @@ CommandLine commandLine(PlanesOptions& options) {
       .number("absolute_tolerance", options.detection.absolute_tolerance, Range::atLeast(0),
               "the same in input units; 0 = -tolerance decides")
       .choice("method", options.method, kMethodNames,
-              "the estimator of the map (Sections 4.2 and 4.3); exact with -as_published")
+              "the estimator of the map (Sections 4.2 and 4.3); with -as_published convolution")
       .flag("as_published", options.as_published,
             "refine the maxima of the map as the paper does (Section 4.4), without a decision")
       .flag("explain", options.explain, "also print why each plane has its confidence and kind")

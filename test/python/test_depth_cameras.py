@@ -237,6 +237,8 @@ class OrganizedArrays(unittest.TestCase):
             self.assertTrue(y[1] - y[0] > 10 * abs(x[1] - x[0]) and x[2] - x[0] > 10 * abs(y[2] - y[0]), "seen from the sensor, upright")
         shifted = pcl_symmetry.scene(self.frame.astype(float) + (4e5, 5e6, 0), viewpoint=(4e5, 5e6, 0))
         self.assertEqual(len(shifted), 2)
+        with self.assertRaisesRegex(ValueError, "from_depth"):
+            pcl_symmetry.scene(self.frame[..., 2])
         with self.assertRaisesRegex(ValueError, "viewpoint: of rows without order"):
             pcl_symmetry.scene(box())
         with self.assertWarnsRegex(RuntimeWarning, "points: no finite point"):

@@ -185,6 +185,9 @@ class Planes(unittest.TestCase):
     def test_wrong_parameters_name_field_value_and_rule(self):
         for arguments, words in (
             (dict(points=np.zeros((5, 2))), "points = array of shape \\(5, 2\\), must be \\(N, 3\\)"),
+            (dict(points=np.zeros((3, 50))), "points = array of shape \\(3, 50\\), must be \\(N, 3\\): points.T"),
+            (dict(points=np.zeros((50, 4))), "must be \\(N, 3\\): points\\[:, :3\\] leaves out"),
+            (dict(points=np.zeros((24, 32, 4))), "must be \\(N, 3\\) or \\(H, W, 3\\): points\\[..., :3\\] leaves out"),
             (dict(points=np.zeros((5, 3), dtype="U3")), "points = array of type <U3"),
             (dict(points=1e300 * box().astype(float)), "coordinates that float32 cannot hold"),
             (dict(points=1e-300 * box().astype(float)), "coordinates that float32 cannot hold"),
@@ -202,6 +205,15 @@ class Planes(unittest.TestCase):
         for points in (1e300 * box().astype(float), np.zeros((5, 2)), np.zeros((5, 3), dtype="U3")):
             with self.assertRaisesRegex(ValueError, "points = "):
                 pcl_symmetry.ReflectionPlane([1, 0, 0], 0.0).pairs(points)
+        plane = pcl_symmetry.ReflectionPlane([1, 0, 0], 0.0)
+        for each in (pcl_symmetry.planes, pcl_symmetry.frame, pcl_symmetry.segment, pcl_symmetry.describe, plane.pairs):
+            with self.assertRaisesRegex(ValueError, "points = array of shape \\(24, 32\\), must be .*; from_depth\\(\\) makes points of"):
+                each(np.ones((24, 32)))
+            with self.assertRaisesRegex(TypeError, "points = .*read files, from_depth\\(\\)"):
+                each(Path("depth.png"))
+        for each in (plane.reflect, plane.distance, lambda x: pcl_symmetry.Axis(np.zeros(3), np.eye(3)[0], 1, 1, 1).rotate(x, 1)):
+            with self.assertRaisesRegex(ValueError, "points = array of shape \\(24, 32\\), must be \\(3,\\) or \\(N, 3\\)"):
+                each(np.ones((24, 32)))
         for nothing in ("cloud.pcd", b"cloud", 5, {"x": 1}, (row for row in box())):
             with self.assertRaisesRegex(TypeError, "points = .*, must be an array"):
                 pcl_symmetry.planes(nothing)

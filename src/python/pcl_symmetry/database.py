@@ -105,6 +105,8 @@ def register_all(
     clouds: each (N, 3), same units, or clouds of Open3D; scans that follow each other are tried first.
     viewpoint: as in planes(), in the frame of each scan. progress: as there.
     Scans that fit no others are left out, with the reason. The poses are in the frame of the first scan that is kept.
+    Costs about two register() a scan, some tenths of a second of processor time each, where neighbors overlap; scans that fit no
+    neighbor are tried with all others, and each refusal takes longer.
     """
     import numpy as np
 
@@ -233,7 +235,7 @@ class Database:
         return result
 
     def _known(self, name: str) -> Any:
-        if name not in self and name not in self.names:  # where the index of names is damaged, the core says so
+        if isinstance(name, str) and name not in self and name not in self.names:  # where the index of names is damaged, the core says so
             raise KeyError(name)
         return self._core
 

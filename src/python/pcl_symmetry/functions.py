@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import re
 import warnings
 from typing import TYPE_CHECKING, Any, Callable, Dict, List, NamedTuple, Optional, Sequence, Tuple, Union
@@ -136,8 +137,9 @@ def parts_of(name: str, points: Any) -> Tuple[NDArray[Any], Any]:
     """Points or vertices as an array, and the faces of a mesh, None for a cloud."""
     import numpy as np
 
-    if points is None or isinstance(points, (str, bytes)):
-        raise TypeError(f"{name} = {shown(points)}, must be an array of shape (N, 3), or a cloud or mesh of Open3D or trimesh")
+    if points is None or isinstance(points, (str, bytes, os.PathLike)):
+        reading = "" if points is None else "; open3d.io.read_point_cloud() and trimesh.load() read files, from_depth() takes the pixels of a depth image"
+        raise TypeError(f"{name} = {shown(points)}, must be an array of shape (N, 3), or a cloud or mesh of Open3D or trimesh{reading}")
     faces = None
     for member, positions in (("point", "positions"), ("vertex", "positions"), ("points", ""), ("vertices", "")):
         found = None if hasattr(points, "__array__") else getattr(points, member, None)
@@ -157,10 +159,22 @@ def parts_of(name: str, points: Any) -> Tuple[NDArray[Any], Any]:
         raise ValueError(f"{name}: {error}, must be (N, 3)") from None
     if array.ndim == 0 and not isinstance(points, np.ndarray):  # a number, a dict, a generator
         raise TypeError(f"{name} = {type(points).__name__}, must be an array of shape (N, 3)")
+    if array.ndim in (2, 3) and array.shape[-1] != 3:
+        raise ValueError(f"{name} = array of shape {array.shape}, must be (N, 3){_how_to_reshape(name, array.shape)}")
     masked: Any = np.ma
     if isinstance(points, masked.MaskedArray) and array.dtype.kind in "fiu":
         array = np.where(masked.getmaskarray(points), np.nan, array)
     return array, faces
+
+
+def _how_to_reshape(name: str, shape: Tuple[int, ...]) -> str:
+    if len(shape) == 3:
+        return " or (H, W, 3)" + (f": {name}[..., :3] leaves out what else each pixel has" if shape[2] > 3 else "")
+    if shape[0] == 3:
+        return f": {name}.T"
+    if 3 < shape[1] < 16:
+        return f": {name}[:, :3] leaves out what else each point has"
+    return "; from_depth() makes points of a depth image" if min(shape) >= 16 else ""
 
 
 def _array(values: Any) -> NDArray[Any]:

@@ -52,6 +52,16 @@ def _viewpoint(found: Union[Planes, Scene]) -> Dict[str, Any]:
     return {"from": found._viewpoint_from, **position}
 
 
+def _vectors(points: ArrayLike) -> NDArray[Any]:
+    """Points, (3,) or (N, 3), of a floating-point type."""
+    import numpy as np
+
+    x = np.asarray(points)
+    if x.shape[-1:] != (3,):
+        raise ValueError(f"points = array of shape {x.shape}, must be (3,) or (N, 3)")
+    return x if x.dtype.kind == "f" else x.astype(float)
+
+
 def _same(a: Any, b: Any) -> bool:
     import numpy as np
 
@@ -106,6 +116,9 @@ class Result:
     def to_dict(self) -> Dict[str, Any]:
         """What the tools write as JSON of it, but for file, times and fitness: the schemas in apps/schemas say what each key is. Of
         what no tool writes, the fields. Arrays become lists."""
+        return self._json()
+
+    def _json(self) -> Dict[str, Any]:
         fields = dataclasses.fields(self)
         return {f.name: _plain(getattr(self, f.name)) for f in fields if not f.name.startswith("_")}
 
@@ -164,8 +177,8 @@ class ReflectionPlane(Result):
         object.__setattr__(self, "offset", float(offset))
         self.__post_init__()
 
-    def to_dict(self) -> Dict[str, Any]:
-        others = super().to_dict()
+    def _json(self) -> Dict[str, Any]:
+        others = super()._json()
         del others["normal"], others["offset"]
         return {"coefficients": self.coefficients.tolist(), **others}
 
@@ -188,9 +201,7 @@ class ReflectionPlane(Result):
 
     def distance(self, x: ArrayLike) -> Any:
         """Signed distance of one point, (3,), or of each row, (N, 3); input units."""
-        import numpy as np
-
-        result = np.asarray(x, dtype=float) @ self.normal - self.offset
+        result = _vectors(x).astype(float) @ self.normal - self.offset
         return float(result) if result.ndim == 0 else result
 
     def angle_to(self, other: ReflectionPlane) -> float:
@@ -202,10 +213,7 @@ class ReflectionPlane(Result):
 
     def reflect(self, points: ArrayLike) -> NDArray[Any]:
         """The reflections of points, (3,) or (N, 3); floating-point types are kept."""
-        import numpy as np
-
-        x = np.asarray(points)
-        x = x if x.dtype.kind == "f" else x.astype(float)
+        x = _vectors(points)
         exact = x.astype(float)
         result: NDArray[Any] = exact - 2.0 * (exact @ self.normal - self.offset)[..., None] * self.normal
         return result.astype(x.dtype)
@@ -259,8 +267,8 @@ class Plane(ReflectionPlane):
     converged: bool
     """The refinement came to rest."""
 
-    def to_dict(self) -> Dict[str, Any]:
-        return {**super().to_dict(), "reasons": [dict(rule=rule, odds=odds) for rule, odds in self.reasons]}
+    def _json(self) -> Dict[str, Any]:
+        return {**super()._json(), "reasons": [dict(rule=rule, odds=odds) for rule, odds in self.reasons]}
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -283,8 +291,7 @@ class Axis(Result):
         """Points, (3,) or (N, 3), rotated about the axis by an angle in radians; floating-point types are kept."""
         import numpy as np
 
-        x = np.asarray(points)
-        x = x if x.dtype.kind == "f" else x.astype(float)
+        x = _vectors(points)
         k, y = self.direction, x.astype(float) - self.point
         along = (y @ k)[..., None] * k
         result: NDArray[Any] = self.point + along + np.cos(angle) * (y - along) + np.sin(angle) * np.cross(k, y)
@@ -459,7 +466,7 @@ class Planes(Result):
     _shape: Tuple[int, ...]
     _viewpoint_from: str
 
-    def to_dict(self) -> Dict[str, Any]:
+    def _json(self) -> Dict[str, Any]:
         num_points = 0 if self.reason else len(self._rows) or self._shape[0]
         found: Dict[str, Any] = dict(num_points=num_points, partial=self.viewpoint is not None)
         found.update(viewpoint=_viewpoint(self), planes=_plain(self.every))
@@ -570,8 +577,8 @@ class ProbableFrame(Result):
     revolution_axis: int
     """As of Frame."""
 
-    def to_dict(self) -> Dict[str, Any]:
-        return {**super().to_dict(), "axes": self.axes.T.tolist()}
+    def _json(self) -> Dict[str, Any]:
+        return {**super()._json(), "axes": self.axes.T.tolist()}
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -611,10 +618,10 @@ class Frame(Result):
     def __bool__(self) -> bool:
         return not self.reason
 
-    def to_dict(self) -> Dict[str, Any]:
+    def _json(self) -> Dict[str, Any]:
         if self.reason:
             return {"error": self.reason}
-        found = super().to_dict()
+        found = super()._json()
         del found["evidence"], found["reason"]
         return {**found, "axes": self.axes.T.tolist(), "transform": _numbers(self.transform), "equivalent": _numbers(self.equivalent)}
 
@@ -655,9 +662,8 @@ class Rotations(Result):
     reason: str
     """Why there is no answer: the name is empty then. Else empty."""
 
-    def to_dict(self) -> Dict[str, Any]:
-        """The fields, with the symmetries as in models_info.json of the BOP benchmark, which pcl_symmetry_bop writes."""
-        found = super().to_dict()
+    def _json(self) -> Dict[str, Any]:
+        found = super()._json()
         del found["discrete"], found["continuous"]
         axes = [dict(axis=direction.tolist(), offset=point.tolist()) for point, direction in self.continuous]
         return {**found, "symmetries_discrete": _numbers(self.discrete), "symmetries_continuous": axes}
@@ -804,7 +810,7 @@ class RegisteredScans(Result):
     resolution: float
     """Distance that the scans resolve, input units: of the points in a cube as wide one is kept."""
 
-    def to_dict(self) -> Dict[str, Any]:
+    def _json(self) -> Dict[str, Any]:
         scans = [
             dict(file=f"clouds[{k}]", **({"left_out": self.left_out[k]} if transform is None else {"transform": _numbers(transform)}))
             for k, transform in enumerate(self.transforms)
@@ -844,7 +850,7 @@ class Registration(Result):
     """(6, 6) of the small rotation, radians, and translation, input units, by which noise and sampling put the pose off,
     frame of the target; None where no pose was found."""
 
-    def to_dict(self) -> Dict[str, Any]:
+    def _json(self) -> Dict[str, Any]:
         found = _picked(self.score, "support conflict")
         found.update(transform=_numbers(self.transform), converged=self.converged, confidence=self.confidence)
         found["evidence"] = self.evidence.to_dict()
@@ -908,7 +914,7 @@ class Recognized(Result):
     evidence: ModelEvidence
     """What the confidence follows from."""
 
-    def to_dict(self) -> Dict[str, Any]:
+    def _json(self) -> Dict[str, Any]:
         known = dict(name=self.name, confidence=self.confidence, transform=_numbers(self.transform))
         return {**known, **_picked(self.score, "support conflict")}
 
@@ -927,7 +933,7 @@ class BuildReport(Result):
     cancelled: bool
     """The progress function returned False."""
 
-    def to_dict(self) -> Dict[str, Any]:
+    def _json(self) -> Dict[str, Any]:
         failures = [dict(name=name, reason=reason) for name, reason in self.failures]
         return dict(added=self.num_added, kept=self.num_kept, failures=failures)
 
@@ -952,7 +958,7 @@ class SceneObject(Result):
     model_reason: str
     """Why no model of the database fits; empty where one does."""
 
-    def to_dict(self) -> Dict[str, Any]:
+    def _json(self) -> Dict[str, Any]:
         found: Dict[str, Any] = dict(
             num_points=len(self.rows),
             planes=[_picked(plane, "coefficients kind confidence share support seen score") for plane in self.planes.every],
@@ -981,7 +987,7 @@ class Support(Result):
     rows: NDArray[np.int64]
     """(K,) of its points in the flattened scene."""
 
-    def to_dict(self) -> Dict[str, Any]:
+    def _json(self) -> Dict[str, Any]:
         return dict(coefficients=self.coefficients.tolist(), num_points=len(self.rows))
 
 
@@ -999,9 +1005,9 @@ class Junction(Result):
     apart: float
     """The same, each piece by its own symmetries."""
 
-    def to_dict(self) -> Dict[str, Any]:
+    def _json(self) -> Dict[str, Any]:
         first, second = self.objects
-        return {**super().to_dict(), "objects": [first + 1, second + 1], "joined": first == second}
+        return {**super()._json(), "objects": [first + 1, second + 1], "joined": first == second}
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -1025,7 +1031,7 @@ class Scene(Result):
     _shape: Tuple[int, ...]
     _viewpoint_from: str
 
-    def to_dict(self) -> Dict[str, Any]:
+    def _json(self) -> Dict[str, Any]:
         import numpy as np
 
         found = dict(num_points=int(np.prod(self._shape)), viewpoint=_viewpoint(self))
