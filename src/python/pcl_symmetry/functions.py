@@ -564,7 +564,9 @@ def complete(
     """Completes a scan by its reflection in a plane.
 
     points, viewpoint, indices: as in planes(); of a mesh its vertices. plane: a symmetry, or a possible one, of planes(); any
-    other is refused, unless it comes as ReflectionPlane(plane.normal, plane.offset).
+    other is refused, unless it comes as ReflectionPlane(plane.normal, plane.offset). Of a body of revolution, which has an axis in
+    place of planes, one through the axis and across the view, with view from the scanner to the object:
+    normal = view - view @ axis.direction * axis.direction, ReflectionPlane(normal, normal @ axis.point).
     Returns (added, rows). added: (M, 3) points that neither fall onto the measured surface nor into space that was seen to be
     empty. rows: (M,) the row of the point that each is the reflection of: added is plane.reflect(points.reshape(-1, 3)[rows]).
     Warns (RuntimeWarning) where nothing is added, and where the plane is only possible, with its confidence.

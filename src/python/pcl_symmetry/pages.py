@@ -56,6 +56,18 @@ def rows_of_shown(points: Any, shape: Tuple[int, ...], what: str) -> Any:
     return array.reshape(-1, 3).astype(float)
 
 
+def rows_of_planes(found: Planes, points: Any) -> Any:
+    """(N, 3) the points that planes were searched in, NaN for others; of a mesh its samples."""
+    if found.samples is not None:
+        return found.samples.astype(float)
+    every = rows_of_shown(points, found._shape, "planes")
+    if len(found._rows):
+        others = np.ones(len(every), bool)
+        others[found._rows] = False
+        every[others] = np.nan
+    return every
+
+
 class _Panels:
     """The list of a page, in coordinates in which all points lie within half a unit of the origin."""
 
@@ -95,7 +107,7 @@ class _Panels:
 def page_of_planes(found: Planes, points: Any) -> Page:
     from .plots import _square
 
-    panels = _Panels(found.samples.astype(float) if found.samples is not None else rows_of_shown(points, found._shape, "planes"))
+    panels = _Panels(rows_of_planes(found, points))
     for axis in found.axes:
         panels.add(f"axis of revolution: confidence {axis.confidence:.2f}", axes=[panels.axis(axis.point, axis.direction)])
     for turn in found.rotations:

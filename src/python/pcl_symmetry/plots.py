@@ -26,7 +26,7 @@ def _axes_for(points: Any, axes: Any, title: str, colors: Any = "#4D6185", view:
     if axes is None:
         axes = plt.figure(figsize=(6, 6), dpi=100).add_subplot(projection="3d")
     if not np.isfinite(points).all(axis=1).any():
-        points, colors = np.zeros((1, 3)), "#4D6185"
+        points, colors, around = np.zeros((1, 3)), "#4D6185", None
     around = points if around is None else around
     low, high = np.nanmin(around, axis=0), np.nanmax(around, axis=0)
     middle, half = (low + high) / 2, (high - low).max() / 2 or 1.0
@@ -66,9 +66,9 @@ def _square(plane: ReflectionPlane, points: Any) -> Any:
 
 
 def plot_planes(found: Planes, points: Any, axes: Any) -> Any:
-    from .pages import rows_of_shown, support_colors, view_of
+    from .pages import rows_of_planes, support_colors, view_of
 
-    points = found.samples.astype(float) if found.samples is not None else rows_of_shown(points, found._shape, "planes")
+    points = rows_of_planes(found, points)
     colors: Any = "#4D6185"
     if found.planes:  # as the pictures of the tools: the support for the best plane
         colors = support_colors(found.point_support(0).reshape(-1)) / 255

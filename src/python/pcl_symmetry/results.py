@@ -102,13 +102,14 @@ class Result:
     """What all results can do."""
 
     _in_repr: ClassVar[Tuple[str, ...]] = ()
+    _writeable: ClassVar[Tuple[str, ...]] = ("points", "faces", "added")  # shapes to go on with: Open3D takes no read-only arrays
 
     def __post_init__(self) -> None:
         import numpy as np
 
         for f in dataclasses.fields(self):
             value = getattr(self, f.name)
-            if isinstance(value, np.ndarray) and value.flags.writeable:
+            if isinstance(value, np.ndarray) and value.flags.writeable and f.name not in self._writeable:
                 value = value.view()
                 value.flags.writeable = False
                 object.__setattr__(self, f.name, value)
@@ -511,7 +512,10 @@ class Planes(Result):
         return page_of_planes(self, points)
 
     def plot(self, points: Any, axes: Any = None) -> Any:
-        """Draws points, planes and axes with matplotlib into axes of projection 3d, by default new ones; returns them."""
+        """Draws points, planes and axes with matplotlib into axes of projection 3d, by default new ones; returns them.
+
+        points: those of planes(), of which only those that were used are drawn.
+        """
         from .plots import plot_planes
 
         return plot_planes(self, points, axes)
