@@ -12,6 +12,7 @@ import sys
 import tempfile
 import threading
 import time
+import types
 import unittest
 import warnings
 from pathlib import Path
@@ -172,6 +173,10 @@ class DepthImages(unittest.TestCase):
         ):
             with self.assertRaisesRegex(ValueError, words):
                 pcl_symmetry.from_depth(*wrong)
+        with self.assertRaisesRegex(TypeError, "depth = 'a.png', must be .* read files"):
+            pcl_symmetry.from_depth("a.png", INTRINSICS)
+        of_open3d = types.SimpleNamespace(intrinsic_matrix=matrix)
+        np.testing.assert_array_equal(pcl_symmetry.from_depth(depth, of_open3d), points)
 
 
 @unittest.skipUnless(has_pcl(), "the module was built without PCL")
@@ -226,6 +231,10 @@ class OrganizedArrays(unittest.TestCase):
             self.assertIsNotNone(each.completed_by)
             self.assertGreater(len(each.added), 0)
             self.assertTrue(each.frame)
+            self.assertTrue(each.planes.to_dict()["partial"])
+            self.assertIn("plane 1", each.planes.show(self.frame).html)
+            if importlib.util.find_spec("matplotlib"):
+                self.assertTrue(each.planes.plot(self.frame).collections)
         self.assertLess(len(repr(scene)), 2000)
         page = scene.show(self.frame)
         shown = json.loads(page.html.split('id="scene">')[1].split("</script>")[0])

@@ -975,6 +975,7 @@ class Package(unittest.TestCase):
                 (TypeError, lambda: s.Database(":memory:", unit=3), "unit = 3, must be str"),
                 (TypeError, lambda: database.add(3, box()), "name = 3, must be str"),
                 (TypeError, lambda: database.remove(3), "name = 3, must be str"),
+            (TypeError, lambda: pcl_symmetry.register_all("scans"), "clouds = 'scans', must be a list of clouds"),
                 (TypeError, lambda: database.cloud(3), "name = 3, must be str"),
                 (ValueError, lambda: database.match(box(), num_nearest=0), "num_nearest = 0, must be >= 1"),
                 (ValueError, lambda: s.register(box(), box(), guess=np.eye(3)), r"guess = .*, must be numbers of shape \(4, 4\)"),

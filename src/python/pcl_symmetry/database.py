@@ -6,7 +6,7 @@ import dataclasses
 import os
 import tempfile
 import warnings
-from typing import TYPE_CHECKING, Any, Callable, Iterable, Iterator, List, Mapping, Optional, Sequence, Tuple, Union
+from typing import TYPE_CHECKING, Any, Callable, Dict, Iterable, Iterator, List, Mapping, Optional, Sequence, Tuple, Union
 
 from . import _recognition
 from .functions import Cloud, Core, NoAnswer, Viewpoint, _fields, _frame, _planes_of, _seen_from, left_out, no_answer, prepare, rows_of
@@ -110,6 +110,8 @@ def register_all(
     """
     import numpy as np
 
+    if isinstance(clouds, (str, bytes)) or not hasattr(clouds, "__iter__"):
+        raise TypeError(f"clouds = {shown(clouds)}, must be a list of clouds")
     arrays, shifts = [], []
     for k, cloud in enumerate(clouds):
         array, shift, *_ = prepare(f"clouds[{k}]", cloud)
@@ -372,26 +374,28 @@ def scene(
     reason = "" if np.isfinite(cloud.array).all(axis=1).any() else "no finite point"
     if reason:
         warnings.warn(f"points: {reason}", RuntimeWarning, stacklevel=2)
+    sensor = None if found["seen"] is None else found["seen"].viewpoint
+    seen: Dict[str, Any] = dict(viewpoint=sensor, _shape=cloud.shape, _viewpoint_from=found["viewpoint_from"])
     result = Scene(
-        objects=[_scene_object(each) for each in found["objects"]],
+        objects=[_scene_object(each, seen) for each in found["objects"]],
         supports=[Support(coefficients=c, rows=np.asarray(rows, dtype=np.int64)) for c, rows in found["supports"]],
         junctions=[Junction((a, b), (sizes[0], sizes[1]), *shares) for a, b, sizes, *shares in found["junctions"]],
         plane_distance=found["plane_distance"],
         cluster_distance=found["cluster_distance"],
-        viewpoint=None if found["seen"] is None else found["seen"].viewpoint,
         reason=reason,
-        _shape=cloud.shape,
-        _viewpoint_from=found["viewpoint_from"],
+        **seen,
     )
     return result if cloud.shift is None else result._moved(cloud.shift)
 
 
-def _scene_object(found: Any) -> SceneObject:
+def _scene_object(found: Any, seen: Dict[str, Any]) -> SceneObject:
+    """seen: what its planes have of the scene."""
     import numpy as np
 
     rows = np.asarray(found["indices"], dtype=np.int64)
     search, by, frame = found["planes"], found["completed_by"], found["frame"]
     planes = _planes_of(search, Cloud(np.empty((0, 3)), shape=(0,)), quiet=True)
+    planes = dataclasses.replace(planes, _rows=rows, _support=[], **seen)
     return SceneObject(
         rows=rows,
         planes=planes,

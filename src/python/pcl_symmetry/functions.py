@@ -671,17 +671,19 @@ def from_depth(depth: ArrayLike, intrinsics: ArrayLike, *, unit: float = 1.0) ->
     """(H, W, 3) points of a depth image in the frame of the camera: x to the right, y down, z forward.
 
     depth: (H, W), along the optical axis; 0 and values that are not finite are missing, and become NaN.
-    intrinsics: (3, 3) matrix of the camera, or (fx, fy, cx, cy), pixels.
+    intrinsics: (3, 3) matrix of the camera, (fx, fy, cx, cy), pixels, or intrinsics of Open3D.
     unit: of the depths, such as 0.001 where they are millimeters and points are to be in meters.
     """
     import numpy as np
 
+    if isinstance(depth, (str, bytes, os.PathLike)):
+        raise TypeError(f"depth = {shown(depth)}, must be (H, W), numbers; PIL.Image.open() and open3d.io.read_image() read files")
     z = np.asarray(depth)
     if z.ndim != 2 or z.dtype.kind not in "fiu":
         raise ValueError(f"depth = array of shape {z.shape} and type {z.dtype}, must be (H, W), numbers")
     if not (np.isfinite(unit) and unit > 0):
         raise ValueError(f"unit = {unit}, must be > 0")
-    k = np.asarray(intrinsics, dtype=float)
+    k = np.asarray(getattr(intrinsics, "intrinsic_matrix", intrinsics), dtype=float)
     if k.shape == (3, 3):
         k = k[[0, 1, 0, 1], [0, 1, 2, 2]]
     if k.shape != (4,) or not np.isfinite(k).all() or not (k[:2] > 0).all():

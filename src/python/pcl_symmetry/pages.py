@@ -118,10 +118,10 @@ def page_of_planes(found: Planes, points: Any) -> Page:
         lines = [panels.axis(center.point, direction) for direction in np.eye(3)]
         panels.add(f"every plane through the center: confidence {center.confidence:.2f}", axes=lines)
     for k, plane in enumerate(found.every):
-        colors = support_colors(found.point_support(k).reshape(-1)[panels.rows])
+        support = _bytes(support_colors(found.point_support(k).reshape(-1)[panels.rows])) if found._support else None
         square = dict(corners=panels.inside(_square(plane, panels.used)), color=_COLORS[k % len(_COLORS)])
         label = f"plane {k + 1} ({plane.kind}): confidence {plane.confidence:.2f}, support {plane.support:.2f}"
-        panels.add(label, planes=[square], has_support=True, point_colors=_bytes(colors))
+        panels.add(label, planes=[square], has_support=support is not None, point_colors=support)
     if not panels.panels:
         panels.add("no symmetry plane")
     return panels.page(repr(found), *view_of(found, panels.used))

@@ -70,7 +70,7 @@ def plot_planes(found: Planes, points: Any, axes: Any) -> Any:
 
     points = rows_of_planes(found, points)
     colors: Any = "#4D6185"
-    if found.planes:  # as the pictures of the tools: the support for the best plane
+    if found.planes and found._support:  # as the pictures of the tools: the support for the best plane
         colors = support_colors(found.point_support(0).reshape(-1)) / 255
     counts = ((len(found), "plane"), (len(found.axes), "axis"))
     title = ", ".join(_counted(number, what) for number, what in counts if number) or "no symmetry"

@@ -950,7 +950,7 @@ class SceneObject(Result):
     rows: NDArray[np.int64]
     """(K,) of its points in the flattened scene."""
     planes: Planes
-    """As of planes(); without support of points."""
+    """As of planes(), plotted with the points of the scene; without support of points."""
     frame: Optional[Frame]
     """None without scene(frames=True)."""
     completed_by: Optional[ReflectionPlane]
