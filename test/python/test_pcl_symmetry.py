@@ -886,6 +886,10 @@ class Results(unittest.TestCase):
         axis = pcl_symmetry.Axis(np.array([1.0, 0, 0]), np.array([0.0, 0, 1]), 1.0, 1.0, 1.0)
         np.testing.assert_allclose(axis.rotate([[2.0, 0, 5]], np.pi / 2), [[1, 1, 5]], atol=1e-12)
 
+    def test_pages_need_no_matplotlib(self):
+        code = "import sys; sys.modules['matplotlib'] = None; import test_pcl_symmetry as t; t.pcl_symmetry.planes(t.box()).show(t.box())"
+        subprocess.run([sys.executable, "-B", "-c", code], cwd=Path(__file__).parent, check=True, timeout=60)
+
     def test_plots_draw(self):
         try:
             import matplotlib

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any, Dict, List, Tuple, Union
 import numpy as np
 
 if TYPE_CHECKING:
-    from .results import Planes, Scene
+    from .results import Planes, ReflectionPlane, Scene
 
 # As in the pictures of the tools: the scale of cividis, the colors of planes (Okabe and Ito), and plain points and meshes.
 _SCALE = np.array([[int(c[k : k + 2], 16) for k in (0, 2, 4)] for c in (
@@ -68,12 +68,25 @@ def rows_of_planes(found: Planes, points: Any) -> Any:
     return every
 
 
+def diagonal(points: Any) -> float:
+    return float(np.linalg.norm(np.nanmax(points, axis=0) - np.nanmin(points, axis=0)))
+
+
+def corners_of(plane: ReflectionPlane, points: Any) -> Any:
+    """The corners of a square in the plane around the points, (4, 3)."""
+    u = np.cross(plane.normal, np.eye(3)[np.abs(plane.normal).argmin()])
+    u /= np.linalg.norm(u)
+    v = np.cross(plane.normal, u)
+    center = np.nanmean(points, axis=0)
+    center = center - plane.distance(center) * plane.normal
+    half = 0.6 * diagonal(points) / np.sqrt(2)
+    return np.array([center + half * (a * u + b * v) for a, b in ((-1, -1), (1, -1), (1, 1), (-1, 1))])
+
+
 class _Panels:
     """The list of a page, in coordinates in which all points lie within half a unit of the origin."""
 
     def __init__(self, every: Any) -> None:
-        from .plots import _diagonal
-
         rows = np.flatnonzero(np.isfinite(every).all(axis=1))
         self.rows = rows[:: -(-len(rows) // _MOST_POINTS) or 1]
         self.used = every[self.rows]
@@ -81,7 +94,7 @@ class _Panels:
         if self.empty:
             self.used = np.zeros((1, 3))
         self._middle = (self.used.max(axis=0) + self.used.min(axis=0)) / 2
-        self._half = _diagonal(self.used) / 2 or 1.0
+        self._half = diagonal(self.used) / 2 or 1.0
         self.panels: List[Dict[str, Any]] = []
 
     def inside(self, x: Any) -> List[Any]:
@@ -105,8 +118,6 @@ class _Panels:
 
 
 def page_of_planes(found: Planes, points: Any) -> Page:
-    from .plots import _square
-
     panels = _Panels(rows_of_planes(found, points))
     for axis in found.axes:
         panels.add(f"axis of revolution: confidence {axis.confidence:.2f}", axes=[panels.axis(axis.point, axis.direction)])
@@ -119,7 +130,7 @@ def page_of_planes(found: Planes, points: Any) -> Page:
         panels.add(f"every plane through the center: confidence {center.confidence:.2f}", axes=lines)
     for k, plane in enumerate(found.every):
         support = _bytes(support_colors(found.point_support(k).reshape(-1)[panels.rows])) if found._support else None
-        square = dict(corners=panels.inside(_square(plane, panels.used)), color=_COLORS[k % len(_COLORS)])
+        square = dict(corners=panels.inside(corners_of(plane, panels.used)), color=_COLORS[k % len(_COLORS)])
         label = f"plane {k + 1} ({plane.kind}): confidence {plane.confidence:.2f}, support {plane.support:.2f}"
         panels.add(label, planes=[square], has_support=support is not None, point_colors=support)
     if not panels.panels:
@@ -161,8 +172,6 @@ def label_of(found: Scene, index: int) -> str:
 
 def page_of_scene(found: Scene, points: Any) -> Page:
     """All objects, each in a color with its best plane or axis, then one by one."""
-    from .plots import _diagonal, _square
-
     panels = _Panels(rows_of_shown(points, found._shape, "scene"))
     labels = found.labels.reshape(-1)[panels.rows]
     bright = (255 * np.array(_COLORS)).round().astype(np.uint8)
@@ -172,9 +181,9 @@ def page_of_scene(found: Scene, points: Any) -> Page:
     for k, each in enumerate(found.objects):
         of_object, color = every[each.rows], _COLORS[k % len(_COLORS)]
         of_object = of_object[np.isfinite(of_object).all(axis=1)]
-        reach = 0.7 * _diagonal(of_object)
+        reach = 0.7 * diagonal(of_object)
         lines = [panels.axis(axis.point, axis.direction, reach) for axis in each.planes.axes]
-        squares = [dict(corners=panels.inside(_square(plane, of_object)), color=color) for plane in each.planes]
+        squares = [dict(corners=panels.inside(corners_of(plane, of_object)), color=color) for plane in each.planes]
         drawn.append(dict(axes=lines, planes=squares[: not lines], planes_of_object=squares))
     first = dict(axes=[a for d in drawn for a in d["axes"]], planes=[p for d in drawn for p in d["planes"]])
     panels.add(f"{len(found)} objects", point_colors=_bytes(colors), **first)

@@ -7,8 +7,10 @@ from typing import TYPE_CHECKING, Any
 import matplotlib.pyplot as plt
 import numpy as np
 
+from .pages import corners_of, diagonal, label_of, rows_of_planes, rows_of_shown, support_colors, view_of
+
 if TYPE_CHECKING:
-    from .results import Frame, Map, Planes, Profile, ReflectionPlane, Scene
+    from .results import Frame, Map, Planes, Profile, Scene
 
 # Colors that remain apart for color-blind eyes (Okabe and Ito), as in the pictures of the tools.
 COLORS = ["#E69F00", "#0072B2", "#009E73", "#CC79A7", "#D55E00", "#56B4E9", "#F0E442", "#595959"]
@@ -50,24 +52,7 @@ def _look(axes: Any, to_camera: Any, up: Any) -> None:
     axes.view_init(*np.degrees([elevation, azimuth, -roll]))
 
 
-def _diagonal(points: Any) -> float:
-    return float(np.linalg.norm(np.nanmax(points, axis=0) - np.nanmin(points, axis=0)))
-
-
-def _square(plane: ReflectionPlane, points: Any) -> Any:
-    """The corners of a square in the plane around the points, (4, 3)."""
-    u = np.cross(plane.normal, np.eye(3)[np.abs(plane.normal).argmin()])
-    u /= np.linalg.norm(u)
-    v = np.cross(plane.normal, u)
-    center = np.nanmean(points, axis=0)
-    center = center - plane.distance(center) * plane.normal
-    half = 0.6 * _diagonal(points) / np.sqrt(2)
-    return np.array([center + half * (a * u + b * v) for a, b in ((-1, -1), (1, -1), (1, 1), (-1, 1))])
-
-
 def plot_planes(found: Planes, points: Any, axes: Any) -> Any:
-    from .pages import rows_of_planes, support_colors, view_of
-
     points = rows_of_planes(found, points)
     colors: Any = "#4D6185"
     if found.planes and found._support:  # as the pictures of the tools: the support for the best plane
@@ -82,20 +67,18 @@ def plot_planes(found: Planes, points: Any, axes: Any) -> Any:
 def _draw(axes: Any, found: Planes, points: Any, colors: Any) -> None:
     """The planes and axes of points."""
     for plane, color in zip(found, colors):
-        axes.plot_trisurf(*_square(plane, points).T, triangles=[(0, 1, 2), (0, 2, 3)], color=color, alpha=0.25)
+        axes.plot_trisurf(*corners_of(plane, points).T, triangles=[(0, 1, 2), (0, 2, 3)], color=color, alpha=0.25)
     for axis in found.axes:
-        reach = np.array([[-1], [1]]) * _diagonal(points) * 0.6
+        reach = np.array([[-1], [1]]) * diagonal(points) * 0.6
         axes.plot(*(axis.point + reach * axis.direction).T, color=COLORS[4], linewidth=3, zorder=10)
 
 
 def plot_scene(found: Scene, points: Any, axes: Any) -> Any:
-    from .pages import label_of, rows_of_shown, view_of
-
     points, labels = rows_of_shown(points, found._shape, "scene"), found.labels.reshape(-1)
     colors = np.where(labels > 0, np.array(COLORS)[(labels - 1) % len(COLORS)], "#AAAAAA")
     finite = np.isfinite(points).all(axis=1)
     of_objects = points[finite & (labels > 0)] if len(found) else points[finite]
-    shown = finite if not len(found) else (np.abs(points - of_objects.mean(axis=0)) < 1.5 * _diagonal(of_objects)).all(axis=1)
+    shown = finite if not len(found) else (np.abs(points - of_objects.mean(axis=0)) < 1.5 * diagonal(of_objects)).all(axis=1)
     axes = _axes_for(points[shown], axes, _counted(len(found), "object"), colors[shown], view_of(found, of_objects), of_objects)
     for k, each in enumerate(found):
         color = COLORS[k % len(COLORS)]
@@ -113,7 +96,7 @@ def plot_frame(frame: Frame, points: Any, axes: Any) -> Any:
     points = array.astype(float) if shift is None else array + shift
     axes = _axes_for(points, axes, "center of symmetry and principal symmetry axes")
     for k in range(3):
-        reach = np.array([[-1], [1]]) * _diagonal(points) / 2 * frame.scores[k]
+        reach = np.array([[-1], [1]]) * diagonal(points) / 2 * frame.scores[k]
         axes.plot(*(frame.center + reach * frame.axes[:, k]).T, color=COLORS[k], linewidth=2)
     return axes
 
