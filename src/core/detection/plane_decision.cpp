@@ -89,9 +89,10 @@ void doubtMissingPieces(std::vector<SymmetryPlane>& planes, CloudKind kind, cons
 void doubtFurtherPlanes(std::vector<SymmetryPlane>& planes, bool has_family, CloudKind kind,
                         const DetectionOptions& options) {
   const SymmetryPlane* const best = has_family ? nullptr : bestOf(planes);
+  const char* const rule = has_family ? "there is an axis or a center, which explains more than a plane"
+                                      : "another plane is likelier, or as likely with a greater score";
   for (SymmetryPlane& plane : planes)
-    if (&plane != best)
-      multiplyOdds(plane, furtherOdds(kind, 1.0 - plane.seen), "another plane or axis is better", options);
+    if (&plane != best) multiplyOdds(plane, furtherOdds(kind, 1.0 - plane.seen), rule, options);
 }
 
 void doubtSlantedPlanes(std::vector<SymmetryPlane>& planes, const std::vector<Eigen::Vector3d>& carrying_normals,

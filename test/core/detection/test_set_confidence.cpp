@@ -82,7 +82,12 @@ TEST(DoubtFurtherPlanes, AllButTheBestOfAScan) {
     std::vector<SymmetryPlane> planes{planeOf(0.9, 0.6, 0.7), planeOf(0.88, 0.6, 0.8), planeOf(0.7, 0.6, 0.9)};
     doubtFurtherPlanes(planes, has_family, kind, kOptions);
     std::vector<bool> is_doubted;
-    for (const SymmetryPlane& plane : planes) is_doubted.push_back(plane.reasons.size() == 2u);
+    for (const SymmetryPlane& plane : planes) {
+      is_doubted.push_back(plane.reasons.size() == 2u);
+      if (!is_doubted.back()) continue;
+      EXPECT_STREQ(plane.reasons[1].rule, has_family ? "there is an axis or a center, which explains more than a plane"
+                                                     : "another plane is likelier, or as likely with a greater score");
+    }
     return is_doubted;
   };
   EXPECT_EQ(doubted(false, CloudKind::Scan), (std::vector<bool>{true, false, true}));
