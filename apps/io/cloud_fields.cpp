@@ -72,6 +72,14 @@ void VectorField::set(pcl::PCLPointCloud2& cloud, std::size_t i, const Eigen::Ve
   }
 }
 
+pcl::Indices finiteIndices(const pcl::PCLPointCloud2& cloud) {
+  const VectorField position(cloud);
+  pcl::Indices finite;
+  for (std::size_t i = 0; i < sizeOf(cloud); ++i)
+    if (!position.isThere() || position.get(cloud, i).allFinite()) finite.push_back(static_cast<pcl::index_t>(i));
+  return finite;
+}
+
 void movePoints(pcl::PCLPointCloud2& cloud, const Eigen::Affine3d& map, std::size_t first) {
   const auto apply = [&](const std::array<const char*, 3>& names, const auto& move) {
     const VectorField field(cloud, names);
@@ -107,18 +115,15 @@ pcl::Indices labeledPoints(const pcl::PCLPointCloud2& cloud, int label) {
 
 pcl::PCLPointCloud2 appendCopies(const pcl::PCLPointCloud2& cloud, const pcl::Indices& points,
                                  const std::string& field_name) {
-  pcl::PCLPointCloud2 longer = cloud;
-  longer.width = static_cast<std::uint32_t>(sizeOf(cloud) + points.size());
-  longer.height = 1;
-  longer.row_step = longer.point_step * longer.width;
-  longer.data.resize(sizeOf(cloud) * cloud.point_step);
-  longer.data.reserve(sizeOf(longer) * longer.point_step);
+  pcl::Indices taken = finiteIndices(cloud);
+  std::vector<std::int32_t> marks(taken.size(), -1), index_of(sizeOf(cloud), -1);
+  for (std::size_t k = 0; k < taken.size(); ++k) index_of[taken[k]] = static_cast<std::int32_t>(k);
   for (const pcl::index_t i : points) {
-    const auto point = cloud.data.begin() + static_cast<std::ptrdiff_t>(i) * cloud.point_step;
-    longer.data.insert(longer.data.end(), point, point + cloud.point_step);
+    taken.push_back(i);
+    marks.push_back(index_of[i]);
   }
-  std::vector<std::int32_t> marks(sizeOf(cloud), -1);
-  marks.insert(marks.end(), points.begin(), points.end());
+  pcl::PCLPointCloud2 longer;
+  pcl::copyPointCloud(cloud, taken, longer);
   return joined<std::int32_t>(longer, {field_name}, {marks});
 }
 

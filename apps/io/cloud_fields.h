@@ -30,6 +30,9 @@ private:
   bool is_there_ = false;
 };
 
+/// \return the points of finite coordinates; all of a cloud without coordinates.
+pcl::Indices finiteIndices(const pcl::PCLPointCloud2& cloud);
+
 /// Moves the points from \p first on: x, y, z and the viewpoint vp_x, vp_y, vp_z by the whole map, normals by its
 /// linear part. Other fields stay.
 /// \param map keeps distances: a rigid motion or a reflection.
@@ -48,8 +51,8 @@ pcl::PCLPointCloud2 withLabels(const pcl::PCLPointCloud2& cloud, const std::vect
 /// \throws std::invalid_argument where the cloud has no such field, or no such point.
 pcl::Indices labeledPoints(const pcl::PCLPointCloud2& cloud, int label);
 
-/// Appends copies of the named points; the result is not organized. One more field of type int32 tells of each copy the
-/// index of the point that it was made of, and is -1 for all others.
+/// Appends copies of the named points to the finite ones; the result is not organized. One more field of type int32
+/// tells of each copy the index in the result of the point that it was made of, and is -1 for all others.
 pcl::PCLPointCloud2 appendCopies(const pcl::PCLPointCloud2& cloud, const pcl::Indices& points,
                                  const std::string& field_name);
 

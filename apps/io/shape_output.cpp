@@ -19,6 +19,7 @@
 #include <mutex>
 #include <optional>
 
+#include "io/cloud_fields.h"
 #include "io/file_text.h"
 #include "io/load_module.h"
 
@@ -239,7 +240,9 @@ void saveCloud(const std::string& path, const pcl::PCLPointCloud2& cloud, const 
   if (cloud.data.size() < std::size_t{cloud.width} * cloud.height * cloud.point_step) {
     throw InputError(path + ": not written, the cloud holds fewer points than width * height");
   }
-  const pcl::PCLPointCloud2 fields = packed(cloud);
+  pcl::PCLPointCloud2 fields = packed(cloud);
+  if (extension == ".ply" && fields.height == 1)  // of rows and columns PCL's camera element keeps the shape
+    pcl::copyPointCloud(pcl::PCLPointCloud2(fields), finiteIndices(fields), fields);
   writeAtomically(
       path,
       [&](const std::string& name) {

@@ -100,7 +100,7 @@ nlohmann::json describeJunction(const SceneJunction& junction) {
 std::string summaryOf(const SceneJunction& junction) {
   const std::string first = std::to_string(junction.first + 1),
                     points = " of " + std::to_string(junction.num_points[0]) + " and " +
-                             std::to_string(junction.num_points[1]) + " points";
+                             counted(junction.num_points[1], "point");
   const std::string shares = formatted("one symmetry explains %.0f %% of both", 100.0 * junction.together) +
                              formatted(", their own %.0f %%", 100.0 * junction.apart);
   return (junction.isJoined() ? first + ": joined from pieces" + points
@@ -212,7 +212,7 @@ std::string tableOf(const SceneAnalysis& scene, const Eigen::Vector3d& shift) {
 
 nlohmann::json describeScene(const InputShape& input, const SceneAnalysis& scene) {
   nlohmann::json json{{"file", input.path},
-                      {"num_points", input.points->size()},
+                      {"num_points", finiteIndices(input.shape.cloud).size()},
                       {"viewpoint", {{"from", toString(scene.seen->source())}}},
                       {"plane_distance", scene.plane_distance},
                       {"cluster_distance", scene.cluster_distance},

@@ -184,10 +184,10 @@ pcl::PointCloud<pcl::PointXYZ> complete(const Console& console, const InputShape
   options.num_threads = common.threads;
   const auto completed = completeBySymmetry(*input.points, plane, options, shifted(common.viewpoint, input.shift()));
   fields = appendCopies(fields, completed.sources, "reflected_of");
-  movePoints(fields, shiftedBack(plane, input.shift()).reflection(), input.points->size());
+  movePoints(fields, shiftedBack(plane, input.shift()).reflection(), fields.width - completed.sources.size());
   json = best.json(input.shift());
   json["num_added"] = completed.added.size();
-  step.done(std::to_string(completed.added.size()) + " points added");
+  step.done(counted(completed.added.size(), "point") + " added");
   return completed.cloud;
 }
 
@@ -460,7 +460,7 @@ void save(const Console& console, const Shape& shape, pcl::PCLPointCloud2 fields
   const Eigen::Quaternionf orientation(
       Eigen::Quaterniond(motion.linear() * shape.sensor_orientation.cast<double>()).cast<float>());
   saveCloud(path, fields, origin, orientation);
-  step.done(std::to_string(static_cast<std::size_t>(fields.width) * fields.height) + " points");
+  step.done(counted(finiteIndices(fields).size(), "point"));
 }
 
 void analyze(const AlignOptions& options, FileJob& job) {

@@ -150,6 +150,26 @@ class Align(ToolTest):
         self.assert_reflected(after, len(before))
 
     def test_completes_nothing_that_has_no_symmetry_unless_told_to(self):
+    def test_leaves_out_what_is_no_point(self):
+        """But rows and columns stay, also in a PLY file, where the element camera has their numbers."""
+        scan, _ = self.scan()
+        finite, every = len(tool_run.pcd_points(scan)), len(tool_run.ply_points(self.folder / "seen.ply")[0])
+        self.assertLess(finite, every)
+        added = self.report("seen.ply", "both.pcd -complete")["completed"]["num_added"]
+        self.assertIn(f": {finite + added} points]", self.error)
+        points = tool_run.pcd_points(self.folder / "both.pcd")
+        self.assertTrue(np.isfinite(tool_run.xyz(points)).all())
+        np.testing.assert_array_equal(points["reflected_of"] < 0, np.arange(finite + added) < finite)
+        self.assert_reflected(points, finite)
+        for name in ("kept.pcd", "kept.ply"):
+            self.run_tool("seen.ply", name)
+            self.assertIn(f"Saving {name} [done", self.error)
+            self.assertIn(f": {finite} points]\n", self.error.split("Saving")[1])
+        self.assertEqual([len(tool_run.pcd_points(self.folder / "kept.pcd")), len(self.points("kept.ply"))], [every, every])
+        rows = tool_run.xyz(tool_run.ply_points(self.folder / "seen.ply")[0])
+        self.run_tool(self.write("rows.pcd", tool_run.pcd(rows)), "rows.ply")
+        self.assertTrue(np.isfinite(tool_run.xyz(self.points("rows.ply"))).all())
+
         report = self.report(self.scan()[0], "out.ply -complete")["completed"]
         self.assertIn(report["kind"], ("symmetry", "possible"))
         self.assertGreater(report["confidence"], 0.2)

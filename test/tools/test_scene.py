@@ -228,6 +228,7 @@ class Scene(ToolTest):
     def test_writes_what_it_finds(self):
         report = self.report(self.scene, "completed.ply -max_points 1000 -png objects.png -html page.html")
         self.assertEqual(self.output.splitlines()[0], "1 supporting plane, 2 objects")
+        self.assertEqual(report["num_points"], np.isfinite(POINTS).all(axis=1).sum())
         self.assertEqual([len(report[key]) for key in ("objects", "supports", "junctions")], [2, 1, 0], "the boxes do not touch")
         self.assertEqual({len(item["frame"]["transform"]) for item in report["objects"]}, {16})
         self.assertGreater(min(item["num_points"] for item in report["objects"]), 300)
