@@ -15,6 +15,7 @@
 #include "io/answers.h"
 #include "io/exact_coordinates.h"
 #include "io/shape_output.h"
+#include "pcl_symmetry/impl/cloud_conversion.hpp"
 #include "pcl_symmetry/mesh_sampling.h"
 
 namespace pcl_symmetry::apps {
@@ -139,6 +140,7 @@ ModelInfo analyzeModel(const std::string& path, const ModelOptions& options,
   info.file = path;
   info.explain = options.explain;
   info.digits = lengthDigits(shape.shift);
+  info.is_scan = !shape.mesh && detail::seenSpace(*shape.points, finite, Viewpoint{});
   info.low = vertices.rowwise().minCoeff().cast<double>();
   info.size = vertices.rowwise().maxCoeff().cast<double>() - info.low;
   info.low = shiftedBack(info.low, shape.shift);

@@ -28,6 +28,7 @@ struct ModelInfo {
   double diameter = 0.0;
   int digits = 6;                      ///< significant ones of lengths that are printed
   ObjectSymmetries symmetries;         ///< input frame
+  bool is_scan = false;                ///< a cloud that was seen from one side: what is hidden is taken to be empty
   bool has_unread_colors = false;      ///< of its vertices or a texture, which nobody asked for or can read
   std::string group_without_colors;    ///< empty where they take nothing away
   std::optional<SymmetryCheck> check;  ///< against a given file

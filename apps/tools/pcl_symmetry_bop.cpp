@@ -172,6 +172,11 @@ Results analyzeAll(const std::vector<ModelFile>& files, const BopOptions& option
   std::string outcome = std::to_string(results.infos.size()) + " done";
   if (!results.errors.empty()) outcome += ", " + std::to_string(results.errors.size()) + " failed";
   searching.done(outcome);
+  for (const ModelInfo& info : results.infos)
+    if (info.is_scan)
+      console.warn(info.file +
+                   ": is a scan from one side, must be a whole object; pcl_symmetry_planes finds the axes of "
+                   "a scan");
   return results;
 }
 

@@ -247,6 +247,16 @@ class Bop(ToolTest):
             self.fails(1, said, self.box, "-check", name)
             self.assertEqual(self.error.count("\n"), 1)
 
+    def test_warns_of_scans(self):
+        self.run_tool(self.box, "scan.pcd", tool="scan")
+        points = tool_run.xyz(tool_run.pcd_points(self.folder / "scan.pcd"))
+        self.write("moved.pcd", tool_run.pcd(points[np.isfinite(points).all(axis=1)] + 1))
+        for scan in ("scan.pcd", "moved.pcd"):
+            self.run_tool(scan)
+            self.assertIn(f"{scan}: is a scan from one side, must be a whole object", self.error)
+        self.run_tool(self.box, FEW)
+        self.assertNotIn("scan", self.error)
+
     def test_asks_for_colors_only_when_it_is_told(self):
         plain, red = self.write("obj_1.ply", colored_cube(False)), self.write("obj_2.ply", colored_cube(True))
         self.run_tool(red, FEW)
