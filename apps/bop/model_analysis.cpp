@@ -171,7 +171,7 @@ void printModel(const ModelInfo& info) {
   if (!info.group_without_colors.empty())
     std::printf("  without its colors the group is %s\n", info.group_without_colors.c_str());
   if (found.num_stray_points > 0)
-    std::printf("  %d stray points left out, far from all others\n", found.num_stray_points);
+    std::printf("  %s left out, far from all others\n", counted(found.num_stray_points, "stray point").c_str());
   std::printf("  diameter %.6g  size %.6g x %.6g x %.6g\n", info.diameter, info.size.x(), info.size.y(), info.size.z());
   const auto print_axis = [&](const Eigen::Vector3d& direction, const std::string& turns) {
     std::printf("  axis %9.6f %9.6f %9.6f through %s  %s\n", direction.x(), direction.y(), direction.z(),

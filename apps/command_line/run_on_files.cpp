@@ -1,5 +1,6 @@
 #include "command_line/run_on_files.h"
 
+#include <unistd.h>
 #include <algorithm>
 #include <boost/algorithm/string.hpp>
 #include <boost/filesystem.hpp>
@@ -64,17 +65,15 @@ std::string lineOf(const nlohmann::json& json) {
   return jsonText(json, -1) + "\n";
 }
 
-int numToStandardOutput(const BatchOptions& batch, const CommonOptions& common) {
-  const auto is = [](const std::optional<std::string>& path) { return path && isStandardStream(*path) ? 1 : 0; };
-  int number = is(common.json_path) + is(batch.csv_path);
-  for (const std::optional<std::string>* output : batch.outputs) number += is(*output);
-  if (number > 1) throw UsageError("only one output can be -, standard output");
-  return number;
+bool isTextWanted(const BatchOptions& batch, const CommonOptions& common) {
+  std::vector<std::optional<std::string>> outputs{common.json_path, batch.csv_path};
+  for (const std::optional<std::string>* output : batch.outputs) outputs.push_back(*output);
+  return isStandardOutputFree(outputs);
 }
 
 int runOnOne(const std::string& path, const BatchOptions& batch, const CommonOptions& common,
              const std::string& csv_header, const std::function<void(FileJob&)>& analyze) {
-  const bool text_wanted = numToStandardOutput(batch, common) == 0;
+  const bool text_wanted = isTextWanted(batch, common);
   if (batch.resume) throw UsageError("-resume needs several inputs: a folder, a pattern, a list or more arguments");
   for (const std::optional<std::string>* output : batch.outputs)
     if (*output) checkTarget(**output);
@@ -190,15 +189,16 @@ private:
   std::uintmax_t size_ = 0;  // bytes of the file that are whole lines
 };
 
-/// JSON Lines and CSV. What stands in them is whole lines, also if the program is killed, but perhaps for the last
-/// line, which a later run with -resume drops.
+/// JSON Lines and CSV, or tables at a terminal. What stands in files is whole lines, also if the program is killed, but
+/// perhaps for the last line, which a later run with -resume drops.
 class ResultFiles {
 public:
-  /// Opens the files. JSON goes to standard output where neither a JSON nor a CSV file is named.
+  /// Opens the files. Where neither a JSON nor a CSV file is named, a terminal gets tables, and a pipe JSON.
   /// \throws InputError where one cannot be written, or holds something else than results and -resume is given.
   ResultFiles(const BatchOptions& batch, const CommonOptions& common, const std::string& csv_header) {
     has_csv_ = batch.csv_path.has_value();
-    has_json_ = common.json_path || !has_csv_;
+    has_text_ = !common.json_path && !has_csv_ && isatty(STDOUT_FILENO);
+    has_json_ = common.json_path || (!has_csv_ && !has_text_);
     const std::string json_path = common.json_path.value_or("-");
     if (batch.resume && isStandardStream(json_path)) throw UsageError("-resume needs -json FILE");
     std::vector<bool> is_kept;  // each line of the JSON file
@@ -220,17 +220,18 @@ public:
   bool holds(const std::string& input) const { return kept_.count(input) > 0; }
   std::size_t numKept() const { return kept_.size(); }
 
-  /// \param json_line,csv_lines with their ends.
-  void add(const std::string& json_line, const std::string& csv_lines) {
+  /// \param json_line,csv_lines,text with their ends.
+  void add(const std::string& json_line, const std::string& csv_lines, const std::string& text) {
     // The JSON line comes last: what it names is complete.
     if (has_csv_) csv_.add(csv_lines);
     if (has_json_) json_.add(json_line);
+    if (has_text_) writeText("-", text);
   }
 
 private:
   std::set<std::string> kept_;
   Sink json_, csv_;
-  bool has_json_ = false, has_csv_ = false;
+  bool has_json_ = false, has_csv_ = false, has_text_ = false;
 };
 
 /// Hands the inputs out, and their results on in the order of the inputs.
@@ -242,9 +243,12 @@ public:
         results_(batch, common, csv_header),
         num_threads_(static_cast<std::size_t>(resolveNumThreads(common.threads))),
         common_(common),
-        console_(common.quiet),
-        step_(console_, "Working on " + counted(files.size(), "file")) {
+        console_(common.quiet) {
     common_.threads = 1;
+    // No line of progress is cut in two by results that go to the same place.
+    const bool is_free = isTextWanted(batch, common) && (common.json_path || batch.csv_path);
+    if (is_free || (isatty(STDERR_FILENO) && !isatty(STDOUT_FILENO)))
+      step_.emplace(console_, "Working on " + counted(files.size(), "file"));
   }
 
   int run(const std::function<void(FileJob&)>& analyze) {
@@ -255,7 +259,10 @@ public:
     std::string summary = std::to_string(files_.size() - num_failed_) + " done";
     if (results_.numKept() > 0) summary += ", " + std::to_string(results_.numKept()) + " of them before";
     if (num_failed_ > 0) summary += ", " + std::to_string(num_failed_) + " failed";
-    step_.done(summary);
+    if (step_)
+      step_->done(summary);
+    else
+      console_.info(counted(files_.size(), "file") + ": " + summary);
     for (const std::string& failure : failures_) console_.error(failure);
     if (num_failed_ > failures_.size())
       console_.error(std::to_string(num_failed_ - failures_.size()) + " more files failed");
@@ -264,7 +271,7 @@ public:
 
 private:
   struct Result {
-    std::string json_line, csv_lines, error;
+    std::string json_line, csv_lines, text, error;
   };
 
   /// \return false where none is left. Waits while too many results wait for an earlier one.
@@ -294,7 +301,9 @@ private:
     json["file"] = path;
     if (!result.error.empty()) json["error"] = result.error;
     result.json_line = lineOf(json);
-    if (job.reported()) result.csv_lines = csvLines(path, *job.reported());
+    if (!job.reported()) return result;
+    result.csv_lines = csvLines(path, *job.reported());
+    result.text = path + "\n" + job.reported()->text;
     return result;
   }
 
@@ -303,14 +312,15 @@ private:
     if (!result.error.empty() && ++num_failed_ <= kMaxFailures) failures_.push_back(result.error);
     waiting_[i] = std::move(result);
     writeWaiting();
-    step_.progress(static_cast<double>(num_written_) / static_cast<double>(files_.size()));
+    if (step_) step_->progress(static_cast<double>(num_written_) / static_cast<double>(files_.size()));
   }
 
   /// Under the lock.
   void writeWaiting() {
     try {
       for (auto first = waiting_.begin(); first != waiting_.end() && first->first == num_written_ && !failure_;) {
-        if (!first->second.json_line.empty()) results_.add(first->second.json_line, first->second.csv_lines);
+        if (!first->second.json_line.empty())
+          results_.add(first->second.json_line, first->second.csv_lines, first->second.text);
         first = waiting_.erase(first);
         ++num_written_;
       }
@@ -325,7 +335,7 @@ private:
   std::size_t num_threads_;
   CommonOptions common_;
   Console console_;
-  Step step_;
+  std::optional<Step> step_;
   std::mutex mutex_;
   std::condition_variable written_;
   std::map<std::size_t, Result> waiting_;
@@ -378,7 +388,7 @@ int runOnFiles(const BatchOptions& batch, const CommonOptions& common, const std
   if (batch.inputs.size() == 1 && !standsForSeveral(batch.inputs.front()))
     return runOnOne(batch.inputs.front(), batch, common, csvLine(header), analyze);
   const std::vector<InputFile> files = inputFiles(batch.inputs);
-  numToStandardOutput(batch, common);
+  isTextWanted(batch, common);
   checkOutputs(batch, files);
   return Batch(files, batch, common, csvLine(header)).run(analyze);
 }

@@ -1,8 +1,9 @@
 /// Runs the analysis of a tool on one input or on many.
 ///
-/// One input: text on standard output, JSON and CSV in files. Several: one line of JSON for each, in the order of the
-/// inputs, as soon as it is known; inputs side by side on all threads; an input that fails has a line with "error", is
-/// named again at the end, and does not stop the others. Memory does not grow with the number of inputs.
+/// One input: text on standard output, JSON and CSV in files. Several: its text for each at a terminal, else one line
+/// of JSON, in the order of the inputs, as soon as it is known; inputs side by side on all threads; an input that fails
+/// has a line with "error", is named again at the end, and does not stop the others. Memory does not grow with the
+/// number of inputs.
 #pragma once
 
 #include <functional>
@@ -44,7 +45,7 @@ struct BatchOptions {
 
 /// What a tool reports of an input.
 struct FileReport {
-  std::string text;     ///< for standard output, where there is one input
+  std::string text;     ///< for standard output
   nlohmann::json json;  ///< an object; in a file of several inputs it is a line
   /// Rows of the table of comma-separated values: numbers and strings, one for each column after "file".
   std::vector<std::vector<nlohmann::json>> rows;

@@ -39,4 +39,12 @@ nlohmann::json frameJson(const SymmetryFrame& frame, const Eigen::Vector3d& shif
   return json;
 }
 
+std::string matrixLines(const Eigen::Isometry3d& motion, int digits) {
+  std::string lines;
+  for (int row = 0; row < 4; ++row)
+    lines += formatted("%12.6f %12.6f %12.6f %12.*g\n", motion(row, 0), motion(row, 1), motion(row, 2), digits,
+                       motion(row, 3));
+  return lines;
+}
+
 }  // namespace pcl_symmetry::apps

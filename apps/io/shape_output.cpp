@@ -166,6 +166,12 @@ void checkTarget(const std::string& path) {
   if (!fs::is_directory(folder, ignored)) failToWrite(path, "there is no directory " + folder.string());
 }
 
+bool isStandardOutputFree(const std::vector<std::optional<std::string>>& outputs) {
+  const auto number = std::count(outputs.begin(), outputs.end(), std::optional<std::string>("-"));
+  if (number > 1) throw UsageError("only one output can be -, standard output");
+  return number == 0;
+}
+
 void writeStream(const std::string& path, const std::function<void(std::ostream&)>& writer) {
   const auto write = [&](std::ostream& stream) {
     errno = 0;

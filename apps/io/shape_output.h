@@ -6,7 +6,9 @@
 #include <Eigen/Geometry>
 #include <functional>
 #include <iosfwd>
+#include <optional>
 #include <string>
+#include <vector>
 
 #include "command_line/tool_errors.h"
 
@@ -17,6 +19,10 @@ enum class PCDEncoding { Ascii, Binary, BinaryCompressed };
 /// Lets a tool refuse before the long work.
 /// \throws InputError where no file of this name can be made: the folder is missing, it is a folder, isForeignCloud().
 void checkTarget(const std::string& path);
+
+/// \return whether none of the outputs is "-", so that standard output is free for text.
+/// \throws UsageError where several are.
+bool isStandardOutputFree(const std::vector<std::optional<std::string>>& outputs);
 
 /// Everything that tools write goes this way: into a temporary file beside `path`, which is renamed when it is whole.
 /// It is removed if the disk is full, if the writer throws and if a signal ends the program. With the path "-" the bytes

@@ -1,6 +1,5 @@
 /// The objects of one frame of a sensor and their symmetries: a table, JSON, the completed scene, a picture, a page.
 #include <algorithm>
-#include <cstdio>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -116,12 +115,14 @@ int run(int argc, char** argv) {
   if (!line.parse(argc, argv)) return 0;
   line.goWith("-database", options.database_path.has_value(), {"accept"});
   if (options.output) checkCloudExtension(*options.output);
+  const bool prints =
+      isStandardOutputFree({options.output, options.common.json_path, options.png_path, options.html_path});
   const Console console(options.common.quiet);
   const InputShape input = loadFrame(console, options.input, options.common);
   SymmetryScene searched = makeScene(options);
   const SceneAnalysis scene = analyze(console, searched, input, options);
   const std::string table = tableOf(scene, input.shift());
-  std::fputs(table.c_str(), stdout);
+  if (prints) writeText("-", table);
   if (options.common.json_path) writeText(*options.common.json_path, jsonText(describeScene(input, scene)) + "\n");
   if (options.output)
     saveCloud(*options.output, completedScene(input, scene), input.shape.sensor_origin, input.shape.sensor_orientation);

@@ -382,14 +382,6 @@ Motion registerTo(const Console& console, const InputShape& input, const InputSh
   return result;
 }
 
-std::string linesOf(const Eigen::Isometry3d& motion, int digits) {
-  std::string lines;
-  for (int row = 0; row < 4; ++row)
-    lines += formatted("%12.6f %12.6f %12.6f %12.*g\n", motion(row, 0), motion(row, 1), motion(row, 2), digits,
-                       motion(row, 3));
-  return lines;
-}
-
 nlohmann::json describe(const SymmetryFrame& frame, const Eigen::Vector3d& shift) {
   nlohmann::json json = frameJson(frame, shift);
   json["stray_points"] = frame.num_stray_points;
@@ -420,8 +412,8 @@ std::string linesOf(const SymmetryFrame& frame, const Eigen::Vector3d& shift) {
   double others = 0.0;
   for (std::size_t i = 1; i < frame.probable.size(); ++i) others += frame.probable[i].probability;
   if (!frame.probable.empty())
-    lines += formatted("probability of these axes %.2f, of %zu others %.2f\n", frame.probable.front().probability,
-                       frame.probable.size() - 1, others);
+    lines += formatted("probability of these axes %.2f, of ", frame.probable.front().probability) +
+             counted(frame.probable.size() - 1, "other") + formatted(" %.2f\n", others);
   return lines;
 }
 
@@ -440,7 +432,7 @@ Motion toTarget(const Console& console, const InputShape& input, const AlignOpti
   Motion motion = registerTo(console, input, target, common);
   motion.scene = sceneOf(input, target, motion.transform);
   if (motion.converged)
-    motion.text = linesOf(motion.transform, std::max(lengthDigits(input.shift()), lengthDigits(target.shift())));
+    motion.text = matrixLines(motion.transform, std::max(lengthDigits(input.shift()), lengthDigits(target.shift())));
   return motion;
 }
 
@@ -577,8 +569,11 @@ Merged merged(const std::vector<InputShape>& inputs, const std::vector<ObjectSca
 int mergeScans(const AlignOptions& options) {
   const Console console(options.common.quiet);
   checkCloudExtension(*options.merge);
-  for (const auto& output : {options.merge, options.html_path, options.png_path, options.common.json_path})
+  const std::vector<std::optional<std::string>> outputs{options.merge, options.html_path, options.png_path,
+                                                        options.common.json_path};
+  for (const std::optional<std::string>& output : outputs)
     if (output) checkTarget(*output);
+  const bool prints = isStandardOutputFree(outputs);
   const std::vector<InputShape> inputs = loadScans(console, options);
   std::vector<ObjectScan> scans;
   std::vector<pcl::Indices> indices(inputs.size());
@@ -625,13 +620,13 @@ int mergeScans(const AlignOptions& options) {
       incomplete = std::current_exception();
     }
   }
-  if (options.common.json_path)
-    writeText(*options.common.json_path, jsonText(json) + "\n");
-  else
-    writeText("-", text);
+  const std::size_t num_points = finiteIndices(cloud.fields).size();
+  text += formatted("%zu of ", num_kept) + counted(inputs.size(), "scan") + ", " + counted(num_points, "point") + "\n";
+  if (options.common.json_path) writeText(*options.common.json_path, jsonText(json) + "\n");
   if (options.html_path) writePage(scene, {*options.merge, text}, *options.html_path);
   if (options.png_path) renderPicture(scene, *options.png_path, 800, 600);
   save(console, cloud.shape.shape, std::move(cloud.fields), Eigen::Isometry3d::Identity(), *options.merge);
+  if (prints) writeText("-", text);
   if (incomplete) std::rethrow_exception(incomplete);
   return 0;
 }

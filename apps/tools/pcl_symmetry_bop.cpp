@@ -201,22 +201,23 @@ void printColorNote(const std::vector<ModelInfo>& infos, bool use_colors) {
                          : "-color asks for rotations that keep them");
 }
 
-/// Prints how a given file compares, and writes that as JSON.
-void report(const std::vector<ModelInfo>& infos, const BopOptions& options) {
+/// Writes how a given file compares as JSON, and prints it.
+void report(const std::vector<ModelInfo>& infos, const BopOptions& options, bool prints) {
   nlohmann::ordered_json models = nlohmann::ordered_json::object(), missing = nlohmann::ordered_json::array();
   int num_disagreeing = 0, num_compared = 0;
   for (const ModelInfo& info : infos) {
     if (!info.check) {
-      std::printf("model %-6s is not in %s\n", info.key.c_str(), options.check_path->c_str());
+      if (prints) std::printf("model %-6s is not in %s\n", info.key.c_str(), options.check_path->c_str());
       missing.push_back(info.key);
       continue;
     }
-    printCheck(info.key, *info.check, info.diameter);
+    if (prints) printCheck(info.key, *info.check, info.diameter);
     models[info.key] = toJson(*info.check, info.diameter);
     ++num_compared;
     num_disagreeing += info.check->agrees() ? 0 : 1;
   }
-  std::printf("%d of %d models disagree with %s\n", num_disagreeing, num_compared, options.check_path->c_str());
+  if (prints)
+    std::printf("%d of %d models disagree with %s\n", num_disagreeing, num_compared, options.check_path->c_str());
   if (options.report_path)
     writeText(*options.report_path, jsonText(nlohmann::ordered_json{
                                         {"disagreeing", num_disagreeing}, {"models", models}, {"missing", missing}}) +
@@ -258,12 +259,15 @@ int run(int argc, char** argv) {
   symmetries.other_tolerances = options.models.explain;
   symmetries.max_points = std::max(symmetries.max_points, options.common.mesh_points);
   symmetries.seed = options.common.seed;
+  const bool prints = isStandardOutputFree({options.common.json_path, options.report_path, options.isaac_path});
   const Results results = analyzeAll(files, options, given);
-  for (const ModelInfo& info : results.infos) printModel(info);
-  printColorNote(results.infos, options.models.use_colors);
+  if (prints) {
+    for (const ModelInfo& info : results.infos) printModel(info);
+    printColorNote(results.infos, options.models.use_colors);
+  }
   const double sphere_angle = options.sphere_angle * kDegree;
   if (!results.infos.empty()) {
-    if (options.check_path) report(results.infos, options);
+    if (options.check_path) report(results.infos, options, prints);
     if (options.common.json_path) writeText(*options.common.json_path, modelsInfo(results.infos, sphere_angle));
     if (options.dope_folder) writeDope(results.infos, *options.dope_folder, sphere_angle);
     if (options.isaac_path) writeIsaac(results.infos, *options.isaac_path);

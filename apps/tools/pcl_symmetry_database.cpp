@@ -198,6 +198,7 @@ private:
 
   int show(const SymmetryDatabase& database) const {
     const bool all = options_.command == "list" || options_.arguments.empty();
+    const bool prints = isStandardOutputFree({options_.csv, options_.common.json_path});
     nlohmann::json json{{"models", nlohmann::json::array()}};
     std::string table = "name,points,time,source,checksum,tags\n";
     for (const std::string& name : all ? database.names() : options_.arguments) {
@@ -205,8 +206,8 @@ private:
       const std::string time = timeText(model.time), tags = boost::algorithm::join(model.source.tags, " ");
       json["models"].push_back(jsonOf(model));
       table += csvLine({name, model.num_points, time, model.source.path, model.source.checksum, tags});
-      if (options_.command == "list") std::printf("%s\n", name.c_str());
-      if (!all)
+      if (prints && options_.command == "list") std::printf("%s\n", name.c_str());
+      if (prints && !all)
         std::printf("%s\n  points    %zu\n  stored    %s\n  source    %s\n  checksum  %s\n  tags      %s\n",
                     name.c_str(), static_cast<std::size_t>(model.num_points), time.c_str(), model.source.path.c_str(),
                     model.source.checksum.c_str(), tags.c_str());
@@ -215,8 +216,9 @@ private:
       const std::uintmax_t bytes = fs::file_size(options_.file);
       json = {
           {"database", options_.file}, {"num_models", database.size()}, {"unit", database.unit()}, {"bytes", bytes}};
-      std::printf("models  %zu\nunit    %s\nbytes   %ju\n", database.size(),
-                  database.unit().empty() ? "not given" : database.unit().c_str(), bytes);
+      if (prints)
+        std::printf("models  %zu\nunit    %s\nbytes   %ju\n", database.size(),
+                    database.unit().empty() ? "not given" : database.unit().c_str(), bytes);
     }
     if (options_.csv) writeText(*options_.csv, table);
     writeJson(json);
@@ -228,7 +230,7 @@ private:
     {
       Step step(console_, "Checking " + options_.file);
       damages = SymmetryDatabase::check(options_.file);
-      step.done(damages.empty() ? "no damage" : std::to_string(damages.size()) + " damages");
+      step.done(damages.empty() ? "no damage" : counted(damages.size(), "damage"));
     }
     writeJson({{"damages", damages}});
     if (!damages.empty()) throw InputError(options_.file + ": " + boost::algorithm::join(damages, "; "));

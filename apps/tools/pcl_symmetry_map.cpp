@@ -361,7 +361,7 @@ void analyze(const MapOptions& options, FileJob& job) {
 
   Step mapping(job.console(), "Mapping back to points");
   const MappedCloud mapped(input.points, map, job.common().threads, mapping);
-  const double mapping_ms = mapping.done(std::to_string(mapped.symmetry.size()) + " points");
+  const double mapping_ms = mapping.done(counted(mapped.symmetry.size(), "point"));
 
   std::string text;
   for (const std::string& line_of_best : map.lines) text += line_of_best + "\n";

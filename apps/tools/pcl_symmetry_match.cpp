@@ -1,6 +1,5 @@
 /// Which models of a database a cloud is like, or shows.
 #include <algorithm>
-#include <cstdio>
 #include <nlohmann/json.hpp>
 #include <string>
 
@@ -33,7 +32,7 @@ struct MatchOptions {
 CommandLine commandLine(MatchOptions& options) {
   CommandLine line("pcl_symmetry_match",
                    "Finds the models of a database that are most like a cloud or mesh, in any pose and of any size. "
-                   "With -recognize, the model that a scan shows, with its pose (-json), or 'unknown object'.",
+                   "With -recognize, the model that a scan shows, with its pose, or 'unknown object'.",
                    "pcl_symmetry_match models.db scan.pcd -recognize -json found.json");
   line.positional("database", options.database, "file of pcl_symmetry_database")
       .positional("input", options.input, kShapeFiles)
@@ -48,21 +47,21 @@ CommandLine commandLine(MatchOptions& options) {
 }
 
 nlohmann::json match(const Console& console, const SymmetryDatabase& database, const InputShape& input,
-                     const MatchOptions& options) {
+                     const MatchOptions& options, std::string& text) {
   Step step(console, "Matching");
   const std::vector<ModelMatch> matches =
       database.match(*input.points, options.num_matches, shifted(options.common.viewpoint, input.shift()));
-  step.done(std::to_string(matches.size()) + " of " + std::to_string(database.size()) + " models");
+  step.done(std::to_string(matches.size()) + " of " + counted(database.size(), "model"));
   nlohmann::json json{{"matches", nlohmann::json::array()}};
   for (const ModelMatch& found : matches) {
-    std::printf("%8.4f %s\n", found.distance, found.name.c_str());
+    text += formatted("%8.4f %s\n", found.distance, found.name.c_str());
     json["matches"].push_back({{"name", found.name}, {"distance", found.distance}});
   }
   return json;
 }
 
 nlohmann::json recognize(const Console& console, const SymmetryDatabase& database, const InputShape& input,
-                         const MatchOptions& options) {
+                         const MatchOptions& options, std::string& text) {
   RecognitionOptions recognition = options.recognition;
   recognition.num_threads = options.common.threads;
   Step step(console, "Recognizing");
@@ -70,16 +69,17 @@ nlohmann::json recognize(const Console& console, const SymmetryDatabase& databas
   found.resize(std::min(found.size(), static_cast<std::size_t>(options.num_matches)));
   step.done(found.empty() ? "unknown object" : found.front().name);
   nlohmann::json json{{"known", !found.empty()}, {"models", nlohmann::json::array()}};
-  if (found.empty()) std::printf("unknown object\n");
+  if (found.empty()) text = "unknown object\n";
   for (const RecognizedModel& model : found) {
-    std::printf("%s  confidence %.3f  support %.3f  conflict %.3f\n", model.name.c_str(), model.confidence,
-                model.score.support, model.score.conflict);
-    json["models"].push_back(
-        {{"name", model.name},
-         {"confidence", model.confidence},
-         {"support", model.score.support},
-         {"conflict", model.score.conflict},
-         {"transform", rowMajor(shiftedBack(model.T_model_scan, input.shift(), Eigen::Vector3d::Zero()))}});
+    const Eigen::Isometry3d T_model_scan = shiftedBack(model.T_model_scan, input.shift(), Eigen::Vector3d::Zero());
+    text += formatted("%s  confidence %.3f  support %.3f  conflict %.3f\n", model.name.c_str(), model.confidence,
+                      model.score.support, model.score.conflict) +
+            matrixLines(T_model_scan, lengthDigits(input.shift()));
+    json["models"].push_back({{"name", model.name},
+                              {"confidence", model.confidence},
+                              {"support", model.score.support},
+                              {"conflict", model.score.conflict},
+                              {"transform", rowMajor(T_model_scan)}});
   }
   return json;
 }
@@ -98,9 +98,12 @@ int run(int argc, char** argv) {
   database_options.num_threads = options.common.threads;
   const SymmetryDatabase database(options.database, database_options);
   if (database.size() == 0) throw InputError(options.database + ": holds no models");
+  std::string text;
   const nlohmann::json json = namingFile(options.input, [&] {
-    return options.recognize ? recognize(console, database, input, options) : match(console, database, input, options);
+    return options.recognize ? recognize(console, database, input, options, text)
+                             : match(console, database, input, options, text);
   });
+  if (isStandardOutputFree({options.common.json_path})) writeText("-", text);
   if (options.common.json_path) writeText(*options.common.json_path, jsonText(json) + "\n");
   return 0;
 }

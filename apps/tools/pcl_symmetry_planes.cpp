@@ -339,7 +339,7 @@ Findings search(const FileJob& job, const InputShape& input, const PlanesOptions
   findings.viewpoint = refinement.getUsedViewpoint();
   findings.num_points = refinement.getUsedIndices().size();
   std::string summary = counted(findings.planes.size(), "plane");
-  if (!findings.axes.empty()) summary += ", " + std::to_string(findings.axes.size()) + " axes";
+  if (!findings.axes.empty()) summary += ", " + counted(findings.axes.size(), "axis", "axes");
   if (findings.viewpoint)
     summary += std::string(", seen from one side, viewpoint ") + toString(findings.viewpoint_source);
   const double searching_ms = searching.done(summary);

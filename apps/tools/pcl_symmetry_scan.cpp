@@ -102,7 +102,7 @@ std::vector<VirtualScan> scanAll(const Console& console, const Shape& shape, con
     num_points += scans.back().num_points;
     scanning.progress(double(scans.size()) / double(views.size()));
   }
-  scanning_ms = scanning.done(std::to_string(num_points) + " points");
+  scanning_ms = scanning.done(counted(num_points, "point"));
   return scans;
 }
 
@@ -122,6 +122,7 @@ int run(int argc, char** argv) {
   line.goWith("an output of PCD", !boost::algorithm::iends_with(options.output, ".ply"), {"format"});
   const std::vector<View> views = viewsOf(options);
   for (const View& view : views) checkTarget(view.path);
+  isStandardOutputFree({options.output, options.common.json_path});
   options.scanner.seed = options.common.seed;
   options.scanner.num_threads = options.common.threads;
   if (options.field_of_view) options.scanner.field_of_view = *options.field_of_view * kDegree;
@@ -130,7 +131,7 @@ int run(int argc, char** argv) {
   Step loading(console, "Loading " + options.input);
   const Shape shape = loadShape(options.input);
   if (!shape.mesh) throw InputError(options.input + ": has no faces, the scanner needs a mesh");
-  const double loading_ms = loading.done(std::to_string(shape.mesh->polygons.size()) + " faces");
+  const double loading_ms = loading.done(counted(shape.mesh->polygons.size(), "face"));
   warnOfLeftOut(console, options.input, shape);
 
   double scanning_ms = 0.0;

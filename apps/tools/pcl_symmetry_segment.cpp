@@ -158,7 +158,10 @@ void analyze(const SegmentOptions& options, FileJob& job) {
   const std::vector<int>& labels = segmentation.getLabels();
   std::vector<std::vector<nlohmann::json>> rows;
   for (std::size_t i = 0; i < segments.size(); ++i) rows.push_back({i, segments[i].indices.size()});
-  job.report({"", describe(job.path(), shape, segments, segmentation.getTree(), segmentation.getImages(), ms), rows});
+  const std::string least = segments.size() > 1 ? std::to_string(segments.back().indices.size()) + " to " : "",
+                    text = counted(segments.size(), "part") + " of " + least +
+                           counted(segments.front().indices.size(), shape.mesh ? "face" : "point") + "\n";
+  job.report({text, describe(job.path(), shape, segments, segmentation.getTree(), segmentation.getImages(), ms), rows});
   if (options.output) saveLabeled(job.output(*options.output), shape, labels);
   if (options.html_path) {
     PictureScene scene = sceneOf(options, shape, labels);
@@ -168,10 +171,10 @@ void analyze(const SegmentOptions& options, FileJob& job) {
       PicturePanel alone;
       for (const int label : labels) alone.segments.push_back(label == part ? part : -1);
       alone.label =
-          formatted("part %d: %zu %s", part + 1, segments[part].indices.size(), shape.mesh ? "faces" : "points");
+          formatted("part %d: ", part + 1) + counted(segments[part].indices.size(), shape.mesh ? "face" : "point");
       scene.panels.push_back(std::move(alone));
     }
-    writePage(scene, {job.path(), ""}, job.output(*options.html_path));
+    writePage(scene, {job.path(), text}, job.output(*options.html_path));
   }
   if (!options.png_path) return;
   const std::string picture = job.output(*options.png_path);

@@ -127,8 +127,7 @@ double choose(ViewpointSelection& selection, const InputShape& input, const View
   selection.setInputCloud(input.points);
   if (options.up) selection.setUp(*options.up);
   selection.setSeparation(options.separation * kPi / 180.0);
-  return searching.done(std::to_string(planes.size()) + " planes, " +
-                        counted(refinement.getAxes().size(), "axis", "axes"));
+  return searching.done(counted(planes.size(), "plane") + ", " + counted(refinement.getAxes().size(), "axis", "axes"));
 }
 
 struct ChosenViews {

@@ -102,6 +102,7 @@ class Align(ToolTest):
             self.run_tool(of, names[-1], f"-direction {x},{y},0.7 -points 4000 -random_pose -seed {k + 1}", tool="scan")
         found = self.report(*names, "-merge all.ply -png all.png")
         self.assertEqual(["left_out" in scan for scan in found["scans"]], [False] * 4 + [True])
+        self.assertEqual(self.output.splitlines()[-1], f"4 of 5 scans, {len(self.points('all.ply'))} points")
         self.assertEqual(set(self.points("all.ply")["scan"]), set(range(4)))
         self.fails(2, "-merge and -target", *names[:2], "-merge all.ply -target chair.off")
         self.fails(2, "-merge FILE brings several scans together", *names)
@@ -149,7 +150,6 @@ class Align(ToolTest):
         np.testing.assert_array_equal(after["label"][len(before):], added)
         self.assert_reflected(after, len(before))
 
-    def test_completes_nothing_that_has_no_symmetry_unless_told_to(self):
     def test_leaves_out_what_is_no_point(self):
         """But rows and columns stay, also in a PLY file, where the element camera has their numbers."""
         scan, _ = self.scan()
@@ -170,6 +170,7 @@ class Align(ToolTest):
         self.run_tool(self.write("rows.pcd", tool_run.pcd(rows)), "rows.ply")
         self.assertTrue(np.isfinite(tool_run.xyz(self.points("rows.ply"))).all())
 
+    def test_completes_nothing_that_has_no_symmetry_unless_told_to(self):
         report = self.report(self.scan()[0], "out.ply -complete")["completed"]
         self.assertIn(report["kind"], ("symmetry", "possible"))
         self.assertGreater(report["confidence"], 0.2)

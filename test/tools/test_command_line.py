@@ -1,4 +1,5 @@
 """The command line of all tools: flags, their help and errors, and many inputs."""
+import contextlib
 import csv
 import io
 import json
@@ -171,6 +172,21 @@ class Flags(ToolTest):
             self.fails(1, f"standard input: {said}" if said in ("is of no known kind", "is empty") else said, "-", input=content)
 
 
+    def test_outputs_to_a_pipe_are_alone_in_it(self):
+        box = self.write("box.off", tool_run.box())
+        self.run_tool("build m.db -points 500", box, tool="database")
+        self.run_tool(box, "a.pcd", tool="scan")
+        for tool, arguments in (("bop", "box.off -points 500"), ("match", "m.db box.off -points 500"), ("match", "m.db a.pcd -recognize"),
+                                ("database", "list m.db"), ("database", "info m.db"), ("database", "info m.db box"),
+                                ("align", "a.pcd a.pcd -merge all.pcd"), ("scene", "a.pcd -no_frames")):
+            self.run_tool(arguments, "-json -", tool=tool)
+            json.loads(self.output)
+        self.run_tool("list m.db -csv -", tool="database")
+        self.assertTrue(self.output.startswith("name,points,"), self.output)
+        for tool, arguments in (("scene", "a.pcd -"), ("scan", "box.off -"), ("align", "a.pcd a.pcd -merge -")):
+            self.fails(2, "only one output can be -", arguments, "-json -", tool=tool)
+
+
 class ManyInputs(ToolTest):
     """Lines of JSON and rows of a table, in the order of the inputs."""
     tool = "planes"
@@ -191,6 +207,28 @@ class ManyInputs(ToolTest):
             for row, (_, plane) in zip(rows, planes, strict=True):
                 self.assertEqual([float(number) for number in row[3:7]], plane["coefficients"])
                 self.assertEqual(row[7:13], [""] * 6, "a plane has no point and direction")
+
+    def test_are_tables_at_a_terminal_and_lines_of_json_in_a_pipe(self):
+        paths = [self.write(name, shape) for name, shape in (("a.off", tool_run.box()), ("b.off", "no shape"), ("c.off", tool_run.CYLINDER))]
+        self.run_tool(*paths, "-points 500", code=1)
+        self.assertEqual([json.loads(line)["file"] for line in self.output.splitlines()], list(map(str, paths)))
+        self.assertTrue(self.error.startswith("3 files: 2 done, 1 failed\n"), self.error)
+        ours, theirs = os.openpty()
+        command = [tool_run.TOOLS / "pcl_symmetry_planes", *paths]
+        tool = subprocess.Popen(command, stdout=theirs, stderr=theirs)
+        os.close(theirs)
+        shown = b""
+        with contextlib.suppress(OSError):  # the end
+            while piece := os.read(ours, 1 << 16):
+                shown += piece
+        os.close(ours)
+        self.assertEqual(tool.wait(), 1)
+        lines = shown.decode().splitlines()
+        self.assertEqual(lines[0], str(paths[0]))
+        self.assertEqual(lines[1].split()[:2], ["plane", "a"])
+        self.assertEqual(lines[5], str(paths[2]))
+        self.assertIn("axis of revolution", lines[6])
+        self.assertEqual(lines[-2], "3 files: 2 done, 1 failed")
 
     def test_resume_where_they_were_interrupted(self):
         names = ("a.off", "b, or not.off", "c.off", "d.off")

@@ -125,6 +125,8 @@ class Segment(ToolTest):
         self.assertEqual(tree["tree"][0]["parent"], -1)
         self.assertNotEqual(tree["tree"][0]["planes"], [])
         self.assertIn("3 parts", self.error)
+        sizes = np.bincount(self.labels())
+        self.assertEqual(self.output, f"3 parts of {sizes[2]} to {sizes[0]} faces\n")
         self.assertEqual(tool_run.Image.open(self.folder / "p.png").size, (300, 300))
         self.run_tool(self.mesh, "-parts 3 -size 300 -up 1,0,0 -png q.png")
         self.assertNotEqual((self.folder / "p.png").read_bytes(), (self.folder / "q.png").read_bytes())

@@ -90,6 +90,7 @@ class Database(Recognition):
         answer = self.match("models.db", self.box, "-recognize")
         self.assertTrue(answer["known"])
         self.assertEqual((answer["models"][0]["name"], len(answer["models"][0]["transform"])), ("box", 16))
+        np.testing.assert_allclose(np.array(self.output.split()[7:23], float), answer["models"][0]["transform"], atol=1e-5)
         self.assertNotIn("1 models", self.error)
         self.run_tool("remove models.db box vase")
         self.run_tool("rebuild models.db")
