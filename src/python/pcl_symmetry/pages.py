@@ -22,6 +22,11 @@ _AXIS_COLOR, _PLAIN_POINT, _PLAIN_MESH = [0.84, 0.37, 0.0], [76, 97, 133], [219,
 _GREY, _MOST_POINTS = np.array([170, 170, 170], np.uint8), 200_000
 
 
+def counted(number: int, what: str) -> str:
+    plural = what[:-2] + "es" if what == "axis" else what + "s"
+    return f"{number} {what if number == 1 else plural}"
+
+
 class Page:
     """A page of HTML. A notebook shows it; save() writes it for any browser."""
 
@@ -165,7 +170,7 @@ def view_of(found: Union[Planes, Scene], points: Any) -> Tuple[Any, ...]:
 def label_of(found: Scene, index: int) -> str:
     planes = found[index].planes
     best = max([p.confidence for p in (*planes, *planes.axes)], default=0.0)
-    what = "axis of revolution" if planes.axes else f"{len(planes)} planes" if len(planes) > 1 else "1 plane" if planes else "no symmetry"
+    what = "axis of revolution" if planes.axes else counted(len(planes), "plane") if planes else "no symmetry"
     name = found[index].models[0].name + ", " if found[index].models else ""
     return f"object {index + 1}: {name}{what}" + (f", confidence {best:.2f}" if best else "")
 
@@ -186,9 +191,9 @@ def page_of_scene(found: Scene, points: Any) -> Page:
         squares = [dict(corners=panels.inside(corners_of(plane, of_object)), color=color) for plane in each.planes]
         drawn.append(dict(axes=lines, planes=squares[: not lines], planes_of_object=squares))
     first = dict(axes=[a for d in drawn for a in d["axes"]], planes=[p for d in drawn for p in d["planes"]])
-    panels.add(f"{len(found)} objects", point_colors=_bytes(colors), **first)
+    panels.add(counted(len(found), "object"), point_colors=_bytes(colors), **first)
     for k, d in enumerate(drawn):
         own = np.where((labels == k + 1)[:, None], colors, _GREY)
         panels.add(label_of(found, k), point_colors=_bytes(own), axes=d["axes"], planes=d["planes_of_object"])
     of_objects = panels.used[labels > 0] if (labels > 0).any() else panels.used
-    return panels.page(f"Scene({len(found)} objects, {len(found.supports)} supporting planes)", *view_of(found, of_objects))
+    return panels.page(f"Scene({counted(len(found), 'object')}, {counted(len(found.supports), 'supporting plane')})", *view_of(found, of_objects))

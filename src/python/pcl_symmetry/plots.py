@@ -7,17 +7,13 @@ from typing import TYPE_CHECKING, Any
 import matplotlib.pyplot as plt
 import numpy as np
 
-from .pages import corners_of, diagonal, label_of, rows_of_planes, rows_of_shown, support_colors, view_of
+from .pages import corners_of, counted, diagonal, label_of, rows_of_planes, rows_of_shown, support_colors, view_of
 
 if TYPE_CHECKING:
     from .results import Frame, Map, Planes, Profile, Scene
 
 # Colors that remain apart for color-blind eyes (Okabe and Ito), as in the pictures of the tools.
 COLORS = ["#E69F00", "#0072B2", "#009E73", "#CC79A7", "#D55E00", "#56B4E9", "#F0E442", "#595959"]
-
-
-def _counted(number: int, what: str) -> str:
-    return f"{number} {what}" if number == 1 else f"{number} {what[:-2]}es" if what == "axis" else f"{number} {what}s"
 
 
 def _axes_for(points: Any, axes: Any, title: str, colors: Any = "#4D6185", view: Any = (), around: Any = None) -> Any:
@@ -58,7 +54,7 @@ def plot_planes(found: Planes, points: Any, axes: Any) -> Any:
     if found.planes and found._support:  # as the pictures of the tools: the support for the best plane
         colors = support_colors(found.point_support(0).reshape(-1)) / 255
     counts = ((len(found), "plane"), (len(found.axes), "axis"))
-    title = ", ".join(_counted(number, what) for number, what in counts if number) or "no symmetry"
+    title = ", ".join(counted(number, what) for number, what in counts if number) or "no symmetry"
     axes = _axes_for(points, axes, title, colors, view_of(found, points[np.isfinite(points).all(axis=1)]))
     _draw(axes, found, points, COLORS)
     return axes
@@ -79,7 +75,7 @@ def plot_scene(found: Scene, points: Any, axes: Any) -> Any:
     finite = np.isfinite(points).all(axis=1)
     of_objects = points[finite & (labels > 0)] if len(found) else points[finite]
     shown = finite if not len(found) else (np.abs(points - of_objects.mean(axis=0)) < 1.5 * diagonal(of_objects)).all(axis=1)
-    axes = _axes_for(points[shown], axes, _counted(len(found), "object"), colors[shown], view_of(found, of_objects), of_objects)
+    axes = _axes_for(points[shown], axes, counted(len(found), "object"), colors[shown], view_of(found, of_objects), of_objects)
     for k, each in enumerate(found):
         color = COLORS[k % len(COLORS)]
         _draw(axes, each.planes, points[each.rows], () if each.planes.axes else len(each.planes) * [color])
