@@ -8,6 +8,7 @@
 #include <Eigen/Core>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "command_line/tool_errors.h"
@@ -42,6 +43,7 @@ struct PicturePanel {
   /// gray); the points of the mesh are then not drawn. Empty for one plain color.
   std::vector<int> segments = {};
   bool show_points = true;  ///< false: the mesh alone; it takes the colors where its vertices are the points
+  std::vector<std::pair<int, std::string>> legend = {};  ///< segments and their names, in a corner of the picture
 };
 
 /// What a picture shows: the same shape in every panel.

@@ -182,6 +182,26 @@ vtkSmartPointer<vtkTextActor> labelActor(const std::string& text, int font_size)
   return actor;
 }
 
+void addLegend(vtkRenderer& renderer, const PicturePanel& panel, int panel_height, int font_size) {
+  constexpr std::size_t kMostNames = 16;
+  const std::size_t number = std::min(panel.legend.size(), kMostNames);
+  for (std::size_t i = 0; i < number; ++i) {
+    const auto& [segment, name] = panel.legend[i];
+    const Eigen::Vector3d color = segmentColor(segment);
+    const double ink = color.mean() < 0.45 ? 1.0 : 0.1;
+    vtkNew<vtkTextActor> actor;
+    actor->SetInput((" " + name + " ").c_str());
+    actor->GetTextProperty()->SetFontFamilyToArial();
+    actor->GetTextProperty()->SetFontSize(font_size);
+    actor->GetTextProperty()->SetColor(ink, ink, ink);
+    actor->GetTextProperty()->SetBackgroundColor(color.x(), color.y(), color.z());
+    actor->GetTextProperty()->SetBackgroundOpacity(1.0);
+    actor->GetPositionCoordinate()->SetCoordinateSystemToNormalizedViewport();
+    actor->GetPositionCoordinate()->SetValue(0.02, 0.02 + 1.6 * font_size * (number - 1 - i) / panel_height);
+    renderer.AddActor2D(actor);
+  }
+}
+
 vtkSmartPointer<vtkScalarBarActor> colorBar(int panel_width, int panel_height, int font_size) {
   vtkNew<vtkLookupTable> table;
   table->SetNumberOfTableValues(128);

@@ -42,6 +42,10 @@ void addPlane(vtkRenderer& renderer, const PlanePatch& plane, const PictureScene
 /// \param font_size pixels.
 vtkSmartPointer<vtkTextActor> labelActor(const std::string& text, int font_size);
 
+/// Names of the panel's segments on their colors, in the lower left corner.
+/// \param panel_height,font_size pixels.
+void addLegend(vtkRenderer& renderer, const PicturePanel& panel, int panel_height, int font_size);
+
 /// The colors of the support.
 /// \param panel_width,panel_height,font_size pixels.
 vtkSmartPointer<vtkScalarBarActor> colorBar(int panel_width, int panel_height, int font_size);

@@ -122,9 +122,9 @@ void addPanels(vtkRenderWindow& window, const PictureScene& scene, const PanelGr
     const bool has_bar = scene.show_color_bar && !panel.support.empty();
     fitCamera(*renderer, scene, double(grid.panel_width) / grid.panel_height, has_bar ? 0.12 : 0.0);
     if (!panel.label.empty()) renderer->AddActor2D(labelActor(panel.label, font_size));
-    if (has_bar) {
-      renderer->AddActor2D(colorBar(grid.panel_width, grid.panel_height, std::max(8, font_size * 3 / 4)));
-    }
+    const int small_font = std::max(8, font_size * 3 / 4);
+    addLegend(*renderer, panel, grid.panel_height, small_font);
+    if (has_bar) renderer->AddActor2D(colorBar(grid.panel_width, grid.panel_height, small_font));
     window.AddRenderer(renderer);
   }
 }

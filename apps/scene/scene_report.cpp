@@ -157,6 +157,8 @@ PictureScene closeUp(const InputShape& input, const SceneAnalysis& scene, std::s
   const Eigen::Vector3d middle = points->front().getVector3fMap().cast<double>();
   *points += object.added;
   panel.segments.resize(points->size(), static_cast<int>(k) + kAddedColor);
+  if (!object.added.empty())
+    panel.legend = {{static_cast<int>(k), "measured"}, {static_cast<int>(k) + kAddedColor, "added"}};
   panel.label = std::to_string(k + 1) + ": " + summaryOf(object);
   PictureScene picture;
   picture.points = points;
@@ -182,9 +184,11 @@ PictureScene overview(const InputShape& input, const SceneAnalysis& scene) {
     if (numbers[i] > 0) middle += point.getVector3fMap().cast<double>(), ++num_of_objects;
   }
   if (num_of_objects > 0.0) middle /= num_of_objects;
-  for (std::size_t k = 0; k < scene.objects.size(); ++k)
+  for (std::size_t k = 0; k < scene.objects.size(); ++k) {
     markFindings(panel, scene.objects[k], SymmetryScene::Cloud(*input.points, scene.objects[k].indices),
                  segmentColor(static_cast<int>(k)));
+    panel.legend.emplace_back(k, std::to_string(k + 1));
+  }
   panel.label = counted(scene.objects.size(), "object") + ", " + counted(scene.supports.size(), "supporting plane");
   PictureScene picture;
   picture.points = points;

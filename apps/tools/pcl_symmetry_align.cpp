@@ -4,6 +4,7 @@
 #include <pcl/common/transforms.h>
 
 #include <algorithm>
+#include <boost/filesystem/path.hpp>
 #include <cmath>
 #include <exception>
 #include <nlohmann/json.hpp>
@@ -326,8 +327,10 @@ PictureScene sceneOf(const InputShape& input, const SymmetryFrame& frame) {
 
 /// Two clouds in two colors.
 /// \param num_first points of the first.
-PictureScene sceneOf(const pcl::PointCloud<pcl::PointXYZ>& both, std::size_t num_first, const std::string& label) {
+PictureScene sceneOf(const pcl::PointCloud<pcl::PointXYZ>& both, std::size_t num_first, const std::string& label,
+                     const std::string& first, const std::string& second) {
   PicturePanel panel{label};
+  panel.legend = {{0, first}, {1, second}};
   panel.segments.assign(num_first, 0);
   panel.segments.resize(both.size(), 1);
   return {pcl::make_shared<pcl::PointCloud<pcl::PointXYZ>>(both), std::nullopt, {panel}};
@@ -339,7 +342,8 @@ PictureScene sceneOf(const InputShape& input, const InputShape& target, const Ei
   const Eigen::Isometry3d motion =
       Eigen::Translation3d(-target.shift()) * T_target_input * Eigen::Translation3d(input.shift());
   pcl::transformPointCloud(*input.points, moved, motion.matrix());
-  return sceneOf(*target.points + moved, target.points->size(), "target (1) and the input in it (2)");
+  return sceneOf(*target.points + moved, target.points->size(), "target (1) and the input in it (2)", "target",
+                 "input");
 }
 
 Motion registerTo(const Console& console, const InputShape& input, const InputShape& target,
@@ -483,7 +487,7 @@ void analyze(const AlignOptions& options, FileJob& job) {
   if (options.complete && motion.converged) {
     const pcl::PointCloud<pcl::PointXYZ> both =
         complete(console, input, common, *best, fields, motion.json["completed"]);
-    motion.scene = sceneOf(both, input.points->size(), "the input (1) and what completes it (2)");
+    motion.scene = sceneOf(both, input.points->size(), "the input (1) and what completes it (2)", "input", "added");
   }
   job.report({motion.text, motion.json, rowsOf(motion)});
   if (!motion.converged)
@@ -606,6 +610,9 @@ int mergeScans(const AlignOptions& options) {
   nlohmann::json json = describe(inputs, registered, motions);
   PicturePanel panel{"scans"};
   panel.segments = cloud.scans;
+  for (std::size_t k = 0; k < inputs.size(); ++k)
+    if (registered.scans[k].left_out.empty())
+      panel.legend.emplace_back(k, boost::filesystem::path(inputs[k].path).filename().string());
   PictureScene scene{cloud.shape.points, std::nullopt, {panel}};
   std::exception_ptr incomplete;
   if (options.complete) {
@@ -614,7 +621,7 @@ int mergeScans(const AlignOptions& options) {
     try {
       const BestPlane best = completingPlane(console, cloud.shape, common, options.any_plane);
       const auto both = complete(console, cloud.shape, common, best, cloud.fields, json["completed"]);
-      scene = sceneOf(both, cloud.shape.points->size(), "the scans (1) and what completes them (2)");
+      scene = sceneOf(both, cloud.shape.points->size(), "the scans (1) and what completes them (2)", "scans", "added");
     } catch (const InputError&) {
       json.erase("completed");
       incomplete = std::current_exception();

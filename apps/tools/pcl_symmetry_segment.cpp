@@ -114,6 +114,8 @@ nlohmann::json describe(const std::string& path, const Shape& shape, const std::
 PictureScene sceneOf(const SegmentOptions& o, const Shape& shape, const std::vector<int>& labels) {
   PicturePanel panel;
   panel.segments = labels;
+  for (int part = 0; part <= *std::max_element(labels.begin(), labels.end()); ++part)
+    panel.legend.emplace_back(part, std::to_string(part));
   PictureScene scene{shape.points, shape.mesh, {panel}};
   if (o.up) standUpright(scene, *o.up);
   return scene;

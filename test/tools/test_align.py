@@ -102,6 +102,9 @@ class Align(ToolTest):
             self.run_tool(of, names[-1], f"-direction {x},{y},0.7 -points 4000 -random_pose -seed {k + 1}", tool="scan")
         found = self.report(*names, "-merge all.ply -png all.png")
         self.assertEqual(["left_out" in scan for scan in found["scans"]], [False] * 4 + [True])
+        corner = np.asarray(tool_run.Image.open(self.folder / "all.png").convert("RGB"), int)[-120:, :20]
+        for color in ((230, 158, 0), (0, 115, 178), (0, 158, 115), (204, 120, 166)):
+            self.assertTrue((abs(corner - color).max(axis=2) <= 2).any(), f"{color} is in the legend")
         self.assertEqual(self.output.splitlines()[-1], f"4 of 5 scans, {len(self.points('all.ply'))} points")
         self.assertEqual(set(self.points("all.ply")["scan"]), set(range(4)))
         self.fails(2, "-merge and -target", *names[:2], "-merge all.ply -target chair.off")
