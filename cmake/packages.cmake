@@ -10,13 +10,26 @@ if(tools AND HELP2MAN_PROGRAM)
   install(DIRECTORY ${manuals}/completions DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion COMPONENT tools)
 endif()
 
-# What to read, and programs to start from.
-install(FILES ${PROJECT_SOURCE_DIR}/README.md DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT development)
-install(DIRECTORY ${PROJECT_SOURCE_DIR}/apps/examples DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT development
-        PATTERN CMakeLists.txt EXCLUDE)  # it is a part of this project; README.md has one for a program
+# What to read, with the pictures, schemas and programs that it links to, in the folders of the repository, so that links lead
+# there; test/ has another name, because no package holds tests.
+file(GLOB_RECURSE pages RELATIVE ${PROJECT_SOURCE_DIR} CONFIGURE_DEPENDS apps/*.md apps/*.png apps/*.json src/*.md test/benchmark/*.md
+     apps/examples/*.cpp apps/examples/*.py)
+list(APPEND pages README.md CHANGELOG.md CONTRIBUTING.md apps/gallery/planar.py test/consumer/cmake_core/main.cpp test/pages/check_pages.sh)
+set(component development)
 if(tools)
-  install(FILES ${PROJECT_SOURCE_DIR}/apps/README.md DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT tools RENAME tools.md)
+  set(component tools)
 endif()
+foreach(page ${pages})
+  string(REGEX REPLACE "^test/" "checks/" place ${page})
+  get_filename_component(folder ${place} DIRECTORY)
+  if(place MATCHES "\\.md$")
+    install(CODE "file(READ \"${PROJECT_SOURCE_DIR}/${page}\" text)
+                  string(REGEX REPLACE \"]\\\\(([./]*)test/\" \"](\\\\1checks/\" text \"\${text}\")
+                  file(WRITE \"${PROJECT_BINARY_DIR}/pages/${place}\" \"\${text}\")" COMPONENT ${component})
+    set(page ${PROJECT_BINARY_DIR}/pages/${place})
+  endif()
+  install(FILES ${page} DESTINATION ${CMAKE_INSTALL_DOCDIR}/${folder} COMPONENT ${component})
+endforeach()
 
 set(CPACK_PACKAGE_VENDOR "pcl_symmetry")
 set(CPACK_PACKAGE_CONTACT "pcl_symmetry contributors")

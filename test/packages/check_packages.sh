@@ -70,9 +70,10 @@ if [[ -z $root ]]; then
   use_packages env PATH="$usr/bin:$PATH" PYTHONPATH="$usr/lib/python3/dist-packages"
   for file in include/pcl_symmetry/symmetry_detection.h share/man/man1/pcl_symmetry_planes.1.gz \
     share/bash-completion/completions/pcl_symmetry_planes share/doc/pcl_symmetry/README.md \
-    share/doc/pcl_symmetry/tools.md share/doc/pcl_symmetry/examples/01_first_plane.cpp; do
+    share/doc/pcl_symmetry/apps/README.md share/doc/pcl_symmetry/apps/examples/01_first_plane.cpp; do
     [[ -s $usr/$file ]] || fail "no package holds /usr/$file"
   done
+  bash "$source/test/consumer/check_links.sh" "$usr/share/doc/pcl_symmetry" || fail "links of pages lead nowhere"
   for word in database:merge map:voting; do
     grep -qw "${word#*:}" "$usr/share/bash-completion/completions/pcl_symmetry_${word%:*}" || fail "completion lacks $word"
   done
