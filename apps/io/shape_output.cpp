@@ -19,7 +19,6 @@
 #include <mutex>
 #include <optional>
 
-#include "io/cloud_fields.h"
 #include "io/file_text.h"
 #include "io/load_module.h"
 
@@ -246,9 +245,7 @@ void saveCloud(const std::string& path, const pcl::PCLPointCloud2& cloud, const 
   if (cloud.data.size() < std::size_t{cloud.width} * cloud.height * cloud.point_step) {
     throw InputError(path + ": not written, the cloud holds fewer points than width * height");
   }
-  pcl::PCLPointCloud2 fields = packed(cloud);
-  if (extension == ".ply" && fields.height == 1)  // of rows and columns PCL's camera element keeps the shape
-    pcl::copyPointCloud(pcl::PCLPointCloud2(fields), finiteIndices(fields), fields);
+  const pcl::PCLPointCloud2 fields = packed(cloud);
   writeAtomically(
       path,
       [&](const std::string& name) {

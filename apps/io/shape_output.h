@@ -44,7 +44,7 @@ void makeFolder(const std::string& path);
 void writeText(const std::string& path, const std::string& text);
 
 /// Writes a cloud with all its fields and the pose of the sensor; PCD or (binary) PLY by the extension of the name;
-/// PCD to standard output, "-". A .ply file holds the finite points alone, unless the cloud is organized.
+/// PCD to standard output, "-".
 /// \throws InputError for another extension, an empty cloud, or a file that cannot be written.
 void saveCloud(const std::string& path, const pcl::PCLPointCloud2& cloud, const Eigen::Vector4f& sensor_origin,
                const Eigen::Quaternionf& sensor_orientation, PCDEncoding encoding = PCDEncoding::BinaryCompressed);
