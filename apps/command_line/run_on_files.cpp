@@ -1,6 +1,7 @@
 #include "command_line/run_on_files.h"
 
 #include <unistd.h>
+
 #include <algorithm>
 #include <boost/algorithm/string.hpp>
 #include <boost/filesystem.hpp>

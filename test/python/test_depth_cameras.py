@@ -239,6 +239,7 @@ class OrganizedArrays(unittest.TestCase):
         page = scene.show(self.frame)
         shown = json.loads(page.html.split('id="scene">')[1].split("</script>")[0])
         self.assertEqual(len(shown["panels"]), 3)
+        self.assertIn("Scene(2 objects, 1 supporting plane)", page.html)
         if importlib.util.find_spec("matplotlib"):
             squares = sum(len(each.planes) for each in scene if not each.planes.axes)
             axes = scene.plot(self.frame)

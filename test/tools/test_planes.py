@@ -122,6 +122,7 @@ class Planes(ToolTest):
         self.assertGreater(axis["score"], 0.9)
         self.assertGreater(abs(report["planes"][0]["coefficients"][2]), np.cos(0.01))
         self.assertIn("axis of revolution", self.output)
+        self.assertIn(": 1 plane, 1 axis]", self.error)
         ball = self.report(self.write("ball.off", tool_run.SPHERE))
         self.assertEqual([len(ball[key]) for key in ("axes", "centers", "planes")], [0, 1, 0])
         np.testing.assert_allclose(ball["centers"][0]["point"], 0, atol=0.01)
