@@ -17,7 +17,7 @@ int main(int argc, char** argv) {
   Cloud aligned;
   registration.align(aligned);
   if (!registration.hasConverged()) {
-    std::cout << "the scan does not fit the model\n";
+    std::cout << "the scan does not fit the model: " << registration.getReason() << "\n";
     return 0;
   }
   std::cout << registration.getFinalTransformation() << "\nconfidence " << registration.getConfidence() << "\n";

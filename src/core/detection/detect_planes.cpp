@@ -4,6 +4,7 @@
 #include <cmath>
 #include <iterator>
 #include <memory>
+#include <sstream>
 #include <utility>
 #include <vector>
 
@@ -354,7 +355,9 @@ void DetectionOptions::validate() const {
   check(max_tolerance > 0.0 && max_tolerance <= 0.1, "max_tolerance", max_tolerance, "in (0, 0.1]");
   check(absolute_tolerance >= 0.0, "absolute_tolerance", absolute_tolerance, ">= 0");
   check(min_confidence >= 0.0 && min_confidence <= 1.0, "min_confidence", min_confidence, "in [0, 1]");
-  check(min_possible >= 0.0 && min_possible <= min_confidence, "min_possible", min_possible, "in [0, min_confidence]");
+  std::ostringstream rule;
+  rule << "in [0, min_confidence = " << min_confidence << "]";
+  check(min_possible >= 0.0 && min_possible <= min_confidence, "min_possible", min_possible, rule.str().c_str());
   check(max_planes >= 1, "max_planes", max_planes, ">= 1");
   edtOptions().validate();
   checkNumThreads(num_threads);
