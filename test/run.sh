@@ -72,9 +72,9 @@ count() {
   ((passed += p, failed += f, skipped += s, 1))
 }
 
-configure() {  # with the tests, which apps/demo.sh leaves out of build/; the address sanitizer links those that build/ compiled
+configure() {  # with the tests, which apps/demo.sh leaves out of build/; sanitizers link those that build/ compiled
   local tests_of=
-  [[ $1 != sanitize ]] || tests_of=$PWD/build
+  [[ $1 == release ]] || tests_of=$PWD/build
   cmake --preset "$1" -DBUILD_TESTING=ON -DPCL_SYMMETRY_TESTS_OF="$tests_of" --log-level=WARNING >/dev/null
 }
 
