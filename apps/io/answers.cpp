@@ -2,11 +2,6 @@
 
 namespace pcl_symmetry::apps {
 
-const char* toString(PlaneKind kind) {
-  static const char* const names[] = {"symmetry", "possible", "approximate", "local"};
-  return names[static_cast<int>(kind)];
-}
-
 const char* toString(ViewpointSource source) {
   static const char* const names[] = {"none", "given", "rays", "stored", "inferred"};
   return names[static_cast<int>(source)];

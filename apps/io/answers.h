@@ -16,8 +16,6 @@
 
 namespace pcl_symmetry::apps {
 
-const char* toString(PlaneKind kind);
-
 /// Where the viewpoint of a scan is known from.
 const char* toString(ViewpointSource source);
 

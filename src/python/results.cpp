@@ -25,11 +25,7 @@ void addPlanes(py::module_& module) {
       .def_property_readonly("normal", [](const ReflectionPlane& p) { return Eigen::Vector3d(p.normal()); })
       .def_property_readonly("offset", &ReflectionPlane::offset);
   py::class_<SymmetryPlane, ReflectionPlane>(module, "Plane")
-      .def_property_readonly("kind",
-                             [](const SymmetryPlane& p) {
-                               const char* const names[] = {"symmetry", "possible", "approximate", "local"};
-                               return names[static_cast<int>(p.kind)];
-                             })
+      .def_property_readonly("kind", [](const SymmetryPlane& p) { return toString(p.kind); })
       .def_property_readonly("share_interval",
                              [](const SymmetryPlane& p) { return std::pair(p.share_low, p.share_high); })
       .def_property_readonly("reasons",

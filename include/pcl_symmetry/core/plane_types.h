@@ -21,6 +21,12 @@ enum class PlaneKind {
   Local         ///< a symmetry of a part: of the points that support it
 };
 
+/// \return "symmetry", "possible", "approximate" or "local".
+inline const char* toString(PlaneKind kind) {
+  constexpr const char* names[] = {"symmetry", "possible", "approximate", "local"};
+  return names[static_cast<int>(kind)];
+}
+
 /// Why a plane has its confidence and kind.
 struct Reason {
   const char* rule = "";  ///< what was seen, in a few words
