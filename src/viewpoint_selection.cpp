@@ -6,6 +6,7 @@
 
 #include "core/base/check.h"
 #include "core/base/constants.h"
+#include "core/base/statistics.h"
 #include "pcl_symmetry/core/visibility.h"
 #include "pcl_symmetry/impl/cloud_conversion.hpp"
 
@@ -167,9 +168,7 @@ std::vector<SelectedView> ViewpointSelection::getGoodViews(int num_views) const 
   if (!hasExtent()) return {};
   const Eigen::Vector3d up = getUpAxis();
   std::vector<RankedView> remaining = bestViews(planes_);  // each with its opposite, of equal score: one is from below
-  remaining.erase(std::remove_if(remaining.begin(), remaining.end(),
-                                 [&](const RankedView& view) { return view.direction.dot(up) <= kView.level; }),
-                  remaining.end());
+  eraseIf(remaining, [&](const RankedView& view) { return view.direction.dot(up) <= kView.level; });
   if (remaining.empty()) {
     const Eigen::Vector3d side = up.unitOrthogonal();
     remaining.push_back({(up + 2.0 * side + side.cross(up)).normalized(), 0.0});
@@ -193,9 +192,9 @@ std::vector<SelectedView> ViewpointSelection::getGoodViews(int num_views) const 
                return direction.dot(other.direction) > std::cos(separation_);
              });
     };
-    remaining.erase(std::remove_if(remaining.begin(), remaining.end(), taken), remaining.end());
+    eraseIf(remaining, taken);
   }
-  std::stable_sort(views.begin(), views.end(), [](const auto& a, const auto& b) { return a.score > b.score; });
+  sortFalling(views, [](const auto& entry) { return entry.score; });
   if (views.size() > static_cast<std::size_t>(num_views)) views.resize(num_views);
   return views;
 }

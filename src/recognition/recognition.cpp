@@ -82,9 +82,7 @@ void fillConfidences(std::vector<PosedModel>& found) {
 
 /// Sorts models, best first, and judges them together.
 void rank(std::vector<PosedModel>& found) {
-  std::stable_sort(found.begin(), found.end(), [](const PosedModel& a, const PosedModel& b) {
-    return a.model.score.merit() > b.model.score.merit();
-  });
+  sortFalling(found, [](const PosedModel& entry) { return entry.model.score.merit(); });
   fillConfidences(found);
 }
 

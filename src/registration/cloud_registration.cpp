@@ -6,6 +6,7 @@
 
 #include "core/base/check.h"
 #include "core/base/constants.h"
+#include "core/base/statistics.h"
 #include "core/base/stopwatch.h"
 #include "core/matching/point_pair_index.h"
 #include "core/registration/pose_covariance.h"
@@ -72,13 +73,6 @@ public:
 
 private:
   Eigen::Isometry3d swappedPose(const Eigen::Isometry3d& pose) const { return swapped_ ? pose.inverse() : pose; }
-
-  static Matrix6d adjoint(const Eigen::Isometry3d& pose) {
-    Matrix6d adjoint = Matrix6d::Zero();
-    adjoint.topLeftCorner<3, 3>() = adjoint.bottomRightCorner<3, 3>() = pose.linear();
-    adjoint.bottomLeftCorner<3, 3>() = crossMatrix(pose.translation()) * pose.linear();
-    return adjoint;
-  }
 
   bool swapped_;
   SearchFrames frames_;
@@ -171,8 +165,7 @@ std::vector<JudgedPose> judgedPoses(const CloudPair& clouds, const std::vector<R
     const PoseEvidence evidence = clouds.evidence(pose);
     judged.push_back({pose, evidence, poseConfidence(evidence)});
   }
-  std::stable_sort(judged.begin(), judged.end(),
-                   [](const auto& a, const auto& b) { return a.confidence > b.confidence; });
+  sortFalling(judged, [](const auto& entry) { return entry.confidence; });
   return judged;
 }
 
@@ -209,7 +202,7 @@ void keepAround(const CloudPair& clouds, const Eigen::Isometry3d& guess, const P
     return angleOf(T_target_source * guess.inverse()) > around.angle ||
            (T_target_source * center - guess * center).norm() > around.distance;
   };
-  poses.erase(std::remove_if(poses.begin(), poses.end(), isFar), poses.end());
+  eraseIf(poses, isFar);
 }
 
 Matrix6d covarianceOf(const CloudPair& clouds, const RankedPose& pose, const CloudRegistrationOptions& inner) {

@@ -26,14 +26,6 @@ Vector6d smallMotionOf(const Eigen::Isometry3d& motion) {
   return small;
 }
 
-/// Takes a small motion of the world to that of a frame.
-Matrix6d adjoint(const Eigen::Isometry3d& T_frame_world) {
-  Matrix6d adjoint = Matrix6d::Zero();
-  adjoint.topLeftCorner<3, 3>() = adjoint.bottomRightCorner<3, 3>() = T_frame_world.linear();
-  adjoint.bottomLeftCorner<3, 3>() = crossMatrix(T_frame_world.translation()) * T_frame_world.linear();
-  return adjoint;
-}
-
 /// Adds to each answer half the weight of each triangle that it closes with two others.
 std::vector<double> votesOf(int num_scans, const std::vector<PairAnswer>& answers, const SamePose& same) {
   struct Other {

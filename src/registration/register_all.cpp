@@ -322,10 +322,7 @@ private:
       all.middleCols(total, points.cols()) = points;
       total += points.cols();
     }
-    const std::vector<int> chosen = onePerCell(all, edge);
-    Points thin(3, static_cast<Eigen::Index>(chosen.size()));
-    for (std::size_t i = 0; i < chosen.size(); ++i) thin.col(static_cast<Eigen::Index>(i)) = all.col(chosen[i]);
-    return drawn(thin, options_.seed);
+    return drawn(pointsAt(all, onePerCell(all, edge)), options_.seed);
   }
 
   CloudRegistrationOptions options_;

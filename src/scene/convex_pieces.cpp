@@ -10,6 +10,7 @@
 #include <set>
 #include <utility>
 
+#include "core/base/statistics.h"
 #include "scene/scene_rules.h"
 
 namespace pcl_symmetry::detail {
@@ -98,8 +99,7 @@ std::vector<pcl::Indices> convexPieces(const SymmetryScene::Cloud& scene, const 
   for (const pcl::index_t i : rest)
     if (tree.nearestKSearch(scene[i], 1, closest, sq_distance) > 0) pieces[piece_of[closest[0]]].push_back(i);
   for (pcl::Indices& piece : pieces) std::sort(piece.begin(), piece.end());
-  std::stable_sort(pieces.begin(), pieces.end(),
-                   [](const pcl::Indices& a, const pcl::Indices& b) { return a.size() > b.size(); });
+  sortFalling(pieces, [](const pcl::Indices& entry) { return entry.size(); });
   return pieces;
 }
 

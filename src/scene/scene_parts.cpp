@@ -312,8 +312,7 @@ std::vector<pcl::Indices> findClusters(const SymmetryScene::Cloud::ConstPtr& sce
     });
     if (!is_remainder) clusters.push_back(std::move(cluster.indices));
   }
-  std::stable_sort(clusters.begin(), clusters.end(),
-                   [](const pcl::Indices& a, const pcl::Indices& b) { return a.size() > b.size(); });
+  sortFalling(clusters, [](const pcl::Indices& entry) { return entry.size(); });
   return clusters;
 }
 

@@ -8,6 +8,7 @@
 
 #include "core/base/check.h"
 #include "core/base/parallel.h"
+#include "core/base/statistics.h"
 #include "core/base/stopwatch.h"
 #include "pcl_symmetry/symmetry_alignment.h"
 #include "pcl_symmetry/symmetry_maxima_refinement.h"
@@ -166,8 +167,7 @@ Pieces piecesOf(const Cloud& scene, const std::vector<pcl::Indices>& clusters,
   std::vector<std::pair<pcl::Indices, int>> all;
   for (std::size_t k = 0; k < found.size(); ++k)
     for (pcl::Indices& piece : found[k]) all.emplace_back(std::move(piece), static_cast<int>(k));
-  std::stable_sort(all.begin(), all.end(),
-                   [](const auto& a, const auto& b) { return a.first.size() > b.first.size(); });
+  sortFalling(all, [](const auto& entry) { return entry.first.size(); });
   Pieces pieces;
   for (auto& [indices, cluster] : all) {
     pieces.indices.push_back(std::move(indices));
@@ -252,7 +252,7 @@ SceneAnalysis SymmetryScene::compute() const {
     return detail::isBulge(*frame, cluster, analysis.seen->visibility(), options_.detection.tolerance,
                            distances.cluster);
   };
-  clusters.erase(std::remove_if(clusters.begin(), clusters.end(), is_bulge), clusters.end());
+  eraseIf(clusters, is_bulge);
   Pieces pieces = piecesOf(*frame, clusters, viewpoint, distances.spacing, options_);
   detail::returnFeet(frame, analysis.supports, pieces.indices, distances);
   timed("clusters");

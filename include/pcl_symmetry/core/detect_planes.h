@@ -49,8 +49,8 @@ struct DetectionOptions {
   /// symmetry maps 97 % of the surface to within this of the surface.
   double tolerance = 0.01;
   /// Greatest tolerance, as a share of the same, in (0, 0.1]: where a depth camera or few points do not resolve
-  /// `tolerance`, the resolved tolerance decides, up to this one. At most `tolerance`: that one always decides, and
-  /// symmetries that the camera does not resolve are possible ones.
+  /// `tolerance`, the resolved tolerance decides, up to this one. Where it is at most `tolerance`, that one always
+  /// decides, and symmetries that the camera does not resolve are reported as possible.
   double max_tolerance = 0.03;
   double absolute_tolerance = 0.0;  ///< a tolerance in input units in place of both, >= 0; 0 = they decide
   double min_confidence = 0.5;      ///< a plane is a symmetry if confidence >= min_confidence; in [0, 1]

@@ -47,7 +47,7 @@ std::vector<SymmetryPlane> refinedAndJudged(const JudgedCloud& judged, std::vect
 }
 
 /// Decides the planes that may be symmetries, and where there are none, the others too. In a whole cloud, once a plane
-/// explains everything, hopeless candidates are skipped: nothing is missing that could excuse what they leave off.
+/// explains everything, hopeless candidates are skipped: no missing piece could account for what they fail to match.
 /// \param candidates after the second stage, best first.
 void decide(const JudgedCloud& judged, std::vector<Candidate> candidates, Found& found) {
   const CloudKind kind = judged.cloud.kind();
@@ -115,7 +115,7 @@ void findPlanesOfParts(const JudgedCloud& judged, Found& found) {
     append(found.planes, localPlanes(found.planes, judged.cloud, *judged.fit, judged.decision, judged.options));
 }
 
-/// What results say of each other, in this order. Beyond the paper.
+/// Rules by which findings correct each other, applied in this order. Not in the paper.
 constexpr struct {
   const char* name;  ///< in Detection::timing_ms
   void (*apply)(const JudgedCloud& judged, Found& found);
@@ -322,7 +322,7 @@ double errorOf(double share, int num_samples) {
   return std::sqrt(share * (1.0 - share) / num_samples) + 1.0 / num_samples;
 }
 
-/// What is missing or added pulls at a fit: it stays where it was then.
+/// Missing or added material biases the fit: where the fitted plane is clearly worse, the plane stays as it was.
 void refine(const MeshSurface& mesh, SymmetryPlane& plane, double tolerance, const DetectionOptions& options) {
   const ReflectionPlane fitted = mesh.fitted(static_cast<const ReflectionPlane&>(plane)).canonical();
   const MeshShares before = mesh.shares(plane, tolerance), after = mesh.shares(fitted, tolerance);

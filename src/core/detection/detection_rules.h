@@ -19,7 +19,7 @@ struct DetectionRules {
     int density_samples = 1000;                            ///< samples of the density; its slope has an error of 2 %
     int max_counted = 48, neighbors = 16;  ///< neighbors that are counted, and that a neighborhood has on average
     double trimmed = 0.05;                 ///< share of the points at either end that the range of densities leaves out
-    double uneven = 0.4, fully_uneven = 0.7;  ///< logarithm of the ratio of densities evened, from none to all of it
+    double uneven = 0.4, fully_uneven = 0.7;  ///< log ratio of densities from which thinning starts, and is complete
   } points;
 
   /// Completion of groups.
@@ -189,7 +189,8 @@ struct KindRules {
   KindRule<double> settled_merit          {    0.83,    0.93,    0.83};
   // Point-to-plane steps slide a plane along flat pieces that a scan has little beside.
   KindRule<bool> slides                   {   false,    true,   false};
-  // Planes climb to their maximum after the last stage; those of noisy scans have done so in it.
+  // Candidates that left their cell are kept where they are better than all that stayed, and planes climb to their
+  // maximum after the last stage; those of noisy scans have done so in it.
   KindRule<bool> climbs                   {    true,   false,    true};
 
   // Evidence: planes are judged by one sample in this many; 0 = by all points.

@@ -7,6 +7,7 @@
 #include "core/base/constants.h"
 #include "core/base/statistics.h"
 #include "core/base/symmetric_solvers.h"
+#include "core/detection/plane_decision.h"
 #include "core/geometry/cloud_extent.h"
 #include "core/geometry/directions.h"
 #include "core/geometry/point_samples.h"
@@ -69,9 +70,8 @@ std::optional<CenterFamily> centerAt(Eigen::Vector3d point, double least, const 
   for (int k = 0; k < kDetection.families.fitted_planes; ++k)
     refined.push_back(test.refine(planeOfFamily(point, k, kDetection.families.fitted_planes)));
   point = commonPoint(refined, point);
-  const double share = meanShare(at, kDetection.families.tested_planes, least, test.share);
-  if (share < least) return std::nullopt;
-  return CenterFamily{point, share, planesAt(at)};
+  if (meanShare(at, kDetection.families.tested_planes, least, test.share) < least) return std::nullopt;
+  return CenterFamily{point, planesAt(at)};
 }
 
 /// The family of all planes through a line, or through one nearby.

@@ -11,9 +11,8 @@ namespace pcl_symmetry {
 struct JudgedCloud;
 struct Found;
 
-/// Whether a plane contains a line, within 3 degrees and \p tolerance.
-bool contains(const ReflectionPlane& plane, const Line3d& line,
-              double tolerance = kDetection.families.contained_offset);
+/// Whether a plane contains a line, within DetectionRules::Families::contained_angle and contained_offset.
+bool contains(const ReflectionPlane& plane, const Line3d& line);
 
 /// The planes of a regular polygon: \p fold planes through a line, at equal angles.
 struct PlaneLattice {
@@ -65,7 +64,6 @@ struct AxisFamily {
 /// A point, all planes through which are symmetries.
 struct CenterFamily {
   Eigen::Vector3d point;
-  double share;                         ///< mean over the planes
   std::vector<ReflectionPlane> planes;  ///< that were tested
 };
 
@@ -80,8 +78,8 @@ std::optional<CenterFamily> findCenter(const std::vector<ReflectionPlane>& plane
 std::vector<AxisFamily> findAxes(const std::vector<ReflectionPlane>& planes, const FamilyTest& test,
                                  const std::vector<Line3d>& guesses = {});
 
-/// Finds the families that symmetries belong to: bodies of revolution and spheres in place of their planes. A line has
-/// its axis.
+/// Finds the families that symmetries belong to: bodies of revolution and spheres in place of their planes. A cloud
+/// that is a line gets that line as its axis.
 void findFamilies(const JudgedCloud& judged, Found& found);
 
 /// \param planes,axes input frame.

@@ -158,7 +158,7 @@ public:
     });
   }
 
-  /// The density pulls at no plane.
+  /// A density has no pairs without a true partner, so planes need not climb.
   void climb(std::vector<Candidate>& candidates, const RefinementStage&, std::vector<char>& moves) const override {
     moves.assign(candidates.size(), false);
   }

@@ -80,7 +80,7 @@ public:
     return matchSymmetricPoints(cloud_.surface, samples, plane, cloud_.final_sigma, guesses);
   }
 
-  /// One number to rank candidates by: high support, low conflict; about 1 for a symmetry, and may exceed it.
+  /// Ranks candidates: grows with the support, falls with the conflict; about 1 for a symmetry, and may exceed it.
   virtual double merit(const PlaneShares& shares) const = 0;
 
   /// Support that the samples of a symmetry reach.

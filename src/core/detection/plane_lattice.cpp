@@ -9,6 +9,7 @@
 
 #include "core/base/constants.h"
 #include "core/base/statistics.h"
+#include "core/detection/plane_decision.h"
 #include "core/geometry/geometry_rules.h"
 #include "core/geometry/point_samples.h"
 #include "pcl_symmetry/core/closest_point_search.h"
@@ -43,9 +44,9 @@ std::vector<std::vector<ReflectionPlane>> bundlesOf(const std::vector<Reflection
 
 }  // namespace
 
-bool contains(const ReflectionPlane& plane, const Line3d& line, double tolerance) {
+bool contains(const ReflectionPlane& plane, const Line3d& line) {
   return std::abs(plane.normal().dot(line.direction())) <= std::sin(kDetection.families.contained_angle) &&
-         std::abs(plane.signedDistance(line.origin())) <= tolerance;
+         std::abs(plane.signedDistance(line.origin())) <= kDetection.families.contained_offset;
 }
 
 ReflectionPlane PlaneLattice::plane(double k) const {
@@ -97,7 +98,7 @@ private:
   };
   using Places = std::vector<Place>::iterator;
 
-  /// Sorts indices by a member, and calls for parts that have as many of them each.
+  /// Sorts places by a member, and calls back for num_parts runs of equal size.
   template <typename Call>
   static void inParts(Places first, Places last, int num_parts, double Place::*member, const Call& call) {
     std::sort(first, last, [&](const Place& a, const Place& b) { return a.*member < b.*member; });

@@ -6,6 +6,7 @@
 
 #include "core/base/check.h"
 #include "core/base/parallel.h"
+#include "core/base/statistics.h"
 #include "core/geometry/point_samples.h"
 #include "core/refinement/normalized_cloud.h"
 #include "core/transform/sampled_transform.h"
@@ -79,7 +80,7 @@ void keepOneOfEachCell(std::vector<SymmetryPlane>& planes, const PlaneGrid& grid
     const auto cell = grid.find(plane);
     return cell && !cells.insert(grid.index(*cell)).second;
   };
-  planes.erase(std::remove_if(planes.begin(), planes.end(), is_known), planes.end());
+  eraseIf(planes, is_known);
 }
 
 }  // namespace
@@ -139,7 +140,7 @@ std::vector<SymmetryPlane> publishedPlanes(const PointsRef& points, const Gaussi
   std::vector<SymmetryPlane> planes;
   for (std::size_t i = 0; i < refined.size(); ++i)
     if (is_stable[i]) planes.push_back(refined[i]);
-  std::stable_sort(planes.begin(), planes.end(), [](const auto& a, const auto& b) { return a.score > b.score; });
+  sortFalling(planes, [](const auto& entry) { return entry.score; });
   if (options.discard_unstable) keepOneOfEachCell(planes, map.grid);
   return planes;
 }

@@ -6,6 +6,7 @@
 
 #include "core/base/constants.h"
 #include "core/base/parallel.h"
+#include "core/base/statistics.h"
 #include "pcl_symmetry/core/symmetry_map.h"
 
 namespace pcl_symmetry {
@@ -175,7 +176,7 @@ std::vector<CellPlane> firstPlaneCandidates(const FrameEvidence& evidence, const
 std::vector<CellPlane> bestFirstPlanes(const FrameEvidence& evidence, const std::vector<CellPlane>& candidates) {
   std::vector<std::pair<double, CellPlane>> ranked;
   for (const CellPlane& plane : candidates) ranked.emplace_back(evidence.quality(plane), plane);
-  std::stable_sort(ranked.begin(), ranked.end(), [](const auto& a, const auto& b) { return a.first > b.first; });
+  sortFalling(ranked, [](const auto& entry) { return entry.first; });
   std::vector<CellPlane> best;
   for (const auto& [quality, plane] : ranked) {
     if (best.size() >= kFrame.max_first_planes) break;

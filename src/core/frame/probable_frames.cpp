@@ -127,16 +127,6 @@ Outline::Box Outline::boxAt(double angle) const {
   return box;
 }
 
-std::vector<FrameCandidate> leveledFrames(const FrameEvidence& evidence, const Eigen::Vector3f& first) {
-  const Outline outline(evidence.points, first);
-  std::vector<FrameCandidate> frames;
-  for (const double angle : {angleOfGreatest([&](double a) { return -outline.boxAt(a).area; }),
-                             angleOfGreatest([&](double a) { return outline.boxAt(a).contact; }),
-                             angleOfFaces(evidence, outline), angleOfPrincipalAxes(evidence, outline)})
-    frames.push_back(frameAt(evidence, outline, first, angle));
-  return frames;
-}
-
 std::vector<FrameCandidate> leveledFirst(const FrameEvidence& evidence, std::vector<FrameCandidate> frames) {
   const FrameCandidate& best = frames.front();
   const Eigen::Vector3f first = best.axes.col(0);
@@ -149,6 +139,19 @@ std::vector<FrameCandidate> leveledFirst(const FrameEvidence& evidence, std::vec
 }
 
 namespace {
+
+/// Frames rotated about their first axis to the smallest box around the outline, to its longest contact, to the faces
+/// of the surface, and to the principal axes of the outline.
+/// \param first unit, the first axis.
+std::vector<FrameCandidate> leveledFrames(const FrameEvidence& evidence, const Eigen::Vector3f& first) {
+  const Outline outline(evidence.points, first);
+  std::vector<FrameCandidate> frames;
+  for (const double angle : {angleOfGreatest([&](double a) { return -outline.boxAt(a).area; }),
+                             angleOfGreatest([&](double a) { return outline.boxAt(a).contact; }),
+                             angleOfFaces(evidence, outline), angleOfPrincipalAxes(evidence, outline)})
+    frames.push_back(frameAt(evidence, outline, first, angle));
+  return frames;
+}
 
 /// The rotation between two frames, the smallest over any order and signs of the axes, radians.
 double angleBetween(const Eigen::Matrix3f& a, const Eigen::Matrix3f& b) {

@@ -32,11 +32,6 @@ private:
   std::vector<Eigen::Vector2f> corners_;  // of the outline, in order
 };
 
-/// Frames rotated about their first axis to the smallest box around the outline, to its longest contact, to the faces
-/// of the surface, and to the principal axes of the outline.
-/// \param first unit, the first axis.
-std::vector<FrameCandidate> leveledFrames(const FrameEvidence& evidence, const Eigen::Vector3f& first);
-
 /// Puts the best frame, rotated to the faces of the surface, before all others where its value is nearly as great and
 /// the shape then stands on more of its outline.
 /// \param frames best first, at least one.

@@ -5,6 +5,7 @@
 #include <utility>
 #include <vector>
 
+#include "core/base/statistics.h"
 #include "core/geometry/geometry_rules.h"
 
 namespace pcl_symmetry {
@@ -27,7 +28,7 @@ BoundingBall boundingBall(const PointsRef& points) {
   std::vector<std::pair<double, Eigen::Index>> outermost;  // first: distances from the start
   for (Eigen::Index i = 0; i < points.cols(); i += stride)
     outermost.emplace_back(std::sqrt(sqDistance(points, i, start)), i);
-  std::stable_sort(outermost.begin(), outermost.end(), [](const auto& a, const auto& b) { return a.first > b.first; });
+  sortFalling(outermost, [](const auto& entry) { return entry.first; });
   for (int k = 1; k <= kGeometry.ball_iterations; ++k) {
     const double moved = (ball.center - start).norm();
     double greatest = -1.0;

@@ -10,6 +10,7 @@
 #include "core/base/constants.h"
 #include "core/base/parallel.h"
 #include "core/base/simd.h"
+#include "core/base/statistics.h"
 
 namespace pcl_symmetry {
 
@@ -311,7 +312,7 @@ void PointPairIndex::collect(int shape, const Reference& reference, const Eigen:
 /// Joins votes for one pose.
 ShapeOfPairs PointPairIndex::clustered(int shape, std::vector<Vote> votes, const Eigen::Vector3d& center,
                                        int num_poses) const {
-  std::stable_sort(votes.begin(), votes.end(), [](const Vote& a, const Vote& b) { return a.weight > b.weight; });
+  sortFalling(votes, &Vote::weight);
   struct Cluster {
     Vote first;
     Eigen::Vector4d rotation;
@@ -334,8 +335,7 @@ ShapeOfPairs PointPairIndex::clustered(int shape, std::vector<Vote> votes, const
     same->position += vote.weight * vote.position;
     same->weight += vote.weight;
   }
-  std::stable_sort(clusters.begin(), clusters.end(),
-                   [](const Cluster& a, const Cluster& b) { return a.weight > b.weight; });
+  sortFalling(clusters, &Cluster::weight);
   ShapeOfPairs found{shape, clusters.empty() ? 0.0 : clusters.front().weight, {}};
   for (const Cluster& cluster : clusters) {
     if (found.T_shape_scan.size() == static_cast<std::size_t>(num_poses)) break;
@@ -369,8 +369,7 @@ std::vector<ShapeOfPairs> PointPairIndex::nearest(const SurfacePoints& scan, con
     for (std::size_t k = begin; k < end; ++k)
       found[k] = clustered(static_cast<int>(k), std::move(poses[k - begin]), center, options.num_poses);
   });
-  std::stable_sort(found.begin(), found.end(),
-                   [](const ShapeOfPairs& a, const ShapeOfPairs& b) { return a.votes > b.votes; });
+  sortFalling(found, &ShapeOfPairs::votes);
   found.resize(std::min(found.size(), static_cast<std::size_t>(options.num_nearest)));
   return found;
 }

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "core/base/parallel.h"
+#include "core/base/statistics.h"
 #include "core/registration/pose_scoring.h"
 
 namespace pcl_symmetry {
@@ -27,8 +28,7 @@ void judgeAll(std::vector<Trial>& trials, const ScreenedSurface& scan, const std
       judge(trials[i].pose, PoseScorer(scan.surface, shape.surface), shape.radius);
     }
   });
-  std::stable_sort(trials.begin(), trials.end(),
-                   [](const Trial& a, const Trial& b) { return a.pose.score.merit() > b.pose.score.merit(); });
+  sortFalling(trials, [](const Trial& entry) { return entry.pose.score.merit(); });
 }
 
 /// All poses of shapes that have a size.

@@ -64,6 +64,13 @@ Eigen::Matrix3d crossMatrix(const Eigen::Vector3d& x) {
   return matrix;
 }
 
+Matrix6d adjoint(const Eigen::Isometry3d& T_b_a) {
+  Matrix6d adjoint = Matrix6d::Zero();
+  adjoint.topLeftCorner<3, 3>() = adjoint.bottomRightCorner<3, 3>() = T_b_a.linear();
+  adjoint.bottomLeftCorner<3, 3>() = crossMatrix(T_b_a.translation()) * T_b_a.linear();
+  return adjoint;
+}
+
 Matrix6d poseCovariance(const PosedSurface& scan, const PosedSurface& model, const Eigen::Isometry3d& T_model_scan,
                         int num_points, double reach) {
   // The variance of an angle that is uniform in (-pi, pi), and a translation by the radius of the model.

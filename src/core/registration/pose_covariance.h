@@ -10,6 +10,10 @@ namespace pcl_symmetry {
 /// \return the matrix that multiplies v to x x v.
 Eigen::Matrix3d crossMatrix(const Eigen::Vector3d& x);
 
+/// \return the matrix that takes a small motion (rotation vector, translation) of frame A to that of frame B.
+/// \param T_b_a takes points of A to B.
+Matrix6d adjoint(const Eigen::Isometry3d& T_b_a);
+
 /// How uncertain a pose is that least squares of point-to-plane distances found: the inverse of their Hessian times
 /// their mean square, with what noise of the normals adds to the Hessian taken off. A direction that the points do not
 /// fix keeps the variance of a pose that nothing is known of: a uniform rotation, a translation by a radius.

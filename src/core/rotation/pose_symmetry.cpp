@@ -11,6 +11,7 @@
 
 #include "core/base/check.h"
 #include "core/base/constants.h"
+#include "core/base/statistics.h"
 #include "core/rotation/rotation_cover.h"
 #include "pcl_symmetry/core/rotational_symmetry.h"
 
@@ -99,7 +100,7 @@ Eigen::Matrix3d firstOf(std::vector<Eigen::Matrix3d> rotations) {
     double greatest = -std::numeric_limits<double>::infinity();
     for (const Eigen::Matrix3d& rotation : rotations) greatest = std::max(greatest, value(rotation));
     const auto is_less = [&](const Eigen::Matrix3d& rotation) { return value(rotation) < greatest - kEqual; };
-    rotations.erase(std::remove_if(rotations.begin(), rotations.end(), is_less), rotations.end());
+    eraseIf(rotations, is_less);
   };
   keepGreatest([](const Eigen::Matrix3d& rotation) { return rotation.trace(); });
   for (int i = 0; i < 9 && rotations.size() > 1; ++i)

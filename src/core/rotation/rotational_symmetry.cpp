@@ -72,7 +72,7 @@ std::vector<RejectedRotation> inInputFrame(std::vector<RejectedAxis> axes, const
   return rejected;
 }
 
-/// The group of points, judged by the surface that they show or one by one, at one tolerance or more.
+/// Finds the symmetry group of points, judged against their surface or point by point, at one or more tolerances.
 class GroupSearch {
 public:
   /// \param points normalized.

@@ -8,6 +8,7 @@
 #include <queue>
 #include <utility>
 
+#include "core/base/statistics.h"
 #include "core/base/watched_steps.h"
 #include "core/segmentation/labels.h"
 
@@ -87,8 +88,7 @@ std::vector<int> growPatches(const SurfaceGraph& graph, int num_patches, float c
   GrowingPatches patches(graph, concave_detour);
   if (first >= 0) patches.addSeed(first);
   std::vector<int> elements = elementsOfLargestPieces(graph, num_patches);
-  elements.erase(std::remove_if(elements.begin(), elements.end(), [&](int i) { return !(graph.areas[i] > 0.0f); }),
-                 elements.end());
+  eraseIf(elements, [&](int i) { return !(graph.areas[i] > 0.0f); });
   // Each large piece has a seed. After that the next one is the element farthest from all seeds.
   std::vector<int> others;
   for (auto element = elements.rbegin(); element != elements.rend(); ++element) {

@@ -9,6 +9,7 @@
 #include "core/base/check.h"
 #include "core/base/constants.h"
 #include "core/base/parallel.h"
+#include "core/base/statistics.h"
 #include "core/transform/sampled_transform.h"
 #include "core/transform/transform_rules.h"
 
@@ -300,8 +301,7 @@ std::vector<AxisMaximum> axisMaxima(const AxisMap& map, const GaussianEdt& edt, 
   const AxisClimb climb(edt, map, options);
   std::vector<AxisMaximum> climbed(starts.size());
   parallelBlocks(starts.size(), options.num_threads, [&](std::size_t i) { climbed[i] = climb.climbed(starts[i]); });
-  std::stable_sort(climbed.begin(), climbed.end(),
-                   [](const AxisMaximum& a, const AxisMaximum& b) { return a.value > b.value; });
+  sortFalling(climbed, &AxisMaximum::value);
   std::vector<AxisMaximum> maxima;
   for (const AxisMaximum& maximum : climbed) {
     if (maximum.value < min_value || static_cast<int>(maxima.size()) == count) break;

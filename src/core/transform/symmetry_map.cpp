@@ -8,6 +8,7 @@
 #include "core/base/constants.h"
 #include "core/base/parallel.h"
 #include "core/base/simd.h"
+#include "core/base/statistics.h"
 #include "pcl_symmetry/core/gaussian_edt.h"
 
 namespace pcl_symmetry {
@@ -88,8 +89,7 @@ std::vector<float> greatestThrough(const std::vector<float>& values, const std::
     const float greatest = *std::max_element(row.begin(), row.end());
     rows.push_back({normals[d] * steps_per_unit, greatest, std::move(row)});
   }
-  std::stable_sort(rows.begin(), rows.end(),
-                   [](const DirectionRow& a, const DirectionRow& b) { return a.greatest > b.greatest; });
+  sortFalling(rows, &DirectionRow::greatest);
   std::vector<float> best(points.cols(), 0.0f);
   parallelPoints(points.cols(), num_threads, [&](std::size_t begin, std::size_t end) {
     const int size = static_cast<int>(end - begin);
@@ -222,7 +222,7 @@ std::vector<LocalMaximum> findLocalMaxima(const SymmetryMap& map, const LocalMax
     }
   });
   for (const auto& row : rows) maxima.insert(maxima.end(), row.begin(), row.end());
-  std::stable_sort(maxima.begin(), maxima.end(), [](const auto& a, const auto& b) { return a.value > b.value; });
+  sortFalling(maxima, [](const auto& entry) { return entry.value; });
   return maxima;
 }
 

@@ -6,6 +6,7 @@
 
 #include "core/base/check.h"
 #include "core/base/constants.h"
+#include "core/base/statistics.h"
 #include "core/base/watched_steps.h"
 #include "core/geometry/directions.h"
 
@@ -48,7 +49,7 @@ std::vector<ViewPlane> viewPlanes(std::vector<ViewPlane> planes, const std::vect
     if (!best.empty() && worstView(planes).score >= min_score * best[0].score) break;
     planes.push_back(maximum);
   }
-  std::stable_sort(planes.begin(), planes.end(), [](const auto& a, const auto& b) { return a.weight > b.weight; });
+  sortFalling(planes, [](const auto& entry) { return entry.weight; });
   return planes;
 }
 
@@ -73,7 +74,7 @@ std::vector<RankedView> bestViews(const std::vector<ViewPlane>& planes) {
     views.push_back({v, score});
     views.push_back({-v, score});
   }
-  std::stable_sort(views.begin(), views.end(), [](const auto& a, const auto& b) { return a.score > b.score; });
+  sortFalling(views, [](const auto& entry) { return entry.score; });
   return views;
 }
 
