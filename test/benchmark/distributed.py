@@ -91,8 +91,8 @@ def measure(options):
             print(f"{workers:>7} {num:7} {wall:8.1f} {100 * busy:12.1f} {100 * used / (workers * wall):12.1f} {used:21.1f} "
                   f"{total - merging - used:12.1f} {1000 * used / num:11.1f} {1000 * alone / len(first):13.1f} "
                   f"{1000 * merging / num:9.1f} {merge_wall:11.1f} {kilobytes:3.0f}", flush=True)  # fmt: skip
-    hours, gigabytes = (used + 0.004 * num) / num * 1e6 / 3600, (kilobytes * num - 14000) / num  # 4 ms to merge
-    print(f"a million models, without what does not grow with them (start, fit, 14 MB): {hours:.1f} hours of a core, "
+    hours, gigabytes = (used + 0.004 * num) / num * 1e6 / 3600, (kilobytes * num - 28000) / num  # 4 ms to merge
+    print(f"a million models, without what does not grow with them (start, fit, 28 MB): {hours:.1f} hours of a core, "
           f"{0.04 * hours:.2f} $ at 0.04 $ an hour; {gigabytes:.0f} GB, {0.08 * gigabytes:.2f} $ a month at 0.08 $ a GB")  # fmt: skip
 
 
