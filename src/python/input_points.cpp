@@ -156,6 +156,7 @@ void checkAnswerable(const char* name, const PointsRef& points) {
 }
 
 std::optional<Eigen::Vector3d> positionOf(const py::object& viewpoint) {
+  if (py::isinstance<StoredViewpoint>(viewpoint)) return std::nullopt;
   if (!py::isinstance<py::str>(viewpoint)) {
     try {
       const auto position = viewpoint.cast<Eigen::Vector3d>();
@@ -175,11 +176,16 @@ std::optional<Visibility> seenFrom(const PointsRef& points, const py::object& vi
   if (py::isinstance<Visibility>(viewpoint)) return viewpoint.cast<Visibility>();
   const std::optional<Eigen::Vector3d> position = positionOf(viewpoint);
   if (points.cols() == 0) return std::nullopt;
-  const Computing computing;
   if (!position) {
-    std::optional<InferredView> view = inferView(points, Eigen::Vector3d::Zero());
+    const bool is_stored = py::isinstance<StoredViewpoint>(viewpoint);
+    const Eigen::Vector3d stored = is_stored ? viewpoint.cast<StoredViewpoint>().position : Eigen::Vector3d::Zero();
+    const Computing computing;
+    if (is_stored)
+      if (std::optional<Visibility> seen = spaceSeenFrom(points, stored)) return seen;
+    std::optional<InferredView> view = inferView(points, stored);
     return view ? std::optional<Visibility>(std::move(view->seen)) : std::nullopt;
   }
+  const Computing computing;
   std::optional<Visibility> seen = Visibility::fromPoints(points, *position);
   if (!seen)
     throw std::invalid_argument("viewpoint: among the points, must see them within 75 degrees of one direction");

@@ -69,8 +69,13 @@ struct NoAnswer : std::runtime_error {
 /// \throws NoAnswer where whyUnanswerable() has a reason.
 void checkAnswerable(const char* name, const PointsRef& points);
 
-/// \param viewpoint where the scanner stood: "auto" (the points decide) or x, y, z.
-/// \return nothing for "auto".
+/// Where a file says that the scanner stood: it counts where the points can have been seen from there.
+struct StoredViewpoint {
+  Eigen::Vector3d position;
+};
+
+/// \param viewpoint where the scanner stood: "auto" (the points decide), a StoredViewpoint, or x, y, z.
+/// \return nothing for the first two.
 /// \throws std::invalid_argument for another value.
 std::optional<Eigen::Vector3d> positionOf(const pybind11::object& viewpoint);
 

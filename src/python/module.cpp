@@ -268,17 +268,25 @@ SymmetryFrame frame(const AnyArray& points, const py::object& viewpoint, std::si
   return found;
 }
 
-ObjectSymmetries rotations(const AnyArray& points, double tolerance, double absolute_tolerance, double max_feature,
-                           std::uint64_t seed, int threads, const std::optional<MeshSurface>& mesh) {
+ObjectSymmetries rotations(const AnyArray& points, const py::object& viewpoint, double tolerance,
+                           double absolute_tolerance, double max_feature, std::uint64_t seed, int threads,
+                           const std::optional<MeshSurface>& mesh) {
   auto options = optionsWith<ObjectSymmetryOptions>(seed, threads);
   options.tolerance = tolerance;
   options.absolute_tolerance = absolute_tolerance;
   options.max_feature = max_feature;
   options.validate();
   const InputPoints input("points", points, 0, seed);
+  const bool is_scan = !mesh && seenFrom(input.points(), viewpoint);
   checkAnswerable("points", input.points());
   const Computing computing;
-  return mesh ? objectSymmetries(input.points(), *mesh, options) : objectSymmetries(input.points(), options);
+  ObjectSymmetries found =
+      mesh ? objectSymmetries(input.points(), *mesh, options) : objectSymmetries(input.points(), options);
+  if (is_scan) {
+    found.support = found.confidence = 0.0;
+    found.reason = "a scan from one side, must be a whole object";
+  }
+  return found;
 }
 
 /// \param continuous point and direction of axes.
@@ -418,6 +426,9 @@ std::pair<py::array_t<std::int64_t>, py::array_t<double>> pairs(const AnyArray& 
     distance[row(i)] = std::sqrt(found.sq_distances[i]);
   }
   return {toArray(index), toArray(distance)};
+  py::class_<StoredViewpoint>(module, "StoredViewpoint").def(py::init([](const Eigen::Vector3d& position) {
+    return StoredViewpoint{position};
+  }));
 }
 
 /// Adds a function with these names of parameters, which all are given by the package.
@@ -442,8 +453,8 @@ PYBIND11_MODULE(_pcl_symmetry, module) {
   add(module, "volume_planes", &volumePlanes, "volume", "approximate", "max_planes", "seed", "threads");
   add(module, "published_planes", &publishedPlanesOf, "points", "method", "num_points", "seed", "threads");
   add(module, "frame", &frame, "points", "viewpoint", "max_points", "as_published", "seed", "threads", "mesh");
-  add(module, "rotations", &rotations, "points", "tolerance", "absolute_tolerance", "max_feature", "seed", "threads",
-      "mesh");
+  add(module, "rotations", &rotations, "points", "viewpoint", "tolerance", "absolute_tolerance", "max_feature", "seed",
+      "threads", "mesh");
   add(module, "rotations_of", &rotationsOf, "discrete", "continuous");
   add(module, "transform", &transform, "shape", "bins", "method", "center", "radius", "sigma", "cells", "samples",
       "refined_share", "as_published", "seed", "threads");

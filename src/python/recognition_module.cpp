@@ -7,6 +7,8 @@
 #include <pybind11/pybind11.h>
 #include <pybind11/stl.h>
 
+#include <algorithm>
+#include <array>
 #include <exception>
 #include <map>
 #include <memory>
@@ -16,11 +18,14 @@
 #include <utility>
 #include <vector>
 
+#include "command_line/tool_errors.h"
+#include "io/shape_readers.h"
 #include "pcl_symmetry/impl/cloud_analysis.hpp"
 #include "pcl_symmetry/register_all.h"
 #include "pcl_symmetry/symmetry_database.h"
 #include "pcl_symmetry/symmetry_registration.h"
 #include "pcl_symmetry/symmetry_scene.h"
+#include "pcl_symmetry/viewpoint_selection.h"
 #include "python/computing.h"
 #include "python/input_points.h"
 #include "python/motions.h"
@@ -88,11 +93,14 @@ std::pair<RegisteredScans, py::array_t<int>> registerAllPoints(const std::vector
 }
 
 /// \param points (N, 3), without rows that are not finite, or (H, W, 3), as it is: rows and columns of a camera.
-Cloud cloudOf(const py::array& points) {
+/// \param viewpoint that of a file stays with the cloud.
+Cloud cloudOf(const py::array& points, const py::object& viewpoint = py::none()) {
   const bool is_organized = points.ndim() == 3;
   const InputPoints input("points", is_organized ? py::array(points.attr("reshape")(-1, points.shape(2))) : points, 0,
                           0);
   Cloud cloud;
+  if (py::isinstance<StoredViewpoint>(viewpoint))
+    cloud.sensor_origin_.head<3>() = viewpoint.cast<StoredViewpoint>().position.cast<float>();
   if (is_organized) {
     const py::array_t<float, py::array::c_style | py::array::forcecast> rows(points);
     cloud.resize(static_cast<std::uint32_t>(points.shape(1)), static_cast<std::uint32_t>(points.shape(0)));
@@ -161,7 +169,7 @@ private:
 py::tuple look(const AnyArray& points, const std::optional<pcl::Indices>& indices, const py::object& viewpoint,
                const std::optional<Eigen::Vector4d>& ground, std::size_t max_points, bool as_measured,
                std::uint64_t seed, int threads) {
-  const Cloud cloud = cloudOf(points);
+  const Cloud cloud = cloudOf(points, viewpoint);
   const Viewpoint from = viewpointOf(viewpoint);
   std::optional<Look> found;
   {
@@ -180,7 +188,7 @@ py::dict sceneOf(const AnyArray& points, const py::object& viewpoint, const std:
   scene.setOptions(options);
   scene.setViewpoint(viewpointOf(viewpoint));
   if (ground) scene.setGround(*ground);
-  scene.setInputCloud(pcl::make_shared<Cloud>(cloudOf(points)));
+  scene.setInputCloud(pcl::make_shared<Cloud>(cloudOf(points, viewpoint)));
   // Not deleted here: Python holds it.
   if (database) scene.setDatabase({database, [](const void*) {}});
   SceneAnalysis found;
@@ -207,6 +215,89 @@ py::dict sceneOf(const AnyArray& points, const py::object& viewpoint, const std:
   return py::dict("objects"_a = objects, "supports"_a = supports, "junctions"_a = junctions, "seen"_a = seen,
                   "viewpoint_from"_a = toString(found.seen ? found.seen->source() : ViewpointSource::None),
                   "plane_distance"_a = found.plane_distance, "cluster_distance"_a = found.cluster_distance);
+}
+
+/// \param text a PCD or PLY file.
+/// \return its points, (H, W, 3) or (N, 3), (F, 3) triangles, and (3,) where the sensor stood, or None.
+/// \throws std::invalid_argument naming the file.
+py::tuple read(const std::string& path, const std::string& text, bool is_ply) {
+  apps::CloudFile file;
+  try {
+    file = is_ply ? apps::readPLY(path, text) : apps::readPCD(path, text);
+  } catch (const apps::InputError& error) {
+    throw std::invalid_argument(error.what());
+  }
+  const pcl::PCLPointCloud2& cloud = file.cloud;
+  const py::ssize_t height = cloud.height, width = cloud.width;
+  py::array_t<double> points(height > 1 ? std::vector{height, width, py::ssize_t{3}}
+                                        : std::vector{width, py::ssize_t{3}});
+  std::uint8_t type = 0;
+  for (const pcl::PCLPointField& field : cloud.fields) {
+    if (field.name != "x" && field.name != "y" && field.name != "z") continue;
+    type = std::max(type, field.datatype);
+    double* const column = points.mutable_data() + (field.name[0] - 'x');
+    for (py::ssize_t i = 0; i < height * width; ++i)
+      column[3 * i] = apps::numberAt(&cloud.data[i * cloud.point_step + field.offset], field.datatype);
+  }
+  std::vector<std::array<int, 3>> faces;
+  for (const pcl::Vertices& polygon : file.polygons)
+    for (std::size_t k = 2; k < polygon.vertices.size(); ++k)
+      faces.push_back({static_cast<int>(polygon.vertices[0]), static_cast<int>(polygon.vertices[k - 1]),
+                       static_cast<int>(polygon.vertices[k])});
+  const bool is_default = file.sensor_origin.isZero(0.0F) && file.sensor_orientation.vec().isZero(0.0F);
+  return py::make_tuple(
+      type == pcl::PCLPointField::FLOAT64 ? py::object(points) : points.attr("astype")("float32"), faces,
+      is_default ? py::none() : py::cast(Eigen::Vector3d(file.sensor_origin.head<3>().cast<double>())));
+}
+
+/// Normals or directions, and weights.
+using Weighted = std::vector<std::pair<Eigen::Vector3d, double>>;
+
+/// \param planes normals and weights; the first num_symmetries are symmetries of the whole object.
+/// \param points of the object; None: views hide nothing.
+/// \return direction, score and pose of the good views, or of the worst one alone.
+std::vector<std::tuple<Eigen::Vector3d, double, RowMajor4>> views(const Weighted& planes, std::size_t num_symmetries,
+                                                                  const Weighted& axes, const Weighted& maxima,
+                                                                  const py::object& points, int number,
+                                                                  const Eigen::Vector3d& up, double separation,
+                                                                  bool worst) {
+  std::vector<SymmetryPlane> weighted;
+  for (const auto& [normal, weight] : planes) {
+    weighted.emplace_back(ReflectionPlane(normal, 0.0));
+    weighted.back().score = weight;
+    weighted.back().kind = weighted.size() <= num_symmetries ? PlaneKind::Symmetry : PlaneKind::Approximate;
+  }
+  std::vector<SymmetryAxis> lines;
+  for (const auto& [direction, weight] : axes) {
+    lines.emplace_back();
+    lines.back().direction = direction;
+    lines.back().score = weight;
+  }
+  std::vector<LocalMaximum> across;
+  for (const auto& [normal, value] : maxima) {
+    across.emplace_back();
+    across.back().plane = ReflectionPlane(normal, 0.0);
+    across.back().value = value;
+  }
+  ViewpointSelection selection;
+  selection.setPlanes(weighted, lines, across);
+  auto cloud = pcl::make_shared<Cloud>();
+  if (points.is_none()) {  // a line that no view is along
+    cloud->emplace_back(0.0F, 0.0F, 0.0F);
+    cloud->emplace_back(0.537F, 0.621F, 0.571F);
+  } else {
+    *cloud = cloudOf(arrayOf("points", points));
+  }
+  selection.setInputCloud(cloud);
+  selection.setUp(up);
+  selection.setSeparation(separation);
+  const Computing computing;
+  const std::vector<SelectedView> chosen =
+      worst ? std::vector{selection.getWorstView()} : selection.getGoodViews(number);
+  std::vector<std::tuple<Eigen::Vector3d, double, RowMajor4>> result;
+  for (const SelectedView& view : chosen)
+    result.emplace_back(view.direction, view.score, RowMajor4(view.pose.matrix().cast<double>()));
+  return result;
 }
 
 /// Models of a mapping from names to points, or of pairs of both. Points become clouds when they are used.
@@ -359,7 +450,7 @@ void addDatabase(py::module_& module) {
       .def(
           "match",
           [](const SymmetryDatabase& database, const AnyArray& points, int num_nearest, const py::object& viewpoint) {
-            const Cloud cloud = cloudOf(points);
+            const Cloud cloud = cloudOf(points, viewpoint);
             const Viewpoint from = viewpointOf(viewpoint);
             const Computing computing;
             return answerFor(cloud, nullptr, database.match(cloud, num_nearest, from));
@@ -369,7 +460,7 @@ void addDatabase(py::module_& module) {
           "recognize",
           [](const SymmetryDatabase& database, const AnyArray& points, const std::optional<pcl::Indices>& indices,
              const py::object& viewpoint, double min_confidence, int threads) {
-            const Cloud cloud = cloudOf(points);
+            const Cloud cloud = cloudOf(points, viewpoint);
             const Viewpoint from = viewpointOf(viewpoint);
             RecognitionOptions options;
             options.min_confidence = min_confidence;
@@ -383,6 +474,9 @@ void addDatabase(py::module_& module) {
 }
 
 void addScenes(py::module_& module) {
+  module.def("read", &read, py::arg("path"), py::arg("text"), py::arg("is_ply"));
+  module.def("views", &views, py::arg("planes"), py::arg("num_symmetries"), py::arg("axes"), py::arg("maxima"),
+             py::arg("points"), py::arg("number"), py::arg("up"), py::arg("separation"), py::arg("worst"));
   module.def("look", &look, py::arg("points"), py::arg("indices"), py::arg("viewpoint"), py::arg("ground"),
              py::arg("max_points"), py::arg("as_measured"), py::arg("seed"), py::arg("threads"));
   py::class_<SceneOptions>(module, "SceneOptions")

@@ -1,9 +1,11 @@
 """What a depth camera needs of the Python module: organized arrays, parts of scenes, scenes, and calls that can be ended."""
 
+import dataclasses
 import importlib.util
 import inspect
 import json
 import os
+import pickle
 import re
 import shutil
 import signal
@@ -277,6 +279,57 @@ class OrganizedArrays(unittest.TestCase):
         """The JSON of a result, or of a dict, is that of the tools."""
         try:
             import jsonschema
+    def test_files_keep_their_order_and_viewpoint(self):
+        viewpoint, (vertices, faces) = np.array([3.0, 2.0, 1.5]), box_mesh()
+        rows = seen_half(box((1.0, 0.7, 0.4), 8000), viewpoint)
+        with tempfile.TemporaryDirectory() as name:
+            folder = Path(name)
+            folder.joinpath("frame.pcd").write_bytes(pcd(self.frame.reshape(-1, 3), 320))
+            folder.joinpath("scan.pcd").write_bytes(pcd(rows, viewpoint=viewpoint))
+            folder.joinpath("cut.pcd").write_bytes(pcd(rows)[:-9])
+            header = f"ply\nformat ascii 1.0\nelement vertex {len(vertices)}\n" + "".join(f"property double {c}\n" for c in "xyz")
+            quads = [f[:3].tolist() for f in faces]
+            text = "\n".join(" ".join(map(str, v)) for v in vertices.tolist()) + "\n" + "\n".join(f"3 {a} {b} {c}" for a, b, c in quads)
+            header += f"element face {len(faces)}\nproperty list uchar int vertex_indices\nend_header\n"
+            folder.joinpath("box.PLY").write_text(header + text + "\n")
+            frame, scan, mesh = (pcl_symmetry.read(folder / each) for each in ("frame.pcd", "scan.pcd", "box.PLY"))
+            for wrong, error, words in (
+                ("none.pcd", FileNotFoundError, "none.pcd"),
+                ("cut.pcd", ValueError, "cut.pcd: "),
+                ("box.obj", ValueError, r"box.obj: unknown extension '.obj', must be .pcd or .ply"),
+            ):
+                with self.assertRaisesRegex(error, words):
+                    pcl_symmetry.read(folder / wrong)
+        np.testing.assert_array_equal(frame.points, self.frame)
+        self.assertEqual((frame.viewpoint, len(frame.faces), scan.points.dtype), (None, 0, np.float32))
+        self.assertEqual((len(pcl_symmetry.scene(frame)), pcl_symmetry.planes(frame, indices=self.labels == 1)._viewpoint_from), (2, "rays"))
+        np.testing.assert_array_equal(scan.viewpoint, viewpoint)
+        given = pcl_symmetry.planes(rows, viewpoint=viewpoint)
+        found = pcl_symmetry.planes(scan)
+        self.assertEqual([p.confidence for p in found], [p.confidence for p in given])
+        np.testing.assert_allclose(found.viewpoint, viewpoint, atol=1e-12)
+        self.assertEqual(found.to_dict()["viewpoint"]["from"], "stored")
+        self.assertIsNone(pcl_symmetry.planes(scan, viewpoint=None).viewpoint)
+        self.assertEqual(pcl_symmetry.frame(scan), pcl_symmetry.frame(rows, viewpoint=viewpoint))
+        pose = pcl_symmetry.register(scan, box(), seed=2)
+        self.assertEqual(pose, pcl_symmetry.register(rows, box(), source_viewpoint=viewpoint, seed=2))
+        self.assertTrue(pcl_symmetry.scene(scan).viewpoint is not None, "which rows alone are asked for")
+        among = dataclasses.replace(scan, viewpoint=np.zeros(3))
+        self.assertEqual(pcl_symmetry.planes(among, approximate=True).viewpoint is None, pcl_symmetry.planes(rows).viewpoint is None, "cannot be")
+        np.testing.assert_array_equal(mesh.faces, faces)
+        self.assertEqual([p.coefficients.tolist() for p in pcl_symmetry.planes(mesh)],
+                         [p.coefficients.tolist() for p in pcl_symmetry.planes(Mesh(vertices, faces))])
+        self.assertEqual(pickle.loads(pickle.dumps(mesh)), mesh)
+        self.assertEqual(repr(scan), f"Shape(points={rows.shape}, faces=0, viewpoint=[3, 2, 1.5])")
+
+    def test_a_scan_has_no_group_of_rotations_but_a_reason(self):
+        viewpoint = np.array([3.0, 2.0, 1.5])
+        stored = pcl_symmetry.Shape(seen_half(box(num_points=8000), viewpoint), np.empty((0, 3), np.int32), viewpoint)
+        for scan in (self.frame[self.labels == 1], np.where((self.labels == 1)[..., None], self.frame, np.nan), stored):
+            with self.assertWarnsRegex(RuntimeWarning, "points: a scan from one side, must be a whole object") as caught:
+                found = pcl_symmetry.rotations(scan)
+            self.assertEqual((found.name, found.confidence, found.reason[:6], caught.filename), ("", 0, "a scan", __file__))
+
         except ImportError:
             self.skipTest("jsonschema is not installed (Debian package python3-jsonschema)")
         text = found.to_json() if hasattr(found, "to_json") else json.dumps(found)

@@ -12,6 +12,7 @@ Each has a help of its own, such as help(pcl_symmetry.planes):
 planes()               planes, axes and centers of a cloud, mesh, scan, depth image or volume
 scene()                the objects of one frame of a depth camera, each with its symmetry and completion
 from_depth()           points (H, W, 3) of a depth image
+read()                 points of a PCD or PLY file, with their viewpoint
 frame()                center of symmetry and principal symmetry axes
 rotations()            the group of rotations that map an object onto itself
 register()             the pose of a scan relative to a model, without a guess; register_all(): of many scans
@@ -41,6 +42,7 @@ from .functions import (
     from_depth,
     local_symmetry,
     planes,
+    read,
     rotations,
     sample_mesh,
     segment,
@@ -59,6 +61,7 @@ __all__ = [
     "planes",
     "scene",
     "from_depth",
+    "read",
     "frame",
     "rotations",
     "register",

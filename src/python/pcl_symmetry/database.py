@@ -9,7 +9,7 @@ import warnings
 from typing import TYPE_CHECKING, Any, Callable, Dict, Iterable, Iterator, List, Mapping, Optional, Sequence, Tuple, Union
 
 from . import _recognition
-from .functions import Cloud, Core, NoAnswer, Viewpoint, _fields, _frame, _planes_of, _seen_from, left_out, no_answer, prepare, rows_of
+from .functions import Cloud, Core, NoAnswer, Viewpoint, _fields, _frame, _planes_of, left_out, no_answer, prepare, rows_of
 from .progress import Progress, shares_of
 from .results import (
     BuildReport,
@@ -69,19 +69,17 @@ def register(
     """
     import numpy as np
 
-    points, source_shift, *_ = prepare("source", source)
-    model, target_shift, *_ = prepare("target", target)
+    scan, known = prepare("source", source), prepare("target", target)
+    source_shift, target_shift = scan.shift, known.shift
     s = np.zeros(3) if source_shift is None else source_shift
     t = np.zeros(3) if target_shift is None else target_shift
     start = np.eye(4) if guess is None else np.array(guess, dtype=float)
     if start.shape == (4, 4):
         start = start.copy()
         start[:3, 3] += start[:3, :3] @ s - t
-    viewpoints = dict(
-        source_viewpoint=_seen_from(source_viewpoint, source_shift), target_viewpoint=_seen_from(target_viewpoint, target_shift)
-    )
+    viewpoints = dict(source_viewpoint=scan.seen_from(source_viewpoint), target_viewpoint=known.seen_from(target_viewpoint))
     try:
-        found = core.register(points, model, guess=start, around=around, told=progress, seed=seed, threads=threads, **viewpoints)
+        found = core.register(scan.array, known.array, guess=start, around=around, told=progress, seed=seed, threads=threads, **viewpoints)
     except NoAnswer as none:
         no_answer(none)
         return Registration(
@@ -112,12 +110,12 @@ def register_all(
 
     if isinstance(clouds, (str, bytes)) or not hasattr(clouds, "__iter__"):
         raise TypeError(f"clouds = {shown(clouds)}, must be a list of clouds")
-    arrays, shifts = [], []
+    arrays, shifts, viewpoints = [], [], []
     for k, cloud in enumerate(clouds):
-        array, shift, *_ = prepare(f"clouds[{k}]", cloud)
-        arrays.append(array)
-        shifts.append(np.zeros(3) if shift is None else shift)
-    viewpoints = [_seen_from(viewpoint, shift) for shift in shifts]
+        scan = prepare(f"clouds[{k}]", cloud)
+        arrays.append(scan.array)
+        shifts.append(np.zeros(3) if scan.shift is None else scan.shift)
+        viewpoints.append(scan.seen_from(viewpoint))
     found, merged = core.register_all(arrays, viewpoints=viewpoints, told=progress, seed=seed, threads=threads)
     transforms, left_out, pairs = found.transforms, found.left_out, found.pairs
     first = next((k for k, transform in enumerate(transforms) if transform is not None), 0)
@@ -250,7 +248,7 @@ class Database:
         """
         cloud = _near_origin(points)
         try:
-            found = self._core.match(_camera_points(cloud), num_nearest=num_nearest, viewpoint=viewpoint, told=progress)
+            found = self._core.match(_camera_points(cloud), num_nearest=num_nearest, viewpoint=cloud.seen_from(viewpoint), told=progress)
         except NoAnswer as none:
             no_answer(none)
             return []
@@ -272,7 +270,7 @@ class Database:
         points, viewpoint, indices: as in planes(). min_confidence: least probability of a model that is accepted, in [0, 1].
         """
         cloud = _near_origin(points)
-        options = dict(viewpoint=viewpoint, min_confidence=min_confidence, told=progress, threads=threads)
+        options = dict(viewpoint=cloud.seen_from(viewpoint), min_confidence=min_confidence, told=progress, threads=threads)
         try:
             found = self._core.recognize(_camera_points(cloud), indices=rows_of(indices, cloud.shape), **options)
         except NoAnswer as none:
@@ -330,7 +328,7 @@ def scene(
 ) -> Scene:
     """The objects of one frame of a depth camera or scanner, and their symmetries.
 
-    points: (H, W, 3), the pixels of a camera, see from_depth(), or (N, 3) with the viewpoint that they were seen from.
+    points: (H, W, 3), the pixels of a camera, see from_depth() and read(), or (N, 3) with the viewpoint that they were seen from.
     viewpoint: as in planes(). ground: (4,) a, b, c, d of what the objects stand on, in place of supporting planes that are
     searched for.
     database: names objects by its models that they show, of a confidence of at least min_name_confidence.
@@ -347,7 +345,8 @@ def scene(
     if database is None:
         left_out(scene, locals(), "no database", "min_name_confidence")
     cloud = prepare("points", points)
-    if len(cloud.shape) == 1 and (viewpoint is None or isinstance(viewpoint, str)):
+    seen_from = cloud.seen_from(viewpoint)
+    if len(cloud.shape) == 1 and (seen_from is None or isinstance(seen_from, str)):
         raise ValueError("viewpoint: of rows without order must be (x, y, z), where the sensor stood; pixels (H, W, 3) show theirs")
     if not isinstance(database, (Database, type(None))):
         raise TypeError(f"database = {shown(database)}, must be a Database")
@@ -368,7 +367,6 @@ def scene(
     plane = None if ground is None else np.array(ground, dtype=float)
     if plane is not None and cloud.shift is not None:
         plane[3] += plane[:3] @ cloud.shift
-    seen_from = _seen_from(viewpoint, cloud.shift)
     kept = None if database is None else database._core._asked
     found = core.scene(_camera_points(cloud), viewpoint=seen_from, ground=plane, database=kept, options=options, told=progress)
     reason = "" if np.isfinite(cloud.array).all(axis=1).any() else "no finite point"

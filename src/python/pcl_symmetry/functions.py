@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 import os
 import re
 import warnings
@@ -21,6 +22,7 @@ from .results import (
     Rotations,
     Symmetrized,
     RotationAxis,
+    Shape,
     View,
     shown,
 )
@@ -106,10 +108,18 @@ class Cloud(NamedTuple):
     """(H, W) of an organized array, which became rows; else (N,)."""
     mesh: Any = None
     """(vertices, faces) in the frame of the array; None for a cloud."""
+    stored: Any = None
+    """The viewpoint of a Shape of read(), input frame, or None."""
 
     def surface(self) -> Any:
         """The mesh as the core has it, on which symmetries become exact."""
         return None if self.mesh is None else core.MeshSurface(*self.mesh)
+
+    def seen_from(self, viewpoint: Viewpoint) -> Any:
+        """The viewpoint as the core takes it; "auto" is that of the file, where there is one."""
+        if isinstance(viewpoint, str) and viewpoint == "auto" and self.stored is not None:
+            return core.StoredViewpoint(self.stored if self.shift is None else self.stored - self.shift)
+        return _seen_from(viewpoint, self.shift)
 
 
 def prepare(name: str, points: Any, num_mesh_points: int = _NUM_MESH_POINTS) -> Cloud:
@@ -125,12 +135,12 @@ def prepare(name: str, points: Any, num_mesh_points: int = _NUM_MESH_POINTS) -> 
         sampled = core.sample_mesh(vertices, faces, num_mesh_points, seed=1)
         return Cloud(sampled, shift, (len(sampled),), (vertices, np.asarray(faces)))
     array, shift = _near_origin(name, positions.reshape(-1, 3) if positions.ndim == 3 and positions.shape[2] == 3 else positions)
-    return Cloud(array, shift, positions.shape[: max(1, positions.ndim - 1)])
+    return Cloud(array, shift, positions.shape[: max(1, positions.ndim - 1)], stored=points.viewpoint if isinstance(points, Shape) else None)
 
 
 def of_vertices(name: str, points: Any) -> Cloud:
     """The same with the vertices of a mesh in place of points on it: answers about single points then name the vertices."""
-    return prepare(name, parts_of(name, points)[0])
+    return prepare(name, dataclasses.replace(points, faces=points.faces[:0]) if isinstance(points, Shape) else parts_of(name, points)[0])
 
 
 def parts_of(name: str, points: Any) -> Tuple[NDArray[Any], Any]:
@@ -138,8 +148,10 @@ def parts_of(name: str, points: Any) -> Tuple[NDArray[Any], Any]:
     import numpy as np
 
     if points is None or isinstance(points, (str, bytes, os.PathLike)):
-        reading = "" if points is None else "; open3d.io.read_point_cloud() and trimesh.load() read files, from_depth() takes the pixels of a depth image"
+        reading = "" if points is None else "; read() and trimesh.load() read files, from_depth() takes the pixels of a depth image"
         raise TypeError(f"{name} = {shown(points)}, must be an array of shape (N, 3), or a cloud or mesh of Open3D or trimesh{reading}")
+    if isinstance(points, Shape):
+        return points.points, points.faces if len(points.faces) else None
     faces = None
     for member, positions in (("point", "positions"), ("vertex", "positions"), ("points", ""), ("vertices", "")):
         found = None if hasattr(points, "__array__") else getattr(points, member, None)
@@ -246,21 +258,18 @@ def look(
     """What the classes for PCL select of an organized array, of a part of a scene, and of what stands on a ground."""
     import numpy as np
 
-    seen_from = _seen_from(viewpoint, cloud.shift)
+    seen_from = cloud.seen_from(viewpoint)
     if cloud.mesh is not None and indices is not None:
         raise ValueError("indices: must be left out with a mesh")
     if len(cloud.shape) == 1 and indices is None and ground is None:
-        return Used(cloud.array, seen_from, "inferred" if isinstance(seen_from, str) else "given")
-    try:
-        from . import _recognition
-    except ImportError:
-        raise ValueError("organized arrays, indices and ground: of a module that was built with PCL") from None
+        known = "given" if isinstance(seen_from, (np.ndarray, type(None))) else "inferred" if isinstance(seen_from, str) else "stored"
+        return Used(cloud.array, seen_from, known)
     plane = None
     if ground is not None:
         plane = np.array(ground, dtype=float)
         if plane.shape == (4,) and cloud.shift is not None:
             plane[3] += plane[:3] @ cloud.shift
-    points, rows, seen, viewpoint_from, may_be_rings, reason = Core(_recognition).look(
+    points, rows, seen, viewpoint_from, may_be_rings, reason = _pcl("organized arrays, indices and ground").look(
         cloud.array.reshape(*cloud.shape, 3) if len(cloud.shape) == 2 else cloud.array,
         rows_of(indices, cloud.shape),
         viewpoint=seen_from,
@@ -271,6 +280,33 @@ def look(
         threads=threads,
     )
     return Used(points, seen, viewpoint_from, rows, may_be_rings, re.sub("^input cloud: ", "", reason))
+
+
+def _pcl(what: str) -> Core:
+    try:
+        from . import _recognition
+    except ImportError:
+        raise ValueError(f"{what}: of a module that was built with PCL") from None
+    return Core(_recognition)
+
+
+def read(file: Union[str, "os.PathLike[str]"]) -> Shape:
+    """The points of a PCD or PLY file, in their order and with their viewpoint, which all functions take.
+
+    Of a mesh the points are its vertices, and functions sample it. Other readers drop rows that are not finite, and with them the
+    rows and columns of a camera, and the viewpoint: Open3D needs read_point_cloud(file, remove_nan_points=False) and the
+    reshape to (H, W, 3).
+    Raises OSError where the file cannot be read, and ValueError, naming it, where it is no such file or is damaged.
+    """
+    import numpy as np
+
+    name = os.fspath(file)
+    extension = os.path.splitext(name)[1].lower()
+    if extension not in (".pcd", ".ply"):
+        raise ValueError(f"{name}: unknown extension '{extension}', must be .pcd or .ply; trimesh.load() reads other meshes")
+    with open(name, "rb") as opened:
+        points, faces, viewpoint = _pcl("read()").read(name, opened.read(), extension == ".ply")
+    return Shape(points, np.array(faces, dtype=np.int32).reshape(-1, 3), viewpoint)
 
 
 def rows_of(indices: Optional[ArrayLike], shape: Tuple[int, ...]) -> Optional[List[int]]:
@@ -392,10 +428,10 @@ def planes(
 ) -> Planes:
     """Planes of symmetry of a cloud or of a volume (Sections 4.1 to 4.4): a list of symmetries, empty where there is none.
 
-    points: (N, 3), input units, or a cloud or mesh of Open3D or trimesh; float32 rows are not copied. (H, W, 3): the pixels of
-        a depth camera, see from_depth(), whose rays show what it saw. Rows that are not finite are left out. The planes of a
+    points: (N, 3), input units, a Shape of read(), or a cloud or mesh of Open3D or trimesh; float32 rows are not copied.
+        (H, W, 3): the pixels of a depth camera, see from_depth(), whose rays show what it saw. Rows that are not finite are left out. The planes of a
         mesh are exact: the last step refines on the mesh itself.
-    viewpoint: where the scanner stood: "auto" (the points decide), None (seen from all sides) or (x, y, z).
+    viewpoint: where the scanner stood: "auto" (the file of read(), or the points decide), None (seen from all sides) or (x, y, z).
     indices: the object is a part of the points, its scene: rows (K,), or a mask of the shape of the points, such as
         labels == 3. The other points hide it, and it stands on them.
     ground: (4,) a, b, c, d of the plane a x + b y + c z + d = 0 that the object stands on; with a viewpoint, sparse points of
@@ -766,15 +802,17 @@ def rotations(
     points, tolerance, absolute_tolerance, progress: as in planes().
     max_feature: share of the surface, such as a screw or a notch, that a symmetry may map off it, in [0, 1].
     Points that show no surface at the tolerance, as solid samples, atoms and few points do, have a reason in place of a
-    group, with the least tolerance at which they do; a group that takes points to points is found all the same.
-    Raises ValueError for bad parameters; fewer than 20 distinct points, and points on a line, are warned of.
+    group, with the least tolerance at which they do; a group that takes points to points is found all the same. So have scans
+    from one side, whose axes planes() finds: what they hide would be taken for empty.
+    Raises ValueError for bad parameters; every reason is warned of (RuntimeWarning), as of fewer than 20 distinct points.
     """
     import numpy as np
 
     if absolute_tolerance:
         left_out(rotations, locals(), "absolute_tolerance", "tolerance")
     cloud = prepare("points", points)
-    options = dict(tolerance=tolerance, absolute_tolerance=absolute_tolerance, max_feature=max_feature, seed=seed, threads=threads)
+    used = look(cloud, "auto", max_points=0, as_measured=True, seed=seed, threads=threads)
+    options = dict(viewpoint=used.viewpoint, tolerance=tolerance, absolute_tolerance=absolute_tolerance, max_feature=max_feature, seed=seed, threads=threads)
     try:
         found = core.rotations(cloud.array, told=progress, mesh=cloud.surface(), **options)
     except NoAnswer as none:
@@ -820,6 +858,8 @@ def segment(
     try:
         with shares_of(progress) as tell:
             labels = np.asarray(core.segment(cloud.array, faces, progress=tell, **options), dtype=np.int32)
+    if fields["reason"]:
+        warnings.warn(f"points: {fields['reason']}", RuntimeWarning, stacklevel=2)
     except NoAnswer as none:
         no_answer(none)
         return np.full(cloud.shape, -1, np.int32)

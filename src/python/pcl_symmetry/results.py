@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 __all__ = [
     "Axis", "BuildReport", "Center", "Frame", "Junction", "Map", "Match", "ModelEvidence", "Plane", "Planes", "PoseEvidence",
     "PoseScore", "ProbableFrame", "Profile", "Recognized", "ReflectionPlane", "RegisteredScans", "Registration",
-    "RotationAxis", "Rotations", "Scene", "SceneObject", "Support", "Symmetrized", "View",
+    "RotationAxis", "Rotations", "Scene", "SceneObject", "Shape", "Support", "Symmetrized", "View",
 ]
 
 Self = TypeVar("Self", bound="Result")
@@ -400,6 +400,29 @@ class View(Result):
     """(3,) unit, from the object to the camera."""
     score: float
     """S of Section 5.4, >= 0."""
+    pose: Optional[NDArray[np.float64]] = None
+    """(4, 4) of a camera there, which sees the whole object at 25 degrees: from its frame (x right, y down, z forward) to that of
+    the input; None where planes alone were given."""
+
+    def _json(self) -> Dict[str, Any]:
+        found = super()._json()
+        pose = found.pop("pose")
+        return found if pose is None else {**found, "pose": _numbers(self.pose)}  # type: ignore[arg-type]
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Shape(Result):
+    """What read() found in a file; every function takes it as points."""
+
+    points: NDArray[Any]
+    """(N, 3), or (H, W, 3) with rows and columns of a camera, NaN where nothing was measured; float64 where the file has it."""
+    faces: NDArray[np.int32]
+    """(F, 3) rows of points; (0, 3) of a cloud."""
+    viewpoint: Optional[NDArray[np.float64]]
+    """(3,) where the sensor stood, which viewpoint="auto" means; None where the file says nothing of it."""
+
+    def __repr__(self) -> str:
+        return f"Shape(points={self.points.shape}, faces={len(self.faces)}, viewpoint={_text(self.viewpoint)})"
 
 
 @dataclass(frozen=True, eq=False, repr=False)
