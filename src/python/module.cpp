@@ -30,7 +30,6 @@
 #include "pcl_symmetry/core/symmetric_completion.h"
 #include "pcl_symmetry/core/symmetrized_shape.h"
 #include "pcl_symmetry/core/symmetry_frame.h"
-#include "pcl_symmetry/core/viewpoint_score.h"
 #include "pcl_symmetry/core/volume_planes.h"
 #include "python/computing.h"
 #include "python/evidence.h"
@@ -277,8 +276,8 @@ ObjectSymmetries rotations(const AnyArray& points, const py::object& viewpoint, 
   options.max_feature = max_feature;
   options.validate();
   const InputPoints input("points", points, 0, seed);
-  const bool is_scan = !mesh && seenFrom(input.points(), viewpoint);
   checkAnswerable("points", input.points());
+  const bool is_scan = !mesh && seenFrom(input.points(), viewpoint);
   const Computing computing;
   ObjectSymmetries found =
       mesh ? objectSymmetries(input.points(), *mesh, options) : objectSymmetries(input.points(), options);
@@ -395,19 +394,6 @@ SymmetryMap transform(const py::object& shape, const std::array<int, 3>& bins, c
   return planarTransform(input.edt, grid, input.center_of_mass, options);
 }
 
-/// Normals or directions, and weights.
-using Weighted = std::vector<std::pair<Eigen::Vector3d, double>>;
-
-std::vector<RankedView> viewpoints(const Weighted& planes, const Weighted& axes, const Weighted& maxima) {
-  const auto weighted = [](const Weighted& rows) {
-    std::vector<ViewPlane> result;
-    for (const auto& [normal, weight] : rows) result.push_back({normal, weight});
-    return result;
-  };
-  const Computing computing;
-  return bestViews(viewPlanes(weighted(planes), weighted(axes), weighted(maxima)));
-}
-
 /// \return for each row the row of its counterpart, -1 for none, and its distance from the reflection.
 std::pair<py::array_t<std::int64_t>, py::array_t<double>> pairs(const AnyArray& points, const ReflectionPlane& plane,
                                                                 double max_distance) {
@@ -426,9 +412,6 @@ std::pair<py::array_t<std::int64_t>, py::array_t<double>> pairs(const AnyArray& 
     distance[row(i)] = std::sqrt(found.sq_distances[i]);
   }
   return {toArray(index), toArray(distance)};
-  py::class_<StoredViewpoint>(module, "StoredViewpoint").def(py::init([](const Eigen::Vector3d& position) {
-    return StoredViewpoint{position};
-  }));
 }
 
 /// Adds a function with these names of parameters, which all are given by the package.
@@ -443,6 +426,9 @@ PYBIND11_MODULE(_pcl_symmetry, module) {
   addComputing(module);
   py::register_exception<NoAnswer>(module, "NoAnswer");
   py::class_<Visibility>(module, "Visibility").def_property_readonly("viewpoint", &Visibility::viewpoint);
+  py::class_<StoredViewpoint>(module, "StoredViewpoint").def(py::init([](const Eigen::Vector3d& position) {
+    return StoredViewpoint{position};
+  }));
   addEvidence(module);
   py::class_<MeshSurface>(module, "MeshSurface").def(py::init(&meshSurface));
   addResults(module);
@@ -467,7 +453,6 @@ PYBIND11_MODULE(_pcl_symmetry, module) {
   add(module, "symmetrize", &symmetrize, "points", "faces", "plane", "half", "threads");
   add(module, "mirrored_half", &mirroredHalfOf, "vertices", "faces", "plane", "left");
   add(module, "profile", &revolutionProfileOf, "points", "point", "direction", "num_points");
-  add(module, "viewpoints", &viewpoints, "planes", "axes", "maxima");
   add(module, "sample_mesh", &sampleMesh, "vertices", "faces", "num_points", "seed");
   add(module, "pairs", &pairs, "points", "plane", "max_distance");
   module.attr("__version__") = PCL_SYMMETRY_VERSION;

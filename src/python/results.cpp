@@ -8,7 +8,6 @@
 #include "pcl_symmetry/core/rotational_symmetry.h"
 #include "pcl_symmetry/core/symmetrized_shape.h"
 #include "pcl_symmetry/core/symmetry_map.h"
-#include "pcl_symmetry/core/viewpoint_score.h"
 #include "python/evidence.h"
 #include "python/input_points.h"
 #include "python/motions.h"
@@ -176,9 +175,6 @@ void addResults(py::module_& module) {
   addPlaneSearch(module);
   addFrame(module);
   addRotations(module);
-  py::class_<RankedView>(module, "View")
-      .def_readonly("direction", &RankedView::direction)
-      .def_readonly("score", &RankedView::score);
   py::class_<SymmetryMap>(module, "Map")
       .def_property_readonly(
           "values",

@@ -153,6 +153,17 @@ class SameBytes(unittest.TestCase):
                     read = np.frombuffer(body, "<f4", count=values.size)  # PCL fills the last page of the file
                     np.testing.assert_array_equal(read, values.ravel(), err_msg=f"{kind} {i}")
 
+    def test_of_views(self):
+        tool, points = Path(os.environ["TOOLS"]) / "pcl_symmetry_viewpoint", lamp()
+        with tempfile.TemporaryDirectory() as folder:
+            (Path(folder) / "lamp.pcd").write_bytes(pcd(points))
+            flags = "-up 0,1,0 -views 3 -separation 30 -json views.json -quiet".split()
+            subprocess.run([tool, "lamp.pcd", *flags], cwd=folder, check=True, capture_output=True)
+            read = json.loads((Path(folder) / "views.json").read_text())
+        options = dict(up=(0, 1, 0), number=3, separation=30 * np.pi / 180)
+        self.assertEqual([view.to_dict() for view in pcl_symmetry.viewpoints(points, **options)], read["good"])
+        self.assertEqual([view.to_dict() for view in pcl_symmetry.viewpoints(points, worst=True, **options)], [read["worst"]])
+
 
 class DepthImages(unittest.TestCase):
     def test_become_points_in_the_frame_of_the_camera(self):
@@ -177,8 +188,12 @@ class DepthImages(unittest.TestCase):
                 pcl_symmetry.from_depth(*wrong)
         with self.assertRaisesRegex(TypeError, "depth = 'a.png', must be .* read files"):
             pcl_symmetry.from_depth("a.png", INTRINSICS)
-        of_open3d = types.SimpleNamespace(intrinsic_matrix=matrix)
-        np.testing.assert_array_equal(pcl_symmetry.from_depth(depth, of_open3d), points)
+        for size in ({}, dict(width=320, height=240), dict(width=-1, height=-1)):
+            of_open3d = types.SimpleNamespace(intrinsic_matrix=matrix, **size)
+            np.testing.assert_array_equal(pcl_symmetry.from_depth(depth, of_open3d), points)
+        of_another = types.SimpleNamespace(intrinsic_matrix=matrix, width=640, height=480)
+        with self.assertRaisesRegex(ValueError, r"depth = array of shape \(240, 320\), must be \(480, 640\), that of the intrinsics"):
+            pcl_symmetry.from_depth(depth, of_another)
 
 
 @unittest.skipUnless(has_pcl(), "the module was built without PCL")
@@ -264,21 +279,6 @@ class OrganizedArrays(unittest.TestCase):
         with self.assertRaisesRegex(ValueError, "min_points = 3, must be >= 20"):
             pcl_symmetry.scene(self.frame, min_points=3)
 
-    def test_a_database_names_what_is_in_a_frame(self):
-        database = pcl_symmetry.Database(":memory:")
-        database.build({"first": box((0.3, 0.3, 0.25)), "second": box((0.25, 0.2, 0.15)), "bar": bar()})
-        self.assert_follow({"models": [each.to_dict() for each in database.recognize(self.frame, indices=self.labels == 1)], "known": True}, "recognition")
-        self.assert_follow(pcl_symmetry.scene(self.frame, database=database), "scene", file="-", timing_ms={})
-        self.assertEqual(database.names, ["bar", "first", "second"])
-        recognized = database.recognize(self.frame, indices=self.labels == 1, min_confidence=0.0)
-        self.assertEqual(recognized[0].name, "first")
-        self.assertEqual(len(database.match(np.where((self.labels == 1)[..., None], self.frame, np.nan))), 3)
-
-
-    def assert_follow(self, found, schema, **only_of_tools):
-        """The JSON of a result, or of a dict, is that of the tools."""
-        try:
-            import jsonschema
     def test_files_keep_their_order_and_viewpoint(self):
         viewpoint, (vertices, faces) = np.array([3.0, 2.0, 1.5]), box_mesh()
         rows = seen_half(box((1.0, 0.7, 0.4), 8000), viewpoint)
@@ -330,6 +330,21 @@ class OrganizedArrays(unittest.TestCase):
                 found = pcl_symmetry.rotations(scan)
             self.assertEqual((found.name, found.confidence, found.reason[:6], caught.filename), ("", 0, "a scan", __file__))
 
+    def test_a_database_names_what_is_in_a_frame(self):
+        database = pcl_symmetry.Database(":memory:")
+        database.build({"first": box((0.3, 0.3, 0.25)), "second": box((0.25, 0.2, 0.15)), "bar": bar()})
+        self.assert_follow({"models": [each.to_dict() for each in database.recognize(self.frame, indices=self.labels == 1)], "known": True}, "recognition")
+        self.assert_follow(pcl_symmetry.scene(self.frame, database=database), "scene", file="-", timing_ms={})
+        self.assertEqual(database.names, ["bar", "first", "second"])
+        recognized = database.recognize(self.frame, indices=self.labels == 1, min_confidence=0.0)
+        self.assertEqual(recognized[0].name, "first")
+        self.assertEqual(len(database.match(np.where((self.labels == 1)[..., None], self.frame, np.nan))), 3)
+
+
+    def assert_follow(self, found, schema, **only_of_tools):
+        """The JSON of a result, or of a dict, is that of the tools."""
+        try:
+            import jsonschema
         except ImportError:
             self.skipTest("jsonschema is not installed (Debian package python3-jsonschema)")
         text = found.to_json() if hasattr(found, "to_json") else json.dumps(found)
@@ -354,6 +369,8 @@ class OrganizedArrays(unittest.TestCase):
         for each in points:
             frame = pcl_symmetry.frame(each)
             self.assert_follow(frame, "frame", timing_ms={})
+            view = pcl_symmetry.viewpoints(each)[0]
+            self.assert_follow(dict(up=[0, 0, 1], best=view.to_dict(), worst=view.to_dict(), good=[]), "views", **only)
             np.testing.assert_array_equal(json.loads(frame.to_json())["axes"][1], frame.axes[:, 1])
             symmetries = json.loads(pcl_symmetry.rotations(each).to_json())
             extent = {name: 1.0 for name in "diameter min_x min_y min_z size_x size_y size_z".split()}

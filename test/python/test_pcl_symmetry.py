@@ -378,6 +378,7 @@ class OtherFunctions(unittest.TestCase):
         self.assertEqual(repr(pcl_symmetry.ReflectionPlane((0, 0, 2), 1)), "ReflectionPlane(normal=[0, 0, 1], offset=0.5)")
         self.assertRegex(repr(pcl_symmetry.frame(box())), r"^Frame\(center=\[.*axes=\[\[.*revolution_axis=-1\)$")
         self.assertRegex(repr(pcl_symmetry.rotations(box())), r"^Rotations\(name='D2', center=.*confidence=")
+        self.assertRegex(repr(pcl_symmetry.planes(lamp(), approximate=True)), r"^Planes\(\[\].*, approximate=[1-9]")
         self.assertRegex(repr(pcl_symmetry.viewpoints(found)[0]), r"^View\(direction=\[.*score=")
 
     def test_half_a_box_is_completed(self):
@@ -470,6 +471,28 @@ class OtherFunctions(unittest.TestCase):
     def test_views_show_three_sides_of_a_box(self):
         views = pcl_symmetry.viewpoints(pcl_symmetry.planes(box()).planes)
         self.assertGreater(np.abs(views[0].direction).min(), 0.3)
+        self.assertEqual(len(views), 1, "all other corners show the same again")
+        self.assertIsNone(views[0].pose)
+
+    def test_views_of_points_have_cameras_and_are_apart(self):
+        for points in (lamp(), lamp().astype(float) + (4e5, 5e6, 100.0), Mesh(*box_mesh())):
+            views = pcl_symmetry.viewpoints(points, number=3, up=(0, 0, 2), separation=0.5)
+            self.assertTrue(1 <= len(views) <= 3)
+            self.assertEqual([v.score for v in views], sorted((v.score for v in views), reverse=True))
+            directions = np.array([v.direction for v in views])
+            self.assertTrue((directions[:, 2] > -0.06).all(), "from above")
+            self.assertTrue(((directions @ directions.T)[np.triu_indices(len(views), 1)] < np.cos(0.5) + 1e-6).all())
+            for view in views:
+                np.testing.assert_allclose(view.pose[:3, 2], -view.direction, atol=1e-5)
+                away = view.pose[:3, 3] - pcl_symmetry.frame(points).center
+                self.assertGreater(away / np.linalg.norm(away) @ view.direction, 0.9)
+            (worst,) = pcl_symmetry.viewpoints(points, worst=True)
+            self.assertLess(worst.score, views[0].score)
+        for wrong, words in ((dict(number=0), "num_views = 0, must be >= 1"), (dict(up=(0, 0, 0)), "up = "), (dict(separation=4.0), "separation = 4")):
+            with self.assertRaisesRegex(ValueError, words):
+                pcl_symmetry.viewpoints(box(), **wrong)
+        with self.assertWarnsRegex(RuntimeWarning, "points: .*at least 20"):
+            self.assertEqual(pcl_symmetry.viewpoints(box()[:3]), [])
 
     def test_a_body_of_revolution_is_seen_from_its_side_a_little_from_above(self):
         random = np.random.default_rng(1)
@@ -865,6 +888,7 @@ class Results(unittest.TestCase):
         self.assertEqual(found[-1], found.planes[-1])
         with self.assertRaisesRegex(IndexError, "index = 9, must be that of one of 3 planes"):
             found.point_support(9)
+        np.testing.assert_array_equal(found.point_support(found[1]), found.point_support(1))
 
     def test_a_plane_reflects_points_and_pairs_them(self):
         plane = pcl_symmetry.ReflectionPlane((1, 0, 0), 0.5)
@@ -899,6 +923,8 @@ class Results(unittest.TestCase):
         points = box()
         self.assertEqual(len(pcl_symmetry.planes(points).plot(points).collections), 4)
         self.assertEqual(len(pcl_symmetry.frame(points).plot(points).lines), 3)
+        mesh = Mesh(*box_mesh())
+        self.assertGreater(len(pcl_symmetry.frame(mesh).plot(mesh).collections[0].get_offsets()), 1000, "not the corners alone")
         self.assertEqual(len(pcl_symmetry.transform(points, (8, 8, 9)).plot().images), 1)
 
 
@@ -970,7 +996,9 @@ class Package(unittest.TestCase):
         s, rotations, plane = pcl_symmetry, pcl_symmetry.rotations(box()), pcl_symmetry.ReflectionPlane([1, 0, 0], 0.0)
         calls = [
             (ValueError, lambda: rotations.canonical(np.eye(3)), r"pose = .*, must be numbers of shape \(4, 4\)"),
-            (TypeError, lambda: s.viewpoints(box()), r"planes = array of shape \(6000, 3\) and type float32, must be Planes or"),
+            (TypeError, lambda: s.viewpoints(None), "points = None, must be an array"),
+            (TypeError, lambda: s.planes(box()).point_support("first"), "index = 'first', must be int or a plane of this answer"),
+            (ValueError, lambda: s.planes(box()).point_support(s.planes(lamp(), approximate=True).every[0]), r"index = Plane\(.*must be a plane of"),
             (TypeError, lambda: s.symmetrize(box(), plane, half=3), "half = 3, must be str"),
         ]
         if has_pcl():

@@ -669,17 +669,51 @@ def symmetrize(
     return Symmetrized(points=result, faces=own, rows=rows, deviation=deviation, **measures)
 
 
-def viewpoints(planes: Union[Planes, Sequence[Plane]]) -> List[View]:
+def viewpoints(
+    points: Any,
+    *,
+    number: int = 4,
+    up: ArrayLike = (0.0, 0.0, 1.0),
+    separation: float = 0.7,
+    worst: bool = False,
+    seed: int = 1,
+    threads: int = 0,
+) -> List[View]:
     """Directions from the object to the camera that show the least repetition (Section 5.4), best first.
 
-    planes: of planes(approximate=True), with their axes of revolution and the maxima of their map; or a list of planes alone.
+    points: as in planes(), whose planes(approximate=True) are looked for. Planes, or a list of Plane, are taken as they are: the
+        object is then unknown, so that no view hides some of it or has a pose; seed and threads do nothing.
+    number: of views at most, >= 1. separation: angle between them, and from each other's mirror images, radians, in [0, pi].
+    up: direction that is about up; views are from above, and cameras stand upright along the nearest principal symmetry axis.
+    worst: the worst view alone in place of the good ones.
+    Points that hold no answer are warned of (RuntimeWarning) and have none.
     """
-    if not all(isinstance(plane, Plane) for plane in planes):
-        raise TypeError(f"planes = {shown(planes)}, must be Planes or a list of Plane")
-    axes, maxima = (planes.axes, planes._maxima) if isinstance(planes, Planes) else ([], [])
-    every = planes.every if isinstance(planes, Planes) else planes
-    weighted = [(p.normal, p.score) for p in every], [(a.direction, a.score) for a in axes], maxima
-    return [View(v.direction, v.score) for v in core.viewpoints(*weighted)]
+    import numpy as np
+
+    cloud: Any = None
+    given = points
+    if not isinstance(points, Planes) and not (isinstance(points, (list, tuple)) and all(isinstance(each, Plane) for each in points)):
+        cloud = prepare("points", points)
+        given = planes(points, approximate=True, seed=seed, threads=threads)
+        if given.reason:
+            return []
+    every = given.every if isinstance(given, Planes) else sorted(given, key=lambda plane: bool(plane.kind != "symmetry"))
+    axes, maxima = (given.axes, given._maxima) if isinstance(given, Planes) else ([], [])
+    found = _pcl("viewpoints()").views(
+        planes=[(p.normal, p.score) for p in every],
+        num_symmetries=sum(p.kind == "symmetry" for p in every),
+        axes=[(a.direction, a.score) for a in axes],
+        maxima=maxima,
+        points=None if cloud is None else cloud.array,
+        up=up,
+        number=number,
+        separation=separation,
+        worst=worst,
+    )
+    shift = np.zeros(3) if cloud is None or cloud.shift is None else cloud.shift
+    to_input = np.eye(4)
+    to_input[:3, 3] = shift
+    return [View(direction, score, None if cloud is None else to_input @ pose) for direction, score, pose in found]
 
 
 class Merging(_pcl_symmetry.Merging):
@@ -722,6 +756,9 @@ def from_depth(depth: ArrayLike, intrinsics: ArrayLike, *, unit: float = 1.0) ->
     k = np.asarray(getattr(intrinsics, "intrinsic_matrix", intrinsics), dtype=float)
     if k.shape == (3, 3):
         k = k[[0, 1, 0, 1], [0, 1, 2, 2]]
+    size = getattr(intrinsics, "height", -1), getattr(intrinsics, "width", -1)  # those of Open3D, -1 where it knows none
+    if min(size) > 0 and size != z.shape:
+        raise ValueError(f"depth = array of shape {z.shape}, must be {size}, that of the intrinsics")
     if k.shape != (4,) or not np.isfinite(k).all() or not (k[:2] > 0).all():
         raise ValueError(f"intrinsics = {shown(intrinsics)}, must be (3, 3) or (fx, fy, cx, cy), fx and fy > 0")
     z = np.where(np.isfinite(z) & (z > 0), z, np.nan) * unit
@@ -821,6 +858,8 @@ def rotations(
     names = ("name", "center", "support", "confidence", "fold", "discrete", "continuous", "tolerance", "stray_points", "reason")
     _warn_of_stray(found)
     fields = _fields(found, *names)
+    if fields["reason"]:
+        warnings.warn(f"points: {fields['reason']}", RuntimeWarning, stacklevel=2)
     result = Rotations(**{**fields, "name": "" if fields["reason"] else fields["name"]})
     return result if cloud.shift is None else result._moved(cloud.shift)
 
@@ -858,8 +897,6 @@ def segment(
     try:
         with shares_of(progress) as tell:
             labels = np.asarray(core.segment(cloud.array, faces, progress=tell, **options), dtype=np.int32)
-    if fields["reason"]:
-        warnings.warn(f"points: {fields['reason']}", RuntimeWarning, stacklevel=2)
     except NoAnswer as none:
         no_answer(none)
         return np.full(cloud.shape, -1, np.int32)

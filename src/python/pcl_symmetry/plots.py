@@ -86,9 +86,9 @@ def plot_scene(found: Scene, points: Any, axes: Any) -> Any:
 
 
 def plot_frame(frame: Frame, points: Any, axes: Any) -> Any:
-    from .functions import of_vertices
+    from .functions import prepare
 
-    array, shift, *_ = of_vertices("points", points)
+    array, shift, *_ = prepare("points", points)
     points = array.astype(float) if shift is None else array + shift
     axes = _axes_for(points, axes, "center of symmetry and principal symmetry axes")
     for k in range(3):

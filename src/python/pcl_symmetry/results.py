@@ -508,13 +508,19 @@ class Planes(Result):
         """Symmetries, possible, approximate and local planes."""
         return [*self.planes, *self.possible, *self.approximate]
 
-    def point_support(self, index: int) -> NDArray[np.float32]:
-        """Support for one of `every` at each point of the input, in [0, 1]; NaN for points that were not used.
+    def point_support(self, index: Union[int, Plane]) -> NDArray[np.float32]:
+        """Support for one of `every`, or its index, at each point of the input, in [0, 1]; NaN for points that were not used.
 
         (N,) for rows, (H, W) for an organized array, (M,) for a mesh: that of its samples.
         """
         import numpy as np
 
+        if isinstance(index, Plane):
+            if index not in self.every:
+                raise ValueError(f"index = {index}, must be a plane of this answer")
+            index = self.every.index(index)
+        if not isinstance(index, (int, np.integer)):
+            raise TypeError(f"index = {shown(index)}, must be int or a plane of this answer")
         if not -len(self._support) <= index < len(self._support):
             raise IndexError(f"index = {index}, must be that of one of {len(self._support)} planes with support")
         values = self._support[index]
@@ -559,7 +565,7 @@ class Planes(Result):
     def __repr__(self) -> str:
         if self.reason:
             return f"Planes([], reason={self.reason!r})"
-        others = "".join(f", {name}={len(getattr(self, name))}" for name in ("possible", "axes", "centers", "rotations") if getattr(self, name))
+        others = "".join(f", {name}={len(getattr(self, name))}" for name in ("possible", "approximate", "axes", "centers", "rotations") if getattr(self, name))
         return "Planes([" + "".join(f"\n  {plane!r}," for plane in self.planes) + ("\n]" if self.planes else "]") + others + ")"
 
     def _moved(self, shift: NDArray[np.float64]) -> Planes:
