@@ -10,6 +10,7 @@ Checks README.md, CONTRIBUTING.md and the pages of apps, include, src and test, 
   console blocks  each "$ command" is run with the programs of the folder TOOLS; what it prints, on both streams, and
                   what the page shows agree: text word by word, numbers to two significant digits, times left out.
                   A line "..." on the page stands for any lines. A command that fails is an error.
+  python blocks   run without an error, with the module beside TOOLS, or the installed one.
   sh blocks       are not run: scripts, presets and tools that they name exist, and have every option used.
   other blocks    after <!-- same as: FILE --> the text of a block is found in FILE, line by line.
   links           relative links and pictures, and paths of the repository in code marks, lead to what exists.
@@ -213,6 +214,8 @@ check_options() {
   done
 }
 
+python_of_tools() { PYTHONDONTWRITEBYTECODE=1 PYTHONPATH=$tools/../src/python${PYTHONPATH:+:$PYTHONPATH} /usr/bin/python3 "$@"; }
+
 check_sh() {
   local label=$2 line words
   while IFS= read -r line; do
@@ -277,6 +280,16 @@ check_page() {
     if [[ -f $block.same ]]; then check_copy "$block.block" "$(cat "$block.same")" "$label"; fi
     case $language in
       sh) check_sh "$block.block" "$label" ;;
+      python)
+        local printed
+        if [[ ! -d $work ]]; then cp -r "$folder/models" "$work"; fi
+        if grep -q 'pcl_symmetry' "$block.block" && ! python_of_tools -c 'import pcl_symmetry' 2>/dev/null; then
+          skipped "$label: needs the Python module"
+        elif printed=$(cd "$work" && python_of_tools "$block.block" 2>&1 </dev/null); then
+          passed
+        else
+          failed "$label" "$printed"
+        fi ;;
       console)
         if [[ ! -d $work ]]; then cp -r "$folder/models" "$work"; fi
         cd "$work"
