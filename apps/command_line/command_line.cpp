@@ -13,6 +13,7 @@
 #include <type_traits>
 #include <utility>
 
+#include "command_line/tool_errors.h"
 #include "io/file_text.h"
 #include "io/shape_output.h"
 
@@ -134,6 +135,7 @@ CommandLine& CommandLine::text(const std::string& name, const std::string& place
 CommandLine& CommandLine::picture(const std::string& name, std::optional<std::string>& value, const std::string& help) {
   return add(name, "FILE.png", help, [&value, name](const std::string& text) {
     if (text != "-" && !boost::algorithm::iends_with(text, ".png")) rejectValue("-" + name, text, "must end in .png");
+    findDisplay();
     value = text;
   });
 }

@@ -41,11 +41,10 @@ int secretOfServer() {
   return ::write(file, entry.data(), entry.size()) == static_cast<ssize_t>(entry.size()) ? file : -1;
 }
 
-/// VTK draws through an X server. Where there is none, a tool that is to write a picture starts one, which ends with
-/// the tool, whatever ends that. Where Xvfb is missing the tool goes on, and what draws says so.
-void findDisplay(int argc, char** argv) {
-  const auto isPicture = [](const char* argument) { return boost::algorithm::iends_with(argument, ".png"); };
-  if (std::getenv("DISPLAY") || std::none_of(argv + 1, argv + argc, isPicture)) return;
+}  // namespace
+
+void findDisplay() {
+  if (std::getenv("DISPLAY")) return;
   int number[2];
   const int secret = secretOfServer();
   if (secret < 0 || ::pipe(number) != 0) return;
@@ -69,8 +68,6 @@ void findDisplay(int argc, char** argv) {
   ::setenv("XAUTHORITY", authority.c_str(), 1);
 }
 
-}  // namespace
-
 std::string plainMessage(const pcl::PCLException& error) {
   const std::string text = error.what();
   // As PCLException::createDetailedMessage() puts it together.
@@ -85,7 +82,6 @@ std::string plainMessage(const pcl::PCLException& error) {
 }
 
 int runTool(int argc, char** argv, const std::function<int(int, char**)>& body) {
-  if (argc > 1) findDisplay(argc, argv);
   const std::string tool = argc > 0 ? boost::filesystem::path(argv[0]).filename().string() : "pcl_symmetry";
   pcl::console::setVerbosityLevel(pcl::console::L_ALWAYS);
   const auto fail = [&tool](const std::string& message, int code) {

@@ -43,6 +43,11 @@ auto namingFile(const std::string& path, const Body& body) -> decltype(body()) {
   }
 }
 
+/// VTK draws through an X server. Where there is none, a tool that is to write a picture starts one, which ends with
+/// the tool, whatever ends that. Where Xvfb is missing the tool goes on, and what draws says so.
+/// To be called before there are threads: the server ends with the thread that starts it.
+void findDisplay();
+
 /// Runs the body of a tool and turns what it throws into one line on standard error and an exit code: 0 done (or what
 /// the body returns), 1 could not be done, 2 wrong usage.
 int runTool(int argc, char** argv, const std::function<int(int argc, char** argv)>& body);

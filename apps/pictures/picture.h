@@ -59,7 +59,7 @@ struct PictureScene {
 /// Turns the view so that \p up is to it what z was; any length but zero.
 void standUpright(PictureScene& scene, const Eigen::Vector3d& up);
 
-/// Renders off screen and writes a PNG whole. Needs a display; tools start one with Xvfb, see runTool().
+/// Renders off screen and writes a PNG whole. Needs a display; tools start one with Xvfb, see findDisplay().
 /// \param width, height of the whole picture in pixels.
 /// \throws InputError if nothing can draw or the file cannot be written.
 void renderPicture(const PictureScene& scene, const std::string& path, int width, int height);

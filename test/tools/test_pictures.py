@@ -84,6 +84,10 @@ class Pictures(ToolTest):
         self.assertEqual(len(pictures), 2)
         self.run_tool(self.box, "-quiet -symmetries -screenshot b.png -plane 9", env=self.no_display, code=2)
         self.assertIn("-plane: 9, must be <= 3", self.error)
+        for tool, flag in (("planes", "-png -"), ("segment", "-png=-")):
+            command = [tool_run.TOOLS / f"pcl_symmetry_{tool}", self.box, "-quiet", *flag.split()]
+            picture = subprocess.run(command, env=self.no_display, stdout=subprocess.PIPE, check=True).stdout
+            self.assertEqual(picture[:4], b"\x89PNG", "on standard output")
 
     def test_hold_panels_of_several_scenes(self):
         self.run_tool(self.box, "-quiet -points 2000 -size 100 -png views.png -icon best.png", tool="viewpoint")
