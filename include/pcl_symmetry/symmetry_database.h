@@ -33,7 +33,9 @@ struct DatabaseOptions {
   std::size_t max_points = 20'000;  ///< points of a cloud that are kept, >= 100
   int num_threads = 0;              ///< >= 0; 0 = one per core
   double lock_timeout = 30.0;       ///< seconds that a change waits while another program writes, >= 0
-  std::string unit;                 ///< of the coordinates of all models, such as "m"; stored when the database is made
+  /// Of the coordinates of all models, such as "m": stored when the database is made. Empty, or that which is stored,
+  /// where the database is there.
+  std::string unit;
   /// build() fits no compact forms: for a part of a database, as merge() fits those of the whole.
   bool is_part = false;
 
@@ -149,7 +151,7 @@ public:
   /// Opens a database. A file that is missing is an empty database, and is made by the first change.
   /// \param file ":memory:" = no file: the models are gone with the object.
   /// \throws pcl::IOException naming file and reason: no database of this library, of a newer or an older one, damaged.
-  /// \throws pcl::BadArgumentException for bad options.
+  /// \throws pcl::BadArgumentException for bad options, and for another unit than the database has.
   explicit SymmetryDatabase(const std::string& file, const DatabaseOptions& options = {});
   ~SymmetryDatabase();
   SymmetryDatabase(SymmetryDatabase&&) noexcept;             ///< the other one may only be destroyed or assigned to

@@ -426,6 +426,7 @@ void addDatabase(py::module_& module) {
            }),
            py::arg("file"), py::arg("unit"), py::arg("threads"))
       .def_property_readonly("names", &SymmetryDatabase::names)
+      .def_property_readonly("unit", &SymmetryDatabase::unit)
       .def("__len__", &SymmetryDatabase::size)
       .def("__contains__", &SymmetryDatabase::contains)
       .def(

@@ -9,6 +9,7 @@
 #include <map>
 #include <sstream>
 
+#include "pcl_symmetry/impl/cloud_conversion.hpp"
 #include "recognition/database_schema.h"
 
 namespace pcl_symmetry::detail {
@@ -85,7 +86,7 @@ ModelStore::ModelStore(const std::string& file, double lock_timeout, const std::
   }
 }
 
-/// Opens the file where there is one, and refuses what this library did not write.
+/// Opens the file where there is one, and refuses what this library did not write, and another unit than is given.
 void ModelStore::open() {
   std::error_code error;
   if (!fs::exists(file_, error) && !error) return;
@@ -93,6 +94,10 @@ void ModelStore::open() {
   refuseForeignFile(file_);
   connection_.emplace(file_, SQLiteAccess::Change, lock_timeout_);
   refuseOtherSchema(*connection_);
+  SQLiteStatement row = connection_->prepare("SELECT value FROM facts WHERE key = 'unit'");
+  const std::string stored = row.next() ? row.text(0) : "";
+  if (!unit_.empty() && stored != unit_)
+    throwBadArgument("unit = '" + unit_ + "', must be '" + stored + "' as in " + file_);
 }
 
 /// Makes an empty database under another name and then gives it its own: a file of that name is whole from the start,

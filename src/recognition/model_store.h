@@ -58,7 +58,7 @@ public:
 
   /// Nothing is written before the first change: a file that is missing is an empty database.
   /// \param file ":memory:" = no file.
-  /// \param unit stored in a new database.
+  /// \param unit stored in a new database; that of one that is there, or empty.
   ModelStore(const std::string& file, double lock_timeout, const std::string& unit);
 
   const std::string& file() const { return file_; }

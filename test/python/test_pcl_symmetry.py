@@ -818,6 +818,9 @@ class WithPCL(unittest.TestCase):
                 merged.merge(parts[:1])
             with self.assertRaisesRegex(OSError, "unit = 'm', must be 'mm' as in"):
                 pcl_symmetry.Database(":memory:", unit="mm").merge(parts)
+            with self.assertRaisesRegex(ValueError, "unit = 'mm', must be 'm' as in .*box.db"):
+                pcl_symmetry.Database(parts[0], unit="mm")
+            self.assertEqual(pcl_symmetry.Database(parts[0], unit="m").unit, "m")
             self.assertEqual(len(merged), 3)
 
 

@@ -150,6 +150,7 @@ class Database(Recognition):
         before = (self.folder / "merged.db").read_bytes()
         self.run_tool("build inches.db", self.box, flags, "-unit inch -part")
         self.fails(1, "inches.db: unit = 'inch', must be '' as in merged.db", "merge merged.db inches.db")
+        self.fails(1, "unit = 'mm', must be 'inch' as in inches.db", "add inches.db", self.vase, "-unit mm")
         self.assertEqual((self.folder / "merged.db").read_bytes(), before)
         self.write("shapes/box.off", tool_run.box())
         self.fails(1, "shapes: is a folder, must be a file", "merge new.db shapes")

@@ -141,7 +141,7 @@ class Database:
     def __init__(self, file: Path, *, create: bool = False, unit: str = "", threads: int = 0) -> None:
         """Opens a file. create: where it is missing, the first model makes it. unit: of the models, such as "m"; threads: 0 = one per core.
 
-        Raises FileNotFoundError for a missing file without create, and OSError where it is no database that can be used, or cannot
+        Raises FileNotFoundError for a missing file without create, ValueError for another unit than the file has, and OSError where it is no database that can be used, or cannot
         be made.
         """
         name = os.fspath(file)
@@ -175,6 +175,11 @@ class Database:
     def names(self) -> List[str]:
         """Names of all models, sorted."""
         return list(self._core.names)
+
+    @property
+    def unit(self) -> str:
+        """The unit that the database was made with; empty where none was given."""
+        return str(self._core.unit)
 
     def __len__(self) -> int:
         return int(self._core.__len__())
