@@ -52,7 +52,8 @@ CommandLine commandLine(SegmentOptions& o) {
               "merging: small patches grow to parts; splitting: as in the paper, by support for symmetry planes")
       .choice("evidence", o.evidence, {"all", "concavity"},
               "for merging: symmetry and concavity, for scans from one side, or thickness and line of sight too")
-      .number("parts", o.num_parts, Range::closed(0, 10'000), "number of parts; 0: as many as the shape has")
+      .number("parts", o.num_parts, Range::closed(0, 10'000),
+              "number of parts, where the shape allows it; 0: as many as it has")
       .flag("as_published", o.as_published, "for splitting: to the letter of Sections 4.4 and 5.3")
       .number("depth", o.depth, Range::closed(0, 30),
               "for splitting: largest number of splits from the whole to a part")
@@ -149,6 +150,7 @@ std::vector<pcl::PointIndices> cut(const FileJob& job, const SegmentOptions& o, 
   });
   if (segments.empty()) throw InputError(job.path() + ": " + segmentation.getReason());
   ms = cutting.done(counted(segments.size(), "part"));
+  if (!segmentation.getReason().empty()) job.console().warn(job.path() + ": " + segmentation.getReason());
   return segments;
 }
 
@@ -163,7 +165,9 @@ void analyze(const SegmentOptions& options, FileJob& job) {
   const std::string least = segments.size() > 1 ? std::to_string(segments.back().indices.size()) + " to " : "",
                     text = counted(segments.size(), "part") + " of " + least +
                            counted(segments.front().indices.size(), shape.mesh ? "face" : "point") + "\n";
-  job.report({text, describe(job.path(), shape, segments, segmentation.getTree(), segmentation.getImages(), ms), rows});
+  nlohmann::json json = describe(job.path(), shape, segments, segmentation.getTree(), segmentation.getImages(), ms);
+  if (!segmentation.getReason().empty()) json["reason"] = segmentation.getReason();
+  job.report({text, json, rows});
   if (options.output) saveLabeled(job.output(*options.output), shape, labels);
   if (options.html_path) {
     PictureScene scene = sceneOf(options, shape, labels);

@@ -54,7 +54,8 @@ public:
 
   /// Finds the parts.
   /// \param segments is filled with the segments, by falling area: indices into the cloud or the polygons of the mesh.
-  /// Empty where the input holds no answer, see getReason().
+  /// Empty where the input holds no answer, and of another number of parts where the shape does not allow the one that
+  /// was set: see getReason().
   /// \throws pcl::BadArgumentException where the mesh refers to vertices that it does not have.
   void segment(std::vector<pcl::PointIndices>& segments);
   /// The same under the name that PCL's clustering classes use.
@@ -98,6 +99,7 @@ template <typename PointT>
 void SymmetrySegmentation<PointT>::segment(std::vector<pcl::PointIndices>& segments) {
   segments.clear();
   detail::withBadArguments([&] { mesh_ ? segmentMesh() : segmentCloud(); });
+  if (!segmentation_.reason.empty()) this->giveNoAnswer(segmentation_.reason);
   segments.resize(static_cast<std::size_t>(segmentation_.num_segments));
   for (pcl::PointIndices& segment : segments) segment.header = mesh_ ? mesh_->header : input_->header;
   for (std::size_t i = 0; i < labels_.size(); ++i)

@@ -322,7 +322,10 @@ std::pair<py::array_t<float>, std::vector<std::size_t>> complete(const AnyArray&
   return {toRows(added), rows};
 }
 
-std::vector<int> segmentCloud(const py::array& points, const SegmentationOptions& options) {
+/// Labels, and why there is another number of parts than is wanted.
+using Parts = std::pair<std::vector<int>, std::string>;
+
+Parts segmentCloud(const py::array& points, const SegmentationOptions& options) {
   constexpr int kMostPoints = 30'000, kNumNeighbors = 12;  // as in SymmetrySegmentation
   const InputPoints input("points", points, kMostPoints, options.seed);
   const PointsRef used = input.points();
@@ -331,14 +334,13 @@ std::vector<int> segmentCloud(const py::array& points, const SegmentationOptions
   const auto neighbors = nearestOthers(used, *makeFlannSearch(used), kNumNeighbors, options.num_threads);
   const Segmentation parts = segmentSurface(cloudGraph(used, neighbors), options);
   std::vector<int> labels(input.numRows(), -1);
-  if (input.rows().empty()) return parts.labels;
+  if (input.rows().empty()) return {parts.labels, parts.reason};
   for (std::size_t i = 0; i < input.rows().size(); ++i) labels[input.rows()[i]] = parts.labels[i];
-  return labels;
+  return {labels, parts.reason};
 }
 
-std::vector<int> segment(const AnyArray& points, const py::object& faces, int parts, const std::string& method,
-                         int depth, bool as_published, const std::function<void(double)>& progress, std::uint64_t seed,
-                         int threads) {
+Parts segment(const AnyArray& points, const py::object& faces, int parts, const std::string& method, int depth,
+              bool as_published, const std::function<void(double)>& progress, std::uint64_t seed, int threads) {
   auto options = optionsWith<SegmentationOptions>(seed, threads);
   options.num_parts = parts;
   options.method = named<SegmentationMethod>("method", method, {"merging", "splitting"});
@@ -355,7 +357,8 @@ std::vector<int> segment(const AnyArray& points, const py::object& faces, int pa
   if (!input.usesAllRows()) throw std::invalid_argument("points: vertices not all finite, must be");
   const std::vector<std::vector<int>> polygons = polygonsOf(faces);
   const Computing computing;
-  return segmentSurface(meshGraph(input.points(), polygons), options).labels;
+  const Segmentation result = segmentSurface(meshGraph(input.points(), polygons), options);
+  return {result.labels, result.reason};
 }
 
 Eigen::MatrixXf describe(const AnyArray& points, const py::object& viewpoint, std::uint64_t seed, int threads) {

@@ -407,6 +407,9 @@ class OtherFunctions(unittest.TestCase):
         labels = pcl_symmetry.segment(box(num_points=2000), parts=2, progress=shares.append)
         self.assertEqual(len(labels), 2000)
         self.assertTrue(shares and max(shares) <= 1.0)
+        with self.assertWarnsRegex(RuntimeWarning, "^parts = 1000, [0-9]+ possible: ") as caught:
+            pcl_symmetry.segment(vertices, faces, parts=1000)
+        self.assertEqual(caught.filename, __file__)
         split = pcl_symmetry.segment(vertices, faces, method="splitting", depth=1, as_published=True)
         self.assertLessEqual(len(set(split)), 2)
         with self.assertRaisesRegex(ValueError, "method = cutting, must be merging or splitting"):

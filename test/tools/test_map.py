@@ -130,6 +130,9 @@ class Segment(ToolTest):
         self.assertEqual(tool_run.Image.open(self.folder / "p.png").size, (300, 300))
         self.run_tool(self.mesh, "-parts 3 -size 300 -up 1,0,0 -png q.png")
         self.assertNotEqual((self.folder / "p.png").read_bytes(), (self.folder / "q.png").read_bytes())
+        many = self.report(self.mesh, "-parts 1000")
+        self.assertIn(f"dumbbell.off: num_parts = 1000, {len(many['segments'])} possible: parts are made of", self.error)
+        self.assertIn(many["reason"], self.error)
 
     def test_methods_of_the_paper(self):
         for flag in ("", "-as_published"):

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <string>
 #include <vector>
 
 #include "pcl_symmetry/core/closest_point_search.h"
@@ -90,6 +91,7 @@ struct Segmentation {
   /// One list per plane of the root with share >= kMappedShare, in the same order: the segment that each segment is
   /// reflected onto, which may be itself.
   std::vector<std::vector<int>> images;
+  std::string reason;  ///< why there is another number of parts than SegmentationOptions::num_parts; else empty
 };
 
 /// Cuts a surface into parts by its symmetries (Section 5.3).

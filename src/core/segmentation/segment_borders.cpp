@@ -213,8 +213,12 @@ public:
   SmallSegments(const SurfaceGraph& graph, std::vector<int> labels)
       : graph_(graph),
         labels_(std::move(labels)),
-        borders_(1 + static_cast<std::size_t>(*std::max_element(labels_.begin(), labels_.end()))) {
-    for (int i = 0; i < graph.size(); ++i) areas_[labels_[i]] += graph.areas[i];
+        borders_(1 + static_cast<std::size_t>(*std::max_element(labels_.begin(), labels_.end()))),
+        most_of_element_(graph.is_cloud ? graph.area() / graph.size() : std::numeric_limits<double>::infinity()) {
+    for (int i = 0; i < graph.size(); ++i) {
+      areas_[labels_[i]] += graph.areas[i];
+      ++num_elements_[labels_[i]];
+    }
     for (const SurfaceGraph::Edge& edge : graph.edges) {
       const int a = labels_[edge.from], b = labels_[edge.to];
       if (a != b) borders_.add(a, b, edge.length);
@@ -222,11 +226,12 @@ public:
   }
 
   int size() const { return static_cast<int>(areas_.size()); }
-  double area(int segment) const { return areas_.at(segment); }
+  /// Of a cloud at most the share that the segment has of the points: the area of a point where few are is a guess.
+  double area(int segment) const { return std::min(areas_.at(segment), num_elements_.at(segment) * most_of_element_); }
 
   int smallest() const {
     return std::min_element(areas_.begin(), areas_.end(),
-                            [](const auto& a, const auto& b) { return a.second < b.second; })
+                            [this](const auto& a, const auto& b) { return area(a.first) < area(b.first); })
         ->first;
   }
 
@@ -238,6 +243,7 @@ public:
 
   void join(int host, int segment) {
     areas_[host] += areas_[segment];
+    num_elements_[host] += num_elements_[segment];
     areas_.erase(segment);
     std::replace(labels_.begin(), labels_.end(), segment, host);
     borders_.join(host, segment);
@@ -264,8 +270,10 @@ private:
 
   const SurfaceGraph& graph_;
   std::vector<int> labels_;
-  std::map<int, double> areas_;  ///< by segment
-  Adjacency<double> borders_;    ///< lengths
+  std::map<int, double> areas_;      ///< by segment
+  std::map<int, int> num_elements_;  ///< by segment
+  Adjacency<double> borders_;        ///< lengths
+  double most_of_element_;           ///< area that an element may count for in the mean of its segment
 };
 
 }  // namespace

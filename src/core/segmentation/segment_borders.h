@@ -34,7 +34,8 @@ std::vector<int> smoothBorders(const SurfaceGraph& graph, std::vector<int> label
 std::vector<int> joinCrumbs(const SurfaceGraph& graph, const std::vector<int>& labels, double min_area);
 
 /// Joins segments that are too small to be parts with the neighbor that they share most border with, or with the
-/// closest segment if they have no neighbor; the smallest segment first.
+/// closest segment if they have no neighbor; the smallest segment first. A segment of a cloud is no larger than its
+/// share of the points.
 /// \param labels one per element, from 0.
 /// \param min_area of a segment that stays, input units squared.
 /// \param max_segments that may stay, >= 1.

@@ -15,6 +15,17 @@ bool showsASurface(const SurfaceGraph& graph) {
   return DistinctPoints(graph.centers).points.cols() >= kSegmentation.fewest_points;
 }
 
+/// \param result of another number of parts than is wanted.
+std::string reasonOf(const SurfaceGraph& graph, const Segmentation& result, const SegmentationOptions& options) {
+  const std::string text =
+      "num_parts = " + std::to_string(options.num_parts) + ", " + std::to_string(result.num_segments) + " possible: ";
+  if (!showsASurface(graph)) return text + "so few points show no surface";
+  if (result.num_segments > options.num_parts) return text + "pieces that nothing connects are parts";
+  if (options.method == SegmentationMethod::Splitting) return text + "no plane tells more apart";
+  return text + "parts are made of about " + std::to_string(kSegmentation.num_patches) +
+         " patches, or of faces where there are fewer";
+}
+
 Segmentation oneSegment(const SurfaceGraph& graph) {
   Segmentation result;
   result.labels.assign(static_cast<std::size_t>(graph.size()), 0);
@@ -39,9 +50,12 @@ void SegmentationOptions::validate() const {
 Segmentation segmentSurface(const SurfaceGraph& graph, const SegmentationOptions& options) {
   options.validate();
   check(graph.size() > 0 && graph.area() > 0.0, "area of the surface", graph.area(), "> 0");
-  if (!showsASurface(graph)) return oneSegment(graph);
-  return options.method == SegmentationMethod::Splitting ? segmentBySplitting(graph, options)
-                                                         : segmentByMerging(graph, options);
+  Segmentation result = !showsASurface(graph)                             ? oneSegment(graph)
+                        : options.method == SegmentationMethod::Splitting ? segmentBySplitting(graph, options)
+                                                                          : segmentByMerging(graph, options);
+  if (options.num_parts > 0 && result.num_segments != options.num_parts)
+    result.reason = reasonOf(graph, result, options);
+  return result;
 }
 
 }  // namespace pcl_symmetry

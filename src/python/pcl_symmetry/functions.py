@@ -880,8 +880,9 @@ def segment(
 
     points: (N, 3) of a cloud, (H, W, 3), the vertices of a mesh, or a cloud or mesh of Open3D or trimesh. faces: (F, 3), or
     None for a cloud.
-    parts: number of parts; 0: the method finds it. method: merging, or the paper's splitting; depth: splits in a row at
-    most; as_published: splitting to the letter of the paper. progress: as in planes(), of the whole.
+    parts: number of parts, 0: the method finds it; a RuntimeWarning says why there is another number. method: merging, or the
+    paper's splitting; depth: splits in a row at most; as_published: splitting to the letter of the paper. progress: as in
+    planes(), of the whole.
     Returns the label of each point or face; -1 for points that were left out. Raises ValueError for an unknown method.
     """
     import numpy as np
@@ -896,10 +897,13 @@ def segment(
     options = dict(parts=parts, method=method, depth=depth, as_published=as_published, seed=seed, threads=threads)
     try:
         with shares_of(progress) as tell:
-            labels = np.asarray(core.segment(cloud.array, faces, progress=tell, **options), dtype=np.int32)
+            found, reason = core.segment(cloud.array, faces, progress=tell, **options)
     except NoAnswer as none:
         no_answer(none)
         return np.full(cloud.shape, -1, np.int32)
+    if reason:
+        warnings.warn(re.sub("^num_parts", "parts", reason), RuntimeWarning, stacklevel=2)
+    labels = np.asarray(found, dtype=np.int32)
     return labels.reshape(cloud.shape) if faces is None else labels
 
 

@@ -222,6 +222,8 @@ TEST(SurfaceSegmentation, FewDistinctPointsAreOneSegment) {
         EXPECT_EQ(segmentation.labels, std::vector<int>(static_cast<std::size_t>(points.cols()), 0));
         expectTreeOf(segmentation);
         EXPECT_TRUE(segmentation.images.empty());
+        EXPECT_EQ(segmentation.reason,
+                  num_parts == 0 ? "" : "num_parts = 5, 1 possible: so few points show no surface");
       }
     }
   }
@@ -238,7 +240,14 @@ TEST(SurfaceSegmentation, TwentyPointsAndSmallMeshesMayHaveParts) {
                              static_cast<float>(corner >> 2)));
   cube.polygons = {{0, 2, 3}, {0, 3, 1}, {4, 5, 7}, {4, 7, 6}, {0, 1, 5}, {0, 5, 4},
                    {2, 6, 7}, {2, 7, 3}, {0, 4, 6}, {0, 6, 2}, {1, 3, 7}, {1, 7, 5}};
-  EXPECT_EQ(segmentSurface(cube.graph(), two).num_segments, 2);
+  const Segmentation halves = segmentSurface(cube.graph(), two);
+  EXPECT_EQ(halves.num_segments, 2);
+  EXPECT_EQ(halves.reason, "");
+  SegmentationOptions many;
+  many.num_parts = 13;
+  const Segmentation faces = segmentSurface(cube.graph(), many);
+  EXPECT_EQ(faces.reason.rfind("num_parts = 13, " + std::to_string(faces.num_segments) + " possible: parts are", 0), 0u)
+      << faces.reason;
 }
 
 TEST(SurfaceSegmentation, RefusesBadOptions) {
@@ -305,6 +314,13 @@ TEST(SmallSegments, JoinTheLongestBorderOrTheClosest) {
   EXPECT_EQ(joinSmallSegments(graph, {0, 0, 1, 1, 2, 2, 3, 3}, 0.0, 8), (std::vector<int>{0, 0, 1, 1, 2, 2, 3, 3}));
   const std::vector<int> two = joinSmallSegments(graph, {0, 0, 1, 1, 2, 2, 3, 3}, 0.0, 2);
   EXPECT_EQ(std::set<int>(two.begin(), two.end()).size(), 2u) << "at most two may stay";
+
+  // What counts of the area of a point is at most the mean.
+  SurfaceGraph sparse = graph;
+  sparse.areas[7] = 20.0f;
+  EXPECT_EQ(joinSmallSegments(sparse, {0, 0, 0, 0, 0, 0, 0, 1}, 6.0, 8).back(), 1);
+  sparse.is_cloud = true;
+  EXPECT_EQ(joinSmallSegments(sparse, {0, 0, 0, 0, 0, 0, 0, 1}, 6.0, 8).back(), 0);
 
   // A triangle that touches nothing, closest to the right end.
   Points vertices(3, 9);
