@@ -6,6 +6,7 @@
 #include <boost/algorithm/string.hpp>
 #include <boost/filesystem.hpp>
 #include <cerrno>
+#include <cmath>
 #include <condition_variable>
 #include <cstring>
 #include <exception>
@@ -30,7 +31,7 @@ constexpr std::size_t kWaitingPerThread = 64;  // results that wait for one befo
 constexpr std::size_t kMaxFailures = 1000;     // failures that are kept to be named at the end
 
 std::string cellOf(const nlohmann::json& value) {
-  if (value.is_null()) return "";
+  if (value.is_null() || (value.is_number_float() && std::isnan(value.get<double>()))) return "";
   if (!value.is_string()) return value.dump();
   const std::string text = value.get<std::string>();
   if (text.find_first_of(",\"\r\n") == std::string::npos) return text;

@@ -106,6 +106,11 @@ std::string coefficientsOf(const ReflectionPlane& plane, const Eigen::Vector3d& 
   return formatted("%.6f %.6f %.6f %.*g", c[0], c[1], c[2], lengthDigits(shift), c[3]);
 }
 
+/// \return a number of the table; "-" where it was not measured.
+std::string measured(double number) {
+  return std::isnan(number) ? "-" : formatted("%.3f", number);
+}
+
 /// Why a plane has its confidence and kind: what its evidence makes of it, then factors on the odds.
 std::string explained(const std::string& name, const SymmetryPlane& plane) {
   std::string lines = formatted("%s: %s, confidence %.3f\n", name.c_str(), toString(plane.kind), plane.confidence);
@@ -168,9 +173,10 @@ std::string tableOf(const Findings& findings, const Eigen::Vector3d& shift) {
                      "share", "support", "score", "seen", "kind");
   for (std::size_t i = 0; i < planes.size(); ++i) {
     const Eigen::Vector4d c = printedCoefficients(planes[i], shift);
-    table += formatted("%5zu %10.6f %10.6f %10.6f %12.*g %10.3f %7.3f %7.3f %7.3f %6.3f  %s\n", i + 1, c[0], c[1], c[2],
-                       digits, c[3], planes[i].confidence, planes[i].share, planes[i].support, planes[i].score,
-                       planes[i].seen, toString(planes[i].kind));
+    table += formatted("%5zu %10.6f %10.6f %10.6f %12.*g %10s %7s %7.3f %7.3f %6.3f  %s\n", i + 1, c[0], c[1], c[2],
+                       digits, c[3], measured(planes[i].reasons.empty() ? std::nan("") : planes[i].confidence).c_str(),
+                       measured(planes[i].share).c_str(), planes[i].support, planes[i].score, planes[i].seen,
+                       toString(planes[i].kind));
   }
   return table;
 }

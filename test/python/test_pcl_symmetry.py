@@ -73,6 +73,7 @@ class Planes(unittest.TestCase):
         found = pcl_symmetry.planes(box(num_points=2000), as_published=True)
         self.assertTrue(len(found))
         self.assertEqual({plane.kind for plane in found}, {"approximate"})
+        self.assertTrue(np.isnan([(p.share, *p.share_interval, p.deviation) for p in found]).all(), "not measured")
         frame = pcl_symmetry.frame(box(num_points=2000), as_published=True)
         np.testing.assert_allclose(np.abs(frame.axes).max(axis=0), 1, atol=1e-3)
 

@@ -45,7 +45,11 @@ class Planes(ToolTest):
         self.assertEqual([report["axes"], report["centers"], report["partial"]], [[], [], False])
         self.assertGreater(report["timing_ms"]["total"], 0)
         self.assertIn("symmetry", self.output)
-        self.assertEqual(self.report(self.box, "-as_published")["planes"][0]["kind"], "approximate")
+        plane = self.report(self.box, "-as_published -csv a.csv")["planes"][0]
+        self.assertEqual((plane["kind"], plane["confidence"]), ("approximate", 0))
+        self.assertEqual([plane[name] for name in ("share", "share_interval", "deviation")], [None, [None, None], None], "not measured")
+        self.assertRegex(self.output.splitlines()[1], " -       - .* approximate$")
+        self.assertRegex(self.text("a.csv").splitlines()[1], "approximate,.*,0.0,,.*,1.0,$")
 
     def test_tells_the_best_plane_where_all_are_doubted(self):
         """On a ground that its plane slants against, a box in noise keeps no plane; the nearest to one is still reported."""

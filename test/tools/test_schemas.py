@@ -17,7 +17,7 @@ SCHEMAS = {path.name.split(".")[0]: json.loads(path.read_text())
            for path in (Path(__file__).resolve().parents[2] / "apps/schemas").glob("*.schema.json")}
 FEW = "-quiet -points 2000"
 # Tool and arguments, and the schema of what it writes.
-RUNS = ((f"planes box.off {FEW}", "planes"), (f"planes scan.pcd {FEW}", "planes"), (f"viewpoint box.off {FEW}", "views"),
+RUNS = ((f"planes box.off {FEW}", "planes"), (f"planes box.off {FEW} -as_published", "planes"), (f"planes scan.pcd {FEW}", "planes"), (f"viewpoint box.off {FEW}", "views"),
         ("segment box.off -quiet", "segments"), (f"map box.off {FEW}", "map"), ("scan box.off scan.pcd -quiet", "scans"),
         ("scene scan.pcd -quiet -max_points 1000", "scene"), (f"align box.off {FEW}", "frame"), (f"align scan.pcd {FEW}", "frame"),
         (f"align scan.pcd {FEW} -target box.off", "pose"), ("align scan.pcd scan.pcd -quiet -merge all.pcd", "merged"),

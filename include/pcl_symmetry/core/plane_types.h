@@ -42,7 +42,7 @@ struct SymmetryPlane : ReflectionPlane {
 
   PlaneKind kind = PlaneKind::Approximate;  ///< what the decision is
   /// Probability that this is a symmetry of the object, in [0, 1]; comparable between objects, densities, noise levels,
-  /// whole and partial clouds. src/core/evidence/README.md has the formula, its calibration and its limits.
+  /// whole and partial clouds; 0 as published. src/core/evidence/README.md has the formula, its calibration and limits.
   double confidence = 0.0;
   /// D(f, gamma) of equation 2 at this very plane: the correlation of the GEDT with its reflection, in [0, 1].
   double score = 0.0;
@@ -50,13 +50,13 @@ struct SymmetryPlane : ReflectionPlane {
   double support = 0.0;
   /// Estimate of the share of the surface that the plane maps to within the tolerance of the surface, in [0, 1]: of the
   /// informative part of the surface. A plane is a symmetry of the object if that share is at least 0.97. NaN, with its
-  /// limits, for volumes: they have no surface.
+  /// limits, for volumes, which have no surface, and as published.
   double share = 0.0;
   /// Lower limit of that share for the whole object: it lies between the limits in 95 of 100 cases, in [0, 1].
   double share_low = 0.0;
   double share_high = 1.0;  ///< upper limit
   /// Distance that 97 % of the reflected points stay within from the surface, input units: the least tolerance at which
-  /// the plane would be a symmetry.
+  /// the plane would be a symmetry. NaN where the share is.
   double deviation = 0.0;
   /// Share of the points whose reflection falls where the cloud could show it, in [0, 1]: less than 1 for planes of
   /// scans and where a piece of the surface is missing.

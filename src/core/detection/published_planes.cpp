@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <set>
 
 #include "core/base/check.h"
@@ -136,6 +137,8 @@ std::vector<SymmetryPlane> publishedPlanes(const PointsRef& points, const Gaussi
     refined[i].residual = found.last.residual;
     refined[i].support = found.last.weight;
     refined[i].score = correlation(edt, found.plane, 1);
+    for (double* unmeasured : {&refined[i].share, &refined[i].share_low, &refined[i].share_high, &refined[i].deviation})
+      *unmeasured = std::numeric_limits<double>::quiet_NaN();
   });
   std::vector<SymmetryPlane> planes;
   for (std::size_t i = 0; i < refined.size(); ++i)

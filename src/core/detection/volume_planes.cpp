@@ -360,7 +360,7 @@ Detection detectVolumePlanes(const ScalarGrid& input, const DetectionOptions& op
     found.planes = reordered(std::move(planes), options);
     // A volume has no surface to be mapped.
     const auto withoutShare = [](SymmetryPlane& plane) {
-      plane.share = plane.share_low = plane.share_high = std::numeric_limits<double>::quiet_NaN();
+      plane.share = plane.share_low = plane.share_high = plane.deviation = std::numeric_limits<double>::quiet_NaN();
     };
     std::for_each(found.planes.begin(), found.planes.end(), withoutShare);
     if (found.best) withoutShare(*found.best);

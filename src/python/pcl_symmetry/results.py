@@ -245,12 +245,12 @@ class Plane(ReflectionPlane):
     kind: str
     """symmetry, possible, approximate or local."""
     confidence: float
-    """Probability that it is a symmetry, in [0, 1]."""
+    """Probability that it is a symmetry, in [0, 1]; 0 as published."""
     reasons: Tuple[Tuple[str, Optional[float]], ...]
     """Why it has confidence and kind: (rule, factor on the odds). The first factor is the odds of the evidence; None: the plane is a
     possible symmetry at most, however confident. The product is confidence / (1 - confidence)."""
     share: float
-    """Estimated share of the surface that is mapped to within the tolerance, in [0, 1]; NaN for volumes, which have no surface."""
+    """Estimated share of the surface that is mapped to within the tolerance, in [0, 1]; NaN for volumes, which have no surface, and as published."""
     share_interval: Tuple[float, float]
     """Limits of that share for the whole object, 95 of 100 cases."""
     score: float
@@ -258,7 +258,7 @@ class Plane(ReflectionPlane):
     support: float
     """Share of the surface seen that is mapped onto it, in [0, 1]."""
     deviation: float
-    """97 % of the reflected points stay within this distance of the surface, input units."""
+    """97 % of the reflected points stay within this distance of the surface, input units; NaN where share is."""
     seen: float
     """Share of the points whose reflection the cloud could show."""
     residual: float

@@ -70,6 +70,8 @@ TEST(PublishedPlanes, ConvergeInTheirRegionsAndAreNotJudged) {
     EXPECT_TRUE(plane.converged);
     EXPECT_EQ(plane.kind, PlaneKind::Approximate);
     EXPECT_EQ(plane.confidence, 0.0);
+    for (const double unmeasured : {plane.share, plane.share_low, plane.share_high, plane.deviation})
+      EXPECT_TRUE(std::isnan(unmeasured));
   }
 }
 
