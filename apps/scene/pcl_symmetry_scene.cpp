@@ -7,6 +7,7 @@
 
 #include "command_line/command_line.h"
 #include "command_line/console.h"
+#include "command_line/run_on_files.h"
 #include "command_line/tool_errors.h"
 #include "io/answers.h"
 #include "io/exact_coordinates.h"
@@ -23,6 +24,7 @@ using namespace pcl_symmetry;
 using namespace pcl_symmetry::apps;
 
 struct SceneToolOptions {
+  BatchOptions batch;
   std::string input;
   std::optional<std::string> output, database_path, png_path, html_path;
   bool no_frames = false, no_completion = false, no_separation = false;
@@ -33,9 +35,13 @@ struct SceneToolOptions {
 
 CommandLine commandLine(SceneToolOptions& o) {
   CommandLine line("pcl_symmetry_scene",
-                   "Finds the objects of one frame of a depth camera or scanner, and their symmetries.",
+                   "Finds the objects of a frame of a depth camera or scanner, and their symmetries.",
                    "pcl_symmetry_scene table.pcd completed.pcd -json objects.json -png objects.png");
-  line.positional("input", o.input, ".pcd or .ply: organized, or with the viewpoint of the sensor")
+  o.batch.outputs = {&o.output, &o.png_path, &o.html_path};
+  line.positional(
+          "input", o.input,
+          ".pcd or .ply: organized, or with the viewpoint of the sensor; - for standard input, or many: a folder, a "
+          "pattern in quotes, a list @FILE")
       .positional(
           "output", o.output,
           "completed scene, .pcd or .ply, with the fields object (-1 = supporting plane, 0 = none) and completed")
@@ -61,29 +67,34 @@ CommandLine commandLine(SceneToolOptions& o) {
       .flag("no_frames", o.no_frames, "leaves the frames of the objects out")
       .flag("no_completion", o.no_completion, "leaves the completion of the objects out")
       .common(o.common, kAnalysisFlags);
+  o.batch.addTo(line);
   return line;
 }
 
-SymmetryScene makeScene(const SceneToolOptions& options) {
+SymmetryScene makeScene(const SceneToolOptions& options, const CommonOptions& common,
+                        const std::shared_ptr<const SymmetryDatabase>& database) {
   SymmetryScene scene;
   SceneOptions used = options.scene;
   used.detection.min_possible = std::min(used.detection.min_possible, used.detection.min_confidence);
-  options.common.applyTo(used.detection);
-  options.common.applyTo(used.frame);
-  used.num_threads = used.completion.num_threads = used.recognition.num_threads = options.common.threads;
+  common.applyTo(used.detection);
+  common.applyTo(used.frame);
+  used.num_threads = used.completion.num_threads = used.recognition.num_threads = common.threads;
   used.frames = !options.no_frames;
   used.complete = !options.no_completion;
   used.separate = !options.no_separation;
   scene.setOptions(used);
-  if (options.database_path) {
-    checkReadableFile(*options.database_path);
-    DatabaseOptions database;
-    database.num_threads = options.common.threads;
-    scene.setDatabase(namingFile(*options.database_path, [&] {
-      return std::make_shared<const SymmetryDatabase>(*options.database_path, database);
-    }));
-  }
+  if (database) scene.setDatabase(database);
   return scene;
+}
+
+/// \return null where none is named.
+std::shared_ptr<const SymmetryDatabase> openDatabase(const SceneToolOptions& options) {
+  if (!options.database_path) return nullptr;
+  checkReadableFile(*options.database_path);
+  DatabaseOptions database;
+  database.num_threads = options.common.threads;
+  return namingFile(*options.database_path,
+                    [&] { return std::make_shared<const SymmetryDatabase>(*options.database_path, database); });
 }
 
 InputShape loadFrame(const Console& console, const std::string& path, const CommonOptions& common) {
@@ -109,31 +120,36 @@ SceneAnalysis analyze(const Console& console, SymmetryScene& scene, const InputS
   return found;
 }
 
+void analyze(const SceneToolOptions& options, const std::shared_ptr<const SymmetryDatabase>& database, FileJob& job) {
+  const InputShape input = loadFrame(job.console(), job.path(), job.common());
+  SymmetryScene searched = makeScene(options, job.common(), database);
+  const SceneAnalysis scene = analyze(job.console(), searched, input, options);
+  const std::string table = tableOf(scene, input.shift());
+  job.report({table, describeScene(input, scene), rowsOf(scene, input.shift())});
+  if (options.output)
+    saveCloud(job.output(*options.output), completedScene(input, scene), input.shape.sensor_origin,
+              input.shape.sensor_orientation);
+  if (options.png_path) {
+    const std::string picture = job.output(*options.png_path);
+    Step drawing(job.console(), "Drawing " + picture);
+    drawScene(input, scene, picture);
+    drawing.done();
+  }
+  if (options.html_path)
+    writePage(selectableObjects(input, scene), {job.path(), table, cameraPicture(input)},
+              job.output(*options.html_path));
+}
+
 int run(int argc, char** argv) {
   SceneToolOptions options;
   CommandLine line = commandLine(options);
   if (!line.parse(argc, argv)) return 0;
   line.goWith("-database", options.database_path.has_value(), {"accept"});
   if (options.output) checkCloudExtension(*options.output);
-  const bool prints =
-      isStandardOutputFree({options.output, options.common.json_path, options.png_path, options.html_path});
-  const Console console(options.common.quiet);
-  const InputShape input = loadFrame(console, options.input, options.common);
-  SymmetryScene searched = makeScene(options);
-  const SceneAnalysis scene = analyze(console, searched, input, options);
-  const std::string table = tableOf(scene, input.shift());
-  if (prints) writeText("-", table);
-  if (options.common.json_path) writeText(*options.common.json_path, jsonText(describeScene(input, scene)) + "\n");
-  if (options.output)
-    saveCloud(*options.output, completedScene(input, scene), input.shape.sensor_origin, input.shape.sensor_orientation);
-  if (options.png_path) {
-    Step drawing(console, "Drawing " + *options.png_path);
-    drawScene(input, scene, *options.png_path);
-    drawing.done();
-  }
-  if (options.html_path)
-    writePage(selectableObjects(input, scene), {options.input, table, cameraPicture(input)}, *options.html_path);
-  return 0;
+  const std::shared_ptr<const SymmetryDatabase> database = openDatabase(options);
+  options.batch.inputs = {options.input};
+  return runOnFiles(options.batch, options.common, {"object", "points", "found", "model", "x", "y", "z"},
+                    [&](FileJob& job) { analyze(options, database, job); });
 }
 
 }  // namespace

@@ -214,6 +214,19 @@ std::string tableOf(const SceneAnalysis& scene, const Eigen::Vector3d& shift) {
   return text;
 }
 
+std::vector<std::vector<nlohmann::json>> rowsOf(const SceneAnalysis& scene, const Eigen::Vector3d& shift) {
+  std::vector<std::vector<nlohmann::json>> rows;
+  for (const SceneObject& object : scene.objects) {
+    std::vector<nlohmann::json> row{
+        rows.size() + 1, object.indices.size(), summaryOf(object),
+        object.models.empty() ? nlohmann::json() : nlohmann::json(object.models.front().name)};
+    for (int k = 0; k < 3; ++k)
+      row.push_back(object.frame ? nlohmann::json(shiftedBack(object.frame->center, shift)[k]) : nlohmann::json());
+    rows.push_back(row);
+  }
+  return rows;
+}
+
 nlohmann::json describeScene(const InputShape& input, const SceneAnalysis& scene) {
   nlohmann::json json{{"file", input.path},
                       {"num_points", finiteIndices(input.shape.cloud).size()},

@@ -3,6 +3,7 @@
 
 #include <nlohmann/json.hpp>
 #include <string>
+#include <vector>
 
 #include "io/input_shape.h"
 #include "pcl_symmetry/symmetry_scene.h"
@@ -14,6 +15,9 @@ namespace pcl_symmetry::apps {
 /// One line for each object, in the frame of the input.
 /// \param shift of the loaded points, see InputShape.
 std::string tableOf(const SceneAnalysis& scene, const Eigen::Vector3d& shift);
+
+/// For each object: number, points, what was found, model, and the center of its frame; null where there is none.
+std::vector<std::vector<nlohmann::json>> rowsOf(const SceneAnalysis& scene, const Eigen::Vector3d& shift);
 
 nlohmann::json describeScene(const InputShape& input, const SceneAnalysis& scene);
 

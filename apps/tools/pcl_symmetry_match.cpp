@@ -5,6 +5,7 @@
 
 #include "command_line/command_line.h"
 #include "command_line/console.h"
+#include "command_line/run_on_files.h"
 #include "command_line/tool_errors.h"
 #include "io/answers.h"
 #include "io/exact_coordinates.h"
@@ -20,7 +21,8 @@ using namespace pcl_symmetry;
 using namespace pcl_symmetry::apps;
 
 struct MatchOptions {
-  std::string database, input;
+  BatchOptions batch;
+  std::string database;
   int num_matches = 10;
   bool recognize = false;
   RecognitionOptions recognition;
@@ -31,11 +33,11 @@ struct MatchOptions {
 
 CommandLine commandLine(MatchOptions& options) {
   CommandLine line("pcl_symmetry_match",
-                   "Finds the models of a database that are most like a cloud or mesh, in any pose and of any size. "
+                   "Finds the models of a database that are most like clouds or meshes, in any pose and of any size. "
                    "With -recognize, the model that a scan shows, with its pose, or 'unknown object'.",
                    "pcl_symmetry_match models.db scan.pcd -recognize -json found.json");
   line.positional("database", options.database, "file of pcl_symmetry_database")
-      .positional("input", options.input, kShapeFiles)
+      .positionals("input", options.batch.inputs, kManyInputs)
       .number("max", options.num_matches, Range::closed(1, 1'000'000), "largest number of models shown")
       .flag("recognize", options.recognize, "bring the models to the scan and keep those that fit")
       .number("candidates", options.recognition.num_candidates, Range::closed(1, 1'000'000),
@@ -43,45 +45,55 @@ CommandLine commandLine(MatchOptions& options) {
       .number("min_confidence", options.recognition.min_confidence, Range::closed(0, 1),
               "least confidence of a known model")
       .common(options.common, kMeshPoints | kJson | kThreads | kViewpoint | kQuiet);
+  options.batch.addTo(line);
   return line;
 }
 
-nlohmann::json match(const Console& console, const SymmetryDatabase& database, const InputShape& input,
-                     const MatchOptions& options, std::string& text) {
-  Step step(console, "Matching");
+FileReport match(const FileJob& job, const SymmetryDatabase& database, const InputShape& input,
+                 const MatchOptions& options) {
+  Step step(job.console(), "Matching");
   const std::vector<ModelMatch> matches =
       database.match(*input.points, options.num_matches, shifted(options.common.viewpoint, input.shift()));
   step.done(std::to_string(matches.size()) + " of " + counted(database.size(), "model"));
-  nlohmann::json json{{"matches", nlohmann::json::array()}};
+  FileReport report{"", {{"file", job.path()}, {"matches", nlohmann::json::array()}}, {}};
   for (const ModelMatch& found : matches) {
-    text += formatted("%8.4f %s\n", found.distance, found.name.c_str());
-    json["matches"].push_back({{"name", found.name}, {"distance", found.distance}});
+    report.text += formatted("%8.4f %s\n", found.distance, found.name.c_str());
+    report.json["matches"].push_back({{"name", found.name}, {"distance", found.distance}});
+    report.rows.push_back({found.name, found.distance});
   }
-  return json;
+  return report;
 }
 
-nlohmann::json recognize(const Console& console, const SymmetryDatabase& database, const InputShape& input,
-                         const MatchOptions& options, std::string& text) {
+FileReport recognize(const FileJob& job, const SymmetryDatabase& database, const InputShape& input,
+                     const MatchOptions& options) {
   RecognitionOptions recognition = options.recognition;
-  recognition.num_threads = options.common.threads;
-  Step step(console, "Recognizing");
+  recognition.num_threads = job.common().threads;
+  Step step(job.console(), "Recognizing");
   Recognition found = database.recognize(*input.points, recognition, shifted(options.common.viewpoint, input.shift()));
   found.resize(std::min(found.size(), static_cast<std::size_t>(options.num_matches)));
-  step.done(found.empty() ? "unknown object" : found.front().name);
-  nlohmann::json json{{"known", !found.empty()}, {"models", nlohmann::json::array()}};
-  if (found.empty()) text = "unknown object\n";
+  FileReport report{"", {{"file", job.path()}, {"known", !found.empty()}, {"models", nlohmann::json::array()}}, {}};
+  if (found.empty()) {
+    const std::string reason =
+        formatted("none of %zu reaches a confidence of %g", database.size(), recognition.min_confidence);
+    step.done("unknown object, " + reason);
+    report.text = "unknown object\n";
+    report.json["reason"] = reason;
+    return report;
+  }
+  step.done(found.front().name);
   for (const RecognizedModel& model : found) {
     const Eigen::Isometry3d T_model_scan = shiftedBack(model.T_model_scan, input.shift(), Eigen::Vector3d::Zero());
-    text += formatted("%s  confidence %.3f  support %.3f  conflict %.3f\n", model.name.c_str(), model.confidence,
-                      model.score.support, model.score.conflict) +
-            matrixLines(T_model_scan, lengthDigits(input.shift()));
-    json["models"].push_back({{"name", model.name},
-                              {"confidence", model.confidence},
-                              {"support", model.score.support},
-                              {"conflict", model.score.conflict},
-                              {"transform", rowMajor(T_model_scan)}});
+    report.text += formatted("%s  confidence %.3f  support %.3f  conflict %.3f\n", model.name.c_str(), model.confidence,
+                             model.score.support, model.score.conflict) +
+                   matrixLines(T_model_scan, lengthDigits(input.shift()));
+    report.json["models"].push_back({{"name", model.name},
+                                     {"confidence", model.confidence},
+                                     {"support", model.score.support},
+                                     {"conflict", model.score.conflict},
+                                     {"transform", rowMajor(T_model_scan)}});
+    report.rows.push_back({model.name, model.confidence, model.score.support, model.score.conflict});
   }
-  return json;
+  return report;
 }
 
 int run(int argc, char** argv) {
@@ -89,23 +101,22 @@ int run(int argc, char** argv) {
   CommandLine line = commandLine(options);
   if (!line.parse(argc, argv)) return 0;
   line.goWith("-recognize", options.recognize, {"candidates", "min_confidence"});
-  const Console console(options.common.quiet);
   checkReadableFile(options.database);
-  const InputShape input = loadInput(options.input, options.common.mesh_points, options.common.seed);
-  if (const std::string reason = detail::reasonForNoAnswer(finitePoints(*input.points)); !reason.empty())
-    throw InputError(options.input + ": " + reason);
   DatabaseOptions database_options;
   database_options.num_threads = options.common.threads;
   const SymmetryDatabase database(options.database, database_options);
   if (database.size() == 0) throw InputError(options.database + ": holds no models");
-  std::string text;
-  const nlohmann::json json = namingFile(options.input, [&] {
-    return options.recognize ? recognize(console, database, input, options, text)
-                             : match(console, database, input, options, text);
+  const std::vector<std::string> columns = options.recognize
+                                               ? std::vector<std::string>{"model", "confidence", "support", "conflict"}
+                                               : std::vector<std::string>{"model", "distance"};
+  return runOnFiles(options.batch, options.common, columns, [&](FileJob& job) {
+    const InputShape input = loadInput(job.path(), options.common.mesh_points, options.common.seed);
+    if (const std::string reason = detail::reasonForNoAnswer(finitePoints(*input.points)); !reason.empty())
+      throw InputError(job.path() + ": " + reason);
+    job.report(namingFile(job.path(), [&] {
+      return options.recognize ? recognize(job, database, input, options) : match(job, database, input, options);
+    }));
   });
-  if (isStandardOutputFree({options.common.json_path})) writeText("-", text);
-  if (options.common.json_path) writeText(*options.common.json_path, jsonText(json) + "\n");
-  return 0;
 }
 
 }  // namespace

@@ -1,4 +1,5 @@
 """The tools that describe shapes, keep models and find them again."""
+import json
 import sqlite3
 import unittest
 from pathlib import Path
@@ -94,8 +95,15 @@ class Database(Recognition):
         self.assertNotIn("1 models", self.error)
         self.run_tool("remove models.db box vase")
         self.run_tool("rebuild models.db")
-        self.run_tool("models.db", self.box, "-recognize -min_confidence 1", tool="match")
+        answer = self.match("models.db", self.box, "-recognize -min_confidence 1")
         self.assertEqual(self.output, "unknown object\n")
+        self.assertEqual(answer["reason"], "none of 1 reaches a confidence of 1")
+        self.write("list.txt", "vase.off\nbox.off\nnothing.off\n")
+        self.fails(1, "nothing.off: no such file", "models.db @list.txt -json o.jsonl -csv o.csv", tool="match")
+        lines = [json.loads(line) for line in self.text("o.jsonl").splitlines()]
+        self.assertEqual([[m["name"] for m in line.get("matches", [])] for line in lines], [["tetrahedron"], ["tetrahedron"], []])
+        self.assertEqual(self.text("o.csv").splitlines()[0], "file,model,distance")
+        self.fails(1, "2 of them before", "models.db @list.txt -json o.jsonl -resume", tool="match")
 
     def test_go_on_take_folders_and_tell_what_they_hold(self):
         self.write("shapes/a.off", tool_run.box())

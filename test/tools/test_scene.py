@@ -1,4 +1,5 @@
 """The tool of scenes: objects on a table, bodies that touch, vehicles around a LiDAR, and what is written of them."""
+import json
 import unittest
 
 import tool_run
@@ -239,6 +240,12 @@ class Scene(ToolTest):
         page = self.text("page.html")
         for part in ("1 supporting plane, 2 objects", "</html>", '"picture":{"pixels":"yAAA', "2: ", "decided at 1.0 % of the diameter"):
             self.assertIn(part, page)
+        (self.folder / "again.pcd").write_bytes((self.folder / self.scene).read_bytes())
+        self.run_tool("*.pcd", "{}.ply -max_points 1000 -json o.jsonl -csv o.csv")
+        lines = [json.loads(line) for line in self.text("o.jsonl").splitlines()]
+        self.assertEqual([line["objects"] for line in lines], 2 * [report["objects"]], "of many, each as alone")
+        self.assertEqual((self.folder / "again.ply").read_bytes(), (self.folder / "completed.ply").read_bytes())
+        self.assertEqual(len(self.text("o.csv").splitlines()), 5)
 
     def test_tells_what_touches(self):
         stack = [block(*TABLE), block((0, 0.1, 0.12), (0.2, 0.1, 0.12)), block((0.05, 0.08, 0.34), (0.12, 0.08, 0.1))]
