@@ -24,16 +24,6 @@ from fit_recognition import answer_of
 from real_registration import is_right, moved, read
 
 
-def read_frame(path):
-    """(H, W, 3) points of a camera."""
-    import open3d
-
-    with open(path, "rb") as file:
-        sizes = {name: int(number) for name, number in (line.split() for line in (file.readline().decode() for _ in range(9)) if line[0] in "WH")}
-    points = open3d.io.read_point_cloud(str(path), remove_nan_points=False, remove_infinite_points=False).points
-    return np.asarray(points, dtype=np.float32).reshape(sizes["HEIGHT"], sizes["WIDTH"], 3)
-
-
 def rows_of(frame, found, scene, surfaces):
     """What the fit needs of each object; nothing of those that show several models or may be one without a label."""
     rows = []
@@ -71,7 +61,7 @@ def main(arguments):
         table, total = [], {key: bench.Rate() for key in ("named", "right", "wrong")}
         for name, scene in index["scenes"].items():
             start = time.process_time()
-            frame = read_frame(folder / scene["file"])
+            frame = pcl_symmetry.read(folder / scene["file"]).points
             found = pcl_symmetry.scene(frame, database=database, max_range=scene["max_range"] or 0.0, complete=False, min_name_confidence=0.0, threads=1)
             seconds = time.process_time() - start
             rows += rows_of(frame, found, scene, surfaces)
@@ -112,7 +102,7 @@ def main(arguments):
         bench.print_table("Scans alone", ["", "rate"], [[key, rate.text] for key, rate in answers.items()])
         unknown = []
         for path in arguments.unknown:
-            frame = read_frame(path)
+            frame = pcl_symmetry.read(path).points
             found = pcl_symmetry.scene(frame, database=database, max_range=1.3, complete=False, min_name_confidence=0.0)
             rows += rows_of(frame, found, {"objects": []}, surfaces)
             unknown.append([pathlib.Path(path).stem, len(found.objects), "; ".join(o.models[0].name for o in found.objects if o.models and o.models[0].confidence >= 0.5)])

@@ -74,6 +74,7 @@ class Frames(unittest.TestCase):
                 np.testing.assert_allclose(json.loads((Path(folder) / "frame.json").read_text())["center"], center, atol=1e-6)
 
 
+@unittest.skipUnless("scene" in pcl_symmetry.__all__, "the module was built without PCL")
 class Views(unittest.TestCase):
     def test_of_animals_face_the_strongest_plane_and_the_worst_lie_in_it(self):  # Figure 16
         folder = Path(os.environ.get("PCL_SYMMETRY_MODELS", "build/pictures_models"))

@@ -849,9 +849,9 @@ def rotations(
         left_out(rotations, locals(), "absolute_tolerance", "tolerance")
     cloud = prepare("points", points)
     used = look(cloud, "auto", max_points=0, as_measured=True, seed=seed, threads=threads)
-    options = dict(viewpoint=used.viewpoint, tolerance=tolerance, absolute_tolerance=absolute_tolerance, max_feature=max_feature, seed=seed, threads=threads)
+    options = dict(tolerance=tolerance, absolute_tolerance=absolute_tolerance, max_feature=max_feature, seed=seed, threads=threads)
     try:
-        found = core.rotations(cloud.array, told=progress, mesh=cloud.surface(), **options)
+        found = core.rotations(cloud.array, viewpoint=used.viewpoint, told=progress, mesh=cloud.surface(), **options)
     except NoAnswer as none:
         nothing: Dict[str, Any] = dict(support=0.0, confidence=0.0, fold=1, continuous=[], tolerance=0.0, stray_points=0)
         return Rotations(name="", center=np.full(3, np.nan), discrete=np.empty((0, 4, 4)), reason=no_answer(none), **nothing)

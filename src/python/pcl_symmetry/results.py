@@ -565,7 +565,8 @@ class Planes(Result):
     def __repr__(self) -> str:
         if self.reason:
             return f"Planes([], reason={self.reason!r})"
-        others = "".join(f", {name}={len(getattr(self, name))}" for name in ("possible", "approximate", "axes", "centers", "rotations") if getattr(self, name))
+        names = "possible approximate axes centers rotations".split()
+        others = "".join(f", {name}={len(getattr(self, name))}" for name in names if getattr(self, name))
         return "Planes([" + "".join(f"\n  {plane!r}," for plane in self.planes) + ("\n]" if self.planes else "]") + others + ")"
 
     def _moved(self, shift: NDArray[np.float64]) -> Planes:
