@@ -7,6 +7,7 @@
 #include <boost/filesystem/path.hpp>
 #include <cmath>
 #include <exception>
+#include <limits>
 #include <nlohmann/json.hpp>
 #include <numeric>
 #include <optional>
@@ -290,19 +291,23 @@ Symmetrized symmetrized(const Console& console, const InputShape& input, const A
   return result;
 }
 
-/// The input with the colors of its asymmetry: blue inside, yellow outside of the reflection of the other side.
+/// The input with the colors of its asymmetry: blue inside, yellow outside of the reflection of the other side. What
+/// the rounding of coordinates makes of none has no color.
 PictureScene sceneOf(const InputShape& input, const Symmetrized& shape) {
   constexpr double kShown = 0.97;  // share of the points within the scale: a few that stick out hide no other
+  const float rounding =
+      std::numeric_limits<float>::epsilon() * finitePoints(*input.shape.points).cwiseAbs().maxCoeff();
   std::vector<float> sizes;
   for (const float value : shape.asymmetry)
     if (std::isfinite(value)) sizes.push_back(std::abs(value));
   const auto last = sizes.begin() + static_cast<std::ptrdiff_t>(kShown * static_cast<double>(sizes.size()));
   if (last != sizes.end()) std::nth_element(sizes.begin(), last, sizes.end());
-  const float scale = last != sizes.end() && *last > 0.0f ? *last : 1.0f;
-  PicturePanel panel{formatted("asymmetry: blue %.3g inside, yellow %.3g outside", scale, scale)};
+  const float scale = last != sizes.end() && *last > rounding ? *last : rounding;
+  PicturePanel panel{scale > rounding ? formatted("asymmetry: blue %.3g inside, yellow %.3g outside", scale, scale)
+                                      : "no asymmetry beyond the rounding of coordinates"};
   panel.show_points = !input.shape.mesh;
   for (const float value : shape.asymmetry)
-    panel.support.push_back(std::isfinite(value) ? std::clamp(0.5f + 0.5f * value / scale, 0.0f, 1.0f) : 0.5f);
+    panel.support.push_back(std::abs(value) > rounding ? std::clamp(0.5f + 0.5f * value / scale, 0.0f, 1.0f) : 0.5f);
   PictureScene scene{input.shape.points, input.shape.mesh, {panel}};
   scene.show_color_bar = false;
   return scene;
@@ -487,7 +492,7 @@ void analyze(const AlignOptions& options, FileJob& job) {
   if (options.complete && motion.converged) {
     const pcl::PointCloud<pcl::PointXYZ> both =
         complete(console, input, common, *best, fields, motion.json["completed"]);
-    motion.scene = sceneOf(both, input.points->size(), "the input (1) and what completes it (2)", "input", "added");
+    motion.scene = sceneOf(both, input.points->size(), "the input and what completes it", "input", "added");
   }
   job.report({motion.text, motion.json, rowsOf(motion)});
   if (!motion.converged)
@@ -621,7 +626,7 @@ int mergeScans(const AlignOptions& options) {
     try {
       const BestPlane best = completingPlane(console, cloud.shape, common, options.any_plane);
       const auto both = complete(console, cloud.shape, common, best, cloud.fields, json["completed"]);
-      scene = sceneOf(both, cloud.shape.points->size(), "the scans (1) and what completes them (2)", "scans", "added");
+      scene = sceneOf(both, cloud.shape.points->size(), "the scans and what completes them", "scans", "added");
     } catch (const InputError&) {
       json.erase("completed");
       incomplete = std::current_exception();

@@ -167,7 +167,8 @@ struct MapOptions {
   std::string measure = "D";
   MeasureOptions what;
   std::optional<int> fold;
-  int cells = 96, size = 300;
+  int cells = 96;
+  std::optional<int> size;
   CommonOptions common;
 };
 
@@ -197,7 +198,7 @@ CommandLine commandLine(MapOptions& options) {
                "picture: three slices through the middle, the darker the greater, the shape on top")
       .picture("png", options.png_path, "picture: the points in the colors of their symmetry")
       .number("cells", options.cells, Range::closed(8, 512), "cells of the volume along its longest edge")
-      .number("size", options.size, Range::closed(16, 4096), "edge of each picture, pixels")
+      .number("size", options.size, Range::closed(16, 4096), "edge of each picture, pixels (-png 800, -slices 300)")
       .common(options.common, kShapeFlags | kSigma | kVolumes);
   options.batch.addTo(line);
   return line;
@@ -349,7 +350,8 @@ void writeSpace(const MapOptions& options, const FileJob& job, const InputShape&
     writing.done(std::to_string(volume.size.prod()) + " cells");
   }
   if (options.slices_path)
-    writeImage(drawSlices(map, volume, points, options.size, job.common().threads), job.output(*options.slices_path));
+    writeImage(drawSlices(map, volume, points, options.size.value_or(300), job.common().threads),
+               job.output(*options.slices_path));
 }
 
 void analyze(const MapOptions& options, FileJob& job) {
@@ -376,7 +378,7 @@ void analyze(const MapOptions& options, FileJob& job) {
   job.report({text, json, {{mapped.symmetry.size(), mapped.least, mapped.greatest}}});
   if (options.output) savePoints(input, mapped, job.output(*options.output));
   writeSpace(options, job, input, map, mapped.points);
-  if (options.png_path) drawPoints(map, mapped, job.output(*options.png_path), options.size);
+  if (options.png_path) drawPoints(map, mapped, job.output(*options.png_path), options.size.value_or(800));
 }
 
 int run(int argc, char** argv) {

@@ -273,8 +273,9 @@ std::vector<PicturePanel> panelsOf(const Findings& findings) {
   }
   for (std::size_t k = 0; k < findings.planes.size() && panels.size() < kMostPanels; ++k) {
     const SymmetryPlane& plane = findings.planes[k];
-    PicturePanel& panel = add(formatted("plane %zu (%s): confidence %.2f, support %.2f", k + 1, toString(plane.kind),
-                                        plane.confidence, plane.support));
+    const std::string judged = plane.reasons.empty() ? "" : formatted("confidence %.2f, ", plane.confidence);
+    PicturePanel& panel =
+        add(formatted("plane %zu (%s): %ssupport %.2f", k + 1, toString(plane.kind), judged.c_str(), plane.support));
     panel.support.assign(findings.support[k].begin(), findings.support[k].end());
     panel.planes = {{plane.normal(), plane.offset(), Eigen::Vector3d::Zero(), 0.0, distinctColor(k)}};
   }

@@ -141,7 +141,7 @@ class Align(ToolTest):
     def test_completes_a_scan_and_marks_what_it_adds(self):
         scan, model = self.scan()
         self.run_tool(scan, "out.ply -complete -target chair.off -html o.html")
-        self.assertIn("what completes it", self.text("o.html"))
+        self.assertIn('"the input and what completes it"', self.text("o.html"), "colors tell which is which")
         before, after = tool_run.pcd_points(scan), self.points("out.ply")
         viewpoint = np.array(tool_run.pcd_header(scan)["VIEWPOINT"][:3], float)
         hidden = self.hidden(tool_run.xyz(before), model, viewpoint)
@@ -206,6 +206,8 @@ class Align(ToolTest):
         self.assertIn("property float asymmetry\n", header)
         self.assertTrue(np.isfinite(float(body.splitlines()[3].split()[3])))
         self.run_tool(mesh, "c.ply -symmetrize mean -cut")
+        self.run_tool(self.write("even.off", tool_run.off(tool_run.box_corners(2, 1.5, 1), tool_run.BOX_FACES)), "-symmetrize mean -html c.html")
+        self.assertIn("no asymmetry beyond the rounding of coordinates", self.text("c.html"))
         self.assertIn("element face 28\n", self.text("c.ply"), "two triangles of an end, twelve of four sides")
         self.fails(2, ".ply", mesh, "s.pcd -symmetrize mean")
         self.write("bad.txt", "1 2 3\n1 2\n")

@@ -43,6 +43,7 @@ class Map(ToolTest):
         common = "-quiet -grid 32 -points 3000"
         axes = self.report(self.box, common, "-of axes -fold 2 -png a.png")["axes"]
         self.assertIn("symmetry of the axes through the points", self.output)
+        self.assertEqual(tool_run.Image.open(self.folder / "a.png").size, (800, 800))
         self.assertGreaterEqual(len(axes), 3)
         for axis in axes[:3]:
             self.assertEqual(axis["fold"], 2)
