@@ -1,6 +1,7 @@
 #include "io/input_shape.h"
 
 #include <boost/algorithm/string.hpp>
+#include <cmath>
 #include <new>
 #include <sstream>
 
@@ -10,6 +11,7 @@
 #include "io/exact_coordinates.h"
 #include "io/file_text.h"
 #include "io/load_module.h"
+#include "pcl_symmetry/impl/cloud_conversion.hpp"
 #include "pcl_symmetry/mesh_sampling.h"
 #include "pictures/drawing.h"
 
@@ -70,6 +72,21 @@ InputShape loadVolumeInput(const std::string& path, const CommonOptions& common,
   return input;
 }
 
+/// Warns where the file itself says that the scanner stood elsewhere.
+void checkViewpoint(const Console& console, const InputShape& input, const Viewpoint& given) {
+  const pcl::PointCloud<pcl::PointXYZ>& cloud = *input.points;
+  if (given.mode != Viewpoint::Mode::Given || (!cloud.isOrganized() && detail::hasDefaultSensor(cloud))) return;
+  const SeenSpace seen(cloud);
+  if (seen.source() != ViewpointSource::Rays && seen.source() != ViewpointSource::Stored) return;
+  constexpr double kOneSide = 0.5;  // radians between directions from which a scanner sees about the same
+  const Eigen::Vector3d center = finitePoints(cloud).rowwise().mean().cast<double>(),
+                        known = seen.visibility()->viewpoint(), told = given.position - input.shift();
+  if (std::atan2((known - center).cross(told - center).norm(), (known - center).dot(told - center)) < kOneSide) return;
+  console.warn(input.path + ": was seen from " + spelled(shiftedBack(known, input.shift()), 3) + " by its " +
+               (seen.source() == ViewpointSource::Rays ? "rows and columns" : "stored viewpoint") +
+               ", -viewpoint says otherwise");
+}
+
 }  // namespace
 
 InputShape loadInput(const Console& console, const std::string& path, const CommonOptions& common) {
@@ -82,6 +99,7 @@ InputShape loadInput(const Console& console, const std::string& path, const Comm
       is_volume ? loadVolumeInput(path, common, summary) : loadInput(path, common.mesh_points, common.seed);
   input.loading_ms = loading.done(counted(finitePoints(*input.points).cols(), "point") + summary);
   warnOfLeftOut(console, path, input.shape);
+  checkViewpoint(console, input, common.viewpoint);
   return input;
 }
 

@@ -75,7 +75,8 @@ CommandLine commandLine(PlanesOptions& options) {
               "the estimator of the map (Sections 4.2 and 4.3); with -as_published convolution")
       .flag("as_published", options.as_published,
             "refine the maxima of the map as the paper does (Section 4.4), without a decision")
-      .flag("explain", options.explain, "also print why each plane has its confidence and kind")
+      .flag("explain", options.explain,
+            "also print why each plane, axis and center has its confidence, and planes their kind")
       .plane("ground", options.ground,
              "what the object stands on: a x + b y + c z + d = 0; with a viewpoint, sparse points of a LiDAR are then "
              "decided by the box around them")
@@ -126,8 +127,26 @@ std::string explained(const std::string& name, const SymmetryPlane& plane) {
   return lines;
 }
 
+/// Axes and centers are decided by many planes together.
+template <typename Found>
+std::string explained(const char* name, const Found& found, const char* planes) {
+  return formatted("%s: confidence %.3f\n  planes %s together: support %.3f, score %.3f\n", name, found.confidence,
+                   planes, found.support, found.score);
+}
+
+std::string explained(const SymmetryRotation& rotation) {
+  return formatted("axis of order %d: confidence %.3f\n", rotation.fold, rotation.confidence) +
+         formatted("  points on the surface %.3f, in space seen to be empty %.3f, by rotations halfway between %.3f\n",
+                   rotation.support, rotation.off, rotation.halfway);
+}
+
 std::string explained(const Findings& findings) {
   std::string lines;
+  for (const SymmetryCenter& center : findings.centers)
+    lines += explained("center of all planes", center, "in many directions through it");
+  for (const SymmetryAxis& axis : findings.axes)
+    lines += explained("axis of revolution", axis, "at eight angles through it");
+  for (const SymmetryRotation& rotation : findings.rotations) lines += explained(rotation);
   for (std::size_t i = 0; i < findings.planes.size(); ++i)
     lines += explained("plane " + std::to_string(i + 1), findings.planes[i]);
   if (findings.best) lines += explained("best plane", *findings.best);

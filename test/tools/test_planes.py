@@ -116,7 +116,7 @@ class Planes(ToolTest):
         self.assertGreater(support[1:].mean(), 0.9)
 
     def test_reports_an_axis_of_revolution(self):
-        report = self.report(self.write("cylinder.off", tool_run.CYLINDER))
+        report = self.report(self.write("cylinder.off", tool_run.CYLINDER), "-explain")
         self.assertEqual([len(report[key]) for key in ("axes", "centers", "planes")], [1, 0, 1])
         axis = report["axes"][0]
         self.assertGreater(abs(axis["direction"][2]), np.cos(0.01))
@@ -126,6 +126,7 @@ class Planes(ToolTest):
         self.assertGreater(axis["score"], 0.9)
         self.assertGreater(abs(report["planes"][0]["coefficients"][2]), np.cos(0.01))
         self.assertIn("axis of revolution", self.output)
+        self.assertRegex(self.output, "axis of revolution: confidence 0[.].*\n  planes at eight angles through it together: support [01][.]")
         self.assertIn(": 1 plane, 1 axis]", self.error)
         ball = self.report(self.write("ball.off", tool_run.SPHERE))
         self.assertEqual([len(ball[key]) for key in ("axes", "centers", "planes")], [0, 1, 0])
