@@ -140,6 +140,13 @@ CommandLine& CommandLine::picture(const std::string& name, std::optional<std::st
   });
 }
 
+CommandLine& CommandLine::page(const std::string& name, std::optional<std::string>& value, const std::string& help) {
+  return add(name, "FILE.html", help, [&value, name](const std::string& text) {
+    if (text != "-" && !boost::algorithm::iends_with(text, ".html")) rejectValue("-" + name, text, "must end in .html");
+    value = text;
+  });
+}
+
 CommandLine& CommandLine::choice(const std::string& name, std::string& value, const std::vector<std::string>& allowed,
                                  const std::string& help) {
   const std::string list = boost::algorithm::join(allowed, "|");
@@ -255,10 +262,10 @@ bool CommandLine::parse(int argc, const char* const* argv) {
     return false;
   }
   assignPositionals();
-  po::notify(values_);
-  goWith("volumes, without -surface", !given("surface"), {"levels"});
   toolName() = tool_;
   checkFiles();
+  po::notify(values_);
+  goWith("volumes, without -surface", !given("surface"), {"levels"});
   nlohmann::json options = nlohmann::json::object();
   for (const auto& [name, value] : values_) {
     if (!given(name) || name == "positional arguments") continue;

@@ -95,6 +95,8 @@ public:
                     const std::string& help);
   /// The name of a picture to write; must end in .png, or be "-" for standard output.
   CommandLine& picture(const std::string& name, std::optional<std::string>& value, const std::string& help);
+  /// The name of a page to write; must end in .html, or be "-" for standard output.
+  CommandLine& page(const std::string& name, std::optional<std::string>& value, const std::string& help);
   CommandLine& choice(const std::string& name, std::string& value, const std::vector<std::string>& allowed,
                       const std::string& help);
   /// \param value double, int, or an optional of these, whose help tells the default.

@@ -5,6 +5,7 @@
 #include <boost/algorithm/string.hpp>
 #include <optional>
 
+#include "io/answers.h"
 #include "io/file_text.h"
 
 namespace pcl_symmetry::apps {
@@ -119,7 +120,7 @@ ExactShape readColumns(const std::string& path, std::string_view text) {
   if (num_points && *num_points != shape.vertices.size())
     reject(path, "holds " + std::to_string(shape.vertices.size()) + " points, its first line says " +
                      std::to_string(*num_points));
-  if (num_columns > 3) shape.left_out.push_back(std::to_string(num_columns - 3) + " columns besides x, y and z");
+  if (num_columns > 3) shape.left_out.push_back(counted(num_columns - 3, "column") + " besides x, y and z");
   return shape;
 }
 

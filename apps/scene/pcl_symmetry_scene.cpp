@@ -47,7 +47,7 @@ CommandLine commandLine(SceneToolOptions& o) {
           "completed scene, .pcd or .ply, with the fields object (-1 = supporting plane, 0 = none) and completed")
       .text("database", "FILE", o.database_path, "names objects by the models of this file of pcl_symmetry_database")
       .picture("png", o.png_path, "picture: the scene, and each object with what its symmetry adds")
-      .text("html", "FILE", o.html_path, "page that shows the scene, its objects, planes and axes in any browser")
+      .page("html", o.html_path, "page that shows the scene, its objects, planes and axes in any browser")
       .plane("ground", o.ground,
              "what the objects stand on, a x + b y + c z + d = 0, in place of supporting planes that are searched for")
       .number("max_range", o.scene.max_range, Range::atLeast(0),

@@ -70,7 +70,7 @@ CommandLine commandLine(AlignOptions& options) {
           "of its file. Scans that fit no others are left out and named. Other flags: -complete, -viewpoint, which is "
           "the same in the frame of each scan, and outputs")
       .text("target", "FILE", options.target, "cloud or mesh that the input is brought to")
-      .text("html", "FILE", options.html_path,
+      .page("html", options.html_path,
             "page that shows the input in the target, or its center and axes, for any browser, without network")
       .picture("png", options.png_path, "picture of the same")
       .choice(

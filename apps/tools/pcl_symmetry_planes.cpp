@@ -53,8 +53,7 @@ CommandLine commandLine(PlanesOptions& options) {
   line.positionals("input", options.batch.inputs, kManyInputs + std::string("; volumes (") + kVolumeFiles + ")")
       .picture("png", options.png_path,
                "picture: cloud, planes and support, best planes first; three slices of a volume and its asymmetry")
-      .text("html", "FILE", options.html_path,
-            "page with the same in three dimensions, for any browser, without network")
+      .page("html", options.html_path, "page with the same in three dimensions, for any browser, without network")
       .text("support", "FILE", options.support_path,
             "cloud with one more field per plane, support_1, support_2 ...: how well the point supports the plane")
       .text(

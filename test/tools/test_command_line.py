@@ -115,6 +115,7 @@ class Flags(ToolTest):
         self.fails(2, "-up = 0,0,0, must not be zero", "a -up 0,0,0", tool="segment")
         self.fails(1, "-levels is of volumes", self.box, "-levels 0,1")
         self.fails(1, "missing.off: no such file", "missing.off -png OUT.PNG")  # the name of the picture is one
+        self.fails(2, "-html = page.txt, must end in .html", self.box, "-html page.txt")
 
     def test_flags_that_would_do_nothing_are_refused(self):
         self.write("a.txt", "")

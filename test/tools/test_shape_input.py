@@ -216,6 +216,8 @@ class ShapeInput(ToolTest):
             self.assert_points(name, head + rows(line))
             if "9 9" in line or name == "names.csv":
                 self.assertEqual(self.error.count("left out"), 1, name)
+        self.assert_points("one_more.csv", rows("{},{},{},7\n"))
+        self.assertIn(": 1 column besides x, y and z left out", self.error)
         self.assert_points("decimal_commas.csv", rows("{};{};{}\n").replace(".", ","))
 
     def test_pipes(self):
