@@ -11,8 +11,9 @@ namespace pcl_symmetry {
 struct JudgedCloud;
 struct Found;
 
-/// Whether a plane contains a line, within DetectionRules::Families::contained_angle and contained_offset.
-bool contains(const ReflectionPlane& plane, const Line3d& line);
+/// Whether a plane contains a line, within 3 degrees and \p tolerance.
+bool contains(const ReflectionPlane& plane, const Line3d& line,
+              double tolerance = kDetection.families.contained_offset);
 
 /// The planes of a regular polygon: \p fold planes through a line, at equal angles.
 struct PlaneLattice {

@@ -44,9 +44,9 @@ std::vector<std::vector<ReflectionPlane>> bundlesOf(const std::vector<Reflection
 
 }  // namespace
 
-bool contains(const ReflectionPlane& plane, const Line3d& line) {
+bool contains(const ReflectionPlane& plane, const Line3d& line, double tolerance) {
   return std::abs(plane.normal().dot(line.direction())) <= std::sin(kDetection.families.contained_angle) &&
-         std::abs(plane.signedDistance(line.origin())) <= kDetection.families.contained_offset;
+         std::abs(plane.signedDistance(line.origin())) <= tolerance;
 }
 
 ReflectionPlane PlaneLattice::plane(double k) const {
