@@ -2,6 +2,7 @@
 #include <pcl/io/pcd_io.h>
 #include <pcl_symmetry/symmetry_detection.h>
 
+#include <algorithm>
 #include <iostream>
 
 int main(int argc, char** argv) {
@@ -17,6 +18,7 @@ int main(int argc, char** argv) {
   }
   std::cout << "a b c d = " << planes[0].coefficients().transpose() << ", confidence " << planes[0].confidence << "\n";
 
-  const Eigen::Vector3d first = cloud[0].getVector3fMap().cast<double>();
-  std::cout << first.transpose() << " reflects to " << planes[0].reflect(first).transpose() << "\n";
+  const auto measured = std::find_if(cloud.begin(), cloud.end(), [](const auto& p) { return pcl::isFinite(p); });
+  const Eigen::Vector3d point = measured->getVector3fMap().cast<double>();
+  std::cout << point.transpose() << " reflects to " << planes[0].reflect(point).transpose() << "\n";
 }

@@ -3,6 +3,7 @@
 #include <pcl/io/pcd_io.h>
 #include <pcl_symmetry/symmetry_alignment.h>
 
+#include <algorithm>
 #include <iostream>
 
 int main(int argc, char** argv) {
@@ -22,5 +23,6 @@ int main(int argc, char** argv) {
 
   pcl::PointCloud<pcl::PointXYZ> canonical;
   pcl::transformPointCloud(*cloud, canonical, frame.T_canonical_input.matrix().cast<float>().eval());
-  std::cout << "first point in its own frame: " << canonical[0].getVector3fMap().transpose() << "\n";
+  const auto measured = std::find_if(canonical.begin(), canonical.end(), [](const auto& p) { return pcl::isFinite(p); });
+  std::cout << "first point in its own frame: " << measured->getVector3fMap().transpose() << "\n";
 }

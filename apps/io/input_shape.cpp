@@ -78,7 +78,7 @@ void checkViewpoint(const Console& console, const InputShape& input, const Viewp
   if (given.mode != Viewpoint::Mode::Given || (!cloud.isOrganized() && detail::hasDefaultSensor(cloud))) return;
   const SeenSpace seen(cloud);
   if (seen.source() != ViewpointSource::Rays && seen.source() != ViewpointSource::Stored) return;
-  constexpr double kOneSide = 0.5;  // radians between directions from which a scanner sees about the same
+  constexpr double kOneSide = 0.2;  // radians between directions from which a scanner sees about the same
   const Eigen::Vector3d center = finitePoints(cloud).rowwise().mean().cast<double>(),
                         known = seen.visibility()->viewpoint(), told = given.position - input.shift();
   if (std::atan2((known - center).cross(told - center).norm(), (known - center).dot(told - center)) < kOneSide) return;

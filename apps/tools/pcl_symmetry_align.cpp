@@ -387,7 +387,7 @@ Motion registerTo(const Console& console, const InputShape& input, const InputSh
                              {"size_ratio", evidence.size_ratio},
                              {"uniqueness", evidence.uniqueness}};
   if (!result.converged) result.json["reason"] = registration.getReason();
-  step.done(result.converged ? "converged" : "nothing fits");
+  step.done(result.converged ? formatted("confidence %.3f", registration.getConfidence()) : "nothing fits");
   return result;
 }
 

@@ -2,6 +2,7 @@
 
 #include <pcl/PolygonMesh.h>
 #include <pcl/point_cloud.h>
+#include <pcl/point_types.h>
 
 #include <algorithm>
 #include <vector>
@@ -32,6 +33,7 @@ inline std::vector<SymmetryPlane> onlySymmetries(std::vector<SymmetryPlane> plan
 template <typename PointT>
 std::vector<SymmetryPlane> detectSymmetryPlanes(const pcl::PointCloud<PointT>& cloud,
                                                 const DetectionOptions& options = {}) {
+  static_assert(pcl::traits::has_xyz<PointT>::value, "PointT must have x, y and z");
   SymmetryMaximaRefinement<PointT> refinement;
   refinement.setOptions(options);
   // The cloud outlives this call: no copy.

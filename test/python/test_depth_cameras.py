@@ -301,6 +301,7 @@ class OrganizedArrays(unittest.TestCase):
                 with self.assertRaisesRegex(error, words):
                     pcl_symmetry.read(folder / wrong)
         np.testing.assert_array_equal(frame.points, self.frame)
+        np.testing.assert_array_equal(np.asarray(frame), self.frame)
         self.assertEqual((frame.viewpoint, len(frame.faces), scan.points.dtype), (None, 0, np.float32))
         self.assertEqual((len(pcl_symmetry.scene(frame)), pcl_symmetry.planes(frame, indices=self.labels == 1)._viewpoint_from), (2, "rays"))
         np.testing.assert_array_equal(scan.viewpoint, viewpoint)
@@ -328,12 +329,12 @@ class OrganizedArrays(unittest.TestCase):
         for scan in (self.frame[self.labels == 1], np.where((self.labels == 1)[..., None], self.frame, np.nan), stored):
             with self.assertWarnsRegex(RuntimeWarning, "points: a scan from one side, must be a whole object") as caught:
                 found = pcl_symmetry.rotations(scan)
-            self.assertEqual((found.name, found.confidence, found.reason[:6], caught.filename), ("", 0, "a scan", __file__))
+            self.assertEqual((bool(found), found.name, found.confidence, found.reason[:6], caught.filename), (False, "", 0, "a scan", __file__))
 
     def test_a_database_names_what_is_in_a_frame(self):
         database = pcl_symmetry.Database(":memory:")
         database.build({"first": box((0.3, 0.3, 0.25)), "second": box((0.25, 0.2, 0.15)), "bar": bar()})
-        self.assert_follow({"models": [each.to_dict() for each in database.recognize(self.frame, indices=self.labels == 1)], "known": True}, "recognition")
+        self.assert_follow({"models": [each.to_dict() for each in database.recognize(self.frame, indices=self.labels == 1)], "known": True}, "recognition", file="")
         self.assert_follow(pcl_symmetry.scene(self.frame, database=database), "scene", file="-", timing_ms={})
         self.assertEqual(database.names, ["bar", "first", "second"])
         recognized = database.recognize(self.frame, indices=self.labels == 1, min_confidence=0.0)

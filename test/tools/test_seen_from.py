@@ -170,10 +170,11 @@ class SeenFrom(ToolTest):
         shell = on_sphere(20_000)
         shell = shell[(shell * ((0, 0, 5) - shell)).sum(axis=1) > 0] - (0, 0, 5)
         self.assertEqual(self.sources((shell, (0, 0, 0)), (shell, (0, 0, 0.1))), ["none", "stored"])
-        self.run_tool("1.pcd -viewpoint 0,0,1")
+        self.run_tool("1.pcd -viewpoint 0,0.3,1")
         self.assertNotIn("otherwise", self.error)
-        self.run_tool("1.pcd -viewpoint 0,0,-19")
-        self.assertIn("0.1 by its stored viewpoint, -viewpoint says otherwise", self.error)
+        for elsewhere in ("0,0,-19", "0,2,0"):  # 180 and 21 degrees away
+            self.run_tool(f"1.pcd -viewpoint {elsewhere}")
+            self.assertIn("0.1 by its stored viewpoint, -viewpoint says otherwise", self.error)
         path = self.write("turned.pcd", pcd(shell, len(shell)).replace(b"0 0 0 1 0 0 0", b"0 0 0 0 1 0 0"))
         self.assertEqual(self.report(path, "-quiet")["viewpoint"]["from"], "stored", "who turns the sensor has set its pose")
 

@@ -421,6 +421,14 @@ class Shape(Result):
     viewpoint: Optional[NDArray[np.float64]]
     """(3,) where the sensor stood, which viewpoint="auto" means; None where the file says nothing of it."""
 
+    def __len__(self) -> int:
+        return len(self.points)
+
+    def __array__(self, dtype: Any = None) -> NDArray[Any]:
+        import numpy as np
+
+        return np.asarray(self.points, dtype=dtype)
+
     def __repr__(self) -> str:
         return f"Shape(points={self.points.shape}, faces={len(self.faces)}, viewpoint={_text(self.viewpoint)})"
 
@@ -696,6 +704,9 @@ class Rotations(Result):
     reason: str
     """Why there is no answer: the name is empty then. Else empty."""
 
+    def __bool__(self) -> bool:
+        return not self.reason
+
     def _json(self) -> Dict[str, Any]:
         found = super()._json()
         del found["discrete"], found["continuous"]
@@ -883,6 +894,9 @@ class Registration(Result):
     covariance: Optional[NDArray[np.float64]]
     """(6, 6) of the small rotation, radians, and translation, input units, by which noise and sampling put the pose off,
     frame of the target; None where no pose was found."""
+
+    def __bool__(self) -> bool:
+        return self.converged
 
     def _json(self) -> Dict[str, Any]:
         found = _picked(self.score, "support conflict")
