@@ -327,15 +327,20 @@ using Parts = std::pair<std::vector<int>, std::string>;
 
 Parts segmentCloud(const py::array& points, const SegmentationOptions& options) {
   constexpr int kMostPoints = 30'000, kNumNeighbors = 12;  // as in SymmetrySegmentation
-  const InputPoints input("points", points, kMostPoints, options.seed);
+  const InputPoints input("points", points, kMostPoints, options.seed), all("points", points, 0, options.seed);
   const PointsRef used = input.points();
   checkAnswerable("points", used);
   const Computing computing;
-  const auto neighbors = nearestOthers(used, *makeFlannSearch(used), kNumNeighbors, options.num_threads);
+  const ClosestPointSearch::Ptr search = makeFlannSearch(used);
+  const auto neighbors = nearestOthers(used, *search, kNumNeighbors, options.num_threads);
   const Segmentation parts = segmentSurface(cloudGraph(used, neighbors), options);
-  std::vector<int> labels(input.numRows(), -1);
   if (input.rows().empty()) return {parts.labels, parts.reason};
-  for (std::size_t i = 0; i < input.rows().size(); ++i) labels[input.rows()[i]] = parts.labels[i];
+  // Points that were not drawn follow the closest of those that were.
+  std::vector<int> labels(all.numRows(), -1), closest;
+  std::vector<float> sq_distances;
+  search->search(all.points(), 1, closest, sq_distances);
+  for (std::size_t i = 0; i < closest.size(); ++i)
+    labels[all.rows().empty() ? i : all.rows()[i]] = parts.labels[closest[i]];
   return {labels, parts.reason};
 }
 

@@ -415,6 +415,9 @@ class OtherFunctions(unittest.TestCase):
         shares = []
         labels = pcl_symmetry.segment(box(num_points=2000), parts=2, progress=shares.append)
         self.assertEqual(len(labels), 2000)
+        many = box(num_points=30_500)  # more than are drawn: the others follow the closest
+        many[7] = np.nan
+        np.testing.assert_array_equal(np.flatnonzero(pcl_symmetry.segment(many, parts=2) < 0), [7])
         self.assertTrue(shares and max(shares) <= 1.0)
         with self.assertWarnsRegex(RuntimeWarning, "^parts = 1000, [0-9]+ possible: ") as caught:
             pcl_symmetry.segment(vertices, faces, parts=1000)
