@@ -23,6 +23,7 @@ int main(int argc, char** argv) {
 
   pcl::PointCloud<pcl::PointXYZ> canonical;
   pcl::transformPointCloud(*cloud, canonical, frame.T_canonical_input.matrix().cast<float>().eval());
-  const auto measured = std::find_if(canonical.begin(), canonical.end(), [](const auto& p) { return pcl::isFinite(p); });
+  const auto measured =
+      std::find_if(canonical.begin(), canonical.end(), [](const auto& p) { return pcl::isFinite(p); });
   std::cout << "first point in its own frame: " << measured->getVector3fMap().transpose() << "\n";
 }

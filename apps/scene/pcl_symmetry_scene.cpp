@@ -34,10 +34,11 @@ struct SceneToolOptions {
 };
 
 CommandLine commandLine(SceneToolOptions& o) {
-  CommandLine line("pcl_symmetry_scene",
-                   "Finds the objects of a frame of a depth camera or scanner, and their symmetries. A cloud of one object alone "
-                   "would be taken apart: pcl_symmetry_planes takes it as a whole.",
-                   "pcl_symmetry_scene table.pcd completed.pcd -json objects.json -png objects.png");
+  CommandLine line(
+      "pcl_symmetry_scene",
+      "Finds the objects of a frame of a depth camera or scanner, and their symmetries. A cloud of one object alone "
+      "would be taken apart: pcl_symmetry_planes takes it as a whole.",
+      "pcl_symmetry_scene table.pcd completed.pcd -json objects.json -png objects.png");
   o.batch.outputs = {&o.output, &o.png_path, &o.html_path};
   line.positional(
           "input", o.input,

@@ -60,7 +60,8 @@ CommandLine commandLine(DatabaseToolOptions& options) {
       .choice("names", options.names, {"file", "path"},
               "models of folders are named by the file without its ending, or by its path in the folder")
       .text("tag", "WORD", options.tag, "stored with the models of build and add, such as their class")
-      .text("unit", "WORD", options.unit, "unit of the coordinates, such as m: stored with a new database, refused where the database has another")
+      .text("unit", "WORD", options.unit,
+            "unit of the coordinates, such as m: stored with a new database, refused where the database has another")
       .flag("part", options.is_part, "build and add: fit nothing to the models, as merge fits the whole")
       .text("csv", "FILE", options.csv, "list and info: a row for each model")
       .common(options.common, kMeshPoints | kJson | kThreads | kQuiet);
