@@ -194,7 +194,7 @@ std::vector<SelectedView> ViewpointSelection::getGoodViews(int num_views) const 
     };
     eraseIf(remaining, taken);
   }
-  sortFalling(views, [](const auto& entry) { return entry.score; });
+  sortFalling(views, &SelectedView::score);
   if (views.size() > static_cast<std::size_t>(num_views)) views.resize(num_views);
   return views;
 }

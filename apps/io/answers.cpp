@@ -2,15 +2,6 @@
 
 namespace pcl_symmetry::apps {
 
-const char* toString(ViewpointSource source) {
-  static const char* const names[] = {"none", "given", "rays", "stored", "inferred"};
-  return names[static_cast<int>(source)];
-}
-
-std::string counted(std::size_t number, const std::string& one, const std::string& many) {
-  return std::to_string(number) + " " + (number == 1 ? one : many.empty() ? one + "s" : many);
-}
-
 nlohmann::json rotationsJson(const std::vector<SymmetryRotation>& rotations, const Eigen::Vector3d& shift) {
   nlohmann::json json = nlohmann::json::array();
   for (const SymmetryRotation& rotation : rotations) {

@@ -16,12 +16,11 @@
 
 namespace pcl_symmetry::apps {
 
-/// Where the viewpoint of a scan is known from.
-const char* toString(ViewpointSource source);
-
 /// "1 plane", "2 planes".
 /// \param many where it is not that with an s.
-std::string counted(std::size_t number, const std::string& one, const std::string& many = "");
+inline std::string counted(std::size_t number, const std::string& one, const std::string& many = "") {
+  return std::to_string(number) + " " + (number == 1 ? one : many.empty() ? one + "s" : many);
+}
 
 /// JSON as text; an object says how it was made, see madeBy(). Names of files are bytes: what is no UTF-8 is replaced,
 /// where nlohmann's default would throw.

@@ -347,8 +347,7 @@ PictureScene sceneOf(const InputShape& input, const InputShape& target, const Ei
   const Eigen::Isometry3d motion =
       Eigen::Translation3d(-target.shift()) * T_target_input * Eigen::Translation3d(input.shift());
   pcl::transformPointCloud(*input.points, moved, motion.matrix());
-  return sceneOf(*target.points + moved, target.points->size(), "target (1) and the input in it (2)", "target",
-                 "input");
+  return sceneOf(*target.points + moved, target.points->size(), "the input in the target", "target", "input");
 }
 
 Motion registerTo(const Console& console, const InputShape& input, const InputShape& target,

@@ -37,6 +37,12 @@ enum class ViewpointSource {
   Inferred  ///< from the density of the points: that of a scan falls with the slant and the distance of the surface
 };
 
+/// \return "none", "given", "rays", "stored" or "inferred".
+inline const char* toString(ViewpointSource source) {
+  constexpr const char* names[] = {"none", "given", "rays", "stored", "inferred"};
+  return names[static_cast<int>(source)];
+}
+
 namespace detail {
 
 /// \return the viewpoint.

@@ -133,11 +133,6 @@ Viewpoint viewpointOf(const py::object& viewpoint) {
   return position ? Viewpoint{Viewpoint::Mode::Given, *position} : Viewpoint{};
 }
 
-const char* toString(ViewpointSource source) {
-  static const char* const names[] = {"none", "given", "rays", "stored", "inferred"};
-  return names[static_cast<int>(source)];
-}
-
 /// What a class for PCL uses of a cloud, and what it knows of the scanner.
 class Look : public ScanAnalysis<pcl::PointXYZ> {
 public:

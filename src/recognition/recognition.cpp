@@ -82,7 +82,7 @@ void fillConfidences(std::vector<PosedModel>& found) {
 
 /// Sorts models, best first, and judges them together.
 void rank(std::vector<PosedModel>& found) {
-  sortFalling(found, [](const PosedModel& entry) { return entry.model.score.merit(); });
+  sortFalling(found, [](const PosedModel& posed) { return posed.model.score.merit(); });
   fillConfidences(found);
 }
 

@@ -165,7 +165,7 @@ std::vector<JudgedPose> judgedPoses(const CloudPair& clouds, const std::vector<R
     const PoseEvidence evidence = clouds.evidence(pose);
     judged.push_back({pose, evidence, poseConfidence(evidence)});
   }
-  sortFalling(judged, [](const auto& entry) { return entry.confidence; });
+  sortFalling(judged, &JudgedPose::confidence);
   return judged;
 }
 

@@ -99,7 +99,7 @@ std::vector<pcl::Indices> convexPieces(const SymmetryScene::Cloud& scene, const 
   for (const pcl::index_t i : rest)
     if (tree.nearestKSearch(scene[i], 1, closest, sq_distance) > 0) pieces[piece_of[closest[0]]].push_back(i);
   for (pcl::Indices& piece : pieces) std::sort(piece.begin(), piece.end());
-  sortFalling(pieces, [](const pcl::Indices& entry) { return entry.size(); });
+  sortFalling(pieces, [](const pcl::Indices& piece) { return piece.size(); });
   return pieces;
 }
 

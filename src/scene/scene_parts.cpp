@@ -312,7 +312,7 @@ std::vector<pcl::Indices> findClusters(const SymmetryScene::Cloud::ConstPtr& sce
     });
     if (!is_remainder) clusters.push_back(std::move(cluster.indices));
   }
-  sortFalling(clusters, [](const pcl::Indices& entry) { return entry.size(); });
+  sortFalling(clusters, [](const pcl::Indices& cluster) { return cluster.size(); });
   return clusters;
 }
 

@@ -29,8 +29,8 @@ struct PublishedOptions {
 /// constant width sigma and closest points by FLANN, until it converges. The paper discards a plane that leaves its
 /// cell, which protects from a refinement that runs to another maximum: here a plane is discarded once its bin is
 /// neither a neighbor of its maximum nor led to it by steepest ascent, and of planes that end in one bin the first
-/// stays. Nothing is added or decided: kind is PlaneKind::Approximate, confidence 0, and
-/// share, its limits and deviation, which only the decision measures, are NaN.
+/// stays. Nothing is added or decided: kind is PlaneKind::Approximate, confidence 0, and the share, its limits and the
+/// deviation, which only the decision measures, are NaN.
 ///
 /// Departure from the paper: maxima of a map by voting are those of means over neighbors, as its bins have few votes.
 /// \param points 3 x N, finite, input units.

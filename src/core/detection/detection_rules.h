@@ -19,7 +19,7 @@ struct DetectionRules {
     int density_samples = 1000;                            ///< samples of the density; its slope has an error of 2 %
     int max_counted = 48, neighbors = 16;  ///< neighbors that are counted, and that a neighborhood has on average
     double trimmed = 0.05;                 ///< share of the points at either end that the range of densities leaves out
-    double uneven = 0.4, fully_uneven = 0.7;  ///< log ratio of densities from which thinning starts, and is complete
+    double uneven = 0.4, fully_uneven = 0.7;  ///< log ratio of densities where thinning starts, and is complete
   } points;
 
   /// Completion of groups.

@@ -18,8 +18,8 @@ struct SegmentationRules {
   // Merging
   int num_patches = 200;          ///< fewer lose small parts; time and memory grow with the square
   std::size_t num_divisions = 4;  ///< whose merges are averaged: a Rand distance of 0.134 with one, 0.124 with four
-  double min_part =
-      0.003;  ///< share of the surface (a cloud: and of its points); ears are larger, fragments of noise smaller
+  /// Share of the surface, of a cloud also of its points, that a part has at least; ears are larger, noise is smaller.
+  double min_part = 0.003;
   double part_cut_band = 0.03;  ///< square roots of the area of the surface, within which borders of parts may move
   double part_concavity = 3.0;  ///< SplittingOptions::concavity_weight of that; more lets borders follow every crease
 

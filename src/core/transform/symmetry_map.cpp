@@ -222,7 +222,7 @@ std::vector<LocalMaximum> findLocalMaxima(const SymmetryMap& map, const LocalMax
     }
   });
   for (const auto& row : rows) maxima.insert(maxima.end(), row.begin(), row.end());
-  sortFalling(maxima, [](const auto& entry) { return entry.value; });
+  sortFalling(maxima, &LocalMaximum::value);
   return maxima;
 }
 
