@@ -12,7 +12,7 @@ namespace pcl_symmetry::detail {
 /// Tables of a database, and what may be opened. Every function throws pcl::IOException, which names file and reason.
 
 /// Grows by 1 when tables or the bytes in them change.
-constexpr int kSchemaVersion = 6;
+constexpr int kSchemaVersion = 7;
 /// The name of a database that has no file.
 constexpr const char* kNoFile = ":memory:";
 constexpr const char* kSelectModels =

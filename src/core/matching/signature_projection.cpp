@@ -32,7 +32,7 @@ Eigen::MatrixXf product(const Eigen::MatrixXf& a, const Eigen::Ref<const Eigen::
   return result;
 }
 
-/// Inner products of all N shapes in all rotations, about their common mean. Shape i in rotation g has index g N + i.
+/// Inner products of all N shapes in all rotations. Shape i in rotation g has index g N + i.
 Eigen::MatrixXf innerProducts(const Eigen::MatrixXf& signatures, SignatureRotation rotate, int num_threads) {
   const Eigen::Index n = signatures.cols();
   std::vector<Eigen::MatrixXf> with_rotated(kNumAxisRotations);
@@ -44,10 +44,6 @@ Eigen::MatrixXf innerProducts(const Eigen::MatrixXf& signatures, SignatureRotati
   Eigen::MatrixXf products(kNumAxisRotations * n, kNumAxisRotations * n);
   for (int g = 0; g < kNumAxisRotations; ++g)
     for (int h = 0; h < kNumAxisRotations; ++h) products.block(g * n, h * n, n, n) = with_rotated[quotient(g, h)];
-  const Eigen::VectorXf means = products.rowwise().mean();
-  products.colwise() -= means;
-  products.rowwise() -= means.transpose();
-  products.array() += means.mean();
   return products;
 }
 
@@ -77,19 +73,8 @@ Components principalComponents(const Eigen::MatrixXf& products, const Projection
   return {space * solver.eigenvectors().cast<float>().rowwise().reverse().leftCols(kept), falling.head(kept)};
 }
 
-/// The mean of all shapes in all rotations.
-Eigen::VectorXf rotationMean(const Eigen::MatrixXf& signatures, SignatureRotation rotate) {
-  const Eigen::VectorXf mean = signatures.rowwise().mean();
-  Eigen::VectorXf result = Eigen::VectorXf::Zero(signatures.rows()), rotated(signatures.rows());
-  for (int r = 0; r < kNumAxisRotations; ++r) {
-    rotate(mean.data(), r, rotated.data());
-    result += rotated / kNumAxisRotations;
-  }
-  return result;
-}
-
-/// S x K: signatures times the basis are compact forms. Components sum to zero over the shapes, so that the mean need
-/// not be subtracted. The scale of the weights does not matter, as compact forms have unit norm.
+/// S x K: signatures times the basis are compact forms. The scale of the weights does not matter, as compact forms have
+/// unit norm.
 Eigen::MatrixXf whitenedBasis(const Eigen::MatrixXf& signatures, const Components& components, SignatureRotation rotate,
                               const ProjectionOptions& options) {
   const Eigen::Index n = signatures.cols(), k = components.variances.size();
@@ -133,19 +118,17 @@ SignatureProjection SignatureProjection::fit(const Eigen::MatrixXf& signatures, 
   check(signatures.cols() >= 1, "number of shapes", signatures.cols(), ">= 1");
   const Components components = principalComponents(innerProducts(signatures, rotate, options.num_threads), options);
   SignatureProjection result;
-  result.mean_ = rotationMean(signatures, rotate);
   result.basis_ = whitenedBasis(signatures, components, rotate, options);
   result.rotations_ = rotationsOfComponents(components, signatures.cols(), options.num_threads);
   return result;
 }
 
 Eigen::MatrixXf SignatureProjection::project(const Eigen::Ref<const Eigen::MatrixXf>& signatures) const {
-  check(signatures.rows() == mean_.size(), "size of a signature", signatures.rows(), "that of the projection");
+  check(signatures.rows() == basis_.rows(), "size of a signature", signatures.rows(), "that of the projection");
   Eigen::MatrixXf compact(numDimensions(), signatures.cols());
   // Column by column: a product of matrices would copy the basis, which takes longer than to use it.
   for (Eigen::Index i = 0; i < compact.cols(); ++i) {
-    const Eigen::VectorXf difference = signatures.col(i) - mean_;
-    compact.col(i).noalias() = basis_.transpose() * difference;
+    compact.col(i).noalias() = basis_.transpose() * signatures.col(i);
     compact.col(i).stableNormalize();
   }
   return compact;
@@ -161,24 +144,21 @@ Eigen::MatrixXf SignatureProjection::rotations(const Eigen::Ref<const Eigen::Mat
 }
 
 std::vector<float> SignatureProjection::toValues() const {
-  std::vector<float> values(mean_.data(), mean_.data() + mean_.size());
-  values.insert(values.end(), basis_.data(), basis_.data() + basis_.size());
+  std::vector<float> values(basis_.data(), basis_.data() + basis_.size());
   for (const Eigen::MatrixXf& rotation : rotations_)
     values.insert(values.end(), rotation.data(), rotation.data() + rotation.size());
   return values;
 }
 
 SignatureProjection SignatureProjection::fromValues(const std::vector<float>& values) {
-  // S + S K + 24 K K values: solved for K.
-  const double s = kSignatureSize, excess = static_cast<double>(values.size()) - s;
-  const auto k = static_cast<Eigen::Index>(std::lround(
-      (std::sqrt(s * s + 4.0 * kNumAxisRotations * std::max(0.0, excess)) - s) / (2.0 * kNumAxisRotations)));
-  const auto size = static_cast<std::size_t>(kSignatureSize + kSignatureSize * k + kNumAxisRotations * k * k);
+  // S K + 24 K K values: solved for K.
+  const double s = kSignatureSize, count = static_cast<double>(values.size());
+  const auto k = static_cast<Eigen::Index>(
+      std::lround((std::sqrt(s * s + 4.0 * kNumAxisRotations * count) - s) / (2.0 * kNumAxisRotations)));
+  const auto size = static_cast<std::size_t>(kSignatureSize * k + kNumAxisRotations * k * k);
   check(k >= 1 && values.size() == size, "number of values", values.size(), "that of a projection");
   SignatureProjection result;
   const float* next = values.data();
-  result.mean_ = Eigen::Map<const Eigen::VectorXf>(next, kSignatureSize);
-  next += kSignatureSize;
   result.basis_ = Eigen::Map<const Eigen::MatrixXf>(next, kSignatureSize, k);
   next += kSignatureSize * k;
   for (int r = 0; r < kNumAxisRotations; ++r, next += k * k)

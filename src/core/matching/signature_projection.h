@@ -18,7 +18,8 @@ using SignatureRotation = void (*)(const float* values, int rotation, float* rot
 /// Compact forms of signatures (Section 5.2; not in the paper): their principal components, where a shape in all 24
 /// rotations of its axes is projected once.
 ///
-/// The components are those of the reference shapes in all 24 rotations. The rotations therefore map the space of the
+/// The components are those of the reference shapes in all 24 rotations, about zero: about the mean of a few shapes,
+/// whatever is unlike all of them would have the same compact form. The rotations therefore map the space of the
 /// components onto itself, and a compact form is rotated there. Distances of compact forms tell classes apart better
 /// than distances of signatures; the classes need not be known.
 class SignatureProjection {
@@ -26,7 +27,7 @@ public:
   SignatureProjection() = default;
 
   /// \param signatures S x N, one reference shape per column, N >= 1.
-  /// \throws std::invalid_argument for no shape, or shapes that are all alike.
+  /// \throws std::invalid_argument for no shape, or signatures of zeros.
   static SignatureProjection fit(const Eigen::MatrixXf& signatures, const ProjectionOptions& options = {},
                                  SignatureRotation rotate = rotateSignature);
 
@@ -43,14 +44,13 @@ public:
   /// \throws std::invalid_argument for another number of rows.
   Eigen::MatrixXf rotations(const Eigen::Ref<const Eigen::MatrixXf>& compact) const;
 
-  /// \return all numbers of the projection, to be stored: mean, basis, rotations.
+  /// \return all numbers of the projection, to be stored: basis, rotations.
   std::vector<float> toValues() const;
   /// \param values of toValues(), of a projection of shape signatures.
   /// \throws std::invalid_argument for another number of values.
   static SignatureProjection fromValues(const std::vector<float>& values);
 
 private:
-  Eigen::VectorXf mean_;                    // S
   Eigen::MatrixXf basis_;                   // S x K, whitening included
   std::vector<Eigen::MatrixXf> rotations_;  // 24, K x K
 };

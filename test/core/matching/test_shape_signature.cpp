@@ -160,6 +160,15 @@ TEST(SignatureProjection, IsTheSameWithAnyNumberOfThreadsAndAfterStorage) {
   EXPECT_THROW(SignatureProjection::fromValues(cut), std::invalid_argument);
 }
 
+TEST(SignatureProjection, TellsApartWhatIsUnlikeAllOfFewShapes) {
+  const SignatureProjection projection = SignatureProjection::fit(boxSignatures(3));
+  const auto form = [&](const Eigen::Vector3d& half) -> Eigen::VectorXf {
+    const auto signature = shapeSignature(knobbedBox(half, half, 3000, 1), kOwnAxes);
+    return projection.project(Eigen::Map<const Eigen::VectorXf>(signature.data(), kSignatureSize));
+  };
+  EXPECT_LT(form({2.0, 0.05, 0.05}).dot(form({1.0, 1.0, 0.02})), 0.5) << "a rod and a plate";
+}
+
 TEST(SignatureProjection, RefusesWhatItCannotUse) {
   EXPECT_THROW(SignatureProjection::fit(Eigen::MatrixXf(kSignatureSize, 0)), std::invalid_argument);
   EXPECT_THROW(SignatureProjection::fit(Eigen::MatrixXf::Ones(5, 5)), std::invalid_argument);
