@@ -81,6 +81,8 @@ struct CloudRegistration : RegisteredPose {
 
 /// Fewer points fit any cloud of their size: eight of eight wrong objects reach a merit of 0.55 with 50 points.
 constexpr int kLeastRegistrationPoints = 100;
+/// Of larger clouds so many points are drawn; see SymmetryRegistration::setMaxPoints().
+constexpr std::size_t kRegistrationPoints = 10'000;
 
 class PreparedCloud;
 
@@ -258,7 +260,7 @@ private:
   CloudRegistrationOptions options_;
   std::shared_ptr<const PreparedCloud> prepared_target_;
   double min_confidence_ = 0.5;
-  std::size_t max_points_ = 10'000;
+  std::size_t max_points_ = kRegistrationPoints;
   CloudRegistration result_;  // of the last align(); without covariance where it did not converge
   std::string reason_ = "align() was not called with these clouds";
 };

@@ -50,7 +50,8 @@ CloudRegistration registerPoints(const AnyArray& source, const AnyArray& target,
   options.num_threads = threads;
   if (around) options.around = PoseNeighborhood{around->first, around->second};
   options.validate();
-  const InputPoints source_input("source", source, 0, seed), target_input("target", target, 0, seed);
+  const InputPoints source_input("source", source, kRegistrationPoints, seed);
+  const InputPoints target_input("target", target, kRegistrationPoints, seed);
   const std::optional<Visibility> source_seen = seenFrom(source_input.points(), source_viewpoint);
   const std::optional<Visibility> target_seen = seenFrom(target_input.points(), target_viewpoint);
   checkAnswerable("source", source_input.points());

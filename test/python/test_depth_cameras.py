@@ -153,6 +153,20 @@ class SameBytes(unittest.TestCase):
                     read = np.frombuffer(body, "<f4", count=values.size)  # PCL fills the last page of the file
                     np.testing.assert_array_equal(read, values.ravel(), err_msg=f"{kind} {i}")
 
+    def test_of_poses(self):
+        tool, target = Path(os.environ["TOOLS"]) / "pcl_symmetry_align", lamp(24_000)
+        source = seen_half(box(num_points=30_000), np.array([3.0, 2.0, 1.5]))
+        with tempfile.TemporaryDirectory() as folder:
+            for name, points in (("source", source), ("target", target), ("box", box(num_points=25_000))):
+                (Path(folder) / f"{name}.pcd").write_bytes(pcd(points))
+            for known, points in (("target", target), ("box", box(num_points=25_000))):
+                flags = ["-target", f"{known}.pcd", "-json", f"{known}.json", "-quiet"]
+                subprocess.run([tool, "source.pcd", *flags], cwd=folder, capture_output=True)
+                read = json.loads((Path(folder) / f"{known}.json").read_text())
+                found = pcl_symmetry.register(source, points)
+                self.assertEqual((read["confidence"], read["converged"]), (found.confidence, found.converged), known)
+                np.testing.assert_array_equal(read["transform"], found.transform.ravel(), known)
+
     def test_of_views(self):
         tool, points = Path(os.environ["TOOLS"]) / "pcl_symmetry_viewpoint", lamp()
         with tempfile.TemporaryDirectory() as folder:

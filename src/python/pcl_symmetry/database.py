@@ -59,7 +59,7 @@ def register(
 ) -> Registration:
     """The pose of a scan, or a whole object, relative to another cloud of it, from any start (Section 5.1).
 
-    source, target: (N, 3) and (M, 3), same units, or clouds or meshes of Open3D or trimesh.
+    source, target: (N, 3) and (M, 3), same units, or clouds or meshes of Open3D or trimesh; 10 000 points of larger ones are used.
     guess: (4, 4), tried beside many other poses; None: the identity.
     around: (radians, input units), how far the pose may be from the guess, for tracks; None: all poses.
     source_viewpoint, target_viewpoint, progress: as in planes().
