@@ -378,6 +378,19 @@ Detection detectPlanes(const PlaneInput& input, const DetectionOptions& options)
   return stray.empty() ? detectInBulk(input, options) : detectWithout(stray, input, options);
 }
 
+std::vector<SymmetryPlane> refinedAt(const std::vector<ReflectionPlane>& starts, const PlaneInput& input,
+                                     const DetectionOptions& options) {
+  if (!whyUnanswerable(input.points).empty()) return {};
+  const std::optional<std::vector<int>> subset = subsetOf(input.points, options);
+  const DistinctPoints distinct(subset ? pointsAt(input.points, *subset) : Points(input.points));
+  const GaussianEdt edt(distinct.points, options.edtOptions());
+  const NormalizedCloud cloud(distinct.points, edt, nullptr, input.visibility, options.num_threads);
+  const JudgedCloud judged(cloud, cloud.points, options);
+  std::vector<Candidate> candidates;
+  for (const ReflectionPlane& start : starts) candidates.push_back({cloud.toNormalized(start)});
+  return refinedAndJudged(judged, judged.refinement.close(std::move(candidates)));
+}
+
 void refineOnMesh(const MeshSurface& mesh, Detection& found, const DetectionOptions& options) {
   constexpr MergeTolerance kOnePlane{0.01, 0.01};  // after refinement; those of 120 teeth are 0.026 apart
   constexpr double kNearlySymmetric = 0.9;         // share of the best plane that may be a symmetry of the mesh itself

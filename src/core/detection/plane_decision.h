@@ -213,6 +213,12 @@ struct Found {
   bool hasFamily() const { return !axes.empty() || !centers.empty(); }
 };
 
+/// Refines planes that are known nearly, and decides each for itself; none else are searched.
+/// \param starts input frame.
+/// \param input points and what a scanner saw.
+std::vector<SymmetryPlane> refinedAt(const std::vector<ReflectionPlane>& starts, const PlaneInput& input,
+                                     const DetectionOptions& options);
+
 /// The planes that are reported: best first, each maximum once, at most DetectionOptions::max_planes.
 ///
 /// Order: symmetries, then possible ones, both by falling confidence, then approximate and local ones by falling

@@ -55,4 +55,8 @@ bool isRotatedAboutRevolution(const Eigen::Matrix3f& axes, int revolution_axis, 
 /// \param edt distance transform of the points.
 void refineOnPoints(const PointsRef& points, const GaussianEdt& edt, const FrameOptions& options, SymmetryFrame& frame);
 
+/// The same of a scan, whose planes detectPlanes() decides.
+void refineOnScan(const PointsRef& points, const Visibility& visibility, const FrameOptions& options,
+                  SymmetryFrame& frame);
+
 }  // namespace pcl_symmetry

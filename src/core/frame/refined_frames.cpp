@@ -1,8 +1,11 @@
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <cmath>
 #include <functional>
 #include <optional>
 
+#include "core/base/statistics.h"
+#include "core/detection/plane_decision.h"
 #include "core/frame/canonical_frame.h"
 #include "core/frame/frame_evidence.h"
 #include "core/geometry/geometry_rules.h"
@@ -135,6 +138,25 @@ void refineOnPoints(const PointsRef& points, const GaussianEdt& edt, const Frame
         const IspResult found = refineSymmetricPoints(surface, samples, start, isp);
         if (share(found.last, isp.final_sigma) < kSymmetricShare) return std::nullopt;
         return found.plane;
+      },
+      frame);
+}
+
+void refineOnScan(const PointsRef& points, const Visibility& visibility, const FrameOptions& options,
+                  SymmetryFrame& frame) {
+  std::vector<ReflectionPlane> starts;
+  for (int k = 0; k < 3; ++k) starts.emplace_back(frame.axes.col(k), frame.axes.col(k).dot(frame.center));
+  DetectionOptions detection;
+  detection.seed = options.seed;
+  detection.num_threads = options.num_threads;
+  std::vector<SymmetryPlane> found = refinedAt(starts, PlaneInput(points, &visibility), detection);
+  eraseIf(found, [](const SymmetryPlane& plane) { return plane.kind != PlaneKind::Symmetry; });
+  sortFalling(found, &SymmetryPlane::confidence);
+  bringToPlanes(
+      [&](const ReflectionPlane& start) -> std::optional<ReflectionPlane> {
+        for (const SymmetryPlane& plane : found)
+          if (std::abs(plane.normal().dot(start.normal())) > std::cos(kFrame.same_frame)) return plane;
+        return std::nullopt;
       },
       frame);
 }

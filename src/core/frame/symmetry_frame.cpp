@@ -177,8 +177,14 @@ SymmetryFrame symmetryFrame(const PointsRef& all, const FrameOptions& options, c
   for (const FrameCandidate& other : rotated)
     if (!isRotatedAboutRevolution(frame.axes.cast<float>(), frame.revolution_axis, other.axes))
       addTied(other, best.scores, frame.center, frame.equivalent);
-  if (options.refined && !visibility) refineOnPoints(points, edt, options, frame);
   done("equivalent");
+  if (options.refined) {
+    if (visibility)
+      refineOnScan(points, *visibility, options, frame);
+    else
+      refineOnPoints(points, edt, options, frame);
+    done("refined");
+  }
   if (visibility && options.rotations) {
     frame.rotations = rotationsAlong(frame, points, edt, options, *visibility, make_search);
     done("rotations");
