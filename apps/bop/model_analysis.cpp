@@ -165,9 +165,12 @@ nlohmann::ordered_json toJson(const ModelInfo& info, double sphere_angle) {
 
 void printModel(const ModelInfo& info) {
   const ObjectSymmetries& found = info.symmetries;
-  std::printf("model %s  %s  group %s, %zu discrete, %zu continuous, confidence %.3f\n", info.key.c_str(),
-              info.file.c_str(), found.name().c_str(), found.discrete.size(), found.continuous.size(),
-              found.confidence);
+  if (info.is_scan)
+    std::printf("model %s  %s  a scan from one side, no group\n", info.key.c_str(), info.file.c_str());
+  else
+    std::printf("model %s  %s  group %s, %zu discrete, %zu continuous, confidence %.3f\n", info.key.c_str(),
+                info.file.c_str(), found.name().c_str(), found.discrete.size(), found.continuous.size(),
+                found.confidence);
   if (!info.group_without_colors.empty())
     std::printf("  without its colors the group is %s\n", info.group_without_colors.c_str());
   if (found.num_stray_points > 0)

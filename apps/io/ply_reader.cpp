@@ -278,7 +278,7 @@ private:
     if (!corners && element.name == "face") corners = element.find("vertex_index");
     if (corners && !corners->length_type) corners = nullptr;
     if (element.properties.empty()) return;
-    if (!corners && element.count > 0)
+    if (!corners && element.count > 0 && element.name != "range_grid")  // which pixels of Stanford's scans have points
       file_.left_out.push_back(std::to_string(element.count) + " of element " + element.name);
     std::vector<pcl::index_t> indices;
     for (std::uint64_t i = 0; i < element.count; ++i) {

@@ -111,9 +111,14 @@ std::string measured(double number) {
   return std::isnan(number) ? "-" : formatted("%.3f", number);
 }
 
-/// Why a plane has its confidence and kind: what its evidence makes of it, then factors on the odds.
-std::string explained(const std::string& name, const SymmetryPlane& plane) {
+/// Why a plane has its confidence and kind: what was measured, what that makes of it, then factors on the odds.
+std::string explained(const std::string& name, const SymmetryPlane& plane, double tolerance) {
   std::string lines = formatted("%s: %s, confidence %.3f\n", name.c_str(), toString(plane.kind), plane.confidence);
+  if (!std::isnan(plane.share))
+    lines += formatted(
+        "  %.1f %% of the surface within %.3g of its reflection, 97 %% within %.3g; a symmetry has 97 %% "
+        "within %.3g\n  %.0f %% of the reflections fall where the surface would have been seen\n",
+        100.0 * plane.share, tolerance, plane.deviation, tolerance, 100.0 * plane.seen);
   bool is_first = true;
   for (const Reason& reason : plane.reasons) {
     if (!reason.odds)
@@ -147,8 +152,8 @@ std::string explained(const Findings& findings) {
     lines += explained("axis of revolution", axis, "at eight angles through it");
   for (const SymmetryRotation& rotation : findings.rotations) lines += explained(rotation);
   for (std::size_t i = 0; i < findings.planes.size(); ++i)
-    lines += explained("plane " + std::to_string(i + 1), findings.planes[i]);
-  if (findings.best) lines += explained("best plane", *findings.best);
+    lines += explained("plane " + std::to_string(i + 1), findings.planes[i], findings.tolerance);
+  if (findings.best) lines += explained("best plane", *findings.best, findings.tolerance);
   return lines;
 }
 
@@ -468,6 +473,8 @@ int run(int argc, char** argv) {
               {"explain", "approximate", "min_confidence", "tolerance", "absolute_tolerance", "ground", "profile"});
   line.goWith("the decision, which -as_published without -method leaves out",
               !options.as_published || options.method_given, {"viewpoint"});
+  line.goWith("a viewpoint, which -viewpoint none takes away", options.common.viewpoint.mode != Viewpoint::Mode::None,
+              {"ground"});
   line.goWith("-absolute_tolerance 0", options.detection.absolute_tolerance == 0.0, {"tolerance"});
   options.detection.min_possible = std::min(options.detection.min_possible, options.detection.min_confidence);
   if (options.support_path) checkCloudExtension(*options.support_path);

@@ -131,12 +131,14 @@ Eigen::MatrixXd revolutionProfileOf(const AnyArray& points, const Eigen::Vector3
 }
 
 PlaneSearch planes(const AnyArray& points, const py::object& viewpoint, std::optional<double> tolerance,
-                   double absolute_tolerance, bool approximate, int max_planes, const py::object& normals,
-                   std::size_t max_points, bool evidence, std::uint64_t seed, int threads,
+                   double absolute_tolerance, double min_confidence, bool approximate, int max_planes,
+                   const py::object& normals, std::size_t max_points, bool evidence, std::uint64_t seed, int threads,
                    const std::optional<MeshSurface>& mesh, bool may_be_rings) {
   auto options = optionsWith<DetectionOptions>(seed, threads);
   if (tolerance) options.tolerance = options.max_tolerance = *tolerance;
   options.absolute_tolerance = absolute_tolerance;
+  options.min_confidence = min_confidence;
+  options.min_possible = std::min(options.min_possible, min_confidence);
   options.approximate = approximate;
   options.max_planes = max_planes;
   options.evidence = evidence;
@@ -440,8 +442,8 @@ PYBIND11_MODULE(_pcl_symmetry, module) {
   addEvidence(module);
   py::class_<MeshSurface>(module, "MeshSurface").def(py::init(&meshSurface));
   addResults(module);
-  add(module, "planes", &planes, "points", "viewpoint", "tolerance", "absolute_tolerance", "approximate", "max_planes",
-      "normals", "max_points", "evidence", "seed", "threads", "mesh", "may_be_rings");
+  add(module, "planes", &planes, "points", "viewpoint", "tolerance", "absolute_tolerance", "min_confidence",
+      "approximate", "max_planes", "normals", "max_points", "evidence", "seed", "threads", "mesh", "may_be_rings");
   py::class_<GivenVolume>(module, "Volume");
   add(module, "volume", &volumeOf, "volume", "spacing", "origin", "direction", "levels");
   add(module, "volume_planes", &volumePlanes, "volume", "approximate", "max_planes", "seed", "threads");

@@ -54,8 +54,10 @@ CloudRegistration registerPoints(const AnyArray& source, const AnyArray& target,
   const InputPoints target_input("target", target, kRegistrationPoints, seed);
   const std::optional<Visibility> source_seen = seenFrom(source_input.points(), source_viewpoint);
   const std::optional<Visibility> target_seen = seenFrom(target_input.points(), target_viewpoint);
-  checkAnswerable("source", source_input.points());
-  checkAnswerable("target", target_input.points());
+  for (const auto& [name, points] :
+       {std::pair("source", source_input.points()), std::pair("target", target_input.points())})
+    if (const std::string reason = detail::reasonForNoAnswer(points, name, kLeastRegistrationPoints); !reason.empty())
+      throw NoAnswer(reason);
   const Computing computing;
   return registerClouds(source_input.points(), source_seen, target_input.points(), target_seen, T_target_source,
                         options);
@@ -208,7 +210,8 @@ py::dict sceneOf(const AnyArray& points, const py::object& viewpoint, const std:
         py::make_tuple(junction.first, junction.second, junction.num_points, junction.together, junction.apart));
   std::optional<Visibility> seen;
   if (found.seen && found.seen->visibility()) seen = *found.seen->visibility();
-  return py::dict("objects"_a = objects, "supports"_a = supports, "junctions"_a = junctions, "seen"_a = seen,
+  return py::dict("answered"_a = !found.timing_ms.empty(), "objects"_a = objects, "supports"_a = supports,
+                  "junctions"_a = junctions, "seen"_a = seen,
                   "viewpoint_from"_a = toString(found.seen ? found.seen->source() : ViewpointSource::None),
                   "plane_distance"_a = found.plane_distance, "cluster_distance"_a = found.cluster_distance);
 }

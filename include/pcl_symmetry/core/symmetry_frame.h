@@ -27,8 +27,7 @@ struct FrameOptions : MapSize {
   bool as_published = false;
   /// Searches the axes of rotation of scans too, SymmetryFrame::rotations; false saves about a third of the time.
   bool rotations = true;
-  /// Moves the center and axes to planes of symmetry: of a whole cloud by Iterative Symmetric Points, of a scan to those
-  /// that detectPlanes() decides.
+  /// Moves the center and axes to the planes of symmetry that detectPlanes() decides, and to the axes of rotations.
   bool refined = true;
   bool probabilities = true;  ///< whether SymmetryFrame::probable is filled; takes about a seventh of the time
   std::uint64_t seed = 1;     ///< of all random draws

@@ -45,7 +45,10 @@ std::vector<SymmetryPlane> SymmetryMaximaRefinement<PointT>::compute() {
       return found_.planes;
     }
     samples_ = this->selectInput(options_.seed, options_.num_threads, as_published_);
-    if (samples_.cols() == 0) return found_.planes;
+    if (samples_.cols() == 0) {
+      found_.reason = this->getReason();
+      return found_.planes;
+    }
     if (as_published_) {
       found_ = detail::planesAsPublished(samples_, edt_.get(), map_, options_);
       return found_.planes;

@@ -336,8 +336,8 @@ void refine(const MeshSurface& mesh, SymmetryPlane& plane, double tolerance, con
   plane.deviation = shares.deviation;
   plane.residual = shares.residual;
   // The mesh shows all of the surface: its share stands in place of the evidence of points and of what that left open.
-  setConfidence(plane, confidenceOf(shares.share, mesh.numSamples()),
-                "the share of the mesh that the plane maps onto it", options);
+  setConfidence(plane, confidenceOf(shares.share, mesh.numSamples()), "how much of the mesh the plane maps onto it",
+                options);
 }
 
 }  // namespace

@@ -50,13 +50,12 @@ void addTied(const FrameCandidate& frame, const Eigen::Vector3f& scores, const E
 /// \param revolution_axis as of SymmetryFrame.
 bool isRotatedAboutRevolution(const Eigen::Matrix3f& axes, int revolution_axis, const Eigen::Matrix3f& frame);
 
-/// Moves the center and axes of a frame of a whole cloud to its planes of symmetry, by Iterative Symmetric Points (the
-/// paper's closed form); axes across which there is none follow the others.
-/// \param edt distance transform of the points.
-void refineOnPoints(const PointsRef& points, const GaussianEdt& edt, const FrameOptions& options, SymmetryFrame& frame);
+/// \return the axis of a frame that a rotation is sure to be about; -1: none.
+int axisAlong(const SymmetryRotation& rotation, const SymmetryFrame& frame);
 
-/// The same of a scan, whose planes detectPlanes() decides.
-void refineOnScan(const PointsRef& points, const Visibility& visibility, const FrameOptions& options,
-                  SymmetryFrame& frame);
+/// Moves the center and axes of a frame to the axes of its rotations and to the planes of symmetry that
+/// detectPlanes() decides; axes across which there is none follow the others.
+void refineOnPoints(const PointsRef& points, const Visibility* visibility, const FrameOptions& options,
+                    SymmetryFrame& frame);
 
 }  // namespace pcl_symmetry

@@ -20,7 +20,6 @@ struct FrameRules {
   int num_profile_samples = 256;  // of the profiles that scores come from: D to about 1 %
   double whole_weight = 0.6;      // of the second and third plane, and of agreement, in the value of a frame:
   double scan_weight = 0.3;       // they break ties, as between planes along faces and along edges of a square box
-  int refined_samples = 1000;     // that a frame is refined by
   double tail = 0.005;            // share of the points beyond either end of their extent: outliers
   double push = 0.05;  // radii that the middle of a scan lies farther from the scanner than that of its points
   double face_width = 6.0 * kDegree;      // of the agreement of normals with an axis

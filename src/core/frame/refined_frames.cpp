@@ -9,10 +9,7 @@
 #include "core/frame/canonical_frame.h"
 #include "core/frame/frame_evidence.h"
 #include "core/geometry/geometry_rules.h"
-#include "core/geometry/point_samples.h"
-#include "core/refinement/normalized_cloud.h"
 #include "pcl_symmetry/core/detect_planes.h"
-#include "pcl_symmetry/core/iterative_symmetric_points.h"
 #include "pcl_symmetry/core/mesh_surface.h"
 #include "pcl_symmetry/core/symmetry_frame.h"
 
@@ -100,7 +97,24 @@ void bringToPlanes(const std::function<std::optional<ReflectionPlane>(const Refl
   moveTo(center, axes, frame);
 }
 
+/// Turns the axis of a frame that a rotation is about onto its line, and moves the center there.
+void bringToAxis(const SymmetryRotation& rotation, SymmetryFrame& frame) {
+  const int k = axisAlong(rotation, frame);
+  if (k < 0) return;
+  const Eigen::Vector3d axis = frame.axes.col(k);
+  const Eigen::Vector3d direction = axis.dot(rotation.direction) < 0.0 ? -rotation.direction : rotation.direction;
+  const Eigen::ParametrizedLine<double, 3> line(rotation.point, direction);
+  moveTo(line.projection(frame.center),
+         Eigen::Quaterniond::FromTwoVectors(axis, direction).toRotationMatrix() * frame.axes, frame);
+}
+
 }  // namespace
+
+int axisAlong(const SymmetryRotation& rotation, const SymmetryFrame& frame) {
+  int along = 0;
+  const double cosine = (frame.axes.transpose() * rotation.direction).cwiseAbs().maxCoeff(&along);
+  return rotation.confidence >= DetectionOptions().min_confidence && cosine > std::cos(kFrame.same_frame) ? along : -1;
+}
 
 void refineOnMesh(const MeshSurface& mesh, SymmetryFrame& frame) {
   const double tolerance = 2.0 * DetectionOptions().tolerance * mesh.ball().radius;
@@ -114,42 +128,15 @@ void refineOnMesh(const MeshSurface& mesh, SymmetryFrame& frame) {
       frame);
 }
 
-void refineOnPoints(const PointsRef& points, const GaussianEdt& edt, const FrameOptions& options,
+void refineOnPoints(const PointsRef& points, const Visibility* visibility, const FrameOptions& options,
                     SymmetryFrame& frame) {
-  const Points surface_points = points, no_normals(3, 0);
-  const ClosestPointSearch::Ptr search = makeFlannSearch(points);
-  const FarTest far(edt, Eigen::Vector3d::Zero(), 1.0);
-  const IspSurface surface{surface_points, no_normals, *search, nullptr, &far, options.num_threads};
-  const std::vector<int> samples = drawSamples(points.cols(), kFrame.refined_samples, options.seed);
-  IspOptions isp;
-  isp.update = IspUpdate::PointToPoint;
-  isp.sigma = edt.sigma();
-  isp.final_sigma = 0.5 * edt.sigma();
-  isp.error_share = 0.02;  // the closed form slides slowly along flat faces
-  isp.max_iterations = 100;
-  const auto share = [&](const IspStep& step, double near) {
-    const auto num_near = std::count_if(step.sq_distances.begin(), step.sq_distances.end(),
-                                        [&](float sq_distance) { return sq_distance < near * near; });
-    return static_cast<double>(num_near) / static_cast<double>(samples.size());
-  };
-  bringToPlanes(
-      [&](const ReflectionPlane& start) -> std::optional<ReflectionPlane> {
-        if (share(matchSymmetricPoints(surface, samples, start, isp.sigma), isp.sigma) < kNearly) return std::nullopt;
-        const IspResult found = refineSymmetricPoints(surface, samples, start, isp);
-        if (share(found.last, isp.final_sigma) < kSymmetricShare) return std::nullopt;
-        return found.plane;
-      },
-      frame);
-}
-
-void refineOnScan(const PointsRef& points, const Visibility& visibility, const FrameOptions& options,
-                  SymmetryFrame& frame) {
+  for (const SymmetryRotation& rotation : frame.rotations) bringToAxis(rotation, frame);
   std::vector<ReflectionPlane> starts;
   for (int k = 0; k < 3; ++k) starts.emplace_back(frame.axes.col(k), frame.axes.col(k).dot(frame.center));
   DetectionOptions detection;
   detection.seed = options.seed;
   detection.num_threads = options.num_threads;
-  std::vector<SymmetryPlane> found = refinedAt(starts, PlaneInput(points, &visibility), detection);
+  std::vector<SymmetryPlane> found = refinedAt(starts, PlaneInput(points, visibility), detection);
   eraseIf(found, [](const SymmetryPlane& plane) { return plane.kind != PlaneKind::Symmetry; });
   sortFalling(found, &SymmetryPlane::confidence);
   bringToPlanes(

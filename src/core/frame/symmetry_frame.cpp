@@ -104,7 +104,8 @@ std::vector<ProbableFrame> probableFrames(const FrameEvidence& evidence, const S
   std::vector<ProbableFrame> probable;
   for (std::size_t i = 0; i < choices.size(); ++i) {
     const FrameChoice& choice = choices[i];
-    ProbableFrame entry{frame.center, frame.axes, choice.revolution_axis, probabilities[i], {}};
+    ProbableFrame entry{
+        frame.center, frame.axes, i == 0 ? frame.revolution_axis : choice.revolution_axis, probabilities[i], {}};
     if (i > 0) {
       entry.center = centerOfSymmetry(evidence, choice.frame);
       entry.axes = principalSymmetryAxes(evidence.points, choice.frame.axes);
@@ -167,6 +168,13 @@ SymmetryFrame symmetryFrame(const PointsRef& all, const FrameOptions& options, c
   frame.center = meanCenter(centers, frames);
   frame.scores = best.scores.cast<double>().cwiseMin(1.0);
   frame.revolution_axis = revolutionAxis(evidence, best);
+  done("center");
+  if (visibility && options.rotations) {
+    frame.rotations = rotationsAlong(frame, points, edt, options, *visibility, make_search);
+    for (const SymmetryRotation& rotation : frame.rotations)
+      if (rotation.fold == 0 && frame.revolution_axis < 0) frame.revolution_axis = axisAlong(rotation, frame);
+    done("rotations");
+  }
   frame.T_canonical_input = canonicalPose(frame.axes, frame.center);
 
   // Equally good frames: first the maxima, then the angles between them where the second plane hardly matters.
@@ -179,15 +187,8 @@ SymmetryFrame symmetryFrame(const PointsRef& all, const FrameOptions& options, c
       addTied(other, best.scores, frame.center, frame.equivalent);
   done("equivalent");
   if (options.refined) {
-    if (visibility)
-      refineOnScan(points, *visibility, options, frame);
-    else
-      refineOnPoints(points, edt, options, frame);
+    refineOnPoints(points, visibility, options, frame);
     done("refined");
-  }
-  if (visibility && options.rotations) {
-    frame.rotations = rotationsAlong(frame, points, edt, options, *visibility, make_search);
-    done("rotations");
   }
   if (options.probabilities) {
     frame.probable = probableFrames(evidence, frame, frameChoices(evidence, frames, options.num_threads));

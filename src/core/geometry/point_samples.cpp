@@ -158,16 +158,8 @@ Eigen::Vector3d farthestFrom(const Eigen::Vector3d& position, const PointsRef& p
   return points.col(farthest).cast<double>();
 }
 
-}  // namespace
-
-std::string whyUnanswerable(const PointsRef& points) {
-  if (!points.allFinite()) throw std::invalid_argument("points: a coordinate is not finite");
-  if (points.cols() == 0) return "no finite point";
-  const int num_distinct = countDistinct(points, kMinDistinctPoints);
-  if (num_distinct < kMinDistinctPoints)
-    return std::to_string(num_distinct) +
-           (num_distinct == 1 ? " distinct point, at least " : " distinct points, at least ") +
-           std::to_string(kMinDistinctPoints) + " are needed";
+/// Why points that differ hold no answer: they lie at one position or on one line, up to rounding.
+std::string whyTooThin(const PointsRef& points) {
   // The ends of a line: the point farthest from any of its points, and the one farthest from that.
   const Eigen::Vector3d first = farthestFrom(points.col(0).cast<double>(), points);
   const Eigen::Vector3d last = farthestFrom(first, points);
@@ -183,6 +175,21 @@ std::string whyUnanswerable(const PointsRef& points) {
     if ((offset - direction.dot(offset) * direction).norm() > thickness) return {};
   }
   return "all points lie on one line";
+}
+
+}  // namespace
+
+std::string whyUnanswerable(const PointsRef& points) {
+  if (!points.allFinite()) throw std::invalid_argument("points: a coordinate is not finite");
+  if (points.cols() == 0) return "no finite point";
+  const int num_distinct = countDistinct(points, kMinDistinctPoints);
+  if (num_distinct < kMinDistinctPoints)
+    return std::to_string(num_distinct) +
+           (num_distinct == 1 ? " distinct point, at least " : " distinct points, at least ") +
+           std::to_string(kMinDistinctPoints) + " are needed";
+  // A stray point that is far enough makes a line of all others.
+  std::string reason = whyTooThin(points);
+  return reason.empty() ? reason : whyTooThin(withoutStrayPoints(points));
 }
 
 }  // namespace pcl_symmetry

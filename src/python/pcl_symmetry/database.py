@@ -351,7 +351,8 @@ def scene(
         left_out(scene, locals(), "no database", "min_name_confidence")
     cloud = prepare("points", points)
     seen_from = cloud.seen_from(viewpoint)
-    if len(cloud.shape) == 1 and (seen_from is None or isinstance(seen_from, str)):
+    # A file is seen from where it says, which is the origin where it says nothing.
+    if len(cloud.shape) == 1 and not isinstance(points, Shape) and (seen_from is None or isinstance(seen_from, str)):
         raise ValueError("viewpoint: of rows without order must be (x, y, z), where the sensor stood; pixels (H, W, 3) show theirs")
     if not isinstance(database, (Database, type(None))):
         raise TypeError(f"database = {shown(database)}, must be a Database")
@@ -374,7 +375,7 @@ def scene(
         plane[3] += plane[:3] @ cloud.shift
     kept = None if database is None else database._core._asked
     found = core.scene(_camera_points(cloud), viewpoint=seen_from, ground=plane, database=kept, options=options, told=progress)
-    reason = "" if np.isfinite(cloud.array).all(axis=1).any() else "no finite point"
+    reason = "" if found["answered"] else "no finite point" + (" within max_range" if max_range > 0 else "")
     if reason:
         warnings.warn(f"points: {reason}", RuntimeWarning, stacklevel=2)
     sensor = None if found["seen"] is None else found["seen"].viewpoint

@@ -415,6 +415,7 @@ def planes(
     ground: Optional[ArrayLike] = None,
     tolerance: Optional[float] = None,
     absolute_tolerance: float = 0.0,
+    min_confidence: float = 0.5,
     approximate: bool = False,
     max_planes: int = 128,
     normals: Optional[ArrayLike] = None,
@@ -439,6 +440,7 @@ def planes(
     tolerance: how far a symmetric surface may be off, share of the greatest distance between two points, in (0, 0.1].
         None: 0.01, or what a depth camera or few points resolve, at most 0.03.
     absolute_tolerance: the same in input units; 0: tolerance decides.
+    min_confidence: least probability of a plane that is called a symmetry.
     approximate: also the other maxima of the transform, and symmetries of parts.
     normals: as the points, of any length and sign; None: estimated.
     max_points: larger clouds are thinned to that number; 0: never. threads: 0 = one per core.
@@ -460,7 +462,7 @@ def planes(
     _check_one_of("planes", points, volume)
     if method != "convolution" and not as_published:
         raise ValueError(f"method = {method if isinstance(method, str) else shown(method)}, must be convolution without as_published")
-    of_decision = "viewpoint indices ground tolerance absolute_tolerance normals max_points evidence"
+    of_decision = "viewpoint indices ground tolerance absolute_tolerance min_confidence normals max_points evidence"
     if volume is not None:
         left_out(planes, given, "volume", of_decision + " as_published")
         options = dict(approximate=approximate, max_planes=max_planes, seed=seed, threads=threads)
@@ -472,6 +474,8 @@ def planes(
         left_out(planes, given, "a mesh", "normals")
     if absolute_tolerance:
         left_out(planes, given, "absolute_tolerance", "tolerance")
+    if viewpoint is None:
+        left_out(planes, given, "viewpoint None", "ground")
     if as_published:
         left_out(planes, given, "as_published", of_decision + " approximate max_planes")
         found = core.published_planes(cloud.array, method=method, num_points=10_000, told=progress, seed=seed, threads=threads)
@@ -486,6 +490,7 @@ def planes(
         viewpoint=used.viewpoint,
         tolerance=tolerance,
         absolute_tolerance=absolute_tolerance,
+        min_confidence=min_confidence,
         approximate=approximate,
         max_planes=max_planes,
         normals=normals,
@@ -690,6 +695,8 @@ def viewpoints(
     """
     import numpy as np
 
+    if number < 1:
+        raise ValueError(f"number = {number}, must be >= 1")
     cloud: Any = None
     given = points
     if not isinstance(points, Planes) and not (isinstance(points, (list, tuple)) and all(isinstance(each, Plane) for each in points)):
@@ -803,6 +810,8 @@ def frame(
     """Canonical frame of a cloud (Section 5.1). Parameters as in planes(); as_published: the paper's own method."""
     if as_published:
         left_out(frame, locals(), "as_published", "viewpoint ground")
+    elif viewpoint is None:
+        left_out(frame, locals(), "viewpoint None", "ground")
     cloud = prepare("points", points)
     used = look(cloud, viewpoint, indices, ground, max_points, as_published, seed, threads)
     options = dict(max_points=max_points, as_published=as_published, told=progress, seed=seed, threads=threads)
