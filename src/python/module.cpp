@@ -392,13 +392,7 @@ SymmetryMap transform(const py::object& shape, const std::array<int, 3>& bins, c
   options.validate();
   const MapSize size{bins[0], bins[1], bins[2]};
   size.validate();
-  GaussianEdtOptions edt_options;
-  edt_options.center = center;
-  edt_options.radius = radius;
-  edt_options.sigma = sigma;
-  edt_options.num_cells = cells;
-  edt_options.num_threads = threads;
-  const TransformInput input = transformInput(shape, edt_options, seed);
+  const TransformInput input = transformInput(shape, {cells, sigma, threads, radius, center}, seed);
   const Computing computing;
   const PlaneGrid grid(size, input.edt.center(), input.edt.radius());
   return planarTransform(input.edt, grid, input.center_of_mass, options);

@@ -76,7 +76,7 @@ struct DetectionOptions {
   Expert expert;  ///< see Expert
 
   /// \return num_cells, sigma and num_threads as options of the distance transform.
-  GaussianEdtOptions edtOptions() const;
+  GaussianEdtOptions edtOptions() const { return {num_cells, sigma, num_threads}; }
 
   /// Checks all values.
   /// \throws std::invalid_argument naming field, value and rule.

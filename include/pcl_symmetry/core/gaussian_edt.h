@@ -14,9 +14,9 @@ struct VolumeFunction;
 struct GaussianEdtOptions {
   int num_cells = 64;   ///< cells along each side, in [8, 512]
   double sigma = 0.0;   ///< width, input units, >= 0; 0 = two cells, or the spacing of the points if that is more
+  int num_threads = 0;  ///< >= 0; 0 = one per core
   double radius = 0.0;  ///< radius of the ball to cover, input units, >= 0; 0 = the bounding ball of the points
   Eigen::Vector3d center = Eigen::Vector3d::Zero();  ///< center of that ball, input frame; used only with radius > 0
-  int num_threads = 0;                               ///< >= 0; 0 = one per core
 
   /// Checks all values.
   /// \throws std::invalid_argument naming field, value and rule.

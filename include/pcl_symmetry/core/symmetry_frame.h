@@ -33,6 +33,9 @@ struct FrameOptions : MapSize {
   std::uint64_t seed = 1;     ///< of all random draws
   int num_threads = 0;        ///< >= 0; 0 = one per core
 
+  /// \return num_cells, sigma and num_threads as options of the distance transform.
+  GaussianEdtOptions edtOptions() const { return {num_cells, sigma, num_threads}; }
+
   /// Checks all values.
   /// \throws std::invalid_argument naming field, value and rule.
   void validate() const;

@@ -183,13 +183,10 @@ Detection refineAndDecide(const NormalizedCloud& cloud, const Points& all, const
 /// \param kept indices of the points to judge by.
 Detection detectOnEvenSubset(const NormalizedCloud& cloud, const Points& input, const std::vector<int>& kept,
                              const SymmetryMap& map, const DetectionOptions& options, Stopwatch& watch) {
-  GaussianEdtOptions edt_options = options.edtOptions();
-  edt_options.num_cells = cloud.edt.numCells();
-  edt_options.sigma = cloud.edt.sigma();
-  edt_options.center = cloud.edt.center();
-  edt_options.radius = cloud.edt.radius();
+  const GaussianEdt& whole = cloud.edt;
   const Points even_points = pointsAt(input, kept);
-  const GaussianEdt edt(even_points, edt_options);
+  const GaussianEdt edt(even_points,
+                        {whole.numCells(), whole.sigma(), options.num_threads, whole.radius(), whole.center()});
   const ClosestPointSearch::Ptr search =
       cloud.flann ? nullptr : among(cloud.search, static_cast<std::size_t>(cloud.points.cols()), kept);
   const NormalizedCloud even(even_points, edt, search, nullptr, options.num_threads);
@@ -341,14 +338,6 @@ void refine(const MeshSurface& mesh, SymmetryPlane& plane, double tolerance, con
 }
 
 }  // namespace
-
-GaussianEdtOptions DetectionOptions::edtOptions() const {
-  GaussianEdtOptions edt;
-  edt.num_cells = num_cells;
-  edt.sigma = sigma;
-  edt.num_threads = num_threads;
-  return edt;
-}
 
 void DetectionOptions::validate() const {
   check(tolerance > 0.0 && tolerance <= 0.1, "tolerance", tolerance, "in (0, 0.1]");

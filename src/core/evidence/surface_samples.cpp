@@ -316,13 +316,9 @@ std::vector<float> SplitSurface::reflectedDistances(const ReflectionPlane& plane
 }
 
 double SplitSurface::ownScore(int num_cells, double sigma, const BoundingBall& ball, int num_threads) const {
-  GaussianEdtOptions options;
-  options.num_cells = num_cells;
-  options.sigma = sigma;
-  options.center = ball.center;
-  options.radius = ball.radius;
-  options.num_threads = num_threads;
-  const auto edt = [&](const Points& points) { return GaussianEdt(points, options); };
+  const auto edt = [&](const Points& points) {
+    return GaussianEdt(points, {num_cells, sigma, num_threads, ball.radius, ball.center});
+  };
   // Quarters are drawn anew: points that follow each other in a file may lie beside each other.
   const auto [a1, a2] = halvesOf(first_, seed_);
   const auto [b1, b2] = halvesOf(second_, seed_);

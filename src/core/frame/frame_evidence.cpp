@@ -10,14 +10,6 @@
 
 namespace pcl_symmetry {
 
-GaussianEdtOptions edtOptionsOf(const FrameOptions& options) {
-  GaussianEdtOptions edt;
-  edt.num_cells = options.num_cells;
-  edt.sigma = options.sigma;
-  edt.num_threads = options.num_threads;
-  return edt;
-}
-
 namespace {
 
 /// As narrow as the grid and the spacing of the points allow, unless the width is given.
@@ -91,7 +83,7 @@ FrameEvidence::FrameEvidence(const PointsRef& cloud, const FrameOptions& options
     : points(cloud),
       scanned(visibility != nullptr),
       weight(scanned ? kFrame.scan_weight : kFrame.whole_weight),
-      edt(points, edtOptions(points, edtOptionsOf(options), scanned)),
+      edt(points, edtOptions(points, options.edtOptions(), scanned)),
       free_space(freeSpace(edt, visibility, options.num_threads)),
       profiles(edt, free_space, kFrame.num_profile_samples, options.seed, options.num_threads),
       directions(points, edt),

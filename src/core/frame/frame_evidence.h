@@ -64,9 +64,6 @@ struct FrameRules {
 };
 inline constexpr FrameRules kFrame;
 
-/// \return those of the distance transform; sigma is 0 where the width is not given.
-GaussianEdtOptions edtOptionsOf(const FrameOptions& options);
-
 /// The directions that the surface of a shape faces: one normal for each cell of a coarse grid that the surface passes.
 class SurfaceDirections {
 public:

@@ -27,7 +27,7 @@ struct OffsetAndScore {
 
 /// Section 5.1 as it stands: each axis is the normal of the plane of greatest D among those that are left.
 SymmetryFrame publishedFrame(const PointsRef& points, const FrameOptions& options) {
-  const GaussianEdt edt(points, edtOptionsOf(options));
+  const GaussianEdt edt(points, options.edtOptions());
   const SymmetryMap map = publishedMap(points, edt, TransformMethod::Convolution, options.seed, options.num_threads);
   const PlaneGrid& grid = map.grid;
   const PlaneProfiles profiles(edt, {}, kFrame.num_profile_samples, options.seed, options.num_threads);
@@ -122,7 +122,7 @@ std::vector<ProbableFrame> probableFrames(const FrameEvidence& evidence, const S
 }  // namespace
 
 void FrameOptions::validate() const {
-  edtOptionsOf(*this).validate();
+  edtOptions().validate();
   MapSize::validate();
   check(num_samples >= 1, "num_samples", num_samples, ">= 1");
   checkNumThreads(num_threads);

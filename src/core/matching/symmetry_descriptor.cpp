@@ -52,15 +52,9 @@ SymmetryDescriptors symmetryDescriptors(const PointsRef& points, const Eigen::Is
   const double scale = kMatching.described_radius * moved.colwise().norm().mean();
   check(scale > 0.0, "mean distance from the origin", scale, "> 0");
   const Points scaled = (moved / scale).cast<float>();
-  GaussianEdtOptions edt_options;
-  edt_options.radius = 1.0;
-  edt_options.num_threads = options.num_threads;
-  edt_options.num_cells = kDescriptorBins;
   SymmetryDescriptors result;
-  result.gedt = GaussianEdt(scaled, edt_options).values();
-  edt_options.num_cells = kMatching.transform_cells;
-  edt_options.sigma = kMatching.transform_sigma;
-  const GaussianEdt edt(scaled, edt_options);
+  result.gedt = GaussianEdt(scaled, {kDescriptorBins, 0.0, options.num_threads, 1.0}).values();
+  const GaussianEdt edt(scaled, {kMatching.transform_cells, kMatching.transform_sigma, options.num_threads, 1.0});
   result.prst = prstOf(edt, kDescriptorBins, options);
   // A single bin of r is centered on the planes through the origin.
   result.prsd = prstOf(edt, 1, options);

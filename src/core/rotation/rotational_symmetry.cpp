@@ -79,7 +79,7 @@ public:
   /// \param options must outlive this object.
   GroupSearch(Points points, RotationLimits limits, const ObjectSymmetryOptions& options, bool single)
       : options_(options),
-        edt_(points, edtOptions(options)),
+        edt_(points, {options.num_cells, 0.0, options.num_threads}),
         fit_(std::move(points), edt_, limits, (options.other_tolerances ? 2.0 : 1.0) * limits.tolerance, options.seed,
              options.num_threads, single),
         principal_(principalLines(fit_)) {}
@@ -105,13 +105,6 @@ public:
   }
 
 private:
-  static GaussianEdtOptions edtOptions(const ObjectSymmetryOptions& options) {
-    GaussianEdtOptions edt;
-    edt.num_cells = options.num_cells;
-    edt.num_threads = options.num_threads;
-    return edt;
-  }
-
   const ObjectSymmetryOptions& options_;
   GaussianEdt edt_;
   RotationFit fit_;

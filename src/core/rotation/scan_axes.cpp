@@ -105,10 +105,7 @@ std::vector<AxisStart> startsFromPlanes(const std::vector<ReflectionPlane>& plan
 
 /// Maxima of an axial transform with few bins and the free space of the scan.
 std::vector<AxisStart> startsFromTransform(const NormalizedCloud& cloud, std::uint64_t seed, int num_threads) {
-  GaussianEdtOptions coarse;
-  coarse.num_cells = kScanAxes.coarse_cells;
-  coarse.num_threads = num_threads;
-  const GaussianEdt edt(cloud.points, coarse);
+  const GaussianEdt edt(cloud.points, {kScanAxes.coarse_cells, 0.0, num_threads});
   AxialTransformOptions options;
   options.folds = {2, 3, 4, 5, 6};
   options.num_samples = kScanAxes.coarse_samples;
