@@ -32,6 +32,16 @@ T median(std::vector<T> values) {
   return *middle;
 }
 
+/// The value that \p share of the values are less than.
+/// \param values at least one.
+/// \param share in [0, 1].
+template <typename T>
+T quantile(std::vector<T> values, double share) {
+  const auto at = values.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1));
+  std::nth_element(values.begin(), at, values.end());
+  return *at;
+}
+
 /// \param values more than twice \p num_cut.
 /// \return the least and the greatest value that are left without the \p num_cut least and greatest.
 template <typename T>

@@ -88,10 +88,8 @@ std::vector<int> evenlyDense(const NormalizedCloud& cloud, std::uint64_t seed) {
   std::vector<double> along(samples.size());
   for (std::size_t i = 0; i < samples.size(); ++i)
     along[i] = slope.dot(at.col(static_cast<Eigen::Index>(i)).cast<double>());
-  std::sort(along.begin(), along.end());
-  const auto last = static_cast<double>(along.size() - 1);
-  const double low = along[static_cast<std::size_t>(kDetection.points.trimmed * last)],
-               high = along[static_cast<std::size_t>((1.0 - kDetection.points.trimmed) * last)];
+  const double low = quantile(along, kDetection.points.trimmed),
+               high = quantile(along, 1.0 - kDetection.points.trimmed);
   const double strength = std::clamp(
       (high - low - kDetection.points.uneven) / (kDetection.points.fully_uneven - kDetection.points.uneven), 0.0, 1.0);
   if (strength == 0.0) return allOf(size);

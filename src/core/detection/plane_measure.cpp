@@ -4,6 +4,7 @@
 #include <cmath>
 #include <utility>
 
+#include "core/base/statistics.h"
 #include "core/detection/detection_rules.h"
 #include "core/evidence/plane_confidence.h"
 #include "core/evidence/surface_samples.h"
@@ -239,10 +240,8 @@ MeasuredPlane PlaneMeasure::measured(const ReflectionPlane& plane, const std::ve
 
 double PlaneMeasure::deviationOf(std::vector<float> distances) const {
   if (distances.empty()) return 0.0;
-  const auto last = distances.begin() + static_cast<std::ptrdiff_t>(kSymmetricShare * std::min(1.0, own_shares_[0]) *
-                                                                    static_cast<double>(distances.size() - 1));
-  std::nth_element(distances.begin(), last, distances.end());
-  return std::isfinite(*last) ? *last : cloud_.extent;
+  const float last = quantile(std::move(distances), kSymmetricShare * std::min(1.0, own_shares_[0]));
+  return std::isfinite(last) ? last : cloud_.extent;
 }
 
 double PlaneMeasure::deviation(const ReflectionPlane& plane) const {

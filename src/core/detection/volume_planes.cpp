@@ -259,9 +259,7 @@ double chanceLevel(const ReflectedVolume& volume, const Eigen::Vector3d& center,
   std::vector<double> reached(planes.size());
   parallelBlocks(planes.size(), num_threads,
                  [&](std::size_t i) { reached[i] = volume.compare(planes[i], stride, false).correlation; });
-  const auto at = reached.begin() + static_cast<std::ptrdiff_t>(kRules.chance_quantile * (reached.size() - 1));
-  std::nth_element(reached.begin(), at, reached.end());
-  return std::max(0.0, *at);
+  return std::max(0.0, quantile(std::move(reached), kRules.chance_quantile));
 }
 
 std::vector<ReflectionPlane> startsOf(const SymmetryMap& map, const Points& body, const DetectionOptions& options) {

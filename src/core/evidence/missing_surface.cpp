@@ -4,6 +4,7 @@
 #include <boost/pending/disjoint_sets.hpp>
 #include <cmath>
 
+#include "core/base/statistics.h"
 #include "core/evidence/surface_samples.h"
 #include "core/geometry/cloud_extent.h"
 #include "core/geometry/point_samples.h"
@@ -48,14 +49,6 @@ Eigen::Vector3f separatingDirection(const Points& cloud, const Points& piece, fl
   return between.normalized();
 }
 
-/// The distance that all but outliers stay behind.
-float lastOf(Eigen::ArrayXf distances) {
-  const Eigen::Index before_last = distances.size() - 1;
-  const auto last = static_cast<Eigen::Index>((1.0 - kEvidence.outliers) * static_cast<double>(before_last));
-  std::nth_element(distances.begin(), distances.begin() + last, distances.end());
-  return distances[last];
-}
-
 /// 0 up to the first value, 1 from the second on.
 float ramp(float value, float none, float all) {
   return std::clamp((value - none) / (all - none), 0.0f, 1.0f);
@@ -72,7 +65,9 @@ float beyondEnd(const Points& cloud, const Points& normals, const Points& piece,
   if (is_beyond <= 0.0f) return 0.0f;
   // The surface has to end beside the piece, or within 60 degrees of the way to it.
   const float reach = (kEvidence.behind + 2.0f * std::max(0.0f, gap)) * unit;
-  const float end = lastOf(distances) - kEvidence.last_points * unit;
+  const float last_but_outliers =
+      quantile(std::vector<float>(distances.begin(), distances.end()), 1.0 - kEvidence.outliers);
+  const float end = last_but_outliers - kEvidence.last_points * unit;
   float cosines = 0.0f, count = 0.0f, cosines_before = 0.0f, count_before = 0.0f;
   for (Eigen::Index i = 0; i < cloud.cols(); ++i) {
     if (distances[i] < end) continue;

@@ -6,19 +6,13 @@
 #include <stdexcept>
 #include <vector>
 
+#include "core/base/statistics.h"
 #include "core/geometry/geometry_rules.h"
 #include "pcl_symmetry/core/closest_point_search.h"
 
 namespace pcl_symmetry {
 
 namespace {
-
-/// The value that a share of the values are less than.
-float quantile(std::vector<float> values, double share) {
-  const auto at = values.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1));
-  std::nth_element(values.begin(), at, values.end());
-  return *at;
-}
 
 /// Distances of points from the middle of most of them.
 std::vector<float> distancesFromMiddle(const PointsRef& points) {

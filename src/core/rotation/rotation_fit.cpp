@@ -134,11 +134,7 @@ Points RotationFit::borderPoints() const {
 }
 
 double RotationFit::resolution() const {
-  std::vector<float> distances = surface_->own_distances;
-  const auto last = distances.begin() +
-                    static_cast<std::ptrdiff_t>(kRotation.min_own_share * static_cast<double>(distances.size() - 1));
-  std::nth_element(distances.begin(), last, distances.end());
-  return *last;
+  return quantile(surface_->own_distances, kRotation.min_own_share);
 }
 
 double RotationFit::ownShare() const {
