@@ -4,14 +4,12 @@
 #include <cmath>
 #include <utility>
 
-#include "core/base/parallel.h"
 #include "core/base/random.h"
 #include "core/base/statistics.h"
 #include "core/base/symmetric_solvers.h"
 #include "core/detection/detection_rules.h"
 #include "core/geometry/cloud_extent.h"
 #include "core/geometry/point_samples.h"
-#include "pcl_symmetry/core/closest_point_search.h"
 
 namespace pcl_symmetry {
 
@@ -27,27 +25,14 @@ double mostPoints(const PointsRef& points, const DetectionOptions& options) {
 
 }  // namespace
 
-std::vector<int> nearestOf(const Points& kept, const PointsRef& all, int num_threads) {
-  const ClosestPointSearch::Ptr search = makeFlannSearch(kept);
-  std::vector<int> nearest(static_cast<std::size_t>(all.cols()));
-  parallelPoints(nearest.size(), num_threads, [&](std::size_t begin, std::size_t end) {
-    const std::vector<int> part = search->closest(all.middleCols(begin, end - begin));
-    std::copy(part.begin(), part.end(), nearest.begin() + static_cast<std::ptrdiff_t>(begin));
-  });
-  return nearest;
-}
-
 std::optional<std::vector<int>> subsetOf(const PointsRef& points, const DetectionOptions& options) {
   if (static_cast<double>(points.cols()) <= kDetection.points.max_points) return std::nullopt;
   const double most = mostPoints(points, options);
   if (!(static_cast<double>(points.cols()) > most)) return std::nullopt;
   const DistinctPoints distinct(points);
   if (static_cast<double>(distinct.points.cols()) <= most) return std::nullopt;
-  std::vector<int> first_of(static_cast<std::size_t>(distinct.points.cols()), -1);
-  for (std::size_t i = 0; i < distinct.index_of.size(); ++i)
-    if (int& first = first_of[static_cast<std::size_t>(distinct.index_of[i])]; first < 0) first = static_cast<int>(i);
   std::vector<int> kept = spreadSubset(distinct.points, static_cast<std::size_t>(most), options.seed);
-  for (int& i : kept) i = first_of[static_cast<std::size_t>(i)];
+  for (int& i : kept) i = distinct.first_of[i];
   return kept;
 }
 

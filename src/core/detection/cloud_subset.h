@@ -15,10 +15,6 @@ namespace pcl_symmetry {
 /// \return indices of points; empty where all of them are needed.
 std::optional<std::vector<int>> subsetOf(const PointsRef& points, const DetectionOptions& options);
 
-/// \param kept some of the points of a cloud.
-/// \return for each point of the cloud the index of the nearest one.
-std::vector<int> nearestOf(const Points& kept, const PointsRef& all, int num_threads);
-
 /// Gives each point of a cloud the support of the point that represents it.
 /// \param representative_of for each point, the index of the point whose support it takes; -1: it supports nothing.
 void spreadSupport(Detection& detection, const std::vector<int>& representative_of);

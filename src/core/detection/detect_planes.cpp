@@ -273,7 +273,7 @@ Detection detectOnSubset(const PlaneInput& all, const std::vector<int>& kept, co
   if (!all.map) detection.map.center_of_mass = centerOfMass(all.points);
   Stopwatch watch;
   if (!detection.planes.empty() || detection.best)
-    spreadSupport(detection, nearestOf(part.points, all.points, options.num_threads));
+    spreadSupport(detection, closestPoints(*makeFlannSearch(part.points), all.points, options.num_threads).index);
   detection.timing_ms.emplace_back("support_of_all", watch.lap());
   return detection;
 }

@@ -10,6 +10,7 @@
 
 #include "core/base/constants.h"
 #include "core/base/parallel.h"
+#include "core/geometry/closest_points.h"
 #include "core/geometry/cloud_extent.h"
 #include "core/geometry/directions.h"
 #include "core/geometry/point_samples.h"
@@ -38,14 +39,7 @@ MatchedRegions::MatchedRegions(const NormalizedCloud& cloud, const PlaneFit& fit
   std::vector<float> sq_distances;
   const int num_neighbors = std::min<int>(kDetection.parts.num_smoothing + 1, static_cast<int>(samples_.size()));
   search->search(places, num_neighbors, neighbors_, sq_distances);
-  closest_sample_.resize(static_cast<std::size_t>(cloud.points.cols()));
-  parallelRanges(closest_sample_.size(), 1024, options.num_threads, [&](std::size_t begin, std::size_t end) {
-    std::vector<int> closest;
-    std::vector<float> ignored;
-    const auto first = static_cast<Eigen::Index>(begin), count = static_cast<Eigen::Index>(end - begin);
-    search->search(cloud_.points.middleCols(first, count), 1, closest, ignored);
-    std::copy(closest.begin(), closest.end(), closest_sample_.begin() + static_cast<std::ptrdiff_t>(begin));
-  });
+  closest_sample_ = closestPoints(*search, cloud.points, options.num_threads).index;
 }
 
 MatchedRegion MatchedRegions::largest(const ReflectionPlane& plane, const std::vector<int>* guesses, bool walks) const {

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "core/base/check.h"
+#include "core/base/parallel.h"
 #include "core/base/watched_steps.h"
 
 #if defined(__x86_64__)
@@ -335,6 +336,18 @@ void ClosestPointSearch::searchWithin(const PointsRef& queries, float max_sq_dis
     indices[i] = -1;
     sq_distances[i] = kInfinity;
   }
+}
+
+ClosestPoints closestPoints(const ClosestPointSearch& search, const PointsRef& queries, int num_threads) {
+  const std::size_t size = queries.cols();
+  ClosestPoints found{std::vector<int>(size), std::vector<float>(size)};
+  parallelPoints(size, num_threads, [&](std::size_t begin, std::size_t end) {
+    ClosestPoints part;
+    search.search(queries.middleCols(begin, end - begin), 1, part.index, part.sq_distances);
+    std::copy(part.index.begin(), part.index.end(), found.index.begin() + begin);
+    std::copy(part.sq_distances.begin(), part.sq_distances.end(), found.sq_distances.begin() + begin);
+  });
+  return found;
 }
 
 ClosestPointSearch::Ptr makeFlannSearch(const PointsRef& points) {

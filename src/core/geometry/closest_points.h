@@ -131,6 +131,15 @@ private:
   std::shared_ptr<const NeighborLists> lists_;
 };
 
+/// The closest point of each of many queries.
+struct ClosestPoints {
+  std::vector<int> index;
+  std::vector<float> sq_distances;
+};
+
+/// \param queries 3 x M.
+ClosestPoints closestPoints(const ClosestPointSearch& search, const PointsRef& queries, int num_threads);
+
 /// A search in a moved and scaled frame.
 /// \param search over points.
 /// \return the same search over (points - center) / scale.

@@ -99,20 +99,16 @@ std::vector<int> strayPoints(const PointsRef& points) {
   const float gap = 2.0f * bulk *
                     std::clamp(kGeometry.stray_spacings * std::sqrt(3.0f / static_cast<float>(size)),
                                kGeometry.min_stray_gap, kGeometry.max_stray_gap);
-  const auto is_outer = [&](int i) { return distances[static_cast<std::size_t>(i)] > bulk + gap; };
-  if (std::none_of(distances.begin(), distances.end(), [&](float distance) { return distance > bulk + gap; }))
-    return {};
+  const auto is_outer = [&](float distance) { return distance > bulk + gap; };
+  if (std::none_of(distances.begin(), distances.end(), is_outer)) return {};
   // Copies of one position are one point.
   const DistinctPoints distinct(points);
-  std::vector<int> first_of(static_cast<std::size_t>(distinct.points.cols())), outer, stray;
-  for (std::size_t i = distinct.index_of.size(); i-- > 0;)
-    first_of[static_cast<std::size_t>(distinct.index_of[i])] = static_cast<int>(i);
-  for (int k = 0; k < static_cast<int>(first_of.size()); ++k)
-    if (is_outer(first_of[static_cast<std::size_t>(k)])) outer.push_back(k);
+  std::vector<int> outer, stray;
+  for (int k = 0; k < static_cast<int>(distinct.first_of.size()); ++k)
+    if (is_outer(distances[distinct.first_of[k]])) outer.push_back(k);
   const std::vector<int> alone = OuterGroups(distinct.points, outer, gap).stray();
   for (int i = 0; i < static_cast<int>(points.cols()); ++i)
-    if (std::binary_search(alone.begin(), alone.end(), distinct.index_of[static_cast<std::size_t>(i)]))
-      stray.push_back(i);
+    if (std::binary_search(alone.begin(), alone.end(), distinct.index_of[i])) stray.push_back(i);
   if (static_cast<double>(stray.size()) > most) stray.clear();
   return stray;
 }

@@ -149,16 +149,18 @@ inline std::vector<int> firstCopies(const PointsRef& points) {
 struct DistinctPoints {
   Points points;              ///< 3 x M, each position once, in the order of the first copies
   std::vector<int> index_of;  ///< N, the column of points that holds each original point
+  std::vector<int> first_of;  ///< M, the first copy of each
 
   /// \param all 3 x N, finite.
   explicit DistinctPoints(const PointsRef& all) : points(3, all.cols()), index_of(firstCopies(all)) {
-    int size = 0;
     for (int i = 0; i < static_cast<int>(index_of.size()); ++i) {
-      const bool is_first = index_of[i] == i;
-      if (is_first) points.col(size) = all.col(i);
-      index_of[i] = is_first ? size++ : index_of[index_of[i]];
+      const int first = index_of[i], size = static_cast<int>(first_of.size());
+      index_of[i] = first == i ? size : index_of[first];
+      if (first != i) continue;
+      points.col(size) = all.col(i);
+      first_of.push_back(i);
     }
-    points.conservativeResize(3, size);
+    points.conservativeResize(3, first_of.size());
   }
 };
 

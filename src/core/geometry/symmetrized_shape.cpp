@@ -5,15 +5,16 @@
 #include <cmath>
 #include <limits>
 #include <map>
+#include <utility>
 
 #include "core/base/check.h"
 #include "core/base/parallel.h"
 #include "core/base/watched_steps.h"
+#include "core/geometry/closest_points.h"
 #include "core/geometry/cloud_extent.h"
 #include "core/geometry/point_samples.h"
 #include "core/geometry/surface_normals.h"
 #include "core/geometry/triangles.h"
-#include "pcl_symmetry/core/closest_point_search.h"
 
 namespace pcl_symmetry {
 
@@ -107,21 +108,6 @@ std::vector<char> movingVertices(const Points& vertices, const std::vector<Eigen
     moves[i] = !(borders.closestTo(other.points.col(i)).sq_distance < reach * reach);
   }
   return moves;
-}
-
-/// The closest point to each query, 3 x M.
-ReflectedPairs closestTo(const PointsRef& queries, const ClosestPointSearch& search, int num_threads) {
-  ReflectedPairs found;
-  found.index.resize(queries.cols());
-  found.sq_distances.resize(queries.cols());
-  parallelPoints(found.index.size(), num_threads, [&](std::size_t begin, std::size_t end) {
-    std::vector<int> index;
-    std::vector<float> sq_distances;
-    search.search(queries.middleCols(begin, end - begin), 1, index, sq_distances);
-    std::copy(index.begin(), index.end(), found.index.begin() + begin);
-    std::copy(sq_distances.begin(), sq_distances.end(), found.sq_distances.begin() + begin);
-  });
-  return found;
 }
 
 /// Mean and greatest absolute value of the asymmetry.
@@ -259,7 +245,7 @@ SymmetrizedShape symmetrizedCloud(const PointsRef& points, const ReflectionPlane
   const LocalGeometry geometry = localGeometry(result.points, *search, kNumSupportNeighbors, num_threads);
   const Eigen::Vector3d center = centerOfMass(points);
   const Points images = reflectedPoints(points, plane);
-  const std::vector<int> closest = closestTo(images, *search, num_threads).index;
+  const std::vector<int> closest = closestPoints(*search, images, num_threads).index;
   for (Eigen::Index i = 0; i < points.cols(); ++i) {
     const Eigen::Vector3d x = points.col(i).cast<double>(), image = images.col(i).cast<double>();
     const bool is_left = plane.signedDistance(x) < 0.0;
@@ -283,13 +269,12 @@ SymmetrizedShape symmetrizedCloud(const PointsRef& points, const ReflectionPlane
 
 ReflectedPairs reflectedPairs(const PointsRef& points, const ReflectionPlane& plane, double max_distance) {
   check(max_distance >= 0.0, "max_distance", max_distance, ">= 0");
-  ReflectedPairs pairs;
-  if (points.cols() == 0) return pairs;
+  if (points.cols() == 0) return {};
   if (max_distance == 0.0) max_distance = kSymmetrizing.pair_share * farthestPair(withoutStrayPoints(points));
-  pairs = closestTo(reflectedPoints(points, plane), *makeFlannSearch(points), 0);
-  for (std::size_t i = 0; i < pairs.index.size(); ++i)
-    if (pairs.sq_distances[i] > max_distance * max_distance) pairs.index[i] = -1;
-  return pairs;
+  auto [index, sq_distances] = closestPoints(*makeFlannSearch(points), reflectedPoints(points, plane), 0);
+  for (std::size_t i = 0; i < index.size(); ++i)
+    if (sq_distances[i] > max_distance * max_distance) index[i] = -1;
+  return {std::move(index), std::move(sq_distances)};
 }
 
 LandmarkAsymmetry landmarkAsymmetry(const std::vector<std::pair<Eigen::Vector3d, Eigen::Vector3d>>& pairs,

@@ -3,7 +3,7 @@
 #include <cmath>
 
 #include "core/base/check.h"
-#include "core/base/parallel.h"
+#include "core/geometry/closest_points.h"
 #include "core/geometry/point_samples.h"
 #include "core/geometry/surface_normals.h"
 
@@ -23,20 +23,13 @@ std::vector<int> completingPoints(const PointsRef& points, const ReflectionPlane
   const auto search = makeFlannSearch(points);
   const LocalGeometry geometry = localGeometry(points, *search, kNumSupportNeighbors, options.num_threads);
   const Points reflected = reflectedPoints(points, plane);
-  std::vector<char> is_completing(static_cast<std::size_t>(points.cols()));
-  parallelPoints(is_completing.size(), options.num_threads, [&](std::size_t begin, std::size_t end) {
-    std::vector<int> closest;
-    std::vector<float> sq_distances;
-    search->search(reflected.middleCols(begin, end - begin), 1, closest, sq_distances);
-    for (std::size_t i = begin; i < end; ++i) {
-      const double spacing = geometry.spacing[closest[i - begin]];
-      is_completing[i] =
-          std::sqrt(sq_distances[i - begin]) > options.overlap * spacing &&
-          !(visibility && visibility->depthBehind(reflected.col(i).cast<double>()) < -options.margin * spacing);
-    }
-  });
-  for (std::size_t i = 0; i < is_completing.size(); ++i)
-    if (is_completing[i]) completing.push_back(static_cast<int>(i));
+  const ClosestPoints closest = closestPoints(*search, reflected, options.num_threads);
+  for (int i = 0; i < static_cast<int>(points.cols()); ++i) {
+    const double spacing = geometry.spacing[closest.index[i]];
+    if (std::sqrt(closest.sq_distances[i]) > options.overlap * spacing &&
+        !(visibility && visibility->depthBehind(reflected.col(i).cast<double>()) < -options.margin * spacing))
+      completing.push_back(i);
+  }
   return completing;
 }
 
