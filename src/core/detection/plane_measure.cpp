@@ -167,9 +167,10 @@ std::vector<float> PlaneMeasure::unknownMatches(const Landing& landing, const st
   }
   const double held = std::clamp(offset_stiffness / kDetection.measure.held_stiffness - 1.0, 0.0, 1.0);
   if (held <= 0.0 || static_cast<Eigen::Index>(size) != cloud_.points.cols()) return unknown;
-  const auto trust = static_cast<float>(held * ends().trust());
+  const auto trust = static_cast<float>(held * ends().trust);
   if (trust <= 0.0f) return unknown;
-  unknown = ends().missing(matched, landing.closest, landing.images);
+  unknown = missingCounterparts({cloud_.points, cloud_.geometry, ends().borders, cloud_.spacing}, matched,
+                                landing.closest, landing.images);
   for (float& value : unknown) value *= trust;
   return unknown;
 }
@@ -269,8 +270,7 @@ PlaneMeasure::ScreenedShare PlaneMeasure::screenedShare(const Candidate& candida
 
 const SurfaceEnds& PlaneMeasure::ends() const {
   std::call_once(ends_found_, [this] {
-    ends_.emplace(cloud_.points, cloud_.geometry, *cloud_.search, cloud_.neighbors, cloud_.spacing,
-                  options_.num_threads);
+    ends_.emplace(cloud_.points, cloud_.geometry, *cloud_.search, cloud_.neighbors, options_.num_threads);
   });
   return *ends_;
 }

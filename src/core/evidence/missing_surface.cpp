@@ -167,14 +167,11 @@ bool isOpenSheet(const Points& points) {
 }  // namespace
 
 SurfaceEnds::SurfaceEnds(const Points& points, const LocalGeometry& geometry, const ClosestPointSearch& search,
-                         const FoundNeighbors& found, double spacing, int num_threads)
-    : points_(points),
-      geometry_(geometry),
-      spacing_(spacing),
-      borders_(openBorders(points, search, geometry.normals, num_threads, &found)),
-      trust_(isOpenSheet(points) ? 0.0
-                                 : std::clamp((kEvidence.borders_everywhere - shareNearBorders(borders_, geometry)) /
-                                                  (kEvidence.borders_everywhere - kEvidence.few_borders),
-                                              0.0, 1.0)) {}
+                         const FoundNeighbors& found, int num_threads)
+    : borders(openBorders(points, search, geometry.normals, num_threads, &found)),
+      trust(isOpenSheet(points) ? 0.0
+                                : std::clamp((kEvidence.borders_everywhere - shareNearBorders(borders, geometry)) /
+                                                 (kEvidence.borders_everywhere - kEvidence.few_borders),
+                                             0.0, 1.0)) {}
 
 }  // namespace pcl_symmetry

@@ -47,31 +47,14 @@ std::vector<float> missingCounterparts(const SampledSurface& surface, const std:
 ///
 /// Beyond the paper, which has whole shapes. For a true plane the points without a counterpart begin where the cloud,
 /// or its reflection, ends; for a false one they begin in the middle of the surface.
-class SurfaceEnds {
-public:
-  /// \param points,geometry must outlive this object.
+struct SurfaceEnds {
+  std::vector<char> borders;  ///< what openBorders() returned
+  double trust;  ///< how far open borders may excuse missing counterparts, in [0, 1]: 0 for a wire or an open sheet
+
   /// \param found the neighbors of the points.
-  /// \param spacing median distance of the points.
   /// \param num_threads 0 = one per core.
   SurfaceEnds(const Points& points, const LocalGeometry& geometry, const ClosestPointSearch& search,
-              const FoundNeighbors& found, double spacing, int num_threads);
-
-  /// For each sample, how surely its counterpart is missing from the cloud, in [0, 1].
-  /// \param matched,closest,reflected as of missingCounterparts(), for all points.
-  std::vector<float> missing(const std::vector<char>& matched, const std::vector<int>& closest,
-                             const Points& reflected) const {
-    return missingCounterparts({points_, geometry_, borders_, spacing_}, matched, closest, reflected);
-  }
-
-  /// How far open borders may excuse missing counterparts, in [0, 1]: 0 for a wire or an open sheet.
-  double trust() const { return trust_; }
-
-private:
-  const Points& points_;
-  const LocalGeometry& geometry_;
-  double spacing_;
-  std::vector<char> borders_;
-  double trust_;
+              const FoundNeighbors& found, int num_threads);
 };
 
 }  // namespace pcl_symmetry

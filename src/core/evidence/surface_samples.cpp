@@ -121,18 +121,18 @@ float SurfaceDiscs::ownDistance(int i, float across_factor) const {
   return std::sqrt(least);
 }
 
-SurfaceSamples::SurfaceSamples(const Points& points, const LocalGeometry& geometry, int num_threads)
-    : samples_(static_cast<std::size_t>(points.cols())) {
-  parallelPoints(samples_.size(), num_threads, [&](std::size_t begin, std::size_t end) {
-    for (auto i = static_cast<Eigen::Index>(begin); i < static_cast<Eigen::Index>(end); ++i) {
+SurfaceSamples surfaceSamples(const Points& points, const LocalGeometry& geometry, int num_threads) {
+  SurfaceSamples samples(points.cols());
+  parallelPoints(samples.size(), num_threads, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
       const float spacing = geometry.spacing[i], rough = geometry.roughness[i] / std::max(spacing, 1e-6f);
-      samples_[static_cast<std::size_t>(i)] = {
-          {points.col(i), geometry.normals.col(i), kEvidence.disc_radius * spacing},
-          geometry.roughness[i],
-          std::clamp((kEvidence.max_roughness - rough) / kEvidence.trust_width, 0.0f, 1.0f),
-          geometry.nearest[i]};
+      samples[i] = {{points.col(i), geometry.normals.col(i), kEvidence.disc_radius * spacing},
+                    geometry.roughness[i],
+                    std::clamp((kEvidence.max_roughness - rough) / kEvidence.trust_width, 0.0f, 1.0f),
+                    geometry.nearest[i]};
     }
   });
+  return samples;
 }
 
 namespace {
@@ -159,7 +159,7 @@ std::vector<float> surfaceDistances(const Points& points, const std::vector<int>
 }
 
 std::vector<float> ownSurfaceDistances(const SurfaceSamples& samples, int num_threads) {
-  std::vector<float> distances(static_cast<std::size_t>(samples.size()));
+  std::vector<float> distances(samples.size());
   parallelPoints(distances.size(), num_threads, [&](std::size_t begin, std::size_t end) {
     for (auto i = static_cast<int>(begin); i < static_cast<int>(end); ++i)
       distances[i] = distanceNear(samples[i].nearest[0], i, samples[i].center, samples,
@@ -238,7 +238,7 @@ PointEvidence pointEvidence(const Points& reflected, const Points& reflected_nor
 }
 
 std::vector<float> ownSupport(const SurfaceSamples& samples, int num_threads) {
-  std::vector<float> support(static_cast<std::size_t>(samples.size()));
+  std::vector<float> support(samples.size());
   parallelPoints(support.size(), num_threads, [&](std::size_t begin, std::size_t end) {
     for (auto i = static_cast<int>(begin); i < static_cast<int>(end); ++i)
       support[i] = supportNear(samples[i].nearest[0], i, samples[i].center, samples[i].normal, samples);
@@ -256,7 +256,8 @@ std::vector<std::vector<float>> planeSupport(const PointsRef& points, const Poin
   check(ball.radius > 0.0, "extent of the samples", ball.radius, "> 0");
   const Points surface = normalizePoints(samples, ball.center, ball.radius);
   const auto search = makeFlannSearch(surface);
-  const SurfaceSamples described(surface, localGeometry(surface, *search, kNumSupportNeighbors, num_threads));
+  const SurfaceSamples described =
+      surfaceSamples(surface, localGeometry(surface, *search, kNumSupportNeighbors, num_threads));
   std::vector<std::vector<float>> support(planes.size(), std::vector<float>(points.cols()));
   parallelPoints(points.cols(), num_threads, [&](std::size_t begin, std::size_t end) {
     const auto size = static_cast<Eigen::Index>(end - begin);
@@ -308,7 +309,7 @@ double lost(const GaussianEdt& a, const GaussianEdt& b) {
 SplitSurface::SplitSurface(const Points& points, std::uint64_t seed, int num_threads) : seed_(seed) {
   std::tie(first_, second_) = halvesOf(points, seed);
   search_ = makeFlannSearch(second_);
-  samples_.emplace(second_, localGeometry(second_, *search_, kNumSupportNeighbors, num_threads));
+  samples_ = surfaceSamples(second_, localGeometry(second_, *search_, kNumSupportNeighbors, num_threads));
 }
 
 std::vector<float> SplitSurface::reflectedDistances(const ReflectionPlane& plane) const {
@@ -335,10 +336,7 @@ double SplitSurface::ownScore(int num_cells, double sigma, const BoundingBall& b
 }
 
 std::vector<float> SplitSurface::distances(const Points& points) const {
-  std::vector<int> closest;
-  std::vector<float> sq_distances;
-  search_->search(points, 1, closest, sq_distances);
-  return surfaceDistances(points, closest, *samples_);
+  return surfaceDistances(points, search_->closest(points), samples_);
 }
 
 }  // namespace pcl_symmetry

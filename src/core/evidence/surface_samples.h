@@ -6,7 +6,6 @@
 #include <cstddef>
 #include <cstdint>
 #include <limits>
-#include <optional>
 #include <vector>
 
 #include "core/geometry/surface_normals.h"
@@ -140,19 +139,11 @@ struct alignas(64) SurfaceSample : SurfaceDisc {
   std::array<int, kNumWitnesses> nearest;
 };
 
-/// The samples of a surface.
-class SurfaceSamples {
-public:
-  /// \param points 3 x N.
-  /// \param geometry of the points.
-  SurfaceSamples(const Points& points, const LocalGeometry& geometry, int num_threads = 1);
+using SurfaceSamples = std::vector<SurfaceSample>;
 
-  int size() const { return static_cast<int>(samples_.size()); }
-  const SurfaceSample& operator[](int i) const { return samples_[static_cast<std::size_t>(i)]; }
-
-private:
-  std::vector<SurfaceSample> samples_;
-};
+/// \param points 3 x N.
+/// \param geometry of the points.
+SurfaceSamples surfaceSamples(const Points& points, const LocalGeometry& geometry, int num_threads = 1);
 
 /// How far points lie from the surface that samples describe. Each sample represents a disc in its tangent plane; the
 /// disc of the closest sample or of one of its four neighbors counts, whichever is nearest.
@@ -248,8 +239,8 @@ private:
 
   std::uint64_t seed_;
   Points first_, second_;
-  ClosestPointSearch::Ptr search_;         ///< of the second half
-  std::optional<SurfaceSamples> samples_;  ///< the second half
+  ClosestPointSearch::Ptr search_;  ///< of the second half
+  SurfaceSamples samples_;          ///< the second half
 };
 
 /// Density of points that do not resolve a surface: noise beyond their spacing, or too few of them.

@@ -104,7 +104,7 @@ NormalizedCloud::NormalizedCloud(const PointsRef& input, const GaussianEdt& edt_
       lists(NeighborLists::isUseful(points.cols())
                 ? std::make_shared<NeighborLists>(points, neighbors.indices, neighbors.sq_reach)
                 : nullptr),
-      samples(points, geometry, num_threads),
+      samples(surfaceSamples(points, geometry, num_threads)),
       visibility(seen ? std::optional<Visibility>(seen->normalized(center, scale)) : std::nullopt),
       far(edt, center, scale),
       surface{points,

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numeric>
 
 #include "core/base/constants.h"
 #include "core/base/parallel.h"
@@ -12,6 +13,7 @@
 #include "core/geometry/cloud_extent.h"
 #include "core/geometry/point_samples.h"
 #include "core/rotation/rotation_confidence_fit.h"
+#include "pcl_symmetry/core/rotation_group.h"
 
 namespace pcl_symmetry {
 
@@ -57,9 +59,7 @@ Eigen::Vector4d slopeOf(const std::array<Eigen::Isometry3d, 4>& beside, const Ei
 }  // namespace
 
 Eigen::Isometry3d motionAboutLine(const Line3d& line, double angle) {
-  Eigen::Isometry3d motion(Eigen::AngleAxisd(angle, line.direction()));
-  motion.translation() = line.origin() - motion.linear() * line.origin();
-  return motion;
+  return motionFixing(line.origin(), rotationAbout(line.direction(), angle));
 }
 
 RotationEvidence::RotationEvidence(const NormalizedCloud& cloud, double tolerance, std::uint64_t seed)
@@ -122,7 +122,7 @@ RotationShares RotationEvidence::exactly(const Eigen::Affine3d& motion) const {
 double RotationEvidence::hold(const Line3d& line, double angle) const {
   const Eigen::Isometry3d motion = motionAboutLine(line, angle);
   const std::array<Eigen::Isometry3d, 4> beside = motionsBeside(line, angle);
-  const Landing all = landed(Eigen::Affine3d(motion));
+  const Landing all = landed(motion);
   Eigen::Matrix4d stiffness = Eigen::Matrix4d::Zero();
   for (std::size_t i = 0; i < samples_.size(); ++i) {
     if (all.closest[i] < 0 || all.distances[i] > tolerance_) continue;
@@ -139,8 +139,7 @@ void RotationEvidence::addPulls(const IspSurface& surface, const Line3d& line, d
   const double sq_width = width * width * tolerance_ * tolerance_;
   const Eigen::Isometry3d motion = motionAboutLine(line, angle);
   const std::array<Eigen::Isometry3d, 4> beside = motionsBeside(line, angle);
-  const Landing landing =
-      land(surface, moved(Eigen::Affine3d(motion), samples), kScanAxes.fit_reach * width * tolerance_, &closest);
+  const Landing landing = land(surface, moved(motion, samples), kScanAxes.fit_reach * width * tolerance_, &closest);
   closest = landing.closest;
   for (std::size_t i = 0; i < samples.size(); ++i) {
     if (closest[i] < 0) continue;
@@ -247,7 +246,7 @@ std::vector<RotationSigns> rotationSigns(const RotationEvidence& evidence,
   parallelBlocks(rotations.size(), num_threads, [&](std::size_t i) {
     if (rotations[i].fold != 2) return;
     const Line3d line = cloud.lineOf(rotations[i]);
-    signs[i].grown = grownBy(cloud, Eigen::Affine3d(motionAboutLine(line, kPi)));
+    signs[i].grown = grownBy(cloud, motionAboutLine(line, kPi));
     signs[i].hold = evidence.hold(line, kPi);
     const bool is_best = marginOf(rotations[i]) >= marginOf(*best);
     signs[i].beside = is_best || crossesUpright(line, cloud.lineOf(*best)) ? 0.0 : 1.0;
@@ -288,9 +287,7 @@ std::vector<double> rotationOddsTerms(const SymmetryRotation& rotation, const Ro
 double rotationConfidence(const SymmetryRotation& rotation, const RotationSigns& signs) {
   const std::vector<double> terms = rotationOddsTerms(rotation, signs);
   const std::vector<double>& numbers = kRotationConfidenceFit[static_cast<std::size_t>(kindOf(rotation))];
-  double log_odds = 0.0;
-  for (std::size_t k = 0; k < terms.size(); ++k) log_odds += numbers[k] * terms[k];
-  return logistic(log_odds);
+  return logistic(std::inner_product(terms.begin(), terms.end(), numbers.begin(), 0.0));
 }
 
 }  // namespace pcl_symmetry

@@ -181,8 +181,7 @@ public:
     constexpr OffLimits rough{kScanAxes.rough_factor * kScanAxes.max_off,
                               kScanAxes.rough_factor * kScanAxes.max_far};  // from both
     const auto roughly = [&](double angle) {
-      return evidence_.roughly(Eigen::Affine3d(motionAboutLine(line, angle)), kScanAxes.rough_slack, rough.off,
-                               rough.far);
+      return evidence_.roughly(motionAboutLine(line, angle), kScanAxes.rough_slack, rough.off, rough.far);
     };
     std::optional<JudgedLine> best;
     const auto take = [&](const JudgedLine& judged) {
@@ -198,7 +197,7 @@ public:
 
   JudgedLine exactly(Line3d line, int fold) const {
     line = evidence_.closelyRefined(line, fitAngles(fold));
-    const auto shares = [&](double angle) { return evidence_.exactly(Eigen::Affine3d(motionAboutLine(line, angle))); };
+    const auto shares = [&](double angle) { return evidence_.exactly(motionAboutLine(line, angle)); };
     const RotationShares own = fold == 0 ? roundRotations(shares) : rotationsOfFold(shares, fold, 0.0);
     SymmetryRotation rotation{Eigen::Vector3d::Zero(), line.direction(), fold, 0.0, own.on, own.off, own.far, 0.0};
     if (fold > 0) rotation.halfway = rotationsOfFold(shares, fold, 0.5).off;
@@ -289,8 +288,8 @@ std::vector<SymmetryAxis> withRoundAxes(const RotationEvidence& evidence, std::v
                                         const ScanAxesOptions& options) {
   const NormalizedCloud& cloud = evidence.cloud();
   eraseIf(axes, [&](const SymmetryAxis& axis) {
-    const RotationShares all = roundRotations(
-        [&](double angle) { return evidence.exactly(Eigen::Affine3d(motionAboutLine(cloud.lineOf(axis), angle))); });
+    const RotationShares all =
+        roundRotations([&](double angle) { return evidence.exactly(motionAboutLine(cloud.lineOf(axis), angle)); });
     return all.far > kScanAxes.max_round_far;
   });
   for (const SymmetryRotation& rotation : rotations) {
