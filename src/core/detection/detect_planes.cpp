@@ -82,10 +82,6 @@ void completeGroups(const JudgedCloud& judged, Found& found) {
     decide(judged, std::move(candidates), found);
 }
 
-void doubtWhatNeedsAPiece(const JudgedCloud& judged, Found& found) {
-  doubtMissingPieces(found.planes, judged.cloud.kind(), judged.options);
-}
-
 /// Axes of rotations of a scan; brings axes of revolution and planes in line with them.
 void findAxesOfScan(const JudgedCloud& judged, Found& found) {
   const DetectionOptions& options = judged.options;
@@ -101,29 +97,31 @@ void findAxesOfScan(const JudgedCloud& judged, Found& found) {
   found.planes = withoutPlanesThrough(std::move(found.planes), found.axes, judged.cloud);
 }
 
-void doubtWhatIsNotBest(const JudgedCloud& judged, Found& found) {
-  doubtFurtherPlanes(found.planes, found.hasFamily(), judged.cloud.kind(), judged.options);
-}
-
-void doubtWhatSlants(const JudgedCloud& judged, Found& found) {
-  if (judged.cloud.seen())
-    doubtSlantedPlanes(found.planes, carryingNormals(judged.cloud.points, *judged.cloud.seen()), judged.options);
-}
-
-void findPlanesOfParts(const JudgedCloud& judged, Found& found) {
-  if (judged.options.approximate)
-    append(found.planes, localPlanes(found.planes, judged.cloud, *judged.fit, judged.decision, judged.options));
-}
-
 /// Rules by which findings correct each other, applied in this order. Not in the paper.
 constexpr struct {
   const char* name;  ///< in Detection::timing_ms
   void (*apply)(const JudgedCloud& judged, Found& found);
 } kRules[] = {
-    {"groups", completeGroups},    {"missing_pieces", doubtWhatNeedsAPiece},
-    {"polygon", completePolygon},  {"families", findFamilies},
-    {"rotations", findAxesOfScan}, {"beside_best", doubtWhatIsNotBest},
-    {"slanted", doubtWhatSlants},  {"parts", findPlanesOfParts},
+    {"groups", completeGroups},
+    {"missing_pieces", [](const JudgedCloud& judged,
+                          Found& found) { doubtMissingPieces(found.planes, judged.cloud.kind(), judged.options); }},
+    {"polygon", completePolygon},
+    {"families", findFamilies},
+    {"rotations", findAxesOfScan},
+    {"beside_best",
+     [](const JudgedCloud& judged, Found& found) {
+       doubtFurtherPlanes(found.planes, found.hasFamily(), judged.cloud.kind(), judged.options);
+     }},
+    {"slanted",
+     [](const JudgedCloud& judged, Found& found) {
+       if (const Visibility* seen = judged.cloud.seen())
+         doubtSlantedPlanes(found.planes, carryingNormals(judged.cloud.points, *seen), judged.options);
+     }},
+    {"parts",
+     [](const JudgedCloud& judged, Found& found) {
+       if (judged.options.approximate)
+         append(found.planes, localPlanes(found.planes, judged.cloud, *judged.fit, judged.decision, judged.options));
+     }},
 };
 
 /// Section 4.4 and what follows: the planes of a cloud, from the maxima of its map to the list. publishedPlanes() is
@@ -131,8 +129,8 @@ constexpr struct {
 /// \param all the points of the cloud and those that were left out to make it evenly dense, normalized frame.
 Detection refineAndDecide(const NormalizedCloud& cloud, const Points& all, const SymmetryMap& map,
                           const DetectionOptions& options, Stopwatch& watch) {
-  Detection detection;
-  const auto timed = [&](const char* stage) { detection.timing_ms.emplace_back(stage, watch.lap()); };
+  Found found;
+  const auto timed = [&](const char* stage) { found.timing_ms.emplace_back(stage, watch.lap()); };
   const JudgedCloud judged(cloud, all, options);
   const PlaneMeasure& measure = judged.measure;
   timed("surface");
@@ -146,7 +144,6 @@ Detection refineAndDecide(const NormalizedCloud& cloud, const Points& all, const
   timed("coarse_refinement");
   candidates = judged.refinement.close(std::move(candidates));
   timed("close_refinement");
-  Found found;
   if (options.evidence) {
     found.evidence = std::make_shared<DetectionEvidence>();
     found.evidence->planes = judgeAll(judged, candidates);
@@ -161,20 +158,16 @@ Detection refineAndDecide(const NormalizedCloud& cloud, const Points& all, const
   }
 
   // The answer.
-  if (!found.hasFamily()) detection.best = bestApproximate(found.planes, cloud, *judged.fit);
-  if (detection.best) detection.best->deviation = measure.deviation(cloud.toNormalized(*detection.best)) * cloud.scale;
-  detection.flat = flatPlane(cloud, measure.limits());
-  detection.tolerance = measure.tolerance() * cloud.scale;
+  if (!found.hasFamily()) found.best = bestApproximate(found.planes, cloud, *judged.fit);
+  if (found.best) found.best->deviation = measure.deviation(cloud.toNormalized(*found.best)) * cloud.scale;
+  found.flat = flatPlane(cloud, measure.limits());
+  found.tolerance = measure.tolerance() * cloud.scale;
   const bool is_raised = options.absolute_tolerance == 0.0 && measure.tolerance() > options.tolerance * cloud.extent;
-  detection.resolution = std::max(measure.resolution(), is_raised ? measure.tolerance() : 0.0) * cloud.scale;
-  detection.diameter = cloud.extent * cloud.scale;
-  detection.planes = rankedPlanes(std::move(found.planes), found.polygon, cloud, *judged.fit, options);
-  detection.axes = std::move(found.axes);
-  detection.centers = std::move(found.centers);
-  detection.rotations = std::move(found.rotations);
-  detection.evidence = std::move(found.evidence);
+  found.resolution = std::max(measure.resolution(), is_raised ? measure.tolerance() : 0.0) * cloud.scale;
+  found.diameter = cloud.extent * cloud.scale;
+  found.planes = rankedPlanes(std::move(found.planes), found.polygon, cloud, *judged.fit, options);
   timed("report");
-  return detection;
+  return std::move(found);
 }
 
 /// Detects planes on the evenly dense subset of a cloud whose density differs between its sides, then computes the
@@ -226,8 +219,9 @@ Detection detectFromMap(const PlaneInput& input, const GaussianEdt& edt, const S
   return detection;
 }
 
-/// Sections 4.1 to 4.3, then the rest.
-Detection detectFromPoints(const PlaneInput& input, const DetectionOptions& options) {
+/// Sections 4.1 to 4.3, unless the input has a map; then the rest.
+Detection detectAmong(const PlaneInput& input, const DetectionOptions& options) {
+  if (input.map) return detectFromMap(input, *input.edt, *input.map, options);
   Stopwatch watch;
   std::vector<std::pair<std::string, double>> timing;
   const GaussianEdt edt(input.points, options.edtOptions());
@@ -262,22 +256,7 @@ struct PartOfInput {
   }
 };
 
-Detection detectFrom(const PlaneInput& input, const DetectionOptions& options) {
-  return input.map ? detectFromMap(input, *input.edt, *input.map, options) : detectFromPoints(input, options);
-}
-
-/// Detects planes on the points that represent a large cloud.
-Detection detectOnSubset(const PlaneInput& all, const std::vector<int>& kept, const DetectionOptions& options) {
-  const PartOfInput part(all, kept);
-  Detection detection = detectFrom(part.input, options);
-  if (!all.map) detection.map.center_of_mass = centerOfMass(all.points);
-  Stopwatch watch;
-  if (!detection.planes.empty() || detection.best)
-    spreadSupport(detection, closestPoints(*makeFlannSearch(part.points), all.points, options.num_threads).index);
-  detection.timing_ms.emplace_back("support_of_all", watch.lap());
-  return detection;
-}
-
+/// Detects planes on the points that represent the cloud; all others take their support.
 /// \param input without stray points.
 Detection detectInBulk(const PlaneInput& input, const DetectionOptions& options) {
   Detection detection;
@@ -286,24 +265,18 @@ Detection detectInBulk(const PlaneInput& input, const DetectionOptions& options)
   Stopwatch watch;
   if (const std::optional<std::vector<int>> subset = subsetOf(input.points, options)) {
     const double subset_ms = watch.lap();
-    detection = detectOnSubset(input, *subset, options);
+    const PartOfInput part(input, *subset);
+    detection = detectAmong(part.input, options);
+    if (!input.map) detection.map.center_of_mass = centerOfMass(input.points);
+    watch.lap();
+    if (!detection.planes.empty() || detection.best)
+      spreadSupport(detection, closestPoints(*makeFlannSearch(part.points), input.points, options.num_threads).index);
     detection.timing_ms.insert(detection.timing_ms.begin(), {"subset", subset_ms});
+    detection.timing_ms.emplace_back("support_of_all", watch.lap());
   } else {
-    detection = detectFrom(input, options);
+    detection = detectAmong(input, options);
   }
-  if (input.may_be_rings && input.visibility && detection.reason.empty()) decideByUprightBox(input, options, detection);
-  return detection;
-}
-
-/// Detects planes without the stray points, which then support none.
-/// \param stray indices, rising.
-Detection detectWithout(const std::vector<int>& stray, const PlaneInput& input, const DetectionOptions& options) {
-  const std::vector<int> others = allBut(stray, input.points.cols());
-  Detection detection = detectInBulk(PartOfInput(input, others).input, options);
-  std::vector<int> index_of(static_cast<std::size_t>(input.points.cols()), -1);
-  for (std::size_t i = 0; i < others.size(); ++i) index_of[static_cast<std::size_t>(others[i])] = static_cast<int>(i);
-  spreadSupport(detection, index_of);
-  detection.num_stray_points = static_cast<int>(stray.size());
+  if (input.may_be_rings && input.visibility) decideByUprightBox(input, options, detection);
   return detection;
 }
 
@@ -364,7 +337,15 @@ Detection detectPlanes(const PlaneInput& input, const DetectionOptions& options)
           "the number of points");
   check(!input.map == !input.edt, "map", input.map ? "given" : "missing", "given together with edt");
   const std::vector<int> stray = strayPoints(input.points);
-  return stray.empty() ? detectInBulk(input, options) : detectWithout(stray, input, options);
+  if (stray.empty()) return detectInBulk(input, options);
+  // Stray points support no plane.
+  const std::vector<int> others = allBut(stray, input.points.cols());
+  Detection detection = detectInBulk(PartOfInput(input, others).input, options);
+  std::vector<int> index_of(input.points.cols(), -1);
+  for (std::size_t i = 0; i < others.size(); ++i) index_of[others[i]] = static_cast<int>(i);
+  spreadSupport(detection, index_of);
+  detection.num_stray_points = static_cast<int>(stray.size());
+  return detection;
 }
 
 std::vector<SymmetryPlane> refinedAt(const std::vector<ReflectionPlane>& starts, const PlaneInput& input,

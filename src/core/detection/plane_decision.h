@@ -201,14 +201,9 @@ struct JudgedCloud {
       : cloud(of_cloud), all(all_points), options(given) {}
 };
 
-/// What was found up to now.
-struct Found {
-  std::vector<SymmetryPlane> planes;    ///< input frame
-  std::optional<PlaneLattice> polygon;  ///< normalized frame; its planes are among them
-  std::vector<SymmetryAxis> axes;       ///< best first
-  std::vector<SymmetryCenter> centers;
-  std::vector<SymmetryRotation> rotations;
-  std::shared_ptr<DetectionEvidence> evidence;
+/// What was found up to now, input frame.
+struct Found : Detection {
+  std::optional<PlaneLattice> polygon;  ///< normalized frame; its planes are among the planes
 
   bool hasFamily() const { return !axes.empty() || !centers.empty(); }
 };

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <type_traits>
 #include <utility>
 
 #include "core/base/constants.h"
@@ -18,7 +19,7 @@ namespace pcl_symmetry {
 namespace {
 
 /// Plane \p k of a sequence of planes through a line whose angles no regular polygon has.
-ReflectionPlane planeOfFamily(const Line3d& line, int k) {
+ReflectionPlane planeOfFamily(const Line3d& line, int k, int) {
   return planeThrough(line, kPi * goldenFraction(k + 1));
 }
 
@@ -28,16 +29,19 @@ ReflectionPlane planeOfFamily(const Eigen::Vector3d& point, int k, int count) {
   return ReflectionPlane(n, n.dot(point));
 }
 
+/// Sum of n n^T over the normals.
+Eigen::Matrix3d normalProducts(const std::vector<ReflectionPlane>& planes) {
+  Eigen::Matrix3d sum = Eigen::Matrix3d::Zero();
+  for (const ReflectionPlane& plane : planes) sum += plane.normal() * plane.normal().transpose();
+  return sum;
+}
+
 /// The point closest to all planes: if there are many such points, the one closest to \p start.
 Eigen::Vector3d commonPoint(const std::vector<ReflectionPlane>& planes, const Eigen::Vector3d& start) {
-  Eigen::Matrix3d squares = Eigen::Matrix3d::Zero();
   Eigen::Vector3d pull = Eigen::Vector3d::Zero();
-  for (const ReflectionPlane& plane : planes) {
-    squares += plane.normal() * plane.normal().transpose();
-    pull += plane.normal() * plane.signedDistance(start);
-  }
+  for (const ReflectionPlane& plane : planes) pull += plane.normal() * plane.signedDistance(start);
   const double coplanar = kDetection.families.coplanar;
-  return start - SymmetricEigen<Eigen::Matrix3d>(squares).solve(pull, coplanar * coplanar);
+  return start - SymmetricEigen<Eigen::Matrix3d>(normalProducts(planes)).solve(pull, coplanar * coplanar);
 }
 
 /// Mean share of the planes of a family.
@@ -60,47 +64,42 @@ std::vector<ReflectionPlane> planesAt(const PlaneAt& plane_at) {
   return planes;
 }
 
-/// The family of all planes through a point, or through one nearby.
-std::optional<CenterFamily> centerAt(Eigen::Vector3d point, double least, const FamilyTest& test) {
-  const auto at = [&](int k) { return planeOfFamily(point, k, kDetection.families.tested_planes); };
-  if (meanShare(at, kDetection.families.screening_planes, least - kDetection.families.rough_factor * test.allowance,
-                test.rough_share) == 0.0)
-    return std::nullopt;
-  std::vector<ReflectionPlane> refined;
-  for (int k = 0; k < kDetection.families.fitted_planes; ++k)
-    refined.push_back(test.refine(planeOfFamily(point, k, kDetection.families.fitted_planes)));
-  point = commonPoint(refined, point);
-  if (meanShare(at, kDetection.families.tested_planes, least, test.share) < least) return std::nullopt;
-  return CenterFamily{point, planesAt(at)};
+Line3d commonPlace(const std::vector<ReflectionPlane>& planes, const Line3d&) {
+  return commonLine(planes);
 }
 
-/// The family of all planes through a line, or through one nearby.
-std::optional<AxisFamily> axisAt(const Line3d& start, double least, const FamilyTest& test) {
-  Line3d line = start;
-  const auto at = [&](int k) { return planeOfFamily(line, k); };
+Eigen::Vector3d commonPlace(const std::vector<ReflectionPlane>& planes, const Eigen::Vector3d& start) {
+  return commonPoint(planes, start);
+}
+
+/// The family of all planes through a point or a line, or through one nearby.
+template <typename Place>
+std::optional<PlaneFamily<Place>> familyAt(const Place& start, double least, const FamilyTest& test) {
+  const int num_tested = kDetection.families.tested_planes, num_fitted = kDetection.families.fitted_planes;
+  Place place = start;
+  const auto at = [&](int k) { return planeOfFamily(place, k, num_tested); };
+  const auto tested = [&] { return meanShare(at, num_tested, least, test.share); };
   // The line through two rough planes may be off by a little: the refined line has to pass the full test.
   if (meanShare(at, kDetection.families.screening_planes, least - kDetection.families.rough_factor * test.allowance,
                 test.rough_share) == 0.0)
     return std::nullopt;
   std::vector<ReflectionPlane> refined;
-  for (int k = 0; k < kDetection.families.fitted_planes; ++k) refined.push_back(test.refine(planeOfFamily(line, k)));
-  line = commonLine(refined);
-  double share = meanShare(at, kDetection.families.tested_planes, least, test.share);
-  // Planes that map a scan to what was not seen drift when they are refined.
-  if (share < least) {
-    line = start;
-    share = meanShare(at, kDetection.families.tested_planes, least, test.share);
+  for (int k = 0; k < num_fitted; ++k) refined.push_back(test.refine(planeOfFamily(place, k, num_fitted)));
+  place = commonPlace(refined, start);
+  double share = tested();
+  if (share < least && std::is_same_v<Place, Line3d>) {
+    // Planes that map a scan to what was not seen drift when they are refined.
+    place = start;
+    share = tested();
   }
   if (share < least) return std::nullopt;
-  return AxisFamily{line, share, planesAt(at)};
+  return PlaneFamily<Place>{place, share, planesAt(at)};
 }
 
 }  // namespace
 
 Line3d commonLine(const std::vector<ReflectionPlane>& planes) {
-  Eigen::Matrix3d sum = Eigen::Matrix3d::Zero();
-  for (const ReflectionPlane& plane : planes) sum += plane.normal() * plane.normal().transpose();
-  const SymmetricEigen<Eigen::Matrix3d> solver(sum);
+  const SymmetricEigen<Eigen::Matrix3d> solver(normalProducts(planes));
   const Eigen::Vector3d direction = solver.eigenvectors().col(0);
   const Eigen::Vector3d point = commonPoint(planes, Eigen::Vector3d::Zero());
   return Line3d(point - direction.dot(point) * direction, direction);
@@ -110,16 +109,14 @@ std::optional<CenterFamily> findCenter(const std::vector<ReflectionPlane>& plane
                                        const std::vector<Eigen::Vector3d>& guesses) {
   if (planes.empty()) return std::nullopt;
   std::vector<Eigen::Vector3d> points;
-  Eigen::Matrix3d sum = Eigen::Matrix3d::Zero();
-  for (const ReflectionPlane& plane : planes) sum += plane.normal() * plane.normal().transpose();
-  const SymmetricEigen<Eigen::Matrix3d> solver(sum / static_cast<double>(planes.size()));
+  const SymmetricEigen<Eigen::Matrix3d> solver(normalProducts(planes) / static_cast<double>(planes.size()));
   const bool has_point =
       planes.size() >= 3 && solver.eigenvalues()[0] >= kDetection.families.min_spread;  // or else all hold one line
   if (has_point) points.push_back(commonPoint(planes, Eigen::Vector3d::Zero()));
   points.insert(points.end(), guesses.begin(), guesses.end());
   const double least = std::max(test.min_share, test.share(planes[0]) - test.allowance);
   for (const Eigen::Vector3d& point : points)
-    if (std::optional<CenterFamily> center = centerAt(point, least, test)) return center;
+    if (std::optional<CenterFamily> center = familyAt(point, least, test)) return center;
   return std::nullopt;
 }
 
@@ -131,9 +128,9 @@ std::vector<AxisFamily> findAxes(const std::vector<ReflectionPlane>& planes, con
   const auto attempt = [&](const Line3d& line, double best_share) {
     if (kSameAxisOfFamily.anySame(tried, line)) return;
     tried.push_back(line);
-    std::optional<AxisFamily> axis = axisAt(line, std::max(test.min_share, best_share - test.allowance), test);
+    std::optional<AxisFamily> axis = familyAt(line, std::max(test.min_share, best_share - test.allowance), test);
     if (!axis) return;
-    tried.push_back(axis->line);
+    tried.push_back(axis->place);
     axes.push_back(std::move(*axis));
   };
   if (!planes.empty())
@@ -224,7 +221,7 @@ void findFamilies(const JudgedCloud& judged, Found& found) {
   if (is_line) {
     const Line3d line = longestAxis(cloud.principal_axes);
     const JudgedFamily family =
-        judged.decision.judgeFamily(planesAt([&](int k) { return planeOfFamily(line, k); }), samples);
+        judged.decision.judgeFamily(planesAt([&](int k) { return planeOfFamily(line, k, 0); }), samples);
     if (family.confidence >= options.min_confidence)
       found.axes.push_back(
           {cloud.toInput(line.origin()), line.direction(), family.confidence, family.score, family.support});
@@ -250,27 +247,27 @@ void findFamilies(const JudgedCloud& judged, Found& found) {
   if (const std::optional<CenterFamily> center = findCenter(symmetries, test, likely_centers)) {
     const JudgedFamily family = judged.decision.judgeFamily(center->planes, samples);
     if (isFamily(family)) {
-      found.centers.push_back({cloud.toInput(center->point), family.confidence, family.score, family.support});
+      found.centers.push_back({cloud.toInput(center->place), family.confidence, family.score, family.support});
       drop([&](const ReflectionPlane& plane) {
-        return std::abs(plane.signedDistance(center->point)) <= kDetection.families.contained_offset;
+        return std::abs(plane.signedDistance(center->place)) <= kDetection.families.contained_offset;
       });
       return;
     }
   }
   for (const AxisFamily& axis : findAxes(symmetries, test, likely_axes)) {
     // Noise blurs what lies between the planes of a polygon, but not alike at all of them.
-    if (kKindRules.has_polygons[cloud.kind()] && latticeBySpectrum(judged.all, axis.line)) continue;
+    if (kKindRules.has_polygons[cloud.kind()] && latticeBySpectrum(judged.all, axis.place)) continue;
     const JudgedFamily family = judged.decision.judgeFamily(axis.planes, samples);
     if (!isFamily(family)) continue;
     // No bounded shape has two parallel axes, but a thin disc seems to within the tolerance: the best is the
     // axis.
     const bool is_known = std::any_of(found.axes.begin(), found.axes.end(), [&](const SymmetryAxis& other) {
-      return std::abs(other.direction.dot(axis.line.direction())) > std::cos(kDetection.families.contained_angle);
+      return std::abs(other.direction.dot(axis.place.direction())) > std::cos(kDetection.families.contained_angle);
     });
     if (!is_known)
-      found.axes.push_back(
-          {cloud.toInput(axis.line.origin()), axis.line.direction(), family.confidence, family.score, family.support});
-    drop([&](const ReflectionPlane& plane) { return contains(plane, axis.line); });
+      found.axes.push_back({cloud.toInput(axis.place.origin()), axis.place.direction(), family.confidence, family.score,
+                            family.support});
+    drop([&](const ReflectionPlane& plane) { return contains(plane, axis.place); });
   }
 }
 

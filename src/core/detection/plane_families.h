@@ -55,18 +55,15 @@ struct FamilyTest {
 /// \param planes at least two that are not parallel.
 Line3d commonLine(const std::vector<ReflectionPlane>& planes);
 
-/// A line, all planes through which are symmetries.
-struct AxisFamily {
-  Line3d line;
+/// A line or a point, all planes through which are symmetries.
+template <typename Place>
+struct PlaneFamily {
+  Place place;
   double share;                         ///< mean over the planes
   std::vector<ReflectionPlane> planes;  ///< that were tested
 };
-
-/// A point, all planes through which are symmetries.
-struct CenterFamily {
-  Eigen::Vector3d point;
-  std::vector<ReflectionPlane> planes;  ///< that were tested
-};
+using AxisFamily = PlaneFamily<Line3d>;
+using CenterFamily = PlaneFamily<Eigen::Vector3d>;
 
 /// \param planes symmetries found, best first.
 /// \param guesses points that may be one, beside the common point of the planes.
