@@ -10,38 +10,49 @@
 
 namespace PCL_SYMMETRY_EXPORTS pcl_symmetry {
 
+namespace detail {
+
+constexpr int kSquareOfBins = 32 * 32, kCubeOfBins = 32 * kSquareOfBins;
+constexpr int kSignatureValues = 20736;  // 2 * 6 * 12^3
+
+}  // namespace detail
+
 /// The planar-reflective symmetry transform: sqrt(max(D, 0)) in 32 x 32 x 32 bins (theta, phi, r), r fastest.
 struct PRSTSignature32768 {
-  float prst[32768] = {};                                  ///< not negative
-  static constexpr int descriptorSize() { return 32768; }  ///< number of values
+  float prst[detail::kCubeOfBins] = {};                                  ///< not negative
+  static constexpr int descriptorSize() { return detail::kCubeOfBins; }  ///< number of values
 };
 
 /// The planar-reflective symmetry descriptor of Kazhdan et al. (2004): sqrt(max(D, 0)) of the planes through the center
 /// in 32 x 32 bins (theta, phi), phi fastest.
 struct PRSDSignature1024 {
-  float prsd[1024] = {};                                  ///< not negative
-  static constexpr int descriptorSize() { return 1024; }  ///< number of values
+  float prsd[detail::kSquareOfBins] = {};                                  ///< not negative
+  static constexpr int descriptorSize() { return detail::kSquareOfBins; }  ///< number of values
 };
 
 /// The Gaussian Euclidean distance transform f in 32 x 32 x 32 cells, x fastest.
 struct GEDTSignature32768 {
-  float gedt[32768] = {};                                  ///< in [0, 1]
-  static constexpr int descriptorSize() { return 32768; }  ///< number of values
+  float gedt[detail::kCubeOfBins] = {};                                  ///< in [0, 1]
+  static constexpr int descriptorSize() { return detail::kCubeOfBins; }  ///< number of values
 };
 
 /// Where the surface of a shape lies and which way it faces, in a frame of its symmetry: two cubes of 6 x 12^3 values.
 /// SymmetryDatabase compares its compact form.
 struct ShapeSignature20736 {
-  float signature[20736] = {};                             ///< of unit length together
-  static constexpr int descriptorSize() { return 20736; }  ///< number of values
+  float signature[detail::kSignatureValues] = {};                             ///< of unit length together
+  static constexpr int descriptorSize() { return detail::kSignatureValues; }  ///< number of values
 };
 
 }  // namespace pcl_symmetry
 
-POINT_CLOUD_REGISTER_POINT_STRUCT(pcl_symmetry::PRSTSignature32768, (float[32768], prst, prst))
-POINT_CLOUD_REGISTER_POINT_STRUCT(pcl_symmetry::PRSDSignature1024, (float[1024], prsd, prsd))
-POINT_CLOUD_REGISTER_POINT_STRUCT(pcl_symmetry::GEDTSignature32768, (float[32768], gedt, gedt))
-POINT_CLOUD_REGISTER_POINT_STRUCT(pcl_symmetry::ShapeSignature20736, (float[20736], signature, signature))
+POINT_CLOUD_REGISTER_POINT_STRUCT(pcl_symmetry::PRSTSignature32768,
+                                  (float[pcl_symmetry::detail::kCubeOfBins], prst, prst))
+POINT_CLOUD_REGISTER_POINT_STRUCT(pcl_symmetry::PRSDSignature1024,
+                                  (float[pcl_symmetry::detail::kSquareOfBins], prsd, prsd))
+POINT_CLOUD_REGISTER_POINT_STRUCT(pcl_symmetry::GEDTSignature32768,
+                                  (float[pcl_symmetry::detail::kCubeOfBins], gedt, gedt))
+POINT_CLOUD_REGISTER_POINT_STRUCT(pcl_symmetry::ShapeSignature20736,
+                                  (float[pcl_symmetry::detail::kSignatureValues], signature, signature))
 
 namespace pcl {
 

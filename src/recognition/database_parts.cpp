@@ -1,5 +1,6 @@
 #include "recognition/database_parts.h"
 
+#include <boost/locale/utf.hpp>
 #include <ctime>
 #include <utility>
 
@@ -12,14 +13,9 @@ namespace pcl_symmetry::detail {
 namespace {
 
 bool isUTF8(const std::string& text) {
-  for (std::size_t i = 0; i < text.size();) {
-    const auto first = static_cast<unsigned char>(text[i]);
-    const std::size_t length = first < 0x80 ? 1 : first >> 5 == 6 ? 2 : first >> 4 == 14 ? 3 : first >> 3 == 30 ? 4 : 0;
-    if (length == 0 || i + length > text.size()) return false;
-    for (std::size_t k = 1; k < length; ++k)
-      if (static_cast<unsigned char>(text[i + k]) >> 6 != 2) return false;
-    i += length;
-  }
+  namespace utf = boost::locale::utf;
+  for (auto at = text.begin(); at != text.end();)
+    if (!utf::is_valid_codepoint(utf::utf_traits<char>::decode(at, text.end()))) return false;
   return true;
 }
 

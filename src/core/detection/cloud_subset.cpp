@@ -19,7 +19,7 @@ namespace {
 double mostPoints(const PointsRef& points, const DetectionOptions& options) {
   const double tolerance =
       options.absolute_tolerance > 0.0 ? options.absolute_tolerance / farthestPair(points) : options.tolerance;
-  const double finer = std::max(1.0, kDetection.points.usual_tolerance / tolerance);
+  const double finer = std::max(1.0, DetectionOptions().tolerance / tolerance);
   return kDetection.points.max_points * finer * finer;
 }
 

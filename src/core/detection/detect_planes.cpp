@@ -362,8 +362,8 @@ std::vector<SymmetryPlane> refinedAt(const std::vector<ReflectionPlane>& starts,
 }
 
 void refineOnMesh(const MeshSurface& mesh, Detection& found, const DetectionOptions& options) {
-  constexpr MergeTolerance kOnePlane{0.01, 0.01};  // after refinement; those of 120 teeth are 0.026 apart
-  constexpr double kNearlySymmetric = 0.9;         // share of the best plane that may be a symmetry of the mesh itself
+  constexpr double kOne = 0.01;             // after refinement; those of 120 teeth are 0.026 apart
+  constexpr double kNearlySymmetric = 0.9;  // share of the best plane that may be a symmetry of the mesh itself
   const auto inBall = [&](const ReflectionPlane& plane) {
     return normalized(plane, mesh.ball().center, mesh.ball().radius);
   };
@@ -372,7 +372,7 @@ void refineOnMesh(const MeshSurface& mesh, Detection& found, const DetectionOpti
   for (SymmetryPlane& plane : found.planes) {
     if (isDecided(plane)) {
       refine(mesh, plane, found.tolerance, options);
-      if (kOnePlane.anySame(kept, inBall(plane), inBall)) continue;
+      if (MergeTolerance{kOne, kOne}.anySame(kept, inBall(plane), inBall)) continue;
       if (plane.kind == PlaneKind::Approximate && !options.approximate) {
         if (!dropped || plane.share > dropped->share) dropped = std::move(plane);
         continue;

@@ -15,8 +15,8 @@ namespace pcl_symmetry {
 struct DetectionRules {
   /// Which points are used.
   struct {
-    double max_points = 20'000.0, usual_tolerance = 0.01;  ///< points that represent a cloud at that tolerance
-    int density_samples = 1000;                            ///< samples of the density; its slope has an error of 2 %
+    double max_points = 20'000.0;          ///< that represent a cloud at the default tolerance
+    int density_samples = 1000;            ///< samples of the density; its slope has an error of 2 %
     int max_counted = 48, neighbors = 16;  ///< neighbors that are counted, and that a neighborhood has on average
     double trimmed = 0.05;                 ///< share of the points at either end that the range of densities leaves out
     double uneven = 0.4, fully_uneven = 0.7;  ///< log ratio of densities where thinning starts, and is complete
@@ -32,11 +32,8 @@ struct DetectionRules {
     /// Bins beyond its own that refinement may move a candidate by. Departure from the paper, which has 0: one bin
     /// leaves room for the noise of the sampled map.
     double max_drift = 1.0;
-    int first_samples = 100;                        ///< points reflected in the first stage
-    double same_angle = 0.035, same_offset = 0.02;  ///< within which two planes are one
-    double same_maximum_angle = 0.1,
-           same_maximum_offset = 0.06;  ///< the same of maxima: a peak of D is 0.1 radians wide
-    double symmetric_merit = 0.93;      ///< of a symmetry: support of 97 % and conflict of 3 % have 0.97
+    int first_samples = 100;        ///< points reflected in the first stage
+    double symmetric_merit = 0.93;  ///< of a symmetry: support of 97 % and conflict of 3 % have 0.97
     int coarse_iterations = 5, close_iterations = 6, full_iterations = 8, rough_iterations = 4;
     double close_slack = 0.1;   ///< below the merit of a symmetry that a candidate may be after the second stage
     double coarse_slack = 0.2;  ///< the same after the first stage, beside a symmetry
@@ -48,16 +45,16 @@ struct DetectionRules {
 
   /// Planes on surfaces and in volumes.
   struct {
-    double first_climb = 0.02, last_climb = 0.0025;  ///< steps of a climb, radians and radii
-    int max_climbs = 24;                             ///< steps of a climb, of all lengths
-    int climb_samples = 500;                         ///< points by which planes of whole clouds climb
-    double min_gain = 0.005;                         ///< merit that a climb has to gain
-    double climbing_merit = 0.5;                     ///< merit of planes that climb; those of less are no symmetries
-    double climbing_confidence = 0.01;               ///< the same by confidence
-    double noisy_depth = 0.1;  ///< roughness, spacings, from which planes of scans climb: noise looks hidden
-    double bandwidth = 1.5;    ///< of the density, spacings; less shows single points, more blurs the shape
-    int max_iterations = 6;    ///< Newton steps in a density
-    int sample_factor = 10;    ///< samples of a density per sample of a surface
+    double first_climb = 0.02, last_climb = first_climb / 8.0;  ///< steps of a climb, radians and radii
+    int max_climbs = 24;                                        ///< steps of a climb, of all lengths
+    int climb_samples = 500;                                    ///< points by which planes of whole clouds climb
+    double min_gain = 0.005;                                    ///< merit that a climb has to gain
+    double climbing_merit = 0.5;        ///< merit of planes that climb; those of less are no symmetries
+    double climbing_confidence = 0.01;  ///< the same by confidence
+    double noisy_depth = 0.1;           ///< roughness, spacings, from which planes of scans climb: noise looks hidden
+    double bandwidth = 1.5;             ///< of the density, spacings; less shows single points, more blurs the shape
+    int max_iterations = 6;             ///< Newton steps in a density
+    int sample_factor = 10;             ///< samples of a density per sample of a surface
   } fit;
 
   /// Measuring a plane.
@@ -153,13 +150,6 @@ struct DetectionRules {
 };
 
 inline constexpr DetectionRules kDetection;
-
-/// Limits within which two planes are one, normalized frame.
-inline constexpr MergeTolerance kSamePlane{kDetection.stages.same_angle, kDetection.stages.same_offset};
-
-/// Limits within which two maxima share one basin of refinement, normalized frame.
-inline constexpr MergeTolerance kSameMaximum{kDetection.stages.same_maximum_angle,
-                                             kDetection.stages.same_maximum_offset};
 
 /// A rule that differs between the kinds of cloud.
 template <typename T>

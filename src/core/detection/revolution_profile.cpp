@@ -9,6 +9,7 @@
 #include "core/base/check.h"
 #include "core/base/statistics.h"
 #include "core/base/symmetric_solvers.h"
+#include "core/geometry/point_samples.h"
 
 namespace pcl_symmetry {
 
@@ -93,7 +94,7 @@ std::vector<ProfilePoint> revolutionProfile(const PointsRef& points, const Symme
     positions.emplace_back((x - height * direction).norm(), height);
     box.extend(positions.back());
   }
-  check(positions.size() >= 20, "number of points", positions.size(), ">= 20");
+  check(positions.size() >= kMinDistinctPoints, "number of points", positions.size(), ">= 20");
   const double extent = box.diagonal().norm();
   check(extent > 0.0, "extent of the points", extent, "> 0");
 

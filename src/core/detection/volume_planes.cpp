@@ -40,7 +40,7 @@ struct VolumeRules {
   double merge_angle = 0.12;   ///< radians: maxima closer than this, and ...
   double merge_offset = 0.04;  ///< ... than this share of the radius in offset, are one
 };
-constexpr VolumeRules kRules;
+constexpr VolumeRules kVolume;
 
 /// What a plane does to a volume.
 struct Comparison {
@@ -51,7 +51,7 @@ struct Comparison {
   Eigen::Vector3d step = Eigen::Vector3d::Zero();  ///< of Gauss-Newton
 
   /// \return what planes are compared by.
-  double merit() const { return seen < kRules.min_seen ? -1.0 : correlation; }
+  double merit() const { return seen < kVolume.min_seen ? -1.0 : correlation; }
 };
 
 /// Sums over pairs of a voxel and its reflection.
@@ -93,14 +93,14 @@ public:
   /// \param distances of the body's points from the plane.
   double translated(const ReflectionPlane& plane, std::vector<double> distances, int stride) const {
     double sum = 0.0, num = 0.0;
-    for (int k = 0; k < kRules.num_translations && !distances.empty(); ++k) {
+    for (int k = 0; k < kVolume.num_translations && !distances.empty(); ++k) {
       const auto at =
-          distances.begin() + static_cast<std::ptrdiff_t>((k + 0.5) / kRules.num_translations * distances.size());
+          distances.begin() + static_cast<std::ptrdiff_t>((k + 0.5) / kVolume.num_translations * distances.size());
       std::nth_element(distances.begin(), at, distances.end());
       for (const double way : {2.0 * *at, -2.0 * *at}) {
         const Eigen::Affine3d motion(Eigen::Translation3d(way * plane.normal()));
         const Comparison comparison = compare(motion, plane, stride, false, 0.0);
-        if (comparison.seen < kRules.min_seen) continue;
+        if (comparison.seen < kVolume.min_seen) continue;
         sum += comparison.correlation;
         num += 1.0;
       }
@@ -220,7 +220,7 @@ private:
         const Eigen::Vector3d g = to_input * there.head<3>(), from_pivot = T * index - pivot_;
         const Eigen::Vector3d j = -chart.slope(from_pivot, chart.n.dot(from_pivot) - chart.offset, g);
         const Eigen::Vector3d slope = 0.5 * (here.head<3>() + image.linear().transpose() * there.head<3>());
-        const double sq_slope = slope.squaredNorm(), sq_noise = kRules.flat * residual * residual;
+        const double sq_slope = slope.squaredNorm(), sq_noise = kVolume.flat * residual * residual;
         const double weight = sq_noise > 0.0 ? sq_slope / (sq_slope + sq_noise) : 1.0;
         sum.normal += weight * j * j.transpose();
         sum.rhs += weight * (here[3] - there[3]) * j;
@@ -247,11 +247,11 @@ int strideFor(const ScalarGrid& grid, double num_voxels) {
 double chanceLevel(const ReflectedVolume& volume, const Eigen::Vector3d& center, int stride,
                    const std::vector<SymmetryPlane>& maxima, int num_threads) {
   std::vector<ReflectionPlane> planes;
-  for (int k = 0; k < kRules.num_chance_planes; ++k) {
-    const Eigen::Vector3d n = spiralDirection(k, kRules.num_chance_planes, k * kGoldenAngle);
+  for (int k = 0; k < kVolume.num_chance_planes; ++k) {
+    const Eigen::Vector3d n = spiralDirection(k, kVolume.num_chance_planes, k * kGoldenAngle);
     const ReflectionPlane plane(n, n.dot(center));
     const bool is_near = std::any_of(maxima.begin(), maxima.end(), [&](const SymmetryPlane& maximum) {
-      return maximum.angleTo(plane) < kRules.chance_angle;
+      return maximum.angleTo(plane) < kVolume.chance_angle;
     });
     if (!is_near) planes.push_back(plane);
   }
@@ -259,7 +259,7 @@ double chanceLevel(const ReflectedVolume& volume, const Eigen::Vector3d& center,
   std::vector<double> reached(planes.size());
   parallelBlocks(planes.size(), num_threads,
                  [&](std::size_t i) { reached[i] = volume.compare(planes[i], stride, false).correlation; });
-  return std::max(0.0, quantile(std::move(reached), kRules.chance_quantile));
+  return std::max(0.0, quantile(std::move(reached), kVolume.chance_quantile));
 }
 
 std::vector<ReflectionPlane> startsOf(const SymmetryMap& map, const Points& body, const DetectionOptions& options) {
@@ -277,13 +277,13 @@ Detection detectVolumePlanes(const ScalarGrid& input, const DetectionOptions& op
   Detection found;
   Stopwatch watch;
   try {
-    const VolumeFunction fine(input, levels, kRules.fine_voxels, options.num_threads);
-    const VolumeFunction coarse(fine, kRules.coarse_voxels, options.num_threads);
+    const VolumeFunction fine(input, levels, kVolume.fine_voxels, options.num_threads);
+    const VolumeFunction coarse(fine, kVolume.coarse_voxels, options.num_threads);
     const Points body = coarse.bodyPoints(false);
     const GaussianEdt edt(coarse, options.edtOptions());
     found.timing_ms.emplace_back("volume", watch.lap());
     SampledTransformOptions sampled;
-    sampled.num_samples = kRules.num_samples;
+    sampled.num_samples = kVolume.num_samples;
     sampled.seed = options.seed;
     sampled.num_threads = options.num_threads;
     const Eigen::Vector3d center = centerOfMass(body);
@@ -294,7 +294,7 @@ Detection detectVolumePlanes(const ScalarGrid& input, const DetectionOptions& op
 
     const ReflectedVolume few(coarse, center, 1), all(fine, center, options.num_threads);
     const int stride = strideFor(coarse.f, 30'000);
-    const MergeTolerance one{kRules.merge_angle, kRules.merge_offset * edt.radius()};
+    const MergeTolerance one{kVolume.merge_angle, kVolume.merge_offset * edt.radius()};
     const std::vector<ReflectionPlane> starts = startsOf(found.map, body, options);
     std::vector<SymmetryPlane> maxima(starts.size());
     parallelBlocks(starts.size(), options.num_threads, [&](std::size_t i) {
@@ -316,7 +316,7 @@ Detection detectVolumePlanes(const ScalarGrid& input, const DetectionOptions& op
     found.timing_ms.emplace_back("maxima", watch.lap());
 
     const double chance = chanceLevel(few, center, stride, maxima, options.num_threads);
-    if (chance > kRules.max_chance) {
+    if (chance > kVolume.max_chance) {
       found.reason = "volume: the body is round, planes in all directions map it onto itself";
       return found;
     }
@@ -347,9 +347,9 @@ Detection detectVolumePlanes(const ScalarGrid& input, const DetectionOptions& op
       }
       // The best plane shows how alike halves are at this noise. A body that is nearly an ellipsoid has others, which
       // leave more of f.
-      const double min_left = 1.0 - planes.front().support + kRules.min_residual,
-                   left = 1.0 - plane.support + kRules.min_residual,
-                   shown = (plane.seen - kRules.nothing_seen) / (kRules.enough_seen - kRules.nothing_seen);
+      const double min_left = 1.0 - planes.front().support + kVolume.min_residual,
+                   left = 1.0 - plane.support + kVolume.min_residual,
+                   shown = (plane.seen - kVolume.nothing_seen) / (kVolume.enough_seen - kVolume.nothing_seen);
       setConfidence(
           plane, confidence(plane, level) * std::pow(std::min(1.0, min_left / left), 2) * std::clamp(shown, 0.0, 1.0),
           "the correlation beyond that of planes in any direction", options);

@@ -86,14 +86,14 @@ double seenSupport(const PlaneEvidence& evidence);
 
 /// Uncertainties of the evidence, by which it is divided. Chosen by cross-validation over the models of the fit.
 struct EvidenceUnits {
-  double off = 0.005;                    ///< error of the share that is off, of clouds without noise
-  double off_per_spacing = 0.002;        ///< the same per spacing in tolerances
-  double scan_off = 0.01;                ///< the same of scans, whose hidden parts may differ
-  double double_off = 0.005;             ///< the same within twice the tolerance
-  double precision = 0.01;               ///< how exactly the share is known: half doubts nearly symmetric planes less
-  double precision_per_spacing = 0.004;  ///< the same per spacing in tolerances
-  double precision_per_unknown = 0.2;    ///< the same per share that is uninformative
-  double max_off = 0.1;                  ///< share from which on it does not matter
+  double off = 0.005;              ///< error of the share that is off, of clouds without noise
+  double off_per_spacing = 0.002;  ///< the same per spacing in tolerances
+  double scan_off = 0.01;          ///< the same of scans, whose hidden parts may differ
+  double double_off = off;         ///< the same within twice the tolerance
+  double precision = 2.0 * off;    ///< how exactly the share is known: half doubts nearly symmetric planes less
+  double precision_per_spacing = 2.0 * off_per_spacing;  ///< the same per spacing in tolerances
+  double precision_per_unknown = 0.2;                    ///< the same per share that is uninformative
+  double max_off = 0.1;                                  ///< share from which on it does not matter
   /// Logarithm of the factor per spacing in tolerances by which finer points of a whole cloud show more of the surface
   /// to be off, as samples reach beyond the edges of what is there: 0.3 to 0.6 for planes that map 96 to 97 %.
   double reach = 0.3;
@@ -104,7 +104,7 @@ struct EvidenceUnits {
   // Where points resolve no surface:
   double volume_off = 0.003;   ///< error of the share that is off
   double excess = 0.002;       ///< of what D lacks beyond its error
-  double min_excess = 0.002;   ///< error of D: it is 0.001 less than expected in the mean, deviation 0.002
+  double min_excess = excess;  ///< error of D: it is 0.001 less than expected in the mean, deviation 0.002
   double lost_overlap = 0.01;  ///< of the overlap of densities
   double noise = 0.01;         ///< of what noise takes from D
 };

@@ -35,11 +35,11 @@ struct EvidenceRules {
   float empty_without_depth = 0.15f;  ///< the same as a share where errors are larger
 
   // Confidence.
-  double coarsest = 3.0;         ///< tolerances; by default, points with a wider spacing decide at what they resolve
-  double coarsest_part = 1.5;    ///< of flat clouds, and of scans so wide, which lose confidence beyond
-  double surely_coarser = 0.05;  ///< share by which spacing raises the tolerance of such a scan
-  double lost_per_coarseness = 2.0;  ///< log odds per tolerance beyond
-  double unknown_share = 0.5;        ///< units of a share per share that is uninformative
+  double coarsest = 3.0;  ///< tolerances; by default, points with a wider spacing decide at what they resolve
+  double coarsest_part = 0.5 * coarsest;  ///< of flat clouds, and of scans so wide, which lose confidence beyond
+  double surely_coarser = 0.05;           ///< share by which spacing raises the tolerance of such a scan
+  double lost_per_coarseness = 2.0;       ///< log odds per tolerance beyond
+  double unknown_share = 0.5;             ///< units of a share per share that is uninformative
 
   // Where a cloud ends.
   float min_explained = 0.4f, explained = 0.75f;  ///< share of an edge from which its region is missing, and fully

@@ -92,4 +92,10 @@ struct MergeTolerance {
   }
 };
 
+/// Limits within which two planes are one, normalized frame.
+inline constexpr MergeTolerance kSamePlane{0.035, 0.02};
+
+/// Limits within which two maxima share one basin of refinement, normalized frame: a peak of D is 0.1 radians wide.
+inline constexpr MergeTolerance kSameMaximum{0.1, 0.06};
+
 }  // namespace pcl_symmetry

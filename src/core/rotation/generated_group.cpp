@@ -46,9 +46,8 @@ RotationGroup groupOf(std::size_t size, const std::vector<RotationAxis>& axes) {
   for (const RotationAxis& axis : axes) ++num_axes[axis.order];
   if (axes.empty()) return {Kind::Cyclic, 1};
   if (axes.size() == 1) return {Kind::Cyclic, static_cast<int>(size)};
-  if (size == 12 && num_axes[3] == 4) return {Kind::Tetrahedral, 3};
-  if (size == 24 && num_axes[3] == 4) return {Kind::Octahedral, 4};
-  if (size == 60 && num_axes[3] == 10) return {Kind::Icosahedral, 5};
+  for (const RotationGroup& solid : kPolyhedralGroups)  // alone have more than one axis of order 3
+    if (num_axes[3] > 1 && size == solid.elements().size()) return solid;
   return {Kind::Dihedral, static_cast<int>(size / 2)};
 }
 

@@ -37,7 +37,8 @@ std::optional<PlacedGroup> cylindricalGroup(const RotationFit& fit, const Object
                                             const FoldAxis& main) {
   std::vector<double> offsets;
   // Up to half the radius: where points are unevenly dense, the center of a cylinder lies off the center of mass.
-  for (int k = -25; k <= 25; ++k) offsets.push_back(kRotation.across_step * k);
+  const int most = static_cast<int>(std::lround(0.5 / kRotation.across_step));
+  for (int k = -most; k <= most; ++k) offsets.push_back(kRotation.across_step * k);
   const Line3d across = bestAcross(fit, main.line, kPi, 1, offsets);
   RotationSet set = rotationsAbout({across.origin(), main.line.direction()});
   set.rotations.insert(set.rotations.begin() + 1, rotationAbout(across.direction(), kPi));
@@ -50,7 +51,10 @@ std::optional<PlacedGroup> dihedralGroup(const RotationFit& fit, const ObjectSym
   const RotationGroup group{RotationGroupKind::Dihedral, main.fold};
   const double width = kPi / main.fold;
   const int num_angles = std::max(4, static_cast<int>(std::ceil(width / kRotation.across_step)));
-  const Line3d across = bestAcross(fit, main.line, width, num_angles, {0.0, -0.04, 0.04, -0.08, 0.08, -0.12, 0.12});
+  std::vector<double> offsets{0.0};  // the nearest first
+  for (int k = 1; k <= 3; ++k)
+    for (const double way : {-2.0, 2.0}) offsets.push_back(way * k * kRotation.across_step);
+  const Line3d across = bestAcross(fit, main.line, width, num_angles, offsets);
   const auto placed = [&](const Eigen::Vector3d& direction) {
     const Eigen::Matrix3d frame = frameAlong(main.line.direction(), direction);
     return placedGroup(fit, options, group.kind, main.fold, elementsOf(group, frame, across.origin()));
@@ -118,9 +122,7 @@ PlacedGroup continuousGroup(const RotationFit& fit, const ObjectSymmetryOptions&
 /// The greatest group with axes of finite order: the regular solids, then prisms, then the rotations about one axis.
 PlacedGroup finiteGroup(const RotationFit& fit, const ObjectSymmetryOptions& options,
                         const std::vector<FoldAxis>& axes) {
-  for (const RotationGroup& group :
-       {RotationGroup{RotationGroupKind::Icosahedral, 5}, RotationGroup{RotationGroupKind::Octahedral, 4},
-        RotationGroup{RotationGroupKind::Tetrahedral, 3}})
+  for (const RotationGroup& group : kPolyhedralGroups)
     if (auto solid = polyhedralGroup(fit, options, group, axes)) return *solid;
   for (const FoldAxis& axis : axes) {
     // A dihedral group about this axis would have no more elements than the rotations about the main one.

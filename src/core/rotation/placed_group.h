@@ -19,6 +19,10 @@ struct PlacedGroup {
   OffShares shares;                                 ///< of the worst rotation; of rotations by any angle the mean
 };
 
+/// The groups of the regular solids, the greatest first.
+constexpr RotationGroup kPolyhedralGroups[] = {
+    {RotationGroupKind::Icosahedral, 5}, {RotationGroupKind::Octahedral, 4}, {RotationGroupKind::Tetrahedral, 3}};
+
 /// The excess beyond which a set is given up that was judged by some of the points: three standard errors above 1.
 double greatestExcess(const RotationLimits& limits, int num_samples);
 

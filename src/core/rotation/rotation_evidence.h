@@ -17,16 +17,14 @@ namespace pcl_symmetry {
 /// The numbers that axes of scans depend on. Lengths are in radii of the cloud, angles in radians, where no unit is
 /// given.
 struct ScanAxisRules {
-  double usual_tolerance = 0.01;  ///< share of the diameter, where no planes are looked for
   int normal_samples = 600, normal_draws = 60, normals_in_draw = 8;  ///< that lines of bodies of revolution are from
   int from_normals = 3;                                              ///< lines kept of these
-  double same_start_angle = 0.1, same_start_offset = 0.06;           ///< lines within both are one start
   double angle_of_fold = 3.0 * kDegree;                              ///< by which planes of scans are off
   double min_plane_angle = 0.13;                                     ///< between two planes that share a line
   int coarse_cells = 24, coarse_theta = 8, coarse_phi = 32, coarse_offset = 8, coarse_samples = 32;
   double coarse_reach = 0.67;                             ///< radii of the cloud that axes are off its middle at most
   std::size_t coarse_maxima = 10;                         ///< of that axial transform
-  double coarse_angle = 0.3, coarse_distance = 0.3;       ///< within which two of them are one
+  double coarsely_same = 0.3;                             ///< radians and radii, within which two of them are one
   double coarse_equal = 0.05;                             ///< D by which they are off their peaks
   int max_order = 12;                                     ///< bodies of more folds are nearly round to a scan
   int round_rotations = 10;                               ///< rotations that represent all, besides small ones
@@ -35,12 +33,10 @@ struct ScanAxisRules {
   std::size_t max_planes_of_axes = 8;                     ///< planes whose common lines are starts
   double plane_share = 0.85;                              ///< share of such planes
   double same_axis_angle = 0.12, same_axis_offset = 0.1;  ///< no body has two axes nearer
-  double fitted_angle = 0.02, fitted_offset = 0.02;       ///< lines within both are judged once
+  double fitted_same = 0.02;                              ///< radians and radii, within which lines are judged once
   std::size_t max_axes = 5;                               ///< axes; a polyhedron seen from a corner shows as many
-  int max_points = 10'000;                                ///< points that rotations are judged by
   int scored_planes = 4;                                  ///< that D of a round body is the mean of
   int num_samples = 1000, num_few_samples = 300;          ///< points that judge a rotation exactly, and roughly
-  double far_tolerances = 10.0;                           ///< tolerances, as ObjectSymmetryOptions::max_feature
   using Widths = std::array<double, 6>;
   Widths fit_widths{8.0, 5.0, 3.0, 2.0, 1.5, 1.5};        ///< of the weights of a fit, tolerances
   Widths close_fit_widths{3.0, 2.0, 1.5, 1.0, 0.7, 0.7};  ///< the same, from a first fit on

@@ -15,6 +15,7 @@
 #include "core/geometry/point_samples.h"
 #include "core/geometry/surface_normals.h"
 #include "pcl_symmetry/core/axial_transform.h"
+#include "pcl_symmetry/core/rotational_symmetry.h"
 
 namespace pcl_symmetry {
 
@@ -26,9 +27,8 @@ struct AxisStart {
   int fold;
 };
 
-constexpr MergeTolerance kSameStart{kScanAxes.same_start_angle, kScanAxes.same_start_offset},
-    kSameCoarsely{kScanAxes.coarse_angle, kScanAxes.coarse_distance},
-    kSameFitted{kScanAxes.fitted_angle, kScanAxes.fitted_offset},
+constexpr MergeTolerance kSameCoarsely{kScanAxes.coarsely_same, kScanAxes.coarsely_same},
+    kSameFitted{kScanAxes.fitted_same, kScanAxes.fitted_same},
     kSameAxis{kScanAxes.same_axis_angle, kScanAxes.same_axis_offset};
 
 double missAt(const Line3d& line, const Eigen::Vector3d& x, const Eigen::Vector3d& normal) {
@@ -71,7 +71,7 @@ std::vector<AxisStart> startsFromNormals(const NormalizedCloud& cloud, std::uint
     const std::vector<int> inliers = inliersOf(line);
     if (inliers.empty()) break;
     const Line3d fitted = axisOfNormals(cloud.points, normals, inliers);
-    if (!kSameStart.anySame(starts, fitted, &AxisStart::line) && fitted.origin().norm() < 2.0)
+    if (!kSameMaximum.anySame(starts, fitted, &AxisStart::line) && fitted.origin().norm() < 2.0)
       starts.push_back({fitted, 0});
   }
   return starts;
@@ -277,10 +277,12 @@ std::vector<SymmetryRotation> rotationsOfScan(const PointsRef& points, const Gau
                                               const ScanAxesOptions& options, const MakeSearch& make_search) {
   if (!whyUnanswerable(points).empty()) return {};
   const Points distinct = DistinctPoints(points).points;
-  const Points used = pointsAt(distinct, drawSamples(distinct.cols(), kScanAxes.max_points, options.seed));
+  const Points used =
+      pointsAt(distinct, drawSamples(distinct.cols(), ObjectSymmetryOptions().max_points, options.seed));
   const ClosestPointSearch::Ptr search = make_search ? inFrame(make_search(used), edt.center(), edt.radius()) : nullptr;
   const NormalizedCloud cloud(used, edt, search, &visibility, options.num_threads);
-  return scanAxes(RotationEvidence(cloud, kScanAxes.usual_tolerance * cloud.extent, options.seed), {}, axes, options);
+  return scanAxes(RotationEvidence(cloud, ObjectSymmetryOptions().tolerance * cloud.extent, options.seed), {}, axes,
+                  options);
 }
 
 std::vector<SymmetryAxis> withRoundAxes(const RotationEvidence& evidence, std::vector<SymmetryAxis> axes,
