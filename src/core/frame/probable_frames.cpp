@@ -1,7 +1,7 @@
 #include "core/frame/probable_frames.h"
 
+#include <Eigen/Geometry>
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <functional>
 #include <limits>
@@ -38,16 +38,6 @@ std::vector<Eigen::Vector2f> convexHull(std::vector<Eigen::Vector2f> points) {
   }
   return hull;
 }
-
-struct Extent {
-  float low = std::numeric_limits<float>::infinity(), high = -std::numeric_limits<float>::infinity();
-
-  void add(float value) {
-    low = std::min(low, value);
-    high = std::max(high, value);
-  }
-  float length() const { return std::max(high - low, 0.0f); }
-};
 
 /// The angle within 90 degrees at which a measure is greatest.
 double angleOfGreatest(const std::function<double(double)>& measure) {
@@ -106,23 +96,22 @@ double Outline::angleOf(const Eigen::Vector3f& vector) const {
 
 Outline::Box Outline::boxAt(double angle) const {
   const float c = static_cast<float>(std::cos(angle)), s = static_cast<float>(std::sin(angle));
-  const std::array<Eigen::Vector2f, 2> sides{Eigen::Vector2f(c, s), Eigen::Vector2f(-s, c)};
-  std::array<Extent, 2> extents;
-  for (const Eigen::Vector2f& corner : corners_)
-    for (std::size_t k = 0; k < 2; ++k) extents[k].add(sides[k].dot(corner));
-  const float longer = std::max(extents[0].length(), extents[1].length());
-  const float touch = static_cast<float>(kFrame.touch) * longer;
+  Eigen::Matrix2f sides;
+  sides << c, s, -s, c;
+  Eigen::AlignedBox2f around;
+  for (const Eigen::Vector2f& corner : corners_) around.extend(Eigen::Vector2f(sides * corner));
+  const float longer = around.sizes().maxCoeff(), touch = static_cast<float>(kFrame.touch) * longer;
   Box box;
-  box.area = static_cast<double>(extents[0].length()) * extents[1].length();
+  box.area = static_cast<double>(around.sizes()[0]) * around.sizes()[1];
   if (!(longer > 0.0f)) return box;
-  for (std::size_t k = 0; k < 2; ++k) {
-    Extent low, high;  // along the other side
+  for (int k = 0; k < 2; ++k) {
+    Eigen::AlignedBox2f low, high;  // around the corners that touch either side
     for (const Eigen::Vector2f& corner : corners_) {
-      const float depth = sides[k].dot(corner), along = sides[1 - k].dot(corner);
-      if (depth <= extents[k].low + touch) low.add(along);
-      if (depth >= extents[k].high - touch) high.add(along);
+      const Eigen::Vector2f x = sides * corner;
+      if (x[k] <= around.min()[k] + touch) low.extend(x);
+      if (x[k] >= around.max()[k] - touch) high.extend(x);
     }
-    box.contact = std::max<double>(box.contact, std::max(low.length(), high.length()) / longer);
+    box.contact = std::max<double>(box.contact, std::max(low.sizes()[1 - k], high.sizes()[1 - k]) / longer);
   }
   return box;
 }
