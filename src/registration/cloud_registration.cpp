@@ -291,8 +291,7 @@ CloudRegistration registerClouds(const Points& source, const std::optional<Visib
       judged.front().confidence < kRegistration.min_confidence) {
     const std::vector<RankedPose> of_parts = posesOfParts(clouds, inner);
     poses.insert(poses.end(), of_parts.begin(), of_parts.end());
-    const std::size_t size = poses.size();
-    poses = distinctPoses(std::move(poses), size);
+    poses = distinctPoses(std::move(poses));
     judged = judgedPoses(clouds, poses, std::numeric_limits<double>::infinity());
     done("parts");
   }

@@ -8,8 +8,10 @@
 #include <cmath>
 #include <utility>
 
+#include "core/base/symmetric_solvers.h"
 #include "core/geometry/point_samples.h"
 #include "core/registration/pose_scoring.h"
+#include "core/registration/registration_rules.h"
 
 namespace pcl_symmetry {
 
@@ -19,13 +21,12 @@ using NormalCloud = pcl::PointCloud<pcl::PointNormal>;
 
 struct PoseRefinementRules {
   int refined_points = 1000;  ///< of the scan, that ICP uses
-  int judged_points = 3000;   ///< of each cloud in the last comparison
   double reach = 4.0;         ///< accuracies, in which ICP looks for its first pairs
   double min_reach = 0.08;    ///< radii
   double min_width = 0.015;   ///< radii, of the Gaussian of the last comparison; otherwise it is the accuracy
   double hopeless = 0.2;      ///< merit behind the best pose at which poses are not refined
   /// Pairs that fix a motion of six unknowns; with fewer, PCL's ICP says so on stderr.
-  std::size_t min_pairs = 6;
+  std::size_t min_pairs = WeightedProducts::kLast;
 };
 constexpr PoseRefinementRules kPoseRefinement;
 
@@ -123,7 +124,7 @@ Eigen::Isometry3d SearchFrames::toInput(const Eigen::Isometry3d& T_target_source
 
 PoseScore lastScore(const PosedSurface& scan, const PosedSurface& model, const Eigen::Isometry3d& T_model_scan) {
   const double width = std::max({kPoseRefinement.min_width, scan.accuracy, model.accuracy});
-  return PoseScorer(scan, model).score(T_model_scan, {kPoseRefinement.judged_points, width, true});
+  return PoseScorer(scan, model).score(T_model_scan, {kRegistration.evidence_points, width, true});
 }
 
 std::vector<RankedPose> refinePoses(const PosedSurface& scan, const PosedSurface& model,
@@ -139,8 +140,7 @@ std::vector<RankedPose> refinePoses(const PosedSurface& scan, const PosedSurface
     const RankedPose after = judged(icp.refined(pose.T_model_scan), kPoseRefinement.refined_points);
     refined.push_back(after.score.merit() > before.score.merit() ? after : before);
   }
-  const std::size_t size = refined.size();
-  return distinctPoses(std::move(refined), size);
+  return distinctPoses(std::move(refined));
 }
 
 }  // namespace pcl_symmetry

@@ -88,11 +88,14 @@ inline Eigen::Matrix3d rotationBy(const Eigen::Vector3d& rotation_vector) {
   return Eigen::AngleAxisd(angle, rotation_vector / angle).toRotationMatrix();
 }
 
-inline Eigen::Isometry3d motionBy(const Vector6d& motion) {
-  Eigen::Isometry3d result = Eigen::Isometry3d::Identity();
-  result.linear() = rotationBy(motion.head<3>());
-  result.translation() = motion.tail<3>();
+inline Eigen::Isometry3d isometry(const Eigen::Matrix3d& rotation, const Eigen::Vector3d& translation) {
+  Eigen::Isometry3d result(rotation);
+  result.translation() = translation;
   return result;
+}
+
+inline Eigen::Isometry3d motionBy(const Vector6d& motion) {
+  return isometry(rotationBy(motion.head<3>()), motion.tail<3>());
 }
 
 }  // namespace pcl_symmetry

@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "core/base/constants.h"
+#include "core/base/symmetric_solvers.h"
 
 namespace pcl_symmetry {
 
@@ -136,10 +137,7 @@ int revolutionAxis(const FrameEvidence& evidence, const FrameCandidate& frame) {
 }
 
 Eigen::Isometry3d canonicalPose(const Eigen::Matrix3d& axes, const Eigen::Vector3d& center) {
-  Eigen::Isometry3d T_canonical_input = Eigen::Isometry3d::Identity();
-  T_canonical_input.linear() = axes.transpose();
-  T_canonical_input.translation() = -axes.transpose() * center;
-  return T_canonical_input;
+  return isometry(axes.transpose(), -axes.transpose() * center);
 }
 
 void addWithSigns(const Eigen::Matrix3d& axes, const Eigen::Vector3d& center, std::vector<Eigen::Isometry3d>& poses) {

@@ -6,6 +6,7 @@
 
 #include "core/base/statistics.h"
 #include "core/detection/plane_decision.h"
+#include "core/base/symmetric_solvers.h"
 #include "core/frame/canonical_frame.h"
 #include "core/frame/frame_evidence.h"
 #include "core/geometry/geometry_rules.h"
@@ -20,9 +21,8 @@ namespace {
 /// Moves all of a frame as its center and axes move.
 /// \param axes right-handed.
 void moveTo(const Eigen::Vector3d& center, const Eigen::Matrix3d& axes, SymmetryFrame& frame) {
-  Eigen::Isometry3d motion = Eigen::Isometry3d::Identity();  // of the frame
-  motion.linear() = axes * frame.axes.transpose();
-  motion.translation() = center - motion.linear() * frame.center;
+  const Eigen::Matrix3d rotation = axes * frame.axes.transpose();
+  const Eigen::Isometry3d motion = isometry(rotation, center - rotation * frame.center);  // of the frame
   frame.axes = axes;
   frame.center = center;
   frame.T_canonical_input = frame.T_canonical_input * motion.inverse();

@@ -3,9 +3,10 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numeric>
 #include <sstream>
 
-#include "core/evidence/surface_samples.h"
+#include "core/base/statistics.h"
 #include "core/registration/registration_fit.h"
 #include "core/registration/registration_rules.h"
 #include "core/registration/visible_points.h"
@@ -45,11 +46,6 @@ Overlap overlapOf(const Landing& landing, const PosedSurface& to, double toleran
   return overlap;
 }
 
-/// A disc about a point of a surface, as wide as points are apart there.
-SurfaceDisc discAt(const PosedSurface& surface, int i) {
-  return {surface.points.col(i), surface.normals.col(i), surface.spacing[i]};
-}
-
 /// What a scanner should have measured of a surface and did not.
 struct NotMeasured {
   double contradicted = 0.0, missing = 0.0;  ///< see PoseEvidence
@@ -64,7 +60,7 @@ NotMeasured notMeasured(const PosedSurface& surface, const PosedSurface& scan, c
   int num_judged = 0;
   for (const VisiblePoint& point :
        visiblePoints(surface, scan, T_scan_surface, static_cast<int>(on_scan.images.cols()), true)) {
-    const SurfaceDisc closest = discAt(scan, on_scan.closest[point.index]);
+    const SurfaceDisc closest = scan.disc(on_scan.closest[point.index]);
     const double distance = std::sqrt(closest.sqDistance(on_scan.images.col(point.index)));
     const bool is_measured = std::min(std::abs(point.height), distance) < tolerance;
     if (!is_measured && point.height < 0.0) continue;  // behind what was measured: nothing is known
@@ -84,7 +80,7 @@ double shareOnSurface(const Landing& landing, const PosedSurface& to) {
   const auto size = static_cast<double>(landing.images.cols());
   double sum = 0.0;
   for (Eigen::Index i = 0; i < landing.images.cols(); ++i) {
-    const float sq_distance = discAt(to, landing.closest[i]).sqDistance(landing.images.col(i));
+    const float sq_distance = to.disc(landing.closest[i]).sqDistance(landing.images.col(i));
     sum += std::exp(static_cast<float>(-1.0 / (width * width)) * sq_distance);
   }
   // Three standard errors of a share, at most half over the root of the number of points.
@@ -98,7 +94,7 @@ std::vector<float> discDistances(const PosedSurface& from, const PosedSurface& t
   const Landing landing = land(from, to, T_to_from, num_points, true);
   std::vector<float> distances;
   for (Eigen::Index i = 0; i < landing.images.cols(); ++i)
-    distances.push_back(std::sqrt(discAt(to, landing.closest[i]).sqDistance(landing.images.col(i))));
+    distances.push_back(std::sqrt(to.disc(landing.closest[i]).sqDistance(landing.images.col(i))));
   return distances;
 }
 
@@ -160,10 +156,9 @@ double poseConfidence(const PoseEvidence& evidence) {
       std::log(evidence.missing + 0.1),
       std::log(std::clamp(evidence.noise, kRegistration.min_noise, kRegistration.max_noise) / 0.001 + 0.5),
       std::abs(std::log(evidence.size_ratio))};
-  double log_odds = 0.0;
-  for (std::size_t k = 0; k < terms.size(); ++k) log_odds += kRegistrationFit[k] * terms[k];
+  const double log_odds = std::inner_product(terms.begin(), terms.end(), kRegistrationFit.begin(), 0.0);
   // Where surfaces face each other, most of them have to agree, whatever else speaks for the pose.
-  return std::min(1.0 / (1.0 + std::exp(-log_odds)), evidence.agreement) * evidence.uniqueness;
+  return std::min(logistic(log_odds), evidence.agreement) * evidence.uniqueness;
 }
 
 }  // namespace pcl_symmetry

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/evidence/surface_samples.h"
 #include "core/registration/pose_covariance.h"
 #include "core/registration/registration_rules.h"
 
@@ -23,9 +22,8 @@ float nearness(const Landing& landing, Eigen::Index i, const PosedSurface& to, d
 
 /// The Gaussian of the distance of a match from the disc about its closest point: flat, as wide as points are apart.
 float nearnessOfSurface(const Landing& landing, Eigen::Index i, const PosedSurface& to, double width) {
-  const int j = landing.closest[i];
-  const SurfaceDisc disc{to.points.col(j), to.normals.col(j), to.spacing[j]};
-  return std::exp(static_cast<float>(-1.0 / (width * width)) * disc.sqDistance(landing.images.col(i)));
+  const float sq_distance = to.disc(landing.closest[i]).sqDistance(landing.images.col(i));
+  return std::exp(static_cast<float>(-1.0 / (width * width)) * sq_distance);
 }
 
 /// Share of a point's support that its normal leaves it: 1 where it is parallel to that of the closest point.

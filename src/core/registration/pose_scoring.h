@@ -2,6 +2,7 @@
 
 #include <Eigen/Geometry>
 #include <cstddef>
+#include <limits>
 #include <vector>
 
 #include "core/registration/posed_surface.h"
@@ -62,7 +63,8 @@ struct RankedPose {
 std::vector<RankedPose> firstDistinct(const std::vector<RankedPose>& poses, std::size_t most, double radius = 1.0);
 
 /// The poses of greatest merit, at most \p most, that differ from all better ones.
-std::vector<RankedPose> distinctPoses(std::vector<RankedPose> poses, std::size_t most, double radius = 1.0);
+std::vector<RankedPose> distinctPoses(std::vector<RankedPose> poses,
+                                      std::size_t most = std::numeric_limits<std::size_t>::max(), double radius = 1.0);
 
 /// A few distinct poses of greatest merit (Section 5.1). Evenly spread rotations are screened by merit. The best of
 /// them and all hypotheses are improved coarsely, the best of those finely, by Gauss-Newton steps with a shrinking

@@ -86,9 +86,9 @@ std::vector<RankedPose> searchPoses(const PosedSurface& scan, const PosedSurface
   const auto improve = [&](const PoseImprovement& how) {
     parallelBlocks(poses.size(), options.num_threads, [&](std::size_t i) { poses[i].improve(scorer, how); });
   };
-  improve({rules.coarse_steps, rules.coarse_points, rules.coarse_width, middle_width});
+  improve({rules.num_steps, rules.coarse_points, rules.coarse_width, middle_width});
   poses = distinctPoses(std::move(poses), options.num_refined);
-  improve({rules.fine_steps, rules.fine_points, middle_width, rules.fine_width});
+  improve({rules.num_steps, rules.fine_points, middle_width, rules.fine_width});
   return distinctPoses(std::move(poses), options.max_poses);
 }
 

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "core/base/constants.h"
+#include "core/base/symmetric_solvers.h"
 #include "core/geometry/directions.h"
 #include "core/registration/registration_rules.h"
 
@@ -54,15 +55,12 @@ PoseStarts::PoseStarts(const PosedSurface& scan, const PosedSurface& model)
 }
 
 Eigen::Isometry3d PoseStarts::pose(const Eigen::Matrix3d& R_model_scan) const {
-  Eigen::Isometry3d T_model_scan = Eigen::Isometry3d::Identity();
-  T_model_scan.linear() = R_model_scan;
   Eigen::Vector3d anchor = model_anchor_;
   if (from_outline_) {
     const Eigen::Matrix3d R_scanner_model = R_scanner_scan_ * R_model_scan.transpose();
     anchor = R_scanner_model.transpose() * anchorOf(R_scanner_model * model_);
   }
-  T_model_scan.translation() = anchor - R_model_scan * scan_anchor_;
-  return T_model_scan;
+  return isometry(R_model_scan, anchor - R_model_scan * scan_anchor_);
 }
 
 namespace {

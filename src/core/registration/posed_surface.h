@@ -34,6 +34,9 @@ struct PosedSurface {
   /// A surface of a few points in random order, whose normals are known, for poses that are judged coarsely: the grid
   /// of closest points is coarser, and there are no search, borders, spacing and accuracy, which exact judgments need.
   PosedSurface(const PointsRef& points, const PointsRef& normals, std::optional<Visibility> seen);
+
+  /// About a point, as wide as points are apart there.
+  SurfaceDisc disc(int i) const { return {points.col(i), normals.col(i), spacing[i]}; }
 };
 
 /// Where the first points of a surface land on another, in its frame.

@@ -28,8 +28,7 @@ struct RegistrationRules {
   int fine_points = 400;    ///< that poses are improved finely by
   /// Radii, width of the Gaussian: half the gap between 1000 rotations at the rim, and as much for the positions.
   double screen_width = 0.2;
-  int coarse_steps = 10;        ///< over which the Gaussian shrinks
-  int fine_steps = 10;          ///< the same
+  int num_steps = 10;           ///< over which the Gaussian shrinks, coarsely and finely
   int outline_points = 200;     ///< of the model
   double coarse_width = 0.25;   ///< radii, width of the Gaussian at the start
   double fine_width = 0.05;     ///< radii, at the end
@@ -69,7 +68,7 @@ struct RegistrationRules {
   double max_roughness = 0.15;   ///< of the spacing; rougher surfaces take normals from more neighbors
   int num_rough_neighbors = 32;  ///< they halve the error of the normals
   int cells = 48;                ///< along each side of the grid of closest points
-  int few_cells = 24;            ///< the same for few points, as wide as a thousand points of a surface are apart
+  int few_cells = cells / 2;     ///< the same for few points, as wide as a thousand points of a surface are apart
 };
 
 inline constexpr RegistrationRules kRegistration{};

@@ -12,6 +12,7 @@
 #include "core/base/check.h"
 #include "core/base/constants.h"
 #include "core/base/statistics.h"
+#include "core/base/symmetric_solvers.h"
 #include "core/rotation/rotation_cover.h"
 #include "pcl_symmetry/core/rotational_symmetry.h"
 
@@ -35,10 +36,7 @@ Eigen::Isometry3d motionAbout(const ContinuousSymmetry& symmetry, double angle) 
 /// The pose with a given rotation that puts the center where another pose puts it.
 Eigen::Isometry3d withRotation(const Eigen::Isometry3d& T, const Eigen::Matrix3d& rotation,
                                const Eigen::Vector3d& center) {
-  Eigen::Isometry3d result = Eigen::Isometry3d::Identity();
-  result.linear() = rotation;
-  result.translation() = T * center - rotation * center;
-  return result;
+  return isometry(rotation, T * center - rotation * center);
 }
 
 /// The traces of M C for the rotations C by phi about an axis: along + swing cos(phi - angle).

@@ -6,6 +6,7 @@
 
 #include "core/base/check.h"
 #include "core/base/constants.h"
+#include "core/base/symmetric_solvers.h"
 #include "core/rotation/placed_group.h"
 
 namespace pcl_symmetry {
@@ -35,10 +36,7 @@ Eigen::Matrix3d rotationAbout(const Eigen::Vector3d& axis, double angle) {
 }
 
 Eigen::Isometry3d motionFixing(const Eigen::Vector3d& center, const Eigen::Matrix3d& rotation) {
-  Eigen::Isometry3d motion = Eigen::Isometry3d::Identity();
-  motion.linear() = rotation;
-  motion.translation() = center - rotation * center;
-  return motion;
+  return isometry(rotation, center - rotation * center);
 }
 
 Eigen::Vector3d signedDirection(const Eigen::Vector3d& direction) {
