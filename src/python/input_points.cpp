@@ -92,7 +92,7 @@ InputPoints::InputPoints(const char* name, const py::array& array, std::size_t m
     if (drawn.empty() || position == drawn[rows_.size()]) rows_.push_back(row);
     ++position;
   }
-  copied_.resize(3, static_cast<Eigen::Index>(rows_.size()));
+  copied_.resize(3, rows_.size());
   for (std::size_t i = 0; i < rows_.size(); ++i)
     for (int k = 0; k < 3; ++k) copied_(k, static_cast<Eigen::Index>(i)) = value(static_cast<py::ssize_t>(rows_[i]), k);
   if (rows_.size() == num_rows_) rows_.clear();
@@ -117,14 +117,14 @@ std::vector<std::vector<int>> polygonsOf(const py::object& all) {
                                 ", must be (F, 3), indices into the vertices");
   const py::array_t<double, py::array::forcecast> rows(faces);
   const auto index = rows.unchecked<2>();
-  std::vector<std::vector<int>> polygons(static_cast<std::size_t>(faces.shape(0)));
+  std::vector<std::vector<int>> polygons(faces.shape(0));
   for (py::ssize_t i = 0; i < faces.shape(0); ++i)
     for (py::ssize_t k = 0; k < faces.shape(1); ++k) {
       const double corner = index(i, k);
       if (!(corner >= 0.0 && corner <= std::numeric_limits<int>::max() && corner == std::floor(corner)))
         throw std::invalid_argument("faces: " + py::str(py::float_(corner)).cast<std::string>() +
                                     ", must be an index of a vertex");
-      polygons[static_cast<std::size_t>(i)].push_back(static_cast<int>(corner));
+      polygons[i].push_back(static_cast<int>(corner));
     }
   return polygons;
 }
@@ -143,7 +143,7 @@ Points InputPoints::atPoints(const char* name, const py::array& normals) const {
   const Rows rows(normals);
   const auto value = rows.unchecked<2>();
   const auto size = static_cast<std::size_t>(points().cols());
-  Points result(3, static_cast<Eigen::Index>(size));
+  Points result(3, size);
   for (std::size_t i = 0; i < size; ++i)
     for (int k = 0; k < 3; ++k)
       result(k, static_cast<Eigen::Index>(i)) = value(static_cast<py::ssize_t>(rows_.empty() ? i : rows_[i]), k);

@@ -314,10 +314,10 @@ std::pair<py::array_t<float>, std::vector<std::size_t>> complete(const AnyArray&
     const Computing computing;
     const PointsRef all = input.points();
     const std::vector<int> completing = completingPoints(all, plane, options, seen ? &*seen : nullptr);
-    added.resize(3, static_cast<Eigen::Index>(completing.size()));
+    added.resize(3, completing.size());
     for (std::size_t i = 0; i < completing.size(); ++i) {
       const auto source = static_cast<std::size_t>(completing[i]);
-      added.col(static_cast<Eigen::Index>(i)) = plane.reflect(all.col(completing[i]).cast<double>()).cast<float>();
+      added.col(i) = plane.reflect(all.col(completing[i]).cast<double>()).cast<float>();
       rows.push_back(input.rows().empty() ? source : input.rows()[source]);
     }
   }

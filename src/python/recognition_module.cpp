@@ -113,7 +113,7 @@ Cloud cloudOf(const py::array& points, const py::object& viewpoint = py::none())
     return cloud;
   }
   const PointsRef used = input.points();
-  cloud.reserve(static_cast<std::size_t>(used.cols()));
+  cloud.reserve(used.cols());
   for (Eigen::Index i = 0; i < used.cols(); ++i) cloud.emplace_back(used(0, i), used(1, i), used(2, i));
   return cloud;
 }

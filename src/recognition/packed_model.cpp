@@ -71,7 +71,7 @@ Eigen::MatrixXf unpackedSignatures(const std::string& bytes) {
 std::string packedViews(const std::vector<View>& views) {
   Eigen::MatrixXf columns(kPoseSize + kViewSignatureSize, static_cast<Eigen::Index>(views.size()));
   for (Eigen::Index i = 0; i < columns.cols(); ++i) {
-    const View& view = views[static_cast<std::size_t>(i)];
+    const View& view = views[i];
     const Eigen::Quaterniond rotation(view.T_view_input.linear());
     columns.col(i) << static_cast<float>(view.radius), rotation.coeffs().cast<float>(),
         view.T_view_input.translation().cast<float>(), view.values;

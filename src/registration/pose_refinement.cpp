@@ -44,7 +44,7 @@ NormalCloud::Ptr cloudOf(const PosedSurface& surface, const std::vector<int>& po
 /// Points that are spread over the scan.
 NormalCloud::Ptr fewPoints(const PosedSurface& scan) {
   const auto size = std::min<std::size_t>(scan.order.size(), kPoseRefinement.refined_points);
-  return cloudOf(scan, {scan.order.begin(), scan.order.begin() + static_cast<std::ptrdiff_t>(size)});
+  return cloudOf(scan, {scan.order.begin(), scan.order.begin() + size});
 }
 
 /// Pairs of closest points, all at once and by the search that the model has. PCL's own asks FLANN point by point: of a
@@ -56,7 +56,7 @@ public:
 
   void determineCorrespondences(pcl::Correspondences& pairs, double max_distance) override {
     const NormalCloud& scan = *getInputSource();
-    Points positions(3, static_cast<Eigen::Index>(scan.size()));
+    Points positions(3, scan.size());
     for (std::size_t i = 0; i < scan.size(); ++i) positions.col(i) = scan[i].getVector3fMap();
     pairs.clear();
     closest_.resize(scan.size(), -1);

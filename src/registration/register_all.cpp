@@ -40,11 +40,11 @@ constexpr RegisterAllRules kRegisterAll{};
 
 Points drawn(const Points& points, std::uint64_t seed) {
   if (points.cols() <= static_cast<Eigen::Index>(kRegisterAll.max_points)) return points;
-  Points few(3, static_cast<Eigen::Index>(kRegisterAll.max_points));
+  Points few(3, kRegisterAll.max_points);
   Eigen::Index i = 0;
   for (const std::size_t k :
        detail::drawOneOfEachRun(static_cast<std::size_t>(points.cols()), kRegisterAll.max_points, seed))
-    few.col(i++) = points.col(static_cast<Eigen::Index>(k));
+    few.col(i++) = points.col(k);
   return few;
 }
 
@@ -393,8 +393,7 @@ std::vector<ScanPoint> RegisteredScans::mergedPoints(const std::vector<ObjectSca
   for (std::size_t k = 0; k < input.size(); ++k) {
     if (!scans[k].left_out.empty()) continue;
     lookAtWatch();
-    all.middleCols(static_cast<Eigen::Index>(points.size()), input[k].points.cols()) =
-        scans[k].T_first_scan.cast<float>() * input[k].points;
+    all.middleCols(points.size(), input[k].points.cols()) = scans[k].T_first_scan.cast<float>() * input[k].points;
     for (Eigen::Index i = 0; i < input[k].points.cols(); ++i)
       points.push_back({static_cast<int>(k), static_cast<int>(i)});
   }

@@ -156,7 +156,7 @@ double heightOver(const Eigen::Vector4d& plane, const pcl::PointXYZ& point) {
 }
 
 Points pointsOf(const SymmetryScene::Cloud& scene, const pcl::Indices& indices) {
-  Points points(3, static_cast<Eigen::Index>(indices.size()));
+  Points points(3, indices.size());
   for (std::size_t i = 0; i < indices.size(); ++i) points.col(i) = scene[indices[i]].getVector3fMap();
   return points;
 }
@@ -164,7 +164,7 @@ Points pointsOf(const SymmetryScene::Cloud& scene, const pcl::Indices& indices) 
 SceneDistances sceneDistances(const SymmetryScene::Cloud& scene, const pcl::Indices& points) {
   const Points surface = pointsOf(scene, points);
   const std::size_t stride = 1 + (points.size() - 1) / kScene.scale_samples;
-  Points places(3, static_cast<Eigen::Index>((points.size() + stride - 1) / stride));
+  Points places(3, (points.size() + stride - 1) / stride);
   for (Eigen::Index i = 0; i < places.cols(); ++i) places.col(i) = surface.col(i * static_cast<Eigen::Index>(stride));
   const auto search = makeFlannSearch(surface);
   lookAtWatch();
@@ -172,7 +172,7 @@ SceneDistances sceneDistances(const SymmetryScene::Cloud& scene, const pcl::Indi
   std::vector<int> closest;
   std::vector<float> sq_distances;
   search->search(places, num_neighbors, closest, sq_distances);
-  std::vector<float> spacings(static_cast<std::size_t>(places.cols()));
+  std::vector<float> spacings(places.cols());
   for (std::size_t i = 0; i < spacings.size(); ++i)
     // As LocalGeometry::spacing: pi r^2 holds the neighbors within r.
     spacings[i] =

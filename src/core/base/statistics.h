@@ -27,7 +27,7 @@ void sortFalling(List& list, const Value& value) {
 /// \param values at least one.
 template <typename T>
 T median(std::vector<T> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  const auto middle = values.begin() + values.size() / 2;
   std::nth_element(values.begin(), middle, values.end());
   return *middle;
 }
@@ -46,8 +46,8 @@ T quantile(std::vector<T> values, double share) {
 /// \return the least and the greatest value that are left without the \p num_cut least and greatest.
 template <typename T>
 std::pair<T, T> trimmedExtent(std::vector<T> values, std::size_t num_cut) {
-  const auto low = values.begin() + static_cast<std::ptrdiff_t>(num_cut);
-  const auto high = values.end() - 1 - static_cast<std::ptrdiff_t>(num_cut);
+  const auto low = values.begin() + num_cut;
+  const auto high = values.end() - 1 - num_cut;
   std::nth_element(values.begin(), low, values.end());
   const T least = *low;
   std::nth_element(values.begin(), high, values.end());

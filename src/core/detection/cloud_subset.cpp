@@ -40,7 +40,7 @@ void spreadSupport(Detection& detection, const std::vector<int>& representative_
   const auto spread = [&](SymmetryPlane& plane) {
     std::vector<float> support(representative_of.size(), 0.0f);
     for (std::size_t i = 0; i < support.size(); ++i)
-      if (representative_of[i] >= 0) support[i] = plane.point_support[static_cast<std::size_t>(representative_of[i])];
+      if (representative_of[i] >= 0) support[i] = plane.point_support[representative_of[i]];
     plane.point_support = std::move(support);
   };
   for (SymmetryPlane& plane : detection.planes) spread(plane);
@@ -71,8 +71,7 @@ std::vector<int> evenlyDense(const NormalizedCloud& cloud, std::uint64_t seed) {
   squares.diagonal().array() += 1e-9 * squares.trace();  // the points of a plane have no slope across it
   const Eigen::Vector3d slope = solveSymmetric(squares, pull).head<3>();
   std::vector<double> along(samples.size());
-  for (std::size_t i = 0; i < samples.size(); ++i)
-    along[i] = slope.dot(at.col(static_cast<Eigen::Index>(i)).cast<double>());
+  for (std::size_t i = 0; i < samples.size(); ++i) along[i] = slope.dot(at.col(i).cast<double>());
   const double low = quantile(along, kDetection.points.trimmed),
                high = quantile(along, 1.0 - kDetection.points.trimmed);
   const double strength = std::clamp(

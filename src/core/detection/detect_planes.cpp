@@ -195,8 +195,7 @@ Detection detectOnEvenSubset(const NormalizedCloud& cloud, const Points& input, 
 /// The normals of the distinct points: where copies differ, that of the last copy.
 Points normalsOf(const DistinctPoints& distinct, const Points& normals) {
   Points result(3, distinct.points.cols());
-  for (std::size_t i = 0; i < distinct.index_of.size(); ++i)
-    result.col(distinct.index_of[i]) = normals.col(static_cast<Eigen::Index>(i));
+  for (std::size_t i = 0; i < distinct.index_of.size(); ++i) result.col(distinct.index_of[i]) = normals.col(i);
   return result;
 }
 

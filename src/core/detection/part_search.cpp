@@ -285,7 +285,7 @@ std::vector<SymmetricPart> withoutRemains(std::vector<SymmetricPart> parts, Eige
   std::stable_sort(parts.begin(), parts.end(), [](const SymmetricPart& a, const SymmetricPart& b) {
     return std::max(0.0, a.longer_edge) < std::max(0.0, b.longer_edge);
   });
-  std::vector<char> taken(static_cast<std::size_t>(num_points), 0);
+  std::vector<char> taken(num_points, 0);
   std::vector<SymmetricPart> kept;
   for (SymmetricPart& part : parts) {
     const auto num_taken = std::count_if(part.points.begin(), part.points.end(), [&](int i) { return taken[i] != 0; });

@@ -183,7 +183,7 @@ MeasuredPlane PlaneMeasure::measured(const ReflectionPlane& plane, const std::ve
   std::vector<float> moved;  // distances of the samples whose position is informative: of scans those that move
   for (std::size_t i = 0; i < size; ++i) {
     matched[i] = landing.distances[i] <= tolerance_;
-    const Eigen::Vector3d x = landing.images.col(static_cast<Eigen::Index>(i)).cast<double>();
+    const Eigen::Vector3d x = landing.images.col(i).cast<double>();
     is_moved[i] =
         !cloud_.seen() || 2.0 * std::abs(plane.signedDistance(x)) > kDetection.measure.moved_tolerances * tolerance_;
     if (is_moved[i]) moved.push_back(landing.distances[i]);

@@ -340,9 +340,9 @@ Detection detectVolumePlanes(const ScalarGrid& input, const DetectionOptions& op
     for (SymmetryPlane& plane : planes) {
       double level = chance;
       if (confidence(plane, level) >= options.min_possible) {
-        std::vector<double> distances(static_cast<std::size_t>(body.cols()));
+        std::vector<double> distances(body.cols());
         for (std::size_t i = 0; i < distances.size(); ++i)
-          distances[i] = std::abs(plane.signedDistance(body.col(static_cast<Eigen::Index>(i)).cast<double>()));
+          distances[i] = std::abs(plane.signedDistance(body.col(i).cast<double>()));
         level = std::clamp(few.translated(plane, std::move(distances), stride), chance, 0.999);
       }
       // The best plane shows how alike halves are at this noise. A body that is nearly an ellipsoid has others, which

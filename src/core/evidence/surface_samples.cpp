@@ -43,7 +43,7 @@ SurfaceDiscs::SurfaceDiscs(const Points& samples, const LocalGeometry& geometry,
   first_.assign(static_cast<std::size_t>(size_.prod()) + 1, 0);
   for (const SurfaceDisc& disc : discs_) visitCells(disc, [&](std::size_t cell) { ++first_[cell + 1]; });
   for (std::size_t cell = 1; cell < first_.size(); ++cell) first_[cell] += first_[cell - 1];
-  entries_.resize(static_cast<std::size_t>(first_.back()));
+  entries_.resize(first_.back());
   std::vector<int> next = first_;
   for (std::size_t i = 0; i < discs_.size(); ++i)
     visitCells(discs_[i], [&](std::size_t cell) { entries_[next[cell]++] = static_cast<int>(i); });
@@ -271,7 +271,7 @@ std::vector<std::vector<float>> planeSupport(const PointsRef& points, const Poin
             ((planes[k].reflect(points.col(begin + i).cast<double>()) - ball.center) / ball.radius).cast<float>();
       const PointEvidence part = pointEvidence(reflected, reflectedNormals(normals, planes[k]),
                                                search->closest(reflected), described, nullptr);
-      std::copy(part.support.begin(), part.support.end(), support[k].begin() + static_cast<std::ptrdiff_t>(begin));
+      std::copy(part.support.begin(), part.support.end(), support[k].begin() + begin);
     }
   });
   return support;

@@ -127,7 +127,7 @@ double FrameEvidence::spreadAlong(const Eigen::Vector3f& axis) const {
 }
 
 double FrameEvidence::middleAlong(const Eigen::Vector3f& axis) const {
-  std::vector<float> t(static_cast<std::size_t>(points.cols()));
+  std::vector<float> t(points.cols());
   for (std::size_t i = 0; i < t.size(); ++i) t[i] = axis.dot(toCells(points.col(i).cast<double>()));
   const auto tail = static_cast<std::size_t>(kFrame.tail * static_cast<double>(t.size() - 1));
   const auto [low, high] = trimmedExtent(std::move(t), tail);

@@ -81,7 +81,7 @@ double contactOf(const Outline& outline, const FrameCandidate& frame) {
 Outline::Outline(const PointsRef& points, const Eigen::Vector3f& along)
     : u_(along.unitOrthogonal()), v_(along.cross(u_)) {
   std::vector<Eigen::Vector2f> seen;
-  seen.reserve(static_cast<std::size_t>(points.cols()));
+  seen.reserve(points.cols());
   for (Eigen::Index i = 0; i < points.cols(); ++i) seen.emplace_back(u_.dot(points.col(i)), v_.dot(points.col(i)));
   corners_ = convexHull(std::move(seen));
 }

@@ -60,7 +60,7 @@ SymmetryFrame publishedFrame(const PointsRef& points, const FrameOptions& option
     const double angle = kPi * static_cast<double>(i) / grid.numPhi();
     return std::cos(angle) * u + std::sin(angle) * v;
   };
-  std::vector<OffsetAndScore> perpendicular(static_cast<std::size_t>(grid.numPhi()));
+  std::vector<OffsetAndScore> perpendicular(grid.numPhi());
   parallelBlocks(perpendicular.size(), options.num_threads,
                  [&](std::size_t i) { perpendicular[i] = best_offset(turned(i)); });
   const auto second =

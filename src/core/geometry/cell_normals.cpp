@@ -75,10 +75,10 @@ private:
 CellNormals cellNormals(const PointsRef& points, const Eigen::Vector3d& origin, double cell_size, int num_cells) {
   CellMoments cells(num_cells);
   CellNormals result;
-  result.cell_of_points.resize(static_cast<std::size_t>(points.cols()));
+  result.cell_of_points.resize(points.cols());
   for (Eigen::Index i = 0; i < points.cols(); ++i)
     result.cell_of_points[i] = cells.add((points.col(i).cast<double>() - origin) / cell_size);
-  result.normals.resize(3, static_cast<Eigen::Index>(cells.numOccupied()));
+  result.normals.resize(3, cells.numOccupied());
   result.flatness.setZero(result.normals.cols());
   for (std::size_t c = 0; c < cells.numOccupied(); ++c) {
     const auto column = static_cast<Eigen::Index>(c);

@@ -17,13 +17,12 @@ namespace {
 /// Distances of points from the middle of most of them.
 std::vector<float> distancesFromMiddle(const PointsRef& points) {
   Eigen::Vector3f middle;
-  std::vector<float> values(static_cast<std::size_t>(points.cols()));
+  std::vector<float> values(points.cols());
   for (int axis = 0; axis < 3; ++axis) {
     for (std::size_t i = 0; i < values.size(); ++i) values[i] = points(axis, static_cast<Eigen::Index>(i));
     middle[axis] = quantile(values, 0.5);
   }
-  for (std::size_t i = 0; i < values.size(); ++i)
-    values[i] = (points.col(static_cast<Eigen::Index>(i)) - middle).norm();
+  for (std::size_t i = 0; i < values.size(); ++i) values[i] = (points.col(i) - middle).norm();
   return values;
 }
 

@@ -19,7 +19,7 @@ namespace pcl_symmetry {
 
 /// \return 0, 1, ..., size - 1.
 inline std::vector<int> allOf(Eigen::Index size) {
-  std::vector<int> samples(static_cast<std::size_t>(size));
+  std::vector<int> samples(size);
   std::iota(samples.begin(), samples.end(), 0);
   return samples;
 }
@@ -55,7 +55,7 @@ inline std::vector<std::size_t> oneOfEachRun(std::size_t size, std::size_t num_d
 
 /// \return 3 x samples.size(), the points with these indices.
 inline Points pointsAt(const PointsRef& points, const std::vector<int>& samples) {
-  Points chosen(3, static_cast<Eigen::Index>(samples.size()));
+  Points chosen(3, samples.size());
   for (std::size_t i = 0; i < samples.size(); ++i) chosen.col(i) = points.col(samples[i]);
   return chosen;
 }
@@ -130,7 +130,7 @@ inline std::vector<int> firstCopies(const PointsRef& points) {
     }
     return result;
   };
-  std::vector<int> first(static_cast<std::size_t>(points.cols()));
+  std::vector<int> first(points.cols());
   std::size_t num_slots = 1;
   while (num_slots < 2 * first.size()) num_slots *= 2;
   std::vector<int> first_of_slot(num_slots, -1);

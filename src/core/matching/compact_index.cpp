@@ -38,8 +38,8 @@ float typicalDistance(std::vector<float> distances, std::size_t num_nearest) {
                   distances.end());
   const std::size_t count = std::min(num_nearest, distances.size());
   if (count == 0) return 1.0f;
-  std::partial_sort(distances.begin(), distances.begin() + static_cast<std::ptrdiff_t>(count), distances.end());
-  const float sum = std::accumulate(distances.begin(), distances.begin() + static_cast<std::ptrdiff_t>(count), 0.0f);
+  std::partial_sort(distances.begin(), distances.begin() + count, distances.end());
+  const float sum = std::accumulate(distances.begin(), distances.begin() + count, 0.0f);
   return std::max(sum / static_cast<float>(count), std::numeric_limits<float>::min());
 }
 
@@ -49,7 +49,7 @@ CompactIndex::CompactIndex(Eigen::MatrixXf compact, int forms_per_shape, const C
   check(forms_per_shape >= 1, "forms_per_shape", forms_per_shape, ">= 1");
   check(compact_.cols() % forms_per_shape == 0, "number of compact forms", compact_.cols(),
         "a multiple of those of a shape");
-  if (typical_.empty()) typical_.assign(static_cast<std::size_t>(numShapes()), 1.0f);
+  if (typical_.empty()) typical_.assign(numShapes(), 1.0f);
   check(typical_.size() == static_cast<std::size_t>(numShapes()), "number of typical distances",
         static_cast<double>(typical_.size()), "that of the shapes");
   for (const float distance : typical_) check(distance > 0.0f, "typical distance", distance, "> 0");
@@ -62,7 +62,7 @@ Eigen::Index CompactIndex::numShapes() const {
 
 /// The forms whose leading components are nearest to those of any rotation of the query, by rising index.
 std::vector<int> CompactIndex::candidates(const Eigen::MatrixXf& rotations, std::size_t count) const {
-  std::vector<int> forms(static_cast<std::size_t>(compact_.cols()));
+  std::vector<int> forms(compact_.cols());
   std::iota(forms.begin(), forms.end(), 0);
   if (count >= forms.size()) return forms;
   // -1/2 of the squared distance to the nearest rotation, scaled.
@@ -70,7 +70,7 @@ std::vector<int> CompactIndex::candidates(const Eigen::MatrixXf& rotations, std:
   const Eigen::VectorXf sq_norms = 0.5f * queries.colwise().squaredNorm().transpose();
   std::vector<float> nearness(forms.size());
   parallelPoints(forms.size(), options_.num_threads, [&](std::size_t begin, std::size_t end) {
-    const auto block = leading_.middleCols(static_cast<Eigen::Index>(begin), static_cast<Eigen::Index>(end - begin));
+    const auto block = leading_.middleCols(begin, end - begin);
     Eigen::MatrixXf products = queries.transpose() * block;
     products.colwise() -= sq_norms;
     const Eigen::RowVectorXf nearest = products.colwise().maxCoeff() - 0.5f * block.colwise().squaredNorm();
@@ -78,7 +78,7 @@ std::vector<int> CompactIndex::candidates(const Eigen::MatrixXf& rotations, std:
       nearness[i] =
           nearest[static_cast<Eigen::Index>(i - begin)] / typical_[i / static_cast<std::size_t>(forms_per_shape_)];
   });
-  std::nth_element(forms.begin(), forms.begin() + static_cast<std::ptrdiff_t>(count), forms.end(), [&](int a, int b) {
+  std::nth_element(forms.begin(), forms.begin() + count, forms.end(), [&](int a, int b) {
     const float near_a = nearness[a], near_b = nearness[b];
     return near_a != near_b ? near_a > near_b : a < b;
   });

@@ -184,7 +184,7 @@ PointPairIndex::PointPairIndex(const std::vector<SurfacePoints>& shapes, int num
   if (!(farthest > 0.0)) return;
   first_distance_ = static_cast<int>(std::floor(std::log(nearest) / kPairDistanceStep));
   num_distances_ = static_cast<int>(std::floor(std::log(farthest) / kPairDistanceStep)) - first_distance_ + 1;
-  weights_.resize(static_cast<std::size_t>(keyOf(first_distance_ + num_distances_, 0, 0, 0)));
+  weights_.resize(keyOf(first_distance_ + num_distances_, 0, 0, 0));
   const std::size_t block_size = 4;  // shapes whose votes and pairs fit into a cache
   blocks_.resize((shapes.size() + block_size - 1) / block_size);
   parallelRanges(shapes.size(), block_size, num_threads, [&](std::size_t begin, std::size_t end) {

@@ -229,7 +229,7 @@ ShapeDescription describeShape(const PointsRef& points, const DescriptionOptions
   result.frame = symmetryFrame(thinned(points, kMatching.frame_points), frame_options, visibility);
   const Points used = thinned(points, options.max_points);
   const std::vector<Eigen::Matrix3d> frames = signatureFrames(used, result.frame);
-  result.signatures.resize(kSignatureSize, static_cast<Eigen::Index>(frames.size()));
+  result.signatures.resize(kSignatureSize, frames.size());
   for (std::size_t i = 0; i < frames.size(); ++i) {
     const std::vector<float> signature = shapeSignature(used, frames[i]);
     result.signatures.col(i) = Eigen::Map<const Eigen::VectorXf>(signature.data(), kSignatureSize);

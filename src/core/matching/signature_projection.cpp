@@ -25,7 +25,7 @@ int quotient(int a, int b) {
 /// a * b, computed by blocks of rows.
 Eigen::MatrixXf product(const Eigen::MatrixXf& a, const Eigen::Ref<const Eigen::MatrixXf>& b, int num_threads) {
   Eigen::MatrixXf result(a.rows(), b.cols());
-  parallelRanges(static_cast<std::size_t>(a.rows()), 512, num_threads, [&](std::size_t begin, std::size_t end) {
+  parallelRanges(a.rows(), 512, num_threads, [&](std::size_t begin, std::size_t end) {
     const auto first = static_cast<Eigen::Index>(begin), count = static_cast<Eigen::Index>(end - begin);
     result.middleRows(first, count).noalias() = a.middleRows(first, count) * b;
   });
@@ -81,7 +81,7 @@ Eigen::MatrixXf whitenedBasis(const Eigen::MatrixXf& signatures, const Component
   Eigen::MatrixXf basis = Eigen::MatrixXf::Zero(signatures.rows(), k);
   for (int r = 0; r < kNumAxisRotations; ++r) {
     const Eigen::MatrixXf part = product(signatures, components.vectors.middleRows(r * n, n), options.num_threads);
-    parallelBlocks(static_cast<std::size_t>(k), options.num_threads, [&](std::size_t c) {
+    parallelBlocks(k, options.num_threads, [&](std::size_t c) {
       const auto column = static_cast<Eigen::Index>(c);
       Eigen::VectorXf rotated(signatures.rows());
       rotate(part.col(column).data(), r, rotated.data());

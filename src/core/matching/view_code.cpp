@@ -141,7 +141,7 @@ std::vector<int> ViewCodeIndex::nearest(const ViewCode& scan, int count, int num
   for (std::size_t i = 0; i < distances.size(); ++i)
     if (std::isfinite(distances[i])) shapes.push_back(static_cast<int>(i));
   const std::size_t kept = std::min(shapes.size(), static_cast<std::size_t>(count));
-  std::nth_element(shapes.begin(), shapes.begin() + static_cast<std::ptrdiff_t>(kept), shapes.end(), [&](int a, int b) {
+  std::nth_element(shapes.begin(), shapes.begin() + kept, shapes.end(), [&](int a, int b) {
     const float near_a = distances[a], near_b = distances[b];
     return near_a != near_b ? near_a < near_b : a < b;
   });

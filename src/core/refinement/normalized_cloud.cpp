@@ -50,7 +50,7 @@ std::vector<Eigen::Index> FarTest::nearOf(const PointsRef& points, float bound) 
     const Eigen::Array3d cell = x.array() / edt_.cellSize() + 0.5;
     if (!(cell >= 0.0).all() || !(cell < static_cast<double>(size)).all()) continue;
     const Eigen::Array<std::ptrdiff_t, 3, 1> at = cell.cast<std::ptrdiff_t>();
-    if (edt_.values()[static_cast<std::size_t>((at[2] * size + at[1]) * size + at[0])] > least) near.push_back(i);
+    if (edt_.values()[(at[2] * size + at[1]) * size + at[0]] > least) near.push_back(i);
   }
   return near;
 }
@@ -66,8 +66,7 @@ Landing land(const IspSurface& surface, Points images, double reach, const std::
   const bool has_far = surface.far && (leaves_out || FarTest::isExact(bound));
   const auto sq_reach = static_cast<float>(reach * reach);
   parallelPoints(size, surface.num_threads, [&](std::size_t begin, std::size_t end) {
-    const auto some =
-        landing.images.middleCols(static_cast<Eigen::Index>(begin), static_cast<Eigen::Index>(end - begin));
+    const auto some = landing.images.middleCols(begin, end - begin);
     std::vector<Eigen::Index> near;  // from begin on
     if (has_far) {
       near = surface.far->nearOf(some, bound);

@@ -147,7 +147,7 @@ double circleMinimax(const std::vector<CircleWave>& waves) {
 /// The rotation about an axis that brings points closest to where a motion takes them.
 /// \return its angle, radians.
 double closestAngle(const Eigen::Isometry3d& motion, const ContinuousSymmetry& symmetry, const PointsRef& points) {
-  std::vector<CircleWave> waves(static_cast<std::size_t>(points.cols()));
+  std::vector<CircleWave> waves(points.cols());
   for (Eigen::Index i = 0; i < points.cols(); ++i) {
     const Eigen::Vector3d from_axis = points.col(i).cast<double>() - symmetry.offset;
     const Eigen::Vector3d target = motion * points.col(i).cast<double>() - symmetry.offset;

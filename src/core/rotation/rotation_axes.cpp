@@ -65,7 +65,7 @@ std::vector<Line3d> linesThrough(const Eigen::Vector3d& center, const RotationFi
   std::vector<Line3d> lines;
   for (const int prime : {2, 3, 5, 7}) {
     if (prime > max_fold) break;
-    std::vector<double> overlaps(static_cast<std::size_t>(num_directions));
+    std::vector<double> overlaps(num_directions);
     parallelBlocks(overlaps.size(), num_threads, [&](std::size_t k) {
       overlaps[k] = overlapOrLess(
           fit, rotationAbout(directionAt(static_cast<int>(k), num_directions), 2.0 * kPi / prime), center);

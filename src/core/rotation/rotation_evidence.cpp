@@ -93,9 +93,9 @@ RotationShares RotationEvidence::roughly(const Eigen::Affine3d& motion, double s
 }
 
 Points RotationEvidence::moved(const Eigen::Affine3d& motion, const std::vector<int>& samples) const {
-  Points moved(3, static_cast<Eigen::Index>(samples.size()));
+  Points moved(3, samples.size());
   for (std::size_t i = 0; i < samples.size(); ++i)
-    moved.col(static_cast<Eigen::Index>(i)) = (motion * cloud_.points.col(samples[i]).cast<double>()).cast<float>();
+    moved.col(i) = (motion * cloud_.points.col(samples[i]).cast<double>()).cast<float>();
   return moved;
 }
 
@@ -112,7 +112,7 @@ RotationShares RotationEvidence::exactly(const Eigen::Affine3d& motion) const {
   for (std::size_t i = 0; i < samples_.size(); ++i) {
     if (all.distances[i] <= tolerance_) {
       shares.on += one;
-    } else if (isEmpty(all.images.col(static_cast<Eigen::Index>(i)).cast<double>())) {
+    } else if (isEmpty(all.images.col(i).cast<double>())) {
       shares.off += one;
       shares.far += all.distances[i] > far_ ? one : 0.0;
     }

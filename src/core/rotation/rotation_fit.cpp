@@ -66,7 +66,7 @@ RotationFit::RotationFit(Points points, const GaussianEdt& edt, RotationLimits l
   surface->discs =
       std::make_unique<SurfaceDiscs>(p, geometry, single ? 0.0f : kEvidence.disc_radius, static_cast<float>(farthest));
   surface->grid = std::make_unique<ClosestPointGrid>(p, 32);
-  surface->own_distances.resize(static_cast<std::size_t>(p.cols()));
+  surface->own_distances.resize(p.cols());
   parallelPoints(surface->own_distances.size(), num_threads, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i)
       surface->own_distances[i] = surface->discs->ownDistance(static_cast<int>(i), kEvidence.new_point_factor);

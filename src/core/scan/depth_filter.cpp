@@ -160,13 +160,12 @@ FilteredDepths filterDepths(const DepthImage& image, int radius, int num_threads
   result.inverse_error = error;
   const std::vector<float> before = result.depths;
   const DepthFilter filter(image, radius, error);
-  parallelRanges(static_cast<std::size_t>(image.height), rows_of_block, num_threads,
-                 [&](std::size_t begin, std::size_t end) {
-                   for (std::size_t v = begin; v < end; ++v)
-                     for (int u = 0; u < image.width; ++u)
-                       result.depths[v * static_cast<std::size_t>(image.width) + static_cast<std::size_t>(u)] =
-                           filter.at(u, static_cast<int>(v));
-                 });
+  parallelRanges(image.height, rows_of_block, num_threads, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t v = begin; v < end; ++v)
+      for (int u = 0; u < image.width; ++u)
+        result.depths[v * static_cast<std::size_t>(image.width) + static_cast<std::size_t>(u)] =
+            filter.at(u, static_cast<int>(v));
+  });
   for (std::size_t i = 0; i < before.size(); ++i)
     result.num_flying += !std::isnan(before[i]) && std::isnan(result.depths[i]) ? 1 : 0;
   return result;

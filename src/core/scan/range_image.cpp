@@ -255,7 +255,7 @@ double typicalRoughness(const Points& surface, Eigen::Index stride) {
 SeenPlaces placesSeen(const PointsRef& points, const Eigen::Vector3d& viewpoint, const Eigen::Matrix3d& R_camera_input,
                       FieldOfView field) {
   SeenPlaces seen;
-  seen.positions.reserve(static_cast<std::size_t>(points.cols()));
+  seen.positions.reserve(points.cols());
   for (Eigen::Index i = 0; i < points.cols(); ++i) {
     const Eigen::Vector3d ray = R_camera_input * (points.col(i).cast<double>() - viewpoint);
     const bool inside = field == FieldOfView::Cone ? ray.z() > kLeastCosine * ray.norm()
@@ -299,8 +299,7 @@ struct PixelRows {
 
 std::optional<PixelRows> rowsOf(const Positions& positions) {
   Points flat = Points::Zero(3, static_cast<Eigen::Index>(positions.size()));
-  for (std::size_t i = 0; i < positions.size(); ++i)
-    flat.col(static_cast<Eigen::Index>(i)).head<2>() = positions[i].matrix().cast<float>();
+  for (std::size_t i = 0; i < positions.size(); ++i) flat.col(i).head<2>() = positions[i].matrix().cast<float>();
   const auto stride = static_cast<Eigen::Index>(1 + (positions.size() - 1) / kScan.grid_samples);
   Points samples(3, (flat.cols() + stride - 1) / stride);
   for (Eigen::Index i = 0; i < samples.cols(); ++i) samples.col(i) = flat.col(i * stride);

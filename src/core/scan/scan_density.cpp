@@ -69,10 +69,9 @@ ScanDensity::ScanDensity(const PointsRef& points) : ball_(boundingBall(points)) 
   if (points.cols() < static_cast<Eigen::Index>(kScan.fewest_density_samples) || !(ball_.radius > 0.0)) return;
   const auto size = static_cast<std::size_t>(points.cols());
   const std::vector<std::size_t> indices = drawn(size, std::min(size, kScan.density_points));
-  Points used(3, static_cast<Eigen::Index>(indices.size()));
+  Points used(3, indices.size());
   for (Eigen::Index i = 0; i < used.cols(); ++i)
-    used.col(i) = ((points.col(static_cast<Eigen::Index>(indices[i])).cast<double>() - ball_.center) / ball_.radius)
-                      .cast<float>();
+    used.col(i) = ((points.col(indices[i]).cast<double>() - ball_.center) / ball_.radius).cast<float>();
   num_points_ = used.cols();
   const auto num_samples = static_cast<Eigen::Index>(std::min(indices.size(), kScan.density_samples));
   const int count = static_cast<int>(
@@ -93,8 +92,8 @@ ScanDensity::ScanDensity(const PointsRef& points) : ball_(boundingBall(points)) 
     normals_.col(slot) = patch.normal;
     log_density_.push_back(patch.log_density);
   }
-  samples_.conservativeResize(3, static_cast<Eigen::Index>(log_density_.size()));
-  normals_.conservativeResize(3, static_cast<Eigen::Index>(log_density_.size()));
+  samples_.conservativeResize(3, log_density_.size());
+  normals_.conservativeResize(3, log_density_.size());
 }
 
 template <typename Value>
@@ -138,7 +137,7 @@ double ScanDensity::unexplained(const Eigen::Vector3d& viewpoint) const {
 double ScanDensity::unexplainedByPatches(const Eigen::Vector3d& viewpoint) const {
   const auto num_patches = std::min(kScan.density_patches, samples_.cols());
   const Eigen::Vector3f eye = ((viewpoint - ball_.center) / ball_.radius).cast<float>();
-  std::vector<double> sums(static_cast<std::size_t>(num_patches), 0.0), counts(sums), means;
+  std::vector<double> sums(num_patches, 0.0), counts(sums), means;
   std::vector<float> residuals;
   for (Eigen::Index i = 0; i < samples_.cols(); ++i) residuals.push_back(residual(i, eye));
   if (residuals.size() < kScan.fewest_density_samples) return std::numeric_limits<double>::infinity();

@@ -173,7 +173,7 @@ bool Visibility::isInPicture(const Eigen::Vector3d& x) const {
 }
 
 std::vector<char> Visibility::areFree(const Eigen::Matrix3Xd& points) const {
-  std::vector<char> is_free(static_cast<std::size_t>(points.cols()), 0);
+  std::vector<char> is_free(points.cols(), 0);
   const auto addWhere = [&](const auto& isFree) {
     for (std::size_t i = 0; i < is_free.size(); ++i) is_free[i] |= isFree(static_cast<Eigen::Index>(i));
   };

@@ -107,9 +107,9 @@ std::vector<int> segmentsOfPatches(const SurfaceGraph& graph, const Patches& pat
   const int num_segments = 1 + *std::max_element(labels.begin(), labels.end());
   Eigen::MatrixXd shared = Eigen::MatrixXd::Zero(num_segments, patches.size());
   for (int i = 0; i < graph.size(); ++i) shared(labels[i], patches.of_element[i]) += graph.areas[i];
-  std::vector<int> segment(static_cast<std::size_t>(patches.size()), -1);
+  std::vector<int> segment(patches.size(), -1);
   // The segment with the smallest hold on any patch chooses first.
-  std::vector<int> order(static_cast<std::size_t>(num_segments));
+  std::vector<int> order(num_segments);
   std::iota(order.begin(), order.end(), 0);
   const Eigen::VectorXd most = shared.rowwise().maxCoeff();
   std::stable_sort(order.begin(), order.end(), [&](int a, int b) { return most[a] < most[b]; });

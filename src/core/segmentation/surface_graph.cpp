@@ -46,7 +46,7 @@ Points alignNeighbors(const SurfaceGraph& graph, const std::vector<float>& agree
     bool operator<(const Entry& other) const { return certainty < other.certainty; }
   };
   Points normals = graph.normals;
-  std::vector<char> is_aligned(static_cast<std::size_t>(graph.size()), 0);
+  std::vector<char> is_aligned(graph.size(), 0);
   std::priority_queue<Entry> queue;
   for (int start = 0; start < graph.size(); ++start) {
     queue.push({1.0f, start, 1.0f});
@@ -158,10 +158,9 @@ struct LocalSurface {
 };
 
 LocalSurface localSurface(const PointsRef& points, Eigen::Index i, const std::vector<int>& neighbors) {
-  Points around(3, static_cast<Eigen::Index>(neighbors.size()) + 1);
+  Points around(3, neighbors.size() + 1);
   around.col(0) = points.col(i);
-  for (std::size_t k = 0; k < neighbors.size(); ++k)
-    around.col(static_cast<Eigen::Index>(k) + 1) = points.col(neighbors[k]);
+  for (std::size_t k = 0; k < neighbors.size(); ++k) around.col(k + 1) = points.col(neighbors[k]);
   const Points offsets = around.colwise() - around.rowwise().mean();
   const Eigen::Matrix3f spread = offsets * offsets.transpose();
   const Eigen::Matrix3f axes = SymmetricEigen<Eigen::Matrix3d>(spread.cast<double>()).eigenvectors().cast<float>();
@@ -261,7 +260,7 @@ void measureFaces(SurfaceGraph& graph, const Polygons& faces) {
   }
   graph.centers = centers.cast<float>();
   graph.normals = normals.cast<float>();
-  graph.areas.resize(static_cast<std::size_t>(size));
+  graph.areas.resize(size);
   for (Eigen::Index f = 0; f < size; ++f) graph.areas[f] = static_cast<float>(areas[f]);
 }
 
@@ -327,7 +326,7 @@ SurfaceGraph cloudGraph(const PointsRef& points, const std::vector<std::vector<i
   graph.is_cloud = true;
   graph.centers = points;
   graph.normals.resize(3, size);
-  graph.areas.resize(static_cast<std::size_t>(size));
+  graph.areas.resize(size);
   graph.corners.resize(3, 3 * size);
   for (Eigen::Index i = 0; i < size; ++i) {
     const LocalSurface local = localSurface(points, i, neighbors[i]);

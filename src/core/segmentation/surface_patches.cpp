@@ -117,7 +117,7 @@ Patches measuredPatches(const SurfaceGraph& graph, std::vector<int> of_element) 
   const std::vector<int>& patch = patches.of_element;
   const int size = *std::max_element(patch.begin(), patch.end()) + 1;
   const double whole = graph.area();
-  patches.areas.assign(static_cast<std::size_t>(size), 0.0);
+  patches.areas.assign(size, 0.0);
   Eigen::Matrix3Xd centers = Eigen::Matrix3Xd::Zero(3, size), normals = centers;
   for (int i = 0; i < graph.size(); ++i) {
     const double area = graph.areas[i] / whole;

@@ -28,7 +28,7 @@ std::string reasonOf(const SurfaceGraph& graph, const Segmentation& result, cons
 
 Segmentation oneSegment(const SurfaceGraph& graph) {
   Segmentation result;
-  result.labels.assign(static_cast<std::size_t>(graph.size()), 0);
+  result.labels.assign(graph.size(), 0);
   result.num_segments = 1;
   result.tree.emplace_back().segment = 0;
   return result;

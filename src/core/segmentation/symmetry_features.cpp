@@ -20,7 +20,7 @@ namespace {
 
 /// Points spread over elements by area.
 Points sampleElements(const SurfaceGraph& graph, const std::vector<int>& elements, std::uint64_t seed) {
-  std::vector<char> inside(static_cast<std::size_t>(graph.size()), 0);
+  std::vector<char> inside(graph.size(), 0);
   for (const int element : elements) inside[element] = 1;
   std::vector<Eigen::Vector3i> triangles;
   for (std::size_t t = 0; t < graph.triangles.size(); ++t)
@@ -100,8 +100,7 @@ SymmetryFeatures symmetryFeatures(const SurfaceGraph& graph, const std::vector<i
     for (const ReflectionPlane& plane : refined(maxima, samples, edt, num_threads, make_search))
       features.planes.push_back({plane, 0.0});
   }
-  features.support.resize(static_cast<Eigen::Index>(features.planes.size()),
-                          static_cast<Eigen::Index>(elements.size()));
+  features.support.resize(features.planes.size(), static_cast<Eigen::Index>(elements.size()));
   double area = 0.0;
   for (const int element : elements) area += graph.areas[element];
   parallelBlocks(features.planes.size(), num_threads, [&](std::size_t k) {

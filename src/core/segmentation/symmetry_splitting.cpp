@@ -34,7 +34,7 @@ std::optional<SplitPart> splitByTwoMeans(const SurfaceGraph& graph, const std::v
   for (const int element : elements) areas.push_back(graph.areas[element]);
   const Clusters clusters = kMeans(features.support, areas, 2, seed);
   if (clusters.centers.cols() < 2) return std::nullopt;
-  std::vector<int> side(static_cast<std::size_t>(graph.size()), -1);
+  std::vector<int> side(graph.size(), -1);
   for (std::size_t i = 0; i < elements.size(); ++i) side[elements[i]] = clusters.labels[i];
 
   // "the two largest connected components": the cut assigns the smaller ones; as published, the closer of the two does
@@ -117,7 +117,7 @@ public:
 
   Segmentation segments() const {
     Segmentation result;
-    result.labels.assign(static_cast<std::size_t>(graph_.size()), 0);
+    result.labels.assign(graph_.size(), 0);
     result.tree = nodes_;
     for (std::size_t i = 0; i < nodes_.size(); ++i) {
       if (nodes_[i].children[0] >= 0) continue;

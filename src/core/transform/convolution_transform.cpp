@@ -208,7 +208,7 @@ public:
     }
     bytes_.assign(3 * size_ + 2 * kRowLanes, 0);
     const double middle = 0.5 * (n - 1);
-    parallelBlocks(static_cast<std::size_t>(n), num_threads, [&](std::size_t slice) {
+    parallelBlocks(n, num_threads, [&](std::size_t slice) {
       const int c = static_cast<int>(slice);
       for (int b = 0; b < n; ++b) {
         const double sq_left = clip * clip - (b - middle) * (b - middle) - (c - middle) * (c - middle);

@@ -382,7 +382,7 @@ std::vector<float> freeSpace(const GaussianEdt& edt, const Visibility* visibilit
   const std::vector<float>& f = edt.values();
   std::vector<float> free(f.size(), 0.0f);
   parallelBlocks(n, num_threads, [&](std::size_t slice) {
-    Eigen::Matrix3Xd centers(3, static_cast<Eigen::Index>(n));
+    Eigen::Matrix3Xd centers(3, n);
     for (std::size_t first = slice * n * n; first < (slice + 1) * n * n; first += n) {
       centers.colwise() = edt.cellCenter(first);
       for (std::size_t x = 1; x < n; ++x) centers(0, x) = edt.origin().x() + edt.cellSize() * static_cast<double>(x);
