@@ -29,7 +29,8 @@ void checkModelName(const std::string& name) {
   bool good = !name.empty() && name.size() <= 200 && name.front() != '.' && isUTF8(name);
   for (const unsigned char c : name) good = good && c >= 0x20 && c != 0x7f && c != '/';
   if (good) return;
-  std::string shown = name.substr(0, 40) + (name.size() > 40 ? "..." : "");
+  constexpr std::size_t most_shown = 40;
+  std::string shown = name.substr(0, most_shown) + (name.size() > most_shown ? "..." : "");
   for (char& c : shown)
     if (static_cast<unsigned char>(c) < 0x20 || static_cast<unsigned char>(c) >= 0x7f) c = '?';
   throw std::invalid_argument(

@@ -10,6 +10,7 @@
 #include "core/base/parallel.h"
 #include "core/base/statistics.h"
 #include "core/base/stopwatch.h"
+#include "core/geometry/point_samples.h"
 #include "pcl_symmetry/symmetry_alignment.h"
 #include "pcl_symmetry/symmetry_maxima_refinement.h"
 #include "scene/convex_pieces.h"
@@ -189,7 +190,7 @@ SceneOptions ofOneObject(const SceneOptions& options, std::size_t num_objects) {
 void SceneOptions::validate() const {
   check(plane_distance >= 0.0, "plane_distance", plane_distance, ">= 0");
   check(cluster_distance >= 0.0, "cluster_distance", cluster_distance, ">= 0");
-  check(min_points >= 20, "min_points", min_points, ">= 20");
+  check(min_points >= kMinDistinctPoints, "min_points", min_points, ">= 20");
   check(max_range >= 0.0, "max_range", max_range, ">= 0");
   check(max_points >= 100, "max_points", max_points, ">= 100");
   detection.validate();

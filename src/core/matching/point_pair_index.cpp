@@ -20,14 +20,18 @@ namespace {
 constexpr double kPairDistanceStep = 0.15;
 // Steps of 15 degrees of the angle between the first normal and the line, and of the angles of the second normal with
 // the line and the first normal, which have no sign.
-constexpr int kPairAngles = 12, kPairOtherAngles = 6;
+constexpr int kPairAngles = 12, kPairOtherAngles = kPairAngles / 2;
+// Steps of a full rotation about the first normal: as many as a byte tells apart.
+constexpr float kStepsOfTurn = 256.0f;
+// Radii: the diameter, with rounding.
+constexpr double kLongestPair = 2.1;
 
 /// Two points with their normals.
 struct PointPair {
   double log_distance;       ///< in steps
   double angle;              ///< between the first normal and the line, in steps
   int other_angle, between;  ///< steps
-  std::uint8_t rotation;     ///< of the second point about the first normal, in 1/256 of a full one
+  std::uint8_t rotation;     ///< of the second point about the first normal, in steps
 };
 
 /// Pairs of one point with all points of its surface.
@@ -76,7 +80,7 @@ Eigen::ArrayXi limitsReached(const Eigen::ArrayXf& values, const std::vector<flo
   return count;
 }
 
-/// Angles of directions in a plane, of 256 steps.
+/// Angles of directions in a plane, in steps.
 Eigen::ArrayXi anglesOf(const Eigen::ArrayXf& u, const Eigen::ArrayXf& v) {
   const Eigen::ArrayXf au = u.abs(), av = v.abs(), t = au.min(av) / (au.max(av) + kTiny), s = t * t;
   // Abramowitz and Stegun 4.4.47, off by 1e-5, over 2 pi.
@@ -84,7 +88,9 @@ Eigen::ArrayXi anglesOf(const Eigen::ArrayXf& u, const Eigen::ArrayXf& v) {
   angle = (au < av).select(0.25f - angle, angle);
   angle = (u < 0.0f).select(0.5f - angle, angle);
   angle = (v < 0.0f).select(1.0f - angle, angle);
-  return (256.0f * angle).unaryExpr([](float step) { return static_cast<int>(step) & 255; }).cast<int>();
+  return (kStepsOfTurn * angle)
+      .unaryExpr([](float step) { return static_cast<std::uint8_t>(static_cast<int>(step)); })
+      .cast<int>();
 }
 
 /// A point with its normal as a frame: the normal, and two directions perpendicular to it.
@@ -109,7 +115,7 @@ PointPair pairOf(const Eigen::Matrix3d& frame, const Eigen::Vector3d& first, con
   pair.other_angle = angleStep(std::abs(second_normal.dot(line)) / distance, kPairOtherAngles, 0.5 * kPi);
   pair.between = angleStep(std::abs(second_normal.dot(frame.col(0))), kPairOtherAngles, 0.5 * kPi);
   const double rotation = std::atan2(direction.z(), direction.y()) / (2.0 * kPi);
-  pair.rotation = static_cast<std::uint8_t>(static_cast<int>(std::floor((rotation + 1.0) * 256.0)) & 255);
+  pair.rotation = static_cast<std::uint8_t>(static_cast<int>(std::floor((rotation + 1.0) * kStepsOfTurn)));
   return pair;
 }
 
@@ -120,7 +126,7 @@ PairedSurface::PairedSurface(const PointsRef& points, const PointsRef& normals, 
   normals_ = normals.transpose();
   for (int step = first_step_ + 1;; ++step) {
     const double distance = std::exp(kPairDistanceStep * step) / radius;
-    if (distance > 2.1) break;  // the diameter, with rounding
+    if (distance > kLongestPair) break;
     sq_distances_.push_back(static_cast<float>(distance * distance));
   }
 }
@@ -150,7 +156,7 @@ PairRow PairedSurface::row(int i) const {
 
 // Rotations about a normal that are distinguished: 22.5 degrees, 4 of the 8 bits that store one.
 constexpr int kNumRotations = 16;
-constexpr std::uint32_t kRotationMask = 255;
+constexpr std::uint32_t kRotationMask = std::numeric_limits<std::uint8_t>::max();
 constexpr std::uint32_t kPairsAtOnce = 128;
 
 /// Where the votes of pairs are counted: for each the first point and the step of the rotation that it needs.
@@ -179,7 +185,7 @@ PointPairIndex::PointPairIndex(const std::vector<SurfacePoints>& shapes, int num
     radii_.push_back(boundingBall(shapes[k].points).radius);
     if (!(radii_.back() > 0.0)) continue;
     nearest = std::min(nearest, kMatching.min_pair_distance * radii_.back());
-    farthest = std::max(farthest, 2.1 * radii_.back());
+    farthest = std::max(farthest, kLongestPair * radii_.back());
   }
   if (!(farthest > 0.0)) return;
   first_distance_ = static_cast<int>(std::floor(std::log(nearest) / kPairDistanceStep));

@@ -70,7 +70,7 @@ std::string packedViewCodes(const std::vector<ViewCode>& codes) {
     for (const ViewCode& code : codes) bytes.push_back(static_cast<char>(code.values[k]));
   for (const ViewCode& code : codes) {
     const auto size = static_cast<std::uint16_t>(code.size);
-    bytes.push_back(static_cast<char>(size & 0xff));
+    bytes.push_back(static_cast<char>(size));
     bytes.push_back(static_cast<char>(size >> 8));
   }
   return bytes;

@@ -42,7 +42,7 @@ public:
 
   Eigen::Vector3f solve() const {
     // One pixel in line has no slope across: any tiny ridge keeps it at 0.
-    const Eigen::Vector3f ridge(0.0f, 1e-3f, 1e-3f);
+    const Eigen::Vector3f ridge = 1e-3f * Eigen::Vector3f(0.0f, 1.0f, 1.0f);
     return solveSymmetric(Eigen::Matrix3f(squares_ + Eigen::Matrix3f(ridge.asDiagonal())), right_);
   }
 

@@ -448,7 +448,7 @@ double cutShare(const PointsRef& points, const Visibility& seen, double margin) 
   for (Eigen::Index i = 0; i < points.cols(); ++i) {
     const Eigen::Vector3d ray = points.col(i).cast<double>() - viewpoint, aside = ray / ray.dot(forward) - forward;
     const double turned = std::atan2(v.dot(aside), u.dot(aside)) / (2.0 * kPi) + 0.5;
-    Eigen::Vector3d& most = outermost[static_cast<std::size_t>(turned * 72.0) % 72];
+    Eigen::Vector3d& most = outermost[static_cast<std::size_t>(turned * outermost.size()) % outermost.size()];
     if (aside.squaredNorm() > most.squaredNorm()) most = aside;
   }
   double count = 0.0, num_cut = 0.0;

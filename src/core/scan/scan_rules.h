@@ -30,8 +30,8 @@ struct ScanRules {
   double min_grid = 0.5;
   /// Radians between a side and the rows: that of the middles, 0.1, times that between sides, 0.4.
   double max_side_angle = 0.044;
-  double side_angle_step = 0.0044;  ///< radians
-  int min_row = 10;                 ///< points of the last row; round ends of objects have fewer
+  double side_angle_step = 0.1 * max_side_angle;
+  int min_row = 10;  ///< points of the last row; round ends of objects have fewer
   /// Points of the last row over the mean of the next two rows: less at the ends of most objects.
   double min_row_ratio = 0.8;
 

@@ -52,16 +52,11 @@ struct SegmentationRules {
   double min_inner_sight = 0.05;    ///< the fitted weights know this bound
   double max_relative_sight = 1.5;  ///< the fitted weights know this bound
 
-  // Clouds that can have parts
-  Eigen::Index fewest_points = 20;  ///< distinct ones
-
   // Symmetries of parts
   std::size_t max_planes = 20;   ///< strongest maxima that are features
   int feature_samples = 4000;    ///< on the surface of a part
   int published_samples = 1000;  ///< reflected as published; the paper's 10 000 take minutes a mesh
   int refined_samples = 400;     ///< that Iterative Symmetric Points reflects
-  int normal_neighbors = 8;      ///< of a sample
-  double max_moved = 0.12;       ///< radii that a plane may move in its refinement, twice kSameMaximum.offset
   float mapped = 0.5f;       ///< f from which on an element counts as mapped onto the surface, 0.83 sigma away from it
   MapSize map_size;          ///< of the transform of a part
   int num_map_samples = 64;  ///< of each bin

@@ -12,7 +12,7 @@ namespace {
 
 bool showsASurface(const SurfaceGraph& graph) {
   if (!graph.is_cloud) return true;
-  return DistinctPoints(graph.centers).points.cols() >= kSegmentation.fewest_points;
+  return DistinctPoints(graph.centers).points.cols() >= kMinDistinctPoints;
 }
 
 /// \param result of another number of parts than is wanted.

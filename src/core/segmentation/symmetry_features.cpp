@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "core/base/parallel.h"
-#include "core/detection/detection_rules.h"
+#include "core/geometry/geometry_rules.h"
 #include "core/geometry/surface_normals.h"
 #include "core/geometry/triangles.h"
 #include "core/refinement/normalized_cloud.h"
@@ -57,7 +57,7 @@ std::vector<ReflectionPlane> significantMaxima(const Points& samples, const Gaus
 std::vector<ReflectionPlane> refined(const std::vector<ReflectionPlane>& starts, const Points& samples,
                                      const GaussianEdt& edt, int num_threads, const MakeSearch& make_search) {
   const ClosestPointSearch::Ptr search = make_search ? make_search(samples) : makeFlannSearch(samples);
-  const LocalGeometry geometry = localGeometry(samples, *search, kSegmentation.normal_neighbors, num_threads);
+  const LocalGeometry geometry = localGeometry(samples, *search, kNumSupportNeighbors, num_threads);
   IspSurface surface{samples, geometry.normals, *search};
   std::vector<int> reflected;
   const Eigen::Index stride = std::max<Eigen::Index>(1, samples.cols() / kSegmentation.refined_samples);
@@ -65,7 +65,7 @@ std::vector<ReflectionPlane> refined(const std::vector<ReflectionPlane>& starts,
   IspOptions isp;
   isp.sigma = edt.sigma();
   isp.final_sigma = kSegmentation.final_sigma * edt.sigma();
-  const MergeTolerance same_basin{kSameMaximum.angle, kSegmentation.max_moved};
+  const MergeTolerance same_basin{kSameMaximum.angle, 2.0 * kSameMaximum.offset};
   std::vector<ReflectionPlane> ends(starts.size()), moved(starts.size());
   parallelBlocks(starts.size(), num_threads, [&](std::size_t i) {
     ends[i] = refineSymmetricPoints(surface, reflected, starts[i], isp).plane;

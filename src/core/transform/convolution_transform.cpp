@@ -218,7 +218,7 @@ public:
         const float* row = f.data() + (slice * n + b) * n;
         for (int a = first; a <= last; ++a) {
           const float scaled = row[a] * static_cast<float>(LookupTable::kOne) + 0.5f;
-          const auto byte = static_cast<std::uint8_t>(static_cast<int>(std::min(scaled, 255.0f)));
+          const auto byte = static_cast<std::uint8_t>(static_cast<int>(std::min(scaled, LookupTable::kMost)));
           const auto put = [&](int axis, int x, int y, int z) {
             const Rows rows = along(axis);
             bytes_[axis * size_ + static_cast<std::size_t>(z * rows.of_z + y * rows.of_y + rows.of_x[x])] = byte;
@@ -401,8 +401,9 @@ public:
         values_(static_cast<std::size_t>(lattice.num_along) * kBundleLanes),
         sums_(2 * lattice.num_along, 2.0 * lattice.max_ahead / lattice.along) {
     // The sums of these fit in 32 bits
-    max_bundles_ = static_cast<int>(std::max<std::int64_t>(
-        1, std::numeric_limits<std::int32_t>::max() / (std::int64_t{255} * 255 * lattice.num_along)));
+    constexpr auto most = static_cast<std::int64_t>(LookupTable::kMost);
+    max_bundles_ = static_cast<int>(
+        std::max<std::int64_t>(1, std::numeric_limits<std::int32_t>::max() / (most * most * lattice.num_along)));
   }
 
   /// \param index of the direction in the grid.
@@ -469,9 +470,9 @@ SymmetryMap convolutionTransform(const GaussianEdt& edt, const PlaneGrid& grid,
                                  const ConvolutionTransformOptions& options) {
   options.validate();
   const BundleLattice lattice(edt, grid, options.spacing);
-  // 1/24: the look-up of the nearest cell is one box.
-  const RowTable table(edt.sharpened(1.0 / 24.0, options.num_threads), edt.numCells(), lattice.clip, lattice.step,
-                       options.num_threads);
+  // Half: the look-up of the nearest cell is one box, interpolation is two.
+  const RowTable table(edt.sharpened(0.5 * kTransform.of_interpolation, options.num_threads), edt.numCells(),
+                       lattice.clip, lattice.step, options.num_threads);
   const double norm = edt.sqNorm() * LookupTable::kOne * LookupTable::kOne;
   const int num_radius = grid.numRadius();
   SymmetryMap map = SymmetryMap::zero(edt, grid, TransformMethod::Convolution);

@@ -2,6 +2,7 @@
 
 #include <Eigen/Core>
 #include <cstdint>
+#include <limits>
 #include <vector>
 
 #include "pcl_symmetry/core/gaussian_edt.h"
@@ -21,6 +22,7 @@ public:
   /// Value of f = 1: with a sigma of two cells, sharpening lifts f to 1.11 at most (an isolated point); 255 /
   /// 200 leaves room.
   static constexpr double kOne = 200.0;
+  static constexpr float kMost = std::numeric_limits<std::uint8_t>::max();  ///< what a cell can hold
 
   /// Of f, sharpened for the blur of two boxes: a sample's uniform position in its cell and the look-up of the nearest
   /// cell.

@@ -107,9 +107,10 @@ std::vector<float> greatestThrough(const std::vector<float>& values, const std::
 }  // namespace
 
 void MapSize::validate() const {
-  check(num_theta >= 1 && num_theta <= 4096, "num_theta", num_theta, "in [1, 4096]");
-  check(num_phi >= 2 && num_phi <= 4096 && num_phi % 2 == 0, "num_phi", num_phi, "even and in [2, 4096]");
-  check(num_radius >= 1 && num_radius <= 4096, "num_radius", num_radius, "in [1, 4096]");
+  constexpr int most = 4096;
+  check(num_theta >= 1 && num_theta <= most, "num_theta", num_theta, "in [1, 4096]");
+  check(num_phi >= 2 && num_phi <= most && num_phi % 2 == 0, "num_phi", num_phi, "even and in [2, 4096]");
+  check(num_radius >= 1 && num_radius <= most, "num_radius", num_radius, "in [1, 4096]");
 }
 
 PlaneGrid::PlaneGrid(const MapSize& size, const Eigen::Vector3d& center, double radius)

@@ -21,7 +21,7 @@ class PointSampler {
 public:
   PointSampler(const GaussianEdt& edt, int num_threads) : edt_(edt) {
     std::vector<double> shares;
-    const std::vector<float> f = edt.sharpened(1.0 / 24.0, num_threads);
+    const std::vector<float> f = edt.sharpened(0.5 * kTransform.of_interpolation, num_threads);
     for (std::size_t i = 0; i < f.size(); ++i) {
       if (f[i] <= 0.0f) continue;
       cells_.push_back(edt.cellCenter(i).cast<float>());
