@@ -101,15 +101,7 @@ std::shared_ptr<const PairSearch> DatabaseParts::pairs() {
 }
 
 PositionCloud DatabaseParts::cloud(const StoredModel& model) {
-  const std::string bytes = [&] {
-    const std::lock_guard<std::mutex> lock(mutex);
-    return store.part(ModelPart::Cloud, model);
-  }();
-  try {
-    return unpackedCloud(bytes);
-  } catch (const std::invalid_argument& error) {
-    failIO(store.file(), "the cloud of model '" + model.name + "' " + error.what());
-  }
+  return unpackedPart(store, ModelPart::Cloud, "cloud", model, mutex, unpackedCloud);
 }
 
 Points DatabaseParts::points(const StoredModel& model, std::size_t max_points) {
@@ -117,17 +109,11 @@ Points DatabaseParts::points(const StoredModel& model, std::size_t max_points) {
 }
 
 std::shared_ptr<const ModelShape> DatabaseParts::shape(const StoredModel& model) {
-  const std::string bytes = [&] {
-    const std::lock_guard<std::mutex> lock(mutex);
-    return store.part(ModelPart::Surfaces, model);
-  }();
-  try {
+  return unpackedPart(store, ModelPart::Surfaces, "surfaces", model, mutex, [](const std::string& bytes) {
     std::vector<SurfacePoints> surfaces = unpackedSurfaces(bytes);
     if (surfaces.size() != 2) throw std::invalid_argument("have another number than two");
     return std::make_shared<const ModelShape>(ModelShape{std::move(surfaces[0]), ScreenedSurface(surfaces[1])});
-  } catch (const std::invalid_argument& error) {
-    failIO(store.file(), "the surfaces of model '" + model.name + "' " + error.what());
-  }
+  });
 }
 
 void DatabaseParts::add(const ModelInfo& info, const PackedModel& model, const Eigen::MatrixXf& signatures) {

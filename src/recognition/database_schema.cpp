@@ -23,7 +23,7 @@ struct Table {
   const char* definition;
 };
 // A table for each part of a model, so that a query reads what it needs.
-constexpr std::array<Table, 10> kTables = {{
+constexpr Table kTables[] = {
     {"facts", "CREATE TABLE facts (key TEXT PRIMARY KEY, value TEXT NOT NULL) WITHOUT ROWID"},
     {"models",
      "CREATE TABLE models (id INTEGER PRIMARY KEY AUTOINCREMENT, name TEXT NOT NULL UNIQUE, time INTEGER NOT NULL, "
@@ -53,13 +53,13 @@ constexpr std::array<Table, 10> kTables = {{
     {"view_codes",
      "CREATE TABLE view_codes (model INTEGER PRIMARY KEY REFERENCES models ON DELETE CASCADE, projection INTEGER "
      "NOT NULL REFERENCES projections ON DELETE CASCADE, data BLOB NOT NULL, checksum INTEGER NOT NULL)"},
-}};
+};
 
 /// Tables whose definition is not the one that this library wrote.
 void compareTables(const SQLiteConnection& connection, std::vector<std::string>& damages) {
   for (const Table& table : kTables) {
     SQLiteStatement row = connection.prepare("SELECT sql FROM sqlite_schema WHERE type = 'table' AND name = ?");
-    row.bind(1, std::string(table.name));
+    row.bind(std::string(table.name));
     if (!row.next() || row.text(0) != table.definition)
       damages.push_back(std::string("the definition of table ") + table.name + " is damaged");
   }
@@ -93,8 +93,8 @@ std::int64_t checksumOf(std::initializer_list<std::string_view> texts) {
 void createSchema(const SQLiteConnection& connection, const std::string& unit) {
   for (const Table& table : kTables) connection.run(table.definition);
   SQLiteStatement fact = connection.prepare("INSERT INTO facts VALUES (?, ?)");
-  const std::string values[][2] = {{"library_version", PCL_SYMMETRY_VERSION}, {"unit", unit}};
-  for (const auto& [key, value] : values) fact.bind(1, key).bind(2, value).run();
+  fact.bind(std::string("library_version"), std::string(PCL_SYMMETRY_VERSION)).run();
+  fact.bind(std::string("unit"), unit).run();
   connection.run("PRAGMA application_id = " + std::to_string(kApplicationId));
   connection.run("PRAGMA user_version = " + std::to_string(kSchemaVersion));
 }

@@ -19,20 +19,12 @@ namespace pcl_symmetry::detail {
 
 namespace {
 
-std::string partOf(ModelStore& store, ModelPart part, const StoredModel& model, std::mutex& mutex) {
-  const std::lock_guard<std::mutex> lock(mutex);
-  return store.part(part, model);
-}
-
 Eigen::MatrixXf signaturesOf(ModelStore& store, const StoredModel& model, std::mutex& mutex) {
-  const std::string bytes = partOf(store, ModelPart::Signatures, model, mutex);
-  try {
+  return unpackedPart(store, ModelPart::Signatures, "signatures", model, mutex, [](const std::string& bytes) {
     Eigen::MatrixXf signatures = unpackedSignatures(bytes);
     if (signatures.rows() == kSignatureSize && signatures.cols() == kFormsPerModel) return signatures;
     throw std::invalid_argument("have another size than those of this library");
-  } catch (const std::invalid_argument& error) {
-    failIO(store.file(), "the signatures of model '" + model.name + "' " + error.what());
-  }
+  });
 }
 
 /// FNV-1a.
@@ -202,12 +194,7 @@ std::vector<std::string> allForms(ModelStore& store, const std::vector<StoredMod
 }
 
 std::vector<View> viewsOf(ModelStore& store, const StoredModel& model, std::mutex& mutex) {
-  const std::string bytes = partOf(store, ModelPart::Views, model, mutex);
-  try {
-    return unpackedViews(bytes);
-  } catch (const std::invalid_argument& error) {
-    failIO(store.file(), "the views of model '" + model.name + "' " + error.what());
-  }
+  return unpackedPart(store, ModelPart::Views, "views", model, mutex, unpackedViews);
 }
 
 }  // namespace pcl_symmetry::detail

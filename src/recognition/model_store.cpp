@@ -56,20 +56,12 @@ std::int64_t insertModel(const SQLiteConnection& connection, const ModelInfo& in
   // The id is known before the row is there, as the checksum holds it.
   const std::int64_t id = connection.integer("SELECT seq FROM sqlite_sequence WHERE name = 'models'") + 1;
   connection.prepare("INSERT INTO models VALUES (?, ?, ?, ?, ?, ?, ?, ?)")
-      .bind(1, id)
-      .bind(2, info.name)
-      .bind(3, info.time)
-      .bind(4, info.source.path)
-      .bind(5, info.source.checksum)
-      .bind(6, joinedTags(info.source.tags))
-      .bind(7, static_cast<std::int64_t>(info.num_points))
-      .bind(8, checksumOf(id, info))
+      .bind(id, info.name, info.time, info.source.path, info.source.checksum, joinedTags(info.source.tags),
+            static_cast<std::int64_t>(info.num_points), checksumOf(id, info))
       .run();
   for (const PartTable& table : kPartTables)
     connection.prepare(std::string("INSERT INTO ") + table.name + " VALUES (?, ?, ?)")
-        .bind(1, id)
-        .bindBlob(2, model.*table.data)
-        .bind(3, checksumOf(table.name, id, model.*table.data))
+        .bind(id, SQLiteBlob{model.*table.data}, checksumOf(table.name, id, model.*table.data))
         .run();
   return id;
 }
@@ -172,7 +164,7 @@ std::uint64_t ModelStore::version() {
 std::string ModelStore::fact(const std::string& key) {
   if (!startReading()) return key == "unit" ? unit_ : "";
   SQLiteStatement row = connection_->prepare("SELECT value FROM facts WHERE key = ?");
-  return row.bind(1, key).next() ? row.text(0) : "";
+  return row.bind(key).next() ? row.text(0) : "";
 }
 
 const std::vector<StoredModel>& ModelStore::models() {
@@ -189,7 +181,7 @@ const std::vector<StoredModel>& ModelStore::models() {
 std::optional<std::pair<std::int64_t, ModelInfo>> ModelStore::find(const std::string& name) {
   if (!startReading()) return std::nullopt;
   SQLiteStatement row = connection_->prepare(std::string(kSelectModels) + " WHERE name = ?");
-  if (!row.bind(1, name).next()) return std::nullopt;
+  if (!row.bind(name).next()) return std::nullopt;
   return std::make_pair(row.integer(0), checkedInfo(row, file_));
 }
 
@@ -198,7 +190,7 @@ std::string ModelStore::part(ModelPart part, const StoredModel& model) {
   const std::string table = kPartTables[static_cast<std::size_t>(part)].name;
   const std::string what = "the " + table + " of model '" + model.name + "' ";
   SQLiteStatement row = connection_->prepare("SELECT data, checksum FROM " + table + " WHERE model = ?");
-  if (!row.bind(1, model.id).next()) failIO(file_, what + "are missing");
+  if (!row.bind(model.id).next()) failIO(file_, what + "are missing");
   std::string data = row.blob(0);
   if (checksumOf(table, model.id, data) != row.integer(1)) failIO(file_, what + "are damaged");
   return data;
@@ -210,7 +202,7 @@ std::vector<StoredModel> ModelStore::modelsWithoutForms() {
   SQLiteStatement row = connection_->prepare(
       "SELECT id, name FROM models WHERE id NOT IN (SELECT model FROM compact WHERE projection = ?1) "
       "OR id NOT IN (SELECT model FROM view_codes WHERE projection = ?1) ORDER BY id");
-  row.bind(1, projectionId());
+  row.bind(projectionId());
   while (row.next()) models.push_back({row.integer(0), row.text(1)});
   return models;
 }
@@ -230,7 +222,7 @@ std::optional<PackedProjection> ModelStore::projection() {
   if (!row.next()) return std::nullopt;
   PackedProjection projection{row.integer(0), static_cast<int>(row.integer(1)), row.blob(2), ""};
   SQLiteStatement coder = connection_->prepare("SELECT data, checksum FROM view_coders WHERE projection = ?");
-  const bool found = coder.bind(1, projection.id).next();
+  const bool found = coder.bind(projection.id).next();
   if (found) projection.view_coder = coder.blob(0);
   if (!found || checksumOf("view_coders", projection.id, projection.view_coder) != coder.integer(1) ||
       checksumOf("projections", projection.id, projection.values) != row.integer(3))
@@ -243,7 +235,7 @@ void ModelStore::each(FormPart part, std::int64_t projection, const EachBytes& t
   const std::string table = part == FormPart::Compact ? "compact" : "view_codes";
   SQLiteStatement row =
       connection_->prepare("SELECT model, data, checksum FROM " + table + " WHERE projection = ? ORDER BY model");
-  row.bind(1, projection);
+  row.bind(projection);
   while (row.next()) {
     const std::int64_t model = row.integer(0);
     const std::string data = row.blob(1);
@@ -267,7 +259,7 @@ void ModelStore::change(const Body& body) {
 std::int64_t ModelStore::add(const ModelInfo& info, const PackedModel& model, std::int64_t projection,
                              PackedForms forms) {
   change([&] {
-    connection_->prepare("DELETE FROM models WHERE name = ?").bind(1, info.name).run();
+    connection_->prepare("DELETE FROM models WHERE name = ?").bind(info.name).run();
     forms.model = insertModel(*connection_, info, model);
     if (projection != 0) insertForms(projection, {forms});
   });
@@ -337,8 +329,8 @@ bool ModelStore::remove(const std::string& name) {
   refresh();
   if (!connection_) return false;
   change([&] {
-    found = connection_->prepare("SELECT 1 FROM models WHERE name = ?").bind(1, name).next();
-    connection_->prepare("DELETE FROM models WHERE name = ?").bind(1, name).run();
+    found = connection_->prepare("SELECT 1 FROM models WHERE name = ?").bind(name).next();
+    connection_->prepare("DELETE FROM models WHERE name = ?").bind(name).run();
   });
   return found;
 }
@@ -348,15 +340,11 @@ void ModelStore::setProjection(const PackedProjection& projection, const std::ve
     connection_->run("DELETE FROM projections");
     const std::int64_t id = connection_->integer("SELECT seq FROM sqlite_sequence WHERE name = 'projections'") + 1;
     connection_->prepare("INSERT INTO projections VALUES (?, ?, ?, ?)")
-        .bind(1, id)
-        .bind(2, std::int64_t{projection.num_references})
-        .bindBlob(3, projection.values)
-        .bind(4, checksumOf("projections", id, projection.values))
+        .bind(id, std::int64_t{projection.num_references}, SQLiteBlob{projection.values},
+              checksumOf("projections", id, projection.values))
         .run();
     connection_->prepare("INSERT INTO view_coders VALUES (?, ?, ?)")
-        .bind(1, id)
-        .bindBlob(2, projection.view_coder)
-        .bind(3, checksumOf("view_coders", id, projection.view_coder))
+        .bind(id, SQLiteBlob{projection.view_coder}, checksumOf("view_coders", id, projection.view_coder))
         .run();
     insertForms(id, forms);
   });
@@ -374,10 +362,7 @@ void ModelStore::insertForms(std::int64_t projection, const std::vector<PackedFo
                              " SELECT ?1, ?2, ?3, ?4 WHERE EXISTS (SELECT 1 FROM models WHERE id = ?1) " +
                              "AND EXISTS (SELECT 1 FROM projections WHERE id = ?2)");
     for (const PackedForms& packed : forms)
-      statement.bind(1, packed.model)
-          .bind(2, projection)
-          .bindBlob(3, packed.*data)
-          .bind(4, checksumOf(table, packed.model, packed.*data))
+      statement.bind(packed.model, projection, SQLiteBlob{packed.*data}, checksumOf(table, packed.model, packed.*data))
           .run();
   };
   insert("compact", &PackedForms::forms);

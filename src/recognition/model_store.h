@@ -3,7 +3,9 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <mutex>
 #include <optional>
+#include <stdexcept>
 #include <string>
 #include <utility>
 #include <vector>
@@ -122,5 +124,21 @@ private:
   std::uint64_t version_ = 1, models_version_ = 0;
   std::int64_t data_version_ = -1;  // SQLite's count of the changes of others
 };
+
+/// A part of a model, as \p unpack makes it of its bytes.
+/// \param name of the part in the message where \p unpack throws std::invalid_argument.
+/// \param mutex held while the store is read.
+template <typename Unpack>
+auto unpackedPart(ModelStore& store, ModelPart part, const std::string& name, const StoredModel& model,
+                  std::mutex& mutex, const Unpack& unpack) {
+  std::unique_lock<std::mutex> lock(mutex);
+  const std::string bytes = store.part(part, model);
+  lock.unlock();
+  try {
+    return unpack(bytes);
+  } catch (const std::invalid_argument& error) {
+    failIO(store.file(), "the " + name + " of model '" + model.name + "' " + error.what());
+  }
+}
 
 }  // namespace pcl_symmetry::detail

@@ -49,26 +49,32 @@ PosedScan::PosedScan(const Points& points, const std::optional<Visibility>& seen
       surface_(surfaceOf(points, ball_.center,
                          seen ? std::optional(seen->normalized(ball_.center, scale_)) : std::nullopt)) {}
 
-PosedModel PosedScan::fitted(const std::string& name, const Points& points,
-                             const std::vector<Eigen::Isometry3d>& poses) const {
-  const SearchFrames frames{ball_.center, boundingBall(points).center, scale_};
-  const auto surface = std::make_shared<const PosedSurface>(surfaceOf(points, frames.target_center, std::nullopt));
-  std::vector<Eigen::Isometry3d> starts;
-  for (const Eigen::Isometry3d& pose : poses) starts.push_back(frames.toSearch(pose));
-  return fitted(name, surface, frames, starts);
+PosedModel PosedScan::withoutPose(const std::string& name, const Points& points) const {
+  PosedModel model;
+  model.model.name = name;
+  model.frames = {ball_.center, boundingBall(points).center, scale_};
+  model.surface = std::make_shared<const PosedSurface>(surfaceOf(points, model.frames.target_center, std::nullopt));
+  return model;
 }
 
-PosedModel PosedScan::fitted(const std::string& name, const std::shared_ptr<const PosedSurface>& surface,
-                             const SearchFrames& frames, const std::vector<Eigen::Isometry3d>& T_surface_scan) const {
+PosedModel PosedScan::fitted(const std::string& name, const Points& points,
+                             const std::vector<Eigen::Isometry3d>& poses) const {
+  const PosedModel model = withoutPose(name, points);
+  std::vector<Eigen::Isometry3d> starts;
+  for (const Eigen::Isometry3d& pose : poses) starts.push_back(model.frames.toSearch(pose));
+  return fitted(model, starts);
+}
+
+PosedModel PosedScan::fitted(const PosedModel& model, const std::vector<Eigen::Isometry3d>& T_surface_scan) const {
   PoseSearchOptions search = options_.search;
   search.num_threads = options_.num_threads;
   search.num_rotations = 0;
-  const std::vector<RankedPose> poses = searchPoses(surface_, *surface, T_surface_scan, search);
+  const std::vector<RankedPose> poses = searchPoses(surface_, *model.surface, T_surface_scan, search);
   std::vector<PosedModel> posed_models;
-  for (const RankedPose& pose : refinePoses(surface_, *surface, poses, options_)) {
-    posed_models.push_back(posed(name, surface, frames, pose.T_model_scan));
+  for (const RankedPose& pose : refinePoses(surface_, *model.surface, poses, options_)) {
+    posed_models.push_back(posed(model, pose.T_model_scan));
     if (surface_.seen)
-      posed_models.push_back(posed(name, surface, frames, posedInPicture(surface_, *surface, pose.T_model_scan)));
+      posed_models.push_back(posed(model, posedInPicture(surface_, *model.surface, pose.T_model_scan)));
   }
   return *std::max_element(posed_models.begin(), posed_models.end(), isWorse);
 }
@@ -83,27 +89,22 @@ PosedModel PosedScan::rotated(const PosedModel& found) const {
                        found.T_surface_scan);
     }
   }
-  PosedModel other = fitted(found.model.name, found.surface, found.frames, starts);
-  other.model.confidence = found.model.confidence;
+  const PosedModel other = fitted(found, starts);
   return isWorse(found, other) ? other : found;
 }
 
 PosedModel PosedScan::judged(const std::string& name, const Points& points,
                              const Eigen::Isometry3d& T_model_scan) const {
-  const SearchFrames frames{ball_.center, boundingBall(points).center, scale_};
-  const auto surface = std::make_shared<const PosedSurface>(surfaceOf(points, frames.target_center, std::nullopt));
-  const Eigen::Isometry3d pose = frames.toSearch(T_model_scan);
-  return posed(name, surface, frames, pose);
+  const PosedModel model = withoutPose(name, points);
+  return posed(model, model.frames.toSearch(T_model_scan));
 }
 
-PosedModel PosedScan::posed(const std::string& name, const std::shared_ptr<const PosedSurface>& surface,
-                            const SearchFrames& frames, const Eigen::Isometry3d& T_surface_scan) const {
-  RecognizedModel model;
-  model.name = name;
-  model.T_model_scan = frames.toInput(T_surface_scan);
-  model.score = scoreOf(*surface, T_surface_scan);
-  model.evidence = modelEvidence(surface_, *surface, T_surface_scan);
-  return {model, surface, T_surface_scan, frames};
+PosedModel PosedScan::posed(PosedModel model, const Eigen::Isometry3d& T_surface_scan) const {
+  model.T_surface_scan = T_surface_scan;
+  model.model.T_model_scan = model.frames.toInput(T_surface_scan);
+  model.model.score = scoreOf(*model.surface, T_surface_scan);
+  model.model.evidence = modelEvidence(surface_, *model.surface, T_surface_scan);
+  return model;
 }
 
 PoseScore PosedScan::scoreOf(const PosedSurface& model, const Eigen::Isometry3d& T_model_scan) const {

@@ -54,10 +54,9 @@ public:
   PosedModel judged(const std::string& name, const Points& points, const Eigen::Isometry3d& T_model_scan) const;
 
 private:
-  PosedModel fitted(const std::string& name, const std::shared_ptr<const PosedSurface>& surface,
-                    const SearchFrames& frames, const std::vector<Eigen::Isometry3d>& T_surface_scan) const;
-  PosedModel posed(const std::string& name, const std::shared_ptr<const PosedSurface>& surface,
-                   const SearchFrames& frames, const Eigen::Isometry3d& T_surface_scan) const;
+  PosedModel withoutPose(const std::string& name, const Points& points) const;
+  PosedModel fitted(const PosedModel& model, const std::vector<Eigen::Isometry3d>& T_surface_scan) const;
+  PosedModel posed(PosedModel model, const Eigen::Isometry3d& T_surface_scan) const;
   PoseScore scoreOf(const PosedSurface& model, const Eigen::Isometry3d& T_model_scan) const;
   PosedSurface surfaceOf(const Points& points, const Eigen::Vector3d& center, std::optional<Visibility> seen) const;
 

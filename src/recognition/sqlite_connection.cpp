@@ -75,21 +75,20 @@ void SQLiteStatement::Finalizer::operator()(sqlite3_stmt* statement) const {
 SQLiteStatement::SQLiteStatement(sqlite3* database, sqlite3_stmt* statement, const std::string& file)
     : database_(database), statement_(statement), file_(file) {}
 
-SQLiteStatement& SQLiteStatement::bound(int code) {
+void SQLiteStatement::check(int code) {
   if (code != SQLITE_OK) failIO(file_, reasonOf(database_));
-  return *this;
 }
 
-SQLiteStatement& SQLiteStatement::bind(int index, std::int64_t value) {
-  return bound(sqlite3_bind_int64(statement_.get(), index, value));
+void SQLiteStatement::bindOne(int index, std::int64_t value) {
+  check(sqlite3_bind_int64(statement_.get(), index, value));
 }
 
-SQLiteStatement& SQLiteStatement::bind(int index, const std::string& text) {
-  return bound(sqlite3_bind_text64(statement_.get(), index, text.data(), text.size(), SQLITE_TRANSIENT, SQLITE_UTF8));
+void SQLiteStatement::bindOne(int index, const std::string& text) {
+  check(sqlite3_bind_text64(statement_.get(), index, text.data(), text.size(), SQLITE_TRANSIENT, SQLITE_UTF8));
 }
 
-SQLiteStatement& SQLiteStatement::bindBlob(int index, const std::string& bytes) {
-  return bound(sqlite3_bind_blob64(statement_.get(), index, bytes.data(), bytes.size(), SQLITE_TRANSIENT));
+void SQLiteStatement::bindOne(int index, const SQLiteBlob& blob) {
+  check(sqlite3_bind_blob64(statement_.get(), index, blob.bytes.data(), blob.bytes.size(), SQLITE_TRANSIENT));
 }
 
 bool SQLiteStatement::next() {

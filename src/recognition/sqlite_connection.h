@@ -12,13 +12,21 @@ namespace pcl_symmetry::detail {
 /// Throws pcl::IOException "file: reason" and nothing else. (PCL puts " : " before its text.)
 [[noreturn]] void failIO(const std::string& file, const std::string& reason);
 
+/// Bytes that are bound to a statement.
+struct SQLiteBlob {
+  const std::string& bytes;
+};
+
 /// A statement of SQLite with its values. Every function throws pcl::IOException, which names the file and the reason.
 class SQLiteStatement {
 public:
-  /// \param index from 1.
-  SQLiteStatement& bind(int index, std::int64_t value);
-  SQLiteStatement& bind(int index, const std::string& text);
-  SQLiteStatement& bindBlob(int index, const std::string& bytes);
+  /// Sets all parameters, in their order: integers, texts and blobs.
+  template <typename... Values>
+  SQLiteStatement& bind(const Values&... values) {
+    int index = 0;
+    (bindOne(++index, values), ...);
+    return *this;
+  }
 
   /// \return whether there is another row.
   bool next();
@@ -33,7 +41,10 @@ public:
 private:
   friend class SQLiteConnection;
   SQLiteStatement(sqlite3* database, sqlite3_stmt* statement, const std::string& file);
-  SQLiteStatement& bound(int code);
+  void bindOne(int index, std::int64_t value);
+  void bindOne(int index, const std::string& text);
+  void bindOne(int index, const SQLiteBlob& blob);
+  void check(int code);
 
   struct Finalizer {
     void operator()(sqlite3_stmt* statement) const;
