@@ -40,6 +40,12 @@ private:
   Watch watch_;
 };
 
+/// Adds a function with these names of parameters, which all are given by the package.
+template <typename Function, typename... Names>
+void add(pybind11::module_& module, const char* name, const Function& function, Names... parameters) {
+  module.def(name, function, pybind11::arg(parameters)...);
+}
+
 /// Adds what the package needs for it to a module.
 inline void addComputing(pybind11::module_& module) {
   module.def("tell",

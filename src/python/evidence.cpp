@@ -70,9 +70,7 @@ public:
   Merging(const AnyArray& points, const py::object& faces, std::uint64_t seed, int threads) {
     const InputPoints input("points", points, 0, seed);
     if (!input.usesAllRows()) throw std::invalid_argument("points: vertices not all finite, must be");
-    SegmentationOptions options;
-    options.seed = seed;
-    options.num_threads = threads;
+    const auto options = optionsWith<SegmentationOptions>(seed, threads);
     const std::vector<std::vector<int>> polygons = polygonsOf(faces);
     const Computing computing;
     const SurfaceGraph graph = meshGraph(input.points(), polygons);

@@ -66,15 +66,6 @@ MeshSurface meshSurface(const AnyArray& vertices, const py::object& faces) {
   return {mesh.vertices.points(), mesh.triangles};
 }
 
-/// \return options with their seed and number of threads.
-template <typename Options>
-Options optionsWith(std::uint64_t seed, int threads) {
-  Options options;
-  options.seed = seed;
-  options.num_threads = threads;
-  return options;
-}
-
 /// \return the enumerator whose name, in their order, is \p value.
 /// \throws std::invalid_argument for another name.
 template <typename Enum>
@@ -416,12 +407,6 @@ std::pair<py::array_t<std::int64_t>, py::array_t<double>> pairs(const AnyArray& 
     distance[row(i)] = std::sqrt(found.sq_distances[i]);
   }
   return {toArray(index), toArray(distance)};
-}
-
-/// Adds a function with these names of parameters, which all are given by the package.
-template <typename Function, typename... Names>
-void add(py::module_& module, const char* name, const Function& function, Names... parameters) {
-  module.def(name, function, py::arg(parameters)...);
 }
 
 }  // namespace

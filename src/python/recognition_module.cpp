@@ -45,9 +45,7 @@ CloudRegistration registerPoints(const AnyArray& source, const AnyArray& target,
                                  const py::object& source_viewpoint, const py::object& target_viewpoint,
                                  std::uint64_t seed, int threads) {
   const Eigen::Isometry3d T_target_source = motionOf("guess", guess);
-  CloudRegistrationOptions options;
-  options.seed = seed;
-  options.num_threads = threads;
+  auto options = optionsWith<CloudRegistrationOptions>(seed, threads);
   if (around) options.around = PoseNeighborhood{around->first, around->second};
   options.validate();
   const InputPoints source_input("source", source, kRegistrationPoints, seed);
@@ -76,9 +74,7 @@ std::pair<RegisteredScans, py::array_t<int>> registerAllPoints(const std::vector
     scans.push_back({all.points(), seenFrom(few.points(), viewpoints[k])});
     rows.push_back(all.rows());
   }
-  CloudRegistrationOptions options;
-  options.seed = seed;
-  options.num_threads = threads;
+  const auto options = optionsWith<CloudRegistrationOptions>(seed, threads);
   RegisteredScans found;
   std::vector<ScanPoint> merged;
   {
@@ -388,10 +384,9 @@ void addRegistration(py::module_& module) {
         for (const ScanPair& pair : r.pairs) pairs.emplace_back(pair.source, pair.target, pair.overlap, pair.used);
         return pairs;
       });
-  module.def("register_all", &registerAllPoints, py::arg("clouds"), py::arg("viewpoints"), py::arg("seed"),
-             py::arg("threads"));
-  module.def("register", &registerPoints, py::arg("source"), py::arg("target"), py::arg("guess"), py::arg("around"),
-             py::arg("source_viewpoint"), py::arg("target_viewpoint"), py::arg("seed"), py::arg("threads"));
+  add(module, "register_all", &registerAllPoints, "clouds", "viewpoints", "seed", "threads");
+  add(module, "register", &registerPoints, "source", "target", "guess", "around", "source_viewpoint",
+      "target_viewpoint", "seed", "threads");
 }
 
 void addModels(py::module_& module) {
@@ -474,11 +469,11 @@ void addDatabase(py::module_& module) {
 }
 
 void addScenes(py::module_& module) {
-  module.def("read", &read, py::arg("path"), py::arg("text"), py::arg("is_ply"));
-  module.def("views", &views, py::arg("planes"), py::arg("num_symmetries"), py::arg("axes"), py::arg("maxima"),
-             py::arg("points"), py::arg("number"), py::arg("up"), py::arg("separation"), py::arg("worst"));
-  module.def("look", &look, py::arg("points"), py::arg("indices"), py::arg("viewpoint"), py::arg("ground"),
-             py::arg("max_points"), py::arg("as_measured"), py::arg("seed"), py::arg("threads"));
+  add(module, "read", &read, "path", "text", "is_ply");
+  add(module, "views", &views, "planes", "num_symmetries", "axes", "maxima", "points", "number", "up", "separation",
+      "worst");
+  add(module, "look", &look, "points", "indices", "viewpoint", "ground", "max_points", "as_measured", "seed",
+      "threads");
   py::class_<SceneOptions>(module, "SceneOptions")
       .def(py::init([](double plane_distance, double cluster_distance, int min_points, double max_range, int max_points,
                        bool separate, bool frames, bool complete, double min_confidence, double min_name_confidence,
@@ -502,8 +497,7 @@ void addScenes(py::module_& module) {
            py::arg("plane_distance"), py::arg("cluster_distance"), py::arg("min_points"), py::arg("max_range"),
            py::arg("max_points"), py::arg("separate"), py::arg("frames"), py::arg("complete"),
            py::arg("min_confidence"), py::arg("min_name_confidence"), py::arg("seed"), py::arg("threads"));
-  module.def("scene", &sceneOf, py::arg("points"), py::arg("viewpoint"), py::arg("ground"), py::arg("database"),
-             py::arg("options"));
+  add(module, "scene", &sceneOf, "points", "viewpoint", "ground", "database", "options");
 }
 
 }  // namespace

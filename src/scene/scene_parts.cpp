@@ -219,12 +219,11 @@ SeenSpace seenOfModel(const SeenSpace& seen, const SymmetryScene::Cloud& scene,
 
 SeenSpace standingInScene(const SeenSpace& seen, const SymmetryScene::Cloud::ConstPtr& scene, const pcl::Indices& part,
                           double tolerance) {
-  // A face of the object is no table.
-  std::vector<char> is_part(scene->size(), 0);
-  for (const pcl::index_t i : part) is_part[i] = 1;
-  pcl::Indices object, others;
+  pcl::Indices finite;
   for (std::size_t i = 0; i < scene->size(); ++i)
-    if (pcl::isXYZFinite((*scene)[i])) (is_part[i] ? object : others).push_back(static_cast<pcl::index_t>(i));
+    if (pcl::isXYZFinite((*scene)[i])) finite.push_back(static_cast<pcl::index_t>(i));
+  // A face of the object is no table.
+  const pcl::Indices others = without(finite, part, scene->size()), object = without(finite, others, scene->size());
   if (object.empty() || others.empty()) return seen;
   const SceneDistances distances = sceneDistances(*scene, others);
   if (!(distances.plane > 0.0)) return seen;
