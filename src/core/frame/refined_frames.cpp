@@ -5,8 +5,8 @@
 #include <optional>
 
 #include "core/base/statistics.h"
-#include "core/detection/plane_decision.h"
 #include "core/base/symmetric_solvers.h"
+#include "core/detection/plane_decision.h"
 #include "core/frame/canonical_frame.h"
 #include "core/frame/frame_evidence.h"
 #include "core/geometry/geometry_rules.h"
