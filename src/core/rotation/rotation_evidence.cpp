@@ -13,8 +13,6 @@
 #include "core/geometry/cloud_extent.h"
 #include "core/geometry/point_samples.h"
 #include "core/rotation/rotation_confidence_fit.h"
-#include "core/rotation/rotation_fit.h"
-#include "pcl_symmetry/core/rotation_group.h"
 
 namespace pcl_symmetry {
 
@@ -60,13 +58,14 @@ Eigen::Vector4d slopeOf(const std::array<Eigen::Isometry3d, 4>& beside, const Ei
 }  // namespace
 
 Eigen::Isometry3d motionAboutLine(const Line3d& line, double angle) {
-  return motionFixing(line.origin(), rotationAbout(line.direction(), angle));
+  const Eigen::Matrix3d rotation = Eigen::AngleAxisd(angle, line.direction()).toRotationMatrix();
+  return isometry(rotation, line.origin() - rotation * line.origin());
 }
 
 RotationEvidence::RotationEvidence(const NormalizedCloud& cloud, double tolerance, std::uint64_t seed)
     : cloud_(cloud),
       tolerance_(tolerance),
-      far_(kRotation.far_tolerances * tolerance),
+      far_(kScanAxes.far_tolerances * tolerance),
       reach_(kScanAxes.slack_of_reach * (far_ + greatestDisc(cloud.geometry))),
       samples_(drawSamples(cloud.points.cols(), kScanAxes.num_samples, seed)),
       few_samples_(drawSamples(cloud.points.cols(), kScanAxes.num_few_samples, seed)),

@@ -46,6 +46,7 @@ struct ScanAxisRules {
   double longest_step = 0.1;      ///< radians, radii, of a fit; starts are closer, larger steps leave the basin
   double fit_step = 1e-4;         ///< of derivatives, radians and radii
   double min_f = 1e-6;            ///< below any f that is not 0
+  double far_tolerances = 10.0;   ///< as ObjectSymmetryOptions::max_feature
   double slack_of_reach = 1.001;  ///< more than what distances are rounded by
   double max_off = 0.05, max_far = 0.0125;                  ///< shares thrown into empty space, of folds
   double max_round_off = 0.015, max_round_far = 0.004;      ///< the same of round bodies
