@@ -419,7 +419,9 @@ std::string linesOf(const SymmetryFrame& frame, const Eigen::Vector3d& shift) {
     if (rotation.confidence >= DetectionOptions().min_confidence) lines += lineOf(rotation, rotation.fold, shift);
   double others = 0.0;
   for (std::size_t i = 1; i < frame.probable.size(); ++i) others += frame.probable[i].probability;
-  if (!frame.probable.empty())
+  if (frame.revolution_axis == 3)
+    lines += "every line through the center is an axis of revolution\n";
+  else if (!frame.probable.empty())
     lines += formatted("probability of these axes %.2f, of ", frame.probable.front().probability) +
              counted(frame.probable.size() - 1, "other") + formatted(" %.2f\n", others);
   return lines;
