@@ -285,6 +285,10 @@ class OrganizedArrays(unittest.TestCase):
             pcl_symmetry.scene(self.frame[..., 2])
         with self.assertRaisesRegex(ValueError, "viewpoint: of rows without order"):
             pcl_symmetry.scene(box())
+        rows = pcl_symmetry.Shape(self.frame.reshape(-1, 3), np.empty((0, 3), np.int32), None)
+        self.assertEqual(len(pcl_symmetry.scene(rows)), 2, "a file without a viewpoint was seen from the origin")
+        with self.assertWarnsRegex(RuntimeWarning, "points: no finite point within max_range"):
+            self.assertEqual(len(pcl_symmetry.scene(self.frame, max_range=0.01)), 0)
         with self.assertWarnsRegex(RuntimeWarning, "points: no finite point"):
             nothing = pcl_symmetry.scene(np.full((24, 32, 3), np.nan))
         self.assertEqual(len(nothing), 0)

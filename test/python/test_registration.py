@@ -1,6 +1,5 @@
 """Poses of scans of bodies without symmetry: what overlaps decides."""
 import unittest
-import warnings
 from pathlib import Path
 
 import numpy as np
@@ -110,10 +109,10 @@ class Registration(unittest.TestCase):
 
     def test_thirty_points_are_refused(self):
         source = scan(body(3), 0)
-        with warnings.catch_warnings():
-            warnings.simplefilter("ignore")
+        with self.assertWarnsRegex(RuntimeWarning, "source: 30 points, must be at least 100"):
             found = pcl_symmetry.register(source[:30], source, threads=1)
         self.assertFalse(found.converged)
+        self.assertEqual(found.reason, "source: 30 points, must be at least 100")
 
 
 if __name__ == "__main__":

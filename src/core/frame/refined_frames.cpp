@@ -130,7 +130,9 @@ void refineOnMesh(const MeshSurface& mesh, SymmetryFrame& frame) {
 
 void refineOnPoints(const PointsRef& points, const Visibility* visibility, const FrameOptions& options,
                     SymmetryFrame& frame) {
-  for (const SymmetryRotation& rotation : frame.rotations) bringToAxis(rotation, frame);
+  // Half turns follow from planes.
+  for (const SymmetryRotation& rotation : frame.rotations)
+    if (rotation.fold != 2) bringToAxis(rotation, frame);
   std::vector<ReflectionPlane> starts;
   for (int k = 0; k < 3; ++k) starts.emplace_back(frame.axes.col(k), frame.axes.col(k).dot(frame.center));
   DetectionOptions detection;

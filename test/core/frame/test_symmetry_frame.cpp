@@ -10,6 +10,7 @@
 #include "core/frame/plane_profiles.h"
 #include "core/frame/probable_frames.h"
 #include "core/geometry/cloud_extent.h"
+#include "pcl_symmetry/core/detect_planes.h"
 #include "shapes/complaint.h"
 #include "shapes/scans.h"
 #include "shapes/shapes.h"
@@ -149,6 +150,41 @@ TEST(SymmetryFrame, OfAWholeCloudIsThatOfItsPlanes) {
     EXPECT_LT((frame.T_canonical_input * frame.center).norm(), 1e-9) << seed;
     EXPECT_LT((frame.T_canonical_input.linear() * frame.axes - Eigen::Matrix3d::Identity()).norm(), 1e-9) << seed;
   }
+}
+
+TEST(SymmetryFrame, LiesOnThePlanesThatAreDecided) {
+  const Points few = test::box({1.0, 0.7, 0.4}, 3000, Sampling::Random, 3).cloud();
+  const SymmetryFrame frame = symmetryFrame(few);
+  const Detection found = detectPlanes(few);
+  ASSERT_EQ(found.planes.size(), 3u);
+  for (const SymmetryPlane& plane : found.planes)
+    EXPECT_LT(std::abs(plane.signedDistance(frame.center)), 1e-4 * diameter(few));
+}
+
+TEST(SymmetryFrame, OfAScanLiesOnThePlaneThatIsDecided) {
+  const test::Scan scan = test::scan(test::blockBox(), 6.0 * Eigen::Vector3d(1.0, 1.3, 0.8).normalized());
+  const Points cloud = scan.cloud();
+  const Visibility visibility = scan.visibility();
+  const SymmetryFrame frame = symmetryFrame(cloud, {}, &visibility);
+  const Detection found = detectPlanes({cloud, &visibility});
+  ASSERT_FALSE(found.planes.empty());
+  const SymmetryPlane& best = found.planes.front();
+  ASSERT_EQ(best.kind, PlaneKind::Symmetry);
+  EXPECT_GT((frame.axes.transpose() * best.normal()).cwiseAbs().maxCoeff(), std::cos(0.2 * kDegree));
+  EXPECT_LT(std::abs(best.signedDistance(frame.center)), 2e-3 * diameter(cloud));
+}
+
+TEST(SymmetryFrame, OfAScanOfABodyOfRevolutionLiesOnItsAxis) {
+  const Points cloud = test::cylinder(20'000, 1).cloud();  // of radius 0.6
+  const Eigen::Vector3d scanner(5.0, 0.0, 3.0);
+  const Points seen = test::pointsWhere(cloud, [](const Eigen::Vector3f& x) {
+    return x.z() == 1.0f || (x.z() > -1.0f && 5.0f * x.x() > 0.36f && x.head<2>().norm() > 0.599f);
+  });
+  const Visibility visibility(seen, scanner);
+  const SymmetryFrame frame = symmetryFrame(seen, {}, &visibility);
+  ASSERT_GE(frame.revolution_axis, 0);
+  EXPECT_GT(std::abs(frame.axes(2, frame.revolution_axis)), std::cos(0.5 * kDegree));
+  EXPECT_LT(frame.center.head<2>().norm(), 0.005 * diameter(cloud));
 }
 
 TEST(SymmetryFrame, ListsTheFramesThatSymmetryLeavesEquallyGood) {

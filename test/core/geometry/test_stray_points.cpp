@@ -55,6 +55,12 @@ TEST(StrayPoints, AreFoundWhereverTheyLie) {
     }
 }
 
+TEST(StrayPoints, MakeNoLineOfTheOthersHoweverFarTheyAre) {
+  const Points cloud = box(2000, Sampling::Random, 3).cloud();
+  for (const float far : {1e3f, 1e7f, 1e12f, 1e18f})
+    EXPECT_EQ(whyUnanswerable(joined(cloud, Eigen::Vector3f(far, 0.0f, 0.0f))), "") << far;
+}
+
 TEST(StrayPoints, OfOnePositionAreOne) {
   const Points cloud = box(2000, Sampling::Random, 3).cloud();
   const Points far = cloud.colwise() + Eigen::Vector3f(50.0f, 0.0f, 0.0f);
