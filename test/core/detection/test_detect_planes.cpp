@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "core/detection/cloud_subset.h"
+#include "core/geometry/closest_points.h"
 #include "core/geometry/point_samples.h"
 #include "shapes/counting_search.h"
 #include "shapes/found_planes.h"
@@ -126,12 +127,13 @@ TEST(CloudSubset, LeavesCloudsOfFewDistinctPoints) {
 TEST(CloudSubset, NamesTheNearestPoint) {
   const Points points = moved(prism(5, 30'000, Sampling::Random, 2), randomPose(3)).cloud();
   const Points kept = pointsAt(points, *subsetOf(points, DetectionOptions()));
-  const std::vector<int> nearest = nearestOf(kept, points, 1);
+  const auto search = makeFlannSearch(kept);
+  const std::vector<int> nearest = closestPoints(*search, points, 1).index;
   for (std::size_t i = 0; i < nearest.size(); i += 500) {
     const auto sq_distances = (kept.colwise() - points.col(static_cast<Eigen::Index>(i))).colwise().squaredNorm();
     EXPECT_EQ(sq_distances[nearest[i]], sq_distances.minCoeff());
   }
-  EXPECT_EQ(nearest, nearestOf(kept, points, 2));
+  EXPECT_EQ(nearest, closestPoints(*search, points, 2).index);
 }
 
 TEST(CloudSubset, PlanesAndSupportAreOfTheWholeCloud) {

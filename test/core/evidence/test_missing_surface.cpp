@@ -32,7 +32,7 @@ struct Surface {
     std::vector<int> closest;
     std::vector<float> sq_distances;
     search->search(others, 1, closest, sq_distances);
-    return surfaceDistances(others, closest, {points, geometry});
+    return surfaceDistances(others, closest, surfaceSamples(points, geometry));
   }
 
   double borderShare() const {
@@ -181,7 +181,8 @@ TEST(SurfaceDistance, IsThatOfDiscsAroundTheSamples) {
   EXPECT_GT(beside, 0.5 - 0.35);
   EXPECT_NEAR(distanceOf({2.6f, 0.0f, 0.0f}) - beside, 0.1, 1e-5);
   const Points point = Eigen::Vector3f::Zero();
-  EXPECT_TRUE(std::isinf(surfaceDistances(point, {-1}, {surface.points, surface.geometry})[0])) << "no sample is near";
+  EXPECT_TRUE(std::isinf(surfaceDistances(point, {-1}, surfaceSamples(surface.points, surface.geometry))[0]))
+      << "no sample is near";
 }
 
 TEST(SurfaceDistance, OwnDistancesAreThoseOfASecondSampleOfANoisySurface) {
@@ -194,7 +195,7 @@ TEST(SurfaceDistance, OwnDistancesAreThoseOfASecondSampleOfANoisySurface) {
     second.col(i) += Eigen::Vector3f(0.05f, 0.05f, noise * static_cast<float>(gaussian(random)));
   }
   const Surface surface(first);
-  const double own = shareWithin(ownSurfaceDistances({first, surface.geometry}), noise);
+  const double own = shareWithin(ownSurfaceDistances(surfaceSamples(first, surface.geometry)), noise);
   const double other = shareWithin(surface.distancesTo(second), noise);
   // The standard error of either is 0.012. Without the factor for new points, own exceeds other by 0.1 and more.
   EXPECT_NEAR(own, other, 0.06);
