@@ -135,9 +135,9 @@ def render(models, placed, sensor):
     return depths, ids, [(int((ids == k).sum()), int(hit.sum()), bool((hit & border).any())) for k, hit in enumerate(hits)]
 
 
-def with_noise(depths, factor, random):
-    """Errors of a depth camera with structured light, which measures disparities in whole steps and mixes the depths at
-    edges."""
+def with_noise(depths, factor, random, flying=FLYING):
+    """Errors of a depth camera with structured light, which measures disparities in whole steps and mixes the depths of
+    a share of the pixels at edges, the flying ones."""
     if factor == 0:
         return depths
     noisy = depths.copy()
@@ -146,8 +146,8 @@ def with_noise(depths, factor, random):
         step = np.where(np.isfinite(depths) & np.isfinite(beside), beside, 0) - np.where(np.isfinite(depths), depths, 0)
         edge = np.isfinite(depths) & np.isfinite(beside) & (np.abs(step) > EDGE * depths)
         edge[(slice(None),) * axis + (-1,)] = False  # nothing is beside the last ones
-        flying = edge & (random.uniform(size=depths.shape) < factor * FLYING)
-        noisy[flying] = (depths + random.uniform(size=depths.shape) * step)[flying]
+        flies = edge & (random.uniform(size=depths.shape) < factor * flying)
+        noisy[flies] = (depths + random.uniform(size=depths.shape) * step)[flies]
     disparities = 1 / (factor * STEP * noisy) + DEVIATION / STEP * random.normal(size=depths.shape)
     return np.where(np.isfinite(depths), 1 / (factor * STEP * np.maximum(1, np.round(disparities))), np.inf)
 
@@ -165,7 +165,7 @@ def make(number, arguments):
                         "T_scene_model": pose.ravel().tolist(), "num_visible": num_visible, "num_alone": num_alone,
                         "cropped": cropped, "symmetries": references.moved(models[index]["symmetries"], pose)})  # fmt: skip
     for noise in arguments.noise:
-        measured = with_noise(depths, noise, bench.generator(arguments.seed, "noise", number, noise))
+        measured = with_noise(depths, noise, bench.generator(arguments.seed, "noise", number, noise), arguments.flying)
         points = bench.moved(sensor, np.where(np.isfinite(measured), measured, np.nan)[..., None] * rays())
         name = f"scene_{int(number):04d}_noise_{noise:g}"
         bench.write_cloud(f"{arguments.frames}/{name}.pcd", points, sensor, label=ids)
@@ -366,6 +366,7 @@ if __name__ == "__main__":
     add("--scenes", type=int, default=100, help="number of scenes")
     add("--objects", type=int, default=12, help="greatest number of objects of a scene")
     add("--noise", type=bench.numbers(float), default="0,1", help="factors of the sensor's noise")
+    add("--flying", type=float, default=FLYING, help="share of the pixels at edges that mix two depths, at noise 1")
     add("--seen", type=bench.numbers(str, ("alone", "label", "scene")), default="alone,label,scene", help="how objects are asked for")
     add("--most-in-band", type=int, default=0, help="objects of a band after which others are passed over; 0: none are")
     add("--leave-out", type=int, default=0, help="also ask a database without every N-th model; 0: do not")
