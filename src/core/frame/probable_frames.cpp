@@ -95,6 +95,7 @@ double Outline::angleOf(const Eigen::Vector3f& vector) const {
 }
 
 Outline::Box Outline::boxAt(double angle) const {
+  if (corners_.empty()) return {};
   const float c = static_cast<float>(std::cos(angle)), s = static_cast<float>(std::sin(angle));
   Eigen::Matrix2f sides;
   sides << c, s, -s, c;
