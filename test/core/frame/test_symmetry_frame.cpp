@@ -180,7 +180,7 @@ TEST(SymmetryFrame, OfAScanOfABodyOfRevolutionLiesOnItsAxis) {
   const Points seen = test::pointsWhere(cloud, [](const Eigen::Vector3f& x) {
     return x.z() == 1.0f || (x.z() > -1.0f && 5.0f * x.x() > 0.36f && x.head<2>().norm() > 0.599f);
   });
-  const Visibility visibility(seen, scanner);
+  const Visibility visibility = *Visibility::fromPoints(seen, scanner);
   const SymmetryFrame frame = symmetryFrame(seen, {}, &visibility);
   ASSERT_GE(frame.revolution_axis, 0);
   EXPECT_GT(std::abs(frame.axes(2, frame.revolution_axis)), std::cos(0.5 * kDegree));
