@@ -505,7 +505,7 @@ class OtherFunctions(unittest.TestCase):
                 self.assertGreater(away / np.linalg.norm(away) @ view.direction, 0.9)
             (worst,) = pcl_symmetry.viewpoints(points, worst=True)
             self.assertLess(worst.score, views[0].score)
-        for wrong, words in ((dict(number=0), "num_views = 0, must be >= 1"), (dict(up=(0, 0, 0)), "up = "), (dict(separation=4.0), "separation = 4")):
+        for wrong, words in ((dict(number=0), "number = 0, must be >= 1"), (dict(up=(0, 0, 0)), "up = "), (dict(separation=4.0), "separation = 4")):
             with self.assertRaisesRegex(ValueError, words):
                 pcl_symmetry.viewpoints(box(), **wrong)
         with self.assertWarnsRegex(RuntimeWarning, "points: .*at least 20"):

@@ -24,6 +24,7 @@ from .results import (
     Registration,
     Scene,
     SceneObject,
+    Shape,
     Support,
     shown,
 )
