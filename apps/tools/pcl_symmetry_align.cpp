@@ -102,6 +102,7 @@ SymmetryFrame computeFrame(const Console& console, const InputShape& input, cons
   Step step(console, "Searching the frame");
   FrameOptions options;
   options.as_published = as_published;
+  options.refined = !input.shape.mesh || common.viewpoint.mode == Viewpoint::Mode::Given;  // else on the mesh itself
   common.applyTo(options);
   SymmetryAlignment<pcl::PointXYZ> alignment;
   return namingFile(input.path, [&] {

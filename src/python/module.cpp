@@ -254,6 +254,7 @@ SymmetryFrame frame(const AnyArray& points, const py::object& viewpoint, std::si
   const InputPoints input("points", points, max_points, seed);
   const std::optional<Visibility> seen = seenFrom(input.points(), viewpoint);
   checkAnswerable("points", input.points());
+  options.refined = !mesh || seen;  // else on the mesh itself
   const Computing computing;
   SymmetryFrame found = symmetryFrame(input.points(), options, seen ? &*seen : nullptr);
   if (mesh && !seen) refineOnMesh(*mesh, found);
