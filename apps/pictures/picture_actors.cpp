@@ -186,7 +186,9 @@ void addLegend(vtkRenderer& renderer, const PicturePanel& panel, int panel_heigh
   constexpr std::size_t kMostNames = 16;
   const std::size_t number = std::min(panel.legend.size(), kMostNames);
   for (std::size_t i = 0; i < number; ++i) {
-    const auto& [segment, name] = panel.legend[i];
+    const auto& [segment, own_name] = panel.legend[i];
+    const bool is_last = i + 1 == number && number < panel.legend.size();
+    const std::string name = is_last ? "... " + std::to_string(panel.legend.size()) + " in all" : own_name;
     const Eigen::Vector3d color = segmentColor(segment);
     const double ink = color.mean() < 0.45 ? 1.0 : 0.1;
     vtkNew<vtkTextActor> actor;

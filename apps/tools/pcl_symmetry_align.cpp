@@ -174,6 +174,9 @@ BestPlane completingPlane(const Console& console, const InputShape& input, const
   BestPlane best = bestPlane(console, input, common);
   if (!by_any_plane && best.kind == toString(PlaneKind::Approximate))
     throw InputError(input.path + ": has no plane of symmetry to complete it across; -any_plane takes the best one");
+  if (best.kind == toString(PlaneKind::Possible))
+    console.warn(input.path +
+                 formatted(": completed across a plane that is only possible, of confidence %.2f", best.confidence));
   return best;
 }
 

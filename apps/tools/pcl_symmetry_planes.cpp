@@ -114,11 +114,15 @@ std::string measured(double number) {
 /// Why a plane has its confidence and kind: what was measured, what that makes of it, then factors on the odds.
 std::string explained(const std::string& name, const SymmetryPlane& plane, double tolerance) {
   std::string lines = formatted("%s: %s, confidence %.3f\n", name.c_str(), toString(plane.kind), plane.confidence);
-  if (!std::isnan(plane.share))
+  if (!std::isnan(plane.share)) {
+    // Of planes that are far off, the distances of the worst points are not searched.
+    const std::string most =
+        plane.deviation < 50.0 * tolerance ? formatted(", 97 %% within %.3g", plane.deviation) : "";
     lines += formatted(
-        "  %.1f %% of the surface within %.3g of its reflection, 97 %% within %.3g; a symmetry has 97 %% "
-        "within %.3g\n  %.0f %% of the reflections fall where the surface would have been seen\n",
-        100.0 * plane.share, tolerance, plane.deviation, tolerance, 100.0 * plane.seen);
+        "  %.1f %% of the surface within %.3g of its reflection%s; a symmetry has 97 %%\n"
+        "  %.0f %% of the reflections fall where the surface would have been seen\n",
+        100.0 * plane.share, tolerance, most.c_str(), 100.0 * plane.seen);
+  }
   bool is_first = true;
   for (const Reason& reason : plane.reasons) {
     if (!reason.odds)

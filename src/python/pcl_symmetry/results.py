@@ -440,7 +440,7 @@ class Planes(Result):
     planes: List[Plane]
     """The symmetries, best first; with as_published all planes, which nothing judged."""
     possible: List[Plane]
-    """What may be a symmetry: planes of a confidence of 0.2 to 0.5, best first."""
+    """What may be a symmetry: planes of a confidence of 0.2 to 0.5, and those that the points cannot decide; best first."""
     approximate: List[Plane]
     """With planes(approximate=True): approximate symmetries, then those of parts (local); each best first."""
     axes: List[Axis]
