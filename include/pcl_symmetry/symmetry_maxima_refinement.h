@@ -94,8 +94,8 @@ public:
   void setAsPublished(bool as_published) { as_published_ = as_published; }
 
   /// Finds the planes.
-  /// \return the planes, best first, in the frame of the input; empty where the shape has no symmetry, and where the
-  /// input holds no answer, see getReason().
+  /// \return the planes, best first, in the frame of the input: by their kind symmetries, then what is only possible.
+  /// Empty where there is neither, and where the input holds no answer, see getReason().
   /// \throws pcl::BadArgumentException where the points surround the viewpoint that was given.
   std::vector<SymmetryPlane> compute();
 
