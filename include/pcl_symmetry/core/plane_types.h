@@ -56,7 +56,7 @@ struct SymmetryPlane : ReflectionPlane {
   double share_low = 0.0;
   double share_high = 1.0;  ///< upper limit
   /// Distance that 97 % of the reflected points stay within from the surface, input units: the least tolerance at which
-  /// the plane would be a symmetry. NaN where the share is.
+  /// the plane would be a symmetry; the diameter where it is farther than was searched. NaN where the share is.
   double deviation = 0.0;
   /// Share of the points whose reflection falls where the cloud could show it, in [0, 1]: less than 1 for planes of
   /// scans and where a piece of the surface is missing.
