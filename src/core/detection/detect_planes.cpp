@@ -361,7 +361,7 @@ std::vector<SymmetryPlane> refinedAt(const std::vector<ReflectionPlane>& starts,
 }
 
 void refineOnMesh(const MeshSurface& mesh, Detection& found, const DetectionOptions& options) {
-  constexpr double kOne = 0.01;             // after refinement; those of 120 teeth are 0.026 apart
+  constexpr double kSameOnMesh = 0.01;      // after refinement; those of 120 teeth are 0.026 apart
   constexpr double kNearlySymmetric = 0.9;  // share of the best plane that may be a symmetry of the mesh itself
   const auto inBall = [&](const ReflectionPlane& plane) {
     return normalized(plane, mesh.ball().center, mesh.ball().radius);
@@ -371,7 +371,7 @@ void refineOnMesh(const MeshSurface& mesh, Detection& found, const DetectionOpti
   for (SymmetryPlane& plane : found.planes) {
     if (isDecided(plane)) {
       refine(mesh, plane, found.tolerance, options);
-      if (MergeTolerance{kOne, kOne}.anySame(kept, inBall(plane), inBall)) continue;
+      if (MergeTolerance{kSameOnMesh, kSameOnMesh}.anySame(kept, inBall(plane), inBall)) continue;
       if (plane.kind == PlaneKind::Approximate && !options.approximate) {
         if (!dropped || plane.share > dropped->share) dropped = std::move(plane);
         continue;
