@@ -112,16 +112,16 @@ std::string measured(double number) {
 }
 
 /// Why a plane has its confidence and kind: what was measured, what that makes of it, then factors on the odds.
-std::string explained(const std::string& name, const SymmetryPlane& plane, double tolerance) {
+std::string explained(const std::string& name, const SymmetryPlane& plane, const Findings& findings) {
   std::string lines = formatted("%s: %s, confidence %.3f\n", name.c_str(), toString(plane.kind), plane.confidence);
   if (!std::isnan(plane.share)) {
-    // Of planes that are far off, the distances of the worst points are not searched.
+    // It is the diameter where the worst points are farther than was searched.
     const std::string most =
-        plane.deviation < 50.0 * tolerance ? formatted(", 97 %% within %.3g", plane.deviation) : "";
+        plane.deviation < 0.99 * findings.diameter ? formatted(", 97 %% within %.3g", plane.deviation) : "";
     lines += formatted(
         "  %.1f %% of the surface within %.3g of its reflection%s; a symmetry has 97 %%\n"
         "  %.0f %% of the reflections fall where the surface would have been seen\n",
-        100.0 * plane.share, tolerance, most.c_str(), 100.0 * plane.seen);
+        100.0 * plane.share, findings.tolerance, most.c_str(), 100.0 * plane.seen);
   }
   bool is_first = true;
   for (const Reason& reason : plane.reasons) {
@@ -156,8 +156,8 @@ std::string explained(const Findings& findings) {
     lines += explained("axis of revolution", axis, "at eight angles through it");
   for (const SymmetryRotation& rotation : findings.rotations) lines += explained(rotation);
   for (std::size_t i = 0; i < findings.planes.size(); ++i)
-    lines += explained("plane " + std::to_string(i + 1), findings.planes[i], findings.tolerance);
-  if (findings.best) lines += explained("best plane", *findings.best, findings.tolerance);
+    lines += explained("plane " + std::to_string(i + 1), findings.planes[i], findings);
+  if (findings.best) lines += explained("best plane", *findings.best, findings);
   return lines;
 }
 

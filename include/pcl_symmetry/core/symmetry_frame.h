@@ -25,8 +25,8 @@ struct FrameOptions : MapSize {
   /// publishedPlanes(); then two more picked greedily by D, of 256 samples (to 1 %), at 64 angles across the first
   /// axis. It ignores what a scanner saw, and no scores tie.
   bool as_published = false;
-  /// Searches the axes of rotation of scans too, SymmetryFrame::rotations, which a frame has its axis and center on if
-  /// they are not half turns; false saves about a third of the time.
+  /// Searches the axes of rotation of scans, too, see SymmetryFrame::rotations; the frame is moved onto those that are
+  /// not half turns. False saves about a third of the time.
   bool rotations = true;
   /// Moves the center and axes to the planes of symmetry that detectPlanes() decides, and to the axes of rotations.
   bool refined = true;

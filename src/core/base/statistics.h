@@ -32,7 +32,7 @@ T median(std::vector<T> values) {
   return *middle;
 }
 
-/// The value that \p share of the values are less than.
+/// The value below which \p share of the values lie.
 /// \param values at least one.
 /// \param share in [0, 1].
 template <typename T>
