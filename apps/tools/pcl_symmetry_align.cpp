@@ -117,16 +117,6 @@ SymmetryFrame computeFrame(const Console& console, const InputShape& input, cons
   });
 }
 
-/// The plane through an axis of revolution that takes the side that was seen to the other.
-ReflectionPlane planeThrough(const SymmetryAxis& axis, const Eigen::Vector3d& scanner) {
-  constexpr double kLeastSine = 1e-6;  // a scanner that is closer to the axis gives no direction
-  const Eigen::Vector3d to_scanner = scanner - axis.point;
-  const Eigen::Vector3d across = to_scanner - axis.direction.dot(to_scanner) * axis.direction;
-  const Eigen::Vector3d normal =
-      across.norm() > kLeastSine * to_scanner.norm() ? across.normalized() : axis.direction.unitOrthogonal();
-  return ReflectionPlane(normal, normal.dot(axis.point));
-}
-
 /// What a shape is completed or symmetrized by, in the frame of the shifted points.
 struct BestPlane {
   ReflectionPlane plane;
@@ -157,7 +147,7 @@ BestPlane bestPlane(const Console& console, const InputShape& input, const Commo
     const SymmetryAxis& axis = refinement.getAxes().front();
     const Eigen::Vector3d scanner =
         refinement.getUsedViewpoint().value_or(input.shape.points->sensor_origin_.head<3>().cast<double>().eval());
-    return {planeThrough(axis, scanner), "through the axis", axis.confidence};
+    return {planeAcrossView({axis.point, axis.direction}, scanner), "through the axis", axis.confidence};
   }
   if (const auto& best = refinement.getDetection().best; planes.empty() && best) {
     step.done("no symmetry");

@@ -293,13 +293,15 @@ ObjectSymmetries rotationsOf(const std::vector<RowMajor4>& discrete,
 }
 
 /// \return the added points, and the rows that they are the reflections of.
-std::pair<py::array_t<float>, std::vector<std::size_t>> complete(const AnyArray& points, const ReflectionPlane& plane,
-                                                                 const py::object& viewpoint, int threads) {
+std::pair<py::array_t<float>, std::vector<std::size_t>> complete(
+    const AnyArray& points, const std::optional<ReflectionPlane>& by,
+    const std::optional<std::pair<Eigen::Vector3d, Eigen::Vector3d>>& axis, const py::object& viewpoint, int threads) {
   CompletionOptions options;
   options.num_threads = threads;
   options.validate();
   const InputPoints input("points", points, 0, 0);
   const std::optional<Visibility> seen = seenFrom(input.points(), viewpoint);
+/// \param by none: the plane through the axis, a point and a direction, and across the view.
   Points added;
   std::vector<std::size_t> rows;
   {
@@ -309,6 +311,8 @@ std::pair<py::array_t<float>, std::vector<std::size_t>> complete(const AnyArray&
     added.resize(3, completing.size());
     for (std::size_t i = 0; i < completing.size(); ++i) {
       const auto source = static_cast<std::size_t>(completing[i]);
+  const ReflectionPlane plane =
+      by ? *by : planeAcrossView({axis->first, axis->second}, seen ? seen->viewpoint() : axis->first);
       added.col(i) = plane.reflect(all.col(completing[i]).cast<double>()).cast<float>();
       rows.push_back(input.rows().empty() ? source : input.rows()[source]);
     }
@@ -439,7 +443,7 @@ PYBIND11_MODULE(_pcl_symmetry, module) {
   add(module, "describe", &describe, "points", "viewpoint", "seed", "threads");
   add(module, "segment", &segment, "points", "faces", "parts", "method", "depth", "as_published", "progress", "seed",
       "threads");
-  add(module, "complete", &complete, "points", "plane", "viewpoint", "threads");
+  add(module, "complete", &complete, "points", "plane", "axis", "viewpoint", "threads");
   add(module, "symmetrize", &symmetrize, "points", "faces", "plane", "half", "threads");
   add(module, "mirrored_half", &mirroredHalfOf, "vertices", "faces", "plane", "left");
   add(module, "profile", &revolutionProfileOf, "points", "point", "direction", "num_points");

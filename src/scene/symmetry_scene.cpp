@@ -56,9 +56,7 @@ std::optional<ReflectionPlane> completingPlane(const SceneObject& object, const 
   const bool has_plane = !object.planes.empty() && object.planes.front().kind == PlaneKind::Symmetry;
   if (!object.axes.empty() && seen) {
     const SymmetryAxis& axis = object.axes.front();
-    const Eigen::Vector3d toward = seen->viewpoint() - axis.point;
-    const Eigen::Vector3d across = toward - toward.dot(axis.direction) * axis.direction;
-    if (across.norm() > 0.0) return ReflectionPlane(across.normalized(), across.normalized().dot(axis.point));
+    return planeAcrossView({axis.point, axis.direction}, seen->viewpoint());
   }
   if (!has_plane) return std::nullopt;
   return object.planes.front();

@@ -401,6 +401,12 @@ class OtherFunctions(unittest.TestCase):
         possible = dataclasses.replace(pcl_symmetry.planes(points)[0], normal=plane.normal, offset=0.0, kind="possible", confidence=0.3)
         doubt = f"points: {len(added)} are added across a plane that is only possible, of confidence 0.30"
         for cloud, by, words in (
+        axis, front = pcl_symmetry.Axis(np.array([0, 0, 1.0]), np.eye(3)[2], 1, 1, 1), np.array([5.0, 0, 0])
+        across = pcl_symmetry.complete(half, plane, viewpoint=front)
+        for place in (np.zeros(3), FarFromTheOrigin.SHIFT):  # the plane through the axis and across the view
+            by_axis = pcl_symmetry.complete(half + place, dataclasses.replace(axis, point=axis.point + place), viewpoint=front + place)
+            np.testing.assert_array_equal(by_axis[1], across[1])
+            np.testing.assert_allclose(by_axis[0], across[0] + place, atol=1e-5)
             (half, possible, doubt),
             (np.concatenate([half, half * (-1, 1, 1)]), plane, "points: 0 are added: their reflections fall onto the points"),
             (np.full((9, 3), np.nan), plane, "points: 0 are added: no finite point"),

@@ -22,6 +22,11 @@ struct CompletionOptions {
   void validate() const;
 };
 
+/// The plane through an axis of revolution that takes the side that was seen to the other: it lies across the view.
+/// \param viewpoint where the scanner stood; on the axis it gives no direction, and any plane through the axis is
+/// returned.
+ReflectionPlane planeAcrossView(const Line3d& axis, const Eigen::Vector3d& viewpoint);
+
 /// The points of a partial scan whose reflections show what the scanner did not see of a symmetric object: they fall
 /// neither onto the measured surface nor into space that was seen to be empty.
 /// \param points 3 x N, finite, input units.

@@ -15,6 +15,15 @@ void CompletionOptions::validate() const {
   checkNumThreads(num_threads);
 }
 
+ReflectionPlane planeAcrossView(const Line3d& axis, const Eigen::Vector3d& viewpoint) {
+  constexpr double kLeastSine = 1e-6;  // a viewpoint that is closer to the axis gives no direction
+  const Eigen::Vector3d view = viewpoint - axis.origin();
+  const Eigen::Vector3d across = view - axis.direction().dot(view) * axis.direction();
+  const Eigen::Vector3d normal =
+      across.norm() > kLeastSine * view.norm() ? across.normalized() : axis.direction().unitOrthogonal();
+  return ReflectionPlane(normal, normal.dot(axis.origin()));
+}
+
 std::vector<int> completingPoints(const PointsRef& points, const ReflectionPlane& plane,
                                   const CompletionOptions& options, const Visibility* visibility) {
   options.validate();

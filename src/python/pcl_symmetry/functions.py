@@ -596,7 +596,7 @@ def local_symmetry(
 
 def complete(
     points: Any,
-    plane: ReflectionPlane,
+    plane: Union[ReflectionPlane, Axis],
     *,
     viewpoint: Viewpoint = "auto",
     indices: Optional[ArrayLike] = None,
@@ -605,9 +605,8 @@ def complete(
     """Completes a scan by its reflection in a plane.
 
     points, viewpoint, indices: as in planes(); of a mesh its vertices. plane: a symmetry, or a possible one, of planes(); any
-    other is refused, unless it comes as ReflectionPlane(plane.normal, plane.offset). Of a body of revolution, which has an axis in
-    place of planes, one through the axis and across the view, with view from the scanner to the object:
-    normal = view - view @ axis.direction * axis.direction, ReflectionPlane(normal, normal @ axis.point).
+    other is refused, unless it comes as ReflectionPlane(plane.normal, plane.offset). Of a body of revolution its Axis: the plane
+    through it and across the view is taken.
     Returns (added, rows). added: (M, 3) points that neither fall onto the measured surface nor into space that was seen to be
     empty. rows: (M,) the row of the point that each is the reflection of: added is plane.reflect(points.reshape(-1, 3)[rows]).
     Warns (RuntimeWarning) where nothing is added, and where the plane is only possible, with its confidence.
@@ -620,7 +619,12 @@ def complete(
             f"plane.kind = {plane.kind}, must be symmetry or possible; ReflectionPlane(plane.normal, plane.offset) is taken as it is"
         )
     used = look(cloud, viewpoint, indices, max_points=0, as_measured=True, threads=threads)
-    added, found = core.complete(used.array, _core_plane(plane, cloud.shift), viewpoint=used.viewpoint, threads=threads)
+    by = axis = None
+    if isinstance(plane, Axis):
+        axis = (plane.point if cloud.shift is None else plane.point - cloud.shift, plane.direction)
+    else:
+        by = _core_plane(plane, cloud.shift)
+    added, found = core.complete(used.array, by, axis=axis, viewpoint=used.viewpoint, threads=threads)
     rows = np.asarray(found, dtype=np.int64)
     if used.rows is not None:
         rows = np.asarray(used.rows, dtype=np.int64)[rows]
