@@ -92,9 +92,17 @@ SymmetrizedShape symmetrize(const AnyArray& points, const py::object& faces, con
     return symmetrizedMesh(mesh.vertices.points(), mesh.triangles, plane, kept, threads);
   }
   const InputPoints input("points", points, 0, 0);
-  if (!input.usesAllRows()) throw std::invalid_argument("points: not all finite, must be");
   const Computing computing;
-  return symmetrizedCloud(input.points(), plane, kept, threads);
+  const SymmetrizedShape found = symmetrizedCloud(input.points(), plane, kept, threads);
+  const std::vector<std::size_t>& rows = input.rows();
+  if (rows.empty()) return found;
+  SymmetrizedShape all = found;  // other rows are not finite
+  all.points = Points::Constant(3, static_cast<Eigen::Index>(input.numRows()), std::nanf(""));
+  all.points(Eigen::all, rows) = found.points;
+  all.asymmetry.assign(input.numRows(), std::nanf(""));
+  for (std::size_t i = 0; i < rows.size(); ++i) all.asymmetry[rows[i]] = found.asymmetry[i];
+  for (int& row : all.kept) row = static_cast<int>(rows[row]);
+  return all;
 }
 
 /// \return vertices, faces, and the row that each vertex comes from.
@@ -292,6 +300,7 @@ ObjectSymmetries rotationsOf(const std::vector<RowMajor4>& discrete,
   return ObjectSymmetries::from(motions, axes);
 }
 
+/// \param by none: the plane through the axis, a point and a direction, and across the view.
 /// \return the added points, and the rows that they are the reflections of.
 std::pair<py::array_t<float>, std::vector<std::size_t>> complete(
     const AnyArray& points, const std::optional<ReflectionPlane>& by,
@@ -301,7 +310,8 @@ std::pair<py::array_t<float>, std::vector<std::size_t>> complete(
   options.validate();
   const InputPoints input("points", points, 0, 0);
   const std::optional<Visibility> seen = seenFrom(input.points(), viewpoint);
-/// \param by none: the plane through the axis, a point and a direction, and across the view.
+  const ReflectionPlane plane =
+      by ? *by : planeAcrossView({axis->first, axis->second}, seen ? seen->viewpoint() : axis->first);
   Points added;
   std::vector<std::size_t> rows;
   {
@@ -311,8 +321,6 @@ std::pair<py::array_t<float>, std::vector<std::size_t>> complete(
     added.resize(3, completing.size());
     for (std::size_t i = 0; i < completing.size(); ++i) {
       const auto source = static_cast<std::size_t>(completing[i]);
-  const ReflectionPlane plane =
-      by ? *by : planeAcrossView({axis->first, axis->second}, seen ? seen->viewpoint() : axis->first);
       added.col(i) = plane.reflect(all.col(completing[i]).cast<double>()).cast<float>();
       rows.push_back(input.rows().empty() ? source : input.rows()[source]);
     }

@@ -649,8 +649,9 @@ def symmetrize(
 ) -> Symmetrized:
     """The shape that a plane maps onto itself, and the asymmetry of each point.
 
-    points: (N, 3), all finite, or a cloud or mesh of Open3D or trimesh. faces: (F, 3) of a mesh given by its vertices; a mesh
-        keeps them. Where faces of both sides do not match, it is its own reflection but for their deviation from the surface.
+    points: as in planes(); rows of a cloud that are not finite are left out, and their asymmetry is NaN. faces: (F, 3) of a mesh
+        given by its vertices; a mesh keeps them. Where faces of both sides do not match, it is its own reflection but for their
+        deviation from the surface.
     half: mean: both halves are the mean of the two sides; left or right: the side that the normal of the plane points away
         from or to, and its reflection.
     cut: cuts a mesh at the plane, and takes one side (of mean the left one) and its reflection: an exact one, with other faces.
