@@ -92,6 +92,9 @@ std::string lineOf(const Axis& axis, int fold, const Eigen::Vector3d& shift) {
          formatted(" along %.6f %.6f %.6f, confidence %.3f\n", d.x(), d.y(), d.z(), axis.confidence);
 }
 
+/// Why each plane, axis and center has its confidence, and planes their kind, in words.
+std::string explained(const Detection& found);
+
 /// A motion, row by row.
 /// \param digits significant ones of lengths.
 std::string matrixLines(const Eigen::Isometry3d& motion, int digits);

@@ -27,7 +27,7 @@ struct SceneToolOptions {
   BatchOptions batch;
   std::string input;
   std::optional<std::string> output, database_path, png_path, html_path;
-  bool no_frames = false, no_completion = false, no_separation = false;
+  bool no_frames = false, no_completion = false, no_separation = false, explain = false;
   std::optional<Eigen::Vector4d> ground;
   SceneOptions scene;
   CommonOptions common;
@@ -65,6 +65,7 @@ CommandLine commandLine(SceneToolOptions& o) {
               "with -database: least confidence of a name that is accepted")
       .number("min_confidence", o.scene.detection.min_confidence, Range::closed(0, 1),
               "least probability of a plane that is called a symmetry")
+      .flag("explain", o.explain, "also print why each plane, axis and center of the objects has its confidence")
       .flag("no_separation", o.no_separation, "leaves objects that touch together")
       .flag("no_frames", o.no_frames, "leaves the frames of the objects out")
       .flag("no_completion", o.no_completion, "leaves the completion of the objects out")
@@ -113,12 +114,14 @@ SceneAnalysis analyze(const Console& console, SymmetryScene& scene, const InputS
   Step searching(console, "Searching objects");
   SceneAnalysis found;
   namingFile(input.path, [&] { found = scene.compute(); });
-  if (found.timing_ms.empty())
-    throw InputError(input.path + ": input cloud: no finite point" +
-                     (options.scene.max_range > 0.0 ? " within -max_range" : ""));
+  if (!found.reason.empty()) throw InputError(input.path + ": input cloud: " + found.reason);
   const double total = searching.done(counted(found.objects.size(), "object"));
   found.timing_ms.emplace_back("load", input.loading_ms);
   found.timing_ms.emplace_back("total", total);
+  if (found.supports.empty())
+    console.warn(input.path +
+                 ": no supporting plane (table, floor, wall) was found; if this is one object, pcl_symmetry_planes "
+                 "takes it as a whole");
   return found;
 }
 
@@ -126,7 +129,9 @@ void analyze(const SceneToolOptions& options, const std::shared_ptr<const Symmet
   const InputShape input = loadFrame(job.console(), job.path(), job.common());
   SymmetryScene searched = makeScene(options, job.common(), database);
   const SceneAnalysis scene = analyze(job.console(), searched, input, options);
-  const std::string table = tableOf(scene, input.shift());
+  std::string table = tableOf(scene, input.shift());
+  for (std::size_t k = 0; options.explain && k < scene.objects.size(); ++k)
+    table += formatted("object %zu\n", k + 1) + explained(scene.objects[k]);
   job.report({table, describeScene(input, scene), rowsOf(scene, input.shift())});
   if (options.output)
     saveCloud(job.output(*options.output), completedScene(input, scene), input.shape.sensor_origin,

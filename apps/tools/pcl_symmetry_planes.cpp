@@ -111,56 +111,6 @@ std::string measured(double number) {
   return std::isnan(number) ? "-" : formatted("%.3f", number);
 }
 
-/// Why a plane has its confidence and kind: what was measured, what that makes of it, then factors on the odds.
-std::string explained(const std::string& name, const SymmetryPlane& plane, const Findings& findings) {
-  std::string lines = formatted("%s: %s, confidence %.3f\n", name.c_str(), toString(plane.kind), plane.confidence);
-  if (!std::isnan(plane.share)) {
-    // It is the diameter where the worst points are farther than was searched.
-    const std::string most =
-        plane.deviation < 0.99 * findings.diameter ? formatted(", 97 %% within %.3g", plane.deviation) : "";
-    lines += formatted(
-        "  %.1f %% of the surface within %.3g of its reflection%s; a symmetry has 97 %%\n"
-        "  %.0f %% of the reflections fall where the surface would have been seen\n",
-        100.0 * plane.share, findings.tolerance, most.c_str(), 100.0 * plane.seen);
-  }
-  bool is_first = true;
-  for (const Reason& reason : plane.reasons) {
-    if (!reason.odds)
-      lines += std::string("  possible at most: ") + reason.rule + "\n";
-    else if (std::exchange(is_first, false))
-      lines += formatted("  %.3f: %s\n", *reason.odds / (1.0 + *reason.odds), reason.rule);
-    else
-      lines += formatted("  odds x %.3g: %s\n", *reason.odds, reason.rule);
-  }
-  return lines;
-}
-
-/// Axes and centers are decided by many planes together.
-template <typename Found>
-std::string explained(const char* name, const Found& found, const char* planes) {
-  return formatted("%s: confidence %.3f\n  planes %s together: support %.3f, score %.3f\n", name, found.confidence,
-                   planes, found.support, found.score);
-}
-
-std::string explained(const SymmetryRotation& rotation) {
-  return formatted("axis of order %d: confidence %.3f\n", rotation.fold, rotation.confidence) +
-         formatted("  points on the surface %.3f, in space seen to be empty %.3f, by rotations halfway between %.3f\n",
-                   rotation.support, rotation.off, rotation.halfway);
-}
-
-std::string explained(const Findings& findings) {
-  std::string lines;
-  for (const SymmetryCenter& center : findings.centers)
-    lines += explained("center of all planes", center, "in many directions through it");
-  for (const SymmetryAxis& axis : findings.axes)
-    lines += explained("axis of revolution", axis, "at eight angles through it");
-  for (const SymmetryRotation& rotation : findings.rotations) lines += explained(rotation);
-  for (std::size_t i = 0; i < findings.planes.size(); ++i)
-    lines += explained("plane " + std::to_string(i + 1), findings.planes[i], findings);
-  if (findings.best) lines += explained("best plane", *findings.best, findings);
-  return lines;
-}
-
 /// What the sensor and the points resolve.
 std::string lineOfTolerance(const Findings& findings) {
   const double share = 100.0 * findings.tolerance / findings.diameter;

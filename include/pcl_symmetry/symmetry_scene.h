@@ -92,6 +92,7 @@ struct SceneAnalysis {
   std::vector<SupportingPlane> supports;                  ///< tables, floors and walls, as they were found
   std::vector<SceneObject> objects;                       ///< most points first
   std::vector<SceneJunction> junctions;                   ///< with SceneOptions::separate
+  std::string reason;                                     ///< why there is no answer, which PCL_WARN prints, or empty
   double plane_distance = 0.0;                            ///< that was used, input units
   double cluster_distance = 0.0;                          ///< that was used, input units
   std::vector<std::pair<std::string, double>> timing_ms;  ///< stages in order
@@ -147,7 +148,7 @@ public:
   }
 
   /// Finds the objects of the frame.
-  /// \return what was found; no object where the scene holds no point, which PCL_WARN says.
+  /// \return what was found; no object and a reason where the scene holds no point.
   /// \throws pcl::BadArgumentException where all points lie at the viewpoint that was given.
   SceneAnalysis compute() const;
 

@@ -210,6 +210,11 @@ SceneAnalysis SymmetryScene::compute() const {
   SceneAnalysis analysis;
   Stopwatch watch;
   const auto timed = [&](const char* stage) { analysis.timing_ms.emplace_back(stage, watch.lap()); };
+  const auto without = [&](const std::string& reason) {
+    detail::warnOfNoAnswer("SymmetryScene", "scene: " + reason);
+    analysis.reason = reason;
+    return analysis;
+  };
   Cloud::ConstPtr frame = input_;
   if (frame) analysis.seen = seenSpaceOf(*frame, viewpoint_);
   const double seen_ms = watch.lap();
@@ -223,10 +228,9 @@ SceneAnalysis SymmetryScene::compute() const {
   if (analysis.seen && analysis.seen->visibility()) viewpoint = analysis.seen->visibility()->viewpoint();
   const pcl::Indices points = frame ? nearPoints(*frame, viewpoint, options_.max_range) : pcl::Indices();
   if (points.empty()) {
-    detail::warnOfNoAnswer("SymmetryScene", !input_                    ? "scene: not set"
-                                            : options_.max_range > 0.0 ? "scene: no finite point within max_range"
-                                                                       : "scene: no finite point");
-    return analysis;
+    return without(!input_                    ? "not set"
+                   : options_.max_range > 0.0 ? "no finite point within max_range"
+                                              : "no finite point");
   }
   analysis.timing_ms = {{"seen_space", seen_ms}, {"filter", watch.lap()}};
   // The filter leaves the bends of a camera's picture: the distances follow from the frame as it was.
@@ -235,10 +239,7 @@ SceneAnalysis SymmetryScene::compute() const {
   if (options_.cluster_distance > 0.0) distances.cluster = options_.cluster_distance;
   analysis.plane_distance = distances.plane;
   analysis.cluster_distance = distances.cluster;
-  if (!(distances.plane > 0.0 && distances.cluster > 0.0)) {
-    detail::warnOfNoAnswer("SymmetryScene", "scene: all points at one place");
-    return analysis;
-  }
+  if (!(distances.plane > 0.0 && distances.cluster > 0.0)) return without("all points at one place");
   if (ground_)
     analysis.supports = {detail::supportOf(*frame, points, viewpoint, *ground_, distances.plane)};
   else

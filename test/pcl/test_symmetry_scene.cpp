@@ -79,6 +79,7 @@ TEST(SymmetryScene, DataWithoutAnswerGiveNoObject) {
     scene.setInputCloud(cloud);
     EXPECT_TRUE(scene.compute().objects.empty()) << name;
   }
+  EXPECT_EQ(SymmetryScene().compute().reason, "not set");
 }
 
 TEST(SymmetryScene, RefusesBadOptions) {

@@ -258,6 +258,16 @@ class Scene(ToolTest):
         together = self.report(path, "-no_frames", FEW, "-no_separation")
         self.assertEqual([len(together["objects"]), together["junctions"]], [1, []])
 
+    def test_says_what_its_planes_have_their_confidence_from(self):
+        self.run_tool(self.scene, FEW, "-explain")
+        self.assertRegex(self.output, r"\nobject 1\nplane 1: symmetry, confidence 0[.]\d+\n  [\d.]+ % of the surface within ")
+        self.assertNotIn("warning", self.error)
+
+    def test_warns_of_one_object_alone(self):
+        points = look(EYE, RAYS, [block(*BOXES[0])])[0]
+        self.run_tool(self.write("box.pcd", pcd(points[np.isfinite(points).all(axis=1)], viewpoint=EYE)), FEW)
+        self.assertIn("box.pcd: no supporting plane (table, floor, wall) was found; if this is one object, pcl_symmetry_planes", self.error)
+
     def test_refuses_what_is_no_scene(self):
         mesh = self.write("t.off", "OFF\n3 1 3\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n")
         self.fails(1, f"{mesh}: is a mesh, must be a cloud as a sensor sees it", mesh)

@@ -344,7 +344,8 @@ def scene(
     separate: cut objects that touch apart where their surface bends inwards, and join pieces that one symmetry explains.
     frames, complete: also the frame of each object, and the points that its symmetry adds.
     min_confidence: least probability of a plane that is called a symmetry.
-    Raises ValueError for bad parameters; points of which none is finite are warned of.
+    Raises ValueError for bad parameters; points of which none is finite, and points that show no supporting plane, as those of
+    one object alone, are warned of (RuntimeWarning).
     """
     import numpy as np
 
@@ -376,9 +377,10 @@ def scene(
         plane[3] += plane[:3] @ cloud.shift
     kept = None if database is None else database._core._asked
     found = core.scene(_camera_points(cloud), viewpoint=seen_from, ground=plane, database=kept, options=options, told=progress)
-    reason = "" if found["answered"] else "no finite point" + (" within max_range" if max_range > 0 else "")
-    if reason:
-        warnings.warn(f"points: {reason}", RuntimeWarning, stacklevel=2)
+    reason = found["reason"]
+    if reason or not found["supports"]:
+        alone = "no supporting plane (table, floor, wall) was found; if this is one object, planes() takes it as a whole"
+        warnings.warn(f"points: {reason or alone}", RuntimeWarning, stacklevel=2)
     sensor = None if found["seen"] is None else found["seen"].viewpoint
     seen: Dict[str, Any] = dict(viewpoint=sensor, _shape=cloud.shape, _viewpoint_from=found["viewpoint_from"])
     result = Scene(
