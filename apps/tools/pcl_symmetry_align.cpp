@@ -605,9 +605,14 @@ int mergeScans(const AlignOptions& options) {
     const std::string& reason = registered.scans[k].left_out;
     text += inputs[k].path + ": " + (reason.empty() ? "kept" : "left out, " + reason) + "\n";
   }
+  nlohmann::json json = describe(inputs, registered, motions);
+  if (num_kept == 1 && inputs.size() > 1) {
+    if (options.common.json_path) writeText(*options.common.json_path, jsonText(json) + "\n");
+    if (prints) writeText("-", text);
+    throw InputError(*options.merge + ": is not written, as no two of the scans fit each other");
+  }
   Merged cloud = merged(inputs, scans, indices, registered, motions, first);
   cloud.shape.path = *options.merge;
-  nlohmann::json json = describe(inputs, registered, motions);
   PicturePanel panel{"scans"};
   panel.segments = cloud.scans;
   for (std::size_t k = 0; k < inputs.size(); ++k)

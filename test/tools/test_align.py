@@ -1,4 +1,5 @@
 """The tool of frames and poses, what it completes and what it makes symmetric."""
+import json
 import unittest
 
 import tool_run
@@ -107,6 +108,9 @@ class Align(ToolTest):
             self.assertTrue((abs(corner - color).max(axis=2) <= 2).any(), f"{color} is in the legend")
         self.assertEqual(self.output.splitlines()[-1], f"4 of 5 scans, {len(self.points('all.ply'))} points")
         self.assertEqual(set(self.points("all.ply")["scan"]), set(range(4)))
+        self.fails(1, "none.ply: is not written, as no two of the scans fit", names[0], names[4], "-merge none.ply -json none.json")
+        self.assertEqual(["left_out" in scan for scan in json.loads(self.text("none.json"))["scans"]], [False, True])
+        self.assertFalse((self.folder / "none.ply").exists())
         self.fails(2, "-merge and -target", *names[:2], "-merge all.ply -target chair.off")
         self.fails(2, "-merge FILE brings several scans together", *names)
         self.fails(2, "unexpected argument", names[0], "new.pcd", names[1])
