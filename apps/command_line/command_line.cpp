@@ -228,11 +228,10 @@ CommandLine& CommandLine::common(CommonOptions& options, unsigned flags) {
   }
   if (flags & kThreads) number("threads", options.threads, Range::closed(0, 4096), "number of threads, 0 = all");
   if (flags & kJson)
-    add("json", "FILE", "write the result as JSON; of several inputs as JSON Lines",
-        [&options](const std::string& path) {
-          checkTarget(path);
-          options.json_path = path;
-        });
+    add("json", "FILE", "write the result as JSON", [&options](const std::string& path) {
+      checkTarget(path);
+      options.json_path = path;
+    });
   if (flags & kQuiet) flag("quiet", options.quiet, "print results and errors only");
   return *this;
 }

@@ -392,7 +392,13 @@ int runOnFiles(const BatchOptions& batch, const CommonOptions& common, const std
   const std::vector<InputFile> files = inputFiles(batch.inputs);
   isTextWanted(batch, common);
   checkOutputs(batch, files);
-  return Batch(files, batch, common, csvLine(header)).run(analyze);
+  const int status = Batch(files, batch, common, csvLine(header)).run(analyze);
+  const std::string& last = batch.inputs.back();
+  boost::system::error_code error;
+  if (status != 0 && batch.inputs.size() > 1 && !standsForSeveral(last) && !isStandardStream(last) &&
+      !boost::filesystem::exists(last, error))
+    Console(common.quiet).error("all arguments are inputs; outputs are named by flags, such as -json FILE, see -h");
+  return status;
 }
 
 }  // namespace pcl_symmetry::apps

@@ -39,7 +39,8 @@ struct BatchOptions {
   void addTo(CommandLine& line) {
     line.text("csv", "FILE", csv_path, "write the result as a table of comma-separated values")
         .flag("resume", resume,
-              "with several inputs and -json FILE: keep what FILE holds, and go on with the inputs that it does not");
+              "with several inputs, of which -json FILE has a line each (JSON Lines): keep what FILE holds, and go on "
+              "with the inputs that it does not");
   }
 };
 

@@ -57,6 +57,11 @@ class Flags(ToolTest):
         self.assertLess(at[0], self.output.index("-json"))
         self.assertLess(self.output.index("-png"), at[1])
 
+    def test_help_names_lines_of_several_inputs_where_there_are_some(self):
+        for tool, several in (("planes", True), ("scan", False)):
+            self.run_tool("-h", tool=tool)
+            self.assertEqual("JSON Lines" in " ".join(self.output.split()), several)
+
     def test_help_fits_the_terminal(self):
         tools = [tool for tool in tool_run.TOOLS.glob("pcl_symmetry_*") if not tool.suffix]
         for tool in tools:
@@ -290,6 +295,7 @@ class ManyInputs(ToolTest):
                                  ("@list -", ["in/c.txt", "missing.pcd", "-"])):
             self.run_tool(arguments, "-quiet -json out.jsonl", code=1, input=b"")
             self.assertEqual([line["file"] for line in self.lines()], files)
+        self.fails(1, "outputs are named by flags, such as -json FILE", "in/c.txt out.pcd")
         self.fails(1, "*.stl: no file has such a name", "in/*.stl")
         self.fails(1, "nowhere: no such file", "@nowhere")
         (self.folder / "empty").mkdir()
