@@ -382,8 +382,9 @@ class OtherFunctions(unittest.TestCase):
 
     def test_results_print_what_tells_most(self):
         found = pcl_symmetry.planes(box())
-        self.assertRegex(repr(found), r"(?s)^Planes\(\[\n  Plane\(kind='symmetry', normal=\[.*confidence=0\.9.*\),\n\]\)$")
-        self.assertEqual(repr(pcl_symmetry.ReflectionPlane((0, 0, 2), 1)), "ReflectionPlane(normal=[0, 0, 1], offset=0.5)")
+        self.assertRegex(repr(found), r"(?s)^Planes\(\[\n  Plane\(kind='symmetry', equation='.* x .* y .* z .* = 0', confidence=0\.9.*\),\n\]\)$")
+        self.assertEqual(repr(pcl_symmetry.ReflectionPlane((0, 0, 2), 1)), "ReflectionPlane(equation='0 x + 0 y + 1 z - 0.5 = 0')")
+        self.assertEqual(pcl_symmetry.ReflectionPlane((-0.6, 0, 0.8), 0).equation, "-0.6 x + 0 y + 0.8 z + 0 = 0")
         self.assertRegex(repr(pcl_symmetry.frame(box())), r"^Frame\(center=\[.*axes=\[\[.*revolution_axis=-1\)$")
         self.assertRegex(repr(pcl_symmetry.rotations(box())), r"^Rotations\(name='D2', center=.*confidence=")
         self.assertRegex(repr(pcl_symmetry.planes(lamp(), approximate=True)), r"^Planes\(\[\].*, approximate=[1-9]")

@@ -158,7 +158,7 @@ class Result:
 class ReflectionPlane(Result):
     """A plane of reflection: normal . x = offset."""
 
-    _in_repr: ClassVar[Tuple[str, ...]] = ("normal", "offset")
+    _in_repr: ClassVar[Tuple[str, ...]] = ("equation",)
     normal: NDArray[np.float64]
     """(3,) unit."""
     offset: float
@@ -189,6 +189,13 @@ class ReflectionPlane(Result):
         import numpy as np
 
         return np.append(self.normal, -self.offset)
+
+    @property
+    def equation(self) -> str:
+        """The same in words, such as "0 x + 0 y + 1 z - 0.5 = 0"."""
+        terms = (f"{number + 0.0:+.4g}{name}" for number, name in zip(self.coefficients, (" x", " y", " z", "")))  # no -0
+        text = " ".join(f"{term[0]} {term[1:]}" for term in terms) + " = 0"
+        return text[2:] if text[0] == "+" else "-" + text[2:]
 
     @property
     def reflection(self) -> NDArray[np.float64]:
@@ -241,7 +248,7 @@ class ReflectionPlane(Result):
 class Plane(ReflectionPlane):
     """A local maximum of the transform, refined and judged."""
 
-    _in_repr = ("kind", "normal", "offset", "confidence", "share")
+    _in_repr = ("kind", "equation", "confidence", "share")
     kind: str
     """symmetry, possible, approximate or local."""
     confidence: float
