@@ -19,6 +19,7 @@
 #include <vector>
 
 #include "command_line/tool_errors.h"
+#include "io/file_text.h"
 #include "io/shape_readers.h"
 #include "pcl_symmetry/impl/cloud_analysis.hpp"
 #include "pcl_symmetry/register_all.h"
@@ -212,21 +213,33 @@ py::dict sceneOf(const AnyArray& points, const py::object& viewpoint, const std:
                   "plane_distance"_a = found.plane_distance, "cluster_distance"_a = found.cluster_distance);
 }
 
-/// \param text a PCD or PLY file.
+/// \param extension of the kind of file that the text is, such as .ply.
 /// \return its points, (H, W, 3) or (N, 3), (F, 3) triangles, and (3,) where the sensor stood, or None.
 /// \throws std::invalid_argument naming the file.
-py::tuple read(const std::string& path, const std::string& text, bool is_ply) {
+py::tuple read(const std::string& path, std::string text, const std::string& extension) {
   apps::CloudFile file;
+  std::vector<Eigen::Vector3d> exact;
   try {
-    file = is_ply ? apps::readPLY(path, text) : apps::readPCD(path, text);
+    if (!apps::isBinarySTL(text)) text = apps::withoutMark(std::move(text));
+    if (extension == ".pcd" || extension == ".ply") {
+      file = extension == ".ply" ? apps::readPLY(path, text) : apps::readPCD(path, text);
+    } else {
+      apps::ExactShape shape = extension == ".off"   ? apps::readOFF(path, text)
+                               : extension == ".obj" ? apps::readOBJ(path, text)
+                               : extension == ".stl" ? apps::readSTL(path, text)
+                                                     : apps::readColumns(path, text);
+      exact = std::move(shape.vertices);
+      file.polygons = std::move(shape.polygons);
+    }
   } catch (const apps::InputError& error) {
     throw std::invalid_argument(error.what());
   }
   const pcl::PCLPointCloud2& cloud = file.cloud;
-  const py::ssize_t height = cloud.height, width = cloud.width;
+  const py::ssize_t height = cloud.height, width = exact.empty() ? cloud.width : exact.size();
   py::array_t<double> points(height > 1 ? std::vector{height, width, py::ssize_t{3}}
                                         : std::vector{width, py::ssize_t{3}});
-  std::uint8_t type = 0;
+  std::uint8_t type = exact.empty() ? 0 : pcl::PCLPointField::FLOAT64;
+  if (!exact.empty()) std::copy_n(exact.front().data(), 3 * exact.size(), points.mutable_data());
   for (const pcl::PCLPointField& field : cloud.fields) {
     if (field.name != "x" && field.name != "y" && field.name != "z") continue;
     type = std::max(type, field.datatype);
@@ -295,6 +308,16 @@ std::vector<std::tuple<Eigen::Vector3d, double, RowMajor4>> views(const Weighted
   return result;
 }
 
+/// What the package gives a function for, such as the points of a file.
+py::object called(const py::object& points) {
+  if (!py::isinstance<py::function>(points)) return points;
+  try {
+    return points();
+  } catch (const py::error_already_set& error) {
+    throw std::invalid_argument(py::str(error.value()).cast<std::string>());
+  }
+}
+
 /// Models of a mapping from names to points, or of pairs of both. Points become clouds when they are used.
 std::vector<ModelInput> modelsOf(const py::object& models) {
   const py::object pairs = py::hasattr(models, "items") ? models.attr("items")() : models;
@@ -310,7 +333,7 @@ std::vector<ModelInput> modelsOf(const py::object& models) {
     const auto held = std::make_shared<py::object>(std::move(model.second));
     inputs.push_back({model.first, {}, [held] {
                         const py::gil_scoped_acquire acquire;
-                        return cloudOf(arrayOf("points", *held));
+                        return cloudOf(arrayOf("points", called(*held)));
                       }});
   }
   return inputs;
@@ -469,7 +492,7 @@ void addDatabase(py::module_& module) {
 }
 
 void addScenes(py::module_& module) {
-  add(module, "read", &read, "path", "text", "is_ply");
+  add(module, "read", &read, "path", "text", "extension");
   add(module, "views", &views, "planes", "num_symmetries", "axes", "maxima", "points", "number", "up", "separation",
       "worst");
   add(module, "look", &look, "points", "indices", "viewpoint", "ground", "max_points", "as_measured", "seed",

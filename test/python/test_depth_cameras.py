@@ -314,10 +314,29 @@ class OrganizedArrays(unittest.TestCase):
             for wrong, error, words in (
                 ("none.pcd", FileNotFoundError, "none.pcd"),
                 ("cut.pcd", ValueError, "cut.pcd: "),
-                ("box.obj", ValueError, r"box.obj: unknown extension '.obj', must be .pcd or .ply"),
+                ("box.glb", ValueError, r"box.glb: unknown extension '.glb', must be .pcd, .ply, .off, .* or .csv; trimesh.load\(\) reads"),
             ):
                 with self.assertRaisesRegex(error, words):
                     pcl_symmetry.read(folder / wrong)
+            corners, triangles = [" ".join(map(str, v)) for v in vertices.tolist()], [f[:3] for f in faces.tolist()]
+            lines = [f"OFF {len(vertices)} {len(faces)} 0", *corners, *(f"3 {a} {b} {c}" for a, b, c in triangles)]
+            folder.joinpath("box.off").write_text("\n".join(lines))
+            folder.joinpath("box.obj").write_text("\n".join([*("v " + c for c in corners), *(f"f {a + 1} {b + 1} {c + 1}" for a, b, c in triangles)]))
+            folder.joinpath("box.xyz").write_text("\n".join(corners))
+            facets = np.zeros(len(faces), [("normal", "<f4", 3), ("corners", "<f4", (3, 3)), ("none", "<u2")])
+            facets["corners"] = vertices[np.array(triangles)]
+            folder.joinpath("box.stl").write_bytes(bytes(80) + np.uint32(len(faces)).tobytes() + facets.tobytes())
+            for kind in ("off", "obj", "stl"):
+                same = pcl_symmetry.read(folder / f"box.{kind}")
+                np.testing.assert_allclose(same.points[same.faces], vertices[np.array(triangles)], atol=1e-6)
+            np.testing.assert_array_equal(pcl_symmetry.read(folder / "box.xyz").points, vertices)
+            by_name = [pcl_symmetry.planes(folder / each) for each in ("scan.pcd", "box.off")] + [pcl_symmetry.scene(str(folder / "frame.pcd"))]
+            self.assertEqual(by_name[0].show(folder / "scan.pcd").html, by_name[0].show(scan).html)
+            database = pcl_symmetry.Database(":memory:")
+            report = database.build({"box": folder / "box.stl", "none": str(folder / "none.pcd"), "scan": scan})
+            self.assertEqual((database.names, [name for name, _ in report.failures]), (["box", "scan"], ["none"]))
+            self.assertRegex(report.failures[0][1], "No such file or directory: .*none.pcd'$")
+        self.assertEqual(by_name, [pcl_symmetry.planes(scan), pcl_symmetry.planes(Mesh(vertices, faces)), pcl_symmetry.scene(frame)])
         np.testing.assert_array_equal(frame.points, self.frame)
         np.testing.assert_array_equal(np.asarray(frame), self.frame)
         self.assertEqual((frame.viewpoint, len(frame.faces), scan.points.dtype), (None, 0, np.float32))

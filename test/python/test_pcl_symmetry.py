@@ -217,12 +217,14 @@ class Planes(unittest.TestCase):
         for each in (pcl_symmetry.planes, pcl_symmetry.frame, pcl_symmetry.segment, pcl_symmetry.describe, plane.pairs):
             with self.assertRaisesRegex(ValueError, "points = array of shape \\(24, 32\\), must be .*; from_depth\\(\\) makes points of"):
                 each(np.ones((24, 32)))
-            with self.assertRaisesRegex(TypeError, "points = .*read files, from_depth\\(\\)"):
+            with self.assertRaisesRegex(ValueError, "depth.png: unknown extension '.png', must be .pcd, .*from_depth\\(\\) takes"):
                 each(Path("depth.png"))
+            with self.assertRaisesRegex(FileNotFoundError, "cloud.pcd"):
+                each("cloud.pcd")
         for each in (plane.reflect, plane.distance, lambda x: pcl_symmetry.Axis(np.zeros(3), np.eye(3)[0], 1, 1, 1).rotate(x, 1)):
             with self.assertRaisesRegex(ValueError, "points = array of shape \\(24, 32\\), must be \\(3,\\) or \\(N, 3\\)"):
                 each(np.ones((24, 32)))
-        for nothing in ("cloud.pcd", b"cloud", 5, {"x": 1}, (row for row in box())):
+        for nothing in (b"cloud", 5, {"x": 1}, (row for row in box())):
             with self.assertRaisesRegex(TypeError, "points = .*, must be an array"):
                 pcl_symmetry.planes(nothing)
         for wrong in (None, [[1, 2, 3], [4]]):
@@ -399,15 +401,15 @@ class OtherFunctions(unittest.TestCase):
         self.assertGreater(len(added), 1000)
         np.testing.assert_allclose(added, half[rows] * (-1, 1, 1), atol=1e-6)
         self.assertLess(added[:, 0].max(), 0.0)
-        possible = dataclasses.replace(pcl_symmetry.planes(points)[0], normal=plane.normal, offset=0.0, kind="possible", confidence=0.3)
-        doubt = f"points: {len(added)} are added across a plane that is only possible, of confidence 0.30"
-        for cloud, by, words in (
         axis, front = pcl_symmetry.Axis(np.array([0, 0, 1.0]), np.eye(3)[2], 1, 1, 1), np.array([5.0, 0, 0])
         across = pcl_symmetry.complete(half, plane, viewpoint=front)
         for place in (np.zeros(3), FarFromTheOrigin.SHIFT):  # the plane through the axis and across the view
             by_axis = pcl_symmetry.complete(half + place, dataclasses.replace(axis, point=axis.point + place), viewpoint=front + place)
             np.testing.assert_array_equal(by_axis[1], across[1])
             np.testing.assert_allclose(by_axis[0], across[0] + place, atol=1e-5)
+        possible = dataclasses.replace(pcl_symmetry.planes(points)[0], normal=plane.normal, offset=0.0, kind="possible", confidence=0.3)
+        doubt = f"points: {len(added)} are added across a plane that is only possible, of confidence 0.30"
+        for cloud, by, words in (
             (half, possible, doubt),
             (np.concatenate([half, half * (-1, 1, 1)]), plane, "points: 0 are added: their reflections fall onto the points"),
             (np.full((9, 3), np.nan), plane, "points: 0 are added: no finite point"),
@@ -710,15 +712,15 @@ class Meshes(unittest.TestCase):
         half = len(left.points) // 2
         np.testing.assert_allclose(left.points[half:] * (-1, 1, 1), left.points[:half])
         np.testing.assert_array_equal(left.rows[half:], left.rows[:half])
-        with self.assertRaisesRegex(ValueError, "half = both, must be mean, left or right"):
-            pcl_symmetry.symmetrize(mesh, plane, "both")
-
         holes = np.insert(box(), [0, 5, 6000], np.nan, axis=0)  # as depth cameras have them
         same, finite = pcl_symmetry.symmetrize(holes, pcl_symmetry.ReflectionPlane((1, 0, 0), 0.0), "left"), np.isfinite(holes[:, 0])
         np.testing.assert_array_equal(same.points, left.points)
         np.testing.assert_array_equal(same.rows, np.flatnonzero(finite)[left.rows])
         np.testing.assert_array_equal(same.asymmetry[finite], left.asymmetry)
         self.assertTrue(np.isnan(same.asymmetry[~finite]).all())
+        with self.assertRaisesRegex(ValueError, "half = both, must be mean, left or right"):
+            pcl_symmetry.symmetrize(mesh, plane, "both")
+
 
 @needs_pcl
 class WithPCL(unittest.TestCase):
@@ -780,7 +782,7 @@ class WithPCL(unittest.TestCase):
 
     def test_many_models_are_stored_at_once(self):
         database, shares = pcl_symmetry.Database(":memory:"), []
-        models = {"box": box(), "flat": np.zeros((50, 3)), "lamp": lamp(), "words": "none", "plate": box((1.0, 0.9, 0.1))}
+        models = {"box": box(), "flat": np.zeros((50, 3)), "lamp": lamp(), "words": b"none", "plate": box((1.0, 0.9, 0.1))}
         report = database.build(models, progress=shares.append)
         self.assertEqual((report.num_added, report.cancelled), (3, False))
         self.assertEqual([name for name, _ in report.failures], ["flat", "words"])
@@ -1013,7 +1015,8 @@ class Package(unittest.TestCase):
             (ValueError, dict(volume=volume, direction=np.eye(2)), r"direction = (.|\n)* must be numbers of shape \(3, 3\)"),
             (TypeError, dict(points=box(), seed=box()), r"seed = array of shape \(6000, 3\) and type float32, must be int"),
             (TypeError, dict(points=box(), seed=box().tolist()), r"seed = array of shape \(6000, 3\) and type float64, must be int"),
-            (TypeError, dict(points=60 * "cloud"), "points = str of 302 characters, must be an array"),
+            (TypeError, dict(points=60 * b"cloud"), "points = bytes of 303 characters, must be an array"),
+            (ValueError, dict(points="cloud"), "cloud: unknown extension '', must be .pcd, "),
             (TypeError, dict(points=box(), viewpoint=dict(x=1)), "viewpoint = dict, must be"),
             (ValueError, dict(volume=volume, levels=5), r"levels = 5, must be numbers of shape \(2,\)"),
         ):

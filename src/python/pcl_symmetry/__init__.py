@@ -12,7 +12,7 @@ Each has a help of its own, such as help(pcl_symmetry.planes):
 planes()               planes, axes and centers of a cloud, mesh, scan, depth image or volume
 scene()                the objects of one frame of a depth camera, each with its symmetry and completion
 from_depth()           points (H, W, 3) of a depth image
-read()                 points of a PCD or PLY file, with their viewpoint
+read()                 points of a file, with their viewpoint; all functions take its name as well
 frame()                center of symmetry and principal symmetry axes
 rotations()            the group of rotations that map an object onto itself
 register()             the pose of a scan relative to a model, without a guess; register_all(): of many scans

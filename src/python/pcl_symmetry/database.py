@@ -9,7 +9,7 @@ import warnings
 from typing import TYPE_CHECKING, Any, Callable, Dict, Iterable, Iterator, List, Mapping, Optional, Sequence, Tuple, Union
 
 from . import _recognition
-from .functions import Cloud, Core, NoAnswer, Viewpoint, _fields, _frame, _planes_of, left_out, no_answer, prepare, rows_of
+from .functions import Cloud, Core, NoAnswer, Viewpoint, _fields, _frame, _planes_of, left_out, no_answer, opened, prepare, rows_of
 from .progress import Progress, shares_of
 from .results import (
     BuildReport,
@@ -60,7 +60,7 @@ def register(
 ) -> Registration:
     """The pose of a scan, or a whole object, relative to another cloud of it, from any start (Section 5.1).
 
-    source, target: (N, 3) and (M, 3), same units, or clouds or meshes of Open3D or trimesh; 10 000 points of larger ones are used.
+    source, target: as points in planes(), same units; 10 000 points of larger ones are used.
     guess: (4, 4), tried beside many other poses; None: the identity.
     around: (radians, input units), how far the pose may be from the guess, for tracks; None: all poses.
     source_viewpoint, target_viewpoint, progress: as in planes().
@@ -101,7 +101,7 @@ def register_all(
 ) -> RegisteredScans:
     """Brings many scans of one object together, such as those of a turntable, without a guess.
 
-    clouds: each (N, 3), same units, or clouds of Open3D; scans that follow each other are tried first.
+    clouds: each as points in planes(), same units; scans that follow each other are tried first.
     viewpoint: as in planes(), in the frame of each scan. progress: as there.
     Scans that fit no others are left out, with the reason. The poses are in the frame of the first scan that is kept.
     Costs about two register() a scan, some tenths of a second of processor time each, where neighbors overlap; scans that fit no
@@ -201,7 +201,7 @@ class Database:
         return f"Database({self._file!r}, " + ("closed)" if self._open is None else f"models={len(self)})")
 
     def add(self, name: str, points: Any) -> None:
-        """Stores a model, (N, 3) points all around it, or a cloud or mesh of Open3D or trimesh; on the disk on return.
+        """Stores a model, (N, 3) points all around it, a file, or a cloud or mesh of Open3D or trimesh; on the disk on return.
 
         A model of the same name is replaced.
         """
@@ -295,10 +295,11 @@ def _camera_points(cloud: Cloud) -> NDArray[Any]:
 
 
 def _models_of(models: Any) -> Iterator[Any]:
-    """Pairs of names and points; meshes and clouds of other libraries become arrays."""
+    """Pairs of names and points; files, meshes and clouds of other libraries become arrays when they are used."""
+    members = ("points", "vertices", "point", "vertex", "__fspath__")
     for pair in models.items() if hasattr(models, "items") else models:
-        if isinstance(pair, tuple) and len(pair) == 2 and any(hasattr(pair[1], m) for m in ("points", "vertices", "point", "vertex")):
-            pair = pair[0], _near_origin(pair[1]).array
+        if isinstance(pair, tuple) and len(pair) == 2 and (isinstance(pair[1], str) or any(hasattr(pair[1], m) for m in members)):
+            pair = pair[0], lambda points=pair[1]: _near_origin(points).array
         yield pair
 
 
@@ -334,7 +335,8 @@ def scene(
 ) -> Scene:
     """The objects of one frame of a depth camera or scanner, and their symmetries.
 
-    points: (H, W, 3), the pixels of a camera, see from_depth() and read(), or (N, 3) with the viewpoint that they were seen from.
+    points: (H, W, 3), the pixels of a camera, see from_depth(), the name of a file, or (N, 3) with the viewpoint that they were
+    seen from.
     viewpoint: as in planes(). ground: (4,) a, b, c, d of what the objects stand on, in place of supporting planes that are
     searched for.
     database: names objects by its models that they show, of a confidence of at least min_name_confidence.
@@ -351,6 +353,7 @@ def scene(
 
     if database is None:
         left_out(scene, locals(), "no database", "min_name_confidence")
+    points = opened(points)
     cloud = prepare("points", points)
     seen_from = cloud.seen_from(viewpoint)
     # A file is seen from where it says, which is the origin where it says nothing.

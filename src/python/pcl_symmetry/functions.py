@@ -95,6 +95,7 @@ Viewpoint = Union[str, None, "ArrayLike"]
 """Where a scanner stood: "auto" (the points decide), None (seen from all sides) or (x, y, z), input frame."""
 
 _NUM_MESH_POINTS = 10_000
+_EXTENSIONS = (".pcd", ".ply", ".off", ".obj", ".stl", ".xyz", ".pts", ".asc", ".txt", ".csv")
 
 
 class Cloud(NamedTuple):
@@ -123,12 +124,13 @@ class Cloud(NamedTuple):
 
 
 def prepare(name: str, points: Any, num_mesh_points: int = _NUM_MESH_POINTS) -> Cloud:
-    """The points of an array or an object of Open3D or trimesh.
+    """The points of an array, a file or an object of Open3D or trimesh.
 
     Double coordinates far from the origin are centered before they become float32. Meshes are sampled.
     """
     import numpy as np
 
+    points = opened(points)
     positions, faces = parts_of(name, points)
     if faces is not None:
         vertices, shift = _near_origin(name, positions)
@@ -140,6 +142,7 @@ def prepare(name: str, points: Any, num_mesh_points: int = _NUM_MESH_POINTS) -> 
 
 def of_vertices(name: str, points: Any) -> Cloud:
     """The same with the vertices of a mesh in place of points on it: answers about single points then name the vertices."""
+    points = opened(points)
     return prepare(name, dataclasses.replace(points, faces=points.faces[:0]) if isinstance(points, Shape) else parts_of(name, points)[0])
 
 
@@ -147,9 +150,9 @@ def parts_of(name: str, points: Any) -> Tuple[NDArray[Any], Any]:
     """Points or vertices as an array, and the faces of a mesh, None for a cloud."""
     import numpy as np
 
-    if points is None or isinstance(points, (str, bytes, os.PathLike)):
-        reading = "" if points is None else "; read() and trimesh.load() read files, from_depth() takes the pixels of a depth image"
-        raise TypeError(f"{name} = {shown(points)}, must be an array of shape (N, 3), or a cloud or mesh of Open3D or trimesh{reading}")
+    points = opened(points)
+    if points is None or isinstance(points, bytes):
+        raise TypeError(f"{name} = {shown(points)}, must be an array of shape (N, 3), a cloud or mesh of Open3D or trimesh, or the name of a file")
     if isinstance(points, Shape):
         return points.points, points.faces if len(points.faces) else None
     faces = None
@@ -290,22 +293,28 @@ def _pcl(what: str) -> Core:
     return Core(_recognition)
 
 
-def read(file: Union[str, "os.PathLike[str]"]) -> Shape:
-    """The points of a PCD or PLY file, in their order and with their viewpoint, which all functions take.
+def opened(points: Any) -> Any:
+    """What a file holds in place of its name."""
+    return read(points) if isinstance(points, (str, os.PathLike)) else points
 
-    Of a mesh the points are its vertices, and functions sample it. Other readers drop rows that are not finite, and with them the
-    rows and columns of a camera, and the viewpoint: Open3D needs read_point_cloud(file, remove_nan_points=False) and the
-    reshape to (H, W, 3).
+
+def read(file: Union[str, "os.PathLike[str]"]) -> Shape:
+    """What a file holds: PCD, PLY, OFF, OBJ, STL, or text with a point on each line. Functions take its name as well.
+
+    Points keep their order, and those of PCD and PLY their viewpoint. Of a mesh they are its vertices, and functions sample it.
+    Other readers drop rows that are not finite, and with them the rows and columns of a camera, and the viewpoint: Open3D needs
+    read_point_cloud(file, remove_nan_points=False) and the reshape to (H, W, 3).
     Raises OSError where the file cannot be read, and ValueError, naming it, where it is no such file or is damaged.
     """
     import numpy as np
 
     name = os.fspath(file)
     extension = os.path.splitext(name)[1].lower()
-    if extension not in (".pcd", ".ply"):
-        raise ValueError(f"{name}: unknown extension '{extension}', must be .pcd or .ply; trimesh.load() reads other meshes")
-    with open(name, "rb") as opened:
-        points, faces, viewpoint = _pcl("read()").read(name, opened.read(), extension == ".ply")
+    if extension not in _EXTENSIONS:
+        others = "trimesh.load() reads other meshes, and from_depth() takes the pixels of a depth image"
+        raise ValueError(f"{name}: unknown extension '{extension}', must be {', '.join(_EXTENSIONS[:-1])} or {_EXTENSIONS[-1]}; {others}")
+    with open(name, "rb") as file_of_points:
+        points, faces, viewpoint = _pcl("reading files").read(name, file_of_points.read(), extension)
     return Shape(points, np.array(faces, dtype=np.int32).reshape(-1, 3), viewpoint)
 
 
@@ -429,10 +438,10 @@ def planes(
 ) -> Planes:
     """Planes of symmetry of a cloud or of a volume (Sections 4.1 to 4.4): a list of symmetries, empty where there is none.
 
-    points: (N, 3), input units, a Shape of read(), or a cloud or mesh of Open3D or trimesh; float32 rows are not copied.
+    points: (N, 3), input units, the name of a file, see read(), or a cloud or mesh of Open3D or trimesh; float32 rows are not copied.
         (H, W, 3): the pixels of a depth camera, see from_depth(), whose rays show what it saw. Rows that are not finite are left out. The planes of a
         mesh are exact: the last step refines on the mesh itself.
-    viewpoint: where the scanner stood: "auto" (the file of read(), or the points decide), None (seen from all sides) or (x, y, z).
+    viewpoint: where the scanner stood: "auto" (the file, or the points decide), None (seen from all sides) or (x, y, z).
     indices: the object is a part of the points, its scene: rows (K,), or a mask of the shape of the points, such as
         labels == 3. The other points hide it, and it stands on them.
     ground: (4,) a, b, c, d of the plane a x + b y + c z + d = 0 that the object stands on; with a viewpoint, sparse points of
@@ -703,7 +712,7 @@ def viewpoints(
     if number < 1:
         raise ValueError(f"number = {number}, must be >= 1")
     cloud: Any = None
-    given = points
+    given = points = opened(points)
     if not isinstance(points, Planes) and not (isinstance(points, (list, tuple)) and all(isinstance(each, Plane) for each in points)):
         cloud = prepare("points", points)
         given = planes(points, approximate=True, seed=seed, threads=threads)
@@ -739,11 +748,11 @@ class Merging(_pcl_symmetry.Merging):
 def sample_mesh(
     vertices: Any, faces: Optional[ArrayLike] = None, num_points: int = 10_000, *, seed: int = 1
 ) -> NDArray[Any]:
-    """(num_points, 3) points spread evenly over a mesh of (V, 3) vertices and (F, 3) faces, or of Open3D or trimesh."""
+    """(num_points, 3) points spread evenly over a mesh of (V, 3) vertices and (F, 3) faces, or of a file, Open3D or trimesh."""
     positions, own_faces = parts_of("vertices", vertices)
     faces = faces_of(own_faces, faces)
     if faces is None:
-        raise TypeError("faces = None, must be (F, 3), or vertices a mesh of Open3D or trimesh")
+        raise TypeError("faces = None, must be (F, 3), or vertices a mesh of a file, Open3D or trimesh")
     array, shift, *_ = prepare("vertices", positions)
     points: NDArray[Any] = core.sample_mesh(array, faces, num_points=num_points, seed=seed)
     return points if shift is None else points + shift
@@ -892,8 +901,7 @@ def segment(
 ) -> NDArray[np.int32]:
     """Cuts a surface into parts by its symmetries (Section 5.3).
 
-    points: (N, 3) of a cloud, (H, W, 3), the vertices of a mesh, or a cloud or mesh of Open3D or trimesh. faces: (F, 3), or
-    None for a cloud.
+    points: as in planes(), or the vertices of a mesh. faces: (F, 3), or None for a cloud.
     parts: number of parts, 0: the method finds it; a RuntimeWarning says why there is another number. method: merging, or the
     paper's splitting; depth: splits in a row at most; as_published: splitting to the letter of the paper. progress: as in
     planes(), of the whole.
