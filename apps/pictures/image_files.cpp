@@ -16,8 +16,9 @@
 
 namespace pcl_symmetry::apps {
 
-void decodeImage(const std::string& path, bool png, RasterImage& image) {
-  const std::lock_guard<std::mutex> lock(drawing_mutex);
+namespace {
+
+vtkSmartPointer<vtkImageReader2> readerOf(const std::string& path, bool png) {
   vtkSmartPointer<vtkImageReader2> reader;
   if (png) {
     reader = vtkSmartPointer<vtkPNGReader>::New();
@@ -30,6 +31,27 @@ void decodeImage(const std::string& path, bool png, RasterImage& image) {
   reader->Update();
   vtkObject::SetGlobalWarningDisplay(display);
   if (reader->GetErrorCode() != 0) throw InputError(path + ": cannot be read, the picture is damaged");
+  return reader;
+}
+
+}  // namespace
+
+void decodeDepth(const std::string& path, pcl::PointCloud<pcl::PointXYZ>& pixels) {
+  const std::lock_guard<std::mutex> lock(drawing_mutex);
+  const auto reader = readerOf(path, true);
+  vtkImageData* const data = reader->GetOutput();
+  if (data->GetNumberOfScalarComponents() != 1 || data->GetScalarType() != VTK_UNSIGNED_SHORT)
+    throw InputError(path + ": is no depth image, must have one channel of 16 bits");
+  const int width = data->GetDimensions()[0], height = data->GetDimensions()[1];
+  pixels.resize(static_cast<std::uint32_t>(width), static_cast<std::uint32_t>(height));
+  for (int y = 0; y < height; ++y)
+    for (int x = 0; x < width; ++x)
+      pixels(x, y).getVector3fMap() << float(x), float(y), data->GetScalarComponentAsFloat(x, height - 1 - y, 0, 0);
+}
+
+void decodeImage(const std::string& path, bool png, RasterImage& image) {
+  const std::lock_guard<std::mutex> lock(drawing_mutex);
+  const auto reader = readerOf(path, png);
   vtkImageData* data = reader->GetOutput();
   const int* size = data->GetDimensions();
   const int channels = data->GetNumberOfScalarComponents();

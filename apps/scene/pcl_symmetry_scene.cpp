@@ -1,5 +1,7 @@
 /// The objects of one frame of a sensor and their symmetries: a table, JSON, the completed scene, a picture, a page.
 #include <algorithm>
+#include <boost/algorithm/string/predicate.hpp>
+#include <cmath>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -7,14 +9,17 @@
 
 #include "command_line/command_line.h"
 #include "command_line/console.h"
+#include "command_line/flag_values.h"
 #include "command_line/run_on_files.h"
 #include "command_line/tool_errors.h"
 #include "io/answers.h"
 #include "io/exact_coordinates.h"
 #include "io/file_text.h"
 #include "io/input_shape.h"
+#include "io/load_module.h"
 #include "io/shape_output.h"
 #include "pcl_symmetry/symmetry_scene.h"
+#include "pictures/drawing.h"
 #include "pictures/scene_page.h"
 #include "scene/scene_report.h"
 
@@ -29,6 +34,8 @@ struct SceneToolOptions {
   std::optional<std::string> output, database_path, png_path, html_path;
   bool no_frames = false, no_completion = false, no_separation = false, explain = false;
   std::optional<Eigen::Vector4d> ground;
+  std::optional<std::string> intrinsics;
+  double depth_scale = 1000.0;
   SceneOptions scene;
   CommonOptions common;
 };
@@ -40,16 +47,18 @@ CommandLine commandLine(SceneToolOptions& o) {
       "would be taken apart: pcl_symmetry_planes takes it as a whole.",
       "pcl_symmetry_scene table.pcd completed.pcd -json objects.json -png objects.png");
   o.batch.outputs = {&o.output, &o.png_path, &o.html_path};
-  line.positional(
-          "input", o.input,
-          ".pcd or .ply: organized, or with the viewpoint of the sensor; - for standard input, or many: a folder, a "
-          "pattern in quotes, a list @FILE")
+  line.positional("input", o.input,
+                  ".pcd or .ply: organized, or with the viewpoint of the sensor; .png: a depth image of 16 bits, with "
+                  "-intrinsics; - for standard input, or many: a folder, a "
+                  "pattern in quotes, a list @FILE")
       .positional(
           "output", o.output,
           "completed scene, .pcd or .ply, with the fields object (-1 = supporting plane, 0 = none) and completed")
       .text("database", "FILE", o.database_path, "names objects by the models of this file of pcl_symmetry_database")
       .picture("png", o.png_path, "picture: the scene, and each object with what its symmetry adds")
       .page("html", o.html_path, "page that shows the scene, its objects, planes and axes in any browser")
+      .text("intrinsics", "FX,FY,CX,CY", o.intrinsics, "of the camera of a depth image, pixels")
+      .number("depth_scale", o.depth_scale, Range::above(0), "values of a depth image for each unit of length")
       .plane("ground", o.ground,
              "what the objects stand on, a x + b y + c z + d = 0, in place of supporting planes that are searched for")
       .number("max_range", o.scene.max_range, Range::atLeast(0),
@@ -100,6 +109,28 @@ std::shared_ptr<const SymmetryDatabase> openDatabase(const SceneToolOptions& opt
                     [&] { return std::make_shared<const SymmetryDatabase>(*options.database_path, database); });
 }
 
+/// The points of a depth image in the frame of its camera: x to the right, y down, z forward.
+InputShape loadDepth(const Console& console, const std::string& path, const SceneToolOptions& options) {
+  const std::string given = options.intrinsics.value_or("");
+  const std::vector<double> k = given.empty() ? std::vector<double>() : parseNumbers("-intrinsics", given);
+  if (k.size() != 4 || !(k[0] > 0.0 && k[1] > 0.0))
+    rejectValue("-intrinsics", given, "must be FX,FY,CX,CY of the camera of " + path + ", FX and FY > 0");
+  checkReadableFile(path);
+  Step loading(console, "Loading " + path);
+  InputShape input;
+  input.path = path;
+  input.points = input.shape.points = pcl::make_shared<pcl::PointCloud<pcl::PointXYZ>>();
+  functionOf<decltype(decodeDepth)>(kDrawingModule, "decodeDepth")(path, *input.points);
+  for (pcl::PointXYZ& p : *input.points) {
+    const double z = p.z > 0.0F ? p.z / options.depth_scale : std::nan("");
+    p.getVector3fMap() = Eigen::Vector3d((p.x - k[2]) / k[0] * z, (p.y - k[3]) / k[1] * z, z).cast<float>();
+  }
+  input.points->is_dense = false;
+  input.shape.cloud = toFields(*input.points, input.shift());
+  input.loading_ms = loading.done(counted(finitePoints(*input.points).cols(), "point"));
+  return input;
+}
+
 InputShape loadFrame(const Console& console, const std::string& path, const CommonOptions& common) {
   InputShape input = loadInput(console, path, common);
   if (input.shape.mesh) throw InputError(path + ": is a mesh, must be a cloud as a sensor sees it");
@@ -126,7 +157,10 @@ SceneAnalysis analyze(const Console& console, SymmetryScene& scene, const InputS
 }
 
 void analyze(const SceneToolOptions& options, const std::shared_ptr<const SymmetryDatabase>& database, FileJob& job) {
-  const InputShape input = loadFrame(job.console(), job.path(), job.common());
+  const bool is_depth = boost::algorithm::iends_with(job.path(), ".png");
+  if (options.intrinsics && !is_depth) throw InputError(job.path() + ": is no depth image, -intrinsics needs a .png");
+  const InputShape input =
+      is_depth ? loadDepth(job.console(), job.path(), options) : loadFrame(job.console(), job.path(), job.common());
   SymmetryScene searched = makeScene(options, job.common(), database);
   const SceneAnalysis scene = analyze(job.console(), searched, input, options);
   std::string table = tableOf(scene, input.shift());
@@ -151,6 +185,7 @@ int run(int argc, char** argv) {
   SceneToolOptions options;
   CommandLine line = commandLine(options);
   if (!line.parse(argc, argv)) return 0;
+  line.goWith("-intrinsics", options.intrinsics.has_value(), {"depth_scale"});
   line.goWith("-database", options.database_path.has_value(), {"accept"});
   if (options.output) checkCloudExtension(*options.output);
   const std::shared_ptr<const SymmetryDatabase> database = openDatabase(options);

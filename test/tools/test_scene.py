@@ -258,6 +258,19 @@ class Scene(ToolTest):
         together = self.report(path, "-no_frames", FEW, "-no_separation")
         self.assertEqual([len(together["objects"]), together["junctions"]], [1, []])
 
+    def test_reads_depth_images(self):
+        depth = (POINTS - EYE) @ (-EYE / np.linalg.norm(EYE))
+        values = np.round(5000 * np.nan_to_num(depth)).astype(np.uint16).reshape(240, 320)
+        tool_run.Image.fromarray(values).save(self.folder / "depth.png")
+        report = self.report("depth.png out.ply", FEW, "-intrinsics 190,190,159.5,119.5 -depth_scale 5000 -no_completion")
+        self.assertEqual([len(report["supports"]), len(report["objects"]), report["viewpoint"]["from"]], [1, 2, "rays"])
+        of_camera = tool_run.xyz(tool_run.ply_points(self.folder / "out.ply")[0])
+        seen = POINTS[np.isfinite(depth)] - EYE
+        np.testing.assert_allclose(np.linalg.norm(of_camera, axis=1), np.linalg.norm(seen, axis=1), atol=2e-4)
+        np.testing.assert_allclose(np.diff(of_camera, axis=0) ** 2 @ np.ones(3), np.diff(seen, axis=0) ** 2 @ np.ones(3), atol=1e-3)
+        self.fails(2, "-intrinsics = , must be FX,FY,CX,CY", "depth.png")
+        self.fails(1, f"{self.scene}: is no depth image", self.scene, "-intrinsics 190,190,159.5,119.5")
+
     def test_says_what_its_planes_have_their_confidence_from(self):
         self.run_tool(self.scene, FEW, "-explain")
         self.assertRegex(self.output, r"\nobject 1\nplane 1: symmetry, confidence 0[.]\d+\n  [\d.]+ % of the surface within ")
