@@ -5,6 +5,7 @@ shapes.py folds --half report       prisms, tubes, rims and cones of 2 to 24 fol
 shapes.py views --half report       round bodies, balls and prisms, seen from one side
 shapes.py random --half report      clouds without symmetry
 shapes.py composites --half report  two symmetric solids stuck together
+shapes.py heads --half report       volumes of heads: noise, a lesion, a side that is cut off, slabs
 
 The two halves have different curves, profiles and random numbers: constants are chosen on one, figures given of the other.
 """
@@ -12,6 +13,7 @@ import dataclasses
 import math
 
 import numpy as np
+import pcl_symmetry
 
 import bench
 import planes
@@ -306,7 +308,65 @@ def part(arguments, random):
     return points, np.c_[rows[:, :3], (rows[:, 3] - rows[:, :3] @ mesh.center) / mesh.diagonal]
 
 
-KINDS = {"folds": (folds, 144), "views": (views, 180), "random": (random_clouds, 700), "composites": (composites, 40)}
+NUM_VOXELS, VOXEL = 64, 3.125  # along an edge of a volume, and their size in millimeters
+HEADS = ("whole", "noise", "lesion", "a side cut off", "slab across x", "slab across y", "slab across z")
+
+
+def body(x, center, radii, power):
+    """1 inside an ellipsoid, or between that and its box; (..., 3) positions in millimeters."""
+    distance = (np.abs((x - center) / radii) ** power).sum(-1) ** (1 / power) - 1
+    return 1 / (1 + np.exp(np.clip(distance * np.mean(radii) / 0.6, -50, 50)))
+
+
+def head(half, random):
+    """A function of positions, symmetric in x = 0: a skull, a nose and bodies in pairs; (report) of other outlines, with
+    bodies in the middle."""
+    power = 2 if half == "tuning" else 2.6
+    skull, parts = random.uniform((60, 75, 65), (70, 85, 75)), []
+    for _ in range(4 if half == "tuning" else 6):
+        where, size = random.uniform((8, -45, -35), (35, 45, 35)), random.uniform(6, 18, 3)
+        parts.append((where * (half == "tuning" or random.uniform() < 0.7, 1, 1), size, random.choice((-1, 1)) * random.uniform(0.2, 0.5)))
+
+    def density(x):
+        side = np.abs(x) * (1, 0, 0) + x * (0, 1, 1)
+        sum_ = 0.9 * body(x, 0, skull, power) - 0.4 * body(x, 0, skull - 6, power)
+        sum_ += 0.6 * body(x, (0, skull[1], -20), (8, 14, 10), power)
+        return sum_ + sum(weight * body(side, where, size, power) for where, size, weight in parts)
+
+    return density
+
+
+def heads(i, arguments, random):
+    """Right: within 3 degrees and two voxels. Wrong: neither that nor a plane that maps what the volume holds, without its
+    noise, onto itself with a correlation of 0.99."""
+    kind = HEADS[i % len(HEADS)]
+    density, turn, shift = head(arguments.half, random), bench.random_rotation(random), random.uniform(-4, 4, 3)
+    low, high = np.zeros(3, int), np.full(3, NUM_VOXELS)
+    if kind == "a side cut off":
+        low[0] = random.uniform(20, 60) / VOXEL
+    elif kind.startswith("slab"):
+        axis = "xyz".index(kind[-1])
+        low[axis] = random.integers(18, 34)
+        high[axis] = low[axis] + random.integers(12, 28)
+    at = VOXEL * (np.stack(np.indices(high - low), axis=-1) + low - NUM_VOXELS / 2)
+    exact = lambda at: density((at - shift) @ turn) + (0.4 * body((at - shift) @ turn, (30, -20, 20), 12, 2) if kind == "lesion" else 0)
+    volume = exact(at) + (kind != "whole") * random.uniform(0.02, 0.15) * random.normal(size=at.shape[:3])
+    found = pcl_symmetry.planes(volume=volume.astype("f"), spacing=(VOXEL,) * 3, origin=VOXEL * (low - NUM_VOXELS / 2), threads=1)
+    near = lambda plane: abs(plane.distance(shift)) < 2 * VOXEL and np.linalg.norm(np.cross(plane.normal, turn[:, 0])) < math.sin(math.radians(3))
+
+    def maps(plane):
+        images = at - 2 * plane.distance(at.reshape(-1, 3)).reshape(*at.shape[:3], 1) * plane.normal
+        is_inside = ((images >= at[0, 0, 0]) & (images <= at[-1, -1, -1])).all(-1)
+        pairs = np.stack([exact(at[is_inside]), exact(images[is_inside])])
+        return np.corrcoef(pairs[:, pairs.max(0) > 0.2])[0, 1] > 0.99
+
+    right = [plane for plane in found.every if near(plane)]
+    return [(row, *case) for row in ("all", kind) for case in (
+        ("listed", any(plane.kind in ("symmetry", "possible") for plane in right)), ("decided", any(plane.kind == "symmetry" for plane in right)),
+        ("wrong symmetry", any(not near(plane) and not maps(plane) for plane in found)))]  # fmt: skip
+
+
+KINDS = {"folds": (folds, 144), "views": (views, 180), "random": (random_clouds, 700), "composites": (composites, 40), "heads": (heads, 140)}
 
 
 def evaluate(i, arguments):
