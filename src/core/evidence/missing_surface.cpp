@@ -28,9 +28,8 @@ Eigen::ArrayXf along(const Coordinates& points, const Eigen::Vector3f& direction
 
 /// The point that is farthest along a direction; of several the first one.
 Eigen::Vector3f last(const Coordinates& points, const Eigen::Vector3f& direction) {
-  Eigen::Index farthest = 0;
-  along(points, direction).maxCoeff(&farthest);
-  return points.row(farthest);
+  const Eigen::ArrayXf reached = along(points, direction);  // maxCoeff() with an index is not vectorized
+  return points.row(std::find(reached.begin(), reached.end(), reached.maxCoeff()) - reached.begin());
 }
 
 /// The direction along which two clouds are farthest apart: that between the closest points of their convex hulls
