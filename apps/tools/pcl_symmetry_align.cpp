@@ -376,6 +376,7 @@ Motion registerTo(const Console& console, const InputShape& input, const InputSh
                              {"on_surface", evidence.on_surface},
                              {"contradicted", evidence.contradicted},
                              {"missing", evidence.missing},
+                             {"aside", evidence.aside},
                              {"noise", evidence.noise},
                              {"size_ratio", evidence.size_ratio},
                              {"uniqueness", evidence.uniqueness}};

@@ -364,6 +364,7 @@ void addRegistration(py::module_& module) {
       .def_readonly("on_surface", &PoseEvidence::on_surface)
       .def_readonly("contradicted", &PoseEvidence::contradicted)
       .def_readonly("missing", &PoseEvidence::missing)
+      .def_readonly("aside", &PoseEvidence::aside)
       .def_readonly("noise", &PoseEvidence::noise)
       .def_readonly("size_ratio", &PoseEvidence::size_ratio)
       .def_readonly("uniqueness", &PoseEvidence::uniqueness);

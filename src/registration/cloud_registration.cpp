@@ -170,25 +170,27 @@ std::vector<JudgedPose> judgedPoses(const CloudPair& clouds, const std::vector<R
 }
 
 /// See PoseEvidence::uniqueness.
-/// \param judged best first, at least one.
-double uniquenessOf(const CloudPair& clouds, const std::vector<JudgedPose>& judged,
+/// \param judged others may be the best one.
+double uniquenessOf(const CloudPair& clouds, const JudgedPose& best, const std::vector<JudgedPose>& judged,
                     const CloudRegistrationOptions& options) {
   const PosedSurface& model = clouds.model();
-  if (model.seen) return 1.0;  // symmetries of what was seen from one side are not known
   // Poses that differ by a symmetry of the model, and by what ICP left of their errors, are one.
-  const auto isNearSymmetry = [&](const Eigen::Isometry3d& motion) {
+  const auto isNearSymmetry = [&](const Eigen::Isometry3d& other) {
+    const Eigen::Isometry3d motion = other * best.pose.T_model_scan.inverse();
+    if (model.seen)
+      return mayBeSymmetry(motion, model) &&
+             (!clouds.scan().seen || mayBeSymmetry(best.pose.T_model_scan.inverse() * other, clouds.scan()));
     if (!isSymmetry(motion, model, kRegistration.near_pose)) return false;
     if (isSymmetry(motion, model, kRegistration.same_pose)) return true;
     const RankedPose nearest = refinePoses(model, model, {{motion, {}}}, options).front();
     return isSymmetry(nearest.T_model_scan, model, kRegistration.same_pose);
   };
   const auto odds = [](const JudgedPose& pose) { return pose.confidence / (1.0 - pose.confidence); };
-  const RankedPose& best = judged.front().pose;
-  const double best_odds = odds(judged.front());
+  const double best_odds = odds(best);
   double all = best_odds;
-  for (std::size_t k = 1; k < judged.size(); ++k)
-    if (!isNearSymmetry(judged[k].pose.T_model_scan * best.T_model_scan.inverse()))
-      all += odds(judged[k]) > kRegistration.like_odds * best_odds ? best_odds : odds(judged[k]);
+  for (const JudgedPose& other : judged)
+    if (!isNearSymmetry(other.pose.T_model_scan))
+      all += odds(other) > kRegistration.like_odds * best_odds ? best_odds : odds(other);
   return best_odds / all;
 }
 
@@ -298,7 +300,10 @@ CloudRegistration registerClouds(const Points& source, const std::optional<Visib
   if (!judged.empty()) {
     result.evidence = judged.front().evidence;
     if (judged.front().confidence >= kRegistration.min_confidence)
-      result.evidence.uniqueness = uniquenessOf(clouds, judged, inner);
+      // Scans that overlap more have the greater merit, which says nothing about others of their poses.
+      result.evidence.uniqueness = uniquenessOf(
+          clouds, judged.front(),
+          clouds.model().seen ? judgedPoses(clouds, poses, std::numeric_limits<double>::infinity()) : judged, inner);
     result.confidence = poseConfidence(result.evidence);
     std::vector<RankedPose> ranked;
     for (const JudgedPose& one : judged) ranked.push_back(one.pose);

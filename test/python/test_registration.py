@@ -90,6 +90,23 @@ class Registration(unittest.TestCase):
                     self.assertFalse(found.converged or found, found.evidence)
                     self.assertRegex(found.reason, r"^\d+ % of the source lie on the target and \d+ % of the target")
 
+    def test_scans_of_a_can_with_a_handle_that_fit_at_other_angles_are_refused(self):
+        random, n = np.random.default_rng(0), 40_000
+        angle, height, tube = random.uniform(0, 2 * np.pi, n), random.uniform(-1, 1, n), random.uniform(0, 2 * np.pi, n // 12)
+        wall = np.c_[np.cos(angle), height, np.sin(angle)]
+        along = random.uniform(-0.5 * np.pi, 0.5 * np.pi, n // 12)
+        out = np.c_[np.cos(along), np.sin(along), 0 * along]
+        normals = np.cos(tube)[:, None] * out + np.sin(tube)[:, None] * [0, 0, 1]
+        can = np.r_[wall, [1, 0, 0] + 0.6 * out + 0.12 * normals], np.r_[wall * (1, 0, 1), normals]
+        viewpoint = lambda angle: 20 * np.array([np.sin(np.radians(angle)), 0, np.cos(np.radians(angle))])
+        for a, b in ((330, 210), (270, 330), (20, 160)):
+            with self.subTest(angles=(a, b)):
+                views = dict(source_viewpoint=viewpoint(a), target_viewpoint=viewpoint(b))
+                found = pcl_symmetry.register(scan(can, a), scan(can, b, seed=1), threads=1, **views)
+                self.assertFalse(found.converged, found)
+                self.assertLess(found.evidence.uniqueness, 0.5)
+                self.assertIn("% of the odds of all poses that fit", found.reason)
+
     def test_a_mirrored_model_is_refused(self):
         shape = body(7)
         found = pcl_symmetry.register(scan(shape, 0), shape[0][::4] * (-1, 1, 1), target_viewpoint=None, threads=1)

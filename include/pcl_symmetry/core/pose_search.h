@@ -43,10 +43,14 @@ struct PoseEvidence {
   double contradicted = 0.0;
   /// The same, the share where it measured nothing, in [0, 1]: beside the cloud or in its holes.
   double missing = 0.0;
+  /// The share of both, in [0, 1], that lies farther than 5 % of the smaller diameter from all that it measured: a part
+  /// that only one of the clouds has.
+  double aside = 0.0;
   double noise = 0.0;       ///< of the noisier cloud, in diameters of the smaller one
   double size_ratio = 1.0;  ///< diameter of the source over that of the target
   /// Share of the pose in the odds of all that were judged, in (0, 1]: 0.5 where another one fits as well. Poses that
-  /// differ by a symmetry of the model are one. 1 between two scans, and where the pose alone does not convince.
+  /// differ by a symmetry of the model, or by a motion that nothing in the target scan speaks against, are one. 1 where
+  /// the pose alone does not convince.
   double uniqueness = 1.0;
 };
 

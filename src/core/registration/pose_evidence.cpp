@@ -48,12 +48,12 @@ Overlap overlapOf(const Landing& landing, const PosedSurface& to, double toleran
 
 /// What a scanner should have measured of a surface and did not.
 struct NotMeasured {
-  double contradicted = 0.0, missing = 0.0;  ///< see PoseEvidence
+  double contradicted = 0.0, missing = 0.0, aside = 0.0;  ///< see PoseEvidence
 };
 
 /// \param on_scan where the points of the surface land on the scan.
 NotMeasured notMeasured(const PosedSurface& surface, const PosedSurface& scan, const Eigen::Isometry3d& T_scan_surface,
-                        const Landing& on_scan, double tolerance) {
+                        const Landing& on_scan, double tolerance, double far) {
   if (!scan.seen) return {};
   NotMeasured area;
   double measured = 0.0;
@@ -65,11 +65,12 @@ NotMeasured notMeasured(const PosedSurface& surface, const PosedSurface& scan, c
     const bool is_measured = std::min(std::abs(point.height), distance) < tolerance;
     if (!is_measured && point.height < 0.0) continue;  // behind what was measured: nothing is known
     (is_measured ? measured : std::isinf(point.height) ? area.missing : area.contradicted) += point.cosine;
+    if (!is_measured && distance > far) area.aside += point.cosine;
     ++num_judged;
   }
   if (num_judged < kRegistration.min_visible) return {};
   const double all = measured + area.contradicted + area.missing;
-  return {area.contradicted / all, area.missing / all};
+  return {area.contradicted / all, area.missing / all, area.aside / all};
 }
 
 /// A lower limit of the share of points that lie on the surface: by a width that does not grow with the spacing of the
@@ -105,6 +106,11 @@ bool isSymmetry(const Eigen::Isometry3d& motion, const PosedSurface& model, doub
   return static_cast<double>(num_on) >= kRegistration.symmetric_share * static_cast<double>(distances.size());
 }
 
+bool mayBeSymmetry(const Eigen::Isometry3d& motion, const PosedSurface& scan) {
+  const PoseEvidence evidence = poseEvidence(scan, scan, motion);
+  return evidence.agreement > kRegistration.symmetric_agreement && evidence.aside < kRegistration.symmetric_aside;
+}
+
 PoseEvidence poseEvidence(const PosedSurface& scan, const PosedSurface& model, const Eigen::Isometry3d& T_model_scan) {
   const double scan_size = diameterOf(scan), model_size = diameterOf(model), size = std::min(scan_size, model_size);
   const double noise = std::max(scan.noise, model.noise);
@@ -119,10 +125,12 @@ PoseEvidence poseEvidence(const PosedSurface& scan, const PosedSurface& model, c
   evidence.agreement = std::min(of_scan.agreement(), of_model.agreement());
   evidence.on_surface = shareOnSurface(on_model, model);
   const double near = std::max(kRegistration.near_tolerance * size, kRegistration.tight_noises * noise);
-  const NotMeasured of_model_in_view = notMeasured(model, scan, T_model_scan.inverse(), on_scan, near),
-                    of_scan_in_view = notMeasured(scan, model, T_model_scan, on_model, near);
+  const double far = kRegistration.facing_reach * size;
+  const NotMeasured of_model_in_view = notMeasured(model, scan, T_model_scan.inverse(), on_scan, near, far),
+                    of_scan_in_view = notMeasured(scan, model, T_model_scan, on_model, near, far);
   evidence.contradicted = std::max(of_model_in_view.contradicted, of_scan_in_view.contradicted);
   evidence.missing = std::max(of_model_in_view.missing, of_scan_in_view.missing);
+  evidence.aside = std::max(of_model_in_view.aside, of_scan_in_view.aside);
   evidence.noise = noise / size;
   evidence.size_ratio = scan_size / model_size;
   return evidence;

@@ -61,8 +61,10 @@ struct RegistrationRules {
   double same_pose = 0.03;          ///< diameters of a model, within which a symmetry brings it onto itself,
   double near_pose = 0.05;          ///< and a pose that ICP left near one,
   double symmetric_share = 0.97;    ///< or so much of it
-  double some_uniqueness = 0.9;     ///< below it another pose is worth a word
-  double contact = 0.025;           ///< radii, width within which points of one surface lie on each other
+  double symmetric_agreement = 0.9;  ///< of what a scan shows with itself; wrong poses of scans have 0.3 to 0.6
+  double symmetric_aside = 0.05;     ///< share of it that may lie aside; a handle of a mug is 0.09
+  double some_uniqueness = 0.9;      ///< below it another pose is worth a word
+  double contact = 0.025;            ///< radii, width within which points of one surface lie on each other
 
   // Surfaces
   double max_roughness = 0.15;   ///< of the spacing; rougher surfaces take normals from more neighbors

@@ -819,7 +819,7 @@ class PoseScore(Result):
 class PoseEvidence(Result):
     """What decides whether a pose is right: points that face the other surface have to lie on it."""
 
-    _in_repr = ("overlap_source", "overlap_target", "agreement", "contradicted", "missing")
+    _in_repr = ("overlap_source", "overlap_target", "agreement", "contradicted", "missing", "aside")
     overlap_source: float
     """Share of the source's points that lie on the surface of the target, in [0, 1]."""
     overlap_target: float
@@ -833,13 +833,17 @@ class PoseEvidence(Result):
     be empty, before what it measured, in [0, 1]. The greater one where both were scanned; 0 where none was."""
     missing: float
     """The same, the share where it measured nothing, in [0, 1]: beside the cloud or in its holes."""
+    aside: float
+    """The share of both, in [0, 1], that lies farther than 5 % of the smaller diameter from all that it measured: a part that
+    only one of the clouds has."""
     noise: float
     """Of the noisier cloud, in diameters of the smaller one."""
     size_ratio: float
     """Diameter of the source over that of the target."""
     uniqueness: float
     """Share of the pose in the odds of all that were judged, in (0, 1]: 0.5 where another one fits as well. Poses that differ by
-    a symmetry of the model are one. 1 between two scans, and where the pose alone does not convince."""
+    a symmetry of the model, or by a motion that nothing in the target scan speaks against, are one. 1 where the pose alone does
+    not convince."""
 
 
 @dataclass(frozen=True, eq=False, repr=False)
