@@ -39,7 +39,8 @@ std::string explained(const char* name, const Found& found, const char* planes) 
 }
 
 std::string explained(const SymmetryRotation& rotation) {
-  return formatted("axis of order %d: confidence %.3f\n", rotation.fold, rotation.confidence) +
+  const std::string name = rotation.fold == 0 ? "axis of revolution" : formatted("axis of order %d", rotation.fold);
+  return name + formatted(": confidence %.3f\n", rotation.confidence) +
          formatted("  points on the surface %.3f, in space seen to be empty %.3f, by rotations halfway between %.3f\n",
                    rotation.support, rotation.off, rotation.halfway);
 }

@@ -111,8 +111,9 @@ std::shared_ptr<const SymmetryDatabase> openDatabase(const SceneToolOptions& opt
 
 /// The points of a depth image in the frame of its camera: x to the right, y down, z forward.
 InputShape loadDepth(const Console& console, const std::string& path, const SceneToolOptions& options) {
-  const std::string given = options.intrinsics.value_or("");
-  const std::vector<double> k = given.empty() ? std::vector<double>() : parseNumbers("-intrinsics", given);
+  if (!options.intrinsics) throw UsageError(path + ": a depth image needs -intrinsics FX,FY,CX,CY of its camera");
+  const std::string& given = *options.intrinsics;
+  const std::vector<double> k = parseNumbers("-intrinsics", given);
   if (k.size() != 4 || !(k[0] > 0.0 && k[1] > 0.0))
     rejectValue("-intrinsics", given, "must be FX,FY,CX,CY of the camera of " + path + ", FX and FY > 0");
   checkReadableFile(path);

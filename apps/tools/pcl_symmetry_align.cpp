@@ -544,6 +544,14 @@ struct Merged {
   std::vector<int> scans;      ///< of each point
 };
 
+/// Whether the points of two clouds can stand in one.
+bool haveSameFields(const pcl::PCLPointCloud2& a, const pcl::PCLPointCloud2& b) {
+  return std::equal(a.fields.begin(), a.fields.end(), b.fields.begin(), b.fields.end(),
+                    [](const pcl::PCLPointField& x, const pcl::PCLPointField& y) {
+                      return x.name == y.name && x.datatype == y.datatype && x.count == y.count;
+                    });
+}
+
 Merged merged(const std::vector<InputShape>& inputs, const std::vector<ObjectScan>& scans,
               const std::vector<pcl::Indices>& indices, const RegisteredScans& registered,
               const std::vector<Eigen::Isometry3d>& motions, std::size_t first) {
@@ -565,8 +573,8 @@ Merged merged(const std::vector<InputShape>& inputs, const std::vector<ObjectSca
     part = withFields(part, {"scan"}, {std::vector<float>(kept[k].size(), static_cast<float>(k))});
     if (k == first)
       merged.fields = part;
-    else if (!pcl::concatenate(merged.fields, pcl::PCLPointCloud2(part), merged.fields))
-      throw InputError(inputs[k].path + ": has other fields than " + inputs[first].path);
+    else
+      pcl::concatenate(merged.fields, pcl::PCLPointCloud2(part), merged.fields);
   }
   return merged;
 }
@@ -580,6 +588,9 @@ int mergeScans(const AlignOptions& options) {
     if (output) checkTarget(*output);
   const bool prints = isStandardOutputFree(outputs);
   const std::vector<InputShape> inputs = loadScans(console, options);
+  for (const InputShape& input : inputs)
+    if (!haveSameFields(input.fields(), inputs.front().fields()))
+      throw InputError(input.path + ": has other fields than " + inputs.front().path);
   std::vector<ObjectScan> scans;
   std::vector<pcl::Indices> indices(inputs.size());
   for (std::size_t k = 0; k < inputs.size(); ++k)

@@ -26,7 +26,7 @@ struct RegisterAllRules {
   /// Merit of a pair that did not converge at which it begins to count, and where it counts like half of one that did.
   /// Of pairs of real scans, all right ones that are above are many, and no wrong one is.
   double min_merit = -0.1, good_merit = 0.4;
-  double min_uniqueness = 0.6;  ///< of the pose of a pair that counts
+  double min_uniqueness = 0.6;  ///< of a pose that counts
   double min_votes = 0.6;       ///< that join scans: more than one pair that did not converge
   // Adjustment of all poses together
   int adjust_points = 2000;      ///< of each scan
@@ -264,7 +264,7 @@ private:
         (found.score.merit() - kRegisterAll.min_merit) / (kRegisterAll.good_merit - kRegisterAll.min_merit);
     answer.weight = answer.converged ? 1.0 : 0.5 * std::clamp(doubtful, 0.0, 1.0);
     // Of a body that is nearly round all pairs may agree on the pose in which its pictures are alike.
-    if (found.evidence.uniqueness <= kRegisterAll.min_uniqueness) answer.weight = 0.0;
+    if (found.evidence.uniqueness < kRegisterAll.min_uniqueness) answer.weight = 0.0;
     return answer;
   }
 

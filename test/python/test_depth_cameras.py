@@ -417,7 +417,9 @@ class OrganizedArrays(unittest.TestCase):
             self.assert_follow({"1": {**extent, **{k: v for k, v in symmetries.items() if k.startswith("symm")}}}, "models_info")
         self.assert_follow(pcl_symmetry.register(scan, box((0.3, 0.3, 0.25))), "pose", fitness=0.0, timing_ms={})
         scans = [box(seed=1), box(seed=2) + np.float32(1), np.array([[0, 0, k] for k in range(500)])]
-        self.assert_follow(pcl_symmetry.register_all(scans, viewpoint=None), "merged", timing_ms={})
+        merged = pcl_symmetry.register_all(scans, viewpoint=None)
+        self.assertEqual((len(merged), len(list(merged)), merged[2]), (3, 3, None))
+        self.assert_follow(merged, "merged", timing_ms={})
         self.assert_follow(pcl_symmetry.scene(self.frame), "scene", **only)
         self.assert_follow(pcl_symmetry.Database(":memory:").build({"box": box(), "words": "none"}), "database_build")
 

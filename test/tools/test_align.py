@@ -95,22 +95,28 @@ class Align(ToolTest):
         return names, places
 
     def test_merges_scans(self):
-        """Of the chair from four sides, and one of the box."""
-        names = []
+        """Of the chair from four sides, of which the fourth slides on the others and is left out, and one of the box."""
+        names, places = [], []
         for k, (x, y) in enumerate([(-0.6, -1), (0.3, -1), (1, -0.4), (1, 0.6), (-0.6, -1)]):
             names.append(f"s{k}.pcd")
             of = self.box if k == 4 else self.chair
-            self.run_tool(of, names[-1], f"-direction {x},{y},0.7 -points 4000 -random_pose -seed {k + 1}", tool="scan")
+            seen = self.report(of, names[-1], f"-direction {x},{y},0.7 -points 4000 -random_pose -seed {k + 1}", tool="scan")["scans"][0]
+            places.append(np.reshape(seen["transform"], (4, 4)))
         found = self.report(*names, "-merge all.ply -png all.png")
-        self.assertEqual(["left_out" in scan for scan in found["scans"]], [False] * 4 + [True])
+        self.assertEqual(["left_out" in scan for scan in found["scans"]], [False] * 3 + [True] * 2)
+        for scan, place in zip(found["scans"][:3], places):
+            np.testing.assert_allclose(np.linalg.solve(places[0], np.reshape(scan["transform"], (4, 4)) @ place), np.eye(4), atol=0.03)
         corner = np.asarray(tool_run.Image.open(self.folder / "all.png").convert("RGB"), int)[-120:, :20]
-        for color in ((230, 158, 0), (0, 115, 178), (0, 158, 115), (204, 120, 166)):
+        for color in ((230, 158, 0), (0, 115, 178), (0, 158, 115)):
             self.assertTrue((abs(corner - color).max(axis=2) <= 2).any(), f"{color} is in the legend")
-        self.assertEqual(self.output.splitlines()[-1], f"4 of 5 scans, {len(self.points('all.ply'))} points")
-        self.assertEqual(set(self.points("all.ply")["scan"]), set(range(4)))
+        self.assertEqual(self.output.splitlines()[-1], f"3 of 5 scans, {len(self.points('all.ply'))} points")
+        self.assertEqual(set(self.points("all.ply")["scan"]), set(range(3)))
         self.fails(1, "none.ply: is not written, as no two of the scans fit", names[0], names[4], "-merge none.ply -json none.json")
         self.assertEqual(["left_out" in scan for scan in json.loads(self.text("none.json"))["scans"]], [False, True])
         self.assertFalse((self.folder / "none.ply").exists())
+        self.write("more.pcd", tool_run.pcd(np.eye(3), intensity=np.ones(3)))
+        self.fails(1, "more.pcd: has other fields than s0.pcd", names[0], "more.pcd", "-merge none.ply")
+        self.assertNotIn("Registering", self.output)
         self.fails(2, "-merge and -target", *names[:2], "-merge all.ply -target chair.off")
         self.fails(2, "-merge FILE brings several scans together", *names)
         self.fails(2, "unexpected argument", names[0], "new.pcd", names[1])

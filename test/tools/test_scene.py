@@ -123,6 +123,16 @@ class SceneObjects(ToolTest):
             in_front = (first - 1) * np.linalg.norm(added - EYE, axis=1) > 0.05
             self.assertLessEqual(in_front.sum(), 0.02 * len(added))
 
+    def test_are_completed_by_the_sure_plane_that_adds_most(self):
+        """The best plane of a box seen from a corner lies along the view and adds nothing."""
+        picture = look(EYE, RAYS, [block(*TABLE), block((0, 0, 0.2), (0.3, 0.3, 0.2), 0.45)])[0]
+        report, points, numbers, completed = self.found(pcd(picture, 320))
+        self.assertEqual(len(report["objects"]), 1)
+        added = points[completed == 1]
+        self.assertGreater(len(added), 0.4 * ((numbers == 1) & (completed == 0)).sum())
+        own = (added - (0, 0, 0.2)) @ tool_run.rotation(np.array([0, 0, 1.0]), 0.45)
+        self.assertLess(np.median(abs((abs(own) / (0.3, 0.3, 0.2)).max(axis=1) - 1)), 0.02, "on its faces")
+
     def test_are_decided_through_the_errors_of_a_camera(self):
         report, *_ = self.found(pcd(with_depth_errors(), 320))
         self.assertEqual([len(report["supports"]), len(report["objects"])], [1, 2])
@@ -268,7 +278,7 @@ class Scene(ToolTest):
         seen = POINTS[np.isfinite(depth)] - EYE
         np.testing.assert_allclose(np.linalg.norm(of_camera, axis=1), np.linalg.norm(seen, axis=1), atol=2e-4)
         np.testing.assert_allclose(np.diff(of_camera, axis=0) ** 2 @ np.ones(3), np.diff(seen, axis=0) ** 2 @ np.ones(3), atol=1e-3)
-        self.fails(2, "-intrinsics = , must be FX,FY,CX,CY", "depth.png")
+        self.fails(2, "a depth image needs -intrinsics FX,FY,CX,CY", "depth.png")
         self.fails(1, f"{self.scene}: is no depth image", self.scene, "-intrinsics 190,190,159.5,119.5")
 
     def test_says_what_its_planes_have_their_confidence_from(self):

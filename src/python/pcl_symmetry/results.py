@@ -877,6 +877,17 @@ class RegisteredScans(Result):
         ]
         return dict(scans=scans, pairs=pairs, resolution=self.resolution)
 
+    def __len__(self) -> int:
+        return len(self.transforms)
+
+    def __iter__(self) -> Iterator[Optional[NDArray[np.float64]]]:
+        """transforms"""
+        return iter(self.transforms)
+
+    def __getitem__(self, index: int) -> Optional[NDArray[np.float64]]:
+        """The transform of a scan."""
+        return self.transforms[index]
+
     def __repr__(self) -> str:
         scans = [f"left out: {self.left_out[k]}" if t is None else _text(t) for k, t in enumerate(self.transforms)]
         lines = "".join(f"\n  {scan}," for scan in scans)
