@@ -2,6 +2,7 @@
 #include <utility>
 
 #include "core/base/check.h"
+#include "core/geometry/point_samples.h"
 #include "core/scan/range_image.h"
 #include "core/scan/viewpoint_inference.h"
 #include "pcl_symmetry/impl/cloud_conversion.hpp"
@@ -32,7 +33,7 @@ SeenSpace spaceOfScene(const pcl::PointCloud<pcl::PointXYZ>& scene, const Viewpo
   if (auto seen = sceneSeenFrom(points, stored, max_pixels))
     if (!detail::hasDefaultSensor(scene) || seen->numPictures() == 1)
       return {std::move(*seen), ViewpointSource::Stored};
-  const std::optional<InferredView> view = inferView(points, stored);
+  const std::optional<InferredView> view = inferView(withoutStrayPoints(points), stored);
   if (!view) return {};
   return {*Visibility::ofScene(points, view->position, max_pixels), ViewpointSource::Inferred};
 }
@@ -77,8 +78,9 @@ const Viewpoint& checkedViewpoint(const Viewpoint& viewpoint) {
   return viewpoint;
 }
 
-SeenSpace seenFrom(const Points& points, const Viewpoint& viewpoint, const Eigen::Vector3d& stored, bool is_default) {
+SeenSpace seenFrom(const Points& all, const Viewpoint& viewpoint, const Eigen::Vector3d& stored, bool is_default) {
   if (viewpoint.mode == Viewpoint::Mode::None) return {};
+  const Points points = withoutStrayPoints(all);
   if (viewpoint.mode == Viewpoint::Mode::Given) {
     checkViewpoint(viewpoint.position);
     std::optional<Visibility> seen = Visibility::fromPoints(points, viewpoint.position);

@@ -171,11 +171,12 @@ std::optional<Eigen::Vector3d> positionOf(const py::object& viewpoint) {
                               ", must be \"auto\", None or (x, y, z)");
 }
 
-std::optional<Visibility> seenFrom(const PointsRef& points, const py::object& viewpoint) {
+std::optional<Visibility> seenFrom(const PointsRef& all, const py::object& viewpoint) {
   if (viewpoint.is_none()) return std::nullopt;
   if (py::isinstance<Visibility>(viewpoint)) return viewpoint.cast<Visibility>();
   const std::optional<Eigen::Vector3d> position = positionOf(viewpoint);
-  if (points.cols() == 0) return std::nullopt;
+  if (all.cols() == 0) return std::nullopt;
+  const Points points = withoutStrayPoints(all);
   if (!position) {
     const bool is_stored = py::isinstance<StoredViewpoint>(viewpoint);
     const Eigen::Vector3d stored = is_stored ? viewpoint.cast<StoredViewpoint>().position : Eigen::Vector3d::Zero();

@@ -85,6 +85,23 @@ TEST(ScanAnalysis, UsesAViewpointThatIsGiven) {
   EXPECT_EQ(messageOf([&] { SeenSpace(Cloud(), nowhere); }), "viewpoint = nan nan nan, must be finite");
 }
 
+TEST(ScanAnalysis, StrayPointsDoNotMoveTheViewpoint) {
+  const Scan scan = test::scan(test::blockBox(), {2.5, -3.0, 2.0});
+  const auto cloud = toCloud(scan.cloud());
+  SymmetryMaximaRefinement<pcl::PointXYZ> refinement;
+  refinement.setInputCloud(cloud);
+  const std::size_t num_planes = refinement.compute().size();
+  const std::optional<Eigen::Vector3d> viewpoint = refinement.getUsedViewpoint();
+  ASSERT_TRUE(viewpoint);
+  const Eigen::Vector3f behind = 4.0f * scan.viewpoint.cast<float>();  // the sensor
+  cloud->push_back(pcl::PointXYZ(behind.x(), behind.y(), behind.z()));
+  refinement.setInputCloud(cloud);
+  EXPECT_EQ(refinement.compute().size(), num_planes);
+  EXPECT_EQ(refinement.getUsedViewpoint(), viewpoint);
+  refinement.setViewpoint(scan.viewpoint);
+  EXPECT_GE(refinement.compute().size(), num_planes) << "it does not have to see the point";
+}
+
 /// The part of the first box's far side that the second box hides.
 int numTakenForFree(const SeenSpace& seen, const test::Table& table) {
   const Visibility truth = table.scan.visibility();

@@ -257,6 +257,8 @@ class OrganizedArrays(unittest.TestCase):
         for k in (1, 2):
             found = scene.labels == next(i + 1 for i, each in enumerate(scene) if self.labels.ravel()[each.rows[0]] == k)
             self.assertGreater((found & (self.labels == k)).sum(), 0.9 * (self.labels == k).sum())
+        with self.assertRaisesRegex(ValueError, "points: are a mesh, must be a cloud as a sensor sees it"):
+            pcl_symmetry.scene(types.SimpleNamespace(vertices=np.eye(3), faces=np.array([[0, 1, 2]])))
         for each in scene:
             self.assertTrue(each.planes)
             self.assertIsNotNone(each.completed_by)

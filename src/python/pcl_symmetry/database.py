@@ -355,6 +355,8 @@ def scene(
         left_out(scene, locals(), "no database", "min_name_confidence")
     points = opened(points)
     cloud = prepare("points", points)
+    if cloud.mesh is not None:
+        raise ValueError("points: are a mesh, must be a cloud as a sensor sees it")
     seen_from = cloud.seen_from(viewpoint)
     # A file is seen from where it says, which is the origin where it says nothing.
     if len(cloud.shape) == 1 and not isinstance(points, Shape) and (seen_from is None or isinstance(seen_from, str)):
