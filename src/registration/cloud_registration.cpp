@@ -170,7 +170,7 @@ std::vector<JudgedPose> judgedPoses(const CloudPair& clouds, const std::vector<R
 }
 
 /// See PoseEvidence::uniqueness.
-/// \param judged others may be the best one.
+/// \param judged all poses to compare with; the best one may be among them.
 double uniquenessOf(const CloudPair& clouds, const JudgedPose& best, const std::vector<JudgedPose>& judged,
                     const CloudRegistrationOptions& options) {
   const PosedSurface& model = clouds.model();
@@ -300,7 +300,7 @@ CloudRegistration registerClouds(const Points& source, const std::optional<Visib
   if (!judged.empty()) {
     result.evidence = judged.front().evidence;
     if (judged.front().confidence >= kRegistration.min_confidence)
-      // Scans that overlap more have the greater merit, which says nothing about others of their poses.
+      // Between two scans merit grows with what they share: a pose of less merit may fit as well.
       result.evidence.uniqueness = uniquenessOf(
           clouds, judged.front(),
           clouds.model().seen ? judgedPoses(clouds, poses, std::numeric_limits<double>::infinity()) : judged, inner);

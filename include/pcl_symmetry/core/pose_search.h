@@ -49,8 +49,8 @@ struct PoseEvidence {
   double noise = 0.0;       ///< of the noisier cloud, in diameters of the smaller one
   double size_ratio = 1.0;  ///< diameter of the source over that of the target
   /// Share of the pose in the odds of all that were judged, in (0, 1]: 0.5 where another one fits as well. Poses that
-  /// differ by a symmetry of the model, or by a motion that nothing in the target scan speaks against, are one. 1 where
-  /// the pose alone does not convince.
+  /// differ by a symmetry of the model, or between two scans by a motion that neither of them speaks against, are one.
+  /// 1 where the pose alone does not convince.
   double uniqueness = 1.0;
 };
 

@@ -26,7 +26,7 @@ std::vector<float> discDistances(const PosedSurface& from, const PosedSurface& t
 /// \return whether a motion brings a whole model, but for a few points, onto itself.
 bool isSymmetry(const Eigen::Isometry3d& motion, const PosedSurface& model, double tolerance);
 
-/// \return whether nothing that a scan shows speaks against a motion that brings its object onto itself.
+/// \return whether what a scan shows leaves open that a motion is a symmetry of its object.
 bool mayBeSymmetry(const Eigen::Isometry3d& motion, const PosedSurface& scan);
 
 /// \return probability that the pose is right, in [0, 1], fitted by test/benchmark/fit_registration.py.

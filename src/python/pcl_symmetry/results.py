@@ -842,8 +842,8 @@ class PoseEvidence(Result):
     """Diameter of the source over that of the target."""
     uniqueness: float
     """Share of the pose in the odds of all that were judged, in (0, 1]: 0.5 where another one fits as well. Poses that differ by
-    a symmetry of the model, or by a motion that nothing in the target scan speaks against, are one. 1 where the pose alone does
-    not convince."""
+    a symmetry of the model, or between two scans by a motion that neither of them speaks against, are one. 1 where the pose
+    alone does not convince."""
 
 
 @dataclass(frozen=True, eq=False, repr=False)
