@@ -47,6 +47,25 @@ std::string explained(const SymmetryRotation& rotation) {
 
 }  // namespace
 
+nlohmann::json planeJson(const SymmetryPlane& plane, const Eigen::Vector3d& shift) {
+  nlohmann::json reasons = nlohmann::json::array();
+  for (const Reason& reason : plane.reasons)
+    reasons.push_back({{"rule", reason.rule}, {"odds", reason.odds ? nlohmann::json(*reason.odds) : nullptr}});
+  return {{"coefficients", numbersOf(plane, shift)},
+          {"kind", toString(plane.kind)},
+          {"confidence", plane.confidence},
+          {"reasons", reasons},
+          {"share", plane.share},
+          {"share_interval", nlohmann::json::array({plane.share_low, plane.share_high})},
+          {"deviation", plane.deviation},
+          {"score", plane.score},
+          {"support", plane.support},
+          {"seen", plane.seen},
+          {"residual", plane.residual},
+          {"iterations", plane.iterations},
+          {"converged", plane.converged}};
+}
+
 nlohmann::json rotationsJson(const std::vector<SymmetryRotation>& rotations, const Eigen::Vector3d& shift) {
   nlohmann::json json = nlohmann::json::array();
   for (const SymmetryRotation& rotation : rotations) {

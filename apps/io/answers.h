@@ -52,6 +52,9 @@ inline std::vector<double> numbersOf(const ReflectionPlane& plane, const Eigen::
   return numbersOf(shiftedBack(plane, shift).coefficients());
 }
 
+/// A plane and all that was measured of it, input frame.
+nlohmann::json planeJson(const SymmetryPlane& plane, const Eigen::Vector3d& shift);
+
 /// Where an axis is, input frame, and how sure it is.
 /// \param axis SymmetryAxis or SymmetryRotation.
 template <typename Axis>

@@ -65,14 +65,7 @@ nlohmann::json describeObject(const SceneObject& object, const Eigen::Vector3d& 
                       {"resolution", object.resolution},     {"diameter", object.diameter}};
   if (!object.reason.empty()) json["reason"] = object.reason;
   if (!object.model_reason.empty()) json["model_reason"] = object.model_reason;
-  for (const SymmetryPlane& plane : object.planes)
-    json["planes"].push_back({{"coefficients", numbersOf(plane, shift)},
-                              {"kind", toString(plane.kind)},
-                              {"confidence", plane.confidence},
-                              {"share", plane.share},
-                              {"support", plane.support},
-                              {"seen", plane.seen},
-                              {"score", plane.score}});
+  for (const SymmetryPlane& plane : object.planes) json["planes"].push_back(planeJson(plane, shift));
   for (const SymmetryAxis& axis : object.axes) json["axes"].push_back(axisJson(axis, shift));
   for (const SymmetryCenter& center : object.centers)
     json["centers"].push_back(

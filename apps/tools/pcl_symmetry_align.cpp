@@ -524,7 +524,7 @@ nlohmann::json describe(const std::vector<InputShape>& inputs, const RegisteredS
   for (std::size_t k = 0; k < inputs.size(); ++k) {
     nlohmann::json scan{{"file", inputs[k].path}};
     if (registered.scans[k].left_out.empty())
-      scan["transform"] = rowMajor(motions[k]);
+      scan.update({{"transform", rowMajor(motions[k])}, {"confidence", registered.scans[k].confidence}});
     else
       scan["left_out"] = registered.scans[k].left_out;
     json["scans"].push_back(scan);
@@ -614,8 +614,10 @@ int mergeScans(const AlignOptions& options) {
   std::string text;
   for (std::size_t k = 0; k < inputs.size(); ++k) {
     motions.push_back(shiftedBack(registered.scans[k].T_first_scan, inputs[k].shift(), inputs[first].shift()));
-    const std::string& reason = registered.scans[k].left_out;
-    text += inputs[k].path + ": " + (reason.empty() ? "kept" : "left out, " + reason) + "\n";
+    const ScanPose& scan = registered.scans[k];
+    text += inputs[k].path + ": " +
+            (scan.left_out.empty() ? formatted("confidence %.3f", scan.confidence) : "left out, " + scan.left_out) +
+            "\n";
   }
   nlohmann::json json = describe(inputs, registered, motions);
   if (num_kept == 1 && inputs.size() > 1) {

@@ -158,25 +158,6 @@ std::string tableOf(const Findings& findings, const Eigen::Vector3d& shift) {
   return table;
 }
 
-nlohmann::json describe(const SymmetryPlane& plane, const Eigen::Vector3d& shift) {
-  nlohmann::json reasons = nlohmann::json::array();
-  for (const Reason& reason : plane.reasons)
-    reasons.push_back({{"rule", reason.rule}, {"odds", reason.odds ? nlohmann::json(*reason.odds) : nullptr}});
-  return {{"coefficients", numbersOf(plane, shift)},
-          {"kind", toString(plane.kind)},
-          {"confidence", plane.confidence},
-          {"reasons", reasons},
-          {"share", plane.share},
-          {"share_interval", nlohmann::json::array({plane.share_low, plane.share_high})},
-          {"deviation", plane.deviation},
-          {"score", plane.score},
-          {"support", plane.support},
-          {"seen", plane.seen},
-          {"residual", plane.residual},
-          {"iterations", plane.iterations},
-          {"converged", plane.converged}};
-}
-
 nlohmann::json describe(const SymmetryAxis& axis, const Eigen::Vector3d& shift) {
   nlohmann::json json = axisJson(axis, shift);
   json.update({{"score", axis.score}, {"support", axis.support}});
@@ -201,11 +182,11 @@ std::vector<std::vector<nlohmann::json>> rowsOf(const Findings& findings, const 
     rows.push_back(row);
   };
   std::size_t planes = 0, axes = 0, rotations = 0, centers = 0;
-  for (const SymmetryPlane& plane : findings.planes) add(++planes, toString(plane.kind), describe(plane, shift));
+  for (const SymmetryPlane& plane : findings.planes) add(++planes, toString(plane.kind), planeJson(plane, shift));
   for (const SymmetryAxis& axis : findings.axes) add(++axes, "axis", describe(axis, shift));
   for (const SymmetryRotation& rotation : findings.rotations) add(++rotations, "rotation", axisJson(rotation, shift));
   for (const SymmetryCenter& center : findings.centers) add(++centers, "center", describe(center, shift));
-  if (findings.best) add(1, "best", describe(*findings.best, shift));
+  if (findings.best) add(1, "best", planeJson(*findings.best, shift));
   return rows;
 }
 
@@ -223,8 +204,8 @@ nlohmann::json describe(const InputShape& input, const Findings& findings) {
                       {"centers", nlohmann::json::array()},
                       {"timing_ms", timingJson(findings.timing_ms)}};
   if (findings.viewpoint) json["viewpoint"]["position"] = numbersOf(shiftedBack(*findings.viewpoint, shift));
-  for (const SymmetryPlane& plane : findings.planes) json["planes"].push_back(describe(plane, shift));
-  if (findings.best) json["best"] = describe(*findings.best, shift);
+  for (const SymmetryPlane& plane : findings.planes) json["planes"].push_back(planeJson(plane, shift));
+  if (findings.best) json["best"] = planeJson(*findings.best, shift);
   if (findings.flat) json["flat"] = {{"coefficients", numbersOf(*findings.flat, shift)}};
   for (const SymmetryAxis& axis : findings.axes) json["axes"].push_back(describe(axis, shift));
   if (findings.viewpoint) json["rotations"] = rotationsJson(findings.rotations, shift);
@@ -409,6 +390,10 @@ void analyze(const PlanesOptions& options, FileJob& job) {
   if (options.label && (input.volume || input.shape.mesh))
     throw InputError(job.path() + ": -label needs a cloud with a field label");
   const Findings findings = search(job, input, options);
+  if (options.ground && !findings.viewpoint)
+    job.console().warn(input.path + ": -ground has no effect without a viewpoint (-viewpoint)");
+  if (findings.empty() && !input.volume && input.points->isOrganized() && !options.label)
+    job.console().warn(input.path + ": if this is a whole frame, pcl_symmetry_scene finds its objects");
   const std::string table = tableOf(findings, input.shift()) + (options.explain ? explained(findings) : "");
   job.report({table, describe(input, findings), rowsOf(findings, input.shift())});
   if (options.support_path) saveSupport(input, findings, job.output(*options.support_path));

@@ -26,6 +26,9 @@ struct ObjectScan {
 struct ScanPose {
   /// From the frame of this scan to that of the first scan that is kept; the identity where this one is left out.
   Eigen::Isometry3d T_first_scan = Eigen::Isometry3d::Identity();
+  /// Estimated probability that the scan fits the others there, in [0, 1], by their points and by the space that each
+  /// scanner saw to be empty. Another place may fit as well where the object looks alike from several sides.
+  double confidence = 0.0;
   std::string left_out;  ///< why the scan is left out, one sentence; empty where it is kept
 };
 
@@ -61,7 +64,8 @@ struct RegisteredScans {
 /// overlap. Scans that follow each other are tried first, then others, until each scan has three pairs that agree.
 ///
 /// A pair that did not converge alone counts where others agree with it. A pair that contradicts the others is not
-/// used, and a scan that fits none is tried with all others together before it is left out.
+/// used, and a scan that fits none is tried with all others together before it is left out. In the end scans of a
+/// confidence below 0.5 are left out, the least sure one first.
 /// \param scans of one object in the same units; where others than the first cannot be connected with it, those of the
 /// largest group are kept.
 /// \param options of the registration of pairs, but for its neighborhood.

@@ -396,6 +396,13 @@ void addRegistration(py::module_& module) {
                                                           : std::nullopt);
                                return transforms;
                              })
+      .def_property_readonly("confidences",
+                             [](const RegisteredScans& r) {
+                               std::vector<double> confidences;
+                               for (const ScanPose& scan : r.scans)
+                                 confidences.push_back(scan.left_out.empty() ? scan.confidence : 0.0);
+                               return confidences;
+                             })
       .def_property_readonly("left_out",
                              [](const RegisteredScans& r) {
                                std::map<int, std::string> left_out;

@@ -12,6 +12,7 @@
 #include "core/base/stopwatch.h"
 #include "core/base/watched_steps.h"
 #include "core/geometry/point_samples.h"
+#include "core/registration/pose_evidence.h"
 #include "core/registration/posed_surface.h"
 #include "registration/pose_graph.h"
 
@@ -28,6 +29,7 @@ struct RegisterAllRules {
   double min_merit = -0.1, good_merit = 0.4;
   double min_uniqueness = 0.6;  ///< of a pose that counts
   double min_votes = 0.6;       ///< that join scans: more than one pair that did not converge
+  double min_confidence = 0.5;  ///< of a scan among the others
   // Adjustment of all poses together
   int adjust_points = 2000;      ///< of each scan
   int adjust_steps = 16;         ///< over which the reach shrinks
@@ -162,7 +164,7 @@ public:
         if (groups_.group[k] == largest) continue;
         const CloudRegistration found =
             registerClouds(scans_[k].scan.points, scans_[k].scan.seen, *whole, Eigen::Isometry3d::Identity(), options_);
-        if (!found.converged()) continue;
+        if (!found.converged() || found.evidence.uniqueness < kRegisterAll.min_uniqueness) continue;
         groups_.group[k] = largest;
         groups_.T_group_scan[k] = found.T_target_source;
         grown = true;
@@ -222,6 +224,39 @@ public:
     }
   }
 
+  /// Takes scans out of the largest group, the least sure one first, until each that is left lies on the others' points
+  /// and leaves free what their scanners saw to be free.
+  /// \return how sure the pose of each scan of the group is, in [0, 1], of what is taken out when it was; 0 of others.
+  std::vector<double> takeOutDoubtful() {
+    const int group = largestGroup();
+    std::vector<int> kept;
+    for (int k = 0; k < size(); ++k)
+      if (groups_.group[k] == group) kept.push_back(k);
+    Eigen::MatrixXd contradicted = Eigen::MatrixXd::Zero(size(), size());
+    parallelBlocks(kept.size() * kept.size(), num_threads_, [&](std::size_t e) {
+      const int i = kept[e / kept.size()], j = kept[e % kept.size()];
+      if (i < j) contradicted(i, j) = evidence(i, *scans_[j].surface, groups_.T_group_scan[j]).contradicted;
+    });
+    contradicted += contradicted.transpose().eval();
+    std::vector<double> confidences(size());
+    while (kept.size() > 1) {
+      parallelBlocks(kept.size(), num_threads_, [&](std::size_t e) {
+        const int k = kept[e];
+        const PosedSurface others(together(group, k), std::nullopt, options_.seed, 1);
+        PoseEvidence found = evidence(k, others, Eigen::Isometry3d::Identity());
+        for (const int j : kept) found.contradicted = std::max(found.contradicted, contradicted(k, j));
+        confidences[k] = poseConfidence(found);
+      });
+      const auto less_sure = [&](int a, int b) { return confidences[a] < confidences[b]; };
+      const auto worst = std::min_element(kept.begin(), kept.end(), less_sure);
+      if (confidences[*worst] >= kRegisterAll.min_confidence) return confidences;
+      groups_.group[*worst] = size() + *worst;
+      kept.erase(worst);
+    }
+    confidences[kept.front()] = 1.0;
+    return confidences;
+  }
+
   /// Share of the points of one scan that lie on another.
   double overlap(int source, int target) const {
     const PosedSurface &from = *scans_[source].surface, &to = *scans_[target].surface;
@@ -266,6 +301,11 @@ private:
     // Of a body that is nearly round all pairs may agree on the pose in which its pictures are alike.
     if (found.evidence.uniqueness < kRegisterAll.min_uniqueness) answer.weight = 0.0;
     return answer;
+  }
+
+  /// What speaks for the pose of a scan on a surface.
+  PoseEvidence evidence(int scan, const PosedSurface& of, const Eigen::Isometry3d& T_group_of) const {
+    return poseEvidence(*scans_[scan].surface, of, T_group_of.inverse() * groups_.T_group_scan[scan]);
   }
 
   Matched match(int source, int target, double reach) const {
@@ -360,6 +400,7 @@ RegisteredScans registerAll(const std::vector<ObjectScan>& scans, const CloudReg
   graph.settleLoose();
   graph.adjust();
   done("adjust");
+  const std::vector<double> confidences = graph.takeOutDoubtful();
   const int group = graph.largestGroup();
   int first = 0;
   while (graph.groups().group[first] != group) ++first;
@@ -367,13 +408,16 @@ RegisteredScans registerAll(const std::vector<ObjectScan>& scans, const CloudReg
     ScanPose& scan = result.scans[usable[k]];
     if (graph.groups().group[k] == group) {
       scan.T_first_scan = graph.pose(k, first);
+      scan.confidence = confidences[k];
       continue;
     }
     const bool contradicts = std::any_of(graph.answers().begin(), graph.answers().end(), [&](const PairAnswer& a) {
       return a.converged && ((a.source == k && graph.groups().group[a.target] == group) ||
                              (a.target == k && graph.groups().group[a.source] == group));
     });
-    scan.left_out = contradicts ? "its pairs contradict each other" : "it fits no other scan that is kept";
+    scan.left_out = confidences[k] > 0.0 ? "its confidence among the others is below 0.5"
+                    : contradicts        ? "its pairs contradict each other"
+                                         : "it fits no other scan that is kept";
   }
   for (const PairAnswer& answer : graph.answers()) {
     const bool kept = graph.groups().group[answer.source] == group && graph.groups().group[answer.target] == group;

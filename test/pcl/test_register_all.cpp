@@ -67,6 +67,7 @@ TEST(RegisterAll, BringsScansFromAllAroundTogetherAndLeavesOutAScanOfSomethingEl
   std::size_t num_points = 0;
   for (std::size_t k = 0; k < table.scans.size(); ++k) {
     ASSERT_EQ(merged.registration.scans[k].left_out.empty(), k != 3) << k << merged.registration.scans[k].left_out;
+    EXPECT_EQ(merged.registration.scans[k].confidence > 0.5, k != 3) << k;
     if (k == 3) continue;
     const auto [degrees, way] = table.error(merged.registration, k);
     EXPECT_LT(degrees, 1.0) << k;

@@ -121,6 +121,8 @@ class SameBytes(unittest.TestCase):
             check("one side", one_side)
             check("viewpoint", one_side, "-viewpoint", at, viewpoint=viewpoint)
             check("ground", one_side, "-viewpoint", at, "-ground", "0,0,1,0.2", viewpoint=viewpoint, ground=(0, 0, 1, 0.2))
+            with self.assertWarnsRegex(RuntimeWarning, "ground: has no effect without a viewpoint"):
+                pcl_symmetry.planes(cloud, ground=(0, 0, 1, 0.2))
             check("organized", np.where((labels == 1)[..., None], frame, np.nan))
             check("organized, without viewpoint", frame, "-viewpoint", "none", viewpoint=None)
             check("label", frame, "-label", "1", labels=labels, indices=labels == 1)
@@ -494,7 +496,9 @@ class Answers(unittest.TestCase):
         plane = every.approximate[0]
         with self.assertRaisesRegex(ValueError, "plane.kind = .*, must be symmetry or possible"):
             pcl_symmetry.complete(blob, plane)
-        pcl_symmetry.complete(blob, pcl_symmetry.ReflectionPlane(plane.normal, plane.offset))
+        as_they_are = [plane.coefficients, plane.coefficients.tolist(), pcl_symmetry.ReflectionPlane(plane.normal, plane.offset)]
+        rows = {pcl_symmetry.complete(blob, each)[1].tobytes() for each in as_they_are}
+        self.assertEqual(len(rows), 1)
         self.assertEqual([each["kind"] for each in json.loads(every.to_json())["planes"]], [each.kind for each in every.approximate])
 
     def test_cannot_be_written_into(self):

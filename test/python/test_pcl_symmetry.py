@@ -230,8 +230,8 @@ class Planes(unittest.TestCase):
         for wrong in (None, [[1, 2, 3], [4]]):
             with self.assertRaises((TypeError, ValueError)):
                 pcl_symmetry.planes(wrong)
-        with self.assertRaisesRegex(TypeError, "plane = list, must be a ReflectionPlane"):
-            pcl_symmetry.complete(box(), [1, 0, 0, 0])
+        with self.assertRaisesRegex(TypeError, r"plane = list, must be a plane, such as planes\(\)\[0\], or \(4,\) a, b, c, d"):
+            pcl_symmetry.complete(box(), [1, 0, 0])
         with self.assertRaisesRegex(TypeError, "bins = 64, must be three whole numbers"):
             pcl_symmetry.transform(box(), 64)
         with self.assertRaisesRegex(ValueError, "scale = 2, must be in"):
@@ -637,7 +637,7 @@ class Meshes(unittest.TestCase):
         self.assertLess(found.deviation, 1e-5 * 2)
         np.testing.assert_array_equal(found.faces, faces)
         cut = pcl_symmetry.symmetrize(vertices, plane, faces=faces, cut=True)
-        again = pcl_symmetry.symmetrize(cut.points, plane, faces=cut.faces)
+        again = pcl_symmetry.symmetrize(cut.points, plane.coefficients, faces=cut.faces)
         self.assertLess(max(again.deviation, again.greatest_asymmetry), 1e-6 * 2)
         self.assertEqual(cut.faces.max(), len(cut.points) - 1)
         self.assertEqual(cut.deviation, 0.0)

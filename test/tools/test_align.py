@@ -106,6 +106,7 @@ class Align(ToolTest):
         self.assertEqual(["left_out" in scan for scan in found["scans"]], [False] * 3 + [True] * 2)
         for scan, place in zip(found["scans"][:3], places):
             np.testing.assert_allclose(np.linalg.solve(places[0], np.reshape(scan["transform"], (4, 4)) @ place), np.eye(4), atol=0.03)
+            self.assertTrue(0.5 <= scan["confidence"] <= 1, scan)
         corner = np.asarray(tool_run.Image.open(self.folder / "all.png").convert("RGB"), int)[-120:, :20]
         for color in ((230, 158, 0), (0, 115, 178), (0, 158, 115)):
             self.assertTrue((abs(corner - color).max(axis=2) <= 2).any(), f"{color} is in the legend")

@@ -129,7 +129,16 @@ def register_all(
         if transform is not None:
             from_scan = arrays[k][rows[scans == k]].astype(float) + shifts[k]
             points[scans == k] = from_scan @ transform[:3, :3].T + transform[:3, 3]
-    return RegisteredScans(transforms=transforms, left_out=left_out, pairs=pairs, points=points, scans=scans, rows=rows, resolution=found.resolution)
+    return RegisteredScans(
+        transforms=transforms,
+        confidences=found.confidences,
+        left_out=left_out,
+        pairs=pairs,
+        points=points,
+        scans=scans,
+        rows=rows,
+        resolution=found.resolution,
+    )
 
 
 class Database:

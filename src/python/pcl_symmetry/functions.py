@@ -282,6 +282,8 @@ def look(
         seed=seed,
         threads=threads,
     )
+    if ground is not None and seen is None and not reason:
+        warnings.warn("ground: has no effect without a viewpoint", RuntimeWarning, stacklevel=3)
     return Used(points, seen, viewpoint_from, rows, may_be_rings, re.sub("^input cloud: ", "", reason))
 
 
@@ -365,10 +367,20 @@ def _rotation_axis(t: Any) -> RotationAxis:
     return RotationAxis(**_fields(t, "point", "direction", "fold", "confidence", "support", "off", "far", "halfway"))
 
 
+def plane_of(plane: Union[ReflectionPlane, ArrayLike]) -> ReflectionPlane:
+    """A plane, also of its coefficients."""
+    import numpy as np
+
+    if isinstance(plane, ReflectionPlane):
+        return plane
+    if isinstance(plane, Planes) or np.shape(plane) != (4,):
+        raise TypeError(f"plane = {type(plane).__name__}, must be a plane, such as planes()[0], or (4,) a, b, c, d")
+    *normal, d = np.asarray(plane, dtype=float)
+    return ReflectionPlane(normal, -d)
+
+
 def _core_plane(plane: ReflectionPlane, shift: Shift) -> Any:
     """The plane in the frame of points that prepare() moved."""
-    if not isinstance(plane, ReflectionPlane):
-        raise TypeError(f"plane = {type(plane).__name__}, must be a ReflectionPlane, such as one of planes()")
     moved = plane if shift is None else plane._moved(-shift)
     return core.ReflectionPlane(moved.normal, moved.offset)
 
@@ -605,7 +617,7 @@ def local_symmetry(
 
 def complete(
     points: Any,
-    plane: Union[ReflectionPlane, Axis],
+    plane: Union[ReflectionPlane, Axis, ArrayLike],
     *,
     viewpoint: Viewpoint = "auto",
     indices: Optional[ArrayLike] = None,
@@ -614,8 +626,8 @@ def complete(
     """Completes a scan by its reflection in a plane.
 
     points, viewpoint, indices: as in planes(); of a mesh its vertices. plane: a symmetry, or a possible one, of planes(); any
-    other is refused, unless it comes as ReflectionPlane(plane.normal, plane.offset). Of a body of revolution its Axis: the plane
-    through it and across the view is taken.
+    other is refused, unless it comes as its coefficients, (4,) a, b, c, d of a x + b y + c z + d = 0. Of a body of revolution
+    its Axis: the plane through it and across the view is taken.
     Returns (added, rows). added: (M, 3) points that neither fall onto the measured surface nor into space that was seen to be
     empty. rows: (M,) the row of the point that each is the reflection of: added is plane.reflect(points.reshape(-1, 3)[rows]).
     Warns (RuntimeWarning) where nothing is added, and where the plane is only possible, with its confidence.
@@ -625,14 +637,14 @@ def complete(
     cloud = of_vertices("points", points)
     if isinstance(plane, Plane) and plane.kind not in ("symmetry", "possible"):
         raise ValueError(
-            f"plane.kind = {plane.kind}, must be symmetry or possible; ReflectionPlane(plane.normal, plane.offset) is taken as it is"
+            f"plane.kind = {plane.kind}, must be symmetry or possible; plane.coefficients are taken as they are"
         )
     used = look(cloud, viewpoint, indices, max_points=0, as_measured=True, threads=threads)
     by = axis = None
     if isinstance(plane, Axis):
         axis = (plane.point if cloud.shift is None else plane.point - cloud.shift, plane.direction)
     else:
-        by = _core_plane(plane, cloud.shift)
+        by = _core_plane(plane_of(plane), cloud.shift)
     added, found = core.complete(used.array, by, axis=axis, viewpoint=used.viewpoint, threads=threads)
     rows = np.asarray(found, dtype=np.int64)
     if used.rows is not None:
@@ -649,7 +661,7 @@ def complete(
 
 def symmetrize(
     points: Any,
-    plane: ReflectionPlane,
+    plane: Union[ReflectionPlane, ArrayLike],
     half: str = "mean",
     *,
     faces: Optional[ArrayLike] = None,
@@ -661,6 +673,7 @@ def symmetrize(
     points: as in planes(); rows of a cloud that are not finite are left out, and their asymmetry is NaN. faces: (F, 3) of a mesh
         given by its vertices; a mesh keeps them. Where faces of both sides do not match, it is its own reflection but for their
         deviation from the surface.
+    plane: of planes(), or (4,) a, b, c, d of a x + b y + c z + d = 0.
     half: mean: both halves are the mean of the two sides; left or right: the side that the normal of the plane points away
         from or to, and its reflection.
     cut: cuts a mesh at the plane, and takes one side (of mean the left one) and its reflection: an exact one, with other faces.
@@ -668,6 +681,7 @@ def symmetrize(
     import numpy as np
 
     given = locals()
+    plane = plane_of(plane)
     points, own_faces = parts_of("points", points)
     faces = faces_of(own_faces, faces)
     if faces is None:

@@ -852,6 +852,8 @@ class RegisteredScans(Result):
 
     transforms: List[Optional[NDArray[np.float64]]]
     """(4, 4) from the frame of each scan to that of the first one that is kept; None where it is left out."""
+    confidences: List[float]
+    """Of each scan the estimated probability that it fits the others there, in [0, 1]; 0 where it is left out."""
     left_out: Dict[int, str]
     """Why each scan that is left out is, by its index."""
     pairs: List[Tuple[int, int, float, bool]]
@@ -867,10 +869,10 @@ class RegisteredScans(Result):
     """Distance that the scans resolve, input units: of the points in a cube as wide one is kept."""
 
     def _json(self) -> Dict[str, Any]:
-        scans = [
-            dict(file=f"clouds[{k}]", **({"left_out": self.left_out[k]} if transform is None else {"transform": _numbers(transform)}))
-            for k, transform in enumerate(self.transforms)
-        ]
+        scans: List[Dict[str, Any]] = []
+        for k, transform in enumerate(self.transforms):
+            kept = transform is not None and dict(transform=_numbers(transform), confidence=self.confidences[k])
+            scans.append(dict(file=f"clouds[{k}]", **(kept or dict(left_out=self.left_out[k]))))
         pairs = [
             dict(source=f"clouds[{source}]", target=f"clouds[{target}]", overlap=overlap, used=used)
             for source, target, overlap, used in self.pairs
@@ -889,7 +891,10 @@ class RegisteredScans(Result):
         return self.transforms[index]
 
     def __repr__(self) -> str:
-        scans = [f"left out: {self.left_out[k]}" if t is None else _text(t) for k, t in enumerate(self.transforms)]
+        scans = [
+            f"left out: {self.left_out[k]}" if t is None else f"{_text(t)}, confidence={self.confidences[k]:.3g}"
+            for k, t in enumerate(self.transforms)
+        ]
         lines = "".join(f"\n  {scan}," for scan in scans)
         return f"RegisteredScans([{lines}\n], pairs={_text(self.pairs)}, points={len(self.points)})"
 
@@ -1031,7 +1036,7 @@ class SceneObject(Result):
     def _json(self) -> Dict[str, Any]:
         found: Dict[str, Any] = dict(
             num_points=len(self.rows),
-            planes=[_picked(plane, "coefficients kind confidence share support seen score") for plane in self.planes.every],
+            planes=[plane._json() for plane in self.planes.every],
             axes=[_picked(axis, "point direction confidence") for axis in self.planes.axes],
             centers=[_picked(center, "point confidence") for center in self.planes.centers],
             models=[
