@@ -16,7 +16,7 @@ void expectSame(const ObjectSymmetries& a, const ObjectSymmetries& b) {
 }
 
 TEST(DetectObjectSymmetries, OfACloudAreThoseOfItsFinitePoints) {
-  const test::Shape shape = test::moved(test::prismShape(6, 0.8).sampled(3000, 1), test::randomPose(1));
+  const test::Shape shape = test::moved(test::prismShape(6, 0.8).sampled(1500, 1), test::randomPose(1));
   const ObjectSymmetries expected = objectSymmetries(shape.cloud());
   EXPECT_EQ(expected.name(), "D6");
   expectSame(detectObjectSymmetries(*test::toCloud(shape)), expected);

@@ -18,6 +18,7 @@ TEST(PlanarSymmetryTransform, FindsThePlanesOfABoxWithEveryMethod) {
     transform.setInputCloud(test::toCloud(box));
     transform.setMethod(method);
     transform.setGridSize(32);
+    transform.setRefinedShare(0.02);
     const SymmetryMap map = transform.compute();
     ASSERT_EQ(map.values.size(), 32u * 32u * 32u);
     EXPECT_EQ(map.method, method);

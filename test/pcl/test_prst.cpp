@@ -57,7 +57,7 @@ std::vector<float> valuesOf(PRSTEstimation<pcl::PointXYZ, PointT>& estimation, c
 }
 
 TEST(PaperDescriptors, AreThoseOfTheCoreToTheBit) {
-  for (std::uint64_t seed = 1; seed <= 12; ++seed) {
+  for (std::uint64_t seed = 1; seed <= 4; ++seed) {
     const test::Shape shape = seed % 3 == 0   ? test::cylinder(2000, seed)
                               : seed % 3 == 1 ? test::asymmetricBlob(2000, seed)
                                               : test::box(2000, test::Sampling::Random, seed);
@@ -65,10 +65,10 @@ TEST(PaperDescriptors, AreThoseOfTheCoreToTheBit) {
     const Cloud::ConstPtr cloud = test::toCloud(points);
     DescriptorOptions options;
     options.by_equation_1 = seed % 2 == 0;
-    const auto core = symmetryDescriptors(points, descriptorFrame(points, seed > 6, nullptr, options), options);
+    const auto core = symmetryDescriptors(points, descriptorFrame(points, seed > 2, nullptr, options), options);
     const auto valuesBy = [&](auto estimation, auto field) {
       estimation.setByEquation1(options.by_equation_1);
-      estimation.setUseInputAxes(seed > 6);
+      estimation.setUseInputAxes(seed > 2);
       return valuesOf(estimation, cloud, field);
     };
     EXPECT_EQ(valuesBy(PRSTEstimation<pcl::PointXYZ>(), &PRSTSignature32768::prst), core.prst) << seed;

@@ -31,16 +31,16 @@ TEST(PublishedPlanes, FindTheThreePlanesOfABox) {
 }
 
 TEST(PublishedPlanes, AreNotLostAtBordersOfCells) {
-  // A cube, turned a hundred times by a tenth of a bin of phi and of theta: its planes cross all borders of their
-  // cells.
+  // A cube, turned by three tenths of a bin of phi and of theta at a time, nine bins in all: its planes cross all
+  // borders of their cells, and stand at each tenth of them three times.
   const test::Shape cube = test::cube(3000, test::Sampling::Random, 4);
   PublishedOptions options;
   options.num_points = 500;
   options.max_maxima = 20;
-  for (int i = 0; i < 100; ++i) {
-    const double tenth = 0.1 * i / 64.0;
-    const Eigen::Isometry3d pose = Eigen::AngleAxisd(2.0 * kPi * tenth, Eigen::Vector3d::UnitZ()) *
-                                   Eigen::Isometry3d(Eigen::AngleAxisd(0.5 * kPi * tenth, Eigen::Vector3d::UnitX()));
+  for (int i = 0; i < 30; ++i) {
+    const double bins = 0.3 * i / 64.0;
+    const Eigen::Isometry3d pose = Eigen::AngleAxisd(2.0 * kPi * bins, Eigen::Vector3d::UnitZ()) *
+                                   Eigen::Isometry3d(Eigen::AngleAxisd(0.5 * kPi * bins, Eigen::Vector3d::UnitX()));
     const test::Shape turned = test::moved(cube, pose);
     const Points points = turned.cloud();
     const GaussianEdt edt(points);

@@ -128,11 +128,13 @@ TEST(SymmetryFrame, OfAMailboxIsThatOfItsBox) {
   const std::vector<test::Shape> mailboxes{
       mailbox({{{0.0, 0.0, -1.5}, {half, half, 0.8}}}), mailbox({{{0.0, 1.0, -2.0}, {half, half, 1.3}}}),
       mailbox({{{0.0, -1.1, -1.65}, {half, half, 0.95}}, {{0.0, -1.1, -2.65}, {0.6, 0.6, 0.05}}})};
+  FrameOptions options;
+  options.probabilities = false;
   for (std::size_t i = 0; i < mailboxes.size(); ++i) {
-    for (std::uint64_t seed = 1; seed <= 8; ++seed) {
-      const Eigen::Isometry3d pose = test::randomPose(seed);
+    for (std::uint64_t seed = 1; seed <= 4; ++seed) {
+      const Eigen::Isometry3d pose = test::randomPose(seed + 4 * i);
       const Points cloud = test::moved(mailboxes[i], pose).cloud();
-      const SymmetryFrame frame = symmetryFrame(cloud);
+      const SymmetryFrame frame = symmetryFrame(cloud, options);
       EXPECT_LT(axisError(frame.axes, pose.linear()), 1.5 * kDegree) << i << " " << seed;
       EXPECT_LT((frame.center - pose.translation()).norm(), 0.01 * diameter(cloud)) << i << " " << seed;
     }

@@ -94,7 +94,7 @@ TEST(AxialTransform, FindsTheOrderOfTurns) {
     AxialTransformOptions options;
     options.folds = {0, 2, 3, 5, 6};
     options.num_samples = 64;
-    const GaussianEdt edt = edtOf(shape.cloud(), 48);
+    const GaussianEdt edt = edtOf(shape.cloud());
     const AxisMap map = axialTransform(edt, AxisGrid(10, 32, 16, edt.center(), edt.radius()), options);
     for (const AxisMaximum& maximum : axisMaxima(map, edt, 12, 0.8, options))
       if (std::abs(maximum.axis.direction().z()) > std::cos(5.0 * kDegree)) return maximum.fold;

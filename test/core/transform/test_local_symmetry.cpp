@@ -49,9 +49,10 @@ TEST(LocalSymmetry, RefusesNoScaleAndIsTheSameForAnyNumberOfThreads) {
   EXPECT_THROW(localSymmetry(edt, box, optionsFor(0.0)), std::invalid_argument);
   LocalSymmetryOptions options = optionsFor(0.3 * edt.radius());
   options.num_threads = 1;
-  const std::vector<float> expected = localSymmetry(edt, box, options);
+  const Points asked = box.leftCols(100);
+  const std::vector<float> expected = localSymmetry(edt, asked, options);
   options.num_threads = 8;
-  EXPECT_EQ(localSymmetry(edt, box, options), expected);
+  EXPECT_EQ(localSymmetry(edt, asked, options), expected);
   EXPECT_LT(*std::max_element(expected.begin(), expected.end()), 1.2f) << "D and the error of the samples";
 }
 
