@@ -284,6 +284,7 @@ Eigen::Matrix4f registered(const Shape& source, const Shape& target) {
   pcl::PointCloud<PointT> aligned, points, model;
   registration.setInputSource(of(source, points));
   registration.setInputTarget(of(target, model));
+  registration.setSearchAround(0.2, 0.2);
   registration.align(aligned);
   EXPECT_TRUE(registration.hasConverged()) << registration.getReason();
   return registration.getFinalTransformation();

@@ -20,8 +20,8 @@ TEST(PublishedPlanes, FindTheThreePlanesOfABox) {
   const Eigen::Isometry3d pose = test::randomPose(4);
   const GaussianEdt edt(points);
   PublishedOptions options;
-  options.num_points = 2000;
-  options.max_maxima = 30;
+  options.num_points = 1000;
+  options.max_maxima = 12;
   const test::Shape box = test::moved(test::box(1, test::Sampling::Random, 4), pose);
   for (const auto method : {TransformMethod::Sampled, TransformMethod::Convolution, TransformMethod::Voting}) {
     const auto planes = publishedPlanes(points, edt, publishedMap(points, edt, method), options);
@@ -78,7 +78,7 @@ TEST(PublishedPlanes, ConvergeInTheirRegionsAndAreNotJudged) {
 TEST(PublishedPlanes, AreTheSameForAnyNumberOfThreads) {
   const Points points = boxCloud();
   const GaussianEdt edt(points);
-  const SymmetryMap map = publishedMap(points, edt);
+  const SymmetryMap map = publishedMap(points, edt, TransformMethod::Sampled);
   const auto planes = [&](int num_threads) {
     PublishedOptions options;
     options.num_threads = num_threads;
