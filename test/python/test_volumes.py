@@ -83,7 +83,7 @@ class Volumes(unittest.TestCase):
         self.assertGreater(found[0].confidence, 0.75 * 0.75)
 
     def test_of_a_tilted_head_are_exact_and_of_a_noisy_one_within_half_a_degree_and_voxel(self):
-        for seed in (1, 2, 5):
+        for seed in (1, 5):
             # The last plane is nearly parallel to an axis of the grid, where voxels fall on voxels.
             pose = self.direction @ rotation((0, 0, 1), 0.115) @ rotation((0, 1, 0), 0.012) if seed == 5 else None
             self.phantom(seed=seed, pose=pose)
@@ -104,7 +104,7 @@ class Volumes(unittest.TestCase):
 
     def test_of_a_spiral_and_a_random_texture_are_none(self):
         for function in (spiral, texture):
-            self.phantom(function, size=48)
+            self.phantom(function, size=32)
             found = pcl_symmetry.planes(**self.arguments, approximate=True)
             self.assertEqual((len(found), found.reason), (0, ""))
             self.assertLessEqual({plane.kind for plane in found.every}, {"approximate"})

@@ -21,7 +21,7 @@ class SafeFiles(ToolTest):
 
     def interrupt(self, number):
         """Sends a signal to the scanner while it writes big.pcd. Returns its exit status; None where it was done before."""
-        command = [tool_run.TOOLS / "pcl_symmetry_scan", *"box.off big.pcd -points 1500000 -format binary -quiet -threads 1".split()]
+        command = [tool_run.TOOLS / "pcl_symmetry_scan", *"box.off big.pcd -points 200000 -format ascii -quiet -threads 1".split()]
         with subprocess.Popen(command, cwd=self.folder) as process:
             while process.poll() is None:
                 if any(name.startswith(".big.") for name in os.listdir(self.folder)):
@@ -65,7 +65,7 @@ class SafeFiles(ToolTest):
         for _ in range(20):
             status = self.interrupt(signal.SIGKILL)
             if status is None:
-                self.assertGreater(len(tool_run.pcd_points(self.folder / "big.pcd")), 1_000_000)
+                self.assertGreater(len(self.text("big.pcd").splitlines()), 100_000)
                 self.write("big.pcd", OLD)
             else:
                 num_killed += 1
