@@ -1,17 +1,16 @@
 #!/usr/bin/env python3
-"""Objects among others: planes, names and poses in frames of a depth camera.
+"""Objects among others: planes in frames of a depth camera.
 
 scenes.py PSB --classes train.cla --fold 1 --every 3 --scenes 45 --noise 0,1 --most-in-band 60 --json scenes.json
 
 Models of 0.15 to 0.3 m stand on a table, none meets another, and a camera looks at them. Each object that shows enough
 points is asked for in three ways:
 
-  alone   its points, cut out of the frame, with the viewpoint: pcl_symmetry.planes() and Database.recognize()
-  label   its points in the frame, as a segmentation names them: pcl_symmetry_planes -label; planes only
+  alone   its points, cut out of the frame, with the viewpoint: pcl_symmetry.planes()
+  label   its points in the frame, as a segmentation names them: pcl_symmetry_planes -label
   scene   the whole frame: pcl_symmetry_scene; the object that it finds must share half of the points (IoU >= 0.5)
 
-Answers of kind symmetry with a confidence of at least 0.5 decide, as in planes.py. A name is right with the pose where no
-point of the model is off by more than 5 % of its diameter, symmetries counted.
+Answers of kind symmetry with a confidence of at least 0.5 decide, as in planes.py.
 
 --frames keeps the frames (PCD with a field label: -1 table, -2 nothing) and truth.json, or judges those that are there.
 """
@@ -26,13 +25,10 @@ import numpy as np
 
 import bench
 import planes
-import recognition
 import references
-import registration
 
 LEAST_DIAGONAL, GREATEST_DIAGONAL = 0.15, 0.30  # of models, meters
 BANDS = (0.0, 0.1, 0.3, 0.5, 0.7)  # of the share of an object that others hide
-RIGHT_POSE = 0.05  # of the diameter: the limit of the BOP benchmark
 MIN_IOU, MIN_POINTS = 0.5, 300  # points that are seen of an object
 DEVIATION, STEP, FLYING, EDGE = 1.425e-3, 2.85e-3, 0.5, 0.02  # structured light at 1 m (Khoshelham and Elberink 2012); shares
 TABLE_RIM = 0.4  # meters
@@ -198,32 +194,11 @@ def overlaps(labels, truth, shape):
     return common / np.maximum(1, sizes[0][:, None] + sizes[1] - common)
 
 
-def farthest_off(error, symmetries):
-    """How far a pose that is off by a motion (scene frame) moves points of the model at most, up to its symmetries."""
-    angle, distance = registration.pose_error(error, np.eye(4), symmetries)
-    return symmetries["diagonal"] * (distance + math.sin(0.5 * math.radians(angle)))
-
-
-def judge_name(models, truth, known):
-    """models: [{name, T_model_scene}] that were accepted, best first. known: names in the database."""
-    answer, symmetries = models[0]["name"] if models else None, truth["symmetries"]
-    right, right_pose = answer == truth["model"], False
-    if right:
-        error = np.reshape(truth["T_scene_model"], (4, 4)) @ np.reshape(models[0]["T_model_scene"], (4, 4))
-        right_pose = bool(farthest_off(error, symmetries) < RIGHT_POSE * symmetries["diameter"])
-    return {"known": truth["model"] in known, "answer": answer, "right_model": right, "right_pose": right_pose}
-
-
-def ask_database(points, viewpoint, arguments):
-    found = bench.opened_database(f"{arguments.frames}/models.db").recognize(points, viewpoint=viewpoint, threads=1)
-    return [{"name": m.name, "T_model_scene": m.transform} for m in found]
-
-
-def analyzed(tools, path, seed, *flags):
+def analyzed(tools, path, seed):
     """(objects, (N,) number of the object of each point, 0 for none) that pcl_symmetry_scene finds in a frame."""
     with tempfile.TemporaryDirectory() as folder:
         bench.run_tool(tools, "pcl_symmetry_scene", path, f"{folder}/out.pcd", "-quiet", "-json", f"{folder}/found.json",
-                       "-threads", "1", "-seed", str(seed + 2), *flags)  # fmt: skip
+                       "-threads", "1", "-seed", str(seed + 2))  # fmt: skip
         objects = json.loads(pathlib.Path(folder, "found.json").read_text())["objects"]
         return objects, read_frame(f"{folder}/out.pcd", "object")[1]
 
@@ -231,8 +206,7 @@ def analyzed(tools, path, seed, *flags):
 def found_in_frame(frame, finite, truth, arguments):
     """([answers of each object found], IoU of each with each true one, milliseconds)"""
     start = time.perf_counter()
-    flags = ["-database", f"{arguments.frames}/models.db"] if arguments.leave_out else []
-    found, labels = analyzed(arguments.tools, f"{arguments.frames}/{frame}.pcd", arguments.seed, *flags)
+    found, labels = analyzed(arguments.tools, f"{arguments.frames}/{frame}.pcd", arguments.seed)
     milliseconds = 1000 * (time.perf_counter() - start)
     labels = labels[: finite.sum()] - 1  # points that the completion adds come behind
     return found, overlaps(labels, truth[finite], (len(found), truth.max() + 1)), milliseconds
@@ -249,21 +223,19 @@ def judge_frame(frame, arguments):
         k, ways = truth["object"], []  # (how it was seen, whether it was found, answers)
         own = points[finite & (labels == k)]
         if "alone" in arguments.seen:
-            models = ask_database(own, viewpoint, arguments) if arguments.leave_out else []
-            ways.append(("alone", True, {**bench.detect(own, sensor, arguments.seed + 1), "models": models}))
+            ways.append(("alone", True, bench.detect(own, sensor, arguments.seed + 1)))
         if "label" in arguments.seen:
             tool = f"{arguments.tools}/pcl_symmetry_planes"
             ways.append(("label", True, bench.detect_labeled(f"{arguments.frames}/{frame.name}.pcd", k, arguments.seed + 1, tool)))
         if "scene" in arguments.seen:
             best = max(range(len(found)), key=lambda i: iou[i, k], default=None)
             is_found = best is not None and bool(iou[best, k] >= MIN_IOU)
-            ways.append(("scene", is_found, found[best] if is_found else {**bench.NO_ANSWERS, "models": []}))
+            ways.append(("scene", is_found, found[best] if is_found else bench.NO_ANSWERS))
         for seen, is_found, answers in ways:
             judged = planes.judge(answers, truth["symmetries"])
-            name = judge_name(answers["models"], truth, frame.known) if arguments.leave_out and seen != "label" else {}
             rows.append({"frame": frame.name, "noise": frame.noise, "object": k, "model": truth["model"],
                          "kind": truth["symmetries"]["kind"], "occlusion": occlusion(truth), "points": len(own), "seen": seen,
-                         "found": is_found, "called": judged["called"], "decided_right": judged["decided_right"], **name})  # fmt: skip
+                         "found": is_found, "called": judged["called"], "decided_right": judged["decided_right"]})  # fmt: skip
     return {"rows": rows, "milliseconds": milliseconds}
 
 
@@ -276,17 +248,11 @@ def band_of(share):
     return next((i for i in range(4) if BANDS[i] <= share < BANDS[i + 1]), None)
 
 
-def known_of(models, arguments):
-    """Those that are in the database: all but every N-th one."""
-    return [m for i, m in enumerate(models) if arguments.leave_out and i % arguments.leave_out != arguments.leave_out - 1]
-
-
 def wanted_frames(truths, arguments):
     """Frames with the objects that are asked for: the first ones of each band, in the order of the scenes."""
     in_band, frames = {}, []
-    known = {m["name"] for m in known_of(bench.read_json(f"{arguments.frames}/models.json"), arguments)}
     for name in sorted(truths):
-        frame = types.SimpleNamespace(name=name, noise=float(name.rsplit("_", 1)[-1]), objects=[], known=known)
+        frame = types.SimpleNamespace(name=name, noise=float(name.rsplit("_", 1)[-1]), objects=[])
         for truth in truths[name]:
             band = band_of(occlusion(truth))
             if band is None or truth.get("cropped") or truth["num_visible"] < MIN_POINTS:
@@ -309,38 +275,27 @@ def summarize(rows):
         groups.setdefault((row["noise"], band_of(row["occlusion"]), row["seen"]), []).append(row)
     summary = []
     for (noise, band, seen), own in sorted(groups.items()):
-        known = [r for r in own if r.get("known")]
         rates = {"found": bench.Rate(r["found"] for r in own),
                  "decided_right": bench.Rate(r["decided_right"] for r in own if r["kind"] == "symmetric"),
-                 "asymmetric_called": bench.Rate(r["called"] for r in own if r["kind"] == "asymmetric"),
-                 "right_model": bench.Rate(r["right_model"] for r in known), "right_pose": bench.Rate(r["right_pose"] for r in known),
-                 "unknown_of_others": bench.Rate(r["answer"] is None for r in own if r.get("known") is False)}  # fmt: skip
+                 "asymmetric_called": bench.Rate(r["called"] for r in own if r["kind"] == "asymmetric")}  # fmt: skip
         summary.append({"noise": noise, "band": band, "seen": seen, "rates": rates})
     return summary
 
 
-def report(summary, milliseconds, arguments):
+def report(summary, milliseconds):
     hidden = lambda s: f"{100 * BANDS[s['band']]:.0f} to {100 * BANDS[s['band'] + 1]:.0f} %"
     cells = lambda s, names: [f"{s['noise']:g}", hidden(s), s["seen"], *(s["rates"][name].text for name in names)]
     header = ["noise", "hidden", "seen"]
     title = f"Planes of objects in frames; median time of a whole frame {bench.median(milliseconds, 0)} ms"
     bench.print_table(title, [*header, "found, IoU >= 0.5", "symmetric: decided right", "asymmetric: called symmetric"],
                       [cells(s, ("found", "decided_right", "asymmetric_called")) for s in summary])  # fmt: skip
-    if arguments.leave_out:
-        bench.print_table("Names and poses", [*header, "right model", "right model and pose", "unknown objects called unknown"],
-                          [cells(s, ("right_model", "right_pose", "unknown_of_others")) for s in summary])  # fmt: skip
 
 
 def make_frames(arguments):
-    """Writes models.json, models.db, the frames, and truth.json last."""
+    """Writes models.json, the frames, and truth.json last."""
     folder = pathlib.Path(arguments.frames)
     models, left_out = bench.run(bench.list_models(arguments), prepare, arguments, "models")
     bench.write_whole(folder / "models.json", json.dumps(models))
-    if arguments.leave_out and not (folder / "models.db").exists():
-        known = [(m["name"], bench.mesh_of_size(m["path"], m["diagonal"])) for m in known_of(models, arguments)]
-        sample = lambda name, mesh: bench.sample(mesh, recognition.MODEL_POINTS, bench.generator(arguments.seed, name))
-        clouds = [(name, sample(name, mesh)) for name, mesh in known]
-        recognition.build(folder / "models.db", clouds, arguments.jobs)
     made, failures = bench.run(range(arguments.scenes), make, arguments, "frames")
     bench.write_whole(folder / "truth.json", json.dumps({"scenes": {k: v for frames in made for k, v in frames.items()}}))
     return left_out + failures
@@ -356,7 +311,7 @@ def program(arguments):
         judged, failures = bench.run(frames, judge_frame, arguments, "judged")
     rows = [row for frame in judged for row in frame["rows"]]
     summary = summarize(rows)
-    report(summary, [frame["milliseconds"] for frame in judged if frame["milliseconds"]], arguments)
+    report(summary, [frame["milliseconds"] for frame in judged if frame["milliseconds"]])
     bench.write_json(arguments, {"rows": summary, "objects": rows, "left_out": left_out + failures})
 
 
@@ -369,7 +324,6 @@ if __name__ == "__main__":
     add("--flying", type=float, default=FLYING, help="share of the pixels at edges that mix two depths, at noise 1")
     add("--seen", type=bench.numbers(str, ("alone", "label", "scene")), default="alone,label,scene", help="how objects are asked for")
     add("--most-in-band", type=int, default=0, help="objects of a band after which others are passed over; 0: none are")
-    add("--leave-out", type=int, default=0, help="also ask a database without every N-th model; 0: do not")
     add("--references", metavar="DIR", help="folder that keeps the reference symmetries of the models")
     add("--frames", metavar="DIR", help="folder of the frames, made where it has no truth.json")
     add("--tools", metavar="DIR", default="build/apps", help="folder of pcl_symmetry_scene")

@@ -6,7 +6,7 @@ case "${1-}" in
   -h | --help)
     echo "usage: bash test/tools/check_libraries.sh [-h] APPS"
     echo "Looks at the shared libraries of all tools in the folder APPS but the viewer. libpcl_common alone is loaded at the start: the other"
-    echo "libraries of PCL take 40 ms, Assimp 2. test/benchmark/tool_start.sh measures the time."
+    echo "libraries of PCL take 40 ms, Assimp 2."
     exit 0 ;;
   "") echo "check_libraries.sh: missing folder of the tools" >&2; exit 2 ;;
 esac
