@@ -55,17 +55,6 @@ TEST_F(SymmetrySegmentationTest, CloudsHonorIndicesAndLeaveOutWhatIsNotFinite) {
   EXPECT_EQ(segments_[0].indices.size() + segments_[1].indices.size(), 1999u);
 }
 
-TEST_F(SymmetrySegmentationTest, PointsThatWereNotDrawnFollowTheClosest) {
-  const auto cloud = sampleMesh(*mesh_, 6000);
-  segmentation_.setInputCloud(cloud);
-  segmentation_.setMaxPoints(2000);
-  segmentation_.setNumberOfParts(4);
-  segmentation_.segment(segments_);
-  EXPECT_EQ(segments_.size(), 4u);
-  EXPECT_TRUE(std::all_of(segmentation_.getLabels().begin(), segmentation_.getLabels().end(),
-                          [](int label) { return label >= 0; }));
-}
-
 TEST_F(SymmetrySegmentationTest, SplittingAsksTheSearchMethod) {
   SegmentationOptions options;
   options.method = SegmentationMethod::Splitting;

@@ -451,7 +451,7 @@ class Meshes(unittest.TestCase):
         except ImportError:
             self.skipTest("Open3D or matplotlib is not installed (Debian packages python3-open3d, python3-matplotlib)")
         matplotlib.use("Agg")
-        points = box().astype(float)
+        points = box(num_points=2000).astype(float)
         plain = pcl_symmetry.planes(points)
         cloud = open3d.geometry.PointCloud(open3d.utility.Vector3dVector(points))
         mesh = open3d.geometry.TriangleMesh.create_box(1.0, 2.0, 3.0)
@@ -548,7 +548,7 @@ class LongCalls(unittest.TestCase):
             path = Path(folder) / "models.db"
             models = {f"{i:04}": box((1, 0.5 + 0.001 * i, 0.3), 2000, i) for i in range(400)}
             with pcl_symmetry.Database(path, create=True) as database:
-                self.seconds_to_stop(lambda: database.build(models), after=1.0)
+                self.seconds_to_stop(lambda: database.build(models), after=0.5)
                 stored = database.names
             self.assertTrue(0 < len(stored) < len(models), len(stored))
             with pcl_symmetry.Database(path) as database:
@@ -559,7 +559,7 @@ class LongCalls(unittest.TestCase):
 
     def test_tell_their_progress(self):
         shares = []
-        pcl_symmetry.local_symmetry(box(num_points=600), 1.0, progress=shares.append)
+        pcl_symmetry.local_symmetry(box(num_points=200), 1.0, progress=shares.append)
         self.assertTrue(shares and all(0 <= share <= 1 for share in shares))
         self.assertEqual(sorted(shares), shares)
         with self.assertRaises(ZeroDivisionError):

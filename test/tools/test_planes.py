@@ -45,7 +45,7 @@ class Planes(ToolTest):
         self.assertEqual([report["axes"], report["centers"], report["partial"]], [[], [], False])
         self.assertGreater(report["timing_ms"]["total"], 0)
         self.assertIn("symmetry", self.output)
-        plane = self.report(self.box, "-as_published -csv a.csv")["planes"][0]
+        plane = self.report(self.box, "-as_published -points 1000 -csv a.csv")["planes"][0]
         self.assertEqual((plane["kind"], plane["confidence"]), ("approximate", 0))
         self.assertEqual([plane[name] for name in ("share", "share_interval", "deviation")], [None, [None, None], None], "not measured")
         self.assertRegex(self.output.splitlines()[1], " -       - .* approximate$")

@@ -83,6 +83,7 @@ TEST(PublishedPlanes, AreTheSameForAnyNumberOfThreads) {
     PublishedOptions options;
     options.num_threads = num_threads;
     options.num_points = 200;
+    options.max_maxima = 12;
     return publishedPlanes(points, edt, map, options);
   };
   test::compareThreads(planes, test::expectSamePlanes);

@@ -56,19 +56,6 @@ test::Shape finnedBox(std::uint64_t seed) {
   return shape;
 }
 
-TEST(SymmetryFrame, OfABoxIsItsAxesAndItsCenter) {
-  for (std::uint64_t seed = 1; seed <= 4; ++seed) {
-    const Eigen::Isometry3d pose = test::randomPose(seed);
-    const auto shape = test::moved(test::box(6000, Sampling::Random, seed), pose);
-    const SymmetryFrame frame = symmetryFrame(shape.cloud());
-    expectRightHanded(frame);
-    EXPECT_LT(axisError(frame.axes, pose.linear()), 1.5 * kDegree) << seed;
-    EXPECT_LT((frame.center - pose.translation()).norm(), 0.01 * test::diagonal(shape.cloud())) << seed;
-    EXPECT_GT(frame.scores.minCoeff(), 0.85);
-    EXPECT_EQ(frame.revolution_axis, -1);
-  }
-}
-
 TEST(SymmetryFrame, TurnsMovesAndScalesWithTheInput) {
   const test::Shape shape = finnedBox(5);
   const SymmetryFrame expected = symmetryFrame(shape.cloud());
@@ -147,6 +134,9 @@ TEST(SymmetryFrame, OfAWholeCloudIsThatOfItsPlanes) {
     const Eigen::Isometry3d pose = test::randomPose(seed);
     const Points cloud = test::moved(box, pose).cloud();
     const SymmetryFrame frame = symmetryFrame(cloud);
+    expectRightHanded(frame);
+    EXPECT_GT(frame.scores.minCoeff(), 0.85);
+    EXPECT_EQ(frame.revolution_axis, -1);
     EXPECT_LT(axisError(frame.axes, pose.linear()), 0.5 * kDegree) << seed;
     EXPECT_LT((frame.center - pose.translation()).norm(), 0.002 * diameter(cloud)) << seed;
     EXPECT_LT((frame.T_canonical_input * frame.center).norm(), 1e-9) << seed;
