@@ -74,7 +74,7 @@ class SeenFrom(ToolTest):
         return [answer["viewpoint"]["from"] for answer in self.answers(*clouds)]
 
     def test_is_told_by_the_rays_of_an_organized_cloud(self):
-        for seed in range(4):
+        for seed in range(2):
             random = np.random.default_rng(seed)
             # From a side that shows three faces: one alone fits many cameras.
             pixels, to_camera = scan(BOX, random.choice([-1, 1], 3) * random.uniform(1.6, 3.6, 3))
@@ -151,9 +151,8 @@ class SeenFrom(ToolTest):
             wire[:, 2] += 0.003 * np.random.default_rng(seed + 99).normal(size=len(t))
             clouds.append((wire, (0.1, 0.2, 0.3)))
         for count in (1000, 10_000):
-            for seed in range(2):
-                clouds += [(on_box(count, seed=seed), viewpoint) for viewpoint in ((0, 0, 0), (3, 1, 2))]
-                clouds.append((on_sphere(count, seed), (3, 1, 2)))
+            clouds += [(on_box(count), viewpoint) for viewpoint in ((0, 0, 0), (3, 1, 2))]
+            clouds.append((on_sphere(count), (3, 1, 2)))
         for second in ((-2.5, -3, 2), (-2.5, 3, -2)):
             for blocks in (BOX, L, CHAIR):
                 clouds.append((np.vstack([finite(scan(blocks, eye)[0]) for eye in ((2.5, -3, 2), second)]), (0.1, 0.2, 0.3)))

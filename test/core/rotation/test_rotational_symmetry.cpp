@@ -118,7 +118,7 @@ std::string groupOfBoxWithKnobs(double side, const std::vector<Eigen::Vector2d>&
                  Eigen::Isometry3d(Eigen::Translation3d(place.x(), place.y(), 0.45 + 0.5 * side)));
   ObjectSymmetryOptions options;
   options.max_feature = max_feature;
-  return objectSymmetries(shape.sampled(10'000, 1).cloud(), options).name();
+  return objectSymmetries(shape.sampled(6000, 1).cloud(), options).name();
 }
 
 /// The share of one knob in the surface of the box.
@@ -178,7 +178,7 @@ std::string groupOf(const TurningShape& shape, int num_points, std::uint64_t see
 
 /// Walls as thick as points are apart, and so thick that points on both sides look like those of a body.
 TEST(ObjectSymmetries, OfABowlAreNeverThoseOfASphere) {
-  for (const std::uint64_t seed : {1, 2, 3, 4}) EXPECT_EQ(groupOf(bowlShape(), 2000, seed), "Cinf") << seed;
+  for (const std::uint64_t seed : {1, 2}) EXPECT_EQ(groupOf(bowlShape(), 2000, seed), "Cinf") << seed;
   for (const int num_points : {6000, 10'000}) EXPECT_EQ(groupOf(bowlShape(), num_points, 1), "Cinf") << num_points;
 }
 
@@ -189,25 +189,25 @@ TEST(ObjectSymmetries, OfARimHaveTheFoldOfItsSpokes) {
 }
 
 TEST(ObjectSymmetries, AreTheSameForAnyNumberOfPoints) {
-  for (const int num_points : {2000, 20'000}) {
+  for (const int num_points : {2000, 10'000}) {
     EXPECT_EQ(groupOf(keyedShaftShape(), num_points, 1), "Dinf") << num_points;
     EXPECT_EQ(groupOf(prismShape(8, 0.8), num_points, 2), "D8") << num_points;
   }
 }
 
 TEST(ObjectSymmetries, IgnoreKeywaysUpToTheStatedShare) {
-  EXPECT_EQ(groupOf(keyedShaftShape(), 10'000, 1, [](auto& o) { o.max_feature = 0.1; }), "Dinf");
-  EXPECT_EQ(groupOf(keyedShaftShape(), 10'000, 1, [](auto& o) { o.max_feature = 0.01; }), "C2");
+  EXPECT_EQ(groupOf(keyedShaftShape(), 5000, 1, [](auto& o) { o.max_feature = 0.1; }), "Dinf");
+  EXPECT_EQ(groupOf(keyedShaftShape(), 5000, 1, [](auto& o) { o.max_feature = 0.01; }), "C2");
 }
 
 /// A plate whose sides differ by 2 x 4 % of 1: a rotation by 90 degrees maps the faces of two sides 4 % of 1 off, 1.4 %
 /// of the diameter.
 TEST(ObjectSymmetries, DependOnTheTolerance) {
   const TurningShape plate = boxShape("plate", {1.0, 0.96, 0.4}, RotationGroupKind::Dihedral, 2);
-  const auto at = [&](double tolerance) { return groupOf(plate, 5000, 1, [=](auto& o) { o.tolerance = tolerance; }); };
+  const auto at = [&](double tolerance) { return groupOf(plate, 3000, 1, [=](auto& o) { o.tolerance = tolerance; }); };
   EXPECT_EQ(at(0.01), "D2");
   EXPECT_EQ(at(0.02), "D4");
-  EXPECT_EQ(groupOf(plate, 5000, 1, [](auto& o) { o.absolute_tolerance = 0.058; }), "D4");
+  EXPECT_EQ(groupOf(plate, 3000, 1, [](auto& o) { o.absolute_tolerance = 0.058; }), "D4");
   ObjectSymmetryOptions options;
   options.other_tolerances = true;
   const ObjectSymmetries found = objectSymmetries(plate.sampled(5000, 1).cloud(), options);
@@ -221,7 +221,7 @@ TEST(ObjectSymmetries, DependOnTheTolerance) {
 /// The handle is what a rotation about the axis of a cup maps off its surface.
 TEST(ObjectSymmetries, SayWhatFailedAndWhere) {
   const TurningShape cup = cupShape(true);
-  const ObjectSymmetries found = objectSymmetries(cup.sampled(10'000, 1).cloud());
+  const ObjectSymmetries found = objectSymmetries(cup.sampled(5000, 1).cloud());
   ASSERT_EQ(found.name(), "C1");
   ASSERT_FALSE(found.rejected.empty());
   const RejectedRotation& first = found.rejected.front();
@@ -236,7 +236,7 @@ TEST(ObjectSymmetries, DoNotNeedEvenSampling) {
   for (const TurningShape& shape :
        {boxShape("box", {1.0, 0.7, 0.45}, RotationGroupKind::Dihedral, 2), cylinderShape(), propellerShape(3, true)}) {
     SCOPED_TRACE(shape.name);
-    const Points all = moved(shape.sampled(20'000, 1), randomPose(4)).cloud();
+    const Points all = moved(shape.sampled(8000, 1), randomPose(4)).cloud();
     RandomStream random(6);
     std::vector<Eigen::Index> kept;
     for (Eigen::Index i = 0; i < all.cols(); ++i)
