@@ -119,8 +119,7 @@ const std::vector<Scene>& scenes() {
   return scenes;
 }
 
-/// Of shapes as different as the scenes, each estimator, its default and what its options change. One test, as the full
-/// sum takes longer than all of them.
+/// Sampled, exact and rotational maps in one test, as they share the full sum, which takes long.
 TEST(Transforms, AreAsNearToTheFullSumAsTheirPageSays) {
   for (const Scene& scene : scenes()) {
     const SymmetryMap map = sampledTransform(scene.edt, scene.grid);
