@@ -99,7 +99,7 @@ Shape shapeOf(const std::string& name, const std::string& text, const std::strin
     throw InputError(name + ": cannot be read, " + error.what());
   }
   throw InputError(name + ": unknown extension '" + extension + "', must be " + kShapeFiles +
-                   "; planes and map also read volumes, " + kVolumeFiles);
+                   "; planes and map also read volumes, " + kVolumeFiles + ", and scene depth images, .png");
 }
 
 }  // namespace

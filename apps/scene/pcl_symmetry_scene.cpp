@@ -150,10 +150,8 @@ SceneAnalysis analyze(const Console& console, SymmetryScene& scene, const InputS
   const double total = searching.done(counted(found.objects.size(), "object"));
   found.timing_ms.emplace_back("load", input.loading_ms);
   found.timing_ms.emplace_back("total", total);
-  if (found.supports.empty())
-    console.warn(input.path +
-                 ": no supporting plane (table, floor, wall) was found; if this is one object, pcl_symmetry_planes "
-                 "takes it as a whole");
+  if (!found.alone.empty())
+    console.warn(input.path + ": " + found.alone + "; if this is one object, pcl_symmetry_planes takes it as a whole");
   return found;
 }
 

@@ -647,7 +647,8 @@ int mergeScans(const AlignOptions& options) {
     }
   }
   const std::size_t num_points = finiteIndices(cloud.fields).size();
-  text += formatted("%zu of ", num_kept) + counted(inputs.size(), "scan") + ", " + counted(num_points, "point") + "\n";
+  text += formatted("%zu of ", num_kept) + counted(inputs.size(), "scan") + ", " + counted(num_points, "point") +
+          formatted(", one in each cube of %.3g\n", registered.resolution);
   if (options.common.json_path) writeText(*options.common.json_path, jsonText(json) + "\n");
   if (options.html_path) writePage(scene, {*options.merge, text}, *options.html_path);
   if (options.png_path) renderPicture(scene, *options.png_path, 800, 600);

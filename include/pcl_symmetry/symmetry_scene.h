@@ -39,7 +39,8 @@ struct SceneOptions {
   /// Cuts objects that touch apart where their surface bends inwards, and joins pieces that one symmetry explains.
   bool separate = true;
   bool frames = true;  ///< finds the frame of each object
-  /// Completes objects whose best plane, or a plane through their axis, decides.
+  /// Completes objects whose best plane, or a plane through their axis, decides. Another plane is taken where it adds
+  /// more points and has a confidence of 0.8: where none has, and the best one lies along the view, none are added.
   bool complete = true;
   DetectionOptions detection;      ///< of the planes of each object
   FrameOptions frame;              ///< of the frame of each object
@@ -62,8 +63,8 @@ struct SupportingPlane {
 struct SceneObject : Detection {
   pcl::Indices indices;                ///< of its points, into the scene
   std::optional<SymmetryFrame> frame;  ///< nothing without SceneOptions::frames
-  /// The plane that the object was completed by: the best one, or through the axis and across the view. Nothing where
-  /// no plane decides.
+  /// The plane that the object was completed by: the best one, another one that adds more, or through the axis and
+  /// across the view. Nothing where no plane decides.
   std::optional<ReflectionPlane> completed_by;
   pcl::PointCloud<pcl::PointXYZ> added;  ///< points that this reflection adds to the cluster
   Recognition models;                    ///< best first; empty without a database, and where the object is unknown
@@ -93,6 +94,9 @@ struct SceneAnalysis {
   std::vector<SceneObject> objects;                       ///< most points first
   std::vector<SceneJunction> junctions;                   ///< with SceneOptions::separate
   std::string reason;                                     ///< why there is no answer, which PCL_WARN prints, or empty
+  /// What speaks for one object alone, whose own faces may pass for supporting planes, in a few words: it is to be
+  /// analyzed as a whole then. Empty for a scene.
+  std::string alone;
   double plane_distance = 0.0;                            ///< that was used, input units
   double cluster_distance = 0.0;                          ///< that was used, input units
   std::vector<std::pair<std::string, double>> timing_ms;  ///< stages in order

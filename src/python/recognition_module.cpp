@@ -207,8 +207,8 @@ py::dict sceneOf(const AnyArray& points, const py::object& viewpoint, const std:
         py::make_tuple(junction.first, junction.second, junction.num_points, junction.together, junction.apart));
   std::optional<Visibility> seen;
   if (found.seen && found.seen->visibility()) seen = *found.seen->visibility();
-  return py::dict("reason"_a = found.reason, "objects"_a = objects, "supports"_a = supports, "junctions"_a = junctions,
-                  "seen"_a = seen,
+  return py::dict("reason"_a = found.reason, "alone"_a = found.alone, "objects"_a = objects, "supports"_a = supports,
+                  "junctions"_a = junctions, "seen"_a = seen,
                   "viewpoint_from"_a = toString(found.seen ? found.seen->source() : ViewpointSource::None),
                   "plane_distance"_a = found.plane_distance, "cluster_distance"_a = found.cluster_distance);
 }

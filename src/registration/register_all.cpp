@@ -265,10 +265,12 @@ public:
     return static_cast<double>(matched.pairs.size()) / static_cast<double>(matched.num_points);
   }
 
-  /// Of all points of the scans, input units.
-  double resolution() const {
+  /// Of all points of the scans of a group, input units.
+  double resolution(int group) const {
     std::vector<double> resolved;
-    for (const NormalizedScan& scan : scans_) {
+    for (int k = 0; k < size(); ++k) {
+      if (groups_.group[k] != group) continue;
+      const NormalizedScan& scan = scans_[k];
       const double spacing = scan.surface->accuracy - 2.0 * scan.surface->noise;
       resolved.push_back(unit_ * (spacing * scan.spacing_ratio + 2.0 * scan.surface->noise));
     }
@@ -426,7 +428,7 @@ RegisteredScans registerAll(const std::vector<ObjectScan>& scans, const CloudReg
     result.pairs.push_back(
         {usable[answer.source], usable[answer.target], kept ? graph.overlap(answer.source, answer.target) : 0.0, used});
   }
-  result.resolution = graph.resolution();
+  result.resolution = graph.resolution(group);
   done("report");
   return result;
 }

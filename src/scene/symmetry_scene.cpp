@@ -51,7 +51,8 @@ SeenSpace::ConstPtr seenSpaceOf(const Cloud& frame, const Viewpoint& viewpoint) 
   return std::make_shared<const SeenSpace>(frame, viewpoint);
 }
 
-/// Planes that may show the far side of an object: the best one, and others that are as good as sure.
+/// Planes that may show the far side of an object: the best one, and others that are as good as sure. Of planes that
+/// are less sure half complete a box beside it, where the best one lies along the view and adds nothing.
 std::vector<ReflectionPlane> completingPlanes(const SceneObject& object, const Visibility* seen) {
   constexpr double sure = 0.8;  // of 79 such answers in real frames all are right
   if (!object.axes.empty() && seen) {
@@ -62,6 +63,19 @@ std::vector<ReflectionPlane> completingPlanes(const SceneObject& object, const V
   for (const SymmetryPlane& plane : object.planes)
     if (plane.kind == PlaneKind::Symmetry && (planes.empty() || plane.confidence >= sure)) planes.push_back(plane);
   return planes;
+}
+
+/// What speaks for one object alone: a table, a floor or a wall is wider than what it carries.
+std::string signOfOneObject(const Cloud& scene, const SceneAnalysis& found) {
+  constexpr double wider = 1.5;
+  if (found.supports.empty()) return "no supporting plane (table, floor, wall) was found";
+  if (found.objects.empty()) return "no object was found";
+  if (found.objects.size() > 1) return "";
+  const auto radius = [&](const pcl::Indices& part) { return boundingBall(detail::pointsOf(scene, part)).radius; };
+  const double width = wider * radius(found.objects.front().indices);
+  const bool has_wide = std::any_of(found.supports.begin(), found.supports.end(),
+                                    [&](const SupportingPlane& support) { return radius(support.indices) > width; });
+  return has_wide ? "" : "no supporting plane is much wider than the object";
 }
 
 /// Analyzes single objects.
@@ -235,6 +249,8 @@ SceneAnalysis SymmetryScene::compute() const {
                    : options_.max_range > 0.0 ? "no finite point within max_range"
                                               : "no finite point");
   }
+  if (points.size() < static_cast<std::size_t>(options_.min_points))
+    return without(std::to_string(points.size()) + " points, too few for an object (min_points)");
   analysis.timing_ms = {{"seen_space", seen_ms}, {"filter", watch.lap()}};
   // The filter leaves the bends of a camera's picture: the distances follow from the frame as it was.
   detail::SceneDistances distances = detail::sceneDistances(*input_, points);
@@ -287,6 +303,7 @@ SceneAnalysis SymmetryScene::compute() const {
   parallelBlocks(num_objects, one_each ? options_.num_threads : 1,
                  [&](std::size_t k) { of(num_objects).finish(analysis.objects[k]); });
   timed("objects");
+  analysis.alone = signOfOneObject(*frame, analysis);
   return analysis;
 }
 

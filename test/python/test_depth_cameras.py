@@ -195,6 +195,8 @@ class DepthImages(unittest.TestCase):
         matrix = [[fx, 0, cx], [0, fy, cy], [0, 0, 1]]
         millimeters = pcl_symmetry.from_depth((1000 * depth).round().astype(np.uint16), matrix, unit=0.001)
         np.testing.assert_allclose(millimeters[seen], points[seen], atol=1e-3)
+        with self.assertWarnsRegex(RuntimeWarning, "unit=0.001 makes meters of millimeters"):
+            pcl_symmetry.from_depth(np.full((4, 4), 700, np.uint16), matrix)
         for wrong, words in (
             ((depth[0], INTRINSICS), "depth = array of shape"),
             ((depth, (0, 300, 1, 1)), "fx and fy > 0"),
@@ -504,6 +506,7 @@ class Answers(unittest.TestCase):
     def test_cannot_be_written_into(self):
         found = pcl_symmetry.planes(box())
         arrays = [found[0].normal, found._rows, pcl_symmetry.frame(box()).axes, pcl_symmetry.ReflectionPlane((1, 0, 0), 1).normal]
+        arrays += [found[0].coefficients, found[0].reflection]
         for array in arrays:
             with self.assertRaisesRegex(ValueError, "read-only"):
                 array[...] = 0

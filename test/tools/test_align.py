@@ -105,7 +105,8 @@ class Align(ToolTest):
         corner = np.asarray(tool_run.Image.open(self.folder / "all.png").convert("RGB"), int)[-120:, :20]
         for color in ((230, 158, 0), (0, 115, 178), (0, 158, 115)):
             self.assertTrue((abs(corner - color).max(axis=2) <= 2).any(), f"{color} is in the legend")
-        self.assertEqual(self.output.splitlines()[-1], f"3 of 5 scans, {len(self.points('all.ply'))} points")
+        count, cube = len(self.points("all.ply")), found["resolution"]
+        self.assertEqual(self.output.splitlines()[-1], f"3 of 5 scans, {count} points, one in each cube of {cube:.3g}")
         self.assertEqual(set(self.points("all.ply")["scan"]), set(range(3)))
         self.fails(1, "none.ply: is not written, as no two of the scans fit", names[0], names[4], "-merge none.ply -json none.json")
         self.assertEqual(["left_out" in scan for scan in json.loads(self.text("none.json"))["scans"]], [False, True])

@@ -290,6 +290,11 @@ class Scene(ToolTest):
         points = look(EYE, RAYS, [block(*BOXES[0])])[0]
         self.run_tool(self.write("box.pcd", pcd(points[np.isfinite(points).all(axis=1)], viewpoint=EYE)), FEW)
         self.assertIn("box.pcd: no supporting plane (table, floor, wall) was found; if this is one object, pcl_symmetry_planes", self.error)
+        random = np.random.default_rng(1)
+        faces = random.uniform(-1, 1, (20_000, 3))
+        faces[np.arange(20_000), random.integers(3, size=20_000)] = random.choice([-1, 1], 20_000)
+        self.run_tool(self.write("all.pcd", pcd(faces)))
+        self.assertIn("all.pcd: no supporting plane is much wider than the object; if this is one object, pcl_symmetry_planes", self.error)
 
     def test_refuses_what_is_no_scene(self):
         mesh = self.write("t.off", "OFF\n3 1 3\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n")

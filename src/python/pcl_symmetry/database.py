@@ -355,8 +355,8 @@ def scene(
     separate: cut objects that touch apart where their surface bends inwards, and join pieces that one symmetry explains.
     frames, complete: also the frame of each object, and the points that its symmetry adds.
     min_confidence: least probability of a plane that is called a symmetry.
-    Raises ValueError for bad parameters; points of which none is finite, and points that show no supporting plane, as those of
-    one object alone, are warned of (RuntimeWarning).
+    Raises ValueError for bad parameters; points of which none is finite, and what looks like one object alone, are warned of
+    (RuntimeWarning).
     """
     import numpy as np
 
@@ -392,8 +392,8 @@ def scene(
     kept = None if database is None else database._core._asked
     found = core.scene(_camera_points(cloud), viewpoint=seen_from, ground=plane, database=kept, options=options, told=progress)
     reason = found["reason"]
-    if reason or not found["supports"]:
-        alone = "no supporting plane (table, floor, wall) was found; if this is one object, planes() takes it as a whole"
+    if reason or found["alone"]:
+        alone = f"{found['alone']}; if this is one object, planes() takes it as a whole"
         warnings.warn(f"points: {reason or alone}", RuntimeWarning, stacklevel=2)
     sensor = None if found["seen"] is None else found["seen"].viewpoint
     seen: Dict[str, Any] = dict(viewpoint=sensor, _shape=cloud.shape, _viewpoint_from=found["viewpoint_from"])

@@ -788,6 +788,8 @@ def from_depth(depth: ArrayLike, intrinsics: ArrayLike, *, unit: float = 1.0) ->
         raise ValueError(f"depth = array of shape {z.shape} and type {z.dtype}, must be (H, W), numbers")
     if not (np.isfinite(unit) and unit > 0):
         raise ValueError(f"unit = {unit}, must be > 0")
+    if z.dtype.kind != "f" and unit == 1.0:
+        warnings.warn("depth: whole numbers are taken as they are; unit=0.001 makes meters of millimeters", RuntimeWarning, stacklevel=2)
     k = np.asarray(getattr(intrinsics, "intrinsic_matrix", intrinsics), dtype=float)
     if k.shape == (3, 3):
         k = k[[0, 1, 0, 1], [0, 1, 2, 2]]

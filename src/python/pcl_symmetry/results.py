@@ -188,7 +188,9 @@ class ReflectionPlane(Result):
         """(4,) a, b, c, d of a x + b y + c z + d = 0."""
         import numpy as np
 
-        return np.append(self.normal, -self.offset)
+        result = np.append(self.normal, -self.offset)
+        result.flags.writeable = False
+        return result
 
     @property
     def equation(self) -> str:
@@ -205,6 +207,7 @@ class ReflectionPlane(Result):
         result = np.eye(4)
         result[:3, :3] -= 2.0 * np.outer(self.normal, self.normal)
         result[:3, 3] = 2.0 * self.offset * self.normal
+        result.flags.writeable = False
         return result
 
     def distance(self, x: ArrayLike) -> Any:
@@ -582,6 +585,8 @@ class Planes(Result):
             return f"Planes([], reason={self.reason!r})"
         names = "possible approximate axes centers rotations".split()
         others = "".join(f", {name}={len(getattr(self, name))}" for name in names if getattr(self, name))
+        if not self.planes and self.best is not None:
+            others += f", best={self.best!r}"
         return "Planes([" + "".join(f"\n  {plane!r}," for plane in self.planes) + ("\n]" if self.planes else "]") + others + ")"
 
     def _moved(self, shift: NDArray[np.float64]) -> Planes:
