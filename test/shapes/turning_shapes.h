@@ -3,6 +3,7 @@
 
 #include <Eigen/Geometry>
 #include <cmath>
+#include <ostream>
 #include <string>
 #include <vector>
 
@@ -20,6 +21,8 @@ struct TurningShape {
   Eigen::Vector3d axis{0.0, 0.0, 1.0};     ///< axis of revolution
   std::vector<Eigen::Vector3d> vertices = {};
   std::vector<Eigen::Vector3i> triangles = {};
+
+  friend std::ostream& operator<<(std::ostream& out, const TurningShape& shape) { return out << shape.name; }
 
   Eigen::Map<const Eigen::Matrix3Xd> corners() const {
     return {vertices[0].data(), 3, static_cast<Eigen::Index>(vertices.size())};
