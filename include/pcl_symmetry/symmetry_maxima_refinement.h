@@ -20,6 +20,15 @@ namespace detail {
 template <typename T, typename... Types>
 constexpr bool kIsAmong = (std::is_same_v<T, Types> || ...);
 
+/// Whether the code for a point type is there to link.
+#ifdef PCL_NO_PRECOMPILE
+template <typename PointT>
+constexpr bool kIsCompiled = true;
+#else
+template <typename PointT>
+constexpr bool kIsCompiled = kIsAmong<PointT, BOOST_PP_SEQ_ENUM(PCL_XYZ_POINT_TYPES)>;
+#endif
+
 }  // namespace detail
 
 /// Finds the planes of symmetry of a cloud: local maxima of the transform, refined by Iterative Symmetric Points
@@ -32,11 +41,7 @@ constexpr bool kIsAmong = (std::is_same_v<T, Types> || ...);
 /// before the first include, as with PCL's own classes.
 template <typename PointT>
 class SymmetryMaximaRefinement : public SearchingAnalysis<ScanAnalysis<PointT>, DetectionOptions> {
-#ifndef PCL_NO_PRECOMPILE
-  static_assert(
-      detail::kIsAmong<PointT, BOOST_PP_SEQ_ENUM(PCL_XYZ_POINT_TYPES)>,
-      "the library holds this class for PCL's point types: define PCL_NO_PRECOMPILE before the first #include");
-#endif
+  static_assert(detail::kIsCompiled<PointT>, "for your own point types define PCL_NO_PRECOMPILE before all includes");
 
 public:
   using Ptr = pcl::shared_ptr<SymmetryMaximaRefinement<PointT>>;
@@ -75,9 +80,7 @@ public:
   /// Also reports planes that are no symmetries.
   /// \param approximate also reports maxima of less confidence: approximate symmetries and symmetries of parts, marked
   /// by SymmetryPlane::kind; default false.
-  void setApproximate(bool approximate) {
-    options_.approximate = approximate;
-  }
+  void setApproximate(bool approximate) { options_.approximate = approximate; }
   /// Limits the number of planes.
   /// \param max_planes greatest number of planes, >= 1; default 128.
   void setMaxPlanes(int max_planes) {
@@ -98,9 +101,7 @@ public:
   /// Sets where normals come from.
   /// \param use_input_normals uses the normals of point types that have them (default), where they are finite and not
   /// zero; false, and for other point types: all normals are estimated from the neighbors.
-  void setUseInputNormals(bool use_input_normals) {
-    use_input_normals_ = use_input_normals;
-  }
+  void setUseInputNormals(bool use_input_normals) { use_input_normals_ = use_input_normals; }
 
   /// Refines the maxima of this map in place of one that the class computes. Follows setInputCloud(), which forgets it.
   /// \param map,edt made by PlanarSymmetryTransform for the same cloud.
@@ -108,15 +109,11 @@ public:
 
   /// Tells the mesh that the points of the cloud were spread over: the last step refines on it, see refineOnMesh(),
   /// unless the points were seen from one side or setAsPublished() is set. Follows setInputCloud(), which forgets it.
-  void setMesh(const MeshSurface& mesh) {
-    mesh_ = mesh;
-  }
+  void setMesh(const MeshSurface& mesh) { mesh_ = mesh; }
 
   /// Keeps to the letter of Section 4.4: local maxima of the map that was given, or of the exact one with 64 x 64 x 64
   /// bins, refined by publishedPlanes() and not judged. Viewpoint, mesh and normals are not used. Volumes ignore it.
-  void setAsPublished(bool as_published) {
-    as_published_ = as_published;
-  }
+  void setAsPublished(bool as_published) { as_published_ = as_published; }
 
   /// Finds the planes.
   /// \return the planes, best first, in the frame of the input: by their kind symmetries, then what is only possible.
@@ -133,16 +130,10 @@ public:
 
   /// \return all that the last compute() found, with the planes, in the frame of the input: axes and centers, rotations
   /// of scans, the best plane where there is no symmetry, what the tolerance was, and the time of each stage.
-  const Detection& getDetection() const {
-    return found_;
-  }
-  const std::vector<SymmetryAxis>& getAxes() const {
-    return found_.axes;
-  }  ///< Detection::axes
+  const Detection& getDetection() const { return found_; }
+  const std::vector<SymmetryAxis>& getAxes() const { return found_.axes; }  ///< Detection::axes
   /// \return the map that was given, or else the map that the last compute() made.
-  const SymmetryMap& getSymmetryMap() const {
-    return edt_ ? map_ : found_.map;
-  }
+  const SymmetryMap& getSymmetryMap() const { return edt_ ? map_ : found_.map; }
 
 protected:
   using pcl::PCLBase<PointT>::input_;

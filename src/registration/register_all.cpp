@@ -224,11 +224,11 @@ public:
     }
   }
 
-  /// Takes scans out of the largest group, the least sure one first, until each that is left lies on the others' points
-  /// and leaves free what their scanners saw to be free.
-  /// \return how sure the pose of each scan of the group is, in [0, 1], of what is taken out when it was; 0 of others.
-  std::vector<double> takeOutDoubtful() {
-    const int group = largestGroup();
+  /// Takes scans out of a group, the least sure one first, until each that is left lies on the others' points and
+  /// leaves free what their scanners saw to be free.
+  /// \param confidences of all scans; those of the group are set to how sure their poses are, in [0, 1], of what is
+  /// taken out when it was.
+  void takeOutDoubtful(int group, std::vector<double>& confidences) {
     std::vector<int> kept;
     for (int k = 0; k < size(); ++k)
       if (groups_.group[k] == group) kept.push_back(k);
@@ -238,7 +238,6 @@ public:
       if (i < j) contradicted(i, j) = evidence(i, *scans_[j].surface, groups_.T_group_scan[j]).contradicted;
     });
     contradicted += contradicted.transpose().eval();
-    std::vector<double> confidences(size());
     while (kept.size() > 1) {
       parallelBlocks(kept.size(), num_threads_, [&](std::size_t e) {
         const int k = kept[e];
@@ -249,12 +248,11 @@ public:
       });
       const auto less_sure = [&](int a, int b) { return confidences[a] < confidences[b]; };
       const auto worst = std::min_element(kept.begin(), kept.end(), less_sure);
-      if (confidences[*worst] >= kRegisterAll.min_confidence) return confidences;
+      if (confidences[*worst] >= kRegisterAll.min_confidence) return;
       groups_.group[*worst] = size() + *worst;
       kept.erase(worst);
     }
     confidences[kept.front()] = 1.0;
-    return confidences;
   }
 
   /// Share of the points of one scan that lie on another.
@@ -402,8 +400,12 @@ RegisteredScans registerAll(const std::vector<ObjectScan>& scans, const CloudReg
   graph.settleLoose();
   graph.adjust();
   done("adjust");
-  const std::vector<double> confidences = graph.takeOutDoubtful();
-  const int group = graph.largestGroup();
+  std::vector<double> confidences(usable.size());
+  int group = -1;
+  while (group != graph.largestGroup()) {
+    group = graph.largestGroup();
+    graph.takeOutDoubtful(group, confidences);
+  }
   int first = 0;
   while (graph.groups().group[first] != group) ++first;
   for (int k = 0; k < graph.size(); ++k) {
@@ -417,9 +419,10 @@ RegisteredScans registerAll(const std::vector<ObjectScan>& scans, const CloudReg
       return a.converged && ((a.source == k && graph.groups().group[a.target] == group) ||
                              (a.target == k && graph.groups().group[a.source] == group));
     });
-    scan.left_out = confidences[k] > 0.0 ? "its confidence among the others is below 0.5"
-                    : contradicts        ? "its pairs contradict each other"
-                                         : "it fits no other scan that is kept";
+    const bool is_doubtful = confidences[k] > 0.0 && confidences[k] < kRegisterAll.min_confidence;
+    scan.left_out = is_doubtful   ? "its confidence among the others is below 0.5"
+                    : contradicts ? "its pairs contradict each other"
+                                  : "it fits no other scan that is kept";
   }
   for (const PairAnswer& answer : graph.answers()) {
     const bool kept = graph.groups().group[answer.source] == group && graph.groups().group[answer.target] == group;
