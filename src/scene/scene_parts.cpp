@@ -3,6 +3,7 @@
 #include <pcl/common/point_tests.h>
 #include <pcl/sample_consensus/ransac.h>
 #include <pcl/sample_consensus/sac_model_plane.h>
+#include <pcl/search/kdtree.h>
 #include <pcl/segmentation/extract_clusters.h>
 
 #include <algorithm>
@@ -298,6 +299,8 @@ std::vector<pcl::Indices> findClusters(const SymmetryScene::Cloud::ConstPtr& sce
   pcl::EuclideanClusterExtraction<pcl::PointXYZ> extraction;
   extraction.setClusterTolerance(scale * distances.cluster);
   extraction.setMinClusterSize(min_points);
+  // PCL's own choice for frames guesses the camera from these points, of which a few show too little of it.
+  extraction.setSearchMethod(pcl::make_shared<pcl::search::KdTree<pcl::PointXYZ>>(false));
   extraction.setInputCloud(scaled(*scene, scale));
   extraction.setIndices(pcl::make_shared<pcl::Indices>(points));
   lookAtWatch();

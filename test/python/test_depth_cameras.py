@@ -255,6 +255,20 @@ class OrganizedArrays(unittest.TestCase):
         with self.assertWarnsRegex(RuntimeWarning, "points: .*distinct point"):
             self.assertIn("distinct point", pcl_symmetry.planes(self.frame, indices=[int(np.flatnonzero(mask)[0])]).reason)
 
+    def test_a_scene_has_a_small_ball(self):
+        """Of 800 pixels, all that is not the table."""
+        v, u = np.indices((480, 640))
+        rays = np.stack([(u - 320) / 525, (v - 240) / 525, np.ones(u.shape)], axis=2)
+        up, height, radius = np.array([0, -0.825, -0.565]) / np.hypot(0.825, 0.565), -0.565, 0.03
+        table = height / (rays @ up)
+        for x in (-0.2, 0, 0.15):
+            center = np.array([x, 0, 1.0]) + up * (height + radius - up[2])
+            along, squares = rays @ center, (rays**2).sum(axis=2)
+            root = np.sqrt(np.maximum(along**2 - squares * (center @ center - radius**2), 0))
+            depth = np.where(root > 0, (along - root) / squares, np.where((table > 0) & (table < 3), table, 0))
+            scene = pcl_symmetry.scene(pcl_symmetry.from_depth(depth, (525, 525, 320, 240)))
+            np.testing.assert_array_equal(scene.labels == 1, root > 0, str(x))
+
     def test_a_scene_has_objects_on_a_table(self):
         scene = pcl_symmetry.scene(self.frame)
         self.assertEqual((len(scene), len(scene.supports)), (2, 1))
