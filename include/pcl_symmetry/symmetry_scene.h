@@ -39,8 +39,8 @@ struct SceneOptions {
   /// Cuts objects that touch apart where their surface bends inwards, and joins pieces that one symmetry explains.
   bool separate = true;
   bool frames = true;  ///< finds the frame of each object
-  /// Completes objects whose best plane, or a plane through their axis, decides. Another plane is taken where it adds
-  /// more points and has a confidence of 0.8: where none has, and the best one lies along the view, none are added.
+  /// Completes objects whose best plane, or a plane through their axis, decides. Another plane of confidence 0.8
+  /// or more is taken where it adds more points; a best one that lies along the view adds next to none.
   bool complete = true;
   DetectionOptions detection;      ///< of the planes of each object
   FrameOptions frame;              ///< of the frame of each object
@@ -89,13 +89,13 @@ struct SceneJunction {
 
 /// What SymmetryScene found.
 struct SceneAnalysis {
-  SeenSpace::ConstPtr seen;                               ///< what the sensor saw, for further analyses
-  std::vector<SupportingPlane> supports;                  ///< tables, floors and walls, as they were found
-  std::vector<SceneObject> objects;                       ///< most points first
-  std::vector<SceneJunction> junctions;                   ///< with SceneOptions::separate
-  std::string reason;                                     ///< why there is no answer, which PCL_WARN prints, or empty
-  /// What speaks for one object alone, whose own faces may pass for supporting planes, in a few words: it is to be
-  /// analyzed as a whole then. Empty for a scene.
+  SeenSpace::ConstPtr seen;               ///< what the sensor saw, for further analyses
+  std::vector<SupportingPlane> supports;  ///< tables, floors and walls, as they were found
+  std::vector<SceneObject> objects;       ///< most points first
+  std::vector<SceneJunction> junctions;   ///< with SceneOptions::separate
+  std::string reason;                     ///< why there is no answer, which PCL_WARN prints, or empty
+  /// What speaks for one object alone, in a few words; its faces may pass for supporting planes, and
+  /// SymmetryMaximaRefinement takes it as a whole. Empty for a scene.
   std::string alone;
   double plane_distance = 0.0;                            ///< that was used, input units
   double cluster_distance = 0.0;                          ///< that was used, input units

@@ -14,6 +14,7 @@
 #include "core/geometry/point_samples.h"
 #include "core/registration/pose_evidence.h"
 #include "core/registration/posed_surface.h"
+#include "core/registration/registration_rules.h"
 #include "registration/pose_graph.h"
 
 namespace pcl_symmetry {
@@ -29,7 +30,6 @@ struct RegisterAllRules {
   double min_merit = -0.1, good_merit = 0.4;
   double min_uniqueness = 0.6;  ///< of a pose that counts
   double min_votes = 0.6;       ///< that join scans: more than one pair that did not converge
-  double min_confidence = 0.5;  ///< of a scan among the others
   // Adjustment of all poses together
   int adjust_points = 2000;      ///< of each scan
   int adjust_steps = 16;         ///< over which the reach shrinks
@@ -226,8 +226,8 @@ public:
 
   /// Takes scans out of a group, the least sure one first, until each that is left lies on the others' points and
   /// leaves free what their scanners saw to be free.
-  /// \param confidences of all scans; those of the group are set to how sure their poses are, in [0, 1], of what is
-  /// taken out when it was.
+  /// \param confidences of all scans; set for those of the group: that their poses are right, in [0, 1], of a scan that
+  /// is taken out as it was then.
   void takeOutDoubtful(int group, std::vector<double>& confidences) {
     std::vector<int> kept;
     for (int k = 0; k < size(); ++k)
@@ -248,7 +248,7 @@ public:
       });
       const auto less_sure = [&](int a, int b) { return confidences[a] < confidences[b]; };
       const auto worst = std::min_element(kept.begin(), kept.end(), less_sure);
-      if (confidences[*worst] >= kRegisterAll.min_confidence) return;
+      if (confidences[*worst] >= kRegistration.min_confidence) return;
       groups_.group[*worst] = size() + *worst;
       kept.erase(worst);
     }
@@ -419,7 +419,7 @@ RegisteredScans registerAll(const std::vector<ObjectScan>& scans, const CloudReg
       return a.converged && ((a.source == k && graph.groups().group[a.target] == group) ||
                              (a.target == k && graph.groups().group[a.source] == group));
     });
-    const bool is_doubtful = confidences[k] > 0.0 && confidences[k] < kRegisterAll.min_confidence;
+    const bool is_doubtful = confidences[k] > 0.0 && confidences[k] < kRegistration.min_confidence;
     scan.left_out = is_doubtful   ? "its confidence among the others is below 0.5"
                     : contradicts ? "its pairs contradict each other"
                                   : "it fits no other scan that is kept";

@@ -51,8 +51,8 @@ SeenSpace::ConstPtr seenSpaceOf(const Cloud& frame, const Viewpoint& viewpoint) 
   return std::make_shared<const SeenSpace>(frame, viewpoint);
 }
 
-/// Planes that may show the far side of an object: the best one, and others that are as good as sure. Of planes that
-/// are less sure half complete a box beside it, where the best one lies along the view and adds nothing.
+/// Planes that may show the far side of an object: the best one, and others that are as good as sure. Where the best
+/// one lies along the view and adds nothing, one that is less sure would often add points beside the object.
 std::vector<ReflectionPlane> completingPlanes(const SceneObject& object, const Visibility* seen) {
   constexpr double sure = 0.8;  // of 79 such answers in real frames all are right
   if (!object.axes.empty() && seen) {

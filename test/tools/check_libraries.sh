@@ -5,8 +5,8 @@ set -euo pipefail
 case "${1-}" in
   -h | --help)
     echo "usage: bash test/tools/check_libraries.sh [-h] APPS"
-    echo "Looks at the shared libraries of all tools in the folder APPS but the viewer. libpcl_common alone is loaded at the start: the other"
-    echo "libraries of PCL take 40 ms, Assimp 2."
+    echo "Looks at the shared libraries of all tools in the folder APPS but the viewer. libpcl_common alone is loaded at the start:"
+    echo "the other libraries of PCL, and VTK behind them, take long to load."
     exit 0 ;;
   "") echo "check_libraries.sh: missing folder of the tools" >&2; exit 2 ;;
 esac

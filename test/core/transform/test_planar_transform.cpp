@@ -239,14 +239,14 @@ TEST(VotingTransform, EstimatesTheBinAverageWithinItsStandardError) {
   int n = 0;
   VotingTransformOptions options;
   options.num_pairs = 100'000;
-  for (const std::size_t i : {0, 2, 4}) {
-    const VotingError error(scenes()[i], options, 20);
+  for (const Scene& scene : scenes()) {
+    const VotingError error(scene, options, 20);
     sum += error.normalized.square().sum();
     n += static_cast<int>(error.normalized.size());
     EXPECT_LT(error.relative.maxCoeff(), 0.01);
   }
   // The normalized errors of 20 seeds follow Student's t with 19 degrees of freedom: squares have the mean 19 / 17, and
-  // the mean of 48 of them is more than 1.66 one time in forty.
+  // the mean of 80 of them is more than 1.66 one time in a hundred.
   EXPECT_LT(sum / n, 1.66);
 }
 
