@@ -89,6 +89,11 @@ void checkViewpoint(const Console& console, const InputShape& input, const Viewp
 
 }  // namespace
 
+Viewpoint InputShape::viewpoint(const CommonOptions& common) const {
+  if (shape.mesh && common.viewpoint.mode == Viewpoint::Mode::Auto) return {Viewpoint::Mode::None, {}};
+  return shifted(common.viewpoint, shift());
+}
+
 InputShape loadInput(const Console& console, const std::string& path, const CommonOptions& common) {
   Step loading(console, "Loading " + path);
   const bool is_volume = common.takes_volumes && isVolumePath(path);

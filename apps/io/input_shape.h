@@ -25,6 +25,9 @@ struct InputShape {
 
   const Eigen::Vector3d& shift() const { return shape.shift; }
 
+  /// \return the viewpoint of the flags for `points`. Points spread evenly over a mesh have no density to infer one from.
+  Viewpoint viewpoint(const CommonOptions& common) const;
+
   /// \return what outputs extend: all fields of a cloud, or the points spread over a mesh; input frame
   pcl::PCLPointCloud2 fields() const;
 };
@@ -40,7 +43,7 @@ InputShape loadInput(const Console& console, const std::string& path, const Comm
 /// Gives an analysis of points or volumes the input, and the viewpoint of the flags.
 template <typename Analysis>
 void setInput(Analysis& analysis, const InputShape& input, const CommonOptions& common) {
-  analysis.setViewpoint(shifted(common.viewpoint, input.shift()));
+  analysis.setViewpoint(input.viewpoint(common));
   if (input.volume)
     analysis.setInputVolume(input.volume, input.levels);
   else

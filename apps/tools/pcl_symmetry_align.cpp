@@ -107,7 +107,7 @@ SymmetryFrame computeFrame(const Console& console, const InputShape& input, cons
   SymmetryAlignment<pcl::PointXYZ> alignment;
   return namingFile(input.path, [&] {
     alignment.setOptions(options);
-    alignment.setViewpoint(shifted(common.viewpoint, input.shift()));
+    alignment.setViewpoint(input.viewpoint(common));
     alignment.setInputCloud(input.points);
     SymmetryFrame frame = alignment.compute();
     checkAnswer(alignment, input);
@@ -178,7 +178,7 @@ pcl::PointCloud<pcl::PointXYZ> complete(const Console& console, const InputShape
   Step step(console, "Completing");
   CompletionOptions options;
   options.num_threads = common.threads;
-  const auto completed = completeBySymmetry(*input.points, plane, options, shifted(common.viewpoint, input.shift()));
+  const auto completed = completeBySymmetry(*input.points, plane, options, input.viewpoint(common));
   fields = appendCopies(fields, completed.sources, "reflected_of");
   movePoints(fields, shiftedBack(plane, input.shift()).reflection(), fields.width - completed.sources.size());
   json = best.json(input.shift());
@@ -348,7 +348,7 @@ Motion registerTo(const Console& console, const InputShape& input, const InputSh
                   const CommonOptions& common) {
   Step step(console, "Registering");
   SymmetryRegistration<pcl::PointXYZ, pcl::PointXYZ, double> registration;
-  registration.setSourceViewpoint(shifted(common.viewpoint, input.shift()));
+  registration.setSourceViewpoint(input.viewpoint(common));
   registration.setRandomSeed(common.seed);
   registration.setNumberOfThreads(common.threads);
   registration.setInputSource(input.points);
@@ -595,7 +595,7 @@ int mergeScans(const AlignOptions& options) {
   std::vector<pcl::Indices> indices(inputs.size());
   for (std::size_t k = 0; k < inputs.size(); ++k)
     scans.push_back(namingFile(inputs[k].path, [&] {
-      return objectScan(*inputs[k].points, shifted(options.common.viewpoint, inputs[k].shift()), indices[k]);
+      return objectScan(*inputs[k].points, inputs[k].viewpoint(options.common), indices[k]);
     }));
   Step step(console, "Registering " + counted(inputs.size(), "scan"));
   CloudRegistrationOptions registration;

@@ -79,8 +79,7 @@ pcl::PCLPointCloud2 describe(const InputShape& input, const DescribeOptions& opt
   const detail::SelectedPoints selected = detail::selectPoints(cloud, nullptr, max_points, options.common.seed);
   if (const std::string reason = detail::reasonForNoAnswer(selected.points); !reason.empty())
     throw InputError(input.path + ": " + reason);
-  const std::optional<Visibility> seen =
-      detail::seenSpace(cloud, selected.points, shifted(options.common.viewpoint, input.shift()));
+  const std::optional<Visibility> seen = detail::seenSpace(cloud, selected.points, input.viewpoint(options.common));
   const Visibility* const visibility = seen ? &*seen : nullptr;
   if (options.type == "signature") {
     DescriptionOptions description;

@@ -53,7 +53,7 @@ FileReport match(const FileJob& job, const SymmetryDatabase& database, const Inp
                  const MatchOptions& options) {
   Step step(job.console(), "Matching");
   const std::vector<ModelMatch> matches =
-      database.match(*input.points, options.num_matches, shifted(options.common.viewpoint, input.shift()));
+      database.match(*input.points, options.num_matches, input.viewpoint(options.common));
   step.done(std::to_string(matches.size()) + " of " + counted(database.size(), "model"));
   FileReport report{"", {{"file", job.path()}, {"matches", nlohmann::json::array()}}, {}};
   for (const ModelMatch& found : matches) {
@@ -69,7 +69,7 @@ FileReport recognize(const FileJob& job, const SymmetryDatabase& database, const
   RecognitionOptions recognition = options.recognition;
   recognition.num_threads = job.common().threads;
   Step step(job.console(), "Recognizing");
-  Recognition found = database.recognize(*input.points, recognition, shifted(options.common.viewpoint, input.shift()));
+  Recognition found = database.recognize(*input.points, recognition, input.viewpoint(options.common));
   found.resize(std::min(found.size(), static_cast<std::size_t>(options.num_matches)));
   FileReport report{"", {{"file", job.path()}, {"known", !found.empty()}, {"models", nlohmann::json::array()}}, {}};
   if (found.empty()) {

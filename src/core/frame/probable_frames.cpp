@@ -5,6 +5,7 @@
 #include <cmath>
 #include <functional>
 #include <limits>
+#include <optional>
 
 #include "core/base/constants.h"
 #include "core/base/parallel.h"
@@ -185,16 +186,19 @@ std::vector<FrameChoice> frameChoices(const FrameEvidence& evidence, const std::
 
   std::vector<FrameChoice> choices;
   double best = -std::numeric_limits<double>::infinity();
-  for (const FrameCandidate& frame : tried) {
+  for (std::size_t i = 0; i < tried.size(); ++i) {
+    const FrameCandidate& frame = tried[i];
     if (isKnown(choices, frame)) continue;
-    choices.push_back({frame, revolutionAxis(evidence, frame), FrameTerms::Zero()});
+    choices.push_back(
+        {frame, revolutionAxis(evidence, frame), FrameTerms::Zero(), i < frames.size() ? static_cast<int>(i) : -1});
     best = std::max(best, frame.value);
   }
   const Eigen::Matrix3f principal = evidence.principal_axes.axes.cast<float>();
+  Eigen::Vector3f first = Eigen::Vector3f::Zero();
+  std::optional<Outline> outline;  // seen along the first axis, which leveled frames share
   for (FrameChoice& choice : choices) {
-    const Outline outline(evidence.points, choice.frame.axes.col(0));
-    choice.terms << 1.0, choice.frame.value - best, choice.frame.scores[0],
-        outline.boxAt(outline.angleOf(choice.frame.axes.col(1))).contact,
+    if (choice.frame.axes.col(0) != first) outline.emplace(evidence.points, first = choice.frame.axes.col(0));
+    choice.terms << 1.0, choice.frame.value - best, choice.frame.scores[0], contactOf(*outline, choice.frame),
         std::min(angleBetween(choice.frame.axes, principal) / kFrame.far_from_principal, 1.0), 0.0,
         choice.frame.scores[1] + choice.frame.scores[2], 0.0;
   }

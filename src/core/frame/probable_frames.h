@@ -60,6 +60,7 @@ struct FrameChoice {
   FrameCandidate frame;
   int revolution_axis = -1;  ///< as of SymmetryFrame
   FrameTerms terms = FrameTerms::Zero();
+  int found_as = -1;  ///< its index among the frames of the search; -1: leveled
 };
 
 /// The frames of a search, each once up to order, signs and rotations about an axis of revolution, and frames rotated

@@ -98,8 +98,10 @@ std::vector<SymmetryRotation> rotationsAlong(const SymmetryFrame& frame, const P
 }
 
 /// The frame itself, then the others by falling probability.
+/// \param centers of the frames of the search.
 std::vector<ProbableFrame> probableFrames(const FrameEvidence& evidence, const SymmetryFrame& frame,
-                                          const std::vector<FrameChoice>& choices) {
+                                          const std::vector<FrameChoice>& choices,
+                                          const std::vector<Eigen::Vector3d>& centers) {
   const std::vector<double> probabilities = frameProbabilities(choices, frameWeights(evidence.scanned));
   std::vector<ProbableFrame> probable;
   for (std::size_t i = 0; i < choices.size(); ++i) {
@@ -107,7 +109,7 @@ std::vector<ProbableFrame> probableFrames(const FrameEvidence& evidence, const S
     ProbableFrame entry{
         frame.center, frame.axes, i == 0 ? frame.revolution_axis : choice.revolution_axis, probabilities[i], {}};
     if (i > 0) {
-      entry.center = centerOfSymmetry(evidence, choice.frame);
+      entry.center = choice.found_as < 0 ? centerOfSymmetry(evidence, choice.frame) : centers[choice.found_as];
       entry.axes = principalSymmetryAxes(evidence.points, choice.frame.axes);
     }
     std::copy(choice.terms.data(), choice.terms.data() + choice.terms.size(), entry.evidence.begin());
@@ -191,7 +193,7 @@ SymmetryFrame symmetryFrame(const PointsRef& all, const FrameOptions& options, c
     done("refined");
   }
   if (options.probabilities) {
-    frame.probable = probableFrames(evidence, frame, frameChoices(evidence, frames, options.num_threads));
+    frame.probable = probableFrames(evidence, frame, frameChoices(evidence, frames, options.num_threads), centers);
     done("probabilities");
   }
   return frame;

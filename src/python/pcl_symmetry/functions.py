@@ -118,7 +118,10 @@ class Cloud(NamedTuple):
 
     def seen_from(self, viewpoint: Viewpoint) -> Any:
         """The viewpoint as the core takes it; "auto" is that of the file, where there is one."""
-        if isinstance(viewpoint, str) and viewpoint == "auto" and self.stored is not None:
+        is_auto = isinstance(viewpoint, str) and viewpoint == "auto"
+        if is_auto and self.mesh is not None:
+            return None  # points spread evenly over a mesh have no density to infer one from
+        if is_auto and self.stored is not None:
             return core.StoredViewpoint(self.stored if self.shift is None else self.stored - self.shift)
         return _seen_from(viewpoint, self.shift)
 
