@@ -100,6 +100,69 @@ void fillEmptyPixels(int width, int height, std::vector<float>& depths) {
   }
 }
 
+/// The camera at the origin that looks along z, as depth cameras have it: points of one plane fix no other.
+/// \param normalized the points used, (x - ball.center) / ball.radius.
+/// \return of the normalized points; none where one lies behind the camera.
+std::optional<Visibility::Projection> cameraAtOrigin(const Points& normalized, const BoundingBall& ball,
+                                                     const std::vector<Eigen::Vector2d>& pixels) {
+  Eigen::Matrix2d squares[2] = {Eigen::Matrix2d::Zero(), Eigen::Matrix2d::Zero()};
+  Eigen::Vector2d sums[2] = {Eigen::Vector2d::Zero(), Eigen::Vector2d::Zero()};
+  const Eigen::Vector3d center = ball.center / ball.radius;
+  for (std::size_t i = 0; i < pixels.size(); ++i) {
+    const Eigen::Vector3d x = normalized.col(i).cast<double>() + center;
+    if (!(x.z() > 0.0)) return std::nullopt;
+    for (int k = 0; k < 2; ++k) {
+      const Eigen::Vector2d row(x[k] / x.z(), 1.0);
+      squares[k] += row * row.transpose();
+      sums[k] += pixels[i][k] * row;
+    }
+  }
+  Visibility::Projection projection = Visibility::Projection::Identity();
+  for (int k = 0; k < 2; ++k) {
+    const Eigen::Vector2d line = squares[k].ldlt().solve(sums[k]);
+    projection(k, k) = line[0];
+    projection(k, 2) = line[1];
+  }
+  projection.col(3) = projection.leftCols<3>() * center;
+  return projection;
+}
+
+/// Any camera, of 11 parameters.
+std::optional<Visibility::Projection> anyCamera(const Points& normalized, const Cloud& frame,
+                                                const pcl::Indices& used) {
+  auto cloud = pcl::make_shared<pcl::PointCloud<pcl::PointXYZ>>(frame.width, frame.height);
+  for (std::size_t i = 0; i < used.size(); ++i) (*cloud)[used[i]].getVector3fMap() = normalized.col(i);
+  Eigen::Matrix<float, 3, 4, Eigen::RowMajor> estimate;
+  // The residual that it returns may be slightly negative. The error in pixels decides.
+  pcl::estimateProjectionMatrix<pcl::PointXYZ>(cloud, estimate, used);
+  const double length = estimate.block<1, 3>(2, 0).cast<double>().norm();
+  if (!estimate.allFinite() || !(length > 0.0)) return std::nullopt;
+  Visibility::Projection projection = estimate.cast<double>();
+  const Eigen::Vector4d first = normalized.col(0).cast<double>().homogeneous();
+  projection *= (projection.row(2).dot(first) < 0.0 ? -1.0 : 1.0) / length;
+  return projection;
+}
+
+/// \return the focal length in pixels of a camera with square pixels that maps the points to their pixels; 0 for any
+/// other, which a flat cloud may fit.
+double focalLength(const Visibility::Projection& projection, const Points& normalized,
+                   const std::vector<Eigen::Vector2d>& pixels) {
+  double sq_error = 0.0;
+  for (std::size_t i = 0; i < pixels.size(); ++i) {
+    const Eigen::Vector3d image = projection * Eigen::Vector4d(normalized.col(i).cast<double>().homogeneous());
+    if (!(image.z() > 0.0)) return 0.0;
+    sq_error += (image.head<2>() / image.z() - pixels[i]).squaredNorm();
+  }
+  if (!(sq_error <= largest_error * largest_error * static_cast<double>(pixels.size()))) return 0.0;
+  const Eigen::Vector3d across = projection.block<1, 3>(0, 0), down = projection.block<1, 3>(1, 0),
+                        forward = projection.block<1, 3>(2, 0);
+  const Eigen::Vector3d x = across - across.dot(forward) * forward, y = down - down.dot(forward) * forward;
+  const double focal = std::max(x.norm(), y.norm());
+  const bool is_square =
+      std::abs(x.norm() - y.norm()) <= largest_skew * focal && std::abs(x.dot(y)) <= largest_skew * focal * focal;
+  return is_square ? focal : 0.0;
+}
+
 }  // namespace
 
 std::optional<Visibility> seenByOrganizedCloud(const Cloud& frame) {
@@ -108,40 +171,25 @@ std::optional<Visibility> seenByOrganizedCloud(const Cloud& frame) {
   if (finite.size() < fewest_points) return std::nullopt;
   const std::size_t stride = 1 + finite.size() / max_points;
   pcl::Indices used;
-  for (std::size_t i = 0; i < finite.size(); i += stride) used.push_back(finite[i]);
+  std::vector<Eigen::Vector2d> pixels;
+  for (std::size_t i = 0; i < finite.size(); i += stride) {
+    used.push_back(finite[i]);
+    pixels.emplace_back(finite[i] % width, finite[i] / width);
+  }
   const Points points = selectPoints(frame, &used, used.size(), 0).points;
   const BoundingBall ball = boundingBall(points);
   if (!(ball.radius > 0.0)) return std::nullopt;
 
   // The estimate depends on the units: it is made from coordinates near 1.
-  auto cloud = pcl::make_shared<pcl::PointCloud<pcl::PointXYZ>>(width, height);
   const Points normalized = normalizePoints(points, ball.center, ball.radius);
-  for (std::size_t i = 0; i < used.size(); ++i) (*cloud)[used[i]].getVector3fMap() = normalized.col(i);
-  Eigen::Matrix<float, 3, 4, Eigen::RowMajor> estimate;
-  // The residual that it returns may be slightly negative. The error in pixels decides, below.
-  pcl::estimateProjectionMatrix<pcl::PointXYZ>(cloud, estimate, used);
-  if (!estimate.allFinite()) return std::nullopt;
-  Visibility::Projection projection = estimate.cast<double>();
-  const double length = projection.block<1, 3>(2, 0).norm();
-  if (!(length > 0.0)) return std::nullopt;
-  const Eigen::Vector4d first = normalized.col(0).cast<double>().homogeneous();
-  projection *= (projection.row(2).dot(first) < 0.0 ? -1.0 : 1.0) / length;
-
-  double sq_error = 0.0;
-  for (std::size_t i = 0; i < used.size(); ++i) {
-    const Eigen::Vector3d image = projection * Eigen::Vector4d(normalized.col(i).cast<double>().homogeneous());
-    if (!(image.z() > 0.0)) return std::nullopt;
-    const Eigen::Vector2d pixel(used[i] % width, used[i] / width);
-    sq_error += (image.head<2>() / image.z() - pixel).squaredNorm();
+  std::optional<Visibility::Projection> camera = anyCamera(normalized, frame, used);
+  double focal = camera ? focalLength(*camera, normalized, pixels) : 0.0;
+  if (focal == 0.0) {
+    camera = cameraAtOrigin(normalized, ball, pixels);
+    focal = camera ? focalLength(*camera, normalized, pixels) : 0.0;
   }
-  if (!(sq_error <= largest_error * largest_error * static_cast<double>(used.size()))) return std::nullopt;
-  // A flat cloud fits cameras that do not exist. The pixels of real ones are square.
-  const Eigen::Vector3d across = projection.block<1, 3>(0, 0), down = projection.block<1, 3>(1, 0),
-                        forward = projection.block<1, 3>(2, 0);
-  const Eigen::Vector3d x = across - across.dot(forward) * forward, y = down - down.dot(forward) * forward;
-  const double focal = std::max(x.norm(), y.norm());
-  if (!(std::abs(x.norm() - y.norm()) <= largest_skew * focal && std::abs(x.dot(y)) <= largest_skew * focal * focal))
-    return std::nullopt;
+  if (focal == 0.0) return std::nullopt;
+  Visibility::Projection projection = *camera;
 
   // Back to the input frame; depths are in its units.
   projection.col(3) = projection.col(3) * ball.radius - projection.leftCols<3>() * ball.center;

@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import sys
 from pathlib import Path
-from typing import Any, Dict, Optional, Tuple
+from typing import Any, Dict, Tuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -101,15 +101,11 @@ def completed(points: Array, found: pcl_symmetry.SceneObject) -> Array:
 def one_object(points: Array, mask: Array) -> None:
     """The same for an object that something else has found, such as a neural network: its mask is enough."""
     found = pcl_symmetry.planes(points, indices=mask)
-    plane: Optional[pcl_symmetry.ReflectionPlane] = found[0] if found else None
-    if not found and found.axes:  # every plane through the axis is a symmetry: the one that faces the camera
-        axis = found.axes[0]
-        normal = axis.point - axis.point @ axis.direction * axis.direction
-        plane = pcl_symmetry.ReflectionPlane(normal, float(normal @ axis.point))
-    if plane is None:
+    by = [*found.centers, *found.axes, *found]  # of a ball, a body of revolution, or another object
+    if not by:
         print("mask: no plane of symmetry", found.reason)
         return
-    added, _ = pcl_symmetry.complete(points, plane, indices=mask)
+    added, _ = pcl_symmetry.complete(points, by[0], indices=mask)
     frame = pcl_symmetry.frame(points, indices=mask)
     print(f"mask: {len(found)} planes, {len(added)} points added, center {frame.center.round(3)}")
 

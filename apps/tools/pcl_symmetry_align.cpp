@@ -128,7 +128,7 @@ struct BestPlane {
   }
 };
 
-/// The best plane of symmetry, or one through the axis of a body of revolution.
+/// The best plane of symmetry, or one through the axis of a body of revolution or the center of a ball.
 BestPlane bestPlane(const Console& console, const InputShape& input, const CommonOptions& common) {
   Step step(console, "Searching planes");
   DetectionOptions detection;
@@ -142,14 +142,16 @@ BestPlane bestPlane(const Console& console, const InputShape& input, const Commo
     checkAnswer(refinement, input);
     return found;
   });
-  if (!refinement.getAxes().empty()) {
-    step.done("axis of revolution");
-    const SymmetryAxis& axis = refinement.getAxes().front();
-    const Eigen::Vector3d scanner =
-        refinement.getUsedViewpoint().value_or(input.shape.points->sensor_origin_.head<3>().cast<double>().eval());
-    return {planeAcrossView({axis.point, axis.direction}, scanner), "through the axis", axis.confidence};
+  const Detection& found = refinement.getDetection();
+  const Eigen::Vector3d scanner =
+      refinement.getUsedViewpoint().value_or(input.shape.points->sensor_origin_.head<3>().cast<double>().eval());
+  if (const std::optional<ReflectionPlane> plane = planeAcrossView(found, scanner)) {
+    const bool is_ball = !found.centers.empty();
+    step.done(is_ball ? "center of symmetry" : "axis of revolution");
+    return {*plane, is_ball ? "through the center" : "through the axis",
+            is_ball ? found.centers.front().confidence : found.axes.front().confidence};
   }
-  if (const auto& best = refinement.getDetection().best; planes.empty() && best) {
+  if (const auto& best = found.best; planes.empty() && best) {
     step.done("no symmetry");
     return {*best, toString(best->kind), best->confidence};
   }

@@ -300,18 +300,21 @@ ObjectSymmetries rotationsOf(const std::vector<RowMajor4>& discrete,
   return ObjectSymmetries::from(motions, axes);
 }
 
-/// \param by none: the plane through the axis, a point and a direction, and across the view.
+/// \param by none: the plane across the view through the axis, a point and a direction, or through a point alone.
 /// \return the added points, and the rows that they are the reflections of.
 std::pair<py::array_t<float>, std::vector<std::size_t>> complete(
     const AnyArray& points, const std::optional<ReflectionPlane>& by,
-    const std::optional<std::pair<Eigen::Vector3d, Eigen::Vector3d>>& axis, const py::object& viewpoint, int threads) {
+    const std::optional<std::pair<Eigen::Vector3d, std::optional<Eigen::Vector3d>>>& axis, const py::object& viewpoint,
+    int threads) {
   CompletionOptions options;
   options.num_threads = threads;
   options.validate();
   const InputPoints input("points", points, 0, 0);
   const std::optional<Visibility> seen = seenFrom(input.points(), viewpoint);
-  const ReflectionPlane plane =
-      by ? *by : planeAcrossView({axis->first, axis->second}, seen ? seen->viewpoint() : axis->first);
+  Detection found;
+  if (axis && axis->second) found.axes.push_back({axis->first, *axis->second});
+  if (axis && !axis->second) found.centers.push_back({axis->first});
+  const ReflectionPlane plane = by ? *by : *planeAcrossView(found, seen ? seen->viewpoint() : axis->first);
   Points added;
   std::vector<std::size_t> rows;
   {

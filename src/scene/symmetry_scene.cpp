@@ -55,10 +55,8 @@ SeenSpace::ConstPtr seenSpaceOf(const Cloud& frame, const Viewpoint& viewpoint) 
 /// one lies along the view and adds nothing, one that is less sure would often add points beside the object.
 std::vector<ReflectionPlane> completingPlanes(const SceneObject& object, const Visibility* seen) {
   constexpr double sure = 0.8;  // of 79 such answers in real frames all are right
-  if (!object.axes.empty() && seen) {
-    const SymmetryAxis& axis = object.axes.front();
-    return {planeAcrossView({axis.point, axis.direction}, seen->viewpoint())};
-  }
+  if (seen)
+    if (const auto plane = planeAcrossView(object, seen->viewpoint())) return {*plane};
   std::vector<ReflectionPlane> planes;
   for (const SymmetryPlane& plane : object.planes)
     if (plane.kind == PlaneKind::Symmetry && (planes.empty() || plane.confidence >= sure)) planes.push_back(plane);
@@ -146,7 +144,9 @@ private:
     alignment.setOptions(options);
     prepare(alignment, object, seen);
     SymmetryFrame frame = alignment.compute();
-    if (!frame.equivalent.empty()) object.frame = std::move(frame);
+    if (frame.equivalent.empty()) return;
+    bringToSymmetry(object, frame);
+    object.frame = std::move(frame);
   }
 
   void complete(SceneObject& object, const SeenSpace& seen) const {

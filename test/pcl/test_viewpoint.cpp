@@ -61,6 +61,21 @@ TEST(SeenByOrganizedCloud, TheRaysAreThoseOfItsCamera) {
   }
 }
 
+TEST(SeenByOrganizedCloud, OfATableAloneTheCameraIsThatOfItsFrame) {
+  Cloud table(64, 48, pcl::PointXYZ(NAN, NAN, NAN));
+  const Eigen::Vector3f up = Eigen::Vector3f(0.0f, -0.8f, -0.6f);
+  for (int v = 10; v < 48; ++v)
+    for (int u = 0; u < 64; ++u) {
+      const Eigen::Vector3f ray((u - 30.0f) / 55.0f, (v - 25.0f) / 55.0f, 1.0f);
+      table(u, v).getVector3fMap() = -0.6f / up.dot(ray) * ray;
+    }
+  const auto seen = detail::seenByOrganizedCloud(table);
+  ASSERT_TRUE(seen) << "many cameras see one plane so";
+  EXPECT_LT(seen->viewpoint().norm(), 1e-3);
+  for (pcl::PointXYZ& point : table) point.z += 1.0f;
+  EXPECT_FALSE(detail::seenByOrganizedCloud(table)) << "moved, it does not tell";
+}
+
 TEST(ScanAnalysis, UsesAViewpointThatIsGiven) {
   const Scan scan = test::scan(test::blockBox(), {2.5, -3.0, 2.0});
   SymmetryMaximaRefinement<pcl::PointXYZ> refinement;

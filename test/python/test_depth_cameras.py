@@ -268,6 +268,12 @@ class OrganizedArrays(unittest.TestCase):
             depth = np.where(root > 0, (along - root) / squares, np.where((table > 0) & (table < 3), table, 0))
             scene = pcl_symmetry.scene(pcl_symmetry.from_depth(depth, (525, 525, 320, 240)))
             np.testing.assert_array_equal(scene.labels == 1, root > 0, str(x))
+            ball = scene[0]
+            self.assertEqual([len(ball.planes.every), len(ball.planes.axes), len(ball.planes.centers)], [0, 0, 1], str(x))
+            for found in (ball.planes.centers[0].point, ball.frame.center):
+                np.testing.assert_allclose(found, center, atol=0.02 * radius)
+            self.assertGreater(len(ball.added), 0.9 * len(ball.rows), "its far side")
+            np.testing.assert_allclose(np.linalg.norm(ball.added - center, axis=1), radius, atol=0.03 * radius)
 
     def test_a_scene_has_objects_on_a_table(self):
         scene = pcl_symmetry.scene(self.frame)

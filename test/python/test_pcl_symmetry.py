@@ -407,6 +407,8 @@ class OtherFunctions(unittest.TestCase):
             by_axis = pcl_symmetry.complete(half + place, dataclasses.replace(axis, point=axis.point + place), viewpoint=front + place)
             np.testing.assert_array_equal(by_axis[1], across[1])
             np.testing.assert_allclose(by_axis[0], across[0] + place, atol=1e-5)
+        ball = pcl_symmetry.Center(np.zeros(3), 1, 1, 1)  # its plane is across the view, too
+        np.testing.assert_array_equal(pcl_symmetry.complete(half, ball, viewpoint=front)[1], across[1])
         possible = dataclasses.replace(pcl_symmetry.planes(points)[0], normal=plane.normal, offset=0.0, kind="possible", confidence=0.3)
         doubt = f"points: {len(added)} are added across a plane that is only possible, of confidence 0.30"
         for cloud, by, words in (

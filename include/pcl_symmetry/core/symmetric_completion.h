@@ -1,8 +1,10 @@
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "pcl_symmetry/core/exports.h"
+#include "pcl_symmetry/core/plane_types.h"
 #include "pcl_symmetry/core/point_set.h"
 #include "pcl_symmetry/core/reflection_plane.h"
 #include "pcl_symmetry/core/visibility.h"
@@ -26,6 +28,9 @@ struct CompletionOptions {
 /// \param viewpoint where the scanner stood; on the axis it gives no direction, and any plane through the axis is
 /// returned.
 ReflectionPlane planeAcrossView(const Line3d& axis, const Eigen::Vector3d& viewpoint);
+
+/// The same through the center of symmetry, or else the best axis, that was found; none where there is neither.
+std::optional<ReflectionPlane> planeAcrossView(const Detection& found, const Eigen::Vector3d& viewpoint);
 
 /// The points of a partial scan whose reflections show what the scanner did not see of a symmetric object: they fall
 /// neither onto the measured surface nor into space that was seen to be empty.

@@ -120,4 +120,8 @@ void refineOnMesh(const MeshSurface& mesh, SymmetryFrame& frame);
 /// x = 0 then.
 void bringToPlane(const ReflectionPlane& plane, SymmetryFrame& frame);
 
+/// Moves a frame to the center or else to the best axis of revolution that detectPlanes() found; its axis nearest to
+/// that one is turned onto it. Nothing moves where there is neither.
+void bringToSymmetry(const Detection& found, SymmetryFrame& frame);
+
 }  // namespace pcl_symmetry

@@ -91,10 +91,19 @@ void findAxesOfScan(const JudgedCloud& judged, Found& found) {
   const ScanAxesOptions scan_axes{options.folds, options.min_confidence, options.min_possible, options.seed,
                                   options.num_threads};
   const RotationEvidence rotations(judged.cloud, judged.measure.tolerance(), options.seed);
+  if (std::optional<SymmetryCenter> center = centerOfScan(rotations, scan_axes)) {
+    found.axes.clear();
+    found.planes = withoutPlanesThrough(std::move(found.planes), *center, judged.cloud);
+    found.centers.push_back(*std::move(center));
+    return;
+  }
   found.rotations =
       scanAxes(rotations, found.planes, found.axes, scan_axes, found.evidence ? &found.evidence->rotations : nullptr);
   found.axes = withRoundAxes(rotations, std::move(found.axes), found.rotations, scan_axes);
   found.planes = withoutPlanesThrough(std::move(found.planes), found.axes, judged.cloud);
+  // What is no ball has one: those of a dome that lie beside it are as round within the tolerance.
+  sortFalling(found.axes, &SymmetryAxis::confidence);
+  if (found.axes.size() > 1) found.axes.resize(1);
 }
 
 /// Rules by which findings correct each other, applied in this order. Not in the paper.

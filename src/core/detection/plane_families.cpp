@@ -248,9 +248,7 @@ void findFamilies(const JudgedCloud& judged, Found& found) {
     const JudgedFamily family = judged.decision.judgeFamily(center->planes, samples);
     if (isFamily(family)) {
       found.centers.push_back({cloud.toInput(center->place), family.confidence, family.score, family.support});
-      drop([&](const ReflectionPlane& plane) {
-        return std::abs(plane.signedDistance(center->place)) <= kDetection.families.contained_offset;
-      });
+      found.planes = withoutPlanesThrough(std::move(found.planes), found.centers.back(), cloud);
       return;
     }
   }
@@ -269,6 +267,14 @@ void findFamilies(const JudgedCloud& judged, Found& found) {
                             family.support});
     drop([&](const ReflectionPlane& plane) { return contains(plane, axis.place); });
   }
+}
+
+std::vector<SymmetryPlane> withoutPlanesThrough(std::vector<SymmetryPlane> planes, const SymmetryCenter& center,
+                                                const NormalizedCloud& cloud) {
+  eraseIf(planes, [&](const SymmetryPlane& plane) {
+    return std::abs(plane.signedDistance(center.point)) <= kDetection.families.contained_offset * cloud.scale;
+  });
+  return planes;
 }
 
 std::vector<SymmetryPlane> withoutPlanesThrough(std::vector<SymmetryPlane> planes,

@@ -85,4 +85,9 @@ void findFamilies(const JudgedCloud& judged, Found& found);
 std::vector<SymmetryPlane> withoutPlanesThrough(std::vector<SymmetryPlane> planes,
                                                 const std::vector<SymmetryAxis>& axes, const NormalizedCloud& cloud);
 
+/// \param planes,center input frame.
+/// \return the planes that do not contain the center.
+std::vector<SymmetryPlane> withoutPlanesThrough(std::vector<SymmetryPlane> planes, const SymmetryCenter& center,
+                                                const NormalizedCloud& cloud);
+
 }  // namespace pcl_symmetry

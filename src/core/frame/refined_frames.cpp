@@ -97,18 +97,28 @@ void bringToPlanes(const std::function<std::optional<ReflectionPlane>(const Refl
   moveTo(center, axes, frame);
 }
 
-/// Turns the axis of a frame that a rotation is about onto its line, and moves the center there.
-void bringToAxis(const SymmetryRotation& rotation, SymmetryFrame& frame) {
-  const int k = axisAlong(rotation, frame);
-  if (k < 0) return;
+/// Turns an axis of a frame onto a line, and moves the center there.
+void bringToLine(const Line3d& line, int k, SymmetryFrame& frame) {
   const Eigen::Vector3d axis = frame.axes.col(k);
-  const Eigen::Vector3d direction = axis.dot(rotation.direction) < 0.0 ? -rotation.direction : rotation.direction;
-  const Eigen::ParametrizedLine<double, 3> line(rotation.point, direction);
+  const double sign = axis.dot(line.direction()) < 0.0 ? -1.0 : 1.0;
   moveTo(line.projection(frame.center),
-         Eigen::Quaterniond::FromTwoVectors(axis, direction).toRotationMatrix() * frame.axes, frame);
+         Eigen::Quaterniond::FromTwoVectors(axis, sign * line.direction()).toRotationMatrix() * frame.axes, frame);
 }
 
 }  // namespace
+
+void bringToSymmetry(const Detection& found, SymmetryFrame& frame) {
+  if (!found.centers.empty()) {
+    moveTo(found.centers.front().point, frame.axes, frame);
+    frame.revolution_axis = 3;
+  } else if (!found.axes.empty()) {
+    const SymmetryAxis& axis = found.axes.front();
+    int nearest = 0;
+    (frame.axes.transpose() * axis.direction).cwiseAbs().maxCoeff(&nearest);
+    bringToLine({axis.point, axis.direction}, nearest, frame);
+    if (frame.revolution_axis < 0) frame.revolution_axis = nearest;
+  }
+}
 
 int axisAlong(const SymmetryRotation& rotation, const SymmetryFrame& frame) {
   int along = 0;
@@ -132,7 +142,8 @@ void refineOnPoints(const PointsRef& points, const Visibility* visibility, const
                     SymmetryFrame& frame) {
   // Half turns follow from planes.
   for (const SymmetryRotation& rotation : frame.rotations)
-    if (rotation.fold != 2) bringToAxis(rotation, frame);
+    if (const int k = axisAlong(rotation, frame); rotation.fold != 2 && k >= 0)
+      bringToLine({rotation.point, rotation.direction}, k, frame);
   std::vector<ReflectionPlane> starts;
   for (int k = 0; k < 3; ++k) starts.emplace_back(frame.axes.col(k), frame.axes.col(k).dot(frame.center));
   DetectionOptions detection;

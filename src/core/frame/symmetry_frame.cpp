@@ -82,10 +82,9 @@ SymmetryFrame publishedFrame(const PointsRef& points, const FrameOptions& option
   return frame;
 }
 
-/// Axes of rotation of a scan; the axes of its frame are tried first.
-std::vector<SymmetryRotation> rotationsAlong(const SymmetryFrame& frame, const PointsRef& points,
-                                             const GaussianEdt& edt, const FrameOptions& options,
-                                             const Visibility& visibility, const MakeSearch& make_search) {
+/// What rotations show of a scan; the axes of its frame are tried first.
+ScanRotations rotationsAlong(const SymmetryFrame& frame, const PointsRef& points, const GaussianEdt& edt,
+                             const FrameOptions& options, const Visibility& visibility, const MakeSearch& make_search) {
   ScanAxesOptions scan_axes;
   scan_axes.seed = options.seed;
   scan_axes.num_threads = options.num_threads;
@@ -172,7 +171,12 @@ SymmetryFrame symmetryFrame(const PointsRef& all, const FrameOptions& options, c
   frame.revolution_axis = revolutionAxis(evidence, best);
   done("center");
   if (visibility && options.rotations) {
-    frame.rotations = rotationsAlong(frame, points, edt, options, *visibility, make_search);
+    ScanRotations found = rotationsAlong(frame, points, edt, options, *visibility, make_search);
+    frame.rotations = std::move(found.rotations);
+    if (found.center) {
+      frame.center = found.center->point;
+      frame.revolution_axis = 3;
+    }
     for (const SymmetryRotation& rotation : frame.rotations)
       if (rotation.fold == 0 && frame.revolution_axis < 0) frame.revolution_axis = axisAlong(rotation, frame);
     done("rotations");

@@ -24,6 +24,15 @@ ReflectionPlane planeAcrossView(const Line3d& axis, const Eigen::Vector3d& viewp
   return ReflectionPlane(normal, normal.dot(axis.origin()));
 }
 
+std::optional<ReflectionPlane> planeAcrossView(const Detection& found, const Eigen::Vector3d& viewpoint) {
+  if (!found.centers.empty()) {
+    const Eigen::Vector3d center = found.centers.front().point, view = viewpoint - center;
+    return planeAcrossView({center, view.isZero() ? Eigen::Vector3d::UnitZ() : view.unitOrthogonal()}, viewpoint);
+  }
+  if (found.axes.empty()) return std::nullopt;
+  return planeAcrossView({found.axes.front().point, found.axes.front().direction}, viewpoint);
+}
+
 std::vector<int> completingPoints(const PointsRef& points, const ReflectionPlane& plane,
                                   const CompletionOptions& options, const Visibility* visibility) {
   options.validate();

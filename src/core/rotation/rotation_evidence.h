@@ -5,6 +5,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "core/base/constants.h"
@@ -212,15 +213,25 @@ std::vector<SymmetryRotation> scanAxes(const RotationEvidence& evidence, const s
                                        const std::vector<SymmetryAxis>& axes, const ScanAxesOptions& options,
                                        std::vector<JudgedRotation>* evidence_of_all = nullptr);
 
+/// The center of a ball seen from one side: rotations by any angle about any line through it map what was seen onto
+/// itself or to unseen space.
+std::optional<SymmetryCenter> centerOfScan(const RotationEvidence& evidence, const ScanAxesOptions& options);
+
+/// What rotations show of a scan: the center of a ball, or axes.
+struct ScanRotations {
+  std::optional<SymmetryCenter> center;
+  std::vector<SymmetryRotation> rotations;
+};
+
 /// The same for points of which no planes are known.
 /// \param points 3 x N, finite, input units.
 /// \param edt of these points.
 /// \param axes lines that are tried first, input frame.
 /// \param make_search as in detectPlanes().
 /// \return nothing where the points hold no answer.
-std::vector<SymmetryRotation> rotationsOfScan(const PointsRef& points, const GaussianEdt& edt,
-                                              const Visibility& visibility, const std::vector<SymmetryAxis>& axes,
-                                              const ScanAxesOptions& options, const MakeSearch& make_search = nullptr);
+ScanRotations rotationsOfScan(const PointsRef& points, const GaussianEdt& edt, const Visibility& visibility,
+                              const std::vector<SymmetryAxis>& axes, const ScanAxesOptions& options,
+                              const MakeSearch& make_search = nullptr);
 
 /// The axes of revolution of a scan, checked by rotations: those that throw a visible handle into empty space
 /// are dropped, the others moved to where rotations fit best, and round bodies added that showed too few planes.

@@ -9,6 +9,7 @@
 #include "core/base/parallel.h"
 #include "core/base/random.h"
 #include "core/base/statistics.h"
+#include "core/base/symmetric_solvers.h"
 #include "core/geometry/closest_points.h"
 #include "core/geometry/directions.h"
 #include "core/geometry/geometry_rules.h"
@@ -272,17 +273,52 @@ std::vector<SymmetryRotation> scanAxes(const RotationEvidence& evidence, const s
   return result;
 }
 
-std::vector<SymmetryRotation> rotationsOfScan(const PointsRef& points, const GaussianEdt& edt,
-                                              const Visibility& visibility, const std::vector<SymmetryAxis>& axes,
-                                              const ScanAxesOptions& options, const MakeSearch& make_search) {
+std::optional<SymmetryCenter> centerOfScan(const RotationEvidence& evidence, const ScanAxesOptions& options) {
+  const NormalizedCloud& cloud = evidence.cloud();
+  const std::vector<int> samples = drawSamples(cloud.points.cols(), kScanAxes.normal_samples, options.seed);
+  const Eigen::Vector3d met = centerOfNormals(cloud.points, cloud.geometry.normals, samples);
+  // The sphere through the points whose normals meet there: |x|^2 = 2 c.x + r^2 - |c|^2.
+  Eigen::Matrix4d squares = Eigen::Matrix4d::Zero();
+  Eigen::Vector4d sum = Eigen::Vector4d::Zero();
+  for (const int i : samples) {
+    const Eigen::Vector3d x = cloud.points.col(i).cast<double>(), d = x - met;
+    if (d.cross(cloud.geometry.normals.col(i).cast<double>()).norm() > kGeometry.normal_miss * d.norm()) continue;
+    const Eigen::Vector4d row = (2.0 * x).homogeneous();
+    squares += row * row.transpose();
+    sum += x.squaredNorm() * row;
+  }
+  const Eigen::Vector3d center = solveSymmetric(squares, sum).head<3>();
+  if (!center.allFinite()) return std::nullopt;
+  constexpr OffLimits limits{kScanAxes.max_round_off, kScanAxes.max_round_far};
+  SymmetryRotation worst{center, Eigen::Vector3d::UnitX(), 0, 0.0, 1.0, 0.0, 0.0, 0.0};
+  double score = 0.0;
+  for (int k = 0; k < 3 && marginOf(worst) > 0.0; ++k) {
+    const Line3d line(center, Eigen::Vector3d::Unit(k));
+    const RotationShares all =
+        roundRotations([&](double angle) { return evidence.exactly(motionAboutLine(line, angle)); }, limits);
+    worst.support = std::min(worst.support, all.on);
+    worst.off = std::max(worst.off, all.off);
+    worst.far = std::max(worst.far, all.far);
+    score += cloud.score(cloud.toInput(ReflectionPlane(line.direction(), center[k]))) / 3.0;
+  }
+  const double confidence = rotationConfidence(worst, {});
+  if (marginOf(worst) <= 0.0 || confidence < options.min_confidence) return std::nullopt;
+  return SymmetryCenter{cloud.toInput(center), confidence, score, worst.support};
+}
+
+ScanRotations rotationsOfScan(const PointsRef& points, const GaussianEdt& edt, const Visibility& visibility,
+                              const std::vector<SymmetryAxis>& axes, const ScanAxesOptions& options,
+                              const MakeSearch& make_search) {
   if (!whyUnanswerable(points).empty()) return {};
   const Points distinct = DistinctPoints(points).points;
   const Points used =
       pointsAt(distinct, drawSamples(distinct.cols(), ObjectSymmetryOptions().max_points, options.seed));
   const ClosestPointSearch::Ptr search = make_search ? inFrame(make_search(used), edt.center(), edt.radius()) : nullptr;
   const NormalizedCloud cloud(used, edt, search, &visibility, options.num_threads);
-  return scanAxes(RotationEvidence(cloud, ObjectSymmetryOptions().tolerance * cloud.extent, options.seed), {}, axes,
-                  options);
+  const RotationEvidence evidence(cloud, ObjectSymmetryOptions().tolerance * cloud.extent, options.seed);
+  ScanRotations found{centerOfScan(evidence, options), {}};
+  if (!found.center) found.rotations = scanAxes(evidence, {}, axes, options);
+  return found;
 }
 
 std::vector<SymmetryAxis> withRoundAxes(const RotationEvidence& evidence, std::vector<SymmetryAxis> axes,

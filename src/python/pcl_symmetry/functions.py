@@ -620,7 +620,7 @@ def local_symmetry(
 
 def complete(
     points: Any,
-    plane: Union[ReflectionPlane, Axis, ArrayLike],
+    plane: Union[ReflectionPlane, Axis, Center, ArrayLike],
     *,
     viewpoint: Viewpoint = "auto",
     indices: Optional[ArrayLike] = None,
@@ -630,7 +630,7 @@ def complete(
 
     points, viewpoint, indices: as in planes(); of a mesh its vertices. plane: a symmetry, or a possible one, of planes(); any
     other is refused, unless it comes as its coefficients, (4,) a, b, c, d of a x + b y + c z + d = 0. Of a body of revolution
-    its Axis: the plane through it and across the view is taken.
+    its Axis, of a ball its Center: the plane through it and across the view is taken.
     Returns (added, rows). added: (M, 3) points that neither fall onto the measured surface nor into space that was seen to be
     empty. rows: (M,) the row of the point that each is the reflection of: added is plane.reflect(points.reshape(-1, 3)[rows]).
     Warns (RuntimeWarning) where nothing is added, and where the plane is only possible, with its confidence.
@@ -644,8 +644,9 @@ def complete(
         )
     used = look(cloud, viewpoint, indices, max_points=0, as_measured=True, threads=threads)
     by = axis = None
-    if isinstance(plane, Axis):
-        axis = (plane.point if cloud.shift is None else plane.point - cloud.shift, plane.direction)
+    if isinstance(plane, (Axis, Center)):
+        point = plane.point if cloud.shift is None else plane.point - cloud.shift
+        axis = (point, plane.direction if isinstance(plane, Axis) else None)
     else:
         by = _core_plane(plane_of(plane), cloud.shift)
     added, found = core.complete(used.array, by, axis=axis, viewpoint=used.viewpoint, threads=threads)

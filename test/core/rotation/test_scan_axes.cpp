@@ -12,6 +12,8 @@
 
 #include "core/base/constants.h"
 #include "pcl_symmetry/core/detect_planes.h"
+#include "pcl_symmetry/core/symmetric_completion.h"
+#include "pcl_symmetry/core/symmetry_frame.h"
 #include "pcl_symmetry/core/visibility.h"
 #include "shapes/shapes.h"
 #include "shapes/threads.h"
@@ -245,16 +247,43 @@ TEST(ScanAxes, ACupHasAnAxisUnlessAHandleIsInSight) {
   EXPECT_TRUE(detected(cup(true), {1.0, 5.0, 1.5}).axes.empty());
 }
 
+TEST(ScanAxes, ABallHasACenterAndADomeOneAxis) {
+  const Eigen::Vector3d viewpoint(3.0, 4.0, 5.0);
+  const SeenFromOneSide ball = seenFrom(ballShape(), viewpoint);
+  const Detection found = detectPlanes({ball.points, &*ball.seen});
+  ASSERT_EQ(found.centers.size(), 1u);
+  EXPECT_LT(found.centers[0].point.norm(), 0.01);
+  EXPECT_TRUE(found.axes.empty() && found.planes.empty());
+  const std::optional<ReflectionPlane> across = planeAcrossView(found, viewpoint);
+  ASSERT_TRUE(across);
+  EXPECT_GT(std::abs(across->normal().dot(viewpoint.normalized())), std::cos(1.0 * kDegree)) << "it hides its far half";
+  const SymmetryFrame frame = symmetryFrame(ball.points, {}, &*ball.seen);
+  EXPECT_EQ(frame.revolution_axis, 3);
+  EXPECT_LT(frame.center.norm(), 0.01);
+
+  TurningShape dome = turningShape("dome", RotationGroupKind::Revolution);
+  std::vector<Eigen::Vector2d> profile{{0.0, 0.3}};
+  for (int k = 0; k <= 24; ++k) {
+    const double height = 0.3 + 0.7 * k / 24.0;
+    profile.emplace_back(std::sqrt(1.0 - height * height), height);
+  }
+  dome.addLathe(profile, 96);
+  const Detection of_dome = detected(dome, {1.0, 2.0, 5.0});
+  EXPECT_TRUE(of_dome.centers.empty());
+  ASSERT_EQ(of_dome.axes.size(), 1u) << "others that miss its rim by little are as round within the tolerance";
+  EXPECT_GT(std::abs(of_dome.axes[0].direction.z()), std::cos(10.0 * kDegree));
+}
+
 TEST(ScanAxes, AreFoundWithoutPlanesToo) {
   const SeenFromOneSide scan = seenFrom(prismShape(6, 0.5), {3.0, 4.0, 5.0});
   const GaussianEdt edt(scan.points);
-  const std::vector<SymmetryRotation> turns = rotationsOfScan(scan.points, edt, *scan.seen, {}, {});
+  const std::vector<SymmetryRotation> turns = rotationsOfScan(scan.points, edt, *scan.seen, {}, {}).rotations;
   ASSERT_FALSE(turns.empty());
   EXPECT_EQ(turns.front().fold, 6);
   EXPECT_GT(turns.front().confidence, 0.5);
   EXPECT_GT(std::abs(turns.front().direction.z()), std::cos(1.0 * kDegree));
   const Points few = scan.points.leftCols(5);
-  EXPECT_TRUE(rotationsOfScan(few, GaussianEdt(few), *scan.seen, {}, {}).empty()) << "no answer";
+  EXPECT_TRUE(rotationsOfScan(few, GaussianEdt(few), *scan.seen, {}, {}).rotations.empty()) << "no answer";
 }
 
 TEST(ScanAxes, ThreadsDoNotMatterAndTurnsCanBeLeftOut) {
