@@ -63,9 +63,33 @@ std::vector<ReflectionPlane> completingPlanes(const SceneObject& object, const V
   return planes;
 }
 
-/// What speaks for one object alone: a table, a floor or a wall is wider than what it carries.
+/// Whether all four borders of a picture are empty, and supporting planes are slices of a curved body.
+bool isCutOut(const Cloud& scene, const SceneAnalysis& found) {
+  constexpr unsigned border = 50;  // one row or column in this many
+  constexpr double curved = 0.35;  // plane distances, root mean square; points spread evenly have 0.58
+  if (!scene.isOrganized()) return false;
+  for (const SupportingPlane& support : found.supports) {
+    const Eigen::Vector4d plane = support.coefficients;
+    double sum = 0.0;
+    for (const int i : support.indices) {
+      const double distance = plane.dot(scene[i].getVector3fMap().cast<double>().homogeneous());
+      sum += distance * distance;
+    }
+    if (std::sqrt(sum / static_cast<double>(support.indices.size())) < curved * found.plane_distance) return false;
+  }
+  const unsigned rows = scene.height / border, columns = scene.width / border;
+  for (std::size_t i = 0; i < scene.size(); ++i) {
+    const std::size_t u = i % scene.width, v = i / scene.width;
+    const bool is_inside = u > columns && u + columns + 1 < scene.width && v > rows && v + rows + 1 < scene.height;
+    if (!is_inside && pcl::isXYZFinite(scene[i])) return false;
+  }
+  return true;
+}
+
+/// What speaks for one object alone: a table, a floor or a wall is wider than what it carries, and than the picture.
 std::string signOfOneObject(const Cloud& scene, const SceneAnalysis& found) {
   constexpr double wider = 1.5;
+  if (isCutOut(scene, found)) return "no point is near the border of the picture";
   if (found.supports.empty()) return "no supporting plane (table, floor, wall) was found";
   if (found.objects.empty()) return "no object was found";
   if (found.objects.size() > 1) return "";
@@ -303,7 +327,7 @@ SceneAnalysis SymmetryScene::compute() const {
   parallelBlocks(num_objects, one_each ? options_.num_threads : 1,
                  [&](std::size_t k) { of(num_objects).finish(analysis.objects[k]); });
   timed("objects");
-  analysis.alone = signOfOneObject(*frame, analysis);
+  analysis.alone = signOfOneObject(*input_, analysis);
   return analysis;
 }
 

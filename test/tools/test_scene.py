@@ -296,6 +296,13 @@ class Scene(ToolTest):
         self.run_tool(self.write("all.pcd", pcd(faces)))
         self.assertIn("all.pcd: no supporting plane is much wider than the object; if this is one object, pcl_symmetry_planes", self.error)
 
+        slopes = (np.mgrid[:60, :80] - np.array([29.5, 39.5])[:, None, None]) / 80
+        across = np.hypot(*slopes)  # a wave around the middle of a picture without background, tops of which are clusters
+        depth = np.where(across < 0.3, 1 - 0.12 * np.cos(25 * across), np.nan)
+        wave = np.stack([slopes[1] * depth, slopes[0] * depth, depth], axis=2).reshape(-1, 3)
+        self.run_tool(self.write("wave.pcd", pcd(wave, 80)))
+        self.assertIn("wave.pcd: no point is near the border of the picture; if this is one object, pcl_symmetry_planes", self.error)
+
     def test_refuses_what_is_no_scene(self):
         mesh = self.write("t.off", "OFF\n3 1 3\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n")
         self.fails(1, f"{mesh}: is a mesh, must be a cloud as a sensor sees it", mesh)

@@ -119,8 +119,11 @@ bool isBetter(const SymmetryPlane& a, const SymmetryPlane& b) {
 MeasuredPlane PlaneDecision::decided(MeasuredPlane measured, const ReflectionPlane& plane) const {
   SymmetryPlane& result = measured.plane;
   for (const char* rule : measure_.limits().of(plane, cloud_.points)) limitToPossible(result, rule);
-  setConfidence(result, planeConfidence(measured.evidence),
-                "how much of the surface the plane maps onto it, and how much was seen", options_);
+  constexpr KindRule<const char*> kRule{
+      "how much of the surface the plane maps onto it, and how finely the points show it",
+      "how much of the surface the plane maps onto it, and how much was seen",
+      "how well each half of the points predicts the other; few points leave it open"};
+  setConfidence(result, planeConfidence(measured.evidence), kRule[cloud_.kind()], options_);
   const double informative = std::min(1.0, measured.informative / kDetection.decide.min_informative);
   if (informative < 1.0)
     changeConfidence(result, result.confidence * informative, "few points move and land where the scanner saw",
