@@ -29,11 +29,11 @@ struct Consensus {
   pcl::Indices inliers;  // into the scene
 };
 
-/// A factor, a power of two, that gives scenes of any unit one scale: PCL's models of planes and its search among the
-/// pixels of organized clouds have absolute limits, made for meters.
+/// A factor, a power of two, that gives scenes of any unit one scale: PCL's models of planes refuse three samples by an
+/// absolute area, and write about it.
 /// \param distance of points that belong together.
 float unitScale(double distance) {
-  return static_cast<float>(std::exp2(std::round(-8.0 - std::log2(distance))));
+  return static_cast<float>(std::exp2(std::round(-std::log2(distance))));
 }
 
 SymmetryScene::Cloud::ConstPtr scaled(const SymmetryScene::Cloud& scene, float factor) {
@@ -295,13 +295,12 @@ std::vector<pcl::Indices> findClusters(const SymmetryScene::Cloud::ConstPtr& sce
                                        const std::vector<SupportingPlane>& supports, const SceneDistances& distances,
                                        int min_points) {
   if (points.empty()) return {};
-  const float scale = unitScale(distances.cluster);
   pcl::EuclideanClusterExtraction<pcl::PointXYZ> extraction;
-  extraction.setClusterTolerance(scale * distances.cluster);
+  extraction.setClusterTolerance(distances.cluster);
   extraction.setMinClusterSize(min_points);
   // PCL's own choice for frames guesses the camera from these points, of which a few show too little of it.
   extraction.setSearchMethod(pcl::make_shared<pcl::search::KdTree<pcl::PointXYZ>>(false));
-  extraction.setInputCloud(scaled(*scene, scale));
+  extraction.setInputCloud(scene);
   extraction.setIndices(pcl::make_shared<pcl::Indices>(points));
   lookAtWatch();
   std::vector<pcl::PointIndices> found;
