@@ -163,6 +163,18 @@ RotationShares rotationsOfFold(const Shares& shares, int fold, double first, con
   return all;
 }
 
+constexpr OffLimits kRoughLimits{kScanAxes.rough_factor * kScanAxes.max_off, kScanAxes.rough_factor* kScanAxes.max_far};
+
+/// Screens rotations about a line by an angle.
+struct RoughShares {
+  const RotationEvidence& evidence;
+  const Line3d& line;
+
+  RotationShares operator()(double angle) const {
+    return evidence.roughly(motionAboutLine(line, angle), kScanAxes.rough_slack, kRoughLimits.off, kRoughLimits.far);
+  }
+};
+
 /// What a line is, as far as one scan can tell.
 struct JudgedLine {
   Line3d line;
@@ -179,11 +191,8 @@ public:
 
   /// The best rotations about a line.
   std::optional<JudgedLine> judged(const Line3d& line) const {
-    constexpr OffLimits rough{kScanAxes.rough_factor * kScanAxes.max_off,
-                              kScanAxes.rough_factor * kScanAxes.max_far};  // from both
-    const auto roughly = [&](double angle) {
-      return evidence_.roughly(motionAboutLine(line, angle), kScanAxes.rough_slack, rough.off, rough.far);
-    };
+    constexpr OffLimits rough = kRoughLimits;
+    const RoughShares roughly{evidence_, line};
     std::optional<JudgedLine> best;
     const auto take = [&](const JudgedLine& judged) {
       if (!best || judged.margin > best->margin) best = judged;
@@ -294,6 +303,7 @@ std::optional<SymmetryCenter> centerOfScan(const RotationEvidence& evidence, con
   double score = 0.0;
   for (int k = 0; k < 3 && marginOf(worst) > 0.0; ++k) {
     const Line3d line(center, Eigen::Vector3d::Unit(k));
+    if (!kRoughLimits.allow(roundRotations(RoughShares{evidence, line}, kRoughLimits))) return std::nullopt;
     const RotationShares all =
         roundRotations([&](double angle) { return evidence.exactly(motionAboutLine(line, angle)); }, limits);
     worst.support = std::min(worst.support, all.on);
