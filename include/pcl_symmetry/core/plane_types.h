@@ -100,12 +100,12 @@ struct SymmetryRotation {
 /// arrays.
 struct DetectionEvidence;
 
-/// All planes through a point are symmetries: a sphere.
+/// All planes through a point are symmetries: a sphere. Of a scan, rotations about lines through the point show it.
 struct SymmetryCenter {
   Eigen::Vector3d point;    ///< input frame
   double confidence = 0.0;  ///< as that of SymmetryAxis
   double score = 0.0;       ///< as that of SymmetryAxis
-  double support = 0.0;     ///< as that of SymmetryAxis
+  double support = 0.0;     ///< as that of SymmetryAxis; of scans as that of SymmetryRotation
 };
 
 /// What detectPlanes() found.
