@@ -14,7 +14,7 @@ namespace PCL_SYMMETRY_EXPORTS pcl_symmetry {
 ///
 /// In the planes returned, `score` is D, `support` the correlation c (Pearson) of f with its reflection inside the body,
 /// `seen` the share of the body whose reflection lies within the volume, and `residual` the root mean square of
-/// f(x) - f(gamma x). No share of a surface is measured: `share` is 0, its limits are 0 and 1. `confidence` is no
+/// f(x) - f(gamma x). No share of a surface is measured: `share` and its limits are NaN. `confidence` is no
 /// probability here: ((c - c0) / (1 - c0))^2, squared as the variance that a correlation explains, where c0 is the
 /// greater of two: what three quarters of the planes reach that pass through the center of mass in all directions, but
 /// for those near a maximum; and what c is on average where the body is translated as far as the plane moves its

@@ -189,8 +189,6 @@ struct KindRules {
   KindRule<bool> by_halves                {   false,   false,    true};
   // Open borders tell what was cut off.
   KindRule<bool> may_lack_piece           {    true,   false,   false};
-  // Tolerances within which points are a sheet.
-  KindRule<double> thin_tolerances        {     1.0,     1.0,     3.0};
 
   // Families of planes: normals point to axes and centers.
   KindRule<bool> normals_tell             {    true,    true,   false};

@@ -48,7 +48,7 @@ CloudLimits::CloudLimits(const PointsRef& points, const PrincipalAxes& axes, Clo
     : is_resolved_(isResolved(lengths)),
       is_cut_(seen && lengths.resolution > 0.0 &&
               cutShare(points, *seen, kDetection.measure.beside_outline) > kDetection.decide.max_cut),
-      still_(kKindRules.thin_tolerances[kind] * lengths.tolerance),
+      still_((kind == CloudKind::Volume ? kDetection.measure.noisy_thinness : 1.0) * lengths.tolerance),
       thinness_(thinnessOf(points, axes, still_, lineTolerance(kind, lengths))) {}
 
 bool CloudLimits::movesNothing(const ReflectionPlane& plane, const PointsRef& points) const {
