@@ -32,10 +32,12 @@ public:
       const ReflectionPlane start = candidate.plane;
       // The first steps have wide weights. Scans have many borders, at which walks end beside the closest point.
       const IspSurface& surface = candidate.iterations == 0 && !cloud_.seen() ? cloud_.nearly : cloud_.surface;
-      candidate.last = refineSymmetricPoints(surface, used, start, settles ? stage.isp : stage.rough_isp);
-      candidate.plane = candidate.last.plane;
-      candidate.iterations += candidate.last.iterations;
-      candidate.merit = merit(shares(candidate.plane, used, candidate.last.last));
+      IspResult result = refineSymmetricPoints(surface, used, start, settles ? stage.isp : stage.rough_isp);
+      candidate.plane = result.plane;
+      candidate.iterations += result.iterations;
+      candidate.converged = result.converged;
+      candidate.step = std::move(result.last);
+      candidate.merit = merit(shares(candidate.plane, used, candidate.step));
       if (!stage.undo_slides) return;
       undoSlide(candidate, start, used, stage.isp.final_sigma);
       if (stage.climbs && cloud_.roughness > kDetection.fit.noisy_depth &&
@@ -87,13 +89,13 @@ private:
   /// point-to-point step from its start instead if that has more merit.
   void undoSlide(Candidate& candidate, const ReflectionPlane& start, const std::vector<int>& samples,
                  double sigma) const {
-    IspStep step = iterateSymmetricPoints(cloud_.surface, samples, start, sigma, IspUpdate::PointToPoint,
-                                          &candidate.last.last.closest);
+    IspStep step =
+        iterateSymmetricPoints(cloud_.surface, samples, start, sigma, IspUpdate::PointToPoint, &candidate.step.closest);
     const double point_to_point_merit = merit(shares(step.plane, samples, step));
     if (point_to_point_merit <= candidate.merit) return;
     candidate.plane = step.plane;
     candidate.merit = point_to_point_merit;
-    candidate.last.last = std::move(step);
+    candidate.step = std::move(step);
   }
 
   /// Pairs whose true partners were cut off, or are hidden by noise, pull at a plane. It comes to rest beside the one
@@ -131,7 +133,7 @@ private:
     if (value <= candidate.merit + kDetection.fit.min_gain) return false;
     candidate.plane = plane;
     candidate.merit = value;
-    candidate.last.last = std::move(step);
+    candidate.step = std::move(step);
     return true;
   }
 };
@@ -152,7 +154,7 @@ public:
       Candidate& candidate = candidates[i];
       const PointDensity::Refined refined = density_.refine(samples, candidate.plane, kDetection.fit.max_iterations);
       candidate.plane = refined.plane;
-      candidate.last.converged = refined.iterations < kDetection.fit.max_iterations;
+      candidate.converged = refined.iterations < kDetection.fit.max_iterations;
       candidate.iterations += refined.iterations;
       candidate.merit = density_.overlap(samples, candidate.plane);
     });

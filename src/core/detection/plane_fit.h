@@ -22,10 +22,11 @@ struct PlaneShares {
 /// A plane on its way through the stages of refinement, normalized frame.
 struct Candidate {
   ReflectionPlane plane;
-  bool from_map = false;  ///< a maximum of the map, whose cell it must not leave
-  int iterations = 0;     ///< of all stages
-  IspResult last = {};    ///< of the last stage; where points resolve no surface, only whether it converged
-  std::shared_ptr<const std::vector<int>> samples = {};  ///< indices of the points that `last` reflected
+  bool from_map = false;   ///< a maximum of the map, whose cell it must not leave
+  int iterations = 0;      ///< of all stages
+  bool converged = false;  ///< in the last stage
+  IspStep step = {};       ///< matches of the plane nearby; none where points resolve no surface
+  std::shared_ptr<const std::vector<int>> samples = {};  ///< indices of the points that `step` reflected
   double merit = 0.0;                                    ///< PlaneFit::merit() after the last stage
 };
 

@@ -116,10 +116,10 @@ std::vector<int> PlaneMeasure::samples() const {
 MeasuredPlane PlaneMeasure::of(const Candidate& candidate, const std::vector<int>& samples) const {
   // The last stage may have matched these very samples.
   const bool has_matches = candidate.samples && *candidate.samples == samples;
-  const IspStep step = has_matches ? candidate.last.last : fit_.matches(candidate.plane, samples);
+  const IspStep step = has_matches ? candidate.step : fit_.matches(candidate.plane, samples);
   MeasuredPlane result = measured(candidate.plane, samples, step, 0.0);
   result.plane.iterations = candidate.iterations;
-  result.plane.converged = candidate.last.converged;
+  result.plane.converged = candidate.converged;
   return result;
 }
 

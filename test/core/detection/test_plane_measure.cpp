@@ -47,7 +47,7 @@ TEST(PlaneMeasure, MatchesOfOtherSamplesAreNotTaken) {
   Candidate candidate;
   candidate.plane = box.normalized(Eigen::Vector3d::UnitX(), 0.0);
   candidate.samples = std::make_shared<const std::vector<int>>(drawn(1));
-  candidate.last.last = box.fit->matches(candidate.plane, *candidate.samples);
+  candidate.step = box.fit->matches(candidate.plane, *candidate.samples);
   EXPECT_EQ(box.measure.of(candidate, drawn(2)).evidence.share,
             box.measure.of(candidate.plane, drawn(2)).evidence.share);
 }
