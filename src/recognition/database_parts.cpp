@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "core/geometry/point_samples.h"
+#include "core/matching/matching_rules.h"
 #include "core/matching/shape_signature.h"
 #include "core/matching/view_signature.h"
 

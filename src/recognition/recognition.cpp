@@ -8,6 +8,7 @@
 #include "core/base/check.h"
 #include "core/base/parallel.h"
 #include "core/base/statistics.h"
+#include "core/matching/matching_rules.h"
 #include "core/matching/shape_signature.h"
 #include "core/matching/view_signature.h"
 #include "pcl_symmetry/impl/cloud_conversion.hpp"

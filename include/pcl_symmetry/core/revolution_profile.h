@@ -2,8 +2,8 @@
 
 #include <vector>
 
-#include "pcl_symmetry/core/detect_planes.h"
 #include "pcl_symmetry/core/exports.h"
+#include "pcl_symmetry/core/plane_types.h"
 #include "pcl_symmetry/core/point_set.h"
 
 namespace PCL_SYMMETRY_EXPORTS pcl_symmetry {

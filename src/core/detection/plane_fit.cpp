@@ -207,7 +207,7 @@ std::vector<Candidate> gatherCandidates(const NormalizedCloud& cloud, const Symm
     if (kSameMaximum.anySame(candidates, plane, &Candidate::plane)) continue;
     candidates.push_back({plane, true});
   }
-  for (const ReflectionPlane& plane : principalPlanes(cloud.principal_axes)) candidates.push_back({plane, false});
+  for (const ReflectionPlane& plane : principalPlanes(cloud.principal_axes)) candidates.push_back({plane});
   return candidates;
 }
 
@@ -341,7 +341,7 @@ std::vector<Candidate> impliedBy(const std::vector<SymmetryPlane>& planes, const
   const auto add = [&](const ReflectionPlane& plane) {
     if (kSamePlane.anySame(tried, plane)) return;
     tried.push_back(plane);
-    found.push_back({plane, false});
+    found.push_back({plane});
   };
   if (symmetries.size() > kDetection.closure.max_closed) return found;
   for (const ReflectionPlane& plane : symmetries) {

@@ -191,7 +191,7 @@ namespace {
 
 std::vector<Candidate> planesOf(const PlaneLattice& lattice) {
   std::vector<Candidate> candidates;
-  for (int k = 0; k < lattice.fold; ++k) candidates.push_back({lattice.plane(k), false});
+  for (int k = 0; k < lattice.fold; ++k) candidates.push_back({lattice.plane(k)});
   return candidates;
 }
 

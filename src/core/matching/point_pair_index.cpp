@@ -11,6 +11,7 @@
 #include "core/base/parallel.h"
 #include "core/base/simd.h"
 #include "core/base/statistics.h"
+#include "core/matching/matching_rules.h"
 
 namespace pcl_symmetry {
 

@@ -4,7 +4,6 @@
 #include <cstdint>
 #include <vector>
 
-#include "core/matching/matching_rules.h"
 #include "core/matching/surface_points.h"
 
 namespace pcl_symmetry {

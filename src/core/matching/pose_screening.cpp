@@ -6,6 +6,7 @@
 
 #include "core/base/parallel.h"
 #include "core/base/statistics.h"
+#include "core/matching/matching_rules.h"
 #include "core/registration/pose_scoring.h"
 
 namespace pcl_symmetry {

@@ -4,9 +4,7 @@
 #include <optional>
 #include <vector>
 
-#include "core/matching/matching_rules.h"
 #include "core/matching/surface_points.h"
-#include "core/registration/pose_scoring.h"
 #include "core/registration/posed_surface.h"
 
 namespace pcl_symmetry {

@@ -1,6 +1,5 @@
 #include "core/rotation/rotation_fit.h"
 
-#include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
@@ -50,8 +49,8 @@ RotationFit::RotationFit(Points points, const GaussianEdt& edt, RotationLimits l
   const auto surface = std::make_shared<Surface>();
   surface->points = std::move(points);
   const Points& p = surface->points;
-  const auto search = makeFlannSearch(p);
-  surface->geometry = localGeometry(p, *search, kNumSupportNeighbors, num_threads);
+  surface->search = makeFlannSearch(p);
+  surface->geometry = localGeometry(p, *surface->search, kNumSupportNeighbors, num_threads);
   surface->single = single;
   const LocalGeometry& geometry = surface->geometry;
   surface->spacing = median(geometry.spacing);
@@ -101,13 +100,13 @@ double RotationFit::thickness(int num_neighbors) const {
   const Points some = pointsAt(points, drawSamples(points.cols(), kRotation.num_some_points, 1));
   std::vector<int> indices;
   std::vector<float> sq_distances;
-  makeFlannSearch(points)->search(some, count, indices, sq_distances);
+  surface_->search->search(some, count, indices, sq_distances);
   std::vector<double> thickness;
   for (Eigen::Index i = 0; i < some.cols(); ++i) {
     const auto first = indices.begin() + i * count;
     Eigen::Matrix3Xd near = pointsAt(points, {first, first + count}).cast<double>();
     near.colwise() -= near.rowwise().mean().eval();
-    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(near * near.transpose(), Eigen::EigenvaluesOnly);
+    const SymmetricEigen<Eigen::Matrix3d> solver(near * near.transpose());
     thickness.push_back(std::sqrt(std::max(0.0, solver.eigenvalues()[0]) / std::max(1e-30, solver.eigenvalues()[2])));
   }
   return median(std::move(thickness));
@@ -123,7 +122,7 @@ Points RotationFit::borderPoints() const {
   const int count = std::min(kRotation.border_neighbors, static_cast<int>(points.cols()));
   std::vector<int> indices, border;
   std::vector<float> sq_distances;
-  makeFlannSearch(points)->search(points, count, indices, sq_distances);
+  surface_->search->search(points, count, indices, sq_distances);
   for (int i = 0; i < static_cast<int>(points.cols()); ++i) {
     Eigen::Vector3f mean = Eigen::Vector3f::Zero();
     for (int k = 0; k < count; ++k) mean += points.col(indices[i * count + k]) / static_cast<float>(count);

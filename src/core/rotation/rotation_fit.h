@@ -8,6 +8,7 @@
 #include "core/evidence/surface_samples.h"
 #include "core/geometry/closest_points.h"
 #include "core/geometry/surface_normals.h"
+#include "pcl_symmetry/core/closest_point_search.h"
 #include "pcl_symmetry/core/gaussian_edt.h"
 
 namespace pcl_symmetry {
@@ -184,6 +185,7 @@ private:
   /// What does not depend on the tolerance.
   struct Surface {
     Points points;
+    ClosestPointSearch::Ptr search;
     LocalGeometry geometry;
     std::unique_ptr<SurfaceDiscs> discs;
     std::unique_ptr<ClosestPointGrid> grid;

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <limits>
 #include <utility>
-#include <vector>
 
 #include "core/geometry/point_samples.h"
 #include "core/geometry/surface_normals.h"
