@@ -130,6 +130,9 @@ struct Detection {
   SymmetryMap map;                                        ///< that was made; empty where one was given
   std::shared_ptr<DetectionEvidence> evidence;            ///< with DetectionOptions::evidence; else null
   std::vector<std::pair<std::string, double>> timing_ms;  ///< stages in order
+
+  /// Whether planes belong to an axis or a center.
+  bool hasFamily() const { return !axes.empty() || !centers.empty(); }
 };
 
 }  // namespace pcl_symmetry

@@ -49,6 +49,11 @@ public:
   /// \return the image of this plane under the rigid motion x -> T x.
   ReflectionPlane transformed(const Eigen::Isometry3d& motion) const;
 
+  /// \return this plane in the frame (x - center) / scale.
+  ReflectionPlane normalized(const Eigen::Vector3d& center, double scale = 1.0) const {
+    return ReflectionPlane(normal_, -signedDistance(center) / scale);
+  }
+
   /// \return angle between the lines along the two normals, in [0, pi/2] radians.
   double angleTo(const ReflectionPlane& other) const;
 

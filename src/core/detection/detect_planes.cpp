@@ -373,7 +373,7 @@ void refineOnMesh(const MeshSurface& mesh, Detection& found, const DetectionOpti
   constexpr double kSameOnMesh = 0.01;      // after refinement; those of 120 teeth are 0.026 apart
   constexpr double kNearlySymmetric = 0.9;  // share of the best plane that may be a symmetry of the mesh itself
   const auto inBall = [&](const ReflectionPlane& plane) {
-    return normalized(plane, mesh.ball().center, mesh.ball().radius);
+    return plane.normalized(mesh.ball().center, mesh.ball().radius);
   };
   std::vector<SymmetryPlane> kept;
   std::optional<SymmetryPlane> dropped;
@@ -396,7 +396,7 @@ void refineOnMesh(const MeshSurface& mesh, Detection& found, const DetectionOpti
       kept.push_back(*found.best);
       found.best.reset();
     }
-  } else if (dropped && kept.empty() && found.axes.empty() && found.centers.empty()) {
+  } else if (dropped && kept.empty() && !found.hasFamily()) {
     found.best = dropped;
   }
   if (found.flat) found.flat = mesh.fitted(*found.flat);

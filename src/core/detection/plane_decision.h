@@ -204,8 +204,6 @@ struct JudgedCloud {
 /// What was found up to now, input frame.
 struct Found : Detection {
   std::optional<PlaneLattice> polygon;  ///< normalized frame; its planes are among the planes
-
-  bool hasFamily() const { return !axes.empty() || !centers.empty(); }
 };
 
 /// Refines planes that are known nearly, and decides each for itself; none else are searched.

@@ -231,8 +231,8 @@ void decideByUprightBox(const PlaneInput& input, const DetectionOptions& options
   const ClosestPointSearch::Ptr search = input.make_search ? input.make_search(points) : makeFlannSearch(points);
   const double spacing = median(localGeometry(points, *search, kNumSupportNeighbors, options.num_threads).spacing);
   const bool is_sparse = spacing > kDetection.decide.no_surface * found.tolerance;
-  const bool is_decided = !found.axes.empty() || !found.centers.empty() ||
-                          (!found.planes.empty() && found.planes.front().kind == PlaneKind::Symmetry);
+  const bool is_decided =
+      found.hasFamily() || (!found.planes.empty() && found.planes.front().kind == PlaneKind::Symmetry);
   if (is_decided && !is_sparse) return;
   const std::optional<MiddlePlane> middle = middlePlaneOfBox(points, up.front(), seen.viewpoint());
   std::optional<SymmetryPlane> plane;
@@ -263,7 +263,7 @@ void decideByUprightBox(const PlaneInput& input, const DetectionOptions& options
   if (!plane || plane->confidence < (is_sparse ? options.min_possible : options.min_confidence)) return;
   // Found before, it was no more than possible.
   const BoundingBall ball = boundingBall(points);
-  const auto in_ball = [&](const ReflectionPlane& other) { return normalized(other, ball.center, ball.radius); };
+  const auto in_ball = [&](const ReflectionPlane& other) { return other.normalized(ball.center, ball.radius); };
   eraseIf(found.planes, [&](const SymmetryPlane& other) { return kSamePlane.same(in_ball(other), in_ball(*plane)); });
   found.planes.insert(found.planes.begin(), std::move(*plane));
   found.planes = reordered(std::move(found.planes), options);

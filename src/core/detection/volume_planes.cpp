@@ -306,8 +306,8 @@ Detection detectVolumePlanes(const ScalarGrid& input, const DetectionOptions& op
       sortFalling(planes, &SymmetryPlane::support);
       std::vector<SymmetryPlane> kept;
       for (const SymmetryPlane& plane : planes)
-        if (plane.support > 0.0 && !one.anySame(kept, normalized(plane, center),
-                                                [&](const SymmetryPlane& other) { return normalized(other, center); }))
+        if (plane.support > 0.0 && !one.anySame(kept, plane.normalized(center),
+                                                [&](const SymmetryPlane& other) { return other.normalized(center); }))
           kept.push_back(plane);
       if (static_cast<int>(kept.size()) > options.max_planes) kept.resize(options.max_planes);
       return kept;

@@ -6,6 +6,7 @@
 #include <stdexcept>
 #include <vector>
 
+#include "core/base/check.h"
 #include "core/base/statistics.h"
 #include "core/geometry/geometry_rules.h"
 #include "pcl_symmetry/core/closest_point_search.h"
@@ -167,6 +168,18 @@ std::string whyTooThin(const PointsRef& points) {
 }
 
 }  // namespace
+
+void checkPoints(const PointsRef& points) {
+  if (points.cols() == 0) throw std::invalid_argument("points: 0 given, must be >= 1");
+  if (!points.allFinite()) throw std::invalid_argument("points: a coordinate is not finite");
+}
+
+BoundingBall checkedBall(const PointsRef& points) {
+  checkPoints(points);
+  const BoundingBall ball = boundingBall(points);
+  check(ball.radius > 0.0, "radius of the points", ball.radius, "> 0");
+  return ball;
+}
 
 std::string whyUnanswerable(const PointsRef& points) {
   if (!points.allFinite()) throw std::invalid_argument("points: a coordinate is not finite");

@@ -17,6 +17,13 @@
 
 namespace pcl_symmetry {
 
+/// \throws std::invalid_argument without a point, and for a coordinate that is not finite.
+void checkPoints(const PointsRef& points);
+
+/// \return the ball around points: squares of points in its radii neither overflow nor underflow.
+/// \throws std::invalid_argument as checkPoints() does, and for points without extent.
+BoundingBall checkedBall(const PointsRef& points);
+
 /// \return 0, 1, ..., size - 1.
 inline std::vector<int> allOf(Eigen::Index size) {
   std::vector<int> samples(size);

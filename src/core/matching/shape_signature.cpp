@@ -4,11 +4,11 @@
 #include <cmath>
 #include <cstdint>
 
-#include "core/base/check.h"
 #include "core/base/symmetric_solvers.h"
 #include "core/geometry/cell_normals.h"
 #include "core/geometry/cloud_extent.h"
 #include "core/geometry/directions.h"
+#include "core/geometry/point_samples.h"
 #include "core/matching/matching_rules.h"
 
 namespace pcl_symmetry {
@@ -135,12 +135,9 @@ const CubeRotation& cubeRotation(int rotation) {
   return rotations[rotation];
 }
 
-/// Points about the center of their bounding ball, in units of its radius: squares neither overflow nor underflow.
+/// Points about the center of their bounding ball, in units of its radius.
 Points inRadii(const PointsRef& points) {
-  if (points.cols() == 0) throw std::invalid_argument("points: 0 given, must be >= 1");
-  if (!points.allFinite()) throw std::invalid_argument("points: a coordinate is not finite");
-  const BoundingBall ball = boundingBall(points);
-  check(ball.radius > 0.0, "radius of the points", ball.radius, "> 0");
+  const BoundingBall ball = checkedBall(points);
   return normalizePoints(points, ball.center, ball.radius);
 }
 

@@ -5,6 +5,7 @@
 
 #include "core/base/check.h"
 #include "core/base/constants.h"
+#include "core/geometry/point_samples.h"
 #include "core/matching/matching_rules.h"
 #include "pcl_symmetry/core/symmetry_frame.h"
 
@@ -46,8 +47,7 @@ Eigen::Isometry3d descriptorFrame(const PointsRef& points, bool input_axes, cons
 SymmetryDescriptors symmetryDescriptors(const PointsRef& points, const Eigen::Isometry3d& T_frame_input,
                                         const DescriptorOptions& options) {
   options.validate();
-  if (points.cols() == 0) throw std::invalid_argument("points: 0 given, must be >= 1");
-  if (!points.allFinite()) throw std::invalid_argument("points: a coordinate is not finite");
+  checkPoints(points);
   const Eigen::Matrix3Xd moved = T_frame_input * points.cast<double>();
   const double scale = kMatching.described_radius * moved.colwise().norm().mean();
   check(scale > 0.0, "mean distance from the origin", scale, "> 0");

@@ -9,6 +9,7 @@
 #include "core/base/constants.h"
 #include "core/base/parallel.h"
 #include "core/geometry/directions.h"
+#include "core/geometry/point_samples.h"
 #include "core/matching/matching_rules.h"
 
 namespace pcl_symmetry {
@@ -201,13 +202,11 @@ Eigen::VectorXf harmonicsOf(const SmoothPicture& picture) {
   return values;
 }
 
-/// Points that are looked at from many sides, in radii of their bounding ball: squares neither overflow nor underflow.
+/// Points that are looked at from many sides, in radii of their bounding ball.
 class ViewedPoints {
 public:
-  explicit ViewedPoints(const PointsRef& points) : ball_(boundingBallOf(points)) {
-    check(ball_.radius > 0.0, "radius of the points", ball_.radius, "> 0");
-    points_ = normalizePoints(points, ball_.center, ball_.radius).transpose();
-  }
+  explicit ViewedPoints(const PointsRef& points)
+      : ball_(checkedBall(points)), points_(normalizePoints(points, ball_.center, ball_.radius).transpose()) {}
 
   View from(const Eigen::Vector3d& forward) const {
     const Eigen::Matrix3d R_view_input = viewingFrame(forward.normalized());
@@ -228,12 +227,6 @@ public:
   }
 
 private:
-  static BoundingBall boundingBallOf(const PointsRef& points) {
-    if (points.cols() == 0) throw std::invalid_argument("points: 0 given, must be >= 1");
-    if (!points.allFinite()) throw std::invalid_argument("points: a coordinate is not finite");
-    return boundingBall(points);
-  }
-
   BoundingBall ball_;
   PointColumns points_;
 };

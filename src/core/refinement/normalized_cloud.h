@@ -83,11 +83,6 @@ struct RefinementRules {
 
 inline constexpr RefinementRules kRefinement;
 
-/// A plane in the frame (x - center) / scale.
-inline ReflectionPlane normalized(const ReflectionPlane& plane, const Eigen::Vector3d& center, double scale = 1.0) {
-  return ReflectionPlane(plane.normal(), -plane.signedDistance(center) / scale);
-}
-
 /// The cloud as all stages of detection see it: in the unit ball about 0, with normals, spacing and roughness.
 ///
 /// The normalized frame is (x - center) / scale. Lengths below are in this frame.
@@ -134,7 +129,7 @@ struct NormalizedCloud {
   Eigen::Vector3d toNormalized(const Eigen::Vector3d& input_point) const { return (input_point - center) / scale; }
   Eigen::Vector3d toInput(const Eigen::Vector3d& point) const { return point * scale + center; }
   ReflectionPlane toNormalized(const ReflectionPlane& input_plane) const {
-    return normalized(input_plane, center, scale);
+    return input_plane.normalized(center, scale);
   }
   ReflectionPlane toInput(const ReflectionPlane& plane) const;
   /// \param input_axis with a point and a direction, such as SymmetryAxis.

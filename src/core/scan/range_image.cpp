@@ -301,8 +301,7 @@ std::optional<PixelRows> rowsOf(const Positions& positions) {
   Points flat = Points::Zero(3, static_cast<Eigen::Index>(positions.size()));
   for (std::size_t i = 0; i < positions.size(); ++i) flat.col(i).head<2>() = positions[i].matrix().cast<float>();
   const auto stride = static_cast<Eigen::Index>(1 + (positions.size() - 1) / kScan.grid_samples);
-  Points samples(3, (flat.cols() + stride - 1) / stride);
-  for (Eigen::Index i = 0; i < samples.cols(); ++i) samples.col(i) = flat.col(i * stride);
+  const Points samples = everyNth(flat, stride);
   std::vector<int> closest;
   std::vector<float> sq_distances, distances;
   makeFlannSearch(flat)->search(samples, kScan.grid_neighbors + 1, closest, sq_distances);

@@ -29,7 +29,7 @@ Points sampleElements(const SurfaceGraph& graph, const std::vector<int>& element
 }
 
 ReflectionPlane inBall(const ReflectionPlane& plane, const GaussianEdt& edt) {
-  return normalized(plane, edt.center(), edt.radius());
+  return plane.normalized(edt.center(), edt.radius());
 }
 
 /// Whether no known plane shares the basin of a plane.

@@ -23,8 +23,7 @@ namespace {
 /// \param given taken where its radius is > 0; otherwise the ball around the points is, without stray ones.
 /// \throws std::invalid_argument without a point, for a value that is not finite, and for a ball without extent.
 BoundingBall coveredBall(const PointsRef& points, const BoundingBall& given) {
-  if (points.cols() == 0) throw std::invalid_argument("points: 0 given, must be >= 1");
-  if (!points.allFinite()) throw std::invalid_argument("points: a coordinate is not finite");
+  checkPoints(points);
   const BoundingBall ball = given.radius > 0.0 ? given : boundingBall(withoutStrayPoints(points));
   if (!(ball.radius > std::numeric_limits<float>::epsilon() * ball.center.norm()))
     throw std::invalid_argument("points: all at one place, must have an extent");

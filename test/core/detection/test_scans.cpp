@@ -51,7 +51,7 @@ TEST(Scans, SameBytesForAnyNumberOfThreads) {
 }
 
 bool hasSymmetry(const Detection& detection) {
-  return !detection.axes.empty() || !detection.centers.empty() ||
+  return detection.hasFamily() ||
          std::any_of(detection.planes.begin(), detection.planes.end(),
                      [](const SymmetryPlane& plane) { return plane.kind == PlaneKind::Symmetry; });
 }

@@ -37,6 +37,7 @@ TEST(ReflectionPlane, AllFormsAreTheSameReflection) {
     const Eigen::Isometry3d motion = randomPose(i);
     EXPECT_LT((plane.transformed(motion).reflect(motion * x) - motion * reflected).norm(), 10.0 * kRounding);
     const Eigen::Vector3d y = randomPoint(random);
+    EXPECT_LT((plane.normalized(y, 2.0).reflect((x - y) / 2.0) - (reflected - y) / 2.0).norm(), 10.0 * kRounding);
     const ReflectionPlane between = ReflectionPlane::between(x, y);
     EXPECT_LT((between.reflect(x) - y).norm(), 10.0 * kRounding);
     EXPECT_LT((between.reflect(y) - x).norm(), 10.0 * kRounding);
