@@ -6,6 +6,7 @@
 
 #include "core/base/parallel.h"
 #include "core/base/statistics.h"
+#include "core/evidence/plane_confidence.h"
 #include "core/evidence/surface_samples.h"
 #include "core/geometry/cloud_extent.h"
 #include "core/geometry/point_samples.h"
@@ -104,18 +105,14 @@ private:
   /// \param fewer samples by which the plane climbs.
   /// \return whether the plane moved.
   bool climbOne(Candidate& candidate, const std::vector<int>& samples, const std::vector<int>& fewer) const {
-    const auto moved = [](const ReflectionPlane& plane, int parameter, double by) {
-      const Eigen::Vector3d n = plane.normal(), u = n.unitOrthogonal();
-      if (parameter == 2) return ReflectionPlane(n, plane.offset() + by);
-      return ReflectionPlane((n + by * (parameter == 0 ? u : n.cross(u))).normalized(), plane.offset());
-    };
     ReflectionPlane plane = candidate.plane;
     IspStep here = matches(plane, fewer);
     double best = merit(shares(plane, fewer, here));
     int num_climbs = 0;
     for (double step = kDetection.fit.first_climb; step >= kDetection.fit.last_climb; step *= 0.5) {
       for (int fails = 0, k = 0; fails < 6 && num_climbs < kDetection.fit.max_climbs; k = (k + 1) % 6) {
-        const ReflectionPlane next = moved(plane, k / 2, k % 2 == 0 ? step : -step);
+        const PlaneChart chart(plane, Eigen::Vector3d::Zero());
+        const ReflectionPlane next = chart.moved((k % 2 == 0 ? step : -step) * Eigen::Vector3d::Unit(k / 2));
         IspStep there = matches(next, fewer, &here.closest);
         const double value = merit(shares(next, fewer, there));
         ++fails;
