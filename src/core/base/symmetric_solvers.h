@@ -83,9 +83,7 @@ inline Vector6d smallMotion(const Matrix6d& h, const Vector6d& g, double min_sti
 }
 
 inline Eigen::Matrix3d rotationBy(const Eigen::Vector3d& rotation_vector) {
-  const double angle = rotation_vector.norm();
-  if (angle == 0.0) return Eigen::Matrix3d::Identity();
-  return Eigen::AngleAxisd(angle, rotation_vector / angle).toRotationMatrix();
+  return Eigen::AngleAxisd(rotation_vector.norm(), rotation_vector.normalized()).toRotationMatrix();
 }
 
 inline Eigen::Isometry3d isometry(const Eigen::Matrix3d& rotation, const Eigen::Vector3d& translation) {

@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
+#include <limits>
 #include <numeric>
 #include <string>
 #include <utility>
@@ -31,17 +32,23 @@ inline std::vector<int> allOf(Eigen::Index size) {
   return samples;
 }
 
+/// \return the first \p most of 0, 1, ..., size - 1 in random order.
+inline std::vector<int> shuffled(Eigen::Index size, std::uint64_t seed,
+                                 Eigen::Index most = std::numeric_limits<Eigen::Index>::max()) {
+  std::vector<int> order = allOf(size);
+  RandomStream random(seed);
+  most = std::min(most, size);
+  for (Eigen::Index i = 0; i < most; ++i)
+    std::swap(order[i], order[i + random.below(static_cast<std::uint64_t>(size - i))]);
+  order.resize(most);
+  return order;
+}
+
 /// Draws points without replacement.
 /// \param size number of points of the cloud.
 /// \return num_samples different indices in random order; all indices in order if size <= num_samples.
 inline std::vector<int> drawSamples(Eigen::Index size, int num_samples, std::uint64_t seed) {
-  std::vector<int> samples = allOf(size);
-  if (num_samples >= size) return samples;
-  RandomStream random(seed);
-  for (int i = 0; i < num_samples; ++i)
-    std::swap(samples[i], samples[i + random.below(static_cast<std::uint64_t>(size - i))]);
-  samples.resize(num_samples);
-  return samples;
+  return num_samples >= size ? allOf(size) : shuffled(size, seed, num_samples);
 }
 
 /// Draws one of each of \p num_drawn equal runs of a sequence.

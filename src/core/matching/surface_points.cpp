@@ -44,7 +44,7 @@ double areaOf(const Points& points, const ClosestPointSearch& search, std::vecto
 
 std::vector<SurfacePoints> evenSurfacePoints(const Points& points, const std::vector<int>& counts, std::uint64_t seed) {
   const ClosestPointSearch::Ptr search = makeFlannSearch(points);
-  const std::vector<int> order = drawSamples(points.cols(), static_cast<int>(points.cols()) - 1, seed);
+  const std::vector<int> order = shuffled(points.cols(), seed);
   const double area = areaOf(points, *search, order);
   std::vector<SurfacePoints> found;
   for (const int count : counts) {

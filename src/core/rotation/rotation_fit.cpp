@@ -70,7 +70,7 @@ RotationFit::RotationFit(Points points, const GaussianEdt& edt, RotationLimits l
     for (std::size_t i = begin; i < end; ++i)
       surface->own_distances[i] = surface->discs->ownDistance(static_cast<int>(i), kEvidence.new_point_factor);
   });
-  surface->order = drawSamples(p.cols(), static_cast<int>(p.cols()) - 1, seed);
+  surface->order = shuffled(p.cols(), seed);
   surface->overlap_points = pointsAt(p, drawSamples(p.cols(), kRotation.num_overlap_points, seed + 2));
   // Under a symmetry the closest sample of a rotated sample is as far away as the closest other sample of a sample.
   double sum = 0.0;

@@ -3,28 +3,17 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numeric>
 
-#include "core/base/random.h"
 #include "core/base/statistics.h"
 #include "core/base/symmetric_solvers.h"
 #include "core/geometry/directions.h"
+#include "core/geometry/point_samples.h"
 #include "core/scan/scan_rules.h"
 #include "pcl_symmetry/core/closest_point_search.h"
 
 namespace pcl_symmetry {
 
 namespace {
-
-/// \return \p size different numbers in [0, count), in random order.
-std::vector<std::size_t> drawn(std::size_t count, std::size_t size) {
-  std::vector<std::size_t> indices(count);
-  std::iota(indices.begin(), indices.end(), std::size_t{0});
-  RandomStream random(0);
-  for (std::size_t i = 0; i < size; ++i) std::swap(indices[i], indices[i + random.below(count - i)]);
-  indices.resize(size);
-  return indices;
-}
 
 /// The ellipse that the neighbors of a point cover.
 struct Patch {
@@ -67,8 +56,7 @@ struct ScanDensity::Candidate {
 
 ScanDensity::ScanDensity(const PointsRef& points) : ball_(boundingBall(points)) {
   if (points.cols() < static_cast<Eigen::Index>(kScan.fewest_density_samples) || !(ball_.radius > 0.0)) return;
-  const auto size = static_cast<std::size_t>(points.cols());
-  const std::vector<std::size_t> indices = drawn(size, std::min(size, kScan.density_points));
+  const std::vector<int> indices = shuffled(points.cols(), 0, static_cast<Eigen::Index>(kScan.density_points));
   Points used(3, indices.size());
   for (Eigen::Index i = 0; i < used.cols(); ++i)
     used.col(i) = ((points.col(indices[i]).cast<double>() - ball_.center) / ball_.radius).cast<float>();
