@@ -7,6 +7,7 @@
 #include <sstream>
 
 #include "core/base/statistics.h"
+#include "core/geometry/geometry_rules.h"
 #include "core/registration/registration_fit.h"
 #include "core/registration/registration_rules.h"
 #include "core/registration/visible_points.h"
@@ -103,7 +104,7 @@ bool isSymmetry(const Eigen::Isometry3d& motion, const PosedSurface& model, doub
   const auto most = static_cast<float>(tolerance * diameterOf(model));
   const std::vector<float> distances = discDistances(model, model, motion, kRegistration.evidence_points);
   const auto num_on = std::count_if(distances.begin(), distances.end(), [&](float d) { return d < most; });
-  return static_cast<double>(num_on) >= kRegistration.symmetric_share * static_cast<double>(distances.size());
+  return static_cast<double>(num_on) >= kSymmetricShare * static_cast<double>(distances.size());
 }
 
 bool mayBeSymmetry(const Eigen::Isometry3d& motion, const PosedSurface& scan) {

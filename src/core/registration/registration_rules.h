@@ -59,8 +59,7 @@ struct RegistrationRules {
   double like_merit = 0.05;         ///< between poses of which either may be right,
   double like_odds = 0.5;           ///< and share of the odds from which on they are equal: sampling changes them
   double same_pose = 0.03;          ///< diameters of a model, within which a symmetry brings it onto itself,
-  double near_pose = 0.05;          ///< and a pose that ICP left near one,
-  double symmetric_share = 0.97;    ///< or so much of it
+  double near_pose = 0.05;          ///< and one that ICP left near a pose does
   double symmetric_agreement = 0.9;  ///< of what a scan shows with itself; wrong poses of scans have 0.3 to 0.6
   double symmetric_aside = 0.05;     ///< share of it that may lie aside; a handle of a mug is 0.09
   double some_uniqueness = 0.9;      ///< below it another pose is worth a word
