@@ -10,6 +10,7 @@
 
 #include "core/base/constants.h"
 #include "core/base/parallel.h"
+#include "core/base/statistics.h"
 #include "core/geometry/closest_points.h"
 #include "core/geometry/cloud_extent.h"
 #include "core/geometry/directions.h"
@@ -225,13 +226,8 @@ struct BallSearch {
 
 /// The planes that differ from better ones, best first.
 std::vector<SymmetricPart> distinct(std::vector<SymmetricPart> parts) {
-  std::stable_sort(parts.begin(), parts.end(), [](const SymmetricPart& a, const SymmetricPart& b) {
-    return a.support * a.share > b.support * b.share;
-  });
-  std::vector<SymmetricPart> kept;
-  for (SymmetricPart& part : parts)
-    if (!kSamePlaneOfPart.anySame(kept, part.plane, &SymmetricPart::plane)) kept.push_back(std::move(part));
-  return kept;
+  sortFalling(parts, [](const SymmetricPart& part) { return part.support * part.share; });
+  return kSamePlaneOfPart.distinct(std::move(parts), &SymmetricPart::plane);
 }
 
 /// Where refined planes map parts onto themselves.

@@ -198,12 +198,9 @@ std::vector<float> surfaceSupport(const NormalizedCloud& cloud, const Reflection
 std::vector<Candidate> gatherCandidates(const NormalizedCloud& cloud, const SymmetryMap& map,
                                         const DetectionOptions& options) {
   std::vector<Candidate> candidates;
-  for (const LocalMaximum& maximum : findLocalMaxima(map, options.expert.maxima, options.num_threads)) {
-    if (static_cast<int>(candidates.size()) >= options.expert.max_candidates) break;
-    const ReflectionPlane plane = cloud.toNormalized(maximum.plane);
-    if (kSameMaximum.anySame(candidates, plane, &Candidate::plane)) continue;
-    candidates.push_back({plane, true});
-  }
+  for (const LocalMaximum& maximum : findLocalMaxima(map, options.expert.maxima, options.num_threads))
+    candidates.push_back({cloud.toNormalized(maximum.plane), true});
+  candidates = kSameMaximum.distinct(std::move(candidates), &Candidate::plane, options.expert.max_candidates);
   for (const ReflectionPlane& plane : principalPlanes(cloud.principal_axes)) candidates.push_back({plane});
   return candidates;
 }

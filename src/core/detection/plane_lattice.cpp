@@ -156,9 +156,8 @@ std::optional<PlaneLattice> bestLattice(const std::vector<SymmetryPlane>& planes
                                         const Points& all) {
   std::vector<ReflectionPlane> likely;
   for (const SymmetryPlane& plane : planes)
-    if (const ReflectionPlane normalized = cloud.toNormalized(plane);
-        isDecided(plane) && !kSameMaximum.anySame(likely, normalized))
-      likely.push_back(normalized);
+    if (isDecided(plane)) likely.push_back(cloud.toNormalized(plane));
+  likely = kSameMaximum.distinct(std::move(likely));
   for (const std::vector<ReflectionPlane>& through : bundlesOf(likely, kDetection.folds.max_line_pairs))
     if (const auto lattice = latticeBySpectrum(all, commonLine(through))) return lattice;
   return std::nullopt;

@@ -304,13 +304,9 @@ Detection detectVolumePlanes(const ScalarGrid& input, const DetectionOptions& op
     // The best of those that ended at one plane, best first.
     const auto distinct = [&](std::vector<SymmetryPlane> planes) {
       sortFalling(planes, &SymmetryPlane::support);
-      std::vector<SymmetryPlane> kept;
-      for (const SymmetryPlane& plane : planes)
-        if (plane.support > 0.0 && !one.anySame(kept, plane.normalized(center),
-                                                [&](const SymmetryPlane& other) { return other.normalized(center); }))
-          kept.push_back(plane);
-      if (static_cast<int>(kept.size()) > options.max_planes) kept.resize(options.max_planes);
-      return kept;
+      eraseIf(planes, [](const SymmetryPlane& plane) { return !(plane.support > 0.0); });
+      return one.distinct(
+          std::move(planes), [&](const SymmetryPlane& plane) { return plane.normalized(center); }, options.max_planes);
     };
     maxima = distinct(maxima);
     found.timing_ms.emplace_back("maxima", watch.lap());

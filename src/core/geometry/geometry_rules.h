@@ -3,8 +3,10 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <functional>
-#include <vector>
+#include <limits>
+#include <utility>
 
 #include "core/base/constants.h"
 #include "pcl_symmetry/core/reflection_plane.h"
@@ -78,17 +80,32 @@ struct MergeTolerance {
            a.distance(b.projection(Eigen::Vector3d::Zero())) < offset;
   }
 
+  /// Planes and lines themselves, as entries of a list.
+  struct Itself {
+    template <typename Motion>
+    const Motion& operator()(const Motion& motion) const {
+      return motion;
+    }
+  };
+
   /// \param of the member of an entry of the list that is its plane or line, or a function that takes it there.
   /// \return whether an entry of the list has the same.
-  template <typename List, typename Motion, typename Of>
-  bool anySame(const List& list, const Motion& motion, const Of& of) const {
+  template <typename List, typename Motion, typename Of = Itself>
+  bool anySame(const List& list, const Motion& motion, const Of& of = {}) const {
     return std::any_of(list.begin(), list.end(),
                        [&](const auto& entry) { return same(std::invoke(of, entry), motion); });
   }
 
-  template <typename Motion>
-  bool anySame(const std::vector<Motion>& list, const Motion& motion) const {
-    return anySame(list, motion, [](const Motion& entry) { return entry; });
+  /// \param of as above.
+  /// \return the first \p most entries that differ from all before, in their order.
+  template <typename List, typename Of = Itself>
+  List distinct(List list, const Of& of = {}, std::size_t most = std::numeric_limits<std::size_t>::max()) const {
+    List kept;
+    for (auto& entry : list) {
+      if (kept.size() == most) break;
+      if (!anySame(kept, std::invoke(of, entry), of)) kept.push_back(std::move(entry));
+    }
+    return kept;
   }
 };
 

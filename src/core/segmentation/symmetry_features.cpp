@@ -28,14 +28,9 @@ Points sampleElements(const SurfaceGraph& graph, const std::vector<int>& element
   return sampleTriangles(graph.corners, triangles, kSegmentation.feature_samples, seed);
 }
 
-ReflectionPlane inBall(const ReflectionPlane& plane, const GaussianEdt& edt) {
-  return plane.normalized(edt.center(), edt.radius());
-}
-
-/// Whether no known plane shares the basin of a plane.
-bool isNew(const ReflectionPlane& plane, const std::vector<ReflectionPlane>& known, const GaussianEdt& edt) {
-  return !kSameMaximum.anySame(known, inBall(plane, edt),
-                               [&](const ReflectionPlane& other) { return inBall(other, edt); });
+/// Takes planes to the ball that a distance transform covers.
+auto intoBall(const GaussianEdt& edt) {
+  return [&edt](const ReflectionPlane& plane) { return plane.normalized(edt.center(), edt.radius()); };
 }
 
 /// The strongest significant maxima of the transform, one of each basin (Section 4.4).
@@ -45,11 +40,8 @@ std::vector<ReflectionPlane> significantMaxima(const Points& samples, const Gaus
   SymmetryMap map = sampledTransform(edt, grid, {kSegmentation.num_map_samples, seed, num_threads});
   map.center_of_mass = centerOfMass(samples);
   std::vector<ReflectionPlane> maxima;
-  for (const LocalMaximum& maximum : findLocalMaxima(map, {}, num_threads)) {
-    if (maxima.size() == kSegmentation.max_planes) break;
-    if (isNew(maximum.plane, maxima, edt)) maxima.push_back(maximum.plane);
-  }
-  return maxima;
+  for (const LocalMaximum& maximum : findLocalMaxima(map, {}, num_threads)) maxima.push_back(maximum.plane);
+  return kSameMaximum.distinct(std::move(maxima), intoBall(edt), kSegmentation.max_planes);
 }
 
 /// Refines planes by Iterative Symmetric Points (Section 4.4). A plane that leaves its basin keeps its start, a
@@ -66,15 +58,15 @@ std::vector<ReflectionPlane> refined(const std::vector<ReflectionPlane>& starts,
   isp.sigma = edt.sigma();
   isp.final_sigma = kSegmentation.final_sigma * edt.sigma();
   const MergeTolerance same_basin{kSameMaximum.angle, 2.0 * kSameMaximum.offset};
-  std::vector<ReflectionPlane> ends(starts.size()), moved(starts.size());
+  const auto in_ball = intoBall(edt);
+  std::vector<ReflectionPlane> moved(starts.size());
   parallelBlocks(starts.size(), num_threads, [&](std::size_t i) {
-    ends[i] = refineSymmetricPoints(surface, reflected, starts[i], isp).plane;
-    moved[i] = same_basin.same(inBall(ends[i], edt), inBall(starts[i], edt)) ? ends[i] : starts[i];
+    const ReflectionPlane end = refineSymmetricPoints(surface, reflected, starts[i], isp).plane;
+    moved[i] = same_basin.same(in_ball(end), in_ball(starts[i])) ? end : starts[i];
   });
-  std::vector<ReflectionPlane> planes;
-  for (const ReflectionPlane& plane : moved)
-    if (isNew(plane, planes, edt)) planes.push_back(plane.canonical());
-  return planes;
+  moved = kSameMaximum.distinct(std::move(moved), in_ball);
+  for (ReflectionPlane& plane : moved) plane = plane.canonical();
+  return moved;
 }
 
 }  // namespace
