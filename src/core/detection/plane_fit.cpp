@@ -209,10 +209,8 @@ StagedRefinement::StagedRefinement(const NormalizedCloud& cloud, const PlaneFit&
     : cloud_(cloud), fit_(fit), options_(options) {}
 
 std::vector<Candidate> StagedRefinement::coarse(std::vector<Candidate> candidates, const PlaneGrid& grid) const {
-  const double narrow =
-      std::clamp(cloud_.final_sigma, kDetection.stages.narrowest_coarsely * cloud_.sigma, cloud_.sigma);
-  const std::vector<Candidate> moved = refined(
-      candidates, stage(kDetection.stages.first_samples, cloud_.sigma, narrow, kDetection.stages.coarse_iterations));
+  const std::vector<Candidate> moved = refined(candidates, stage(kDetection.stages.first_samples, cloud_.sigma,
+                                                                 coarseSigma(), kDetection.stages.coarse_iterations));
   return distinct(withinCells(moved, candidates, grid), -1.0, kDetection.stages.kept_coarsely);
 }
 
@@ -250,6 +248,10 @@ void StagedRefinement::climb(std::vector<Candidate>& candidates, std::vector<cha
     moves.assign(candidates.size(), false);
 }
 
+double StagedRefinement::coarseSigma() const {
+  return std::clamp(cloud_.final_sigma, kDetection.stages.narrowest_coarsely * cloud_.sigma, cloud_.sigma);
+}
+
 RefinementStage StagedRefinement::fullStage() const {
   RefinementStage full = stage(options_.expert.num_refine_samples / kKindRules.full_stride[cloud_.kind()],
                                cloud_.final_sigma, cloud_.final_sigma, kDetection.stages.full_iterations);
@@ -258,10 +260,13 @@ RefinementStage StagedRefinement::fullStage() const {
 }
 
 RefinementStage StagedRefinement::closeStage() const {
-  return stage(std::min(kDetection.stages.close_sample_factor * kDetection.stages.first_samples,
-                        options_.expert.num_refine_samples),
-               std::clamp(cloud_.final_sigma, kDetection.stages.narrowest_coarsely * cloud_.sigma, cloud_.sigma),
-               cloud_.final_sigma, kDetection.stages.close_iterations);
+  RefinementStage close = stage(std::min(kDetection.stages.close_sample_factor * kDetection.stages.first_samples,
+                                         options_.expert.num_refine_samples),
+                                coarseSigma(), cloud_.final_sigma, kDetection.stages.close_iterations);
+  // On the way to narrow weights, point-to-plane steps would slide a scan along its flat pieces.
+  if (kKindRules.slides[cloud_.kind()] && close.isp.final_sigma < close.isp.sigma)
+    close.isp.update = close.rough_isp.update = IspUpdate::PointToPoint;
+  return close;
 }
 
 RefinementStage StagedRefinement::stage(int num_samples, double sigma, double final_sigma, int max_iterations) const {
@@ -271,10 +276,8 @@ RefinementStage StagedRefinement::stage(int num_samples, double sigma, double fi
   stage.num_rough_samples =
       std::clamp(options_.expert.num_refine_samples / kKindRules.rough_stride[kind], 1, stage.num_samples);
   stage.min_merit = kKindRules.settled_merit[kind];
+  // The weights of sparse points are at their narrowest from the first stage on.
   stage.undo_slides = kKindRules.slides[kind] && final_sigma == sigma;
-  // On the way to narrow weights, point-to-plane steps would slide a scan along its flat pieces.
-  const bool slides = kKindRules.slides[kind] && num_samples > kDetection.stages.first_samples && final_sigma < sigma;
-  if (slides) stage.isp.update = IspUpdate::PointToPoint;
   stage.isp.sigma = sigma;
   stage.isp.final_sigma = final_sigma;
   stage.isp.max_iterations = max_iterations;

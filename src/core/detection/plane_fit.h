@@ -39,7 +39,7 @@ struct RefinementStage {
   IspOptions isp;         ///< of candidates that may be symmetries
   IspOptions rough_isp;   ///< of the others
   double min_merit;       ///< of candidates that may be symmetries
-  bool undo_slides;       ///< of scans, at the narrowest weights
+  bool undo_slides;       ///< of scans, in each stage that has the narrowest weights throughout
   bool climbs = false;    ///< those of noisy scans, in the last stage
 };
 
@@ -145,12 +145,14 @@ public:
                                   std::size_t most = std::numeric_limits<std::size_t>::max()) const;
 
 private:
+  /// The width of the weights between the first and the second stage.
+  double coarseSigma() const;
+  RefinementStage closeStage() const;
   RefinementStage fullStage() const;
   RefinementStage stage(int num_samples, double sigma, double final_sigma, int max_iterations) const;
   std::vector<Candidate> refined(std::vector<Candidate> candidates, const RefinementStage& stage) const;
   std::vector<Candidate> withinCells(const std::vector<Candidate>& candidates, const std::vector<Candidate>& starts,
                                      const PlaneGrid& grid) const;
-  RefinementStage closeStage() const;
 
   const NormalizedCloud& cloud_;
   const PlaneFit& fit_;
