@@ -63,7 +63,7 @@ struct CloudRegistration : RegisteredPose {
 
   double confidence = 0.0;  ///< estimated probability that the best pose is right, in [0, 1]
   PoseEvidence evidence;    ///< what the confidence follows from
-  /// \return what speaks against the best pose, one sentence without a full stop.
+  /// \return what counts against the best pose, one sentence without a full stop.
   std::string doubt() const;
 
   /// Distinct poses, at most PoseSearchOptions::max_poses, best first: those of like merit by falling confidence, then

@@ -31,7 +31,7 @@ struct SampledTransformOptions {
 /// \param free_space for a scan one value per cell of the EDT, x fastest: 1 - f where the scanner looked through, else
 /// 0. Empty: a whole object.
 /// \return D at the bin centers. With free space (1 + c) D / (D + F + c), c = 0.15, where F is the same mean over the
-/// free space: reflected points that the scanner would have seen speak against a plane.
+/// free space: reflected points that the scanner would have seen count against a plane.
 /// \throws std::invalid_argument for bad options or free space of another size.
 SymmetryMap sampledTransform(const GaussianEdt& edt, const PlaneGrid& grid, const SampledTransformOptions& options = {},
                              const std::vector<float>& free_space = {});

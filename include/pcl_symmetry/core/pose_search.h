@@ -38,8 +38,8 @@ struct PoseEvidence {
   /// Lower limit of the share of the scan's points that lie on the surface of the model within 2 % of its radius or
   /// what noise asks for, in [0, 1].
   double on_surface = 0.0;
-  /// Of the surface of a cloud that the scanner of the other one would see at this pose, the share that lies in space
-  /// it saw to be empty, before what it measured, in [0, 1]. Where both were scanned the greater one; 0 where none was.
+  /// Share of the surface of a cloud visible to the scanner of the other one at this pose that lies in space it saw to
+  /// be empty, before what it measured, in [0, 1]. Where both were scanned the greater one; 0 where none was.
   double contradicted = 0.0;
   /// The same, the share where it measured nothing, in [0, 1]: beside the cloud or in its holes.
   double missing = 0.0;
@@ -49,7 +49,7 @@ struct PoseEvidence {
   double noise = 0.0;       ///< of the noisier cloud, in diameters of the smaller one
   double size_ratio = 1.0;  ///< diameter of the source over that of the target
   /// Share of the pose in the odds of all that were judged, in (0, 1]: 0.5 where another one fits as well. Poses that
-  /// differ by a symmetry of the model, or between two scans by a motion that neither of them speaks against, are one.
+  /// differ by a symmetry of the model, or between two scans by a motion that neither of them counts against, are one.
   /// 1 where the pose alone does not convince.
   double uniqueness = 1.0;
 };

@@ -53,7 +53,7 @@ struct SurfaceGraph {
 
 /// The graph of a mesh: faces are neighbors if they share an edge.
 ///
-/// Vertices at the same place are joined, so that a polygon soup is connected. If more than two faces share an edge,
+/// Vertices at the same position are joined, so that a polygon soup is connected. If more than two faces share an edge,
 /// each is joined with the next one. Faces without area have neighbors, too.
 /// \param vertices 3 x V, input frame.
 /// \param polygons three or more indices into the vertices each. A polygon with a vertex that is not finite becomes an

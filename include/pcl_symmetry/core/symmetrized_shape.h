@@ -49,8 +49,8 @@ struct MirroredMesh {
   std::vector<int> sources;  ///< M; the given vertex that each is, or is the reflection of; at the cut one beside it
 };
 
-/// One side of a mesh, cut at the plane, and its reflection. Of a symmetrized mesh the same shape with triangles that
-/// match: it is its own reflection but for the rounding of float.
+/// One side of a mesh, cut at the plane, and its reflection. A symmetrized mesh keeps its shape and gets triangles
+/// that match: it is its own reflection but for the rounding of float.
 /// \param left the side that the normal of the plane points away from.
 MirroredMesh mirroredHalf(const PointsRef& vertices, const std::vector<Eigen::Vector3i>& triangles,
                           const ReflectionPlane& plane, bool left = true);

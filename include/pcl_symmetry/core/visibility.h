@@ -15,7 +15,7 @@ namespace PCL_SYMMETRY_EXPORTS pcl_symmetry {
 /// What a range scanner saw: space in front of the surface on each ray is free, space behind it is unknown.
 ///
 /// It is a picture of depths with the projection that made it, or several of them: free is what any of them shows to be
-/// free. A reflected point in free space speaks against the plane; a reflected point in unknown space is uninformative.
+/// free. A reflected point in free space counts against the plane; a reflected point in unknown space is uninformative.
 /// Departure from the paper, which takes scans for whole objects: their best planes then often lie beside the true
 /// ones.
 ///

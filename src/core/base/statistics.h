@@ -9,7 +9,7 @@
 
 namespace pcl_symmetry {
 
-/// Takes out the entries that something is true of.
+/// Removes the entries for which a predicate holds.
 template <typename List, typename Predicate>
 void eraseIf(List& list, const Predicate& is_out) {
   list.erase(std::remove_if(list.begin(), list.end(), is_out), list.end());

@@ -13,8 +13,8 @@ namespace pcl_symmetry {
 using Vector6d = Eigen::Matrix<double, 6, 1>;
 using Matrix6d = Eigen::Matrix<double, 6, 6>;
 
-/// Eigenvalues, smallest first, and unit eigenvectors in the same order. Reads the lower half of a matrix. Of floats
-/// they come from the roots of the characteristic polynomial, which is quick and loses some digits.
+/// Eigenvalues, smallest first, and unit eigenvectors in the same order. Reads the lower half of a matrix.
+/// Floats take the roots of the characteristic polynomial, which is quick and loses some digits.
 template <typename Matrix>
 class SymmetricEigen {
 public:

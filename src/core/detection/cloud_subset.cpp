@@ -64,9 +64,9 @@ std::vector<int> evenlyDense(const NormalizedCloud& cloud, std::uint64_t seed) {
   for (Eigen::Index i = 0; i < at.cols(); ++i) {
     const auto first = sq_distances.begin() + i * kDetection.points.max_counted;
     const auto count = std::upper_bound(first, first + kDetection.points.max_counted, sq_radius) - first;
-    const Eigen::Vector4d place = at.col(i).cast<double>().homogeneous();
-    squares += place * place.transpose();
-    pull += std::log(static_cast<double>(count)) * place;
+    const Eigen::Vector4d position = at.col(i).cast<double>().homogeneous();
+    squares += position * position.transpose();
+    pull += std::log(static_cast<double>(count)) * position;
   }
   squares.diagonal().array() += 1e-9 * squares.trace();  // the points of a plane have no slope across it
   const Eigen::Vector3d slope = solveSymmetric(squares, pull).head<3>();

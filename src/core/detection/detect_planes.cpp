@@ -33,7 +33,7 @@ void append(std::vector<SymmetryPlane>& planes, std::vector<SymmetryPlane> more)
   std::move(more.begin(), more.end(), std::back_inserter(planes));
 }
 
-/// Refines candidates in full and judges them; those that climb then, once more.
+/// Refines and judges candidates; re-judges those that hill climbing moved.
 std::vector<SymmetryPlane> refinedAndJudged(const JudgedCloud& judged, std::vector<Candidate> candidates) {
   candidates = judged.refinement.full(std::move(candidates));
   std::vector<MeasuredPlane> measured = judged.decision.judge(candidates);
@@ -82,7 +82,7 @@ void completeGroups(const JudgedCloud& judged, Found& found) {
     decide(judged, std::move(candidates), found);
 }
 
-/// Axes of rotations of a scan; brings axes of revolution and planes in line with them.
+/// Finds axes of rotations of a scan and makes axes of revolution and planes consistent with them.
 void findAxesOfScan(const JudgedCloud& judged, Found& found) {
   const DetectionOptions& options = judged.options;
   if (judged.measure.limits().isCutAllAround() || !options.rotations) return;

@@ -35,11 +35,11 @@ MatchedRegions::MatchedRegions(const NormalizedCloud& cloud, const PlaneFit& fit
       fit_(fit),
       samples_(drawSamples(cloud.points.cols(), kDetection.parts.num_region_samples, options.seed)) {
   std::sort(samples_.begin(), samples_.end());
-  const Points places = pointsAt(cloud.points, samples_);
-  const ClosestPointSearch::Ptr search = makeFlannSearch(places);
+  const Points positions = pointsAt(cloud.points, samples_);
+  const ClosestPointSearch::Ptr search = makeFlannSearch(positions);
   std::vector<float> sq_distances;
   const int num_neighbors = std::min<int>(kDetection.parts.num_smoothing + 1, static_cast<int>(samples_.size()));
-  search->search(places, num_neighbors, neighbors_, sq_distances);
+  search->search(positions, num_neighbors, neighbors_, sq_distances);
   closest_sample_ = closestPoints(*search, cloud.points, options.num_threads).index;
 }
 

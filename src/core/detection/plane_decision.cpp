@@ -231,7 +231,7 @@ std::vector<SymmetryPlane> rankedPlanes(std::vector<SymmetryPlane> planes, const
                                         const NormalizedCloud& cloud, const PlaneFit& fit,
                                         const DetectionOptions& options) {
   planes = withoutPlanesOfParts(std::move(planes), cloud);
-  // Of equally confident planes, such as those of a polygon, the best supported comes first.
+  // Equally confident planes, such as those of a polygon, are ordered by support.
   sortFalling(planes, &SymmetryPlane::support);
   std::stable_sort(planes.begin(), planes.end(), isBetter);
   std::vector<SymmetryPlane> ranked;

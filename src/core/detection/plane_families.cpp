@@ -157,7 +157,7 @@ FamilyTest familyTest(const JudgedCloud& judged, const std::vector<int>& samples
   const double usual = DetectionOptions().tolerance * cloud.extent;
   const bool is_coarse = cloud.kind() == CloudKind::Surface &&
                          std::max(options.tolerance * cloud.extent, options.absolute_tolerance / cloud.scale) > usual;
-  // A plane that maps most of a scan to what was not seen says little: only what contradicts counts.
+  // A plane that maps most of a scan to what was not seen is uninformative: only what contradicts counts.
   const auto share_of = [&, is_coarse, is_scan = cloud.seen() != nullptr](const std::vector<int>& used) {
     return [&, used, is_coarse, is_scan](const ReflectionPlane& plane) {
       if (is_coarse) return decision.judge(plane, used).evidence.share;

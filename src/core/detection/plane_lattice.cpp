@@ -63,16 +63,16 @@ public:
       : squares_(kDetection.folds.max_frequency + kDetection.folds.compared_frequencies + 1, 0.0),
         powers_(squares_.size(), 0.0) {
     const Eigen::Vector3d u = line.direction().unitOrthogonal(), v = line.direction().cross(u);
-    std::vector<Place> places;
+    std::vector<Position> positions;
     for (const int i : drawSamples(points.cols(), kDetection.folds.spectrum_samples, 1)) {
       const Eigen::Vector3d x = points.col(i).cast<double>() - line.origin();
       const std::complex<double> across(x.dot(u), x.dot(v));
       const double distance = std::abs(across);
-      if (distance > 0.0) places.push_back({x.dot(line.direction()), distance, across / distance});
+      if (distance > 0.0) positions.push_back({x.dot(line.direction()), distance, across / distance});
     }
-    inParts(places.begin(), places.end(), num_slabs, &Place::height, [&](Places first, Places last) {
-      inParts(first, last, kDetection.folds.rings, &Place::distance,
-              [&](Places from, Places to) { addRing(from, to); });
+    inParts(positions.begin(), positions.end(), num_slabs, &Position::height, [&](Positions first, Positions last) {
+      inParts(first, last, kDetection.folds.rings, &Position::distance,
+              [&](Positions from, Positions to) { addRing(from, to); });
     });
   }
 
@@ -91,27 +91,27 @@ public:
   double phase(int m) const { return 0.5 * kPi + std::arg(squares_[m]) / (2.0 * m); }
 
 private:
-  /// Where a point lies about the line.
-  struct Place {
+  /// A point in the cylinder coordinates of the line.
+  struct Position {
     double height, distance;
     std::complex<double> direction;
   };
-  using Places = std::vector<Place>::iterator;
+  using Positions = std::vector<Position>::iterator;
 
-  /// Sorts places by a member, and calls back for num_parts runs of equal size.
+  /// Sorts points by a member, and calls back for num_parts runs of equal size.
   template <typename Call>
-  static void inParts(Places first, Places last, int num_parts, double Place::*member, const Call& call) {
-    std::sort(first, last, [&](const Place& a, const Place& b) { return a.*member < b.*member; });
+  static void inParts(Positions first, Positions last, int num_parts, double Position::*member, const Call& call) {
+    std::sort(first, last, [&](const Position& a, const Position& b) { return a.*member < b.*member; });
     const std::ptrdiff_t size = last - first;
     for (int part = 0; part < num_parts; ++part)
       call(first + size * part / num_parts, first + size * (part + 1) / num_parts);
   }
 
-  void addRing(Places first, Places last) {
+  void addRing(Positions first, Positions last) {
     std::vector<std::complex<double>> sums(squares_.size(), 0.0);
-    for (auto place = first; place != last; ++place) {
+    for (auto position = first; position != last; ++position) {
       std::complex<double> turned = 1.0;
-      for (std::size_t m = 1; m < sums.size(); ++m) sums[m] += turned *= place->direction;
+      for (std::size_t m = 1; m < sums.size(); ++m) sums[m] += turned *= position->direction;
     }
     const auto count = static_cast<double>(last - first);
     for (std::size_t m = 1; m < sums.size() && count > 0.0; ++m) {
@@ -215,7 +215,7 @@ bool isPolygon(const PlaneLattice& lattice, const Points& points, double toleran
     folded.col(3 * i + 2) = at(2.0 * step - angle);
     halfway.col(i) = at(step - angle);
   }
-  // Vertices of a mesh may lie at few angles, and tell nothing about those between.
+  // Vertices of a mesh may lie at few angles, and are uninformative about those between.
   std::sort(angles.begin(), angles.end());
   for (std::size_t i = 1; i < angles.size(); ++i)
     if (angles[i] - angles[i - 1] > kDetection.folds.max_gap * step) return false;

@@ -81,8 +81,8 @@ public:
   }
 
   /// \param stride every stride-th voxel along each axis is reflected.
-  /// \param residual of the plane, as far as it is known: where f is as flat as its noise, pairs say little about the
-  /// step and count little. Without weights, the noise of all the inside of a body adds up.
+  /// \param residual of the plane, as far as it is known: where f is as flat as its noise, pairs are uninformative
+  /// about the step and count little. Without weights, the noise of all the inside of a body adds up.
   Comparison compare(const ReflectionPlane& plane, int stride, bool with_step, double residual = 0.0) const {
     return compare(plane.reflection(), plane, stride, with_step, residual);
   }

@@ -14,11 +14,11 @@ namespace pcl_symmetry {
 namespace {
 
 /// A cell and the weights of its lower corner and its upper one along each axis.
-struct CellPlace {
+struct CellPosition {
   Eigen::Array3i cell;
   Eigen::Array3f t;  ///< in [0, 1), from the lower corner to the upper one
 
-  explicit CellPlace(const Eigen::Array3f& cells) : cell(cells.cast<int>()), t(cells - cell.cast<float>()) {}
+  explicit CellPosition(const Eigen::Array3f& cells) : cell(cells.cast<int>()), t(cells - cell.cast<float>()) {}
 };
 
 std::vector<float> gaussianKernel(double deviation, int reach) {
@@ -95,15 +95,15 @@ void PointDensity::spread(const PointsRef& points) {
                                           static_cast<std::size_t>(size_[0]) * size_[1]};
   values_.assign(stride[2] * size_[2], 0.0f);
   for (Eigen::Index i = 0; i < points.cols(); ++i) {
-    const CellPlace place((points.col(i) - origin_).array() / cell_size_);
-    const Eigen::Array3i& c = place.cell;
+    const CellPosition position((points.col(i) - origin_).array() / cell_size_);
+    const Eigen::Array3i& c = position.cell;
     float* cell = &values_[c[0] + c[1] * stride[1] + c[2] * stride[2]];
     for (int corner = 0; corner < 8; ++corner) {
       float weight = 1.0f;
       std::size_t offset = 0;
       for (int axis = 0; axis < 3; ++axis) {
         const bool upper = corner >> axis & 1;
-        weight *= upper ? place.t[axis] : 1.0f - place.t[axis];
+        weight *= upper ? position.t[axis] : 1.0f - position.t[axis];
         offset += upper ? stride[axis] : 0;
       }
       cell[offset] += weight;
@@ -141,9 +141,9 @@ double PointDensity::blur(double bandwidth, int num_threads) {
 float PointDensity::at(const Eigen::Vector3f& x) const {
   const Eigen::Array3f p = (x - origin_).array() / cell_size_;
   if (!(p >= 0.0f).all() || !(p < (size_ - 1).cast<float>()).all()) return 0.0f;
-  const CellPlace place(p);
-  const Eigen::Array3i& c = place.cell;
-  const Eigen::Array3f& t = place.t;
+  const CellPosition position(p);
+  const Eigen::Array3i& c = position.cell;
+  const Eigen::Array3f& t = position.t;
   const std::size_t row = size_[0], slice = row * size_[1];
   const float* v = &values_[c[0] + c[1] * row + c[2] * slice];
   const auto along = [&](std::size_t i) { return v[i] + t[0] * (v[i + 1] - v[i]); };

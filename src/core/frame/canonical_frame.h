@@ -17,7 +17,7 @@ Eigen::Matrix3d principalSymmetryAxes(const PointsRef& points, const Eigen::Matr
 /// Departure from the paper: across a direction in which little is symmetric the maximum of the profile is chance. Only
 /// where it stands high above all others, as across the box of a mailbox, the plane is there; elsewhere the offset is
 /// the mean over all offsets, weighted by score and by closeness to the middle of the extent of the points. The nearer
-/// the maximum is to that mean, the less height it needs. Of a scan all profiles count as flat.
+/// the maximum is to that mean, the less height it needs. All profiles of a scan count as flat.
 /// \return input frame.
 Eigen::Vector3d centerOfSymmetry(const FrameEvidence& evidence, const FrameCandidate& frame);
 

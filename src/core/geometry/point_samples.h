@@ -186,7 +186,7 @@ struct DistinctPoints {
 /// back, are stray. The gap is two fifths of the size or ten spacings of a surface, so that tails, antennas and sparse
 /// samples belong to the cloud. Where more than one point in twenty would be stray, none is.
 /// \param points 3 x N; none is stray where one is not finite.
-/// \return their indices, rising; mostly none, which a few passes over the points tell.
+/// \return their indices, rising.
 std::vector<int> strayPoints(const PointsRef& points);
 
 /// \param stray indices, rising.

@@ -95,13 +95,13 @@ LocalGeometry localGeometry(const Points& points, const ClosestPointSearch& sear
   return geometry;
 }
 
-GeometryAtPlaces localGeometryAt(const Points& points, const ClosestPointSearch& search, const Points& positions,
-                                 int num_neighbors) {
+GeometryAtPositions localGeometryAt(const Points& points, const ClosestPointSearch& search, const Points& positions,
+                                    int num_neighbors) {
   const int count = numToSearch(points.cols(), num_neighbors);
   std::vector<int> indices;
   std::vector<float> sq_distances;
   search.search(positions, count, indices, sq_distances);
-  GeometryAtPlaces geometry{Points(3, positions.cols()), {}, {}};
+  GeometryAtPositions geometry{Points(3, positions.cols()), {}, {}};
   for (Eigen::Index k = 0; k < positions.cols(); ++k) {
     const TangentPlane plane = tangentPlane(points, positions.col(k), indices.data() + k * count, count);
     geometry.normals.col(k) = plane.normal;

@@ -47,7 +47,7 @@ LocalGeometry localGeometry(const Points& points, const ClosestPointSearch& sear
                             FoundNeighbors* neighbors = nullptr);
 
 /// A part of LocalGeometry at a few of the points.
-struct GeometryAtPlaces {
+struct GeometryAtPositions {
   Points normals;                         ///< 3 x M
   std::vector<float> roughness, spacing;  ///< M values, input units
 };
@@ -55,8 +55,8 @@ struct GeometryAtPlaces {
 /// \param points 3 x N, finite.
 /// \param search over the same points.
 /// \param positions 3 x M, some of the points.
-GeometryAtPlaces localGeometryAt(const Points& points, const ClosestPointSearch& search, const Points& positions,
-                                 int num_neighbors = kNumSupportNeighbors);
+GeometryAtPositions localGeometryAt(const Points& points, const ClosestPointSearch& search, const Points& positions,
+                                    int num_neighbors = kNumSupportNeighbors);
 
 /// Finds the points at the open borders of a sampled surface: the neighbors in the tangent plane leave a gap, and the
 /// surface does not fold there.

@@ -32,7 +32,7 @@ bool mayBeSymmetry(const Eigen::Isometry3d& motion, const PosedSurface& scan);
 /// \return probability that the pose is right, in [0, 1], fitted by test/benchmark/fit_registration.py.
 double poseConfidence(const PoseEvidence& evidence);
 
-/// \return one sentence on what speaks against a pose.
+/// \return one sentence on what counts against a pose.
 std::string doubtOf(const PoseEvidence& evidence);
 
 }  // namespace pcl_symmetry

@@ -32,7 +32,8 @@ float normalFactor(const Landing& landing, Eigen::Index i, const PosedSurface& t
   return 1.0f - kRegistration.normal_share + kRegistration.normal_share * cosine * cosine;
 }
 
-/// How far a match lies behind what a scanner saw. A depth camera misses surfaces: pixels without a depth say nothing.
+/// How far a match lies behind what a scanner saw. A depth camera misses surfaces: pixels without a depth are
+/// uninformative.
 double depthBehind(const Landing& landing, Eigen::Index i, const PosedSurface& to) {
   const Eigen::Vector3d x = landing.images.col(i).cast<double>();
   const double depth = to.seen->depthBehind(x);

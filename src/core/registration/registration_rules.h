@@ -53,7 +53,7 @@ struct RegistrationRules {
   double near_tolerance = 0.02;     ///< diameters, within which a surface that was to be seen was measured
   double min_cosine = 0.17;         ///< between ray and normal of a point that is to be seen: 80 degrees
   double hidden_depth = 0.08;       ///< radii of a surface, behind its own front
-  int min_visible = 20;             ///< points that are to be seen; fewer tell nothing
+  int min_visible = 20;             ///< points that are to be seen; fewer are uninformative
   double some_not_measured = 0.1;   ///< share of the surface that is worth a word
   double agreeing_cosine = 0.7071;  ///< of the angle between normals of one surface: 45 degrees
   double like_merit = 0.05;         ///< between poses of which either may be right,

@@ -186,7 +186,7 @@ void closeGaps(RangeImage& image, std::size_t largest_hole) {
   }
 }
 
-RangeImage nearestInPixels(const SeenPlaces& seen, std::size_t max_pixels, double points_per_pixel) {
+RangeImage nearestInPixels(const SeenPositions& seen, std::size_t max_pixels, double points_per_pixel) {
   RangeImage image{fitPixels(seen.positions, max_pixels, points_per_pixel), {}};
   image.depths.assign(image.grid.numPixels(), Visibility::kBackground);
   for (std::size_t i = 0; i < seen.positions.size(); ++i) {
@@ -252,9 +252,9 @@ double typicalRoughness(const Points& surface, Eigen::Index stride) {
 
 }  // namespace
 
-SeenPlaces placesSeen(const PointsRef& points, const Eigen::Vector3d& viewpoint, const Eigen::Matrix3d& R_camera_input,
-                      FieldOfView field) {
-  SeenPlaces seen;
+SeenPositions positionsSeen(const PointsRef& points, const Eigen::Vector3d& viewpoint,
+                            const Eigen::Matrix3d& R_camera_input, FieldOfView field) {
+  SeenPositions seen;
   seen.positions.reserve(points.cols());
   for (Eigen::Index i = 0; i < points.cols(); ++i) {
     const Eigen::Vector3d ray = R_camera_input * (points.col(i).cast<double>() - viewpoint);
@@ -267,13 +267,13 @@ SeenPlaces placesSeen(const PointsRef& points, const Eigen::Vector3d& viewpoint,
   return seen;
 }
 
-RangeImage rangeImage(const SeenPlaces& seen, std::size_t max_pixels) {
+RangeImage rangeImage(const SeenPositions& seen, std::size_t max_pixels) {
   RangeImage image = nearestInPixels(seen, max_pixels, kScan.points_per_pixel);
   closeSurfaces(image, std::numeric_limits<std::size_t>::max());
   return image;
 }
 
-RangeImage sceneRangeImage(const SeenPlaces& seen, std::size_t max_pixels) {
+RangeImage sceneRangeImage(const SeenPositions& seen, std::size_t max_pixels) {
   RangeImage image = nearestInPixels(seen, max_pixels, kScan.points_per_ring_pixel);
   const double gap = typicalGap(image);
   if (gap < kScan.gap_of_rings) {

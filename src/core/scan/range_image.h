@@ -17,7 +17,7 @@ enum class FieldOfView {
 };
 
 /// Points in the picture plane at depth one.
-struct SeenPlaces {
+struct SeenPositions {
   std::vector<Eigen::Array2d> positions;
   std::vector<float> depths;  ///< along the direction that the camera looks along, input units
 };
@@ -53,14 +53,14 @@ struct RangeImage {
 /// \param points 3 x N, finite.
 /// \param R_camera_input rows right, down and forward in the frame of the points.
 /// \return those of the points that lie in the field of view.
-SeenPlaces placesSeen(const PointsRef& points, const Eigen::Vector3d& viewpoint, const Eigen::Matrix3d& R_camera_input,
-                      FieldOfView field);
+SeenPositions positionsSeen(const PointsRef& points, const Eigen::Vector3d& viewpoint,
+                            const Eigen::Matrix3d& R_camera_input, FieldOfView field);
 
 /// A range image of the points of one object, without order. The size of the pixels follows the distance between the
 /// points in the picture; gaps between the points are closed. Empty pixels are background.
 /// \param seen at least one position.
 /// \param max_pixels least number of pixels that make them larger, >= 16.
-RangeImage rangeImage(const SeenPlaces& seen, std::size_t max_pixels);
+RangeImage rangeImage(const SeenPositions& seen, std::size_t max_pixels);
 
 /// The same for a scene. Where its rays are denser in one direction than across, as in the rings of a LiDAR scanner,
 /// pixels are as small as the denser distance, and the gaps between the rings are bridged. Empty pixels beyond the
@@ -68,7 +68,7 @@ RangeImage rangeImage(const SeenPlaces& seen, std::size_t max_pixels);
 /// directions along rows and columns.
 /// \param seen at least one position.
 /// \param max_pixels least number of pixels that make them larger, >= 16.
-RangeImage sceneRangeImage(const SeenPlaces& seen, std::size_t max_pixels);
+RangeImage sceneRangeImage(const SeenPositions& seen, std::size_t max_pixels);
 
 /// A side of the picture of a camera, at which the object was cut off: no ray passed where normal . p > offset.
 struct FrameSide {

@@ -13,11 +13,11 @@ namespace pcl_symmetry {
 /// Not in the paper. A scanner sends its rays evenly over all directions. A surface at distance d whose normal makes an
 /// angle a with the ray gets
 ///     density = c cos(a) / d^2
-/// points per area. Of an object that is known from all sides, or put together from several views, no viewpoint
-/// explains the density.
+/// points per area. No viewpoint explains the density of an object that is known from all sides, or was put
+/// together from several views.
 class ScanDensity {
 public:
-  /// \param points 3 x N, finite. Of large clouds a part is used.
+  /// \param points 3 x N, finite. Large clouds are sampled.
   explicit ScanDensity(const PointsRef& points);
 
   /// \return variance of log(density d^2 / cos(a)) over the samples between the smallest and the largest tenth; infinite

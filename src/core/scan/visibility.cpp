@@ -56,7 +56,7 @@ std::vector<Eigen::Matrix3d> cubeFaces() {
 std::optional<Visibility> pictureOf(const PointsRef& points, const Eigen::Vector3d& viewpoint,
                                     const Eigen::Matrix3d& R_camera_input, FieldOfView field, std::size_t max_pixels,
                                     Eigen::Index min_seen) {
-  const SeenPlaces seen = placesSeen(points, viewpoint, R_camera_input, field);
+  const SeenPositions seen = positionsSeen(points, viewpoint, R_camera_input, field);
   if (seen.positions.empty() || static_cast<Eigen::Index>(seen.positions.size()) < min_seen) return std::nullopt;
   RangeImage image = sceneRangeImage(seen, max_pixels);
   return Visibility(image.grid.toPixels() * cameraAt(viewpoint, R_camera_input), image.grid.width, image.grid.height,
@@ -77,7 +77,7 @@ std::optional<Visibility> Visibility::fromPoints(const PointsRef& points, const 
   const Eigen::Vector3d forward = (boundingBall(points).center - viewpoint).normalized();
   if (!forward.allFinite() || forward.norm() < 0.5) return std::nullopt;
   const Eigen::Matrix3d R_camera_input = viewingFrame(forward);
-  const SeenPlaces seen = placesSeen(points, viewpoint, R_camera_input, FieldOfView::Cone);
+  const SeenPositions seen = positionsSeen(points, viewpoint, R_camera_input, FieldOfView::Cone);
   if (static_cast<Eigen::Index>(seen.positions.size()) < points.cols()) return std::nullopt;
   RangeImage image = rangeImage(seen, kMaxPixels);
   // Rays beside the object met nothing either: their space is free, as far as the picture reached.

@@ -79,8 +79,8 @@ float depthBehind(const std::vector<SurfacePoint>& samples, const TriangleTree& 
 }
 
 /// The position half-way through the body behind the sample that is closest to the center of its patch.
-Eigen::Vector3f innerPlace(const std::vector<SurfacePoint>& samples, const Eigen::Vector3f& center, float depth,
-                           const TriangleTree& tree) {
+Eigen::Vector3f innerPosition(const std::vector<SurfacePoint>& samples, const Eigen::Vector3f& center, float depth,
+                              const TriangleTree& tree) {
   const SurfacePoint& middle = *std::min_element(samples.begin(), samples.end(), [&](const auto& a, const auto& b) {
     return (a.position - center).squaredNorm() < (b.position - center).squaredNorm();
   });
@@ -110,7 +110,7 @@ void measureBody(const SurfaceGraph& graph, const TriangleTree& tree, std::uint6
     const float depth = depthBehind(samples[p], tree, random);
     const auto column = static_cast<Eigen::Index>(p);
     evidence.thickness[p] = depth / radius;
-    inner.col(column) = innerPlace(samples[p], patches.centers.col(column), depth, tree);
+    inner.col(column) = innerPosition(samples[p], patches.centers.col(column), depth, tree);
   }
   evidence.sight = linesOfSight(inner, tree);
 }

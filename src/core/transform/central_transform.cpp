@@ -13,10 +13,10 @@ Eigen::Vector3d CenterMap::center(std::size_t index) const {
 
 double CenterMap::operator()(const Eigen::Vector3d& x) const {
   if (values.empty()) return 0.0;
-  const Eigen::Array3d place = (x - origin).array() / step;
-  if (!((place >= 0.0).all() && (place <= num_centers - 1.0).all())) return 0.0;
-  const Eigen::Array3i low = place.cast<int>().min(num_centers - 2);
-  const Eigen::Array3d part = place - low.cast<double>();
+  const Eigen::Array3d position = (x - origin).array() / step;
+  if (!((position >= 0.0).all() && (position <= num_centers - 1.0).all())) return 0.0;
+  const Eigen::Array3i low = position.cast<int>().min(num_centers - 2);
+  const Eigen::Array3d part = position - low.cast<double>();
   double sum = 0.0;
   for (int corner = 0; corner < 8; ++corner) {
     const Eigen::Array3i high(corner & 1, corner >> 1 & 1, corner >> 2 & 1);

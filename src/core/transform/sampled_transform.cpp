@@ -156,7 +156,7 @@ std::vector<std::vector<float>> sampleMeans(const GaussianEdt& edt, const PlaneG
   options.validate();
   const LookupTable table(edt, free_space, options.num_threads);
   const CoordinateRows points = drawPoints(edt, options.num_samples, options.seed, options.num_threads);
-  // Of the grid, in cells from the middle of the cube of cells.
+  // Center of the grid, in cells from the middle of the cube of cells.
   const Eigen::Vector3f center = ((grid.center() - edt.origin()) / edt.cellSize()).cast<float>() -
                                  Eigen::Vector3f::Constant(0.5f * static_cast<float>(edt.numCells() - 1));
   const auto radius_step = static_cast<float>(grid.radiusStep() / edt.cellSize());

@@ -24,8 +24,8 @@ public:
   static constexpr double kOne = 200.0;
   static constexpr float kMost = std::numeric_limits<std::uint8_t>::max();  ///< what a cell can hold
 
-  /// Of f, sharpened for the blur of two boxes: a sample's uniform position in its cell and the look-up of the nearest
-  /// cell.
+  /// The table of f, sharpened for the blur of two boxes: a sample's uniform position in its cell and the look-up of
+  /// the nearest cell.
   /// \param free_space one value per cell of the EDT; empty for a whole object.
   /// \throws std::invalid_argument for free space of another size.
   LookupTable(const GaussianEdt& edt, const std::vector<float>& free_space, int num_threads);
@@ -87,7 +87,7 @@ public:
   const Totals& ofMoved(const Eigen::Matrix3Xf& moved, const Eigen::Vector3f& start, const Eigen::Vector3f& step,
                         int begin, int end);
 
-  /// The EDT's cube of cells and its place in a LookupTable.
+  /// The EDT's cube of cells and its position in a LookupTable.
   struct Cube {
     float middle;    ///< coordinate of its middle, in cells from the first cell center
     float sq_clip;   ///< squared radius of the ball about the middle
@@ -121,7 +121,7 @@ Eigen::Matrix3Xf centeredSamples(const GaussianEdt& edt, int num_samples, std::u
 /// A position of the input frame in cells from the middle of the cube.
 Eigen::Vector3d toCells(const GaussianEdt& edt, const Eigen::Vector3d& x);
 
-/// The estimate of sampledTransform() for the free space of a scan, which speaks against a plane:
+/// The estimate of sampledTransform() for the free space of a scan, which counts against a plane:
 /// F = (S / |f|^2) mean free(gamma x_i).
 /// \param free_space one value in [0, 1] per cell of the EDT, as from freeSpace().
 /// \return F at the bin centers of the grid, >= 0.
@@ -146,7 +146,7 @@ Eigen::Matrix3Xf drawPoints(const GaussianEdt& edt, int num_samples, std::uint64
 std::vector<float> freeSpace(const GaussianEdt& edt, const Visibility* visibility, int num_threads = 0);
 
 /// Symmetry of a scan with respect to a plane. A departure from the paper, whose measure is D alone: reflected points
-/// in space that the scanner saw to be empty speak against the plane.
+/// in space that the scanner saw to be empty count against the plane.
 /// \param d D of Equation 2, >= 0.
 /// \param f F, the same correlation of f with the reflected free space, >= 0.
 /// \return (1 + c) D / (D + F + c) with c = 0.15; 1 for D = 1 and F = 0. A plane that maps the surface to unknown space

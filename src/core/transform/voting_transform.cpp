@@ -16,7 +16,8 @@ namespace pcl_symmetry {
 
 namespace {
 
-/// Draws points of the EDT with probability f: a cell, then a uniform place in it, whose blur f is sharpened against.
+/// Draws points of the EDT with probability f: a cell, then a uniform position in it, whose blur f is sharpened
+/// against.
 class PointSampler {
 public:
   PointSampler(const GaussianEdt& edt, int num_threads) : edt_(edt) {
