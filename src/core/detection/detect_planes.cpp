@@ -76,6 +76,7 @@ std::vector<MeasuredPlane> judgeAll(const JudgedCloud& judged, std::vector<Candi
 
 /// The reflection of one symmetry in another is a symmetry, and so are the missing planes of a regular polygon.
 void completeGroups(const JudgedCloud& judged, Found& found) {
+  if (!kKindRules.completes_groups[judged.cloud.kind()]) return;
   std::vector<ReflectionPlane> tried;
   for (std::vector<Candidate> candidates;
        !(candidates = judged.refinement.closeSymmetries(impliedBy(found.planes, judged.cloud, tried))).empty();)
@@ -126,11 +127,7 @@ constexpr struct {
        if (const Visibility* seen = judged.cloud.seen())
          doubtSlantedPlanes(found.planes, carryingNormals(judged.cloud.points, *seen), judged.options);
      }},
-    {"parts",
-     [](const JudgedCloud& judged, Found& found) {
-       if (judged.options.approximate)
-         append(found.planes, localPlanes(found.planes, judged.cloud, *judged.fit, judged.decision, judged.options));
-     }},
+    {"parts", findPlanesOfParts},
 };
 
 /// Section 4.4 and what follows: the planes of a cloud, from the maxima of its map to the list. publishedPlanes() is

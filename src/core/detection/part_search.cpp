@@ -347,27 +347,25 @@ std::vector<SymmetricPart> findSymmetricParts(const NormalizedCloud& cloud, cons
 
 }  // namespace
 
-std::vector<SymmetryPlane> localPlanes(const std::vector<SymmetryPlane>& known, const NormalizedCloud& cloud,
-                                       const PlaneFit& fit, const PlaneDecision& decision,
-                                       const DetectionOptions& options) {
-  std::vector<SymmetryPlane> decided;
-  std::copy_if(known.begin(), known.end(), std::back_inserter(decided), isDecided);
-  const std::vector<SymmetricPart> parts = findSymmetricParts(cloud, fit, options);
+void findPlanesOfParts(const JudgedCloud& judged, Found& found) {
+  const NormalizedCloud& cloud = judged.cloud;
+  if (!judged.options.approximate) return;
+  std::vector<ReflectionPlane> decided;
+  for (const SymmetryPlane& plane : found.planes)
+    if (isDecided(plane)) decided.push_back(cloud.toNormalized(plane));
+  const std::vector<SymmetricPart> parts = findSymmetricParts(cloud, *judged.fit, judged.options);
   const std::vector<int> all = allOf(cloud.points.cols());
   std::vector<std::optional<SymmetryPlane>> of_parts(parts.size());
-  parallelBlocks(parts.size(), options.num_threads, [&](std::size_t i) {
-    const auto normalized = [&](const SymmetryPlane& plane) { return cloud.toNormalized(plane); };
-    if (kSameMaximum.anySame(decided, parts[i].plane, normalized)) return;
-    MeasuredPlane judged = decision.judge(parts[i].plane, all);
-    if (judged.plane.kind == PlaneKind::Symmetry) return;  // of a family, which is known as its axis or center
-    setLocal(judged.plane);
-    judged.plane.iterations = parts[i].iterations;
-    of_parts[i] = std::move(judged.plane);
+  parallelBlocks(parts.size(), judged.options.num_threads, [&](std::size_t i) {
+    if (kSameMaximum.anySame(decided, parts[i].plane)) return;
+    SymmetryPlane plane = judged.decision.judge(parts[i].plane, all).plane;
+    if (plane.kind == PlaneKind::Symmetry) return;  // of a family, which is known as its axis or center
+    setLocal(plane);
+    plane.iterations = parts[i].iterations;
+    of_parts[i] = std::move(plane);
   });
-  std::vector<SymmetryPlane> planes;
   for (std::optional<SymmetryPlane>& plane : of_parts)
-    if (plane) planes.push_back(std::move(*plane));
-  return planes;
+    if (plane) found.planes.push_back(std::move(*plane));
 }
 
 }  // namespace pcl_symmetry

@@ -51,10 +51,9 @@ private:
 /// contributes too little to the transform to be a maximum. Here planes through the middles of balls, of several radii
 /// and spread over the surface, are refined on the points of their ball alone, and then on the region that they map
 /// onto itself (MatchedRegions), which tells a part from what matches by chance.
-/// \param known planes that have been found, input frame.
-/// \return planes of PlaneKind::Local, input frame, unlike the symmetries and possible symmetries among those known.
-std::vector<SymmetryPlane> localPlanes(const std::vector<SymmetryPlane>& known, const NormalizedCloud& cloud,
-                                       const PlaneFit& fit, const PlaneDecision& decision,
-                                       const DetectionOptions& options);
+///
+/// With DetectionOptions::approximate, adds planes of PlaneKind::Local, unlike the symmetries and possible symmetries
+/// found before.
+void findPlanesOfParts(const JudgedCloud& judged, Found& found);
 
 }  // namespace pcl_symmetry

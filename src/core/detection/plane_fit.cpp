@@ -333,7 +333,6 @@ std::vector<Candidate> impliedBy(const std::vector<SymmetryPlane>& planes, const
   for (const SymmetryPlane& plane : planes)
     if (plane.kind == PlaneKind::Symmetry) symmetries.push_back(cloud.toNormalized(plane));
   std::vector<Candidate> found;
-  if (!kKindRules.completes_groups[cloud.kind()]) return found;
   tried.insert(tried.end(), symmetries.begin(), symmetries.end());
   const auto add = [&](const ReflectionPlane& plane) {
     if (kSamePlane.anySame(tried, plane)) return;

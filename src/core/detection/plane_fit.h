@@ -162,7 +162,7 @@ private:
 /// The reflection of one symmetry in another is a symmetry too: completes the group that some symmetries generate.
 /// \param planes found up to now, input frame; those that are symmetries count.
 /// \param[in,out] tried planes that were known or returned before, normalized frame.
-/// \return such planes that are not among these; none for scans.
+/// \return such planes that are not among these.
 std::vector<Candidate> impliedBy(const std::vector<SymmetryPlane>& planes, const NormalizedCloud& cloud,
                                  std::vector<ReflectionPlane>& tried);
 
