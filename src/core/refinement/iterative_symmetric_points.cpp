@@ -47,26 +47,24 @@ double seenWeight(const Visibility* visibility, const Eigen::Vector3d& reflectio
 
 /// The pairs of samples and closest points to their reflections, before the plane moves.
 struct WeightedPairs {
-  Points x, y;
+  Points x, y;  ///< y is 0 where a sample has no partner, and no weight
   std::vector<double> weights;
   IspStep step;  ///< of the plane itself
 
   WeightedPairs(const IspSurface& surface, const std::vector<int>& samples, const ReflectionPlane& plane, double sigma,
                 const std::vector<int>* guesses)
-      : x(pointsAt(surface.points, samples)), weights(samples.size()) {
+      : x(pointsAt(surface.points, samples)), y(Points::Zero(3, x.cols())), weights(samples.size()) {
     Landing landing = land(surface, reflectedPoints(x, plane), kRefinement.reach_sigmas * sigma, guesses, true);
-    y = std::move(landing.images);
     step.plane = plane;
     step.closest = std::move(landing.closest);
     step.sq_distances = std::move(landing.sq_distances);
     double sum = 0.0, sq_sum = 0.0;
     for (Eigen::Index i = 0; i < x.cols(); ++i) {
       if (step.closest[i] < 0) continue;
-      const Eigen::Vector3d reflection = y.col(i).cast<double>();
       y.col(i) = surface.points.col(step.closest[i]);
       if (surface.at_border && (*surface.at_border)[step.closest[i]]) continue;
-      weights[i] =
-          std::exp(-step.sq_distances[i] / (sigma * sigma)) * seenWeight(surface.visibility, reflection, sigma);
+      weights[i] = std::exp(-step.sq_distances[i] / (sigma * sigma)) *
+                   seenWeight(surface.visibility, landing.images.col(i).cast<double>(), sigma);
       sum += weights[i];
       sq_sum += weights[i] * step.sq_distances[i];
     }
