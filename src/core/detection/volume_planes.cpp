@@ -37,6 +37,12 @@ struct VolumeRules {
   double min_residual = 0.01;            ///< 1 - c that interpolation leaves of equal halves
   /// Squared residuals that the squared slope of f per voxel has to exceed for a pair to count more than half.
   double flat = 2.0;
+  /// Refinement of all maxima, then of those that may be symmetries: voxels that are reflected, steps, and the last
+  /// step in radians and in tenths of a voxel.
+  double rough_voxels = 30'000.0, precise_voxels = 500'000.0;
+  int rough_steps = 15, precise_steps = 10;
+  double rough_tolerance = 2e-3, precise_tolerance = 1e-4;
+  double max_level = 0.999;    ///< of the correlation of chance, which divides by what it leaves
   double merge_angle = 0.12;   ///< radians: maxima closer than this, and ...
   double merge_offset = 0.04;  ///< ... than this share of the radius in offset, are one
 };
@@ -293,12 +299,12 @@ Detection detectVolumePlanes(const ScalarGrid& input, const DetectionOptions& op
     found.timing_ms.emplace_back("transform", watch.lap());
 
     const ReflectedVolume few(coarse, center, 1), all(fine, center, options.num_threads);
-    const int stride = strideFor(coarse.f, 30'000);
+    const int stride = strideFor(coarse.f, kVolume.rough_voxels);
     const MergeTolerance one{kVolume.merge_angle, kVolume.merge_offset * edt.radius()};
     const std::vector<ReflectionPlane> starts = startsOf(found.map, body, options);
     std::vector<SymmetryPlane> maxima(starts.size());
     parallelBlocks(starts.size(), options.num_threads, [&](std::size_t i) {
-      maxima[i] = few.refined(starts[i], stride, 15, 2e-3);
+      maxima[i] = few.refined(starts[i], stride, kVolume.rough_steps, kVolume.rough_tolerance);
       maxima[i].support = few.compare(maxima[i], 1, false).merit();
     });
     // The best of those that ended at one plane, best first.
@@ -324,7 +330,8 @@ Detection detectVolumePlanes(const ScalarGrid& input, const DetectionOptions& op
       if (!options.approximate && &plane != &maxima.front() && confidence(plane, chance) < options.min_possible)
         continue;
       const int before = plane.iterations;
-      plane = all.refined(plane, strideFor(fine.f, 500'000), 10, 1e-4);
+      plane = all.refined(plane, strideFor(fine.f, kVolume.precise_voxels), kVolume.precise_steps,
+                          kVolume.precise_tolerance);
       const Comparison comparison = few.compare(plane, 1, false);
       plane.iterations += before;
       plane.support = std::max(0.0, comparison.merit());
@@ -339,7 +346,7 @@ Detection detectVolumePlanes(const ScalarGrid& input, const DetectionOptions& op
         std::vector<double> distances(body.cols());
         for (std::size_t i = 0; i < distances.size(); ++i)
           distances[i] = std::abs(plane.signedDistance(body.col(i).cast<double>()));
-        level = std::clamp(few.translated(plane, std::move(distances), stride), chance, 0.999);
+        level = std::clamp(few.translated(plane, std::move(distances), stride), chance, kVolume.max_level);
       }
       // The best plane shows how alike halves are at this noise. A body that is nearly an ellipsoid has others, which
       // leave more of f.
