@@ -47,8 +47,9 @@ std::vector<ReflectionPlane> significantMaxima(const Points& samples, const Gaus
 /// Refines planes by Iterative Symmetric Points (Section 4.4). A plane that leaves its basin keeps its start, a
 /// departure from the paper.
 std::vector<ReflectionPlane> refined(const std::vector<ReflectionPlane>& starts, const Points& samples,
-                                     const GaussianEdt& edt, int num_threads, const MakeSearch& make_search) {
-  const ClosestPointSearch::Ptr search = make_search ? make_search(samples) : makeFlannSearch(samples);
+                                     const GaussianEdt& edt, const SegmentationOptions& options) {
+  const ClosestPointSearch::Ptr search = options.make_search ? options.make_search(samples) : makeFlannSearch(samples);
+  const int num_threads = options.num_threads;
   const LocalGeometry geometry = localGeometry(samples, *search, kNumSupportNeighbors, num_threads);
   IspSurface surface{samples, geometry.normals, *search};
   std::vector<int> reflected;
@@ -71,15 +72,16 @@ std::vector<ReflectionPlane> refined(const std::vector<ReflectionPlane>& starts,
 
 }  // namespace
 
-SymmetryFeatures symmetryFeatures(const SurfaceGraph& graph, const std::vector<int>& elements, bool as_published,
-                                  std::uint64_t seed, int num_threads, const MakeSearch& make_search) {
+SymmetryFeatures symmetryFeatures(const SurfaceGraph& graph, const std::vector<int>& elements,
+                                  const SegmentationOptions& options, std::uint64_t seed) {
+  const int num_threads = options.num_threads;
   const Points samples = sampleElements(graph, elements, seed);
   GaussianEdtOptions edt_options;
   edt_options.num_threads = num_threads;
   const GaussianEdt edt(samples, edt_options);
   SymmetryFeatures features;
   features.radius = boundingBall(samples).radius;
-  if (as_published) {
+  if (options.splitting.as_published) {
     const SymmetryMap map = publishedMap(samples, edt, TransformMethod::Convolution, seed, num_threads);
     PublishedOptions published;
     published.num_points = kSegmentation.published_samples;
@@ -89,8 +91,7 @@ SymmetryFeatures symmetryFeatures(const SurfaceGraph& graph, const std::vector<i
       features.planes.push_back({plane, 0.0});
   } else {
     const std::vector<ReflectionPlane> maxima = significantMaxima(samples, edt, seed, num_threads);
-    for (const ReflectionPlane& plane : refined(maxima, samples, edt, num_threads, make_search))
-      features.planes.push_back({plane, 0.0});
+    for (const ReflectionPlane& plane : refined(maxima, samples, edt, options)) features.planes.push_back({plane, 0.0});
   }
   features.support.resize(features.planes.size(), static_cast<Eigen::Index>(elements.size()));
   double area = 0.0;

@@ -18,10 +18,8 @@ struct SymmetryFeatures {
 /// Finds the significant maxima of the transform of a part (Section 4.4) and the support of every element for them
 /// ("how well does the face map onto the surface after reflection across the plane", Section 5.3).
 /// \param elements those of the part, with an area > 0.
-/// \param as_published as of SplittingOptions.
-/// \param seed of the samples of the part.
-/// \param make_search over the samples of the part; null = FLANN's.
-SymmetryFeatures symmetryFeatures(const SurfaceGraph& graph, const std::vector<int>& elements, bool as_published,
-                                  std::uint64_t seed, int num_threads, const MakeSearch& make_search = nullptr);
+/// \param seed of the samples of the part, in place of that of the options.
+SymmetryFeatures symmetryFeatures(const SurfaceGraph& graph, const std::vector<int>& elements,
+                                  const SegmentationOptions& options, std::uint64_t seed);
 
 }  // namespace pcl_symmetry

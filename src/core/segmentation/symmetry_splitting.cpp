@@ -93,8 +93,7 @@ public:
   bool split(int leaf) {
     is_open_[leaf] = false;
     const std::uint64_t seed = options_.seed + leaf;
-    const SymmetryFeatures features = symmetryFeatures(graph_, elements_[leaf], options_.splitting.as_published, seed,
-                                                       options_.num_threads, options_.make_search);
+    const SymmetryFeatures features = symmetryFeatures(graph_, elements_[leaf], options_, seed);
     nodes_[leaf].planes = features.planes;
     if (!hasDistinctSymmetries(features.planes)) return false;
     auto sides = splitByTwoMeans(graph_, elements_[leaf], features, options_.splitting, seed);
