@@ -164,14 +164,14 @@ Detection refineAndDecide(const NormalizedCloud& cloud, const Points& all, const
   }
 
   // The answer.
-  if (!found.hasFamily()) found.best = bestApproximate(found.planes, cloud, *judged.fit);
+  if (!found.hasFamily()) found.best = bestApproximate(judged, found.planes);
   if (found.best) found.best->deviation = measure.deviation(cloud.toNormalized(*found.best)) * cloud.scale;
-  found.flat = flatPlane(cloud, measure.limits());
+  found.flat = flatPlane(judged);
   found.tolerance = measure.tolerance() * cloud.scale;
   const bool is_raised = options.absolute_tolerance == 0.0 && measure.tolerance() > options.tolerance * cloud.extent;
   found.resolution = std::max(measure.resolution(), is_raised ? measure.tolerance() : 0.0) * cloud.scale;
   found.diameter = cloud.extent * cloud.scale;
-  found.planes = rankedPlanes(std::move(found.planes), found.polygon, cloud, *judged.fit, options);
+  found.planes = rankedPlanes(judged, std::move(found.planes), found.polygon);
   timed("report");
   return std::move(found);
 }

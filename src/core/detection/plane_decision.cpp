@@ -208,9 +208,10 @@ bool isOf(const std::optional<PlaneLattice>& polygon, const SymmetryPlane& plane
 }
 
 /// Judges every point, where the plane was judged by some of them.
-void completeSupport(SymmetryPlane& plane, const NormalizedCloud& cloud, const PlaneFit& fit) {
+void completeSupport(SymmetryPlane& plane, const JudgedCloud& judged) {
+  const NormalizedCloud& cloud = judged.cloud;
   if (static_cast<Eigen::Index>(plane.point_support.size()) == cloud.points.cols()) return;
-  plane.point_support = fit.shares(cloud.toNormalized(plane), allOf(cloud.points.cols())).point_support;
+  plane.point_support = judged.fit->shares(cloud.toNormalized(plane), allOf(cloud.points.cols())).point_support;
 }
 
 /// An approximate plane that is a symmetry of a part is reported as that.
@@ -227,9 +228,10 @@ std::vector<SymmetryPlane> withoutPlanesOfParts(std::vector<SymmetryPlane> plane
 
 }  // namespace
 
-std::vector<SymmetryPlane> rankedPlanes(std::vector<SymmetryPlane> planes, const std::optional<PlaneLattice>& polygon,
-                                        const NormalizedCloud& cloud, const PlaneFit& fit,
-                                        const DetectionOptions& options) {
+std::vector<SymmetryPlane> rankedPlanes(const JudgedCloud& judged, std::vector<SymmetryPlane> planes,
+                                        const std::optional<PlaneLattice>& polygon) {
+  const NormalizedCloud& cloud = judged.cloud;
+  const DetectionOptions& options = judged.options;
   planes = withoutPlanesOfParts(std::move(planes), cloud);
   // Equally confident planes, such as those of a polygon, are ordered by support.
   sortFalling(planes, &SymmetryPlane::support);
@@ -249,7 +251,7 @@ std::vector<SymmetryPlane> rankedPlanes(std::vector<SymmetryPlane> planes, const
     });
     if (!is_known) ranked.push_back(std::move(plane));
   }
-  parallelBlocks(ranked.size(), options.num_threads, [&](std::size_t i) { completeSupport(ranked[i], cloud, fit); });
+  parallelBlocks(ranked.size(), options.num_threads, [&](std::size_t i) { completeSupport(ranked[i], judged); });
   return ranked;
 }
 
@@ -259,15 +261,14 @@ std::vector<SymmetryPlane> reordered(std::vector<SymmetryPlane> planes, const De
   return planes;
 }
 
-std::optional<ReflectionPlane> flatPlane(const NormalizedCloud& cloud, const CloudLimits& limits) {
-  const PrincipalAxes& axes = cloud.principal_axes;
+std::optional<ReflectionPlane> flatPlane(const JudgedCloud& judged) {
+  const PrincipalAxes& axes = judged.cloud.principal_axes;
   const ReflectionPlane plane(axes.axes.col(2), axes.axes.col(2).dot(axes.center));
-  if (!limits.movesNothing(plane, cloud.points)) return std::nullopt;
-  return cloud.toInput(plane);
+  if (!judged.measure.limits().movesNothing(plane, judged.cloud.points)) return std::nullopt;
+  return judged.cloud.toInput(plane);
 }
 
-std::optional<SymmetryPlane> bestApproximate(const std::vector<SymmetryPlane>& planes, const NormalizedCloud& cloud,
-                                             const PlaneFit& fit) {
+std::optional<SymmetryPlane> bestApproximate(const JudgedCloud& judged, const std::vector<SymmetryPlane>& planes) {
   const SymmetryPlane* best = nullptr;
   for (const SymmetryPlane& plane : planes) {
     if (isDecided(plane)) return std::nullopt;
@@ -276,7 +277,7 @@ std::optional<SymmetryPlane> bestApproximate(const std::vector<SymmetryPlane>& p
   }
   if (!best) return std::nullopt;
   SymmetryPlane answer = *best;
-  completeSupport(answer, cloud, fit);
+  completeSupport(answer, judged);
   return answer;
 }
 

@@ -219,21 +219,19 @@ std::vector<SymmetryPlane> refinedAt(const std::vector<ReflectionPlane>& starts,
 /// \param planes input frame.
 /// \param polygon normalized frame; each of its planes is a maximum.
 /// \return with the support of every point.
-std::vector<SymmetryPlane> rankedPlanes(std::vector<SymmetryPlane> planes, const std::optional<PlaneLattice>& polygon,
-                                        const NormalizedCloud& cloud, const PlaneFit& fit,
-                                        const DetectionOptions& options);
+std::vector<SymmetryPlane> rankedPlanes(const JudgedCloud& judged, std::vector<SymmetryPlane> planes,
+                                        const std::optional<PlaneLattice>& polygon = std::nullopt);
 
 /// Planes in the order of answers, without `approximate` only those that are decided.
 std::vector<SymmetryPlane> reordered(std::vector<SymmetryPlane> planes, const DetectionOptions& options);
 
 /// \return the plane of a cloud of which nothing but a sheet is left at the tolerance, input frame; else empty.
-std::optional<ReflectionPlane> flatPlane(const NormalizedCloud& cloud, const CloudLimits& limits);
+std::optional<ReflectionPlane> flatPlane(const JudgedCloud& judged);
 
 /// The answer where nothing is a symmetry: of the planes of the whole, the one with the greatest share.
 /// \param planes input frame.
 /// \return with the support of every point; empty where a plane is a symmetry or a possible one, or there is none.
-std::optional<SymmetryPlane> bestApproximate(const std::vector<SymmetryPlane>& planes, const NormalizedCloud& cloud,
-                                             const PlaneFit& fit);
+std::optional<SymmetryPlane> bestApproximate(const JudgedCloud& judged, const std::vector<SymmetryPlane>& planes);
 
 // The only functions that write the confidence, the kind and the reasons of a plane, whatever its evidence is of: a
 // cloud, a mesh, a volume, an upright box or a polygon; and the rules that lower its odds by what was found beside it.

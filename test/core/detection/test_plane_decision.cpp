@@ -50,7 +50,6 @@ SymmetryPlane planeOfFan(int k, PlaneKind kind, double confidence, double suppor
 }
 
 TEST(RankedPlanes, BestFirstAndEachOnce) {
-  const JudgedShape searched(box(500, Sampling::Random, 3).cloud());
   const std::vector<SymmetryPlane> planes = {
       planeOfFan(0, PlaneKind::Approximate, 0.1, 0.7),
       planeOfFan(1, PlaneKind::Possible, 0.3, 0.1),
@@ -64,8 +63,9 @@ TEST(RankedPlanes, BestFirstAndEachOnce) {
   };
   DetectionOptions options;
   const auto supports = [&] {
+    const JudgedShape searched(box(500, Sampling::Random, 3).cloud(), options);
     std::vector<double> found;
-    for (const SymmetryPlane& plane : rankedPlanes(planes, std::nullopt, searched.cloud, *searched.fit, options)) {
+    for (const SymmetryPlane& plane : rankedPlanes(searched, planes)) {
       EXPECT_EQ(plane.point_support.size(), 500u);
       found.push_back(plane.support);
     }
@@ -82,9 +82,7 @@ TEST(RankedPlanes, FewPossibleOnes) {
   const JudgedShape searched(box(500, Sampling::Random, 3).cloud());
   std::vector<SymmetryPlane> planes;
   for (int k = 0; k < 6; ++k) planes.push_back(planeOfFan(k, PlaneKind::Possible, 0.3, 0.5));
-  const auto numRanked = [&] {
-    return rankedPlanes(planes, std::nullopt, searched.cloud, *searched.fit, DetectionOptions()).size();
-  };
+  const auto numRanked = [&] { return rankedPlanes(searched, planes).size(); };
   EXPECT_EQ(numRanked(), static_cast<std::size_t>(kDetection.decide.max_possible));
   for (SymmetryPlane& plane : planes) plane.kind = PlaneKind::Symmetry;
   EXPECT_EQ(numRanked(), 6u);
@@ -98,7 +96,7 @@ TEST(RankedPlanes, APlaneOnTheSlopeOfABetterOneIsNoMaximum) {
     planes.back().kind = PlaneKind::Symmetry;
     planes.back().confidence = 0.8;
     planes.back().score = score;
-    return rankedPlanes(planes, std::nullopt, searched.cloud, *searched.fit, DetectionOptions()).size();
+    return rankedPlanes(searched, planes).size();
   };
   EXPECT_EQ(numRanked(0.0), 1u) << "D between them is greater";
   EXPECT_EQ(numRanked(1.1), 2u) << "D falls on the way";
@@ -110,7 +108,7 @@ TEST(BestApproximate, IsThePlaneOfTheGreatestShareWhereNothingIsDecided) {
                                     planeOfFan(1, PlaneKind::Approximate, 0.1, 0.2),
                                     planeOfFan(2, PlaneKind::Local, 0.0, 0.3)};
   for (std::size_t k = 0; k < planes.size(); ++k) planes[k].share = 0.9 + 0.02 * static_cast<double>(k);
-  const auto best = [&] { return bestApproximate(planes, searched.cloud, *searched.fit); };
+  const auto best = [&] { return bestApproximate(searched, planes); };
   ASSERT_TRUE(best());
   EXPECT_EQ(best()->support, 0.2);
   EXPECT_EQ(best()->point_support.size(), 500u);
