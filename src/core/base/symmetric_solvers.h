@@ -6,7 +6,6 @@
 
 #include <Eigen/Core>
 #include <Eigen/Geometry>
-#include <type_traits>
 
 namespace pcl_symmetry {
 
@@ -52,24 +51,16 @@ public:
     Eigen::Matrix<double, kLast + 2, 1> row;
     row << first, second, last, 0.0;
     const Eigen::Matrix<double, kLast + 2, 1> weighted = weight * row;
-    const auto addColumns = [&](auto from) {
-      constexpr int size = kLast + 2 - from;
-      lower_.template block<size, 2>(from, from).noalias() +=
-          weighted.template tail<size>().lazyProduct(row.template segment<2>(from).transpose());
-    };
-    addColumns(std::integral_constant<int, 0>());
-    addColumns(std::integral_constant<int, 2>());
-    addColumns(std::integral_constant<int, 4>());
-    addColumns(std::integral_constant<int, 6>());
+    products_.noalias() += weighted.lazyProduct(row.transpose());
   }
 
   /// The weighted sum of the products of all rows that were added.
-  Matrix sums() const { return lower_.topLeftCorner<kLast + 1, kLast + 1>().selfadjointView<Eigen::Lower>(); }
+  Matrix sums() const { return products_.topLeftCorner<kLast + 1, kLast + 1>().selfadjointView<Eigen::Lower>(); }
   Matrix6d ofUnknowns() const { return sums().topLeftCorner<kLast, kLast>(); }
 
 private:
-  /// In pairs of columns, the lower half is enough.
-  Eigen::Matrix<double, kLast + 2, kLast + 2> lower_ = Eigen::Matrix<double, kLast + 2, kLast + 2>::Zero();
+  /// Of eight numbers, the last of which is 0: whole vectors of registers are quicker than one half of the products.
+  Eigen::Matrix<double, kLast + 2, kLast + 2> products_ = Eigen::Matrix<double, kLast + 2, kLast + 2>::Zero();
 };
 
 /// The motion of least squares, -h^-1 g. Directions that nothing fixes stay as they are.
