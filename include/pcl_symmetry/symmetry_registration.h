@@ -34,6 +34,9 @@ struct CloudRegistrationOptions {
   PoseSearchOptions search;  ///< of the search for poses
   /// Where no pose convinces, poses are looked for by pairs of points, as clouds that share a small part need it.
   bool search_parts = true;
+  /// Refines the answer once more with pairs as close as the points allow; its evidence and confidence are those
+  /// before.
+  bool refine_closely = true;
   int max_iterations = 30;  ///< of the refinement by PCL's point-to-plane ICP, >= 1
   /// Greatest distance of corresponding points in the refinement, input units, > 0; not set: from the data.
   std::optional<double> max_correspondence = {};

@@ -33,7 +33,7 @@ double sharedSurface(const PosedModel& a, const PosedModel& b) {
 CloudRegistrationOptions quickRegistration(int num_threads) {
   CloudRegistrationOptions options;
   options.frame = signatureFrameOptions();
-  options.search_parts = false;
+  options.search_parts = options.refine_closely = false;  // confidences of names are fitted to poses before that
   options.search.num_rotations = 200;
   options.search.num_screened = 16;
   options.search.num_refined = 6;

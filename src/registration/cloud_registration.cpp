@@ -209,7 +209,7 @@ void keepAround(const CloudPair& clouds, const Eigen::Isometry3d& guess, const P
 }
 
 Matrix6d covarianceOf(const CloudPair& clouds, const RankedPose& pose, const CloudRegistrationOptions& inner) {
-  const double reach = refinementReach(clouds.scan(), clouds.model(), inner.max_correspondence);
+  const double reach = closestReach(clouds.scan(), clouds.model(), inner.max_correspondence);
   return clouds.toInput(
       poseCovariance(clouds.scan(), clouds.model(), pose.T_model_scan, std::max(1, pose.num_points), reach),
       pose.T_model_scan);
@@ -308,6 +308,7 @@ CloudRegistration registerClouds(const Points& source, const std::optional<Visib
     result.confidence = poseConfidence(result.evidence);
     std::vector<RankedPose> ranked;
     for (const JudgedPose& one : judged) ranked.push_back(one.pose);
+    if (inner.refine_closely) ranked.front() = closestPose(clouds.scan(), clouds.model(), ranked.front(), inner);
     ranked.insert(ranked.end(), poses.begin(), poses.end());
     for (const RankedPose& pose : firstDistinct(ranked, static_cast<std::size_t>(search.max_poses)))
       result.poses.push_back({clouds.toInput(pose.T_model_scan), pose.score});

@@ -23,6 +23,7 @@ struct PoseRefinementRules {
   int refined_points = 1000;  ///< of the scan, that ICP uses
   double reach = 4.0;         ///< accuracies, in which ICP looks for its first pairs
   double min_reach = 0.08;    ///< radii
+  double same_merit = 0.01;   ///< by which the closest pose may score less: the comparison is coarser than that pose
   double min_width = 0.015;   ///< radii, of the Gaussian of the last comparison; otherwise it is the accuracy
   double hopeless = 0.2;      ///< merit behind the best pose at which poses are not refined
   /// Pairs that fix a motion of six unknowns; with fewer, PCL's ICP says so on stderr.
@@ -110,6 +111,10 @@ double refinementReach(const PosedSurface& scan, const PosedSurface& model, std:
       std::max(kPoseRefinement.min_reach, kPoseRefinement.reach * std::max(scan.accuracy, model.accuracy)));
 }
 
+double closestReach(const PosedSurface& scan, const PosedSurface& model, std::optional<double> max_correspondence) {
+  return std::min(refinementReach(scan, model, max_correspondence), std::max(scan.accuracy, model.accuracy));
+}
+
 Eigen::Isometry3d SearchFrames::toSearch(const Eigen::Isometry3d& T_target_source) const {
   Eigen::Isometry3d pose = T_target_source;
   pose.translation() = (T_target_source * source_center - target_center) / scale;
@@ -125,6 +130,15 @@ Eigen::Isometry3d SearchFrames::toInput(const Eigen::Isometry3d& T_target_source
 PoseScore lastScore(const PosedSurface& scan, const PosedSurface& model, const Eigen::Isometry3d& T_model_scan) {
   const double width = std::max({kPoseRefinement.min_width, scan.accuracy, model.accuracy});
   return PoseScorer(scan, model).score(T_model_scan, {kRegistration.evidence_points, width, true});
+}
+
+RankedPose closestPose(const PosedSurface& scan, const PosedSurface& model, const RankedPose& pose,
+                       const CloudRegistrationOptions& options) {
+  PoseRefinement icp(scan, model, closestReach(scan, model, options.max_correspondence), options);
+  const Eigen::Isometry3d T_model_scan = icp.refined(pose.T_model_scan);
+  const PoseScore score = lastScore(scan, model, T_model_scan);
+  if (score.merit() < pose.score.merit() - kPoseRefinement.same_merit) return pose;
+  return {T_model_scan, score, kPoseRefinement.refined_points};
 }
 
 std::vector<RankedPose> refinePoses(const PosedSurface& scan, const PosedSurface& model,

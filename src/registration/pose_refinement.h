@@ -24,6 +24,9 @@ struct SearchFrames {
 /// \return distance in which refinePoses() looks for corresponding points, units of the search.
 double refinementReach(const PosedSurface& scan, const PosedSurface& model, std::optional<double> max_correspondence);
 
+/// \return distance in which closestPose() looks for them: that in which samples of one surface meet.
+double closestReach(const PosedSurface& scan, const PosedSurface& model, std::optional<double> max_correspondence);
+
 /// The last comparison of two surfaces in a pose, with more points than a search.
 PoseScore lastScore(const PosedSurface& scan, const PosedSurface& model, const Eigen::Isometry3d& T_model_scan);
 
@@ -34,5 +37,10 @@ PoseScore lastScore(const PosedSurface& scan, const PosedSurface& model, const E
 /// \return distinct ones, at least one, best first; T_model_scan between search frames.
 std::vector<RankedPose> refinePoses(const PosedSurface& scan, const PosedSurface& model,
                                     const std::vector<RankedPose>& poses, const CloudRegistrationOptions& options);
+
+/// A pose from refinePoses(), refined once more with pairs as close as the points allow. What only one of two scans
+/// shows pairs with the border of the other one, and pulls as far as ICP reaches.
+RankedPose closestPose(const PosedSurface& scan, const PosedSurface& model, const RankedPose& pose,
+                       const CloudRegistrationOptions& options);
 
 }  // namespace pcl_symmetry
