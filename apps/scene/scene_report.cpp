@@ -19,6 +19,7 @@ constexpr int kPanelWidth = 520, kPanelHeight = 440;  // pixels
 constexpr int kAddedColor = 5;  // color of points that a symmetry added, counted from that of the object
 // Above the line of sight, as a share of the distance: the scene is looked at slightly from above, so that depths tell.
 constexpr double kRaised = 0.25;
+constexpr double kAside = 1.1;  // radians, around an object that was completed
 
 constexpr double kAxisReach = 1.4, kPlaneReach = 1.1;  // radii of the object
 
@@ -113,13 +114,16 @@ std::vector<int> objectNumbers(const SceneAnalysis& scene, std::size_t num_point
 }
 
 /// Looks at some points from where the sensor stood.
-void lookFromSensor(PictureScene& picture, const SceneAnalysis& scene, const Eigen::Vector3d& middle) {
+/// \param aside angle by which the camera goes around the points, radians.
+void lookFromSensor(PictureScene& picture, const SceneAnalysis& scene, const Eigen::Vector3d& middle,
+                    double aside = 0.0) {
   const Visibility* seen = scene.seen->visibility();
   Eigen::Vector3d up = Eigen::Vector3d::UnitZ();
   if (!scene.supports.empty()) up = scene.supports.front().coefficients.head<3>();
   if (seen) {
-    const Eigen::Vector3d toward = (seen->viewpoint() - middle).normalized();
+    Eigen::Vector3d toward = (seen->viewpoint() - middle).normalized();
     if (std::abs(up.dot(toward)) > 0.95) up = toward.unitOrthogonal();  // a wall that faces the sensor
+    toward = Eigen::AngleAxisd(aside, up) * toward;
     picture.view = (toward + kRaised * up).normalized();
   }
   picture.up = up;
@@ -156,7 +160,7 @@ PictureScene closeUp(const InputShape& input, const SceneAnalysis& scene, std::s
   PictureScene picture;
   picture.points = points;
   picture.panels = {panel};
-  lookFromSensor(picture, scene, middle);
+  lookFromSensor(picture, scene, middle, object.added.empty() ? 0.0 : kAside);  // what is added lies behind
   return picture;
 }
 
