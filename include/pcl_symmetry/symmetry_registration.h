@@ -38,7 +38,8 @@ struct CloudRegistrationOptions {
   /// before.
   bool refine_closely = true;
   int max_iterations = 30;  ///< of the refinement by PCL's point-to-plane ICP, >= 1
-  /// Greatest distance of corresponding points in the refinement, input units, > 0; not set: from the data.
+  /// Greatest distance of corresponding points in the refinement, input units, > 0; not set: from the data. With
+  /// refine_closely the last refinement takes the distance in which samples of one surface meet, where that is less.
   std::optional<double> max_correspondence = {};
   double transformation_epsilon = 1e-8;  ///< of the refinement, as in pcl::Registration, but in radii, >= 0
   double rotation_epsilon = 0.0;         ///< of the refinement, as in pcl::Registration
@@ -119,7 +120,8 @@ CloudRegistration registerClouds(const Points& source, const std::optional<Visib
 /// model of its object, two whole objects, or a whole object to a scan.
 ///
 /// This is a pcl::Registration that needs no guess. It honors setIndices(), which chooses points of the source (the
-/// others tell what hides them), setMaxCorrespondenceDistance() (default: from the data), setMaximumIterations() and
+/// others tell what hides them), setMaxCorrespondenceDistance() (default: from the data; the last refinement takes the
+/// distance in which samples of one surface meet, where that is less), setMaximumIterations() and
 /// the epsilons of the refinement. Points that are not finite are left out, also by getFitnessScore(), unless
 /// setSearchMethodTarget() gave it another tree; align() uses no such tree. Estimations, rejectors, RANSAC, the
 /// Euclidean fitness epsilon and the visualization callback have no effect. The target is prepared by the first align()

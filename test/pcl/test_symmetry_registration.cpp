@@ -477,6 +477,21 @@ TEST(RegisterClouds, SaysHowUncertainThePoseIs) {
   EXPECT_LT(errors.mean_sq_distance, 6.0 * 2.0);
 }
 
+TEST(RegisterClouds, WhatOneScanShowsAloneDoesNotPull) {
+  const Scan from_left = test::scan(blockChair(), {3.0, -6.0, 4.0}),
+             from_right = test::scan(blockChair(), {-3.0, -6.0, 4.0});
+  const auto degreesOff = [&](bool refine_closely) {
+    CloudRegistrationOptions options;
+    options.refine_closely = refine_closely;
+    options.around = PoseNeighborhood{20.0 * kDegree, 1.0};
+    const CloudRegistration found = registerClouds(from_left.cloud(), from_left.visibility(), from_right.cloud(),
+                                                   from_right.visibility(), motion(10.0 * kDegree, 0.1), options);
+    return Eigen::AngleAxisd(found.T_target_source.linear()).angle() / kDegree;
+  };
+  EXPECT_LT(degreesOff(true), 0.1);
+  EXPECT_GT(degreesOff(false), 0.2);
+}
+
 TEST(RegisterClouds, RefusesPointsWithoutExtentAndBadOptions) {
   const Points points = blockOnBox(1);
   const auto start = Eigen::Isometry3d::Identity();
