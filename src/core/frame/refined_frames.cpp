@@ -115,7 +115,7 @@ void bringToSymmetry(const Detection& found, SymmetryFrame& frame) {
     int nearest = 0;
     (frame.axes.transpose() * axis.direction).cwiseAbs().maxCoeff(&nearest);
     bringToLine({axis.point, axis.direction}, nearest, frame);
-    if (frame.revolution_axis < 0) frame.revolution_axis = nearest;
+    frame.revolution_axis = nearest;
   }
 }
 

@@ -178,7 +178,7 @@ struct RoughShares {
 /// What a line is, as far as one scan can tell.
 struct JudgedLine {
   Line3d line;
-  SymmetryRotation rotation;  ///< without a place
+  SymmetryRotation rotation;  ///< without a position
   double margin;              ///< marginOf()
 };
 
