@@ -232,7 +232,7 @@ std::vector<PicturePanel> panelsOf(const Findings& findings) {
   for (std::size_t k = 0; k < findings.planes.size() && panels.size() < kMostPanels; ++k) {
     const SymmetryPlane& plane = findings.planes[k];
     const std::string judged = plane.reasons.empty() ? "" : formatted("confidence %.2f, ", plane.confidence),
-                      where = findings.viewpoint ? formatted(" where seen (%.0f %%)", 100.0 * plane.seen) : "";
+                      where = findings.viewpoint ? formatted(" of %.0f %% seen", 100.0 * plane.seen) : "";
     PicturePanel& panel = add(formatted("plane %zu (%s): %ssupport %.2f%s", k + 1, toString(plane.kind), judged.c_str(),
                                         plane.support, where.c_str()));
     panel.support.assign(findings.support[k].begin(), findings.support[k].end());

@@ -39,8 +39,8 @@ struct SceneOptions {
   /// Cuts objects that touch apart where their surface bends inwards, and joins pieces that one symmetry explains.
   bool separate = true;
   bool frames = true;  ///< finds the frame of each object
-  /// Completes objects whose best plane, or a plane through their axis, decides. Another plane of confidence 0.8
-  /// or more is taken where it adds more points; a best one that lies along the view adds next to none.
+  /// Completes objects whose best plane, or a plane through their axis or center, decides. Another plane of confidence
+  /// 0.8 or more is taken where it adds more points; a best one that lies along the view adds next to none.
   bool complete = true;
   DetectionOptions detection;      ///< of the planes of each object
   FrameOptions frame;              ///< of the frame of each object
@@ -63,8 +63,8 @@ struct SupportingPlane {
 struct SceneObject : Detection {
   pcl::Indices indices;                ///< of its points, into the scene
   std::optional<SymmetryFrame> frame;  ///< nothing without SceneOptions::frames
-  /// The plane that the object was completed by: the best one, another one that adds more, or through the axis and
-  /// across the view. Nothing where no plane decides.
+  /// The plane that the object was completed by: the best one, another one that adds more, or through the axis or
+  /// center and across the view. Nothing where no plane decides.
   std::optional<ReflectionPlane> completed_by;
   pcl::PointCloud<pcl::PointXYZ> added;  ///< points that this reflection adds to the cluster
   Recognition models;                    ///< best first; empty without a database, and where the object is unknown

@@ -69,10 +69,9 @@ bool isCutOut(const Cloud& scene, const SceneAnalysis& found) {
   constexpr double curved = 0.35;  // plane distances, root mean square; points spread evenly have 0.58
   if (!scene.isOrganized()) return false;
   for (const SupportingPlane& support : found.supports) {
-    const Eigen::Vector4d plane = support.coefficients;
     double sum = 0.0;
     for (const int i : support.indices) {
-      const double distance = plane.dot(scene[i].getVector3fMap().cast<double>().homogeneous());
+      const double distance = support.coefficients.dot(scene[i].getVector3fMap().cast<double>().homogeneous());
       sum += distance * distance;
     }
     if (std::sqrt(sum / static_cast<double>(support.indices.size())) < curved * found.plane_distance) return false;

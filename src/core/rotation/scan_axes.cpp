@@ -191,16 +191,15 @@ public:
 
   /// The best rotations about a line.
   std::optional<JudgedLine> judged(const Line3d& line) const {
-    constexpr OffLimits rough = kRoughLimits;
     const RoughShares roughly{evidence_, line};
     std::optional<JudgedLine> best;
     const auto take = [&](const JudgedLine& judged) {
       if (!best || judged.margin > best->margin) best = judged;
     };
-    if (rough.allow(roundRotations(roughly, rough))) take(exactly(line, 0));
+    if (kRoughLimits.allow(roundRotations(roughly, kRoughLimits))) take(exactly(line, 0));
     for (int fold = max_fold_; fold >= 2; --fold) {
       if (best && best->margin > 0.0) break;
-      if (rough.allow(rotationsOfFold(roughly, fold, 0.0, rough))) take(exactly(line, fold));
+      if (kRoughLimits.allow(rotationsOfFold(roughly, fold, 0.0, kRoughLimits))) take(exactly(line, fold));
     }
     return best;
   }

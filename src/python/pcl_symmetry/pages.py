@@ -136,7 +136,7 @@ def page_of_planes(found: Planes, points: Any) -> Page:
     for k, plane in enumerate(found.every):
         support = _bytes(support_colors(found.point_support(k).reshape(-1)[panels.rows])) if found._support else None
         square = dict(corners=panels.inside(corners_of(plane, panels.used)), color=_COLORS[k % len(_COLORS)])
-        where = "" if found.viewpoint is None else f" where seen ({100 * plane.seen:.0f} %)"
+        where = "" if found.viewpoint is None else f" of {100 * plane.seen:.0f} % seen"
         label = f"plane {k + 1} ({plane.kind}): confidence {plane.confidence:.2f}, support {plane.support:.2f}{where}"
         panels.add(label, planes=[square], has_support=support is not None, point_colors=support)
     if not panels.panels:

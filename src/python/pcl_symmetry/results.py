@@ -1030,7 +1030,7 @@ class SceneObject(Result):
     frame: Optional[Frame]
     """None without scene(frames=True)."""
     completed_by: Optional[ReflectionPlane]
-    """The plane that it was completed by: its best one, or through its axis and across the view; None where none decides."""
+    """The plane that it was completed by: its best one, or through its axis or center and across the view; None where none decides."""
     added: NDArray[np.float32]
     """(M, 3) points that this reflection adds."""
     models: List["Recognized"]
