@@ -28,7 +28,8 @@ Eigen::Vector3d cividis(double value) {
   const auto color = [](std::uint32_t code) -> Eigen::Vector3d {
     return Eigen::Vector3d((code >> 16) & 255, (code >> 8) & 255, code & 255) / 255.0;
   };
-  const double position = (std::isfinite(value) ? std::clamp(value, 0.0, 1.0) : 0.0) * (anchors.size() - 1);
+  if (!std::isfinite(value)) return segmentColor(-1);
+  const double position = std::clamp(value, 0.0, 1.0) * (anchors.size() - 1);
   const std::size_t lower = std::min(static_cast<std::size_t>(position), anchors.size() - 2);
   const double weight = position - static_cast<double>(lower);
   return (1 - weight) * color(anchors[lower]) + weight * color(anchors[lower + 1]);

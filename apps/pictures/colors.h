@@ -13,7 +13,7 @@ Eigen::Vector3d distinctColor(std::size_t index);
 Eigen::Vector3d segmentColor(int segment);
 
 /// \param value in [0, 1], clamped.
-/// \return its color on the cividis scale (dark blue to yellow).
+/// \return its color on the cividis scale (dark blue to yellow); gray for NaN.
 Eigen::Vector3d cividis(double value);
 
 }  // namespace pcl_symmetry::apps

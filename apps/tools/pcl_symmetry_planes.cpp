@@ -55,7 +55,8 @@ CommandLine commandLine(PlanesOptions& options) {
                "picture: cloud, planes and support, best planes first; three slices of a volume and its asymmetry")
       .page("html", options.html_path, "page with the same in three dimensions, for any browser, without network")
       .text("support", "FILE", options.support_path,
-            "cloud with one more field per plane, support_1, support_2 ...: how well the point supports the plane")
+            "cloud with one more field per plane, support_1, support_2 ...: how well the point supports the plane, NaN "
+            "where that was not seen")
       .text(
           "profile", "FILE", options.profile_path,
           "profile of a body of revolution, .csv or .svg: radius, height, spread and number of points along the curve "
@@ -314,6 +315,10 @@ Findings search(const FileJob& job, const InputShape& input, const PlanesOptions
   if (!input.volume && (options.support_path || options.png_path || options.html_path))
     findings.support =
         refinement.computePointSupport(std::vector<ReflectionPlane>(findings.planes.begin(), findings.planes.end()));
+  if (findings.viewpoint)  // what the search says of each point, which knows what the scanner could not see
+    for (std::size_t k = 0; k < findings.support.size(); ++k)
+      for (std::size_t i = 0; i < findings.planes[k].point_support.size(); ++i)
+        findings.support[k][refinement.getUsedIndices()[i]] = findings.planes[k].point_support[i];
   return findings;
 }
 

@@ -62,7 +62,8 @@ struct SymmetryPlane : ReflectionPlane {
   /// scans and where a piece of the surface is missing.
   double seen = 1.0;
   /// One value in [0, 1] per point used, in their order: 1 where the reflection is as close to the surface as samples
-  /// of a surface are to each other, falling to 0 beyond. In large clouds, points take that of one near them.
+  /// of a surface are to each other, falling to 0 beyond; NaN where the scanner could not see whether it is. In large
+  /// clouds, points take that of one near them.
   std::vector<float> point_support;
   std::vector<Reason> reasons;  ///< of confidence and kind, in the order of the rules; none as published
   int iterations = 0;           ///< of Iterative Symmetric Points, in all stages

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <optional>
 #include <utility>
 
@@ -207,7 +208,9 @@ std::optional<MiddlePlane> middlePlaneOfBox(const PointsRef& points, const Eigen
   middle.plane = ReflectionPlane(box.axes[across], 0.5 * (box.sides[across][0] + box.sides[across][1])).canonical();
   const std::vector<Meets> met = meetingsAt(reflectedPoints(points, middle.plane), points, viewpoint, reach);
   for (std::size_t i = 0; i < met.size(); ++i) {
-    middle.point_support.push_back(met[i] == Meets::Surface ? 1.0f : 0.0f);
+    middle.point_support.push_back(met[i] == Meets::Surface   ? 1.0f
+                                   : met[i] == Meets::Nothing ? 0.0f
+                                                              : std::numeric_limits<float>::quiet_NaN());
     if (2.0 * std::abs(middle.plane.signedDistance(points.col(i).cast<double>())) <= reach) continue;
     middle.num_moved += 1.0;
     middle.num_met += met[i] == Meets::Surface ? 1.0 : 0.0;

@@ -22,7 +22,7 @@ struct MiddlePlane {
   ReflectionPlane plane;
   double confidence = 0.0;                                ///< that it is a symmetry, in [0, 1]
   double num_moved = 0.0, num_met = 0.0, num_free = 0.0;  ///< points that it moves, onto the surface, into free space
-  std::vector<float> point_support;                       ///< of each point: 1 where its reflection meets the surface
+  std::vector<float> point_support;                       ///< of each point: that of SymmetryPlane
   double residual = 0.0;  ///< root mean square distance of the points from the sides of the box
 };
 

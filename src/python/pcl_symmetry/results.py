@@ -80,7 +80,9 @@ def _text(value: Any) -> str:
     value = list(value) if isinstance(value, (list, tuple)) else _plain(value)
     if isinstance(value, list):
         return "[" + ", ".join(map(_text, value)) + "]"
-    return f"{value:.4g}" if isinstance(value, float) else repr(value)
+    if isinstance(value, float):
+        return f"{value:.4g}" if abs(value) < 1e4 else f"{value:.10g}"  # those of maps to the millimeter
+    return repr(value)
 
 
 def shown(value: Any) -> str:
@@ -527,8 +529,9 @@ class Planes(Result):
         return [*self.planes, *self.possible, *self.approximate]
 
     def point_support(self, index: Union[int, Plane]) -> NDArray[np.float32]:
-        """Support for one of `every`, or its index, at each point of the input, in [0, 1]; NaN for points that were not used.
+        """Support for one of `every`, or its index, at each point of the input, in [0, 1].
 
+        NaN for points that were not used, and where the scanner could not see whether their reflection lies on the surface.
         (N,) for rows, (H, W) for an organized array, (M,) for a mesh: that of its samples.
         """
         import numpy as np
@@ -910,7 +913,7 @@ class Registration(Result):
 
     _in_repr = ("transform", "confidence", "converged")
     transform: NDArray[np.float64]
-    """(4, 4) from the frame of the source to that of the target."""
+    """(4, 4) from the frame of the source to that of the target; where it did not converge, the best pose that was found."""
     score: PoseScore
     """Of the transform."""
     converged: bool
