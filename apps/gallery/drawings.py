@@ -20,6 +20,7 @@ Needs python3-matplotlib, python3-open3d, pcl_symmetry_scan and pcl_symmetry_pla
 import subprocess
 import sys
 import tempfile
+import textwrap
 from pathlib import Path
 
 import matplotlib
@@ -351,7 +352,8 @@ def decision(out, path, *numbers):
             at = height - k
             ends = [o / (1 + o) for o in (before, odds)]
             line[2].annotate("", (ends[1], at), (ends[0], at), arrowprops=dict(arrowstyle="-|>", color="#444444", lw=1.6))
-            line[2].text(0.5, at + 0.18, f"odds x {factor:.2g}: {reason}", fontsize=8, ha="center", va="bottom")
+            text = textwrap.fill(f"odds x {factor:.2g}: {reason}", 48)
+            line[2].text(0.5, at + 0.18, text, fontsize=8, ha="center", va="bottom")
         for low, high, name, color in ((0, 0.2, "no symmetry", "#EEEEEE"), (0.2, 0.5, "possible", "#FBE9C6"), (0.5, 1, "symmetry", "#CDE8DC")):
             line[2].axvspan(low, high, color=color, zorder=0)
             line[2].text((low + high) / 2, 0.08, name, ha="center", fontsize=8, color="#444444")
