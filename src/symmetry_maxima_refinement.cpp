@@ -27,11 +27,12 @@ Detection planesAsPublished(const Points& points, const GaussianEdt* edt, const 
 }
 
 std::vector<std::vector<float>> pointSupport(const SelectedPoints& all, std::size_t cloud_size, const Points& samples,
-                                             const std::vector<ReflectionPlane>& planes, int num_threads) {
+                                             const std::vector<ReflectionPlane>& planes, const Visibility* seen,
+                                             int num_threads) {
   std::vector<std::vector<float>> support(planes.size(),
                                           std::vector<float>(cloud_size, std::numeric_limits<float>::quiet_NaN()));
   if (samples.cols() == 0) return support;
-  const std::vector<std::vector<float>> finite = planeSupport(all.points, samples, planes, num_threads);
+  const std::vector<std::vector<float>> finite = planeSupport(all.points, samples, planes, seen, num_threads);
   for (std::size_t k = 0; k < planes.size(); ++k)
     for (std::size_t i = 0; i < finite[k].size(); ++i) support[k][all.indices[i]] = finite[k][i];
   return support;

@@ -101,11 +101,7 @@ def completed(points: Array, found: pcl_symmetry.SceneObject) -> Array:
 def one_object(points: Array, mask: Array) -> None:
     """The same for an object that something else has found, such as a neural network: its mask is enough."""
     found = pcl_symmetry.planes(points, indices=mask)
-    by = [*found.centers, *found.axes, *found]  # of a ball, a body of revolution, or another object
-    if not by:
-        print("mask: no plane of symmetry", found.reason)
-        return
-    added, _ = pcl_symmetry.complete(points, by[0], indices=mask)
+    added, _ = pcl_symmetry.complete(points, indices=mask)
     frame = pcl_symmetry.frame(points, indices=mask)
     print(f"mask: {len(found)} planes, {len(added)} points added, center {frame.center.round(3)}")
 

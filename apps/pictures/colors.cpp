@@ -16,6 +16,7 @@ Eigen::Vector3d distinctColor(std::size_t index) {
 }
 
 Eigen::Vector3d segmentColor(int segment) {
+  if (segment == kUnseenSegment) return {0.79, 0.70, 0.87};
   if (segment < 0) return Eigen::Vector3d::Constant(0.75);
   constexpr int kNumColors = 8;  // the colors of Okabe and Ito
   const double white = 1.0 - std::pow(0.65, segment / kNumColors);
@@ -28,7 +29,7 @@ Eigen::Vector3d cividis(double value) {
   const auto color = [](std::uint32_t code) -> Eigen::Vector3d {
     return Eigen::Vector3d((code >> 16) & 255, (code >> 8) & 255, code & 255) / 255.0;
   };
-  if (!std::isfinite(value)) return segmentColor(-1);
+  if (!std::isfinite(value)) return segmentColor(kUnseenSegment);
   const double position = std::clamp(value, 0.0, 1.0) * (anchors.size() - 1);
   const std::size_t lower = std::min(static_cast<std::size_t>(position), anchors.size() - 2);
   const double weight = position - static_cast<double>(lower);

@@ -9,11 +9,15 @@ namespace pcl_symmetry::apps {
 /// Eight colors that remain apart for color-blind eyes (Okabe and Ito), repeated from the start when they run out.
 Eigen::Vector3d distinctColor(std::size_t index);
 
-/// The color of a segment: distinct colors, lighter with each round; gray for numbers below 0.
+/// Points of which the scanner could not see whether they support a plane.
+constexpr int kUnseenSegment = -2;
+
+/// The color of a segment: distinct colors, lighter with each round; violet for kUnseenSegment, gray for others below
+/// 0.
 Eigen::Vector3d segmentColor(int segment);
 
 /// \param value in [0, 1], clamped.
-/// \return its color on the cividis scale (dark blue to yellow); gray for NaN.
+/// \return its color on the cividis scale (dark blue to yellow); violet for NaN.
 Eigen::Vector3d cividis(double value);
 
 }  // namespace pcl_symmetry::apps

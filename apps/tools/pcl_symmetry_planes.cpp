@@ -99,6 +99,10 @@ struct Findings : Detection {
   std::vector<std::vector<float>> support;   ///< of each plane, by every point; empty where no output shows it
 
   bool empty() const { return planes.empty() && axes.empty() && centers.empty() && rotations.empty(); }
+  bool hasSymmetry() const {
+    const auto is_symmetry = [](const SymmetryPlane& plane) { return plane.kind == PlaneKind::Symmetry; };
+    return !axes.empty() || !centers.empty() || std::any_of(planes.begin(), planes.end(), is_symmetry);
+  }
 };
 
 /// a, b, c and d of a plane.
@@ -238,6 +242,7 @@ std::vector<PicturePanel> panelsOf(const Findings& findings) {
                                         plane.support, where.c_str()));
     panel.support.assign(findings.support[k].begin(), findings.support[k].end());
     panel.planes = {{plane.normal(), plane.offset(), Eigen::Vector3d::Zero(), 0.0, distinctColor(k)}};
+    if (findings.viewpoint) panel.legend = {{kUnseenSegment, "not seen"}};
   }
   if (panels.empty()) panels.push_back({"no symmetry plane"});
   return panels;
@@ -315,10 +320,6 @@ Findings search(const FileJob& job, const InputShape& input, const PlanesOptions
   if (!input.volume && (options.support_path || options.png_path || options.html_path))
     findings.support =
         refinement.computePointSupport(std::vector<ReflectionPlane>(findings.planes.begin(), findings.planes.end()));
-  if (findings.viewpoint)  // what the search says of each point, which knows what the scanner could not see
-    for (std::size_t k = 0; k < findings.support.size(); ++k)
-      for (std::size_t i = 0; i < findings.planes[k].point_support.size(); ++i)
-        findings.support[k][refinement.getUsedIndices()[i]] = findings.planes[k].point_support[i];
   return findings;
 }
 
@@ -398,7 +399,7 @@ void analyze(const PlanesOptions& options, FileJob& job) {
   const Findings findings = search(job, input, options);
   if (options.ground && !findings.viewpoint)
     job.console().warn(input.path + ": -ground has no effect without a viewpoint (-viewpoint)");
-  if (findings.empty() && !input.volume && input.points->isOrganized() && !options.label)
+  if (findings.viewpoint && !findings.hasSymmetry() && input.points->isOrganized() && !options.label)
     job.console().warn(input.path + ": if this is a whole frame, pcl_symmetry_scene finds its objects");
   const std::string table = tableOf(findings, input.shift()) + (options.explain ? explained(findings) : "");
   job.report({table, describe(input, findings), rowsOf(findings, input.shift())});

@@ -120,6 +120,7 @@ int run(int argc, char** argv) {
     throw UsageError("only one of -direction, -corner and -all may be given");
   checkCloudExtension(options.output);
   line.goWith("an output of PCD", !boost::algorithm::iends_with(options.output, ".ply"), {"format"});
+  line.goWith("-noise or -random_pose", options.scanner.noise > 0.0 || options.scanner.random_pose, {"seed"});
   const std::vector<View> views = viewsOf(options);
   for (const View& view : views) checkTarget(view.path);
   isStandardOutputFree({options.output, options.common.json_path});

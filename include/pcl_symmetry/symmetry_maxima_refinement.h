@@ -123,7 +123,8 @@ public:
 
   /// Tells how well a plane maps each point onto the surface.
   /// \return the support for a plane at each point of the input cloud, also at points that compute() did not use, in
-  /// [0, 1]; NaN for points that are not finite, and for all points where compute() has not given an answer.
+  /// [0, 1]; NaN for points that are not finite, where the scanner could not see whether the reflection lies on the
+  /// surface, and for all points where compute() has not given an answer.
   std::vector<float> computePointSupport(const ReflectionPlane& plane) const;
   /// The same of several planes, faster than one by one: the surface of the points is made once.
   std::vector<std::vector<float>> computePointSupport(const std::vector<ReflectionPlane>& planes) const;

@@ -14,6 +14,7 @@
 #include "pcl_symmetry/planar_symmetry_transform.h"
 #include "pcl_symmetry/symmetry_detection.h"
 #include "shapes/found_planes.h"
+#include "shapes/scans.h"
 
 namespace pcl_symmetry {
 namespace {
@@ -47,6 +48,31 @@ TEST(SymmetryMaximaRefinement, HonorsIndicesAndLeavesOutPointsThatAreNotFinite) 
   EXPECT_EQ(
       static_cast<std::size_t>(std::count_if(support.begin(), support.end(), [](float s) { return std::isnan(s); })),
       holes->size() - cloud->size());
+}
+
+/// Also for points that were not used, and where the scanner could not see.
+TEST(SymmetryMaximaRefinement, SupportOfEveryPointIsThatOfThePlane) {
+  const auto cloud = test::pictureOf(test::scan(test::blockChair(), {3.0, -4.0, 3.0}));
+  SymmetryMaximaRefinement<pcl::PointXYZ> refinement;
+  refinement.setInputCloud(cloud);
+  refinement.setMaxPoints(2000);
+  const auto planes = refinement.compute();
+  ASSERT_FALSE(planes.empty());
+  const std::vector<float> support = refinement.computePointSupport(planes[0]);
+  double num_points = 0.0, num_seen = 0.0, sum = 0.0;
+  for (std::size_t i = 0; i < cloud->size(); ++i) {
+    if (!pcl::isXYZFinite((*cloud)[i])) continue;
+    num_points += 1.0;
+    if (std::isnan(support[i])) continue;
+    num_seen += 1.0;
+    sum += support[i];
+  }
+  EXPECT_LT(planes[0].seen, 0.9);
+  EXPECT_NEAR(num_seen / num_points, planes[0].seen, 0.05);
+  EXPECT_NEAR(sum / num_seen, planes[0].support, 0.05);
+  const auto is_unseen = [](float value) { return std::isnan(value); };
+  const std::vector<float>& used = planes[0].point_support;
+  EXPECT_NEAR(std::count_if(used.begin(), used.end(), is_unseen), (1.0 - planes[0].seen) * 2000.0, 100.0);
 }
 
 TEST(SymmetryMaximaRefinement, TakesAnySearchMethod) {

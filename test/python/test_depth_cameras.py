@@ -250,6 +250,7 @@ class OrganizedArrays(unittest.TestCase):
         self.assertEqual(found, pcl_symmetry.planes(self.frame, indices=np.flatnonzero(mask)))
         self.assert_says_what_was_seen(found, mask)
         added, rows = pcl_symmetry.complete(self.frame, found[0], indices=mask)
+        np.testing.assert_array_equal(pcl_symmetry.complete(self.frame, indices=mask)[1], rows)
         self.assertTrue(mask.ravel()[rows].all())
         np.testing.assert_allclose(found[0].reflect(self.frame.reshape(-1, 3)[rows]), added, atol=1e-6)
         self.assertTrue(pcl_symmetry.frame(self.frame, indices=mask))
@@ -261,6 +262,8 @@ class OrganizedArrays(unittest.TestCase):
                 pcl_symmetry.planes(self.frame, indices=wrong)
         with self.assertWarnsRegex(RuntimeWarning, "points: .*distinct point"):
             self.assertIn("distinct point", pcl_symmetry.planes(self.frame, indices=[int(np.flatnonzero(mask)[0])]).reason)
+        with self.assertWarnsRegex(RuntimeWarning, "points: no symmetry; if this is a whole frame"):
+            self.assertTrue(pcl_symmetry.planes(self.frame).possible)
 
     def test_a_scene_has_a_small_ball(self):
         """Of 800 pixels, all that is not the table."""
@@ -299,7 +302,9 @@ class OrganizedArrays(unittest.TestCase):
             self.assertIn("plane 1", each.planes.show(self.frame).html)
             if importlib.util.find_spec("matplotlib"):
                 self.assertTrue(each.planes.plot(self.frame).collections)
-        self.assertLess(len(repr(scene)), 2000)
+        self.assertRegex(repr(scene), r"^Scene\(objects=\[SceneObject\(points=\d+, planes=\d.*, added=\d+\), .*supports=\[")
+        with self.assertRaisesRegex(ValueError, r"planes\(points, indices=object.rows\) has it"):
+            scene[0].planes.point_support(0)
         page = scene.show(self.frame)
         shown = json.loads(page.html.split('id="scene">')[1].split("</script>")[0])
         self.assertEqual(len(shown["panels"]), 3)
@@ -528,6 +533,8 @@ class Answers(unittest.TestCase):
         as_they_are = [plane.coefficients, plane.coefficients.tolist(), pcl_symmetry.ReflectionPlane(plane.normal, plane.offset)]
         rows = {pcl_symmetry.complete(blob, each)[1].tobytes() for each in as_they_are}
         self.assertEqual(len(rows), 1)
+        with self.assertWarnsRegex(RuntimeWarning, "no symmetry, nothing is added"):
+            self.assertEqual([len(each) for each in pcl_symmetry.complete(blob)], [0, 0])
         self.assertEqual([each["kind"] for each in json.loads(every.to_json())["planes"]], [each.kind for each in every.approximate])
 
     def test_cannot_be_written_into(self):

@@ -1026,6 +1026,7 @@ class Package(unittest.TestCase):
         calls = [
             (ValueError, lambda: rotations.canonical(np.eye(3)), r"pose = .*, must be numbers of shape \(4, 4\)"),
             (TypeError, lambda: s.viewpoints(None), "points = None, must be an array"),
+            (ValueError, lambda: s.planes((box(), [[0, 1, 2]])), r"points = tuple of length 2, must be \(N, 3\), Shape"),
             (TypeError, lambda: s.planes(box()).point_support("first"), "index = 'first', must be int or a plane of this answer"),
             (ValueError, lambda: s.planes(box()).point_support(s.planes(lamp(), approximate=True).every[0]), r"index = Plane\(.*must be a plane of"),
             (TypeError, lambda: s.symmetrize(box(), plane, half=3), "half = 3, must be str"),
@@ -1051,7 +1052,7 @@ class Package(unittest.TestCase):
         for arguments, words in (
             ((vertices, faces[:, :2]), r"faces = array of shape \(\d+, 2\), must be \(F, 3\)"),
             ((vertices, [[0, 1, 2.5], [0, 1]]), "faces = no numbers, must be"),
-            (((vertices, faces[:9]), faces), "points: .*must be"),
+            (((vertices, faces[:9]), faces), "points = .*must be"),
         ):
             with self.assertRaisesRegex((ValueError, TypeError), words) as raised:
                 pcl_symmetry.Merging(*arguments)

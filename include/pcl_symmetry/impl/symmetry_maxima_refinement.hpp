@@ -21,9 +21,11 @@ Detection planesOfVolume(const InputVolume& volume, const DetectionOptions& opti
 /// \param all finite points of a cloud.
 /// \param cloud_size points of the cloud.
 /// \param samples 3 x N, finite, the surface that reflected points are compared with, same frame; N = 0: no surface.
+/// \param seen what the scanner saw of the cloud; null: it shows its object from all sides.
 /// \return for each plane its support at each point of the cloud, in [0, 1]; NaN where it is not known.
 std::vector<std::vector<float>> pointSupport(const SelectedPoints& all, std::size_t cloud_size, const Points& samples,
-                                             const std::vector<ReflectionPlane>& planes, int num_threads);
+                                             const std::vector<ReflectionPlane>& planes, const Visibility* seen,
+                                             int num_threads);
 
 }  // namespace detail
 
@@ -77,7 +79,7 @@ std::vector<std::vector<float>> SymmetryMaximaRefinement<PointT>::computePointSu
     const std::vector<ReflectionPlane>& planes) const {
   if (!input_) return std::vector<std::vector<float>>(planes.size());
   const detail::SelectedPoints all = detail::selectPoints(*input_, nullptr, input_->size(), 0);
-  return detail::pointSupport(all, input_->size(), samples_, planes, options_.num_threads);
+  return detail::pointSupport(all, input_->size(), samples_, planes, this->seen(), options_.num_threads);
 }
 
 }  // namespace pcl_symmetry

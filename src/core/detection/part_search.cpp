@@ -46,7 +46,7 @@ MatchedRegions::MatchedRegions(const NormalizedCloud& cloud, const PlaneFit& fit
 MatchedRegion MatchedRegions::largest(const ReflectionPlane& plane, const std::vector<int>* guesses, bool walks) const {
   const IspSurface& surface = walks && !cloud_.seen() ? cloud_.nearly : cloud_.surface;
   IspStep step = matchSymmetricPoints(surface, samples_, plane, cloud_.final_sigma, guesses);
-  const std::vector<float> support = fit_.shares(plane, samples_, step).point_support;
+  const std::vector<float> support = fit_.shares(plane, samples_, step).points.support;
   const std::size_t size = samples_.size(), num_neighbors = neighbors_.size() / size;
   std::vector<char> matched(size);
   for (std::size_t i = 0; i < size; ++i) {

@@ -211,7 +211,7 @@ bool isOf(const std::optional<PlaneLattice>& polygon, const SymmetryPlane& plane
 void completeSupport(SymmetryPlane& plane, const JudgedCloud& judged) {
   const NormalizedCloud& cloud = judged.cloud;
   if (static_cast<Eigen::Index>(plane.point_support.size()) == cloud.points.cols()) return;
-  plane.point_support = judged.fit->shares(cloud.toNormalized(plane), allOf(cloud.points.cols())).seenSupport();
+  plane.point_support = judged.fit->shares(cloud.toNormalized(plane), allOf(cloud.points.cols())).points.seenSupport();
 }
 
 /// An approximate plane that is a symmetry of a part is reported as that.

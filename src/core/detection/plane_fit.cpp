@@ -74,8 +74,7 @@ public:
     PointEvidence evidence = pointEvidence(reflectedPoints(pointsAt(cloud_.points, samples), plane),
                                            reflectedNormals(pointsAt(cloud_.geometry.normals, samples), plane),
                                            step.closest, cloud_.samples, cloud_.seen(), options_.num_threads);
-    return {meanSupport(evidence.support), meanSupport(evidence.conflict), std::move(evidence.support),
-            std::move(evidence.conflict)};
+    return {meanSupport(evidence.support), meanSupport(evidence.conflict), std::move(evidence)};
   }
 
   double merit(const PlaneShares& shares) const override {
@@ -186,13 +185,6 @@ private:
 
 }  // namespace
 
-std::vector<float> PlaneShares::seenSupport() const {
-  std::vector<float> seen = point_support;
-  for (std::size_t i = 0; i < seen.size(); ++i)
-    if (point_support[i] + point_conflict[i] < 0.5f) seen[i] = std::numeric_limits<float>::quiet_NaN();
-  return seen;
-}
-
 std::unique_ptr<PlaneFit> makePlaneFit(const NormalizedCloud& cloud, const DetectionOptions& options) {
   if (cloud.kind() == CloudKind::Volume) return std::make_unique<VolumeFit>(cloud, options);
   return std::make_unique<SurfaceFit>(cloud, options);
@@ -200,7 +192,7 @@ std::unique_ptr<PlaneFit> makePlaneFit(const NormalizedCloud& cloud, const Detec
 
 std::vector<float> surfaceSupport(const NormalizedCloud& cloud, const ReflectionPlane& plane,
                                   const DetectionOptions& options) {
-  return SurfaceFit(cloud, options).shares(plane, allOf(cloud.points.cols())).seenSupport();
+  return SurfaceFit(cloud, options).shares(plane, allOf(cloud.points.cols())).points.seenSupport();
 }
 
 std::vector<Candidate> gatherCandidates(const NormalizedCloud& cloud, const SymmetryMap& map,

@@ -14,13 +14,9 @@ namespace pcl_symmetry {
 
 /// How samples support one plane.
 struct PlaneShares {
-  double support;                    ///< mean over the samples: the reflection lies on the surface
-  double conflict;                   ///< mean over the samples: the reflection lies where there is nothing
-  std::vector<float> point_support;  ///< of each sample, in [0, 1]
-  std::vector<float> point_conflict;
-
-  /// Support of each sample; NaN where the scanner could not see whether its reflection lies on the surface.
-  std::vector<float> seenSupport() const;
+  double support;        ///< mean over the samples: the reflection lies on the surface
+  double conflict;       ///< mean over the samples: the reflection lies where there is nothing
+  PointEvidence points;  ///< of each sample
 };
 
 /// A plane on its way through the stages of refinement, normalized frame.
@@ -101,7 +97,7 @@ protected:
   const DetectionOptions& options_;
 };
 
-/// Support of each point by the surface, also where the points resolve none; NaN as in PlaneShares::seenSupport().
+/// Support of each point by the surface, also where the points resolve none; NaN as in PointEvidence::seenSupport().
 std::vector<float> surfaceSupport(const NormalizedCloud& cloud, const ReflectionPlane& plane,
                                   const DetectionOptions& options);
 

@@ -234,7 +234,7 @@ MeasuredPlane PlaneMeasure::measured(const ReflectionPlane& plane, const std::ve
   result.plane.share_high = interval.high;
   result.plane.deviation = deviationOf(std::move(halves_ ? moved : informative)) * cloud_.scale;
   result.plane.seen = cloud_.seen() ? std::min(1.0, shares.support + shares.conflict) : 1.0 - evidence.unknown;
-  result.plane.point_support = shares.seenSupport();
+  result.plane.point_support = shares.points.seenSupport();
   result.plane.residual = step.residual * cloud_.scale;
   return result;
 }

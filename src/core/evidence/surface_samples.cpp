@@ -5,6 +5,7 @@
 #include <iterator>
 #include <limits>
 #include <numeric>
+#include <optional>
 #include <tuple>
 #include <utility>
 
@@ -250,14 +251,24 @@ double meanSupport(const std::vector<float>& support) {
   return std::accumulate(support.begin(), support.end(), 0.0) / static_cast<double>(support.size());
 }
 
+std::vector<float> PointEvidence::seenSupport() const {
+  std::vector<float> seen = support;
+  for (std::size_t i = 0; i < seen.size(); ++i)
+    if (support[i] + conflict[i] < 0.5f) seen[i] = std::numeric_limits<float>::quiet_NaN();
+  return seen;
+}
+
 std::vector<std::vector<float>> planeSupport(const PointsRef& points, const PointsRef& samples,
-                                             const std::vector<ReflectionPlane>& planes, int num_threads) {
+                                             const std::vector<ReflectionPlane>& planes, const Visibility* seen,
+                                             int num_threads) {
   const BoundingBall ball = boundingBall(samples);
   check(ball.radius > 0.0, "extent of the samples", ball.radius, "> 0");
   const Points surface = normalizePoints(samples, ball.center, ball.radius);
   const auto search = makeFlannSearch(surface);
   const SurfaceSamples described =
       surfaceSamples(surface, localGeometry(surface, *search, kNumSupportNeighbors, num_threads));
+  std::optional<Visibility> visibility;
+  if (seen) visibility = seen->normalized(ball.center, ball.radius);
   std::vector<std::vector<float>> support(planes.size(), std::vector<float>(points.cols()));
   parallelPoints(points.cols(), num_threads, [&](std::size_t begin, std::size_t end) {
     const auto size = static_cast<Eigen::Index>(end - begin);
@@ -269,9 +280,11 @@ std::vector<std::vector<float>> planeSupport(const PointsRef& points, const Poin
       for (Eigen::Index i = 0; i < size; ++i)
         reflected.col(i) =
             ((planes[k].reflect(points.col(begin + i).cast<double>()) - ball.center) / ball.radius).cast<float>();
-      const PointEvidence part = pointEvidence(reflected, reflectedNormals(normals, planes[k]),
-                                               search->closest(reflected), described, nullptr);
-      std::copy(part.support.begin(), part.support.end(), support[k].begin() + begin);
+      const std::vector<float> part =
+          pointEvidence(reflected, reflectedNormals(normals, planes[k]), search->closest(reflected), described,
+                        visibility ? &*visibility : nullptr)
+              .seenSupport();
+      std::copy(part.begin(), part.end(), support[k].begin() + begin);
     }
   });
   return support;

@@ -168,6 +168,9 @@ double shareWithin(const std::vector<float>& distances, double tolerance);
 struct PointEvidence {
   std::vector<float> support;   ///< the reflection lies on the surface
   std::vector<float> conflict;  ///< the reflection lies where the scanner saw that there is nothing
+
+  /// The support; NaN where the scanner could not see whether the reflection lies on the surface.
+  std::vector<float> seenSupport() const;
 };
 
 /// How surely a point lies in free space. A pixel without a depth means free space where the sensor is exact, and
@@ -205,10 +208,12 @@ double meanSupport(const std::vector<float>& support);
 /// \param points 3 x M, finite.
 /// \param samples 3 x N, finite, not all equal, in the same frame.
 /// \param planes in the same frame.
-/// \return for each plane M values in [0, 1].
+/// \param seen what the scanner saw, same frame; null: the samples show the surface from all sides.
+/// \return for each plane M values, PointEvidence::seenSupport().
 /// \throws std::invalid_argument where all samples coincide.
 std::vector<std::vector<float>> planeSupport(const PointsRef& points, const PointsRef& samples,
-                                             const std::vector<ReflectionPlane>& planes, int num_threads = 0);
+                                             const std::vector<ReflectionPlane>& planes,
+                                             const Visibility* seen = nullptr, int num_threads = 0);
 
 /// A cloud in two halves: how much of one half lies on the surface that the other describes.
 ///

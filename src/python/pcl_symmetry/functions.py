@@ -173,8 +173,8 @@ def parts_of(name: str, points: Any) -> Tuple[NDArray[Any], Any]:
     faces = None if faces is None or not len(faces) else _array(faces)
     try:
         array = _array(points)
-    except ValueError as error:
-        raise ValueError(f"{name}: {error}, must be (N, 3)") from None
+    except ValueError:  # rows of different lengths
+        raise ValueError(f"{name} = {shown(points)}, must be (N, 3), Shape(points, faces) for a mesh") from None
     if array.ndim == 0 and not isinstance(points, np.ndarray):  # a number, a dict, a generator
         raise TypeError(f"{name} = {type(points).__name__}, must be an array of shape (N, 3)")
     if array.ndim in (2, 3) and array.shape[-1] != 3:
@@ -478,7 +478,7 @@ def planes(
         is (3, 3) with the axes of the grid in columns. levels: (low, high) intensities that count; None: chosen.
         confidence is then 0 for a plane like any other and 1 where both halves are equal, and support a correlation.
         Of the other parameters approximate, max_planes, seed and threads count; the rest is refused.
-    Raises ValueError for bad parameters; points that hold no answer, such as too few, are warned of (RuntimeWarning).
+    Raises ValueError for bad parameters; points that hold no answer, such as too few, and whole frames are warned of (RuntimeWarning).
     """
     import numpy as np
 
@@ -527,6 +527,9 @@ def planes(
         may_be_rings=used.may_be_rings,
     )
     result = _planes_of(found, cloud, used)
+    has_symmetry = result.planes or result.axes or result.centers or result.reason
+    if len(cloud.shape) == 2 and indices is None and result.viewpoint is not None and not has_symmetry:
+        warnings.warn("points: no symmetry; if this is a whole frame, scene() finds its objects", RuntimeWarning, stacklevel=2)
     return result if cloud.shift is None else result._moved(cloud.shift)
 
 
@@ -620,7 +623,7 @@ def local_symmetry(
 
 def complete(
     points: Any,
-    plane: Union[ReflectionPlane, Axis, Center, ArrayLike],
+    plane: Union[ReflectionPlane, Axis, Center, ArrayLike, None] = None,
     *,
     viewpoint: Viewpoint = "auto",
     indices: Optional[ArrayLike] = None,
@@ -630,7 +633,7 @@ def complete(
 
     points, viewpoint, indices: as in planes(); of a mesh its vertices. plane: a symmetry, or a possible one, of planes(); any
     other is refused, unless it comes as its coefficients, (4,) a, b, c, d of a x + b y + c z + d = 0. Of a body of revolution
-    its Axis, of a ball its Center: the plane through it and across the view is taken.
+    its Axis, of a ball its Center: the plane through it and across the view is taken. None: what planes() finds, with its warnings.
     Returns (added, rows). added: (M, 3) points that neither fall onto the measured surface nor into space that was seen to be
     empty. rows: (M,) the row of the point that each is the reflection of: added is plane.reflect(points.reshape(-1, 3)[rows]).
     Warns (RuntimeWarning) where nothing is added, and where the plane is only possible, with its confidence.
@@ -638,6 +641,12 @@ def complete(
     import numpy as np
 
     cloud = of_vertices("points", points)
+    if plane is None:
+        search = planes(points, viewpoint=viewpoint, indices=indices, threads=threads)
+        if not (found_by := [*search.centers, *search.axes, *search, *search.possible]):
+            warnings.warn("points: no symmetry, nothing is added", RuntimeWarning, stacklevel=2)
+            return np.empty((0, 3), np.float32), np.empty(0, np.int64)
+        plane = found_by[0]
     if isinstance(plane, Plane) and plane.kind not in ("symmetry", "possible"):
         raise ValueError(
             f"plane.kind = {plane.kind}, must be symmetry or possible; plane.coefficients are taken as they are"

@@ -145,11 +145,11 @@ def page_of_planes(found: Planes, points: Any) -> Page:
 
 
 def support_colors(support: Any) -> Any:
-    """(N, 3) bytes for support in [0, 1], gray for NaN."""
+    """(N, 3) bytes for support in [0, 1], violet for NaN: not seen."""
     at = np.clip(np.nan_to_num(support), 0, 1)[:, None] * (len(_SCALE) - 1)
     low = np.minimum(at.astype(int), len(_SCALE) - 2)[:, 0]
     colors = _SCALE[low] + (at - low[:, None]) * (_SCALE[low + 1] - _SCALE[low])
-    return np.where(np.isnan(support)[:, None], 191, colors.round()).astype(np.uint8)
+    return np.where(np.isnan(support)[:, None], (201, 179, 222), colors.round()).astype(np.uint8)
 
 
 def view_of(found: Union[Planes, Scene], points: Any) -> Tuple[Any, ...]:

@@ -424,13 +424,13 @@ class View(Result):
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Shape(Result):
-    """What read() found in a file; every function takes it as points."""
+    """What read() found in a file, or points and faces of your own; every function takes it as points."""
 
     points: NDArray[Any]
     """(N, 3), or (H, W, 3) with rows and columns of a camera, NaN where nothing was measured; float64 where the file has it."""
     faces: NDArray[np.int32]
     """(F, 3) rows of points; (0, 3) of a cloud."""
-    viewpoint: Optional[NDArray[np.float64]]
+    viewpoint: Optional[NDArray[np.float64]] = None
     """(3,) where the sensor stood, which viewpoint="auto" means; None where the file says nothing of it."""
 
     def __len__(self) -> int:
@@ -542,6 +542,8 @@ class Planes(Result):
             index = self.every.index(index)
         if not isinstance(index, (int, np.integer)):
             raise TypeError(f"index = {shown(index)}, must be int or a plane of this answer")
+        if self.every and not self._support:
+            raise ValueError("an object of a scene has no support of points, planes(points, indices=object.rows) has it")
         if not -len(self._support) <= index < len(self._support):
             raise IndexError(f"index = {index}, must be that of one of {len(self._support)} planes with support")
         values = self._support[index]
@@ -1025,11 +1027,10 @@ class BuildReport(Result):
 class SceneObject(Result):
     """An object of a scene, and what was found, in the frame of the scene."""
 
-    _in_repr = ("planes", "completed_by")
     rows: NDArray[np.int64]
     """(K,) of its points in the flattened scene."""
     planes: Planes
-    """As of planes(), plotted with the points of the scene; without support of points."""
+    """As of planes(), plotted with the points of the scene; without point_support()."""
     frame: Optional[Frame]
     """None without scene(frames=True)."""
     completed_by: Optional[ReflectionPlane]
@@ -1040,6 +1041,12 @@ class SceneObject(Result):
     """Best first; empty without a database, and where the object is unknown."""
     model_reason: str
     """Why no model of the database fits; empty where one does."""
+
+    def __repr__(self) -> str:
+        counts = {name: len(getattr(self.planes, name)) for name in "planes possible axes centers".split()}
+        counts = {"points": len(self.rows), **counts, "added": len(self.added)}
+        models = [f"models={[m.name for m in self.models]}"] if self.models else []
+        return f"SceneObject({', '.join([f'{name}={count}' for name, count in counts.items() if count] + models)})"
 
     def _json(self) -> Dict[str, Any]:
         found: Dict[str, Any] = dict(

@@ -263,7 +263,7 @@ TEST(PlaneSupport, IsOneOnTheSurfaceAndFallsOffIt) {
   const ReflectionPlane plane(Eigen::Vector3d::UnitX(), 0.0);
   const auto supportAt = [&](double x, double z) {
     const Points point = Eigen::Vector3d(x, 0.03, z).cast<float>();
-    return planeSupport(point, lattice, {plane}, 1)[0][0];
+    return planeSupport(point, lattice, {plane}, nullptr, 1)[0][0];
   };
   EXPECT_EQ(supportAt(0.97, 0.0), 1.0f);
   EXPECT_EQ(supportAt(0.97, 0.009 * radius), 1.0f);
@@ -277,15 +277,15 @@ TEST(PlaneSupport, OfASymmetryIsThatOfASecondSample) {
   // 1 in 130 lies beyond the reach along the surface, where the second sample is independent.
   const Shape shape = box(6000, Sampling::Random, 8);
   const Points points = shape.cloud();
-  const auto supports = planeSupport(points, points, shape.planes, 1);
+  const auto supports = planeSupport(points, points, shape.planes, nullptr, 1);
   ASSERT_EQ(supports.size(), shape.planes.size());
   for (const std::vector<float>& support : supports) {
     const double mean = std::accumulate(support.begin(), support.end(), 0.0) / static_cast<double>(support.size());
     EXPECT_GT(mean, 1.0 - 1.0 / 130.0);
   }
-  EXPECT_EQ(planeSupport(points, points, shape.planes, 8), supports);
-  EXPECT_EQ(planeSupport(points, points, {shape.planes[1]}, 1)[0], supports[1]) << "as one by one";
-  const std::vector<float> wrong = planeSupport(points, points, {ReflectionPlane({1.0, 1.0, 0.0}, 0.0)}, 1)[0];
+  EXPECT_EQ(planeSupport(points, points, shape.planes, nullptr, 8), supports);
+  EXPECT_EQ(planeSupport(points, points, {shape.planes[1]}, nullptr, 1)[0], supports[1]) << "as one by one";
+  const std::vector<float> wrong = planeSupport(points, points, {ReflectionPlane({1.0, 1.0, 0.0}, 0.0)}, nullptr, 1)[0];
   EXPECT_LT(std::accumulate(wrong.begin(), wrong.end(), 0.0) / static_cast<double>(wrong.size()), 0.7);
 }
 
