@@ -71,5 +71,5 @@ bash apps/fetch_meshes.sh "$demo" cow bull
 say "Scanning the cow from one side"
 rm -f "$demo/cow_scan.pcd"  # of any version
 build/apps/pcl_symmetry_scan "$demo/cow.off" "$demo/cow_scan.pcd"
-find_planes "$demo/cow_scan.pcd" cow_scan
-find_planes "$demo/bull.off" bull -approximate -max_planes 6
+find_planes "$demo/cow_scan.pcd" cow_scan -up 0,1,0
+find_planes "$demo/bull.off" bull -approximate -max_planes 6 -up 0,1,0

@@ -65,7 +65,7 @@ draw() {
 draw_scans_and_parts() {
   pcl_symmetry_scan cow.off cow_scan.pcd -quiet
   draw first_look "${drawings[@]}" first_look "$pictures/first_look.png" cow.off
-  draw bull_parts pcl_symmetry_planes bull.off -approximate -max_planes 6 -png "$pictures/bull_parts.png"
+  draw bull_parts pcl_symmetry_planes bull.off -approximate -max_planes 6 -up 0,1,0 -png "$pictures/bull_parts.png"
   draw frames "${drawings[@]}" frames "$pictures/frames.png"
 }
 

@@ -37,6 +37,7 @@ struct PlanesOptions {
   std::string method = "sampled";
   bool method_given = false, as_published = false, explain = false;
   std::optional<Eigen::Vector4d> ground;
+  std::optional<Eigen::Vector3d> up;
   std::optional<int> label;
   CommonOptions common;
 };
@@ -54,6 +55,7 @@ CommandLine commandLine(PlanesOptions& options) {
       .picture("png", options.png_path,
                "picture: cloud, planes and support, best planes first; three slices of a volume and its asymmetry")
       .page("html", options.html_path, "page with the same in three dimensions, for any browser, without network")
+      .direction("up", options.up, "direction that is up in the picture, input frame (0,0,1)")
       .text("support", "FILE", options.support_path,
             "cloud with one more field per plane, support_1, support_2 ...: how well the point supports the plane, NaN "
             "where that was not seen")
@@ -248,17 +250,24 @@ std::vector<PicturePanel> panelsOf(const Findings& findings) {
   return panels;
 }
 
-PictureScene makeScene(const pcl::PointCloud<pcl::PointXYZ>::ConstPtr& cloud, const Findings& findings) {
+PictureScene makeScene(const pcl::PointCloud<pcl::PointXYZ>::ConstPtr& cloud, const Findings& findings,
+                       const std::optional<Eigen::Vector3d>& given_up) {
   PictureScene scene{cloud, std::nullopt, panelsOf(findings)};
+  const Eigen::Vector3d up = given_up.value_or(Eigen::Vector3d::UnitZ());
+  if (given_up) standUpright(scene, up);
   if (findings.planes.empty()) return scene;
-  // Off the normals of the planes shown, so that none is seen edge on or face on; see ViewpointSelection for more.
+  // Off the normals of the planes shown, so that none is seen edge on or face on, and from the side of the scanner or
+  // from above; see ViewpointSelection for more.
   const Eigen::Vector3d n = findings.planes[0].normal();
-  Eigen::Vector3d across = Eigen::Vector3d::UnitZ() - n.z() * n;
-  if (across.norm() < 0.3) across = Eigen::Vector3d::UnitX() - n.x() * n;
-  across.normalize();
-  const Eigen::Vector3d along = n.cross(across);
-  scene.view = 0.75 * n + along + 0.55 * across;
-  scene.up = across;
+  Eigen::Vector3d across = up - n.dot(up) * n, toward = Eigen::Vector3d::Zero();
+  const bool is_level = across.norm() < 0.3;
+  if (is_level) toward = up;
+  across = is_level ? n.unitOrthogonal() : across.normalized();
+  if (findings.viewpoint) toward = *findings.viewpoint - finitePoints(*cloud).rowwise().mean().cast<double>();
+  scene.view = Eigen::Vector3d::Zero();
+  for (const Eigen::Vector3d& by : {Eigen::Vector3d(0.75 * n), n.cross(across), Eigen::Vector3d(0.55 * across)})
+    scene.view += by.dot(toward) < 0.0 ? Eigen::Vector3d(-by) : by;
+  scene.up = is_level ? up : given_up.value_or(across);
   return scene;
 }
 
@@ -368,14 +377,15 @@ void saveProfile(const InputShape& input, const Findings& findings, const std::s
   writeText(path, table);
 }
 
-void draw(const Console& console, const InputShape& input, const Findings& findings, const std::string& path) {
+void draw(const Console& console, const InputShape& input, const Findings& findings,
+          const std::optional<Eigen::Vector3d>& up, const std::string& path) {
   Step drawing(console, "Drawing " + path);
   if (input.volume) {
     std::optional<ReflectionPlane> plane;
     if (!findings.planes.empty()) plane = findings.planes[0];
     writeImage(drawVolumeSlices(*input.volume, input.levels, plane, 400), path);
   } else {
-    const PictureScene scene = makeScene(input.points, findings);
+    const PictureScene scene = makeScene(input.points, findings, up);
     renderPicture(scene, path, scene.panels.size() > 1 ? 1400 : 800, scene.panels.size() > 2 ? 1100 : 600);
   }
   drawing.done();
@@ -391,6 +401,7 @@ void analyze(const PlanesOptions& options, FileJob& job) {
       {options.tolerance.has_value(), "-tolerance"},
       {options.detection.absolute_tolerance > 0.0, "-absolute_tolerance"},
       {options.ground.has_value(), "-ground"},
+      {options.up.has_value(), "-up"},
       {options.common.viewpoint.mode != Viewpoint::Mode::Auto, "-viewpoint"}};
   for (const auto& [is_given, flag] : of_points)
     if (input.volume && is_given) throw InputError(job.path() + ": " + flag + " is of points, not of volumes");
@@ -404,9 +415,9 @@ void analyze(const PlanesOptions& options, FileJob& job) {
   const std::string table = tableOf(findings, input.shift()) + (options.explain ? explained(findings) : "");
   job.report({table, describe(input, findings), rowsOf(findings, input.shift())});
   if (options.support_path) saveSupport(input, findings, job.output(*options.support_path));
-  if (options.png_path) draw(job.console(), input, findings, job.output(*options.png_path));
+  if (options.png_path) draw(job.console(), input, findings, options.up, job.output(*options.png_path));
   if (options.html_path)
-    writePage(makeScene(input.points, findings), {job.path(), table}, job.output(*options.html_path));
+    writePage(makeScene(input.points, findings, options.up), {job.path(), table}, job.output(*options.html_path));
   if (options.profile_path) saveProfile(input, findings, job.output(*options.profile_path));  // not all shapes have one
 }
 
@@ -421,6 +432,7 @@ int run(int argc, char** argv) {
               !options.as_published || options.method_given, {"viewpoint"});
   line.goWith("a viewpoint, which -viewpoint none takes away", options.common.viewpoint.mode != Viewpoint::Mode::None,
               {"ground"});
+  line.goWith("-png or -html", options.png_path || options.html_path, {"up"});
   line.goWith("-absolute_tolerance 0", options.detection.absolute_tolerance == 0.0, {"tolerance"});
   options.detection.min_possible = std::min(options.detection.min_possible, options.detection.min_confidence);
   if (options.support_path) checkCloudExtension(*options.support_path);

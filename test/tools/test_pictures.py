@@ -27,6 +27,10 @@ class Pages(ToolTest):
     def test_hold_everything_in_little_room(self):
         # A name that would end the script of the page.
         path = self.write("a </script>.off", tool_run.box())
+        self.run_tool(path, "-quiet -html upright.html -up 0,1,0")
+        upright = self.scene("upright.html")
+        self.assertEqual(upright["up"], [0, 1, 0])
+        self.assertGreater(upright["view"][1], 0, "from above")
         self.run_tool(path, "-quiet -html a.html")
         page = self.text("a.html")
         self.assertLess(len(page), 1_500_000)
