@@ -29,7 +29,6 @@ public:
 
   AxisGrid() = default;
 
-  /// Makes a grid of axes through a ball.
   /// \param num_theta,num_phi,num_offset number of bins, each in [1, 1024]; of phi even.
   /// \param center finite, input frame; u and v are measured from it.
   /// \param radius finite and > 0, input units.
@@ -41,7 +40,7 @@ public:
   int numOffset() const { return num_offset_; }  ///< bins of u, and of v
   std::size_t numDirections() const { return static_cast<std::size_t>(num_theta_) * num_phi_; }  ///< theta times phi
   std::size_t size() const { return numDirections() * num_offset_ * num_offset_; }               ///< all bins
-  const Eigen::Vector3d& center() const { return center_; }          ///< that u and v are measured from, input frame
+  const Eigen::Vector3d& center() const { return center_; }          ///< origin of u and v, input frame
   double radius() const { return radius_; }                          ///< greatest |u| and |v|, input units
   double offsetStep() const { return 2.0 * radius_ / num_offset_; }  ///< input units
 
@@ -74,7 +73,6 @@ struct AxialTransformOptions {
   std::uint64_t seed = 1;  ///< of the points drawn
   int num_threads = 0;     ///< >= 0; 0 = one per core; the map does not depend on it
 
-  /// Checks all values.
   /// \throws std::invalid_argument naming field, value and rule.
   void validate() const;
 };
@@ -88,9 +86,9 @@ struct AxialTransformOptions {
 /// rotations by any angle it is the mean over all angles.
 struct AxisMap {
   AxisGrid grid;                           ///< the axes of the values
-  std::vector<int> folds;                  ///< as asked for
+  std::vector<int> folds;                  ///< as in AxialTransformOptions
   std::vector<std::vector<float>> values;  ///< for each fold grid.size() values of D_n; 0 where u^2 + v^2 > radius^2
-  std::vector<float> greatest;             ///< of all folds, one value per bin
+  std::vector<float> greatest;             ///< the greatest D_n of each bin
   double sigma = 0.0;                      ///< width of the GEDT that the map was made from, input units
 
   /// \return index of the bin with the greatest value; 0 for an empty map.
@@ -98,8 +96,8 @@ struct AxisMap {
   bool empty() const { return greatest.empty(); }  ///< no transform was computed
 };
 
-/// The order of the rotations that a shape has about an axis: any angle where these reach the greatest D, else the
-/// greatest fold that does. D that differ by 0.005 are equal: a shape with six equal parts has three and two as well.
+/// The order of the rotations about an axis: 0 (any angle) if these reach the greatest D, else the greatest fold that
+/// does. D that differ by 0.005 are equal: a shape with six equal parts has three and two as well.
 /// \param folds as in AxisMap; \p values D_n of each.
 int bestFold(const std::vector<int>& folds, const std::vector<double>& values);
 
@@ -123,7 +121,7 @@ struct AxisMaximum {
 
 /// The strongest local maxima, climbed from the bins to where D of their best fold is greatest.
 /// \param map of the same EDT, of a whole object.
-/// \param count the greatest number of them, >= 1.
+/// \param count greatest number of maxima, >= 1.
 /// \param min_value least D, in [0, 1].
 /// \return strongest first, no two within 15 degrees and three sigmas of each other.
 std::vector<AxisMaximum> axisMaxima(const AxisMap& map, const GaussianEdt& edt, int count, double min_value = 0.5,

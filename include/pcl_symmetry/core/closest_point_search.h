@@ -26,7 +26,7 @@ public:
   virtual void search(const PointsRef& queries, int num_neighbors, std::vector<int>& indices,
                       std::vector<float>& sq_distances) const = 0;
 
-  /// \return the closest point of each query, 3 x M.
+  /// \return the index of the point closest to each of M queries.
   std::vector<int> closest(const PointsRef& queries) const {
     std::vector<int> indices;
     std::vector<float> sq_distances;
@@ -44,14 +44,13 @@ public:
                             std::vector<float>& sq_distances) const;
 };
 
-/// Builds a search tree of FLANN.
 /// \param points 3 x N, finite, N >= 1; they are copied.
 /// \return a search by a k-d tree of FLANN; exact. Several neighbors of many queries are found fastest where each query
 /// lies near the one before.
 ClosestPointSearch::Ptr makeFlannSearch(const PointsRef& points);
 
-/// Makes a search over some points, 3 x N, finite, N >= 1; such as makeFlannSearch(). The points are those that a
-/// computation works with, in input units: without copies, and of large clouds a subset.
+/// Makes a search over points (3 x N, finite, N >= 1), as makeFlannSearch() does. A computation passes the points that
+/// it works with, in input units: distinct ones, and a subset of a large cloud.
 using MakeSearch = std::function<ClosestPointSearch::Ptr(const PointsRef& points)>;
 
 }  // namespace pcl_symmetry

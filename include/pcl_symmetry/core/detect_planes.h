@@ -13,7 +13,7 @@ namespace PCL_SYMMETRY_EXPORTS pcl_symmetry {
 
 class MeshSurface;
 
-/// The input of detectPlanes(). It refers to the arrays that it is made of, which must outlive it.
+/// The input of detectPlanes(). It refers to its arrays, which must outlive it.
 struct PlaneInput {
   /// Points and what a scanner saw of them.
   /// \param points_of_cloud 3 x N, finite, input units.
@@ -21,18 +21,16 @@ struct PlaneInput {
   PlaneInput(const PointsRef& points_of_cloud, const Visibility* seen_space = nullptr)
       : points(points_of_cloud.data(), 3, points_of_cloud.cols(), points_of_cloud.outerStride()),
         visibility(seen_space) {}
-  /// As above, so that points convert to an input without naming it.
+  /// Converts points to an input.
   PlaneInput(const Points& points_of_cloud, const Visibility* seen_space = nullptr)
-      : points(points_of_cloud.data(), 3, points_of_cloud.cols(), points_of_cloud.outerStride()),
-        visibility(seen_space) {}
+      : PlaneInput(PointsRef(points_of_cloud), seen_space) {}
 
-  /// 3 x N, finite, input units. Fewer than 20 distinct points, or points on one line, have no answer, but a reason. Of
-  /// more than 20 000, a subset that resolves the tolerance is used.
+  /// 3 x N, finite, input units. Fewer than 20 distinct points, or points on one line, give a reason in place of an
+  /// answer. A subset that resolves the tolerance represents more than 20 000.
   Eigen::Map<const Eigen::Matrix3Xf, 0, Eigen::OuterStride<>> points;
   /// What a scanner saw, input frame; null = the points show the object from all sides.
   const Visibility* visibility = nullptr;
-  /// 3 x N, of any length and sign; one that is zero or not finite is estimated from the neighbors, as are all where
-  /// this is null.
+  /// 3 x N, of any length and sign; those that are zero or not finite are estimated from the neighbors. Null: all are.
   const Points* normals = nullptr;
   /// A symmetry map of the points and the distance transform that it was computed from; both or neither.
   const SymmetryMap* map = nullptr;
@@ -46,18 +44,18 @@ struct PlaneInput {
 /// Options of detectPlanes(); the defaults suit any shape and unit.
 struct DetectionOptions {
   /// How far a symmetric surface may be off, as a share of the greatest distance between two points, in (0, 0.1]: a
-  /// symmetry maps 97 % of the surface to within this of the surface.
+  /// symmetry maps 97 % of the surface to within this distance of the surface.
   double tolerance = 0.01;
-  /// Greatest tolerance, as a share of the same, in (0, 0.1]: where a depth camera or few points do not resolve
-  /// `tolerance`, the resolved tolerance decides, up to this one. Where it is at most `tolerance`, that one always
-  /// decides, and symmetries that the camera does not resolve are reported as possible.
+  /// Greatest tolerance, in (0, 0.1], the same share: where a depth camera or few points do not resolve `tolerance`,
+  /// the resolved tolerance decides, up to this one. Where it is at most `tolerance`, that one always decides, and
+  /// symmetries that the camera does not resolve are reported as possible.
   double max_tolerance = 0.03;
-  double absolute_tolerance = 0.0;  ///< a tolerance in input units in place of both, >= 0; 0 = they decide
+  double absolute_tolerance = 0.0;  ///< replaces both, input units, >= 0; 0 = not used
   double min_confidence = 0.5;      ///< a plane is a symmetry if confidence >= min_confidence; in [0, 1]
   double min_possible = 0.2;  ///< a plane is reported as possible if confidence >= min_possible; in [0, min_confidence]
   /// Reports the other maxima too, after the symmetries: approximate ones of the whole, and symmetries of parts.
   bool approximate = false;
-  bool evidence = false;  ///< fills Detection::evidence; takes about as long again as the detection
+  bool evidence = false;  ///< fills Detection::evidence; doubles the time
   bool rotations = true;  ///< also searches axes of rotation of scans; false saves about a third of the time
   bool folds = true;     ///< with `rotations`: also axes of finite order; false finds bodies of revolution only, faster
   int max_planes = 128;  ///< >= 1; a gear of 120 teeth has 121
@@ -78,7 +76,6 @@ struct DetectionOptions {
   /// \return num_cells, sigma and num_threads as options of the distance transform.
   GaussianEdtOptions edtOptions() const { return {num_cells, sigma, num_threads}; }
 
-  /// Checks all values.
   /// \throws std::invalid_argument naming field, value and rule.
   void validate() const;
 };

@@ -18,7 +18,6 @@ struct GaussianEdtOptions {
   double radius = 0.0;  ///< radius of the ball to cover, input units, >= 0; 0 = the bounding ball of the points
   Eigen::Vector3d center = Eigen::Vector3d::Zero();  ///< center of that ball, input frame; used only with radius > 0
 
-  /// Checks all values.
   /// \throws std::invalid_argument naming field, value and rule.
   void validate() const;
 };
@@ -31,13 +30,12 @@ struct GaussianEdtOptions {
 /// adds at most 0.43 cells to a distance and lowers the sum of f by less than 1 % (at 32 cells a side and more).
 class GaussianEdt {
 public:
-  /// Computes the function on the grid.
   /// \param points 3 x N, finite, input units, N >= 1, not all equal unless options.radius is set.
   /// \throws std::invalid_argument for bad options, no point, points without extent, or a value that is not finite.
   explicit GaussianEdt(const PointsRef& points, const GaussianEdtOptions& options = {});
 
-  /// A function that is given on a grid, on these cells (Section 4.2), in place of a distance transform: all estimators
-  /// take it as they take f of points.
+  /// Resamples the function of a volume on these cells (Section 4.2); all estimators take it in place of a distance
+  /// transform.
   /// \param options radius = 0: the bounding ball of the body; sigma is not used, the margin is that of two cells.
   /// \throws std::invalid_argument for bad options.
   explicit GaussianEdt(const VolumeFunction& volume, const GaussianEdtOptions& options = {});
@@ -60,7 +58,6 @@ public:
   };
   /// \return num_cells^2 ranges, y fastest: f is 0 in all other cells of a row.
   const std::vector<Range>& filledRanges() const { return filled_; }
-  /// Where a cell lies.
   /// \param index of a cell, as in values().
   /// \return its center, input frame.
   Eigen::Vector3d cellCenter(std::size_t index) const;

@@ -18,7 +18,7 @@ enum class IspUpdate {
 
 /// Options of Iterative Symmetric Points (Section 4.4).
 struct IspOptions {
-  IspUpdate update = IspUpdate::PointToPlane;  ///< what a step makes least
+  IspUpdate update = IspUpdate::PointToPlane;  ///< what a step minimizes
   double sigma = 0.0;        ///< width of the Gaussian weights exp(-dist^2 / sigma^2) at the start, input units, > 0
   double final_sigma = 0.0;  ///< width at the end, input units, in (0, sigma]; halved whenever the plane rests
   int max_iterations = 30;   ///< >= 1
@@ -29,7 +29,6 @@ struct IspOptions {
   /// matches that change sides keep the plane of a sampled surface in motion without improving it.
   double error_share = 0.5;
 
-  /// Checks all values.
   /// \throws std::invalid_argument naming field, value and rule.
   void validate() const;
 };
@@ -64,9 +63,9 @@ struct IspStep {
 /// A refined plane.
 struct IspResult {
   ReflectionPlane plane;   ///< where the steps ended, input frame
-  int iterations = 0;      ///< steps that were made
+  int iterations = 0;      ///< number of steps
   bool converged = false;  ///< the last step moved the plane by less than the tolerance
-  IspStep last;            ///< the last iteration: its distances are those before a step that no longer mattered
+  IspStep last;            ///< the last iteration; its distances were measured before its step
 };
 
 /// The plane that minimizes sum w |x' - y|^2 over pairs (x, y) of a sample and the closest point to its reflection x'.
@@ -96,8 +95,7 @@ IspStep matchSymmetricPoints(const IspSurface& surface, const std::vector<int>& 
 /// Iterates until the plane stands still (Section 4.4).
 /// \param samples indices of the points of the surface to reflect.
 /// \param plane where to start.
-/// \param stays tells whether the plane of a step is still one that is wanted: steps end at the first that is not; null =
-/// all are.
+/// \param stays whether to go on from a plane; the iteration ends at the first one where it is false. Null: always.
 /// \throws std::invalid_argument for bad options.
 IspResult refineSymmetricPoints(const IspSurface& surface, const std::vector<int>& samples,
                                 const ReflectionPlane& plane, const IspOptions& options,

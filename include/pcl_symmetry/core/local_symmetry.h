@@ -17,7 +17,6 @@ struct LocalSymmetryOptions {
   std::uint64_t seed = 1;    ///< of these
   int num_threads = 0;       ///< >= 0; 0 = one per core
 
-  /// Checks all values.
   /// \throws std::invalid_argument naming field, value and rule.
   void validate() const;
 };

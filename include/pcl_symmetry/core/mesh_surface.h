@@ -50,14 +50,14 @@ public:
   /// Where motions map the surface best onto itself: least squares of the distances of samples from the mesh, and of
   /// its open borders from the borders, with a weight that leaves out what does not agree. Steps are those of Iterative
   /// Symmetric Points (Section 4.4).
-  /// \return where they begin, if that is no worse.
+  /// \return the start, if that is no worse.
   Placement fitted(const MotionsAbout& motions) const;
   /// The same for one plane.
   ReflectionPlane fitted(const ReflectionPlane& plane) const;
 
   /// Shares of the worst of the motions.
   /// \param tolerance input units, > 0.
-  /// \param least where it is given, the share alone is measured, much faster; one that is less may come out lower still.
+  /// \param least measures the share alone, which is much faster; a share below it may come out lower still.
   MeshShares shares(const MotionsAbout& motions, double tolerance, std::optional<double> least = {}) const;
   /// The same for one plane.
   MeshShares shares(const ReflectionPlane& plane, double tolerance, std::optional<double> least = {}) const;

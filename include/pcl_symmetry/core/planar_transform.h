@@ -16,7 +16,6 @@ struct SampledTransformOptions {
   std::uint64_t seed = 1;  ///< of the points drawn
   int num_threads = 0;     ///< >= 0; 0 = one per core; the map does not depend on it
 
-  /// Checks all values.
   /// \throws std::invalid_argument naming field, value and rule.
   void validate() const;
 };
@@ -42,7 +41,6 @@ struct ConvolutionTransformOptions {
                          ///< axis; 0.5 halves the error and is slower
   int num_threads = 0;   ///< >= 0; 0 = one per core; the map does not depend on it
 
-  /// Checks all values.
   /// \throws std::invalid_argument naming field, value and rule.
   void validate() const;
 };
@@ -68,7 +66,6 @@ struct RotationalTransformOptions {
   double refined_share = 1.0;
   int num_threads = 0;  ///< >= 0; 0 = one per core; the map does not depend on it
 
-  /// Checks all values.
   /// \throws std::invalid_argument naming field, value and rule.
   void validate() const;
 };
@@ -95,7 +92,6 @@ struct VotingTransformOptions {
   std::uint64_t seed = 1;      ///< of the pairs drawn
   int num_threads = 0;         ///< >= 0; 0 = one per core; the map does not depend on it
 
-  /// Checks all values.
   /// \throws std::invalid_argument naming field, value and rule.
   void validate() const;
 };
@@ -127,7 +123,6 @@ struct PlanarTransformOptions {
   void setNumThreads(int n) {
     sampled.num_threads = convolution.num_threads = rotational.num_threads = voting.num_threads = n;
   }
-  /// Checks all values.
   /// \throws std::invalid_argument naming field, value and rule.
   void validate() const;
 };

@@ -63,7 +63,7 @@ struct SymmetryPlane : ReflectionPlane {
   double seen = 1.0;
   /// One value in [0, 1] per point used, in their order: 1 where the reflection is as close to the surface as samples
   /// of a surface are to each other, falling to 0 beyond; NaN where the scanner could not see whether it is. In large
-  /// clouds, points take that of one near them.
+  /// clouds, a point takes the value of one near it.
   std::vector<float> point_support;
   std::vector<Reason> reasons;  ///< of confidence and kind, in the order of the rules; none as published
   int iterations = 0;           ///< of Iterative Symmetric Points, in all stages
@@ -75,15 +75,15 @@ struct SymmetryPlane : ReflectionPlane {
 struct SymmetryAxis {
   Eigen::Vector3d point;      ///< of the axis, the closest to the center of the bounding ball; input frame
   Eigen::Vector3d direction;  ///< unit
-  /// As that of SymmetryPlane, for planes at eight angles together; of axes of scans that only rotations show that of
-  /// SymmetryRotation.
+  /// As in SymmetryPlane, for planes at eight angles together; as in SymmetryRotation for axes that only rotations of a
+  /// scan show.
   double confidence = 0.0;
   double score = 0.0;    ///< mean D of these planes
   double support = 0.0;  ///< mean support of these planes
 };
 
-/// Rotations about a line map what a scanner saw onto itself or to unseen space: the axis of a nut, a wheel, a bottle
-/// seen from one side. Beyond the paper (Section 6).
+/// A line about which rotations map what a scanner saw onto itself or to unseen space, as the axis of a nut, a wheel or
+/// a bottle seen from one side. Beyond the paper (Section 6).
 struct SymmetryRotation {
   Eigen::Vector3d point;      ///< of the axis, the closest to the center of the bounding ball; input frame
   Eigen::Vector3d direction;  ///< unit
@@ -101,12 +101,12 @@ struct SymmetryRotation {
 /// arrays.
 struct DetectionEvidence;
 
-/// All planes through a point are symmetries: a sphere. Of a scan, rotations about lines through the point show it.
+/// All planes through a point are symmetries: a sphere. In a scan, rotations about lines through the point show it.
 struct SymmetryCenter {
   Eigen::Vector3d point;    ///< input frame
-  double confidence = 0.0;  ///< as that of SymmetryAxis
-  double score = 0.0;       ///< as that of SymmetryAxis
-  double support = 0.0;     ///< as that of SymmetryAxis; of scans as that of SymmetryRotation
+  double confidence = 0.0;  ///< as in SymmetryAxis
+  double score = 0.0;       ///< as in SymmetryAxis
+  double support = 0.0;     ///< as in SymmetryAxis; in scans as in SymmetryRotation
 };
 
 /// What detectPlanes() found.
@@ -121,14 +121,14 @@ struct Detection {
   /// as those of a sheet, a disc or one side of a box do: that plane. Reflections across it move nothing and are
   /// uninformative.
   std::optional<ReflectionPlane> flat;
-  double tolerance = 0.0;               ///< that was decided at, input units
+  double tolerance = 0.0;               ///< of the decision, input units
   double resolution = 0.0;              ///< least tolerance that sensor or spacing resolve, input units; 0 = unknown
   double diameter = 0.0;                ///< greatest distance between two points, input units
-  int num_stray_points = 0;             ///< far from all others, which were left out; they support no plane
+  int num_stray_points = 0;             ///< far from all others and left out; they support no plane
   std::vector<SymmetryAxis> axes;       ///< best first; their planes are not among planes
   std::vector<SymmetryCenter> centers;  ///< of spheres
   std::vector<SymmetryRotation> rotations;                ///< of scans: axes of rotations, most confident first
-  SymmetryMap map;                                        ///< that was made; empty where one was given
+  SymmetryMap map;                                        ///< the map that was computed; empty where one was given
   std::shared_ptr<DetectionEvidence> evidence;            ///< with DetectionOptions::evidence; else null
   std::vector<std::pair<std::string, double>> timing_ms;  ///< stages in order
 

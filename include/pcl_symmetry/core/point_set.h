@@ -23,7 +23,6 @@ struct BoundingBall {
 /// \return radius 0 for one point or coincident points; the ball of radius 0 about the origin without a point.
 BoundingBall boundingBall(const PointsRef& points);
 
-/// The mean of points.
 /// \param points 3 x N, finite.
 /// \return mean of the points, input frame; the origin without a point.
 Eigen::Vector3d centerOfMass(const PointsRef& points);

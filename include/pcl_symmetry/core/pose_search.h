@@ -12,12 +12,11 @@ struct PoseSearchOptions {
   int max_poses = 4;         ///< the best of those that are returned, >= 1
   int num_threads = 0;       ///< >= 0; 0 = one per core
 
-  /// Checks all values.
   /// \throws std::invalid_argument naming field, value and rule.
   void validate() const;
 };
 
-/// What two clouds say about a pose.
+/// How well two clouds agree at a pose.
 struct PoseScore {
   double support = 0.0;  ///< share of the scan's points that lie on the model, in [0, 1]
   /// Sum of two shares, in [0, 2]: of the model's points that the scanner could judge, those that lie in space it saw
@@ -36,12 +35,12 @@ struct PoseEvidence {
   double overlap_target = 0.0;  ///< share of the target's points that lie on the surface of the source, in [0, 1]
   double agreement = 0.0;       ///< of the points that face the other surface, the share that lies on it, in [0, 1]
   /// Lower limit of the share of the scan's points that lie on the surface of the model within 2 % of its radius or
-  /// what noise asks for, in [0, 1].
+  /// what noise requires, in [0, 1].
   double on_surface = 0.0;
   /// Share of the surface of a cloud visible to the scanner of the other one at this pose that lies in space it saw to
   /// be empty, before what it measured, in [0, 1]. Where both were scanned the greater one; 0 where none was.
   double contradicted = 0.0;
-  /// The same, the share where it measured nothing, in [0, 1]: beside the cloud or in its holes.
+  /// The same for space where it measured nothing: beside the cloud or in its holes.
   double missing = 0.0;
   /// The share of both, in [0, 1], that lies farther than 5 % of the smaller diameter from all that it measured: a part
   /// that only one of the clouds has.

@@ -19,7 +19,6 @@ struct PublishedOptions {
   std::uint64_t seed = 1;        ///< of the points drawn
   int num_threads = 0;           ///< >= 0; 0 = one per core
 
-  /// Checks all values.
   /// \throws std::invalid_argument naming field, value and rule.
   void validate() const;
 };

@@ -35,7 +35,6 @@ struct ObjectSymmetryOptions {
   std::uint64_t seed = 1;         ///< of all random draws
   int num_threads = 0;            ///< >= 0; 0 = one per core
 
-  /// Checks all values.
   /// \throws std::invalid_argument naming field, value and rule.
   void validate() const;
 };
@@ -46,7 +45,7 @@ struct ContinuousSymmetry {
   Eigen::Vector3d offset;  ///< a point of the axis, input frame
 };
 
-/// How far two poses of an object are from each other, whatever its symmetries hide.
+/// The distance between two poses of an object, up to its symmetries.
 struct PoseDistance {
   double angle;   ///< radians, in [0, pi]: the least angle between the first pose and all that look like the second
   double offset;  ///< input units: between the two positions of ObjectSymmetries::center
@@ -90,20 +89,20 @@ struct ObjectSymmetries {
   /// noise allow, in [0, 1]; for rotations by any angle their mean.
   double support = 1.0;
   double confidence = 1.0;   ///< probability that the whole surface, not its points alone, keeps to the limits
-  double tolerance = 0.0;    ///< that was decided at, input units
-  int num_stray_points = 0;  ///< far from all others, which were left out
+  double tolerance = 0.0;    ///< of the decision, input units
+  int num_stray_points = 0;  ///< far from all others and left out
   std::optional<GroupName> at_half_tolerance;             ///< with ObjectSymmetryOptions::other_tolerances
   std::optional<GroupName> at_twice_tolerance;            ///< with ObjectSymmetryOptions::other_tolerances
   std::vector<RejectedRotation> rejected;                 ///< what was tried and failed, the least failure first
   std::vector<std::pair<std::string, double>> timing_ms;  ///< stages in order
-  /// Why there is no answer: the points hold none, or show no surface at the tolerance, as solid samples, atoms and few
-  /// points do, with the least tolerance at which they do. Empty where there is one.
+  /// Why there is no answer; empty where there is one. Points that show no surface at the tolerance (solid samples,
+  /// atoms, few points) get the least tolerance at which they do.
   std::string reason;
 
   std::string name() const { return nameOf(kind, fold); }  ///< as nameOf() gives it
 
-  /// The group that given motions and axes generate, exact but for rounding: how what people wrote into a file becomes
-  /// symmetries. A sphere may be given by two axes of revolution, or by one and a motion that tilts it.
+  /// The group that given motions and axes generate, exact but for rounding, as for symmetries that people wrote into a
+  /// file. A sphere may be given by two axes of revolution, or by one and a motion that tilts it.
   /// \param discrete rigid motions in the input frame, the identity or not; each rotates by less than half a degree
   /// from an element of the group.
   /// \param continuous axes of revolution, not zero, of any length.
@@ -128,7 +127,7 @@ struct ObjectSymmetries {
   /// same have the same result but for rounding. No such choice can be continuous: use closestTo() along a track.
   Eigen::Isometry3d canonical(const Eigen::Isometry3d& T) const;
 
-  /// Difference between two poses as it looks.
+  /// The distance between two poses, up to the symmetries.
   PoseDistance distance(const Eigen::Isometry3d& T_1, const Eigen::Isometry3d& T_2) const;
 
   /// Maximum symmetry-aware surface distance (MSSD of the BOP benchmark): how far the worst of the points is, in the
@@ -157,7 +156,7 @@ struct ObjectSymmetries {
 ObjectSymmetries objectSymmetries(const PointsRef& points, const ObjectSymmetryOptions& options = {});
 
 /// The same for a mesh: the group is moved, as a whole, to where it maps the mesh itself onto itself. At a tolerance
-/// that the points do not resolve, that of the default tolerance is taken too where the mesh keeps to the limits.
+/// that the points do not resolve, the group found at the default tolerance counts too if the mesh keeps to the limits.
 /// \param points spread over the mesh.
 ObjectSymmetries objectSymmetries(const PointsRef& points, const MeshSurface& mesh,
                                   const ObjectSymmetryOptions& options = {});

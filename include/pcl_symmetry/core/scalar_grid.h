@@ -19,7 +19,6 @@ public:
   using ConstPtr = std::shared_ptr<const ScalarGrid>;
   using Size = std::array<int, 3>;  ///< voxels along each axis
 
-  /// Takes the values of a volume.
   /// \param size voxels along each axis of the grid, >= 1.
   /// \param T_input_index from indices, voxel centers at whole numbers, to the input frame; finite and invertible. It
   /// holds spacing, origin and direction, see placed().
@@ -68,7 +67,6 @@ struct VolumeLevels {
   double low = 0.0;   ///< input intensity
   double high = 0.0;  ///< input intensity; low = high = 0: background and brightest half percent of the voxels
 
-  /// Checks all values.
   /// \throws std::invalid_argument unless both are finite and low < high, or both are 0.
   void validate() const;
 };
@@ -80,7 +78,6 @@ struct VolumeWithoutAnswer : std::invalid_argument {
 
 /// A volume as the function f of the transform, on no more voxels than wanted and a little smoothed.
 struct VolumeFunction {
-  /// Makes the function whose symmetry is measured.
   /// \param volume at least 4 voxels along each axis.
   /// \param max_voxels groups of voxels are averaged until there are no more than this, >= 4096.
   /// \throws std::invalid_argument for bad levels; VolumeWithoutAnswer.
@@ -93,7 +90,7 @@ struct VolumeFunction {
   double body = 0.5;    ///< f of the border between background and body (Otsu's threshold)
   VolumeLevels levels;  ///< that were used
 
-  /// \return 3 x N voxel centers of the body, input frame; of those with a neighbor outside alone if \p surface.
+  /// \return 3 x N voxel centers of the body, input frame; with \p surface only those with a neighbor outside.
   Points bodyPoints(bool surface) const;
 };
 

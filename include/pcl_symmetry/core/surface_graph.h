@@ -62,7 +62,7 @@ struct SurfaceGraph {
 /// \throws std::invalid_argument if an index is out of range, no polygon has an area, or the extent is not 1e-15 to 1e15.
 SurfaceGraph meshGraph(const PointsRef& vertices, const std::vector<std::vector<int>>& polygons);
 
-/// The neighbors that cloudGraph() asks for.
+/// The neighbors that cloudGraph() takes.
 /// \param points 3 x N, N >= 1.
 /// \param search over these points.
 /// \param num_threads 0 = one per core.

@@ -42,7 +42,6 @@ struct SplittingOptions {
   /// basin count once, and the cut assigns the other elements.
   bool as_published = false;
 
-  /// Checks all values.
   /// \throws std::invalid_argument naming field, value and rule.
   void validate() const;
 };
@@ -59,7 +58,6 @@ struct SegmentationOptions {
   std::function<void(double)> progress;
   MakeSearch make_search;  ///< makes the searches of Iterative Symmetric Points, one after the other; null = FLANN's
 
-  /// Checks all values.
   /// \throws std::invalid_argument naming field, value and rule.
   void validate() const;
 };

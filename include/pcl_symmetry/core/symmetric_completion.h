@@ -19,12 +19,11 @@ struct CompletionOptions {
   double margin = 3.0;
   int num_threads = 0;  ///< >= 0; 0 = one per core
 
-  /// Checks all values.
   /// \throws std::invalid_argument naming field, value and rule.
   void validate() const;
 };
 
-/// The plane through an axis of revolution that takes the side that was seen to the other: it lies across the view.
+/// The plane through an axis of revolution that reflects the seen side onto the other: it lies across the view.
 /// \param viewpoint where the scanner stood; on the axis it gives no direction, and any plane through the axis is
 /// returned.
 ReflectionPlane planeAcrossView(const Line3d& axis, const Eigen::Vector3d& viewpoint);

@@ -28,8 +28,8 @@ struct SymmetrizedShape {
   std::vector<float> asymmetry;
   double mean_asymmetry = 0.0;      ///< mean of the absolute values, of a mesh by area
   double greatest_asymmetry = 0.0;  ///< greatest absolute value
-  /// Greatest distance of a vertex of the result, reflected, from the result, input units. Triangles of both sides that
-  /// do not match leave that of their chords from the curved surface, see mirroredHalf(); 0 for a cloud.
+  /// Greatest distance of a vertex of the result, reflected, from the result, input units. Where triangles of the two
+  /// sides do not match, it is the distance of a chord from the curved surface, see mirroredHalf(); 0 for a cloud.
   double deviation = 0.0;
 };
 
@@ -72,7 +72,7 @@ struct ReflectedPairs {
 /// \param max_distance of a counterpart from the reflection, input units, >= 0; 0 = 1 % of the diameter.
 ReflectedPairs reflectedPairs(const PointsRef& points, const ReflectionPlane& plane, double max_distance = 0.0);
 
-/// The asymmetry of landmarks, as morphometrics takes it.
+/// The asymmetry of landmarks, as morphometrics defines it.
 struct LandmarkAsymmetry {
   /// For each pair, the vector from the second landmark to the reflection of the first, input frame and units.
   std::vector<Eigen::Vector3d> paired;

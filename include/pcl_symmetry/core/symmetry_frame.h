@@ -18,7 +18,8 @@ namespace PCL_SYMMETRY_EXPORTS pcl_symmetry {
 /// Options of symmetryFrame(), and the bins of the map that candidates for the first plane come from.
 struct FrameOptions : MapSize {
   int num_cells = 64;  ///< cells of the distance transform along each side, in [8, 512]
-  /// Its width, input units, >= 0; 0 = 1.5 cells, of a scan 2.25, or 1.5 spacings if that is more; as published 2 or 1.
+  /// Its width, input units, >= 0; 0 = 1.5 cells (2.25 for a scan) or 1.5 spacings, whichever is more; as published 2
+  /// cells or 1 spacing.
   double sigma = 0.0;
   int num_samples = 64;  ///< samples of that map's transform, >= 1
   /// The paper's own method: the plane of greatest D among the maxima of the exact map of 64 x 64 x 64 bins, refined by
@@ -37,7 +38,6 @@ struct FrameOptions : MapSize {
   /// \return num_cells, sigma and num_threads as options of the distance transform.
   GaussianEdtOptions edtOptions() const { return {num_cells, sigma, num_threads}; }
 
-  /// Checks all values.
   /// \throws std::invalid_argument naming field, value and rule.
   void validate() const;
 };
@@ -62,8 +62,8 @@ struct ProbableFrame {
 /// The canonical frame of a shape: center of symmetry (COS) and principal symmetry axes (PSA, Section 5.1).
 struct SymmetryFrame {
   Eigen::Vector3d center = Eigen::Vector3d::Zero();  ///< center of symmetry: where the three planes meet, input frame
-  /// Principal symmetry axes in columns, orthonormal, right-handed: the normal of the best plane, that of the best one
-  /// perpendicular to it, and of both.
+  /// Principal symmetry axes in columns, orthonormal, right-handed: the normal of the best plane, the normal of the
+  /// best plane perpendicular to it, and their cross product.
   Eigen::Matrix3d axes = Eigen::Matrix3d::Identity();
   /// Score of the plane perpendicular to each axis, in [0, 1]. For a whole cloud it is D; for a scan it is
   /// seenSymmetry() of D and free space, for the second and third plane on the scan completed by its reflection across
@@ -79,8 +79,8 @@ struct SymmetryFrame {
   std::vector<Eigen::Isometry3d> equivalent;
   std::size_t num_maxima = 0;  ///< frames at the front of equivalent that are maxima
   /// Frames that may be the shape's own, each once up to order, signs and rotations about an axis of revolution: this
-  /// frame first, the others by falling probability. Besides maxima of symmetry they are leveled ones. The
-  /// probabilities add up to less than 1: the rest is that of none of them. Empty without FrameOptions::probabilities.
+  /// frame first, the others by falling probability. They are maxima of symmetry and leveled frames. Their
+  /// probabilities add up to less than 1; the rest is that of another frame. Empty without FrameOptions::probabilities.
   std::vector<ProbableFrame> probable;
   /// Axes of rotation of a scan, through the center or not, most confident first: which poses look the same where the
   /// planes alone do not tell, as for a propeller.
@@ -115,13 +115,13 @@ SymmetryFrame symmetryFrame(const PointsRef& points, const FrameOptions& options
 /// itself; axes across which no plane is a symmetry at 1 % of the diameter follow the others.
 void refineOnMesh(const MeshSurface& mesh, SymmetryFrame& frame);
 
-/// Makes a plane that was found otherwise the first plane of a frame: the axis nearest to its normal comes first and
-/// is turned onto it, the center moves onto the plane, and all else with them. The canonical frame has the plane at
-/// x = 0 then.
+/// Makes a plane that was found otherwise the first plane of a frame: the axis nearest to its normal comes first and is
+/// rotated onto it, the center moves onto the plane, and all else with them. The canonical frame has the plane at x = 0
+/// then.
 void bringToPlane(const ReflectionPlane& plane, SymmetryFrame& frame);
 
 /// Moves a frame to the center or else to the best axis of revolution that detectPlanes() found; its axis nearest to
-/// that one is turned onto it. Nothing moves where there is neither.
+/// that one is rotated onto it. Nothing moves where there is neither.
 void bringToSymmetry(const Detection& found, SymmetryFrame& frame);
 
 }  // namespace pcl_symmetry

@@ -20,7 +20,6 @@ struct MapSize {
   int num_phi = 128;    ///< even, in [2, 4096]
   int num_radius = 64;  ///< in [1, 4096]
 
-  /// Checks all values.
   /// \throws std::invalid_argument naming field, value and rule.
   void validate() const;
 };
@@ -42,7 +41,6 @@ public:
 
   PlaneGrid() = default;
 
-  /// Makes a grid of planes through a ball.
   /// \param center finite, input frame; r is measured from it.
   /// \param radius finite and > 0, input units.
   /// \throws std::invalid_argument naming field, value and rule.
@@ -56,7 +54,7 @@ public:
   int numRadius() const { return num_radius_; }                                                  ///< bins of r
   std::size_t numDirections() const { return static_cast<std::size_t>(num_theta_) * num_phi_; }  ///< theta times phi
   std::size_t size() const { return numDirections() * num_radius_; }                             ///< all bins
-  const Eigen::Vector3d& center() const { return center_; }  ///< that r is measured from, input frame
+  const Eigen::Vector3d& center() const { return center_; }  ///< origin of r, input frame
   double radius() const { return radius_; }                  ///< greatest |r|, input units
 
   double thetaStep() const;   ///< radians
@@ -177,7 +175,6 @@ struct LocalMaximaOptions {
   double strength = 0.1;   ///< keeps D >= strength * D_strongest * (1 - r / R), in [0, 1]; the paper's 1/10
   double laplacian = 0.1;  ///< keeps -Laplacian >= laplacian * -Laplacian_strongest, in [0, 1]; the paper's 1/10
 
-  /// Checks all values.
   /// \throws std::invalid_argument naming field, value and rule.
   void validate() const;
 };

@@ -14,7 +14,7 @@ namespace PCL_SYMMETRY_EXPORTS pcl_symmetry {
 
 /// What a range scanner saw: space in front of the surface on each ray is free, space behind it is unknown.
 ///
-/// It is a picture of depths with the projection that made it, or several of them: free is what any of them shows to be
+/// It holds one or several pictures of depths with their projections: space is free where any of them shows it to be
 /// free. A reflected point in free space counts against the plane; a reflected point in unknown space is uninformative.
 /// Departure from the paper, which takes scans for whole objects: their best planes then often lie beside the true
 /// ones.
@@ -57,23 +57,20 @@ public:
   static std::optional<Visibility> ofScene(const PointsRef& points, const Eigen::Vector3d& viewpoint,
                                            std::size_t max_pixels = kMaxPixels);
 
-  /// What several scanners saw of one scene: free is what any of them saw to be free.
+  /// What several scanners saw of one scene: space is free where any of them saw it to be free.
   /// \param views in one frame, at least one.
   /// \throws std::invalid_argument without a view.
   static Visibility together(const std::vector<Visibility>& views);
 
-  /// The same for objects on a table: none of them reaches into the table, so that space behind its surface is free of
-  /// them.
+  /// This visibility of objects on a table: none of them reaches into it, so that space behind its surface is free.
   /// \param support unit normal n toward the objects, then d: n . x + d = 0 on the surface, frame of the points.
   /// \param margin by which objects may seem to reach into it, input units, >= 0.
   Visibility withSupport(const Eigen::Vector4d& support, double margin) const;
 
-  /// The same for a sensor whose inverse depths have errors: those of stereo and of structured light are equal at all
-  /// depths.
+  /// This visibility with errors of the inverse depths, which for stereo and structured light are equal at all depths.
   /// \param inverse_depth_error standard deviation, 1 / input units, >= 0; 0 = not known.
   Visibility withDepthErrors(double inverse_depth_error) const;
 
-  /// The error of a depth measured at a point.
   /// \param x in the frame of the points.
   /// \return standard deviation of the errors of a depth measured there, input units; 0 where it is not known.
   double depthError(const Eigen::Vector3d& x) const;
@@ -84,13 +81,12 @@ public:
   /// \return input units; 0 where the errors are not known.
   double resolvedTolerance(const PointsRef& points) const;
 
-  /// \return these planes with their margins: below n . x + d = 0 is no object.
+  /// \return the planes of withSupport() with their margins: no object lies below n . x + d = 0.
   const std::vector<Eigen::Vector4d>& supports() const { return supports_; }
 
   /// Pixels of a picture that is made from points: 4 MB a picture.
   static constexpr std::size_t kMaxPixels = 1u << 20;
 
-  /// How far a point lies behind the surface that was seen.
   /// \param x in the frame of the points.
   /// \return distance of the point behind the surface, along its ray, input units: negative in free space, -infinity
   /// where the ray met nothing, +infinity where no ray passed.
@@ -99,12 +95,11 @@ public:
   /// \return whether a picture has a pixel at a point in the frame of the points, also one without a depth.
   bool isInPicture(const Eigen::Vector3d& x) const;
 
-  /// Tells which points lie in space that was seen to be empty.
   /// \param points 3 x M, in the frame of the points.
   /// \return for each whether depthBehind() is negative: M values, 1 in free space.
   std::vector<char> areFree(const Eigen::Matrix3Xd& points) const;
 
-  /// How much of a cloud hides behind itself.
+  /// The share of a cloud that hides behind itself.
   /// \param points 3 x N, finite, N >= 1.
   /// \param margin input units.
   /// \return share of the points that lie more than the margin behind the surface on their ray. From the viewpoint of a

@@ -12,14 +12,14 @@ namespace PCL_SYMMETRY_EXPORTS pcl_symmetry {
 /// 2 |f|^2 - 2 f . gamma(f), over the voxels whose reflection the volume shows. Pairs where f is as flat as its noise
 /// count little.
 ///
-/// In the planes returned, `score` is D, `support` the correlation c (Pearson) of f with its reflection inside the body,
-/// `seen` the share of the body whose reflection lies within the volume, and `residual` the root mean square of
-/// f(x) - f(gamma x). No share of a surface is measured: `share` and its limits are NaN. `confidence` is no
-/// probability here: ((c - c0) / (1 - c0))^2, squared as the variance that a correlation explains, where c0 is the
-/// greater of two: what three quarters of the planes reach that pass through the center of mass in all directions, but
-/// for those near a maximum; and what c is on average where the body is translated as far as the plane moves its
-/// points. It falls where less than 0.6 of the body is seen, and, for planes other than the best one, by the square of
-/// the ratio of what both leave, 1 - c: the best one tells the noise.
+/// In the planes returned, `score` is D, `support` the correlation c (Pearson) of f with its reflection inside the
+/// body, `seen` the share of the body whose reflection lies within the volume, and `residual` the root mean square of
+/// f(x) - f(gamma x). No share of a surface is measured: `share` and its limits are NaN. `confidence` is no probability
+/// here: ((c - c0) / (1 - c0))^2, squared as the variance that a correlation explains, where c0 is the greater of two:
+/// the upper quartile of c over planes through the center of mass in all directions, without those near a maximum; and
+/// the mean c of the body translated as far as the plane moves its points. It falls where less than 0.6 of the body is
+/// seen, and, for planes other than the best one, by the square of the ratio of their 1 - c, as that of the best one is
+/// noise.
 /// \param options num_cells, max_candidates, max_planes, min_confidence, min_possible, approximate, seed and num_threads
 /// count.
 /// \param levels the intensities that count.

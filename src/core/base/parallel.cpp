@@ -21,7 +21,7 @@ struct Loop;
 
 namespace {
 
-/// Between two looks at a watch: too short to be noticed by whoever ends a program, too long to cost time.
+/// Time between two looks at a watch: too short to be noticed by whoever ends a program, too long to cost time.
 constexpr std::chrono::milliseconds watch_interval(50);
 
 using Clock = std::chrono::steady_clock;

@@ -26,8 +26,8 @@ void parallelRanges(std::size_t size, std::size_t block_size, int num_threads,
 /// The same for points, whose pieces are large enough that threads start seldom and small enough for the first cache.
 void parallelPoints(std::size_t size, int num_threads, const std::function<void(std::size_t, std::size_t)>& range);
 
-/// Tells, some times a second, how far the outermost loop of this thread is, as long as the object lives: a long call
-/// becomes one that shows its progress and that can be ended.
+/// While it lives, reports several times a second how far the outermost loop of this thread is, so that a long call can
+/// show its progress and be ended.
 class Watch {
 public:
   /// \param tell takes the share of the blocks of parallelBlocks() that are done, in [0, 1]. What it throws ends that

@@ -1,7 +1,7 @@
 /// Eigenvectors of symmetric matrices and systems of equations with them, by Eigen. They are compiled once, in
-/// symmetric_solvers.cpp, which lists the matrices: where a source names Eigen's solvers, they are half of its time to
-/// compile. And Gauss-Newton steps of small motions: a rotation vector omega, radians, then a translation t, which move
-/// x to x + omega x x + t.
+/// symmetric_solvers.cpp, which lists the matrices: a source that names Eigen's solvers takes twice as long to compile.
+/// Also Gauss-Newton steps of small motions: a rotation vector omega, radians, then a translation t, which move x to x
+/// + omega x x + t.
 #pragma once
 
 #include <Eigen/Core>
@@ -59,7 +59,7 @@ public:
   Matrix6d ofUnknowns() const { return sums().topLeftCorner<kLast, kLast>(); }
 
 private:
-  /// Of eight numbers, the last of which is 0: whole vectors of registers are quicker than one half of the products.
+  /// Products of eight numbers, the last of which is 0: full registers are quicker than half of the products.
   Eigen::Matrix<double, kLast + 2, kLast + 2> products_ = Eigen::Matrix<double, kLast + 2, kLast + 2>::Zero();
 };
 

@@ -15,7 +15,7 @@ namespace pcl_symmetry {
 
 namespace {
 
-/// As many points as show a surface at the tolerance: their number grows as the square of what the spacing falls by.
+/// The number of points that show a surface at the tolerance: it grows as the inverse square of their spacing.
 double mostPoints(const PointsRef& points, const DetectionOptions& options) {
   const double tolerance =
       options.absolute_tolerance > 0.0 ? options.absolute_tolerance / farthestPair(points) : options.tolerance;

@@ -19,11 +19,11 @@ std::optional<std::vector<int>> subsetOf(const PointsRef& points, const Detectio
 /// \param representative_of for each point, the index of the point whose support it takes; -1: it supports nothing.
 void spreadSupport(Detection& detection, const std::vector<int>& representative_of);
 
-/// Points of a cloud such that they lie about equally dense on one side and on the other.
+/// Thins a cloud so that its points are about equally dense on opposite sides.
 ///
-/// Where noise leaves no surface, density is what planes are judged by, and a cloud that is thinner on one side is no
-/// more symmetric than a shape that ends there. The logarithm of the density is fitted by a linear function of the
-/// position: what the shape itself varies by is the same on both sides of a symmetry, and stays.
+/// Where noise leaves no surface, planes are judged by the density, and a cloud that is thinner on one side is no more
+/// symmetric than a shape that ends there. The logarithm of the density is fitted by a linear function of the position.
+/// Variation of the shape itself is the same on both sides of a symmetry, and stays.
 /// \return indices in increasing order; all where the density is even.
 std::vector<int> evenlyDense(const NormalizedCloud& cloud, std::uint64_t seed);
 

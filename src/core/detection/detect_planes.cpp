@@ -102,7 +102,7 @@ void findAxesOfScan(const JudgedCloud& judged, Found& found) {
       scanAxes(rotations, found.planes, found.axes, scan_axes, found.evidence ? &found.evidence->rotations : nullptr);
   found.axes = withRoundAxes(rotations, std::move(found.axes), found.rotations, scan_axes);
   found.planes = withoutPlanesThrough(std::move(found.planes), found.axes, judged.cloud);
-  // What is no ball has one: those of a dome that lie beside it are as round within the tolerance.
+  // A body that is no ball has one axis: the others of a dome are as round within the tolerance.
   sortFalling(found.axes, &SymmetryAxis::confidence);
   if (found.axes.size() > 1) found.axes.resize(1);
 }

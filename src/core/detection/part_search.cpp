@@ -117,10 +117,10 @@ struct SymmetricPart {
   double share = 0.0;        ///< of the cloud, in [0, 1]
   double support = 0.0;      ///< mean support of these points, in [0, 1]
   int iterations = 0;        ///< of Iterative Symmetric Points
-  double longer_edge = 0.0;  ///< of its region than a part of its size has, edges of a disc
+  double longer_edge = 0.0;  ///< by how much its edge exceeds that of a part of its size, edges of a disc
 };
 
-// Planes that are one: radians, and radii of the points. Half of what is between the planes of a prism of 24 sides.
+// Planes that are one: radians, and radii of the points. Half the angle between the planes of a prism of 24 sides.
 constexpr MergeTolerance kSamePlaneOfPart{2.0 * kSamePlane.angle, 2.0 * kSamePlane.offset};
 
 /// Farthest-point sampling: each seed is the point farthest from those before.

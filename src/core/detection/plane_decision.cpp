@@ -176,8 +176,8 @@ JudgedFamily PlaneDecision::judgeFamily(const std::vector<ReflectionPlane>& plan
     family.score += one.score / count;
     family.min_confidence = std::min(family.min_confidence, planeConfidence(one));
   }
-  // Planes of a family tell as much as the scan shows of them, and D falls with what it does not show: the plane that
-  // is shown best represents it.
+  // A scan shows some planes of a family better than others, and D falls with what is hidden: the plane that is shown
+  // best represents the family.
   constexpr double least = 1e-3;  // avoids a division by 0
   PlaneEvidence all = measure_.evidenceOf(together.support, together.conflict, is_scan ? best_score : family.score);
   all.share = together.share / std::max(least, informative);
@@ -191,8 +191,8 @@ JudgedFamily PlaneDecision::judgeFamily(const std::vector<ReflectionPlane>& plan
 
 namespace {
 
-/// Refinement can come to rest on the way to a maximum, where few points say how to go on (on flat pieces, for
-/// instance). A plane is a maximum of its own only if D falls on the way to a better plane nearby.
+/// Refinement can stop on the way to a maximum where few points guide it, as on flat pieces. A plane is a maximum of
+/// its own only if D falls on the way to a better plane nearby.
 bool isOnSlopeOf(const SymmetryPlane& better, const SymmetryPlane& plane, const NormalizedCloud& cloud) {
   const ReflectionPlane a = cloud.toNormalized(better), b = cloud.toNormalized(plane);
   if (!MergeTolerance{kDetection.decide.slope_angle, kDetection.decide.slope_offset}.same(a, b)) return false;

@@ -109,7 +109,7 @@ public:
   double deviation(const ReflectionPlane& plane) const;
 
 private:
-  /// The distance within which as many lie as 97 % of those of a true plane do within the tolerance.
+  /// The distance within which 97 % of the samples lie, relative to what sampling and noise allow.
   double deviationOf(std::vector<float> distances) const;
   /// Where the reflections of some samples land.
   /// \param closest points to them.
@@ -128,7 +128,7 @@ private:
   double resolution_, tolerance_;
   CloudLimits limits_;
   std::optional<SplitSurface> halves_;  ///< of points that resolve no surface
-  /// Within one and two tolerances, of the points themselves and the surface of the others.
+  /// Shares of the points within one and two tolerances of the surface of the others.
   std::array<double, 2> own_shares_;
   double own_score_;  ///< PlaneEvidence::own_score
   mutable std::once_flag ends_found_;
@@ -206,7 +206,7 @@ struct Found : Detection {
   std::optional<PlaneLattice> polygon;  ///< normalized frame; its planes are among the planes
 };
 
-/// Refines planes that are known nearly, and decides each for itself; none else are searched.
+/// Refines planes that are nearly known and decides each of them; no others are searched.
 /// \param starts input frame.
 /// \param input points and what a scanner saw.
 std::vector<SymmetryPlane> refinedAt(const std::vector<ReflectionPlane>& starts, const PlaneInput& input,
@@ -225,7 +225,7 @@ std::vector<SymmetryPlane> rankedPlanes(const JudgedCloud& judged, std::vector<S
 /// Planes in the order of answers, without `approximate` only those that are decided.
 std::vector<SymmetryPlane> reordered(std::vector<SymmetryPlane> planes, const DetectionOptions& options);
 
-/// \return the plane of a cloud of which nothing but a sheet is left at the tolerance, input frame; else empty.
+/// \return the plane of a cloud that is a sheet at the tolerance, input frame; else empty.
 std::optional<ReflectionPlane> flatPlane(const JudgedCloud& judged);
 
 /// The answer where nothing is a symmetry: of the planes of the whole, the one with the greatest share.
@@ -240,7 +240,7 @@ std::optional<SymmetryPlane> bestApproximate(const JudgedCloud& judged, const st
 /// Sets the confidence of a plane, and its kind from min_confidence and min_possible. The evidence replaces all that
 /// came before; what limits the plane to a possible symmetry stays.
 /// \param confidence in [0, 1].
-/// \param evidence what it is of; Reason::rule.
+/// \param evidence what was measured, as Reason::rule.
 void setConfidence(SymmetryPlane& plane, double confidence, const char* evidence, const DetectionOptions& options);
 
 /// Sets another confidence by a rule that looks beside the evidence.
@@ -257,7 +257,7 @@ void limitToPossible(SymmetryPlane& plane, const char* rule);
 /// A symmetry of the points that support it.
 void setLocal(SymmetryPlane& plane);
 
-/// True of symmetries and possible ones.
+/// Whether a plane is a symmetry or a possible one.
 inline bool isDecided(const SymmetryPlane& plane) {
   return plane.kind == PlaneKind::Symmetry || plane.kind == PlaneKind::Possible;
 }

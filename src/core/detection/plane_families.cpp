@@ -153,7 +153,7 @@ FamilyTest familyTest(const JudgedCloud& judged, const std::vector<int>& samples
   const PlaneFit& fit = *judged.fit;
   const PlaneDecision& decision = judged.decision;
   const DetectionOptions& options = judged.options;
-  // What a given tolerance forgives is farther off than samples are from each other.
+  // Points that a greater tolerance than the usual one allows may lie beyond the support of all samples.
   const double usual = DetectionOptions().tolerance * cloud.extent;
   const bool is_coarse = cloud.kind() == CloudKind::Surface &&
                          std::max(options.tolerance * cloud.extent, options.absolute_tolerance / cloud.scale) > usual;

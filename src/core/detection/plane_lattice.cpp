@@ -124,7 +124,7 @@ private:
   std::vector<double> powers_;                 ///< the same without their angles
 };
 
-/// What several planes say together.
+/// The confidence of several planes by their mean evidence.
 double confidenceTogether(const std::vector<MeasuredPlane>& judged, int first, int step) {
   PlaneEvidence mean = judged[first].evidence;
   // What differs from plane to plane of a cloud

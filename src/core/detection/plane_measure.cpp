@@ -221,7 +221,8 @@ MeasuredPlane PlaneMeasure::measured(const ReflectionPlane& plane, const std::ve
   PlaneEvidence& evidence = result.evidence;
   evidence = evidenceOf(shares.support, shares.conflict, cloud_.score(result.plane));
   evidence.double_share = share(1);
-  // Within the tolerance is within twice of it; few points, whose own share is small, make more of the former.
+  // A point within the tolerance is within twice of it, but where the own share of few points is small, the former
+  // share can come out greater.
   evidence.share = std::min(share(0), share(1));
   evidence.hold = secondStiffness(stiffness);
   evidence.unknown = meanSupport(unknown);

@@ -17,7 +17,7 @@ std::vector<Eigen::Vector3d> carryingNormals(const PointsRef& points, const Visi
 /// True where a plane is neither upright nor level on any of these supports; false without one.
 bool slants(const ReflectionPlane& plane, const std::vector<Eigen::Vector3d>& carrying_normals);
 
-/// The middle plane of an upright box around points, along its longer side, and what speaks for it.
+/// The middle plane of an upright box around points, along its longer side, and its evidence.
 struct MiddlePlane {
   ReflectionPlane plane;
   double confidence = 0.0;                                ///< that it is a symmetry, in [0, 1]

@@ -93,9 +93,8 @@ public:
     return compare(plane.reflection(), plane, stride, with_step, residual);
   }
 
-  /// The correlation with a body that is moved along the normal of a plane, as far as the plane moves its points, but
-  /// all of it one way: where f changes slowly on that way, as through a thin slab, each plane across it seems a
-  /// symmetry.
+  /// The correlation with the body translated along the normal of a plane, as far as the plane moves its points: where
+  /// f changes slowly in that direction, as across a thin slab, every plane across it seems a symmetry.
   /// \param distances of the body's points from the plane.
   double translated(const ReflectionPlane& plane, std::vector<double> distances, int stride) const {
     double sum = 0.0, num = 0.0;

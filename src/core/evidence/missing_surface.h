@@ -32,9 +32,9 @@ struct SampledSurface {
 /// How well the end of a cloud explains that a sample has no counterpart under a plane.
 ///
 /// Neighboring samples without counterpart form regions. A region is explained as far as its edge runs along open
-/// borders, at the samples themselves or at their reflections, more than chance would have it: short edges may do so by
-/// chance, and so may those of a region all of whose samples lie near borders. Or its reflection lies beyond the end of
-/// the cloud, see beyondEnd().
+/// borders, at the samples themselves or at their reflections, more than by chance: short edges may do so by chance,
+/// and so may those of a region all of whose samples lie near borders. It is also explained where its reflection lies
+/// beyond the end of the cloud, see beyondEnd().
 /// \param matched N values, 1 where the reflection of the sample lies on the surface.
 /// \param closest N indices of the samples closest to the reflections; -1: none is near.
 /// \param reflected 3 x N, the reflections.
@@ -52,7 +52,6 @@ struct SurfaceEnds {
   double trust;  ///< how far open borders may excuse missing counterparts, in [0, 1]: 0 for a wire or an open sheet
 
   /// \param found the neighbors of the points.
-  /// \param num_threads 0 = one per core.
   SurfaceEnds(const Points& points, const LocalGeometry& geometry, const ClosestPointSearch& search,
               const FoundNeighbors& found, int num_threads);
 };

@@ -63,7 +63,7 @@ double byLostOverlap(const PlaneEvidence& evidence, const EvidenceUnits& units) 
   return std::log(std::max(0.0, 1.0 - evidence.support) / units.lost_overlap + 1.0);
 }
 
-/// \return how far a plane beside the best one is less probable; chance has a part in what is not known.
+/// \return how much less probable a plane beside the best one is, which grows with what is unknown.
 double byFurther(CloudKind kind, double unknown) {
   return kind == CloudKind::Scan ? 1.0 : kind == CloudKind::Surface ? std::sqrt(unknown) : 0.0;
 }

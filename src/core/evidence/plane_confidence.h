@@ -109,9 +109,9 @@ struct EvidenceUnits {
   double noise = 0.01;         ///< of what noise takes from D
 };
 
-/// The summands of the log odds that a plane is a symmetry, before their coefficients. The first is 1; then
-/// come those that fall as the evidence gets better, then the spacing or the noise, which says what to expect of the
-/// others. The last one of scans and of surfaces is that of PlaneEvidence::further.
+/// The summands of the log odds that a plane is a symmetry, before their coefficients. The first is 1; then come those
+/// that fall as the evidence gets better, then the spacing or the noise, on which the others depend. The last one of
+/// scans and of surfaces is that of PlaneEvidence::further.
 std::vector<double> logOddsTerms(const PlaneEvidence& evidence);
 
 /// Limits of a share.
@@ -132,7 +132,7 @@ ShareInterval shareInterval(const PlaneEvidence& evidence);
 /// \return in [0, 1].
 double planeConfidence(const PlaneEvidence& evidence);
 
-/// What PlaneEvidence::further makes of the odds: less for a scan, and for a cloud that may lack a piece.
+/// The factor of PlaneEvidence::further on the odds: less for a scan, and for a cloud that may lack a piece.
 /// \param unknown as PlaneEvidence::unknown.
 /// \return a factor, > 0.
 double furtherOdds(CloudKind kind, double unknown);

@@ -14,10 +14,10 @@ Eigen::Matrix3d principalSymmetryAxes(const PointsRef& points, const Eigen::Matr
 
 /// The center of symmetry (COS): where the three planes meet.
 ///
-/// Departure from the paper: across a direction in which little is symmetric the maximum of the profile is chance. Only
-/// where it stands high above all others, as across the box of a mailbox, the plane is there; elsewhere the offset is
-/// the mean over all offsets, weighted by score and by closeness to the middle of the extent of the points. The nearer
-/// the maximum is to that mean, the less height it needs. All profiles of a scan count as flat.
+/// Departure from the paper: across a direction with little symmetry the maximum of the profile is chance. The plane
+/// passes there only if it stands high above all others, as across the box of a mailbox; elsewhere the offset is the
+/// mean over all offsets, weighted by score and by closeness to the middle of the extent of the points. The nearer the
+/// maximum is to that mean, the less height it needs. All profiles of a scan count as flat.
 /// \return input frame.
 Eigen::Vector3d centerOfSymmetry(const FrameEvidence& evidence, const FrameCandidate& frame);
 

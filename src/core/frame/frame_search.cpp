@@ -216,7 +216,7 @@ std::vector<FrameCandidate> frameMaxima(const std::vector<FrameCandidate>& rotat
     for (std::size_t angle = 0; angle < num_angles; ++angle)
       if (value(angle) >= value(angle + num_angles - 1) && value(angle) > value(angle + 1))
         maxima.push_back(rotated[first + angle]);
-    // Where no angle stands out, any is right.
+    // Where no angle stands out, all are equally good.
     if (maxima.empty()) maxima.push_back(rotated[first]);
   }
   std::stable_sort(maxima.begin(), maxima.end(), better);

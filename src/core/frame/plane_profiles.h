@@ -64,7 +64,7 @@ private:
   bool scanned_;
   std::uint32_t outside_;
   std::vector<std::uint32_t>
-      cells_;                // 255 times f, and from bit 8 on 255 times free space; one for all outside at last
+      cells_;  // 255 times f, and from bit 8 on 255 times free space; the last one is for all positions outside
   Eigen::ArrayX3f samples_;  // cells from the middle
   std::vector<int> own_;     // surface of each sample
 };

@@ -32,7 +32,7 @@ void moveTo(const Eigen::Vector3d& center, const Eigen::Matrix3d& axes, Symmetry
 }
 
 /// Puts axis \p first to the front; the others follow it in their cyclic order.
-void turnOrder(int first, SymmetryFrame& frame) {
+void rotateOrder(int first, SymmetryFrame& frame) {
   if (first == 0) return;
   Eigen::Isometry3d turn = Eigen::Isometry3d::Identity();
   for (int k = 0; k < 3; ++k) turn.linear().row(k) = Eigen::RowVector3d::Unit((k + first) % 3);
@@ -52,7 +52,7 @@ void turnOrder(int first, SymmetryFrame& frame) {
 void bringToPlane(const ReflectionPlane& plane, SymmetryFrame& frame) {
   int across = 0;
   (frame.axes.transpose() * plane.normal()).cwiseAbs().maxCoeff(&across);
-  turnOrder(across, frame);
+  rotateOrder(across, frame);
   const Eigen::Vector3d first = frame.axes.col(0);
   const Eigen::Vector3d normal = first.dot(plane.normal()) < 0.0 ? Eigen::Vector3d(-plane.normal()) : plane.normal();
   const Eigen::Matrix3d axes = Eigen::Quaterniond::FromTwoVectors(first, normal).toRotationMatrix() * frame.axes;
@@ -96,7 +96,7 @@ void bringToPlanes(const std::function<std::optional<ReflectionPlane>(const Refl
   moveTo(center, axes, frame);
 }
 
-/// Turns an axis of a frame onto a line, and moves the center there.
+/// Rotates an axis of a frame onto a line, and moves the center there.
 void bringToLine(const Line3d& line, int k, SymmetryFrame& frame) {
   const Eigen::Vector3d axis = frame.axes.col(k);
   const double sign = axis.dot(line.direction()) < 0.0 ? -1.0 : 1.0;

@@ -61,8 +61,7 @@ public:
   /// \param sq_reach squared distance of the last one of each point.
   NeighborLists(const Points& points, const std::vector<int>& nearest, const std::vector<float>& sq_reach);
 
-  /// A point near a query, and whether no other point is as close; that is not known of all points for which it is
-  /// true.
+  /// A point near a query, and whether it is known to be the closest; some closest points are not known to be.
   struct Found {
     int index;
     float sq_distance;

@@ -11,7 +11,7 @@ namespace pcl_symmetry {
 /// number of terms.
 constexpr double kGoldenSection = 0.61803398874989485;
 
-/// Turn from one point of a Fibonacci lattice to the next, radians: 2 pi (1 - kGoldenSection).
+/// Rotation from one point of a Fibonacci lattice to the next, radians: 2 pi (1 - kGoldenSection).
 constexpr double kGoldenAngle = 2.39996322972865332;
 
 /// Term \p k of the golden-ratio sequence, which spreads evenly over an interval however many terms are used.
@@ -34,8 +34,8 @@ Eigen::Vector3d spiralDirection(int k, int count, double angle);
 /// \throws std::invalid_argument for less than one direction.
 std::vector<Eigen::Vector3d> evenDirections(int num_directions);
 
-/// The axes of a camera: a right-handed frame whose third axis looks along a direction. The turn about that direction
-/// is arbitrary, but the same for the same direction.
+/// The axes of a camera: a right-handed frame whose third axis looks along a direction. The rotation about that
+/// direction is arbitrary, but always the same.
 /// \param forward unit vector, input frame.
 /// \return rotation R_camera_input: rows right, down and forward in the input frame.
 inline Eigen::Matrix3d viewingFrame(const Eigen::Vector3d& forward) {

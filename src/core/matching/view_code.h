@@ -80,8 +80,7 @@ struct ShapeOfView {
 /// Finds the shapes that a scan can show, and their poses.
 class ViewIndex {
 public:
-  /// Adds a shape.
-  /// \param views of viewsAround().
+  /// \param views of a shape, from viewsAround().
   void add(const std::vector<View>& views);
 
   int numShapes() const { return static_cast<int>(shapes_.size()); }

@@ -46,8 +46,8 @@ Residuals residualsAt(const PosedSurface& scan, const PosedSurface& model, const
   return residuals;
 }
 
-/// What the residuals know of the motion: their Hessian without what noise of the normals adds, which would fix
-/// directions along which the surface slides on itself.
+/// The Hessian of the residuals without what noise of the normals adds, which would fix directions along which the
+/// surface slides on itself.
 Matrix6d hessianWithoutNoise(Residuals residuals) {
   // The squares of errors in two directions have an exponential distribution; its mean is the median over
   // log 2.

@@ -14,9 +14,9 @@ Eigen::Matrix3d crossMatrix(const Eigen::Vector3d& x);
 /// \param T_b_a takes points of A to B.
 Matrix6d adjoint(const Eigen::Isometry3d& T_b_a);
 
-/// How uncertain a pose is that least squares of point-to-plane distances found: the inverse of their Hessian times
-/// their mean square, with what noise of the normals adds to the Hessian taken off. A direction that the points do not
-/// fix keeps the variance of a pose that nothing is known of: a uniform rotation, a translation by a radius.
+/// The uncertainty of a pose from least squares of point-to-plane distances: the inverse of their Hessian, less what
+/// noise of the normals adds to it, times their mean square. A direction that the points do not fix keeps the variance
+/// of an unknown pose: a uniform rotation, a translation by a radius.
 /// \param scan,model each about its own center, in units of the model's radius.
 /// \param num_points of the scan that the pose was fitted to, >= 1.
 /// \param reach greatest distance of points that corresponded, > 0, radii.

@@ -166,7 +166,7 @@ double poseConfidence(const PoseEvidence& evidence) {
       std::log(std::clamp(evidence.noise, kRegistration.min_noise, kRegistration.max_noise) / 0.001 + 0.5),
       std::abs(std::log(evidence.size_ratio))};
   const double log_odds = std::inner_product(terms.begin(), terms.end(), kRegistrationFit.begin(), 0.0);
-  // Where surfaces face each other, most of them have to agree, whatever else speaks for the pose.
+  // Where surfaces face each other, most of them have to agree, whatever else supports the pose.
   return std::min(logistic(log_odds), evidence.agreement) * evidence.uniqueness;
 }
 

@@ -9,7 +9,7 @@
 
 namespace pcl_symmetry {
 
-/// What two surfaces say about a pose that was found: where they overlap, and whether they agree there.
+/// Measures where two surfaces overlap at a pose, and whether they agree there.
 ///
 /// Points that face the inside of the other surface have to lie on it; points beyond its border may lie anywhere that
 /// its scanner did not see to be empty. So a pose of two scans that share a third of their surface is decided as surely

@@ -47,7 +47,7 @@ struct RegistrationRules {
   double tight_noises = 4.0;        ///< the same in deviations of the noisier cloud
   double facing_spacings = 1.5;     ///< between a point and the middle of the disc that it faces
   double facing_reach = 0.05;       ///< of the smaller cloud's diameter; what is farther away is another layer
-  double min_noise = 0.0015;        ///< diameters; that of a close depth camera, less does not speak for a pose
+  double min_noise = 0.0015;        ///< diameters; that of a close depth camera, less is no evidence for a pose
   double max_noise = 0.01;          ///< diameters; more is the curvature between few points
   double other_unit = 5.0;          ///< ratio of diameters from which a wrong unit is suspected
   double near_tolerance = 0.02;     ///< diameters, within which a surface that was to be seen was measured

@@ -12,8 +12,8 @@ struct VisiblePoint {
   Eigen::Index index;                ///< in the order of the surface
   Eigen::Vector3d position, normal;  ///< in the frame of the scan; the normal of any sign
   double cosine;                     ///< between normal and ray, > 0: the area that the scanner sees of it
-  /// Along the normal, of what was measured on its ray: positive in free space, infinite where the ray met nothing, and
-  /// minus infinity where no ray passed.
+  /// Height above what was measured on its ray, along the normal: positive in free space, infinite where the ray met
+  /// nothing, and minus infinity where no ray passed.
   double height;
 };
 

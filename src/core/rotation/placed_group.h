@@ -23,7 +23,7 @@ struct PlacedGroup {
 constexpr RotationGroup kPolyhedralGroups[] = {
     {RotationGroupKind::Icosahedral, 5}, {RotationGroupKind::Octahedral, 4}, {RotationGroupKind::Tetrahedral, 3}};
 
-/// The excess beyond which a set is given up that was judged by some of the points: three standard errors above 1.
+/// The excess beyond which a set judged by some of the points is given up: three standard errors above 1.
 double greatestExcess(const RotationLimits& limits, int num_samples);
 
 /// The set moved to where it fits the surface best; nothing if the surface does not support it there.

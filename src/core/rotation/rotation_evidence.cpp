@@ -264,7 +264,7 @@ std::vector<double> rotationOddsTerms(const SymmetryRotation& rotation, const Ro
   const double off = std::log1p(rotation.off / kScanAxes.negligible_share),
                far = std::log1p(rotation.far / kScanAxes.negligible_share);
   switch (kindOf(rotation)) {
-    case RotationKind::Half:  // without what is far off: what the object grows by says that, and off does
+    case RotationKind::Half:  // without `far`, which `grown` and `off` hold
       return {1.0,
               off,
               1.0 - rotation.support,

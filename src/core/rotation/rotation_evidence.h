@@ -18,21 +18,22 @@ namespace pcl_symmetry {
 /// The numbers that axes of scans depend on. Lengths are in radii of the cloud, angles in radians, where no unit is
 /// given.
 struct ScanAxisRules {
-  int normal_samples = 600, normal_draws = 60, normals_in_draw = 8;  ///< that lines of bodies of revolution are from
-  int from_normals = 3;                                              ///< lines kept of these
-  double angle_of_fold = 3.0 * kDegree;                              ///< by which planes of scans are off
-  double min_plane_angle = 0.13;                                     ///< between two planes that share a line
+  int normal_samples = 600, normal_draws = 60,
+      normals_in_draw = 8;               ///< samples and draws that give lines of bodies of revolution
+  int from_normals = 3;                  ///< lines kept of these
+  double angle_of_fold = 3.0 * kDegree;  ///< by which planes of scans are off
+  double min_plane_angle = 0.13;         ///< between two planes that share a line
   int coarse_cells = 24, coarse_theta = 8, coarse_phi = 32, coarse_offset = 8, coarse_samples = 32;
-  double coarse_reach = 0.67;                             ///< radii of the cloud that axes are off its middle at most
-  std::size_t coarse_maxima = 10;                         ///< of that axial transform
-  double coarsely_same = 0.3;                             ///< radians and radii, within which two of them are one
-  double coarse_equal = 0.05;                             ///< D by which they are off their peaks
-  int max_order = 12;                                     ///< bodies of more folds are nearly round to a scan
-  int round_rotations = 10;                               ///< rotations that represent all, besides small ones
-  double small_angle = 0.26, larger_angle = 0.7;          ///< angles that the fit of a round body uses
-  double rough_factor = 3.0, rough_slack = 2.0;           ///< of max_off and max_far in screening; tolerances
-  std::size_t max_planes_of_axes = 8;                     ///< planes whose common lines are starts
-  double plane_share = 0.85;                              ///< share of such planes
+  double coarse_reach = 0.67;                     ///< radii; greatest distance of an axis from the middle of the cloud
+  std::size_t coarse_maxima = 10;                 ///< of that axial transform
+  double coarsely_same = 0.3;                     ///< radians and radii, within which two of them are one
+  double coarse_equal = 0.05;                     ///< D by which they are off their peaks
+  int max_order = 12;                             ///< bodies of more folds are nearly round to a scan
+  int round_rotations = 10;                       ///< rotations that represent all, besides small ones
+  double small_angle = 0.26, larger_angle = 0.7;  ///< angles that the fit of a round body uses
+  double rough_factor = 3.0, rough_slack = 2.0;   ///< of max_off and max_far in screening; tolerances
+  std::size_t max_planes_of_axes = 8;             ///< planes whose common lines are starts
+  double plane_share = 0.85;                      ///< share of such planes
   double same_axis_angle = 0.12, same_axis_offset = 0.1;  ///< no body has two axes nearer
   double fitted_same = 0.02;                              ///< radians and radii, within which lines are judged once
   std::size_t max_axes = 5;                               ///< axes; a polyhedron seen from a corner shows as many
@@ -106,7 +107,8 @@ public:
   RotationShares exactly(const Eigen::Affine3d& motion) const;
 
   /// How fast the match of a rotation is lost as the line moves: second smallest eigenvalue of its stiffness, point to
-  /// plane, under two tilts and two shifts; mean over the points, radii. The smallest is small for all that slides.
+  /// plane, under two tilts and two shifts; mean over the points, radii. The smallest is small for all surfaces that
+  /// slide.
   double hold(const Line3d& line, double angle) const;
 
   /// The line moved to where some rotations about it map the points seen onto each other best: point to plane, with
@@ -223,7 +225,7 @@ struct ScanRotations {
   std::vector<SymmetryRotation> rotations;
 };
 
-/// The same for points of which no planes are known.
+/// The same for points whose planes are not known.
 /// \param points 3 x N, finite, input units.
 /// \param edt of these points.
 /// \param axes lines that are tried first, input frame.

@@ -135,9 +135,9 @@ public:
 
   /// Whether the points fill a body, as solid samples and atoms do.
   bool fillsBody() const;
-  /// Those of such points that lie at the border of the body.
+  /// The points at the border of such a body.
   Points borderPoints() const;
-  /// The least tolerance at which the points show a surface: half of them lie on that of the others.
+  /// The least tolerance at which the points show a surface: half of them lie on the surface of the others.
   double resolution() const;
   /// Median distance between a point and the one closest to it.
   double closestDistance() const { return surface_->closest_distance; }
@@ -192,7 +192,7 @@ private:
     std::vector<float> own_distances;
     std::vector<int> order;  ///< a random order of the points
     double spacing = 0.0, roughness = 0.0;
-    Points overlap_points;     ///< that overlap() asks about
+    Points overlap_points;     ///< that overlap() looks up
     double own_overlap = 1.0;  ///< that a perfect symmetry reaches with this sampling
     double closest_distance = 0.0;
     bool single = false;

@@ -112,8 +112,8 @@ private:
   double max_tolerance_ = std::numeric_limits<double>::infinity();
 };
 
-/// The surface that points show or, where they fill a body, that of its border. Points that show none at the tolerance
-/// may still meet each other one by one: atoms, grids, the corners of a solid.
+/// The surface that points show or, where they fill a body, the surface of its border. Points that show none at the
+/// tolerance may still meet each other one by one: atoms, grids, the corners of a solid.
 /// \param[out] resolution the least tolerance at which the points show a surface.
 /// \return null where the points resolve no answer.
 std::unique_ptr<GroupSearch> searchThatResolves(const Points& points, const RotationLimits& limits,

@@ -25,7 +25,7 @@ std::vector<float> inverted(const std::vector<float>& depths) {
   return inverse;
 }
 
-/// What the neighbors say about the inverse depth of a pixel.
+/// The inverse depth of a pixel by its neighbors.
 struct Fit {
   float inverse_depth = std::numeric_limits<float>::quiet_NaN();
   float weight = 0.0f;  ///< of the neighbors

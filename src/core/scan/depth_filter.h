@@ -29,9 +29,9 @@ double inverseDepthError(const DepthImage& image, int apart = 1);
 ///
 /// Each depth becomes that of the plane through the pixels around it, fitted to their inverse depths: those of a
 /// slanted plane grow evenly from pixel to pixel. Pixels of other surfaces do not count, so that edges stay. A pixel
-/// that hardly any neighbor agrees with is a flying one, between two surfaces, and is left out. Pictures without
-/// errors stay as they are, and those whose pixels share errors with their neighbors, as of stereo and structured
-/// light: the mean keeps these, and edges are rounded.
+/// that hardly any neighbor agrees with is a flying one, between two surfaces, and is left out. Pictures without errors
+/// stay as they are, as do pictures whose pixels share errors with their neighbors (stereo, structured light): their
+/// mean would keep the errors and round edges.
 /// \param radius of the square around a pixel, pixels, >= 1.
 FilteredDepths filterDepths(const DepthImage& image, int radius, int num_threads);
 

@@ -62,8 +62,8 @@ std::vector<float> distancesAlong(const RangeImage& image, const PixelStep& step
   return distances;
 }
 
-/// How far a ray is from the next one across the direction in which rays are dense: rings of a LiDAR scanner are many
-/// pixels apart, whose rays in a ring are neighbors.
+/// The distance of rays across the direction in which they are dense: rings of a LiDAR scanner are many pixels apart,
+/// while rays within a ring are neighbors.
 /// \return median over the pixels with a depth of the distance to the next such pixel in row or column, whichever is
 /// larger, pixels; 0 where no pixel has neighbors in row and column.
 double typicalGap(const RangeImage& image) {
@@ -338,7 +338,7 @@ LastRows lastRows(const Positions& positions, double angle, double pitch) {
   return rows;
 }
 
-/// Those of the positions that may be in the last rows at any turn of the side.
+/// Those of the positions that may be in the last rows at any angle of the side.
 Positions nearSide(const Positions& positions, double angle, double pitch) {
   const Eigen::Vector2d normal(std::cos(angle), std::sin(angle));
   Eigen::Array2d low = positions.front(), high = positions.front();

@@ -80,8 +80,8 @@ struct FrameSide {
 ///
 /// Not in the paper. Pixels lie in rows and columns, and so do the positions of the points of a scan. Where the picture
 /// ends, its last row is as long as those before it; where the object ends, rows become shorter. A straight edge of the
-/// object that lies along a row looks like a side of the picture: beyond it nothing is said then, which loses evidence
-/// but gives none.
+/// object that lies along a row looks like a side of the picture: space beyond it is then unknown, which loses evidence
+/// but adds none.
 /// \param positions of points in the picture plane at depth one.
 /// \return at most four sides; none where the positions are in no grid, as those of a part of the points drawn at random.
 std::vector<FrameSide> frameSides(const std::vector<Eigen::Array2d>& positions);

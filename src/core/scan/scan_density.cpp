@@ -188,7 +188,7 @@ ScanDensity::Candidate ScanDensity::climbed(Candidate best, double first_step, d
   return best;
 }
 
-/// Directions apart from each other that leave least, each climbed from by the coarse samples; none where all are
+/// Climbs by the coarse samples from the directions that leave least, apart from each other; none where all are
 /// hopeless.
 std::vector<ScanDensity::Candidate> ScanDensity::coarseMinima(std::size_t most) const {
   std::vector<Candidate> coarse;

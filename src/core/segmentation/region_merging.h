@@ -9,7 +9,7 @@
 
 namespace pcl_symmetry {
 
-/// What speaks for or against two neighboring regions being one part.
+/// Evidence of whether two neighboring regions are one part.
 enum Cue {
   kAlways,             ///< 1
   kContact,            ///< length of the common border over the shorter perimeter, in [0, 1]
@@ -47,7 +47,7 @@ public:
   /// \return the region of each patch.
   const std::vector<int>& ofPatches() const { return region_; }
 
-  /// What speaks for and against two neighbors being one part.
+  /// The cues of two neighbors.
   Cues cues(int a, int b) const;
 
   /// Makes \p b part of \p a; they need not be neighbors.

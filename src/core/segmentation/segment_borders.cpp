@@ -226,7 +226,7 @@ public:
   }
 
   int size() const { return static_cast<int>(areas_.size()); }
-  /// In a cloud, at most the segment's share of the points: the area of a point where few are is a guess.
+  /// In a cloud at most the segment's share of the points, as the area of a point among few others is a guess.
   double area(int segment) const { return std::min(areas_.at(segment), num_elements_.at(segment) * most_of_element_); }
 
   int smallest() const {

@@ -116,7 +116,7 @@ std::pair<int, int> rowInBall(const AxisGrid& grid, int v) {
   return {begin, std::max(begin, grid.numOffset() - begin)};
 }
 
-/// Adds what one rotation says about all axes of a direction to D, and to F where the table has free space.
+/// Adds the terms of one rotation for all axes of a direction to D, and to F where the table has free space.
 /// \param[in,out] sums D, and F, of each fold for all axes of the direction.
 void addRotation(LineSums& lines, const GaussianEdt& edt, const AxisGrid& grid, const Eigen::Matrix3d& frame,
                  const AxialRotation& rotation, double scale, const Eigen::Matrix3Xf& samples,
