@@ -76,7 +76,7 @@ std::vector<MeasuredPlane> judgeAll(const JudgedCloud& judged, std::vector<Candi
 
 /// The reflection of one symmetry in another is a symmetry, and so are the missing planes of a regular polygon.
 void completeGroups(const JudgedCloud& judged, Found& found) {
-  if (!kKindRules.completes_groups[judged.cloud.kind()]) return;
+  if (!kKindRules.shows_all[judged.cloud.kind()]) return;
   std::vector<ReflectionPlane> tried;
   for (std::vector<Candidate> candidates;
        !(candidates = judged.refinement.closeSymmetries(impliedBy(found.planes, judged.cloud, tried))).empty();)
@@ -88,7 +88,7 @@ void findAxesOfScan(const JudgedCloud& judged, Found& found) {
   const DetectionOptions& options = judged.options;
   if (judged.measure.limits().isCutAllAround() || !options.rotations) return;
   // A ball is symmetric about every line through its center.
-  if (!kKindRules.has_rotations[judged.cloud.kind()] || !found.centers.empty()) return;
+  if (kKindRules.shows_all[judged.cloud.kind()] || !found.centers.empty()) return;
   const ScanAxesOptions scan_axes{options.folds, options.min_confidence, options.min_possible, options.seed,
                                   options.num_threads};
   const RotationEvidence rotations(judged.cloud, judged.measure.tolerance(), options.seed);
@@ -216,7 +216,7 @@ Detection detectFromMap(const PlaneInput& input, const GaussianEdt& edt, const S
   const NormalizedCloud cloud(distinct.points, edt, std::move(search), input.visibility, options.num_threads,
                               input.normals ? &normals : nullptr);
   const std::vector<int> kept =
-      kKindRules.evens_density[cloud.kind()] ? evenlyDense(cloud, options.seed) : allOf(cloud.points.cols());
+      kKindRules.resolves_surface[cloud.kind()] ? allOf(cloud.points.cols()) : evenlyDense(cloud, options.seed);
   Detection detection = static_cast<Eigen::Index>(kept.size()) < cloud.points.cols()
                             ? detectOnEvenSubset(cloud, distinct.points, kept, map, options, watch)
                             : refineAndDecide(cloud, cloud.points, map, options, watch);

@@ -166,10 +166,14 @@ struct KindRules {
   // clang-format off
   //                                        surface     scan   volume
 
-  // Candidates: the reflection of one symmetry in another is tried; a scan shows too few for that.
-  KindRule<bool> completes_groups         {    true,   false,    true};
-  // Candidates of little merit are refined beside symmetries, too: those of a scan have little.
-  KindRule<bool> keeps_unlikely           {   false,    true,   false};
+  // The points show all sides. A scan shows too little to complete groups of planes, candidates of little merit may be
+  // symmetries, and point-to-plane steps slide along flat pieces; planes of noisy scans climb within the last stage.
+  KindRule<bool> shows_all                {    true,   false,    true};
+  // Points resolve a surface, whose normals are known. Otherwise the points are made evenly dense, one half of them is
+  // compared with the other, and planes of a polygon are judged together, as noise hides single ones.
+  KindRule<bool> resolves_surface         {    true,    true,   false};
+  // Open borders tell what was cut off.
+  KindRule<bool> may_lack_piece           {    true,   false,   false};
 
   // Refinement: the last stage reflects one sample in this many: a scan is limited by what it shows.
   KindRule<int> full_stride               {       1,       4,       1};
@@ -177,37 +181,16 @@ struct KindRules {
   KindRule<int> rough_stride              {      10,      20,      10};
   // ... those with less merit never settle.
   KindRule<double> settled_merit          {    0.83,    0.93,    0.83};
-  // Point-to-plane steps slide a plane along flat pieces that a scan has little beside.
-  KindRule<bool> slides                   {   false,    true,   false};
-  // Candidates that left their cell are kept where they are better than all that stayed, and planes climb to their
-  // maximum after the last stage; those of noisy scans have done so in it.
-  KindRule<bool> climbs                   {    true,   false,    true};
 
   // Evidence: planes are judged by one sample in this many; 0 = by all points.
   KindRule<int> judged_stride             {       0,       4,       0};
-  // One half of the points is compared with the other, as no surface is resolved.
-  KindRule<bool> by_halves                {   false,   false,    true};
-  // Open borders tell what was cut off.
-  KindRule<bool> may_lack_piece           {    true,   false,   false};
-
-  // Families of planes: normals point to axes and centers.
-  KindRule<bool> normals_tell             {    true,    true,   false};
-  // Share of the surface seen that the planes of a family map on average.
+  // Families: share of the surface seen that their planes map on average.
   KindRule<double> family_share           {    0.92,    0.98,    0.92};
   // Share of the surface by which planes of a family may differ, at this many points or more.
   KindRule<double> family_allowance       {   0.015,   0.015,   0.012};
   KindRule<double> points_of_allowance    {     0.0,     0.0, 10000.0};
   // Points that judge a family; a look-up in a density costs a tenth of a search.
   KindRule<int> family_samples            {    1500,    1500,   15000};
-  // The worst plane of a family needs worst_share of that confidence; a scan shows some too badly.
-  KindRule<bool> family_needs_all         {    true,   false,    true};
-  // Planes of a polygon are judged together, as noise hides single ones.
-  KindRule<bool> has_polygons             {   false,   false,    true};
-
-  // Axes of rotations are searched.
-  KindRule<bool> has_rotations            {   false,    true,   false};
-  // The denser side is thinned.
-  KindRule<bool> evens_density            {   false,   false,    true};
   // clang-format on
 };
 

@@ -44,7 +44,7 @@ MatchedRegions::MatchedRegions(const NormalizedCloud& cloud, const PlaneFit& fit
 }
 
 MatchedRegion MatchedRegions::largest(const ReflectionPlane& plane, const std::vector<int>* guesses, bool walks) const {
-  const IspSurface& surface = walks && !cloud_.seen() ? cloud_.nearly : cloud_.surface;
+  const IspSurface& surface = walks && kKindRules.shows_all[cloud_.kind()] ? cloud_.quick_surface : cloud_.surface;
   IspStep step = matchSymmetricPoints(surface, samples_, plane, cloud_.final_sigma, guesses);
   const std::vector<float> support = fit_.shares(plane, samples_, step).points.support;
   const std::size_t size = samples_.size(), num_neighbors = neighbors_.size() / size;
@@ -179,7 +179,7 @@ struct BallSearch {
         fit(the_fit),
         surface{cloud.points,
                 cloud.geometry.normals,
-                cloud.nearly.search,
+                cloud.quick_surface.search,
                 cloud.surface.at_border,
                 cloud.walk ? nullptr : cloud.surface.far,
                 1} {
@@ -360,7 +360,7 @@ void findPlanesOfParts(const JudgedCloud& judged, Found& found) {
     if (kSameMaximum.anySame(decided, parts[i].plane)) return;
     SymmetryPlane plane = judged.decision.judge(parts[i].plane, all).plane;
     if (plane.kind == PlaneKind::Symmetry) return;  // of a family, which is known as its axis or center
-    setLocal(plane);
+    plane.kind = PlaneKind::Local;
     plane.iterations = parts[i].iterations;
     of_parts[i] = std::move(plane);
   });

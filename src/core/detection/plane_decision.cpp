@@ -51,10 +51,6 @@ void limitToPossible(SymmetryPlane& plane, const char* rule) {
   if (plane.kind == PlaneKind::Symmetry) plane.kind = PlaneKind::Possible;
 }
 
-void setLocal(SymmetryPlane& plane) {
-  plane.kind = PlaneKind::Local;
-}
-
 namespace {
 
 /// Among the planes that are as likely as the likeliest, D decides.
@@ -118,7 +114,7 @@ bool isBetter(const SymmetryPlane& a, const SymmetryPlane& b) {
 
 MeasuredPlane PlaneDecision::decided(MeasuredPlane measured, const ReflectionPlane& plane) const {
   SymmetryPlane& result = measured.plane;
-  for (const char* rule : measure_.limits().of(plane, cloud_.points)) limitToPossible(result, rule);
+  for (const char* rule : measure_.limits().rulesAgainst(plane, cloud_.points)) limitToPossible(result, rule);
   constexpr KindRule<const char*> kRule{
       "how much of the surface the plane maps onto it, and how finely the points show it",
       "how much of the surface the plane maps onto it, and how much was seen",
@@ -147,24 +143,24 @@ void PlaneDecision::judge(const std::vector<Candidate>& candidates, const std::v
                           std::vector<MeasuredPlane>& judged) const {
   const std::vector<int> samples = measure_.samples();
   parallelBlocks(candidates.size(), options_.num_threads, [&](std::size_t i) {
-    if (some[i]) judged[i] = decided(measure_.of(candidates[i], samples), candidates[i].plane);
+    if (some[i]) judged[i] = decided(measure_.measured(candidates[i], samples), candidates[i].plane);
   });
 }
 
 MeasuredPlane PlaneDecision::judge(const ReflectionPlane& plane, const std::vector<int>& samples) const {
-  return decided(measure_.of(plane, samples), plane);
+  return decided(measure_.measured(plane, samples), plane);
 }
 
 JudgedFamily PlaneDecision::judgeFamily(const std::vector<ReflectionPlane>& planes,
                                         const std::vector<int>& samples) const {
   const double count = static_cast<double>(planes.size());
-  const bool is_scan = cloud_.seen() != nullptr;
+  const bool is_scan = !kKindRules.shows_all[cloud_.kind()];
   JudgedFamily family;
   PlaneEvidence together;
   together.share = together.double_share = together.hold = 0.0;
   double informative = 0.0, best_score = 0.0;
   for (const ReflectionPlane& plane : planes) {
-    const PlaneEvidence one = measure_.of(plane, samples, is_scan ? measure_.tolerance() : 0.0).evidence;
+    const PlaneEvidence one = measure_.measured(plane, samples, is_scan ? measure_.tolerance() : 0.0).evidence;
     together.support += one.support / count;
     together.conflict += one.conflict / count;
     const double part = (1.0 - one.unknown) / count;
@@ -179,13 +175,13 @@ JudgedFamily PlaneDecision::judgeFamily(const std::vector<ReflectionPlane>& plan
   // A scan shows some planes of a family better than others, and D falls with what is hidden: the plane that is shown
   // best represents the family.
   constexpr double least = 1e-3;  // avoids a division by 0
-  PlaneEvidence all = measure_.evidenceOf(together.support, together.conflict, is_scan ? best_score : family.score);
-  all.share = together.share / std::max(least, informative);
-  all.double_share = together.double_share / std::max(least, informative);
-  all.hold = together.hold;
-  all.unknown = 1.0 - informative;
-  family.confidence = planeConfidence(all);
-  family.support = seenSupport(all);
+  PlaneEvidence mean = measure_.evidenceOf(together.support, together.conflict, is_scan ? best_score : family.score);
+  mean.share = together.share / std::max(least, informative);
+  mean.double_share = together.double_share / std::max(least, informative);
+  mean.hold = together.hold;
+  mean.unknown = 1.0 - informative;
+  family.confidence = planeConfidence(mean);
+  family.support = seenSupport(mean);
   return family;
 }
 
@@ -203,7 +199,7 @@ bool isOnSlopeOf(const SymmetryPlane& better, const SymmetryPlane& plane, const 
 }
 
 /// Whether a plane is of a polygon, between whose planes noise may leave no dip.
-bool isOf(const std::optional<PlaneLattice>& polygon, const SymmetryPlane& plane, const NormalizedCloud& cloud) {
+bool isOfPolygon(const std::optional<PlaneLattice>& polygon, const SymmetryPlane& plane, const NormalizedCloud& cloud) {
   return polygon && contains(cloud.toNormalized(plane), polygon->line);
 }
 
@@ -242,9 +238,9 @@ std::vector<SymmetryPlane> rankedPlanes(const JudgedCloud& judged, std::vector<S
     if (!isDecided(plane) && !options.approximate) continue;
     if (plane.kind == PlaneKind::Possible && static_cast<int>(ranked.size()) >= kDetection.decide.max_possible)
       continue;
-    const bool of_polygon = isOf(polygon, plane, cloud);
+    const bool of_polygon = isOfPolygon(polygon, plane, cloud);
     const bool is_known = std::any_of(ranked.begin(), ranked.end(), [&](const SymmetryPlane& other) {
-      if (of_polygon && isOf(polygon, other, cloud)) return plane.angleTo(other) < 0.5 * kPi / polygon->fold;
+      if (of_polygon && isOfPolygon(polygon, other, cloud)) return plane.angleTo(other) < 0.5 * kPi / polygon->fold;
       if (kSamePlane.same(cloud.toNormalized(other), cloud.toNormalized(plane))) return true;
       // D is of the whole shape: planes of a part need not be maxima of it.
       return plane.kind != PlaneKind::Local && isOnSlopeOf(other, plane, cloud);

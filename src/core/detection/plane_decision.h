@@ -52,7 +52,7 @@ public:
   /// \param plane frame of the points.
   /// \param points those of the cloud.
   /// \return the rules that keep a plane from being more than possible, each in a few words.
-  std::vector<const char*> of(const ReflectionPlane& plane, const PointsRef& points) const;
+  std::vector<const char*> rulesAgainst(const ReflectionPlane& plane, const PointsRef& points) const;
 
 private:
   bool is_resolved_, is_cut_;
@@ -88,12 +88,12 @@ public:
   /// \param candidate after the last stage of refinement.
   /// \param samples what samples() returned.
   /// \return without confidence and kind, as below.
-  MeasuredPlane of(const Candidate& candidate, const std::vector<int>& samples) const;
+  MeasuredPlane measured(const Candidate& candidate, const std::vector<int>& samples) const;
 
   /// \param plane normalized frame.
   /// \param samples indices of points.
   /// \param rim how far beside a reflection the scanner must have seen nothing, too, for the reflection to contradict.
-  MeasuredPlane of(const ReflectionPlane& plane, const std::vector<int>& samples, double rim = 0.0) const;
+  MeasuredPlane measured(const ReflectionPlane& plane, const std::vector<int>& samples, double rim = 0.0) const;
 
   /// Evidence of the cloud; fields of the plane beyond support, conflict and D keep their defaults.
   PlaneEvidence evidenceOf(double support, double conflict, double score) const;
@@ -190,15 +190,15 @@ private:
 /// A cloud, and what fits, refines, measures and judges its planes. Cloud, points and options must outlive it.
 struct JudgedCloud {
   const NormalizedCloud& cloud;
-  const Points& all;  ///< its points and those that were left out to make it evenly dense, normalized frame
+  const Points& all_points;  ///< its points and those that were left out to make it evenly dense, normalized frame
   const DetectionOptions& options;
   const std::unique_ptr<PlaneFit> fit = makePlaneFit(cloud, options);
   const StagedRefinement refinement{cloud, *fit, options};
   const PlaneMeasure measure{cloud, *fit, options};
   const PlaneDecision decision{cloud, measure, options};
 
-  JudgedCloud(const NormalizedCloud& of_cloud, const Points& all_points, const DetectionOptions& given)
-      : cloud(of_cloud), all(all_points), options(given) {}
+  JudgedCloud(const NormalizedCloud& given_cloud, const Points& points, const DetectionOptions& given_options)
+      : cloud(given_cloud), all_points(points), options(given_options) {}
 };
 
 /// What was found up to now, input frame.
@@ -233,9 +233,9 @@ std::optional<ReflectionPlane> flatPlane(const JudgedCloud& judged);
 /// \return with the support of every point; empty where a plane is a symmetry or a possible one, or there is none.
 std::optional<SymmetryPlane> bestApproximate(const JudgedCloud& judged, const std::vector<SymmetryPlane>& planes);
 
-// The only functions that write the confidence, the kind and the reasons of a plane, whatever its evidence is of: a
-// cloud, a mesh, a volume, an upright box or a polygon; and the rules that lower its odds by what was found beside it.
-// Not in the paper.
+// The only functions that write the confidence, the kind and the reasons of a plane of a whole, whatever was measured:
+// a cloud, a mesh, a volume, an upright box or a polygon; and the rules that lower its odds by what was found beside
+// it. Not in the paper.
 
 /// Sets the confidence of a plane, and its kind from min_confidence and min_possible. The evidence replaces all that
 /// came before; what limits the plane to a possible symmetry stays.
@@ -253,9 +253,6 @@ void multiplyOdds(SymmetryPlane& plane, double odds, const char* rule, const Det
 
 /// From now on the plane is a possible symmetry at most, whatever sets its confidence.
 void limitToPossible(SymmetryPlane& plane, const char* rule);
-
-/// A symmetry of the points that support it.
-void setLocal(SymmetryPlane& plane);
 
 /// Whether a plane is a symmetry or a possible one.
 inline bool isDecided(const SymmetryPlane& plane) {

@@ -64,36 +64,32 @@ std::vector<ReflectionPlane> planesAt(const PlaneAt& plane_at) {
   return planes;
 }
 
-Line3d commonPlace(const std::vector<ReflectionPlane>& planes, const Line3d&) {
-  return commonLine(planes);
-}
-
-Eigen::Vector3d commonPlace(const std::vector<ReflectionPlane>& planes, const Eigen::Vector3d& start) {
-  return commonPoint(planes, start);
-}
-
 /// The family of all planes through a point or a line, or through one nearby.
-template <typename Place>
-std::optional<PlaneFamily<Place>> familyAt(const Place& start, double least, const FamilyTest& test) {
+template <typename Common>
+std::optional<PlaneFamily<Common>> familyAt(const Common& start, double least, const FamilyTest& test) {
   const int num_tested = kDetection.families.tested_planes, num_fitted = kDetection.families.fitted_planes;
-  Place place = start;
-  const auto at = [&](int k) { return planeOfFamily(place, k, num_tested); };
+  constexpr bool kIsLine = std::is_same_v<Common, Line3d>;
+  Common common = start;
+  const auto at = [&](int k) { return planeOfFamily(common, k, num_tested); };
   const auto tested = [&] { return meanShare(at, num_tested, least, test.share); };
   // The line through two rough planes may be off by a little: the refined line has to pass the full test.
   if (meanShare(at, kDetection.families.screening_planes, least - kDetection.families.rough_factor * test.allowance,
                 test.rough_share) == 0.0)
     return std::nullopt;
   std::vector<ReflectionPlane> refined;
-  for (int k = 0; k < num_fitted; ++k) refined.push_back(test.refine(planeOfFamily(place, k, num_fitted)));
-  place = commonPlace(refined, start);
+  for (int k = 0; k < num_fitted; ++k) refined.push_back(test.refine(planeOfFamily(common, k, num_fitted)));
+  if constexpr (kIsLine)
+    common = commonLine(refined);
+  else
+    common = commonPoint(refined, start);
   double share = tested();
-  if (share < least && std::is_same_v<Place, Line3d>) {
+  if (share < least && kIsLine) {
     // Planes that map a scan to what was not seen drift when they are refined.
-    place = start;
+    common = start;
     share = tested();
   }
   if (share < least) return std::nullopt;
-  return PlaneFamily<Place>{place, share, planesAt(at)};
+  return PlaneFamily<Common>{common, share, planesAt(at)};
 }
 
 }  // namespace
@@ -130,7 +126,7 @@ std::vector<AxisFamily> findAxes(const std::vector<ReflectionPlane>& planes, con
     tried.push_back(line);
     std::optional<AxisFamily> axis = familyAt(line, std::max(test.min_share, best_share - test.allowance), test);
     if (!axis) return;
-    tried.push_back(axis->place);
+    tried.push_back(axis->common);
     axes.push_back(std::move(*axis));
   };
   if (!planes.empty())
@@ -158,7 +154,7 @@ FamilyTest familyTest(const JudgedCloud& judged, const std::vector<int>& samples
   const bool is_coarse = cloud.kind() == CloudKind::Surface &&
                          std::max(options.tolerance * cloud.extent, options.absolute_tolerance / cloud.scale) > usual;
   // A plane that maps most of a scan to what was not seen is uninformative: only what contradicts counts.
-  const auto share_of = [&, is_coarse, is_scan = cloud.seen() != nullptr](const std::vector<int>& used) {
+  const auto share_of = [&, is_coarse, is_scan = !kKindRules.shows_all[cloud.kind()]](const std::vector<int>& used) {
     return [&, used, is_coarse, is_scan](const ReflectionPlane& plane) {
       if (is_coarse) return decision.judge(plane, used).evidence.share;
       const PlaneShares shares = fit.shares(plane, used);
@@ -230,7 +226,7 @@ void findFamilies(const JudgedCloud& judged, Found& found) {
   const FamilyTest test = familyTest(judged, samples);
   std::vector<Line3d> likely_axes;
   std::vector<Eigen::Vector3d> likely_centers;
-  if (kKindRules.normals_tell[cloud.kind()]) {
+  if (kKindRules.resolves_surface[cloud.kind()]) {
     likely_axes.push_back(axisOfNormals(cloud.points, cloud.geometry.normals, samples));
     likely_centers.push_back(centerOfNormals(cloud.points, cloud.geometry.normals, samples));
   }
@@ -241,31 +237,31 @@ void findFamilies(const JudgedCloud& judged, Found& found) {
   // planes too badly for that.
   const auto isFamily = [&](const JudgedFamily& family) {
     return family.confidence >= options.min_confidence &&
-           (!kKindRules.family_needs_all[cloud.kind()] ||
+           (!kKindRules.shows_all[cloud.kind()] ||
             family.min_confidence >= kDetection.families.worst_share * options.min_confidence);
   };
   if (const std::optional<CenterFamily> center = findCenter(symmetries, test, likely_centers)) {
     const JudgedFamily family = judged.decision.judgeFamily(center->planes, samples);
     if (isFamily(family)) {
-      found.centers.push_back({cloud.toInput(center->place), family.confidence, family.score, family.support});
+      found.centers.push_back({cloud.toInput(center->common), family.confidence, family.score, family.support});
       found.planes = withoutPlanesThrough(std::move(found.planes), found.centers.back(), cloud);
       return;
     }
   }
   for (const AxisFamily& axis : findAxes(symmetries, test, likely_axes)) {
     // Noise blurs what lies between the planes of a polygon, but not alike at all of them.
-    if (kKindRules.has_polygons[cloud.kind()] && latticeBySpectrum(judged.all, axis.place)) continue;
+    if (!kKindRules.resolves_surface[cloud.kind()] && latticeBySpectrum(judged.all_points, axis.common)) continue;
     const JudgedFamily family = judged.decision.judgeFamily(axis.planes, samples);
     if (!isFamily(family)) continue;
     // No bounded shape has two parallel axes, but a thin disc seems to within the tolerance: the best is the
     // axis.
     const bool is_known = std::any_of(found.axes.begin(), found.axes.end(), [&](const SymmetryAxis& other) {
-      return std::abs(other.direction.dot(axis.place.direction())) > std::cos(kDetection.families.contained_angle);
+      return std::abs(other.direction.dot(axis.common.direction())) > std::cos(kDetection.families.contained_angle);
     });
     if (!is_known)
-      found.axes.push_back({cloud.toInput(axis.place.origin()), axis.place.direction(), family.confidence, family.score,
-                            family.support});
-    drop([&](const ReflectionPlane& plane) { return contains(plane, axis.place); });
+      found.axes.push_back({cloud.toInput(axis.common.origin()), axis.common.direction(), family.confidence,
+                            family.score, family.support});
+    drop([&](const ReflectionPlane& plane) { return contains(plane, axis.common); });
   }
 }
 

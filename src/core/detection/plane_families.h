@@ -55,10 +55,10 @@ struct FamilyTest {
 /// \param planes at least two that are not parallel.
 Line3d commonLine(const std::vector<ReflectionPlane>& planes);
 
-/// A line or a point, all planes through which are symmetries.
-template <typename Place>
+/// All planes through a line or a point, as symmetries.
+template <typename Common>
 struct PlaneFamily {
-  Place place;
+  Common common;                        ///< the line or the point
   double share;                         ///< mean over the planes
   std::vector<ReflectionPlane> planes;  ///< that were tested
 };

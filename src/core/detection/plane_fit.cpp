@@ -32,7 +32,8 @@ public:
       const std::vector<int>& used = *candidate.samples;
       const ReflectionPlane start = candidate.plane;
       // The first steps have wide weights. Scans have many borders, at which walks end beside the closest point.
-      const IspSurface& surface = candidate.iterations == 0 && !cloud_.seen() ? cloud_.nearly : cloud_.surface;
+      const IspSurface& surface =
+          candidate.iterations == 0 && kKindRules.shows_all[cloud_.kind()] ? cloud_.quick_surface : cloud_.surface;
       IspResult result = refineSymmetricPoints(surface, used, start, settles ? stage.isp : stage.rough_isp);
       candidate.plane = result.plane;
       candidate.iterations += result.iterations;
@@ -186,8 +187,8 @@ private:
 }  // namespace
 
 std::unique_ptr<PlaneFit> makePlaneFit(const NormalizedCloud& cloud, const DetectionOptions& options) {
-  if (cloud.kind() == CloudKind::Volume) return std::make_unique<VolumeFit>(cloud, options);
-  return std::make_unique<SurfaceFit>(cloud, options);
+  if (kKindRules.resolves_surface[cloud.kind()]) return std::make_unique<SurfaceFit>(cloud, options);
+  return std::make_unique<VolumeFit>(cloud, options);
 }
 
 std::vector<float> surfaceSupport(const NormalizedCloud& cloud, const ReflectionPlane& plane,
@@ -218,18 +219,18 @@ std::vector<Candidate> StagedRefinement::close(std::vector<Candidate> candidates
   const auto isSymmetry = [](const Candidate& candidate) {
     return candidate.merit >= kDetection.stages.symmetric_merit;
   };
-  const bool all = kKindRules.keeps_unlikely[cloud_.kind()] || options_.approximate;
+  const bool keeps_all = !kKindRules.shows_all[cloud_.kind()] || options_.approximate;
   const auto likely =
-      all ? candidates.end()
-          : std::stable_partition(candidates.begin(), candidates.end(), [](const Candidate& candidate) {
-              return candidate.merit >= kDetection.stages.symmetric_merit - kDetection.stages.coarse_slack;
-            });
+      keeps_all ? candidates.end()
+                : std::stable_partition(candidates.begin(), candidates.end(), [](const Candidate& candidate) {
+                    return candidate.merit >= kDetection.stages.symmetric_merit - kDetection.stages.coarse_slack;
+                  });
   std::vector<Candidate> found = refined({candidates.begin(), likely}, closeStage());
   // Once a whole cloud has a symmetry, candidates far below it are dropped.
-  if (!all && std::any_of(found.begin(), found.end(), isSymmetry)) return distinct(std::move(found), -1.0, 0);
+  if (!keeps_all && std::any_of(found.begin(), found.end(), isSymmetry)) return distinct(std::move(found), -1.0, 0);
   for (Candidate& other : refined({likely, candidates.end()}, closeStage())) found.push_back(std::move(other));
   const bool is_whole = std::any_of(found.begin(), found.end(), isSymmetry);
-  return distinct(std::move(found), -1.0, all || !is_whole ? kDetection.stages.kept_closely : 0);
+  return distinct(std::move(found), -1.0, keeps_all || !is_whole ? kDetection.stages.kept_closely : 0);
 }
 
 std::vector<Candidate> StagedRefinement::closeSymmetries(std::vector<Candidate> candidates) const {
@@ -242,7 +243,7 @@ std::vector<Candidate> StagedRefinement::full(std::vector<Candidate> candidates)
 }
 
 void StagedRefinement::climb(std::vector<Candidate>& candidates, std::vector<char>& moves) const {
-  if (kKindRules.climbs[cloud_.kind()])
+  if (kKindRules.shows_all[cloud_.kind()])
     fit_.climb(candidates, fullStage(), moves);
   else
     moves.assign(candidates.size(), false);
@@ -264,7 +265,7 @@ RefinementStage StagedRefinement::closeStage() const {
                                          options_.expert.num_refine_samples),
                                 coarseSigma(), cloud_.final_sigma, kDetection.stages.close_iterations);
   // On the way to narrow weights, point-to-plane steps would slide a scan along its flat pieces.
-  if (kKindRules.slides[cloud_.kind()] && close.isp.final_sigma < close.isp.sigma)
+  if (!kKindRules.shows_all[cloud_.kind()] && close.isp.final_sigma < close.isp.sigma)
     close.isp.update = close.rough_isp.update = IspUpdate::PointToPoint;
   return close;
 }
@@ -277,7 +278,7 @@ RefinementStage StagedRefinement::stage(int num_samples, double sigma, double fi
       std::clamp(options_.expert.num_refine_samples / kKindRules.rough_stride[kind], 1, stage.num_samples);
   stage.min_merit = kKindRules.settled_merit[kind];
   // The weights of sparse points are at their narrowest from the first stage on.
-  stage.undo_slides = kKindRules.slides[kind] && final_sigma == sigma;
+  stage.undo_slides = !kKindRules.shows_all[kind] && final_sigma == sigma;
   stage.isp.sigma = sigma;
   stage.isp.final_sigma = final_sigma;
   stage.isp.max_iterations = max_iterations;
@@ -310,7 +311,7 @@ std::vector<Candidate> StagedRefinement::withinCells(const std::vector<Candidate
     if (stays) best = std::max(best, candidates[i].merit);
   }
   for (const Candidate& candidate : left)
-    if (kKindRules.climbs[cloud_.kind()] && candidate.merit > best) kept.push_back(candidate);
+    if (kKindRules.shows_all[cloud_.kind()] && candidate.merit > best) kept.push_back(candidate);
   return kept;
 }
 

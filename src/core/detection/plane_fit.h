@@ -85,7 +85,7 @@ public:
   virtual double merit(const PlaneShares& shares) const = 0;
 
   /// Support that the samples of a symmetry reach.
-  double baseline() const { return cloud_.kind() == CloudKind::Volume ? 1.0 : cloud_.baseline; }
+  double baseline() const { return kKindRules.resolves_surface[cloud_.kind()] ? cloud_.baseline : 1.0; }
 
   /// Support as a share of that, in [0, 1].
   double relativeSupport(const PlaneShares& shares) const { return std::min(1.0, shares.support / baseline()); }

@@ -278,9 +278,9 @@ void addClosePlanes(const JudgedCloud& judged, Found& found) {
 void completePolygon(const JudgedCloud& judged, Found& found) {
   const NormalizedCloud& cloud = judged.cloud;
   if (cloud.kind() == CloudKind::Surface) return addClosePlanes(judged, found);
-  if (!kKindRules.has_polygons[cloud.kind()]) return;
+  if (kKindRules.resolves_surface[cloud.kind()]) return;
   sortFalling(found.planes, &SymmetryPlane::confidence);
-  const std::optional<PlaneLattice> lattice = bestLattice(found.planes, cloud, judged.all);
+  const std::optional<PlaneLattice> lattice = bestLattice(found.planes, cloud, judged.all_points);
   if (!lattice) return;
   std::vector<MeasuredPlane> of_lattice = judged.decision.judge(planesOf(*lattice));
   const double together = withOdds(leastTogether(of_lattice), kDetection.folds.odds_of_polygon);

@@ -21,9 +21,9 @@ namespace {
 /// a line of few points is wider than what they resolve.
 double lineTolerance(CloudKind kind, const CloudLimits::Lengths& lengths) {
   const double noisy = kDetection.measure.noisy_thinness * lengths.tolerance;
-  return kind == CloudKind::Volume
-             ? noisy
-             : std::clamp(kDetection.measure.round_spacings * lengths.spacing, lengths.tolerance, noisy);
+  return kKindRules.resolves_surface[kind]
+             ? std::clamp(kDetection.measure.round_spacings * lengths.spacing, lengths.tolerance, noisy)
+             : noisy;
 }
 
 /// Share of the points that a plane moves by more than a distance.
@@ -48,14 +48,14 @@ CloudLimits::CloudLimits(const PointsRef& points, const PrincipalAxes& axes, Clo
     : is_resolved_(isResolved(lengths)),
       is_cut_(seen && lengths.resolution > 0.0 &&
               cutShare(points, *seen, kDetection.measure.beside_outline) > kDetection.decide.max_cut),
-      still_((kind == CloudKind::Volume ? kDetection.measure.noisy_thinness : 1.0) * lengths.tolerance),
+      still_((kKindRules.resolves_surface[kind] ? 1.0 : kDetection.measure.noisy_thinness) * lengths.tolerance),
       thinness_(thinnessOf(points, axes, still_, lineTolerance(kind, lengths))) {}
 
 bool CloudLimits::movesNothing(const ReflectionPlane& plane, const PointsRef& points) const {
   return thinness_ == Thinness::Sheet && movedShare(plane, points, still_) < 1.0 - kDetection.decide.max_unmoved_share;
 }
 
-std::vector<const char*> CloudLimits::of(const ReflectionPlane& plane, const PointsRef& points) const {
+std::vector<const char*> CloudLimits::rulesAgainst(const ReflectionPlane& plane, const PointsRef& points) const {
   std::vector<const char*> rules;
   if (!is_resolved_) rules.push_back("the sensor does not resolve the tolerance");
   if (is_cut_) rules.push_back("the border of the picture cuts the points off all around");
@@ -79,7 +79,7 @@ std::array<double, 2> sharesWithin(const std::vector<float>& distances, double t
 /// What the spacing of a surface resolves, up to the greatest tolerance at which shares are measured; 0 of points that
 /// resolve no surface.
 double sampledTolerance(const NormalizedCloud& cloud, double tolerance) {
-  if (kKindRules.by_halves[cloud.kind()]) return 0.0;
+  if (!kKindRules.resolves_surface[cloud.kind()]) return 0.0;
   return std::min(cloud.spacing / kEvidence.coarsest, kDetection.measure.tolerances.back() * tolerance * cloud.extent);
 }
 
@@ -97,9 +97,9 @@ PlaneMeasure::PlaneMeasure(const NormalizedCloud& cloud, const PlaneFit& fit, co
                                          options.max_tolerance * cloud.extent))),
       limits_(cloud.points, cloud.principal_axes, cloud.kind(), cloud.seen(),
               {tolerance_, resolution_, cloud.spacing, cloud.extent}),
-      halves_(kKindRules.by_halves[cloud.kind()]
-                  ? std::make_optional<SplitSurface>(cloud.points, options.seed, options.num_threads)
-                  : std::nullopt),
+      halves_(kKindRules.resolves_surface[cloud.kind()]
+                  ? std::nullopt
+                  : std::make_optional<SplitSurface>(cloud.points, options.seed, options.num_threads)),
       own_shares_(sharesWithin(
           halves_ ? halves_->ownDistances() : ownSurfaceDistances(cloud.samples, options.num_threads), tolerance_)),
       own_score_(halves_ ? halves_->ownScore(cloud.edt.numCells(), cloud.sigma, {Eigen::Vector3d::Zero(), 1.0},
@@ -113,7 +113,7 @@ std::vector<int> PlaneMeasure::samples() const {
                    : allOf(num_points);
 }
 
-MeasuredPlane PlaneMeasure::of(const Candidate& candidate, const std::vector<int>& samples) const {
+MeasuredPlane PlaneMeasure::measured(const Candidate& candidate, const std::vector<int>& samples) const {
   // The last stage may have matched these very samples.
   const bool has_matches = candidate.samples && *candidate.samples == samples;
   const IspStep step = has_matches ? candidate.step : fit_.matches(candidate.plane, samples);
@@ -123,7 +123,7 @@ MeasuredPlane PlaneMeasure::of(const Candidate& candidate, const std::vector<int
   return result;
 }
 
-MeasuredPlane PlaneMeasure::of(const ReflectionPlane& plane, const std::vector<int>& samples, double rim) const {
+MeasuredPlane PlaneMeasure::measured(const ReflectionPlane& plane, const std::vector<int>& samples, double rim) const {
   return measured(plane, samples, fit_.matches(plane, samples), rim);
 }
 

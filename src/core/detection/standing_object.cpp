@@ -251,7 +251,7 @@ void decideByUprightBox(const PlaneInput& input, const DetectionOptions& options
     plane->point_support = middle->point_support;
     const CloudLimits limits(points, principalAxes(points), CloudKind::Scan, &seen,
                              {found.tolerance, found.resolution, spacing, found.diameter});
-    for (const char* rule : limits.of(*plane, points)) limitToPossible(*plane, rule);
+    for (const char* rule : limits.rulesAgainst(*plane, points)) limitToPossible(*plane, rule);
     if (endWithPicture(points, up.front(), seen.viewpoint()))
       limitToPossible(*plane, "the picture cuts the points off");
     setConfidence(*plane, middle->confidence, "the sides of the upright box around the points", options);

@@ -27,7 +27,7 @@ Eigen::ArrayXf along(const Coordinates& points, const Eigen::Vector3f& direction
 }
 
 /// The point that is farthest along a direction; of several the first one.
-Eigen::Vector3f last(const Coordinates& points, const Eigen::Vector3f& direction) {
+Eigen::Vector3f farthestAlong(const Coordinates& points, const Eigen::Vector3f& direction) {
   const Eigen::ArrayXf reached = along(points, direction);  // maxCoeff() with an index is not vectorized
   return points.row(std::find(reached.begin(), reached.end(), reached.maxCoeff()) - reached.begin());
 }
@@ -38,7 +38,7 @@ Eigen::Vector3f separatingDirection(const Points& cloud, const Points& piece, fl
   const Coordinates of_cloud = coordinatesOf(cloud), of_piece = coordinatesOf(piece);
   Eigen::Vector3f between = piece.rowwise().mean() - cloud.rowwise().mean();
   for (int step = 0; step < kEvidence.max_steps; ++step) {
-    const Eigen::Vector3f nearest = last(of_piece, -between) - last(of_cloud, between);
+    const Eigen::Vector3f nearest = farthestAlong(of_piece, -between) - farthestAlong(of_cloud, between);
     if (between.dot(nearest) >= (1.0f - kEvidence.min_gain) * between.squaredNorm()) break;
     const Eigen::Vector3f change = nearest - between;
     const Eigen::Vector3f next = between - std::min(1.0f, between.dot(change) / change.squaredNorm()) * change;

@@ -196,7 +196,7 @@ IspResult refineSymmetricPoints(const IspSurface& surface, const std::vector<int
                                 const ReflectionPlane& plane, const IspOptions& options,
                                 const std::function<bool(const ReflectionPlane&)>& stays) {
   options.validate();
-  const WeightedExtent all(pointsAt(surface.points, samples), std::vector<double>(samples.size(), 1.0));
+  const WeightedExtent whole(pointsAt(surface.points, samples), std::vector<double>(samples.size(), 1.0));
   const double root_size = std::sqrt(static_cast<double>(samples.size()));
   IspResult result;
   result.plane = plane;
@@ -208,14 +208,14 @@ IspResult refineSymmetricPoints(const IspSurface& surface, const std::vector<int
     ++result.iterations;
     const ReflectionPlane& next = result.last.plane;
     const double moved =
-        std::abs(std::abs(next.signedDistance(all.middle)) - std::abs(result.plane.signedDistance(all.middle)));
+        std::abs(std::abs(next.signedDistance(whole.middle)) - std::abs(result.plane.signedDistance(whole.middle)));
     const double angle = next.angleTo(result.plane);
-    const double tolerance = options.tolerance * all.extent + options.error_share * result.last.residual / root_size;
-    result.converged = sigma == options.final_sigma && moved <= tolerance && angle * all.extent <= tolerance;
+    const double tolerance = options.tolerance * whole.extent + options.error_share * result.last.residual / root_size;
+    result.converged = sigma == options.final_sigma && moved <= tolerance && angle * whole.extent <= tolerance;
     result.plane = next;
     if (stays && !stays(next)) break;
     // Narrower weights only where the plane has come to rest at these: it must not lose what it moves toward.
-    if (moved + angle * all.extent <= kRefinement.rest_sigmas * sigma)
+    if (moved + angle * whole.extent <= kRefinement.rest_sigmas * sigma)
       sigma = std::max(options.final_sigma, 0.5 * sigma);
   }
   return result;

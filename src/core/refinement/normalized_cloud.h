@@ -112,7 +112,7 @@ struct NormalizedCloud {
   const FarTest far;
   const IspSurface surface;                  ///< the above, as Iterative Symmetric Points wants it
   const std::unique_ptr<NeighborWalk> walk;  ///< null: there are no lists
-  const IspSurface nearly;  ///< the surface matched by walks, for first steps, which others refine again
+  const IspSurface quick_surface;            ///< matched by walks, for first steps, which others refine again
 
   const PrincipalAxes principal_axes;  ///< of the points
   const double extent;                 ///< greatest distance between two points, by farthestPair()

@@ -182,7 +182,7 @@ Line3d RotationEvidence::fitted(const IspSurface& surface, const Line3d& start, 
 }
 
 Line3d RotationEvidence::refined(const Line3d& start, const std::vector<double>& angles) const {
-  return fitted(cloud_.nearly, start, angles, few_samples_, kScanAxes.fit_widths);
+  return fitted(cloud_.quick_surface, start, angles, few_samples_, kScanAxes.fit_widths);
 }
 
 Line3d RotationEvidence::closelyRefined(const Line3d& start, const std::vector<double>& angles) const {

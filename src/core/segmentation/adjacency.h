@@ -15,7 +15,7 @@ public:
   explicit Adjacency(std::size_t size) : borders_(size) {}
 
   /// \return the borders of a region, by neighbor.
-  const std::map<int, Sum>& of(int region) const { return borders_[region]; }
+  const std::map<int, Sum>& borders(int region) const { return borders_[region]; }
 
   /// Adds to the border of two regions.
   void add(int a, int b, const Sum& sum) {

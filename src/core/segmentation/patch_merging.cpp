@@ -265,7 +265,7 @@ public:
   Pair likeliest() const {
     Pair best;
     for (int a = 0; a < static_cast<int>(areas_.size()); ++a) {
-      for (const auto& [b, num_edges] : neighbors_.of(a)) {
+      for (const auto& [b, num_edges] : neighbors_.borders(a)) {
         if (b < a) continue;
         const double area = areas_[a] * areas_[b], mean = area > 0.0 ? sums_(a, b) / area : 1.0;
         if (mean > best.probability) best = {a, b, mean};

@@ -59,7 +59,7 @@ public:
     void operator+=(const Border& other);
   };
   /// \return the borders of a region, by neighbor.
-  const std::map<int, Border>& borders(int region) const { return borders_.of(region); }
+  const std::map<int, Border>& borders(int region) const { return borders_.borders(region); }
 
 private:
   int imageOf(int region, const Eigen::MatrixXf& shared) const;

@@ -237,7 +237,7 @@ public:
 
   /// The segment that a small one belongs to.
   int hostOf(int segment) const {
-    const std::map<int, double>& lengths = borders_.of(segment);
+    const std::map<int, double>& lengths = borders_.borders(segment);
     return lengths.empty() ? closestTo(segment) : labelOfMost(lengths);
   }
 

@@ -35,8 +35,8 @@ TEST(FindAxes, RefinesALineOfRoughPlanes) {
   };
   const auto axes = findAxes({off(planeThrough(kLine, 0.3), 0.015), off(planeThrough(kLine, 1.6), -0.015)}, test);
   ASSERT_EQ(axes.size(), 1u);
-  EXPECT_NEAR(std::abs(axes[0].place.direction().dot(kLine.direction())), 1.0, 1e-12);
-  EXPECT_LT(kLine.distance(axes[0].place.origin()), 1e-9);
+  EXPECT_NEAR(std::abs(axes[0].common.direction().dot(kLine.direction())), 1.0, 1e-12);
+  EXPECT_LT(kLine.distance(axes[0].common.origin()), 1e-9);
 }
 
 TEST(FindAxes, NeedsTwoPlanes) {

@@ -19,7 +19,7 @@ using test::JudgedShape;
 TEST(PlaneMeasure, ShareFallsWithTheDistanceFromASymmetry) {
   const JudgedShape box(test::box({1.0, 0.7, 0.4}, 5000, test::Sampling::Random, 1).cloud());
   const auto shareAt = [&](double offset) {
-    return box.measure.of(box.normalized(Eigen::Vector3d::UnitX(), offset), box.measure.samples()).evidence.share;
+    return box.measure.measured(box.normalized(Eigen::Vector3d::UnitX(), offset), box.measure.samples()).evidence.share;
   };
   EXPECT_GT(shareAt(0.0), 0.99);
   double last = 1.0;
@@ -48,8 +48,8 @@ TEST(PlaneMeasure, MatchesOfOtherSamplesAreNotTaken) {
   candidate.plane = box.normalized(Eigen::Vector3d::UnitX(), 0.0);
   candidate.samples = std::make_shared<const std::vector<int>>(drawn(1));
   candidate.step = box.fit->matches(candidate.plane, *candidate.samples);
-  EXPECT_EQ(box.measure.of(candidate, drawn(2)).evidence.share,
-            box.measure.of(candidate.plane, drawn(2)).evidence.share);
+  EXPECT_EQ(box.measure.measured(candidate, drawn(2)).evidence.share,
+            box.measure.measured(candidate.plane, drawn(2)).evidence.share);
 }
 
 TEST(CloudLimits, TheOwnPlaneOfASheetMovesNothing) {
@@ -58,7 +58,7 @@ TEST(CloudLimits, TheOwnPlaneOfASheetMovesNothing) {
   EXPECT_EQ(limits.thinness(), Thinness::Sheet);
   const PrincipalAxes& axes = sheet.cloud.principal_axes;
   const auto rulesOf = [&](int k) {
-    return limits.of({axes.axes.col(k), axes.axes.col(k).dot(axes.center)}, sheet.cloud.points).size();
+    return limits.rulesAgainst({axes.axes.col(k), axes.axes.col(k).dot(axes.center)}, sheet.cloud.points).size();
   };
   EXPECT_EQ(rulesOf(0), 0u);
   EXPECT_EQ(rulesOf(2), 1u);
@@ -69,7 +69,7 @@ TEST(CloudLimits, ASensorThatResolvesTooLittle) {
   const auto numRules = [&](double tolerance, double resolution) {
     const CloudLimits limits(points, principalAxes(points), CloudKind::Scan, nullptr,
                              {tolerance, resolution, 0.05, 1.0});
-    return limits.of(ReflectionPlane(Eigen::Vector3d::UnitX(), 0.0), points).size();
+    return limits.rulesAgainst(ReflectionPlane(Eigen::Vector3d::UnitX(), 0.0), points).size();
   };
   EXPECT_EQ(numRules(0.01, 0.005), 0u);
   EXPECT_EQ(numRules(0.01, 0.02), 1u) << "the tolerance was given";
