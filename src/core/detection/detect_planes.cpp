@@ -33,19 +33,6 @@ void append(std::vector<SymmetryPlane>& planes, std::vector<SymmetryPlane> more)
   std::move(more.begin(), more.end(), std::back_inserter(planes));
 }
 
-/// Refines and judges candidates; re-judges those that hill climbing moved.
-std::vector<SymmetryPlane> refinedAndJudged(const JudgedCloud& judged, std::vector<Candidate> candidates) {
-  candidates = judged.refinement.full(std::move(candidates));
-  std::vector<MeasuredPlane> measured = judged.decision.judge(candidates);
-  std::vector<char> moves;
-  for (const MeasuredPlane& one : measured) moves.push_back(one.plane.confidence >= kDetection.fit.climbing_confidence);
-  judged.refinement.climb(candidates, moves);
-  judged.decision.judge(candidates, moves, measured);
-  std::vector<SymmetryPlane> planes;
-  for (MeasuredPlane& one : measured) planes.push_back(std::move(one.plane));
-  return planes;
-}
-
 /// Decides the planes that may be symmetries, and where there are none, the others too. In a whole cloud, once a plane
 /// explains everything, hopeless candidates are skipped: no missing piece could account for what they fail to match.
 /// \param candidates after the second stage, best first.
@@ -57,12 +44,12 @@ void decide(const JudgedCloud& judged, std::vector<Candidate> candidates, Found&
                        [&](const SymmetryPlane& plane) { return explainsAll(plane, kind); });
   };
   if (skips_hopeless && !isExplained() && candidates.size() > 1) {
-    append(found.planes, refinedAndJudged(judged, {candidates.front()}));
+    append(found.planes, judged.refinedAndJudged({candidates.front()}));
     candidates.erase(candidates.begin());
   }
   if (skips_hopeless && isExplained())
     eraseIf(candidates, [&](const Candidate& other) { return judged.decision.isHopeless(other); });
-  append(found.planes, refinedAndJudged(judged, std::move(candidates)));
+  append(found.planes, judged.refinedAndJudged(std::move(candidates)));
 }
 
 /// The evidence of all candidates, also of those that the detection leaves out early.
@@ -351,19 +338,6 @@ Detection detectPlanes(const PlaneInput& input, const DetectionOptions& options)
   spreadSupport(detection, index_of);
   detection.num_stray_points = static_cast<int>(stray.size());
   return detection;
-}
-
-std::vector<SymmetryPlane> refinedAt(const std::vector<ReflectionPlane>& starts, const PlaneInput& input,
-                                     const DetectionOptions& options) {
-  if (!whyUnanswerable(input.points).empty()) return {};
-  const std::optional<std::vector<int>> subset = subsetOf(input.points, options);
-  const DistinctPoints distinct(subset ? pointsAt(input.points, *subset) : Points(input.points));
-  const GaussianEdt edt(distinct.points, options.edtOptions());
-  const NormalizedCloud cloud(distinct.points, edt, nullptr, input.visibility, options.num_threads);
-  const JudgedCloud judged(cloud, cloud.points, options);
-  std::vector<Candidate> candidates;
-  for (const ReflectionPlane& start : starts) candidates.push_back({cloud.toNormalized(start)});
-  return refinedAndJudged(judged, judged.refinement.close(std::move(candidates)));
 }
 
 void refineOnMesh(const MeshSurface& mesh, Detection& found, const DetectionOptions& options) {

@@ -5,6 +5,7 @@
 
 #include "core/base/parallel.h"
 #include "core/base/statistics.h"
+#include "core/detection/cloud_subset.h"
 #include "core/detection/standing_object.h"
 #include "core/geometry/point_samples.h"
 
@@ -183,6 +184,31 @@ JudgedFamily PlaneDecision::judgeFamily(const std::vector<ReflectionPlane>& plan
   family.confidence = planeConfidence(mean);
   family.support = seenSupport(mean);
   return family;
+}
+
+std::vector<SymmetryPlane> JudgedCloud::refinedAndJudged(std::vector<Candidate> candidates) const {
+  candidates = refinement.full(std::move(candidates));
+  std::vector<MeasuredPlane> measured = decision.judge(candidates);
+  std::vector<char> moves;
+  for (const MeasuredPlane& one : measured) moves.push_back(one.plane.confidence >= kDetection.fit.climbing_confidence);
+  refinement.climb(candidates, moves);
+  decision.judge(candidates, moves, measured);
+  std::vector<SymmetryPlane> planes;
+  for (MeasuredPlane& one : measured) planes.push_back(std::move(one.plane));
+  return planes;
+}
+
+std::vector<SymmetryPlane> refinedAt(const std::vector<ReflectionPlane>& starts, const PlaneInput& input,
+                                     const DetectionOptions& options) {
+  if (!whyUnanswerable(input.points).empty()) return {};
+  const std::optional<std::vector<int>> subset = subsetOf(input.points, options);
+  const DistinctPoints distinct(subset ? pointsAt(input.points, *subset) : Points(input.points));
+  const GaussianEdt edt(distinct.points, options.edtOptions());
+  const NormalizedCloud cloud(distinct.points, edt, nullptr, input.visibility, options.num_threads);
+  const JudgedCloud judged(cloud, cloud.points, options);
+  std::vector<Candidate> candidates;
+  for (const ReflectionPlane& start : starts) candidates.push_back({cloud.toNormalized(start)});
+  return judged.refinedAndJudged(judged.refinement.close(std::move(candidates)));
 }
 
 namespace {

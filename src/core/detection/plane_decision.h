@@ -199,6 +199,9 @@ struct JudgedCloud {
 
   JudgedCloud(const NormalizedCloud& given_cloud, const Points& points, const DetectionOptions& given_options)
       : cloud(given_cloud), all_points(points), options(given_options) {}
+
+  /// Refines and judges candidates; re-judges those that hill climbing moved.
+  std::vector<SymmetryPlane> refinedAndJudged(std::vector<Candidate> candidates) const;
 };
 
 /// What was found up to now, input frame.

@@ -61,6 +61,19 @@ Eigen::Matrix3d frameAlong(const Eigen::Vector3d& z, const Eigen::Vector3d& x) {
   return frame;
 }
 
+std::vector<Eigen::Matrix3d> productsOf(const std::vector<Eigen::Matrix3d>& generators, double same, std::size_t most) {
+  std::vector<Eigen::Matrix3d> elements{Eigen::Matrix3d::Identity()};
+  for (std::size_t i = 0; i < elements.size() && elements.size() <= most; ++i) {
+    for (const Eigen::Matrix3d& generator : generators) {
+      const Eigen::Matrix3d product = generator * elements[i];
+      if (std::none_of(elements.begin(), elements.end(),
+                       [&](const Eigen::Matrix3d& other) { return (other - product).norm() < same; }))
+        elements.push_back(product);
+    }
+  }
+  return elements;
+}
+
 Eigen::Vector3d axisOf(const Eigen::Matrix3d& rotation) {
   return Eigen::AngleAxisd(rotation).axis();
 }

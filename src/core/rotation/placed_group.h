@@ -50,4 +50,5 @@ RotationSet elementsOf(const RotationGroup& group, const Eigen::Matrix3d& frame,
 
 /// Rotations about a line that represent all about it: their angles fit no polygon.
 RotationSet rotationsAbout(const Line3d& line);
+
 }  // namespace pcl_symmetry
