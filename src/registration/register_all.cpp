@@ -10,7 +10,6 @@
 #include "core/base/parallel.h"
 #include "core/base/statistics.h"
 #include "core/base/stopwatch.h"
-#include "core/base/watched_steps.h"
 #include "core/geometry/point_samples.h"
 #include "core/registration/pose_evidence.h"
 #include "core/registration/posed_surface.h"

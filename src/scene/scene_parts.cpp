@@ -11,8 +11,8 @@
 #include <utility>
 
 #include "core/base/constants.h"
+#include "core/base/parallel.h"
 #include "core/base/statistics.h"
-#include "core/base/watched_steps.h"
 #include "core/geometry/cloud_extent.h"
 #include "core/geometry/surface_normals.h"
 #include "pcl_symmetry/impl/cloud_conversion.hpp"

@@ -2,8 +2,8 @@
 
 #include <limits>
 
+#include "core/base/parallel.h"
 #include "core/base/random.h"
-#include "core/base/watched_steps.h"
 
 namespace pcl_symmetry {
 

@@ -13,8 +13,6 @@
 #include <utility>
 #include <vector>
 
-#include "core/base/watched_steps.h"
-
 namespace pcl_symmetry {
 
 struct Loop;

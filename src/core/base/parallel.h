@@ -47,4 +47,9 @@ private:
   double share_ = 0.0;
 };
 
+/// Looks at the Watch of the call, as loops do after each block: between steps of some microseconds and more that run
+/// in one thread, outside these loops.
+/// \throws what the watch throws; in a block of a loop, also where the loop was ended.
+void lookAtWatch();
+
 }  // namespace pcl_symmetry

@@ -9,7 +9,6 @@
 
 #include "core/base/check.h"
 #include "core/base/parallel.h"
-#include "core/base/watched_steps.h"
 
 #if defined(__x86_64__)
 #include <immintrin.h>

@@ -9,7 +9,6 @@
 
 #include "core/base/check.h"
 #include "core/base/parallel.h"
-#include "core/base/watched_steps.h"
 #include "core/geometry/closest_points.h"
 #include "core/geometry/cloud_extent.h"
 #include "core/geometry/point_samples.h"

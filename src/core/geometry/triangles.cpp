@@ -6,8 +6,8 @@
 #include <numeric>
 
 #include "core/base/check.h"
+#include "core/base/parallel.h"
 #include "core/base/random.h"
-#include "core/base/watched_steps.h"
 #include "core/geometry/point_samples.h"
 
 namespace pcl_symmetry {

@@ -4,9 +4,9 @@
 #include <numeric>
 #include <utility>
 
+#include "core/base/parallel.h"
 #include "core/base/random.h"
 #include "core/base/statistics.h"
-#include "core/base/watched_steps.h"
 #include "core/geometry/surface_normals.h"
 #include "core/registration/registration_rules.h"
 

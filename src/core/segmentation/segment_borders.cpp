@@ -12,7 +12,7 @@
 #include <set>
 #include <utility>
 
-#include "core/base/watched_steps.h"
+#include "core/base/parallel.h"
 #include "core/segmentation/adjacency.h"
 #include "core/segmentation/labels.h"
 

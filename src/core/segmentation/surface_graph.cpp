@@ -13,7 +13,6 @@
 #include "core/base/parallel.h"
 #include "core/base/random.h"
 #include "core/base/symmetric_solvers.h"
-#include "core/base/watched_steps.h"
 #include "core/geometry/point_samples.h"
 #include "core/geometry/triangles.h"
 #include "core/segmentation/segmentation_rules.h"

@@ -8,8 +8,8 @@
 #include <queue>
 #include <utility>
 
+#include "core/base/parallel.h"
 #include "core/base/statistics.h"
-#include "core/base/watched_steps.h"
 #include "core/segmentation/labels.h"
 
 namespace pcl_symmetry {

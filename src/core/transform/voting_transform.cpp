@@ -10,7 +10,6 @@
 #include "core/base/constants.h"
 #include "core/base/parallel.h"
 #include "core/base/random.h"
-#include "core/base/watched_steps.h"
 
 namespace pcl_symmetry {
 
