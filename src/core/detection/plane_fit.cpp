@@ -6,9 +6,9 @@
 
 #include "core/base/parallel.h"
 #include "core/base/statistics.h"
-#include "core/evidence/plane_confidence.h"
 #include "core/evidence/surface_samples.h"
 #include "core/geometry/cloud_extent.h"
+#include "core/geometry/plane_chart.h"
 #include "core/geometry/point_samples.h"
 #include "core/transform/sampled_transform.h"
 

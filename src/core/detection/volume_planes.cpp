@@ -10,10 +10,10 @@
 #include "core/base/stopwatch.h"
 #include "core/base/symmetric_solvers.h"
 #include "core/detection/plane_decision.h"
-#include "core/evidence/plane_confidence.h"
 #include "core/geometry/cloud_extent.h"
 #include "core/geometry/directions.h"
 #include "core/geometry/geometry_rules.h"
+#include "core/geometry/plane_chart.h"
 #include "core/refinement/normalized_cloud.h"
 #include "pcl_symmetry/core/planar_transform.h"
 

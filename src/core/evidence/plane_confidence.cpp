@@ -9,6 +9,7 @@
 #include "core/evidence/confidence_fit.h"
 #include "core/evidence/surface_samples.h"
 #include "core/geometry/geometry_rules.h"
+#include "core/geometry/plane_chart.h"
 
 namespace pcl_symmetry {
 
@@ -133,19 +134,6 @@ double planeConfidence(const PlaneEvidence& evidence) {
 
 double furtherOdds(CloudKind kind, double unknown) {
   return std::exp(byFurther(kind, unknown) * kConfidenceFit.log_odds[static_cast<int>(kind)].back());
-}
-
-PlaneChart::PlaneChart(const ReflectionPlane& plane, const Eigen::Vector3d& about, double unit_of_shift)
-    : n(plane.normal()),
-      u(n.unitOrthogonal()),
-      v(n.cross(u)),
-      pivot(about),
-      extent(unit_of_shift),
-      offset(plane.offset() - n.dot(pivot)) {}
-
-ReflectionPlane PlaneChart::moved(const Eigen::Vector3d& step) const {
-  const Eigen::Vector3d normal = (n + step[0] * u + step[1] * v).normalized();
-  return ReflectionPlane(normal, normal.dot(pivot) + offset + step[2] * extent);
 }
 
 Eigen::Matrix3d motionStiffness(const Points& points, const Points& normals, const std::vector<char>& matched,

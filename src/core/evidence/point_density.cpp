@@ -7,7 +7,7 @@
 #include "core/base/constants.h"
 #include "core/base/parallel.h"
 #include "core/base/symmetric_solvers.h"
-#include "core/evidence/plane_confidence.h"
+#include "core/geometry/plane_chart.h"
 
 namespace pcl_symmetry {
 

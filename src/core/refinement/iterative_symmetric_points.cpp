@@ -7,7 +7,7 @@
 
 #include "core/base/check.h"
 #include "core/base/symmetric_solvers.h"
-#include "core/evidence/plane_confidence.h"
+#include "core/geometry/plane_chart.h"
 #include "core/geometry/point_samples.h"
 #include "core/refinement/normalized_cloud.h"
 #include "pcl_symmetry/core/visibility.h"
