@@ -86,9 +86,7 @@ IspStep iterateSymmetricPoints(const IspSurface& surface, const std::vector<int>
                                double sigma, IspUpdate update, const std::vector<int>* guesses = nullptr);
 
 /// The first half of an iteration: reflect, match, weight. The plane of the result is \p plane.
-/// \param samples indices of the points of the surface to reflect.
-/// \param plane,sigma in the units of the surface.
-/// \param guesses IspStep::closest of a plane nearby, which makes the search faster; null = not known.
+/// \param samples,plane,sigma,guesses as in iterateSymmetricPoints().
 IspStep matchSymmetricPoints(const IspSurface& surface, const std::vector<int>& samples, const ReflectionPlane& plane,
                              double sigma, const std::vector<int>* guesses = nullptr);
 

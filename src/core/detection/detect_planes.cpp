@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <iterator>
 #include <memory>
 #include <sstream>
 #include <utility>
@@ -28,10 +27,6 @@
 namespace pcl_symmetry {
 
 namespace {
-
-void append(std::vector<SymmetryPlane>& planes, std::vector<SymmetryPlane> more) {
-  std::move(more.begin(), more.end(), std::back_inserter(planes));
-}
 
 /// Decides the planes that may be symmetries, and where there are none, the others too. In a whole cloud, once a plane
 /// explains everything, hopeless candidates are skipped: no missing piece could account for what they fail to match.

@@ -278,9 +278,7 @@ struct RegionSearch {
 
 /// Leaves out parts of long edge where better ones hold their points.
 std::vector<SymmetricPart> withoutRemains(std::vector<SymmetricPart> parts, Eigen::Index num_points) {
-  std::stable_sort(parts.begin(), parts.end(), [](const SymmetricPart& a, const SymmetricPart& b) {
-    return std::max(0.0, a.longer_edge) < std::max(0.0, b.longer_edge);
-  });
+  sortFalling(parts, [](const SymmetricPart& part) { return -std::max(0.0, part.longer_edge); });
   std::vector<char> taken(num_points, 0);
   std::vector<SymmetricPart> kept;
   for (SymmetricPart& part : parts) {
@@ -316,7 +314,7 @@ std::vector<SymmetricPart> withoutFamilies(std::vector<SymmetricPart> parts) {
   std::vector<SymmetricPart> kept;
   for (std::vector<SymmetricPart>& group : groups) {
     if (group.size() > kDetection.parts.max_planes_of_part) group.resize(1);
-    std::move(group.begin(), group.end(), std::back_inserter(kept));
+    append(kept, std::move(group));
   }
   return kept;
 }
@@ -332,7 +330,7 @@ std::vector<SymmetricPart> findSymmetricParts(const NormalizedCloud& cloud, cons
                                 kDetection.parts.radii[i % kDetection.parts.radii.size()]);
   });
   std::vector<SymmetricPart> planes;
-  for (std::vector<SymmetricPart>& found : of_balls) std::move(found.begin(), found.end(), std::back_inserter(planes));
+  for (std::vector<SymmetricPart>& found : of_balls) append(planes, std::move(found));
   planes = distinct(std::move(planes));
 
   const RegionSearch regions(search, options);

@@ -109,7 +109,7 @@ std::optional<CenterFamily> findCenter(const std::vector<ReflectionPlane>& plane
   const bool has_point =
       planes.size() >= 3 && solver.eigenvalues()[0] >= kDetection.families.min_spread;  // or else all hold one line
   if (has_point) points.push_back(commonPoint(planes, Eigen::Vector3d::Zero()));
-  points.insert(points.end(), guesses.begin(), guesses.end());
+  append(points, guesses);
   const double least = std::max(test.min_share, test.share(planes[0]) - test.allowance);
   for (const Eigen::Vector3d& point : points)
     if (std::optional<CenterFamily> center = familyAt(point, least, test)) return center;
@@ -182,18 +182,12 @@ FamilyTest familyTest(const JudgedCloud& judged, const std::vector<int>& samples
 }
 
 /// Different symmetries among planes, most confident first, normalized frame.
-std::vector<ReflectionPlane> symmetriesOf(const std::vector<SymmetryPlane>& planes, const NormalizedCloud& cloud) {
-  std::vector<const SymmetryPlane*> symmetries;
+std::vector<ReflectionPlane> symmetriesOf(std::vector<SymmetryPlane> planes, const NormalizedCloud& cloud) {
+  sortFalling(planes, &SymmetryPlane::confidence);
+  std::vector<ReflectionPlane> symmetries;
   for (const SymmetryPlane& plane : planes)
-    if (plane.kind == PlaneKind::Symmetry) symmetries.push_back(&plane);
-  std::stable_sort(symmetries.begin(), symmetries.end(),
-                   [](const auto* a, const auto* b) { return a->confidence > b->confidence; });
-  std::vector<ReflectionPlane> distinct;
-  for (const SymmetryPlane* plane : symmetries) {
-    const ReflectionPlane normalized = cloud.toNormalized(*plane);
-    if (!kSamePlane.anySame(distinct, normalized)) distinct.push_back(normalized);
-  }
-  return distinct;
+    if (plane.kind == PlaneKind::Symmetry) symmetries.push_back(cloud.toNormalized(plane));
+  return kSamePlane.distinct(std::move(symmetries));
 }
 
 /// The longest principal axis.

@@ -228,7 +228,7 @@ std::vector<Candidate> StagedRefinement::close(std::vector<Candidate> candidates
   std::vector<Candidate> found = refined({candidates.begin(), likely}, closeStage());
   // Once a whole cloud has a symmetry, candidates far below it are dropped.
   if (!keeps_all && std::any_of(found.begin(), found.end(), isSymmetry)) return distinct(std::move(found), -1.0, 0);
-  for (Candidate& other : refined({likely, candidates.end()}, closeStage())) found.push_back(std::move(other));
+  append(found, refined({likely, candidates.end()}, closeStage()));
   const bool is_whole = std::any_of(found.begin(), found.end(), isSymmetry);
   return distinct(std::move(found), -1.0, keeps_all || !is_whole ? kDetection.stages.kept_closely : 0);
 }
@@ -334,7 +334,7 @@ std::vector<Candidate> impliedBy(const std::vector<SymmetryPlane>& planes, const
   for (const SymmetryPlane& plane : planes)
     if (plane.kind == PlaneKind::Symmetry) symmetries.push_back(cloud.toNormalized(plane));
   std::vector<Candidate> found;
-  tried.insert(tried.end(), symmetries.begin(), symmetries.end());
+  append(tried, symmetries);
   const auto add = [&](const ReflectionPlane& plane) {
     if (kSamePlane.anySame(tried, plane)) return;
     tried.push_back(plane);
@@ -344,8 +344,7 @@ std::vector<Candidate> impliedBy(const std::vector<SymmetryPlane>& planes, const
   for (const ReflectionPlane& plane : symmetries) {
     for (const ReflectionPlane& across : symmetries) {
       const Eigen::Vector3d normal = plane.normal() - 2.0 * plane.normal().dot(across.normal()) * across.normal();
-      const ReflectionPlane image(normal, normal.dot(across.reflect(plane.offset() * plane.normal())));
-      add(image);
+      add(ReflectionPlane(normal, normal.dot(across.reflect(plane.offset() * plane.normal()))));
     }
   }
   return found;

@@ -47,10 +47,6 @@ Eigen::Vector3f halfWay(const Eigen::Vector3f& a, const Eigen::Vector3f& b) {
   return (a + b).normalized();
 }
 
-bool better(const FrameCandidate& a, const FrameCandidate& b) {
-  return a.value > b.value;
-}
-
 /// A plane perpendicular to a first one.
 struct PerpendicularPlane {
   Eigen::Vector3f normal;
@@ -219,7 +215,7 @@ std::vector<FrameCandidate> frameMaxima(const std::vector<FrameCandidate>& rotat
     // Where no angle stands out, all are equally good.
     if (maxima.empty()) maxima.push_back(rotated[first]);
   }
-  std::stable_sort(maxima.begin(), maxima.end(), better);
+  sortFalling(maxima, &FrameCandidate::value);
   maxima.resize(std::min(maxima.size(), kFrame.max_refined));
   return maxima;
 }
@@ -228,7 +224,7 @@ std::vector<FrameCandidate> refinedFrames(const FrameEvidence& evidence, std::ve
                                           int num_threads) {
   parallelBlocks(frames.size(), num_threads,
                  [&](std::size_t i) { frames[i] = ordered(evidence, climbed(evidence, frames[i])); });
-  std::stable_sort(frames.begin(), frames.end(), better);
+  sortFalling(frames, &FrameCandidate::value);
   return frames;
 }
 

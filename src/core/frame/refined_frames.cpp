@@ -34,14 +34,14 @@ void moveTo(const Eigen::Vector3d& center, const Eigen::Matrix3d& axes, Symmetry
 /// Puts axis \p first to the front; the others follow it in their cyclic order.
 void rotateOrder(int first, SymmetryFrame& frame) {
   if (first == 0) return;
-  Eigen::Isometry3d turn = Eigen::Isometry3d::Identity();
-  for (int k = 0; k < 3; ++k) turn.linear().row(k) = Eigen::RowVector3d::Unit((k + first) % 3);
-  const auto turned = [&](int axis) { return axis < 0 || axis > 2 ? axis : (axis - first + 3) % 3; };
-  frame.axes = frame.axes * turn.linear().transpose();
-  frame.scores = turn.linear() * frame.scores;
-  frame.revolution_axis = turned(frame.revolution_axis);
-  frame.T_canonical_input = turn * frame.T_canonical_input;
-  for (Eigen::Isometry3d& other : frame.equivalent) other = turn * other;
+  Eigen::Isometry3d permutation = Eigen::Isometry3d::Identity();
+  for (int k = 0; k < 3; ++k) permutation.linear().row(k) = Eigen::RowVector3d::Unit((k + first) % 3);
+  const auto position = [&](int axis) { return axis < 0 || axis > 2 ? axis : (axis - first + 3) % 3; };
+  frame.axes = frame.axes * permutation.linear().transpose();
+  frame.scores = permutation.linear() * frame.scores;
+  frame.revolution_axis = position(frame.revolution_axis);
+  frame.T_canonical_input = permutation * frame.T_canonical_input;
+  for (Eigen::Isometry3d& other : frame.equivalent) other = permutation * other;
   if (frame.probable.empty()) return;
   frame.probable.front().axes = frame.axes;
   frame.probable.front().revolution_axis = frame.revolution_axis;
@@ -76,8 +76,8 @@ void bringToPlanes(const std::function<std::optional<ReflectionPlane>(const Refl
     const std::optional<ReflectionPlane> plane =
         exactly(ReflectionPlane(frame.axes.col(k), frame.axes.col(k).dot(frame.center)));
     if (!plane) continue;
-    const bool is_turned = plane->normal().dot(frame.axes.col(k)) < 0.0;
-    axes.col(k) = is_turned ? Eigen::Vector3d(-plane->normal()) : plane->normal();
+    const bool is_opposite = plane->normal().dot(frame.axes.col(k)) < 0.0;
+    axes.col(k) = is_opposite ? Eigen::Vector3d(-plane->normal()) : plane->normal();
     for (int i = 0; i < num_exact; ++i) axes.col(k) -= axes.col(exact[i]).dot(axes.col(k)) * axes.col(exact[i]);
     axes.col(k).normalize();
     center -= (axes.col(k).dot(center) - axes.col(k).dot(plane->normal() * plane->offset())) * axes.col(k);

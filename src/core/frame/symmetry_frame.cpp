@@ -56,17 +56,17 @@ SymmetryFrame publishedFrame(const PointsRef& points, const FrameOptions& option
 
   // Second: the greatest among those perpendicular to it.
   const Eigen::Vector3d u = frame.axes.col(0).unitOrthogonal(), v = frame.axes.col(0).cross(u);
-  const auto turned = [&](std::size_t i) -> Eigen::Vector3d {
+  const auto across = [&](std::size_t i) -> Eigen::Vector3d {
     const double angle = kPi * static_cast<double>(i) / grid.numPhi();
     return std::cos(angle) * u + std::sin(angle) * v;
   };
   std::vector<OffsetAndScore> perpendicular(grid.numPhi());
   parallelBlocks(perpendicular.size(), options.num_threads,
-                 [&](std::size_t i) { perpendicular[i] = best_offset(turned(i)); });
+                 [&](std::size_t i) { perpendicular[i] = best_offset(across(i)); });
   const auto second =
       std::max_element(perpendicular.begin(), perpendicular.end(),
                        [](const OffsetAndScore& a, const OffsetAndScore& b) { return a.score < b.score; });
-  frame.axes.col(1) = turned(static_cast<std::size_t>(second - perpendicular.begin()));
+  frame.axes.col(1) = across(static_cast<std::size_t>(second - perpendicular.begin()));
 
   // Third: the greatest among those perpendicular to both.
   frame.axes.col(2) = frame.axes.col(0).cross(frame.axes.col(1));

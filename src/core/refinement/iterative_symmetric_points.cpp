@@ -178,13 +178,9 @@ ReflectionPlane fitReflectionPlane(const PointsRef& x, const PointsRef& y, const
 IspStep iterateSymmetricPoints(const IspSurface& surface, const std::vector<int>& samples, const ReflectionPlane& plane,
                                double sigma, IspUpdate update, const std::vector<int>* guesses) {
   WeightedPairs pairs(surface, samples, plane, sigma, guesses);
-  IspStep& step = pairs.step;
-  if (update == IspUpdate::PointToPoint) {
-    step.plane = fitReflectionPlane(pairs.x, pairs.y, pairs.weights, plane);
-    return std::move(step);
-  }
-  step.plane = steppedPlane(surface, samples, pairs);
-  return std::move(step);
+  pairs.step.plane = update == IspUpdate::PointToPoint ? fitReflectionPlane(pairs.x, pairs.y, pairs.weights, plane)
+                                                       : steppedPlane(surface, samples, pairs);
+  return std::move(pairs.step);
 }
 
 IspStep matchSymmetricPoints(const IspSurface& surface, const std::vector<int>& samples, const ReflectionPlane& plane,

@@ -6,6 +6,7 @@
 
 #include "core/base/check.h"
 #include "core/base/parallel.h"
+#include "core/base/statistics.h"
 #include "core/registration/pose_scoring.h"
 #include "core/registration/pose_starts.h"
 #include "core/registration/registration_rules.h"
@@ -13,10 +14,6 @@
 namespace pcl_symmetry {
 
 namespace {
-
-bool better(const RankedPose& a, const RankedPose& b) {
-  return a.score.merit() > b.score.merit();
-}
 
 /// The evenly spread rotations of greatest merit.
 std::vector<RankedPose> screened(const PoseStarts& starts, const PoseScorer& scorer, const PoseSearchOptions& options) {
@@ -27,7 +24,7 @@ std::vector<RankedPose> screened(const PoseStarts& starts, const PoseScorer& sco
     poses[i].T_model_scan = starts.pose(poses[i].T_model_scan.linear());
     poses[i].score = scorer.score(poses[i].T_model_scan, {kRegistration.screen_points, kRegistration.screen_width});
   });
-  std::stable_sort(poses.begin(), poses.end(), better);
+  sortFalling(poses, [](const RankedPose& pose) { return pose.score.merit(); });
   poses.resize(std::min<std::size_t>(poses.size(), options.num_screened));
   return poses;
 }
@@ -69,7 +66,7 @@ std::vector<RankedPose> firstDistinct(const std::vector<RankedPose>& poses, std:
 }
 
 std::vector<RankedPose> distinctPoses(std::vector<RankedPose> poses, std::size_t most, double radius) {
-  std::stable_sort(poses.begin(), poses.end(), better);
+  sortFalling(poses, [](const RankedPose& pose) { return pose.score.merit(); });
   return firstDistinct(poses, most, radius);
 }
 

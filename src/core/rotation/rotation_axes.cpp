@@ -33,10 +33,8 @@ double overlapOrLess(const RotationFit& fit, const Eigen::Matrix3d& rotation, co
 /// The directions of the greatest values, apart from each other.
 std::vector<int> peaks(const std::vector<double>& values) {
   const int size = static_cast<int>(values.size());
-  std::vector<int> order(values.size()), kept;
-  std::iota(order.begin(), order.end(), 0);
-  std::stable_sort(order.begin(), order.end(), [&](int a, int b) { return values[a] > values[b]; });
-  for (const int k : order) {
+  std::vector<int> kept;
+  for (const int k : fallingOrder(values)) {
     if (kept.size() >= kRotation.max_directions || values[k] < kRotation.min_line_overlap) break;
     const bool near = std::any_of(kept.begin(), kept.end(), [&](int other) {
       return std::abs(directionAt(k, size).dot(directionAt(other, size))) > std::cos(kRotation.min_angle);
@@ -231,10 +229,8 @@ std::vector<Line3d> principalLines(const RotationFit& fit) {
 
 std::vector<Line3d> axisLineCandidates(const RotationFit& fit, int num_directions, int max_fold, int num_threads) {
   std::vector<Line3d> lines;
-  for (const Eigen::Vector3d& center : axisCenters(fit)) {
-    const auto found = linesThrough(center, fit, num_directions, max_fold, num_threads);
-    lines.insert(lines.end(), found.begin(), found.end());
-  }
+  for (const Eigen::Vector3d& center : axisCenters(fit))
+    append(lines, linesThrough(center, fit, num_directions, max_fold, num_threads));
   return lines;
 }
 

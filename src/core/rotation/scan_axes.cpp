@@ -115,14 +115,9 @@ std::vector<AxisStart> startsFromTransform(const NormalizedCloud& cloud, std::ui
   const AxisGrid grid(kScanAxes.coarse_theta, kScanAxes.coarse_phi, kScanAxes.coarse_offset, edt.center(),
                       kScanAxes.coarse_reach * edt.radius());
   const AxisMap map = axialTransform(edt, grid, options, &*cloud.visibility);
-  std::vector<std::size_t> bins;
-  for (std::size_t i = 0; i < map.greatest.size(); ++i)
-    if (map.greatest[i] > 0.0f) bins.push_back(i);
-  std::stable_sort(bins.begin(), bins.end(),
-                   [&](std::size_t a, std::size_t b) { return map.greatest[a] > map.greatest[b]; });
   std::vector<AxisStart> starts;
-  for (const std::size_t bin : bins) {
-    if (starts.size() == kScanAxes.coarse_maxima) break;
+  for (const int bin : fallingOrder(map.greatest)) {
+    if (starts.size() == kScanAxes.coarse_maxima || !(map.greatest[bin] > 0.0f)) break;
     const Line3d line = grid.axis(grid.bin(bin));
     if (kSameCoarsely.anySame(starts, line, &AxisStart::line)) continue;
     int fold = 2;
@@ -242,13 +237,10 @@ std::vector<SymmetryRotation> scanAxes(const RotationEvidence& evidence, const s
                                        std::vector<JudgedRotation>* evidence_of_all) {
   const NormalizedCloud& cloud = evidence.cloud();
   std::vector<AxisStart> starts = startsFromNormals(cloud, options.seed, options.num_threads);
-  const auto append = [&](const std::vector<AxisStart>& more) {
-    starts.insert(starts.end(), more.begin(), more.end());
-  };
   for (const SymmetryAxis& axis : axes) starts.push_back({cloud.lineOf(axis), 0});
   if (options.folds) {
-    append(startsFromPlanes(likelyPlanes(planes, cloud), kScanAxes.max_order));
-    append(startsFromTransform(cloud, options.seed, options.num_threads));
+    append(starts, startsFromPlanes(likelyPlanes(planes, cloud), kScanAxes.max_order));
+    append(starts, startsFromTransform(cloud, options.seed, options.num_threads));
   }
   const AxisJudge judge(evidence, options.folds ? kScanAxes.max_order : 1);
   std::vector<Line3d> fitted(starts.size());

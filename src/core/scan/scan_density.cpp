@@ -195,8 +195,7 @@ std::vector<ScanDensity::Candidate> ScanDensity::coarseMinima(std::size_t most) 
   for (const Eigen::Vector3d& direction : evenDirections(kScan.num_directions))
     coarse.push_back({direction, std::log(kScan.first_distance),
                       unexplainedFrom(kScan.first_distance * direction, kScan.coarse_density_samples)});
-  std::stable_sort(coarse.begin(), coarse.end(),
-                   [](const Candidate& a, const Candidate& b) { return a.unexplained < b.unexplained; });
+  sortFalling(coarse, [](const Candidate& candidate) { return -candidate.unexplained; });
   std::vector<Candidate> minima;
   if (!(coarse.front().unexplained < kScan.hopeless * (varianceOf(kScan.coarse_density_samples) + kScan.min_variance)))
     return minima;

@@ -2,8 +2,8 @@
 
 #include <algorithm>
 #include <map>
-#include <numeric>
 
+#include "core/base/statistics.h"
 #include "core/geometry/point_samples.h"
 #include "core/segmentation/segmentation_rules.h"
 #include "pcl_symmetry/core/closest_point_search.h"
@@ -15,13 +15,6 @@ std::vector<double> areasOf(const SurfaceGraph& graph, const std::vector<int>& l
   for (int i = 0; i < graph.size(); ++i)
     if (labels[i] >= 0) areas[labels[i]] += graph.areas[i];
   return areas;
-}
-
-std::vector<int> byFallingArea(const std::vector<double>& areas) {
-  std::vector<int> order(areas.size());
-  std::iota(order.begin(), order.end(), 0);
-  std::stable_sort(order.begin(), order.end(), [&](int a, int b) { return areas[a] > areas[b]; });
-  return order;
 }
 
 std::vector<int> renumbered(std::vector<int> labels) {
@@ -41,7 +34,7 @@ std::vector<int> filledFromClosest(const SurfaceGraph& graph, std::vector<int> l
 }
 
 Segmentation numberedByArea(const SurfaceGraph& graph, Segmentation segmentation) {
-  const std::vector<int> order = byFallingArea(areasOf(graph, segmentation.labels));
+  const std::vector<int> order = fallingOrder(areasOf(graph, segmentation.labels));
   std::vector<int> number(order.size());
   for (std::size_t i = 0; i < order.size(); ++i) number[order[i]] = static_cast<int>(i);
   for (int& label : segmentation.labels) label = number[label];

@@ -11,9 +11,6 @@ namespace pcl_symmetry {
 /// \return the area of each label, input units squared.
 std::vector<double> areasOf(const SurfaceGraph& graph, const std::vector<int>& labels);
 
-/// \return the indices of \p areas, greatest area first.
-std::vector<int> byFallingArea(const std::vector<double>& areas);
-
 /// \return the labels numbered from 0 in the order in which they appear.
 std::vector<int> renumbered(std::vector<int> labels);
 

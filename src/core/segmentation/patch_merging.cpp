@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "core/base/parallel.h"
+#include "core/base/statistics.h"
 #include "core/segmentation/labels.h"
 #include "core/segmentation/merge_fit.h"
 #include "core/segmentation/part_evidence.h"
@@ -109,11 +110,8 @@ std::vector<int> segmentsOfPatches(const SurfaceGraph& graph, const Patches& pat
   for (int i = 0; i < graph.size(); ++i) shared(labels[i], patches.of_element[i]) += graph.areas[i];
   std::vector<int> segment(patches.size(), -1);
   // The segment with the smallest hold on any patch chooses first.
-  std::vector<int> order(num_segments);
-  std::iota(order.begin(), order.end(), 0);
   const Eigen::VectorXd most = shared.rowwise().maxCoeff();
-  std::stable_sort(order.begin(), order.end(), [&](int a, int b) { return most[a] < most[b]; });
-  for (const int s : order) {
+  for (const int s : fallingOrder(Eigen::VectorXd(-most))) {
     int best = -1;
     for (int p = 0; p < patches.size(); ++p)
       if (segment[p] < 0 && (best < 0 || shared(s, p) > shared(s, best))) best = p;

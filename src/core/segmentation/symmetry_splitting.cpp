@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "core/base/k_means.h"
+#include "core/base/statistics.h"
 #include "core/geometry/point_samples.h"
 #include "core/segmentation/labels.h"
 #include "core/segmentation/segment_borders.h"
@@ -39,7 +40,7 @@ std::optional<SplitPart> splitByTwoMeans(const SurfaceGraph& graph, const std::v
 
   // "the two largest connected components": the cut assigns the smaller ones; as published, the closer of the two does
   const std::vector<int> pieces = connectedPieces(graph, side);
-  const std::vector<int> largest = byFallingArea(areasOf(graph, pieces));
+  const std::vector<int> largest = fallingOrder(areasOf(graph, pieces));
   if (largest.size() < 2) return std::nullopt;
   const int first = largest[0], second = largest[1];
   std::vector<int> open;
