@@ -248,83 +248,68 @@ int strideFor(const ScalarGrid& grid, double num_voxels) {
   return std::max(1, static_cast<int>(std::lround(std::cbrt(static_cast<double>(grid.numVoxels()) / num_voxels))));
 }
 
-/// c0: the correlation that a plane reaches in any direction.
-double chanceLevel(const ReflectedVolume& volume, const Eigen::Vector3d& center, int stride,
-                   const std::vector<SymmetryPlane>& maxima, int num_threads) {
-  std::vector<ReflectionPlane> planes;
-  for (int k = 0; k < kVolume.num_chance_planes; ++k) {
-    const Eigen::Vector3d n = spiralDirection(k, kVolume.num_chance_planes, k * kGoldenAngle);
-    const ReflectionPlane plane(n, n.dot(center));
-    const bool is_near = std::any_of(maxima.begin(), maxima.end(), [&](const SymmetryPlane& maximum) {
-      return maximum.angleTo(plane) < kVolume.chance_angle;
-    });
-    if (!is_near) planes.push_back(plane);
-  }
-  if (planes.empty()) return 1.0;
-  std::vector<double> reached(planes.size());
-  parallelBlocks(planes.size(), num_threads,
-                 [&](std::size_t i) { reached[i] = volume.compare(planes[i], stride, false).correlation; });
-  return std::max(0.0, quantile(std::move(reached), kVolume.chance_quantile));
-}
+/// The search for planes of a volume at two resolutions.
+struct VolumeSearch {
+  const DetectionOptions& options;
+  const VolumeFunction fine, coarse;
+  const Points body = coarse.bodyPoints(false);
+  const GaussianEdt edt{coarse, options.edtOptions()};
+  const Eigen::Vector3d center = centerOfMass(body);
+  const ReflectedVolume few{coarse, center, 1}, all{fine, center, options.num_threads};
+  const int stride = strideFor(coarse.f, kVolume.rough_voxels);
 
-std::vector<ReflectionPlane> startsOf(const SymmetryMap& map, const Points& body, const DetectionOptions& options) {
-  std::vector<ReflectionPlane> starts = principalPlanes(principalAxes(body));
-  for (const LocalMaximum& maximum : findLocalMaxima(map, {}, options.num_threads))
-    if (static_cast<int>(starts.size()) < options.expert.max_candidates) starts.push_back(maximum.plane);
-  return starts;
-}
+  VolumeSearch(const ScalarGrid& input, const VolumeLevels& levels, const DetectionOptions& given_options)
+      : options(given_options),
+        fine(input, levels, kVolume.fine_voxels, options.num_threads),
+        coarse(fine, kVolume.coarse_voxels, options.num_threads) {}
 
-}  // namespace
-
-Detection detectVolumePlanes(const ScalarGrid& input, const DetectionOptions& options, const VolumeLevels& levels) {
-  options.validate();
-  levels.validate();
-  Detection found;
-  Stopwatch watch;
-  try {
-    const VolumeFunction fine(input, levels, kVolume.fine_voxels, options.num_threads);
-    const VolumeFunction coarse(fine, kVolume.coarse_voxels, options.num_threads);
-    const Points body = coarse.bodyPoints(false);
-    const GaussianEdt edt(coarse, options.edtOptions());
-    found.timing_ms.emplace_back("volume", watch.lap());
-    SampledTransformOptions sampled;
-    sampled.num_samples = kVolume.num_samples;
-    sampled.seed = options.seed;
-    sampled.num_threads = options.num_threads;
-    const Eigen::Vector3d center = centerOfMass(body);
-    found.map = sampledTransform(edt, PlaneGrid(options.expert, edt.center(), edt.radius()), sampled);
-    found.map.center_of_mass = center;
-    found.diameter = 2.0 * edt.radius();
-    found.timing_ms.emplace_back("transform", watch.lap());
-
-    const ReflectedVolume few(coarse, center, 1), all(fine, center, options.num_threads);
-    const int stride = strideFor(coarse.f, kVolume.rough_voxels);
+  /// The best of the planes that ended at one plane, best first.
+  std::vector<SymmetryPlane> distinct(std::vector<SymmetryPlane> planes) const {
     const MergeTolerance one{kVolume.merge_angle, kVolume.merge_offset * edt.radius()};
-    const std::vector<ReflectionPlane> starts = startsOf(found.map, body, options);
-    std::vector<SymmetryPlane> maxima(starts.size());
-    parallelBlocks(starts.size(), options.num_threads, [&](std::size_t i) {
-      maxima[i] = few.refined(starts[i], stride, kVolume.rough_steps, kVolume.rough_tolerance);
-      maxima[i].support = few.compare(maxima[i], 1, false).merit();
-    });
-    // The best of those that ended at one plane, best first.
-    const auto distinct = [&](std::vector<SymmetryPlane> planes) {
-      sortFalling(planes, &SymmetryPlane::support);
-      eraseIf(planes, [](const SymmetryPlane& plane) { return !(plane.support > 0.0); });
-      return one.distinct(
-          std::move(planes), [&](const SymmetryPlane& plane) { return plane.normalized(center); }, options.max_planes);
-    };
-    maxima = distinct(maxima);
-    found.timing_ms.emplace_back("maxima", watch.lap());
+    sortFalling(planes, &SymmetryPlane::support);
+    eraseIf(planes, [](const SymmetryPlane& plane) { return !(plane.support > 0.0); });
+    return one.distinct(
+        std::move(planes), [&](const SymmetryPlane& plane) { return plane.normalized(center); }, options.max_planes);
+  }
 
-    const double chance = chanceLevel(few, center, stride, maxima, options.num_threads);
-    if (chance > kVolume.max_chance) {
-      found.reason = "volume: the body is round, planes in all directions map it onto itself";
-      return found;
+  /// The strongest maxima of a map and the principal planes, refined on few voxels.
+  std::vector<SymmetryPlane> maxima(const SymmetryMap& map) const {
+    std::vector<ReflectionPlane> starts = principalPlanes(principalAxes(body));
+    for (const LocalMaximum& maximum : findLocalMaxima(map, {}, options.num_threads))
+      if (static_cast<int>(starts.size()) < options.expert.max_candidates) starts.push_back(maximum.plane);
+    std::vector<SymmetryPlane> refined(starts.size());
+    parallelBlocks(starts.size(), options.num_threads, [&](std::size_t i) {
+      refined[i] = few.refined(starts[i], stride, kVolume.rough_steps, kVolume.rough_tolerance);
+      refined[i].support = few.compare(refined[i], 1, false).merit();
+    });
+    return distinct(std::move(refined));
+  }
+
+  /// c0: the correlation that a plane reaches in any direction.
+  double chanceLevel(const std::vector<SymmetryPlane>& maxima) const {
+    std::vector<ReflectionPlane> planes;
+    for (int k = 0; k < kVolume.num_chance_planes; ++k) {
+      const Eigen::Vector3d n = spiralDirection(k, kVolume.num_chance_planes, k * kGoldenAngle);
+      const ReflectionPlane plane(n, n.dot(center));
+      const bool is_near = std::any_of(maxima.begin(), maxima.end(), [&](const SymmetryPlane& maximum) {
+        return maximum.angleTo(plane) < kVolume.chance_angle;
+      });
+      if (!is_near) planes.push_back(plane);
     }
-    const auto confidence = [&](const SymmetryPlane& plane, double level) {
-      const double beyond_chance = std::clamp((plane.support - level) / (1.0 - level), 0.0, 1.0);
-      return beyond_chance * beyond_chance;
-    };
+    if (planes.empty()) return 1.0;
+    std::vector<double> reached(planes.size());
+    parallelBlocks(planes.size(), options.num_threads,
+                   [&](std::size_t i) { reached[i] = few.compare(planes[i], stride, false).correlation; });
+    return std::max(0.0, quantile(std::move(reached), kVolume.chance_quantile));
+  }
+
+  static double confidence(const SymmetryPlane& plane, double level) {
+    const double beyond_chance = std::clamp((plane.support - level) / (1.0 - level), 0.0, 1.0);
+    return beyond_chance * beyond_chance;
+  }
+
+  /// Refines the maxima that may be symmetries on many voxels.
+  std::vector<SymmetryPlane> refined(std::vector<SymmetryPlane> maxima, double chance) const {
     for (SymmetryPlane& plane : maxima) {
       if (!options.approximate && &plane != &maxima.front() && confidence(plane, chance) < options.min_possible)
         continue;
@@ -338,32 +323,58 @@ Detection detectVolumePlanes(const ScalarGrid& input, const DetectionOptions& op
       plane.seen = comparison.seen;
       plane.residual = comparison.residual;
     }
-    std::vector<SymmetryPlane> planes = distinct(maxima);
-    for (SymmetryPlane& plane : planes) {
-      double level = chance;
-      if (confidence(plane, level) >= options.min_possible) {
-        std::vector<double> distances(body.cols());
-        for (std::size_t i = 0; i < distances.size(); ++i)
-          distances[i] = std::abs(plane.signedDistance(body.col(i).cast<double>()));
-        level = std::clamp(few.translated(plane, std::move(distances), stride), chance, kVolume.max_level);
-      }
-      // The best plane shows how alike halves are at this noise. A body that is nearly an ellipsoid has others, which
-      // leave more of f.
-      const double min_left = 1.0 - planes.front().support + kVolume.min_residual,
-                   left = 1.0 - plane.support + kVolume.min_residual,
-                   shown = (plane.seen - kVolume.nothing_seen) / (kVolume.enough_seen - kVolume.nothing_seen);
-      setConfidence(
-          plane, confidence(plane, level) * std::pow(std::min(1.0, min_left / left), 2) * std::clamp(shown, 0.0, 1.0),
-          "the correlation beyond that of planes in any direction", options);
+    return distinct(std::move(maxima));
+  }
+
+  /// Sets the confidence of a plane.
+  /// \param best_support of the planes: it shows how alike halves are at this noise. A body that is nearly an ellipsoid
+  /// has other planes, which leave more of f.
+  void judge(SymmetryPlane& plane, double chance, double best_support) const {
+    double level = chance;
+    if (confidence(plane, level) >= options.min_possible) {
+      std::vector<double> distances(body.cols());
+      for (std::size_t i = 0; i < distances.size(); ++i)
+        distances[i] = std::abs(plane.signedDistance(body.col(i).cast<double>()));
+      level = std::clamp(few.translated(plane, std::move(distances), stride), chance, kVolume.max_level);
     }
+    const double min_left = 1.0 - best_support + kVolume.min_residual,
+                 left = 1.0 - plane.support + kVolume.min_residual,
+                 shown = (plane.seen - kVolume.nothing_seen) / (kVolume.enough_seen - kVolume.nothing_seen);
+    setConfidence(plane,
+                  confidence(plane, level) * std::pow(std::min(1.0, min_left / left), 2) * std::clamp(shown, 0.0, 1.0),
+                  "the correlation beyond that of planes in any direction", options);
+    // A volume has no surface to be mapped.
+    plane.share = plane.share_low = plane.share_high = plane.deviation = std::numeric_limits<double>::quiet_NaN();
+  }
+};
+
+}  // namespace
+
+Detection detectVolumePlanes(const ScalarGrid& input, const DetectionOptions& options, const VolumeLevels& levels) {
+  options.validate();
+  levels.validate();
+  Detection found;
+  Stopwatch watch;
+  try {
+    const VolumeSearch search(input, levels, options);
+    const GaussianEdt& edt = search.edt;
+    found.timing_ms.emplace_back("volume", watch.lap());
+    found.map = sampledTransform(edt, PlaneGrid(options.expert, edt.center(), edt.radius()),
+                                 {kVolume.num_samples, options.seed, options.num_threads});
+    found.map.center_of_mass = search.center;
+    found.diameter = 2.0 * edt.radius();
+    found.timing_ms.emplace_back("transform", watch.lap());
+    std::vector<SymmetryPlane> planes = search.maxima(found.map);
+    found.timing_ms.emplace_back("maxima", watch.lap());
+    const double chance = search.chanceLevel(planes);
+    if (chance > kVolume.max_chance) {
+      found.reason = "volume: the body is round, planes in all directions map it onto itself";
+      return found;
+    }
+    planes = search.refined(std::move(planes), chance);
+    for (SymmetryPlane& plane : planes) search.judge(plane, chance, planes.front().support);
     if (std::none_of(planes.begin(), planes.end(), isDecided) && !planes.empty()) found.best = planes.front();
     found.planes = reordered(std::move(planes), options);
-    // A volume has no surface to be mapped.
-    const auto withoutShare = [](SymmetryPlane& plane) {
-      plane.share = plane.share_low = plane.share_high = plane.deviation = std::numeric_limits<double>::quiet_NaN();
-    };
-    std::for_each(found.planes.begin(), found.planes.end(), withoutShare);
-    if (found.best) withoutShare(*found.best);
     found.timing_ms.emplace_back("refinement", watch.lap());
   } catch (const VolumeWithoutAnswer& error) {
     found.reason = error.what();
