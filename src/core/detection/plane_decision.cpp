@@ -31,6 +31,29 @@ void write(SymmetryPlane& plane, double confidence, const Reason& reason, const 
                                                                    : PlaneKind::Approximate;
 }
 
+/// Among the planes that are as likely as the likeliest, D decides.
+/// \return null where there is none.
+const SymmetryPlane* bestOf(const std::vector<SymmetryPlane>& planes) {
+  double most = 0.0;
+  for (const SymmetryPlane& plane : planes) most = std::max(most, plane.confidence);
+  const auto best = std::max_element(planes.begin(), planes.end(), [&](const SymmetryPlane& a, const SymmetryPlane& b) {
+    const bool a_likely = a.confidence >= most - kDetection.decide.as_likely,
+               b_likely = b.confidence >= most - kDetection.decide.as_likely;
+    return a_likely != b_likely ? b_likely : a.score < b.score;
+  });
+  return best == planes.end() ? nullptr : &*best;
+}
+
+/// The order of answers: symmetries, then possible ones, both by falling confidence, then others by falling support.
+/// Equally confident ones stay in their order.
+bool isBetter(const SymmetryPlane& a, const SymmetryPlane& b) {
+  const auto rank = [](const SymmetryPlane& plane) {
+    return plane.kind == PlaneKind::Symmetry ? 0 : plane.kind == PlaneKind::Possible ? 1 : 2;
+  };
+  if (rank(a) != rank(b)) return rank(a) < rank(b);
+  return isDecided(a) ? a.confidence > b.confidence : a.support > b.support;
+}
+
 }  // namespace
 
 void setConfidence(SymmetryPlane& plane, double confidence, const char* evidence, const DetectionOptions& options) {
@@ -51,23 +74,6 @@ void limitToPossible(SymmetryPlane& plane, const char* rule) {
   plane.reasons.push_back({rule, std::nullopt});
   if (plane.kind == PlaneKind::Symmetry) plane.kind = PlaneKind::Possible;
 }
-
-namespace {
-
-/// Among the planes that are as likely as the likeliest, D decides.
-/// \return null where there is none.
-const SymmetryPlane* bestOf(const std::vector<SymmetryPlane>& planes) {
-  double most = 0.0;
-  for (const SymmetryPlane& plane : planes) most = std::max(most, plane.confidence);
-  const auto best = std::max_element(planes.begin(), planes.end(), [&](const SymmetryPlane& a, const SymmetryPlane& b) {
-    const bool a_likely = a.confidence >= most - kDetection.decide.as_likely,
-               b_likely = b.confidence >= most - kDetection.decide.as_likely;
-    return a_likely != b_likely ? b_likely : a.score < b.score;
-  });
-  return best == planes.end() ? nullptr : &*best;
-}
-
-}  // namespace
 
 bool explainsAll(const SymmetryPlane& plane, CloudKind kind) {
   return kKindRules.may_lack_piece[kind] && plane.kind == PlaneKind::Symmetry &&
@@ -98,20 +104,6 @@ void doubtSlantedPlanes(std::vector<SymmetryPlane>& planes, const std::vector<Ei
     if (isDecided(plane) && slants(plane, carrying_normals))
       multiplyOdds(plane, kDetection.decide.slanted_odds, "slants on what the object stands on", options);
 }
-
-namespace {
-
-/// The order of answers: symmetries, then possible ones, both by falling confidence, then others by falling support.
-/// Equally confident ones stay in their order.
-bool isBetter(const SymmetryPlane& a, const SymmetryPlane& b) {
-  const auto rank = [](const SymmetryPlane& plane) {
-    return plane.kind == PlaneKind::Symmetry ? 0 : plane.kind == PlaneKind::Possible ? 1 : 2;
-  };
-  if (rank(a) != rank(b)) return rank(a) < rank(b);
-  return isDecided(a) ? a.confidence > b.confidence : a.support > b.support;
-}
-
-}  // namespace
 
 MeasuredPlane PlaneDecision::decided(MeasuredPlane measured, const ReflectionPlane& plane) const {
   SymmetryPlane& result = measured.plane;

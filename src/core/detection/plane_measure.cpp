@@ -41,6 +41,21 @@ bool isResolved(const CloudLimits::Lengths& lengths) {
          (lengths.tolerance >= greatest && lengths.resolution <= kDetection.decide.coarsest * greatest);
 }
 
+std::array<double, 2> sharesWithin(const std::vector<float>& distances, double tolerance) {
+  std::array<double, 2> shares{};
+  for (std::size_t k = 0; k < shares.size(); ++k)
+    shares[k] = std::max(kDetection.measure.min_own_share,
+                         shareWithin(distances, kDetection.measure.tolerances[k] * tolerance));
+  return shares;
+}
+
+/// What the spacing of a surface resolves, up to the greatest tolerance at which shares are measured; 0 of points that
+/// resolve no surface.
+double sampledTolerance(const NormalizedCloud& cloud, double tolerance) {
+  if (!kKindRules.resolves_surface[cloud.kind()]) return 0.0;
+  return std::min(cloud.spacing / kEvidence.coarsest, kDetection.measure.tolerances.back() * tolerance * cloud.extent);
+}
+
 }  // namespace
 
 CloudLimits::CloudLimits(const PointsRef& points, const PrincipalAxes& axes, CloudKind kind, const Visibility* seen,
@@ -65,25 +80,6 @@ std::vector<const char*> CloudLimits::rulesAgainst(const ReflectionPlane& plane,
     rules.push_back("the plane moves the points by no more than the tolerance");
   return rules;
 }
-
-namespace {
-
-std::array<double, 2> sharesWithin(const std::vector<float>& distances, double tolerance) {
-  std::array<double, 2> shares{};
-  for (std::size_t k = 0; k < shares.size(); ++k)
-    shares[k] = std::max(kDetection.measure.min_own_share,
-                         shareWithin(distances, kDetection.measure.tolerances[k] * tolerance));
-  return shares;
-}
-
-/// What the spacing of a surface resolves, up to the greatest tolerance at which shares are measured; 0 of points that
-/// resolve no surface.
-double sampledTolerance(const NormalizedCloud& cloud, double tolerance) {
-  if (!kKindRules.resolves_surface[cloud.kind()]) return 0.0;
-  return std::min(cloud.spacing / kEvidence.coarsest, kDetection.measure.tolerances.back() * tolerance * cloud.extent);
-}
-
-}  // namespace
 
 PlaneMeasure::PlaneMeasure(const NormalizedCloud& cloud, const PlaneFit& fit, const DetectionOptions& options)
     : cloud_(cloud),

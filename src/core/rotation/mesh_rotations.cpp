@@ -18,10 +18,9 @@ MotionsAbout motionsOf(const ObjectSymmetries& symmetries) {
 }
 
 /// Moves a group, as a whole, to where it maps the mesh onto itself.
-/// \return its motions there.
-MotionsAbout movedOntoMesh(const MeshSurface& mesh, ObjectSymmetries& symmetries) {
+void moveOntoMesh(const MeshSurface& mesh, ObjectSymmetries& symmetries) {
   const MotionsAbout motions = motionsOf(symmetries);
-  if (motions.linear.empty()) return motions;
+  if (motions.linear.empty()) return;
   const MeshSurface::Placement placed = mesh.fitted(motions);
   symmetries.center = placed.center;
   for (Eigen::Isometry3d& motion : symmetries.discrete) {
@@ -30,7 +29,6 @@ MotionsAbout movedOntoMesh(const MeshSurface& mesh, ObjectSymmetries& symmetries
   }
   for (ContinuousSymmetry& axis : symmetries.continuous)
     axis = {symmetries.kind == RotationGroupKind::Spherical ? axis.axis : placed.rotation * axis.axis, placed.center};
-  return motionsOf(symmetries);
 }
 
 }  // namespace
@@ -38,7 +36,7 @@ MotionsAbout movedOntoMesh(const MeshSurface& mesh, ObjectSymmetries& symmetries
 ObjectSymmetries objectSymmetries(const PointsRef& points, const MeshSurface& mesh,
                                   const ObjectSymmetryOptions& options) {
   ObjectSymmetries found = objectSymmetries(points, options);
-  movedOntoMesh(mesh, found);
+  moveOntoMesh(mesh, found);
   ObjectSymmetryOptions wide = options;
   wide.tolerance = ObjectSymmetryOptions().tolerance;
   wide.absolute_tolerance = 0.0;
@@ -49,7 +47,8 @@ ObjectSymmetries objectSymmetries(const PointsRef& points, const MeshSurface& me
   };
   if (greater.reason.empty() && size(greater).first + size(greater).second == 0) found = greater;  // nor at less
   if (size(greater) <= size(found)) return found;
-  const MotionsAbout motions = movedOntoMesh(mesh, greater);
+  moveOntoMesh(mesh, greater);
+  const MotionsAbout motions = motionsOf(greater);
   const RotationLimits limits{found.tolerance, options.max_feature};
   const OffShares off{1.0 - mesh.shares(motions, limits.tolerance, 0.0).share,
                       1.0 - mesh.shares(motions, kRotation.far_tolerances * limits.tolerance, 0.0).share};

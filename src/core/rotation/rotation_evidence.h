@@ -18,11 +18,10 @@ namespace pcl_symmetry {
 /// The numbers that axes of scans depend on. Lengths are in radii of the cloud, angles in radians, where no unit is
 /// given.
 struct ScanAxisRules {
-  int normal_samples = 600, normal_draws = 60,
-      normals_in_draw = 8;               ///< samples and draws that give lines of bodies of revolution
-  int from_normals = 3;                  ///< lines kept of these
-  double angle_of_fold = 3.0 * kDegree;  ///< by which planes of scans are off
-  double min_plane_angle = 0.13;         ///< between two planes that share a line
+  int normal_samples = 600, normal_draws = 60, normals_in_draw = 8;  ///< that give lines of bodies of revolution
+  int from_normals = 3;                                              ///< lines kept of these
+  double angle_of_fold = 3.0 * kDegree;                              ///< by which planes of scans are off
+  double min_plane_angle = 0.13;                                     ///< between two planes that share a line
   int coarse_cells = 24, coarse_theta = 8, coarse_phi = 32, coarse_offset = 8, coarse_samples = 32;
   double coarse_reach = 0.67;                     ///< radii; greatest distance of an axis from the middle of the cloud
   std::size_t coarse_maxima = 10;                 ///< of that axial transform
