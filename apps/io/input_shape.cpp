@@ -104,6 +104,8 @@ InputShape loadInput(const Console& console, const std::string& path, const Comm
       is_volume ? loadVolumeInput(path, common, summary) : loadInput(path, common.mesh_points, common.seed);
   input.loading_ms = loading.done(counted(finitePoints(*input.points).cols(), "point") + summary);
   warnOfLeftOut(console, path, input.shape);
+  if (!is_volume && !input.shape.mesh && common.mesh_points != CommonOptions().mesh_points)
+    console.warn(path + ": -points is of meshes, a cloud keeps its own");
   checkViewpoint(console, input, common.viewpoint);
   return input;
 }

@@ -56,6 +56,10 @@ struct PictureScene {
   bool show_color_bar = true;  ///< legend of the support, in panels that have support
 };
 
+/// What is up where nobody says it: z, and -y for a camera, whose viewpoint is the origin.
+/// \param middle of the points.
+Eigen::Vector3d upFor(const std::optional<Eigen::Vector3d>& viewpoint, const Eigen::Vector3d& middle);
+
 /// Turns the view so that \p up is to it what z was; any length but zero.
 void standUpright(PictureScene& scene, const Eigen::Vector3d& up);
 

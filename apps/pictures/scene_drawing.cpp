@@ -121,7 +121,10 @@ void addPanels(vtkRenderWindow& window, const PictureScene& scene, const PanelGr
     for (const PlanePatch& plane : panel.planes) addPlane(*renderer, plane, scene, normalize, panel_pixels / 250);
     const bool has_bar = scene.show_color_bar && !panel.support.empty();
     fitCamera(*renderer, scene, double(grid.panel_width) / grid.panel_height, has_bar ? 0.12 : 0.0);
-    if (!panel.label.empty()) renderer->AddActor2D(labelActor(panel.label, font_size));
+    if (!panel.label.empty()) {
+      const double widest = 1.75 * grid.panel_width / static_cast<double>(panel.label.size());  // of Arial's letters
+      renderer->AddActor2D(labelActor(panel.label, std::min(font_size, static_cast<int>(widest))));
+    }
     const int small_font = std::max(8, font_size * 3 / 4);
     addLegend(*renderer, panel, grid.panel_height, small_font);
     if (has_bar) renderer->AddActor2D(colorBar(grid.panel_width, grid.panel_height, small_font));

@@ -117,12 +117,16 @@ std::vector<int> objectNumbers(const SceneAnalysis& scene, std::size_t num_point
 /// \param aside angle by which the camera goes around the points, radians.
 void lookFromSensor(PictureScene& picture, const SceneAnalysis& scene, const Eigen::Vector3d& middle,
                     double aside = 0.0) {
-  const Visibility* seen = scene.seen->visibility();
-  Eigen::Vector3d up = Eigen::Vector3d::UnitZ();
-  if (!scene.supports.empty()) up = scene.supports.front().coefficients.head<3>();
-  if (seen) {
-    Eigen::Vector3d toward = (seen->viewpoint() - middle).normalized();
-    if (std::abs(up.dot(toward)) > 0.95) up = toward.unitOrthogonal();  // a wall that faces the sensor
+  std::optional<Eigen::Vector3d> viewpoint;
+  if (const Visibility* seen = scene.seen->visibility()) viewpoint = seen->viewpoint();
+  Eigen::Vector3d toward = viewpoint.value_or(middle) - middle, up = upFor(viewpoint, middle);
+  toward.normalize();
+  if (!scene.supports.empty()) {
+    const Eigen::Vector3d support = scene.supports.front().coefficients.head<3>();
+    if (std::abs(support.dot(toward)) < 0.95) up = support;  // a wall that faces the sensor is not below the objects
+  }
+  if (viewpoint) {
+    if (std::abs(up.dot(toward)) > 0.95) up = toward.unitOrthogonal();
     toward = Eigen::AngleAxisd(aside, up) * toward;
     picture.view = (toward + kRaised * up).normalized();
   }

@@ -57,7 +57,7 @@ FileReport match(const FileJob& job, const SymmetryDatabase& database, const Inp
   step.done(std::to_string(matches.size()) + " of " + counted(database.size(), "model"));
   FileReport report{"", {{"file", job.path()}, {"matches", nlohmann::json::array()}}, {}};
   for (const ModelMatch& found : matches) {
-    report.text += formatted("%8.4f %s\n", found.distance, found.name.c_str());
+    report.text += formatted("%s  distance %.4f\n", found.name.c_str(), found.distance);
     report.json["matches"].push_back({{"name", found.name}, {"distance", found.distance}});
     report.rows.push_back({found.name, found.distance});
   }

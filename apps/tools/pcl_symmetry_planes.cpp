@@ -11,6 +11,7 @@
 #include "command_line/console.h"
 #include "command_line/run_on_files.h"
 #include "command_line/tool_errors.h"
+#include "core/geometry/geometry_rules.h"
 #include "io/answers.h"
 #include "io/cloud_fields.h"
 #include "io/exact_coordinates.h"
@@ -144,6 +145,9 @@ std::string tableOf(const Findings& findings, const Eigen::Vector3d& shift) {
                     ? formatted(", confidence %.3f\n", best->confidence)
                     : formatted(" maps %.1f %% of the surface to within %.3g, 97 %% to within %.3g\n",
                                 100.0 * best->share, findings.tolerance, best->deviation));
+    if (const auto& best = findings.best; best && best->share_low < 0.9 && best->share_high >= kSymmetricShare)
+      table += formatted("the points leave it open: the share of the whole surface is between %.0f and %.0f %%\n",
+                         100.0 * best->share_low, 100.0 * best->share_high);
     return table;
   }
   for (const SymmetryCenter& center : findings.centers)
@@ -253,17 +257,19 @@ std::vector<PicturePanel> panelsOf(const Findings& findings) {
 PictureScene makeScene(const pcl::PointCloud<pcl::PointXYZ>::ConstPtr& cloud, const Findings& findings,
                        const std::optional<Eigen::Vector3d>& given_up) {
   PictureScene scene{cloud, std::nullopt, panelsOf(findings)};
-  const Eigen::Vector3d up = given_up.value_or(Eigen::Vector3d::UnitZ());
+  const Eigen::Vector3d middle = finitePoints(*cloud).rowwise().mean().cast<double>();
+  const Eigen::Vector3d up = given_up.value_or(upFor(findings.viewpoint, middle));
   if (given_up) standUpright(scene, up);
-  if (findings.planes.empty()) return scene;
+  if (findings.planes.empty() && !findings.viewpoint) return scene;
   // Off the normals of the planes shown, so that none is seen edge on or face on, and from the side of the scanner or
   // from above; see ViewpointSelection for more.
-  const Eigen::Vector3d n = findings.planes[0].normal();
-  Eigen::Vector3d across = up - n.dot(up) * n, toward = Eigen::Vector3d::Zero();
+  Eigen::Vector3d toward = Eigen::Vector3d::Zero();
+  if (findings.viewpoint) toward = *findings.viewpoint - middle;
+  const Eigen::Vector3d n = findings.planes.empty() ? toward.normalized() : findings.planes[0].normal();
+  Eigen::Vector3d across = up - n.dot(up) * n;
   const bool is_level = across.norm() < 0.3;
-  if (is_level) toward = up;
+  if (is_level && !findings.viewpoint) toward = up;
   across = is_level ? n.unitOrthogonal() : across.normalized();
-  if (findings.viewpoint) toward = *findings.viewpoint - finitePoints(*cloud).rowwise().mean().cast<double>();
   scene.view = Eigen::Vector3d::Zero();
   for (const Eigen::Vector3d& by : {Eigen::Vector3d(0.75 * n), n.cross(across), Eigen::Vector3d(0.55 * across)})
     scene.view += by.dot(toward) < 0.0 ? Eigen::Vector3d(-by) : by;

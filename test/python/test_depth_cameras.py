@@ -220,6 +220,12 @@ class OrganizedArrays(unittest.TestCase):
         depth, self.labels = table()
         self.frame = pcl_symmetry.from_depth(depth, INTRINSICS)
 
+    def test_what_the_picture_cuts_off_all_around_has_no_symmetry(self):
+        for depth in (np.full((120, 160), 1.2), 1 / (0.8 + np.linspace(0, 0.3, 120)[:, None] + np.zeros(160))):
+            with self.assertWarnsRegex(RuntimeWarning, "if this is a whole frame"):
+                found = pcl_symmetry.planes(pcl_symmetry.from_depth(depth, (150, 150, 80, 60)))
+            self.assertEqual((found.planes, found.axes), ([], []))
+
     def assert_says_what_was_seen(self, found, mask):
         """Points have support where the camera could see their reflection."""
         support = found.point_support(0)
@@ -302,7 +308,7 @@ class OrganizedArrays(unittest.TestCase):
             self.assertIn("plane 1", each.planes.show(self.frame).html)
             if importlib.util.find_spec("matplotlib"):
                 self.assertTrue(each.planes.plot(self.frame).collections)
-        self.assertRegex(repr(scene), r"^Scene\(objects=\[SceneObject\(points=\d+, planes=\d.*, added=\d+\), .*supports=\[")
+        self.assertRegex(repr(scene), r"^Scene\(objects=\[SceneObject\(rows=\d+, planes=Planes\(planes=\d.*\), added=\d+\), .*supports=\[")
         with self.assertRaisesRegex(ValueError, r"planes\(points, indices=object.rows\) has it"):
             scene[0].planes.point_support(0)
         page = scene.show(self.frame)

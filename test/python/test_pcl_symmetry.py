@@ -162,6 +162,8 @@ class Planes(unittest.TestCase):
             "rotations": lambda r: (r.reason, bool(r.name), np.isnan(r.center).all(), len(r.discrete)),
             "transform": lambda m: (m.reason, bool(m.radius), np.isnan(m.center).all(), m.values.size),
         }
+        with self.assertWarnsRegex(RuntimeWarning, r"points: they leave it open, a share of 0[.]\d+ to 1[.]00 for the best plane"):
+            self.assertFalse(pcl_symmetry.planes(box(num_points=100)))
         for number, points in ((5, box(num_points=5)), (1, np.ones((1000, 3))), (0, np.full((50, 3), np.nan))):
             words = f"{number} distinct point{'s' if number > 1 else ''}, at least 20 are needed" if number else "no finite point"
             for name in ("frame", "rotations", "transform", "describe", "descriptors", "local_symmetry", "segment"):

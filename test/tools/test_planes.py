@@ -85,8 +85,14 @@ class Planes(ToolTest):
         self.assertEqual(answer["planes"], [])
         self.assertLess(answer["best"]["share"], 0.9)
         self.assertGreater(answer["best"]["deviation"], answer["tolerance"])
+        self.assertNotIn("leave it open", self.output)
         self.run_tool(self.tetrahedron, "-quiet --approximate")
         self.assertIn("approximate", self.output)
+        few = np.random.default_rng(1).normal(size=(100, 3))
+        few /= np.linalg.norm(few, axis=1, keepdims=True)
+        self.run_tool(self.write("few.pcd", tool_run.pcd(few)), "-points 200")
+        self.assertRegex(self.output, r"the points leave it open: the share of the whole surface is between \d+ and 100 %")
+        self.assertIn("-points is of meshes", self.error)
 
     def test_a_label_names_the_object_in_its_scene(self):
         random = np.random.default_rng(3)

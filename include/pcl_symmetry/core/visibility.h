@@ -92,7 +92,8 @@ public:
   /// where the ray met nothing, +infinity where no ray passed.
   double depthBehind(const Eigen::Vector3d& x) const;
 
-  /// \return whether a picture has a pixel at a point in the frame of the points, also one without a depth.
+  /// \return whether a picture has a pixel at a point in the frame of the points, also one without a depth; true beside
+  /// a picture beyond which rays met nothing.
   bool isInPicture(const Eigen::Vector3d& x) const;
 
   /// \param points 3 x M, in the frame of the points.

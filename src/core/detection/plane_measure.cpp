@@ -61,8 +61,7 @@ double sampledTolerance(const NormalizedCloud& cloud, double tolerance) {
 CloudLimits::CloudLimits(const PointsRef& points, const PrincipalAxes& axes, CloudKind kind, const Visibility* seen,
                          const Lengths& lengths)
     : is_resolved_(isResolved(lengths)),
-      is_cut_(seen && lengths.resolution > 0.0 &&
-              cutShare(points, *seen, kDetection.measure.beside_outline) > kDetection.decide.max_cut),
+      is_cut_(seen && cutShare(points, *seen, kDetection.measure.beside_outline) > kDetection.decide.max_cut),
       still_((kKindRules.resolves_surface[kind] ? 1.0 : kDetection.measure.noisy_thinness) * lengths.tolerance),
       thinness_(thinnessOf(points, axes, still_, lineTolerance(kind, lengths))) {}
 

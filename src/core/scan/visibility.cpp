@@ -168,7 +168,8 @@ bool Visibility::isInPicture(const Eigen::Vector3d& x) const {
   return std::any_of(pictures_.begin(), pictures_.end(), [&](const Picture& picture) {
     const Eigen::Vector3d image = picture.projection * x.homogeneous();
     const Eigen::Array2d pixel = image.head<2>().array() / image.z() + 0.5;
-    return image.z() > 0.0 && (pixel >= 0.0).all() && pixel.x() < picture.width && pixel.y() < picture.height;
+    const bool has_pixel = (pixel >= 0.0).all() && pixel.x() < picture.width && pixel.y() < picture.height;
+    return image.z() > 0.0 && (has_pixel || picture.outside != kNoRay);
   });
 }
 

@@ -530,6 +530,10 @@ def planes(
     has_symmetry = result.planes or result.axes or result.centers or result.reason
     if len(cloud.shape) == 2 and indices is None and result.viewpoint is not None and not has_symmetry:
         warnings.warn("points: no symmetry; if this is a whole frame, scene() finds its objects", RuntimeWarning, stacklevel=2)
+    if result.viewpoint is None and result.best is not None and not has_symmetry:
+        low, high = result.best.share_interval
+        if low < 0.9 and high >= 0.97:
+            warnings.warn(f"points: they leave it open, a share of {low:.2f} to {high:.2f} for the best plane", RuntimeWarning, stacklevel=2)
     return result if cloud.shift is None else result._moved(cloud.shift)
 
 

@@ -1044,9 +1044,9 @@ class SceneObject(Result):
 
     def __repr__(self) -> str:
         counts = {name: len(getattr(self.planes, name)) for name in "planes possible axes centers".split()}
-        counts = {"points": len(self.rows), **counts, "added": len(self.added)}
-        models = [f"models={[m.name for m in self.models]}"] if self.models else []
-        return f"SceneObject({', '.join([f'{name}={count}' for name, count in counts.items() if count] + models)})"
+        found = ", ".join(f"{name}={count}" for name, count in counts.items() if count)
+        models = f", models={[m.name for m in self.models]}" if self.models else ""
+        return f"SceneObject(rows={len(self.rows)}, planes=Planes({found}), added={len(self.added)}{models})"
 
     def _json(self) -> Dict[str, Any]:
         found: Dict[str, Any] = dict(
