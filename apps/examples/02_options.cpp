@@ -4,6 +4,7 @@
 #include <pcl_symmetry/symmetry_maxima_refinement.h>
 
 #include <iostream>
+#include <string>
 
 int main(int argc, char** argv) {
   pcl::PointCloud<pcl::PointXYZ>::Ptr cloud(new pcl::PointCloud<pcl::PointXYZ>);
@@ -30,6 +31,8 @@ int main(int argc, char** argv) {
     const bool whole = plane.kind == pcl_symmetry::PlaneKind::Symmetry;
     std::cout << (whole ? "symmetry " : "weaker   ") << plane.coefficients().transpose() << "  confidence "
               << plane.confidence << ", support " << plane.support << ", score " << plane.score << "\n";
+    for (const pcl_symmetry::Reason& reason : plane.reasons)
+      std::cout << "  " << reason.rule << (reason.odds ? ": odds x " + std::to_string(*reason.odds) : "") << "\n";
   }
   for (const pcl_symmetry::SymmetryAxis& axis : refinement.getAxes())
     std::cout << "axis of revolution through " << axis.point.transpose() << " along " << axis.direction.transpose()

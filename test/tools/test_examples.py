@@ -10,7 +10,7 @@ from tool_run import ToolTest
 EXAMPLES = Path(os.environ["TOOLS"]) / "examples"
 # Arguments, what is printed at least once, what is printed so many times, and what the output file holds.
 CASES = (("01_first_plane scan.pcd", ["a b c d = ", "reflects to"], {"nan": 0}, ""),
-         ("02_options box.pcd", ["262144 planes"], {"symmetry ": 3}, ""),
+         ("02_options box.pcd", ["262144 planes", ": odds x "], {"symmetry ": 3}, ""),
          ("03_visibility scan.pcd", ["seen from one side", "have a counterpart"], {}, ""),
          ("04_alignment scan.pcd", ["center of symmetry"], {"axis": 3, "nan": 0}, ""),
          ("05_registration scan.pcd box.pcd", ["confidence"], {}, ""),

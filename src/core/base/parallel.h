@@ -47,8 +47,8 @@ private:
   double share_ = 0.0;
 };
 
-/// Looks at the Watch of the call, as loops do after each block: between steps of some microseconds and more that run
-/// in one thread, outside these loops.
+/// Ends the call where its Watch asks for that: for code of one thread, between steps of some microseconds and more.
+/// Loops do this after each block.
 /// \throws what the watch throws; in a block of a loop, also where the loop was ended.
 void lookAtWatch();
 

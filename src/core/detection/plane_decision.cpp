@@ -181,10 +181,10 @@ JudgedFamily PlaneDecision::judgeFamily(const std::vector<ReflectionPlane>& plan
 std::vector<SymmetryPlane> JudgedCloud::refinedAndJudged(std::vector<Candidate> candidates) const {
   candidates = refinement.full(std::move(candidates));
   std::vector<MeasuredPlane> measured = decision.judge(candidates);
-  std::vector<char> moves;
-  for (const MeasuredPlane& one : measured) moves.push_back(one.plane.confidence >= kDetection.fit.climbing_confidence);
-  refinement.climb(candidates, moves);
-  decision.judge(candidates, moves, measured);
+  std::vector<char> may_climb;
+  for (const MeasuredPlane& one : measured)
+    may_climb.push_back(one.plane.confidence >= kDetection.fit.climbing_confidence);
+  decision.judge(candidates, refinement.climb(candidates, may_climb), measured);
   std::vector<SymmetryPlane> planes;
   for (MeasuredPlane& one : measured) planes.push_back(std::move(one.plane));
   return planes;

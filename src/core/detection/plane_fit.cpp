@@ -48,17 +48,19 @@ public:
     });
   }
 
-  void climb(std::vector<Candidate>& candidates, const RefinementStage& stage,
-             std::vector<char>& moves) const override {
+  std::vector<char> climb(std::vector<Candidate>& candidates, const RefinementStage& stage,
+                          const std::vector<char>& may_climb) const override {
+    std::vector<char> moved(candidates.size(), false);
     const auto samples = std::make_shared<const std::vector<int>>(drawn(stage.num_samples));
     const std::vector<int> fewer = drawn(std::min(stage.num_rough_samples, kDetection.fit.climb_samples));
     parallelBlocks(candidates.size(), options_.num_threads, [&](std::size_t i) {
       Candidate& candidate = candidates[i];
       const bool is_at_rest = candidate.merit >= kDetection.stages.symmetric_merit;  // nothing pulls at it
-      moves[i] = moves[i] && candidate.merit >= kDetection.fit.climbing_merit && !is_at_rest &&
+      moved[i] = may_climb[i] && candidate.merit >= kDetection.fit.climbing_merit && !is_at_rest &&
                  climbOne(candidate, *samples, fewer);
-      if (moves[i]) candidate.samples = samples;
+      if (moved[i]) candidate.samples = samples;
     });
+    return moved;
   }
 
   ReflectionPlane refined(const ReflectionPlane& plane, const std::vector<int>& samples,
@@ -158,11 +160,6 @@ public:
     });
   }
 
-  /// A density has no pairs without a true partner, so planes need not climb.
-  void climb(std::vector<Candidate>& candidates, const RefinementStage&, std::vector<char>& moves) const override {
-    moves.assign(candidates.size(), false);
-  }
-
   ReflectionPlane refined(const ReflectionPlane& plane, const std::vector<int>& samples,
                           int max_iterations) const override {
     return density_.refine(pointsAt(cloud_.points, samples), plane, max_iterations).plane;
@@ -242,11 +239,10 @@ std::vector<Candidate> StagedRefinement::full(std::vector<Candidate> candidates)
   return refined(std::move(candidates), fullStage());
 }
 
-void StagedRefinement::climb(std::vector<Candidate>& candidates, std::vector<char>& moves) const {
-  if (kKindRules.shows_all[cloud_.kind()])
-    fit_.climb(candidates, fullStage(), moves);
-  else
-    moves.assign(candidates.size(), false);
+std::vector<char> StagedRefinement::climb(std::vector<Candidate>& candidates,
+                                          const std::vector<char>& may_climb) const {
+  if (!kKindRules.shows_all[cloud_.kind()]) return std::vector<char>(candidates.size(), false);
+  return fit_.climb(candidates, fullStage(), may_climb);
 }
 
 double StagedRefinement::coarseSigma() const {

@@ -34,13 +34,13 @@ struct Candidate {
 ///
 /// Candidates whose merit is too low for a symmetry never settle, and take fewer samples and iterations.
 struct RefinementStage {
-  int num_samples;        ///< of candidates that may be symmetries
-  int num_rough_samples;  ///< of the others
-  IspOptions isp;         ///< of candidates that may be symmetries
-  IspOptions rough_isp;   ///< of the others
-  double min_merit;       ///< of candidates that may be symmetries
-  bool undo_slides;       ///< of scans, in each stage that has the narrowest weights throughout
-  bool climbs = false;    ///< those of noisy scans, in the last stage
+  int num_samples;        ///< for likely symmetries
+  int num_rough_samples;  ///< for other candidates
+  IspOptions isp;         ///< for likely symmetries
+  IspOptions rough_isp;   ///< for other candidates
+  double min_merit;       ///< merit of likely symmetries
+  bool undo_slides;       ///< scans: whether slides along flat pieces are undone, as where the weights are narrowest
+  bool climbs = false;    ///< whether planes of noisy scans climb, in the last stage
 };
 
 /// How well a cloud supports a plane, and the plane nearby that it supports best.
@@ -53,11 +53,15 @@ public:
   /// Moves each candidate to the best plane nearby, and updates its merit.
   virtual void refine(std::vector<Candidate>& candidates, const RefinementStage& stage) const = 0;
 
-  /// Moves each candidate that stopped near its optimum there, and updates its merit; takes as long as all stages.
+  /// Moves candidates that stopped near their optimum there, and updates their merit; takes as long as all stages. A
+  /// density has no pairs without a true partner, so its planes need not climb.
   /// \param stage the last one.
-  /// \param[in,out] moves for each candidate whether it may; then whether it did.
-  virtual void climb(std::vector<Candidate>& candidates, const RefinementStage& stage,
-                     std::vector<char>& moves) const = 0;
+  /// \param may_climb of each candidate.
+  /// \return whether each candidate moved.
+  virtual std::vector<char> climb(std::vector<Candidate>&, const RefinementStage&,
+                                  const std::vector<char>& may_climb) const {
+    return std::vector<char>(may_climb.size(), false);
+  }
 
   /// The best plane nearby, at the narrowest weights.
   /// \param samples indices of points.
@@ -134,10 +138,10 @@ public:
   std::vector<Candidate> full(std::vector<Candidate> candidates) const;
 
   /// Moves planes of a whole cloud to their optimum where pairs without a true partner pull them aside.
-  /// \param candidates after full().
-  /// \param[in,out] moves for each whether it may be a symmetry; then whether it moved; of a scan none: those of noisy
-  /// ones have climbed in full().
-  void climb(std::vector<Candidate>& candidates, std::vector<char>& moves) const;
+  /// \param candidates after full(), in which planes of noisy scans have climbed.
+  /// \param may_climb of each candidate: it may be a symmetry.
+  /// \return whether each candidate moved.
+  std::vector<char> climb(std::vector<Candidate>& candidates, const std::vector<char>& may_climb) const;
 
   /// The best candidate of each group of like planes, best first: all that may be symmetries, and others until there
   /// are \p most.

@@ -103,9 +103,9 @@ PlaneMeasure::PlaneMeasure(const NormalizedCloud& cloud, const PlaneFit& fit, co
 
 std::vector<int> PlaneMeasure::samples() const {
   const Eigen::Index num_points = cloud_.points.cols();
-  const int share = kKindRules.judged_stride[cloud_.kind()];
-  return share > 0 ? drawSamples(num_points, options_.expert.num_refine_samples / share, options_.seed)
-                   : allOf(num_points);
+  const int stride = kKindRules.judged_stride[cloud_.kind()];
+  return stride > 0 ? drawSamples(num_points, options_.expert.num_refine_samples / stride, options_.seed)
+                    : allOf(num_points);
 }
 
 MeasuredPlane PlaneMeasure::measured(const Candidate& candidate, const std::vector<int>& samples) const {

@@ -13,7 +13,7 @@
 
 namespace pcl_symmetry {
 
-/// The numbers of this room that change answers.
+/// The constants of this folder that change answers.
 struct GeometryRules {
   // Points that can have an answer
   /// Share of the length of a line: five times the rounding of a line about the origin.

@@ -57,8 +57,8 @@ struct Landing {
   std::vector<float> distances;     ///< from the discs of the surface, see surfaceDistances(); only where they are used
 };
 
-/// Where points land on a surface: the one place where Iterative Symmetric Points asks for closest points (Section
-/// 4.4).
+/// Where points land on a surface. Iterative Symmetric Points (Section 4.4) and rotations of scans ask for their closest
+/// points here.
 /// \param images the points after the motion, in the frame of the surface.
 /// \param reach beyond which points are not near.
 /// \param guesses indices of points that are likely to be near, which makes the search faster; null = not known.
@@ -66,7 +66,7 @@ struct Landing {
 Landing land(const IspSurface& surface, Points images, double reach, const std::vector<int>* guesses = nullptr,
              bool leaves_out = false);
 
-/// The numbers of this room that change answers.
+/// The constants of this folder that change answers.
 struct RefinementRules {
   // The normalized cloud
   double final_sigma_in_spacings = 3.0;  ///< narrowest weights; less leaves reflections between samples without any

@@ -4,7 +4,7 @@
 
 namespace pcl_symmetry {
 
-/// The numbers of this room that change answers.
+/// The constants of this folder that change answers.
 struct RegistrationRules {
   // Starts from frames
   int num_rotations = 8;                  ///< about an axis of revolution, steps of 45 degrees

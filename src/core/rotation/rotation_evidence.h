@@ -129,7 +129,7 @@ private:
   };
 
   Points moved(const Eigen::Affine3d& motion, const std::vector<int>& samples) const;
-  /// Points beyond the reach only need to be known as far.
+  /// The distance of points beyond the reach is not measured.
   Landing landed(const Eigen::Affine3d& motion) const;
   /// \param width of the weights, tolerances.
   /// \param[in,out] closest points to the moved samples, of a line nearby; -1 where none is known.
@@ -144,7 +144,7 @@ private:
 
   const NormalizedCloud& cloud_;
   double tolerance_;
-  double far_, reach_;  ///< distance of what is far, and of points whose discs all are
+  double far_, reach_;  ///< distances: from which points are far, and within which they are measured
   std::vector<int> samples_, few_samples_;
   Points facing_;  ///< normals, toward the scanner
 };

@@ -118,8 +118,8 @@ double layeredShare(const PointsRef& points, const Eigen::Vector3d& viewpoint);
 /// How much of a cloud the picture cut off.
 /// \param points 3 x N, finite, N >= 1, seen within 75 degrees of one direction.
 /// \param margin where the picture is looked up beyond the outermost points, share of their distance from the middle.
-/// \return share of the directions of the outline, seen from the viewpoint, in which the picture ends beside the cloud,
-/// and nothing is known of the space beyond.
+/// \return share of the directions of the outline, seen from the viewpoint, in which the sensor's picture ends beside the
+/// cloud; 0 of a picture that was made of points.
 double cutShare(const PointsRef& points, const Visibility& seen, double margin);
 
 /// Whether a scanner saw that nothing is at a point, nor beside it.

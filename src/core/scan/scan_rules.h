@@ -5,7 +5,7 @@
 
 namespace pcl_symmetry {
 
-/// The numbers of this room that change answers.
+/// The constants of this folder that change answers.
 struct ScanRules {
   // Filter of depth images
   double even_share = 0.8;  ///< of the pixels measure the error; the rest has edges

@@ -69,7 +69,7 @@ Visibility::Visibility(const Projection& projection, int width, int height, std:
   if (width < 1 || height < 1 || depths.size() != static_cast<std::size_t>(width) * height)
     throw std::invalid_argument("depths: size " + std::to_string(depths.size()) + ", must be width * height > 0");
   auto picture = std::make_shared<const std::vector<float>>(std::move(depths));
-  pictures_.push_back({projection, width, height, std::move(picture), outside, 1.0, 0.0, {}});
+  pictures_.push_back({projection, width, height, std::move(picture), outside, 1.0, 0.0, false, {}});
 }
 
 std::optional<Visibility> Visibility::fromPoints(const PointsRef& points, const Eigen::Vector3d& viewpoint) {
@@ -83,6 +83,7 @@ std::optional<Visibility> Visibility::fromPoints(const PointsRef& points, const 
   // Rays beside the object met nothing either: their space is free, as far as the picture reached.
   Visibility visibility(image.grid.toPixels() * cameraAt(viewpoint, R_camera_input), image.grid.width,
                         image.grid.height, std::move(image.depths), kBackground);
+  visibility.pictures_.front().is_of_points = true;
   const Eigen::Matrix3d to_places = image.grid.toPixels().inverse();
   for (const FrameSide& side : frameSides(seen.positions))
     visibility.pictures_.front().sides.emplace_back(to_places.transpose() *
@@ -98,12 +99,17 @@ std::optional<Visibility> Visibility::ofScene(const PointsRef& points, const Eig
   const Eigen::Vector3d forward =
       rays.mean.norm() > 1e-6 ? Eigen::Vector3d(rays.mean.normalized()) : Eigen::Vector3d::UnitX();
   const Eigen::Matrix3d ahead = viewingFrame(forward);
-  if (auto one = pictureOf(points, viewpoint, ahead, FieldOfView::Cone, max_pixels, rays.count)) return one;
-  std::vector<Visibility> faces;
-  for (const Eigen::Matrix3d& turn : cubeFaces())
-    if (auto face = pictureOf(points, viewpoint, turn * ahead, FieldOfView::CubeFace, max_pixels, 1))
-      faces.push_back(std::move(*face));
-  return together(faces);
+  std::vector<Visibility> views;
+  if (auto one = pictureOf(points, viewpoint, ahead, FieldOfView::Cone, max_pixels, rays.count)) {
+    views.push_back(std::move(*one));
+  } else {
+    for (const Eigen::Matrix3d& rotation : cubeFaces())
+      if (auto face = pictureOf(points, viewpoint, rotation * ahead, FieldOfView::CubeFace, max_pixels, 1))
+        views.push_back(std::move(*face));
+  }
+  Visibility all = together(views);
+  for (Picture& picture : all.pictures_) picture.is_of_points = true;
+  return all;
 }
 
 Visibility Visibility::together(const std::vector<Visibility>& views) {
@@ -169,7 +175,7 @@ bool Visibility::isInPicture(const Eigen::Vector3d& x) const {
     const Eigen::Vector3d image = picture.projection * x.homogeneous();
     const Eigen::Array2d pixel = image.head<2>().array() / image.z() + 0.5;
     const bool has_pixel = (pixel >= 0.0).all() && pixel.x() < picture.width && pixel.y() < picture.height;
-    return image.z() > 0.0 && (has_pixel || picture.outside != kNoRay);
+    return image.z() > 0.0 && (has_pixel || picture.is_of_points);
   });
 }
 

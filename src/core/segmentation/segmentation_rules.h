@@ -6,7 +6,7 @@
 
 namespace pcl_symmetry {
 
-/// The numbers of this room that change answers.
+/// The constants of this folder that change answers.
 struct SegmentationRules {
   // Thickness of the body behind a patch
   int samples_of_patch = 6;  ///< for one median per patch

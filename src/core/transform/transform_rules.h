@@ -6,7 +6,7 @@
 
 namespace pcl_symmetry {
 
-/// The numbers of this room that change answers.
+/// The constants of this folder that change answers.
 struct TransformRules {
   // Axes
   int num_rotations = 12;  ///< between 0 and pi that represent rotations by any angle

@@ -17,7 +17,7 @@ namespace {
 using namespace pcl_symmetry;
 using namespace pcl_symmetry::test;
 
-TEST(PlaneDecision, OfAScanWhatStaysInPlaceSaysNothing) {
+TEST(PlaneDecision, PointsOfAScanThatStayInPlaceAreUninformative) {
   // A wall with a block on it, seen from the front. The plane of the wall maps the wall onto itself, and the block to
   // where the wall hides all.
   Points points(3, 5000);

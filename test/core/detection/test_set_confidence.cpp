@@ -34,7 +34,7 @@ TEST(SetConfidence, KindFollowsAndReasonsMultiplyToTheOdds) {
   EXPECT_NEAR(oddsOf(plane.confidence), 0.4, 1e-12);
   EXPECT_EQ(plane.kind, PlaneKind::Possible);
   changeConfidence(plane, 0.7, "polygon", kOptions);
-  multiplyOdds(plane, 1.0, "says nothing", kOptions);
+  multiplyOdds(plane, 1.0, "uninformative", kOptions);
   ASSERT_EQ(plane.reasons.size(), 3u);
   EXPECT_STREQ(plane.reasons[1].rule, "slants");
   double product = 1.0;

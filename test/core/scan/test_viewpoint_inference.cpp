@@ -120,7 +120,7 @@ TEST(SpaceSeenFrom, AcceptsNoisyScans) {
 
 TEST(CutShare, IsOfTheOutlineBesideWhichThePictureEnds) {
   // A square of 40 x 40 pixels, one unit away, in a picture without other depths.
-  const auto cutAt = [](int first, float outside = Visibility::kNoRay) {
+  const auto cutAt = [](int first, bool is_of_points = false) {
     Visibility::Projection projection = Visibility::Projection::Identity();
     projection.leftCols<3>() << 100.0, 0.0, 49.5, 0.0, 100.0, 49.5, 0.0, 0.0, 1.0;
     std::vector<float> depths(100 * 100, Visibility::kNoRay);
@@ -130,11 +130,12 @@ TEST(CutShare, IsOfTheOutlineBesideWhichThePictureEnds) {
       depths[100 * v + u] = 1.0f;
       points.col(i) << (static_cast<float>(u) - 49.5f) / 100.0f, (static_cast<float>(v) - 49.5f) / 100.0f, 1.0f;
     }
-    return cutShare(points, Visibility(projection, 100, 100, depths, outside), 0.1);
+    if (is_of_points) return cutShare(points, *Visibility::ofScene(points, Eigen::Vector3d::Zero()), 0.1);
+    return cutShare(points, Visibility(projection, 100, 100, depths), 0.1);
   };
   EXPECT_EQ(cutAt(30), 0.0);
   EXPECT_NEAR(cutAt(0), 0.5, 0.1);
-  EXPECT_EQ(cutAt(0, Visibility::kBackground), 0.0);
+  EXPECT_EQ(cutAt(0, true), 0.0) << "the points end, not the picture";
 }
 
 TEST(LayeredShare, CountsLayers) {
