@@ -56,7 +56,8 @@ CommandLine commandLine(PlanesOptions& options) {
       .picture("png", options.png_path,
                "picture: cloud, planes and support, best planes first; three slices of a volume and its asymmetry")
       .page("html", options.html_path, "page with the same in three dimensions, for any browser, without network")
-      .direction("up", options.up, "direction that is up in the picture, input frame (0,0,1)")
+      .direction("up", options.up,
+                 "direction that is up in the picture, input frame (0,0,1; for a camera at 0 0 0 0,-1,0)")
       .text("support", "FILE", options.support_path,
             "cloud with one more field per plane, support_1, support_2 ...: how well the point supports the plane, NaN "
             "where that was not seen")

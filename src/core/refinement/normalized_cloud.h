@@ -57,8 +57,8 @@ struct Landing {
   std::vector<float> distances;     ///< from the discs of the surface, see surfaceDistances(); only where they are used
 };
 
-/// Where points land on a surface. Iterative Symmetric Points (Section 4.4) and rotations of scans ask for their closest
-/// points here.
+/// Where points land on a surface. Iterative Symmetric Points (Section 4.4) and rotations of scans ask for their
+/// closest points here.
 /// \param images the points after the motion, in the frame of the surface.
 /// \param reach beyond which points are not near.
 /// \param guesses indices of points that are likely to be near, which makes the search faster; null = not known.

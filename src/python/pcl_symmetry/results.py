@@ -543,7 +543,7 @@ class Planes(Result):
         if not isinstance(index, (int, np.integer)):
             raise TypeError(f"index = {shown(index)}, must be int or a plane of this answer")
         if self.every and not self._support:
-            raise ValueError("an object of a scene has no support of points, planes(points, indices=object.rows) has it")
+            raise ValueError("no support of points is kept; for an object of a scene planes(points, indices=object.rows) has it")
         if not -len(self._support) <= index < len(self._support):
             raise IndexError(f"index = {index}, must be that of one of {len(self._support)} planes with support")
         values = self._support[index]
