@@ -404,10 +404,10 @@ def failure_name(out):
         database = pcl_symmetry.Database(f"{folder}/models.db", create=True)
         database.add("mug", sampled(mug()))
         database.add("cup", sampled(mug(0.01, 0.01)))
-        for side in (1, -1):
-            points, viewpoint = scan(mug(), (side, 0.7, 0.3))
+        for direction in ((0.5, 1, 0.6), (-1, 0.7, 0.3)):
+            points, viewpoint = scan(mug(), direction)
             names = [f"{m.name} {m.confidence:.2f}" for m in database.recognize(points, viewpoint=viewpoint)]
-            sheet.azimuth = np.degrees(np.arctan2(0.7, side))
+            sheet.azimuth = np.degrees(np.arctan2(direction[1], direction[0]))
             axes = sheet.panel("scan of the mug: " + (", ".join(names) or "no name"), points)
             sheet.dots(axes, points, BLUE)
     sheet.save(out)
