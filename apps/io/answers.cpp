@@ -15,10 +15,9 @@ std::string explained(const std::string& name, const SymmetryPlane& plane, const
     const std::string most =
         plane.deviation < 0.99 * found.diameter ? formatted(", 97 %% within %.3g", plane.deviation) : "";
     lines += formatted(
-        "  %.1f %% of the surface within %.3g of its reflection%s, of all of it %.0f to %.0f %%; a symmetry has 97 %%\n"
+        "  %.1f %% of the surface within %.3g of its reflection%s; a symmetry has 97 %%\n"
         "  %.0f %% of the reflections fall where the surface would have been seen\n",
-        100.0 * plane.share, found.tolerance, most.c_str(), 100.0 * plane.share_low, 100.0 * plane.share_high,
-        100.0 * plane.seen);
+        100.0 * plane.share, found.tolerance, most.c_str(), 100.0 * plane.seen);
   }
   bool is_first = true;
   for (const Reason& reason : plane.reasons) {

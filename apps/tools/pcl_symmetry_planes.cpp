@@ -105,7 +105,8 @@ struct Findings : Detection {
   bool empty() const { return planes.empty() && axes.empty() && centers.empty() && rotations.empty(); }
   bool hasSymmetry() const {
     const auto is_symmetry = [](const SymmetryPlane& plane) { return plane.kind == PlaneKind::Symmetry; };
-    return !axes.empty() || !centers.empty() || std::any_of(planes.begin(), planes.end(), is_symmetry);
+    return !axes.empty() || !centers.empty() || !rotations.empty() ||
+           std::any_of(planes.begin(), planes.end(), is_symmetry);
   }
 };
 
@@ -146,7 +147,8 @@ std::string tableOf(const Findings& findings, const Eigen::Vector3d& shift) {
                     ? formatted(", confidence %.3f\n", best->confidence)
                     : formatted(" maps %.1f %% of the surface to within %.3g, 97 %% to within %.3g\n",
                                 100.0 * best->share, findings.tolerance, best->deviation));
-    if (const auto& best = findings.best; best && best->share_low < 0.9 && best->share_high >= kSymmetricShare)
+    if (const auto& best = findings.best;
+        !findings.viewpoint && best && best->share_low < 0.9 && best->share_high >= kSymmetricShare)
       table += formatted("the points leave it open: the share of the whole surface is between %.0f and %.0f %%\n",
                          100.0 * best->share_low, 100.0 * best->share_high);
     return table;

@@ -289,6 +289,7 @@ class OrganizedArrays(unittest.TestCase):
             for found in (ball.planes.centers[0].point, ball.frame.center):
                 np.testing.assert_allclose(found, center, atol=0.02 * radius)
             self.assertGreater(len(ball.added), 0.9 * len(ball.rows), "its far side")
+            self.assert_follow(scene, "scene", file="-", timing_ms={})
             np.testing.assert_allclose(np.linalg.norm(ball.added - center, axis=1), radius, atol=0.03 * radius)
 
     def test_a_scene_has_objects_on_a_table(self):

@@ -92,8 +92,9 @@ public:
   /// where the ray met nothing, +infinity where no ray passed.
   double depthBehind(const Eigen::Vector3d& x) const;
 
-  /// \return whether a picture has a pixel at a point in the frame of the points, also one without a depth. Pictures that
-  /// were made of points have no border, and every point before them has one.
+  /// \param x in the frame of the points.
+  /// \return whether a picture has a pixel there, also one without a depth. Pictures that were made of points have no
+  /// border: true for all points in front of them.
   bool isInPicture(const Eigen::Vector3d& x) const;
 
   /// \param points 3 x M, in the frame of the points.
@@ -129,7 +130,7 @@ private:
     float outside;
     double unit = 1.0;                 // of this frame, in units of the depths
     double inverse_depth_error = 0.0;  // in units of the depths
-    bool is_of_points = false;         // it ends where the points do, not where the sensor's picture does
+    bool is_of_points = false;         // it ends where the points do, and the sensor's picture may not
     // Lines in homogeneous pixels at which the picture cut the object: no ray passed where their product is positive.
     std::vector<Eigen::Vector3d> sides;
 

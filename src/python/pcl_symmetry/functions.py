@@ -527,7 +527,7 @@ def planes(
         may_be_rings=used.may_be_rings,
     )
     result = _planes_of(found, cloud, used)
-    has_symmetry = result.planes or result.axes or result.centers or result.reason
+    has_symmetry = result.planes or result.axes or result.centers or result.rotations or result.reason
     if len(cloud.shape) == 2 and indices is None and result.viewpoint is not None and not has_symmetry:
         warnings.warn("points: no symmetry; if this is a whole frame, scene() finds its objects", RuntimeWarning, stacklevel=2)
     if result.viewpoint is None and result.best is not None and not has_symmetry:
