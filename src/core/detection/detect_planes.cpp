@@ -111,16 +111,14 @@ constexpr struct {
     {"parts", findPlanesOfParts},
 };
 
-/// Section 4.4 and what follows: the planes of a cloud, from the maxima of its map to the list. publishedPlanes() is
-/// the section alone.
-/// \param all the points of the cloud and those that were left out to make it evenly dense, normalized frame.
-Detection refineAndDecide(const NormalizedCloud& cloud, const Points& all, const SymmetryMap& map,
-                          const DetectionOptions& options, Stopwatch& watch) {
-  Found found;
-  const auto timed = [&](const char* stage) { found.timing_ms.emplace_back(stage, watch.lap()); };
-  const JudgedCloud judged(cloud, all, options);
+/// Section 4.4 and what follows: from the maxima of the map of a cloud to the list of planes. publishedPlanes() is the
+/// section alone.
+/// \param[in,out] found takes the answer.
+void refineAndDecide(const JudgedCloud& judged, const SymmetryMap& map, Found& found, Stopwatch& watch) {
+  const NormalizedCloud& cloud = judged.cloud;
   const PlaneMeasure& measure = judged.measure;
-  timed("surface");
+  const DetectionOptions& options = judged.options;
+  const auto timed = [&](const char* stage) { found.timing_ms.emplace_back(stage, watch.lap()); };
 
   // Candidates: local maxima of the transform and the planes across the principal axes.
   std::vector<Candidate> candidates = gatherCandidates(cloud, map, options);
@@ -154,117 +152,29 @@ Detection refineAndDecide(const NormalizedCloud& cloud, const Points& all, const
   found.diameter = cloud.extent * cloud.scale;
   found.planes = rankedPlanes(judged, std::move(found.planes), found.polygon);
   timed("report");
-  return std::move(found);
-}
-
-/// Detects planes on the evenly dense subset of a cloud whose density differs between its sides, then computes the
-/// support of all its points.
-/// \param input the points of the cloud in the input frame.
-/// \param kept indices of the points to judge by.
-Detection detectOnEvenSubset(const NormalizedCloud& cloud, const Points& input, const std::vector<int>& kept,
-                             const SymmetryMap& map, const DetectionOptions& options, Stopwatch& watch) {
-  const GaussianEdt& whole = cloud.edt;
-  const Points even_points = pointsAt(input, kept);
-  const GaussianEdt edt(even_points,
-                        {whole.numCells(), whole.sigma(), options.num_threads, whole.radius(), whole.center()});
-  const ClosestPointSearch::Ptr search =
-      cloud.flann ? nullptr : among(cloud.search, static_cast<std::size_t>(cloud.points.cols()), kept);
-  const NormalizedCloud even(even_points, edt, search, nullptr, options.num_threads);
-  Detection detection = refineAndDecide(even, cloud.points, map, options, watch);
-  const auto complete = [&](SymmetryPlane& plane) {
-    plane.point_support = surfaceSupport(cloud, cloud.toNormalized(plane), options);
-  };
-  for (SymmetryPlane& plane : detection.planes) complete(plane);
-  if (detection.best) complete(*detection.best);
-  return detection;
 }
 
 /// The normals of the distinct points: where copies differ, that of the last copy.
-Points normalsOf(const DistinctPoints& distinct, const Points& normals) {
+/// \param used indices of the points that became distinct ones, in the order of DistinctPoints::index_of.
+Points normalsOf(const DistinctPoints& distinct, const Points& normals, const std::vector<int>& used) {
   Points result(3, distinct.points.cols());
-  for (std::size_t i = 0; i < distinct.index_of.size(); ++i) result.col(distinct.index_of[i]) = normals.col(i);
+  for (std::size_t i = 0; i < used.size(); ++i) result.col(distinct.index_of[i]) = normals.col(used[i]);
   return result;
 }
 
-/// Each position counts once, and volumes of points are made evenly dense.
-Detection detectFromMap(const PlaneInput& input, const GaussianEdt& edt, const SymmetryMap& map,
-                        const DetectionOptions& options) {
-  Stopwatch watch;
-  const DistinctPoints distinct(input.points);
-  const Points normals = input.normals ? normalsOf(distinct, *input.normals) : Points();
-  ClosestPointSearch::Ptr search;
-  if (input.make_search) search = inFrame(input.make_search(distinct.points), edt.center(), edt.radius());
-  const NormalizedCloud cloud(distinct.points, edt, std::move(search), input.visibility, options.num_threads,
-                              input.normals ? &normals : nullptr);
-  const std::vector<int> kept =
-      kKindRules.resolves_surface[cloud.kind()] ? allOf(cloud.points.cols()) : evenlyDense(cloud, options.seed);
-  Detection detection = static_cast<Eigen::Index>(kept.size()) < cloud.points.cols()
-                            ? detectOnEvenSubset(cloud, distinct.points, kept, map, options, watch)
-                            : refineAndDecide(cloud, cloud.points, map, options, watch);
-  if (distinct.points.cols() < input.points.cols()) spreadSupport(detection, distinct.index_of);
-  return detection;
-}
+/// The evenly dense part of a cloud whose density differs between its sides.
+struct EvenCloud {
+  const Points points;  ///< input frame
+  const GaussianEdt edt;
+  const NormalizedCloud cloud;
 
-/// Sections 4.1 to 4.3, unless the input has a map; then the rest.
-Detection detectAmong(const PlaneInput& input, const DetectionOptions& options) {
-  if (input.map) return detectFromMap(input, *input.edt, *input.map, options);
-  Stopwatch watch;
-  std::vector<std::pair<std::string, double>> timing;
-  const GaussianEdt edt(input.points, options.edtOptions());
-  timing.emplace_back("distance_transform", watch.lap());
-  const std::vector<float> free_space = freeSpace(edt, input.visibility, options.num_threads);
-  timing.emplace_back("free_space", watch.lap());
-  const DetectionOptions::Expert& expert = options.expert;
-  const PlaneGrid grid(expert, edt.center(), edt.radius());
-  SymmetryMap map = sampledTransform(edt, grid, {expert.num_samples, options.seed, options.num_threads}, free_space);
-  map.center_of_mass = centerOfMass(input.points);
-  timing.emplace_back("transform", watch.lap());
-  Detection detection = detectFromMap(input, edt, map, options);
-  detection.map = std::move(map);
-  detection.timing_ms.insert(detection.timing_ms.begin(), timing.begin(), timing.end());
-  return detection;
-}
-
-/// Some of the points of an input, as an input.
-struct PartOfInput {
-  Points points, normals;
-  PlaneInput input;
-
-  PartOfInput(const PlaneInput& all, const std::vector<int>& kept)
-      : points(pointsAt(all.points, kept)),
-        normals(all.normals ? pointsAt(*all.normals, kept) : Points()),
-        input(points, all.visibility) {
-    input.normals = all.normals ? &normals : nullptr;
-    input.edt = all.edt;
-    input.map = all.map;
-    input.make_search = all.make_search;
-    input.may_be_rings = all.may_be_rings;
-  }
+  /// \param whole with the points \p distinct.
+  /// \param kept indices of these.
+  EvenCloud(const NormalizedCloud& whole, const Points& distinct, const std::vector<int>& kept, int num_threads)
+      : points(pointsAt(distinct, kept)),
+        edt(points, {whole.edt.numCells(), whole.edt.sigma(), num_threads, whole.edt.radius(), whole.edt.center()}),
+        cloud(points, edt, nullptr, nullptr, num_threads) {}
 };
-
-/// Detects planes on the points that represent the cloud; all others take their support.
-/// \param input without stray points.
-Detection detectInBulk(const PlaneInput& input, const DetectionOptions& options) {
-  Detection detection;
-  detection.reason = whyUnanswerable(input.points);
-  if (!detection.reason.empty()) return detection;
-  Stopwatch watch;
-  if (const std::optional<std::vector<int>> subset = subsetOf(input.points, options)) {
-    const double subset_ms = watch.lap();
-    const PartOfInput part(input, *subset);
-    detection = detectAmong(part.input, options);
-    if (!input.map) detection.map.center_of_mass = centerOfMass(input.points);
-    watch.lap();
-    if (!detection.planes.empty() || detection.best)
-      spreadSupport(detection, closestPoints(*makeFlannSearch(part.points), input.points, options.num_threads).index);
-    detection.timing_ms.insert(detection.timing_ms.begin(), {"subset", subset_ms});
-    detection.timing_ms.emplace_back("support_of_all", watch.lap());
-  } else {
-    detection = detectAmong(input, options);
-  }
-  if (input.may_be_rings && input.visibility) decideByUprightBox(input, options, detection);
-  return detection;
-}
 
 }  // namespace
 
@@ -292,16 +202,72 @@ Detection detectPlanes(const PlaneInput& input, const DetectionOptions& options)
     check(input.normals->cols() == input.points.cols(), "number of normals", input.normals->cols(),
           "the number of points");
   check(!input.map == !input.edt, "map", input.map ? "given" : "missing", "given together with edt");
-  const std::vector<int> stray = strayPoints(input.points);
-  if (stray.empty()) return detectInBulk(input, options);
-  // Stray points support no plane.
-  const std::vector<int> others = allBut(stray, input.points.cols());
-  Detection detection = detectInBulk(PartOfInput(input, others).input, options);
-  std::vector<int> index_of(input.points.cols(), -1);
-  for (std::size_t i = 0; i < others.size(); ++i) index_of[others[i]] = static_cast<int>(i);
-  spreadSupport(detection, index_of);
-  detection.num_stray_points = static_cast<int>(stray.size());
-  return detection;
+  Stopwatch watch;
+  Found found;
+  const auto timed = [&](const char* stage) { found.timing_ms.emplace_back(stage, watch.lap()); };
+
+  // The bulk: all points that are not stray. Of a large cloud, some points represent it.
+  const std::vector<int> stray = strayPoints(input.points), in_bulk = allBut(stray, input.points.cols());
+  const Points bulk = pointsAt(input.points, in_bulk);
+  found.num_stray_points = static_cast<int>(stray.size());
+  found.reason = whyUnanswerable(bulk);
+  if (!found.reason.empty()) return std::move(found);
+  const std::optional<std::vector<int>> subset = subsetOf(bulk, options);
+  std::vector<int> used = subset ? *subset : allOf(bulk.cols());
+  for (int& i : used) i = in_bulk[i];
+  const Points points = pointsAt(input.points, used);
+  if (subset) timed("subset");
+
+  // Sections 4.1 to 4.3: the distance transform and the map, unless the input has them.
+  std::optional<GaussianEdt> own_edt;
+  if (!input.map) {
+    own_edt.emplace(points, options.edtOptions());
+    timed("distance_transform");
+    const std::vector<float> free_space = freeSpace(*own_edt, input.visibility, options.num_threads);
+    timed("free_space");
+    const PlaneGrid grid(options.expert, own_edt->center(), own_edt->radius());
+    found.map =
+        sampledTransform(*own_edt, grid, {options.expert.num_samples, options.seed, options.num_threads}, free_space);
+    found.map.center_of_mass = centerOfMass(bulk);
+    timed("transform");
+  }
+  const GaussianEdt& edt = input.edt ? *input.edt : *own_edt;
+
+  // The cloud: each position once and, where noise leaves no surface, evenly dense.
+  const DistinctPoints distinct(points);
+  const Points normals = input.normals ? normalsOf(distinct, *input.normals, used) : Points();
+  ClosestPointSearch::Ptr search;
+  if (input.make_search) search = inFrame(input.make_search(distinct.points), edt.center(), edt.radius());
+  const NormalizedCloud cloud(distinct.points, edt, std::move(search), input.visibility, options.num_threads,
+                              input.normals ? &normals : nullptr);
+  std::optional<EvenCloud> even;
+  if (!kKindRules.resolves_surface[cloud.kind()])
+    if (const std::vector<int> kept = evenlyDense(cloud, options.seed); kept.size() < distinct.first_of.size())
+      even.emplace(cloud, distinct.points, kept, options.num_threads);
+
+  // Section 4.4: planes.
+  const JudgedCloud judged(even ? even->cloud : cloud, cloud.points, options);
+  timed("surface");
+  refineAndDecide(judged, input.map ? *input.map : found.map, found, watch);
+
+  // The support of all points: of the whole cloud, then of the bulk, then of the input. Stray points support no plane.
+  const auto complete = [&](SymmetryPlane& plane) {
+    plane.point_support = surfaceSupport(cloud, cloud.toNormalized(plane), options);
+  };
+  if (even) {
+    for (SymmetryPlane& plane : found.planes) complete(plane);
+    if (found.best) complete(*found.best);
+  }
+  if (!found.planes.empty() || found.best)
+    spreadSupport(
+        found, subset ? closestPoints(*makeFlannSearch(points), bulk, options.num_threads).index : distinct.index_of);
+  if (subset) timed("support_of_all");
+  if (input.may_be_rings && input.visibility) decideByUprightBox(bulk, *input.visibility, options, found);
+  if (stray.empty()) return std::move(found);
+  std::vector<int> index_in_bulk(input.points.cols(), -1);
+  for (std::size_t i = 0; i < in_bulk.size(); ++i) index_in_bulk[in_bulk[i]] = static_cast<int>(i);
+  spreadSupport(found, index_in_bulk);
+  return std::move(found);
 }
 
 }  // namespace pcl_symmetry

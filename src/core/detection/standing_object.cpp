@@ -226,13 +226,12 @@ std::optional<MiddlePlane> middlePlaneOfBox(const PointsRef& points, const Eigen
   return middle;
 }
 
-void decideByUprightBox(const PlaneInput& input, const DetectionOptions& options, Detection& found) {
-  const PointsRef points = input.points;
-  const Visibility& seen = *input.visibility;
+void decideByUprightBox(const PointsRef& points, const Visibility& seen, const DetectionOptions& options,
+                        Detection& found) {
   const std::vector<Eigen::Vector3d> up = carryingNormals(points, seen);
   if (up.empty()) return;
-  const ClosestPointSearch::Ptr search = input.make_search ? input.make_search(points) : makeFlannSearch(points);
-  const double spacing = median(localGeometry(points, *search, kNumSupportNeighbors, options.num_threads).spacing);
+  const double spacing =
+      median(localGeometry(points, *makeFlannSearch(points), kNumSupportNeighbors, options.num_threads).spacing);
   const bool is_sparse = spacing > kDetection.decide.no_surface * found.tolerance;
   const bool is_decided =
       found.hasFamily() || (!found.planes.empty() && found.planes.front().kind == PlaneKind::Symmetry);

@@ -42,7 +42,9 @@ std::optional<MiddlePlane> middlePlaneOfBox(const PointsRef& points, const Eigen
 
 /// Where points that stand on a ground are too far apart for a surface, as those of a LiDAR's rings, or where nothing
 /// was decided: the middle plane of their upright box decides in place of what was found.
-/// \param input with a visibility.
-void decideByUprightBox(const PlaneInput& input, const DetectionOptions& options, Detection& found);
+/// \param points,seen as in carryingNormals().
+/// \param[in,out] found planes with the support of these points.
+void decideByUprightBox(const PointsRef& points, const Visibility& seen, const DetectionOptions& options,
+                        Detection& found);
 
 }  // namespace pcl_symmetry

@@ -144,10 +144,4 @@ ClosestPoints closestPoints(const ClosestPointSearch& search, const PointsRef& q
 /// \return the same search over (points - center) / scale.
 ClosestPointSearch::Ptr inFrame(ClosestPointSearch::Ptr search, const Eigen::Vector3d& center, double scale);
 
-/// A search among some of the points of another one.
-/// \param search over all points.
-/// \param num_points of all.
-/// \param kept indices of different points; the result counts in these.
-ClosestPointSearch::Ptr among(ClosestPointSearch::Ptr search, std::size_t num_points, const std::vector<int>& kept);
-
 }  // namespace pcl_symmetry

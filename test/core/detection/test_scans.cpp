@@ -169,7 +169,7 @@ TEST(DecideByUprightBox, ReplacesItsPlaneAndKeepsToTheNumberOfPlanes) {
     }
     DetectionOptions options;
     options.max_planes = max_planes;
-    decideByUprightBox(PlaneInput(points, &visibility), options, found);
+    decideByUprightBox(points, visibility, options, found);
     return found.planes;
   };
   const std::vector<SymmetryPlane> planes = decided(seen, 0.0, 64);
@@ -197,7 +197,7 @@ TEST(DecideByUprightBox, OfWhatThePictureCutsOffIsPossible) {
     Detection found;
     found.tolerance = 0.02;
     found.diameter = 4.5;
-    decideByUprightBox(PlaneInput(points, &seen), {}, found);
+    decideByUprightBox(points, seen, {}, found);
     return found.planes.empty() ? PlaneKind::Local : found.planes.front().kind;
   };
   EXPECT_EQ(kind({-6.0, -3.0, 1.5}), PlaneKind::Possible);

@@ -43,17 +43,6 @@ TEST(ClosestPointSearch, FindsWhatBruteForceFinds) {
   EXPECT_EQ(indices[7 * kNum], 7);
 }
 
-TEST(SearchAmong, RefusesMoreNeighborsThanAreKept) {
-  const Points points = asymmetricBlob(50, 2).cloud();
-  const std::vector<int> kept{3, 8, 20};
-  const auto search = among(makeFlannSearch(points), 50, kept);
-  std::vector<int> indices;
-  std::vector<float> sq_distances;
-  search->search(points.leftCols(2), 3, indices, sq_distances);
-  EXPECT_EQ(indices.size(), 6u);
-  EXPECT_THROW(search->search(points.leftCols(2), 4, indices, sq_distances), std::invalid_argument);
-}
-
 TEST(ClosestPointSearch, FindsWithinTheLimitWhateverWasGuessed) {
   /// Only search(): searchWithin() is that of the base class.
   struct Plain : ClosestPointSearch {
