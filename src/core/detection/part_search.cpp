@@ -348,9 +348,8 @@ std::vector<SymmetricPart> findSymmetricParts(const NormalizedCloud& cloud, cons
 void findPlanesOfParts(const JudgedCloud& judged, Found& found) {
   const NormalizedCloud& cloud = judged.cloud;
   if (!judged.options.approximate) return;
-  std::vector<ReflectionPlane> decided;
-  for (const SymmetryPlane& plane : found.planes)
-    if (isDecided(plane)) decided.push_back(cloud.toNormalized(plane));
+  const std::vector<ReflectionPlane> decided =
+      planesOf(found.planes, {PlaneKind::Symmetry, PlaneKind::Possible}, cloud);
   const std::vector<SymmetricPart> parts = findSymmetricParts(cloud, *judged.fit, judged.options);
   const std::vector<int> all = allOf(cloud.points.cols());
   std::vector<std::optional<SymmetryPlane>> of_parts(parts.size());

@@ -230,9 +230,7 @@ void completeSupport(SymmetryPlane& plane, const JudgedCloud& judged) {
 
 /// An approximate plane that is a symmetry of a part is reported as that.
 std::vector<SymmetryPlane> withoutPlanesOfParts(std::vector<SymmetryPlane> planes, const NormalizedCloud& cloud) {
-  std::vector<ReflectionPlane> local;
-  for (const SymmetryPlane& plane : planes)
-    if (plane.kind == PlaneKind::Local) local.push_back(cloud.toNormalized(plane));
+  const std::vector<ReflectionPlane> local = planesOf(planes, {PlaneKind::Local}, cloud);
   const auto is_of_part = [&](const SymmetryPlane& plane) {
     return plane.kind == PlaneKind::Approximate && kSamePlane.anySame(local, cloud.toNormalized(plane));
   };

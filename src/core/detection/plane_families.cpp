@@ -184,10 +184,7 @@ FamilyTest familyTest(const JudgedCloud& judged, const std::vector<int>& samples
 /// Different symmetries among planes, most confident first, normalized frame.
 std::vector<ReflectionPlane> symmetriesOf(std::vector<SymmetryPlane> planes, const NormalizedCloud& cloud) {
   sortFalling(planes, &SymmetryPlane::confidence);
-  std::vector<ReflectionPlane> symmetries;
-  for (const SymmetryPlane& plane : planes)
-    if (plane.kind == PlaneKind::Symmetry) symmetries.push_back(cloud.toNormalized(plane));
-  return kSamePlane.distinct(std::move(symmetries));
+  return kSamePlane.distinct(planesOf(planes, {PlaneKind::Symmetry}, cloud));
 }
 
 /// The longest principal axis.

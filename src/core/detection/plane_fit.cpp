@@ -324,11 +324,17 @@ std::vector<Candidate> StagedRefinement::distinct(std::vector<Candidate> candida
   return kept;
 }
 
+std::vector<ReflectionPlane> planesOf(const std::vector<SymmetryPlane>& planes, std::initializer_list<PlaneKind> kinds,
+                                      const NormalizedCloud& cloud) {
+  std::vector<ReflectionPlane> found;
+  for (const SymmetryPlane& plane : planes)
+    if (std::find(kinds.begin(), kinds.end(), plane.kind) != kinds.end()) found.push_back(cloud.toNormalized(plane));
+  return found;
+}
+
 std::vector<Candidate> impliedBy(const std::vector<SymmetryPlane>& planes, const NormalizedCloud& cloud,
                                  std::vector<ReflectionPlane>& tried) {
-  std::vector<ReflectionPlane> symmetries;
-  for (const SymmetryPlane& plane : planes)
-    if (plane.kind == PlaneKind::Symmetry) symmetries.push_back(cloud.toNormalized(plane));
+  const std::vector<ReflectionPlane> symmetries = planesOf(planes, {PlaneKind::Symmetry}, cloud);
   std::vector<Candidate> found;
   append(tried, symmetries);
   const auto add = [&](const ReflectionPlane& plane) {

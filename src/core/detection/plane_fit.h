@@ -163,6 +163,10 @@ private:
   const DetectionOptions& options_;
 };
 
+/// \return those of some planes, input frame, that are of one of these kinds; in their order, normalized frame.
+std::vector<ReflectionPlane> planesOf(const std::vector<SymmetryPlane>& planes, std::initializer_list<PlaneKind> kinds,
+                                      const NormalizedCloud& cloud);
+
 /// The reflection of one symmetry in another is a symmetry too: completes the group that some symmetries generate.
 /// \param planes found up to now, input frame; those that are symmetries count.
 /// \param[in,out] tried planes that were known or returned before, normalized frame.

@@ -154,10 +154,8 @@ double leastTogether(const std::vector<MeasuredPlane>& judged) {
 /// \param planes most confident first, input frame.
 std::optional<PlaneLattice> bestLattice(const std::vector<SymmetryPlane>& planes, const NormalizedCloud& cloud,
                                         const Points& all) {
-  std::vector<ReflectionPlane> likely;
-  for (const SymmetryPlane& plane : planes)
-    if (isDecided(plane)) likely.push_back(cloud.toNormalized(plane));
-  likely = kSameMaximum.distinct(std::move(likely));
+  const std::vector<ReflectionPlane> likely =
+      kSameMaximum.distinct(planesOf(planes, {PlaneKind::Symmetry, PlaneKind::Possible}, cloud));
   for (const std::vector<ReflectionPlane>& through : bundlesOf(likely, kDetection.folds.max_line_pairs))
     if (const auto lattice = latticeBySpectrum(all, commonLine(through))) return lattice;
   return std::nullopt;
@@ -188,7 +186,7 @@ std::optional<PlaneLattice> latticeBySpectrum(const Points& all, const Line3d& l
 
 namespace {
 
-std::vector<Candidate> planesOf(const PlaneLattice& lattice) {
+std::vector<Candidate> candidatesOf(const PlaneLattice& lattice) {
   std::vector<Candidate> candidates;
   for (int k = 0; k < lattice.fold; ++k) candidates.push_back({lattice.plane(k)});
   return candidates;
@@ -245,10 +243,9 @@ bool isPolygon(const PlaneLattice& lattice, const Points& points, double toleran
 /// The polygon of a surface, whose planes are closer to each other than single ones are told apart.
 void addClosePlanes(const JudgedCloud& judged, Found& found) {
   const NormalizedCloud& cloud = judged.cloud;
-  std::vector<ReflectionPlane> symmetries, through;
-  for (const SymmetryPlane& plane : found.planes)
-    if (plane.kind == PlaneKind::Symmetry) symmetries.push_back(cloud.toNormalized(plane));
-  for (std::vector<ReflectionPlane>& containing : bundlesOf(symmetries, kDetection.families.max_pairs))
+  std::vector<ReflectionPlane> through;
+  for (std::vector<ReflectionPlane>& containing :
+       bundlesOf(planesOf(found.planes, {PlaneKind::Symmetry}, cloud), kDetection.families.max_pairs))
     if (containing.size() > through.size()) through = std::move(containing);
   if (through.size() < kDetection.families.min_planes) return;
   const Line3d line = commonLine(through);
@@ -263,7 +260,7 @@ void addClosePlanes(const JudgedCloud& judged, Found& found) {
       sum += std::polar(1.0, 2.0 * lattice->fold * angle);
   if (std::abs(sum) > 0.0) lattice->phase = std::arg(sum) / (2.0 * lattice->fold);
   std::vector<SymmetryPlane> completed;
-  for (MeasuredPlane& one : judged.decision.judge(planesOf(*lattice))) {
+  for (MeasuredPlane& one : judged.decision.judge(candidatesOf(*lattice))) {
     if (one.plane.kind != PlaneKind::Symmetry) return;
     completed.push_back(std::move(one.plane));
   }
@@ -282,7 +279,7 @@ void completePolygon(const JudgedCloud& judged, Found& found) {
   sortFalling(found.planes, &SymmetryPlane::confidence);
   const std::optional<PlaneLattice> lattice = bestLattice(found.planes, cloud, judged.all_points);
   if (!lattice) return;
-  std::vector<MeasuredPlane> of_lattice = judged.decision.judge(planesOf(*lattice));
+  std::vector<MeasuredPlane> of_lattice = judged.decision.judge(candidatesOf(*lattice));
   const double together = withOdds(leastTogether(of_lattice), kDetection.folds.odds_of_polygon);
   if (together < judged.options.min_confidence) return;
   // All planes tell where the polygon lies: those that noise moved away are dropped.
