@@ -41,11 +41,11 @@ std::vector<double> padded(std::vector<double> terms) {
 
 auto rowOf(const MeasuredPlane& judged) {
   const PlaneEvidence& e = judged.evidence;
-  PlaneEvidence further = e;
-  further.further = true;
+  std::vector<double> terms = logOddsTerms(e);
+  terms.push_back(furtherTerm(e.kind, e.unknown));
   return std::make_tuple(judged.plane.coefficients(), static_cast<int>(e.kind), e.flat, judged.plane.confidence,
                          e.share, e.double_share, e.unknown, e.score, e.own_score, e.support, e.conflict, e.baseline,
-                         e.hold, e.spacing, e.roughness, e.tolerance, shareUnit(e), padded(logOddsTerms(further)));
+                         e.hold, e.spacing, e.roughness, e.tolerance, shareUnit(e), padded(terms));
 }
 
 auto rowOf(const JudgedRotation& judged) {

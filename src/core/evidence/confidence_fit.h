@@ -10,7 +10,7 @@ namespace pcl_symmetry {
 
 /// The fitted numbers of the decision, by CloudKind.
 struct ConfidenceFit {
-  std::array<std::vector<double>, 3> log_odds;  ///< coefficients of logOddsTerms()
+  std::array<std::vector<double>, 3> log_odds;  ///< coefficients of logOddsTerms(), then that of furtherTerm()
   std::array<ShareInterval, 3> share_errors;    ///< of the share, units of shareUnit()
 };
 

@@ -64,11 +64,6 @@ double byLostOverlap(const PlaneEvidence& evidence, const EvidenceUnits& units) 
   return std::log(std::max(0.0, 1.0 - evidence.support) / units.lost_overlap + 1.0);
 }
 
-/// \return how much less probable a plane beside the best one is, which grows with what is unknown.
-double byFurther(CloudKind kind, double unknown) {
-  return kind == CloudKind::Scan ? 1.0 : kind == CloudKind::Surface ? std::sqrt(unknown) : 0.0;
-}
-
 double noiseOf(const PlaneEvidence& evidence) {
   return evidence.roughness * evidence.spacing;
 }
@@ -83,15 +78,10 @@ double seenSupport(const PlaneEvidence& evidence) {
 
 std::vector<double> logOddsTerms(const PlaneEvidence& evidence) {
   const EvidenceUnits units;
-  const double further = evidence.further ? byFurther(evidence.kind, evidence.unknown) : 0.0;
   switch (evidence.kind) {
     case CloudKind::Scan:
-      return {1.0,
-              byShare(evidence, units.scan_off),
-              byOff(1.0 - evidence.double_share, units.double_off),
-              byUnexplainedLoss(evidence, units),
-              bySlipping(evidence, units),
-              further};
+      return {1.0, byShare(evidence, units.scan_off), byOff(1.0 - evidence.double_share, units.double_off),
+              byUnexplainedLoss(evidence, units), bySlipping(evidence, units)};
     case CloudKind::Volume:
       return {1.0, byShare(evidence, units.volume_off), byExcess(evidence, units), byLostOverlap(evidence, units),
               std::log((1.0 - evidence.own_score) / units.noise + 1.0)};
@@ -101,8 +91,7 @@ std::vector<double> logOddsTerms(const PlaneEvidence& evidence) {
               byPrecision(evidence, units),
               std::sqrt(evidence.unknown),
               coarseness(evidence),
-              coarseness(evidence) * byUnexplainedLoss(evidence, units),
-              further};
+              coarseness(evidence) * byUnexplainedLoss(evidence, units)};
   }
 }
 
@@ -132,8 +121,12 @@ double planeConfidence(const PlaneEvidence& evidence) {
   return logistic(log_odds);
 }
 
+double furtherTerm(CloudKind kind, double unknown) {
+  return kind == CloudKind::Scan ? 1.0 : kind == CloudKind::Surface ? std::sqrt(unknown) : 0.0;
+}
+
 double furtherOdds(CloudKind kind, double unknown) {
-  return std::exp(byFurther(kind, unknown) * kConfidenceFit.log_odds[static_cast<int>(kind)].back());
+  return std::exp(furtherTerm(kind, unknown) * kConfidenceFit.log_odds[static_cast<int>(kind)].back());
 }
 
 Eigen::Matrix3d motionStiffness(const Points& points, const Points& normals, const std::vector<char>& matched,

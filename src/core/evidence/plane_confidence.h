@@ -55,7 +55,6 @@ struct PlaneEvidence {
   double unknown = 0.0;  ///< share of the surface that is uninformative: its reflection was not seen or was cut off
   bool flat = false;     ///< all points lie in one plane, so that only their outline is informative
   double coarser = 0.0;  ///< share by which the spacing of the points raised the tolerance, >= 0
-  bool further = false;  ///< another plane of the same cloud has better evidence
 };
 
 /// Share of the surface seen that the plane maps onto the surface, relative to what sampling allows.
@@ -88,8 +87,7 @@ struct EvidenceUnits {
 };
 
 /// The summands of the log odds that a plane is a symmetry, before their coefficients. The first is 1; then come those
-/// that fall as the evidence gets better, then the spacing or the noise, on which the others depend. The last one of
-/// scans and of surfaces is that of PlaneEvidence::further.
+/// that fall as the evidence gets better, then the spacing or the noise, on which the others depend.
 std::vector<double> logOddsTerms(const PlaneEvidence& evidence);
 
 /// Limits of a share.
@@ -110,8 +108,12 @@ ShareInterval shareInterval(const PlaneEvidence& evidence);
 /// \return in [0, 1].
 double planeConfidence(const PlaneEvidence& evidence);
 
-/// The factor of PlaneEvidence::further on the odds: less for a scan, and for a cloud that may lack a piece.
+/// The summand of a plane of a cloud that has a better one, which follows those of logOddsTerms(): it grows with what
+/// is unknown.
 /// \param unknown as PlaneEvidence::unknown.
+double furtherTerm(CloudKind kind, double unknown);
+
+/// What furtherTerm() multiplies the odds by: less for a scan, and for a cloud that may lack a piece.
 /// \return a factor, > 0.
 double furtherOdds(CloudKind kind, double unknown);
 
