@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "core/detection/detection_rules.h"
+#include "core/refinement/iterative_symmetric_points.h"
 #include "core/refinement/normalized_cloud.h"
 #include "pcl_symmetry/core/detect_planes.h"
 

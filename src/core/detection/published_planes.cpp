@@ -9,9 +9,8 @@
 #include "core/base/parallel.h"
 #include "core/base/statistics.h"
 #include "core/geometry/point_samples.h"
-#include "core/refinement/normalized_cloud.h"
+#include "core/refinement/iterative_symmetric_points.h"
 #include "core/transform/sampled_transform.h"
-#include "pcl_symmetry/core/iterative_symmetric_points.h"
 
 namespace pcl_symmetry {
 

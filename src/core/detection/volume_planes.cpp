@@ -14,7 +14,6 @@
 #include "core/geometry/directions.h"
 #include "core/geometry/geometry_rules.h"
 #include "core/geometry/plane_chart.h"
-#include "core/refinement/normalized_cloud.h"
 #include "pcl_symmetry/core/planar_transform.h"
 
 namespace pcl_symmetry {

@@ -1,4 +1,4 @@
-#include "pcl_symmetry/core/iterative_symmetric_points.h"
+#include "core/refinement/iterative_symmetric_points.h"
 
 #include <algorithm>
 #include <array>
@@ -9,8 +9,7 @@
 #include "core/base/symmetric_solvers.h"
 #include "core/geometry/plane_chart.h"
 #include "core/geometry/point_samples.h"
-#include "core/refinement/normalized_cloud.h"
-#include "pcl_symmetry/core/visibility.h"
+#include "core/refinement/refinement_rules.h"
 
 namespace pcl_symmetry {
 

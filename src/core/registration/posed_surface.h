@@ -6,8 +6,9 @@
 #include <optional>
 #include <vector>
 
+#include "core/evidence/surface_samples.h"
 #include "core/geometry/closest_points.h"
-#include "core/refinement/normalized_cloud.h"
+#include "core/refinement/landing.h"
 #include "pcl_symmetry/core/closest_point_search.h"
 #include "pcl_symmetry/core/point_set.h"
 #include "pcl_symmetry/core/visibility.h"

@@ -9,7 +9,7 @@
 #include "core/base/symmetric_solvers.h"
 #include "core/evidence/surface_samples.h"
 #include "core/geometry/point_samples.h"
-#include "core/refinement/normalized_cloud.h"
+#include "core/refinement/refinement_rules.h"
 
 namespace pcl_symmetry {
 

@@ -1,4 +1,4 @@
-#include "pcl_symmetry/core/iterative_symmetric_points.h"
+#include "core/refinement/iterative_symmetric_points.h"
 
 #include <gtest/gtest.h>
 

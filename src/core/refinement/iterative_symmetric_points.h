@@ -3,12 +3,11 @@
 #include <functional>
 #include <vector>
 
-#include "pcl_symmetry/core/closest_point_search.h"
-#include "pcl_symmetry/core/exports.h"
+#include "core/refinement/landing.h"
 #include "pcl_symmetry/core/point_set.h"
 #include "pcl_symmetry/core/reflection_plane.h"
 
-namespace PCL_SYMMETRY_EXPORTS pcl_symmetry {
+namespace pcl_symmetry {
 
 /// How Iterative Symmetric Points moves the plane.
 enum class IspUpdate {
@@ -31,24 +30,6 @@ struct IspOptions {
 
   /// \throws std::invalid_argument naming field, value and rule.
   void validate() const;
-};
-
-class FarTest;
-class Visibility;
-
-/// The surface that reflected samples are matched to.
-struct IspSurface {
-  const Points& points;              ///< 3 x N
-  const Points& normals;             ///< 3 x N unit normals of any sign; may be empty with PointToPoint
-  const ClosestPointSearch& search;  ///< finds the closest of points
-  /// N values; matches to points with 1 get no weight, because the true match at the rim of a scan may not have been
-  /// seen. Null: no such points.
-  const std::vector<char>* at_border = nullptr;
-  const FarTest* far = nullptr;  ///< spares the search for points that would get no weight; null = search for all
-  int num_threads = 1;           ///< for the searches of one iteration; 0 = one per core
-  /// What a scanner saw, in the frame of the points: a reflection behind the surface that was seen has its partner
-  /// there, and not at the closest point. Null: the points show the object from all sides.
-  const Visibility* visibility = nullptr;
 };
 
 /// What one iteration saw and did: everything that a picture of it needs (Figure 7).

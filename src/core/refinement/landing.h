@@ -1,0 +1,79 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <cmath>
+#include <vector>
+
+#include "pcl_symmetry/core/closest_point_search.h"
+#include "pcl_symmetry/core/gaussian_edt.h"
+#include "pcl_symmetry/core/point_set.h"
+#include "pcl_symmetry/core/visibility.h"
+
+namespace pcl_symmetry {
+
+/// Tells from a distance transform, without a search, that a point is far from the surface.
+class FarTest {
+public:
+  /// Tests points (x - center) / scale for x in the input frame.
+  /// \param edt distance transform of the surface; must outlive this object.
+  /// \param center,scale of the frame of the tested points, input units; scale > 0.
+  FarTest(const GaussianEdt& edt, const Eigen::Vector3d& center, double scale)
+      : edt_(edt), center_(center), scale_(scale) {}
+
+  /// \param distance in the frame of the tested points.
+  /// \return the least f of any cell that contains a point within \p distance of the surface.
+  float bound(double distance) const {
+    const double half_diagonal = 0.5 * std::sqrt(3.0) * edt_.cellSize();
+    const double reach = (distance * scale_ + half_diagonal) / edt_.sigma();
+    return static_cast<float>(std::exp(-reach * reach));
+  }
+
+  /// Whether the distance transform reaches as far as that, so that no point within is taken for far.
+  /// \param bound what bound() returned for a distance.
+  static bool isExact(float bound) { return bound > 1.2e-3f; }  // below it, f is 0
+
+  /// \param points 3 x M, side by side.
+  /// \param bound what bound() returned for a distance.
+  /// \return indices of the points that lie inside the grid and may be as near to the surface as that, rising.
+  std::vector<Eigen::Index> nearOf(const PointsRef& points, float bound) const;
+
+private:
+  static constexpr float kFarthest = 1e-3f;  // below f at the cut of the transform, exp(-2.6^2) = 1.2e-3
+  const GaussianEdt& edt_;
+  Eigen::Vector3d center_;
+  double scale_;
+};
+
+/// The surface that reflected samples are matched to.
+struct IspSurface {
+  const Points& points;              ///< 3 x N
+  const Points& normals;             ///< 3 x N unit normals of any sign; may be empty with PointToPoint
+  const ClosestPointSearch& search;  ///< finds the closest of points
+  /// N values; matches to points with 1 get no weight, because the true match at the rim of a scan may not have been
+  /// seen. Null: no such points.
+  const std::vector<char>* at_border = nullptr;
+  const FarTest* far = nullptr;  ///< spares the search for points that would get no weight; null = search for all
+  int num_threads = 1;           ///< for the searches of one iteration; 0 = one per core
+  /// What a scanner saw, in the frame of the points: a reflection behind the surface that was seen has its partner
+  /// there, and not at the closest point. Null: the points show the object from all sides.
+  const Visibility* visibility = nullptr;
+};
+
+/// Where a motion maps points of a surface.
+struct Landing {
+  Points images, normals;           ///< the points and their normals after the motion; normals only where they are used
+  std::vector<int> closest;         ///< points of the surface that the images are closest to; -1: none is near
+  std::vector<float> sq_distances;  ///< from these points; infinite where none is near
+  std::vector<float> distances;     ///< from the discs of the surface, see surfaceDistances(); only where they are used
+};
+
+/// Where points land on a surface. Iterative Symmetric Points (Section 4.4) and rotations of scans ask for their
+/// closest points here.
+/// \param images the points after the motion, in the frame of the surface.
+/// \param reach beyond which points are not near.
+/// \param guesses indices of points that are likely to be near, which makes the search faster; null = not known.
+/// \param leaves_out points beyond what the distance transform reaches may be taken for far, as their weight is little.
+Landing land(const IspSurface& surface, Points images, double reach, const std::vector<int>* guesses = nullptr,
+             bool leaves_out = false);
+
+}  // namespace pcl_symmetry
