@@ -219,7 +219,7 @@ SurfaceEvidence::SurfaceEvidence(Points points, double tolerance)
     : points_(std::move(points)),
       tolerance_(tolerance),
       search_(makeFlannSearch(points_)),
-      samples_(surfaceSamples(points_, localGeometry(points_, *search_, kNumSupportNeighbors, 1))) {}
+      samples_(surfaceSamples(points_, localGeometry(points_, *search_, 1))) {}
 
 std::vector<float> SurfaceEvidence::distances(const Eigen::Isometry3d& motion) const {
   const Points moved = (motion.cast<float>() * points_.colwise().homogeneous()).eval();

@@ -91,7 +91,7 @@ Points pointNormals(const pcl::PointCloud<pcl::PointXYZ>& points, const Normaliz
   Points finite = finitePoints(points, &index);
   if (index.size() < kMinShadedPoints || index.size() > kMaxShadedPoints) return result;
   for (auto x : finite.colwise()) x = normalize(x.cast<double>()).cast<float>();
-  const Points normals = localGeometry(finite, *makeFlannSearch(finite), kShadingNeighbors, 0).normals;
+  const Points normals = localGeometry(finite, *makeFlannSearch(finite), 0, nullptr, kShadingNeighbors).normals;
   for (std::size_t i = 0; i < index.size(); ++i) result.col(index[i]) = normals.col(i);
   return result;
 }

@@ -230,8 +230,7 @@ void decideByUprightBox(const PointsRef& points, const Visibility& seen, const D
                         Detection& found) {
   const std::vector<Eigen::Vector3d> up = carryingNormals(points, seen);
   if (up.empty()) return;
-  const double spacing =
-      median(localGeometry(points, *makeFlannSearch(points), kNumSupportNeighbors, options.num_threads).spacing);
+  const double spacing = median(localGeometry(points, *makeFlannSearch(points), options.num_threads).spacing);
   const bool is_sparse = spacing > kDetection.decide.no_surface * found.tolerance;
   const bool is_decided =
       found.hasFamily() || (!found.planes.empty() && found.planes.front().kind == PlaneKind::Symmetry);

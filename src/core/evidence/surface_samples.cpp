@@ -265,8 +265,7 @@ std::vector<std::vector<float>> planeSupport(const PointsRef& points, const Poin
   check(ball.radius > 0.0, "extent of the samples", ball.radius, "> 0");
   const Points surface = normalizePoints(samples, ball.center, ball.radius);
   const auto search = makeFlannSearch(surface);
-  const SurfaceSamples described =
-      surfaceSamples(surface, localGeometry(surface, *search, kNumSupportNeighbors, num_threads));
+  const SurfaceSamples described = surfaceSamples(surface, localGeometry(surface, *search, num_threads));
   std::optional<Visibility> visibility;
   if (seen) visibility = seen->normalized(ball.center, ball.radius);
   std::vector<std::vector<float>> support(planes.size(), std::vector<float>(points.cols()));
@@ -322,7 +321,7 @@ double lost(const GaussianEdt& a, const GaussianEdt& b) {
 SplitSurface::SplitSurface(const Points& points, std::uint64_t seed, int num_threads) : seed_(seed) {
   std::tie(first_, second_) = halvesOf(points, seed);
   search_ = makeFlannSearch(second_);
-  samples_ = surfaceSamples(second_, localGeometry(second_, *search_, kNumSupportNeighbors, num_threads));
+  samples_ = surfaceSamples(second_, localGeometry(second_, *search_, num_threads));
 }
 
 std::vector<float> SplitSurface::reflectedDistances(const ReflectionPlane& plane) const {

@@ -62,8 +62,8 @@ TangentPlane tangentPlane(const Points& points, const Eigen::Vector3f& position,
 
 }  // namespace
 
-LocalGeometry localGeometry(const Points& points, const ClosestPointSearch& search, int num_neighbors, int num_threads,
-                            FoundNeighbors* neighbors) {
+LocalGeometry localGeometry(const Points& points, const ClosestPointSearch& search, int num_threads,
+                            FoundNeighbors* neighbors, int num_neighbors) {
   const auto size = static_cast<std::size_t>(points.cols());
   const int count = numToSearch(points.cols(), num_neighbors);
   const std::vector<float> zeros(size, 0.0f);

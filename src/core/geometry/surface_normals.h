@@ -40,11 +40,11 @@ struct FoundNeighbors {
 /// neighbors within r_k.
 /// \param points 3 x N, finite.
 /// \param search over the same points.
-/// \param num_neighbors >= 3; clouds with fewer points use all of them.
 /// \param[out] neighbors those that were found, with the point itself: for each point num_neighbors + 1 indices,
 /// nearest first, or as many as there are points, and the squared distance of the last one; null = not wanted.
-LocalGeometry localGeometry(const Points& points, const ClosestPointSearch& search, int num_neighbors, int num_threads,
-                            FoundNeighbors* neighbors = nullptr);
+/// \param num_neighbors >= 3; clouds with fewer points use all of them.
+LocalGeometry localGeometry(const Points& points, const ClosestPointSearch& search, int num_threads,
+                            FoundNeighbors* neighbors = nullptr, int num_neighbors = kNumSupportNeighbors);
 
 /// A part of LocalGeometry at a few of the points.
 struct GeometryAtPositions {

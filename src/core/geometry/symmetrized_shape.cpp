@@ -241,7 +241,7 @@ SymmetrizedShape symmetrizedCloud(const PointsRef& points, const ReflectionPlane
   result.points = points;
   result.asymmetry.assign(points.cols(), kNone);
   const auto search = makeFlannSearch(points);
-  const LocalGeometry geometry = localGeometry(result.points, *search, kNumSupportNeighbors, num_threads);
+  const LocalGeometry geometry = localGeometry(result.points, *search, num_threads);
   const Eigen::Vector3d center = centerOfMass(points);
   const Points images = reflectedPoints(points, plane);
   const std::vector<int> closest = closestPoints(*search, images, num_threads).index;

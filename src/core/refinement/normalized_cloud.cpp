@@ -48,8 +48,7 @@ NormalizedCloud::NormalizedCloud(const PointsRef& input, const GaussianEdt& edt_
       points(normalizePoints(input, center, scale)),
       flann(input_search ? nullptr : std::make_shared<FlannSearch>(points)),
       search(input_search ? std::move(input_search) : flann),
-      geometry(
-          withNormals(localGeometry(points, *search, kNumSupportNeighbors, num_threads, &neighbors), given_normals)),
+      geometry(withNormals(localGeometry(points, *search, num_threads, &neighbors), given_normals)),
       lists(NeighborLists::isUseful(points.cols())
                 ? std::make_shared<NeighborLists>(points, neighbors.indices, neighbors.sq_reach)
                 : nullptr),

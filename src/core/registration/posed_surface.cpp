@@ -36,12 +36,12 @@ PosedSurface::PosedSurface(const PointsRef& input, std::optional<Visibility> see
       grid(lateGrid(points, kRegistration.cells)),
       search(makeFlannSearch(input)) {
   FoundNeighbors neighbors;
-  LocalGeometry geometry = localGeometry(points, *search, kNumSupportNeighbors, num_threads, &neighbors);
+  LocalGeometry geometry = localGeometry(points, *search, num_threads, &neighbors);
   lookAtWatch();
   const double typical = median(geometry.spacing);
   spacing = geometry.spacing;
   if (median(geometry.roughness) > kRegistration.max_roughness * typical)
-    geometry = localGeometry(points, *search, kRegistration.num_rough_neighbors, num_threads);
+    geometry = localGeometry(points, *search, num_threads, nullptr, kRegistration.num_rough_neighbors);
   lookAtWatch();
   normals = std::move(geometry.normals);
   noise = median(std::move(geometry.roughness));

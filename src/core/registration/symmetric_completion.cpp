@@ -39,7 +39,7 @@ std::vector<int> completingPoints(const PointsRef& points, const ReflectionPlane
   std::vector<int> completing;
   if (points.cols() == 0) return completing;
   const auto search = makeFlannSearch(points);
-  const LocalGeometry geometry = localGeometry(points, *search, kNumSupportNeighbors, options.num_threads);
+  const LocalGeometry geometry = localGeometry(points, *search, options.num_threads);
   const Points reflected = reflectedPoints(points, plane);
   const ClosestPoints closest = closestPoints(*search, reflected, options.num_threads);
   for (int i = 0; i < static_cast<int>(points.cols()); ++i) {

@@ -50,7 +50,7 @@ RotationFit::RotationFit(Points points, const GaussianEdt& edt, RotationLimits l
   surface->points = std::move(points);
   const Points& p = surface->points;
   surface->search = makeFlannSearch(p);
-  surface->geometry = localGeometry(p, *surface->search, kNumSupportNeighbors, num_threads);
+  surface->geometry = localGeometry(p, *surface->search, num_threads);
   surface->single = single;
   const LocalGeometry& geometry = surface->geometry;
   surface->spacing = median(geometry.spacing);

@@ -27,7 +27,7 @@ constexpr SingleViewLimits kSureLimits{kScan.max_hidden, 0.4};
 bool isWire(const PointsRef& points) {
   const Points drawn = pointsAt(points, drawSamples(points.cols(), kScan.border_samples, 1));
   const ClosestPointSearch::Ptr search = makeFlannSearch(drawn);
-  const LocalGeometry geometry = localGeometry(drawn, *search, kNumSupportNeighbors, 1);
+  const LocalGeometry geometry = localGeometry(drawn, *search, 1);
   return shareNearBorders(openBorders(drawn, *search, geometry.normals, 1), geometry) > kScan.wire;
 }
 

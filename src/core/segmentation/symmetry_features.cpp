@@ -49,7 +49,7 @@ std::vector<ReflectionPlane> refined(const std::vector<ReflectionPlane>& starts,
                                      const GaussianEdt& edt, const SegmentationOptions& options) {
   const ClosestPointSearch::Ptr search = options.make_search ? options.make_search(samples) : makeFlannSearch(samples);
   const int num_threads = options.num_threads;
-  const LocalGeometry geometry = localGeometry(samples, *search, kNumSupportNeighbors, num_threads);
+  const LocalGeometry geometry = localGeometry(samples, *search, num_threads);
   IspSurface surface{samples, geometry.normals, *search};
   std::vector<int> reflected;
   const Eigen::Index stride = std::max<Eigen::Index>(1, samples.cols() / kSegmentation.refined_samples);

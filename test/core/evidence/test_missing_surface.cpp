@@ -24,7 +24,7 @@ struct Surface {
   explicit Surface(const Points& input)
       : points(input),
         search(makeFlannSearch(points)),
-        geometry(localGeometry(points, *search, kNumSupportNeighbors, 1)),
+        geometry(localGeometry(points, *search, 1)),
         borders(openBorders(points, *search, geometry.normals, 1)) {}
 
   /// Of the points from the surface.
@@ -263,7 +263,7 @@ Points noisy(const Shape& shape, double noise, std::uint64_t seed) {
 
 /// One and a half median spacings, as detection chooses it.
 double bandwidthOf(const Points& points) {
-  std::vector<float> spacing = localGeometry(points, *makeFlannSearch(points), kNumSupportNeighbors, 0).spacing;
+  std::vector<float> spacing = localGeometry(points, *makeFlannSearch(points), 0).spacing;
   std::nth_element(spacing.begin(), spacing.begin() + static_cast<std::ptrdiff_t>(spacing.size() / 2), spacing.end());
   return 1.5 * spacing[spacing.size() / 2];
 }

@@ -26,7 +26,7 @@ TEST(LocalGeometry, SpacingMeasuresDensity) {
   // neighborhoods, so there are n / 8 independent ones) has a standard error of about 1 / sqrt(n).
   for (const int num_points : {2000, 8000}) {
     const Points points = sphere(num_points, 6).cloud();
-    const LocalGeometry geometry = localGeometry(points, *makeFlannSearch(points), 8, 0);
+    const LocalGeometry geometry = localGeometry(points, *makeFlannSearch(points), 0);
     const double density = num_points / (4.0 * kPi);
     double mean = 0.0;
     for (const float spacing : geometry.spacing) mean += spacing * spacing * density / num_points;
@@ -37,7 +37,7 @@ TEST(LocalGeometry, SpacingMeasuresDensity) {
 TEST(LocalGeometry, OfFewOrCoincidentPointsIsDefined) {
   for (const Points& points : {Points(Points::Constant(3, 1, 1.0f)), Points(Points::Constant(3, 20, 1.0f)),
                                Points((Points(3, 2) << 0, 1, 0, 0, 0, 0).finished())}) {
-    const LocalGeometry geometry = localGeometry(points, *makeFlannSearch(points), 8, 1);
+    const LocalGeometry geometry = localGeometry(points, *makeFlannSearch(points), 1);
     ASSERT_EQ(geometry.normals.cols(), points.cols());
     for (Eigen::Index i = 0; i < points.cols(); ++i) {
       EXPECT_NEAR(geometry.normals.col(i).norm(), 1.0f, 1e-5f);
@@ -49,7 +49,7 @@ TEST(LocalGeometry, OfFewOrCoincidentPointsIsDefined) {
 TEST(LocalGeometry, FitsTheAxisOfLeastSpread) {
   const Points points = asymmetricBlob(1000, 8).cloud();
   const auto search = makeFlannSearch(points);
-  const LocalGeometry geometry = localGeometry(points, *search, 8, 1);
+  const LocalGeometry geometry = localGeometry(points, *search, 1);
   std::vector<int> nearest;
   std::vector<float> sq_distances;
   search->search(points, 9, nearest, sq_distances);

@@ -79,7 +79,7 @@ struct Surface {
   explicit Surface(const Points& cloud)
       : points(cloud),
         search(makeFlannSearch(points)),
-        geometry(localGeometry(points, *search, 8, 1)),
+        geometry(localGeometry(points, *search, 1)),
         all(points.cols()) {
     std::iota(all.begin(), all.end(), 0);
   }
