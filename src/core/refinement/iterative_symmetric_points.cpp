@@ -150,7 +150,6 @@ void IspOptions::validate() const {
   check(std::isfinite(sigma) && sigma > 0.0, "sigma", sigma, "finite and > 0");
   check(final_sigma > 0.0 && final_sigma <= sigma, "final_sigma", final_sigma, "in (0, sigma]");
   check(max_iterations >= 1, "max_iterations", max_iterations, ">= 1");
-  check(tolerance >= 0.0, "tolerance", tolerance, ">= 0");
   check(error_share >= 0.0, "error_share", error_share, ">= 0");
 }
 
@@ -205,7 +204,8 @@ IspResult refineSymmetricPoints(const IspSurface& surface, const std::vector<int
     const double moved =
         std::abs(std::abs(next.signedDistance(whole.middle)) - std::abs(result.plane.signedDistance(whole.middle)));
     const double angle = next.angleTo(result.plane);
-    const double tolerance = options.tolerance * whole.extent + options.error_share * result.last.residual / root_size;
+    const double tolerance =
+        kRefinement.stands_still * whole.extent + options.error_share * result.last.residual / root_size;
     result.converged = sigma == options.final_sigma && moved <= tolerance && angle * whole.extent <= tolerance;
     result.plane = next;
     if (stays && !stays(next)) break;

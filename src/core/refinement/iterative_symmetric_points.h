@@ -21,11 +21,9 @@ struct IspOptions {
   double sigma = 0.0;        ///< width of the Gaussian weights exp(-dist^2 / sigma^2) at the start, input units, > 0
   double final_sigma = 0.0;  ///< width at the end, input units, in (0, sigma]; halved whenever the plane rests
   int max_iterations = 30;   ///< >= 1
-  /// The plane has converged when it moves by less than this, in radians and in input units divided by the extent of
-  /// the samples (the root mean square distance from their mean), >= 0 ...
-  double tolerance = 1e-7;
-  /// ... or by less than this share of its own standard error, residual / sqrt(number of samples), >= 0. Beyond that,
-  /// matches that change sides keep the plane of a sampled surface in motion without improving it.
+  /// The plane has converged when it moves by less than this share of its own standard error, residual / sqrt(number of
+  /// samples), >= 0, or stands still. Beyond that, matches that change sides keep the plane of a sampled surface in
+  /// motion without improving it.
   double error_share = 0.5;
 
   /// \throws std::invalid_argument naming field, value and rule.

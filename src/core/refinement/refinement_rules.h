@@ -13,6 +13,7 @@ struct RefinementRules {
   double min_stiffness = 1e-3;  ///< share of the stiffest direction below which a direction is free
   double longest_step = 0.2;    ///< radians, extents of the samples or radii; longer steps leave the basin
   double reach_sigmas = 3.0;    ///< sigmas beyond which pairs have no weight
+  double stands_still = 1e-7;   ///< radians, extents of the samples; a shorter step moves nothing
   double rest_sigmas = 0.1;     ///< sigmas; a shorter step lets the weights narrow
   double hidden_depth = 0.1;    ///< sigmas behind the surface seen over which a pair loses its weight
 };
