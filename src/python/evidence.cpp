@@ -12,7 +12,7 @@
 #include <utility>
 #include <vector>
 
-#include "core/detection/plane_decision.h"
+#include "core/detection/judged_cloud.h"
 #include "core/segmentation/merge_fit.h"
 #include "core/segmentation/region_merging.h"
 #include "python/computing.h"

@@ -1,7 +1,7 @@
 /// A cloud with what fits, measures and judges its planes.
 #pragma once
 
-#include "core/detection/plane_decision.h"
+#include "core/detection/judged_cloud.h"
 
 namespace pcl_symmetry::test {
 

@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "core/detection/plane_decision.h"
+#include "core/detection/judged_cloud.h"
 
 namespace pcl_symmetry {
 

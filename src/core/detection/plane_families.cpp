@@ -8,7 +8,7 @@
 #include "core/base/constants.h"
 #include "core/base/statistics.h"
 #include "core/base/symmetric_solvers.h"
-#include "core/detection/plane_decision.h"
+#include "core/detection/judged_cloud.h"
 #include "core/geometry/cloud_extent.h"
 #include "core/geometry/directions.h"
 #include "core/geometry/point_samples.h"

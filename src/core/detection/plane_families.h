@@ -11,31 +11,6 @@ namespace pcl_symmetry {
 struct JudgedCloud;
 struct Found;
 
-/// Whether a plane contains a line, within 3 degrees and \p tolerance.
-bool contains(const ReflectionPlane& plane, const Line3d& line,
-              double tolerance = kDetection.families.contained_offset);
-
-/// The planes of a regular polygon: \p fold planes through a line, at equal angles.
-struct PlaneLattice {
-  Line3d line;
-  int fold = 0;        ///< number of planes, >= 3
-  double phase = 0.0;  ///< angle of the normal of plane 0 from line.direction().unitOrthogonal(), radians
-
-  /// \param k of any sign, may be a fraction: k + 0.5 lies halfway between two planes.
-  ReflectionPlane plane(double k) const;
-};
-
-/// The regular polygon about a line that a noisy cloud has: the density of points in rings about the line, by their
-/// angle, has one strong frequency. It is the sum over all points, and finds folds that no single plane shows.
-/// \param all the points of the cloud and those that were left out to make it evenly dense, normalized frame.
-/// \param line normalized frame.
-/// \return none where no frequency stands out: no rotation maps the cloud onto itself, or all do.
-std::optional<PlaneLattice> latticeBySpectrum(const Points& all, const Line3d& line);
-
-/// Completes polygons. The planes of noisy clouds are judged together, as they are symmetries together or not at all.
-/// Those of surfaces are judged well enough alone, but many teeth leave them too close to be found one by one.
-void completePolygon(const JudgedCloud& judged, Found& found);
-
 /// Continuous families of planes: all planes through a line (a body of revolution) or through a point (a sphere).
 ///
 /// A family is tested, not guessed from many planes: planes at angles that no regular polygon has must be as good as

@@ -6,6 +6,7 @@
 
 #include "core/base/parallel.h"
 #include "core/base/statistics.h"
+#include "core/evidence/point_density.h"
 #include "core/evidence/surface_samples.h"
 #include "core/geometry/cloud_extent.h"
 #include "core/geometry/plane_chart.h"

@@ -1,4 +1,4 @@
-#include "core/detection/plane_families.h"
+#include "core/detection/plane_lattice.h"
 
 #include <algorithm>
 #include <array>
@@ -9,7 +9,8 @@
 
 #include "core/base/constants.h"
 #include "core/base/statistics.h"
-#include "core/detection/plane_decision.h"
+#include "core/detection/judged_cloud.h"
+#include "core/detection/plane_families.h"
 #include "core/geometry/geometry_rules.h"
 #include "core/geometry/point_samples.h"
 #include "pcl_symmetry/core/closest_point_search.h"

@@ -1,4 +1,4 @@
-#include "core/detection/plane_decision.h"
+#include "core/detection/plane_measure.h"
 
 #include <algorithm>
 #include <cmath>

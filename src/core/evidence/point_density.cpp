@@ -1,4 +1,4 @@
-#include "core/evidence/surface_samples.h"
+#include "core/evidence/point_density.h"
 
 #include <algorithm>
 #include <array>
@@ -7,6 +7,7 @@
 #include "core/base/constants.h"
 #include "core/base/parallel.h"
 #include "core/base/symmetric_solvers.h"
+#include "core/evidence/surface_samples.h"
 #include "core/geometry/plane_chart.h"
 
 namespace pcl_symmetry {

@@ -12,7 +12,7 @@
 #include "core/frame/frame_search.h"
 #include "core/frame/probable_frames.h"
 #include "core/geometry/point_samples.h"
-#include "core/rotation/rotation_evidence.h"
+#include "core/rotation/scan_axes.h"
 #include "pcl_symmetry/core/planar_transform.h"
 #include "pcl_symmetry/core/published_planes.h"
 

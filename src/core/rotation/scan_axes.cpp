@@ -1,4 +1,4 @@
-#include "core/rotation/rotation_evidence.h"
+#include "core/rotation/scan_axes.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,5 +1,5 @@
 /// What is measured of a plane before anything is decided.
-#include "core/detection/plane_decision.h"
+#include "core/detection/plane_measure.h"
 
 #include <gtest/gtest.h>
 

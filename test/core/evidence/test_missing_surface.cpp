@@ -8,6 +8,7 @@
 #include <numeric>
 
 #include "core/base/constants.h"
+#include "core/evidence/point_density.h"
 #include "core/evidence/surface_samples.h"
 #include "core/geometry/point_samples.h"
 #include "core/geometry/surface_normals.h"

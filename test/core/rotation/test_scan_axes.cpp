@@ -1,5 +1,5 @@
 /// Axes of rotations of what a scanner saw from one side.
-#include "core/rotation/rotation_evidence.h"
+#include "core/rotation/scan_axes.h"
 
 #include <gtest/gtest.h>
 

@@ -1,0 +1,64 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "core/rotation/rotation_evidence.h"
+#include "pcl_symmetry/core/closest_point_search.h"
+#include "pcl_symmetry/core/plane_types.h"
+
+namespace pcl_symmetry {
+
+/// What scanAxes() tries, and what it returns; the defaults are those of DetectionOptions.
+struct ScanAxesOptions {
+  bool folds = true;            ///< rotations by a part of a full one are tried, too
+  double min_confidence = 0.5;  ///< of a round body that adds its axis to those that planes show
+  double min_possible = 0.2;    ///< of what is returned
+  std::uint64_t seed = 1;
+  int num_threads = 0;  ///< 0 = one per core
+};
+
+/// Axes of a scan: lines about which rotations by any angle, or by 2 pi / n, map what was seen onto itself, to unseen
+/// space, and nowhere that the scanner saw to be empty. Beyond the paper, which leaves rotations to future work
+/// (Section 6).
+///
+/// Lines come from the normals (a body of revolution), from pairs of planes, and from maxima of a coarse axial
+/// transform. Each is moved to where the rotations fit best, then judged. A fold has to beat the rotations halfway
+/// between its own; round is what no rotation contradicts.
+/// \param evidence of a scan.
+/// \param planes found so far, input frame.
+/// \param evidence_of_all takes what was seen of each rotation, also of those that are not returned; may be null.
+/// \return input frame, most confident first; no two along one line.
+std::vector<SymmetryRotation> scanAxes(const RotationEvidence& evidence, const std::vector<SymmetryPlane>& planes,
+                                       const std::vector<SymmetryAxis>& axes, const ScanAxesOptions& options,
+                                       std::vector<JudgedRotation>* evidence_of_all = nullptr);
+
+/// The center of a ball seen from one side: rotations by any angle about any line through it map what was seen onto
+/// itself or to unseen space.
+std::optional<SymmetryCenter> centerOfScan(const RotationEvidence& evidence, const ScanAxesOptions& options);
+
+/// What rotations show of a scan: the center of a ball, or axes.
+struct ScanRotations {
+  std::optional<SymmetryCenter> center;
+  std::vector<SymmetryRotation> rotations;
+};
+
+/// The same for points whose planes are not known.
+/// \param points 3 x N, finite, input units.
+/// \param edt of these points.
+/// \param axes lines that are tried first, input frame.
+/// \param make_search as in detectPlanes().
+/// \return nothing where the points hold no answer.
+ScanRotations rotationsOfScan(const PointsRef& points, const GaussianEdt& edt, const Visibility& visibility,
+                              const std::vector<SymmetryAxis>& axes, const ScanAxesOptions& options,
+                              const MakeSearch& make_search = nullptr);
+
+/// The axes of revolution of a scan, checked by rotations: those that throw a visible handle into empty space
+/// are dropped, the others moved to where rotations fit best, and round bodies added that showed too few planes.
+/// \param axes input frame, as from findFamilies().
+/// \param rotations as from scanAxes().
+std::vector<SymmetryAxis> withRoundAxes(const RotationEvidence& evidence, std::vector<SymmetryAxis> axes,
+                                        const std::vector<SymmetryRotation>& rotations, const ScanAxesOptions& options);
+
+}  // namespace pcl_symmetry
