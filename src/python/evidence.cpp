@@ -12,7 +12,6 @@
 #include <utility>
 #include <vector>
 
-#include "core/detection/judged_cloud.h"
 #include "core/segmentation/merge_fit.h"
 #include "core/segmentation/region_merging.h"
 #include "python/computing.h"
@@ -109,21 +108,21 @@ private:
 
 }  // namespace
 
-py::array planeEvidence(const Detection& found) {
+py::array planeEvidence(const DetectionEvidence& evidence) {
   Columns columns{{"coefficients", "4f8"}, {"kind", "i4"}, {"flat", "?"}};
   for (const char* name : {"confidence", "share", "double_share", "unknown", "score", "own_score", "support",
                            "conflict", "baseline", "hold", "spacing", "roughness", "tolerance", "share_unit"})
     columns.emplace_back(name, "f8");
   columns.emplace_back("terms", "7f8");
-  return arrayOfRows(rowsOf(found.evidence ? found.evidence->planes : std::vector<MeasuredPlane>{}), columns);
+  return arrayOfRows(rowsOf(evidence.planes), columns);
 }
 
-py::array rotationEvidence(const Detection& found) {
+py::array rotationEvidence(const DetectionEvidence& evidence) {
   Columns columns{{"point", "3f8"}, {"direction", "3f8"}, {"fold", "i4"}, {"kind", "i4"}};
   for (const char* name : {"confidence", "support", "off", "far", "halfway", "grown", "hold", "planes_off", "beside"})
     columns.emplace_back(name, "f8");
   columns.emplace_back("terms", "7f8");
-  return arrayOfRows(rowsOf(found.evidence ? found.evidence->rotations : std::vector<JudgedRotation>{}), columns);
+  return arrayOfRows(rowsOf(evidence.rotations), columns);
 }
 
 py::array frameEvidence(const SymmetryFrame& frame) {

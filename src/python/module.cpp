@@ -140,7 +140,6 @@ PlaneSearch planes(const AnyArray& points, const py::object& viewpoint, std::opt
   options.min_possible = std::min(options.min_possible, min_confidence);
   options.approximate = approximate;
   options.max_planes = max_planes;
-  options.evidence = evidence;
   const InputPoints input("points", points, max_points, seed);
   std::optional<Points> given;
   if (!normals.is_none()) given = input.atPoints("normals", arrayOf("normals", normals));
@@ -153,7 +152,7 @@ PlaneSearch planes(const AnyArray& points, const py::object& viewpoint, std::opt
   if (seen) search.viewpoint = seen->viewpoint();
   search.rows = input.rows();
   const Computing computing;
-  search.found = detectPlanes(cloud, options);
+  search.found = detectWithEvidence(cloud, options, evidence ? &search.evidence : nullptr);
   if (mesh && !seen) refineOnMesh(*mesh, search.found, options);
   return search;
 }

@@ -99,8 +99,8 @@ void addPlaneSearch(py::module_& module) {
                                return maxima;
                              })
       .def_property_readonly("rows", [](const PlaneSearch& s) { return toArray(s.rows); })
-      .def_property_readonly("evidence", [](const PlaneSearch& s) { return planeEvidence(s.found); })
-      .def_property_readonly("rotation_evidence", [](const PlaneSearch& s) { return rotationEvidence(s.found); });
+      .def_property_readonly("evidence", [](const PlaneSearch& s) { return planeEvidence(s.evidence); })
+      .def_property_readonly("rotation_evidence", [](const PlaneSearch& s) { return rotationEvidence(s.evidence); });
 }
 
 void addFrame(py::module_& module) {

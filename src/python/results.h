@@ -7,13 +7,14 @@
 #include <optional>
 #include <vector>
 
-#include "pcl_symmetry/core/detect_planes.h"
+#include "core/detection/detection_evidence.h"
 
 namespace pcl_symmetry::python {
 
 /// A detection, and the rows of the array that its points were.
 struct PlaneSearch {
   Detection found;
+  DetectionEvidence evidence;                ///< empty where it was not wanted
   std::optional<Eigen::Vector3d> viewpoint;  ///< that was used, frame of the points
   std::vector<std::size_t> rows;             ///< the row of each point; empty: all rows
 };

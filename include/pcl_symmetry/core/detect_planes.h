@@ -55,7 +55,6 @@ struct DetectionOptions {
   double min_possible = 0.2;  ///< a plane is reported as possible if confidence >= min_possible; in [0, min_confidence]
   /// Reports the other maxima too, after the symmetries: approximate ones of the whole, and symmetries of parts.
   bool approximate = false;
-  bool evidence = false;  ///< fills Detection::evidence; doubles the time
   bool rotations = true;  ///< also searches axes of rotation of scans; false saves about a third of the time
   bool folds = true;     ///< with `rotations`: also axes of finite order; false finds bodies of revolution only, faster
   int max_planes = 128;  ///< >= 1; a gear of 120 teeth has 121

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <memory>
 #include <optional>
 #include <string>
 #include <utility>
@@ -97,10 +96,6 @@ struct SymmetryRotation {
   double halfway = 0.0;  ///< off of rotations halfway between those of the fold: evidence against other folds
 };
 
-/// What the decisions of one detection were taken from (core/detection/plane_decision.h); the Python module gives it as
-/// arrays.
-struct DetectionEvidence;
-
 /// All planes through a point are symmetries: a sphere. In a scan, rotations about lines through the point show it.
 struct SymmetryCenter {
   Eigen::Vector3d point;    ///< input frame
@@ -129,7 +124,6 @@ struct Detection {
   std::vector<SymmetryCenter> centers;  ///< of spheres
   std::vector<SymmetryRotation> rotations;                ///< of scans: axes of rotations, most confident first
   SymmetryMap map;                                        ///< the map that was computed; empty where one was given
-  std::shared_ptr<DetectionEvidence> evidence;            ///< with DetectionOptions::evidence; else null
   std::vector<std::pair<std::string, double>> timing_ms;  ///< stages in order
 
   /// Whether planes belong to an axis or a center.

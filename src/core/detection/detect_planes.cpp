@@ -11,6 +11,7 @@
 #include "core/base/statistics.h"
 #include "core/base/stopwatch.h"
 #include "core/detection/cloud_subset.h"
+#include "core/detection/detection_evidence.h"
 #include "core/detection/judged_cloud.h"
 #include "core/detection/part_search.h"
 #include "core/detection/plane_families.h"
@@ -128,8 +129,7 @@ void refineAndDecide(const JudgedCloud& judged, const SymmetryMap& map, Found& f
   timed("coarse_refinement");
   candidates = judged.refinement.close(std::move(candidates));
   timed("close_refinement");
-  if (options.evidence) {
-    found.evidence = std::make_shared<DetectionEvidence>();
+  if (found.evidence) {
     found.evidence->planes = judgeAll(judged, candidates);
     timed("evidence");
   }
@@ -196,6 +196,10 @@ void DetectionOptions::validate() const {
 }
 
 Detection detectPlanes(const PlaneInput& input, const DetectionOptions& options) {
+  return detectWithEvidence(input, options, nullptr);
+}
+
+Detection detectWithEvidence(const PlaneInput& input, const DetectionOptions& options, DetectionEvidence* evidence) {
   options.validate();
   if (input.normals)
     check(input.normals->cols() == input.points.cols(), "number of normals", input.normals->cols(),
@@ -203,6 +207,7 @@ Detection detectPlanes(const PlaneInput& input, const DetectionOptions& options)
   check(!input.map == !input.edt, "map", input.map ? "given" : "missing", "given together with edt");
   Stopwatch watch;
   Found found;
+  found.evidence = evidence;
   const auto timed = [&](const char* stage) { found.timing_ms.emplace_back(stage, watch.lap()); };
 
   // The bulk: all points that are not stray. Of a large cloud, some points represent it.

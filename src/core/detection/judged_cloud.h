@@ -6,16 +6,10 @@
 
 #include "core/detection/plane_decision.h"
 #include "core/detection/plane_lattice.h"
-#include "core/rotation/rotation_evidence.h"
 
 namespace pcl_symmetry {
 
-/// The evidence behind the decisions of one detection, to which confidences are fitted.
-struct DetectionEvidence {
-  /// Candidates after all stages of refinement, each plane once, best merit first. No fitted number has a part in them.
-  std::vector<MeasuredPlane> planes;
-  std::vector<JudgedRotation> rotations;  ///< of scans
-};
+struct DetectionEvidence;
 
 /// A cloud, and what fits, refines, measures and judges its planes. Cloud, points and options must outlive it.
 struct JudgedCloud {
@@ -36,7 +30,8 @@ struct JudgedCloud {
 
 /// What was found up to now, input frame.
 struct Found : Detection {
-  std::optional<PlaneLattice> polygon;  ///< normalized frame; its planes are among the planes
+  std::optional<PlaneLattice> polygon;    ///< normalized frame; its planes are among the planes
+  DetectionEvidence* evidence = nullptr;  ///< takes that of all candidates; null = not wanted
 };
 
 /// Refines planes that are nearly known and decides each of them; no others are searched.

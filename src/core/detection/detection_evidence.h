@@ -1,0 +1,21 @@
+#pragma once
+
+#include <vector>
+
+#include "core/detection/plane_measure.h"
+#include "core/rotation/rotation_evidence.h"
+
+namespace pcl_symmetry {
+
+/// The evidence behind the decisions of one detection, to which confidences are fitted.
+struct DetectionEvidence {
+  /// Candidates after all stages of refinement, each plane once, best merit first. No fitted number has a part in them.
+  std::vector<MeasuredPlane> planes;
+  std::vector<JudgedRotation> rotations;  ///< of scans
+};
+
+/// detectPlanes(), with the evidence of its decisions.
+/// \param evidence takes that of all candidates, which doubles the time; null = not wanted.
+Detection detectWithEvidence(const PlaneInput& input, const DetectionOptions& options, DetectionEvidence* evidence);
+
+}  // namespace pcl_symmetry
