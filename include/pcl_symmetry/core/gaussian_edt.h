@@ -95,9 +95,11 @@ public:
   std::vector<float> sharpened(double c, int num_threads = 0) const;
 
 private:
-  void chooseWidth(const PointsRef& points, double sigma);
+  /// Chooses the cells. \param sigma 0 = two cells.
+  void cover(const BoundingBall& ball, int num_cells, double sigma);
   void computeValues(const PointsRef& points, int num_threads);
-  void sumValues(int num_threads);
+  /// Sums the values, and prepares look-ups between them.
+  void finish(int num_threads);
 
   int num_cells_ = 0;
   double cell_size_ = 0.0;

@@ -157,28 +157,25 @@ void GaussianEdtOptions::validate() const {
 
 GaussianEdt::GaussianEdt(const PointsRef& points, const GaussianEdtOptions& options) {
   options.validate();
-  num_cells_ = options.num_cells;
   const BoundingBall ball = coveredBall(points, {options.center, options.radius});
-  center_ = ball.center;
-  radius_ = ball.radius;
-  chooseWidth(points, options.sigma);
-  origin_ = center_ - Eigen::Vector3d::Constant((0.5 * num_cells_ - 0.5) * cell_size_);
+  cover(ball, options.num_cells, options.sigma);
+  const double most = kTransform.max_spacing * radius_;
+  if (options.sigma == 0.0 && points.cols() <= kTransform.num_dense && sigma_ < most)
+    if (const double spacing = std::min(sampleSpacing(points), most); spacing > sigma_)
+      cover(ball, options.num_cells, spacing);
   computeValues(points, options.num_threads);
-  interpolation_ = sharpened(kTransform.of_interpolation, options.num_threads);
 }
 
-void GaussianEdt::chooseWidth(const PointsRef& points, double sigma) {
+void GaussianEdt::cover(const BoundingBall& ball, int num_cells, double sigma) {
+  num_cells_ = num_cells;
+  center_ = ball.center;
+  radius_ = ball.radius;
   const double half = 0.5 * num_cells_;
-  const auto take = [&](double width) {
-    sigma_ = width;
-    cell_size_ = (radius_ + kTransform.margin_in_sigmas * sigma_) / half;
-  };
-  if (sigma > 0.0) return take(sigma);
-  cell_size_ = radius_ / std::max(half - kTransform.margin_in_sigmas * kTransform.sigma_in_cells, 0.5 * half);
-  sigma_ = kTransform.sigma_in_cells * cell_size_;
-  const double most = kTransform.max_spacing * radius_;
-  if (points.cols() > kTransform.num_dense || sigma_ >= most) return;
-  if (const double spacing = std::min(sampleSpacing(points), most); spacing > sigma_) take(spacing);
+  cell_size_ = sigma > 0.0
+                   ? (radius_ + kTransform.margin_in_sigmas * sigma) / half
+                   : radius_ / std::max(half - kTransform.margin_in_sigmas * kTransform.sigma_in_cells, 0.5 * half);
+  sigma_ = sigma > 0.0 ? sigma : kTransform.sigma_in_cells * cell_size_;
+  origin_ = center_ - Eigen::Vector3d::Constant((half - 0.5) * cell_size_);
 }
 
 void GaussianEdt::computeValues(const PointsRef& points, int num_threads) {
@@ -194,11 +191,11 @@ void GaussianEdt::computeValues(const PointsRef& points, int num_threads) {
     for (std::size_t i = begin; i < end; ++i)
       values_[i] = values_[i] >= sq_reach ? 0.0f : static_cast<float>(std::exp(scale * values_[i]));
   });
-  sumValues(num_threads);
+  finish(num_threads);
   if (sq_norm_ == 0.0) throw std::invalid_argument("points: none near the ball given by center and radius");
 }
 
-void GaussianEdt::sumValues(int num_threads) {
+void GaussianEdt::finish(int num_threads) {
   const int n = num_cells_;
   filled_.assign(static_cast<std::size_t>(n) * n, {0, 0});
   std::vector<double> sums(n, 0.0), sq_sums(n, 0.0);
@@ -216,6 +213,7 @@ void GaussianEdt::sumValues(int num_threads) {
   });
   sum_ = std::accumulate(sums.begin(), sums.end(), 0.0);
   sq_norm_ = std::accumulate(sq_sums.begin(), sq_sums.end(), 0.0);
+  interpolation_ = sharpened(kTransform.of_interpolation, num_threads);
 }
 
 Eigen::Vector3d GaussianEdt::cellCenter(std::size_t index) const {

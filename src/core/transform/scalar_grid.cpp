@@ -8,7 +8,6 @@
 
 #include "core/base/check.h"
 #include "core/base/parallel.h"
-#include "core/transform/transform_rules.h"
 #include "pcl_symmetry/core/gaussian_edt.h"
 
 namespace pcl_symmetry {
@@ -234,15 +233,8 @@ Points VolumeFunction::bodyPoints(bool surface) const {
 
 GaussianEdt::GaussianEdt(const VolumeFunction& volume, const GaussianEdtOptions& options) {
   options.validate();
-  num_cells_ = options.num_cells;
-  const BoundingBall ball =
-      options.radius > 0.0 ? BoundingBall{options.center, options.radius} : boundingBall(volume.bodyPoints(false));
-  center_ = ball.center;
-  radius_ = ball.radius;
-  cell_size_ =
-      radius_ / std::max(0.5 * num_cells_ - kTransform.margin_in_sigmas * kTransform.sigma_in_cells, 0.25 * num_cells_);
-  sigma_ = kTransform.sigma_in_cells * cell_size_;
-  origin_ = center_ - Eigen::Vector3d::Constant((0.5 * num_cells_ - 0.5) * cell_size_);
+  cover(options.radius > 0.0 ? BoundingBall{options.center, options.radius} : boundingBall(volume.bodyPoints(false)),
+        options.num_cells, 0.0);
   const int n = num_cells_;
   values_.assign(static_cast<std::size_t>(n) * n * n, 0.0f);
   const Eigen::Affine3d T_index_input = volume.f.T_input_index().inverse();
@@ -253,9 +245,8 @@ GaussianEdt::GaussianEdt(const VolumeFunction& volume, const GaussianEdtOptions&
                      if (volume.f.contains(p)) values_[i] = static_cast<float>(volume.f.at(p));
                    }
                  });
-  sumValues(options.num_threads);
+  finish(options.num_threads);
   if (sq_norm_ == 0.0) throw VolumeWithoutAnswer("volume: nothing in the ball given by center and radius");
-  interpolation_ = sharpened(kTransform.of_interpolation, options.num_threads);
 }
 
 }  // namespace pcl_symmetry
