@@ -50,7 +50,7 @@ void decide(const JudgedCloud& judged, std::vector<Candidate> candidates, Found&
 /// The evidence of all candidates, also of those that the detection leaves out early.
 /// \param candidates after the second stage.
 std::vector<MeasuredPlane> judgeAll(const JudgedCloud& judged, std::vector<Candidate> candidates) {
-  candidates = judged.refinement.full(std::move(candidates));
+  candidates = judged.refinement.refineFully(std::move(candidates));
   judged.refinement.climb(candidates, std::vector<char>(candidates.size(), true));
   return judged.decision.judge(judged.refinement.distinct(std::move(candidates)));
 }
@@ -60,7 +60,7 @@ void completeGroups(const JudgedCloud& judged, Found& found) {
   if (!kKindRules.shows_all[judged.cloud.kind()]) return;
   std::vector<ReflectionPlane> tried;
   for (std::vector<Candidate> candidates;
-       !(candidates = judged.refinement.closeSymmetries(impliedBy(found.planes, judged.cloud, tried))).empty();)
+       !(candidates = judged.refinement.refineSymmetries(impliedBy(found.planes, judged.cloud, tried))).empty();)
     decide(judged, std::move(candidates), found);
 }
 
@@ -125,9 +125,9 @@ void refineAndDecide(const JudgedCloud& judged, const SymmetryMap& map, Found& f
   timed("maxima");
 
   // Iterative Symmetric Points, with more samples and narrower weights in each stage; the last one with the decision.
-  candidates = judged.refinement.coarse(std::move(candidates), map.grid);
+  candidates = judged.refinement.refineCoarsely(std::move(candidates), map.grid);
   timed("coarse_refinement");
-  candidates = judged.refinement.close(std::move(candidates));
+  candidates = judged.refinement.refineClosely(std::move(candidates));
   timed("close_refinement");
   if (found.evidence) {
     found.evidence->planes = judgeAll(judged, candidates);

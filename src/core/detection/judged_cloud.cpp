@@ -11,7 +11,7 @@
 namespace pcl_symmetry {
 
 std::vector<SymmetryPlane> JudgedCloud::refinedAndJudged(std::vector<Candidate> candidates) const {
-  candidates = refinement.full(std::move(candidates));
+  candidates = refinement.refineFully(std::move(candidates));
   std::vector<MeasuredPlane> measured = decision.judge(candidates);
   std::vector<char> may_climb;
   for (const MeasuredPlane& one : measured)
@@ -32,7 +32,7 @@ std::vector<SymmetryPlane> refinedAt(const std::vector<ReflectionPlane>& starts,
   const JudgedCloud judged(cloud, cloud.points, options);
   std::vector<Candidate> candidates;
   for (const ReflectionPlane& start : starts) candidates.push_back({cloud.toNormalized(start)});
-  return judged.refinedAndJudged(judged.refinement.close(std::move(candidates)));
+  return judged.refinedAndJudged(judged.refinement.refineClosely(std::move(candidates)));
 }
 
 namespace {

@@ -207,13 +207,14 @@ std::vector<Candidate> gatherCandidates(const NormalizedCloud& cloud, const Symm
 StagedRefinement::StagedRefinement(const NormalizedCloud& cloud, const PlaneFit& fit, const DetectionOptions& options)
     : cloud_(cloud), fit_(fit), options_(options) {}
 
-std::vector<Candidate> StagedRefinement::coarse(std::vector<Candidate> candidates, const PlaneGrid& grid) const {
+std::vector<Candidate> StagedRefinement::refineCoarsely(std::vector<Candidate> candidates,
+                                                        const PlaneGrid& grid) const {
   const std::vector<Candidate> moved = refined(candidates, stage(kDetection.stages.first_samples, cloud_.sigma,
                                                                  coarseSigma(), kDetection.stages.coarse_iterations));
   return distinct(withinCells(moved, candidates, grid), -1.0, kDetection.stages.kept_coarsely);
 }
 
-std::vector<Candidate> StagedRefinement::close(std::vector<Candidate> candidates) const {
+std::vector<Candidate> StagedRefinement::refineClosely(std::vector<Candidate> candidates) const {
   const auto isSymmetry = [](const Candidate& candidate) {
     return candidate.merit >= kDetection.stages.symmetric_merit;
   };
@@ -231,12 +232,12 @@ std::vector<Candidate> StagedRefinement::close(std::vector<Candidate> candidates
   return distinct(std::move(found), -1.0, keeps_all || !is_whole ? kDetection.stages.kept_closely : 0);
 }
 
-std::vector<Candidate> StagedRefinement::closeSymmetries(std::vector<Candidate> candidates) const {
+std::vector<Candidate> StagedRefinement::refineSymmetries(std::vector<Candidate> candidates) const {
   return distinct(refined(std::move(candidates), closeStage()),
                   kDetection.stages.symmetric_merit - kDetection.stages.close_slack, kDetection.stages.kept_closely);
 }
 
-std::vector<Candidate> StagedRefinement::full(std::vector<Candidate> candidates) const {
+std::vector<Candidate> StagedRefinement::refineFully(std::vector<Candidate> candidates) const {
   return refined(std::move(candidates), fullStage());
 }
 

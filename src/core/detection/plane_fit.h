@@ -127,19 +127,19 @@ public:
 
   /// Few samples and wide weights: most candidates end in a basin that another one found, or leave their cell.
   /// \param grid whose cells candidates from the map must not leave.
-  std::vector<Candidate> coarse(std::vector<Candidate> candidates, const PlaneGrid& grid) const;
+  std::vector<Candidate> refineCoarsely(std::vector<Candidate> candidates, const PlaneGrid& grid) const;
 
   /// More samples; the weights end as narrow as the spacing of the points allows.
-  std::vector<Candidate> close(std::vector<Candidate> candidates) const;
+  std::vector<Candidate> refineClosely(std::vector<Candidate> candidates) const;
 
   /// The same for reflections of symmetries, which must be symmetries themselves.
-  std::vector<Candidate> closeSymmetries(std::vector<Candidate> candidates) const;
+  std::vector<Candidate> refineSymmetries(std::vector<Candidate> candidates) const;
 
   /// All samples at the narrowest weights: this stage decides the precision of the planes.
-  std::vector<Candidate> full(std::vector<Candidate> candidates) const;
+  std::vector<Candidate> refineFully(std::vector<Candidate> candidates) const;
 
   /// Moves planes of a whole cloud to their optimum where pairs without a true partner pull them aside.
-  /// \param candidates after full(), in which planes of noisy scans have climbed.
+  /// \param candidates after refineFully(), in which planes of noisy scans have climbed.
   /// \param may_climb of each candidate: it may be a symmetry.
   /// \return whether each candidate moved.
   std::vector<char> climb(std::vector<Candidate>& candidates, const std::vector<char>& may_climb) const;

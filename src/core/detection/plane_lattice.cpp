@@ -129,10 +129,10 @@ private:
 double confidenceTogether(const std::vector<MeasuredPlane>& judged, int first, int step) {
   PlaneEvidence mean = judged[first].evidence;
   // What differs from plane to plane of a cloud
-  static constexpr std::array kMeans{&PlaneEvidence::share,   &PlaneEvidence::double_share, &PlaneEvidence::hold,
-                                     &PlaneEvidence::support, &PlaneEvidence::conflict,     &PlaneEvidence::score,
-                                     &PlaneEvidence::unknown};
-  for (double PlaneEvidence::*member : kMeans) {
+  static constexpr std::array kAveraged{&PlaneEvidence::share,   &PlaneEvidence::double_share, &PlaneEvidence::hold,
+                                        &PlaneEvidence::support, &PlaneEvidence::conflict,     &PlaneEvidence::score,
+                                        &PlaneEvidence::unknown};
+  for (double PlaneEvidence::*member : kAveraged) {
     double sum = 0.0, count = 0.0;
     for (std::size_t k = first; k < judged.size(); k += step) {
       sum += judged[k].evidence.*member;

@@ -30,11 +30,12 @@ TEST(StagedRefinement, EachStageComesNearer) {
   const ReflectionPlane exact = box.normalized(Eigen::Vector3d::UnitX(), 0.0);
   std::vector<Candidate> candidates{box.candidate({1.0, 0.06, -0.04}, 0.03)};
   const double at_start = candidates[0].plane.angleTo(exact);
-  candidates = box.refinement.coarse(candidates, PlaneGrid(box.options.expert, box.edt.center(), box.edt.radius()));
+  candidates =
+      box.refinement.refineCoarsely(candidates, PlaneGrid(box.options.expert, box.edt.center(), box.edt.radius()));
   ASSERT_EQ(candidates.size(), 1u);
   const double after_coarse = candidates[0].plane.angleTo(exact);
   EXPECT_LT(after_coarse, 0.3 * at_start);
-  candidates = box.refinement.full(box.refinement.close(candidates));
+  candidates = box.refinement.refineFully(box.refinement.refineClosely(candidates));
   ASSERT_EQ(candidates.size(), 1u);
   EXPECT_LT(candidates[0].plane.angleTo(exact), 0.1 * kDegree);
   EXPECT_GT(candidates[0].merit, kDetection.stages.symmetric_merit);
