@@ -15,7 +15,7 @@ struct SceneRules {
   double cluster_spacings = 4.0;                         ///< between points of one object
   int max_planes = 6;                                    ///< a table, a floor, three walls and a large box
   double min_share = 0.08;                               ///< of the points, of planes that are tried
-  double bare_share = 0.25;                              ///< the same of a support that nothing stands on
+  double bare_share = 0.25;                              ///< of the points, of a support that nothing stands on
   double telling_share = 0.01;            ///< of the points of a plane, beside it, that show on which side the scene is
   double attached = 10.0;                 ///< plane distances behind a plane within which other faces of a body begin
   double footprint_trim = 0.05;           ///< share of the points of a plane beyond each end of its footprint
@@ -31,7 +31,7 @@ struct SceneRules {
   double around = 10.0;          ///< cluster distances around an object in which the noise of its support is taken
   std::size_t min_around = 50;   ///< points there; fewer take chance for noise
   double rises = 4.0;            ///< deviations of that noise that the foot of an object rises above
-  double rises_at_least = 0.25;  ///< spacings, the same on exact planes
+  double rises_at_least = 0.25;  ///< spacings that a foot rises above on any plane, also an exact one
   /// Plane distances that a model may reach into the support of its object: cameras measure a table and what stands on
   /// it with different errors, 10 mm apart at 1 m.
   double model_margin = 3.0;
@@ -50,7 +50,7 @@ struct SceneRules {
   double explained = 0.9;                 ///< share of what lands in known space that a symmetry maps to the surface
   double informative = 0.1;               ///< share of the points that lands in known space; less decides nothing
   double same_angle = 5.0 * kPi / 180.0;  ///< radians within which planes and axes are one
-  double same_offset = 0.03;              ///< the same
+  double same_offset = 0.03;              ///< diagonals within which planes and axes are one
   double hangs = 0.1;                     ///< height above the foot of the larger piece: noise has half, handles twice
   double trimmed = 0.02;                  ///< share of the points below a foot or above a top: flying pixels
   double normal_spacings = 5.0;           ///< radius that a normal is taken from: averages the noise of a camera

@@ -118,7 +118,7 @@ struct Detection {
   std::optional<ReflectionPlane> flat;
   double tolerance = 0.0;               ///< of the decision, input units
   double resolution = 0.0;              ///< least tolerance that sensor or spacing resolve, input units; 0 = unknown
-  double diameter = 0.0;                ///< greatest distance between two points, input units
+  double diameter = 0.0;                ///< between two points, each the farthest from the other, input units
   int num_stray_points = 0;             ///< far from all others and left out; they support no plane
   std::vector<SymmetryAxis> axes;       ///< best first; their planes are not among planes
   std::vector<SymmetryCenter> centers;  ///< of spheres

@@ -36,7 +36,7 @@ struct DetectionRules {
     double symmetric_merit = 0.93;  ///< of a symmetry: support of 97 % and conflict of 3 % have 0.97
     int coarse_iterations = 5, close_iterations = 6, full_iterations = 8, rough_iterations = 4;
     double close_slack = 0.1;   ///< below the merit of a symmetry that a candidate may be after the second stage
-    double coarse_slack = 0.2;  ///< the same after the first stage, beside a symmetry
+    double coarse_slack = 0.2;  ///< below it that a candidate may be after the first stage, beside a symmetry
     std::size_t kept_coarsely = 8, kept_closely = 4;  ///< candidates of less merit that go on after either stage
     int close_sample_factor = 4;                      ///< samples of the second stage per sample of the first
     double narrowest_coarsely = 0.5;                  ///< sigmas at the end of the first stage
@@ -50,7 +50,7 @@ struct DetectionRules {
     int climb_samples = 500;                                    ///< points by which planes of whole clouds climb
     double min_gain = 0.005;                                    ///< merit that a climb has to gain
     double climbing_merit = 0.5;        ///< merit of planes that climb; those of less are no symmetries
-    double climbing_confidence = 0.01;  ///< the same by confidence
+    double climbing_confidence = 0.01;  ///< confidence of planes that climb
     double noisy_depth = 0.1;           ///< roughness, spacings, from which planes of scans climb: noise looks hidden
     double bandwidth = 1.5;             ///< of the density, spacings; less shows single points, more blurs the shape
     int max_iterations = 6;             ///< Newton steps in a density
@@ -74,12 +74,12 @@ struct DetectionRules {
   struct {
     double max_cut = 0.3;            ///< share of the outline that the picture may cut off; tables in frames: 0.36
     double hopeful_share = 0.93;     ///< of a quick look; less is no possible symmetry
-    double screening_errors = 2.0;   ///< standard errors that a quick look allows
+    double screening_errors = 2.0;   ///< standard errors by which the share of a quick look may be too small
     double max_unmoved_share = 0.5;  ///< share of the points that an uninformative plane leaves in place
     double nothing_missing = 0.01;   ///< share of the surface; less is missing by chance
     double piece_missing = 0.03;     ///< share of the surface; more is a piece
     double odds_of_a_piece = 0.2;    ///< that a cloud lacks a piece although a plane explains all of it
-    double as_likely = 0.05;         ///< difference of the confidences that other samples of a cloud make
+    double as_likely = 0.05;         ///< difference of confidences that other samples of the same shape may reverse
     double min_informative = 0.1;    ///< least share of informative samples; below it confidence falls in proportion
     double coarsest = 3.0;           ///< greatest tolerances; a sensor that resolves less decides nothing
     double upright = 5.0 * kPi / 180.0;  ///< from upright or level within which a plane does not slant
@@ -99,9 +99,9 @@ struct DetectionRules {
     std::size_t min_planes = 4;              ///< of a lattice; three fit too many by chance
     std::size_t max_pairs = 6;               ///< planes whose common lines are tried for a lattice
     double min_pair_angle = 0.1;             ///< between two planes; less moves their line too far
-    double max_folded = 0.2;                 ///< share of the angle between planes of a lattice by which one may be off
-    std::size_t max_planes = 8;              ///< planes whose common lines are tried for an axis
-    double min_angle = 0.17;                 ///< between two of them
+    double max_folded = 0.2;     ///< angles between neighboring planes of a lattice by which a found plane may miss one
+    std::size_t max_planes = 8;  ///< planes whose common lines are tried for an axis
+    double min_angle = 0.17;     ///< between two of them
     int screening_planes = 3, fitted_planes = 6,
         tested_planes = 8;       ///< planes of a family that screen it, fit its line, test it
     double rough_factor = 2.0;   ///< allowances in the screening
@@ -136,7 +136,7 @@ struct DetectionRules {
     double farthest_plane = 0.5;                   ///< radii of the ball, from its middle
     double min_part = 0.04, largest_part = 0.9;    ///< share of the points of a part
     double min_edge = 0.4, edge_per_share = 0.5;   ///< longest edge of a part, edges of a disc, and more per share
-    double longer_edge = 0.15, shared_part = 0.5;  ///< by how much longer, if better parts hold at most that share
+    double longer_edge = 0.15, shared_part = 0.5;  ///< longer by this where better parts hold at most that share
     double same_part = 0.5;                        ///< share that regions of planes of one part have in common
     std::size_t max_planes_of_part = 9;            ///< those of a cube
     std::array<double, 2> longest_edges_before{1.0, 0.6};  ///< more than that of a part before either round, as above

@@ -77,7 +77,7 @@ public:
     });
   }
 
-  /// What planes at the best angle explain of the density of all rings at a frequency; 4 by chance.
+  /// How much of the density of all rings planes at the best angle explain at a frequency; about 4 by chance.
   double power(int m) const { return 0.5 * (powers_[m] + std::abs(squares_[m])); }
   /// By how much the frequency has more power than those beside it; 0 where that may be chance.
   double prominence(int m) const {
@@ -128,7 +128,7 @@ private:
 /// The confidence of several planes by their mean evidence.
 double confidenceTogether(const std::vector<MeasuredPlane>& judged, int first, int step) {
   PlaneEvidence mean = judged[first].evidence;
-  // What differs from plane to plane of a cloud
+  // Evidence that differs between the planes of one cloud; the rest describes the cloud.
   static constexpr std::array kAveraged{&PlaneEvidence::share,   &PlaneEvidence::double_share, &PlaneEvidence::hold,
                                         &PlaneEvidence::support, &PlaneEvidence::conflict,     &PlaneEvidence::score,
                                         &PlaneEvidence::unknown};

@@ -25,7 +25,7 @@ public:
     double tolerance;   ///< > 0
     double resolution;  ///< the least tolerance that the sensor resolves; 0 where its errors are not known
     double spacing;     ///< of the points
-    double diameter;    ///< greatest distance between two points
+    double diameter;    ///< of the points, by farthestPair()
   };
 
   /// \param points 3 x N, finite, N >= 1.

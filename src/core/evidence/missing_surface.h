@@ -11,9 +11,10 @@ namespace pcl_symmetry {
 ///
 /// Not in the paper. Where a piece of an object was cut off, the reflection goes on beyond a plane, and the surface
 /// runs into that plane: its normals lie along it. A part that an object has on one side alone has its reflection
-/// beyond the surface, too, but there the surface closes: its normals stand on the plane. No open border is needed, so
-/// that parts as thin as the spacing, whose borders are not seen, and parts without any edge to what is matched are
-/// told as well. What ends far from the piece, as the rim of a mug ends far from its handle, explains nothing.
+/// beyond the surface, too, but there the surface closes: its normals stand on the plane. This needs no open border,
+/// and so it also decides for parts as thin as the spacing, whose borders are not found, and for parts that share no
+/// edge with what is matched. An end far from the piece, such as the rim of a mug far from its handle, explains
+/// nothing.
 /// \param cloud 3 x N, N > 0, finite.
 /// \param normals 3 x N, unit, of arbitrary sign.
 /// \param piece reflections of neighboring points without counterpart.

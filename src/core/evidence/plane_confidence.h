@@ -49,7 +49,7 @@ struct PlaneEvidence {
   CloudKind kind = CloudKind::Surface;  ///< of the cloud; support of a volume is the overlap of its density
   /// Share of the surface mapped to within the tolerance of the surface, of its informative part, in [0, 1].
   double share = 1.0;
-  double double_share = 1.0;  ///< the same within twice the tolerance, >= share
+  double double_share = 1.0;  ///< share mapped to within twice the tolerance, >= share
   double hold = 1.0;          ///< of scans: how firmly what is matched holds the plane, see secondStiffness(), >= 0
   double tolerance = 0.02;    ///< of that share, divided by the radius of the points, > 0
   double unknown = 0.0;  ///< share of the surface that is uninformative: its reflection was not seen or was cut off
@@ -64,12 +64,12 @@ double seenSupport(const PlaneEvidence& evidence);
 /// Uncertainties of the evidence, by which it is divided. Chosen by cross-validation over the models of the fit.
 struct EvidenceUnits {
   double off = 0.005;              ///< error of the share that is off, of clouds without noise
-  double off_per_spacing = 0.002;  ///< the same per spacing in tolerances
-  double scan_off = 0.01;          ///< the same of scans, whose hidden parts may differ
-  double double_off = off;         ///< the same within twice the tolerance
+  double off_per_spacing = 0.002;  ///< more of that error per spacing in tolerances
+  double scan_off = 0.01;          ///< error of the share that is off, of scans, whose hidden parts may differ
+  double double_off = off;         ///< error of the share that is off by more than twice the tolerance
   double precision = 2.0 * off;    ///< how exactly the share is known: half doubts nearly symmetric planes less
-  double precision_per_spacing = 2.0 * off_per_spacing;  ///< the same per spacing in tolerances
-  double precision_per_unknown = 0.2;                    ///< the same per share that is uninformative
+  double precision_per_spacing = 2.0 * off_per_spacing;  ///< more of precision per spacing in tolerances
+  double precision_per_unknown = 0.2;                    ///< more of precision per share that is uninformative
   double max_off = 0.1;                                  ///< share from which on it does not matter
   /// Logarithm of the factor per spacing in tolerances by which finer points of a whole cloud show more of the surface
   /// to be off, as samples reach beyond the edges of what is there: 0.3 to 0.6 for planes that map 96 to 97 %.
@@ -86,8 +86,8 @@ struct EvidenceUnits {
   double noise = 0.01;         ///< of what noise takes from D
 };
 
-/// The summands of the log odds that a plane is a symmetry, before their coefficients. The first is 1; then come those
-/// that fall as the evidence gets better, then the spacing or the noise, on which the others depend.
+/// The terms of the log odds that a plane is a symmetry, without their coefficients: 1, then terms that fall as the
+/// evidence gets better, and of whole clouds and volumes the spacing or the noise, which the others depend on.
 std::vector<double> logOddsTerms(const PlaneEvidence& evidence);
 
 /// Limits of a share.
@@ -108,8 +108,7 @@ ShareInterval shareInterval(const PlaneEvidence& evidence);
 /// \return in [0, 1].
 double planeConfidence(const PlaneEvidence& evidence);
 
-/// The summand of a plane of a cloud that has a better one, which follows those of logOddsTerms(): it grows with what
-/// is unknown.
+/// One more term, the last, for a plane of a cloud that has a better plane: it grows with what is unknown.
 /// \param unknown as PlaneEvidence::unknown.
 double furtherTerm(CloudKind kind, double unknown);
 

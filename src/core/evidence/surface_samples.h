@@ -25,14 +25,14 @@ struct EvidenceRules {
 
   // Support.
   float normal_reach = 0.01f;  ///< reach across the surface, radii of the points
-  float rough_reach = 3.0f;    ///< the same in units of the roughness: 99.7 % of Gaussian noise
+  float rough_reach = 3.0f;    ///< reach across the surface, roughnesses: 99.7 % of Gaussian noise
   float normal_angle = 0.5f;   ///< radians between normals that agree
   float surely = 0.99999f;     ///< share of a reach that rounding does not exceed
   float most = 9.0f;           ///< squared deviation that counts as no support
   double tilt_ridge = 1e-4;    ///< far below the stiffness of tilts that are held
 
   double exact_depth = 4e-3;          ///< error of a depth, radii, up to which a pixel without depth saw nothing
-  float empty_without_depth = 0.15f;  ///< the same as a share where errors are larger
+  float empty_without_depth = 0.15f;  ///< how surely such a pixel saw nothing where errors are larger
 
   // Confidence.
   double coarsest = 3.0;  ///< tolerances; by default, points with a wider spacing decide at what they resolve
@@ -55,7 +55,7 @@ struct EvidenceRules {
   double outliers = 0.002;                              ///< share of the points
   int max_steps = 200;                                  ///< between convex hulls
   float min_gain = 0.02f;                               ///< share of the squared distance that a step shortens
-  float no_distance = 1.0f;                             ///< spacings, of hulls that overlap
+  float no_distance = 1.0f;                             ///< spacings; convex hulls that are closer overlap
 
   // Density of points that resolve no surface.
   int max_cells = 160;               ///< along the longest side
@@ -228,7 +228,7 @@ public:
 
   /// \return distances of the first half from the surface of the second, units of the points, >= 0.
   std::vector<float> ownDistances() const { return distances(first_); }
-  /// \return the same for the reflections of the first half.
+  /// \return distances of the reflections of the first half from that surface.
   std::vector<float> reflectedDistances(const ReflectionPlane& plane) const;
 
   /// What sampling and noise leave of D of equation 2 for a true plane: f of all points and f of their reflections

@@ -83,7 +83,7 @@ public:
 
 private:
   Eigen::Matrix3Xf normals_;
-  Eigen::ArrayX3f by_axis_;  // the same, their coordinates side by side
+  Eigen::ArrayX3f by_axis_;  // the normals, with their coordinates side by side
   Eigen::VectorXf weights_;  // sum to 1
 };
 

@@ -24,7 +24,7 @@ struct GeometryRules {
   double max_stray = 0.05;       ///< share of the points; more are a part of the shape
   int max_stray_group = 16;      ///< distinct points; more are a part of the shape
   float stray_spacings = 10.0f;  ///< of points evenly spread over a ball, that a gap is wider than
-  float min_stray_gap = 0.4f, max_stray_gap = 1.0f;  ///< the same in sizes
+  float min_stray_gap = 0.4f, max_stray_gap = 1.0f;  ///< limits of that gap, sizes of the cloud
 
   // Normals
   int fewest_cell_points = 6;  ///< around a cell that make a normal: twice the three that span a plane
@@ -89,7 +89,7 @@ struct MergeTolerance {
   };
 
   /// \param of the member of an entry of the list that is its plane or line, or a function that takes it there.
-  /// \return whether an entry of the list has the same.
+  /// \return whether the list has an entry that is the same.
   template <typename List, typename Motion, typename Of = Itself>
   bool anySame(const List& list, const Motion& motion, const Of& of = {}) const {
     return std::any_of(list.begin(), list.end(),

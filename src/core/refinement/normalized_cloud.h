@@ -47,7 +47,7 @@ struct NormalizedCloud {
   const IspSurface quick_surface;            ///< matched by walks, for first steps, which others refine again
 
   const PrincipalAxes principal_axes;  ///< of the points
-  const double extent;                 ///< greatest distance between two points, by farthestPair()
+  const double extent;                 ///< diameter of the points, by farthestPair()
   const double spacing;                ///< median of the points' spacing
   const double roughness;              ///< median of the points' roughness, divided by the spacing
   const double baseline;     ///< mean support of the points on the surface of all others, > 0: a symmetry reaches it

@@ -13,7 +13,7 @@ struct RegistrationRules {
   // Steps
   /// Share of the greatest entry that is added to the diagonal: directions that nothing fixes stay where they are.
   double relative_inertia = 1e-4;
-  double inertia = 1e-6;        ///< the same, absolute
+  double inertia = 1e-6;        ///< added to the diagonal whatever its entries
   double min_deviation = 1e-7;  ///< radii; standard deviation of a residual, the rounding of floats
 
   // Merit of a pose
@@ -44,7 +44,7 @@ struct RegistrationRules {
   // Evidence of a pose
   int evidence_points = 3000;       ///< of each cloud, that are looked at
   double tight_tolerance = 0.004;   ///< of the smaller cloud's diameter: distance within which surfaces agree, at least
-  double tight_noises = 4.0;        ///< the same in deviations of the noisier cloud
+  double tight_noises = 4.0;        ///< deviations of the noisier cloud within which surfaces agree, at least
   double facing_spacings = 1.5;     ///< between a point and the middle of the disc that it faces
   double facing_reach = 0.05;       ///< of the smaller cloud's diameter; what is farther away is another layer
   double min_noise = 0.0015;        ///< diameters; that of a close depth camera, less is no evidence for a pose
@@ -69,7 +69,7 @@ struct RegistrationRules {
   double max_roughness = 0.15;   ///< of the spacing; rougher surfaces take normals from more neighbors
   int num_rough_neighbors = 32;  ///< they halve the error of the normals
   int cells = 48;                ///< along each side of the grid of closest points
-  int few_cells = cells / 2;     ///< the same for few points, as wide as a thousand points of a surface are apart
+  int few_cells = cells / 2;     ///< cells for few points, as wide as a thousand points of a surface are apart
 };
 
 inline constexpr RegistrationRules kRegistration{};

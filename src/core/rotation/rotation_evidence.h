@@ -40,8 +40,8 @@ struct ScanAxisRules {
   int num_samples = 1000, num_few_samples = 300;          ///< points that judge a rotation exactly, and roughly
   using Widths = std::array<double, 6>;
   Widths fit_widths{8.0, 5.0, 3.0, 2.0, 1.5, 1.5};        ///< of the weights of a fit, tolerances
-  Widths close_fit_widths{3.0, 2.0, 1.5, 1.0, 0.7, 0.7};  ///< the same, from a first fit on
-  double min_empty_miss = 0.5;                            ///< tolerances beside the rim from which points pull
+  Widths close_fit_widths{3.0, 2.0, 1.5, 1.0, 0.7, 0.7};  ///< of a fit that starts where another one ended
+  double min_empty_miss = 0.5;                            ///< tolerances from the rim beyond which points pull
   double fit_reach = 2.0;                                 ///< widths beyond which a match has no weight
   double fit_ridge = 1e-3;                                ///< share of the trace that keeps free directions at rest
   double longest_step = 0.1;      ///< radians, radii, of a fit; starts are closer, larger steps leave the basin
@@ -50,7 +50,7 @@ struct ScanAxisRules {
   double far_tolerances = 10.0;   ///< as ObjectSymmetryOptions::max_feature
   double slack_of_reach = 1.001;  ///< more than what distances are rounded by
   double max_off = 0.05, max_far = 0.0125;                  ///< shares thrown into empty space, of folds
-  double max_round_off = 0.015, max_round_far = 0.004;      ///< the same of round bodies
+  double max_round_off = 0.015, max_round_far = 0.004;      ///< of these shares, of round bodies
   double round_on = 0.6, fold_on = 0.3, twofold_on = 0.75;  ///< shares that land on the surface, by kind
   double halfway_more = 0.06;  ///< share that rotations halfway throw more into empty space
   int num_plane_pairs = 24;    ///< pairs of perpendicular planes through a line that are screened
@@ -59,7 +59,7 @@ struct ScanAxisRules {
   double landed_counts = 0.1;                                 ///< what lands on the surface, of what is thrown off it
   double max_halfway = 0.3;                                   ///< share of the points from which on all folds are alike
   double negligible_share = 2e-3;                             ///< share of the points that is negligible
-  double negligible_of_planes = 5e-3;                         ///< the same of planes, which are screened at steps
+  double negligible_of_planes = 5e-3;                         ///< of planes, which are screened at steps
   double min_hold = 1e-3;  ///< least stiffness of a line that the scan holds; boxes have 0.05
 };
 
@@ -84,7 +84,7 @@ inline double marginOf(const SymmetryRotation& rotation) {
 struct RotationShares {
   double on = 0.0;   ///< lands within the tolerance of the surface seen
   double off = 0.0;  ///< lands where the scanner saw that there is nothing, beyond the tolerance
-  double far = 0.0;  ///< the same, beyond ten tolerances: a handle, not a dent
+  double far = 0.0;  ///< lands there beyond ten tolerances: a handle, not a dent
 };
 
 /// The rotation about a line by an angle in radians.

@@ -34,7 +34,7 @@ struct RotationRules {
       1.5;                  // tolerances that a sparse surface may resolve: what it leaves open lowers the confidence
   int body_neighbors = 50;  // at most a quarter of the points: in a body, they reach across as far as along;
   double body_thickness = 0.56;   // 0.75 inside, balls of 200 points 0.57 to 0.69, bowls as thin as their spacing 0.45;
-  int close_neighbors = 8;        // the same for these: walls a few spacings thick have two surfaces,
+  int close_neighbors = 8;        // of which bodies are as thick, too: walls a few spacings thick have two surfaces,
   double close_thickness = 0.32;  // each of them flat: at most 0.25, 0.4 in a body
   int border_neighbors = 30;      // of a point of a body:
   double border_offset = 0.27;    // mean of them, radii of theirs: 3/8 at a flat border, inside 0.14 by chance

@@ -104,7 +104,7 @@ struct ScanRules {
   double max_uneven = 0.008;
   /// Share of the variance, and of that of points at random, left from which on more layers are allowed: leaves, wires.
   double surely_explained = 0.25;
-  double surely_even = 0.25 * max_uneven;  ///< variance over patches for the same
+  double surely_even = 0.25 * max_uneven;  ///< variance over patches up to which more layers are allowed
   double as_good = 1.3;  ///< what the true viewpoint of 1000 points leaves over what the best one leaves
   double as_good_beyond =
       2.0 * min_variance;  ///< variance of the logarithm: a depth camera 3 degrees from the best viewpoint

@@ -13,7 +13,7 @@ struct SegmentationRules {
   int rays_of_sample = 6;    ///< into the body
   double cone_angle = 0.61;  ///< radians between the rays and the inward normal: 35 degrees
   float min_reach = 1e-4f;   ///< radii from the surface at which rays begin: beyond rounding, thinner than walls
-  float cloud_reach = 2.5f;  ///< the same for clouds, square roots of the area of a point, whose triangles overlap
+  float cloud_reach = 2.5f;  ///< where rays of clouds begin, square roots of the area of a point: triangles overlap
 
   // Merging
   int num_patches = 200;          ///< fewer lose small parts; time and memory grow with the square
@@ -26,7 +26,7 @@ struct SegmentationRules {
   // Splitting
   double cut_band = 0.1;   ///< radii of the part, within which the minimum cut may lie
   double min_share = 0.1;  ///< of a part that a plane maps onto itself if the part is split; the paper's 10 %
-  double max_share = 0.9;  ///< the same, at most; the paper's 90 %
+  double max_share = 0.9;  ///< of a part that the plane maps onto itself, at most; the paper's 90 %
 
   // Divisions
   /// Share of the surface; smaller intersections of divisions join the closest larger one.

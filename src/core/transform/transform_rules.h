@@ -17,7 +17,7 @@ struct TransformRules {
   /// Share of min_value that a bin has to reach: D between bins is up to half as great again.
   double min_of_bin = 0.6;
   double same_start = 0.14;              ///< radians between starts of one maximum, its half width
-  double same_maximum = 15.0 * kDegree;  ///< the same between maxima
+  double same_maximum = 15.0 * kDegree;  ///< radians between maxima that are one
   double same_offset = 3.0;              ///< sigmas between both
   int more_samples = 4;                  ///< for climbing, times those of the map
   int halvings = 6;                      ///< of steps, down to 0.05 degrees
@@ -44,7 +44,7 @@ struct TransformRules {
 
   // Planes through points
   double pivot_step = 1.0;         ///< cells between points, and between planes at the far end of the shape
-  double coarse_pivot_step = 3.0;  ///< the same of planes that multiresolution does not refine; PRST is right to 0.7 %
+  double coarse_pivot_step = 3.0;  ///< cells, of planes that multiresolution does not refine; PRST is right to 0.7 %
 
   // Votes
   double near_share = 0.2;          ///< of the pairs that are drawn plane first
