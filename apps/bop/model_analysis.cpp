@@ -9,8 +9,8 @@
 #include <cstdint>
 #include <cstdio>
 
+#include "bop/exact_diameter.h"
 #include "command_line/tool_errors.h"
-#include "core/geometry/cloud_extent.h"
 #include "core/geometry/point_samples.h"
 #include "io/answers.h"
 #include "io/exact_coordinates.h"
@@ -144,7 +144,7 @@ ModelInfo analyzeModel(const std::string& path, const ModelOptions& options,
   info.low = vertices.rowwise().minCoeff().cast<double>();
   info.size = vertices.rowwise().maxCoeff().cast<double>() - info.low;
   info.low = shiftedBack(info.low, shape.shift);
-  info.diameter = diameter(vertices);
+  info.diameter = exactDiameter(vertices);
   info.symmetries = namingFile(path, [&] {
     return shape.mesh ? detectObjectSymmetries(*shape.mesh, options.symmetries, options.mesh_points)
                       : detectObjectSymmetries(*shape.points, options.symmetries);

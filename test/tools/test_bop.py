@@ -73,6 +73,13 @@ def deltahedron(corners, edge):
     return tool_run.off(corners, [(i, j, k) for i in count for j in range(i) for k in range(j) if near[i, j] and near[j, k] and near[k, i]])
 
 
+def greatest_distance(model):
+    """Between two vertices of a text of tool_run.off()."""
+    lines = model.split("\n")
+    vertices = np.loadtxt(lines[2:2 + int(lines[1].split()[0])], dtype=np.float32).astype(float)
+    return np.sqrt(((vertices[:, None] - vertices) ** 2).sum(axis=2).max())
+
+
 GOLDEN = (1 + np.sqrt(5)) / 2
 ICOSAHEDRON = deltahedron([np.roll((0, a, b), k) for k in range(3) for a in (-1, 1) for b in (-GOLDEN, GOLDEN)], 2)
 
@@ -109,6 +116,7 @@ class Bop(ToolTest):
 
     def test_gives_bodies_of_revolution_an_axis_and_cylinders_a_flip(self):
         vase = self.report(self.vase, "-quiet")["12"]
+        self.assertAlmostEqual(vase["diameter"], greatest_distance(tool_run.VASE), delta=1e-9)
         self.assertNotIn("symmetries_discrete", vase)
         self.assertEqual(len(vase["symmetries_continuous"]), 1)
         self.assertAlmostEqual(abs(vase["symmetries_continuous"][0]["axis"][2]), 1, delta=1e-4)
@@ -121,6 +129,7 @@ class Bop(ToolTest):
         sphere = self.report(self.write("ball.off", tool_run.SPHERE), "-quiet -sphere_angle 90")["1"]
         self.assertEqual([len(sphere[key]) for key in ("symmetries_continuous", "symmetries_discrete")], [1, 1])
         self.assertAlmostEqual(sphere["symmetries_discrete"][0][10], -1, delta=1e-9, msg="upside down")
+        self.assertAlmostEqual(sphere["diameter"], greatest_distance(tool_run.SPHERE), delta=1e-9)
         tetrahedron = self.report(self.write("m7.off", tool_run.TETRAHEDRON), "-quiet")["7"]
         self.assertFalse({"symmetries_continuous", "symmetries_discrete"} & set(tetrahedron))
         self.assertIn("group C1", self.output)

@@ -223,7 +223,7 @@ double grownBy(const NormalizedCloud& cloud, const Eigen::Affine3d& rotation) {
   Points both(3, 2 * size);
   both.leftCols(size) = cloud.points;
   both.rightCols(size) = rotation.cast<float>() * cloud.points;
-  return std::max(1.0, diameter(both) / cloud.extent);
+  return std::max(1.0, farthestPair(both) / cloud.extent);
 }
 
 /// Whether two lines, normalized frame, cross at a right angle.
