@@ -35,7 +35,64 @@
 namespace py = pybind11;
 using py::literals::operator""_a;
 
-namespace pcl_symmetry::python {
+namespace pcl_symmetry {
+
+static py::dict dictOf(const PoseScore& s) {
+  return py::dict("support"_a = s.support, "conflict"_a = s.conflict, "merit"_a = s.merit());
+}
+
+static py::dict dictOf(const PoseEvidence& e) {
+  return py::dict("overlap_source"_a = e.overlap_source, "overlap_target"_a = e.overlap_target,
+                  "agreement"_a = e.agreement, "on_surface"_a = e.on_surface, "contradicted"_a = e.contradicted,
+                  "missing"_a = e.missing, "aside"_a = e.aside, "noise"_a = e.noise, "size_ratio"_a = e.size_ratio,
+                  "uniqueness"_a = e.uniqueness);
+}
+
+static py::dict dictOf(const CloudRegistration& r) {
+  std::vector<std::pair<python::RowMajor4, PoseScore>> poses;
+  for (const RegisteredPose& pose : r.poses) poses.emplace_back(pose.T_target_source.matrix(), pose.score);
+  return py::dict("transform"_a = python::RowMajor4(r.T_target_source.matrix()), "score"_a = r.score,
+                  "confidence"_a = r.confidence, "evidence"_a = r.evidence,
+                  "reason"_a = r.converged() ? std::string() : r.doubt(), "converged"_a = r.converged(),
+                  "poses"_a = poses, "covariance"_a = r.covariance);
+}
+
+static py::dict dictOf(const RegisteredScans& r) {
+  std::vector<std::optional<python::RowMajor4>> transforms;
+  std::vector<double> confidences;
+  std::map<std::size_t, std::string> left_out;
+  std::vector<std::tuple<int, int, double, bool>> pairs;
+  for (const ScanPose& scan : r.scans) {
+    if (!scan.left_out.empty()) left_out[transforms.size()] = scan.left_out;
+    transforms.emplace_back();
+    if (scan.left_out.empty()) transforms.back() = scan.T_first_scan.matrix();
+    confidences.push_back(scan.left_out.empty() ? scan.confidence : 0.0);
+  }
+  for (const ScanPair& pair : r.pairs) pairs.emplace_back(pair.source, pair.target, pair.overlap, pair.used);
+  return py::dict("transforms"_a = transforms, "confidences"_a = confidences, "left_out"_a = left_out,
+                  "pairs"_a = pairs, "resolution"_a = r.resolution);
+}
+
+static py::dict dictOf(const ModelMatch& m) {
+  return py::dict("name"_a = m.name, "distance"_a = m.distance);
+}
+
+static py::dict dictOf(const ModelEvidence& e) {
+  return py::dict("on_model"_a = e.on_model, "shown"_a = e.shown);
+}
+
+static py::dict dictOf(const RecognizedModel& m) {
+  return py::dict("name"_a = m.name, "confidence"_a = m.confidence,
+                  "transform"_a = python::RowMajor4(m.T_model_scan.matrix()), "score"_a = m.score,
+                  "evidence"_a = m.evidence);
+}
+
+static py::dict dictOf(const BuildReport& r) {
+  return py::dict("num_added"_a = r.num_added, "num_kept"_a = r.num_kept, "failures"_a = r.failures,
+                  "cancelled"_a = r.cancelled);
+}
+
+namespace python {
 
 namespace {
 
@@ -352,94 +409,6 @@ BuildReport build(SymmetryDatabase& database, const py::object& models, const py
   return database.build(inputs, told);
 }
 
-void addRegistration(py::module_& module) {
-  py::class_<PoseScore>(module, "PoseScore")
-      .def_readonly("support", &PoseScore::support)
-      .def_readonly("conflict", &PoseScore::conflict)
-      .def_property_readonly("merit", &PoseScore::merit);
-  py::class_<PoseEvidence>(module, "PoseEvidence")
-      .def_readonly("overlap_source", &PoseEvidence::overlap_source)
-      .def_readonly("overlap_target", &PoseEvidence::overlap_target)
-      .def_readonly("agreement", &PoseEvidence::agreement)
-      .def_readonly("on_surface", &PoseEvidence::on_surface)
-      .def_readonly("contradicted", &PoseEvidence::contradicted)
-      .def_readonly("missing", &PoseEvidence::missing)
-      .def_readonly("aside", &PoseEvidence::aside)
-      .def_readonly("noise", &PoseEvidence::noise)
-      .def_readonly("size_ratio", &PoseEvidence::size_ratio)
-      .def_readonly("uniqueness", &PoseEvidence::uniqueness);
-  py::class_<CloudRegistration>(module, "Registration")
-      .def_property_readonly("transform",
-                             [](const CloudRegistration& r) { return RowMajor4(r.T_target_source.matrix()); })
-      .def_property_readonly("score", [](const CloudRegistration& r) { return r.score; })
-      .def_readonly("confidence", &CloudRegistration::confidence)
-      .def_readonly("evidence", &CloudRegistration::evidence)
-      .def_property_readonly("reason",
-                             [](const CloudRegistration& r) { return r.converged() ? std::string() : r.doubt(); })
-      .def_property_readonly("converged", [](const CloudRegistration& r) { return r.converged(); })
-      .def_property_readonly("poses",
-                             [](const CloudRegistration& r) {
-                               std::vector<std::pair<RowMajor4, PoseScore>> poses;
-                               for (const RegisteredPose& pose : r.poses)
-                                 poses.emplace_back(RowMajor4(pose.T_target_source.matrix()), pose.score);
-                               return poses;
-                             })
-      .def_property_readonly("covariance", [](const CloudRegistration& r) { return r.covariance; });
-  py::class_<RegisteredScans>(module, "RegisteredScans")
-      .def_readonly("resolution", &RegisteredScans::resolution)
-      .def_property_readonly("transforms",
-                             [](const RegisteredScans& r) {
-                               std::vector<std::optional<RowMajor4>> transforms;
-                               for (const ScanPose& scan : r.scans)
-                                 transforms.push_back(scan.left_out.empty()
-                                                          ? std::optional(RowMajor4(scan.T_first_scan.matrix()))
-                                                          : std::nullopt);
-                               return transforms;
-                             })
-      .def_property_readonly("confidences",
-                             [](const RegisteredScans& r) {
-                               std::vector<double> confidences;
-                               for (const ScanPose& scan : r.scans)
-                                 confidences.push_back(scan.left_out.empty() ? scan.confidence : 0.0);
-                               return confidences;
-                             })
-      .def_property_readonly("left_out",
-                             [](const RegisteredScans& r) {
-                               std::map<int, std::string> left_out;
-                               for (std::size_t k = 0; k < r.scans.size(); ++k)
-                                 if (!r.scans[k].left_out.empty()) left_out[static_cast<int>(k)] = r.scans[k].left_out;
-                               return left_out;
-                             })
-      .def_property_readonly("pairs", [](const RegisteredScans& r) {
-        std::vector<std::tuple<int, int, double, bool>> pairs;
-        for (const ScanPair& pair : r.pairs) pairs.emplace_back(pair.source, pair.target, pair.overlap, pair.used);
-        return pairs;
-      });
-  add(module, "register_all", &registerAllPoints, "clouds", "viewpoints", "seed", "threads");
-  add(module, "register", &registerPoints, "source", "target", "guess", "around", "source_viewpoint",
-      "target_viewpoint", "seed", "threads");
-}
-
-void addModels(py::module_& module) {
-  py::class_<ModelMatch>(module, "Match")
-      .def_readonly("name", &ModelMatch::name)
-      .def_readonly("distance", &ModelMatch::distance);
-  py::class_<ModelEvidence>(module, "ModelEvidence")
-      .def_readonly("on_model", &ModelEvidence::on_model)
-      .def_readonly("shown", &ModelEvidence::shown);
-  py::class_<RecognizedModel>(module, "Recognized")
-      .def_readonly("name", &RecognizedModel::name)
-      .def_readonly("score", &RecognizedModel::score)
-      .def_readonly("evidence", &RecognizedModel::evidence)
-      .def_readonly("confidence", &RecognizedModel::confidence)
-      .def_property_readonly("transform", [](const RecognizedModel& m) { return RowMajor4(m.T_model_scan.matrix()); });
-  py::class_<BuildReport>(module, "BuildReport")
-      .def_readonly("num_added", &BuildReport::num_added)
-      .def_readonly("num_kept", &BuildReport::num_kept)
-      .def_readonly("failures", &BuildReport::failures)
-      .def_readonly("cancelled", &BuildReport::cancelled);
-}
-
 void addDatabase(py::module_& module) {
   using Unlocked = py::call_guard<Computing>;
   py::class_<SymmetryDatabase>(module, "Database")
@@ -535,7 +504,7 @@ void addScenes(py::module_& module) {
 
 PYBIND11_MODULE(_recognition, module) {
   pcl::console::setVerbosityLevel(pcl::console::L_ALWAYS);  // the package tells the reasons
-  py::module_::import("pcl_symmetry._pcl_symmetry");        // has the classes of planes and frames, and NoAnswer
+  py::module_::import("pcl_symmetry._pcl_symmetry");        // has the classes that both use, and NoAnswer
   addComputing(module);
   // Messages of the library name the file or the parameter.
   py::register_exception_translator([](std::exception_ptr error) {
@@ -547,10 +516,12 @@ PYBIND11_MODULE(_recognition, module) {
       PyErr_SetString(PyExc_ValueError, exception.what());
     }
   });
-  addRegistration(module);
-  addModels(module);
+  add(module, "register_all", &registerAllPoints, "clouds", "viewpoints", "seed", "threads");
+  add(module, "register", &registerPoints, "source", "target", "guess", "around", "source_viewpoint",
+      "target_viewpoint", "seed", "threads");
   addDatabase(module);
   addScenes(module);
 }
 
-}  // namespace pcl_symmetry::python
+}  // namespace python
+}  // namespace pcl_symmetry

@@ -6,141 +6,99 @@
 #include <utility>
 
 #include "pcl_symmetry/core/rotational_symmetry.h"
-#include "pcl_symmetry/core/symmetrized_shape.h"
 #include "pcl_symmetry/core/symmetry_map.h"
 #include "python/evidence.h"
 #include "python/input_points.h"
 #include "python/motions.h"
 
 namespace py = pybind11;
+using py::literals::operator""_a;
 
-namespace pcl_symmetry::python {
+namespace pcl_symmetry {
+
+py::dict dictOf(const SymmetryPlane& p) {
+  py::list reasons;
+  for (const Reason& reason : p.reasons) reasons.append(py::make_tuple(reason.rule, reason.odds));
+  return py::dict("normal"_a = p.normal(), "offset"_a = p.offset(), "kind"_a = toString(p.kind),
+                  "confidence"_a = p.confidence, "reasons"_a = py::tuple(reasons), "share"_a = p.share,
+                  "share_interval"_a = std::pair(p.share_low, p.share_high), "score"_a = p.score,
+                  "support"_a = p.support, "deviation"_a = p.deviation, "seen"_a = p.seen, "residual"_a = p.residual,
+                  "iterations"_a = p.iterations, "converged"_a = p.converged);
+}
+
+py::dict dictOf(const SymmetryAxis& a) {
+  return py::dict("point"_a = a.point, "direction"_a = a.direction, "confidence"_a = a.confidence, "score"_a = a.score,
+                  "support"_a = a.support);
+}
+
+py::dict dictOf(const SymmetryCenter& c) {
+  return py::dict("point"_a = c.point, "confidence"_a = c.confidence, "score"_a = c.score, "support"_a = c.support);
+}
+
+py::dict dictOf(const SymmetryRotation& r) {
+  return py::dict("point"_a = r.point, "direction"_a = r.direction, "fold"_a = r.fold, "confidence"_a = r.confidence,
+                  "support"_a = r.support, "off"_a = r.off, "far"_a = r.far, "halfway"_a = r.halfway);
+}
+
+py::dict dictOf(const ProbableFrame& f) {
+  return py::dict("center"_a = f.center, "axes"_a = f.axes, "revolution_axis"_a = f.revolution_axis,
+                  "probability"_a = f.probability);
+}
+
+py::dict dictOf(const SymmetryFrame& f) {
+  return py::dict(
+      "center"_a = f.center, "axes"_a = f.axes, "scores"_a = f.scores, "revolution_axis"_a = f.revolution_axis,
+      "transform"_a = python::RowMajor4(f.T_canonical_input.matrix()), "equivalent"_a = python::stacked(f.equivalent),
+      "rotations"_a = f.rotations, "stray_points"_a = f.num_stray_points, "probable"_a = f.probable,
+      "evidence"_a = python::frameEvidence(f));
+}
+
+py::dict dictOf(const SymmetrizedShape& s) {
+  return py::dict("points"_a = python::toRows(s.points), "kept"_a = s.kept,
+                  "asymmetry"_a = python::toArray(s.asymmetry), "mean_asymmetry"_a = s.mean_asymmetry,
+                  "greatest_asymmetry"_a = s.greatest_asymmetry, "deviation"_a = s.deviation);
+}
+
+namespace python {
+
+py::dict dictOf(const PlaneSearch& search) {
+  const Detection& found = search.found;
+  std::vector<py::array_t<float>> supports;
+  for (const SymmetryPlane& plane : found.planes) supports.push_back(toArray(plane.point_support));
+  std::vector<std::pair<Eigen::Vector3d, double>> maxima;
+  for (const LocalMaximum& maximum : findLocalMaxima(found.map, {}, 1))
+    maxima.emplace_back(maximum.plane.normal(), maximum.value);
+  std::optional<Eigen::Vector4d> flat;
+  if (found.flat) flat = found.flat->coefficients();
+  return py::dict("planes"_a = found.planes, "axes"_a = found.axes, "centers"_a = found.centers,
+                  "rotations"_a = found.rotations, "best"_a = found.best, "flat"_a = flat,
+                  "tolerance"_a = found.tolerance, "resolution"_a = found.resolution, "diameter"_a = found.diameter,
+                  "stray_points"_a = found.num_stray_points, "reason"_a = found.reason,
+                  "viewpoint"_a = search.viewpoint, "evidence"_a = planeEvidence(search.evidence),
+                  "rotation_evidence"_a = rotationEvidence(search.evidence), "_support"_a = supports, "_maxima"_a = maxima,
+                  "_rows"_a = toArray(search.rows));
+}
 
 namespace {
 
-void addPlanes(py::module_& module) {
+py::dict fieldsOf(const ObjectSymmetries& s) {
+  std::vector<std::pair<Eigen::Vector3d, Eigen::Vector3d>> axes;
+  for (const ContinuousSymmetry& axis : s.continuous) axes.emplace_back(axis.offset, axis.axis);
+  return py::dict("name"_a = s.reason.empty() ? s.name() : "", "fold"_a = s.fold, "center"_a = s.center,
+                  "discrete"_a = stacked(s.discrete), "continuous"_a = axes, "support"_a = s.support,
+                  "confidence"_a = s.confidence, "tolerance"_a = s.tolerance, "stray_points"_a = s.num_stray_points,
+                  "reason"_a = s.reason);
+}
+
+}  // namespace
+
+void addResults(py::module_& module) {
   py::class_<ReflectionPlane>(module, "ReflectionPlane")
       .def(py::init<const Eigen::Vector3d&, double>())
       .def_property_readonly("normal", [](const ReflectionPlane& p) { return Eigen::Vector3d(p.normal()); })
       .def_property_readonly("offset", &ReflectionPlane::offset);
-  py::class_<SymmetryPlane, ReflectionPlane>(module, "Plane")
-      .def_property_readonly("kind", [](const SymmetryPlane& p) { return toString(p.kind); })
-      .def_property_readonly("share_interval",
-                             [](const SymmetryPlane& p) { return std::pair(p.share_low, p.share_high); })
-      .def_property_readonly("reasons",
-                             [](const SymmetryPlane& p) {
-                               py::tuple reasons(p.reasons.size());
-                               for (std::size_t i = 0; i < p.reasons.size(); ++i)
-                                 reasons[i] = py::make_tuple(p.reasons[i].rule, p.reasons[i].odds);
-                               return reasons;
-                             })
-      .def_readonly("confidence", &SymmetryPlane::confidence)
-      .def_readonly("score", &SymmetryPlane::score)
-      .def_readonly("support", &SymmetryPlane::support)
-      .def_readonly("share", &SymmetryPlane::share)
-      .def_readonly("deviation", &SymmetryPlane::deviation)
-      .def_readonly("seen", &SymmetryPlane::seen)
-      .def_readonly("residual", &SymmetryPlane::residual)
-      .def_readonly("iterations", &SymmetryPlane::iterations)
-      .def_readonly("converged", &SymmetryPlane::converged);
-  py::class_<SymmetryAxis>(module, "Axis")
-      .def_readonly("point", &SymmetryAxis::point)
-      .def_readonly("direction", &SymmetryAxis::direction)
-      .def_readonly("confidence", &SymmetryAxis::confidence)
-      .def_readonly("score", &SymmetryAxis::score)
-      .def_readonly("support", &SymmetryAxis::support);
-  py::class_<SymmetryCenter>(module, "Center")
-      .def_readonly("point", &SymmetryCenter::point)
-      .def_readonly("confidence", &SymmetryCenter::confidence)
-      .def_readonly("score", &SymmetryCenter::score)
-      .def_readonly("support", &SymmetryCenter::support);
-  py::class_<SymmetryRotation>(module, "RotationAxis")
-      .def_readonly("point", &SymmetryRotation::point)
-      .def_readonly("direction", &SymmetryRotation::direction)
-      .def_readonly("fold", &SymmetryRotation::fold)
-      .def_readonly("confidence", &SymmetryRotation::confidence)
-      .def_readonly("support", &SymmetryRotation::support)
-      .def_readonly("off", &SymmetryRotation::off)
-      .def_readonly("far", &SymmetryRotation::far)
-      .def_readonly("halfway", &SymmetryRotation::halfway);
-}
-
-void addPlaneSearch(py::module_& module) {
-  py::class_<PlaneSearch>(module, "Planes")
-      .def_property_readonly("planes", [](const PlaneSearch& s) { return s.found.planes; })
-      .def_property_readonly("axes", [](const PlaneSearch& s) { return s.found.axes; })
-      .def_property_readonly("centers", [](const PlaneSearch& s) { return s.found.centers; })
-      .def_property_readonly("rotations", [](const PlaneSearch& s) { return s.found.rotations; })
-      .def_property_readonly("best", [](const PlaneSearch& s) { return s.found.best; })
-      .def_property_readonly("flat",
-                             [](const PlaneSearch& s) {
-                               std::optional<Eigen::Vector4d> plane;
-                               if (s.found.flat) plane = s.found.flat->coefficients();
-                               return plane;
-                             })
-      .def_property_readonly("tolerance", [](const PlaneSearch& s) { return s.found.tolerance; })
-      .def_property_readonly("resolution", [](const PlaneSearch& s) { return s.found.resolution; })
-      .def_property_readonly("diameter", [](const PlaneSearch& s) { return s.found.diameter; })
-      .def_property_readonly("stray_points", [](const PlaneSearch& s) { return s.found.num_stray_points; })
-      .def_property_readonly("reason", [](const PlaneSearch& s) { return s.found.reason; })
-      .def_readonly("viewpoint", &PlaneSearch::viewpoint)
-      .def_property_readonly("support",
-                             [](const PlaneSearch& s) {
-                               std::vector<py::array_t<float>> supports;
-                               for (const SymmetryPlane& plane : s.found.planes)
-                                 supports.push_back(toArray(plane.point_support));
-                               return supports;
-                             })
-      .def_property_readonly("maxima",
-                             [](const PlaneSearch& s) {
-                               std::vector<std::pair<Eigen::Vector3d, double>> maxima;
-                               for (const LocalMaximum& maximum : findLocalMaxima(s.found.map, {}, 1))
-                                 maxima.emplace_back(maximum.plane.normal(), maximum.value);
-                               return maxima;
-                             })
-      .def_property_readonly("rows", [](const PlaneSearch& s) { return toArray(s.rows); })
-      .def_property_readonly("evidence", [](const PlaneSearch& s) { return planeEvidence(s.evidence); })
-      .def_property_readonly("rotation_evidence", [](const PlaneSearch& s) { return rotationEvidence(s.evidence); });
-}
-
-void addFrame(py::module_& module) {
-  py::class_<ProbableFrame>(module, "ProbableFrame")
-      .def_readonly("center", &ProbableFrame::center)
-      .def_readonly("axes", &ProbableFrame::axes)
-      .def_readonly("revolution_axis", &ProbableFrame::revolution_axis)
-      .def_readonly("probability", &ProbableFrame::probability);
-  py::class_<SymmetryFrame>(module, "Frame")
-      .def_readonly("center", &SymmetryFrame::center)
-      .def_readonly("axes", &SymmetryFrame::axes)
-      .def_readonly("scores", &SymmetryFrame::scores)
-      .def_readonly("revolution_axis", &SymmetryFrame::revolution_axis)
-      .def_property_readonly("transform",
-                             [](const SymmetryFrame& f) { return RowMajor4(f.T_canonical_input.matrix()); })
-      .def_property_readonly("equivalent", [](const SymmetryFrame& f) { return stacked(f.equivalent); })
-      .def_readonly("rotations", &SymmetryFrame::rotations)
-      .def_readonly("stray_points", &SymmetryFrame::num_stray_points)
-      .def_readonly("probable", &SymmetryFrame::probable)
-      .def_property_readonly("evidence", &frameEvidence);
-}
-
-void addRotations(py::module_& module) {
   py::class_<ObjectSymmetries>(module, "Rotations")
-      .def_property_readonly("name", &ObjectSymmetries::name)
-      .def_readonly("fold", &ObjectSymmetries::fold)
-      .def_readonly("center", &ObjectSymmetries::center)
-      .def_property_readonly("discrete", [](const ObjectSymmetries& s) { return stacked(s.discrete); })
-      .def_property_readonly("continuous",
-                             [](const ObjectSymmetries& s) {
-                               std::vector<std::pair<Eigen::Vector3d, Eigen::Vector3d>> axes;
-                               for (const ContinuousSymmetry& axis : s.continuous)
-                                 axes.emplace_back(axis.offset, axis.axis);
-                               return axes;
-                             })
-      .def_readonly("support", &ObjectSymmetries::support)
-      .def_readonly("confidence", &ObjectSymmetries::confidence)
-      .def_readonly("tolerance", &ObjectSymmetries::tolerance)
-      .def_readonly("stray_points", &ObjectSymmetries::num_stray_points)
-      .def_readonly("reason", &ObjectSymmetries::reason)
+      .def_property_readonly("fields", &fieldsOf)
       .def(
           "equivalents",
           [](const ObjectSymmetries& s, const RowMajor4& pose, double step) {
@@ -166,15 +124,6 @@ void addRotations(py::module_& module) {
             return s.surfaceDistance(motionOf("estimate", estimate), motionOf("truth", truth), input.points());
           },
           py::arg("estimate"), py::arg("truth"), py::arg("points"));
-}
-
-}  // namespace
-
-void addResults(py::module_& module) {
-  addPlanes(module);
-  addPlaneSearch(module);
-  addFrame(module);
-  addRotations(module);
   py::class_<SymmetryMap>(module, "Map")
       .def_property_readonly(
           "values",
@@ -186,13 +135,7 @@ void addResults(py::module_& module) {
       .def_property_readonly("center", [](const SymmetryMap& map) { return map.grid.center(); })
       .def_property_readonly("radius", [](const SymmetryMap& map) { return map.grid.radius(); })
       .def_readonly("sigma", &SymmetryMap::sigma);
-  py::class_<SymmetrizedShape>(module, "Symmetrized")
-      .def_property_readonly("points", [](const SymmetrizedShape& s) { return toRows(s.points); })
-      .def_readonly("kept", &SymmetrizedShape::kept)
-      .def_property_readonly("asymmetry", [](const SymmetrizedShape& s) { return toArray(s.asymmetry); })
-      .def_readonly("mean_asymmetry", &SymmetrizedShape::mean_asymmetry)
-      .def_readonly("greatest_asymmetry", &SymmetrizedShape::greatest_asymmetry)
-      .def_readonly("deviation", &SymmetrizedShape::deviation);
 }
 
-}  // namespace pcl_symmetry::python
+}  // namespace python
+}  // namespace pcl_symmetry

@@ -9,7 +9,7 @@ import warnings
 from typing import TYPE_CHECKING, Any, Callable, Dict, Iterable, Iterator, List, Mapping, Optional, Sequence, Tuple, Union
 
 from . import _recognition
-from .functions import Cloud, Core, NoAnswer, Viewpoint, _fields, _frame, _planes_of, left_out, no_answer, opened, prepare, rows_of
+from .functions import Cloud, Core, NoAnswer, Viewpoint, _frame, _planes_of, left_out, no_answer, opened, prepare, rows_of
 from .progress import Progress, shares_of
 from .results import (
     BuildReport,
@@ -36,14 +36,6 @@ if TYPE_CHECKING:
 core = Core(_recognition)
 
 Path = Union[str, "os.PathLike[str]"]
-
-
-def _score(score: Any) -> PoseScore:
-    return PoseScore(score.support, score.conflict, score.merit)
-
-
-def _all_fields(kind: Any, found: Any) -> Any:
-    return kind(**_fields(found, *(f.name for f in dataclasses.fields(kind))))
 
 
 def register(
@@ -87,12 +79,9 @@ def register(
             transform=np.eye(4), score=PoseScore(0, 0, 0), converged=False, confidence=0.0, reason=str(none), poses=[],
             evidence=PoseEvidence(0, 0, 0, 0, 0, 0, 0, 0, size_ratio=1, uniqueness=1), covariance=None,
         )  # fmt: skip
-    result = Registration(
-        score=_score(found.score),
-        poses=[(pose, _score(score)) for pose, score in found.poses],
-        evidence=_all_fields(PoseEvidence, found.evidence),
-        **_fields(found, "transform", "converged", "confidence", "reason", "covariance"),
-    )
+    poses = [(pose, PoseScore(**score)) for pose, score in found["poses"]]
+    found.update(score=PoseScore(**found["score"]), evidence=PoseEvidence(**found["evidence"]), poses=poses)
+    result = Registration(**found)
     return result if source_shift is None and target_shift is None else result._moved_between(s, t)
 
 
@@ -118,7 +107,7 @@ def register_all(
         shifts.append(np.zeros(3) if scan.shift is None else scan.shift)
         viewpoints.append(scan.seen_from(viewpoint))
     found, merged = core.register_all(arrays, viewpoints=viewpoints, told=progress, seed=seed, threads=threads)
-    transforms, left_out, pairs = found.transforms, found.left_out, found.pairs
+    transforms = found["transforms"]
     first = next((k for k, transform in enumerate(transforms) if transform is not None), 0)
     for transform, shift in zip(transforms, shifts):
         if transform is not None:
@@ -129,16 +118,7 @@ def register_all(
         if transform is not None:
             from_scan = arrays[k][rows[scans == k]].astype(float) + shifts[k]
             points[scans == k] = from_scan @ transform[:3, :3].T + transform[:3, 3]
-    return RegisteredScans(
-        transforms=transforms,
-        confidences=found.confidences,
-        left_out=left_out,
-        pairs=pairs,
-        points=points,
-        scans=scans,
-        rows=rows,
-        resolution=found.resolution,
-    )
+    return RegisteredScans(points=points, scans=scans, rows=rows, **found)
 
 
 class Database:
@@ -229,8 +209,7 @@ class Database:
         the others. What is stored when Ctrl-C ends the call stays stored.
         """
         with shares_of(progress) as tell:
-            found = self._core.build(_models_of(models), progress=tell)
-        return BuildReport(**_fields(found, "num_added", "num_kept", "failures", "cancelled"))
+            return BuildReport(**self._core.build(_models_of(models), progress=tell))
 
     def merge(self, files: Sequence[Path]) -> int:
         """Adds all models of other databases, such as parts that several machines built; all of them or none.
@@ -267,7 +246,7 @@ class Database:
         except NoAnswer as none:
             no_answer(none)
             return []
-        return [Match(m.name, m.distance) for m in found]
+        return [Match(**m) for m in found]
 
     def recognize(
         self,
@@ -294,8 +273,9 @@ class Database:
         return [_recognized(m) for m in found]
 
 
-def _recognized(model: Any) -> Recognized:
-    return Recognized(model.name, model.confidence, model.transform, _score(model.score), _all_fields(ModelEvidence, model.evidence))
+def _recognized(found: Dict[str, Any]) -> Recognized:
+    found.update(score=PoseScore(**found["score"]), evidence=ModelEvidence(**found["evidence"]))
+    return Recognized(**found)
 
 
 def _camera_points(cloud: Cloud) -> NDArray[Any]:

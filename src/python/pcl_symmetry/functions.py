@@ -353,23 +353,6 @@ def _seen_from(viewpoint: Viewpoint, shift: Shift, name: str = "viewpoint") -> A
     return position if shift is None else position - shift
 
 
-def _fields(found: Any, *names: str) -> Dict[str, Any]:
-    return {name: getattr(found, name) for name in names}
-
-
-def _plane(p: Any) -> Plane:
-    plane = object.__new__(Plane)
-    names = ("kind", "confidence", "reasons", "share", "share_interval", "score", "support", "deviation", "seen", "residual")
-    for name, value in _fields(p, "normal", "offset", *names, "iterations", "converged").items():
-        object.__setattr__(plane, name, value)
-    plane.__post_init__()
-    return plane
-
-
-def _rotation_axis(t: Any) -> RotationAxis:
-    return RotationAxis(**_fields(t, "point", "direction", "fold", "confidence", "support", "off", "far", "halfway"))
-
-
 def plane_of(plane: Union[ReflectionPlane, ArrayLike]) -> ReflectionPlane:
     """A plane, also of its coefficients."""
     import numpy as np
@@ -388,42 +371,36 @@ def _core_plane(plane: ReflectionPlane, shift: Shift) -> Any:
     return core.ReflectionPlane(moved.normal, moved.offset)
 
 
-def _warn_of_stray(found: Any, level: int = 3) -> None:
-    if found.stray_points:
-        text = f"points: {found.stray_points} stray, far from all others, left out"
-        warnings.warn(text, RuntimeWarning, stacklevel=level)
+def _warn_of_stray(count: int, level: int = 3) -> None:
+    if count:
+        warnings.warn(f"points: {count} stray, far from all others, left out", RuntimeWarning, stacklevel=level)
 
 
-def _planes_of(found: Any, cloud: Cloud, used: Optional[Used] = None, judged: bool = True, quiet: bool = False) -> Planes:
+def _planes_of(found: Dict[str, Any], cloud: Cloud, used: Optional[Used] = None, judged: bool = True, quiet: bool = False) -> Planes:
     """judged: only symmetries are in the list. quiet: whoever asked is not warned of what has no answer."""
     import numpy as np
 
-    scores = ("confidence", "score", "support")
-    every = [_plane(p) for p in found.planes]
-    reason = used.reason if used is not None and used.reason else found.reason
+    every = [Plane(**p) for p in found["planes"]]
+    reason = used.reason if used is not None and used.reason else found["reason"]
     if reason and not quiet:
         warnings.warn(reason if reason.startswith("volume") else f"points: {reason}", RuntimeWarning, stacklevel=3)
     if not quiet:
-        _warn_of_stray(found, 4)
-    return Planes(
+        _warn_of_stray(found["stray_points"], 4)
+    found.update(
         planes=[p for p in every if not judged or p.kind == "symmetry"],
         possible=[p for p in every if p.kind == "possible"],
         approximate=[p for p in every if judged and p.kind in ("approximate", "local")],
-        axes=[Axis(**_fields(a, "point", "direction", *scores)) for a in found.axes],
-        centers=[Center(**_fields(c, "point", *scores)) for c in found.centers],
-        rotations=[_rotation_axis(t) for t in found.rotations],
-        best=None if found.best is None else _plane(found.best),
-        evidence=found.evidence,
-        rotation_evidence=found.rotation_evidence,
+        axes=[Axis(**a) for a in found["axes"]],
+        centers=[Center(**c) for c in found["centers"]],
+        rotations=[RotationAxis(**r) for r in found["rotations"]],
+        best=None if found["best"] is None else Plane(**found["best"]),
         samples=None if cloud.mesh is None else cloud.array if cloud.shift is None else cloud.array + cloud.shift,
         reason=reason,
-        _support=found.support,
-        _rows=np.asarray(found.rows if used is None or used.rows is None else used.rows, dtype=np.int64),
+        _rows=np.asarray(found["_rows"] if used is None or used.rows is None else used.rows, dtype=np.int64),
         _shape=cloud.shape,
-        _maxima=found.maxima,
-        _viewpoint_from="none" if found.viewpoint is None or used is None else used.viewpoint_from,
-        **_fields(found, "flat", "tolerance", "resolution", "diameter", "viewpoint", "stray_points"),
+        _viewpoint_from="none" if found["viewpoint"] is None or used is None else used.viewpoint_from,
     )
+    return Planes(**found)
 
 
 def planes(
@@ -705,18 +682,16 @@ def symmetrize(
         left_out(symmetrize, given, "a cloud", "cut")
     array, shift, *_ = prepare("points", points)
     found = core.symmetrize(array, faces, _core_plane(plane, shift), half=half, threads=threads)
-    result = found.points if shift is None else found.points + shift
-    rows, deviation = np.arange(len(array)), found.deviation
+    moved, kept = found.pop("points"), found.pop("kept")
+    result, rows = moved if shift is None else moved + shift, np.arange(len(array))
     if faces is None:
-        rows = np.asarray(found.kept, dtype=np.int64)
+        rows = np.asarray(kept, dtype=np.int64)
         result = np.concatenate([result[rows], plane.reflect(result[rows])])
         rows = np.concatenate([rows, rows])
     elif cut:
-        result, faces, rows = core.mirrored_half(found.points, faces, _core_plane(plane, shift), half != "right")
-        result, rows, deviation = result if shift is None else result + shift, np.asarray(rows), 0.0
-    own = None if faces is None else np.asarray(faces)
-    measures = _fields(found, "asymmetry", "mean_asymmetry", "greatest_asymmetry")
-    return Symmetrized(points=result, faces=own, rows=rows, deviation=deviation, **measures)
+        result, faces, rows = core.mirrored_half(moved, faces, _core_plane(plane, shift), half != "right")
+        result, rows, found["deviation"] = result if shift is None else result + shift, np.asarray(rows), 0.0
+    return Symmetrized(points=result, faces=None if faces is None else np.asarray(faces), rows=rows, **found)
 
 
 def viewpoints(
@@ -866,18 +841,15 @@ def frame(
         found = core.frame(used.array, viewpoint=used.viewpoint, mesh=None if as_published else cloud.surface(), **options)
     except NoAnswer as none:
         return _no_frame(no_answer(none, used.reason))
-    _warn_of_stray(found)
+    _warn_of_stray(found["stray_points"])
     result = _frame(found)
     return result if cloud.shift is None else result._moved(cloud.shift)
 
 
-def _frame(found: Any) -> Frame:
-    return Frame(
-        probable=[ProbableFrame(**_fields(f, "center", "axes", "probability", "revolution_axis")) for f in found.probable],
-        rotations=[_rotation_axis(t) for t in found.rotations],
-        reason="",
-        **_fields(found, "center", "axes", "scores", "revolution_axis", "transform", "equivalent", "evidence", "stray_points"),
-    )
+def _frame(found: Dict[str, Any]) -> Frame:
+    found["probable"] = [ProbableFrame(**f) for f in found["probable"]]
+    found["rotations"] = [RotationAxis(**r) for r in found["rotations"]]
+    return Frame(reason="", **found)
 
 
 def rotations(
@@ -911,12 +883,10 @@ def rotations(
     except NoAnswer as none:
         nothing: Dict[str, Any] = dict(support=0.0, confidence=0.0, fold=1, continuous=[], tolerance=0.0, stray_points=0)
         return Rotations(name="", center=np.full(3, np.nan), discrete=np.empty((0, 4, 4)), reason=no_answer(none), **nothing)
-    names = ("name", "center", "support", "confidence", "fold", "discrete", "continuous", "tolerance", "stray_points", "reason")
-    _warn_of_stray(found)
-    fields = _fields(found, *names)
-    if fields["reason"]:
-        warnings.warn(f"points: {fields['reason']}", RuntimeWarning, stacklevel=2)
-    result = Rotations(**{**fields, "name": "" if fields["reason"] else fields["name"]})
+    result = Rotations(**found.fields)
+    _warn_of_stray(result.stray_points)
+    if result.reason:
+        warnings.warn(f"points: {result.reason}", RuntimeWarning, stacklevel=2)
     return result if cloud.shift is None else result._moved(cloud.shift)
 
 
@@ -1086,5 +1056,5 @@ def transform(
     except NoAnswer as none:
         nothing = np.empty((0, 0, 0), np.float32)
         return Map(sigma=0.0, center=np.full(3, np.nan), radius=0.0, values=nothing, reason=no_answer(none))
-    result = Map(**_fields(found, "sigma", "center", "radius", "values"))
+    result = Map(sigma=found.sigma, center=found.center, radius=found.radius, values=found.values)
     return result if shift is None else result._moved(shift)
