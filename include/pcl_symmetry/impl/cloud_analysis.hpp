@@ -4,30 +4,15 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <memory>
 #include <optional>
 #include <string>
 #include <utility>
 
 #include "pcl_symmetry/core/detect_planes.h"
+#include "pcl_symmetry/core/scalar_grid.h"
 #include "pcl_symmetry/impl/cloud_conversion.hpp"
 
 namespace PCL_SYMMETRY_EXPORTS pcl_symmetry {
-
-class ScalarGrid;
-struct VolumeLevels;
-
-namespace detail {
-
-struct InputVolume;
-
-/// \param levels null = chosen from the values.
-/// \return nothing without a grid.
-/// \throws pcl::BadArgumentException for bad levels.
-std::shared_ptr<const InputVolume> inputVolume(const std::shared_ptr<const ScalarGrid>& grid,
-                                               const VolumeLevels* levels);
-
-}  // namespace detail
 
 /// The input of every class that analyzes a cloud: which points it uses, and why they may hold no answer.
 ///
@@ -77,21 +62,17 @@ protected:
     reason_.clear();
   }
 
-  /// Analyzes a function on a grid in place of a cloud (Section 4.2), until a cloud is set. The intensities that count
-  /// are chosen from the values.
+  /// Analyzes a function on a grid in place of a cloud (Section 4.2), until a cloud is set.
   /// \param volume such as a CT or MR image; results are in its input frame.
-  void setInputVolume(const std::shared_ptr<const ScalarGrid>& volume) {
-    analyze(detail::inputVolume(volume, nullptr));
-  }
-  /// Analyzes a volume at given intensities.
   /// \param levels the intensities that count.
   /// \throws pcl::BadArgumentException for bad levels.
-  void setInputVolume(const std::shared_ptr<const ScalarGrid>& volume, const VolumeLevels& levels) {
-    analyze(detail::inputVolume(volume, &levels));
+  void setInputVolume(const ScalarGrid::ConstPtr& volume, const VolumeLevels& levels = {}) {
+    detail::withBadArguments([&] { levels.validate(); });
+    pcl::PCLBase<PointT>::setInputCloud(nullptr);
+    volume_ = volume;
+    levels_ = levels;
+    clearResults();
   }
-
-  /// \return null where a cloud is analyzed.
-  const detail::InputVolume* volume() const { return volume_.get(); }
 
   /// Begins an analysis: clears the results of the last one and selects the points of the input.
   /// \return 3 x N points; N = 0 where the input holds no answer.
@@ -121,17 +102,13 @@ protected:
     return Points(3, 0);
   }
 
-private:
-  void analyze(std::shared_ptr<const detail::InputVolume> volume) {
-    pcl::PCLBase<PointT>::setInputCloud(nullptr);
-    volume_ = std::move(volume);
-    clearResults();
-  }
+  ScalarGrid::ConstPtr volume_;  ///< null where a cloud is analyzed
+  VolumeLevels levels_;          ///< of the volume
 
+private:
   std::string name_;
   std::size_t max_points_;
   std::int64_t min_max_points_;
-  std::shared_ptr<const detail::InputVolume> volume_;
   pcl::Indices used_indices_;
   std::string reason_;
 };

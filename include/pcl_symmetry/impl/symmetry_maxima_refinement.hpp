@@ -4,6 +4,7 @@
 
 #include <optional>
 
+#include "pcl_symmetry/core/volume_planes.h"
 #include "pcl_symmetry/symmetry_maxima_refinement.h"
 
 namespace PCL_SYMMETRY_EXPORTS pcl_symmetry {
@@ -14,9 +15,6 @@ namespace detail {
 /// \param edt,map of these points; edt null: the map is computed.
 Detection planesAsPublished(const Points& points, const GaussianEdt* edt, const SymmetryMap& map,
                             const DetectionOptions& options);
-
-/// The planes of a volume: detectVolumePlanes().
-Detection planesOfVolume(const InputVolume& volume, const DetectionOptions& options);
 
 /// \param all finite points of a cloud.
 /// \param cloud_size points of the cloud.
@@ -40,9 +38,9 @@ void SymmetryMaximaRefinement<PointT>::setSymmetryMap(const SymmetryMap& map,
 template <typename PointT>
 std::vector<SymmetryPlane> SymmetryMaximaRefinement<PointT>::compute() {
   return detail::withBadArguments([&] {
-    if (this->volume()) {
+    if (this->volume_) {
       clearResults();
-      found_ = detail::planesOfVolume(*this->volume(), options_);
+      found_ = detectVolumePlanes(*this->volume_, options_, this->levels_);
       if (!found_.reason.empty()) this->giveNoAnswer(found_.reason);
       return found_.planes;
     }

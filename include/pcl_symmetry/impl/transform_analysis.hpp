@@ -10,20 +10,9 @@
 #include <utility>
 
 #include "pcl_symmetry/core/gaussian_edt.h"
-#include "pcl_symmetry/core/scalar_grid.h"
 #include "pcl_symmetry/impl/cloud_analysis.hpp"
 
 namespace PCL_SYMMETRY_EXPORTS pcl_symmetry {
-
-namespace detail {
-
-/// A function on a grid that is analyzed in place of a cloud.
-struct InputVolume {
-  ScalarGrid::ConstPtr grid;  ///< not null
-  VolumeLevels levels;        ///< the intensities that count
-};
-
-}  // namespace detail
 
 /// The input of classes that compute a transform, as the function f that it is made from: the distance transform of
 /// points (Section 4.1), or a volume (Section 4.2).
@@ -62,12 +51,12 @@ protected:
   /// \return 3 x N points of the cloud, or of the body in the volume; N = 0 where the input holds no answer.
   Points makeDistanceTransform(std::uint64_t seed, int num_threads) {
     edt_options_.num_threads = num_threads;
-    if (const detail::InputVolume* volume = this->volume()) {
+    if (this->volume_) {
       clearResults();
       std::optional<VolumeFunction> f;  // on about as many voxels as the distance transform has cells
       try {
         const auto side = static_cast<std::size_t>(std::max(edt_options_.num_cells, 16));
-        f.emplace(*volume->grid, volume->levels, side * side * side, num_threads);
+        f.emplace(*this->volume_, this->levels_, side * side * side, num_threads);
       } catch (const std::invalid_argument& error) {
         return this->giveNoAnswer(error.what());
       }
