@@ -1,7 +1,4 @@
-#include "pcl_symmetry/impl/symmetry_maxima_refinement.hpp"
-
-#include <pcl/point_types.h>
-#include <pcl/impl/instantiate.hpp>
+#include "pcl_symmetry/symmetry_maxima_refinement.h"
 
 #include <limits>
 
@@ -39,5 +36,3 @@ std::vector<std::vector<float>> pointSupport(const SelectedPoints& all, std::siz
 }
 
 }  // namespace pcl_symmetry::detail
-
-PCL_INSTANTIATE(SymmetryMaximaRefinement, PCL_XYZ_POINT_TYPES)

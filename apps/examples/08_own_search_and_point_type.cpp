@@ -1,5 +1,5 @@
 /// A point type of the user's own, and a search of PCL in place of the library's. PCL_NO_PRECOMPILE brings the bodies
-/// of the templates, as in PCL.
+/// of PCL's octree.
 #define PCL_NO_PRECOMPILE
 #include <pcl/io/pcd_io.h>
 #include <pcl/search/octree.h>

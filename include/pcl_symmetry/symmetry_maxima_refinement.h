@@ -1,33 +1,32 @@
 #pragma once
 
-#include <pcl/point_types.h>
-
 #include <algorithm>
-#include <boost/preprocessor/seq/enum.hpp>
 #include <memory>
 #include <optional>
-#include <type_traits>
 #include <vector>
 
 #include "pcl_symmetry/core/detect_planes.h"
 #include "pcl_symmetry/core/mesh_surface.h"
+#include "pcl_symmetry/core/volume_planes.h"
 #include "pcl_symmetry/impl/pcl_search.hpp"
 
 namespace PCL_SYMMETRY_EXPORTS pcl_symmetry {
 
 namespace detail {
 
-template <typename T, typename... Types>
-constexpr bool kIsAmong = (std::is_same_v<T, Types> || ...);
+/// The planes as published, of points whose transform may be known.
+/// \param edt,map of these points; edt null: the map is computed.
+Detection planesAsPublished(const Points& points, const GaussianEdt* edt, const SymmetryMap& map,
+                            const DetectionOptions& options);
 
-/// Whether the code for a point type is there to link.
-#ifdef PCL_NO_PRECOMPILE
-template <typename PointT>
-constexpr bool kIsCompiled = true;
-#else
-template <typename PointT>
-constexpr bool kIsCompiled = kIsAmong<PointT, BOOST_PP_SEQ_ENUM(PCL_XYZ_POINT_TYPES)>;
-#endif
+/// \param all finite points of a cloud.
+/// \param cloud_size points of the cloud.
+/// \param samples 3 x N, finite, the surface that reflected points are compared with, same frame; N = 0: no surface.
+/// \param seen what the scanner saw of the cloud; null: it shows its object from all sides.
+/// \return for each plane its support at each point of the cloud, in [0, 1]; NaN where it is not known.
+std::vector<std::vector<float>> pointSupport(const SelectedPoints& all, std::size_t cloud_size, const Points& samples,
+                                             const std::vector<ReflectionPlane>& planes, const Visibility* seen,
+                                             int num_threads);
 
 }  // namespace detail
 
@@ -36,13 +35,8 @@ constexpr bool kIsCompiled = kIsAmong<PointT, BOOST_PP_SEQ_ENUM(PCL_XYZ_POINT_TY
 ///
 /// The class computes the transform itself unless it is given a map. With the defaults nothing has to be tuned, and a
 /// shape without symmetry gives no plane.
-///
-/// The library holds this class for PCL's point types with x, y and z. For other point types define PCL_NO_PRECOMPILE
-/// before the first include, as with PCL's own classes.
 template <typename PointT>
 class SymmetryMaximaRefinement : public SearchingAnalysis<ScanAnalysis<PointT>, DetectionOptions> {
-  static_assert(detail::kIsCompiled<PointT>, "for your own point types define PCL_NO_PRECOMPILE before all includes");
-
 public:
   using Ptr = pcl::shared_ptr<SymmetryMaximaRefinement<PointT>>;
   using ConstPtr = pcl::shared_ptr<const SymmetryMaximaRefinement<PointT>>;
@@ -157,8 +151,57 @@ private:
   Points samples_ = Points(3, 0);  // that were used
 };
 
-}  // namespace pcl_symmetry
+template <typename PointT>
+void SymmetryMaximaRefinement<PointT>::setSymmetryMap(const SymmetryMap& map,
+                                                      const std::shared_ptr<const GaussianEdt>& edt) {
+  if (map.empty() || !edt) detail::throwBadArgument("symmetry map: empty, must be made by PlanarSymmetryTransform");
+  map_ = map;
+  edt_ = edt;
+}
 
-#ifdef PCL_NO_PRECOMPILE
-#include "pcl_symmetry/impl/symmetry_maxima_refinement.hpp"
-#endif
+template <typename PointT>
+std::vector<SymmetryPlane> SymmetryMaximaRefinement<PointT>::compute() {
+  return detail::withBadArguments([&] {
+    if (this->volume_) {
+      clearResults();
+      found_ = detectVolumePlanes(*this->volume_, options_, this->levels_);
+      if (!found_.reason.empty()) this->giveNoAnswer(found_.reason);
+      return found_.planes;
+    }
+    samples_ = this->selectInput(options_.seed, options_.num_threads, as_published_);
+    if (samples_.cols() == 0) {
+      found_.reason = this->getReason();
+      return found_.planes;
+    }
+    if (as_published_) {
+      found_ = detail::planesAsPublished(samples_, edt_.get(), map_, options_);
+      return found_.planes;
+    }
+    PlaneInput input(samples_, this->seenSpace(samples_));
+    const std::optional<Points> normals =
+        use_input_normals_ ? detail::normalsOf(*input_, this->getUsedIndices()) : std::nullopt;
+    if (normals) input.normals = &*normals;
+    input.edt = edt_.get();
+    input.map = edt_ ? &map_ : nullptr;
+    input.make_search = this->makeSearch();
+    input.may_be_rings = this->hasGivenSupport() && this->getViewpointSource() != ViewpointSource::Rays;
+    found_ = detectPlanes(input, options_);
+    if (mesh_ && !input.visibility) refineOnMesh(*mesh_, found_, options_);
+    return found_.planes;
+  });
+}
+
+template <typename PointT>
+std::vector<float> SymmetryMaximaRefinement<PointT>::computePointSupport(const ReflectionPlane& plane) const {
+  return computePointSupport(std::vector<ReflectionPlane>{plane}).front();
+}
+
+template <typename PointT>
+std::vector<std::vector<float>> SymmetryMaximaRefinement<PointT>::computePointSupport(
+    const std::vector<ReflectionPlane>& planes) const {
+  if (!input_) return std::vector<std::vector<float>>(planes.size());
+  const detail::SelectedPoints all = detail::selectPoints(*input_, nullptr, input_->size(), 0);
+  return detail::pointSupport(all, input_->size(), samples_, planes, this->seen(), options_.num_threads);
+}
+
+}  // namespace pcl_symmetry

@@ -1,6 +1,6 @@
 #pragma once
 
-#include <pcl/pcl_base.h>
+#include <pcl/impl/pcl_base.hpp>
 
 #include <cstddef>
 #include <cstdint>

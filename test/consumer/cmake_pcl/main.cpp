@@ -1,5 +1,4 @@
-/// A user's program with a point type of its own: PCL_NO_PRECOMPILE brings the bodies of the templates, as in PCL.
-#define PCL_NO_PRECOMPILE
+/// A user's program with a point type of its own.
 #include <pcl/point_cloud.h>
 #include <pcl/point_types.h>
 #include <pcl_symmetry/planar_symmetry_transform.h>
