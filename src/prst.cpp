@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <vector>
 
 #include "core/matching/shape_signature.h"
 #include "core/matching/symmetry_descriptor.h"
@@ -14,35 +13,20 @@ static_assert(PRSDSignature1024::descriptorSize() == kPRSDSize);
 static_assert(GEDTSignature32768::descriptorSize() == kGEDTSize);
 static_assert(ShapeSignature20736::descriptorSize() == kSignatureSize);
 
-namespace {
-
-SymmetryDescriptors described(const Points& points, const detail::PRSTParameters& parameters, const Visibility* seen) {
+detail::SymmetrySignatures detail::describeBySymmetry(const Points& points, const PRSTParameters& parameters,
+                                                      const Visibility* seen) {
   DescriptorOptions options;
   options.by_equation_1 = parameters.by_equation_1;
   options.seed = parameters.seed;
   options.num_threads = parameters.num_threads;
   const Eigen::Isometry3d T_frame_input = descriptorFrame(points, parameters.use_input_axes, seen, options);
-  return symmetryDescriptors(points, T_frame_input, options);
-}
-
-}  // namespace
-
-void detail::describeBySymmetry(const Points& points, const PRSTParameters& parameters, const Visibility* seen,
-                                PRSTSignature32768& descriptor) {
-  const std::vector<float> values = described(points, parameters, seen).prst;
-  std::copy(values.begin(), values.end(), descriptor.prst);
-}
-
-void detail::describeBySymmetry(const Points& points, const PRSTParameters& parameters, const Visibility* seen,
-                                PRSDSignature1024& descriptor) {
-  const std::vector<float> values = described(points, parameters, seen).prsd;
-  std::copy(values.begin(), values.end(), descriptor.prsd);
-}
-
-void detail::describeBySymmetry(const Points& points, const PRSTParameters& parameters, const Visibility* seen,
-                                GEDTSignature32768& descriptor) {
-  const std::vector<float> values = described(points, parameters, seen).gedt;
-  std::copy(values.begin(), values.end(), descriptor.gedt);
+  const SymmetryDescriptors all = symmetryDescriptors(points, T_frame_input, options);
+  SymmetrySignatures signatures;
+  auto& [prst, prsd, gedt] = signatures;
+  std::copy(all.prst.begin(), all.prst.end(), prst.prst);
+  std::copy(all.prsd.begin(), all.prsd.end(), prsd.prsd);
+  std::copy(all.gedt.begin(), all.gedt.end(), gedt.gedt);
+  return signatures;
 }
 
 float descriptorDistance(const PRSTSignature32768& a, const PRSTSignature32768& b) {

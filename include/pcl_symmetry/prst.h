@@ -9,6 +9,7 @@
 #include <optional>
 #include <stdexcept>
 #include <string>
+#include <tuple>
 
 #include "pcl_symmetry/core/exports.h"
 #include "pcl_symmetry/core/point_set.h"
@@ -29,17 +30,13 @@ struct PRSTParameters {
   int num_threads = 0;  ///< >= 0; 0 = one per core
 };
 
+/// All descriptors of a shape.
+using SymmetrySignatures = std::tuple<PRSTSignature32768, PRSDSignature1024, GEDTSignature32768>;
+
 /// \param points 3 x N, finite, input units.
 /// \param seen what a scanner saw; null = the points show the object from all sides.
 /// \throws std::invalid_argument for points without extent.
-void describeBySymmetry(const Points& points, const PRSTParameters& parameters, const Visibility* seen,
-                        PRSTSignature32768& descriptor);
-/// The same.
-void describeBySymmetry(const Points& points, const PRSTParameters& parameters, const Visibility* seen,
-                        PRSDSignature1024& descriptor);
-/// The same.
-void describeBySymmetry(const Points& points, const PRSTParameters& parameters, const Visibility* seen,
-                        GEDTSignature32768& descriptor);
+SymmetrySignatures describeBySymmetry(const Points& points, const PRSTParameters& parameters, const Visibility* seen);
 
 }  // namespace detail
 
@@ -128,7 +125,7 @@ protected:
   void computeFeature(PointCloudOut& output) override {
     output.width = output.height = 1;
     try {
-      detail::describeBySymmetry(points_, parameters_, seen_ ? &*seen_ : nullptr, output[0]);
+      output[0] = std::get<PointOutT>(detail::describeBySymmetry(points_, parameters_, seen_ ? &*seen_ : nullptr));
     } catch (const std::invalid_argument& reason) {
       warnOfNoAnswer(std::string("input cloud: ") + reason.what());
       output.clear();
