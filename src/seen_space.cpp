@@ -88,10 +88,7 @@ SeenSpace seenFrom(const Points& all, const Viewpoint& viewpoint, const Eigen::V
       throw std::invalid_argument("viewpoint: among the points, must see them within 75 degrees of one direction");
     return {std::move(*seen), ViewpointSource::Given};
   }
-  if (!is_default)
-    if (std::optional<Visibility> seen = spaceSeenFrom(points, stored))
-      return {std::move(*seen), ViewpointSource::Stored};
-  std::optional<InferredView> view = inferView(points, stored);
+  std::optional<InferredView> view = inferView(points, stored, is_default);
   if (!view) return {};
   return {std::move(view->seen), view->as_stored ? ViewpointSource::Stored : ViewpointSource::Inferred};
 }

@@ -5,7 +5,6 @@
 
 #include <vector>
 
-#include "pcl_symmetry/core/closest_point_search.h"
 #include "pcl_symmetry/core/surface_segmentation.h"
 #include "pcl_symmetry/impl/pcl_search.hpp"
 
@@ -121,23 +120,14 @@ void SymmetrySegmentation<PointT>::segmentMesh() {
 
 template <typename PointT>
 void SymmetrySegmentation<PointT>::segmentCloud() {
-  const Points points = this->selectInput(options_.seed);
-  if (points.cols() == 0) return;
-  const pcl::Indices& used = this->getUsedIndices();
+  if (this->selectInput(options_.seed).cols() == 0) return;
   SegmentationOptions options = options_;
   options.make_search = this->makeSearch();
-  const MakeSearch make_search = options.make_search ? options.make_search : makeFlannSearch;
-  constexpr int num_neighbors = 12;  // that each point is joined with
-  const std::vector<std::vector<int>> neighbors =
-      nearestOthers(points, *make_search(points), num_neighbors, options_.num_threads);
-  segmentation_ = segmentSurface(cloudGraph(points, neighbors), options);
-
-  labels_.assign(input_->size(), -1);
   const detail::SelectedPoints all =
       detail::selectPoints(*input_, use_indices_ ? indices_.get() : nullptr, input_->size(), options_.seed);
-  const std::vector<int> closest = make_search(points)->closest(all.points);
-  for (std::size_t i = 0; i < all.indices.size(); ++i) labels_[all.indices[i]] = segmentation_.labels[closest[i]];
-  for (std::size_t i = 0; i < used.size(); ++i) labels_[used[i]] = segmentation_.labels[i];
+  segmentation_ = pcl_symmetry::segmentCloud(all.points, this->getUsedIndices().size(), options);
+  labels_.assign(input_->size(), -1);
+  for (std::size_t i = 0; i < all.indices.size(); ++i) labels_[all.indices[i]] = segmentation_.labels[i];
 }
 
 }  // namespace pcl_symmetry

@@ -181,9 +181,7 @@ std::optional<Visibility> seenFrom(const PointsRef& all, const py::object& viewp
     const bool is_stored = py::isinstance<StoredViewpoint>(viewpoint);
     const Eigen::Vector3d stored = is_stored ? viewpoint.cast<StoredViewpoint>().position : Eigen::Vector3d::Zero();
     const Computing computing;
-    if (is_stored)
-      if (std::optional<Visibility> seen = spaceSeenFrom(points, stored)) return seen;
-    std::optional<InferredView> view = inferView(points, stored);
+    std::optional<InferredView> view = inferView(points, stored, !is_stored);
     return view ? std::optional<Visibility>(std::move(view->seen)) : std::nullopt;
   }
   const Computing computing;

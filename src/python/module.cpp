@@ -18,7 +18,6 @@
 #include "core/geometry/triangles.h"
 #include "core/matching/shape_signature.h"
 #include "core/matching/symmetry_descriptor.h"
-#include "pcl_symmetry/core/closest_point_search.h"
 #include "pcl_symmetry/core/detect_planes.h"
 #include "pcl_symmetry/core/local_symmetry.h"
 #include "pcl_symmetry/core/mesh_surface.h"
@@ -333,22 +332,15 @@ std::pair<py::array_t<float>, std::vector<std::size_t>> complete(
 /// Labels, and why there is another number of parts than is wanted.
 using Parts = std::pair<std::vector<int>, std::string>;
 
-Parts segmentCloud(const py::array& points, const SegmentationOptions& options) {
-  constexpr int kMostPoints = 30'000, kNumNeighbors = 12;  // as in SymmetrySegmentation
-  const InputPoints input("points", points, kMostPoints, options.seed), all("points", points, 0, options.seed);
-  const PointsRef used = input.points();
-  checkAnswerable("points", used);
+Parts segmentArray(const py::array& points, const SegmentationOptions& options) {
+  constexpr int most_points = 30'000;  // as in SymmetrySegmentation
+  checkAnswerable("points", InputPoints("points", points, most_points, options.seed).points());
+  const InputPoints all("points", points, 0, options.seed);
   const Computing computing;
-  const ClosestPointSearch::Ptr search = makeFlannSearch(used);
-  const auto neighbors = nearestOthers(used, *search, kNumNeighbors, options.num_threads);
-  const Segmentation parts = segmentSurface(cloudGraph(used, neighbors), options);
-  if (input.rows().empty()) return {parts.labels, parts.reason};
-  // Points that were not drawn follow the closest of those that were.
-  std::vector<int> labels(all.numRows(), -1), closest;
-  std::vector<float> sq_distances;
-  search->search(all.points(), 1, closest, sq_distances);
-  for (std::size_t i = 0; i < closest.size(); ++i)
-    labels[all.rows().empty() ? i : all.rows()[i]] = parts.labels[closest[i]];
+  const Segmentation parts = segmentCloud(all.points(), most_points, options);
+  if (all.rows().empty()) return {parts.labels, parts.reason};
+  std::vector<int> labels(all.numRows(), -1);
+  for (std::size_t i = 0; i < all.rows().size(); ++i) labels[all.rows()[i]] = parts.labels[i];
   return {labels, parts.reason};
 }
 
@@ -365,7 +357,7 @@ Parts segment(const AnyArray& points, const py::object& faces, int parts, const 
       const py::gil_scoped_acquire acquire;
       progress(share);
     };
-  if (faces.is_none()) return segmentCloud(points, options);
+  if (faces.is_none()) return segmentArray(points, options);
   const InputPoints input("points", points, 0, seed);
   if (!input.usesAllRows()) throw std::invalid_argument("points: vertices not all finite, must be");
   const std::vector<std::vector<int>> polygons = polygonsOf(faces);

@@ -3,7 +3,6 @@
 #include <Eigen/Core>
 #include <vector>
 
-#include "pcl_symmetry/core/closest_point_search.h"
 #include "pcl_symmetry/core/exports.h"
 #include "pcl_symmetry/core/point_set.h"
 
@@ -61,14 +60,6 @@ struct SurfaceGraph {
 /// \return one element per polygon, in input order.
 /// \throws std::invalid_argument if an index is out of range, no polygon has an area, or the extent is not 1e-15 to 1e15.
 SurfaceGraph meshGraph(const PointsRef& vertices, const std::vector<std::vector<int>>& polygons);
-
-/// The neighbors that cloudGraph() takes.
-/// \param points 3 x N, N >= 1.
-/// \param search over these points.
-/// \param num_threads 0 = one per core.
-/// \return for each point the num_neighbors closest others, or all where there are fewer, nearest first.
-std::vector<std::vector<int>> nearestOthers(const PointsRef& points, const ClosestPointSearch& search,
-                                            int num_neighbors, int num_threads);
 
 /// The graph of a cloud: two points are neighbors if one of them is among the nearest of the other.
 /// \param points 3 x N, finite, input frame.

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <functional>
 #include <string>
@@ -100,5 +101,12 @@ struct Segmentation {
 /// \return labels of the N elements, the tree of the parts and their images.
 /// \throws std::invalid_argument for bad options or a surface without area.
 Segmentation segmentSurface(const SurfaceGraph& graph, const SegmentationOptions& options = {});
+
+/// The same for a cloud, whose points are joined with their 12 nearest ones.
+/// \param points 3 x N, finite, N >= 1.
+/// \param max_points that are drawn from a larger cloud, one from each of as many equal runs; the others follow the
+/// closest of them.
+/// \return labels of the N points.
+Segmentation segmentCloud(const PointsRef& points, std::size_t max_points, const SegmentationOptions& options = {});
 
 }  // namespace pcl_symmetry

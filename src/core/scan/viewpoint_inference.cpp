@@ -62,7 +62,10 @@ std::optional<InferredView> leastLayered(const PointsRef& points, const ScanDens
 
 }  // namespace
 
-std::optional<InferredView> inferView(const PointsRef& points, const Eigen::Vector3d& stored) {
+std::optional<InferredView> inferView(const PointsRef& points, const Eigen::Vector3d& stored, bool may_be_default) {
+  if (!may_be_default)
+    if (std::optional<Visibility> seen = spaceSeenFrom(points, stored))
+      return InferredView{std::move(*seen), stored, true};
   if (points.cols() < kScan.fewest_points) return std::nullopt;
   const ScanDensity density(points);
   const std::optional<Eigen::Vector3d> best = density.bestViewpoint();

@@ -29,7 +29,9 @@ struct InferredView {
 /// \param points 3 x N, finite.
 /// \param stored a viewpoint that may be a default, frame of the points. It is preferred where it explains the points
 /// as well as the best.
+/// \param may_be_default false: it is taken at once where the points can have been seen from there.
 /// \return nothing where the points show no viewpoint.
-std::optional<InferredView> inferView(const PointsRef& points, const Eigen::Vector3d& stored);
+std::optional<InferredView> inferView(const PointsRef& points, const Eigen::Vector3d& stored,
+                                      bool may_be_default = true);
 
 }  // namespace pcl_symmetry

@@ -299,22 +299,6 @@ std::vector<float> joinFaces(SurfaceGraph& graph, const Polygons& faces) {
 
 }  // namespace
 
-std::vector<std::vector<int>> nearestOthers(const PointsRef& points, const ClosestPointSearch& search,
-                                            int num_neighbors, int num_threads) {
-  const auto size = static_cast<std::size_t>(points.cols());
-  const std::size_t num_others = std::min<std::size_t>(num_neighbors, size - 1), num_found = num_others + 1;
-  std::vector<std::vector<int>> neighbors(size);
-  parallelPoints(size, num_threads, [&](std::size_t begin, std::size_t end) {
-    std::vector<int> found;
-    std::vector<float> sq_distances;
-    search.search(points.middleCols(begin, end - begin), static_cast<int>(num_found), found, sq_distances);
-    for (std::size_t i = begin; i < end; ++i)
-      for (std::size_t k = (i - begin) * num_found; k < (i - begin + 1) * num_found; ++k)
-        if (found[k] != static_cast<int>(i) && neighbors[i].size() < num_others) neighbors[i].push_back(found[k]);
-  });
-  return neighbors;
-}
-
 SurfaceGraph cloudGraph(const PointsRef& points, const std::vector<std::vector<int>>& neighbors) {
   checkNeighbors(neighbors, points.cols());
   checkExtent(points);
