@@ -140,7 +140,7 @@ ModelInfo analyzeModel(const std::string& path, const ModelOptions& options,
   info.file = path;
   info.explain = options.explain;
   info.digits = lengthDigits(shape.shift);
-  info.is_scan = !shape.mesh && detail::seenSpace(*shape.points, finite, Viewpoint{});
+  info.is_scan = !shape.mesh && detail::findSeenSpace(*shape.points, finite, {}).visibility();
   info.low = vertices.rowwise().minCoeff().cast<double>();
   info.size = vertices.rowwise().maxCoeff().cast<double>() - info.low;
   info.low = shiftedBack(info.low, shape.shift);

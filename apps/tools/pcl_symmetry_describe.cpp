@@ -79,21 +79,21 @@ pcl::PCLPointCloud2 describe(const InputShape& input, const DescribeOptions& opt
   const detail::SelectedPoints selected = detail::selectPoints(cloud, nullptr, max_points, options.common.seed);
   if (const std::string reason = detail::reasonForNoAnswer(selected.points); !reason.empty())
     throw InputError(input.path + ": " + reason);
-  const std::optional<Visibility> seen = detail::seenSpace(cloud, selected.points, input.viewpoint(options.common));
-  const Visibility* const visibility = seen ? &*seen : nullptr;
+  const SeenSpace seen = detail::findSeenSpace(cloud, selected.points, input.viewpoint(options.common));
   if (options.type == "signature") {
     DescriptionOptions description;
     description.seed = options.common.seed;
     description.num_threads = 1;
     description.max_points = options.num_points;
-    const ShapeDescription shape = describeShape(selected.points, description, visibility);
+    const ShapeDescription shape = describeShape(selected.points, description, seen.visibility());
     return toBlob({shape.signatures.col(0).data(), shape.signatures.col(1).data()}, &ShapeSignature20736::signature);
   }
   DescriptorOptions descriptor;
   descriptor.seed = options.common.seed;
   descriptor.num_threads = 1;
   descriptor.by_equation_1 = options.by_equation_1;
-  const Eigen::Isometry3d T_frame_input = descriptorFrame(selected.points, options.input_axes, visibility, descriptor);
+  const Eigen::Isometry3d T_frame_input =
+      descriptorFrame(selected.points, options.input_axes, seen.visibility(), descriptor);
   const SymmetryDescriptors all = symmetryDescriptors(selected.points, T_frame_input, descriptor);
   if (options.type == "prst") return toBlob({all.prst.data()}, &PRSTSignature32768::prst);
   if (options.type == "prsd") return toBlob({all.prsd.data()}, &PRSDSignature1024::prsd);

@@ -54,44 +54,39 @@ PointT reflectPoint(PointT point, const ReflectionPlane& plane) {
   return point;
 }
 
-/// \param find_seen gives what the scanner saw of all finite points of the cloud, a SeenSpace.
-template <typename PointT, typename FindSeen>
-CompletedCloud<PointT> completeCloud(const pcl::PointCloud<PointT>& cloud, const ReflectionPlane& plane,
-                                     const CompletionOptions& options, const FindSeen& find_seen) {
-  return withBadArguments([&] {
-    options.validate();
-    CompletedCloud<PointT> completed;
-    completed.cloud = cloud;
-    completed.cloud.width = static_cast<std::uint32_t>(cloud.size());
-    completed.cloud.height = 1;
-    const SelectedPoints all = selectPoints(cloud, nullptr, cloud.size(), 0);
-    if (all.points.cols() == 0) {
-      warnOfNoAnswer("completeBySymmetry", "cloud: no finite point");
-      return completed;
-    }
-    const SeenSpace seen = find_seen(all.points);
-    for (const int i : completingPoints(all.points, plane, options, seen.visibility())) {
-      completed.sources.push_back(all.indices[i]);
-      completed.added.push_back(static_cast<pcl::index_t>(completed.cloud.size()));
-      completed.cloud.push_back(reflectPoint(cloud[all.indices[i]], plane));
-    }
-    return completed;
-  });
-}
-
 }  // namespace detail
 
 template <typename PointT>
 CompletedCloud<PointT> completeBySymmetry(const pcl::PointCloud<PointT>& cloud, const ReflectionPlane& plane,
                                           const CompletionOptions& options, const Viewpoint& viewpoint) {
-  return detail::completeCloud(cloud, plane, options,
-                               [&](const Points& points) { return detail::findSeenSpace(cloud, points, viewpoint); });
+  const Points points = detail::selectPoints(cloud, nullptr, cloud.size(), 0).points;
+  SeenSpace seen;
+  if (points.cols() > 0)
+    seen = detail::withBadArguments([&] { return detail::findSeenSpace(cloud, points, viewpoint); });
+  return completeBySymmetry(cloud, plane, options, seen);
 }
 
 template <typename PointT>
 CompletedCloud<PointT> completeBySymmetry(const pcl::PointCloud<PointT>& cloud, const ReflectionPlane& plane,
                                           const CompletionOptions& options, const SeenSpace& seen) {
-  return detail::completeCloud(cloud, plane, options, [&](const Points&) { return seen; });
+  return detail::withBadArguments([&] {
+    options.validate();
+    CompletedCloud<PointT> completed;
+    completed.cloud = cloud;
+    completed.cloud.width = static_cast<std::uint32_t>(cloud.size());
+    completed.cloud.height = 1;
+    const detail::SelectedPoints all = detail::selectPoints(cloud, nullptr, cloud.size(), 0);
+    if (all.points.cols() == 0) {
+      detail::warnOfNoAnswer("completeBySymmetry", "cloud: no finite point");
+      return completed;
+    }
+    for (const int i : completingPoints(all.points, plane, options, seen.visibility())) {
+      completed.sources.push_back(all.indices[i]);
+      completed.added.push_back(static_cast<pcl::index_t>(completed.cloud.size()));
+      completed.cloud.push_back(detail::reflectPoint(cloud[all.indices[i]], plane));
+    }
+    return completed;
+  });
 }
 
 }  // namespace pcl_symmetry

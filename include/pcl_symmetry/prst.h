@@ -6,7 +6,6 @@
 #include <pcl/impl/pcl_base.hpp>
 
 #include <cstdint>
-#include <optional>
 #include <stdexcept>
 #include <string>
 #include <tuple>
@@ -106,7 +105,7 @@ protected:
         detail::reasonForNoAnswer(points_, "input cloud", 0, this->use_indices_ ? indices_.get() : nullptr);
     if (!reason.empty()) return warnOfNoAnswer(reason);
     const bool is_part = this->use_indices_ && indices_->size() < input_->size();
-    seen_ = detail::withBadArguments([&] { return detail::seenSpace(*input_, points_, viewpoint_, is_part); });
+    seen_ = detail::withBadArguments([&] { return detail::findSeenSpace(*input_, points_, viewpoint_, is_part); });
     all_indices_ = indices_;
     indices_ = pcl::make_shared<pcl::Indices>(1, 0);
     return true;
@@ -117,7 +116,7 @@ protected:
     indices_ = all_indices_;
     all_indices_.reset();
     points_.resize(3, 0);
-    seen_.reset();
+    seen_ = {};
     return pcl::PCLBase<PointInT>::deinitCompute();
   }
 
@@ -125,7 +124,7 @@ protected:
   void computeFeature(PointCloudOut& output) override {
     output.width = output.height = 1;
     try {
-      output[0] = std::get<PointOutT>(detail::describeBySymmetry(points_, parameters_, seen_ ? &*seen_ : nullptr));
+      output[0] = std::get<PointOutT>(detail::describeBySymmetry(points_, parameters_, seen_.visibility()));
     } catch (const std::invalid_argument& reason) {
       warnOfNoAnswer(std::string("input cloud: ") + reason.what());
       output.clear();
@@ -153,7 +152,7 @@ private:
   // While a descriptor is computed:
   pcl::IndicesPtr all_indices_;
   Points points_;
-  std::optional<Visibility> seen_;
+  SeenSpace seen_;
 };
 
 /// The reflective symmetry descriptor of Kazhdan et al. (2004), which the paper compares with (Figure 13).

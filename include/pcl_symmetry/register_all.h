@@ -94,7 +94,7 @@ ObjectScan objectScan(const pcl::PointCloud<PointT>& cloud, const Viewpoint& vie
   ObjectScan scan{std::move(all.points), std::nullopt};
   indices = std::move(all.indices);
   const Points few = detail::selectPoints(cloud, nullptr, judged, 1).points;
-  if (few.cols() > 0) scan.seen = detail::seenSpace(cloud, few, viewpoint);
+  if (few.cols() > 0) scan.seen = detail::visibilityOf(detail::findSeenSpace(cloud, few, viewpoint));
   return scan;
 }
 

@@ -10,14 +10,6 @@
 
 namespace PCL_SYMMETRY_EXPORTS pcl_symmetry {
 
-namespace detail {
-
-/// \return whether any polygon with finite corners has an area.
-/// \throws std::invalid_argument where the mesh refers to vertices that it does not have.
-bool hasArea(const pcl::PolygonMesh& mesh);
-
-}  // namespace detail
-
 /// Cuts a cloud or a mesh into parts by its symmetries (Section 5.3 of the paper).
 ///
 /// The input is a cloud (setInputCloud(), setIndices(); points that are not finite belong to no segment) or a mesh
@@ -90,10 +82,6 @@ private:
   std::vector<int> labels_;
 };
 
-/// \return the faces of a mesh as a graph.
-/// \throws std::invalid_argument where the mesh refers to vertices that it does not have or no polygon has an area.
-SurfaceGraph meshGraph(const pcl::PolygonMesh& mesh);
-
 template <typename PointT>
 void SymmetrySegmentation<PointT>::segment(std::vector<pcl::PointIndices>& segments) {
   segments.clear();
@@ -108,13 +96,14 @@ void SymmetrySegmentation<PointT>::segment(std::vector<pcl::PointIndices>& segme
 template <typename PointT>
 void SymmetrySegmentation<PointT>::segmentMesh() {
   clearResults();
-  if (!detail::hasArea(*mesh_)) {
+  const detail::MeshArrays arrays = detail::toArrays(*mesh_);
+  if (!arrays.hasArea()) {
     this->giveNoAnswer("mesh: no polygon has an area");
     return;
   }
   SegmentationOptions options = options_;
   options.make_search = this->makeSearch();
-  segmentation_ = segmentSurface(meshGraph(*mesh_), options);
+  segmentation_ = segmentSurface(meshGraph(arrays.vertices, arrays.polygons), options);
   labels_ = segmentation_.labels;
 }
 

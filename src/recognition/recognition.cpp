@@ -186,7 +186,7 @@ Recognition SymmetryDatabase::recognize(const Cloud& scan, const RecognitionOpti
   detail::checkedViewpoint(viewpoint);
   const Points points = detail::finitePoints(scan, parts_->options.max_points);
   return recognizeIn(*parts_, points, detail::finitePoints(scan, kRecognition.num_scan_points), options,
-                     [&] { return detail::seenSpace(scan, points, viewpoint); });
+                     [&] { return detail::visibilityOf(detail::findSeenSpace(scan, points, viewpoint)); });
 }
 
 Recognition SymmetryDatabase::recognize(const Cloud& scene, const pcl::Indices& cluster,

@@ -132,11 +132,12 @@ std::vector<ModelMatch> SymmetryDatabase::match(const Cloud& cloud, int num_near
   detail::checkAtLeast("num_nearest", num_nearest, 1);
   detail::checkedViewpoint(viewpoint);
   const Points points = detail::finitePoints(cloud, parts_->options.max_points);
-  std::optional<Visibility> seen;
-  if (points.cols() > 0) seen = detail::withBadArguments([&] { return detail::seenSpace(cloud, points, viewpoint); });
+  SeenSpace seen;
+  if (points.cols() > 0)
+    seen = detail::withBadArguments([&] { return detail::findSeenSpace(cloud, points, viewpoint); });
   return detail::emptyWithoutAnswer(points, [&] {
     std::vector<ModelMatch> matches;
-    for (const auto& [model, distance] : parts_->shapes()->nearest(points, seen ? &*seen : nullptr, num_nearest))
+    for (const auto& [model, distance] : parts_->shapes()->nearest(points, seen.visibility(), num_nearest))
       matches.push_back({model.name, distance});
     return matches;
   });

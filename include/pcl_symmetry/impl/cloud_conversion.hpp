@@ -201,13 +201,5 @@ inline std::optional<Visibility> visibilityOf(const SeenSpace& seen) {
   return seen.visibility() ? std::optional<Visibility>(*seen.visibility()) : std::nullopt;
 }
 
-/// findSeenSpace() for those who do not ask where the viewpoint is known from.
-/// \return nothing where there is no viewpoint.
-template <typename PointT>
-std::optional<Visibility> seenSpace(const pcl::PointCloud<PointT>& cloud, const Points& points,
-                                    const Viewpoint& viewpoint, bool is_part = false) {
-  return visibilityOf(findSeenSpace(cloud, points, viewpoint, is_part));
-}
-
 }  // namespace detail
 }  // namespace pcl_symmetry

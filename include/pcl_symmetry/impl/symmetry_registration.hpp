@@ -68,8 +68,8 @@ void SymmetryRegistration<PointSource, PointTarget, Scalar>::prepareTarget() {
   const detail::SelectedPoints target = detail::selectPoints(*target_, nullptr, max_points_, options_.seed);
   reason_ = detail::reasonForNoAnswer(target.points, "target", kLeastRegistrationPoints);
   if (!reason_.empty()) return;
-  prepared_target_ =
-      registrationTarget(target.points, detail::seenSpace(*target_, target.points, target_viewpoint_), options_);
+  const SeenSpace seen = detail::findSeenSpace(*target_, target.points, target_viewpoint_);
+  prepared_target_ = registrationTarget(target.points, detail::visibilityOf(seen), options_);
 }
 
 template <typename PointSource, typename PointTarget, typename Scalar>
@@ -81,9 +81,9 @@ void SymmetryRegistration<PointSource, PointTarget, Scalar>::findPose(const Poin
   if (corr_dist_threshold_ < std::sqrt(std::numeric_limits<double>::max()))
     options.max_correspondence = corr_dist_threshold_;
   const bool is_part = this->use_indices_ && indices_->size() < input_->size();
-  const std::optional<Visibility> source_seen = detail::seenSpace(*input_, source, source_viewpoint_, is_part);
-  result_ =
-      registerClouds(source, source_seen, *prepared_target_, Eigen::Isometry3d(guess.template cast<double>()), options);
+  const SeenSpace seen = detail::findSeenSpace(*input_, source, source_viewpoint_, is_part);
+  result_ = registerClouds(source, detail::visibilityOf(seen), *prepared_target_,
+                           Eigen::Isometry3d(guess.template cast<double>()), options);
   if (result_.converged(min_confidence_)) {
     final_transformation_ = transformation_ = result_.T_target_source.matrix().template cast<Scalar>();
     return;
