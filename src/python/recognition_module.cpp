@@ -333,17 +333,9 @@ std::vector<std::tuple<Eigen::Vector3d, double, RowMajor4>> views(const Weighted
     weighted.back().kind = weighted.size() <= num_symmetries ? PlaneKind::Symmetry : PlaneKind::Approximate;
   }
   std::vector<SymmetryAxis> lines;
-  for (const auto& [direction, weight] : axes) {
-    lines.emplace_back();
-    lines.back().direction = direction;
-    lines.back().score = weight;
-  }
+  for (const auto& [direction, weight] : axes) lines.push_back({{}, direction, 0.0, weight});
   std::vector<LocalMaximum> across;
-  for (const auto& [normal, value] : maxima) {
-    across.emplace_back();
-    across.back().plane = ReflectionPlane(normal, 0.0);
-    across.back().value = value;
-  }
+  for (const auto& [normal, value] : maxima) across.push_back({{}, ReflectionPlane(normal, 0.0), value});
   ViewpointSelection selection;
   selection.setPlanes(weighted, lines, across);
   auto cloud = pcl::make_shared<Cloud>();
