@@ -2,6 +2,7 @@
 #include <utility>
 
 #include "core/base/check.h"
+#include "core/geometry/cloud_extent.h"
 #include "core/geometry/point_samples.h"
 #include "core/scan/range_image.h"
 #include "core/scan/viewpoint_inference.h"
@@ -96,8 +97,7 @@ SeenSpace seenFrom(const Points& all, const Viewpoint& viewpoint, const Eigen::V
 SeenSpace standingOn(const SeenSpace& seen, const Eigen::Vector4d& ground, const Points& points, double tolerance) {
   if (!seen.visibility()) return seen;
   const double sign = ground.dot(seen.visibility()->viewpoint().homogeneous()) < 0.0 ? -1.0 : 1.0;
-  const double diagonal = (points.rowwise().maxCoeff() - points.rowwise().minCoeff()).cast<double>().norm();
-  return seen.withSupport(sign * ground, tolerance * diagonal);
+  return seen.withSupport(sign * ground, tolerance * boxDiagonal(points));
 }
 
 }  // namespace detail

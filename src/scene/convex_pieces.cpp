@@ -1,6 +1,5 @@
 #include "scene/convex_pieces.h"
 
-#include <pcl/kdtree/kdtree_flann.h>
 #include <pcl/segmentation/lccp_segmentation.h>
 #include <pcl/segmentation/supervoxel_clustering.h>
 
@@ -11,6 +10,7 @@
 #include <utility>
 
 #include "core/base/statistics.h"
+#include "scene/scene_parts.h"
 #include "scene/scene_rules.h"
 
 namespace pcl_symmetry::detail {
@@ -92,12 +92,8 @@ std::vector<pcl::Indices> convexPieces(const SymmetryScene::Cloud& scene, const 
     pieces.push_back(std::move(piece));
   }
   if (pieces.size() < 2) return {cluster};
-  pcl::KdTreeFLANN<pcl::PointXYZ> tree;
-  tree.setInputCloud(pcl::make_shared<SymmetryScene::Cloud>(scene, all));
-  pcl::Indices closest(1);
-  std::vector<float> sq_distance(1);
-  for (const pcl::index_t i : rest)
-    if (tree.nearestKSearch(scene[i], 1, closest, sq_distance) > 0) pieces[piece_of[closest[0]]].push_back(i);
+  const std::vector<int> closest = makeFlannSearch(pointsOf(scene, all))->closest(pointsOf(scene, rest));
+  for (std::size_t i = 0; i < rest.size(); ++i) pieces[piece_of[closest[i]]].push_back(rest[i]);
   for (pcl::Indices& piece : pieces) std::sort(piece.begin(), piece.end());
   sortFalling(pieces, [](const pcl::Indices& piece) { return piece.size(); });
   return pieces;

@@ -1,7 +1,5 @@
 #include "scene/object_feet.h"
 
-#include <pcl/kdtree/kdtree_flann.h>
-
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
@@ -28,24 +26,21 @@ Eigen::AlignedBox3f boxAround(const SymmetryScene::Cloud& scene, const pcl::Indi
 using NearestClusters = std::vector<std::pair<float, int>>;
 
 /// Offers a cluster the points of the supports that may be its feet.
-void offerFeet(const SymmetryScene::Cloud::ConstPtr& scene, const std::vector<SupportingPlane>& supports,
+void offerFeet(const SymmetryScene::Cloud& scene, const std::vector<SupportingPlane>& supports,
                const pcl::Indices& cluster, int number, const SceneDistances& distances, NearestClusters& nearest) {
-  const Eigen::AlignedBox3f near = boxAround(*scene, cluster, distances.cluster);
-  pcl::KdTreeFLANN<pcl::PointXYZ> tree(false);
-  tree.setInputCloud(scene, pcl::make_shared<pcl::Indices>(cluster));
-  pcl::Indices closest(1);
-  std::vector<float> sq_distance(1);
+  const Eigen::AlignedBox3f near = boxAround(scene, cluster, distances.cluster);
+  pcl::Indices risen;
   for (const SupportingPlane& support : supports) {
-    const double least = riseOfNoise(*scene, support, cluster, distances);
-    for (const pcl::index_t i : support.indices) {
-      if (!near.contains(Eigen::Vector3f((*scene)[i].getVector3fMap())) ||
-          heightOver(support.coefficients, (*scene)[i]) <= least)
-        continue;
-      if (tree.nearestKSearch((*scene)[i], 1, closest, sq_distance) < 1) continue;
-      if (sq_distance[0] <= distances.cluster * distances.cluster && sq_distance[0] < nearest[i].first)
-        nearest[i] = {sq_distance[0], number};
-    }
+    const double least = riseOfNoise(scene, support, cluster, distances);
+    for (const pcl::index_t i : support.indices)
+      if (near.contains(Eigen::Vector3f(scene[i].getVector3fMap())) &&
+          heightOver(support.coefficients, scene[i]) > least)
+        risen.push_back(i);
   }
+  const std::vector<float> sq_distances = sqDistancesFrom(pointsOf(scene, cluster), pointsOf(scene, risen));
+  for (std::size_t i = 0; i < risen.size(); ++i)
+    if (sq_distances[i] <= distances.cluster * distances.cluster && sq_distances[i] < nearest[risen[i]].first)
+      nearest[risen[i]] = {sq_distances[i], number};
 }
 
 }  // namespace
@@ -62,9 +57,9 @@ double riseOfNoise(const SymmetryScene::Cloud& scene, const SupportingPlane& sup
                   kScene.rises * kDeviationPerMedian * median(std::move(heights)));
 }
 
-void returnFeet(const SymmetryScene::Cloud::ConstPtr& scene, std::vector<SupportingPlane>& supports,
+void returnFeet(const SymmetryScene::Cloud& scene, std::vector<SupportingPlane>& supports,
                 std::vector<pcl::Indices>& clusters, const SceneDistances& distances) {
-  NearestClusters nearest(scene->size(), {std::numeric_limits<float>::max(), -1});
+  NearestClusters nearest(scene.size(), {std::numeric_limits<float>::max(), -1});
   for (std::size_t k = 0; k < clusters.size(); ++k)
     offerFeet(scene, supports, clusters[k], static_cast<int>(k), distances, nearest);
   for (SupportingPlane& support : supports) {

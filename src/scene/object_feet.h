@@ -19,7 +19,7 @@ double riseOfNoise(const SymmetryScene::Cloud& scene, const SupportingPlane& sup
 /// \param supports lose these points.
 /// \param clusters gain these points, each the cluster that is nearest to it.
 /// \param distances a foot is as close to the other points of its cluster as these are to each other.
-void returnFeet(const SymmetryScene::Cloud::ConstPtr& scene, std::vector<SupportingPlane>& supports,
+void returnFeet(const SymmetryScene::Cloud& scene, std::vector<SupportingPlane>& supports,
                 std::vector<pcl::Indices>& clusters, const SceneDistances& distances);
 
 }  // namespace pcl_symmetry::detail

@@ -162,6 +162,13 @@ Points pointsOf(const SymmetryScene::Cloud& scene, const pcl::Indices& indices) 
   return points;
 }
 
+std::vector<float> sqDistancesFrom(const Points& surface, const Points& points) {
+  std::vector<int> closest;
+  std::vector<float> sq_distances;
+  makeFlannSearch(surface)->search(points, 1, closest, sq_distances);
+  return sq_distances;
+}
+
 SceneDistances sceneDistances(const SymmetryScene::Cloud& scene, const pcl::Indices& points) {
   const Points surface = pointsOf(scene, points);
   const std::size_t stride = 1 + (points.size() - 1) / kScene.scale_samples;
@@ -191,8 +198,7 @@ SeenSpace seenOfObject(const SeenSpace& seen, const SymmetryScene::Cloud& scene,
   SeenSpace result = seen.withoutSupport();
   if (!seen.visibility() || supports.empty()) return result;
   const Points points = pointsOf(scene, object);
-  const double diagonal = (points.rowwise().maxCoeff() - points.rowwise().minCoeff()).cast<double>().norm();
-  const double off = std::max(tolerance * diagonal, seen.visibility()->resolvedTolerance(points));
+  const double off = std::max(tolerance * boxDiagonal(points), seen.visibility()->resolvedTolerance(points));
   const double most = kScene.support_margin * distances.plane;
   for (const SupportingPlane& support : supports) {
     if (!carries(support, points, most)) continue;

@@ -14,6 +14,9 @@ namespace pcl_symmetry::detail {
 /// \return the positions of some points of a scene.
 Points pointsOf(const SymmetryScene::Cloud& scene, const pcl::Indices& indices);
 
+/// \return the squared distance of each of some points from the closest of \p surface, not empty.
+std::vector<float> sqDistancesFrom(const Points& surface, const Points& points);
+
 /// \param plane unit normal and offset, frame of the scene.
 /// \return signed distance, input units.
 double heightOver(const Eigen::Vector4d& plane, const pcl::PointXYZ& point);

@@ -1,6 +1,5 @@
 #include "scene/support_bulge.h"
 
-#include <pcl/common/common.h>
 #include <pcl/common/point_tests.h>
 
 #include <cmath>
@@ -22,17 +21,6 @@ constexpr double kFlat = 3.0;
 // stereo camera and of a Kinect; 0.22 to 0.43 of the outlines of flat objects on tables are before something farther.
 constexpr double kGoesOn = 0.25, kBeforeFarther = 0.05;
 constexpr double kDepthErrors = 4.0;  // of the sensor, by which neighbors on one surface may be apart
-
-/// Root mean square distance of points from their plane of least squares.
-double thicknessOf(const SymmetryScene::Cloud& frame, const pcl::Indices& cluster) {
-  return std::sqrt(principalAxes(pointsOf(frame, cluster)).variances[2]);
-}
-
-double diagonalOf(const SymmetryScene::Cloud& frame, const pcl::Indices& cluster) {
-  Eigen::Vector4f low, high;
-  pcl::getMinMax3D(frame, cluster, low, high);
-  return static_cast<double>((high - low).head<3>().norm());
-}
 
 /// Whether the surface goes on at the outline of a cluster, and is seen to end nowhere before something farther.
 bool goesOn(const SymmetryScene::Cloud& frame, const pcl::Indices& cluster, const Visibility& seen, double distance) {
@@ -64,8 +52,10 @@ bool goesOn(const SymmetryScene::Cloud& frame, const pcl::Indices& cluster, cons
 
 bool isBulge(const SymmetryScene::Cloud& frame, const pcl::Indices& cluster, const Visibility* seen, double tolerance,
              double distance) {
-  return frame.isOrganized() && seen && thicknessOf(frame, cluster) < kFlat * tolerance * diagonalOf(frame, cluster) &&
-         goesOn(frame, cluster, *seen, distance);
+  if (!frame.isOrganized() || !seen) return false;
+  const Points points = pointsOf(frame, cluster);
+  const double thickness = std::sqrt(principalAxes(points).variances[2]);  // root mean square distance from their plane
+  return thickness < kFlat * tolerance * boxDiagonal(points) && goesOn(frame, cluster, *seen, distance);
 }
 
 }  // namespace pcl_symmetry::detail

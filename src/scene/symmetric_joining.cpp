@@ -71,7 +71,7 @@ public:
     tree_.setInputCloud(scene.frame, pcl::make_shared<pcl::Indices>(indices_));
     seen_ = scene.seen_of(indices_);
     const Points points = pointsOf(*scene.frame, indices_);
-    diagonal_ = (points.rowwise().maxCoeff() - points.rowwise().minCoeff()).cast<double>().norm();
+    diagonal_ = boxDiagonal(points);
     center_ = points.rowwise().mean().cast<double>();
     double tolerance = std::max(scene.distances.spacing, scene.tolerance * diagonal_);
     if (seen_.visibility()) tolerance = std::max(tolerance, seen_.visibility()->resolvedTolerance(points));
@@ -313,14 +313,9 @@ private:
 };
 
 bool touch(const JoiningScene& scene, const SceneObject& larger, const SceneObject& smaller) {
-  pcl::KdTreeFLANN<pcl::PointXYZ> tree(false);
-  tree.setInputCloud(scene.frame, pcl::make_shared<pcl::Indices>(larger.indices));
-  pcl::Indices closest(1);
-  std::vector<float> sq_distance(1);
-  return std::any_of(smaller.indices.begin(), smaller.indices.end(), [&](pcl::index_t i) {
-    return tree.nearestKSearch((*scene.frame)[i], 1, closest, sq_distance) > 0 &&
-           sq_distance[0] <= scene.distances.cluster * scene.distances.cluster;
-  });
+  const std::vector<float> sq_distances =
+      sqDistancesFrom(pointsOf(*scene.frame, larger.indices), pointsOf(*scene.frame, smaller.indices));
+  return *std::min_element(sq_distances.begin(), sq_distances.end()) <= std::pow(scene.distances.cluster, 2);
 }
 
 /// The decision on a pair.

@@ -296,7 +296,7 @@ SceneAnalysis SymmetryScene::compute() const {
   };
   eraseIf(clusters, is_bulge);
   Pieces pieces = piecesOf(*frame, clusters, viewpoint, distances.spacing, options_);
-  detail::returnFeet(frame, analysis.supports, pieces.indices, distances);
+  detail::returnFeet(*frame, analysis.supports, pieces.indices, distances);
   timed("clusters");
   const auto of = [&](std::size_t num_objects) {
     return ObjectAnalysis(frame, analysis, distances, ofOneObject(options_, num_objects), database_.get());

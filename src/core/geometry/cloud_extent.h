@@ -36,6 +36,12 @@ enum class Thinness {
 /// \param plane_tolerance,line_tolerance how far points may lie from a plane and from a line, units of the points, > 0.
 Thinness thinnessOf(const PointsRef& points, const PrincipalAxes& axes, double plane_tolerance, double line_tolerance);
 
+/// \param points 3 x N, N >= 1.
+/// \return the diagonal of the box around them along the axes of their frame.
+inline double boxDiagonal(const PointsRef& points) {
+  return (points.rowwise().maxCoeff() - points.rowwise().minCoeff()).cast<double>().norm();
+}
+
 /// The distance between two points that are each the farthest from the other: the diameter of most shapes, and never
 /// less than 1 / sqrt(3) of it. Takes a few passes over the points, whatever their shape.
 /// \param points 3 x N, finite, input units.
