@@ -8,11 +8,9 @@
 #include "pcl_symmetry/core/point_set.h"
 #include "pcl_symmetry/impl/cloud_conversion.hpp"
 #include "pcl_symmetry/symmetry_database.h"
+#include "recognition/model_search.h"
 #include "recognition/model_store.h"
 #include "recognition/packed_model.h"
-#include "recognition/pair_search.h"
-#include "recognition/shape_search.h"
-#include "recognition/view_search.h"
 
 namespace pcl_symmetry::detail {
 

@@ -15,6 +15,9 @@
 
 namespace pcl_symmetry::detail {
 
+/// Grows by 1 when tables or the bytes in them change.
+constexpr int kSchemaVersion = 7;
+
 /// What a model is found and recognized by, as bytes of packed_model.h.
 struct PackedModel {
   std::string cloud, signatures, views, surfaces;

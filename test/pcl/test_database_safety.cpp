@@ -13,7 +13,6 @@
 #include <vector>
 
 #include "core/base/random.h"
-#include "recognition/database_schema.h"
 #include "recognition/model_store.h"
 #include "shapes/complaint.h"
 #include "shapes/temporary_folder.h"

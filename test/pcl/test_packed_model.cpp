@@ -11,7 +11,6 @@
 #include "core/base/constants.h"
 #include "core/matching/shape_signature.h"
 #include "pcl/kinds.h"
-#include "recognition/model_evidence.h"
 #include "recognition/posed_scan.h"
 
 namespace pcl_symmetry {
