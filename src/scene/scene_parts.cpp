@@ -6,9 +6,13 @@
 #include <pcl/search/kdtree.h>
 #include <pcl/segmentation/extract_clusters.h>
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
+#include <limits>
 #include <utility>
+#include <vector>
 
 #include "core/base/constants.h"
 #include "core/base/parallel.h"
@@ -16,7 +20,6 @@
 #include "core/geometry/cloud_extent.h"
 #include "core/geometry/surface_normals.h"
 #include "pcl_symmetry/impl/cloud_conversion.hpp"
-#include "scene/object_feet.h"
 #include "scene/scene_rules.h"
 
 namespace pcl_symmetry::detail {
@@ -148,6 +151,84 @@ double inverseDepthErrorOn(const SupportingPlane& support, const SymmetryScene::
                      (scene[i].getVector3fMap().cast<double>() - viewpoint).norm());
   const double height = support.coefficients.dot(viewpoint.homogeneous());
   return errors.empty() || !(height > 0.0) ? 0.0 : kDeviationPerMedian * median(std::move(errors)) / height;
+}
+
+Eigen::AlignedBox3f boxAround(const SymmetryScene::Cloud& scene, const pcl::Indices& points, double margin) {
+  Eigen::AlignedBox3f box;
+  for (const pcl::index_t i : points) box.extend(Eigen::Vector3f(scene[i].getVector3fMap()));
+  box.min().array() -= static_cast<float>(margin);
+  box.max().array() += static_cast<float>(margin);
+  return box;
+}
+
+/// How far the noise lets points of a support rise above it around a cluster.
+/// \return input units, > 0; infinity where few points of the support are around the cluster.
+double riseOfNoise(const SymmetryScene::Cloud& scene, const SupportingPlane& support, const pcl::Indices& cluster,
+                   const SceneDistances& distances) {
+  const Eigen::AlignedBox3f around = boxAround(scene, cluster, kScene.around * distances.cluster);
+  std::vector<double> heights;
+  for (const pcl::index_t i : support.indices)
+    if (around.contains(Eigen::Vector3f(scene[i].getVector3fMap())))
+      heights.push_back(std::abs(heightOver(support.coefficients, scene[i])));
+  if (heights.size() < kScene.min_around) return std::numeric_limits<double>::infinity();
+  return std::max(kScene.rises_at_least * distances.spacing,
+                  kScene.rises * kDeviationPerMedian * median(std::move(heights)));
+}
+
+/// For each point of a scene the squared distance from the nearest cluster, and its number; -1: none.
+using NearestClusters = std::vector<std::pair<float, int>>;
+
+/// Offers a cluster the points of the supports that may be its feet.
+void offerFeet(const SymmetryScene::Cloud& scene, const std::vector<SupportingPlane>& supports,
+               const pcl::Indices& cluster, int number, const SceneDistances& distances, NearestClusters& nearest) {
+  const Eigen::AlignedBox3f near = boxAround(scene, cluster, distances.cluster);
+  pcl::Indices risen;
+  for (const SupportingPlane& support : supports) {
+    const double least = riseOfNoise(scene, support, cluster, distances);
+    for (const pcl::index_t i : support.indices)
+      if (near.contains(Eigen::Vector3f(scene[i].getVector3fMap())) &&
+          heightOver(support.coefficients, scene[i]) > least)
+        risen.push_back(i);
+  }
+  const std::vector<float> sq_distances = sqDistancesFrom(pointsOf(scene, cluster), pointsOf(scene, risen));
+  for (std::size_t i = 0; i < risen.size(); ++i)
+    if (sq_distances[i] <= distances.cluster * distances.cluster && sq_distances[i] < nearest[risen[i]].first)
+      nearest[risen[i]] = {sq_distances[i], number};
+}
+
+// Root mean square distance of the points of a flat piece from their plane, in tolerances. 17 pieces of the wall in
+// PCL's stereo picture have 0.5 to 2.4.
+constexpr double kFlat = 3.0;
+// Shares of the outline of a piece of a wall or table along which the surface goes on, at least, and behind which
+// something farther is seen, at most: 0.3 to 0.94 and 0.01 to 0.02 for such pieces in PCL's frames of a
+// stereo camera and of a Kinect; 0.22 to 0.43 of the outlines of flat objects on tables are before something farther.
+constexpr double kGoesOn = 0.25, kBeforeFarther = 0.05;
+constexpr double kDepthErrors = 4.0;  // of the sensor, by which neighbors on one surface may be apart
+
+/// Whether the surface goes on at the outline of a cluster, and is seen to end nowhere before something farther.
+bool goesOn(const SymmetryScene::Cloud& frame, const pcl::Indices& cluster, const Visibility& seen, double distance) {
+  std::vector<char> is_inside(frame.size(), 0);
+  for (const pcl::index_t i : cluster) is_inside[i] = 1;
+  const Eigen::Vector3d viewpoint = seen.viewpoint();
+  const auto width = static_cast<std::ptrdiff_t>(frame.width), height = static_cast<std::ptrdiff_t>(frame.height);
+  double num_ends = 0.0, num_going_on = 0.0, num_before_farther = 0.0;
+  for (const pcl::index_t i : cluster) {
+    const Eigen::Vector3d x = frame[i].getVector3fMap().cast<double>();
+    for (const auto& [dx, dy] : {std::pair{1, 0}, {-1, 0}, {0, 1}, {0, -1}}) {
+      const std::ptrdiff_t u = i % width + dx, v = i / width + dy;
+      const bool is_in_picture = u >= 0 && v >= 0 && u < width && v < height;
+      const auto next = static_cast<std::size_t>(is_in_picture ? v * width + u : i);
+      if (is_in_picture && is_inside[next]) continue;
+      num_ends += 1.0;
+      if (!is_in_picture || !pcl::isXYZFinite(frame[next])) continue;
+      const Eigen::Vector3d beside = frame[next].getVector3fMap().cast<double>();
+      if ((beside - x).norm() < distance + kDepthErrors * seen.depthError(x))
+        num_going_on += 1.0;
+      else if ((beside - viewpoint).norm() > (x - viewpoint).norm())
+        num_before_farther += 1.0;
+    }
+  }
+  return num_going_on > kGoesOn * num_ends && num_before_farther < kBeforeFarther * num_ends;
 }
 
 }  // namespace
@@ -321,6 +402,30 @@ std::vector<pcl::Indices> findClusters(const SymmetryScene::Cloud::ConstPtr& sce
   }
   sortFalling(clusters, [](const pcl::Indices& cluster) { return cluster.size(); });
   return clusters;
+}
+
+void returnFeet(const SymmetryScene::Cloud& scene, std::vector<SupportingPlane>& supports,
+                std::vector<pcl::Indices>& clusters, const SceneDistances& distances) {
+  NearestClusters nearest(scene.size(), {std::numeric_limits<float>::max(), -1});
+  for (std::size_t k = 0; k < clusters.size(); ++k)
+    offerFeet(scene, supports, clusters[k], static_cast<int>(k), distances, nearest);
+  for (SupportingPlane& support : supports) {
+    pcl::Indices rest;
+    for (const pcl::index_t i : support.indices) {
+      const int owner = nearest[i].second;
+      (owner < 0 ? rest : clusters[owner]).push_back(i);
+    }
+    support.indices = std::move(rest);
+  }
+  for (pcl::Indices& cluster : clusters) std::sort(cluster.begin(), cluster.end());
+}
+
+bool isBulge(const SymmetryScene::Cloud& frame, const pcl::Indices& cluster, const Visibility* seen, double tolerance,
+             double distance) {
+  if (!frame.isOrganized() || !seen) return false;
+  const Points points = pointsOf(frame, cluster);
+  const double thickness = std::sqrt(principalAxes(points).variances[2]);  // root mean square distance from their plane
+  return thickness < kFlat * tolerance * boxDiagonal(points) && goesOn(frame, cluster, *seen, distance);
 }
 
 }  // namespace pcl_symmetry::detail

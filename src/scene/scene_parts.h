@@ -71,4 +71,25 @@ std::vector<pcl::Indices> findClusters(const SymmetryScene::Cloud::ConstPtr& sce
                                        const std::vector<SupportingPlane>& supports, const SceneDistances& distances,
                                        int min_points);
 
+/// Gives objects their feet back: points that were taken for the plane that an object stands on, as they lie within its
+/// distance, but that rise above the plane around the object by more than the noise does.
+///
+/// Without its feet, a box looks lower than it is: as high as it is deep, it gets a plane of symmetry between the two.
+/// \param supports lose these points.
+/// \param clusters gain these points, each the cluster that is nearest to it.
+/// \param distances a foot is as close to the other points of its cluster as these are to each other.
+void returnFeet(const SymmetryScene::Cloud& scene, std::vector<SupportingPlane>& supports,
+                std::vector<pcl::Indices>& clusters, const SceneDistances& distances);
+
+/// Whether a cluster is a flat piece of a table, floor or wall that noise lifts off its plane: stereo cameras measure
+/// walls in waves, and depths far away have large errors. All of its points lie near one plane, along its outline the
+/// surface goes on, and nowhere does it end before something farther. An object, also a thin one, does.
+/// \param frame organized; others have no such clusters.
+/// \param cluster indices of finite points, at least one.
+/// \param seen of this frame; null: no such clusters.
+/// \param tolerance how far a symmetric surface may be off, as a share of the diagonal, > 0.
+/// \param distance of points of one object, input units, > 0.
+bool isBulge(const SymmetryScene::Cloud& frame, const pcl::Indices& cluster, const Visibility* seen, double tolerance,
+             double distance);
+
 }  // namespace pcl_symmetry::detail

@@ -14,9 +14,7 @@
 #include "pcl_symmetry/symmetry_alignment.h"
 #include "pcl_symmetry/symmetry_maxima_refinement.h"
 #include "scene/convex_pieces.h"
-#include "scene/object_feet.h"
 #include "scene/scene_parts.h"
-#include "scene/support_bulge.h"
 #include "scene/symmetric_joining.h"
 
 namespace pcl_symmetry {
