@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <vector>
 
+#include "pcl_symmetry/mesh_sampling.h"
 #include "pcl_symmetry/symmetry_maxima_refinement.h"
 
 namespace PCL_SYMMETRY_EXPORTS pcl_symmetry {
@@ -44,7 +45,14 @@ std::vector<SymmetryPlane> detectSymmetryPlanes(const pcl::PointCloud<PointT>& c
 /// The same for a mesh, whose planes are exact: see refineOnMesh().
 /// \param num_points points spread over the mesh, >= 1.
 /// \throws pcl::BadArgumentException for bad options, and where the mesh refers to vertices that it does not have.
-std::vector<SymmetryPlane> detectSymmetryPlanes(const pcl::PolygonMesh& mesh, const DetectionOptions& options = {},
-                                                int num_points = 10'000);
+inline std::vector<SymmetryPlane> detectSymmetryPlanes(const pcl::PolygonMesh& mesh,
+                                                       const DetectionOptions& options = {}, int num_points = 10'000) {
+  SymmetryMaximaRefinement<pcl::PointXYZ> refinement;
+  refinement.setOptions(options);
+  const auto points = sampleMesh(mesh, num_points, options.seed);
+  refinement.setInputCloud(points);
+  if (!points->empty()) refinement.setMesh(meshSurface(mesh));
+  return detail::onlySymmetries(refinement.compute());
+}
 
 }  // namespace pcl_symmetry

@@ -1,5 +1,3 @@
-#include "python/evidence.h"
-
 #include <pybind11/eigen.h>
 #include <pybind11/stl.h>
 
@@ -16,6 +14,7 @@
 #include "core/segmentation/region_merging.h"
 #include "python/computing.h"
 #include "python/input_points.h"
+#include "python/results.h"
 
 namespace py = pybind11;
 

@@ -31,7 +31,6 @@
 #include "pcl_symmetry/core/symmetry_frame.h"
 #include "pcl_symmetry/core/volume_planes.h"
 #include "python/computing.h"
-#include "python/evidence.h"
 #include "python/input_points.h"
 #include "python/motions.h"
 #include "python/results.h"

@@ -7,7 +7,6 @@
 
 #include "pcl_symmetry/core/rotational_symmetry.h"
 #include "pcl_symmetry/core/symmetry_map.h"
-#include "python/evidence.h"
 #include "python/input_points.h"
 #include "python/motions.h"
 
