@@ -31,7 +31,6 @@ public:
   /// Uses at most 200 000 points, see setMaxPoints().
   AxialSymmetryTransform() : TransformAnalysis<PointT>("AxialSymmetryTransform") { edt_options_.num_cells = 32; }
 
-  /// Sets the number of bins.
   /// \param num_theta,num_phi,num_offset bins of the map, each >= 1, num_phi even; default 16, 64 and 32. It has
   /// num_theta * num_phi * num_offset^2 axes; twice as many cells need four times the bins.
   /// \throws pcl::BadArgumentException "field = value, must be rule", as all setters here.
@@ -41,24 +40,20 @@ public:
     num_phi_ = num_phi;
     num_offset_ = num_offset;
   }
-  /// Sets the orders of the rotations that are looked for.
-  /// \param folds orders of the rotations, each 0 (any angle) or in [2, 60]; default 0 and 2 to 8.
+  /// \param folds orders of the rotations that are looked for, each 0 (any angle) or in [2, 60]; default 0 and 2 to 8.
   void setFolds(const std::vector<int>& folds) {
     detail::changeOptions(transform_, [&](AxialTransformOptions& changed) { changed.folds = folds; });
   }
-  /// Sets how many points estimate each value.
   /// \param num_samples points drawn, >= 1; default 192, for an error below 1 %.
   void setNumSamples(int num_samples) {
     detail::changeOptions(transform_, [&](AxialTransformOptions& changed) { changed.num_samples = num_samples; });
   }
   void setRandomSeed(std::uint64_t seed) { transform_.seed = seed; }  ///< of all random draws
-  /// Sets the number of threads.
-  /// \param num_threads >= 0; 0 = one per core (default). The result does not depend on it.
+  /// \param num_threads >= 0; 0 = one per core (default).
   void setNumberOfThreads(int num_threads) {
     detail::changeOptions(transform_, [&](AxialTransformOptions& changed) { changed.num_threads = num_threads; });
   }
 
-  /// Computes the map of all axes.
   /// \return the map of all axes, in the frame and units of the input; empty where the input holds no answer, see
   /// getReason(). With a viewpoint it holds (1 + c) D / (D + F + c), as that of PlanarSymmetryTransform.
   /// \throws pcl::BadArgumentException where the points surround the viewpoint that was given.
@@ -71,7 +66,6 @@ public:
     });
   }
 
-  /// Computes the map of all centers of point symmetry.
   /// \return the map of all centers of point symmetry; empty where the input holds no answer.
   /// \param num_centers along each edge, in [2, 512].
   /// \throws pcl::BadArgumentException as compute().
@@ -80,7 +74,6 @@ public:
         [&] { return prepare() ? centralTransform(*edt_, num_centers, transform_, this->seen()) : CenterMap(); });
   }
 
-  /// Lists the strongest axes of the last map.
   /// \param count greatest number of axes, >= 1.
   /// \param min_value least D, in [0, 1].
   /// \return the maxima of the last map, strongest first, as from axisMaxima(): by D alone, also for scans.

@@ -32,11 +32,9 @@ public:
   /// Uses at most 200 000 points, see setMaxPoints().
   PlanarSymmetryTransform() : TransformAnalysis<PointT>("PlanarSymmetryTransform") {}
 
-  /// Sets the estimator.
   /// \param method sampled (default), convolution, rotational or voting; all estimate the same normalized quantity.
   void setMethod(TransformMethod method) { transform_.method = method; }
 
-  /// Sets the grid of the distance transform and of the map.
   /// \param n cells of the distance transform along each side, and bins of theta, phi and r each, as in the paper;
   /// even, in [8, 512].
   /// \throws pcl::BadArgumentException "field = value, must be rule", as all setters here.
@@ -44,7 +42,6 @@ public:
     this->setNumCells(n);
     setMapSize(n, n, n);
   }
-  /// Sets the number of bins.
   /// \param num_theta,num_phi,num_radius bins of the map, each in [1, 4096], num_phi even; default 64 each.
   void setMapSize(int num_theta, int num_phi, int num_radius) {
     detail::changeOptions(map_size_, [&](MapSize& changed) { changed = {num_theta, num_phi, num_radius}; });
@@ -58,32 +55,27 @@ public:
     edt_options_.radius = radius;
   }
 
-  /// Sets how many points estimate each value.
   /// \param num_samples points drawn by the sampled estimator, >= 1; default 128, for an error below 1 %.
   void setNumSamples(int num_samples) {
     detail::changeOptions(transform_.sampled,
                           [&](SampledTransformOptions& changed) { changed.num_samples = num_samples; });
   }
-  /// Sets how many pairs of points vote.
   /// \param num_pairs pairs drawn by voting, >= 1; default 2 million.
   void setNumPairs(std::int64_t num_pairs) {
     detail::changeOptions(transform_.voting, [&](VotingTransformOptions& changed) { changed.num_pairs = num_pairs; });
   }
-  /// Sets how voting draws pairs of near points.
   /// \param cells pairs of points closer than this are drawn plane first by voting, >= 0; 0: voting as the paper writes
   /// it; default 4.
   void setNearDistance(double cells) {
     detail::changeOptions(transform_.voting, [&](VotingTransformOptions& changed) { changed.near_distance = cells; });
   }
-  /// Sets how many planes the rotational estimator refines.
   /// \param share of the planes that the rotational estimator refines, in [0, 1]; 1 (default) = all, no multiresolution.
   void setRefinedShare(double share) {
     detail::changeOptions(transform_.rotational,
                           [&](RotationalTransformOptions& changed) { changed.refined_share = share; });
   }
   void setRandomSeed(std::uint64_t seed) { transform_.setSeed(seed); }  ///< of all draws
-  /// Sets the number of threads.
-  /// \param num_threads >= 0; 0 = one per core (default). The result does not depend on it.
+  /// \param num_threads >= 0; 0 = one per core (default).
   void setNumberOfThreads(int num_threads) {
     detail::checkAtLeast("num_threads", num_threads, 0);
     transform_.setNumThreads(num_threads);
@@ -94,7 +86,6 @@ public:
   /// \throws pcl::BadArgumentException where the mesh refers to vertices that it does not have.
   void setInputMesh(const pcl::PolygonMesh& mesh, int num_points = 50'000);
 
-  /// Computes the map.
   /// \return the map, in the frame and units of the input; empty where the input holds no answer, see getReason().
   /// \throws pcl::BadArgumentException where the points surround the viewpoint that was given.
   SymmetryMap compute();

@@ -61,26 +61,22 @@ public:
 
   PRSTEstimation() { this->feature_name_ = "PRSTEstimation"; }
 
-  /// Sets the frame of the descriptors.
   /// \param use_input_axes true: about the center of mass in the axes of the cloud, as the paper does with models that
   /// were aligned by hand. false (default): in the canonical frame of the cloud, see SymmetryAlignment.
   void setUseInputAxes(bool use_input_axes) { parameters_.use_input_axes = use_input_axes; }
-  /// Sets the measure of PRST and PRSD.
   /// \param by_equation_1 values of PRST and PRSD are sqrt((1 + D) / 2) as in equation 1; false (default):
   /// sqrt(max(D, 0)), which is 0 for planes without any symmetry.
   void setByEquation1(bool by_equation_1) { parameters_.by_equation_1 = by_equation_1; }
 
   void setRandomSeed(std::uint64_t seed) { parameters_.seed = seed; }  ///< of all random draws
 
-  /// Sets the number of threads.
-  /// \param num_threads >= 0; 0 = one per core (default). The result does not depend on it.
+  /// \param num_threads >= 0; 0 = one per core (default).
   /// \throws pcl::BadArgumentException for a negative number.
   void setNumberOfThreads(int num_threads) {
     detail::checkAtLeast("num_threads", num_threads, 0);
     parameters_.num_threads = num_threads;
   }
 
-  /// Reduces larger clouds to this number of points.
   /// \param max_points points that are drawn from a larger cloud, >= 2; default 20 000.
   /// \throws pcl::BadArgumentException for fewer than 2.
   void setMaxPoints(std::size_t max_points) {

@@ -21,7 +21,6 @@ public:
   /// Uses at most 50 000 points, see setMaxPoints().
   SymmetryAlignment() : SearchingAnalysis<ScanAnalysis<PointT>, FrameOptions>("SymmetryAlignment", 50'000) {}
 
-  /// Sets the grid of the distance transform.
   /// \param num_cells cells of the distance transform along each side, in [8, 512]; default 64.
   void setGridSize(int num_cells) {
     this->change([&](FrameOptions& changed) { changed.num_cells = num_cells; });

@@ -56,7 +56,6 @@ public:
 
   using CloudAnalysis<PointT>::setInputVolume;
 
-  /// Sets how probable an accepted answer has to be.
   /// \param min_confidence a plane of at least this confidence is a symmetry, in [0, 1]; default 0.5.
   void setMinConfidence(double min_confidence) {
     this->change([&](DetectionOptions& changed) {
@@ -64,35 +63,29 @@ public:
       changed.min_possible = std::min(changed.min_possible, min_confidence);
     });
   }
-  /// Sets what counts as symmetric.
   /// \param tolerance how far a symmetric surface may be off, as a share of the greatest distance between two points, in
   /// (0, 0.1], whatever the sensor resolves; default 0.01, or what a depth camera (up to 0.03) or sparse points (up to
   /// 0.02) resolve.
   void setTolerance(double tolerance) {
     this->change([&](DetectionOptions& changed) { changed.tolerance = changed.max_tolerance = tolerance; });
   }
-  /// Also reports planes that are no symmetries.
   /// \param approximate also reports maxima of less confidence: approximate symmetries and symmetries of parts, marked
   /// by SymmetryPlane::kind; default false.
   void setApproximate(bool approximate) { options_.approximate = approximate; }
-  /// Limits the number of planes.
   /// \param max_planes greatest number of planes, >= 1; default 128.
   void setMaxPlanes(int max_planes) {
     this->change([&](DetectionOptions& changed) { changed.max_planes = max_planes; });
   }
-  /// Sets the grid of the distance transform.
   /// \param num_cells cells of the distance transform along each side, in [8, 512]; default 64.
   void setGridSize(int num_cells) {
     this->change([&](DetectionOptions& changed) { changed.num_cells = num_cells; });
   }
-  /// Sets the width of the Gaussian.
   /// \param sigma width of the Gaussian, input units, >= 0; 0 (default) = two cells, or the spacing of the points where
   /// that is more.
   void setSigma(double sigma) {
     this->change([&](DetectionOptions& changed) { changed.sigma = sigma; });
   }
 
-  /// Sets where normals come from.
   /// \param use_input_normals uses the normals of point types that have them (default), where they are finite and not
   /// zero; false, and for other point types: all normals are estimated from the neighbors.
   void setUseInputNormals(bool use_input_normals) { use_input_normals_ = use_input_normals; }
@@ -109,7 +102,6 @@ public:
   /// bins, refined by publishedPlanes() and not judged. Viewpoint, mesh and normals are not used. Volumes ignore it.
   void setAsPublished(bool as_published) { as_published_ = as_published; }
 
-  /// Finds the planes.
   /// \return the planes, best first, in the frame of the input: by their kind symmetries, then what is only possible.
   /// Empty where there is neither, and where the input holds no answer, see getReason().
   /// \throws pcl::BadArgumentException where the points surround the viewpoint that was given.

@@ -169,7 +169,6 @@ public:
     target_viewpoint_ = detail::checkedViewpoint(viewpoint);
     prepared_target_.reset();
   }
-  /// Sets how probable an accepted answer has to be.
   /// \param min_confidence of a pose that has converged, in [0, 1]; default 0.5.
   /// \throws pcl::BadArgumentException "field = value, must be rule", as all setters here.
   void setMinConfidence(double min_confidence) {
@@ -195,14 +194,12 @@ public:
     max_points_ = max_points;
     prepared_target_.reset();
   }
-  /// Sets the seed of all random draws.
   /// \param seed of all random draws.
   void setRandomSeed(std::uint64_t seed) {
     options_.seed = seed;
     prepared_target_.reset();
   }
-  /// Sets the number of threads.
-  /// \param num_threads >= 0; 0 = one per core (default). The result does not depend on it.
+  /// \param num_threads >= 0; 0 = one per core (default).
   void setNumberOfThreads(int num_threads) {
     detail::checkAtLeast("num_threads", num_threads, 0);
     options_.num_threads = num_threads;

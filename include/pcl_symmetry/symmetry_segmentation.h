@@ -37,7 +37,6 @@ public:
     clearResults();
   }
 
-  /// Sets the number of parts.
   /// \param num_parts number of parts where the shape allows it, >= 0; 0 = as many as the method finds (default).
   void setNumberOfParts(int num_parts) {
     this->change([&](SegmentationOptions& changed) { changed.num_parts = num_parts; });

@@ -58,12 +58,10 @@ public:
   /// \throws pcl::BadArgumentException for other values.
   void setUp(const Eigen::Vector3d& up);
 
-  /// Sets how far apart good views are.
   /// \param separation angle that good views keep from each other, radians, in [0, pi]; default 0.7 (40 degrees).
   /// \throws pcl::BadArgumentException for other values.
   void setSeparation(double separation);
 
-  /// The view that shows most.
   /// \return the view of the greatest S. Where the cloud has no extent: score 0 at direction 0, and PCL_WARN says so.
   SelectedView getBestView() const;
   /// \return the view along the symmetries, which shows the least of the object; without extent as getBestView().

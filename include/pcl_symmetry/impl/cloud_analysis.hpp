@@ -127,10 +127,8 @@ private:
 template <typename PointT>
 class ScanAnalysis : public CloudAnalysis<PointT> {
 public:
-  /// Sets how the viewpoint is found.
   /// \param mode how the viewpoint is found; default Viewpoint::Mode::Auto.
   void setViewpointMode(Viewpoint::Mode mode) { viewpoint_.mode = mode; }
-  /// Sets where the scanner stood.
   /// \param position where the scanner stood, input frame; it must see the points within 75 degrees of one direction.
   /// \throws pcl::BadArgumentException where it is not finite.
   void setViewpoint(const Eigen::Vector3d& position) { setViewpoint(Viewpoint{Viewpoint::Mode::Given, position}); }

@@ -104,7 +104,6 @@ public:
   }
   const Options& getOptions() const { return options_; }            ///< see setOptions()
   void setRandomSeed(std::uint64_t seed) { options_.seed = seed; }  ///< of all random draws
-  /// Sets the number of threads.
   /// \param num_threads >= 0; 0 = one per core (default). The result does not depend on it.
   void setNumberOfThreads(int num_threads) {
     change([&](Options& changed) { changed.num_threads = num_threads; });

@@ -21,14 +21,12 @@ class TransformAnalysis : public ScanAnalysis<PointT> {
 public:
   using CloudAnalysis<PointT>::setInputVolume;
 
-  /// Sets the grid of the distance transform.
   /// \param num_cells cells of the distance transform along each side, in [8, 512]; default 64, in
   /// AxialSymmetryTransform 32. Twice as many see details half as large.
   /// \throws pcl::BadArgumentException "field = value, must be rule", as all setters here.
   void setNumCells(int num_cells) {
     detail::changeOptions(edt_options_, [&](GaussianEdtOptions& changed) { changed.num_cells = num_cells; });
   }
-  /// Sets the width of the Gaussian.
   /// \param sigma width of the Gaussian, input units, >= 0; 0 (default) = two cells, or the spacing of the points where
   /// that is more.
   void setSigma(double sigma) {
