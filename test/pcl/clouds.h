@@ -32,7 +32,7 @@ typename pcl::PointCloud<PointT>::Ptr toCloud(const Shape& shape) {
 template <typename PointT = pcl::PointXYZ>
 typename pcl::PointCloud<PointT>::Ptr pictureOf(const Scan& scan,
                                                 const Eigen::Isometry3d& pose = Eigen::Isometry3d::Identity()) {
-  const auto cloud = toCloud<PointT>((pose * scan.pixels.cast<double>()).cast<float>().eval());
+  const auto cloud = toCloud<PointT>(moved(scan.pixels, pose));
   cloud->width = scan.width;
   cloud->height = scan.height;
   cloud->is_dense = false;

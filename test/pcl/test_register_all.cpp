@@ -38,7 +38,7 @@ struct Turntable {
   void add(double degrees) { add(blobSeenFrom(viewpoint(degrees), scans.size() + 1), viewpoint(degrees)); }
   void add(const Points& points, const Eigen::Vector3d& viewpoint) {
     T_scan_object.push_back(randomPose(scans.size() + 1));
-    const auto cloud = toCloud<pcl::PointXYZ>((T_scan_object.back().cast<float>() * points).eval());
+    const auto cloud = toCloud(moved(points, T_scan_object.back()));
     cloud->sensor_origin_.head<3>() = (T_scan_object.back() * viewpoint).cast<float>();
     scans.push_back(cloud);
   }
@@ -81,8 +81,7 @@ TEST(RegisterAll, BringsScansFromAllAroundTogetherAndLeavesOutAScanOfSomethingEl
   ASSERT_EQ(merged.cloud.size(), merged.scans.size());
   EXPECT_LT(merged.cloud.size(), num_points) << "thinned where scans overlap";
   const Points model = asymmetricBlob(50'000, 99).cloud();
-  const Points found = merged.cloud.getMatrixXfMap(3, 4, 0);
-  const Points points = table.T_scan_object[0].inverse().cast<float>() * found;
+  const Points points = moved(merged.cloud.getMatrixXfMap(3, 4, 0), table.T_scan_object[0].inverse());
   for (Eigen::Index i = 0; i < points.cols(); i += 500)
     EXPECT_LT(std::sqrt((model.colwise() - points.col(i)).colwise().squaredNorm().minCoeff()), 0.04f) << i;
 }

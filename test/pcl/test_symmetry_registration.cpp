@@ -28,7 +28,7 @@ using CloudPtr = typename pcl::PointCloud<PointT>::Ptr;
 template <typename PointT = pcl::PointXYZ>
 CloudPtr<PointT> chairScan(const Eigen::Isometry3d& pose) {
   const Scan scan = test::scan(blockChair(), {3.0, -6.0, 4.0});
-  const auto cloud = toCloud<PointT>((pose.cast<float>() * scan.cloud()).eval());
+  const auto cloud = toCloud<PointT>(moved(scan.cloud(), pose));
   cloud->sensor_origin_.template head<3>() = (pose * scan.viewpoint).cast<float>();
   return cloud;
 }
@@ -447,7 +447,7 @@ PoseErrors errorsUnderNoise(double noise, int num_trials) {
   options.around = PoseNeighborhood{20.0 * kDegree, 1.0};
   for (int i = 0; i < num_trials; ++i) {
     RandomStream random(100 + i);
-    Points source = blockOnBox(10 + i), target = (T_target_source * blockOnBox(500 + i).cast<double>()).cast<float>();
+    Points source = blockOnBox(10 + i), target = moved(blockOnBox(500 + i), T_target_source);
     for (Points* points : {&source, &target})
       for (Eigen::Index k = 0; k < points->size(); ++k)
         points->data()[k] += static_cast<float>(noise * gaussian(random));

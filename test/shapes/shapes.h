@@ -71,6 +71,10 @@ inline Shape moved(const Shape& shape, const Eigen::Isometry3d& pose) {
   return result;
 }
 
+inline Points moved(const Points& points, const Eigen::Isometry3d& pose) {
+  return (pose * points.cast<double>()).cast<float>();
+}
+
 inline Shape scaled(const Shape& shape, double scale) {
   Shape result{scale * shape.points, {}};
   for (const ReflectionPlane& plane : shape.planes) result.planes.emplace_back(plane.normal(), scale * plane.offset());
@@ -248,6 +252,15 @@ Points pointsWhere(const Points& points, const Keep& keep) {
   for (Eigen::Index i = 0; i < points.cols(); ++i)
     if (keep(Eigen::Vector3f(points.col(i)))) kept.push_back(i);
   return points(Eigen::all, kept);
+}
+
+/// One cloud after the other.
+template <typename... Clouds>
+Points joined(const Clouds&... clouds) {
+  Points all(3, (clouds.cols() + ...));
+  Eigen::Index at = 0;
+  ((all.middleCols(at, clouds.cols()) = clouds, at += clouds.cols()), ...);
+  return all;
 }
 
 /// The diagonal of the bounding box, the unit in which offsets are judged.

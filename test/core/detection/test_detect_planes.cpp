@@ -24,9 +24,8 @@ using namespace pcl_symmetry::test;
 TEST(DetectionInput, AGivenSearchIsAskedForEveryKindOfCloud) {
   const Points one = moved(box(3000, Sampling::Random, 4), randomPose(2)).cloud();
   const Points large = moved(box(30'000, Sampling::Random, 5), randomPose(3)).cloud();
-  Points twice(3, 2 * one.cols());
-  twice << one, one;
-  for (const auto& [points, num_used] : {std::pair(one, 3000), std::pair(twice, 3000), std::pair(large, 20'000)}) {
+  for (const auto& [points, num_used] :
+       {std::pair(one, 3000), std::pair(joined(one, one), 3000), std::pair(large, 20'000)}) {
     AskedSearch asked;
     PlaneInput input(points);
     input.make_search = asked.make();
@@ -51,10 +50,8 @@ TEST(DetectionInput, AGivenSearchIsAskedForEveryKindOfCloud) {
 
 TEST(DetectPlanes, SameBytesForAnyNumberOfThreads) {
   const Points cloud = moved(prism(5, 4000, Sampling::Random, 13), randomPose(13)).cloud();
-  const Points beside =
-      box({0.6, 0.5, 0.35}, 2900, Sampling::Random, 2).cloud().colwise() + Eigen::Vector3f(2.0, 0.2, 0.1);
-  Points parts(3, cloud.cols() + beside.cols());
-  parts << cloud, beside;
+  const Points parts = joined(
+      cloud, box({0.6, 0.5, 0.35}, 2900, Sampling::Random, 2).cloud().colwise() + Eigen::Vector3f(2.0, 0.2, 0.1));
   const auto detect = [](const Points& points, bool approximate, int num_threads) {
     DetectionOptions options;
     options.approximate = approximate;
@@ -121,10 +118,7 @@ TEST(CloudSubset, TakesAsManyPointsAsTheToleranceNeeds) {
 }
 
 TEST(CloudSubset, LeavesCloudsOfFewDistinctPoints) {
-  const Points few = box(10'000, Sampling::Random, 1).cloud();
-  Points copies(3, 5 * few.cols());
-  for (int k = 0; k < 5; ++k) copies.middleCols(k * few.cols(), few.cols()) = few;
-  EXPECT_FALSE(subsetOf(copies, DetectionOptions()));
+  EXPECT_FALSE(subsetOf(box(10'000, Sampling::Random, 1).cloud().replicate(1, 5), DetectionOptions()));
 }
 
 TEST(CloudSubset, NamesTheNearestPoint) {

@@ -138,16 +138,11 @@ struct TwoBoxes {
 
   TwoBoxes() {
     const Eigen::Vector3d large(1.0, 0.7, 0.5), small(0.6, 0.5, 0.35);
-    const Points a = box(large, 6000, Sampling::Random, 1).cloud();
-    const Points b = box(small, 2900, Sampling::Random, 2).cloud();
-    const Eigen::Matrix3d turn = Eigen::AngleAxisd(0.6, Eigen::Vector3d(1.0, 2.0, 0.5).normalized()).toRotationMatrix();
-    const Eigen::Vector3d place(1.68, 0.2, 0.1);  // a corner reaches 0.04 into the large box
-    points.resize(3, a.cols() + b.cols());
-    points << a, ((turn * b.cast<double>()).colwise() + place).cast<float>();
-    for (int k = 0; k < 3; ++k) {
-      planes.emplace_back(Eigen::Vector3d::Unit(k), 0.0);
-      planes.emplace_back(turn.col(k), turn.col(k).dot(place));
-    }
+    const Eigen::Isometry3d beside = Eigen::Translation3d(1.68, 0.2, 0.1) *  // a corner reaches 0.04 into the large box
+                                     Eigen::AngleAxisd(0.6, Eigen::Vector3d(1.0, 2.0, 0.5).normalized());
+    const Shape a = box(large, 6000, Sampling::Random, 1), b = moved(box(small, 2900, Sampling::Random, 2), beside);
+    points = joined(a.cloud(), b.cloud());
+    for (int k = 0; k < 3; ++k) planes.insert(planes.end(), {a.planes[k], b.planes[k]});
   }
 };
 

@@ -106,8 +106,8 @@ TEST(MissingCounterparts, ExplainAPartWithoutAnEdge) {
   const Points ball = cap(2.0);
   const Points cut = pointsWhere(ball, [](const Eigen::Vector3f& x) { return x.x() <= 0.2f; });
   const auto along = [](float x) { return Eigen::Vector3f(x, 0.0f, 0.0f); };
-  Points points(3, cut.cols() + 2 * ball.cols());
-  points << cut.colwise() + along(1.2f), ball.colwise() + along(-1.2f), ball.colwise() + along(-4.0f);
+  const Points points =
+      joined(cut.colwise() + along(1.2f), ball.colwise() + along(-1.2f), ball.colwise() + along(-4.0f));
   const auto [matched, missing] = matchedAndMissing(Surface(points), ReflectionPlane(Eigen::Vector3d::UnitX(), 0.0));
   EXPECT_LT(matched, 0.6);
   EXPECT_NEAR(matched + missing, 1.0, 0.03);
@@ -340,7 +340,7 @@ TEST(PointDensity, MovesAndScalesWithThePoints) {
                   .overlap(points * 8.0f, ReflectionPlane(plane.normal(), 8.0 * plane.offset())),
               expected, 1e-4);
   const Eigen::Isometry3d pose = randomPose(3);
-  const Points turned = (pose * points.cast<double>()).cast<float>();
+  const Points turned = moved(points, pose);
   // Cells of half a bandwidth lie elsewhere in the density.
   EXPECT_NEAR(PointDensity(turned, bandwidth, 0).overlap(turned, plane.transformed(pose)), expected, 0.02);
 }

@@ -21,9 +21,6 @@ namespace {
 
 using namespace test;
 
-using test::kDegree;
-using test::Sampling;
-
 /// Largest angle from a column of \p axes to the nearest column of \p expected, as lines.
 double axisError(const Eigen::Matrix3d& axes, const Eigen::Matrix3d& expected) {
   const Eigen::Matrix3d cosines = (axes.transpose() * expected).cwiseAbs();
@@ -40,87 +37,78 @@ void expectSame(const SymmetryFrame& a, const SymmetryFrame& b) {
   EXPECT_EQ(a.axes, b.axes);
   EXPECT_EQ(a.scores, b.scores);
   EXPECT_EQ(a.revolution_axis, b.revolution_axis);
-  EXPECT_EQ(test::valuesOf(a.probable, &ProbableFrame::probability),
-            test::valuesOf(b.probable, &ProbableFrame::probability));
-  EXPECT_EQ(test::matricesOf(a.equivalent), test::matricesOf(b.equivalent));
+  EXPECT_EQ(valuesOf(a.probable, &ProbableFrame::probability), valuesOf(b.probable, &ProbableFrame::probability));
+  EXPECT_EQ(matricesOf(a.equivalent), matricesOf(b.equivalent));
 }
 
 /// A box with a fin at the end of its back, like the body of an airplane: one plane, y = 0, one nearly, x = 0, and
 /// nothing across z. So order and signs of its axes are not left to chance.
-test::Shape finnedBox(std::uint64_t seed) {
-  test::Shape shape = test::box({1.0, 0.45, 0.25}, 6000, Sampling::Random, seed);
-  const test::Shape fin = test::box({0.15, 0.08, 0.5}, 1200, Sampling::Random, seed + 1);
-  const Eigen::Index size = shape.points.cols();
-  shape.points.conservativeResize(3, size + fin.points.cols());
-  shape.points.rightCols(fin.points.cols()) = fin.points.colwise() + Eigen::Vector3d(-0.8, 0.0, 0.7);
-  return shape;
+Points finnedBox(std::uint64_t seed) {
+  return joined(
+      box({1.0, 0.45, 0.25}, 6000, Sampling::Random, seed).cloud(),
+      box({0.15, 0.08, 0.5}, 1200, Sampling::Random, seed + 1).cloud().colwise() + Eigen::Vector3f(-0.8f, 0.0f, 0.7f));
 }
 
 TEST(SymmetryFrame, TurnsMovesAndScalesWithTheInput) {
-  const test::Shape shape = finnedBox(5);
-  const SymmetryFrame expected = symmetryFrame(shape.cloud());
+  const Points points = finnedBox(5);
+  const SymmetryFrame expected = symmetryFrame(points);
   EXPECT_GT(std::abs(expected.axes(1, 0)), std::cos(3.0 * kDegree));
   EXPECT_GT(std::abs(expected.axes(0, 1)), std::cos(3.0 * kDegree));
   EXPECT_GT(expected.axes(2, 2), std::cos(3.0 * kDegree)) << "toward the fin";
   for (std::uint64_t seed = 1; seed <= 4; ++seed) {
-    const Eigen::Isometry3d pose = test::randomPose(seed);
+    const Eigen::Isometry3d pose = randomPose(seed);
     const double scale = std::pow(10.0, static_cast<double>(seed) - 3.0);
-    const test::Shape image = test::scaled(test::moved(shape, pose), scale);
-    const SymmetryFrame frame = symmetryFrame(image.cloud());
-    EXPECT_LT((frame.center - scale * (pose * expected.center)).norm(), 0.015 * test::diagonal(image.cloud())) << seed;
-    EXPECT_LT(Eigen::AngleAxisd(frame.axes.transpose() * pose.linear() * expected.axes).angle(), 3.0 * kDegree) << seed;
+    const Points image = static_cast<float>(scale) * moved(points, pose);
+    const SymmetryFrame frame = symmetryFrame(image);
+    EXPECT_LT((frame.center - scale * (pose * expected.center)).norm(), 0.015 * diagonal(image)) << seed;
+    EXPECT_LT(angleOf(frame.axes.transpose() * pose.linear() * expected.axes), 3.0 * kDegree) << seed;
   }
 }
 
 TEST(SymmetryFrame, OfAMugDoesNotFollowTheHandle) {
   for (const double reach : {0.3, 0.6}) {
-    test::Shape mug = test::cylinder(6000, 2);
-    const Eigen::Index size = mug.points.cols(), added = 1200;
-    mug.points.conservativeResize(3, size + added);
+    Points handle(3, 1200);
     RandomStream random(4);
-    for (Eigen::Index i = 0; i < added; ++i) {  // half a ring in the plane y = 0, upright beside the wall
-      const double around = test::kPi * (random.uniform() - 0.5), tube = 2.0 * test::kPi * random.uniform();
+    for (Eigen::Index i = 0; i < handle.cols(); ++i) {  // half a ring in the plane y = 0, upright beside the wall
+      const double around = kPi * (random.uniform() - 0.5), tube = 2.0 * kPi * random.uniform();
       const double r = 0.5 + 0.08 * std::cos(tube);
-      mug.points.col(size + i) =
-          Eigen::Vector3d(0.6 + reach / 0.5 * r * std::cos(around), 0.08 * std::sin(tube), r * std::sin(around));
+      const Eigen::Vector3d x(0.6 + reach / 0.5 * r * std::cos(around), 0.08 * std::sin(tube), r * std::sin(around));
+      handle.col(i) = x.cast<float>();
     }
-    const Eigen::Isometry3d pose = test::randomPose(11);
-    const Points cloud = test::moved(mug, pose).cloud();
+    const Eigen::Isometry3d pose = randomPose(11);
+    const Points cloud = moved(joined(cylinder(6000, 2).cloud(), handle), pose);
     const SymmetryFrame frame = symmetryFrame(cloud);
     EXPECT_LT(axisError(frame.axes, pose.linear()), 3.0 * kDegree) << reach;
     EXPECT_LT((frame.center - pose.translation()).norm(), 0.01 * farthestPair(cloud)) << reach;
-    EXPECT_GT((centerOfMass(cloud) - pose.translation()).norm(), 0.03 * test::diagonal(cloud)) << reach;
+    EXPECT_GT((centerOfMass(cloud) - pose.translation()).norm(), 0.03 * diagonal(cloud)) << reach;
   }
 }
 
 /// A box about the origin on stands, as the mailboxes of Figure 10: (middle, half sizes) of each.
-test::Shape mailbox(const std::vector<std::pair<Eigen::Vector3d, Eigen::Vector3d>>& stands) {
+Points mailbox(std::vector<std::pair<Eigen::Vector3d, Eigen::Vector3d>> stands) {
   constexpr double kPointsPerArea = 300.0;
-  test::Shape shape{Eigen::Matrix3Xd(3, 0), {}};
-  const auto add = [&](const Eigen::Vector3d& middle, const Eigen::Vector3d& half) {
+  Points points(3, 0);
+  stands.insert(stands.begin(), {Eigen::Vector3d::Zero(), {0.8, 1.5, 0.7}});
+  for (const auto& [middle, half] : stands) {
     const double area = 8.0 * (half.x() * half.y() + half.y() * half.z() + half.z() * half.x());
-    const test::Shape part =
-        test::box(half, static_cast<int>(kPointsPerArea * area), Sampling::Random, 1 + shape.points.cols());
-    shape.points.conservativeResize(3, shape.points.cols() + part.points.cols());
-    shape.points.rightCols(part.points.cols()) = part.points.colwise() + middle;
-  };
-  add(Eigen::Vector3d::Zero(), {0.8, 1.5, 0.7});
-  for (const auto& [middle, half] : stands) add(middle, half);
-  return shape;
+    const Shape part = box(half, static_cast<int>(kPointsPerArea * area), Sampling::Random, 1 + points.cols());
+    points = joined(points, part.cloud().colwise() + middle.cast<float>());
+  }
+  return points;
 }
 
 /// Figure 10: the stand moves neither the axes nor the center.
 TEST(SymmetryFrame, OfAMailboxIsThatOfItsBox) {
   const double half = 0.12;
-  const std::vector<test::Shape> mailboxes{
+  const std::vector<Points> mailboxes{
       mailbox({{{0.0, 0.0, -1.5}, {half, half, 0.8}}}), mailbox({{{0.0, 1.0, -2.0}, {half, half, 1.3}}}),
       mailbox({{{0.0, -1.1, -1.65}, {half, half, 0.95}}, {{0.0, -1.1, -2.65}, {0.6, 0.6, 0.05}}})};
   FrameOptions options;
   options.probabilities = false;
   for (std::size_t i = 0; i < mailboxes.size(); ++i) {
     for (std::uint64_t seed = 1; seed <= 4; ++seed) {
-      const Eigen::Isometry3d pose = test::randomPose(seed + 4 * i);
-      const Points cloud = test::moved(mailboxes[i], pose).cloud();
+      const Eigen::Isometry3d pose = randomPose(seed + 4 * i);
+      const Points cloud = moved(mailboxes[i], pose);
       const SymmetryFrame frame = symmetryFrame(cloud, options);
       EXPECT_LT(axisError(frame.axes, pose.linear()), 1.5 * kDegree) << i << " " << seed;
       EXPECT_LT((frame.center - pose.translation()).norm(), 0.01 * farthestPair(cloud)) << i << " " << seed;
@@ -129,10 +117,10 @@ TEST(SymmetryFrame, OfAMailboxIsThatOfItsBox) {
 }
 
 TEST(SymmetryFrame, OfAWholeCloudIsThatOfItsPlanes) {
-  const test::Shape box = test::box({1.0, 0.7, 0.4}, 8000, Sampling::Random, 3);
+  const Points points = box({1.0, 0.7, 0.4}, 8000, Sampling::Random, 3).cloud();
   for (std::uint64_t seed = 1; seed <= 4; ++seed) {
-    const Eigen::Isometry3d pose = test::randomPose(seed);
-    const Points cloud = test::moved(box, pose).cloud();
+    const Eigen::Isometry3d pose = randomPose(seed);
+    const Points cloud = moved(points, pose);
     const SymmetryFrame frame = symmetryFrame(cloud);
     expectRightHanded(frame);
     EXPECT_GT(frame.scores.minCoeff(), 0.85);
@@ -145,7 +133,7 @@ TEST(SymmetryFrame, OfAWholeCloudIsThatOfItsPlanes) {
 }
 
 TEST(SymmetryFrame, LiesOnThePlanesThatAreDecided) {
-  const Points few = test::box({1.0, 0.7, 0.4}, 3000, Sampling::Random, 3).cloud();
+  const Points few = box({1.0, 0.7, 0.4}, 3000, Sampling::Random, 3).cloud();
   const SymmetryFrame frame = symmetryFrame(few);
   const Detection found = detectPlanes(few);
   ASSERT_EQ(found.planes.size(), 3u);
@@ -154,9 +142,9 @@ TEST(SymmetryFrame, LiesOnThePlanesThatAreDecided) {
 }
 
 TEST(SymmetryFrame, OfAScanOfABodyOfRevolutionLiesOnItsAxis) {
-  const Points cloud = test::cylinder(20'000, 1).cloud();  // of radius 0.6
+  const Points cloud = cylinder(20'000, 1).cloud();  // of radius 0.6
   const Eigen::Vector3d scanner(5.0, 0.0, 3.0);
-  const Points seen = test::pointsWhere(cloud, [](const Eigen::Vector3f& x) {
+  const Points seen = pointsWhere(cloud, [](const Eigen::Vector3f& x) {
     return x.z() == 1.0f || (x.z() > -1.0f && 5.0f * x.x() > 0.36f && x.head<2>().norm() > 0.599f);
   });
   const Visibility visibility = *Visibility::fromPoints(seen, scanner);
@@ -168,19 +156,18 @@ TEST(SymmetryFrame, OfAScanOfABodyOfRevolutionLiesOnItsAxis) {
 
 TEST(SymmetryFrame, ListsTheFramesThatSymmetryLeavesEquallyGood) {
   // The frame itself is the first, all have its center at the origin, and all are rotations.
-  const Eigen::Isometry3d pose = test::randomPose(2);
-  const SymmetryFrame box = symmetryFrame(test::moved(finnedBox(8), pose).cloud());
-  ASSERT_GE(box.equivalent.size(), 4u);
-  EXPECT_EQ(box.equivalent[0].matrix(), box.T_canonical_input.matrix());
-  for (const Eigen::Isometry3d& T : box.equivalent) EXPECT_NEAR(T.linear().determinant(), 1.0, 1e-5);
+  const Eigen::Isometry3d pose = randomPose(2);
+  const SymmetryFrame of_box = symmetryFrame(moved(finnedBox(8), pose));
+  ASSERT_GE(of_box.equivalent.size(), 4u);
+  EXPECT_EQ(of_box.equivalent[0].matrix(), of_box.T_canonical_input.matrix());
+  for (const Eigen::Isometry3d& T : of_box.equivalent) EXPECT_NEAR(T.linear().determinant(), 1.0, 1e-5);
 
   // Of a cube each of its 24 rotations is there.
-  const auto cube = test::moved(test::cube(6000, Sampling::Random, 3), pose);
-  const SymmetryFrame frame = symmetryFrame(cube.cloud());
+  const SymmetryFrame frame = symmetryFrame(moved(cube(6000, Sampling::Random, 3), pose).cloud());
   ASSERT_LT(axisError(frame.axes, pose.linear()), 2.0 * kDegree) << "across faces, not edges: the surface agrees";
   EXPECT_GE(frame.equivalent.size(), 24u);
   for (int axis = 0; axis < 3; ++axis) {
-    const Eigen::Isometry3d quarter(Eigen::AngleAxisd(0.5 * test::kPi, frame.axes.col(axis)));
+    const Eigen::Isometry3d quarter(Eigen::AngleAxisd(0.5 * kPi, frame.axes.col(axis)));
     const Eigen::Matrix3d rotated = frame.T_canonical_input.linear() * quarter.linear();
     const bool listed = std::any_of(frame.equivalent.begin(), frame.equivalent.end(), [&](const auto& T) {
       return Eigen::AngleAxisd(T.linear() * rotated.transpose()).angle() < 5.0 * kDegree;
@@ -190,8 +177,8 @@ TEST(SymmetryFrame, ListsTheFramesThatSymmetryLeavesEquallyGood) {
 }
 
 TEST(SymmetryFrame, ListsFramesThatMayBeTheShapesOwnWithTheirProbabilities) {
-  const Eigen::Isometry3d pose = test::randomPose(4);
-  const SymmetryFrame frame = symmetryFrame(test::moved(finnedBox(5), pose).cloud());
+  const Eigen::Isometry3d pose = randomPose(4);
+  const SymmetryFrame frame = symmetryFrame(moved(finnedBox(5), pose));
   ASSERT_GE(frame.probable.size(), 2u);
   EXPECT_EQ(frame.probable[0].axes, frame.axes) << "the frame itself is the first";
   EXPECT_EQ(frame.probable[0].center, frame.center);
@@ -209,28 +196,28 @@ TEST(SymmetryFrame, ListsFramesThatMayBeTheShapesOwnWithTheirProbabilities) {
 
   FrameOptions options;
   options.probabilities = false;
-  const SymmetryFrame without = symmetryFrame(test::moved(finnedBox(5), pose).cloud(), options);
+  const SymmetryFrame without = symmetryFrame(moved(finnedBox(5), pose), options);
   EXPECT_TRUE(without.probable.empty());
   EXPECT_EQ(without.T_canonical_input.matrix(), frame.T_canonical_input.matrix());
 }
 
 TEST(SymmetryFrame, FindsAxesOfRevolutionAndSpheres) {
-  const Eigen::Isometry3d pose = test::randomPose(9);
-  const SymmetryFrame cylinder = symmetryFrame(test::moved(test::cylinder(8000, 1), pose).cloud());
-  ASSERT_GE(cylinder.revolution_axis, 0);
-  ASSERT_LE(cylinder.revolution_axis, 2);
-  EXPECT_GT(std::abs(cylinder.axes.col(cylinder.revolution_axis).dot(pose.linear().col(2))), std::cos(2.0 * kDegree));
-  EXPECT_LT((cylinder.center - pose.translation()).norm(), 0.03);
+  const Eigen::Isometry3d pose = randomPose(9);
+  const SymmetryFrame round = symmetryFrame(moved(cylinder(8000, 1), pose).cloud());
+  ASSERT_GE(round.revolution_axis, 0);
+  ASSERT_LE(round.revolution_axis, 2);
+  EXPECT_GT(std::abs(round.axes.col(round.revolution_axis).dot(pose.linear().col(2))), std::cos(2.0 * kDegree));
+  EXPECT_LT((round.center - pose.translation()).norm(), 0.03);
 
-  const SymmetryFrame sphere = symmetryFrame(test::moved(test::sphere(6000, 1), pose).cloud());
-  EXPECT_EQ(sphere.revolution_axis, 3);
-  EXPECT_LT((sphere.center - pose.translation()).norm(), 0.03);
+  const SymmetryFrame ball = symmetryFrame(moved(sphere(6000, 1), pose).cloud());
+  EXPECT_EQ(ball.revolution_axis, 3);
+  EXPECT_LT((ball.center - pose.translation()).norm(), 0.03);
 }
 
 TEST(SymmetryFrame, OfAScanIsThatOfTheWhole) {
   for (const Eigen::Vector3d& direction :
        {Eigen::Vector3d(1.0, 1.3, 0.8), Eigen::Vector3d(-1.2, 0.7, 1.0), Eigen::Vector3d(0.8, -1.0, -1.1)}) {
-    const test::Scan scan = test::scan(test::blockBox(), 6.0 * direction.normalized());
+    const Scan scan = test::scan(blockBox(), 6.0 * direction.normalized());
     const Points cloud = scan.cloud();
     const Visibility visibility = scan.visibility();
     const SymmetryFrame frame = symmetryFrame(cloud, {}, &visibility);
@@ -244,7 +231,7 @@ TEST(SymmetryFrame, OfAScanIsThatOfTheWhole) {
 
 /// The box of blocks has half turns; from a corner one of them is confirmed by what was seen.
 TEST(SymmetryFrame, OfAScanLiesOnThePlaneThatIsDecidedAndListsTurnsUnlessToldNotTo) {
-  const test::Scan scan = test::scan(test::blockBox(), 6.0 * Eigen::Vector3d(1.0, 1.3, 0.8).normalized());
+  const Scan scan = test::scan(blockBox(), 6.0 * Eigen::Vector3d(1.0, 1.3, 0.8).normalized());
   const Points cloud = scan.cloud();
   const Visibility visibility = scan.visibility();
   const SymmetryFrame frame = symmetryFrame(cloud, {}, &visibility);
@@ -268,7 +255,7 @@ TEST(SymmetryFrame, OfAScanLiesOnThePlaneThatIsDecidedAndListsTurnsUnlessToldNot
 }
 
 TEST(SymmetryFrame, IsTheSameForAnyNumberOfThreads) {
-  const test::Scan scan = test::scan(test::blockChair(), {3.0, -4.0, 3.5});
+  const Scan scan = test::scan(blockChair(), {3.0, -4.0, 3.5});
   const Points cloud = scan.cloud();
   const Visibility visibility = scan.visibility();
   for (const Visibility* const seen : {&visibility, static_cast<const Visibility*>(nullptr)}) {
@@ -277,10 +264,10 @@ TEST(SymmetryFrame, IsTheSameForAnyNumberOfThreads) {
       options.num_threads = num_threads;
       return symmetryFrame(cloud, options, seen);
     };
-    test::compareThreads(frame, [](const SymmetryFrame& many, const SymmetryFrame& one) {
+    compareThreads(frame, [](const SymmetryFrame& many, const SymmetryFrame& one) {
       expectSame(many, one);
-      EXPECT_EQ(test::valuesOf(many.rotations, &SymmetryRotation::point, &SymmetryRotation::confidence),
-                test::valuesOf(one.rotations, &SymmetryRotation::point, &SymmetryRotation::confidence));
+      EXPECT_EQ(valuesOf(many.rotations, &SymmetryRotation::point, &SymmetryRotation::confidence),
+                valuesOf(one.rotations, &SymmetryRotation::point, &SymmetryRotation::confidence));
     });
   }
 }
@@ -288,8 +275,8 @@ TEST(SymmetryFrame, IsTheSameForAnyNumberOfThreads) {
 TEST(SymmetryFrame, AsPublishedFindsTheAxesOfABox) {
   FrameOptions options;
   options.as_published = true;
-  const Eigen::Isometry3d pose = test::randomPose(4);
-  const auto shape = test::moved(test::box(6000, Sampling::Random, 4), pose);
+  const Eigen::Isometry3d pose = randomPose(4);
+  const auto shape = moved(box(6000, Sampling::Random, 4), pose);
   const SymmetryFrame frame = symmetryFrame(shape.cloud(), options);
   expectRightHanded(frame);
   EXPECT_LT(axisError(frame.axes, pose.linear()), 4.0 * kDegree) << "as fine as the bins of the map";
@@ -319,7 +306,7 @@ TEST(SymmetryFrame, OfDegeneratePointsIsFiniteOrRefused) {
 TEST(FrameOptions, NamesFieldValueAndRule) {
   FrameOptions options;
   options.num_phi = 3;
-  EXPECT_EQ(test::complaintOf<std::invalid_argument>([&] { options.validate(); }),
+  EXPECT_EQ(complaintOf<std::invalid_argument>([&] { options.validate(); }),
             "num_phi = 3, must be even and in [2, 4096]");
 }
 

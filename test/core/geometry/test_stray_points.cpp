@@ -14,13 +14,6 @@ namespace {
 using namespace pcl_symmetry;
 using namespace pcl_symmetry::test;
 
-/// One cloud after the other.
-Points joined(const Points& a, const Points& b) {
-  Points both(3, a.cols() + b.cols());
-  both << a, b;
-  return both;
-}
-
 /// Points at 2 to 20 sizes from the middle of a cloud, in random directions.
 Points aboutCloud(const Points& cloud, int count, std::uint64_t seed) {
   RandomStream random(seed);

@@ -56,8 +56,7 @@ Eigen::Isometry3d elsewhere(double scale) {
 /// The points that are kept, scaled and then moved.
 template <typename IsKept>
 Points scaledPart(const Points& all, double scale, const Eigen::Isometry3d& motion, const IsKept& is_kept) {
-  const Points part = test::pointsWhere(all, is_kept);
-  return (motion * (scale * part.cast<double>())).cast<float>();
+  return test::moved(static_cast<float>(scale) * test::pointsWhere(all, is_kept), motion);
 }
 
 /// The side of a shape that faces a viewer above it, without what lies beyond a plane: about half of what is
@@ -369,10 +368,6 @@ Points slabWithTower(double length, double height) {
   return test::surfaceOf({{slab, tower}, {}}, 8000, 3);
 }
 
-Points moved(const Points& points, const Eigen::Isometry3d& T) {
-  return (T * points.cast<double>()).cast<float>();
-}
-
 constexpr double kAngleStep = 2.0 * M_PI / 48.0;
 
 TEST(ViewSignature, HasUnitNormAndItsSizeAndPlace) {
@@ -406,7 +401,7 @@ TEST(ViewSignature, ARotationOfThePictureIsFound) {
   const View view = viewOf(points, forward);
   for (const double angle : {0.0, 0.6, 2.0, -1.1, 3.1}) {
     const Eigen::Isometry3d T = motion(angle, forward, {4.0, 1.0, -2.0});
-    const View rotated = viewOf(moved(points, T), forward);
+    const View rotated = viewOf(test::moved(points, T), forward);
     const ViewAgreement agreement = ViewComparison(rotated).compare(view.values.data(), 2.0f);
     EXPECT_LT(agreement.distance, 0.15f) << angle;
     const Eigen::Isometry3d pose = poseOfView(rotated, view, agreement.angle);
@@ -445,7 +440,7 @@ TEST(ViewIndex, FindsTheShapeAndItsPose) {
   index.add(viewsAround(shape));
   index.add(viewsAround(slabWithTower(0.6, 1.2)));
   const Eigen::Isometry3d T_scan_shape = motion(1.3, {1.0, -0.4, 0.3}, {2.0, 0.0, 1.0});
-  const View scan = viewOf(moved(shape, T_scan_shape), {0.3, -1.0, 0.6});
+  const View scan = viewOf(test::moved(shape, T_scan_shape), {0.3, -1.0, 0.6});
   const std::vector<ShapeOfView> found = index.nearest(scan);
   ASSERT_EQ(found.size(), 3u);
   EXPECT_EQ(found.front().shape, 1);

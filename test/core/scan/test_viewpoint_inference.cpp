@@ -33,7 +33,7 @@ TEST(InferView, FindsTheViewpointOfAScanInAnyPose) {
     const Eigen::Vector3d viewpoint = 4.0 * randomDirection(random);
     for (const BlockObject& object : {blockL(), blockChair()}) {
       const Eigen::Isometry3d pose = randomPose(seed, 3.0);
-      const Points points = (pose * scan(object, viewpoint).cloud().cast<double>()).cast<float>();
+      const Points points = moved(scan(object, viewpoint).cloud(), pose);
       const auto view = inferView(points, kElsewhere);
       ASSERT_TRUE(view) << seed;
       EXPECT_FALSE(view->as_stored);

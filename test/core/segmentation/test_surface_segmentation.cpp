@@ -209,8 +209,7 @@ Points dumbbellPoints(int size) {
 }
 
 TEST(SurfaceSegmentation, FewDistinctPointsAreOneSegment) {
-  Points twice(3, 38);
-  twice << dumbbellPoints(19), dumbbellPoints(19);
+  const Points twice = dumbbellPoints(19).replicate(1, 2);
   for (const SegmentationMethod method : {SegmentationMethod::Merging, SegmentationMethod::Splitting}) {
     for (const Points& points : {dumbbellPoints(10), twice}) {
       SegmentationOptions options;
