@@ -142,7 +142,7 @@ TEST(StandingObject, ItStandsOnTheNearestSupport) {
   EXPECT_TRUE(carryingNormals(points, seenFromAbove(points)).empty());
 }
 
-/// Rows of points on two sides of a box of 4 x 2 x 1 on the ground, as rings of a LiDAR show it.
+/// Rows of points on two sides of a box of 4 x 2 x 1 on the ground, as rings of a LiDAR at kBeside show it.
 Points ringsOnBox() {
   Points points(3, 6 * 61);
   for (int i = 0; i < points.cols(); ++i) {
@@ -154,9 +154,29 @@ Points ringsOnBox() {
   return points;
 }
 
+const Eigen::Vector3d kBeside(-6.0, -9.0, 1.5);
+
+TEST(MiddlePlaneOfBox, IsAlongTheLongerSideAndTurnsWithThePoints) {
+  for (const double turn : {0.0, 0.4, 1.3, 2.9}) {
+    const Eigen::Isometry3d R(Eigen::AngleAxisd(turn, Eigen::Vector3d::UnitZ()));
+    const auto plane = middlePlaneOfBox(moved(ringsOnBox(), R), {0.0, 0.0, 2.0}, R * kBeside);
+    ASSERT_TRUE(plane);
+    EXPECT_LT(std::acos(std::abs(plane->plane.normal().dot(R * Eigen::Vector3d::UnitY()))), 0.01) << turn;
+    EXPECT_LT(std::abs(plane->plane.signedDistance(Eigen::Vector3d::Zero())), 0.05) << turn;
+    EXPECT_NEAR(plane->confidence, 0.94, 0.06) << "straight sides, and nothing in free space: " << turn;
+  }
+}
+
+TEST(MiddlePlaneOfBox, DoubtsWhatHasNoStraightSides) {
+  const Points cloud = Eigen::Vector3f(4.0f, 2.0f, 1.0f).asDiagonal() * cubeAt(0.0);
+  const auto plane = middlePlaneOfBox(cloud, Eigen::Vector3d::UnitZ(), kBeside);
+  ASSERT_TRUE(plane);
+  EXPECT_LT(plane->confidence, 0.5);
+}
+
 TEST(DecideByUprightBox, ReplacesItsPlaneAndKeepsToTheNumberOfPlanes) {
   const Points points = ringsOnBox();
-  const Visibility seen = Visibility::ofScene(points, {-6.0, -9.0, 1.5})->withSupport(kTable, 0.0);
+  const Visibility seen = Visibility::ofScene(points, kBeside)->withSupport(kTable, 0.0);
   const auto decided = [&](const Visibility& visibility, double resolution, int max_planes) {
     Detection found;
     found.tolerance = 0.1;
