@@ -11,14 +11,14 @@
 
 namespace pcl_symmetry::test {
 
-/// Calls \p expectSame with what \p make gives for several threads and for one.
+/// Calls \p expectSame with what \p make gives for eight threads and for one. Blocks do not depend on the number of
+/// threads, so that more of them only run in more orders; test_parallel.cpp tries others.
 template <typename Make, typename ExpectSame>
 void compareThreads(const Make& make, const ExpectSame& expectSame) {
-  const auto one = make(1);
-  for (const int num_threads : {2, 8}) expectSame(make(num_threads), one);
+  expectSame(make(8), make(1));
 }
 
-/// Expects that \p make gives equal values for several threads and for one.
+/// Expects that \p make gives equal values for eight threads and for one.
 template <typename Make>
 void compareThreads(const Make& make) {
   compareThreads(make, [](const auto& many, const auto& one) { EXPECT_EQ(many, one); });
