@@ -300,7 +300,7 @@ TEST_F(SymmetryRegistrationTest, TooFewPointsDoNotConvergeOnAnotherObject) {
     return align(toCloud(moved(source, randomPose(4))), toCloud(target));
   };
   const auto chair = [](int size) { return Shape{surfaceOf(blockChair(), size).cast<double>(), {}}; };
-  for (const int size : {20, 100, 200, 400}) {
+  for (const int size : {100, 400}) {
     EXPECT_FALSE(converges(asymmetricBlob(size, 1), chair(size))) << size;
     EXPECT_FALSE(converges(asymmetricBlob(size, 1), chair(6000))) << size;
   }
