@@ -25,22 +25,25 @@ GaussianEdt edtOf(const Points& points, int num_cells = 32) {
   return GaussianEdt(points, options);
 }
 
-/// Sum over the cells of f(x) f(move(x)) / |f|^2: the definition, on the grid.
-template <typename Move>
-double correlation(const GaussianEdt& edt, const Move& move) {
+/// Sum over the cells of f(x) g(x) / |f|^2, where g is at what the motion of a transform makes of x: the definition, on
+/// the grid.
+template <typename Moved>
+double correlation(const GaussianEdt& edt, const Moved& g) {
   double sum = 0.0;
   for (std::size_t i = 0; i < edt.values().size(); ++i)
-    if (edt.values()[i] > 1e-4f) sum += edt.values()[i] * edt(move(edt.cellCenter(i)));
+    if (edt.values()[i] > 1e-4f) sum += edt.values()[i] * g(edt.cellCenter(i));
   return sum / edt.sqNorm();
 }
 
-double fullSum(const GaussianEdt& edt, const Line3d& axis, int fold) {
+/// The mean over the turns about an axis of f(x) g(turned x).
+template <typename Function>
+double fullSum(const GaussianEdt& edt, const Line3d& axis, int fold, const Function& g) {
   const int num_turns = fold > 0 ? fold - 1 : 90;  // any angle: every 4 degrees
   double sum = 0.0;
   for (int k = 1; k <= num_turns; ++k) {
     const Eigen::AngleAxisd turn(2.0 * kPi * k / (fold > 0 ? fold : num_turns), axis.direction());
     sum += correlation(
-        edt, [&](const Eigen::Vector3d& x) -> Eigen::Vector3d { return axis.origin() + turn * (x - axis.origin()); });
+        edt, [&](const Eigen::Vector3d& x) { return g(Eigen::Vector3d(axis.origin() + turn * (x - axis.origin()))); });
   }
   return sum / num_turns;
 }
@@ -75,7 +78,7 @@ TEST(AxialTransform, IsWithinOnePerCentOfTheFullSum) {
       const std::size_t bin = random.below(grid.size());
       if (map.greatest[bin] == 0.0f) continue;  // beyond the ball
       const std::size_t fold = i++ % options.folds.size();
-      const double exact = fullSum(edt, grid.axis(grid.bin(bin)), options.folds[fold]);
+      const double exact = fullSum(edt, grid.axis(grid.bin(bin)), options.folds[fold], edt);
       // The length of the invariant part of f, as PRST for planes: sqrt((1 + (n - 1) D) / n), sqrt(D) for any angle.
       const auto length = [&](double d) {
         const int n = options.folds[fold];
@@ -160,8 +163,7 @@ TEST(CentralTransform, IsWithinOnePerCentOfTheFullSum) {
     for (int i = 0; i < 40; ++i, ++num) {
       const std::size_t at = random.below(map.values.size());
       const Eigen::Vector3d center = map.center(at);
-      const double exact =
-          correlation(edt, [&](const Eigen::Vector3d& x) -> Eigen::Vector3d { return 2.0 * center - x; });
+      const double exact = correlation(edt, [&](const Eigen::Vector3d& x) { return edt(2.0 * center - x); });
       const auto length = [](double d) { return std::sqrt(std::max(0.0, 0.5 * (1.0 + d))); };
       sq_sum += std::pow(length(map.values[at]) - length(exact), 2);
       EXPECT_NEAR(map(center), map.values[at], 1e-5);
@@ -204,23 +206,15 @@ TEST(AxialTransform, FreeSpaceSpeaksAgainstAxes) {
     const std::size_t bin = random.below(grid.size());
     if (map.greatest[bin] == 0.0f) continue;
     const Line3d axis = grid.axis(grid.bin(bin));
-    double f = 0.0;
-    for (const double angle : {2.0 * kPi / 3.0, 4.0 * kPi / 3.0}) {
-      const Eigen::AngleAxisd turn(angle, axis.direction());
-      for (std::size_t cell = 0; cell < free.size(); ++cell) {
-        const Eigen::Vector3d image = axis.origin() + turn * (edt.cellCenter(cell) - axis.origin());
-        const Eigen::Array3d at = ((image - edt.origin()) / edt.cellSize()).array().round();
-        // What lies beyond the ball in the cube of cells counts neither as surface nor as free.
-        if ((image - edt.origin() - Eigen::Vector3d::Constant(middle * edt.cellSize())).norm() >
-            (middle - 0.5) * edt.cellSize())
-          continue;
-        const std::size_t n = edt.numCells();
-        const Eigen::Array3i c = at.cast<int>();
-        f += 0.5 * edt.values()[cell] * free[(static_cast<std::size_t>(c.z()) * n + c.y()) * n + c.x()] / edt.sqNorm();
-      }
-    }
+    const double f = fullSum(edt, axis, 3, [&](const Eigen::Vector3d& x) {
+      const Eigen::Array3d at = ((x - edt.origin()) / edt.cellSize()).array();
+      // What lies beyond the ball in the cube of cells counts neither as surface nor as free.
+      if ((at - middle).matrix().norm() > middle - 0.5) return 0.0f;
+      const Eigen::Array3i c = at.round().cast<int>();
+      return free[static_cast<std::size_t>((c.z() * edt.numCells() + c.y()) * edt.numCells() + c.x())];
+    });
     greatest_f = std::max(greatest_f, f);
-    EXPECT_NEAR(map.greatest[bin], seenSymmetry(fullSum(edt, axis, 3), f), 0.06) << "F = " << f;
+    EXPECT_NEAR(map.greatest[bin], seenSymmetry(fullSum(edt, axis, 3, edt), f), 0.06) << "F = " << f;
   }
   EXPECT_GT(greatest_f, 0.3);
 }
