@@ -8,7 +8,7 @@
 #include <numeric>
 
 #include "core/base/constants.h"
-#include "core/evidence/point_density.h"
+#include "core/base/statistics.h"
 #include "core/evidence/surface_samples.h"
 #include "core/geometry/point_samples.h"
 #include "core/geometry/surface_normals.h"
@@ -264,9 +264,7 @@ Points noisy(const Shape& shape, double noise, std::uint64_t seed) {
 
 /// One and a half median spacings, as detection chooses it.
 double bandwidthOf(const Points& points) {
-  std::vector<float> spacing = localGeometry(points, *makeFlannSearch(points), 0).spacing;
-  std::nth_element(spacing.begin(), spacing.begin() + static_cast<std::ptrdiff_t>(spacing.size() / 2), spacing.end());
-  return 1.5 * spacing[spacing.size() / 2];
+  return 1.5 * median(localGeometry(points, *makeFlannSearch(points), kNumSupportNeighbors, 0).spacing);
 }
 
 ReflectionPlane tilted(const ReflectionPlane& plane, double angle) {
