@@ -71,6 +71,13 @@ inline Shape moved(const Shape& shape, const Eigen::Isometry3d& pose) {
   return result;
 }
 
+/// \param noise standard deviation of each coordinate.
+inline Shape noisy(Shape shape, double noise, std::uint64_t seed) {
+  RandomStream random(seed, 5);
+  for (Eigen::Index i = 0; i < shape.points.size(); ++i) shape.points(i) += noise * gaussian(random);
+  return shape;
+}
+
 inline Points moved(const Points& points, const Eigen::Isometry3d& pose) {
   return (pose * points.cast<double>()).cast<float>();
 }

@@ -57,10 +57,8 @@ struct TurningShape {
 
   /// \param noise standard deviation of each coordinate.
   Shape sampled(int num_points, std::uint64_t seed, double noise = 0.0) const {
-    Shape shape{sampleTriangles(corners().cast<float>(), triangles, num_points, seed).cast<double>(), {}};
-    RandomStream random(seed, 5);
-    for (Eigen::Index i = 0; i < shape.points.size(); ++i) shape.points(i) += noise * gaussian(random);
-    return shape;
+    return noisy({sampleTriangles(corners().cast<float>(), triangles, num_points, seed).cast<double>(), {}}, noise,
+                 seed);
   }
 };
 

@@ -206,10 +206,7 @@ constexpr double kTolerance = 0.04;
 
 /// A box with noise of more than its spacing (0.04), symmetric about x = 0.
 Points noisyBox(double noise) {
-  Shape shape = box({1.0, 0.6, 0.3}, 6000, Sampling::Random, 3);
-  RandomStream random(3, 5);
-  for (Eigen::Index i = 0; i < shape.points.size(); ++i) shape.points(i) += noise * gaussian(random);
-  return shape.cloud();
+  return noisy(box({1.0, 0.6, 0.3}, 6000, Sampling::Random, 3), noise, 3).cloud();
 }
 
 TEST(SplitSurface, ATruePlaneReachesTheShareOfTheHalvesWhateverTheNoise) {
@@ -254,12 +251,9 @@ Shape ellipsoid(int num_points, std::uint64_t seed) {
   return shape;
 }
 
-Points noisy(const Shape& shape, double noise, std::uint64_t seed) {
-  const double radius = boundingBall(shape.cloud()).radius;
-  RandomStream random(seed, 5);
-  Eigen::Matrix3Xd points = shape.points;
-  for (Eigen::Index i = 0; i < points.size(); ++i) points.data()[i] += noise * radius * gaussian(random);
-  return points.cast<float>();
+/// \param noise in radii.
+Points noisyPoints(const Shape& shape, double noise, std::uint64_t seed) {
+  return noisy(shape, noise * boundingBall(shape.cloud()).radius, seed).cloud();
 }
 
 /// One and a half median spacings, as detection chooses it.
@@ -283,7 +277,7 @@ TEST(PointDensity, OverlapIsOneAtASymmetryWhateverTheNoiseAndNumber) {
     const double max_off = num_points == 1000 ? 0.985 : num_points == 4000 ? 0.95 : 0.91;
     for (const Shape& shape : shapesOf(num_points)) {
       for (const double noise : {0.01, 0.02, 0.04}) {
-        const Points points = noisy(shape, noise, 1);
+        const Points points = noisyPoints(shape, noise, 1);
         const PointDensity density(points, bandwidthOf(points), 0);
         for (const ReflectionPlane& plane : shape.planes) {
           const double at = density.overlap(points, plane), off = density.overlap(points, tilted(plane, 10 * kDegree));
@@ -299,7 +293,7 @@ TEST(PointDensity, OverlapIsOneAtASymmetryWhateverTheNoiseAndNumber) {
 TEST(PointDensity, RefinementComesBackFromThreeDegrees) {
   for (const int num_points : {2000, 10'000}) {
     for (const Shape& shape : shapesOf(num_points)) {
-      const Points points = noisy(shape, 0.03, 2);
+      const Points points = noisyPoints(shape, 0.03, 2);
       const PointDensity density(points, bandwidthOf(points), 0);
       for (const ReflectionPlane& plane : shape.planes) {
         const ReflectionPlane start(tilted(plane, 3.0 * kDegree).normal(), 0.03);
@@ -318,7 +312,7 @@ TEST(PointDensity, RefinementComesBackFromThreeDegrees) {
 
 TEST(PointDensity, SameBitsForAnyNumberOfThreads) {
   const Shape shape = box(4000, Sampling::Random, 6);
-  const Points points = noisy(shape, 0.03, 3);
+  const Points points = noisyPoints(shape, 0.03, 3);
   const double bandwidth = bandwidthOf(points);
   const ReflectionPlane start = tilted(shape.planes[0], 2.0 * kDegree);
   compareThreads([&](int num_threads) {
@@ -330,7 +324,7 @@ TEST(PointDensity, SameBitsForAnyNumberOfThreads) {
 
 TEST(PointDensity, MovesAndScalesWithThePoints) {
   const Shape shape = ellipsoid(3000, 7);
-  const Points points = noisy(shape, 0.03, 4);
+  const Points points = noisyPoints(shape, 0.03, 4);
   const double bandwidth = bandwidthOf(points);
   const ReflectionPlane plane = tilted(shape.planes[1], 4.0 * kDegree);
   const double expected = PointDensity(points, bandwidth, 0).overlap(points, plane);
