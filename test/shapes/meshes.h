@@ -8,6 +8,7 @@
 #include "core/base/random.h"
 #include "pcl_symmetry/core/point_set.h"
 #include "pcl_symmetry/core/surface_graph.h"
+#include "shapes/shapes.h"
 
 namespace pcl_symmetry::test {
 
@@ -31,23 +32,19 @@ struct Mesh {
 struct TriangleMesh {
   Points vertices;
   std::vector<Eigen::Vector3i> triangles;
+
+  SurfaceGraph graph() const {
+    std::vector<std::vector<int>> polygons;
+    for (const Eigen::Vector3i& triangle : triangles) polygons.emplace_back(triangle.begin(), triangle.end());
+    return meshGraph(vertices, polygons);
+  }
 };
 
 /// A box with a corner at the origin.
 inline TriangleMesh boxOfTriangles(float x, float y, float z) {
-  TriangleMesh mesh{Points(3, 8),
-                    {{0, 2, 3},
-                     {0, 3, 1},
-                     {4, 5, 7},
-                     {4, 7, 6},
-                     {0, 1, 5},
-                     {0, 5, 4},
-                     {1, 3, 7},
-                     {1, 7, 5},
-                     {3, 2, 6},
-                     {3, 6, 7},
-                     {2, 0, 4},
-                     {2, 4, 6}}};
+  TriangleMesh mesh{Points(3, 8), {}};
+  for (const auto& quad : kBoxQuads)
+    for (int k = 2; k < 4; ++k) mesh.triangles.emplace_back(quad[0], quad[k - 1], quad[k]);
   for (int i = 0; i < 8; ++i) mesh.vertices.col(i) << (i & 1 ? x : 0), (i & 2 ? y : 0), (i & 4 ? z : 0);
   return mesh;
 }

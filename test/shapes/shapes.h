@@ -128,6 +128,9 @@ inline Shape box(int num_points, Sampling sampling, std::uint64_t seed) {
   return box({1.0, 0.7, 0.45}, num_points, sampling, seed);
 }
 
+/// The faces of a box, outward; bit k of a corner tells on which side across axis k it lies.
+constexpr int kBoxQuads[6][4] = {{0, 2, 3, 1}, {4, 5, 7, 6}, {0, 1, 5, 4}, {2, 6, 7, 3}, {0, 4, 6, 2}, {1, 3, 7, 5}};
+
 /// The cube [-1, 1]^3: three planes across the axes and six through opposite edges.
 inline Shape cube(int num_points, Sampling sampling, std::uint64_t seed) {
   RandomStream random(seed);

@@ -35,8 +35,7 @@ struct TurningShape {
 
   /// A box with its center and axes at \p pose.
   void addBox(const Eigen::Vector3d& half, const Eigen::Isometry3d& pose = Eigen::Isometry3d::Identity()) {
-    constexpr int kQuads[6][4] = {{0, 2, 3, 1}, {4, 5, 7, 6}, {0, 1, 5, 4}, {2, 6, 7, 3}, {0, 4, 6, 2}, {1, 3, 7, 5}};
-    for (const auto& quad : kQuads) {
+    for (const auto& quad : kBoxQuads) {
       std::vector<Eigen::Vector3d> corners;
       for (const int k : quad)
         corners.push_back(pose * half.cwiseProduct(Eigen::Vector3d(k & 1 ? 1 : -1, k & 2 ? 1 : -1, k & 4 ? 1 : -1)));

@@ -233,18 +233,13 @@ TEST(SurfaceSegmentation, TwentyPointsAndSmallMeshesMayHaveParts) {
   two.num_parts = 2;
   const Points points = dumbbellPoints(20);
   EXPECT_EQ(segmentSurface(cloudGraph(points, neighborsOf(points, 6)), two).num_segments, 2);
-  Mesh cube;
-  for (int corner = 0; corner < 8; ++corner)
-    cube.add(Eigen::Vector3f(static_cast<float>(corner & 1), static_cast<float>(corner >> 1 & 1),
-                             static_cast<float>(corner >> 2)));
-  cube.polygons = {{0, 2, 3}, {0, 3, 1}, {4, 5, 7}, {4, 7, 6}, {0, 1, 5}, {0, 5, 4},
-                   {2, 6, 7}, {2, 7, 3}, {0, 4, 6}, {0, 6, 2}, {1, 3, 7}, {1, 7, 5}};
-  const Segmentation halves = segmentSurface(cube.graph(), two);
+  const SurfaceGraph cube = test::boxOfTriangles(1.0f, 1.0f, 1.0f).graph();
+  const Segmentation halves = segmentSurface(cube, two);
   EXPECT_EQ(halves.num_segments, 2);
   EXPECT_EQ(halves.reason, "");
   SegmentationOptions many;
   many.num_parts = 13;
-  const Segmentation faces = segmentSurface(cube.graph(), many);
+  const Segmentation faces = segmentSurface(cube, many);
   EXPECT_EQ(faces.reason.rfind("num_parts = 13, " + std::to_string(faces.num_segments) + " possible: parts are", 0), 0u)
       << faces.reason;
 }
