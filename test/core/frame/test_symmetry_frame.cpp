@@ -55,9 +55,9 @@ TEST(SymmetryFrame, TurnsMovesAndScalesWithTheInput) {
   EXPECT_GT(std::abs(expected.axes(1, 0)), std::cos(3.0 * kDegree));
   EXPECT_GT(std::abs(expected.axes(0, 1)), std::cos(3.0 * kDegree));
   EXPECT_GT(expected.axes(2, 2), std::cos(3.0 * kDegree)) << "toward the fin";
-  for (std::uint64_t seed = 1; seed <= 4; ++seed) {
+  for (std::uint64_t seed = 1; seed <= 2; ++seed) {
     const Eigen::Isometry3d pose = randomPose(seed);
-    const double scale = std::pow(10.0, static_cast<double>(seed) - 3.0);
+    const double scale = std::pow(10.0, 2.0 * static_cast<double>(seed) - 3.0);
     const Points image = static_cast<float>(scale) * moved(points, pose);
     const SymmetryFrame frame = symmetryFrame(image);
     EXPECT_LT((frame.center - scale * (pose * expected.center)).norm(), 0.015 * diagonal(image)) << seed;
@@ -106,7 +106,7 @@ TEST(SymmetryFrame, OfAMailboxIsThatOfItsBox) {
   FrameOptions options;
   options.probabilities = false;
   for (std::size_t i = 0; i < mailboxes.size(); ++i) {
-    for (std::uint64_t seed = 1; seed <= 4; ++seed) {
+    for (std::uint64_t seed = 1; seed <= 2; ++seed) {
       const Eigen::Isometry3d pose = randomPose(seed + 4 * i);
       const Points cloud = moved(mailboxes[i], pose);
       const SymmetryFrame frame = symmetryFrame(cloud, options);
@@ -118,7 +118,7 @@ TEST(SymmetryFrame, OfAMailboxIsThatOfItsBox) {
 
 TEST(SymmetryFrame, OfAWholeCloudIsThatOfItsPlanes) {
   const Points points = box({1.0, 0.7, 0.4}, 8000, Sampling::Random, 3).cloud();
-  for (std::uint64_t seed = 1; seed <= 4; ++seed) {
+  for (std::uint64_t seed = 1; seed <= 2; ++seed) {
     const Eigen::Isometry3d pose = randomPose(seed);
     const Points cloud = moved(points, pose);
     const SymmetryFrame frame = symmetryFrame(cloud);
