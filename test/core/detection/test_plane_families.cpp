@@ -5,8 +5,6 @@
 
 #include <cmath>
 
-#include "core/detection/cloud_subset.h"
-#include "core/detection/plane_lattice.h"
 #include "pcl_symmetry/core/detect_planes.h"
 #include "shapes/counting_search.h"
 #include "shapes/judged_cloud.h"
@@ -104,23 +102,6 @@ struct JudgedPoints : JudgedShape {
   }
 };
 
-TEST(FindFamilies, ABodyOfRevolutionHasItsAxisInPlaceOfItsPlanes) {
-  const auto collected = [](const Points& points) {
-    const JudgedPoints judged(points);
-    Found found;
-    found.planes = {judged.symmetry(0.1), judged.symmetry(1.0), judged.symmetry(2.2)};
-    findFamilies(judged, found);
-    return found;
-  };
-  const Found can = collected(cylinder(5000, 1).cloud());
-  ASSERT_EQ(can.axes.size(), 1u);
-  EXPECT_GT(std::abs(can.axes[0].direction.z()), 0.9999);
-  EXPECT_TRUE(can.planes.empty());
-  const Found wheel_of_three = collected(wheel(3, 0.3, 0.0, false, 1));
-  EXPECT_TRUE(wheel_of_three.axes.empty());
-  EXPECT_EQ(wheel_of_three.planes.size(), 3u);
-}
-
 TEST(WithoutPlanesThrough, TakesThePlanesOfAnAxis) {
   const JudgedPoints judged(cylinder(1000, 1).cloud());
   SymmetryAxis axis;
@@ -143,20 +124,6 @@ TEST(CompletePolygon, PlanesOfANoisyPolygonAreJudgedTogether) {
   EXPECT_EQ(completed.polygon->fold, 7);
   EXPECT_EQ(completed.planes.size(), 7u);
   for (const SymmetryPlane& plane : completed.planes) EXPECT_EQ(plane.kind, PlaneKind::Symmetry);
-}
-
-TEST(EvenDensity, LeavesEvenCloudsAloneAndEvensOthers) {
-  const auto keptOf = [](const Points& points) {
-    const GaussianEdt edt(points);
-    return evenlyDense(NormalizedCloud(points, edt, nullptr, nullptr, 1), 1);
-  };
-  EXPECT_EQ(keptOf(wheel(12, 0.12, 0.03, false, 5)).size(), 10'000u);
-  const Points thinned = wheel(12, 0.12, 0.03, true, 5);
-  std::size_t dense = 0, thin = 0;
-  for (const int i : keptOf(thinned)) (thinned(0, i) > 0.0f ? dense : thin) += 1;
-  const auto all_dense = static_cast<double>((thinned.row(0).array() > 0.0f).count());
-  EXPECT_GT(all_dense / (10'000.0 - all_dense), 1.8);
-  EXPECT_LT(static_cast<double>(dense) / static_cast<double>(thin), 1.3);
 }
 
 TEST(FoldSpectrum, ToldFromARoundBody) {
