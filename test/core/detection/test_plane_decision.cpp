@@ -7,7 +7,6 @@
 #include <optional>
 #include <vector>
 
-#include "core/detection/part_search.h"
 #include "pcl_symmetry/core/detect_planes.h"
 #include "shapes/judged_cloud.h"
 #include "shapes/shapes.h"
@@ -129,61 +128,6 @@ TEST(PlaneDecision, SkipsWhatAQuickLookShowsToBeHopeless) {
   EXPECT_FALSE(isHopeless(0.0, 0.5));
   EXPECT_TRUE(isHopeless(0.3, 0.5));
   EXPECT_FALSE(isHopeless(0.3, 0.95)) << "its merit is that of a symmetry";
-}
-
-/// Two boxes, one turned and put at the side of the other, as dense as that.
-struct TwoBoxes {
-  Points points;
-  std::vector<ReflectionPlane> planes;  ///< three of each
-
-  TwoBoxes() {
-    const Eigen::Vector3d large(1.0, 0.7, 0.5), small(0.6, 0.5, 0.35);
-    const Eigen::Isometry3d beside = Eigen::Translation3d(1.68, 0.2, 0.1) *  // a corner reaches 0.04 into the large box
-                                     Eigen::AngleAxisd(0.6, Eigen::Vector3d(1.0, 2.0, 0.5).normalized());
-    const Shape a = box(large, 6000, Sampling::Random, 1), b = moved(box(small, 2900, Sampling::Random, 2), beside);
-    points = joined(a.cloud(), b.cloud());
-    for (int k = 0; k < 3; ++k) planes.insert(planes.end(), {a.planes[k], b.planes[k]});
-  }
-};
-
-MatchedRegion regionOf(const JudgedShape& searched, const ReflectionPlane& plane) {
-  return MatchedRegions(searched.cloud, *searched.fit, searched.options).largest(searched.cloud.toNormalized(plane));
-}
-
-TEST(MatchedRegion, OfASymmetryIsAllOfTheSurfaceAndHasNoEdge) {
-  const JudgedShape searched(box({1.0, 0.7, 0.4}, 8000, Sampling::Random, 3).cloud());
-  const MatchedRegion region = regionOf(searched, ReflectionPlane(Eigen::Vector3d::UnitX(), 0.0));
-  EXPECT_GT(region.share, 0.99);
-  EXPECT_LT(region.edge, 0.05);
-  EXPECT_GT(region.support, 0.98);
-}
-
-TEST(MatchedRegion, OfAPartEndsWhereThePartEnds) {
-  const TwoBoxes boxes;
-  const JudgedShape searched(boxes.points);
-  for (std::size_t k = 0; k < boxes.planes.size(); ++k) {
-    const MatchedRegion region = regionOf(searched, boxes.planes[k]);
-    EXPECT_NEAR(region.share, k % 2 == 0 ? 6000.0 / 8900.0 : 2900.0 / 8900.0, 0.08) << k;
-    EXPECT_LT(region.edge, 0.5) << k;
-  }
-}
-
-TEST(MatchedRegion, OfACapOfAnEllipsoidHasTheEdgeOfADisc) {
-  // A plane through the end of a half axis, along it, and turned by 30 degrees about it away from the other half axes,
-  // maps the cap about that end: the surface goes on beyond, differently on both sides.
-  RandomStream random(5);
-  Points points(3, 8000);
-  for (Eigen::Index i = 0; i < points.cols(); ++i) {
-    Eigen::Vector3d x;
-    do x = Eigen::Vector3d(random.uniform(), random.uniform(), random.uniform()) * 2.0 - Eigen::Vector3d::Ones();
-    while (x.norm() > 1.0 || x.norm() < 0.1);
-    points.col(i) = x.normalized().cwiseProduct(Eigen::Vector3d(1.0, 0.8, 0.6)).cast<float>();
-  }
-  const ReflectionPlane turned(Eigen::Vector3d(std::cos(kPi / 6.0), std::sin(kPi / 6.0), 0.0), 0.0);
-  const MatchedRegion region = regionOf(JudgedShape(points), turned);
-  EXPECT_GT(region.share, 0.05);
-  EXPECT_LT(region.share, 0.9);
-  EXPECT_GT(region.edge, 0.8);
 }
 
 }  // namespace
