@@ -31,16 +31,6 @@ TEST(PlaneMeasure, ShareFallsWithTheDistanceFromASymmetry) {
   EXPECT_LT(last, 0.7) << "a third of the box reaches beyond its other side";
 }
 
-TEST(PlaneMeasure, ToleranceIsAShareOfTheExtentOrInInputUnits) {
-  const Points points = test::box({1.0, 0.7, 0.4}, 5000, test::Sampling::Random, 1).cloud();
-  const JudgedShape usual(points);
-  EXPECT_NEAR(usual.measure.tolerance(), 0.01 * usual.cloud.extent, 1e-9);
-  DetectionOptions options;
-  options.absolute_tolerance = 0.05;
-  const JudgedShape given(points, options);
-  EXPECT_NEAR(given.measure.tolerance() * given.cloud.scale, 0.05, 1e-9);
-}
-
 TEST(PlaneMeasure, MatchesOfOtherSamplesAreNotTaken) {
   const JudgedShape box(test::box({1.0, 0.7, 0.4}, 5000, test::Sampling::Random, 1).cloud());
   const auto drawn = [](std::uint64_t seed) { return drawSamples(5000, 500, seed); };
