@@ -55,22 +55,4 @@ TEST(StagedRefinement, DistinctKeepsTheBestOfLikePlanes) {
   EXPECT_EQ(box.refinement.distinct(candidates, -1.0, 1).size(), 1u) << "none may be a symmetry";
 }
 
-TEST(GroupClosure, TwoPlanesOfASquareTellTheOtherTwoOnce) {
-  const RefinedBox box;
-  std::vector<SymmetryPlane> known;
-  for (const double angle : {0.0, 0.25 * kPi})
-    known.emplace_back(ReflectionPlane(Eigen::Vector3d(std::cos(angle), std::sin(angle), 0.0), 0.0));
-  std::vector<ReflectionPlane> tried;
-  EXPECT_TRUE(impliedBy(known, box.cloud, tried).empty()) << "none is a symmetry yet";
-  for (SymmetryPlane& plane : known) plane.kind = PlaneKind::Symmetry;
-  const std::vector<Candidate> found = impliedBy(known, box.cloud, tried);
-  ASSERT_EQ(found.size(), 2u);
-  for (const Candidate& candidate : found)
-    for (const SymmetryPlane& plane : known) {
-      const double turns = candidate.plane.angleTo(box.cloud.toNormalized(plane)) / (0.25 * kPi);
-      EXPECT_NEAR(turns, std::round(turns), 1e-6);
-    }
-  EXPECT_TRUE(impliedBy(known, box.cloud, tried).empty()) << "they were returned before";
-}
-
 }  // namespace
