@@ -46,12 +46,16 @@ TEST(BestViews, OfOnePlaneIsItsNormal) {
   EXPECT_TRUE(bestViews({{n, 0.0}}).empty());
 }
 
-TEST(BestViews, BeatEveryDirectionOfADenseSet) {
+TEST(BestAndWorstViews, BoundEveryDirectionOfADenseSet) {
   for (const std::uint64_t seed : {1, 2, 3}) {
     const std::vector<ViewPlane> planes = randomPlanes(12, seed);
     const std::vector<RankedView> views = bestViews(planes);
+    const RankedView worst = worstView(planes);
     ASSERT_FALSE(views.empty());
-    for (const Eigen::Vector3d& v : evenDirections(20'000)) EXPECT_LE(viewpointScore(planes, v), views[0].score);
+    for (const Eigen::Vector3d& v : evenDirections(20'000)) {
+      EXPECT_LE(viewpointScore(planes, v), views[0].score);
+      EXPECT_GE(viewpointScore(planes, v), worst.score);
+    }
     for (const RankedView& view : views) EXPECT_NEAR(view.score, viewpointScore(planes, view.direction), 1e-12);
   }
 }
@@ -65,12 +69,7 @@ TEST(WorstView, OfAPrismIsAlongItsAxis) {
   EXPECT_NEAR(worst.score, 0.0, 1e-12);
 }
 
-TEST(WorstView, NoDirectionOfADenseSetIsWorse) {
-  for (const std::uint64_t seed : {1, 2, 3}) {
-    const std::vector<ViewPlane> planes = randomPlanes(12, seed);
-    const RankedView worst = worstView(planes);
-    for (const Eigen::Vector3d& v : evenDirections(20'000)) EXPECT_GE(viewpointScore(planes, v), worst.score);
-  }
+TEST(WorstView, OfOnePlaneLiesInItAndOfNoneIsRefused) {
   EXPECT_NEAR(worstView({{Eigen::Vector3d::UnitX(), 1.0}}).score, 0.0, 1e-12);
   EXPECT_THROW(worstView({}), std::invalid_argument);
 }

@@ -11,6 +11,7 @@
 
 #include "core/base/random.h"
 #include "core/geometry/closest_points.h"
+#include "shapes/counting_search.h"
 #include "shapes/shapes.h"
 
 namespace {
@@ -44,15 +45,7 @@ TEST(ClosestPointSearch, FindsWhatBruteForceFinds) {
 }
 
 TEST(ClosestPointSearch, FindsWithinTheLimitWhateverWasGuessed) {
-  /// Only search(): searchWithin() is that of the base class.
-  struct Plain : ClosestPointSearch {
-    explicit Plain(const Points& points) : all(makeFlannSearch(points)) {}
-    void search(const PointsRef& queries, int num_neighbors, std::vector<int>& indices,
-                std::vector<float>& sq_distances) const override {
-      all->search(queries, num_neighbors, indices, sq_distances);
-    }
-    Ptr all;
-  };
+  AskedSearch plain;  // only search(): searchWithin() is that of the base class
   const Points points = asymmetricBlob(700, 2).cloud();
   const Points queries = asymmetricBlob(100, 3).cloud();
   std::vector<int> closest;
@@ -63,7 +56,7 @@ TEST(ClosestPointSearch, FindsWithinTheLimitWhateverWasGuessed) {
   const float limit = sorted[50];
   std::vector<int> far(100);
   for (int i = 0; i < 100; ++i) far[i] = 7 * i;
-  const std::vector<ClosestPointSearch::Ptr> searches{makeFlannSearch(points), std::make_shared<Plain>(points)};
+  const std::vector<ClosestPointSearch::Ptr> searches{makeFlannSearch(points), plain.make()(points)};
   for (const auto& search : searches) {
     for (const std::vector<int>& guesses : {std::vector<int>(100, -1), far, closest}) {
       std::vector<int> indices = guesses;
