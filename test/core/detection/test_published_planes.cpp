@@ -23,7 +23,7 @@ TEST(PublishedPlanes, FindTheThreePlanesOfABox) {
   options.num_points = 1000;
   options.max_maxima = 12;
   const test::Shape box = test::moved(test::box(1, test::Sampling::Random, 4), pose);
-  for (const auto method : {TransformMethod::Sampled, TransformMethod::Convolution, TransformMethod::Voting}) {
+  for (const auto method : {TransformMethod::Sampled, TransformMethod::Voting}) {  // exact maps: below
     const auto planes = publishedPlanes(points, edt, publishedMap(points, edt, method), options);
     for (const ReflectionPlane& plane : box.planes)
       EXPECT_TRUE(test::isAmong(planes, plane, kDegree, 0.02, pose.translation())) << static_cast<int>(method);
