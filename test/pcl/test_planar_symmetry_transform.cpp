@@ -18,14 +18,15 @@ TEST(PlanarSymmetryTransform, FindsThePlanesOfABoxWithEveryMethod) {
     transform.setInputCloud(test::toCloud(box));
     transform.setMethod(method);
     transform.setGridSize(32);
+    transform.setMapSize(16, 32, 16);
     transform.setRefinedShare(0.02);
     const SymmetryMap map = transform.compute();
-    ASSERT_EQ(map.values.size(), 32u * 32u * 32u);
+    ASSERT_EQ(map.values.size(), 16u * 32u * 16u);
     EXPECT_EQ(map.method, method);
     const ReflectionPlane strongest = map.grid.plane(map.grid.bin(map.strongest()));
     double closest = 1.0;
     for (const ReflectionPlane& plane : box.planes) closest = std::min(closest, plane.angleTo(strongest));
-    // Half the diagonal of a bin of 2.8 by 11.25 degrees at the equator, and a bin for the noise of voting.
+    // Half the diagonal of a bin of 5.6 by 11.25 degrees at the equator, and half a bin for the noise of voting.
     EXPECT_LT(closest, 12.0 * test::kDegree) << "method " << static_cast<int>(method);
     EXPECT_GT(map[map.strongest()], 0.6f);
   }
