@@ -13,19 +13,6 @@ using test::expectSamePlanes;
 using test::numFound;
 using test::Sampling;
 
-TEST(DetectSymmetryPlanes, NeedsOneLine) {
-  const auto shape = test::moved(test::box(4000, Sampling::Mirrored, 1), test::randomPose(5));
-  const auto planes = detectSymmetryPlanes(*test::toCloud(shape));
-  EXPECT_EQ(planes.size(), 3u);
-  EXPECT_EQ(numFound(shape, planes, 0.001 * test::kDegree, 1e-5 * test::diagonal(shape.cloud())), 3);
-  for (const SymmetryPlane& plane : planes) {
-    EXPECT_GT(plane.support, 0.99);
-    EXPECT_GT(plane.score, 0.98);
-    EXPECT_TRUE(plane.converged);
-    EXPECT_EQ(plane.kind, PlaneKind::Symmetry);
-  }
-}
-
 TEST(DetectSymmetryPlanes, LeavesOutWhatIsOnlyPossible) {
   DetectionOptions options;
   options.min_confidence = 0.99999;
@@ -42,6 +29,7 @@ TEST(DetectSymmetryPlanes, LeavesOutWhatIsOnlyPossible) {
 TEST(DetectSymmetryPlanes, WorksOnEveryPointTypeAlike) {
   const auto shape = test::box(2000, Sampling::Random, 3);
   const auto expected = detectSymmetryPlanes(*test::toCloud<pcl::PointXYZ>(shape));
+  EXPECT_EQ(expected.size(), 3u);
   EXPECT_EQ(numFound(shape, expected, 1.0 * test::kDegree, 0.02), 3);
   expectSamePlanes(detectSymmetryPlanes(*test::toCloud<pcl::PointXYZRGB>(shape)), expected);
   expectSamePlanes(detectSymmetryPlanes(*test::toCloud<pcl::PointNormal>(shape)), expected);
