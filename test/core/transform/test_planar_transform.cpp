@@ -109,11 +109,11 @@ private:
 const std::vector<Scene>& scenes() {
   static const std::vector<Scene> scenes = [] {
     std::vector<Scene> made;
-    made.emplace_back(moved(box(1000, Sampling::Random, 1), randomPose(1)), 32, 40);
-    made.emplace_back(moved(prism(5, 1000, Sampling::Random, 2), randomPose(2)), 32, 40);
-    made.emplace_back(moved(asymmetricBlob(1000, 3), randomPose(3)), 32, 40);
-    made.emplace_back(moved(cylinder(1000, 4), randomPose(4)), 32, 40);
-    made.emplace_back(moved(scaleneTetrahedron(1000, 5), randomPose(5)), 32, 40);
+    made.emplace_back(moved(box(1000, Sampling::Random, 1), randomPose(1)), 32, 20);
+    made.emplace_back(moved(prism(5, 1000, Sampling::Random, 2), randomPose(2)), 32, 20);
+    made.emplace_back(moved(asymmetricBlob(1000, 3), randomPose(3)), 32, 20);
+    made.emplace_back(moved(cylinder(1000, 4), randomPose(4)), 32, 20);
+    made.emplace_back(moved(scaleneTetrahedron(1000, 5), randomPose(5)), 32, 20);
     return made;
   }();
   return scenes;
@@ -131,7 +131,7 @@ TEST(Transforms, AreAsNearToTheFullSumAsTheirPageSays) {
   }
   for (const Shape& shape :
        {moved(box(5000, Sampling::Random, 1), randomPose(1)), moved(asymmetricBlob(5000, 3), randomPose(3))}) {
-    const Scene scene(shape, 64, 8);
+    const Scene scene(shape, 64, 4);
     EXPECT_LE(scene.rmsError(convolutionTransform(scene.edt, scene.grid)), 0.002);
   }
 
@@ -139,7 +139,7 @@ TEST(Transforms, AreAsNearToTheFullSumAsTheirPageSays) {
   options.refined_share = 0.1;
   for (const Shape& shape :
        {moved(prism(5, 1000, Sampling::Random, 2), randomPose(2)), moved(asymmetricBlob(1000, 3), randomPose(3))}) {
-    const Scene scene(shape, 32, 40, 8);
+    const Scene scene(shape, 24, 20, 8);
     const SymmetryMap full = rotationalTransform(scene.edt, scene.grid);
     EXPECT_LE(scene.rmsError(full), 0.002);
     const SymmetryMap refined = rotationalTransform(scene.edt, scene.grid, options);
@@ -309,7 +309,7 @@ TEST(Transforms, SameBytesForAnyNumberOfThreads) {
 
 TEST(Transforms, AGridMayHaveAnotherCenter) {
   // A grid about another point: its bins are other planes, at which D is that of the definition too.
-  Scene scene(moved(box(1000, Sampling::Random, 1), randomPose(1)), 32, 30);
+  Scene scene(moved(box(1000, Sampling::Random, 1), randomPose(1)), 32, 20);
   const Eigen::Vector3d center = scene.edt.center() + Eigen::Vector3d(0.2, -0.1, 0.15);
   scene.grid = PlaneGrid(8, 8, 8, center, 0.6 * scene.edt.radius());
   ConvolutionTransformOptions close;
