@@ -41,11 +41,7 @@ inline Cloud ball() {
 
 /// The points that a scanner there sees.
 inline Cloud seenFrom(const Cloud& whole, const Eigen::Vector3f& viewpoint) {
-  const Points points = whole.getMatrixXfMap(3, 4, 0);
-  const auto seen = Visibility::fromPoints(points, viewpoint.cast<double>());
-  Cloud cloud;
-  for (const pcl::PointXYZ& point : whole)
-    if (seen->depthBehind(point.getVector3fMap().cast<double>()) < 0.1) cloud.push_back(point);
+  Cloud cloud = *toCloud(visiblePoints(whole.getMatrixXfMap(3, 4, 0), viewpoint.cast<double>(), 0.1));
   cloud.sensor_origin_ << viewpoint, 1.0f;
   return cloud;
 }

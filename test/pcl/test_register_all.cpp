@@ -16,18 +16,7 @@ using namespace pcl_symmetry::test;
 
 using Cloud = pcl::PointCloud<pcl::PointXYZ>;
 
-/// The points of the blob, which has no symmetry, that a viewpoint sees.
-Points blobSeenFrom(const Eigen::Vector3d& viewpoint, std::uint64_t seed) {
-  return pointsWhere(asymmetricBlob(4000, seed).cloud(), [&](const Eigen::Vector3f& point) {
-    for (const double way : {0.02, 0.05, 0.1, 0.2, 0.3, 0.5}) {  // of about two radii, on the ray to the viewpoint
-      const Eigen::Vector3d x = point.cast<double>() + way * (viewpoint - point.cast<double>()).normalized() * 2.0;
-      if (x.norm() < blobRadius(x.normalized())) return false;
-    }
-    return true;
-  });
-}
-
-/// Scans from all around, each in a frame of its own.
+/// Scans of the blob, which has no symmetry, from all around, each in a frame of its own.
 struct Turntable {
   std::vector<Cloud::ConstPtr> scans;
   std::vector<Eigen::Isometry3d> T_scan_object;
@@ -35,7 +24,9 @@ struct Turntable {
   static Eigen::Vector3d viewpoint(double degrees) {
     return {8.0 * std::cos(degrees * kDegree), 8.0 * std::sin(degrees * kDegree), 3.0};
   }
-  void add(double degrees) { add(blobSeenFrom(viewpoint(degrees), scans.size() + 1), viewpoint(degrees)); }
+  void add(double degrees) {
+    add(visiblePoints(asymmetricBlob(4000, scans.size() + 1).cloud(), viewpoint(degrees), 0.05), viewpoint(degrees));
+  }
   void add(const Points& points, const Eigen::Vector3d& viewpoint) {
     T_scan_object.push_back(randomPose(scans.size() + 1));
     const auto cloud = toCloud(moved(points, T_scan_object.back()));

@@ -132,6 +132,12 @@ inline Points facing(const Points& sphere, const Eigen::Vector3d& viewpoint) {
   return pointsWhere(sphere, [&](const Eigen::Vector3f& x) { return x.dot(viewpoint.cast<float>() - x) > 0.0f; });
 }
 
+/// The points that no others hide from a viewpoint by more than a distance.
+inline Points visiblePoints(const Points& all, const Eigen::Vector3d& viewpoint, double distance) {
+  const auto seen = Visibility::fromPoints(all, viewpoint);
+  return pointsWhere(all, [&](const Eigen::Vector3f& x) { return seen->depthBehind(x.cast<double>()) < distance; });
+}
+
 /// The table is the first block; its top is z = 0. The second box hides half of the first from the viewpoint.
 struct Table {
   BlockObject blocks;

@@ -234,23 +234,16 @@ inline Shape scaleneTetrahedron(int num_points, std::uint64_t seed) {
   return shape;
 }
 
-/// Radius of asymmetricBlob() in a direction.
-inline double blobRadius(const Eigen::Vector3d& direction) {
+/// A sphere with five different bumps in general position: smooth, and no plane at all.
+inline Shape asymmetricBlob(int num_points, std::uint64_t seed) {
   const std::array<Eigen::Vector4d, 5> bumps = {
       Eigen::Vector4d(1.0, 0.1, 0.2, 0.9), Eigen::Vector4d(-0.3, 1.0, 0.1, 0.5), Eigen::Vector4d(0.2, -0.4, 1.0, 0.7),
       Eigen::Vector4d(-0.8, -0.5, -0.4, 0.35), Eigen::Vector4d(0.5, 0.6, -0.7, 0.6)};
-  double radius = 1.0;
-  for (const auto& bump : bumps) radius += bump[3] * std::exp(8.0 * (direction.dot(bump.head<3>().normalized()) - 1.0));
-  return radius;
-}
-
-/// A sphere with five different bumps in general position: smooth, and no plane at all.
-inline Shape asymmetricBlob(int num_points, std::uint64_t seed) {
-  RandomStream random(seed);
-  Shape shape{Eigen::Matrix3Xd(3, num_points), {}};
+  Shape shape = sphere(num_points, seed);
   for (int i = 0; i < num_points; ++i) {
-    const Eigen::Vector3d direction = randomDirection(random);
-    shape.points.col(i) = blobRadius(direction) * direction;
+    const Eigen::Vector3d direction = shape.points.col(i);
+    for (const auto& bump : bumps)
+      shape.points.col(i) += bump[3] * std::exp(8.0 * (direction.dot(bump.head<3>().normalized()) - 1.0)) * direction;
   }
   return shape;
 }

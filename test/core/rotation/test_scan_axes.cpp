@@ -15,6 +15,7 @@
 #include "pcl_symmetry/core/symmetric_completion.h"
 #include "pcl_symmetry/core/symmetry_frame.h"
 #include "pcl_symmetry/core/visibility.h"
+#include "shapes/scans.h"
 #include "shapes/shapes.h"
 #include "shapes/threads.h"
 #include "shapes/turning_shapes.h"
@@ -32,23 +33,8 @@ struct SeenFromOneSide {
 
 /// The points of a shape that no other hides, as seen from a place.
 SeenFromOneSide seenFrom(const TurningShape& shape, const Eigen::Vector3d& viewpoint, std::uint64_t seed = 1) {
-  const Points all = shape.sampled(14000, seed).cloud();
-  const std::optional<Visibility> whole = Visibility::fromPoints(all, viewpoint);
-  EXPECT_TRUE(whole.has_value());
-  // Radii of the shapes
-  const Points kept =
-      pointsWhere(all, [&](const Eigen::Vector3f& x) { return whole->depthBehind(x.cast<double>()) < 0.08; });
+  const Points kept = visiblePoints(shape.sampled(14000, seed).cloud(), viewpoint, 0.08);
   return {kept, Visibility::fromPoints(kept, viewpoint)};
-}
-
-SymmetryRotation rotationOf(int fold, double support, double off, double far, double halfway) {
-  SymmetryRotation rotation{Eigen::Vector3d::Zero(), Eigen::Vector3d::UnitZ()};
-  rotation.fold = fold;
-  rotation.support = support;
-  rotation.off = off;
-  rotation.far = far;
-  rotation.halfway = halfway;
-  return rotation;
 }
 
 /// What confirms a half turn.
@@ -62,7 +48,13 @@ RotationSigns clearSigns() {
 
 double confidenceOf(int fold, double support, double off, double far, double halfway,
                     const RotationSigns& signs = clearSigns()) {
-  return rotationConfidence(rotationOf(fold, support, off, far, halfway), signs);
+  SymmetryRotation rotation{Eigen::Vector3d::Zero(), Eigen::Vector3d::UnitZ()};
+  rotation.fold = fold;
+  rotation.support = support;
+  rotation.off = off;
+  rotation.far = far;
+  rotation.halfway = halfway;
+  return rotationConfidence(rotation, signs);
 }
 
 TEST(RotationConfidence, FallsWithWhatLandsInEmptySpaceAndGrowsWithWhatLandsOnTheSurface) {
@@ -214,18 +206,6 @@ Detection detected(const TurningShape& shape, const Eigen::Vector3d& viewpoint) 
   return detectPlanes({scan.points, &*scan.seen});
 }
 
-TurningShape cup(bool with_handle) {
-  TurningShape shape = turningShape("cup", RotationGroupKind::Revolution);
-  shape.addLathe({{0.0, -1.0}, {0.6, -1.0}, {0.8, 0.2}, {0.75, 1.0}, {0.0, 1.0}}, 96);
-  if (with_handle)
-    for (const double z : {-0.35, 0.0, 0.35}) {
-      Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
-      pose.translation() << (z == 0.0 ? 1.3 : 1.0), 0.0, z;
-      shape.addBox(z == 0.0 ? Eigen::Vector3d(0.1, 0.1, 0.45) : Eigen::Vector3d(0.35, 0.1, 0.1), pose);
-    }
-  return shape;
-}
-
 TEST(ScanAxes, AHexagonalPrismHasOrderSix) {
   const Detection found = detected(prismShape(6, 0.5), {3.0, 4.0, 5.0});
   ASSERT_FALSE(found.rotations.empty());
@@ -239,12 +219,12 @@ TEST(ScanAxes, AHexagonalPrismHasOrderSix) {
 }
 
 TEST(ScanAxes, ACupHasAnAxisUnlessAHandleIsInSight) {
-  const Detection plain = detected(cup(false), {1.0, 5.0, 1.5});
+  const Detection plain = detected(cupShape(false), {1.0, 5.0, 1.5});
   ASSERT_EQ(plain.axes.size(), 1u);
   EXPECT_GT(std::abs(plain.axes[0].direction.z()), std::cos(1.0 * kDegree));
   EXPECT_LT(plain.axes[0].point.head<2>().norm(), 0.03);
   // From the side the handle is seen against the background.
-  EXPECT_TRUE(detected(cup(true), {1.0, 5.0, 1.5}).axes.empty());
+  EXPECT_TRUE(detected(cupShape(true), {1.0, 5.0, 1.5}).axes.empty());
 }
 
 TEST(ScanAxes, ABallHasACenterAndADomeOneAxis) {
