@@ -148,6 +148,7 @@ TEST(SymmetryMaximaRefinement, TakesAMapMadeBefore) {
   PlanarSymmetryTransform<pcl::PointXYZ> transform;
   transform.setInputCloud(cloud);
   transform.setMethod(TransformMethod::Convolution);
+  transform.setGridSize(32);
   const SymmetryMap map = transform.compute();
   SymmetryMaximaRefinement<pcl::PointXYZ> refinement;
   refinement.setInputCloud(cloud);

@@ -29,7 +29,7 @@ PosedSurface surface(const Points& points, std::optional<Visibility> seen = {}) 
 TEST(PoseSearch, FindsAnyPoseOfAWhole) {
   const Shape shape = asymmetricBlob(4000, 1);
   const PosedSurface model = surface(shape.cloud());
-  for (int i = 0; i < 5; ++i) {
+  for (int i = 0; i < 3; ++i) {
     const Eigen::Isometry3d T_model_scan = randomPose(10 + i, 0.5);
     const PosedSurface scan = surface(moved(asymmetricBlob(4000, 2), T_model_scan.inverse()).cloud());
     const std::vector<RankedPose> poses = searchPoses(scan, model, {});
