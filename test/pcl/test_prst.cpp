@@ -2,7 +2,6 @@
 #include <pcl/features/feature.h>
 
 #include <Eigen/Geometry>
-#include <algorithm>
 #include <cmath>
 #include <limits>
 

@@ -4,7 +4,6 @@
 #include <pcl/common/io.h>
 
 #include <Eigen/Geometry>
-#include <algorithm>
 #include <atomic>
 #include <filesystem>
 #include <string>

@@ -5,7 +5,6 @@
 #include <map>
 #include <vector>
 
-#include "core/base/random.h"
 #include "pcl_symmetry/core/point_set.h"
 #include "pcl_symmetry/core/surface_graph.h"
 #include "shapes/shapes.h"

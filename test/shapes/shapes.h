@@ -5,7 +5,6 @@
 #include <array>
 #include <cmath>
 #include <functional>
-#include <string>
 #include <vector>
 
 #include "core/base/constants.h"

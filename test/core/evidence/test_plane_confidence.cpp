@@ -9,7 +9,6 @@
 #include <string>
 #include <vector>
 
-#include "core/base/constants.h"
 #include "core/base/random.h"
 #include "core/evidence/surface_samples.h"
 #include "shapes/shapes.h"
