@@ -45,19 +45,14 @@ protected:
     SymmetryDatabase database(file_, quick());
     for (const Kind& kind : {kKinds[0], kKinds[2]}) database.add(kind.name, modelOf(kind));
   }
-  static DatabaseOptions quick() {
+  static DatabaseOptions withViews(int num_views) {
     DatabaseOptions options;
-    options.num_views = 2;
-    options.max_points = 2000;
-    return options;
-  }
-  static DatabaseOptions fewViews() {
-    DatabaseOptions options;
-    options.num_views = 20;
+    options.num_views = num_views;
     options.num_references = 20;
     options.max_points = 2000;
     return options;
   }
+  static DatabaseOptions quick() { return withViews(2); }
   /// \return a file with a model of each kind.
   std::string filled(const DatabaseOptions& options) const {
     const std::string file = folder_ / "few.db";
@@ -125,7 +120,7 @@ TEST_F(SymmetryDatabaseTest, DistancesDependOnWhatIsStored) {
 }
 
 TEST_F(SymmetryDatabaseTest, PreparedOnesRecognizeTheSame) {
-  SymmetryDatabase database(":memory:", fewViews()), prepared(":memory:", fewViews());
+  SymmetryDatabase database(":memory:", withViews(20)), prepared(":memory:", withViews(20));
   fill(database);
   prepared.prepare();  // nothing is there yet
   fill(prepared);
@@ -167,8 +162,7 @@ struct HalfHidden {
 };
 
 TEST_F(SymmetryDatabaseTest, RecognizesViewsWithTheirPosesAndWhatIsHiddenInPart) {
-  DatabaseOptions options = fewViews();
-  options.num_views = 40;
+  DatabaseOptions options = withViews(40);
   options.max_points = 5000;
   SymmetryDatabase database(":memory:", options);
   fill(database);
@@ -198,7 +192,7 @@ TEST_F(SymmetryDatabaseTest, RecognizesViewsWithTheirPosesAndWhatIsHiddenInPart)
 }
 
 TEST_F(SymmetryDatabaseTest, AModelThatIsStoredTwiceIsAsCertainAsOnce) {
-  SymmetryDatabase database(":memory:", fewViews());
+  SymmetryDatabase database(":memory:", withViews(20));
   fill(database);
   // Another one of its kind fits, but not well.
   const Cloud view = seenFrom(rodOnBox(1.02 * kKinds[0].half, kKinds[0].rod, elsewhere(), 2), kViewpoint);
@@ -248,8 +242,7 @@ void fillWithCopies(const std::string& from, const std::string& to, int count) {
 }
 
 TEST_F(SymmetryDatabaseTest, RecognizesByCodesWhereThereAreMoreModelsThanAreCompared) {
-  DatabaseOptions options = fewViews();
-  options.num_views = 8;
+  const DatabaseOptions options = withViews(8);
   const std::string few = filled(options);
   fillWithCopies(few, file_, 76);  // so many that pairs of points are not searched
   RecognitionOptions recognition;
@@ -272,8 +265,7 @@ TEST_F(SymmetryDatabaseTest, RecognizesByCodesWhereThereAreMoreModelsThanAreComp
 }
 
 TEST_F(SymmetryDatabaseTest, TriesMoreModelsWhereNoneOfTheFirstIsAccepted) {
-  DatabaseOptions options = fewViews();
-  options.num_views = 8;
+  const DatabaseOptions options = withViews(8);
   const std::string few = filled(options);
   {
     detail::ModelStore source(few, 10.0, ""), target(file_, 10.0, "");
