@@ -25,7 +25,7 @@ need("numpy")
 import numpy as np
 
 import pcl_symmetry
-from tool_run import pcd
+from tool_run import ToolTest, off, pcd
 from test_pcl_symmetry import Mesh, bar, box, box_mesh, bumped, has_pcl, lamp
 
 INTRINSICS = (300.0, 300.0, 160.0, 120.0)
@@ -64,18 +64,14 @@ def seen_half(points, viewpoint):
 
 
 @unittest.skipUnless(os.environ.get("TOOLS") and has_pcl(), "needs the tools")
-class SameBytes(unittest.TestCase):
+class SameBytes(ToolTest):
     """The tool is the C++ class with a command line: what it writes is what the module returns, to the last bit."""
 
     NAMES = ("confidence", "share", "support", "score", "seen", "residual", "deviation")
 
     def assert_same(self, name, file, flags, found):
-        with self.subTest(name), tempfile.TemporaryDirectory() as folder:
-            path = Path(folder) / ("cloud" + file.suffix)
-            path.write_bytes(file.read_bytes())
-            tool = Path(os.environ["TOOLS"]) / "pcl_symmetry_planes"
-            subprocess.run([tool, path, "-json", "found.json", "-quiet", *flags], cwd=folder, check=True, capture_output=True)
-            read = json.loads((Path(folder) / "found.json").read_text())
+        with self.subTest(name):
+            read = self.report(self.folder / file, flags, "-quiet", tool="planes")
             self.assertEqual([p["kind"] for p in read["planes"]], [p.kind for p in found.every])
             self.assertEqual([p["coefficients"] for p in read["planes"]], [p.coefficients.tolist() for p in found.every])
             for field in self.NAMES:
@@ -88,9 +84,9 @@ class SameBytes(unittest.TestCase):
         functions = dict(planes=pcl_symmetry.planes, align=pcl_symmetry.frame, segment=pcl_symmetry.segment, map=pcl_symmetry.transform,
                          bop=pcl_symmetry.rotations, scene=pcl_symmetry.scene, describe=pcl_symmetry.describe)  # fmt: skip
         for tool, function in functions.items():
-            shown = subprocess.run([Path(os.environ["TOOLS"]) / f"pcl_symmetry_{tool}", "-h"], capture_output=True, text=True).stdout
+            self.run_tool("-h", tool=tool)
             for name in ("seed", "max_planes")[: 2 if tool == "planes" else 1]:
-                default = re.search(rf"-{name} N\s[^()]*\((\d+)\)", shown)
+                default = re.search(rf"-{name} N\s[^()]*\((\d+)\)", self.output)
                 self.assertIsNotNone(default, tool)
                 self.assertEqual(int(default[1]), inspect.signature(function).parameters[name].default, tool)
 
@@ -106,76 +102,66 @@ class SameBytes(unittest.TestCase):
         one_side = seen_half(box(num_points=20_000), viewpoint)
         large = box(num_points=120_000)
         at = ",".join(map(repr, viewpoint.tolist()))
-        with tempfile.TemporaryDirectory() as folder:
-            file = Path(folder) / "cloud.pcd"
 
-            def check(name, points, *flags, labels=None, **options):
-                width = points.shape[1] if points.ndim == 3 else 0
-                file.write_bytes(pcd(points.reshape(-1, 3), width, **({} if labels is None else {"label": labels.ravel()})))
-                self.assert_same(name, file, flags, pcl_symmetry.planes(points, **options))
+        def check(name, points, flags="", labels=None, **options):
+            width = points.shape[1] if points.ndim == 3 else 0
+            self.write("cloud.pcd", pcd(points.reshape(-1, 3), width, **({} if labels is None else {"label": labels.ravel()})))
+            self.assert_same(name, "cloud.pcd", flags, pcl_symmetry.planes(points, **options))
 
-            check("cloud", cloud)
-            check("with NaN", holes)
-            check("with noise", noisy)
-            check("large", large)
-            check("one side", one_side)
-            check("viewpoint", one_side, "-viewpoint", at, viewpoint=viewpoint)
-            check("ground", one_side, "-viewpoint", at, "-ground", "0,0,1,0.2", viewpoint=viewpoint, ground=(0, 0, 1, 0.2))
-            with self.assertWarnsRegex(RuntimeWarning, "ground: has no effect without a viewpoint"):
-                pcl_symmetry.planes(cloud, ground=(0, 0, 1, 0.2))
-            check("organized", np.where((labels == 1)[..., None], frame, np.nan))
-            check("organized, without viewpoint", frame, "-viewpoint", "none", viewpoint=None)
-            check("label", frame, "-label", "1", labels=labels, indices=labels == 1)
-            check("label in noise", noisy_frame, "-label", "2", labels=labels, indices=labels == 2)
-            vertices, faces = box_mesh()
-            mesh = Path(folder) / "mesh.off"
-            rows = [" ".join(map(str, row)) for row in [*vertices.tolist(), *([3, *face] for face in faces.tolist())]]
-            mesh.write_text("\n".join(["OFF", f"{len(vertices)} {len(faces)} 0", *rows, ""]))
-            self.assert_same("mesh", mesh, (), pcl_symmetry.planes(Mesh(vertices, faces)))
-            x, y, z = np.meshgrid(np.arange(32), np.arange(36), np.arange(30), indexing="ij")
-            body = (((x - 15.5) / 11) ** 2 + ((y - 17) / 14) ** 2 + ((z - 14) / 9) ** 2 < 1).astype("<f4")
-            volume = Path(folder) / "body.nrrd"
-            head = "NRRD0004\ntype: float\ndimension: 3\nsizes: 32 36 30\nspace dimension: 3\nspace directions: (2,0,0) (0,2,0) (0,0,3)\n"
-            volume.write_bytes((head + "space origin: (5,7,-9)\nencoding: raw\nendian: little\n\n").encode() + body.tobytes(order="F"))
-            self.assert_same("volume", volume, (), pcl_symmetry.planes(volume=body, spacing=(2, 2, 3), origin=(5, 7, -9)))
+        check("cloud", cloud)
+        check("with NaN", holes)
+        check("with noise", noisy)
+        check("large", large)
+        check("one side", one_side)
+        check("viewpoint", one_side, f"-viewpoint {at}", viewpoint=viewpoint)
+        check("ground", one_side, f"-viewpoint {at} -ground 0,0,1,0.2", viewpoint=viewpoint, ground=(0, 0, 1, 0.2))
+        with self.assertWarnsRegex(RuntimeWarning, "ground: has no effect without a viewpoint"):
+            pcl_symmetry.planes(cloud, ground=(0, 0, 1, 0.2))
+        check("organized", np.where((labels == 1)[..., None], frame, np.nan))
+        check("organized, without viewpoint", frame, "-viewpoint none", viewpoint=None)
+        check("label", frame, "-label 1", labels=labels, indices=labels == 1)
+        check("label in noise", noisy_frame, "-label 2", labels=labels, indices=labels == 2)
+        vertices, faces = box_mesh()
+        self.write("mesh.off", off(vertices, faces))
+        self.assert_same("mesh", "mesh.off", "", pcl_symmetry.planes(Mesh(vertices, faces)))
+        x, y, z = np.meshgrid(np.arange(32), np.arange(36), np.arange(30), indexing="ij")
+        body = (((x - 15.5) / 11) ** 2 + ((y - 17) / 14) ** 2 + ((z - 14) / 9) ** 2 < 1).astype("<f4")
+        head = "NRRD0004\ntype: float\ndimension: 3\nsizes: 32 36 30\nspace dimension: 3\nspace directions: (2,0,0) (0,2,0) (0,0,3)\n"
+        self.write("body.nrrd", (head + "space origin: (5,7,-9)\nencoding: raw\nendian: little\n\n").encode() + body.tobytes(order="F"))
+        self.assert_same("volume", "body.nrrd", "", pcl_symmetry.planes(volume=body, spacing=(2, 2, 3), origin=(5, 7, -9)))
 
     def test_of_descriptors(self):
-        tool, random = Path(os.environ["TOOLS"]) / "pcl_symmetry_describe", np.random.default_rng(1)
+        random = np.random.default_rng(1)
         shapes = [lamp(2000, i) if i % 2 else box(random.uniform(0.2, 1, 3), 2000, i) for i in range(4)]
         shapes = [(each @ np.linalg.qr(random.normal(size=(3, 3)))[0]).astype(np.float32) for each in shapes]
         described = [pcl_symmetry.descriptors(each) for each in shapes]
-        with tempfile.TemporaryDirectory() as folder:
-            files = [f"{i}.pcd" for i in range(4)]
-            for file, points in zip(files, shapes):
-                (Path(folder) / file).write_bytes(pcd(points))
-            for k, kind in enumerate(("prst", "prsd", "gedt")):
-                subprocess.run([tool, kind, *files, "-type", kind, "-quiet"], cwd=folder, check=True, capture_output=True)
-                for i, values in enumerate(each[k] for each in described):
-                    body = (Path(folder) / kind / files[i]).read_bytes().split(b"DATA binary\n", 1)[1]
-                    read = np.frombuffer(body, "<f4", count=values.size)  # PCL fills the last page of the file
-                    np.testing.assert_array_equal(read, values.ravel(), err_msg=f"{kind} {i}")
+        files = [self.write(f"{i}.pcd", pcd(points)) for i, points in enumerate(shapes)]
+        for k, kind in enumerate(("prst", "prsd", "gedt")):
+            self.run_tool(kind, *files, f"-type {kind} -quiet", tool="describe")
+            for file, values in zip(files, (each[k] for each in described)):
+                body = (self.folder / kind / file.name).read_bytes().split(b"DATA binary\n", 1)[1]
+                read = np.frombuffer(body, "<f4", count=values.size)  # PCL fills the last page of the file
+                np.testing.assert_array_equal(read, values.ravel(), err_msg=f"{kind} {file.name}")
 
     def test_of_poses(self):
-        tool, target = Path(os.environ["TOOLS"]) / "pcl_symmetry_align", lamp(24_000)
         source = seen_half(box(num_points=30_000), np.array([3.0, 2.0, 1.5]))
-        with tempfile.TemporaryDirectory() as folder:
-            for name, points in (("source", source), ("target", target), ("box", box(num_points=25_000))):
-                (Path(folder) / f"{name}.pcd").write_bytes(pcd(points))
-            for known, points in (("target", target), ("box", box(num_points=25_000))):
-                flags = ["-target", f"{known}.pcd", "-json", f"{known}.json", "-quiet"]
-                subprocess.run([tool, "source.pcd", *flags], cwd=folder, capture_output=True)
-                read = json.loads((Path(folder) / f"{known}.json").read_text())
-                found = pcl_symmetry.register(source, points)
-                self.assertEqual((read["confidence"], read["converged"]), (found.confidence, found.converged), known)
-                np.testing.assert_array_equal(read["transform"], found.transform.ravel(), known)
+        depth, labels = table()
+        pixels = pcl_symmetry.from_depth(np.where(labels == 1, depth, 0), INTRINSICS)
+        clouds = dict(source=source, pixels=pixels, lamp=lamp(24_000), box=box(num_points=25_000))
+        for name, points in clouds.items():
+            self.write(f"{name}.pcd", pcd(points.reshape(-1, 3), points.shape[1] if points.ndim == 3 else 0))
+        for scan, known in (("source", "lamp"), ("source", "box"), ("pixels", "box")):
+            found = pcl_symmetry.register(clouds[scan], clouds[known])
+            self.run_tool(f"{scan}.pcd -target {known}.pcd -json report.json -quiet", tool="align", code=not found.converged)
+            read = json.loads(self.text("report.json"))
+            self.assertEqual((read["confidence"], read["converged"]), (found.confidence, found.converged), (scan, known))
+            self.assertEqual(read.get("reason", ""), found.reason)
+            np.testing.assert_array_equal(read["transform"], found.transform.ravel(), (scan, known))
 
     def test_of_views(self):
-        tool, points = Path(os.environ["TOOLS"]) / "pcl_symmetry_viewpoint", lamp()
-        with tempfile.TemporaryDirectory() as folder:
-            (Path(folder) / "lamp.pcd").write_bytes(pcd(points))
-            flags = "-up 0,1,0 -views 3 -separation 30 -json views.json -quiet".split()
-            subprocess.run([tool, "lamp.pcd", *flags], cwd=folder, check=True, capture_output=True)
-            read = json.loads((Path(folder) / "views.json").read_text())
+        points = lamp()
+        self.write("lamp.pcd", pcd(points))
+        read = self.report("lamp.pcd -up 0,1,0 -views 3 -separation 30 -quiet", tool="viewpoint")
         options = dict(up=(0, 1, 0), number=3, separation=30 * np.pi / 180)
         self.assertEqual([view.to_dict() for view in pcl_symmetry.viewpoints(points, **options)], read["good"])
         self.assertEqual([view.to_dict() for view in pcl_symmetry.viewpoints(points, worst=True, **options)], [read["worst"]])
@@ -309,7 +295,7 @@ class OrganizedArrays(unittest.TestCase):
             self.assertIn("plane 1", each.planes.show(self.frame).html)
             if importlib.util.find_spec("matplotlib"):
                 self.assertTrue(each.planes.plot(self.frame).collections)
-        self.assertRegex(repr(scene), r"^Scene\(objects=\[SceneObject\(rows=\d+, planes=Planes\(planes=\d.*\), added=\d+\), .*supports=\[")
+        self.assertRegex(repr(scene), r"^Scene\(objects=\[SceneObject\(rows=\d+, planes=\[0.*\], added=\d+\), .*supports=\[")
         with self.assertRaisesRegex(ValueError, r"planes\(points, indices=object.rows\) has it"):
             scene[0].planes.point_support(0)
         page = scene.show(self.frame)
