@@ -331,16 +331,15 @@ class OrganizedArrays(unittest.TestCase):
     def test_files_keep_their_order_and_viewpoint(self):
         viewpoint, (vertices, faces) = np.array([3.0, 2.0, 1.5]), box_mesh()
         rows = seen_half(box((1.0, 0.7, 0.4), 8000), viewpoint)
+        text = lambda line, table: "".join(line.format(*row) + "\n" for row in table)
         with tempfile.TemporaryDirectory() as name:
             folder = Path(name)
             folder.joinpath("frame.pcd").write_bytes(pcd(self.frame.reshape(-1, 3), 320))
             folder.joinpath("scan.pcd").write_bytes(pcd(rows, viewpoint=viewpoint))
             folder.joinpath("cut.pcd").write_bytes(pcd(rows)[:-9])
             header = f"ply\nformat ascii 1.0\nelement vertex {len(vertices)}\n" + "".join(f"property double {c}\n" for c in "xyz")
-            quads = [f[:3].tolist() for f in faces]
-            text = "\n".join(" ".join(map(str, v)) for v in vertices.tolist()) + "\n" + "\n".join(f"3 {a} {b} {c}" for a, b, c in quads)
             header += f"element face {len(faces)}\nproperty list uchar int vertex_indices\nend_header\n"
-            folder.joinpath("box.PLY").write_text(header + text + "\n")
+            folder.joinpath("box.PLY").write_text(header + text("{} {} {}", vertices) + text("3 {} {} {}", faces))
             frame, scan, mesh = (pcl_symmetry.read(folder / each) for each in ("frame.pcd", "scan.pcd", "box.PLY"))
             for wrong, error, words in (
                 ("none.pcd", FileNotFoundError, "none.pcd"),
@@ -349,17 +348,13 @@ class OrganizedArrays(unittest.TestCase):
             ):
                 with self.assertRaisesRegex(error, words):
                     pcl_symmetry.read(folder / wrong)
-            corners, triangles = [" ".join(map(str, v)) for v in vertices.tolist()], [f[:3] for f in faces.tolist()]
-            lines = [f"OFF {len(vertices)} {len(faces)} 0", *corners, *(f"3 {a} {b} {c}" for a, b, c in triangles)]
-            folder.joinpath("box.off").write_text("\n".join(lines))
-            folder.joinpath("box.obj").write_text("\n".join([*("v " + c for c in corners), *(f"f {a + 1} {b + 1} {c + 1}" for a, b, c in triangles)]))
-            folder.joinpath("box.xyz").write_text("\n".join(corners))
-            facets = np.zeros(len(faces), [("normal", "<f4", 3), ("corners", "<f4", (3, 3)), ("none", "<u2")])
-            facets["corners"] = vertices[np.array(triangles)]
-            folder.joinpath("box.stl").write_bytes(bytes(80) + np.uint32(len(faces)).tobytes() + facets.tobytes())
-            for kind in ("off", "obj", "stl"):
+            facets = "".join(f"facet normal 0 0 1\nouter loop\n{text('vertex {} {} {}', vertices[f])}endloop\nendfacet\n" for f in faces)
+            for kind, content in (("off", off(vertices, faces)), ("obj", text("v {} {} {}", vertices) + text("f {} {} {}", faces + 1)),
+                                  ("stl", f"solid box\n{facets}endsolid box\n")):  # fmt: skip
+                folder.joinpath(f"box.{kind}").write_text(content)
                 same = pcl_symmetry.read(folder / f"box.{kind}")
-                np.testing.assert_allclose(same.points[same.faces], vertices[np.array(triangles)], atol=1e-6)
+                np.testing.assert_allclose(same.points[same.faces], vertices[faces], atol=1e-6)
+            folder.joinpath("box.xyz").write_text(text("{} {} {}", vertices))
             np.testing.assert_array_equal(pcl_symmetry.read(folder / "box.xyz").points, vertices)
             by_name = [pcl_symmetry.planes(folder / each) for each in ("scan.pcd", "box.off")] + [pcl_symmetry.scene(str(folder / "frame.pcd"))]
             self.assertEqual(by_name[0].show(folder / "scan.pcd").html, by_name[0].show(scan).html)
