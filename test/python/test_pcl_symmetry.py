@@ -71,10 +71,6 @@ class Planes(unittest.TestCase):
         with self.assertWarnsRegex(RuntimeWarning, "^volume: all values are equal") as caught:
             self.assertEqual(pcl_symmetry.planes(volume=np.zeros((8, 8, 8))).reason, "volume: all values are equal")
         self.assertEqual(caught.filename, __file__)
-        with self.assertRaisesRegex(ValueError, "spacing = .* must be finite and > 0"):
-            pcl_symmetry.planes(volume=np.ones((8, 8, 8)), spacing=(1, 0, 1))
-        with self.assertRaisesRegex(TypeError, "points or volume"):
-            pcl_symmetry.planes()
 
     def test_as_published_are_neither_added_nor_judged(self):
         found = pcl_symmetry.planes(box(num_points=2000), as_published=True)
@@ -163,7 +159,8 @@ class Planes(unittest.TestCase):
             "transform": lambda m: (m.reason, bool(m.radius), np.isnan(m.center).all(), m.values.size),
         }
         with self.assertWarnsRegex(RuntimeWarning, r"points: they leave it open, a share of 0[.]\d+ to 1[.]00 for the best plane"):
-            self.assertFalse(pcl_symmetry.planes(box(num_points=100)))
+            found = pcl_symmetry.planes(box(num_points=100))
+        self.assertEqual((len(found), found.undecided, repr(found)[-12:]), (0, True, ", undecided)"))
         for number, points in ((5, box(num_points=5)), (1, np.ones((1000, 3))), (0, np.full((50, 3), np.nan))):
             words = f"{number} distinct point{'s' if number > 1 else ''}, at least 20 are needed" if number else "no finite point"
             for name in ("frame", "rotations", "transform", "describe", "descriptors", "local_symmetry", "segment"):
@@ -189,55 +186,8 @@ class Planes(unittest.TestCase):
             with self.assertRaisesRegex(ValueError, "number of points = 0, must be > 0"):
                 pcl_symmetry.symmetrize(points, plane)
             self.assertEqual([len(each) for each in plane.pairs(points)], 2 * [len(points)])
-        with self.assertRaisesRegex(ValueError, "vertices: not all finite"):
-            pcl_symmetry.sample_mesh(np.full((8, 3), np.nan), box_mesh()[1])
-
-    def test_wrong_parameters_name_field_value_and_rule(self):
-        for arguments, words in (
-            (dict(points=np.zeros((5, 2))), "points = array of shape \\(5, 2\\), must be \\(N, 3\\)"),
-            (dict(points=np.zeros((3, 50))), "points = array of shape \\(3, 50\\), must be \\(N, 3\\): points.T"),
-            (dict(points=np.zeros((50, 4))), "must be \\(N, 3\\): points\\[:, :3\\] leaves out"),
-            (dict(points=np.zeros((24, 32, 4))), "must be \\(N, 3\\) or \\(H, W, 3\\): points\\[..., :3\\] leaves out"),
-            (dict(points=np.zeros((5, 3), dtype="U3")), "points = array of type <U3"),
-            (dict(points=1e300 * box().astype(float)), "coordinates that float32 cannot hold"),
-            (dict(points=1e-300 * box().astype(float)), "coordinates that float32 cannot hold"),
-            (dict(points=box(), tolerance=0.5), "tolerance = 0.5, must be"),
-            (dict(points=box(), threads=-1), "threads = -1"),
-            (dict(points=box(), viewpoint="here"), "viewpoint = here, must be"),
-            (dict(points=box(), method="voting"), "method = voting, must be convolution without as_published"),
-            (dict(volume=np.eye(8)[..., None] * np.ones(8), tolerance=0.02), "must be left out with volume"),
-            (dict(points=box(), viewpoint=(0, 0, 0)), "viewpoint: among the points"),
-            (dict(points=box(), viewpoint=(np.nan, 0, 0)), "viewpoint = nan +0 +0, must be finite"),
-            (dict(points=box(), normals=np.zeros((5, 3))), "normals = array of shape \\(5, 3\\), must be \\(6000, 3\\)"),
-        ):
-            with self.assertRaisesRegex(ValueError, words):
-                pcl_symmetry.planes(**arguments)
-        for points in (1e300 * box().astype(float), np.zeros((5, 2)), np.zeros((5, 3), dtype="U3")):
-            with self.assertRaisesRegex(ValueError, "points = "):
-                pcl_symmetry.ReflectionPlane([1, 0, 0], 0.0).pairs(points)
-        plane = pcl_symmetry.ReflectionPlane([1, 0, 0], 0.0)
-        for each in (pcl_symmetry.planes, pcl_symmetry.frame, pcl_symmetry.segment, pcl_symmetry.describe, plane.pairs):
-            with self.assertRaisesRegex(ValueError, "points = array of shape \\(24, 32\\), must be .*; from_depth\\(\\) makes points of"):
-                each(np.ones((24, 32)))
-            with self.assertRaisesRegex(ValueError, "depth.png: unknown extension '.png', must be .pcd, .*from_depth\\(\\) takes"):
-                each(Path("depth.png"))
-            with self.assertRaisesRegex(FileNotFoundError, "cloud.pcd"):
-                each("cloud.pcd")
-        for each in (plane.reflect, plane.distance, lambda x: pcl_symmetry.Axis(np.zeros(3), np.eye(3)[0], 1, 1, 1).rotate(x, 1)):
-            with self.assertRaisesRegex(ValueError, "points = array of shape \\(24, 32\\), must be \\(3,\\) or \\(N, 3\\)"):
-                each(np.ones((24, 32)))
-        for nothing in (b"cloud", 5, {"x": 1}, (row for row in box())):
-            with self.assertRaisesRegex(TypeError, "points = .*, must be an array"):
-                pcl_symmetry.planes(nothing)
-        for wrong in (None, [[1, 2, 3], [4]]):
-            with self.assertRaises((TypeError, ValueError)):
-                pcl_symmetry.planes(wrong)
-        with self.assertRaisesRegex(TypeError, r"plane = list, must be a plane, such as planes\(\)\[0\], or \(4,\) a, b, c, d"):
-            pcl_symmetry.complete(box(), [1, 0, 0])
-        with self.assertRaisesRegex(TypeError, "bins = 64, must be three whole numbers"):
-            pcl_symmetry.transform(box(), 64)
-        with self.assertRaisesRegex(ValueError, "scale = 2, must be in"):
-            pcl_symmetry.local_symmetry(box(), 2)
+        with self.assertWarnsRegex(RuntimeWarning, r"points: \d\d % of the points lie behind others as seen from the viewpoint given"):
+            pcl_symmetry.planes(box(), viewpoint=(3, 2, 1))
 
     def test_wrong_parameters_are_refused_the_same_where_points_hold_no_answer(self):
         s, guess = pcl_symmetry, np.ones((4, 4))
@@ -366,8 +316,6 @@ class OtherFunctions(unittest.TestCase):
         nearly_square = box((1.0, 0.96, 0.4))
         self.assertEqual(pcl_symmetry.rotations(nearly_square, tolerance=0.005).name, "D2")
         self.assertEqual(pcl_symmetry.rotations(nearly_square, absolute_tolerance=0.05).name, "D4")
-        with self.assertRaisesRegex(ValueError, "tolerance"):
-            pcl_symmetry.rotations(nearly_square, tolerance=2.0)
 
     def test_poses_under_the_symmetries_of_a_box(self):
         symmetries = pcl_symmetry.rotations(box())
@@ -381,8 +329,6 @@ class OtherFunctions(unittest.TestCase):
             np.testing.assert_allclose(symmetries.closest_to(other, pose), pose, atol=1e-9)
         shifted = pose + np.array([[0, 0, 0, 0.1], [0] * 4, [0] * 4, [0] * 4])
         self.assertAlmostEqual(symmetries.mssd(shifted, pose, corners), 0.1, places=6)
-        with self.assertRaisesRegex(ValueError, "truth"):
-            symmetries.mssd(pose, np.ones((4, 4)), corners)
 
     def test_results_print_what_tells_most(self):
         found = pcl_symmetry.planes(box())
@@ -437,8 +383,6 @@ class OtherFunctions(unittest.TestCase):
         self.assertEqual(caught.filename, __file__)
         split = pcl_symmetry.segment(vertices, faces, method="splitting", depth=1, as_published=True)
         self.assertLessEqual(len(set(split)), 2)
-        with self.assertRaisesRegex(ValueError, "method = cutting, must be merging or splitting"):
-            pcl_symmetry.segment(vertices, faces, method="cutting")
         self.assertEqual(pcl_symmetry.sample_mesh(vertices, faces, 500).shape, (500, 3))
 
     def test_merges_of_a_mesh_follow_their_weights(self):
@@ -451,8 +395,6 @@ class OtherFunctions(unittest.TestCase):
         self.assertEqual(len(merges), max(merging.patches))
         self.assertEqual((merges["cues"].shape[1], merges["cues"][0, 0]), (14, 1))
         self.assertTrue((merging.merges([1] + [0] * 13)["log_odds"] == 1).all())
-        with self.assertRaisesRegex(ValueError, "weights = 2 numbers, must be 14"):
-            merging.merges([1, 2])
 
     def test_descriptors_of_the_paper_have_its_sizes(self):
         prst, prsd, gedt = pcl_symmetry.descriptors(box(), input_axes=True)
@@ -465,8 +407,6 @@ class OtherFunctions(unittest.TestCase):
         self.assertAlmostEqual(pcl_symmetry.descriptor_distance(a, b, of_planes=False), np.sqrt(24))
         of_bins = 12 * (np.sin(np.pi / 8) + np.sin(3 * np.pi / 8))
         self.assertAlmostEqual(pcl_symmetry.descriptor_distance(a, b), np.sqrt(of_bins))
-        with self.assertRaisesRegex(ValueError, "a, b: shapes"):
-            pcl_symmetry.descriptor_distance(a, b[:1])
 
     def test_description_does_not_depend_on_the_pose(self):
         points = box()
@@ -483,18 +423,12 @@ class OtherFunctions(unittest.TestCase):
             best = np.unravel_index(map_.values.argmax(), map_.values.shape)
             self.assertGreater(np.abs(map_.plane(*map(int, best))[:3]).max(), 0.98)
             np.testing.assert_allclose(map_.prst() ** 2, (1 + map_.values) / 2, atol=1e-6, err_msg="equation 1")
-        with self.assertRaises(IndexError):
-            map_.plane(32, 0, 0)
-        with self.assertRaisesRegex(ValueError, "method = guess, must be"):
-            pcl_symmetry.transform(box(), method="guess")
 
     def test_the_map_covers_the_ball_that_is_given(self):
         map_ = pcl_symmetry.transform(box() + (1, 0, 0), (8, 16, 9), center=(1, 0, 0), radius=2.0, sigma=0.1)
         self.assertAlmostEqual(map_.sigma, 0.1)
         offsets = [plane[:3] @ (1, 0, 0) + plane[3] for plane in (map_.plane(0, 0, k) for k in range(9))]
         np.testing.assert_allclose(offsets, np.linspace(16 / 9, -16 / 9, 9), atol=1e-9)
-        with self.assertRaisesRegex(ValueError, "radius = -1, must be"):
-            pcl_symmetry.transform(box(), radius=-1)
 
     @needs_pcl
     def test_views_of_points_have_cameras_and_are_apart(self):
@@ -512,9 +446,6 @@ class OtherFunctions(unittest.TestCase):
             (worst,) = pcl_symmetry.viewpoints(points, worst=True)
             self.assertLess(worst.score, views[0].score)
         self.assertIsNone(pcl_symmetry.viewpoints(pcl_symmetry.planes(box()).planes)[0].pose)
-        for wrong, words in ((dict(number=0), "number = 0, must be >= 1"), (dict(up=(0, 0, 0)), "up = "), (dict(separation=4.0), "separation = 4")):
-            with self.assertRaisesRegex(ValueError, words):
-                pcl_symmetry.viewpoints(box(), **wrong)
         with self.assertWarnsRegex(RuntimeWarning, "points: .*at least 20"):
             self.assertEqual(pcl_symmetry.viewpoints(box()[:3]), [])
 
@@ -716,8 +647,6 @@ class Meshes(unittest.TestCase):
         np.testing.assert_array_equal(same.rows, np.flatnonzero(finite)[left.rows])
         np.testing.assert_array_equal(same.asymmetry[finite], left.asymmetry)
         self.assertTrue(np.isnan(same.asymmetry[~finite]).all())
-        with self.assertRaisesRegex(ValueError, "half = both, must be mean, left or right"):
-            pcl_symmetry.symmetrize(mesh, plane, "both")
 
 
 @needs_pcl
@@ -738,10 +667,6 @@ class WithPCL(unittest.TestCase):
             source, target, guess=truth, around=(0.2, 0.1), source_viewpoint=None, target_viewpoint=None
         )
         self.assertLess(np.abs(tracked.transform - truth).max(), 0.02)
-        with self.assertRaisesRegex(ValueError, "around"):
-            pcl_symmetry.register(source, target, around=(-1, 0.1))
-        with self.assertRaisesRegex(ValueError, "guess"):
-            pcl_symmetry.register(source, target, guess=np.ones((4, 4)))
 
     def test_a_database_finds_what_it_holds(self):
         with tempfile.TemporaryDirectory() as folder:
@@ -771,8 +696,6 @@ class WithPCL(unittest.TestCase):
                     unknown("nothing")
             database.add("box", lamp())
             self.assertEqual(len(database), 2, "a model of the same name is replaced")
-            with self.assertRaisesRegex(ValueError, "viewpoint = there"):
-                database.match(seen, viewpoint="there")
             wrong = Path(folder) / "wrong.db"
             wrong.write_text("no database at all")
             with self.assertRaisesRegex(OSError, "wrong.db"):
@@ -794,10 +717,6 @@ class WithPCL(unittest.TestCase):
         self.assertEqual((stopped.num_added, stopped.cancelled), (1, True))
         with self.assertRaises(ZeroDivisionError):
             pcl_symmetry.Database(":memory:").build(models, progress=lambda share: 1 / 0)
-        with self.assertRaises(TypeError):
-            pcl_symmetry.Database(":memory:").build(5)
-        with self.assertRaisesRegex(TypeError, "models: item 0 is no pair"):
-            pcl_symmetry.Database(":memory:").build([("box", box(), 3)])
 
     def test_a_database_is_a_container_and_closes(self):
         with tempfile.TemporaryDirectory() as folder:
@@ -900,6 +819,7 @@ class Results(unittest.TestCase):
         for result in results:
             for same in (copy.deepcopy(result), pickle.loads(pickle.dumps(result))):
                 self.assertEqual(result, same)
+                self.assertEqual(len({result, same}), 1)
             self.assertNotEqual(result, None)
         self.assertNotEqual(results[0][0], results[0][1])
 
@@ -916,8 +836,6 @@ class Results(unittest.TestCase):
         found = pcl_symmetry.planes(box())
         self.assertEqual(found[1:], found.planes[1:])
         self.assertEqual(found[-1], found.planes[-1])
-        with self.assertRaisesRegex(IndexError, "index = 9, must be that of one of 3 planes"):
-            found.point_support(9)
         np.testing.assert_array_equal(found.point_support(found[1]), found.point_support(1))
 
     def test_a_plane_reflects_points_and_pairs_them(self):
@@ -1000,65 +918,105 @@ class Package(unittest.TestCase):
             result = subprocess.run([sys.executable, "-c", code], cwd=folder, env={}, capture_output=True, text=True)
         self.assertEqual((result.stdout, result.stderr), ("[False, False]\n", ""))
 
-    def test_wrong_arguments_are_named(self):
-        with self.assertRaisesRegex(TypeError, "tolerence"):
-            pcl_symmetry.planes(box(), tolerence=0.1)
-        volume = np.random.default_rng(1).random((8, 8, 8))
-        for error, arguments, words in (
-            (ValueError, dict(points=box(), seed=-1), "seed = -1, must be int, 0 to "),
-            (TypeError, dict(points=box(), seed=1.5), "seed = 1.5, must be int, 0 to "),
-            (ValueError, dict(points=box(), max_planes=2**40), "max_planes = 1099511627776, must be int, -2147483648 to 2147483647"),
-            (TypeError, dict(points=box(), tolerance="small"), "tolerance = 'small', must be float"),
-            (ValueError, dict(volume=volume, spacing=2.0), r"spacing = 2, must be numbers of shape \(3,\)"),
-            (ValueError, dict(volume=volume, direction=np.eye(2)), r"direction = (.|\n)* must be numbers of shape \(3, 3\)"),
-            (TypeError, dict(points=box(), seed=box()), r"seed = array of shape \(6000, 3\) and type float32, must be int"),
-            (TypeError, dict(points=box(), seed=box().tolist()), r"seed = array of shape \(6000, 3\) and type float64, must be int"),
-            (TypeError, dict(points=60 * b"cloud"), "points = bytes of 303 characters, must be an array"),
-            (ValueError, dict(points="cloud"), "cloud: unknown extension '', must be .pcd, "),
-            (TypeError, dict(points=box(), viewpoint=dict(x=1)), "viewpoint = dict, must be"),
-            (ValueError, dict(volume=volume, levels=5), r"levels = 5, must be numbers of shape \(2,\)"),
-        ):
-            with self.assertRaisesRegex(error, words):
-                pcl_symmetry.planes(**arguments)
-        with self.assertRaisesRegex(ValueError, r"viewpoint = array of shape \(2, 3\), must be"):
-            pcl_symmetry.planes(box(), viewpoint=np.eye(3)[:2])
-        with self.assertRaisesRegex(ValueError, r"points = array of shape \(10, 3\), must be \(6000, 3\)"):
-            pcl_symmetry.planes(box()).show(box()[:10])
-        s, rotations, plane = pcl_symmetry, pcl_symmetry.rotations(box()), pcl_symmetry.ReflectionPlane([1, 0, 0], 0.0)
+    def test_wrong_arguments_are_named_with_their_rule(self):
+        s, points, volume, (vertices, faces) = pcl_symmetry, box(), np.random.default_rng(1).random((8, 8, 8)), box_mesh()
+        plane, axis, found, rotations = s.ReflectionPlane([1, 0, 0], 0.0), s.Axis(np.zeros(3), np.eye(3)[0], 1, 1, 1), s.planes(points), s.rotations(points)
         calls = [
+            (ValueError, lambda: s.planes(np.zeros((5, 2))), r"points = array of shape \(5, 2\), must be \(N, 3\)"),
+            (ValueError, lambda: s.planes(np.zeros((3, 50))), r"points = array of shape \(3, 50\), must be \(N, 3\): points.T"),
+            (ValueError, lambda: s.planes(np.zeros((50, 4))), r"points = .*must be \(N, 3\): points\[:, :3\] leaves out"),
+            (ValueError, lambda: s.planes(np.zeros((24, 32, 4))), r"points = .*must be \(N, 3\) or \(H, W, 3\): points\[..., :3\] leaves out"),
+            (ValueError, lambda: s.planes(np.zeros((5, 3), dtype="U3")), "points = array of type <U3"),
+            (ValueError, lambda: s.planes(1e300 * points.astype(float)), "points = .*coordinates that float32 cannot hold"),
+            (ValueError, lambda: s.planes(1e-300 * points.astype(float)), "points = .*coordinates that float32 cannot hold"),
+            (ValueError, lambda: s.planes((points, [[0, 1, 2]])), r"points = tuple of length 2, must be \(N, 3\), Shape"),
+            (TypeError, lambda: s.planes(60 * b"cloud"), "points = bytes of 303 characters, must be an array"),
+            *((TypeError, lambda nothing=nothing: s.planes(nothing), "points = .*, must be an array")
+              for nothing in (b"cloud", 5, {"x": 1}, (row for row in points))),
+            ((TypeError, ValueError), lambda: s.planes([[1, 2, 3], [4]]), "points = "),
+            (ValueError, lambda: s.planes("cloud"), "cloud: unknown extension '', must be .pcd, "),
+            *((TypeError, lambda none=none: s.planes(*none), r"planes\(\) takes points or volume") for none in ((), (None,))),
+            (TypeError, lambda: s.planes(points, tolerence=0.1), ".*tolerence"),
+            (ValueError, lambda: s.planes(points, tolerance=0.5), "tolerance = 0.5, must be"),
+            (TypeError, lambda: s.planes(points, tolerance="small"), "tolerance = 'small', must be float"),
+            (ValueError, lambda: s.planes(points, threads=-1), "threads = -1, must be >= 0"),
+            (ValueError, lambda: s.planes(points, method="voting"), "method = voting, must be convolution without as_published"),
+            (ValueError, lambda: s.planes(points, viewpoint="here"), "viewpoint = here, must be"),
+            (ValueError, lambda: s.planes(points, viewpoint=(0, 0, 0)), "viewpoint: among the points"),
+            (ValueError, lambda: s.planes(points, viewpoint=(np.nan, 0, 0)), "viewpoint = nan +0 +0, must be finite"),
+            (ValueError, lambda: s.planes(points, viewpoint=np.eye(3)[:2]), r"viewpoint = array of shape \(2, 3\), must be"),
+            (TypeError, lambda: s.planes(points, viewpoint=dict(x=1)), "viewpoint = dict, must be"),
+            (ValueError, lambda: s.planes(points, normals=np.zeros((5, 3))), r"normals = array of shape \(5, 3\), must be \(6000, 3\)"),
+            (ValueError, lambda: s.planes(points, seed=-1), "seed = -1, must be int, 0 to "),
+            (TypeError, lambda: s.planes(points, seed=1.5), "seed = 1.5, must be int, 0 to "),
+            (TypeError, lambda: s.planes(points, seed=points), r"seed = array of shape \(6000, 3\) and type float32, must be int"),
+            (TypeError, lambda: s.planes(points, seed=points.tolist()), r"seed = array of shape \(6000, 3\) and type float64, must be int"),
+            (ValueError, lambda: s.planes(points, max_planes=2**40), "max_planes = 1099511627776, must be int, -2147483648 to 2147483647"),
+            (ValueError, lambda: s.planes(volume=volume, tolerance=0.02), "tolerance: must be left out with volume"),
+            (ValueError, lambda: s.planes(volume=volume, spacing=2.0), r"spacing = 2, must be numbers of shape \(3,\)"),
+            (ValueError, lambda: s.planes(volume=volume, spacing=(1, 0, 1)), "spacing = .* must be finite and > 0"),
+            (ValueError, lambda: s.planes(volume=volume, direction=np.eye(2)), r"direction = .* must be numbers of shape \(3, 3\)"),
+            (ValueError, lambda: s.planes(volume=volume, levels=5), r"levels = 5, must be numbers of shape \(2,\)"),
+            (ValueError, lambda: found.show(points[:10]), r"points = array of shape \(10, 3\), must be \(6000, 3\)"),
+            (IndexError, lambda: found.point_support(9), "index = 9, must be that of one of 3 planes"),
+            (TypeError, lambda: found.point_support("first"), "index = 'first', must be int or a plane of this answer"),
+            (ValueError, lambda: found.point_support(s.planes(lamp(), approximate=True).every[0]), r"index = Plane\(.*must be a plane of"),
+            *((ValueError, lambda wrong=wrong: plane.pairs(wrong), "points = ")
+              for wrong in (1e300 * points.astype(float), np.zeros((5, 2)), np.zeros((5, 3), dtype="U3"))),
+            *((ValueError, lambda f=f: f(np.ones((24, 32))), r"points = array of shape \(24, 32\), must be \(3,\) or \(N, 3\)")
+              for f in (plane.reflect, plane.distance, lambda x: axis.rotate(x, 1))),
             (ValueError, lambda: rotations.canonical(np.eye(3)), r"pose = .*, must be numbers of shape \(4, 4\)"),
+            (ValueError, lambda: rotations.mssd(np.eye(4), np.ones((4, 4)), points), "truth"),
+            (ValueError, lambda: s.rotations(points, tolerance=2.0), "tolerance = 2, must be in"),
+            (TypeError, lambda: s.complete(points, [1, 0, 0]), r"plane = list, must be a plane, such as planes\(\)\[0\], or \(4,\) a, b, c, d"),
+            (TypeError, lambda: s.symmetrize(points, plane, half=3), "half = 3, must be str"),
+            (ValueError, lambda: s.symmetrize(points, plane, "both"), "half = both, must be mean, left or right"),
+            (TypeError, lambda: s.transform(points, 64), "bins = 64, must be three whole numbers"),
+            (ValueError, lambda: s.transform(points, method="guess"), "method = guess, must be"),
+            (ValueError, lambda: s.transform(points, radius=-1), "radius = -1, must be"),
+            (IndexError, lambda: s.transform(points, (8, 8, 9)).plane(8, 0, 0), r"bin = \(8, 0, 0\), must"),
+            (ValueError, lambda: s.local_symmetry(points, 2), "scale = 2, must be in"),
+            (ValueError, lambda: s.descriptor_distance(np.zeros((2, 3, 4)), np.ones((1, 3, 4))), "a, b: shapes"),
+            (ValueError, lambda: s.segment(vertices, faces, method="cutting"), "method = cutting, must be merging or splitting"),
+            (ValueError, lambda: s.sample_mesh(np.full((8, 3), np.nan), faces), "vertices: not all finite"),
+            (ValueError, lambda: s.Merging(vertices, faces[:, :2]), r"faces = array of shape \(\d+, 2\), must be \(F, 3\)"),
+            ((ValueError, TypeError), lambda: s.Merging(vertices, [[0, 1, 2.5], [0, 1]]), "faces = no numbers, must be"),
+            ((ValueError, TypeError), lambda: s.Merging((vertices, faces[:9]), faces), "points = .*must be"),
+            (ValueError, lambda: s.Merging(vertices, faces).merges([1, 2]), "weights = 2 numbers, must be 14"),
             (TypeError, lambda: s.viewpoints(None), "points = None, must be an array"),
-            (ValueError, lambda: s.planes((box(), [[0, 1, 2]])), r"points = tuple of length 2, must be \(N, 3\), Shape"),
-            (TypeError, lambda: s.planes(box()).point_support("first"), "index = 'first', must be int or a plane of this answer"),
-            (ValueError, lambda: s.planes(box()).point_support(s.planes(lamp(), approximate=True).every[0]), r"index = Plane\(.*must be a plane of"),
-            (TypeError, lambda: s.symmetrize(box(), plane, half=3), "half = 3, must be str"),
-        ]
-        if has_pcl():
-            database, frame = s.Database(":memory:"), box().reshape(60, 100, 3)
+        ]  # fmt: skip
+        for each in (s.planes, s.frame, s.segment, s.describe, plane.pairs):
             calls += [
+                (ValueError, lambda f=each: f(np.ones((24, 32))), r"points = array of shape \(24, 32\), must be .*; from_depth\(\) makes points of"),
+                (ValueError, lambda f=each: f(Path("depth.png")), r"depth.png: unknown extension '.png', must be .pcd, .*from_depth\(\) takes"),
+                (FileNotFoundError, lambda f=each: f("cloud.pcd"), ".*cloud.pcd"),
+            ]
+        if has_pcl():
+            database, frame = s.Database(":memory:"), points.reshape(60, 100, 3)
+            calls += [
+                (ValueError, lambda: s.viewpoints(points, number=0), "number = 0, must be >= 1"),
+                (ValueError, lambda: s.viewpoints(points, up=(0, 0, 0)), "up = 0 0 0, must"),
+                (ValueError, lambda: s.viewpoints(points, separation=4.0), "separation = 4, must"),
                 (TypeError, lambda: s.Database(":memory:", unit=3), "unit = 3, must be str"),
-                (TypeError, lambda: database.add(3, box()), "name = 3, must be str"),
+                (TypeError, lambda: database.add(3, points), "name = 3, must be str"),
+                (TypeError, lambda: database.build(5), ""),
+                (TypeError, lambda: database.build([("box", points, 3)]), "models: item 0 is no pair"),
                 (TypeError, lambda: database.remove(3), "name = 3, must be str"),
-            (TypeError, lambda: pcl_symmetry.register_all("scans"), "clouds = 'scans', must be a list of clouds"),
                 (TypeError, lambda: database.cloud(3), "name = 3, must be str"),
-                (ValueError, lambda: database.match(box(), num_nearest=0), "num_nearest = 0, must be >= 1"),
-                (ValueError, lambda: s.register(box(), box(), guess=np.eye(3)), r"guess = .*, must be numbers of shape \(4, 4\)"),
+                (ValueError, lambda: database.match(points, num_nearest=0), "num_nearest = 0, must be >= 1"),
+                (ValueError, lambda: database.match(points, viewpoint="there"), "viewpoint = there"),
+                (ValueError, lambda: s.register(points, points, guess=np.eye(3)), r"guess = .*, must be numbers of shape \(4, 4\)"),
+                (ValueError, lambda: s.register(points, points, guess=np.ones((4, 4))), "guess = another matrix, must be"),
+                (ValueError, lambda: s.register(points, points, around=(-1, 0.1)), "around.angle = -1, must"),
+                (TypeError, lambda: s.register_all("scans"), "clouds = 'scans', must be a list of clouds"),
                 (TypeError, lambda: s.scene(frame, database=3), "database = 3, must be a Database"),
                 (TypeError, lambda: s.scene(frame, min_points=30.5), "min_points = 30.5, must be int"),
                 (ValueError, lambda: s.scene(frame, seed=-1), "seed = -1, must be int, 0 to "),
             ]
         for error, call, words in calls:
-            with self.assertRaisesRegex(error, "(?s)^" + words):
+            with self.subTest(words), self.assertRaisesRegex(error, "(?s)^" + words) as raised:
                 call()
-        vertices, faces = box_mesh()
-        for arguments, words in (
-            ((vertices, faces[:, :2]), r"faces = array of shape \(\d+, 2\), must be \(F, 3\)"),
-            ((vertices, [[0, 1, 2.5], [0, 1]]), "faces = no numbers, must be"),
-            (((vertices, faces[:9]), faces), "points = .*must be"),
-        ):
-            with self.assertRaisesRegex((ValueError, TypeError), words) as raised:
-                pcl_symmetry.Merging(*arguments)
-            self.assertLess(len(str(raised.exception)), 200)
+            self.assertLess(len(str(raised.exception)), 200, "values are shortened")
 
     def test_types_are_those_that_mypy_finds(self):
         if subprocess.run([sys.executable, "-m", "mypy", "--version"], capture_output=True).returncode:
