@@ -402,12 +402,6 @@ class OtherFunctions(unittest.TestCase):
         by_equation_1 = pcl_symmetry.descriptors(box(), input_axes=True, by_equation_1=True)[0]
         np.testing.assert_allclose(by_equation_1, np.sqrt((1 + prst**2) / 2), atol=1e-5)
 
-    def test_descriptor_distances_count_planes_by_the_size_of_their_bins(self):
-        a, b = np.zeros((2, 3, 4)), np.ones((2, 3, 4))
-        self.assertAlmostEqual(pcl_symmetry.descriptor_distance(a, b, of_planes=False), np.sqrt(24))
-        of_bins = 12 * (np.sin(np.pi / 8) + np.sin(3 * np.pi / 8))
-        self.assertAlmostEqual(pcl_symmetry.descriptor_distance(a, b), np.sqrt(of_bins))
-
     def test_description_does_not_depend_on_the_pose(self):
         points = box()
         turn = np.array([[0, -1, 0], [1, 0, 0], [0, 0, 1]], dtype=np.float32)
