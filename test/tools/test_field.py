@@ -1,64 +1,47 @@
-"""Files as people have them, and the right answers. TOOLS is the folder of the tools.
+"""Files as people have them, and the right answers.
 
 The files are no part of the repository: tests that want them look in $PCL_SYMMETRY_DATA, by default ../shared/data, and are
 skipped where a file is absent."""
-
-import json
 import os
-import subprocess
-import tempfile
 import unittest
 from pathlib import Path
 
-from needed import need
-
-need("numpy")
-import numpy as np
+from tool_run import ToolTest, np
 
 DATA = Path(os.environ.get("PCL_SYMMETRY_DATA", Path(__file__).resolve().parents[3] / "shared/data"))
 
 
-class Field(unittest.TestCase):
-    def tool(self, verb, file, *arguments, status=0):
-        """What the tool prints and its errors."""
+class Field(ToolTest):
+    tool = "planes"
+
+    def symmetries(self, file, *flags):
+        """Coefficients of the planes that the tool calls symmetries, and its report."""
         if not (DATA / file).exists():
             self.skipTest(f"{DATA / file} is absent")
-        command = [f"{os.environ['TOOLS']}/pcl_symmetry_{verb}", DATA / file, *map(str, arguments)]
-        run = subprocess.run(command, capture_output=True, text=True)
-        self.assertEqual(run.returncode, status, run.stderr)
-        return run.stdout, run.stderr
-
-    def symmetries(self, file, *arguments):
-        """Coefficients of the planes that the tool calls symmetries, and its report."""
-        with tempfile.TemporaryDirectory() as folder:
-            self.tool("planes", file, "-quiet", "-json", f"{folder}/o.json", *arguments)
-            report = json.loads(Path(folder, "o.json").read_text())
+        report = self.report(DATA / file, *flags)
         return np.array([p["coefficients"] for p in report["planes"] if p["kind"] == "symmetry"]), report
 
-
-class Clouds(Field):
     def test_float_coordinates_far_away_are_warned_of_and_printed_exactly(self):
         """The points are 0.25 apart at least; the plane as printed and that of the report are the same at the points."""
-        printed, error = self.tool("planes", "field/utm_float.pcd")
-        self.assertIn("utm_float.pcd: float coordinates leave 1 digit of the extent", error)
-        plane = np.array(printed.splitlines()[1].split()[1:5], dtype=float)
         (exact,), _ = self.symmetries("field/utm_float.pcd")
+        self.assertIn("utm_float.pcd: float coordinates leave 1 digit of the extent", self.error)
+        plane = np.array(self.output.splitlines()[1].split()[1:5], dtype=float)
         middle = np.array([403121.8, 3604915.3, 1014.0, 1.0])
         self.assertLess(abs(plane @ middle - exact @ middle), 1e-3)
 
     def test_a_mug_throws_no_handle_into_empty_space(self):
         for seed in range(5):
-            found, _ = self.symmetries("field/mug.ply", "-seed", seed)
+            found, _ = self.symmetries("field/mug.ply", f"-seed {seed}")
             self.assertTrue((np.abs(found[:, 1]) > np.cos(0.09)).all() if len(found) else True, seed)
 
     def test_an_open_wavy_sheet_has_none(self):
         for seed in range(20):
-            self.assertEqual(len(self.symmetries("field/open_sheet.off", "-seed", seed)[0]), 0, seed)
+            self.assertEqual(len(self.symmetries("field/open_sheet.off", f"-seed {seed}")[0]), 0, seed)
 
     def test_a_car_that_the_picture_cuts_off_is_possible_at_most(self):
         ground = DATA / "field/kitti_car_cut_by_frame.ground"
-        where = ["-viewpoint", "0,0,0", "-ground", ground.read_text().strip() if ground.exists() else "0,0,1,0"]
-        found, report = self.symmetries("field/kitti_car_cut_by_frame.xyz", *where)
+        where = f"-viewpoint 0,0,0 -ground {ground.read_text().strip() if ground.exists() else '0,0,1,0'}"
+        found, report = self.symmetries("field/kitti_car_cut_by_frame.xyz", where)
         self.assertEqual((len(found), len(report["axes"])), (0, 0))
 
     def test_frames_of_a_table_have_none(self):
@@ -66,19 +49,14 @@ class Clouds(Field):
             found, report = self.symmetries(f"scans/{name}.pcd")
             self.assertEqual((len(found), report["axes"]), (0, []), name)
 
-
-class Shapes(Field):
     def test_the_best_plane_of_a_scallop_is_a_good_one_for_all_seeds(self):
         for seed in range(1, 11):
-            self.assertGreater(self.symmetries("field/scallop.off", "-seed", seed)[1]["best"]["share"], 0.89, seed)
-
-
-class Terrain(Field):
-    """Airborne laser scans of the public repository PointCloudLibrary/data."""
+            self.assertGreater(self.symmetries("field/scallop.off", f"-seed {seed}")[1]["best"]["share"], 0.89, seed)
 
     def test_a_slope_has_none(self):
+        """Airborne laser scans of the public repository PointCloudLibrary/data."""
         for seed in range(5):
-            found, report = self.symmetries("terrain/samp52-utm.pcd", "-seed", seed)
+            found, report = self.symmetries("terrain/samp52-utm.pcd", f"-seed {seed}")
             self.assertEqual((len(found), report["axes"]), (0, []), seed)
 
     @unittest.expectedFailure
