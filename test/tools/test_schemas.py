@@ -1,18 +1,12 @@
 """The JSON that the tools write follows the schemas in apps/schemas. Without python3-jsonschema the test is skipped (77)."""
 import json
-import sys
 import unittest
 from pathlib import Path
 
 import tool_run
 from tool_run import ToolTest, np
 
-try:
-    import jsonschema
-except ImportError:
-    print("skipped: the Debian package python3-jsonschema is not installed for " + sys.executable)
-    sys.exit(77)
-
+(jsonschema,) = tool_run.need("jsonschema")
 SCHEMAS = {path.name.split(".")[0]: json.loads(path.read_text())
            for path in (Path(__file__).resolve().parents[2] / "apps/schemas").glob("*.schema.json")}
 FEW = "-quiet -points 2000"

@@ -1,4 +1,5 @@
 """Tools run as their users run them, and the files that go in and come out."""
+import importlib
 import json
 import os
 import re
@@ -9,13 +10,17 @@ import tempfile
 import unittest
 from pathlib import Path
 
-try:
-    import numpy as np
-    from PIL import Image
-except ImportError as error:
-    print(f"skipped: {error}")
-    sys.exit(77)
 
+def need(*packages):
+    """Packages of Python; where one is not installed, the test is skipped."""
+    try:
+        return [importlib.import_module(package) for package in packages]
+    except ImportError as error:
+        print(f"skipped: {error}")
+        sys.exit(77)
+
+
+np, Image = need("numpy", "PIL.Image")
 TOOLS = Path(os.environ.get("TOOLS", ""))  # their folder
 
 

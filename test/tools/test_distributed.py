@@ -1,5 +1,4 @@
-"""The example 13_distributed.py, whose workers and jobs die. TOOLS is the folder of the tools."""
-import itertools
+"""The example 13_distributed.py, whose workers and jobs die."""
 import os
 import signal
 import subprocess
@@ -9,19 +8,15 @@ import time
 import unittest
 from pathlib import Path
 
-from needed import need
+import tool_run
+from tool_run import TOOLS, ToolTest
 
-need("dask.distributed", "psutil")
-import psutil
-
-TOOLS = os.environ["TOOLS"]
+psutil, _ = tool_run.need("psutil", "dask.distributed")
 EXAMPLE = str(Path(__file__).parents[2] / "apps/examples/13_distributed.py")
-FACES = "4 3 2 1 0\n4 4 5 6 7\n4 0 1 5 4\n4 2 3 7 6\n4 1 2 6 5\n4 3 0 4 7\n"
 
 
 def tool(command, *arguments):
-    run = subprocess.run([f"{TOOLS}/pcl_symmetry_{command}", *map(str, arguments)], stdout=subprocess.PIPE, check=True)
-    return run.stdout.decode()
+    return subprocess.run([f"{TOOLS}/pcl_symmetry_{command}", *map(str, arguments)], stdout=subprocess.PIPE, check=True).stdout.decode()
 
 
 def wait_for(condition, seconds=300):
@@ -31,7 +26,7 @@ def wait_for(condition, seconds=300):
     return condition()
 
 
-class Distributed(unittest.TestCase):
+class Distributed(ToolTest):
     @classmethod
     def setUpClass(cls):
         """The models, and the answers of a database that was built of them in one go."""
@@ -40,17 +35,13 @@ class Distributed(unittest.TestCase):
         cls.models = Path(place.name) / "models"
         cls.models.mkdir()
         for i in range(24):  # boxes, no two of one shape
-            x, y, z = 1.0, 1.1 + 0.1 * (i % 6), 1.2 + 0.3 * (i // 6)
-            corners = "".join(f"{a * x} {b * y} {c * z}\n" for c, (a, b) in itertools.product((-1, 1), ((-1, -1), (1, -1), (1, 1), (-1, 1))))
-            (cls.models / f"box_{i:02}.off").write_text(f"OFF\n8 6 0\n{corners}{FACES}")
+            (cls.models / f"box_{i:02}.off").write_text(tool_run.box(1.1 + 0.1 * (i % 6), 1.2 + 0.3 * (i // 6)))
         alone = Path(place.name) / "alone.db"
         tool("database", "build", alone, cls.models, "-quiet")
         cls.expected = cls.answers(alone)
 
     def setUp(self):
-        place = tempfile.TemporaryDirectory()
-        self.addCleanup(place.cleanup)
-        self.folder = Path(place.name)
+        super().setUp()
         self.database = self.folder / "models.db"
 
     @classmethod
@@ -77,8 +68,8 @@ class Distributed(unittest.TestCase):
 
     def check_answers(self):
         """The file is whole, and answers like one that was built in one go."""
-        self.assertIn("no damage", subprocess.run([f"{TOOLS}/pcl_symmetry_database", "check", self.database],
-                                                  stderr=subprocess.STDOUT, stdout=subprocess.PIPE, text=True).stdout)
+        self.run_tool("check", self.database, tool="database")
+        self.assertIn("no damage", self.output + self.error)
         self.assertEqual(self.answers(self.database), self.expected)
         self.assertFalse(Path(f"{self.database}.parts").exists())
 
@@ -121,15 +112,14 @@ class Distributed(unittest.TestCase):
             ("sbatch", 'echo "$@" >>"${0%/*}/jobs"; echo "7;cluster"; last=${@: -1}; for i in 1 2; do ${last#--wrap=} &>/dev/null & done'),
             ("scancel", 'echo "$@" >>"${0%/*}/cancelled"'),
         ):
-            (self.folder / name).write_text(f"#!/bin/bash\n{text}\n")
-            (self.folder / name).chmod(0o755)
+            self.write(name, f"#!/bin/bash\n{text}\n").chmod(0o755)
         run = self.start("--slurm=--partition=cpu --mem=1G")
         output, _ = run.communicate(timeout=600)
         self.assertEqual(run.returncode, 0, output)
-        jobs = (self.folder / "jobs").read_text().splitlines()
+        jobs = self.text("jobs").splitlines()
         self.assertEqual(len(jobs), 1)
         self.assertRegex(jobs[0], "--parsable --array=1-2 --cpus-per-task=1 --partition=cpu --mem=1G --wrap=dask worker tcp://")
-        self.assertEqual((self.folder / "cancelled").read_text(), "7\n")
+        self.assertEqual(self.text("cancelled"), "7\n")
         self.check_answers()
 
     def test_says_what_is_wrong(self):
