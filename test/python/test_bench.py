@@ -10,7 +10,7 @@ import sys
 import tempfile
 import unittest
 
-from needed import need
+from tool_run import need
 
 need("open3d", "scipy", "pcl_symmetry")
 import numpy as np

@@ -19,13 +19,8 @@ import unittest
 import warnings
 from pathlib import Path
 
-from needed import need
-
-need("numpy")
-import numpy as np
-
 import pcl_symmetry
-from tool_run import ToolTest, off, pcd
+from tool_run import ToolTest, np, off, pcd
 from test_pcl_symmetry import Mesh, bar, box, box_mesh, bumped, has_pcl, lamp
 
 INTRINSICS = (300.0, 300.0, 160.0, 120.0)

@@ -4,12 +4,8 @@ import types
 import unittest
 import warnings
 
-from needed import need
-
-need("numpy")
-import numpy as np
-
 import pcl_symmetry
+from tool_run import np
 
 DEGREE = np.pi / 180
 

@@ -7,7 +7,7 @@ import tempfile
 import types
 import unittest
 
-from needed import need
+from tool_run import need
 
 need("bench", "fits")
 import numpy as np

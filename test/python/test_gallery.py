@@ -11,7 +11,7 @@ from pathlib import Path
 
 import numpy as np
 
-from needed import need
+from tool_run import need
 
 need("vtkmodules")
 

@@ -1,7 +1,7 @@
 """How the programs of test/benchmark judge: poses, groups, segmentations, rankings and scenes that are known."""
 import unittest
 
-from needed import need
+from tool_run import need
 
 need("open3d", "scipy", "sklearn", "pcl_symmetry")
 import numpy as np

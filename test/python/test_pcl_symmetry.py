@@ -17,12 +17,8 @@ import types
 import unittest
 from pathlib import Path
 
-from needed import need
-
-need("numpy")
-import numpy as np
-
 import pcl_symmetry
+from tool_run import np
 
 
 def box(size=(1.0, 0.7, 0.4), num_points=6000, seed=1):

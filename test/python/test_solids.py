@@ -2,12 +2,8 @@
 
 import unittest
 
-from needed import need
-
-need("numpy")
-import numpy as np
-
 import pcl_symmetry
+from tool_run import np
 from test_detection import random_pose
 
 HALF = np.array([1, 0.8, 0.55])

@@ -2,12 +2,8 @@
 
 import unittest
 
-from needed import need
-
-need("numpy")
-import numpy as np
-
 import pcl_symmetry
+from tool_run import np
 
 
 def rotation(axis, angle):
