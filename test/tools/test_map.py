@@ -79,11 +79,6 @@ class Viewpoint(ToolTest):
         scores = [view["score"] for view in self.report("t.off -quiet -views 8 -separation 15")["good"]]
         self.assertEqual((len(scores) > 4, scores), (True, sorted(scores, reverse=True)))
 
-    def test_draws_the_score_and_the_views(self):
-        self.run_tool(self.box, "-size 120 -png a.png -icon b.png")
-        self.assertEqual(tool_run.Image.open(self.folder / "a.png").size[0], 360)
-        self.assertEqual(tool_run.Image.open(self.folder / "b.png").size[0], 120)
-
 
 def dumbbell():
     """Two cubes of 8 x 8 x 8 joined by a bar of 2 x 2 x 6 along x: vertices and quads of unit cubes."""
