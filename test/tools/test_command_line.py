@@ -189,7 +189,7 @@ class Flags(ToolTest):
             json.loads(self.output)
         self.run_tool("list m.db -csv -", tool="database")
         self.assertTrue(self.output.startswith("name,points,"), self.output)
-        for tool, arguments in (("scene", "a.pcd -"), ("scan", "box.off -"), ("align", "a.pcd a.pcd -merge -")):
+        for tool, arguments in (("planes", "a.pcd -csv -"), ("scene", "a.pcd -"), ("scan", "box.off -"), ("align", "a.pcd a.pcd -merge -")):
             self.fails(2, "only one output can be -", arguments, "-json -", tool=tool)
 
 
@@ -207,7 +207,7 @@ class ManyInputs(ToolTest):
             self.run_tool(*paths, self.flags, f"-json out.jsonl -csv out.csv -threads {threads}")
             self.assertEqual([line["file"] for line in self.lines()], list(map(str, paths)))
             header, *rows = csv.reader(io.StringIO(self.text("out.csv")))
-            self.assertEqual(header[:3], ["file", "number", "kind"])
+            self.assertEqual(header[:7], ["file", "number", "kind", *"abcd"])
             planes = [(line["file"], plane) for line in self.lines() for plane in line["planes"]]
             self.assertEqual([row[0] for row in rows], [file for file, _ in planes])
             for row, (_, plane) in zip(rows, planes, strict=True):
@@ -284,6 +284,8 @@ class ManyInputs(ToolTest):
         self.fails(2, "only one output can be -", "a.off b.off -json - -csv -")
         self.fails(1, "more/a.off: has the name of a.off, names must differ", "a.off b.off more/a.off -support {}.pcd")
         self.fails(2, "-resume needs several inputs", "a.off -resume -json out.jsonl")
+        self.fails(2, "-resume needs -json FILE", "a.off b.off -resume")
+        self.fails(2, "must hold {}", "a.off b.off -png out.png")
 
     def test_are_files_folders_patterns_and_lists(self):
         for name in ("in/b.pcd", "in/a.PLY", "in/c.txt", "in/d.glb", "in/e.XYZ", "in/a.or", "in/pcd"):
