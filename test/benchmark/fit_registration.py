@@ -38,7 +38,7 @@ def sample_item(item, arguments):
 
     mesh, rows = bench.read_mesh(item.path), []
     other = bench.read_mesh(item.other.path) if item.other is not None else None
-    symmetries = references.references_of(item, mesh, arguments.references)
+    symmetries = references.find_references(mesh)
     cloud_of = lambda *a, **k: registration.seen(*registration.cloud_of(*a, **k))
     for view, noise in enumerate(NOISES):
         asked = argparse.Namespace(**{**vars(arguments), "noise": noise, "points": 10_000, "missing": 0.0})
@@ -98,5 +98,4 @@ inline constexpr std::array<double, {len(texts)}> kRegistrationFit{{{", ".join(t
 
 
 if __name__ == "__main__":
-    references_flag = dict(metavar="DIR", help="keep the symmetries of the meshes here: a second each")
-    fits.main(main, __doc__, OUTPUT, references=references_flag, real=fits.REAL)
+    fits.main(main, __doc__, OUTPUT, real=fits.REAL)

@@ -131,7 +131,7 @@ def judge(found, whole, diagonal, ties):
 
 def evaluate(model, arguments):
     mesh = bench.read_mesh(model.path)
-    ties = Ties(references.references_of(model, mesh, arguments.references))
+    ties = Ties(references.find_references(mesh))
     rows, wholes = [], {}
     for view in range(-1, arguments.views):
         points, scan, pose = cloud_of(mesh, model, view, arguments)
@@ -216,7 +216,6 @@ def make_parser(description, methods):
     parser.add_argument("--points", type=int, default=10_000, help="of a cloud")
     parser.add_argument("--noise", type=float, default=0.0, help="standard deviation, along rays in scans, in diagonals")
     parser.add_argument("--missing", type=float, default=0.0, help="share of the points taken away, in ten patches")
-    parser.add_argument("--references", metavar="DIR", help="keep the symmetries of the meshes here: a second each")
     names = ",".join(methods)
     parser.add_argument("--methods", type=bench.numbers(str, methods), default=names, help="of " + names)
     return parser

@@ -179,7 +179,7 @@ def maps_at_twice(mesh, pose, answer):
 def evaluate(model, arguments):
     """Rows of the clouds of one model."""
     mesh = bench.read_mesh(model.path)
-    truth = references.references_of(model, mesh, arguments.references)
+    truth = references.find_references(mesh)
     rows, truths = [], {}
     for group, suffix, points, pose, scan in clouds_of(mesh, model.key, arguments):
         name = f"{model.name}_{suffix}"
@@ -260,7 +260,6 @@ if __name__ == "__main__":
     parser = bench.make_parser(__doc__)
     parser.add_argument("--rows", type=bench.numbers(str, ROWS), default="whole,noise,scan,moved,crop", help="of " + ",".join(ROWS))
     parser.add_argument("--points", type=int, default=10_000, help="of a cloud")
-    parser.add_argument("--references", metavar="DIR", help="keeps the references of models here")
     methods = ("sampled", "convolution", "voting")
     parser.add_argument("--as_published", choices=methods, help="refine the maxima of this map as the paper does")
     bench.main(program, parser.parse_args())

@@ -5,10 +5,7 @@ maps 90 %. All planes, 2 degrees and 1 % of the diagonal apart, are tried on poi
 the reflections of what was found in each other, are refined on exact distances and climb to the greatest share. Planes
 through one line that all hold are an axis, axes that span space a center. Nothing is shared with the detector.
 """
-import hashlib
-import json
 import math
-import pathlib
 
 import numpy as np
 from scipy.ndimage import maximum_filter1d
@@ -337,20 +334,6 @@ def find_references(mesh):
             "diameter": mesh.diameter, "tolerance": TOLERANCE * mesh.diameter,
             "planes": list(filter(whole, planes)), "axes": list(filter(whole, axes)), "centers": centers,
             "near_planes": list(filter(near, planes)), "near_axes": list(filter(near, axes))}  # fmt: skip
-
-
-def references_of(model, mesh, folder=None):
-    """Those of a model, kept in a file of their own in the folder, where one is given."""
-    if folder is None:
-        return find_references(mesh)
-    state = hashlib.sha256(repr((TOLERANCE, mesh.corners.tobytes())).encode()).hexdigest()[:16]
-    path = pathlib.Path(folder) / f"{model.name}_{state}.json"
-    if path.exists():
-        return json.loads(path.read_text())
-    found = find_references(mesh)
-    path.parent.mkdir(parents=True, exist_ok=True)
-    bench.write_whole(path, json.dumps(found) + "\n")
-    return found
 
 
 def moved(references, pose, factor=1.0):

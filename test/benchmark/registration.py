@@ -170,7 +170,7 @@ def evaluate(item, arguments):
     if arguments.impostors and item.before is not None:
         with contextlib.suppress(bench.BadInput):  # its own item says so
             impostor_mesh = bench.read_mesh(item.before.path)
-    symmetries = references.references_of(item, mesh, arguments.references)
+    symmetries = references.find_references(mesh)
     rows = []
     for view in range(arguments.views):
         source, T_source_model = seen(*cloud_of(mesh, item, view, arguments))

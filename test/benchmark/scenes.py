@@ -42,7 +42,7 @@ def prepare(model, arguments):
     random = bench.generator(arguments.seed, model.key, "size")
     diagonal = random.uniform(LEAST_DIAGONAL, GREATEST_DIAGONAL)
     mesh = bench.read_mesh(model.path)
-    found, factor, pose = references.references_of(model, mesh, arguments.references), diagonal / mesh.diagonal, np.eye(4)
+    found, factor, pose = references.find_references(mesh), diagonal / mesh.diagonal, np.eye(4)
     pose[:3, 3] = -factor * mesh.center
     symmetries = references.moved(found, pose, factor)
     return {"name": model.name, "path": model.path, "diagonal": diagonal, "symmetries": symmetries}
@@ -324,7 +324,6 @@ if __name__ == "__main__":
     add("--flying", type=float, default=FLYING, help="share of the pixels at edges that mix two depths, at noise 1")
     add("--seen", type=bench.numbers(str, ("alone", "label", "scene")), default="alone,label,scene", help="how objects are asked for")
     add("--most-in-band", type=int, default=0, help="objects of a band after which others are passed over; 0: none are")
-    add("--references", metavar="DIR", help="folder that keeps the reference symmetries of the models")
     add("--frames", metavar="DIR", help="folder of the frames, made where it has no truth.json")
     add("--tools", metavar="DIR", default="build/apps", help="folder of pcl_symmetry_scene")
     bench.main(program, parser.parse_args())

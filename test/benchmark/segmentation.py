@@ -154,9 +154,9 @@ def mean(rows):
             for name, values in ((name, np.array([row[name] for row in rows], float)) for name in rows[0])}  # fmt: skip
 
 
-def reference_plane(model, mesh, arguments):
+def reference_plane(mesh, arguments):
     """Coefficients of the best plane that maps the mesh onto itself, or None."""
-    found = references.references_of(model, mesh, arguments.references)["planes"] if arguments.mirrored else []
+    found = references.find_references(mesh)["planes"] if arguments.mirrored else []
     return max(found, key=lambda plane: plane["share"])["coefficients"] if found else None
 
 
@@ -168,7 +168,7 @@ def evaluate(model, arguments):
     if not files:
         raise bench.BadInput(f"{model.path}: no .seg file in {arguments.people}/{model.name}")
     people = [Segmentation(surface, read_labels(path, mesh)) for path in files]
-    plane = reference_plane(model, mesh, arguments)
+    plane = reference_plane(mesh, arguments)
     mirrored = lambda labels: np.nan if plane is None else mirror_agreement(surface, labels, plane)
     rows = {}
     for method in arguments.methods:
@@ -238,6 +238,5 @@ if __name__ == "__main__":
     parser.add_argument("--remainders", type=bench.numbers(int, (0, 1, 2)), default="0,1,2",
                         help="categories, numbered from 0, modulo 3; weights were fitted to 0 and 1")  # fmt: skip
     parser.add_argument("--mirrored", action="store_true", help="also agreement with the mirror image")
-    parser.add_argument("--references", metavar="DIR", help="with --mirrored: folder that keeps the planes of the models")
     parser.add_argument("--tools", metavar="DIR", default="build/apps", help="folder of pcl_symmetry_segment")
     bench.main(main, parser.parse_args())
