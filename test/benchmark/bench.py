@@ -564,13 +564,12 @@ def calibration(confidences, right):
     """Expected calibration error in ten bins, its mean by chance if all confidences were true, and Brier score."""
     p, y = np.clip(np.asarray(confidences, float), 0, 1), np.asarray(right, float)
     if len(p) == 0:
-        return {"answers": 0, "error": math.nan, "by_chance": math.nan, "brier": math.nan, "bins": []}
+        return {"answers": 0, "error": math.nan, "by_chance": math.nan, "brier": math.nan}
     bins = np.minimum((10 * p).astype(int), 9)
     error = lambda outcome: np.abs(np.bincount(bins, p - outcome, 10)).sum() / len(p)
     random = np.random.default_rng(1)
     by_chance = np.mean([error(random.uniform(size=len(p)) < p) for _ in range(200)])
-    rows = [{"low": k / 10, "right": Rate(y[bins == k]).json} for k in range(10)]
-    return {"answers": len(p), "error": error(y), "by_chance": by_chance, "brier": float(np.mean((p - y) ** 2)), "bins": rows}
+    return {"answers": len(p), "error": error(y), "by_chance": by_chance, "brier": float(np.mean((p - y) ** 2))}
 
 
 def median(values, digits=2):
@@ -685,11 +684,11 @@ def _asked(arguments):
     return {k: v for k, v in vars(arguments).items() if k not in ("jobs", "json", "figure")}
 
 
-def work_folder(arguments, given, temporary):
-    """Folder for what a run makes on its way: the given one; else one beside --json, from which the same run goes on
-    after an interruption and which write_json() deletes; without --json a temporary one."""
+def work_folder(arguments, temporary):
+    """Folder for what a run makes on its way: one beside --json, from which the same run goes on after an interruption and
+    which write_json() deletes; without --json the temporary one."""
     digest = hashlib.sha256(json.dumps(_asked(arguments), default=str).encode()).hexdigest()[:8]
-    folder = pathlib.Path(given or (f"{arguments.json}.{digest}.work" if arguments.json else temporary))
+    folder = pathlib.Path(f"{arguments.json}.{digest}.work" if arguments.json else temporary)
     folder.mkdir(parents=True, exist_ok=True)
     return str(folder)
 

@@ -73,8 +73,8 @@ def report(options):
         "published": ["pcl_symmetry_planes", scan, "-as_published"],
     }
     rows = []
-    for name in options.only or commands:
-        total, stages = profile(tools, folder, name, commands[name])
+    for name, command in commands.items():
+        total, stages = profile(tools, folder, name, command)
         rows.append([name, f"{total / 1e6:.0f}", *(f"{100 * stage / total:.0f} %" if stage else "-" for stage in stages)])
     bench.print_table("Instructions of one thread", ["input", "million", *STAGES], rows)
 
@@ -83,5 +83,4 @@ if __name__ == "__main__":
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("tools", help="folder of the tools")
     parser.add_argument("folder", help="for inputs and profiles")
-    parser.add_argument("--only", nargs="+", help="some of mesh, scan, cloud, frame, register, viewpoint, published")
     bench.main(report, parser.parse_args())

@@ -81,7 +81,7 @@ def main(arguments):
         bench.print_table("Frames", ["", "objects", "known", "wrong names", "s"], table)
         bench.print_table("All frames", ["", "rate"], [["named", total["named"].text], ["with the right pose", total["right"].text], ["frames with more than one wrong name", total["wrong"].text]])
         answers = {key: bench.Rate() for key in ("right", "pose wrong", "unknown", "wrong name")}
-        for name, scan in index["scans"].items():
+        for scan in index["scans"].values():
             if scan["object"] not in surfaces or arguments.frames_only:
                 continue
             points = read(folder / scan["file"])[0].astype(np.float32)
@@ -97,8 +97,6 @@ def main(arguments):
                 answer = "right" if good else "pose wrong"
             for key, rate in answers.items():
                 rate.add(key == answer)
-            if answer != "right" and arguments.list:
-                print(f"  {name}: {answer} {models[0].name if models else ''}")
         bench.print_table("Scans alone", ["", "rate"], [[key, rate.text] for key, rate in answers.items()])
         unknown = []
         for path in arguments.unknown:
@@ -118,5 +116,4 @@ if __name__ == "__main__":
     parser.add_argument("--unknown", nargs="*", default=[], metavar="FRAME")
     parser.add_argument("--rows", metavar="FILE", help="a line of JSON for each object, for fit_recognition.py")
     parser.add_argument("--frames-only", action="store_true")
-    parser.add_argument("--list", action="store_true", help="scans that are not right")
     main(parser.parse_args())

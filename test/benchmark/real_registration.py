@@ -108,7 +108,7 @@ def main(arguments):
     lines, table = [], []
     for kind in arguments.kinds:
         right, wrong, refused, seconds = bench.Rate(), bench.Rate(), bench.Rate(), []
-        for pair in pairs_of(index, kind)[:: arguments.every]:
+        for pair in pairs_of(index, kind):
             scan = index["scans"][pair["scan"]]
             files = [folder / file for file in (scan["file"], pair["target"])]
             (source, _), (target, is_mesh) = (read(file, arguments.seed) for file in files)
@@ -142,7 +142,6 @@ if __name__ == "__main__":
     kinds = ["model", "scan", "impostor", "foreign"]
     parser.add_argument("--kinds", nargs="+", choices=kinds, default=kinds)
     parser.add_argument("--axes", action="store_true", help="align as the paper does, by principal symmetry axes")
-    parser.add_argument("--every", type=int, default=1, help="only every N-th pair")
     parser.add_argument("--seed", type=int, default=0, help="of the points that are taken, and of the search")
     parser.add_argument("--rows", metavar="FILE", help="a line of JSON for each pair")
     main(parser.parse_args())

@@ -71,7 +71,7 @@ def main(arguments):
     inside = [model for i, model in enumerate(models) if not is_left_out(i)]
     asked = [model for i, model in enumerate(models) if is_left_out(i) or i % arguments.query_every == 0]
     with tempfile.TemporaryDirectory() as temporary:
-        arguments.database = bench.work_folder(arguments, None, temporary) + "/models.db"
+        arguments.database = bench.work_folder(arguments, temporary) + "/models.db"
         failures = [] if pathlib.Path(arguments.database).exists() else build_of_meshes(inside, arguments)
         results, left_out = bench.run(asked, ask, arguments)
     rates = judge(results, {model.name for model in inside}, class_of)

@@ -330,7 +330,7 @@ def main(arguments):
     if not arguments.classes:
         raise bench.BadInput("--classes FILE is missing: it says which models belong together")
     with tempfile.TemporaryDirectory() as temporary:
-        arguments.descriptors = bench.work_folder(arguments, None, temporary)
+        arguments.descriptors = bench.work_folder(arguments, temporary)
         evaluate(arguments)
 
 

@@ -11,8 +11,6 @@ points is asked for in three ways:
   scene   the whole frame: pcl_symmetry_scene; the object that it finds must share half of the points (IoU >= 0.5)
 
 Answers of kind symmetry with a confidence of at least 0.5 decide, as in planes.py.
-
---frames keeps the frames (PCD with a field label: -1 table, -2 nothing) and truth.json, or judges those that are there.
 """
 import json
 import math
@@ -29,7 +27,7 @@ import references
 
 LEAST_DIAGONAL, GREATEST_DIAGONAL = 0.15, 0.30  # of models, meters
 BANDS = (0.0, 0.1, 0.3, 0.5, 0.7)  # of the share of an object that others hide
-MIN_IOU, MIN_POINTS = 0.5, 300  # points that are seen of an object
+MIN_IOU, MIN_POINTS, MOST_OBJECTS = 0.5, 300, 12  # points that are seen of an object; objects of a scene
 DEVIATION, STEP, FLYING, EDGE = 1.425e-3, 2.85e-3, 0.5, 0.02  # structured light at 1 m (Khoshelham and Elberink 2012); shares
 TABLE_RIM = 0.4  # meters
 
@@ -63,7 +61,7 @@ def standing(random):
 def draw_scene(models, arguments, number):
     """Objects that stand apart: [(index of the model, T_scene_model, middle, radius of the circle around it)]."""
     random = bench.generator(arguments.seed, "scene", number)
-    count = random.integers(1, arguments.objects + 1)
+    count = random.integers(1, MOST_OBJECTS + 1)
     half_side, placed = 0.02 + 0.08 * math.sqrt(count), []
     for index in random.integers(len(models), size=count):
         rotation = standing(random)
@@ -292,7 +290,7 @@ def report(summary, milliseconds):
 
 
 def make_frames(arguments):
-    """Writes models.json, the frames, and truth.json last."""
+    """Writes models.json, the frames (PCD with a field label: -1 table, -2 nothing), and truth.json last."""
     folder = pathlib.Path(arguments.frames)
     models, left_out = bench.run(bench.list_models(arguments), prepare, arguments, "models")
     bench.write_whole(folder / "models.json", json.dumps(models))
@@ -303,7 +301,7 @@ def make_frames(arguments):
 
 def program(arguments):
     with tempfile.TemporaryDirectory() as temporary:
-        arguments.frames = bench.work_folder(arguments, arguments.frames, temporary)
+        arguments.frames = bench.work_folder(arguments, temporary)
         truth, left_out = pathlib.Path(arguments.frames, "truth.json"), []
         if not truth.exists():
             left_out = make_frames(arguments)
@@ -319,11 +317,9 @@ if __name__ == "__main__":
     parser = bench.make_parser(__doc__, others=False)
     add = parser.add_argument
     add("--scenes", type=int, default=100, help="number of scenes")
-    add("--objects", type=int, default=12, help="greatest number of objects of a scene")
     add("--noise", type=bench.numbers(float), default="0,1", help="factors of the sensor's noise")
     add("--flying", type=float, default=FLYING, help="share of the pixels at edges that mix two depths, at noise 1")
     add("--seen", type=bench.numbers(str, ("alone", "label", "scene")), default="alone,label,scene", help="how objects are asked for")
     add("--most-in-band", type=int, default=0, help="objects of a band after which others are passed over; 0: none are")
-    add("--frames", metavar="DIR", help="folder of the frames, made where it has no truth.json")
     add("--tools", metavar="DIR", default="build/apps", help="folder of pcl_symmetry_scene")
     bench.main(program, parser.parse_args())
