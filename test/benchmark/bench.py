@@ -603,10 +603,14 @@ def save_figure(path, draw):
 # Programs and runs
 
 
+def plain_parser(description):
+    return argparse.ArgumentParser(description=description, formatter_class=argparse.RawDescriptionHelpFormatter)
+
+
 def make_parser(description, models=True, others=True):
     """Parser of the flags that all programs share; models: with those that choose meshes; others: with those that hand clouds
     to other programs."""
-    parser = argparse.ArgumentParser(description=description, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = plain_parser(description)
     add = parser.add_argument
 
     def natural(text):

@@ -9,7 +9,6 @@ the merge; seconds of the merge; bytes. What other programs take of the machine 
 example: distributed.py build/apps models --workers 1,2,4
          distributed.py build/apps models --workers 2 --make 20000 --of PSB   # copies of small meshes, each stretched anew
 """
-import argparse
 import resource
 import subprocess
 import sys
@@ -97,7 +96,7 @@ def measure(options):
 
 
 if __name__ == "__main__":
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = bench.plain_parser(__doc__)
     parser.add_argument("tools", type=Path, help="folder of the tools")
     parser.add_argument("models", type=Path, help="folder of models")
     parser.add_argument("--workers", type=bench.numbers(int), default="1,2,4", help="numbers of workers")

@@ -6,7 +6,6 @@ averages over bins and is judged by those of an exact map twice as fine, the oth
 
 example: error_against_time.py error.png bull.off cow.off elephant.off hand.off camel.off
 """
-import argparse
 import time
 from collections import defaultdict
 
@@ -87,7 +86,7 @@ def program(arguments):
 
 
 if __name__ == "__main__":
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = bench.plain_parser(__doc__)
     parser.add_argument("picture", help="file that is written")
     parser.add_argument("meshes", nargs="+", help="OFF files")
     bench.main(program, parser.parse_args())

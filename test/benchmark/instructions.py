@@ -6,7 +6,6 @@ and scanned from one side, and a cloud of 10 000 points without a plane. Shares 
 
 example: instructions.py build/apps build/instructions
 """
-import argparse
 import math
 import random
 import re
@@ -80,7 +79,7 @@ def report(options):
 
 
 if __name__ == "__main__":
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = bench.plain_parser(__doc__)
     parser.add_argument("tools", help="folder of the tools")
     parser.add_argument("folder", help="for inputs and profiles")
     bench.main(report, parser.parse_args())

@@ -7,7 +7,6 @@ is faster. The ratios of single rounds, from the least to the greatest, tell how
 
 example: ratio.py ../before/build-benchmark build-benchmark cow.off
 """
-import argparse
 import resource
 from pathlib import Path
 
@@ -43,7 +42,7 @@ def report(options):
 
 
 if __name__ == "__main__":
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = bench.plain_parser(__doc__)
     parser.add_argument("before", help="build folder")
     parser.add_argument("after", help="build folder")
     parser.add_argument("files", nargs="*", help="clouds or meshes for the fresh processes")

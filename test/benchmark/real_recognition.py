@@ -9,7 +9,6 @@ models. Each frame is analyzed in one call of scene(), and each scan alone by re
 and 5 % of the diameter, up to the symmetries of the model. A frame given by --unknown shows none of the models.
 """
 
-import argparse
 import json
 import pathlib
 import tempfile
@@ -21,7 +20,7 @@ from scipy.spatial import cKDTree
 
 import bench
 from fit_recognition import answer_of
-from real_registration import is_right, moved, read
+from real_registration import is_right, read
 
 
 def rows_of(frame, found, scene, surfaces):
@@ -40,7 +39,7 @@ def rows_of(frame, found, scene, surfaces):
 def shares_on(points, scene, surfaces):
     """(share, model) for each model: of the points of an object, those that lie on its surface to 8 mm."""
     for model in scene["objects"]:
-        distances = cKDTree(moved(np.array(model["T_scene_model"]), surfaces[model["model"]])).query(points)[0]
+        distances = cKDTree(bench.moved(np.array(model["T_scene_model"]), surfaces[model["model"]])).query(points)[0]
         yield (distances < 0.008).mean(), model["model"]
 
 
@@ -69,7 +68,7 @@ def main(arguments):
             there = {model["model"]: np.array(model["T_scene_model"]) for model in scene["objects"]}
             texts, seen = [], set()
             for model, truth in there.items():
-                mine = [m for m in names if m.name == model and np.linalg.norm(moved(np.linalg.inv(m.transform), centers[model]) - moved(truth, centers[model])) < 0.6 * diameters[model]]
+                mine = [m for m in names if m.name == model and np.linalg.norm(bench.moved(np.linalg.inv(m.transform), centers[model]) - bench.moved(truth, centers[model])) < 0.6 * diameters[model]]
                 seen.update(id(m) for m in mine)
                 right = any(pose_is_right(model, np.linalg.inv(m.transform), truth) for m in mine)
                 total["named"].add(bool(mine))
@@ -111,7 +110,7 @@ def main(arguments):
 
 
 if __name__ == "__main__":
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = bench.plain_parser(__doc__)
     parser.add_argument("folder", help="with index.json")
     parser.add_argument("--unknown", nargs="*", default=[], metavar="FRAME")
     parser.add_argument("--rows", metavar="FILE", help="a line of JSON for each object, for fit_recognition.py")

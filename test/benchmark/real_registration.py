@@ -14,7 +14,6 @@ that bring the points nearest to the target. It has no confidence: each pose cou
 --rows writes a line of JSON a pair, for fit_registration.py.
 """
 
-import argparse
 import dataclasses
 import functools
 import json
@@ -49,15 +48,11 @@ def read(path, seed=0):
     return points[random.permutation(len(points))[:MAX_POINTS]], False
 
 
-def moved(T, points):
-    return points @ T[:3, :3].T + T[:3, 3]
-
-
 def nearest_symmetry(S, points, diameter):
     """The motion near S that maps the points onto themselves, by ICP; None if there is none."""
     tree, some = cKDTree(points), points[::4]
     for _ in range(30):
-        x = moved(S, some)
+        x = bench.moved(S, some)
         y = points[tree.query(x)[1]]
         R, _ = Rotation.align_vectors(y - y.mean(axis=0), x - x.mean(axis=0))
         step = np.eye(4)
@@ -65,7 +60,7 @@ def nearest_symmetry(S, points, diameter):
         step[:3, 3] = y.mean(axis=0) - step[:3, :3] @ x.mean(axis=0)
         S = step @ S
     reach = SYMMETRIC_DISTANCE * diameter + 0.5 * np.quantile(tree.query(points, k=2)[0][:, 1], 0.9)
-    return S if (tree.query(moved(S, points))[0] < reach).mean() >= SYMMETRIC_SHARE else None
+    return S if (tree.query(bench.moved(S, points))[0] < reach).mean() >= SYMMETRIC_SHARE else None
 
 
 def is_right(found, truth, target, diameter, may_be_symmetric):
@@ -73,7 +68,7 @@ def is_right(found, truth, target, diameter, may_be_symmetric):
 
     def is_near(a, b):
         angle = np.degrees(Rotation.from_matrix(a[:3, :3] @ b[:3, :3].T).magnitude())
-        return angle < RIGHT_ANGLE and np.linalg.norm(moved(a, center) - moved(b, center)) < RIGHT_DISTANCE * diameter
+        return angle < RIGHT_ANGLE and np.linalg.norm(bench.moved(a, center) - bench.moved(b, center)) < RIGHT_DISTANCE * diameter
 
     S = found @ np.linalg.inv(truth)  # what the answer does to the target
     if is_near(S, np.eye(4)):
@@ -91,7 +86,7 @@ def published_frames(path, seed):
 def by_axes(source, target, source_frames, target_frames):
     tree = cKDTree(target)
     poses = [np.linalg.inv(target_frames[0]) @ T for T in source_frames]
-    return min(poses, key=lambda T: np.median(tree.query(moved(T, source[::10]))[0]))
+    return min(poses, key=lambda T: np.median(tree.query(bench.moved(T, source[::10]))[0]))
 
 
 def pairs_of(index, kind):
@@ -137,7 +132,7 @@ def main(arguments):
 
 
 if __name__ == "__main__":
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = bench.plain_parser(__doc__)
     parser.add_argument("folder", help="with index.json")
     kinds = ["model", "scan", "impostor", "foreign"]
     parser.add_argument("--kinds", nargs="+", choices=kinds, default=kinds)

@@ -6,7 +6,6 @@ bytes), each at the speed at which a loop of nothing else runs it here. Prints p
 
 example: roofline.py build-benchmark/test/benchmark/benchmark_speed
 """
-import argparse
 
 import bench
 
@@ -56,6 +55,6 @@ def report(arguments):
 
 
 if __name__ == "__main__":
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = bench.plain_parser(__doc__)
     parser.add_argument("benchmark", help="program benchmark_speed")
     bench.main(report, parser.parse_args())

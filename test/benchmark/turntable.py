@@ -5,7 +5,6 @@ turntable.py FOLDER bunny buddha: FOLDER/index.json names of each scan its file,
 1 degree and 1 % of the diameter, in the frame of the first scan that is kept.
 """
 
-import argparse
 import json
 import sys
 import time
@@ -17,7 +16,7 @@ import pcl_symmetry
 
 import bench
 
-parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+parser = bench.plain_parser(__doc__)
 parser.add_argument("folder", type=Path)
 parser.add_argument("objects", nargs="+")
 arguments = parser.parse_args()
