@@ -13,11 +13,11 @@ sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "tools"))
 import numpy as np
 import test_refused_files as shapes
 import test_volumes as volumes
-from tool_run import BOX_FACES, box_corners
+from tool_run import BOX_FACES, box_corners, triangles
 
 USAGE = "usage: python3 test/fuzz/make_seeds.py FOLDER\nWrites a folder of seeds for each target into FOLDER."
 CORNERS = box_corners(1.0, 2.0, 3.0)
-TRIANGLES = np.array([t for a, b, c, d in BOX_FACES for t in ((a, b, c), (a, c, d))])
+TRIANGLES = triangles(BOX_FACES)
 LARGEST_REFUSED = 4000  # bytes
 
 

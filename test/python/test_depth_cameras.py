@@ -20,7 +20,7 @@ import warnings
 from pathlib import Path
 
 import pcl_symmetry
-from tool_run import ToolTest, np, off, pcd
+from tool_run import ToolTest, np, off, pcd, points_on_sphere
 from test_pcl_symmetry import Mesh, bar, box, box_mesh, bumped, has_pcl, lamp
 
 INTRINSICS = (300.0, 300.0, 160.0, 120.0)
@@ -415,9 +415,8 @@ class OrganizedArrays(unittest.TestCase):
     def test_results_have_the_json_of_the_tools(self):
         only = dict(file="-", timing_ms={})
         z, y, x = np.indices((40, 40, 40)) - 19.5
-        ball = np.random.default_rng(1).normal(size=(3000, 3))
         scan = np.where((self.labels == 1)[..., None], self.frame, np.nan)
-        points = [box(), ball / np.linalg.norm(ball, axis=1)[:, None], lamp(), scan]
+        points = [box(), points_on_sphere(3000), lamp(), scan]
         searches = [pcl_symmetry.planes(each, approximate=True) for each in points]
         searches.append(pcl_symmetry.planes(volume=(x**2 + 2 * y**2 + 3 * z**2 < 300).astype(float)))
         with self.assertWarns(RuntimeWarning):

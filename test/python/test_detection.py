@@ -5,7 +5,7 @@ import unittest
 import warnings
 
 import pcl_symmetry
-from tool_run import np
+from tool_run import grid_faces, mug, np, points_on_sphere, random_pose, triangles
 
 DEGREE = np.pi / 180
 
@@ -35,14 +35,6 @@ class Shape:
     def noisy(self, of_diagonal, seed):
         errors = np.random.default_rng(seed).normal(size=self.points.shape)
         return Shape(self.points + of_diagonal * self.diagonal * errors, self.planes)
-
-
-def random_pose(seed):
-    """A uniformly random rotation and a translation by up to 3 along each axis."""
-    random = np.random.default_rng(seed)
-    q, r = np.linalg.qr(random.normal(size=(3, 3)))
-    q = q * np.sign(np.diag(r))
-    return q * np.sign(np.linalg.det(q)), random.uniform(-3, 3, 3)
 
 
 def spread(group, count, mirrored, random, draw):
@@ -97,8 +89,7 @@ def prism(n, count=10_000, mirrored=False, seed=3, half_height=0.8):
 
 
 def sphere(count, seed):
-    points = np.random.default_rng(seed).normal(size=(count, 3))
-    return Shape(points / np.linalg.norm(points, axis=1, keepdims=True))
+    return Shape(points_on_sphere(count, seed))
 
 
 def cylinder(count, seed):
@@ -380,22 +371,11 @@ class Families(Detection):
                 self.assertGreater(abs(axis.direction @ turn[:, 2]), np.cos(3 * DEGREE), seed)
 
     def test_of_a_cup_are_gone_with_a_handle(self):
-        around, steps = 2 * np.pi * np.arange(96) / 96, np.linspace(-0.5, 0.5, 17) * np.pi
-        cup = [(r * np.cos(a), r * np.sin(a), h) for r, h in ((0, 0), (0.7, 0), (0.75, 1.6)) for a in around]
-        r = 0.45 + 0.08 * np.cos(around[::12])
-        handle = [point for along in steps for point in
-                  np.stack([0.7 + r * np.cos(along), 0.08 * np.sin(around[::12]), 0.8 + r * np.sin(along)], axis=1)]  # fmt: skip
-
-        def quads(first, num_rows, size):
-            pairs = [(first + i * size + k, first + i * size + (k + 1) % size) for i in range(num_rows - 1) for k in range(size)]
-            return [t for a, b in pairs for t in ((a, b, b + size), (a, b + size, a + size))]
-
         for has_handle in (True, False):
-            vertices = np.array(cup + handle if has_handle else cup)
-            faces = np.array(quads(0, 3, 96) + (quads(len(cup), 17, 8) if has_handle else []))
+            vertices, quads = mug(has_handle)
             for seed in (1, 2):
                 turn, shift = pose = random_pose(10 + seed)
-                points = pcl_symmetry.sample_mesh(vertices, faces, 8000, seed=seed)
+                points = pcl_symmetry.sample_mesh(vertices, triangles(quads), 8000, seed=seed)
                 found = pcl_symmetry.planes(Shape(points).moved(pose).cloud)
                 if has_handle:
                     # The others map all but the handle, 93 % of the surface: nearly symmetric.
@@ -422,10 +402,8 @@ def wheel(num_teeth, depth, noise, thinned=False, seed=1, count=10_000):
 
 def swept(outline, profile):
     """Vertices and triangles of an outline about z, complex, that is scaled and raised along a profile of (scale, height)."""
-    size, k = len(outline), np.arange(len(outline))
-    vertices = np.vstack([np.c_[s * outline.real, s * outline.imag, np.full(size, h)] for s, h in profile])
-    pairs = [(i * size + k, i * size + (k + 1) % size) for i in range(len(profile) - 1)]
-    return vertices, np.vstack([np.stack(face, axis=1) for a, b in pairs for face in ((a, b, b + size), (a, b + size, a + size))])
+    vertices = np.vstack([np.c_[s * outline.real, s * outline.imag, np.full(len(outline), h)] for s, h in profile])
+    return vertices, triangles(grid_faces(len(profile), len(outline)))
 
 
 def gear(num_teeth):

@@ -18,19 +18,8 @@ import unittest
 from pathlib import Path
 
 import pcl_symmetry
-from tool_run import np
-
-
-def box(size=(1.0, 0.7, 0.4), num_points=6000, seed=1):
-    """Points on the surface of a box of the given edges about the origin, (N, 3) float32."""
-    random = np.random.default_rng(seed)
-    edges = np.asarray(size)
-    areas = np.repeat(np.prod(edges) / edges, 2)
-    side = random.choice(6, num_points, p=areas / areas.sum())
-    points = (random.random((num_points, 3)) - 0.5) * edges
-    axis = side // 2
-    points[np.arange(num_points), axis] = (side % 2 - 0.5) * edges[axis]
-    return points.astype(np.float32)
+from tool_run import BOX_FACES, box_corners, np, rotation, triangles
+from tool_run import points_on_box as box
 
 
 def has_pcl():
@@ -42,9 +31,7 @@ needs_pcl = unittest.skipUnless(has_pcl(), "the module was built without PCL")
 
 def box_mesh():
     """A box of two by one by one with its faces as triangles."""
-    vertices = np.array([[x, y, z] for x in (-1, 1) for y in (-0.5, 0.5) for z in (-0.5, 0.5)], dtype=np.float32)
-    quads = [(0, 1, 3, 2), (4, 6, 7, 5), (0, 4, 5, 1), (2, 3, 7, 6), (0, 2, 6, 4), (1, 5, 7, 3)]
-    return vertices, np.array([t for a, b, c, d in quads for t in ((a, b, c), (a, c, d))])
+    return box_corners(1, 0.5, 0.5).astype(np.float32), triangles(BOX_FACES)
 
 
 class Planes(unittest.TestCase):
@@ -461,11 +448,8 @@ def lamp(num_points=4000, seed=1):
 
 def motion(angle=2.0, translation=(3.0, -1.0, 0.5)):
     """A turn about (1, 2, 3) and a translation, (4, 4)."""
-    k = np.array([1.0, 2.0, 3.0]) / np.sqrt(14.0)
-    cross = np.array([[0, -k[2], k[1]], [k[2], 0, -k[0]], [-k[1], k[0], 0]])
     result = np.eye(4)
-    result[:3, :3] = np.eye(3) + np.sin(angle) * cross + (1 - np.cos(angle)) * cross @ cross
-    result[:3, 3] = translation
+    result[:3, :3], result[:3, 3] = rotation((1, 2, 3), angle), translation
     return result
 
 
@@ -477,9 +461,7 @@ class Mesh:
 
 
 def bar(x=30.0, y=2.0, z=1.0):
-    corners = [(x * (i & 1), y * (i >> 1 & 1), z * (i >> 2 & 1)) for i in range(8)]
-    quads = [(0, 2, 3, 1), (4, 5, 7, 6), (0, 1, 5, 4), (1, 3, 7, 5), (3, 2, 6, 7), (2, 0, 4, 6)]
-    return Mesh(corners, [t for a, b, c, d in quads for t in ((a, b, c), (a, c, d))])
+    return Mesh((box_corners(1, 1, 1) + 1) / 2 * (x, y, z), triangles(BOX_FACES))
 
 
 def bumped(rings, around, height, radius):

@@ -3,8 +3,7 @@
 import unittest
 
 import pcl_symmetry
-from tool_run import np
-from test_detection import random_pose
+from tool_run import np, random_pose
 
 HALF = np.array([1, 0.8, 0.55])
 

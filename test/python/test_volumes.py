@@ -3,13 +3,7 @@
 import unittest
 
 import pcl_symmetry
-from tool_run import np
-
-
-def rotation(axis, angle):
-    x, y, z = np.array(axis) / np.linalg.norm(axis)
-    cross = np.array([[0, -z, y], [z, 0, -x], [-y, x, 0]])
-    return np.eye(3) + np.sin(angle) * cross + (1 - np.cos(angle)) * cross @ cross
+from tool_run import np, rotation
 
 
 def soft(distance, width):

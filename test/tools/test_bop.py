@@ -8,19 +8,6 @@ from tool_run import ToolTest, np
 FEW = "-quiet -points 2000 -grid 32"
 
 
-def mug():
-    """A cup with a handle."""
-    around = np.arange(8) * np.pi / 4
-    handle = []
-    for along in np.linspace(-0.5, 0.5, 17) * np.pi:
-        r = 0.45 + 0.08 * np.cos(around)
-        handle += list(np.stack([0.7 + r * np.cos(along), 0.08 * np.sin(around), 0.8 + r * np.sin(along)], axis=1))
-    turns = np.arange(96) * np.pi / 48
-    cup = [(r * np.cos(a), r * np.sin(a), h) for r, h in ((0.001, 0), (0.7, 0), (0.75, 1.6)) for a in turns]
-    faces = [[len(cup) + corner for corner in face] for face in tool_run.grid_faces(17, 8)]
-    return tool_run.off(cup + handle, tool_run.grid_faces(3, 96) + faces)
-
-
 def cube(properties, size, more, comment=""):
     """A cube as PLY whose sides have vertices of their own.
 
@@ -135,7 +122,7 @@ class Bop(ToolTest):
         self.assertIn("group C1", self.output)
 
     def test_explains_what_fails(self):
-        self.run_tool(self.write("mug.off", mug()), "-quiet -explain -failures failures")
+        self.run_tool(self.write("mug.off", tool_run.off(*tool_run.mug())), "-quiet -explain -failures failures")
         self.assertIn("  tolerance ", self.output)
         self.assertIn("  rejected ", self.output)
         points, _ = tool_run.ply_points(self.folder / "failures/mug_rejected_1.ply")

@@ -55,8 +55,7 @@ class Pages(ToolTest):
         self.assertEqual(len(self.scene("v.html")["panels"][0]["axes"][0]["ends"]), 2)
 
     def test_thin_large_clouds_and_leave_out_what_is_not_finite(self):
-        points = np.random.default_rng(1).normal(size=(450_000, 3)).astype("<f4")
-        points /= np.linalg.norm(points, axis=1, keepdims=True)
+        points = tool_run.points_on_sphere(450_000)
         points[0, 0] = np.nan
         self.run_tool(self.write("a.pcd", tool_run.pcd(points)), "-quiet -html a.html")
         self.assertEqual(self.num_bytes(self.scene("a.html")["points"]), 12 * 150_000, "every third")

@@ -78,9 +78,7 @@ class Planes(ToolTest):
         self.assertNotIn("leave it open", self.output)
         self.run_tool(self.tetrahedron, "-quiet --approximate")
         self.assertIn("approximate", self.output)
-        few = np.random.default_rng(1).normal(size=(100, 3))
-        few /= np.linalg.norm(few, axis=1, keepdims=True)
-        self.run_tool(self.write("few.pcd", tool_run.pcd(few)), "-points 200")
+        self.run_tool(self.write("few.pcd", tool_run.pcd(tool_run.points_on_sphere(100))), "-points 200")
         self.assertRegex(self.output, r"the points leave it open: the share of the whole surface is between \d+ and 100 %")
         self.assertIn("-points is of meshes", self.error)
 
@@ -94,12 +92,7 @@ class Planes(ToolTest):
         self.fails(1, "-label needs a cloud", self.box, "-label 3")
 
     def test_writes_the_support_of_every_point_and_keeps_its_fields(self):
-        i = np.arange(1200)
-        u, v, side = i * 0.754877666 % 1, i * 0.569840291 % 1, np.where(i % 2, 1, -1)
-        points = np.select([(i % 3 == k)[:, None] for k in range(3)],
-                           [np.stack(p, axis=1) for p in ((side, 3 * v - 1.5, 4 * u - 2), (2 * u - 1, 1.5 * side, 4 * v - 2),
-                                                          (2 * u - 1, 3 * v - 1.5, 2 * side))])
-        points = np.vstack([3 * [np.nan], points])
+        points = np.vstack([3 * [np.nan], tool_run.points_on_box((2, 3, 4), 1200)])
         cloud = self.write("c.pcd", tool_run.pcd(points, viewpoint=(1, 2, 3), label=np.arange(len(points))))
         planes = self.report(cloud, "-support s.pcd")["planes"]
         self.assertGreaterEqual(len(planes), 1)

@@ -4,7 +4,7 @@ import unittest
 from pathlib import Path
 
 import tool_run
-from tool_run import ToolTest, np
+from tool_run import ToolTest
 
 (jsonschema,) = tool_run.need("jsonschema")
 SCHEMAS = {path.name.split(".")[0]: json.loads(path.read_text())
@@ -42,9 +42,7 @@ class Schemas(ToolTest):
         self.assertEqual({schema for _, schema in RUNS} | {"bop_check"}, set(SCHEMAS), "each is held to")
 
     def test_are_followed_line_by_line(self):
-        ball = np.random.default_rng(1).normal(size=(3000, 3))
-        ball /= np.linalg.norm(ball, axis=1, keepdims=True)
-        self.write("ball.pcd", tool_run.pcd(ball))
+        self.write("ball.pcd", tool_run.pcd(tool_run.points_on_sphere(3000)))
         self.write("bad.off", "x")
         self.run_tool(f"box.off can.off ball.pcd bad.off {FEW} -approximate -json a.jsonl", tool="planes", code=1)
         for line in self.text("a.jsonl").splitlines():

@@ -2,9 +2,8 @@
 import json
 import unittest
 
-import tool_run
 from test_scene import block, camera, look
-from tool_run import ToolTest, np, pcd
+from tool_run import ToolTest, np, pcd, points_on_box, points_on_sphere, random_pose
 
 WIDTH, HEIGHT = 160, 120
 BOX = [((0, 0, 0), (1, 0.7, 0.45))]  # centers and half sizes
@@ -33,24 +32,6 @@ def moved(points, pose):
     return points @ pose[0].T + pose[1]
 
 
-def random_pose(seed):
-    random = np.random.default_rng(seed)
-    return tool_run.rotation(random.normal(size=3), random.uniform(0, np.pi)), random.uniform(-3, 3, 3)
-
-
-def on_sphere(count, seed=1):
-    points = np.random.default_rng(seed).normal(size=(count, 3))
-    return points / np.linalg.norm(points, axis=1, keepdims=True)
-
-
-def on_box(count, half=(1, 0.7, 0.45), seed=1):
-    random, half = np.random.default_rng(seed), np.array(half)
-    axis = random.choice(3, count, p=(1 / half) / (1 / half).sum())
-    points = random.uniform(-1, 1, (count, 3)) * half
-    points[np.arange(count), axis] = half[axis] * random.choice([-1, 1], count)
-    return points
-
-
 class SeenFrom(ToolTest):
     tool = "planes"
 
@@ -70,7 +51,7 @@ class SeenFrom(ToolTest):
 
     def test_of_rows_and_columns_that_are_no_picture_is_none(self):
         pixels, _ = scan(BOX, (2.5, -3, 2))
-        whole, shuffled = self.sources((on_box(WIDTH * HEIGHT), (0, 0, 0)), (np.random.default_rng(3).permutation(pixels), (0, 0, 0)))
+        whole, shuffled = self.sources((points_on_box(num_points=WIDTH * HEIGHT), (0, 0, 0)), (np.random.default_rng(3).permutation(pixels), (0, 0, 0)))
         self.assertEqual(whole, "none")
         self.assertNotEqual(shuffled, "rays")
 
@@ -129,13 +110,13 @@ class SeenFrom(ToolTest):
             wire[:, 2] += 0.003 * np.random.default_rng(seed + 99).normal(size=len(t))
             clouds.append((wire, (0.1, 0.2, 0.3)))
         for count in (1000, 10_000):
-            clouds += [(on_box(count), viewpoint) for viewpoint in ((0, 0, 0), (3, 1, 2))]
-            clouds.append((on_sphere(count), (3, 1, 2)))
+            clouds += [(points_on_box(num_points=count), viewpoint) for viewpoint in ((0, 0, 0), (3, 1, 2))]
+            clouds.append((points_on_sphere(count), (3, 1, 2)))
         for second in ((-2.5, -3, 2), (-2.5, 3, -2)):
             for blocks in (BOX, L, CHAIR):
                 clouds.append((np.vstack([finite(scan(blocks, eye)[0]) for eye in ((2.5, -3, 2), second)]), (0.1, 0.2, 0.3)))
         # Half a sphere and a sheet are seen once from many positions. Their even density is not that of a scan.
-        half = on_sphere(20_000)
+        half = points_on_sphere(20_000)
         half = half[half[:, 2] > 0.01]
         clouds += [(half, (0, 0, 0)), (np.c_[np.random.default_rng(6).uniform(-1, 1, (4000, 2)), np.zeros(4000)], (0, 0, 0))]
         self.assertEqual(self.sources(*clouds), ["none"] * len(clouds))
@@ -146,7 +127,7 @@ class SeenFrom(ToolTest):
         self.assertEqual(self.sources(*((moved(finite(pixels), to_camera), (0, 0, 0)) for pixels, to_camera in clouds)), ["stored"] * 3)
         elsewhere = [(moved(finite(scan(blocks, (2.5, -3, 2))[0]), random_pose(0)), (0, 0, 0)) for blocks in (L, CHAIR)]
         self.assertEqual(self.sources(*elsewhere), ["inferred"] * 2, "from the density of the points")
-        shell = on_sphere(20_000)
+        shell = points_on_sphere(20_000)
         shell = shell[(shell * ((0, 0, 5) - shell)).sum(axis=1) > 0] - (0, 0, 5)
         self.assertEqual(self.sources((shell, (0, 0, 0)), (shell, (0, 0, 0.1))), ["none", "stored"])
         self.run_tool("1.pcd -viewpoint 0,0.3,1")

@@ -1,4 +1,4 @@
-"""Tools run as their users run them, and the files that go in and come out."""
+"""Tools run as their users run them, the files that go in and come out, and shapes to test with."""
 import importlib
 import json
 import os
@@ -88,6 +88,36 @@ def grid_faces(rows, columns):
             for i in range(rows - 1) for k in range(columns)]
 
 
+def triangles(quads):
+    return np.array([t for a, b, c, d in quads for t in ((a, b, c), (a, c, d))])
+
+
+def mug(has_handle=True):
+    """Vertices and quads of a cup, open at the top, and of its handle."""
+    turns, around, handle = np.arange(96) * np.pi / 48, np.arange(8) * np.pi / 4, []
+    cup = [(r * np.cos(a), r * np.sin(a), h) for r, h in ((0.001, 0), (0.7, 0), (0.75, 1.6)) for a in turns]
+    for along in np.linspace(-0.5, 0.5, 17) * np.pi:
+        r = 0.45 + 0.08 * np.cos(around)
+        handle += [*np.stack([0.7 + r * np.cos(along), 0.08 * np.sin(around), 0.8 + r * np.sin(along)], axis=1)]
+    faces = [[len(cup) + corner for corner in face] for face in grid_faces(17, 8)]
+    return np.array(cup + handle * has_handle), grid_faces(3, 96) + faces * has_handle
+
+
+def points_on_box(size=(1.0, 0.7, 0.4), num_points=6000, seed=1):
+    """Points on the surface of a box of the given edges about the origin, (N, 3) float32."""
+    random, edges = np.random.default_rng(seed), np.asarray(size)
+    areas = np.repeat(np.prod(edges) / edges, 2)
+    side = random.choice(6, num_points, p=areas / areas.sum())
+    points = (random.random((num_points, 3)) - 0.5) * edges
+    points[np.arange(num_points), side // 2] = (side % 2 - 0.5) * edges[side // 2]
+    return points.astype(np.float32)
+
+
+def points_on_sphere(count, seed=1):
+    points = np.random.default_rng(seed).normal(size=(count, 3))
+    return points / np.linalg.norm(points, axis=1, keepdims=True)
+
+
 def lathe(profile, num_sides):
     """A profile (radius, height) turned about z."""
     angles = 2 * np.pi * np.arange(num_sides) / num_sides
@@ -104,6 +134,14 @@ def rotation(axis, angle):
     x, y, z = axis / np.linalg.norm(axis)
     cross = np.array([[0, -z, y], [z, 0, -x], [-y, x, 0]])
     return np.eye(3) + np.sin(angle) * cross + (1 - np.cos(angle)) * cross @ cross
+
+
+def random_pose(seed):
+    """A uniformly random rotation and a translation by up to 3 along each axis."""
+    random = np.random.default_rng(seed)
+    q, r = np.linalg.qr(random.normal(size=(3, 3)))
+    q = q * np.sign(np.diag(r))
+    return q * np.sign(np.linalg.det(q)), random.uniform(-3, 3, 3)
 
 
 def pcd(points, width=0, viewpoint=(0, 0, 0), **columns):
