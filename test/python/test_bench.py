@@ -7,10 +7,9 @@ import os
 import pathlib
 import subprocess
 import sys
-import tempfile
 import unittest
 
-from tool_run import need
+from tool_run import ToolTest, need, off
 
 need("open3d", "scipy", "pcl_symmetry")
 import numpy as np
@@ -22,12 +21,11 @@ import references
 import shapes
 
 FACES = [[0, 1, 3, 2], [4, 6, 7, 5], [0, 4, 5, 1], [2, 3, 7, 6], [0, 2, 6, 4], [1, 5, 7, 3]]
-BOX = "OFF\n8 6 0\n" + "".join(f"{x} {y} {z}\n" for x in (0, 3) for y in (0, 2) for z in (0, 1))
-BOX += "".join(f"4 {a} {b} {c} {d}\n" for a, b, c, d in FACES)
+CORNERS = [[x, y, z] for x in (0, 3) for y in (0, 2) for z in (0, 1)]
 
 
 def box():
-    return bench.make_mesh([[x, y, z] for x in (0, 3) for y in (0, 2) for z in (0, 1)], FACES)
+    return bench.make_mesh(CORNERS, FACES)
 
 
 @functools.cache
@@ -103,8 +101,9 @@ class References(unittest.TestCase):
         self.assertGreater(abs(found["axes"][0]["direction"][2]), 0.999)
 
 
-class Judging(unittest.TestCase):
+class Judging(ToolTest):
     def setUp(self):
+        super().setUp()
         self.pose = bench.random_pose(np.random.default_rng(3), box())
         self.truth = references.moved(references_of_box(), self.pose)
 
@@ -124,13 +123,12 @@ class Judging(unittest.TestCase):
         self.assertFalse(self.judged((first, "possible", 0.4))["called"])
 
     def test_answers_of_other_programs(self):
-        with tempfile.TemporaryDirectory() as folder:
-            pathlib.Path(folder, "a.txt").write_text("1 0 0 -2 0.7\n0 1 0 0\n")
-            found = bench.read_answers(folder, "a")["planes"]
-            self.assertEqual([p["coefficients"] for p in found], [[1, 0, 0, -2], [0, 1, 0, 0]])
-            self.assertTrue(bench.read_answers(folder, "b")["failed"])
-            pathlib.Path(folder, "c.txt").write_text("1 0 zero\n")
-            self.assertRaises(bench.BadInput, bench.read_answers, folder, "c")
+        self.write("a.txt", "1 0 0 -2 0.7\n0 1 0 0\n")
+        found = bench.read_answers(self.folder, "a")["planes"]
+        self.assertEqual([p["coefficients"] for p in found], [[1, 0, 0, -2], [0, 1, 0, 0]])
+        self.assertTrue(bench.read_answers(self.folder, "b")["failed"])
+        self.write("c.txt", "1 0 zero\n")
+        self.assertRaises(bench.BadInput, bench.read_answers, self.folder, "c")
 
     def test_boxes_and_cylinders_of_frames(self):
         truth = {"shape": "cylinder", "axis": {"point": [1, 0, 5], "direction": [0, 0, 1]}, "center": [0, 0, 0], "extent": 2}
@@ -150,25 +148,24 @@ class Judging(unittest.TestCase):
         self.assertGreater(abs(found @ along), 0.999)
 
 
-class Runs(unittest.TestCase):
+class Runs(ToolTest):
     def test_an_interrupted_run_goes_on(self):
-        with tempfile.TemporaryDirectory() as folder:
-            arguments = bench.make_parser("").parse_args(["--json", f"{folder}/out.json", "--jobs", "1"])
-            asked = []
+        arguments = bench.make_parser("").parse_args(["--json", f"{self.folder}/out.json", "--jobs", "1"])
+        asked = []
 
-            def square(x, _):
-                asked.append(x)
-                if x == 3 and len(asked) == 4:
-                    raise KeyboardInterrupt
-                return x * x
+        def square(x, _):
+            asked.append(x)
+            if x == 3 and len(asked) == 4:
+                raise KeyboardInterrupt
+            return x * x
 
-            self.assertRaises(KeyboardInterrupt, bench.run, range(5), square, arguments)
-            journal = pathlib.Path(folder, "out.json.journal")
-            journal.write_text(journal.read_text() + '["4", 1')  # cut off while it was written
-            self.assertEqual(bench.run(range(5), square, arguments), ([0, 1, 4, 9, 16], []))
-            self.assertEqual(asked, [0, 1, 2, 3, 3, 4])
-            bench.write_json(arguments, [1])
-            self.assertEqual(sorted(os.listdir(folder)), ["out.json"])
+        self.assertRaises(KeyboardInterrupt, bench.run, range(5), square, arguments)
+        journal = self.folder / "out.json.journal"
+        journal.write_text(journal.read_text() + '["4", 1')  # cut off while it was written
+        self.assertEqual(bench.run(range(5), square, arguments), ([0, 1, 4, 9, 16], []))
+        self.assertEqual(asked, [0, 1, 2, 3, 3, 4])
+        bench.write_json(arguments, [1])
+        self.assertEqual(sorted(os.listdir(self.folder)), ["out.json"])
 
     def test_a_failing_item_costs_itself(self):
         def divide(x, _):
@@ -180,16 +177,15 @@ class Runs(unittest.TestCase):
         self.assertIn("0: ZeroDivisionError", told.getvalue())
 
     def test_bad_input_is_one_sentence(self):
-        with tempfile.TemporaryDirectory() as folder:
-            self.assertEqual(run_program("planes.py", f"{folder}/none"), (1, f"planes.py: {folder}/none: must be a folder"))
-            pathlib.Path(folder, "bad.cla").write_text("PSB 1\n1 1\n")
-            self.assertIn("bad.cla: is no class file", run_program("planes.py", folder, "--classes", f"{folder}/bad.cla")[1])
-            pathlib.Path(folder, "bad.off").write_text("OFF\n8 6 0\n0 0 0\n")
-            pathlib.Path(folder, "box.off").write_text(BOX)
-            rc, told = run_program("planes.py", folder, "--rows", "whole", "--points", "2000", "--json", f"{folder}/out.json")
-            self.assertEqual((rc, told), (0, f"{folder}/bad.off: is no mesh that can be read, it ends too early"))
-            result = json.loads(pathlib.Path(folder, "out.json").read_text())
-            self.assertEqual(result["groups"]["whole"]["decided_right"]["count"], 1)
+        self.assertEqual(run_program("planes.py", f"{self.folder}/none"), (1, f"planes.py: {self.folder}/none: must be a folder"))
+        self.write("bad.cla", "PSB 1\n1 1\n")
+        self.assertIn("bad.cla: is no class file", run_program("planes.py", self.folder, "--classes", f"{self.folder}/bad.cla")[1])
+        self.write("bad.off", "OFF\n8 6 0\n0 0 0\n")
+        self.write("box.off", off(CORNERS, FACES))
+        rc, told = run_program("planes.py", self.folder, "--rows", "whole", "--points", "2000", "--json", f"{self.folder}/out.json")
+        self.assertEqual((rc, told), (0, f"{self.folder}/bad.off: is no mesh that can be read, it ends too early"))
+        result = json.loads(self.text("out.json"))
+        self.assertEqual(result["groups"]["whole"]["decided_right"]["count"], 1)
 
 
 if __name__ == "__main__":

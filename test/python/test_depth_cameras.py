@@ -11,7 +11,6 @@ import shutil
 import signal
 import subprocess
 import sys
-import tempfile
 import threading
 import time
 import types
@@ -196,8 +195,9 @@ class DepthImages(unittest.TestCase):
 
 
 @unittest.skipUnless(has_pcl(), "the module was built without PCL")
-class OrganizedArrays(unittest.TestCase):
+class OrganizedArrays(ToolTest):
     def setUp(self):
+        super().setUp()
         depth, self.labels = table()
         self.frame = pcl_symmetry.from_depth(depth, INTRINSICS)
 
@@ -327,36 +327,34 @@ class OrganizedArrays(unittest.TestCase):
         viewpoint, (vertices, faces) = np.array([3.0, 2.0, 1.5]), box_mesh()
         rows = seen_half(box((1.0, 0.7, 0.4), 8000), viewpoint)
         text = lambda line, table: "".join(line.format(*row) + "\n" for row in table)
-        with tempfile.TemporaryDirectory() as name:
-            folder = Path(name)
-            folder.joinpath("frame.pcd").write_bytes(pcd(self.frame.reshape(-1, 3), 320))
-            folder.joinpath("scan.pcd").write_bytes(pcd(rows, viewpoint=viewpoint))
-            folder.joinpath("cut.pcd").write_bytes(pcd(rows)[:-9])
-            header = f"ply\nformat ascii 1.0\nelement vertex {len(vertices)}\n" + "".join(f"property double {c}\n" for c in "xyz")
-            header += f"element face {len(faces)}\nproperty list uchar int vertex_indices\nend_header\n"
-            folder.joinpath("box.PLY").write_text(header + text("{} {} {}", vertices) + text("3 {} {} {}", faces))
-            frame, scan, mesh = (pcl_symmetry.read(folder / each) for each in ("frame.pcd", "scan.pcd", "box.PLY"))
-            for wrong, error, words in (
-                ("none.pcd", FileNotFoundError, "none.pcd"),
-                ("cut.pcd", ValueError, "cut.pcd: "),
-                ("box.glb", ValueError, r"box.glb: unknown extension '.glb', must be .pcd, .ply, .off, .* or .csv; trimesh.load\(\) reads"),
-            ):
-                with self.assertRaisesRegex(error, words):
-                    pcl_symmetry.read(folder / wrong)
-            facets = "".join(f"facet normal 0 0 1\nouter loop\n{text('vertex {} {} {}', vertices[f])}endloop\nendfacet\n" for f in faces)
-            for kind, content in (("off", off(vertices, faces)), ("obj", text("v {} {} {}", vertices) + text("f {} {} {}", faces + 1)),
-                                  ("stl", f"solid box\n{facets}endsolid box\n")):  # fmt: skip
-                folder.joinpath(f"box.{kind}").write_text(content)
-                same = pcl_symmetry.read(folder / f"box.{kind}")
-                np.testing.assert_allclose(same.points[same.faces], vertices[faces], atol=1e-6)
-            folder.joinpath("box.xyz").write_text(text("{} {} {}", vertices))
-            np.testing.assert_array_equal(pcl_symmetry.read(folder / "box.xyz").points, vertices)
-            by_name = [pcl_symmetry.planes(folder / each) for each in ("scan.pcd", "box.off")] + [pcl_symmetry.scene(str(folder / "frame.pcd"))]
-            self.assertEqual(by_name[0].show(folder / "scan.pcd").html, by_name[0].show(scan).html)
-            database = pcl_symmetry.Database(":memory:")
-            report = database.build({"box": folder / "box.stl", "none": str(folder / "none.pcd"), "scan": scan})
-            self.assertEqual((database.names, [name for name, _ in report.failures]), (["box", "scan"], ["none"]))
-            self.assertRegex(report.failures[0][1], "No such file or directory: .*none.pcd'$")
+        self.write("frame.pcd", pcd(self.frame.reshape(-1, 3), 320))
+        self.write("scan.pcd", pcd(rows, viewpoint=viewpoint))
+        self.write("cut.pcd", pcd(rows)[:-9])
+        header = f"ply\nformat ascii 1.0\nelement vertex {len(vertices)}\n" + "".join(f"property double {c}\n" for c in "xyz")
+        header += f"element face {len(faces)}\nproperty list uchar int vertex_indices\nend_header\n"
+        self.write("box.PLY", header + text("{} {} {}", vertices) + text("3 {} {} {}", faces))
+        frame, scan, mesh = (pcl_symmetry.read(self.folder / each) for each in ("frame.pcd", "scan.pcd", "box.PLY"))
+        for wrong, error, words in (
+            ("none.pcd", FileNotFoundError, "none.pcd"),
+            ("cut.pcd", ValueError, "cut.pcd: "),
+            ("box.glb", ValueError, r"box.glb: unknown extension '.glb', must be .pcd, .ply, .off, .* or .csv; trimesh.load\(\) reads"),
+        ):
+            with self.assertRaisesRegex(error, words):
+                pcl_symmetry.read(self.folder / wrong)
+        facets = "".join(f"facet normal 0 0 1\nouter loop\n{text('vertex {} {} {}', vertices[f])}endloop\nendfacet\n" for f in faces)
+        for kind, content in (("off", off(vertices, faces)), ("obj", text("v {} {} {}", vertices) + text("f {} {} {}", faces + 1)),
+                              ("stl", f"solid box\n{facets}endsolid box\n")):  # fmt: skip
+            self.write(f"box.{kind}", content)
+            same = pcl_symmetry.read(self.folder / f"box.{kind}")
+            np.testing.assert_allclose(same.points[same.faces], vertices[faces], atol=1e-6)
+        self.write("box.xyz", text("{} {} {}", vertices))
+        np.testing.assert_array_equal(pcl_symmetry.read(self.folder / "box.xyz").points, vertices)
+        by_name = [pcl_symmetry.planes(self.folder / each) for each in ("scan.pcd", "box.off")] + [pcl_symmetry.scene(str(self.folder / "frame.pcd"))]
+        self.assertEqual(by_name[0].show(self.folder / "scan.pcd").html, by_name[0].show(scan).html)
+        database = pcl_symmetry.Database(":memory:")
+        report = database.build({"box": self.folder / "box.stl", "none": str(self.folder / "none.pcd"), "scan": scan})
+        self.assertEqual((database.names, [name for name, _ in report.failures]), (["box", "scan"], ["none"]))
+        self.assertRegex(report.failures[0][1], "No such file or directory: .*none.pcd'$")
         self.assertEqual(by_name, [pcl_symmetry.planes(scan), pcl_symmetry.planes(Mesh(vertices, faces)), pcl_symmetry.scene(frame)])
         np.testing.assert_array_equal(frame.points, self.frame)
         np.testing.assert_array_equal(np.asarray(frame), self.frame)
@@ -529,7 +527,7 @@ class Answers(unittest.TestCase):
         self.assertTrue(pcl_symmetry.symmetrize(box(), found[0]).points.flags.writeable, "as Open3D needs it")
 
 
-class LongCalls(unittest.TestCase):
+class LongCalls(ToolTest):
     CALLS = {
         "local_symmetry": lambda s, p: s.local_symmetry(p, 1.0),
         "transform": lambda s, p: [s.transform(p, (96, 96, 96), method="rotational", seed=i) for i in range(99)],
@@ -563,18 +561,17 @@ class LongCalls(unittest.TestCase):
 
     @unittest.skipUnless(has_pcl(), "the module was built without PCL")
     def test_keep_what_they_built(self):
-        with tempfile.TemporaryDirectory() as folder:
-            path = Path(folder) / "models.db"
-            models = {f"{i:04}": box((1, 0.5 + 0.001 * i, 0.3), 2000, i) for i in range(400)}
-            with pcl_symmetry.Database(path, create=True) as database:
-                self.seconds_to_stop(lambda: database.build(models), after=0.5)
-                stored = database.names
-            self.assertTrue(0 < len(stored) < len(models), len(stored))
-            with pcl_symmetry.Database(path) as database:
-                self.assertEqual(database.names, stored)
-                self.assertEqual(len(database.match(models[stored[0]], 1)), 1)
-                few = {name: models[name] for name in list(models)[: len(stored) + 2]}
-                self.assertEqual(database.build(few).failures, [])
+        path = self.folder / "models.db"
+        models = {f"{i:04}": box((1, 0.5 + 0.001 * i, 0.3), 2000, i) for i in range(400)}
+        with pcl_symmetry.Database(path, create=True) as database:
+            self.seconds_to_stop(lambda: database.build(models), after=0.5)
+            stored = database.names
+        self.assertTrue(0 < len(stored) < len(models), len(stored))
+        with pcl_symmetry.Database(path) as database:
+            self.assertEqual(database.names, stored)
+            self.assertEqual(len(database.match(models[stored[0]], 1)), 1)
+            few = {name: models[name] for name in list(models)[: len(stored) + 2]}
+            self.assertEqual(database.build(few).failures, [])
 
     def test_tell_their_progress(self):
         shares = []
@@ -593,17 +590,16 @@ class LongCalls(unittest.TestCase):
                 self.assertTrue(shares and all(0 <= share <= 1 for share in shares), function.__name__)
 
 
-class Pages(unittest.TestCase):
-    def picture(self, page, folder, size=(700, 500)):
+class Pages(ToolTest):
+    def picture(self, page, size=(700, 500)):
         """(H, W, 3) pixels of a page in a browser, in [0, 1]."""
         import matplotlib.image
 
-        path = Path(folder) / "page.html"
-        path.write_text(page)
+        path = self.write("page.html", page)
         flags = ["--headless", "--no-sandbox", "--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"]
-        shot = [f"--window-size={size[0]},{size[1]}", "--virtual-time-budget=8000", f"--screenshot={folder}/page.png", f"file://{path}"]
-        subprocess.run(["chromium", *flags, f"--user-data-dir={folder}/user", *shot], check=True, capture_output=True, timeout=300)
-        return matplotlib.image.imread(f"{folder}/page.png")[..., :3]
+        shot = [f"--window-size={size[0]},{size[1]}", "--virtual-time-budget=8000", f"--screenshot={self.folder}/page.png", f"file://{path}"]
+        subprocess.run(["chromium", *flags, f"--user-data-dir={self.folder}/user", *shot], check=True, capture_output=True, timeout=300)
+        return matplotlib.image.imread(f"{self.folder}/page.png")[..., :3]
 
     def test_show_support_in_colors(self):
         """Yellow where a point has a counterpart, with and without normals; an axis is seen in front of what hides it."""
@@ -614,37 +610,34 @@ class Pages(unittest.TestCase):
         angle, height = random.uniform(0, 2 * np.pi, 20_000), random.uniform(0, 1, 20_000)
         can = np.stack([0.3 * np.cos(angle), 0.3 * np.sin(angle), height], axis=1)
         pages = {"module": (pcl_symmetry.planes(points).show(points).html, (700, 500))}
-        with tempfile.TemporaryDirectory() as folder:
-            if os.environ.get("TOOLS"):
-                (Path(folder) / "box.pcd").write_bytes(pcd(points))
-                tool = Path(os.environ["TOOLS"]) / "pcl_symmetry_planes"
-                subprocess.run([tool, "box.pcd", "-html", "box.html", "-quiet"], cwd=folder, check=True, capture_output=True)
-                pages["tool"] = ((Path(folder) / "box.html").read_text(), (420, 700))
-            for name, (page, size) in pages.items():
-                red, green, blue = np.moveaxis(self.picture(page, folder, size), 2, 0)
-                yellow = ((red > 0.55) & (green > 0.45) & (blue < 0.6 * red)).sum()
-                black = ((red < 0.1) & (green < 0.1) & (blue < 0.1)).sum()
-                self.assertGreater(yellow, 5000, (name, size))
-                self.assertLess(black, 0.1 * yellow, (name, size))
-            red, green, blue = np.moveaxis(self.picture(pcl_symmetry.planes(can).show(can).html, folder), 2, 0)
-            rod = (red > 0.6) & (green < 0.6 * red) & (blue < 0.4 * red)
-            self.assertGreater(rod[:, : rod.shape[1] // 2].any(axis=1).sum(), 100, "rows of pixels that show the axis")
+        if os.environ.get("TOOLS"):
+            self.write("box.pcd", pcd(points))
+            self.run_tool("box.pcd -html box.html -quiet", tool="planes")
+            pages["tool"] = (self.text("box.html"), (420, 700))
+        for name, (page, size) in pages.items():
+            red, green, blue = np.moveaxis(self.picture(page, size), 2, 0)
+            yellow = ((red > 0.55) & (green > 0.45) & (blue < 0.6 * red)).sum()
+            black = ((red < 0.1) & (green < 0.1) & (blue < 0.1)).sum()
+            self.assertGreater(yellow, 5000, (name, size))
+            self.assertLess(black, 0.1 * yellow, (name, size))
+        red, green, blue = np.moveaxis(self.picture(pcl_symmetry.planes(can).show(can).html), 2, 0)
+        rod = (red > 0.6) & (green < 0.6 * red) & (blue < 0.4 * red)
+        self.assertGreater(rod[:, : rod.shape[1] // 2].any(axis=1).sum(), 100, "rows of pixels that show the axis")
 
 
 @unittest.skipUnless(has_pcl(), "the module was built without PCL")
-class Example(unittest.TestCase):
+class Example(ToolTest):
     def test_of_typical_use_runs(self):
         example = Path(__file__).resolve().parents[2] / "apps/examples/14_depth_camera.py"
-        with tempfile.TemporaryDirectory() as folder:
-            ran = subprocess.run([sys.executable, "-B", example, folder], capture_output=True, text=True)
-            self.assertEqual(ran.returncode, 0, ran.stderr)
-            self.assertIn("3 models stored, 3 in all\nobject 1: ", ran.stdout)
-            self.assertIn("is large, confidence", ran.stdout)
-            self.assertLessEqual({"models.db", "object_1.npy", "scene.html"}, set(os.listdir(folder)))
-            depth = Path(folder) / "dome.npy"
-            np.save(depth, table((), 0.1)[0])
-            ran = subprocess.run([*ran.args, depth, *map(str, INTRINSICS)], capture_output=True, text=True)
-            self.assertRegex(ran.stdout, r"  body of revolution about (.|\n)*mask: 0 planes, [1-9]", ran.stderr)
+        ran = subprocess.run([sys.executable, "-B", example, self.folder], capture_output=True, text=True)
+        self.assertEqual(ran.returncode, 0, ran.stderr)
+        self.assertIn("3 models stored, 3 in all\nobject 1: ", ran.stdout)
+        self.assertIn("is large, confidence", ran.stdout)
+        self.assertLessEqual({"models.db", "object_1.npy", "scene.html"}, set(os.listdir(self.folder)))
+        depth = self.folder / "dome.npy"
+        np.save(depth, table((), 0.1)[0])
+        ran = subprocess.run([*ran.args, depth, *map(str, INTRINSICS)], capture_output=True, text=True)
+        self.assertRegex(ran.stdout, r"  body of revolution about (.|\n)*mask: 0 planes, [1-9]", ran.stderr)
 
 
 if __name__ == "__main__":

@@ -3,11 +3,10 @@ import argparse
 import contextlib
 import io
 import pathlib
-import tempfile
 import types
 import unittest
 
-from tool_run import need
+from tool_run import ToolTest, need
 
 need("bench", "fits")
 import numpy as np
@@ -36,7 +35,7 @@ def made_up_rows(random, num_models=60, per_cloud=6):
     return rows
 
 
-class Fits(unittest.TestCase):
+class Fits(ToolTest):
     def test_known_coefficients_come_back(self):
         random = np.random.default_rng(1)
         terms = np.c_[np.ones(4000), 10 * random.normal(size=4000), random.normal(size=4000)]
@@ -55,13 +54,12 @@ class Fits(unittest.TestCase):
 
     def test_planes_write_the_same_header_twice(self):
         rows, texts = made_up_rows(np.random.default_rng(2)), []
-        with tempfile.TemporaryDirectory() as folder:
-            for name in ("a.h", "b.h"):
-                table = fit_planes.Table(rows)
-                fit, errors = fit_planes.fit_table(table)
-                arguments = argparse.Namespace(output=f"{folder}/{name}", fold=0)
-                fits.write_header(arguments, fit_planes.header(table, fit, errors), (["<array>"],))
-                texts.append(pathlib.Path(folder, name).read_bytes())
+        for name in ("a.h", "b.h"):
+            table = fit_planes.Table(rows)
+            fit, errors = fit_planes.fit_table(table)
+            arguments = argparse.Namespace(output=f"{self.folder}/{name}", fold=0)
+            fits.write_header(arguments, fit_planes.header(table, fit, errors), (["<array>"],))
+            texts.append(pathlib.Path(self.folder, name).read_bytes())
         self.assertEqual(*texts)
         self.assertIn(b"test_fits.py --fold 0; do not edit", texts[0])
         self.assertIn(b"kConfidenceFit", texts[0])

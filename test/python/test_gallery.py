@@ -1,17 +1,15 @@
 """Shapes and drawings of the gallery: what they make is what they say."""
 
 import importlib.util
-import json
 import os
 import subprocess
 import sys
-import tempfile
 import unittest
 from pathlib import Path
 
 import numpy as np
 
-from tool_run import need
+from tool_run import ToolTest, need
 
 need("vtkmodules")
 
@@ -49,7 +47,7 @@ class Shapes(unittest.TestCase):
         self.assertIn("usage", result.stderr)
 
 
-class Frames(unittest.TestCase):
+class Frames(ToolTest):
     def test_of_mugs_and_mailboxes_have_their_center_where_their_planes_meet(self):  # Figure 10
         try:
             import drawings
@@ -67,11 +65,8 @@ class Frames(unittest.TestCase):
                 self.assertLess(np.linalg.norm(center - turn @ meet), 0.01 * diameter, f"{i} {seed}")
             if not os.environ.get("TOOLS"):
                 continue
-            with tempfile.TemporaryDirectory() as folder:
-                np.savetxt(Path(folder) / "turned.xyz", points @ turn.T, "%.9g")
-                tool = [Path(os.environ["TOOLS"]) / "pcl_symmetry_align", "turned.xyz", "-quiet", "-json", "frame.json"]
-                subprocess.run(tool, cwd=folder, check=True, capture_output=True)
-                np.testing.assert_allclose(json.loads((Path(folder) / "frame.json").read_text())["center"], center, atol=1e-6)
+            np.savetxt(self.folder / "turned.xyz", points @ turn.T, "%.9g")
+            np.testing.assert_allclose(self.report("turned.xyz -quiet", tool="align")["center"], center, atol=1e-6)
 
 
 @unittest.skipUnless("scene" in pcl_symmetry.__all__, "the module was built without PCL")
@@ -126,25 +121,24 @@ class Planar(unittest.TestCase):
             self.assertAlmostEqual(transform.values[t, k], transform.value(transform.theta[t], transform.r[k]), delta=2e-3)
 
 
-class FirstLook(unittest.TestCase):
+class FirstLook(ToolTest):
     def test_of_the_first_page_is_what_is_found_today(self):
         if not os.environ.get("TOOLS") or not all(map(importlib.util.find_spec, ("matplotlib", "open3d"))):
             self.skipTest("needs the tools, matplotlib and Open3D (Debian packages python3-matplotlib, python3-open3d)")
         from PIL import Image
 
-        with tempfile.TemporaryDirectory() as folder:
-            if subprocess.run(["bash", GALLERY.parent / "fetch_meshes.sh", folder, "cow"], stdout=subprocess.DEVNULL).returncode:
-                self.skipTest("the mesh cannot be fetched")
-            tools = {**os.environ, "PATH": f"{os.environ['TOOLS']}:{os.environ['PATH']}"}
-            drawing = [sys.executable, "-B", GALLERY / "drawings.py", "first_look", f"{folder}/now.png", f"{folder}/cow.off"]
-            subprocess.run(drawing, env=tools, check=True, stdout=subprocess.DEVNULL)
-            now, shown = (Image.open(path) for path in (f"{folder}/now.png", GALLERY.parent / "pictures/first_look.png"))
-            off = np.abs(np.asarray(now, float) - np.asarray(shown, float))[..., :3].mean() / 255
+        if subprocess.run(["bash", GALLERY.parent / "fetch_meshes.sh", self.folder, "cow"], stdout=subprocess.DEVNULL).returncode:
+            self.skipTest("the mesh cannot be fetched")
+        tools = {**os.environ, "PATH": f"{os.environ['TOOLS']}:{os.environ['PATH']}"}
+        drawing = [sys.executable, "-B", GALLERY / "drawings.py", "first_look", f"{self.folder}/now.png", f"{self.folder}/cow.off"]
+        subprocess.run(drawing, env=tools, check=True, stdout=subprocess.DEVNULL)
+        now, shown = (Image.open(path) for path in (f"{self.folder}/now.png", GALLERY.parent / "pictures/first_look.png"))
+        off = np.abs(np.asarray(now, float) - np.asarray(shown, float))[..., :3].mean() / 255
         self.assertEqual((shown.text["Description"], shown.size), (now.text["Description"], now.size), "bash apps/gallery/make.sh --only first_look apps")
         self.assertLess(off, 0.005)
 
 
-class MedialAxis(unittest.TestCase):
+class MedialAxis(ToolTest):
     def test_of_a_rectangle_is_a_ridge_with_a_branch_to_each_corner(self):
         try:
             import matplotlib.image
@@ -152,12 +146,11 @@ class MedialAxis(unittest.TestCase):
             self.skipTest("python3-matplotlib is not installed")
         across, along = np.arange(-1, 1.001, 0.01), np.arange(-0.49, 0.491, 0.01)
         border = [(x, y) for x in across for y in (0.5, -0.5)] + [(x, y) for y in along for x in (1, -1)]
-        with tempfile.TemporaryDirectory() as folder:
-            contour, picture = Path(folder) / "rectangle.txt", Path(folder) / "axis.png"
-            np.savetxt(contour, border)
-            subprocess.run([sys.executable, "-B", GALLERY / "drawings.py", "medial_axis", picture, contour], check=True,
-                           stdout=subprocess.DEVNULL)
-            image = matplotlib.image.imread(picture)[:, :, :3].max(axis=2)
+        contour, picture = self.folder / "rectangle.txt", self.folder / "axis.png"
+        np.savetxt(contour, border)
+        subprocess.run([sys.executable, "-B", GALLERY / "drawings.py", "medial_axis", picture, contour], check=True,
+                       stdout=subprocess.DEVNULL)
+        image = matplotlib.image.imread(picture)[:, :, :3].max(axis=2)
         size = len(image)
 
         def is_dark(x, y):

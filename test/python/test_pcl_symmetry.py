@@ -10,7 +10,6 @@ import re
 import shutil
 import subprocess
 import sys
-import tempfile
 import threading
 import time
 import types
@@ -18,7 +17,7 @@ import unittest
 from pathlib import Path
 
 import pcl_symmetry
-from tool_run import BOX_FACES, box_corners, np, rotation, triangles
+from tool_run import BOX_FACES, ToolTest, box_corners, np, rotation, triangles
 from tool_run import points_on_box as box
 
 
@@ -482,7 +481,7 @@ def bumped(rings, around, height, radius):
     return vertices, np.concatenate([first, second])
 
 
-class Meshes(unittest.TestCase):
+class Meshes(ToolTest):
     def test_a_page_shows_planes(self):
         points = box()
         page = pcl_symmetry.planes(points).show(points)
@@ -490,9 +489,8 @@ class Meshes(unittest.TestCase):
         self.assertTrue(page._repr_html_().startswith("<iframe"))
         scene = json.loads(page.html.split('id="scene">')[1].split("</script>")[0])
         self.assertEqual(len(scene["panels"]), 3)
-        with tempfile.TemporaryDirectory() as folder:
-            page.save(Path(folder) / "page.html")
-            self.assertEqual((Path(folder) / "page.html").read_text(), page.html)
+        page.save(self.folder / "page.html")
+        self.assertEqual(self.text("page.html"), page.html)
 
     def test_symmetries_of_a_mesh_are_exact(self):
         offset = np.array([4e5, 5.4e6, 100.0])
@@ -622,7 +620,7 @@ class Meshes(unittest.TestCase):
 
 
 @needs_pcl
-class WithPCL(unittest.TestCase):
+class WithPCL(ToolTest):
     def test_registers_from_any_pose(self):
         source, truth = lamp(), motion()
         target = (lamp(seed=5) @ truth[:3, :3].T + truth[:3, 3]).astype(np.float32)
@@ -641,37 +639,35 @@ class WithPCL(unittest.TestCase):
         self.assertLess(np.abs(tracked.transform - truth).max(), 0.02)
 
     def test_a_database_finds_what_it_holds(self):
-        with tempfile.TemporaryDirectory() as folder:
-            path = str(Path(folder) / "models.db")
-            database = pcl_symmetry.Database(path, create=True, unit="m")
-            database.add("box", box())
-            database.add("lamp", lamp())
-            database.add("plate", box((1.0, 0.9, 0.1)))
-            self.assertEqual((len(database), database.names), (3, ["box", "lamp", "plate"]))
-            self.assertIn("lamp", database)
-            truth = motion()
-            seen = (lamp(seed=9) @ truth[:3, :3].T + truth[:3, 3]).astype(np.float32)
-            matches = database.match(seen, viewpoint=None)
-            self.assertEqual(matches[0].name, "lamp")
-            self.assertEqual(sorted(match.distance for match in matches), [match.distance for match in matches])
-            recognized = database.recognize(seen, viewpoint=None)
-            self.assertEqual(recognized[0].name, "lamp")
-            self.assertRegex(repr(recognized[0]), r"^Recognized\(name='lamp', confidence=")
-            self.assertRegex(repr(database), r"^Database\('.*models.db', models=3\)$")
-            self.assertEqual(database.recognize(seen, viewpoint=None, min_confidence=1.0), [])
-            self.assertLess(np.abs(recognized[0].transform @ truth - np.eye(4)).max(), 0.05)
-            self.assertEqual(database.cloud("box").shape[1], 3)
-            database.remove("plate")
-            self.assertEqual(pcl_symmetry.Database(path).names, ["box", "lamp"])
-            for unknown in (database.cloud, database.remove, database.__getitem__):
-                with self.assertRaisesRegex(KeyError, "nothing"):
-                    unknown("nothing")
-            database.add("box", lamp())
-            self.assertEqual(len(database), 2, "a model of the same name is replaced")
-            wrong = Path(folder) / "wrong.db"
-            wrong.write_text("no database at all")
-            with self.assertRaisesRegex(OSError, "wrong.db"):
-                pcl_symmetry.Database(str(wrong))
+        path = str(self.folder / "models.db")
+        database = pcl_symmetry.Database(path, create=True, unit="m")
+        database.add("box", box())
+        database.add("lamp", lamp())
+        database.add("plate", box((1.0, 0.9, 0.1)))
+        self.assertEqual((len(database), database.names), (3, ["box", "lamp", "plate"]))
+        self.assertIn("lamp", database)
+        truth = motion()
+        seen = (lamp(seed=9) @ truth[:3, :3].T + truth[:3, 3]).astype(np.float32)
+        matches = database.match(seen, viewpoint=None)
+        self.assertEqual(matches[0].name, "lamp")
+        self.assertEqual(sorted(match.distance for match in matches), [match.distance for match in matches])
+        recognized = database.recognize(seen, viewpoint=None)
+        self.assertEqual(recognized[0].name, "lamp")
+        self.assertRegex(repr(recognized[0]), r"^Recognized\(name='lamp', confidence=")
+        self.assertRegex(repr(database), r"^Database\('.*models.db', models=3\)$")
+        self.assertEqual(database.recognize(seen, viewpoint=None, min_confidence=1.0), [])
+        self.assertLess(np.abs(recognized[0].transform @ truth - np.eye(4)).max(), 0.05)
+        self.assertEqual(database.cloud("box").shape[1], 3)
+        database.remove("plate")
+        self.assertEqual(pcl_symmetry.Database(path).names, ["box", "lamp"])
+        for unknown in (database.cloud, database.remove, database.__getitem__):
+            with self.assertRaisesRegex(KeyError, "nothing"):
+                unknown("nothing")
+        database.add("box", lamp())
+        self.assertEqual(len(database), 2, "a model of the same name is replaced")
+        self.write("wrong.db", "no database at all")
+        with self.assertRaisesRegex(OSError, "wrong.db"):
+            pcl_symmetry.Database(self.folder / "wrong.db")
 
     def test_many_models_are_stored_at_once(self):
         database, shares = pcl_symmetry.Database(":memory:"), []
@@ -691,21 +687,20 @@ class WithPCL(unittest.TestCase):
             pcl_symmetry.Database(":memory:").build(models, progress=lambda share: 1 / 0)
 
     def test_a_database_is_a_container_and_closes(self):
-        with tempfile.TemporaryDirectory() as folder:
-            path = Path(folder) / "models.db"
-            with self.assertRaisesRegex(FileNotFoundError, "models.db: no such database; create=True makes one"):
-                pcl_symmetry.Database(path)
-            self.assertFalse(path.exists())
-            with self.assertRaisesRegex(FileNotFoundError, "none/models.db: cannot be made: No such file or directory"):
-                pcl_symmetry.Database(path.parent / "none" / "models.db", create=True)
-            with pcl_symmetry.Database(path, create=True) as database:
-                database.add("box", box())
-                self.assertEqual(list(database), ["box"])
-                np.testing.assert_array_equal(database["box"], database.cloud("box"))
-                with self.assertRaises(KeyError):
-                    database["lamp"]
-            with self.assertRaisesRegex(ValueError, "models.db: the database was closed"):
-                database.names
+        path = self.folder / "models.db"
+        with self.assertRaisesRegex(FileNotFoundError, "models.db: no such database; create=True makes one"):
+            pcl_symmetry.Database(path)
+        self.assertFalse(path.exists())
+        with self.assertRaisesRegex(FileNotFoundError, "none/models.db: cannot be made: No such file or directory"):
+            pcl_symmetry.Database(path.parent / "none" / "models.db", create=True)
+        with pcl_symmetry.Database(path, create=True) as database:
+            database.add("box", box())
+            self.assertEqual(list(database), ["box"])
+            np.testing.assert_array_equal(database["box"], database.cloud("box"))
+            with self.assertRaises(KeyError):
+                database["lamp"]
+        with self.assertRaisesRegex(ValueError, "models.db: the database was closed"):
+            database.names
 
     def test_far_from_the_origin_registration_gives_the_same(self):
         source, truth = lamp(), motion()
@@ -722,24 +717,23 @@ class WithPCL(unittest.TestCase):
 
     def test_parts_become_one_database(self):
         models = {"box": box(), "lamp": lamp(), "plate": box((1.0, 0.9, 0.1))}
-        with tempfile.TemporaryDirectory() as folder:
-            parts = [Path(folder) / f"{name}.db" for name in models]
-            for part, (name, points) in zip(parts, models.items()):
-                pcl_symmetry.Database(part, create=True, unit="m").add(name, points)
-            merged, whole = pcl_symmetry.Database(Path(folder) / "merged.db", create=True), pcl_symmetry.Database(":memory:", unit="m")
-            self.assertEqual(merged.merge(parts), 3)
-            whole.build(models)
-            for points in models.values():
-                found = [[(m.name, m.distance) for m in each.match(points, viewpoint=None)] for each in (merged, whole)]
-                self.assertEqual(*found)
-            with self.assertRaisesRegex(OSError, "box.db: model 'box' is also in .*merged.db, names must differ"):
-                merged.merge(parts[:1])
-            with self.assertRaisesRegex(OSError, "unit = 'm', must be 'mm' as in"):
-                pcl_symmetry.Database(":memory:", unit="mm").merge(parts)
-            with self.assertRaisesRegex(ValueError, "unit = 'mm', must be 'm' as in .*box.db"):
-                pcl_symmetry.Database(parts[0], unit="mm")
-            self.assertEqual(pcl_symmetry.Database(parts[0], unit="m").unit, "m")
-            self.assertEqual(len(merged), 3)
+        parts = [self.folder / f"{name}.db" for name in models]
+        for part, (name, points) in zip(parts, models.items()):
+            pcl_symmetry.Database(part, create=True, unit="m").add(name, points)
+        merged, whole = pcl_symmetry.Database(self.folder / "merged.db", create=True), pcl_symmetry.Database(":memory:", unit="m")
+        self.assertEqual(merged.merge(parts), 3)
+        whole.build(models)
+        for points in models.values():
+            found = [[(m.name, m.distance) for m in each.match(points, viewpoint=None)] for each in (merged, whole)]
+            self.assertEqual(*found)
+        with self.assertRaisesRegex(OSError, "box.db: model 'box' is also in .*merged.db, names must differ"):
+            merged.merge(parts[:1])
+        with self.assertRaisesRegex(OSError, "unit = 'm', must be 'mm' as in"):
+            pcl_symmetry.Database(":memory:", unit="mm").merge(parts)
+        with self.assertRaisesRegex(ValueError, "unit = 'mm', must be 'm' as in .*box.db"):
+            pcl_symmetry.Database(parts[0], unit="mm")
+        self.assertEqual(pcl_symmetry.Database(parts[0], unit="m").unit, "m")
+        self.assertEqual(len(merged), 3)
 
 
 class FarFromTheOrigin(unittest.TestCase):
@@ -864,7 +858,7 @@ class Processes(unittest.TestCase):
         self.assertEqual(result.stdout.strip(), "[3, 3, 3]", result.stderr)
 
 
-class Package(unittest.TestCase):
+class Package(ToolTest):
     def test_public_names_are_listed_and_documented(self):
         public = [name for name in dir(pcl_symmetry) if not name.startswith("_")]
         self.assertLess({*pcl_symmetry.__all__, "Planes", "Scene", "Merging"}, {*public})
@@ -884,10 +878,9 @@ class Package(unittest.TestCase):
             "from pcl_symmetry import *\n"
             "print([name in dir(pcl_symmetry) or hasattr(pcl_symmetry, name) for name in ('Database', 'register')])\n"
         )
-        with tempfile.TemporaryDirectory() as folder:
-            copied = Path(folder) / "pcl_symmetry"
-            shutil.copytree(Path(pcl_symmetry.__file__).parent, copied, ignore=shutil.ignore_patterns("_recognition*.so"))
-            result = subprocess.run([sys.executable, "-c", code], cwd=folder, env={}, capture_output=True, text=True)
+        copied = self.folder / "pcl_symmetry"
+        shutil.copytree(Path(pcl_symmetry.__file__).parent, copied, ignore=shutil.ignore_patterns("_recognition*.so"))
+        result = subprocess.run([sys.executable, "-c", code], cwd=self.folder, env={}, capture_output=True, text=True)
         self.assertEqual((result.stdout, result.stderr), ("[False, False]\n", ""))
 
     def test_wrong_arguments_are_named_with_their_rule(self):
@@ -994,24 +987,23 @@ class Package(unittest.TestCase):
         if subprocess.run([sys.executable, "-m", "mypy", "--version"], capture_output=True).returncode:
             self.skipTest("mypy is not installed (Debian package mypy)")
         root = Path(__file__).resolve().parents[2]
-        with tempfile.TemporaryDirectory() as folder:
-            checked = [Path(folder) / "uses.py", root / "apps/examples/14_depth_camera.py"]
-            checked[0].write_text(
-                "import pcl_symmetry as s\n"
-                "found = s.planes([[0.0, 0.0, 0.0]])\n"
-                "kinds: list[str] = [plane.kind for plane in found[1:]] + [found[0].kind]\n"
-                "views: list[s.View] = s.viewpoints(found)\n"
-            )
-            for page in ("README.md", "apps/README.md", *sorted(map(str, (root / "src/pages").rglob("*.md")))):
-                for i, block in enumerate(re.findall(r"```python\n(.*?)```", (root / page).read_text(), re.S)):
-                    checked.append(Path(folder) / f"{Path(page).stem.lower()}_{i}.py")
-                    checked[-1].write_text(block)
-            package = Path(pcl_symmetry.__file__).parent
-            path = {} if package.parent.name.endswith("-packages") else {"MYPYPATH": str(package.parent)}
-            command = [sys.executable, "-m", "mypy", "--strict", "--ignore-missing-imports", "--cache-dir", folder]
-            result = subprocess.run(
-                [*command, package, *checked], cwd=folder, env=path, capture_output=True, text=True
-            )
+        checked = [self.folder / "uses.py", root / "apps/examples/14_depth_camera.py"]
+        checked[0].write_text(
+            "import pcl_symmetry as s\n"
+            "found = s.planes([[0.0, 0.0, 0.0]])\n"
+            "kinds: list[str] = [plane.kind for plane in found[1:]] + [found[0].kind]\n"
+            "views: list[s.View] = s.viewpoints(found)\n"
+        )
+        for page in ("README.md", "apps/README.md", *sorted(map(str, (root / "src/pages").rglob("*.md")))):
+            for i, block in enumerate(re.findall(r"```python\n(.*?)```", (root / page).read_text(), re.S)):
+                checked.append(self.folder / f"{Path(page).stem.lower()}_{i}.py")
+                checked[-1].write_text(block)
+        package = Path(pcl_symmetry.__file__).parent
+        path = {} if package.parent.name.endswith("-packages") else {"MYPYPATH": str(package.parent)}
+        command = [sys.executable, "-m", "mypy", "--strict", "--ignore-missing-imports", "--cache-dir", self.folder]
+        result = subprocess.run(
+            [*command, package, *checked], cwd=self.folder, env=path, capture_output=True, text=True
+        )
         self.assertEqual(result.returncode, 0, result.stdout + result.stderr)
 
     def test_its_version_is_printed_and_that_of_its_files(self):
