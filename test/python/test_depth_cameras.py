@@ -20,7 +20,7 @@ from pathlib import Path
 
 import pcl_symmetry
 from tool_run import ToolTest, np, off, pcd, points_on_sphere
-from test_pcl_symmetry import Mesh, bar, box, box_mesh, bumped, has_pcl, lamp
+from test_pcl_symmetry import Mesh, bar, box, box_mesh, bumped, has_pcl, lamp, needs_pcl
 
 INTRINSICS = (300.0, 300.0, 160.0, 120.0)
 
@@ -194,7 +194,7 @@ class DepthImages(unittest.TestCase):
             pcl_symmetry.from_depth(depth, of_another)
 
 
-@unittest.skipUnless(has_pcl(), "the module was built without PCL")
+@needs_pcl
 class OrganizedArrays(ToolTest):
     def setUp(self):
         super().setUp()
@@ -399,16 +399,10 @@ class OrganizedArrays(ToolTest):
         self.assertEqual(recognized[0].name, "first")
         self.assertEqual(len(database.match(np.where((self.labels == 1)[..., None], self.frame, np.nan))), 3)
 
-
     def assert_follow(self, found, schema, **only_of_tools):
         """The JSON of a result, or of a dict, is that of the tools."""
-        try:
-            import jsonschema
-        except ImportError:
-            self.skipTest("jsonschema is not installed (Debian package python3-jsonschema)")
         text = found.to_json() if hasattr(found, "to_json") else json.dumps(found)
-        path = Path(__file__).resolve().parents[2] / f"apps/schemas/{schema}.schema.json"
-        jsonschema.Draft202012Validator(json.loads(path.read_text())).validate({**json.loads(text, parse_constant=self.fail), **only_of_tools})
+        self.assert_follows({**json.loads(text, parse_constant=self.fail), **only_of_tools}, schema)
 
     def test_results_have_the_json_of_the_tools(self):
         only = dict(file="-", timing_ms={})
@@ -559,7 +553,7 @@ class LongCalls(ToolTest):
             seconds = self.seconds_to_stop(lambda: call(pcl_symmetry, points))
             self.assertLess(seconds, 2.0, name)  # four times the limit on an idle machine
 
-    @unittest.skipUnless(has_pcl(), "the module was built without PCL")
+    @needs_pcl
     def test_keep_what_they_built(self):
         path = self.folder / "models.db"
         models = {f"{i:04}": box((1, 0.5 + 0.001 * i, 0.3), 2000, i) for i in range(400)}
@@ -625,7 +619,7 @@ class Pages(ToolTest):
         self.assertGreater(rod[:, : rod.shape[1] // 2].any(axis=1).sum(), 100, "rows of pixels that show the axis")
 
 
-@unittest.skipUnless(has_pcl(), "the module was built without PCL")
+@needs_pcl
 class Example(ToolTest):
     def test_of_typical_use_runs(self):
         example = Path(__file__).resolve().parents[2] / "apps/examples/14_depth_camera.py"

@@ -76,11 +76,9 @@ class Views(unittest.TestCase):
         if subprocess.run(["bash", GALLERY.parent / "fetch_meshes.sh", folder, "bull", "elephant"], capture_output=True).returncode:
             self.skipTest("no meshes")
         for name in ("bull", "elephant"):
-            numbers = np.array((folder / f"{name}.off").read_text().split()[1:], float)
-            vertices, triangles = np.split(numbers[3:], [3 * int(numbers[0])])
-            shape = vertices.reshape(-1, 3).astype("f"), triangles.reshape(-1, 4)[:, 1:].astype(int)
+            shape = pcl_symmetry.read(folder / f"{name}.off")
             for seed in (1, 2, 3):
-                planes = pcl_symmetry.planes(pcl_symmetry.sample_mesh(*shape, seed=seed), approximate=True)
+                planes = pcl_symmetry.planes(pcl_symmetry.sample_mesh(shape, seed=seed), approximate=True)
                 normals, weights = zip(*((plane.normal, plane.score) for plane in planes.every))
                 scores = np.abs(DIRECTIONS @ np.transpose(normals)) @ weights
                 best, worst = pcl_symmetry.viewpoints(planes)[0].direction, DIRECTIONS[scores.argmin()]

@@ -1,10 +1,9 @@
 """Poses of scans of bodies without symmetry: what overlaps decides."""
 import unittest
-from pathlib import Path
-
-import numpy as np
 
 import pcl_symmetry
+from test_pcl_symmetry import needs_pcl
+from tool_run import np
 
 
 def body(seed, num_points=40_000):
@@ -51,7 +50,7 @@ def degrees(a, b):
     return np.degrees(np.arccos(np.clip((np.trace(a[:3, :3].T @ b[:3, :3]) - 1) / 2, -1, 1)))
 
 
-@unittest.skipUnless(any(Path(pcl_symmetry.__file__).parent.glob("_recognition*.so")), "the module was built without PCL")
+@needs_pcl
 class Registration(unittest.TestCase):
     def test_two_scans_that_share_a_half_converge(self):
         for seed in range(4):

@@ -3,6 +3,7 @@ import json
 import unittest
 
 import tool_run
+from test_scene import block
 from tool_run import ToolTest, np
 
 SEAT, BACK = ((0, 0, 0), (1, 1, 0.2)), ((0, 0.9, 1.1), (0.8, 0.1, 0.9))  # center and half size; one plane of symmetry, x = 0
@@ -138,12 +139,7 @@ class Align(ToolTest):
         """How many reflections of the points, in the plane of the chair, its scanner cannot see."""
         eye, *points = np.linalg.solve(model, np.vstack([np.vstack([viewpoint, points]).T, np.ones(len(points) + 1)]))[:3].T
         rays = np.array(points) * (-1, 1, 1) - eye
-        first = np.full(len(rays), np.inf)
-        for center, half in (SEAT, BACK):
-            a, b = ((np.array(center) + side * np.array(half) - eye) / rays for side in (-1, 1))
-            enters, leaves = np.minimum(a, b).max(axis=1), np.maximum(a, b).min(axis=1)
-            first = np.where(enters <= leaves, np.minimum(first, enters), first)
-        return (first < 0.99).sum()
+        return (np.min([block(*part)(eye, rays) for part in (SEAT, BACK)], axis=0) < 0.99).sum()
 
     def test_completes_a_scan_and_marks_what_it_adds(self):
         scan, model = self.scan()
@@ -208,10 +204,10 @@ class Align(ToolTest):
         self.assertLess(found["greatest_asymmetry"], 0.025)
         self.assertEqual([len(found["landmarks"][key]) for key in ("paired", "midline")], [1, 1])
         self.assertIn("from its own reflection, exact with -cut\nlandmarks: object asymmetry", self.output)
-        header, body = self.text("s.ply").split("end_header\n")
+        header, vertices, _ = tool_run.ply_text(self.text("s.ply"))
         self.assertIn("element face 6\n", header)
         self.assertIn("property float asymmetry\n", header)
-        self.assertTrue(np.isfinite(float(body.splitlines()[3].split()[3])))
+        self.assertTrue(np.isfinite(vertices[3, 3]))
         self.run_tool(mesh, "c.ply -symmetrize mean -cut")
         self.run_tool(self.write("even.off", tool_run.off(tool_run.box_corners(2, 1.5, 1), tool_run.BOX_FACES)), "-symmetrize mean -html c.html")
         self.assertIn("no asymmetry beyond the rounding of coordinates", self.text("c.html"))
@@ -230,9 +226,7 @@ class Align(ToolTest):
             mesh = self.write("lean.off", tool_run.off(corners, faces))
             for flags in ("-symmetrize mean", "-symmetrize left -cut"):
                 found = self.report(mesh, "c.ply -seed 3 " + flags)
-                body = self.text("c.ply").split("end_header\n")
-                count = int(body[0].split("element vertex ")[1].split()[0])
-                points = np.array([line.split()[:3] for line in body[1].splitlines()[:count]], float)
+                points = tool_run.ply_text(self.text("c.ply"))[1][:, :3]
                 reflected = points * (-1, 1, 1)
                 if "-cut" in flags:  # without, vertices have no partners
                     apart = np.linalg.norm(points[:, None] - reflected, axis=2).min(axis=1)

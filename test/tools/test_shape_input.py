@@ -19,6 +19,22 @@ def rows(line="{} {} {}\n", points=POINTS):
     return "".join(line.format(*point) for point in points)
 
 
+def meshes(corners=CORNERS, xyz=XYZ):
+    """A triangle and a square as text of each kind."""
+    vertices = rows(points=corners)
+    return {"a.off": "OFF\n4 2 0\n" + vertices + FACES, "a.obj": rows("v {} {} {}\n", corners) + "f 1 2 3\nf 1 2 3 4\n",
+            "a.ply": ply("ascii", "element vertex 4\n" + xyz + FACE_LIST, vertices, FACES).decode()}  # fmt: skip
+
+
+def facet(*corners):
+    """Of STL as text."""
+    vertices = rows("   vertex {} {} {}\n", CORNERS[list(corners)])
+    return f" facet normal 0 0 1\n  outer loop\n{vertices}  endloop\n endfacet\n"
+
+
+SQUARE_STL = f"solid s\n{facet(0, 1, 2)}{facet(0, 2, 3)}endsolid s\n"
+
+
 def little(kind, *values):
     return np.array(values, "<" + kind).tobytes()
 
@@ -32,12 +48,9 @@ class ShapeInput(ToolTest):
         if content is not None:
             self.write(name, content)
         self.run_tool(name, "out.ply -parts 1 -threads 1")
-        header, body = self.text("out.ply").split("end_header\n")
-        lines = [line.split() for line in body.splitlines()]
+        header, vertices, polygons = tool_run.ply_text(self.text("out.ply"))
         self.assertIn("element face", header)
-        count = int(header.split("element vertex ")[1].split()[0])
-        polygons = [list(map(int, line[1:1 + int(line[0])])) for line in lines[count:]]
-        return np.array(lines[:count], float), polygons, header.split("property ")[1].split()[0]
+        return vertices, polygons, header.split("property ")[1].split()[0]
 
     def cloud(self, name, content=None):
         """The points of a cloud with all their fields, and the header of PCD."""
@@ -52,12 +65,10 @@ class ShapeInput(ToolTest):
         return points
 
     def test_meshes_of_every_kind(self):
-        for name, content in (("plain.off", "OFF\n4 2 0\n" + SQUARE + FACES),
+        for name, content in (*meshes().items(),
                               ("same_line.off", "OFF 4 2 0\n# comment\n" + SQUARE + "3 0 1 2 255 0 0\n4 0 1 2 3\n"),
                               ("glued.OFF", "OFF4 2 0\n" + SQUARE + FACES + "2 0 1\n"),
-                              ("color.off", "COFF\n4 2 0\n" + rows("{} {} {} 9 9 9 9\n", CORNERS) + FACES),
-                              ("text.obj", rows("v {} {} {}\n", CORNERS) + "f 1 2 3\nf 1 2 3 4\n"),
-                              ("text.ply", ply("ascii", "element vertex 4\n" + XYZ + FACE_LIST, SQUARE, FACES))):
+                              ("color.off", "COFF\n4 2 0\n" + rows("{} {} {} 9 9 9 9\n", CORNERS) + FACES)):
             vertices, polygons, kind = self.mesh(name, content)
             np.testing.assert_array_equal(vertices, CORNERS, name)
             self.assertEqual((polygons, kind), ([[0, 1, 2], [0, 1, 2, 3]], "float"), name)
@@ -68,12 +79,7 @@ class ShapeInput(ToolTest):
         self.assert_points("a.off", "OFF\n30 0 0\n" + rows())
 
     def test_corners_of_stl_are_joined(self):
-        def facet(*corners):
-            vertices = rows("   vertex {} {} {}\n", CORNERS[list(corners)])
-            return f" facet normal 0 0 1\n  outer loop\n{vertices}  endloop\n endfacet\n"
-
-        text = f"solid s\n{facet(0, 1, 2)}{facet(0, 2, 3)}endsolid s\n"
-        for content in (text, text.upper(), "\n\n" + text, "# made by hand\n" + text, "\t" + text):
+        for content in (SQUARE_STL, SQUARE_STL.upper(), *(before + SQUARE_STL for before in ("\n\n", "# made by hand\n", "\t"))):
             vertices, polygons, _ = self.mesh("square.stl", content)
             np.testing.assert_array_equal(vertices[polygons[0]], CORNERS[:3], content)
             self.assertEqual((len(vertices), len(polygons)), (4, 2))
@@ -90,12 +96,8 @@ class ShapeInput(ToolTest):
             self.assertIn(f"its count, {count} for 2 triangles", self.error)
 
     def test_marks_of_text_are_no_text(self):
-        stl = "".join(f"facet normal 0 0 1\nouter loop\n{rows('vertex {} {} {}' + chr(10), CORNERS[corners])}endloop\nendfacet\n"
-                      for corners in ([0, 1, 2], [0, 2, 3]))
-        texts = {"a.obj": rows("v {} {} {}\n", CORNERS) + "f 1 2 3\nf 1 2 3 4\n", "a.off": "OFF\n4 2 0\n" + SQUARE + FACES,
-                 "a.ply": ply("ascii", "element vertex 4\n" + XYZ + FACE_LIST, SQUARE, FACES).decode(), "a.stl": f"solid s\n{stl}endsolid s\n"}
         for encoding in ("utf-8-sig", "utf-16"):
-            for name, text in texts.items():
+            for name, text in {**meshes(), "a.stl": SQUARE_STL}.items():
                 vertices, polygons, _ = self.mesh(name, text.encode(encoding))
                 self.assertEqual((len(vertices), len(polygons)), (4, 2), (name, encoding))
             self.assert_points("a.xyz", rows().encode(encoding))
@@ -123,10 +125,8 @@ class ShapeInput(ToolTest):
     def test_coordinates_that_float_cannot_hold_are_shifted(self):
         """Map coordinates in meters; the spacing of float there is half a meter. The shift is exact."""
         far = np.array([500000.25, 5000000.125, 100])
-        corners, doubles = CORNERS + far, XYZ.replace("float", "double")
-        for name, content in (("a.off", "OFF\n4 2 0\n" + rows(points=corners) + FACES),
-                              ("a.obj", rows("v {} {} {}\n", corners) + "f 1 2 3\nf 1 2 3 4\n"),
-                              ("a.ply", ply("ascii", "element vertex 4\n" + doubles + FACE_LIST, rows(points=corners), FACES))):
+        corners = CORNERS + far
+        for name, content in meshes(corners, XYZ.replace("float", "double")).items():
             vertices, _, kind = self.mesh(name, content)
             np.testing.assert_array_equal(vertices, corners, name)
             self.assertEqual(kind, "double", "of the input frame")

@@ -22,6 +22,7 @@ def need(*packages):
 
 np, Image = need("numpy", "PIL.Image")
 TOOLS = Path(os.environ.get("TOOLS", ""))  # their folder
+SCHEMAS = Path(__file__).resolve().parents[2] / "apps/schemas"
 
 
 class ToolTest(unittest.TestCase):
@@ -55,6 +56,15 @@ class ToolTest(unittest.TestCase):
         """Runs a tool that must not fail. Returns what it reports."""
         self.run_tool(*arguments, "-json report.json", **options)
         return json.loads(self.text("report.json"))
+
+    def assert_follows(self, document, schema):
+        try:
+            import jsonschema
+        except ImportError:
+            self.skipTest("jsonschema is not installed (Debian package python3-jsonschema)")
+        schema = json.loads((SCHEMAS / f"{schema}.schema.json").read_text())
+        jsonschema.Draft202012Validator.check_schema(schema)
+        jsonschema.Draft202012Validator(schema).validate(document)
 
     def fails(self, code, words, *arguments, **options):
         """The tool ends with this exit code and these words among its errors."""
@@ -204,6 +214,13 @@ def ply_points(path):
     count, properties = re.search(r"element vertex (\d+)\n((?:property [a-z0-9]+ \w+\n)+)", header).groups()
     names = [line.split()[1:] for line in properties.splitlines()]
     return np.frombuffer(body, [(name, types[kind]) for kind, name in names], int(count)), header
+
+
+def ply_text(text):
+    """Header, vertices and polygons of a mesh in a PLY file of text."""
+    header, body = text.split("end_header\n")
+    lines, count = [line.split() for line in body.splitlines()], int(header.split("element vertex ")[1].split()[0])
+    return header, np.array(lines[:count], float), [[int(word) for word in line[1:1 + int(line[0])]] for line in lines[count:]]
 
 
 def xyz(points):
