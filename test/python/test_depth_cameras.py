@@ -19,35 +19,29 @@ import warnings
 from pathlib import Path
 
 import pcl_symmetry
+from test_scene import block
 from tool_run import ToolTest, np, off, pcd, points_on_sphere
 from test_pcl_symmetry import Mesh, bar, box, box_mesh, bumped, has_pcl, lamp, needs_pcl
 
 INTRINSICS = (300.0, 300.0, 160.0, 120.0)
 
 
-def table(blocks=(((-0.35, -0.3, -0.1), (-0.05, 0, 0.15)), ((0.1, -0.2, -0.05), (0.35, 0, 0.1))), dome=0.0):
-    """(240, 320) depths of blocks on a table, seen from above and in front, and the block of each pixel, from 1.
+def table(blocks=(((-0.2, -0.15, 0.025), (0.15, 0.15, 0.125)), ((0.225, -0.1, 0.025), (0.125, 0.1, 0.075))), dome=0.0):
+    """(240, 320) depths of blocks (center, half size) on a table, seen from above and in front, and the block of each pixel, from 1.
 
     dome: where it is not 0, x^2 + z^2 = dome (0.4 - height) is on the table.
     """
-    v, u = np.indices((240, 320))
+    v, u = np.indices((240, 320)).reshape(2, -1)
     fx, fy, cx, cy = INTRINSICS
-    rays = np.stack([(u - cx) / fx, (v - cy) / fy, np.ones(u.shape)], axis=2)
-    rays = rays @ np.array([[1, 0, 0], [0, 0.8, 0.6], [0, -0.6, 0.8]]).T
-    camera = np.array([0, -0.9, -1.2])
+    rays = np.stack([(u - cx) / fx, (v - cy) / fy, np.ones(u.shape)], axis=1) @ np.array([[1, 0, 0], [0, 0.8, 0.6], [0, -0.6, 0.8]]).T
+    eye = np.array([0, -0.9, -1.2])
     with np.errstate(divide="ignore", invalid="ignore"):
-        depth = np.where(rays[..., 1] > 1e-9, -camera[1] / rays[..., 1], np.inf)
-        labels = np.zeros(u.shape, int)
-        for k, corners in enumerate(blocks):
-            first, second = ((np.array(corner) - camera) / rays for corner in corners)
-            enters, leaves = np.minimum(first, second).max(axis=2), np.maximum(first, second).min(axis=2)
-            hit = (enters < leaves) & (enters > 0) & (enters < depth)
-            depth[hit], labels[hit] = enters[hit], k + 1
+        distances = [np.where(rays[:, 1] > 1e-9, -eye[1] / rays[:, 1], np.inf), *(block(*each)(eye, rays) for each in blocks)]
         if dome:
-            a, b, c = (rays[..., ::2] ** 2).sum(axis=2), -2.4 * rays[..., 2] - dome * rays[..., 1], 1.44 + 0.5 * dome
-            enters = (-b - np.sqrt(b**2 - 4 * a * c)) / (2 * a)
-            depth = np.where(enters < depth, enters, depth)
-    return np.where(depth < 4, depth, 0), labels
+            a, b, c = (rays[:, ::2] ** 2).sum(axis=1), -2.4 * rays[:, 2] - dome * rays[:, 1], 1.44 + 0.5 * dome
+            distances[0] = np.fmin(distances[0], (-b - np.sqrt(b**2 - 4 * a * c)) / (2 * a))
+    depth = np.min(distances, axis=0)
+    return np.where(depth < 4, depth, 0).reshape(240, 320), np.argmin(distances, axis=0).reshape(240, 320)
 
 
 def seen_half(points, viewpoint):
