@@ -186,7 +186,3 @@ class Runs(ToolTest):
         self.assertEqual((rc, told), (0, f"{self.folder}/bad.off: is no mesh that can be read, it ends too early"))
         result = json.loads(self.text("out.json"))
         self.assertEqual(result["groups"]["whole"]["decided_right"]["count"], 1)
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -15,7 +15,6 @@ import threading
 import time
 import types
 import unittest
-import warnings
 from pathlib import Path
 
 import pcl_symmetry
@@ -626,8 +625,3 @@ class Example(ToolTest):
         np.save(depth, table((), 0.1)[0])
         ran = subprocess.run([*ran.args, depth, *map(str, INTRINSICS)], capture_output=True, text=True)
         self.assertRegex(ran.stdout, r"  body of revolution about (.|\n)*mask: 0 planes, [1-9]", ran.stderr)
-
-
-if __name__ == "__main__":
-    warnings.simplefilter("ignore", RuntimeWarning)
-    unittest.main()

@@ -635,7 +635,3 @@ class Decisions(Detection):
         sheet = pcl_symmetry.planes(np.stack([x, y, 0.3 * np.cos(3 * x) + 0.2 * np.sin(4 * y)], axis=1))
         self.assertTrue(calls(sheet))
         self.assertGreater(abs(sheet[0].normal[0]), np.cos(DEGREE), "alike on both sides")
-
-
-if __name__ == "__main__":
-    unittest.main()

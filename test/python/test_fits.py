@@ -4,7 +4,7 @@ import contextlib
 import io
 import pathlib
 import types
-import unittest
+from unittest import mock
 
 from tool_run import ToolTest, need
 
@@ -52,6 +52,7 @@ class Fits(ToolTest):
     def test_numbers_are_rounded_by_their_errors(self):
         self.assertEqual(fits.rounded([1.23456, -12.3456, 0.5], [0.1, 4.0, 100]), ["1.235", "-12.35", "0"])
 
+    @mock.patch("sys.argv", ["fit_planes.py"])
     def test_planes_write_the_same_header_twice(self):
         rows, texts = made_up_rows(np.random.default_rng(2)), []
         for name in ("a.h", "b.h"):
@@ -61,7 +62,7 @@ class Fits(ToolTest):
             fits.write_header(arguments, fit_planes.header(table, fit, errors), (["<array>"],))
             texts.append(pathlib.Path(self.folder, name).read_bytes())
         self.assertEqual(*texts)
-        self.assertIn(b"test_fits.py --fold 0; do not edit", texts[0])
+        self.assertIn(b"fit_planes.py --fold 0; do not edit", texts[0])
         self.assertIn(b"kConfidenceFit", texts[0])
         for kind in range(3):
             self.assertLess(abs(fit[kind][1] + 2), 4 * errors[kind][1])
@@ -99,7 +100,3 @@ class Fits(ToolTest):
         self.assertIn("1.000, 2.000", fit_frames.header([two, two], 3, 1))
         weights = np.ones(9), np.full(9, 0.1), 0.1, 5
         self.assertEqual(fit_segments.header({"concavity": weights}, 1).count("1.000"), 9)
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -159,7 +159,3 @@ class MedialAxis(ToolTest):
             self.assertTrue(is_dark(x, y), (x, y))
         for x, y in [(0, 0.25), (0.85, 0)]:
             self.assertFalse(is_dark(x, y), (x, y))
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -236,7 +236,3 @@ class Names(unittest.TestCase):
         for k in (1, 2):
             self.assertGreater((depths.argmin(0)[found.labels == k] == k).mean(), 0.97)
         self.assertEqual([junction.objects for junction in found.junctions], [(0, 1)])
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -1023,7 +1023,3 @@ class Package(ToolTest):
     def test_numpy_is_imported_by_the_first_call(self):
         code = "import sys, pcl_symmetry; print('numpy' in sys.modules)"
         self.assertEqual(subprocess.check_output([sys.executable, "-c", code], text=True), "False\n")
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -129,7 +129,3 @@ class Registration(unittest.TestCase):
             found = pcl_symmetry.register(source[:30], source, threads=1)
         self.assertFalse(found.converged)
         self.assertEqual(found.reason, "source: 30 points, must be at least 100")
-
-
-if __name__ == "__main__":
-    unittest.main()

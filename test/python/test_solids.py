@@ -57,7 +57,3 @@ class Solids(unittest.TestCase):
             for motion in found.discrete:
                 axis = np.linalg.svd(motion[:3, :3] - np.eye(3))[2][2]
                 self.assertGreater(abs(axis @ turn[:, 2]), np.cos(np.radians(0.1)))
-
-
-if __name__ == "__main__":
-    unittest.main()

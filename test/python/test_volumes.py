@@ -144,7 +144,3 @@ class Volumes(unittest.TestCase):
             pcl_symmetry.transform(**self.arguments, sigma=1)
         with self.assertRaisesRegex(TypeError, "at: positions in a volume"):
             pcl_symmetry.local_symmetry(**self.arguments)
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -244,7 +244,3 @@ class Align(ToolTest):
         half = len(points) // 2
         np.testing.assert_array_equal(points["reflected_of"][half:], np.arange(half))
         self.assert_reflected(points, half)
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -1,6 +1,5 @@
 """The tool of symmetries of object models: files of the BOP benchmark, of DOPE and of Isaac, and colors."""
 import json
-import unittest
 
 import tool_run
 from tool_run import ToolTest, np
@@ -276,7 +275,3 @@ class Bop(ToolTest):
         self.assertIn("obj_1.ply  group O", self.output)
         self.assertIn("obj_2.ply  group C1", self.output, "v runs from bottom to top: half of that side is red")
         self.fails(1, "missing.png", self.write("obj_3.ply", textured_cube("missing.png", True)), "-quiet -color")
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -6,7 +6,6 @@ import json
 import os
 import resource
 import subprocess
-import unittest
 
 import tool_run
 from tool_run import ToolTest
@@ -302,7 +301,3 @@ class ManyInputs(ToolTest):
         self.fails(1, "nowhere: no such file", "@nowhere")
         (self.folder / "empty").mkdir()
         self.fails(1, "empty: holds no file of type .pcd", "empty")
-
-
-if __name__ == "__main__":
-    unittest.main()

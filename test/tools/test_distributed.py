@@ -5,7 +5,6 @@ import subprocess
 import sys
 import tempfile
 import time
-import unittest
 from pathlib import Path
 
 import tool_run
@@ -136,7 +135,3 @@ class Distributed(ToolTest):
         self.assertEqual(run.returncode, 1)
         self.assertIn("no_such_tool", output)
         self.assertNotIn("Traceback", output)
-
-
-if __name__ == "__main__":
-    unittest.main()

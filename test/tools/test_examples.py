@@ -1,7 +1,6 @@
 """The examples, run on a scan of a box, on a whole box, and on the box on a table."""
 import os
 import subprocess
-import unittest
 from pathlib import Path
 
 import tool_run
@@ -44,7 +43,3 @@ class Examples(ToolTest):
                 self.assertEqual({part: done.stdout.count(part) for part in counted}, counted)
                 if written:
                     self.assertIn(written, self.text("out.pcd"))
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -63,7 +63,3 @@ class Field(ToolTest):
     def test_a_smooth_slope_has_none(self):
         """97 % of it lie within 1.7 tolerances of their reflection: called a symmetry at 0.5 to 0.7."""
         self.assertEqual(len(self.symmetries("terrain/samp54-utm.pcd")[0]), 0)
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -1,6 +1,5 @@
 """Each way that a tool writes a file: the disk is full, and there is a message, status 1, and no stray file."""
 import subprocess
-import unittest
 
 import tool_run
 from tool_run import ToolTest
@@ -32,7 +31,3 @@ class FullDisk(ToolTest):
         for name, command in COMMANDS.items():
             self.assertIn(f"{name}: cannot be written", self.text(f"{name}.said"), command)
             self.assertEqual(self.text(f"{name}.left"), "1 full\n", command)
-
-
-if __name__ == "__main__":
-    unittest.main()

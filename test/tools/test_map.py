@@ -2,7 +2,6 @@
 import os
 import pty
 import subprocess
-import unittest
 
 import tool_run
 from tool_run import ToolTest, np
@@ -153,7 +152,3 @@ class Segment(ToolTest):
         self.run_tool(self.mesh, "out.obj", code=2)
         self.run_tool(self.mesh, "-parts -1", code=2)
         self.run_tool("none.off", code=1)
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -4,7 +4,6 @@ import os
 import signal
 import subprocess
 import time
-import unittest
 from pathlib import Path
 
 import tool_run
@@ -145,7 +144,3 @@ class Pictures(ToolTest):
         for tool, flags in (("planes", "-png a.png"), ("viewer", "-screenshot a.png")):
             self.fails(1, "Xvfb is missing", self.box, "-quiet", flags, tool=tool, env={**self.no_display, "PATH": "/nowhere"})
             self.assertEqual([path.name for path in self.folder.iterdir()], ["box.off"])
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -2,7 +2,6 @@
 import json
 import os
 import subprocess
-import unittest
 from pathlib import Path
 
 import tool_run
@@ -186,7 +185,3 @@ class Pipelines(ToolTest):
                 done = subprocess.run([tool_run.TOOLS / "pcl_symmetry_planes", self.a, *self.flags.split(), *flags.split()],
                                       stdout=full, stderr=subprocess.PIPE, check=False)
             self.assertEqual((done.returncode, b"standard output" in done.stderr), (1, True), flags)
-
-
-if __name__ == "__main__":
-    unittest.main()

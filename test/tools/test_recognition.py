@@ -1,7 +1,6 @@
 """The tools that describe shapes, keep models and find them again."""
 import json
 import sqlite3
-import unittest
 from pathlib import Path
 
 import tool_run
@@ -164,7 +163,3 @@ class Database(Recognition):
         self.fails(1, "shapes: is a folder, must be a file", "merge new.db shapes")
         self.run_tool("merge new.db first.db inches.db", code=1)
         self.assertFalse(Path(self.folder / "new.db").exists())
-
-
-if __name__ == "__main__":
-    unittest.main()

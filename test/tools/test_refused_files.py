@@ -4,7 +4,6 @@ import os
 import resource
 import struct
 import subprocess
-import unittest
 
 import tool_run
 from tool_run import ToolTest, np
@@ -184,7 +183,3 @@ class RefusedFiles(ToolTest):
         if os.geteuid() != 0:
             self.write("locked.pcd", "x").chmod(0)
             self.fails(1, "locked.pcd: cannot be opened", "locked.pcd")
-
-
-if __name__ == "__main__":
-    unittest.main()

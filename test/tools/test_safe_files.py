@@ -4,7 +4,6 @@ import resource
 import signal
 import subprocess
 import time
-import unittest
 
 import tool_run
 from tool_run import ToolTest, np
@@ -134,7 +133,3 @@ class SafeFiles(ToolTest):
     def test_clouds_have_no_other_kind(self):
         self.fails(2, "a.xyz", "box.off a.xyz", tool="scan")
         self.run_tool("box.off a.PCD -points 500", tool="scan")
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -1,5 +1,4 @@
 """The virtual scanner as a tool."""
-import unittest
 
 import tool_run
 from tool_run import ToolTest, np
@@ -148,7 +147,3 @@ class BoxScan(ToolTest):
         for arguments, cropped in ("-corner 7 -fov 22.9", True), ("-corner 7", False), ("-corner 7 -fov 34.4", False):
             self.assertEqual(self.scanned(arguments)[0]["cropped"], cropped)
             self.assertEqual("reaches beyond the picture" in self.error, cropped)
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -1,6 +1,5 @@
 """The tool of scenes: objects on a table, bodies that touch, vehicles around a LiDAR, and what is written of them."""
 import json
-import unittest
 
 import tool_run
 from tool_run import ToolTest, np, pcd
@@ -388,7 +387,3 @@ class Vehicles(ToolTest):
         self.assertGreater(abs(np.dot(plane["coefficients"][:3], (np.sin(0.3), np.cos(0.3), 0))), 0.99)
         support = tool_run.ply_points(self.folder / "s.ply")[0]["support_1"]
         self.assertAlmostEqual(np.isfinite(support).mean(), plane["seen"], delta=0.05)
-
-
-if __name__ == "__main__":
-    unittest.main()

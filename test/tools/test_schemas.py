@@ -1,6 +1,5 @@
 """The JSON that the tools write follows the schemas in apps/schemas."""
 import json
-import unittest
 
 import tool_run
 from tool_run import ToolTest
@@ -51,7 +50,3 @@ class Schemas(ToolTest):
         report = json.loads(self.text("a.json"))
         self.assert_follows(report, "bop_check")
         self.assertEqual((report["missing"], report["disagreeing"]), (["3"], 2))
-
-
-if __name__ == "__main__":
-    unittest.main()

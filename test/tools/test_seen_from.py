@@ -1,6 +1,5 @@
 """Where the scanner stood: told by the rays of an organized cloud, by the header, by the density of the points, or by the user."""
 import json
-import unittest
 
 from test_scene import block, camera, look
 from tool_run import ToolTest, np, pcd, points_on_box, points_on_sphere, random_pose
@@ -137,7 +136,3 @@ class SeenFrom(ToolTest):
             self.assertIn("0.1 by its stored viewpoint, -viewpoint says otherwise", self.error)
         path = self.write("turned.pcd", pcd(shell, len(shell)).replace(b"0 0 0 1 0 0 0", b"0 0 0 0 1 0 0"))
         self.assertEqual(self.report(path, "-quiet")["viewpoint"]["from"], "stored", "who turns the sensor has set its pose")
-
-
-if __name__ == "__main__":
-    unittest.main()

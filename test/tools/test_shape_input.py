@@ -2,7 +2,6 @@
 import os
 import struct
 import threading
-import unittest
 
 import tool_run
 from test_refused_files import SQUARE, XYZ, glb, pcd, ply
@@ -227,7 +226,3 @@ class ShapeInput(ToolTest):
             writer.start()
             self.assert_points(name, None)
             writer.join()
-
-
-if __name__ == "__main__":
-    unittest.main()

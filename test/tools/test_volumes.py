@@ -1,7 +1,6 @@
 """CT and MR volumes as files: the same plane from every format, and a sentence for bad ones."""
 import gzip
 import struct
-import unittest
 import zlib
 
 import tool_run
@@ -181,7 +180,3 @@ class Volumes(ToolTest):
         self.run_tool(good, "-levels 5,3", code=2)
         for flags in ("-as_published", "-tolerance 0.02", "-absolute_tolerance 1", "-ground 0,0,1,0"):
             self.fails(1, "of points", good, flags)
-
-
-if __name__ == "__main__":
-    unittest.main()
