@@ -1,4 +1,3 @@
-#!/usr/bin/env python3
 """What the example 13_distributed.py takes with some numbers of workers, and what a million models would cost.
 
 A row for each number of workers: seconds of the clock while models are described, the share of it that workers spend in

@@ -1,4 +1,3 @@
-#!/usr/bin/env python3
 """Error of the estimators of the transform against the time of one thread (Figure 6): a table and a picture.
 
 Root mean square and median over bins of the error of PRST, means of the meshes, n x n x n cells and bins. Voting estimates

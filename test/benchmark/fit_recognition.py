@@ -1,4 +1,3 @@
-#!/usr/bin/env python3
 """Fits the probability that a scan shows the model that fits it best, and writes the header of its weights.
 
 usage: PYTHONPATH=build/src/python python3 test/benchmark/fit_recognition.py PSB --classes train.cla --fold 0 --every 6 --real FILE...

@@ -1,4 +1,3 @@
-#!/usr/bin/env python3
 """Fits the probability that a pose of one cloud in another is right, and writes the header of its weights.
 
 usage: PYTHONPATH=build/src/python python3 test/benchmark/fit_registration.py PSB --classes train.cla --fold 0 --real FILE...

@@ -1,4 +1,3 @@
-#!/usr/bin/env python3
 """Canonical frames of scans against those of the whole models (Section 5.1 of the paper, Figure 12).
 
 A model is scanned from the corners of a cube. The frame of each scan is compared with that which the same method finds

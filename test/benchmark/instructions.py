@@ -1,4 +1,3 @@
-#!/usr/bin/env python3
 """How many instructions does one thread of the tools take, and in which stages? By callgrind, which counts the same on any day.
 
 Callgrind runs programs as on a processor with AVX2, 50 times slower. Writes inputs and profiles to FOLDER: the demo's cow as a mesh

@@ -1,4 +1,3 @@
-#!/usr/bin/env python3
 """How well planes of symmetry are found in clouds of models, and how well the detector refuses.
 
 planes.py PSB --classes train.cla --fold 2 --json planes.json

@@ -1,4 +1,3 @@
-#!/usr/bin/env python3
 """Is one build faster than another, and by how much? Both builds are of the preset "benchmark".
 
 Runs the stages of benchmark_speed with one thread, and a fresh process of pcl_symmetry_planes for each FILE, in both builds in

@@ -1,4 +1,3 @@
-#!/usr/bin/env python3
 """Symmetries of real things in frames of a Kinect and of a LiDAR.
 
 real_frames.py kinect data --tools build/apps           data: a clone of github.com/PointCloudLibrary/data

@@ -1,4 +1,3 @@
-#!/usr/bin/env python3
 """Known objects in frames of depth cameras: names and poses found, wrong names, unknown objects called known.
 
 usage: PYTHONPATH=build/src/python python3 test/benchmark/real_recognition.py FOLDER [--unknown FRAME.pcd ...]

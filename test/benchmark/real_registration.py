@@ -1,4 +1,3 @@
-#!/usr/bin/env python3
 """Registration of real scans with known poses, by what it is brought to: right, refused, wrong.
 
 usage: PYTHONPATH=build/src/python python3 test/benchmark/real_registration.py FOLDER [--kinds model scan impostor foreign] [--axes] [--seed N] [--rows FILE]

@@ -1,4 +1,3 @@
-#!/usr/bin/env python3
 """Which model a scan shows (Section 5.2): pcl_symmetry.Database on scans from one side.
 
 recognition.py PSB --classes train.cla --fold 1 --query-every 8 --json recognition.json

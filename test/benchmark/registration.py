@@ -1,4 +1,3 @@
-#!/usr/bin/env python3
 """Registration of scans to whole models, or to other scans, from any pose, and of tracks around a guess (Section 5.1).
 
 Right is within 5 degrees and 2 % of the diagonal, up to the rotations that map the model onto itself. With --impostors

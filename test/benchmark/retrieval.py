@@ -1,4 +1,3 @@
-#!/usr/bin/env python3
 """How well shapes find others of their class (Section 5.2): the descriptors of Figures 12 to 14, and this library's.
 
 retrieval.py PSB --classes train.cla --json retrieval.json --figure recall.png

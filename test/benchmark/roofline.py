@@ -1,4 +1,3 @@
-#!/usr/bin/env python3
 """How near is each stage to what this machine can do?
 
 The least time of a stage is the sum of the steps that its result needs whatever the algorithm (look-ups, nearest points,

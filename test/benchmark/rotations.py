@@ -1,4 +1,3 @@
-#!/usr/bin/env python3
 """Groups of rotations of solids made by code, of meshes, and of single scans, and the poses that they make equal.
 
 Without a folder: solids of known groups, in random poses (solids.py), and distances of poses under the groups that

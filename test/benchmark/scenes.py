@@ -1,4 +1,3 @@
-#!/usr/bin/env python3
 """Objects among others: planes in frames of a depth camera.
 
 scenes.py PSB --classes train.cla --fold 1 --every 3 --scenes 45 --noise 0,1 --most-in-band 60 --json scenes.json

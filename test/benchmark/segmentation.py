@@ -1,4 +1,3 @@
-#!/usr/bin/env python3
 """How close segmentations come to those that people made (Section 5.3): Princeton Segmentation Benchmark.
 
 segmentation.py PSEG/off --people PSEG/seg/Benchmark --remainders 2 --json parts.json

@@ -1,4 +1,3 @@
-#!/usr/bin/env python3
 """Decisions on shapes made by code, whose symmetries are known.
 
 shapes.py folds --half report       prisms, tubes, rims and cones of 2 to 24 folds, and round bodies, with noise

@@ -1,4 +1,3 @@
-#!/usr/bin/env python3
 """Scans of a turntable in one call of register_all(), against poses that are published with them.
 
 turntable.py FOLDER bunny buddha: FOLDER/index.json names of each scan its file, .ply, and T_object_scan. Right is within
