@@ -4,6 +4,7 @@ import copy
 import dataclasses
 import inspect
 import json
+import os
 import pickle
 import pydoc
 import re
@@ -519,8 +520,8 @@ class Meshes(ToolTest):
 
     def test_measures_a_bump_of_known_height(self):
         height, radius = 0.02, 0.5
-        plain, faces = bumped(160, 320, 0.0, radius)
-        vertices, _ = bumped(160, 320, height, radius)
+        plain, faces = bumped(120, 240, 0.0, radius)
+        vertices, _ = bumped(120, 240, height, radius)
         plane = pcl_symmetry.ReflectionPlane((1, 0, 0), 0.0)
         found = pcl_symmetry.symmetrize(vertices, plane, faces=faces)
         corners = vertices[faces]
@@ -761,7 +762,7 @@ class FarFromTheOrigin(unittest.TestCase):
         np.testing.assert_allclose(pcl_symmetry.describe(far), pcl_symmetry.describe(near), atol=1e-5)
         for a, b in zip(pcl_symmetry.descriptors(far), pcl_symmetry.descriptors(near)):
             np.testing.assert_allclose(a, b, atol=1e-5)
-        local_far, local_near = (pcl_symmetry.local_symmetry(points[::12], 1.0) for points in (far, near))
+        local_far, local_near = (pcl_symmetry.local_symmetry(points[::40], 1.0) for points in (far, near))
         np.testing.assert_allclose(local_far, local_near, atol=1e-5)
         np.testing.assert_array_equal(pcl_symmetry.segment(far[:2000]), pcl_symmetry.segment(near[:2000]))
         plane, moved = (pcl_symmetry.ReflectionPlane((1, 0, 0), offset) for offset in (0.0, self.SHIFT[0]))
@@ -1000,10 +1001,8 @@ class Package(ToolTest):
                 checked[-1].write_text(block)
         package = Path(pcl_symmetry.__file__).parent
         path = {} if package.parent.name.endswith("-packages") else {"MYPYPATH": str(package.parent)}
-        command = [sys.executable, "-m", "mypy", "--strict", "--ignore-missing-imports", "--cache-dir", self.folder]
-        result = subprocess.run(
-            [*command, package, *checked], cwd=self.folder, env=path, capture_output=True, text=True
-        )
+        command = [sys.executable, "-m", "mypy", "--strict", "--ignore-missing-imports", "--cache-dir", os.devnull]
+        result = subprocess.run([*command, package, *checked], cwd=self.folder, env=path, capture_output=True, text=True)
         self.assertEqual(result.returncode, 0, result.stdout + result.stderr)
 
     def test_its_version_is_printed_and_that_of_its_files(self):
