@@ -342,20 +342,20 @@ class OrganizedArrays(ToolTest):
             np.testing.assert_allclose(same.points[same.faces], vertices[faces], atol=1e-6)
         self.write("box.xyz", text("{} {} {}", vertices))
         np.testing.assert_array_equal(pcl_symmetry.read(self.folder / "box.xyz").points, vertices)
+        found, of_mesh, scene = pcl_symmetry.planes(scan), pcl_symmetry.planes(mesh), pcl_symmetry.scene(frame)
         by_name = [pcl_symmetry.planes(self.folder / each) for each in ("scan.pcd", "box.off")] + [pcl_symmetry.scene(str(self.folder / "frame.pcd"))]
-        self.assertEqual(by_name[0].show(self.folder / "scan.pcd").html, by_name[0].show(scan).html)
+        self.assertEqual(by_name, [found, of_mesh, scene])
+        self.assertEqual(found.show(self.folder / "scan.pcd").html, found.show(scan).html)
         database = pcl_symmetry.Database(":memory:")
         report = database.build({"box": self.folder / "box.stl", "none": str(self.folder / "none.pcd"), "scan": scan})
         self.assertEqual((database.names, [name for name, _ in report.failures]), (["box", "scan"], ["none"]))
         self.assertRegex(report.failures[0][1], "No such file or directory: .*none.pcd'$")
-        self.assertEqual(by_name, [pcl_symmetry.planes(scan), pcl_symmetry.planes(Mesh(vertices, faces)), pcl_symmetry.scene(frame)])
         np.testing.assert_array_equal(frame.points, self.frame)
         np.testing.assert_array_equal(np.asarray(frame), self.frame)
         self.assertEqual((frame.viewpoint, len(frame.faces), scan.points.dtype), (None, 0, np.float32))
-        self.assertEqual((len(pcl_symmetry.scene(frame)), pcl_symmetry.planes(frame, indices=self.labels == 1)._viewpoint_from), (2, "rays"))
+        self.assertEqual((len(scene), pcl_symmetry.planes(frame, indices=self.labels == 1)._viewpoint_from), (2, "rays"))
         np.testing.assert_array_equal(scan.viewpoint, viewpoint)
         given = pcl_symmetry.planes(rows, viewpoint=viewpoint)
-        found = pcl_symmetry.planes(scan)
         self.assertEqual([p.confidence for p in found], [p.confidence for p in given])
         np.testing.assert_allclose(found.viewpoint, viewpoint, atol=1e-12)
         self.assertEqual(found.to_dict()["viewpoint"]["from"], "stored")
@@ -369,8 +369,7 @@ class OrganizedArrays(ToolTest):
         among = dataclasses.replace(scan, viewpoint=np.zeros(3))
         self.assertEqual(pcl_symmetry.planes(among, approximate=True).viewpoint is None, pcl_symmetry.planes(rows).viewpoint is None, "cannot be")
         np.testing.assert_array_equal(mesh.faces, faces)
-        self.assertEqual([p.coefficients.tolist() for p in pcl_symmetry.planes(mesh)],
-                         [p.coefficients.tolist() for p in pcl_symmetry.planes(Mesh(vertices, faces))])
+        self.assertEqual(of_mesh, pcl_symmetry.planes(Mesh(vertices, faces)))
         self.assertEqual(pickle.loads(pickle.dumps(mesh)), mesh)
         self.assertEqual(repr(scan), f"Shape(points={rows.shape}, faces=0, viewpoint=[3, 2, 1.5])")
 
@@ -414,12 +413,12 @@ class OrganizedArrays(ToolTest):
         for each in points:
             frame = pcl_symmetry.frame(each)
             self.assert_follow(frame, "frame", timing_ms={})
-            view = pcl_symmetry.viewpoints(each)[0]
-            self.assert_follow(dict(up=[0, 0, 1], best=view.to_dict(), worst=view.to_dict(), good=[]), "views", **only)
             np.testing.assert_array_equal(json.loads(frame.to_json())["axes"][1], frame.axes[:, 1])
             symmetries = json.loads(pcl_symmetry.rotations(each).to_json())
             extent = {name: 1.0 for name in "diameter min_x min_y min_z size_x size_y size_z".split()}
             self.assert_follow({"1": {**extent, **{k: v for k, v in symmetries.items() if k.startswith("symm")}}}, "models_info")
+        view = pcl_symmetry.viewpoints(box())[0]
+        self.assert_follow(dict(up=[0, 0, 1], best=view.to_dict(), worst=view.to_dict(), good=[]), "views", **only)
         self.assert_follow(pcl_symmetry.register(scan, box((0.3, 0.3, 0.25))), "pose", fitness=0.0, timing_ms={})
         scans = [box(seed=1), box(seed=2) + np.float32(1), np.array([[0, 0, k] for k in range(500)])]
         merged = pcl_symmetry.register_all(scans, viewpoint=None)
