@@ -100,7 +100,7 @@ class Volumes(unittest.TestCase):
             self.assertLessEqual({plane.kind for plane in found.every}, {"approximate"})
 
     def test_of_a_ball_are_all_and_said_so(self):
-        self.phantom(ball)
+        self.phantom(ball, size=48)
         found = pcl_symmetry.planes(**self.arguments)
         self.assertEqual((len(found), found.reason), (0, "volume: the body is round, planes in all directions map it onto itself"))
 
@@ -110,7 +110,7 @@ class Volumes(unittest.TestCase):
         self.assert_plane(0.1, 0.2)
 
     def test_of_the_transform_are_those_of_the_search_by_every_method(self):
-        self.phantom()
+        self.phantom(size=48)
         for bins, options in (((16, 32, 33), dict(method="convolution")), ((16, 32, 33), dict(method="sampled")),
                               ((16, 32, 17), dict(method="rotational", cells=24, refined_share=0.1))):  # fmt: skip
             map_ = pcl_symmetry.transform(bins=bins, **options, **self.arguments)
@@ -124,7 +124,7 @@ class Volumes(unittest.TestCase):
                 self.assertGreater(map_.values.ravel()[near].max(), map_.values.ravel()[aside].max() + 0.1)
 
     def test_map_what_lies_on_them_onto_itself_at_any_scale(self):
-        self.phantom()
+        self.phantom(size=48)
         on_plane = self.shift + np.array([(0, 20, 10), (0, -30, 25), (0, 45, -20)]) @ self.turn.T
         beside = on_plane + 12 * self.turn[:, 0]
         for scale in (0.4, 1.0):
