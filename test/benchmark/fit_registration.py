@@ -54,12 +54,8 @@ def sample_item(item, arguments):
             if is_own:
                 error = registration.pose_error(np.linalg.inv(T_target_model) @ found.transform, np.linalg.inv(T_source_model), symmetries)
                 right = error[0] <= registration.RIGHT_ANGLE and error[1] <= registration.RIGHT_DISTANCE
-            rows.append([bool(right), evidence_of(found)])
+            rows.append([bool(right), dataclasses.asdict(found.evidence)])
     return rows
-
-
-def evidence_of(found):
-    return {f.name: float(getattr(found.evidence, f.name)) for f in dataclasses.fields(found.evidence)}
 
 
 def main(arguments):

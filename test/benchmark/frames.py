@@ -40,9 +40,6 @@ class Frame:
     center: np.ndarray
     axes: np.ndarray  # columns
 
-    def moved(self, motion):
-        return Frame(bench.moved(motion, self.center), motion[:3, :3] @ self.axes)
-
 
 def angle_of_axes(axes, others, revolution=None):
     """Degrees between axes and others in any order and with any sign, at any angle about an axis of revolution."""
@@ -82,13 +79,11 @@ class Ties:
 
 
 def by_symmetry(points, viewpoint, seed):
-    found = pcl_symmetry.frame(points, viewpoint=None if viewpoint is None else tuple(viewpoint), seed=seed, threads=1)
-    return Frame(found.center, found.axes)
+    return pcl_symmetry.frame(points, viewpoint=None if viewpoint is None else tuple(viewpoint), seed=seed, threads=1)
 
 
 def as_published(points, viewpoint, seed):
-    found = pcl_symmetry.frame(points, as_published=True, seed=seed, threads=1)
-    return Frame(found.center, found.axes)
+    return pcl_symmetry.frame(points, as_published=True, seed=seed, threads=1)
 
 
 def by_mass(points, viewpoint, seed):
@@ -136,9 +131,10 @@ def evaluate(model, arguments):
         points, scan, pose = cloud_of(mesh, model, view, arguments)
         for method in arguments.methods:
             start = time.process_time()
-            found = METHODS[method](points, scan and scan.viewpoint, arguments.seed + 1)
+            found = METHODS[method](points, scan and scan.viewpoint, arguments.seed + 1)  # with center and axes
             milliseconds = 1000 * (time.process_time() - start)
-            found = found.moved(np.linalg.inv(pose))
+            back = np.linalg.inv(pose)
+            found = Frame(bench.moved(back, found.center), back[:3, :3] @ found.axes)
             errors = judge(found, wholes.setdefault(method, found), mesh.diagonal, ties)
             rows.append({"model": model.name, "view": view, "method": method, **errors, "ms": milliseconds})
     return rows

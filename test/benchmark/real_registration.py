@@ -121,8 +121,7 @@ def main(arguments):
             right.add(found.converged and good)
             wrong.add(found.converged and not good)
             refused.add(not found.converged)
-            names = [f.name for f in dataclasses.fields(found.evidence)] if found.evidence else []
-            evidence = {name: float(getattr(found.evidence, name)) for name in names}
+            evidence = dataclasses.asdict(found.evidence) if found.evidence else {}
             lines.append({"kind": kind, "scan": pair["scan"], "object": scan["object"], "seed": arguments.seed, "good": good, "confidence": found.confidence, **evidence})
         table.append([kind, right.text, refused.text, wrong.text, f"{np.median(seconds):.2f}"])
     bench.print_table("Real scans, by what they are brought to", ["", "right", "refused", "wrong", "s"], table)

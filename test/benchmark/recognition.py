@@ -16,20 +16,10 @@ import bench
 MODEL_POINTS = 20_000  # of a model in a database
 
 
-def build(path, clouds, jobs):
-    """Builds a database of (name, points), whole or not at all; returns sentences about those that were left out."""
+def build_of_meshes(models, arguments):
+    """Builds a database, whole or not at all; returns sentences about those that were left out."""
     import pcl_symmetry
 
-    part = pathlib.Path(f"{path}.part")
-    part.unlink(missing_ok=True)
-    database = pcl_symmetry.Database(part, create=True, threads=jobs)
-    report = database.build((name, points.astype(np.float32)) for name, points in clouds)
-    del database
-    part.replace(path)
-    return [f"{name}: {reason}" for name, reason in report.failures]
-
-
-def build_of_meshes(models, arguments):
     left_out, clouds = [], []
     for model in models:
         try:
@@ -37,7 +27,12 @@ def build_of_meshes(models, arguments):
             clouds.append((model.name, bench.sample(bench.read_mesh(model.path), MODEL_POINTS, random)))
         except bench.BadInput as error:
             left_out.append(str(error))
-    return left_out + build(arguments.database, clouds, arguments.jobs)
+    part = pathlib.Path(f"{arguments.database}.part")
+    part.unlink(missing_ok=True)
+    with pcl_symmetry.Database(part, create=True, threads=arguments.jobs) as database:
+        report = database.build((name, points.astype(np.float32)) for name, points in clouds)
+    part.replace(arguments.database)
+    return left_out + [f"{name}: {reason}" for name, reason in report.failures]
 
 
 def ask(model, arguments):

@@ -330,18 +330,13 @@ def main(arguments):
         raise bench.BadInput("--classes FILE is missing: it says which models belong together")
     with tempfile.TemporaryDirectory() as temporary:
         arguments.descriptors = bench.work_folder(arguments, temporary)
-        evaluate(arguments)
-
-
-def evaluate(arguments):
-    models = bench.list_models(arguments)
-    class_of = bench.read_classes(arguments.classes)
-    _, left_out = bench.run(models, describe, arguments)
-    models = [m for m in models if pathlib.Path(arguments.descriptors, f"{m.name}.npz").exists()]
-    classes = np.array([class_of[model.name].name for model in models])
-    if np.unique(classes, return_counts=True)[1].max() < 2:
-        raise bench.BadInput(f"{arguments.classes}: no class holds two of the meshes")
-    judged = {name: judge(distances, classes) for name, distances in distances_of(models, arguments)}
+        models, class_of = bench.list_models(arguments), bench.read_classes(arguments.classes)
+        _, left_out = bench.run(models, describe, arguments)
+        models = [m for m in models if pathlib.Path(arguments.descriptors, f"{m.name}.npz").exists()]
+        classes = np.array([class_of[model.name].name for model in models])
+        if np.unique(classes, return_counts=True)[1].max() < 2:
+            raise bench.BadInput(f"{arguments.classes}: no class holds two of the meshes")
+        judged = {name: judge(distances, classes) for name, distances in distances_of(models, arguments)}
     summary = report(judged)
     if arguments.figure:
         draw(judged, summary["classes"], arguments.figure)

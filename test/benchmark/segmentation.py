@@ -91,11 +91,6 @@ def mirror_agreement(surface, labels, plane):
 # Methods: (mesh, path, arguments) -> a label for each triangle
 
 
-def k_means(mesh, path, arguments):
-    clusters = KMeans(6, n_init=1, random_state=arguments.seed)
-    return clusters.fit_predict(mesh.corners.mean(axis=1), sample_weight=mesh.areas)
-
-
 def segment(mesh, path, arguments):
     import pcl_symmetry
 
@@ -121,7 +116,9 @@ def tool(*flags):
     return segment_by_tool
 
 
-METHODS = {"people": None, "one": lambda mesh, path, arguments: np.zeros(len(mesh.triangles), int), "k-means": k_means,
+METHODS = {"people": None, "one": lambda mesh, path, arguments: np.zeros(len(mesh.triangles), int),
+           "k-means": lambda mesh, path, arguments: KMeans(6, n_init=1, random_state=arguments.seed).fit_predict(
+               mesh.corners.mean(axis=1), sample_weight=mesh.areas),
            "segment": segment, "points": segment_points,
            **{f"paper-{depth}": tool("-method", "splitting", "-as_published", "-depth", str(depth)) for depth in (1, 2, 3, 4)}}  # fmt: skip
 
