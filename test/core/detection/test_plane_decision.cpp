@@ -36,7 +36,8 @@ TEST(StagedRefinement, EachStageComesNearer) {
   const ReflectionPlane exact = box.normalized(Eigen::Vector3d::UnitX(), 0.0);
   std::vector<Candidate> candidates{box.candidate({1.0, 0.06, -0.04}, 0.03)};
   const double at_start = candidates[0].plane.angleTo(exact);
-  candidates = box.refinement.refineCoarsely(candidates, PlaneGrid(box.options.expert, box.edt.center(), box.edt.radius()));
+  candidates =
+      box.refinement.refineCoarsely(candidates, PlaneGrid(box.options.expert, box.edt.center(), box.edt.radius()));
   ASSERT_EQ(candidates.size(), 1u);
   const double after_coarse = candidates[0].plane.angleTo(exact);
   EXPECT_LT(after_coarse, 0.3 * at_start);

@@ -5,6 +5,7 @@
 
 #include <cmath>
 
+#include "core/detection/plane_lattice.h"
 #include "pcl_symmetry/core/detect_planes.h"
 #include "shapes/counting_search.h"
 #include "shapes/judged_cloud.h"

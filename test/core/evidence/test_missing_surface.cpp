@@ -9,6 +9,7 @@
 
 #include "core/base/constants.h"
 #include "core/base/statistics.h"
+#include "core/evidence/point_density.h"
 #include "core/evidence/surface_samples.h"
 #include "core/geometry/point_samples.h"
 #include "core/geometry/surface_normals.h"
@@ -258,7 +259,7 @@ Points noisyPoints(const Shape& shape, double noise, std::uint64_t seed) {
 
 /// One and a half median spacings, as detection chooses it.
 double bandwidthOf(const Points& points) {
-  return 1.5 * median(localGeometry(points, *makeFlannSearch(points), kNumSupportNeighbors, 0).spacing);
+  return 1.5 * median(localGeometry(points, *makeFlannSearch(points), 0).spacing);
 }
 
 ReflectionPlane tilted(const ReflectionPlane& plane, double angle) {
