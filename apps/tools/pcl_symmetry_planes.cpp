@@ -11,7 +11,6 @@
 #include "command_line/console.h"
 #include "command_line/run_on_files.h"
 #include "command_line/tool_errors.h"
-#include "core/geometry/geometry_rules.h"
 #include "io/answers.h"
 #include "io/cloud_fields.h"
 #include "io/exact_coordinates.h"
@@ -147,10 +146,9 @@ std::string tableOf(const Findings& findings, const Eigen::Vector3d& shift) {
                     ? formatted(", confidence %.3f\n", best->confidence)
                     : formatted(" maps %.1f %% of the surface to within %.3g, 97 %% to within %.3g\n",
                                 100.0 * best->share, findings.tolerance, best->deviation));
-    if (const auto& best = findings.best;
-        !findings.viewpoint && best && best->share_low < 0.9 && best->share_high >= kSymmetricShare)
+    if (findings.undecided)
       table += formatted("the points leave it open: the share of the whole surface is between %.0f and %.0f %%\n",
-                         100.0 * best->share_low, 100.0 * best->share_high);
+                         100.0 * findings.best->share_low, 100.0 * findings.best->share_high);
     return table;
   }
   for (const SymmetryCenter& center : findings.centers)
@@ -200,7 +198,7 @@ std::vector<std::vector<nlohmann::json>> rowsOf(const Findings& findings, const 
   for (const SymmetryAxis& axis : findings.axes) add(++axes, "axis", describe(axis, shift));
   for (const SymmetryRotation& rotation : findings.rotations) add(++rotations, "rotation", axisJson(rotation, shift));
   for (const SymmetryCenter& center : findings.centers) add(++centers, "center", describe(center, shift));
-  if (findings.best) add(1, "best", planeJson(*findings.best, shift));
+  if (findings.best) add(1, findings.undecided ? "undecided" : "best", planeJson(*findings.best, shift));
   return rows;
 }
 
@@ -210,6 +208,7 @@ nlohmann::json describe(const InputShape& input, const Findings& findings) {
                       {"num_points", findings.num_points},
                       {"stray_points", findings.num_stray_points},
                       {"partial", findings.viewpoint.has_value()},
+                      {"undecided", findings.undecided},
                       {"viewpoint", {{"from", toString(findings.viewpoint_source)}}},
                       {"tolerance", findings.tolerance},
                       {"resolution", findings.resolution},

@@ -75,11 +75,15 @@ class Planes(ToolTest):
         self.assertLess(answer["best"]["share"], 0.9)
         self.assertGreater(answer["best"]["deviation"], answer["tolerance"])
         self.assertNotIn("leave it open", self.output)
+        self.assertFalse(answer["undecided"])
         self.run_tool(self.tetrahedron, "-quiet --approximate")
         self.assertIn("approximate", self.output)
         self.run_tool(self.write("few.pcd", tool_run.pcd(tool_run.points_on_sphere(100))), "-points 200")
         self.assertRegex(self.output, r"the points leave it open: the share of the whole surface is between \d+ and 100 %")
         self.assertIn("-points is of meshes", self.error)
+        self.assertTrue(self.report("few.pcd")["undecided"])
+        self.run_tool("few.pcd -csv few.csv")
+        self.assertIn(",undecided,", (self.folder / "few.csv").read_text())
 
     def test_a_label_names_the_object_in_its_scene(self):
         random = np.random.default_rng(3)

@@ -132,6 +132,17 @@ class SceneObjects(ToolTest):
         own = (added - (0, 0, 0.2)) @ tool_run.rotation(np.array([0, 0, 1.0]), 0.45)
         self.assertLess(np.median(abs((abs(own) / (0.3, 0.3, 0.2)).max(axis=1) - 1)), 0.02, "on its faces")
 
+    def test_have_the_plane_whose_far_half_is_hidden_with_every_seed(self):
+        eye, turn = np.array([0.35, -1.15, 0.92]), tool_run.rotation(np.array([0, 0, 1.0]), 0.6)
+        bodies = [block((0, 0, -0.02), (0.5, 0.4, 0.02)), block((0, 0, 0.06), (0.1, 0.06, 0.06), 0.6)]
+        points, _ = look(eye, camera(eye, (0, 0, 0), 320, 240, 420), bodies)
+        deviates = np.random.default_rng(1).normal(size=(len(points), 1))
+        self.write("s.pcd", pcd(eye + (1 + 0.0005 * deviates) * (points - eye), 320))
+        for seed in (4, 5, 6):
+            item, = self.report(f"s.pcd -no_frames -no_completion -seed {seed}")["objects"]
+            normals = [plane["coefficients"][:3] for plane in item["planes"] if plane["kind"] == "symmetry"]
+            self.assertGreater(np.abs(normals @ turn[:, 1]).max(), 0.999, seed)
+
     def test_are_decided_through_the_errors_of_a_camera(self):
         report, *_ = self.found(pcd(with_depth_errors(), 320))
         self.assertEqual([len(report["supports"]), len(report["objects"])], [1, 2])

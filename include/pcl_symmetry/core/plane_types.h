@@ -112,6 +112,9 @@ struct Detection {
   std::vector<SymmetryPlane> planes;  ///< symmetries, then possible, then approximate and local; each best first
   /// Where there is no symmetry and no possible one: the plane that maps the greatest share of the surface; else empty.
   std::optional<SymmetryPlane> best;
+  /// Whether there is no symmetry, as few points of a whole cloud leave it open: the share of the surface that the best
+  /// plane maps may as well be that of a symmetry.
+  bool undecided = false;
   /// Where 97 % of the points lie within the tolerance of one plane (three tolerances where noise hides the surface),
   /// as those of a sheet, a disc or one side of a box do: that plane. Reflections across it move nothing and are
   /// uninformative.

@@ -64,6 +64,14 @@ void completeGroups(const JudgedCloud& judged, Found& found) {
     decide(judged, std::move(candidates), found);
 }
 
+/// Tries the planes of a scan that the map does not show, because what they map is hidden to the half.
+void tryRightAngles(const JudgedCloud& judged, Found& found) {
+  const NormalizedCloud& cloud = judged.cloud;
+  if (kKindRules.shows_all[cloud.kind()] || !cloud.seen()) return;
+  std::vector<Candidate> candidates = atRightAngles(found.planes, carryingNormals(cloud.points, *cloud.seen()), cloud);
+  if (!candidates.empty()) decide(judged, judged.refinement.refineSymmetries(std::move(candidates)), found);
+}
+
 /// Finds axes of rotations of a scan and makes axes of revolution and planes consistent with them.
 void findAxesOfScan(const JudgedCloud& judged, Found& found) {
   const DetectionOptions& options = judged.options;
@@ -94,6 +102,7 @@ constexpr struct {
   void (*apply)(const JudgedCloud& judged, Found& found);
 } kRules[] = {
     {"groups", completeGroups},
+    {"right_angles", tryRightAngles},
     {"missing_pieces", [](const JudgedCloud& judged,
                           Found& found) { doubtMissingPieces(found.planes, judged.cloud.kind(), judged.options); }},
     {"polygon", completePolygon},
@@ -144,6 +153,8 @@ void refineAndDecide(const JudgedCloud& judged, const SymmetryMap& map, Found& f
   // The answer.
   if (!found.hasFamily()) found.best = bestApproximate(judged, found.planes);
   if (found.best) found.best->deviation = measure.deviation(cloud.toNormalized(*found.best)) * cloud.scale;
+  found.undecided = found.best && !cloud.seen() && found.best->share_low < kDetection.decide.open_share &&
+                    found.best->share_high >= kSymmetricShare;
   found.flat = flatPlane(judged);
   found.tolerance = measure.tolerance() * cloud.scale;
   const bool is_raised = options.absolute_tolerance == 0.0 && measure.tolerance() > options.tolerance * cloud.extent;

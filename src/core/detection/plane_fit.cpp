@@ -354,4 +354,32 @@ std::vector<Candidate> impliedBy(const std::vector<SymmetryPlane>& planes, const
   return found;
 }
 
+std::vector<Candidate> atRightAngles(const std::vector<SymmetryPlane>& planes,
+                                     const std::vector<Eigen::Vector3d>& carrying_normals,
+                                     const NormalizedCloud& cloud) {
+  std::vector<Eigen::Vector3d> normals, tried;
+  for (const SymmetryPlane& plane : planes)
+    if (plane.kind == PlaneKind::Symmetry) normals.push_back(plane.normal());
+  tried = normals;
+  const std::size_t num_symmetries = normals.size();
+  append(normals, carrying_normals);
+  std::vector<Candidate> found;
+  for (std::size_t i = 0; i < num_symmetries; ++i) {
+    for (std::size_t k = i + 1; k < normals.size(); ++k) {
+      if (std::abs(normals[i].dot(normals[k])) > std::sin(kDetection.decide.upright)) continue;
+      const Eigen::Vector3d normal = normals[i].cross(normals[k]).normalized();
+      const auto is_near = [&](const Eigen::Vector3d& other) {
+        return std::abs(normal.dot(other)) > std::cos(kDetection.decide.upright);
+      };
+      if (std::any_of(tried.begin(), tried.end(), is_near)) continue;
+      tried.push_back(normal);
+      const Eigen::RowVectorXd along = normal.transpose() * cloud.points.cast<double>();
+      const double low = along.minCoeff(), step = (along.maxCoeff() - low) / kDetection.closure.offsets_tried;
+      for (int s = 0; s < kDetection.closure.offsets_tried; ++s)
+        found.push_back({ReflectionPlane(normal, low + (s + 0.5) * step)});
+    }
+  }
+  return found;
+}
+
 }  // namespace pcl_symmetry

@@ -175,4 +175,12 @@ std::vector<ReflectionPlane> planesOf(const std::vector<SymmetryPlane>& planes, 
 std::vector<Candidate> impliedBy(const std::vector<SymmetryPlane>& planes, const NormalizedCloud& cloud,
                                  std::vector<ReflectionPlane>& tried);
 
+/// Planes of a scan at right angles to two of its symmetries, or to one and to what carries it, spread along the
+/// object. Not in the paper: half of what such a plane maps may be hidden, and a map of few samples has no maximum
+/// there.
+/// \param carrying_normals of what the object stands on.
+std::vector<Candidate> atRightAngles(const std::vector<SymmetryPlane>& planes,
+                                     const std::vector<Eigen::Vector3d>& carrying_normals,
+                                     const NormalizedCloud& cloud);
+
 }  // namespace pcl_symmetry

@@ -63,7 +63,10 @@ CloudLimits::CloudLimits(const PointsRef& points, const PrincipalAxes& axes, Clo
     : is_resolved_(isResolved(lengths)),
       is_cut_(seen && cutShare(points, *seen, kDetection.measure.beside_outline) > kDetection.decide.max_cut),
       still_((kKindRules.resolves_surface[kind] ? 1.0 : kDetection.measure.noisy_thinness) * lengths.tolerance),
-      thinness_(thinnessOf(points, axes, still_, lineTolerance(kind, lengths))) {}
+      thinness_(thinnessOf(points, axes, still_, lineTolerance(kind, lengths))),
+      is_one_side_(seen && seen->supports().empty() && thinness_ == Thinness::Sheet &&
+                   movedShare({axes.axes.col(2), axes.axes.col(2).dot(axes.center)}, points, 2.0 * still_) <
+                       kDetection.decide.nothing_missing) {}
 
 bool CloudLimits::movesNothing(const ReflectionPlane& plane, const PointsRef& points) const {
   return thinness_ == Thinness::Sheet && movedShare(plane, points, still_) < 1.0 - kDetection.decide.max_unmoved_share;
@@ -73,6 +76,7 @@ std::vector<const char*> CloudLimits::rulesAgainst(const ReflectionPlane& plane,
   std::vector<const char*> rules;
   if (!is_resolved_) rules.push_back("the sensor does not resolve the tolerance");
   if (is_cut_) rules.push_back("the border of the picture cuts the points off all around");
+  if (is_one_side_) rules.push_back("one flat side alone was seen");
   if (thinness_ == Thinness::Line)
     rules.push_back("at the tolerance the points are a line");
   else if (movesNothing(plane, points))

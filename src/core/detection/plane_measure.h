@@ -55,6 +55,7 @@ private:
   bool is_resolved_, is_cut_;
   double still_;  ///< distance that moves nothing
   Thinness thinness_;
+  bool is_one_side_;  ///< a scan of one flat side, and what it stands on is not known
 };
 
 /// A plane, and what its decision is taken from.

@@ -91,6 +91,16 @@ TEST(OpenSurfaces, TableThatThePictureCutsOffIsPossibleAtMost) {
   EXPECT_FALSE(hasSymmetry(detectPlanes({cloud, &cut})));
 }
 
+TEST(OpenSurfaces, OneFlatSideAloneIsPossibleAtMost) {
+  const Scan view = scan({{{{0.0, 0.0, 0.0}, {0.6, 0.4, 0.2}}}, {}}, {0.0, 0.0, 5.0});
+  const Points cloud = noisy({view.cloud().cast<double>(), {}}, 0.002, 1).cloud();
+  const Visibility seen = view.visibility(), standing = seen.withSupport({0.0, 0.0, 1.0, 0.2}, 0.01);
+  const Detection alone = detectPlanes({cloud, &seen});
+  EXPECT_FALSE(alone.planes.empty());
+  EXPECT_FALSE(hasSymmetry(alone));
+  EXPECT_TRUE(hasSymmetry(detectPlanes({cloud, &standing}))) << "a flat box on a table";
+}
+
 /// Points in a cube of unit side that stands at a height.
 Points cubeAt(double height) {
   RandomStream random(1);
