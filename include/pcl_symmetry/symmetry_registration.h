@@ -65,10 +65,12 @@ struct CloudRegistration : RegisteredPose {
   /// \return whether both clouds have the points for an answer, and the best pose that confidence.
   bool converged(double min_confidence = 0.5) const { return covariance.has_value() && confidence >= min_confidence; }
 
-  double confidence = 0.0;  ///< estimated probability that the best pose is right, in [0, 1]
-  PoseEvidence evidence;    ///< what the confidence follows from
-  /// \return what counts against the best pose, one sentence without a full stop.
-  std::string doubt() const;
+  double confidence = 0.0;       ///< estimated probability that the best pose is right, in [0, 1]
+  PoseEvidence evidence;         ///< what the confidence follows from
+  bool is_around_guess = false;  ///< only poses around the guess were tried
+  /// \param min_confidence in [0, 1].
+  /// \return why the best pose is no answer, one sentence without a full stop.
+  std::string doubt(double min_confidence = 0.5) const;
 
   /// Distinct poses, at most PoseSearchOptions::max_poses, best first: those of like merit by falling confidence, then
   /// by falling merit; where none convinced and pairs of points were tried, all by falling confidence. Poses that

@@ -98,63 +98,11 @@ namespace {
 
 using Cloud = SymmetryDatabase::Cloud;
 
-CloudRegistration registerPoints(const AnyArray& source, const AnyArray& target, const RowMajor4& guess,
-                                 const std::optional<std::pair<double, double>>& around,
-                                 const py::object& source_viewpoint, const py::object& target_viewpoint,
-                                 std::uint64_t seed, int threads) {
-  const Eigen::Isometry3d T_target_source = motionOf("guess", guess);
-  auto options = optionsWith<CloudRegistrationOptions>(seed, threads);
-  if (around) options.around = PoseNeighborhood{around->first, around->second};
-  options.validate();
-  const InputPoints source_input("source", source, kRegistrationPoints, seed);
-  const InputPoints target_input("target", target, kRegistrationPoints, seed);
-  const std::optional<Visibility> source_seen = seenFrom(source_input.points(), source_viewpoint);
-  const std::optional<Visibility> target_seen = seenFrom(target_input.points(), target_viewpoint);
-  for (const auto& [name, points] :
-       {std::pair("source", source_input.points()), std::pair("target", target_input.points())})
-    if (const std::string reason = detail::reasonForNoAnswer(points, name, kLeastRegistrationPoints); !reason.empty())
-      throw NoAnswer(reason);
-  const Computing computing;
-  return registerClouds(source_input.points(), source_seen, target_input.points(), target_seen, T_target_source,
-                        options);
-}
-
-/// The scans in one frame, and the rows of their merged points as pairs (scan, row).
-std::pair<RegisteredScans, py::array_t<int>> registerAllPoints(const std::vector<AnyArray>& clouds,
-                                                               const std::vector<py::object>& viewpoints,
-                                                               std::uint64_t seed, int threads) {
-  constexpr std::size_t judged = 10'000;  // points that tell what the scanner saw
-  std::vector<ObjectScan> scans;
-  std::vector<std::vector<std::size_t>> rows;
-  for (std::size_t k = 0; k < clouds.size(); ++k) {
-    const std::string name = "clouds[" + std::to_string(k) + "]";
-    const InputPoints all(name.c_str(), clouds[k], 0, seed), few(name.c_str(), clouds[k], judged, seed);
-    scans.push_back({all.points(), seenFrom(few.points(), viewpoints[k])});
-    rows.push_back(all.rows());
-  }
-  const auto options = optionsWith<CloudRegistrationOptions>(seed, threads);
-  RegisteredScans found;
-  std::vector<ScanPoint> merged;
-  {
-    const Computing computing;
-    found = registerAll(scans, options);
-    merged = found.mergedPoints(scans);
-  }
-  py::array_t<int> of_points({static_cast<py::ssize_t>(merged.size()), py::ssize_t{2}});
-  for (std::size_t i = 0; i < merged.size(); ++i) {
-    const auto& of = rows[merged[i].scan];
-    of_points.mutable_at(i, 0) = merged[i].scan;
-    of_points.mutable_at(i, 1) = of.empty() ? merged[i].index : static_cast<int>(of[merged[i].index]);
-  }
-  return {std::move(found), std::move(of_points)};
-}
-
 /// \param points (N, 3), without rows that are not finite, or (H, W, 3), as it is: rows and columns of a camera.
 /// \param viewpoint that of a file stays with the cloud.
-Cloud cloudOf(const py::array& points, const py::object& viewpoint = py::none()) {
+Cloud cloudOf(const py::array& points, const py::object& viewpoint = py::none(), const char* name = "points") {
   const bool is_organized = points.ndim() == 3;
-  const InputPoints input("points", is_organized ? py::array(points.attr("reshape")(-1, points.shape(2))) : points, 0,
-                          0);
+  const InputPoints input(name, is_organized ? py::array(points.attr("reshape")(-1, points.shape(2))) : points, 0, 0);
   Cloud cloud;
   if (py::isinstance<StoredViewpoint>(viewpoint))
     cloud.sensor_origin_.head<3>() = viewpoint.cast<StoredViewpoint>().position.cast<float>();
@@ -172,6 +120,79 @@ Cloud cloudOf(const py::array& points, const py::object& viewpoint = py::none())
   return cloud;
 }
 
+Viewpoint viewpointOf(const py::object& viewpoint) {
+  if (viewpoint.is_none()) return {Viewpoint::Mode::None, Eigen::Vector3d::Zero()};
+  const std::optional<Eigen::Vector3d> position = positionOf(viewpoint);
+  return position ? Viewpoint{Viewpoint::Mode::Given, *position} : Viewpoint{};
+}
+
+/// What SymmetryRegistration uses of a cloud.
+struct RegisteredCloud {
+  Points points;
+  std::optional<Visibility> seen;
+  std::string reason;  ///< why there is no answer
+
+  RegisteredCloud(const char* name, const py::array& array, const py::object& viewpoint, std::uint64_t seed) {
+    const Cloud cloud = cloudOf(array, viewpoint, name);
+    const Viewpoint from = viewpointOf(viewpoint);
+    points = detail::selectPoints(cloud, nullptr, kRegistrationPoints, seed).points;
+    reason = detail::reasonForNoAnswer(points, name, kLeastRegistrationPoints);
+    const Computing computing;
+    if (reason.empty()) seen = detail::visibilityOf(detail::findSeenSpace(cloud, points, from));
+  }
+};
+
+CloudRegistration registerPoints(const AnyArray& source, const AnyArray& target, const RowMajor4& guess,
+                                 const std::optional<std::pair<double, double>>& around,
+                                 const py::object& source_viewpoint, const py::object& target_viewpoint,
+                                 std::uint64_t seed, int threads) {
+  const Eigen::Isometry3d T_target_source = motionOf("guess", guess);
+  auto options = optionsWith<CloudRegistrationOptions>(seed, threads);
+  if (around) options.around = PoseNeighborhood{around->first, around->second};
+  options.validate();
+  const RegisteredCloud from("source", source, source_viewpoint, seed), to("target", target, target_viewpoint, seed);
+  for (const RegisteredCloud* cloud : {&from, &to})
+    if (!cloud->reason.empty()) throw NoAnswer(cloud->reason);
+  const Computing computing;
+  return registerClouds(from.points, from.seen, to.points, to.seen, T_target_source, options);
+}
+
+/// The scans in one frame, and the rows of their merged points as pairs (scan, row).
+std::pair<RegisteredScans, py::array_t<int>> registerAllPoints(const std::vector<AnyArray>& clouds,
+                                                               const std::vector<py::object>& viewpoints,
+                                                               std::uint64_t seed, int threads) {
+  std::vector<ObjectScan> scans;
+  std::vector<std::vector<std::size_t>> rows;
+  for (std::size_t k = 0; k < clouds.size(); ++k) {
+    const std::string name = "clouds[" + std::to_string(k) + "]";
+    pcl::Indices indices;
+    const Cloud cloud = cloudOf(clouds[k], viewpoints[k], name.c_str());
+    const Viewpoint from = viewpointOf(viewpoints[k]);
+    {
+      const Computing computing;
+      scans.push_back(objectScan(cloud, from, indices));
+    }
+    rows.emplace_back(indices.begin(), indices.end());
+    if (cloud.isOrganized()) continue;
+    const InputPoints all(name.c_str(), clouds[k], 0, 0);
+    for (std::size_t& row : rows.back()) row = all.rows().empty() ? row : all.rows()[row];
+  }
+  const auto options = optionsWith<CloudRegistrationOptions>(seed, threads);
+  RegisteredScans found;
+  std::vector<ScanPoint> merged;
+  {
+    const Computing computing;
+    found = registerAll(scans, options);
+    merged = found.mergedPoints(scans);
+  }
+  py::array_t<int> of_points({static_cast<py::ssize_t>(merged.size()), py::ssize_t{2}});
+  for (std::size_t i = 0; i < merged.size(); ++i) {
+    of_points.mutable_at(i, 0) = merged[i].scan;
+    of_points.mutable_at(i, 1) = static_cast<int>(rows[merged[i].scan][merged[i].index]);
+  }
+  return {std::move(found), std::move(of_points)};
+}
+
 /// \return what was found; where that is nothing, the points may be the reason.
 /// \throws NoAnswer
 template <typename Found>
@@ -182,12 +203,6 @@ Found answerFor(const Cloud& cloud, const pcl::Indices* indices, Found found) {
       throw NoAnswer(reason);
   }
   return found;
-}
-
-Viewpoint viewpointOf(const py::object& viewpoint) {
-  if (viewpoint.is_none()) return {Viewpoint::Mode::None, Eigen::Vector3d::Zero()};
-  const std::optional<Eigen::Vector3d> position = positionOf(viewpoint);
-  return position ? Viewpoint{Viewpoint::Mode::Given, *position} : Viewpoint{};
 }
 
 /// What a class for PCL uses of a cloud, and what it knows of the scanner.

@@ -1,7 +1,9 @@
 #include "pcl_symmetry/symmetry_registration.h"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
+#include <sstream>
 #include <utility>
 
 #include "core/base/check.h"
@@ -237,8 +239,13 @@ void CloudRegistrationOptions::validate() const {
   checkNumThreads(num_threads);
 }
 
-std::string CloudRegistration::doubt() const {
-  return covariance ? doubtOf(evidence) : "no pose is left";
+std::string CloudRegistration::doubt(double min_confidence) const {
+  const bool fits = evidence.uniqueness < 1.0 && confidence >= min_confidence * evidence.uniqueness;
+  std::ostringstream reason;
+  reason << (fits ? "another pose fits as well" : "nothing fits") << (is_around_guess ? " around the guess" : "")
+         << ": in the best pose, with a confidence of " << std::round(100.0 * confidence) / 100.0 << ", "
+         << (covariance ? doubtOf(evidence) : "no pose is left");
+  return reason.str();
 }
 
 std::shared_ptr<const PreparedCloud> registrationTarget(const Points& points, const std::optional<Visibility>& seen,
@@ -258,6 +265,7 @@ CloudRegistration registerClouds(const Points& source, const std::optional<Visib
                                  const CloudRegistrationOptions& options) {
   options.validate();
   CloudRegistration result;
+  result.is_around_guess = options.around.has_value();
   Stopwatch watch;
   const auto done = [&](const char* stage) { result.timing_ms.emplace_back(stage, watch.lap()); };
 

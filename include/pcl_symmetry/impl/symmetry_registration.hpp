@@ -7,7 +7,6 @@
 
 #include <cmath>
 #include <limits>
-#include <sstream>
 
 #include "pcl_symmetry/impl/cloud_conversion.hpp"
 #include "pcl_symmetry/symmetry_registration.h"
@@ -88,13 +87,7 @@ void SymmetryRegistration<PointSource, PointTarget, Scalar>::findPose(const Poin
     final_transformation_ = transformation_ = result_.T_target_source.matrix().template cast<Scalar>();
     return;
   }
-  std::ostringstream reason;
-  const double uniqueness = result_.evidence.uniqueness;
-  const bool fits = uniqueness < 1.0 && result_.confidence >= min_confidence_ * uniqueness;
-  reason << (fits ? "another pose fits as well" : "nothing fits") << (options_.around ? " around the guess" : "")
-         << ": in the best pose, with a confidence of " << std::round(100.0 * result_.confidence) / 100.0 << ", "
-         << result_.doubt();
-  reason_ = reason.str();
+  reason_ = result_.doubt(min_confidence_);
   result_.covariance.reset();
 }
 

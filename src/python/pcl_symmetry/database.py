@@ -72,7 +72,7 @@ def register(
         start[:3, 3] += start[:3, :3] @ s - t
     viewpoints = dict(source_viewpoint=scan.seen_from(source_viewpoint), target_viewpoint=known.seen_from(target_viewpoint))
     try:
-        found = core.register(scan.array, known.array, guess=start, around=around, told=progress, seed=seed, threads=threads, **viewpoints)
+        found = core.register(_camera_points(scan), _camera_points(known), guess=start, around=around, told=progress, seed=seed, threads=threads, **viewpoints)
     except NoAnswer as none:
         no_answer(none)
         return Registration(
@@ -103,7 +103,7 @@ def register_all(
     arrays, shifts, viewpoints = [], [], []
     for k, cloud in enumerate(clouds):
         scan = prepare(f"clouds[{k}]", cloud)
-        arrays.append(scan.array)
+        arrays.append(_camera_points(scan))
         shifts.append(np.zeros(3) if scan.shift is None else scan.shift)
         viewpoints.append(scan.seen_from(viewpoint))
     found, merged = core.register_all(arrays, viewpoints=viewpoints, told=progress, seed=seed, threads=threads)
@@ -116,7 +116,7 @@ def register_all(
     points = np.zeros((len(merged), 3))
     for k, transform in enumerate(transforms):
         if transform is not None:
-            from_scan = arrays[k][rows[scans == k]].astype(float) + shifts[k]
+            from_scan = arrays[k].reshape(-1, 3)[rows[scans == k]].astype(float) + shifts[k]
             points[scans == k] = from_scan @ transform[:3, :3].T + transform[:3, 3]
     return RegisteredScans(points=points, scans=scans, rows=rows, **found)
 
