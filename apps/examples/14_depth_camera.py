@@ -46,8 +46,10 @@ def table(intrinsics: Intrinsics) -> Array:
     with np.errstate(divide="ignore", invalid="ignore"):
         falls = rays[..., 1] > 1e-9
         depth[falls] = -camera[1] / rays[..., 1][falls]
-        for low, high in (((-0.35, -0.3, -0.1), (-0.05, 0, 0.15)), ((0.1, -0.2, -0.05), (0.35, 0, 0.1))):
-            first, second = (np.array(low) - camera) / rays, (np.array(high) - camera) / rays
+        for size, center, angle in (((0.3, 0.3, 0.25), (-0.2, -0.15, 0.05), 0.6), ((0.25, 0.2, 0.15), (0.25, -0.1, 0), -0.5)):
+            turned = np.array([[np.cos(angle), 0, np.sin(angle)], [0, 1, 0], [-np.sin(angle), 0, np.cos(angle)]])
+            seen_from, along = (camera - center) @ turned, rays @ turned
+            first, second = (-0.5 * np.array(size) - seen_from) / along, (0.5 * np.array(size) - seen_from) / along
             enters, leaves = np.minimum(first, second).max(axis=2), np.maximum(first, second).min(axis=2)
             hit = (enters < leaves) & (enters > 0) & (enters < depth)
             depth[hit] = enters[hit]
@@ -77,7 +79,7 @@ def build(folder: Path) -> pcl_symmetry.Database:
 
 def describe(number: int, found: pcl_symmetry.SceneObject) -> None:
     """What is known of an object, in a few lines."""
-    print(f"object {number}: {len(found.rows)} points")
+    print(f"object {number}: {len(found.rows)} points, {len(found.added)} added")
     for axis in found.planes.axes:
         print(f"  body of revolution about {axis.direction.round(3)}, confidence {axis.confidence:.2f}")
     for center in found.planes.centers:

@@ -6,6 +6,7 @@
 #include <sstream>
 
 #include "command_line/tool_errors.h"
+#include "core/scan/range_image.h"
 #include "io/answers.h"
 #include "io/cloud_fields.h"
 #include "io/exact_coordinates.h"
@@ -72,10 +73,14 @@ InputShape loadVolumeInput(const std::string& path, const CommonOptions& common,
   return input;
 }
 
-/// Warns where the file itself says that the scanner stood elsewhere.
+/// Warns where the file itself says that the scanner stood elsewhere, or the points do.
 void checkViewpoint(const Console& console, const InputShape& input, const Viewpoint& given) {
   const pcl::PointCloud<pcl::PointXYZ>& cloud = *input.points;
-  if (given.mode != Viewpoint::Mode::Given || (!cloud.isOrganized() && detail::hasDefaultSensor(cloud))) return;
+  if (given.mode != Viewpoint::Mode::Given) return;
+  if (const Points points = finitePoints(cloud); points.cols() > 0)
+    if (const std::string why = whyNotSeenFrom(points, given.position - input.shift()); !why.empty())
+      console.warn(input.path + ": " + why);
+  if (!cloud.isOrganized() && detail::hasDefaultSensor(cloud)) return;
   const SeenSpace seen(cloud);
   if (seen.source() != ViewpointSource::Rays && seen.source() != ViewpointSource::Stored) return;
   constexpr double kOneSide = 0.2;  // radians between directions from which a scanner sees about the same
@@ -102,7 +107,10 @@ InputShape loadInput(const Console& console, const std::string& path, const Comm
   std::string summary;
   InputShape input =
       is_volume ? loadVolumeInput(path, common, summary) : loadInput(path, common.mesh_points, common.seed);
-  input.loading_ms = loading.done(counted(finitePoints(*input.points).cols(), "point") + summary);
+  const std::size_t num_points = input.points->size(), num_finite = finitePoints(*input.points).cols();
+  const std::string all = num_finite < num_points ? " of " + std::to_string(num_points) : "";
+  input.loading_ms =
+      loading.done(std::to_string(num_finite) + all + (num_points == 1 ? " point" : " points") + summary);
   warnOfLeftOut(console, path, input.shape);
   if (!is_volume && !input.shape.mesh && common.mesh_points != CommonOptions().mesh_points)
     console.warn(path + ": -points is of meshes, a cloud keeps its own");

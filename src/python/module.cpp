@@ -18,6 +18,7 @@
 #include "core/geometry/triangles.h"
 #include "core/matching/shape_signature.h"
 #include "core/matching/symmetry_descriptor.h"
+#include "core/scan/range_image.h"
 #include "pcl_symmetry/core/detect_planes.h"
 #include "pcl_symmetry/core/local_symmetry.h"
 #include "pcl_symmetry/core/mesh_surface.h"
@@ -415,6 +416,12 @@ std::pair<py::array_t<std::int64_t>, py::array_t<double>> pairs(const AnyArray& 
   return {toArray(index), toArray(distance)};
 }
 
+std::string whyNotSeen(const AnyArray& points, const Eigen::Vector3d& viewpoint) {
+  const InputPoints input("points", points, 0, 0);
+  const Computing computing;
+  return input.points().cols() == 0 || !viewpoint.allFinite() ? "" : whyNotSeenFrom(input.points(), viewpoint);
+}
+
 }  // namespace
 
 PYBIND11_MODULE(_pcl_symmetry, module) {
@@ -450,6 +457,7 @@ PYBIND11_MODULE(_pcl_symmetry, module) {
   add(module, "profile", &revolutionProfileOf, "points", "point", "direction", "num_points");
   add(module, "sample_mesh", &sampleMesh, "vertices", "faces", "num_points", "seed");
   add(module, "pairs", &pairs, "points", "plane", "max_distance");
+  add(module, "why_not_seen_from", &whyNotSeen, "points", "viewpoint");
   module.attr("__version__") = PCL_SYMMETRY_VERSION;
 }
 

@@ -70,12 +70,12 @@ py::dict dictOf(const PlaneSearch& search) {
   std::optional<Eigen::Vector4d> flat;
   if (found.flat) flat = found.flat->coefficients();
   return py::dict("planes"_a = found.planes, "axes"_a = found.axes, "centers"_a = found.centers,
-                  "rotations"_a = found.rotations, "best"_a = found.best, "flat"_a = flat,
-                  "tolerance"_a = found.tolerance, "resolution"_a = found.resolution, "diameter"_a = found.diameter,
-                  "stray_points"_a = found.num_stray_points, "reason"_a = found.reason,
+                  "rotations"_a = found.rotations, "best"_a = found.best, "undecided"_a = found.undecided,
+                  "flat"_a = flat, "tolerance"_a = found.tolerance, "resolution"_a = found.resolution,
+                  "diameter"_a = found.diameter, "stray_points"_a = found.num_stray_points, "reason"_a = found.reason,
                   "viewpoint"_a = search.viewpoint, "evidence"_a = planeEvidence(search.evidence),
-                  "rotation_evidence"_a = rotationEvidence(search.evidence), "_support"_a = supports, "_maxima"_a = maxima,
-                  "_rows"_a = toArray(search.rows));
+                  "rotation_evidence"_a = rotationEvidence(search.evidence), "_support"_a = supports,
+                  "_maxima"_a = maxima, "_rows"_a = toArray(search.rows));
 }
 
 namespace {

@@ -945,6 +945,7 @@ class Package(ToolTest):
             (ValueError, lambda: s.descriptor_distance(np.zeros((2, 3, 4)), np.ones((1, 3, 4))), "a, b: shapes"),
             (ValueError, lambda: s.segment(vertices, faces, method="cutting"), "method = cutting, must be merging or splitting"),
             (ValueError, lambda: s.sample_mesh(np.full((8, 3), np.nan), faces), "vertices: not all finite"),
+            (TypeError, lambda: s.sample_mesh(vertices, 500), "faces = 500, must be"),
             (ValueError, lambda: s.Merging(vertices, faces[:, :2]), r"faces = array of shape \(\d+, 2\), must be \(F, 3\)"),
             ((ValueError, TypeError), lambda: s.Merging(vertices, [[0, 1, 2.5], [0, 1]]), "faces = no numbers, must be"),
             ((ValueError, TypeError), lambda: s.Merging((vertices, faces[:9]), faces), "points = .*must be"),

@@ -130,9 +130,11 @@ class SeenFrom(ToolTest):
         shell = shell[(shell * ((0, 0, 5) - shell)).sum(axis=1) > 0] - (0, 0, 5)
         self.assertEqual(self.sources((shell, (0, 0, 0)), (shell, (0, 0, 0.1))), ["none", "stored"])
         self.run_tool("1.pcd -viewpoint 0,0.3,1")
-        self.assertNotIn("otherwise", self.error)
+        self.assertNotRegex(self.error, "otherwise|behind others")
         for elsewhere in ("0,0,-19", "0,2,0"):  # 180 and 21 degrees away
             self.run_tool(f"1.pcd -viewpoint {elsewhere}")
             self.assertIn("0.1 by its stored viewpoint, -viewpoint says otherwise", self.error)
+        self.run_tool(self.write("whole.pcd", pcd(points_on_box(num_points=2000))), "-viewpoint 3,2,1")
+        self.assertRegex(self.error, r"whole.pcd: \d\d % of the points lie behind others as seen from the viewpoint given")
         path = self.write("turned.pcd", pcd(shell, len(shell)).replace(b"0 0 0 1 0 0 0", b"0 0 0 0 1 0 0"))
         self.assertEqual(self.report(path, "-quiet")["viewpoint"]["from"], "stored", "who turns the sensor has set its pose")

@@ -436,6 +436,15 @@ std::optional<Visibility> sceneSeenFrom(const PointsRef& points, const Eigen::Ve
   return visibility;
 }
 
+std::string whyNotSeenFrom(const PointsRef& points, const Eigen::Vector3d& viewpoint) {
+  const std::optional<Visibility> visibility = Visibility::ofScene(points, viewpoint);
+  if (!visibility) return "";
+  const double hidden = visibility->hiddenShare(points, kScan.hidden_margin * boundingBall(points).radius);
+  if (hidden <= kScan.max_hidden) return "";
+  return std::to_string(std::lround(100.0 * hidden)) +
+         " % of the points lie behind others as seen from the viewpoint given; a cloud from all sides has no viewpoint";
+}
+
 double cutShare(const PointsRef& points, const Visibility& seen, double margin) {
   const Eigen::Vector3d viewpoint = seen.viewpoint();
   Eigen::Vector3d forward = Eigen::Vector3d::Zero();

@@ -3,6 +3,7 @@
 #include <Eigen/Core>
 #include <cstddef>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "pcl_symmetry/core/point_set.h"
@@ -94,6 +95,11 @@ std::vector<FrameSide> frameSides(const std::vector<Eigen::Array2d>& positions);
 /// \return the space seen from the viewpoint; nothing if the points were not measured from there.
 std::optional<Visibility> sceneSeenFrom(const PointsRef& points, const Eigen::Vector3d& viewpoint,
                                         std::size_t max_pixels);
+
+/// \param points 3 x N, finite, N >= 1.
+/// \param viewpoint in the frame of the points.
+/// \return why the points cannot have been measured from the viewpoint, for a user who says so; empty where they can.
+std::string whyNotSeenFrom(const PointsRef& points, const Eigen::Vector3d& viewpoint);
 
 /// What a single view may show at most, shares of the points.
 struct SingleViewLimits {

@@ -123,7 +123,10 @@ class Cloud(NamedTuple):
             return None  # points spread evenly over a mesh have no density to infer one from
         if is_auto and self.stored is not None:
             return core.StoredViewpoint(self.stored if self.shift is None else self.stored - self.shift)
-        return _seen_from(viewpoint, self.shift)
+        position = _seen_from(viewpoint, self.shift)
+        if not isinstance(position, (str, type(None))) and (why := core.why_not_seen_from(self.array, position)):
+            warnings.warn(f"points: {why}", RuntimeWarning, stacklevel=4)
+        return position
 
 
 def prepare(name: str, points: Any, num_mesh_points: int = _NUM_MESH_POINTS) -> Cloud:
@@ -507,10 +510,9 @@ def planes(
     has_symmetry = result.planes or result.axes or result.centers or result.rotations or result.reason
     if len(cloud.shape) == 2 and indices is None and result.viewpoint is not None and not has_symmetry:
         warnings.warn("points: no symmetry; if this is a whole frame, scene() finds its objects", RuntimeWarning, stacklevel=2)
-    if result.viewpoint is None and result.best is not None and not has_symmetry:
+    if result.undecided and result.best is not None:
         low, high = result.best.share_interval
-        if low < 0.9 and high >= 0.97:
-            warnings.warn(f"points: they leave it open, a share of {low:.2f} to {high:.2f} for the best plane", RuntimeWarning, stacklevel=2)
+        warnings.warn(f"points: they leave it open, a share of {low:.2f} to {high:.2f} for the best plane", RuntimeWarning, stacklevel=2)
     return result if cloud.shift is None else result._moved(cloud.shift)
 
 
@@ -755,6 +757,8 @@ def sample_mesh(
     vertices: Any, faces: Optional[ArrayLike] = None, num_points: int = 10_000, *, seed: int = 1
 ) -> NDArray[Any]:
     """(num_points, 3) points spread evenly over a mesh of (V, 3) vertices and (F, 3) faces, or of a file, Open3D or trimesh."""
+    if isinstance(faces, int):
+        raise TypeError(f"faces = {faces}, must be (F, 3); num_points={faces} is a number of points")
     positions, own_faces = parts_of("vertices", vertices)
     faces = faces_of(own_faces, faces)
     if faces is None:

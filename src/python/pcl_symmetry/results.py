@@ -81,6 +81,7 @@ def _text(value: Any) -> str:
     if isinstance(value, list):
         return "[" + ", ".join(map(_text, value)) + "]"
     if isinstance(value, float):
+        value += 0.0  # no -0
         return f"{value:.4g}" if abs(value) < 1e4 else f"{value:.10g}"  # those of maps to the millimeter
     return repr(value)
 
@@ -136,7 +137,8 @@ class Result:
         names = [f.name for f in dataclasses.fields(self)]
         return all(_same(getattr(self, name), getattr(other, name)) for name in names)
 
-    __hash__ = None  # type: ignore[assignment]
+    def __hash__(self) -> int:
+        return hash(repr(self))
 
     def __repr__(self) -> str:
         names = (*self._in_repr, "reason") if getattr(self, "reason", "") else self._in_repr
@@ -264,7 +266,7 @@ class Plane(ReflectionPlane):
     share: float
     """Estimated share of the surface that is mapped to within the tolerance, in [0, 1]; NaN for volumes, which have no surface, and as published."""
     share_interval: Tuple[float, float]
-    """Limits of that share for the whole object, 95 of 100 cases."""
+    """Limits of that share for the whole object, 95 of 100 cases: (0, 1) of most scans, which do not show the rest."""
     score: float
     """D of equation 2, in [0, 1]."""
     support: float
@@ -462,6 +464,8 @@ class Planes(Result):
     """Of scans from one side, most confident first."""
     best: Optional[Plane]
     """Where there is no symmetry and no possible one: the plane that comes closest; else None."""
+    undecided: bool
+    """Whether there is no symmetry, as few points of a whole cloud leave it open: best may be one."""
     flat: Optional[NDArray[np.float64]]
     """(4,) plane that all points of a sheet or a disc lie near; None: the cloud is not flat."""
     tolerance: float
@@ -512,7 +516,7 @@ class Planes(Result):
 
     def _json(self) -> Dict[str, Any]:
         num_points = 0 if self.reason else len(self._rows) or self._shape[0]
-        found: Dict[str, Any] = dict(num_points=num_points, partial=self.viewpoint is not None)
+        found: Dict[str, Any] = dict(num_points=num_points, partial=self.viewpoint is not None, undecided=self.undecided)
         found.update(viewpoint=_viewpoint(self), planes=_plain(self.every))
         found.update({name: _plain(getattr(self, name)) for name in "axes centers tolerance resolution stray_points".split()})
         if self.viewpoint is not None:
@@ -591,7 +595,7 @@ class Planes(Result):
         names = "possible approximate axes centers rotations".split()
         others = "".join(f", {name}={len(getattr(self, name))}" for name in names if getattr(self, name))
         if not self.planes and self.best is not None:
-            others += f", best={self.best!r}"
+            others += f", best={self.best!r}" + ", undecided" * self.undecided
         return "Planes([" + "".join(f"\n  {plane!r}," for plane in self.planes) + ("\n]" if self.planes else "]") + others + ")"
 
     def _moved(self, shift: NDArray[np.float64]) -> Planes:
@@ -1043,10 +1047,10 @@ class SceneObject(Result):
     """Why no model of the database fits; empty where one does."""
 
     def __repr__(self) -> str:
-        counts = {name: len(getattr(self.planes, name)) for name in "planes possible axes centers".split()}
-        found = ", ".join(f"{name}={count}" for name, count in counts.items() if count)
+        kinds = {name: getattr(self.planes, name) for name in "planes possible axes centers".split()}
+        found = "".join(f", {name}={_text([each.confidence for each in all_])}" for name, all_ in kinds.items() if all_)
         models = f", models={[m.name for m in self.models]}" if self.models else ""
-        return f"SceneObject(rows={len(self.rows)}, planes=Planes({found}), added={len(self.added)}{models})"
+        return f"SceneObject(rows={len(self.rows)}{found or ', no symmetry'}, added={len(self.added)}{models})"
 
     def _json(self) -> Dict[str, Any]:
         found: Dict[str, Any] = dict(
