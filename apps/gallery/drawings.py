@@ -3,6 +3,7 @@
 usage: python3 apps/gallery/drawings.py PICTURE OUT.png [FILE ...]
 
   first_look MESH      a scan, its plane of symmetry, and the completed scan (the page that is read first)
+  scene MESH MESH MESH a scan of three things on a table, as pcl_symmetry_scene draws it
   decision FRAME N …   objects of a frame of a depth camera, by number: the evidence for their best planes, and the confidence
   refinement MESH      Iterative Symmetric Points, from a plane that is off (Figure 7)
   animals MESH …       shapes with their frames (Figure 10)
@@ -14,7 +15,7 @@ usage: python3 apps/gallery/drawings.py PICTURE OUT.png [FILE ...]
   failure_frame MESH, failure_completion MESH, failure_pose, failure_name, failure_rotations, failure_volume
                        answers that the data do not tell, or that the tolerance passes over
 
-Needs python3-matplotlib, python3-open3d, pcl_symmetry_scan and pcl_symmetry_planes on PATH, and the module (PYTHONPATH=build/src/python).
+Needs python3-matplotlib, python3-open3d, pcl_symmetry_scan, _planes and _scene on PATH, and the module (PYTHONPATH=build/src/python).
 """
 
 import subprocess
@@ -312,6 +313,23 @@ def first_look(out, path):
     sheet.save(out, zoom=1.6, says=title)
 
 
+def scene(out, *paths):
+    """A scan of three things on a table, as pcl_symmetry_scene draws it."""
+    corners = np.array([(x, y, z) for z in (-0.1, 0) for y in (-2.6, 2.6) for x in (-3.6, 3.6)])
+    quads = [(0, 1, 5, 4), (2, 6, 7, 3), (0, 4, 6, 2), (1, 3, 7, 5), (0, 2, 3, 1), (4, 5, 7, 6)]
+    vertices, triangles = [corners], [[t for a, b, c, d in quads for t in ((a, b, c), (a, c, d))]]
+    for path, (x, y, angle) in zip(paths, ((-1.7, -0.3, -0.3), (0.5, 0.9, 0), (1.9, -0.8, 2.2))):
+        points, faces = load_mesh(path)
+        turn = np.array([[np.cos(angle), -np.sin(angle), 0], [np.sin(angle), np.cos(angle), 0], [0, 0, 1]])
+        triangles.append(faces + sum(map(len, vertices)))
+        vertices.append(points @ turn.T + (x, y, -points[:, 2].min()))
+    with tempfile.TemporaryDirectory() as folder:
+        write_ply(f"{folder}/table.ply", np.concatenate(vertices), np.concatenate(triangles))
+        flags = "-direction=-0.2,-1,0.75 -points 60000 -noise 0.0003 -quiet".split()
+        subprocess.run(["pcl_symmetry_scan", f"{folder}/table.ply", f"{folder}/table.pcd", *flags], check=True)
+        subprocess.run(["pcl_symmetry_scene", f"{folder}/table.pcd", "-png", out, "-quiet"], check=True, stdout=subprocess.DEVNULL)
+
+
 def decision(out, path, *numbers):
     """Objects of a frame: where their points are reflected to, the share of the surface that maps, and the odds that follow."""
     pixels = organized_points(path)
@@ -462,7 +480,7 @@ def failure_volume(out):
 
 
 if __name__ == "__main__":
-    pictures = {f.__name__: f for f in (first_look, decision, refinement, animals, frames, scan_centers, turntable, medial_axis, volume, failure_frame, failure_completion,
+    pictures = {f.__name__: f for f in (first_look, scene, decision, refinement, animals, frames, scan_centers, turntable, medial_axis, volume, failure_frame, failure_completion,
                                         failure_pose, failure_name, failure_rotations, failure_volume)}
     if len(sys.argv) < 3 or sys.argv[1] not in pictures:
         print(__doc__)

@@ -165,6 +165,7 @@ draw figure_11 "${drawings[@]}" scan_centers "$gallery/figure_11.png" car.ply
 draw_figure_15
 draw_figure_16
 draw_axes
+draw scene "${drawings[@]}" scene "$gallery/scene.png" teapot.ply bottle.ply chair.ply
 draw_decision
 draw_failures_of_all
 if $estimators; then
