@@ -351,7 +351,7 @@ void CommandLine::checkFiles() const {
         throw UsageError(output.path.string() + ": is " + other.name + " and " + output.name +
                          ", an output needs a name of its own");
   for (const NamedFile& output : files)
-    if (output.is_output && isForeignCloud(output.path.string()))
+    if (output.is_output && isForeignShape(output.path.string()))
       throw UsageError(output.path.string() + ": is there and was not written by this tool, so it is not replaced" +
                        (flags_.find_nothrow("merge", false) ? "; -merge FILE brings several scans together" : ""));
 }

@@ -20,6 +20,7 @@
 #include <optional>
 
 #include "io/file_text.h"
+#include "io/input_shape.h"
 #include "io/load_module.h"
 
 namespace pcl_symmetry::apps {
@@ -160,7 +161,7 @@ void checkTarget(const std::string& path) {
   if (path.empty()) throw InputError("output name is empty");
   boost::system::error_code ignored;
   if (fs::is_directory(path, ignored)) failToWrite(path, "it is a folder");
-  if (isForeignCloud(path)) failToWrite(path, "it is there and was not written by this tool");
+  if (isForeignShape(path)) failToWrite(path, "it is there and was not written by this tool");
   const fs::path folder = fs::path(path).has_parent_path() ? fs::path(path).parent_path() : fs::path(".");
   if (!fs::is_directory(folder, ignored)) failToWrite(path, "there is no directory " + folder.string());
 }
@@ -227,11 +228,14 @@ std::string& toolName() {
   return name;
 }
 
-bool isForeignCloud(const std::string& path) {
+bool isForeignShape(const std::string& path) {
   boost::system::error_code ignored;
+  if (isStandardStream(path) || !fs::is_regular_file(path, ignored)) return false;
   const std::string extension = lowerExtension(path);
-  if (isStandardStream(path) || (extension != ".pcd" && extension != ".ply") || !fs::is_regular_file(path, ignored))
-    return false;
+  for (const char* unwritten : {".off", ".obj", ".stl", ".glb", ".xyz", ".pts", ".asc"})
+    if (extension == unwritten) return true;
+  if (isVolumePath(path)) return extension != ".vti";
+  if (extension != ".pcd" && extension != ".ply") return false;
   std::string head(256, '\0');
   std::ifstream(path, std::ios::binary).read(head.data(), static_cast<std::streamsize>(head.size()));
   return head.find(toolName()) == std::string::npos;

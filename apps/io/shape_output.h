@@ -17,7 +17,7 @@ namespace pcl_symmetry::apps {
 enum class PCDEncoding { Ascii, Binary, BinaryCompressed };
 
 /// Lets a tool refuse before the long work.
-/// \throws InputError where no file of this name can be made: the folder is missing, it is a folder, isForeignCloud().
+/// \throws InputError where no file of this name can be made: the folder is missing, it is a folder, isForeignShape().
 void checkTarget(const std::string& path);
 
 /// \return whether none of the outputs is "-", so that standard output is free for text.
@@ -55,8 +55,8 @@ void checkCloudExtension(const std::string& path);
 /// Name of the tool, which stands in a comment of the header of the clouds and meshes that it writes.
 std::string& toolName();
 
-/// \return whether a .pcd or .ply file is there that this tool did not write: perhaps an input.
-bool isForeignCloud(const std::string& path);
+/// \return whether a cloud, mesh or volume is there that this tool did not write: perhaps an input.
+bool isForeignShape(const std::string& path);
 
 /// PCL's writers, in the module pcl_symmetry_cloud_files.
 /// \param extension ".ply" or ".pcd"; the encoding is that of PCD.

@@ -59,6 +59,10 @@ class SafeFiles(ToolTest):
         self.write("name_0.pcd", theirs)
         self.fails(1, "name_0.pcd: cannot be written, it is there", "box.off name.pcd -all -quiet", tool="scan")
         self.assertEqual([self.text(name) for name in ("theirs.pcd", "name_0.pcd")], [theirs, theirs])
+        self.write("other.off", tool_run.box())
+        for flag in ("-json", "-csv"):  # the name of the file was forgotten
+            self.fails(2, "there and was not written by this tool", f"{flag} other.off box.off -quiet", tool="planes")
+        self.assertEqual(self.text("other.off"), tool_run.box())
 
     def test_what_can_be_written_is_written(self):
         self.fails(1, "is no body of revolution", "box.off -json a.json -html a.html -profile a.svg", tool="planes")
