@@ -109,8 +109,7 @@ InputShape loadInput(const Console& console, const std::string& path, const Comm
       is_volume ? loadVolumeInput(path, common, summary) : loadInput(path, common.mesh_points, common.seed);
   const std::size_t num_points = input.points->size(), num_finite = finitePoints(*input.points).cols();
   const std::string all = num_finite < num_points ? " of " + std::to_string(num_points) : "";
-  input.loading_ms =
-      loading.done(std::to_string(num_finite) + all + (num_points == 1 ? " point" : " points") + summary);
+  input.loading_ms = loading.done(counted(num_finite, "point") + all + summary);
   warnOfLeftOut(console, path, input.shape);
   if (!is_volume && !input.shape.mesh && common.mesh_points != CommonOptions().mesh_points)
     console.warn(path + ": -points is of meshes, a cloud keeps its own");

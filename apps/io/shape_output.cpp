@@ -19,6 +19,7 @@
 #include <mutex>
 #include <optional>
 
+#include "command_line/input_files.h"
 #include "io/file_text.h"
 #include "io/input_shape.h"
 #include "io/load_module.h"
@@ -232,10 +233,8 @@ bool isForeignShape(const std::string& path) {
   boost::system::error_code ignored;
   if (isStandardStream(path) || !fs::is_regular_file(path, ignored)) return false;
   const std::string extension = lowerExtension(path);
-  for (const char* unwritten : {".off", ".obj", ".stl", ".glb", ".xyz", ".pts", ".asc"})
-    if (extension == unwritten) return true;
-  if (isVolumePath(path)) return extension != ".vti";
-  if (extension != ".pcd" && extension != ".ply") return false;
+  if (extension == ".csv" || extension == ".txt" || extension == ".vti") return false;  // tables and volumes of tools
+  if (extension != ".pcd" && extension != ".ply") return hasShapeExtension(path) || isVolumePath(path);
   std::string head(256, '\0');
   std::ifstream(path, std::ios::binary).read(head.data(), static_cast<std::streamsize>(head.size()));
   return head.find(toolName()) == std::string::npos;
