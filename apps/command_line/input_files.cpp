@@ -83,13 +83,6 @@ void addArgument(const std::string& argument, std::vector<InputFile>& files) {
 
 }  // namespace
 
-bool hasShapeExtension(const std::string& path) {
-  const std::string ending = boost::algorithm::to_lower_copy(fs::path(path).extension().string());
-  if (ending.empty()) return false;
-  const std::string known = boost::algorithm::replace_all_copy(std::string(" ") + kShapeFilesOfFolders + " ", ",", " ");
-  return known.find(" " + ending + " ") != std::string::npos;
-}
-
 bool standsForSeveral(const std::string& argument) {
   return isList(argument) || isFolder(argument) || isPattern(argument);
 }

@@ -21,9 +21,6 @@ struct InputFile {
 /// to be reported with those that cannot be used.
 std::vector<InputFile> inputFiles(const std::vector<std::string>& arguments);
 
-/// \return whether the name ends in one of kShapeFilesOfFolders, in capitals or not
-bool hasShapeExtension(const std::string& path);
-
 /// \return whether one argument may name several files: a folder, a pattern or a list
 bool standsForSeveral(const std::string& argument);
 

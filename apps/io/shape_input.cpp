@@ -104,6 +104,13 @@ Shape shapeOf(const std::string& name, const std::string& text, const std::strin
 
 }  // namespace
 
+bool hasShapeExtension(const std::string& path) {
+  const std::string ending = boost::algorithm::to_lower_copy(boost::filesystem::path(path).extension().string());
+  if (ending.empty()) return false;
+  const std::string known = boost::algorithm::replace_all_copy(std::string(" ") + kShapeFilesOfFolders + " ", ",", " ");
+  return known.find(" " + ending + " ") != std::string::npos;
+}
+
 std::string extensionOfContent(const std::string& content) {
   if (boost::algorithm::starts_with(content, "glTF")) return ".glb";
   if (boost::algorithm::starts_with(content, "# .PCD")) return ".pcd";

@@ -40,6 +40,9 @@ struct Shape {
 /// \throws InputError naming the file, what is wrong and the rule
 Shape loadShape(const std::string& path);
 
+/// \return whether the name ends in one of kShapeFilesOfFolders, in capitals or not
+bool hasShapeExtension(const std::string& path);
+
 /// \return the extension that a shape file of this content has, such as ".pcd"; empty where it is of no known kind.
 std::string extensionOfContent(const std::string& content);
 

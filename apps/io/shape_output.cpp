@@ -19,7 +19,6 @@
 #include <mutex>
 #include <optional>
 
-#include "command_line/input_files.h"
 #include "io/file_text.h"
 #include "io/input_shape.h"
 #include "io/load_module.h"

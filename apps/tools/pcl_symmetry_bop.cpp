@@ -15,7 +15,6 @@
 #include "bop/models_info.h"
 #include "command_line/command_line.h"
 #include "command_line/console.h"
-#include "command_line/input_files.h"
 #include "command_line/run_on_files.h"
 #include "command_line/tool_errors.h"
 #include "core/base/constants.h"
