@@ -29,7 +29,8 @@ struct Overlap {
   double agreement() const { return (num_on + 1.0) / (num_facing + 2.0); }
 };
 
-Overlap overlapOf(const Landing& landing, const PosedSurface& to, double tolerance, double size) {
+Overlap overlapOf(const PosedSurface& from, const Landing& landing, const PosedSurface& to, double tolerance,
+                  double size) {
   const auto& rules = kRegistration;
   const Eigen::Index count = landing.images.cols();
   const std::vector<char>& borders = to.borders.get();
@@ -39,9 +40,11 @@ Overlap overlapOf(const Landing& landing, const PosedSurface& to, double toleran
     const int j = landing.closest[i];
     const double height = std::abs(to.normals.col(j).dot(landing.images.col(i) - to.points.col(j)));
     const double across = std::sqrt(std::max(0.0, landing.sq_distances[i] - height * height));
-    if (borders[j] || across > rules.facing_spacings * to.spacing[j] || height > rules.facing_reach * size) continue;
+    const float cosine = normalCosine(from, to, landing, i);
+    if (borders[j] || across > rules.facing_spacings * to.spacing[j] || height > rules.facing_reach * size ||
+        cosine < -rules.agreeing_cosine)
+      continue;
     overlap.num_facing += 1.0;
-    const float cosine = std::abs(to.normals.col(j).dot(landing.normals.col(i)));
     if (cosine > rules.agreeing_cosine && height < tolerance) overlap.num_on += 1.0;
   }
   return overlap;
@@ -77,11 +80,12 @@ NotMeasured notMeasured(const PosedSurface& surface, const PosedSurface& scan, c
 /// A lower limit of the share of points that lie on the surface: by a width that does not grow with the spacing of the
 /// points, so that few points on a wrong object do not count, and by the discs about the points of the surface, flat
 /// and as wide as these are apart, so that it does not count how densely they lie.
-double shareOnSurface(const Landing& landing, const PosedSurface& to) {
+double shareOnSurface(const PosedSurface& from, const Landing& landing, const PosedSurface& to) {
   const double width = kRegistration.contact;
   const auto size = static_cast<double>(landing.images.cols());
   double sum = 0.0;
   for (Eigen::Index i = 0; i < landing.images.cols(); ++i) {
+    if (normalCosine(from, to, landing, i) < -kRegistration.agreeing_cosine) continue;
     const float sq_distance = to.disc(landing.closest[i]).sqDistance(landing.images.col(i));
     sum += std::exp(static_cast<float>(-1.0 / (width * width)) * sq_distance);
   }
@@ -118,13 +122,13 @@ PoseEvidence poseEvidence(const PosedSurface& scan, const PosedSurface& model, c
   const double tolerance = std::max(kRegistration.tight_tolerance * size, kRegistration.tight_noises * noise);
   const Landing on_model = land(scan, model, T_model_scan, kRegistration.evidence_points);
   const Landing on_scan = land(model, scan, T_model_scan.inverse(), kRegistration.evidence_points);
-  const Overlap of_scan = overlapOf(on_model, model, tolerance, size),
-                of_model = overlapOf(on_scan, scan, tolerance, size);
+  const Overlap of_scan = overlapOf(scan, on_model, model, tolerance, size),
+                of_model = overlapOf(model, on_scan, scan, tolerance, size);
   PoseEvidence evidence;
   evidence.overlap_source = of_scan.share();
   evidence.overlap_target = of_model.share();
   evidence.agreement = std::min(of_scan.agreement(), of_model.agreement());
-  evidence.on_surface = shareOnSurface(on_model, model);
+  evidence.on_surface = shareOnSurface(scan, on_model, model);
   const double near = std::max(kRegistration.near_tolerance * size, kRegistration.tight_noises * noise);
   const double far = kRegistration.facing_reach * size;
   const NotMeasured of_model_in_view = notMeasured(model, scan, T_model_scan.inverse(), on_scan, near, far),

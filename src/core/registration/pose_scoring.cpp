@@ -27,8 +27,8 @@ float nearnessOfSurface(const Landing& landing, Eigen::Index i, const PosedSurfa
 }
 
 /// Share of a point's support that its normal leaves it: 1 where it is parallel to that of the closest point.
-float normalFactor(const Landing& landing, Eigen::Index i, const PosedSurface& to) {
-  const float cosine = landing.normals.col(i).dot(to.normals.col(landing.closest[i]));
+float normalFactor(const PosedSurface& from, const Landing& landing, Eigen::Index i, const PosedSurface& to) {
+  const float cosine = std::max(0.0f, normalCosine(from, to, landing, i));
   return 1.0f - kRegistration.normal_share + kRegistration.normal_share * cosine * cosine;
 }
 
@@ -49,7 +49,7 @@ PoseScore PoseScorer::score(const Eigen::Isometry3d& T_model_scan, const Detail&
   for (Eigen::Index i = 0; i < on_model.images.cols(); ++i) {
     const float near = detail.from_surface ? nearnessOfSurface(on_model, i, model_, detail.width)
                                            : nearness(on_model, i, model_, detail.width);
-    score.support += detail.from_surface ? near : near * normalFactor(on_model, i, model_);
+    score.support += detail.from_surface ? near : near * normalFactor(scan_, on_model, i, model_);
     if (model_.seen && depthBehind(on_model, i, model_) < 0.0) unexplained += 1.0 - near;
   }
   score.support /= static_cast<double>(on_model.images.cols());
@@ -75,7 +75,7 @@ Eigen::Isometry3d PoseScorer::step(const Eigen::Isometry3d& T_model_scan, const 
   const Landing on_model = land(scan_, model_, T_model_scan, detail.num_points, detail.exact);
   for (Eigen::Index i = 0; i < on_model.images.cols(); ++i) {
     const int j = on_model.closest[i];
-    const double weight = nearness(on_model, i, model_, detail.width) * normalFactor(on_model, i, model_);
+    const double weight = nearness(on_model, i, model_, detail.width) * normalFactor(scan_, on_model, i, model_);
     const Eigen::Vector3d x = on_model.images.col(i).cast<double>(), y = model_.points.col(j).cast<double>();
     equations.addPlane(x, y, model_.normals.col(j).cast<double>(), (1.0 - kRegistration.point_share) * weight);
     equations.addPoint(x, y, kRegistration.point_share * weight);

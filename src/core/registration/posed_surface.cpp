@@ -1,6 +1,7 @@
 #include "core/registration/posed_surface.h"
 
 #include <algorithm>
+#include <cmath>
 #include <numeric>
 #include <utility>
 
@@ -44,6 +45,12 @@ PosedSurface::PosedSurface(const PointsRef& input, std::optional<Visibility> see
     geometry = localGeometry(points, *search, num_threads, nullptr, kRegistration.num_rough_neighbors);
   lookAtWatch();
   normals = std::move(geometry.normals);
+  is_oriented = seen && seen->numPictures() == 1;
+  if (is_oriented) {
+    const Eigen::Vector3f viewpoint = seen->viewpoint().cast<float>();
+    for (Eigen::Index i = 0; i < points.cols(); ++i)
+      if (normals.col(i).dot(viewpoint - points.col(i)) < 0.0f) normals.col(i) *= -1.0f;
+  }
   noise = median(std::move(geometry.roughness));
   accuracy = typical + 2.0 * noise;
   borders = std::async(std::launch::deferred, [points = points, normals = normals, search = search, neighbors] {
@@ -58,6 +65,11 @@ PosedSurface::PosedSurface(const PointsRef& input, const PointsRef& known_normal
       seen(std::move(seen_space)),
       grid(lateGrid(points, kRegistration.few_cells)) {
   std::iota(order.begin(), order.end(), 0);
+}
+
+float normalCosine(const PosedSurface& from, const PosedSurface& onto, const Landing& landing, Eigen::Index i) {
+  const float cosine = landing.normals.col(i).dot(onto.normals.col(landing.closest[i]));
+  return from.is_oriented && onto.is_oriented ? cosine : std::abs(cosine);
 }
 
 Landing land(const PosedSurface& from, const PosedSurface& onto, const Eigen::Isometry3d& T_onto_from, int num_points,

@@ -18,7 +18,8 @@ namespace pcl_symmetry {
 /// One of two clouds that are brought together, with everything that judging a pose needs.
 struct PosedSurface {
   Points points;                   ///< 3 x N
-  Points normals;                  ///< 3 x N, unit, of any sign
+  Points normals;                  ///< 3 x N, unit, toward the viewpoint if is_oriented, otherwise of any sign
+  bool is_oriented = false;        ///< all points were seen from one viewpoint
   std::vector<float> spacing;      ///< N, distance between neighboring samples there
   std::vector<int> order;          ///< N, the points in random order: the first k are an even sample of the surface
   double accuracy = 0.0;           ///< distance within which samples of one surface meet: their spacing and their noise
@@ -39,6 +40,10 @@ struct PosedSurface {
   /// About a point, as wide as points are apart there.
   SurfaceDisc disc(int i) const { return {points.col(i), normals.col(i), spacing[i]}; }
 };
+
+/// \return the cosine between the normal of a point that landed and that of its closest point: of the lines along them,
+/// unless both surfaces are oriented, as then two sides of a thin part are told apart.
+float normalCosine(const PosedSurface& from, const PosedSurface& onto, const Landing& landing, Eigen::Index i);
 
 /// Where the first points of a surface land on another, in its frame.
 /// \param exact closest points from the tree; otherwise from the grid, without distances.
