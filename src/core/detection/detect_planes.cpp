@@ -72,6 +72,23 @@ void tryRightAngles(const JudgedCloud& judged, Found& found) {
   if (!candidates.empty()) decide(judged, judged.refinement.refineSymmetries(std::move(candidates)), found);
 }
 
+/// All planes through the axis of a mug map its body onto itself: those that do not map its handle onto itself, but to
+/// where the scanner saw nothing, are possible at most.
+void doubtUnshownHandles(const JudgedCloud& judged, const RotationEvidence& rotations, const ScanAxesOptions& options,
+                         Found& found) {
+  if (std::none_of(found.planes.begin(), found.planes.end(),
+                   [](const SymmetryPlane& plane) { return plane.kind == PlaneKind::Symmetry; }))
+    return;
+  const std::optional<NearlyRound> body = nearlyRound(rotations, options);
+  if (!body) return;
+  for (SymmetryPlane& plane : found.planes) {
+    const ReflectionPlane normalized = judged.cloud.toNormalized(plane);
+    if (contains(normalized, body->axis) &&
+        rotations.shareOn(normalized.reflection(), body->not_round) < kScanAxes.min_mapped)
+      limitToPossible(plane, "contains the axis of a round body, and does not map what is not round of it onto itself");
+  }
+}
+
 /// Finds axes of rotations of a scan and makes axes of revolution and planes consistent with them.
 void findAxesOfScan(const JudgedCloud& judged, Found& found) {
   const DetectionOptions& options = judged.options;
@@ -94,6 +111,7 @@ void findAxesOfScan(const JudgedCloud& judged, Found& found) {
   // A body that is no ball has one axis: the others of a dome are as round within the tolerance.
   sortFalling(found.axes, &SymmetryAxis::confidence);
   if (found.axes.size() > 1) found.axes.resize(1);
+  if (found.axes.empty()) doubtUnshownHandles(judged, rotations, scan_axes, found);
 }
 
 /// Rules by which findings correct each other, applied in this order. Not in the paper.

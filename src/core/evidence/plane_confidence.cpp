@@ -31,8 +31,9 @@ double byShare(const PlaneEvidence& evidence, double unit) {
 
 /// \return the share of the surface that finer points would show to be off.
 double resolvedOff(const PlaneEvidence& evidence, const EvidenceUnits& units) {
-  const double off = 1.0 - evidence.share;
-  return off > 0.0 ? off * std::exp(units.reach * coarseness(evidence)) : 0.0;  // not 0 times infinity
+  const double off = 1.0 - evidence.share, coarse = coarseness(evidence);
+  const double reach = std::max(units.reach * coarse, evidence.flat ? std::min(1.0, units.flat_reach * coarse) : 0.0);
+  return off > 0.0 ? off * std::exp(reach) : 0.0;  // not 0 times infinity
 }
 
 /// \return the share of the surface that is off, in units of what is known of it.

@@ -74,6 +74,7 @@ struct EvidenceUnits {
   /// Logarithm of the factor per spacing in tolerances by which finer points of a whole cloud show more of the surface
   /// to be off, as samples reach beyond the edges of what is there: 0.3 to 0.6 for planes that map 96 to 97 %.
   double reach = 0.3;
+  double flat_reach = 0.8;      ///< the same for flat clouds, where only the outline tells, up to a factor of e
   double hidden_loss = 0.6;     ///< part of D that is lost per share that is uninformative
   double slipping = 0.03;       ///< how firmly a scan has to hold a plane; nine of ten symmetries have more than 0.06
   double min_slipping = 0.001;  ///< what is as good as free

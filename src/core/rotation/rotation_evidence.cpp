@@ -119,6 +119,25 @@ RotationShares RotationEvidence::exactly(const Eigen::Affine3d& motion) const {
   return shares;
 }
 
+std::vector<int> RotationEvidence::notRound(const Line3d& line) const {
+  std::vector<char> is_far(samples_.size(), false);
+  for (int k = 1; k <= kScanAxes.round_rotations; ++k) {
+    const Landing all = landed(motionAboutLine(line, 2.0 * kPi * goldenFraction(k)));
+    for (std::size_t i = 0; i < samples_.size(); ++i)
+      if (all.distances[i] > far_ && isEmpty(all.images.col(i).cast<double>())) is_far[i] = true;
+  }
+  std::vector<int> some;
+  for (std::size_t i = 0; i < samples_.size(); ++i)
+    if (is_far[i]) some.push_back(static_cast<int>(i));
+  return some;
+}
+
+double RotationEvidence::shareOn(const Eigen::Affine3d& motion, const std::vector<int>& some) const {
+  const Landing all = landed(motion);
+  const auto count = std::count_if(some.begin(), some.end(), [&](int i) { return all.distances[i] <= tolerance_; });
+  return static_cast<double>(count) / static_cast<double>(some.size());
+}
+
 double RotationEvidence::hold(const Line3d& line, double angle) const {
   const Eigen::Isometry3d motion = motionAboutLine(line, angle);
   const std::array<Eigen::Isometry3d, 4> beside = motionsBeside(line, angle);

@@ -60,7 +60,9 @@ struct ScanAxisRules {
   double max_halfway = 0.3;                                   ///< share of the points from which on all folds are alike
   double negligible_share = 2e-3;                             ///< share of the points that is negligible
   double negligible_of_planes = 5e-3;                         ///< of planes, which are screened at steps
-  double min_hold = 1e-3;  ///< least stiffness of a line that the scan holds; boxes have 0.05
+  double max_not_round = 0.3;                                 ///< share of the points of a body that is round otherwise
+  double min_mapped = 0.25;  ///< share of these points that a plane through its axis maps onto the surface
+  double min_hold = 1e-3;    ///< least stiffness of a line that the scan holds; boxes have 0.05
 };
 
 inline constexpr ScanAxisRules kScanAxes;
@@ -104,6 +106,14 @@ public:
 
   /// By distances from the surface.
   RotationShares exactly(const Eigen::Affine3d& motion) const;
+
+  /// \param line about which the points are round otherwise.
+  /// \return those samples of exactly() that some rotation about the line maps far into free space, such as a handle.
+  std::vector<int> notRound(const Line3d& line) const;
+
+  /// \param some of the samples of exactly(), at least one.
+  /// \return share of them that a motion maps onto the surface.
+  double shareOn(const Eigen::Affine3d& motion, const std::vector<int>& some) const;
 
   /// How fast the match of a rotation is lost as the line moves: second smallest eigenvalue of its stiffness, point to
   /// plane, under two tilts and two shifts; mean over the points, radii. The smallest is small for all surfaces that

@@ -273,6 +273,21 @@ std::vector<SymmetryRotation> scanAxes(const RotationEvidence& evidence, const s
   return result;
 }
 
+std::optional<NearlyRound> nearlyRound(const RotationEvidence& evidence, const ScanAxesOptions& options) {
+  const AxisJudge judge(evidence, 1);
+  const auto num_samples = std::min<Eigen::Index>(kScanAxes.num_samples, evidence.cloud().points.cols());
+  for (const AxisStart& start : startsFromNormals(evidence.cloud(), options.seed, options.num_threads)) {
+    const Line3d axis = judge.fitted(start);
+    if (!axis.direction().allFinite() || !axis.origin().allFinite() ||
+        evidence.exactly(motionAboutLine(axis, kScanAxes.small_angle)).on < kScanAxes.round_on)
+      continue;
+    std::vector<int> not_round = evidence.notRound(axis);
+    const double share = static_cast<double>(not_round.size()) / static_cast<double>(num_samples);
+    if (share > kScanAxes.max_round_far && share < kScanAxes.max_not_round) return NearlyRound{axis, std::move(not_round)};
+  }
+  return std::nullopt;
+}
+
 std::optional<SymmetryCenter> centerOfScan(const RotationEvidence& evidence, const ScanAxesOptions& options) {
   const NormalizedCloud& cloud = evidence.cloud();
   const std::vector<int> samples = drawSamples(cloud.points.cols(), kScanAxes.normal_samples, options.seed);

@@ -34,6 +34,15 @@ std::vector<SymmetryRotation> scanAxes(const RotationEvidence& evidence, const s
                                        const std::vector<SymmetryAxis>& axes, const ScanAxesOptions& options,
                                        std::vector<JudgedRotation>* evidence_of_all = nullptr);
 
+/// The axis of a body that is round but for a part, such as a mug with its handle, and this part.
+struct NearlyRound {
+  Line3d axis;                 ///< normalized frame
+  std::vector<int> not_round;  ///< as RotationEvidence::notRound()
+};
+
+/// \return nothing where a scan shows no such body.
+std::optional<NearlyRound> nearlyRound(const RotationEvidence& evidence, const ScanAxesOptions& options);
+
 /// The center of a ball seen from one side: rotations by any angle about any line through it map what was seen onto
 /// itself or to unseen space.
 std::optional<SymmetryCenter> centerOfScan(const RotationEvidence& evidence, const ScanAxesOptions& options);
