@@ -16,7 +16,6 @@
 
 #include "core/base/random.h"
 #include "core/geometry/directions.h"
-#include "core/matching/compact_index.h"
 #include "core/matching/shape_signature.h"
 #include "core/matching/symmetry_descriptor.h"
 #include "core/matching/view_code.h"
@@ -163,12 +162,6 @@ void detect(benchmark::State& state, const Points& points, const DetectionOption
 void Planes(benchmark::State& state) {
   detect(state, cloud(1, static_cast<int>(state.range(0))), detectionOptions(static_cast<int>(state.range(1))));
 }
-/// Arguments: model, threads.
-void PlanesOfModel(benchmark::State& state) {
-  const auto model = static_cast<std::size_t>(state.range(0));
-  state.SetLabel(models()[model].name);
-  detect(state, cloud(model, kManyPoints), detectionOptions(static_cast<int>(state.range(1))));
-}
 /// Arguments: rotations about axes are looked for, threads.
 void PlanesOfScan(benchmark::State& state) {
   const std::optional<Visibility> seen = Visibility::fromPoints(cowScan().points, cowScan().viewpoint);
@@ -272,36 +265,6 @@ void NearestViews(benchmark::State& state) {
   needs(state, "byte_near", static_cast<double>(kNumModels) * kNumViews * (kViewCodeSize + 2));
 }
 
-/// The nearest of many compact signatures, and the share of queries whose true nearest is found. Argument: shapes.
-void NearestShapes(benchmark::State& state) {
-  constexpr int kDimensions = 256, kNumQueries = 50;
-  const auto num_shapes = static_cast<int>(state.range(0));
-  // Unit vectors whose components fall as those of compact signatures do.
-  const auto forms = [](int count, std::uint64_t seed) {
-    RandomStream random(seed);
-    Eigen::MatrixXf made = Eigen::MatrixXf::NullaryExpr(kDimensions, count, [&] {
-      return static_cast<float>(random.uniform() + random.uniform() + random.uniform() - 1.5);
-    });
-    for (int d = 0; d < kDimensions; ++d) made.row(d) *= static_cast<float>(std::pow(1.0 + d, -0.5));
-    made.colwise().normalize();
-    return made;
-  };
-  const Eigen::MatrixXf stored = forms(num_shapes, 1), noise = forms(kNumQueries, 2);
-  const CompactIndex index(stored, 1);
-  std::vector<Eigen::MatrixXf> queries(kNumQueries, forms(kNumAxisRotations, 3));
-  double num_found = 0.0;
-  for (int i = 0; i < kNumQueries; ++i) {
-    const Eigen::Index shape = static_cast<Eigen::Index>(i) * num_shapes / kNumQueries;
-    queries[i].col(i % kNumAxisRotations) = (stored.col(shape) + 0.6f * noise.col(i)).normalized();
-    Eigen::Index nearest;
-    (queries[i].transpose() * stored).colwise().maxCoeff().maxCoeff(&nearest);
-    num_found += index.nearest(queries[i], 10).front().first == nearest ? 1.0 : 0.0;
-  }
-  int i = 0;
-  for (auto _ : state) benchmark::DoNotOptimize(index.nearest(queries[i++ % kNumQueries], 10).data());
-  state.counters["found"] = num_found / kNumQueries;
-}
-
 // "Time" is that of the clock, "CPU" the processor time of all threads.
 #define STAGE(name) BENCHMARK(name)->Unit(benchmark::kMillisecond)->MeasureProcessCPUTime()
 STAGE(Edt)->ArgNames({"points", "cells", "threads"})->ArgsProduct({{10'000, 1'000'000}, {kCells}, {1, 2}});
@@ -309,7 +272,6 @@ STAGE(Sampled)->ArgNames({"theta", "phi", "samples", "threads"})->ArgsProduct({{
 STAGE(Sampled)->ArgNames({"theta", "phi", "samples", "threads"})->Args({32, 128, 64, 1});
 STAGE(Convolution)->ArgName("threads")->Arg(1)->Arg(2);
 STAGE(Planes)->ArgNames({"points", "threads"})->ArgsProduct({{1'000, 10'000, 100'000, 1'000'000, 10'000'000}, {1, 2}});
-STAGE(PlanesOfModel)->ArgNames({"model", "threads"})->ArgsProduct({{0, 1, 2, 3, 4}, {1}});
 STAGE(PlanesOfScan)->ArgNames({"rotations", "threads"})->ArgsProduct({{0, 1}, {1, 2}});
 STAGE(PlanesOfCube)->ArgName("threads")->Arg(1)->Arg(2);
 STAGE(Rotations)->ArgName("threads")->Arg(1)->Arg(2);
@@ -318,7 +280,6 @@ STAGE(Segmentation)->ArgName("threads")->Arg(1)->Arg(2);
 STAGE(Registration)->ArgName("threads")->Arg(1)->Arg(2);
 STAGE(DescriptorDistance)->ArgName("size")->Arg(kPRSDSize)->Arg(kPRSTSize);
 STAGE(NearestViews)->ArgName("threads")->Arg(1);
-STAGE(NearestShapes)->ArgName("shapes")->Arg(904)->Arg(100'000);
 
 }  // namespace
 
