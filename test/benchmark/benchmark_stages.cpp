@@ -7,20 +7,18 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <map>
 #include <optional>
 #include <string>
-#include <utility>
 #include <vector>
 
+#include "animal.h"
 #include "core/base/random.h"
 #include "core/geometry/directions.h"
 #include "core/matching/shape_signature.h"
 #include "core/matching/symmetry_descriptor.h"
 #include "core/matching/view_code.h"
 #include "core/registration/pose_scoring.h"
-#include "models.h"
 #include "pcl_symmetry/core/detect_planes.h"
 #include "pcl_symmetry/core/planar_transform.h"
 #include "pcl_symmetry/core/rotational_symmetry.h"
@@ -34,25 +32,22 @@ using namespace pcl_symmetry::benchmarks;
 constexpr int kManyPoints = 10'000;  // what the tools spread over a mesh
 constexpr int kCells = 64;           // along each side: the default
 
-const Points& cloud(std::size_t model, int num_points) {
-  static std::map<std::pair<std::size_t, int>, Points> clouds;
-  Points& points = clouds[{model, num_points}];
-  if (points.cols() == 0) points = models()[model].sample(num_points);
+const Points& cloud(int num_points = kManyPoints) {
+  static std::map<int, Points> clouds;
+  Points& points = clouds[num_points];
+  if (points.cols() == 0) points = animal().sample(num_points);
   return points;
-}
-const Points& cow() {
-  return cloud(1, kManyPoints);
 }
 
 struct Scan {
   Eigen::Vector3d viewpoint;
   Points points;
 };
-const Scan& cowScan() {
+const Scan& animalScan() {
   static const Scan scan = [] {
-    const BoundingBall ball = boundingBall(cow());
+    const BoundingBall ball = boundingBall(cloud());
     const Eigen::Vector3d from = ball.center + 4.0 * ball.radius * Eigen::Vector3d(0.6, 0.5, 0.62).normalized();
-    return Scan{from, models()[1].scan(4 * kManyPoints, from)};
+    return Scan{from, animal().scan(4 * kManyPoints, from)};
   }();
   return scan;
 }
@@ -112,7 +107,7 @@ void needsDetection(benchmark::State& state, const Points& points, std::size_t n
 
 /// Arguments: points, cells, threads.
 void Edt(benchmark::State& state) {
-  const Points& points = cloud(1, static_cast<int>(state.range(0)));
+  const Points& points = cloud(static_cast<int>(state.range(0)));
   const auto options = edtOptions(static_cast<int>(state.range(2)), static_cast<int>(state.range(1)));
   for (auto _ : state) benchmark::DoNotOptimize(GaussianEdt(points, options).sum());
   needsTransform(state, GaussianEdt(points, options));
@@ -120,19 +115,19 @@ void Edt(benchmark::State& state) {
 
 /// Arguments: bins of theta, phi and r, samples, threads.
 void Sampled(benchmark::State& state) {
-  const GaussianEdt edt(cow(), edtOptions(0));
+  const GaussianEdt edt(cloud(), edtOptions(0));
   const PlaneGrid grid(static_cast<int>(state.range(0)), static_cast<int>(state.range(1)), 64, edt.center(),
                        edt.radius());
   SampledTransformOptions options;
   options.num_samples = static_cast<int>(state.range(2));
   options.num_threads = static_cast<int>(state.range(3));
   for (auto _ : state) benchmark::DoNotOptimize(sampledTransform(edt, grid, options).values.data());
-  needsMap(state, cow(), edt, grid, options.num_samples);
+  needsMap(state, cloud(), edt, grid, options.num_samples);
 }
 
 /// Argument: threads. 64^3 planes.
 void Convolution(benchmark::State& state) {
-  const GaussianEdt edt(cow(), edtOptions(0));
+  const GaussianEdt edt(cloud(), edtOptions(0));
   const PlaneGrid grid(kCells, kCells, kCells, edt.center(), edt.radius());
   ConvolutionTransformOptions options;
   options.num_threads = static_cast<int>(state.range(0));
@@ -160,14 +155,14 @@ void detect(benchmark::State& state, const Points& points, const DetectionOption
 
 /// Arguments: points, threads.
 void Planes(benchmark::State& state) {
-  detect(state, cloud(1, static_cast<int>(state.range(0))), detectionOptions(static_cast<int>(state.range(1))));
+  detect(state, cloud(static_cast<int>(state.range(0))), detectionOptions(static_cast<int>(state.range(1))));
 }
 /// Arguments: rotations about axes are looked for, threads.
 void PlanesOfScan(benchmark::State& state) {
-  const std::optional<Visibility> seen = Visibility::fromPoints(cowScan().points, cowScan().viewpoint);
+  const std::optional<Visibility> seen = Visibility::fromPoints(animalScan().points, animalScan().viewpoint);
   DetectionOptions options = detectionOptions(static_cast<int>(state.range(1)));
   options.rotations = state.range(0) != 0;
-  detect(state, cowScan().points, options, &*seen);
+  detect(state, animalScan().points, options, &*seen);
 }
 /// Nine planes, the most that a convex body of flat faces usually has. Argument: threads.
 void PlanesOfCube(benchmark::State& state) {
@@ -185,19 +180,19 @@ void PlanesOfCube(benchmark::State& state) {
 void Rotations(benchmark::State& state) {
   ObjectSymmetryOptions options;
   options.num_threads = static_cast<int>(state.range(0));
-  for (auto _ : state) benchmark::DoNotOptimize(objectSymmetries(cow(), options));
-  needsTransform(state, GaussianEdt(cow(), edtOptions(1)));
+  for (auto _ : state) benchmark::DoNotOptimize(objectSymmetries(cloud(), options));
+  needsTransform(state, GaussianEdt(cloud(), edtOptions(1)));
   // Four prime orders about each direction at 48 points; one rotation is judged on all points.
   needs(state, "trilinear", 4.0 * 48.0 * options.num_directions);
-  needs(state, "nine_nearest", static_cast<double>(cow().cols()));
-  needs(state, "nearest", static_cast<double>(cow().cols()));
+  needs(state, "nine_nearest", static_cast<double>(cloud().cols()));
+  needs(state, "nearest", static_cast<double>(cloud().cols()));
 }
 
 /// Argument: threads.
 void Description(benchmark::State& state) {
   DescriptionOptions options;
   options.num_threads = static_cast<int>(state.range(0));
-  const Points &points = cloud(1, options.max_points), &frame_points = cow();
+  const Points &points = cloud(options.max_points), &frame_points = cloud();
   for (auto _ : state) benchmark::DoNotOptimize(describeShape(points, options));
   const GaussianEdt edt(frame_points, edtOptions(1));
   const FrameOptions frame;
@@ -210,9 +205,9 @@ void Description(benchmark::State& state) {
 /// A mesh of 57 600 triangles. Argument: threads.
 void Segmentation(benchmark::State& state) {
   std::vector<std::vector<int>> faces;
-  for (const Eigen::Vector3i& triangle : models()[1].triangles)
+  for (const Eigen::Vector3i& triangle : animal().triangles)
     faces.push_back({triangle.x(), triangle.y(), triangle.z()});
-  const SurfaceGraph graph = meshGraph(models()[1].vertices, faces);
+  const SurfaceGraph graph = meshGraph(animal().vertices, faces);
   SegmentationOptions options;
   options.num_threads = static_cast<int>(state.range(0));
   for (auto _ : state) benchmark::DoNotOptimize(segmentSurface(graph, options));
@@ -222,8 +217,8 @@ void Segmentation(benchmark::State& state) {
 
 /// The pose of a whole cloud. Argument: threads.
 void Registration(benchmark::State& state) {
-  const BoundingBall ball = boundingBall(cow());
-  const Points points = normalizePoints(cow(), ball.center, ball.radius);
+  const BoundingBall ball = boundingBall(cloud());
+  const Points points = normalizePoints(cloud(), ball.center, ball.radius);
   const Points turned = Eigen::AngleAxisf(1.0f, Eigen::Vector3f(1.0f, 2.0f, 3.0f).normalized()) * points;
   PoseSearchOptions options;
   options.num_threads = static_cast<int>(state.range(0));
