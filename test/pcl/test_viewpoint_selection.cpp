@@ -36,7 +36,10 @@ TEST(ViewpointSelection, BestViewOfABoxIsItsDiagonalDirection) {
   EXPECT_GT(best.direction.z(), 0.0) << "from above";
   // Along two of its planes.
   EXPECT_GT(selection.getWorstView().direction.cwiseAbs().maxCoeff(), 0.999);
-  EXPECT_EQ(selection.getGoodViews(5).size(), 1u) << "the other seven show the same again";
+  EXPECT_DOUBLE_EQ(best.score, selection.getScore(best.direction));
+  const std::vector<SelectedView> good = selection.getGoodViews(5);
+  ASSERT_EQ(good.size(), 1u) << "the other seven show the same again";
+  EXPECT_EQ(good[0].direction, best.direction);
 }
 
 TEST(ViewpointSelection, CameraLooksAtTheObjectAndStandsUpright) {
@@ -91,26 +94,6 @@ TEST(ViewpointSelection, MaximaCountInDirectionsThatNoPlaneCovers) {
   EXPECT_DOUBLE_EQ(of_three, selection.getScore(Eigen::Vector3d::UnitZ()));
 }
 
-TEST(ViewpointSelection, GoodViewsAreApart) {
-  ViewpointSelection selection;
-  std::vector<SymmetryPlane> planes;
-  RandomStream random(4);
-  for (int k = 0; k < 9; ++k) {
-    planes.push_back(plane(randomDirection(random), 0.3 + 0.1 * k));
-    planes.back().kind = PlaneKind::Local;
-  }
-  selection.setPlanes(planes);
-  selection.setInputCloud(toCloud(box(2'000, Sampling::Random, 5)));
-  selection.setSeparation(0.9);
-  const std::vector<SelectedView> views = selection.getGoodViews(4);
-  ASSERT_GE(views.size(), 2u);
-  EXPECT_EQ(views[0].direction, selection.getBestView().direction);
-  for (std::size_t i = 0; i < views.size(); ++i) {
-    EXPECT_DOUBLE_EQ(views[i].score, selection.getScore(views[i].direction));
-    for (std::size_t j = 0; j < i; ++j) EXPECT_LE(views[i].direction.dot(views[j].direction), std::cos(0.9));
-  }
-}
-
 TEST(ViewpointSelection, WithoutPlanesShowsTheObjectObliquely) {
   ViewpointSelection selection;
   selection.setInputCloud(toCloud(sphere(500, 1)));
@@ -131,12 +114,8 @@ TEST(ViewpointSelection, AnObjectWithoutExtentHasNoViews) {
   }
 }
 
-TEST(ViewpointSelection, RefusesWrongParameters) {
-  ViewpointSelection selection;
-  EXPECT_EQ(messageOf([&] { selection.setUp(Eigen::Vector3d::Zero()); }), "up = 0 0 0, must be finite and not zero");
-  EXPECT_EQ(messageOf([&] { selection.setSeparation(-1.0); }), "separation = -1, must be in [0, pi]");
-  EXPECT_EQ(messageOf([&] { selection.getGoodViews(0); }), "num_views = 0, must be >= 1");
-  EXPECT_EQ(messageOf([&] { selection.computePose(Eigen::Vector3d::Zero()); }),
+TEST(ViewpointSelection, RefusesDirectionsWithoutLength) {
+  EXPECT_EQ(messageOf([] { ViewpointSelection().computePose(Eigen::Vector3d::Zero()); }),
             "direction = 0 0 0, must be finite and not zero");
 }
 
