@@ -394,8 +394,8 @@ class OtherFunctions(unittest.TestCase):
         self.assertEqual(pcl_symmetry.describe(points @ turn.T).shape, first.shape)
 
     def test_the_map_has_its_maximum_at_a_plane_of_the_box(self):
-        for method in ("sampled", "convolution"):
-            map_ = pcl_symmetry.transform(box(), (32, 64, 33), method=method)
+        for method, options in (("sampled", {}), ("convolution", {}), ("rotational", {"refined_share": 0.02}), ("voting", {})):
+            map_ = pcl_symmetry.transform(box(), (32, 64, 33), method=method, cells=32, **options)
             self.assertEqual(map_.values.shape, (32, 64, 33))
             best = np.unravel_index(map_.values.argmax(), map_.values.shape)
             self.assertGreater(np.abs(map_.plane(*map(int, best))[:3]).max(), 0.98)
