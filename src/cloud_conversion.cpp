@@ -11,27 +11,14 @@
 #include "core/geometry/triangles.h"
 #include "pcl_symmetry/impl/cloud_conversion.hpp"
 #include "pcl_symmetry/mesh_sampling.h"
+#include "plain_exception.h"
 
 namespace pcl_symmetry {
 
 namespace detail {
 
-namespace {
-
-/// pcl::BadArgumentException puts " : " before its text.
-class PlainBadArgument : public pcl::BadArgumentException {
-public:
-  explicit PlainBadArgument(const std::string& message) : pcl::BadArgumentException(message), message_(message) {}
-  const char* what() const noexcept override { return message_.c_str(); }
-
-private:
-  std::string message_;
-};
-
-}  // namespace
-
 void throwBadArgument(const std::string& message) {
-  throw PlainBadArgument(message);
+  throw Plain<pcl::BadArgumentException>(message);
 }
 
 void checkAtLeast(const char* field, std::int64_t value, std::int64_t least) {

@@ -8,18 +8,11 @@
 #include <filesystem>
 #include <system_error>
 
+#include "plain_exception.h"
+
 namespace pcl_symmetry::detail {
 
 namespace {
-
-class PlainIOException : public pcl::IOException {
-public:
-  explicit PlainIOException(const std::string& message) : pcl::IOException(message), message_(message) {}
-  const char* what() const noexcept override { return message_.c_str(); }
-
-private:
-  std::string message_;
-};
 
 /// What an error of SQLite means to the user of a file.
 std::string reasonOf(sqlite3* database) {
@@ -65,7 +58,7 @@ std::string immutableName(const std::string& file) {
 }  // namespace
 
 void failIO(const std::string& file, const std::string& reason) {
-  throw PlainIOException(file + ": " + reason);
+  throw Plain<pcl::IOException>(file + ": " + reason);
 }
 
 void SQLiteStatement::Finalizer::operator()(sqlite3_stmt* statement) const {
