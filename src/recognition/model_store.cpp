@@ -30,41 +30,39 @@ constexpr const char* kSelectModels =
 constexpr std::int64_t kApplicationId = 0x50537944;  // the letters PSyD
 
 struct Table {
+  std::string name, definition;
+};
+/// A table for each part of a model, so that a query reads what it needs.
+std::vector<Table> tables() {
+  const std::string model = "(model INTEGER PRIMARY KEY REFERENCES models ON DELETE CASCADE, ",
+                    projection = "projection INTEGER NOT NULL REFERENCES projections ON DELETE CASCADE, ",
+                    data = "data BLOB NOT NULL, checksum INTEGER NOT NULL)";
+  std::vector<Table> tables{
+      {"facts", "(key TEXT PRIMARY KEY, value TEXT NOT NULL) WITHOUT ROWID"},
+      {"models",
+       "(id INTEGER PRIMARY KEY AUTOINCREMENT, name TEXT NOT NULL UNIQUE, time INTEGER NOT NULL, source TEXT NOT NULL, "
+       "source_checksum TEXT NOT NULL, tags TEXT NOT NULL, num_points INTEGER NOT NULL, checksum INTEGER NOT NULL)"},
+      {"clouds", model + data},
+      {"signatures", model + data},
+      {"views", model + data},
+      {"surfaces", model + data},
+      {"projections", "(id INTEGER PRIMARY KEY AUTOINCREMENT, num_references INTEGER NOT NULL, " + data},
+      {"compact", model + projection + data},
+      {"view_coders", "(projection INTEGER PRIMARY KEY REFERENCES projections ON DELETE CASCADE, " + data},
+      {"view_codes", model + projection + data}};
+  for (Table& table : tables) table.definition = "CREATE TABLE " + table.name + " " + table.definition;
+  return tables;
+}
+
+struct PartTable {
+  ModelPart part;
   const char* name;
-  const char* definition;
+  std::string PackedModel::*data;
 };
-// A table for each part of a model, so that a query reads what it needs.
-constexpr Table kTables[] = {
-    {"facts", "CREATE TABLE facts (key TEXT PRIMARY KEY, value TEXT NOT NULL) WITHOUT ROWID"},
-    {"models",
-     "CREATE TABLE models (id INTEGER PRIMARY KEY AUTOINCREMENT, name TEXT NOT NULL UNIQUE, time INTEGER NOT NULL, "
-     "source TEXT NOT NULL, source_checksum TEXT NOT NULL, tags TEXT NOT NULL, num_points INTEGER NOT NULL, "
-     "checksum INTEGER NOT NULL)"},
-    {"clouds",
-     "CREATE TABLE clouds (model INTEGER PRIMARY KEY REFERENCES models ON DELETE CASCADE, data BLOB NOT NULL, "
-     "checksum INTEGER NOT NULL)"},
-    {"signatures",
-     "CREATE TABLE signatures (model INTEGER PRIMARY KEY REFERENCES models ON DELETE CASCADE, data BLOB NOT NULL, "
-     "checksum INTEGER NOT NULL)"},
-    {"views",
-     "CREATE TABLE views (model INTEGER PRIMARY KEY REFERENCES models ON DELETE CASCADE, data BLOB NOT NULL, "
-     "checksum INTEGER NOT NULL)"},
-    {"surfaces",
-     "CREATE TABLE surfaces (model INTEGER PRIMARY KEY REFERENCES models ON DELETE CASCADE, data BLOB NOT NULL, "
-     "checksum INTEGER NOT NULL)"},
-    {"projections",
-     "CREATE TABLE projections (id INTEGER PRIMARY KEY AUTOINCREMENT, num_references INTEGER NOT NULL, "
-     "data BLOB NOT NULL, checksum INTEGER NOT NULL)"},
-    {"compact",
-     "CREATE TABLE compact (model INTEGER PRIMARY KEY REFERENCES models ON DELETE CASCADE, projection INTEGER NOT NULL "
-     "REFERENCES projections ON DELETE CASCADE, data BLOB NOT NULL, checksum INTEGER NOT NULL)"},
-    {"view_coders",
-     "CREATE TABLE view_coders (projection INTEGER PRIMARY KEY REFERENCES projections ON DELETE CASCADE, "
-     "data BLOB NOT NULL, checksum INTEGER NOT NULL)"},
-    {"view_codes",
-     "CREATE TABLE view_codes (model INTEGER PRIMARY KEY REFERENCES models ON DELETE CASCADE, projection INTEGER "
-     "NOT NULL REFERENCES projections ON DELETE CASCADE, data BLOB NOT NULL, checksum INTEGER NOT NULL)"},
-};
+const PartTable kPartTables[] = {{ModelPart::Cloud, "clouds", &PackedModel::cloud},
+                                 {ModelPart::Signatures, "signatures", &PackedModel::signatures},
+                                 {ModelPart::Views, "views", &PackedModel::views},
+                                 {ModelPart::Surfaces, "surfaces", &PackedModel::surfaces}};
 
 /// Tags as they are stored: a line each.
 std::string joinedTags(const std::vector<std::string>& tags) {
@@ -94,7 +92,7 @@ std::int64_t checksumOf(const std::string& table, std::int64_t id, const std::st
 }
 
 void createSchema(const SQLiteConnection& connection, const std::string& unit) {
-  for (const Table& table : kTables) connection.run(table.definition);
+  for (const Table& table : tables()) connection.run(table.definition);
   SQLiteStatement fact = connection.prepare("INSERT INTO facts VALUES (?, ?)");
   fact.bind(std::string("library_version"), std::string(PCL_SYMMETRY_VERSION)).run();
   fact.bind(std::string("unit"), unit).run();
@@ -132,25 +130,21 @@ void refuseOtherSchema(const SQLiteConnection& connection) {
 
 /// Tables whose definition is not the one that this library wrote.
 void compareTables(const SQLiteConnection& connection, std::vector<std::string>& damages) {
-  for (const Table& table : kTables) {
+  for (const Table& table : tables()) {
     SQLiteStatement row = connection.prepare("SELECT sql FROM sqlite_schema WHERE type = 'table' AND name = ?");
-    row.bind(std::string(table.name));
+    row.bind(table.name);
     if (!row.next() || row.text(0) != table.definition)
-      damages.push_back(std::string("the definition of table ") + table.name + " is damaged");
+      damages.push_back("the definition of table " + table.name + " is damaged");
   }
 }
 
-/// Blobs that are missing, or whose bytes are not those of their checksum.
+/// Blobs whose bytes are not those of their checksum.
 void compareBlobs(const SQLiteConnection& connection, const std::string& table, const std::string& key,
                   std::vector<std::string>& damages) {
   SQLiteStatement row = connection.prepare("SELECT " + key + ", data, checksum FROM " + table);
   while (row.next())
     if (checksumOf(table, row.integer(0), row.blob(1)) != row.integer(2))
       damages.push_back("the " + table + " of number " + std::to_string(row.integer(0)) + " are damaged");
-  if (table != "clouds" && table != "signatures" && table != "views" && table != "surfaces") return;
-  SQLiteStatement missing =
-      connection.prepare("SELECT name FROM models WHERE id NOT IN (SELECT model FROM " + table + ")");
-  while (missing.next()) damages.push_back("the " + table + " of model '" + missing.text(0) + "' are missing");
 }
 
 /// \param damages what is wrong with the rows of models.
@@ -162,8 +156,15 @@ std::vector<std::string> damagesOf(const SQLiteConnection& connection, std::vect
     while (row.next())
       if (row.text(0) != "ok") damages.push_back("structure of the file: " + row.text(0));
   }
-  for (const char* table : {"clouds", "signatures", "views", "surfaces", "compact", "view_codes"})
+  for (const PartTable& part : kPartTables) {
+    const std::string table = part.name;
     compareBlobs(connection, table, "model", damages);
+    SQLiteStatement missing =
+        connection.prepare("SELECT name FROM models WHERE id NOT IN (SELECT model FROM " + table + ")");
+    while (missing.next()) damages.push_back("the " + table + " of model '" + missing.text(0) + "' are missing");
+  }
+  compareBlobs(connection, "compact", "model", damages);
+  compareBlobs(connection, "view_codes", "model", damages);
   compareBlobs(connection, "projections", "id", damages);
   compareBlobs(connection, "view_coders", "projection", damages);
   return damages;
@@ -191,16 +192,6 @@ ModelInfo checkedInfo(const SQLiteStatement& row, const std::string& file) {
     failIO(file, "the record of model " + std::to_string(row.integer(0)) + " is damaged");
   return info;
 }
-
-struct PartTable {
-  ModelPart part;
-  const char* name;
-  std::string PackedModel::*data;
-};
-const PartTable kPartTables[] = {{ModelPart::Cloud, "clouds", &PackedModel::cloud},
-                                 {ModelPart::Signatures, "signatures", &PackedModel::signatures},
-                                 {ModelPart::Views, "views", &PackedModel::views},
-                                 {ModelPart::Surfaces, "surfaces", &PackedModel::surfaces}};
 
 /// \return the id of the new model.
 std::int64_t insertModel(const SQLiteConnection& connection, const ModelInfo& info, const PackedModel& model) {
