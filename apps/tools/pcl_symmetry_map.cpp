@@ -68,9 +68,11 @@ void setUp(Transform& transform, const InputShape& input, const CommonOptions& c
 SymmetryMeasure ofPlanes(const InputShape& input, const CommonOptions& common, const MeasureOptions& options) {
   PlanarSymmetryTransform<pcl::PointXYZ> transform;
   transform.setGridSize(common.grid);
-  transform.setMethod(methodNamed(options.method));
-  if (options.as_published) transform.setNearDistance(0.0);
-  if (options.refined_share) transform.setRefinedShare(*options.refined_share);
+  PlanarTransformOptions estimator;
+  estimator.method = methodNamed(options.method);
+  if (options.as_published) estimator.voting.near_distance = 0.0;
+  if (options.refined_share) estimator.rotational.refined_share = *options.refined_share;
+  transform.setOptions(estimator);
   setUp(transform, input, common);
   const auto map = std::make_shared<const SymmetryMap>(transform.compute());
   checkAnswer(transform, input);
@@ -94,7 +96,7 @@ SymmetryMeasure ofAxes(const InputShape& input, const CommonOptions& common, int
   const int num_phi = std::max(2, common.grid / 2 * 2);
   transform.setNumCells(std::max(8, common.grid / 2));
   transform.setMapSize(std::max(1, common.grid / 4), num_phi, std::max(1, common.grid / 2));
-  if (fold >= 0) transform.setFolds({fold});
+  if (fold >= 0) transform.setOptions({{fold}});
   setUp(transform, input, common);
   const auto map = std::make_shared<const AxisMap>(transform.compute());
   checkAnswer(transform, input);

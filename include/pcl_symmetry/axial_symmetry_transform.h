@@ -40,13 +40,9 @@ public:
     num_phi_ = num_phi;
     num_offset_ = num_offset;
   }
-  /// \param folds orders of the rotations that are looked for, each 0 (any angle) or in [2, 60]; default 0 and 2 to 8.
-  void setFolds(const std::vector<int>& folds) {
-    detail::changeOptions(transform_, [&](AxialTransformOptions& changed) { changed.folds = folds; });
-  }
-  /// \param num_samples points drawn, >= 1; default 192, for an error below 1 %.
-  void setNumSamples(int num_samples) {
-    detail::changeOptions(transform_, [&](AxialTransformOptions& changed) { changed.num_samples = num_samples; });
+  /// Sets folds, number of samples, seed and number of threads at once.
+  void setOptions(const AxialTransformOptions& options) {
+    detail::changeOptions(transform_, [&](AxialTransformOptions& changed) { changed = options; });
   }
   void setRandomSeed(std::uint64_t seed) { transform_.seed = seed; }  ///< of all random draws
   /// \param num_threads >= 0; 0 = one per core (default).

@@ -55,24 +55,9 @@ public:
     edt_options_.radius = radius;
   }
 
-  /// \param num_samples points drawn by the sampled estimator, >= 1; default 128, for an error below 1 %.
-  void setNumSamples(int num_samples) {
-    detail::changeOptions(transform_.sampled,
-                          [&](SampledTransformOptions& changed) { changed.num_samples = num_samples; });
-  }
-  /// \param num_pairs pairs drawn by voting, >= 1; default 2 million.
-  void setNumPairs(std::int64_t num_pairs) {
-    detail::changeOptions(transform_.voting, [&](VotingTransformOptions& changed) { changed.num_pairs = num_pairs; });
-  }
-  /// \param cells pairs of points closer than this are drawn plane first by voting, >= 0; 0: voting as the paper writes
-  /// it; default 4.
-  void setNearDistance(double cells) {
-    detail::changeOptions(transform_.voting, [&](VotingTransformOptions& changed) { changed.near_distance = cells; });
-  }
-  /// \param share of the planes that the rotational estimator refines, in [0, 1]; 1 (default) = all, no multiresolution.
-  void setRefinedShare(double share) {
-    detail::changeOptions(transform_.rotational,
-                          [&](RotationalTransformOptions& changed) { changed.refined_share = share; });
+  /// Sets method, seed, number of threads and the options of each estimator at once.
+  void setOptions(const PlanarTransformOptions& options) {
+    detail::changeOptions(transform_, [&](PlanarTransformOptions& changed) { changed = options; });
   }
   void setRandomSeed(std::uint64_t seed) { transform_.setSeed(seed); }  ///< of all draws
   /// \param num_threads >= 0; 0 = one per core (default).

@@ -21,11 +21,6 @@ public:
   /// Uses at most 50 000 points, see setMaxPoints().
   SymmetryAlignment() : SearchingAnalysis<ScanAnalysis<PointT>, FrameOptions>("SymmetryAlignment", 50'000) {}
 
-  /// \param num_cells cells of the distance transform along each side, in [8, 512]; default 64.
-  void setGridSize(int num_cells) {
-    this->change([&](FrameOptions& changed) { changed.num_cells = num_cells; });
-  }
-
   /// \return the frame, in the frame of the input; SymmetryFrame::equivalent is empty where the input holds no answer,
   /// see getReason().
   /// \throws pcl::BadArgumentException where the points surround the viewpoint that was given.

@@ -12,7 +12,7 @@ using test::Sampling;
 TEST(AxialSymmetryTransform, FindsTheAxisOfAPrism) {
   AxialSymmetryTransform<pcl::PointXYZ> transform;
   transform.setMapSize(8, 32, 16);
-  transform.setFolds({0, 2, 5});
+  transform.setOptions({{0, 2, 5}});
   transform.setInputCloud(test::toCloud(test::prism(5, 3000, Sampling::Random, 2)));
   EXPECT_TRUE(transform.getAxes().empty());
   const AxisMap map = transform.compute();
