@@ -48,25 +48,13 @@ def scan(mesh, direction, organized=False):
         out = f"{folder}/scan.pcd"
         view = ",".join(map(str, direction))
         subprocess.run(["pcl_symmetry_scan", mesh, out, f"-direction={view}", "-quiet"], check=True)
-        header = Path(out).read_bytes().split(b"DATA", 1)[0].decode()
-        points = organized_points(out)
-    viewpoint = next(line.split()[1:4] for line in header.splitlines() if line.startswith("VIEWPOINT"))
-    return points if organized else points[np.isfinite(points).all(axis=2)], np.array(viewpoint, float)
-
-
-def organized_points(path):
-    import open3d
-
-    header = Path(path).read_bytes().split(b"DATA", 1)[0].decode()
-    points = np.asarray(open3d.io.read_point_cloud(str(path)).points, np.float32)
-    return points.reshape(*(int(header.split(word)[1].split()[0]) for word in ("HEIGHT", "WIDTH")), 3)
+        seen = pcl_symmetry.read(out)
+    return seen.points if organized else seen.points[np.isfinite(seen.points).all(axis=2)], seen.viewpoint
 
 
 def load_mesh(path):
-    import open3d
-
-    mesh = open3d.io.read_triangle_mesh(path)
-    return np.asarray(mesh.vertices, np.float32), np.asarray(mesh.triangles)
+    mesh = pcl_symmetry.read(path)
+    return mesh.points.astype(np.float32), mesh.faces
 
 
 def sampled(mesh):
@@ -332,7 +320,7 @@ def scene(out, *paths):
 
 def decision(out, path, *numbers):
     """Objects of a frame: where their points are reflected to, the share of the surface that maps, and the odds that follow."""
-    pixels = organized_points(path)
+    pixels = pcl_symmetry.read(path).points
     objects = pcl_symmetry.scene(pixels, max_range=1.2).objects
     rows = np.flatnonzero(np.isfinite(pixels).all(axis=2))
     points = pixels.reshape(-1, 3)

@@ -124,32 +124,14 @@ def make_mesh(vertices, polygons):
 
 def read_mesh(path):
     """Reads an OFF, PLY, OBJ or STL file. Raises BadInput that names the file."""
+    import pcl_symmetry
+
     try:
-        if str(path).lower().endswith(".off"):
-            return make_mesh(*_read_off(path))
-        import open3d
-
-        open3d.utility.set_verbosity_level(open3d.utility.VerbosityLevel.Error)
-        mesh = open3d.io.read_triangle_mesh(str(path))
-        return make_mesh(np.asarray(mesh.vertices), np.asarray(mesh.triangles))
-    except (OSError, BadInput) as error:
-        raise BadInput(f"{path}: is no mesh that can be read, {getattr(error, 'strerror', None) or error}") from None
-    except (ValueError, IndexError):
-        raise BadInput(f"{path}: is no mesh that can be read, a number is missing or is none") from None
-
-
-def _read_off(path):
-    lines = [words for words in (line.split("#")[0].split() for line in open(path, errors="replace")) if words]
-    if not lines or not lines[0][0].endswith("OFF"):
-        raise BadInput("it must begin with OFF")
-    lines[0] = lines[0][1:]
-    lines = lines if lines[0] else lines[1:]
-    num_vertices, num_faces = int(lines[0][0]), int(lines[0][1])
-    vertices = np.array([words[:3] for words in lines[1 : 1 + num_vertices]], float)
-    faces = [[int(word) for word in words[1 : 1 + int(words[0])]] for words in lines[1 + num_vertices :][:num_faces]]
-    if len(vertices) < num_vertices or len(faces) < num_faces:
-        raise BadInput("it ends too early")
-    return vertices, faces
+        shape = pcl_symmetry.read(path)
+        return make_mesh(shape.points, shape.faces)
+    except (OSError, ValueError, BadInput) as error:
+        reason = (getattr(error, "strerror", None) or str(error)).removeprefix(f"{path}: ")
+        raise BadInput(f"{path}: is no mesh that can be read, {reason}") from None
 
 
 @dataclasses.dataclass
