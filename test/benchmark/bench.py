@@ -13,7 +13,6 @@ import pathlib
 import shutil
 import subprocess
 import sys
-import tempfile
 import time
 
 os.environ.setdefault("OMP_NUM_THREADS", "1")  # items are spread over processes, each works on its own with one thread
@@ -406,60 +405,31 @@ def answers_of(found, milliseconds=None):
 NO_ANSWERS = {"planes": [], "axes": [], "centers": [], "best": None, "failed": True, "milliseconds": None}
 
 
-def detect(points, sensor=None, seed=1, tool=None, **options):
-    """Answers of this library for (N, 3) or (H, W, 3) points; bad clouds are failures with no answer.
+def detect(points, sensor=None, seed=1, **options):
+    """Answers of this library for (N, 3) or (H, W, 3) points or a file that was read; bad clouds are failures with no answer.
 
     sensor: T_cloud_sensor of a scan; None: the points decide where the scanner stood.
-    tool: path of pcl_symmetry_planes, which is asked in place of the Python module: it reads rows and columns of a scan,
-    too, and the pose of the sensor.
     """
-    if tool:
-        return _detect_by_tool(points, sensor, seed, tool, options)
     import pcl_symmetry
 
     viewpoint = "auto" if sensor is None or "as_published" in options else tuple(sensor[:3, 3])
-    rows = points.reshape(-1, 3)
-    rows = np.ascontiguousarray(rows[np.isfinite(rows[:, 0])], np.float32)
+    if isinstance(points, np.ndarray):
+        points = np.ascontiguousarray(points, np.float32)
     start = time.perf_counter()
     try:
-        found = pcl_symmetry.planes(rows, viewpoint=viewpoint, seed=seed, threads=1, **options)
+        found = pcl_symmetry.planes(points, viewpoint=viewpoint, seed=seed, threads=1, **options)
     except ValueError:
         return NO_ANSWERS
     return answers_of(found, 1000 * (time.perf_counter() - start))
 
 
-def ask(name, points, sensor, arguments, tool=None, **options):
-    """Answers for one cloud, written for --export: those of --judge, of the tool or of the Python module."""
+def ask(name, points, sensor, arguments, **options):
+    """Answers for one cloud, written for --export: those of --judge or of the Python module."""
     if arguments.export:
         write_cloud(f"{arguments.export}/{name}.pcd", points, sensor)
     if arguments.judge:
         return read_answers(arguments.judge, name)
-    return detect(points, sensor, arguments.seed + 1, tool, **options)
-
-
-def _detect_by_tool(points, sensor, seed, tool, options):
-    with tempfile.TemporaryDirectory() as folder:
-        write_cloud(f"{folder}/cloud.pcd", points, sensor)
-        if sensor is not None and points.ndim == 2:
-            options = {"viewpoint": ",".join(str(v) for v in sensor[:3, 3]), **options}
-        return _answers_of_tool(tool, f"{folder}/cloud.pcd", seed, options)
-
-
-def detect_labeled(path, label, seed, tool):
-    """What the tool answers for the points of a frame with a label; the others hide and support them."""
-    return _answers_of_tool(tool, path, seed + 1, {"label": label})
-
-
-def _answers_of_tool(tool, path, seed, options):
-    flags = [f for name, value in options.items() for f in (f"-{name}", str(value))]
-    with tempfile.TemporaryDirectory() as folder:
-        try:
-            run_tool("", tool, path, *flags, "-json", f"{folder}/found.json", "-quiet", "-threads", "1", "-seed", str(seed))
-        except BadProgram:
-            raise
-        except BadInput:
-            return NO_ANSWERS
-        return read_answers(folder, "found")
+    return detect(points, sensor, arguments.seed + 1, **options)
 
 
 PER_MILLISECOND = {"ns": 1e6, "us": 1e3, "ms": 1.0, "s": 1e-3}

@@ -1,18 +1,17 @@
 """Symmetries of real things in frames of a Kinect and of a LiDAR.
 
-real_frames.py kinect data --tools build/apps           data: a clone of github.com/PointCloudLibrary/data
-real_frames.py lidar SUSTechPOINTS --tools build/apps   SUSTechPOINTS: a clone of github.com/naurril/SUSTechPOINTS
+real_frames.py kinect data             data: a clone of github.com/PointCloudLibrary/data
+real_frames.py lidar SUSTechPOINTS     SUSTechPOINTS: a clone of github.com/naurril/SUSTechPOINTS
 
 kinect: the learn frames of segmentation/mOSD, in which people labeled boxes and cylinders on a table. References are the
 middle planes of boxes and the axes of cylinders, fitted to the labeled points. Each object is given alone, with its rows
-and columns, by its label in the frame (--tools), and in the whole frame, where the object found counts that overlaps the
-label the most, by half and more.
+and columns, by its label in the frame, and in the whole frame, where the object found counts that overlaps the label
+the most, by half and more.
 lidar: vehicles in the frames 000950 and 000965, in boxes that people drew: the reference is the middle plane along the
 vehicle. The points in a box are given with the viewpoint of the sensor and the ground, and without.
-Right is what lies within 5 degrees and 3 % of the extent of the object (vehicles: 4 %). Without --tools, the Python module
-answers for single clouds, and frames are left out. --export writes the clouds; --judge reads NAME.json or NAME.txt of
-each cloud, and of a frame NAME.json with {"objects": [{"planes": [], "axes": [], "pixels": [positions in the frame]}]}.
-Other frames of both are kept apart, for tests.
+Right is what lies within 5 degrees and 3 % of the extent of the object (vehicles: 4 %). --export writes the
+clouds; --judge reads NAME.json or NAME.txt of each cloud, and of a frame NAME.json with {"objects": [{"planes": [],
+"axes": [], "pixels": [positions in the frame]}]}. Other frames of both are kept apart, for tests.
 """
 import functools
 import json
@@ -234,14 +233,8 @@ def objects_found(name, points, arguments):
     if arguments.judge:
         path = pathlib.Path(arguments.judge) / f"{name}.json"
         return json.loads(path.read_text())["objects"] if path.exists() else None
-    if not arguments.tools:
-        return None
-    with tempfile.TemporaryDirectory() as folder:
-        bench.write_cloud(f"{folder}/frame.pcd", points)
-        objects, labels = scenes.analyzed(arguments.tools, f"{folder}/frame.pcd", arguments.seed)
-    pixels = np.flatnonzero(np.isfinite(points.reshape(-1, 3)).all(1))
-    labels = labels[: len(pixels)]  # points that the completion adds come behind
-    return [{**o, "pixels": pixels[labels == i + 1].tolist()} for i, o in enumerate(objects)]
+    objects, labels = scenes.analyzed(points.astype(np.float32), arguments.seed)
+    return [{**o, "pixels": np.flatnonzero(labels == i + 1).tolist()} for i, o in enumerate(objects)]
 
 
 def kinect_frame(frame, arguments):
@@ -258,10 +251,10 @@ def kinect_frame(frame, arguments):
         name, mask = f"learn_{frame}_{label}", labels == label
         exported[name] = truth
         if truth["shape"]:
-            answers = bench.ask(name, np.where(mask[..., None], points, np.nan), None, arguments, arguments.tool)
+            answers = bench.ask(name, np.where(mask[..., None], points, np.nan), None, arguments)
             rows.append({"cloud": name, "way": "alone", "shape": truth["shape"], **judge(answers, truth)})
-        if truth["shape"] and arguments.tool and not arguments.judge:
-            answers = bench.detect_labeled(file.name, label, arguments.seed + 1, arguments.tool)
+        if truth["shape"] and not arguments.judge:
+            answers = bench.detect(points, None, arguments.seed + 2, indices=mask)
             rows.append({"cloud": name, "way": "label", "shape": truth["shape"], **judge(answers, truth)})
         if objects is None:
             continue
@@ -291,11 +284,11 @@ def lidar_frame(frame, arguments):
         p, n = points[inside].round(4), axes[:, 1]  # a tenth of a millimeter
         truth = {"shape": "vehicle", "planes": [{"coefficients": [*map(float, n), float(-n @ center)]}], "center": center,
                  "extent": float(np.linalg.norm(np.ptp(p, axis=0)))}  # fmt: skip
-        ground = {"ground": f"0,0,1,{-(center[2] - size[2] / 2):.3f}"} if arguments.tool else {}  # what the wheels stand on
+        ground = {"ground": (0, 0, 1, round(size[2] / 2 - center[2], 3))}  # what the wheels stand on
         for way, sensor, options in (("with viewpoint and ground", np.eye(4), ground), ("without", None, {})):
             name = f"{frame}_{number}_{way.split()[0]}"
             exported[name] = truth
-            answers = bench.ask(name, p, sensor, arguments, arguments.tool, **options)
+            answers = bench.ask(name, p, sensor, arguments, **options)
             rows.append({"cloud": name, "way": way, "shape": "vehicle", **judge(answers, truth, 0.04)})
     return {"rows": rows, "truths": exported}
 
@@ -317,7 +310,6 @@ def report(rows):
 
 
 def program(arguments):
-    arguments.tool = arguments.tools and f"{arguments.tools}/pcl_symmetry_planes"
     frames = [*LEARN_BOXES, *LEARN_CYLINDERS] if arguments.kind == "kinect" else VEHICLE_FRAMES
     evaluate = kinect_frame if arguments.kind == "kinect" else lidar_frame
     show(arguments.repository, "segmentation/mOSD/learn" if arguments.kind == "kinect" else "data/example/lidar")
@@ -331,5 +323,4 @@ if __name__ == "__main__":
     parser = bench.make_parser(__doc__, models=False)
     parser.add_argument("kind", choices=["kinect", "lidar"])
     parser.add_argument("repository", help="git folder of the data")
-    parser.add_argument("--tools", metavar="DIR", help="folder of pcl_symmetry_planes and pcl_symmetry_scene")
     bench.main(program, parser.parse_args())

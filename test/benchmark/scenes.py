@@ -6,8 +6,8 @@ Models of 0.15 to 0.3 m stand on a table, none meets another, and a camera looks
 points is asked for in three ways:
 
   alone   its points, cut out of the frame, with the viewpoint: pcl_symmetry.planes()
-  label   its points in the frame, as a segmentation names them: pcl_symmetry_planes -label
-  scene   the whole frame: pcl_symmetry_scene; the object that it finds must share half of the points (IoU >= 0.5)
+  label   its points in the frame, as a segmentation names them: planes(indices=)
+  scene   the whole frame: scene(); the object that it finds must share half of the points (IoU >= 0.5)
 
 Answers of kind symmetry with a confidence of at least 0.5 decide, as in planes.py.
 """
@@ -191,27 +191,29 @@ def overlaps(labels, truth, shape):
     return common / np.maximum(1, sizes[0][:, None] + sizes[1] - common)
 
 
-def analyzed(tools, path, seed):
-    """(objects, (N,) number of the object of each point, 0 for none) that pcl_symmetry_scene finds in a frame."""
-    with tempfile.TemporaryDirectory() as folder:
-        bench.run_tool(tools, "pcl_symmetry_scene", path, f"{folder}/out.pcd", "-quiet", "-json", f"{folder}/found.json",
-                       "-threads", "1", "-seed", str(seed + 2))  # fmt: skip
-        objects = json.loads(pathlib.Path(folder, "found.json").read_text())["objects"]
-        return objects, read_frame(f"{folder}/out.pcd", "object")[1]
+def analyzed(frame, seed):
+    """(objects, number of the object of each point, from 1) that pcl_symmetry.scene() finds in a frame."""
+    import pcl_symmetry
+
+    found = pcl_symmetry.scene(frame, seed=seed + 2, threads=1)
+    return found.to_dict()["objects"], found.labels.ravel()
 
 
 def found_in_frame(frame, finite, truth, arguments):
     """([answers of each object found], IoU of each with each true one, milliseconds)"""
     start = time.perf_counter()
-    found, labels = analyzed(arguments.tools, f"{arguments.frames}/{frame}.pcd", arguments.seed)
+    found, labels = analyzed(f"{arguments.frames}/{frame}.pcd", arguments.seed)
     milliseconds = 1000 * (time.perf_counter() - start)
-    labels = labels[: finite.sum()] - 1  # points that the completion adds come behind
-    return found, overlaps(labels, truth[finite], (len(found), truth.max() + 1)), milliseconds
+    return found, overlaps(labels[finite] - 1, truth[finite], (len(found), truth.max() + 1)), milliseconds
 
 
 def judge_frame(frame, arguments):
     """Rows of the wanted objects of one frame: alone, and in the scene."""
-    points, labels, viewpoint = read_frame(f"{arguments.frames}/{frame.name}.pcd")
+    import pcl_symmetry
+
+    file = f"{arguments.frames}/{frame.name}.pcd"
+    points, labels, viewpoint = read_frame(file)
+    shape = pcl_symmetry.read(file)
     finite, sensor, rows, milliseconds = np.isfinite(points[:, 0]), np.eye(4), [], 0
     sensor[:3, 3] = viewpoint
     if "scene" in arguments.seen:
@@ -222,8 +224,7 @@ def judge_frame(frame, arguments):
         if "alone" in arguments.seen:
             ways.append(("alone", True, bench.detect(own, sensor, arguments.seed + 1)))
         if "label" in arguments.seen:
-            tool = f"{arguments.tools}/pcl_symmetry_planes"
-            ways.append(("label", True, bench.detect_labeled(f"{arguments.frames}/{frame.name}.pcd", k, arguments.seed + 1, tool)))
+            ways.append(("label", True, bench.detect(shape, seed=arguments.seed + 2, indices=np.flatnonzero(labels == k))))
         if "scene" in arguments.seen:
             best = max(range(len(found)), key=lambda i: iou[i, k], default=None)
             is_found = best is not None and bool(iou[best, k] >= MIN_IOU)
@@ -320,5 +321,4 @@ if __name__ == "__main__":
     add("--flying", type=float, default=FLYING, help="share of the pixels at edges that mix two depths, at noise 1")
     add("--seen", type=bench.numbers(str, ("alone", "label", "scene")), default="alone,label,scene", help="how objects are asked for")
     add("--most-in-band", type=int, default=0, help="objects of a band after which others are passed over; 0: none are")
-    add("--tools", metavar="DIR", default="build/apps", help="folder of pcl_symmetry_scene")
     bench.main(program, parser.parse_args())

@@ -10,10 +10,10 @@ segmentations. Methods:
   one, k-means one segment; six clusters of the centers of the faces
   segment      pcl_symmetry.segment() on the mesh
   points       the same on 30 000 points; a face takes the label of the nearest one
-  paper-1 to paper-4        pcl_symmetry_segment by splitting as in the paper, by depth
+  paper-1 to paper-4        the same by splitting as in the paper, by depth
 """
+import functools
 import pathlib
-import tempfile
 import time
 
 import numpy as np
@@ -91,10 +91,10 @@ def mirror_agreement(surface, labels, plane):
 # Methods: (mesh, path, arguments) -> a label for each triangle
 
 
-def segment(mesh, path, arguments):
+def segment(mesh, path, arguments, **options):
     import pcl_symmetry
 
-    return pcl_symmetry.segment(mesh.vertices, mesh.triangles, threads=1)
+    return pcl_symmetry.segment(mesh.vertices, mesh.triangles, threads=1, **options)
 
 
 def segment_points(mesh, path, arguments):
@@ -106,21 +106,12 @@ def segment_points(mesh, path, arguments):
     return labels[cKDTree(points).query(mesh.corners.mean(axis=1))[1]]
 
 
-def tool(*flags):
-    def segment_by_tool(mesh, path, arguments):
-        with tempfile.TemporaryDirectory() as folder:
-            segments = f"{folder}/parts.seg"
-            bench.run_tool(arguments.tools, "pcl_symmetry_segment", path, segments, *flags, "-threads", "1", "-quiet")
-            return read_labels(segments, mesh)
-
-    return segment_by_tool
-
-
 METHODS = {"people": None, "one": lambda mesh, path, arguments: np.zeros(len(mesh.triangles), int),
            "k-means": lambda mesh, path, arguments: KMeans(6, n_init=1, random_state=arguments.seed).fit_predict(
                mesh.corners.mean(axis=1), sample_weight=mesh.areas),
            "segment": segment, "points": segment_points,
-           **{f"paper-{depth}": tool("-method", "splitting", "-as_published", "-depth", str(depth)) for depth in (1, 2, 3, 4)}}  # fmt: skip
+           **{f"paper-{depth}": functools.partial(segment, method="splitting", as_published=True, depth=depth)
+              for depth in (1, 2, 3, 4)}}  # fmt: skip
 
 
 def read_labels(path, mesh):
@@ -224,5 +215,4 @@ if __name__ == "__main__":
     parser.add_argument("--remainders", type=bench.numbers(int, (0, 1, 2)), default="0,1,2",
                         help="categories, numbered from 0, modulo 3; weights were fitted to 0 and 1")  # fmt: skip
     parser.add_argument("--mirrored", action="store_true", help="also agreement with the mirror image")
-    parser.add_argument("--tools", metavar="DIR", default="build/apps", help="folder of pcl_symmetry_segment")
     bench.main(main, parser.parse_args())
