@@ -80,10 +80,6 @@ private:
   ClosestPointSearch::Ptr search_;
 };
 
-Eigen::Isometry3d turnAbout(const Eigen::Vector3d& axis, double angle, const Eigen::Vector3d& center) {
-  return motionFixing(center, rotationAbout(axis, angle));
-}
-
 /// The motions that keep the colors and are a group: the worst one goes until the rest is.
 ObjectSymmetries finiteGroup(const std::vector<Eigen::Isometry3d>& motions, const ColoredSurface& surface) {
   std::vector<std::pair<double, std::size_t>> kept;  // changed share and index
@@ -108,7 +104,7 @@ ObjectSymmetries finiteGroup(const std::vector<Eigen::Isometry3d>& motions, cons
 std::vector<Eigen::Isometry3d> keptTurns(const ContinuousSymmetry& axis, const ColoredSurface& surface) {
   for (int fold = kMaxFold; fold > 1; --fold) {
     std::vector<Eigen::Isometry3d> turns;
-    for (int k = 1; k < fold; ++k) turns.push_back(turnAbout(axis.axis, 2.0 * kPi * k / fold, axis.offset));
+    for (int k = 1; k < fold; ++k) turns.push_back(motionAbout({axis.offset, axis.axis}, 2.0 * kPi * k / fold));
     if (std::all_of(turns.begin(), turns.end(), [&](const auto& turn) { return surface.keeps(turn); })) return turns;
   }
   return {};
@@ -118,10 +114,11 @@ std::vector<Eigen::Isometry3d> keptTurns(const ContinuousSymmetry& axis, const C
 Eigen::Isometry3d bestFlip(const ContinuousSymmetry& axis, const ColoredSurface& surface) {
   constexpr int kNumLines = 90;
   const Eigen::Vector3d across = axis.axis.unitOrthogonal();
-  Eigen::Isometry3d best = turnAbout(across, kPi, axis.offset);
+  Eigen::Isometry3d best = motionAbout({axis.offset, across}, kPi);
   double least = surface.changedShare(best);
   for (int k = 1; k < kNumLines; ++k) {
-    const Eigen::Isometry3d flip = turnAbout(rotationAbout(axis.axis, kPi * k / kNumLines) * across, kPi, axis.offset);
+    const Eigen::Isometry3d flip =
+        motionAbout({axis.offset, rotationAbout(axis.axis, kPi * k / kNumLines) * across}, kPi);
     const double changed = surface.changedShare(flip);
     if (changed >= least) continue;
     least = changed;
@@ -134,7 +131,7 @@ ObjectSymmetries roundGroup(const ObjectSymmetries& found, const ColoredSurface&
   const ContinuousSymmetry& axis = found.continuous.front();
   bool is_round = true;
   for (int k = 1; k <= kNumTurns && is_round; ++k)
-    is_round = surface.keeps(turnAbout(axis.axis, 2.0 * kPi * goldenFraction(k), axis.offset));
+    is_round = surface.keeps(motionAbout({axis.offset, axis.axis}, 2.0 * kPi * goldenFraction(k)));
   std::vector<Eigen::Isometry3d> kept = is_round ? std::vector<Eigen::Isometry3d>{} : keptTurns(axis, surface);
   if (!found.discrete.empty()) {
     const Eigen::Isometry3d flip = bestFlip(axis, surface);
@@ -147,12 +144,13 @@ ObjectSymmetries roundGroup(const ObjectSymmetries& found, const ColoredSurface&
 ObjectSymmetries sphereGroup(const ObjectSymmetries& found, const ColoredSurface& surface) {
   std::vector<Eigen::Isometry3d> turns;
   for (const Eigen::Vector3d& direction : evenDirections(kNumTurns))
-    turns.push_back(turnAbout(direction, 2.0 * kPi * goldenFraction(static_cast<int>(turns.size()) + 1), found.center));
+    turns.push_back(
+        motionAbout({found.center, direction}, 2.0 * kPi * goldenFraction(static_cast<int>(turns.size()) + 1)));
   if (std::all_of(turns.begin(), turns.end(), [&](const auto& turn) { return surface.keeps(turn); })) return found;
   for (int k = 0; k < 3; ++k) {
     ObjectSymmetries one_axis = found;
     one_axis.continuous = {found.continuous[static_cast<std::size_t>(k)]};
-    one_axis.discrete = {turnAbout(one_axis.continuous[0].axis.unitOrthogonal(), kPi, found.center)};
+    one_axis.discrete = {motionAbout({found.center, one_axis.continuous[0].axis.unitOrthogonal()}, kPi)};
     const ObjectSymmetries group = roundGroup(one_axis, surface);
     if (group.name() != "C1") return group;
   }

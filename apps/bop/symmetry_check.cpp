@@ -22,10 +22,6 @@ constexpr int kNumAngles = 8;  // rotations that represent all rotations about a
 
 const Eigen::Isometry3d kIdentity = Eigen::Isometry3d::Identity();
 
-Eigen::Isometry3d turnOf(const ContinuousSymmetry& symmetry, double angle) {
-  return motionFixing(symmetry.offset, rotationAbout(symmetry.axis, angle));
-}
-
 /// A point that a turn fixes, as close to the origin as there is one.
 Eigen::Vector3d fixedPointOf(const Eigen::Isometry3d& motion) {
   const Eigen::AngleAxisd turn(motion.linear());
@@ -46,7 +42,7 @@ public:
   /// Whether a group has all turns about an axis.
   bool hasAll(const ObjectSymmetries& group, const ContinuousSymmetry& symmetry) const {
     for (int k = 1; k <= kNumAngles; ++k)
-      if (!has(group, turnOf(symmetry, 2.0 * kPi * goldenFraction(k)))) return false;
+      if (!has(group, motionAbout({symmetry.offset, symmetry.axis}, 2.0 * kPi * goldenFraction(k)))) return false;
     return true;
   }
 
@@ -58,7 +54,8 @@ public:
   Disagreement aboutAxis(const std::string& says, const ContinuousSymmetry& symmetry) const {
     Disagreement result{says, symmetry.axis, symmetry.offset, 0.0, {}};
     for (int k = 1; k <= kNumAngles; ++k) {
-      const MotionEvidence evidence = surface_.of(turnOf(symmetry, 2.0 * kPi * goldenFraction(k)));
+      const MotionEvidence evidence =
+          surface_.of(motionAbout({symmetry.offset, symmetry.axis}, 2.0 * kPi * goldenFraction(k)));
       if (evidence.deviation >= result.evidence.deviation) result.evidence = evidence;
     }
     return result;
@@ -158,7 +155,7 @@ void addMissing(const ObjectSymmetries& found, const ObjectSymmetries& given, co
   for (const ContinuousSymmetry& symmetry : found.continuous)
     if (!comparison.hasAll(given, symmetry)) disagreements.push_back(comparison.aboutAxis("surface only", symmetry));
   for (const RotationAxis& axis : axesOf(found.discrete)) {
-    const Eigen::Isometry3d turn = turnOf({axis.direction, found.center}, 2.0 * kPi / axis.order);
+    const Eigen::Isometry3d turn = motionAbout({found.center, axis.direction}, 2.0 * kPi / axis.order);
     if (!comparison.has(given, turn)) disagreements.push_back(comparison.aboutTurn("surface only", turn));
   }
 }

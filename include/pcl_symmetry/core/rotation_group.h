@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "pcl_symmetry/core/exports.h"
+#include "pcl_symmetry/core/reflection_plane.h"
 
 namespace PCL_SYMMETRY_EXPORTS pcl_symmetry {
 
@@ -32,6 +33,10 @@ Eigen::Matrix3d rotationAbout(const Eigen::Vector3d& axis, double angle);
 
 /// The rotation R about a point c as a motion, x -> R (x - c) + c.
 Eigen::Isometry3d motionFixing(const Eigen::Vector3d& center, const Eigen::Matrix3d& rotation);
+
+/// The rotation about a line as a motion.
+/// \param angle radians.
+Eigen::Isometry3d motionAbout(const Line3d& line, double angle);
 
 /// A line as a direction: the one of its two directions whose largest coordinate is positive.
 Eigen::Vector3d signedDirection(const Eigen::Vector3d& direction);

@@ -30,39 +30,39 @@ double byShare(const PlaneEvidence& evidence, double unit) {
 }
 
 /// \return the share of the surface that finer points would show to be off.
-double resolvedOff(const PlaneEvidence& evidence, const EvidenceUnits& units) {
+double resolvedOff(const PlaneEvidence& evidence) {
   const double off = 1.0 - evidence.share, coarse = coarseness(evidence);
-  const double reach = std::max(units.reach * coarse, evidence.flat ? std::min(1.0, units.flat_reach * coarse) : 0.0);
-  return off > 0.0 ? off * std::exp(reach) : 0.0;  // not 0 times infinity
+  const double flat = evidence.flat ? std::min(1.0, kEvidenceUnits.flat_reach * coarse) : 0.0;
+  return off > 0.0 ? off * std::exp(std::max(kEvidenceUnits.reach * coarse, flat)) : 0.0;  // not 0 times infinity
 }
 
 /// \return the share of the surface that is off, in units of what is known of it.
-double byPrecision(const PlaneEvidence& evidence, const EvidenceUnits& units) {
-  const double unit = units.precision + units.precision_per_spacing * coarseness(evidence) +
-                      units.precision_per_unknown * evidence.unknown;
-  return std::min(resolvedOff(evidence, units), units.max_off) / unit;
+double byPrecision(const PlaneEvidence& evidence) {
+  const double unit = kEvidenceUnits.precision + kEvidenceUnits.precision_per_spacing * coarseness(evidence) +
+                      kEvidenceUnits.precision_per_unknown * evidence.unknown;
+  return std::min(resolvedOff(evidence), kEvidenceUnits.max_off) / unit;
 }
 
 /// \return log odds by how easily the plane slips along what it matches, more where much is hidden, >= 0.
-double bySlipping(const PlaneEvidence& evidence, const EvidenceUnits& units) {
-  const double slips = std::max(0.0, std::log(units.slipping / (evidence.hold + units.min_slipping)));
-  return (units.slipping_seen + evidence.unknown) * slips;
+double bySlipping(const PlaneEvidence& evidence) {
+  const double slips = std::max(0.0, std::log(kEvidenceUnits.slipping / (evidence.hold + kEvidenceUnits.min_slipping)));
+  return (kEvidenceUnits.slipping_seen + evidence.unknown) * slips;
 }
 
 /// \return what D loses beyond what the hidden or missing part explains.
-double byUnexplainedLoss(const PlaneEvidence& evidence, const EvidenceUnits& units) {
-  return std::max(0.0, 1.0 - evidence.score - units.hidden_loss * evidence.unknown);
+double byUnexplainedLoss(const PlaneEvidence& evidence) {
+  return std::max(0.0, 1.0 - evidence.score - kEvidenceUnits.hidden_loss * evidence.unknown);
 }
 
 /// \return log odds by what D loses beyond what noise explains.
-double byExcess(const PlaneEvidence& evidence, const EvidenceUnits& units) {
-  const double excess = evidence.own_score - evidence.score - units.min_excess;
-  return std::log(std::max(0.0, excess) / units.excess + 1.0);
+double byExcess(const PlaneEvidence& evidence) {
+  const double excess = evidence.own_score - evidence.score - kEvidenceUnits.min_excess;
+  return std::log(std::max(0.0, excess) / kEvidenceUnits.excess + 1.0);
 }
 
 /// \return log odds by the overlap of densities that is lost.
-double byLostOverlap(const PlaneEvidence& evidence, const EvidenceUnits& units) {
-  return std::log(std::max(0.0, 1.0 - evidence.support) / units.lost_overlap + 1.0);
+double byLostOverlap(const PlaneEvidence& evidence) {
+  return std::log(std::max(0.0, 1.0 - evidence.support) / kEvidenceUnits.lost_overlap + 1.0);
 }
 
 double noiseOf(const PlaneEvidence& evidence) {
@@ -78,27 +78,26 @@ double seenSupport(const PlaneEvidence& evidence) {
 }
 
 std::vector<double> logOddsTerms(const PlaneEvidence& evidence) {
-  const EvidenceUnits units;
   switch (evidence.kind) {
     case CloudKind::Scan:
-      return {1.0, byShare(evidence, units.scan_off), byOff(1.0 - evidence.double_share, units.double_off),
-              byUnexplainedLoss(evidence, units), bySlipping(evidence, units)};
+      return {1.0, byShare(evidence, kEvidenceUnits.scan_off),
+              byOff(1.0 - evidence.double_share, kEvidenceUnits.double_off), byUnexplainedLoss(evidence),
+              bySlipping(evidence)};
     case CloudKind::Volume:
-      return {1.0, byShare(evidence, units.volume_off), byExcess(evidence, units), byLostOverlap(evidence, units),
-              std::log((1.0 - evidence.own_score) / units.noise + 1.0)};
+      return {1.0, byShare(evidence, kEvidenceUnits.volume_off), byExcess(evidence), byLostOverlap(evidence),
+              std::log((1.0 - evidence.own_score) / kEvidenceUnits.noise + 1.0)};
     default:
       return {1.0,
-              byOff(resolvedOff(evidence, units), units.off + units.off_per_spacing * coarseness(evidence)),
-              byPrecision(evidence, units),
+              byOff(resolvedOff(evidence), kEvidenceUnits.off + kEvidenceUnits.off_per_spacing * coarseness(evidence)),
+              byPrecision(evidence),
               std::sqrt(evidence.unknown),
               coarseness(evidence),
-              coarseness(evidence) * byUnexplainedLoss(evidence, units)};
+              coarseness(evidence) * byUnexplainedLoss(evidence)};
   }
 }
 
 double shareUnit(const PlaneEvidence& evidence) {
-  const EvidenceUnits units;
-  return units.off + units.off_per_spacing * coarseness(evidence) + noiseOf(evidence) +
+  return kEvidenceUnits.off + kEvidenceUnits.off_per_spacing * coarseness(evidence) + noiseOf(evidence) +
          kEvidence.unknown_share * evidence.unknown;
 }
 

@@ -86,6 +86,7 @@ struct EvidenceUnits {
   double lost_overlap = 0.01;  ///< of the overlap of densities
   double noise = 0.01;         ///< of what noise takes from D
 };
+inline constexpr EvidenceUnits kEvidenceUnits{};
 
 /// The terms of the log odds that a plane is a symmetry, without their coefficients: 1, then terms that fall as the
 /// evidence gets better, and of whole clouds and volumes the spacing or the noise, which the others depend on.

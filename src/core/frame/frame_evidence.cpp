@@ -6,6 +6,7 @@
 
 #include "core/base/statistics.h"
 #include "core/geometry/cell_normals.h"
+#include "core/geometry/directions.h"
 #include "core/transform/sampled_transform.h"
 
 namespace pcl_symmetry {
@@ -71,10 +72,7 @@ std::vector<Eigen::Vector3f> SurfaceDirections::peaks(int max_peaks) const {
   const float same = static_cast<float>(std::cos(kFrame.peak_distance));
   for (const Peak& peak : found) {
     if (static_cast<int>(peaks.size()) >= max_peaks) break;
-    const bool known = std::any_of(peaks.begin(), peaks.end(), [&](const Eigen::Vector3f& other) {
-      return std::abs(other.dot(peak.direction)) > same;
-    });
-    if (!known) peaks.push_back(peak.direction);
+    if (!isNearAny(peaks, peak.direction, same)) peaks.push_back(peak.direction);
   }
   return peaks;
 }

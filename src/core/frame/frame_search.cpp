@@ -7,6 +7,7 @@
 #include "core/base/constants.h"
 #include "core/base/parallel.h"
 #include "core/base/statistics.h"
+#include "core/geometry/directions.h"
 #include "pcl_symmetry/core/symmetry_map.h"
 
 namespace pcl_symmetry {
@@ -14,8 +15,7 @@ namespace pcl_symmetry {
 namespace {
 
 bool isKnown(const std::vector<CellPlane>& planes, const Eigen::Vector3f& normal, double angle) {
-  return std::any_of(planes.begin(), planes.end(),
-                     [&](const CellPlane& other) { return std::abs(other.normal.dot(normal)) > std::cos(angle); });
+  return isNearAny(planes, normal, std::cos(angle), &CellPlane::normal);
 }
 
 /// The plane moved to the nearest maximum of quality, by steps of falling size, in degrees. It rotates about the center
@@ -67,8 +67,7 @@ PerpendicularPlane planeOf(const FrameEvidence& evidence, const CellPlane& first
 /// \param angle_index in steps of 90 degrees / num_angles.
 PerpendicularPlane planeAt(const FrameEvidence& evidence, const CellPlane& first, std::size_t angle_index) {
   const float angle = static_cast<float>(kPi * static_cast<double>(angle_index) / (2 * kFrame.num_angles));
-  const Eigen::Vector3f u = first.normal.unitOrthogonal(), v = first.normal.cross(u);
-  return planeOf(evidence, first, std::cos(angle) * u + std::sin(angle) * v);
+  return planeOf(evidence, first, directionAcross(first.normal, angle));
 }
 
 FrameCandidate frameOf(const FrameEvidence& evidence, const CellPlane& first, const PerpendicularPlane& second,

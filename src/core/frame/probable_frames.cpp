@@ -166,10 +166,7 @@ std::vector<Eigen::Vector3f> firstAxes(const std::vector<FrameCandidate>& frames
   for (const FrameCandidate& frame : frames) {
     if (axes.size() >= kFrame.max_outlines) break;
     const Eigen::Vector3f first = frame.axes.col(0);
-    const bool known = std::any_of(axes.begin(), axes.end(), [&](const Eigen::Vector3f& other) {
-      return std::abs(other.dot(first)) > std::cos(kFrame.same_outline);
-    });
-    if (!known) axes.push_back(first);
+    if (!isNearAny(axes, first, std::cos(kFrame.same_outline))) axes.push_back(first);
   }
   return axes;
 }

@@ -33,18 +33,11 @@ std::vector<ViewPlane> viewPlanes(std::vector<ViewPlane> planes, const std::vect
   const int fan = 8;              // planes that represent an axis: S varies about it by 2 %
   const double min_score = 0.2;   // of the best score: below, a direction is not seen
   const double max_across = 0.5;  // cosine between a maximum that counts too and the planes so far
-  for (const ViewPlane& axis : axes) {
-    const Eigen::Vector3d u = axis.normal.unitOrthogonal(), v = axis.normal.cross(u);
-    for (int k = 0; k < fan; ++k) {
-      const double angle = kPi * k / fan;
-      planes.push_back({std::cos(angle) * u + std::sin(angle) * v, 2.0 * axis.weight / fan});
-    }
-  }
+  for (const ViewPlane& axis : axes)
+    for (int k = 0; k < fan; ++k)
+      planes.push_back({directionAcross(axis.normal, kPi * k / fan), 2.0 * axis.weight / fan});
   for (const ViewPlane& maximum : maxima) {
-    const bool near = std::any_of(planes.begin(), planes.end(), [&](const ViewPlane& plane) {
-      return std::abs(plane.normal.dot(maximum.normal)) > max_across;
-    });
-    if (near) continue;
+    if (isNearAny(planes, maximum.normal, max_across, &ViewPlane::normal)) continue;
     const std::vector<RankedView> best = bestViews(planes);
     if (!best.empty() && worstView(planes).score >= min_score * best[0].score) break;
     planes.push_back(maximum);

@@ -17,7 +17,7 @@ public:
   /// \param points 3 x N, finite, N >= 1.
   /// \param num_cells cells along each side of the cube, >= 2. The cube covers 1.25 radii of the bounding ball.
   /// \throws std::invalid_argument without a point, or for less than two cells.
-  explicit ClosestPointGrid(const PointsRef& points, int num_cells = 48);
+  ClosestPointGrid(const PointsRef& points, int num_cells);
 
   /// \return index of the point closest to the center of the cell that contains \p x; for an \p x outside the cube, of
   /// the nearest cell at its border. A few cells have a point that is only nearly the closest.

@@ -2,7 +2,10 @@
 
 #include <Eigen/Core>
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <array>
+#include <cmath>
+#include <functional>
 #include <vector>
 
 namespace pcl_symmetry {
@@ -33,6 +36,38 @@ Eigen::Vector3d spiralDirection(int k, int count, double angle);
 /// \return unit vectors by falling z.
 /// \throws std::invalid_argument for less than one direction.
 std::vector<Eigen::Vector3d> evenDirections(int num_directions);
+
+/// \param axis unit.
+/// \param angle about the axis, radians; at 0 the direction is axis.unitOrthogonal().
+/// \return a unit vector at right angles to the axis.
+template <typename Scalar>
+Eigen::Matrix<Scalar, 3, 1> directionAcross(const Eigen::Matrix<Scalar, 3, 1>& axis, Scalar angle) {
+  const Eigen::Matrix<Scalar, 3, 1> u = axis.unitOrthogonal(), v = axis.cross(u);
+  return std::cos(angle) * u + std::sin(angle) * v;
+}
+
+/// \param a,b not zero.
+/// \return angle between the lines along two directions, in [0, pi/2] radians.
+inline double angleBetweenLines(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
+  return std::atan2(a.cross(b).norm(), std::abs(a.dot(b)));
+}
+
+/// Whether the line along a direction is nearly that along the direction of any entry of a list.
+/// \param direction unit.
+/// \param cosine of the angle between the two lines: that of those that are near is greater.
+/// \param direction_of a member or a function of the entries, unit.
+template <typename List, typename Direction, typename Scalar, typename DirectionOf>
+bool isNearAny(const List& list, const Direction& direction, Scalar cosine, const DirectionOf& direction_of) {
+  return std::any_of(list.begin(), list.end(), [&](const auto& entry) {
+    return std::abs(std::invoke(direction_of, entry).dot(direction)) > cosine;
+  });
+}
+
+/// The same for a list of directions.
+template <typename Direction, typename Scalar>
+bool isNearAny(const std::vector<Direction>& list, const Direction& direction, Scalar cosine) {
+  return isNearAny(list, direction, cosine, [](const Direction& other) -> const Direction& { return other; });
+}
 
 /// The axes of a camera: a right-handed frame whose third axis looks along a direction. The rotation about that
 /// direction is arbitrary, but always the same.

@@ -65,6 +65,9 @@ inline constexpr GeometryRules kGeometry{};
 /// (core/evidence/README.md).
 constexpr double kSymmetricShare = 0.97;
 
+/// Between this share and that of a symmetry, points leave it open whether a plane is one: finer ones may show it.
+constexpr double kNearlySymmetricShare = 0.9;
+
 /// Two planes, or two lines, within both limits are one.
 struct MergeTolerance {
   double angle;   ///< between the normals or directions, radians

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "core/base/check.h"
+#include "core/geometry/directions.h"
 
 namespace pcl_symmetry {
 
@@ -44,13 +45,11 @@ ReflectionPlane ReflectionPlane::transformed(const Eigen::Isometry3d& motion) co
 }
 
 double ReflectionPlane::angleTo(const ReflectionPlane& other) const {
-  const double sine = normal_.cross(other.normal_).norm();
-  return std::atan2(sine, std::abs(normal_.dot(other.normal_)));
+  return angleBetweenLines(normal_, other.normal_);
 }
 
 ReflectionPlane planeThrough(const Line3d& line, double angle) {
-  const Eigen::Vector3d u = line.direction().unitOrthogonal(), v = line.direction().cross(u);
-  const Eigen::Vector3d n = std::cos(angle) * u + std::sin(angle) * v;
+  const Eigen::Vector3d n = directionAcross<double>(line.direction(), angle);
   return ReflectionPlane(n, n.dot(line.origin()));
 }
 

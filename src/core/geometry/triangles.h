@@ -36,10 +36,9 @@ public:
   TriangleTree(const Points& corners, const std::vector<Eigen::Vector3i>& triangles);
 
   /// \param direction not zero; its length is the unit of the distances.
-  /// \return the closest triangle at a distance in (nearest, farthest).
-  RayHit closest(const Eigen::Vector3f& origin, const Eigen::Vector3f& direction, float nearest = 0.0f,
-                 float farthest = std::numeric_limits<float>::infinity()) const {
-    return search(origin, direction, nearest, farthest, false);
+  /// \return the closest triangle beyond the distance \p nearest.
+  RayHit closest(const Eigen::Vector3f& origin, const Eigen::Vector3f& direction, float nearest = 0.0f) const {
+    return search(origin, direction, nearest, std::numeric_limits<float>::infinity(), false);
   }
 
   /// \return whether a triangle lies between two points.

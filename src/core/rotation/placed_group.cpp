@@ -32,9 +32,9 @@ std::optional<OffShares> meanShares(const RotationFit& fit, const RotationSet& s
 
 }  // namespace
 
-double greatestExcess(const RotationLimits& limits, int num_samples) {
+double greatestExcess(const RotationLimits& limits) {
   const double phi = std::max(limits.max_feature, 1e-3);
-  return 1.0 + (kRotation.gain_of_fit + kRotation.max_errors * std::sqrt(phi / num_samples)) / phi;
+  return 1.0 + (kRotation.gain_of_fit + kRotation.max_errors * std::sqrt(phi / kRotation.num_some_points)) / phi;
 }
 
 std::optional<PlacedGroup> placedGroup(const RotationFit& fit, const ObjectSymmetryOptions& options,
@@ -43,7 +43,7 @@ std::optional<PlacedGroup> placedGroup(const RotationFit& fit, const ObjectSymme
   set = fit.roughlyFitted(set);
   if (fit.overlap(set) < kRotation.fair_overlap) return std::nullopt;
   set = fit.closelyFitted(set);
-  const double some = greatestExcess(fit.limits(), kRotation.num_some_points);
+  const double some = greatestExcess(fit.limits());
   if (fit.limits().excess(fit.worstShares(set, kRotation.num_some_points, some)) > some) return std::nullopt;
   const std::optional<OffShares> shares =
       representsAll(kind) ? meanShares(fit, set)

@@ -23,8 +23,8 @@ struct PlacedGroup {
 constexpr RotationGroup kPolyhedralGroups[] = {
     {RotationGroupKind::Icosahedral, 5}, {RotationGroupKind::Octahedral, 4}, {RotationGroupKind::Tetrahedral, 3}};
 
-/// The excess beyond which a set judged by some of the points is given up: three standard errors above 1.
-double greatestExcess(const RotationLimits& limits, int num_samples);
+/// The excess beyond which a set judged by kRotation.num_some_points is given up: three standard errors above 1.
+double greatestExcess(const RotationLimits& limits);
 
 /// The set moved to where it fits the surface best; nothing if the surface does not support it there.
 std::optional<PlacedGroup> placedGroup(const RotationFit& fit, const ObjectSymmetryOptions& options,

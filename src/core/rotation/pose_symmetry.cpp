@@ -29,10 +29,6 @@ bool isSphere(const ObjectSymmetries& symmetries) {
   return symmetries.continuous.size() >= 2;
 }
 
-Eigen::Isometry3d motionAbout(const ContinuousSymmetry& symmetry, double angle) {
-  return motionFixing(symmetry.offset, rotationAbout(symmetry.axis, angle));
-}
-
 /// The pose with a given rotation that puts the center where another pose puts it.
 Eigen::Isometry3d withRotation(const Eigen::Isometry3d& T, const Eigen::Matrix3d& rotation,
                                const Eigen::Vector3d& center) {
@@ -180,7 +176,8 @@ Poses ObjectSymmetries::equivalents(const Eigen::Isometry3d& T, double step) con
   for (const Eigen::Isometry3d& symmetry : symmetries) {
     poses.push_back(T * symmetry);
     for (int k = 1; k < num_angles; ++k)
-      poses.push_back(T * motionAbout(continuous.front(), 2.0 * kPi * k / num_angles) * symmetry);
+      poses.push_back(
+          T * motionAbout({continuous.front().offset, continuous.front().axis}, 2.0 * kPi * k / num_angles) * symmetry);
   }
   return poses;
 }
@@ -189,7 +186,8 @@ Eigen::Isometry3d ObjectSymmetries::closestTo(const Eigen::Isometry3d& T, const 
   if (isSphere(*this)) return withRotation(T, T_previous.linear(), center);
   const ClosestSymmetry closest = closestSymmetry(*this, T_previous.linear().transpose() * T.linear());
   const Eigen::Isometry3d placed = closest.element < 0 ? T : T * discrete[closest.element];
-  return continuous.empty() ? placed : placed * motionAbout(continuous.front(), closest.angle);
+  return continuous.empty() ? placed
+                            : placed * motionAbout({continuous.front().offset, continuous.front().axis}, closest.angle);
 }
 
 Eigen::Isometry3d ObjectSymmetries::canonical(const Eigen::Isometry3d& T) const {
@@ -215,7 +213,7 @@ double ObjectSymmetries::surfaceDistance(const Eigen::Isometry3d& T_1, const Eig
     Eigen::Isometry3d placed = k < 0 ? T_2 : T_2 * discrete[k];
     if (!continuous.empty()) {
       const double angle = closestAngle(placed.inverse() * T_1, continuous.front(), points);
-      placed = placed * motionAbout(continuous.front(), angle);
+      placed = placed * motionAbout({continuous.front().offset, continuous.front().axis}, angle);
     }
     best = std::min(best, greatestSqOffset(T_1, placed, points));
   }

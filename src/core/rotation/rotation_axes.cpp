@@ -36,10 +36,9 @@ std::vector<int> peaks(const std::vector<double>& values) {
   std::vector<int> kept;
   for (const int k : fallingOrder(values)) {
     if (kept.size() >= kRotation.max_directions || values[k] < kRotation.min_line_overlap) break;
-    const bool near = std::any_of(kept.begin(), kept.end(), [&](int other) {
-      return std::abs(directionAt(k, size).dot(directionAt(other, size))) > std::cos(kRotation.min_angle);
-    });
-    if (!near) kept.push_back(k);
+    if (!isNearAny(kept, directionAt(k, size), std::cos(kRotation.min_angle),
+                   [&](int other) { return directionAt(other, size); }))
+      kept.push_back(k);
   }
   return kept;
 }
@@ -195,7 +194,7 @@ double excessBetween(RotationProfile& profile, int fold) {
 /// halfway between. A multiple of a true fold fails that: half its rotations are no symmetries, or as good as any.
 /// \return the greatest first.
 std::vector<int> foldsOf(const RotationFit& fit, RotationProfile& profile, const Line3d& line, int max_fold) {
-  const double most = greatestExcess(fit.limits(), kRotation.num_some_points);
+  const double most = greatestExcess(fit.limits());
   std::vector<int> folds;
   for (int n = max_fold; n >= 2; --n) {
     if (fit.overlap(profile.rotation(1, n), line.origin()) < kRotation.rough_overlap) continue;
@@ -234,20 +233,14 @@ std::vector<Line3d> axisLineCandidates(const RotationFit& fit, int num_direction
   return lines;
 }
 
-double angleBetweenLines(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
-  return std::atan2(a.cross(b).norm(), std::abs(a.dot(b)));
-}
-
 Line3d bestAcross(const RotationFit& fit, const Line3d& line, double width, int num_angles,
                   const std::vector<double>& offsets) {
-  const Eigen::Vector3d u = line.direction().unitOrthogonal(), v = line.direction().cross(u);
-  Line3d best(line.origin(), u);
+  Line3d best(line.origin(), line.direction().unitOrthogonal());
   double best_overlap = -1.0;
   for (const double offset : offsets) {
     const Eigen::Vector3d center = line.origin() + offset * line.direction();
     for (int k = 0; k < num_angles; ++k) {
-      const double angle = width * k / num_angles;
-      const Eigen::Vector3d direction = std::cos(angle) * u + std::sin(angle) * v;
+      const Eigen::Vector3d direction = directionAcross<double>(line.direction(), width * k / num_angles);
       const double overlap = fit.overlap(rotationAbout(direction, kPi), center);
       if (overlap <= best_overlap) continue;
       best_overlap = overlap;
@@ -273,7 +266,7 @@ std::optional<FoldAxis> AxisFinder::foldAbout(const RotationFit& fit, const Line
 std::optional<FoldAxis> AxisFinder::axisAbout(const Line3d& line) {
   const RotationFit fit = fitAbout(fit_, line);
   RotationProfile profile(fit, line);
-  const double most = greatestExcess(fit.limits(), kRotation.num_some_points);
+  const double most = greatestExcess(fit.limits());
   const auto failing = failingRotation(profile, most);
   const int worst = failing.first;
   const double excess = failing.second;
@@ -302,7 +295,7 @@ void AxisFinder::judge(const std::vector<Line3d>& lines) {
     const Line3d line = lineOf(*rotation, start);
     tried_.push_back(line);
     const OffShares shares = fit_.offShares(rotation->rotations[0], rotation->center, kRotation.num_some_points);
-    if (fit_.limits().excess(shares) > greatestExcess(fit_.limits(), kRotation.num_some_points)) {
+    if (fit_.limits().excess(shares) > greatestExcess(fit_.limits())) {
       const double angle = Eigen::AngleAxisd(rotation->rotations[0]).angle();
       rejected_.push_back({line, static_cast<int>(std::lround(2.0 * kPi / angle)), angle, shares});
       continue;

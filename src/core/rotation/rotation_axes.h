@@ -32,9 +32,6 @@ std::vector<Line3d> principalLines(const RotationFit& fit);
 /// \param num_directions of lines through each center, on a half sphere.
 std::vector<Line3d> axisLineCandidates(const RotationFit& fit, int num_directions, int max_fold, int num_threads);
 
-/// Angle between two lines, in [0, pi/2].
-double angleBetweenLines(const Eigen::Vector3d& a, const Eigen::Vector3d& b);
-
 /// The half turn, among those about axes perpendicular to a line, that overlaps most with the surface.
 /// \param width the axes have \p num_angles angles in [0, width), radians.
 /// \param offsets positions of the axis along the line, from its origin.

@@ -7,6 +7,7 @@
 
 #include "core/base/check.h"
 #include "core/base/constants.h"
+#include "core/geometry/directions.h"
 
 namespace pcl_symmetry {
 
@@ -65,12 +66,10 @@ std::vector<Ring> fewestRings(double angle) {
 
 std::vector<Eigen::Matrix3d> tiltsCovering(const Eigen::Vector3d& axis, double angle) {
   check(angle > 0.0 && angle <= kPi, "angle", angle, "in (0, pi]");
-  const Eigen::Vector3d x = axis.unitOrthogonal(), y = axis.cross(x);
   std::vector<Eigen::Matrix3d> tilts;
   for (const Ring& ring : fewestRings(angle)) {
     for (int k = 0; k < ring.size; ++k) {
-      const double phi = 2.0 * kPi * k / ring.size;
-      const Eigen::Vector3d tilt_axis = std::cos(phi) * x + std::sin(phi) * y;
+      const Eigen::Vector3d tilt_axis = directionAcross(axis, 2.0 * kPi * k / ring.size);
       tilts.push_back(Eigen::AngleAxisd(ring.theta, tilt_axis).toRotationMatrix());
     }
   }

@@ -13,6 +13,7 @@
 #include "core/geometry/cloud_extent.h"
 #include "core/geometry/point_samples.h"
 #include "core/rotation/rotation_confidence_fit.h"
+#include "pcl_symmetry/core/rotation_group.h"
 
 namespace pcl_symmetry {
 
@@ -43,7 +44,7 @@ Line3d movedLine(const Line3d& line, const Eigen::Vector4d& by) {
 std::array<Eigen::Isometry3d, 4> motionsBeside(const Line3d& line, double angle) {
   std::array<Eigen::Isometry3d, 4> beside;
   for (int k = 0; k < 4; ++k)
-    beside[k] = motionAboutLine(movedLine(line, kScanAxes.fit_step * Eigen::Vector4d::Unit(k)), angle);
+    beside[k] = motionAbout(movedLine(line, kScanAxes.fit_step * Eigen::Vector4d::Unit(k)), angle);
   return beside;
 }
 
@@ -56,11 +57,6 @@ Eigen::Vector4d slopeOf(const std::array<Eigen::Isometry3d, 4>& beside, const Ei
 }
 
 }  // namespace
-
-Eigen::Isometry3d motionAboutLine(const Line3d& line, double angle) {
-  const Eigen::Matrix3d rotation = Eigen::AngleAxisd(angle, line.direction()).toRotationMatrix();
-  return isometry(rotation, line.origin() - rotation * line.origin());
-}
 
 RotationEvidence::RotationEvidence(const NormalizedCloud& cloud, double tolerance, std::uint64_t seed)
     : cloud_(cloud),
@@ -139,7 +135,7 @@ double RotationEvidence::shareOn(const Eigen::Affine3d& motion, const std::vecto
 }
 
 double RotationEvidence::hold(const Line3d& line, double angle) const {
-  const Eigen::Isometry3d motion = motionAboutLine(line, angle);
+  const Eigen::Isometry3d motion = motionAbout(line, angle);
   const std::array<Eigen::Isometry3d, 4> beside = motionsBeside(line, angle);
   const Landing all = landed(motion);
   Eigen::Matrix4d stiffness = Eigen::Matrix4d::Zero();
@@ -156,7 +152,7 @@ void RotationEvidence::addPulls(const IspSurface& surface, const Line3d& line, d
                                 const std::vector<int>& samples, double width, std::vector<int>& closest,
                                 Pulls& pulls) const {
   const double sq_width = width * width * tolerance_ * tolerance_;
-  const Eigen::Isometry3d motion = motionAboutLine(line, angle);
+  const Eigen::Isometry3d motion = motionAbout(line, angle);
   const std::array<Eigen::Isometry3d, 4> beside = motionsBeside(line, angle);
   const Landing landing = land(surface, moved(motion, samples), kScanAxes.fit_reach * width * tolerance_, &closest);
   closest = landing.closest;
@@ -265,7 +261,7 @@ std::vector<RotationSigns> rotationSigns(const RotationEvidence& evidence,
   parallelBlocks(rotations.size(), num_threads, [&](std::size_t i) {
     if (rotations[i].fold != 2) return;
     const Line3d line = cloud.lineOf(rotations[i]);
-    signs[i].grown = grownBy(cloud, motionAboutLine(line, kPi));
+    signs[i].grown = grownBy(cloud, motionAbout(line, kPi));
     signs[i].hold = evidence.hold(line, kPi);
     const bool is_best = marginOf(rotations[i]) >= marginOf(*best);
     signs[i].beside = is_best || crossesUpright(line, cloud.lineOf(*best)) ? 0.0 : 1.0;

@@ -89,9 +89,6 @@ struct RotationShares {
   double far = 0.0;  ///< lands there beyond ten tolerances: a handle, not a dent
 };
 
-/// The rotation about a line by an angle in radians.
-Eigen::Isometry3d motionAboutLine(const Line3d& line, double angle);
-
 /// Judges rotations by what a scanner saw: the surface, and the space in front of it. Beyond the paper (Section 6).
 class RotationEvidence {
 public:

@@ -26,6 +26,10 @@ Eigen::Isometry3d motionFixing(const Eigen::Vector3d& center, const Eigen::Matri
   return isometry(rotation, center - rotation * center);
 }
 
+Eigen::Isometry3d motionAbout(const Line3d& line, double angle) {
+  return motionFixing(line.origin(), rotationAbout(line.direction(), angle));
+}
+
 Eigen::Vector3d signedDirection(const Eigen::Vector3d& direction) {
   int largest = 0;
   direction.cwiseAbs().maxCoeff(&largest);

@@ -166,7 +166,7 @@ struct RoughShares {
   const Line3d& line;
 
   RotationShares operator()(double angle) const {
-    return evidence.roughly(motionAboutLine(line, angle), kScanAxes.rough_slack, kRoughLimits.off, kRoughLimits.far);
+    return evidence.roughly(motionAbout(line, angle), kScanAxes.rough_slack, kRoughLimits.off, kRoughLimits.far);
   }
 };
 
@@ -201,7 +201,7 @@ public:
 
   JudgedLine exactly(Line3d line, int fold) const {
     line = evidence_.closelyRefined(line, fitAngles(fold));
-    const auto shares = [&](double angle) { return evidence_.exactly(motionAboutLine(line, angle)); };
+    const auto shares = [&](double angle) { return evidence_.exactly(motionAbout(line, angle)); };
     const RotationShares own = fold == 0 ? roundRotations(shares) : rotationsOfFold(shares, fold, 0.0);
     SymmetryRotation rotation{Eigen::Vector3d::Zero(), line.direction(), fold, 0.0, own.on, own.off, own.far, 0.0};
     if (fold > 0) rotation.halfway = rotationsOfFold(shares, fold, 0.5).off;
@@ -311,7 +311,7 @@ std::optional<SymmetryCenter> centerOfScan(const RotationEvidence& evidence, con
     const Line3d line(center, Eigen::Vector3d::Unit(k));
     if (!kRoughLimits.allow(roundRotations(RoughShares{evidence, line}, kRoughLimits))) return std::nullopt;
     const RotationShares all =
-        roundRotations([&](double angle) { return evidence.exactly(motionAboutLine(line, angle)); }, limits);
+        roundRotations([&](double angle) { return evidence.exactly(motionAbout(line, angle)); }, limits);
     worst.support = std::min(worst.support, all.on);
     worst.off = std::max(worst.off, all.off);
     worst.far = std::max(worst.far, all.far);
@@ -343,7 +343,7 @@ std::vector<SymmetryAxis> withRoundAxes(const RotationEvidence& evidence, std::v
   const NormalizedCloud& cloud = evidence.cloud();
   eraseIf(axes, [&](const SymmetryAxis& axis) {
     const RotationShares all =
-        roundRotations([&](double angle) { return evidence.exactly(motionAboutLine(cloud.lineOf(axis), angle)); });
+        roundRotations([&](double angle) { return evidence.exactly(motionAbout(cloud.lineOf(axis), angle)); });
     return all.far > kScanAxes.max_round_far;
   });
   for (const SymmetryRotation& rotation : rotations) {

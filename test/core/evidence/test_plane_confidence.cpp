@@ -64,7 +64,7 @@ TEST(PlaneConfidence, FallsAsEvidenceGetsWorse) {
   expectFalls("unknown", [](PlaneEvidence& e, double t) {
     e.unknown = t;
     // What is hidden or missing has its part in D: where D is the same although more is, what is seen agrees better.
-    if (e.kind != CloudKind::Volume) e.score -= EvidenceUnits().hidden_loss * t;
+    if (e.kind != CloudKind::Volume) e.score -= kEvidenceUnits.hidden_loss * t;
   });
   expectFalls("score", [](PlaneEvidence& e, double t) { e.score = 1.0 - t; });
   expectFalls("support", [](PlaneEvidence& e, double t) { e.support = 1.0 - t; });

@@ -252,12 +252,12 @@ TEST(ClosestPointGrid, IsAsExactAsItsCells) {
 
 TEST(ClosestPointGrid, AnswersFarOutsideAndForOnePoint) {
   const Points one = Points::Constant(3, 1, 2.0f);
-  EXPECT_EQ(ClosestPointGrid(one).closest({1e6f, -1e6f, 0.0f}), 0);
+  EXPECT_EQ(ClosestPointGrid(one, 32).closest({1e6f, -1e6f, 0.0f}), 0);
   Points two(3, 2);
   two << -1, 1, 0, 0, 0, 0;
-  EXPECT_EQ(ClosestPointGrid(two).closest({-50.0f, 3.0f, 3.0f}), 0);
-  EXPECT_EQ(ClosestPointGrid(two).closest({50.0f, 3.0f, 3.0f}), 1);
-  EXPECT_THROW(ClosestPointGrid(Points(3, 0)), std::invalid_argument);
+  EXPECT_EQ(ClosestPointGrid(two, 32).closest({-50.0f, 3.0f, 3.0f}), 0);
+  EXPECT_EQ(ClosestPointGrid(two, 32).closest({50.0f, 3.0f, 3.0f}), 1);
+  EXPECT_THROW(ClosestPointGrid(Points(3, 0), 32), std::invalid_argument);
 }
 
 }  // namespace

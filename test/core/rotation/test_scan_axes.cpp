@@ -12,6 +12,7 @@
 
 #include "core/base/constants.h"
 #include "pcl_symmetry/core/detect_planes.h"
+#include "pcl_symmetry/core/rotation_group.h"
 #include "pcl_symmetry/core/symmetric_completion.h"
 #include "pcl_symmetry/core/symmetry_frame.h"
 #include "pcl_symmetry/core/visibility.h"
@@ -105,7 +106,7 @@ struct Scanned {
   SymmetryRotation rotation(const Eigen::Vector3d& point, const Eigen::Vector3d& direction) const {
     SymmetryRotation rotation{point, direction.normalized()};
     rotation.fold = 2;
-    const RotationShares shares = evidence.exactly(Eigen::Affine3d(motionAboutLine(lineOf(rotation), kPi)));
+    const RotationShares shares = evidence.exactly(Eigen::Affine3d(motionAbout(lineOf(rotation), kPi)));
     rotation.support = shares.on;
     rotation.off = shares.off;
     rotation.far = shares.far;
