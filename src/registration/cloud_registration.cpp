@@ -266,8 +266,7 @@ CloudRegistration registerClouds(const Points& source, const std::optional<Visib
   options.validate();
   CloudRegistration result;
   result.is_around_guess = options.around.has_value();
-  Stopwatch watch;
-  const auto done = [&](const char* stage) { result.timing_ms.emplace_back(stage, watch.lap()); };
+  StageTimes done(result.timing_ms);
 
   const PreparedCloud prepared_source("source", source, source_seen, options);
   if (std::min(source.cols(), target.size()) < kLeastRegistrationPoints) {

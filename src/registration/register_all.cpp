@@ -382,8 +382,7 @@ RegisteredScans registerAll(const std::vector<ObjectScan>& scans, const CloudReg
   options.validate();
   RegisteredScans result;
   result.scans.resize(scans.size());
-  Stopwatch watch;
-  const auto done = [&](const char* stage) { result.timing_ms.emplace_back(stage, watch.lap()); };
+  StageTimes done(result.timing_ms);
   std::vector<int> usable;
   for (std::size_t k = 0; k < scans.size(); ++k) {
     result.scans[k].left_out = detail::reasonForNoAnswer(scans[k].points, "scan", kLeastRegistrationPoints);

@@ -1,6 +1,9 @@
 #pragma once
 
 #include <chrono>
+#include <string>
+#include <utility>
+#include <vector>
 
 namespace pcl_symmetry {
 
@@ -17,6 +20,19 @@ public:
 
 private:
   std::chrono::steady_clock::time_point last_ = std::chrono::steady_clock::now();
+};
+
+/// Adds the milliseconds of one stage after another to a list.
+class StageTimes {
+public:
+  explicit StageTimes(std::vector<std::pair<std::string, double>>& times) : times_(times) {}
+
+  /// \param stage that ends here.
+  void operator()(const char* stage) { times_.emplace_back(stage, watch_.lap()); }
+
+private:
+  std::vector<std::pair<std::string, double>>& times_;
+  Stopwatch watch_;
 };
 
 }  // namespace pcl_symmetry

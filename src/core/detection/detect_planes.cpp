@@ -12,9 +12,11 @@
 #include "core/base/stopwatch.h"
 #include "core/detection/cloud_subset.h"
 #include "core/detection/detection_evidence.h"
-#include "core/detection/judged_cloud.h"
 #include "core/detection/part_search.h"
+#include "core/detection/plane_decision.h"
 #include "core/detection/plane_families.h"
+#include "core/detection/plane_report.h"
+#include "core/detection/plane_search.h"
 #include "core/detection/standing_object.h"
 #include "core/geometry/closest_points.h"
 #include "core/geometry/geometry_rules.h"
@@ -28,48 +30,48 @@ namespace pcl_symmetry {
 
 namespace {
 
-/// Decides the planes that may be symmetries, and where there are none, the others too. In a whole cloud, once a plane
-/// explains everything, hopeless candidates are skipped: no missing piece could account for what they fail to match.
+/// Judges the likely symmetries first. If none is one, judges the rest. In a whole cloud, once a plane explains
+/// everything, hopeless candidates are skipped: no missing piece could account for what they fail to match.
 /// \param candidates after the second stage, best first.
-void decide(const JudgedCloud& judged, std::vector<Candidate> candidates, Found& found) {
-  const CloudKind kind = judged.cloud.kind();
-  const bool skips_hopeless = !judged.options.approximate && kKindRules.may_lack_piece[kind];
+void decide(const PlaneSearch& search, std::vector<Candidate> candidates, Found& found) {
+  const CloudKind kind = search.cloud.kind();
+  const bool skips_hopeless = !search.options.approximate && kKindRules.may_lack_piece[kind];
   const auto isExplained = [&] {
     return std::any_of(found.planes.begin(), found.planes.end(),
                        [&](const SymmetryPlane& plane) { return explainsAll(plane, kind); });
   };
   if (skips_hopeless && !isExplained() && candidates.size() > 1) {
-    append(found.planes, judged.refinedAndJudged({candidates.front()}));
+    append(found.planes, search.refinedAndJudged({candidates.front()}));
     candidates.erase(candidates.begin());
   }
   if (skips_hopeless && isExplained())
-    eraseIf(candidates, [&](const Candidate& other) { return judged.decision.isHopeless(other); });
-  append(found.planes, judged.refinedAndJudged(std::move(candidates)));
+    eraseIf(candidates, [&](const Candidate& other) { return search.isHopeless(other); });
+  append(found.planes, search.refinedAndJudged(std::move(candidates)));
 }
 
 /// The evidence of all candidates, also of those that the detection leaves out early.
 /// \param candidates after the second stage.
-std::vector<MeasuredPlane> judgeAll(const JudgedCloud& judged, std::vector<Candidate> candidates) {
-  candidates = judged.refinement.refineFully(std::move(candidates));
-  judged.refinement.climb(candidates, std::vector<char>(candidates.size(), true));
-  return judged.decision.judge(judged.refinement.distinct(std::move(candidates)));
+std::vector<MeasuredPlane> judgeAll(const PlaneSearch& search, std::vector<Candidate> candidates) {
+  candidates = search.refinement.refineFully(std::move(candidates));
+  search.refinement.climb(candidates, std::vector<char>(candidates.size(), true));
+  return search.judge(search.refinement.distinct(std::move(candidates)));
 }
 
 /// The reflection of one symmetry in another is a symmetry, and so are the missing planes of a regular polygon.
-void completeGroups(const JudgedCloud& judged, Found& found) {
-  if (!kKindRules.shows_all[judged.cloud.kind()]) return;
+void completeGroups(const PlaneSearch& search, Found& found) {
+  if (!kKindRules.shows_all[search.cloud.kind()]) return;
   std::vector<ReflectionPlane> tried;
   for (std::vector<Candidate> candidates;
-       !(candidates = judged.refinement.refineSymmetries(impliedBy(found.planes, judged.cloud, tried))).empty();)
-    decide(judged, std::move(candidates), found);
+       !(candidates = search.refinement.refineSymmetries(impliedBy(found.planes, search.cloud, tried))).empty();)
+    decide(search, std::move(candidates), found);
 }
 
 /// Tries the planes of a scan that the map does not show, because what they map is hidden to the half.
-void tryRightAngles(const JudgedCloud& judged, Found& found) {
-  const NormalizedCloud& cloud = judged.cloud;
+void tryRightAngles(const PlaneSearch& search, Found& found) {
+  const NormalizedCloud& cloud = search.cloud;
   if (kKindRules.shows_all[cloud.kind()] || !cloud.seen()) return;
   std::vector<Candidate> candidates = atRightAngles(found.planes, carryingNormals(cloud.points, *cloud.seen()), cloud);
-  if (!candidates.empty()) decide(judged, judged.refinement.refineSymmetries(std::move(candidates)), found);
+  if (!candidates.empty()) decide(search, search.refinement.refineSymmetries(std::move(candidates)), found);
 }
 
 /// All planes through the axis of a mug map its body onto itself: those that do not map its handle onto itself, but to
@@ -90,24 +92,24 @@ void doubtUnshownHandles(const JudgedCloud& judged, const RotationEvidence& rota
 }
 
 /// Finds axes of rotations of a scan and makes axes of revolution and planes consistent with them.
-void findAxesOfScan(const JudgedCloud& judged, Found& found) {
-  const DetectionOptions& options = judged.options;
-  if (judged.measure.limits().isCutAllAround() || !options.rotations) return;
+void findAxesOfScan(const PlaneSearch& search, Found& found) {
+  const DetectionOptions& options = search.options;
+  if (search.measure.limits().isCutAllAround() || !options.rotations) return;
   // A ball is symmetric about every line through its center.
-  if (kKindRules.shows_all[judged.cloud.kind()] || !found.centers.empty()) return;
+  if (kKindRules.shows_all[search.cloud.kind()] || !found.centers.empty()) return;
   const ScanAxesOptions scan_axes{options.folds, options.min_confidence, options.min_possible, options.seed,
                                   options.num_threads};
-  const RotationEvidence rotations(judged.cloud, judged.measure.tolerance(), options.seed);
+  const RotationEvidence rotations(search.cloud, search.measure.tolerance(), options.seed);
   if (std::optional<SymmetryCenter> center = centerOfScan(rotations, scan_axes)) {
     found.axes.clear();
-    found.planes = withoutPlanesThrough(std::move(found.planes), *center, judged.cloud);
+    found.planes = withoutPlanesThrough(std::move(found.planes), *center, search.cloud);
     found.centers.push_back(*std::move(center));
     return;
   }
   found.rotations =
       scanAxes(rotations, found.planes, found.axes, scan_axes, found.evidence ? &found.evidence->rotations : nullptr);
   found.axes = withRoundAxes(rotations, std::move(found.axes), found.rotations, scan_axes);
-  found.planes = withoutPlanesThrough(std::move(found.planes), found.axes, judged.cloud);
+  found.planes = withoutPlanesThrough(std::move(found.planes), found.axes, search.cloud);
   // A body that is no ball has one axis: the others of a dome are as round within the tolerance.
   sortFalling(found.axes, &SymmetryAxis::confidence);
   if (found.axes.size() > 1) found.axes.resize(1);
@@ -117,23 +119,23 @@ void findAxesOfScan(const JudgedCloud& judged, Found& found) {
 /// Rules by which findings correct each other, applied in this order. Not in the paper.
 constexpr struct {
   const char* name;  ///< in Detection::timing_ms
-  void (*apply)(const JudgedCloud& judged, Found& found);
+  void (*apply)(const PlaneSearch& search, Found& found);
 } kRules[] = {
     {"groups", completeGroups},
     {"right_angles", tryRightAngles},
-    {"missing_pieces", [](const JudgedCloud& judged,
-                          Found& found) { doubtMissingPieces(found.planes, judged.cloud.kind(), judged.options); }},
+    {"missing_pieces", [](const PlaneSearch& search,
+                          Found& found) { doubtMissingPieces(found.planes, search.cloud.kind(), search.options); }},
     {"polygon", completePolygon},
     {"families", findFamilies},
     {"rotations", findAxesOfScan},
     {"beside_best",
-     [](const JudgedCloud& judged, Found& found) {
-       doubtFurtherPlanes(found.planes, found.hasFamily(), judged.cloud.kind(), judged.options);
+     [](const PlaneSearch& search, Found& found) {
+       doubtFurtherPlanes(found.planes, found.hasFamily(), search.cloud.kind(), search.options);
      }},
     {"slanted",
-     [](const JudgedCloud& judged, Found& found) {
-       if (const Visibility* seen = judged.cloud.seen())
-         doubtSlantedPlanes(found.planes, carryingNormals(judged.cloud.points, *seen), judged.options);
+     [](const PlaneSearch& search, Found& found) {
+       if (const Visibility* seen = search.cloud.seen())
+         doubtSlantedPlanes(found.planes, carryingNormals(search.cloud.points, *seen), search.options);
      }},
     {"parts", findPlanesOfParts},
 };
@@ -141,44 +143,29 @@ constexpr struct {
 /// Section 4.4 and what follows: from the maxima of the map of a cloud to the list of planes. publishedPlanes() is the
 /// section alone.
 /// \param[in,out] found takes the answer.
-void refineAndDecide(const JudgedCloud& judged, const SymmetryMap& map, Found& found, Stopwatch& watch) {
-  const NormalizedCloud& cloud = judged.cloud;
-  const PlaneMeasure& measure = judged.measure;
-  const DetectionOptions& options = judged.options;
-  const auto timed = [&](const char* stage) { found.timing_ms.emplace_back(stage, watch.lap()); };
-
+void refineAndDecide(const PlaneSearch& search, const SymmetryMap& map, Found& found, StageTimes& timed) {
   // Candidates: local maxima of the transform and the planes across the principal axes.
-  std::vector<Candidate> candidates = gatherCandidates(cloud, map, options);
+  std::vector<Candidate> candidates = gatherCandidates(search.cloud, map, search.options);
   timed("maxima");
 
   // Iterative Symmetric Points, with more samples and narrower weights in each stage; the last one with the decision.
-  candidates = judged.refinement.refineCoarsely(std::move(candidates), map.grid);
+  candidates = search.refinement.refineCoarsely(std::move(candidates), map.grid);
   timed("coarse_refinement");
-  candidates = judged.refinement.refineClosely(std::move(candidates));
+  candidates = search.refinement.refineClosely(std::move(candidates));
   timed("close_refinement");
   if (found.evidence) {
-    found.evidence->planes = judgeAll(judged, candidates);
+    found.evidence->planes = judgeAll(search, candidates);
     timed("evidence");
   }
-  decide(judged, std::move(candidates), found);
+  decide(search, std::move(candidates), found);
   timed("full_refinement");
 
   for (const auto& rule : kRules) {
-    rule.apply(judged, found);
+    rule.apply(search, found);
     timed(rule.name);
   }
 
-  // The answer.
-  if (!found.hasFamily()) found.best = bestApproximate(judged, found.planes);
-  if (found.best) found.best->deviation = measure.deviation(cloud.toNormalized(*found.best)) * cloud.scale;
-  found.undecided = found.best && !cloud.seen() && found.best->share_low < kDetection.decide.open_share &&
-                    found.best->share_high >= kSymmetricShare;
-  found.flat = flatPlane(judged);
-  found.tolerance = measure.tolerance() * cloud.scale;
-  const bool is_raised = options.absolute_tolerance == 0.0 && measure.tolerance() > options.tolerance * cloud.extent;
-  found.resolution = std::max(measure.resolution(), is_raised ? measure.tolerance() : 0.0) * cloud.scale;
-  found.diameter = cloud.extent * cloud.scale;
-  found.planes = rankedPlanes(judged, std::move(found.planes), found.polygon);
+  report(search, found);
   timed("report");
 }
 
@@ -234,10 +221,9 @@ Detection detectWithEvidence(const PlaneInput& input, const DetectionOptions& op
     check(input.normals->cols() == input.points.cols(), "number of normals", input.normals->cols(),
           "the number of points");
   check(!input.map == !input.edt, "map", input.map ? "given" : "missing", "given together with edt");
-  Stopwatch watch;
   Found found;
+  StageTimes timed(found.timing_ms);
   found.evidence = evidence;
-  const auto timed = [&](const char* stage) { found.timing_ms.emplace_back(stage, watch.lap()); };
 
   // The bulk: all points that are not stray. Of a large cloud, some points represent it.
   const std::vector<int> stray = strayPoints(input.points), in_bulk = allBut(stray, input.points.cols());
@@ -279,9 +265,9 @@ Detection detectWithEvidence(const PlaneInput& input, const DetectionOptions& op
       even.emplace(cloud, distinct.points, kept, options.num_threads);
 
   // Section 4.4: planes.
-  const JudgedCloud judged(even ? even->cloud : cloud, cloud.points, options);
+  const PlaneSearch plane_search(even ? even->cloud : cloud, cloud.points, options);
   timed("surface");
-  refineAndDecide(judged, input.map ? *input.map : found.map, found, watch);
+  refineAndDecide(plane_search, input.map ? *input.map : found.map, found, timed);
 
   // The support of all points: of the whole cloud, then of the bulk, then of the input. Stray points support no plane.
   const auto complete = [&](SymmetryPlane& plane) {

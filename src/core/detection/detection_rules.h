@@ -83,7 +83,6 @@ struct DetectionRules {
     double as_likely = 0.05;         ///< difference of confidences that other samples of the same shape may reverse
     double min_informative = 0.1;    ///< least share of informative samples; below it confidence falls in proportion
     double coarsest = 3.0;           ///< greatest tolerances; a sensor that resolves less decides nothing
-    double open_share = 0.9;  ///< lower limit of a share: between it and that of a symmetry the points leave it open
     double upright = 5.0 * kPi / 180.0;  ///< from upright or level within which a plane does not slant
     double touching = 0.05;              ///< diameters beyond the nearest support within which others carry, too
     double slanted_odds = 0.1;           ///< of a plane that slants over one that does not

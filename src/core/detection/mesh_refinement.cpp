@@ -48,8 +48,7 @@ void refine(const MeshSurface& mesh, SymmetryPlane& plane, double tolerance, con
 }  // namespace
 
 void refineOnMesh(const MeshSurface& mesh, Detection& found, const DetectionOptions& options) {
-  constexpr double kSameOnMesh = 0.01;      // after refinement; those of 120 teeth are 0.026 apart
-  constexpr double kNearlySymmetric = 0.9;  // share of the best plane that may be a symmetry of the mesh itself
+  constexpr double kSameOnMesh = 0.01;  // after refinement; those of 120 teeth are 0.026 apart
   const auto inBall = [&](const ReflectionPlane& plane) {
     return plane.normalized(mesh.ball().center, mesh.ball().radius);
   };
@@ -66,7 +65,7 @@ void refineOnMesh(const MeshSurface& mesh, Detection& found, const DetectionOpti
     }
     kept.push_back(std::move(plane));
   }
-  if (found.best && found.best->share >= kNearlySymmetric) {
+  if (found.best && found.best->share >= kNearlySymmetricShare) {
     refine(mesh, *found.best, found.tolerance, options);
     if (isDecided(*found.best)) {
       const ReflectionPlane best = inBall(*found.best);

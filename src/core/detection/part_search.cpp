@@ -345,17 +345,17 @@ std::vector<SymmetricPart> findSymmetricParts(const NormalizedCloud& cloud, cons
 
 }  // namespace
 
-void findPlanesOfParts(const JudgedCloud& judged, Found& found) {
-  const NormalizedCloud& cloud = judged.cloud;
-  if (!judged.options.approximate) return;
+void findPlanesOfParts(const PlaneSearch& search, Found& found) {
+  const NormalizedCloud& cloud = search.cloud;
+  if (!search.options.approximate) return;
   const std::vector<ReflectionPlane> decided =
       planesOf(found.planes, {PlaneKind::Symmetry, PlaneKind::Possible}, cloud);
-  const std::vector<SymmetricPart> parts = findSymmetricParts(cloud, *judged.fit, judged.options);
+  const std::vector<SymmetricPart> parts = findSymmetricParts(cloud, *search.fit, search.options);
   const std::vector<int> all = allOf(cloud.points.cols());
   std::vector<std::optional<SymmetryPlane>> of_parts(parts.size());
-  parallelBlocks(parts.size(), judged.options.num_threads, [&](std::size_t i) {
+  parallelBlocks(parts.size(), search.options.num_threads, [&](std::size_t i) {
     if (kSameMaximum.anySame(decided, parts[i].plane)) return;
-    SymmetryPlane plane = judged.decision.judge(parts[i].plane, all).plane;
+    SymmetryPlane plane = search.judge(parts[i].plane, all).plane;
     if (plane.kind == PlaneKind::Symmetry) return;  // of a family, which is known as its axis or center
     plane.kind = PlaneKind::Local;
     plane.iterations = parts[i].iterations;

@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "core/detection/judged_cloud.h"
+#include "core/detection/plane_search.h"
 
 namespace pcl_symmetry {
 
@@ -54,6 +54,6 @@ private:
 ///
 /// With DetectionOptions::approximate, adds planes of PlaneKind::Local, unlike the symmetries and possible symmetries
 /// found before.
-void findPlanesOfParts(const JudgedCloud& judged, Found& found);
+void findPlanesOfParts(const PlaneSearch& search, Found& found);
 
 }  // namespace pcl_symmetry

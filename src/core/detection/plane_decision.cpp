@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <utility>
 
-#include "core/base/parallel.h"
 #include "core/base/statistics.h"
 #include "core/detection/standing_object.h"
 
@@ -101,79 +100,6 @@ void doubtSlantedPlanes(std::vector<SymmetryPlane>& planes, const std::vector<Ei
   for (SymmetryPlane& plane : planes)
     if (isDecided(plane) && slants(plane, carrying_normals))
       multiplyOdds(plane, kDetection.decide.slanted_odds, "slants on what the object stands on", options);
-}
-
-MeasuredPlane PlaneDecision::decided(MeasuredPlane measured, const ReflectionPlane& plane) const {
-  SymmetryPlane& result = measured.plane;
-  for (const char* rule : measure_.limits().rulesAgainst(plane, cloud_.points)) limitToPossible(result, rule);
-  constexpr KindRule<const char*> kRule{
-      "how much of the surface the plane maps onto it, and how finely the points show it",
-      "how much of the surface the plane maps onto it, and how much was seen",
-      "how well each half of the points predicts the other; few points leave it open"};
-  setConfidence(result, planeConfidence(measured.evidence), kRule[cloud_.kind()], options_);
-  const double informative = std::min(1.0, measured.informative / kDetection.decide.min_informative);
-  if (informative < 1.0)
-    changeConfidence(result, result.confidence * informative, "few points move and land where the scanner saw",
-                     options_);
-  return measured;
-}
-
-bool PlaneDecision::isHopeless(const Candidate& candidate) const {
-  if (!kKindRules.may_lack_piece[cloud_.kind()] || candidate.merit >= kDetection.stages.symmetric_merit) return false;
-  const PlaneMeasure::ScreenedShare quick = measure_.screenedShare(candidate);
-  return quick.share + kDetection.decide.screening_errors * quick.error < kDetection.decide.hopeful_share;
-}
-
-std::vector<MeasuredPlane> PlaneDecision::judge(const std::vector<Candidate>& candidates) const {
-  std::vector<MeasuredPlane> judged(candidates.size());
-  judge(candidates, std::vector<char>(candidates.size(), true), judged);
-  return judged;
-}
-
-void PlaneDecision::judge(const std::vector<Candidate>& candidates, const std::vector<char>& some,
-                          std::vector<MeasuredPlane>& judged) const {
-  const std::vector<int> samples = measure_.samples();
-  parallelBlocks(candidates.size(), options_.num_threads, [&](std::size_t i) {
-    if (some[i]) judged[i] = decided(measure_.measured(candidates[i], samples), candidates[i].plane);
-  });
-}
-
-MeasuredPlane PlaneDecision::judge(const ReflectionPlane& plane, const std::vector<int>& samples) const {
-  return decided(measure_.measured(plane, samples), plane);
-}
-
-JudgedFamily PlaneDecision::judgeFamily(const std::vector<ReflectionPlane>& planes,
-                                        const std::vector<int>& samples) const {
-  const double count = static_cast<double>(planes.size());
-  const bool is_scan = !kKindRules.shows_all[cloud_.kind()];
-  JudgedFamily family;
-  PlaneEvidence together;
-  together.share = together.double_share = together.hold = 0.0;
-  double informative = 0.0, best_score = 0.0;
-  for (const ReflectionPlane& plane : planes) {
-    const PlaneEvidence one = measure_.measured(plane, samples, is_scan ? measure_.tolerance() : 0.0).evidence;
-    together.support += one.support / count;
-    together.conflict += one.conflict / count;
-    const double part = (1.0 - one.unknown) / count;
-    informative += part;
-    together.share += part * one.share;
-    together.double_share += part * one.double_share;
-    together.hold += one.hold / count;
-    best_score = std::max(best_score, one.score);
-    family.score += one.score / count;
-    family.min_confidence = std::min(family.min_confidence, planeConfidence(one));
-  }
-  // A scan shows some planes of a family better than others, and D falls with what is hidden: the plane that is shown
-  // best represents the family.
-  constexpr double least = 1e-3;  // avoids a division by 0
-  PlaneEvidence mean = measure_.evidenceOf(together.support, together.conflict, is_scan ? best_score : family.score);
-  mean.share = together.share / std::max(least, informative);
-  mean.double_share = together.double_share / std::max(least, informative);
-  mean.hold = together.hold;
-  mean.unknown = 1.0 - informative;
-  family.confidence = planeConfidence(mean);
-  family.support = seenSupport(mean);
-  return family;
 }
 
 std::vector<SymmetryPlane> reordered(std::vector<SymmetryPlane> planes, const DetectionOptions& options) {

@@ -6,51 +6,6 @@
 
 namespace pcl_symmetry {
 
-/// Combined evidence of the planes of a family.
-struct JudgedFamily {
-  double confidence = 0.0;      ///< of the mean evidence
-  double min_confidence = 1.0;  ///< of a single plane
-  double score = 0.0, support = 0.0;
-};
-
-/// From measured planes to answers: decides what is a symmetry, what is possible, and what comes first
-/// (core/evidence/README.md).
-class PlaneDecision {
-public:
-  /// \param cloud,measure,options must outlive this object.
-  PlaneDecision(const NormalizedCloud& cloud, const PlaneMeasure& measure, const DetectionOptions& options)
-      : cloud_(cloud), measure_(measure), options_(options) {}
-
-  /// \param candidates after the last stage of refinement.
-  /// \return one plane each, in the same order.
-  std::vector<MeasuredPlane> judge(const std::vector<Candidate>& candidates) const;
-
-  /// The same for some of the candidates, in place of what they were judged before.
-  void judge(const std::vector<Candidate>& candidates, const std::vector<char>& some,
-             std::vector<MeasuredPlane>& judged) const;
-
-  /// \param plane normalized frame.
-  /// \param samples indices of the points that judge it.
-  MeasuredPlane judge(const ReflectionPlane& plane, const std::vector<int>& samples) const;
-
-  /// Planes of a family together.
-  /// \param planes normalized frame, at least one.
-  /// \param samples indices of the points that judge them.
-  JudgedFamily judgeFamily(const std::vector<ReflectionPlane>& planes, const std::vector<int>& samples) const;
-
-  /// Whether too many points are off for a possible symmetry where nothing is missing.
-  bool isHopeless(const Candidate& candidate) const;
-
-private:
-  /// Gives a plane the confidence that its evidence has, and the limits of the cloud.
-  /// \param plane normalized frame.
-  MeasuredPlane decided(MeasuredPlane measured, const ReflectionPlane& plane) const;
-
-  const NormalizedCloud& cloud_;
-  const PlaneMeasure& measure_;
-  const DetectionOptions& options_;
-};
-
 // The only functions that write the confidence, the kind and the reasons of a plane of a whole, whatever was measured:
 // a cloud, a mesh, a volume, an upright box or a polygon; and the rules that lower its odds by what was found beside
 // it. Not in the paper.

@@ -8,7 +8,7 @@
 #include "core/base/constants.h"
 #include "core/base/statistics.h"
 #include "core/base/symmetric_solvers.h"
-#include "core/detection/judged_cloud.h"
+#include "core/detection/plane_search.h"
 #include "core/geometry/cloud_extent.h"
 #include "core/geometry/directions.h"
 #include "core/geometry/point_samples.h"
@@ -144,11 +144,10 @@ std::vector<AxisFamily> findAxes(const std::vector<ReflectionPlane>& planes, con
 
 namespace {
 
-FamilyTest familyTest(const JudgedCloud& judged, const std::vector<int>& samples) {
-  const NormalizedCloud& cloud = judged.cloud;
-  const PlaneFit& fit = *judged.fit;
-  const PlaneDecision& decision = judged.decision;
-  const DetectionOptions& options = judged.options;
+FamilyTest familyTest(const PlaneSearch& search, const std::vector<int>& samples) {
+  const NormalizedCloud& cloud = search.cloud;
+  const PlaneFit& fit = *search.fit;
+  const DetectionOptions& options = search.options;
   // Points that a greater tolerance than the usual one allows may lie beyond the support of all samples.
   const double usual = DetectionOptions().tolerance * cloud.extent;
   const bool is_coarse = cloud.kind() == CloudKind::Surface &&
@@ -156,7 +155,7 @@ FamilyTest familyTest(const JudgedCloud& judged, const std::vector<int>& samples
   // A plane that maps most of a scan to what was not seen is uninformative: only what contradicts counts.
   const auto share_of = [&, is_coarse, is_scan = !kKindRules.shows_all[cloud.kind()]](const std::vector<int>& used) {
     return [&, used, is_coarse, is_scan](const ReflectionPlane& plane) {
-      if (is_coarse) return decision.judge(plane, used).evidence.share;
+      if (is_coarse) return search.judge(plane, used).evidence.share;
       const PlaneShares shares = fit.shares(plane, used);
       const double support = fit.relativeSupport(shares);
       return is_scan ? 1.0 - shares.conflict : support / std::max(0.01, std::min(1.0, support + shares.conflict));
@@ -171,9 +170,7 @@ FamilyTest familyTest(const JudgedCloud& judged, const std::vector<int>& samples
        drawSamples(num_samples, static_cast<int>(num_samples) / kDetection.families.rough_sample_share, options.seed))
     fewer.push_back(samples[i]);
   test.rough_share = share_of(fewer);
-  test.refine = [&fit, samples](const ReflectionPlane& plane) {
-    return fit.refined(plane, samples, kDetection.families.refine_iterations);
-  };
+  test.refine = [&fit, samples](const ReflectionPlane& plane) { return fit.refined(plane, samples); };
   const CloudKind kind = cloud.kind();
   const double few_points = kKindRules.points_of_allowance[kind] / static_cast<double>(cloud.points.cols());
   test.min_share = kKindRules.family_share[kind];
@@ -195,10 +192,10 @@ Line3d longestAxis(const PrincipalAxes& axes) {
 
 }  // namespace
 
-void findFamilies(const JudgedCloud& judged, Found& found) {
-  const NormalizedCloud& cloud = judged.cloud;
-  const DetectionOptions& options = judged.options;
-  const CloudLimits& limits = judged.measure.limits();
+void findFamilies(const PlaneSearch& search, Found& found) {
+  const NormalizedCloud& cloud = search.cloud;
+  const DetectionOptions& options = search.options;
+  const CloudLimits& limits = search.measure.limits();
   if (limits.isCutAllAround() || (found.polygon && cloud.kind() == CloudKind::Surface)) return;
   const std::vector<ReflectionPlane> symmetries = symmetriesOf(found.planes, cloud);
   const bool is_line = limits.thinness() == Thinness::Line;
@@ -207,14 +204,13 @@ void findFamilies(const JudgedCloud& judged, Found& found) {
       drawSamples(cloud.points.cols(), kKindRules.family_samples[cloud.kind()], options.seed);
   if (is_line) {
     const Line3d line = longestAxis(cloud.principal_axes);
-    const JudgedFamily family =
-        judged.decision.judgeFamily(planesAt([&](int k) { return planeOfFamily(line, k, 0); }), samples);
+    const JudgedFamily family = search.judgeFamily(planesAt([&](int k) { return planeOfFamily(line, k, 0); }), samples);
     if (family.confidence >= options.min_confidence)
       found.axes.push_back(
           {cloud.toInput(line.origin()), line.direction(), family.confidence, family.score, family.support});
     return;
   }
-  const FamilyTest test = familyTest(judged, samples);
+  const FamilyTest test = familyTest(search, samples);
   std::vector<Line3d> likely_axes;
   std::vector<Eigen::Vector3d> likely_centers;
   if (kKindRules.resolves_surface[cloud.kind()]) {
@@ -232,7 +228,7 @@ void findFamilies(const JudgedCloud& judged, Found& found) {
             family.min_confidence >= kDetection.families.worst_share * options.min_confidence);
   };
   if (const std::optional<CenterFamily> center = findCenter(symmetries, test, likely_centers)) {
-    const JudgedFamily family = judged.decision.judgeFamily(center->planes, samples);
+    const JudgedFamily family = search.judgeFamily(center->planes, samples);
     if (isFamily(family)) {
       found.centers.push_back({cloud.toInput(center->common), family.confidence, family.score, family.support});
       found.planes = withoutPlanesThrough(std::move(found.planes), found.centers.back(), cloud);
@@ -241,15 +237,13 @@ void findFamilies(const JudgedCloud& judged, Found& found) {
   }
   for (const AxisFamily& axis : findAxes(symmetries, test, likely_axes)) {
     // Noise blurs what lies between the planes of a polygon, but not alike at all of them.
-    if (!kKindRules.resolves_surface[cloud.kind()] && latticeBySpectrum(judged.all_points, axis.common)) continue;
-    const JudgedFamily family = judged.decision.judgeFamily(axis.planes, samples);
+    if (!kKindRules.resolves_surface[cloud.kind()] && latticeBySpectrum(search.all_points, axis.common)) continue;
+    const JudgedFamily family = search.judgeFamily(axis.planes, samples);
     if (!isFamily(family)) continue;
     // No bounded shape has two parallel axes, but a thin disc seems to within the tolerance: the best is the
     // axis.
-    const bool is_known = std::any_of(found.axes.begin(), found.axes.end(), [&](const SymmetryAxis& other) {
-      return std::abs(other.direction.dot(axis.common.direction())) > std::cos(kDetection.families.contained_angle);
-    });
-    if (!is_known)
+    if (!isNearAny(found.axes, axis.common.direction(), std::cos(kDetection.families.contained_angle),
+                   &SymmetryAxis::direction))
       found.axes.push_back({cloud.toInput(axis.common.origin()), axis.common.direction(), family.confidence,
                             family.score, family.support});
     drop([&](const ReflectionPlane& plane) { return contains(plane, axis.common); });

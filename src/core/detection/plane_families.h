@@ -8,7 +8,7 @@
 
 namespace pcl_symmetry {
 
-struct JudgedCloud;
+class PlaneSearch;
 struct Found;
 
 /// Continuous families of planes: all planes through a line (a body of revolution) or through a point (a sphere).
@@ -53,7 +53,7 @@ std::vector<AxisFamily> findAxes(const std::vector<ReflectionPlane>& planes, con
 
 /// Finds the families that symmetries belong to: bodies of revolution and spheres in place of their planes. A cloud
 /// that is a line gets that line as its axis.
-void findFamilies(const JudgedCloud& judged, Found& found);
+void findFamilies(const PlaneSearch& search, Found& found);
 
 /// \param planes,axes input frame.
 /// \return the planes that contain no axis.

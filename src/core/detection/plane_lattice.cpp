@@ -9,8 +9,9 @@
 
 #include "core/base/constants.h"
 #include "core/base/statistics.h"
-#include "core/detection/judged_cloud.h"
+#include "core/detection/plane_decision.h"
 #include "core/detection/plane_families.h"
+#include "core/detection/plane_search.h"
 #include "core/geometry/geometry_rules.h"
 #include "core/geometry/point_samples.h"
 #include "pcl_symmetry/core/closest_point_search.h"
@@ -45,9 +46,9 @@ std::vector<std::vector<ReflectionPlane>> bundlesOf(const std::vector<Reflection
 
 }  // namespace
 
-bool contains(const ReflectionPlane& plane, const Line3d& line, double tolerance) {
+bool contains(const ReflectionPlane& plane, const Line3d& line) {
   return std::abs(plane.normal().dot(line.direction())) <= std::sin(kDetection.families.contained_angle) &&
-         std::abs(plane.signedDistance(line.origin())) <= tolerance;
+         std::abs(plane.signedDistance(line.origin())) <= kDetection.families.contained_offset;
 }
 
 ReflectionPlane PlaneLattice::plane(double k) const {
@@ -242,8 +243,8 @@ bool isPolygon(const PlaneLattice& lattice, const Points& points, double toleran
 }
 
 /// The polygon of a surface, whose planes are closer to each other than single ones are told apart.
-void addClosePlanes(const JudgedCloud& judged, Found& found) {
-  const NormalizedCloud& cloud = judged.cloud;
+void addClosePlanes(const PlaneSearch& search, Found& found) {
+  const NormalizedCloud& cloud = search.cloud;
   std::vector<ReflectionPlane> through;
   for (std::vector<ReflectionPlane>& containing :
        bundlesOf(planesOf(found.planes, {PlaneKind::Symmetry}, cloud), kDetection.families.max_pairs))
@@ -252,7 +253,7 @@ void addClosePlanes(const JudgedCloud& judged, Found& found) {
   const Line3d line = commonLine(through);
   std::optional<PlaneLattice> lattice = latticeBySpectrum(cloud.points, line);
   if (!lattice || kPi / lattice->fold > kDetection.decide.slope_angle ||
-      !isPolygon(*lattice, cloud.points, judged.measure.tolerance()))
+      !isPolygon(*lattice, cloud.points, search.measure.tolerance()))
     return;
   std::complex<double> sum = 0.0;  // the planes that were found fix the angle better
   for (const ReflectionPlane& plane : through)
@@ -261,7 +262,7 @@ void addClosePlanes(const JudgedCloud& judged, Found& found) {
       sum += std::polar(1.0, 2.0 * lattice->fold * angle);
   if (std::abs(sum) > 0.0) lattice->phase = std::arg(sum) / (2.0 * lattice->fold);
   std::vector<SymmetryPlane> completed;
-  for (MeasuredPlane& one : judged.decision.judge(candidatesOf(*lattice))) {
+  for (MeasuredPlane& one : search.judge(candidatesOf(*lattice))) {
     if (one.plane.kind != PlaneKind::Symmetry) return;
     completed.push_back(std::move(one.plane));
   }
@@ -273,21 +274,21 @@ void addClosePlanes(const JudgedCloud& judged, Found& found) {
 
 }  // namespace
 
-void completePolygon(const JudgedCloud& judged, Found& found) {
-  const NormalizedCloud& cloud = judged.cloud;
-  if (cloud.kind() == CloudKind::Surface) return addClosePlanes(judged, found);
+void completePolygon(const PlaneSearch& search, Found& found) {
+  const NormalizedCloud& cloud = search.cloud;
+  if (cloud.kind() == CloudKind::Surface) return addClosePlanes(search, found);
   if (kKindRules.resolves_surface[cloud.kind()]) return;
   sortFalling(found.planes, &SymmetryPlane::confidence);
-  const std::optional<PlaneLattice> lattice = bestLattice(found.planes, cloud, judged.all_points);
+  const std::optional<PlaneLattice> lattice = bestLattice(found.planes, cloud, search.all_points);
   if (!lattice) return;
-  std::vector<MeasuredPlane> of_lattice = judged.decision.judge(candidatesOf(*lattice));
+  std::vector<MeasuredPlane> of_lattice = search.judge(candidatesOf(*lattice));
   const double together = withOdds(leastTogether(of_lattice), kDetection.folds.odds_of_polygon);
-  if (together < judged.options.min_confidence) return;
+  if (together < search.options.min_confidence) return;
   // All planes tell where the polygon lies: those that noise moved away are dropped.
   eraseIf(found.planes, [&](const SymmetryPlane& plane) { return contains(cloud.toNormalized(plane), lattice->line); });
   for (MeasuredPlane& one : of_lattice) {
     if (together > one.plane.confidence)
-      changeConfidence(one.plane, together, "the planes of a regular polygon together", judged.options);
+      changeConfidence(one.plane, together, "the planes of a regular polygon together", search.options);
     found.planes.push_back(std::move(one.plane));
   }
   found.polygon = lattice;

@@ -7,12 +7,11 @@
 
 namespace pcl_symmetry {
 
-struct JudgedCloud;
+class PlaneSearch;
 struct Found;
 
-/// Whether a plane contains a line, within 3 degrees and \p tolerance.
-bool contains(const ReflectionPlane& plane, const Line3d& line,
-              double tolerance = kDetection.families.contained_offset);
+/// Whether a plane contains a line, normalized frame, within kDetection.families.
+bool contains(const ReflectionPlane& plane, const Line3d& line);
 
 /// The planes of a regular polygon: \p fold planes through a line, at equal angles.
 struct PlaneLattice {
@@ -33,6 +32,6 @@ std::optional<PlaneLattice> latticeBySpectrum(const Points& all, const Line3d& l
 
 /// Completes polygons. The planes of noisy clouds are judged together, as they are symmetries together or not at all.
 /// Those of surfaces are judged well enough alone, but many teeth leave them too close to be found one by one.
-void completePolygon(const JudgedCloud& judged, Found& found);
+void completePolygon(const PlaneSearch& search, Found& found);
 
 }  // namespace pcl_symmetry

@@ -11,6 +11,7 @@
 #include "core/base/statistics.h"
 #include "core/detection/detection_rules.h"
 #include "core/detection/plane_decision.h"
+#include "core/geometry/directions.h"
 #include "core/geometry/point_samples.h"
 #include "core/geometry/surface_normals.h"
 
@@ -95,11 +96,9 @@ Rectangle rectangleAt(const PointsRef& points, const Eigen::Vector3d& u, const E
 }
 
 Rectangle bestRectangle(const PointsRef& points, const Eigen::Vector3d& up) {
-  const Eigen::Vector3d x = up.unitOrthogonal(), y = up.cross(x);
   std::optional<Rectangle> best;
   for (int k = 0; k < kBox.num_angles; ++k) {
-    const double angle = 0.5 * kPi * k / kBox.num_angles;
-    const Eigen::Vector3d u = std::cos(angle) * x + std::sin(angle) * y;
+    const Eigen::Vector3d u = directionAcross(up, 0.5 * kPi * k / kBox.num_angles);
     Rectangle tried = rectangleAt(points, u, up.cross(u));
     if (!best || tried.sq_error < best->sq_error) best = std::move(tried);
   }
@@ -109,7 +108,6 @@ Rectangle bestRectangle(const PointsRef& points, const Eigen::Vector3d& up) {
 /// The diagonal of an upright box that holds the points, mean over its angles: kBox was fitted to boxes along the axes
 /// of clouds, which lay at any angle.
 double meanDiagonal(const PointsRef& points, const Eigen::Vector3d& up) {
-  const Eigen::Vector3d x = up.unitOrthogonal(), y = up.cross(x);
   const auto width = [&](const Eigen::Vector3d& along) {
     const Eigen::RowVectorXf positions = along.cast<float>().transpose() * points;
     return static_cast<double>(positions.maxCoeff() - positions.minCoeff());
@@ -117,8 +115,7 @@ double meanDiagonal(const PointsRef& points, const Eigen::Vector3d& up) {
   const double height = width(up);
   double sum = 0.0;
   for (int k = 0; k < kBox.num_angles; ++k) {
-    const double angle = 0.5 * kPi * k / kBox.num_angles;
-    const Eigen::Vector3d u = std::cos(angle) * x + std::sin(angle) * y;
+    const Eigen::Vector3d u = directionAcross(up, 0.5 * kPi * k / kBox.num_angles);
     sum += Eigen::Vector3d(width(u), width(up.cross(u)), height).norm();
   }
   return sum / kBox.num_angles;

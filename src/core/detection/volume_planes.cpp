@@ -353,18 +353,18 @@ Detection detectVolumePlanes(const ScalarGrid& input, const DetectionOptions& op
   options.validate();
   levels.validate();
   Detection found;
-  Stopwatch watch;
+  StageTimes done(found.timing_ms);
   try {
     const VolumeSearch search(input, levels, options);
     const GaussianEdt& edt = search.edt;
-    found.timing_ms.emplace_back("volume", watch.lap());
+    done("volume");
     found.map = sampledTransform(edt, PlaneGrid(options.expert, edt.center(), edt.radius()),
                                  {kVolume.num_samples, options.seed, options.num_threads});
     found.map.center_of_mass = search.center;
     found.diameter = 2.0 * edt.radius();
-    found.timing_ms.emplace_back("transform", watch.lap());
+    done("transform");
     std::vector<SymmetryPlane> planes = search.maxima(found.map);
-    found.timing_ms.emplace_back("maxima", watch.lap());
+    done("maxima");
     const double chance = search.chanceLevel(planes);
     if (chance > kVolume.max_chance) {
       found.reason = "volume: the body is round, planes in all directions map it onto itself";
@@ -374,7 +374,7 @@ Detection detectVolumePlanes(const ScalarGrid& input, const DetectionOptions& op
     for (SymmetryPlane& plane : planes) search.judge(plane, chance, planes.front().support);
     if (std::none_of(planes.begin(), planes.end(), isDecided) && !planes.empty()) found.best = planes.front();
     found.planes = reordered(std::move(planes), options);
-    found.timing_ms.emplace_back("refinement", watch.lap());
+    done("refinement");
   } catch (const VolumeWithoutAnswer& error) {
     found.reason = error.what();
   }

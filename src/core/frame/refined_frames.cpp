@@ -5,7 +5,7 @@
 
 #include "core/base/statistics.h"
 #include "core/base/symmetric_solvers.h"
-#include "core/detection/judged_cloud.h"
+#include "core/detection/plane_search.h"
 #include "core/frame/canonical_frame.h"
 #include "core/frame/frame_evidence.h"
 #include "core/geometry/geometry_rules.h"

@@ -11,6 +11,7 @@
 #include "core/frame/frame_evidence.h"
 #include "core/frame/frame_search.h"
 #include "core/frame/probable_frames.h"
+#include "core/geometry/directions.h"
 #include "core/geometry/point_samples.h"
 #include "core/rotation/scan_axes.h"
 #include "pcl_symmetry/core/planar_transform.h"
@@ -55,10 +56,8 @@ SymmetryFrame publishedFrame(const PointsRef& points, const FrameOptions& option
   frame.axes.col(0) = first.normal();
 
   // Second: the greatest among those perpendicular to it.
-  const Eigen::Vector3d u = frame.axes.col(0).unitOrthogonal(), v = frame.axes.col(0).cross(u);
-  const auto across = [&](std::size_t i) -> Eigen::Vector3d {
-    const double angle = kPi * static_cast<double>(i) / grid.numPhi();
-    return std::cos(angle) * u + std::sin(angle) * v;
+  const auto across = [&](std::size_t i) {
+    return directionAcross(first.normal(), kPi * static_cast<double>(i) / grid.numPhi());
   };
   std::vector<OffsetAndScore> perpendicular(grid.numPhi());
   parallelBlocks(perpendicular.size(), options.num_threads,
@@ -137,8 +136,7 @@ SymmetryFrame symmetryFrame(const PointsRef& all, const FrameOptions& options, c
   const Points bulk = withoutStrayPoints(all);
   const PointsRef points(bulk);
   frame.num_stray_points = static_cast<int>(all.cols() - points.cols());
-  Stopwatch watch;
-  const auto done = [&](const char* stage) { frame.timing_ms.emplace_back(stage, watch.lap()); };
+  StageTimes done(frame.timing_ms);
 
   const FrameEvidence evidence(points, options, visibility);
   done("surface");

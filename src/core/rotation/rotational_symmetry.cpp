@@ -21,7 +21,7 @@ namespace pcl_symmetry {
 namespace {
 
 /// The direction across an axis that is closest to a coordinate axis.
-Eigen::Vector3d directionAcross(const Eigen::Vector3d& axis) {
+Eigen::Vector3d coordinateAcross(const Eigen::Vector3d& axis) {
   int max_across = 0;
   axis.cwiseAbs().minCoeff(&max_across);
   const Eigen::Vector3d unit = Eigen::Vector3d::Unit(max_across);
@@ -43,7 +43,7 @@ ObjectSymmetries inInputFrame(const PlacedGroup& group, const RotationFit& fit, 
   } else if (isContinuous(group.kind)) {
     result.continuous.push_back({signedDirection(group.axis), result.center});
     if (group.kind == RotationGroupKind::Cylindrical)
-      result.discrete.push_back(motion(rotationAbout(directionAcross(group.axis), kPi)));
+      result.discrete.push_back(motion(rotationAbout(coordinateAcross(group.axis), kPi)));
   } else {
     for (const Eigen::Matrix3d& rotation : group.set.rotations) result.discrete.push_back(motion(rotation));
   }
@@ -157,8 +157,7 @@ ObjectSymmetries objectSymmetries(const PointsRef& all, const ObjectSymmetryOpti
   if (const std::string reason = whyUnanswerable(points); !reason.empty())
     throw std::invalid_argument("points: " + reason);
   std::vector<std::pair<std::string, double>> timing_ms;
-  Stopwatch watch;
-  const auto done = [&](const char* stage) { timing_ms.emplace_back(stage, watch.lap()); };
+  StageTimes done(timing_ms);
 
   const Points distinct = DistinctPoints(points).points;
   const BoundingBall ball =

@@ -10,9 +10,10 @@
 #include <vector>
 
 #include "core/base/constants.h"
+#include "core/detection/plane_report.h"
 #include "core/geometry/point_samples.h"
 #include "pcl_symmetry/core/detect_planes.h"
-#include "shapes/judged_cloud.h"
+#include "shapes/searched_shape.h"
 #include "shapes/shapes.h"
 
 namespace {
@@ -21,8 +22,8 @@ using namespace pcl_symmetry;
 using namespace pcl_symmetry::test;
 
 /// A box, and what refines its planes.
-struct RefinedBox : test::JudgedShape {
-  RefinedBox() : JudgedShape(test::box({1.0, 0.7, 0.4}, 5000, test::Sampling::Random, 1).cloud()) {}
+struct RefinedBox : test::SearchedShape {
+  RefinedBox() : SearchedShape(test::box({1.0, 0.7, 0.4}, 5000, test::Sampling::Random, 1).cloud()) {}
 
   Candidate candidate(const Eigen::Vector3d& normal, double offset) const {
     return {normalized(normal.normalized(), offset)};
@@ -58,11 +59,11 @@ TEST(StagedRefinement, DistinctKeepsTheBestOfLikePlanes) {
   ASSERT_EQ(kept.size(), 2u);
   EXPECT_EQ(kept[0].merit, 0.6);
   EXPECT_EQ(kept[1].merit, 0.55);
-  EXPECT_EQ(box.refinement.distinct(candidates, -1.0, 1).size(), 1u) << "none may be a symmetry";
+  EXPECT_EQ(box.refinement.distinct(candidates, 1).size(), 1u) << "none may be a symmetry";
 }
 
 TEST(PlaneMeasure, ShareFallsWithTheDistanceFromASymmetry) {
-  const JudgedShape box(test::box({1.0, 0.7, 0.4}, 5000, test::Sampling::Random, 1).cloud());
+  const SearchedShape box(test::box({1.0, 0.7, 0.4}, 5000, test::Sampling::Random, 1).cloud());
   const auto shareAt = [&](double offset) {
     return box.measure.measured(box.normalized(Eigen::Vector3d::UnitX(), offset), box.measure.samples()).evidence.share;
   };
@@ -77,7 +78,7 @@ TEST(PlaneMeasure, ShareFallsWithTheDistanceFromASymmetry) {
 }
 
 TEST(PlaneMeasure, MatchesOfOtherSamplesAreNotTaken) {
-  const JudgedShape box(test::box({1.0, 0.7, 0.4}, 5000, test::Sampling::Random, 1).cloud());
+  const SearchedShape box(test::box({1.0, 0.7, 0.4}, 5000, test::Sampling::Random, 1).cloud());
   const auto drawn = [](std::uint64_t seed) { return drawSamples(5000, 500, seed); };
   Candidate candidate;
   candidate.plane = box.normalized(Eigen::Vector3d::UnitX(), 0.0);
@@ -88,7 +89,7 @@ TEST(PlaneMeasure, MatchesOfOtherSamplesAreNotTaken) {
 }
 
 TEST(CloudLimits, TheOwnPlaneOfASheetMovesNothing) {
-  const JudgedShape sheet(test::flatSquare(2000, 1));
+  const SearchedShape sheet(test::flatSquare(2000, 1));
   const CloudLimits& limits = sheet.measure.limits();
   EXPECT_EQ(limits.thinness(), Thinness::Sheet);
   const PrincipalAxes& axes = sheet.cloud.principal_axes;
@@ -112,7 +113,7 @@ TEST(CloudLimits, ASensorThatResolvesTooLittle) {
   EXPECT_EQ(numRules(0.03, 0.1), 1u);
 }
 
-TEST(PlaneDecision, PointsOfAScanThatStayInPlaceAreUninformative) {
+TEST(PlaneSearch, PointsOfAScanThatStayInPlaceAreUninformative) {
   // A wall with a block on it, seen from the front. The plane of the wall maps the wall onto itself, and the block to
   // where the wall hides all.
   Points points(3, 5000);
@@ -124,11 +125,11 @@ TEST(PlaneDecision, PointsOfAScanThatStayInPlaceAreUninformative) {
   }
   const std::optional<Visibility> seen = Visibility::fromPoints(points, Eigen::Vector3d(0.0, 0.0, 6.0));
   ASSERT_TRUE(seen.has_value());
-  const JudgedShape scan(points, {}, &*seen);
+  const SearchedShape scan(points, {}, &*seen);
   std::vector<Candidate> candidates(2);
   candidates[0].plane = scan.normalized(Eigen::Vector3d::UnitZ(), 0.0);
   candidates[1].plane = scan.normalized(Eigen::Vector3d::UnitX(), 0.0);
-  const std::vector<MeasuredPlane> judged = scan.decision.judge(candidates);
+  const std::vector<MeasuredPlane> judged = scan.judge(candidates);
   EXPECT_LT(judged[0].evidence.share, 0.1);
   EXPECT_LT(judged[0].plane.confidence, 0.1);
   EXPECT_GT(judged[1].evidence.share, 0.97);
@@ -158,7 +159,7 @@ TEST(RankedPlanes, BestFirstAndEachOnce) {
   };
   DetectionOptions options;
   const auto supports = [&] {
-    const JudgedShape searched(box(500, Sampling::Random, 3).cloud(), options);
+    const SearchedShape searched(box(500, Sampling::Random, 3).cloud(), options);
     std::vector<double> found;
     for (const SymmetryPlane& plane : rankedPlanes(searched, planes)) {
       EXPECT_EQ(plane.point_support.size(), 500u);
@@ -174,7 +175,7 @@ TEST(RankedPlanes, BestFirstAndEachOnce) {
 }
 
 TEST(RankedPlanes, FewPossibleOnes) {
-  const JudgedShape searched(box(500, Sampling::Random, 3).cloud());
+  const SearchedShape searched(box(500, Sampling::Random, 3).cloud());
   std::vector<SymmetryPlane> planes;
   for (int k = 0; k < 6; ++k) planes.push_back(planeOfFan(k, PlaneKind::Possible, 0.3, 0.5));
   const auto numRanked = [&] { return rankedPlanes(searched, planes).size(); };
@@ -184,7 +185,7 @@ TEST(RankedPlanes, FewPossibleOnes) {
 }
 
 TEST(RankedPlanes, APlaneOnTheSlopeOfABetterOneIsNoMaximum) {
-  const JudgedShape searched(box(500, Sampling::Random, 3).cloud());
+  const SearchedShape searched(box(500, Sampling::Random, 3).cloud());
   const auto numRanked = [&](double score) {
     std::vector<SymmetryPlane> planes{planeOfFan(0, PlaneKind::Symmetry, 0.9, 0.9)};
     planes.emplace_back(ReflectionPlane({std::cos(0.1), std::sin(0.1), 0.0}, 0.0));
@@ -198,7 +199,7 @@ TEST(RankedPlanes, APlaneOnTheSlopeOfABetterOneIsNoMaximum) {
 }
 
 TEST(BestApproximate, IsThePlaneOfTheGreatestShareWhereNothingIsDecided) {
-  const JudgedShape searched(box(500, Sampling::Random, 3).cloud());
+  const SearchedShape searched(box(500, Sampling::Random, 3).cloud());
   std::vector<SymmetryPlane> planes{planeOfFan(0, PlaneKind::Approximate, 0.1, 0.1),
                                     planeOfFan(1, PlaneKind::Approximate, 0.1, 0.2),
                                     planeOfFan(2, PlaneKind::Local, 0.0, 0.3)};
@@ -213,13 +214,13 @@ TEST(BestApproximate, IsThePlaneOfTheGreatestShareWhereNothingIsDecided) {
   EXPECT_FALSE(best());
 }
 
-TEST(PlaneDecision, SkipsWhatAQuickLookShowsToBeHopeless) {
-  const JudgedShape searched(box({1.0, 0.7, 0.4}, 5000, Sampling::Random, 3).cloud());
+TEST(PlaneSearch, SkipsWhatAQuickLookShowsToBeHopeless) {
+  const SearchedShape searched(box({1.0, 0.7, 0.4}, 5000, Sampling::Random, 3).cloud());
   const auto isHopeless = [&](double offset, double merit) {
     Candidate candidate;
     candidate.plane = searched.normalized(Eigen::Vector3d::UnitX(), offset);
     candidate.merit = merit;
-    return searched.decision.isHopeless(candidate);
+    return searched.isHopeless(candidate);
   };
   EXPECT_FALSE(isHopeless(0.0, 0.5));
   EXPECT_TRUE(isHopeless(0.3, 0.5));

@@ -8,7 +8,7 @@
 #include "core/detection/plane_lattice.h"
 #include "pcl_symmetry/core/detect_planes.h"
 #include "shapes/counting_search.h"
-#include "shapes/judged_cloud.h"
+#include "shapes/searched_shape.h"
 #include "shapes/shapes.h"
 
 namespace {
@@ -25,7 +25,7 @@ FamilyTest testOf(const std::function<bool(const ReflectionPlane&)>& is_symmetry
 }
 
 TEST(FindAxes, RefinesALineOfRoughPlanes) {
-  auto test = testOf([](const ReflectionPlane& plane) { return contains(plane, kLine, 0.03); });
+  auto test = testOf([](const ReflectionPlane& plane) { return contains(plane, kLine); });
   test.refine = [](const ReflectionPlane& plane) {  // to the plane through the line that is nearest
     const Eigen::Vector3d n = (plane.normal() - plane.normal().dot(kLine.direction()) * kLine.direction()).normalized();
     return ReflectionPlane(n, n.dot(kLine.origin()));
@@ -47,14 +47,14 @@ TEST(FindAxes, NeedsTwoPlanes) {
   EXPECT_FALSE(findCenter({planeThrough(kLine, 0.3), planeThrough(kLine, 1.1)}, test));
 }
 
-TEST(Contains, IsThreeDegreesAndATolerance) {
+TEST(Contains, IsThreeDegreesAndThreeHundredths) {
   const Line3d z(Eigen::Vector3d::Zero(), Eigen::Vector3d::UnitZ());
   const auto tilted = [](double degrees, double offset) {
     return ReflectionPlane({std::cos(degrees * kDegree), 0.0, std::sin(degrees * kDegree)}, offset);
   };
-  EXPECT_TRUE(contains(tilted(2.9, 0.019), z, 0.02));
-  EXPECT_FALSE(contains(tilted(3.1, 0.0), z, 0.02));
-  EXPECT_FALSE(contains(tilted(0.0, 0.021), z, 0.02));
+  EXPECT_TRUE(contains(tilted(2.9, 0.029), z));
+  EXPECT_FALSE(contains(tilted(3.1, 0.0), z));
+  EXPECT_FALSE(contains(tilted(0.0, 0.031), z));
 }
 
 /// The wall of a wheel: a radius of 1 + depth cos(num_teeth angle), 0.6 high, with Gaussian noise. Where \p thinned,
@@ -92,9 +92,9 @@ TEST(Polygons, AGivenSearchIsMadeOnceWhereTheDensityIsUneven) {
   EXPECT_EQ(asked.num_points, points.cols());
 }
 
-/// Whose planes are judged, upright ones through the origin among them.
-struct JudgedPoints : JudgedShape {
-  explicit JudgedPoints(const Points& points) : JudgedShape(points, manyPlanes()) {}
+/// Whose planes are searched, upright ones through the origin among them.
+struct SearchedPoints : SearchedShape {
+  explicit SearchedPoints(const Points& points) : SearchedShape(points, manyPlanes()) {}
 
   SymmetryPlane symmetry(double angle) const {
     SymmetryPlane plane(ReflectionPlane({std::cos(angle), std::sin(angle), 0.0}, 0.0));
@@ -104,23 +104,24 @@ struct JudgedPoints : JudgedShape {
 };
 
 TEST(WithoutPlanesThrough, TakesThePlanesOfAnAxis) {
-  const JudgedPoints judged(cylinder(1000, 1).cloud());
+  const SearchedPoints searched(cylinder(1000, 1).cloud());
   SymmetryAxis axis;
   axis.point = Eigen::Vector3d::Zero();
   axis.direction = Eigen::Vector3d::UnitZ();
   SymmetryPlane across(ReflectionPlane(Eigen::Vector3d::UnitZ(), 0.0));
-  const auto kept = withoutPlanesThrough({judged.symmetry(0.3), across, judged.symmetry(2.0)}, {axis}, judged.cloud);
+  const auto kept =
+      withoutPlanesThrough({searched.symmetry(0.3), across, searched.symmetry(2.0)}, {axis}, searched.cloud);
   ASSERT_EQ(kept.size(), 1u);
   EXPECT_EQ(kept[0].angleTo(across), 0.0);
 }
 
 TEST(CompletePolygon, PlanesOfANoisyPolygonAreJudgedTogether) {
-  const JudgedPoints judged(wheel(7, 0.1, 0.04, false, 6));
-  ASSERT_EQ(judged.cloud.kind(), CloudKind::Volume);
-  SymmetryPlane first = judged.symmetry(0.5 * kPi), second = judged.symmetry(0.5 * kPi + kPi / 7.0);
+  const SearchedPoints searched(wheel(7, 0.1, 0.04, false, 6));
+  ASSERT_EQ(searched.cloud.kind(), CloudKind::Volume);
+  SymmetryPlane first = searched.symmetry(0.5 * kPi), second = searched.symmetry(0.5 * kPi + kPi / 7.0);
   Found completed;
   completed.planes = {first, second};
-  completePolygon(judged, completed);
+  completePolygon(searched, completed);
   ASSERT_TRUE(completed.polygon);
   EXPECT_EQ(completed.polygon->fold, 7);
   EXPECT_EQ(completed.planes.size(), 7u);

@@ -1,39 +1,14 @@
-#include "core/detection/judged_cloud.h"
+#include "core/detection/plane_report.h"
 
 #include <algorithm>
 #include <utility>
 
 #include "core/base/parallel.h"
 #include "core/base/statistics.h"
-#include "core/detection/cloud_subset.h"
+#include "core/detection/plane_decision.h"
 #include "core/geometry/point_samples.h"
 
 namespace pcl_symmetry {
-
-std::vector<SymmetryPlane> JudgedCloud::refinedAndJudged(std::vector<Candidate> candidates) const {
-  candidates = refinement.refineFully(std::move(candidates));
-  std::vector<MeasuredPlane> measured = decision.judge(candidates);
-  std::vector<char> may_climb;
-  for (const MeasuredPlane& one : measured)
-    may_climb.push_back(one.plane.confidence >= kDetection.fit.climbing_confidence);
-  decision.judge(candidates, refinement.climb(candidates, may_climb), measured);
-  std::vector<SymmetryPlane> planes;
-  for (MeasuredPlane& one : measured) planes.push_back(std::move(one.plane));
-  return planes;
-}
-
-std::vector<SymmetryPlane> refinedAt(const std::vector<ReflectionPlane>& starts, const PlaneInput& input,
-                                     const DetectionOptions& options) {
-  if (!whyUnanswerable(input.points).empty()) return {};
-  const std::optional<std::vector<int>> subset = subsetOf(input.points, options);
-  const DistinctPoints distinct(subset ? pointsAt(input.points, *subset) : Points(input.points));
-  const GaussianEdt edt(distinct.points, options.edtOptions());
-  const NormalizedCloud cloud(distinct.points, edt, nullptr, input.visibility, options.num_threads);
-  const JudgedCloud judged(cloud, cloud.points, options);
-  std::vector<Candidate> candidates;
-  for (const ReflectionPlane& start : starts) candidates.push_back({cloud.toNormalized(start)});
-  return judged.refinedAndJudged(judged.refinement.refineClosely(std::move(candidates)));
-}
 
 namespace {
 
@@ -54,10 +29,10 @@ bool isOfPolygon(const std::optional<PlaneLattice>& polygon, const SymmetryPlane
 }
 
 /// Judges every point, where the plane was judged by some of them.
-void completeSupport(SymmetryPlane& plane, const JudgedCloud& judged) {
-  const NormalizedCloud& cloud = judged.cloud;
+void completeSupport(SymmetryPlane& plane, const PlaneSearch& search) {
+  const NormalizedCloud& cloud = search.cloud;
   if (static_cast<Eigen::Index>(plane.point_support.size()) == cloud.points.cols()) return;
-  plane.point_support = judged.fit->shares(cloud.toNormalized(plane), allOf(cloud.points.cols())).points.seenSupport();
+  plane.point_support = search.fit->shares(cloud.toNormalized(plane), allOf(cloud.points.cols())).points.seenSupport();
 }
 
 /// An approximate plane that is a symmetry of a part is reported as that.
@@ -70,12 +45,20 @@ std::vector<SymmetryPlane> withoutPlanesOfParts(std::vector<SymmetryPlane> plane
   return planes;
 }
 
+/// \return the plane of a cloud that is a sheet at the tolerance, input frame; else empty.
+std::optional<ReflectionPlane> flatPlane(const PlaneSearch& search) {
+  const PrincipalAxes& axes = search.cloud.principal_axes;
+  const ReflectionPlane plane(axes.axes.col(2), axes.axes.col(2).dot(axes.center));
+  if (!search.measure.limits().movesNothing(plane, search.cloud.points)) return std::nullopt;
+  return search.cloud.toInput(plane);
+}
+
 }  // namespace
 
-std::vector<SymmetryPlane> rankedPlanes(const JudgedCloud& judged, std::vector<SymmetryPlane> planes,
+std::vector<SymmetryPlane> rankedPlanes(const PlaneSearch& search, std::vector<SymmetryPlane> planes,
                                         const std::optional<PlaneLattice>& polygon) {
-  const NormalizedCloud& cloud = judged.cloud;
-  const DetectionOptions& options = judged.options;
+  const NormalizedCloud& cloud = search.cloud;
+  const DetectionOptions& options = search.options;
   planes = withoutPlanesOfParts(std::move(planes), cloud);
   // Equally confident planes, such as those of a polygon, are ordered by support.
   sortFalling(planes, &SymmetryPlane::support);
@@ -93,18 +76,11 @@ std::vector<SymmetryPlane> rankedPlanes(const JudgedCloud& judged, std::vector<S
     });
     if (!is_known) ranked.push_back(std::move(plane));
   }
-  parallelBlocks(ranked.size(), options.num_threads, [&](std::size_t i) { completeSupport(ranked[i], judged); });
+  parallelBlocks(ranked.size(), options.num_threads, [&](std::size_t i) { completeSupport(ranked[i], search); });
   return ranked;
 }
 
-std::optional<ReflectionPlane> flatPlane(const JudgedCloud& judged) {
-  const PrincipalAxes& axes = judged.cloud.principal_axes;
-  const ReflectionPlane plane(axes.axes.col(2), axes.axes.col(2).dot(axes.center));
-  if (!judged.measure.limits().movesNothing(plane, judged.cloud.points)) return std::nullopt;
-  return judged.cloud.toInput(plane);
-}
-
-std::optional<SymmetryPlane> bestApproximate(const JudgedCloud& judged, const std::vector<SymmetryPlane>& planes) {
+std::optional<SymmetryPlane> bestApproximate(const PlaneSearch& search, const std::vector<SymmetryPlane>& planes) {
   const SymmetryPlane* best = nullptr;
   for (const SymmetryPlane& plane : planes) {
     if (isDecided(plane)) return std::nullopt;
@@ -113,8 +89,24 @@ std::optional<SymmetryPlane> bestApproximate(const JudgedCloud& judged, const st
   }
   if (!best) return std::nullopt;
   SymmetryPlane answer = *best;
-  completeSupport(answer, judged);
+  completeSupport(answer, search);
   return answer;
+}
+
+void report(const PlaneSearch& search, Found& found) {
+  const NormalizedCloud& cloud = search.cloud;
+  const PlaneMeasure& measure = search.measure;
+  if (!found.hasFamily()) found.best = bestApproximate(search, found.planes);
+  if (found.best) found.best->deviation = measure.deviation(cloud.toNormalized(*found.best)) * cloud.scale;
+  found.undecided = found.best && !cloud.seen() && found.best->share_low < kNearlySymmetricShare &&
+                    found.best->share_high >= kSymmetricShare;
+  found.flat = flatPlane(search);
+  found.tolerance = measure.tolerance() * cloud.scale;
+  const bool is_raised =
+      search.options.absolute_tolerance == 0.0 && measure.tolerance() > search.options.tolerance * cloud.extent;
+  found.resolution = std::max(measure.resolution(), is_raised ? measure.tolerance() : 0.0) * cloud.scale;
+  found.diameter = cloud.extent * cloud.scale;
+  found.planes = rankedPlanes(search, std::move(found.planes), found.polygon);
 }
 
 }  // namespace pcl_symmetry
