@@ -215,37 +215,4 @@ std::vector<std::vector<float>> planeSupport(const PointsRef& points, const Poin
                                              const std::vector<ReflectionPlane>& planes,
                                              const Visibility* seen = nullptr, int num_threads = 0);
 
-/// A cloud in two halves: how much of one half lies on the surface that the other describes.
-///
-/// Where noise exceeds the spacing, a point and the surface that was fitted to it are not independent, and no
-/// correction for that holds. The reflection of one half by a true plane is a new sample of the same noisy surface as
-/// the other half and lies on it exactly as often as the half itself.
-class SplitSurface {
-public:
-  /// \param points 3 x N, finite, N >= 4.
-  /// \param seed of the halves.
-  SplitSurface(const Points& points, std::uint64_t seed, int num_threads);
-
-  /// \return distances of the first half from the surface of the second, units of the points, >= 0.
-  std::vector<float> ownDistances() const { return distances(first_); }
-  /// \return distances of the reflections of the first half from that surface.
-  std::vector<float> reflectedDistances(const ReflectionPlane& plane) const;
-
-  /// What sampling and noise leave of D of equation 2 for a true plane: f of all points and f of their reflections
-  /// differ by noise alone. Halves of the points differ by noise, too, but they are half as dense, and quarters are
-  /// half as dense as halves: what D loses falls by the same factor with each doubling of the points.
-  /// \param num_cells,sigma of the distance transform that D is computed from; sigma in units of the points.
-  /// \param ball that it covers, frame of the points.
-  /// \return in [0.5, 1].
-  double ownScore(int num_cells, double sigma, const BoundingBall& ball, int num_threads) const;
-
-private:
-  std::vector<float> distances(const Points& points) const;
-
-  std::uint64_t seed_;
-  Points first_, second_;
-  ClosestPointSearch::Ptr search_;  ///< of the second half
-  SurfaceSamples samples_;          ///< the second half
-};
-
 }  // namespace pcl_symmetry
