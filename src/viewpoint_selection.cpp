@@ -6,7 +6,7 @@
 
 #include "core/base/check.h"
 #include "core/base/constants.h"
-#include "core/base/statistics.h"
+#include "core/base/lists.h"
 #include "pcl_symmetry/core/visibility.h"
 #include "pcl_symmetry/impl/cloud_conversion.hpp"
 

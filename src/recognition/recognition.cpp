@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "core/base/check.h"
+#include "core/base/lists.h"
 #include "core/base/parallel.h"
 #include "core/base/statistics.h"
 #include "core/matching/matching_rules.h"

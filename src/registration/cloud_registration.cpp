@@ -8,7 +8,7 @@
 
 #include "core/base/check.h"
 #include "core/base/constants.h"
-#include "core/base/statistics.h"
+#include "core/base/lists.h"
 #include "core/base/stopwatch.h"
 #include "core/matching/matching_rules.h"
 #include "core/matching/point_pair_index.h"

@@ -8,7 +8,7 @@
 #include <cmath>
 #include <utility>
 
-#include "core/base/symmetric_solvers.h"
+#include "core/base/small_motion.h"
 #include "core/geometry/point_samples.h"
 #include "core/registration/pose_scoring.h"
 #include "core/registration/registration_rules.h"

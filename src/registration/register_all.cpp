@@ -343,7 +343,7 @@ private:
     const Eigen::Isometry3d T_target_source = groups_.T_group_scan[target].inverse() * groups_.T_group_scan[source];
     const double variance = sum_squares / static_cast<double>(matched.pairs.size()) + 0.01 * to.accuracy * to.accuracy;
     return PoseConstraint{source, target,
-                          motionBy(smallMotion(hessian, gradient, min_stiffness, longest)) * T_target_source,
+                          motionBy(smallMotion({hessian, gradient}, min_stiffness, longest)) * T_target_source,
                           hessian / variance};
   }
 

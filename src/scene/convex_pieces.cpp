@@ -9,7 +9,7 @@
 #include <set>
 #include <utility>
 
-#include "core/base/statistics.h"
+#include "core/base/lists.h"
 #include "scene/scene_parts.h"
 #include "scene/scene_rules.h"
 

@@ -15,6 +15,7 @@
 #include <vector>
 
 #include "core/base/constants.h"
+#include "core/base/lists.h"
 #include "core/base/parallel.h"
 #include "core/base/statistics.h"
 #include "core/geometry/cloud_extent.h"

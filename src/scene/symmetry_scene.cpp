@@ -7,8 +7,8 @@
 #include <utility>
 
 #include "core/base/check.h"
+#include "core/base/lists.h"
 #include "core/base/parallel.h"
-#include "core/base/statistics.h"
 #include "core/base/stopwatch.h"
 #include "core/geometry/point_samples.h"
 #include "pcl_symmetry/symmetry_alignment.h"

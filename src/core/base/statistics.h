@@ -3,41 +3,10 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <functional>
-#include <iterator>
-#include <numeric>
 #include <utility>
 #include <vector>
 
 namespace pcl_symmetry {
-
-/// Removes the entries for which a predicate holds.
-template <typename List, typename Predicate>
-void eraseIf(List& list, const Predicate& is_out) {
-  list.erase(std::remove_if(list.begin(), list.end(), is_out), list.end());
-}
-
-/// Moves the entries of another list to the end of a list.
-template <typename List>
-void append(List& list, List more) {
-  std::move(more.begin(), more.end(), std::back_inserter(list));
-}
-
-/// Sorts by a member or a function of the entries, the greatest first; equal ones keep their order.
-template <typename List, typename Value>
-void sortFalling(List& list, const Value& value) {
-  std::stable_sort(list.begin(), list.end(),
-                   [&](const auto& a, const auto& b) { return std::invoke(value, a) > std::invoke(value, b); });
-}
-
-/// \return the indices of values, the greatest first; equal ones keep their order.
-template <typename Values>
-std::vector<int> fallingOrder(const Values& values) {
-  std::vector<int> order(static_cast<std::size_t>(values.size()));
-  std::iota(order.begin(), order.end(), 0);
-  sortFalling(order, [&](int i) { return values[i]; });
-  return order;
-}
 
 /// The upper median: with an even number of values, the greater of the two in the middle.
 /// \param values at least one.

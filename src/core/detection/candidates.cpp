@@ -4,7 +4,7 @@
 #include <cmath>
 #include <utility>
 
-#include "core/base/statistics.h"
+#include "core/base/lists.h"
 #include "core/detection/detection_rules.h"
 #include "core/geometry/cloud_extent.h"
 #include "core/geometry/directions.h"

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "core/base/check.h"
-#include "core/base/statistics.h"
+#include "core/base/lists.h"
 #include "core/base/stopwatch.h"
 #include "core/detection/cloud_subset.h"
 #include "core/detection/detection_evidence.h"

@@ -5,7 +5,7 @@
 #include <utility>
 #include <vector>
 
-#include "core/base/statistics.h"
+#include "core/base/lists.h"
 #include "core/detection/plane_decision.h"
 #include "core/geometry/geometry_rules.h"
 #include "pcl_symmetry/core/detect_planes.h"

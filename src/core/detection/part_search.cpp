@@ -9,8 +9,8 @@
 #include <utility>
 
 #include "core/base/constants.h"
+#include "core/base/lists.h"
 #include "core/base/parallel.h"
-#include "core/base/statistics.h"
 #include "core/geometry/closest_points.h"
 #include "core/geometry/cloud_extent.h"
 #include "core/geometry/directions.h"
@@ -278,7 +278,7 @@ struct RegionSearch {
 
 /// Leaves out parts of long edge where better ones hold their points.
 std::vector<SymmetricPart> withoutRemains(std::vector<SymmetricPart> parts, Eigen::Index num_points) {
-  sortFalling(parts, [](const SymmetricPart& part) { return -std::max(0.0, part.longer_edge); });
+  sortRising(parts, [](const SymmetricPart& part) { return std::max(0.0, part.longer_edge); });
   std::vector<char> taken(num_points, 0);
   std::vector<SymmetricPart> kept;
   for (SymmetricPart& part : parts) {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "core/base/lists.h"
 #include "core/base/statistics.h"
 #include "core/detection/standing_object.h"
 

@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "core/base/constants.h"
-#include "core/base/statistics.h"
+#include "core/base/lists.h"
 #include "core/base/symmetric_solvers.h"
 #include "core/detection/plane_search.h"
 #include "core/geometry/cloud_extent.h"

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <utility>
 
+#include "core/base/lists.h"
 #include "core/base/parallel.h"
-#include "core/base/statistics.h"
 #include "core/detection/plane_decision.h"
 #include "core/geometry/point_samples.h"
 

@@ -6,8 +6,8 @@
 #include <set>
 
 #include "core/base/check.h"
+#include "core/base/lists.h"
 #include "core/base/parallel.h"
-#include "core/base/statistics.h"
 #include "core/geometry/point_samples.h"
 #include "core/refinement/iterative_symmetric_points.h"
 #include "core/transform/sampled_transform.h"

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "core/base/check.h"
+#include "core/base/lists.h"
 #include "core/base/statistics.h"
 #include "core/base/symmetric_solvers.h"
 #include "core/geometry/point_samples.h"

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <utility>
 
-#include "core/base/statistics.h"
+#include "core/base/lists.h"
 
 namespace pcl_symmetry {
 

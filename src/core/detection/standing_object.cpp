@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "core/base/constants.h"
+#include "core/base/lists.h"
 #include "core/base/statistics.h"
 #include "core/detection/detection_rules.h"
 #include "core/detection/plane_decision.h"

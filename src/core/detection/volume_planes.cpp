@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "core/base/lists.h"
 #include "core/base/parallel.h"
 #include "core/base/statistics.h"
 #include "core/base/stopwatch.h"

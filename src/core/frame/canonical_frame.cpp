@@ -6,7 +6,8 @@
 #include <limits>
 
 #include "core/base/constants.h"
-#include "core/base/symmetric_solvers.h"
+#include "core/base/small_motion.h"
+#include "core/transform/sampled_transform.h"
 
 namespace pcl_symmetry {
 
@@ -39,7 +40,7 @@ float meanOffset(const FrameEvidence& evidence, const std::vector<float>& scores
 /// The maximum of D near an offset, by parabolas. D is the mean of f over the images of the samples of the center,
 /// which unlike profiles has no steps of a cell.
 ScoredOffset peakNear(const FrameEvidence& evidence, const Eigen::Vector3d& axis, double offset) {
-  const Eigen::Array3d corner = Eigen::Array3d::Constant(-0.5 * (evidence.edt.numCells() - 1));
+  const Eigen::Array3d corner = Eigen::Array3d::Constant(-middleCell(evidence.edt));
   const Eigen::Matrix3Xd& samples = evidence.center_samples;
   const Eigen::RowVectorXd heights = axis.transpose() * (samples.colwise() + corner.matrix());
   const auto sum = [&](double r, double way) {

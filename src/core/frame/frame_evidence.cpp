@@ -4,6 +4,7 @@
 #include <cmath>
 #include <utility>
 
+#include "core/base/lists.h"
 #include "core/base/statistics.h"
 #include "core/geometry/cell_normals.h"
 #include "core/geometry/directions.h"
@@ -87,7 +88,7 @@ FrameEvidence::FrameEvidence(const PointsRef& cloud, const FrameOptions& options
       directions(points, edt),
       center_samples(
           drawPoints(edt, scanned ? 0 : kFrame.num_center_samples, options.seed, options.num_threads).cast<double>()),
-      middle(edt.origin() + Eigen::Vector3d::Constant(0.5 * (edt.numCells() - 1) * edt.cellSize())),
+      middle(middleOf(edt)),
       reach(static_cast<float>(edt.radius() / edt.cellSize())),
       principal_axes(principalAxes(points)),
       center_of_mass(toCells(principal_axes.center)),

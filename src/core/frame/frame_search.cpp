@@ -5,8 +5,8 @@
 #include <utility>
 
 #include "core/base/constants.h"
+#include "core/base/lists.h"
 #include "core/base/parallel.h"
-#include "core/base/statistics.h"
 #include "core/geometry/directions.h"
 #include "pcl_symmetry/core/symmetry_map.h"
 

@@ -11,7 +11,7 @@ namespace pcl_symmetry {
 PlaneProfiles::PlaneProfiles(const GaussianEdt& edt, const std::vector<float>& free_space, int num_samples,
                              std::uint64_t seed, int num_threads)
     : size_(static_cast<std::uint32_t>(edt.numCells())),
-      middle_(0.5f * static_cast<float>(edt.numCells() - 1)),
+      middle_(static_cast<float>(middleCell(edt))),
       scanned_(!free_space.empty()),
       outside_(scanned_ ? 255u << 8 : 0u),
       cells_(edt.values().size()),

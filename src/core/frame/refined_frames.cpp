@@ -3,8 +3,8 @@
 #include <functional>
 #include <optional>
 
-#include "core/base/statistics.h"
-#include "core/base/symmetric_solvers.h"
+#include "core/base/lists.h"
+#include "core/base/small_motion.h"
 #include "core/detection/plane_search.h"
 #include "core/frame/canonical_frame.h"
 #include "core/frame/frame_evidence.h"

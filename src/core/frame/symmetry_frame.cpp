@@ -14,6 +14,7 @@
 #include "core/geometry/directions.h"
 #include "core/geometry/point_samples.h"
 #include "core/rotation/scan_axes.h"
+#include "core/transform/sampled_transform.h"
 #include "pcl_symmetry/core/planar_transform.h"
 #include "pcl_symmetry/core/published_planes.h"
 
@@ -32,7 +33,7 @@ SymmetryFrame publishedFrame(const PointsRef& points, const FrameOptions& option
   const SymmetryMap map = publishedMap(points, edt, TransformMethod::Convolution, options.seed, options.num_threads);
   const PlaneGrid& grid = map.grid;
   const PlaneProfiles profiles(edt, {}, kFrame.num_profile_samples, options.seed, options.num_threads);
-  const Eigen::Vector3d middle = edt.origin() + Eigen::Vector3d::Constant(0.5 * (edt.numCells() - 1) * edt.cellSize());
+  const Eigen::Vector3d middle = middleOf(edt);
   const auto best_offset = [&](const Eigen::Vector3d& normal) -> OffsetAndScore {
     const double first = (normal.dot(grid.center() - middle) + grid.offset(0)) / edt.cellSize();
     const std::vector<float> s =

@@ -6,8 +6,8 @@
 
 #include "core/base/check.h"
 #include "core/base/constants.h"
+#include "core/base/lists.h"
 #include "core/base/parallel.h"
-#include "core/base/statistics.h"
 #include "core/geometry/directions.h"
 
 namespace pcl_symmetry {

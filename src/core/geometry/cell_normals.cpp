@@ -4,28 +4,11 @@
 
 #include "core/base/symmetric_solvers.h"
 #include "core/geometry/geometry_rules.h"
+#include "core/geometry/moments.h"
 
 namespace pcl_symmetry {
 
 namespace {
-
-/// Sums over points that give their mean and covariance.
-struct Moments {
-  float count = 0.0f;
-  Eigen::Vector3f sum = Eigen::Vector3f::Zero();
-  Eigen::Matrix3f squares = Eigen::Matrix3f::Zero();
-
-  void add(const Eigen::Vector3f& p) {
-    count += 1.0f;
-    sum += p;
-    squares += p * p.transpose();
-  }
-  void operator+=(const Moments& other) {
-    count += other.count;
-    sum += other.sum;
-    squares += other.squares;
-  }
-};
 
 /// Moments of the points in each occupied cell. Occupied cells have slots, in the order of their first points.
 class CellMoments {
@@ -85,7 +68,7 @@ CellNormals cellNormals(const PointsRef& points, const Eigen::Vector3d& origin, 
     result.normals.col(column).setUnit(2);
     const Moments near = cells.around(c);
     if (near.count < kGeometry.fewest_cell_points) continue;
-    const SymmetricEigen<Eigen::Matrix3f> axes(near.squares - near.sum * near.sum.transpose() / near.count);
+    const SymmetricEigen<Eigen::Matrix3f> axes(near.scatter());
     const Eigen::Vector3f& values = axes.eigenvalues();
     if (!(values[2] > 0.0f) || !axes.eigenvectors().allFinite()) continue;
     result.normals.col(column) = axes.eigenvectors().col(0).normalized();

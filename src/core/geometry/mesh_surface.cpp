@@ -8,8 +8,8 @@
 #include <utility>
 
 #include "core/base/check.h"
+#include "core/base/small_motion.h"
 #include "core/base/statistics.h"
-#include "core/base/symmetric_solvers.h"
 #include "core/geometry/directions.h"
 #include "core/geometry/geometry_rules.h"
 #include "core/geometry/triangles.h"
@@ -41,9 +41,7 @@ struct MeshRules {
 constexpr MeshRules kMesh;
 
 /// Least squares in a small rotation omega of all axes and a translation t of the center.
-struct MotionSums {
-  Matrix6d h = Matrix6d::Zero();
-  Vector6d g = Vector6d::Zero();
+struct MotionSums : SmallMotionEquations {
   double cost = 0.0;  // of what does not agree
 };
 
@@ -221,7 +219,7 @@ MeshSurface::Placement MeshSurface::fitted(const MotionsAbout& motions) const {
     } else if (++num_worse >= kMesh.max_worse && width == kMesh.min_width) {
       break;
     }
-    const Vector6d step = smallMotion(sums.h, sums.g, kMesh.stiffness, kMesh.longest_step);
+    const Vector6d step = smallMotion(sums, kMesh.stiffness, kMesh.longest_step);
     const bool is_done = step.norm() < kMesh.settled && (width == kMesh.min_width || sums.cost < kMesh.exact_cost);
     if (is_done || !step.allFinite()) break;
     if (step.norm() < kMesh.short_step * width) width = std::max(kMesh.min_width, kMesh.narrower * width);

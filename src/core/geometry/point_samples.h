@@ -7,11 +7,11 @@
 #include <cstdint>
 #include <cstring>
 #include <limits>
-#include <numeric>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "core/base/lists.h"
 #include "core/base/random.h"
 #include "pcl_symmetry/core/point_set.h"
 #include "pcl_symmetry/core/reflection_plane.h"
@@ -25,13 +25,6 @@ void checkPoints(const PointsRef& points);
 /// \throws std::invalid_argument as checkPoints() does, and for points without extent.
 BoundingBall checkedBall(const PointsRef& points);
 
-/// \return 0, 1, ..., size - 1.
-inline std::vector<int> allOf(Eigen::Index size) {
-  std::vector<int> samples(size);
-  std::iota(samples.begin(), samples.end(), 0);
-  return samples;
-}
-
 /// \return the first \p most of 0, 1, ..., size - 1 in random order.
 inline std::vector<int> shuffled(Eigen::Index size, std::uint64_t seed,
                                  Eigen::Index most = std::numeric_limits<Eigen::Index>::max()) {
@@ -42,6 +35,13 @@ inline std::vector<int> shuffled(Eigen::Index size, std::uint64_t seed,
     std::swap(order[i], order[i + random.below(static_cast<std::uint64_t>(size - i))]);
   order.resize(most);
   return order;
+}
+
+/// \return 0, stride, 2 stride, ... below size.
+inline std::vector<int> everyNth(Eigen::Index size, Eigen::Index stride) {
+  std::vector<int> samples;
+  for (Eigen::Index i = 0; i < size; i += stride) samples.push_back(static_cast<int>(i));
+  return samples;
 }
 
 /// Draws points without replacement.

@@ -5,7 +5,7 @@
 #include <utility>
 #include <vector>
 
-#include "core/base/statistics.h"
+#include "core/base/lists.h"
 #include "core/geometry/geometry_rules.h"
 
 namespace pcl_symmetry {

@@ -7,8 +7,10 @@
 
 #include "core/base/constants.h"
 #include "core/base/parallel.h"
+#include "core/base/small_motion.h"
 #include "core/base/symmetric_solvers.h"
 #include "core/geometry/geometry_rules.h"
+#include "core/geometry/moments.h"
 #include "core/geometry/point_samples.h"
 
 namespace pcl_symmetry {
@@ -45,19 +47,14 @@ struct TangentPlane {
 
 /// \param neighbors \p count indices of points.
 TangentPlane tangentPlane(const Points& points, const Eigen::Vector3f& position, const int* neighbors, int count) {
-  Eigen::Vector3f sum = Eigen::Vector3f::Zero();
-  Eigen::Matrix3f covariance = Eigen::Matrix3f::Zero();
-  for (int k = 0; k < count; ++k) {
-    const Eigen::Vector3f offset = points.col(neighbors[k]) - position;
-    sum += offset;
-    covariance += offset * offset.transpose();
-  }
-  covariance -= sum * sum.transpose() / static_cast<float>(count);
+  Moments offsets;
+  for (int k = 0; k < count; ++k) offsets.add(points.col(neighbors[k]) - position);
+  const Eigen::Matrix3f covariance = offsets.scatter();
   Eigen::Vector3f normal = SymmetricEigen<Eigen::Matrix3f>(covariance).eigenvectors().col(0);
   const bool is_usable = std::abs(normal.squaredNorm() - 1.0f) < 0.1f;  // false where one is no number
   const float sq_residual = is_usable ? normal.dot(covariance * normal) : covariance.trace();
   if (!is_usable) normal = Eigen::Vector3f::UnitZ();
-  return {normal, sum, std::sqrt(std::max(0.0f, sq_residual) / static_cast<float>(std::max(1, count - 3)))};
+  return {normal, offsets.sum, std::sqrt(std::max(0.0f, sq_residual) / static_cast<float>(std::max(1, count - 3)))};
 }
 
 }  // namespace

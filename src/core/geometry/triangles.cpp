@@ -25,11 +25,10 @@ struct TriangleTree::Builder {
         corners(all_corners),
         triangles(all_triangles),
         middles(3, static_cast<Eigen::Index>(all_triangles.size())),
-        order(all_triangles.size()) {
+        order(allOf(static_cast<Eigen::Index>(all_triangles.size()))) {
     for (std::size_t t = 0; t < triangles.size(); ++t)
       middles.col(t) =
           (corners.col(triangles[t][0]) + corners.col(triangles[t][1]) + corners.col(triangles[t][2])) / 3.0f;
-    std::iota(order.begin(), order.end(), 0);
   }
 
   /// Moves the half with the lower middles, along the axis of their greatest extent, to the front.

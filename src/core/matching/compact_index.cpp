@@ -6,6 +6,7 @@
 #include <numeric>
 
 #include "core/base/check.h"
+#include "core/base/lists.h"
 #include "core/base/parallel.h"
 #include "core/matching/matching_rules.h"
 
@@ -62,8 +63,7 @@ Eigen::Index CompactIndex::numShapes() const {
 
 /// The forms whose leading components are nearest to those of any rotation of the query, by rising index.
 std::vector<int> CompactIndex::candidates(const Eigen::MatrixXf& rotations, std::size_t count) const {
-  std::vector<int> forms(compact_.cols());
-  std::iota(forms.begin(), forms.end(), 0);
+  std::vector<int> forms = allOf(compact_.cols());
   if (count >= forms.size()) return forms;
   // -1/2 of the squared distance to the nearest rotation, scaled.
   const Eigen::MatrixXf queries = rotations.topRows(leading_.rows());
@@ -100,7 +100,7 @@ std::vector<std::pair<int, float>> CompactIndex::nearest(const Eigen::MatrixXf& 
   const Eigen::RowVectorXf cosines = (rotations.transpose() * near).colwise().maxCoeff();
   std::vector<std::pair<int, float>> found = leastDistances(forms, cosines, forms_per_shape_);
   for (auto& [shape, distance] : found) distance /= std::sqrt(typical_[shape]);
-  std::stable_sort(found.begin(), found.end(), [](const auto& a, const auto& b) { return a.second < b.second; });
+  sortRising(found, [](const auto& one) { return one.second; });
   found.resize(std::min(found.size(), static_cast<std::size_t>(num_nearest)));
   return found;
 }

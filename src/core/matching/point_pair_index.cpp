@@ -8,9 +8,9 @@
 #include <utility>
 
 #include "core/base/constants.h"
+#include "core/base/lists.h"
 #include "core/base/parallel.h"
 #include "core/base/simd.h"
-#include "core/base/statistics.h"
 #include "core/matching/matching_rules.h"
 
 namespace pcl_symmetry {

@@ -4,8 +4,8 @@
 #include <cstddef>
 #include <utility>
 
+#include "core/base/lists.h"
 #include "core/base/parallel.h"
-#include "core/base/statistics.h"
 #include "core/matching/matching_rules.h"
 #include "core/registration/pose_scoring.h"
 
@@ -26,7 +26,7 @@ void judgeAll(std::vector<Trial>& trials, const ScreenedSurface& scan, const std
   parallelRanges(trials.size(), 64, num_threads, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       const ScreenedSurface& shape = *shapes[trials[i].shape].shape;
-      judge(trials[i].pose, PoseScorer(scan.surface, shape.surface), shape.radius);
+      judge(trials[i].pose, PoseScorer(scan.surface, shape.surface), shape.ball.radius);
     }
   });
   sortFalling(trials, [](const Trial& entry) { return entry.pose.score.merit(); });
@@ -36,9 +36,9 @@ void judgeAll(std::vector<Trial>& trials, const ScreenedSurface& scan, const std
 std::vector<Trial> trialsOf(const ScreenedSurface& scan, const std::vector<PosesOfShape>& shapes) {
   std::vector<Trial> trials;
   for (std::size_t k = 0; k < shapes.size(); ++k) {
-    if (!(shapes[k].shape->radius > 0.0)) continue;
+    if (!(shapes[k].shape->ball.radius > 0.0)) continue;
     for (Eigen::Isometry3d pose : shapes[k].T_shape_scan) {
-      pose.translation() = pose * scan.center - shapes[k].shape->center;
+      pose.translation() = pose * scan.ball.center - shapes[k].shape->ball.center;
       trials.push_back({k, {pose, {}, 0}});
     }
   }
@@ -49,9 +49,10 @@ std::vector<Trial> trialsOf(const ScreenedSurface& scan, const std::vector<Poses
 std::vector<Eigen::Isometry3d> distinctInInput(std::vector<RankedPose> poses, const ScreenedSurface& scan,
                                                const ScreenedSurface& shape, int num_poses) {
   std::vector<Eigen::Isometry3d> found;
-  for (const RankedPose& pose : distinctPoses(std::move(poses), static_cast<std::size_t>(num_poses), shape.radius)) {
+  for (const RankedPose& pose :
+       distinctPoses(std::move(poses), static_cast<std::size_t>(num_poses), shape.ball.radius)) {
     found.push_back(pose.T_model_scan);
-    found.back().translation() += shape.center - pose.T_model_scan.linear() * scan.center;
+    found.back().translation() += shape.ball.center - pose.T_model_scan.linear() * scan.ball.center;
   }
   return found;
 }
@@ -59,10 +60,9 @@ std::vector<Eigen::Isometry3d> distinctInInput(std::vector<RankedPose> poses, co
 }  // namespace
 
 ScreenedSurface::ScreenedSurface(const SurfacePoints& points, const std::optional<Visibility>& seen)
-    : center(boundingBall(points.points).center),
-      radius(boundingBall(points.points).radius),
-      surface(normalizePoints(points.points, center, 1.0), points.normals,
-              seen ? std::optional(seen->normalized(center, 1.0)) : std::nullopt) {}
+    : ball(boundingBall(points.points)),
+      surface(normalizePoints(points.points, ball.center, 1.0), points.normals,
+              seen ? std::optional(seen->normalized(ball.center, 1.0)) : std::nullopt) {}
 
 std::vector<ScreenedShape> screenPoses(const ScreenedSurface& scan, const std::vector<PosesOfShape>& shapes,
                                        const PoseScreeningOptions& options) {

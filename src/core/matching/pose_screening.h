@@ -11,9 +11,8 @@ namespace pcl_symmetry {
 
 /// A shape, or a scan, by a few points: enough to tell poses that may be right from those that cannot be.
 struct ScreenedSurface {
-  Eigen::Vector3d center;  ///< of the bounding ball, input frame
-  double radius;           ///< of the bounding ball, input units, >= 0
-  PosedSurface surface;    ///< about the center, input units
+  BoundingBall ball;     ///< of the points, input frame
+  PosedSurface surface;  ///< about its center, input units
 
   /// \param points in random order, at least one.
   /// \param seen what the scanner saw of a scan, input frame; nothing for a shape.

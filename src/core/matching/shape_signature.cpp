@@ -157,7 +157,7 @@ Points stretched(const Points& points) {
 }
 
 /// At most \p max_points points, at equal steps in the input.
-Points thinned(const PointsRef& points, Eigen::Index max_points) {
+Points evenSteps(const PointsRef& points, Eigen::Index max_points) {
   if (points.cols() <= max_points) return points;
   Points kept(3, max_points);
   for (Eigen::Index i = 0; i < max_points; ++i) kept.col(i) = points.col(i * points.cols() / max_points);
@@ -223,8 +223,8 @@ ShapeDescription describeShape(const PointsRef& points, const DescriptionOptions
   frame_options.seed = options.seed;
   frame_options.num_threads = options.num_threads;
   ShapeDescription result;
-  result.frame = symmetryFrame(thinned(points, kMatching.frame_points), frame_options, visibility);
-  const Points used = thinned(points, options.max_points);
+  result.frame = symmetryFrame(evenSteps(points, kMatching.frame_points), frame_options, visibility);
+  const Points used = evenSteps(points, options.max_points);
   const std::vector<Eigen::Matrix3d> frames = signatureFrames(used, result.frame);
   result.signatures.resize(kSignatureSize, frames.size());
   for (std::size_t i = 0; i < frames.size(); ++i) {

@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "core/base/check.h"
+#include "core/base/lists.h"
 #include "core/base/parallel.h"
 #include "core/base/simd.h"
 #include "core/base/symmetric_solvers.h"
@@ -201,7 +202,7 @@ std::vector<ShapeOfView> ViewIndex::nearest(const View& scan, int num_nearest, i
   for (std::size_t i = 0; i < views.size(); ++i)
     if (!views[i].empty()) order.push_back(static_cast<int>(i));
   const auto distance = [&](int shape) { return meanDistance(views[shape]); };
-  std::stable_sort(order.begin(), order.end(), [&](int a, int b) { return distance(a) < distance(b); });
+  sortRising(order, distance);
   order.resize(std::min(order.size(), static_cast<std::size_t>(num_nearest)));
 
   std::vector<ShapeOfView> found;

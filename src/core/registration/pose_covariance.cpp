@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "core/base/constants.h"
+#include "core/base/small_motion.h"
 #include "core/base/statistics.h"
 #include "core/base/symmetric_solvers.h"
 #include "core/registration/registration_rules.h"

@@ -2,7 +2,7 @@
 
 #include <Eigen/Geometry>
 
-#include "core/base/symmetric_solvers.h"
+#include "core/base/small_motion.h"
 #include "core/registration/posed_surface.h"
 
 namespace pcl_symmetry {

@@ -5,8 +5,8 @@
 #include <utility>
 
 #include "core/base/check.h"
+#include "core/base/lists.h"
 #include "core/base/parallel.h"
-#include "core/base/statistics.h"
 #include "core/registration/pose_scoring.h"
 #include "core/registration/pose_starts.h"
 #include "core/registration/registration_rules.h"

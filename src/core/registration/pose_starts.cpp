@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "core/base/constants.h"
-#include "core/base/symmetric_solvers.h"
+#include "core/base/small_motion.h"
 #include "core/geometry/directions.h"
 #include "core/registration/registration_rules.h"
 

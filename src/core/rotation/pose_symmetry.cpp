@@ -11,8 +11,8 @@
 
 #include "core/base/check.h"
 #include "core/base/constants.h"
-#include "core/base/statistics.h"
-#include "core/base/symmetric_solvers.h"
+#include "core/base/lists.h"
+#include "core/base/small_motion.h"
 #include "core/rotation/rotation_cover.h"
 #include "pcl_symmetry/core/rotational_symmetry.h"
 

@@ -9,8 +9,8 @@
 #include <utility>
 
 #include "core/base/constants.h"
+#include "core/base/lists.h"
 #include "core/base/parallel.h"
-#include "core/base/statistics.h"
 #include "core/geometry/cloud_extent.h"
 #include "core/geometry/directions.h"
 #include "core/geometry/geometry_rules.h"

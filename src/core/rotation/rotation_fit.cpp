@@ -37,12 +37,6 @@ double RotationLimits::confidence(const OffShares& shares, std::size_t num_point
   return logistic(margin / unit);
 }
 
-/// Least squares of the distances m . (x' - y) in small rotations of all axes and moves of the center.
-struct RotationFit::NormalEquations {
-  Matrix6d h = Matrix6d::Zero();
-  Vector6d g = Vector6d::Zero();
-};
-
 RotationFit::RotationFit(Points points, const GaussianEdt& edt, RotationLimits limits, double reach, std::uint64_t seed,
                          int num_threads, bool single)
     : edt_(edt), limits_(limits), own_share_(1.0), first_sigma_(0.0), last_sigma_(0.0), num_threads_(num_threads) {
@@ -191,15 +185,15 @@ int RotationFit::closestSample(const Eigen::Vector3f& x) const {
 
 /// x' = R (x - c) + c moves with R' = exp(omega) R exp(-omega) and c' = c + t
 /// by ((1 - R) omega) x (x' - c) + (1 - R) t.
-RotationFit::NormalEquations RotationFit::equations(const RotationSet& set, std::size_t i, int num_samples,
-                                                    const Annealing& annealing) const {
+SmallMotionEquations RotationFit::equations(const RotationSet& set, std::size_t i, int num_samples,
+                                            const Annealing& annealing) const {
   const Points& points = surface_->points;
   const LocalGeometry& geometry = surface_->geometry;
   const Eigen::Matrix3d& rotation = set.rotations[i];
   const Eigen::Matrix3d moves = (Eigen::Matrix3d::Identity() - rotation).transpose();
   const double sq_sigma = annealing.sigma * annealing.sigma;
   const std::size_t size = std::min(surface_->order.size(), static_cast<std::size_t>(num_samples));
-  NormalEquations sums;
+  SmallMotionEquations sums;
   for (std::size_t k = 0; k < size; ++k) {
     const int sample = surface_->order[k];
     const Eigen::Vector3d x = set.image(i, points.col(sample).cast<double>());
@@ -229,16 +223,16 @@ RotationFit::NormalEquations RotationFit::equations(const RotationSet& set, std:
 
 RotationSet RotationFit::fitted(RotationSet set, const std::vector<std::size_t>& used, int num_samples,
                                 Annealing annealing) const {
-  std::vector<NormalEquations> parts(used.size());
+  std::vector<SmallMotionEquations> parts(used.size());
   for (int iteration = 0; iteration < annealing.max_iterations; ++iteration) {
     parallelBlocks(used.size(), num_threads_,
                    [&](std::size_t k) { parts[k] = equations(set, used[k], num_samples, annealing); });
-    NormalEquations sums;
-    for (const NormalEquations& part : parts) {
+    SmallMotionEquations sums;
+    for (const SmallMotionEquations& part : parts) {
       sums.h += part.h;
       sums.g += part.g;
     }
-    const Vector6d step = smallMotion(sums.h, sums.g, kRefinement.min_stiffness, kRefinement.longest_step);
+    const Vector6d step = smallMotion(sums, kRefinement.min_stiffness, kRefinement.longest_step);
     if (!step.allFinite()) break;
     const Eigen::Matrix3d change = rotationBy(step.head<3>());
     for (Eigen::Matrix3d& rotation : set.rotations) rotation = change * rotation * change.transpose();

@@ -5,6 +5,7 @@
 #include <memory>
 #include <vector>
 
+#include "core/base/small_motion.h"
 #include "core/evidence/surface_samples.h"
 #include "core/geometry/closest_points.h"
 #include "core/geometry/surface_normals.h"
@@ -181,7 +182,6 @@ private:
     int max_iterations;
     bool rough;  ///< closest samples by grid instead of closest discs
   };
-  struct NormalEquations;
   /// What does not depend on the tolerance.
   struct Surface {
     Points points;
@@ -200,7 +200,9 @@ private:
 
   int closestSample(const Eigen::Vector3f& x) const;
   double ownShare() const;
-  NormalEquations equations(const RotationSet& set, std::size_t i, int num_samples, const Annealing& annealing) const;
+  /// Least squares of the distances m . (x' - y) in a small rotation of all axes and a translation of the center.
+  SmallMotionEquations equations(const RotationSet& set, std::size_t i, int num_samples,
+                                 const Annealing& annealing) const;
   RotationSet fitted(RotationSet set, const std::vector<std::size_t>& used, int num_samples, Annealing annealing) const;
 
   std::shared_ptr<const Surface> surface_;

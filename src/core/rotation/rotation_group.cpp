@@ -6,7 +6,7 @@
 
 #include "core/base/check.h"
 #include "core/base/constants.h"
-#include "core/base/symmetric_solvers.h"
+#include "core/base/small_motion.h"
 #include "core/rotation/placed_group.h"
 
 namespace pcl_symmetry {

@@ -9,7 +9,7 @@
 
 #include "core/base/check.h"
 #include "core/base/constants.h"
-#include "core/base/statistics.h"
+#include "core/base/lists.h"
 #include "core/base/stopwatch.h"
 #include "core/geometry/cloud_extent.h"
 #include "core/geometry/point_samples.h"
@@ -53,7 +53,7 @@ ObjectSymmetries inInputFrame(const PlacedGroup& group, const RotationFit& fit, 
 /// What was tried and failed in the input frame, the least failure first.
 std::vector<RejectedRotation> inInputFrame(std::vector<RejectedAxis> axes, const RotationFit& fit,
                                            const BoundingBall& ball) {
-  sortFalling(axes, [&](const RejectedAxis& axis) { return -fit.limits().excess(axis.shares); });
+  sortRising(axes, [&](const RejectedAxis& axis) { return fit.limits().excess(axis.shares); });
   const std::size_t max_reported = 5;
   if (axes.size() > max_reported) axes.resize(max_reported);
   std::vector<RejectedRotation> rejected;

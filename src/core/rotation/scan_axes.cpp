@@ -6,9 +6,9 @@
 #include <utility>
 
 #include "core/base/constants.h"
+#include "core/base/lists.h"
 #include "core/base/parallel.h"
 #include "core/base/random.h"
-#include "core/base/statistics.h"
 #include "core/base/symmetric_solvers.h"
 #include "core/geometry/closest_points.h"
 #include "core/geometry/directions.h"
@@ -65,7 +65,7 @@ std::vector<AxisStart> startsFromNormals(const NormalizedCloud& cloud, std::uint
     }
   });
   eraseIf(found, [](const auto& one) { return one.first > 0.0; });
-  std::stable_sort(found.begin(), found.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
+  sortRising(found, [](const auto& one) { return one.first; });
   std::vector<AxisStart> starts;
   for (const auto& [unused, line] : found) {
     if (starts.size() == kScanAxes.from_normals) break;

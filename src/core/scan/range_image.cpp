@@ -12,6 +12,7 @@
 
 #include "core/base/constants.h"
 #include "core/base/statistics.h"
+#include "core/geometry/point_samples.h"
 #include "core/geometry/surface_normals.h"
 #include "core/scan/scan_rules.h"
 #include "pcl_symmetry/core/closest_point_search.h"
@@ -239,15 +240,10 @@ Points picture(const PointsRef& points, const Eigen::Vector3d& viewpoint, const 
   return directions;
 }
 
-Points everyNth(const Points& points, Eigen::Index stride) {
-  Points chosen(3, (points.cols() + stride - 1) / stride);
-  for (Eigen::Index i = 0; i < chosen.cols(); ++i) chosen.col(i) = points.col(i * stride);
-  return chosen;
-}
-
 /// Median distance of neighbors from the tangent planes at every \p stride-th point.
 double typicalRoughness(const Points& surface, Eigen::Index stride) {
-  return median(localGeometryAt(surface, *makeFlannSearch(surface), everyNth(surface, stride)).roughness);
+  return median(localGeometryAt(surface, *makeFlannSearch(surface), pointsAt(surface, everyNth(surface.cols(), stride)))
+                    .roughness);
 }
 
 }  // namespace
@@ -301,7 +297,7 @@ std::optional<PixelRows> rowsOf(const Positions& positions) {
   Points flat = Points::Zero(3, static_cast<Eigen::Index>(positions.size()));
   for (std::size_t i = 0; i < positions.size(); ++i) flat.col(i).head<2>() = positions[i].matrix().cast<float>();
   const auto stride = static_cast<Eigen::Index>(1 + (positions.size() - 1) / kScan.grid_samples);
-  const Points samples = everyNth(flat, stride);
+  const Points samples = pointsAt(flat, everyNth(flat.cols(), stride));
   std::vector<int> closest;
   std::vector<float> sq_distances, distances;
   makeFlannSearch(flat)->search(samples, kScan.grid_neighbors + 1, closest, sq_distances);
@@ -392,7 +388,8 @@ double layeredShare(const PointsRef& points, const Eigen::Vector3d& viewpoint) {
   const Points directions = picture(points, viewpoint, ball.center, width);
   std::vector<int> closest;
   std::vector<float> sq_distances;
-  makeFlannSearch(directions)->search(everyNth(directions, stride), 2, closest, sq_distances);
+  makeFlannSearch(directions)
+      ->search(pointsAt(directions, everyNth(directions.cols(), stride)), 2, closest, sq_distances);
 
   const auto depth = [&](Eigen::Index i) { return (points.col(i).cast<double>() - viewpoint).norm() / ball.radius; };
   std::size_t num_layered = 0;

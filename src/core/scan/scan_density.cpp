@@ -4,9 +4,11 @@
 #include <cmath>
 #include <limits>
 
+#include "core/base/lists.h"
 #include "core/base/statistics.h"
 #include "core/base/symmetric_solvers.h"
 #include "core/geometry/directions.h"
+#include "core/geometry/moments.h"
 #include "core/geometry/point_samples.h"
 #include "core/scan/scan_rules.h"
 #include "pcl_symmetry/core/closest_point_search.h"
@@ -24,14 +26,9 @@ struct Patch {
 
 Patch fitPatch(const Points& points, const int* neighbors, int count) {
   const Eigen::Vector3f first = points.col(neighbors[0]);
-  Eigen::Vector3f sum = Eigen::Vector3f::Zero();
-  Eigen::Matrix3f squares = Eigen::Matrix3f::Zero();
-  for (int k = 0; k < count; ++k) {
-    const Eigen::Vector3f d = points.col(neighbors[k]) - first;
-    sum += d;
-    squares += d * d.transpose();
-  }
-  const SymmetricEigen<Eigen::Matrix3f> axes(squares - sum * sum.transpose() / static_cast<float>(count));
+  Moments offsets;
+  for (int k = 0; k < count; ++k) offsets.add(points.col(neighbors[k]) - first);
+  const SymmetricEigen<Eigen::Matrix3f> axes(offsets.scatter());
   const Eigen::Vector3f& moments = axes.eigenvalues();
   // The area of the ellipse: unlike the distance to the last neighbor, the moments about the mean are hardly larger at
   // a border.
@@ -195,7 +192,7 @@ std::vector<ScanDensity::Candidate> ScanDensity::coarseMinima(std::size_t most) 
   for (const Eigen::Vector3d& direction : evenDirections(kScan.num_directions))
     coarse.push_back({direction, std::log(kScan.first_distance),
                       unexplainedFrom(kScan.first_distance * direction, kScan.coarse_density_samples)});
-  sortFalling(coarse, [](const Candidate& candidate) { return -candidate.unexplained; });
+  sortRising(coarse, &Candidate::unexplained);
   std::vector<Candidate> minima;
   if (!(coarse.front().unexplained < kScan.hopeless * (varianceOf(kScan.coarse_density_samples) + kScan.min_variance)))
     return minima;

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <map>
 
-#include "core/base/statistics.h"
+#include "core/base/lists.h"
 #include "core/geometry/point_samples.h"
 #include "core/segmentation/segmentation_rules.h"
 #include "pcl_symmetry/core/closest_point_search.h"

@@ -7,8 +7,8 @@
 #include <optional>
 #include <utility>
 
+#include "core/base/lists.h"
 #include "core/base/parallel.h"
-#include "core/base/statistics.h"
 #include "core/segmentation/labels.h"
 #include "core/segmentation/merge_fit.h"
 #include "core/segmentation/part_evidence.h"
@@ -232,12 +232,11 @@ CommonCells commonCells(const SurfaceGraph& graph, const std::vector<MergedDivis
 class PatchClusters {
 public:
   PatchClusters(const SurfaceGraph& graph, const CommonCells& common, const std::vector<MergedDivision>& divisions)
-      : cluster_(static_cast<std::size_t>(common.size())),
+      : cluster_(allOf(common.size())),
         areas_(common.areas),
         neighbors_(cluster_.size()),
         sums_(Eigen::MatrixXf::Zero(common.size(), common.size())),
         num_clusters_(common.size()) {
-    std::iota(cluster_.begin(), cluster_.end(), 0);
     for (const SurfaceGraph::Edge& edge : graph.edges) {
       const int a = common.of_element[edge.from], b = common.of_element[edge.to];
       if (a != b) neighbors_.add(a, b, 1);

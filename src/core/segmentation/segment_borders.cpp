@@ -12,8 +12,8 @@
 #include <set>
 #include <utility>
 
+#include "core/base/lists.h"
 #include "core/base/parallel.h"
-#include "core/base/statistics.h"
 #include "core/segmentation/adjacency.h"
 #include "core/segmentation/labels.h"
 

@@ -8,8 +8,8 @@
 #include <queue>
 #include <utility>
 
+#include "core/base/lists.h"
 #include "core/base/parallel.h"
-#include "core/base/statistics.h"
 #include "core/segmentation/labels.h"
 
 namespace pcl_symmetry {

@@ -4,6 +4,7 @@
 
 #include "core/base/parallel.h"
 #include "core/geometry/geometry_rules.h"
+#include "core/geometry/point_samples.h"
 #include "core/geometry/surface_normals.h"
 #include "core/geometry/triangles.h"
 #include "core/refinement/iterative_symmetric_points.h"
@@ -51,9 +52,8 @@ std::vector<ReflectionPlane> refined(const std::vector<ReflectionPlane>& starts,
   const int num_threads = options.num_threads;
   const LocalGeometry geometry = localGeometry(samples, *search, num_threads);
   IspSurface surface{samples, geometry.normals, *search};
-  std::vector<int> reflected;
-  const Eigen::Index stride = std::max<Eigen::Index>(1, samples.cols() / kSegmentation.refined_samples);
-  for (Eigen::Index i = 0; i < samples.cols(); i += stride) reflected.push_back(static_cast<int>(i));
+  const std::vector<int> reflected =
+      everyNth(samples.cols(), std::max<Eigen::Index>(1, samples.cols() / kSegmentation.refined_samples));
   IspOptions isp;
   isp.sigma = edt.sigma();
   isp.final_sigma = kSegmentation.final_sigma * edt.sigma();

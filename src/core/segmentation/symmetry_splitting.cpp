@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "core/base/k_means.h"
-#include "core/base/statistics.h"
+#include "core/base/lists.h"
 #include "core/geometry/point_samples.h"
 #include "core/segmentation/labels.h"
 #include "core/segmentation/segment_borders.h"

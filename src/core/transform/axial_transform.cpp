@@ -8,8 +8,8 @@
 
 #include "core/base/check.h"
 #include "core/base/constants.h"
+#include "core/base/lists.h"
 #include "core/base/parallel.h"
-#include "core/base/statistics.h"
 #include "core/transform/sampled_transform.h"
 #include "core/transform/transform_rules.h"
 
@@ -238,7 +238,7 @@ private:
   double symmetryAt(const Line3d& axis, double angle) const {
     const Eigen::Matrix3d rotation = Eigen::AngleAxisd(angle, axis.direction()).toRotationMatrix();
     const Eigen::Vector3d foot = toCells(edt_, axis.origin());
-    const Eigen::Vector3d middle = Eigen::Vector3d::Constant(0.5 * (edt_.numCells() - 1));
+    const Eigen::Vector3d middle = Eigen::Vector3d::Constant(middleCell(edt_));
     double sum = 0.0;
     for (Eigen::Index i = 0; i < samples_.cols(); ++i)
       sum += edt_.atCell(rotation * (samples_.col(i).cast<double>() - foot) + foot + middle);

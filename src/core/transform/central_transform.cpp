@@ -37,7 +37,7 @@ CenterMap centralTransform(const GaussianEdt& edt, int num_centers, const AxialT
   // |f|^2 / S by the same samples: their noise cancels, and takes D of no center beyond 1 by the 2 % of the draw.
   double own = 0.0;
   for (Eigen::Index i = 0; i < mirrored.cols(); ++i) {
-    const Eigen::Array3i cell = (0.5f * (edt.numCells() - 1) - mirrored.col(i).array()).round().cast<int>();
+    const Eigen::Array3i cell = (static_cast<float>(middleCell(edt)) - mirrored.col(i).array()).round().cast<int>();
     own += edt.values()[(static_cast<std::size_t>(cell.z()) * edt.numCells() + cell.y()) * edt.numCells() + cell.x()];
   }
   const double scale = 1.0 / (own * LookupTable::kOne);

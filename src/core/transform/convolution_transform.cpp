@@ -45,7 +45,7 @@ bool isNearlyWhole(double cells) {
 /// positions are relative to the middle of the EDT's cube, beyond whose inscribed ball f is taken as 0.
 struct BundleLattice {
   BundleLattice(const GaussianEdt& edt, const PlaneGrid& grid, double spacing_in_sigmas)
-      : middle(0.5 * (edt.numCells() - 1)),
+      : middle(middleCell(edt)),
         clip(middle - 0.5),
         center(((grid.center() - edt.origin()) / edt.cellSize()).array() - middle),
         grid_offset(grid.offset(0) / edt.cellSize()),

@@ -8,6 +8,7 @@
 #include "core/base/check.h"
 #include "core/base/constants.h"
 #include "core/base/parallel.h"
+#include "core/transform/sampled_transform.h"
 #include "core/transform/transform_rules.h"
 #include "pcl_symmetry/core/planar_transform.h"
 
@@ -62,8 +63,8 @@ public:
     const Eigen::Vector3d e = Eigen::Vector3d::Unit(axis_),
                           a = std::cos(psi) * Eigen::Vector3d::Unit((axis_ + 1) % 3) +
                               std::sin(psi) * Eigen::Vector3d::Unit((axis_ + 2) % 3),
-                          b = e.cross(a), middle = Eigen::Vector3d::Constant(0.5 * (edt_.numCells() - 1)) - point_;
-    const double radius = 0.5 * (edt_.numCells() - 1), along = a.dot(middle);
+                          b = e.cross(a), middle = Eigen::Vector3d::Constant(middleCell(edt_)) - point_;
+    const double radius = middleCell(edt_), along = a.dot(middle);
     Eigen::FFT<float> fft;
     fft.SetFlag(Eigen::FFT<float>::HalfSpectrum);
     std::vector<std::complex<float>> coefficients(num_beta_ / 2 + 1);
@@ -154,11 +155,11 @@ void computeAboutAxis(int axis, const GaussianEdt& edt, const PlaneGrid& grid,
                       std::vector<float>& values) {
   const Eigen::Vector3d center = (grid.center() - edt.origin()) / edt.cellSize();
   const int half = static_cast<int>(std::ceil(std::sqrt(3.0) * grid.radius() / edt.cellSize() / step)) + 2;
-  const Eigen::Vector3d middle = Eigen::Vector3d::Constant(0.5 * (edt.numCells() - 1));
+  const Eigen::Vector3d middle = Eigen::Vector3d::Constant(middleCell(edt));
   std::vector<PlanesThroughPoint> points;
   for (int i = -half; i <= half; ++i) {
     const Eigen::Vector3d point = center + i * step * Eigen::Vector3d::Unit(axis);
-    points.emplace_back(edt, axis, point, (point - middle).norm() + 0.5 * (edt.numCells() - 1),
+    points.emplace_back(edt, axis, point, (point - middle).norm() + middleCell(edt),
                         options.spacing * edt.sigma() / edt.cellSize(), step);
   }
   std::vector<BinLookUp> look_ups;

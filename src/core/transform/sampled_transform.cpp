@@ -158,7 +158,7 @@ std::vector<std::vector<float>> sampleMeans(const GaussianEdt& edt, const PlaneG
   const CoordinateRows points = drawPoints(edt, options.num_samples, options.seed, options.num_threads);
   // Center of the grid, in cells from the middle of the cube of cells.
   const Eigen::Vector3f center = ((grid.center() - edt.origin()) / edt.cellSize()).cast<float>() -
-                                 Eigen::Vector3f::Constant(0.5f * static_cast<float>(edt.numCells() - 1));
+                                 Eigen::Vector3f::Constant(static_cast<float>(middleCell(edt)));
   const auto radius_step = static_cast<float>(grid.radiusStep() / edt.cellSize());
   const auto first_offset = static_cast<float>(grid.offset(0) / edt.cellSize());
   const double scale = edt.sum() / (edt.sqNorm() * options.num_samples * LookupTable::kOne);
@@ -213,7 +213,7 @@ LineSums::LineSums(const GaussianEdt& edt, const LookupTable& table, int num_ste
       totals_(table.numFunctions(), std::vector<double>(num_steps)),
       sums_(table.numFunctions(), std::vector<std::int32_t>(num_steps + line_lanes)),
       storage_(5 * max_lines) {
-  const double middle = 0.5 * (edt.numCells() - 1);
+  const double middle = middleCell(edt);
   cube_.middle = static_cast<float>(middle);
   cube_.sq_clip = static_cast<float>(std::pow(middle - 0.5, 2));
   cube_.to_table = static_cast<float>(middle + table.padding() + 0.5);
@@ -261,12 +261,12 @@ const LineSums::Totals& LineSums::ofMoved(const Eigen::Matrix3Xf& moved, const E
 
 Eigen::Matrix3Xf centeredSamples(const GaussianEdt& edt, int num_samples, std::uint64_t seed, int num_threads) {
   Eigen::Matrix3Xf samples = drawPoints(edt, num_samples, seed, num_threads);
-  samples.array() -= 0.5f * static_cast<float>(edt.numCells() - 1);
+  samples.array() -= static_cast<float>(middleCell(edt));
   return samples;
 }
 
 Eigen::Vector3d toCells(const GaussianEdt& edt, const Eigen::Vector3d& x) {
-  return ((x - edt.origin()) / edt.cellSize()).array() - 0.5 * (edt.numCells() - 1);
+  return ((x - edt.origin()) / edt.cellSize()).array() - middleCell(edt);
 }
 
 void SampledTransformOptions::validate() const {

@@ -51,6 +51,16 @@ private:
   std::vector<std::uint8_t> table_;
 };
 
+/// The middle of the cube of cells along each axis, in cells from the first cell center.
+inline double middleCell(const GaussianEdt& edt) {
+  return 0.5 * (edt.numCells() - 1);
+}
+
+/// The middle of the cube of cells, input frame.
+inline Eigen::Vector3d middleOf(const GaussianEdt& edt) {
+  return edt.origin() + Eigen::Vector3d::Constant(middleCell(edt) * edt.cellSize());
+}
+
 /// Points, the coordinates along each axis side by side.
 using CoordinateRows = Eigen::Matrix<float, 3, Eigen::Dynamic, Eigen::RowMajor>;
 

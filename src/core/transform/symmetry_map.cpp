@@ -6,9 +6,9 @@
 
 #include "core/base/check.h"
 #include "core/base/constants.h"
+#include "core/base/lists.h"
 #include "core/base/parallel.h"
 #include "core/base/simd.h"
-#include "core/base/statistics.h"
 #include "pcl_symmetry/core/gaussian_edt.h"
 
 namespace pcl_symmetry {

@@ -28,8 +28,6 @@ struct RefinedBox : test::SearchedShape {
   Candidate candidate(const Eigen::Vector3d& normal, double offset) const {
     return {normalized(normal.normalized(), offset)};
   }
-
-  const StagedRefinement refinement{cloud, *fit, options};
 };
 
 TEST(StagedRefinement, EachStageComesNearer) {

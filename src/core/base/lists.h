@@ -1,0 +1,53 @@
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <functional>
+#include <iterator>
+#include <numeric>
+#include <vector>
+
+namespace pcl_symmetry {
+
+/// Removes the entries for which a predicate holds.
+template <typename List, typename Predicate>
+void eraseIf(List& list, const Predicate& is_out) {
+  list.erase(std::remove_if(list.begin(), list.end(), is_out), list.end());
+}
+
+/// Moves the entries of another list to the end of a list.
+template <typename List>
+void append(List& list, List more) {
+  std::move(more.begin(), more.end(), std::back_inserter(list));
+}
+
+/// Sorts by a member or a function of the entries, the greatest first; equal ones keep their order.
+template <typename List, typename Value>
+void sortFalling(List& list, const Value& value) {
+  std::stable_sort(list.begin(), list.end(),
+                   [&](const auto& a, const auto& b) { return std::invoke(value, a) > std::invoke(value, b); });
+}
+
+/// Sorts by a member or a function of the entries, the least first; equal ones keep their order.
+template <typename List, typename Value>
+void sortRising(List& list, const Value& value) {
+  std::stable_sort(list.begin(), list.end(),
+                   [&](const auto& a, const auto& b) { return std::invoke(value, a) < std::invoke(value, b); });
+}
+
+/// \return 0, 1, ..., size - 1.
+inline std::vector<int> allOf(std::ptrdiff_t size) {
+  std::vector<int> all(size);
+  std::iota(all.begin(), all.end(), 0);
+  return all;
+}
+
+/// \return the indices of values, the greatest first; equal ones keep their order.
+template <typename Values>
+std::vector<int> fallingOrder(const Values& values) {
+  std::vector<int> order = allOf(static_cast<std::ptrdiff_t>(values.size()));
+  sortFalling(order, [&](int i) { return values[i]; });
+  return order;
+}
+
+}  // namespace pcl_symmetry

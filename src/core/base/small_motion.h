@@ -1,0 +1,63 @@
+/// Small motions: a rotation vector omega, radians, then a translation t, which move x to x + omega x x + t. Their
+/// Gauss-Newton steps.
+#pragma once
+
+#include <Eigen/Core>
+#include <Eigen/Geometry>
+
+#include "core/base/symmetric_solvers.h"
+
+namespace pcl_symmetry {
+
+/// The weighted sum of x x^T over rows x of seven numbers: six unknowns and a right side.
+class WeightedProducts {
+public:
+  static constexpr int kLast = 6;  ///< index of the right side
+  using Matrix = Eigen::Matrix<double, kLast + 1, kLast + 1>;
+
+  void add(const Eigen::Vector3d& first, const Eigen::Vector3d& second, double last, double weight) {
+    Eigen::Matrix<double, kLast + 2, 1> row;
+    row << first, second, last, 0.0;
+    const Eigen::Matrix<double, kLast + 2, 1> weighted = weight * row;
+    products_.noalias() += weighted.lazyProduct(row.transpose());
+  }
+
+  /// The weighted sum of the products of all rows that were added.
+  Matrix sums() const { return products_.topLeftCorner<kLast + 1, kLast + 1>().selfadjointView<Eigen::Lower>(); }
+  Matrix6d ofUnknowns() const { return sums().topLeftCorner<kLast, kLast>(); }
+
+private:
+  /// Products of eight numbers, the last of which is 0: full registers are quicker than half of the products.
+  Eigen::Matrix<double, kLast + 2, kLast + 2> products_ = Eigen::Matrix<double, kLast + 2, kLast + 2>::Zero();
+};
+
+/// The normal equations of least squares in a small motion, h motion = -g.
+struct SmallMotionEquations {
+  Matrix6d h = Matrix6d::Zero();  ///< symmetric; its lower half is read
+  Vector6d g = Vector6d::Zero();
+};
+
+/// The motion of least squares. Directions that nothing fixes stay as they are.
+/// \param min_stiffness of a direction that is fixed, share of the greatest eigenvalue of h.
+/// \param longest a longer motion is cut to this length.
+inline Vector6d smallMotion(const SmallMotionEquations& equations, double min_stiffness, double longest) {
+  Vector6d motion = -SymmetricEigen<Matrix6d>(equations.h).solve(equations.g, min_stiffness);
+  const double length = motion.norm();
+  return length > longest ? Vector6d(motion * (longest / length)) : motion;
+}
+
+inline Eigen::Matrix3d rotationBy(const Eigen::Vector3d& rotation_vector) {
+  return Eigen::AngleAxisd(rotation_vector.norm(), rotation_vector.normalized()).toRotationMatrix();
+}
+
+inline Eigen::Isometry3d isometry(const Eigen::Matrix3d& rotation, const Eigen::Vector3d& translation) {
+  Eigen::Isometry3d result(rotation);
+  result.translation() = translation;
+  return result;
+}
+
+inline Eigen::Isometry3d motionBy(const Vector6d& motion) {
+  return isometry(rotationBy(motion.head<3>()), motion.tail<3>());
+}
+
+}  // namespace pcl_symmetry
