@@ -74,9 +74,9 @@ void tryRightAngles(const PlaneSearch& search, Found& found) {
   if (!candidates.empty()) decide(search, search.refinement.refineSymmetries(std::move(candidates)), found);
 }
 
-/// All planes through the axis of a mug map its body onto itself: those that do not map its handle onto itself, but to
-/// where the scanner saw nothing, are possible at most.
-void doubtUnshownHandles(const JudgedCloud& judged, const RotationEvidence& rotations, const ScanAxesOptions& options,
+/// Every plane through the axis of a mug maps its body onto itself. One that does not map its handle onto itself is
+/// possible at most.
+void limitByHandle(const PlaneSearch& search, const RotationEvidence& rotations, const ScanAxesOptions& options,
                          Found& found) {
   if (std::none_of(found.planes.begin(), found.planes.end(),
                    [](const SymmetryPlane& plane) { return plane.kind == PlaneKind::Symmetry; }))
@@ -84,7 +84,7 @@ void doubtUnshownHandles(const JudgedCloud& judged, const RotationEvidence& rota
   const std::optional<NearlyRound> body = nearlyRound(rotations, options);
   if (!body) return;
   for (SymmetryPlane& plane : found.planes) {
-    const ReflectionPlane normalized = judged.cloud.toNormalized(plane);
+    const ReflectionPlane normalized = search.cloud.toNormalized(plane);
     if (contains(normalized, body->axis) &&
         rotations.shareOn(normalized.reflection(), body->not_round) < kScanAxes.min_mapped)
       limitToPossible(plane, "contains the axis of a round body, and does not map what is not round of it onto itself");
@@ -113,7 +113,7 @@ void findAxesOfScan(const PlaneSearch& search, Found& found) {
   // A body that is no ball has one axis: the others of a dome are as round within the tolerance.
   sortFalling(found.axes, &SymmetryAxis::confidence);
   if (found.axes.size() > 1) found.axes.resize(1);
-  if (found.axes.empty()) doubtUnshownHandles(judged, rotations, scan_axes, found);
+  if (found.axes.empty()) limitByHandle(judged, rotations, scan_axes, found);
 }
 
 /// Rules by which findings correct each other, applied in this order. Not in the paper.

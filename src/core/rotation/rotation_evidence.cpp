@@ -118,7 +118,7 @@ RotationShares RotationEvidence::exactly(const Eigen::Affine3d& motion) const {
 std::vector<int> RotationEvidence::notRound(const Line3d& line) const {
   std::vector<char> is_far(samples_.size(), false);
   for (int k = 1; k <= kScanAxes.round_rotations; ++k) {
-    const Landing all = landed(motionAboutLine(line, 2.0 * kPi * goldenFraction(k)));
+    const Landing all = landed(motionAbout(line, 2.0 * kPi * goldenFraction(k)));
     for (std::size_t i = 0; i < samples_.size(); ++i)
       if (all.distances[i] > far_ && isEmpty(all.images.col(i).cast<double>())) is_far[i] = true;
   }

@@ -279,7 +279,7 @@ std::optional<NearlyRound> nearlyRound(const RotationEvidence& evidence, const S
   for (const AxisStart& start : startsFromNormals(evidence.cloud(), options.seed, options.num_threads)) {
     const Line3d axis = judge.fitted(start);
     if (!axis.direction().allFinite() || !axis.origin().allFinite() ||
-        evidence.exactly(motionAboutLine(axis, kScanAxes.small_angle)).on < kScanAxes.round_on)
+        evidence.exactly(motionAbout(axis, kScanAxes.small_angle)).on < kScanAxes.round_on)
       continue;
     std::vector<int> not_round = evidence.notRound(axis);
     const double share = static_cast<double>(not_round.size()) / static_cast<double>(num_samples);
