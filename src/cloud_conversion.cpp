@@ -21,9 +21,9 @@ void throwBadArgument(const std::string& message) {
   throw Plain<pcl::BadArgumentException>(message);
 }
 
-void checkAtLeast(const char* field, std::int64_t value, std::int64_t least) {
-  const std::string rule = ">= " + std::to_string(least);
-  withBadArguments([&] { check(value >= least, field, value, rule.c_str()); });
+void checkAtLeast(const char* field, std::int64_t value, std::int64_t lower_limit) {
+  const std::string rule = ">= " + std::to_string(lower_limit);
+  withBadArguments([&] { check(value >= lower_limit, field, value, rule.c_str()); });
 }
 
 std::string reasonForNoAnswer(const Points& points, const std::string& input, int min_points,

@@ -63,12 +63,12 @@ namespace detail {
 
 namespace {
 
-constexpr double largest_error = 0.7;  // pixels, root mean square; more are rows and columns that are no picture
+constexpr double largest_error = 0.7;  // pixels, root mean square; more are rows and columns that are not an image
 constexpr double largest_skew =
     0.05;  // share of the focal length, also between the two: cameras that fit a flat cloud have no square pixels
 constexpr std::size_t fewest_points = 50;   // fewer leave the 11 parameters of a projection to noise
 constexpr std::size_t max_points = 20'000;  // that the 11 parameters gain from
-constexpr double small_hole = 0.01;  // share of the picture; smaller ones are missing measurements, not background
+constexpr double small_hole = 0.01;         // share of the image; smaller ones are missing measurements, not background
 
 /// Fills the pixels without a point: large regions and regions at the border are background, small regions are missing
 /// measurements.

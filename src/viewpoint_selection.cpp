@@ -118,7 +118,7 @@ Eigen::Affine3f ViewpointSelection::computePose(const Eigen::Vector3d& direction
   const Eigen::Vector3d forward = -direction.normalized();
   Eigen::Vector3d up = getUpAxis();
   if (std::abs(up.dot(forward)) > kView.from_above) {
-    // From above or below: the strongest plane stands upright in the picture.
+    // From above or below: the strongest plane stands upright in the image.
     const Eigen::Vector3d across = planes_.empty() ? up.unitOrthogonal() : Eigen::Vector3d(planes_[0].normal);
     const Eigen::Vector3d along = forward.cross(across);
     up = along.norm() > 0.1 ? along : up.unitOrthogonal();

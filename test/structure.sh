@@ -7,7 +7,7 @@ case "${1-}" in
 usage: bash test/structure.sh [-h]
 
 Prints lines of C++ and Python, folders, the longest page, numbers set by hand, and how many files stand behind
-symmetry_detection.h, each with its goal; then what breaks a rule: includes that run up from a room of the core to one above it,
+symmetry_detection.h, each with its goal; then what breaks a rule: includes that run up from a module of the core to one above it,
 includes of PCL by the core or of private headers by installed ones, and installed headers without a test of their name. Exit
 status 0 if nothing is over its limit and no rule is broken; goals are reported only.
 END
@@ -103,18 +103,18 @@ reported("files behind symmetry_detection.h", len(reached), GOALS["files_behind"
 report("folders with C++", len({f.parent for f in cpp}), LIMITS["folders"])
 report(f"lines of the longest page, {longest}", pages[longest], LIMITS["page"])
 
-# The list of rooms in src/CMakeLists.txt, bottom first, is the order. An installed header belongs to the room of its source,
+# The list of modules in src/CMakeLists.txt, bottom first, is the order. An installed header belongs to the module of its source,
 # or of its test.
-rooms = re.search(r"set\(rooms\n(.*?)^\)", Path("src/CMakeLists.txt").read_text(), re.S | re.M).group(1)
-floors = {line.split()[0]: i for i, line in enumerate(rooms.splitlines())}
-room_of_name = {f.stem: f.parent.name for f in core if f.parts[0] == "src" and f.suffix == ".cpp"}
+modules = re.search(r"set\(modules\n(.*?)^\)", Path("src/CMakeLists.txt").read_text(), re.S | re.M).group(1)
+floors = {line.split()[0]: i for i, line in enumerate(modules.splitlines())}
+module_of_name = {f.stem: f.parent.name for f in core if f.parts[0] == "src" and f.suffix == ".cpp"}
 for f in cpp:
     if f.parts[:2] == ("test", "core"):
-        room_of_name.setdefault(f.stem[len("test_"):], f.parent.name)
+        module_of_name.setdefault(f.stem[len("test_"):], f.parent.name)
 
 
-def room(f):
-    return f.parts[2] if f.parts[0] == "src" else room_of_name.get(f.stem)
+def module(f):
+    return f.parts[2] if f.parts[0] == "src" else module_of_name.get(f.stem)
 
 
 upward = []
@@ -125,9 +125,9 @@ for f in core:
             continue
         if other not in core:
             upward.append(f"{f}: {name} lies outside the core")
-        elif floors.get(room(f)) is None or floors.get(room(other)) is None:
-            upward.append(f"{f}: the room of {name} is not in the list")
-        elif floors[room(other)] > floors[room(f)]:
+        elif floors.get(module(f)) is None or floors.get(module(other)) is None:
+            upward.append(f"{f}: the module of {name} is not in the list")
+        elif floors[module(other)] > floors[module(f)]:
             upward.append(f"{f}: {name} lies above")
 report("includes that run up in the core", len(upward), 0, upward)
 of_pcl = [f"{f}: {name}" for f in core for name in includes(f) if name.startswith(("pcl/", "vtk"))]

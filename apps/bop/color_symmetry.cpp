@@ -21,7 +21,7 @@ namespace pcl_symmetry::apps {
 namespace {
 
 constexpr double kMostChanged = 0.05;  // share of the surface whose color a symmetry may change
-constexpr int kNumColorsNear = 4;      // samples around a place that may have its color
+constexpr int kNumColorsNear = 4;      // samples around a position that may have its color
 constexpr int kNumTurns = 8;           // rotations that represent all rotations about an axis
 constexpr int kMaxFold = 24;           // greatest fold of stripes
 
@@ -100,7 +100,7 @@ ObjectSymmetries finiteGroup(const std::vector<Eigen::Isometry3d>& motions, cons
   return ObjectSymmetries::from({}, {});
 }
 
-/// The turns about an axis by the greatest number of equal steps that keep the colors.
+/// The rotations about an axis by the greatest number of equal steps that keep the colors.
 std::vector<Eigen::Isometry3d> keptTurns(const ContinuousSymmetry& axis, const ColoredSurface& surface) {
   for (int fold = kMaxFold; fold > 1; --fold) {
     std::vector<Eigen::Isometry3d> turns;
@@ -140,7 +140,7 @@ ObjectSymmetries roundGroup(const ObjectSymmetries& found, const ColoredSurface&
   return ObjectSymmetries::from(kept, is_round ? found.continuous : std::vector<ContinuousSymmetry>{});
 }
 
-/// Of a ball with a pattern only turns about the coordinate axes are looked for.
+/// For a ball with a pattern, only rotations about the coordinate axes are searched.
 ObjectSymmetries sphereGroup(const ObjectSymmetries& found, const ColoredSurface& surface) {
   std::vector<Eigen::Isometry3d> turns;
   for (const Eigen::Vector3d& direction : evenDirections(kNumTurns))
@@ -249,10 +249,11 @@ Eigen::Vector3f colorAt(const RasterImage& image, const Eigen::Vector2f& uv) {
   return Eigen::Vector3f(pixel[0], pixel[1], pixel[2]) / 255.0f;
 }
 
-/// A corner of a triangle: place and texture coordinates.
+/// A corner of a triangle: position and texture coordinates.
 using Corner = Eigen::Matrix<float, 5, 1>;
 
-/// The triangles of a mesh, polygons cut into fans; those with places or coordinates that are not finite are left out.
+/// The triangles of a mesh, polygons cut into fans; those with positions or coordinates that are not finite are left
+/// out.
 std::vector<std::array<Corner, 3>> texturedTriangles(const Shape& shape, const Eigen::Matrix2Xf& coordinates) {
   std::vector<std::array<Corner, 3>> triangles;
   const auto corner = [&](std::uint32_t i) {

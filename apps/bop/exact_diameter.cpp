@@ -19,7 +19,7 @@ public:
     nodes_.push_back(around(0, static_cast<int>(points_.size())));
   }
 
-  /// \param at_least a squared distance between two of the points: what is not above it is not looked at.
+  /// \param at_least a squared distance between two of the points: pairs that are not above it are skipped.
   double greatestSqDistance(double at_least) {
     double best = at_least;
     search(0, 0, best);

@@ -168,7 +168,7 @@ constexpr double kAligned = 5.0 * kDegree;  // angle between an axis and a coord
 
 const std::string kNames = "xyz";
 
-/// The order of the turns of a group about a coordinate axis; 0 for any angle.
+/// The order of the rotations of a group about a coordinate axis; 0 for any angle.
 int orderAbout(const ObjectSymmetries& symmetries, const Eigen::Vector3d& axis) {
   if (symmetries.kind == RotationGroupKind::Spherical) return 0;
   const auto is_along = [&](const Eigen::Vector3d& other) { return axis.cross(other).norm() < std::sin(kAligned); };
@@ -216,7 +216,7 @@ std::optional<AxesLine> axesLineOf(const std::string& line) {
   return result;
 }
 
-/// The number of rotations that the turns compose.
+/// The number of rotations composed of rotations about the axes.
 std::size_t numComposed(const ListedSymmetries& listed) {
   try {
     return ObjectSymmetries::from(listed.discrete, {}).discrete.size() + 1;

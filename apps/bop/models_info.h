@@ -22,7 +22,8 @@ struct ListedSymmetries {
 };
 
 /// Symmetries as BOP's files list them. A sphere becomes one axis and as many tilts of it as reach any rotation.
-/// \param sphere_angle radians, in (0, pi]: every rotation is within it of a composition of a turn and a tilt.
+/// \param sphere_angle radians, in (0, pi]: every rotation is within it of a composition of a rotation about the axis
+/// and a tilt.
 ListedSymmetries bopSymmetries(const ObjectSymmetries& symmetries, double sphere_angle);
 
 /// \return the axes of the rotations of a group, without the identity.
@@ -41,11 +42,11 @@ nlohmann::ordered_json dopeJson(const ObjectSymmetries& symmetries, double spher
 /// \throws InputError naming the file, the entry, field, value and rule.
 std::map<std::string, ListedSymmetries> readModelsInfo(const std::string& path);
 
-/// The parameter symmetry_axes: turns about x, y and z by an angle in degrees, or by any angle ("full"). Isaac composes
-/// one turn about each axis, and turns about the origin of the mesh.
+/// The parameter symmetry_axes: rotations about x, y and z by an angle in degrees, or by any angle ("full"). Isaac
+/// composes one rotation about each axis, and rotates about the origin of the mesh.
 struct IsaacAxes {
   std::vector<std::string> axes;
-  bool is_complete = true;  ///< false where the group has rotations that turns about x, y and z do not compose
+  bool is_complete = true;  ///< false if the group has rotations that are not composed of rotations about x, y and z
 };
 
 /// \param symmetries axes up to 5 degrees off a coordinate axis count as this one.

@@ -22,7 +22,7 @@ constexpr int kNumAngles = 8;  // rotations that represent all rotations about a
 
 const Eigen::Isometry3d kIdentity = Eigen::Isometry3d::Identity();
 
-/// A point that a turn fixes, as close to the origin as there is one.
+/// The fixed point of a rotation that is closest to the origin.
 Eigen::Vector3d fixedPointOf(const Eigen::Isometry3d& motion) {
   const Eigen::AngleAxisd turn(motion.linear());
   const Eigen::Vector3d across = motion.translation() - turn.axis().dot(motion.translation()) * turn.axis();
@@ -39,7 +39,7 @@ public:
     return group.surfaceDistance(kIdentity, motion, points_) <= limit_;
   }
 
-  /// Whether a group has all turns about an axis.
+  /// Whether a group has all rotations about an axis.
   bool hasAll(const ObjectSymmetries& group, const ContinuousSymmetry& symmetry) const {
     for (int k = 1; k <= kNumAngles; ++k)
       if (!has(group, motionAbout({symmetry.offset, symmetry.axis}, 2.0 * kPi * goldenFraction(k)))) return false;
@@ -115,7 +115,7 @@ bool isParallel(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
   return a.cross(b).norm() < std::sin(kDegree);
 }
 
-/// Listed turns that the surface does not have: of each axis the smallest.
+/// Listed rotations that the surface does not have: the smallest one about each axis.
 std::vector<Eigen::Isometry3d> wrongTurns(const ListedSymmetries& listed, const ObjectSymmetries& found,
                                           const Comparison& comparison) {
   std::vector<Eigen::Isometry3d> wrong;
@@ -149,7 +149,7 @@ void addWrong(const ListedSymmetries& listed, const ObjectSymmetries& found, boo
   disagreements.insert(disagreements.end(), wrong.begin(), wrong.end());
 }
 
-/// What the surface has and the file has not: an axis at a time, by its smallest turn.
+/// Rotations of the surface that the file does not list: one axis at a time, by its smallest rotation.
 void addMissing(const ObjectSymmetries& found, const ObjectSymmetries& given, const Comparison& comparison,
                 std::vector<Disagreement>& disagreements) {
   for (const ContinuousSymmetry& symmetry : found.continuous)

@@ -40,13 +40,13 @@ private:
   SurfaceSamples samples_;
 };
 
-/// Turns on which a file and the surface disagree.
+/// Rotations on which a file and the surface disagree.
 struct Disagreement {
   std::string says;         ///< "file only" or "surface only"
   Eigen::Vector3d axis;     ///< unit, input frame
   Eigen::Vector3d point;    ///< of the axis, input frame
   double angle = 0.0;       ///< radians; 0: any angle
-  MotionEvidence evidence;  ///< of the turn; of any angle: of the worst of eight turns
+  MotionEvidence evidence;  ///< of the rotation; for any angle, of the worst of eight rotations
 };
 
 struct SymmetryCheck {
@@ -59,7 +59,7 @@ struct SymmetryCheck {
 };
 
 /// \param found symmetries of the surface.
-/// \param diameter of the model, input units. Turns that differ by up to 2 % of it at every point are one.
+/// \param diameter of the model, input units. Rotations that differ by up to 2 % of it at every point count as one.
 SymmetryCheck checkSymmetries(const ListedSymmetries& listed, const ObjectSymmetries& found,
                               const SurfaceEvidence& surface, double diameter);
 

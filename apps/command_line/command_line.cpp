@@ -46,7 +46,7 @@ unsigned helpWidth() {
   return known ? std::clamp<unsigned>(size.ws_col, 60, 160) : 100;
 }
 
-constexpr std::size_t kHelpColumn = 26;  // where what a name means begins
+constexpr std::size_t kHelpColumn = 26;  // where the description of a name begins
 
 /// \return words, in lines that fit the terminal, from a column on; a name stands before them, or above where it is longer
 std::string inColumn(std::string line, std::size_t column, const std::string& words) {

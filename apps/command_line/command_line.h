@@ -71,7 +71,7 @@ enum CommonFlag : unsigned {
   kShapeFlags = kAnalysisFlags | kMeshPoints  ///< of tools that analyze one cloud or mesh
 };
 
-/// \return what the JSON of a tool says of how it was made: tool, version, seed, and the options that were given.
+/// \return the provenance in the JSON of a tool: tool, version, seed, and the options given.
 const nlohmann::json& madeBy();
 
 /// Declares the flags of a tool, each bound to a variable that holds its default, and reads them from argv.
@@ -118,7 +118,7 @@ public:
   bool given(const std::string& name) const;
 
   /// Refuses flags that would do nothing.
-  /// \param there whether what they go with was given
+  /// \param there whether the flag that they belong to was given
   /// \throws UsageError for the first of the flags that stood on the command line without it
   void goWith(const std::string& what, bool there, std::initializer_list<const char*> flags) const;
 

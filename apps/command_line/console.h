@@ -1,4 +1,4 @@
-/// What a tool tells its user: PCL's `[done, 12.3 ms : 10000 points]` lines, and a progress bar on a terminal.
+/// Messages of a tool to its user: PCL's `[done, 12.3 ms : 10000 points]` lines, and a progress bar on a terminal.
 #pragma once
 
 #include <optional>
@@ -22,7 +22,7 @@ public:
   /// A warning, one line. Silent when quiet.
   void warn(const std::string& line) const;
 
-  /// What could not be done while the rest goes on, one line. Printed also when quiet.
+  /// A failure that does not stop the rest, one line. Printed also when quiet.
   void error(const std::string& line) const;
 
 private:
@@ -55,9 +55,9 @@ private:
   bool open_ = true;
   int drawn_ = -1;
   std::string what_;
-  bool told_ = false;  ///< by progress(): the loops are not asked any more
+  bool told_ = false;  ///< progress() was called: reports of loops are ignored
   Stopwatch time_;
-  std::optional<Watch> loops_;
+  std::optional<ProgressMonitor> loops_;
 };
 
 }  // namespace pcl_symmetry::apps

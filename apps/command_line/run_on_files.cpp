@@ -285,8 +285,8 @@ private:
     }
     if (failure_ || next_ >= files_.size()) return false;
     i = next_++;
-    const std::size_t most = kWaitingPerThread * num_threads_;
-    written_.wait(lock, [&] { return failure_ || i < num_written_ + most; });
+    const std::size_t max_waiting = kWaitingPerThread * num_threads_;
+    written_.wait(lock, [&] { return failure_ || i < num_written_ + max_waiting; });
     return !failure_;
   }
 

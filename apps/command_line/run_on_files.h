@@ -32,7 +32,7 @@ struct BatchOptions {
   std::vector<std::string> inputs;  ///< as inputFiles() takes them
   std::optional<std::string> csv_path;
   bool resume = false;
-  /// What the tool writes of each input besides JSON and CSV: names in which {} is replaced by the name of the input.
+  /// Outputs of the tool for each input besides JSON and CSV: names in which {} is replaced by the name of the input.
   std::vector<const std::optional<std::string>*> outputs;
 
   /// Adds -csv and -resume.
@@ -44,7 +44,7 @@ struct BatchOptions {
   }
 };
 
-/// What a tool reports of an input.
+/// The report of a tool on an input.
 struct FileReport {
   std::string text;     ///< for standard output
   nlohmann::json json;  ///< an object; in a file of several inputs it is a line
@@ -55,7 +55,7 @@ struct FileReport {
 class FileJob {
 public:
   /// \param console is silent where there are several inputs.
-  /// \param use is called with what is reported.
+  /// \param use is called with each report.
   FileJob(std::string path, const Console& console, const CommonOptions& common,
           std::function<void(const FileReport&)> use = {})
       : path_(std::move(path)), console_(console), common_(common), use_(std::move(use)) {}
@@ -69,7 +69,7 @@ public:
   /// extension.
   std::string output(const std::string& pattern) const;
 
-  /// What is reported stays reported if something later throws.
+  /// Reports stay even if a later step throws.
   void report(FileReport report) {
     report_ = std::move(report);
     if (use_) use_(*report_);
@@ -93,7 +93,7 @@ void checkNames(const std::vector<InputFile>& files);
 
 /// Works on items side by side, and shows in the step how far that is.
 /// \param work throws InputError for an item that fails.
-/// \return what is wrong with each item; empty where nothing is.
+/// \return the error of each item; empty if there is none.
 std::vector<std::string> workOnAll(std::size_t num_items, int num_threads, Step& step,
                                    const std::function<void(std::size_t)>& work);
 

@@ -1,4 +1,4 @@
-/// What stops a tool, the exit code of each reason, and the frame that turns one into the other.
+/// The reasons that stop a tool, their exit codes, and the frame that maps one to the other.
 #pragma once
 
 #include <pcl/exceptions.h>
@@ -48,8 +48,8 @@ auto namingFile(const std::string& path, const Body& body) -> decltype(body()) {
 /// To be called before there are threads: the server ends with the thread that starts it.
 void findDisplay();
 
-/// Runs the body of a tool and turns what it throws into one line on standard error and an exit code: 0 done (or what
-/// the body returns), 1 could not be done, 2 wrong usage.
+/// Runs the body of a tool and reports exceptions in one line on standard error and by an exit code: 0 done (or the
+/// result of the body), 1 could not be done, 2 wrong usage.
 int runTool(int argc, char** argv, const std::function<int(int argc, char** argv)>& body);
 
 }  // namespace pcl_symmetry::apps

@@ -1,4 +1,4 @@
-/// A scan from one side: the position of the scanner separates empty space from space that it could not see.
+/// A scan from one side: the position of the scanner separates free space from space that it could not see.
 #include <pcl/io/pcd_io.h>
 #include <pcl_symmetry/symmetry_maxima_refinement.h>
 

@@ -7,7 +7,7 @@ namespace pcl_symmetry::apps {
 
 namespace {
 
-/// Why a plane has its confidence and kind: what was measured, what that makes of it, then factors on the odds.
+/// Why a plane has its confidence and kind: the measurement, its confidence, then factors on the odds.
 std::string explained(const std::string& name, const SymmetryPlane& plane, const Detection& found) {
   std::string lines = formatted("%s: %s, confidence %.3f\n", name.c_str(), toString(plane.kind), plane.confidence);
   if (!std::isnan(plane.share)) {

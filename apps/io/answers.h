@@ -52,10 +52,10 @@ inline std::vector<double> numbersOf(const ReflectionPlane& plane, const Eigen::
   return numbersOf(shiftedBack(plane, shift).coefficients());
 }
 
-/// A plane and all that was measured of it, input frame.
+/// A plane and all its measurements, input frame.
 nlohmann::json planeJson(const SymmetryPlane& plane, const Eigen::Vector3d& shift);
 
-/// Where an axis is, input frame, and how sure it is.
+/// The position of an axis, input frame, and its confidence.
 /// \param axis SymmetryAxis or SymmetryRotation.
 template <typename Axis>
 nlohmann::json axisJson(const Axis& axis, const Eigen::Vector3d& shift) {
@@ -64,7 +64,7 @@ nlohmann::json axisJson(const Axis& axis, const Eigen::Vector3d& shift) {
           {"confidence", axis.confidence}};
 }
 
-/// The same of axes of rotations of scans, and what was seen of them.
+/// The same for axes of rotations of scans, with their evidence.
 nlohmann::json rotationsJson(const std::vector<SymmetryRotation>& rotations, const Eigen::Vector3d& shift);
 
 /// Center and axes, the transform to them, input frame.

@@ -15,7 +15,7 @@ namespace pcl_symmetry::apps {
 struct CloudFile {
   pcl::PCLPointCloud2 cloud;            ///< fields without padding, one after the other
   std::vector<pcl::Vertices> polygons;  ///< of three corners and more, indices checked
-  std::vector<std::string> left_out;    ///< what the file holds beyond that
+  std::vector<std::string> left_out;    ///< further content of the file
   Eigen::Vector4f sensor_origin = Eigen::Vector4f::Zero();
   Eigen::Quaternionf sensor_orientation = Eigen::Quaternionf::Identity();
 };

@@ -26,7 +26,7 @@ namespace pcl_symmetry::apps {
 struct ExactShape {
   std::vector<Eigen::Vector3d> vertices;
   std::vector<pcl::Vertices> polygons;
-  std::vector<std::string> left_out;  ///< what the file holds beyond that
+  std::vector<std::string> left_out;  ///< further content of the file
 };
 
 /// \return what to subtract: zero where float is precise enough, else a point near the middle of the finite points,

@@ -56,7 +56,7 @@ void checkAnswer(const Analysis& analysis, const InputShape& input) {
   if (!analysis.getReason().empty()) throw InputError(input.path + ": " + analysis.getReason());
 }
 
-/// Warns of what the file holds and the shape does not.
+/// Warns of content of the file that the shape does not have.
 void warnOfLeftOut(const Console& console, const std::string& path, const Shape& shape);
 
 /// The endings of files that loadVolume() reads.
@@ -68,7 +68,7 @@ bool isVolumePath(const std::string& path);
 /// A volume in the physical frame of its file: RAS for NIfTI and MGH, that of the header otherwise.
 struct Volume {
   std::shared_ptr<ScalarGrid> grid;
-  std::vector<std::string> left_out;  ///< what the file holds beyond that, such as later times
+  std::vector<std::string> left_out;  ///< further content of the file, such as later times
 };
 
 /// \throws InputError naming the file where it is no volume, or cut off.

@@ -1,4 +1,4 @@
-/// Reads clouds and meshes from files, and refuses what it cannot trust with one clear line.
+/// Reads clouds and meshes from files, and rejects invalid ones with one clear line.
 #pragma once
 
 #include <pcl/PCLPointCloud2.h>
@@ -20,10 +20,10 @@ namespace pcl_symmetry::apps {
 /// The endings of files that loadShape() reads, for help and messages.
 inline const char* const kShapeFiles = ".pcd, .ply, .obj, .stl, .off, .glb, .xyz, .pts, .asc, .txt or .csv";
 
-/// Those that are taken from folders, where .txt and .csv hold many other things.
+/// The endings of files taken from folders, where .txt and .csv files hold many other things.
 inline const char* const kShapeFilesOfFolders = ".pcd, .ply, .obj, .stl, .off, .glb, .xyz, .pts or .asc";
 
-/// What a file holds. Points may be non-finite, as scanners write them.
+/// The content of a file. Points may be non-finite, as scanners write them.
 struct Shape {
   pcl::PCLPointCloud2 cloud;                   ///< all fields of the file, input frame; the vertices of a mesh
   pcl::PointCloud<pcl::PointXYZ>::Ptr points;  ///< the coordinates minus the shift, same order and organization
@@ -32,7 +32,7 @@ struct Shape {
   Eigen::Vector3d shift = Eigen::Vector3d::Zero();
   Eigen::Vector4f sensor_origin = Eigen::Vector4f::Zero();  ///< input frame
   Eigen::Quaternionf sensor_orientation = Eigen::Quaternionf::Identity();
-  std::vector<std::string> left_out;  ///< what the file holds beyond that, such as lists of vertices
+  std::vector<std::string> left_out;  ///< further content of the file, such as lists of vertices
 };
 
 /// \param path a file of kShapeFiles, in capitals or not; "-" for standard input, whose kind is known by its content, as
@@ -47,7 +47,7 @@ bool hasShapeExtension(const std::string& path);
 std::string extensionOfContent(const std::string& content);
 
 /// \return the mesh where a volume has a value.
-/// \throws InputError naming the file where there is no such place.
+/// \throws InputError naming the file if there is no such surface.
 Shape surfaceOf(const std::string& path, const ScalarGrid& volume, double value);
 
 /// \param indices of these points in the cloud, where they are wanted.

@@ -13,8 +13,8 @@
 
 namespace pcl_symmetry::apps {
 
-// All take the path for their errors and the whole file, and throw InputError naming the place in the file, what stands
-// there, and the rule.
+// All take the path for their errors and the whole file, and throw InputError naming the position in the file, what
+// stands there, and the rule.
 
 /// A PCD file with fields x, y and z: ascii, binary or binary_compressed.
 CloudFile readPCD(const std::string& path, std::string_view text);

@@ -48,15 +48,16 @@ struct Voxels {
 }
 
 /// \return bytes of a stream of zlib or of several of gzip, at most as many as wanted.
-std::string inflated(const std::string& path, std::string_view packed, std::uint64_t most) {
+std::string inflated(const std::string& path, std::string_view packed, std::uint64_t max_size) {
   z_stream stream{};
   constexpr int kZlibOrGzip = 15 + 32;
   std::string bytes;
   int state = inflateInit2(&stream, kZlibOrGzip);
   stream.next_in = reinterpret_cast<Bytef*>(const_cast<char*>(packed.data()));
   stream.avail_in = static_cast<uInt>(packed.size());
-  while (state == Z_OK && bytes.size() < most) {
-    const std::size_t size = bytes.size(), room = std::min<std::size_t>(most - size, std::max<std::size_t>(size, 4096));
+  while (state == Z_OK && bytes.size() < max_size) {
+    const std::size_t size = bytes.size(),
+                      room = std::min<std::size_t>(max_size - size, std::max<std::size_t>(size, 4096));
     bytes.resize(size + room);
     stream.next_out = reinterpret_cast<Bytef*>(&bytes[size]);
     stream.avail_out = static_cast<uInt>(std::min<std::size_t>(room, 1u << 30));
@@ -66,7 +67,7 @@ std::string inflated(const std::string& path, std::string_view packed, std::uint
     if (state == Z_STREAM_END && stream.avail_in > 2 && stream.next_in[0] == 0x1f) state = inflateReset(&stream);
   }
   inflateEnd(&stream);
-  if (state != Z_STREAM_END && bytes.size() < most) unreadable(path, "its compressed data are damaged or cut off");
+  if (state != Z_STREAM_END && bytes.size() < max_size) unreadable(path, "its compressed data are damaged or cut off");
   return bytes;
 }
 

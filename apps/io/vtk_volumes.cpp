@@ -45,7 +45,7 @@ void readVTI(const std::string& path, Volume& volume) {
   const std::lock_guard<std::mutex> lock(drawing_mutex);
   const VtkMessages messages;
   const std::string text = readWholeFile(path);
-  // VTK takes what is left of data that are cut off.
+  // VTK accepts truncated data.
   if (text.rfind("</VTKFile>") == std::string::npos) reject(path, "cannot be read, it is cut off");
   vtkNew<vtkXMLImageDataReader> reader;
   reader->SetFileName(path.c_str());

@@ -1,4 +1,4 @@
-/// What draws: VTK, in the module pcl_symmetry_drawing. The functions of pictures/picture.h are what tools call; they
+/// Drawing by VTK, in the module pcl_symmetry_drawing. The functions of pictures/picture.h are what tools call; they
 /// check, and come here through functionOf(). One thread at a time draws.
 #pragma once
 
@@ -13,7 +13,7 @@ namespace pcl_symmetry::apps {
 
 inline constexpr const char* kDrawingModule = "pcl_symmetry_drawing";
 
-/// Where a picture goes.
+/// The output of a picture.
 struct PictureTarget {
   std::string name;   ///< in error messages
   std::string file;   ///< that is written

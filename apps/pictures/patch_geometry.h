@@ -1,5 +1,4 @@
-/// What a picture and a page show alike: where the rectangles of planes and the lines of axes lie, and the shading of
-/// points.
+/// Common geometry of pictures and pages: the rectangles of planes, the lines of axes, and the shading of points.
 #pragma once
 
 #include <Eigen/Core>

@@ -46,7 +46,7 @@ struct PicturePanel {
   std::vector<std::pair<int, std::string>> legend = {};  ///< segments and their names, in a corner of the picture
 };
 
-/// What a picture shows: the same shape in every panel.
+/// The content of a picture: the same shape in every panel.
 struct PictureScene {
   pcl::PointCloud<pcl::PointXYZ>::ConstPtr points;  ///< non-finite points are not drawn
   std::optional<pcl::PolygonMesh> mesh = {};        ///< drawn in light gray
@@ -56,11 +56,11 @@ struct PictureScene {
   bool show_color_bar = true;  ///< legend of the support, in panels that have support
 };
 
-/// What is up where nobody says it: z, and -y for a camera, whose viewpoint is the origin.
+/// The default up direction: z, and -y for a camera, whose viewpoint is the origin.
 /// \param middle of the points.
 Eigen::Vector3d upFor(const std::optional<Eigen::Vector3d>& viewpoint, const Eigen::Vector3d& middle);
 
-/// Turns the view so that \p up is to it what z was; any length but zero.
+/// Rotates the view so that \p up takes the role of z; any length but zero.
 void standUpright(PictureScene& scene, const Eigen::Vector3d& up);
 
 /// Renders off screen and writes a PNG whole. Needs a display; tools start one with Xvfb, see findDisplay().

@@ -1,4 +1,4 @@
-/// What VTK draws of a scene: points, mesh, planes, axes, and their legends.
+/// VTK actors of a scene: points, mesh, planes, axes, and their legends.
 #pragma once
 
 #include <vtkActor.h>

@@ -10,7 +10,7 @@ namespace pcl_symmetry::apps {
 
 struct PageText {
   std::string title;
-  std::string text;          ///< what the tool prints, shown below
+  std::string text;          ///< the output of the tool, shown below
   RasterImage picture = {};  ///< of a camera, shown beside the scene; empty for none
 };
 

@@ -19,7 +19,7 @@ struct VirtualScannerOptions {
   std::optional<double> field_of_view;
   double distance = 2.0;           ///< from the center of the bounding box, in its diagonals, > 0.5
   double noise = 0.0;              ///< standard deviation of the depth along the ray, in diagonals, >= 0
-  bool random_pose = false;        ///< turn and move the model before it is scanned
+  bool random_pose = false;        ///< rotate and move the model before it is scanned
   std::uint64_t seed = 1;          ///< of pose and noise
   std::uint64_t noise_stream = 0;  ///< tells scans of one pose apart, so that their noise is not the same
   int num_threads = 0;             ///< 0 = all; does not change the result
@@ -48,7 +48,8 @@ public:
   double diagonal() const;
 
   /// \param direction from the center toward the scanner, in the model's frame; any length but zero.
-  /// \param options with random_pose, scanner and model are turned and moved together, so what is seen stays.
+  /// \param options with random_pose, scanner and model are rotated and moved together, so that the view stays the
+  /// same.
   /// \throws std::runtime_error if no ray hits.
   VirtualScan scan(const Eigen::Vector3d& direction, const VirtualScannerOptions& options = {}) const;
 

@@ -1,4 +1,4 @@
-/// What pcl_symmetry_scene tells of a scene: a table, JSON, the completed scene, a picture.
+/// Reports of pcl_symmetry_scene: a table, JSON, the completed scene, a picture.
 #pragma once
 
 #include <nlohmann/json.hpp>

@@ -46,7 +46,7 @@ struct SymmetryMeasure {
 /// What is measured.
 struct MeasureOptions {
   std::string of = "planes";       ///< planes, axes or centers
-  int fold = -1;                   ///< of axes: order of the turns, 0 = any angle; below 0: 2 to 8 and any angle
+  int fold = -1;                   ///< of axes: order of the rotations, 0 = any angle; below 0: 2 to 8 and any angle
   std::string method = "sampled";  ///< of planes: the estimator, one of kMethodNames
   bool as_published = false;
   std::optional<double> refined_share;  ///< of planes by method rotational
@@ -256,13 +256,13 @@ struct Slice {
     step = std::max(extent[across], extent[up]) / size;
   }
 
-  Points places() const {
+  Points positions() const {
     Points result(3, size * size);
     for (int i = 0; i < size * size; ++i) {
-      Eigen::Vector3d place = middle;
-      place[across] += (i % size + 0.5 - 0.5 * size) * step;
-      place[up] -= (i / size + 0.5 - 0.5 * size) * step;
-      result.col(i) = place.cast<float>();
+      Eigen::Vector3d position = middle;
+      position[across] += (i % size + 0.5 - 0.5 * size) * step;
+      position[up] -= (i / size + 0.5 - 0.5 * size) * step;
+      result.col(i) = position.cast<float>();
     }
     return result;
   }
@@ -290,7 +290,7 @@ RasterImage drawSlices(const SymmetryMeasure& map, const CellBox& volume, const 
   float least = std::numeric_limits<float>::max(), greatest = 0.0f;
   for (int axis = 0; axis < 3; ++axis) {
     slices.emplace_back(volume, axis, size);
-    symmetry.push_back(map.through(slices[axis].places(), threads));
+    symmetry.push_back(map.through(slices[axis].positions(), threads));
     least = std::min(least, *std::min_element(symmetry[axis].begin(), symmetry[axis].end()));
     greatest = std::max(greatest, *std::max_element(symmetry[axis].begin(), symmetry[axis].end()));
   }

@@ -75,17 +75,17 @@ private:
     window_.removeAllShapes();
     const SymmetryPlane* const plane = planes_.empty() ? nullptr : &planes_[plane_ - 1];
     const std::vector<float> support = plane ? refinement_.computePointSupport(*plane) : std::vector<float>();
-    Colored::Ptr cloud(new Colored), mirrored(new Colored);
+    Colored::Ptr cloud(new Colored), reflected(new Colored);
     for (std::size_t i = 0; i < scene_.points->size(); ++i) {
       const pcl::PointXYZ& point = (*scene_.points)[i];
       if (!pcl::isXYZFinite(point)) continue;
       add(*cloud, point.getVector3fMap(), plane ? cividis(support[i]) : kPlainPointColor);
       if (plane && reflected_)
-        add(*mirrored, plane->reflect(point.getVector3fMap().cast<double>()).cast<float>(), distinctColor(5));
+        add(*reflected, plane->reflect(point.getVector3fMap().cast<double>()).cast<float>(), distinctColor(5));
     }
     window_.addPointCloud<pcl::PointXYZRGB>(cloud, "cloud");
     window_.setPointCloudRenderingProperties(pcl::visualization::PCL_VISUALIZER_POINT_SIZE, 3, "cloud");
-    if (!mirrored->empty()) window_.addPointCloud<pcl::PointXYZRGB>(mirrored, "reflected");
+    if (!reflected->empty()) window_.addPointCloud<pcl::PointXYZRGB>(reflected, "reflected");
     std::string text = "no plane";
     if (plane) {
       text = formatted("plane %d of %zu: confidence %.2f, support %.2f", plane_, planes_.size(), plane->confidence,

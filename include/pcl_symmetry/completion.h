@@ -19,8 +19,8 @@ struct CompletedCloud {
 };
 
 /// Completes a partial scan by its reflection in a plane of symmetry. A point adds nothing if its reflection falls onto
-/// the surface that was measured, or into space that the scanner saw to be empty. Added points have their position,
-/// their normal and the viewpoint that they may carry reflected; their other fields are those of the source.
+/// the measured surface or into free space. Added points have their position, their normal and the viewpoint that they
+/// may carry reflected; their other fields are those of the source.
 /// \param cloud points that are not finite stay in the cloud and add nothing. Without a finite point nothing is added,
 /// and PCL_WARN says so.
 /// \param plane of symmetry, frame of the cloud.

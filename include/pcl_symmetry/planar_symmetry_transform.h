@@ -14,8 +14,7 @@ namespace PCL_SYMMETRY_EXPORTS pcl_symmetry {
 /// (Sections 3 and 4.1 to 4.3 of the paper).
 ///
 /// The defaults depend neither on units nor on tuning: the grid covers the bounding ball of the points, and sigma is
-/// two cells. With a viewpoint the map holds seenSymmetry() of D and of its counterpart for the space that the scanner
-/// saw to be empty.
+/// two cells. With a viewpoint the map holds seenSymmetry() of D and of its counterpart for free space.
 ///
 /// \code
 /// pcl_symmetry::PlanarSymmetryTransform<pcl::PointXYZ> transform;

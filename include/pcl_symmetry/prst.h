@@ -44,7 +44,7 @@ SymmetrySignatures describeBySymmetry(const Points& points, const PRSTParameters
 ///
 /// Honors setIndices; points that are not finite are left out. The descriptor has no neighborhoods: setRadiusSearch,
 /// setKSearch, setSearchMethod and setSearchSurface of the base class are ignored. Clouds that hold no answer (no
-/// finite point, all points at one place) give an empty output and a PCL_WARN.
+/// finite point, all points at one position) give an empty output and a PCL_WARN.
 ///
 /// \code
 /// pcl_symmetry::PRSTEstimation<pcl::PointXYZ> estimation;
@@ -166,8 +166,8 @@ float productDistance(const PRSTSignature32768& prst_a, const GEDTSignature32768
 /// L2 distance, differences weighted by sqrt(sin theta), the size of the bins (Section 5.2).
 /// \return >= 0.
 float descriptorDistance(const PRSTSignature32768& a, const PRSTSignature32768& b);
-/// The same for PRSD. Departure from Kazhdan et al. (2004), who take the maximum difference: L2 as for PRST, so that
-/// both descriptors are compared alike.
+/// The same for PRSD. Departure from the paper: Kazhdan et al. (2004) take the maximum difference; L2 compares both
+/// descriptors alike.
 /// \return >= 0.
 float descriptorDistance(const PRSDSignature1024& a, const PRSDSignature1024& b);
 /// L2 distance.

@@ -22,12 +22,12 @@ struct ObjectScan {
   std::optional<Visibility> seen;  ///< what the scanner saw, frame of the points; nothing = the object from all sides
 };
 
-/// Where a scan belongs.
+/// The pose of a scan.
 struct ScanPose {
   /// From the frame of this scan to that of the first scan that is kept; the identity where this one is left out.
   Eigen::Isometry3d T_first_scan = Eigen::Isometry3d::Identity();
-  /// Estimated probability that the scan fits the others there, in [0, 1], by their points and by the space that each
-  /// scanner saw to be empty. Another place may fit as well where the object looks alike from several sides.
+  /// Estimated probability that the scan fits the others there, in [0, 1], by their points and by the free space of
+  /// each scanner. Another pose may fit as well if the object looks alike from several sides.
   double confidence = 0.0;
   std::string left_out;  ///< why the scan is left out, one sentence; empty where it is kept
 };
@@ -49,7 +49,7 @@ struct ScanPoint {
 /// Scans of one object in one frame.
 struct RegisteredScans {
   std::vector<ScanPose> scans;  ///< one for each scan
-  std::vector<ScanPair> pairs;  ///< those that converged or are used
+  std::vector<ScanPair> pairs;  ///< pairs that converged or are used
   double resolution = 0.0;      ///< input units, distance that the scans resolve: of their points and of their noise
   std::vector<std::pair<std::string, double>> timing_ms;  ///< stages in order
 
@@ -75,8 +75,8 @@ RegisteredScans registerAll(const std::vector<ObjectScan>& scans, const CloudReg
 /// Scans of one object as one cloud.
 template <typename PointT>
 struct MergedCloud {
-  RegisteredScans registration;  ///< poses, and what is left out
-  /// Points of the scans, thinned, in the frame of the first scan that is kept; their normals are turned with them.
+  RegisteredScans registration;  ///< poses, and the scans left out
+  /// Points of the scans, thinned, in the frame of the first scan that is kept; their normals are rotated with them.
   pcl::PointCloud<PointT> cloud;
   std::vector<int> scans;  ///< of each point of the cloud, the index of its scan
 };

@@ -23,7 +23,7 @@ namespace detail {
 struct DatabaseParts;
 }
 
-/// How a database is made and used.
+/// Options of a database.
 struct DatabaseOptions {
   /// Models, drawn by their names, that compact forms are fitted to and distances are scaled by, >= 1. Twice as many
   /// take four times the time and memory of the fit.
@@ -44,7 +44,7 @@ struct DatabaseOptions {
   void validate() const;
 };
 
-/// What SymmetryDatabase::recognize() tries, and what it accepts.
+/// Options of SymmetryDatabase::recognize().
 struct RecognitionOptions {
   int num_candidates = 10;  ///< models that look most like the scan and are tried, >= 1
   /// For scans from a viewpoint, in databases of more than 300 models: models that are tried where none of the first
@@ -69,7 +69,7 @@ struct ModelMatch {
   double distance;
 };
 
-/// What speaks for a model where a scan puts it. Surfaces are one within what the scanner resolves.
+/// Evidence for a model in the pose of a scan. Surfaces agree within the resolution of the scanner.
 struct ModelEvidence {
   double on_model = 0.0;  ///< of the scan's points near the model, the share on its surface, in [0, 1]
   double shown = 0.0;  ///< of the surface of the model that faces the scanner, the share that was measured, in [0, 1]
@@ -79,8 +79,8 @@ struct ModelEvidence {
 struct RecognizedModel {
   std::string name;                                                ///< of the model
   Eigen::Isometry3d T_model_scan = Eigen::Isometry3d::Identity();  ///< frame of the scan to that of the model
-  /// How well the scan fits there: support is the share of its points on the surface of the model, as wide as the
-  /// points of the scan are apart and noisy. How densely the model was sampled does not count.
+  /// How well the scan fits there: support is the share of its points on the surface of the model, within the spacing
+  /// and the noise of the scan. The density of the model's points does not matter.
   PoseScore score;
   ModelEvidence evidence;  ///< what the confidence follows from
   /// Probability that the scan shows this model or one of the same shape, in [0, 1]: from the evidence, and how far its
@@ -94,14 +94,14 @@ struct RecognizedModel {
 /// Accepted models, best first. Empty: the object is unknown.
 using Recognition = std::vector<RecognizedModel>;
 
-/// Where a model comes from; what is not known stays empty.
+/// The origin of a model; unknown fields are empty.
 struct ModelSource {
   std::string path;               ///< file or address
-  std::string checksum;           ///< of what is there; build() passes over models whose checksum is stored
+  std::string checksum;           ///< of the content; build() skips models whose checksum is stored
   std::vector<std::string> tags;  ///< its class, or any other words; one line each
 };
 
-/// What is stored of a model beside its points.
+/// Data stored for a model besides its points.
 struct ModelInfo {
   std::string name;            ///< unique in the database
   std::int64_t time = 0;       ///< when it was stored, seconds since 1970 (UTC)
@@ -116,7 +116,7 @@ struct ModelInput {
   std::function<pcl::PointCloud<pcl::PointXYZ>()> load = {};  ///< called unless the source is stored already
 };
 
-/// What SymmetryDatabase::build() did.
+/// Result of SymmetryDatabase::build().
 struct BuildReport {
   std::size_t num_added = 0;                                  ///< models that were stored
   std::size_t num_kept = 0;                                   ///< models whose source was stored before
@@ -161,12 +161,12 @@ public:
   std::vector<std::string> names() const;
   std::size_t size() const;                      ///< number of models
   bool contains(const std::string& name) const;  ///< whether there is such a model
-  /// What is known of a model besides its shape.
+  /// Data of a model besides its shape.
   /// \throws pcl::BadArgumentException where there is no such model.
   ModelInfo info(const std::string& name) const;
   /// \return the unit that the database was made with.
   std::string unit() const;
-  /// Reads what others have changed since.
+  /// Reads the changes that others have made since.
   void refresh();
 
   /// Stores a model, or replaces the model of that name. It is found at once.
@@ -182,7 +182,7 @@ public:
   /// Stores many models, each as soon as it is described, and fits the compact forms as save() does, unless
   /// DatabaseOptions::is_part. Models that cannot be used are reported, and the others stored. An interrupted build
   /// goes on where it stopped: a model of the same name and the same source checksum is kept.
-  /// \throws pcl::IOException naming file and reason; what was stored before stays stored.
+  /// \throws pcl::IOException naming file and reason; earlier changes stay stored.
   BuildReport build(const std::vector<ModelInput>& models, const BuildProgress& progress = {});
   /// Adds the models of other databases, such as parts that several machines built, and fits the compact forms as
   /// save() does. Models are copied, not described again, in one change: all of them or none. The result answers like a
@@ -201,7 +201,7 @@ public:
   /// \throws pcl::IOException naming file and reason; the database is unchanged then.
   void rebuild();
 
-  /// \return what is damaged, a sentence each; empty where all is well.
+  /// \return the damages, a sentence each; empty if there are none.
   /// \throws pcl::IOException naming file and reason where it cannot be read at all.
   static std::vector<std::string> check(const std::string& file);
 
@@ -221,7 +221,7 @@ public:
   std::vector<ModelMatch> match(const Cloud& cloud, int num_nearest = 10, const Viewpoint& viewpoint = {}) const;
 
   /// Makes what recognize() needs for scans from a viewpoint, which the first one does otherwise: once, on all threads
-  /// of DatabaseOptions. A call after a change makes what is new.
+  /// of DatabaseOptions. A call after a change adds the new models.
   /// \throws pcl::IOException naming file and reason.
   void prepare() const;
 

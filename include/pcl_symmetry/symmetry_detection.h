@@ -26,7 +26,7 @@ inline std::vector<SymmetryPlane> onlySymmetries(std::vector<SymmetryPlane> plan
 
 /// Detects the planes of symmetry of a cloud in one call (Sections 4.1 to 4.4 of the paper).
 /// \param cloud points that are not finite are left out.
-/// \param options those that ask for other planes, as approximate does, change nothing here.
+/// \param options options for other planes, such as approximate, have no effect here.
 /// \return the symmetries, best first, in the frame of the cloud. Empty where the shape has no symmetry; where it
 /// has an axis of revolution and so a plane at every angle; and where the cloud holds no answer, which PCL_WARN says.
 /// SymmetryMaximaRefinement gives axes, and possible and approximate planes.

@@ -102,8 +102,8 @@ public:
   /// bins, refined by publishedPlanes() and not judged. Viewpoint, mesh and normals are not used. Volumes ignore it.
   void setAsPublished(bool as_published) { as_published_ = as_published; }
 
-  /// \return the planes, best first, in the frame of the input: by their kind symmetries, then what is only possible.
-  /// Empty where there is neither, and where the input holds no answer, see getReason().
+  /// \return the planes, best first, in the frame of the input: symmetries, then possible ones. Empty where there is
+  /// neither, and where the input holds no answer, see getReason().
   /// \throws pcl::BadArgumentException where the points surround the viewpoint that was given.
   std::vector<SymmetryPlane> compute();
 
@@ -116,7 +116,7 @@ public:
   std::vector<std::vector<float>> computePointSupport(const std::vector<ReflectionPlane>& planes) const;
 
   /// \return all that the last compute() found, with the planes, in the frame of the input: axes and centers, rotations
-  /// of scans, the best plane where there is no symmetry, what the tolerance was, and the time of each stage.
+  /// of scans, the best plane where there is no symmetry, the tolerance, and the time of each stage.
   const Detection& getDetection() const { return found_; }
   const std::vector<SymmetryAxis>& getAxes() const { return found_.axes; }  ///< Detection::axes
   /// \return the map that was given, or else the map that the last compute() made.

@@ -22,17 +22,17 @@ namespace PCL_SYMMETRY_EXPORTS pcl_symmetry {
 
 /// Poses around a guess.
 struct PoseNeighborhood {
-  double angle;     ///< radians, greatest turn away from the guess, in (0, pi]
+  double angle;     ///< radians, greatest rotation away from the guess, in (0, pi]
   double distance;  ///< input units, greatest way from where the guess puts the center of the source, >= 0
 };
 
 /// The search for a pose and its refinement.
 struct CloudRegistrationOptions {
-  /// Only poses around the guess, as a track needs them; not set: all poses. Frames are then not looked for.
+  /// Only poses around the guess, as a track needs them; not set: all poses. Frames are then not searched.
   std::optional<PoseNeighborhood> around = {};
   FrameOptions frame;        ///< of the frames that poses come from, beside evenly spread rotations
   PoseSearchOptions search;  ///< of the search for poses
-  /// Where no pose convinces, poses are looked for by pairs of points, as clouds that share a small part need it.
+  /// If no pose is convincing, also searches poses by pairs of points, which clouds that share a small part need.
   bool search_parts = true;
   /// Refines the answer once more with pairs as close as the points allow; its evidence and confidence are those
   /// before.
@@ -54,7 +54,7 @@ struct CloudRegistrationOptions {
 /// A pose of a cloud in another one.
 struct RegisteredPose {
   Eigen::Isometry3d T_target_source = Eigen::Isometry3d::Identity();  ///< moves the source onto the target
-  /// How good this pose is. The source counts as the scan, unless only the target was seen from one side.
+  /// Score of the pose. The source counts as the scan, unless only the target was seen from one side.
   PoseScore score;
 };
 
@@ -130,7 +130,7 @@ CloudRegistration registerClouds(const Points& source, const std::optional<Visib
 /// after it was set, and kept: a change of its points needs setInputTarget() again.
 ///
 /// Where nothing fits, or a cloud holds no answer, hasConverged() is false, the transformation is the identity, the
-/// output is the source as it was, getReason() says why, which PCL_WARN prints, and getPoses() lists what was found.
+/// output is the source as it was, getReason() says why, which PCL_WARN prints, and getPoses() lists the poses found.
 ///
 /// The class is compiled where it is used, for any point type with x, y and z. Source and target have the same one
 /// where PCL's own classes ask for that, as PCL 1.13 does.
@@ -182,8 +182,7 @@ public:
     min_confidence_ = min_confidence;
   }
   /// Searches only around the guess that align() is given: a moving object is tracked from one frame to the next, and
-  /// does not turn to a pose farther away that symmetry makes equal. align() does not converge where nothing fits
-  /// there.
+  /// does not jump to an equivalent pose farther away. align() does not converge where nothing fits there.
   /// \param angle radians, in (0, pi].
   /// \param distance of the center of the source, input units, >= 0.
   void setSearchAround(double angle, double distance) {
@@ -212,7 +211,7 @@ public:
   const PoseScore& getScore() const { return result_.score; }
   /// \return estimated probability that the best pose of the last align() is right, in [0, 1].
   double getConfidence() const { return result_.confidence; }
-  /// \return what that follows from: agreement, what was to be seen and was not measured, and more.
+  /// \return the evidence for it: agreement, surface that should be visible but was not measured, and more.
   const PoseEvidence& getEvidence() const { return result_.evidence; }
   /// \return the best poses that the last align() found, see CloudRegistration::poses; that of the transformation is the
   /// first one. Empty where a cloud held no answer.

@@ -1,4 +1,4 @@
-/// One frame of a sensor, from points to objects: supporting planes, clusters, and what symmetry says of each cluster.
+/// One frame of a sensor, from points to objects: supporting planes, clusters, and the symmetries of each cluster.
 #pragma once
 
 #include <pcl/common/io.h>
@@ -23,7 +23,7 @@
 
 namespace PCL_SYMMETRY_EXPORTS pcl_symmetry {
 
-/// How a scene falls into objects, and what is done with each.
+/// How a scene is divided into objects, and what is done with each.
 struct SceneOptions {
   /// Points within this of a supporting plane belong to it, input units, >= 0; 0 = from the spacing and the roughness
   /// of the points.
@@ -59,7 +59,7 @@ struct SupportingPlane {
   pcl::Indices indices;          ///< of its points, into the scene
 };
 
-/// A cluster of a scene, and what was found, in the frame of the scene; without the map.
+/// A cluster of a scene and its results, in the frame of the scene; without the map.
 struct SceneObject : Detection {
   pcl::Indices indices;                ///< of its points, into the scene
   std::optional<SymmetryFrame> frame;  ///< nothing without SceneOptions::frames
@@ -71,8 +71,8 @@ struct SceneObject : Detection {
   std::string model_reason;              ///< why no model of the database fits; empty where one does
 };
 
-/// Two pieces that touch, cut apart where the surface bends inwards, and what symmetry says of them: one object where
-/// one symmetry explains both.
+/// Two pieces that touch, cut apart where the surface bends inwards, and the decision on them: one object if one
+/// symmetry explains both.
 struct SceneJunction {
   /// Index into SceneAnalysis::objects of the object of the first piece; that of the second is the same where symmetry
   /// joined them.
@@ -87,14 +87,14 @@ struct SceneJunction {
   bool isJoined() const { return first == second; }  ///< by symmetry
 };
 
-/// What SymmetryScene found.
+/// Result of SymmetryScene.
 struct SceneAnalysis {
   SeenSpace::ConstPtr seen;               ///< what the sensor saw, for further analyses
   std::vector<SupportingPlane> supports;  ///< tables, floors and walls, as they were found
   std::vector<SceneObject> objects;       ///< most points first
   std::vector<SceneJunction> junctions;   ///< with SceneOptions::separate
   std::string reason;                     ///< why there is no answer, which PCL_WARN prints, or empty
-  /// What speaks for one object alone, in a few words; its faces may pass for supporting planes, and
+  /// Why the scene is a single object, in a few words; its faces may pass for supporting planes, and
   /// SymmetryMaximaRefinement takes it as a whole. Empty for a scene.
   std::string alone;
   double plane_distance = 0.0;                            ///< that was used, input units
@@ -106,9 +106,9 @@ struct SceneAnalysis {
 ///
 /// Supporting planes are found by PCL's sample consensus and left out; the rest falls into clusters by PCL's Euclidean
 /// clustering, with distances that follow from the points. Objects that touch are cut apart where the surface bends
-/// inwards (PCL's supervoxels and locally convex patches); pieces that one symmetry explains are joined again. What
-/// the sensor saw is made once of the whole scene (SeenSpace), so that an object in front does not count as seen empty
-/// space beside the one behind it. Space behind a supporting plane counts as free of the objects before it
+/// inwards (PCL's supervoxels and locally convex patches); pieces that one symmetry explains are joined again. What the
+/// sensor saw is made once of the whole scene (SeenSpace), so that an object in front does not count as free space
+/// beside the one behind it. Space behind a supporting plane counts as free of the objects before it
 /// (SeenSpace::withSupport()).
 ///
 /// \code
@@ -152,7 +152,7 @@ public:
   }
 
   /// Finds the objects of the frame.
-  /// \return what was found; no object and a reason where the scene holds no point.
+  /// \return the results; no object and a reason if the scene has no point.
   /// \throws pcl::BadArgumentException where all points lie at the viewpoint that was given.
   SceneAnalysis compute() const;
 

@@ -73,14 +73,14 @@ pcl::PointCloud<pcl::PointXYZ>::ConstPtr positionsOf(const pcl::PointCloud<Point
 /// objects of the scene: ScanAnalysis::setSeenSpace(), SymmetryDatabase::recognize(), completeBySymmetry().
 ///
 /// In front of a surface space is free, behind any surface it is unknown, whatever object the surface belongs to, and
-/// outside the picture it is unknown.
+/// outside the image it is unknown.
 class SeenSpace {
 public:
   using ConstPtr = std::shared_ptr<const SeenSpace>;
 
   SeenSpace() = default;  ///< nothing is known: clouds show their objects from all sides
   /// Takes what a scanner saw.
-  /// \param source how the place of the scanner is known.
+  /// \param source how the position of the scanner is known.
   SeenSpace(Visibility visibility, ViewpointSource source) : visibility_(std::move(visibility)), source_(source) {}
 
   /// The space that the scanner of a whole scene saw. An organized cloud shows it by its own pixels, any other cloud by
@@ -95,7 +95,8 @@ public:
                      std::size_t max_pixels = Visibility::kMaxPixels)
       : SeenSpace(ofScene(*detail::positionsOf(scene), viewpoint, max_pixels)) {}
 
-  /// What several scanners saw, such as the scans of a turntable in one frame: free is what any of them saw to be free.
+  /// The views of several scanners, such as the scans of a turntable in one frame: space is free if it is free for any
+  /// of them.
   /// \param spaces those without a viewpoint add nothing.
   static SeenSpace together(const std::vector<SeenSpace>& spaces);
 
@@ -105,13 +106,13 @@ public:
   SeenSpace withSupport(const Eigen::Vector4d& support, double margin) const;
 
   /// The same for objects that stand on nothing, or whose support is unknown. Otherwise an analysis of a part of a
-  /// scene, named by setIndices(), looks for the planes that it stands on, unless withSupport() gave one.
+  /// scene, named by setIndices(), searches for the planes that it stands on, unless withSupport() gave one.
   SeenSpace withoutSupport() const;
 
   /// \return null where there is no viewpoint.
   const Visibility* visibility() const { return visibility_ ? &*visibility_ : nullptr; }
   ViewpointSource source() const { return source_; }  ///< how the viewpoint is known
-  /// \return whether an analysis of a part of the scene looks for the planes that it stands on.
+  /// \return whether an analysis of a part of the scene searches for the planes that it stands on.
   bool asksForSupport() const { return visibility_ && asks_for_support_; }
 
 private:
@@ -123,7 +124,7 @@ private:
   bool asks_for_support_ = true;
 };
 
-/// Takes the errors of a depth camera out of its frame: each point becomes that of the plane through the pixels around
+/// Removes the errors of a depth camera from its frame: each point becomes that of the plane through the pixels around
 /// it, and pixels that fly between two surfaces become NaN. Edges stay; parts that are narrower than two pixels are
 /// lost.
 /// \param frame organized.

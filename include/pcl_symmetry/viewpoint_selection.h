@@ -80,7 +80,7 @@ public:
   /// \throws pcl::BadArgumentException for other directions.
   Eigen::Affine3f computePose(const Eigen::Vector3d& direction) const;
 
-  /// How much of the object a view repeats.
+  /// The score of a view.
   /// \param direction unit.
   /// \return S(direction), see Figure 16 of the paper.
   double getScore(const Eigen::Vector3d& direction) const { return viewpointScore(planes_, direction); }

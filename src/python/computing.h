@@ -1,4 +1,4 @@
-/// Long calls from Python: other threads of Python run meanwhile, Ctrl-C ends them, and their progress is told.
+/// Long calls from Python: other threads of Python run meanwhile, Ctrl-C ends them, and they report their progress.
 #pragma once
 
 #include <pybind11/pybind11.h>
@@ -10,21 +10,22 @@
 
 namespace pcl_symmetry::python {
 
-/// What Python raised during a call. No std::exception, as those are collected where one of many models fails.
+/// An exception of Python raised during a call. Not a std::exception, as those are collected where one of many models
+/// fails.
 struct RaisedMeanwhile {
   std::shared_ptr<pybind11::error_already_set> error;
 };
 
-/// Called with the share done; null: nobody asks. The package sets it for the time of a call.
+/// Called with the share done; null if there is no callback. The package sets it for the duration of a call.
 inline thread_local PyObject* told_progress = nullptr;
 
-/// Stands in place of pybind11::gil_scoped_release around all that may take long.
+/// Replaces pybind11::gil_scoped_release around long computations.
 class Computing {
 public:
-  Computing() : watch_(&look) {}
+  Computing() : monitor_(&report) {}
 
 private:
-  static void look(double share) {
+  static void report(double share) {
     const pybind11::gil_scoped_acquire acquire;
     if (PyErr_CheckSignals() == 0) {
       if (!told_progress) return;
@@ -37,7 +38,7 @@ private:
   }
 
   pybind11::gil_scoped_release release_;
-  Watch watch_;
+  ProgressMonitor monitor_;
 };
 
 /// Adds a function with these names of parameters, which all are given by the package.
@@ -46,7 +47,7 @@ void add(pybind11::module_& module, const char* name, const Function& function, 
   module.def(name, function, pybind11::arg(parameters)...);
 }
 
-/// Adds what the package needs for it to a module.
+/// Adds the functions that the package needs for this to a module.
 inline void addComputing(pybind11::module_& module) {
   module.def("tell",
              [](const pybind11::object& progress) { told_progress = progress.is_none() ? nullptr : progress.ptr(); });

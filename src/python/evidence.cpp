@@ -43,7 +43,7 @@ auto rowOf(const MeasuredPlane& judged) {
   terms.push_back(furtherTerm(e.kind, e.unknown));
   return std::make_tuple(judged.plane.coefficients(), static_cast<int>(e.kind), e.flat, judged.plane.confidence,
                          e.share, e.double_share, e.unknown, e.score, e.own_score, e.support, e.conflict, e.baseline,
-                         e.hold, e.spacing, e.roughness, e.tolerance, shareUnit(e), padded(terms));
+                         e.stiffness, e.spacing, e.roughness, e.tolerance, shareUnit(e), padded(terms));
 }
 
 auto rowOf(const JudgedRotation& judged) {
@@ -51,7 +51,7 @@ auto rowOf(const JudgedRotation& judged) {
   const RotationSigns& signs = judged.signs;
   return std::make_tuple(rotation.point, rotation.direction, rotation.fold, static_cast<int>(kindOf(rotation)),
                          rotation.confidence, rotation.support, rotation.off, rotation.far, rotation.halfway,
-                         signs.grown, signs.hold, signs.planes_off, signs.beside,
+                         signs.grown, signs.stiffness, signs.planes_off, signs.beside,
                          padded(rotationOddsTerms(rotation, signs)));
 }
 

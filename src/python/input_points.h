@@ -23,7 +23,7 @@ struct AnyArray {
 pybind11::array arrayOf(const char* name, const pybind11::object& object);
 
 /// \param faces indices into the vertices: (F, 3) or more, or lists, which may be of different lengths.
-/// \throws std::invalid_argument for another shape, and what is no index.
+/// \throws std::invalid_argument for another shape, and for invalid indices.
 std::vector<std::vector<int>> polygonsOf(const pybind11::object& faces);
 
 /// The points of an array that an analysis uses.

@@ -193,7 +193,7 @@ std::pair<RegisteredScans, py::array_t<int>> registerAllPoints(const std::vector
   return {std::move(found), std::move(of_points)};
 }
 
-/// \return what was found; where that is nothing, the points may be the reason.
+/// \return the result; if it is empty, the points may be the reason.
 /// \throws NoAnswer
 template <typename Found>
 Found answerFor(const Cloud& cloud, const pcl::Indices* indices, Found found) {
@@ -205,7 +205,7 @@ Found answerFor(const Cloud& cloud, const pcl::Indices* indices, Found found) {
   return found;
 }
 
-/// What a class for PCL uses of a cloud, and what it knows of the scanner.
+/// The points of a cloud that a class for PCL uses, and the viewpoint that it determines.
 class Look : public ScanAnalysis<pcl::PointXYZ> {
 public:
   /// \param indices of the object in its scene; none: the whole cloud.
@@ -241,8 +241,8 @@ py::tuple look(const AnyArray& points, const std::optional<pcl::Indices>& indice
   std::optional<Look> found;
   {
     const Computing computing;
-    const std::size_t most = max_points == 0 ? std::max<std::size_t>(2, cloud.size()) : max_points;
-    found.emplace(cloud, indices, from, ground, most, as_measured, seed, threads);
+    const std::size_t max_used = max_points == 0 ? std::max<std::size_t>(2, cloud.size()) : max_points;
+    found.emplace(cloud, indices, from, ground, max_used, as_measured, seed, threads);
   }
   return py::make_tuple(toRows(found->points()), toArray(found->getUsedIndices()), found->visibility(),
                         toString(found->getViewpointSource()), found->mayBeRings(), found->getReason());

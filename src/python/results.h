@@ -37,7 +37,7 @@ pybind11::dict dictOf(const PlaneSearch& search);
 // The evidence of decisions as structured arrays: one row a candidate, named columns.
 /// \return one row for each candidate of planes(evidence=True); empty without evidence.
 pybind11::array planeEvidence(const DetectionEvidence& evidence);
-/// \return one row for each turn of a scan; empty without evidence.
+/// \return one row for each rotation of a scan; empty without evidence.
 pybind11::array rotationEvidence(const DetectionEvidence& evidence);
 /// \return one row for each of SymmetryFrame::probable.
 pybind11::array frameEvidence(const SymmetryFrame& frame);

@@ -14,7 +14,7 @@
 
 namespace pcl_symmetry::detail {
 
-/// What a database is made of: the file, and what was read of it for queries. Every function throws pcl::IOException,
+/// The parts of a database: the file, and the data read from it for queries. Every function throws pcl::IOException,
 /// which names the file and the reason. Threads may call all functions at once; `store` belongs to who holds `mutex`.
 struct DatabaseParts {
   DatabaseParts(const std::string& file, const DatabaseOptions& database_options)
@@ -25,7 +25,7 @@ struct DatabaseParts {
   std::shared_ptr<const ViewSearch> views();
   /// Pairs of points of all models; null in a large database.
   std::shared_ptr<const PairSearch> pairs();
-  /// What is fitted in the store; null forms where there is nothing. The mutex must be held.
+  /// The fitted data of the store; forms are null if there are none. The mutex must be held.
   FittedForms storedForms();
 
   /// Views of a model.

@@ -15,7 +15,7 @@ namespace pcl_symmetry::detail {
 /// Compact forms of each model: one for each of the signatureFrames().
 constexpr int kFormsPerModel = 2;
 
-/// What models are compared by.
+/// The form by which models are compared.
 struct CompactForm {
   Eigen::MatrixXf compact;  ///< dimensions of the projection x kFormsPerModel
   float typical = 1.0f;     ///< mean distance to the nearest references, see typicalDistance()
@@ -52,7 +52,7 @@ private:
   Eigen::MatrixXf references_;     // their compact forms side by side
 };
 
-/// What is fitted to the models of a database. Every function throws pcl::IOException, which names file and reason.
+/// Data fitted to the models of a database. Every function throws pcl::IOException, which names file and reason.
 struct FittedForms {
   std::int64_t id = 0;  ///< the number that it is stored under, 0: it is not stored
   std::shared_ptr<const CompactForms> forms;
@@ -79,7 +79,7 @@ std::shared_ptr<const ViewCoder> fitViewCoder(ModelStore& store, int max_referen
 std::vector<PackedForms> formsOfModels(ModelStore& store, const std::vector<StoredModel>& models,
                                        const CompactForms* forms, const ViewCoder* coder, int num_threads);
 
-/// What is fitted to each of some models, in their order: the bytes that are stored, or made where there are none.
+/// The fitted data of each of some models, in their order: the stored bytes, or new ones if there are none.
 /// \param models all of the store.
 /// \param stored the projection whose forms are read; 0: all are made.
 /// \param forms,coder one of them, of which compact forms or codes of views are wanted; the other is null.

@@ -1,4 +1,4 @@
-/// What finds the models of a database that a shape or a scan may show.
+/// Searches for the models of a database that a shape or a scan may show.
 #pragma once
 
 #include <Eigen/Geometry>

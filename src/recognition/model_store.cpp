@@ -147,7 +147,7 @@ void compareBlobs(const SQLiteConnection& connection, const std::string& table, 
       damages.push_back("the " + table + " of number " + std::to_string(row.integer(0)) + " are damaged");
 }
 
-/// \param damages what is wrong with the rows of models.
+/// \param damages errors in the rows of models.
 /// \return a sentence for each damage.
 std::vector<std::string> damagesOf(const SQLiteConnection& connection, std::vector<std::string> damages) {
   compareTables(connection, damages);

@@ -18,7 +18,7 @@ namespace pcl_symmetry::detail {
 /// Grows by 1 when tables or the bytes in them change.
 constexpr int kSchemaVersion = 7;
 
-/// What a model is found and recognized by, as bytes of packed_model.h.
+/// The data by which a model is found and recognized, as bytes of packed_model.h.
 struct PackedModel {
   std::string cloud, signatures, views, surfaces;
   std::size_t num_points = 0;
@@ -31,14 +31,14 @@ struct StoredModel {
   std::string name;
 };
 
-/// What is fitted to a database, as bytes: CompactForms, and the ViewCoder as packedMatrices().
+/// Data fitted to a database, as bytes: CompactForms, and the ViewCoder as packedMatrices().
 struct PackedProjection {
   std::int64_t id = 0;
   int num_references = 0;
   std::string values;
   std::string view_coder;
 };
-/// What was made of a model with it: bytes of a CompactForm, and packedViewCodes().
+/// The forms of a model for these data: bytes of a CompactForm, and packedViewCodes().
 struct PackedForms {
   std::int64_t model = 0;
   std::string forms;
@@ -86,7 +86,7 @@ public:
   std::int64_t projectionId();
   std::vector<StoredModel> modelsWithoutForms();
   std::optional<PackedProjection> projection();
-  /// What was made of the models with a projection, by rising id of the model.
+  /// The forms of the models for a projection, by rising id of the model.
   void each(FormPart part, std::int64_t projection, const EachBytes& take);
 
   /// Adds a model or replaces that of its name.
@@ -104,7 +104,7 @@ public:
   /// Adds forms that are missing. Nothing happens where the projection is no longer the stored one.
   void addForms(std::int64_t projection, const std::vector<PackedForms>& forms);
 
-  /// What is wrong with the contents, a sentence each.
+  /// The errors in the contents, a sentence each.
   std::vector<std::string> damages();
 
 private:

@@ -18,7 +18,7 @@ namespace pcl_symmetry::detail {
 
 namespace {
 
-/// Distance within which a scan and the surface of a model are one: what the scanner resolves.
+/// Distance within which a scan and the surface of a model agree: the resolution of the scanner.
 /// \param radius of the model, > 0.
 double modelTolerance(const PosedSurface& scan, double radius) {
   const double error = scan.seen ? scan.seen->depthError(scan.points.rowwise().mean().cast<double>()) : 0.0;
@@ -27,7 +27,7 @@ double modelTolerance(const PosedSurface& scan, double radius) {
   return std::min(tolerance, kRecognition.max_tolerance * radius);
 }
 
-/// Whether the second of two poses of a model explains more of the scan and of the picture.
+/// Whether the second of two poses of a model explains more of the scan and of the depth image.
 bool isWorse(const PosedModel& a, const PosedModel& b) {
   const auto explained = [](const RecognizedModel& model) {
     return model.evidence.on_model * model.evidence.shown * std::max(0.0, model.score.merit());

@@ -31,14 +31,14 @@ double sharedSurface(const PosedModel& a, const PosedModel& b);
 /// their own.
 CloudRegistrationOptions quickRegistration(int num_threads);
 
-/// Steps of least squares that bring the visible surface of a model onto what a scanner measured along the same rays,
-/// also beside the points of the scan: what was cut off from an object helps to pose it.
+/// Least-squares steps that move the visible surface of a model onto the measurements of a scanner along the same rays,
+/// also beside the points of the scan: parts cut off from an object help to pose it.
 /// \param scan with what its scanner saw.
 /// \return T_model_scan.
 Eigen::Isometry3d posedInPicture(const PosedSurface& scan, const PosedSurface& model,
                                  const Eigen::Isometry3d& T_model_scan);
 
-/// What speaks for a model at a pose.
+/// Evidence for a model at a pose.
 /// \param scan made with exact search, as \p model.
 ModelEvidence modelEvidence(const PosedSurface& scan, const PosedSurface& model, const Eigen::Isometry3d& T_model_scan);
 

@@ -89,7 +89,7 @@ private:
   std::unique_ptr<sqlite3, Closer> database_;
 };
 
-/// Undoes what was changed unless commit() was called.
+/// Undoes all changes unless commit() was called.
 class SQLiteTransaction {
 public:
   /// Waits for other programs that are writing.

@@ -25,7 +25,7 @@ namespace pcl_symmetry {
 namespace {
 
 /// Two clouds in search frames. The scan is the one that was seen from a viewpoint, the model the one that shows its
-/// object from all sides: where only the target was seen from one side, the two change places.
+/// object from all sides: if only the target was seen from one side, the two swap roles.
 class CloudPair {
 public:
   CloudPair(const PreparedCloud& source, const PreparedCloud& target)
@@ -83,8 +83,8 @@ private:
   std::shared_ptr<const PosedSurface> scan_, model_;
 };
 
-/// The poses that bring the symmetry frames of both clouds together. Each is tried with the center of symmetry that was
-/// found, and with the position that the outline of the scan suggests.
+/// The poses that align the symmetry frames of both clouds. Each is tried with the center of symmetry found, and with
+/// the position that the outline of the scan suggests.
 std::vector<Eigen::Isometry3d> posesFromFrames(const CloudPair& clouds) {
   const PoseStarts starts(clouds.scan(), clouds.model());
   std::vector<Eigen::Isometry3d> poses;
@@ -129,11 +129,12 @@ std::vector<Eigen::Isometry3d> posesAround(const PosedSurface& scan, const Posed
 }
 
 /// Poses of two clouds that share a part of their surface, by pairs of points that are alike in both (Drost et al.
-/// 2010). A search by the share of the whole ends beside them: what the other cloud does not show pulls, too.
+/// 2010). A search by the share of the whole ends beside them, because parts that the other cloud does not show also
+/// pull.
 std::vector<RankedPose> posesOfParts(const CloudPair& clouds, const CloudRegistrationOptions& options) {
   const auto& rules = kRegistration;
   PosedSurface scan = clouds.scan(), model = clouds.model();
-  scan.seen = model.seen = std::nullopt;  // while the pose is fitted: missing parts look like space that was seen empty
+  scan.seen = model.seen = std::nullopt;  // while the pose is fitted: missing parts look like free space
   const PointPairIndex pairs({evenSurfacePoints(model.points, kMatching.num_pair_points, options.seed)},
                              options.num_threads);
   const SurfacePoints few = evenSurfacePoints(scan.points, kMatching.num_scan_points, options.seed);
@@ -151,7 +152,7 @@ std::vector<RankedPose> posesOfParts(const CloudPair& clouds, const CloudRegistr
   return poses;
 }
 
-/// A pose with what speaks for it.
+/// A pose with its evidence.
 struct JudgedPose {
   RankedPose pose;
   PoseEvidence evidence;
@@ -177,7 +178,7 @@ std::vector<JudgedPose> judgedPoses(const CloudPair& clouds, const std::vector<R
 double uniquenessOf(const CloudPair& clouds, const JudgedPose& best, const std::vector<JudgedPose>& judged,
                     const CloudRegistrationOptions& options) {
   const PosedSurface& model = clouds.model();
-  // Poses that differ by a symmetry of the model, and by what ICP left of their errors, are one.
+  // Poses that differ by a symmetry of the model, and by remaining errors of ICP, count as one.
   const auto isNearSymmetry = [&](const Eigen::Isometry3d& other) {
     const Eigen::Isometry3d motion = other * best.pose.T_model_scan.inverse();
     if (model.seen)
@@ -197,7 +198,7 @@ double uniquenessOf(const CloudPair& clouds, const JudgedPose& best, const std::
   return best_odds / all;
 }
 
-/// Leaves those of the poses that are around a guess.
+/// Keeps the poses around a guess.
 /// \param poses between search frames.
 void keepAround(const CloudPair& clouds, const Eigen::Isometry3d& guess, const PoseNeighborhood& around,
                 std::vector<RankedPose>& poses) {

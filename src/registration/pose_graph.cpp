@@ -12,7 +12,7 @@ namespace {
 
 using Triplets = std::vector<Eigen::Triplet<double>>;
 
-constexpr int kSize = Vector6d::RowsAtCompileTime;  // of what moves a scan
+constexpr int kSize = Vector6d::RowsAtCompileTime;  // parameters of the motion of a scan
 
 void addBlock(Triplets& matrix, int row, int column, const Matrix6d& block) {
   for (int j = 0; j < kSize; ++j)
@@ -54,7 +54,7 @@ std::vector<double> votesOf(int num_scans, const std::vector<PairAnswer>& answer
 
 void adjustPoses(const std::vector<PoseConstraint>& constraints, std::vector<Eigen::Isometry3d>& T_world_scan,
                  int num_steps) {
-  constexpr double inertia = 1e-6;  // share of the mean stiffness: what nothing fixes stays
+  constexpr double inertia = 1e-6;  // share of the mean stiffness, which keeps unconstrained directions at rest
   const int size = kSize * static_cast<int>(T_world_scan.size());
   for (int step = 0; step < num_steps && !constraints.empty(); ++step) {
     Triplets entries;
@@ -114,12 +114,12 @@ ScanGroups joinScans(int num_scans, const std::vector<PairAnswer>& answers, cons
       for (std::size_t f = 0; f < answers.size(); ++f) {
         if (groupsOf(answers[f]) != between) continue;
         // The other answer, as a pose of the scans of this one.
-        const bool turned = groups.group[answers[f].target] != groups.group[answers[e].target];
+        const bool reversed = groups.group[answers[f].target] != groups.group[answers[e].target];
         const PairAnswer& other = answers[f];
         const Eigen::Isometry3d T_group_group =
             groups.T_group_scan[other.target] * other.T_target_source * groups.T_group_scan[other.source].inverse();
         const Eigen::Isometry3d implied = groups.T_group_scan[answers[e].target].inverse() *
-                                          (turned ? T_group_group.inverse() : T_group_group) *
+                                          (reversed ? T_group_group.inverse() : T_group_group) *
                                           groups.T_group_scan[answers[e].source];
         sum += (same(T_target_source, implied) ? 1.0 : -1.0) * votes[f];
       }

@@ -7,7 +7,7 @@
 
 namespace pcl_symmetry {
 
-/// What is known of the pose of two scans.
+/// A constraint on the pose of two scans.
 struct PoseConstraint {
   int source, target;
   Eigen::Isometry3d T_target_source;
@@ -20,7 +20,7 @@ struct PoseConstraint {
 void adjustPoses(const std::vector<PoseConstraint>& constraints, std::vector<Eigen::Isometry3d>& T_world_scan,
                  int num_steps);
 
-/// What the registration of two scans found.
+/// The result of registering two scans.
 struct PairAnswer {
   int source, target;
   Eigen::Isometry3d T_target_source;
@@ -29,7 +29,7 @@ struct PairAnswer {
   bool converged = false;
 };
 
-/// When two poses of scans are one.
+/// Limits within which two poses of scans count as the same.
 struct SamePose {
   double angle, distance;  ///< radians and units of the scans
   /// \param T_a_b,other compared where they bring the origin of b.

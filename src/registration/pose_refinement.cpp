@@ -62,7 +62,7 @@ public:
     pairs.clear();
     closest_.resize(scan.size(), -1);
     std::vector<float> sq_distances;
-    if (positions.allFinite())  // else a step that no points fixed, whose result is dropped
+    if (positions.allFinite())  // else the step was unconstrained, and its result is dropped
       model_->searchWithin(positions, static_cast<float>(max_distance * max_distance), closest_, sq_distances);
     for (std::size_t i = 0; i < sq_distances.size(); ++i)
       if (closest_[i] >= 0) pairs.emplace_back(static_cast<int>(i), closest_[i], sq_distances[i]);
@@ -80,7 +80,7 @@ class PoseRefinement {
 public:
   PoseRefinement(const PosedSurface& scan, const PosedSurface& model, double reach,
                  const CloudRegistrationOptions& options) {
-    icp_.setSearchMethodTarget(pcl::make_shared<pcl::search::KdTree<pcl::PointNormal>>(), true);  // which is not asked
+    icp_.setSearchMethodTarget(pcl::make_shared<pcl::search::KdTree<pcl::PointNormal>>(), true);  // which is not used
     icp_.setCorrespondenceEstimation(pcl::make_shared<ModelCorrespondences>(model.search));
     icp_.setInputTarget(cloudOf(model, allOf(model.points.cols())));
     icp_.setInputSource(fewPoints(scan));

@@ -27,7 +27,7 @@ double refinementReach(const PosedSurface& scan, const PosedSurface& model, std:
 /// \return distance in which closestPose() looks for them: that in which samples of one surface meet.
 double closestReach(const PosedSurface& scan, const PosedSurface& model, std::optional<double> max_correspondence);
 
-/// The last comparison of two surfaces in a pose, with more points than a search.
+/// The final comparison of two surfaces in a pose, with more points than the search.
 PoseScore lastScore(const PosedSurface& scan, const PosedSurface& model, const Eigen::Isometry3d& T_model_scan);
 
 /// Poses and their refinements by PCL's point-to-plane ICP, of each the one of greater merit.
@@ -38,8 +38,8 @@ PoseScore lastScore(const PosedSurface& scan, const PosedSurface& model, const E
 std::vector<RankedPose> refinePoses(const PosedSurface& scan, const PosedSurface& model,
                                     const std::vector<RankedPose>& poses, const CloudRegistrationOptions& options);
 
-/// A pose from refinePoses(), refined once more with pairs as close as the points allow. What only one of two scans
-/// shows pairs with the border of the other one, and pulls as far as ICP reaches.
+/// A pose from refinePoses(), refined once more with pairs as close as the points allow. Parts that only one of two
+/// scans shows pair with the border of the other one, and pull as far as ICP reaches.
 RankedPose closestPose(const PosedSurface& scan, const PosedSurface& model, const RankedPose& pose,
                        const CloudRegistrationOptions& options);
 

@@ -11,8 +11,7 @@
 
 namespace pcl_symmetry {
 
-/// What a search for poses needs of one cloud. Each part is made when it is first asked for, and kept while the same
-/// unit is asked for.
+/// The data of one cloud for pose searches. Each part is computed on first use and kept for the same unit.
 class PreparedCloud {
 public:
   /// \param name of the cloud in messages.

@@ -25,7 +25,7 @@ struct RegisterAllRules {
   int enough_pairs = 3;             ///< of a scan that agree; more are not tried
   SamePose same{6.0 * kDegree, 0.08};
   /// Merit of a pair that did not converge at which it begins to count, and where it counts like half of one that did.
-  /// Of pairs of real scans, all right ones that are above are many, and no wrong one is.
+  /// Of pairs of real scans, many right ones and no wrong one are above it.
   double min_merit = -0.1, good_merit = 0.4;
   double min_uniqueness = 0.6;  ///< of a pose that counts
   double min_votes = 0.6;       ///< that join scans: more than one pair that did not converge
@@ -60,9 +60,9 @@ std::vector<int> onePerCell(const Points& points, double edge) {
                       static_cast<std::int64_t>(cell.z())},
                      static_cast<int>(i)});
   }
-  lookAtWatch();
+  checkCancelled();
   std::sort(cells.begin(), cells.end());
-  lookAtWatch();
+  checkCancelled();
   std::vector<int> chosen;
   for (auto first = cells.begin(), last = first; first != cells.end(); first = last) {
     Eigen::Vector3f mean = Eigen::Vector3f::Zero();
@@ -223,8 +223,8 @@ public:
     }
   }
 
-  /// Takes scans out of a group, the least sure one first, until each that is left lies on the others' points and
-  /// leaves free what their scanners saw to be free.
+  /// Removes scans from a group, the least certain first, until each remaining one lies on the others' points and
+  /// outside their free space.
   /// \param confidences of all scans; set for those of the group: that their poses are right, in [0, 1], of a scan that
   /// is taken out as it was then.
   void takeOutDoubtful(int group, std::vector<double>& confidences) {
@@ -297,12 +297,12 @@ private:
     const double doubtful =
         (found.score.merit() - kRegisterAll.min_merit) / (kRegisterAll.good_merit - kRegisterAll.min_merit);
     answer.weight = answer.converged ? 1.0 : 0.5 * std::clamp(doubtful, 0.0, 1.0);
-    // Of a body that is nearly round all pairs may agree on the pose in which its pictures are alike.
+    // For a nearly round body, all pairs may agree on the pose in which its views are alike.
     if (found.evidence.uniqueness < kRegisterAll.min_uniqueness) answer.weight = 0.0;
     return answer;
   }
 
-  /// What speaks for the pose of a scan on a surface.
+  /// Evidence for the pose of a scan on a surface.
   PoseEvidence evidence(int scan, const PosedSurface& of, const Eigen::Isometry3d& T_group_of) const {
     return poseEvidence(*scans_[scan].surface, of, T_group_of.inverse() * groups_.T_group_scan[scan]);
   }
@@ -322,7 +322,7 @@ private:
     return matched;
   }
 
-  /// The pose in which the surfaces of two scans meet, near that of now (point to plane).
+  /// The pose near the current one in which the surfaces of two scans meet (point to plane).
   std::optional<PoseConstraint> meeting(int source, int target, double reach) const {
     const Matched matched = match(source, target, reach);
     if (static_cast<double>(matched.pairs.size()) < kRegisterAll.min_overlap * matched.num_points) return std::nullopt;
@@ -442,7 +442,7 @@ std::vector<ScanPoint> RegisteredScans::mergedPoints(const std::vector<ObjectSca
   Points all(3, total);
   for (std::size_t k = 0; k < input.size(); ++k) {
     if (!scans[k].left_out.empty()) continue;
-    lookAtWatch();
+    checkCancelled();
     all.middleCols(points.size(), input[k].points.cols()) = scans[k].T_first_scan.cast<float>() * input[k].points;
     for (Eigen::Index i = 0; i < input[k].points.cols(); ++i)
       points.push_back({static_cast<int>(k), static_cast<int>(i)});

@@ -58,7 +58,7 @@ std::vector<pcl::Indices> convexPieces(const SymmetryScene::Cloud& scene, const 
   const auto supervoxel = static_cast<float>(kScene.supervoxel_voxels * voxel);
   pcl::SupervoxelClustering<pcl::PointXYZ> clustering(voxel, supervoxel);
   clustering.setUseSingleCameraTransform(false);
-  // PCL turns normals toward the origin.
+  // PCL orients normals toward the origin.
   auto points = pcl::make_shared<SymmetryScene::Cloud>(scene, cluster);
   for (pcl::PointXYZ& point : *points) point.getVector3fMap() -= viewpoint.cast<float>();
   clustering.setInputCloud(points);

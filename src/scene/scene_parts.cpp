@@ -57,7 +57,7 @@ std::optional<Consensus> greatestPlane(const SymmetryScene::Cloud::ConstPtr& sce
   pcl::RandomSampleConsensus<pcl::PointXYZ> consensus(pcl::make_shared<Model>(scene, some), distance);
   consensus.setMaxIterations(kScene.consensus_iterations);
   if (!consensus.computeModel()) return std::nullopt;
-  lookAtWatch();
+  checkCancelled();
   Consensus plane;
   Eigen::VectorXf found, coefficients;
   consensus.getModelCoefficients(found);
@@ -78,10 +78,10 @@ Eigen::Vector4d fitted(const SymmetryScene::Cloud& scene, const Consensus& plane
     const auto height = [&](pcl::index_t i) { return std::abs(heightOver(coefficients, scene[i])); };
     std::vector<double> heights;
     for (const pcl::index_t i : plane.inliers) heights.push_back(height(i));
-    const double most = kScene.fit_deviations * median(std::move(heights));
+    const double max_height = kScene.fit_deviations * median(std::move(heights));
     pcl::Indices near;
     for (const pcl::index_t i : plane.inliers)
-      if (height(i) <= most) near.push_back(i);
+      if (height(i) <= max_height) near.push_back(i);
     const PrincipalAxes axes = principalAxes(pointsOf(scene, near));
     Eigen::Vector3d normal = axes.axes.col(2);
     if (normal.dot(coefficients.head<3>()) < 0.0) normal = -normal;
@@ -102,10 +102,10 @@ Sides sidesOf(const SymmetryScene::Cloud& scene, const Consensus& plane, const p
     return axis.dot(scene[i].getVector3fMap().cast<double>());
   };
   const auto extent = [&](const Eigen::Vector3d& axis) {
-    std::vector<double> places;
-    for (const pcl::index_t i : plane.inliers) places.push_back(along(i, axis));
-    const auto num_cut = static_cast<std::size_t>(kScene.footprint_trim * static_cast<double>(places.size() - 1));
-    return trimmedExtent(std::move(places), num_cut);
+    std::vector<double> positions;
+    for (const pcl::index_t i : plane.inliers) positions.push_back(along(i, axis));
+    const auto num_cut = static_cast<std::size_t>(kScene.footprint_trim * static_cast<double>(positions.size() - 1));
+    return trimmedExtent(std::move(positions), num_cut);
   };
   const auto [u_low, u_high] = extent(u);
   const auto [v_low, v_high] = extent(v);
@@ -162,7 +162,7 @@ Eigen::AlignedBox3f boxAround(const SymmetryScene::Cloud& scene, const pcl::Indi
   return box;
 }
 
-/// How far the noise lets points of a support rise above it around a cluster.
+/// The height to which noise raises points of a support above it around a cluster.
 /// \return input units, > 0; infinity where few points of the support are around the cluster.
 double riseOfNoise(const SymmetryScene::Cloud& scene, const SupportingPlane& support, const pcl::Indices& cluster,
                    const SceneDistances& distances) {
@@ -179,16 +179,16 @@ double riseOfNoise(const SymmetryScene::Cloud& scene, const SupportingPlane& sup
 /// For each point of a scene the squared distance from the nearest cluster, and its number; -1: none.
 using NearestClusters = std::vector<std::pair<float, int>>;
 
-/// Offers a cluster the points of the supports that may be its feet.
+/// Adds to a cluster the points of the supports that may be its feet.
 void offerFeet(const SymmetryScene::Cloud& scene, const std::vector<SupportingPlane>& supports,
                const pcl::Indices& cluster, int number, const SceneDistances& distances, NearestClusters& nearest) {
   const Eigen::AlignedBox3f near = boxAround(scene, cluster, distances.cluster);
   pcl::Indices risen;
   for (const SupportingPlane& support : supports) {
-    const double least = riseOfNoise(scene, support, cluster, distances);
+    const double min_height = riseOfNoise(scene, support, cluster, distances);
     for (const pcl::index_t i : support.indices)
       if (near.contains(Eigen::Vector3f(scene[i].getVector3fMap())) &&
-          heightOver(support.coefficients, scene[i]) > least)
+          heightOver(support.coefficients, scene[i]) > min_height)
         risen.push_back(i);
   }
   const std::vector<float> sq_distances = sqDistancesFrom(pointsOf(scene, cluster), pointsOf(scene, risen));
@@ -254,22 +254,23 @@ std::vector<float> sqDistancesFrom(const Points& surface, const Points& points) 
 SceneDistances sceneDistances(const SymmetryScene::Cloud& scene, const pcl::Indices& points) {
   const Points surface = pointsOf(scene, points);
   const std::size_t stride = 1 + (points.size() - 1) / kScene.scale_samples;
-  Points places(3, (points.size() + stride - 1) / stride);
-  for (Eigen::Index i = 0; i < places.cols(); ++i) places.col(i) = surface.col(i * static_cast<Eigen::Index>(stride));
+  Points positions(3, (points.size() + stride - 1) / stride);
+  for (Eigen::Index i = 0; i < positions.cols(); ++i)
+    positions.col(i) = surface.col(i * static_cast<Eigen::Index>(stride));
   const auto search = makeFlannSearch(surface);
-  lookAtWatch();
+  checkCancelled();
   const int num_neighbors = static_cast<int>(std::min<std::size_t>(kNumSupportNeighbors + 1, points.size()));
   std::vector<int> closest;
   std::vector<float> sq_distances;
-  search->search(places, num_neighbors, closest, sq_distances);
-  std::vector<float> spacings(places.cols());
+  search->search(positions, num_neighbors, closest, sq_distances);
+  std::vector<float> spacings(positions.cols());
   for (std::size_t i = 0; i < spacings.size(); ++i)
     // As LocalGeometry::spacing: pi r^2 holds the neighbors within r.
     spacings[i] =
         std::sqrt(static_cast<float>(kPi) * sq_distances[(i + 1) * static_cast<std::size_t>(num_neighbors) - 1] /
                   static_cast<float>(std::max(1, num_neighbors - 1)));
   const double spacing = median(std::move(spacings));
-  const double roughness = median(localGeometryAt(surface, *search, places).roughness);
+  const double roughness = median(localGeometryAt(surface, *search, positions).roughness);
   return {spacing, kScene.plane_spacings * spacing + kScene.plane_roughnesses * roughness,
           kScene.cluster_spacings * spacing};
 }
@@ -281,13 +282,13 @@ SeenSpace seenOfObject(const SeenSpace& seen, const SymmetryScene::Cloud& scene,
   if (!seen.visibility() || supports.empty()) return result;
   const Points points = pointsOf(scene, object);
   const double off = std::max(tolerance * boxDiagonal(points), seen.visibility()->resolvedTolerance(points));
-  const double most = kScene.support_margin * distances.plane;
+  const double max_rise = kScene.support_margin * distances.plane;
   for (const SupportingPlane& support : supports) {
-    if (!carries(support, points, most)) continue;
+    if (!carries(support, points, max_rise)) continue;
     // A symmetric surface may be off by the tolerance, and by noise. A wider margin would leave unknown space below a
-    // table, where a reflection costs nothing.
+    // table, where reflections are not penalized.
     const double rise = riseOfNoise(scene, support, object, distances);
-    result = result.withSupport(support.coefficients, std::min(most, rise + off));
+    result = result.withSupport(support.coefficients, std::min(max_rise, rise + off));
   }
   return result;
 }
@@ -333,12 +334,12 @@ std::vector<SupportingPlane> findSupports(const SymmetryScene::Cloud::ConstPtr& 
       return static_cast<double>(count) / static_cast<double>(points.size());
     };
     if (!plane || share(plane->inliers.size()) < kScene.min_share) break;
-    lookAtWatch();
+    checkCancelled();
     plane->coefficients[3] /= scale;
     plane->coefficients = fitted(*scene, *plane);
     candidates = without(candidates, plane->inliers, scene->size());
     if (viewpoint && plane->coefficients.dot(viewpoint->homogeneous()) < 0.0) plane->coefficients *= -1.0;
-    lookAtWatch();
+    checkCancelled();
     Sides sides = sidesOf(*scene, *plane, others, distance);
     if (!viewpoint && sides.below > sides.above) {
       plane->coefficients *= -1.0;
@@ -390,10 +391,10 @@ std::vector<pcl::Indices> findClusters(const SymmetryScene::Cloud::ConstPtr& sce
   extraction.setSearchMethod(pcl::make_shared<pcl::search::KdTree<pcl::PointXYZ>>(false));
   extraction.setInputCloud(scene);
   extraction.setIndices(pcl::make_shared<pcl::Indices>(points));
-  lookAtWatch();
+  checkCancelled();
   std::vector<pcl::PointIndices> found;
   extraction.extract(found);
-  lookAtWatch();
+  checkCancelled();
   std::vector<pcl::Indices> clusters;
   for (pcl::PointIndices& cluster : found) {
     const bool is_remainder = std::any_of(supports.begin(), supports.end(), [&](const SupportingPlane& support) {

@@ -32,15 +32,15 @@ struct SceneDistances {
 /// \param points indices of finite points, at least one.
 SceneDistances sceneDistances(const SymmetryScene::Cloud& scene, const pcl::Indices& points);
 
-/// What the supporting planes add to what a sensor saw: behind those that carry or back an object, none of it is.
+/// Adds the supporting planes to the visibility: no part of an object lies behind planes that carry or back it.
 /// \param object indices of its points, at least one.
 /// \param tolerance how far a symmetric surface may be off, as a share of the diameter.
 SeenSpace seenOfObject(const SeenSpace& seen, const SymmetryScene::Cloud& scene,
                        const std::vector<SupportingPlane>& supports, const pcl::Indices& object,
                        const SceneDistances& distances, double tolerance);
 
-/// What speaks against a model of an object: depths, with errors as the points of the supports have them, and the
-/// greatest support that carries the object. Other planes may end before the object, and its hidden part pass them.
+/// Evidence against a model of an object: depths, with the errors of the points of the supports, and the greatest
+/// support that carries the object. Other planes may end before the object, and its hidden part pass them.
 /// \param object indices of its points, at least one.
 SeenSpace seenOfModel(const SeenSpace& seen, const SymmetryScene::Cloud& scene,
                       const std::vector<SupportingPlane>& supports, const pcl::Indices& object,
@@ -64,15 +64,15 @@ SupportingPlane supportOf(const SymmetryScene::Cloud& scene, const pcl::Indices&
 pcl::Indices withoutSupports(const pcl::Indices& points, const std::vector<SupportingPlane>& supports,
                              std::size_t scene_size);
 
-/// Points close to each other, without what is left of the supporting planes.
+/// Clusters of points close to each other, without remainders of the supporting planes.
 /// \param points indices of finite points that belong to no supporting plane.
 /// \return clusters of at least \p min_points, most points first.
 std::vector<pcl::Indices> findClusters(const SymmetryScene::Cloud::ConstPtr& scene, const pcl::Indices& points,
                                        const std::vector<SupportingPlane>& supports, const SceneDistances& distances,
                                        int min_points);
 
-/// Gives objects their feet back: points that were taken for the plane that an object stands on, as they lie within its
-/// distance, but that rise above the plane around the object by more than the noise does.
+/// Returns feet to objects: points that were assigned to the support of an object because they lie within its distance,
+/// but that rise above the plane around the object by more than the noise.
 ///
 /// Without its feet, a box looks lower than it is: as high as it is deep, it gets a plane of symmetry between the two.
 /// \param supports lose these points.

@@ -7,7 +7,7 @@
 
 namespace pcl_symmetry::detail {
 
-/// The numbers that the objects of a scene depend on (not in the paper).
+/// Parameters that affect the objects of a scene. Not in the paper.
 struct SceneRules {
   // Scale, supporting planes and clusters.
   std::size_t scale_samples = 1000;                      ///< points that spacing and roughness are measured at
@@ -15,7 +15,7 @@ struct SceneRules {
   double cluster_spacings = 4.0;                         ///< between points of one object
   int max_planes = 6;                                    ///< a table, a floor, three walls and a large box
   double min_share = 0.08;                               ///< of the points, of planes that are tried
-  double bare_share = 0.25;                              ///< of the points, of a support that nothing stands on
+  double bare_share = 0.25;                              ///< least share of the points in a support without objects
   double telling_share = 0.01;            ///< of the points of a plane, beside it, that show on which side the scene is
   double attached = 10.0;                 ///< plane distances behind a plane within which other faces of a body begin
   double footprint_trim = 0.05;           ///< share of the points of a plane beyond each end of its footprint
@@ -46,9 +46,9 @@ struct SceneRules {
   std::uint32_t fewest = 15;           ///< supervoxels of a piece; smaller pieces are joined with a neighbor
 
   // Joining by symmetry. Lengths are in diagonals of the union where no unit is given.
-  std::size_t reflected = 500;            ///< points of a piece; a share of one half is known to 2 %
-  double explained = 0.9;                 ///< share of what lands in known space that a symmetry maps to the surface
-  double informative = 0.1;               ///< share of the points that lands in known space; less decides nothing
+  std::size_t reflected = 500;  ///< points of a piece; a share of one half is known to 2 %
+  double explained = 0.9;       ///< share of the points landing in known space that a symmetry maps to the surface
+  double informative = 0.1;     ///< share of the points that lands in known space; less decides nothing
   double same_angle = 5.0 * kPi / 180.0;  ///< radians within which planes and axes are one
   double same_offset = 0.03;              ///< diagonals within which planes and axes are one
   double hangs = 0.1;                     ///< height above the foot of the larger piece: noise has half, handles twice

@@ -52,11 +52,11 @@ std::vector<ReflectionPlane> planesOf(const SceneObject& object) {
   return planes;
 }
 
-/// Where a reflection maps the points of a piece: counts.
+/// Counts of where a reflection maps the points of a piece.
 struct Landings {
   double own = 0.0, other = 0.0;  ///< onto the piece itself, onto the other one
   double off = 0.0;               ///< into free space
-  double all = 0.0;               ///< with those that land in unknown space
+  double all = 0.0;               ///< including points that land in unknown space
 
   double known() const { return own + other + off; }
   bool isInformative() const { return known() >= kScene.informative * all; }
@@ -78,7 +78,7 @@ public:
     reach_ = 2.0 * tolerance;
   }
 
-  /// Whether one symmetry may explain both, by what is known of the pieces.
+  /// Whether one symmetry may explain both, judging by the pieces.
   bool isPlausible() const {
     const SceneObject &larger = *pieces_[0], &smaller = *pieces_[1];
     if (larger.axes.empty()) return false;
@@ -188,7 +188,7 @@ private:
     std::vector<float> sq_distance(1);
     for (const pcl::index_t i : reflected_[piece]) {
       const Eigen::Vector3d x = positionOf(*scene_.frame, i);
-      if (2.0 * std::abs(plane.signedDistance(x)) <= reach_) continue;  // what stays is uninformative
+      if (2.0 * std::abs(plane.signedDistance(x)) <= reach_) continue;  // points that stay in place are uninformative
       result.all += 1.0;
       pcl::PointXYZ at;
       at.getVector3fMap() = plane.reflect(x).cast<float>();
@@ -365,7 +365,7 @@ public:
         Verdict& verdict = verdicts[k];
         pairs_[asked[k]] = {verdict.together, verdict.apart};
         const std::size_t to = owner(asked[k].first), from = owner(asked[k].second);
-        // What was analyzed holds for pieces as they were; other pairs are asked again.
+        // Analyses are valid for unchanged pieces; other pairs are analyzed again.
         const bool is_stale = verdict.object && (changed.count(to) || changed.count(from));
         if (!verdict.are_one || to == from || is_stale) continue;
         if (report) junctions_.push_back(junctionOf(asked[k]));
@@ -391,7 +391,7 @@ public:
     }
   }
 
-  /// Keeps objects apart that models explain, where none explains what they were united to.
+  /// Keeps objects apart that models explain, if no model explains their union.
   /// \return whether there are any.
   bool separateNamed(Joining& united) {
     std::map<std::size_t, std::vector<std::size_t>> parts;

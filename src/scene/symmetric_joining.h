@@ -8,7 +8,7 @@
 
 namespace pcl_symmetry::detail {
 
-/// What SymmetryScene knows when it joins pieces.
+/// The data of SymmetryScene for joining pieces.
 struct JoiningScene {
   SymmetryScene::Cloud::ConstPtr frame;
   const std::vector<SupportingPlane>& supports;
@@ -28,14 +28,14 @@ struct JoinedPieces {
   std::vector<SceneJunction> junctions;  ///< of the pieces that touch
 };
 
-/// Keeps those of the cuts between convex pieces that symmetry confirms.
+/// Keeps the cuts between convex pieces that symmetry confirms.
 ///
 /// Pieces side by side whose normals point to one upright line belong to one body of revolution, as the two halves of
 /// the inside of a bowl. A bottle and its neck are one where both have the same axis; a mug and its handle where the
 /// handle does not stand on the support of the mug, and the union has a plane through the axis of the mug, or that
 /// axis, that explains each piece by itself. Pieces stay apart if their own symmetries explain many of their points and
-/// neither is flat, as a face of a box or a part of a wall is; all others are united again. Where no model explains
-/// what is united so, the pieces that a model explains stay apart: cameras blur the symmetries of objects that touch.
+/// neither is flat, as a face of a box or a part of a wall is; all others are united again. If no model explains such a
+/// union, the pieces that a model explains stay apart: cameras blur the symmetries of objects that touch.
 /// \param pieces of clusters, ascending indices.
 /// \param cluster_of number of the cluster of each piece.
 JoinedPieces joinBySymmetry(const JoiningScene& scene, const std::vector<pcl::Indices>& pieces,

@@ -61,7 +61,7 @@ std::vector<ReflectionPlane> completingPlanes(const SceneObject& object, const V
   return planes;
 }
 
-/// Whether all four borders of a picture are empty, and supporting planes are slices of a curved body.
+/// Whether all four borders of an image are empty, and supporting planes are slices of a curved body.
 bool isCutOut(const Cloud& scene, const SceneAnalysis& found) {
   constexpr unsigned border = 50;  // one row or column in this many
   constexpr double curved = 0.35;  // plane distances, root mean square; points spread evenly have 0.58
@@ -83,7 +83,7 @@ bool isCutOut(const Cloud& scene, const SceneAnalysis& found) {
   return true;
 }
 
-/// What speaks for one object alone: a table, a floor or a wall is wider than what it carries, and than the picture.
+/// Evidence for a single object: a table, a floor or a wall is wider than what it carries, and than the image.
 std::string signOfOneObject(const Cloud& scene, const SceneAnalysis& found) {
   constexpr double wider = 1.5;
   if (isCutOut(scene, found)) return "no point is near the border of the picture";
@@ -273,7 +273,7 @@ SceneAnalysis SymmetryScene::compute() const {
   if (points.size() < static_cast<std::size_t>(options_.min_points))
     return without(std::to_string(points.size()) + " points, too few for an object (min_points)");
   analysis.timing_ms = {{"seen_space", seen_ms}, {"filter", watch.lap()}};
-  // The filter leaves the bends of a camera's picture: the distances follow from the frame as it was.
+  // The filter leaves the distortions of the depth image: the distances follow from the original frame.
   detail::SceneDistances distances = detail::sceneDistances(*input_, points);
   if (options_.plane_distance > 0.0) distances.plane = options_.plane_distance;
   if (options_.cluster_distance > 0.0) distances.cluster = options_.cluster_distance;

@@ -58,13 +58,13 @@ private:
 
 /// Points of three kinds: floats as they are, not finite ones too; points of a small lattice, of which many coincide,
 /// lie on lines and are symmetric; the same at a scale between 1e-6 and 1e6, far from the origin.
-/// \param most number of points.
-inline Points takePoints(ByteSource& source, int most) {
+/// \param max_count number of points.
+inline Points takePoints(ByteSource& source, int max_count) {
   const int kind = source.below(3);
   const float scale = kind == 2 ? std::pow(10.0f, static_cast<float>(source.below(13) - 6)) : 1.0f;
   const float shift = kind == 2 ? scale * static_cast<float>(source.take<std::int16_t>()) : 0.0f;
   const std::size_t bytes = kind == 0 ? sizeof(float) : 1;
-  const auto size = std::min<std::size_t>(most, source.left() / (3 * bytes));
+  const auto size = std::min<std::size_t>(max_count, source.left() / (3 * bytes));
   Points points(3, static_cast<Eigen::Index>(size));
   for (Eigen::Index i = 0; i < points.cols(); ++i)
     for (int k = 0; k < 3; ++k)

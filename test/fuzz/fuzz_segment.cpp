@@ -19,9 +19,9 @@ SegmentationOptions quickOptions(fuzz::ByteSource& source) {
 }
 
 /// \return lists of numbers that are indices of \p size things, but for some.
-std::vector<std::vector<int>> takeLists(fuzz::ByteSource& source, int num_lists, int least, int size) {
+std::vector<std::vector<int>> takeLists(fuzz::ByteSource& source, int num_lists, int min_length, int size) {
   std::vector<std::vector<int>> lists(static_cast<std::size_t>(num_lists));
-  const int length = least + source.below(4);
+  const int length = min_length + source.below(4);
   for (std::vector<int>& list : lists)
     for (int k = 0; k < length; ++k) {
       const int number = source.take<std::uint8_t>();

@@ -16,7 +16,7 @@ namespace PCL_SYMMETRY_EXPORTS pcl_symmetry {
 
 /// The discrete space of axes, the counterpart of PlaneGrid: theta in [0, pi/2] and phi in [0, 2 pi) of the direction,
 /// and the point (u, v) in which the axis meets the plane across it through a center, both in [-radius, radius]. u runs
-/// along the direction of growing theta, v along that of growing phi. Beyond the paper (Section 6).
+/// along the direction of growing theta, v along that of growing phi. Not in the paper.
 class AxisGrid {
 public:
   /// Indices of a cell of the grid.

@@ -26,7 +26,7 @@ struct PlaneInput {
       : PlaneInput(PointsRef(points_of_cloud), seen_space) {}
 
   /// 3 x N, finite, input units. Fewer than 20 distinct points, or points on one line, give a reason in place of an
-  /// answer. A subset that resolves the tolerance represents more than 20 000.
+  /// answer. More than 20 000 points are represented by a subset that resolves the tolerance.
   Eigen::Map<const Eigen::Matrix3Xf, 0, Eigen::OuterStride<>> points;
   /// What a scanner saw, input frame; null = the points show the object from all sides.
   const Visibility* visibility = nullptr;
@@ -43,7 +43,7 @@ struct PlaneInput {
 
 /// Options of detectPlanes(); the defaults suit any shape and unit.
 struct DetectionOptions {
-  /// How far a symmetric surface may be off, as a share of the greatest distance between two points, in (0, 0.1]: a
+  /// Greatest deviation of a symmetric surface, as a share of the greatest distance between two points, in (0, 0.1]: a
   /// symmetry maps 97 % of the surface to within this distance of the surface.
   double tolerance = 0.01;
   /// Greatest tolerance, in (0, 0.1], the same share: where a depth camera or few points do not resolve `tolerance`,
@@ -63,7 +63,7 @@ struct DetectionOptions {
   std::uint64_t seed = 1;  ///< of all random draws; the same seed gives the same answer
   int num_threads = 0;     ///< >= 0; 0 = one per core; the answer does not depend on it
 
-  /// What only experts change, and the bins of the map that candidates come from.
+  /// Expert options, and the bins of the map that candidates come from.
   struct Expert : MapSize {
     int num_samples = 64;       ///< samples of the transform, >= 1: the error is 1 % of PRST, enough to find maxima
     LocalMaximaOptions maxima;  ///< of the maxima of the map that become candidates
@@ -86,10 +86,10 @@ struct DetectionOptions {
 Detection detectPlanes(const PlaneInput& input, const DetectionOptions& options = {});
 
 /// Refines planes, axes and centers on the mesh itself: the last step of a search whose points were sampled from a
-/// mesh. Samples fix a plane to a share of their spacing, within which that of a slender or flat part can rotate far;
-/// the mesh fixes it exactly. Share, deviation, residual and confidence of symmetries and possible ones become those of
-/// the surface. Planes that coincide are reported once, in the order of Detection::planes, and those below
-/// DetectionOptions::min_possible are dropped unless approximate ones are reported.
+/// mesh. Samples determine a plane to a share of their spacing, within which that of a slender or flat part can rotate
+/// far; the mesh determines it exactly. Share, deviation, residual and confidence of symmetries and possible ones
+/// become those of the surface. Planes that coincide are reported once, in the order of Detection::planes, and those
+/// below DetectionOptions::min_possible are dropped unless approximate ones are reported.
 /// \param found by detectPlanes() on points of the mesh, without visibility; in the frame of the mesh. Its tolerance
 /// decides.
 /// \param options of that detection.

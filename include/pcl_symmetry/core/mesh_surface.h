@@ -47,9 +47,9 @@ public:
     Eigen::Matrix3d rotation = Eigen::Matrix3d::Identity();  ///< R becomes Q R Q^T
     Eigen::Vector3d center = Eigen::Vector3d::Zero();        ///< input frame
   };
-  /// Where motions map the surface best onto itself: least squares of the distances of samples from the mesh, and of
-  /// its open borders from the borders, with a weight that leaves out what does not agree. Steps are those of Iterative
-  /// Symmetric Points (Section 4.4).
+  /// Where motions best map the surface onto itself: least squares of the distances of samples from the mesh, and of
+  /// its open borders from the borders, with robust weights. Steps are those of Iterative Symmetric Points (Section
+  /// 4.4).
   /// \return the start, if that is no worse.
   Placement fitted(const MotionsAbout& motions) const;
   /// The same for one plane.
@@ -57,10 +57,10 @@ public:
 
   /// Shares of the worst of the motions.
   /// \param tolerance input units, > 0.
-  /// \param least measures the share alone, which is much faster; a share below it may come out lower still.
-  MeshShares shares(const MotionsAbout& motions, double tolerance, std::optional<double> least = {}) const;
+  /// \param min_share measures the share alone, which is much faster; a share below it may be underestimated.
+  MeshShares shares(const MotionsAbout& motions, double tolerance, std::optional<double> min_share = {}) const;
   /// The same for one plane.
-  MeshShares shares(const ReflectionPlane& plane, double tolerance, std::optional<double> least = {}) const;
+  MeshShares shares(const ReflectionPlane& plane, double tolerance, std::optional<double> min_share = {}) const;
 
   const BoundingBall& ball() const;  ///< of the triangles, input frame
   int numSamples() const;            ///< that shares are measured on

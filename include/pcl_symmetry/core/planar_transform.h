@@ -23,8 +23,8 @@ struct SampledTransformOptions {
 /// The transform by sampling one point of each pair: D(gamma) = (S / |f|^2) mean f(gamma x_i), where the points x_i are
 /// drawn with probability f / S, S = sum f, stratified in space, once for the whole map.
 ///
-/// Departure from the paper, which draws both points of a pair (Section 4.3): looking the second point up needs no
-/// weights and has no singularity at coincident points.
+/// Departure from the paper: it draws both points of a pair (Section 4.3); looking up the second point needs no weights
+/// and has no singularity at coincident points.
 /// \param edt the function f.
 /// \param grid the planes, in the frame of the EDT.
 /// \param free_space for a scan one value per cell of the EDT, x fastest: 1 - f where the scanner looked through, else
@@ -48,8 +48,8 @@ struct ConvolutionTransformOptions {
 /// The exact transform by convolution over plane translations (Section 4.2): for each direction n the volume is
 /// resampled along n, and one correlation of each line with its reversal gives D for every r at once.
 ///
-/// Departures from the paper: lines are resampled at `spacing` sigmas instead of every cell, because a Gaussian shell
-/// of width sigma holds less than 1 % of its spectrum beyond the Nyquist frequency of that lattice. They are correlated
+/// Departure from the paper: lines are resampled at `spacing` sigmas instead of every cell, because a Gaussian shell of
+/// width sigma holds less than 1 % of its spectrum beyond the Nyquist frequency of that lattice. They are correlated
 /// directly: about 36 values are too few for a Fourier transform to pay.
 /// \param edt the function f.
 /// \param grid the planes, in the frame of the EDT.

@@ -12,7 +12,7 @@
 
 namespace PCL_SYMMETRY_EXPORTS pcl_symmetry {
 
-/// What a plane is to the shape.
+/// Role of a plane for the shape.
 enum class PlaneKind {
   Symmetry,     ///< of the whole object: confidence >= min_confidence
   Possible,     ///< confidence >= min_possible: the data do not decide
@@ -28,9 +28,9 @@ inline const char* toString(PlaneKind kind) {
 
 /// Why a plane has its confidence and kind.
 struct Reason {
-  const char* rule = "";  ///< what was seen, in a few words
-  /// Factor on the odds of the confidence; of the first reason: the odds themselves. The product of all odds is
-  /// confidence / (1 - confidence). None: the plane is a possible symmetry at most, however confident.
+  const char* rule = "";  ///< the observation, in a few words
+  /// Factor on the odds of the confidence; for the first reason, the odds themselves. The product of all odds is
+  /// confidence / (1 - confidence). None: limits the plane to a possible symmetry.
   std::optional<double> odds;
 };
 
@@ -39,7 +39,7 @@ struct SymmetryPlane : ReflectionPlane {
   SymmetryPlane() = default;
   explicit SymmetryPlane(const ReflectionPlane& plane) : ReflectionPlane(plane.canonical()) {}  ///< in canonical form
 
-  PlaneKind kind = PlaneKind::Approximate;  ///< what the decision is
+  PlaneKind kind = PlaneKind::Approximate;  ///< result of the decision
   /// Probability that this is a symmetry of the object, in [0, 1]; comparable between objects, densities, noise levels,
   /// whole and partial clouds; 0 as published. src/core/evidence/README.md has the formula, its calibration and limits.
   double confidence = 0.0;
@@ -47,15 +47,15 @@ struct SymmetryPlane : ReflectionPlane {
   double score = 0.0;
   /// Share of the surface seen that the plane maps onto the surface, relative to what sampling and noise allow, [0, 1].
   double support = 0.0;
-  /// Estimate of the share of the surface that the plane maps to within the tolerance of the surface, in [0, 1]: of the
-  /// informative part of the surface. A plane is a symmetry of the object if that share is at least 0.97. NaN, with its
-  /// limits, for volumes, which have no surface, and as published.
+  /// Estimated share of the informative part of the surface that the plane maps to within the tolerance of the surface,
+  /// in [0, 1]. A plane is a symmetry of the object if that share is at least 0.97. NaN, with its limits, for volumes,
+  /// which have no surface, and as published.
   double share = 0.0;
   /// Lower limit of that share for the whole object: it lies between the limits in 95 of 100 cases, in [0, 1].
   double share_low = 0.0;
   double share_high = 1.0;  ///< upper limit
-  /// Distance that 97 % of the reflected points stay within from the surface, input units: the least tolerance at which
-  /// the plane would be a symmetry; the diameter where it is farther than was searched. NaN where the share is.
+  /// Distance from the surface within which 97 % of the reflected points stay, input units: the least tolerance at
+  /// which the plane would be a symmetry; the diameter if it is beyond the search range. NaN where the share is.
   double deviation = 0.0;
   /// Share of the points whose reflection falls where the cloud could show it, in [0, 1]: less than 1 for planes of
   /// scans and where a piece of the surface is missing.
@@ -81,8 +81,8 @@ struct SymmetryAxis {
   double support = 0.0;  ///< mean support of these planes
 };
 
-/// A line about which rotations map what a scanner saw onto itself or to unseen space, as the axis of a nut, a wheel or
-/// a bottle seen from one side. Beyond the paper (Section 6).
+/// A line about which rotations map the visible surface onto itself or to unseen space, as the axis of a nut, a wheel
+/// or a bottle seen from one side. Not in the paper.
 struct SymmetryRotation {
   Eigen::Vector3d point;      ///< of the axis, the closest to the center of the bounding ball; input frame
   Eigen::Vector3d direction;  ///< unit
@@ -91,7 +91,7 @@ struct SymmetryRotation {
   double confidence = 0.0;
   // Shares of the points seen, in [0, 1].
   double support = 0.0;  ///< that the best rotation maps onto the surface seen; a small rotation for any angle
-  double off = 0.0;      ///< that the worst rotation maps to where the scanner saw that there is nothing
+  double off = 0.0;      ///< that the worst rotation maps into free space
   double far = 0.0;      ///< the same, beyond ten tolerances of the surface
   double halfway = 0.0;  ///< off of rotations halfway between those of the fold: evidence against other folds
 };
@@ -104,20 +104,19 @@ struct SymmetryCenter {
   double support = 0.0;     ///< as in SymmetryAxis; in scans as in SymmetryRotation
 };
 
-/// What detectPlanes() found.
+/// Result of detectPlanes().
 struct Detection {
   /// Why there is no answer, one sentence such as "12 distinct points, at least 20 are needed"; empty where the search
   /// ran, whatever it found.
   std::string reason;
   std::vector<SymmetryPlane> planes;  ///< symmetries, then possible, then approximate and local; each best first
-  /// Where there is no symmetry and no possible one: the plane that maps the greatest share of the surface; else empty.
+  /// The plane that maps the greatest share of the surface, if there is no symmetry and no possible one; else empty.
   std::optional<SymmetryPlane> best;
-  /// Whether there is no symmetry, as few points of a whole cloud leave it open: the share of the surface that the best
-  /// plane maps may as well be that of a symmetry.
+  /// Whether there is no symmetry only because few points of a whole cloud leave it open: the share of the surface that
+  /// the best plane maps may also be that of a symmetry.
   bool undecided = false;
-  /// Where 97 % of the points lie within the tolerance of one plane (three tolerances where noise hides the surface),
-  /// as those of a sheet, a disc or one side of a box do: that plane. Reflections across it move nothing and are
-  /// uninformative.
+  /// The plane within whose tolerance (three tolerances where noise hides the surface) 97 % of the points lie, as for a
+  /// sheet, a disc or one side of a box. Reflections across it move no point and are uninformative.
   std::optional<ReflectionPlane> flat;
   double tolerance = 0.0;               ///< of the decision, input units
   double resolution = 0.0;              ///< least tolerance that sensor or spacing resolve, input units; 0 = unknown

@@ -18,7 +18,7 @@ struct BoundingBall {
 };
 
 /// A ball around the points whose radius is within about 1 % of the smallest, by core-set iteration (Badoiu and
-/// Clarkson 2003). Unlike a box it turns, moves and scales with the points.
+/// Clarkson 2003). Unlike a box, it rotates, moves and scales with the points.
 /// \param points 3 x N, finite; otherwise the center is not finite.
 /// \return radius 0 for one point or coincident points; the ball of radius 0 about the origin without a point.
 BoundingBall boundingBall(const PointsRef& points);

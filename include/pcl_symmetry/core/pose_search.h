@@ -16,20 +16,20 @@ struct PoseSearchOptions {
   void validate() const;
 };
 
-/// How well two clouds agree at a pose.
+/// Agreement of two clouds at a pose.
 struct PoseScore {
   double support = 0.0;  ///< share of the scan's points that lie on the model, in [0, 1]
-  /// Sum of two shares, in [0, 2]: of the model's points that the scanner could judge, those that lie in space it saw
-  /// to be empty; and of the scan's points, those that lie in space that the model's scanner saw to be empty.
+  /// Sum of two shares, in [0, 2]: of the model's points that the scanner could judge, those in its free space; and of
+  /// the scan's points, those in the free space of the model's scanner.
   double conflict = 0.0;
 
   /// Merit of a pose, by which poses are compared, in [-1, 1]: 1 for a perfect pose. Conflict counts half, because
-  /// holes in a scan look like space that the scanner saw through.
+  /// holes in a scan look like free space.
   double merit() const { return support - 0.5 * conflict; }
 };
 
-/// What decides whether a pose is right. Two scans need not show the same part of an object: only points that face the
-/// surface of the other cloud, and not its border, have to lie on it.
+/// Evidence that a pose is right. Two scans need not show the same part of an object: only points that face the surface
+/// of the other cloud, and not its border, have to lie on it.
 struct PoseEvidence {
   double overlap_source = 0.0;  ///< share of the source's points that lie on the surface of the target, in [0, 1]
   double overlap_target = 0.0;  ///< share of the target's points that lie on the surface of the source, in [0, 1]
@@ -37,8 +37,8 @@ struct PoseEvidence {
   /// Lower limit of the share of the scan's points that lie on the surface of the model within 2 % of its radius or
   /// what noise requires, in [0, 1].
   double on_surface = 0.0;
-  /// Share of the surface of a cloud visible to the scanner of the other one at this pose that lies in space it saw to
-  /// be empty, before what it measured, in [0, 1]. Where both were scanned the greater one; 0 where none was.
+  /// Share of the surface of a cloud that the scanner of the other one should see at this pose, but that lies in free
+  /// space in front of its measurements, in [0, 1]. The greater one if both were scanned; 0 if neither was.
   double contradicted = 0.0;
   /// The same for space where it measured nothing: beside the cloud or in its holes.
   double missing = 0.0;

@@ -31,7 +31,8 @@ struct PublishedOptions {
 /// stays. Nothing is added or decided: kind is PlaneKind::Approximate, confidence 0, and the share, its limits and the
 /// deviation, which only the decision measures, are NaN.
 ///
-/// Departure from the paper: maxima of a map by voting are those of means over neighbors, as its bins have few votes.
+/// Departure from the paper: maxima of a map by voting are those of means over neighbors, because its bins have few
+/// votes.
 /// \param points 3 x N, finite, input units.
 /// \param edt,map of these points, by any estimator; the paper's has 64 x 64 x 64 bins.
 /// \return by falling score D; `support` is the mean weight of the pairs, `residual` as that of SymmetryPlane.

@@ -8,7 +8,7 @@
 
 namespace PCL_SYMMETRY_EXPORTS pcl_symmetry {
 
-/// A point of the curve whose turn about an axis is a body of revolution.
+/// A point of the curve whose rotation about an axis gives a body of revolution.
 struct ProfilePoint {
   double radius;  ///< distance from the axis, input units, >= 0
   double height;  ///< along the direction of the axis, from its point, input units

@@ -21,8 +21,9 @@ struct ObjectSymmetryOptions {
   int num_directions = 3000;  ///< directions of axes on a half sphere, >= 100; 3000 are 2.6 degrees apart
   int max_fold = 60;          ///< greatest order of a rotation, >= 2
   int max_points = 10'000;    ///< number of points drawn from larger clouds, >= 100
-  /// What symmetric means: how far a surface may be off, share of the greatest distance between two points, in (0,
-  /// 0.1]. A rotation is a symmetry if it maps at least 1 - max_feature of the surface to within this of the surface.
+  /// Definition of a symmetry: greatest deviation of a surface, share of the greatest distance between two points, in
+  /// (0, 0.1]. A rotation is a symmetry if it maps at least 1 - max_feature of the surface to within this of the
+  /// surface.
   double tolerance = 0.01;
   /// The same in input units, >= 0; 0 = tolerance decides.
   double absolute_tolerance = 0.0;
@@ -58,7 +59,7 @@ struct RejectedRotation {
   int fold = 0;                                              ///< order of the rotations; 0: by any angle
   double off = 0.0;                                          ///< share of the surface beyond the tolerance, in [0, 1]
   double far = 0.0;                                          ///< share beyond ten tolerances, in [0, 1]
-  Eigen::Vector3d where = Eigen::Vector3d::Zero();           ///< center of what is off, input frame
+  Eigen::Vector3d where = Eigen::Vector3d::Zero();           ///< center of the surface that is off, input frame
 };
 
 /// A group by its name.
@@ -93,7 +94,7 @@ struct ObjectSymmetries {
   int num_stray_points = 0;  ///< far from all others and left out
   std::optional<GroupName> at_half_tolerance;             ///< with ObjectSymmetryOptions::other_tolerances
   std::optional<GroupName> at_twice_tolerance;            ///< with ObjectSymmetryOptions::other_tolerances
-  std::vector<RejectedRotation> rejected;                 ///< what was tried and failed, the least failure first
+  std::vector<RejectedRotation> rejected;                 ///< rejected rotations, the least failure first
   std::vector<std::pair<std::string, double>> timing_ms;  ///< stages in order
   /// Why there is no answer; empty where there is one. Points that show no surface at the tolerance (solid samples,
   /// atoms, few points) get the least tolerance at which they do.

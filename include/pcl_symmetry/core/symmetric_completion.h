@@ -15,7 +15,8 @@ namespace PCL_SYMMETRY_EXPORTS pcl_symmetry {
 struct CompletionOptions {
   /// Reflected points within this distance of a measured point add nothing; local spacings of the points, > 0.
   double overlap = 1.5;
-  /// Reflected points more than this in front of what was seen lie in free space; local spacings of the points, >= 0.
+  /// Reflected points more than this in front of the visible surface lie in free space; local spacings of the points,
+  /// >= 0.
   double margin = 3.0;
   int num_threads = 0;  ///< >= 0; 0 = one per core
 
@@ -31,8 +32,8 @@ ReflectionPlane planeAcrossView(const Line3d& axis, const Eigen::Vector3d& viewp
 /// The same through the center of symmetry, or else the best axis, that was found; none where there is neither.
 std::optional<ReflectionPlane> planeAcrossView(const Detection& found, const Eigen::Vector3d& viewpoint);
 
-/// The points of a partial scan whose reflections show what the scanner did not see of a symmetric object: they fall
-/// neither onto the measured surface nor into space that was seen to be empty.
+/// The points of a partial scan whose reflections show unseen parts of a symmetric object: they fall neither onto the
+/// measured surface nor into free space.
 /// \param points 3 x N, finite, input units.
 /// \param plane a symmetry plane of the object, input frame.
 /// \param options tolerances in spacings of the points.

@@ -10,7 +10,7 @@
 
 namespace PCL_SYMMETRY_EXPORTS pcl_symmetry {
 
-/// What the halves of a symmetrized shape are.
+/// How the halves of a symmetrized shape are made.
 enum class SymmetrizedHalf {
   Mean,  ///< both the mean of the two sides
   Left,  ///< both the side that the normal of the plane points away from

@@ -53,9 +53,9 @@ struct ProbableFrame {
   /// an axis of revolution may be rotated about it. Fitted to models whose files tell the own axes
   /// (test/benchmark/fit_frames.py).
   double probability = 0.0;
-  /// What the probability was taken from: 1; value less that of the best frame; score of the first plane; contact of
-  /// the outline with its box; angle to the principal axes over 20 degrees, at most 1; 1 for the frame that the search
-  /// put first; sum of the scores of the other planes; score of the first plane where the search put it first, else 0.
+  /// Terms of the probability: 1; value less that of the best frame; score of the first plane; contact of the outline
+  /// with its box; angle to the principal axes over 20 degrees, at most 1; 1 for the frame that the search put first;
+  /// sum of the scores of the other planes; score of the first plane where the search put it first, else 0.
   std::array<double, 8> evidence{};
 };
 
@@ -92,8 +92,8 @@ struct SymmetryFrame {
 /// Finds the canonical frame: the plane of greatest symmetry, the greatest among those perpendicular to it, and the
 /// plane perpendicular to both (Section 5.1). The center of symmetry is where the three meet.
 ///
-/// Departures from the paper: of two nearly equal planes the one that faces of the surface agree with is taken. Where
-/// no offset stands out, a plane passes near the middle of the extent. Where faces about the first axis make the shape
+/// Departure from the paper: of two nearly equal planes the one that faces of the surface agree with is taken. Where no
+/// offset stands out, a plane passes near the middle of the extent. Where faces about the first axis make the shape
 /// stand level at little loss of symmetry, the other two axes follow them. A scan is completed by its reflection across
 /// the first plane before the other two are searched, and free space counts against planes. The center is a mean over
 /// frames that are nearly as good.

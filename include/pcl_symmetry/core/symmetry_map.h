@@ -93,8 +93,8 @@ public:
   /// Calls visit(index) for the bins around a bin, some of them twice, until a call returns false: those one step away
   /// in theta and r, and as many steps in phi as cover the angle of one step in theta.
   ///
-  /// At the equator these are the 26 neighbors of the paper. Departure near the pole: bins are slivers in phi there,
-  /// and one peak would be a maximum in many of them.
+  /// At the equator these are the 26 neighbors of the paper. Departure from the paper: near the pole, bins are slivers
+  /// in phi, and one peak would be a maximum in many of them.
   /// \return whether all calls returned true.
   template <typename Visit>
   bool visitNeighbors(const Bin& bin, const Visit& visit) const {

@@ -13,7 +13,7 @@ struct ViewPlane {
   double weight;           ///< M(u), the symmetry score of the plane, >= 0
 };
 
-/// W of Section 5.4: planes, and what they leave out, strongest first.
+/// W of Section 5.4: planes, and maxima in directions without planes, strongest first.
 /// \param axes directions and scores of axes of revolution. Each counts as a fan of planes that weighs as two planes.
 /// \param maxima normals and values of maxima of the map, strongest first. As long as some direction has less than a fifth
 /// of the best score, the strongest whose normal is more than 60 degrees from all planes so far counts too: without the
@@ -28,7 +28,7 @@ struct RankedView {
 };
 
 /// The viewpoint score S(v) = sum over u in W of |v . u| M(u) (Section 5.4). It is large if v looks along the normals
-/// of the planes, so that little of what is seen is repeated.
+/// of the planes, so that little of the visible surface is repeated.
 /// \param planes W.
 /// \param direction v, unit.
 /// \return S(v) in [0, sum of the weights].
@@ -36,8 +36,9 @@ double viewpointScore(const std::vector<ViewPlane>& planes, const Eigen::Vector3
 
 /// The local maxima of S, best first, each with its opposite.
 ///
-/// A departure from the paper's exhaustive search: where no v . u changes its sign, S(v) = v . sum of +-M(u) u is
-/// largest in the direction of that sum. From each of many even directions this step is repeated; none lowers S.
+/// Departure from the paper: it searches exhaustively; here, where no v . u changes its sign, S(v) = v . sum of +-M(u)
+/// u is largest in the direction of that sum. From each of many evenly spread directions this step is repeated; it
+/// never lowers S.
 /// \param planes W.
 /// \return none if no plane has a weight > 0: then all directions are equal.
 std::vector<RankedView> bestViews(const std::vector<ViewPlane>& planes);

@@ -14,12 +14,11 @@ namespace PCL_SYMMETRY_EXPORTS pcl_symmetry {
 
 /// What a range scanner saw: space in front of the surface on each ray is free, space behind it is unknown.
 ///
-/// It holds one or several pictures of depths with their projections: space is free where any of them shows it to be
-/// free. A reflected point in free space counts against the plane; a reflected point in unknown space is uninformative.
-/// Departure from the paper, which takes scans for whole objects: their best planes then often lie beside the true
-/// ones.
+/// It holds one or several depth images with their projections: space is free if any of them shows it to be free. A
+/// reflected point in free space counts against the plane; a reflected point in unknown space is uninformative.
+/// Departure from the paper: it treats scans as whole objects, whose best planes then often lie beside the true ones.
 ///
-/// Copies share their pictures.
+/// Copies share their depth images.
 class Visibility {
 public:
   using Projection = Eigen::Matrix<double, 3, 4>;  ///< homogeneous points to pixels and depth
@@ -33,14 +32,14 @@ public:
   /// \param projection takes a homogeneous point of the input frame to (u w, v w, w) with w its depth, input units.
   /// \param width,height number of columns and rows, >= 1.
   /// \param depths width * height depths, row by row, input units; pixel (u, v) covers u - 1/2 to u + 1/2.
-  /// \param outside depth of rays beyond the picture: kNoRay or kBackground.
-  /// \throws std::invalid_argument for a picture without pixels, or a number of depths that does not fit.
+  /// \param outside depth of rays beyond the image: kNoRay or kBackground.
+  /// \throws std::invalid_argument for an image without pixels, or a number of depths that does not fit.
   Visibility(const Projection& projection, int width, int height, std::vector<float> depths, float outside = kNoRay);
 
   /// A range image of points without order: the nearest point in each pixel. The size of the pixels follows the
-  /// distance between the points in the picture; small gaps between the points are closed. Space beside the points is
-  /// free, but for that beyond a side of the scanner's picture: where the last of the rows that the points lie in is as
-  /// long as those before it, the picture cut the object off.
+  /// distance between the points in the image; small gaps between the points are closed. Space beside the points is
+  /// free, except beyond a side of the scanner's image: if the last row of points is as long as those before it, the
+  /// image border cut the object off.
   /// \param points 3 x N, finite.
   /// \param viewpoint in the frame of the points.
   /// \return nothing without a point, with one that is not finite, or if the viewpoint is among the points: they do not
@@ -48,16 +47,16 @@ public:
   static std::optional<Visibility> fromPoints(const PointsRef& points, const Eigen::Vector3d& viewpoint);
 
   /// The range image of a scene, of which the analyzed points are a part: whatever hides them is in it too. Space
-  /// beyond the picture is unknown. Points all around the viewpoint give six pictures, the faces of a cube; where the
-  /// points lie in a cone of 75 degrees around one direction there is one.
+  /// beyond the image is unknown. Points all around the viewpoint give six images, the faces of a cube; points in a
+  /// cone of 75 degrees around one direction give one.
   /// \param points 3 x N, finite: all that the scanner measured.
   /// \param viewpoint in the frame of the points.
-  /// \param max_pixels of each picture, >= 16: larger scenes get larger pixels. A picture takes four bytes a pixel.
+  /// \param max_pixels of each image, >= 16: larger scenes get larger pixels. An image takes four bytes a pixel.
   /// \return nothing without a point other than the viewpoint.
   static std::optional<Visibility> ofScene(const PointsRef& points, const Eigen::Vector3d& viewpoint,
                                            std::size_t max_pixels = kMaxPixels);
 
-  /// What several scanners saw of one scene: space is free where any of them saw it to be free.
+  /// The views of several scanners of one scene: space is free if it is free for any of them.
   /// \param views in one frame, at least one.
   /// \throws std::invalid_argument without a view.
   static Visibility together(const std::vector<Visibility>& views);
@@ -84,24 +83,24 @@ public:
   /// \return the planes of withSupport() with their margins: no object lies below n . x + d = 0.
   const std::vector<Eigen::Vector4d>& supports() const { return supports_; }
 
-  /// Pixels of a picture that is made from points: 4 MB a picture.
+  /// Pixels of an image made from points: 4 MB an image.
   static constexpr std::size_t kMaxPixels = 1u << 20;
 
   /// \param x in the frame of the points.
-  /// \return distance of the point behind the surface, along its ray, input units: negative in free space, -infinity
-  /// where the ray met nothing, +infinity where no ray passed.
+  /// \return distance of the point behind the surface, along its ray, input units: negative in free space, -infinity if
+  /// the ray met no surface, +infinity if no ray passed.
   double depthBehind(const Eigen::Vector3d& x) const;
 
   /// \param x in the frame of the points.
-  /// \return whether a picture has a pixel there, also one without a depth. Pictures that were made of points have no
-  /// border: true for all points in front of them.
+  /// \return whether an image has a pixel there, with or without a depth. Images made from points have no border: true
+  /// for all points in front of them.
   bool isInPicture(const Eigen::Vector3d& x) const;
 
   /// \param points 3 x M, in the frame of the points.
   /// \return for each whether depthBehind() is negative: M values, 1 in free space.
   std::vector<char> areFree(const Eigen::Matrix3Xd& points) const;
 
-  /// The share of a cloud that hides behind itself.
+  /// The share of a cloud that is hidden by the cloud itself.
   /// \param points 3 x N, finite, N >= 1.
   /// \param margin input units.
   /// \return share of the points that lie more than the margin behind the surface on their ray. From the viewpoint of a
@@ -111,27 +110,27 @@ public:
   /// \return the same visibility for coordinates (x - center) / scale.
   Visibility normalized(const Eigen::Vector3d& center, double scale) const;
 
-  /// \return the point where all rays of the first picture meet, in the frame of the points.
+  /// \return the point where all rays of the first image meet, in the frame of the points.
   Eigen::Vector3d viewpoint() const;
 
-  /// \return number of pictures, >= 1.
-  std::size_t numPictures() const { return pictures_.size(); }
-  /// Columns and rows of the first picture.
-  int width() const { return pictures_.front().width; }
-  int height() const { return pictures_.front().height; }  ///< rows
-  /// \return depth of a pixel of the first picture, input units.
-  float depth(int u, int v) const { return pictures_.front().depth(u, v); }
+  /// \return number of depth images, >= 1.
+  std::size_t numPictures() const { return depth_views_.size(); }
+  /// Columns and rows of the first image.
+  int width() const { return depth_views_.front().width; }
+  int height() const { return depth_views_.front().height; }  ///< rows
+  /// \return depth of a pixel of the first image, input units.
+  float depth(int u, int v) const { return depth_views_.front().depth(u, v); }
 
 private:
-  struct Picture {
+  struct DepthView {
     Projection projection;
     int width, height;
-    std::shared_ptr<const std::vector<float>> depths;  // in the units that the picture was taken in
+    std::shared_ptr<const std::vector<float>> depths;  // in the units of the original image
     float outside;
     double unit = 1.0;                 // of this frame, in units of the depths
     double inverse_depth_error = 0.0;  // in units of the depths
-    bool is_of_points = false;         // it ends where the points do, and the sensor's picture may not
-    // Lines in homogeneous pixels at which the picture cut the object: no ray passed where their product is positive.
+    bool is_of_points = false;         // made from points: it ends where they do, and the sensor's image may not
+    // Lines in homogeneous pixels at which the image cut the object: no ray passed where their product is positive.
     std::vector<Eigen::Vector3d> sides;
 
     float depth(int u, int v) const {
@@ -143,12 +142,12 @@ private:
 
   Visibility() = default;
 
-  std::vector<Picture> pictures_;
-  std::vector<Eigen::Vector4d> supports_;  // behind these planes is no object
+  std::vector<DepthView> depth_views_;
+  std::vector<Eigen::Vector4d> supports_;  // no object lies behind these planes
 };
 
-/// Finds out from the points whether they were measured from a viewpoint: they lie in front of it, hardly any of them
-/// behind others, in one layer. An open surface that is visible as a whole from there passes too.
+/// Determines from the points whether they were measured from a viewpoint: they lie in front of it, in one layer, and
+/// hardly any is behind others. An open surface that is completely visible from there passes, too.
 /// \param points 3 x N, finite.
 /// \param viewpoint in the frame of the points.
 /// \return the space seen from the viewpoint; nothing if the points were not measured from there.

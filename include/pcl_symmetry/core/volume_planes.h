@@ -8,9 +8,8 @@ namespace PCL_SYMMETRY_EXPORTS pcl_symmetry {
 
 /// Planes of symmetry of a volume: maxima of the transform (Sections 4.1 to 4.3), each refined to where D itself is
 /// greatest. A dense volume has no nearest points to iterate over, so Gauss-Newton steps of the three parameters of the
-/// plane take the place of Iterative Symmetric Points: they minimize the sum of (f(x) - f(gamma x))^2, which is
-/// 2 |f|^2 - 2 f . gamma(f), over the voxels whose reflection the volume shows. Pairs where f is as flat as its noise
-/// count little.
+/// plane replace Iterative Symmetric Points: they minimize the sum of (f(x) - f(gamma x))^2, which is 2 |f|^2 - 2 f .
+/// gamma(f), over the voxels whose reflection the volume shows. Pairs where f is as flat as its noise count little.
 ///
 /// In the planes returned, `score` is D, `support` the correlation c (Pearson) of f with its reflection inside the
 /// body, `seen` the share of the body whose reflection lies within the volume, and `residual` the root mean square of

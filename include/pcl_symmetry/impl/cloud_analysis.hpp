@@ -116,10 +116,10 @@ private:
 /// The input of classes that also take into account what a scanner saw.
 ///
 /// By default the data decide where the scanner stood: an organized cloud shows it by its own rays, any other cloud by
-/// its sensor_origin_ if the points can have been seen from there, or by the density of its points, which in a
-/// scan falls with the slant and the distance of the surface. A sensor_origin_ of 0 0 0 without a rotation may be a
-/// default: the density has to confirm it. Reflections that land in space that the scanner saw to be empty then count
-/// against a plane; reflections that land behind the surface do not count.
+/// its sensor_origin_ if the points can have been seen from there, or by the density of its points, which in a scan
+/// falls with the slant and the distance of the surface. A sensor_origin_ of 0 0 0 without a rotation may be a default:
+/// the density has to confirm it. Reflections that land in free space then count against a plane; reflections that land
+/// behind the surface do not count.
 ///
 /// Where setIndices() names a part of the cloud, what the scanner saw is made of the whole cloud: another object in
 /// front hides what lies behind it, space beyond the cloud is unknown, and none of the part lies behind the table,
@@ -176,10 +176,10 @@ protected:
     return frame_.filtered ? this->selectFrom(*frame_.filtered, seed) : CloudAnalysis<PointT>::selectInput(seed);
   }
 
-  /// \return whether the caller may have told what the object stands on, by setGround() or setSeenSpace().
+  /// \return whether the caller may have given the support of the object, by setGround() or setSeenSpace().
   bool hasGivenSupport() const { return ground_ || (seen_space_ && !seen_space_->asksForSupport()); }
 
-  /// Finds out what the scanner saw.
+  /// Determines what the scanner saw.
   /// \param points selected from the input, 3 x N, N >= 1.
   /// \return what the scanner saw; null without a viewpoint.
   /// \throws std::invalid_argument where the points surround the viewpoint that was given.

@@ -24,7 +24,7 @@
 ///
 /// All classes and functions for PCL users share one error policy:
 /// - Data that hold no answer give an empty result, and PCL_WARN prints the reason. Such data are: no input, no finite
-///   point, fewer than 20 distinct points, points at one place or on one line, a mesh without area.
+///   point, fewer than 20 distinct points, points at one position or on one line, a mesh without area.
 /// - Wrong parameters throw pcl::BadArgumentException with the message "field = value, must be rule". Indices that the
 ///   cloud or mesh does not have, and a viewpoint among the points, are wrong parameters.
 /// - Messages name neither a C++ function nor a source file.
@@ -70,8 +70,8 @@ void changeOptions(Options& options, const Change& change) {
   options = std::move(changed);
 }
 
-/// \throws pcl::BadArgumentException where \p value is below \p least.
-void checkAtLeast(const char* field, std::int64_t value, std::int64_t least);
+/// \throws pcl::BadArgumentException where \p value is below \p lower_limit.
+void checkAtLeast(const char* field, std::int64_t value, std::int64_t lower_limit);
 
 /// \param points 3 x N, finite.
 /// \param input what the points are called in the sentence.
@@ -185,7 +185,7 @@ Eigen::Vector4d unitPlane(const Eigen::Vector4d& coefficients);
 /// The same space for points that stand on a ground.
 /// \param ground a plane with a unit normal of any sign; the viewpoint lies above it.
 /// \param points 3 x N, N >= 1.
-/// \param tolerance by which they may seem to reach into it, as a share of their diagonal.
+/// \param tolerance by which points may seem to reach into it, as a share of their diagonal.
 /// \return \p seen itself where it has no viewpoint.
 SeenSpace standingOn(const SeenSpace& seen, const Eigen::Vector4d& ground, const Points& points, double tolerance);
 

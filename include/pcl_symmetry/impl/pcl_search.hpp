@@ -59,7 +59,7 @@ private:
   mutable std::mutex mutex_;
 };
 
-/// What a class does with the search that it was given; says by PCL_WARN what it cannot honor.
+/// The search that a class uses for a given one; PCL_WARN reports what it cannot honor.
 /// \param search null: the library's own.
 /// \param class_name for messages.
 /// \param num_threads of the class.

@@ -33,7 +33,7 @@ Eigen::MatrixXf spreadCenters(const Eigen::MatrixXf& features, const std::vector
 /// Assigns every feature to its closest center.
 /// \return whether a label changed.
 bool assign(const Eigen::MatrixXf& features, const std::vector<float>& weights, Clusters& clusters) {
-  lookAtWatch();
+  checkCancelled();
   bool changed = false;
   clusters.sq_error = 0.0;
   for (Eigen::Index i = 0; i < features.cols(); ++i) {

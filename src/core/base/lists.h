@@ -21,7 +21,7 @@ void append(List& list, List more) {
   std::move(more.begin(), more.end(), std::back_inserter(list));
 }
 
-/// Sorts by a member or a function of the entries, the greatest first; equal ones keep their order.
+/// Sorts entries by a member or function in descending order; the sort is stable.
 template <typename List, typename Value>
 void sortFalling(List& list, const Value& value) {
   std::stable_sort(list.begin(), list.end(),
@@ -42,7 +42,7 @@ inline std::vector<int> allOf(std::ptrdiff_t size) {
   return all;
 }
 
-/// \return the indices of values, the greatest first; equal ones keep their order.
+/// \return the indices that sort the values in descending order; stable.
 template <typename Values>
 std::vector<int> fallingOrder(const Values& values) {
   std::vector<int> order = allOf(static_cast<std::ptrdiff_t>(values.size()));

@@ -19,15 +19,15 @@ struct Loop;
 
 namespace {
 
-/// Time between two looks at a watch: too short to be noticed by whoever ends a program, too long to cost time.
-constexpr std::chrono::milliseconds watch_interval(50);
+/// Interval between two progress reports: too short for a user to notice, too long to cost time.
+constexpr std::chrono::milliseconds report_interval(50);
 
 using Clock = std::chrono::steady_clock;
 
-thread_local Watch* watch = nullptr;
-thread_local Loop* innermost = nullptr;  // whose block the thread runs
+thread_local ProgressMonitor* monitor = nullptr;
+thread_local Loop* innermost = nullptr;  // the loop whose block this thread runs
 
-struct Ended {};  // thrown by a loop inside one that a watch has ended
+struct Cancelled {};  // thrown by a loop inside a cancelled one
 
 }  // namespace
 
@@ -38,15 +38,15 @@ struct Loop {
 
   void run();
   void work();
-  void tell(double share);
-  void look();
-  void leave() const;
-  bool hasEnded() const { return ended || (outer && outer->hasEnded()); }
+  void report(double share);
+  void poll();
+  void rethrow() const;
+  bool isCancelled() const { return cancelled || (outer && outer->isCancelled()); }
 
   const std::size_t num_blocks;
   std::atomic<std::size_t> next{0};
-  std::atomic<bool> ended{false};  // by a watch
-  int num_free, num_helpers = 0;   // threads that may still help, and that do; under the lock of Threads
+  std::atomic<bool> cancelled{false};  // by the progress callback
+  int num_free, num_helpers = 0;  // threads that may still join, and that have joined; guarded by the lock of Threads
   Loop* const outer;
   const std::function<void(std::size_t)>& block;
   std::mutex mutex;  // of failure
@@ -55,7 +55,7 @@ struct Loop {
 
 namespace {
 
-/// The threads that help with loops. They sleep while there is none: other programs have the cores.
+/// The threads that help with loops. They sleep while there is no loop and leave the cores to other programs.
 class Threads {
 public:
   void add(Loop& loop) {
@@ -69,9 +69,9 @@ public:
   void remove(Loop& loop) {
     std::unique_lock<std::mutex> lock(mutex_);
     loops_.erase(std::find(loops_.begin(), loops_.end(), &loop));
-    while (!left_.wait_for(lock, watch_interval, [&] { return loop.num_helpers == 0; })) {
+    while (!left_.wait_for(lock, report_interval, [&] { return loop.num_helpers == 0; })) {
       lock.unlock();
-      loop.tell(1.0);
+      loop.report(1.0);
       lock.lock();
     }
   }
@@ -111,69 +111,70 @@ Threads* threads = new Threads;
 }  // namespace
 
 void Loop::run() {
-  Watch* const watched = watch;
+  ProgressMonitor* const own_monitor = monitor;
   const bool is_shared = num_free > 0;
-  if (watched) ++watched->depth_;
+  if (own_monitor) ++own_monitor->depth_;
   if (is_shared) threads->add(*this);
   work();
   if (is_shared) threads->remove(*this);
-  if (watched) --watched->depth_;
-  leave();
+  if (own_monitor) --own_monitor->depth_;
+  rethrow();
 }
 
 void Loop::work() {
   Loop* const former = std::exchange(innermost, this);
-  for (std::size_t b; !hasEnded() && (b = next++) < num_blocks;) {
+  for (std::size_t b; !isCancelled() && (b = next++) < num_blocks;) {
     try {
       block(b);
     } catch (...) {
       const std::lock_guard<std::mutex> lock(mutex);
       if (!failure) failure = std::current_exception();
     }
-    tell(static_cast<double>(b + 1) / static_cast<double>(num_blocks));
+    report(static_cast<double>(b + 1) / static_cast<double>(num_blocks));
   }
   innermost = former;
 }
 
-void Loop::tell(double share) {
-  if (!watch || hasEnded()) return;
-  if (watch->depth_ == 1) watch->share_ = share;
-  if (Clock::now() < watch->last_ + watch_interval) return;
+void Loop::report(double share) {
+  if (!monitor || isCancelled()) return;
+  if (monitor->depth_ == 1) monitor->share_ = share;
+  if (Clock::now() < monitor->last_ + report_interval) return;
   try {
-    watch->tell_(watch->share_);
+    monitor->report_(monitor->share_);
   } catch (...) {
     for (Loop* loop = this; loop; loop = loop->outer) {
       const std::lock_guard<std::mutex> lock(loop->mutex);
       loop->failure = std::current_exception();
-      loop->ended = true;
+      loop->cancelled = true;
     }
   }
-  watch->last_ = Clock::now();
+  monitor->last_ = Clock::now();
 }
 
-void lookAtWatch() {
+void checkCancelled() {
   static const std::function<void(std::size_t)> nothing;
   Loop step(0, 1, nothing);
-  step.look();
+  step.poll();
 }
 
-void Loop::look() {
-  if (watch) tell(watch->share_);
-  leave();
+void Loop::poll() {
+  if (monitor) report(monitor->share_);
+  rethrow();
 }
 
-/// Throws what has ended the loop.
-void Loop::leave() const {
+/// Rethrows the exception that ended the loop.
+void Loop::rethrow() const {
   if (failure) std::rethrow_exception(failure);
-  if (hasEnded()) throw Ended();
+  if (isCancelled()) throw Cancelled();
 }
 
-Watch::Watch(std::function<void(double)> tell) : tell_(std::move(tell)), former_(watch), last_(Clock::now()) {
-  watch = this;
+ProgressMonitor::ProgressMonitor(std::function<void(double)> report)
+    : report_(std::move(report)), previous_(monitor), last_(Clock::now()) {
+  monitor = this;
 }
 
-Watch::~Watch() {
-  watch = former_;
+ProgressMonitor::~ProgressMonitor() {
+  monitor = previous_;
 }
 
 int resolveNumThreads(int num_threads) {

@@ -23,33 +23,34 @@ void parallelBlocks(std::size_t num_blocks, int num_threads, const std::function
 void parallelRanges(std::size_t size, std::size_t block_size, int num_threads,
                     const std::function<void(std::size_t, std::size_t)>& range);
 
-/// The same for points, whose pieces are large enough that threads start seldom and small enough for the first cache.
+/// The same for points, in pieces that are large enough to start threads rarely and small enough for the first-level
+/// cache.
 void parallelPoints(std::size_t size, int num_threads, const std::function<void(std::size_t, std::size_t)>& range);
 
-/// While it lives, reports several times a second how far the outermost loop of this thread is, so that a long call can
-/// show its progress and be ended.
-class Watch {
+/// Reports the progress of the outermost loop of this thread several times a second while it lives. The callback can
+/// cancel the computation.
+class ProgressMonitor {
 public:
-  /// \param tell takes the share of the blocks of parallelBlocks() that are done, in [0, 1]. What it throws ends that
-  /// loop and those inside.
-  explicit Watch(std::function<void(double)> tell);
-  ~Watch();
-  Watch(const Watch&) = delete;
-  Watch& operator=(const Watch&) = delete;
+  /// \param report receives the share of the blocks of parallelBlocks() that are done, in [0, 1]. An exception that it
+  /// throws cancels that loop and all loops inside it.
+  explicit ProgressMonitor(std::function<void(double)> report);
+  ~ProgressMonitor();
+  ProgressMonitor(const ProgressMonitor&) = delete;
+  ProgressMonitor& operator=(const ProgressMonitor&) = delete;
 
 private:
   friend struct Loop;
 
-  std::function<void(double)> tell_;
-  Watch* former_;
+  std::function<void(double)> report_;
+  ProgressMonitor* previous_;
   std::chrono::steady_clock::time_point last_;
-  int depth_ = 0;  // of the loops that run
+  int depth_ = 0;  // number of nested loops that run
   double share_ = 0.0;
 };
 
-/// Ends the call where its Watch asks for that: for code of one thread, between steps of some microseconds and more.
-/// Loops do this after each block.
-/// \throws what the watch throws; in a block of a loop, also where the loop was ended.
-void lookAtWatch();
+/// Throws if the progress callback of this thread has cancelled the computation. For code of one thread, between steps
+/// of some microseconds or more; loops do this after each block.
+/// \throws the exception of the callback; within a block, also if the loop of that block was cancelled.
+void checkCancelled();
 
 }  // namespace pcl_symmetry

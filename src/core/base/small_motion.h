@@ -27,7 +27,7 @@ public:
   Matrix6d ofUnknowns() const { return sums().topLeftCorner<kLast, kLast>(); }
 
 private:
-  /// Products of eight numbers, the last of which is 0: full registers are quicker than half of the products.
+  /// Padded with a zero to eight numbers: full registers are faster than half of the products.
   Eigen::Matrix<double, kLast + 2, kLast + 2> products_ = Eigen::Matrix<double, kLast + 2, kLast + 2>::Zero();
 };
 
@@ -37,9 +37,9 @@ struct SmallMotionEquations {
   Vector6d g = Vector6d::Zero();
 };
 
-/// The motion of least squares. Directions that nothing fixes stay as they are.
-/// \param min_stiffness of a direction that is fixed, share of the greatest eigenvalue of h.
-/// \param longest a longer motion is cut to this length.
+/// The least-squares motion, without motion along unconstrained directions.
+/// \param min_stiffness least eigenvalue of a constrained direction, as a share of the greatest eigenvalue of h.
+/// \param longest greatest length of the motion; longer ones are scaled down.
 inline Vector6d smallMotion(const SmallMotionEquations& equations, double min_stiffness, double longest) {
   Vector6d motion = -SymmetricEigen<Matrix6d>(equations.h).solve(equations.g, min_stiffness);
   const double length = motion.norm();

@@ -28,7 +28,7 @@ T quantile(std::vector<T> values, double share) {
 }
 
 /// \param values more than twice \p num_cut.
-/// \return the least and the greatest value that are left without the \p num_cut least and greatest.
+/// \return the least and the greatest value after the \p num_cut least and the \p num_cut greatest are removed.
 template <typename T>
 std::pair<T, T> trimmedExtent(std::vector<T> values, std::size_t num_cut) {
   const auto low = values.begin() + num_cut;
@@ -39,12 +39,12 @@ std::pair<T, T> trimmedExtent(std::vector<T> values, std::size_t num_cut) {
   return {least, *high};
 }
 
-/// \return the probability of log odds.
+/// \return the probability that corresponds to log odds.
 inline double logistic(double log_odds) {
   return 1.0 / (1.0 + std::exp(-log_odds));
 }
 
-/// \return a probability whose odds are multiplied by a factor.
+/// \return the probability after its odds are multiplied by a factor.
 inline double withOdds(double probability, double factor) {
   return factor * probability / (1.0 - probability + factor * probability);
 }

@@ -9,7 +9,7 @@ namespace pcl_symmetry {
 
 namespace {
 
-/// Matrices of three rows have code of their own; all others share that for any size.
+/// Matrices of three rows have specialized code; all others share the code for any size.
 template <typename Matrix>
 using Compiled = std::conditional_t<Matrix::RowsAtCompileTime == 3, Matrix, Eigen::MatrixXd>;
 
@@ -27,10 +27,11 @@ SymmetricEigen<Matrix>::SymmetricEigen(const Matrix& matrix) {
 }
 
 template <typename Matrix>
-typename SymmetricEigen<Matrix>::Vector SymmetricEigen<Matrix>::solve(const Vector& b, double least) const {
+typename SymmetricEigen<Matrix>::Vector SymmetricEigen<Matrix>::solve(const Vector& b,
+                                                                      double min_relative_eigenvalue) const {
   Vector x = Vector::Zero(b.size());
   for (Eigen::Index i = 0; i < b.size(); ++i) {
-    if (!(eigenvalues_[i] > least * eigenvalues_[b.size() - 1])) continue;
+    if (!(eigenvalues_[i] > min_relative_eigenvalue * eigenvalues_[b.size() - 1])) continue;
     x += eigenvectors_.col(i) * (eigenvectors_.col(i).dot(b) / eigenvalues_[i]);
   }
   return x;

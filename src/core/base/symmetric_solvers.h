@@ -1,5 +1,6 @@
-/// Eigenvectors of symmetric matrices and systems of equations with them, by Eigen. They are compiled once, in
-/// symmetric_solvers.cpp, which lists the matrices: a source that names Eigen's solvers takes twice as long to compile.
+/// Eigenvectors of symmetric matrices and systems of equations with them, by Eigen. Instantiated once, in
+/// symmetric_solvers.cpp, for the matrices listed there: including Eigen's solvers doubles the compile time of a
+/// source.
 #pragma once
 
 #include <Eigen/Core>
@@ -21,20 +22,21 @@ public:
   const Vector& eigenvalues() const { return eigenvalues_; }
   const Matrix& eigenvectors() const { return eigenvectors_; }
 
-  /// x of matrix x = b, without the directions whose eigenvalue is not above \p least times the greatest.
-  Vector solve(const Vector& b, double least) const;
+  /// Solves matrix x = b, ignoring directions whose eigenvalue is at most \p min_relative_eigenvalue times the
+  /// greatest.
+  Vector solve(const Vector& b, double min_relative_eigenvalue) const;
 
 private:
   Vector eigenvalues_;
   Matrix eigenvectors_;
 };
 
-/// x of a x = b, by the LDL^T of \p a, which is symmetric and has no negative eigenvalue.
+/// Solves a x = b by the LDL^T decomposition of \p a, which is symmetric and positive semidefinite.
 template <typename Scalar, int size, int columns>
 Eigen::Matrix<Scalar, size, columns> solveSymmetric(const Eigen::Matrix<Scalar, size, size>& a,
                                                     const Eigen::Matrix<Scalar, size, columns>& b);
 
-/// An orthonormal basis of what the columns of \p spanning span, by its QR factors.
+/// An orthonormal basis of the column space of \p spanning, by QR decomposition.
 /// \param spanning at least as many rows as columns.
 Eigen::MatrixXd orthonormalColumns(const Eigen::MatrixXd& spanning);
 

@@ -16,31 +16,32 @@ struct Candidate {
   bool from_map = false;   ///< a maximum of the map, whose cell it must not leave
   int iterations = 0;      ///< of all stages
   bool converged = false;  ///< in the last stage
-  IspStep step = {};       ///< matches of the plane nearby; none where points resolve no surface
+  IspStep step = {};       ///< matches of a nearby plane; none where points resolve no surface
   std::shared_ptr<const std::vector<int>> samples = {};  ///< indices of the points that `step` reflected
   double merit = 0.0;                                    ///< PlaneFit::merit() after the last stage
 };
 
-/// The strongest local maxima of the map, each basin of refinement once, and the planes across the principal axes.
+/// The strongest local maxima of the map, one per basin of refinement, and the planes perpendicular to the principal
+/// axes.
 /// \param map over planes in the input frame.
 std::vector<Candidate> gatherCandidates(const NormalizedCloud& cloud, const SymmetryMap& map,
                                         const DetectionOptions& options);
 
-/// \return those of some planes, input frame, that are of one of these kinds; in their order, normalized frame.
+/// \return the planes of the given kinds, in their order, taken from the input frame to the normalized frame.
 std::vector<ReflectionPlane> planesOf(const std::vector<SymmetryPlane>& planes, std::initializer_list<PlaneKind> kinds,
                                       const NormalizedCloud& cloud);
 
-/// The reflection of one symmetry in another is a symmetry too: completes the group that some symmetries generate.
-/// \param planes found up to now, input frame; those that are symmetries count.
+/// Completes the group that some symmetries generate: the reflection of one in another is a symmetry, too.
+/// \param planes found so far, input frame; only symmetries are used.
 /// \param[in,out] tried planes that were known or returned before, normalized frame.
-/// \return such planes that are not among these.
+/// \return the implied planes that are not among \p tried.
 std::vector<Candidate> impliedBy(const std::vector<SymmetryPlane>& planes, const NormalizedCloud& cloud,
                                  std::vector<ReflectionPlane>& tried);
 
-/// Planes of a scan at right angles to two of its symmetries, or to one and to what carries it, spread along the
-/// object. Not in the paper: half of what such a plane maps may be hidden, and a map of few samples has no maximum
-/// there.
-/// \param carrying_normals of what the object stands on.
+/// Planes of a scan perpendicular to two of its symmetries, or to one of them and to its support, spread along the
+/// object. Half of the surface that such a plane maps may be hidden, so that a map of few samples has no maximum there.
+/// Not in the paper.
+/// \param carrying_normals of the supports, as from carryingNormals().
 std::vector<Candidate> atRightAngles(const std::vector<SymmetryPlane>& planes,
                                      const std::vector<Eigen::Vector3d>& carrying_normals,
                                      const NormalizedCloud& cloud);

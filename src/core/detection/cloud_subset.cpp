@@ -15,8 +15,8 @@ namespace pcl_symmetry {
 
 namespace {
 
-/// The number of points that show a surface at the tolerance: it grows as the inverse square of their spacing.
-double mostPoints(const PointsRef& points, const DetectionOptions& options) {
+/// The number of points that resolve a surface at the tolerance: it grows with the inverse square of their spacing.
+double maxPoints(const PointsRef& points, const DetectionOptions& options) {
   const double tolerance =
       options.absolute_tolerance > 0.0 ? options.absolute_tolerance / farthestPair(points) : options.tolerance;
   const double finer = std::max(1.0, DetectionOptions().tolerance / tolerance);
@@ -27,11 +27,11 @@ double mostPoints(const PointsRef& points, const DetectionOptions& options) {
 
 std::optional<std::vector<int>> subsetOf(const PointsRef& points, const DetectionOptions& options) {
   if (static_cast<double>(points.cols()) <= kDetection.points.max_points) return std::nullopt;
-  const double most = mostPoints(points, options);
-  if (!(static_cast<double>(points.cols()) > most)) return std::nullopt;
+  const double max_points = maxPoints(points, options);
+  if (!(static_cast<double>(points.cols()) > max_points)) return std::nullopt;
   const DistinctPoints distinct(points);
-  if (static_cast<double>(distinct.points.cols()) <= most) return std::nullopt;
-  std::vector<int> kept = spreadSubset(distinct.points, static_cast<std::size_t>(most), options.seed);
+  if (static_cast<double>(distinct.points.cols()) <= max_points) return std::nullopt;
+  std::vector<int> kept = spreadSubset(distinct.points, static_cast<std::size_t>(max_points), options.seed);
   for (int& i : kept) i = distinct.first_of[i];
   return kept;
 }

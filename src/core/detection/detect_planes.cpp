@@ -30,8 +30,8 @@ namespace pcl_symmetry {
 
 namespace {
 
-/// Judges the likely symmetries first. If none is one, judges the rest. In a whole cloud, once a plane explains
-/// everything, hopeless candidates are skipped: no missing piece could account for what they fail to match.
+/// Judges the likely symmetries first or, if none of them is a symmetry, all candidates. In a whole cloud, once a plane
+/// explains everything, hopeless candidates are skipped: no missing piece could account for their unmatched points.
 /// \param candidates after the second stage, best first.
 void decide(const PlaneSearch& search, std::vector<Candidate> candidates, Found& found) {
   const CloudKind kind = search.cloud.kind();
@@ -49,7 +49,7 @@ void decide(const PlaneSearch& search, std::vector<Candidate> candidates, Found&
   append(found.planes, search.refinedAndJudged(std::move(candidates)));
 }
 
-/// The evidence of all candidates, also of those that the detection leaves out early.
+/// The evidence of all candidates, including those that the detection rejects early.
 /// \param candidates after the second stage.
 std::vector<MeasuredPlane> judgeAll(const PlaneSearch& search, std::vector<Candidate> candidates) {
   candidates = search.refinement.refineFully(std::move(candidates));
@@ -66,7 +66,7 @@ void completeGroups(const PlaneSearch& search, Found& found) {
     decide(search, std::move(candidates), found);
 }
 
-/// Tries the planes of a scan that the map does not show, because what they map is hidden to the half.
+/// Tries the planes of a scan that the map does not show because half of the surface that they map is hidden.
 void tryRightAngles(const PlaneSearch& search, Found& found) {
   const NormalizedCloud& cloud = search.cloud;
   if (kKindRules.shows_all[cloud.kind()] || !cloud.seen()) return;
@@ -77,7 +77,7 @@ void tryRightAngles(const PlaneSearch& search, Found& found) {
 /// Every plane through the axis of a mug maps its body onto itself. One that does not map its handle onto itself is
 /// possible at most.
 void limitByHandle(const PlaneSearch& search, const RotationEvidence& rotations, const ScanAxesOptions& options,
-                         Found& found) {
+                   Found& found) {
   if (std::none_of(found.planes.begin(), found.planes.end(),
                    [](const SymmetryPlane& plane) { return plane.kind == PlaneKind::Symmetry; }))
     return;
@@ -110,13 +110,13 @@ void findAxesOfScan(const PlaneSearch& search, Found& found) {
       scanAxes(rotations, found.planes, found.axes, scan_axes, found.evidence ? &found.evidence->rotations : nullptr);
   found.axes = withRoundAxes(rotations, std::move(found.axes), found.rotations, scan_axes);
   found.planes = withoutPlanesThrough(std::move(found.planes), found.axes, search.cloud);
-  // A body that is no ball has one axis: the others of a dome are as round within the tolerance.
+  // A body other than a ball has one axis: further axes, as of a dome, are round only within the tolerance.
   sortFalling(found.axes, &SymmetryAxis::confidence);
   if (found.axes.size() > 1) found.axes.resize(1);
-  if (found.axes.empty()) limitByHandle(judged, rotations, scan_axes, found);
+  if (found.axes.empty()) limitByHandle(search, rotations, scan_axes, found);
 }
 
-/// Rules by which findings correct each other, applied in this order. Not in the paper.
+/// Rules by which results correct each other, applied in this order. Not in the paper.
 constexpr struct {
   const char* name;  ///< in Detection::timing_ms
   void (*apply)(const PlaneSearch& search, Found& found);
@@ -142,7 +142,7 @@ constexpr struct {
 
 /// Section 4.4 and what follows: from the maxima of the map of a cloud to the list of planes. publishedPlanes() is the
 /// section alone.
-/// \param[in,out] found takes the answer.
+/// \param[in,out] found receives the results.
 void refineAndDecide(const PlaneSearch& search, const SymmetryMap& map, Found& found, StageTimes& timed) {
   // Candidates: local maxima of the transform and the planes across the principal axes.
   std::vector<Candidate> candidates = gatherCandidates(search.cloud, map, search.options);

@@ -9,13 +9,14 @@ namespace pcl_symmetry {
 
 /// The evidence behind the decisions of one detection, to which confidences are fitted.
 struct DetectionEvidence {
-  /// Candidates after all stages of refinement, each plane once, best merit first. No fitted number has a part in them.
+  /// Candidates after all stages of refinement, each plane once, best merit first. They do not depend on fitted
+  /// numbers.
   std::vector<MeasuredPlane> planes;
   std::vector<JudgedRotation> rotations;  ///< of scans
 };
 
 /// detectPlanes(), with the evidence of its decisions.
-/// \param evidence takes that of all candidates, which doubles the time; null = not wanted.
+/// \param evidence filled with the evidence of all candidates (doubles the time); may be null.
 Detection detectWithEvidence(const PlaneInput& input, const DetectionOptions& options, DetectionEvidence* evidence);
 
 }  // namespace pcl_symmetry

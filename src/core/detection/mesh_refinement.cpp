@@ -27,7 +27,7 @@ double errorOf(double share, int num_samples) {
   return std::sqrt(share * (1.0 - share) / num_samples) + 1.0 / num_samples;
 }
 
-/// Missing or added material biases the fit: where the fitted plane is clearly worse, the plane stays as it was.
+/// Missing or added material biases the fit: a plane whose fit is clearly worse stays unchanged.
 void refine(const MeshSurface& mesh, SymmetryPlane& plane, double tolerance, const DetectionOptions& options) {
   const ReflectionPlane fitted = mesh.fitted(static_cast<const ReflectionPlane&>(plane)).canonical();
   const MeshShares before = mesh.shares(plane, tolerance), after = mesh.shares(fitted, tolerance);
@@ -40,7 +40,7 @@ void refine(const MeshSurface& mesh, SymmetryPlane& plane, double tolerance, con
   plane.share_high = std::min(1.0, shares.share + 2.0 * error);
   plane.deviation = shares.deviation;
   plane.residual = shares.residual;
-  // The mesh shows all of the surface: its share replaces the evidence of points and what that left open.
+  // The mesh shows the whole surface: its share replaces the evidence of points and its uncertainty.
   setConfidence(plane, confidenceOf(shares.share, mesh.numSamples()), "how much of the mesh the plane maps onto it",
                 options);
 }

@@ -70,8 +70,8 @@ MatchedRegion MatchedRegions::largest(const ReflectionPlane& plane, const std::v
   return region;
 }
 
-/// Neighbors that match are in one region, and so are samples and what they are mapped to: two hands are a region of
-/// the plane between them.
+/// Neighbors that match are in one region, and so are samples and their counterparts: two hands are one region of the
+/// plane between them.
 std::vector<char> MatchedRegions::inLargest(const std::vector<char>& matched, const IspStep& step,
                                             const std::vector<float>& support) const {
   const std::size_t size = samples_.size(), num_neighbors = neighbors_.size() / size;
@@ -117,7 +117,7 @@ struct SymmetricPart {
   double share = 0.0;        ///< of the cloud, in [0, 1]
   double support = 0.0;      ///< mean support of these points, in [0, 1]
   int iterations = 0;        ///< of Iterative Symmetric Points
-  double longer_edge = 0.0;  ///< by how much its edge exceeds that of a part of its size, edges of a disc
+  double longer_edge = 0.0;  ///< excess of its edge over that of a part of its size, in edges of a disc
 };
 
 // Planes that are one: radians, and radii of the points. Half the angle between the planes of a prism of 24 sides.
@@ -148,10 +148,10 @@ bool isBall(std::size_t count, const Points& points) {
   return part >= kDetection.parts.min_ball * whole && part <= kDetection.parts.largest_ball * whole;
 }
 
-/// Evenly chosen samples, at most \p most and at least half as many where there are enough.
-std::vector<int> thinned(const std::vector<int>& samples, std::size_t most) {
+/// Evenly chosen samples, at most \p max_count and at least half as many if there are enough.
+std::vector<int> thinned(const std::vector<int>& samples, std::size_t max_count) {
   std::vector<int> some;
-  const std::size_t stride = 1 + samples.size() / most;
+  const std::size_t stride = 1 + samples.size() / max_count;
   for (std::size_t i = 0; i < samples.size(); i += stride) some.push_back(samples[i]);
   return some;
 }
@@ -170,7 +170,7 @@ std::vector<ReflectionPlane> startingPlanes(const Points& ball, const Eigen::Vec
 struct BallSearch {
   const NormalizedCloud& cloud;
   const PlaneFit& fit;
-  /// Planes of balls are matched by walks, as those that are kept are refined again on their regions.
+  /// Planes of balls are matched by walks, because the planes kept are refined again on their regions.
   const IspSurface surface;
   IspOptions isp;
 
@@ -238,7 +238,7 @@ struct RegionSearch {
   RegionSearch(const BallSearch& of_balls, const DetectionOptions& options)
       : balls(of_balls), regions(balls.cloud, balls.fit, options) {}
 
-  /// By how much the edge of a region is longer than that of a part of its size, edges of a disc.
+  /// Excess of the edge of a region over that of a part of its size, in edges of a disc.
   static double longerEdge(const MatchedRegion& region) {
     return region.edge - kDetection.parts.min_edge - kDetection.parts.edge_per_share * region.share;
   }
@@ -254,8 +254,8 @@ struct RegionSearch {
   }
 
   /// The plane on the region that it maps onto itself. The first round moves it by wide weights, as planes of balls lie
-  /// some degrees off, the second one by narrow weights. Most planes are refused on the way.
-  /// \return nothing where that is no part.
+  /// some degrees off, the second one by narrow weights. Most planes are rejected on the way.
+  /// \return none if the region is not a part.
   std::optional<SymmetricPart> onItsRegion(SymmetricPart part) const {
     MatchedRegion region = regions.largest(part.plane, nullptr, true);
     int round = 0;
@@ -276,7 +276,7 @@ struct RegionSearch {
   }
 };
 
-/// Leaves out parts of long edge where better ones hold their points.
+/// Removes parts with a long edge whose points belong to better parts.
 std::vector<SymmetricPart> withoutRemains(std::vector<SymmetricPart> parts, Eigen::Index num_points) {
   sortRising(parts, [](const SymmetricPart& part) { return std::max(0.0, part.longer_edge); });
   std::vector<char> taken(num_points, 0);
@@ -300,7 +300,7 @@ bool isSamePart(const SymmetricPart& a, const SymmetricPart& b) {
   return static_cast<double>(both.size()) > kDetection.parts.same_part * either;
 }
 
-/// Leaves one plane of each part that has more planes than a part without axis has.
+/// Keeps one plane of each part that has more planes than a part without an axis can have.
 std::vector<SymmetricPart> withoutFamilies(std::vector<SymmetricPart> parts) {
   std::vector<std::vector<SymmetricPart>> groups;
   for (SymmetricPart& part : parts) {

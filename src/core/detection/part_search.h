@@ -11,16 +11,17 @@ struct MatchedRegion {
   std::vector<int> points;  ///< of the samples of MatchedRegions, as indices of points of the cloud, ascending
   double share = 0.0;       ///< of all samples, in [0, 1]
   double support = 0.0;     ///< mean support of its samples, relative to what sampling and noise allow, in [0, 1]
-  /// Length of its edge, where the surface goes on without a match, as a share of the edge of a flat disc as large.
+  /// Length of its edge, beyond which the surface continues unmatched, as a share of the edge of a flat disc of equal
+  /// area.
   double edge = 0.0;
   std::vector<int> closest;  ///< to the reflection of each sample, as IspStep has it
 };
 
-/// Finds the regions that planes map onto themselves. Beyond the paper, whose Figure 8 shows such regions in white.
+/// Finds the regions that planes map onto themselves, which Figure 8 shows in white. Not in the paper.
 ///
-/// Every plane matches some of a surface. A part that is symmetric by itself is matched as far as it goes: its region
-/// ends where the part is joined to others, in a short edge, or has no edge at all. What matches by chance, such as a
-/// smooth cap about a point of the plane, ends in the middle of the surface, in an edge as long as that of a disc.
+/// Every plane matches some part of a surface. A part that is symmetric by itself is matched completely: its region
+/// ends with a short edge where the part joins others, or has no edge at all. A chance match, such as a smooth cap
+/// about a point of the plane, ends in the middle of the surface, with an edge as long as that of a disc.
 class MatchedRegions {
 public:
   /// \param cloud,fit must outlive this object.
@@ -28,7 +29,7 @@ public:
 
   /// \param plane normalized frame.
   /// \param guesses MatchedRegion::closest of a plane nearby, which makes the search faster; null = not known.
-  /// \param walks along lists of neighbors find closest points, where not all of them have to be right.
+  /// \param walks finds closest points by walking along neighbor lists, where some of them may be wrong.
   /// \return the largest region, empty where nothing matches.
   MatchedRegion largest(const ReflectionPlane& plane, const std::vector<int>* guesses = nullptr,
                         bool walks = false) const;
@@ -47,10 +48,10 @@ private:
 
 /// Symmetries of parts of a surface, as planes 2 to 4 of Figure 8.
 ///
-/// Departure from the paper, which takes them from the local maxima of the transform of the whole shape: a small part
-/// contributes too little to the transform to be a maximum. Here planes through the middles of balls, of several radii
-/// and spread over the surface, are refined on the points of their ball alone, and then on the region that they map
-/// onto itself (MatchedRegions), which tells a part from what matches by chance.
+/// Departure from the paper: it takes them from local maxima of the transform of the whole shape, to which a small part
+/// contributes too little. Here planes through the middles of balls of several radii, spread over the surface, are
+/// refined on the points of their ball and then on the region that they map onto itself (MatchedRegions), which
+/// distinguishes a part from a chance match.
 ///
 /// With DetectionOptions::approximate, adds planes of PlaneKind::Local, unlike the symmetries and possible symmetries
 /// found before.

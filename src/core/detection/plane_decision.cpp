@@ -29,21 +29,21 @@ void write(SymmetryPlane& plane, double confidence, const Reason& reason, const 
                                                                    : PlaneKind::Approximate;
 }
 
-/// Among the planes that are as likely as the likeliest, D decides.
+/// D decides among the planes that are about as likely as the likeliest one.
 /// \return null where there is none.
 const SymmetryPlane* bestOf(const std::vector<SymmetryPlane>& planes) {
-  double most = 0.0;
-  for (const SymmetryPlane& plane : planes) most = std::max(most, plane.confidence);
+  double greatest = 0.0;
+  for (const SymmetryPlane& plane : planes) greatest = std::max(greatest, plane.confidence);
   const auto best = std::max_element(planes.begin(), planes.end(), [&](const SymmetryPlane& a, const SymmetryPlane& b) {
-    const bool a_likely = a.confidence >= most - kDetection.decide.as_likely,
-               b_likely = b.confidence >= most - kDetection.decide.as_likely;
+    const bool a_likely = a.confidence >= greatest - kDetection.decide.as_likely,
+               b_likely = b.confidence >= greatest - kDetection.decide.as_likely;
     return a_likely != b_likely ? b_likely : a.score < b.score;
   });
   return best == planes.end() ? nullptr : &*best;
 }
 
-/// The order of answers: symmetries, then possible ones, both by falling confidence, then others by falling support.
-/// Equally confident ones stay in their order.
+/// The order of the results: symmetries, then possible ones, both by falling confidence, then others by falling
+/// support. The sort is stable.
 bool isBetter(const SymmetryPlane& a, const SymmetryPlane& b) {
   const auto rank = [](const SymmetryPlane& plane) {
     return plane.kind == PlaneKind::Symmetry ? 0 : plane.kind == PlaneKind::Possible ? 1 : 2;

@@ -18,7 +18,7 @@ namespace pcl_symmetry {
 
 namespace {
 
-/// Plane \p k of a sequence of planes through a line whose angles no regular polygon has.
+/// Plane \p k of a sequence of planes through a line at angles that occur in no regular polygon.
 ReflectionPlane planeOfFamily(const Line3d& line, int k, int) {
   return planeThrough(line, kPi * goldenFraction(k + 1));
 }
@@ -36,7 +36,7 @@ Eigen::Matrix3d normalProducts(const std::vector<ReflectionPlane>& planes) {
   return sum;
 }
 
-/// The point closest to all planes: if there are many such points, the one closest to \p start.
+/// The point closest to all planes or, if there are many, the one of them closest to \p start.
 Eigen::Vector3d commonPoint(const std::vector<ReflectionPlane>& planes, const Eigen::Vector3d& start) {
   Eigen::Vector3d pull = Eigen::Vector3d::Zero();
   for (const ReflectionPlane& plane : planes) pull += plane.normal() * plane.signedDistance(start);
@@ -45,14 +45,14 @@ Eigen::Vector3d commonPoint(const std::vector<ReflectionPlane>& planes, const Ei
 }
 
 /// Mean share of the planes of a family.
-/// \return 0 where the mean cannot reach \p least.
+/// \return 0 if the mean cannot reach \p min_share.
 template <typename PlaneAt>
-double meanShare(const PlaneAt& plane_at, int count, double least,
+double meanShare(const PlaneAt& plane_at, int count, double min_share,
                  const std::function<double(const ReflectionPlane&)>& share) {
   double sum = 0.0;
   for (int k = 0; k < count; ++k) {
     sum += share(plane_at(k));
-    if (sum + (count - k - 1) < least * count) return 0.0;
+    if (sum + (count - k - 1) < min_share * count) return 0.0;
   }
   return sum / count;
 }
@@ -66,14 +66,14 @@ std::vector<ReflectionPlane> planesAt(const PlaneAt& plane_at) {
 
 /// The family of all planes through a point or a line, or through one nearby.
 template <typename Common>
-std::optional<PlaneFamily<Common>> familyAt(const Common& start, double least, const FamilyTest& test) {
+std::optional<PlaneFamily<Common>> familyAt(const Common& start, double min_share, const FamilyTest& test) {
   const int num_tested = kDetection.families.tested_planes, num_fitted = kDetection.families.fitted_planes;
   constexpr bool kIsLine = std::is_same_v<Common, Line3d>;
   Common common = start;
   const auto at = [&](int k) { return planeOfFamily(common, k, num_tested); };
-  const auto tested = [&] { return meanShare(at, num_tested, least, test.share); };
+  const auto tested = [&] { return meanShare(at, num_tested, min_share, test.share); };
   // The line through two rough planes may be off by a little: the refined line has to pass the full test.
-  if (meanShare(at, kDetection.families.screening_planes, least - kDetection.families.rough_factor * test.allowance,
+  if (meanShare(at, kDetection.families.screening_planes, min_share - kDetection.families.rough_factor * test.allowance,
                 test.rough_share) == 0.0)
     return std::nullopt;
   std::vector<ReflectionPlane> refined;
@@ -83,12 +83,12 @@ std::optional<PlaneFamily<Common>> familyAt(const Common& start, double least, c
   else
     common = commonPoint(refined, start);
   double share = tested();
-  if (share < least && kIsLine) {
-    // Planes that map a scan to what was not seen drift when they are refined.
+  if (share < min_share && kIsLine) {
+    // Planes that map a scan to unknown space drift when they are refined.
     common = start;
     share = tested();
   }
-  if (share < least) return std::nullopt;
+  if (share < min_share) return std::nullopt;
   return PlaneFamily<Common>{common, share, planesAt(at)};
 }
 
@@ -107,12 +107,13 @@ std::optional<CenterFamily> findCenter(const std::vector<ReflectionPlane>& plane
   std::vector<Eigen::Vector3d> points;
   const SymmetricEigen<Eigen::Matrix3d> solver(normalProducts(planes) / static_cast<double>(planes.size()));
   const bool has_point =
-      planes.size() >= 3 && solver.eigenvalues()[0] >= kDetection.families.min_spread;  // or else all hold one line
+      planes.size() >= 3 &&
+      solver.eigenvalues()[0] >= kDetection.families.min_spread;  // otherwise all planes contain one line
   if (has_point) points.push_back(commonPoint(planes, Eigen::Vector3d::Zero()));
   append(points, guesses);
-  const double least = std::max(test.min_share, test.share(planes[0]) - test.allowance);
+  const double min_share = std::max(test.min_share, test.share(planes[0]) - test.allowance);
   for (const Eigen::Vector3d& point : points)
-    if (std::optional<CenterFamily> center = familyAt(point, least, test)) return center;
+    if (std::optional<CenterFamily> center = familyAt(point, min_share, test)) return center;
   return std::nullopt;
 }
 
@@ -152,7 +153,7 @@ FamilyTest familyTest(const PlaneSearch& search, const std::vector<int>& samples
   const double usual = DetectionOptions().tolerance * cloud.extent;
   const bool is_coarse = cloud.kind() == CloudKind::Surface &&
                          std::max(options.tolerance * cloud.extent, options.absolute_tolerance / cloud.scale) > usual;
-  // A plane that maps most of a scan to what was not seen is uninformative: only what contradicts counts.
+  // A plane that maps most of a scan to unknown space is uninformative: only contradictions count.
   const auto share_of = [&, is_coarse, is_scan = !kKindRules.shows_all[cloud.kind()]](const std::vector<int>& used) {
     return [&, used, is_coarse, is_scan](const ReflectionPlane& plane) {
       if (is_coarse) return search.judge(plane, used).evidence.share;
@@ -220,8 +221,8 @@ void findFamilies(const PlaneSearch& search, Found& found) {
   const auto drop = [&](const auto& belongs) {
     eraseIf(found.planes, [&](const SymmetryPlane& plane) { return belongs(cloud.toNormalized(plane)); });
   };
-  // Between its planes, a regular polygon is not symmetric: the worst plane decides too. A scan shows some of the
-  // planes too badly for that.
+  // Between its planes, a regular polygon is not symmetric: the worst plane decides, too. In a scan, some planes are
+  // too poorly visible for that.
   const auto isFamily = [&](const JudgedFamily& family) {
     return family.confidence >= options.min_confidence &&
            (!kKindRules.shows_all[cloud.kind()] ||
@@ -236,7 +237,7 @@ void findFamilies(const PlaneSearch& search, Found& found) {
     }
   }
   for (const AxisFamily& axis : findAxes(symmetries, test, likely_axes)) {
-    // Noise blurs what lies between the planes of a polygon, but not alike at all of them.
+    // Noise blurs the gaps between the planes of a polygon, but not equally at all of them.
     if (!kKindRules.resolves_surface[cloud.kind()] && latticeBySpectrum(search.all_points, axis.common)) continue;
     const JudgedFamily family = search.judgeFamily(axis.planes, samples);
     if (!isFamily(family)) continue;

@@ -13,8 +13,8 @@ struct Found;
 
 /// Continuous families of planes: all planes through a line (a body of revolution) or through a point (a sphere).
 ///
-/// A family is tested, not guessed from many planes: planes at angles that no regular polygon has must be as good as
-/// the planes that were found.
+/// A family is tested rather than inferred from many planes: planes at angles that occur in no regular polygon must be
+/// as good as the planes found.
 struct FamilyTest {
   /// Share of the surface seen that a plane maps onto the surface, in [0, 1].
   std::function<double(const ReflectionPlane&)> share;
@@ -23,10 +23,10 @@ struct FamilyTest {
   /// The best plane nearby.
   std::function<ReflectionPlane(const ReflectionPlane&)> refine;
   double min_share;  ///< of the planes of a family, on average, in [0, 1]
-  double allowance;  ///< by how much that may be less than the best plane found: an effect of sampling, not of a handle
+  double allowance;  ///< how far it may fall below the share of the best plane: an effect of sampling, not of a handle
 };
 
-/// The line closest to all planes that have one in common.
+/// The line closest to all of some planes that share a line.
 /// \param planes at least two that are not parallel.
 Line3d commonLine(const std::vector<ReflectionPlane>& planes);
 
@@ -41,18 +41,18 @@ using AxisFamily = PlaneFamily<Line3d>;
 using CenterFamily = PlaneFamily<Eigen::Vector3d>;
 
 /// \param planes symmetries found, best first.
-/// \param guesses points that may be one, beside the common point of the planes.
+/// \param guesses further candidate points, besides the common point of the planes.
 std::optional<CenterFamily> findCenter(const std::vector<ReflectionPlane>& planes, const FamilyTest& test,
                                        const std::vector<Eigen::Vector3d>& guesses = {});
 
 /// \param planes symmetries found, best first.
-/// \param guesses lines that may be one, tried before those that two planes share.
+/// \param guesses candidate lines, tried before the common lines of two planes.
 /// \return best first.
 std::vector<AxisFamily> findAxes(const std::vector<ReflectionPlane>& planes, const FamilyTest& test,
                                  const std::vector<Line3d>& guesses = {});
 
-/// Finds the families that symmetries belong to: bodies of revolution and spheres in place of their planes. A cloud
-/// that is a line gets that line as its axis.
+/// Finds the families that symmetries belong to: bodies of revolution and spheres replace their planes. A line-shaped
+/// cloud gets its line as axis.
 void findFamilies(const PlaneSearch& search, Found& found);
 
 /// \param planes,axes input frame.

@@ -87,7 +87,7 @@ private:
     return drawSamples(cloud_.points.cols(), num_samples, options_.seed);
   }
 
-  /// Point-to-plane distances are uninformative along flat pieces, and a scan may have little else. The plane takes one
+  /// Point-to-plane distances are uninformative along flat pieces, which may be most of a scan. The plane takes one
   /// point-to-point step from its start instead if that has more merit.
   void undoSlide(Candidate& candidate, const ReflectionPlane& start, const std::vector<int>& samples,
                  double sigma) const {
@@ -100,9 +100,9 @@ private:
     candidate.step = std::move(step);
   }
 
-  /// Pairs whose true partners were cut off, or are hidden by noise, pull at a plane. It comes to rest beside the one
-  /// that explains most of what is there, and climbs from there on the merit itself, along its three parameters.
-  /// \param samples that the final merit is taken of.
+  /// Pairs whose true partners were cut off or hidden by noise bias a plane. It comes to rest beside the plane that
+  /// explains most of the points and climbs from there on the merit itself, along its three parameters.
+  /// \param samples for the final merit.
   /// \param fewer samples by which the plane climbs.
   /// \return whether the plane moved.
   bool climbOne(Candidate& candidate, const std::vector<int>& samples, const std::vector<int>& fewer) const {

@@ -15,7 +15,7 @@ namespace pcl_symmetry {
 /// How samples support one plane.
 struct PlaneShares {
   double support;        ///< mean over the samples: the reflection lies on the surface
-  double conflict;       ///< mean over the samples: the reflection lies where there is nothing
+  double conflict;       ///< mean over the samples: the reflection lies in free space
   PointEvidence points;  ///< of each sample
 };
 
@@ -28,11 +28,11 @@ struct RefinementStage {
   IspOptions isp;         ///< for likely symmetries
   IspOptions rough_isp;   ///< for other candidates
   double min_merit;       ///< merit of likely symmetries
-  bool undo_slides;       ///< scans: whether slides along flat pieces are undone, as where the weights are narrowest
+  bool undo_slides;       ///< scans: whether slides along flat pieces are undone (with the narrowest weights)
   bool climbs = false;    ///< whether planes of noisy scans climb, in the last stage
 };
 
-/// How well a cloud supports a plane, and the plane nearby that it supports best.
+/// Measures how well a cloud supports a plane, and finds the best-supported plane nearby.
 ///
 /// There are two forms: SurfaceFit for points that resolve a surface, and VolumeFit for points that do not.
 class PlaneFit {
@@ -42,8 +42,8 @@ public:
   /// Moves each candidate to the best plane nearby, and updates its merit.
   virtual void refine(std::vector<Candidate>& candidates, const RefinementStage& stage) const = 0;
 
-  /// Moves candidates that stopped near their optimum there, and updates their merit; takes as long as all stages. A
-  /// density has no pairs without a true partner, so its planes need not climb.
+  /// Moves candidates that stopped near their optimum to it and updates their merit; takes as long as all stages
+  /// together. Densities have no false pairs, so their planes need not climb.
   /// \param stage the last one.
   /// \param may_climb of each candidate.
   /// \return whether each candidate moved.
@@ -78,7 +78,7 @@ public:
   /// Support that the samples of a symmetry reach.
   double baseline() const { return kKindRules.resolves_surface[cloud_.kind()] ? cloud_.baseline : 1.0; }
 
-  /// Support as a share of that, in [0, 1].
+  /// Support relative to baseline(), in [0, 1].
   double relativeSupport(const PlaneShares& shares) const { return std::min(1.0, shares.support / baseline()); }
 
 protected:
@@ -88,7 +88,8 @@ protected:
   const DetectionOptions& options_;
 };
 
-/// Support of each point by the surface, also where the points resolve none; NaN as in PointEvidence::seenSupport().
+/// Support of each point by the surface, also for points that do not resolve one; NaN as in
+/// PointEvidence::seenSupport().
 std::vector<float> surfaceSupport(const NormalizedCloud& cloud, const ReflectionPlane& plane,
                                   const DetectionOptions& options);
 

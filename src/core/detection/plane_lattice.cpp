@@ -35,7 +35,7 @@ std::vector<ReflectionPlane> planesContaining(const Line3d& line, const std::vec
   return through;
 }
 
-/// For the lines that each two of the first planes share: the planes that contain them, these two among them.
+/// For each common line of two of the first planes: all planes that contain it, including these two.
 std::vector<std::vector<ReflectionPlane>> bundlesOf(const std::vector<ReflectionPlane>& planes, std::size_t num_first) {
   std::vector<std::vector<ReflectionPlane>> bundles;
   for (std::size_t i = 0; i < std::min(planes.size(), num_first); ++i)
@@ -79,9 +79,9 @@ public:
     });
   }
 
-  /// How much of the density of all rings planes at the best angle explain at a frequency; about 4 by chance.
+  /// How much of the density of all rings the planes at the best angle explain at a frequency; about 4 by chance.
   double power(int m) const { return 0.5 * (powers_[m] + std::abs(squares_[m])); }
-  /// By how much the frequency has more power than those beside it; 0 where that may be chance.
+  /// Excess power of the frequency over those beside it; 0 where it may be chance.
   double prominence(int m) const {
     std::vector<double> beside;
     for (int k = std::max(1, m - kDetection.folds.compared_frequencies); k <= m + kDetection.folds.compared_frequencies;
@@ -113,8 +113,8 @@ private:
   void addRing(Positions first, Positions last) {
     std::vector<std::complex<double>> sums(squares_.size(), 0.0);
     for (auto position = first; position != last; ++position) {
-      std::complex<double> turned = 1.0;
-      for (std::size_t m = 1; m < sums.size(); ++m) sums[m] += turned *= position->direction;
+      std::complex<double> rotated = 1.0;
+      for (std::size_t m = 1; m < sums.size(); ++m) sums[m] += rotated *= position->direction;
     }
     const auto count = static_cast<double>(last - first);
     for (std::size_t m = 1; m < sums.size() && count > 0.0; ++m) {
@@ -131,9 +131,9 @@ private:
 double confidenceTogether(const std::vector<MeasuredPlane>& judged, int first, int step) {
   PlaneEvidence mean = judged[first].evidence;
   // Evidence that differs between the planes of one cloud; the rest describes the cloud.
-  static constexpr std::array kAveraged{&PlaneEvidence::share,   &PlaneEvidence::double_share, &PlaneEvidence::hold,
-                                        &PlaneEvidence::support, &PlaneEvidence::conflict,     &PlaneEvidence::score,
-                                        &PlaneEvidence::unknown};
+  static constexpr std::array kAveraged{
+      &PlaneEvidence::share,    &PlaneEvidence::double_share, &PlaneEvidence::stiffness, &PlaneEvidence::support,
+      &PlaneEvidence::conflict, &PlaneEvidence::score,        &PlaneEvidence::unknown};
   for (double PlaneEvidence::*member : kAveraged) {
     double sum = 0.0, count = 0.0;
     for (std::size_t k = first; k < judged.size(); k += step) {
@@ -177,7 +177,7 @@ std::optional<PlaneLattice> latticeBySpectrum(const Points& all, const Line3d& l
     fold = m;
   }
   if (fold == 0) return std::nullopt;
-  // A polygon has the multiples of its frequency, too; and so have two planes across each other, with the frequency 2.
+  // A polygon also has the multiples of its frequency, as do two perpendicular planes, of frequency 2.
   for (int m = 2; m < fold; ++m)
     if (fold % m == 0 && spectrum.prominence(m) > 0.0) {
       fold = m;
@@ -216,7 +216,7 @@ bool isPolygon(const PlaneLattice& lattice, const Points& points, double toleran
     folded.col(3 * i + 2) = at(2.0 * step - angle);
     halfway.col(i) = at(step - angle);
   }
-  // Vertices of a mesh may lie at few angles, and are uninformative about those between.
+  // Vertices of a mesh may lie at few angles and are uninformative between them.
   std::sort(angles.begin(), angles.end());
   for (std::size_t i = 1; i < angles.size(); ++i)
     if (angles[i] - angles[i - 1] > kDetection.folds.max_gap * step) return false;
@@ -243,7 +243,7 @@ bool isPolygon(const PlaneLattice& lattice, const Points& points, double toleran
   return mapped < kSymmetricShare * own - kDetection.folds.errors * error;
 }
 
-/// The polygon of a surface, whose planes are closer to each other than single ones are told apart.
+/// The polygon of a surface, whose planes are too close to be distinguished individually.
 void addClosePlanes(const PlaneSearch& search, Found& found) {
   const NormalizedCloud& cloud = search.cloud;
   std::vector<ReflectionPlane> through;
@@ -285,7 +285,7 @@ void completePolygon(const PlaneSearch& search, Found& found) {
   std::vector<MeasuredPlane> of_lattice = search.judge(candidatesOf(*lattice));
   const double together = withOdds(leastTogether(of_lattice), kDetection.folds.odds_of_polygon);
   if (together < search.options.min_confidence) return;
-  // All planes tell where the polygon lies: those that noise moved away are dropped.
+  // All planes determine the polygon; planes that noise moved away from it are dropped.
   eraseIf(found.planes, [&](const SymmetryPlane& plane) { return contains(cloud.toNormalized(plane), lattice->line); });
   for (MeasuredPlane& one : of_lattice) {
     if (together > one.plane.confidence)

@@ -23,15 +23,15 @@ struct PlaneLattice {
   ReflectionPlane plane(double k) const;
 };
 
-/// The regular polygon about a line that a noisy cloud has: the density of points in rings about the line, by their
-/// angle, has one strong frequency. It is the sum over all points, and finds folds that no single plane shows.
-/// \param all the points of the cloud and those that were left out to make it evenly dense, normalized frame.
+/// The regular polygon of a noisy cloud about a line: the density of points in rings about the line, as a function of
+/// the angle, has one strong frequency. It sums over all points and finds folds that no single plane shows.
+/// \param all the points of the cloud and those removed to make it evenly dense, normalized frame.
 /// \param line normalized frame.
-/// \return none where no frequency stands out: no rotation maps the cloud onto itself, or all do.
+/// \return none if no frequency stands out: no rotation maps the cloud onto itself, or all rotations do.
 std::optional<PlaneLattice> latticeBySpectrum(const Points& all, const Line3d& line);
 
-/// Completes polygons. The planes of noisy clouds are judged together, as they are symmetries together or not at all.
-/// Those of surfaces are judged well enough alone, but many teeth leave them too close to be found one by one.
+/// Completes polygons. Planes of noisy clouds are judged jointly: all of them are symmetries or none is. Planes of
+/// surfaces can be judged individually, but with many teeth they are too close to be found one by one.
 void completePolygon(const PlaneSearch& search, Found& found);
 
 }  // namespace pcl_symmetry

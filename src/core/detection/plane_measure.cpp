@@ -17,8 +17,8 @@ namespace pcl_symmetry {
 
 namespace {
 
-/// Distance from a line within which a cloud is that line: the tolerance, or two spacings where that is more. Noise of
-/// a line of few points is wider than what they resolve.
+/// Distance from a line within which a cloud counts as that line: the tolerance, or two spacings if that is more. The
+/// noise of a line of few points exceeds their resolution.
 double lineTolerance(CloudKind kind, const CloudLimits::Lengths& lengths) {
   const double noisy = kDetection.measure.noisy_thinness * lengths.tolerance;
   return kKindRules.resolves_surface[kind]
@@ -34,7 +34,7 @@ double movedShare(const ReflectionPlane& plane, const PointsRef& points, double 
   return static_cast<double>(num_moved) / static_cast<double>(points.cols());
 }
 
-/// A sensor that resolves less than the tolerance decides at the greatest tolerance, if that counts.
+/// A sensor that does not resolve the tolerance decides at the greatest tolerance, if that is set.
 bool isResolved(const CloudLimits::Lengths& lengths) {
   const double greatest = DetectionOptions().max_tolerance * lengths.diameter;
   return lengths.tolerance >= lengths.resolution ||
@@ -49,8 +49,8 @@ std::array<double, 2> sharesWithin(const std::vector<float>& distances, double t
   return shares;
 }
 
-/// What the spacing of a surface resolves, up to the greatest tolerance at which shares are measured; 0 of points that
-/// resolve no surface.
+/// The tolerance that the spacing of a surface resolves, up to the greatest one at which shares are measured; 0 for
+/// points that resolve no surface.
 double sampledTolerance(const NormalizedCloud& cloud, double tolerance) {
   if (!kKindRules.resolves_surface[cloud.kind()]) return 0.0;
   return std::min(cloud.spacing / kEvidence.coarsest, kDetection.measure.tolerances.back() * tolerance * cloud.extent);
@@ -158,9 +158,9 @@ std::vector<float> PlaneMeasure::unknownMatches(const Landing& landing, const st
     for (std::size_t i = 0; i < size; ++i)
       if (!matched[i]) {
         const Eigen::Vector3d x = landing.images.col(i).cast<double>();
-        // What a camera measured beside an object is off by its errors.
+        // Measurements of a camera beside an object have errors.
         const double beside = std::isfinite(cloud_.seen()->depthBehind(x)) ? std::max(rim, resolution_) : rim;
-        unknown[i] = isSeenEmpty(*cloud_.seen(), x, 0.0, beside) ? 1.0f - emptiness(*cloud_.seen(), x) : 1.0f;
+        unknown[i] = isFreeSpace(*cloud_.seen(), x, 0.0, beside) ? 1.0f - freeConfidence(*cloud_.seen(), x) : 1.0f;
       }
     return unknown;
   }
@@ -179,7 +179,7 @@ MeasuredPlane PlaneMeasure::measured(const ReflectionPlane& plane, const std::ve
   const Landing landing = landed(plane, samples, step.closest);
   const std::size_t size = samples.size();
   std::vector<char> matched(size), is_moved(size);
-  std::vector<float> moved;  // distances of the samples whose position is informative: of scans those that move
+  std::vector<float> moved;  // distances of the samples whose position is informative: in scans, those that move
   for (std::size_t i = 0; i < size; ++i) {
     matched[i] = landing.distances[i] <= tolerance_;
     const Eigen::Vector3d x = landing.images.col(i).cast<double>();
@@ -223,7 +223,7 @@ MeasuredPlane PlaneMeasure::measured(const ReflectionPlane& plane, const std::ve
   // A point within the tolerance is within twice of it, but where the own share of few points is small, the former
   // share can come out greater.
   evidence.share = std::min(share(0), share(1));
-  evidence.hold = secondStiffness(stiffness);
+  evidence.stiffness = secondStiffness(stiffness);
   evidence.unknown = meanSupport(unknown);
   result.informative = cloud_.seen() ? static_cast<double>(num_informative) / static_cast<double>(size) : 1.0;
   const ShareInterval interval = shareInterval(evidence);

@@ -16,15 +16,15 @@
 
 namespace pcl_symmetry {
 
-/// What a cloud cannot decide, whatever the evidence: its sensor resolves less than the tolerance, a picture cuts it
-/// off all around, or a plane moves no more than the tolerance: a sheet is mapped onto itself by its own plane, and a
-/// line by all. Such planes are possible symmetries at most.
+/// Limits of a cloud that no evidence overcomes: its sensor does not resolve the tolerance, the image border cuts it
+/// off all around, or a plane moves its points by no more than the tolerance, as the plane of a sheet and all planes of
+/// a line do. Such planes are at most possible symmetries.
 class CloudLimits {
 public:
   /// Lengths in units of the points.
   struct Lengths {
     double tolerance;   ///< > 0
-    double resolution;  ///< the least tolerance that the sensor resolves; 0 where its errors are not known
+    double resolution;  ///< least tolerance that the sensor resolves; 0 if its errors are unknown
     double spacing;     ///< of the points
     double diameter;    ///< of the points, by farthestPair()
   };
@@ -35,50 +35,50 @@ public:
   CloudLimits(const PointsRef& points, const PrincipalAxes& axes, CloudKind kind, const Visibility* seen,
               const Lengths& lengths);
 
-  /// What is left of the cloud at the tolerance.
+  /// Whether the cloud is solid, a sheet or a line at the tolerance.
   Thinness thinness() const { return thinness_; }
 
-  /// Whether the border of the picture cuts the cloud off all around: a piece of the surroundings, such as a table top,
-  /// not an object.
+  /// Whether the image border cuts the cloud off all around: then it is part of the surroundings, such as a table top,
+  /// and not an object.
   bool isCutAllAround() const { return is_cut_; }
 
-  /// Whether a reflection leaves most points of a sheet where they are.
+  /// Whether a reflection leaves most points of a sheet in place.
   /// \param plane frame of the points.
   /// \param points those of the cloud.
   bool movesNothing(const ReflectionPlane& plane, const PointsRef& points) const;
 
   /// \param plane frame of the points.
   /// \param points those of the cloud.
-  /// \return the rules that keep a plane from being more than possible, each in a few words.
+  /// \return the rules that limit a plane to a possible symmetry, each in a few words.
   std::vector<const char*> rulesAgainst(const ReflectionPlane& plane, const PointsRef& points) const;
 
 private:
   bool is_resolved_, is_cut_;
-  double still_;  ///< distance that moves nothing
+  double still_;  ///< displacement up to which a point counts as unmoved
   Thinness thinness_;
-  bool is_one_side_;  ///< a scan of one flat side, and what it stands on is not known
+  bool is_one_side_;  ///< a scan of one flat side whose support is unknown
 };
 
-/// A plane, and what its decision is taken from.
+/// A plane and the measurements that decide on it.
 struct MeasuredPlane {
   SymmetryPlane plane;       ///< input frame
-  PlaneEvidence evidence;    ///< all that the decision reads, beside informative
-  double informative = 1.0;  ///< share of the samples that move and land where something is known; 1 of whole clouds
+  PlaneEvidence evidence;    ///< input of the decision, together with informative
+  double informative = 1.0;  ///< share of the samples that move and land in known space; 1 for whole clouds
 };
 
-/// Measures how much of a cloud planes map onto the cloud, and how much of it is uninformative. It decides nothing.
+/// Measures how much of a cloud planes map onto it and how much is uninformative. It makes no decisions.
 class PlaneMeasure {
 public:
   /// \param cloud,fit,options must outlive this object.
   PlaneMeasure(const NormalizedCloud& cloud, const PlaneFit& fit, const DetectionOptions& options);
 
-  /// How far a symmetric surface may be off, normalized frame.
+  /// Greatest deviation of a symmetric surface, normalized frame.
   double tolerance() const { return tolerance_; }
 
-  /// The least tolerance that the sensor resolves, normalized frame; 0 where its errors are not known.
+  /// Least tolerance that the sensor resolves, normalized frame; 0 if its errors are unknown.
   double resolution() const { return resolution_; }
 
-  /// What the cloud cannot decide.
+  /// Limits of the cloud.
   const CloudLimits& limits() const { return limits_; }
 
   /// \return indices of the points that planes are judged by.
@@ -91,13 +91,14 @@ public:
 
   /// \param plane normalized frame.
   /// \param samples indices of points.
-  /// \param rim how far beside a reflection the scanner must have seen nothing, too, for the reflection to contradict.
+  /// \param rim a reflection contradicts only if the space within this distance beside it is free, too.
   MeasuredPlane measured(const ReflectionPlane& plane, const std::vector<int>& samples, double rim = 0.0) const;
 
   /// Evidence of the cloud; fields of the plane beyond support, conflict and D keep their defaults.
   PlaneEvidence evidenceOf(double support, double conflict, double score) const;
 
-  /// Share of the surface that a plane maps to within the tolerance, by a look at some points, and its standard error.
+  /// Share of the surface that a plane maps to within the tolerance, estimated from some points, and its standard
+  /// error.
   struct ScreenedShare {
     double share, error;
   };
@@ -108,12 +109,12 @@ public:
   double deviation(const ReflectionPlane& plane) const;
 
 private:
-  /// The distance within which 97 % of the samples lie, relative to what sampling and noise allow.
+  /// The distance within which 97 % of the samples lie, relative to the effect of sampling and noise.
   double deviationOf(std::vector<float> distances) const;
   /// Where the reflections of some samples land.
-  /// \param closest points to them.
+  /// \param closest points of the surface to the reflections.
   Landing landed(const ReflectionPlane& plane, const std::vector<int>& samples, std::vector<int> closest) const;
-  /// For each sample without a match, whether nothing is known of its counterpart, in [0, 1].
+  /// For each sample without a match, how surely its counterpart lies in unknown space, in [0, 1].
   std::vector<float> unknownMatches(const Landing& landing, const std::vector<char>& matched, double offset_stiffness,
                                     double rim) const;
   /// \param rim as above.

@@ -12,8 +12,8 @@ namespace pcl_symmetry {
 
 namespace {
 
-/// Refinement can stop on the way to a maximum where few points guide it, as on flat pieces. A plane is a maximum of
-/// its own only if D falls on the way to a better plane nearby.
+/// Refinement can stop short of a maximum where few points guide it, as on flat pieces. A plane is a separate maximum
+/// only if D falls on the way to a better plane nearby.
 bool isOnSlopeOf(const SymmetryPlane& better, const SymmetryPlane& plane, const NormalizedCloud& cloud) {
   const ReflectionPlane a = cloud.toNormalized(better), b = cloud.toNormalized(plane);
   if (!MergeTolerance{kDetection.decide.slope_angle, kDetection.decide.slope_offset}.same(a, b)) return false;
@@ -23,19 +23,19 @@ bool isOnSlopeOf(const SymmetryPlane& better, const SymmetryPlane& plane, const 
   return cloud.score(cloud.toInput(between)) > plane.score - kDetection.decide.slope_dip;
 }
 
-/// Whether a plane is of a polygon, between whose planes noise may leave no dip.
+/// Whether a plane belongs to a polygon; noise may level the dips of D between its planes.
 bool isOfPolygon(const std::optional<PlaneLattice>& polygon, const SymmetryPlane& plane, const NormalizedCloud& cloud) {
   return polygon && contains(cloud.toNormalized(plane), polygon->line);
 }
 
-/// Judges every point, where the plane was judged by some of them.
+/// Computes the support of all points for a plane that was judged by some of them.
 void completeSupport(SymmetryPlane& plane, const PlaneSearch& search) {
   const NormalizedCloud& cloud = search.cloud;
   if (static_cast<Eigen::Index>(plane.point_support.size()) == cloud.points.cols()) return;
   plane.point_support = search.fit->shares(cloud.toNormalized(plane), allOf(cloud.points.cols())).points.seenSupport();
 }
 
-/// An approximate plane that is a symmetry of a part is reported as that.
+/// Removes approximate planes that are symmetries of parts: they are reported as those.
 std::vector<SymmetryPlane> withoutPlanesOfParts(std::vector<SymmetryPlane> planes, const NormalizedCloud& cloud) {
   const std::vector<ReflectionPlane> local = planesOf(planes, {PlaneKind::Local}, cloud);
   const auto is_of_part = [&](const SymmetryPlane& plane) {

@@ -17,9 +17,10 @@ namespace pcl_symmetry {
 std::vector<SymmetryPlane> rankedPlanes(const PlaneSearch& search, std::vector<SymmetryPlane> planes,
                                         const std::optional<PlaneLattice>& polygon = std::nullopt);
 
-/// The answer where nothing is a symmetry: of the planes of the whole, the one with the greatest share.
+/// The plane of the whole shape with the greatest share, for shapes without a symmetry.
 /// \param planes input frame.
-/// \return with the support of every point; empty where a plane is a symmetry or a possible one, or there is none.
+/// \return a plane with the support of every point; none if a plane is a symmetry or a possible one, or there is no
+/// plane.
 std::optional<SymmetryPlane> bestApproximate(const PlaneSearch& search, const std::vector<SymmetryPlane>& planes);
 
 /// From what was found to the answer: ranks the planes, and fills the fields of the whole cloud.

@@ -55,7 +55,7 @@ JudgedFamily PlaneSearch::judgeFamily(const std::vector<ReflectionPlane>& planes
   const bool is_scan = !kKindRules.shows_all[cloud.kind()];
   JudgedFamily family;
   PlaneEvidence together;
-  together.share = together.double_share = together.hold = 0.0;
+  together.share = together.double_share = together.stiffness = 0.0;
   double informative = 0.0, best_score = 0.0;
   for (const ReflectionPlane& plane : planes) {
     const PlaneEvidence one = measure.measured(plane, samples, is_scan ? measure.tolerance() : 0.0).evidence;
@@ -65,18 +65,18 @@ JudgedFamily PlaneSearch::judgeFamily(const std::vector<ReflectionPlane>& planes
     informative += part;
     together.share += part * one.share;
     together.double_share += part * one.double_share;
-    together.hold += one.hold / count;
+    together.stiffness += one.stiffness / count;
     best_score = std::max(best_score, one.score);
     family.score += one.score / count;
     family.min_confidence = std::min(family.min_confidence, planeConfidence(one));
   }
-  // A scan shows some planes of a family better than others, and D falls with what is hidden: the plane that is shown
-  // best represents the family.
+  // A scan shows some planes of a family better than others, and hidden parts lower D: the most visible plane
+  // represents the family.
   constexpr double least = 1e-3;  // avoids a division by 0
   PlaneEvidence mean = measure.evidenceOf(together.support, together.conflict, is_scan ? best_score : family.score);
   mean.share = together.share / std::max(least, informative);
   mean.double_share = together.double_share / std::max(least, informative);
-  mean.hold = together.hold;
+  mean.stiffness = together.stiffness;
   mean.unknown = 1.0 - informative;
   family.confidence = planeConfidence(mean);
   family.support = seenSupport(mean);

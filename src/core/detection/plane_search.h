@@ -19,12 +19,12 @@ struct JudgedFamily {
   double score = 0.0, support = 0.0;
 };
 
-/// Fits, refines, measures and judges the planes of a cloud: decides what is a symmetry and what is possible
+/// Fits, refines, measures and judges the planes of a cloud: decides which are symmetries and which are possible
 /// (core/evidence/README.md).
 class PlaneSearch {
 public:
   const NormalizedCloud& cloud;
-  const Points& all_points;  ///< its points and those that were left out to make it evenly dense, normalized frame
+  const Points& all_points;  ///< its points and those removed to make it evenly dense, normalized frame
   const DetectionOptions& options;
   const std::unique_ptr<PlaneFit> fit = makePlaneFit(cloud, options);
   const StagedRefinement refinement{cloud, *fit, options};
@@ -38,7 +38,7 @@ public:
   /// \return one plane each, in the same order.
   std::vector<MeasuredPlane> judge(const std::vector<Candidate>& candidates) const;
 
-  /// The same for some of the candidates, in place of what they were judged before.
+  /// The same for some of the candidates, replacing their previous judgments.
   void judge(const std::vector<Candidate>& candidates, const std::vector<char>& some,
              std::vector<MeasuredPlane>& judged) const;
 
@@ -51,25 +51,25 @@ public:
   /// \param samples indices of the points that judge them.
   JudgedFamily judgeFamily(const std::vector<ReflectionPlane>& planes, const std::vector<int>& samples) const;
 
-  /// Whether too many points are off for a possible symmetry where nothing is missing.
+  /// Whether too many points are off the surface for a possible symmetry of a complete shape.
   bool isHopeless(const Candidate& candidate) const;
 
   /// Refines and judges candidates; re-judges those that hill climbing moved.
   std::vector<SymmetryPlane> refinedAndJudged(std::vector<Candidate> candidates) const;
 
 private:
-  /// Gives a plane the confidence that its evidence has, and the limits of the cloud.
+  /// Sets the confidence of a plane from its evidence and the limits of the cloud.
   /// \param plane normalized frame.
   MeasuredPlane decided(MeasuredPlane measured, const ReflectionPlane& plane) const;
 };
 
-/// What was found up to now, input frame.
+/// Results found so far, input frame.
 struct Found : Detection {
   std::optional<PlaneLattice> polygon;    ///< normalized frame; its planes are among the planes
-  DetectionEvidence* evidence = nullptr;  ///< takes that of all candidates; null = not wanted
+  DetectionEvidence* evidence = nullptr;  ///< filled with the evidence of all candidates; may be null
 };
 
-/// Refines planes that are nearly known and decides each of them; no others are searched.
+/// Refines approximately known planes and decides each of them, without searching for others.
 /// \param starts input frame.
 /// \param input points and what a scanner saw.
 std::vector<SymmetryPlane> refinedAt(const std::vector<ReflectionPlane>& starts, const PlaneInput& input,

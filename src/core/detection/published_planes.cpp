@@ -18,8 +18,8 @@ namespace {
 
 /// Means over the neighbors of each bin, by the solid angle of the bins.
 ///
-/// Voting leaves 7.6 votes a bin, and near the pole single votes that weigh as much as a symmetry. Departure from the
-/// paper, which looks for maxima and takes its thresholds of 1/10 in the map as it is.
+/// Voting leaves 7.6 votes per bin and, near the pole, single votes that weigh as much as a symmetry. Departure from
+/// the paper: it searches for maxima and applies its thresholds of 1/10 in the unsmoothed map.
 SymmetryMap smoothed(const SymmetryMap& map, int num_threads) {
   const PlaneGrid& grid = map.grid;
   SymmetryMap result = map;
@@ -73,7 +73,8 @@ private:
   std::size_t top_;
 };
 
-/// Planes that may not leave their cells are one a cell: of those that came to one from its neighbors, the first stays.
+/// One plane per cell, if planes may not leave their cells: of planes that came from neighboring cells, the first
+/// stays.
 void keepOneOfEachCell(std::vector<SymmetryPlane>& planes, const PlaneGrid& grid) {
   std::set<std::size_t> cells;
   const auto is_known = [&](const SymmetryPlane& plane) {
@@ -121,7 +122,7 @@ std::vector<SymmetryPlane> publishedPlanes(const PointsRef& points, const Gaussi
     IspResult found;
     found.plane = maxima[i].plane;
     int iterations = 0;
-    // Few points show at little cost where a plane goes; it ends where all of them let it rest.
+    // Few points move a plane at little cost; all of them determine where it ends.
     for (const int count : {std::min(1000, options.num_points), options.num_points}) {
       const std::vector<int> samples = drawSamples(points.cols(), count, options.seed + i);
       isp.error_share = count == options.num_points ? 0.5 : 0.1;

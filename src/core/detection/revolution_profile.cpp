@@ -141,8 +141,8 @@ std::vector<ProfilePoint> revolutionProfile(const PointsRef& points, const Symme
   const auto density = [&](const FittedPosition& fit) { return fit.count / std::max(fit.position.x(), width); };
   std::vector<double> densities;
   for (const FittedPosition& fit : curve) densities.push_back(density(fit));
-  const double least = kProfile.min_density * median(std::move(densities));
-  eraseIf(curve, [&](const FittedPosition& fit) { return density(fit) < least; });
+  const double min_density = kProfile.min_density * median(std::move(densities));
+  eraseIf(curve, [&](const FittedPosition& fit) { return density(fit) < min_density; });
 
   // In order along the curve, piece by piece.
   std::vector<ProfilePoint> profile;

@@ -26,7 +26,7 @@ std::vector<Candidate> StagedRefinement::refineClosely(std::vector<Candidate> ca
                     return candidate.merit >= kDetection.stages.symmetric_merit - kDetection.stages.coarse_slack;
                   });
   std::vector<Candidate> found = refined({candidates.begin(), likely}, closeStage());
-  // Once a whole cloud has a symmetry, candidates far below it are dropped.
+  // Once a whole cloud has a symmetry, candidates of much less merit are dropped.
   if (!keeps_all && std::any_of(found.begin(), found.end(), isSymmetry)) return distinct(std::move(found), 0);
   append(found, refined({likely, candidates.end()}, closeStage()));
   const bool is_whole = std::any_of(found.begin(), found.end(), isSymmetry);
@@ -93,9 +93,9 @@ std::vector<Candidate> StagedRefinement::refined(std::vector<Candidate> candidat
   return candidates;
 }
 
-/// The candidates that stayed near the cell they came from. Departure from the paper, which drops all that leave their
-/// cell: a map of few samples has its maxima up to one cell off, hence kDetection.stages.max_drift; and those that map
-/// more of the shape than all that stayed are not lost.
+/// The candidates that stayed near the cell they came from. Departure from the paper: it drops all candidates that
+/// leave their cell; here maxima of a map of few samples are up to one cell off, hence kDetection.stages.max_drift, and
+/// candidates that map more of the shape than all that stayed are kept.
 std::vector<Candidate> StagedRefinement::withinCells(const std::vector<Candidate>& candidates,
                                                      const std::vector<Candidate>& starts,
                                                      const PlaneGrid& grid) const {

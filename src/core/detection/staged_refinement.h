@@ -11,8 +11,8 @@ namespace pcl_symmetry {
 /// From candidates to precise planes in three stages, each with more samples and narrower weights than the one before
 /// (Section 4.4).
 ///
-/// After the first two stages, candidates that ended at the same plane are merged, and of those that are no symmetries
-/// of a whole cloud only the best go on.
+/// After each of the first two stages, candidates at the same plane are merged, and in whole clouds only the best of
+/// those that are not symmetries are kept.
 struct StagedRefinement {
   const NormalizedCloud& cloud;
   const PlaneFit& fit;
@@ -37,8 +37,8 @@ struct StagedRefinement {
   /// \return whether each candidate moved.
   std::vector<char> climb(std::vector<Candidate>& candidates, const std::vector<char>& may_climb) const;
 
-  /// The best candidate of each group of like planes, best first: all that may be symmetries, and others until there
-  /// are \p max_count.
+  /// The best candidate of each group of similar planes, best first: all that may be symmetries, and others while there
+  /// are fewer than \p max_count.
   std::vector<Candidate> distinct(std::vector<Candidate> candidates,
                                   std::size_t max_count = std::numeric_limits<std::size_t>::max(),
                                   double min_merit = -1.0) const;

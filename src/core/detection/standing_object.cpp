@@ -50,13 +50,13 @@ bool slants(const ReflectionPlane& plane, const std::vector<Eigen::Vector3d>& ca
 namespace {
 
 struct UprightBoxRules {
-  int num_angles = 180;     // in a quarter of a turn: half a degree each
+  int num_angles = 180;     // steps of half a degree, in a quarter of a rotation
   double trimmed = 0.01;    // share of the points beyond each side
   double near = 0.1;        // shorter sides of the box within which a point is near a side
   double meets = 0.03;      // diagonals within which a reflection meets what a beam met
   double beam_reach = 2.0;  // distances of neighboring beams within which a beam is informative
   int beams = 3;            // nearest a reflection
-  // Points cut off at a side of the picture
+  // Points cut off at a side of the image
   int rows = 12;            // between the lowest and the highest
   int cut_rows = 4;         // that end in one upright line, at least,
   double cut_width = 0.02;  // of the width seen,
@@ -122,9 +122,9 @@ double meanDiagonal(const PointsRef& points, const Eigen::Vector3d& up) {
   return sum / kBox.num_angles;
 }
 
-/// Whether points were cut off at a side of the scanner's picture: many of their rows end in one upright line of it, at
-/// very different ranges. No surface is seen so edge-on.
-bool endWithPicture(const PointsRef& points, const Eigen::Vector3d& up, const Eigen::Vector3d& viewpoint) {
+/// Whether points were cut off at a side of the scanner's image: many of their rows end in one upright line of the
+/// image, at very different ranges. No surface is seen that edge-on.
+bool endAtImageBorder(const PointsRef& points, const Eigen::Vector3d& up, const Eigen::Vector3d& viewpoint) {
   const Eigen::Vector3d middle = centerOfMass(points) - viewpoint;
   const Eigen::Vector3d ahead = (middle - middle.dot(up) * up).normalized(), aside = up.cross(ahead);
   const auto along = [&](const Eigen::Vector3d& axis) -> Eigen::ArrayXd {
@@ -163,9 +163,9 @@ Points directionsTo(const PointsRef& points, const Eigen::Vector3d& viewpoint, s
   return directions;
 }
 
-enum class Meets { Surface, Nothing, Unknown };
+enum class Meets { Surface, Free, Unknown };
 
-/// Whether the beams of a scanner met something at reflected points, passed freely, or did neither.
+/// Whether the beams of a scanner hit a surface at reflected points, passed freely, or neither.
 /// \param reach within which a beam meets a point.
 std::vector<Meets> meetingsAt(const Points& reflected, const PointsRef& points, const Eigen::Vector3d& viewpoint,
                               double reach) {
@@ -188,7 +188,7 @@ std::vector<Meets> meetingsAt(const Points& reflected, const PointsRef& points, 
       meets |= is_close && std::abs(behind) <= reach;
       all_pass &= is_close && behind < -reach;
     }
-    met[i] = meets ? Meets::Surface : all_pass ? Meets::Nothing : Meets::Unknown;
+    met[i] = meets ? Meets::Surface : all_pass ? Meets::Free : Meets::Unknown;
   }
   return met;
 }
@@ -206,13 +206,13 @@ std::optional<MiddlePlane> middlePlaneOfBox(const PointsRef& points, const Eigen
   middle.plane = ReflectionPlane(box.axes[across], 0.5 * (box.sides[across][0] + box.sides[across][1])).canonical();
   const std::vector<Meets> met = meetingsAt(reflectedPoints(points, middle.plane), points, viewpoint, reach);
   for (std::size_t i = 0; i < met.size(); ++i) {
-    middle.point_support.push_back(met[i] == Meets::Surface   ? 1.0f
-                                   : met[i] == Meets::Nothing ? 0.0f
-                                                              : std::numeric_limits<float>::quiet_NaN());
+    middle.point_support.push_back(met[i] == Meets::Surface ? 1.0f
+                                   : met[i] == Meets::Free  ? 0.0f
+                                                            : std::numeric_limits<float>::quiet_NaN());
     if (2.0 * std::abs(middle.plane.signedDistance(points.col(i).cast<double>())) <= reach) continue;
     middle.num_moved += 1.0;
     middle.num_met += met[i] == Meets::Surface ? 1.0 : 0.0;
-    middle.num_free += met[i] == Meets::Nothing ? 1.0 : 0.0;
+    middle.num_free += met[i] == Meets::Free ? 1.0 : 0.0;
   }
   if (!(middle.num_met > 0.0)) return std::nullopt;
   const auto num_near = std::count_if(box.distances.begin(), box.distances.end(),
@@ -248,7 +248,7 @@ void decideByUprightBox(const PointsRef& points, const Visibility& seen, const D
     const CloudLimits limits(points, principalAxes(points), CloudKind::Scan, &seen,
                              {found.tolerance, found.resolution, spacing, found.diameter});
     for (const char* rule : limits.rulesAgainst(*plane, points)) limitToPossible(*plane, rule);
-    if (endWithPicture(points, up.front(), seen.viewpoint()))
+    if (endAtImageBorder(points, up.front(), seen.viewpoint()))
       limitToPossible(*plane, "the picture cuts the points off");
     setConfidence(*plane, middle->confidence, "the sides of the upright box around the points", options);
   }
@@ -260,7 +260,7 @@ void decideByUprightBox(const PointsRef& points, const Visibility& seen, const D
     found.best = plane;
   }
   if (!plane || plane->confidence < (is_sparse ? options.min_possible : options.min_confidence)) return;
-  // Found before, it was no more than possible.
+  // An earlier result for this plane was at most possible.
   const BoundingBall ball = boundingBall(points);
   const auto in_ball = [&](const ReflectionPlane& other) { return other.normalized(ball.center, ball.radius); };
   eraseIf(found.planes, [&](const SymmetryPlane& other) { return kSamePlane.same(in_ball(other), in_ball(*plane)); });

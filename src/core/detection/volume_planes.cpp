@@ -81,7 +81,7 @@ public:
   ReflectedVolume(const VolumeFunction& volume, const Eigen::Vector3d& pivot, int num_threads)
       : f_(volume.f), body_(volume.body), pivot_(pivot), num_threads_(num_threads) {
     T_index_input_ = f_.T_input_index().inverse();
-    // Smoothing has mixed the outermost voxels with what lies beyond the volume.
+    // Smoothing has mixed the outermost voxels with values beyond the volume.
     for (int a = 0; a < 3; ++a) margin_[a] = f_.size()[a] >= 16 ? 2.0 : 0.0;
     is_thick_ = f_.spacing().array() > 1.5 * f_.spacing().minCoeff();
   }

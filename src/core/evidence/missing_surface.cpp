@@ -33,7 +33,7 @@ Eigen::Vector3f farthestAlong(const Coordinates& points, const Eigen::Vector3f& 
 }
 
 /// The direction along which two clouds are farthest apart: that between the closest points of their convex hulls
-/// (Gilbert 1966). Where these overlap, a direction in which they overlap little.
+/// (Gilbert 1966) or, if these overlap, a direction of little overlap.
 Eigen::Vector3f separatingDirection(const Points& cloud, const Points& piece, float spacing) {
   const Coordinates of_cloud = coordinatesOf(cloud), of_piece = coordinatesOf(piece);
   Eigen::Vector3f between = piece.rowwise().mean() - cloud.rowwise().mean();
@@ -131,7 +131,7 @@ std::vector<float> missingCounterparts(const SampledSurface& surface, const std:
       explained[region] += ends(static_cast<int>(i)) || ends(j) ? 1.0f : 0.0f;
     }
   }
-  const auto least =
+  const auto min_samples =
       std::max(kEvidence.min_of_piece, static_cast<std::size_t>(kEvidence.min_piece * static_cast<double>(size)));
   std::vector<float> missing(size, 0.0f);
   for (const std::vector<int>& members : membersOf(regions, matched)) {
@@ -139,13 +139,13 @@ std::vector<float> missingCounterparts(const SampledSurface& surface, const std:
     float value = 0.0f;
     if (edges[region] > 0.0f) {
       const auto at_borders = std::count_if(members.begin(), members.end(), [&](int i) { return near[i] != 0; });
-      // A region all of which lies near borders, as a wire, has its edge near them whatever the plane.
+      // The edge of a region that lies entirely near borders, such as a wire, is near them for any plane.
       const float chance = std::min(0.99f, static_cast<float>(at_borders) / static_cast<float>(members.size()));
       const float share = (lowerLimit(explained[region], edges[region]) - chance) / (1.0f - chance);
       value =
           std::clamp((share - kEvidence.min_explained) / (kEvidence.explained - kEvidence.min_explained), 0.0f, 1.0f);
     }
-    if (value < 1.0f && members.size() >= least)
+    if (value < 1.0f && members.size() >= min_samples)
       value = std::max(
           value, beyondEnd(surface.points, surface.geometry.normals, pointsAt(reflected, members), surface.spacing));
     for (const int i : members) missing[i] = value;
@@ -155,8 +155,8 @@ std::vector<float> missingCounterparts(const SampledSurface& surface, const std:
 
 namespace {
 
-/// Whether each line along the shortest principal axis meets the surface once, as open ground: it ends all around, and
-/// its end is no cut.
+/// Whether each line along the shortest principal axis meets the surface once, as for open ground: it ends all around,
+/// and its end is not a cut.
 bool isOpenSheet(const Points& points) {
   const PrincipalAxes axes = principalAxes(points);
   const double far = kEvidence.far_view * boundingBall(points).radius;

@@ -20,7 +20,7 @@ double coarseness(const PlaneEvidence& evidence) {
   return evidence.spacing / std::max(evidence.tolerance, 1e-6);
 }
 
-/// \return log odds by a share of the surface that is off: 0 at that of a symmetry.
+/// \return log odds as a function of the share of the surface that is off: 0 at that of a symmetry.
 double byOff(double off, double unit) {
   return std::log((off + unit) / (1.0 - kSymmetricShare + unit));
 }
@@ -29,38 +29,39 @@ double byShare(const PlaneEvidence& evidence, double unit) {
   return byOff(1.0 - evidence.share, unit);
 }
 
-/// \return the share of the surface that finer points would show to be off.
+/// \return the share of the surface that is off as finer points would show it.
 double resolvedOff(const PlaneEvidence& evidence) {
   const double off = 1.0 - evidence.share, coarse = coarseness(evidence);
   const double flat = evidence.flat ? std::min(1.0, kEvidenceUnits.flat_reach * coarse) : 0.0;
   return off > 0.0 ? off * std::exp(std::max(kEvidenceUnits.reach * coarse, flat)) : 0.0;  // not 0 times infinity
 }
 
-/// \return the share of the surface that is off, in units of what is known of it.
+/// \return the share of the surface that is off, in units of its uncertainty.
 double byPrecision(const PlaneEvidence& evidence) {
   const double unit = kEvidenceUnits.precision + kEvidenceUnits.precision_per_spacing * coarseness(evidence) +
                       kEvidenceUnits.precision_per_unknown * evidence.unknown;
   return std::min(resolvedOff(evidence), kEvidenceUnits.max_off) / unit;
 }
 
-/// \return log odds by how easily the plane slips along what it matches, more where much is hidden, >= 0.
+/// \return log odds by the slipping of the plane along its matches, more where much is hidden, >= 0.
 double bySlipping(const PlaneEvidence& evidence) {
-  const double slips = std::max(0.0, std::log(kEvidenceUnits.slipping / (evidence.hold + kEvidenceUnits.min_slipping)));
+  const double slips =
+      std::max(0.0, std::log(kEvidenceUnits.slipping / (evidence.stiffness + kEvidenceUnits.min_slipping)));
   return (kEvidenceUnits.slipping_seen + evidence.unknown) * slips;
 }
 
-/// \return what D loses beyond what the hidden or missing part explains.
+/// \return the loss of D beyond that explained by the hidden or missing part.
 double byUnexplainedLoss(const PlaneEvidence& evidence) {
   return std::max(0.0, 1.0 - evidence.score - kEvidenceUnits.hidden_loss * evidence.unknown);
 }
 
-/// \return log odds by what D loses beyond what noise explains.
+/// \return log odds by the loss of D beyond that explained by noise.
 double byExcess(const PlaneEvidence& evidence) {
   const double excess = evidence.own_score - evidence.score - kEvidenceUnits.min_excess;
   return std::log(std::max(0.0, excess) / kEvidenceUnits.excess + 1.0);
 }
 
-/// \return log odds by the overlap of densities that is lost.
+/// \return log odds by the lost overlap of densities.
 double byLostOverlap(const PlaneEvidence& evidence) {
   return std::log(std::max(0.0, 1.0 - evidence.support) / kEvidenceUnits.lost_overlap + 1.0);
 }

@@ -8,49 +8,49 @@
 
 namespace pcl_symmetry {
 
-/// How firmly the matched samples hold a plane. A match is worth what it excludes: a sheet that is mirrored in itself
-/// matches under any tilt of the plane about its normal, a ball under all tilts.
+/// How strongly the matched samples constrain a plane. A match counts by the motions that it excludes: a sheet
+/// reflected onto itself matches under any tilt of the plane about the normal of the sheet, a ball under all tilts.
 /// \param points 3 x N, in the unit ball, the reflections of the samples.
 /// \param normals 3 x N, unit, of the surface at their matches.
 /// \param matched N values.
 /// \param plane in the frame of the points.
-/// \return mean product of the changes of a match's distance per two tilts (radians) and the offset, in this order;
-/// symmetric, eigenvalues in [0, 12]; 0 where nothing matches.
+/// \return mean outer product of the derivatives of a match's distance by two tilts (radians) and the offset, in this
+/// order; symmetric, eigenvalues in [0, 12]; 0 without matches.
 Eigen::Matrix3d motionStiffness(const Points& points, const Points& normals, const std::vector<char>& matched,
                                 const ReflectionPlane& plane);
 
-/// How firmly the matches fix the offset of a plane: those of a tube fix it only at its ends.
+/// How strongly the matches constrain the offset of a plane: those of a tube constrain it only at the ends.
 /// \param stiffness of motionStiffness().
-/// \return mean square of the change of a match's distance per change of the offset, after the best tilt, in [0, 4].
+/// \return mean squared derivative of a match's distance by the offset, after the best tilt, in [0, 4].
 double offsetStiffness(const Eigen::Matrix3d& stiffness);
 
-/// How firmly a plane is held but for one motion that it may be free to make, as planes through an axis are.
+/// How strongly a plane is constrained apart from its freest motion, as planes through an axis have one free motion.
 /// \param stiffness of motionStiffness().
 /// \return the second of its three eigenvalues, in [0, 6].
 double secondStiffness(const Eigen::Matrix3d& stiffness);
 
-/// What a cloud shows of an object. Evidence counts by other coefficients for each kind, and detection goes by other
-/// rules (core/detection/detection_rules.h).
+/// How a cloud shows an object. The coefficients of the evidence and the rules of detection depend on it
+/// (core/detection/detection_rules.h).
 enum class CloudKind {
   Surface,  ///< the surface from all sides; a piece may be missing
   Scan,     ///< the surface seen from one viewpoint, or from a few
-  Volume    ///< the points resolve no surface: they have neighbors on all sides, by noise beyond their spacing
+  Volume    ///< the points resolve no surface: noise beyond their spacing puts neighbors on all sides
 };
 
 /// Evidence for and against one plane, and how finely the points sample the surface.
 struct PlaneEvidence {
   double support = 0.0;    ///< mean over the points: the reflection lies on the surface, in [0, 1]
-  double conflict = 0.0;   ///< mean over the points: the reflection lies where there is nothing, in [0, 1]
+  double conflict = 0.0;   ///< mean over the points: the reflection lies in free space, in [0, 1]
   double score = 0.0;      ///< D of equation 2, in [0, 1]
-  double own_score = 1.0;  ///< what noise leaves of D for a symmetry, in [0.5, 1]; 1 where points resolve a surface
-  double baseline = 1.0;   ///< support of the points on the surface of all others: < 1 by sampling and noise
+  double own_score = 1.0;  ///< D of a symmetry under this noise, in [0.5, 1]; 1 where points resolve a surface
+  double baseline = 1.0;   ///< support of the points by the surface of all others: < 1 due to sampling and noise
   double spacing = 0.0;    ///< median distance of the samples, divided by the radius of the points
   double roughness = 0.0;  ///< median distance of the samples from their tangent planes, divided by the spacing
   CloudKind kind = CloudKind::Surface;  ///< of the cloud; support of a volume is the overlap of its density
-  /// Share of the surface mapped to within the tolerance of the surface, of its informative part, in [0, 1].
+  /// Share of the informative surface that is mapped to within the tolerance of the surface, in [0, 1].
   double share = 1.0;
   double double_share = 1.0;  ///< share mapped to within twice the tolerance, >= share
-  double hold = 1.0;          ///< of scans: how firmly what is matched holds the plane, see secondStiffness(), >= 0
+  double stiffness = 1.0;     ///< of scans: second eigenvalue of the motion stiffness, see secondStiffness(), >= 0
   double tolerance = 0.02;    ///< of that share, divided by the radius of the points, > 0
   double unknown = 0.0;  ///< share of the surface that is uninformative: its reflection was not seen or was cut off
   bool flat = false;     ///< all points lie in one plane, so that only their outline is informative
@@ -63,33 +63,33 @@ double seenSupport(const PlaneEvidence& evidence);
 
 /// Uncertainties of the evidence, by which it is divided. Chosen by cross-validation over the models of the fit.
 struct EvidenceUnits {
-  double off = 0.005;              ///< error of the share that is off, of clouds without noise
-  double off_per_spacing = 0.002;  ///< more of that error per spacing in tolerances
-  double scan_off = 0.01;          ///< error of the share that is off, of scans, whose hidden parts may differ
+  double off = 0.005;              ///< error of the share that is off, for clouds without noise
+  double off_per_spacing = 0.002;  ///< increase of that error per spacing in tolerances
+  double scan_off = 0.01;          ///< error of the share that is off, for scans, whose hidden parts may differ
   double double_off = off;         ///< error of the share that is off by more than twice the tolerance
-  double precision = 2.0 * off;    ///< how exactly the share is known: half doubts nearly symmetric planes less
-  double precision_per_spacing = 2.0 * off_per_spacing;  ///< more of precision per spacing in tolerances
-  double precision_per_unknown = 0.2;                    ///< more of precision per share that is uninformative
-  double max_off = 0.1;                                  ///< share from which on it does not matter
-  /// Logarithm of the factor per spacing in tolerances by which finer points of a whole cloud show more of the surface
-  /// to be off, as samples reach beyond the edges of what is there: 0.3 to 0.6 for planes that map 96 to 97 %.
+  double precision = 2.0 * off;    ///< uncertainty of the share; half of it would doubt nearly symmetric planes less
+  double precision_per_spacing = 2.0 * off_per_spacing;  ///< increase of precision per spacing in tolerances
+  double precision_per_unknown = 0.2;                    ///< increase of precision per uninformative share
+  double max_off = 0.1;                                  ///< share above which more makes no difference
+  /// Logarithm of the factor per spacing in tolerances by which the share that is off grows with finer points of a
+  /// whole cloud, because samples extend beyond edges: 0.3 to 0.6 for planes that map 96 to 97 %.
   double reach = 0.3;
   double flat_reach = 0.8;      ///< the same for flat clouds, where only the outline tells, up to a factor of e
-  double hidden_loss = 0.6;     ///< part of D that is lost per share that is uninformative
-  double slipping = 0.03;       ///< how firmly a scan has to hold a plane; nine of ten symmetries have more than 0.06
-  double min_slipping = 0.001;  ///< what is as good as free
-  double slipping_seen = 0.3;   ///< what slips where nothing is hidden, as a share that is
+  double hidden_loss = 0.6;     ///< loss of D per uninformative share
+  double slipping = 0.03;       ///< stiffness below which a plane may slip; nine of ten symmetries have more than 0.06
+  double min_slipping = 0.001;  ///< below this stiffness a plane counts as free
+  double slipping_seen = 0.3;   ///< weight of the term where nothing is hidden
   // Where points resolve no surface:
   double volume_off = 0.003;   ///< error of the share that is off
-  double excess = 0.002;       ///< of what D lacks beyond its error
+  double excess = 0.002;       ///< unit of the loss of D beyond its error
   double min_excess = excess;  ///< error of D: it is 0.001 less than expected in the mean, deviation 0.002
-  double lost_overlap = 0.01;  ///< of the overlap of densities
-  double noise = 0.01;         ///< of what noise takes from D
+  double lost_overlap = 0.01;  ///< unit of the lost overlap of densities
+  double noise = 0.01;         ///< unit of the loss of D through noise
 };
 inline constexpr EvidenceUnits kEvidenceUnits{};
 
-/// The terms of the log odds that a plane is a symmetry, without their coefficients: 1, then terms that fall as the
-/// evidence gets better, and of whole clouds and volumes the spacing or the noise, which the others depend on.
+/// The terms of the log odds that a plane is a symmetry, without their coefficients: 1, then terms that fall with
+/// better evidence, then for whole clouds and volumes the spacing or the noise, which the others depend on.
 std::vector<double> logOddsTerms(const PlaneEvidence& evidence);
 
 /// Limits of a share.
@@ -110,11 +110,11 @@ ShareInterval shareInterval(const PlaneEvidence& evidence);
 /// \return in [0, 1].
 double planeConfidence(const PlaneEvidence& evidence);
 
-/// One more term, the last, for a plane of a cloud that has a better plane: it grows with what is unknown.
+/// The last term, for a plane of a cloud that has a better plane: it grows with the unknown share.
 /// \param unknown as PlaneEvidence::unknown.
 double furtherTerm(CloudKind kind, double unknown);
 
-/// What furtherTerm() multiplies the odds by: less for a scan, and for a cloud that may lack a piece.
+/// The factor of furtherTerm() on the odds: less for a scan and for a cloud that may lack a piece.
 /// \return a factor, > 0.
 double furtherOdds(CloudKind kind, double unknown);
 

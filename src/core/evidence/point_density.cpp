@@ -57,10 +57,10 @@ struct Quadric {
   Eigen::Vector3d stepUp() const {
     const SymmetricEigen<Eigen::Matrix3d> solver(hessian);
     Eigen::Vector3d step = Eigen::Vector3d::Zero();
-    const double least = kEvidence.min_curvature * solver.eigenvalues().cwiseAbs().maxCoeff();
+    const double min_curvature = kEvidence.min_curvature * solver.eigenvalues().cwiseAbs().maxCoeff();
     for (int k = 0; k < 3; ++k) {
       const Eigen::Vector3d axis = solver.eigenvectors().col(k);
-      step += axis * axis.dot(gradient) / std::max(std::abs(solver.eigenvalues()[k]), least);
+      step += axis * axis.dot(gradient) / std::max(std::abs(solver.eigenvalues()[k]), min_curvature);
     }
     return step;
   }
@@ -78,7 +78,7 @@ PointDensity::PointDensity(const PointsRef& points, double bandwidth, int num_th
   size_ = ((high - low) / cell_size_).ceil().cast<int>() + 2;
   spread(points);
   const double deviation = blur(bandwidth, num_threads);
-  // What a point adds to the density at its own position.
+  // The contribution of a point to the density at its own position.
   const double own_part = std::pow(2.0 * kPi * (deviation * deviation + kEvidence.cell_variance), -1.5);
   double total = 0.0, sq_extent = 0.0;
   for (Eigen::Index i = 0; i < points.cols(); ++i) {
@@ -113,7 +113,7 @@ void PointDensity::spread(const PointsRef& points) {
 }
 
 /// Blurs the counts along each axis in turn.
-/// \return standard deviation of the blur, cells: smaller than the bandwidth by what spreading and reading add.
+/// \return standard deviation of the blur, cells: smaller than the bandwidth, as spreading and interpolation also blur.
 double PointDensity::blur(double bandwidth, int num_threads) {
   const std::array<std::size_t, 3> stride{1, static_cast<std::size_t>(size_[0]),
                                           static_cast<std::size_t>(size_[0]) * size_[1]};

@@ -10,15 +10,15 @@ namespace pcl_symmetry {
 
 /// Density of points that do not resolve a surface: noise beyond their spacing, or too few of them.
 ///
-/// Where every point has neighbors on all sides, closest points and normals mean nothing. The points are then a sample
-/// of a density, and a plane is judged by how well the density agrees with its own reflection.
+/// Where every point has neighbors on all sides, closest points and normals are meaningless. The points are then a
+/// sample of a density, and a plane is judged by how well the density agrees with its own reflection.
 class PointDensity {
 public:
   /// \param points 3 x N, finite, N >= 1.
   /// \param bandwidth standard deviation of the Gaussian around each point, units of the points, > 0.
   PointDensity(const PointsRef& points, double bandwidth, int num_threads);
 
-  /// Mean density at the reflections of samples, divided by the mean density that the other points have at a point.
+  /// Mean density at the reflections of samples, divided by the mean density of the other points at a point.
   ///
   /// A reflected sample of a symmetric density is a new sample of the same density, whatever the noise and the number
   /// of points: the overlap is then about 1.
@@ -46,7 +46,7 @@ private:
   float cell_size_;
   Eigen::Array3i size_;  ///< cells along each axis
   std::vector<float> values_;
-  double mean_;  ///< over the points, without their own parts
+  double mean_;  ///< mean density at the points, without their own contributions
   Eigen::Vector3d middle_;
   double extent_;  ///< root mean square distance of the points from the middle
 };

@@ -34,7 +34,7 @@ Points joined(const Points& a, const Points& b) {
   return all;
 }
 
-/// \return what the correlation of two distance transforms lacks of 1, in [0, 1].
+/// \return 1 minus the correlation of two distance transforms, in [0, 1].
 double lost(const GaussianEdt& a, const GaussianEdt& b) {
   const double product = std::inner_product(a.values().begin(), a.values().end(), b.values().begin(), 0.0);
   return 1.0 - std::clamp(product / std::sqrt(a.sqNorm() * b.sqNorm()), 0.0, 1.0);
@@ -56,7 +56,7 @@ double SplitSurface::ownScore(int num_cells, double sigma, const BoundingBall& b
   const auto edt = [&](const Points& points) {
     return GaussianEdt(points, {num_cells, sigma, num_threads, ball.radius, ball.center});
   };
-  // Quarters are drawn anew: points that follow each other in a file may lie beside each other.
+  // Quarters are drawn anew, because successive points of a file may be neighbors.
   const auto [a1, a2] = halvesOf(first_, seed_);
   const auto [b1, b2] = halvesOf(second_, seed_);
   const std::array<Points, 4> quarters{a1, a2, b1, b2};

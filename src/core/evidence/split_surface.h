@@ -8,11 +8,11 @@
 
 namespace pcl_symmetry {
 
-/// A cloud in two halves: how much of one half lies on the surface that the other describes.
+/// Measures how much of one half of a cloud lies on the surface that the other half describes.
 ///
-/// Where noise exceeds the spacing, a point and the surface that was fitted to it are not independent, and no
-/// correction for that holds. The reflection of one half by a true plane is a new sample of the same noisy surface as
-/// the other half and lies on it exactly as often as the half itself.
+/// Where noise exceeds the spacing, a point and the surface fitted to it are not independent, and no correction is
+/// valid. The reflection of one half by a true plane is a new sample of the same noisy surface as the other half and
+/// lies on it exactly as often as the half itself.
 class SplitSurface {
 public:
   /// \param points 3 x N, finite, N >= 4.
@@ -24,9 +24,9 @@ public:
   /// \return distances of the reflections of the first half from that surface.
   std::vector<float> reflectedDistances(const ReflectionPlane& plane) const;
 
-  /// What sampling and noise leave of D of equation 2 for a true plane: f of all points and f of their reflections
-  /// differ by noise alone. Halves of the points differ by noise, too, but they are half as dense, and quarters are
-  /// half as dense as halves: what D loses falls by the same factor with each doubling of the points.
+  /// D of equation 2 for a true plane under this sampling and noise: f of all points and f of their reflections differ
+  /// by noise alone. Halves of the points differ by noise, too, but are half as dense, and quarters half as dense
+  /// again: the loss of D falls by the same factor with each doubling of the points.
   /// \param num_cells,sigma of the distance transform that D is computed from; sigma in units of the points.
   /// \param ball that it covers, frame of the points.
   /// \return in [0.5, 1].

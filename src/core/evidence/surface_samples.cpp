@@ -101,8 +101,8 @@ bool SurfaceDiscs::isWithin(const Eigen::Vector3f& x, float distance) const {
     if (sq_room < 0.0f) continue;
     const float sq_along = difference.squaredNorm() - across * across;
     if (sq_along <= d.radius * d.radius) return true;
-    const float most = d.radius + distance;
-    if (sq_along > most * most) continue;
+    const float reach = d.radius + distance;
+    if (sq_along > reach * reach) continue;
     const float beside = std::sqrt(sq_along) - d.radius;
     if (beside * beside <= sq_room) return true;
   }
@@ -174,47 +174,47 @@ double shareWithin(const std::vector<float>& distances, double tolerance) {
 
 namespace {
 
-/// How far a point with a normal lies off the surface at a sample, squared, in units of what its support allows.
-/// \return \p most where it is not less.
+/// Squared deviation of a point with a normal from the surface at a sample, in units of its allowed support.
+/// \return \p max_sq_deviation if it is not less.
 float sqDeviation(const SurfaceSample& sample, const Eigen::Vector3f& point, const Eigen::Vector3f& point_normal,
-                  float most) {
+                  float max_sq_deviation) {
   const Eigen::Vector3f difference = point - sample.center;
   const float reach = std::max(1e-6f, sample.radius);
   const float sq_length = difference.squaredNorm();
   const float along =
       sq_length < kEvidence.surely * reach * reach ? 0.0f : std::max(0.0f, std::sqrt(sq_length) / reach - 1.0f);
-  if (along * along >= most) return most;
+  if (along * along >= max_sq_deviation) return max_sq_deviation;
   const float normal_reach = std::max(kEvidence.normal_reach, kEvidence.rough_reach * sample.roughness);
   const float height = std::abs(sample.normal.dot(difference));
   const float across = height < kEvidence.surely * normal_reach ? 0.0f : std::max(0.0f, height / normal_reach - 1.0f);
   const float sq_distance = along * along + across * across;
-  if (sq_distance >= most) return most;
+  if (sq_distance >= max_sq_deviation) return max_sq_deviation;
   const float cosine = std::min(1.0f, std::abs(sample.normal.dot(point_normal)));
-  // Normals count as far as they can be trusted, without a jump.
+  // Normals count according to their reliability, without a jump.
   static const float agreeing = std::cos(kEvidence.normal_angle);
   if (cosine > agreeing || sample.normal_trust == 0.0f) return sq_distance;
-  const float turned = sample.normal_trust * std::max(0.0f, std::acos(cosine) / kEvidence.normal_angle - 1.0f);
-  return sq_distance + turned * turned;
+  const float excess = sample.normal_trust * std::max(0.0f, std::acos(cosine) / kEvidence.normal_angle - 1.0f);
+  return sq_distance + excess * excess;
 }
 
 /// Support by the closest sample or one of those next to it, whichever is best, but not by sample \p self (-1 = none).
 float supportNear(int closest, int self, const Eigen::Vector3f& point, const Eigen::Vector3f& point_normal,
                   const SurfaceSamples& samples) {
-  float least = sqDeviation(samples[closest], point, point_normal, kEvidence.most);
+  float least = sqDeviation(samples[closest], point, point_normal, kEvidence.max_sq_deviation);
   for (const int j : samples[closest].nearest) {
     if (least == 0.0f) return 1.0f;
     if (j != self) least = std::min(least, sqDeviation(samples[j], point, point_normal, least));
   }
-  return least < kEvidence.most ? std::exp(-least) : 0.0f;
+  return least < kEvidence.max_sq_deviation ? std::exp(-least) : 0.0f;
 }
 
 }  // namespace
 
-float emptiness(const Visibility& visibility, const Eigen::Vector3d& x) {
+float freeConfidence(const Visibility& visibility, const Eigen::Vector3d& x) {
   const double behind = visibility.depthBehind(x);
   if (behind >= 0.0) return 0.0f;
   const bool is_exact = visibility.depthError(x) < kEvidence.exact_depth;
-  return std::isfinite(behind) || is_exact ? 1.0f : kEvidence.empty_without_depth;
+  return std::isfinite(behind) || is_exact ? 1.0f : kEvidence.free_without_depth;
 }
 
 PointEvidence pointEvidence(const Points& reflected, const Points& reflected_normals, const std::vector<int>& closest,
@@ -227,8 +227,8 @@ PointEvidence pointEvidence(const Points& reflected, const Points& reflected_nor
         evidence.support[i] = supportNear(closest[i], -1, reflected.col(i), reflected_normals.col(i), samples);
       // Full support leaves no conflict.
       if (evidence.support[i] == 1.0f) continue;
-      const float empty = visibility ? emptiness(*visibility, reflected.col(i).cast<double>()) : 1.0f;
-      evidence.conflict[i] = empty * (1.0f - evidence.support[i]);
+      const float certainty = visibility ? freeConfidence(*visibility, reflected.col(i).cast<double>()) : 1.0f;
+      evidence.conflict[i] = certainty * (1.0f - evidence.support[i]);
     }
   });
   return evidence;

@@ -15,46 +15,49 @@
 
 namespace pcl_symmetry {
 
-/// The numbers that the evidence of a plane depends on, beside EvidenceUnits and what is fitted (confidence_fit.h).
+/// Parameters of the evidence of a plane, besides EvidenceUnits and the fitted numbers (confidence_fit.h).
 struct EvidenceRules {
   // Surface of samples.
   float disc_radius = 1.25f;  ///< spacings, of the disc that a sample represents; 1 in 135 holds no other sample
   float max_roughness = 0.25f,
-        trust_width = 0.1f;              ///< roughness, spacings, at which normals mean nothing; volumes: 0.42
-  float new_point_factor = 1.41421356f;  ///< distance of a new point from a plane over that of its nine points
+        trust_width = 0.1f;  ///< roughness in spacings at which normals become meaningless; volumes: 0.42
+  float new_point_factor =
+      1.41421356f;  ///< ratio of the distance of a new point from a plane to that of the nine points of the plane
 
   // Support.
-  float normal_reach = 0.01f;  ///< reach across the surface, radii of the points
-  float rough_reach = 3.0f;    ///< reach across the surface, roughnesses: 99.7 % of Gaussian noise
-  float normal_angle = 0.5f;   ///< radians between normals that agree
-  float surely = 0.99999f;     ///< share of a reach that rounding does not exceed
-  float most = 9.0f;           ///< squared deviation that counts as no support
-  double tilt_ridge = 1e-4;    ///< far below the stiffness of tilts that are held
+  float normal_reach = 0.01f;     ///< reach across the surface, radii of the points
+  float rough_reach = 3.0f;       ///< reach across the surface, roughnesses: 99.7 % of Gaussian noise
+  float normal_angle = 0.5f;      ///< radians between normals that agree
+  float surely = 0.99999f;        ///< share of a reach that rounding does not exceed
+  float max_sq_deviation = 9.0f;  ///< squared deviation that counts as no support
+  double tilt_ridge = 1e-4;       ///< far below the stiffness of constrained tilts
 
-  double exact_depth = 4e-3;          ///< error of a depth, radii, up to which a pixel without depth saw nothing
-  float empty_without_depth = 0.15f;  ///< how surely such a pixel saw nothing where errors are larger
+  double exact_depth = 4e-3;         ///< depth error, radii, up to which a pixel without depth means free space
+  float free_without_depth = 0.15f;  ///< confidence in free space at such a pixel where errors are larger
 
   // Confidence.
-  double coarsest = 3.0;  ///< tolerances; by default, points with a wider spacing decide at what they resolve
+  double coarsest =
+      3.0;  ///< tolerances; by default, points with a wider spacing decide at the tolerance that they resolve
   double coarsest_part = 0.5 * coarsest;  ///< of flat clouds, and of scans so wide, which lose confidence beyond
   double surely_coarser = 0.05;           ///< share by which spacing raises the tolerance of such a scan
-  double lost_per_coarseness = 2.0;       ///< log odds per tolerance beyond
-  double unknown_share = 0.5;             ///< units of a share per share that is uninformative
+  double lost_per_coarseness = 2.0;       ///< log odds lost per tolerance beyond that
+  double unknown_share = 0.5;             ///< units of a share per uninformative share
 
   // Where a cloud ends.
-  float min_explained = 0.4f, explained = 0.75f;  ///< share of an edge from which its region is missing, and fully
-  float standard_errors = 1.96f;                  ///< of that share
-  double min_piece = 0.002;                       ///< share of the surface of a piece that was cut off
-  std::size_t min_of_piece = 8;                   ///< samples of it
-  double far_view = 100.0;                        ///< radii, from where rays are parallel
-  double layered_sheet = 0.1;                     ///< layered share of open sheets; 38 of 40 cut objects have more
+  float min_explained = 0.4f,
+        explained = 0.75f;        ///< share of an edge at which its region begins to count as missing, and fully counts
+  float standard_errors = 1.96f;  ///< of that share
+  double min_piece = 0.002;       ///< least share of the surface in a piece that was cut off
+  std::size_t min_of_piece = 8;   ///< samples of it
+  double far_view = 100.0;        ///< radii, from where rays are parallel
+  double layered_sheet = 0.1;     ///< layered share of open sheets; 38 of 40 cut objects have more
   double few_borders = 0.6, borders_everywhere = 0.75;  ///< share near borders to trust them fully, or not at all
   float in_front = 3.0f, behind = 4.0f;                 ///< spacings by which a piece reaches behind the last points
   float runs_into = 0.65f, closes = 0.8f;               ///< cosine of normals at a cut, and where a surface closes
   float last_points = 2.0f;                             ///< depth of these points, spacings
   double outliers = 0.002;                              ///< share of the points
   int max_steps = 200;                                  ///< between convex hulls
-  float min_gain = 0.02f;                               ///< share of the squared distance that a step shortens
+  float min_gain = 0.02f;                               ///< least share by which a step reduces the squared distance
   float no_distance = 1.0f;                             ///< spacings; convex hulls that are closer overlap
 
   // Density of points that resolve no surface.
@@ -62,10 +65,10 @@ struct EvidenceRules {
   double cell_size = 0.5;            ///< bandwidths
   double margin = 4.0;               ///< bandwidths around the points
   double kernel_reach = 3.0;         ///< standard deviations
-  double cell_variance = 1.0 / 3.0;  ///< squared cells that spreading and reading add
+  double cell_variance = 1.0 / 3.0;  ///< squared cells that spreading and interpolation add
   double min_variance = 0.1;         ///< squared cells; less needs no blur
   double step = 0.5;                 ///< bandwidths by which the farthest points move in a difference
-  double longest_step = 3.0;         ///< differences, as far as the quadric holds
+  double longest_step = 3.0;         ///< differences within which the quadratic fit is valid
   double settled = 0.01;             ///< bandwidths; far below the error of a plane
   double min_curvature = 1e-3;       ///< share of the greatest
 };
@@ -103,7 +106,7 @@ public:
   /// \param reach greatest distance of a query, units of the samples, > 0.
   SurfaceDiscs(const Points& samples, const LocalGeometry& geometry, float disc_radius, float reach);
 
-  /// The disc that is nearest to a point, of those within reach.
+  /// The nearest disc within reach of a point.
   Nearest nearest(const Eigen::Vector3f& x) const;
 
   /// Whether a disc is within \p distance <= reach of a point.
@@ -135,7 +138,7 @@ private:
 /// A sample of a surface, the disc of surface that it represents, and its neighborhood.
 struct alignas(64) SurfaceSample : SurfaceDisc {
   float roughness;     ///< LocalGeometry::roughness
-  float normal_trust;  ///< how far the normal means anything, in [0, 1]: noise beyond the spacing leaves none
+  float normal_trust;  ///< reliability of the normal, in [0, 1]: 0 for noise beyond the spacing
   std::array<int, kNumWitnesses> nearest;
 };
 
@@ -154,8 +157,7 @@ SurfaceSamples surfaceSamples(const Points& points, const LocalGeometry& geometr
 std::vector<float> surfaceDistances(const Points& points, const std::vector<int>& closest,
                                     const SurfaceSamples& samples, int num_threads = 1);
 
-/// Distance of each sample from the surface that the others describe: what sampling and noise alone make of a surface
-/// that is mapped onto itself.
+/// Distance of each sample from the surface that the others describe: the effect of sampling and noise alone.
 /// \param samples N >= 2 of them.
 /// \return N distances >= 0, units of the samples.
 std::vector<float> ownSurfaceDistances(const SurfaceSamples& samples, int num_threads = 1);
@@ -167,26 +169,25 @@ double shareWithin(const std::vector<float>& distances, double tolerance);
 /// Evidence of each of M reflected points, in [0, 1].
 struct PointEvidence {
   std::vector<float> support;   ///< the reflection lies on the surface
-  std::vector<float> conflict;  ///< the reflection lies where the scanner saw that there is nothing
+  std::vector<float> conflict;  ///< the reflection lies in free space
 
   /// The support; NaN where the scanner could not see whether the reflection lies on the surface.
   std::vector<float> seenSupport() const;
 };
 
-/// How surely a point lies in free space. A pixel without a depth means free space where the sensor is exact, and
-/// little where it has errors: it may be a shadow of the projector, or an occluder may have been cut out of the
-/// picture.
+/// How surely a point lies in free space. A pixel without a depth means free space if the sensor is exact, but little
+/// if it has errors: it may be a shadow of the projector, or an occluder may have been cut out of the image.
 /// \param x in the unit ball.
-/// \return in [0, 1]: 0 behind what was seen, 1 before it.
-float emptiness(const Visibility& visibility, const Eigen::Vector3d& x);
+/// \return in [0, 1]: 0 behind the visible surface, 1 in front of it.
+float freeConfidence(const Visibility& visibility, const Eigen::Vector3d& x);
 
 /// How well single points of a surface support a reflection (the white regions of Figure 8). Near an edge the closest
 /// sample may lie on another face: the best of that sample and of those next to it counts.
 ///
-/// Departure from the paper, which measures the distance of the reflected point by the Gaussian of the transform: here
-/// the unit is the distance between samples, so that the result needs no length in input units. A reflected point that
-/// lies on the surface is farther from the closest sample than 1.25 spacings in 1 of 135 cases (spacing = 1 /
-/// sqrt(density), measured at that sample). Up to there the support is 1; beyond, it falls as a Gaussian.
+/// Departure from the paper: it measures the distance of the reflected point by the Gaussian of the transform; here the
+/// unit is the spacing of the samples, so that the result needs no length in input units. A reflected point that lies
+/// on the surface is farther from the closest sample than 1.25 spacings in 1 of 135 cases (spacing = 1 / sqrt(density),
+/// measured at that sample). Up to there the support is 1; beyond, it falls as a Gaussian.
 /// \param reflected 3 x M, reflections of points of the surface, normalized to the unit ball.
 /// \param reflected_normals 3 x M, reflections of their normals.
 /// \param closest M indices of the closest samples; -1: none is near.
@@ -195,7 +196,7 @@ float emptiness(const Visibility& visibility, const Eigen::Vector3d& x);
 PointEvidence pointEvidence(const Points& reflected, const Points& reflected_normals, const std::vector<int>& closest,
                             const SurfaceSamples& samples, const Visibility* visibility, int num_threads = 1);
 
-/// Support of each sample on the surface that the other samples describe: what sampling alone leaves of a symmetry.
+/// Support of each sample by the surface that the other samples describe: that of a symmetry under this sampling.
 /// \param samples N, normalized to the unit ball.
 /// \return N values in [0, 1].
 std::vector<float> ownSupport(const SurfaceSamples& samples, int num_threads);

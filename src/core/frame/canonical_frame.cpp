@@ -29,7 +29,7 @@ float meanOffset(const FrameEvidence& evidence, const std::vector<float>& scores
   for (std::size_t i = 0; i < scores.size(); ++i) {
     const double r = static_cast<double>(i) - std::floor(evidence.reach);
     const double away = (r - middle) / (kFrame.offset_width * evidence.reach);
-    const double weight =  // falls so slowly that a peak far out keeps its position
+    const double weight =  // falls slowly, so that a distant peak keeps its position
         std::exp(kFrame.offset_sharpness * (scores[i] - top)) * std::pow(1.0 + away * away, -1.5);
     sum += weight;
     moment += weight * r;

@@ -14,15 +14,15 @@ Eigen::Matrix3d principalSymmetryAxes(const PointsRef& points, const Eigen::Matr
 
 /// The center of symmetry (COS): where the three planes meet.
 ///
-/// Departure from the paper: across a direction with little symmetry the maximum of the profile is chance. The plane
-/// passes there only if it stands high above all others, as across the box of a mailbox; elsewhere the offset is the
-/// mean over all offsets, weighted by score and by closeness to the middle of the extent of the points. The nearer the
-/// maximum is to that mean, the less height it needs. All profiles of a scan count as flat.
+/// Departure from the paper: across a direction with little symmetry, the maximum of the profile is a matter of chance.
+/// The plane passes there only if it stands high above all others, as across the box of a mailbox; elsewhere the offset
+/// is the mean over all offsets, weighted by score and by closeness to the middle of the extent of the points. The
+/// nearer the maximum is to that mean, the less height it needs. All profiles of a scan count as flat.
 /// \return input frame.
 Eigen::Vector3d centerOfSymmetry(const FrameEvidence& evidence, const FrameCandidate& frame);
 
 /// The center where several frames are nearly as good: the mean of their centers, weighted by their values. Frames of a
-/// symmetric shape have one center, but where a shape has no symmetry chance and what was seen decide which is best.
+/// symmetric shape share one center; without symmetry, chance and visibility decide which frame is best.
 /// \param frames best first, at least one.
 Eigen::Vector3d meanCenter(const std::vector<Eigen::Vector3d>& centers, const std::vector<FrameCandidate>& frames);
 
@@ -34,8 +34,8 @@ int revolutionAxis(const FrameEvidence& evidence, const FrameCandidate& frame);
 /// \param axes orthonormal columns.
 Eigen::Isometry3d canonicalPose(const Eigen::Matrix3d& axes, const Eigen::Vector3d& center);
 
-/// Adds the poses of a frame with all four choices of signs that are rotations, as a plane has no sign, to equally good
-/// ones. Poses whose axes are closer than 5 degrees are one.
+/// Adds the poses of a frame, with all four choices of signs that are rotations, to equally good ones, because planes
+/// have no sign. Poses whose axes differ by less than 5 degrees count as one.
 /// \param axes orthonormal columns, right-handed.
 /// \param[in,out] poses each T_canonical_input.
 void addWithSigns(const Eigen::Matrix3d& axes, const Eigen::Vector3d& center, std::vector<Eigen::Isometry3d>& poses);
@@ -50,7 +50,7 @@ void addTied(const FrameCandidate& frame, const Eigen::Vector3f& scores, const E
 /// \param revolution_axis as of SymmetryFrame.
 bool isRotatedAboutRevolution(const Eigen::Matrix3f& axes, int revolution_axis, const Eigen::Matrix3f& frame);
 
-/// \return the axis of a frame that a rotation is sure to be about; -1: none.
+/// \return the axis of a frame that a rotation is certainly about; -1: none.
 int axisAlong(const SymmetryRotation& rotation, const SymmetryFrame& frame);
 
 /// Moves the center and axes of a frame to the axes of its rotations and to the planes of symmetry that

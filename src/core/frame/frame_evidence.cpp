@@ -54,14 +54,14 @@ std::vector<Eigen::Vector3f> SurfaceDirections::peaks(int max_peaks) const {
   };
   std::vector<Peak> found;
   const Eigen::Index stride = std::max<Eigen::Index>(1, normals_.cols() / kFrame.num_peak_starts);
-  const float least = std::cos(static_cast<float>(kFrame.peak_width));
+  const float min_cosine = std::cos(static_cast<float>(kFrame.peak_width));
   for (Eigen::Index start = 0; start < normals_.cols(); start += stride) {
     Eigen::Vector3f direction = normals_.col(start);
     double share = 0.0;
     for (int step = 0; step < kFrame.num_peak_steps; ++step) {
       const Eigen::ArrayXf cosines = (normals_.transpose() * direction).array();
       const Eigen::ArrayXf weights =
-          (cosines.abs() >= least).select(weights_.array(), Eigen::ArrayXf::Zero(cosines.size()));
+          (cosines.abs() >= min_cosine).select(weights_.array(), Eigen::ArrayXf::Zero(cosines.size()));
       share = weights.sum();
       if (share < kFrame.min_peak) break;
       direction = (normals_ * (weights * cosines.sign()).matrix()).normalized();

@@ -11,7 +11,7 @@
 
 namespace pcl_symmetry {
 
-/// Numbers of the search for frames that decide the answers.
+/// Parameters that affect the search for frames.
 struct FrameRules {
   // Evidence
   double whole_sigma = 1.5;       // cells, width of the Gaussian for whole clouds: as narrow as the grid resolves
@@ -19,9 +19,10 @@ struct FrameRules {
   double min_sigma = 1.5;         // spacings of the points, for sparse clouds
   int num_profile_samples = 256;  // of the profiles that scores come from: D to about 1 %
   double whole_weight = 0.6;      // of the second and third plane, and of agreement, in the value of a frame:
-  double scan_weight = 0.3;       // they break ties, as between planes along faces and along edges of a square box
+  double scan_weight = 0.3;       // they break ties, such as between planes along faces and along edges of a square box
   double tail = 0.005;            // share of the points beyond either end of their extent: outliers
-  double push = 0.05;  // radii that the middle of a scan lies farther from the scanner than that of its points
+  double push =
+      0.05;  // radii by which the middle of a scanned object is farther from the scanner than that of its points
   double face_width = 6.0 * kDegree;      // of the agreement of normals with an axis
   double peak_width = 5.0 * kDegree;      // normals that belong to one face
   double peak_distance = 15.0 * kDegree;  // least angle between two faces
@@ -48,7 +49,7 @@ struct FrameRules {
   double clear_height = 0.3;       // of a whole: a peak that is this much above all others, less near the middle,
   double clear_side = 0.25;        // which are more than so many radii away,
   double clear_ramp = 0.1;         // is where the plane is, fully so where it is higher by this
-  float lost_height = 0.15f;       // that a profile may miss of a peak between two cells
+  float lost_height = 0.15f;       // height by which a profile may underestimate a peak between two cells
   int num_center_samples = 1024;   // of the offset of the peak: to a tenth of a cell
   double center_sharpness = 30.0;  // weight exp(30 v) of the center of a frame whose value is v less than the best
   int num_revolution_angles = 8;   // at which a revolution is tested
@@ -56,8 +57,8 @@ struct FrameRules {
   // Leveled frames, measured on models of PSB
   double touch = 0.01;                         // longer sides of the box: depth within which the outline touches a side
   double outline_step = 1.0 * kDegree;         // of the angle about the first axis
-  double max_lost_value = 0.1;                 // that a leveled frame may lose to be the first,
-  double min_gained_contact = 0.1;             // and contact that it must gain
+  double max_lost_value = 0.1;                 // greatest loss of value of a leveled frame that is put first,
+  double min_gained_contact = 0.1;             // and the least contact that it must gain
   double same_outline = 10.0 * kDegree;        // first axes this close have one outline
   std::size_t max_outlines = 2;                // first axes whose outline is tried
   double far_from_principal = 20.0 * kDegree;  // angle to the principal axes at which the term of the fit ends
@@ -93,11 +94,11 @@ struct ScoredOffset {
   float score = 0.0f;
 };
 
-/// What the points show about planes of a frame (Section 5.1).
+/// Evidence of points for the planes of a frame (Section 5.1).
 ///
-/// The score of a plane is D, or seenSymmetry() of D and free space for a scan. Departures from the paper: free space
-/// counts, and of nearly equal planes the one that the faces of the surface agree with is better. Offsets and positions
-/// are in cells from the middle of the grid, unless they are called input.
+/// The score of a plane is D, or seenSymmetry() of D and free space for a scan. Offsets and positions are in cells from
+/// the middle of the grid, unless they are called input. Departure from the paper: free space counts, and among nearly
+/// equal planes the one that agrees with faces of the surface is better.
 struct FrameEvidence {
   /// \param points 3 x N, finite, input units; must outlive this object.
   /// \param visibility what the scanner saw; null = the points show the object from all sides.
@@ -115,7 +116,7 @@ struct FrameEvidence {
   const float reach;                      ///< radius of the grid, cells
   const PrincipalAxes principal_axes;     ///< of the points, input frame
   const Eigen::Vector3f center_of_mass;
-  const Eigen::Vector3f push;  ///< that the middle of a scan's extent is moved by, cells
+  const Eigen::Vector3f push;  ///< shift of the middle of a scan's extent, cells
 
   Eigen::Vector3f toCells(const Eigen::Vector3d& x) const { return ((x - middle) / edt.cellSize()).cast<float>(); }
   Eigen::Vector3d toInput(const Eigen::Vector3f& x) const { return middle + edt.cellSize() * x.cast<double>(); }
@@ -124,16 +125,16 @@ struct FrameEvidence {
   float score(const CellPlane& plane) const { return profiles.score(plane); }
   /// Weighted agreement of the surface with an axis.
   double agreement(const Eigen::Vector3f& axis) const { return weight * directions.agreement(axis); }
-  /// By which candidates for the first plane are compared.
+  /// Criterion for candidates of the first plane.
   double quality(const CellPlane& plane) const { return score(plane) + agreement(plane.normal); }
-  /// By which frames are compared: the score of the first plane, a share of those of the others, and agreement.
+  /// Criterion for frames: the score of the first plane, a share of those of the others, and agreement.
   /// \param scores of the first, second and third plane.
   double value(const Eigen::Vector3f& scores, double agreement) const {
     return scores[0] + weight * (scores[1] + scores[2]) + agreement;
   }
 
-  /// The cloud that planes perpendicular to \p first are judged on: a scan is completed across the first plane.
-  /// \return what the functions below take as \p completed_across.
+  /// The plane across which a cloud is completed to judge planes perpendicular to \p first: for scans, \p first itself.
+  /// \return the argument \p completed_across of the functions below.
   const CellPlane* completedAcross(const CellPlane& first) const { return scanned ? &first : nullptr; }
 
   /// Scores at all offsets in steps of a cell, the first at -floor(reach).
@@ -146,9 +147,9 @@ struct FrameEvidence {
 
   /// Variance of the points along an axis, input units squared.
   double spreadAlong(const Eigen::Vector3f& axis) const;
-  /// Middle of the extent of the points along an axis, cells. For a scan it lies near that of the whole object, because
-  /// silhouettes and rims are seen where surfaces behind them are not; the center of mass does not. It is pushed away
-  /// from the scanner, because the extent ends where the back begins.
+  /// Middle of the extent of the points along an axis, cells. For a scan it lies near that of the whole object, unlike
+  /// the center of mass, because silhouettes and rims are visible even where the surfaces behind them are not. It is
+  /// pushed away from the scanner, because the extent ends where the back begins.
   double middleAlong(const Eigen::Vector3f& axis) const;
 };
 

@@ -188,7 +188,7 @@ FrameCandidate frameOfAxes(const FrameEvidence& evidence, const Eigen::Matrix3f&
 
 std::vector<FrameCandidate> framesAbout(const FrameEvidence& evidence, const std::vector<CellPlane>& first_planes,
                                         int num_threads) {
-  // The second plane within 90 degrees, and the third one within the 90 degrees that follow.
+  // The second plane within 90 degrees, the third one within the following 90 degrees.
   const std::size_t num_angles = kFrame.num_angles, num_planes = 2 * num_angles;
   std::vector<PerpendicularPlane> planes(first_planes.size() * num_planes);
   parallelBlocks(planes.size(), num_threads,

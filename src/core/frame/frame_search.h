@@ -14,15 +14,16 @@ struct FrameCandidate {
   Eigen::Vector3f offsets;  ///< of these planes
   Eigen::Vector3f scores;   ///< of these planes
   /// Scans: the axis, 1 or 2, about which a rotation takes the first plane best to another symmetry; -1 for whole
-  /// clouds. A body of revolution hides half of itself from each of its planes, but none of them is in conflict with
-  /// what was seen. So the plane half-way between the first plane and the other one about this axis adds to the value.
+  /// clouds. A body of revolution hides half of itself from each of its planes, but none of them conflicts with the
+  /// visible surface. So the plane half-way between the first plane and the other one about this axis adds to the
+  /// value.
   int rotation_axis = -1;
   float half_way_offset = 0.0f;  ///< of that plane
   double value = 0.0;            ///< the greater, the better
 };
 
-/// The steps of the search for principal symmetry axes (Section 5.1). The paper picks the three planes greedily by D;
-/// here the first plane is chosen with regard to the frame that it leads to.
+/// The steps of the search for principal symmetry axes (Section 5.1). Departure from the paper: it picks the three
+/// planes greedily by D; here the first plane is chosen with regard to the frame that it leads to.
 
 /// Candidates for the first plane: maxima of the map, planes perpendicular to the principal axes of the points and
 /// planes parallel to faces of the surface, each moved to the nearest maximum of quality().

@@ -7,8 +7,8 @@
 
 namespace pcl_symmetry {
 
-/// The convex outline of points seen along an axis: how people may have put the shape. Not in the paper. Where no
-/// second plane is a symmetry, people level what the shape stands on.
+/// The convex outline of points seen along an axis: if no second plane is a symmetry, people level the side that a
+/// shape stands on. Not in the paper.
 class Outline {
 public:
   /// \param points 3 x N, N >= 1.
@@ -32,12 +32,12 @@ private:
   std::vector<Eigen::Vector2f> corners_;  // of the outline, in order
 };
 
-/// Puts the best frame, rotated to the faces of the surface, before all others where its value is nearly as great and
-/// the shape then stands on more of its outline.
+/// Puts the best frame, rotated to the faces of the surface, first if its value is nearly as great and the shape then
+/// stands on more of its outline.
 /// \param frames best first, at least one.
 std::vector<FrameCandidate> leveledFirst(const FrameEvidence& evidence, std::vector<FrameCandidate> frames);
 
-/// Which of several frames is the shape's own: each with a probability. Not in the paper, which gives one frame.
+/// The probability of each of several frames to be the shape's own. Not in the paper.
 ///
 /// A frame is right if its axes, in any order and with any sign, are within 5 degrees of those that people gave the
 /// shape; a frame with an axis of revolution may be rotated about it by any angle. The probability of a frame is
@@ -67,7 +67,7 @@ struct FrameChoice {
 /// about their first axes: to the smallest box around the outline, to its longest contact, to the faces, and to the
 /// principal axes of the outline.
 /// \param frames from refinedFrames(), best first.
-/// \return the best frame first; all that was found by the search before all others.
+/// \return the best frame first; the frames of the search before all others.
 std::vector<FrameChoice> frameChoices(const FrameEvidence& evidence, const std::vector<FrameCandidate>& frames,
                                       int num_threads);
 

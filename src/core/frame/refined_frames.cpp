@@ -61,12 +61,12 @@ void bringToPlane(const ReflectionPlane& plane, SymmetryFrame& frame) {
 
 namespace {
 
-/// A plane is fitted if it maps this share to within twice the tolerance: of 94 that became exact on meshes none had
-/// less than 0.96.
+/// A plane is fitted if it maps this share to within twice the tolerance; none of 94 planes that became exact on meshes
+/// had less than 0.96.
 constexpr double kNearly = 0.8;
 
 /// Moves the center and axes of a frame to planes of symmetry; axes across which there is none follow the others.
-/// \param exactly the plane of symmetry at a plane, or nothing.
+/// \param exactly gives the plane of symmetry near a plane, if there is one.
 void bringToPlanes(const std::function<std::optional<ReflectionPlane>(const ReflectionPlane&)>& exactly,
                    SymmetryFrame& frame) {
   Eigen::Matrix3d axes = frame.axes;

@@ -27,7 +27,7 @@ struct OffsetAndScore {
   double offset = 0.0, score = 0.0;
 };
 
-/// Section 5.1 as it stands: each axis is the normal of the plane of greatest D among those that are left.
+/// Section 5.1 as it stands: each axis is the normal of the plane of greatest D among the remaining ones.
 SymmetryFrame publishedFrame(const PointsRef& points, const FrameOptions& options) {
   const GaussianEdt edt(points, options.edtOptions());
   const SymmetryMap map = publishedMap(points, edt, TransformMethod::Convolution, options.seed, options.num_threads);
@@ -43,8 +43,8 @@ SymmetryFrame publishedFrame(const PointsRef& points, const FrameOptions& option
     return {grid.offset(static_cast<int>(at)), s[at]};
   };
 
-  // First: the plane of greatest D among the refined maxima, of which the strongest are enough. Those that leave their
-  // cell stay, because so the method does best.
+  // First: the plane of greatest D among the strongest refined maxima. Maxima that leave their cell stay, as this works
+  // best for the method.
   PublishedOptions published;
   published.discard_unstable = false;
   published.max_maxima = 8;
@@ -82,7 +82,7 @@ SymmetryFrame publishedFrame(const PointsRef& points, const FrameOptions& option
   return frame;
 }
 
-/// What rotations show of a scan; the axes of its frame are tried first.
+/// The rotations of a scan; the axes of its frame are tried first.
 ScanRotations rotationsAlong(const SymmetryFrame& frame, const PointsRef& points, const GaussianEdt& edt,
                              const FrameOptions& options, const Visibility& visibility, const MakeSearch& make_search) {
   ScanAxesOptions scan_axes;
@@ -148,7 +148,7 @@ SymmetryFrame symmetryFrame(const PointsRef& all, const FrameOptions& options, c
   map.center_of_mass = centerOfMass(points);
   done("transform");
 
-  // First plane: several candidates, as the best one depends on the frame that it leads to.
+  // First plane: several candidates, because the best one depends on the resulting frame.
   const std::vector<CellPlane> candidates = firstPlaneCandidates(evidence, map, options.num_threads);
   done("candidates");
 

@@ -58,7 +58,7 @@ std::vector<RankedView> bestViews(const std::vector<ViewPlane>& planes) {
   if (all_equal) return views;
   const int num_directions = 4096;  // fewer may miss a maximum of a small cell between many planes
   for (const Eigen::Vector3d& start : evenDirections(num_directions)) {
-    lookAtWatch();
+    checkCancelled();
     const Eigen::Vector3d v = climb(planes, start);
     const bool known = std::any_of(views.begin(), views.end(),
                                    [&](const RankedView& view) { return view.direction.dot(v) > 1.0 - 1e-9; });
@@ -76,7 +76,7 @@ RankedView worstView(const std::vector<ViewPlane>& planes) {
   RankedView worst{planes[0].normal.unitOrthogonal(), 0.0};
   worst.score = viewpointScore(planes, worst.direction);
   for (std::size_t i = 0; i < planes.size(); ++i) {
-    lookAtWatch();
+    checkCancelled();
     for (std::size_t j = i + 1; j < planes.size(); ++j) {
       const Eigen::Vector3d along = planes[i].normal.cross(planes[j].normal);
       if (along.norm() < 1e-6) continue;

@@ -20,13 +20,13 @@ namespace {
 
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
 
-// FLANN visits all that may be as close as the worst of what it has. Equal points, as those at the origin for pixels
-// without a depth, would then cost the square of their number. Nothing is closer than 0, there it ends.
+// FLANN visits all points that may be as close as its worst result. Equal points, such as those at the origin for
+// pixels without a depth, would then cost the square of their number. At a distance of 0 the search ends.
 float visitedUpTo(float worst_sq_distance) {
   return worst_sq_distance > 0.0f ? worst_sq_distance : -1.0f;
 }
 
-/// The closest of all points that FLANN shows it.
+/// Keeps the closest of the points that FLANN passes to it.
 class ClosestPoint : public flann::ResultSet<float> {
 public:
   ClosestPoint(int index, float sq_distance) : index_(index), sq_distance_(sq_distance) {}
@@ -47,16 +47,16 @@ private:
   float sq_distance_;
 };
 
-/// Several of the closest points that FLANN shows it, nearest first.
+/// Keeps several of the closest points that FLANN passes to it, nearest first.
 class NearestPoints : public flann::ResultSet<float> {
 public:
-  NearestPoints(int* indices, float* sq_distances, int most)
-      : indices_(indices), sq_distances_(sq_distances), most_(most) {}
+  NearestPoints(int* indices, float* sq_distances, int max_count)
+      : indices_(indices), sq_distances_(sq_distances), max_count_(max_count) {}
 
-  bool full() const override { return size_ == most_; }
+  bool full() const override { return size_ == max_count_; }
   void addPoint(float sq_distance, std::size_t index) override {
     if (sq_distance >= worst_) return;
-    if (size_ < most_) ++size_;
+    if (size_ < max_count_) ++size_;
     int i = size_ - 1;
     for (; i > 0 && sq_distances_[i - 1] > sq_distance; --i) {
       sq_distances_[i] = sq_distances_[i - 1];
@@ -64,14 +64,14 @@ public:
     }
     sq_distances_[i] = sq_distance;
     indices_[i] = static_cast<int>(index);
-    if (size_ == most_) worst_ = sq_distances_[most_ - 1];
+    if (size_ == max_count_) worst_ = sq_distances_[max_count_ - 1];
   }
   float worstDist() const override { return visitedUpTo(worst_); }
 
 private:
   int* indices_;
   float* sq_distances_;
-  int most_, size_ = 0;
+  int max_count_, size_ = 0;
   float worst_ = std::numeric_limits<float>::max();
 };
 
@@ -107,7 +107,7 @@ ClosestPointGrid::ClosestPointGrid(const PointsRef& points, int num_cells) : n_(
   nearest_.assign(static_cast<std::size_t>(n_) * n_ * n_, -1);
   std::vector<float> sq_distances(nearest_.size(), std::numeric_limits<float>::infinity());
 
-  // The cell keeps the point if it is closer to its center than the one that it has.
+  // The cell keeps the point if it is closer to the center than the current one.
   const auto offer = [&](int point, int x, int y, int z) {
     int& nearest = nearest_[indexOf(x, y, z)];
     if (point < 0 || point == nearest) return;
@@ -201,7 +201,7 @@ __attribute__((target("avx2"))) std::vector<NeighborLists::Found> NeighborLists:
         const float sq_least = _mm_cvtss_f32(least), sq_before = at.sq_distance;
         const bool decides = sq_before <= list.max_sq_distance;
         const bool is_closer = sq_least < sq_before, is_alone = (lanes & (lanes - 1)) == 0;
-        constexpr unsigned last = 1u << (kNeighbors - 1);  // where distances are no numbers, no lane is set
+        constexpr unsigned last = 1u << (kNeighbors - 1);  // if distances are NaN, no lane is set
         const int change = list.index[__builtin_ctz(lanes | last)] - at.index;
         at.index += change & -static_cast<int>(is_closer);  // no branch: half of the guesses are the closest points
         at.sq_distance = _mm_cvtss_f32(_mm_min_ss(least, _mm_set_ss(sq_before)));
@@ -246,7 +246,7 @@ FlannSearch::FlannSearch(const PointsRef& points)
       tree_(new Tree{{flann::Matrix<float>(points_.data(), points_.cols(), 3), flann::KDTreeSingleIndexParams(24)}}) {
   tree_->params.cores = 1;
   tree_->index.buildIndex();
-  lookAtWatch();
+  checkCancelled();
 }
 
 FlannSearch::~FlannSearch() = default;
@@ -257,7 +257,7 @@ void FlannSearch::search(const PointsRef& queries, int num_neighbors, std::vecto
   indices.assign(num_queries * count, 0);
   sq_distances.assign(num_queries * count, kInfinity);
   flann::SearchParams params = tree_->params;
-  params.eps = 4.0f * std::numeric_limits<float>::epsilon();  // leaves out what is no closer but for rounding
+  params.eps = 4.0f * std::numeric_limits<float>::epsilon();  // ignores points that are closer by rounding only
   for (std::size_t i = 0; i < num_queries; ++i) {
     NearestPoints nearest(&indices[i * count], &sq_distances[i * count], num_neighbors);
     tree_->index.findNeighbors(nearest, queries.col(i).data(), params);
@@ -278,7 +278,7 @@ void FlannSearch::searchWithin(const PointsRef& queries, float max_sq_distance, 
     if (is_proven && seen[i].sq_distance < closest.sqDistance()) {
       closest.addPoint(seen[i].sq_distance, static_cast<std::size_t>(seen[i].index));
     } else if (!is_proven) {
-      // Just beyond what the lists found: of several points at that distance, FLANN chooses.
+      // Just beyond the result of the lists: of several points at that distance, FLANN chooses.
       const float beyond = lists_ ? std::nextafter(seen[i].sq_distance, kInfinity) : kInfinity;
       if (beyond < closest.sqDistance()) closest = ClosestPoint(-1, beyond);
       tree_->index.findNeighbors(closest, query.data(), tree_->params);

@@ -11,7 +11,7 @@
 
 namespace pcl_symmetry {
 
-/// The closest point to within a cell, by one look-up. A search over many poses asks far too often for a tree.
+/// Finds the closest point to within a cell by one look-up: a tree is too slow for searches over many poses.
 class ClosestPointGrid {
 public:
   /// \param points 3 x N, finite, N >= 1.
@@ -27,7 +27,7 @@ public:
   }
 
 private:
-  /// The first cell for coordinates that are no numbers.
+  /// NaN coordinates give the first cell.
   Eigen::Array3i cellOf(const Eigen::Vector3f& x) const {
     const auto cell = [&](int k) {
       return static_cast<int>(std::min(last_, std::max(0.0f, (x[k] - origin_[k]) / cell_size_)));
@@ -43,16 +43,16 @@ private:
   std::vector<int> nearest_;  // of each cell, x fastest
 };
 
-/// The closest neighbors of each point, which prove the answers of most queries that start with a guess.
+/// The closest neighbors of each point, which verify the results of most queries that start with a guess.
 ///
-/// A point at a distance d from a query has all points that are closer to the query within 2 d of itself. If its
-/// neighbors reach as far as that, one of them is the closest point of all, or it is that point itself.
+/// All points closer to a query than a point at distance d lie within 2 d of that point. If its neighbors reach that
+/// far, the closest point of all is one of them or the point itself.
 class NeighborLists {
 public:
   static constexpr int kNeighbors = 8;  ///< of each point: floats in a register of AVX2
 
-  /// Whether there are lists for \p num_points points: enough, not so many that filling the lists takes longer than
-  /// they save, and the instructions for them.
+  /// Whether lists pay for \p num_points points: many enough, few enough that filling the lists takes less time than
+  /// they save, and a processor with the instructions.
   static bool isUseful(Eigen::Index num_points);
 
   /// \pre isUseful(points.cols())
@@ -61,15 +61,15 @@ public:
   /// \param sq_reach squared distance of the last one of each point.
   NeighborLists(const Points& points, const std::vector<int>& nearest, const std::vector<float>& sq_reach);
 
-  /// A point near a query, and whether it is known to be the closest; some closest points are not known to be.
+  /// A point near a query and whether it is verified as the closest; some closest points are not verified.
   struct Found {
     int index;
     float sq_distance;
     bool is_closest;
   };
 
-  /// Goes from a guess to a neighbor as long as one is closer to the query, for many queries side by side: each waits
-  /// for memory while the others go on.
+  /// Walks from a guess to closer neighbors until none is closer to the query, for many queries interleaved, which
+  /// hides memory latency.
   /// \param queries 3 x M.
   /// \param guesses M points, or -1: the grid has one.
   std::vector<Found> search(const PointsRef& queries, const std::vector<int>& guesses) const;
@@ -80,13 +80,13 @@ private:
     float x[kNeighbors], y[kNeighbors], z[kNeighbors];
     std::uint16_t index[kNeighbors];
     float own_x, own_y, own_z;
-    float max_sq_distance;  ///< from a query, so that the list decides
+    float max_sq_distance;  ///< greatest squared distance from a query for which the list decides
   };
   std::vector<List> lists_;
   ClosestPointGrid grid_;  // where walks without a guess begin
 };
 
-/// Nearly the closest points, several times as fast as exact ones: where walks along the lists end, which may be beside
+/// Approximate closest points, several times as fast as exact ones: the ends of walks along the lists, which may miss
 /// the closest point where the surface is thin or ends. For planes that are refined again afterwards.
 class NeighborWalk : public ClosestPointSearch {
 public:
@@ -106,7 +106,7 @@ private:
   const ClosestPointSearch& exact_;
 };
 
-/// Closest points by FLANN's k-d tree, and by lists of neighbors where these prove the answer.
+/// Closest points by FLANN's k-d tree, and by neighbor lists where these verify the result.
 class FlannSearch : public ClosestPointSearch {
 public:
   /// \param points 3 x N, finite, N >= 1; they are copied.
@@ -118,7 +118,7 @@ public:
   void searchWithin(const PointsRef& queries, float max_sq_distance, std::vector<int>& indices,
                     std::vector<float>& sq_distances) const override;
 
-  /// From now on, searchWithin() asks FLANN only where these lists do not prove the answer. The answers stay the same.
+  /// From now on, searchWithin() uses FLANN only where these lists do not verify the result. Results stay the same.
   /// \param lists of the same points; null = none.
   void use(std::shared_ptr<const NeighborLists> lists) { lists_ = std::move(lists); }
 

@@ -40,9 +40,9 @@ Thinness thinnessOf(const PointsRef& points, const PrincipalAxes& axes, double p
     num_near_plane += std::abs(x.z()) <= plane_tolerance ? 1 : 0;
     num_near_line += x.tail<2>().norm() <= line_tolerance ? 1 : 0;
   }
-  const double least = kSymmetricShare * static_cast<double>(points.cols());
-  if (static_cast<double>(num_near_line) >= least) return Thinness::Line;
-  return static_cast<double>(num_near_plane) >= least ? Thinness::Sheet : Thinness::Solid;
+  const double min_count = kSymmetricShare * static_cast<double>(points.cols());
+  if (static_cast<double>(num_near_line) >= min_count) return Thinness::Line;
+  return static_cast<double>(num_near_plane) >= min_count ? Thinness::Sheet : Thinness::Solid;
 }
 
 namespace {

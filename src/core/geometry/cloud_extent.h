@@ -21,14 +21,15 @@ struct PrincipalAxes {
 PrincipalAxes principalAxes(const PointsRef& points);
 
 /// The three planes through the center of mass that are perpendicular to the principal axes: candidates for planes of
-/// symmetry that cost next to nothing.
+/// symmetry at almost no cost.
 std::vector<ReflectionPlane> principalPlanes(const PrincipalAxes& axes);
 
-/// What is left of a shape at a tolerance: reflections along its thin directions move nothing and are uninformative.
+/// Whether a shape is solid, a sheet or a line at a tolerance. Reflections along thin directions move no point and are
+/// uninformative.
 enum class Thinness {
   Solid,
-  Sheet,  ///< 97 % of the points lie within the tolerance of planes of one plane
-  Line    ///< 97 % of the points lie within the tolerance of lines of one line
+  Sheet,  ///< 97 % of the points lie within the plane tolerance of one plane
+  Line    ///< 97 % of the points lie within the line tolerance of one line
 };
 
 /// \param points 3 x N, finite, N >= 1.

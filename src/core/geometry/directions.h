@@ -86,7 +86,7 @@ inline Eigen::Matrix3d viewingFrame(const Eigen::Vector3d& forward) {
 constexpr int kNumAxisRotations = 24;
 
 /// All rotations that map the coordinate axes onto each other. A frame whose axes have no known order and sign can be
-/// laid on another frame in these ways.
+/// aligned with another frame in these ways.
 /// \return signed permutation matrices of determinant 1, the identity first.
 const std::array<Eigen::Matrix3i, kNumAxisRotations>& axisRotations();
 

@@ -13,7 +13,7 @@
 
 namespace pcl_symmetry {
 
-/// The constants of this folder that change answers.
+/// Parameters of this module that affect results.
 struct GeometryRules {
   // Points that can have an answer
   /// Share of the length of a line: five times the rounding of a line about the origin.
@@ -23,28 +23,28 @@ struct GeometryRules {
   double bulk = 0.9;             ///< share of the points whose distance from their middle is half the size of a cloud
   double max_stray = 0.05;       ///< share of the points; more are a part of the shape
   int max_stray_group = 16;      ///< distinct points; more are a part of the shape
-  float stray_spacings = 10.0f;  ///< of points evenly spread over a ball, that a gap is wider than
+  float stray_spacings = 10.0f;  ///< least width of a gap, in spacings of points spread evenly over a ball
   float min_stray_gap = 0.4f, max_stray_gap = 1.0f;  ///< limits of that gap, sizes of the cloud
 
   // Normals
-  int fewest_cell_points = 6;  ///< around a cell that make a normal: twice the three that span a plane
+  int fewest_cell_points = 6;  ///< least points around a cell for a normal: twice the three that span a plane
 
   // Open borders
-  int border_neighbors = 16;  ///< among which a gap is looked for
+  int border_neighbors = 16;  ///< neighbors searched for a gap
   /// Radians; inside the surface, 0.5 % of the gaps between 16 random directions are greater.
   float border_gap = 150.0f * static_cast<float>(kPi) / 180.0f;
   float off_plane = 0.5f;  ///< share of the distance by which a neighbor is off the tangent plane: 30 degrees
-  int max_off_plane = 2;   ///< neighbors off the plane; the surface folds where there are more
+  int max_off_plane = 2;   ///< neighbors off the plane; more of them indicate a fold
 
   // Balls
-  Eigen::Index ball_points = 2'500;  ///< that are tried as the outermost ones
+  Eigen::Index ball_points = 2'500;  ///< candidates for the outermost points
   int ball_iterations = 60;          ///< leave the radius within 1 % of the smallest
 
   // Axes of normals
-  /// Radians by which a normal may miss at half its weight: noise of a third of the spacing.
+  /// Radians by which a normal of half weight misses the axis: noise of a third of the spacing.
   double normal_miss = 0.1;
-  int reweightings = 8;             ///< bodies with a base need as many
-  double min_lever = 0.05;          ///< radii; the speed of points nearer to the axis does not divide
+  int reweightings = 8;             ///< bodies with a base need this many
+  double min_lever = 0.05;          ///< radii; least lever by which speeds are divided
   double translation_ridge = 1e-6;  ///< share of the trace; keeps the translation along a cylinder at rest
   double position_ridge = 1e-9;     ///< parallel normals leave the position along them open
 
@@ -68,7 +68,7 @@ constexpr double kSymmetricShare = 0.97;
 /// Between this share and that of a symmetry, points leave it open whether a plane is one: finer ones may show it.
 constexpr double kNearlySymmetricShare = 0.9;
 
-/// Two planes, or two lines, within both limits are one.
+/// Two planes or two lines within both limits count as the same.
 struct MergeTolerance {
   double angle;   ///< between the normals or directions, radians
   double offset;  ///< between the offsets of planes, or between lines, at the origin of their frame; its units
@@ -91,7 +91,7 @@ struct MergeTolerance {
     }
   };
 
-  /// \param of the member of an entry of the list that is its plane or line, or a function that takes it there.
+  /// \param of member or function that gives the plane or line of an entry.
   /// \return whether the list has an entry that is the same.
   template <typename List, typename Motion, typename Of = Itself>
   bool anySame(const List& list, const Motion& motion, const Of& of = {}) const {
@@ -100,19 +100,19 @@ struct MergeTolerance {
   }
 
   /// \param of as above.
-  /// \return the first \p most entries that differ from all before, in their order.
+  /// \return the first \p max_count entries that differ from all earlier ones, in their order.
   template <typename List, typename Of = Itself>
-  List distinct(List list, const Of& of = {}, std::size_t most = std::numeric_limits<std::size_t>::max()) const {
+  List distinct(List list, const Of& of = {}, std::size_t max_count = std::numeric_limits<std::size_t>::max()) const {
     List kept;
     for (auto& entry : list) {
-      if (kept.size() == most) break;
+      if (kept.size() == max_count) break;
       if (!anySame(kept, std::invoke(of, entry), of)) kept.push_back(std::move(entry));
     }
     return kept;
   }
 };
 
-/// Limits within which two planes are one, normalized frame.
+/// Limits within which two planes count as the same, normalized frame.
 inline constexpr MergeTolerance kSamePlane{0.035, 0.02};
 
 /// Limits within which two maxima share one basin of refinement, normalized frame: a peak of D is 0.1 radians wide.

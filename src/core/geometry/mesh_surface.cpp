@@ -23,8 +23,8 @@ struct MeshRules {
   int samples = 4000;          // that shares are measured on: an error of 0.3 % at the limit of 97 %
   int fitted_samples = 1000;   // that motions are fitted to, a part of them
   int border_samples = 1000;   // of the open borders
-  int iterations = 40;         // at most; exact surfaces take three to six
-  int max_worse = 3;           // iterations after the best one, at the narrowest weights: the fit does not return to it
+  int iterations = 40;         // greatest number; exact surfaces take three to six
+  int max_worse = 3;           // iterations after the best one, at the narrowest weights, that end the fit
   double settled = 1e-9;       // length of a step that ends the fit: below what float coordinates resolve
   double longest_step = 0.05;  // radians and radii: samples of the other side are not reached in one step
   double widths = 2.5;         // medians of the distances, the width of the weights: most samples of a symmetry agree
@@ -35,14 +35,14 @@ struct MeshRules {
   double exact_cost = 1e-6;    // of all samples: rounding
   double touching = 1e-5;      // distance below which its direction is rounding, and the normal counts
   double stiffness = 1e-9;     // of the greatest, below which nothing fixes a direction
-  double judged_width = 0.01;  // of what tells which step is best: half the default tolerance
-  double farthest = 0.45;      // radians and radii: a fit that goes farther left its symmetry
+  double judged_width = 0.01;  // width by which steps are compared: half the default tolerance
+  double farthest = 0.45;      // radians and radii: a fit that moves farther has left its symmetry
 };
 constexpr MeshRules kMesh;
 
 /// Least squares in a small rotation omega of all axes and a translation t of the center.
 struct MotionSums : SmallMotionEquations {
-  double cost = 0.0;  // of what does not agree
+  double cost = 0.0;  // cost of the disagreement
 };
 
 }  // namespace
@@ -79,15 +79,15 @@ struct MeshSurface::Parts {
   /// Makes the trees when they are first used: many meshes have no symmetry to refine.
   const Parts& withTrees();
 
-  /// Where a sample lands, and from the closest point to there.
+  /// The image of a sample, and the vector to it from the closest point.
   struct Match {
     Eigen::Vector3d image = Eigen::Vector3d::Zero(), apart = Eigen::Vector3d::Constant(1e3), direction;
   };
   using Matches = std::vector<Match>;
 
-  /// \param[in,out] matches as many as are wanted: their closest points by another motion are near to those by this.
-  /// \param reach radii; what is farther from the surface keeps its match.
-  /// \param max_far the rest keeps its match where more than this number is farther.
+  /// \param[in,out] matches of the wanted number; their closest points under a similar motion serve as guesses.
+  /// \param reach radii; samples farther from the surface keep their match.
+  /// \param max_far if more samples than this are farther, the remaining ones keep their match.
   static void match(const Surface& surface, const Eigen::Matrix3d& linear, const Eigen::Vector3d& center,
                     Matches& matches, double reach = std::numeric_limits<double>::infinity(),
                     int max_far = kMesh.samples) {
@@ -118,8 +118,8 @@ struct MeshSurface::Parts {
       // x' = R (x - c) + c moves with exp(omega) R exp(-omega) and c + t by ((1 - R det R) omega) x (x' - c) +
       // (1 - R) t: a reflection is -1 times a rotation.
       const Eigen::Matrix3d one = Eigen::Matrix3d::Identity();
-      const Eigen::Matrix3d moves = (one - linear).transpose(),
-                            turns = (one - linear.determinant() * linear).transpose();
+      const Eigen::Matrix3d of_translation = (one - linear).transpose(),
+                            of_rotation = (one - linear.determinant() * linear).transpose();
       for (std::size_t i = 0; i < found.size(); ++i) {
         const Match& match = found[i];
         const auto gaussian = [&](double width) { return std::exp(-distances[i] * distances[i] / (width * width)); };
@@ -129,7 +129,7 @@ struct MeshSurface::Parts {
         if (distances[i] > kMesh.touching) across = match.apart / distances[i];
         const auto add = [&](const Eigen::Vector3d& m) {
           Vector6d slope;
-          slope << turns * (match.image - motions.center).cross(m), moves * m;
+          slope << of_rotation * (match.image - motions.center).cross(m), of_translation * m;
           sums.h += gaussian(sigma) * slope * slope.transpose();
           sums.g += gaussian(sigma) * m.dot(match.apart) * slope;
         };
@@ -237,10 +237,10 @@ ReflectionPlane MeshSurface::fitted(const ReflectionPlane& plane) const {
   return {normal, normal.dot(placed.center)};
 }
 
-MeshShares MeshSurface::shares(const MotionsAbout& motions, double tolerance, std::optional<double> least) const {
+MeshShares MeshSurface::shares(const MotionsAbout& motions, double tolerance, std::optional<double> min_share) const {
   const Parts& parts = parts_->withTrees();
-  const double reach = least ? tolerance / parts.ball.radius : std::numeric_limits<double>::infinity();
-  const int max_far = 1 + static_cast<int>((1.0 - least.value_or(0.0)) * kMesh.samples);
+  const double reach = min_share ? tolerance / parts.ball.radius : std::numeric_limits<double>::infinity();
+  const int max_far = 1 + static_cast<int>((1.0 - min_share.value_or(0.0)) * kMesh.samples);
   MeshShares worst;
   for (const Eigen::Matrix3d& linear : motions.linear) {
     std::vector<double> distances;
@@ -263,8 +263,8 @@ MeshShares MeshSurface::shares(const MotionsAbout& motions, double tolerance, st
   return worst;
 }
 
-MeshShares MeshSurface::shares(const ReflectionPlane& plane, double tolerance, std::optional<double> least) const {
-  return shares(MotionsAbout::across(plane, parts_->ball.center), tolerance, least);
+MeshShares MeshSurface::shares(const ReflectionPlane& plane, double tolerance, std::optional<double> min_share) const {
+  return shares(MotionsAbout::across(plane, parts_->ball.center), tolerance, min_share);
 }
 
 const BoundingBall& MeshSurface::ball() const {

@@ -27,7 +27,7 @@ std::vector<float> distancesFromMiddle(const PointsRef& points) {
   return values;
 }
 
-/// The points of a cloud beyond its bulk that gaps separate from it.
+/// The points of a cloud that gaps separate from its bulk.
 class OuterGroups {
 public:
   /// \param points distinct.
@@ -40,7 +40,7 @@ public:
     makeFlannSearch(points)->search(pointsAt(points, outer), num_neighbors_, neighbors_, sq_distances_);
   }
 
-  /// \return the points of groups that are tiny and touch nothing else.
+  /// \return the points of tiny groups that touch no others.
   std::vector<int> stray() {
     std::vector<int> all;
     for (std::size_t k = 0; k < outer_.size(); ++k) {
@@ -92,8 +92,8 @@ private:
 
 std::vector<int> strayPoints(const PointsRef& points) {
   const auto size = static_cast<double>(points.cols());
-  const double most = kGeometry.max_stray * size;
-  if (most < 1.0 || !points.allFinite()) return {};
+  const double max_count = kGeometry.max_stray * size;
+  if (max_count < 1.0 || !points.allFinite()) return {};
   const std::vector<float> distances = distancesFromMiddle(points);
   const float bulk = quantile(distances, kGeometry.bulk);
   const float gap = 2.0f * bulk *
@@ -109,7 +109,7 @@ std::vector<int> strayPoints(const PointsRef& points) {
   const std::vector<int> alone = OuterGroups(distinct.points, outer, gap).stray();
   for (int i = 0; i < static_cast<int>(points.cols()); ++i)
     if (std::binary_search(alone.begin(), alone.end(), distinct.index_of[i])) stray.push_back(i);
-  if (static_cast<double>(stray.size()) > most) stray.clear();
+  if (static_cast<double>(stray.size()) > max_count) stray.clear();
   return stray;
 }
 
@@ -132,10 +132,10 @@ Points withoutStrayPoints(const PointsRef& points) {
 
 namespace {
 
-/// \return the number of distinct points, counted up to \p most.
-int countDistinct(const PointsRef& points, int most) {
+/// \return the number of distinct points, counted up to \p max_count.
+int countDistinct(const PointsRef& points, int max_count) {
   std::vector<Eigen::Vector3f> distinct;
-  for (Eigen::Index i = 0; i < points.cols() && static_cast<int>(distinct.size()) < most; ++i) {
+  for (Eigen::Index i = 0; i < points.cols() && static_cast<int>(distinct.size()) < max_count; ++i) {
     const Eigen::Vector3f point = points.col(i);
     if (std::find(distinct.begin(), distinct.end(), point) == distinct.end()) distinct.push_back(point);
   }
@@ -148,7 +148,7 @@ Eigen::Vector3d farthestFrom(const Eigen::Vector3d& position, const PointsRef& p
   return points.col(farthest).cast<double>();
 }
 
-/// Why points that differ hold no answer: they lie at one position or on one line, up to rounding.
+/// Why distinct points cannot be analyzed: they lie at one position or on one line, up to rounding.
 std::string whyTooThin(const PointsRef& points) {
   // The ends of a line: the point farthest from any of its points, and the one farthest from that.
   const Eigen::Vector3d first = farthestFrom(points.col(0).cast<double>(), points);
@@ -189,7 +189,7 @@ std::string whyUnanswerable(const PointsRef& points) {
     return std::to_string(num_distinct) +
            (num_distinct == 1 ? " distinct point, at least " : " distinct points, at least ") +
            std::to_string(kMinDistinctPoints) + " are needed";
-  // A stray point that is far enough makes a line of all others.
+  // With a sufficiently distant stray point, all others look like a line.
   std::string reason = whyTooThin(points);
   return reason.empty() ? reason : whyTooThin(withoutStrayPoints(points));
 }

@@ -1,5 +1,5 @@
-/// Subsets of a cloud: samples, and the points that an analysis can use, each position once, none far from all others,
-/// and enough of them.
+/// Subsets of a cloud: samples, and the points that an analysis can use: distinct ones without stray points, if there
+/// are enough of them.
 #pragma once
 
 #include <algorithm>
@@ -25,15 +25,15 @@ void checkPoints(const PointsRef& points);
 /// \throws std::invalid_argument as checkPoints() does, and for points without extent.
 BoundingBall checkedBall(const PointsRef& points);
 
-/// \return the first \p most of 0, 1, ..., size - 1 in random order.
+/// \return at most \p max_count of 0, 1, ..., size - 1 in random order.
 inline std::vector<int> shuffled(Eigen::Index size, std::uint64_t seed,
-                                 Eigen::Index most = std::numeric_limits<Eigen::Index>::max()) {
+                                 Eigen::Index max_count = std::numeric_limits<Eigen::Index>::max()) {
   std::vector<int> order = allOf(size);
   RandomStream random(seed);
-  most = std::min(most, size);
-  for (Eigen::Index i = 0; i < most; ++i)
+  max_count = std::min(max_count, size);
+  for (Eigen::Index i = 0; i < max_count; ++i)
     std::swap(order[i], order[i + random.below(static_cast<std::uint64_t>(size - i))]);
-  order.resize(most);
+  order.resize(max_count);
   return order;
 }
 
@@ -83,7 +83,7 @@ inline std::uint32_t mortonCode(std::uint32_t x, std::uint32_t y, std::uint32_t 
   return code;
 }
 
-/// Indices of points along Morton's curve through the cells of a grid: those that follow each other are near.
+/// Indices of points along Morton's curve through the cells of a grid, so that successive points are near each other.
 /// \param points 3 x N, finite.
 inline std::vector<int> curveOrder(const PointsRef& points) {
   constexpr int num_cells = 64;  // along each side
@@ -101,11 +101,10 @@ inline std::vector<int> curveOrder(const PointsRef& points) {
   return order;
 }
 
-/// Points spread over a cloud as its points are: one of each of equal runs along a curve through cells of a grid, so
-/// that each neighborhood keeps its share.
+/// A subset with the density of the cloud: one point from each of equal runs along a curve through cells of a grid.
 /// \param points 3 x N, finite.
 /// \param size of the subset, < N.
-/// \return different indices, in the order of the curve: those that follow each other are near.
+/// \return different indices in the order of the curve, so that successive points are near each other.
 inline std::vector<int> spreadSubset(const PointsRef& points, std::size_t size, std::uint64_t seed) {
   const std::vector<int> order = curveOrder(points);
   std::vector<int> kept;
@@ -130,7 +129,7 @@ inline Points reflectedNormals(const PointsRef& normals, const ReflectionPlane& 
   return reflected;
 }
 
-/// \return for each point the index of the first one at the same position; NaN are equal to nothing.
+/// \return for each point the index of the first one at the same position; NaN equals nothing.
 inline std::vector<int> firstCopies(const PointsRef& points) {
   const auto hash = [](const Eigen::Vector3f& point) {
     constexpr std::uint64_t factor = 0x9E3779B97F4A7C15u;  // 2^64 divided by the golden ratio, made odd
@@ -158,8 +157,8 @@ inline std::vector<int> firstCopies(const PointsRef& points) {
   return first;
 }
 
-/// The points without repetitions. Copies of a point are uninformative about the surface, and they hide the distance
-/// between its samples.
+/// The points without repetitions. Copies of a point are uninformative about the surface and hide the spacing of its
+/// samples.
 struct DistinctPoints {
   Points points;              ///< 3 x M, each position once, in the order of the first copies
   std::vector<int> index_of;  ///< N, the column of points that holds each original point
@@ -178,13 +177,13 @@ struct DistinctPoints {
   }
 };
 
-/// The points that lie far from all others, alone or in tiny groups: flying pixels of cameras, outliers of
-/// photogrammetry, positions that a driver set to zero. They would stretch the diameter that a tolerance is a share of.
+/// The points far from all others, alone or in tiny groups: flying pixels of cameras, outliers of photogrammetry,
+/// positions that a driver set to zero. They would inflate the diameter and with it the tolerance.
 ///
 /// Nine tenths of the points lie within some distance of the middle of the cloud; twice that distance is its size.
-/// Points that are farther out than that distance by a gap, and from which no chain of points with shorter gaps leads
-/// back, are stray. The gap is two fifths of the size or ten spacings of a surface, so that tails, antennas and sparse
-/// samples belong to the cloud. Where more than one point in twenty would be stray, none is.
+/// Points beyond that distance by more than a gap are stray if no chain of points with shorter gaps leads back. The gap
+/// is two fifths of the size or ten spacings of a surface, so that tails, antennas and sparse samples belong to the
+/// cloud. Where more than one point in twenty would be stray, none is.
 /// \param points 3 x N; none is stray where one is not finite.
 /// \return their indices, rising.
 std::vector<int> strayPoints(const PointsRef& points);
@@ -193,14 +192,14 @@ std::vector<int> strayPoints(const PointsRef& points);
 /// \return the indices of the other points, rising.
 std::vector<int> allBut(const std::vector<int>& stray, Eigen::Index size);
 
-/// \return 3 x M, the points without those that are stray.
+/// \return 3 x M, the points that are not stray.
 Points withoutStrayPoints(const PointsRef& points);
 
-/// Fewer distinct points hold no symmetry that could be told from chance.
+/// In fewer distinct points, a symmetry cannot be distinguished from chance.
 constexpr int kMinDistinctPoints = 20;
 
-/// Why points hold no answer: too few distinct ones, all at one position, or all on one line (a line is symmetric in
-/// every plane that contains it, whatever it was sampled from).
+/// Why points cannot be analyzed: too few distinct ones, all at one position, or all on one line (a line is symmetric
+/// in every plane that contains it, whatever it was sampled from).
 ///
 /// Positions are compared up to the rounding of the coordinates; a line may be 1e-6 of its length thick.
 /// \param points 3 x N, N >= 0, finite.

@@ -34,8 +34,8 @@ BoundingBall boundingBall(const PointsRef& points) {
     double greatest = -1.0;
     Eigen::Index farthest = 0;
     for (const auto& [distance, i] : outermost) {
-      const double most = (1.0 + 1e-9) * (distance + moved);
-      if (most * most < greatest) break;  // nor is any that follows farther
+      const double max_distance = (1.0 + 1e-9) * (distance + moved);
+      if (max_distance * max_distance < greatest) break;  // nor is any that follows farther
       const double sq_distance = sqDistance(points, i, ball.center);
       if (sq_distance < greatest || (sq_distance == greatest && i > farthest)) continue;
       greatest = sq_distance;

@@ -142,7 +142,7 @@ std::vector<char> openBorders(const Points& samples, const ClosestPointSearch& s
   parallelPoints(size, num_threads, [&](std::size_t begin, std::size_t end) {
     std::vector<int> open, indices;
     std::vector<float> sq_distances;
-    // More neighbors only fill gaps, or fold the surface: what is inside by some of them is inside by all.
+    // More neighbors only fill gaps or fold the surface: points that are inside by some neighbors are inside by all.
     for (std::size_t i = begin; i < end; ++i) {
       const auto self = static_cast<int>(i);
       const int* const nearest = known ? known->indices.data() + i * known->indices.size() / size : nullptr;

@@ -40,8 +40,8 @@ struct FoundNeighbors {
 /// neighbors within r_k.
 /// \param points 3 x N, finite.
 /// \param search over the same points.
-/// \param[out] neighbors those that were found, with the point itself: for each point num_neighbors + 1 indices,
-/// nearest first, or as many as there are points, and the squared distance of the last one; null = not wanted.
+/// \param[out] neighbors found, including the point itself: for each point num_neighbors + 1 indices, nearest first, or
+/// as many as there are points, and the squared distance of the last one; may be null.
 /// \param num_neighbors >= 3; clouds with fewer points use all of them.
 LocalGeometry localGeometry(const Points& points, const ClosestPointSearch& search, int num_threads,
                             FoundNeighbors* neighbors = nullptr, int num_neighbors = kNumSupportNeighbors);
@@ -63,8 +63,8 @@ GeometryAtPositions localGeometryAt(const Points& points, const ClosestPointSear
 /// \param samples 3 x N, finite.
 /// \param search over the same samples.
 /// \param normals 3 x N, unit.
-/// \param known the closest points of each sample, as localGeometry() finds them: where these leave no gap, no more are
-/// searched for; the answer is the same. Null = not known.
+/// \param known the closest points of each sample, as from localGeometry(): if these leave no gap, no more are
+/// searched; the result is the same. Null = not known.
 /// \return N values, 1 at a border.
 std::vector<char> openBorders(const Points& samples, const ClosestPointSearch& search, const Points& normals,
                               int num_threads, const FoundNeighbors* known = nullptr);
@@ -75,7 +75,7 @@ std::vector<char> openBorders(const Points& samples, const ClosestPointSearch& s
 /// \return N values, 1 near a border.
 std::vector<char> nearBorders(const std::vector<char>& borders, const LocalGeometry& geometry);
 
-/// How often the position between two neighboring samples lies within about three spacings of an open border, by
+/// Probability that the position between two neighboring samples lies within about three spacings of an open border by
 /// chance.
 /// \param borders what openBorders() returned.
 /// \param geometry of the samples.
@@ -83,10 +83,10 @@ std::vector<char> nearBorders(const std::vector<char>& borders, const LocalGeome
 double shareNearBorders(const std::vector<char>& borders, const LocalGeometry& geometry);
 
 /// Axis and center that the normals of a surface point to (Pottmann and Wallner, Computational Line Geometry, 2001).
+/// Not in the paper.
 ///
-/// Beyond the paper: the normals of a body of revolution all meet its axis, and those of a sphere its center. Few of
-/// them are enough, so that a body seen from one side has an axis where hardly two of its planes are maxima of the
-/// transform.
+/// The normals of a body of revolution all meet its axis, and those of a sphere its center. Few normals suffice, so
+/// that the axis of a body seen from one side is found even where hardly two of its planes are maxima of the transform.
 
 /// The line that most of the normals meet or are parallel to. Points are weighted by how well they fit, so that a
 /// handle or a base does not move it.

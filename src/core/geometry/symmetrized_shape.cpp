@@ -25,7 +25,7 @@ struct SymmetrizingRules {
   float gap = 0.02f;    // radii beside a border, beyond which the other side has a hole there
   float at_border = 1e-5f;   // radii
   int judged = 5000;         // vertices that the deviation is measured at
-  float beside = 2.0f;       // spacings beside a sample of a cloud, beyond which nothing is there
+  float beside = 2.0f;       // spacings beside a sample of a cloud, beyond which there is no surface
   double on_plane = 1e-6;    // of the greatest distance from the plane: closer vertices lie on it
   double pair_share = 0.01;  // of the diameter, greatest distance of a counterpart by default
 };
@@ -55,7 +55,7 @@ Points vertexNormals(const Points& vertices, const std::vector<Eigen::Vector3i>&
   return normals;
 }
 
-/// What a mesh has where the reflections of its vertices lie.
+/// The surface of a mesh at the reflections of its vertices.
 struct OtherSide {
   Points points;              // closest points
   std::vector<int> vertices;  // counterparts; -1 where none is close
@@ -88,8 +88,8 @@ OtherSide otherSide(const Points& vertices, const std::vector<Eigen::Vector3i>& 
   return found;
 }
 
-/// Which of the vertices used move: all but those whose reflection lies beside a border, where the other side has
-/// nothing.
+/// Which of the vertices used move: all except those whose reflection lies beside a border, where the other side has no
+/// surface.
 std::vector<char> movingVertices(const Points& vertices, const std::vector<Eigen::Vector3i>& triangles,
                                  const Points& normals, const Eigen::Vector3f& normal, const OtherSide& other,
                                  const std::vector<char>& used) {
@@ -215,7 +215,7 @@ MirroredMesh mirroredHalf(const PointsRef& vertices, const std::vector<Eigen::Ve
   };
   std::size_t num_done = 0;
   for (const Eigen::Vector3i& t : finite) {
-    if (++num_done % 1024 == 0) lookAtWatch();
+    if (++num_done % 1024 == 0) checkCancelled();
     if (std::max({heights[t[0]], heights[t[1]], heights[t[2]]}) <= 0.0) continue;
     std::vector<int> corners;  // of the part that is kept
     for (int k = 0; k < 3; ++k) {

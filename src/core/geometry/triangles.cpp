@@ -60,7 +60,7 @@ struct TriangleTree::Builder {
   }
 
   Eigen::AlignedBox3f addNode(int begin, int end) {
-    if (end - begin > 1000) lookAtWatch();
+    if (end - begin > 1000) checkCancelled();
     const int node = static_cast<int>(tree.nodes_.size());
     tree.nodes_.emplace_back();
     std::vector<int> bounds{begin, end};
@@ -105,7 +105,7 @@ TriangleTree::TriangleTree(const Points& corners, const std::vector<Eigen::Vecto
 
 namespace {
 
-/// What a search has still to open, last first.
+/// Stack of nodes that a search has yet to open.
 struct OpenBoxes {
   static constexpr int kMost = 64;  // 2^31 triangles have 16 levels; each leaves at most three children behind
   struct Box {

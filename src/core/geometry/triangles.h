@@ -1,4 +1,4 @@
-/// Triangles of a mesh: those that are finite, samples of them, and a tree that finds the closest one.
+/// Triangles of a mesh: the finite ones, samples of them, and a tree that finds the closest one.
 #pragma once
 
 #include <Eigen/Core>
@@ -27,8 +27,8 @@ struct ClosestOnTriangles {
 
 /// A bounding volume hierarchy for rays and closest points. (The tools use Embree; the library does not depend on it.)
 ///
-/// A node has four children and a leaf four triangles, whose numbers lie side by side, so that four are tested in one
-/// instruction where the processor has it. Each of the four takes the steps that a single one would take.
+/// A node has four children and a leaf four triangles, stored side by side, so that vector instructions test four at
+/// once. Each lane takes the same steps as scalar code.
 class TriangleTree {
 public:
   /// \param corners 3 x V.
@@ -46,7 +46,7 @@ public:
     return search(from, to - from, 0.0f, 1.0f, true).triangle >= 0;
   }
 
-  /// \param sq_reach squared distance beyond which there is no closest point; the less, the faster.
+  /// \param sq_reach greatest squared distance of the closest point; smaller is faster.
   /// \return the exact closest point of the triangles, also of those without area.
   ClosestOnTriangles closestTo(const Eigen::Vector3f& x, float sq_reach = std::numeric_limits<float>::infinity()) const;
 

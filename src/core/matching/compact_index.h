@@ -8,14 +8,14 @@ namespace pcl_symmetry {
 
 struct CompactIndexOptions {
   int num_leading = 24;      ///< components of greatest variance, by which candidates are chosen, >= 1
-  int num_candidates = 512;  ///< forms, at least, whose components are all compared, >= 1
+  int num_candidates = 512;  ///< least number of forms of which all components are compared, >= 1
   int num_threads = 0;       ///< >= 0; 0 = one per core
 };
 
 /// The mean distance of a shape to the nearest shapes of a fixed reference set.
 ///
-/// d(a, b) / sqrt(typical(a) typical(b)) compares distances of shapes that many others resemble with distances of
-/// shapes that stand apart. The classes of the references need not be known.
+/// d(a, b) / sqrt(typical(a) typical(b)) makes distances of common and of unusual shapes comparable. The classes of the
+/// references need not be known.
 /// \param distances to the references; infinite ones, as to the shape itself, are left out.
 /// \return > 0; 1 where no distance is left.
 float typicalDistance(std::vector<float> distances, std::size_t num_nearest = 10);

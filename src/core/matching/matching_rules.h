@@ -4,7 +4,7 @@
 
 namespace pcl_symmetry {
 
-/// Numbers of matching that decide which shapes are found.
+/// Parameters that affect which shapes matching finds.
 struct MatchingRules {
   // Signatures
   double signature_reach = 2.5;  // mean distances from the middle: half the side of the cube
@@ -24,28 +24,28 @@ struct MatchingRules {
 
   // Views
   int outline_cells = 48;          // across the larger side of an outline
-  int picture_cells = 32;          // across a picture
-  float picture_reach = 2.5f;      // radii of the outline: half the side of a picture
+  int raster_cells = 32;           // across a raster
+  float raster_reach = 2.5f;       // radii of the outline: half the side of a raster
   double outer_ring = 2.3;         // radii of the outline: outer edge of the rings
   float deepest = 2.0f;            // radii of the outline: greater depths count as this
   float magnitude_weight = 0.7f;   // of the magnitudes in ViewAgreement::distance
   int num_mean_views = 2;          // views of a shape whose mean distance ranks it: a scan lies between views
-  double size_weight = 0.25;       // distance that radii a factor of e apart add; parts that are hidden change them
+  double size_weight = 0.25;       // distance added by radii that differ by a factor of e; hidden parts change them
   std::size_t num_view_poses = 6;  // of each shape: its nearest views
 
   // A few points of a surface
-  int num_surface_points = 5000;  // that they are chosen from
+  int num_surface_points = 5000;  // points that they are chosen from
 
   // Pairs of points
-  int num_neighbors = 16;          // that give a normal
+  int num_neighbors = 16;          // neighbors for a normal
   int num_pair_points = 250;       // of a shape
   int num_scan_points = 120;       // of a scan
   int num_references = 20;         // points of a scan that vote, each with all others
   double min_pair_distance = 0.2;  // radii: nearer points are too uncertain
-  double mean_weight = 8.0;  // of a pair that as many points have as the mean; it falls with the root of their number
-  double max_weight = 64.0;  // of a rare pair
-  double same_angle = 0.4;   // radians, poses that are one,
-  double same_position = 0.15;  // and radii
+  double mean_weight = 8.0;        // weight of a pair of mean frequency; it falls with the root of the frequency
+  double max_weight = 64.0;        // of a rare pair
+  double same_angle = 0.4;         // radians, poses that are one,
+  double same_position = 0.15;     // and radii
 
   // Screening of poses
   int num_screened_points = 1000;  // of a shape

@@ -17,7 +17,7 @@ namespace pcl_symmetry {
 
 namespace {
 
-// Step of the logarithm of a distance: 16 %, the spacing of the points of a shape.
+// Step of the logarithm of a distance: 16 %, the spacing of the points on a shape.
 constexpr double kPairDistanceStep = 0.15;
 // Steps of 15 degrees of the angle between the first normal and the line, and of the angles of the second normal with
 // the line and the first normal, which have no sign.
@@ -74,7 +74,7 @@ std::vector<float> cosineLimits(double range) {
   return limits;
 }
 
-/// How many of the limits each value has come down to.
+/// For each value, the number of limits that it is at or below.
 Eigen::ArrayXi limitsReached(const Eigen::ArrayXf& values, const std::vector<float>& limits) {
   Eigen::ArrayXi count = Eigen::ArrayXi::Zero(values.size());
   for (const float limit : limits) count += (values <= limit).cast<int>();
@@ -160,7 +160,7 @@ constexpr int kNumRotations = 16;
 constexpr std::uint32_t kRotationMask = std::numeric_limits<std::uint8_t>::max();
 constexpr std::uint32_t kPairsAtOnce = 128;
 
-/// Where the votes of pairs are counted: for each the first point and the step of the rotation that it needs.
+/// Indices of the counters of pairs: the first point of each and the step of the rotation that it requires.
 PCL_SYMMETRY_MULTIVERSION void findCounters(const std::uint32_t* __restrict pairs, std::uint32_t size,
                                             std::uint32_t rotation, std::uint32_t* __restrict counters) {
   for (std::uint32_t i = 0; i < size; ++i)
@@ -281,7 +281,7 @@ void PointPairIndex::count(const Block& block, const std::vector<LookUp>& look_u
   }
 }
 
-/// The poses of a shape that a point of the scan gave most votes.
+/// The poses of a shape with most votes of a point of the scan.
 /// \param votes of the points of the shape.
 void PointPairIndex::collect(int shape, const Reference& reference, const Eigen::Vector3d& center,
                              const std::int32_t* votes, std::vector<Vote>& poses) const {

@@ -21,13 +21,12 @@ struct PairSearchOptions {
   int num_threads = 0;   ///< >= 0; 0 = one per core
 };
 
-/// Finds shapes and poses by pairs of points with their normals (Drost et al. 2010; not in the paper): two points of a
-/// scan lie as far apart, and their normals at the same angles, as two points of the shape that it shows. What hides a
-/// part of the object takes away pairs, but changes no other: views of the whole, see ViewIndex, change with everything
-/// that is hidden.
+/// Finds shapes and poses by pairs of points with their normals (Drost et al. 2010): two points of a scan have the same
+/// distance and angles between normals as two points of the shape that it shows. Occlusion removes pairs but does not
+/// change the others, whereas views, see ViewIndex, change with every hidden part. Not in the paper.
 ///
-/// Departures from the publication: normals have no sign, distances are compared by their ratio, so that shapes may be
-/// of any size, and pairs that many shapes have count less.
+/// Unlike there, normals have no sign, distances are compared by their ratio, so that shapes may be of any size, and
+/// pairs that many shapes have count less.
 class PointPairIndex {
 public:
   /// \param shapes the points of each, about MatchingRules::num_pair_points.
@@ -47,7 +46,7 @@ private:
     double weight;
   };
 
-  /// A few shapes whose votes fit into the memory next to the processor.
+  /// A few shapes whose votes fit into the cache.
   struct Block {
     int first_shape, end_shape;
     // Their pairs by key: the first point, counted from the first one of the block, and in the last 8 bits the rotation
@@ -55,7 +54,7 @@ private:
     std::vector<std::uint32_t> key_begins, pairs;
   };
 
-  /// Pairs of the shapes like one of the scan.
+  /// Key of the pairs of shapes that resemble a pair of the scan.
   struct LookUp {
     std::uint32_t key, rotation;
   };

@@ -82,8 +82,8 @@ std::vector<ScreenedShape> screenPoses(const ScreenedSurface& scan, const std::v
   for (const Trial& trial : trials) {
     std::vector<RankedPose>& poses = of_shape[trial.shape];
     const bool is_behind = trial.pose.score.merit() < trials.front().pose.score.merit() - options.max_behind;
-    const std::size_t most = is_behind ? std::min(options.min_shapes, options.num_shapes) : options.num_shapes;
-    if (poses.empty() && found.size() < most) found.push_back({static_cast<int>(trial.shape), {}});
+    const std::size_t max_count = is_behind ? std::min(options.min_shapes, options.num_shapes) : options.num_shapes;
+    if (poses.empty() && found.size() < max_count) found.push_back({static_cast<int>(trial.shape), {}});
     poses.push_back(trial.pose);
   }
   for (ScreenedShape& shape : found) {

@@ -9,7 +9,7 @@
 
 namespace pcl_symmetry {
 
-/// A shape, or a scan, by a few points: enough to tell poses that may be right from those that cannot be.
+/// A shape or a scan reduced to a few points, enough to reject impossible poses.
 struct ScreenedSurface {
   BoundingBall ball;     ///< of the points, input frame
   PosedSurface surface;  ///< about its center, input units
@@ -33,16 +33,15 @@ struct PoseScreeningOptions {
   int num_threads = 0;       ///< >= 0; 0 = one per core
 };
 
-/// A shape that is left, with its best poses.
+/// A remaining shape with its best poses.
 struct ScreenedShape {
   int shape;                                    ///< index of the shape in the input
   std::vector<Eigen::Isometry3d> T_shape_scan;  ///< input frames, best first, at least one
 };
 
-/// Tries thousands of poses of many shapes with a scan (not in the paper): votes of pairs of points are weak where
-/// much of an object is hidden, but one of many poses that got votes is near the true one. All poses are judged by a
-/// few points and by the space that the scanner saw to be empty; the best of all shapes are improved by
-/// Gauss-Newton steps and judged again.
+/// Tries thousands of poses of many shapes with a scan: votes of pairs of points are weak where much of an object is
+/// hidden, but one of many poses with votes is near the true one. All poses are judged by a few points and by free
+/// space; the best of all shapes are improved by Gauss-Newton steps and judged again. Not in the paper.
 /// \param shapes in the unit of the scan.
 /// \return the shapes with the best poses, best first, at most PoseScreeningOptions::num_shapes.
 std::vector<ScreenedShape> screenPoses(const ScreenedSurface& scan, const std::vector<PosesOfShape>& shapes,

@@ -52,7 +52,7 @@ struct DescriptionOptions {
   int num_threads = 0;  ///< >= 0; 0 = one per core
 };
 
-/// A shape as matching sees it: the same in all poses and sizes (Section 5.2).
+/// A description of a shape for matching, independent of pose and size (Section 5.2).
 struct ShapeDescription {
   SymmetryFrame frame;
   Eigen::MatrixXf signatures;  ///< kSignatureSize x 2, one column for each of the signatureFrames()

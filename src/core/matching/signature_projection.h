@@ -15,13 +15,13 @@ struct ProjectionOptions {
 /// Rotates a signature or another descriptor by one of the axisRotations().
 using SignatureRotation = void (*)(const float* values, int rotation, float* rotated);
 
-/// Compact forms of signatures (Section 5.2; not in the paper): their principal components, where a shape in all 24
-/// rotations of its axes is projected once.
+/// Compact forms of signatures (Section 5.2): their principal components. A shape is projected once for all 24
+/// rotations of its axes. Not in the paper.
 ///
 /// The components are those of the reference shapes in all 24 rotations, about zero: about the mean of a few shapes,
-/// whatever is unlike all of them would have the same compact form. The rotations therefore map the space of the
-/// components onto itself, and a compact form is rotated there. Distances of compact forms tell classes apart better
-/// than distances of signatures; the classes need not be known.
+/// all shapes unlike them would have the same compact form. The rotations therefore map the space of the components
+/// onto itself, and a compact form is rotated there. Distances of compact forms tell classes apart better than
+/// distances of signatures; the classes need not be known.
 class SignatureProjection {
 public:
   SignatureProjection() = default;

@@ -16,7 +16,7 @@ namespace {
 
 /// Points of the surface that are at least \p distance apart.
 /// \param order of the points.
-std::vector<int> spreadPoints(const Points& points, const std::vector<int>& order, double distance, int most) {
+std::vector<int> spreadPoints(const Points& points, const std::vector<int>& order, double distance, int max_count) {
   const auto sq_least = static_cast<float>(distance * distance);
   std::vector<int> chosen;
   for (const int i : order) {
@@ -26,7 +26,7 @@ std::vector<int> spreadPoints(const Points& points, const std::vector<int>& orde
       return d.x() * d.x() + d.y() * d.y() + d.z() * d.z() < sq_least;
     });
     if (!is_near) chosen.push_back(i);
-    if (static_cast<int>(chosen.size()) == most) break;
+    if (static_cast<int>(chosen.size()) == max_count) break;
   }
   return chosen;
 }

@@ -31,9 +31,9 @@ struct DescriptorOptions {
 struct SymmetryDescriptors {
   /// Planar reflective symmetry transform at the centers of the bins (theta, phi, r), r fastest.
   ///
-  /// Departure from equation 1, PRST = sqrt((1 + D) / 2): the values are sqrt(max(D, 0)). f is nowhere negative, so
-  /// that equation 1 maps all planes to [0.71, 1]; the root of D uses [0, 1] and is 0 for planes without any symmetry.
-  /// Both rise with D; DescriptorOptions::by_equation_1 chooses.
+  /// Departure from the paper: the values are sqrt(max(D, 0)) instead of PRST = sqrt((1 + D) / 2) of equation 1. f is
+  /// nowhere negative, so that equation 1 maps all planes to [0.71, 1]; the root of D uses [0, 1] and is 0 for planes
+  /// without any symmetry. Both rise with D; DescriptorOptions::by_equation_1 chooses.
   std::vector<float> prst;
   /// PRSD, the reflective symmetry descriptor of Kazhdan et al. (2004): the same values for the planes through the
   /// origin, (theta, phi), phi fastest.
@@ -63,7 +63,8 @@ float sqDistance(const float* a, const float* b, std::size_t size);
 /// L2 distance of two PRST or two PRSD descriptors, differences weighted by sqrt(sin theta), the size of the bins
 /// (Section 5.2).
 ///
-/// Departure for PRSD: Kazhdan et al. (2004) take the maximum difference. L2 compares both descriptors alike.
+/// Departure from the paper: for PRSD, Kazhdan et al. (2004) take the maximum difference; L2 compares both descriptors
+/// alike.
 /// \param size kPRSTSize or kPRSDSize.
 /// \throws std::invalid_argument for a size that is no multiple of kDescriptorBins.
 float planeDescriptorDistance(const float* a, const float* b, std::size_t size);

@@ -15,7 +15,7 @@ namespace pcl_symmetry {
 /// Values of a code.
 constexpr int kViewCodeSize = 24;
 
-/// A view in few bytes, the same for all rotations of its picture.
+/// A view in few bytes, independent of rotations in the image.
 struct ViewCode {
   std::array<std::int8_t, kViewCodeSize> values;  ///< in steps of kViewCodeStep
   std::int16_t size;                              ///< logarithm of View::radius in steps of kViewSizeStep
@@ -49,7 +49,7 @@ private:
   Eigen::MatrixXf basis_;  // kViewMagnitudes x kViewCodeSize, orthonormal columns
 };
 
-/// Finds shapes that a scan can show by the codes of their views: those that are compared in full, see ViewIndex.
+/// Finds the shapes that a scan can show by the codes of their views; ViewIndex then compares them in full.
 ///
 /// All codes are compared. Eight million, those of 100 000 shapes, take 208 MB and milliseconds per query.
 class ViewCodeIndex {

@@ -19,27 +19,27 @@ namespace {
 /// Points by coordinates, N x 3: all x, then all y, then all z.
 using PointColumns = Eigen::Matrix<float, Eigen::Dynamic, 3>;
 
-/// Points seen from far away: the nearest depth in each cell of a square picture. The viewer looks along z.
-class DepthPicture {
+/// Points seen from far away: the nearest depth in each cell of a square raster. The viewer looks along z.
+class DepthRaster {
 public:
-  /// Depth of a cell where nothing is seen.
-  static constexpr float kNothing = std::numeric_limits<float>::infinity();
+  /// Depth of a cell without a point.
+  static constexpr float kBackground = std::numeric_limits<float>::infinity();
 
   /// \param side cells along each side, >= 1.
-  /// \param corner least x and y of the picture.
+  /// \param corner least x and y of the raster.
   /// \param cell width of a cell, > 0, units of the points.
-  DepthPicture(int side, const Eigen::Array2f& corner, float cell)
-      : side_(side), corner_(corner), cell_(cell), depths_(static_cast<std::size_t>(side) * side, kNothing) {}
+  DepthRaster(int side, const Eigen::Array2f& corner, float cell)
+      : side_(side), corner_(corner), cell_(cell), depths_(static_cast<std::size_t>(side) * side, kBackground) {}
 
-  /// Points beyond the picture are left out.
+  /// Points beyond the raster are left out.
   void add(const PointColumns& points);
 
   int side() const { return side_; }
   Eigen::Array2f center(int u, int v) const { return corner_ + cell_ * (Eigen::Array2i(u, v).cast<float>() + 0.5f); }
-  /// \return kNothing also beyond the picture.
+  /// \return kBackground also beyond the raster.
   float depth(int u, int v) const {
     const bool inside = u >= 0 && v >= 0 && u < side_ && v < side_;
-    return inside ? depths_[v * side_ + u] : kNothing;
+    return inside ? depths_[v * side_ + u] : kBackground;
   }
 
 private:
@@ -49,21 +49,21 @@ private:
   std::vector<float> depths_;  // x fastest
 };
 
-/// The outline of what is seen.
+/// The outline of the visible part.
 struct ViewOutline {
   Eigen::Vector3d middle = Eigen::Vector3d::Zero();  ///< mean of the cells inside the outline, and of their depths
-  double radius = 0.0;  ///< root mean square distance of the inside from the middle, in the picture
+  double radius = 0.0;  ///< root mean square distance of the inside from the middle, in the raster
 };
 
-/// A picture smoothed over neighboring cells, sampled between their centers.
-class SmoothPicture {
+/// A raster smoothed over neighboring cells, sampled between their centers.
+class SmoothRaster {
 public:
   /// \param middle the depth that becomes 0.
   /// \param unit of depths, > 0.
-  SmoothPicture(const DepthPicture& picture, float middle, float unit);
+  SmoothRaster(const DepthRaster& raster, float middle, float unit);
 
   /// \param at in cells from the corner.
-  /// \return outline (1 inside) and depth, both 0 beyond the picture.
+  /// \return outline (1 inside) and depth, both 0 beyond the raster.
   Eigen::Array2f sample(const Eigen::Array2f& at) const {
     const Eigen::Array2f corner = (at - 0.5f).floor(), t = at - 0.5f - corner;
     const int u = static_cast<int>(corner.x()), v = static_cast<int>(corner.y());
@@ -82,16 +82,16 @@ private:
 };
 
 template <typename Visit>
-void forEachSeenCell(const DepthPicture& picture, const Visit& visit) {
-  for (int v = 0; v < picture.side(); ++v) {
-    for (int u = 0; u < picture.side(); ++u) {
-      const float depth = picture.depth(u, v);
-      if (depth != DepthPicture::kNothing) visit(picture.center(u, v).cast<double>().matrix(), depth);
+void forEachSeenCell(const DepthRaster& raster, const Visit& visit) {
+  for (int v = 0; v < raster.side(); ++v) {
+    for (int u = 0; u < raster.side(); ++u) {
+      const float depth = raster.depth(u, v);
+      if (depth != DepthRaster::kBackground) visit(raster.center(u, v).cast<double>().matrix(), depth);
     }
   }
 }
 
-void DepthPicture::add(const PointColumns& points) {
+void DepthRaster::add(const PointColumns& points) {
   for (Eigen::Index i = 0; i < points.rows(); ++i) {
     const float u = (points(i, 0) - corner_.x()) / cell_, v = (points(i, 1) - corner_.y()) / cell_;
     const auto side = static_cast<float>(side_);
@@ -109,24 +109,24 @@ ViewOutline outlineOf(const PointColumns& in_view) {
   const float extent = (high - low).maxCoeff();
   check(extent > 0.0f, "extent of the points across the view", extent, "> 0");
   const int cells = kMatching.outline_cells;
-  DepthPicture picture(cells + 1, low, extent / cells);
-  picture.add(in_view);
+  DepthRaster raster(cells + 1, low, extent / cells);
+  raster.add(in_view);
 
   ViewOutline outline;
   double count = 0.0, sq_radius = 0.0;
-  forEachSeenCell(picture, [&](const Eigen::Vector2d& at, float depth) {
+  forEachSeenCell(raster, [&](const Eigen::Vector2d& at, float depth) {
     outline.middle += Eigen::Vector3d(at.x(), at.y(), depth);
     count += 1.0;
   });
   outline.middle /= count;
   forEachSeenCell(
-      picture, [&](const Eigen::Vector2d& at, float) { sq_radius += (at - outline.middle.head<2>()).squaredNorm(); });
+      raster, [&](const Eigen::Vector2d& at, float) { sq_radius += (at - outline.middle.head<2>()).squaredNorm(); });
   // The mean square distance from the center of a square cell is 1/6 of its squared side.
   outline.radius = std::sqrt(sq_radius / count + extent * extent / (6.0 * cells * cells));
   return outline;
 }
 
-SmoothPicture::SmoothPicture(const DepthPicture& picture, float middle, float unit) : side_(picture.side()) {
+SmoothRaster::SmoothRaster(const DepthRaster& raster, float middle, float unit) : side_(raster.side()) {
   const float weights[3] = {0.25f, 0.5f, 0.25f};
   const float deepest = kMatching.deepest;
   values_.resize(static_cast<std::size_t>(side_) * side_);
@@ -136,8 +136,8 @@ SmoothPicture::SmoothPicture(const DepthPicture& picture, float middle, float un
       value.setZero();
       for (int j = -1; j <= 1; ++j) {
         for (int i = -1; i <= 1; ++i) {
-          const float depth = picture.depth(u + i, v + j);
-          if (depth == DepthPicture::kNothing) continue;
+          const float depth = raster.depth(u + i, v + j);
+          if (depth == DepthRaster::kBackground) continue;
           value += weights[i + 1] * weights[j + 1] *
                    Eigen::Array2f(1.0f, std::clamp((depth - middle) / unit, -deepest, deepest));
         }
@@ -176,16 +176,16 @@ int imaginaryPart(int harmonic) {
   return kRow * 2 * harmonic;
 }
 
-/// View::values of a picture.
-Eigen::VectorXf harmonicsOf(const SmoothPicture& picture) {
+/// View::values of a raster.
+Eigen::VectorXf harmonicsOf(const SmoothRaster& raster) {
   Eigen::VectorXf values = Eigen::VectorXf::Zero(kViewSignatureSize);
-  const float reach = kMatching.picture_reach, to_cells = kMatching.picture_cells / (2.0f * reach);
+  const float reach = kMatching.raster_reach, to_cells = kMatching.raster_cells / (2.0f * reach);
   for (int ring = 0; ring < kViewRings; ++ring) {
     const double radius = (ring + 0.5) * kMatching.outer_ring / kViewRings;
     for (int a = 0; a < kNumAngles; ++a) {
       const float x = static_cast<float>(radius) * rotationTable().cosines[1][a],
                   y = static_cast<float>(radius) * rotationTable().sines[1][a];
-      const Eigen::Array2f sample = picture.sample((Eigen::Array2f(x, y) + reach) * to_cells);
+      const Eigen::Array2f sample = raster.sample((Eigen::Array2f(x, y) + reach) * to_cells);
       for (int m = 0; m <= kViewHarmonics; ++m) {
         // A ring counts by its area; a harmonic and its conjugate count as two.
         const float weight = static_cast<float>(std::sqrt((m > 0 ? 2.0 : 1.0) * radius));
@@ -202,7 +202,7 @@ Eigen::VectorXf harmonicsOf(const SmoothPicture& picture) {
   return values;
 }
 
-/// Points that are looked at from many sides, in radii of their bounding ball.
+/// Points to be viewed from many sides, in radii of their bounding ball.
 class ViewedPoints {
 public:
   explicit ViewedPoints(const PointsRef& points)
@@ -214,12 +214,12 @@ public:
     const ViewOutline outline = outlineOf(in_view);
     const Eigen::Vector3f middle = outline.middle.cast<float>();
     const auto radius = static_cast<float>(outline.radius);
-    const float reach = kMatching.picture_reach;
-    const int cells = kMatching.picture_cells;
-    DepthPicture picture(cells, middle.head<2>().array() - reach * radius, 2.0f * reach * radius / cells);
-    picture.add(in_view);
+    const float reach = kMatching.raster_reach;
+    const int cells = kMatching.raster_cells;
+    DepthRaster raster(cells, middle.head<2>().array() - reach * radius, 2.0f * reach * radius / cells);
+    raster.add(in_view);
     View view;
-    view.values = harmonicsOf(SmoothPicture(picture, middle.z(), radius));
+    view.values = harmonicsOf(SmoothRaster(raster, middle.z(), radius));
     view.radius = outline.radius * ball_.radius;
     view.T_view_input.linear() = R_view_input;
     view.T_view_input.translation() = -(R_view_input * ball_.center + ball_.radius * outline.middle);
@@ -272,9 +272,9 @@ ViewAgreement ViewComparison::compare(const float* values, float enough) const {
   const Eigen::Map<const Eigen::VectorXf> other(values, kViewSignatureSize);
   const float apart = (magnitudesOf(other) - magnitudes_).norm();
   if (apart >= enough) return best;  // it is the smaller one of the two distances
-  // From this distance of the signatures on, what is left is not needed.
+  // Above this distance of the signatures, the remaining terms are not needed.
   const float enough_of_all = (enough - weight * apart) / (1.0f - weight);
-  // Re conj(V_m) Q_m exp(i m a) is what harmonic m adds to the correlation with the picture rotated by a.
+  // Re conj(V_m) Q_m exp(i m a) is what harmonic m adds to the correlation with the view rotated by a.
   const float* own = values_.data();
   std::array<float, kViewHarmonics + 1> real, imaginary;
   real[0] = dot(values, own);
@@ -286,15 +286,15 @@ ViewAgreement ViewComparison::compare(const float* values, float enough) const {
     imaginary[m] = dot(vr, qi) - dot(vi, qr);
     greatest += std::sqrt(real[m] * real[m] + imaginary[m] * imaginary[m]);
   }
-  const float least = 1.0f - 0.5f * enough_of_all * enough_of_all;
-  if (greatest <= least) return best;
+  const float min_correlation = 1.0f - 0.5f * enough_of_all * enough_of_all;
+  if (greatest <= min_correlation) return best;
   std::array<float, kNumAngles> correlation;
   correlation.fill(real[0]);
   for (int m = 1; m <= kViewHarmonics; ++m)
     for (int a = 0; a < kNumAngles; ++a)
       correlation[a] += real[m] * rotationTable().cosines[m][a] - imaginary[m] * rotationTable().sines[m][a];
   const auto at = std::max_element(correlation.begin(), correlation.end());
-  if (*at <= least) return best;
+  if (*at <= min_correlation) return best;
   best.distance = weight * apart + (1.0f - weight) * std::sqrt(std::max(0.0f, 2.0f - 2.0f * *at));
   best.angle = -2.0 * kPi * static_cast<double>(at - correlation.begin()) / kNumAngles;
   return best;

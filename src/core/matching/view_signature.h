@@ -7,26 +7,26 @@
 
 namespace pcl_symmetry {
 
-constexpr int kViewRings = 8;      ///< rings of a picture in polar coordinates
+constexpr int kViewRings = 8;      ///< rings of a view in polar coordinates
 constexpr int kViewHarmonics = 8;  ///< of each ring, beside its mean
 /// Values of a view: outline and depth, per ring a mean and the real and imaginary parts of the harmonics.
 constexpr int kViewSignatureSize = 2 * kViewRings * (2 * kViewHarmonics + 1);
 
-/// Values of a view that rotations of its picture leave: per ring a mean and the magnitude of each harmonic.
+/// Values of a view that do not change with rotations in the image: per ring a mean and the magnitude of each harmonic.
 constexpr int kViewMagnitudes = 2 * kViewRings * (kViewHarmonics + 1);
 
-/// What a shape looks like from far away on one side (not in the paper): its outline and its depths.
+/// The appearance of a shape from far away on one side: its outline and its depths. Not in the paper.
 ///
 /// Signatures need the symmetry of the whole shape, and a scan hides it. Views tell which model a scan shows, and from
 /// which side.
 struct View {
   /// Harmonics of outline and depth on rings around the middle; unit norm, independent of size and distance. Harmonic m
   /// is followed by harmonic m + 1; each holds the real parts of the outline's rings, then those of the depths, then
-  /// the imaginary parts in the same order (harmonic 0 has none). A rotation of the picture by an angle a multiplies
+  /// the imaginary parts in the same order (harmonic 0 has none). A rotation of the view by an angle a multiplies
   /// harmonic m by exp(-i m a).
   Eigen::VectorXf values;
   double radius = 0.0;  ///< root mean square distance of the inside of the outline from its middle, input units
-  /// To the axes of the picture. Its z points away from the viewer; the middle of what is seen is the origin.
+  /// To the axes of the view: z points away from the viewer, and the origin is the middle of the visible part.
   Eigen::Isometry3d T_view_input = Eigen::Isometry3d::Identity();
 };
 
@@ -41,25 +41,25 @@ View viewOf(const PointsRef& points, const Eigen::Vector3d& forward);
 /// \throws std::invalid_argument for points without extent.
 std::vector<View> viewsAround(const PointsRef& points, int num_views = 80, int num_threads = 0);
 
-/// Means of the rings and magnitudes of the harmonics, in the order of View::values: the same for all rotations of
-/// the picture.
+/// Means of the rings and magnitudes of the harmonics, in the order of View::values: the same for all rotations of the
+/// view.
 /// \return kViewMagnitudes values. Their L2 distance is at most that of the signatures at any rotation.
 Eigen::VectorXf magnitudesOf(const Eigen::VectorXf& values);
 
 /// How alike two views are at their best rotation.
 struct ViewAgreement {
   /// L2 distances of the signatures at the best rotation and of their magnitudesOf(), weighted 0.3 and 0.7, in [0, 2].
-  /// What a scan lacks moves the phases of harmonics more than their magnitudes.
+  /// Missing parts of a scan change the phases of harmonics more than their magnitudes.
   float distance = 2.0f;
-  double angle = 0.0;  ///< radians about z, from the first view's picture to the second's
+  double angle = 0.0;  ///< radians about z, from the first view to the second
 };
 
-/// Compares one view with many, at all rotations of the picture in steps of 7.5 degrees.
+/// Compares one view with many, at all rotations in steps of 7.5 degrees.
 class ViewComparison {
 public:
   explicit ViewComparison(const View& view);
 
-  /// \param enough distances from this one on are not needed: the comparison stops early.
+  /// \param enough distance from which on the comparison may stop early.
   /// \return the default where the distance is at least \p enough at all rotations.
   ViewAgreement compare(const float* values, float enough) const;
 

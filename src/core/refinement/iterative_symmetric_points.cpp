@@ -34,10 +34,11 @@ struct WeightedExtent {
   }
 };
 
-/// Weight of a pair by what the scanner saw where the reflection lies, in [0, 1].
+/// Weight of a pair by the visibility of the reflection, in [0, 1].
 ///
-/// A departure from the paper, whose pairs all pull: many partners of a scan's points are hidden. The closest points,
-/// taken instead, draw a plane away from the symmetry, to where more of what was seen overlaps.
+/// Departure from the paper: its pairs all have full weight, but many partners of a scan's points are hidden. The
+/// closest points, taken instead, would draw a plane away from the symmetry, to where more of the visible surface
+/// overlaps.
 double seenWeight(const Visibility* visibility, const Eigen::Vector3d& reflection, double sigma) {
   if (!visibility) return 1.0;
   const double depth = std::max(0.0, visibility->depthBehind(reflection)) / (kRefinement.hidden_depth * sigma);
@@ -110,7 +111,7 @@ struct StepEquations {
 /// The plane after one Gauss-Newton step on sum w (m . (x' - y))^2.
 ///
 /// Directions that this leaves free (a flat piece of surface is uninformative about planes across it) move by a step on
-/// sum w |x' - y|^2. Departure from the paper, which minimizes the latter alone: it needs many more iterations.
+/// sum w |x' - y|^2. Departure from the paper: it minimizes the latter alone, which needs many more iterations.
 ReflectionPlane steppedPlane(const IspSurface& surface, const std::vector<int>& samples, const WeightedPairs& pairs) {
   const ReflectionPlane& plane = pairs.step.plane;
   const WeightedExtent extent(pairs.x, pairs.weights);
@@ -134,7 +135,7 @@ ReflectionPlane steppedPlane(const IspSurface& surface, const std::vector<int>& 
     for (Eigen::Index i = 0; i < pairs.x.cols(); ++i)
       if (pairs.weights[i] != 0.0)
         whole.addPointToPoint(pairs.x.col(i).cast<double>(), pairs.y.col(i).cast<double>(), pairs.weights[i]);
-    Eigen::Matrix3d soft = Eigen::Matrix3d::Zero();  // projects onto what \p across leaves open
+    Eigen::Matrix3d soft = Eigen::Matrix3d::Zero();  // projects onto the directions that \p across leaves free
     for (int i = 0; i < num_soft; ++i) soft += solver.eigenvectors().col(i) * solver.eigenvectors().col(i).transpose();
     step -= SymmetricEigen<Eigen::Matrix3d>(soft * whole.h * soft).solve(soft * whole.g, 1e-12);
   }
@@ -209,7 +210,7 @@ IspResult refineSymmetricPoints(const IspSurface& surface, const std::vector<int
     result.converged = sigma == options.final_sigma && moved <= tolerance && angle * whole.extent <= tolerance;
     result.plane = next;
     if (stays && !stays(next)) break;
-    // Narrower weights only where the plane has come to rest at these: it must not lose what it moves toward.
+    // Narrower weights only once the plane has come to rest at the current ones: it must not lose its target.
     if (moved + angle * whole.extent <= kRefinement.rest_sigmas * sigma)
       sigma = std::max(options.final_sigma, 0.5 * sigma);
   }

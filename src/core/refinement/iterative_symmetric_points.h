@@ -17,20 +17,20 @@ enum class IspUpdate {
 
 /// Options of Iterative Symmetric Points (Section 4.4).
 struct IspOptions {
-  IspUpdate update = IspUpdate::PointToPlane;  ///< what a step minimizes
+  IspUpdate update = IspUpdate::PointToPlane;  ///< objective of a step
   double sigma = 0.0;        ///< width of the Gaussian weights exp(-dist^2 / sigma^2) at the start, input units, > 0
-  double final_sigma = 0.0;  ///< width at the end, input units, in (0, sigma]; halved whenever the plane rests
+  double final_sigma = 0.0;  ///< width at the end, input units, in (0, sigma]; halved whenever the plane comes to rest
   int max_iterations = 30;   ///< >= 1
   /// The plane has converged when it moves by less than this share of its own standard error, residual / sqrt(number of
-  /// samples), >= 0, or stands still. Beyond that, matches that change sides keep the plane of a sampled surface in
-  /// motion without improving it.
+  /// samples), >= 0, or stands still. After that, changing matches keep the plane of a sampled surface in motion
+  /// without improving it.
   double error_share = 0.5;
 
   /// \throws std::invalid_argument naming field, value and rule.
   void validate() const;
 };
 
-/// What one iteration saw and did: everything that a picture of it needs (Figure 7).
+/// Input and result of one iteration: everything needed to draw it (Figure 7).
 struct IspStep {
   ReflectionPlane plane;            ///< the plane after the step
   double residual = 0.0;            ///< weighted root mean square distance of the pairs before the step, input units
@@ -72,7 +72,8 @@ IspStep matchSymmetricPoints(const IspSurface& surface, const std::vector<int>& 
 /// Iterates until the plane stands still (Section 4.4).
 /// \param samples indices of the points of the surface to reflect.
 /// \param plane where to start.
-/// \param stays whether to go on from a plane; the iteration ends at the first one where it is false. Null: always.
+/// \param stays whether to continue from a plane; iteration ends at the first plane for which it is false. Null: always
+/// true.
 /// \throws std::invalid_argument for bad options.
 IspResult refineSymmetricPoints(const IspSurface& surface, const std::vector<int>& samples,
                                 const ReflectionPlane& plane, const IspOptions& options,

@@ -10,7 +10,7 @@
 namespace pcl_symmetry {
 
 std::vector<Eigen::Index> FarTest::nearOf(const PointsRef& points, float bound) const {
-  const float least = std::min(bound, kFarthest);
+  const float min_value = std::min(bound, kFarthest);
   const std::ptrdiff_t size = edt_.numCells();
   std::vector<Eigen::Index> near;
   for (Eigen::Index i = 0; i < points.cols(); ++i) {
@@ -18,7 +18,7 @@ std::vector<Eigen::Index> FarTest::nearOf(const PointsRef& points, float bound) 
     const Eigen::Array3d cell = x.array() / edt_.cellSize() + 0.5;
     if (!(cell >= 0.0).all() || !(cell < static_cast<double>(size)).all()) continue;
     const Eigen::Array<std::ptrdiff_t, 3, 1> at = cell.cast<std::ptrdiff_t>();
-    if (edt_.values()[(at[2] * size + at[1]) * size + at[0]] > least) near.push_back(i);
+    if (edt_.values()[(at[2] * size + at[1]) * size + at[0]] > min_value) near.push_back(i);
   }
   return near;
 }

@@ -11,7 +11,7 @@
 
 namespace pcl_symmetry {
 
-/// Tells from a distance transform, without a search, that a point is far from the surface.
+/// Detects by a distance transform, without a search, that a point is far from the surface.
 class FarTest {
 public:
   /// Tests points (x - center) / scale for x in the input frame.
@@ -28,13 +28,13 @@ public:
     return static_cast<float>(std::exp(-reach * reach));
   }
 
-  /// Whether the distance transform reaches as far as that, so that no point within is taken for far.
+  /// Whether the distance transform reaches that distance, so that no nearer point counts as far.
   /// \param bound what bound() returned for a distance.
   static bool isExact(float bound) { return bound > 1.2e-3f; }  // below it, f is 0
 
   /// \param points 3 x M, side by side.
   /// \param bound what bound() returned for a distance.
-  /// \return indices of the points that lie inside the grid and may be as near to the surface as that, rising.
+  /// \return ascending indices of the points inside the grid that may be within that distance of the surface.
   std::vector<Eigen::Index> nearOf(const PointsRef& points, float bound) const;
 
 private:
@@ -54,8 +54,8 @@ struct IspSurface {
   const std::vector<char>* at_border = nullptr;
   const FarTest* far = nullptr;  ///< spares the search for points that would get no weight; null = search for all
   int num_threads = 1;           ///< for the searches of one iteration; 0 = one per core
-  /// What a scanner saw, in the frame of the points: a reflection behind the surface that was seen has its partner
-  /// there, and not at the closest point. Null: the points show the object from all sides.
+  /// What a scanner saw, in the frame of the points: the partner of a reflection behind the visible surface lies there
+  /// and not at the closest point. Null: the points show the object from all sides.
   const Visibility* visibility = nullptr;
 };
 
@@ -67,12 +67,12 @@ struct Landing {
   std::vector<float> distances;     ///< from the discs of the surface, see surfaceDistances(); only where they are used
 };
 
-/// Where points land on a surface. Iterative Symmetric Points (Section 4.4) and rotations of scans ask for their
-/// closest points here.
+/// Finds where points land on a surface: the closest points of Iterative Symmetric Points (Section 4.4) and of
+/// rotations of scans.
 /// \param images the points after the motion, in the frame of the surface.
-/// \param reach beyond which points are not near.
+/// \param reach greatest distance of a near point.
 /// \param guesses indices of points that are likely to be near, which makes the search faster; null = not known.
-/// \param leaves_out points beyond what the distance transform reaches may be taken for far, as their weight is little.
+/// \param leaves_out points beyond the reach of the distance transform are skipped; their weight is negligible.
 Landing land(const IspSurface& surface, Points images, double reach, const std::vector<int>* guesses = nullptr,
              bool leaves_out = false);
 

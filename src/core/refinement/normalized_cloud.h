@@ -15,7 +15,7 @@
 
 namespace pcl_symmetry {
 
-/// The cloud as all stages of detection see it: in the unit ball about 0, with normals, spacing and roughness.
+/// The cloud that all stages of detection use: in the unit ball about 0, with normals, spacing and roughness.
 ///
 /// The normalized frame is (x - center) / scale. Lengths below are in this frame.
 struct NormalizedCloud {
@@ -34,23 +34,24 @@ struct NormalizedCloud {
   const double scale;            ///< radius of the edt, input units
 
   const Points points;                       ///< 3 x N
-  const std::shared_ptr<FlannSearch> flann;  ///< null: the search is of the caller
+  const std::shared_ptr<FlannSearch> flann;  ///< null if the caller provides the search
   const ClosestPointSearch::Ptr search;
   FoundNeighbors neighbors;  ///< of the points, found together with their geometry
   const LocalGeometry geometry;
-  const std::shared_ptr<const NeighborLists> lists;  ///< null: there are too many points, or no instructions for them
-  const SurfaceSamples samples;                      ///< the points and their geometry
-  const std::optional<Visibility> visibility;        ///< of a scan
+  const std::shared_ptr<const NeighborLists>
+      lists;                     ///< null if there are too many points or the processor lacks the instructions
+  const SurfaceSamples samples;  ///< the points and their geometry
+  const std::optional<Visibility> visibility;  ///< of a scan
   const FarTest far;
-  const IspSurface surface;                  ///< the above, as Iterative Symmetric Points wants it
+  const IspSurface surface;                  ///< the above, as input of Iterative Symmetric Points
   const std::unique_ptr<NeighborWalk> walk;  ///< null: there are no lists
-  const IspSurface quick_surface;            ///< matched by walks, for first steps, which others refine again
+  const IspSurface quick_surface;            ///< matched by walks, for first steps that are refined again
 
   const PrincipalAxes principal_axes;  ///< of the points
   const double extent;                 ///< diameter of the points, by farthestPair()
   const double spacing;                ///< median of the points' spacing
   const double roughness;              ///< median of the points' roughness, divided by the spacing
-  const double baseline;     ///< mean support of the points on the surface of all others, > 0: a symmetry reaches it
+  const double baseline;     ///< mean support of the points by the surface of all others, > 0, which a symmetry reaches
   const double sigma;        ///< width of the weights when refinement starts: that of the edt
   const double final_sigma;  ///< width at the end: as narrow as the spacing allows, <= sigma
 

@@ -19,7 +19,7 @@ struct Residuals {
   double sum_squares = 0.0;
   int count = 0;
   Matrix6d hessian = Matrix6d::Zero();
-  /// What the Hessian gains per squared radian that the normals are off by.
+  /// Gain of the Hessian per squared radian of normal error.
   Matrix6d gain_of_noise = Matrix6d::Zero();
   std::vector<double> sq_sines;  ///< between the normals of corresponding points
 };
@@ -32,7 +32,7 @@ Residuals residualsAt(const PosedSurface& scan, const PosedSurface& model, const
     if (landing.sq_distances[i] > reach * reach) continue;
     const int j = landing.closest[i];
     const Eigen::Vector3d x = landing.images.col(i).cast<double>(), n = model.normals.col(j).cast<double>();
-    const Eigen::Vector3d turned = T_model_scan.linear() * scan.normals.col(scan.order[i]).cast<double>();
+    const Eigen::Vector3d rotated = T_model_scan.linear() * scan.normals.col(scan.order[i]).cast<double>();
     Eigen::Matrix<double, WeightedProducts::kLast, 3> lever;
     lever << crossMatrix(x), Eigen::Matrix3d::Identity();
     const Vector6d row = lever * n;
@@ -41,14 +41,14 @@ Residuals residualsAt(const PosedSurface& scan, const PosedSurface& model, const
     // A normal is off in the two directions across it, by half of the square in each.
     residuals.gain_of_noise += 0.5 * lever * (Eigen::Matrix3d::Identity() - n * n.transpose()) * lever.transpose();
     residuals.sum_squares += distance * distance;
-    residuals.sq_sines.push_back(n.cross(turned).squaredNorm());
+    residuals.sq_sines.push_back(n.cross(rotated).squaredNorm());
     ++residuals.count;
   }
   return residuals;
 }
 
-/// The Hessian of the residuals without what noise of the normals adds, which would fix directions along which the
-/// surface slides on itself.
+/// The Hessian of the residuals without the part due to noise of the normals, which would constrain directions along
+/// which the surface slides on itself.
 Matrix6d hessianWithoutNoise(Residuals residuals) {
   // The squares of errors in two directions have an exponential distribution; its mean is the median over
   // log 2.
@@ -91,14 +91,14 @@ Matrix6d poseCovariance(const PosedSurface& scan, const PosedSurface& model, con
 Eigen::Isometry3d MotionEquations::motion() const {
   constexpr int last = WeightedProducts::kLast;
   const WeightedProducts::Matrix planes = of_planes_.sums(), points = of_points_.sums();
-  const Eigen::Matrix3d arms = points.topLeftCorner<3, 3>(), turned = points.block<3, 3>(0, 3);
+  const Eigen::Matrix3d arms = points.topLeftCorner<3, 3>(), rotated = points.block<3, 3>(0, 3);
   Matrix6d hessian = of_planes_.ofUnknowns();
   hessian.topLeftCorner<3, 3>() += arms.trace() * Eigen::Matrix3d::Identity() - arms;
   hessian.block<3, 3>(3, 0) -= crossMatrix(points.block<3, 1>(0, last));
   hessian.bottomRightCorner<3, 3>().diagonal().array() += points(last, last);
   Vector6d gradient = planes.block<last, 1>(0, last);
   gradient.head<3>() +=
-      Eigen::Vector3d(turned(1, 2) - turned(2, 1), turned(2, 0) - turned(0, 2), turned(0, 1) - turned(1, 0));
+      Eigen::Vector3d(rotated(1, 2) - rotated(2, 1), rotated(2, 0) - rotated(0, 2), rotated(0, 1) - rotated(1, 0));
   gradient.tail<3>() += points.block<3, 1>(3, last);
   hessian.diagonal().array() += kRegistration.inertia + kRegistration.relative_inertia * hessian.diagonal().maxCoeff();
   Vector6d motion = solveSymmetric(hessian, gradient);

@@ -14,11 +14,11 @@ Eigen::Matrix3d crossMatrix(const Eigen::Vector3d& x);
 /// \param T_b_a takes points of A to B.
 Matrix6d adjoint(const Eigen::Isometry3d& T_b_a);
 
-/// The uncertainty of a pose from least squares of point-to-plane distances: the inverse of their Hessian, less what
-/// noise of the normals adds to it, times their mean square. A direction that the points do not fix keeps the variance
-/// of an unknown pose: a uniform rotation, a translation by a radius.
+/// The uncertainty of a pose from least squares of point-to-plane distances: the inverse of their Hessian, corrected
+/// for noise of the normals, times their mean square. An unconstrained direction keeps the variance of an unknown pose:
+/// a uniform rotation, a translation by a radius.
 /// \param scan,model each about its own center, in units of the model's radius.
-/// \param num_points of the scan that the pose was fitted to, >= 1.
+/// \param num_points number of points of the scan that the pose was fitted to, >= 1.
 /// \param reach greatest distance of points that corresponded, > 0, radii.
 /// \return covariance of the motion of the model's frame that takes the pose to the true one; radians and radii.
 Matrix6d poseCovariance(const PosedSurface& scan, const PosedSurface& model, const Eigen::Isometry3d& T_model_scan,
@@ -40,7 +40,7 @@ public:
     of_points_.add(x / unit_, (y - x) / unit_, 1.0, weight);
   }
 
-  /// The motion of least squares; no motion where the points fix none.
+  /// The least-squares motion, without motion along unconstrained directions.
   Eigen::Isometry3d motion() const;
 
 private:

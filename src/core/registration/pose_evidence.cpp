@@ -20,7 +20,7 @@ double diameterOf(const PosedSurface& surface) {
   return 2.0 * boundingBall(surface.points).radius;
 }
 
-/// Numbers of points of one surface that are looked at, that face the inside of another, and that lie on it.
+/// Numbers of points of one surface that are examined, that face the interior of another one, and that lie on it.
 struct Overlap {
   double num_points = 0.0, num_facing = 0.0, num_on = 0.0;
 
@@ -50,7 +50,7 @@ Overlap overlapOf(const PosedSurface& from, const Landing& landing, const PosedS
   return overlap;
 }
 
-/// What a scanner should have measured of a surface and did not.
+/// The parts of a surface that a scanner should have measured but did not.
 struct NotMeasured {
   double contradicted = 0.0, missing = 0.0, aside = 0.0;  ///< see PoseEvidence
 };
@@ -67,7 +67,7 @@ NotMeasured notMeasured(const PosedSurface& surface, const PosedSurface& scan, c
     const SurfaceDisc closest = scan.disc(on_scan.closest[point.index]);
     const double distance = std::sqrt(closest.sqDistance(on_scan.images.col(point.index)));
     const bool is_measured = std::min(std::abs(point.height), distance) < tolerance;
-    if (!is_measured && point.height < 0.0) continue;  // behind what was measured: nothing is known
+    if (!is_measured && point.height < 0.0) continue;  // behind the measured surface: unknown
     (is_measured ? measured : std::isinf(point.height) ? area.missing : area.contradicted) += point.cosine;
     if (!is_measured && distance > far) area.aside += point.cosine;
     ++num_judged;
@@ -78,8 +78,8 @@ NotMeasured notMeasured(const PosedSurface& surface, const PosedSurface& scan, c
 }
 
 /// A lower limit of the share of points that lie on the surface: by a width that does not grow with the spacing of the
-/// points, so that few points on a wrong object do not count, and by the discs about the points of the surface, flat
-/// and as wide as these are apart, so that it does not count how densely they lie.
+/// points, so that few points on a wrong object do not count, and by discs about the points of the surface, as wide as
+/// their spacing, so that their density does not matter.
 double shareOnSurface(const PosedSurface& from, const Landing& landing, const PosedSurface& to) {
   const double width = kRegistration.contact;
   const auto size = static_cast<double>(landing.images.cols());
@@ -105,9 +105,9 @@ std::vector<float> discDistances(const PosedSurface& from, const PosedSurface& t
 }
 
 bool isSymmetry(const Eigen::Isometry3d& motion, const PosedSurface& model, double tolerance) {
-  const auto most = static_cast<float>(tolerance * diameterOf(model));
+  const auto max_distance = static_cast<float>(tolerance * diameterOf(model));
   const std::vector<float> distances = discDistances(model, model, motion, kRegistration.evidence_points);
-  const auto num_on = std::count_if(distances.begin(), distances.end(), [&](float d) { return d < most; });
+  const auto num_on = std::count_if(distances.begin(), distances.end(), [&](float d) { return d < max_distance; });
   return static_cast<double>(num_on) >= kSymmetricShare * static_cast<double>(distances.size());
 }
 
@@ -170,7 +170,7 @@ double poseConfidence(const PoseEvidence& evidence) {
       std::log(std::clamp(evidence.noise, kRegistration.min_noise, kRegistration.max_noise) / 0.001 + 0.5),
       std::abs(std::log(evidence.size_ratio))};
   const double log_odds = std::inner_product(terms.begin(), terms.end(), kRegistrationFit.begin(), 0.0);
-  // Where surfaces face each other, most of them have to agree, whatever else supports the pose.
+  // Surfaces that face each other have to agree mostly, whatever else supports the pose.
   return std::min(logistic(log_odds), evidence.agreement) * evidence.uniqueness;
 }
 

@@ -20,19 +20,19 @@ float nearness(const Landing& landing, Eigen::Index i, const PosedSurface& to, d
   return std::exp(factor * (to.points.col(landing.closest[i]) - landing.images.col(i)).squaredNorm());
 }
 
-/// The Gaussian of the distance of a match from the disc about its closest point: flat, as wide as points are apart.
+/// The Gaussian of the distance of a match from the disc about its closest point, which is as wide as the spacing.
 float nearnessOfSurface(const Landing& landing, Eigen::Index i, const PosedSurface& to, double width) {
   const float sq_distance = to.disc(landing.closest[i]).sqDistance(landing.images.col(i));
   return std::exp(static_cast<float>(-1.0 / (width * width)) * sq_distance);
 }
 
-/// Share of a point's support that its normal leaves it: 1 where it is parallel to that of the closest point.
+/// Factor of the normal on a point's support: 1 where it is parallel to that of the closest point.
 float normalFactor(const PosedSurface& from, const Landing& landing, Eigen::Index i, const PosedSurface& to) {
   const float cosine = std::max(0.0f, normalCosine(from, to, landing, i));
   return 1.0f - kRegistration.normal_share + kRegistration.normal_share * cosine * cosine;
 }
 
-/// How far a match lies behind what a scanner saw. A depth camera misses surfaces: pixels without a depth are
+/// Depth of a match behind the visible surface. A depth camera misses surfaces: pixels without a depth are
 /// uninformative.
 double depthBehind(const Landing& landing, Eigen::Index i, const PosedSurface& to) {
   const Eigen::Vector3d x = landing.images.col(i).cast<double>();
@@ -59,7 +59,7 @@ PoseScore PoseScorer::score(const Eigen::Isometry3d& T_model_scan, const Detail&
   double conflict = 0.0, judged = kRegistration.min_judged * static_cast<double>(on_scan.images.cols());
   for (Eigen::Index i = 0; i < on_scan.images.cols(); ++i) {
     const double depth = depthBehind(on_scan, i, scan_);
-    // Beside the scan there may be more that the scanner measured: a piece of the object that was cut off.
+    // The scanner may have measured more beside the scan: a piece of the object that was cut off.
     const double on_surface = detail.from_surface ? std::max(nearnessOfSurface(on_scan, i, scan_, detail.width),
                                                              gaussian(depth, detail.width))
                                                   : nearness(on_scan, i, scan_, detail.width);

@@ -10,20 +10,21 @@
 
 namespace pcl_symmetry {
 
-/// Judges and improves poses that bring a scan, or a whole object, to a model of it (Section 5.1).
+/// Scores and improves poses that align a scan or a whole object with a model of it (Section 5.1).
 ///
 /// Every point of the scan has to lie on the model, unless the model is a scan too and could not see that position. No
-/// point of the model may lie where the scan looked through. Both are counted with a Gaussian of the distance, so that
-/// the score rises on the way from a coarse pose to the exact one.
+/// point of the model may lie in free space of the scan. Both are counted with a Gaussian of the distance, so that the
+/// score rises on the way from a coarse pose to the exact one.
 class PoseScorer {
 public:
-  /// How exactly to look.
+  /// Level of detail.
   struct Detail {
     int num_points;      ///< of each cloud, >= 1
     double width;        ///< of the Gaussian, > 0, in the unit of the clouds
     bool exact = false;  ///< closest points from the tree, not from the grid
-    /// Distances from the surface between the points of the model, and no normals: how densely the model was sampled
-    /// and how noisy the scan is does not count then. Otherwise distances from its points, less where normals differ.
+    /// Distances from the surface between the points of the model, without normals, so that the density of the model
+    /// and the noise of the scan do not matter. Otherwise distances from its points, with less support where normals
+    /// differ.
     bool from_surface = false;
     double unit = 1.0;  ///< length in the unit of the clouds, > 0: of the model's size, so that rotations and
                         ///< translations count alike
@@ -34,7 +35,7 @@ public:
 
   PoseScore score(const Eigen::Isometry3d& T_model_scan, const Detail& detail) const;
 
-  /// One Gauss-Newton step. It shortens the distances of the scan's points from the tangent planes at their closest
+  /// One Gauss-Newton step. It reduces the distances of the scan's points from the tangent planes at their closest
   /// points, weighted by the Gaussian, and those of the model's points in free space from the scan.
   Eigen::Isometry3d step(const Eigen::Isometry3d& T_model_scan, const Detail& detail) const;
 
@@ -58,19 +59,20 @@ struct RankedPose {
   void improve(const PoseScorer& scorer, const PoseImprovement& how, double unit = 1.0);
 };
 
-/// The first poses, at most \p most, that differ from all before them.
+/// The first poses, at most \p max_count, that differ from all earlier ones.
 /// \param radius of the model, in the unit of the poses.
-std::vector<RankedPose> firstDistinct(const std::vector<RankedPose>& poses, std::size_t most, double radius = 1.0);
+std::vector<RankedPose> firstDistinct(const std::vector<RankedPose>& poses, std::size_t max_count, double radius = 1.0);
 
-/// The poses of greatest merit, at most \p most, that differ from all better ones.
+/// The poses of greatest merit, at most \p max_count, that differ from all better ones.
 std::vector<RankedPose> distinctPoses(std::vector<RankedPose> poses,
-                                      std::size_t most = std::numeric_limits<std::size_t>::max(), double radius = 1.0);
+                                      std::size_t max_count = std::numeric_limits<std::size_t>::max(),
+                                      double radius = 1.0);
 
 /// A few distinct poses of greatest merit (Section 5.1). Evenly spread rotations are screened by merit. The best of
 /// them and all hypotheses are improved coarsely, the best of those finely, by Gauss-Newton steps with a shrinking
 /// Gaussian.
 /// \param scan,model each about its own center, in units of the model's radius.
-/// \param hypotheses T_model_scan to improve beside the screened ones, such as those that bring frames together.
+/// \param hypotheses T_model_scan to improve beside the screened ones, such as those that align frames.
 /// \return best first.
 /// \throws std::invalid_argument for bad options.
 std::vector<RankedPose> searchPoses(const PosedSurface& scan, const PosedSurface& model,

@@ -51,7 +51,7 @@ void RankedPose::improve(const PoseScorer& scorer, const PoseImprovement& how, d
   num_points = how.num_points;
 }
 
-std::vector<RankedPose> firstDistinct(const std::vector<RankedPose>& poses, std::size_t most, double radius) {
+std::vector<RankedPose> firstDistinct(const std::vector<RankedPose>& poses, std::size_t max_count, double radius) {
   std::vector<RankedPose> kept;
   for (const RankedPose& pose : poses) {
     const auto same = [&](const RankedPose& other) {
@@ -60,14 +60,14 @@ std::vector<RankedPose> firstDistinct(const std::vector<RankedPose>& poses, std:
              motion.translation().norm() < kRegistration.merge_distance * radius;
     };
     if (std::none_of(kept.begin(), kept.end(), same)) kept.push_back(pose);
-    if (kept.size() == most) break;
+    if (kept.size() == max_count) break;
   }
   return kept;
 }
 
-std::vector<RankedPose> distinctPoses(std::vector<RankedPose> poses, std::size_t most, double radius) {
+std::vector<RankedPose> distinctPoses(std::vector<RankedPose> poses, std::size_t max_count, double radius) {
   sortFalling(poses, [](const RankedPose& pose) { return pose.score.merit(); });
-  return firstDistinct(poses, most, radius);
+  return firstDistinct(poses, max_count, radius);
 }
 
 std::vector<RankedPose> searchPoses(const PosedSurface& scan, const PosedSurface& model,

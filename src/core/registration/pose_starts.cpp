@@ -12,8 +12,8 @@ namespace pcl_symmetry {
 
 namespace {
 
-/// The position by which both clouds are held together, along three directions of the scanner: the middle of the
-/// outline in the picture plane, and the front along the view.
+/// The anchor by which both clouds are aligned, along three directions of the scanner: the middle of the outline in the
+/// image plane, and the front along the view.
 Eigen::Vector3d anchorOf(const Eigen::Matrix3Xd& in_scanner) {
   const Eigen::Vector3d low = in_scanner.rowwise().minCoeff(), high = in_scanner.rowwise().maxCoeff();
   return {0.5 * (low.x() + high.x()), 0.5 * (low.y() + high.y()), low.z()};

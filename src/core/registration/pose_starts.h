@@ -13,7 +13,8 @@ namespace pcl_symmetry {
 /// \return n rotations; every rotation is within about 160 / cbrt(n) degrees of one of them.
 std::vector<Eigen::Matrix3d> uniformRotations(int num_rotations);
 
-/// Completes rotations to poses: the translation puts a rotated scan where the model has to be to be seen so.
+/// Completes rotations to poses: the translation puts a rotated scan where the model would look like it from the
+/// scanner.
 ///
 /// As seen by the scanner, the middle of the scan's outline is put on the middle of the model's, and the front of the
 /// scan on the front of the model. Without a viewpoint the centers of mass meet.
@@ -30,8 +31,8 @@ private:
   Eigen::Vector3d scan_anchor_, model_anchor_ = Eigen::Vector3d::Zero();
 };
 
-/// The poses that bring the symmetry frame of one cloud to that of another, in all ways that symmetry leaves open
-/// (Section 5.1).
+/// The poses that align the symmetry frame of one cloud with that of another, in all ways that symmetry allows (Section
+/// 5.1).
 ///
 /// The axes of \p b may have any order and any signs that are a rotation: 24 ways, from every equally good frame of
 /// \p a that is a maximum. About an axis of revolution of \p a the poses differ by steps of 45 degrees: between a scan

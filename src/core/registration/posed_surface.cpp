@@ -38,12 +38,12 @@ PosedSurface::PosedSurface(const PointsRef& input, std::optional<Visibility> see
       search(makeFlannSearch(input)) {
   FoundNeighbors neighbors;
   LocalGeometry geometry = localGeometry(points, *search, num_threads, &neighbors);
-  lookAtWatch();
+  checkCancelled();
   const double typical = median(geometry.spacing);
   spacing = geometry.spacing;
   if (median(geometry.roughness) > kRegistration.max_roughness * typical)
     geometry = localGeometry(points, *search, num_threads, nullptr, kRegistration.num_rough_neighbors);
-  lookAtWatch();
+  checkCancelled();
   normals = std::move(geometry.normals);
   is_oriented = seen && seen->numPictures() == 1;
   if (is_oriented) {

@@ -15,7 +15,7 @@
 
 namespace pcl_symmetry {
 
-/// One of two clouds that are brought together, with everything that judging a pose needs.
+/// One of two clouds to be aligned, with everything needed to judge a pose.
 struct PosedSurface {
   Points points;                   ///< 3 x N
   Points normals;                  ///< 3 x N, unit, toward the viewpoint if is_oriented, otherwise of any sign
@@ -25,19 +25,19 @@ struct PosedSurface {
   double accuracy = 0.0;           ///< distance within which samples of one surface meet: their spacing and their noise
   double noise = 0.0;              ///< scatter of the samples about the surface
   std::optional<Visibility> seen;  ///< what the scanner saw; nothing = the cloud shows its object from all sides
-  /// Made when it is first asked for: a surface that is judged exactly needs none.
+  /// Computed on first use; exact judgments do not need it.
   std::shared_future<ClosestPointGrid> grid;
-  std::shared_future<std::vector<char>> borders;  ///< N, 1 at an open border; made when it is first asked for
+  std::shared_future<std::vector<char>> borders;  ///< N, 1 at an open border; computed on first use
   ClosestPointSearch::Ptr search;
 
   /// \param points 3 x N, finite, N >= 1.
   /// \param seen what the scanner saw, in the frame of the points.
   PosedSurface(const PointsRef& points, std::optional<Visibility> seen, std::uint64_t seed, int num_threads);
-  /// A surface of a few points in random order, whose normals are known, for poses that are judged coarsely: the grid
-  /// of closest points is coarser, and there are no search, borders, spacing and accuracy, which exact judgments need.
+  /// A surface of a few points in random order with known normals, for coarse judgments: the grid of closest points is
+  /// coarser, and search, borders, spacing and accuracy, which exact judgments need, are not set.
   PosedSurface(const PointsRef& points, const PointsRef& normals, std::optional<Visibility> seen);
 
-  /// About a point, as wide as points are apart there.
+  /// The disc about a point, as wide as the local spacing.
   SurfaceDisc disc(int i) const { return {points.col(i), normals.col(i), spacing[i]}; }
 };
 

@@ -7,20 +7,20 @@
 
 namespace pcl_symmetry {
 
-/// A point of a surface that nothing of the surface hides from a scanner.
+/// A point of a surface that the surface itself does not hide from a scanner.
 struct VisiblePoint {
   Eigen::Index index;                ///< in the order of the surface
   Eigen::Vector3d position, normal;  ///< in the frame of the scan; the normal of any sign
-  double cosine;                     ///< between normal and ray, > 0: the area that the scanner sees of it
-  /// Height above what was measured on its ray, along the normal: positive in free space, infinite where the ray met
-  /// nothing, and minus infinity where no ray passed.
+  double cosine;                     ///< between normal and ray, > 0: its visible area
+  /// Height above the measured surface on its ray, along the normal: positive in free space, infinite if the ray met no
+  /// surface, and minus infinity if no ray passed.
   double height;
 };
 
 /// \param scan with what its scanner saw.
-/// \param num_points of the surface that are looked at.
-/// \param is_strict also points that are hidden a little beside their rays are left out: pictures that are made of points
-/// have gaps, through which a point at the back is seen.
+/// \param num_points number of points of the surface that are examined.
+/// \param is_strict also leaves out points that are hidden slightly beside their rays: images made from points have
+/// gaps, through which points at the back are visible.
 std::vector<VisiblePoint> visiblePoints(const PosedSurface& surface, const PosedSurface& scan,
                                         const Eigen::Isometry3d& T_scan_surface, int num_points, bool is_strict);
 

@@ -104,7 +104,7 @@ Rotations placed(const RotationGroup& group, const Rotations& generated, const s
   const Rotations own = group.elements();
   if (axes.empty()) return own;
   Eigen::Matrix3d frame = roughFrame(group, axes);
-  // Three perpendicular axes of order 2 leave two ways to place an icosahedron: a quarter turn apart.
+  // Three perpendicular axes of order 2 leave two orientations of an icosahedron, a quarter turn apart.
   const Eigen::Matrix3d other = frame * rotationAbout(Eigen::Vector3d::UnitZ(), 0.5 * kPi);
   if (misfitOf(own, generated, other) < misfitOf(own, generated, frame) - 1e-6) frame = other;
   frame = closeFrame(own, generated, frame);
@@ -185,11 +185,11 @@ ObjectSymmetries ObjectSymmetries::from(const std::vector<Eigen::Isometry3d>& di
     setRound(result, continuous, rotations);
     return result;
   }
-  const std::size_t most = 240;  // those of D_120
+  const std::size_t max_size = 240;  // those of D_120
   // Frobenius norm of the difference of two rotations by an angle: sqrt(8) sin(angle / 2).
-  const Rotations products = productsOf(rotations, std::sqrt(8.0) * std::sin(0.5 * kOneRotation), most);
-  if (products.size() > most)
-    throw std::invalid_argument("discrete: the rotations generate no group of at most " + std::to_string(most) +
+  const Rotations products = productsOf(rotations, std::sqrt(8.0) * std::sin(0.5 * kOneRotation), max_size);
+  if (products.size() > max_size)
+    throw std::invalid_argument("discrete: the rotations generate no group of at most " + std::to_string(max_size) +
                                 " rotations");
   const std::vector<RotationAxis> axes = axesOfProducts(products);
   const RotationGroup group = groupOf(products.size(), axes);

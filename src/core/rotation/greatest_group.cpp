@@ -1,4 +1,4 @@
-/// The greatest group that axes of symmetry are part of.
+/// The greatest group that contains axes of symmetry.
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -12,9 +12,9 @@ namespace pcl_symmetry {
 
 namespace {
 
-/// Rotations about a center that represent all: axes in all directions, angles from 120 to 180 degrees.
+/// Rotations about a center that represent all rotations: axes in all directions, angles from 120 to 180 degrees.
 RotationSet rotationsOfSphere(const Eigen::Vector3d& center) {
-  const int num_rotations = 16;  // fewer take polyhedra for balls
+  const int num_rotations = 16;  // fewer mistake polyhedra for balls
   RotationSet set{{}, center, static_cast<std::size_t>(num_rotations)};
   for (int k = 0; k < num_rotations; ++k) {
     const double angle = 2.0 * kPi / 3.0 + kPi / 3.0 * goldenFraction(k);
@@ -37,8 +37,8 @@ std::optional<PlacedGroup> cylindricalGroup(const RotationFit& fit, const Object
                                             const FoldAxis& main) {
   std::vector<double> offsets;
   // Up to half the radius: where points are unevenly dense, the center of a cylinder lies off the center of mass.
-  const int most = static_cast<int>(std::lround(0.5 / kRotation.across_step));
-  for (int k = -most; k <= most; ++k) offsets.push_back(kRotation.across_step * k);
+  const int num_steps = static_cast<int>(std::lround(0.5 / kRotation.across_step));
+  for (int k = -num_steps; k <= num_steps; ++k) offsets.push_back(kRotation.across_step * k);
   const Line3d across = bestAcross(fit, main.line, kPi, 1, offsets);
   RotationSet set = rotationsAbout({across.origin(), main.line.direction()});
   set.rotations.insert(set.rotations.begin() + 1, rotationAbout(across.direction(), kPi));
@@ -75,9 +75,9 @@ std::optional<PlacedGroup> dihedralGroup(const RotationFit& fit, const ObjectSym
   return placed(best);
 }
 
-/// Two axes that are not parallel place a group, up to itself.
+/// Two axes that are not parallel fix the position of a group, up to its own symmetry.
 /// \param first,second axes that were found.
-/// \param a,b axes of the group that these are taken for.
+/// \param a,b axes of the group that they are identified with.
 std::optional<PlacedGroup> groupThrough(const RotationFit& fit, const ObjectSymmetryOptions& options,
                                         const RotationGroup& group, const FoldAxis& first, const FoldAxis& second,
                                         const RotationAxis& a, const RotationAxis& b) {

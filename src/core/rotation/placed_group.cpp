@@ -17,7 +17,7 @@ bool representsAll(RotationGroupKind kind) {
   return kind == RotationGroupKind::Revolution || kind == RotationGroupKind::Spherical;
 }
 
-/// The mean of rotations that represent all, or nothing where one of them fails clearly. Their worst would be a matter
+/// The mean shares of rotations that represent all; none if one of them fails clearly. The worst one would be a matter
 /// of chance.
 std::optional<OffShares> meanShares(const RotationFit& fit, const RotationSet& set) {
   OffShares mean;
@@ -61,9 +61,10 @@ Eigen::Matrix3d frameAlong(const Eigen::Vector3d& z, const Eigen::Vector3d& x) {
   return frame;
 }
 
-std::vector<Eigen::Matrix3d> productsOf(const std::vector<Eigen::Matrix3d>& generators, double same, std::size_t most) {
+std::vector<Eigen::Matrix3d> productsOf(const std::vector<Eigen::Matrix3d>& generators, double same,
+                                        std::size_t max_count) {
   std::vector<Eigen::Matrix3d> elements{Eigen::Matrix3d::Identity()};
-  for (std::size_t i = 0; i < elements.size() && elements.size() <= most; ++i) {
+  for (std::size_t i = 0; i < elements.size() && elements.size() <= max_count; ++i) {
     for (const Eigen::Matrix3d& generator : generators) {
       const Eigen::Matrix3d product = generator * elements[i];
       if (std::none_of(elements.begin(), elements.end(),
@@ -94,7 +95,7 @@ RotationSet elementsOf(const RotationGroup& group, const Eigen::Matrix3d& frame,
 }
 
 RotationSet rotationsAbout(const Line3d& line) {
-  const int num_rotations = 8;  // fewer take polygons for round
+  const int num_rotations = 8;  // fewer mistake polygons for circles
   RotationSet set{{}, line.origin(), static_cast<std::size_t>(num_rotations)};
   for (int k = 1; k <= num_rotations; ++k)
     set.rotations.push_back(rotationAbout(line.direction(), 2.0 * kPi * goldenFraction(k)));

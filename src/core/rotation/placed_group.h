@@ -10,7 +10,7 @@
 
 namespace pcl_symmetry {
 
-/// A group of rotations in place, in the normalized frame.
+/// A group of rotations with its axes and center, in the normalized frame.
 struct PlacedGroup {
   RotationGroupKind kind = RotationGroupKind::Cyclic;
   int fold = 1;
@@ -23,32 +23,33 @@ struct PlacedGroup {
 constexpr RotationGroup kPolyhedralGroups[] = {
     {RotationGroupKind::Icosahedral, 5}, {RotationGroupKind::Octahedral, 4}, {RotationGroupKind::Tetrahedral, 3}};
 
-/// The excess beyond which a set judged by kRotation.num_some_points is given up: three standard errors above 1.
+/// The excess above which a set judged by kRotation.num_some_points is rejected: three standard errors above 1.
 double greatestExcess(const RotationLimits& limits);
 
-/// The set moved to where it fits the surface best; nothing if the surface does not support it there.
+/// The set moved to where it fits the surface best; none if the surface does not support it there.
 std::optional<PlacedGroup> placedGroup(const RotationFit& fit, const ObjectSymmetryOptions& options,
                                        RotationGroupKind kind, int fold, RotationSet set);
 
-/// The rotation that takes z to \p z, and x as near as can be to \p x.
+/// The rotation that takes z to \p z, and x as close as possible to \p x.
 /// \param z,x not parallel.
 Eigen::Matrix3d frameAlong(const Eigen::Vector3d& z, const Eigen::Vector3d& x);
 
-/// All products of rotations, the identity first; more than \p most where they generate no group of that size.
+/// All products of rotations, the identity first; more than \p max_count if they generate no group of at most that
+/// size.
 /// \param same Frobenius norm below which two matrices are one rotation.
 std::vector<Eigen::Matrix3d> productsOf(const std::vector<Eigen::Matrix3d>& generators, double same,
-                                        std::size_t most = std::numeric_limits<std::size_t>::max() - 1);
+                                        std::size_t max_count = std::numeric_limits<std::size_t>::max() - 1);
 
 /// Axis of a rotation, unit.
 Eigen::Vector3d axisOf(const Eigen::Matrix3d& rotation);
 
 /// All elements of a group but the identity, placed by \p frame. The generators are judged and, about a main axis, the
-/// rotations by about a quarter and a half of a full one: where there are many folds, one step cannot be told from that
-/// of one fold more or less.
+/// rotations by about a quarter and a half of a full one: where there are many folds, one step cannot be distinguished
+/// from that of one fold more or less.
 /// \param frame rotation from the frame of the group to that of the points.
 RotationSet elementsOf(const RotationGroup& group, const Eigen::Matrix3d& frame, const Eigen::Vector3d& center);
 
-/// Rotations about a line that represent all about it: their angles fit no polygon.
+/// Rotations about a line that represent all rotations about it: their angles fit no polygon.
 RotationSet rotationsAbout(const Line3d& line);
 
 }  // namespace pcl_symmetry

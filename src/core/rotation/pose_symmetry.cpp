@@ -1,5 +1,5 @@
-/// Poses of a symmetric object: which of those that look the same. With a pose T and a symmetry S of the object, T S
-/// looks like T. All symmetries fix the center, so only rotations differ between poses that look the same.
+/// Equivalent poses of a symmetric object. With a pose T and a symmetry S of the object, T S looks like T. All
+/// symmetries fix the center, so only rotations differ between poses that look the same.
 
 #include <Eigen/Geometry>
 #include <algorithm>
@@ -53,7 +53,7 @@ struct ClosestSymmetry {
   double angle = 0.0;  ///< of the rotation C
 };
 
-/// Among elements that come equally close, the first one.
+/// Of equally close elements, the first one.
 /// \param M R_previous^T R: the symmetry S with the greatest trace of M S is the closest.
 ClosestSymmetry closestSymmetry(const ObjectSymmetries& symmetries, const Eigen::Matrix3d& M) {
   ClosestSymmetry closest;

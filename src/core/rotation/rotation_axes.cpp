@@ -43,8 +43,8 @@ std::vector<int> peaks(const std::vector<double>& values) {
   return kept;
 }
 
-/// Overlaps of the rotations by 2 pi / n about a line, at index n; 0 where half of that overlaps better. Rotations by
-/// small angles overlap well with any shape, and better the smaller they are.
+/// Overlaps of the rotations by 2 pi / n about a line, at index n; 0 where half of that angle overlaps better. Small
+/// rotations overlap well with any shape, the better the smaller they are.
 std::vector<double> foldOverlaps(const RotationFit& fit, const Line3d& line, int max_fold) {
   std::vector<double> overlaps(static_cast<std::size_t>(max_fold) + 1, 0.0);
   for (int n = 2; n <= max_fold; ++n) {
@@ -101,7 +101,7 @@ std::vector<int> likelyFolds(const RotationFit& fit, const Line3d& line, int max
 // all phases of every fold up to 60.
 constexpr int kNumPhases = 97;
 
-/// What rotations about a line map off the surface, judged by some of the points. Each is computed once.
+/// The shares that rotations about a line map off the surface, judged by some of the points. Each is computed once.
 class RotationProfile {
 public:
   RotationProfile(const RotationFit& fit, const Line3d& line) : fit_(fit), line_(line) {}
@@ -134,8 +134,8 @@ Line3d lineOf(const RotationSet& rotation, const Line3d& start) {
   return {rotation.center + direction.dot(start.origin() - rotation.center) * direction, direction};
 }
 
-/// The likeliest rotation about a line moved to where it fits best; nothing where none fits, or where it ends at a line
-/// that was tried.
+/// The likeliest rotation about a line moved to where it fits best; none if it does not fit or ends at a line that was
+/// tried.
 std::optional<RotationSet> fittedRotation(const RotationFit& fit, const Line3d& start, int max_fold,
                                           const std::vector<Line3d>& tried) {
   RotationSet best;
@@ -154,8 +154,8 @@ std::optional<RotationSet> fittedRotation(const RotationFit& fit, const Line3d& 
   return fit.overlap(best) < kRotation.fair_overlap ? std::nullopt : std::optional(best);
 }
 
-/// The surface judged at a tolerance that rotations about a line do not keep to by themselves: about a slender part,
-/// every point moves less than a share of its length.
+/// The surface judged at a tolerance that rotations about a line do not meet trivially: about a slender part, every
+/// point moves less than a share of its length.
 RotationFit fitAbout(const RotationFit& fit, const Line3d& line) {
   double sq_radius = 0.0;
   for (Eigen::Index i = 0; i < fit.points().cols(); ++i)
@@ -166,20 +166,20 @@ RotationFit fitAbout(const RotationFit& fit, const Line3d& line) {
   return fit.withLimits(limits);
 }
 
-/// A rotation about a line that fails: the first that does so clearly, else the worst.
-std::pair<int, double> failingRotation(RotationProfile& profile, double most) {
+/// A failing rotation about a line: the first one that fails clearly, or else the worst one.
+std::pair<int, double> failingRotation(RotationProfile& profile, double max_excess) {
   std::pair<int, double> worst{1, 0.0};
-  for (int k = 1; 2 * k < kNumPhases && worst.second <= most; ++k) {
+  for (int k = 1; 2 * k < kNumPhases && worst.second <= max_excess; ++k) {
     const int part = 1 + (k * 19) % (kNumPhases / 2);  // the first ones are spread over half a rotation
     if (const double excess = profile.excess(part, kNumPhases); excess > worst.second) worst = {part, excess};
   }
   return worst;
 }
 
-/// The worst excess of the rotations by multiples of 1 / \p fold, or a greater one than \p most.
-double excessOfFold(RotationProfile& profile, int fold, double most) {
+/// The worst excess of the rotations by multiples of 1 / \p fold, or one above \p max_excess.
+double excessOfFold(RotationProfile& profile, int fold, double max_excess) {
   double worst = 0.0;
-  for (int k = 1; 2 * k <= fold && worst <= most; ++k) worst = std::max(worst, profile.excess(k, fold));
+  for (int k = 1; 2 * k <= fold && worst <= max_excess; ++k) worst = std::max(worst, profile.excess(k, fold));
   return worst;
 }
 
@@ -194,13 +194,13 @@ double excessBetween(RotationProfile& profile, int fold) {
 /// halfway between. A multiple of a true fold fails that: half its rotations are no symmetries, or as good as any.
 /// \return the greatest first.
 std::vector<int> foldsOf(const RotationFit& fit, RotationProfile& profile, const Line3d& line, int max_fold) {
-  const double most = greatestExcess(fit.limits());
+  const double max_excess = greatestExcess(fit.limits());
   std::vector<int> folds;
   for (int n = max_fold; n >= 2; --n) {
     if (fit.overlap(profile.rotation(1, n), line.origin()) < kRotation.rough_overlap) continue;
-    const double excess = excessOfFold(profile, n, most);
-    if (excess > most) continue;
-    // Where others fail hardly more, chance decides between them.
+    const double excess = excessOfFold(profile, n, max_excess);
+    if (excess > max_excess) continue;
+    // If others fail hardly more, the choice is a matter of chance.
     const double others = excessBetween(profile, n);
     if (others >= kRotation.clear_factor * excess && others >= excess + kRotation.clear_excess) folds.push_back(n);
   }
@@ -262,16 +262,16 @@ std::optional<FoldAxis> AxisFinder::foldAbout(const RotationFit& fit, const Line
 }
 
 /// The line with all rotations about it that are symmetries. Three or more equal pieces around a line are a pattern:
-/// their fold comes before rotations by all angles, though the pieces together be small enough for a feature.
+/// their fold has precedence over rotations by all angles, even if the pieces together are small enough for a feature.
 std::optional<FoldAxis> AxisFinder::axisAbout(const Line3d& line) {
   const RotationFit fit = fitAbout(fit_, line);
   RotationProfile profile(fit, line);
-  const double most = greatestExcess(fit.limits());
-  const auto failing = failingRotation(profile, most);
+  const double max_excess = greatestExcess(fit.limits());
+  const auto failing = failingRotation(profile, max_excess);
   const int worst = failing.first;
   const double excess = failing.second;
   const auto revolution = [&]() -> std::optional<FoldAxis> {
-    if (excess > kRotation.max_worst * most) return std::nullopt;
+    if (excess > kRotation.max_worst * max_excess) return std::nullopt;
     return axisFrom(placedGroup(fit, options_, RotationGroupKind::Revolution, 0, rotationsAbout(line)), 0);
   };
   std::vector<int> folds;

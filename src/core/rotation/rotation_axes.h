@@ -23,8 +23,8 @@ struct RejectedAxis {
 };
 
 /// The principal axes of the points through their center of mass and, where points are unevenly dense, that of the
-/// bounding ball, and the line through both centers. A shape of revolution and one with a fold of 3 or more about a
-/// single axis have it there.
+/// bounding ball, and the line through both centers. The axis of a shape of revolution, or of a fold of 3 or more about
+/// a single axis, is one of them.
 std::vector<Line3d> principalLines(const RotationFit& fit);
 
 /// Lines through these centers, in all directions, about which a rotation of prime order overlaps most with the
@@ -32,7 +32,7 @@ std::vector<Line3d> principalLines(const RotationFit& fit);
 /// \param num_directions of lines through each center, on a half sphere.
 std::vector<Line3d> axisLineCandidates(const RotationFit& fit, int num_directions, int max_fold, int num_threads);
 
-/// The half turn, among those about axes perpendicular to a line, that overlaps most with the surface.
+/// The half turn about an axis perpendicular to a line that overlaps most with the surface.
 /// \param width the axes have \p num_angles angles in [0, width), radians.
 /// \param offsets positions of the axis along the line, from its origin.
 Line3d bestAcross(const RotationFit& fit, const Line3d& line, double width, int num_angles,
@@ -64,7 +64,7 @@ private:
   std::vector<RejectedAxis> rejected_;
 };
 
-/// The greatest group that axes are part of and that the surface supports as a whole.
+/// The greatest group that contains the axes and that the surface supports as a whole.
 /// \return C_1 where there is no axis.
 PlacedGroup greatestGroup(const RotationFit& fit, const ObjectSymmetryOptions& options,
                           const std::vector<FoldAxis>& axes);

@@ -53,9 +53,9 @@ std::vector<Ring> fewestRings(double angle) {
   if (angle >= 0.5 * kPi) return {{0.0, 1}, {kPi, 1}};
   // Bands wider than twice the angle are not covered. Square cells, sqrt(2) times the angle wide, are best for small
   // angles, and bands half as wide never are.
-  const int least = std::max(1, static_cast<int>(std::ceil((kPi - 2.0 * angle) / (2.0 * angle))));
-  std::vector<Ring> best = ringsOf(least, angle);
-  for (int num_bands = least + 1; num_bands <= 2 * least + 2; ++num_bands) {
+  const int min_bands = std::max(1, static_cast<int>(std::ceil((kPi - 2.0 * angle) / (2.0 * angle))));
+  std::vector<Ring> best = ringsOf(min_bands, angle);
+  for (int num_bands = min_bands + 1; num_bands <= 2 * min_bands + 2; ++num_bands) {
     std::vector<Ring> rings = ringsOf(num_bands, angle);
     if (sizeOf(rings) < sizeOf(best)) best = std::move(rings);
   }

@@ -10,7 +10,7 @@ namespace pcl_symmetry {
 /// other.
 ///
 /// The directions D^-1 a lie on rings. The bands around the rings fill the sphere, and the number of directions of each
-/// ring follows from its width, so that the angle is a bound and no estimate.
+/// ring follows from its width, so that the angle is a bound, not an estimate.
 /// \param axis unit; called a above.
 /// \param angle radians, in (0, pi].
 /// \return the identity first; about 6.5 / angle^2 rotations.

@@ -67,8 +67,8 @@ RotationEvidence::RotationEvidence(const NormalizedCloud& cloud, double toleranc
       few_samples_(drawSamples(cloud.points.cols(), kScanAxes.num_few_samples, seed)),
       facing_(facingNormals(cloud)) {}
 
-RotationShares RotationEvidence::roughly(const Eigen::Affine3d& motion, double slack, double max_off,
-                                         double max_far) const {
+RotationShares RotationEvidence::screen(const Eigen::Affine3d& motion, double slack, double max_off,
+                                        double max_far) const {
   RotationShares shares;
   const double one = 1.0 / static_cast<double>(few_samples_.size());
   const auto fAt = [&](double distance) { return std::exp(-std::pow(distance / cloud_.sigma, 2)); };
@@ -79,7 +79,7 @@ RotationShares RotationEvidence::roughly(const Eigen::Affine3d& motion, double s
     const double f = std::max(kScanAxes.min_f, cloud_.edt(cloud_.toInput(x)));
     if (f >= near_f) {
       shares.on += one;
-    } else if (isEmpty(x)) {
+    } else if (isFree(x)) {
       shares.off += one;
       shares.far += f < far_f ? one : 0.0;
     }
@@ -100,14 +100,14 @@ Landing RotationEvidence::landed(const Eigen::Affine3d& motion) const {
   return landing;
 }
 
-RotationShares RotationEvidence::exactly(const Eigen::Affine3d& motion) const {
+RotationShares RotationEvidence::measure(const Eigen::Affine3d& motion) const {
   const Landing all = landed(motion);
   RotationShares shares;
   const double one = 1.0 / static_cast<double>(samples_.size());
   for (std::size_t i = 0; i < samples_.size(); ++i) {
     if (all.distances[i] <= tolerance_) {
       shares.on += one;
-    } else if (isEmpty(all.images.col(i).cast<double>())) {
+    } else if (isFree(all.images.col(i).cast<double>())) {
       shares.off += one;
       shares.far += all.distances[i] > far_ ? one : 0.0;
     }
@@ -120,7 +120,7 @@ std::vector<int> RotationEvidence::notRound(const Line3d& line) const {
   for (int k = 1; k <= kScanAxes.round_rotations; ++k) {
     const Landing all = landed(motionAbout(line, 2.0 * kPi * goldenFraction(k)));
     for (std::size_t i = 0; i < samples_.size(); ++i)
-      if (all.distances[i] > far_ && isEmpty(all.images.col(i).cast<double>())) is_far[i] = true;
+      if (all.distances[i] > far_ && isFree(all.images.col(i).cast<double>())) is_far[i] = true;
   }
   std::vector<int> some;
   for (std::size_t i = 0; i < samples_.size(); ++i)
@@ -134,7 +134,7 @@ double RotationEvidence::shareOn(const Eigen::Affine3d& motion, const std::vecto
   return static_cast<double>(count) / static_cast<double>(some.size());
 }
 
-double RotationEvidence::hold(const Line3d& line, double angle) const {
+double RotationEvidence::stiffness(const Line3d& line, double angle) const {
   const Eigen::Isometry3d motion = motionAbout(line, angle);
   const std::array<Eigen::Isometry3d, 4> beside = motionsBeside(line, angle);
   const Landing all = landed(motion);
@@ -163,7 +163,7 @@ void RotationEvidence::addPulls(const IspSurface& surface, const Line3d& line, d
     Eigen::Vector3d along;
     double weight = std::exp(-landing.sq_distances[i] / sq_width);
     if (cloud_.geometry.at_border[closest[i]]) {
-      if (miss.norm() < kScanAxes.min_empty_miss * tolerance_ || cloud_.visibility->depthBehind(y) >= 0.0) continue;
+      if (miss.norm() < kScanAxes.min_free_miss * tolerance_ || cloud_.visibility->depthBehind(y) >= 0.0) continue;
       along = miss.normalized();
     } else {
       const Eigen::Vector3d there = facing_.col(closest[i]).cast<double>(),
@@ -213,7 +213,7 @@ double planesOff(const RotationEvidence& evidence, const Line3d& line) {
     double sum = 0.0;
     for (const double rotated : {angle, angle + 0.5 * kPi}) {
       const RotationShares shares =
-          evidence.roughly(planeThrough(line, rotated).reflection(), kScanAxes.plane_slack, 1.0, 1.0);
+          evidence.screen(planeThrough(line, rotated).reflection(), kScanAxes.plane_slack, 1.0, 1.0);
       sum += shares.off - kScanAxes.landed_counts * shares.on;
     }
     return sum;
@@ -228,8 +228,8 @@ double planesOff(const RotationEvidence& evidence, const Line3d& line) {
   for (int k = 1; k < kScanAxes.num_plane_pairs; ++k) take(k * kStep);
   const double coarse = best;
   for (const double beside : {-0.5 * kStep, 0.5 * kStep}) take(coarse + beside);
-  return std::max(evidence.exactly(planeThrough(line, best).reflection()).off,
-                  evidence.exactly(planeThrough(line, best + 0.5 * kPi).reflection()).off);
+  return std::max(evidence.measure(planeThrough(line, best).reflection()).off,
+                  evidence.measure(planeThrough(line, best + 0.5 * kPi).reflection()).off);
 }
 
 /// RotationSigns::grown.
@@ -262,10 +262,10 @@ std::vector<RotationSigns> rotationSigns(const RotationEvidence& evidence,
     if (rotations[i].fold != 2) return;
     const Line3d line = cloud.lineOf(rotations[i]);
     signs[i].grown = grownBy(cloud, motionAbout(line, kPi));
-    signs[i].hold = evidence.hold(line, kPi);
+    signs[i].stiffness = evidence.stiffness(line, kPi);
     const bool is_best = marginOf(rotations[i]) >= marginOf(*best);
     signs[i].beside = is_best || crossesUpright(line, cloud.lineOf(*best)) ? 0.0 : 1.0;
-    // Planes are evidence only against a rotation, and take most of the time.
+    // Planes can only be evidence against a rotation, and they take most of the time.
     if (rotationConfidence(rotations[i], signs[i]) >= min_confidence) signs[i].planes_off = planesOff(evidence, line);
   });
   return signs;
@@ -284,7 +284,7 @@ std::vector<double> rotationOddsTerms(const SymmetryRotation& rotation, const Ro
               off,
               1.0 - rotation.support,
               std::log(signs.grown),
-              -std::log1p(signs.hold / kScanAxes.min_hold),
+              -std::log1p(signs.stiffness / kScanAxes.min_stiffness),
               std::log1p(signs.planes_off / kScanAxes.negligible_of_planes),
               signs.beside};
     case RotationKind::Folds:

@@ -15,9 +15,9 @@ namespace pcl_symmetry {
 
 namespace {
 
-/// Indices of at most \p most of \p size items, evenly spread.
-std::vector<std::size_t> spreadOver(std::size_t size, std::size_t most) {
-  std::vector<std::size_t> chosen(std::min(size, most));
+/// Indices of at most \p max_count of \p size items, evenly spread.
+std::vector<std::size_t> spreadOver(std::size_t size, std::size_t max_count) {
+  std::vector<std::size_t> chosen(std::min(size, max_count));
   for (std::size_t i = 0; i < chosen.size(); ++i) chosen[i] = i * size / chosen.size();
   return chosen;
 }
@@ -267,7 +267,7 @@ OffShares RotationFit::offShares(const Eigen::Matrix3d& rotation, const Eigen::V
           static_cast<double>(num_far) / static_cast<double>(size)};
 }
 
-OffShares RotationFit::worstShares(const RotationSet& set, int num_samples, double most) const {
+OffShares RotationFit::worstShares(const RotationSet& set, int num_samples, double max_excess) const {
   const std::size_t at_a_time = 4;  // for the threads
   OffShares worst;
   for (std::size_t begin = 0; begin < set.num_judged; begin += at_a_time) {
@@ -275,7 +275,7 @@ OffShares RotationFit::worstShares(const RotationSet& set, int num_samples, doub
     parallelBlocks(shares.size(), num_threads_,
                    [&](std::size_t i) { shares[i] = offShares(set.rotations[begin + i], set.center, num_samples); });
     for (const OffShares& other : shares) worst = {std::max(worst.off, other.off), std::max(worst.far, other.far)};
-    if (limits_.excess(worst) > most) break;
+    if (limits_.excess(worst) > max_excess) break;
   }
   return worst;
 }

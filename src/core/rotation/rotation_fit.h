@@ -14,9 +14,9 @@
 
 namespace pcl_symmetry {
 
-/// Numbers of the search for rotations that decide the answers. Lengths are radii of the bounding ball, angles radians.
+/// Parameters that affect the search for rotations. Lengths are in radii of the bounding ball, angles in radians.
 struct RotationRules {
-  // What fails, as shares of the surface
+  // Failures, as shares of the surface
   double far_tolerances = 10.0;   // beyond these a piece of surface sticks out: 10 % of the diameter, as in BOP
   double far_of_feature = 0.125;  // share that may stick out, of max_feature
   double min_far = 0.002;         // the least of that share: single samples at sharp edges are far by chance
@@ -27,13 +27,12 @@ struct RotationRules {
   double max_errors = 3.0;        // standard errors that a share of some of the points may be off by
   double gain_of_fit = 0.03;      // share that a close fit gains
   double clear_factor = 1.5;      // rotations between those of a fold fail by this factor more,
-  double clear_excess = 0.2;      // and by this much of what is allowed
+  double clear_excess = 0.2;      // and by this share of the allowed excess
 
-  // What points resolve
-  double min_own_share = 0.5;  // share of the points within the tolerance of the surface of the others
-  double surface_slack =
-      1.5;                  // tolerances that a sparse surface may resolve: what it leaves open lowers the confidence
-  int body_neighbors = 50;  // at most a quarter of the points: in a body, they reach across as far as along;
+  // Resolution of points
+  double min_own_share = 0.5;     // share of the points within the tolerance of the surface of the others
+  double surface_slack = 1.5;     // tolerances that a sparse surface may resolve: its uncertainty lowers the confidence
+  int body_neighbors = 50;        // at most a quarter of the points: in a body, they reach across as far as along;
   double body_thickness = 0.56;   // 0.75 inside, balls of 200 points 0.57 to 0.69, bowls as thin as their spacing 0.45;
   int close_neighbors = 8;        // of which bodies are as thick, too: walls a few spacings thick have two surfaces,
   double close_thickness = 0.32;  // each of them flat: at most 0.25, 0.4 in a body
@@ -70,7 +69,7 @@ struct RotationRules {
   double half_allowance = 0.03;    // overlap that the rotation by half the angle may have beyond that of a fold
   double min_overlap = 0.5;        // of the likeliest rotation about a line before its fit
   double clearly_better = 0.02;    // overlap that a smaller angle needs beyond a greater one
-  std::size_t max_axes = 12;       // enough to place any finite group
+  std::size_t max_axes = 12;       // enough to determine any finite group
   std::size_t max_folds = 3;       // folds of a line that are fitted, the greatest first
   int min_pattern = 3;             // equal pieces around a line that are a pattern, not features,
   double pattern_excess = 0.5;     // where other rotations exceed this
@@ -93,22 +92,22 @@ struct RotationSet {
   Eigen::Vector3d image(std::size_t i, const Eigen::Vector3d& x) const { return center + rotations[i] * (x - center); }
 };
 
-/// How much of the surface a rotation maps off the surface, as shares of the area in [0, 1].
+/// Shares of the surface that a rotation maps off the surface, by area, in [0, 1].
 struct OffShares {
-  double off = 0.0;  ///< more than the tolerance, relative to what the samples reach on themselves
+  double off = 0.0;  ///< by more than the tolerance, relative to the samples on themselves
   double far = 0.0;  ///< more than ten tolerances: parts that stick out, such as a handle
 };
 
-/// What symmetric means: tolerance tau and feature share phi (ObjectSymmetryOptions).
+/// Definition of a symmetry: tolerance tau and feature share phi (ObjectSymmetryOptions).
 struct RotationLimits {
   double tolerance;    ///< normalized frame
   double max_feature;  ///< share of the surface that may be off
 
-  /// By how much a rotation fails: the greater of its two shares over what is allowed of each.
+  /// The greater ratio of the two shares to their allowed values.
   /// \return <= 1 for a symmetry.
   double excess(const OffShares& shares) const;
   /// Probability that rotations of these measured shares are symmetries at the limits.
-  /// \param num_points that the shares are of.
+  /// \param num_points number of points of the shares.
   double confidence(const OffShares& shares, std::size_t num_points) const;
 };
 
@@ -120,10 +119,10 @@ class RotationFit {
 public:
   /// \param points 3 x N, normalized to the unit ball about 0.
   /// \param edt distance transform of these points; must outlive this object.
-  /// \param limits what symmetric means; tolerance at most \p reach.
+  /// \param limits definition of a symmetry; tolerance at most \p reach.
   /// \param reach greatest tolerance of withLimits().
   /// \param seed of the samples.
-  /// \param single each point has to meet another one: the points are judged, not the surface that they may show.
+  /// \param single each point has to meet another one: judges the points, not a surface.
   RotationFit(Points points, const GaussianEdt& edt, RotationLimits limits, double reach, std::uint64_t seed,
               int num_threads, bool single = false);
 
@@ -143,7 +142,7 @@ public:
   /// Median distance between a point and the one closest to it.
   double closestDistance() const { return surface_->closest_distance; }
 
-  /// Mean of f at some rotated points: a rough and quick answer.
+  /// Mean of f at some rotated points: a fast estimate.
   /// \return about 1 for a symmetry.
   double overlap(const Eigen::Matrix3d& rotation, const Eigen::Vector3d& center,
                  int num_points = std::numeric_limits<int>::max()) const;
@@ -153,18 +152,18 @@ public:
   /// The set rotated and moved as a whole to where the rotated samples lie closest to the surface: few samples, wide
   /// weights.
   RotationSet roughlyFitted(const RotationSet& set) const;
-  /// The same with many samples and narrow weights: what is off by more than the tolerance hardly counts.
+  /// The same with many samples and narrow weights: samples that are off by more than the tolerance hardly count.
   RotationSet closelyFitted(const RotationSet& set) const;
 
-  /// What one rotation maps off the surface.
-  /// \param num_samples of the points, the same ones each time; at least as many as there are: all.
+  /// The shares that one rotation maps off the surface.
+  /// \param num_samples number of points, the same ones each time; all if there are no more.
   OffShares offShares(const Eigen::Matrix3d& rotation, const Eigen::Vector3d& center,
                       int num_samples = std::numeric_limits<int>::max()) const;
 
   /// The worst of the judged rotations of a set.
-  /// \param most stops at a rotation whose excess is greater.
+  /// \param max_excess stops at a rotation with a greater excess.
   OffShares worstShares(const RotationSet& set, int num_samples = std::numeric_limits<int>::max(),
-                        double most = std::numeric_limits<double>::infinity()) const;
+                        double max_excess = std::numeric_limits<double>::infinity()) const;
 
   /// See RotationLimits::confidence().
   double confidence(const OffShares& shares) const;
@@ -173,7 +172,7 @@ public:
   Eigen::Vector3d whereOff(const Eigen::Matrix3d& rotation, const Eigen::Vector3d& center) const;
 
 private:
-  /// How thick the neighborhood of a point is, over how long it is, in [0, 1]: the median of some points.
+  /// Thickness over length of the neighborhood of a point, in [0, 1]: the median of some points.
   double thickness(int num_neighbors) const;
 
   /// Widths of the Gaussian weights from first to last iteration.
@@ -182,7 +181,7 @@ private:
     int max_iterations;
     bool rough;  ///< closest samples by grid instead of closest discs
   };
-  /// What does not depend on the tolerance.
+  /// The data that do not depend on the tolerance.
   struct Surface {
     Points points;
     ClosestPointSearch::Ptr search;
@@ -192,8 +191,8 @@ private:
     std::vector<float> own_distances;
     std::vector<int> order;  ///< a random order of the points
     double spacing = 0.0, roughness = 0.0;
-    Points overlap_points;     ///< that overlap() looks up
-    double own_overlap = 1.0;  ///< that a perfect symmetry reaches with this sampling
+    Points overlap_points;     ///< points that overlap() looks up
+    double own_overlap = 1.0;  ///< overlap of a perfect symmetry with this sampling
     double closest_distance = 0.0;
     bool single = false;
   };

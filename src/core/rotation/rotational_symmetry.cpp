@@ -50,7 +50,7 @@ ObjectSymmetries inInputFrame(const PlacedGroup& group, const RotationFit& fit, 
   return result;
 }
 
-/// What was tried and failed in the input frame, the least failure first.
+/// The rejected rotations in the input frame, the least failure first.
 std::vector<RejectedRotation> inInputFrame(std::vector<RejectedAxis> axes, const RotationFit& fit,
                                            const BoundingBall& ball) {
   sortRising(axes, [&](const RejectedAxis& axis) { return fit.limits().excess(axis.shares); });
@@ -84,7 +84,7 @@ public:
         principal_(principalLines(fit_)) {}
 
   const RotationFit& fit() const { return fit_; }
-  void limitTolerance(double most) { max_tolerance_ = most; }
+  void limitTolerance(double tolerance) { max_tolerance_ = tolerance; }
 
   struct Found {
     PlacedGroup group;
@@ -111,7 +111,7 @@ private:
   double max_tolerance_ = std::numeric_limits<double>::infinity();
 };
 
-/// The surface that points show or, where they fill a body, the surface of its border. Points that show none at the
+/// The surface that points resolve or, if they fill a body, the surface of its border. Points that resolve none at the
 /// tolerance may still meet each other one by one: atoms, grids, the corners of a solid.
 /// \param[out] resolution the least tolerance at which the points show a surface.
 /// \return null where the points resolve no answer.

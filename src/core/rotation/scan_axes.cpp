@@ -128,49 +128,50 @@ std::vector<AxisStart> startsFromTransform(const NormalizedCloud& cloud, std::ui
   return starts;
 }
 
-/// The worst of two rotations, and the greatest share on the surface.
-RotationShares together(const RotationShares& a, const RotationShares& b) {
+/// The worst shares of two rotations, and the greatest share on the surface.
+RotationShares worstOf(const RotationShares& a, const RotationShares& b) {
   return {std::max(a.on, b.on), std::max(a.off, b.off), std::max(a.far, b.far)};
 }
 
-/// Shares that rotations may throw into empty space, and far into it: beyond, a line is refused.
+/// Greatest shares that rotations may map into free space, and far into it; beyond them, a line is rejected.
 struct OffLimits {
   double off = 1.0, far = 1.0;
 
   bool allow(const RotationShares& all) const { return all.off <= off && all.far <= far; }
 };
 
-/// \param limits where more is off the rest is left out.
+/// \param limits the remaining rotations are skipped once these are exceeded.
 template <typename Shares>
-RotationShares roundRotations(const Shares& shares, const OffLimits& limits = {}) {
+RotationShares worstRoundShares(const Shares& shares, const OffLimits& limits = {}) {
   RotationShares all;
   for (int k = 1; k <= kScanAxes.round_rotations && limits.allow(all); ++k)
-    all = together(all, shares(2.0 * kPi * goldenFraction(k)));
+    all = worstOf(all, shares(2.0 * kPi * goldenFraction(k)));
   if (limits.allow(all)) all.on = 0.5 * (shares(kScanAxes.small_angle).on + shares(-kScanAxes.small_angle).on);
   return all;
 }
 
 template <typename Shares>
-RotationShares rotationsOfFold(const Shares& shares, int fold, double first, const OffLimits& limits = {}) {
+RotationShares worstSharesOfFold(const Shares& shares, int fold, double first, const OffLimits& limits = {}) {
   RotationShares all;
   for (int k = 0; k < fold && limits.allow(all); ++k)
-    if (k + first > 0.0) all = together(all, shares(2.0 * kPi * (k + first) / fold));
+    if (k + first > 0.0) all = worstOf(all, shares(2.0 * kPi * (k + first) / fold));
   return all;
 }
 
-constexpr OffLimits kRoughLimits{kScanAxes.rough_factor * kScanAxes.max_off, kScanAxes.rough_factor* kScanAxes.max_far};
+constexpr OffLimits kScreeningLimits{kScanAxes.rough_factor * kScanAxes.max_off,
+                                     kScanAxes.rough_factor* kScanAxes.max_far};
 
 /// Screens rotations about a line by an angle.
-struct RoughShares {
+struct ScreenedShares {
   const RotationEvidence& evidence;
   const Line3d& line;
 
   RotationShares operator()(double angle) const {
-    return evidence.roughly(motionAbout(line, angle), kScanAxes.rough_slack, kRoughLimits.off, kRoughLimits.far);
+    return evidence.screen(motionAbout(line, angle), kScanAxes.rough_slack, kScreeningLimits.off, kScreeningLimits.far);
   }
 };
 
-/// What a line is, as far as one scan can tell.
+/// The judgment of a line by one scan.
 struct JudgedLine {
   Line3d line;
   SymmetryRotation rotation;  ///< without a position
@@ -186,25 +187,25 @@ public:
 
   /// The best rotations about a line.
   std::optional<JudgedLine> judged(const Line3d& line) const {
-    const RoughShares roughly{evidence_, line};
+    const ScreenedShares screened{evidence_, line};
     std::optional<JudgedLine> best;
     const auto take = [&](const JudgedLine& judged) {
       if (!best || judged.margin > best->margin) best = judged;
     };
-    if (kRoughLimits.allow(roundRotations(roughly, kRoughLimits))) take(exactly(line, 0));
+    if (kScreeningLimits.allow(worstRoundShares(screened, kScreeningLimits))) take(measured(line, 0));
     for (int fold = max_fold_; fold >= 2; --fold) {
       if (best && best->margin > 0.0) break;
-      if (kRoughLimits.allow(rotationsOfFold(roughly, fold, 0.0, kRoughLimits))) take(exactly(line, fold));
+      if (kScreeningLimits.allow(worstSharesOfFold(screened, fold, 0.0, kScreeningLimits))) take(measured(line, fold));
     }
     return best;
   }
 
-  JudgedLine exactly(Line3d line, int fold) const {
+  JudgedLine measured(Line3d line, int fold) const {
     line = evidence_.closelyRefined(line, fitAngles(fold));
-    const auto shares = [&](double angle) { return evidence_.exactly(motionAbout(line, angle)); };
-    const RotationShares own = fold == 0 ? roundRotations(shares) : rotationsOfFold(shares, fold, 0.0);
+    const auto shares = [&](double angle) { return evidence_.measure(motionAbout(line, angle)); };
+    const RotationShares own = fold == 0 ? worstRoundShares(shares) : worstSharesOfFold(shares, fold, 0.0);
     SymmetryRotation rotation{Eigen::Vector3d::Zero(), line.direction(), fold, 0.0, own.on, own.off, own.far, 0.0};
-    if (fold > 0) rotation.halfway = rotationsOfFold(shares, fold, 0.5).off;
+    if (fold > 0) rotation.halfway = worstSharesOfFold(shares, fold, 0.5).off;
     return {line, rotation, marginOf(rotation)};
   }
 
@@ -262,8 +263,8 @@ std::vector<SymmetryRotation> scanAxes(const RotationEvidence& evidence, const s
     result.push_back(best->rotation);
     result.back().point = cloud.toInput(best->line.projection(Eigen::Vector3d::Zero()));
   }
-  const double least = evidence_of_all ? 0.0 : options.min_possible;
-  const std::vector<RotationSigns> signs = rotationSigns(evidence, result, least, options.num_threads);
+  const double min_confidence = evidence_of_all ? 0.0 : options.min_possible;
+  const std::vector<RotationSigns> signs = rotationSigns(evidence, result, min_confidence, options.num_threads);
   for (std::size_t i = 0; i < result.size(); ++i) {
     result[i].confidence = rotationConfidence(result[i], signs[i]);
     if (evidence_of_all) evidence_of_all->push_back({result[i], signs[i]});
@@ -279,11 +280,12 @@ std::optional<NearlyRound> nearlyRound(const RotationEvidence& evidence, const S
   for (const AxisStart& start : startsFromNormals(evidence.cloud(), options.seed, options.num_threads)) {
     const Line3d axis = judge.fitted(start);
     if (!axis.direction().allFinite() || !axis.origin().allFinite() ||
-        evidence.exactly(motionAbout(axis, kScanAxes.small_angle)).on < kScanAxes.round_on)
+        evidence.measure(motionAbout(axis, kScanAxes.small_angle)).on < kScanAxes.round_on)
       continue;
     std::vector<int> not_round = evidence.notRound(axis);
     const double share = static_cast<double>(not_round.size()) / static_cast<double>(num_samples);
-    if (share > kScanAxes.max_round_far && share < kScanAxes.max_not_round) return NearlyRound{axis, std::move(not_round)};
+    if (share > kScanAxes.max_round_far && share < kScanAxes.max_not_round)
+      return NearlyRound{axis, std::move(not_round)};
   }
   return std::nullopt;
 }
@@ -309,9 +311,10 @@ std::optional<SymmetryCenter> centerOfScan(const RotationEvidence& evidence, con
   double score = 0.0;
   for (int k = 0; k < 3 && marginOf(worst) > 0.0; ++k) {
     const Line3d line(center, Eigen::Vector3d::Unit(k));
-    if (!kRoughLimits.allow(roundRotations(RoughShares{evidence, line}, kRoughLimits))) return std::nullopt;
+    if (!kScreeningLimits.allow(worstRoundShares(ScreenedShares{evidence, line}, kScreeningLimits)))
+      return std::nullopt;
     const RotationShares all =
-        roundRotations([&](double angle) { return evidence.exactly(motionAbout(line, angle)); }, limits);
+        worstRoundShares([&](double angle) { return evidence.measure(motionAbout(line, angle)); }, limits);
     worst.support = std::min(worst.support, all.on);
     worst.off = std::max(worst.off, all.off);
     worst.far = std::max(worst.far, all.far);
@@ -343,11 +346,11 @@ std::vector<SymmetryAxis> withRoundAxes(const RotationEvidence& evidence, std::v
   const NormalizedCloud& cloud = evidence.cloud();
   eraseIf(axes, [&](const SymmetryAxis& axis) {
     const RotationShares all =
-        roundRotations([&](double angle) { return evidence.exactly(motionAbout(cloud.lineOf(axis), angle)); });
+        worstRoundShares([&](double angle) { return evidence.measure(motionAbout(cloud.lineOf(axis), angle)); });
     return all.far > kScanAxes.max_round_far;
   });
   for (const SymmetryRotation& rotation : rotations) {
-    // However probable: a handle that was seen contradicts.
+    // A visible handle contradicts, however probable the axis is.
     const bool is_contradicted = rotation.off > kScanAxes.max_round_off || rotation.far > kScanAxes.max_round_far;
     if (rotation.fold != 0 || is_contradicted || rotation.confidence < options.min_confidence) continue;
     const auto known = std::find_if(axes.begin(), axes.end(), [&](const SymmetryAxis& axis) {

@@ -10,25 +10,25 @@
 
 namespace pcl_symmetry {
 
-/// What scanAxes() tries, and what it returns; the defaults are those of DetectionOptions.
+/// Options of scanAxes(); the defaults are those of DetectionOptions.
 struct ScanAxesOptions {
-  bool folds = true;            ///< rotations by a part of a full one are tried, too
-  double min_confidence = 0.5;  ///< of a round body that adds its axis to those that planes show
-  double min_possible = 0.2;    ///< of what is returned
+  bool folds = true;            ///< also tries axes of finite order
+  double min_confidence = 0.5;  ///< least confidence of a round body whose axis is added to those of planes
+  double min_possible = 0.2;    ///< least confidence of the axes returned
   std::uint64_t seed = 1;
   int num_threads = 0;  ///< 0 = one per core
 };
 
-/// Axes of a scan: lines about which rotations by any angle, or by 2 pi / n, map what was seen onto itself, to unseen
-/// space, and nowhere that the scanner saw to be empty. Beyond the paper, which leaves rotations to future work
-/// (Section 6).
+/// Axes of a scan: lines about which rotations by any angle, or by 2 pi / n, map the visible surface onto itself or to
+/// unseen space, but not into free space. Not in the paper, which leaves rotations to future work (Section 6).
 ///
 /// Lines come from the normals (a body of revolution), from pairs of planes, and from maxima of a coarse axial
 /// transform. Each is moved to where the rotations fit best, then judged. A fold has to beat the rotations halfway
-/// between its own; round is what no rotation contradicts.
+/// between its own; a line that no rotation contradicts is an axis of revolution.
 /// \param evidence of a scan.
 /// \param planes found so far, input frame.
-/// \param evidence_of_all takes what was seen of each rotation, also of those that are not returned; may be null.
+/// \param evidence_of_all filled with the evidence of all rotations, including those that are not returned; may be
+/// null.
 /// \return input frame, most confident first; no two along one line.
 std::vector<SymmetryRotation> scanAxes(const RotationEvidence& evidence, const std::vector<SymmetryPlane>& planes,
                                        const std::vector<SymmetryAxis>& axes, const ScanAxesOptions& options,
@@ -43,11 +43,11 @@ struct NearlyRound {
 /// \return nothing where a scan shows no such body.
 std::optional<NearlyRound> nearlyRound(const RotationEvidence& evidence, const ScanAxesOptions& options);
 
-/// The center of a ball seen from one side: rotations by any angle about any line through it map what was seen onto
-/// itself or to unseen space.
+/// The center of a ball seen from one side: rotations by any angle about any line through it map the visible surface
+/// onto itself or to unseen space.
 std::optional<SymmetryCenter> centerOfScan(const RotationEvidence& evidence, const ScanAxesOptions& options);
 
-/// What rotations show of a scan: the center of a ball, or axes.
+/// The rotations of a scan: the center of a ball, or axes.
 struct ScanRotations {
   std::optional<SymmetryCenter> center;
   std::vector<SymmetryRotation> rotations;
@@ -58,13 +58,13 @@ struct ScanRotations {
 /// \param edt of these points.
 /// \param axes lines that are tried first, input frame.
 /// \param make_search as in detectPlanes().
-/// \return nothing where the points hold no answer.
+/// \return none if the points cannot be analyzed.
 ScanRotations rotationsOfScan(const PointsRef& points, const GaussianEdt& edt, const Visibility& visibility,
                               const std::vector<SymmetryAxis>& axes, const ScanAxesOptions& options,
                               const MakeSearch& make_search = nullptr);
 
-/// The axes of revolution of a scan, checked by rotations: those that throw a visible handle into empty space
-/// are dropped, the others moved to where rotations fit best, and round bodies added that showed too few planes.
+/// The axes of revolution of a scan, checked by rotations: axes that map a visible handle into free space are dropped,
+/// the others moved to where rotations fit best, and axes of round bodies with too few visible planes added.
 /// \param axes input frame, as from findFamilies().
 /// \param rotations as from scanAxes().
 std::vector<SymmetryAxis> withRoundAxes(const RotationEvidence& evidence, std::vector<SymmetryAxis> axes,

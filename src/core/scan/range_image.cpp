@@ -22,7 +22,7 @@ namespace pcl_symmetry {
 
 namespace {
 
-/// A step from pixel to pixel along a line of the picture.
+/// A step from pixel to pixel along a line of the image.
 struct PixelStep {
   int du, dv;
 
@@ -77,8 +77,8 @@ double typicalGap(const RangeImage& image) {
 }
 
 /// Closes the gaps between neighboring rays. An empty pixel between two filled ones, on the shortest of the four lines
-/// through it along rows, columns and diagonals, gets the nearer of their depths: what lies between two rays counts as
-/// seen to be free as far as both of them show it.
+/// through it along rows, columns and diagonals, gets the nearer of their depths: space between two rays counts as free
+/// as far as both of them show it to be.
 /// \param longest gap that is closed, pixels.
 void bridgeGaps(RangeImage& image, double longest) {
   std::vector<float> filled = image.depths, shortest(filled.size(), std::numeric_limits<float>::infinity());
@@ -98,10 +98,10 @@ void bridgeGaps(RangeImage& image, double longest) {
   image.depths = std::move(filled);
 }
 
-// Rays at more than 75 degrees to the middle make no picture: it would be stretched by 1 / cos^2 there.
+// Rays at more than 75 degrees to the middle give no image: it would be stretched by 1 / cos^2 there.
 const double kLeastCosine = std::cos(75.0 * kPi / 180.0);
 
-/// Pixels of such a size that the filled ones have \p points_per_pixel points on average.
+/// A grid whose filled pixels have \p points_per_pixel points on average.
 PixelGrid fitPixels(const std::vector<Eigen::Array2d>& positions, std::size_t max_pixels, double points_per_pixel) {
   const double largest_side = std::floor(std::sqrt(static_cast<double>(max_pixels)));
   Eigen::Array2d low = Eigen::Array2d::Constant(std::numeric_limits<double>::infinity()), high = -low;
@@ -127,7 +127,7 @@ PixelGrid fitPixels(const std::vector<Eigen::Array2d>& positions, std::size_t ma
   }
 }
 
-/// Calls visit(index) for the pixels around (u, v) and itself that lie in the picture.
+/// Calls visit(index) for the pixels around (u, v) and itself that lie in the image.
 template <typename Visit>
 void visitAround(int u, int v, const PixelGrid& grid, const Visit& visit) {
   for (int y = std::max(0, v - 1); y <= std::min(grid.height - 1, v + 1); ++y)
@@ -157,7 +157,7 @@ void closeHoles(RangeImage& image) {
 
 /// Closes small holes whole, with the depth of their nearest border. A gap between sparse points does not show that the
 /// scanner looked through.
-/// \param largest_hole pixels, whatever the size of the picture.
+/// \param largest_hole pixels, whatever the size of the image.
 void closeGaps(RangeImage& image, std::size_t largest_hole) {
   std::vector<float>& depths = image.depths;
   const std::size_t width = image.grid.width;
@@ -197,13 +197,13 @@ RangeImage nearestInPixels(const SeenPositions& seen, std::size_t max_pixels, do
   return image;
 }
 
-/// Closes what is empty between the points of one surface.
+/// Closes the gaps between the points of one surface.
 void closeSurfaces(RangeImage& image, std::size_t largest_hole) {
   for (int pass = 0; pass < kScan.closing_passes; ++pass) closeHoles(image);
   closeGaps(image, largest_hole);
 }
 
-/// Turns empty pixels beyond the measured part of the picture to Visibility::kNoRay: those that have filled pixels in
+/// Sets empty pixels beyond the measured part of the image to Visibility::kNoRay: those that have filled pixels in
 /// fewer than kScan.inside_sides of the four directions along rows and columns.
 void forgetOutside(RangeImage& image) {
   const int width = image.grid.width, height = image.grid.height;
@@ -230,9 +230,9 @@ void forgetOutside(RangeImage& image) {
     if (num_sides[i] < kScan.inside_sides) image.depths[i] = Visibility::kNoRay;
 }
 
-/// Points in the picture seen from a viewpoint: unit vectors to them, less the one to their middle, in units of \p
-/// width.
-Points picture(const PointsRef& points, const Eigen::Vector3d& viewpoint, const Eigen::Vector3d& middle, double width) {
+/// Directions of points from a viewpoint: unit vectors to them minus the one to their middle, in units of \p width.
+Points imageDirections(const PointsRef& points, const Eigen::Vector3d& viewpoint, const Eigen::Vector3d& middle,
+                       double width) {
   const Eigen::Vector3d forward = (middle - viewpoint).normalized();
   Points directions(3, points.cols());
   for (Eigen::Index i = 0; i < points.cols(); ++i)
@@ -383,9 +383,9 @@ double layeredShare(const PointsRef& points, const Eigen::Vector3d& viewpoint) {
   const double min_gap =
       kScan.roughnesses * typicalRoughness(normalizePoints(points, ball.center, ball.radius), stride);
 
-  // The next point of each sample in the picture.
+  // The next point of each sample in the image.
   const double width = ball.radius / distance;
-  const Points directions = picture(points, viewpoint, ball.center, width);
+  const Points directions = imageDirections(points, viewpoint, ball.center, width);
   std::vector<int> closest;
   std::vector<float> sq_distances;
   makeFlannSearch(directions)
@@ -448,13 +448,13 @@ double cutShare(const PointsRef& points, const Visibility& seen, double margin) 
   for (Eigen::Index i = 0; i < points.cols(); ++i) forward += (points.col(i).cast<double>() - viewpoint).normalized();
   forward.normalize();
   const Eigen::Vector3d u = forward.unitOrthogonal(), v = forward.cross(u);
-  std::array<Eigen::Vector3d, 72> outermost;  // every 5 degrees; displacements in the picture
+  std::array<Eigen::Vector3d, 72> outermost;  // every 5 degrees; displacements in the image
   outermost.fill(Eigen::Vector3d::Zero());
   for (Eigen::Index i = 0; i < points.cols(); ++i) {
     const Eigen::Vector3d ray = points.col(i).cast<double>() - viewpoint, aside = ray / ray.dot(forward) - forward;
-    const double turned = std::atan2(v.dot(aside), u.dot(aside)) / (2.0 * kPi) + 0.5;
-    Eigen::Vector3d& most = outermost[static_cast<std::size_t>(turned * outermost.size()) % outermost.size()];
-    if (aside.squaredNorm() > most.squaredNorm()) most = aside;
+    const double direction = std::atan2(v.dot(aside), u.dot(aside)) / (2.0 * kPi) + 0.5;
+    Eigen::Vector3d& farthest = outermost[static_cast<std::size_t>(direction * outermost.size()) % outermost.size()];
+    if (aside.squaredNorm() > farthest.squaredNorm()) farthest = aside;
   }
   double count = 0.0, num_cut = 0.0;
   for (const Eigen::Vector3d& aside : outermost) {
@@ -466,7 +466,7 @@ double cutShare(const PointsRef& points, const Visibility& seen, double margin) 
   return num_cut / std::max(1.0, count);
 }
 
-bool isSeenEmpty(const Visibility& seen, const Eigen::Vector3d& x, double margin, double rim) {
+bool isFreeSpace(const Visibility& seen, const Eigen::Vector3d& x, double margin, double rim) {
   const auto isEmpty = [&](const Eigen::Vector3d& at) { return seen.depthBehind(at) < -margin; };
   if (!isEmpty(x)) return false;
   if (rim <= 0.0) return true;

@@ -11,20 +11,20 @@
 
 namespace pcl_symmetry {
 
-/// Which points a picture holds.
+/// Which points a range image contains.
 enum class FieldOfView {
   Cone,     ///< within 75 degrees of the direction that the camera looks along
   CubeFace  ///< a square of 90 degrees: six of them see all around
 };
 
-/// Points in the picture plane at depth one.
+/// Points in the image plane at depth one.
 struct SeenPositions {
   std::vector<Eigen::Array2d> positions;
   std::vector<float> depths;  ///< along the direction that the camera looks along, input units
 };
 
-/// The pixels of a picture. Pixel (u, v) contains the positions about its integer coordinates; one empty pixel at least
-/// surrounds the filled ones.
+/// The pixels of a range image. Pixel (u, v) contains the positions about its integer coordinates; one empty pixel at
+/// least surrounds the filled ones.
 struct PixelGrid {
   Eigen::Array2d low;  ///< least coordinates of the positions
   double size;         ///< of a pixel, at depth one
@@ -57,38 +57,37 @@ struct RangeImage {
 SeenPositions positionsSeen(const PointsRef& points, const Eigen::Vector3d& viewpoint,
                             const Eigen::Matrix3d& R_camera_input, FieldOfView field);
 
-/// A range image of the points of one object, without order. The size of the pixels follows the distance between the
-/// points in the picture; gaps between the points are closed. Empty pixels are background.
+/// A range image of the unorganized points of one object. The size of the pixels follows the distance between the
+/// points in the image; gaps between the points are closed. Empty pixels are background.
 /// \param seen at least one position.
-/// \param max_pixels least number of pixels that make them larger, >= 16.
+/// \param max_pixels number of pixels from which on they are enlarged, >= 16.
 RangeImage rangeImage(const SeenPositions& seen, std::size_t max_pixels);
 
 /// The same for a scene. Where its rays are denser in one direction than across, as in the rings of a LiDAR scanner,
 /// pixels are as small as the denser distance, and the gaps between the rings are bridged. Empty pixels beyond the
-/// measured part of the picture are Visibility::kNoRay: those with filled pixels in fewer than three of the four
+/// measured part of the image are Visibility::kNoRay: those with filled pixels in fewer than three of the four
 /// directions along rows and columns.
 /// \param seen at least one position.
-/// \param max_pixels least number of pixels that make them larger, >= 16.
+/// \param max_pixels number of pixels from which on they are enlarged, >= 16.
 RangeImage sceneRangeImage(const SeenPositions& seen, std::size_t max_pixels);
 
-/// A side of the picture of a camera, at which the object was cut off: no ray passed where normal . p > offset.
+/// A side of the image of a camera, at which the object was cut off: no ray passed where normal . p > offset.
 struct FrameSide {
-  Eigen::Vector2d normal;  ///< unit, out of the picture
+  Eigen::Vector2d normal;  ///< unit, pointing out of the image
   double offset;           ///< of the line, units of the positions
 };
 
-/// Finds the sides of the picture that cut the object, from the points alone.
+/// Finds the sides of the image that cut the object, from the points alone. Not in the paper.
 ///
-/// Not in the paper. Pixels lie in rows and columns, and so do the positions of the points of a scan. Where the picture
-/// ends, its last row is as long as those before it; where the object ends, rows become shorter. A straight edge of the
-/// object that lies along a row looks like a side of the picture: space beyond it is then unknown, which loses evidence
-/// but adds none.
-/// \param positions of points in the picture plane at depth one.
-/// \return at most four sides; none where the positions are in no grid, as those of a part of the points drawn at random.
+/// Like pixels, the positions of the points of a scan lie in rows and columns. Where the image ends, its last row is as
+/// long as those before it; where the object ends, rows become shorter. A straight edge of the object along a row looks
+/// like a side of the image: space beyond it is then unknown, which loses evidence but adds none.
+/// \param positions of points in the image plane at depth one.
+/// \return at most four sides; none if the positions form no grid, as for a random subset of the points.
 std::vector<FrameSide> frameSides(const std::vector<Eigen::Array2d>& positions);
 
-/// Finds out from the points of a scene whether they were measured from a viewpoint. Unlike that of one object, a scene
-/// may surround the viewpoint.
+/// Determines from the points of a scene whether they were measured from a viewpoint. Unlike that of one object, a
+/// scene may surround the viewpoint.
 /// \param points 3 x N, finite.
 /// \param viewpoint in the frame of the points.
 /// \param max_pixels as in Visibility::ofScene().
@@ -98,12 +97,12 @@ std::optional<Visibility> sceneSeenFrom(const PointsRef& points, const Eigen::Ve
 
 /// \param points 3 x N, finite, N >= 1.
 /// \param viewpoint in the frame of the points.
-/// \return why the points cannot have been measured from the viewpoint, for a user who says so; empty where they can.
+/// \return why the points cannot have been measured from a viewpoint that a user gave; empty if they can.
 std::string whyNotSeenFrom(const PointsRef& points, const Eigen::Vector3d& viewpoint);
 
-/// What a single view may show at most, shares of the points.
+/// Limits of a single view, as shares of the points.
 struct SingleViewLimits {
-  double max_hidden;   ///< that lie well behind others
+  double max_hidden;   ///< share of points well behind others
   double max_layered;  ///< layeredShare()
 };
 
@@ -113,7 +112,7 @@ std::optional<Visibility> spaceSeenFrom(const PointsRef& points, const Eigen::Ve
 
 /// Share of the points that form layers as seen from a viewpoint.
 ///
-/// A point is layered if the next point in the picture is much farther away or much nearer, and the roughness of the
+/// A point is layered if the next point in the image is much farther away or much nearer, and the roughness of the
 /// surface does not explain it. A scan has one layer except at its silhouettes (0.1 of the points, up to 0.2 with
 /// noise); an object that is known from all sides has two or more.
 /// \param points 3 x N, finite.
@@ -121,16 +120,17 @@ std::optional<Visibility> spaceSeenFrom(const PointsRef& points, const Eigen::Ve
 /// \return a value in [0, 1]; 0 for fewer than two points.
 double layeredShare(const PointsRef& points, const Eigen::Vector3d& viewpoint);
 
-/// How much of a cloud the picture cut off.
+/// How much of the outline of a cloud the image border cuts off.
 /// \param points 3 x N, finite, N >= 1, seen within 75 degrees of one direction.
-/// \param margin where the picture is looked up beyond the outermost points, share of their distance from the middle.
-/// \return share of the directions of the outline, seen from the viewpoint, in which the sensor's picture ends beside the
-/// cloud; 0 of a picture that was made of points.
+/// \param margin distance beyond the outermost points at which the image is read, share of their distance from the
+/// middle.
+/// \return share of the directions of the outline, seen from the viewpoint, in which the sensor's image ends beside the
+/// cloud; 0 for an image made from points.
 double cutShare(const PointsRef& points, const Visibility& seen, double margin);
 
-/// Whether a scanner saw that nothing is at a point, nor beside it.
-/// \param margin least depth of the point before what was seen, units of the points.
-/// \param rim how far beside the point nothing must have been seen either; 0 = only at the point.
-bool isSeenEmpty(const Visibility& seen, const Eigen::Vector3d& x, double margin, double rim);
+/// Whether the space at a point and beside it is free.
+/// \param margin least depth of the point in front of the visible surface, units of the points.
+/// \param rim distance beside the point within which space must be free, too; 0 = only at the point.
+bool isFreeSpace(const Visibility& seen, const Eigen::Vector3d& x, double margin, double rim);
 
 }  // namespace pcl_symmetry

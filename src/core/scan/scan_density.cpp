@@ -160,7 +160,7 @@ double ScanDensity::varianceOf(Eigen::Index num_samples) const {
   return trimmedVariance(num_samples, [&](Eigen::Index i) { return log_density_[i]; });
 }
 
-ScanDensity::Candidate ScanDensity::climbed(Candidate best, double first_step, double last_step,
+ScanDensity::Candidate ScanDensity::refined(Candidate best, double first_step, double last_step,
                                             Eigen::Index num_samples) const {
   const auto rated = [&](const Eigen::Vector3d& direction, double log_distance) {
     Candidate candidate{direction.normalized(),
@@ -185,9 +185,9 @@ ScanDensity::Candidate ScanDensity::climbed(Candidate best, double first_step, d
   return best;
 }
 
-/// Climbs by the coarse samples from the directions that leave least, apart from each other; none where all are
+/// Refines, by the coarse samples, the directions that leave least unexplained, apart from each other; none if all are
 /// hopeless.
-std::vector<ScanDensity::Candidate> ScanDensity::coarseMinima(std::size_t most) const {
+std::vector<ScanDensity::Candidate> ScanDensity::coarseMinima(std::size_t max_count) const {
   std::vector<Candidate> coarse;
   for (const Eigen::Vector3d& direction : evenDirections(kScan.num_directions))
     coarse.push_back({direction, std::log(kScan.first_distance),
@@ -201,10 +201,10 @@ std::vector<ScanDensity::Candidate> ScanDensity::coarseMinima(std::size_t most) 
       return start.direction.dot(candidate.direction) < kScan.min_apart;
     });
     if (apart) minima.push_back(candidate);
-    if (minima.size() == most) break;
+    if (minima.size() == max_count) break;
   }
   for (Candidate& start : minima)
-    start = climbed(start, kScan.first_step, kScan.middle_step, kScan.coarse_density_samples);
+    start = refined(start, kScan.first_step, kScan.middle_step, kScan.coarse_density_samples);
   return minima;
 }
 
@@ -215,7 +215,7 @@ std::optional<Eigen::Vector3d> ScanDensity::bestViewpoint() const {
   const auto best = std::min_element(starts.begin(), starts.end(), [](const Candidate& a, const Candidate& b) {
     return a.unexplained < b.unexplained;
   });
-  const Eigen::Vector3d eye = climbed(*best, kScan.middle_step, kScan.last_step, samples_.cols()).eye();
+  const Eigen::Vector3d eye = refined(*best, kScan.middle_step, kScan.last_step, samples_.cols()).eye();
   return Eigen::Vector3d(ball_.center + ball_.radius * eye);
 }
 
@@ -223,7 +223,7 @@ std::vector<Eigen::Vector3d> ScanDensity::viewpoints(double max_unexplained) con
   std::vector<Eigen::Vector3d> found;
   if (samples_.cols() < static_cast<Eigen::Index>(kScan.fewest_density_samples)) return found;
   for (const Candidate& start : coarseMinima(kScan.max_viewpoints)) {
-    const Candidate minimum = climbed(start, kScan.middle_step, kScan.last_step, samples_.cols());
+    const Candidate minimum = refined(start, kScan.middle_step, kScan.last_step, samples_.cols());
     if (minimum.unexplained <= max_unexplained) found.push_back(ball_.center + ball_.radius * minimum.eye());
   }
   return found;

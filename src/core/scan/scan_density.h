@@ -8,10 +8,10 @@
 
 namespace pcl_symmetry {
 
-/// How densely points cover their surface, and which viewpoints explain it.
+/// How densely points cover their surface, and which viewpoints explain it. Not in the paper.
 ///
-/// Not in the paper. A scanner sends its rays evenly over all directions. A surface at distance d whose normal makes an
-/// angle a with the ray gets
+/// A scanner sends its rays evenly over all directions. A surface at distance d whose normal makes an angle a with the
+/// ray gets
 ///     density = c cos(a) / d^2
 /// points per area. No viewpoint explains the density of an object that is known from all sides, or was put
 /// together from several views.
@@ -25,27 +25,27 @@ public:
   /// \param viewpoint frame of the points.
   double unexplained(const Eigen::Vector3d& viewpoint) const;
 
-  /// \return variance of the means of log(density d^2 / cos(a)) over 64 patches of the surface, less the
-  /// variance that random points have. What remains shows that the points are not those of one view from there.
+  /// \return variance of the means of log(density d^2 / cos(a)) over 64 patches of the surface, less the variance of
+  /// random points. A remainder shows that the points are not one view from there.
   double unexplainedByPatches(const Eigen::Vector3d& viewpoint) const;
 
-  /// \return whether the surface bulges toward a viewer: normals turned to the viewer point away from the middle of the
-  /// surface.
+  /// \return whether the surface bulges toward a viewer: normals oriented toward the viewer point away from the middle
+  /// of the surface.
   /// \param viewpoint frame of the points.
   bool bulgesToward(const Eigen::Vector3d& viewpoint) const;
 
-  /// \return the variance of log(density): what a viewpoint has to explain.
+  /// \return the variance of log(density), which a viewpoint has to explain.
   double variance() const;
 
   /// \return the variance of log(density) of points at random, which no viewpoint explains.
   double varianceAtRandom() const { return 1.0 / num_neighbors_; }
 
-  /// \return the viewpoint that explains most, up to 30 radii away, frame of the points; nothing where no direction comes
-  /// near to explaining the density.
+  /// \return the viewpoint that explains most, up to 30 radii away, frame of the points; none if no direction comes
+  /// close to explaining the density.
   std::optional<Eigen::Vector3d> bestViewpoint() const;
 
-  /// \return viewpoints that leave at most \p max_unexplained, minima of what they leave, the most likely direction
-  /// first. Two flat pieces are as dense from several positions.
+  /// \return viewpoints at minima of the unexplained variance that leave at most \p max_unexplained, the most likely
+  /// direction first. Two flat pieces are as dense from several positions.
   std::vector<Eigen::Vector3d> viewpoints(double max_unexplained) const;
 
   /// \return a ball around the points.
@@ -58,12 +58,12 @@ private:
   double varianceOf(Eigen::Index num_samples) const;
   double unexplainedFrom(const Eigen::Vector3d& eye, Eigen::Index num_samples) const;
   struct Candidate;
-  std::vector<Candidate> coarseMinima(std::size_t most) const;
-  Candidate climbed(Candidate start, double first_step, double last_step, Eigen::Index num_samples) const;
+  std::vector<Candidate> coarseMinima(std::size_t max_count) const;
+  Candidate refined(Candidate start, double first_step, double last_step, Eigen::Index num_samples) const;
 
   BoundingBall ball_;
-  Eigen::Index num_points_ = 0;  // that are used
-  int num_neighbors_ = 1;        // that a density is from
+  Eigen::Index num_points_ = 0;  // number of points used
+  int num_neighbors_ = 1;        // neighbors per density
   Points samples_;               // on the surface, in radii about the center, in random order
   Points normals_;               // unit, of arbitrary sign
   std::vector<float> log_density_;

@@ -5,25 +5,26 @@
 
 namespace pcl_symmetry {
 
-/// The constants of this folder that change answers.
+/// Parameters of this module that affect results.
 struct ScanRules {
   // Filter of depth images
-  double even_share = 0.8;  ///< of the pixels measure the error; the rest has edges
+  double even_share = 0.8;  ///< share of the pixels that measure the error; the rest has edges
   /// Root mean square of the least 80 % of normal errors, per standard deviation.
   double trimmed_deviation = 0.6616;
   double min_error = 0.1;   ///< pixel sizes; smaller errors do no harm to shapes
-  double max_growth = 2.0;  ///< of second differences at twice the distance; a Kinect has up to 1.6, shapes 4
+  double max_growth = 2.0;  ///< growth of second differences at twice the distance; a Kinect has up to 1.6, shapes 4
   /// Tangent of the slant up to which neighbors count at the start.
   double slant_at_start = 1.0;
   /// Errors of an inverse depth beyond which a pixel shows another surface.
   float surface_cut = 3.0f;
-  /// The same from the plane of the neighbors, beyond which a pixel flies: 1.2 % of normal errors are greater.
+  /// The same from the plane of the neighbors, beyond which a pixel is a flying one: 1.2 % of normal errors are
+  /// greater.
   float flying_cut = 2.5f;
   int filter_rounds = 3;  ///< after which the weights are settled
-  /// Sum of the weights around a pixel that does not fly; a leg of two pixels has ten.
+  /// Least sum of the weights around a valid pixel; a leg of two pixels has ten.
   float fewest_neighbors = 4.0f;
 
-  // Sides of the picture that cut an object
+  // Sides of the image that cut an object
   std::size_t grid_samples = 1000;  ///< points whose neighbors show the grid
   int grid_neighbors = 4;           ///< in a grid of squares
   /// Length of the mean of exp(4 i angle) over directions to neighbors; scans have 0.9, points without order 0.05.
@@ -36,14 +37,14 @@ struct ScanRules {
   double min_row_ratio = 0.8;
 
   // Depth images made of points
-  /// On average: of a surface that faces the viewer one pixel in seven is empty, and can be closed.
+  /// On average: on a surface that faces the viewer, one pixel in seven is then empty and can be closed.
   double points_per_pixel = 4.0;
   /// The same where the rays of a scene lie in rings; at 4, silhouettes are as wide as the gaps.
   double points_per_ring_pixel = 1.3;
   double gap_of_rings = 3.0;          ///< typical gap in pixels; points at random have 2, 64 rings of a LiDAR 3
   double longest_bridge = 3.0;        ///< typical gaps that are bridged: a ring may miss a dark spot
   double pixel_size_accuracy = 0.05;  ///< share of the size; leaves the points in a pixel off by 10 %
-  int closing_neighbors = 5;          ///< filled ones of eight that close a pixel
+  int closing_neighbors = 5;          ///< filled neighbors of eight that close a pixel
   int closing_passes = 3;             ///< each narrows holes by a pixel on each side
   double small_hole = 0.01;           ///< share of the filled pixels; handles are larger
   double largest_scene_hole = 100.0;  ///< points; a gap between samples of one surface of many
@@ -72,7 +73,7 @@ struct ScanRules {
   int num_viewpoint_starts = 3;     ///< two miss one scan in fifty
   std::size_t max_viewpoints = 12;  ///< minima are 37 degrees apart: a dozen covers half of all directions
   double min_apart = 0.8;           ///< cosine of that angle between starts
-  double first_distance = 4.0;      ///< radii; where a camera stands that the object fills
+  double first_distance = 4.0;      ///< radii; distance of a camera whose image the object fills
   double min_distance = 1.3;        ///< radii; points lie within 75 degrees of the middle from 1.04 radii on
   double greatest_distance = 30.0;  ///< radii; rays from there are parallel to within 2 degrees
   /// Radians, and halves of the logarithm of the distance: the distance between directions.
@@ -105,14 +106,14 @@ struct ScanRules {
   /// Share of the variance, and of that of points at random, left from which on more layers are allowed: leaves, wires.
   double surely_explained = 0.25;
   double surely_even = 0.25 * max_uneven;  ///< variance over patches up to which more layers are allowed
-  double as_good = 1.3;  ///< what the true viewpoint of 1000 points leaves over what the best one leaves
+  double as_good = 1.3;  ///< variance left by the true viewpoint of 1000 points over that left by the best one
   double as_good_beyond =
       2.0 * min_variance;  ///< variance of the logarithm: a depth camera 3 degrees from the best viewpoint
   /// Variance that one of several viewpoints may leave; true ones leave 0.0023, two scans put together 0.006.
   double max_of_several = 0.003;
   /// 25 independent densities, of which three numbers explain a quarter by chance.
   Eigen::Index fewest_points = 300;
-  int border_samples = 2000;  ///< points that look for open borders
+  int border_samples = 2000;  ///< points examined for open borders
   double wire = 0.9;          ///< share of the surface near open borders; scans have up to 0.8, curves in space 1
 };
 

@@ -52,10 +52,10 @@ std::vector<Eigen::Matrix3d> cubeFaces() {
   return faces;
 }
 
-/// The picture that a camera sees of points; nothing where it sees none, or not all that it has to see.
-std::optional<Visibility> pictureOf(const PointsRef& points, const Eigen::Vector3d& viewpoint,
-                                    const Eigen::Matrix3d& R_camera_input, FieldOfView field, std::size_t max_pixels,
-                                    Eigen::Index min_seen) {
+/// The view of points from a camera; none if it sees no point or fewer than required.
+std::optional<Visibility> viewFrom(const PointsRef& points, const Eigen::Vector3d& viewpoint,
+                                   const Eigen::Matrix3d& R_camera_input, FieldOfView field, std::size_t max_pixels,
+                                   Eigen::Index min_seen) {
   const SeenPositions seen = positionsSeen(points, viewpoint, R_camera_input, field);
   if (seen.positions.empty() || static_cast<Eigen::Index>(seen.positions.size()) < min_seen) return std::nullopt;
   RangeImage image = sceneRangeImage(seen, max_pixels);
@@ -68,8 +68,8 @@ std::optional<Visibility> pictureOf(const PointsRef& points, const Eigen::Vector
 Visibility::Visibility(const Projection& projection, int width, int height, std::vector<float> depths, float outside) {
   if (width < 1 || height < 1 || depths.size() != static_cast<std::size_t>(width) * height)
     throw std::invalid_argument("depths: size " + std::to_string(depths.size()) + ", must be width * height > 0");
-  auto picture = std::make_shared<const std::vector<float>>(std::move(depths));
-  pictures_.push_back({projection, width, height, std::move(picture), outside, 1.0, 0.0, false, {}});
+  auto shared_depths = std::make_shared<const std::vector<float>>(std::move(depths));
+  depth_views_.push_back({projection, width, height, std::move(shared_depths), outside, 1.0, 0.0, false, {}});
 }
 
 std::optional<Visibility> Visibility::fromPoints(const PointsRef& points, const Eigen::Vector3d& viewpoint) {
@@ -80,14 +80,14 @@ std::optional<Visibility> Visibility::fromPoints(const PointsRef& points, const 
   const SeenPositions seen = positionsSeen(points, viewpoint, R_camera_input, FieldOfView::Cone);
   if (static_cast<Eigen::Index>(seen.positions.size()) < points.cols()) return std::nullopt;
   RangeImage image = rangeImage(seen, kMaxPixels);
-  // Rays beside the object met nothing either: their space is free, as far as the picture reached.
+  // Rays beside the object met no surface: their space is free, as far as the image reaches.
   Visibility visibility(image.grid.toPixels() * cameraAt(viewpoint, R_camera_input), image.grid.width,
                         image.grid.height, std::move(image.depths), kBackground);
-  visibility.pictures_.front().is_of_points = true;
-  const Eigen::Matrix3d to_places = image.grid.toPixels().inverse();
+  visibility.depth_views_.front().is_of_points = true;
+  const Eigen::Matrix3d to_positions = image.grid.toPixels().inverse();
   for (const FrameSide& side : frameSides(seen.positions))
-    visibility.pictures_.front().sides.emplace_back(to_places.transpose() *
-                                                    Eigen::Vector3d(side.normal.x(), side.normal.y(), -side.offset));
+    visibility.depth_views_.front().sides.emplace_back(to_positions.transpose() *
+                                                       Eigen::Vector3d(side.normal.x(), side.normal.y(), -side.offset));
   return visibility;
 }
 
@@ -100,15 +100,15 @@ std::optional<Visibility> Visibility::ofScene(const PointsRef& points, const Eig
       rays.mean.norm() > 1e-6 ? Eigen::Vector3d(rays.mean.normalized()) : Eigen::Vector3d::UnitX();
   const Eigen::Matrix3d ahead = viewingFrame(forward);
   std::vector<Visibility> views;
-  if (auto one = pictureOf(points, viewpoint, ahead, FieldOfView::Cone, max_pixels, rays.count)) {
+  if (auto one = viewFrom(points, viewpoint, ahead, FieldOfView::Cone, max_pixels, rays.count)) {
     views.push_back(std::move(*one));
   } else {
     for (const Eigen::Matrix3d& rotation : cubeFaces())
-      if (auto face = pictureOf(points, viewpoint, rotation * ahead, FieldOfView::CubeFace, max_pixels, 1))
+      if (auto face = viewFrom(points, viewpoint, rotation * ahead, FieldOfView::CubeFace, max_pixels, 1))
         views.push_back(std::move(*face));
   }
   Visibility all = together(views);
-  for (Picture& picture : all.pictures_) picture.is_of_points = true;
+  for (DepthView& view : all.depth_views_) view.is_of_points = true;
   return all;
 }
 
@@ -116,7 +116,7 @@ Visibility Visibility::together(const std::vector<Visibility>& views) {
   if (views.empty()) throw std::invalid_argument("number of views = 0, must be >= 1");
   Visibility all;
   for (const Visibility& view : views)
-    all.pictures_.insert(all.pictures_.end(), view.pictures_.begin(), view.pictures_.end());
+    all.depth_views_.insert(all.depth_views_.end(), view.depth_views_.begin(), view.depth_views_.end());
   for (const Visibility& view : views)
     all.supports_.insert(all.supports_.end(), view.supports_.begin(), view.supports_.end());
   return all;
@@ -131,15 +131,15 @@ Visibility Visibility::withSupport(const Eigen::Vector4d& support, double margin
 
 Visibility Visibility::withDepthErrors(double inverse_depth_error) const {
   Visibility result = *this;
-  for (Picture& picture : result.pictures_) picture.inverse_depth_error = inverse_depth_error / picture.unit;
+  for (DepthView& view : result.depth_views_) view.inverse_depth_error = inverse_depth_error / view.unit;
   return result;
 }
 
 double Visibility::depthError(const Eigen::Vector3d& x) const {
   // As d(1 / z) = dz / z^2.
-  const Picture& picture = pictures_.front();
-  const double depth = picture.projection.row(2).dot(x.homogeneous());
-  return picture.inverse_depth_error * picture.unit * depth * depth;
+  const DepthView& view = depth_views_.front();
+  const double depth = view.projection.row(2).dot(x.homogeneous());
+  return view.inverse_depth_error * view.unit * depth * depth;
 }
 
 double Visibility::resolvedTolerance(const PointsRef& points) const {
@@ -150,7 +150,7 @@ double Visibility::resolvedTolerance(const PointsRef& points) const {
   return deviations * depthError(middle);
 }
 
-double Visibility::Picture::depthBehind(const Eigen::Vector3d& image) const {
+double Visibility::DepthView::depthBehind(const Eigen::Vector3d& image) const {
   if (!(image.z() > 0.0)) return std::numeric_limits<double>::infinity();
   for (const Eigen::Vector3d& side : sides)
     if (side.dot(image) > 0.0) return std::numeric_limits<double>::infinity();
@@ -161,8 +161,8 @@ double Visibility::Picture::depthBehind(const Eigen::Vector3d& image) const {
 
 double Visibility::depthBehind(const Eigen::Vector3d& x) const {
   double behind = std::numeric_limits<double>::infinity();
-  for (const Picture& picture : pictures_)
-    behind = std::min(behind, picture.depthBehind(picture.projection.leftCols<3>() * x + picture.projection.col(3)));
+  for (const DepthView& view : depth_views_)
+    behind = std::min(behind, view.depthBehind(view.projection.leftCols<3>() * x + view.projection.col(3)));
   for (const Eigen::Vector4d& support : supports_) {
     const double height = support.head<3>().dot(x) + support[3];
     if (height < 0.0) behind = std::min(behind, height);
@@ -171,11 +171,11 @@ double Visibility::depthBehind(const Eigen::Vector3d& x) const {
 }
 
 bool Visibility::isInPicture(const Eigen::Vector3d& x) const {
-  return std::any_of(pictures_.begin(), pictures_.end(), [&](const Picture& picture) {
-    const Eigen::Vector3d image = picture.projection * x.homogeneous();
+  return std::any_of(depth_views_.begin(), depth_views_.end(), [&](const DepthView& view) {
+    const Eigen::Vector3d image = view.projection * x.homogeneous();
     const Eigen::Array2d pixel = image.head<2>().array() / image.z() + 0.5;
-    const bool has_pixel = (pixel >= 0.0).all() && pixel.x() < picture.width && pixel.y() < picture.height;
-    return image.z() > 0.0 && (has_pixel || picture.is_of_points);
+    const bool has_pixel = (pixel >= 0.0).all() && pixel.x() < view.width && pixel.y() < view.height;
+    return image.z() > 0.0 && (has_pixel || view.is_of_points);
   });
 }
 
@@ -184,9 +184,9 @@ std::vector<char> Visibility::areFree(const Eigen::Matrix3Xd& points) const {
   const auto addWhere = [&](const auto& isFree) {
     for (std::size_t i = 0; i < is_free.size(); ++i) is_free[i] |= isFree(static_cast<Eigen::Index>(i));
   };
-  for (const Picture& picture : pictures_) {
-    const Eigen::Matrix3Xd images = (picture.projection.leftCols<3>() * points).colwise() + picture.projection.col(3);
-    addWhere([&](Eigen::Index i) { return picture.depthBehind(images.col(i)) < 0.0; });
+  for (const DepthView& view : depth_views_) {
+    const Eigen::Matrix3Xd images = (view.projection.leftCols<3>() * points).colwise() + view.projection.col(3);
+    addWhere([&](Eigen::Index i) { return view.depthBehind(images.col(i)) < 0.0; });
   }
   for (const Eigen::Vector4d& support : supports_)
     addWhere([&](Eigen::Index i) { return support.head<3>().dot(points.col(i)) + support[3] < 0.0; });
@@ -194,7 +194,7 @@ std::vector<char> Visibility::areFree(const Eigen::Matrix3Xd& points) const {
 }
 
 Eigen::Vector3d Visibility::viewpoint() const {
-  const Projection& projection = pictures_.front().projection;
+  const Projection& projection = depth_views_.front().projection;
   return -projection.leftCols<3>().inverse() * projection.col(3);
 }
 
@@ -207,10 +207,10 @@ double Visibility::hiddenShare(const PointsRef& points, double margin) const {
 
 Visibility Visibility::normalized(const Eigen::Vector3d& center, double scale) const {
   Visibility result = *this;
-  for (Picture& picture : result.pictures_) {
-    const Projection& input = picture.projection;
-    picture.projection.col(3) = ((input.leftCols<3>() * center + input.col(3)) / scale).eval();
-    picture.unit *= scale;
+  for (DepthView& view : result.depth_views_) {
+    const Projection& input = view.projection;
+    view.projection.col(3) = ((input.leftCols<3>() * center + input.col(3)) / scale).eval();
+    view.unit *= scale;
   }
   for (Eigen::Vector4d& support : result.supports_) support[3] = (support.head<3>().dot(center) + support[3]) / scale;
   return result;

@@ -110,8 +110,8 @@ std::vector<std::vector<int>> segmentImages(const PartEvidence& evidence, const 
   return images;
 }
 
-std::vector<int> mirroredLabels(const SurfaceGraph& graph, const std::vector<int>& labels, const ReflectionPlane& plane,
-                                const std::vector<int>& reflected) {
+std::vector<int> symmetrizedLabels(const SurfaceGraph& graph, const std::vector<int>& labels,
+                                   const ReflectionPlane& plane, const std::vector<int>& reflected) {
   std::vector<char> above;
   for (int i = 0; i < graph.size(); ++i)
     above.push_back(plane.signedDistance(graph.centers.col(i).cast<double>()) > 0.0);

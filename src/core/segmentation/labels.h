@@ -14,7 +14,7 @@ std::vector<double> areasOf(const SurfaceGraph& graph, const std::vector<int>& l
 /// \return the labels numbered from 0 in the order in which they appear.
 std::vector<int> renumbered(std::vector<int> labels);
 
-/// Gives the elements without a label, which is -1, that of the closest element which has one. One element has a label.
+/// Gives each element without a label (-1) that of the closest labeled element. At least one element has a label.
 std::vector<int> filledFromClosest(const SurfaceGraph& graph, std::vector<int> labels);
 
 /// Numbers segments by falling area, in labels and tree.
@@ -30,12 +30,11 @@ std::vector<int> reflectedElements(const SurfaceGraph& graph, const ReflectionPl
 std::vector<std::vector<int>> segmentImages(const PartEvidence& evidence, const std::vector<int>& labels,
                                             int num_segments);
 
-/// Makes the segments on one side of a plane the reflections of those on the other side. The side whose segments are
-/// kept is the one that leaves more of the surface unchanged. Segments that lie across the plane are their own
-/// reflections.
+/// Replaces the segments on one side of a plane by the reflections of those on the other side. The side kept is the one
+/// that leaves more of the surface unchanged. Segments that lie across the plane are their own reflections.
 /// \param labels one per element, from 0.
 /// \return new labels, from 0 without gaps.
-std::vector<int> mirroredLabels(const SurfaceGraph& graph, const std::vector<int>& labels, const ReflectionPlane& plane,
-                                const std::vector<int>& reflected);
+std::vector<int> symmetrizedLabels(const SurfaceGraph& graph, const std::vector<int>& labels,
+                                   const ReflectionPlane& plane, const std::vector<int>& reflected);
 
 }  // namespace pcl_symmetry

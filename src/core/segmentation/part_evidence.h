@@ -28,7 +28,7 @@ struct PartEvidence {
   int size() const { return patches.size(); }
 };
 
-/// What the divisions of one surface into patches have in common.
+/// Evidence shared by all divisions of one surface into patches.
 class WholeEvidence {
 public:
   /// \param graph N elements, kept by reference.

@@ -20,29 +20,31 @@ namespace pcl_symmetry {
 
 namespace {
 
-/// The plane across which labels have to agree, the strongest that maps nearly the whole surface onto itself, and the
-/// element at the reflection of each.
-struct Mirror {
+/// The strongest plane that maps nearly the whole surface onto itself, across which labels have to agree, and the
+/// element at the reflection of each element.
+struct LabelSymmetry {
   ReflectionPlane plane;
   std::vector<int> reflected;
 };
 
-std::optional<Mirror> mirrorOf(const WholeEvidence& whole, const SegmentationOptions& options) {
+std::optional<LabelSymmetry> symmetricPlane(const WholeEvidence& whole, const SegmentationOptions& options) {
   if (options.num_parts > 0) return std::nullopt;
   for (const PartPlane& plane : whole.planes())
     if (plane.share >= kSegmentation.global_share)
-      return Mirror{plane.plane, reflectedElements(whole.graph(), plane.plane)};
+      return LabelSymmetry{plane.plane, reflectedElements(whole.graph(), plane.plane)};
   return std::nullopt;
 }
 
-/// Borders that follow the surface instead of the patches, equal on both sides of the mirror, and no small segments.
-std::vector<int> refinedLabels(const SurfaceGraph& graph, std::vector<int> labels, const std::optional<Mirror>& mirror,
-                               int max_segments, const SegmentationOptions& options) {
+/// Borders that follow the surface instead of the patches, equal on both sides of the symmetry plane, and no small
+/// segments.
+std::vector<int> refinedLabels(const SurfaceGraph& graph, std::vector<int> labels,
+                               const std::optional<LabelSymmetry>& symmetry, int max_segments,
+                               const SegmentationOptions& options) {
   const double crumb = kSegmentation.min_part * graph.area(), min_area = options.num_parts == 0 ? crumb : 0.0;
   labels = joinSmallSegments(graph, std::move(labels), min_area, max_segments);
   const BorderCutOptions cut{kSegmentation.part_cut_band * std::sqrt(graph.area()), kSegmentation.part_concavity};
   labels = joinCrumbs(graph, smoothBorders(graph, std::move(labels), cut), crumb);
-  if (mirror) labels = mirroredLabels(graph, labels, mirror->plane, mirror->reflected);
+  if (symmetry) labels = symmetrizedLabels(graph, labels, symmetry->plane, symmetry->reflected);
   return joinSmallSegments(graph, std::move(labels), min_area, max_segments);
 }
 
@@ -109,7 +111,7 @@ std::vector<int> segmentsOfPatches(const SurfaceGraph& graph, const Patches& pat
   Eigen::MatrixXd shared = Eigen::MatrixXd::Zero(num_segments, patches.size());
   for (int i = 0; i < graph.size(); ++i) shared(labels[i], patches.of_element[i]) += graph.areas[i];
   std::vector<int> segment(patches.size(), -1);
-  // The segment with the smallest hold on any patch chooses first.
+  // The segment with the smallest share of any patch chooses first.
   const Eigen::VectorXd most = shared.rowwise().maxCoeff();
   for (const int s : fallingOrder(Eigen::VectorXd(-most))) {
     int best = -1;
@@ -169,11 +171,11 @@ Segmentation segmentByMerging(const SurfaceGraph& graph, const SegmentationOptio
     if (d == 0) first = std::move(evidence);
   });
   tell(0.8);
-  const std::optional<Mirror> mirror = mirrorOf(whole, options);
-  for (std::size_t d = 0; mirror && d < num_divisions; ++d)
-    divisions.push_back(reflectedDivision(divisions[d], mirror->reflected));
+  const std::optional<LabelSymmetry> symmetry = symmetricPlane(whole, options);
+  for (std::size_t d = 0; symmetry && d < num_divisions; ++d)
+    divisions.push_back(reflectedDivision(divisions[d], symmetry->reflected));
   std::vector<int> labels =
-      refinedLabels(graph, consensus(graph, divisions, options.num_parts), mirror, first->size(), options);
+      refinedLabels(graph, consensus(graph, divisions, options.num_parts), symmetry, first->size(), options);
   Segmentation result = segmentsOf(graph, *first, std::move(labels), weights);
   tell(1.0);
   return result;
@@ -212,11 +214,11 @@ CommonCells commonCells(const SurfaceGraph& graph, const std::vector<MergedDivis
   CommonCells common;
   common.of_element = intersections(divisions);
   const std::vector<double> areas = areaShares(graph, common.of_element);
-  const double least = std::min(kSegmentation.min_cell, *std::max_element(areas.begin(), areas.end()));
+  const double min_area = std::min(kSegmentation.min_cell, *std::max_element(areas.begin(), areas.end()));
   std::vector<int> number(areas.size(), -1);
   int size = 0;
   for (std::size_t c = 0; c < areas.size(); ++c)
-    if (areas[c] >= least) number[c] = size++;
+    if (areas[c] >= min_area) number[c] = size++;
   common.cells.assign(divisions.size(), std::vector<int>(static_cast<std::size_t>(size), 0));
   for (std::size_t i = 0; i < common.of_element.size(); ++i) {
     int& cell = common.of_element[i];

@@ -8,8 +8,8 @@
 
 namespace pcl_symmetry {
 
-/// Segmentation by merging small patches as long as two regions are more likely one part than two. A departure from
-/// Section 5.3: the paper's rule for the end hardly ever holds, and support for planes is one cue among several.
+/// Segmentation by merging small patches as long as two regions are more likely one part than two (Section 5.3).
+/// Departure from the paper: its stopping rule hardly ever applies; support for planes is one cue among several.
 /// \param graph N elements with an area > 0.
 Segmentation segmentByMerging(const SurfaceGraph& graph, const SegmentationOptions& options);
 

@@ -150,7 +150,7 @@ std::vector<Merge> mergeRegions(Regions regions, const MergeWeights& weights) {
 MergedDivision mergedDivision(const PartEvidence& evidence, const MergeWeights& weights, int num_parts) {
   Regions regions(evidence);
   const std::vector<Merge> merges = mergeRegions(regions, weights);
-  // The first merge that is not sure, or that leaves fewer regions than asked for.
+  // The first merge that is uncertain or leaves fewer regions than requested.
   const std::size_t num_made = std::min<std::size_t>(merges.size(), std::max(0, evidence.size() - num_parts));
   std::size_t doubt = 0;
   for (; doubt < num_made && (num_parts > 0 || merges[doubt].log_odds >= kSegmentation.surely_one); ++doubt)

@@ -95,7 +95,7 @@ struct MergedDivision {
 /// \param num_parts 0, or the number of regions that are left: those joined later are surely not one part.
 MergedDivision mergedDivision(const PartEvidence& evidence, const MergeWeights& weights, int num_parts);
 
-/// The same surface, looked at in a mirror.
+/// The same division, reflected.
 /// \param reflected the element at the reflection of each element.
 MergedDivision reflectedDivision(const MergedDivision& division, const std::vector<int>& reflected);
 

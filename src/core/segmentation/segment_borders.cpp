@@ -121,10 +121,10 @@ std::vector<int> cutBorder(const SurfaceGraph& graph, std::vector<int> side, con
   const std::vector<float> distance = distanceFromBorder(graph, side, static_cast<float>(options.band));
   const std::vector<int> movable = movableElements(side, distance, open);
   Network network = networkOf(graph, side, movable, options.concavity_weight);
-  lookAtWatch();
+  checkCancelled();
   std::size_t num_looked_up = 0;
   const auto index = boost::make_function_property_map<std::size_t>([&](std::size_t node) {
-    if (++num_looked_up % 65536 == 0) lookAtWatch();
+    if (++num_looked_up % 65536 == 0) checkCancelled();
     return node;
   });
   boost::boykov_kolmogorov_max_flow(

@@ -6,7 +6,7 @@
 
 namespace pcl_symmetry {
 
-/// The constants of this folder that change answers.
+/// Parameters of this module that affect results.
 struct SegmentationRules {
   // Thickness of the body behind a patch
   int samples_of_patch = 6;  ///< for one median per patch
@@ -18,10 +18,11 @@ struct SegmentationRules {
   // Merging
   int num_patches = 200;          ///< fewer lose small parts; time and memory grow with the square
   std::size_t num_divisions = 4;  ///< whose merges are averaged: a Rand distance of 0.134 with one, 0.124 with four
-  /// Share of the surface, of a cloud also of its points, that a part has at least; ears are larger, noise is smaller.
+  /// Least share of the surface, and in a cloud also of its points, in a part; ears are larger, noise is smaller.
   double min_part = 0.003;
   double part_cut_band = 0.03;  ///< square roots of the area of the surface, within which borders of parts may move
-  double part_concavity = 3.0;  ///< SplittingOptions::concavity_weight of that; more lets borders follow every crease
+  double part_concavity =
+      3.0;  ///< SplittingOptions::concavity_weight of these cuts; more lets borders follow every crease
 
   // Splitting
   double cut_band = 0.1;   ///< radii of the part, within which the minimum cut may lie
@@ -36,7 +37,7 @@ struct SegmentationRules {
   double surely_one = 1.0;  ///< log odds from which on two regions are one part: probability 0.73
 
   // Labels that agree across a plane
-  double global_share = 0.95;  ///< of the surface that such a plane maps onto itself
+  double global_share = 0.95;  ///< least share of the surface that such a plane maps onto itself
   double min_across = 0.2;     ///< share of a segment on the smaller side of a plane that it lies across
 
   // Orientation
@@ -55,7 +56,7 @@ struct SegmentationRules {
   // Symmetries of parts
   std::size_t max_planes = 20;   ///< strongest maxima that are features
   int feature_samples = 4000;    ///< on the surface of a part
-  int published_samples = 1000;  ///< reflected as published; the paper's 10 000 take minutes a mesh
+  int published_samples = 1000;  ///< points reflected as published; the paper's 10 000 take minutes a mesh
   int refined_samples = 400;     ///< that Iterative Symmetric Points reflects
   float mapped = 0.5f;       ///< f from which on an element counts as mapped onto the surface, 0.83 sigma away from it
   MapSize map_size;          ///< of the transform of a part

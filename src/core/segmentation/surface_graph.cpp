@@ -36,7 +36,7 @@ void checkExtent(const PointsRef& points) {
   check(extent <= greatest_extent, "extent of the points", extent, "<= 1e15");
 }
 
-/// Turns normals so that neighbors agree, along the most certain edges first (Hoppe et al. 1992).
+/// Orients normals so that neighbors agree, along the most certain edges first (Hoppe et al. 1992).
 Points alignNeighbors(const SurfaceGraph& graph, const std::vector<float>& agreement) {
   struct Entry {
     float certainty;
@@ -100,7 +100,7 @@ double escapingArea(const SurfaceGraph& graph, const Points& normals, const Tria
 /// \return 3 x N, each normal of the graph or its opposite.
 Points outwardNormals(const SurfaceGraph& graph, const std::vector<float>& agreement) {
   Points normals = alignNeighbors(graph, agreement);
-  lookAtWatch();
+  checkCancelled();
   const TriangleTree tree(graph.corners, graph.triangles);
   RandomStream random(1);
   for (const std::vector<int>& members : membersOfPieces(graph)) {
@@ -141,10 +141,11 @@ float concavityOf(const SurfaceGraph& graph, const SurfaceGraph::Edge& edge) {
 SurfaceGraph completedGraph(SurfaceGraph graph, const std::vector<float>& agreement) {
   indexEdges(graph);
   graph.normals = outwardNormals(graph, agreement);
-  const auto most = static_cast<float>(kPi);
+  const auto max_concavity = static_cast<float>(kPi);
   for (SurfaceGraph::Edge& edge : graph.edges) {
     edge.concavity = concavityOf(graph, edge);
-    if (graph.is_cloud) edge.concavity = std::clamp(kSegmentation.sharpened * edge.concavity, -most, most);
+    if (graph.is_cloud)
+      edge.concavity = std::clamp(kSegmentation.sharpened * edge.concavity, -max_concavity, max_concavity);
   }
   return graph;
 }
@@ -282,9 +283,9 @@ std::vector<float> joinFaces(SurfaceGraph& graph, const Polygons& faces) {
       if (a != b) at.push_back({std::min(a, b), std::max(a, b), static_cast<int>(f), a < b});
     }
   }
-  lookAtWatch();
+  checkCancelled();
   std::stable_sort(at.begin(), at.end(), [](const auto& a, const auto& b) { return a.key() < b.key(); });
-  lookAtWatch();
+  checkCancelled();
   at.erase(std::unique(at.begin(), at.end(), [](const auto& a, const auto& b) { return a.key() == b.key(); }),
            at.end());
   std::vector<float> agreement;
@@ -328,13 +329,13 @@ SurfaceGraph cloudGraph(const PointsRef& points, const std::vector<std::vector<i
 SurfaceGraph meshGraph(const PointsRef& vertices, const Polygons& polygons) {
   checkExtent(vertices);
   const Polygons faces = weldedPolygons(vertices, polygons);
-  lookAtWatch();
+  checkCancelled();
   SurfaceGraph graph;
   graph.corners = vertices;
   addTriangles(graph, faces);
   measureFaces(graph, faces);
   check(graph.area() > 0.0, "area of the mesh", graph.area(), "> 0");
-  lookAtWatch();
+  checkCancelled();
   const std::vector<float> agreement = joinFaces(graph, faces);
   return completedGraph(std::move(graph), agreement);
 }

@@ -51,7 +51,7 @@ public:
 
   /// Adds a patch, which takes the elements that are closer to its seed than to earlier ones.
   void addSeed(int seed) {
-    lookAtWatch();
+    checkCancelled();
     const int patch = num_patches_++;
     distance_[seed] = 0.0f;
     patch_[seed] = patch;
@@ -146,8 +146,8 @@ std::vector<PatchBorder> patchBorders(const SurfaceGraph& graph, const Patches& 
   for (auto& [ends, border] : borders) {
     if (border.length > 0.0) border.edge_concavity /= border.length;
     const Eigen::Vector3f step = patches.centers.col(border.to) - patches.centers.col(border.from);
-    const Eigen::Vector3f turn = patches.normals.col(border.from) - patches.normals.col(border.to);
-    border.patch_concavity = turn.dot(step.stableNormalized());
+    const Eigen::Vector3f difference = patches.normals.col(border.from) - patches.normals.col(border.to);
+    border.patch_concavity = difference.dot(step.stableNormalized());
     result.push_back(border);
   }
   return result;

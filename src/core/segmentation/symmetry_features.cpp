@@ -45,7 +45,7 @@ std::vector<ReflectionPlane> significantMaxima(const Points& samples, const Gaus
 }
 
 /// Refines planes by Iterative Symmetric Points (Section 4.4). A plane that leaves its basin keeps its start, a
-/// departure from the paper.
+/// Departure from the paper.
 std::vector<ReflectionPlane> refined(const std::vector<ReflectionPlane>& starts, const Points& samples,
                                      const GaussianEdt& edt, const SegmentationOptions& options) {
   const ClosestPointSearch::Ptr search = options.make_search ? options.make_search(samples) : makeFlannSearch(samples);

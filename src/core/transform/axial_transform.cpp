@@ -17,8 +17,8 @@ namespace pcl_symmetry {
 
 namespace {
 
-/// A rotation about an axis, and what it counts in D_n of each fold. Rotations by an angle and by its negative
-/// correlate equally; what they move into free space differs.
+/// A rotation about an axis, and its weight in D_n of each fold. Rotations by an angle and by its negative correlate
+/// equally, but differ in the part that they move into free space.
 struct AxialRotation {
   double angle;                 ///< radians, in (0, 2 pi)
   std::vector<double> weights;  ///< for each fold; over all rotations they sum to 1
@@ -56,11 +56,11 @@ std::vector<AxialRotation> rotationsOf(const std::vector<int>& folds, bool both_
 
 AxisGrid::AxisGrid(int num_theta, int num_phi, int num_offset, const Eigen::Vector3d& center, double radius)
     : num_theta_(num_theta), num_phi_(num_phi), num_offset_(num_offset), center_(center), radius_(radius) {
-  constexpr int most = 1024;                    // 0.1 degrees
+  constexpr int max_per_axis = 1024;            // 0.1 degrees
   constexpr std::size_t max_bins = 1ull << 28;  // 1 GiB for each fold
-  check(num_theta >= 1 && num_theta <= most, "num_theta", num_theta, "in [1, 1024]");
-  check(num_phi >= 2 && num_phi <= most && num_phi % 2 == 0, "num_phi", num_phi, "even and in [2, 1024]");
-  check(num_offset >= 1 && num_offset <= most, "num_offset", num_offset, "in [1, 1024]");
+  check(num_theta >= 1 && num_theta <= max_per_axis, "num_theta", num_theta, "in [1, 1024]");
+  check(num_phi >= 2 && num_phi <= max_per_axis && num_phi % 2 == 0, "num_phi", num_phi, "even and in [2, 1024]");
+  check(num_offset >= 1 && num_offset <= max_per_axis, "num_offset", num_offset, "in [1, 1024]");
   check(size() <= max_bins, "number of bins", size(), "at most 268435456");
   check(center.allFinite(), "center", center.transpose(), "finite");
   check(std::isfinite(radius) && radius > 0.0, "radius", radius, "finite and > 0");
@@ -211,7 +211,7 @@ public:
   }
 
   /// The axis moved to where D of its best fold is greatest, in steps of half a bin that are halved.
-  AxisMaximum climbed(Line3d axis) const {
+  AxisMaximum refined(Line3d axis) const {
     const int fold = bestFold(map_.folds, valuesAt(axis));
     const std::size_t position = std::find(map_.folds.begin(), map_.folds.end(), fold) - map_.folds.begin();
     double angle = 0.25 * kPi / map_.grid.numTheta(), offset = 0.5 * map_.grid.offsetStep();
@@ -267,10 +267,10 @@ private:
 };
 
 /// Bins with great values, none near a stronger one.
-std::vector<Line3d> startsOf(const AxisMap& map, std::size_t count, double least) {
+std::vector<Line3d> startsOf(const AxisMap& map, std::size_t count, double min_value) {
   std::vector<std::size_t> bins;
   for (std::size_t i = 0; i < map.greatest.size(); ++i)
-    if (map.greatest[i] >= least) bins.push_back(i);
+    if (map.greatest[i] >= min_value) bins.push_back(i);
   const std::size_t kept = std::min(bins.size(), kTransform.max_axis_bins);
   std::partial_sort(bins.begin(), bins.begin() + kept, bins.end(), [&](std::size_t a, std::size_t b) {
     return std::make_pair(-map.greatest[a], a) < std::make_pair(-map.greatest[b], b);
@@ -299,11 +299,11 @@ std::vector<AxisMaximum> axisMaxima(const AxisMap& map, const GaussianEdt& edt, 
   const std::vector<Line3d> starts =
       startsOf(map, static_cast<std::size_t>(count) * kTransform.starts_per_maximum, kTransform.min_of_bin * min_value);
   const AxisClimb climb(edt, map, options);
-  std::vector<AxisMaximum> climbed(starts.size());
-  parallelBlocks(starts.size(), options.num_threads, [&](std::size_t i) { climbed[i] = climb.climbed(starts[i]); });
-  sortFalling(climbed, &AxisMaximum::value);
+  std::vector<AxisMaximum> candidates(starts.size());
+  parallelBlocks(starts.size(), options.num_threads, [&](std::size_t i) { candidates[i] = climb.refined(starts[i]); });
+  sortFalling(candidates, &AxisMaximum::value);
   std::vector<AxisMaximum> maxima;
-  for (const AxisMaximum& maximum : climbed) {
+  for (const AxisMaximum& maximum : candidates) {
     if (maximum.value < min_value || static_cast<int>(maxima.size()) == count) break;
     if (std::none_of(maxima.begin(), maxima.end(), [&](const AxisMaximum& other) {
           return isSameAxis(maximum.axis, other.axis, map.grid.center(), kTransform.same_maximum,

@@ -33,11 +33,11 @@ CenterMap centralTransform(const GaussianEdt& edt, int num_centers, const AxialT
   check(num_centers >= 2 && num_centers <= 512, "num_centers", num_centers, "in [2, 512]");
   const LookupTable table(edt, freeSpace(edt, visibility, options.num_threads), options.num_threads);
   // The image of x is 2 c - x.
-  const Eigen::Matrix3Xf mirrored = -centeredSamples(edt, options.num_samples, options.seed, options.num_threads);
+  const Eigen::Matrix3Xf reflected = -centeredSamples(edt, options.num_samples, options.seed, options.num_threads);
   // |f|^2 / S by the same samples: their noise cancels, and takes D of no center beyond 1 by the 2 % of the draw.
   double own = 0.0;
-  for (Eigen::Index i = 0; i < mirrored.cols(); ++i) {
-    const Eigen::Array3i cell = (static_cast<float>(middleCell(edt)) - mirrored.col(i).array()).round().cast<int>();
+  for (Eigen::Index i = 0; i < reflected.cols(); ++i) {
+    const Eigen::Array3i cell = (static_cast<float>(middleCell(edt)) - reflected.col(i).array()).round().cast<int>();
     own += edt.values()[(static_cast<std::size_t>(cell.z()) * edt.numCells() + cell.y()) * edt.numCells() + cell.x()];
   }
   const double scale = 1.0 / (own * LookupTable::kOne);
@@ -52,7 +52,7 @@ CenterMap centralTransform(const GaussianEdt& edt, int num_centers, const AxialT
     for (int y = 0; y < num_centers; ++y) {
       const std::size_t first = (z * num_centers + y) * num_centers;
       const Eigen::Vector3d start = 2.0 * toCells(edt, map.center(first));
-      const LineSums::Totals& totals = lines.ofMoved(mirrored, start.cast<float>(), step, 0, num_centers);
+      const LineSums::Totals& totals = lines.ofMoved(reflected, start.cast<float>(), step, 0, num_centers);
       for (int x = 0; x < num_centers; ++x) {
         const double d = scale * totals[0][x];
         map.values[first + x] = static_cast<float>(visibility ? seenSymmetry(d, scale * totals[1][x]) : d);

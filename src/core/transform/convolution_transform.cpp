@@ -120,7 +120,7 @@ public:
     double b;
     double shift;  ///< along it
   };
-  /// The bundles of kBundleRows rows, each cut to where it can meet what is not 0, without those of which nothing is
+  /// The bundles of kBundleRows rows, each cut to where it can meet nonzero cells, without those of which nothing is
   /// left.
   std::vector<Bundle> bundles(const Row* rows) const {
     std::vector<Bundle> bundles;
@@ -184,8 +184,8 @@ private:
 };
 
 /// \return in [-0.5, 0.5).
-double phase(double turns) {
-  return turns - std::floor(turns) - 0.5;
+double phase(double rotations) {
+  return rotations - std::floor(rotations) - 0.5;
 }
 
 /// The cells of an EDT as bytes in rows along each of the three axes, for points that are many cells of a row: of every
@@ -218,7 +218,7 @@ public:
         const float* row = f.data() + (slice * n + b) * n;
         for (int a = first; a <= last; ++a) {
           const float scaled = row[a] * static_cast<float>(LookupTable::kOne) + 0.5f;
-          const auto byte = static_cast<std::uint8_t>(static_cast<int>(std::min(scaled, LookupTable::kMost)));
+          const auto byte = static_cast<std::uint8_t>(static_cast<int>(std::min(scaled, LookupTable::kMaxValue)));
           const auto put = [&](int axis, int x, int y, int z) {
             const Rows rows = along(axis);
             bytes_[axis * size_ + static_cast<std::size_t>(z * rows.of_z + y * rows.of_y + rows.of_x[x])] = byte;
@@ -264,9 +264,9 @@ void lookUp(Bundle bundle, const RowTable::Rows& rows, std::int32_t* __restrict 
   const int of_y = rows.of_y, of_z = rows.of_z, min_x = rows.min_x, last_cell = rows.last;
   for (int r = 0; r < kBundleRows; ++r) {
     for (int l = first; l < last; ++l) {
-      const auto cell = [&](int axis, int least) {
+      const auto cell = [&](int axis, int first_cell) {
         const int at = (bundle.start[r][axis] + l * bundle.step[axis]) >> LookupTable::kFractionBits;
-        return at < least ? least : at > last_cell ? last_cell : at;
+        return at < first_cell ? first_cell : at > last_cell ? last_cell : at;
       };
       offsets[l] = cell(2, 0) * of_z + cell(1, 0) * of_y + of_x[cell(0, min_x)];
     }
@@ -401,7 +401,7 @@ public:
         values_(static_cast<std::size_t>(lattice.num_along) * kBundleLanes),
         sums_(2 * lattice.num_along, 2.0 * lattice.max_ahead / lattice.along) {
     // The sums of these fit in 32 bits
-    constexpr auto most = static_cast<std::int64_t>(LookupTable::kMost);
+    constexpr auto most = static_cast<std::int64_t>(LookupTable::kMaxValue);
     max_bundles_ = static_cast<int>(
         std::max<std::int64_t>(1, std::numeric_limits<std::int32_t>::max() / (most * most * lattice.num_along)));
   }

@@ -26,7 +26,7 @@ BoundingBall coveredBall(const PointsRef& points, const BoundingBall& given) {
   checkPoints(points);
   const BoundingBall ball = given.radius > 0.0 ? given : boundingBall(withoutStrayPoints(points));
   if (!(ball.radius > std::numeric_limits<float>::epsilon() * ball.center.norm()))
-    throw std::invalid_argument("points: all at one place, must have an extent");
+    throw std::invalid_argument("points: all at one position, must have an extent");
   return ball;
 }
 
@@ -159,9 +159,9 @@ GaussianEdt::GaussianEdt(const PointsRef& points, const GaussianEdtOptions& opti
   options.validate();
   const BoundingBall ball = coveredBall(points, {options.center, options.radius});
   cover(ball, options.num_cells, options.sigma);
-  const double most = kTransform.max_spacing * radius_;
-  if (options.sigma == 0.0 && points.cols() <= kTransform.num_dense && sigma_ < most)
-    if (const double spacing = std::min(sampleSpacing(points), most); spacing > sigma_)
+  const double max_spacing = kTransform.max_spacing * radius_;
+  if (options.sigma == 0.0 && points.cols() <= kTransform.num_dense && sigma_ < max_spacing)
+    if (const double spacing = std::min(sampleSpacing(points), max_spacing); spacing > sigma_)
       cover(ball, options.num_cells, spacing);
   computeValues(points, options.num_threads);
 }

@@ -23,9 +23,9 @@ std::array<double, 4> cubicWeights(double t) {
 }
 
 /// \return the least number of the form 2^k or 3 * 2^k that is no less, for the Fourier transform.
-int smoothSize(double least) {
+int smoothSize(double min_size) {
   int size = 8;
-  while (size < least) size = size % 3 == 0 ? size / 3 * 4 : size / 2 * 3;
+  while (size < min_size) size = size % 3 == 0 ? size / 3 * 4 : size / 2 * 3;
   return size;
 }
 

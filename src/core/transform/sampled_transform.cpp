@@ -200,7 +200,7 @@ LookupTable::LookupTable(const GaussianEdt& edt, const std::vector<float>& free_
         const float* const values = functions[g] + ((slice + 1) * n + y) * n;
         for (int x = 1; x + 1 < n; ++x) {
           const float scaled = values[x] * static_cast<float>(kOne) + 0.5f;
-          table_[num_functions_ * (cell + x) + g] = static_cast<std::uint8_t>(std::min(scaled, kMost));
+          table_[num_functions_ * (cell + x) + g] = static_cast<std::uint8_t>(std::min(scaled, kMaxValue));
         }
       }
     }

@@ -19,10 +19,9 @@ namespace pcl_symmetry {
 class LookupTable {
 public:
   static constexpr int kFractionBits = 16;  ///< 32 bits hold up to 2^15 cells with 1 / 65536 of a cell
-  /// Value of f = 1: with a sigma of two cells, sharpening lifts f to 1.11 at most (an isolated point); 255 /
-  /// 200 leaves room.
+  /// Value that stores f = 1. Sharpening raises f to 1.11 at most, which still fits in a byte.
   static constexpr double kOne = 200.0;
-  static constexpr float kMost = std::numeric_limits<std::uint8_t>::max();  ///< what a cell can hold
+  static constexpr float kMaxValue = std::numeric_limits<std::uint8_t>::max();  ///< greatest value of a cell
 
   /// The table of f, sharpened for the blur of two boxes: a sample's uniform position in its cell and the look-up of
   /// the nearest cell.
@@ -72,13 +71,13 @@ struct ParallelPlanes {
   int count;
 };
 
-/// Sums of a table's functions over images of samples that lie on straight lines through it: what the transforms of
-/// planes, of axes and of centers are made of. Lengths are cells. f is taken as 0 beyond the ball in the EDT's cube.
+/// Sums of a table's functions over images of samples along straight lines: the basis of the transforms of planes, axes
+/// and centers. Lengths are cells. f is taken as 0 beyond the ball in the EDT's cube.
 class LineSums {
 public:
   /// \param table of f, and for scans of the free space; outlives this.
   /// \param num_steps greatest number of images of a sample.
-  /// \param scalar takes the plain loop, which vector instructions have to equal bit by bit.
+  /// \param scalar uses the plain loop, which the vectorized one has to match bit by bit.
   LineSums(const GaussianEdt& edt, const LookupTable& table, int num_steps, bool scalar = false);
 
   /// For each function of the table one sum per step.
@@ -155,15 +154,15 @@ Eigen::Matrix3Xf drawPoints(const GaussianEdt& edt, int num_samples, std::uint64
 /// \return one value in [0, 1] per cell, x fastest; none without visibility.
 std::vector<float> freeSpace(const GaussianEdt& edt, const Visibility* visibility, int num_threads = 0);
 
-/// Symmetry of a scan with respect to a plane. A departure from the paper, whose measure is D alone: reflected points
-/// in space that the scanner saw to be empty count against the plane.
+/// Symmetry of a scan with respect to a plane. Departure from the paper: its measure is D alone; here reflected points
+/// in free space count against the plane.
 /// \param d D of Equation 2, >= 0.
 /// \param f F, the same correlation of f with the reflected free space, >= 0.
 /// \return (1 + c) D / (D + F + c) with c = 0.15; 1 for D = 1 and F = 0. A plane that maps the surface to unknown space
 /// has D = F = 0 and the value 0.
 inline double seenSymmetry(double d, double f) {
-  // With this value the first axis of 53 % of 160 scans of training models comes within 5 degrees, of 36 % by
-  // D alone.
+  // With this value, the first axis is within 5 degrees for 53 % of 160 scans of training models; with D alone, for 36
+  // %.
   constexpr double kDoubt = 0.15;
   return (1.0 + kDoubt) * d / (d + f + kDoubt);
 }

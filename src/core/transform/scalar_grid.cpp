@@ -35,7 +35,7 @@ Factors factorsFor(const ScalarGrid& grid, std::size_t max_voxels, double max_ra
   }
 }
 
-/// Means over groups of voxels; what is left at the end of an axis is not used.
+/// Means over groups of voxels; the remainder at the end of an axis is not used.
 /// \param map takes a value to the one that is averaged.
 template <typename Map>
 ScalarGrid averaged(const ScalarGrid& grid, const Factors& factors, int num_threads, const Map& map) {

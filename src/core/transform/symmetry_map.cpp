@@ -33,7 +33,7 @@ double laplacian(const SymmetryMap& map, const PlaneGrid::Bin& bin) {
          6.0 * value(0, 0, 0);
 }
 
-constexpr std::size_t stop_every = 32;  // directions between two looks at the smallest value
+constexpr std::size_t stop_every = 32;  // directions between two checks of the smallest value
 
 /// Coordinates of points, each in an array of its own.
 struct PointBlock {
@@ -96,7 +96,7 @@ std::vector<float> greatestThrough(const std::vector<float>& values, const std::
     const Eigen::MatrixX3f block = points.middleCols(begin, size).transpose();
     const PointBlock coordinates{block.col(0).data(), block.col(1).data(), block.col(2).data(), size};
     for (std::size_t d = 0; d < rows.size(); ++d) {
-      // The directions left can no longer raise anything.
+      // The remaining directions can no longer raise any value.
       if (d % stop_every == 0 && rows[d].greatest <= *std::min_element(best.begin() + begin, best.begin() + end)) break;
       raise(coordinates, rows[d], best.data() + begin);
     }
@@ -107,10 +107,10 @@ std::vector<float> greatestThrough(const std::vector<float>& values, const std::
 }  // namespace
 
 void MapSize::validate() const {
-  constexpr int most = 4096;
-  check(num_theta >= 1 && num_theta <= most, "num_theta", num_theta, "in [1, 4096]");
-  check(num_phi >= 2 && num_phi <= most && num_phi % 2 == 0, "num_phi", num_phi, "even and in [2, 4096]");
-  check(num_radius >= 1 && num_radius <= most, "num_radius", num_radius, "in [1, 4096]");
+  constexpr int max_per_axis = 4096;
+  check(num_theta >= 1 && num_theta <= max_per_axis, "num_theta", num_theta, "in [1, 4096]");
+  check(num_phi >= 2 && num_phi <= max_per_axis && num_phi % 2 == 0, "num_phi", num_phi, "even and in [2, 4096]");
+  check(num_radius >= 1 && num_radius <= max_per_axis, "num_radius", num_radius, "in [1, 4096]");
 }
 
 PlaneGrid::PlaneGrid(const MapSize& size, const Eigen::Vector3d& center, double radius)

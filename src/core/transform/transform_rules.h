@@ -6,15 +6,16 @@
 
 namespace pcl_symmetry {
 
-/// The constants of this folder that change answers.
+/// Parameters of this module that affect results.
 struct TransformRules {
   // Axes
   int num_rotations = 12;  ///< between 0 and pi that represent rotations by any angle
-  /// D that count as equal: at the axis of a bottle they differ by 0.001, of a rim with five spokes by 0.010.
+  /// Values of D that differ less count as equal: at the axis of a bottle they differ by 0.001, of a rim with five
+  /// spokes by 0.010.
   double equal_orders = 0.005;
-  std::size_t max_axis_bins = 50'000;  ///< that are looked at, strongest first
+  std::size_t max_axis_bins = 50'000;  ///< bins that are examined, strongest first
   int starts_per_maximum = 6;          ///< bins may be shoulders of others
-  /// Share of min_value that a bin has to reach: D between bins is up to half as great again.
+  /// Share of min_value that a bin has to reach: D between bins is up to 50 % greater.
   double min_of_bin = 0.6;
   double same_start = 0.14;              ///< radians between starts of one maximum, its half width
   double same_maximum = 15.0 * kDegree;  ///< radians between maxima that are one
@@ -26,7 +27,7 @@ struct TransformRules {
   /// Factor on the distance between lines, where rows are closer: two whole cells in place of 0.9 sigmas.
   double max_stretch = 1.12;
   double near_whole = 0.1;        ///< cells; at whole distances, all points of a row would be rounded to one side
-  double less_than_whole = 0.87;  ///< by which rows then come closer
+  double less_than_whole = 0.87;  ///< factor by which rows then come closer
 
   // Distance transform
   /// Width of the Gaussian in cells, unless the points are sparse. The paper: "according to the maximal frequency of

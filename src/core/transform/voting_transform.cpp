@@ -15,8 +15,7 @@ namespace pcl_symmetry {
 
 namespace {
 
-/// Draws points of the EDT with probability f: a cell, then a uniform position in it, whose blur f is sharpened
-/// against.
+/// Draws points of the EDT with probability f: a cell, then a uniform position in it; f is sharpened to undo this blur.
 class PointSampler {
 public:
   PointSampler(const GaussianEdt& edt, int num_threads) : edt_(edt) {
@@ -74,12 +73,12 @@ public:
   /// d at least a cell, as between the different cells that the paper draws: both bound the weight.
   void voteFar(RandomStream& random, std::vector<float>& values) const {
     const Eigen::Vector3d x = sampler_.draw(random), y = sampler_.draw(random);
-    const double sq_distance = (y - x).squaredNorm(), least = edt_.cellSize() * edt_.cellSize();
+    const double sq_distance = (y - x).squaredNorm(), min_sq_distance = edt_.cellSize() * edt_.cellSize();
     if (sq_distance <= near_ * near_ || sq_distance == 0.0) return;
     const ReflectionPlane plane = ReflectionPlane::between(x, y);
     const auto bin = grid_.find(plane);
     if (!bin) return;
-    const double weight = far_weight_ / (2.0 * std::max(sq_distance, least) * sines_[bin->theta]);
+    const double weight = far_weight_ / (2.0 * std::max(sq_distance, min_sq_distance) * sines_[bin->theta]);
     values[grid_.index(*bin)] += static_cast<float>(weight);
   }
 
@@ -130,12 +129,12 @@ SymmetryMap votingTransform(const GaussianEdt& edt, const PlaneGrid& grid, const
     std::vector<float>& values = partial[block];
     values.assign(grid.size(), 0.0f);
     RandomStream random(options.seed, block);
-    const auto look = [](std::int64_t i) {
-      if (i % 65536 == 0) lookAtWatch();
+    const auto goesOn = [](std::int64_t i) {
+      if (i % 65536 == 0) checkCancelled();
       return i > 0;
     };
-    for (std::int64_t i = shareOf(block, votes.numFar()); look(i); --i) votes.voteFar(random, values);
-    for (std::int64_t i = shareOf(block, votes.numNear()); look(i); --i) votes.voteNear(random, values);
+    for (std::int64_t i = shareOf(block, votes.numFar()); goesOn(i); --i) votes.voteFar(random, values);
+    for (std::int64_t i = shareOf(block, votes.numNear()); goesOn(i); --i) votes.voteNear(random, values);
   });
   SymmetryMap map = SymmetryMap::zero(edt, grid, TransformMethod::Voting);
   for (const auto& values : partial)

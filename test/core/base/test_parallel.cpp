@@ -101,7 +101,7 @@ TEST(Parallel, WaitingTakesNoTimeOfACore) {
   EXPECT_LT(std::clock() - begin, 0.1 * CLOCKS_PER_SEC) << "of all threads";
 }
 
-TEST(Watch, IsToldHowFarTheOuterLoopIsAndEndsAllLoops) {
+TEST(ProgressMonitor, ReportsTheOuterLoopAndCancelsAllLoops) {
   const auto until = [](double seconds) {
     const auto end = std::chrono::steady_clock::now() + std::chrono::duration<double>(seconds);
     while (std::chrono::steady_clock::now() < end) {
@@ -111,7 +111,7 @@ TEST(Watch, IsToldHowFarTheOuterLoopIsAndEndsAllLoops) {
     std::vector<double> shares;
     std::atomic<int> num_blocks{0};
     const auto loops = [&] {
-      const Watch watch([&](double share) {
+      const ProgressMonitor monitor([&](double share) {
         shares.push_back(share);
         if (shares.size() == 3) throw 5;
       });
@@ -133,11 +133,11 @@ TEST(Watch, IsToldHowFarTheOuterLoopIsAndEndsAllLoops) {
   EXPECT_EQ(sum, 4950) << "loops work after one that was ended";
 }
 
-TEST(Watch, EndsStepsOfOneThread) {
+TEST(ProgressMonitor, CancelsStepsOfOneThread) {
   constexpr int kSize = 100'000;
   const Eigen::MatrixXf features = Eigen::MatrixXf::Random(8, kSize);
   const auto clusters = [&] {
-    const Watch watch([](double) { throw 5; });
+    const ProgressMonitor monitor([](double) { throw 5; });
     kMeans(features, std::vector<float>(kSize, 1.0f), 2);
   };
   EXPECT_THROW(clusters(), int);

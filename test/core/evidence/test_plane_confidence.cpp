@@ -60,7 +60,7 @@ void expectFalls(const std::string& what, const std::function<void(PlaneEvidence
 TEST(PlaneConfidence, FallsAsEvidenceGetsWorse) {
   expectFalls("share", [](PlaneEvidence& e, double t) { e.share = 1.0 - t; });
   expectFalls("share within twice the tolerance", [](PlaneEvidence& e, double t) { e.double_share = 1.0 - t; });
-  expectFalls("hold", [](PlaneEvidence& e, double t) { e.hold = 0.1 * (1.0 - t); });
+  expectFalls("hold", [](PlaneEvidence& e, double t) { e.stiffness = 0.1 * (1.0 - t); });
   expectFalls("unknown", [](PlaneEvidence& e, double t) {
     e.unknown = t;
     // What is hidden or missing has its part in D: where D is the same although more is, what is seen agrees better.

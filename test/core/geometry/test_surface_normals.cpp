@@ -91,9 +91,9 @@ Oriented cone(const Eigen::ParametrizedLine<double, 3>& line, double from, doubl
 const Eigen::ParametrizedLine<double, 3> kTilted(Eigen::Vector3d(0.2, -0.1, 0.1),
                                                  Eigen::Vector3d(0.3, 0.2, 1.0).normalized());
 
-void expectTilted(const Eigen::ParametrizedLine<double, 3>& line, double most) {
-  EXPECT_GT(std::abs(line.direction().dot(kTilted.direction())), std::cos(most));
-  EXPECT_LT(kTilted.distance(line.origin()), most);
+void expectTilted(const Eigen::ParametrizedLine<double, 3>& line, double max_error) {
+  EXPECT_GT(std::abs(line.direction().dot(kTilted.direction())), std::cos(max_error));
+  EXPECT_LT(kTilted.distance(line.origin()), max_error);
 }
 
 TEST(AxisOfNormals, IsThatOfACone) {

@@ -42,7 +42,7 @@ SeenFromOneSide seenFrom(const TurningShape& shape, const Eigen::Vector3d& viewp
 RotationSigns clearSigns() {
   RotationSigns signs;
   signs.grown = 1.0;
-  signs.hold = 0.1;
+  signs.stiffness = 0.1;
   signs.planes_off = 0.0;
   return signs;
 }
@@ -72,7 +72,7 @@ TEST(RotationConfidence, OfAHalfTurnFallsWithEachSignAgainstIt) {
   const double clear = confidenceOf(2, 0.9, 0.0, 0.0, 0.4);
   // Each sign alone, from clear to clearly against.
   const std::array<std::pair<double RotationSigns::*, double>, 4> against{{{&RotationSigns::grown, 1.5},
-                                                                           {&RotationSigns::hold, 1e-9},
+                                                                           {&RotationSigns::stiffness, 1e-9},
                                                                            {&RotationSigns::planes_off, 0.3},
                                                                            {&RotationSigns::beside, 1.0}}};
   for (std::size_t k = 0; k < against.size(); ++k) {
@@ -106,7 +106,7 @@ struct Scanned {
   SymmetryRotation rotation(const Eigen::Vector3d& point, const Eigen::Vector3d& direction) const {
     SymmetryRotation rotation{point, direction.normalized()};
     rotation.fold = 2;
-    const RotationShares shares = evidence.exactly(Eigen::Affine3d(motionAbout(lineOf(rotation), kPi)));
+    const RotationShares shares = evidence.measure(Eigen::Affine3d(motionAbout(lineOf(rotation), kPi)));
     rotation.support = shares.on;
     rotation.off = shares.off;
     rotation.far = shares.far;
@@ -151,11 +151,11 @@ TEST(RotationSigns, AFlatSideHoldsNoLineAndABoxDoes) {
   const Scanned flat(sheetShape(1.0, 0.7), {0.3, 0.5, 5.0});
   const SymmetryRotation over = flat.rotation(Eigen::Vector3d::Zero(), Eigen::Vector3d::UnitX());
   EXPECT_GT(over.support, 0.95) << "the shares alone take the lower side for the upper one";
-  const auto hold = [](const Scanned& scanned, const Eigen::Vector3d& direction) {
-    return rotationSigns(scanned.evidence, {scanned.rotation(Eigen::Vector3d::Zero(), direction)})[0].hold;
+  const auto stiffness = [](const Scanned& scanned, const Eigen::Vector3d& direction) {
+    return rotationSigns(scanned.evidence, {scanned.rotation(Eigen::Vector3d::Zero(), direction)})[0].stiffness;
   };
-  EXPECT_LT(hold(flat, Eigen::Vector3d::UnitX()), 1e-3) << "it slides both ways along itself";
-  EXPECT_GT(hold(Scanned(box(), kCorner), Eigen::Vector3d::UnitZ()), 1e-2);
+  EXPECT_LT(stiffness(flat, Eigen::Vector3d::UnitX()), 1e-3) << "it slides both ways along itself";
+  EXPECT_GT(stiffness(Scanned(box(), kCorner), Eigen::Vector3d::UnitZ()), 1e-2);
 }
 
 TEST(MarginOf, IsTheLeastMarginToALimit) {

@@ -205,7 +205,7 @@ constexpr double kError = 1.5e-3;  // of inverse depths, per meter: 1.5 mm at 1 
 
 using DepthOf = std::function<double(int u, int v)>;
 
-DepthImage picture(const DepthOf& depth_of) {
+DepthImage depthImage(const DepthOf& depth_of) {
   DepthImage image{kWidth, kHeight, {}, kPixelAngle};
   for (int v = 0; v < kHeight; ++v)
     for (int u = 0; u < kWidth; ++u) image.depths.push_back(static_cast<float>(depth_of(u, v)));
@@ -242,17 +242,17 @@ double rootMeanSquare(const std::vector<float>& depths, const DepthOf& truth) {
 }
 
 TEST(DepthFilter, FindsTheErrorsOfTheCameraOnSlantedPlanes) {
-  EXPECT_NEAR(inverseDepthError(noisy(picture(slanted))), kError, 0.1 * kError) << "4600 second differences";
-  EXPECT_NEAR(inverseDepthError(noisy(picture(step))), kError, 0.1 * kError) << "an edge is no error";
-  EXPECT_LT(inverseDepthError(picture(slanted)), 1e-5) << "rounding to float";
-  const DepthImage round = picture([](int u, int v) { return 1.0 + 1e-3 * (u * u + v * v); });
+  EXPECT_NEAR(inverseDepthError(noisy(depthImage(slanted))), kError, 0.1 * kError) << "4600 second differences";
+  EXPECT_NEAR(inverseDepthError(noisy(depthImage(step))), kError, 0.1 * kError) << "an edge is no error";
+  EXPECT_LT(inverseDepthError(depthImage(slanted)), 1e-5) << "rounding to float";
+  const DepthImage round = depthImage([](int u, int v) { return 1.0 + 1e-3 * (u * u + v * v); });
   EXPECT_EQ(inverseDepthError(round), 0.0) << "a shape bends more over more pixels";
 }
 
 TEST(DepthFilter, LeavesAThirdOfTheErrors) {
   // The mean of 25 pixels has a fifth of the error; weights and the ends of the picture cost some of it.
   for (const DepthOf& truth : {DepthOf(slanted), DepthOf(step)}) {
-    const DepthImage image = noisy(picture(truth));
+    const DepthImage image = noisy(depthImage(truth));
     const FilteredDepths filtered = filterDepths(image, 2, 1);
     EXPECT_LT(rootMeanSquare(filtered.depths, truth), rootMeanSquare(image.depths, truth) / 3.0);
     EXPECT_LT(static_cast<double>(filtered.num_flying), 0.03 * kWidth * kHeight)
@@ -261,7 +261,7 @@ TEST(DepthFilter, LeavesAThirdOfTheErrors) {
 }
 
 TEST(DepthFilter, TakesFlyingPixelsOut) {
-  DepthImage image = noisy(picture(step));
+  DepthImage image = noisy(depthImage(step));
   std::vector<std::size_t> flying;
   for (int v = 0; v < kHeight; ++v) flying.push_back(static_cast<std::size_t>(v * kWidth + kWidth / 2));
   RandomStream random(3);
@@ -273,20 +273,20 @@ TEST(DepthFilter, TakesFlyingPixelsOut) {
 }
 
 TEST(DepthFilter, PixelsWithoutAPointHaveNone) {
-  DepthImage image = noisy(picture(slanted));
+  DepthImage image = noisy(depthImage(slanted));
   image.depths[5] = std::numeric_limits<float>::quiet_NaN();
   image.depths[6] = std::numeric_limits<float>::infinity();
   image.depths[7] = -1.0f;
   const FilteredDepths filtered = filterDepths(image, 2, 1);
   for (const std::size_t i : {5u, 6u, 7u}) EXPECT_TRUE(std::isnan(filtered.depths[i])) << i;
-  const DepthImage empty = picture([](int, int) { return std::numeric_limits<double>::quiet_NaN(); });
+  const DepthImage empty = depthImage([](int, int) { return std::numeric_limits<double>::quiet_NaN(); });
   EXPECT_EQ(filterDepths(empty, 2, 1).inverse_error, 0.0);
   EXPECT_EQ(inverseDepthError({1, 1, {1.0f}, kPixelAngle}), 0.0);
 }
 
 TEST(SensorNoise, NeighborsShareErrors) {
   // Means of three by three pixels have a third of the error, which pixels that are six apart do not share.
-  DepthImage image = noisy(picture(slanted)), shared = image;
+  DepthImage image = noisy(depthImage(slanted)), shared = image;
   for (int v = 1; v + 1 < kHeight; ++v)
     for (int u = 1; u + 1 < kWidth; ++u) {
       double sum = 0.0;
@@ -299,7 +299,7 @@ TEST(SensorNoise, NeighborsShareErrors) {
 }
 
 TEST(SensorNoise, ResolvesWhatItsErrorsLeave) {
-  const double error = sensorError(noisy(picture(slanted)));
+  const double error = sensorError(noisy(depthImage(slanted)));
   EXPECT_NEAR(error, kError, 0.1 * kError) << "each pixel has its own";
   Visibility::Projection projection = Visibility::Projection::Zero();
   projection.leftCols<3>() = Eigen::Matrix3d::Identity();
@@ -312,7 +312,7 @@ TEST(SensorNoise, ResolvesWhatItsErrorsLeave) {
 }
 
 TEST(DepthFilter, IsTheSameForAnyNumberOfThreads) {
-  const DepthImage image = noisy(picture(slanted));
+  const DepthImage image = noisy(depthImage(slanted));
   compareThreads([&](int num_threads) { return rootMeanSquare(filterDepths(image, 2, num_threads).depths, slanted); });
 }
 

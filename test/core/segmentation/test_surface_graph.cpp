@@ -128,7 +128,7 @@ TEST(SurfaceGraph, AWatchEndsTheStepsOfOneThread) {
   for (int i = 0; i + kSide + 1 < kSide * kSide; ++i)
     if ((i + 1) % kSide != 0) sheet.polygons.push_back({i, i + 1, i + kSide + 1, i + kSide});
   const auto watched = [](const auto& step) {
-    const Watch watch([](double) { throw 5; });
+    const ProgressMonitor monitor([](double) { throw 5; });
     step();
   };
   EXPECT_THROW(watched([&] { sheet.graph(); }), int);

@@ -327,7 +327,9 @@ TEST(MirroredLabels, CopiesTheSideThatChangesLess) {
   const SurfaceGraph graph = stripOfSquares(8);
   const ReflectionPlane plane(Eigen::Vector3d::UnitX(), 4.0);
   const std::vector<int> reflected = reflectedElements(graph, plane);
-  const auto mirrored = [&](const std::vector<int>& labels) { return mirroredLabels(graph, labels, plane, reflected); };
+  const auto mirrored = [&](const std::vector<int>& labels) {
+    return symmetrizedLabels(graph, labels, plane, reflected);
+  };
   const std::vector<int> ends{0, 0, 1, 1, 1, 1, 2, 2};
   EXPECT_EQ(mirrored(ends), ends) << "symmetric already";
   const std::vector<int> labels = mirrored({0, 0, 0, 1, 1, 1, 2, 2});

@@ -185,18 +185,18 @@ ReflectionPlane plane(double theta, double phi, double r) {
 
 TEST(LocalMaxima, APeakAnywhereIsFoundOnce) {
   const std::vector<PlaneGrid> grids = {grid(16, 64, 10), grid(16, 16, 12), grid(5, 12, 9)};
-  std::vector<ReflectionPlane> places;
+  std::vector<ReflectionPlane> wanted_planes;
   for (const double r : {0.0, -0.37}) {
     for (const double phi : {0.0, 0.001, -0.02, 1.0, 3.14159, 4.0}) {
       for (const double theta : {0.0, 0.01, 0.04, 0.1, 0.2, 0.8, 1.5, 1.5707, 0.5 * kPi, 1.58})
-        places.push_back(plane(theta, phi, r));
+        wanted_planes.push_back(plane(theta, phi, r));
     }
   }
   for (const PlaneGrid& g : grids) {
-    for (const ReflectionPlane& place : places) {
-      const auto found = findLocalMaxima(peaks(g, {{place, 0.9}}));
-      ASSERT_EQ(found.size(), 1u) << place.coefficients().transpose() << " on " << g.numTheta() << " x " << g.numPhi();
-      const PlaneError error = planeError(found[0].plane, place, g.center());
+    for (const ReflectionPlane& wanted : wanted_planes) {
+      const auto found = findLocalMaxima(peaks(g, {{wanted, 0.9}}));
+      ASSERT_EQ(found.size(), 1u) << wanted.coefficients().transpose() << " on " << g.numTheta() << " x " << g.numPhi();
+      const PlaneError error = planeError(found[0].plane, wanted, g.center());
       // The highest bin is the nearest one; the place lies within half a bin of some bin.
       EXPECT_LE(std::hypot(error.angle, error.offset),
                 0.5001 * std::hypot(std::hypot(g.thetaStep(), g.phiStep()), g.radiusStep()));
