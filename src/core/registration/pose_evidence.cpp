@@ -64,8 +64,7 @@ NotMeasured notMeasured(const PosedSurface& surface, const PosedSurface& scan, c
   int num_judged = 0;
   for (const VisiblePoint& point :
        visiblePoints(surface, scan, T_scan_surface, static_cast<int>(on_scan.images.cols()), true)) {
-    const SurfaceDisc closest = scan.disc(on_scan.closest[point.index]);
-    const double distance = std::sqrt(closest.sqDistance(on_scan.images.col(point.index)));
+    const double distance = std::sqrt(scan.sqDiscDistance(on_scan, point.index));
     const bool is_measured = std::min(std::abs(point.height), distance) < tolerance;
     if (!is_measured && point.height < 0.0) continue;  // behind the measured surface: unknown
     (is_measured ? measured : std::isinf(point.height) ? area.missing : area.contradicted) += point.cosine;
@@ -86,8 +85,7 @@ double shareOnSurface(const PosedSurface& from, const Landing& landing, const Po
   double sum = 0.0;
   for (Eigen::Index i = 0; i < landing.images.cols(); ++i) {
     if (normalCosine(from, to, landing, i) < -kRegistration.agreeing_cosine) continue;
-    const float sq_distance = to.disc(landing.closest[i]).sqDistance(landing.images.col(i));
-    sum += std::exp(static_cast<float>(-1.0 / (width * width)) * sq_distance);
+    sum += std::exp(static_cast<float>(-1.0 / (width * width)) * to.sqDiscDistance(landing, i));
   }
   // Three standard errors of a share, at most half over the root of the number of points.
   return std::max(0.0, sum / size - 1.5 / std::sqrt(size));
@@ -100,7 +98,7 @@ std::vector<float> discDistances(const PosedSurface& from, const PosedSurface& t
   const Landing landing = land(from, to, T_to_from, num_points, true);
   std::vector<float> distances;
   for (Eigen::Index i = 0; i < landing.images.cols(); ++i)
-    distances.push_back(std::sqrt(to.disc(landing.closest[i]).sqDistance(landing.images.col(i))));
+    distances.push_back(std::sqrt(to.sqDiscDistance(landing, i)));
   return distances;
 }
 

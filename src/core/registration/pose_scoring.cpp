@@ -14,15 +14,10 @@ float gaussian(double distance, double width) {
   return static_cast<float>(std::exp(-distance * distance / (width * width)));
 }
 
-/// The Gaussian of the distance of a match from its closest point.
-float nearness(const Landing& landing, Eigen::Index i, const PosedSurface& to, double width) {
-  const float factor = static_cast<float>(-1.0 / (width * width));
-  return std::exp(factor * (to.points.col(landing.closest[i]) - landing.images.col(i)).squaredNorm());
-}
-
-/// The Gaussian of the distance of a match from the disc about its closest point, which is as wide as the spacing.
-float nearnessOfSurface(const Landing& landing, Eigen::Index i, const PosedSurface& to, double width) {
-  const float sq_distance = to.disc(landing.closest[i]).sqDistance(landing.images.col(i));
+/// The Gaussian of the distance of a match from its closest point, or from the disc about it.
+float nearness(const Landing& landing, Eigen::Index i, const PosedSurface& to, double width, bool from_disc = false) {
+  const float sq_distance = from_disc ? to.sqDiscDistance(landing, i)
+                                      : (to.points.col(landing.closest[i]) - landing.images.col(i)).squaredNorm();
   return std::exp(static_cast<float>(-1.0 / (width * width)) * sq_distance);
 }
 
@@ -47,8 +42,7 @@ PoseScore PoseScorer::score(const Eigen::Isometry3d& T_model_scan, const Detail&
   const Landing on_model = land(scan_, model_, T_model_scan, detail.num_points, detail.exact);
   double unexplained = 0.0;
   for (Eigen::Index i = 0; i < on_model.images.cols(); ++i) {
-    const float near = detail.from_surface ? nearnessOfSurface(on_model, i, model_, detail.width)
-                                           : nearness(on_model, i, model_, detail.width);
+    const float near = nearness(on_model, i, model_, detail.width, detail.from_surface);
     score.support += detail.from_surface ? near : near * normalFactor(scan_, on_model, i, model_);
     if (model_.seen && depthBehind(on_model, i, model_) < 0.0) unexplained += 1.0 - near;
   }
@@ -60,9 +54,8 @@ PoseScore PoseScorer::score(const Eigen::Isometry3d& T_model_scan, const Detail&
   for (Eigen::Index i = 0; i < on_scan.images.cols(); ++i) {
     const double depth = depthBehind(on_scan, i, scan_);
     // The scanner may have measured more beside the scan: a piece of the object that was cut off.
-    const double on_surface = detail.from_surface ? std::max(nearnessOfSurface(on_scan, i, scan_, detail.width),
-                                                             gaussian(depth, detail.width))
-                                                  : nearness(on_scan, i, scan_, detail.width);
+    double on_surface = nearness(on_scan, i, scan_, detail.width, detail.from_surface);
+    if (detail.from_surface) on_surface = std::max<double>(on_surface, gaussian(depth, detail.width));
     conflict += depth < 0.0 ? 1.0 - on_surface : 0.0;
     judged += depth < 0.0 ? 1.0 : on_surface;
   }

@@ -37,8 +37,11 @@ struct PosedSurface {
   /// coarser, and search, borders, spacing and accuracy, which exact judgments need, are not set.
   PosedSurface(const PointsRef& points, const PointsRef& normals, std::optional<Visibility> seen);
 
-  /// The disc about a point, as wide as the local spacing.
-  SurfaceDisc disc(int i) const { return {points.col(i), normals.col(i), spacing[i]}; }
+  /// \return squared distance of a point that landed here from the disc about its closest point, as wide as the spacing.
+  float sqDiscDistance(const Landing& landing, Eigen::Index i) const {
+    const int j = landing.closest[i];
+    return SurfaceDisc{points.col(j), normals.col(j), spacing[j]}.sqDistance(landing.images.col(i));
+  }
 };
 
 /// \return the cosine between the normal of a point that landed and that of its closest point: of the lines along them,

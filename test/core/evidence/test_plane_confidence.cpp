@@ -57,6 +57,15 @@ void expectFalls(const std::string& what, const std::function<void(PlaneEvidence
   }
 }
 
+TEST(PlaneConfidence, OfAFlatCloudCountsMoreOfTheOutlineAsOff) {
+  PlaneEvidence evidence = evidenceOf(0.98, 0.02, 0.05, CloudKind::Surface), exact = evidence;
+  evidence.share = 0.98;
+  const double solid = planeConfidence(evidence), exact_solid = planeConfidence(exact);
+  evidence.flat = exact.flat = true;
+  EXPECT_LT(planeConfidence(evidence), solid - 0.1);
+  EXPECT_GT(planeConfidence(exact), exact_solid - 0.05);
+}
+
 TEST(PlaneConfidence, FallsAsEvidenceGetsWorse) {
   expectFalls("share", [](PlaneEvidence& e, double t) { e.share = 1.0 - t; });
   expectFalls("share within twice the tolerance", [](PlaneEvidence& e, double t) { e.double_share = 1.0 - t; });

@@ -187,5 +187,16 @@ TEST(PoseEvidence, WhatAScannerShouldHaveSeenItHasMeasured) {
   EXPECT_EQ(nobody_looked.contradicted + nobody_looked.missing, 0.0);
 }
 
+TEST(PoseEvidence, TwoSidesOfASheetAreNotOneSurface) {
+  const BlockObject sheet{{{Eigen::Vector3d::Zero(), {1.0, 0.05, 0.7}}}, {}};
+  const Scan front = test::scan(sheet, {1.0, -6.0, 2.0}), rear = test::scan(sheet, {-1.0, 6.0, 2.0});
+  const PosedSurface of_front = surface(front.cloud(), front.visibility()),
+                     of_rear = surface(rear.cloud(), rear.visibility()), unseen = surface(rear.cloud());
+  const Eigen::Isometry3d onto(Eigen::Translation3d(0.0, 0.1, 0.0));  // the front onto the rear
+  EXPECT_GT(poseEvidence(of_front, unseen, onto).on_surface, 0.8);
+  EXPECT_LT(poseEvidence(of_front, of_rear, onto).on_surface, 0.2);
+  EXPECT_LT(poseEvidence(of_front, of_rear, onto).overlap_source, 0.2);
+}
+
 }  // namespace
 }  // namespace pcl_symmetry

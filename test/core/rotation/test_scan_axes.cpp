@@ -234,6 +234,20 @@ TEST(ScanAxes, ACupHasAnAxisUnlessAHandleIsInSight) {
   EXPECT_TRUE(detected(cupShape(true), {1.0, 5.0, 1.5}).axes.empty());
 }
 
+TEST(ScanAxes, SymmetriesOfACupWithAHandleMapTheHandleOntoItself) {
+  int num_true = 0;
+  for (int degrees = 0; degrees <= 180; degrees += 30) {
+    const double azimuth = degrees * kDegree;
+    const Detection found = detected(cupShape(true), {5.0 * std::cos(azimuth), 5.0 * std::sin(azimuth), 2.0});
+    for (const SymmetryPlane& plane : found.planes) {
+      if (plane.kind != PlaneKind::Symmetry) continue;
+      EXPECT_GT(std::abs(plane.normal().y()), std::cos(5.0 * kDegree)) << degrees;
+      ++num_true;
+    }
+  }
+  EXPECT_GE(num_true, 2);
+}
+
 TEST(ScanAxes, ABallHasACenterAndADomeOneAxis) {
   const Eigen::Vector3d viewpoint(3.0, 4.0, 5.0);
   const SeenFromOneSide ball = seenFrom(ballShape(), viewpoint);
