@@ -11,13 +11,16 @@ namespace {
 std::string explained(const std::string& name, const SymmetryPlane& plane, const Detection& found) {
   std::string lines = formatted("%s: %s, confidence %.3f\n", name.c_str(), toString(plane.kind), plane.confidence);
   if (!std::isnan(plane.share)) {
+    // Where points resolve no surface, symmetries are told by the density.
+    const bool is_below = plane.kind == PlaneKind::Symmetry && plane.share < 0.97;
     // It is the diameter where the worst points are farther than was searched.
     const std::string most =
         plane.deviation < 0.99 * found.diameter ? formatted(", 97 %% within %.3g", plane.deviation) : "";
     lines += formatted(
-        "  %.1f %% of the surface within %.3g of its reflection%s; a symmetry has 97 %%\n"
+        "  %.1f %% of the surface within %.3g of its reflection%s%s\n"
         "  %.0f %% of the reflections fall where the surface would have been seen\n",
-        100.0 * plane.share, found.tolerance, most.c_str(), 100.0 * plane.seen);
+        100.0 * plane.share, found.tolerance, most.c_str(), is_below ? "" : "; a symmetry has 97 %",
+        100.0 * plane.seen);
   }
   bool is_first = true;
   for (const Reason& reason : plane.reasons) {

@@ -1,5 +1,7 @@
 #include "io/shape_readers.h"
 
+#include <limits>
+
 #include "io/file_text.h"
 
 namespace pcl_symmetry::apps {
@@ -32,7 +34,8 @@ std::uint64_t readKeywordAndVertexCount(TokenReader& reader, const std::string& 
 ExactShape readOFF(const std::string& path, std::string_view text) {
   TokenReader reader(text, path);
   const std::uint64_t num_vertices = readKeywordAndVertexCount(reader, path);
-  const std::uint64_t num_faces = reader.count("number of faces, header value", 2, text.size());
+  const std::uint64_t num_faces =
+      reader.count("number of faces, header value", 2, std::numeric_limits<std::uint64_t>::max());
   reader.skipLine();
   if (num_vertices == 0) throw InputError(path + ": number of vertices = 0, must be > 0");
   if (num_vertices > text.size() / 6) {

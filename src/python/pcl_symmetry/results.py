@@ -483,28 +483,29 @@ class Planes(Result):
     evidence: NDArray[Any]
     """With planes(evidence=True), what the decisions are taken from: structured array, one row a candidate, best first.
 
-    coefficients: (4,) a, b, c, d. kind: 0 surface, 1 scan, 2 points that resolve no surface. flat: all points lie in one
-    plane. confidence: by this evidence alone. All shares are in [0, 1]:
-    share, double_share: of the surface that the plane maps to within once and twice the tolerance
-    unknown: that is uninformative, as its reflection was not seen or was cut off
-    score: D of equation 2. own_score: what noise leaves of D for a symmetry, in [0.5, 1]
-    support, conflict: mean over the points. baseline: support of the points on the surface of all others
-    hold: of scans, how firmly what is matched holds the plane, >= 0
-    spacing, tolerance: over the radius of the points. roughness: over the spacing
-    share_unit: error of the share that share_interval is in units of
-    terms: (7,) summands of the log odds of the confidence before their coefficients, by kind 7, 6 and 5 of them, then 0;
-        the last one of kinds 0 and 1 counts for planes beside the best of the cloud
+    - coefficients: (4,) a, b, c, d. kind: 0 surface, 1 scan, 2 points that resolve no surface
+    - flat: all points lie in one plane. confidence: by this evidence alone
+    - share, double_share: of the surface that the plane maps to within once and twice the tolerance; all shares are in [0, 1]
+    - unknown: share that is uninformative, as its reflection was not seen or was cut off
+    - score: D of equation 2. own_score: what noise leaves of D for a symmetry, in [0.5, 1]
+    - support, conflict: mean over the points. baseline: support of the points on the surface of all others
+    - hold: of scans, how firmly the matches hold the plane, >= 0
+    - spacing, tolerance: over the radius of the points. roughness: over the spacing
+    - share_unit: unit of the error of the share, for share_interval
+    - terms: (7,) summands of the log odds of the confidence before their coefficients, by kind 7, 6 and 5 of them, then 0;
+      the last one of kinds 0 and 1 counts for planes beside the best of the cloud
     """
     rotation_evidence: NDArray[Any]
     """The same for the rotations of scans, also those of no confidence.
 
-    point, direction: (3,) each. fold: order of the rotations; 0: by any angle. kind: 0 by any angle, 1 half turns, 2 of
-    order 3 and more. confidence: of the rotations. Shares of the points seen:
-    support: that the best rotation maps onto the surface. off, far: that the worst rotation maps into free space,
-    beyond one and ten tolerances. halfway: off of rotations halfway between those of the fold.
-    Of half turns: grown, extent with the image over that without, >= 1. hold: how firmly what is matched holds the line,
-    >= 0. planes_off: off of the best pair of planes through the line. beside: 1 where another rotation fits better.
-    terms: (7,) summands of the log odds before their coefficients, by kind 4, 7 and 6 of them, then 0
+    - point, direction: (3,) each. fold: order of the rotations; 0: by any angle
+    - kind: 0 by any angle, 1 half turns, 2 of order 3 and more. confidence: of the rotations
+    - support: share of the points seen that the best rotation maps onto the surface
+    - off, far: share that the worst rotation maps into free space, beyond one and ten tolerances
+    - halfway: off of rotations halfway between those of the fold
+    - grown: of half turns, extent with the image over that without, >= 1. hold: of these, how firmly the matches hold the
+      line, >= 0. planes_off: off of the best pair of planes through it. beside: 1 where another rotation fits better
+    - terms: (7,) summands of the log odds before their coefficients, by kind 4, 7 and 6 of them, then 0
     """
     samples: Optional[NDArray[Any]]
     """(M, 3) points that were spread over a mesh, which point_support() is of; None for a cloud."""
