@@ -168,8 +168,10 @@ double poseConfidence(const PoseEvidence& evidence) {
       std::log(std::clamp(evidence.noise, kRegistration.min_noise, kRegistration.max_noise) / 0.001 + 0.5),
       std::abs(std::log(evidence.size_ratio))};
   const double log_odds = std::inner_product(terms.begin(), terms.end(), kRegistrationFit.begin(), 0.0);
-  // Surfaces that face each other have to agree mostly, and little may lie aside, whatever else supports the pose.
-  const double beside = std::max(0.0, 1.0 - 0.5 * evidence.aside / kRegistration.max_aside);
+  // Surfaces that face each other have to agree mostly, and little may lie aside, whatever else supports the pose: less
+  // where the scanner is more exact than a depth camera, as it then misses less.
+  const double max_aside = kRegistration.max_aside * std::clamp(evidence.noise / kRegistration.min_noise, 0.25, 1.0);
+  const double beside = std::max(0.0, 1.0 - 0.5 * evidence.aside / max_aside);
   return std::min({logistic(log_odds), evidence.agreement, beside}) * evidence.uniqueness;
 }
 
