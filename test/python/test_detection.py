@@ -170,7 +170,8 @@ class Detection(unittest.TestCase):
             self.assertGreaterEqual(tuple(plane.normal[::-1]), (0, 0, 0), "canonical")
             for value in (plane.score, plane.support, plane.seen, plane.confidence):
                 self.assertTrue(0 <= value <= 1)
-            self.assertGreaterEqual(plane.residual, 0)
+            low, high = plane.share_interval
+            self.assertTrue(plane.share > 0.99 and low <= plane.share <= high and plane.deviation < found.tolerance and plane.residual >= 0)
             support = found.point_support(i)
             self.assertEqual((len(support), np.nanmin(support) >= 0, np.nanmax(support) <= 1), (count, True, True))
             self.assertGreaterEqual(plane.support, np.nansum(support) / count - 1e-6, "divided by what sampling lets a symmetry have")

@@ -1,5 +1,5 @@
 """Tools run as their users run them, the files that go in and come out, and shapes to test with."""
-import importlib
+import importlib.util
 import json
 import os
 import re
@@ -18,6 +18,12 @@ def need(*packages):
     except ImportError as error:
         print(f"skipped: {error}")
         sys.exit(77)
+
+
+def needs(*packages):
+    """A decorator of tests that are skipped where one of these packages of Python is not installed."""
+    missing = [package for package in packages if not importlib.util.find_spec(package)]
+    return unittest.skipIf(missing, f"not installed: {', '.join(missing)}")
 
 
 np, Image = need("numpy", "PIL.Image")
