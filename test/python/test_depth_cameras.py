@@ -19,8 +19,8 @@ from pathlib import Path
 
 import pcl_symmetry
 from test_scene import block
-from tool_run import ToolTest, np, off, pcd, points_on_sphere
-from test_pcl_symmetry import Mesh, bar, box, box_mesh, bumped, has_pcl, lamp, needs_pcl
+from tool_run import ToolTest, needs, np, off, pcd, points_on_sphere
+from test_pcl_symmetry import Mesh, bar, box, box_mesh, bumped, has_pcl, lamp, needs_pcl, warned
 
 INTRINSICS = (300.0, 300.0, 160.0, 120.0)
 
@@ -102,8 +102,7 @@ class SameBytes(ToolTest):
         check("one side", one_side)
         check("viewpoint", one_side, f"-viewpoint {at}", viewpoint=viewpoint)
         check("ground", one_side, f"-viewpoint {at} -ground 0,0,1,0.2", viewpoint=viewpoint, ground=(0, 0, 1, 0.2))
-        with self.assertWarnsRegex(RuntimeWarning, "ground: has no effect without a viewpoint"):
-            pcl_symmetry.planes(cloud, ground=(0, 0, 1, 0.2))
+        warned("ground: has no effect without a viewpoint", pcl_symmetry.planes, cloud, ground=(0, 0, 1, 0.2))
         check("organized", np.where((labels == 1)[..., None], frame, np.nan))
         check("organized, without viewpoint", frame, "-viewpoint none", viewpoint=None)
         check("label", frame, "-label 1", labels=labels, indices=labels == 1)
@@ -168,23 +167,18 @@ class DepthImages(unittest.TestCase):
         matrix = [[fx, 0, cx], [0, fy, cy], [0, 0, 1]]
         millimeters = pcl_symmetry.from_depth((1000 * depth).round().astype(np.uint16), matrix, unit=0.001)
         np.testing.assert_allclose(millimeters[seen], points[seen], atol=1e-3)
-        with self.assertWarnsRegex(RuntimeWarning, "unit=0.001 makes meters of millimeters"):
-            pcl_symmetry.from_depth(np.full((4, 4), 700, np.uint16), matrix)
-        for wrong, words in (
-            ((depth[0], INTRINSICS), "depth = array of shape"),
-            ((depth, (0, 300, 1, 1)), "fx and fy > 0"),
-            ((depth, np.eye(4)), "intrinsics = "),
+        warned("unit=0.001 makes meters of millimeters", pcl_symmetry.from_depth, np.full((4, 4), 700, np.uint16), matrix)
+        of_open3d = lambda **size: types.SimpleNamespace(intrinsic_matrix=matrix, **size)
+        for *wrong, error, words in (
+            (depth[0], INTRINSICS, ValueError, "depth = array of shape"),
+            (depth, (0, 300, 1, 1), ValueError, "fx and fy > 0"),
+            (depth, np.eye(4), ValueError, "intrinsics = "),
+            (depth, of_open3d(width=640, height=480), ValueError, r"depth = .* \(240, 320\), must be \(480, 640\), that of the intrinsics"),
+            ("a.png", INTRINSICS, TypeError, "depth = 'a.png', must be .* read files"),
         ):
-            with self.assertRaisesRegex(ValueError, words):
-                pcl_symmetry.from_depth(*wrong)
-        with self.assertRaisesRegex(TypeError, "depth = 'a.png', must be .* read files"):
-            pcl_symmetry.from_depth("a.png", INTRINSICS)
+            self.assertRaisesRegex(error, words, pcl_symmetry.from_depth, *wrong)
         for size in ({}, dict(width=320, height=240), dict(width=-1, height=-1)):
-            of_open3d = types.SimpleNamespace(intrinsic_matrix=matrix, **size)
-            np.testing.assert_array_equal(pcl_symmetry.from_depth(depth, of_open3d), points)
-        of_another = types.SimpleNamespace(intrinsic_matrix=matrix, width=640, height=480)
-        with self.assertRaisesRegex(ValueError, r"depth = array of shape \(240, 320\), must be \(480, 640\), that of the intrinsics"):
-            pcl_symmetry.from_depth(depth, of_another)
+            np.testing.assert_array_equal(pcl_symmetry.from_depth(depth, of_open3d(**size)), points)
 
 
 @needs_pcl
@@ -196,8 +190,7 @@ class OrganizedArrays(ToolTest):
 
     def test_what_the_picture_cuts_off_all_around_has_no_symmetry(self):
         for depth in (np.full((120, 160), 1.2), 1 / (0.8 + np.linspace(0, 0.3, 120)[:, None] + np.zeros(160))):
-            with self.assertWarnsRegex(RuntimeWarning, "if this is a whole frame"):
-                found = pcl_symmetry.planes(pcl_symmetry.from_depth(depth, (150, 150, 80, 60)))
+            found = warned("if this is a whole frame", pcl_symmetry.planes, pcl_symmetry.from_depth(depth, (150, 150, 80, 60)))
             self.assertEqual((found.planes, found.axes), ([], []))
 
     def assert_says_what_was_seen(self, found, mask):
@@ -238,12 +231,10 @@ class OrganizedArrays(ToolTest):
             drawn, of_part = found.plot(self.frame).get_xlim3d(), self.frame[mask][:, 0]
             self.assertTrue(drawn[0] > of_part.min() - 0.2 and drawn[1] < of_part.max() + 0.2, "the table is not drawn")
         for wrong in (mask[:, :5], np.ones(5), [[1, 2]], [10**6]):
-            with self.assertRaisesRegex(ValueError, "indices"):
-                pcl_symmetry.planes(self.frame, indices=wrong)
-        with self.assertWarnsRegex(RuntimeWarning, "points: .*distinct point"):
-            self.assertIn("distinct point", pcl_symmetry.planes(self.frame, indices=[int(np.flatnonzero(mask)[0])]).reason)
-        with self.assertWarnsRegex(RuntimeWarning, "points: no symmetry; if this is a whole frame"):
-            self.assertTrue(pcl_symmetry.planes(self.frame).possible)
+            self.assertRaisesRegex(ValueError, "indices", pcl_symmetry.planes, self.frame, indices=wrong)
+        one = warned("points: .*distinct point", pcl_symmetry.planes, self.frame, indices=[int(np.flatnonzero(mask)[0])])
+        self.assertIn("distinct point", one.reason)
+        self.assertTrue(warned("points: no symmetry; if this is a whole frame", pcl_symmetry.planes, self.frame).possible)
 
     def test_a_scene_has_a_small_ball(self):
         """Of 800 pixels, all that is not the table."""
@@ -272,20 +263,14 @@ class OrganizedArrays(ToolTest):
         for k in (1, 2):
             found = scene.labels == next(i + 1 for i, each in enumerate(scene) if self.labels.ravel()[each.rows[0]] == k)
             self.assertGreater((found & (self.labels == k)).sum(), 0.9 * (self.labels == k).sum())
-        with self.assertRaisesRegex(ValueError, "points: are a mesh, must be a cloud as a sensor sees it"):
-            pcl_symmetry.scene(types.SimpleNamespace(vertices=np.eye(3), faces=np.array([[0, 1, 2]])))
         for each in scene:
-            self.assertTrue(each.planes)
-            self.assertIsNotNone(each.completed_by)
-            self.assertGreater(len(each.added), 0)
-            self.assertTrue(each.frame)
+            self.assertTrue(each.planes and each.completed_by is not None and len(each.added) and each.frame)
             self.assertTrue(each.planes.to_dict()["partial"])
             self.assertIn("plane 1", each.planes.show(self.frame).html)
             if importlib.util.find_spec("matplotlib"):
                 self.assertTrue(each.planes.plot(self.frame).collections)
         self.assertRegex(repr(scene), r"^Scene\(objects=\[SceneObject\(rows=\d+, planes=\[0.*\], added=\d+\), .*supports=\[")
-        with self.assertRaisesRegex(ValueError, r"planes\(points, indices=object.rows\) has it"):
-            scene[0].planes.point_support(0)
+        self.assertRaisesRegex(ValueError, r"planes\(points, indices=object.rows\) has it", scene[0].planes.point_support, 0)
         page = scene.show(self.frame)
         shown = json.loads(page.html.split('id="scene">')[1].split("</script>")[0])
         self.assertEqual(len(shown["panels"]), 3)
@@ -300,21 +285,19 @@ class OrganizedArrays(ToolTest):
             self.assertTrue(y[1] - y[0] > 10 * abs(x[1] - x[0]) and x[2] - x[0] > 10 * abs(y[2] - y[0]), "seen from the sensor, upright")
         shifted = pcl_symmetry.scene(self.frame.astype(float) + (4e5, 5e6, 0), viewpoint=(4e5, 5e6, 0))
         self.assertEqual(len(shifted), 2)
-        with self.assertRaisesRegex(ValueError, "from_depth"):
-            pcl_symmetry.scene(self.frame[..., 2])
-        with self.assertRaisesRegex(ValueError, "viewpoint: of rows without order"):
-            pcl_symmetry.scene(box())
+        for wrong, options, words in (
+            (self.frame[..., 2], {}, "from_depth"), (box(), {}, "viewpoint: of rows without order"),
+            (Mesh(*box_mesh()), {}, "points: are a mesh, must be a cloud as a sensor sees it"),
+            (self.frame, dict(min_points=3), "min_points = 3, must be >= 20"),
+        ):  # fmt: skip
+            self.assertRaisesRegex(ValueError, words, pcl_symmetry.scene, wrong, **options)
         rows = pcl_symmetry.Shape(self.frame.reshape(-1, 3), np.empty((0, 3), np.int32), None)
         self.assertEqual(len(pcl_symmetry.scene(rows)), 2, "a file without a viewpoint was seen from the origin")
-        with self.assertWarnsRegex(RuntimeWarning, "points: no finite point within max_range"):
-            self.assertEqual(len(pcl_symmetry.scene(self.frame, max_range=0.01)), 0)
-        with self.assertWarnsRegex(RuntimeWarning, "points: no finite point"):
-            nothing = pcl_symmetry.scene(np.full((24, 32, 3), np.nan))
+        self.assertEqual(len(warned("points: no finite point within max_range", pcl_symmetry.scene, self.frame, max_range=0.01)), 0)
+        nothing = warned("points: no finite point", pcl_symmetry.scene, np.full((24, 32, 3), np.nan))
         self.assertEqual(len(nothing), 0)
         if importlib.util.find_spec("matplotlib"):
             self.assertIsNone(nothing.plot(np.full((24, 32, 3), np.nan)).get_legend())
-        with self.assertRaisesRegex(ValueError, "min_points = 3, must be >= 20"):
-            pcl_symmetry.scene(self.frame, min_points=3)
 
     def test_files_keep_their_order_and_viewpoint(self):
         viewpoint, (vertices, faces) = np.array([3.0, 2.0, 1.5]), box_mesh()
@@ -332,8 +315,7 @@ class OrganizedArrays(ToolTest):
             ("cut.pcd", ValueError, "cut.pcd: "),
             ("box.glb", ValueError, r"box.glb: unknown extension '.glb', must be .pcd, .ply, .off, .* or .csv; trimesh.load\(\) reads"),
         ):
-            with self.assertRaisesRegex(error, words):
-                pcl_symmetry.read(self.folder / wrong)
+            self.assertRaisesRegex(error, words, pcl_symmetry.read, self.folder / wrong)
         facets = "".join(f"facet normal 0 0 1\nouter loop\n{text('vertex {} {} {}', vertices[f])}endloop\nendfacet\n" for f in faces)
         for kind, content in (("off", off(vertices, faces)), ("obj", text("v {} {} {}", vertices) + text("f {} {} {}", faces + 1)),
                               ("stl", f"solid box\n{facets}endsolid box\n")):  # fmt: skip
@@ -363,9 +345,8 @@ class OrganizedArrays(ToolTest):
         self.assertEqual(pcl_symmetry.frame(scan), pcl_symmetry.frame(rows, viewpoint=viewpoint))
         pose = pcl_symmetry.register(scan, box(), seed=2)
         self.assertEqual(pose, pcl_symmetry.register(rows, box(), source_viewpoint=viewpoint, seed=2))
-        with self.assertWarnsRegex(RuntimeWarning, "points: no supporting plane .* planes\\(\\) takes it as a whole") as caught:
-            self.assertTrue(pcl_symmetry.scene(scan).viewpoint is not None, "which rows alone are asked for")
-        self.assertEqual(caught.filename, __file__)
+        alone = warned(r"points: no supporting plane .* planes\(\) takes it as a whole", pcl_symmetry.scene, scan)
+        self.assertIsNotNone(alone.viewpoint, "which rows alone are asked for")
         among = dataclasses.replace(scan, viewpoint=np.zeros(3))
         self.assertEqual(pcl_symmetry.planes(among, approximate=True).viewpoint is None, pcl_symmetry.planes(rows).viewpoint is None, "cannot be")
         np.testing.assert_array_equal(mesh.faces, faces)
@@ -377,9 +358,8 @@ class OrganizedArrays(ToolTest):
         viewpoint = np.array([3.0, 2.0, 1.5])
         stored = pcl_symmetry.Shape(seen_half(box(num_points=8000), viewpoint), np.empty((0, 3), np.int32), viewpoint)
         for scan in (self.frame[self.labels == 1], np.where((self.labels == 1)[..., None], self.frame, np.nan), stored):
-            with self.assertWarnsRegex(RuntimeWarning, "points: a scan from one side, must be a whole object") as caught:
-                found = pcl_symmetry.rotations(scan)
-            self.assertEqual((bool(found), found.name, found.confidence, found.reason[:6], caught.filename), (False, "", 0, "a scan", __file__))
+            found = warned("points: a scan from one side, must be a whole object", pcl_symmetry.rotations, scan)
+            self.assertEqual((bool(found), found.name, found.confidence, found.reason[:6]), (False, "", 0, "a scan"))
 
     def test_a_database_names_what_is_in_a_frame(self):
         database = pcl_symmetry.Database(":memory:")
@@ -403,8 +383,7 @@ class OrganizedArrays(ToolTest):
         points = [box(), points_on_sphere(3000), lamp(), scan]
         searches = [pcl_symmetry.planes(each, approximate=True) for each in points]
         searches.append(pcl_symmetry.planes(volume=(x**2 + 2 * y**2 + 3 * z**2 < 300).astype(float)))
-        with self.assertWarns(RuntimeWarning):
-            searches.append(pcl_symmetry.planes(np.zeros((9, 3))))
+        searches.append(warned("points: ", pcl_symmetry.planes, np.zeros((9, 3))))
         for found in searches:
             self.assert_follow(found, "planes", **only)
         of_scan = json.loads(searches[3].to_json())
@@ -444,13 +423,10 @@ class Meshes(unittest.TestCase):
         self.assertIn("plane 3", found.show(mesh).html)
         self.assertEqual(pcl_symmetry.sample_mesh(mesh).shape, (10_000, 3))
 
+    @needs("open3d", "matplotlib")
     def test_of_open3d_pass_everywhere(self):
-        try:
-            import matplotlib
-            import open3d
-        except ImportError:
-            self.skipTest("Open3D or matplotlib is not installed (Debian packages python3-open3d, python3-matplotlib)")
-        matplotlib.use("Agg")
+        import open3d
+
         points = box(num_points=2000).astype(float)
         plain = pcl_symmetry.planes(points)
         cloud = open3d.geometry.PointCloud(open3d.utility.Vector3dVector(points))
@@ -483,9 +459,7 @@ class Meshes(unittest.TestCase):
 class Answers(unittest.TestCase):
     def test_are_false_where_there_is_no_symmetry(self):
         """Noise of half of the tolerance beside a bump: the plane may be one."""
-        random = np.random.default_rng(3)
-        blob = random.normal(size=(4000, 3))
-        blob /= np.linalg.norm(blob, axis=1, keepdims=True)
+        blob = points_on_sphere(4000, 3)
         blob *= 1 + 0.3 * np.sin(3 * blob @ (1, 2, 0.5))[:, None] + 0.2 * blob[:, :1] * blob[:, 1:2]
         found = pcl_symmetry.planes(blob)
         self.assertFalse(found, found)
@@ -494,22 +468,18 @@ class Answers(unittest.TestCase):
         self.assertFalse(every)
         self.assertTrue(every.approximate)
         plane = every.approximate[0]
-        with self.assertRaisesRegex(ValueError, "plane.kind = .*, must be symmetry or possible"):
-            pcl_symmetry.complete(blob, plane)
+        self.assertRaisesRegex(ValueError, "plane.kind = .*, must be symmetry or possible", pcl_symmetry.complete, blob, plane)
         as_they_are = [plane.coefficients, plane.coefficients.tolist(), pcl_symmetry.ReflectionPlane(plane.normal, plane.offset)]
         rows = {pcl_symmetry.complete(blob, each)[1].tobytes() for each in as_they_are}
         self.assertEqual(len(rows), 1)
-        with self.assertWarnsRegex(RuntimeWarning, "no symmetry, nothing is added"):
-            self.assertEqual([len(each) for each in pcl_symmetry.complete(blob)], [0, 0])
+        self.assertEqual([len(each) for each in warned("no symmetry, nothing is added", pcl_symmetry.complete, blob)], [0, 0])
         self.assertEqual([each["kind"] for each in json.loads(every.to_json())["planes"]], [each.kind for each in every.approximate])
 
     def test_cannot_be_written_into(self):
         found = pcl_symmetry.planes(box())
-        arrays = [found[0].normal, found._rows, pcl_symmetry.frame(box()).axes, pcl_symmetry.ReflectionPlane((1, 0, 0), 1).normal]
-        arrays += [found[0].coefficients, found[0].reflection]
-        for array in arrays:
-            with self.assertRaisesRegex(ValueError, "read-only"):
-                array[...] = 0
+        for array in (found[0].normal, found._rows, pcl_symmetry.frame(box()).axes, pcl_symmetry.ReflectionPlane((1, 0, 0), 1).normal,
+                      found[0].coefficients, found[0].reflection):  # fmt: skip
+            self.assertRaisesRegex(ValueError, "read-only", array.fill, 0)
         self.assertTrue(pcl_symmetry.symmetrize(box(), found[0]).points.flags.writeable, "as Open3D needs it")
 
 
@@ -535,8 +505,7 @@ class LongCalls(ToolTest):
             os.kill(os.getpid(), signal.SIGINT)
 
         threading.Thread(target=interrupt).start()
-        with self.assertRaises(KeyboardInterrupt):
-            call()
+        self.assertRaises(KeyboardInterrupt, call)
         return time.monotonic() - sent[0]
 
     def test_end_with_ctrl_c(self):
@@ -560,20 +529,18 @@ class LongCalls(ToolTest):
             self.assertEqual(database.build(few).failures, [])
 
     def test_tell_their_progress(self):
-        shares = []
-        pcl_symmetry.local_symmetry(box(num_points=200), 1.0, progress=shares.append)
-        self.assertTrue(shares and all(0 <= share <= 1 for share in shares))
-        self.assertEqual(sorted(shares), shares)
-        with self.assertRaises(ZeroDivisionError):
-            pcl_symmetry.local_symmetry(box(num_points=600), 1.0, progress=lambda share: 1 / 0)
-        with self.assertRaisesRegex(TypeError, "progress = str"):
-            pcl_symmetry.planes(box(), progress="yes")
-        pcl_symmetry.planes(box(), progress=True)
+        calls = [(pcl_symmetry.local_symmetry, box(num_points=200), 1.0)]
         if has_pcl():
-            for function, clouds in ((pcl_symmetry.register, (lamp(), lamp(seed=5))), (pcl_symmetry.register_all, ([lamp(), lamp(seed=5)],))):
-                shares = []
-                function(*clouds, progress=shares.append)
-                self.assertTrue(shares and all(0 <= share <= 1 for share in shares), function.__name__)
+            calls += [(pcl_symmetry.register, lamp(), lamp(seed=5)), (pcl_symmetry.register_all, [lamp(), lamp(seed=5)])]
+        for function, *arguments in calls:
+            shares = []
+            function(*arguments, progress=shares.append)
+            self.assertTrue(shares and 0 <= min(shares) and max(shares) <= 1, function.__name__)
+            if function is not pcl_symmetry.register_all:  # of which pairs tell theirs
+                self.assertEqual(shares, sorted(shares), function.__name__)
+        self.assertRaises(ZeroDivisionError, pcl_symmetry.local_symmetry, box(num_points=600), 1.0, progress=lambda share: 1 / 0)
+        self.assertRaisesRegex(TypeError, "progress = str", pcl_symmetry.planes, box(), progress="yes")
+        pcl_symmetry.planes(box(), progress=True)
 
 
 class Pages(ToolTest):
@@ -587,10 +554,10 @@ class Pages(ToolTest):
         subprocess.run(["chromium", *flags, f"--user-data-dir={self.folder}/user", *shot], check=True, capture_output=True, timeout=300)
         return matplotlib.image.imread(f"{self.folder}/page.png")[..., :3]
 
+    @needs("matplotlib")
+    @unittest.skipUnless(shutil.which("chromium"), "no browser (Debian package chromium)")
     def test_show_support_in_colors(self):
         """Yellow where a point has a counterpart, with and without normals; an axis is seen in front of what hides it."""
-        if not shutil.which("chromium") or not importlib.util.find_spec("matplotlib"):
-            self.skipTest("a browser or matplotlib is not installed (Debian packages chromium, python3-matplotlib)")
         points = box()
         random = np.random.default_rng(1)
         angle, height = random.uniform(0, 2 * np.pi, 20_000), random.uniform(0, 1, 20_000)
