@@ -19,6 +19,8 @@ from pathlib import Path
 
 import pcl_symmetry
 from test_scene import block
+from test_shape_input import CORNERS, SQUARE_STL, XYZ, meshes
+from test_shape_input import rows as rows_of_text
 from tool_run import ToolTest, needs, np, off, pcd, points_on_sphere
 from test_pcl_symmetry import Mesh, bar, box, box_mesh, bumped, has_pcl, lamp, needs_pcl, warned
 
@@ -302,34 +304,27 @@ class OrganizedArrays(ToolTest):
     def test_files_keep_their_order_and_viewpoint(self):
         viewpoint, (vertices, faces) = np.array([3.0, 2.0, 1.5]), box_mesh()
         rows = seen_half(box((1.0, 0.7, 0.4), 8000), viewpoint)
-        text = lambda line, table: "".join(line.format(*row) + "\n" for row in table)
         self.write("frame.pcd", pcd(self.frame.reshape(-1, 3), 320))
         self.write("scan.pcd", pcd(rows, viewpoint=viewpoint))
         self.write("cut.pcd", pcd(rows)[:-9])
-        header = f"ply\nformat ascii 1.0\nelement vertex {len(vertices)}\n" + "".join(f"property double {c}\n" for c in "xyz")
-        header += f"element face {len(faces)}\nproperty list uchar int vertex_indices\nend_header\n"
-        self.write("box.PLY", header + text("{} {} {}", vertices) + text("3 {} {} {}", faces))
-        frame, scan, mesh = (pcl_symmetry.read(self.folder / each) for each in ("frame.pcd", "scan.pcd", "box.PLY"))
+        self.write("box.OFF", off(vertices, faces))
+        frame, scan, mesh = (pcl_symmetry.read(self.folder / each) for each in ("frame.pcd", "scan.pcd", "box.OFF"))
         for wrong, error, words in (
             ("none.pcd", FileNotFoundError, "none.pcd"),
             ("cut.pcd", ValueError, "cut.pcd: "),
             ("box.glb", ValueError, r"box.glb: unknown extension '.glb', must be .pcd, .ply, .off, .* or .csv; trimesh.load\(\) reads"),
         ):
             self.assertRaisesRegex(error, words, pcl_symmetry.read, self.folder / wrong)
-        facets = "".join(f"facet normal 0 0 1\nouter loop\n{text('vertex {} {} {}', vertices[f])}endloop\nendfacet\n" for f in faces)
-        for kind, content in (("off", off(vertices, faces)), ("obj", text("v {} {} {}", vertices) + text("f {} {} {}", faces + 1)),
-                              ("stl", f"solid box\n{facets}endsolid box\n")):  # fmt: skip
-            self.write(f"box.{kind}", content)
-            same = pcl_symmetry.read(self.folder / f"box.{kind}")
-            np.testing.assert_allclose(same.points[same.faces], vertices[faces], atol=1e-6)
-        self.write("box.xyz", text("{} {} {}", vertices))
-        np.testing.assert_array_equal(pcl_symmetry.read(self.folder / "box.xyz").points, vertices)
+        for name, content in {**meshes(xyz=XYZ.replace("float", "double")), "a.STL": SQUARE_STL}.items():
+            same = pcl_symmetry.read(self.write(name, content))
+            np.testing.assert_array_equal(same.points[same.faces[0]], CORNERS[:3], name)
+        np.testing.assert_array_equal(pcl_symmetry.read(self.write("a.xyz", rows_of_text(points=CORNERS))).points, CORNERS)
         found, of_mesh, scene = pcl_symmetry.planes(scan), pcl_symmetry.planes(mesh), pcl_symmetry.scene(frame)
-        by_name = [pcl_symmetry.planes(self.folder / each) for each in ("scan.pcd", "box.off")] + [pcl_symmetry.scene(str(self.folder / "frame.pcd"))]
+        by_name = [pcl_symmetry.planes(self.folder / each) for each in ("scan.pcd", "box.OFF")] + [pcl_symmetry.scene(str(self.folder / "frame.pcd"))]
         self.assertEqual(by_name, [found, of_mesh, scene])
         self.assertEqual(found.show(self.folder / "scan.pcd").html, found.show(scan).html)
         database = pcl_symmetry.Database(":memory:")
-        report = database.build({"box": self.folder / "box.stl", "none": str(self.folder / "none.pcd"), "scan": scan})
+        report = database.build({"box": self.folder / "box.OFF", "none": str(self.folder / "none.pcd"), "scan": scan})
         self.assertEqual((database.names, [name for name, _ in report.failures]), (["box", "scan"], ["none"]))
         self.assertRegex(report.failures[0][1], "No such file or directory: .*none.pcd'$")
         np.testing.assert_array_equal(frame.points, self.frame)
