@@ -5,6 +5,7 @@ import unittest
 import warnings
 
 import pcl_symmetry
+from test_pcl_symmetry import warned
 from tool_run import grid_faces, mug, np, points_on_sphere, random_pose, triangles
 
 DEGREE = np.pi / 180
@@ -71,6 +72,12 @@ def cube(count=10_000, mirrored=False, seed=2):
     return Shape(points, np.c_[np.vstack([i, edges]), np.zeros(9)])
 
 
+def planes_of_folds(n, middle=0):
+    """Through the z axis and one of n folds at angle 0, and the one across it at a height."""
+    angles = np.pi * np.arange(n) / n
+    return np.vstack([np.c_[-np.sin(angles), np.cos(angles), np.zeros((n, 2))], (0, 0, 1, middle)])
+
+
 def prism(n, count=10_000, mirrored=False, seed=3, half_height=0.8):
     """A regular polygon of circumradius 1 swept along z: n planes through the axis and one across it."""
     random, half_side, apothem = np.random.default_rng(seed), np.sin(np.pi / n), np.cos(np.pi / n)
@@ -84,8 +91,7 @@ def prism(n, count=10_000, mirrored=False, seed=3, half_height=0.8):
     angles = 2 * np.pi * np.arange(n) / n
     turns = [np.array([[np.cos(a), -np.sin(a), 0], [np.sin(a), np.cos(a), 0], [0, 0, 1]]) for a in angles]
     group = [turn @ np.diag([1, a, b]) for turn in turns for a in (1, -1) for b in (1, -1)]
-    planes = [(-np.sin(a / 2), np.cos(a / 2), 0, 0) for a in angles] + [(0, 0, 1, 0)]
-    return Shape(spread(group, count, mirrored, random, draw), planes)
+    return Shape(spread(group, count, mirrored, random, draw), planes_of_folds(n))
 
 
 def sphere(count, seed):
@@ -103,12 +109,8 @@ def cylinder(count, seed):
 
 def tetrahedron(count=10_000, seed=1):
     """Six different edges: no plane at all."""
-    random, corners = np.random.default_rng(seed), np.array([(0, 0, 0), (2, 0.1, 0), (0.4, 1.3, 0.1), (0.7, 0.2, 0.9)])
-    faces = corners[np.array([(0, 1, 2), (0, 1, 3), (0, 2, 3), (1, 2, 3)])]
-    areas = np.linalg.norm(np.cross(faces[:, 1] - faces[:, 0], faces[:, 2] - faces[:, 0]), axis=1)
-    face = faces[random.choice(4, count, p=areas / areas.sum())]
-    a, b = np.sqrt(random.random((count, 1))), random.random((count, 1))
-    return Shape((1 - a) * face[:, 0] + a * (1 - b) * face[:, 1] + a * b * face[:, 2])
+    corners, faces = [(0, 0, 0), (2, 0.1, 0), (0.4, 1.3, 0.1), (0.7, 0.2, 0.9)], [(0, 1, 2), (0, 1, 3), (0, 2, 3), (1, 2, 3)]
+    return Shape(pcl_symmetry.sample_mesh(corners, faces, count, seed=seed))
 
 
 def blob(count=10_000, seed=1):
@@ -285,8 +287,7 @@ class Planes(Detection):
 def with_stray(points, count, seed):
     """Points and some more at 2 to 20 sizes from their middle, somewhere among them."""
     random = np.random.default_rng(seed)
-    directions = random.normal(size=(count, 3))
-    directions *= (random.uniform(2, 20, count) / np.linalg.norm(directions, axis=1))[:, None]
+    directions = random.uniform(2, 20, (count, 1)) * points_on_sphere(count, seed)
     stray = points.mean(axis=0) + np.linalg.norm(np.ptp(points, axis=0)) * directions
     return np.insert(points, random.integers(len(points), size=count), stray, axis=0)
 
@@ -298,8 +299,7 @@ class StrayPoints(Detection):
         for seed, shape in enumerate(2 * self.SHAPES):
             points, count = shape.moved(random_pose(seed)).cloud, 1 + seed
             expected, disturbed = pcl_symmetry.planes(points), with_stray(points, count, seed)
-            with self.assertWarnsRegex(RuntimeWarning, f"^points: {count} stray"):
-                found = pcl_symmetry.planes(disturbed)
+            found = warned(f"^points: {count} stray", pcl_symmetry.planes, disturbed)
             self.assertEqual((found.stray_points, expected.stray_points), (count, 0))
             self.assertEqual((kinds(found), len(found.axes)), (kinds(expected), len(expected.axes)), seed)
             self.assertEqual(found.tolerance, expected.tolerance)
@@ -310,11 +310,8 @@ class StrayPoints(Detection):
     def test_change_neither_frame_nor_group_nor_pose(self):
         shape = prism(5, 3000).moved(random_pose(1))
         disturbed, turn = with_stray(shape.cloud, 4, 1), random_pose(2)
-        with self.assertWarnsRegex(RuntimeWarning, "^points: 4 stray"):
-            frame = pcl_symmetry.frame(disturbed)
+        frame, group = (warned("^points: 4 stray", f, disturbed) for f in (pcl_symmetry.frame, pcl_symmetry.rotations))
         np.testing.assert_allclose(frame.axes, pcl_symmetry.frame(shape.cloud).axes, atol=1e-6)
-        with self.assertWarnsRegex(RuntimeWarning, "^points: 4 stray"):
-            group = pcl_symmetry.rotations(disturbed)
         expected = pcl_symmetry.rotations(shape.cloud)
         self.assertEqual((group.name, group.stray_points), (expected.name, 4))
         self.assertAlmostEqual(group.tolerance, expected.tolerance)
@@ -415,22 +412,18 @@ def gear(num_teeth):
 
 
 class Gears(Detection):
-    def planes(self, mesh, pose, count=None, seed=1, **options):
+    def planes(self, mesh, pose, count=None, **options):
         """Of the mesh, or of a cloud of it."""
         (vertices, faces), (turn, shift) = mesh, pose
-        if count:
-            return pcl_symmetry.planes(pcl_symmetry.sample_mesh(vertices, faces, count, seed=seed) @ turn.T + shift, **options)
-        return pcl_symmetry.planes(types.SimpleNamespace(vertices=vertices @ turn.T + shift, faces=faces), **options)
+        moved = types.SimpleNamespace(vertices=vertices @ turn.T + shift, faces=faces)
+        return pcl_symmetry.planes(pcl_symmetry.sample_mesh(moved, num_points=count) if count else moved, **options)
 
     def assert_all(self, fold, seed, angle, count=None, **options):
         """The planes of all teeth, the one across the axis, and no others."""
-        pose = random_pose(seed)
-        found = self.planes(gear(fold), pose, count, **options)
-        angles = np.pi * np.arange(fold) / fold + np.pi / 2
-        normals = np.vstack([np.c_[np.cos(angles), np.sin(angles), 0 * angles], (0, 0, 1)]) @ pose[0].T
-        self.assertEqual((len(found), found.axes), (fold + 1, []), fold)
-        off = np.arccos(np.clip(abs(np.array([plane.normal for plane in found]) @ normals.T), 0, 1))
-        self.assertLess(max(off.min(axis=0).max(), off.min(axis=1).max()), angle, fold)
+        mesh, pose = gear(fold), random_pose(seed)
+        found = self.planes(mesh, pose, count, **options)
+        self.assert_planes(found, Shape(mesh[0], planes_of_folds(fold, 0.15)).moved(pose), angle, angle, fold)
+        self.assertEqual(found.axes, [], fold)
 
     def test_have_all_their_planes(self):
         for seed, fold in enumerate((8, 17, 39, 72)):
@@ -463,14 +456,8 @@ class Gears(Detection):
 
 class Polygons(Detection):
     def assert_all(self, found, num_teeth):
-        normals, offsets = np.array([plane.normal for plane in found]), np.array([plane.offset for plane in found])
-        across = abs(normals[:, 2]) > 0.999
-        self.assertEqual((len(found), across.sum(), set(kinds(found))), (num_teeth + 1, 1, {"symmetry"}))
-        self.assertAlmostEqual(abs(offsets[across][0]), 0.3, delta=0.02)
-        self.assertLess(max(abs(normals[~across, 2]).max(), abs(offsets[~across]).max()), 0.02)
-        places = (np.arctan2(normals[~across, 1], normals[~across, 0]) + np.pi / 2) / (np.pi / num_teeth)
-        self.assertLess(abs(places - places.round()).max(), 0.02 * num_teeth / np.pi)
-        self.assertEqual(len(set(places.round().astype(int) % num_teeth)), num_teeth)
+        self.assertEqual(set(kinds(found)), {"symmetry"})
+        self.assert_planes(found, Shape(wheel(num_teeth, 0, 0), planes_of_folds(num_teeth, 0.3)), 0.02, 0.02 / np.hypot(0.6, np.sqrt(8)))
 
     def test_of_many_folds_have_all_their_planes(self):
         for n in (19, 24):
