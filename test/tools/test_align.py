@@ -178,12 +178,8 @@ class Align(ToolTest):
         self.assertIn(report["kind"], ("symmetry", "possible"))
         self.assertGreater(report["confidence"], 0.2)
         self.assertEqual(report["num_added"], (self.points("out.ply")["reflected_of"] >= 0).sum())
-        random = np.random.default_rng(1)
-        corners = np.array([[0, 0, 0], [3, 0, 0], [0, 2, 0], [0.3, 0.4, 1]])
-        weights = random.dirichlet((1, 1, 1), 6000)[:, :, None]
-        faces = corners[np.array([(0, 1, 2), (0, 1, 3), (1, 2, 3), (0, 2, 3)])[random.integers(4, size=6000)]]
-        rows = (weights * faces).sum(axis=1)
-        cloud = self.write("t.xyz", "".join("{} {} {}\n".format(*row) for row in rows))
+        self.run_tool(self.write("t.off", tool_run.TETRAHEDRON), "-points 6000 -support t.pcd", tool="planes")
+        cloud = "t.pcd"
         self.fails(1, "has no plane of symmetry to complete it across; -any_plane", cloud, "t.ply -complete -quiet")
         self.assertFalse((self.folder / "t.ply").exists())
         forced = self.report(cloud, "t.ply -complete -any_plane")["completed"]

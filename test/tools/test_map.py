@@ -59,53 +59,27 @@ class Map(ToolTest):
 class Viewpoint(ToolTest):
     tool = "viewpoint"
 
-    def setUp(self):
-        super().setUp()
-        self.box = self.write("box.off", tool_run.box(1.4))
-
-    def test_looks_at_a_box_from_a_corner_and_worst_along_its_planes(self):
-        answer = self.report(self.box, "-quiet")
-        self.assertGreater(min(map(abs, answer["best"]["direction"])), 0.3)
-        self.assertGreater(max(map(abs, answer["worst"]["direction"])), 0.99)
-        self.assertGreater(answer["best"]["score"], answer["worst"]["score"])
-        self.assertEqual(len(answer["best"]["pose"]), 16)
-        self.assertEqual(answer["good"][0], answer["best"])
+    def test_lists_views_by_their_score(self):
+        """The module has the same views: test_depth_cameras."""
+        box = self.write("box.off", tool_run.box(1.4))
+        answer = self.report(box, "-quiet")
+        self.assertEqual((len(answer["best"]["pose"]), answer["good"][0]), (16, answer["best"]))
+        self.assertGreater(min(map(abs, answer["best"]["direction"])), 0.3, "from a corner")
+        self.assertGreater(max(map(abs, answer["worst"]["direction"])), 0.99, "along its planes")
         self.assertIn("worst", self.output)
-        self.assertGreater(self.report(self.box, "-quiet -as_published -points 2000")["best"]["score"], answer["best"]["score"], "all maxima")
-
-    def test_are_listed_by_their_score(self):
+        self.assertGreater(self.report(box, "-quiet -as_published -points 2000")["best"]["score"], answer["best"]["score"], "all maxima")
         self.write("t.off", tool_run.TETRAHEDRON)
         scores = [view["score"] for view in self.report("t.off -quiet -views 8 -separation 15")["good"]]
         self.assertEqual((len(scores) > 4, scores), (True, sorted(scores, reverse=True)))
 
 
-def dumbbell():
-    """Two cubes of 8 x 8 x 8 joined by a bar of 2 x 2 x 6 along x: vertices and quads of unit cubes."""
-    def filled(x, y, z):
-        inside = 0 <= x < 22 and 0 <= y < 8 and 0 <= z < 8
-        return inside and (x < 8 or x >= 14 or (3 <= y < 5 and 3 <= z < 5))
-
-    indices, quads = {}, []
-    units = np.eye(3, dtype=int)
-    for cube in np.argwhere([[[filled(x, y, z) for z in range(8)] for y in range(8)] for x in range(22)]):
-        for axis in range(3):
-            for sign in (-1, 1):
-                if filled(*cube + sign * units[axis]):
-                    continue
-                u, v = units[(axis + 1) % 3], units[(axis + 2) % 3]
-                corner = cube + units[axis] if sign > 0 else cube
-                corners = [corner, corner + u, corner + u + v, corner + v][::sign]
-                quads.append([indices.setdefault(tuple(c), len(indices)) for c in corners])
-    return np.array(list(indices), float), quads
-
-
 class Segment(ToolTest):
     tool = "segment"
-    vertices, quads = dumbbell()
+    vertices, quads = tool_run.mug()
 
     def setUp(self):
         super().setUp()
-        self.mesh = self.write("dumbbell.off", tool_run.off(self.vertices, self.quads))
+        self.mesh = self.write("mug.off", tool_run.off(self.vertices, self.quads))
 
     def labels(self):
         return np.loadtxt(self.folder / "out.seg", int)
@@ -126,7 +100,7 @@ class Segment(ToolTest):
         self.run_tool(self.mesh, "-parts 3 -size 300 -up 1,0,0 -png q.png")
         self.assertNotEqual((self.folder / "p.png").read_bytes(), (self.folder / "q.png").read_bytes())
         many = self.report(self.mesh, "-parts 1000")
-        self.assertIn(f"dumbbell.off: num_parts = 1000, {len(many['segments'])} possible: parts are made of", self.error)
+        self.assertIn(f"mug.off: num_parts = 1000, {len(many['segments'])} possible: parts are made of", self.error)
         self.assertIn(many["reason"], self.error)
 
     def test_methods_of_the_paper(self):
