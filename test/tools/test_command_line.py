@@ -49,17 +49,15 @@ class Flags(ToolTest):
             for default in ("of the distance field (64)", "0 = all (0)", "input frame (auto)", "over a mesh (10000)", "random streams (1)"):
                 self.assertIn(default, text)
 
-    def test_help_has_groups_and_fits_the_terminal(self):
+    def test_help_has_groups_and_names_lines_of_several_inputs_where_there_are_some(self):
+        self.run_tool("-h", tool="scan")
+        self.assertNotIn("JSON Lines", " ".join(self.output.split()))
         self.run_tool("-h")
+        self.assertIn("JSON Lines", " ".join(self.output.split()))
         at = [self.output.index(f"\n{name}:\n") for name in ("Output", "Analysis", "Input", "Computation", "Help")]
         self.assertEqual(at, sorted(at))
         self.assertLess(at[0], self.output.index("-json"))
         self.assertLess(self.output.index("-png"), at[1])
-
-    def test_help_names_lines_of_several_inputs_where_there_are_some(self):
-        for tool, several in (("planes", True), ("scan", False)):
-            self.run_tool("-h", tool=tool)
-            self.assertEqual("JSON Lines" in " ".join(self.output.split()), several)
 
     def test_help_fits_the_terminal(self):
         tools = [tool for tool in tool_run.TOOLS.glob("pcl_symmetry_*") if not tool.suffix]
@@ -120,6 +118,8 @@ class Flags(ToolTest):
         self.fails(1, "-levels is of volumes", self.box, "-levels 0,1")
         self.fails(1, "missing.off: no such file", "missing.off -png OUT.PNG")  # the name of the picture is one
         self.fails(2, "-html = page.txt, must end in .html", self.box, "-html page.txt")
+        self.fails(2, "-png = out.jpg, must end in .png", self.box, "-png out.jpg")
+        self.fails(2, "min_confidence", self.box, "-min_confidence 2")
 
     def test_flags_that_would_do_nothing_are_refused(self):
         self.write("a.txt", "")
@@ -197,21 +197,21 @@ class ManyInputs(ToolTest):
     tool = "planes"
     flags = "-quiet -points 500"
 
-    def lines(self, name="out.jsonl"):
-        return [json.loads(line) for line in self.text(name).splitlines()]
-
     def test_are_written_in_their_order(self):
         paths = [self.write(name, tool_run.box(1.5, z)) for z, name in enumerate(("a.off", 'b "2", new.off', "c.off"), 2)]
         for threads in (1, 3):
-            self.run_tool(*paths, self.flags, f"-json out.jsonl -csv out.csv -threads {threads}")
-            self.assertEqual([line["file"] for line in self.lines()], list(map(str, paths)))
+            self.run_tool(*paths, self.flags, f"-json out.jsonl -csv out.csv -support {{}}_support.pcd -threads {threads}")
+            self.assertEqual([tool_run.pcd_header(f"{path.with_suffix('')}_support.pcd")["POINTS"] for path in paths], 3 * [["500"]])
+            self.assertEqual([line["file"] for line in self.lines("out.jsonl")], list(map(str, paths)))
             header, *rows = csv.reader(io.StringIO(self.text("out.csv")))
             self.assertEqual(header[:7], ["file", "number", "kind", *"abcd"])
-            planes = [(line["file"], plane) for line in self.lines() for plane in line["planes"]]
+            planes = [(line["file"], plane) for line in self.lines("out.jsonl") for plane in line["planes"]]
             self.assertEqual([row[0] for row in rows], [file for file, _ in planes])
             for row, (_, plane) in zip(rows, planes, strict=True):
                 self.assertEqual([float(number) for number in row[3:7]], plane["coefficients"])
                 self.assertEqual(row[7:13], [""] * 6, "a plane has no point and direction")
+            alone, other = self.report(paths[2], self.flags), {"timing_ms": 0, "made_by": 0}
+            self.assertEqual({**alone, **other}, {**self.lines("out.jsonl")[2], **other}, "the same as one by one")
 
     def test_are_tables_at_a_terminal_and_lines_of_json_in_a_pipe(self):
         paths = [self.write(name, shape) for name, shape in (("a.off", tool_run.box()), ("b.off", "no shape"), ("c.off", tool_run.CYLINDER))]
@@ -250,7 +250,7 @@ class ManyInputs(ToolTest):
         self.run_tool(*arguments, "-resume")
         kept = whole.splitlines()[:2]
         self.assertEqual(self.text("out.jsonl").splitlines()[:2], kept, "c failed and d was torn")
-        self.assertEqual([line["file"] for line in self.lines()], list(map(str, paths)))
+        self.assertEqual([line["file"] for line in self.lines("out.jsonl")], list(map(str, paths)))
         self.assertEqual(self.text("out.csv").count("\n"), 1 + 4 * 3)
         done = self.text("out.jsonl")
         self.run_tool(*arguments, "-resume")
@@ -259,7 +259,7 @@ class ManyInputs(ToolTest):
         self.assertEqual(self.text("out.jsonl"), done)
         os.utime(paths[0], (2e9, 2e9))
         self.run_tool(*arguments, "-resume")
-        self.assertEqual([line["file"] for line in self.lines()], [str(paths[i]) for i in (1, 2, 3, 0)], "a changed")
+        self.assertEqual([line["file"] for line in self.lines("out.jsonl")], [str(paths[i]) for i in (1, 2, 3, 0)], "a changed")
         self.write("out.jsonl", '{"shapes": []}\n')
         self.fails(1, "holds a line that is no result of this tool", *arguments, "-resume")
         self.assertEqual(self.text("out.jsonl"), '{"shapes": []}\n', "something else is not overwritten")
@@ -272,8 +272,8 @@ class ManyInputs(ToolTest):
         for kept in (0, 1500):
             self.write("out.jsonl", "".join(json.dumps({"file": name}) + "\n" for name in names[:kept]))
             self.run_tool("@list -quiet -threads 4 -json out.jsonl", "-resume" if kept else "", code=1)
-            self.assertEqual([line["file"] for line in self.lines()], names)
-            self.assertEqual([sum("error" in line for line in self.lines()), self.error.count("\n")],
+            self.assertEqual([line["file"] for line in self.lines("out.jsonl")], names)
+            self.assertEqual([sum("error" in line for line in self.lines("out.jsonl")), self.error.count("\n")],
                              [1999 if not kept else 500, 1001 if not kept else 500])
 
     def test_names_that_clash_are_refused(self):
@@ -295,7 +295,7 @@ class ManyInputs(ToolTest):
                                  ("in/c.txt in in/c.txt", ["in/c.txt", *folder, "in/c.txt"]), ("i*", folder),
                                  ("@list -", ["in/c.txt", "missing.pcd", "-"])):
             self.run_tool(arguments, "-quiet -json out.jsonl", code=1, input=b"")
-            self.assertEqual([line["file"] for line in self.lines()], files)
+            self.assertEqual([line["file"] for line in self.lines("out.jsonl")], files)
         self.fails(1, "outputs are named by flags, such as -json FILE", "in/c.txt out.pcd")
         self.fails(1, "*.stl: no file has such a name", "in/*.stl")
         self.fails(1, "nowhere: no such file", "@nowhere")

@@ -1,5 +1,4 @@
 """The tools that describe shapes, keep models and find them again."""
-import json
 import sqlite3
 from pathlib import Path
 
@@ -99,8 +98,7 @@ class Database(Recognition):
         self.assertEqual(answer["reason"], "none of 1 reaches a confidence of 1")
         self.write("list.txt", "vase.off\nbox.off\nnothing.off\n")
         self.fails(1, "nothing.off: no such file", "models.db @list.txt -json o.jsonl -csv o.csv", tool="match")
-        lines = [json.loads(line) for line in self.text("o.jsonl").splitlines()]
-        self.assertEqual([[m["name"] for m in line.get("matches", [])] for line in lines], [["tetrahedron"], ["tetrahedron"], []])
+        self.assertEqual([[m["name"] for m in line.get("matches", [])] for line in self.lines("o.jsonl")], [["tetrahedron"], ["tetrahedron"], []])
         self.assertEqual(self.text("o.csv").splitlines()[0], "file,model,distance")
         self.fails(1, "2 of them before", "models.db @list.txt -json o.jsonl -resume", tool="match")
 

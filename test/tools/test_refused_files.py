@@ -1,5 +1,4 @@
 """Files that are cut off, promise more than they hold or mean nothing: refused with one line that names the file and the reason."""
-import json
 import os
 import resource
 import struct
@@ -167,7 +166,7 @@ class RefusedFiles(ToolTest):
         help_of_tool = subprocess.run([tool_run.TOOLS / "pcl_symmetry_planes", "-h"], stdout=subprocess.DEVNULL, preexec_fn=limit_memory, check=False)
         limit = limit_memory if help_of_tool.returncode == 0 else None  # sanitizers take all addresses
         self.run_tool("@list -json answers.json -quiet -threads 1", code=1, preexec_fn=limit)
-        answers = [json.loads(line) for line in self.text("answers.json").splitlines()]
+        answers = self.lines("answers.json")
         self.assertEqual([answer["file"] for answer in answers], list(FILES))
         for answer, (_, said) in zip(answers, FILES.values()):
             self.assertEqual(answer["error"].split(": ")[0], answer["file"])

@@ -1,6 +1,4 @@
 """The tool of scenes: objects on a table, bodies that touch, vehicles around a LiDAR, and what is written of them."""
-import json
-
 import tool_run
 from tool_run import ToolTest, np, pcd
 
@@ -262,8 +260,7 @@ class Scene(ToolTest):
             self.assertIn(part, page)
         (self.folder / "again.pcd").write_bytes((self.folder / self.scene).read_bytes())
         self.run_tool("*.pcd", "{}.ply -max_points 1000 -json o.jsonl -csv o.csv")
-        lines = [json.loads(line) for line in self.text("o.jsonl").splitlines()]
-        self.assertEqual([line["objects"] for line in lines], 2 * [report["objects"]], "of many, each as alone")
+        self.assertEqual([line["objects"] for line in self.lines("o.jsonl")], 2 * [report["objects"]], "of many, each as alone")
         self.assertEqual((self.folder / "again.ply").read_bytes(), (self.folder / "completed.ply").read_bytes())
         self.assertEqual(len(self.text("o.csv").splitlines()), 5)
 

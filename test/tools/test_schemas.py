@@ -39,8 +39,8 @@ class Schemas(ToolTest):
         self.write("ball.pcd", tool_run.pcd(tool_run.points_on_sphere(3000)))
         self.write("bad.off", "x")
         self.run_tool(f"box.off can.off ball.pcd bad.off {FEW} -approximate -json a.jsonl", tool="planes", code=1)
-        for line in self.text("a.jsonl").splitlines():
-            self.assert_follows(json.loads(line), "planes")
+        for line in self.lines("a.jsonl"):
+            self.assert_follows(line, "planes")
 
     def test_are_followed_by_checks_of_given_symmetries(self):
         turn = [0, -1, 0, 0, 1, 0, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1]

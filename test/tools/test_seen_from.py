@@ -1,6 +1,4 @@
 """Where the scanner stood: told by the rays of an organized cloud, by the header, by the density of the points, or by the user."""
-import json
-
 from test_scene import block, camera, look
 from tool_run import ToolTest, np, pcd, points_on_box, points_on_sphere, random_pose
 
@@ -43,7 +41,7 @@ class SeenFrom(ToolTest):
         if len(names) == 1:
             return [self.report(*names, "-quiet", flags)]
         self.run_tool(*names, "-quiet -json all.json", flags)
-        return [json.loads(line) for line in self.text("all.json").splitlines()]
+        return self.lines("all.json")
 
     def sources(self, *clouds):
         return [answer["viewpoint"]["from"] for answer in self.answers(*clouds)]

@@ -48,6 +48,10 @@ class ToolTest(unittest.TestCase):
     def text(self, name):
         return (self.folder / name).read_text(errors="replace")
 
+    def lines(self, name):
+        """The values of a file of JSON Lines."""
+        return [json.loads(line) for line in self.text(name).splitlines()]
+
     def run_tool(self, *arguments, code=0, tool=None, **options):
         """Runs a tool in the folder of the test: paths as they are, strings cut at blanks.
 
