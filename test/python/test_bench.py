@@ -9,7 +9,7 @@ import subprocess
 import sys
 import unittest
 
-from tool_run import ToolTest, need, off
+from tool_run import BOX_FACES, ToolTest, box_corners, need, off
 
 need("open3d", "scipy", "pcl_symmetry")
 import numpy as np
@@ -20,12 +20,11 @@ import real_frames
 import references
 import shapes
 
-FACES = [[0, 1, 3, 2], [4, 6, 7, 5], [0, 4, 5, 1], [2, 3, 7, 6], [0, 2, 6, 4], [1, 5, 7, 3]]
-CORNERS = [[x, y, z] for x in (0, 3) for y in (0, 2) for z in (0, 1)]
+CORNERS = (box_corners(1, 1, 1) + 1) * (1.5, 1, 0.5)
 
 
 def box():
-    return bench.make_mesh(CORNERS, FACES)
+    return bench.make_mesh(CORNERS, BOX_FACES)
 
 
 @functools.cache
@@ -40,8 +39,8 @@ def beast(side_leg):
     parts += [((0.5, 1.4, 0.4), (1.2, 2.5, 0.8))] * side_leg
     vertices, polygons = [], []
     for low, size in parts:
-        polygons += [[len(vertices) + i for i in face] for face in FACES]
-        vertices += [np.add(low, np.multiply(size, (x, y, z))) for x in (0, 1) for y in (0, 1) for z in (0, 1)]
+        polygons += [[len(vertices) + i for i in face] for face in BOX_FACES]
+        vertices += [*(low + size * (box_corners(0.5, 0.5, 0.5) + 0.5))]
     return bench.make_mesh(vertices, polygons)
 
 
@@ -181,7 +180,7 @@ class Runs(ToolTest):
         self.write("bad.cla", "PSB 1\n1 1\n")
         self.assertIn("bad.cla: is no class file", run_program("planes.py", self.folder, "--classes", f"{self.folder}/bad.cla")[1])
         self.write("bad.off", "OFF\n8 6 0\n0 0 0\n")
-        self.write("box.off", off(CORNERS, FACES))
+        self.write("box.off", off(CORNERS, BOX_FACES))
         rc, told = run_program("planes.py", self.folder, "--rows", "whole", "--points", "2000", "--json", f"{self.folder}/out.json")
         reason = "number of vertices = 8, the file is too short for them"
         self.assertEqual((rc, told), (0, f"{self.folder}/bad.off: is no mesh that can be read, {reason}"))

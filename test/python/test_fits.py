@@ -46,8 +46,8 @@ class Fits(ToolTest):
         np.testing.assert_allclose(shares, [0.5, 0.1, -2], atol=1e-3)
 
     def test_few_examples_are_refused(self):
-        with self.assertRaisesRegex(bench.BadInput, "rotations: 34 examples of one of both kinds, must be 100"):
-            fits.logistic(np.ones((500, 2)), np.arange(500) < 34, name="rotations")
+        words = "rotations: 34 examples of one of both kinds, must be 100"
+        self.assertRaisesRegex(bench.BadInput, words, fits.logistic, np.ones((500, 2)), np.arange(500) < 34, name="rotations")
 
     def test_numbers_are_rounded_by_their_errors(self):
         self.assertEqual(fits.rounded([1.23456, -12.3456, 0.5], [0.1, 4.0, 100]), ["1.235", "-12.35", "0"])
@@ -73,13 +73,13 @@ class Fits(ToolTest):
     def test_shapes_have_their_folds(self):
         random = np.random.default_rng(3)
         mesh = solids.folded_body("prism", solids.folded_curve(5, random), 5, random)
-        rotated = mesh.vertices @ np.array([[np.cos(a := 2 * np.pi / 5), -np.sin(a), 0], [np.sin(a), np.cos(a), 0], [0, 0, 1]]).T
+        rotated = mesh.vertices @ solids.about_z(2 * np.pi / 5).T
         gaps = np.linalg.norm(rotated[:, None] - mesh.vertices[None], axis=2).min(1)
         self.assertLess(gaps.max(), 1e-9)
 
     def test_frames_are_right_in_any_order_and_about_an_axis_of_revolution(self):
         own = bench.random_rotation(np.random.default_rng(4))
-        about = np.array([[np.cos(0.4), -np.sin(0.4), 0], [np.sin(0.4), np.cos(0.4), 0], [0, 0, 1]])
+        about = solids.about_z(0.4)
         right = lambda axes, axis: fit_frames.is_right(types.SimpleNamespace(axes=axes, revolution_axis=axis), own)
         self.assertTrue(right(own[:, [2, 0, 1]] * (-1, 1, -1), -1))
         self.assertEqual([right(own @ about, axis) for axis in (-1, 0, 2, 3)], [False, False, True, True])

@@ -1,15 +1,12 @@
 """Shapes and drawings of the gallery: what they make is what they say."""
 
-import importlib.util
 import os
 import subprocess
 import sys
 import unittest
 from pathlib import Path
 
-import numpy as np
-
-from tool_run import ToolTest, need
+from tool_run import Image, ToolTest, need, needs, np, random_pose
 
 need("vtkmodules")
 
@@ -17,8 +14,8 @@ import pcl_symmetry
 
 GALLERY = Path(__file__).resolve().parents[2] / "apps" / "gallery"
 sys.path.insert(0, str(GALLERY))
-import planar  # noqa: E402
-import shapes  # noqa: E402
+import planar
+import shapes
 
 
 HEIGHT, ANGLE = np.linspace(-1, 1, 4000), np.pi * (3 - 5**0.5) * np.arange(4000)
@@ -48,19 +45,17 @@ class Shapes(unittest.TestCase):
 
 
 class Frames(ToolTest):
+    @needs("matplotlib")
     def test_of_mugs_and_mailboxes_have_their_center_where_their_planes_meet(self):  # Figure 10
-        try:
-            import drawings
-        except ImportError:
-            self.skipTest("python3-matplotlib is not installed")
+        import drawings
+
         for i, points in enumerate(map(drawings.sampled, drawings.mugs_and_mailboxes())):
             planes, some = pcl_symmetry.planes(points[::2], as_published=True), points[::10]
             diameter = np.linalg.norm(some[:, None] - some, axis=2).max()
             across = [next(plane for plane in planes if abs(plane.normal[k]) > np.cos(np.radians(5))) for k in range(3)]
             meet = np.linalg.solve([plane.normal for plane in across], [plane.offset for plane in across])
             for seed in range(3):
-                turn = np.linalg.qr(np.random.default_rng(seed).normal(size=(3, 3)))[0]
-                turn = (turn * np.linalg.det(turn)).astype("f")
+                turn = random_pose(seed)[0].astype("f")
                 center = pcl_symmetry.frame(points @ turn.T).center
                 self.assertLess(np.linalg.norm(center - turn @ meet), 0.01 * diameter, f"{i} {seed}")
             if not os.environ.get("TOOLS"):
@@ -120,11 +115,9 @@ class Planar(unittest.TestCase):
 
 
 class FirstLook(ToolTest):
+    @needs("matplotlib", "open3d")
+    @unittest.skipUnless(os.environ.get("TOOLS"), "needs the tools")
     def test_of_the_first_page_is_what_is_found_today(self):
-        if not os.environ.get("TOOLS") or not all(map(importlib.util.find_spec, ("matplotlib", "open3d"))):
-            self.skipTest("needs the tools, matplotlib and Open3D (Debian packages python3-matplotlib, python3-open3d)")
-        from PIL import Image
-
         if subprocess.run(["bash", GALLERY.parent / "fetch_meshes.sh", self.folder, "cow"], stdout=subprocess.DEVNULL).returncode:
             self.skipTest("the mesh cannot be fetched")
         tools = {**os.environ, "PATH": f"{os.environ['TOOLS']}:{os.environ['PATH']}"}
@@ -137,18 +130,14 @@ class FirstLook(ToolTest):
 
 
 class MedialAxis(ToolTest):
+    @needs("matplotlib")
     def test_of_a_rectangle_is_a_ridge_with_a_branch_to_each_corner(self):
-        try:
-            import matplotlib.image
-        except ImportError:
-            self.skipTest("python3-matplotlib is not installed")
         across, along = np.arange(-1, 1.001, 0.01), np.arange(-0.49, 0.491, 0.01)
         border = [(x, y) for x in across for y in (0.5, -0.5)] + [(x, y) for y in along for x in (1, -1)]
         contour, picture = self.folder / "rectangle.txt", self.folder / "axis.png"
         np.savetxt(contour, border)
-        subprocess.run([sys.executable, "-B", GALLERY / "drawings.py", "medial_axis", picture, contour], check=True,
-                       stdout=subprocess.DEVNULL)
-        image = matplotlib.image.imread(picture)[:, :, :3].max(axis=2)
+        subprocess.run([sys.executable, "-B", GALLERY / "drawings.py", "medial_axis", picture, contour], check=True, stdout=subprocess.DEVNULL)
+        image = np.asarray(Image.open(picture), float)[:, :, :3].max(axis=2) / 255
         size = len(image)
 
         def is_dark(x, y):

@@ -1,7 +1,7 @@
 """How the programs of test/benchmark judge: poses, groups, segmentations, rankings and scenes that are known."""
 import unittest
 
-from tool_run import need
+from tool_run import BOX_FACES, box_corners, need
 
 need("open3d", "scipy", "sklearn", "pcl_symmetry")
 import numpy as np
@@ -95,9 +95,7 @@ class Groups(unittest.TestCase):
 
 class Segmentations(unittest.TestCase):
     def setUp(self):
-        vertices = [[x, y, z] for x in (0, 1) for y in (0, 1) for z in (0, 1)]
-        quads = [(0, 1, 3, 2), (4, 6, 7, 5), (0, 4, 5, 1), (2, 3, 7, 6), (0, 2, 6, 4), (1, 5, 7, 3)]
-        self.mesh = bench.make_mesh(vertices, quads)
+        self.mesh = bench.make_mesh(box_corners(0.5, 0.5, 0.5), BOX_FACES)
         self.surface = segmentation.Surface(self.mesh)
         self.of = lambda *faces: segmentation.Segmentation(self.surface, np.array(faces)[self.mesh.polygons])
 
@@ -113,18 +111,17 @@ class Segmentations(unittest.TestCase):
         self.assertTrue(np.isnan(found["cut"]))
 
     def test_cuts_are_as_far_apart_as_they_lie(self):
-        # the borders of the faces x = 0 and x = 1 are one edge apart everywhere, there and back
+        # the borders of the faces below and above are one edge apart everywhere, there and back
         found = segmentation.compare(self.surface, self.of(1, 0, 0, 0, 0, 0), self.of(0, 1, 0, 0, 0, 0))
         self.assertAlmostEqual(found["cut"], 2 / self.surface.mean_radius)
 
     def test_labels_that_a_plane_swaps_agree_across_it(self):
         halves = np.array([0, 1, 2, 2, 2, 2])[self.mesh.polygons]
-        self.assertAlmostEqual(segmentation.mirror_agreement(self.surface, halves, [1, 0, 0, -0.5]), 1)
-        self.assertLess(segmentation.mirror_agreement(self.surface, halves, [0.6, 0.8, 0, -0.7]), 0.9)
+        self.assertAlmostEqual(segmentation.mirror_agreement(self.surface, halves, [0, 0, 1, 0]), 1)
+        self.assertLess(segmentation.mirror_agreement(self.surface, halves, [0.6, 0, 0.8, 0]), 0.9)
 
     def test_bad_labels_get_a_sentence(self):
-        with self.assertRaisesRegex(bench.BadInput, "no_file.seg: is no list of labels"):
-            segmentation.read_labels("no_file.seg", self.mesh)
+        self.assertRaisesRegex(bench.BadInput, "no_file.seg: is no list of labels", segmentation.read_labels, "no_file.seg", self.mesh)
 
 
 class Rankings(unittest.TestCase):
@@ -207,14 +204,10 @@ class Cameras(unittest.TestCase):
 def stone(seed, radii, at):
     """(T, 3, 3) triangles of a body without symmetry."""
     random = np.random.default_rng(seed)
-    theta, phi = np.meshgrid(np.linspace(0, np.pi, 41), np.linspace(0, 2 * np.pi, 81), indexing="ij")
-    u = np.stack([np.sin(theta) * np.cos(phi), np.sin(theta) * np.sin(phi), np.cos(theta)], -1)
-    bumps = random.normal(size=(6, 3))
-    bumps /= np.linalg.norm(bumps, axis=1, keepdims=True)
+    u, faces = solids.ball()
+    bumps = bench.random_directions(random, 6)
     swell = (random.uniform(-0.45, 0.45, 6) * np.exp(4 * (u @ bumps.T - 1))).sum(-1)
-    p = at + np.array(radii) * (1 + swell)[..., None] * u
-    a, b, c, d = p[:-1, :-1], p[1:, :-1], p[1:, 1:], p[:-1, 1:]
-    return np.concatenate([np.stack(corners, -2).reshape(-1, 3, 3) for corners in ((a, b, c), (a, c, d))])
+    return (at + np.array(radii) * (1 + swell)[:, None] * u)[faces]
 
 
 class Names(unittest.TestCase):

@@ -2,8 +2,8 @@
 import unittest
 
 import pcl_symmetry
-from test_pcl_symmetry import needs_pcl
-from tool_run import np
+from test_pcl_symmetry import moved, needs_pcl, warned
+from tool_run import np, points_on_sphere, random_pose
 
 
 def body(seed, num_points=40_000):
@@ -12,8 +12,7 @@ def body(seed, num_points=40_000):
     bumps, heights = random.normal(size=(7, 3)), random.choice([-0.4, 0.5, 0.7], 7)
     bumps /= np.linalg.norm(bumps, axis=1)[:, None]
     radius = lambda d: 1 + (heights * np.exp(8 * (d @ bumps.T - 1))).sum(axis=-1)
-    directions = random.normal(size=(num_points, 3))
-    directions /= np.linalg.norm(directions, axis=1)[:, None]
+    directions = points_on_sphere(num_points, seed)
     u = np.cross(directions, directions[:, [1, 2, 0]])
     u /= np.linalg.norm(u, axis=1)[:, None]
     v, step = np.cross(directions, u), 1e-4
@@ -36,14 +35,9 @@ def scan(shape, angle, noise=0.0, seed=0):
 
 
 def motion(seed):
-    random, T = np.random.default_rng(seed), np.eye(4)
-    q, _ = np.linalg.qr(random.normal(size=(3, 3)))
-    T[:3, :3], T[:3, 3] = q * np.linalg.det(q), random.normal(size=3)
+    T = np.eye(4)
+    T[:3, :3], T[:3, 3] = random_pose(seed)
     return T
-
-
-def moved(T, points):
-    return points @ T[:3, :3].T + T[:3, 3]
 
 
 def degrees(a, b):
@@ -56,7 +50,7 @@ class Registration(unittest.TestCase):
         for seed in range(4):
             with self.subTest(seed=seed):
                 shape, truth = body(seed), motion(seed)
-                found = pcl_symmetry.register(scan(shape, 0), moved(truth, scan(shape, 60, seed=1)), threads=1)
+                found = pcl_symmetry.register(scan(shape, 0), moved(scan(shape, 60, seed=1), truth), threads=1)
                 self.assertTrue(found.converged and found, found.reason)
                 self.assertLess(degrees(found.transform, truth), 3)
                 self.assertEqual(found.reason, "")
@@ -68,14 +62,14 @@ class Registration(unittest.TestCase):
         shape, truth = body(1), motion(1)
         for angle in (90, 100):
             with self.subTest(angle=angle):
-                found = pcl_symmetry.register(scan(shape, 0), moved(truth, scan(shape, angle, seed=1)), threads=1)
+                found = pcl_symmetry.register(scan(shape, 0), moved(scan(shape, angle, seed=1), truth), threads=1)
                 self.assertTrue(found.converged, found.reason)
                 self.assertLess(degrees(found.transform, truth), 3)
                 self.assertLess(found.evidence.overlap_source, 0.4)
 
     def test_noise_and_a_whole_model(self):
         shape, truth = body(5), motion(5)
-        model = moved(truth, shape[0][::4])
+        model = moved(shape[0][::4], truth)
         found = pcl_symmetry.register(scan(shape, 20, noise=0.01), model, target_viewpoint=None, threads=1)
         self.assertTrue(found.converged, found.reason)
         self.assertLess(degrees(found.transform, truth), 3)
@@ -85,7 +79,7 @@ class Registration(unittest.TestCase):
             with self.subTest(seed=seed):
                 source = scan(body(seed), 0)
                 for target in (scan(body(seed + 50), 0, seed=1), scan(body(seed), 180, seed=1)):
-                    found = pcl_symmetry.register(source, moved(motion(seed), target), threads=1)
+                    found = pcl_symmetry.register(source, moved(target, motion(seed)), threads=1)
                     self.assertFalse(found.converged or found, found.evidence)
                     self.assertRegex(found.reason, r"^(nothing|another pose) fits.*, \d+ % of the source lie on the target and \d+ % of the target")
 
@@ -125,7 +119,6 @@ class Registration(unittest.TestCase):
 
     def test_thirty_points_are_refused(self):
         source = scan(body(3), 0)
-        with self.assertWarnsRegex(RuntimeWarning, "source: 30 points, must be at least 100"):
-            found = pcl_symmetry.register(source[:30], source, threads=1)
+        found = warned("source: 30 points, must be at least 100", pcl_symmetry.register, source[:30], source, threads=1)
         self.assertFalse(found.converged)
         self.assertEqual(found.reason, "source: 30 points, must be at least 100")

@@ -9,9 +9,8 @@ HALF = np.array([1, 0.8, 0.55])
 
 
 def solid_ball(count, random, half=HALF):
-    direction = random.normal(size=(count, 3))
-    direction /= np.linalg.norm(direction, axis=1, keepdims=True)
-    return direction * random.random((count, 1)) ** (1 / 3) * half
+    points = random.uniform(-1, 1, (3 * count, 3))
+    return points[np.linalg.norm(points, axis=1) < 1][:count] * half
 
 
 def solid_box(count, random, half=HALF):

@@ -136,11 +136,7 @@ class Volumes(unittest.TestCase):
         self.phantom(size=16)
         points = np.zeros((9, 3))
         for function in (pcl_symmetry.transform, pcl_symmetry.local_symmetry):
-            with self.assertRaisesRegex(TypeError, "takes points or volume"):
-                function(points, volume=self.arguments["volume"])
-            with self.assertRaisesRegex(ValueError, "levels, direction: of a volume"):
-                function(points, levels=(0, 1))
-        with self.assertRaisesRegex(ValueError, "sigma: of points"):
-            pcl_symmetry.transform(**self.arguments, sigma=1)
-        with self.assertRaisesRegex(TypeError, "at: positions in a volume"):
-            pcl_symmetry.local_symmetry(**self.arguments)
+            self.assertRaisesRegex(TypeError, "takes points or volume", function, points, volume=self.arguments["volume"])
+            self.assertRaisesRegex(ValueError, "levels, direction: of a volume", function, points, levels=(0, 1))
+        self.assertRaisesRegex(ValueError, "sigma: of points", pcl_symmetry.transform, **self.arguments, sigma=1)
+        self.assertRaisesRegex(TypeError, "at: positions in a volume", pcl_symmetry.local_symmetry, **self.arguments)
