@@ -21,7 +21,7 @@ import pcl_symmetry
 from test_scene import block
 from test_shape_input import CORNERS, SQUARE_STL, XYZ, meshes
 from test_shape_input import rows as rows_of_text
-from tool_run import ToolTest, needs, np, off, pcd, points_on_sphere
+from tool_run import ToolTest, needs, np, off, pcd, points_on_sphere, triangles, turned
 from test_pcl_symmetry import Mesh, bar, box, box_mesh, bumped, has_pcl, lamp, needs_pcl, warned
 
 INTRINSICS = (300.0, 300.0, 160.0, 120.0)
@@ -554,9 +554,8 @@ class Pages(ToolTest):
     def test_show_support_in_colors(self):
         """Yellow where a point has a counterpart, with and without normals; an axis is seen in front of what hides it."""
         points = box()
-        random = np.random.default_rng(1)
-        angle, height = random.uniform(0, 2 * np.pi, 20_000), random.uniform(0, 1, 20_000)
-        can = np.stack([0.3 * np.cos(angle), 0.3 * np.sin(angle), height], axis=1)
+        vertices, quads = turned([(0.3, 0), (0.3, 1)], 96)
+        can = pcl_symmetry.sample_mesh(vertices, triangles(quads), 20_000)
         pages = {"module": (pcl_symmetry.planes(points).show(points).html, (700, 500))}
         if os.environ.get("TOOLS"):
             self.write("box.pcd", pcd(points))

@@ -6,7 +6,7 @@ import warnings
 
 import pcl_symmetry
 from test_pcl_symmetry import warned
-from tool_run import grid_faces, mug, np, points_on_sphere, random_pose, triangles
+from tool_run import mug, np, points_on_sphere, random_pose, swept, triangles, turned
 
 DEGREE = np.pi / 180
 
@@ -398,12 +398,6 @@ def wheel(num_teeth, depth, noise, thinned=False, seed=1, count=10_000):
     return points[:count] + noise * random.normal(size=(count, 3))
 
 
-def swept(outline, profile):
-    """Vertices and triangles of an outline about z, complex, that is scaled and raised along a profile of (scale, height)."""
-    vertices = np.vstack([np.c_[s * outline.real, s * outline.imag, np.full(len(outline), h)] for s, h in profile])
-    return vertices, triangles(grid_faces(len(profile), len(outline)))
-
-
 def gear(num_teeth):
     """A spur gear whose teeth are 2.25 modules deep, on a hub with a bore."""
     at = np.arange(num_teeth)[:, None] + (-0.3, -0.2, 0.2, 0.3)
@@ -414,8 +408,8 @@ def gear(num_teeth):
 class Gears(Detection):
     def planes(self, mesh, pose, count=None, **options):
         """Of the mesh, or of a cloud of it."""
-        (vertices, faces), (turn, shift) = mesh, pose
-        moved = types.SimpleNamespace(vertices=vertices @ turn.T + shift, faces=faces)
+        (vertices, quads), (turn, shift) = mesh, pose
+        moved = types.SimpleNamespace(vertices=vertices @ turn.T + shift, faces=triangles(quads))
         return pcl_symmetry.planes(pcl_symmetry.sample_mesh(moved, num_points=count) if count else moved, **options)
 
     def assert_all(self, fold, seed, angle, count=None, **options):
@@ -448,7 +442,7 @@ class Gears(Detection):
         kinds_of_mesh = ((96, 8000, 1), (48, None, 1)), ((96, 2000, 0.01), (48, 8000, 100))
         for i, (name, profile) in enumerate(bodies.items()):
             for num_sides, count, size in kinds_of_mesh[i % 2]:
-                mesh = swept(size * np.exp(2j * np.pi * np.arange(num_sides) / num_sides), np.array(profile) * (1, size))
+                mesh = turned(size * np.array(profile), num_sides)
                 pose = random_pose(num_sides)
                 axis, = self.planes(mesh, pose, count).axes
                 self.assertGreater(abs(axis.direction @ pose[0][:, 2]), np.cos(1.5 * DEGREE), (name, num_sides, count))

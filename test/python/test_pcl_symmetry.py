@@ -18,7 +18,7 @@ import unittest
 from pathlib import Path
 
 import pcl_symmetry
-from tool_run import BOX_FACES, ToolTest, box_corners, needs, np, rotation, triangles
+from tool_run import BOX_FACES, ToolTest, box_corners, needs, np, rotation, triangles, turned
 from tool_run import points_on_box as box
 
 
@@ -366,10 +366,8 @@ class OtherFunctions(unittest.TestCase):
 
     @needs_pcl
     def test_a_body_of_revolution_is_seen_from_its_side_a_little_from_above(self):
-        random = np.random.default_rng(1)
-        height, angle = random.uniform(0, 1, 6000), random.uniform(0, 2 * np.pi, 6000)
-        radius = 0.3 + 0.2 * height
-        cone = np.c_[radius * np.cos(angle), radius * np.sin(angle), height].astype(np.float32)
+        vertices, quads = turned([(0.3, 0), (0.5, 1)], 96)
+        cone = pcl_symmetry.sample_mesh(vertices, triangles(quads), 6000)
         found = pcl_symmetry.planes(cone, approximate=True)
         self.assertEqual(len(found.axes), 1, "its planes through the axis are no planes of the list")
         best = pcl_symmetry.viewpoints(found)[0].direction

@@ -144,8 +144,8 @@ class SafeFiles(ToolTest):
                   "z": np.where(i == 5, np.nan, 1e8 * (i // 20)),
                   "curvature": i, "rgb": (i << 8 | i << 16).astype("<u4").view("<f4")}
         cloud = np.rec.fromarrays([column.astype("<f4") for column in values.values()], names=list(values))
-        header = f"VERSION 0.7\nFIELDS {' '.join(values)}\nSIZE 4 4 4 4 4\nTYPE F F F F F\nCOUNT 1 1 1 1 1\nWIDTH 20\nHEIGHT 3\n"
-        self.write("a.pcd", (header + "VIEWPOINT 1 -2 0.5 0.5 0.5 -0.5 0.5\nPOINTS 60\nDATA binary\n").encode() + cloud.tobytes())
+        content = tool_run.pcd(tool_run.xyz(cloud), 20, (1, -2, 0.5), curvature=cloud["curvature"], rgb=cloud["rgb"])
+        self.write("a.pcd", content.replace(b"0.5 1 0 0 0", b"0.5 0.5 0.5 -0.5 0.5"))
         for source, target in (("a.pcd", "b.pcd"), ("b.pcd", "c.ply"), ("c.ply", "d.pcd")):
             self.run_tool(source, target, "-parts 1 -threads 1", tool="segment")
             file = self.folder / target

@@ -114,13 +114,12 @@ def triangles(quads):
 
 def mug(has_handle=True):
     """Vertices and quads of a cup, open at the top, and of its handle."""
-    turns, around, handle = np.arange(96) * np.pi / 48, np.arange(8) * np.pi / 4, []
-    cup = [(r * np.cos(a), r * np.sin(a), h) for r, h in ((0.001, 0), (0.7, 0), (0.75, 1.6)) for a in turns]
+    (cup, faces), around, handle = turned(((0.001, 0), (0.7, 0), (0.75, 1.6)), 96), np.arange(8) * np.pi / 4, []
     for along in np.linspace(-0.5, 0.5, 17) * np.pi:
         r = 0.45 + 0.08 * np.cos(around)
         handle += [*np.stack([0.7 + r * np.cos(along), 0.08 * np.sin(around), 0.8 + r * np.sin(along)], axis=1)]
-    faces = [[len(cup) + corner for corner in face] for face in grid_faces(17, 8)]
-    return np.array(cup + handle * has_handle), grid_faces(3, 96) + faces * has_handle
+    faces += [[len(cup) + corner for corner in face] for face in grid_faces(17, 8)] * has_handle
+    return np.array([*cup, *handle * has_handle]), faces
 
 
 def points_on_box(size=(1.0, 0.7, 0.4), num_points=6000, seed=1):
@@ -138,10 +137,19 @@ def points_on_sphere(count, seed=1):
     return points / np.linalg.norm(points, axis=1, keepdims=True)
 
 
+def swept(outline, profile):
+    """Vertices and quads of an outline about z, complex, that is scaled and raised along a profile of (scale, height)."""
+    vertices = [np.c_[scale * outline.real, scale * outline.imag, np.full(len(outline), height)] for scale, height in profile]
+    return np.vstack(vertices), grid_faces(len(profile), len(outline))
+
+
+def turned(profile, num_sides):
+    """A profile of (radius, height) turned about z."""
+    return swept(np.exp(2j * np.pi * np.arange(num_sides) / num_sides), profile)
+
+
 def lathe(profile, num_sides):
-    """A profile (radius, height) turned about z."""
-    angles = 2 * np.pi * np.arange(num_sides) / num_sides
-    return off([(r * np.cos(a), r * np.sin(a), h) for r, h in profile for a in angles], grid_faces(len(profile), num_sides))
+    return off(*turned(profile, num_sides))
 
 
 VASE = lathe([(0.001, 0), (0.5, 0), (0.8, 0.5), (0.9, 1.0), (0.7, 1.6), (0.3, 2.2), (0.3, 2.5), (0.45, 2.7)], 64)  # open at the top
@@ -186,16 +194,14 @@ def unpacked(data, size):
     out, at = bytearray(), 0
     while len(out) < size:
         code, at = data[at], at + 1
-        if code < 32:
+        if code < 32:  # bytes as they are
             out += data[at:at + code + 1]
             at += code + 1
-            continue
-        length = (code >> 5) + (data[at] if code >> 5 == 7 else 0) + 2
-        at += code >> 5 == 7
-        start = len(out) - ((code & 31) << 8) - data[at] - 1
-        at += 1
-        for k in range(length):
-            out.append(out[start + k])
+        else:  # bytes of before
+            length, at = (code >> 5, at) if code >> 5 < 7 else (7 + data[at], at + 1)
+            start, at = len(out) - ((code & 31) << 8) - data[at] - 1, at + 1
+            for k in range(start, start + length + 2):
+                out.append(out[k])
     return bytes(out)
 
 
@@ -209,10 +215,10 @@ def pcd_points(path):
     if encoding == b"binary":
         return np.frombuffer(body, fields, count)
     packed, size = struct.unpack("<II", body[:8])
-    body, points, at = unpacked(body[8:8 + packed], size), np.zeros(count, fields), 0  # field by field
-    for name, kind, shape in fields:
-        points[name] = np.frombuffer(body, kind, count * int(np.prod(shape)), at).reshape((count, *shape))
-        at += points[name].nbytes
+    body, points = unpacked(body[8:8 + packed], size), np.zeros(count, fields)
+    for name, kind, shape in fields:  # one after the other
+        values, body = body[:points[name].nbytes], body[points[name].nbytes:]
+        points[name] = np.frombuffer(values, kind).reshape((count, *shape))
     return points
 
 
