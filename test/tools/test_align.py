@@ -20,10 +20,7 @@ CHAIR = boxes(SEAT, BACK)
 
 class Align(ToolTest):
     tool = "align"
-
-    def setUp(self):
-        super().setUp()
-        self.chair, self.box = self.write("chair.off", CHAIR), self.write("box.off", tool_run.box())
+    files = dict(chair=("chair.off", CHAIR), box=("box.off", tool_run.box()))
 
     def scan(self):
         """What a scanner sees of the chair, with normals that look to the scanner. Returns the file and where the chair stands."""

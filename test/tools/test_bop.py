@@ -80,10 +80,7 @@ def num_composed(axes):
 
 class Bop(ToolTest):
     tool = "bop"
-
-    def setUp(self):
-        super().setUp()
-        self.box, self.vase = self.write("obj_000003.off", tool_run.box()), self.write("obj_000012.off", tool_run.VASE)
+    files = dict(box=("obj_000003.off", tool_run.box()), vase=("obj_000012.off", tool_run.VASE))
 
     def test_describes_a_box_as_the_benchmark_does(self):
         info = self.report(self.box, "-quiet")

@@ -13,10 +13,7 @@ from tool_run import ToolTest
 
 class Flags(ToolTest):
     tool = "planes"
-
-    def setUp(self):
-        super().setUp()
-        self.box = self.write("box.off", tool_run.box())
+    files = dict(box=("box.off", tool_run.box()))
 
     def test_single_and_double_dash_mean_the_same(self):
         scans = []

@@ -9,10 +9,7 @@ from tool_run import ToolTest, np
 
 class Map(ToolTest):
     tool = "map"
-
-    def setUp(self):
-        super().setUp()
-        self.box = self.write("box.off", tool_run.box(1.4))
+    files = dict(box=("box.off", tool_run.box(1.4)))
 
     def test_points_on_the_planes_of_a_box_are_the_most_symmetric(self):
         self.assertEqual(self.report(self.box, "box.ply -quiet")["num_points"], 10000)
@@ -58,17 +55,16 @@ class Map(ToolTest):
 
 class Viewpoint(ToolTest):
     tool = "viewpoint"
+    files = dict(box=("box.off", tool_run.box(1.4)), tetrahedron=("t.off", tool_run.TETRAHEDRON))
 
     def test_lists_views_by_their_score(self):
         """The module has the same views: test_depth_cameras."""
-        box = self.write("box.off", tool_run.box(1.4))
-        answer = self.report(box, "-quiet")
+        answer = self.report(self.box, "-quiet")
         self.assertEqual((len(answer["best"]["pose"]), answer["good"][0]), (16, answer["best"]))
         self.assertGreater(min(map(abs, answer["best"]["direction"])), 0.3, "from a corner")
         self.assertGreater(max(map(abs, answer["worst"]["direction"])), 0.99, "along its planes")
         self.assertIn("worst", self.output)
-        self.assertGreater(self.report(box, "-quiet -as_published -points 2000")["best"]["score"], answer["best"]["score"], "all maxima")
-        self.write("t.off", tool_run.TETRAHEDRON)
+        self.assertGreater(self.report(self.box, "-quiet -as_published -points 2000")["best"]["score"], answer["best"]["score"], "all maxima")
         scores = [view["score"] for view in self.report("t.off -quiet -views 8 -separation 15")["good"]]
         self.assertEqual((len(scores) > 4, scores), (True, sorted(scores, reverse=True)))
 
@@ -76,10 +72,7 @@ class Viewpoint(ToolTest):
 class Segment(ToolTest):
     tool = "segment"
     vertices, quads = tool_run.mug()
-
-    def setUp(self):
-        super().setUp()
-        self.mesh = self.write("mug.off", tool_run.off(self.vertices, self.quads))
+    files = dict(mesh=("mug.off", tool_run.off(vertices, quads)))
 
     def labels(self):
         return np.loadtxt(self.folder / "out.seg", int)

@@ -71,11 +71,8 @@ class Pages(ToolTest):
 
 class Pictures(ToolTest):
     tool = "viewer"
-
-    def setUp(self):
-        super().setUp()
-        self.box = self.write("box.off", tool_run.box(1.4))
-        self.no_display = {key: value for key, value in os.environ.items() if key != "DISPLAY"}
+    files = dict(box=("box.off", tool_run.box(1.4)))
+    no_display = {key: value for key, value in os.environ.items() if key != "DISPLAY"}
 
     def test_are_made_without_a_screen(self):
         pictures = set()

@@ -11,11 +11,7 @@ from tool_run import ToolTest, np
 class Planes(ToolTest):
     tool = "planes"
     flags = "-quiet -points 2000"
-
-    def setUp(self):
-        super().setUp()
-        self.box = self.write("box.off", tool_run.box())
-        self.tetrahedron = self.write("t.off", tool_run.TETRAHEDRON)
+    files = dict(box=("box.off", tool_run.box()), tetrahedron=("t.off", tool_run.TETRAHEDRON))
 
     def test_writes_the_profile_of_a_body_of_revolution(self):
         vase = self.write("vase.off", tool_run.lathe([(0.5, 0), (0.7, 0.3), (0.5, 0.8), (0.3, 1.0), (0.4, 1.4)], 90))

@@ -7,11 +7,7 @@ from tool_run import ToolTest, np
 
 
 class Recognition(ToolTest):
-    def setUp(self):
-        super().setUp()
-        self.vase = self.write("vase.off", tool_run.VASE)
-        self.box = self.write("box.off", tool_run.box())
-        self.other = self.write("tetrahedron.off", tool_run.TETRAHEDRON)
+    files = dict(vase=("vase.off", tool_run.VASE), box=("box.off", tool_run.box()), other=("tetrahedron.off", tool_run.TETRAHEDRON))
 
     def descriptors(self, name):
         """The values of a file of descriptors, a row each, and their field."""

@@ -20,9 +20,7 @@ COMMANDS = {"o.pcd": "scan box.off OUT -format ascii", "binary.pcd": "scan box.o
 
 
 class SafeFiles(ToolTest):
-    def setUp(self):
-        super().setUp()
-        self.write("box.off", tool_run.box())
+    files = dict(box=("box.off", tool_run.box()))
 
     def interrupt(self, number):
         """Sends a signal to the scanner while it writes big.pcd. Returns its exit status; None where it was done before."""

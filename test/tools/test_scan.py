@@ -6,10 +6,7 @@ from tool_run import ToolTest, np
 
 class Scan(ToolTest):
     tool = "scan"
-
-    def setUp(self):
-        super().setUp()
-        self.mesh = self.write("box.off", tool_run.box(1.0))
+    files = dict(mesh=("box.off", tool_run.box(1.0)))
 
     def seen(self, name, transform=np.eye(4)):
         """The finite points of a scan in the frame of the model."""
@@ -52,11 +49,8 @@ class BoxScan(ToolTest):
     tool = "scan"
     half, center = np.array([0.5, 0.8, 1.2]), np.array([10.0, -20.0, 5.0])
     corners = np.array([[1 if i >> k & 1 else -1 for k in range(3)] for i in range(8)]) / np.sqrt(3)
-
-    def setUp(self):
-        super().setUp()
-        self.mesh = self.write("box.off", tool_run.off(self.center + tool_run.box_corners(*self.half), tool_run.BOX_FACES))
-        self.diagonal = 2 * np.linalg.norm(self.half)
+    diagonal = 2 * np.linalg.norm(half)
+    files = dict(mesh=("box.off", tool_run.off(center + tool_run.box_corners(*half), tool_run.BOX_FACES)))
 
     def scanned(self, *arguments, name="a.ply"):
         """What is reported of a scan, and its points, one a pixel."""

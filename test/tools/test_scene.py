@@ -240,10 +240,7 @@ class SceneObjects(ToolTest):
 
 class Scene(ToolTest):
     tool = "scene"
-
-    def setUp(self):
-        super().setUp()
-        self.scene = self.write("scene.pcd", pcd(POINTS, 320, rgb=np.full(len(POINTS), 200 << 16)))
+    files = dict(scene=("scene.pcd", pcd(POINTS, 320, rgb=np.full(len(POINTS), 200 << 16))))
 
     def test_writes_what_it_finds(self):
         report = self.report(self.scene, "completed.ply -max_points 1000 -png objects.png -html page.html")

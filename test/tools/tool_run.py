@@ -33,11 +33,14 @@ SCHEMAS = Path(__file__).resolve().parents[2] / "apps/schemas"
 
 class ToolTest(unittest.TestCase):
     tool = ""  # without the common beginning, e.g. "planes"
+    files = {}  # {attribute: (name, content)}, in the folder of each test
 
     def setUp(self):
         folder = tempfile.TemporaryDirectory(prefix="pcl_symmetry_")
         self.addCleanup(folder.cleanup)
         self.folder = Path(folder.name)
+        for attribute, (name, content) in self.files.items():
+            setattr(self, attribute, self.write(name, content))
 
     def write(self, name, content):
         path = self.folder / name
