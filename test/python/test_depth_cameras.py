@@ -189,6 +189,7 @@ class OrganizedArrays(ToolTest):
         super().setUp()
         depth, self.labels = table()
         self.frame = pcl_symmetry.from_depth(depth, INTRINSICS)
+        self.alone = np.where((self.labels == 1)[..., None], self.frame, np.nan)
 
     def test_what_the_picture_cuts_off_all_around_has_no_symmetry(self):
         for depth in (np.full((120, 160), 1.2), 1 / (0.8 + np.linspace(0, 0.3, 120)[:, None] + np.zeros(160))):
@@ -203,19 +204,16 @@ class OrganizedArrays(ToolTest):
         self.assertGreater(np.nanmean(support), 0.9)
 
     def test_show_what_the_camera_saw(self):
-        object_alone = np.where((self.labels == 1)[..., None], self.frame, np.nan)
-        found = pcl_symmetry.planes(object_alone)
+        found = pcl_symmetry.planes(self.alone)
         np.testing.assert_allclose(found.viewpoint, 0, atol=2e-3)
         self.assertEqual(found.point_support(0).shape, (240, 320))
         self.assert_says_what_was_seen(found, self.labels == 1)
-        frame = pcl_symmetry.frame(object_alone)
-        self.assertTrue(frame)
-        values = pcl_symmetry.local_symmetry(object_alone[::4, ::4], 1.0)
+        self.assertTrue(pcl_symmetry.frame(self.alone))
+        values = pcl_symmetry.local_symmetry(self.alone[::4, ::4], 1.0)
         np.testing.assert_array_equal(np.isfinite(values), self.labels[::4, ::4] == 1)
-        self.assertEqual(pcl_symmetry.segment(object_alone[::2, ::2]).shape, (120, 160))
-        self.assertEqual(pcl_symmetry.describe(object_alone).shape[0], 2)
-        index, _ = found[0].pairs(object_alone)
-        self.assertEqual(index.shape, (240 * 320,))
+        self.assertEqual(pcl_symmetry.segment(self.alone[::2, ::2]).shape, (120, 160))
+        self.assertEqual(pcl_symmetry.describe(self.alone).shape[0], 2)
+        self.assertEqual(found[0].pairs(self.alone)[0].shape, (240 * 320,))
 
     def test_a_part_stands_on_its_scene(self):
         mask = self.labels == 2
@@ -352,7 +350,7 @@ class OrganizedArrays(ToolTest):
     def test_a_scan_has_no_group_of_rotations_but_a_reason(self):
         viewpoint = np.array([3.0, 2.0, 1.5])
         stored = pcl_symmetry.Shape(seen_half(box(num_points=8000), viewpoint), np.empty((0, 3), np.int32), viewpoint)
-        for scan in (self.frame[self.labels == 1], np.where((self.labels == 1)[..., None], self.frame, np.nan), stored):
+        for scan in (self.frame[self.labels == 1], self.alone, stored):
             found = warned("points: a scan from one side, must be a whole object", pcl_symmetry.rotations, scan)
             self.assertEqual((bool(found), found.name, found.confidence, found.reason[:6]), (False, "", 0, "a scan"))
 
@@ -364,7 +362,7 @@ class OrganizedArrays(ToolTest):
         self.assertEqual(database.names, ["bar", "first", "second"])
         recognized = database.recognize(self.frame, indices=self.labels == 1, min_confidence=0.0)
         self.assertEqual(recognized[0].name, "first")
-        self.assertEqual(len(database.match(np.where((self.labels == 1)[..., None], self.frame, np.nan))), 3)
+        self.assertEqual(len(database.match(self.alone)), 3)
 
     def assert_follow(self, found, schema, **only_of_tools):
         """The JSON of a result, or of a dict, is that of the tools."""
@@ -374,8 +372,7 @@ class OrganizedArrays(ToolTest):
     def test_results_have_the_json_of_the_tools(self):
         only = dict(file="-", timing_ms={})
         z, y, x = np.indices((40, 40, 40)) - 19.5
-        scan = np.where((self.labels == 1)[..., None], self.frame, np.nan)
-        points = [box(), points_on_sphere(3000), lamp(), scan]
+        points = [box(), points_on_sphere(3000), lamp(), self.alone]
         searches = [pcl_symmetry.planes(each, approximate=True) for each in points]
         searches.append(pcl_symmetry.planes(volume=(x**2 + 2 * y**2 + 3 * z**2 < 300).astype(float)))
         searches.append(warned("points: ", pcl_symmetry.planes, np.zeros((9, 3))))
@@ -393,7 +390,7 @@ class OrganizedArrays(ToolTest):
             self.assert_follow({"1": {**extent, **{k: v for k, v in symmetries.items() if k.startswith("symm")}}}, "models_info")
         view = pcl_symmetry.viewpoints(box())[0]
         self.assert_follow(dict(up=[0, 0, 1], best=view.to_dict(), worst=view.to_dict(), good=[]), "views", **only)
-        self.assert_follow(pcl_symmetry.register(scan, box((0.3, 0.3, 0.25))), "pose", fitness=0.0, timing_ms={})
+        self.assert_follow(pcl_symmetry.register(self.alone, box((0.3, 0.3, 0.25))), "pose", fitness=0.0, timing_ms={})
         scans = [box(seed=1), box(seed=2) + np.float32(1), np.array([[0, 0, k] for k in range(500)])]
         merged = pcl_symmetry.register_all(scans, viewpoint=None)
         self.assertEqual((len(merged), len(list(merged)), merged[2]), (3, 3, None))
@@ -524,7 +521,7 @@ class LongCalls(ToolTest):
             self.assertEqual(database.build(few).failures, [])
 
     def test_tell_their_progress(self):
-        calls = [(pcl_symmetry.local_symmetry, box(num_points=200), 1.0)]
+        calls = [(pcl_symmetry.local_symmetry, box(num_points=200), 1.0), (pcl_symmetry.segment, box(num_points=2000))]
         if has_pcl():
             calls += [(pcl_symmetry.register, lamp(), lamp(seed=5)), (pcl_symmetry.register_all, [lamp(), lamp(seed=5)])]
         for function, *arguments in calls:
