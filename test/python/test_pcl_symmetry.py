@@ -18,7 +18,7 @@ import unittest
 from pathlib import Path
 
 import pcl_symmetry
-from tool_run import BOX_FACES, ToolTest, box_corners, needs, np, rotation, triangles, turned
+from tool_run import BOX_FACES, ToolTest, box_corners, grid_faces, needs, np, rotation, triangles, turned
 from tool_run import points_on_box as box
 
 
@@ -428,13 +428,10 @@ def bumped(rings, around, height, radius):
     normals = sphere / axes / np.linalg.norm(sphere / axes, axis=1, keepdims=True)
     share = np.minimum(1, np.linalg.norm(sphere * axes - (1, 0, 0), axis=1) / radius)
     vertices = sphere * axes + 0.5 * height * (1 + np.cos(np.pi * share))[:, None] * normals
-    ring, k = (a.ravel() for a in np.meshgrid(np.arange(rings - 1), np.arange(around), indexing="ij"))
-    a, b = ring * around + k, ring * around + (k + 1) % around
-    c, d = a + around, b + around
+    quads = np.array(grid_faces(rings, around))[:, ::-1]
+    k = np.arange(len(quads)) % around
     right = ((4 * k < around) | (4 * k >= 3 * around))[:, None]
-    first = np.where(right, np.stack([a, c, b], axis=1), np.stack([a, c, d], axis=1))
-    second = np.where(right, np.stack([b, c, d], axis=1), np.stack([a, d, b], axis=1))
-    return vertices, np.concatenate([first, second])
+    return vertices, triangles(np.where(right, quads, np.roll(quads, 1, axis=1)))
 
 
 class Meshes(ToolTest):

@@ -11,19 +11,12 @@ def body(seed, num_points=40_000):
     random = np.random.default_rng(seed)
     bumps, heights = random.normal(size=(7, 3)), random.choice([-0.4, 0.5, 0.7], 7)
     bumps /= np.linalg.norm(bumps, axis=1)[:, None]
-    radius = lambda d: 1 + (heights * np.exp(8 * (d @ bumps.T - 1))).sum(axis=-1)
-    directions = points_on_sphere(num_points, seed)
-    u = np.cross(directions, directions[:, [1, 2, 0]])
-    u /= np.linalg.norm(u, axis=1)[:, None]
-    v, step = np.cross(directions, u), 1e-4
-
-    def at(moved):
-        moved = moved / np.linalg.norm(moved, axis=1)[:, None]
-        return radius(moved)[:, None] * moved * (1, 0.8, 0.65)
-
-    points = at(directions)
-    normals = np.cross(at(directions + step * u) - points, at(directions + step * v) - points)
-    return points, normals / np.linalg.norm(normals, axis=1)[:, None]
+    directions, scale = points_on_sphere(num_points, seed), np.array([1, 0.8, 0.65])
+    swell = heights * np.exp(8 * (directions @ bumps.T - 1))
+    radius, slope = 1 + swell.sum(axis=1, keepdims=True), 8 * swell @ bumps
+    slope -= (slope * directions).sum(axis=1, keepdims=True) * directions  # along the ball
+    normals = (directions - slope / radius) / scale
+    return radius * directions * scale, normals / np.linalg.norm(normals, axis=1, keepdims=True)
 
 
 def scan(shape, angle, noise=0.0, seed=0):
