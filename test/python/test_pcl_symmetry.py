@@ -180,7 +180,7 @@ class Planes(unittest.TestCase):
             database, scene = s.Database(":memory:"), functools.partial(s.scene, viewpoint=(0, 0, 9))
             register = functools.partial(s.register, target=points)
             wrong[ValueError] += [
-                (register, {r"guess = .*, must be numbers of shape \(4, 4\)": dict(guess=np.eye(3)), "viewpoint = here": dict(source_viewpoint="here"),
+                (register, {r"guess = .*, must be numbers of shape \(4, 4\)": dict(guess=np.eye(3)), "viewpoint": dict(source_viewpoint="here"),
                             "guess = another matrix, must be": dict(guess=np.ones((4, 4)))}),
                 (lambda p, **options: s.register(points, p, **options), {"around.angle = -1, must": dict(around=(-1.0, 0.0))}),
                 (lambda p, **options: s.register_all([p, p], **options), {"viewpoint = here": dict(viewpoint="here")}),

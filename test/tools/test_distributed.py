@@ -62,6 +62,13 @@ class Distributed(ToolTest):
             [sys.executable, "-B", EXAMPLE, str(self.models), str(self.database), "--workers", "2", "--models-per-part", "2", *arguments],
             stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, env=environment, start_new_session=True)
 
+    def printed(self, *arguments, code=0):
+        """By a run that ends with this exit code."""
+        run = self.start(*arguments)
+        output, _ = run.communicate(timeout=600)
+        self.assertEqual(run.returncode, code, output)
+        return output
+
     def parts(self):
         return sorted(Path(f"{self.database}.parts").glob("*.db"))
 
@@ -98,10 +105,8 @@ class Distributed(ToolTest):
         num_parts = len(self.parts())
         self.assertGreater(num_parts, 2)
         self.add_model("broken.off", "OFF\n3 1 0\n0 0 0\n")
-        run = self.start()
-        output, _ = run.communicate(timeout=600)
+        output = self.printed(code=1)
         self.assertIn(f"of {13 - num_parts} parts", output)
-        self.assertEqual(run.returncode, 1)
         self.assertRegex(output, r"left out: .*broken.off: ")
         self.check_answers()
 
@@ -112,9 +117,7 @@ class Distributed(ToolTest):
             ("scancel", 'echo "$@" >>"${0%/*}/cancelled"'),
         ):
             self.write(name, f"#!/bin/bash\n{text}\n").chmod(0o755)
-        run = self.start("--slurm=--partition=cpu --mem=1G")
-        output, _ = run.communicate(timeout=600)
-        self.assertEqual(run.returncode, 0, output)
+        self.printed("--slurm=--partition=cpu --mem=1G")
         jobs = self.text("jobs").splitlines()
         self.assertEqual(len(jobs), 1)
         self.assertRegex(jobs[0], "--parsable --array=1-2 --cpus-per-task=1 --partition=cpu --mem=1G --wrap=dask worker tcp://")
@@ -123,15 +126,11 @@ class Distributed(ToolTest):
 
     def test_says_what_is_wrong(self):
         self.database.write_text("mine")
-        run = self.start()
-        self.assertIn("models.db: exists, must be a new file", run.communicate()[0])
+        self.assertIn("models.db: exists, must be a new file", self.printed(code=1))
         self.database.unlink()
         again = self.add_model("other/box_01.off", "")
-        run = self.start()
-        self.assertIn("names must differ", run.communicate()[0])
+        self.assertIn("names must differ", self.printed(code=1))
         again.unlink()
-        run = self.start("--tool", "no_such_tool")
-        output, _ = run.communicate(timeout=600)
-        self.assertEqual(run.returncode, 1)
+        output = self.printed("--tool", "no_such_tool", code=1)
         self.assertIn("no_such_tool", output)
         self.assertNotIn("Traceback", output)

@@ -38,7 +38,8 @@ class Planes(ToolTest):
 
     def test_tells_the_best_plane_where_all_are_doubted(self):
         """On a ground that its plane slants against, a box in noise keeps no plane; the nearest to one is still reported."""
-        self.run_tool(self.write("body.off", tool_run.off(tool_run.box_corners(1, 0.7, 0.45), tool_run.BOX_FACES)), "scan.pcd -direction 1,1.3,0.9 -noise 0.003", tool="scan")
+        body = self.write("body.off", tool_run.off(tool_run.box_corners(1, 0.7, 0.45), tool_run.BOX_FACES))
+        self.run_tool(body, "scan.pcd -direction 1,1.3,0.9 -noise 0.003", tool="scan")
         self.assertEqual(len(self.report("scan.pcd", "-tolerance 0.002")["planes"]), 1)
         report = self.report("scan.pcd", "-tolerance 0.002 -ground 1,1,1,4")
         self.assertTrue(report["planes"] == [] and report["best"])
