@@ -1,12 +1,13 @@
-"""From points to planes: shapes whose planes are known, moved, scaled, disturbed, cut and flat."""
+"""From points to planes: shapes whose planes are known, moved, scaled, disturbed, cut and flat; and groups of solids."""
 
+import itertools
 import types
 import unittest
 import warnings
 
 import pcl_symmetry
 from test_pcl_symmetry import warned
-from tool_run import mug, np, points_on_sphere, random_pose, swept, triangles, turned
+from tool_run import mug, np, points_on_sphere, random_pose, rotation, swept, triangles, turned
 
 DEGREE = np.pi / 180
 
@@ -617,3 +618,41 @@ class Decisions(Detection):
         sheet = pcl_symmetry.planes(np.stack([x, y, 0.3 * np.cos(3 * x) + 0.2 * np.sin(4 * y)], axis=1))
         self.assertTrue(calls(sheet))
         self.assertGreater(abs(sheet[0].normal[0]), np.cos(DEGREE), "alike on both sides")
+
+
+# Points that fill a body show its surface only to their spacing: (which of a cube, scale, groups that may be found).
+HALF = np.array([1, 0.8, 0.55])
+SOLIDS = dict(ball=(lambda x: np.linalg.norm(x, axis=1) < 1, HALF, ("C1", "C2", "D2")), box=(lambda x: x[:, 0] < 1, HALF, ("C1", "C2", "D2")),
+              stepped_cylinder=(lambda x: np.hypot(x[:, 0], x[:, 1]) < np.where(x[:, 2] < 0.2, 1, 0.6), 1, ("C1", "Cinf")))  # fmt: skip
+
+
+def solid(name, count, seed):
+    is_inside, scale, _ = SOLIDS[name]
+    points = np.random.default_rng(seed).uniform(-1, 1, (8 * count, 3))
+    return points[is_inside(points)][:count] * scale
+
+
+class Solids(unittest.TestCase):
+    def test_have_no_group_that_they_do_not_resolve(self):
+        for name, count, seed in itertools.product(SOLIDS, (200, 1000, 5000), range(2)):
+            with self.subTest(name, count=count, seed=seed):
+                found = pcl_symmetry.rotations(solid(name, count, seed) @ random_pose(seed)[0].T)
+                self.assertTrue(found.reason or found.name in SOLIDS[name][2], found.name)
+
+    def test_say_at_which_tolerance_they_would_have_one(self):
+        found = pcl_symmetry.rotations(solid("box", 2000, 1))
+        self.assertIn("show no surface at the tolerance", found.reason)
+        least = float(found.reason.split()[-1])
+        self.assertTrue(least > found.tolerance and found.confidence == 0)
+        self.assertEqual(pcl_symmetry.rotations(solid("box", 2000, 1), absolute_tolerance=1.01 * least).reason, "")
+
+    def test_keep_groups_that_take_points_to_points(self):
+        """A body of atoms in three copies about an axis: exact, whatever the points resolve, for every seed."""
+        unit, third, (turn, _) = solid("box", 700, 3) * (0.5, 0.56, 1.09) + [0.8, 0.1, 0], rotation((0, 0, 1), 2 * np.pi / 3), random_pose(3)
+        atoms = np.concatenate([unit, unit @ third.T, unit @ third]) @ turn.T
+        for seed in range(3):
+            found = pcl_symmetry.rotations(atoms, seed=seed)
+            self.assertEqual(found.name, "C3")
+            for motion in found.discrete:
+                axis = np.linalg.svd(motion[:3, :3] - np.eye(3))[2][2]
+                self.assertGreater(abs(axis @ turn[:, 2]), np.cos(np.radians(0.1)))
