@@ -13,16 +13,13 @@ def cube(properties, size, more, comment=""):
     :param size: squares along an edge
     :param more: what a vertex has besides its position, of its side, and u and v from 0 to 1 there
     """
-    vertices, faces = [], []
+    vertices, faces, (i, k) = [], [], np.indices((size + 1, size + 1)).reshape(2, -1)
+    squares = np.flatnonzero((i < size) & (k < size))[:, None] + (0, size + 1, size + 2, 1)
     for side in range(6):
         normal, a = (-1) ** side * np.eye(3)[side // 2], np.eye(3)[(side // 2 + 1) % 3]
         b = np.cross(normal, a)
-        for i in range(size + 1):
-            for k in range(size + 1):
-                u, v, first = i / size, k / size, len(vertices)
-                vertices.append((*normal + (2 * u - 1) * a + (2 * v - 1) * b, *more(side, u, v)))
-                if i < size and k < size:
-                    faces.append((4, first, first + size + 1, first + size + 2, first + 1))
+        faces += [(4, *square) for square in squares + len(vertices)]
+        vertices += [(*normal + (2 * u - 1) * a + (2 * v - 1) * b, *more(side, u, v)) for u, v in zip(i / size, k / size)]
     header = (f"ply\nformat ascii 1.0\n{comment}element vertex {len(vertices)}\n" + "".join(f"property float {x}\n" for x in "xyz")
               + "".join(f"property {one}\n" for one in properties)
               + f"element face {len(faces)}\nproperty list uchar int vertex_indices\nend_header\n")

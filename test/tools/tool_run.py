@@ -3,6 +3,7 @@ import importlib.util
 import json
 import os
 import re
+import resource
 import struct
 import subprocess
 import sys
@@ -29,6 +30,13 @@ def needs(*packages):
 np, Image = need("numpy", "PIL.Image")
 TOOLS = Path(os.environ.get("TOOLS", ""))  # their folder
 SCHEMAS = Path(__file__).resolve().parents[2] / "apps/schemas"
+
+
+def limit_of_memory(size):
+    """What to do before a tool runs with so many bytes; None where that is too little for its help: sanitizers take all addresses."""
+    limit = lambda: resource.setrlimit(resource.RLIMIT_AS, (size, size))
+    run = subprocess.run([TOOLS / "pcl_symmetry_scan", "-h"], stdout=subprocess.DEVNULL, preexec_fn=limit, check=False)
+    return limit if run.returncode == 0 else None
 
 
 class ToolTest(unittest.TestCase):
