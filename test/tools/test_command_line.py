@@ -1,5 +1,4 @@
 """The command line of all tools: flags, their help and errors, and many inputs."""
-import contextlib
 import csv
 import io
 import json
@@ -211,17 +210,9 @@ class ManyInputs(ToolTest):
         self.run_tool(*paths, "-points 500", code=1)
         self.assertEqual([json.loads(line)["file"] for line in self.output.splitlines()], list(map(str, paths)))
         self.assertTrue(self.error.startswith("3 files: 2 done, 1 failed\n"), self.error)
-        ours, theirs = os.openpty()
-        command = [tool_run.TOOLS / "pcl_symmetry_planes", *paths]
-        tool = subprocess.Popen(command, stdout=theirs, stderr=theirs)
-        os.close(theirs)
-        shown = b""
-        with contextlib.suppress(OSError):  # the end
-            while piece := os.read(ours, 1 << 16):
-                shown += piece
-        os.close(ours)
-        self.assertEqual(tool.wait(), 1)
-        lines = shown.decode().splitlines()
+        code, shown = self.at_terminal(*paths)
+        self.assertEqual(code, 1)
+        lines = shown.splitlines()
         self.assertEqual([lines[0], lines[5], lines[-2]], [str(paths[0]), str(paths[2]), "3 files: 2 done, 1 failed"])
         self.assertEqual(lines[1].split()[:2], ["plane", "a"])
         self.assertIn("axis of revolution", lines[6])

@@ -4,11 +4,10 @@ import signal
 import subprocess
 import sys
 import tempfile
-import time
 from pathlib import Path
 
 import tool_run
-from tool_run import TOOLS, ToolTest
+from tool_run import TOOLS, ToolTest, wait_for
 
 psutil, _ = tool_run.need("psutil", "dask.distributed")
 EXAMPLE = str(Path(__file__).parents[2] / "apps/examples/13_distributed.py")
@@ -16,13 +15,6 @@ EXAMPLE = str(Path(__file__).parents[2] / "apps/examples/13_distributed.py")
 
 def tool(command, *arguments):
     return subprocess.run([f"{TOOLS}/pcl_symmetry_{command}", *map(str, arguments)], stdout=subprocess.PIPE, check=True).stdout.decode()
-
-
-def wait_for(condition, seconds=300):
-    end = time.monotonic() + seconds
-    while not condition() and time.monotonic() < end:
-        time.sleep(0.01)
-    return condition()
 
 
 class Distributed(ToolTest):

@@ -1,8 +1,4 @@
 """The tools of the map, of views and of parts."""
-import os
-import pty
-import subprocess
-
 import tool_run
 from tool_run import ToolTest, np
 
@@ -20,12 +16,7 @@ class Map(ToolTest):
         self.assertLess(points["intensity"][distance > 0.5].mean(), 0.75)
 
     def test_shows_on_a_terminal_how_far_it_is(self):
-        ours, terminal = pty.openpty()
-        command = [tool_run.TOOLS / "pcl_symmetry_map", self.box, "-points", "150000", "-grid", "16"]
-        subprocess.run(command, stdout=subprocess.DEVNULL, stderr=terminal, check=True)
-        os.close(terminal)
-        shown = os.read(ours, 1 << 16).decode()
-        os.close(ours)
+        _, shown = self.at_terminal(self.box, "-points", "150000", "-grid", "16")
         self.assertIn("\rMapping back to points [", shown)
         self.assertIn(" 66 %", shown)
 

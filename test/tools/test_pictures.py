@@ -3,11 +3,10 @@ import json
 import os
 import signal
 import subprocess
-import time
 from pathlib import Path
 
 import tool_run
-from tool_run import ToolTest, np
+from tool_run import ToolTest, np, wait_for
 
 
 class Pages(ToolTest):
@@ -106,20 +105,11 @@ class Pictures(ToolTest):
         for stop in (signal.SIGTERM, signal.SIGKILL, signal.SIGINT):
             command = [tool_run.TOOLS / "pcl_symmetry_planes", *names, "-png", "{}.png", "-quiet", "-threads", "1", "-json", "o.json"]
             tool = subprocess.Popen(command, cwd=self.folder, env=self.no_display, stdout=subprocess.DEVNULL)
-            servers = []
-            for _ in range(600):
-                time.sleep(0.05)
-                servers = self.children_of(tool.pid)
-                if servers and list(self.folder.glob("*.png")):
-                    break
-            self.assertEqual(len(servers), 1)
+            self.assertTrue(wait_for(lambda: self.children_of(tool.pid) and list(self.folder.glob("*.png")), 30))
+            server, = self.children_of(tool.pid)
             tool.send_signal(stop)
             self.assertEqual(tool.wait(timeout=10), -stop)
-            for _ in range(200):
-                if not self.runs(servers[0]):
-                    break
-                time.sleep(0.05)
-            self.assertFalse(self.runs(servers[0]), stop)
+            self.assertTrue(wait_for(lambda: not self.runs(server), 10), stop)
 
     @staticmethod
     def runs(pid):

@@ -1,4 +1,5 @@
 """Tools run as their users run them, the files that go in and come out, and shapes to test with."""
+import contextlib
 import importlib.util
 import json
 import os
@@ -8,6 +9,7 @@ import struct
 import subprocess
 import sys
 import tempfile
+import time
 import unittest
 from pathlib import Path
 
@@ -30,6 +32,13 @@ def needs(*packages):
 np, Image = need("numpy", "PIL.Image")
 TOOLS = Path(os.environ.get("TOOLS", ""))  # their folder
 SCHEMAS = Path(__file__).resolve().parents[2] / "apps/schemas"
+
+
+def wait_for(condition, seconds=300):
+    end = time.monotonic() + seconds
+    while not condition() and time.monotonic() < end:
+        time.sleep(0.01)
+    return condition()
 
 
 def limit_of_memory(size):
@@ -72,6 +81,18 @@ class ToolTest(unittest.TestCase):
         done = subprocess.run([TOOLS / f"pcl_symmetry_{tool or self.tool}", *words], capture_output=True, cwd=self.folder, **options)
         self.output, self.error = (text.decode(errors="replace") for text in (done.stdout, done.stderr))
         self.assertEqual(done.returncode, code, f"{words}: {self.error}")
+
+    def at_terminal(self, *words):
+        """Exit code of a tool at a terminal, and what it shows there."""
+        ours, theirs = os.openpty()
+        tool = subprocess.Popen([TOOLS / f"pcl_symmetry_{self.tool}", *words], cwd=self.folder, stdout=theirs, stderr=theirs)
+        os.close(theirs)
+        shown = b""
+        with contextlib.suppress(OSError):  # the end
+            while piece := os.read(ours, 1 << 16):
+                shown += piece
+        os.close(ours)
+        return tool.wait(), shown.decode()
 
     def report(self, *arguments, **options):
         """Runs a tool that must not fail. Returns what it reports."""
