@@ -28,7 +28,7 @@ void sortFalling(List& list, const Value& value) {
                    [&](const auto& a, const auto& b) { return std::invoke(value, a) > std::invoke(value, b); });
 }
 
-/// Sorts by a member or a function of the entries, the least first; equal ones keep their order.
+/// Sorts entries by a member or function in ascending order; the sort is stable.
 template <typename List, typename Value>
 void sortRising(List& list, const Value& value) {
   std::stable_sort(list.begin(), list.end(),
