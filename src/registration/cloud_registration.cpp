@@ -167,7 +167,7 @@ std::vector<JudgedPose> judgedPoses(const CloudPair& clouds, const std::vector<R
   for (const RankedPose& pose : poses) {
     if (pose.score.merit() < poses.front().score.merit() - within) continue;
     const PoseEvidence evidence = clouds.evidence(pose);
-    judged.push_back({pose, evidence, fitConfidence(evidence)});
+    judged.push_back({pose, evidence, poseConfidence(evidence)});
   }
   sortFalling(judged, &JudgedPose::confidence);
   return judged;

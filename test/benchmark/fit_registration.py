@@ -25,7 +25,7 @@ UNIQUE = 0.9
 
 
 def terms_of(e):
-    """The terms of fitConfidence() in src/core/registration/pose_evidence.cpp."""
+    """The terms of poseConfidence() in src/core/registration/pose_evidence.cpp."""
     agreement = np.log(e["agreement"] / (1 - e["agreement"]))
     noise = np.log(np.clip(e["noise"], 0.0015, 0.01) / 0.001 + 0.5)
     return [1, agreement, e["on_surface"], e["contradicted"], np.log(e["missing"] + 0.1), noise, abs(np.log(e["size_ratio"]))]
@@ -87,7 +87,7 @@ def main(arguments):
     print("weights", w, "errors", errors)
     texts = fits.rounded(w, errors)
     fits.write_header(arguments, f"""
-/// Weights of the terms of fitConfidence().
+/// Weights of the terms of poseConfidence().
 inline constexpr std::array<double, {len(texts)}> kRegistrationFit{{{", ".join(texts)}}};
 """, [["<array>"]])  # fmt: skip
 

@@ -158,7 +158,7 @@ std::string doubtOf(const PoseEvidence& evidence) {
   return doubt.str();
 }
 
-double fitConfidence(const PoseEvidence& evidence) {
+double poseConfidence(const PoseEvidence& evidence) {
   const std::array<double, kRegistrationFit.size()> terms{
       1.0,
       std::log(evidence.agreement / (1.0 - evidence.agreement)),
@@ -170,13 +170,6 @@ double fitConfidence(const PoseEvidence& evidence) {
   const double log_odds = std::inner_product(terms.begin(), terms.end(), kRegistrationFit.begin(), 0.0);
   // Surfaces that face each other have to agree mostly, whatever else supports the pose.
   return std::min(logistic(log_odds), evidence.agreement) * evidence.uniqueness;
-}
-
-double poseConfidence(const PoseEvidence& evidence) {
-  // A scanner that is more exact than a depth camera misses less.
-  const double max_aside = kRegistration.max_aside * std::clamp(evidence.noise / kRegistration.min_noise, 0.25, 1.0);
-  const double beside = std::max(0.0, 1.0 - 0.5 * evidence.aside / max_aside);
-  return std::min(fitConfidence(evidence), beside * evidence.uniqueness);
 }
 
 }  // namespace pcl_symmetry

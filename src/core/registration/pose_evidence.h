@@ -29,11 +29,7 @@ bool isSymmetry(const Eigen::Isometry3d& motion, const PosedSurface& model, doub
 /// \return whether a scan is compatible with a motion being a symmetry of its object.
 bool mayBeSymmetry(const Eigen::Isometry3d& motion, const PosedSurface& scan);
 
-/// \return probability that the pose is right, in [0, 1], fitted by test/benchmark/fit_registration.py: by it poses are
-/// compared.
-double fitConfidence(const PoseEvidence& evidence);
-
-/// \return fitConfidence(), limited by the part that only one of the clouds has: by it the best pose is accepted.
+/// \return probability that the pose is right, in [0, 1], fitted by test/benchmark/fit_registration.py.
 double poseConfidence(const PoseEvidence& evidence);
 
 /// \return one sentence with the evidence against a pose.

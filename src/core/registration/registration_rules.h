@@ -64,7 +64,6 @@ struct RegistrationRules {
   double symmetric_agreement =
       0.9;  ///< agreement of a scan with its image under a symmetry; wrong poses of scans have 0.3 to 0.6
   double symmetric_aside = 0.05;  ///< share of the scan that may lie aside; the handle of a mug is 0.09
-  double max_aside = 0.08;        ///< the same for a pose of a depth camera's scan; 98 of 100 right ones have less
   double some_uniqueness = 0.9;   ///< below it another pose is worth mentioning
   double contact = 0.025;         ///< radii, width within which points of one surface lie on each other
 

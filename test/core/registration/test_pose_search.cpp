@@ -187,18 +187,6 @@ TEST(PoseEvidence, WhatAScannerShouldHaveSeenItHasMeasured) {
   EXPECT_EQ(nobody_looked.contradicted + nobody_looked.missing, 0.0);
 }
 
-TEST(PoseConfidence, IsLowWhereAPartOfTheModelIsMissingFromTheScan) {
-  const BlockObject box = blockBox(), longer{{{{-0.3, 0.0, 0.0}, {1.3, 0.7, 0.45}}}, {}};  // with one end in common
-  const Scan scan = test::scan(box, {4.0, 3.0, 3.5});
-  const PosedSurface seen = surface(scan.cloud(), scan.visibility());
-  const Eigen::Isometry3d there = Eigen::Isometry3d::Identity();
-  const PoseEvidence right = poseEvidence(seen, surface(surfaceOf(box, 4000)), there),
-                     wrong = poseEvidence(seen, surface(surfaceOf(longer, 4000)), there);
-  EXPECT_GT(poseConfidence(right), 0.8);
-  EXPECT_LT(poseConfidence(wrong), 0.5);
-  EXPECT_GT(wrong.aside, right.aside + 0.03);
-}
-
 TEST(PoseEvidence, TwoSidesOfASheetAreNotOneSurface) {
   const BlockObject sheet{{{Eigen::Vector3d::Zero(), {1.0, 0.05, 0.7}}}, {}};
   const Scan front = test::scan(sheet, {1.0, -6.0, 2.0}), rear = test::scan(sheet, {-1.0, 6.0, 2.0});
