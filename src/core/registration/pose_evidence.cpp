@@ -78,7 +78,7 @@ NotMeasured notMeasured(const PosedSurface& surface, const PosedSurface& scan, c
 
 /// A lower limit of the share of points that lie on the surface: by a width that does not grow with the spacing of the
 /// points, so that few points on a wrong object do not count, and by discs about the points of the surface, as wide as
-/// their spacing, so that their density does not matter.
+/// their spacing, so that their density does not matter. Points on the far side of a thin part do not count.
 double shareOnSurface(const PosedSurface& from, const Landing& landing, const PosedSurface& to) {
   const double width = kRegistration.contact;
   const auto size = static_cast<double>(landing.images.cols());
