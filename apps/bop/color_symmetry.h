@@ -24,7 +24,7 @@ bool hasColors(const Shape& shape);
 /// models of the BOP benchmark do, points of its triangles with the colors of that picture, which lies beside the
 /// file.
 /// \return nothing where the file has neither.
-/// \throws InputError where the texture cannot be read.
+/// \throws InputError if the texture cannot be read.
 std::optional<SurfaceColors> surfaceColors(const Shape& shape, const std::string& path);
 
 /// The greatest group among the symmetries that keeps the colors.

@@ -80,7 +80,7 @@ void printRejections(const ObjectSymmetries& symmetries, int digits) {
 /// tolerance, purple beyond ten; gray is mapped onto the surface.
 /// \param surface in the frame of the symmetries.
 /// \param shift that is added to the points.
-/// \throws InputError where a file cannot be written.
+/// \throws InputError if a file cannot be written.
 void writeRejections(const std::string& prefix, const ObjectSymmetries& symmetries, const SurfaceEvidence& surface,
                      const Eigen::Vector3d& shift) {
   const std::size_t count = std::min<std::size_t>(kMostRejections, symmetries.rejected.size());

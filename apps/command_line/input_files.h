@@ -17,7 +17,7 @@ struct InputFile {
 /// \param arguments files; "-", standard input; folders, with the shape files in them and in folders of theirs, sorted
 /// by name; patterns with *, ? and []; and lists "@FILE" of any of these, one on each line, # before comments
 /// \return the files in the order of the arguments
-/// \throws InputError where a list or folder cannot be read or a pattern has no file. A file that is missing is kept,
+/// \throws InputError if a list or folder cannot be read or a pattern has no file. A file that is missing is kept,
 /// to be reported with those that cannot be used.
 std::vector<InputFile> inputFiles(const std::vector<std::string>& arguments);
 

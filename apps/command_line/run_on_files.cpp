@@ -196,7 +196,7 @@ private:
 class ResultFiles {
 public:
   /// Opens the files. Where neither a JSON nor a CSV file is named, a terminal gets tables, and a pipe JSON.
-  /// \throws InputError where one cannot be written, or holds something else than results and -resume is given.
+  /// \throws InputError if one cannot be written, or holds something else than results and -resume is given.
   ResultFiles(const BatchOptions& batch, const CommonOptions& common, const std::string& csv_header) {
     has_csv_ = batch.csv_path.has_value();
     has_text_ = !common.json_path && !has_csv_ && isatty(STDOUT_FILENO);

@@ -88,7 +88,7 @@ private:
 /// \return a line of comma-separated values (RFC 4180) that ends with a line feed.
 std::string csvLine(const std::vector<nlohmann::json>& cells);
 
-/// \throws InputError where two files have one name, without folder and extension.
+/// \throws InputError if two files have one name, without folder and extension.
 void checkNames(const std::vector<InputFile>& files);
 
 /// Works on items side by side, and shows in the step how far that is.

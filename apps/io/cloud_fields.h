@@ -40,7 +40,7 @@ void movePoints(pcl::PCLPointCloud2& cloud, const Eigen::Affine3d& map, std::siz
 
 /// One more field of type float for each name, after those that the cloud has.
 /// \param values for each name one value per point.
-/// \throws InputError where a name is taken.
+/// \throws InputError if a name is taken.
 pcl::PCLPointCloud2 withFields(const pcl::PCLPointCloud2& cloud, const std::vector<std::string>& names,
                                const std::vector<std::vector<float>>& values);
 

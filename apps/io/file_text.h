@@ -27,7 +27,7 @@ std::string readWholeFile(const std::string& path);
 std::string readTextFile(const std::string& path);
 
 /// \return all of standard input.
-/// \throws InputError where it is empty, cannot be read or was read before.
+/// \throws InputError if it is empty, cannot be read or was read before.
 std::string readStandardInput();
 
 /// \return text as UTF-8 without the mark of its encoding, which tells UTF-8 and UTF-16.

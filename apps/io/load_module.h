@@ -10,7 +10,7 @@ namespace pcl_symmetry::apps {
 /// Loads MODULE.so from where the executable's runtime path says: its own folder in the build tree, the library folder
 /// of the installation otherwise.
 /// \return the address of a function with C linkage.
-/// \throws InputError where there is no such module or function.
+/// \throws InputError if there is no such module or function.
 void* addressInModule(const std::string& module, const char* function);
 
 template <typename Function>

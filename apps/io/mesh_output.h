@@ -20,7 +20,7 @@ void saveLabeled(const std::string& path, const Shape& shape, const std::vector<
 
 /// Writes a PLY file of the moved vertices, with one more property of type float, and the polygons.
 /// \param motion of the vertices; beyond what float resolves they are written in double.
-/// \throws InputError where the file cannot be written.
+/// \throws InputError if the file cannot be written.
 void saveMesh(const std::string& path, const pcl::PolygonMesh& mesh, const Eigen::Isometry3d& motion,
               const std::string& property, const std::vector<float>& values);
 

@@ -17,11 +17,11 @@ namespace pcl_symmetry::apps {
 enum class PCDEncoding { Ascii, Binary, BinaryCompressed };
 
 /// Lets a tool refuse before the long work.
-/// \throws InputError where no file of this name can be made: the folder is missing, it is a folder, isForeignShape().
+/// \throws InputError if no file of this name can be made: the folder is missing, it is a folder, isForeignShape().
 void checkTarget(const std::string& path);
 
 /// \return whether none of the outputs is "-", so that standard output is free for text.
-/// \throws UsageError where several are.
+/// \throws UsageError if several are.
 bool isStandardOutputFree(const std::vector<std::optional<std::string>>& outputs);
 
 /// Everything that tools write goes this way: into a temporary file beside `path`, which is renamed when it is whole.

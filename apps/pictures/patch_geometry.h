@@ -18,7 +18,7 @@ struct Normalization {
   Eigen::Vector3d operator()(const Eigen::Vector3d& point) const { return (point - center) * scale; }
 };
 
-/// \throws InputError where no point is finite.
+/// \throws InputError if no point is finite.
 Normalization normalizationOf(const PictureScene& scene);
 
 /// \return the corners of the rectangle in the plane, along the principal axes of the points' projections; or of a square

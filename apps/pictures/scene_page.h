@@ -16,7 +16,7 @@ struct PageText {
 
 /// Writes one file, with everything in it: the same scene, colors and legend as renderPicture(), a panel at a time. Of
 /// more than 200 000 points it holds every second, third, ... one.
-/// \throws InputError where no point is finite or the file cannot be written.
+/// \throws InputError if no point is finite or the file cannot be written.
 void writePage(const PictureScene& scene, const PageText& text, const std::string& path);
 
 }  // namespace pcl_symmetry::apps

@@ -104,7 +104,7 @@ std::string numberOf(const std::string& path) {
 /// Files as they are; of a folder the files obj_* that hold shapes, or all shapes where there is none of that name, by
 /// name.
 /// \return each with the number that its name ends in; where there is none the first from 1 on that is free.
-/// \throws UsageError where two files have one number; InputError for a folder without a shape.
+/// \throws UsageError if two files have one number; InputError for a folder without a shape.
 std::vector<ModelFile> modelFiles(const std::vector<std::string>& inputs) {
   std::vector<ModelFile> models;
   for (const std::string& input : inputs) {

@@ -69,7 +69,7 @@ CommandLine commandLine(DatabaseToolOptions& options) {
 }
 
 /// \return 16 hexadecimal digits, the CRC-64 of the bytes of a file.
-/// \throws InputError where it cannot be read.
+/// \throws InputError if it cannot be read.
 std::string fileChecksum(const std::string& path) {
   // CRC-64/XZ of ECMA-182.
   boost::crc_optimal<64, 0x42F0E1EBA9EA3693, 0xFFFFFFFFFFFFFFFF, 0xFFFFFFFFFFFFFFFF, true, true> checksum;

@@ -152,7 +152,7 @@ SymmetryMeasure byEquation1(SymmetryMeasure measure) {
   return measure;
 }
 
-/// \throws InputError where the input holds no answer.
+/// \throws InputError if the input holds no answer.
 SymmetryMeasure measureSymmetry(const InputShape& input, const CommonOptions& common, const MeasureOptions& options) {
   return namingFile(input.path, [&] {
     if (options.of == "axes") return ofAxes(input, common, options.fold);

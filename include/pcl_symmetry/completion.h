@@ -13,19 +13,19 @@ namespace PCL_SYMMETRY_EXPORTS pcl_symmetry {
 /// A cloud and the points that a symmetry adds to it.
 template <typename PointT>
 struct CompletedCloud {
-  pcl::PointCloud<PointT> cloud;  ///< the points of the input in their order, then the added points; not organized
+  pcl::PointCloud<PointT> cloud;  ///< the input points in their order, then the added points; not organized
   pcl::Indices added;             ///< indices of the added points
-  pcl::Indices sources;           ///< for each added point the index of the point that it is the reflection of
+  pcl::Indices sources;           ///< for each added point, the index of the point whose reflection it is
 };
 
 /// Completes a partial scan by its reflection in a plane of symmetry. A point adds nothing if its reflection falls onto
-/// the measured surface or into free space. Added points have their position, their normal and the viewpoint that they
-/// may carry reflected; their other fields are those of the source.
+/// the measured surface or into free space. The position, the normal and the stored viewpoint (vp_x, vp_y, vp_z) of an
+/// added point are reflected where its type has them; other fields are copied from its source.
 /// \param cloud points that are not finite stay in the cloud and add nothing. Without a finite point nothing is added,
 /// and PCL_WARN says so.
-/// \param plane of symmetry, frame of the cloud.
-/// \param viewpoint where the scanner stood; by default the data decide, see ScanAnalysis.
-/// \throws pcl::BadArgumentException for bad options, and where the points surround the viewpoint that was given.
+/// \param plane plane of symmetry, frame of the cloud.
+/// \param viewpoint where the scanner stood; by default it follows from the data, see ScanAnalysis.
+/// \throws pcl::BadArgumentException for bad options, and if the points surround the given viewpoint.
 template <typename PointT>
 CompletedCloud<PointT> completeBySymmetry(const pcl::PointCloud<PointT>& cloud, const ReflectionPlane& plane,
                                           const CompletionOptions& options = {}, const Viewpoint& viewpoint = {});
@@ -38,7 +38,7 @@ CompletedCloud<PointT> completeBySymmetry(const pcl::PointCloud<PointT>& cloud, 
 
 namespace detail {
 
-/// \return the point with its position, its normal and the viewpoint that it carries reflected.
+/// \return the point with its position, normal and stored viewpoint reflected.
 template <typename PointT>
 PointT reflectPoint(PointT point, const ReflectionPlane& plane) {
   const Eigen::Affine3f reflection = plane.reflection().cast<float>();

@@ -8,8 +8,8 @@
 
 namespace PCL_SYMMETRY_EXPORTS pcl_symmetry {
 
-/// Finds the rotations that map the shape of a cloud onto itself: two poses that differ by one of them look the same,
-/// which pose estimation has to know of an object.
+/// Finds the rotations that map the shape of a cloud onto itself: two poses of an object that differ by one of them
+/// look the same, which pose estimation has to take into account.
 /// \param cloud seen from all sides; points that are not finite are left out.
 /// \return the group of rotations; where the cloud holds no answer, the identity alone with confidence 0 and
 /// ObjectSymmetries::reason, which PCL_WARN prints.
@@ -27,7 +27,7 @@ ObjectSymmetries detectObjectSymmetries(const pcl::PolygonMesh& mesh, const Obje
 namespace detail {
 
 /// \param points 3 x N, finite.
-/// \param mesh that they are spread over, or none.
+/// \param mesh the mesh that they are spread over, or none.
 ObjectSymmetries objectSymmetriesOrNone(const Points& points, const ObjectSymmetryOptions& options,
                                         const MeshSurface* mesh = nullptr);
 

@@ -13,8 +13,8 @@ namespace PCL_SYMMETRY_EXPORTS pcl_symmetry {
 /// The planar-reflective symmetry transform of a point cloud: a measure of its symmetry with respect to every plane
 /// (Sections 3 and 4.1 to 4.3 of the paper).
 ///
-/// The defaults depend neither on units nor on tuning: the grid covers the bounding ball of the points, and sigma is
-/// two cells. With a viewpoint the map holds seenSymmetry() of D and of its counterpart for free space.
+/// The defaults need no tuning and suit any unit: the grid covers the bounding ball of the points, and sigma is two
+/// cells. With a viewpoint, the map holds seenSymmetry() of D and of its counterpart for free space.
 ///
 /// \code
 /// pcl_symmetry::PlanarSymmetryTransform<pcl::PointXYZ> transform;
@@ -36,7 +36,7 @@ public:
 
   /// \param n cells of the distance transform along each side, and bins of theta, phi and r each, as in the paper;
   /// even, in [8, 512].
-  /// \throws pcl::BadArgumentException "field = value, must be rule", as all setters here.
+  /// \throws pcl::BadArgumentException "field = value, must be rule", as do all setters here.
   void setGridSize(int n) {
     this->setNumCells(n);
     setMapSize(n, n, n);
@@ -46,7 +46,7 @@ public:
     detail::changeOptions(map_size_, [&](MapSize& changed) { changed = {num_theta, num_phi, num_radius}; });
   }
 
-  /// Covers this ball in place of the bounding ball of the points.
+  /// Sets a ball to cover in place of the bounding ball of the points.
   /// \param center,radius input frame and units; radius > 0.
   void setBounds(const Eigen::Vector3d& center, double radius) {
     detail::withBadArguments([&] { PlaneGrid(1, 2, 1, center, radius); });
@@ -58,7 +58,7 @@ public:
   void setOptions(const PlanarTransformOptions& options) {
     detail::changeOptions(transform_, [&](PlanarTransformOptions& changed) { changed = options; });
   }
-  void setRandomSeed(std::uint64_t seed) { transform_.setSeed(seed); }  ///< of all draws
+  void setRandomSeed(std::uint64_t seed) { transform_.setSeed(seed); }  ///< Sets the seed of all random draws.
   /// \param num_threads >= 0; 0 = one per core (default).
   void setNumberOfThreads(int num_threads) {
     detail::checkAtLeast("num_threads", num_threads, 0);
@@ -67,11 +67,11 @@ public:
 
   /// Analyzes points spread over a mesh by area in place of a cloud.
   /// \param num_points >= 1.
-  /// \throws pcl::BadArgumentException where the mesh refers to vertices that it does not have.
+  /// \throws pcl::BadArgumentException if the mesh refers to vertices that it does not have.
   void setInputMesh(const pcl::PolygonMesh& mesh, int num_points = 50'000);
 
   /// \return the map, in the frame and units of the input; empty where the input holds no answer, see getReason().
-  /// \throws pcl::BadArgumentException where the points surround the viewpoint that was given.
+  /// \throws pcl::BadArgumentException if the points surround the viewpoint that was given.
   SymmetryMap compute();
 
 private:

@@ -39,7 +39,7 @@ struct GEDTSignature32768 {
 /// Where the surface of a shape lies and which way it faces, in a frame of its symmetry: two cubes of 6 x 12^3 values.
 /// SymmetryDatabase compares its compact form.
 struct ShapeSignature20736 {
-  float signature[detail::kSignatureValues] = {};                             ///< of unit length together
+  float signature[detail::kSignatureValues] = {};                             ///< vector of unit length
   static constexpr int descriptorSize() { return detail::kSignatureValues; }  ///< number of values
 };
 

@@ -39,8 +39,9 @@ SymmetrySignatures describeBySymmetry(const Points& points, const PRSTParameters
 
 }  // namespace detail
 
-/// The planar-reflective symmetry transform as a global descriptor: one for the whole cloud (Section 5.2). The output
-/// type chooses what it is compared with in the paper, PRSD and GEDT: see PRSDEstimation and GEDTEstimation.
+/// The planar-reflective symmetry transform as a global descriptor: one for the whole cloud (Section 5.2). With another
+/// output type, the class computes one of the descriptors that the paper compares it with, PRSD and GEDT: see
+/// PRSDEstimation and GEDTEstimation.
 ///
 /// Honors setIndices; points that are not finite are left out. The descriptor has no neighborhoods: setRadiusSearch,
 /// setKSearch, setSearchMethod and setSearchSurface of the base class are ignored. Clouds that hold no answer (no
@@ -61,14 +62,15 @@ public:
 
   PRSTEstimation() { this->feature_name_ = "PRSTEstimation"; }
 
-  /// \param use_input_axes true: about the center of mass in the axes of the cloud, as the paper does with models that
-  /// were aligned by hand. false (default): in the canonical frame of the cloud, see SymmetryAlignment.
+  /// \param use_input_axes true: the descriptor is computed about the center of mass in the axes of the cloud, as the
+  /// paper does with models that were aligned by hand. false (default): in the canonical frame of the cloud, see
+  /// SymmetryAlignment.
   void setUseInputAxes(bool use_input_axes) { parameters_.use_input_axes = use_input_axes; }
-  /// \param by_equation_1 values of PRST and PRSD are sqrt((1 + D) / 2) as in equation 1; false (default):
-  /// sqrt(max(D, 0)), which is 0 for planes without any symmetry.
+  /// \param by_equation_1 true: values of PRST and PRSD are sqrt((1 + D) / 2) as in Equation 1. false (default): they
+  /// are sqrt(max(D, 0)), which is 0 for planes without any symmetry.
   void setByEquation1(bool by_equation_1) { parameters_.by_equation_1 = by_equation_1; }
 
-  void setRandomSeed(std::uint64_t seed) { parameters_.seed = seed; }  ///< of all random draws
+  void setRandomSeed(std::uint64_t seed) { parameters_.seed = seed; }  ///< Sets the seed of all random draws.
 
   /// \param num_threads >= 0; 0 = one per core (default).
   /// \throws pcl::BadArgumentException for a negative number.
@@ -77,22 +79,22 @@ public:
     parameters_.num_threads = num_threads;
   }
 
-  /// \param max_points points that are drawn from a larger cloud, >= 2; default 20 000.
+  /// \param max_points number of points drawn from a larger cloud, >= 2; default 20 000.
   /// \throws pcl::BadArgumentException for fewer than 2.
   void setMaxPoints(std::size_t max_points) {
     detail::checkAtLeast("max_points", static_cast<std::int64_t>(max_points), 2);
     max_points_ = max_points;
   }
 
-  /// Sets where the scanner stood; by default the data decide, as in SymmetryAlignment.
+  /// Sets where the scanner stood; by default it follows from the data, as in SymmetryAlignment.
   void setViewpoint(const Viewpoint& viewpoint) { viewpoint_ = detail::checkedViewpoint(viewpoint); }
 
 protected:
   using pcl::Feature<PointInT, PointOutT>::input_;
   using pcl::Feature<PointInT, PointOutT>::indices_;
 
-  /// Replaces that of the base class, which builds a search tree and makes one output point for each index.
-  /// \throws pcl::BadArgumentException where the points surround the given viewpoint.
+  /// Replaces initCompute() of the base class, which builds a search tree and makes one output point for each index.
+  /// \throws pcl::BadArgumentException if the points surround the given viewpoint.
   bool initCompute() override {
     warnOfIgnoredSearch();
     if (!pcl::PCLBase<PointInT>::initCompute()) return warnOfNoAnswer("input cloud: not set");
@@ -107,7 +109,7 @@ protected:
     return true;
   }
 
-  /// Gives the indices back.
+  /// Restores the indices.
   bool deinitCompute() override {
     indices_ = all_indices_;
     all_indices_.reset();
@@ -144,8 +146,8 @@ private:
   detail::PRSTParameters parameters_;
   std::size_t max_points_ = 20'000;
   Viewpoint viewpoint_;
-  bool warned_ = false;  // that a search is ignored
-  // While a descriptor is computed:
+  bool warned_ = false;  // whether PCL_WARN has said that the search is ignored
+  // Set while a descriptor is computed:
   pcl::IndicesPtr all_indices_;
   Points points_;
   SeenSpace seen_;

@@ -34,41 +34,41 @@ struct ScanPose {
 
 /// Two scans that were registered to each other.
 struct ScanPair {
-  int source = 0;        ///< index of the scan that was brought to ...
-  int target = 0;        ///< ... this one
+  int source = 0;        ///< index of the scan that was registered
+  int target = 0;        ///< index of the scan that it was registered to
   double overlap = 0.0;  ///< share of the source's points that lie on the target in the poses of all scans, in [0, 1]
-  bool used = false;     ///< whether their own registration agrees with the poses of all scans
+  bool used = false;     ///< whether the registration of this pair agrees with the poses of all scans
 };
 
 /// A point of one of several scans.
 struct ScanPoint {
   int scan;   ///< index of the scan
-  int index;  ///< of the point in it
+  int index;  ///< index of the point in that scan
 };
 
 /// Scans of one object in one frame.
 struct RegisteredScans {
   std::vector<ScanPose> scans;  ///< one for each scan
-  std::vector<ScanPair> pairs;  ///< pairs that converged or are used
-  double resolution = 0.0;      ///< input units, distance that the scans resolve: of their points and of their noise
-  std::vector<std::pair<std::string, double>> timing_ms;  ///< stages in order
+  std::vector<ScanPair> pairs;  ///< pairs that converged or that are used
+  double resolution = 0.0;      ///< distance that the scans resolve, from their spacing and noise, input units
+  std::vector<std::pair<std::string, double>> timing_ms;  ///< stages in order, with their milliseconds
 
-  /// The points of the scans that are kept, thinned where scans overlap: of the points in a cube as wide as the
-  /// resolution the one that lies nearest to their mean.
-  /// \param scans those that were registered.
+  /// The points of the scans that are kept, thinned where scans overlap: each cube with an edge of `resolution` keeps
+  /// the point nearest to the mean of its points.
+  /// \param scans the scans that were registered.
   std::vector<ScanPoint> mergedPoints(const std::vector<ObjectScan>& scans) const;
 };
 
-/// Brings many scans of one object together, such as those of a turntable, without a guess: pairs of scans are
+/// Aligns many scans of one object, such as those of a turntable, without an initial guess: pairs of scans are
 /// registered to each other (Section 5.1), and poses on which they agree are adjusted together by all surfaces that
 /// overlap. Scans that follow each other are tried first, then others, until each scan has three pairs that agree.
 ///
-/// A pair that did not converge alone counts where others agree with it. A pair that contradicts the others is not
-/// used, and a scan that fits none is tried with all others together before it is left out. In the end scans of a
-/// confidence below 0.5 are left out, the least sure one first.
-/// \param scans of one object in the same units; where others than the first cannot be connected with it, those of the
-/// largest group are kept.
-/// \param options of the registration of pairs, but for its neighborhood.
+/// A pair that did not converge alone counts if others agree with it. A pair that contradicts the others is not used,
+/// and a scan that fits none is tried with all others together before it is left out. In the end, scans with a
+/// confidence below 0.5 are left out, the least certain first.
+/// \param scans scans of one object in the same units; if some cannot be connected with the others, the largest
+/// connected group is kept.
+/// \param options options of the registration of pairs; `around` is not used.
 /// \throws std::invalid_argument for bad options.
 RegisteredScans registerAll(const std::vector<ObjectScan>& scans, const CloudRegistrationOptions& options = {});
 
@@ -78,18 +78,18 @@ struct MergedCloud {
   RegisteredScans registration;  ///< poses, and the scans left out
   /// Points of the scans, thinned, in the frame of the first scan that is kept; their normals are rotated with them.
   pcl::PointCloud<PointT> cloud;
-  std::vector<int> scans;  ///< of each point of the cloud, the index of its scan
+  std::vector<int> scans;  ///< for each point of the cloud, the index of its scan
 };
 
-/// The scan of a cloud.
-/// \param viewpoint where the scanner stood, frame of the cloud; by default the data decide, see ScanAnalysis.
-/// \param indices of the points of the scan in the cloud, set.
-/// \throws std::invalid_argument where the points surround a viewpoint that was given, pcl::BadArgumentException where
-/// that is not finite.
+/// Selects the points of a cloud that form its scan.
+/// \param viewpoint where the scanner stood, frame of the cloud; by default it follows from the data, see ScanAnalysis.
+/// \param indices filled with the indices of the points of the scan in the cloud.
+/// \throws std::invalid_argument if the points surround a given viewpoint, pcl::BadArgumentException if that is not
+/// finite.
 template <typename PointT>
 ObjectScan objectScan(const pcl::PointCloud<PointT>& cloud, const Viewpoint& viewpoint, pcl::Indices& indices) {
   detail::checkedViewpoint(viewpoint);
-  constexpr std::size_t judged = 10'000;  // points that tell what the scanner saw
+  constexpr std::size_t judged = 10'000;  // points that show what the scanner saw
   detail::SelectedPoints all = detail::selectPoints(cloud, nullptr, cloud.size(), 0);
   ObjectScan scan{std::move(all.points), std::nullopt};
   indices = std::move(all.indices);

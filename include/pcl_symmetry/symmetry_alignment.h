@@ -23,7 +23,7 @@ public:
 
   /// \return the frame, in the frame of the input; SymmetryFrame::equivalent is empty where the input holds no answer,
   /// see getReason().
-  /// \throws pcl::BadArgumentException where the points surround the viewpoint that was given.
+  /// \throws pcl::BadArgumentException if the points surround the viewpoint that was given.
   SymmetryFrame compute();
 
   /// \return stages of the last compute() and their milliseconds, in order.

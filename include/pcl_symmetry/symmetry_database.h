@@ -25,18 +25,18 @@ struct DatabaseParts;
 
 /// Options of a database.
 struct DatabaseOptions {
-  /// Models, drawn by their names, that compact forms are fitted to and distances are scaled by, >= 1. Twice as many
-  /// take four times the time and memory of the fit.
+  /// Number of models, drawn by their names, to which compact forms are fitted and by which distances are scaled, >= 1.
+  /// Twice as many take four times the time and memory of the fit.
   int num_references = 200;
-  /// Views of a model that scans are compared with, >= 1: one of 80 is within 12 degrees of any direction.
+  /// Number of views of a model that scans are compared with, >= 1: with 80, one is within 12 degrees of any direction.
   int num_views = 80;
   std::size_t max_points = 20'000;  ///< points of a cloud that are kept, >= 100
   int num_threads = 0;              ///< >= 0; 0 = one per core
   double lock_timeout = 30.0;       ///< seconds that a change waits while another program writes, >= 0
-  /// Of the coordinates of all models, such as "m": stored when the database is made. Empty, or that which is stored,
-  /// where the database is there.
+  /// Unit of the coordinates of all models, such as "m", stored when the database is made. For an existing database:
+  /// empty, or the unit that is stored.
   std::string unit;
-  /// build() fits no compact forms: for a part of a database, as merge() fits those of the whole.
+  /// If true, build() fits no compact forms: for a part of a database, because merge() fits those of the whole.
   bool is_part = false;
 
   /// Checks all values.
@@ -46,14 +46,15 @@ struct DatabaseOptions {
 
 /// Options of SymmetryDatabase::recognize().
 struct RecognitionOptions {
-  int num_candidates = 10;  ///< models that look most like the scan and are tried, >= 1
-  /// For scans from a viewpoint, in databases of more than 300 models: models that are tried where none of the first
-  /// num_candidates is accepted, those included, >= 1. Unknown objects take the time of all.
+  int num_candidates = 10;  ///< models that look most like the scan, which are tried first, >= 1
+  /// Greatest number of models tried, num_candidates included, >= 1, for scans from a viewpoint in databases of more
+  /// than 300 models: the others are tried if none of the first num_candidates is accepted. An unknown object takes the
+  /// time of all.
   int max_candidates = 70;
-  /// For scans from a viewpoint: models with the best poses, which are refined, >= 1; in databases of more than 300
-  /// models of the first num_candidates, and again of the others.
+  /// Number of models with the best poses that are refined, >= 1, for scans from a viewpoint; in databases of more than
+  /// 300 models, as many again of those tried after the first num_candidates.
   int num_refined = 4;
-  double min_confidence = 0.5;  ///< of an accepted model, in [0, 1], see RecognizedModel::confidence
+  double min_confidence = 0.5;  ///< least confidence of an accepted model, in [0, 1], see RecognizedModel::confidence
   int num_threads = 0;          ///< >= 0; 0 = one per core
 
   /// Checks all values.
@@ -63,29 +64,29 @@ struct RecognitionOptions {
 
 /// A model that is similar to a query.
 struct ModelMatch {
-  std::string name;  ///< of the model
-  /// L2 distance of the compact signatures, divided by the root of the product of the two mean distances to the ten
-  /// nearest references: 1 between shapes that are as far from each other as from the most similar ones.
+  std::string name;  ///< name of the model
+  /// L2 distance of the compact signatures, divided by the geometric mean of both shapes' mean distances to their ten
+  /// nearest references: 1 if two shapes are as far from each other as from the references most like them.
   double distance;
 };
 
 /// Evidence for a model in the pose of a scan. Surfaces agree within the resolution of the scanner.
 struct ModelEvidence {
-  double on_model = 0.0;  ///< of the scan's points near the model, the share on its surface, in [0, 1]
-  double shown = 0.0;  ///< of the surface of the model that faces the scanner, the share that was measured, in [0, 1]
+  double on_model = 0.0;  ///< share of the scan's points near the model that lie on its surface, in [0, 1]
+  double shown = 0.0;     ///< share of the model's surface facing the scanner that was measured, in [0, 1]
 };
 
 /// A model that a scan shows, and where.
 struct RecognizedModel {
-  std::string name;                                                ///< of the model
-  Eigen::Isometry3d T_model_scan = Eigen::Isometry3d::Identity();  ///< frame of the scan to that of the model
+  std::string name;                                                ///< name of the model
+  Eigen::Isometry3d T_model_scan = Eigen::Isometry3d::Identity();  ///< maps the frame of the scan to that of the model
   /// How well the scan fits there: support is the share of its points on the surface of the model, within the spacing
   /// and the noise of the scan. The density of the model's points does not matter.
   PoseScore score;
   ModelEvidence evidence;  ///< what the confidence follows from
-  /// Probability that the scan shows this model or one of the same shape, in [0, 1]: from the evidence, and how far its
-  /// merit is ahead of that of the best model of another shape, fitted to virtual and real scans of objects that are in
-  /// the database and that are not. The sum over shapes is at most 1. Two models are of the same shape if they share 90
+  /// Probability that the scan shows this model or one of the same shape, in [0, 1]. It follows from the evidence and
+  /// from the lead in merit over the best model of another shape, and was fitted to virtual and real scans of objects
+  /// in the database and of others. The sum over shapes is at most 1. Two models are of the same shape if they share 90
   /// % of their surfaces where the scan puts them. The best model is judged before rotations about its axes are tried
   /// for a better pose.
   double confidence = 0.0;
@@ -97,7 +98,7 @@ using Recognition = std::vector<RecognizedModel>;
 /// The origin of a model; unknown fields are empty.
 struct ModelSource {
   std::string path;               ///< file or address
-  std::string checksum;           ///< of the content; build() skips models whose checksum is stored
+  std::string checksum;           ///< checksum of the content; build() skips models whose checksum is stored
   std::vector<std::string> tags;  ///< its class, or any other words; one line each
 };
 
@@ -106,12 +107,12 @@ struct ModelInfo {
   std::string name;            ///< unique in the database
   std::int64_t time = 0;       ///< when it was stored, seconds since 1970 (UTC)
   ModelSource source;          ///< empty where none was given
-  std::size_t num_points = 0;  ///< that are stored
+  std::size_t num_points = 0;  ///< number of stored points
 };
 
 /// A model of a long build. Its functions are called by several threads at once.
 struct ModelInput {
-  std::string name;                                           ///< that it gets in the database
+  std::string name;                                           ///< name of the model in the database
   std::function<ModelSource()> source;                        ///< nothing: no source is stored
   std::function<pcl::PointCloud<pcl::PointXYZ>()> load = {};  ///< called unless the source is stored already
 };
@@ -121,10 +122,10 @@ struct BuildReport {
   std::size_t num_added = 0;                                  ///< models that were stored
   std::size_t num_kept = 0;                                   ///< models whose source was stored before
   std::vector<std::pair<std::string, std::string>> failures;  ///< name and reason, in the order of the inputs
-  bool cancelled = false;                                     ///< the progress function said so
+  bool cancelled = false;                                     ///< whether the progress function ended the build
 };
 
-/// Told the share of the work that is done, in [0, 1]. Returns whether to go on.
+/// Receives the share of the work that is done, in [0, 1]; returns whether to continue.
 using BuildProgress = std::function<bool(double)>;
 
 /// Models in a file, found by their symmetry (Section 5.2): match() finds models of similar shape, recognize() the
@@ -150,7 +151,8 @@ public:
 
   /// Opens a database. A file that is missing is an empty database, and is made by the first change.
   /// \param file ":memory:" = no file: the models are gone with the object.
-  /// \throws pcl::IOException naming file and reason: no database of this library, of a newer or an older one, damaged.
+  /// \throws pcl::IOException naming file and reason: not a database of this library, of a newer or older version,
+  /// damaged.
   /// \throws pcl::BadArgumentException for bad options, and for another unit than the database has.
   explicit SymmetryDatabase(const std::string& file, const DatabaseOptions& options = {});
   ~SymmetryDatabase();
@@ -162,7 +164,7 @@ public:
   std::size_t size() const;                      ///< number of models
   bool contains(const std::string& name) const;  ///< whether there is such a model
   /// Data of a model besides its shape.
-  /// \throws pcl::BadArgumentException where there is no such model.
+  /// \throws pcl::BadArgumentException if there is no such model.
   ModelInfo info(const std::string& name) const;
   /// \return the unit that the database was made with.
   std::string unit() const;
@@ -176,7 +178,7 @@ public:
   /// \throws pcl::IOException naming file and reason; the database is unchanged then.
   void add(const std::string& name, const Cloud& cloud, const ModelSource& source = {});
   /// Removes a model.
-  /// \throws pcl::BadArgumentException where there is no such model.
+  /// \throws pcl::BadArgumentException if there is no such model.
   /// \throws pcl::IOException naming file and reason; the database is unchanged then.
   void remove(const std::string& name);
   /// Stores many models, each as soon as it is described, and fits the compact forms as save() does, unless
@@ -189,12 +191,12 @@ public:
   /// database built of all models at once. A database that has no file yet takes the unit of the others.
   /// \param progress where it returns false, nothing is changed.
   /// \return the number of models that were added.
-  /// \throws pcl::IOException naming file and reason: missing, damaged, of another version or unit, or with a model whose
-  /// name is that of another one; this database is unchanged then.
+  /// \throws pcl::IOException naming file and reason: missing, damaged, of another version or unit, or with a model
+  /// whose name is that of another one; this database is unchanged then.
   std::size_t merge(const std::vector<std::string>& files, const BuildProgress& progress = {});
-  /// Stores what models are found by: compact forms are fitted anew if they were fitted to other models than those that
-  /// DatabaseOptions::num_references draws now, and missing ones are added. Without it, each program that asks has to
-  /// do so for itself. Distances depend on the models that are there, not on how they came there.
+  /// Stores what models are found by: compact forms are fitted again if they were fitted to models other than those
+  /// that DatabaseOptions::num_references draws now, and missing ones are added. Otherwise each program that queries
+  /// the database does so for itself. Distances depend on the models that are stored, not on the order of changes.
   /// \throws pcl::IOException naming file and reason; the database is unchanged then.
   void save();
   /// Fits the compact forms anew to the models that are there now.
@@ -207,7 +209,7 @@ public:
 
   /// \return the cloud of a model, at most DatabaseOptions::max_points points. Coordinates differ from those that were
   /// added by at most 7.7e-6 of the greatest extent; points have another order.
-  /// \throws pcl::BadArgumentException where there is no such model.
+  /// \throws pcl::BadArgumentException if there is no such model.
   /// \throws pcl::IOException naming file and reason.
   Cloud cloud(const std::string& name) const;
 
@@ -220,13 +222,13 @@ public:
   /// \throws pcl::IOException naming file and reason.
   std::vector<ModelMatch> match(const Cloud& cloud, int num_nearest = 10, const Viewpoint& viewpoint = {}) const;
 
-  /// Makes what recognize() needs for scans from a viewpoint, which the first one does otherwise: once, on all threads
-  /// of DatabaseOptions. A call after a change adds the new models.
+  /// Prepares what recognize() needs for scans from a viewpoint, once, on all threads of DatabaseOptions; otherwise its
+  /// first call does. A call after a change adds the new models.
   /// \throws pcl::IOException naming file and reason.
   void prepare() const;
 
-  /// The models that a scan can show, in the unit of the models. Candidates look like the scan from some side; without
-  /// a viewpoint, candidates are of similar shape.
+  /// Finds the models that a scan may show. The scan has the unit of the models. Candidates look like the scan from
+  /// some side; without a viewpoint, candidates are of similar shape.
   /// \param scan at least two different finite points.
   /// \param viewpoint where the scanner stood.
   /// \return accepted models, best first.
@@ -238,7 +240,8 @@ public:
   /// The same for an object of a scene.
   /// \param scene all that the scanner measured.
   /// \param cluster the points of the object, indices into the scene. Other objects in front may hide much of it.
-  /// \param seen what the scanners saw of the scene, made once for all its clusters; null: it is made of \p scene.
+  /// \param seen what the scanners saw of the scene, determined once for all its clusters; null: determined from \p
+  /// scene.
   /// \throws pcl::BadArgumentException for bad options, and for indices that the scene does not have.
   Recognition recognize(const Cloud& scene, const pcl::Indices& cluster, const RecognitionOptions& options = {},
                         const SeenSpace::ConstPtr& seen = nullptr) const;

@@ -14,13 +14,13 @@ namespace PCL_SYMMETRY_EXPORTS pcl_symmetry {
 
 namespace detail {
 
-/// The planes as published, of points whose transform may be known.
-/// \param edt,map of these points; edt null: the map is computed.
+/// The planes as published.
+/// \param edt,map transform of the points; if edt is null, it is computed.
 Detection planesAsPublished(const Points& points, const GaussianEdt* edt, const SymmetryMap& map,
                             const DetectionOptions& options);
 
-/// \param all finite points of a cloud.
-/// \param cloud_size points of the cloud.
+/// \param all all finite points of a cloud.
+/// \param cloud_size number of points of the cloud.
 /// \param samples 3 x N, finite, the surface that reflected points are compared with, same frame; N = 0: no surface.
 /// \param seen what the scanner saw of the cloud; null: it shows its object from all sides.
 /// \return for each plane its support at each point of the cloud, in [0, 1]; NaN where it is not known.
@@ -63,9 +63,9 @@ public:
       changed.min_possible = std::min(changed.min_possible, min_confidence);
     });
   }
-  /// \param tolerance how far a symmetric surface may be off, as a share of the greatest distance between two points, in
-  /// (0, 0.1], whatever the sensor resolves; default 0.01, or what a depth camera (up to 0.03) or sparse points (up to
-  /// 0.02) resolve.
+  /// \param tolerance greatest deviation of a symmetric surface, as a share of the greatest distance between two
+  /// points, in (0, 0.1], whatever the sensor resolves. Default: 0.01, or what a depth camera (up to 0.03) or sparse
+  /// points (up to 0.02) resolve.
   void setTolerance(double tolerance) {
     this->change([&](DetectionOptions& changed) { changed.tolerance = changed.max_tolerance = tolerance; });
   }
@@ -86,25 +86,28 @@ public:
     this->change([&](DetectionOptions& changed) { changed.sigma = sigma; });
   }
 
-  /// \param use_input_normals uses the normals of point types that have them (default), where they are finite and not
-  /// zero; false, and for other point types: all normals are estimated from the neighbors.
+  /// \param use_input_normals true (default): uses the normals of point types that have them, if they are finite and
+  /// not zero. false, and for other point types: all normals are estimated from the neighbors.
   void setUseInputNormals(bool use_input_normals) { use_input_normals_ = use_input_normals; }
 
-  /// Refines the maxima of this map in place of one that the class computes. Follows setInputCloud(), which forgets it.
+  /// Sets the map whose maxima are refined, in place of one that the class computes. Call it after setInputCloud(),
+  /// which discards it.
   /// \param map,edt made by PlanarSymmetryTransform for the same cloud.
   void setSymmetryMap(const SymmetryMap& map, const std::shared_ptr<const GaussianEdt>& edt);
 
-  /// Tells the mesh that the points of the cloud were spread over: the last step refines on it, see refineOnMesh(),
-  /// unless the points were seen from one side or setAsPublished() is set. Follows setInputCloud(), which forgets it.
+  /// Sets the mesh that the points of the cloud were spread over: the last step refines on it, see refineOnMesh(),
+  /// unless the points were seen from one side or setAsPublished() is set. Call it after setInputCloud(), which
+  /// discards it.
   void setMesh(const MeshSurface& mesh) { mesh_ = mesh; }
 
-  /// Keeps to the letter of Section 4.4: local maxima of the map that was given, or of the exact one with 64 x 64 x 64
-  /// bins, refined by publishedPlanes() and not judged. Viewpoint, mesh and normals are not used. Volumes ignore it.
+  /// Follows Section 4.4 to the letter: local maxima of the given map, or of the exact one with 64 x 64 x 64 bins,
+  /// refined by publishedPlanes() and not judged. Viewpoint, mesh and normals are not used. Volumes ignore this
+  /// setting.
   void setAsPublished(bool as_published) { as_published_ = as_published; }
 
   /// \return the planes, best first, in the frame of the input: symmetries, then possible ones. Empty where there is
   /// neither, and where the input holds no answer, see getReason().
-  /// \throws pcl::BadArgumentException where the points surround the viewpoint that was given.
+  /// \throws pcl::BadArgumentException if the points surround the viewpoint that was given.
   std::vector<SymmetryPlane> compute();
 
   /// Tells how well a plane maps each point onto the surface.
@@ -112,14 +115,14 @@ public:
   /// [0, 1]; NaN for points that are not finite, where the scanner could not see whether the reflection lies on the
   /// surface, and for all points where compute() has not given an answer.
   std::vector<float> computePointSupport(const ReflectionPlane& plane) const;
-  /// The same of several planes, faster than one by one: the surface of the points is made once.
+  /// The same for several planes, faster than one by one, because the surface of the points is prepared once.
   std::vector<std::vector<float>> computePointSupport(const std::vector<ReflectionPlane>& planes) const;
 
   /// \return all that the last compute() found, with the planes, in the frame of the input: axes and centers, rotations
   /// of scans, the best plane where there is no symmetry, the tolerance, and the time of each stage.
   const Detection& getDetection() const { return found_; }
   const std::vector<SymmetryAxis>& getAxes() const { return found_.axes; }  ///< Detection::axes
-  /// \return the map that was given, or else the map that the last compute() made.
+  /// \return the given map, or else the map that the last compute() made.
   const SymmetryMap& getSymmetryMap() const { return edt_ ? map_ : found_.map; }
 
 protected:
@@ -136,11 +139,11 @@ private:
 
   bool use_input_normals_ = true;
   bool as_published_ = false;
-  SymmetryMap map_;  // that was given
+  SymmetryMap map_;  // the given map
   std::shared_ptr<const GaussianEdt> edt_;
   std::optional<MeshSurface> mesh_;
   Detection found_;
-  Points samples_ = Points(3, 0);  // that were used
+  Points samples_ = Points(3, 0);  // the points used
 };
 
 template <typename PointT>

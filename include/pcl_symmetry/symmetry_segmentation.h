@@ -22,7 +22,7 @@ public:
   using ConstPtr = pcl::shared_ptr<const SymmetrySegmentation<PointT>>;
   using typename pcl::PCLBase<PointT>::PointCloudConstPtr;
 
-  /// Draws at most 30 000 points, see setMaxPoints(); the others follow the closest of them.
+  /// Draws at most 30 000 points, see setMaxPoints(); other points belong to the segment of the closest one drawn.
   SymmetrySegmentation()
       : SearchingAnalysis<CloudAnalysis<PointT>, SegmentationOptions>("SymmetrySegmentation", 30'000, 20) {}
 
@@ -43,10 +43,10 @@ public:
   }
 
   /// Finds the parts.
-  /// \param segments is filled with the segments, by falling area: indices into the cloud or the polygons of the mesh.
-  /// Empty where the input holds no answer, and of another number of parts where the shape does not allow the one that
-  /// was set: see getReason().
-  /// \throws pcl::BadArgumentException where the mesh refers to vertices that it does not have.
+  /// \param segments is filled with the segments, by decreasing area: indices into the cloud or into the polygons of
+  /// the mesh. Empty if the input holds no answer. The shape may not allow the number of parts that was set: see
+  /// getReason().
+  /// \throws pcl::BadArgumentException if the mesh refers to vertices that it does not have.
   void segment(std::vector<pcl::PointIndices>& segments);
   /// The same under the name that PCL's clustering classes use.
   void extract(std::vector<pcl::PointIndices>& clusters) { segment(clusters); }

@@ -20,21 +20,21 @@ namespace PCL_SYMMETRY_EXPORTS pcl_symmetry {
 /// Where the scanner stood.
 struct Viewpoint {
   /** What is known of it. */ enum class Mode {
-    Auto,  ///< decided from the data: see ViewpointSource
-    None,  ///< nowhere: the cloud shows the object from all sides
-    Given  ///< at position
+    Auto,  ///< the data decide, see ViewpointSource
+    None,  ///< no viewpoint: the cloud shows the object from all sides
+    Given  ///< the scanner stood at `position`
   };
-  Mode mode = Mode::Auto;                              ///< whether and from what it is known
+  Mode mode = Mode::Auto;                              ///< how the viewpoint is known
   Eigen::Vector3d position = Eigen::Vector3d::Zero();  ///< input frame and units; used with Mode::Given
 };
 
-/// Where an analysis has its viewpoint from. Mode::Auto tries Rays, Stored and Inferred in this order.
+/// How the viewpoint of an analysis is known. Mode::Auto tries Rays, Stored and Inferred, in this order.
 enum class ViewpointSource {
-  None,     ///< it used none
-  Given,    ///< from the user
+  None,     ///< no viewpoint was used
+  Given,    ///< given by the user
   Rays,     ///< from the rows and columns of an organized cloud
   Stored,   ///< from sensor_origin_, and the points can have been seen from there
-  Inferred  ///< from the density of the points: that of a scan falls with the slant and the distance of the surface
+  Inferred  ///< from the density of the points, which in a scan falls with the slant and the distance of the surface
 };
 
 /// \return "none", "given", "rays", "stored" or "inferred".
@@ -49,8 +49,8 @@ namespace detail {
 /// \throws pcl::BadArgumentException for a position that is not finite.
 const Viewpoint& checkedViewpoint(const Viewpoint& viewpoint);
 
-/// \return the positions of a cloud with its rows, columns and sensor: of PointXYZ the cloud itself, which has to
-/// outlive them.
+/// \return the positions of a cloud with its rows, columns and sensor. For PointXYZ it is the cloud itself, which has
+/// to outlive the result.
 template <typename PointT>
 pcl::PointCloud<pcl::PointXYZ>::ConstPtr positionsOf(const pcl::PointCloud<PointT>& cloud) {
   if constexpr (std::is_same_v<PointT, pcl::PointXYZ>) {
@@ -69,11 +69,11 @@ pcl::PointCloud<pcl::PointXYZ>::ConstPtr positionsOf(const pcl::PointCloud<Point
 
 }  // namespace detail
 
-/// What scanners saw of a scene: free, measured and unknown space. It is made once and shared by the analyses of all
-/// objects of the scene: ScanAnalysis::setSeenSpace(), SymmetryDatabase::recognize(), completeBySymmetry().
+/// What scanners saw of a scene: free, measured and unknown space. It is determined once and shared by the analyses of
+/// all objects of the scene: ScanAnalysis::setSeenSpace(), SymmetryDatabase::recognize(), completeBySymmetry().
 ///
-/// In front of a surface space is free, behind any surface it is unknown, whatever object the surface belongs to, and
-/// outside the image it is unknown.
+/// Space in front of a surface is free. Space behind any surface, whatever object it belongs to, and outside the image
+/// is unknown.
 class SeenSpace {
 public:
   using ConstPtr = std::shared_ptr<const SeenSpace>;
@@ -84,11 +84,12 @@ public:
   SeenSpace(Visibility visibility, ViewpointSource source) : visibility_(std::move(visibility)), source_(source) {}
 
   /// The space that the scanner of a whole scene saw. An organized cloud shows it by its own pixels, any other cloud by
-  /// a range image from the viewpoint. Viewpoint::Mode::Auto believes sensor_origin_ where the scene can have been seen
-  /// from there: hardly any point lies behind others. One of 0 0 0 must not be surrounded by points: a whole object may
-  /// lie about it.
+  /// a range image from the viewpoint. Viewpoint::Mode::Auto uses sensor_origin_ if the scene can have been seen from
+  /// there: hardly any point lies behind others. A sensor_origin_ of 0 0 0 is used only if points do not surround it,
+  /// because a whole object may lie around the origin.
   /// \param scene all that the scanner measured; points that are not finite are pixels without a point.
-  /// \param max_pixels of a range image, >= 16; it takes four bytes a pixel. Organized clouds keep theirs.
+  /// \param max_pixels greatest number of pixels of a range image, >= 16; it takes four bytes a pixel. Organized clouds
+  /// keep theirs.
   /// \throws pcl::BadArgumentException for another max_pixels.
   template <typename PointT>
   explicit SeenSpace(const pcl::PointCloud<PointT>& scene, const Viewpoint& viewpoint = {},
@@ -102,11 +103,11 @@ public:
 
   /// The same for objects on a table, see Visibility::withSupport().
   /// \param support unit normal toward the objects, then d: normal . x + d = 0 on the surface.
-  /// \param margin by which objects may seem to reach into it, input units, >= 0.
+  /// \param margin distance by which objects may seem to reach into the table, input units, >= 0.
   SeenSpace withSupport(const Eigen::Vector4d& support, double margin) const;
 
   /// The same for objects that stand on nothing, or whose support is unknown. Otherwise an analysis of a part of a
-  /// scene, named by setIndices(), searches for the planes that it stands on, unless withSupport() gave one.
+  /// scene, selected by setIndices(), searches for the planes that it stands on, unless withSupport() gave one.
   SeenSpace withoutSupport() const;
 
   /// \return null where there is no viewpoint.
@@ -124,14 +125,13 @@ private:
   bool asks_for_support_ = true;
 };
 
-/// Removes the errors of a depth camera from its frame: each point becomes that of the plane through the pixels around
-/// it, and pixels that fly between two surfaces become NaN. Edges stay; parts that are narrower than two pixels are
-/// lost.
+/// Removes the errors of a depth camera from its frame: each point is moved to the plane through the pixels around it,
+/// and flying pixels between two surfaces become NaN. Edges stay; parts narrower than two pixels are lost.
 /// \param frame organized.
-/// \param seen of this frame.
+/// \param seen what the scanner saw, from this frame.
 /// \param num_threads 0 = one per core.
-/// \return a frame with the same pixels; \p frame itself where it is not organized, has no errors, or pixels share them
-/// with their neighbors, as of stereo and structured light.
+/// \return a frame with the same pixels; \p frame itself if it is not organized, has no errors, or if neighboring
+/// pixels share their errors, as in stereo and structured light.
 pcl::PointCloud<pcl::PointXYZ>::ConstPtr withoutDepthErrors(const pcl::PointCloud<pcl::PointXYZ>::ConstPtr& frame,
                                                             const SeenSpace& seen, int num_threads = 0);
 

@@ -66,7 +66,7 @@ struct NoAnswer : std::runtime_error {
 };
 
 /// Called once all parameters were checked: a bad one is refused whatever the points are.
-/// \throws NoAnswer where whyUnanswerable() has a reason.
+/// \throws NoAnswer if whyUnanswerable() has a reason.
 void checkAnswerable(const char* name, const PointsRef& points);
 
 /// Where a file says that the scanner stood: it counts where the points can have been seen from there.

@@ -45,12 +45,12 @@ public:
 };
 
 /// \param points 3 x N, finite, N >= 1; they are copied.
-/// \return a search by a k-d tree of FLANN; exact. Several neighbors of many queries are found fastest where each query
-/// lies near the one before.
+/// \return an exact search by a k-d tree of FLANN. For several neighbors, it is fastest if each query lies near the one
+/// before it.
 ClosestPointSearch::Ptr makeFlannSearch(const PointsRef& points);
 
-/// Makes a search over points (3 x N, finite, N >= 1), as makeFlannSearch() does. A computation passes the points that
-/// it works with, in input units: distinct ones, and a subset of a large cloud.
+/// Makes a search over points (3 x N, finite, N >= 1), as makeFlannSearch() does. The points are those that a
+/// computation uses, in input units: distinct ones, and a subset of a large cloud.
 using MakeSearch = std::function<ClosestPointSearch::Ptr(const PointsRef& points)>;
 
 }  // namespace pcl_symmetry

@@ -25,19 +25,20 @@ struct PlaneInput {
   PlaneInput(const Points& points_of_cloud, const Visibility* seen_space = nullptr)
       : PlaneInput(PointsRef(points_of_cloud), seen_space) {}
 
-  /// 3 x N, finite, input units. Fewer than 20 distinct points, or points on one line, give a reason in place of an
-  /// answer. More than 20 000 points are represented by a subset that resolves the tolerance.
+  /// 3 x N, finite, input units. Fewer than 20 distinct points, or points on one line, give Detection::reason instead
+  /// of an answer. More than 20 000 points are represented by a subset that resolves the tolerance.
   Eigen::Map<const Eigen::Matrix3Xf, 0, Eigen::OuterStride<>> points;
   /// What a scanner saw, input frame; null = the points show the object from all sides.
   const Visibility* visibility = nullptr;
-  /// 3 x N, of any length and sign; those that are zero or not finite are estimated from the neighbors. Null: all are.
+  /// 3 x N normals of any length and sign; zero and non-finite ones are estimated from the neighbors. Null: all are
+  /// estimated.
   const Points* normals = nullptr;
   /// A symmetry map of the points and the distance transform that it was computed from; both or neither.
   const SymmetryMap* map = nullptr;
   const GaussianEdt* edt = nullptr;  ///< see map
-  MakeSearch make_search;            ///< makes the search for the points that are used, once; empty = FLANN's
-  /// The points may be the rings of a LiDAR scanner: with a visibility that has a support, the middle plane of an
-  /// upright box is the answer where points are too sparse for a surface, or where nothing else is decided.
+  MakeSearch make_search;  ///< makes the closest-point search over the points used; called once; empty = FLANN
+  /// Whether the points may be the rings of a LiDAR. If so, and if the visibility has a support, the answer is the
+  /// middle plane of an upright box where the points are too sparse for a surface, or where nothing else is decided.
   bool may_be_rings = false;
 };
 
@@ -46,31 +47,32 @@ struct DetectionOptions {
   /// Greatest deviation of a symmetric surface, as a share of the greatest distance between two points, in (0, 0.1]: a
   /// symmetry maps 97 % of the surface to within this distance of the surface.
   double tolerance = 0.01;
-  /// Greatest tolerance, in (0, 0.1], the same share: where a depth camera or few points do not resolve `tolerance`,
-  /// the resolved tolerance decides, up to this one. Where it is at most `tolerance`, that one always decides, and
-  /// symmetries that the camera does not resolve are reported as possible.
+  /// Upper limit of the tolerance, as a share of the same distance, in (0, 0.1]: if a depth camera or few points do not
+  /// resolve `tolerance`, the tolerance that they resolve is used, up to this limit. If the limit is at most
+  /// `tolerance`, `tolerance` is always used, and symmetries that the camera does not resolve are reported as possible.
   double max_tolerance = 0.03;
-  double absolute_tolerance = 0.0;  ///< replaces both, input units, >= 0; 0 = not used
+  double absolute_tolerance = 0.0;  ///< replaces both tolerances, input units, >= 0; 0 = not used
   double min_confidence = 0.5;      ///< a plane is a symmetry if confidence >= min_confidence; in [0, 1]
   double min_possible = 0.2;  ///< a plane is reported as possible if confidence >= min_possible; in [0, min_confidence]
-  /// Reports the other maxima too, after the symmetries: approximate ones of the whole, and symmetries of parts.
+  /// Also reports the other maxima, after the symmetries: approximate symmetries of the whole, and symmetries of parts.
   bool approximate = false;
   bool rotations = true;  ///< also searches axes of rotation of scans; false saves about a third of the time
   bool folds = true;     ///< with `rotations`: also axes of finite order; false finds bodies of revolution only, faster
-  int max_planes = 128;  ///< >= 1; a gear of 120 teeth has 121
+  int max_planes = 128;  ///< greatest number of planes, >= 1; a gear of 120 teeth has 121
   int num_cells = 64;    ///< cells of the distance transform along each side, in [8, 512]
-  double sigma = 0.0;    ///< its width, input units, >= 0; 0 = two cells, or the spacing of the points if that is more
-  std::uint64_t seed = 1;  ///< of all random draws; the same seed gives the same answer
+  /// Width of the Gaussian, input units, >= 0; 0 = two cells, or the spacing of the points if that is more.
+  double sigma = 0.0;
+  std::uint64_t seed = 1;  ///< seed of all random draws; the same seed gives the same answer
   int num_threads = 0;     ///< >= 0; 0 = one per core; the answer does not depend on it
 
   /// Expert options, and the bins of the map that candidates come from.
   struct Expert : MapSize {
-    int num_samples = 64;       ///< samples of the transform, >= 1: the error is 1 % of PRST, enough to find maxima
-    LocalMaximaOptions maxima;  ///< of the maxima of the map that become candidates
+    int num_samples = 64;       ///< samples of the transform, >= 1: an error of 1 % of PRST, enough to find maxima
+    LocalMaximaOptions maxima;  ///< thresholds of the maxima of the map that become candidates
     int max_candidates = 24;    ///< strongest maxima that are refined, >= 1
     int num_refine_samples = 10'000;  ///< points reflected in late iterations (the paper's figure), >= 10
   };
-  Expert expert;  ///< see Expert
+  Expert expert;  ///< options for experts
 
   /// \return num_cells, sigma and num_threads as options of the distance transform.
   GaussianEdtOptions edtOptions() const { return {num_cells, sigma, num_threads}; }
@@ -79,20 +81,21 @@ struct DetectionOptions {
   void validate() const;
 };
 
-/// From points to planes: transform, maxima, refinement, decision (Sections 4.1 to 4.4). publishedPlanes() is
-/// Section 4.4 as the paper has it, in one screen; this is the default, which adds stages of refinement, the decision
+/// Finds the planes of symmetry of points: transform, maxima, refinement, decision (Sections 4.1 to 4.4).
+/// publishedPlanes() follows Section 4.4 of the paper exactly. This default adds stages of refinement, the decision
 /// whether a plane is a symmetry, families of planes, rotations of scans and symmetries of parts.
-/// \throws std::invalid_argument for bad options, coordinates that are not finite, or another number of normals.
+/// \throws std::invalid_argument for bad options, coordinates that are not finite, or a number of normals other than
+/// that of the points.
 Detection detectPlanes(const PlaneInput& input, const DetectionOptions& options = {});
 
 /// Refines planes, axes and centers on the mesh itself: the last step of a search whose points were sampled from a
-/// mesh. Samples determine a plane to a share of their spacing, within which that of a slender or flat part can rotate
-/// far; the mesh determines it exactly. Share, deviation, residual and confidence of symmetries and possible ones
-/// become those of the surface. Planes that coincide are reported once, in the order of Detection::planes, and those
-/// below DetectionOptions::min_possible are dropped unless approximate ones are reported.
-/// \param found by detectPlanes() on points of the mesh, without visibility; in the frame of the mesh. Its tolerance
-/// decides.
-/// \param options of that detection.
+/// mesh. Samples determine a plane only to a fraction of their spacing, within which the plane of a slender or flat
+/// part can rotate far; the mesh determines it exactly. For symmetries and possible symmetries, share, deviation,
+/// residual and confidence are measured again, on the mesh. Coinciding planes are reported once, in the order of
+/// Detection::planes, and planes below DetectionOptions::min_possible are dropped unless approximate ones are reported.
+/// \param found result of detectPlanes() on points of the mesh, without visibility, in the frame of the mesh. Its
+/// tolerance is used.
+/// \param options the options of that detection.
 void refineOnMesh(const MeshSurface& mesh, Detection& found, const DetectionOptions& options = {});
 
 }  // namespace pcl_symmetry

@@ -1,5 +1,5 @@
 #pragma once
 
-/// Marks what the shared libraries show to programs. Everything else is hidden. On a namespace the mark holds for all
+/// Exports declarations from the shared libraries, which hide everything else. On a namespace, it applies to all
 /// declarations within its braces.
 #define PCL_SYMMETRY_EXPORTS [[gnu::visibility("default")]]

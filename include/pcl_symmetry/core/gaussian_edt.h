@@ -12,8 +12,9 @@ struct VolumeFunction;
 
 /// Options of the Gaussian Euclidean distance transform. Zero means: choose from the data.
 struct GaussianEdtOptions {
-  int num_cells = 64;   ///< cells along each side, in [8, 512]
-  double sigma = 0.0;   ///< width, input units, >= 0; 0 = two cells, or the spacing of the points if that is more
+  int num_cells = 64;  ///< cells along each side, in [8, 512]
+  /// Width of the Gaussian, input units, >= 0; 0 = two cells, or the spacing of the points if that is more.
+  double sigma = 0.0;
   int num_threads = 0;  ///< >= 0; 0 = one per core
   double radius = 0.0;  ///< radius of the ball to cover, input units, >= 0; 0 = the bounding ball of the points
   Eigen::Vector3d center = Eigen::Vector3d::Zero();  ///< center of that ball, input frame; used only with radius > 0
@@ -34,9 +35,10 @@ public:
   /// \throws std::invalid_argument for bad options, no point, points without extent, or a value that is not finite.
   explicit GaussianEdt(const PointsRef& points, const GaussianEdtOptions& options = {});
 
-  /// Resamples the function of a volume on these cells (Section 4.2); all estimators take it in place of a distance
+  /// Resamples the function of a volume on the cells (Section 4.2); all estimators accept it in place of a distance
   /// transform.
-  /// \param options radius = 0: the bounding ball of the body; sigma is not used, the margin is that of two cells.
+  /// \param options if radius is 0, the bounding ball of the body is covered. sigma is not used: the margin is that of
+  /// a sigma of two cells.
   /// \throws std::invalid_argument for bad options.
   explicit GaussianEdt(const VolumeFunction& volume, const GaussianEdtOptions& options = {});
 
@@ -45,21 +47,21 @@ public:
   double sigma() const { return sigma_; }         ///< input units
   /// Center of the ball that the grid covers, input frame. A margin of two sigmas surrounds it.
   const Eigen::Vector3d& center() const { return center_; }
-  double radius() const { return radius_; }  ///< of that ball, input units
+  double radius() const { return radius_; }  ///< radius of that ball, input units
   /// \return center of cell (0, 0, 0), input frame.
   const Eigen::Vector3d& origin() const { return origin_; }
 
   /// \return num_cells^3 values of f in [0, 1] at the cell centers, x fastest.
   const std::vector<float>& values() const { return values_; }
-  /// Cells of a row along x: [begin, end).
+  /// The cells [begin, end) of a row along x.
   struct Range {
-    int begin;  ///< the first cell
-    int end;    ///< the one after the last
+    int begin;  ///< index of the first cell
+    int end;    ///< index after the last cell
   };
-  /// \return num_cells^2 ranges, y fastest: f is 0 in all other cells of a row.
+  /// \return one range for each of the num_cells^2 rows, y fastest: f is 0 in all other cells of the row.
   const std::vector<Range>& filledRanges() const { return filled_; }
-  /// \param index of a cell, as in values().
-  /// \return its center, input frame.
+  /// \param index index of a cell, as in values().
+  /// \return center of the cell, input frame.
   Eigen::Vector3d cellCenter(std::size_t index) const;
 
   double sum() const { return sum_; }         ///< sum of f over the cells
@@ -87,9 +89,9 @@ public:
   /// \return sharpened(1 / 12), between which this function interpolates.
   const std::vector<float>& interpolation() const { return interpolation_; }
 
-  /// Values that undo the blur of look-ups: f - c h^2 Laplace(f), at least 0, with h the size of a cell. Look-ups of f
-  /// itself would understate D of a perfect symmetry by 2 to 4 per cent.
-  /// \param c 1/24 for each look-up of the nearest cell, 1/12 for trilinear interpolation.
+  /// Values that compensate for the blur of look-ups: f - c h^2 Laplace(f), at least 0, with h the size of a cell.
+  /// Look-ups of f itself would understate D of a perfect symmetry by 2 to 4 per cent.
+  /// \param c 1/24 for look-ups of the nearest cell, 1/12 for trilinear interpolation.
   /// \param num_threads 0 = one per core.
   /// \return one value per cell, x fastest.
   std::vector<float> sharpened(double c, int num_threads = 0) const;

@@ -13,7 +13,7 @@ namespace PCL_SYMMETRY_EXPORTS pcl_symmetry {
 /// Options of sampledTransform().
 struct SampledTransformOptions {
   int num_samples = 128;   ///< points drawn for the whole map, in [1, 10^7]; the error falls about as num_samples^-0.7
-  std::uint64_t seed = 1;  ///< of the points drawn
+  std::uint64_t seed = 1;  ///< seed of the points drawn
   int num_threads = 0;     ///< >= 0; 0 = one per core; the map does not depend on it
 
   /// \throws std::invalid_argument naming field, value and rule.
@@ -23,12 +23,12 @@ struct SampledTransformOptions {
 /// The transform by sampling one point of each pair: D(gamma) = (S / |f|^2) mean f(gamma x_i), where the points x_i are
 /// drawn with probability f / S, S = sum f, stratified in space, once for the whole map.
 ///
-/// Departure from the paper: it draws both points of a pair (Section 4.3); looking up the second point needs no weights
-/// and has no singularity at coincident points.
+/// Departure from the paper, which draws both points of a pair (Section 4.3): looking up the second point needs no
+/// weights and has no singularity at coincident points.
 /// \param edt the function f.
 /// \param grid the planes, in the frame of the EDT.
-/// \param free_space for a scan one value per cell of the EDT, x fastest: 1 - f where the scanner looked through, else
-/// 0. Empty: a whole object.
+/// \param free_space for a scan, one value per cell of the EDT, x fastest: 1 - f where the scanner looked through the
+/// cell, else 0. Empty for a whole object.
 /// \return D at the bin centers. With free space (1 + c) D / (D + F + c), c = 0.15, where F is the same mean over the
 /// free space: reflected points that the scanner would have seen count against a plane.
 /// \throws std::invalid_argument for bad options or free space of another size.
@@ -37,9 +37,10 @@ SymmetryMap sampledTransform(const GaussianEdt& edt, const PlaneGrid& grid, cons
 
 /// Options of convolutionTransform().
 struct ConvolutionTransformOptions {
-  double spacing = 0.9;  ///< of the resampled lattice, in sigmas, in (0, 1], but no less than a cell along one
-                         ///< axis; 0.5 halves the error and is slower
-  int num_threads = 0;   ///< >= 0; 0 = one per core; the map does not depend on it
+  /// Spacing of the resampled lattice, in sigmas, in (0, 1]; along one axis it is a whole number of cells, at least
+  /// one. 0.5 halves the error and is slower.
+  double spacing = 0.9;
+  int num_threads = 0;  ///< >= 0; 0 = one per core; the map does not depend on it
 
   /// \throws std::invalid_argument naming field, value and rule.
   void validate() const;
@@ -50,7 +51,7 @@ struct ConvolutionTransformOptions {
 ///
 /// Departure from the paper: lines are resampled at `spacing` sigmas instead of every cell, because a Gaussian shell of
 /// width sigma holds less than 1 % of its spectrum beyond the Nyquist frequency of that lattice. They are correlated
-/// directly: about 36 values are too few for a Fourier transform to pay.
+/// directly, because lines of about 36 values are too short for a Fourier transform to pay off.
 /// \param edt the function f.
 /// \param grid the planes, in the frame of the EDT.
 /// \return D at the bin centers.
@@ -60,9 +61,10 @@ SymmetryMap convolutionTransform(const GaussianEdt& edt, const PlaneGrid& grid,
 
 /// Options of rotationalTransform().
 struct RotationalTransformOptions {
-  double spacing = 0.9;  ///< of the resampled points, in sigmas, in (0, 1]
-  /// Multiresolution, in [0, 1]: points and lines are first taken three cells apart, and the planes with this share of
-  /// the greatest D are computed anew from points and lines one cell apart; 1 = all planes are.
+  double spacing = 0.9;  ///< spacing of the resampled points, in sigmas, in (0, 1]
+  /// Share of the planes that are refined by multiresolution, in [0, 1]: all planes are first computed from points and
+  /// lines three cells apart, and the share with the greatest D again from points and lines one cell apart. 1 = all
+  /// planes are computed once, from those one cell apart.
   double refined_share = 1.0;
   int num_threads = 0;  ///< >= 0; 0 = one per core; the map does not depend on it
 
@@ -88,9 +90,10 @@ SymmetryMap rotationalTransform(const GaussianEdt& edt, const PlaneGrid& grid,
 /// Options of votingTransform().
 struct VotingTransformOptions {
   std::int64_t num_pairs = 2'000'000;  ///< pairs of points drawn, >= 1; the paper's figure for 1 % at 64^3
-  double near_distance = 4.0;  ///< cells, >= 0; closer pairs are drawn plane first, see below; 0 = the paper as written
-  std::uint64_t seed = 1;      ///< of the pairs drawn
-  int num_threads = 0;         ///< >= 0; 0 = one per core; the map does not depend on it
+  /// Cells, >= 0; closer pairs are drawn plane first, see votingTransform(); 0 = the paper as written.
+  double near_distance = 4.0;
+  std::uint64_t seed = 1;  ///< seed of the pairs drawn
+  int num_threads = 0;     ///< >= 0; 0 = one per core; the map does not depend on it
 
   /// \throws std::invalid_argument naming field, value and rule.
   void validate() const;
@@ -100,22 +103,22 @@ struct VotingTransformOptions {
 /// them with weight 1 / (2 d^2 sin theta), d = |x - x'|.
 ///
 /// Departure from the paper: that weight has infinite variance as d -> 0, so pairs closer than near_distance do not
-/// vote. Their share of the integral is drawn the other way round: x by f, then a plane uniformly in (theta, phi, r) at
-/// less than near_distance / 2 from x, with the bounded weight f(x').
+/// vote. Their part of the integral is sampled the other way round: x by f, then a plane uniformly in (theta, phi, r)
+/// at less than near_distance / 2 from x, with the bounded weight f(x').
 /// \param edt the function f.
 /// \param grid the planes, in the frame of the EDT.
-/// \return averages of D over the bins by solid angle. The variance of a bin grows with the weights of its votes: a few
-/// bins, most of them near the pole, hold several times the greatest D, and more so with near_distance 0.
+/// \return D, averaged over each bin by solid angle. The variance of a bin grows with the weights of its votes: a few
+/// bins, most of them near the pole, hold several times the greatest D, even more with near_distance 0.
 /// \throws std::invalid_argument for bad options.
 SymmetryMap votingTransform(const GaussianEdt& edt, const PlaneGrid& grid, const VotingTransformOptions& options = {});
 
-/// The estimator, and the options of each.
+/// The choice of an estimator, and the options of each.
 struct PlanarTransformOptions {
-  TransformMethod method = TransformMethod::Sampled;  ///< which of the four below is used
-  SampledTransformOptions sampled;                    ///< of TransformMethod::Sampled
-  ConvolutionTransformOptions convolution;            ///< of TransformMethod::Convolution
-  RotationalTransformOptions rotational;              ///< of TransformMethod::Rotational
-  VotingTransformOptions voting;                      ///< of TransformMethod::Voting
+  TransformMethod method = TransformMethod::Sampled;  ///< estimator that planarTransform() uses
+  SampledTransformOptions sampled;                    ///< options of TransformMethod::Sampled
+  ConvolutionTransformOptions convolution;            ///< options of TransformMethod::Convolution
+  RotationalTransformOptions rotational;              ///< options of TransformMethod::Rotational
+  VotingTransformOptions voting;                      ///< options of TransformMethod::Voting
 
   /// Gives all estimators a seed.
   void setSeed(std::uint64_t seed) { sampled.seed = voting.seed = seed; }

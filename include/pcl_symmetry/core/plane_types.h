@@ -14,10 +14,10 @@ namespace PCL_SYMMETRY_EXPORTS pcl_symmetry {
 
 /// Role of a plane for the shape.
 enum class PlaneKind {
-  Symmetry,     ///< of the whole object: confidence >= min_confidence
-  Possible,     ///< confidence >= min_possible: the data do not decide
-  Approximate,  ///< less than that: a local maximum of the transform
-  Local         ///< a symmetry of a part: of the points that support it
+  Symmetry,     ///< a symmetry of the whole object: confidence >= min_confidence
+  Possible,     ///< the data do not decide: confidence >= min_possible
+  Approximate,  ///< a local maximum of the transform of less confidence
+  Local         ///< a symmetry of a part, whose points support it
 };
 
 /// \return "symmetry", "possible", "approximate" or "local".
@@ -37,66 +37,75 @@ struct Reason {
 /// A refined local maximum of the transform. Canonical: theta of the normal in [0, pi/2].
 struct SymmetryPlane : ReflectionPlane {
   SymmetryPlane() = default;
-  explicit SymmetryPlane(const ReflectionPlane& plane) : ReflectionPlane(plane.canonical()) {}  ///< in canonical form
+  /// Makes the plane canonical.
+  explicit SymmetryPlane(const ReflectionPlane& plane) : ReflectionPlane(plane.canonical()) {}
 
   PlaneKind kind = PlaneKind::Approximate;  ///< result of the decision
   /// Probability that this is a symmetry of the object, in [0, 1]; comparable between objects, densities, noise levels,
-  /// whole and partial clouds; 0 as published. src/core/evidence/README.md has the formula, its calibration and limits.
+  /// whole and partial clouds; 0 for published planes. src/pages/algorithms/decision.md has the formula, its
+  /// calibration and its limits.
   double confidence = 0.0;
   /// D(f, gamma) of equation 2 at this very plane: the correlation of the GEDT with its reflection, in [0, 1].
   double score = 0.0;
-  /// Share of the surface seen that the plane maps onto the surface, relative to what sampling and noise allow, [0, 1].
+  /// Share of the visible surface that the plane maps onto the surface, relative to what sampling and noise allow, in
+  /// [0, 1].
   double support = 0.0;
   /// Estimated share of the informative part of the surface that the plane maps to within the tolerance of the surface,
-  /// in [0, 1]. A plane is a symmetry of the object if that share is at least 0.97. NaN, with its limits, for volumes,
-  /// which have no surface, and as published.
+  /// in [0, 1]. A plane is a symmetry of the object if that share is at least 0.97. The share and its limits are NaN
+  /// for volumes, which have no surface, and for published planes.
   double share = 0.0;
-  /// Lower limit of that share for the whole object: it lies between the limits in 95 of 100 cases, in [0, 1].
+  /// Lower limit of that share for the whole object, in [0, 1]: it lies between the limits in 95 of 100 cases.
   double share_low = 0.0;
-  double share_high = 1.0;  ///< upper limit
+  double share_high = 1.0;  ///< upper limit of that share, in [0, 1]
   /// Distance from the surface within which 97 % of the reflected points stay, input units: the least tolerance at
-  /// which the plane would be a symmetry; the diameter if it is beyond the search range. NaN where the share is.
+  /// which the plane would be a symmetry; the diameter if it is beyond the search range. NaN where `share` is.
   double deviation = 0.0;
-  /// Share of the points whose reflection falls where the cloud could show it, in [0, 1]: less than 1 for planes of
-  /// scans and where a piece of the surface is missing.
+  /// Share of the points whose reflection falls where the cloud could show a surface, in [0, 1]: less than 1 for planes
+  /// of scans, and where a piece of the surface is missing.
   double seen = 1.0;
   /// One value in [0, 1] per point used, in their order: 1 where the reflection is as close to the surface as samples
   /// of a surface are to each other, falling to 0 beyond; NaN where the scanner could not see whether it is. In large
   /// clouds, a point takes the value of one near it.
   std::vector<float> point_support;
-  std::vector<Reason> reasons;  ///< of confidence and kind, in the order of the rules; none as published
-  int iterations = 0;           ///< of Iterative Symmetric Points, in all stages
-  bool converged = false;       ///< the plane stood still
-  double residual = 0.0;  ///< weighted root mean square distance of the reflected points from the surface, input units
+  /// Reasons for confidence and kind, in the order of the rules; empty for published planes.
+  std::vector<Reason> reasons;
+  int iterations = 0;      ///< iterations of Iterative Symmetric Points, in all stages
+  bool converged = false;  ///< whether the last stage converged
+  double residual = 0.0;   ///< weighted root mean square distance of the reflected points from the surface, input units
 };
 
-/// All planes through a line are symmetries: a body of revolution.
+/// An axis of revolution: all planes through it are symmetries.
 struct SymmetryAxis {
-  Eigen::Vector3d point;      ///< of the axis, the closest to the center of the bounding ball; input frame
-  Eigen::Vector3d direction;  ///< unit
-  /// As in SymmetryPlane, for planes at eight angles together; as in SymmetryRotation for axes that only rotations of a
-  /// scan show.
+  Eigen::Vector3d point;      ///< point of the axis closest to the center of the bounding ball, input frame
+  Eigen::Vector3d direction;  ///< unit vector along the axis, input frame
+  /// Confidence as in SymmetryPlane, of planes at eight angles together; as in SymmetryRotation if only rotations of a
+  /// scan show the axis.
   double confidence = 0.0;
-  double score = 0.0;    ///< mean D of these planes
-  double support = 0.0;  ///< mean support of these planes
+  double score = 0.0;    ///< mean D of planes through the axis
+  double support = 0.0;  ///< mean support of planes through the axis
 };
 
-/// A line about which rotations map the visible surface onto itself or to unseen space, as the axis of a nut, a wheel
-/// or a bottle seen from one side. Not in the paper.
+/// A line about which rotations map the visible surface onto itself or into unseen space, such as the axis of a nut, a
+/// wheel or a bottle seen from one side. Not in the paper.
 struct SymmetryRotation {
-  Eigen::Vector3d point;      ///< of the axis, the closest to the center of the bounding ball; input frame
-  Eigen::Vector3d direction;  ///< unit
-  int fold = 0;               ///< order of the rotations; 0: by any angle
+  Eigen::Vector3d point;      ///< point of the axis closest to the center of the bounding ball, input frame
+  Eigen::Vector3d direction;  ///< unit vector along the axis, input frame
+  int fold = 0;               ///< order of the rotations; 0 = by any angle
   /// Probability that these rotations are symmetries of the whole object at the limits of ObjectSymmetryOptions.
   double confidence = 0.0;
-  // Shares of the points seen, in [0, 1].
-  double support = 0.0;  ///< that the best rotation maps onto the surface seen; a small rotation for any angle
-  double off = 0.0;      ///< that the worst rotation maps into free space
-  double far = 0.0;      ///< the same, beyond ten tolerances of the surface
-  double halfway = 0.0;  ///< off of rotations halfway between those of the fold: evidence against other folds
+  /// Share of the visible points that the best rotation maps onto the visible surface, in [0, 1]; for rotations by any
+  /// angle, the mean of two small ones.
+  double support = 0.0;
+  double off = 0.0;  ///< share of the visible points that the worst rotation maps into free space, in [0, 1]
+  /// Share of the visible points that the worst rotation maps into free space, farther than ten tolerances from the
+  /// surface, in [0, 1].
+  double far = 0.0;
+  /// `off` of the rotations halfway between those of the fold, in [0, 1]: evidence against other folds.
+  double halfway = 0.0;
 };
 
-/// All planes through a point are symmetries: a sphere. In a scan, rotations about lines through the point show it.
+/// A center of spherical symmetry: all planes through it are symmetries. In a scan, rotations about lines through it
+/// show it.
 struct SymmetryCenter {
   Eigen::Vector3d point;    ///< input frame
   double confidence = 0.0;  ///< as in SymmetryAxis
@@ -115,18 +124,18 @@ struct Detection {
   /// Whether there is no symmetry only because few points of a whole cloud leave it open: the share of the surface that
   /// the best plane maps may also be that of a symmetry.
   bool undecided = false;
-  /// The plane within whose tolerance (three tolerances where noise hides the surface) 97 % of the points lie, as for a
-  /// sheet, a disc or one side of a box. Reflections across it move no point and are uninformative.
+  /// A plane near which 97 % of the points lie, within the tolerance (three tolerances where noise hides the surface),
+  /// as for a sheet, a disc or one side of a box. A reflection in it moves no point and is uninformative.
   std::optional<ReflectionPlane> flat;
-  double tolerance = 0.0;               ///< of the decision, input units
+  double tolerance = 0.0;               ///< tolerance of the decision, input units
   double resolution = 0.0;              ///< least tolerance that sensor or spacing resolve, input units; 0 = unknown
-  double diameter = 0.0;                ///< between two points, each the farthest from the other, input units
-  int num_stray_points = 0;             ///< far from all others and left out; they support no plane
+  double diameter = 0.0;                ///< distance between two points, each the farthest from the other, input units
+  int num_stray_points = 0;             ///< points far from all others, which were left out and support no plane
   std::vector<SymmetryAxis> axes;       ///< best first; their planes are not among planes
-  std::vector<SymmetryCenter> centers;  ///< of spheres
-  std::vector<SymmetryRotation> rotations;                ///< of scans: axes of rotations, most confident first
-  SymmetryMap map;                                        ///< the map that was computed; empty where one was given
-  std::vector<std::pair<std::string, double>> timing_ms;  ///< stages in order
+  std::vector<SymmetryCenter> centers;  ///< centers of spheres, best first
+  std::vector<SymmetryRotation> rotations;                ///< axes of rotation of scans, most confident first
+  SymmetryMap map;                                        ///< map that was computed; empty if one was given
+  std::vector<std::pair<std::string, double>> timing_ms;  ///< stages in order, with their milliseconds
 
   /// Whether planes belong to an axis or a center.
   bool hasFamily() const { return !axes.empty() || !centers.empty(); }

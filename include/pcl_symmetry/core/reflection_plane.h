@@ -62,9 +62,9 @@ private:
   double offset_ = 0.0;
 };
 
-/// One of the planes through a line.
-/// \param angle about the line, radians: at 0, the normal is line.direction().unitOrthogonal().
-/// \return a plane that contains a line.
+/// A plane through a line.
+/// \param angle angle about the line, radians: at 0, the normal is line.direction().unitOrthogonal().
+/// \return the plane, which contains the line.
 ReflectionPlane planeThrough(const Line3d& line, double angle);
 
 }  // namespace pcl_symmetry

@@ -54,8 +54,8 @@ struct RotationGroup {
   /// \throws std::invalid_argument where the group is continuous or fold < 1.
   std::vector<Eigen::Matrix3d> elements() const;
 
-  /// Rotations whose products are the group.
-  /// \return one or two, none for C_1.
+  /// Rotations that generate the group.
+  /// \return one or two rotations; none for C_1.
   /// \throws std::invalid_argument where the group is continuous.
   std::vector<Eigen::Matrix3d> generators() const;
 };

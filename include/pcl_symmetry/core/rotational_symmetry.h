@@ -21,19 +21,19 @@ struct ObjectSymmetryOptions {
   int num_directions = 3000;  ///< directions of axes on a half sphere, >= 100; 3000 are 2.6 degrees apart
   int max_fold = 60;          ///< greatest order of a rotation, >= 2
   int max_points = 10'000;    ///< number of points drawn from larger clouds, >= 100
-  /// Definition of a symmetry: greatest deviation of a surface, share of the greatest distance between two points, in
-  /// (0, 0.1]. A rotation is a symmetry if it maps at least 1 - max_feature of the surface to within this of the
-  /// surface.
+  /// Definition of a symmetry: greatest deviation of a surface, as a share of the greatest distance between two points,
+  /// in (0, 0.1]. A rotation is a symmetry if it maps at least 1 - max_feature of the surface to within this distance
+  /// of the surface.
   double tolerance = 0.01;
-  /// The same in input units, >= 0; 0 = tolerance decides.
+  /// The same tolerance in input units, >= 0; 0 = `tolerance` is used.
   double absolute_tolerance = 0.0;
-  /// Greatest share of the surface, in one or more pieces together, that a symmetry may map off the surface: a plug, a
-  /// notch, a screw. At most an eighth of it may be off by more than ten tolerances: handles are parts, not features.
-  /// In [0, 1].
+  /// Greatest share of the surface that a symmetry may map off the surface, in one or more pieces together, in [0, 1]:
+  /// a plug, a notch, a screw. At most an eighth of it may be off by more than ten tolerances: handles are parts, not
+  /// features.
   double max_feature = 0.15;
-  bool other_tolerances = false;  ///< finds the groups at half and twice the tolerance too
+  bool other_tolerances = false;  ///< also finds the groups at half and twice the tolerance
   double min_confidence = 0.5;    ///< least confidence of rotations that are called symmetries, in [0, 1]
-  std::uint64_t seed = 1;         ///< of all random draws
+  std::uint64_t seed = 1;         ///< seed of all random draws
   int num_threads = 0;            ///< >= 0; 0 = one per core
 
   /// \throws std::invalid_argument naming field, value and rule.
@@ -42,65 +42,68 @@ struct ObjectSymmetryOptions {
 
 /// An axis of revolution: rotations by every angle about it are symmetries.
 struct ContinuousSymmetry {
-  Eigen::Vector3d axis;    ///< unit, input frame
+  Eigen::Vector3d axis;    ///< unit vector along the axis, input frame
   Eigen::Vector3d offset;  ///< a point of the axis, input frame
 };
 
 /// The distance between two poses of an object, up to its symmetries.
 struct PoseDistance {
-  double angle;   ///< radians, in [0, pi]: the least angle between the first pose and all that look like the second
-  double offset;  ///< input units: between the two positions of ObjectSymmetries::center
+  double angle;   ///< least angle between the first pose and any pose that looks like the second, radians, in [0, pi]
+  double offset;  ///< distance between the two positions of ObjectSymmetries::center, input units
 };
 
 /// Rotations about a line that are no symmetries, and why.
 struct RejectedRotation {
-  Eigen::Isometry3d motion = Eigen::Isometry3d::Identity();  ///< one of them, x -> T x in the input frame
-  Eigen::Vector3d axis = Eigen::Vector3d::UnitZ();           ///< unit
-  int fold = 0;                                              ///< order of the rotations; 0: by any angle
+  Eigen::Isometry3d motion = Eigen::Isometry3d::Identity();  ///< one of the rotations, x -> T x in the input frame
+  Eigen::Vector3d axis = Eigen::Vector3d::UnitZ();           ///< unit vector along the axis, input frame
+  int fold = 0;                                              ///< order of the rotations; 0 = by any angle
   double off = 0.0;                                          ///< share of the surface beyond the tolerance, in [0, 1]
   double far = 0.0;                                          ///< share beyond ten tolerances, in [0, 1]
-  Eigen::Vector3d where = Eigen::Vector3d::Zero();           ///< center of the surface that is off, input frame
+  Eigen::Vector3d where = Eigen::Vector3d::Zero();  ///< center of the part of the surface that is off, input frame
 };
 
 /// A group by its name.
 struct GroupName {
   RotationGroupKind kind = RotationGroupKind::Cyclic;  ///< which of the finite or continuous groups
-  int fold = 1;                                        ///< order of the main axis; 0 where it is one of revolution
+  int fold = 1;                                        ///< order of the main axis; 0 for an axis of revolution
 
-  std::string name() const { return nameOf(kind, fold); }  ///< as nameOf() gives it
+  std::string name() const { return nameOf(kind, fold); }  ///< name of the group, see nameOf()
 };
 
 /// The rotations that map a shape onto itself.
 ///
 /// A pose T maps the input frame to any other one, such as that of a camera. The pose T S looks like T for every
 /// symmetry S. The methods below take all symmetries into account: the rotations of a continuous group in closed form,
-/// without samples of their angles. discrete and continuous are a group, as detection and from() leave them.
+/// without samples of their angles. `discrete` and `continuous` together form a group; detection and from() ensure
+/// that.
 struct ObjectSymmetries {
   RotationGroupKind kind = RotationGroupKind::Cyclic;  ///< which of the finite or continuous groups
-  int fold = 1;                                        ///< order of the main axis; 0 where it is one of revolution
+  int fold = 1;                                        ///< order of the main axis; 0 for an axis of revolution
   /// The point that all axes pass through, input frame; the center of the bounding ball where there is no axis.
   Eigen::Vector3d center = Eigen::Vector3d::Zero();
-  /// Rotations as motions x -> T x in the input frame, without the identity. Together with it they are a group, exactly
-  /// but for rounding. A cylinder has one: a half turn about an axis perpendicular to its own.
+  /// Rotations as motions x -> T x in the input frame, without the identity, with which they form a group, exact but
+  /// for rounding. A cylinder has one: a half turn about an axis perpendicular to its own.
   std::vector<Eigen::Isometry3d> discrete;
   /// One axis for a body of revolution, three perpendicular ones for a sphere: rotations about two of them generate all
   /// rotations.
   std::vector<ContinuousSymmetry> continuous;
   /// Share of the surface that each rotation maps to within the tolerance of the surface, relative to what sampling and
-  /// noise allow, in [0, 1]; for rotations by any angle their mean.
+  /// noise allow, in [0, 1]; for rotations by any angle, their mean.
   double support = 1.0;
-  double confidence = 1.0;   ///< probability that the whole surface, not its points alone, keeps to the limits
-  double tolerance = 0.0;    ///< of the decision, input units
-  int num_stray_points = 0;  ///< far from all others and left out
-  std::optional<GroupName> at_half_tolerance;             ///< with ObjectSymmetryOptions::other_tolerances
-  std::optional<GroupName> at_twice_tolerance;            ///< with ObjectSymmetryOptions::other_tolerances
-  std::vector<RejectedRotation> rejected;                 ///< rejected rotations, the least failure first
-  std::vector<std::pair<std::string, double>> timing_ms;  ///< stages in order
-  /// Why there is no answer; empty where there is one. Points that show no surface at the tolerance (solid samples,
-  /// atoms, few points) get the least tolerance at which they do.
+  double confidence = 1.0;   ///< probability that the whole surface, not only its points, keeps within the limits
+  double tolerance = 0.0;    ///< tolerance of the decision, input units
+  int num_stray_points = 0;  ///< points far from all others, which were left out
+  /// Group at half the tolerance, with ObjectSymmetryOptions::other_tolerances.
+  std::optional<GroupName> at_half_tolerance;
+  /// Group at twice the tolerance, with ObjectSymmetryOptions::other_tolerances.
+  std::optional<GroupName> at_twice_tolerance;
+  std::vector<RejectedRotation> rejected;                 ///< rotations that were rejected, the least failure first
+  std::vector<std::pair<std::string, double>> timing_ms;  ///< stages in order, with their milliseconds
+  /// Why there is no answer; empty where there is one. For points that show no surface at the tolerance (solid samples,
+  /// atoms, few points) it names the least tolerance at which they do.
   std::string reason;
 
-  std::string name() const { return nameOf(kind, fold); }  ///< as nameOf() gives it
+  std::string name() const { return nameOf(kind, fold); }  ///< name of the group, see nameOf()
 
   /// The group that given motions and axes generate, exact but for rounding, as for symmetries that people wrote into a
   /// file. A sphere may be given by two axes of revolution, or by one and a motion that tilts it.
@@ -131,9 +134,9 @@ struct ObjectSymmetries {
   /// The distance between two poses, up to the symmetries.
   PoseDistance distance(const Eigen::Isometry3d& T_1, const Eigen::Isometry3d& T_2) const;
 
-  /// Maximum symmetry-aware surface distance (MSSD of the BOP benchmark): how far the worst of the points is, in the
-  /// pose that looks like T_2 for which that is least. Exact for rotations about an axis; for spheres, the distance of
-  /// the centers.
+  /// Maximum symmetry-aware surface distance (MSSD of the BOP benchmark): the greatest distance of a point between the
+  /// two poses, minimized over all poses that look like T_2. Exact for rotations about an axis; for spheres, the
+  /// distance between the centers.
   /// \param points 3 x N, finite, input frame; N >= 1. The vertices of a mesh, or of its convex hull, are enough.
   /// \return distance, input units.
   /// \throws std::invalid_argument without a point.
@@ -141,24 +144,26 @@ struct ObjectSymmetries {
 };
 
 /// Finds the group of rotations of a shape: both the rotations that planes of symmetry generate and those of shapes
-/// without any plane, such as propellers. It carries the paper's transform and refinement over from reflections to
+/// without any plane, such as propellers. It extends the paper's transform and refinement from reflections to
 /// rotations, as its future work suggests (Section 6).
 ///
-/// The distance transform tells in which directions axes through the center of mass are likely. Rotations about these
+/// The distance transform shows in which directions axes through the center of mass are likely. Rotations about these
 /// axes are refined as planes are, and judged by the share of the surface that they map to within the tolerance of the
-/// surface. A fold has to beat the rotations halfway between its own; where all rotations hold, the axis is one of
-/// revolution. The greatest group that explains the axes is then fitted as a whole, and has to hold as a whole.
-/// \param points 3 x N, finite, input units; at least 20 distinct ones, not all on a line, that show the object from all
-/// sides.
+/// surface. A fold is accepted only if the rotations halfway between its own fail clearly more; if all rotations fit,
+/// the axis is one of revolution. The greatest group that explains the axes is then fitted as a whole, and must fit as
+/// a whole.
+/// \param points 3 x N, finite, input units; at least 20 distinct ones, not all on a line, that show the object from
+/// all sides.
 /// \param options what symmetric means, and limits of the search.
-/// \return the group, in the input frame; C_1 for a shape without symmetry, and, with a reason, confidence 0 and support
-/// 0, for points that resolve no answer.
+/// \return the group, in the input frame; C_1 for a shape without symmetry, and, with a reason, confidence 0 and
+/// support 0, for points that resolve no answer.
 /// \throws std::invalid_argument for bad options, values that are not finite, too few points and points on a line.
 ObjectSymmetries objectSymmetries(const PointsRef& points, const ObjectSymmetryOptions& options = {});
 
-/// The same for a mesh: the group is moved, as a whole, to where it maps the mesh itself onto itself. At a tolerance
-/// that the points do not resolve, the group found at the default tolerance counts too if the mesh keeps to the limits.
-/// \param points spread over the mesh.
+/// The same for a mesh: the group, as a whole, is moved to where it maps the mesh best onto itself. If the points do
+/// not resolve the tolerance, the group found at the default tolerance is also accepted if the mesh keeps within the
+/// limits.
+/// \param points points spread over the mesh.
 ObjectSymmetries objectSymmetries(const PointsRef& points, const MeshSurface& mesh,
                                   const ObjectSymmetryOptions& options = {});
 

@@ -20,9 +20,9 @@ public:
   using Size = std::array<int, 3>;  ///< voxels along each axis
 
   /// \param size voxels along each axis of the grid, >= 1.
-  /// \param T_input_index from indices, voxel centers at whole numbers, to the input frame; finite and invertible. It
-  /// holds spacing, origin and direction, see placed().
-  /// \param values one a voxel, the first index fastest; NaN where nothing is known.
+  /// \param T_input_index transform from indices (voxel centers at whole numbers) to the input frame; finite and
+  /// invertible. It holds spacing, origin and direction, see placed().
+  /// \param values one value per voxel, the first index fastest; NaN where nothing is known.
   /// \throws std::invalid_argument naming what is wrong.
   ScalarGrid(const Size& size, const Eigen::Affine3d& T_input_index, std::vector<float> values);
 
@@ -41,15 +41,15 @@ public:
   Eigen::Vector3d spacing() const { return T_input_index_.linear().colwise().norm(); }  ///< input units
 
   /// Whether a point lies in the grid.
-  /// \param p indices, not only whole ones.
+  /// \param p indices, which may be fractional.
   /// \param margin voxels.
-  /// \return whether p lies between voxel centers, the margin or more from the outermost ones.
+  /// \return whether p lies between voxel centers, at least the margin from the outermost ones.
   bool contains(const Eigen::Vector3d& p, const Eigen::Vector3d& margin = Eigen::Vector3d::Zero()) const {
     return (p.array() >= margin.array()).all() && (p.array() <= last_.array() - margin.array()).all();
   }
 
   /// Trilinear interpolation.
-  /// \param p indices, where contains().
+  /// \param p indices for which contains() is true.
   double at(const Eigen::Vector3d& p) const;
 
 private:
@@ -59,24 +59,25 @@ private:
   Eigen::Affine3d T_input_index_;
   std::vector<float> values_;
   Eigen::Vector3d last_;             ///< indices of the last voxel
-  std::array<std::size_t, 3> step_;  ///< to the next voxel along each axis; 0 where there is one only
+  std::array<std::size_t, 3> step_;  ///< index step to the next voxel along each axis; 0 if there is only one
 };
 
-/// The intensities of a volume that count: \p low and less become 0, \p high and more become 1.
+/// The range of intensities that is mapped to [0, 1]: \p low and less become 0, \p high and more become 1.
 struct VolumeLevels {
-  double low = 0.0;   ///< input intensity
-  double high = 0.0;  ///< input intensity; low = high = 0: background and brightest half percent of the voxels
+  double low = 0.0;  ///< input intensity that becomes 0
+  /// Input intensity that becomes 1; low = high = 0: background and brightest half percent of the voxels.
+  double high = 0.0;
 
   /// \throws std::invalid_argument unless both are finite and low < high, or both are 0.
   void validate() const;
 };
 
-/// Thrown where a volume holds no answer: too few voxels, no finite value, all values equal.
+/// Thrown if a volume holds no answer: too few voxels, no finite value, all values equal.
 struct VolumeWithoutAnswer : std::invalid_argument {
   using std::invalid_argument::invalid_argument;
 };
 
-/// A volume as the function f of the transform, on no more voxels than wanted and a little smoothed.
+/// A volume as the function f of the transform, reduced to a given number of voxels and slightly smoothed.
 struct VolumeFunction {
   /// \param volume at least 4 voxels along each axis.
   /// \param max_voxels groups of voxels are averaged until there are no more than this, >= 4096.
@@ -86,9 +87,9 @@ struct VolumeFunction {
   /// The same function on fewer voxels.
   VolumeFunction(const VolumeFunction& finer, std::size_t max_voxels, int num_threads = 0);
 
-  ScalarGrid f;         ///< in [0, 1]
+  ScalarGrid f;         ///< f at the voxels, in [0, 1]
   double body = 0.5;    ///< f of the border between background and body (Otsu's threshold)
-  VolumeLevels levels;  ///< that were used
+  VolumeLevels levels;  ///< levels that were used
 
   /// \return 3 x N voxel centers of the body, input frame; with \p surface only those with a neighbor outside.
   Points bodyPoints(bool surface) const;

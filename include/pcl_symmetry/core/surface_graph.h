@@ -14,9 +14,9 @@ struct SurfaceGraph {
   struct Edge {
     int from;      ///< element, in [0, N)
     int to;        ///< element, in [0, N)
-    float length;  ///< of the border, input units
-    /// Angle between the two normals, in [-pi, pi] radians; > 0 where the surface is concave. For points 1.5 times
-    /// that, because their normals are means over neighbors.
+    float length;  ///< length of the border, input units
+    /// Angle between the two normals, in [-pi, pi] radians; > 0 where the surface is concave. For points it is 1.5
+    /// times the angle, because their normals are averages over neighbors.
     float concavity;
   };
 
@@ -58,7 +58,8 @@ struct SurfaceGraph {
 /// \param polygons three or more indices into the vertices each. A polygon with a vertex that is not finite becomes an
 /// element without neighbors.
 /// \return one element per polygon, in input order.
-/// \throws std::invalid_argument if an index is out of range, no polygon has an area, or the extent is not 1e-15 to 1e15.
+/// \throws std::invalid_argument if an index is out of range, no polygon has an area, or the extent is not 1e-15 to
+/// 1e15.
 SurfaceGraph meshGraph(const PointsRef& vertices, const std::vector<std::vector<int>>& polygons);
 
 /// The graph of a cloud: two points are neighbors if one of them is among the nearest of the other.

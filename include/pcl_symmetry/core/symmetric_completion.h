@@ -13,10 +13,10 @@ namespace PCL_SYMMETRY_EXPORTS pcl_symmetry {
 
 /// Options of the completion of a scan by its reflection.
 struct CompletionOptions {
-  /// Reflected points within this distance of a measured point add nothing; local spacings of the points, > 0.
+  /// Distance from a measured point within which reflected points add nothing, local spacings of the points, > 0.
   double overlap = 1.5;
-  /// Reflected points more than this in front of the visible surface lie in free space; local spacings of the points,
-  /// >= 0.
+  /// Distance in front of the visible surface beyond which reflected points lie in free space, local spacings of the
+  /// points, >= 0.
   double margin = 3.0;
   int num_threads = 0;  ///< >= 0; 0 = one per core
 
@@ -24,12 +24,13 @@ struct CompletionOptions {
   void validate() const;
 };
 
-/// The plane through an axis of revolution that reflects the seen side onto the other: it lies across the view.
-/// \param viewpoint where the scanner stood; on the axis it gives no direction, and any plane through the axis is
-/// returned.
+/// The plane through an axis of revolution that reflects the visible side onto the hidden one: it is perpendicular to
+/// the view.
+/// \param viewpoint where the scanner stood; a viewpoint on the axis gives no direction, and any plane through the axis
+/// is returned.
 ReflectionPlane planeAcrossView(const Line3d& axis, const Eigen::Vector3d& viewpoint);
 
-/// The same through the center of symmetry, or else the best axis, that was found; none where there is neither.
+/// The same through the center of symmetry that was found, or else through the best axis; nothing if there is neither.
 std::optional<ReflectionPlane> planeAcrossView(const Detection& found, const Eigen::Vector3d& viewpoint);
 
 /// The points of a partial scan whose reflections show unseen parts of a symmetric object: they fall neither onto the
@@ -38,7 +39,7 @@ std::optional<ReflectionPlane> planeAcrossView(const Detection& found, const Eig
 /// \param plane a symmetry plane of the object, input frame.
 /// \param options tolerances in spacings of the points.
 /// \param visibility what the scanner saw, input frame; null = nothing is known about it.
-/// \return indices of these points, rising.
+/// \return indices of these points, ascending.
 /// \throws std::invalid_argument for bad options.
 std::vector<int> completingPoints(const PointsRef& points, const ReflectionPlane& plane,
                                   const CompletionOptions& options = {}, const Visibility* visibility = nullptr);

@@ -16,9 +16,9 @@ namespace PCL_SYMMETRY_EXPORTS pcl_symmetry {
 /// Numbers of bins of a map of planes. The defaults have as many directions as the paper's 64 x 64, but are as fine in
 /// phi at the equator as in theta, because a peak of D is narrower than a bin of 5.6 degrees.
 struct MapSize {
-  int num_theta = 32;   ///< in [1, 4096]
-  int num_phi = 128;    ///< even, in [2, 4096]
-  int num_radius = 64;  ///< in [1, 4096]
+  int num_theta = 32;   ///< bins of theta, in [1, 4096]
+  int num_phi = 128;    ///< bins of phi, even, in [2, 4096]
+  int num_radius = 64;  ///< bins of r, in [1, 4096]
 
   /// \throws std::invalid_argument naming field, value and rule.
   void validate() const;
@@ -90,8 +90,8 @@ public:
   /// \return the bin at (t + dt, p + dp, k + dk), across the seams; none beyond the ends of r.
   std::optional<Bin> step(const Bin& bin, int dt, int dp, int dk) const;
 
-  /// Calls visit(index) for the bins around a bin, some of them twice, until a call returns false: those one step away
-  /// in theta and r, and as many steps in phi as cover the angle of one step in theta.
+  /// Calls visit(index) for the bins around a bin, some of them twice, until a call returns false. These are the bins
+  /// one step away in theta and r, and as many steps in phi as cover the angle of one step in theta.
   ///
   /// At the equator these are the 26 neighbors of the paper. Departure from the paper: near the pole, bins are slivers
   /// in phi, and one peak would be a maximum in many of them.
@@ -105,7 +105,7 @@ public:
       const int last = beside.radius + 1 < num_radius_ ? beside.radius + 1 : beside.radius;
       const int reach = phiReach(beside.theta);
       for (int i = 0; i <= 2 * reach; ++i) {
-        const int phi = beside.phi + (i % 2 ? (i + 1) / 2 : -i / 2);  // 0, 1, -1, 2, -2 ... beside: the nearest first
+        const int phi = beside.phi + (i % 2 ? (i + 1) / 2 : -i / 2);  // steps 0, 1, -1, 2, -2 ...: the nearest first
         const int wrapped = phi < 0 ? phi + num_phi_ : phi < num_phi_ ? phi : phi - num_phi_;
         const std::size_t row = index({beside.theta, wrapped, 0});
         for (int k = first; k <= last; ++k)
@@ -143,7 +143,7 @@ struct SymmetryMap {
   PlaneGrid grid;  ///< the planes of the values
   /// grid.size() values of D, 1 for a perfect symmetry. Estimates exceed [0, 1] by their error.
   std::vector<float> values;
-  TransformMethod method = TransformMethod::Sampled;  ///< that made the values
+  TransformMethod method = TransformMethod::Sampled;  ///< estimator that made the values
   double sigma = 0.0;                                 ///< width of the GEDT that the map was made from, input units
   /// Mean of the points, input frame. The threshold 1 - r / R of Section 4.4 measures r from it.
   Eigen::Vector3d center_of_mass = Eigen::Vector3d::Zero();
@@ -181,9 +181,9 @@ struct LocalMaximaOptions {
 
 /// A bin higher than all its neighbors.
 struct LocalMaximum {
-  PlaneGrid::Bin bin;     ///< whose value is the greatest among its neighbors
+  PlaneGrid::Bin bin;     ///< bin whose value is the greatest among its neighbors
   ReflectionPlane plane;  ///< at the bin center, input frame
-  double value;           ///< D
+  double value;           ///< D at the bin
 };
 
 /// Local maxima of the map that pass the thresholds (Section 4.4).

@@ -14,10 +14,11 @@ struct ViewPlane {
 };
 
 /// W of Section 5.4: planes, and maxima in directions without planes, strongest first.
-/// \param axes directions and scores of axes of revolution. Each counts as a fan of planes that weighs as two planes.
-/// \param maxima normals and values of maxima of the map, strongest first. As long as some direction has less than a fifth
-/// of the best score, the strongest whose normal is more than 60 degrees from all planes so far counts too: without the
-/// weak maximum across its axis a mug would be best seen level from the side.
+/// \param axes directions and scores of axes of revolution. Each counts as a fan of planes with the weight of two
+/// planes.
+/// \param maxima normals and values of maxima of the map, strongest first. As long as some direction scores less than a
+/// fifth of the best one, the strongest maximum whose normal is more than 60 degrees from all planes so far is added:
+/// without the weak maximum perpendicular to its axis, a mug would be best seen level from the side.
 std::vector<ViewPlane> viewPlanes(std::vector<ViewPlane> planes, const std::vector<ViewPlane>& axes,
                                   const std::vector<ViewPlane>& maxima);
 
@@ -40,7 +41,7 @@ double viewpointScore(const std::vector<ViewPlane>& planes, const Eigen::Vector3
 /// u is largest in the direction of that sum. From each of many evenly spread directions this step is repeated; it
 /// never lowers S.
 /// \param planes W.
-/// \return none if no plane has a weight > 0: then all directions are equal.
+/// \return empty if no plane has a weight > 0: then all directions are equal.
 std::vector<RankedView> bestViews(const std::vector<ViewPlane>& planes);
 
 /// The direction with the least S.

@@ -51,7 +51,8 @@ public:
   /// cone of 75 degrees around one direction give one.
   /// \param points 3 x N, finite: all that the scanner measured.
   /// \param viewpoint in the frame of the points.
-  /// \param max_pixels of each image, >= 16: larger scenes get larger pixels. An image takes four bytes a pixel.
+  /// \param max_pixels greatest number of pixels of each image, >= 16: larger scenes get larger pixels. An image takes
+  /// four bytes a pixel.
   /// \return nothing without a point other than the viewpoint.
   static std::optional<Visibility> ofScene(const PointsRef& points, const Eigen::Vector3d& viewpoint,
                                            std::size_t max_pixels = kMaxPixels);
@@ -61,9 +62,10 @@ public:
   /// \throws std::invalid_argument without a view.
   static Visibility together(const std::vector<Visibility>& views);
 
-  /// This visibility of objects on a table: none of them reaches into it, so that space behind its surface is free.
+  /// This visibility for objects on a table: no object reaches into it, so that space behind its surface counts as
+  /// free.
   /// \param support unit normal n toward the objects, then d: n . x + d = 0 on the surface, frame of the points.
-  /// \param margin by which objects may seem to reach into it, input units, >= 0.
+  /// \param margin distance by which objects may seem to reach into the table, input units, >= 0.
   Visibility withSupport(const Eigen::Vector4d& support, double margin) const;
 
   /// This visibility with errors of the inverse depths, which for stereo and structured light are equal at all depths.
@@ -83,7 +85,7 @@ public:
   /// \return the planes of withSupport() with their margins: no object lies below n . x + d = 0.
   const std::vector<Eigen::Vector4d>& supports() const { return supports_; }
 
-  /// Pixels of an image made from points: 4 MB an image.
+  /// Greatest number of pixels of an image made from points: 4 MB per image.
   static constexpr std::size_t kMaxPixels = 1u << 20;
 
   /// \param x in the frame of the points.
@@ -97,7 +99,7 @@ public:
   bool isInPicture(const Eigen::Vector3d& x) const;
 
   /// \param points 3 x M, in the frame of the points.
-  /// \return for each whether depthBehind() is negative: M values, 1 in free space.
+  /// \return M values, 1 where depthBehind() is negative, in free space.
   std::vector<char> areFree(const Eigen::Matrix3Xd& points) const;
 
   /// The share of a cloud that is hidden by the cloud itself.
@@ -125,18 +127,20 @@ private:
   struct DepthView {
     Projection projection;
     int width, height;
-    std::shared_ptr<const std::vector<float>> depths;  // in the units of the original image
+    std::shared_ptr<const std::vector<float>> depths;  // in units of the original image
     float outside;
-    double unit = 1.0;                 // of this frame, in units of the depths
-    double inverse_depth_error = 0.0;  // in units of the depths
-    bool is_of_points = false;         // made from points: it ends where they do, and the sensor's image may not
-    // Lines in homogeneous pixels at which the image cut the object: no ray passed where their product is positive.
+    double unit = 1.0;                 // unit of this frame, in units of the depths
+    double inverse_depth_error = 0.0;  // standard deviation, 1 / units of the depths
+    // Made from points: such an image ends where the points do, unlike the image of the sensor.
+    bool is_of_points = false;
+    // Lines in homogeneous pixels along which the image border cut the object: no ray passed where the product is
+    // positive.
     std::vector<Eigen::Vector3d> sides;
 
     float depth(int u, int v) const {
       return static_cast<float>((*depths)[static_cast<std::size_t>(v) * width + u] / unit);
     }
-    /// \param image of a point by the projection.
+    /// \param image the point, mapped by the projection.
     double depthBehind(const Eigen::Vector3d& image) const;
   };
 

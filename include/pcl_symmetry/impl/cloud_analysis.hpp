@@ -50,13 +50,13 @@ protected:
   using pcl::PCLBase<PointT>::use_indices_;
 
   /// Begins with no cloud.
-  /// \param name of the class, for messages.
+  /// \param name name of the class, for messages.
   CloudAnalysis(std::string name, std::size_t max_points, std::int64_t min_max_points = 2)
       : name_(std::move(name)), max_points_(max_points), min_max_points_(min_max_points) {}
 
   const std::string& getClassName() const { return name_; }  ///< for messages
 
-  /// Forgets everything that was found in the cloud; options stay.
+  /// Discards everything that was found in the cloud; options stay.
   virtual void clearResults() {
     used_indices_.clear();
     reason_.clear();
@@ -64,7 +64,7 @@ protected:
 
   /// Analyzes a function on a grid in place of a cloud (Section 4.2), until a cloud is set.
   /// \param volume such as a CT or MR image; results are in its input frame.
-  /// \param levels the intensities that count.
+  /// \param levels the range of intensities that is used.
   /// \throws pcl::BadArgumentException for bad levels.
   void setInputVolume(const ScalarGrid::ConstPtr& volume, const VolumeLevels& levels = {}) {
     detail::withBadArguments([&] { levels.validate(); });
@@ -82,7 +82,7 @@ protected:
     return giveNoAnswer("input cloud: not set");
   }
 
-  /// The same from another cloud with the points of the input, such as a filtered one.
+  /// The same for another cloud with the points of the input, such as a filtered one.
   template <typename OtherPointT>
   Points selectFrom(const pcl::PointCloud<OtherPointT>& cloud, std::uint64_t seed) {
     clearResults();
@@ -103,7 +103,7 @@ protected:
   }
 
   ScalarGrid::ConstPtr volume_;  ///< null where a cloud is analyzed
-  VolumeLevels levels_;          ///< of the volume
+  VolumeLevels levels_;          ///< levels of the volume
 
 private:
   std::string name_;
@@ -115,41 +115,42 @@ private:
 
 /// The input of classes that also take into account what a scanner saw.
 ///
-/// By default the data decide where the scanner stood: an organized cloud shows it by its own rays, any other cloud by
+/// By default, the data decide where the scanner stood: an organized cloud shows it by its own rays, any other cloud by
 /// its sensor_origin_ if the points can have been seen from there, or by the density of its points, which in a scan
 /// falls with the slant and the distance of the surface. A sensor_origin_ of 0 0 0 without a rotation may be a default:
-/// the density has to confirm it. Reflections that land in free space then count against a plane; reflections that land
-/// behind the surface do not count.
+/// the density has to confirm it. Reflections in free space then count against a plane; reflections behind the surface
+/// do not count.
 ///
-/// Where setIndices() names a part of the cloud, what the scanner saw is made of the whole cloud: another object in
-/// front hides what lies behind it, space beyond the cloud is unknown, and none of the part lies behind the table,
-/// floor or wall that it stands on or before. For many parts of one scene, SymmetryScene finds these planes once.
+/// If setIndices() selects a part of the cloud, what the scanner saw is determined from the whole cloud: another object
+/// in front hides what lies behind it, space beyond the cloud is unknown, and nothing of the part lies behind the
+/// table, floor or wall that it stands on or in front of. For many parts of one scene, SymmetryScene finds these planes
+/// once.
 template <typename PointT>
 class ScanAnalysis : public CloudAnalysis<PointT> {
 public:
   /// \param mode how the viewpoint is found; default Viewpoint::Mode::Auto.
   void setViewpointMode(Viewpoint::Mode mode) { viewpoint_.mode = mode; }
   /// \param position where the scanner stood, input frame; it must see the points within 75 degrees of one direction.
-  /// \throws pcl::BadArgumentException where it is not finite.
+  /// \throws pcl::BadArgumentException if it is not finite.
   void setViewpoint(const Eigen::Vector3d& position) { setViewpoint(Viewpoint{Viewpoint::Mode::Given, position}); }
-  /// Mode and position at once.
+  /// Sets mode and position at once.
   void setViewpoint(const Viewpoint& viewpoint) { viewpoint_ = detail::checkedViewpoint(viewpoint); }
   const Viewpoint& getViewpoint() const { return viewpoint_; }  ///< see setViewpoint()
 
-  /// The plane that the object stands on, a x + b y + c z + d = 0 in the frame of the input: nothing of it lies below.
-  /// It counts where there is a viewpoint. Sparse points without order, as those of a LiDAR's rings, are then decided
-  /// by the middle plane of the upright box around them.
+  /// Sets the plane that the object stands on, a x + b y + c z + d = 0 in the frame of the input: nothing of the object
+  /// lies below. It is used only with a viewpoint. Sparse unorganized points, such as the rings of a LiDAR, are then
+  /// decided by the middle plane of the upright box around them.
   /// \throws pcl::BadArgumentException for a zero normal or a value that is not finite.
   void setGround(const Eigen::Vector4d& coefficients) { ground_ = detail::unitPlane(coefficients); }
 
-  /// Gives what the scanners of a scene saw, made once for the analyses of all its objects, in place of what the
-  /// viewpoint and the input tell. The errors of its depths are then taken out once, too: withoutDepthErrors().
-  /// \param seen in the frame of the input; null (default): each analysis finds out for itself.
+  /// Sets what the scanners of a scene saw, determined once for all its objects, in place of what follows from the
+  /// viewpoint and the input. The errors of its depths should then also be removed once, by withoutDepthErrors().
+  /// \param seen in the frame of the input; null (default): each analysis determines it for itself.
   void setSeenSpace(const SeenSpace::ConstPtr& seen) { seen_space_ = seen; }
 
   /// \return whether the last analysis used a viewpoint.
   bool usedViewpoint() const { return used_space_.visibility() != nullptr; }
-  /// \return where the last analysis had its viewpoint from.
+  /// \return how the last analysis determined its viewpoint.
   ViewpointSource getViewpointSource() const { return used_space_.source(); }
   /// \return the viewpoint that the last analysis used, input frame; nothing where it used none.
   std::optional<Eigen::Vector3d> getUsedViewpoint() const {
@@ -165,9 +166,9 @@ protected:
     used_space_ = {};
   }
 
-  /// Selects points, from which the errors of a depth camera are taken out: rows and columns tell them.
+  /// Selects points, from which the errors of a depth camera are removed if rows and columns show one.
   /// \param num_threads 0 = one per core.
-  /// \param as_measured leaves them in.
+  /// \param as_measured keeps the errors.
   Points selectInput(std::uint64_t seed, int num_threads, bool as_measured = false) {
     const bool asks_data = !as_measured && !seen_space_ && viewpoint_.mode == Viewpoint::Mode::Auto;
     frame_ = asks_data && this->input_ && this->input_->isOrganized() && this->input_->width > 1
@@ -196,15 +197,15 @@ protected:
     if (ground_) used_space_ = detail::standingOn(used_space_, *ground_, points, tolerance);
     return seen();
   }
-  /// \return what seenSpace() returned last; null where the input that was selected since then has none.
+  /// \return what seenSpace() returned last; null if the input selected since then has none.
   const Visibility* seen() const { return used_space_.visibility(); }
 
 private:
   Viewpoint viewpoint_;
   std::optional<Eigen::Vector4d> ground_;
   SeenSpace::ConstPtr seen_space_;
-  detail::DepthFrame frame_;  // of the analysis that runs
-  SeenSpace used_space_;      // by the last analysis
+  detail::DepthFrame frame_;  // of the current analysis
+  SeenSpace used_space_;      // of the last analysis
 };
 
 }  // namespace pcl_symmetry

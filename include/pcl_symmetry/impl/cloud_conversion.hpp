@@ -35,7 +35,7 @@ namespace detail {
 struct MeshArrays {
   Points vertices;                         ///< 3 x V, input units; may be not finite
   std::vector<std::vector<int>> polygons;  ///< indices of vertices, each valid
-  std::vector<Eigen::Vector3i> triangles;  ///< those of a polygon have its first corner in common
+  std::vector<Eigen::Vector3i> triangles;  ///< triangles of the polygons; those of one polygon share its first corner
 
   /// \return whether any polygon with finite corners has an area.
   bool hasArea() const;
@@ -70,13 +70,13 @@ void changeOptions(Options& options, const Change& change) {
   options = std::move(changed);
 }
 
-/// \throws pcl::BadArgumentException where \p value is below \p lower_limit.
+/// \throws pcl::BadArgumentException if \p value is below \p lower_limit.
 void checkAtLeast(const char* field, std::int64_t value, std::int64_t lower_limit);
 
 /// \param points 3 x N, finite.
 /// \param input what the points are called in the sentence.
-/// \param min_points that an answer needs.
-/// \param indices that the points were chosen by; null: all points were taken.
+/// \param min_points least number of points for an answer.
+/// \param indices the indices by which the points were chosen; null: all points were taken.
 /// \return why the points hold no answer, one sentence; empty where they can be analyzed.
 std::string reasonForNoAnswer(const Points& points, const std::string& input = "input cloud", int min_points = 0,
                               const pcl::Indices* indices = nullptr);
@@ -90,13 +90,13 @@ struct SelectedPoints {
   pcl::Indices indices;  ///< N indices into the cloud
 };
 
-/// Draws one of each of \p max_points equal runs of a sequence.
+/// Draws one element of each of \p max_points equal runs of a sequence.
 /// \param num_points length of the sequence, more than \p max_points.
-/// \return max_points positions in the sequence, rising.
+/// \return max_points positions in the sequence, ascending.
 std::vector<std::size_t> drawOneOfEachRun(std::size_t num_points, std::size_t max_points, std::uint64_t seed);
 
-/// The finite points of a cloud. Of more than \p max_points, one of each of max_points equal runs is drawn, so that the
-/// time and memory of an analysis do not grow with the cloud.
+/// The finite points of a cloud. From more than \p max_points, one of each of max_points equal runs is drawn, so that
+/// the time and memory of an analysis do not grow with the cloud.
 /// \param indices the points of the cloud to choose from; null: all.
 /// \throws pcl::BadArgumentException for an index that the cloud does not have.
 template <typename PointT>
@@ -142,13 +142,13 @@ std::optional<Visibility> seenByOrganizedCloud(const pcl::PointCloud<pcl::PointX
 
 /// Seen, free and unknown space of points without rows and columns.
 /// \param points 3 x N, finite, N >= 1.
-/// \param stored viewpoint, for Viewpoint::Mode::Auto: where the points can be seen from there; a default one only where
-/// the points show by themselves that they are a single view, which the stored viewpoint explains as well as any.
-/// \param is_default nobody may have set it: that is no evidence by itself.
-/// \throws std::invalid_argument where the points surround a viewpoint that was given.
+/// \param stored viewpoint stored with the cloud, for Viewpoint::Mode::Auto. It is used if the points can be seen from
+/// there; a default one only if the points by themselves show a single view, which it explains as well as any other.
+/// \param is_default whether the stored viewpoint may be a default, which is no evidence by itself.
+/// \throws std::invalid_argument if the points surround a given viewpoint.
 SeenSpace seenFrom(const Points& points, const Viewpoint& viewpoint, const Eigen::Vector3d& stored, bool is_default);
 
-/// \return whether a cloud has its sensor at 0 0 0, not rotated.
+/// \return whether the sensor of a cloud is at 0 0 0 and not rotated.
 template <typename PointT>
 bool hasDefaultSensor(const pcl::PointCloud<PointT>& cloud) {
   return cloud.sensor_origin_.template head<3>().isZero(0.0f) && cloud.sensor_orientation_.vec().isZero(0.0f);
@@ -156,8 +156,8 @@ bool hasDefaultSensor(const pcl::PointCloud<PointT>& cloud) {
 
 /// Seen, free and unknown space of a cloud.
 /// \param points the points of the cloud that are analyzed, 3 x N, finite, N >= 1.
-/// \param is_part the analyzed points are a part of the cloud: the others may hide it.
-/// \throws std::invalid_argument where the points surround a viewpoint that was given.
+/// \param is_part whether the analyzed points are only a part of the cloud, which the other points may hide.
+/// \throws std::invalid_argument if the points surround a given viewpoint.
 template <typename PointT>
 SeenSpace findSeenSpace(const pcl::PointCloud<PointT>& cloud, const Points& points, const Viewpoint& viewpoint,
                         bool is_part = false) {
@@ -171,32 +171,33 @@ SeenSpace findSeenSpace(const pcl::PointCloud<PointT>& cloud, const Points& poin
 
 /// An organized cloud whose rows and columns are those of a depth camera.
 struct DepthFrame {
-  pcl::PointCloud<pcl::PointXYZ>::ConstPtr filtered;  ///< without the errors of its depths; null where it has none
-  SeenSpace seen;                                     ///< by its own rays; empty where no camera fits
+  /// The cloud without the errors of its depths; null if it has none.
+  pcl::PointCloud<pcl::PointXYZ>::ConstPtr filtered;
+  SeenSpace seen;  ///< space seen along its own rays; empty if no camera fits
 };
 
 /// \param num_threads 0 = one per core.
 DepthFrame depthFrame(const pcl::PointCloud<pcl::PointXYZ>::ConstPtr& cloud, int num_threads);
 
-/// \return the plane with a unit normal.
+/// \return the plane, scaled to a unit normal.
 /// \throws pcl::BadArgumentException for a zero normal or a value that is not finite.
 Eigen::Vector4d unitPlane(const Eigen::Vector4d& coefficients);
 
 /// The same space for points that stand on a ground.
 /// \param ground a plane with a unit normal of any sign; the viewpoint lies above it.
 /// \param points 3 x N, N >= 1.
-/// \param tolerance by which points may seem to reach into it, as a share of their diagonal.
+/// \param tolerance distance by which points may seem to reach into the ground, as a share of their diagonal.
 /// \return \p seen itself where it has no viewpoint.
 SeenSpace standingOn(const SeenSpace& seen, const Eigen::Vector4d& ground, const Points& points, double tolerance);
 
-/// The same space about a part of a scene: behind the supporting planes that it stands on or before, which PCL's sample
-/// consensus finds among the other points, none of it is.
-/// \param part indices of its points, at least one of them finite.
+/// The same space around a part of a scene: nothing of the part lies behind the supporting planes that it stands on or
+/// in front of, which PCL's sample consensus finds among the other points.
+/// \param part indices of the points of the part, at least one of them finite.
 /// \param tolerance how far a symmetric surface may be off, as a share of the diameter.
 SeenSpace standingInScene(const SeenSpace& seen, const pcl::PointCloud<pcl::PointXYZ>::ConstPtr& scene,
                           const pcl::Indices& part, double tolerance);
 
-/// \return nothing where there is no viewpoint.
+/// \return what the scanner saw; nothing without a viewpoint.
 inline std::optional<Visibility> visibilityOf(const SeenSpace& seen) {
   return seen.visibility() ? std::optional<Visibility>(*seen.visibility()) : std::nullopt;
 }

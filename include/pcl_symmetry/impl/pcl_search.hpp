@@ -18,12 +18,13 @@ namespace PCL_SYMMETRY_EXPORTS pcl_symmetry {
 
 namespace detail {
 
-/// A search of PCL over some points. Its input cloud is replaced by one of these points.
+/// A search of PCL over some points. Its input cloud is replaced by a cloud of these points.
 template <typename PointT>
 class PCLPointSearch : public ClosestPointSearch {
 public:
   /// Wraps a search of PCL.
-  /// \param one_at_a_time queries wait for each other: the search may not be called from several threads at once.
+  /// \param one_at_a_time whether queries wait for each other because the search may not be called from several
+  /// threads.
   PCLPointSearch(const typename pcl::search::Search<PointT>::Ptr& search, const PointsRef& points, bool one_at_a_time)
       : search_(search), one_at_a_time_(one_at_a_time) {
     const auto cloud = pcl::make_shared<pcl::PointCloud<PointT>>();
@@ -59,11 +60,11 @@ private:
   mutable std::mutex mutex_;
 };
 
-/// The search that a class uses for a given one; PCL_WARN reports what it cannot honor.
-/// \param search null: the library's own.
+/// Wraps the search that a user gave to a class; PCL_WARN reports what cannot be honored.
+/// \param search null: the library's own search.
 /// \param class_name for messages.
-/// \param num_threads of the class.
-/// \return null where the library's own search is used.
+/// \param num_threads number of threads of the class.
+/// \return null if the library's own search is used.
 template <typename PointT>
 MakeSearch searchOf(const typename pcl::search::Search<PointT>::Ptr& search, const std::string& class_name,
                     int num_threads) {
@@ -89,7 +90,7 @@ MakeSearch searchOf(const typename pcl::search::Search<PointT>::Ptr& search, con
 
 }  // namespace detail
 
-/// An analysis with a struct of options, which finds the closest points by a search.
+/// An analysis with a struct of options that finds the closest points by a search.
 /// \param Analysis CloudAnalysis or ScanAnalysis of a point type.
 template <typename Analysis, typename Options>
 class SearchingAnalysis : public Analysis {
@@ -98,35 +99,35 @@ public:
   using SearchPtr = typename pcl::search::Search<PointT>::Ptr;
 
   /// Sets every option at once.
-  /// \throws pcl::BadArgumentException "field = value, must be rule", as all setters here.
+  /// \throws pcl::BadArgumentException "field = value, must be rule", as do all setters here.
   void setOptions(const Options& options) {
     change([&](Options& changed) { changed = options; });
   }
   const Options& getOptions() const { return options_; }            ///< see setOptions()
-  void setRandomSeed(std::uint64_t seed) { options_.seed = seed; }  ///< of all random draws
+  void setRandomSeed(std::uint64_t seed) { options_.seed = seed; }  ///< sets the seed of all random draws
   /// \param num_threads >= 0; 0 = one per core (default). The result does not depend on it.
   void setNumberOfThreads(int num_threads) {
     change([&](Options& changed) { changed.num_threads = num_threads; });
   }
 
-  /// Finds the closest points by a search of PCL in place of FLANN's k-d tree: those of Iterative Symmetric Points, the
-  /// neighbors that SymmetrySegmentation joins, and for SymmetryAlignment those of the axes of rotations of a scan
-  /// (FrameOptions::rotations).
-  /// \param search is given clouds of the points used without copies, of large clouds a subset, and of parts of them.
+  /// Sets a search of PCL for the closest points, in place of FLANN's k-d tree. It is used by Iterative Symmetric
+  /// Points, for the neighbors that SymmetrySegmentation joins, and by SymmetryAlignment for the axes of rotation of a
+  /// scan (FrameOptions::rotations).
+  /// \param search receives clouds of the distinct points used, of a large cloud a subset, and of parts of them.
   /// pcl::search::KdTree and FlannSearch are called from all threads, others from one at a time.
-  /// pcl::search::OrganizedNeighbor is not used, because reflected points lie behind what the sensor saw. PCL_WARN says
+  /// pcl::search::OrganizedNeighbor is not used, because reflected points lie behind what the sensor saw; PCL_WARN says
   /// so. Null: FLANN (default).
   void setSearchMethod(const SearchPtr& search) { search_ = search; }
 
 protected:
   using Analysis::Analysis;
 
-  /// Changes the options; bad ones are refused, and those of before stay.
+  /// Changes the options; if the new ones are invalid, the old ones stay.
   template <typename Change>
   void change(const Change& change) {
     detail::changeOptions(options_, change);
   }
-  /// \return null where the library's own search is used.
+  /// \return null if the library's own search is used.
   MakeSearch makeSearch() const {
     return detail::searchOf<PointT>(search_, this->getClassName(), options_.num_threads);
   }

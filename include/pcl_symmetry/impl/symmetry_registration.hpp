@@ -15,8 +15,8 @@ namespace PCL_SYMMETRY_EXPORTS pcl_symmetry {
 
 namespace detail {
 
-/// Finds nothing near points that are not finite, at which PCL's tree aborts: pcl::Registration::getFitnessScore() then
-/// leaves them out.
+/// Finds nothing near points that are not finite, at which PCL's tree would abort: pcl::Registration::getFitnessScore()
+/// then leaves them out.
 template <typename PointT>
 class FinitePointTree : public pcl::search::KdTree<PointT> {
 public:

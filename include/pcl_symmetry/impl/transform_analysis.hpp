@@ -22,8 +22,8 @@ public:
   using CloudAnalysis<PointT>::setInputVolume;
 
   /// \param num_cells cells of the distance transform along each side, in [8, 512]; default 64, in
-  /// AxialSymmetryTransform 32. Twice as many see details half as large.
-  /// \throws pcl::BadArgumentException "field = value, must be rule", as all setters here.
+  /// AxialSymmetryTransform 32. Twice as many resolve details half as large.
+  /// \throws pcl::BadArgumentException "field = value, must be rule", as do all setters here.
   void setNumCells(int num_cells) {
     detail::changeOptions(edt_options_, [&](GaussianEdtOptions& changed) { changed.num_cells = num_cells; });
   }
@@ -68,7 +68,7 @@ protected:
     return points;
   }
 
-  GaussianEdtOptions edt_options_;          ///< of the distance transform
+  GaussianEdtOptions edt_options_;          ///< options of the distance transform
   std::shared_ptr<const GaussianEdt> edt_;  ///< see getDistanceTransform()
 };
 
