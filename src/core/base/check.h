@@ -5,7 +5,7 @@
 
 namespace pcl_symmetry {
 
-/// Refuses a bad parameter with a message that names field, value and rule: "sigma = -1, must be > 0".
+/// Throws for a bad parameter, with a message that names field, value and rule: "sigma = -1, must be > 0".
 /// \param valid whether the value obeys the rule.
 /// \param rule the rule as it reads after "must be".
 /// \throws std::invalid_argument unless \p valid.

@@ -9,8 +9,8 @@ namespace pcl_symmetry {
 
 namespace {
 
-/// Draws the first center with a chance in proportion to weight, each next one to weight times squared distance from
-/// the closest center so far.
+/// Draws the first center with a probability proportional to weight, each following one proportional to weight times
+/// squared distance from the closest center so far.
 Eigen::MatrixXf spreadCenters(const Eigen::MatrixXf& features, const std::vector<float>& weights, int num_clusters,
                               RandomStream& random) {
   const Eigen::Index size = features.cols();
@@ -21,7 +21,7 @@ Eigen::MatrixXf spreadCenters(const Eigen::MatrixXf& features, const std::vector
     double rest = random.uniform() * chance.sum();
     Eigen::Index chosen = 0;
     while (chosen + 1 < size && (rest -= chance[chosen]) >= 0.0) ++chosen;
-    while (chance[chosen] <= 0.0) --chosen;  // rounding can end the walk at a feature without a chance
+    while (chance[chosen] <= 0.0) --chosen;  // rounding can end the walk at a feature of probability 0
     centers.conservativeResize(Eigen::NoChange, centers.cols() + 1);
     centers.rightCols(1) = features.col(chosen);
     sq_distance = sq_distance.cwiseMin((features.colwise() - features.col(chosen)).colwise().squaredNorm().transpose());

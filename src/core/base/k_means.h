@@ -16,8 +16,8 @@ struct Clusters {
 /// \param features D x N, finite, N >= 1.
 /// \param weights N values >= 0, not all 0.
 /// \param num_clusters k, >= 1.
-/// \param seed of the starts.
-/// \return the clusters of the best of four tries.
+/// \param seed seed of the starts.
+/// \return the clusters of the best of four runs.
 Clusters kMeans(const Eigen::MatrixXf& features, const std::vector<float>& weights, int num_clusters,
                 std::uint64_t seed = 1);
 

@@ -49,7 +49,7 @@ struct Loop {
   int num_free, num_helpers = 0;  // threads that may still join, and that have joined; guarded by the lock of Threads
   Loop* const outer;
   const std::function<void(std::size_t)>& block;
-  std::mutex mutex;  // of failure
+  std::mutex mutex;  // guards failure
   std::exception_ptr failure;
 };
 

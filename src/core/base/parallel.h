@@ -13,8 +13,8 @@ namespace pcl_symmetry {
 /// \return number of threads to start, at least 1.
 int resolveNumThreads(int num_threads);
 
-/// Calls block(0) ... block(num_blocks - 1), each once, in any order. Threads that
-/// have finished the blocks of an outer call help with calls within its other blocks.
+/// Calls block(0) ... block(num_blocks - 1), each once, in any order. Threads that have finished the blocks of an outer
+/// call help with calls within its other blocks.
 /// \throws whatever a block throws; the first exception if several do.
 void parallelBlocks(std::size_t num_blocks, int num_threads, const std::function<void(std::size_t)>& block);
 

@@ -1,4 +1,4 @@
-/// Small motions: a rotation vector omega, radians, then a translation t, which move x to x + omega x x + t. Their
+/// Small motions, a rotation vector omega (radians) and a translation t, which move x to x + omega x x + t, and their
 /// Gauss-Newton steps.
 #pragma once
 

@@ -14,8 +14,8 @@ namespace pcl_symmetry {
 struct Candidate {
   ReflectionPlane plane;
   bool from_map = false;   ///< a maximum of the map, whose cell it must not leave
-  int iterations = 0;      ///< of all stages
-  bool converged = false;  ///< in the last stage
+  int iterations = 0;      ///< number of iterations in all stages
+  bool converged = false;  ///< whether the last stage converged
   IspStep step = {};       ///< matches of a nearby plane; none where points resolve no surface
   std::shared_ptr<const std::vector<int>> samples = {};  ///< indices of the points that `step` reflected
   double merit = 0.0;                                    ///< PlaneFit::merit() after the last stage
@@ -27,7 +27,7 @@ struct Candidate {
 std::vector<Candidate> gatherCandidates(const NormalizedCloud& cloud, const SymmetryMap& map,
                                         const DetectionOptions& options);
 
-/// \return the planes of the given kinds, in their order, taken from the input frame to the normalized frame.
+/// \return the planes of the given kinds, in their order, transformed from the input frame to the normalized frame.
 std::vector<ReflectionPlane> planesOf(const std::vector<SymmetryPlane>& planes, std::initializer_list<PlaneKind> kinds,
                                       const NormalizedCloud& cloud);
 
@@ -41,7 +41,7 @@ std::vector<Candidate> impliedBy(const std::vector<SymmetryPlane>& planes, const
 /// Planes of a scan perpendicular to two of its symmetries, or to one of them and to its support, spread along the
 /// object. Half of the surface that such a plane maps may be hidden, so that a map of few samples has no maximum there.
 /// Not in the paper.
-/// \param carrying_normals of the supports, as from carryingNormals().
+/// \param carrying_normals unit normals of the supports, as from carryingNormals().
 std::vector<Candidate> atRightAngles(const std::vector<SymmetryPlane>& planes,
                                      const std::vector<Eigen::Vector3d>& carrying_normals,
                                      const NormalizedCloud& cloud);

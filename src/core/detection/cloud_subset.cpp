@@ -68,7 +68,7 @@ std::vector<int> evenlyDense(const NormalizedCloud& cloud, std::uint64_t seed) {
     squares += position * position.transpose();
     pull += std::log(static_cast<double>(count)) * position;
   }
-  squares.diagonal().array() += 1e-9 * squares.trace();  // the points of a plane have no slope across it
+  squares.diagonal().array() += 1e-9 * squares.trace();  // the points of a plane have no slope along its normal
   const Eigen::Vector3d slope = solveSymmetric(squares, pull).head<3>();
   std::vector<double> along(samples.size());
   for (std::size_t i = 0; i < samples.size(); ++i) along[i] = slope.dot(at.col(i).cast<double>());

@@ -12,7 +12,7 @@ namespace pcl_symmetry {
 /// The points that represent a large cloud, as many as the tolerance requires. They determine planes, decisions and
 /// support; every other point takes the support of the nearest of them.
 /// \param points 3 x N, finite, for which whyUnanswerable() is empty.
-/// \return indices of points; none if all points are needed.
+/// \return indices of points; nothing if all points are needed.
 std::optional<std::vector<int>> subsetOf(const PointsRef& points, const DetectionOptions& options);
 
 /// Gives each point of a cloud the support of the point that represents it.

@@ -118,7 +118,7 @@ void findAxesOfScan(const PlaneSearch& search, Found& found) {
 
 /// Rules by which results correct each other, applied in this order. Not in the paper.
 constexpr struct {
-  const char* name;  ///< in Detection::timing_ms
+  const char* name;  ///< stage in Detection::timing_ms
   void (*apply)(const PlaneSearch& search, Found& found);
 } kRules[] = {
     {"groups", completeGroups},
@@ -144,7 +144,7 @@ constexpr struct {
 /// section alone.
 /// \param[in,out] found receives the results.
 void refineAndDecide(const PlaneSearch& search, const SymmetryMap& map, Found& found, StageTimes& timed) {
-  // Candidates: local maxima of the transform and the planes across the principal axes.
+  // Candidates: local maxima of the transform, and the planes perpendicular to the principal axes.
   std::vector<Candidate> candidates = gatherCandidates(search.cloud, map, search.options);
   timed("maxima");
 
@@ -169,8 +169,8 @@ void refineAndDecide(const PlaneSearch& search, const SymmetryMap& map, Found& f
   timed("report");
 }
 
-/// The normals of the distinct points: where copies differ, that of the last copy.
-/// \param used indices of the points that became distinct ones, in the order of DistinctPoints::index_of.
+/// The normals of the distinct points; if copies differ, that of the last copy.
+/// \param used indices of the input points that became distinct ones, in the order of DistinctPoints::index_of.
 Points normalsOf(const DistinctPoints& distinct, const Points& normals, const std::vector<int>& used) {
   Points result(3, distinct.points.cols());
   for (std::size_t i = 0; i < used.size(); ++i) result.col(distinct.index_of[i]) = normals.col(used[i]);
@@ -183,8 +183,8 @@ struct EvenCloud {
   const GaussianEdt edt;
   const NormalizedCloud cloud;
 
-  /// \param whole with the points \p distinct.
-  /// \param kept indices of these.
+  /// \param whole cloud of the points \p distinct.
+  /// \param kept indices of the points of \p distinct that are kept.
   EvenCloud(const NormalizedCloud& whole, const Points& distinct, const std::vector<int>& kept, int num_threads)
       : points(pointsAt(distinct, kept)),
         edt(points, {whole.edt.numCells(), whole.edt.sigma(), num_threads, whole.edt.radius(), whole.edt.center()}),
@@ -225,7 +225,7 @@ Detection detectWithEvidence(const PlaneInput& input, const DetectionOptions& op
   StageTimes timed(found.timing_ms);
   found.evidence = evidence;
 
-  // The bulk: all points that are not stray. Of a large cloud, some points represent it.
+  // The bulk: all points that are not stray, of a large cloud a subset.
   const std::vector<int> stray = strayPoints(input.points), in_bulk = allBut(stray, input.points.cols());
   const Points bulk = pointsAt(input.points, in_bulk);
   found.num_stray_points = static_cast<int>(stray.size());

@@ -12,7 +12,7 @@ struct DetectionEvidence {
   /// Candidates after all stages of refinement, each plane once, best merit first. They do not depend on fitted
   /// numbers.
   std::vector<MeasuredPlane> planes;
-  std::vector<JudgedRotation> rotations;  ///< of scans
+  std::vector<JudgedRotation> rotations;  ///< rotations of scans, whatever their confidence
 };
 
 /// detectPlanes(), with the evidence of its decisions.

@@ -37,59 +37,64 @@ struct DetectionRules {
     double symmetric_merit = 0.93;  ///< merit of a symmetry: support of 97 % and conflict of 3 % give 0.97
     int coarse_iterations = 5, close_iterations = 6, full_iterations = 8, rough_iterations = 4;
     double close_slack = 0.1;   ///< allowed deficit to the merit of a symmetry after the second stage
-    double coarse_slack = 0.2;  ///< allowed deficit after the first stage, if there is a symmetry
-    std::size_t kept_coarsely = 8, kept_closely = 4;  ///< candidates of less merit that are kept after each stage
-    int close_sample_factor = 4;                      ///< samples of the second stage per sample of the first
-    double narrowest_coarsely = 0.5;                  ///< sigmas at the end of the first stage
-    double settled_error_share = 3.0;  ///< standard errors; refinement of a symmetry ends at a shorter step
+    double coarse_slack = 0.2;  ///< allowed deficit to that merit after the first stage, if there is a symmetry
+    /// Candidates of less merit that are kept after the first and the second stage.
+    std::size_t kept_coarsely = 8, kept_closely = 4;
+    int close_sample_factor = 4;      ///< samples of the second stage per sample of the first
+    double narrowest_coarsely = 0.5;  ///< sigmas at the end of the first stage
+    /// A step shorter than this many standard errors ends the refinement of a symmetry.
+    double settled_error_share = 3.0;
   } stages;
 
   /// Planes on surfaces and in volumes.
   struct {
-    double first_climb = 0.02, last_climb = first_climb / 8.0;  ///< steps of a climb, radians and radii
+    double first_climb = 0.02, last_climb = first_climb / 8.0;  ///< first and last step of a climb, radians and radii
     int max_climbs = 24;                                        ///< greatest number of steps of a climb, of all lengths
     int climb_samples = 500;                                    ///< points used by climbs on whole clouds
-    double min_gain = 0.005;                                    ///< least gain in merit of a climb
-    double climbing_merit = 0.5;        ///< least merit of planes that climb; planes of less merit are not symmetries
-    double climbing_confidence = 0.01;  ///< least confidence of planes that climb
-    double noisy_depth = 0.1;           ///< roughness in spacings from which planes of scans climb: noise looks hidden
-    double bandwidth = 1.5;             ///< spacings; less shows single points, more blurs the shape
-    int max_iterations = 6;             ///< Newton steps in a density
-    int sample_factor = 10;             ///< samples of a density per sample of a surface
+    double min_gain = 0.005;                                    ///< least gain in merit for which a climb is kept
+    double climbing_merit = 0.5;                                ///< least merit of planes that climb
+    double climbing_confidence = 0.01;                          ///< least confidence of planes that climb
+    double noisy_depth = 0.1;  ///< roughness, spacings, from which planes of scans climb: noise looks hidden
+    double bandwidth = 1.5;    ///< bandwidth of a density, spacings; less shows single points, more blurs the shape
+    int max_iterations = 6;    ///< Newton steps in a density
+    int sample_factor = 10;    ///< samples of a density per sample of a surface
   } fit;
 
   /// Measuring a plane.
   struct {
     double surely_whole = 0.985;  ///< share within the tolerance from which no missing piece is assumed
     double held_stiffness =
-        0.02;  ///< offset stiffness from which open borders start to excuse missing matches; at twice this, fully
+        /// Offset stiffness above which open borders begin to excuse missing matches; at twice this value, they do so
+        /// fully.
+        0.02;
     double moved_tolerances = 2.0;  ///< tolerances by which a plane has to move an informative sample of a scan
     double noisy_thinness = 3.0;    ///< tolerances within which a volume of points is a sheet or a line
     double round_spacings = 2.0;    ///< spacings within which points of a line do not resolve its cross-section
     double min_own_share = 0.1;  ///< least share of the points on the surface of the others by which shares are divided
-    int screening_samples = 2000;                ///< samples of the screening and of SymmetryPlane::deviation
-    std::array<double, 2> tolerances{1.0, 2.0};  ///< at which shares are measured, see PlaneEvidence
-    double beside_outline = 0.1;  ///< distance beside an outline, share of its radius, at which the depth image is read
+    int screening_samples = 2000;                ///< samples for screening and for SymmetryPlane::deviation
+    std::array<double, 2> tolerances{1.0, 2.0};  ///< tolerances at which shares are measured, see PlaneEvidence
+    /// Distance beside an outline, as a share of its radius, at which the depth image is read.
+    double beside_outline = 0.1;
   } measure;
 
   /// Deciding.
   struct {
-    double max_cut = 0.3;            ///< share of the outline that the image border may cut off; tables in frames: 0.36
+    double max_cut = 0.3;  ///< greatest share of the outline that the image border may cut off; tables in frames: 0.36
     double hopeful_share = 0.93;     ///< least screened share of a possible symmetry
-    double screening_errors = 2.0;   ///< standard errors by which a screened share may be too small
-    double max_unmoved_share = 0.5;  ///< a plane that leaves a larger share of the points in place is uninformative
-    double nothing_missing = 0.01;   ///< share of the surface; less is missing by chance
-    double piece_missing = 0.03;     ///< share of the surface; more is a piece
+    double screening_errors = 2.0;   ///< standard errors by which a screened share may be underestimated
+    double max_unmoved_share = 0.5;  ///< share of the points left in place above which a plane is uninformative
+    double nothing_missing = 0.01;   ///< missing share of the surface, below which it is missing by chance
+    double piece_missing = 0.03;     ///< missing share of the surface, above which it is a piece
     double odds_of_a_piece = 0.2;    ///< odds that a piece is missing although a plane explains the whole cloud
-    double as_likely = 0.05;         ///< other samples of the shape may reverse the order of confidences this close
-    double min_informative = 0.1;    ///< least share of informative samples; below it confidence falls in proportion
-    double coarsest = 3.0;           ///< greatest tolerances; a sensor with a coarser resolution decides nothing
+    double as_likely = 0.05;       ///< difference of two confidences whose order other samples of the shape may reverse
+    double min_informative = 0.1;  ///< share of informative samples below which confidence falls in proportion
+    double coarsest = 3.0;         ///< resolution, in greatest tolerances, above which a sensor decides nothing
     double upright = 5.0 * kPi / 180.0;  ///< a plane within this angle of upright or level does not slant
-    double touching = 0.05;     ///< diameters beyond the nearest support within which other supports carry, too
+    double touching = 0.05;  ///< distance beyond the nearest support, diameters, within which other supports carry, too
     double slanted_odds = 0.1;  ///< odds of a slanted plane relative to another one
     double no_surface = 1.5;    ///< spacing in tolerances from which points are too sparse for a surface
-    int max_possible = 5;       ///< greatest number of symmetries and possible planes, if there are possible ones
-    double slope_dip = 0.005;   ///< D may rise by this much through rounding alone
+    int max_possible = 5;  ///< greatest number of symmetries and possible planes together, if there are possible ones
+    double slope_dip = 0.005;  ///< rise of D through rounding alone
     double slope_angle = 0.2,
            slope_offset = 0.15;  ///< radians, radii: a plane this close to a better one may lie on its slope
   } decide;

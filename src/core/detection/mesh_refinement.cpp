@@ -15,9 +15,10 @@ namespace pcl_symmetry {
 
 namespace {
 
-/// The probability that at least 97 % of the surface is within the tolerance, where a share of its samples is.
+/// The probability that at least 97 % of the surface is within the tolerance.
+/// \param share share of the samples within the tolerance.
 double confidenceOf(double share, int num_samples) {
-  constexpr double kLeast = 0.003;  // the least and, less 1, the greatest confidence of samples
+  constexpr double kLeast = 0.003;  // confidences lie in [kLeast, 1 - kLeast]
   const double deviation = std::sqrt(kSymmetricShare * (1.0 - kSymmetricShare) / num_samples);
   const double confidence = 0.5 * std::erfc(-(share - kSymmetricShare) / deviation / std::sqrt(2.0));
   return std::clamp(confidence, kLeast, 1.0 - kLeast);
@@ -48,7 +49,8 @@ void refine(const MeshSurface& mesh, SymmetryPlane& plane, double tolerance, con
 }  // namespace
 
 void refineOnMesh(const MeshSurface& mesh, Detection& found, const DetectionOptions& options) {
-  constexpr double kSameOnMesh = 0.01;  // after refinement; those of 120 teeth are 0.026 apart
+  // Planes closer than this are one after the refinement; those of 120 teeth are 0.026 apart.
+  constexpr double kSameOnMesh = 0.01;
   const auto inBall = [&](const ReflectionPlane& plane) {
     return plane.normalized(mesh.ball().center, mesh.ball().radius);
   };

@@ -20,9 +20,10 @@ namespace pcl_symmetry {
 
 namespace {
 
-/// Edge of a flat disc: sum over its samples of the share of neighbors beyond the edge, over the root of their number.
-/// K neighbors lie within rho = sqrt(k / pi) spacings. Of the neighbors of samples within rho of a straight edge, 2 rho
-/// / (3 pi) per spacing of edge lie beyond it. A disc of n samples has an edge of 2 sqrt(pi n) spacings.
+/// The edge of a flat disc of n samples, divided by sqrt(n); an edge is the sum over samples of the share of their
+/// neighbors beyond it. The k neighbors of a sample lie within rho = sqrt(k / pi) spacings. Beyond a straight edge lies
+/// a share of the neighbors that adds up to 2 rho / (3 pi) per spacing of edge, and a disc has an edge of 2 sqrt(pi n)
+/// spacings.
 double edgeOfDisc() {
   const double reach = std::sqrt((kDetection.parts.num_smoothing + 1) / kPi);
   return 2.0 * reach / (3.0 * kPi) * 2.0 * std::sqrt(kPi);
@@ -114,13 +115,14 @@ namespace {
 struct SymmetricPart {
   ReflectionPlane plane;     ///< normalized frame
   std::vector<int> points;   ///< some points of the part, spread over it, as ascending indices
-  double share = 0.0;        ///< of the cloud, in [0, 1]
+  double share = 0.0;        ///< share of the cloud, in [0, 1]
   double support = 0.0;      ///< mean support of these points, in [0, 1]
-  int iterations = 0;        ///< of Iterative Symmetric Points
-  double longer_edge = 0.0;  ///< excess of its edge over that of a part of its size, in edges of a disc
+  int iterations = 0;        ///< iterations of Iterative Symmetric Points
+  double longer_edge = 0.0;  ///< excess of its edge over that of a typical part of its size, in edges of a disc
 };
 
-// Planes that are one: radians, and radii of the points. Half the angle between the planes of a prism of 24 sides.
+// Limits within which planes of parts count as one, radians and radii of the points: half the angle between the planes
+// of a prism of 24 sides.
 constexpr MergeTolerance kSamePlaneOfPart{2.0 * kSamePlane.angle, 2.0 * kSamePlane.offset};
 
 /// Farthest-point sampling: each seed is the point farthest from those before.
@@ -156,7 +158,8 @@ std::vector<int> thinned(const std::vector<int>& samples, std::size_t max_count)
   return some;
 }
 
-/// Planes through the middle of a ball: across the principal axes of its points, and in directions all around.
+/// Planes through the middle of a ball: perpendicular to the principal axes of its points, and in directions all
+/// around.
 std::vector<ReflectionPlane> startingPlanes(const Points& ball, const Eigen::Vector3d& middle) {
   std::vector<ReflectionPlane> planes = principalPlanes(principalAxes(ball));
   for (int k = 0; k < kDetection.parts.num_directions; ++k) {
@@ -170,7 +173,7 @@ std::vector<ReflectionPlane> startingPlanes(const Points& ball, const Eigen::Vec
 struct BallSearch {
   const NormalizedCloud& cloud;
   const PlaneFit& fit;
-  /// Planes of balls are matched by walks, because the planes kept are refined again on their regions.
+  /// Planes of balls are matched by walks, because the planes that are kept are refined again on their regions.
   const IspSurface surface;
   IspOptions isp;
 
@@ -189,11 +192,11 @@ struct BallSearch {
   }
 
   /// Refines a plane on the points of a ball, moves the ball to the plane, and refines the plane again.
-  /// \return nothing where the ball has too few or too many points, the plane leaves the ball, or little matches.
+  /// \return nothing if the ball has too few or too many points, the plane leaves the ball, or too little matches.
   std::optional<SymmetricPart> refined(const ReflectionPlane& start, const std::vector<int>& ball,
                                        const Eigen::Vector3d& middle, double radius) const {
     IspResult result = refineSymmetricPoints(surface, thinned(ball, kDetection.parts.ball_samples), start, isp);
-    // A ball about a point of the plane is cut into equal halves.
+    // A plane through its center cuts a ball into equal halves.
     const Eigen::Vector3d center = middle - result.plane.signedDistance(middle) * result.plane.normal();
     const std::vector<int> moved = within(cloud.points, center.cast<float>(), radius);
     if (!isBall(moved.size(), cloud.points)) return std::nullopt;
@@ -238,7 +241,7 @@ struct RegionSearch {
   RegionSearch(const BallSearch& of_balls, const DetectionOptions& options)
       : balls(of_balls), regions(balls.cloud, balls.fit, options) {}
 
-  /// Excess of the edge of a region over that of a part of its size, in edges of a disc.
+  /// Excess of the edge of a region over that of a typical part of its size, in edges of a disc.
   static double longerEdge(const MatchedRegion& region) {
     return region.edge - kDetection.parts.min_edge - kDetection.parts.edge_per_share * region.share;
   }
@@ -253,9 +256,9 @@ struct RegionSearch {
     part.iterations += result.iterations;
   }
 
-  /// The plane on the region that it maps onto itself. The first round moves it by wide weights, as planes of balls lie
-  /// some degrees off, the second one by narrow weights. Most planes are rejected on the way.
-  /// \return none if the region is not a part.
+  /// The plane on the region that it maps onto itself. The first round uses wide weights, because planes of balls are
+  /// some degrees off, the second one narrow weights. Most planes are rejected on the way.
+  /// \return nothing if the region is not a part.
   std::optional<SymmetricPart> onItsRegion(SymmetricPart part) const {
     MatchedRegion region = regions.largest(part.plane, nullptr, true);
     int round = 0;
@@ -264,7 +267,7 @@ struct RegionSearch {
           longerEdge(region) > kDetection.parts.longest_edges_before[round++])
         return std::nullopt;
       refine(part, region, sigma);
-      region = regions.largest(part.plane, &region.closest, round == 1);  // the last one exactly
+      region = regions.largest(part.plane, &region.closest, round == 1);  // the last region is found exactly
     }
     if (region.share < kDetection.parts.min_part || region.share > kDetection.parts.largest_part) return std::nullopt;
     part.longer_edge = longerEdge(region);
@@ -356,7 +359,7 @@ void findPlanesOfParts(const PlaneSearch& search, Found& found) {
   parallelBlocks(parts.size(), search.options.num_threads, [&](std::size_t i) {
     if (kSameMaximum.anySame(decided, parts[i].plane)) return;
     SymmetryPlane plane = search.judge(parts[i].plane, all).plane;
-    if (plane.kind == PlaneKind::Symmetry) return;  // of a family, which is known as its axis or center
+    if (plane.kind == PlaneKind::Symmetry) return;  // a plane of a family, which is reported as an axis or a center
     plane.kind = PlaneKind::Local;
     plane.iterations = parts[i].iterations;
     of_parts[i] = std::move(plane);

@@ -8,13 +8,13 @@ namespace pcl_symmetry {
 
 /// A connected piece of the surface that a plane maps onto itself.
 struct MatchedRegion {
-  std::vector<int> points;  ///< of the samples of MatchedRegions, as indices of points of the cloud, ascending
-  double share = 0.0;       ///< of all samples, in [0, 1]
+  std::vector<int> points;  ///< indices of points of the cloud, among the samples of MatchedRegions, ascending
+  double share = 0.0;       ///< share of all samples, in [0, 1]
   double support = 0.0;     ///< mean support of its samples, relative to what sampling and noise allow, in [0, 1]
-  /// Length of its edge, beyond which the surface continues unmatched, as a share of the edge of a flat disc of equal
+  /// Length of its edge, beyond which the surface continues unmatched, divided by the edge of a flat disc of equal
   /// area.
   double edge = 0.0;
-  std::vector<int> closest;  ///< to the reflection of each sample, as IspStep has it
+  std::vector<int> closest;  ///< closest point to the reflection of each sample, as in IspStep
 };
 
 /// Finds the regions that planes map onto themselves, which Figure 8 shows in white. Not in the paper.
@@ -29,8 +29,8 @@ public:
 
   /// \param plane normalized frame.
   /// \param guesses MatchedRegion::closest of a plane nearby, which makes the search faster; null = not known.
-  /// \param walks finds closest points by walking along neighbor lists, where some of them may be wrong.
-  /// \return the largest region, empty where nothing matches.
+  /// \param walks finds closest points by walking along neighbor lists, which may miss some.
+  /// \return the largest region; empty if nothing matches.
   MatchedRegion largest(const ReflectionPlane& plane, const std::vector<int>* guesses = nullptr,
                         bool walks = false) const;
 
@@ -42,11 +42,11 @@ private:
   const NormalizedCloud& cloud_;
   const PlaneFit& fit_;
   std::vector<int> samples_;         ///< indices of points of the cloud, ascending
-  std::vector<int> neighbors_;       ///< of each sample, as indices of samples, nearest first
-  std::vector<int> closest_sample_;  ///< to each point of the cloud, as an index of a sample
+  std::vector<int> neighbors_;       ///< neighbors of each sample, as indices of samples, nearest first
+  std::vector<int> closest_sample_;  ///< closest sample to each point of the cloud, as an index of a sample
 };
 
-/// Symmetries of parts of a surface, as planes 2 to 4 of Figure 8.
+/// Finds symmetries of parts of a surface, such as planes 2 to 4 of Figure 8.
 ///
 /// Departure from the paper: it takes them from local maxima of the transform of the whole shape, to which a small part
 /// contributes too little. Here planes through the middles of balls of several radii, spread over the surface, are

@@ -16,7 +16,7 @@ bool isLimit(const Reason& reason) {
 }
 
 double oddsOf(double confidence) {
-  constexpr double least = 1e-9;  // keeps the odds of certainty finite
+  constexpr double least = 1e-9;  // keeps the odds of a probability of 1 finite
   return std::max(least, confidence) / std::max(least, 1.0 - confidence);
 }
 
@@ -29,8 +29,8 @@ void write(SymmetryPlane& plane, double confidence, const Reason& reason, const 
                                                                    : PlaneKind::Approximate;
 }
 
-/// D decides among the planes that are about as likely as the likeliest one.
-/// \return null where there is none.
+/// The plane of greatest D among those that are about as likely as the likeliest one.
+/// \return null if there is no plane.
 const SymmetryPlane* bestOf(const std::vector<SymmetryPlane>& planes) {
   double greatest = 0.0;
   for (const SymmetryPlane& plane : planes) greatest = std::max(greatest, plane.confidence);
@@ -42,7 +42,7 @@ const SymmetryPlane* bestOf(const std::vector<SymmetryPlane>& planes) {
   return best == planes.end() ? nullptr : &*best;
 }
 
-/// The order of the results: symmetries, then possible ones, both by falling confidence, then others by falling
+/// The order of the results: symmetries, then possible ones, both by decreasing confidence, then others by decreasing
 /// support. The sort is stable.
 bool isBetter(const SymmetryPlane& a, const SymmetryPlane& b) {
   const auto rank = [](const SymmetryPlane& plane) {

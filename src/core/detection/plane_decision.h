@@ -37,17 +37,17 @@ bool explainsAll(const SymmetryPlane& plane, CloudKind kind);
 
 /// If one plane explains the whole cloud, no piece is missing: lowers the odds of planes that require a missing piece,
 /// such as the plane across an open cup, which requires a lid.
-/// \param planes of the whole, also those that follow from others.
+/// \param planes planes of the whole shape, including those that follow from others.
 void doubtMissingPieces(std::vector<SymmetryPlane>& planes, CloudKind kind, const DetectionOptions& options);
 
-/// A scan or a cut hides part of an object, and many planes are tried: lowers the odds of planes other than the best
-/// one or beside a family, which are symmetries less often.
+/// A scan or a cut hides part of an object, and many planes are tried: lowers the odds of all planes but the best, or
+/// of all planes if a family was found, because they are symmetries less often.
 /// \param has_family an axis or a center was found, which is better than all planes.
 void doubtFurtherPlanes(std::vector<SymmetryPlane>& planes, bool has_family, CloudKind kind,
                         const DetectionOptions& options);
 
-/// An object on a table was made to stand there, or lies on one of its sides: nearly all of its planes are upright or
-/// level. Without a known support, no plane counts as slanted.
+/// Lowers the odds of slanted planes: an object on a table was made to stand there, or lies on one of its sides, so
+/// that nearly all of its planes are upright or level. Without a known support, no plane counts as slanted.
 /// \param carrying_normals as from carryingNormals().
 void doubtSlantedPlanes(std::vector<SymmetryPlane>& planes, const std::vector<Eigen::Vector3d>& carrying_normals,
                         const DetectionOptions& options);

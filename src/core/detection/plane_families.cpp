@@ -64,7 +64,7 @@ std::vector<ReflectionPlane> planesAt(const PlaneAt& plane_at) {
   return planes;
 }
 
-/// The family of all planes through a point or a line, or through one nearby.
+/// The family of all planes through a point or a line, or through a similar one nearby.
 template <typename Common>
 std::optional<PlaneFamily<Common>> familyAt(const Common& start, double min_share, const FamilyTest& test) {
   const int num_tested = kDetection.families.tested_planes, num_fitted = kDetection.families.fitted_planes;
@@ -149,7 +149,7 @@ FamilyTest familyTest(const PlaneSearch& search, const std::vector<int>& samples
   const NormalizedCloud& cloud = search.cloud;
   const PlaneFit& fit = *search.fit;
   const DetectionOptions& options = search.options;
-  // Points that a greater tolerance than the usual one allows may lie beyond the support of all samples.
+  // If the tolerance is greater than the default one, points within it may lie beyond the support of all samples.
   const double usual = DetectionOptions().tolerance * cloud.extent;
   const bool is_coarse = cloud.kind() == CloudKind::Surface &&
                          std::max(options.tolerance * cloud.extent, options.absolute_tolerance / cloud.scale) > usual;
@@ -164,7 +164,7 @@ FamilyTest familyTest(const PlaneSearch& search, const std::vector<int>& samples
   };
   FamilyTest test;
   test.share = share_of(samples);
-  // Samples may be all points in the order of the file, whose first fifth is one end of the shape.
+  // Samples may be all points in the order of the file, whose first fifth may be one end of the shape.
   std::vector<int> fewer;
   const auto num_samples = static_cast<Eigen::Index>(samples.size());
   for (const int i :
@@ -221,8 +221,8 @@ void findFamilies(const PlaneSearch& search, Found& found) {
   const auto drop = [&](const auto& belongs) {
     eraseIf(found.planes, [&](const SymmetryPlane& plane) { return belongs(cloud.toNormalized(plane)); });
   };
-  // Between its planes, a regular polygon is not symmetric: the worst plane decides, too. In a scan, some planes are
-  // too poorly visible for that.
+  // A regular polygon is not symmetric between its planes: the worst plane decides, too. In a scan, some planes are too
+  // poorly visible for that.
   const auto isFamily = [&](const JudgedFamily& family) {
     return family.confidence >= options.min_confidence &&
            (!kKindRules.shows_all[cloud.kind()] ||
@@ -241,8 +241,7 @@ void findFamilies(const PlaneSearch& search, Found& found) {
     if (!kKindRules.resolves_surface[cloud.kind()] && latticeBySpectrum(search.all_points, axis.common)) continue;
     const JudgedFamily family = search.judgeFamily(axis.planes, samples);
     if (!isFamily(family)) continue;
-    // No bounded shape has two parallel axes, but a thin disc seems to within the tolerance: the best is the
-    // axis.
+    // No bounded shape has two parallel axes, but a thin disc seems to within the tolerance: only the best one counts.
     if (!isNearAny(found.axes, axis.common.direction(), std::cos(kDetection.families.contained_angle),
                    &SymmetryAxis::direction))
       found.axes.push_back({cloud.toInput(axis.common.origin()), axis.common.direction(), family.confidence,

@@ -16,26 +16,27 @@ struct Found;
 /// A family is tested rather than inferred from many planes: planes at angles that occur in no regular polygon must be
 /// as good as the planes found.
 struct FamilyTest {
-  /// Share of the surface seen that a plane maps onto the surface, in [0, 1].
+  /// Measures the share of the visible surface that a plane maps onto the surface, in [0, 1].
   std::function<double(const ReflectionPlane&)> share;
-  /// The same from fewer samples, to drop most lines early.
+  /// The same from fewer samples, to reject most lines early.
   std::function<double(const ReflectionPlane&)> rough_share;
-  /// The best plane nearby.
+  /// Finds the best plane nearby.
   std::function<ReflectionPlane(const ReflectionPlane&)> refine;
-  double min_share;  ///< of the planes of a family, on average, in [0, 1]
-  double allowance;  ///< how far it may fall below the share of the best plane: an effect of sampling, not of a handle
+  double min_share;  ///< least mean share of the planes of a family, in [0, 1]
+  /// Allowed deficit of that mean to the share of the best plane: an effect of sampling, not of a handle.
+  double allowance;
 };
 
-/// The line closest to all of some planes that share a line.
+/// The line closest to all planes that share a line.
 /// \param planes at least two that are not parallel.
 Line3d commonLine(const std::vector<ReflectionPlane>& planes);
 
-/// All planes through a line or a point, as symmetries.
+/// All planes through a line or a point, if they are symmetries.
 template <typename Common>
 struct PlaneFamily {
   Common common;                        ///< the line or the point
-  double share;                         ///< mean over the planes
-  std::vector<ReflectionPlane> planes;  ///< that were tested
+  double share;                         ///< mean share over the planes
+  std::vector<ReflectionPlane> planes;  ///< planes that were tested
 };
 using AxisFamily = PlaneFamily<Line3d>;
 using CenterFamily = PlaneFamily<Eigen::Vector3d>;
@@ -47,7 +48,7 @@ std::optional<CenterFamily> findCenter(const std::vector<ReflectionPlane>& plane
 
 /// \param planes symmetries found, best first.
 /// \param guesses candidate lines, tried before the common lines of two planes.
-/// \return best first.
+/// \return families, best first.
 std::vector<AxisFamily> findAxes(const std::vector<ReflectionPlane>& planes, const FamilyTest& test,
                                  const std::vector<Line3d>& guesses = {});
 

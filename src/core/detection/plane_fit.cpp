@@ -54,7 +54,8 @@ public:
     const std::vector<int> fewer = drawn(std::min(stage.num_rough_samples, kDetection.fit.climb_samples));
     parallelBlocks(candidates.size(), options_.num_threads, [&](std::size_t i) {
       Candidate& candidate = candidates[i];
-      const bool is_at_rest = candidate.merit >= kDetection.stages.symmetric_merit;  // nothing pulls at it
+      // At a symmetry, no false pairs pull the plane away.
+      const bool is_at_rest = candidate.merit >= kDetection.stages.symmetric_merit;
       moved[i] = may_climb[i] && candidate.merit >= kDetection.fit.climbing_merit && !is_at_rest &&
                  climbOne(candidate, *samples, fewer);
       if (moved[i]) candidate.samples = samples;
@@ -100,8 +101,8 @@ private:
     candidate.step = std::move(step);
   }
 
-  /// Pairs whose true partners were cut off or hidden by noise bias a plane. It comes to rest beside the plane that
-  /// explains most of the points and climbs from there on the merit itself, along its three parameters.
+  /// Pairs whose true partners were cut off or hidden by noise bias a plane: refinement ends beside the plane that
+  /// explains most of the points. From there the plane climbs on the merit itself, along its three parameters.
   /// \param samples for the final merit.
   /// \param fewer samples by which the plane climbs.
   /// \return whether the plane moved.
@@ -174,7 +175,7 @@ public:
   double merit(const PlaneShares& shares) const override { return shares.support; }
 
 private:
-  SurfaceFit surface_;  ///< support of single points
+  SurfaceFit surface_;  ///< gives the support of single points
   PointDensity density_;
 };
 

@@ -14,21 +14,21 @@ namespace pcl_symmetry {
 
 /// How samples support one plane.
 struct PlaneShares {
-  double support;        ///< mean over the samples: the reflection lies on the surface
-  double conflict;       ///< mean over the samples: the reflection lies in free space
-  PointEvidence points;  ///< of each sample
+  double support;        ///< mean over the samples of how well the reflection lies on the surface, in [0, 1]
+  double conflict;       ///< mean over the samples of how well the reflection lies in free space, in [0, 1]
+  PointEvidence points;  ///< evidence of each sample
 };
 
-/// One stage of refinement: how many samples are reflected, how wide the weights are, how often.
+/// One stage of refinement: how many samples are reflected, how wide the weights are, and how many iterations are made.
 ///
-/// Candidates whose merit is too low for a symmetry never settle, and take fewer samples and iterations.
+/// Candidates whose merit is too low for a symmetry never settle: they take fewer samples and iterations.
 struct RefinementStage {
-  int num_samples;        ///< for likely symmetries
-  int num_rough_samples;  ///< for other candidates
-  IspOptions isp;         ///< for likely symmetries
-  IspOptions rough_isp;   ///< for other candidates
-  double min_merit;       ///< merit of likely symmetries
-  bool undo_slides;       ///< scans: whether slides along flat pieces are undone (with the narrowest weights)
+  int num_samples;        ///< samples that likely symmetries reflect
+  int num_rough_samples;  ///< samples that other candidates reflect
+  IspOptions isp;         ///< options for likely symmetries
+  IspOptions rough_isp;   ///< options for other candidates
+  double min_merit;       ///< least merit of likely symmetries
+  bool undo_slides;       ///< whether slides of scans along flat pieces are undone (with the narrowest weights)
   bool climbs = false;    ///< whether planes of noisy scans climb, in the last stage
 };
 
@@ -42,10 +42,10 @@ public:
   /// Moves each candidate to the best plane nearby, and updates its merit.
   virtual void refine(std::vector<Candidate>& candidates, const RefinementStage& stage) const = 0;
 
-  /// Moves candidates that stopped near their optimum to it and updates their merit; takes as long as all stages
+  /// Moves candidates that stopped near their optimum to it and updates their merit; this takes as long as all stages
   /// together. Densities have no false pairs, so their planes need not climb.
-  /// \param stage the last one.
-  /// \param may_climb of each candidate.
+  /// \param stage the last stage.
+  /// \param may_climb whether each candidate may be a symmetry.
   /// \return whether each candidate moved.
   virtual std::vector<char> climb(std::vector<Candidate>&, const RefinementStage&,
                                   const std::vector<char>& may_climb) const {
@@ -72,7 +72,8 @@ public:
     return matchSymmetricPoints(cloud_.surface, samples, plane, cloud_.final_sigma, guesses);
   }
 
-  /// Ranks candidates: grows with the support, falls with the conflict; about 1 for a symmetry, and may exceed it.
+  /// Criterion by which candidates are ranked: grows with the support, falls with the conflict; about 1 for a symmetry,
+  /// and may exceed it.
   virtual double merit(const PlaneShares& shares) const = 0;
 
   /// Support that the samples of a symmetry reach.
@@ -88,13 +89,13 @@ protected:
   const DetectionOptions& options_;
 };
 
-/// Support of each point by the surface, also for points that do not resolve one; NaN as in
+/// Support of each point by the surface, also for points that resolve no surface; NaN as in
 /// PointEvidence::seenSupport().
 std::vector<float> surfaceSupport(const NormalizedCloud& cloud, const ReflectionPlane& plane,
                                   const DetectionOptions& options);
 
 /// \param cloud,options must outlive the result.
-/// \return the form that fits the cloud.
+/// \return SurfaceFit or VolumeFit, as suits the cloud.
 std::unique_ptr<PlaneFit> makePlaneFit(const NormalizedCloud& cloud, const DetectionOptions& options);
 
 }  // namespace pcl_symmetry

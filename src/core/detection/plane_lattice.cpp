@@ -35,7 +35,7 @@ std::vector<ReflectionPlane> planesContaining(const Line3d& line, const std::vec
   return through;
 }
 
-/// For each common line of two of the first planes: all planes that contain it, including these two.
+/// For each common line of two of the first \p num_first planes, all planes that contain it, including these two.
 std::vector<std::vector<ReflectionPlane>> bundlesOf(const std::vector<ReflectionPlane>& planes, std::size_t num_first) {
   std::vector<std::vector<ReflectionPlane>> bundles;
   for (std::size_t i = 0; i < std::min(planes.size(), num_first); ++i)
@@ -61,7 +61,7 @@ namespace {
 /// The folds of points about a line.
 class FoldSpectrum {
 public:
-  /// \param num_slabs across the line, each of which is cut into rings of its own.
+  /// \param num_slabs number of slabs across the line, each of which is divided into rings of its own.
   FoldSpectrum(const Points& points, const Line3d& line, int num_slabs)
       : squares_(kDetection.folds.max_frequency + kDetection.folds.compared_frequencies + 1, 0.0),
         powers_(squares_.size(), 0.0) {
@@ -81,7 +81,7 @@ public:
 
   /// How much of the density of all rings the planes at the best angle explain at a frequency; about 4 by chance.
   double power(int m) const { return 0.5 * (powers_[m] + std::abs(squares_[m])); }
-  /// Excess power of the frequency over those beside it; 0 where it may be chance.
+  /// Excess power of the frequency over those on either side; 0 where it may be chance.
   double prominence(int m) const {
     std::vector<double> beside;
     for (int k = std::max(1, m - kDetection.folds.compared_frequencies); k <= m + kDetection.folds.compared_frequencies;
@@ -94,14 +94,14 @@ public:
   double phase(int m) const { return 0.5 * kPi + std::arg(squares_[m]) / (2.0 * m); }
 
 private:
-  /// A point in the cylinder coordinates of the line.
+  /// Cylindrical coordinates of a point about the line.
   struct Position {
     double height, distance;
     std::complex<double> direction;
   };
   using Positions = std::vector<Position>::iterator;
 
-  /// Sorts points by a member, and calls back for num_parts runs of equal size.
+  /// Sorts points by a member, and calls back for each of num_parts runs of equal size.
   template <typename Call>
   static void inParts(Positions first, Positions last, int num_parts, double Position::*member, const Call& call) {
     std::sort(first, last, [&](const Position& a, const Position& b) { return a.*member < b.*member; });
@@ -123,8 +123,8 @@ private:
     }
   }
 
-  std::vector<std::complex<double>> squares_;  ///< by frequency: sums over the rings
-  std::vector<double> powers_;                 ///< the same without their angles
+  std::vector<std::complex<double>> squares_;  ///< by frequency: sums over the rings, with their angles
+  std::vector<double> powers_;                 ///< by frequency: sums over the rings, without their angles
 };
 
 /// The confidence of several planes by their mean evidence.
@@ -145,7 +145,7 @@ double confidenceTogether(const std::vector<MeasuredPlane>& judged, int first, i
   return planeConfidence(mean);
 }
 
-/// The least confidence of parts of a polygon that may be symmetries while the others are not.
+/// The least confidence of a part of the polygon's planes that may be symmetries while the others are not.
 double leastTogether(const std::vector<MeasuredPlane>& judged) {
   double least = confidenceTogether(judged, 0, 1);
   for (const int divisor : kDetection.folds.divisors)
@@ -177,7 +177,7 @@ std::optional<PlaneLattice> latticeBySpectrum(const Points& all, const Line3d& l
     fold = m;
   }
   if (fold == 0) return std::nullopt;
-  // A polygon also has the multiples of its frequency, as do two perpendicular planes, of frequency 2.
+  // The multiples of the frequency of a polygon are also strong, and so is frequency 2 for two perpendicular planes.
   for (int m = 2; m < fold; ++m)
     if (fold % m == 0 && spectrum.prominence(m) > 0.0) {
       fold = m;
@@ -195,9 +195,10 @@ std::vector<Candidate> candidatesOf(const PlaneLattice& lattice) {
   return candidates;
 }
 
-/// Whether the planes halfway between those of a lattice are no symmetries of a surface. Folded into the sector between
-/// two planes, the points are denser by twice the fold, and resolve what single planes do not. The halfway plane has to
-/// bring fewer of them to within the tolerance of others than are so close without it, beyond chance.
+/// Whether the planes halfway between those of a lattice are no symmetries of a surface. The points are folded into the
+/// sector between two planes, where they are denser by twice the fold and resolve what single planes do not. Reflecting
+/// them in the halfway plane must bring clearly fewer of them to within the tolerance of other points than are so close
+/// without it.
 bool isPolygon(const PlaneLattice& lattice, const Points& points, double tolerance) {
   const double step = kPi / lattice.fold;
   const Eigen::Vector3d up = lattice.line.direction(), across = lattice.plane(0.0).normal(), along = across.cross(up);
@@ -224,7 +225,7 @@ bool isPolygon(const PlaneLattice& lattice, const Points& points, double toleran
   const auto search = makeFlannSearch(folded);
   const auto count = static_cast<double>(samples.size());
   const auto shareWithin = [&](const Points& queries) {
-    constexpr int kNumClosest = 4;  // three may be the point itself
+    constexpr int kNumClosest = 4;  // three neighbors may be the point itself
     std::vector<int> closest;
     std::vector<float> sq_distances;
     search->search(queries, kNumClosest, closest, sq_distances);
@@ -256,7 +257,7 @@ void addClosePlanes(const PlaneSearch& search, Found& found) {
   if (!lattice || kPi / lattice->fold > kDetection.decide.slope_angle ||
       !isPolygon(*lattice, cloud.points, search.measure.tolerance()))
     return;
-  std::complex<double> sum = 0.0;  // the planes that were found fix the angle better
+  std::complex<double> sum = 0.0;  // the planes that were found give a better angle
   for (const ReflectionPlane& plane : through)
     if (const double angle = angleAbout(line, plane), step = kPi / lattice->fold;
         std::abs(std::remainder(angle - lattice->phase, step)) <= kDetection.families.max_folded * step)

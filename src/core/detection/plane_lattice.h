@@ -23,11 +23,11 @@ struct PlaneLattice {
   ReflectionPlane plane(double k) const;
 };
 
-/// The regular polygon of a noisy cloud about a line: the density of points in rings about the line, as a function of
-/// the angle, has one strong frequency. It sums over all points and finds folds that no single plane shows.
+/// Finds the regular polygon of a noisy cloud about a line: the density of points in rings about the line, as a
+/// function of the angle, has one strong frequency. It sums over all points and finds folds that no single plane shows.
 /// \param all the points of the cloud and those removed to make it evenly dense, normalized frame.
 /// \param line normalized frame.
-/// \return none if no frequency stands out: no rotation maps the cloud onto itself, or all rotations do.
+/// \return nothing if no frequency stands out: no rotation maps the cloud onto itself, or all rotations do.
 std::optional<PlaneLattice> latticeBySpectrum(const Points& all, const Line3d& line);
 
 /// Completes polygons. Planes of noisy clouds are judged jointly: all of them are symmetries or none is. Planes of

@@ -18,7 +18,7 @@ namespace pcl_symmetry {
 namespace {
 
 /// Distance from a line within which a cloud counts as that line: the tolerance, or two spacings if that is more. The
-/// noise of a line of few points exceeds their resolution.
+/// noise of a few points on a line exceeds the tolerance.
 double lineTolerance(CloudKind kind, const CloudLimits::Lengths& lengths) {
   const double noisy = kDetection.measure.noisy_thinness * lengths.tolerance;
   return kKindRules.resolves_surface[kind]
@@ -34,7 +34,7 @@ double movedShare(const ReflectionPlane& plane, const PointsRef& points, double 
   return static_cast<double>(num_moved) / static_cast<double>(points.cols());
 }
 
-/// A sensor that does not resolve the tolerance decides at the greatest tolerance, if that is set.
+/// Whether the sensor resolves the tolerance, or it is the greatest tolerance and three times that is resolved.
 bool isResolved(const CloudLimits::Lengths& lengths) {
   const double greatest = DetectionOptions().max_tolerance * lengths.diameter;
   return lengths.tolerance >= lengths.resolution ||
@@ -158,7 +158,7 @@ std::vector<float> PlaneMeasure::unknownMatches(const Landing& landing, const st
     for (std::size_t i = 0; i < size; ++i)
       if (!matched[i]) {
         const Eigen::Vector3d x = landing.images.col(i).cast<double>();
-        // Measurements of a camera beside an object have errors.
+        // The camera's measurements beside an object have errors, too.
         const double beside = std::isfinite(cloud_.seen()->depthBehind(x)) ? std::max(rim, resolution_) : rim;
         unknown[i] = isFreeSpace(*cloud_.seen(), x, 0.0, beside) ? 1.0f - freeConfidence(*cloud_.seen(), x) : 1.0f;
       }
@@ -179,7 +179,8 @@ MeasuredPlane PlaneMeasure::measured(const ReflectionPlane& plane, const std::ve
   const Landing landing = landed(plane, samples, step.closest);
   const std::size_t size = samples.size();
   std::vector<char> matched(size), is_moved(size);
-  std::vector<float> moved;  // distances of the samples whose position is informative: in scans, those that move
+  // Distances of the samples whose position is informative; in scans, of those that the plane moves.
+  std::vector<float> moved;
   for (std::size_t i = 0; i < size; ++i) {
     matched[i] = landing.distances[i] <= tolerance_;
     const Eigen::Vector3d x = landing.images.col(i).cast<double>();
@@ -220,8 +221,8 @@ MeasuredPlane PlaneMeasure::measured(const ReflectionPlane& plane, const std::ve
   PlaneEvidence& evidence = result.evidence;
   evidence = evidenceOf(shares.support, shares.conflict, cloud_.score(result.plane));
   evidence.double_share = share(1);
-  // A point within the tolerance is within twice of it, but where the own share of few points is small, the former
-  // share can come out greater.
+  // A point within the tolerance is also within twice the tolerance. But if few points make the own share at the
+  // tolerance small, the share at the tolerance can come out greater.
   evidence.share = std::min(share(0), share(1));
   evidence.stiffness = secondStiffness(stiffness);
   evidence.unknown = meanSupport(unknown);

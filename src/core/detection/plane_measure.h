@@ -17,20 +17,20 @@
 namespace pcl_symmetry {
 
 /// Limits of a cloud that no evidence overcomes: its sensor does not resolve the tolerance, the image border cuts it
-/// off all around, or a plane moves its points by no more than the tolerance, as the plane of a sheet and all planes of
-/// a line do. Such planes are at most possible symmetries.
+/// off all around, or a plane moves its points by no more than the tolerance, like the plane of a sheet and all planes
+/// of a line. Such planes are at most possible symmetries.
 class CloudLimits {
 public:
   /// Lengths in units of the points.
   struct Lengths {
     double tolerance;   ///< > 0
     double resolution;  ///< least tolerance that the sensor resolves; 0 if its errors are unknown
-    double spacing;     ///< of the points
-    double diameter;    ///< of the points, by farthestPair()
+    double spacing;     ///< median distance of the points
+    double diameter;    ///< diameter of the points, by farthestPair()
   };
 
   /// \param points 3 x N, finite, N >= 1.
-  /// \param axes of the points.
+  /// \param axes principal axes of the points.
   /// \param seen what a scanner saw, frame of the points; null = the points show the object from all sides.
   CloudLimits(const PointsRef& points, const PrincipalAxes& axes, CloudKind kind, const Visibility* seen,
               const Lengths& lengths);
@@ -44,11 +44,11 @@ public:
 
   /// Whether a reflection leaves most points of a sheet in place.
   /// \param plane frame of the points.
-  /// \param points those of the cloud.
+  /// \param points the points of the cloud.
   bool movesNothing(const ReflectionPlane& plane, const PointsRef& points) const;
 
   /// \param plane frame of the points.
-  /// \param points those of the cloud.
+  /// \param points the points of the cloud.
   /// \return the rules that limit a plane to a possible symmetry, each in a few words.
   std::vector<const char*> rulesAgainst(const ReflectionPlane& plane, const PointsRef& points) const;
 
@@ -63,10 +63,10 @@ private:
 struct MeasuredPlane {
   SymmetryPlane plane;       ///< input frame
   PlaneEvidence evidence;    ///< input of the decision, together with informative
-  double informative = 1.0;  ///< share of the samples that move and land in known space; 1 for whole clouds
+  double informative = 1.0;  ///< share of the samples that move and whose images lie in known space; 1 for whole clouds
 };
 
-/// Measures how much of a cloud planes map onto it and how much is uninformative. It makes no decisions.
+/// Measures how much of a cloud planes map onto the cloud, and how much is uninformative. It makes no decisions.
 class PlaneMeasure {
 public:
   /// \param cloud,fit,options must outlive this object.
@@ -86,15 +86,15 @@ public:
 
   /// \param candidate after the last stage of refinement.
   /// \param samples what samples() returned.
-  /// \return without confidence and kind, as below.
+  /// \return the measured plane, without confidence and kind.
   MeasuredPlane measured(const Candidate& candidate, const std::vector<int>& samples) const;
 
   /// \param plane normalized frame.
   /// \param samples indices of points.
-  /// \param rim a reflection contradicts only if the space within this distance beside it is free, too.
+  /// \param rim a reflection contradicts only if the space within this distance on either side is free, too.
   MeasuredPlane measured(const ReflectionPlane& plane, const std::vector<int>& samples, double rim = 0.0) const;
 
-  /// Evidence of the cloud; fields of the plane beyond support, conflict and D keep their defaults.
+  /// Evidence of a whole cloud for one plane; fields beyond support, conflict and D keep their defaults.
   PlaneEvidence evidenceOf(double support, double conflict, double score) const;
 
   /// Share of the surface that a plane maps to within the tolerance, estimated from some points, and its standard
@@ -102,22 +102,22 @@ public:
   struct ScreenedShare {
     double share, error;
   };
-  /// \param candidate from the second stage of refinement on.
+  /// \param candidate after the second stage of refinement or later.
   ScreenedShare screenedShare(const Candidate& candidate) const;
 
   /// SymmetryPlane::deviation of a plane that maps many points far from the surface, normalized frame.
   double deviation(const ReflectionPlane& plane) const;
 
 private:
-  /// The distance within which 97 % of the samples lie, relative to the effect of sampling and noise.
+  /// The distance within which 97 % of the samples lie, less the effect of sampling and noise.
   double deviationOf(std::vector<float> distances) const;
-  /// Where the reflections of some samples land.
-  /// \param closest points of the surface to the reflections.
+  /// Finds where a plane maps some samples.
+  /// \param closest points of the surface closest to the reflections.
   Landing landed(const ReflectionPlane& plane, const std::vector<int>& samples, std::vector<int> closest) const;
-  /// For each sample without a match, how surely its counterpart lies in unknown space, in [0, 1].
+  /// For each sample without a match, the certainty that its counterpart lies in unknown space, in [0, 1].
   std::vector<float> unknownMatches(const Landing& landing, const std::vector<char>& matched, double offset_stiffness,
                                     double rim) const;
-  /// \param rim as above.
+  /// \param rim see measured() above.
   MeasuredPlane measured(const ReflectionPlane& plane, const std::vector<int>& samples, const IspStep& step,
                          double rim) const;
   const SurfaceEnds& ends() const;
@@ -127,12 +127,12 @@ private:
   const DetectionOptions& options_;
   double resolution_, tolerance_;
   CloudLimits limits_;
-  std::optional<SplitSurface> halves_;  ///< of points that resolve no surface
+  std::optional<SplitSurface> halves_;  ///< the two halves of points that resolve no surface
   /// Shares of the points within one and two tolerances of the surface of the others.
   std::array<double, 2> own_shares_;
   double own_score_;  ///< PlaneEvidence::own_score
   mutable std::once_flag ends_found_;
-  mutable std::optional<SurfaceEnds> ends_;  ///< found when ends() is first called
+  mutable std::optional<SurfaceEnds> ends_;  ///< computed when ends() is first called
 };
 
 }  // namespace pcl_symmetry

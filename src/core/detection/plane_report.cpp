@@ -35,7 +35,7 @@ void completeSupport(SymmetryPlane& plane, const PlaneSearch& search) {
   plane.point_support = search.fit->shares(cloud.toNormalized(plane), allOf(cloud.points.cols())).points.seenSupport();
 }
 
-/// Removes approximate planes that are symmetries of parts: they are reported as those.
+/// Removes approximate planes that are symmetries of parts: they are reported as local ones.
 std::vector<SymmetryPlane> withoutPlanesOfParts(std::vector<SymmetryPlane> planes, const NormalizedCloud& cloud) {
   const std::vector<ReflectionPlane> local = planesOf(planes, {PlaneKind::Local}, cloud);
   const auto is_of_part = [&](const SymmetryPlane& plane) {

@@ -14,17 +14,17 @@ struct DetectionEvidence;
 
 /// Combined evidence of the planes of a family.
 struct JudgedFamily {
-  double confidence = 0.0;      ///< of the mean evidence
-  double min_confidence = 1.0;  ///< of a single plane
+  double confidence = 0.0;      ///< confidence of the mean evidence
+  double min_confidence = 1.0;  ///< least confidence of a single plane
   double score = 0.0, support = 0.0;
 };
 
 /// Fits, refines, measures and judges the planes of a cloud: decides which are symmetries and which are possible
-/// (core/evidence/README.md).
+/// (src/pages/algorithms/decision.md).
 class PlaneSearch {
 public:
   const NormalizedCloud& cloud;
-  const Points& all_points;  ///< its points and those removed to make it evenly dense, normalized frame
+  const Points& all_points;  ///< the points of the cloud and those removed to make it evenly dense, normalized frame
   const DetectionOptions& options;
   const std::unique_ptr<PlaneFit> fit = makePlaneFit(cloud, options);
   const StagedRefinement refinement{cloud, *fit, options};
@@ -35,7 +35,7 @@ public:
       : cloud(given_cloud), all_points(points), options(given_options) {}
 
   /// \param candidates after the last stage of refinement.
-  /// \return one plane each, in the same order.
+  /// \return one plane per candidate, in the same order.
   std::vector<MeasuredPlane> judge(const std::vector<Candidate>& candidates) const;
 
   /// The same for some of the candidates, replacing their previous judgments.
@@ -46,7 +46,7 @@ public:
   /// \param samples indices of the points that judge it.
   MeasuredPlane judge(const ReflectionPlane& plane, const std::vector<int>& samples) const;
 
-  /// Planes of a family together.
+  /// Judges the planes of a family together.
   /// \param planes normalized frame, at least one.
   /// \param samples indices of the points that judge them.
   JudgedFamily judgeFamily(const std::vector<ReflectionPlane>& planes, const std::vector<int>& samples) const;
@@ -65,7 +65,7 @@ private:
 
 /// Results found so far, input frame.
 struct Found : Detection {
-  std::optional<PlaneLattice> polygon;    ///< normalized frame; its planes are among the planes
+  std::optional<PlaneLattice> polygon;    ///< normalized frame; its planes are among `planes`
   DetectionEvidence* evidence = nullptr;  ///< filled with the evidence of all candidates; may be null
 };
 

@@ -16,10 +16,10 @@ namespace pcl_symmetry {
 
 namespace {
 
-/// Means over the neighbors of each bin, by the solid angle of the bins.
+/// Averages over the neighbors of each bin, weighted by the solid angle of the bins.
 ///
 /// Voting leaves 7.6 votes per bin and, near the pole, single votes that weigh as much as a symmetry. Departure from
-/// the paper: it searches for maxima and applies its thresholds of 1/10 in the unsmoothed map.
+/// the paper: it searches for maxima in the unsmoothed map and applies its thresholds of 1/10 there.
 SymmetryMap smoothed(const SymmetryMap& map, int num_threads) {
   const PlaneGrid& grid = map.grid;
   SymmetryMap result = map;
@@ -41,11 +41,11 @@ SymmetryMap smoothed(const SymmetryMap& map, int num_threads) {
   return result;
 }
 
-/// What belongs to a maximum of the map: its bin, the neighbors that it is higher than, across borders and seams and
-/// around the pole, and all bins whose steepest ascent ends at it.
+/// The region of a maximum of the map: its bin, the neighbors that it is higher than (across borders and seams and
+/// around the pole), and all bins whose steepest ascent ends at it.
 ///
-/// This is how "leaves its cell" is read (Section 4.4): the sentence protects from a refinement that runs to another
-/// maximum. A peak near the border of a cell, or wider than the slivers at the pole, has its top in a neighbor.
+/// This is our reading of "leaves its cell" (Section 4.4): the sentence protects against a refinement that runs to
+/// another maximum. A peak near the border of a cell, or wider than the slivers at the pole, has its top in a neighbor.
 class MaximumRegion {
 public:
   MaximumRegion(const SymmetryMap& map, const PlaneGrid::Bin& bin) : map_(map), top_(map.grid.index(bin)) {}
@@ -73,8 +73,8 @@ private:
   std::size_t top_;
 };
 
-/// One plane per cell, if planes may not leave their cells: of planes that came from neighboring cells, the first
-/// stays.
+/// Keeps one plane per cell, if planes may not leave their cells: of planes that came from neighboring cells, only the
+/// first.
 void keepOneOfEachCell(std::vector<SymmetryPlane>& planes, const PlaneGrid& grid) {
   std::set<std::size_t> cells;
   const auto is_known = [&](const SymmetryPlane& plane) {
@@ -94,7 +94,7 @@ void PublishedOptions::validate() const {
   checkNumThreads(num_threads);
 }
 
-/// Section 4.4 from top to bottom.
+/// Section 4.4, step by step.
 std::vector<SymmetryPlane> publishedPlanes(const PointsRef& points, const GaussianEdt& edt, const SymmetryMap& map,
                                            const PublishedOptions& options) {
   options.validate();
@@ -122,7 +122,7 @@ std::vector<SymmetryPlane> publishedPlanes(const PointsRef& points, const Gaussi
     IspResult found;
     found.plane = maxima[i].plane;
     int iterations = 0;
-    // Few points move a plane at little cost; all of them determine where it ends.
+    // Few points bring a plane near its end at little cost; all points determine where it ends.
     for (const int count : {std::min(1000, options.num_points), options.num_points}) {
       const std::vector<int> samples = drawSamples(points.cols(), count, options.seed + i);
       isp.error_share = count == options.num_points ? 0.5 : 0.1;

@@ -16,20 +16,22 @@ namespace pcl_symmetry {
 
 namespace {
 
-// Lengths are shares of the extent of the points in (radius, height).
+// Lengths are shares of the extent of the points in (radius, height), unless stated otherwise.
 struct ProfileRules {
-  double first_width = 0.04;  // of the fit: noise of 1 % leaves its direction clear
+  double first_width = 0.04;  // first width of the fit: noise of 1 % leaves the direction of the curve clear
   double min_width = 0.012, max_width = 0.05;
-  double widths = 3.0;       // spreads, that the fit then is wide
-  int moves = 4;             // of each point onto the curve
-  double apart = 0.5;        // of the step between two points of the curve; closer ones are one
-  double next = 4.0;         // steps to the next point of one piece
-  double min_density = 0.1;  // of the median, points over radius: fits beside the curve have less
-  int min_points = 6;        // of a parabola with a direction
+  double widths = 3.0;  // width of the fit afterwards, spreads
+  int moves = 4;        // number of moves of each point onto the curve
+  // Least distance between points of the curve, in steps between two of them; closer points are one.
+  double apart = 0.5;
+  double next = 4.0;  // greatest distance to the next point of a piece, in steps
+  // Least density, points divided by radius, as a share of the median: fits beside the curve have less.
+  double min_density = 0.1;
+  int min_points = 6;  // least number of points of a parabola
 };
 constexpr ProfileRules kProfile;
 
-/// Where the parabola through the points near a position passes it.
+/// The point near a position where the parabola through the points nearby passes.
 struct FittedPosition {
   Eigen::Vector2d position;  // radius, height
   double spread;
@@ -65,7 +67,7 @@ FittedPosition fittedPosition(const std::vector<Eigen::Vector2d>& points, Eigen:
     }
     const Eigen::Vector3d parabola = solveSymmetric(h, g);
     if (!parabola.allFinite()) return {position, 0.0, 0};
-    // Beside the curve as far as along it, so that the weights cut nothing off.
+    // The window is as wide across the curve as along it, so that the weights cut nothing off.
     double sq_sum = 0.0;
     result.count = 0;
     for (const Eigen::Vector2d& x : points) {
@@ -113,7 +115,7 @@ std::vector<ProfilePoint> revolutionProfile(const PointsRef& points, const Symme
     return starts;
   };
   double width = kProfile.first_width * extent;
-  // Points near the axis again with a negative radius: the curve continues beyond it.
+  // Points near the axis are added again with a negative radius: the curve continues beyond the axis.
   std::vector<Eigen::Vector2d> around = positions;
   for (const Eigen::Vector2d& position : positions)
     if (position.x() < kProfile.max_width * extent) around.emplace_back(-position.x(), position.y());
@@ -129,7 +131,7 @@ std::vector<ProfilePoint> revolutionProfile(const PointsRef& points, const Symme
   std::vector<FittedPosition> curve;
   for (const Eigen::Vector2d& start : startsFor(step)) {
     const FittedPosition fit = fittedPosition(around, start, width);
-    // The parabola continues beyond the ends of the curve, and noise has starts of its own.
+    // The parabola continues beyond the ends of the curve, and starts at outliers find parabolas of their own.
     if (fit.count == 0 || fit.position.x() < 0.0 || (fit.position - start).norm() > width) continue;
     const bool is_known = std::any_of(curve.begin(), curve.end(), [&](const FittedPosition& other) {
       return (other.position - fit.position).norm() < kProfile.apart * step;
@@ -171,7 +173,7 @@ std::vector<ProfilePoint> revolutionProfile(const PointsRef& points, const Symme
     const std::vector<char> before = is_listed;
     const std::size_t end = walk(any).back();
     is_listed = before;
-    std::vector<std::size_t> order = walk(end);  // from an end of the piece to the other one
+    std::vector<std::size_t> order = walk(end);  // from one end of the piece to the other
     if (curve[order.front()].position.y() > curve[order.back()].position.y()) std::reverse(order.begin(), order.end());
     for (const std::size_t i : order)
       profile.push_back({curve[i].position.x(), curve[i].position.y(), curve[i].spread, curve[i].count});

@@ -76,7 +76,7 @@ RefinementStage StagedRefinement::stage(int num_samples, double sigma, double fi
   stage.num_rough_samples =
       std::clamp(options.expert.num_refine_samples / kKindRules.rough_stride[kind], 1, stage.num_samples);
   stage.min_merit = kKindRules.settled_merit[kind];
-  // The weights of sparse points are at their narrowest from the first stage on.
+  // For sparse points, the weights have their least width from the first stage on.
   stage.undo_slides = !kKindRules.shows_all[kind] && final_sigma == sigma;
   stage.isp.sigma = sigma;
   stage.isp.final_sigma = final_sigma;
@@ -94,7 +94,7 @@ std::vector<Candidate> StagedRefinement::refined(std::vector<Candidate> candidat
 }
 
 /// The candidates that stayed near the cell they came from. Departure from the paper: it drops all candidates that
-/// leave their cell; here maxima of a map of few samples are up to one cell off, hence kDetection.stages.max_drift, and
+/// leave their cell. Here maxima of a map of few samples are up to one cell off, hence kDetection.stages.max_drift, and
 /// candidates that map more of the shape than all that stayed are kept.
 std::vector<Candidate> StagedRefinement::withinCells(const std::vector<Candidate>& candidates,
                                                      const std::vector<Candidate>& starts,

@@ -8,18 +8,18 @@
 
 namespace pcl_symmetry {
 
-/// From candidates to precise planes in three stages, each with more samples and narrower weights than the one before
-/// (Section 4.4).
+/// Refines candidates to precise planes in three stages, each with more samples and narrower weights than the one
+/// before (Section 4.4).
 ///
 /// After each of the first two stages, candidates at the same plane are merged, and in whole clouds only the best of
-/// those that are not symmetries are kept.
+/// those that are no symmetries are kept.
 struct StagedRefinement {
   const NormalizedCloud& cloud;
   const PlaneFit& fit;
   const DetectionOptions& options;
 
   /// Few samples and wide weights: most candidates end in a basin that another one found, or leave their cell.
-  /// \param grid whose cells candidates from the map must not leave.
+  /// \param grid the grid of the map, whose cells candidates from the map must not leave.
   std::vector<Candidate> refineCoarsely(std::vector<Candidate> candidates, const PlaneGrid& grid) const;
 
   /// More samples; the weights end as narrow as the spacing of the points allows.
@@ -32,13 +32,13 @@ struct StagedRefinement {
   std::vector<Candidate> refineFully(std::vector<Candidate> candidates) const;
 
   /// Moves planes of a whole cloud to their optimum where pairs without a true partner pull them aside.
-  /// \param candidates after refineFully(), in which planes of noisy scans have climbed.
-  /// \param may_climb of each candidate: it may be a symmetry.
+  /// \param candidates result of refineFully(), in which planes of noisy scans have climbed.
+  /// \param may_climb whether each candidate may be a symmetry.
   /// \return whether each candidate moved.
   std::vector<char> climb(std::vector<Candidate>& candidates, const std::vector<char>& may_climb) const;
 
-  /// The best candidate of each group of similar planes, best first: all that may be symmetries, and others while there
-  /// are fewer than \p max_count.
+  /// The best candidate of each group of similar planes, best first: all that may be symmetries, and others up to a
+  /// total of \p max_count.
   std::vector<Candidate> distinct(std::vector<Candidate> candidates,
                                   std::size_t max_count = std::numeric_limits<std::size_t>::max(),
                                   double min_merit = -1.0) const;

@@ -50,18 +50,21 @@ bool slants(const ReflectionPlane& plane, const std::vector<Eigen::Vector3d>& ca
 namespace {
 
 struct UprightBoxRules {
-  int num_angles = 180;     // steps of half a degree, in a quarter of a rotation
-  double trimmed = 0.01;    // share of the points beyond each side
-  double near = 0.1;        // shorter sides of the box within which a point is near a side
-  double meets = 0.03;      // diagonals within which a reflection meets what a beam met
-  double beam_reach = 2.0;  // distances of neighboring beams within which a beam is informative
-  int beams = 3;            // nearest a reflection
-  // Points cut off at a side of the image
-  int rows = 12;            // between the lowest and the highest
-  int cut_rows = 4;         // that end in one upright line, at least,
-  double cut_width = 0.02;  // of the width seen,
-  double cut_depth = 0.25;  // of the width from above, the ranges at which they end
-  // Logit of the confidence, by the share near a side and the root of the share in free space, fitted to virtual scans.
+  int num_angles = 180;   // angles that are tried, in steps of half a degree within a quarter turn
+  double trimmed = 0.01;  // share of the points beyond each side of the box
+  double near = 0.1;      // distance from a side within which a point is near it, in shorter sides of the box
+  double meets = 0.03;    // distance within which a reflected point meets what a beam hit, in mean diagonals of the box
+  // Distance within which a beam is informative, in median distances from a beam to its fourth nearest.
+  double beam_reach = 2.0;
+  int beams = 3;  // nearest beams by which a reflected point is judged
+  // Points cut off at a side of the image:
+  int rows = 12;            // number of rows between the lowest and the highest elevation
+  int cut_rows = 4;         // least number of rows that end in one upright line of the image
+  double cut_width = 0.02;  // width of that line, as a share of the width of the points in the image
+  // Least difference of the ranges at which the rows end, as a share of the diagonal seen from above.
+  double cut_depth = 0.25;
+  // Logit of the confidence: a constant, and the weights of the share near a side and of the root of the share in free
+  // space; fitted to virtual scans.
   double confidence = 0.7, of_near = 4.15, of_free = -15.6;
 };
 constexpr UprightBoxRules kBox;
@@ -74,8 +77,8 @@ double distanceFrom(const std::array<double, 2>& sides, double value) {
 struct Rectangle {
   std::array<Eigen::Vector3d, 2> axes;  // unit, horizontal
   std::array<std::array<double, 2>, 2> sides;
-  std::vector<double> distances;  // of each point from the nearest side
-  double sq_error = 0.0;          // mean
+  std::vector<double> distances;  // distance of each point from the nearest side
+  double sq_error = 0.0;          // mean squared distance
 };
 
 Rectangle rectangleAt(const PointsRef& points, const Eigen::Vector3d& u, const Eigen::Vector3d& v) {
@@ -106,8 +109,8 @@ Rectangle bestRectangle(const PointsRef& points, const Eigen::Vector3d& up) {
   return *best;
 }
 
-/// The diagonal of an upright box that holds the points, mean over its angles: kBox was fitted to boxes along the axes
-/// of clouds, which lay at any angle.
+/// The diagonal of an upright box that holds the points, averaged over its angles. kBox was fitted to boxes along the
+/// axes of clouds, which lay at any angle.
 double meanDiagonal(const PointsRef& points, const Eigen::Vector3d& up) {
   const auto width = [&](const Eigen::Vector3d& along) {
     const Eigen::RowVectorXf positions = along.cast<float>().transpose() * points;
@@ -165,8 +168,8 @@ Points directionsTo(const PointsRef& points, const Eigen::Vector3d& viewpoint, s
 
 enum class Meets { Surface, Free, Unknown };
 
-/// Whether the beams of a scanner hit a surface at reflected points, passed freely, or neither.
-/// \param reach within which a beam meets a point.
+/// For each reflected point, whether the beams of a scanner hit a surface there, passed freely, or neither.
+/// \param reach distance within which a beam hits a point.
 std::vector<Meets> meetingsAt(const Points& reflected, const PointsRef& points, const Eigen::Vector3d& viewpoint,
                               double reach) {
   std::vector<double> ranges, reflected_ranges;

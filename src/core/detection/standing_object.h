@@ -11,7 +11,7 @@ namespace pcl_symmetry {
 
 /// The supports that carry an object, see Visibility::withSupport(): the nearest one and others that the object
 /// touches.
-/// \param points of the object, 3 x N, finite, N >= 1.
+/// \param points points of the object, 3 x N, finite, N >= 1.
 /// \return their unit normals.
 std::vector<Eigen::Vector3d> carryingNormals(const PointsRef& points, const Visibility& seen);
 
@@ -21,10 +21,10 @@ bool slants(const ReflectionPlane& plane, const std::vector<Eigen::Vector3d>& ca
 /// The middle plane of an upright box around points, along its longer side, and its evidence.
 struct MiddlePlane {
   ReflectionPlane plane;
-  double confidence = 0.0;  ///< that it is a symmetry, in [0, 1]
+  double confidence = 0.0;  ///< probability that the plane is a symmetry, in [0, 1]
   double num_moved = 0.0, num_met = 0.0,
          num_free = 0.0;             ///< points that it moves at all, onto the surface, and into free space
-  std::vector<float> point_support;  ///< of each point: that of SymmetryPlane
+  std::vector<float> point_support;  ///< support of each point, as in SymmetryPlane
   double residual = 0.0;             ///< root mean square distance of the points from the sides of the box
 };
 
@@ -37,15 +37,15 @@ struct MiddlePlane {
 /// of the points near a side and of the share that the plane maps into free space.
 /// \param points 3 x N, finite, N >= 20, of an object on a ground.
 /// \param up normal of the ground.
-/// \param viewpoint of the scanner.
-/// \return none if the points do not resolve a box.
+/// \param viewpoint position of the scanner.
+/// \return nothing if the points do not resolve a box.
 std::optional<MiddlePlane> middlePlaneOfBox(const PointsRef& points, const Eigen::Vector3d& up,
                                             const Eigen::Vector3d& viewpoint);
 
-/// Decides by the middle plane of the upright box around points on a ground, if they are too sparse for a surface, as
-/// the rings of a LiDAR are, or if no symmetry was found.
+/// Decides by the middle plane of the upright box around points on a ground, if they are too sparse for a surface, such
+/// as the rings of a LiDAR, or if no symmetry was found.
 /// \param points,seen as in carryingNormals().
-/// \param[in,out] found planes with the support of these points.
+/// \param[in,out] found result for these points; its planes have their support.
 void decideByUprightBox(const PointsRef& points, const Visibility& seen, const DetectionOptions& options,
                         Detection& found);
 

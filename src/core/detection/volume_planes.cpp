@@ -23,46 +23,48 @@ namespace {
 
 /// The numbers that change answers.
 struct VolumeRules {
-  std::size_t fine_voxels = 1u << 22;    ///< of the last refinement: 160 along an edge
-  std::size_t coarse_voxels = 1u << 18;  ///< of the map, the candidates and the correlations: 64 along an edge
-  int num_samples = 512;                 ///< of the map; the inside of a body has less contrast than a surface
-  int num_chance_planes = 256;           ///< in all directions; their quartile has a standard error of 3 %
-  double chance_angle = 0.26;            ///< radians: planes closer to a maximum are left out of these
-  double chance_quantile = 0.75;         ///< of their correlations: c0
-  double max_chance = 0.97;              ///< a body whose planes correlate like this is round
-  double min_seen = 0.25;                ///< share of the body that a plane has to compare
-  double enough_seen = 0.6;              ///< share from which on it counts in full, in proportion from ...
-  double nothing_seen = 0.1;             ///< ... this one on: a small piece alone is symmetric by chance
-  int num_translations = 6;              ///< distances that a plane is compared with, each both ways
-  double min_residual = 0.01;            ///< 1 - c that interpolation leaves of equal halves
-  /// Squared residuals that the squared slope of f per voxel has to exceed for a pair to count more than half.
+  std::size_t fine_voxels = 1u << 22;    ///< voxels of the last refinement: 160 along an edge
+  std::size_t coarse_voxels = 1u << 18;  ///< voxels of the map, the candidates and the correlations: 64 along an edge
+  int num_samples = 512;                 ///< samples of the map; the inside of a body has less contrast than a surface
+  /// Planes in all directions, whose correlations give c0; their quartile has a standard error of 3 %.
+  int num_chance_planes = 256;
+  double chance_angle = 0.26;     ///< radians; planes closer to a maximum than this do not count for c0
+  double chance_quantile = 0.75;  ///< quantile of the correlations of these planes that is c0
+  double max_chance = 0.97;       ///< greatest c0; a body with a greater one is round
+  double min_seen = 0.25;         ///< least share of the body that a plane compares
+  double enough_seen = 0.6;       ///< share of the body that a plane has to compare to keep its confidence
+  /// Share of the body, at which the confidence falls to 0: a small piece is symmetric by chance.
+  double nothing_seen = 0.1;
+  int num_translations = 6;  ///< distances by which a plane translates the body for comparison, each in both directions
+  double min_residual = 0.01;  ///< 1 - c that interpolation leaves between equal halves
+  /// Squared slope of f per voxel, in squared residuals, from which a pair counts half or more.
   double flat = 2.0;
-  /// Refinement of all maxima, then of those that may be symmetries: voxels that are reflected, steps, and the last
-  /// step in radians and in tenths of a voxel.
+  /// Voxels reflected in the refinement of all maxima, and of those that may be symmetries.
   double rough_voxels = 30'000.0, precise_voxels = 500'000.0;
-  int rough_steps = 15, precise_steps = 10;
+  int rough_steps = 15, precise_steps = 10;  ///< greatest number of steps of the two refinements
+  /// Last step of the two refinements, radians and tenths of a voxel.
   double rough_tolerance = 2e-3, precise_tolerance = 1e-4;
-  double max_level = 0.999;    ///< of the correlation of chance, which divides by what it leaves
-  double merge_angle = 0.12;   ///< radians: maxima closer than this, and ...
-  double merge_offset = 0.04;  ///< ... than this share of the radius in offset, are one
+  double max_level = 0.999;    ///< greatest correlation of chance, because the confidence divides by 1 minus it
+  double merge_angle = 0.12;   ///< radians; maxima within this angle and merge_offset are one
+  double merge_offset = 0.04;  ///< difference of the offsets, share of the radius
 };
 constexpr VolumeRules kVolume;
 
 /// What a plane does to a volume.
 struct Comparison {
-  double correlation = 0.0;                        ///< of f with its reflection inside the body
+  double correlation = 0.0;                        ///< correlation of f with its reflection inside the body
   double score = 0.0;                              ///< D
   double seen = 0.0;                               ///< share of the body whose reflection lies in the volume
   double residual = 0.0;                           ///< root mean square of f(x) - f(gamma x) inside the body
-  Eigen::Vector3d step = Eigen::Vector3d::Zero();  ///< of Gauss-Newton
+  Eigen::Vector3d step = Eigen::Vector3d::Zero();  ///< Gauss-Newton step
 
-  /// \return what planes are compared by.
+  /// \return the criterion by which planes are compared.
   double merit() const { return seen < kVolume.min_seen ? -1.0 : correlation; }
 };
 
 /// Sums over pairs of a voxel and its reflection.
 struct PairSums {
-  double n = 0.0, f = 0.0, g = 0.0, ff = 0.0, gg = 0.0, fg = 0.0;  // inside the body
+  double n = 0.0, f = 0.0, g = 0.0, ff = 0.0, gg = 0.0, fg = 0.0;  // sums inside the body
   double product = 0.0, square = 0.0, body = 0.0, seen_body = 0.0;
   Eigen::Matrix3d normal = Eigen::Matrix3d::Zero();
   Eigen::Vector3d rhs = Eigen::Vector3d::Zero();
@@ -87,15 +89,15 @@ public:
   }
 
   /// \param stride every stride-th voxel along each axis is reflected.
-  /// \param residual of the plane, as far as it is known: where f is as flat as its noise, pairs are uninformative
-  /// about the step and count little. Without weights, the noise of all the inside of a body adds up.
+  /// \param residual residual of the plane, if known: where f is as flat as its noise, pairs are uninformative about
+  /// the step and count little. Without these weights, the noise of the whole inside of a body adds up.
   Comparison compare(const ReflectionPlane& plane, int stride, bool with_step, double residual = 0.0) const {
     return compare(plane.reflection(), plane, stride, with_step, residual);
   }
 
-  /// The correlation with the body translated along the normal of a plane, as far as the plane moves its points: where
-  /// f changes slowly in that direction, as across a thin slab, every plane across it seems a symmetry.
-  /// \param distances of the body's points from the plane.
+  /// The correlation with the body translated along the normal of a plane as far as the plane moves its points: if f
+  /// changes slowly in that direction, as along a thin slab, every plane perpendicular to it seems to be a symmetry.
+  /// \param distances distances of the body's points from the plane.
   double translated(const ReflectionPlane& plane, std::vector<double> distances, int stride) const {
     double sum = 0.0, num = 0.0;
     for (int k = 0; k < kVolume.num_translations && !distances.empty(); ++k) {
@@ -114,7 +116,7 @@ public:
   }
 
   /// Gauss-Newton from a plane to the nearest maximum of D.
-  /// \param tolerance of the last step: radians, and voxels times ten.
+  /// \param tolerance last step: radians, and tenths of a voxel.
   /// \return the plane, with iterations and converged.
   SymmetryPlane refined(const ReflectionPlane& start, int stride, int max_iterations, double tolerance) const {
     const double spacing = f_.spacing().minCoeff(), max_step = 4.0 * stride * spacing;
@@ -153,7 +155,7 @@ private:
     result.seen = sum.seen_body / std::max(1.0, sum.body);
     result.residual = std::sqrt(std::max(0.0, sum.ff + sum.gg - 2.0 * sum.fg) / sum.n);
     if (with_step) {
-      // Nearly round bodies leave an angle open: a little of the trace keeps the step short there.
+      // Nearly round bodies leave an angle undetermined: a small multiple of the trace keeps its step short.
       Eigen::Matrix3d normal = sum.normal;
       normal.diagonal() *= 1.0 + 1e-6;
       result.step = -solveSymmetric(normal, sum.rhs);
@@ -162,9 +164,9 @@ private:
     return result;
   }
 
-  /// The gradient per voxel and f, with the voxels as coefficients of a cubic B-spline: smooth everywhere. The kinks of
-  /// trilinear look-ups would draw planes to where voxels fall on voxels, by up to a degree. Across thick slices, which
-  /// are not to be blurred any more, f passes through the voxels (cubic convolution, Keys 1981).
+  /// The gradient per voxel and f, with the voxels as coefficients of a cubic B-spline, which is smooth everywhere. The
+  /// kinks of trilinear look-ups would draw planes to where voxels fall on voxels, by up to a degree. Along an axis of
+  /// thick slices, which must not be blurred further, f passes through the voxels (cubic convolution, Keys 1981).
   Eigen::Vector4d splineAt(const Eigen::Vector3d& p) const {
     static const Eigen::Matrix4d spline =
         (Eigen::Matrix4d() << 1, -3, 3, -1, 4, 0, -6, 3, 1, 3, 3, -3, 0, 0, 0, 1).finished() / 6;
@@ -198,7 +200,7 @@ private:
     const PlaneChart chart(plane, pivot_);
     const Eigen::Affine3d& T = f_.T_input_index();
     const Eigen::Affine3d image = T_index_input_ * motion * T;             // from indices to indices
-    const Eigen::Matrix3d to_input = T_index_input_.linear().transpose();  // of gradients
+    const Eigen::Matrix3d to_input = T_index_input_.linear().transpose();  // for gradients
     const float* const values = f_.values().data();
     const auto [nx, ny, nz] = f_.size();
     const float body = static_cast<float>(body_);
@@ -263,7 +265,7 @@ struct VolumeSearch {
         fine(input, levels, kVolume.fine_voxels, options.num_threads),
         coarse(fine, kVolume.coarse_voxels, options.num_threads) {}
 
-  /// The best of the planes that ended at one plane, best first.
+  /// Of the planes that ended at the same plane only the best one, best first.
   std::vector<SymmetryPlane> distinct(std::vector<SymmetryPlane> planes) const {
     const MergeTolerance one{kVolume.merge_angle, kVolume.merge_offset * edt.radius()};
     sortFalling(planes, &SymmetryPlane::support);
@@ -327,8 +329,8 @@ struct VolumeSearch {
   }
 
   /// Sets the confidence of a plane.
-  /// \param best_support of the planes: it shows how alike halves are at this noise. A body that is nearly an ellipsoid
-  /// has other planes, which leave more of f.
+  /// \param best_support greatest support of any plane: it shows how alike halves are at this noise. A body that is
+  /// nearly an ellipsoid has other planes, with larger differences.
   void judge(SymmetryPlane& plane, double chance, double best_support) const {
     double level = chance;
     if (confidence(plane, level) >= options.min_possible) {
@@ -343,7 +345,7 @@ struct VolumeSearch {
     setConfidence(plane,
                   confidence(plane, level) * std::pow(std::min(1.0, min_left / left), 2) * std::clamp(shown, 0.0, 1.0),
                   "the correlation beyond that of planes in any direction", options);
-    // A volume has no surface to be mapped.
+    // The share and the deviation of a surface do not apply to a volume.
     plane.share = plane.share_low = plane.share_high = plane.deviation = std::numeric_limits<double>::quiet_NaN();
   }
 };
