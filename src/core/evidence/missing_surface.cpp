@@ -26,13 +26,13 @@ Eigen::ArrayXf along(const Coordinates& points, const Eigen::Vector3f& direction
   return direction.x() * points.col(0) + direction.y() * points.col(1) + direction.z() * points.col(2);
 }
 
-/// The point that is farthest along a direction; of several the first one.
+/// The point that is farthest along a direction; of several, the first one.
 Eigen::Vector3f farthestAlong(const Coordinates& points, const Eigen::Vector3f& direction) {
   const Eigen::ArrayXf reached = along(points, direction);  // maxCoeff() with an index is not vectorized
   return points.row(std::find(reached.begin(), reached.end(), reached.maxCoeff()) - reached.begin());
 }
 
-/// The direction along which two clouds are farthest apart: that between the closest points of their convex hulls
+/// The direction along which two clouds are farthest apart: the one between the closest points of their convex hulls
 /// (Gilbert 1966) or, if these overlap, a direction of little overlap.
 Eigen::Vector3f separatingDirection(const Points& cloud, const Points& piece, float spacing) {
   const Coordinates of_cloud = coordinatesOf(cloud), of_piece = coordinatesOf(piece);
@@ -48,7 +48,7 @@ Eigen::Vector3f separatingDirection(const Points& cloud, const Points& piece, fl
   return between.normalized();
 }
 
-/// 0 up to the first value, 1 from the second on.
+/// 0 up to the value \p none, 1 from the value \p all on.
 float ramp(float value, float none, float all) {
   return std::clamp((value - none) / (all - none), 0.0f, 1.0f);
 }
@@ -122,7 +122,7 @@ std::vector<float> missingCounterparts(const SampledSurface& surface, const std:
   for (std::size_t i = 0; i < size; ++i)
     for (const int j : nearest[i])
       if (!matched[i] && !matched[j]) regions.union_set(static_cast<int>(i), j);
-  std::vector<float> edges(size, 0.0f), explained(size, 0.0f);  // of the region with this root
+  std::vector<float> edges(size, 0.0f), explained(size, 0.0f);  // values of the region with this root
   for (std::size_t i = 0; i < size; ++i) {
     for (const int j : nearest[i]) {
       if (matched[i] == matched[j]) continue;
@@ -139,7 +139,7 @@ std::vector<float> missingCounterparts(const SampledSurface& surface, const std:
     float value = 0.0f;
     if (edges[region] > 0.0f) {
       const auto at_borders = std::count_if(members.begin(), members.end(), [&](int i) { return near[i] != 0; });
-      // The edge of a region that lies entirely near borders, such as a wire, is near them for any plane.
+      // The edge of a region that lies entirely near borders, such as a wire, is near borders for any plane.
       const float chance = std::min(0.99f, static_cast<float>(at_borders) / static_cast<float>(members.size()));
       const float share = (lowerLimit(explained[region], edges[region]) - chance) / (1.0f - chance);
       value =

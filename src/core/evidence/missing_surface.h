@@ -17,15 +17,15 @@ namespace pcl_symmetry {
 /// nothing.
 /// \param cloud 3 x N, N > 0, finite.
 /// \param normals 3 x N, unit, of arbitrary sign.
-/// \param piece reflections of neighboring points without counterpart.
+/// \param piece reflections of neighboring points that have no counterpart.
 /// \param spacing median distance of the points.
 /// \return in [0, 1]: 1 where the cloud was cut off before the piece, 0 where a counterpart should be there.
 float beyondEnd(const Points& cloud, const Points& normals, const Points& piece, double spacing);
 
-/// The samples of a cloud, as points() of NormalizedCloud.
+/// The samples of a cloud, in the order of NormalizedCloud::points.
 struct SampledSurface {
   const Points& points;              ///< 3 x N, N > 0
-  const LocalGeometry& geometry;     ///< of them
+  const LocalGeometry& geometry;     ///< local geometry of the points
   const std::vector<char>& borders;  ///< what openBorders() returned
   double spacing;                    ///< median distance of the points
 };
@@ -33,11 +33,11 @@ struct SampledSurface {
 /// How well the end of a cloud explains that a sample has no counterpart under a plane.
 ///
 /// Neighboring samples without counterpart form regions. A region is explained to the degree that its edge follows open
-/// borders, of the samples or of their reflections, beyond chance: short edges may do so by chance, as may those of a
-/// region that lies entirely near borders. It is also explained where its reflection lies beyond the end of the cloud,
-/// see beyondEnd().
+/// borders, of the samples or of their reflections, more than by chance: short edges may do so by chance, as may the
+/// edge of a region that lies entirely near borders. It is also explained where its reflection lies beyond the end of
+/// the cloud, see beyondEnd().
 /// \param matched N values, 1 where the reflection of the sample lies on the surface.
-/// \param closest N indices of the samples closest to the reflections; -1: none is near.
+/// \param closest N indices of the samples closest to the reflections; -1 = none is near.
 /// \param reflected 3 x N, the reflections.
 /// \return N values in [0, 1]: 0 for samples that have a counterpart or should have one, 1 where it is missing from the
 /// cloud.

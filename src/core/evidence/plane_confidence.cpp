@@ -29,7 +29,7 @@ double byShare(const PlaneEvidence& evidence, double unit) {
   return byOff(1.0 - evidence.share, unit);
 }
 
-/// \return the share of the surface that is off as finer points would show it.
+/// \return the share of the surface that is off, extrapolated to finer points.
 double resolvedOff(const PlaneEvidence& evidence) {
   const double off = 1.0 - evidence.share, coarse = coarseness(evidence);
   const double flat = evidence.flat ? std::min(1.0, kEvidenceUnits.flat_reach * coarse) : 0.0;
@@ -43,7 +43,7 @@ double byPrecision(const PlaneEvidence& evidence) {
   return std::min(resolvedOff(evidence), kEvidenceUnits.max_off) / unit;
 }
 
-/// \return log odds by the slipping of the plane along its matches, more where much is hidden, >= 0.
+/// \return log odds that grow as the matches constrain the plane less, the more so the more is hidden, >= 0.
 double bySlipping(const PlaneEvidence& evidence) {
   const double slips =
       std::max(0.0, std::log(kEvidenceUnits.slipping / (evidence.stiffness + kEvidenceUnits.min_slipping)));
@@ -139,7 +139,7 @@ Eigen::Matrix3d motionStiffness(const Points& points, const Points& normals, con
     if (!matched[i]) continue;
     const auto column = static_cast<Eigen::Index>(i);
     const Eigen::Vector3d x = points.col(column).cast<double>(), normal = normals.col(column).cast<double>();
-    const double height = -plane.signedDistance(x);  // of the point that x is the reflection of
+    const double height = -plane.signedDistance(x);  // height of the point whose reflection is x
     const Eigen::Vector3d gradient = chart.slope(x + 2.0 * height * chart.n, height, normal);
     information += gradient * gradient.transpose();
     count += 1.0;

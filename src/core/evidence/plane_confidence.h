@@ -8,8 +8,8 @@
 
 namespace pcl_symmetry {
 
-/// How strongly the matched samples constrain a plane. A match counts by the motions that it excludes: a sheet
-/// reflected onto itself matches under any tilt of the plane about the normal of the sheet, a ball under all tilts.
+/// How strongly the matched samples constrain a plane. A match excludes some motions: a sheet reflected onto itself
+/// matches under any tilt of the plane about the normal of the sheet, a ball under all tilts.
 /// \param points 3 x N, in the unit ball, the reflections of the samples.
 /// \param normals 3 x N, unit, of the surface at their matches.
 /// \param matched N values.
@@ -39,25 +39,25 @@ enum class CloudKind {
 
 /// Evidence for and against one plane, and how finely the points sample the surface.
 struct PlaneEvidence {
-  double support = 0.0;    ///< mean over the points: the reflection lies on the surface, in [0, 1]
-  double conflict = 0.0;   ///< mean over the points: the reflection lies in free space, in [0, 1]
-  double score = 0.0;      ///< D of equation 2, in [0, 1]
-  double own_score = 1.0;  ///< D of a symmetry under this noise, in [0.5, 1]; 1 where points resolve a surface
-  double baseline = 1.0;   ///< support of the points by the surface of all others: < 1 due to sampling and noise
+  double support = 0.0;    ///< mean over the points of how well the reflection lies on the surface, in [0, 1]
+  double conflict = 0.0;   ///< mean over the points of how well the reflection lies in free space, in [0, 1]
+  double score = 0.0;      ///< D of Equation 2, in [0, 1]
+  double own_score = 1.0;  ///< D that a symmetry has under this noise, in [0.5, 1]; 1 where points resolve a surface
+  double baseline = 1.0;   ///< mean support of the points by the surface of all others: < 1 due to sampling and noise
   double spacing = 0.0;    ///< median distance of the samples, divided by the radius of the points
   double roughness = 0.0;  ///< median distance of the samples from their tangent planes, divided by the spacing
-  CloudKind kind = CloudKind::Surface;  ///< of the cloud; support of a volume is the overlap of its density
+  CloudKind kind = CloudKind::Surface;  ///< kind of the cloud; the support of a volume is the overlap of its density
   /// Share of the informative surface that is mapped to within the tolerance of the surface, in [0, 1].
   double share = 1.0;
   double double_share = 1.0;  ///< share mapped to within twice the tolerance, >= share
-  double stiffness = 1.0;     ///< of scans: second eigenvalue of the motion stiffness, see secondStiffness(), >= 0
-  double tolerance = 0.02;    ///< of that share, divided by the radius of the points, > 0
+  double stiffness = 1.0;     ///< second eigenvalue of the motion stiffness of a scan, see secondStiffness(), >= 0
+  double tolerance = 0.02;    ///< tolerance of `share`, divided by the radius of the points, > 0
   double unknown = 0.0;  ///< share of the surface that is uninformative: its reflection was not seen or was cut off
-  bool flat = false;     ///< all points lie in one plane, so that only their outline is informative
+  bool flat = false;     ///< whether all points lie in one plane, so that only their outline is informative
   double coarser = 0.0;  ///< share by which the spacing of the points raised the tolerance, >= 0
 };
 
-/// Share of the surface seen that the plane maps onto the surface, relative to what sampling allows.
+/// Share of the visible surface that the plane maps onto the surface, relative to what sampling allows.
 /// \return min(1, support / ((support + conflict) * baseline)), in [0, 1]; 0 where nothing was seen.
 double seenSupport(const PlaneEvidence& evidence);
 
@@ -68,31 +68,31 @@ struct EvidenceUnits {
   double scan_off = 0.01;          ///< error of the share that is off, for scans, whose hidden parts may differ
   double double_off = off;         ///< error of the share that is off by more than twice the tolerance
   double precision = 2.0 * off;    ///< uncertainty of the share; half of it would doubt nearly symmetric planes less
-  double precision_per_spacing = 2.0 * off_per_spacing;  ///< increase of precision per spacing in tolerances
-  double precision_per_unknown = 0.2;                    ///< increase of precision per uninformative share
-  double max_off = 0.1;                                  ///< share above which more makes no difference
+  double precision_per_spacing = 2.0 * off_per_spacing;  ///< increase of `precision` per spacing in tolerances
+  double precision_per_unknown = 0.2;                    ///< increase of `precision` per uninformative share
+  double max_off = 0.1;                                  ///< share that is off above which more makes no difference
   /// Logarithm of the factor per spacing in tolerances by which the share that is off grows with finer points of a
   /// whole cloud, because samples extend beyond edges: 0.3 to 0.6 for planes that map 96 to 97 %.
   double reach = 0.3;
-  double flat_reach = 0.8;      ///< the same for flat clouds, where only the outline tells, up to a factor of e
+  double flat_reach = 0.8;      ///< `reach` for flat clouds, where only the outline is informative, up to a factor of e
   double hidden_loss = 0.6;     ///< loss of D per uninformative share
   double slipping = 0.03;       ///< stiffness below which a plane may slip; nine of ten symmetries have more than 0.06
   double min_slipping = 0.001;  ///< below this stiffness a plane counts as free
-  double slipping_seen = 0.3;   ///< weight of the term where nothing is hidden
-  // Where points resolve no surface:
+  double slipping_seen = 0.3;   ///< weight of the term for slipping where nothing is hidden
+  // For points that resolve no surface:
   double volume_off = 0.003;   ///< error of the share that is off
   double excess = 0.002;       ///< unit of the loss of D beyond its error
-  double min_excess = excess;  ///< error of D: it is 0.001 less than expected in the mean, deviation 0.002
+  double min_excess = excess;  ///< error of D: it is 0.001 less than expected on average, with a deviation of 0.002
   double lost_overlap = 0.01;  ///< unit of the lost overlap of densities
   double noise = 0.01;         ///< unit of the loss of D through noise
 };
 inline constexpr EvidenceUnits kEvidenceUnits{};
 
 /// The terms of the log odds that a plane is a symmetry, without their coefficients: 1, then terms that fall with
-/// better evidence, then for whole clouds and volumes the spacing or the noise, which the others depend on.
+/// better evidence, then for whole clouds and volumes the spacing or the noise, which the other terms depend on.
 std::vector<double> logOddsTerms(const PlaneEvidence& evidence);
 
-/// Limits of a share.
+/// Limits of a share, in [0, 1].
 struct ShareInterval {
   double low, high;
 };
@@ -100,18 +100,18 @@ struct ShareInterval {
 /// \return the unit of the error of PlaneEvidence::share as an estimate for the whole object, > 0.
 double shareUnit(const PlaneEvidence& evidence);
 
-/// \return limits of the share of the whole object that the plane maps to within the tolerance of the object, which hold
-/// in 95 of 100 cases; in [0, 1].
+/// \return limits of the share of the whole object that the plane maps to within the tolerance of the object, which
+/// hold in 95 of 100 cases; in [0, 1].
 ShareInterval shareInterval(const PlaneEvidence& evidence);
 
-/// Probability that the plane is a symmetry of the object: it, or a plane within 3 degrees and 2 % of the diagonal,
-/// maps 97 % of the surface to within the tolerance of the surface. A logistic regression for each kind of evidence,
-/// see README.md beside the source.
+/// Probability that the plane is a symmetry of the object: this plane, or one within 3 degrees and 2 % of the diagonal,
+/// maps 97 % of the surface to within the tolerance of the surface. A logistic regression for each kind of cloud, see
+/// src/pages/algorithms/decision.md.
 /// \return in [0, 1].
 double planeConfidence(const PlaneEvidence& evidence);
 
-/// The last term, for a plane of a cloud that has a better plane: it grows with the unknown share.
-/// \param unknown as PlaneEvidence::unknown.
+/// The last term of the log odds, for a plane of a cloud that has a better plane: it grows with the unknown share.
+/// \param unknown see PlaneEvidence::unknown.
 double furtherTerm(CloudKind kind, double unknown);
 
 /// The factor of furtherTerm() on the odds: less for a scan and for a cloud that may lack a piece.

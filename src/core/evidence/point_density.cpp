@@ -14,7 +14,7 @@ namespace pcl_symmetry {
 
 namespace {
 
-/// A cell and the weights of its lower corner and its upper one along each axis.
+/// A cell, and the weights of its lower and upper corner along each axis.
 struct CellPosition {
   Eigen::Array3i cell;
   Eigen::Array3f t;  ///< in [0, 1), from the lower corner to the upper one
@@ -31,7 +31,7 @@ std::vector<float> gaussianKernel(double deviation, int reach) {
   return kernel;
 }
 
-/// A function of three numbers about 0: value, slopes and curvatures, by differences.
+/// A function of three numbers near 0: value, slopes and curvatures, from differences.
 struct Quadric {
   Eigen::Vector3d gradient;
   Eigen::Matrix3d hessian;

@@ -18,7 +18,8 @@ public:
   /// \param bandwidth standard deviation of the Gaussian around each point, units of the points, > 0.
   PointDensity(const PointsRef& points, double bandwidth, int num_threads);
 
-  /// Mean density at the reflections of samples, divided by the mean density of the other points at a point.
+  /// Mean density at the reflections of samples, divided by the mean density at the points that other points
+  /// contribute.
   ///
   /// A reflected sample of a symmetric density is a new sample of the same density, whatever the noise and the number
   /// of points: the overlap is then about 1.
@@ -33,7 +34,7 @@ public:
 
   /// Newton steps to the nearest maximum of overlap().
   /// \param samples as in overlap().
-  /// \param max_iterations >= 1; fewer where the plane stands still.
+  /// \param max_iterations >= 1; fewer are made if the plane converges.
   Refined refine(const PointsRef& samples, const ReflectionPlane& plane, int max_iterations) const;
 
 private:

@@ -15,7 +15,7 @@ namespace pcl_symmetry {
 
 namespace {
 
-/// Quarters that make up one half and the other. The three ways to do so.
+/// The three ways to combine quarters into two halves.
 constexpr std::array<std::array<int, 4>, 3> kPairings{{{0, 1, 2, 3}, {0, 2, 1, 3}, {0, 3, 1, 2}}};
 
 /// Two halves of points, drawn at random.

@@ -16,19 +16,19 @@ namespace pcl_symmetry {
 class SplitSurface {
 public:
   /// \param points 3 x N, finite, N >= 4.
-  /// \param seed of the halves.
+  /// \param seed seed of the random halves.
   SplitSurface(const Points& points, std::uint64_t seed, int num_threads);
 
   /// \return distances of the first half from the surface of the second, units of the points, >= 0.
   std::vector<float> ownDistances() const { return distances(first_); }
-  /// \return distances of the reflections of the first half from that surface.
+  /// \return distances of the reflections of the first half from the surface of the second, units of the points, >= 0.
   std::vector<float> reflectedDistances(const ReflectionPlane& plane) const;
 
-  /// D of equation 2 for a true plane under this sampling and noise: f of all points and f of their reflections differ
-  /// by noise alone. Halves of the points differ by noise, too, but are half as dense, and quarters half as dense
-  /// again: the loss of D falls by the same factor with each doubling of the points.
+  /// D of Equation 2 for a true plane under this sampling and noise: f of all points and f of their reflections differ
+  /// by noise alone. Halves of the points also differ by noise, but are half as dense, and quarters a quarter as dense:
+  /// the loss of D falls by the same factor with each doubling of the points.
   /// \param num_cells,sigma of the distance transform that D is computed from; sigma in units of the points.
-  /// \param ball that it covers, frame of the points.
+  /// \param ball ball that the distance transform covers, frame of the points.
   /// \return in [0.5, 1].
   double ownScore(int num_cells, double sigma, const BoundingBall& ball, int num_threads) const;
 
@@ -37,7 +37,7 @@ private:
 
   std::uint64_t seed_;
   Points first_, second_;
-  ClosestPointSearch::Ptr search_;  ///< of the second half
+  ClosestPointSearch::Ptr search_;  ///< closest points of the second half
   SurfaceSamples samples_;          ///< the second half
 };
 

@@ -46,7 +46,7 @@ SurfaceDiscs::SurfaceDiscs(const Points& samples, const LocalGeometry& geometry,
     visitCells(discs_[i], [&](std::size_t cell) { entries_[next[cell]++] = static_cast<int>(i); });
 }
 
-/// Calls visit(cell) for the cells that hold points within reach of a disc, and for some more.
+/// Calls visit(cell) for the cells that hold points within reach of a disc, and for a few others.
 template <typename Visit>
 void SurfaceDiscs::visitCells(const SurfaceDisc& disc, const Visit& visit) const {
   const float beside = disc.radius + reach_, slack = half_diagonal * cell_size_;
@@ -134,7 +134,8 @@ SurfaceSamples surfaceSamples(const Points& points, const LocalGeometry& geometr
 
 namespace {
 
-/// Distance from the nearest of the discs of a sample and its neighbors, but not from that of \p self (-1: none).
+/// Distance from the nearest of the discs of a sample and its neighbors, without the disc of sample \p self (-1 =
+/// none).
 float distanceNear(int closest, int self, const Eigen::Vector3f& point, const SurfaceSamples& samples,
                    float sq_across_factor = 1.0f) {
   float least = samples[closest].sqDistance(point, sq_across_factor);
@@ -190,14 +191,14 @@ float sqDeviation(const SurfaceSample& sample, const Eigen::Vector3f& point, con
   const float sq_distance = along * along + across * across;
   if (sq_distance >= max_sq_deviation) return max_sq_deviation;
   const float cosine = std::min(1.0f, std::abs(sample.normal.dot(point_normal)));
-  // Normals count according to their reliability, without a jump.
+  // Normals count by their reliability, without a jump.
   static const float agreeing = std::cos(kEvidence.normal_angle);
   if (cosine > agreeing || sample.normal_trust == 0.0f) return sq_distance;
   const float excess = sample.normal_trust * std::max(0.0f, std::acos(cosine) / kEvidence.normal_angle - 1.0f);
   return sq_distance + excess * excess;
 }
 
-/// Support by the closest sample or one of those next to it, whichever is best, but not by sample \p self (-1 = none).
+/// Support by the closest sample or one of those next to it, whichever is best, except sample \p self (-1 = none).
 float supportNear(int closest, int self, const Eigen::Vector3f& point, const Eigen::Vector3f& point_normal,
                   const SurfaceSamples& samples) {
   float least = sqDeviation(samples[closest], point, point_normal, kEvidence.max_sq_deviation);

@@ -18,7 +18,7 @@ namespace pcl_symmetry {
 /// Parameters of the evidence of a plane, besides EvidenceUnits and the fitted numbers (confidence_fit.h).
 struct EvidenceRules {
   // Surface of samples.
-  float disc_radius = 1.25f;  ///< spacings, of the disc that a sample represents; 1 in 135 holds no other sample
+  float disc_radius = 1.25f;  ///< radius of the disc that a sample represents, spacings; 1 in 135 holds no other sample
   float max_roughness = 0.25f,
         trust_width = 0.1f;  ///< roughness in spacings at which normals become meaningless; volumes: 0.42
   float new_point_factor =
@@ -27,10 +27,10 @@ struct EvidenceRules {
   // Support.
   float normal_reach = 0.01f;     ///< reach across the surface, radii of the points
   float rough_reach = 3.0f;       ///< reach across the surface, roughnesses: 99.7 % of Gaussian noise
-  float normal_angle = 0.5f;      ///< radians between normals that agree
+  float normal_angle = 0.5f;      ///< angle up to which normals agree, radians
   float surely = 0.99999f;        ///< share of a reach that rounding does not exceed
   float max_sq_deviation = 9.0f;  ///< squared deviation that counts as no support
-  double tilt_ridge = 1e-4;       ///< far below the stiffness of constrained tilts
+  double tilt_ridge = 1e-4;       ///< ridge for tilts of the plane, far below the stiffness of constrained ones
 
   double exact_depth = 4e-3;         ///< depth error, radii, up to which a pixel without depth means free space
   float free_without_depth = 0.15f;  ///< confidence in free space at such a pixel where errors are larger
@@ -38,49 +38,56 @@ struct EvidenceRules {
   // Confidence.
   double coarsest =
       3.0;  ///< tolerances; by default, points with a wider spacing decide at the tolerance that they resolve
-  double coarsest_part = 0.5 * coarsest;  ///< of flat clouds, and of scans so wide, which lose confidence beyond
-  double surely_coarser = 0.05;           ///< share by which spacing raises the tolerance of such a scan
-  double lost_per_coarseness = 2.0;       ///< log odds lost per tolerance beyond that
-  double unknown_share = 0.5;             ///< units of a share per uninformative share
+  /// `coarsest` for flat clouds and for scans whose spacing raised the tolerance.
+  double coarsest_part = 0.5 * coarsest;
+  /// Share by which spacing raises the tolerance of a scan until coarsest_part applies to it fully.
+  double surely_coarser = 0.05;
+  double lost_per_coarseness = 2.0;  ///< log odds lost per tolerance of spacing beyond these
+  double unknown_share = 0.5;        ///< uncertainty of the share per uninformative share
 
   // Where a cloud ends.
   float min_explained = 0.4f,
-        explained = 0.75f;        ///< share of an edge at which its region begins to count as missing, and fully counts
-  float standard_errors = 1.96f;  ///< of that share
+        /// Share of an edge from which its region begins to count as missing, and from which it counts fully.
+      explained = 0.75f;
+  float standard_errors = 1.96f;  ///< standard errors of that share
   double min_piece = 0.002;       ///< least share of the surface in a piece that was cut off
-  std::size_t min_of_piece = 8;   ///< samples of it
-  double far_view = 100.0;        ///< radii, from where rays are parallel
-  double layered_sheet = 0.1;     ///< layered share of open sheets; 38 of 40 cut objects have more
-  double few_borders = 0.6, borders_everywhere = 0.75;  ///< share near borders to trust them fully, or not at all
-  float in_front = 3.0f, behind = 4.0f;                 ///< spacings by which a piece reaches behind the last points
-  float runs_into = 0.65f, closes = 0.8f;               ///< cosine of normals at a cut, and where a surface closes
-  float last_points = 2.0f;                             ///< depth of these points, spacings
-  double outliers = 0.002;                              ///< share of the points
-  int max_steps = 200;                                  ///< between convex hulls
-  float min_gain = 0.02f;                               ///< least share by which a step reduces the squared distance
-  float no_distance = 1.0f;                             ///< spacings; convex hulls that are closer overlap
+  std::size_t min_of_piece = 8;   ///< least number of samples in such a piece
+  double far_view = 100.0;        ///< distance, radii, from which rays are practically parallel
+  double layered_sheet = 0.1;     ///< greatest layered share of an open sheet; 38 of 40 cut objects have more
+  /// Share near borders up to which they are trusted fully, and from which not at all.
+  double few_borders = 0.6, borders_everywhere = 0.75;
+  /// Spacings by which a piece may reach behind the last points: up to the first it is beyond them, from the second on
+  /// not.
+  float in_front = 3.0f, behind = 4.0f;
+  /// Cosine to the normals of the last points up to which the surface runs into the cut, and from which it closes.
+  float runs_into = 0.65f, closes = 0.8f;
+  float last_points = 2.0f;  ///< depth of the last points, spacings
+  double outliers = 0.002;   ///< share of the points that are left out at the end as outliers
+  int max_steps = 200;       ///< greatest number of steps between convex hulls
+  float min_gain = 0.02f;    ///< least share by which a step reduces the squared distance
+  float no_distance = 1.0f;  ///< distance, spacings, below which convex hulls overlap
 
   // Density of points that resolve no surface.
-  int max_cells = 160;               ///< along the longest side
-  double cell_size = 0.5;            ///< bandwidths
-  double margin = 4.0;               ///< bandwidths around the points
-  double kernel_reach = 3.0;         ///< standard deviations
-  double cell_variance = 1.0 / 3.0;  ///< squared cells that spreading and interpolation add
-  double min_variance = 0.1;         ///< squared cells; less needs no blur
-  double step = 0.5;                 ///< bandwidths by which the farthest points move in a difference
-  double longest_step = 3.0;         ///< differences within which the quadratic fit is valid
-  double settled = 0.01;             ///< bandwidths; far below the error of a plane
-  double min_curvature = 1e-3;       ///< share of the greatest
+  int max_cells = 160;               ///< greatest number of cells along the longest side
+  double cell_size = 0.5;            ///< edge of a cell, bandwidths
+  double margin = 4.0;               ///< margin around the points, bandwidths
+  double kernel_reach = 3.0;         ///< reach of the kernel, standard deviations
+  double cell_variance = 1.0 / 3.0;  ///< variance that spreading and interpolation add, squared cells
+  double min_variance = 0.1;         ///< variance below which no blur is needed, squared cells
+  double step = 0.5;                 ///< displacement of the farthest points for a difference, bandwidths
+  double longest_step = 3.0;         ///< greatest step, in differences, within which the quadratic fit is valid
+  double settled = 0.01;             ///< step that ends the refinement, bandwidths; far below the error of a plane
+  double min_curvature = 1e-3;       ///< least curvature, as a share of the greatest
 };
 
 inline constexpr EvidenceRules kEvidence;
 
 /// The piece of surface that a sample represents: a disc in its tangent plane.
 struct SurfaceDisc {
-  Eigen::Vector3f center, normal;  ///< unit normal
+  Eigen::Vector3f center, normal;  ///< center and unit normal
   float radius;
 
-  /// \return squared distance of a point; distances across the disc count the root of \p sq_across_factor times.
+  /// \return squared distance of a point; distances across the disc are multiplied by the root of \p sq_across_factor.
   float sqDistance(const Eigen::Vector3f& x, float sq_across_factor = 1.0f) const {
     const Eigen::Vector3f difference = x - center;
     const float across = normal.dot(difference), sq_across = across * across;
@@ -96,12 +103,12 @@ struct SurfaceDisc {
 class SurfaceDiscs {
 public:
   struct Nearest {
-    int disc = -1;  ///< index of the sample; -1 where no disc is within reach
+    int disc = -1;  ///< index of the sample; -1 if no disc is within reach
     float distance = std::numeric_limits<float>::infinity();
   };
 
   /// \param samples 3 x N, finite, N >= 1.
-  /// \param geometry of the samples; must outlive this object, as must the samples.
+  /// \param geometry local geometry of the samples; must outlive this object, as must the samples.
   /// \param disc_radius spacings, > 0.
   /// \param reach greatest distance of a query, units of the samples, > 0.
   SurfaceDiscs(const Points& samples, const LocalGeometry& geometry, float disc_radius, float reach);
@@ -112,9 +119,9 @@ public:
   /// Whether a disc is within \p distance <= reach of a point.
   bool isWithin(const Eigen::Vector3f& x, float distance) const;
 
-  /// Distance of sample \p i from the discs of the others, as if it were a new sample. Distances across a disc count
-  /// \p across_factor times.
-  /// \return infinity where no other disc is within reach.
+  /// Distance of sample \p i from the discs of the others, as if it were a new sample. Distances across a disc are
+  /// multiplied by \p across_factor.
+  /// \return infinity if no other disc is within reach.
   float ownDistance(int i, float across_factor) const;
 
 private:
@@ -131,7 +138,7 @@ private:
   float cell_size_;
   Eigen::Vector3f origin_;  ///< corner of the grid
   Eigen::Array3i size_;     ///< cells along each axis
-  std::vector<int> first_;  ///< of each cell, in entries_; one more at the end
+  std::vector<int> first_;  ///< for each cell, its first index in entries_; one more at the end
   std::vector<int> entries_;
 };
 
@@ -151,14 +158,14 @@ SurfaceSamples surfaceSamples(const Points& points, const LocalGeometry& geometr
 /// How far points lie from the surface that samples describe. Each sample represents a disc in its tangent plane; the
 /// disc of the closest sample or of one of its four neighbors counts, whichever is nearest.
 /// \param points 3 x M, in the frame of the samples.
-/// \param closest M indices of the closest samples; -1: none is near.
-/// \param samples N of them.
+/// \param closest M indices of the closest samples; -1 = none is near.
+/// \param samples the N samples.
 /// \return M distances >= 0, units of the samples; infinity where no sample is near.
 std::vector<float> surfaceDistances(const Points& points, const std::vector<int>& closest,
                                     const SurfaceSamples& samples, int num_threads = 1);
 
 /// Distance of each sample from the surface that the others describe: the effect of sampling and noise alone.
-/// \param samples N >= 2 of them.
+/// \param samples the N >= 2 samples.
 /// \return N distances >= 0, units of the samples.
 std::vector<float> ownSurfaceDistances(const SurfaceSamples& samples, int num_threads = 1);
 
@@ -168,8 +175,8 @@ double shareWithin(const std::vector<float>& distances, double tolerance);
 
 /// Evidence of each of M reflected points, in [0, 1].
 struct PointEvidence {
-  std::vector<float> support;   ///< the reflection lies on the surface
-  std::vector<float> conflict;  ///< the reflection lies in free space
+  std::vector<float> support;   ///< how well each reflection lies on the surface
+  std::vector<float> conflict;  ///< how well each reflection lies in free space
 
   /// The support; NaN where the scanner could not see whether the reflection lies on the surface.
   std::vector<float> seenSupport() const;
@@ -196,8 +203,8 @@ float freeConfidence(const Visibility& visibility, const Eigen::Vector3d& x);
 PointEvidence pointEvidence(const Points& reflected, const Points& reflected_normals, const std::vector<int>& closest,
                             const SurfaceSamples& samples, const Visibility* visibility, int num_threads = 1);
 
-/// Support of each sample by the surface that the other samples describe: that of a symmetry under this sampling.
-/// \param samples N, normalized to the unit ball.
+/// Support of each sample by the surface that the other samples describe, which a symmetry reaches under this sampling.
+/// \param samples the N samples, normalized to the unit ball.
 /// \return N values in [0, 1].
 std::vector<float> ownSupport(const SurfaceSamples& samples, int num_threads);
 
@@ -205,12 +212,12 @@ std::vector<float> ownSupport(const SurfaceSamples& samples, int num_threads);
 /// \return the mean.
 double meanSupport(const std::vector<float>& support);
 
-/// Support of each of \p points for planes, on the surface that \p samples describe.
+/// Support of \p points for several planes, on the surface that \p samples describe.
 /// \param points 3 x M, finite.
 /// \param samples 3 x N, finite, not all equal, in the same frame.
 /// \param planes in the same frame.
 /// \param seen what the scanner saw, same frame; null: the samples show the surface from all sides.
-/// \return for each plane M values, PointEvidence::seenSupport().
+/// \return M values for each plane, as from PointEvidence::seenSupport().
 /// \throws std::invalid_argument where all samples coincide.
 std::vector<std::vector<float>> planeSupport(const PointsRef& points, const PointsRef& samples,
                                              const std::vector<ReflectionPlane>& planes,
