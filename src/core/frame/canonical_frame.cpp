@@ -13,7 +13,7 @@ namespace pcl_symmetry {
 
 namespace {
 
-/// Exactly orthonormal, and right-handed.
+/// Makes axes exactly orthonormal and right-handed.
 Eigen::Matrix3d orthonormal(const Eigen::Matrix3f& axes) {
   Eigen::Matrix3d result = axes.cast<double>();
   result.col(0).normalize();
@@ -37,8 +37,8 @@ float meanOffset(const FrameEvidence& evidence, const std::vector<float>& scores
   return static_cast<float>(moment / sum);
 }
 
-/// The maximum of D near an offset, by parabolas. D is the mean of f over the images of the samples of the center,
-/// which unlike profiles has no steps of a cell.
+/// The maximum of D near an offset, by parabolas. D is the mean of f over the images of FrameEvidence::center_samples
+/// and, unlike profiles, has no steps of a cell.
 ScoredOffset peakNear(const FrameEvidence& evidence, const Eigen::Vector3d& axis, double offset) {
   const Eigen::Array3d corner = Eigen::Array3d::Constant(-middleCell(evidence.edt));
   const Eigen::Matrix3Xd& samples = evidence.center_samples;
@@ -62,14 +62,14 @@ ScoredOffset peakNear(const FrameEvidence& evidence, const Eigen::Vector3d& axis
   return {static_cast<float>(offset), static_cast<float>(top / sum(offset, 0.0))};
 }
 
-/// Where a plane of some normal passes through the center of symmetry.
+/// Offset at which the plane of a normal passes through the center of symmetry.
 float centralOffset(const FrameEvidence& evidence, const Eigen::Vector3f& axis, const CellPlane* completed_across) {
   const std::vector<float> s = evidence.profile(axis, completed_across);
   const float of_flat = meanOffset(evidence, s, evidence.middleAlong(axis));
   if (evidence.scanned) return of_flat;
   const auto at = std::max_element(s.begin(), s.end()) - s.begin();
   const auto side = static_cast<std::ptrdiff_t>(kFrame.clear_side * evidence.reach);
-  float beside = 0.0f;  // the greatest score that is not of the peak
+  float beside = 0.0f;  // the greatest score outside the peak
   for (std::ptrdiff_t i = 0; i < static_cast<std::ptrdiff_t>(s.size()); ++i)
     if (std::abs(i - at) > side) beside = std::max(beside, s[i]);
   const auto trustIn = [&](const ScoredOffset& peak) {

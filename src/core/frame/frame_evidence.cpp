@@ -14,7 +14,7 @@ namespace pcl_symmetry {
 
 namespace {
 
-/// As narrow as the grid and the spacing of the points allow, unless the width is given.
+/// The width of the distance transform: as narrow as the grid and the spacing of the points allow, unless it is given.
 GaussianEdtOptions edtOptions(const PointsRef& points, GaussianEdtOptions options, bool scanned) {
   if (options.sigma > 0.0 || points.cols() == 0) return options;
   const double radius = boundingBall(points).radius;

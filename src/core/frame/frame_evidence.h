@@ -14,54 +14,61 @@ namespace pcl_symmetry {
 /// Parameters that affect the search for frames.
 struct FrameRules {
   // Evidence
-  double whole_sigma = 1.5;       // cells, width of the Gaussian for whole clouds: as narrow as the grid resolves
-  double scan_sigma = 2.25;       // cells, for scans: wider, as the other side of a plane was hardly seen
-  double min_sigma = 1.5;         // spacings of the points, for sparse clouds
-  int num_profile_samples = 256;  // of the profiles that scores come from: D to about 1 %
-  double whole_weight = 0.6;      // of the second and third plane, and of agreement, in the value of a frame:
-  double scan_weight = 0.3;       // they break ties, such as between planes along faces and along edges of a square box
-  double tail = 0.005;            // share of the points beyond either end of their extent: outliers
+  double whole_sigma = 1.5;  // width of the Gaussian for whole clouds, cells: as narrow as the grid resolves
+  // Width of the Gaussian for scans, cells: wider, because the other side of a plane was hardly seen.
+  double scan_sigma = 2.25;
+  double min_sigma = 1.5;         // least width of the Gaussian for sparse clouds, spacings of the points
+  int num_profile_samples = 256;  // samples of the profiles that give the scores: an error of D of about 1 %
+  // Weight of the scores of the second and third plane, and of agreement, in the value of a frame.
+  double whole_weight = 0.6;
+  // The same for scans: these terms break ties, as between planes along faces and along edges of a square box.
+  double scan_weight = 0.3;
+  double tail = 0.005;  // share of the points beyond either end of their extent: outliers
   double push =
       0.05;  // radii by which the middle of a scanned object is farther from the scanner than that of its points
-  double face_width = 6.0 * kDegree;      // of the agreement of normals with an axis
-  double peak_width = 5.0 * kDegree;      // normals that belong to one face
-  double peak_distance = 15.0 * kDegree;  // least angle between two faces
-  double min_peak = 0.03;                 // share of the surface in a face
+  double face_width = 6.0 * kDegree;      // width of the agreement of normals with an axis, radians
+  double peak_width = 5.0 * kDegree;      // angle within which normals belong to one face, radians
+  double peak_distance = 15.0 * kDegree;  // least angle between two faces, radians
+  double min_peak = 0.03;                 // least share of the surface in a face
   int num_peak_starts = 150;              // normals that the search for faces starts from
-  int num_peak_steps = 5;                 // of each search
+  int num_peak_steps = 5;                 // steps of the search from each of them
 
   // Search
-  double candidate_angle = 9.0 * kDegree;  // maxima of the map with closer normals share one basin
-  std::size_t max_candidates = 24;         // maxima of the map
-  std::size_t num_angles = 30;             // of the second plane about the first axis, within 90 degrees
-  int max_faces = 6;                       // three directions of a box, and of a second part that stands askew
-  std::size_t max_first_planes = 6;        // that are completed to frames
-  int max_plane_moves = 4;                 // steps of one size of a first plane
-  std::size_t max_refined = 6;             // frames that are refined
-  int max_frame_moves = 3;                 // steps of one size of a frame
-  double half_way_weight = 0.15;           // of the half-way plane of scans
-  double tie = 0.06;  // scores that differ by no more are equal: D of a symmetry varies by 0.03 with the angle
-  double same_frame = 5.0 * kDegree;  // closer frames are one
+  double candidate_angle = 9.0 * kDegree;  // angle within which maxima of the map share one basin, radians
+  std::size_t max_candidates = 24;         // greatest number of maxima of the map
+  std::size_t num_angles = 30;             // angles of the second plane about the first axis, within 90 degrees
+  // Greatest number of faces: three directions of a box, and three of a second part that is oblique to it.
+  int max_faces = 6;
+  std::size_t max_first_planes = 6;  // greatest number of first planes that are completed to frames
+  int max_plane_moves = 4;           // greatest number of steps of one size for a first plane
+  std::size_t max_refined = 6;       // greatest number of frames that are refined
+  int max_frame_moves = 3;           // greatest number of steps of one size for a frame
+  double half_way_weight = 0.15;     // weight of the half-way plane of scans
+  double tie = 0.06;  // difference up to which scores are equal: D of a symmetry varies by 0.03 with the angle
+  double same_frame = 5.0 * kDegree;  // angle within which frames are one, radians
 
-  // Center, measured on models of PSB
+  // Center, measured on models of PSB. The plane passes through the peak of the scores of a whole cloud if the peak is
+  // clear.
   double offset_sharpness = 15.0;  // weight exp(15 s) of an offset of score s
-  double offset_width = 0.07;      // radii, of the weight about the middle of the extent where no peak stands out
-  double clear_height = 0.3;       // of a whole: a peak that is this much above all others, less near the middle,
-  double clear_side = 0.25;        // which are more than so many radii away,
-  double clear_ramp = 0.1;         // is where the plane is, fully so where it is higher by this
+  double offset_width = 0.07;  // radii; width of the weight about the middle of the extent, used if no peak is clear
+  // Height of a clear peak above all scores beside it; less within offset_width of the weighted mean.
+  double clear_height = 0.3;
+  double clear_side = 0.25;        // radii; scores farther than this from the peak are beside it
+  double clear_ramp = 0.1;         // additional height from which a clear peak counts fully
   float lost_height = 0.15f;       // height by which a profile may underestimate a peak between two cells
-  int num_center_samples = 1024;   // of the offset of the peak: to a tenth of a cell
+  int num_center_samples = 1024;   // samples that give the offset of the peak, to a tenth of a cell
   double center_sharpness = 30.0;  // weight exp(30 v) of the center of a frame whose value is v less than the best
-  int num_revolution_angles = 8;   // at which a revolution is tested
+  int num_revolution_angles = 8;   // angles at which a revolution is tested
 
   // Leveled frames, measured on models of PSB
-  double touch = 0.01;                         // longer sides of the box: depth within which the outline touches a side
-  double outline_step = 1.0 * kDegree;         // of the angle about the first axis
-  double max_lost_value = 0.1;                 // greatest loss of value of a leveled frame that is put first,
-  double min_gained_contact = 0.1;             // and the least contact that it must gain
-  double same_outline = 10.0 * kDegree;        // first axes this close have one outline
-  std::size_t max_outlines = 2;                // first axes whose outline is tried
-  double far_from_principal = 20.0 * kDegree;  // angle to the principal axes at which the term of the fit ends
+  double touch = 0.01;                   // depth within which the outline touches a side, in longer sides of the box
+  double outline_step = 1.0 * kDegree;   // step of the angle about the first axis, radians
+  double max_lost_value = 0.1;           // greatest loss of value of a leveled frame that is put first
+  double min_gained_contact = 0.1;       // least contact that a leveled frame must gain to be put first
+  double same_outline = 10.0 * kDegree;  // angle within which first axes have one outline, radians
+  std::size_t max_outlines = 2;          // greatest number of first axes whose outline is tried
+  // Angle to the principal axes at which the term of the probability reaches its limit, radians.
+  double far_from_principal = 20.0 * kDegree;
 };
 inline constexpr FrameRules kFrame;
 
@@ -72,8 +79,8 @@ public:
   /// \param edt distance transform of the points: its cube is cut into half as many cells along each side.
   SurfaceDirections(const PointsRef& points, const GaussianEdt& edt);
 
-  /// How well the surface agrees with an axis: the mean over the cells of 1 where the normal is parallel or
-  /// perpendicular to the axis, falling to 0 within 6 degrees. A box agrees with its own axes everywhere.
+  /// How well the surface agrees with an axis: the mean over the cells of a weight that is 1 where the normal is
+  /// parallel or perpendicular to the axis, and falls to 0 within 6 degrees. A box agrees with its own axes everywhere.
   /// \param axis unit.
   /// \return in [0, 1].
   double agreement(const Eigen::Vector3f& axis) const;
@@ -84,11 +91,11 @@ public:
 
 private:
   Eigen::Matrix3Xf normals_;
-  Eigen::ArrayX3f by_axis_;  // the normals, with their coordinates side by side
+  Eigen::ArrayX3f by_axis_;  // the normals, coordinate by coordinate
   Eigen::VectorXf weights_;  // sum to 1
 };
 
-/// The offset of a plane of some normal, and its score.
+/// The offset of a plane of a given normal, and its score.
 struct ScoredOffset {
   float offset = 0.0f;  ///< cells from the middle of the grid
   float score = 0.0f;
@@ -97,7 +104,7 @@ struct ScoredOffset {
 /// Evidence of points for the planes of a frame (Section 5.1).
 ///
 /// The score of a plane is D, or seenSymmetry() of D and free space for a scan. Offsets and positions are in cells from
-/// the middle of the grid, unless they are called input. Departure from the paper: free space counts, and among nearly
+/// the middle of the grid, unless their names say input. Departure from the paper: free space counts, and among nearly
 /// equal planes the one that agrees with faces of the surface is better.
 struct FrameEvidence {
   /// \param points 3 x N, finite, input units; must outlive this object.
@@ -106,15 +113,15 @@ struct FrameEvidence {
 
   const PointsRef& points;
   const bool scanned;
-  const double weight;  ///< of the second and third plane, and of agreement
+  const double weight;  ///< weight of the second and third plane, and of agreement
   const GaussianEdt edt;
   const std::vector<float> free_space;
   const PlaneProfiles profiles;
   const SurfaceDirections directions;
-  const Eigen::Matrix3Xd center_samples;  ///< of a whole, drawn from f; cells from the center of cell (0, 0, 0)
-  const Eigen::Vector3d middle;           ///< of the grid, input frame
+  const Eigen::Matrix3Xd center_samples;  ///< samples of f of a whole cloud; cells from the center of cell (0, 0, 0)
+  const Eigen::Vector3d middle;           ///< middle of the grid, input frame
   const float reach;                      ///< radius of the grid, cells
-  const PrincipalAxes principal_axes;     ///< of the points, input frame
+  const PrincipalAxes principal_axes;     ///< principal axes of the points, input frame
   const Eigen::Vector3f center_of_mass;
   const Eigen::Vector3f push;  ///< shift of the middle of a scan's extent, cells
 
@@ -127,17 +134,18 @@ struct FrameEvidence {
   double agreement(const Eigen::Vector3f& axis) const { return weight * directions.agreement(axis); }
   /// Criterion for candidates of the first plane.
   double quality(const CellPlane& plane) const { return score(plane) + agreement(plane.normal); }
-  /// Criterion for frames: the score of the first plane, a share of those of the others, and agreement.
-  /// \param scores of the first, second and third plane.
+  /// Criterion for frames: the score of the first plane, a share of the scores of the others, and agreement.
+  /// \param scores scores of the first, second and third plane.
   double value(const Eigen::Vector3f& scores, double agreement) const {
     return scores[0] + weight * (scores[1] + scores[2]) + agreement;
   }
 
-  /// The plane across which a cloud is completed to judge planes perpendicular to \p first: for scans, \p first itself.
+  /// The plane by whose reflection a cloud is completed to judge planes perpendicular to \p first: for scans, \p first
+  /// itself.
   /// \return the argument \p completed_across of the functions below.
   const CellPlane* completedAcross(const CellPlane& first) const { return scanned ? &first : nullptr; }
 
-  /// Scores at all offsets in steps of a cell, the first at -floor(reach).
+  /// Scores at all offsets in steps of a cell, the first at offset -floor(reach).
   std::vector<float> profile(const Eigen::Vector3f& normal, const CellPlane* completed_across) const;
   /// The best offset of profile().
   ScoredOffset bestOffset(const Eigen::Vector3f& normal, const CellPlane* completed_across = nullptr) const;
@@ -149,7 +157,7 @@ struct FrameEvidence {
   double spreadAlong(const Eigen::Vector3f& axis) const;
   /// Middle of the extent of the points along an axis, cells. For a scan it lies near that of the whole object, unlike
   /// the center of mass, because silhouettes and rims are visible even where the surfaces behind them are not. It is
-  /// pushed away from the scanner, because the extent ends where the back begins.
+  /// pushed away from the scanner, because the extent ends where the back of the object begins.
   double middleAlong(const Eigen::Vector3f& axis) const;
 };
 

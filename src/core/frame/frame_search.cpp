@@ -18,8 +18,7 @@ bool isKnown(const std::vector<CellPlane>& planes, const Eigen::Vector3f& normal
   return isNearAny(planes, normal, std::cos(angle), &CellPlane::normal);
 }
 
-/// The plane moved to the nearest maximum of quality, by steps of falling size, in degrees. It rotates about the center
-/// of mass.
+/// Moves a plane to the nearest maximum of quality, by decreasing steps, degrees. It rotates about the center of mass.
 CellPlane climbed(const FrameEvidence& evidence, CellPlane plane) {
   double quality = evidence.quality(plane);
   for (const double step : {3.0, 1.5, 0.75}) {
@@ -52,7 +51,7 @@ struct PerpendicularPlane {
   Eigen::Vector3f normal;
   ScoredOffset best;
   double agreement = 0.0;
-  ScoredOffset half_way;  // offset of the plane half-way between it and the first; scans only
+  ScoredOffset half_way;  // offset of the plane half-way between this plane and the first; scans only
 };
 
 PerpendicularPlane planeOf(const FrameEvidence& evidence, const CellPlane& first, const Eigen::Vector3f& normal) {
@@ -86,7 +85,7 @@ FrameCandidate frameOf(const FrameEvidence& evidence, const CellPlane& first, co
   return frame;
 }
 
-/// The frame rotated to \p axes about the center of mass, with the best offsets near those it had.
+/// The frame rotated to \p axes about the center of mass, with the best offsets near those before.
 FrameCandidate rotatedTo(const FrameEvidence& evidence, const FrameCandidate& from, const Eigen::Matrix3f& axes) {
   FrameCandidate frame;
   frame.axes = axes;
@@ -115,7 +114,7 @@ FrameCandidate rotatedTo(const FrameEvidence& evidence, const FrameCandidate& fr
   return frame;
 }
 
-/// The frame rotated about its own axes, by steps of falling size, to the nearest maximum of the value.
+/// Rotates a frame about its own axes, by decreasing steps, to the nearest maximum of the value.
 FrameCandidate climbed(const FrameEvidence& evidence, const FrameCandidate& start) {
   FrameCandidate frame = rotatedTo(evidence, start, start.axes);
   for (const double step : {2.0, 1.0, 0.5}) {
@@ -188,7 +187,7 @@ FrameCandidate frameOfAxes(const FrameEvidence& evidence, const Eigen::Matrix3f&
 
 std::vector<FrameCandidate> framesAbout(const FrameEvidence& evidence, const std::vector<CellPlane>& first_planes,
                                         int num_threads) {
-  // The second plane within 90 degrees, the third one within the following 90 degrees.
+  // The second plane lies within 90 degrees, the third one within the following 90 degrees.
   const std::size_t num_angles = kFrame.num_angles, num_planes = 2 * num_angles;
   std::vector<PerpendicularPlane> planes(first_planes.size() * num_planes);
   parallelBlocks(planes.size(), num_threads,

@@ -8,18 +8,18 @@
 
 namespace pcl_symmetry {
 
-/// Three perpendicular planes that may be those of the frame. Offsets in cells from the middle of the grid.
+/// Three perpendicular planes that may be those of the frame. Offsets are in cells from the middle of the grid.
 struct FrameCandidate {
   Eigen::Matrix3f axes;     ///< columns: unit normals of the first, second and third plane
-  Eigen::Vector3f offsets;  ///< of these planes
-  Eigen::Vector3f scores;   ///< of these planes
-  /// Scans: the axis, 1 or 2, about which a rotation takes the first plane best to another symmetry; -1 for whole
+  Eigen::Vector3f offsets;  ///< offsets of these planes
+  Eigen::Vector3f scores;   ///< scores of these planes
+  /// For scans, the axis, 1 or 2, about which a rotation takes the first plane best to another symmetry; -1 for whole
   /// clouds. A body of revolution hides half of itself from each of its planes, but none of them conflicts with the
-  /// visible surface. So the plane half-way between the first plane and the other one about this axis adds to the
-  /// value.
+  /// visible surface. Therefore the score of the plane half-way between the first plane and the other plane about this
+  /// axis is added to the value.
   int rotation_axis = -1;
-  float half_way_offset = 0.0f;  ///< of that plane
-  double value = 0.0;            ///< the greater, the better
+  float half_way_offset = 0.0f;  ///< offset of that half-way plane
+  double value = 0.0;            ///< criterion for frames: the greater, the better
 };
 
 /// The steps of the search for principal symmetry axes (Section 5.1). Departure from the paper: it picks the three

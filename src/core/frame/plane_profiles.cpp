@@ -27,7 +27,7 @@ PlaneProfiles::PlaneProfiles(const GaussianEdt& edt, const std::vector<float>& f
 
 namespace {
 
-/// Finds the cell of each image, size^3 outside the grid, then moves the images.
+/// Finds the cell of each image (size^3 outside the grid), then moves the images.
 /// \param positions in cells from the corner of the grid.
 PCL_SYMMETRY_MULTIVERSION
 void advance(float* positions, std::size_t count, const float* move, std::uint32_t size, std::uint32_t* cells) {
@@ -51,7 +51,7 @@ void advance(float* positions, std::size_t count, const float* move, std::uint32
 
 /// Sums over the images of the samples.
 /// \param images cells of the images.
-/// \param completed the same in the reflection that completes a scan; null: there is none.
+/// \param completed cells of the images reflected in the plane that completes a scan; null = there is none.
 PCL_SYMMETRY_MULTIVERSION
 PlaneProfiles::Sums PlaneProfiles::sumsOf(const std::uint32_t* __restrict cells, const std::uint32_t* __restrict images,
                                           const std::uint32_t* __restrict completed, int count) {

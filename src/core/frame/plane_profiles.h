@@ -14,11 +14,11 @@ struct CellPlane {
   float offset;            ///< cells
 };
 
-/// Scores of all planes of one normal, at any offsets: a profile along the normal.
+/// Scores of all planes of one normal at any offsets: a profile along the normal.
 ///
-/// The sampled transform (Section 4.3) answers at bin centers. Profiles answer for any plane, and for a scan that has
-/// been completed by its reflection across a first plane. Values are kept in 8 bits: D is exact to 0.002 before
-/// sampling.
+/// The sampled transform (Section 4.3) gives scores at bin centers. Profiles give them for any plane, and for a scan
+/// that has been completed by its reflection in a first plane. Values are kept in 8 bits: before sampling, D is exact
+/// to 0.002.
 class PlaneProfiles {
 public:
   /// \param free_space one value in [0, 1] per cell, from freeSpace(); empty: the points show the object from all
@@ -30,7 +30,7 @@ public:
   /// Scores at evenly spaced offsets.
   /// \param normal unit.
   /// \param first first offset, cells from the middle of the grid.
-  /// \param step distance of two offsets, cells.
+  /// \param step distance between neighboring offsets, cells.
   /// \param completed_across a plane perpendicular to \p normal. The surface and the free space on each side of it then
   /// also count on the other side: the completed cloud of a scan. Null: the points are taken as they are.
   /// \return \p count values: D for a whole cloud, seenSymmetry() of D and F for a scan.
@@ -41,7 +41,7 @@ public:
   float score(const CellPlane& plane) const { return scores(plane.normal, plane.offset, 0.0f, 1)[0]; }
 
 private:
-  /// Over the images of the samples, 255 for one.
+  /// Sums over the images of the samples, in units of 1/255.
   struct Sums {
     int surface, free;
   };
@@ -65,8 +65,8 @@ private:
   std::uint32_t outside_;
   std::vector<std::uint32_t>
       cells_;  // 255 times f, and from bit 8 on 255 times free space; the last one is for all positions outside
-  Eigen::ArrayX3f samples_;  // cells from the middle
-  std::vector<int> own_;     // surface of each sample
+  Eigen::ArrayX3f samples_;  // cells from the middle of the grid
+  std::vector<int> own_;     // cell of each sample
 };
 
 }  // namespace pcl_symmetry

@@ -17,7 +17,7 @@ namespace pcl_symmetry {
 
 namespace {
 
-/// Twice the area of a triangle, positive where its corners run counterclockwise.
+/// Twice the area of a triangle, positive if its corners are in counterclockwise order.
 float signedArea(const Eigen::Vector2f& a, const Eigen::Vector2f& b, const Eigen::Vector2f& c) {
   return (b.x() - a.x()) * (c.y() - a.y()) - (b.y() - a.y()) * (c.x() - a.x());
 }
@@ -60,7 +60,7 @@ double angleOfFaces(const FrameEvidence& evidence, const Outline& outline) {
   });
 }
 
-/// Half the angle of the second moments.
+/// The angle of the principal axes of the outline: half the angle of the second moments.
 double angleOfPrincipalAxes(const FrameEvidence& evidence, const Outline& outline) {
   const auto spread = [&](double angle) { return evidence.spreadAlong(outline.direction(angle)); };
   return 0.5 * std::atan2(spread(0.25 * kPi) - spread(0.75 * kPi), spread(0.0) - spread(0.5 * kPi));
@@ -192,7 +192,7 @@ std::vector<FrameChoice> frameChoices(const FrameEvidence& evidence, const std::
   }
   const Eigen::Matrix3f principal = evidence.principal_axes.axes.cast<float>();
   Eigen::Vector3f first = Eigen::Vector3f::Zero();
-  std::optional<Outline> outline;  // seen along the first axis, which leveled frames share
+  std::optional<Outline> outline;  // outline seen along the first axis, which leveled frames share
   for (FrameChoice& choice : choices) {
     if (choice.frame.axes.col(0) != first) outline.emplace(evidence.points, first = choice.frame.axes.col(0));
     choice.terms << 1.0, choice.frame.value - best, choice.frame.scores[0], contactOf(*outline, choice.frame),
@@ -207,7 +207,7 @@ std::vector<FrameChoice> frameChoices(const FrameEvidence& evidence, const std::
 }
 
 std::vector<double> frameProbabilities(const std::vector<FrameChoice>& choices, const FrameTerms& weights) {
-  double top = 0.0;  // of "none of them"
+  double top = 0.0;  // log odds of "none of them"
   for (const FrameChoice& choice : choices) top = std::max(top, weights.dot(choice.terms));
   std::vector<double> probabilities;
   double sum = std::exp(-top);

@@ -7,8 +7,8 @@
 
 namespace pcl_symmetry {
 
-/// The convex outline of points seen along an axis: if no second plane is a symmetry, people level the side that a
-/// shape stands on. Not in the paper.
+/// The convex outline of points seen along an axis: if no second plane is a symmetry, people level the shape by the
+/// side that it stands on. Not in the paper.
 class Outline {
 public:
   /// \param points 3 x N, N >= 1.
@@ -23,13 +23,13 @@ public:
   /// The box around the outline with sides at an angle and 90 degrees ahead.
   struct Box {
     double area = 0.0;     ///< input units squared
-    double contact = 0.0;  ///< longest stretch of a side that the shape touches, as a share of the longer side
+    double contact = 0.0;  ///< longest part of a side that the shape touches, divided by the longer side
   };
   Box boxAt(double angle) const;
 
 private:
   Eigen::Vector3f u_, v_;
-  std::vector<Eigen::Vector2f> corners_;  // of the outline, in order
+  std::vector<Eigen::Vector2f> corners_;  // corners of the outline, in order
 };
 
 /// Puts the best frame, rotated to the faces of the surface, first if its value is nearly as great and the shape then
@@ -58,9 +58,9 @@ using FrameTerms = Eigen::Matrix<double, 8, 1>;
 /// A frame that may be the shape's own.
 struct FrameChoice {
   FrameCandidate frame;
-  int revolution_axis = -1;  ///< as of SymmetryFrame
+  int revolution_axis = -1;  ///< as in SymmetryFrame
   FrameTerms terms = FrameTerms::Zero();
-  int found_as = -1;  ///< its index among the frames of the search; -1: leveled
+  int found_as = -1;  ///< index among the frames of the search; -1 = a leveled frame
 };
 
 /// The frames of a search, each once up to order, signs and rotations about an axis of revolution, and frames rotated
@@ -71,7 +71,7 @@ struct FrameChoice {
 std::vector<FrameChoice> frameChoices(const FrameEvidence& evidence, const std::vector<FrameCandidate>& frames,
                                       int num_threads);
 
-/// \return one probability each; their sum is less than 1.
+/// \return one probability per frame; their sum is less than 1.
 std::vector<double> frameProbabilities(const std::vector<FrameChoice>& choices, const FrameTerms& weights);
 
 /// The weights that were fitted.

@@ -17,11 +17,11 @@ namespace pcl_symmetry {
 
 namespace {
 
-/// Moves all of a frame as its center and axes move.
+/// Moves the center and axes of a frame, and everything else with them.
 /// \param axes right-handed.
 void moveTo(const Eigen::Vector3d& center, const Eigen::Matrix3d& axes, SymmetryFrame& frame) {
   const Eigen::Matrix3d rotation = axes * frame.axes.transpose();
-  const Eigen::Isometry3d motion = isometry(rotation, center - rotation * frame.center);  // of the frame
+  const Eigen::Isometry3d motion = isometry(rotation, center - rotation * frame.center);  // motion of the frame
   frame.axes = axes;
   frame.center = center;
   frame.T_canonical_input = frame.T_canonical_input * motion.inverse();
@@ -65,7 +65,8 @@ namespace {
 /// had less than 0.96.
 constexpr double kNearly = 0.8;
 
-/// Moves the center and axes of a frame to planes of symmetry; axes across which there is none follow the others.
+/// Moves the center and axes of a frame to planes of symmetry; axes whose perpendicular plane is no symmetry follow the
+/// others.
 /// \param exactly gives the plane of symmetry near a plane, if there is one.
 void bringToPlanes(const std::function<std::optional<ReflectionPlane>(const ReflectionPlane&)>& exactly,
                    SymmetryFrame& frame) {
@@ -92,7 +93,7 @@ void bringToPlanes(const std::function<std::optional<ReflectionPlane>(const Refl
     const int last = num_exact == 2 ? 3 - exact[0] - exact[1] : (exact[0] + 2) % 3;
     axes.col(last) = axes.col((last + 1) % 3).cross(axes.col((last + 2) % 3));
   }
-  if (!(axes.determinant() > 0.5)) return;  // two of them fell together
+  if (!(axes.determinant() > 0.5)) return;  // two of the axes coincide
   moveTo(center, axes, frame);
 }
 

@@ -27,7 +27,7 @@ struct OffsetAndScore {
   double offset = 0.0, score = 0.0;
 };
 
-/// Section 5.1 as it stands: each axis is the normal of the plane of greatest D among the remaining ones.
+/// Section 5.1 as written: each axis is the normal of the plane of greatest D among the remaining ones.
 SymmetryFrame publishedFrame(const PointsRef& points, const FrameOptions& options) {
   const GaussianEdt edt(points, options.edtOptions());
   const SymmetryMap map = publishedMap(points, edt, TransformMethod::Convolution, options.seed, options.num_threads);
@@ -43,8 +43,8 @@ SymmetryFrame publishedFrame(const PointsRef& points, const FrameOptions& option
     return {grid.offset(static_cast<int>(at)), s[at]};
   };
 
-  // First: the plane of greatest D among the strongest refined maxima. Maxima that leave their cell stay, as this works
-  // best for the method.
+  // First: the plane of greatest D among the strongest refined maxima. Maxima that leave their cell are kept, because
+  // the method works best that way.
   PublishedOptions published;
   published.discard_unstable = false;
   published.max_maxima = 8;
@@ -56,7 +56,7 @@ SymmetryFrame publishedFrame(const PointsRef& points, const FrameOptions& option
   SymmetryFrame frame;
   frame.axes.col(0) = first.normal();
 
-  // Second: the greatest among those perpendicular to it.
+  // Second: the plane of greatest D among those perpendicular to the first.
   const auto across = [&](std::size_t i) {
     return directionAcross(first.normal(), kPi * static_cast<double>(i) / grid.numPhi());
   };
@@ -68,7 +68,7 @@ SymmetryFrame publishedFrame(const PointsRef& points, const FrameOptions& option
                        [](const OffsetAndScore& a, const OffsetAndScore& b) { return a.score < b.score; });
   frame.axes.col(1) = across(static_cast<std::size_t>(second - perpendicular.begin()));
 
-  // Third: the greatest among those perpendicular to both.
+  // Third: the plane of greatest D among those perpendicular to both.
   frame.axes.col(2) = frame.axes.col(0).cross(frame.axes.col(1));
   const OffsetAndScore third = best_offset(frame.axes.col(2));
 
@@ -96,8 +96,8 @@ ScanRotations rotationsAlong(const SymmetryFrame& frame, const PointsRef& points
   return rotationsOfScan(points, edt, visibility, axes, scan_axes, make_search);
 }
 
-/// The frame itself, then the others by falling probability.
-/// \param centers of the frames of the search.
+/// The frame itself, then the others by decreasing probability.
+/// \param centers centers of the frames of the search.
 std::vector<ProbableFrame> probableFrames(const FrameEvidence& evidence, const SymmetryFrame& frame,
                                           const std::vector<FrameChoice>& choices,
                                           const std::vector<Eigen::Vector3d>& centers) {
@@ -182,7 +182,7 @@ SymmetryFrame symmetryFrame(const PointsRef& all, const FrameOptions& options, c
   }
   frame.T_canonical_input = canonicalPose(frame.axes, frame.center);
 
-  // Equally good frames: first the maxima, then the angles between them where the second plane hardly matters.
+  // Equally good frames: first the maxima, then the frames at angles between them if the second plane hardly matters.
   addWithSigns(frame.axes, frame.center, frame.equivalent);
   for (std::size_t i = 0; i < frames.size(); ++i)
     addTied(frames[i], best.scores, i == 0 ? frame.center : centers[i], frame.equivalent);

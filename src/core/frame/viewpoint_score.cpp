@@ -30,9 +30,10 @@ Eigen::Vector3d climb(const std::vector<ViewPlane>& planes, Eigen::Vector3d v) {
 
 std::vector<ViewPlane> viewPlanes(std::vector<ViewPlane> planes, const std::vector<ViewPlane>& axes,
                                   const std::vector<ViewPlane>& maxima) {
-  const int fan = 8;              // planes that represent an axis: S varies about it by 2 %
-  const double min_score = 0.2;   // of the best score: below, a direction is not seen
-  const double max_across = 0.5;  // cosine between a maximum that counts too and the planes so far
+  const int fan = 8;             // planes that represent an axis: S varies about it by 2 %
+  const double min_score = 0.2;  // share of the best score below which a direction shows too little
+  // Greatest cosine between the normal of an added maximum and those of the planes so far.
+  const double max_across = 0.5;
   for (const ViewPlane& axis : axes)
     for (int k = 0; k < fan; ++k)
       planes.push_back({directionAcross(axis.normal, kPi * k / fan), 2.0 * axis.weight / fan});
@@ -56,7 +57,7 @@ std::vector<RankedView> bestViews(const std::vector<ViewPlane>& planes) {
   std::vector<RankedView> views;
   const bool all_equal = std::none_of(planes.begin(), planes.end(), [](const ViewPlane& p) { return p.weight > 0.0; });
   if (all_equal) return views;
-  const int num_directions = 4096;  // fewer may miss a maximum of a small cell between many planes
+  const int num_directions = 4096;  // fewer may miss a maximum in a small cell between many planes
   for (const Eigen::Vector3d& start : evenDirections(num_directions)) {
     checkCancelled();
     const Eigen::Vector3d v = climb(planes, start);
