@@ -47,7 +47,7 @@ public:
   }
 
 private:
-  int side_;  // with a border of one empty cell
+  int side_;  // cells along each side, with a border of one empty cell
   std::vector<int> slot_of_cells_;
   std::vector<int> occupied_;  // index of the cell of each slot
   std::vector<Moments> moments_;

@@ -21,7 +21,7 @@ namespace {
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
 
 // FLANN visits all points that may be as close as its worst result. Equal points, such as those at the origin for
-// pixels without a depth, would then cost the square of their number. At a distance of 0 the search ends.
+// pixels without a depth, would then cost the square of their number. The search therefore ends at a distance of 0.
 float visitedUpTo(float worst_sq_distance) {
   return worst_sq_distance > 0.0f ? worst_sq_distance : -1.0f;
 }
@@ -95,7 +95,7 @@ private:
 
 }  // namespace
 
-/// A distance transform with the index of the closest point: sweeps from four corners hand points on to all cells.
+/// A distance transform with the index of the closest point: sweeps from four corners pass points on to all cells.
 ClosestPointGrid::ClosestPointGrid(const PointsRef& points, int num_cells) : n_(num_cells) {
   check(points.cols() >= 1, "number of points", points.cols(), ">= 1");
   check(n_ >= 2, "num_cells", n_, ">= 2");
@@ -150,7 +150,7 @@ NeighborLists::NeighborLists(const Points& points, const std::vector<int>& neare
     list.own_x = points(0, i);
     list.own_y = points(1, i);
     list.own_z = points(2, i);
-    // (1 / 2)^2, less what distances are rounded by
+    // (1 / 2)^2, less the rounding of distances
     list.max_sq_distance = 0.2499f * sq_reach[i];
     // The point itself is among the nearest, unless as many others are at the same position.
     for (int k = 0, count = 0; k <= kNeighbors && count < kNeighbors; ++k) {
@@ -168,7 +168,7 @@ NeighborLists::NeighborLists(const Points& points, const std::vector<int>& neare
 
 __attribute__((target("avx2"))) std::vector<NeighborLists::Found> NeighborLists::search(
     const PointsRef& queries, const std::vector<int>& guesses) const {
-  constexpr std::size_t together = 256;  // queries: they stay in the first cache
+  constexpr std::size_t together = 256;  // queries per round: they stay in the first-level cache
   std::vector<Found> found(guesses.size());
   std::array<std::size_t, together> walking;
   for (std::size_t begin = 0; begin < found.size(); begin += together) {
@@ -278,7 +278,7 @@ void FlannSearch::searchWithin(const PointsRef& queries, float max_sq_distance, 
     if (is_proven && seen[i].sq_distance < closest.sqDistance()) {
       closest.addPoint(seen[i].sq_distance, static_cast<std::size_t>(seen[i].index));
     } else if (!is_proven) {
-      // Just beyond the result of the lists: of several points at that distance, FLANN chooses.
+      // Just beyond the result of the lists: of several points at that distance, FLANN chooses one.
       const float beyond = lists_ ? std::nextafter(seen[i].sq_distance, kInfinity) : kInfinity;
       if (beyond < closest.sqDistance()) closest = ClosestPoint(-1, beyond);
       tree_->index.findNeighbors(closest, query.data(), tree_->params);

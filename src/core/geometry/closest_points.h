@@ -11,7 +11,7 @@
 
 namespace pcl_symmetry {
 
-/// Finds the closest point to within a cell by one look-up: a tree is too slow for searches over many poses.
+/// Finds the closest point to within a cell by one look-up, because a tree is too slow for searches over many poses.
 class ClosestPointGrid {
 public:
   /// \param points 3 x N, finite, N >= 1.
@@ -20,7 +20,7 @@ public:
   ClosestPointGrid(const PointsRef& points, int num_cells);
 
   /// \return index of the point closest to the center of the cell that contains \p x; for an \p x outside the cube, of
-  /// the nearest cell at its border. A few cells have a point that is only nearly the closest.
+  /// the nearest cell at its border. In a few cells the point is only nearly the closest.
   int closest(const Eigen::Vector3f& x) const {
     const Eigen::Array3i cell = cellOf(x);
     return nearest_[indexOf(cell.x(), cell.y(), cell.z())];
@@ -40,25 +40,26 @@ private:
   float cell_size_;
   float last_;                // greatest coordinate inside the cube, in cells
   Eigen::Vector3f origin_;    // corner of the cube
-  std::vector<int> nearest_;  // of each cell, x fastest
+  std::vector<int> nearest_;  // for each cell, x fastest
 };
 
 /// The closest neighbors of each point, which verify the results of most queries that start with a guess.
 ///
 /// All points closer to a query than a point at distance d lie within 2 d of that point. If its neighbors reach that
+/// far, the closest point is one of them or the point itself.
 /// far, the closest point of all is one of them or the point itself.
 class NeighborLists {
 public:
-  static constexpr int kNeighbors = 8;  ///< of each point: floats in a register of AVX2
+  static constexpr int kNeighbors = 8;  ///< neighbors of each point: floats in a register of AVX2
 
-  /// Whether lists pay for \p num_points points: many enough, few enough that filling the lists takes less time than
-  /// they save, and a processor with the instructions.
+  /// Whether lists pay off for \p num_points points: enough points, few enough that filling the lists takes less time
+  /// than they save, and a processor with the instructions.
   static bool isUseful(Eigen::Index num_points);
 
   /// \pre isUseful(points.cols())
   /// \param points 3 x N.
   /// \param nearest kNeighbors + 1 indices for each point, nearest first, as a search for that point finds them.
-  /// \param sq_reach squared distance of the last one of each point.
+  /// \param sq_reach squared distance of the last neighbor of each point.
   NeighborLists(const Points& points, const std::vector<int>& nearest, const std::vector<float>& sq_reach);
 
   /// A point near a query and whether it is verified as the closest; some closest points are not verified.
@@ -71,7 +72,7 @@ public:
   /// Walks from a guess to closer neighbors until none is closer to the query, for many queries interleaved, which
   /// hides memory latency.
   /// \param queries 3 x M.
-  /// \param guesses M points, or -1: the grid has one.
+  /// \param guesses M indices of points; -1 = the grid provides one.
   std::vector<Found> search(const PointsRef& queries, const std::vector<int>& guesses) const;
 
 private:
@@ -80,17 +81,17 @@ private:
     float x[kNeighbors], y[kNeighbors], z[kNeighbors];
     std::uint16_t index[kNeighbors];
     float own_x, own_y, own_z;
-    float max_sq_distance;  ///< greatest squared distance from a query for which the list decides
+    float max_sq_distance;  ///< greatest squared distance of a query for which the list can verify the result
   };
   std::vector<List> lists_;
-  ClosestPointGrid grid_;  // where walks without a guess begin
+  ClosestPointGrid grid_;  // provides the start of walks without a guess
 };
 
 /// Approximate closest points, several times as fast as exact ones: the ends of walks along the lists, which may miss
 /// the closest point where the surface is thin or ends. For planes that are refined again afterwards.
 class NeighborWalk : public ClosestPointSearch {
 public:
-  /// \param lists of the points; must outlive this object.
+  /// \param lists neighbor lists of the points; must outlive this object.
   /// \param exact answers search(); must outlive this object.
   NeighborWalk(const NeighborLists& lists, const ClosestPointSearch& exact) : lists_(lists), exact_(exact) {}
 
@@ -106,7 +107,7 @@ private:
   const ClosestPointSearch& exact_;
 };
 
-/// Closest points by FLANN's k-d tree, and by neighbor lists where these verify the result.
+/// Closest points by FLANN's k-d tree, and by neighbor lists if these verify the result.
 class FlannSearch : public ClosestPointSearch {
 public:
   /// \param points 3 x N, finite, N >= 1; they are copied.
@@ -118,12 +119,12 @@ public:
   void searchWithin(const PointsRef& queries, float max_sq_distance, std::vector<int>& indices,
                     std::vector<float>& sq_distances) const override;
 
-  /// From now on, searchWithin() uses FLANN only where these lists do not verify the result. Results stay the same.
-  /// \param lists of the same points; null = none.
+  /// Uses FLANN in searchWithin() only where these lists do not verify the result. Results stay the same.
+  /// \param lists neighbor lists of the same points; null = none.
   void use(std::shared_ptr<const NeighborLists> lists) { lists_ = std::move(lists); }
 
 private:
-  struct Tree;  // of FLANN
+  struct Tree;  // the k-d tree of FLANN
 
   Points points_;
   std::unique_ptr<Tree> tree_;
@@ -140,7 +141,7 @@ struct ClosestPoints {
 ClosestPoints closestPoints(const ClosestPointSearch& search, const PointsRef& queries, int num_threads);
 
 /// A search in a moved and scaled frame.
-/// \param search over points.
+/// \param search search over points.
 /// \return the same search over (points - center) / scale.
 ClosestPointSearch::Ptr inFrame(ClosestPointSearch::Ptr search, const Eigen::Vector3d& center, double scale);
 

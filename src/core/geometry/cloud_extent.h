@@ -12,8 +12,8 @@ namespace pcl_symmetry {
 /// Center of mass and principal axes of a point set (PCA).
 struct PrincipalAxes {
   Eigen::Vector3d center;     ///< center of mass, input frame
-  Eigen::Matrix3d axes;       ///< columns: unit, right-handed, by falling variance
-  Eigen::Vector3d variances;  ///< along the axes, input units squared, falling
+  Eigen::Matrix3d axes;       ///< columns: unit, right-handed, by decreasing variance
+  Eigen::Vector3d variances;  ///< variances along the axes, input units squared, decreasing
 };
 
 /// \param points 3 x N, finite, N >= 1.
@@ -33,18 +33,19 @@ enum class Thinness {
 };
 
 /// \param points 3 x N, finite, N >= 1.
-/// \param axes of the points.
-/// \param plane_tolerance,line_tolerance how far points may lie from a plane and from a line, units of the points, > 0.
+/// \param axes principal axes of the points.
+/// \param plane_tolerance,line_tolerance greatest distances of points from a plane and from a line, units of the
+/// points, > 0.
 Thinness thinnessOf(const PointsRef& points, const PrincipalAxes& axes, double plane_tolerance, double line_tolerance);
 
 /// \param points 3 x N, N >= 1.
-/// \return the diagonal of the box around them along the axes of their frame.
+/// \return the diagonal of the box around them along the coordinate axes.
 inline double boxDiagonal(const PointsRef& points) {
   return (points.rowwise().maxCoeff() - points.rowwise().minCoeff()).cast<double>().norm();
 }
 
 /// The distance between two points that are each the farthest from the other: the diameter of most shapes, and never
-/// less than 1 / sqrt(3) of it. Takes a few passes over the points, whatever their shape.
+/// less than 1 / sqrt(3) of the diameter. Takes a few passes over the points, whatever their shape.
 /// \param points 3 x N, finite, input units.
 /// \return distance, input units; 0 for fewer than two points.
 double farthestPair(const PointsRef& points);

@@ -10,14 +10,14 @@
 
 namespace pcl_symmetry {
 
-/// Fractional part of the golden ratio: (sqrt(5) - 1) / 2; its multiples modulo 1 fill [0, 1) evenly after any
-/// number of terms.
+/// Fractional part of the golden ratio, (sqrt(5) - 1) / 2; its multiples modulo 1 fill [0, 1) evenly after any number
+/// of terms.
 constexpr double kGoldenSection = 0.61803398874989485;
 
 /// Rotation from one point of a Fibonacci lattice to the next, radians: 2 pi (1 - kGoldenSection).
 constexpr double kGoldenAngle = 2.39996322972865332;
 
-/// Term \p k of the golden-ratio sequence, which spreads evenly over an interval however many terms are used.
+/// Term \p k of the golden-ratio sequence, which spreads evenly over an interval for any number of terms.
 /// \return fractional part of k * kGoldenSection, in [0, 1).
 double goldenFraction(int k);
 
@@ -27,18 +27,18 @@ double goldenFraction(int k);
 /// has angles that advance by kGoldenAngle, or 2 pi times goldenFraction().
 /// \param k in [0, count).
 /// \param count number of directions, >= 1.
-/// \param angle about z, from x, in radians.
+/// \param angle angle about z, from x, in radians.
 /// \return unit vector with z > 0.
 Eigen::Vector3d spiralDirection(int k, int count, double angle);
 
 /// Directions spread evenly over the whole sphere, on a spiral (Fibonacci lattice).
 /// \param num_directions >= 1.
-/// \return unit vectors by falling z.
+/// \return unit vectors by decreasing z.
 /// \throws std::invalid_argument for less than one direction.
 std::vector<Eigen::Vector3d> evenDirections(int num_directions);
 
 /// \param axis unit.
-/// \param angle about the axis, radians; at 0 the direction is axis.unitOrthogonal().
+/// \param angle angle about the axis, radians; at 0 the direction is axis.unitOrthogonal().
 /// \return a unit vector at right angles to the axis.
 template <typename Scalar>
 Eigen::Matrix<Scalar, 3, 1> directionAcross(const Eigen::Matrix<Scalar, 3, 1>& axis, Scalar angle) {
@@ -52,10 +52,10 @@ inline double angleBetweenLines(const Eigen::Vector3d& a, const Eigen::Vector3d&
   return std::atan2(a.cross(b).norm(), std::abs(a.dot(b)));
 }
 
-/// Whether the line along a direction is nearly that along the direction of any entry of a list.
+/// Whether the line along a direction is near the line along the direction of any entry of a list.
 /// \param direction unit.
-/// \param cosine of the angle between the two lines: that of those that are near is greater.
-/// \param direction_of a member or a function of the entries, unit.
+/// \param cosine lines are near if |cos(angle)| exceeds it.
+/// \param direction_of a member or a function of the entries that gives a unit vector.
 template <typename List, typename Direction, typename Scalar, typename DirectionOf>
 bool isNearAny(const List& list, const Direction& direction, Scalar cosine, const DirectionOf& direction_of) {
   return std::any_of(list.begin(), list.end(), [&](const auto& entry) {

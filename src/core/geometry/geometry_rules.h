@@ -15,63 +15,67 @@ namespace pcl_symmetry {
 
 /// Parameters of this module that affect results.
 struct GeometryRules {
-  // Points that can have an answer
-  /// Share of the length of a line: five times the rounding of a line about the origin.
+  // Points that can be analyzed
+  /// Thickness of a line, as a share of its length: five times the rounding of a line about the origin.
   double line_thickness = 1e-6;
 
   // Stray points
-  double bulk = 0.9;             ///< share of the points whose distance from their middle is half the size of a cloud
-  double max_stray = 0.05;       ///< share of the points; more are a part of the shape
-  int max_stray_group = 16;      ///< distinct points; more are a part of the shape
-  float stray_spacings = 10.0f;  ///< least width of a gap, in spacings of points spread evenly over a ball
-  float min_stray_gap = 0.4f, max_stray_gap = 1.0f;  ///< limits of that gap, sizes of the cloud
+  double bulk = 0.9;         ///< share of the points whose distance from their middle is half the size of a cloud
+  double max_stray = 0.05;   ///< greatest share of stray points; more are a part of the shape
+  int max_stray_group = 16;  ///< greatest number of distinct points in a stray group; more are a part of the shape
+  /// Least width of the gap around stray points, in spacings of points spread evenly over a ball.
+  float stray_spacings = 10.0f;
+  float min_stray_gap = 0.4f, max_stray_gap = 1.0f;  ///< limits of that gap, in sizes of the cloud
 
   // Normals
   int fewest_cell_points = 6;  ///< least points around a cell for a normal: twice the three that span a plane
 
   // Open borders
   int border_neighbors = 16;  ///< neighbors searched for a gap
-  /// Radians; inside the surface, 0.5 % of the gaps between 16 random directions are greater.
+  /// Least gap at a border, radians; inside the surface, 0.5 % of the gaps between 16 random directions are greater.
   float border_gap = 150.0f * static_cast<float>(kPi) / 180.0f;
-  float off_plane = 0.5f;  ///< share of the distance by which a neighbor is off the tangent plane: 30 degrees
-  int max_off_plane = 2;   ///< neighbors off the plane; more of them indicate a fold
+  /// Least share of its distance by which a neighbor is off the tangent plane to count as such: 30 degrees.
+  float off_plane = 0.5f;
+  int max_off_plane = 2;  ///< greatest number of neighbors off the plane; more indicate a fold
 
   // Balls
-  Eigen::Index ball_points = 2'500;  ///< candidates for the outermost points
-  int ball_iterations = 60;          ///< leave the radius within 1 % of the smallest
+  Eigen::Index ball_points = 2'500;  ///< greatest number of candidates for the outermost points
+  int ball_iterations = 60;          ///< number of iterations, which bring the radius within 1 % of the smallest
 
   // Axes of normals
-  /// Radians by which a normal of half weight misses the axis: noise of a third of the spacing.
+  /// Angle by which a normal of half weight misses the axis, radians: noise of a third of the spacing.
   double normal_miss = 0.1;
-  int reweightings = 8;             ///< bodies with a base need this many
-  double min_lever = 0.05;          ///< radii; least lever by which speeds are divided
-  double translation_ridge = 1e-6;  ///< share of the trace; keeps the translation along a cylinder at rest
-  double position_ridge = 1e-9;     ///< parallel normals leave the position along them open
+  int reweightings = 8;             ///< number of reweightings; bodies with a base need this many
+  double min_lever = 0.05;          ///< least lever by which speeds are divided, radii
+  double translation_ridge = 1e-6;  ///< ridge that keeps the translation along a cylinder at 0, share of the trace
+  double position_ridge = 1e-9;     ///< ridge for the position along parallel normals, which they leave undetermined
 
   // Discs
-  float disc_cell = 1.5f;         ///< spacings, edge of a cell
-  float max_disc_spacing = 3.0f;  ///< median spacings, greatest spacing that makes a disc
-  float max_disc_cells = 96.0f;   ///< along the longest edge
+  float disc_cell = 1.5f;         ///< edge of a cell, spacings
+  float max_disc_spacing = 3.0f;  ///< greatest spacing for which a point makes a disc, median spacings
+  float max_disc_cells = 96.0f;   ///< greatest number of cells along the longest edge
 
   // Local geometry
-  /// Offset of the neighbors' mean from a point at the border, in distances to the last neighbor; 0.25 by chance, 0.42
-  /// beside half a disc.
+  /// Offset of the neighbors' mean from a point at which the point counts as at the border, in distances to the last
+  /// neighbor; 0.25 by chance, 0.42 beside half a disc.
   double border_offset = 0.38;
 };
 
 inline constexpr GeometryRules kGeometry{};
 
 /// A plane is a symmetry if it maps at least this share of the surface to within the tolerance of the surface
-/// (core/evidence/README.md).
+/// (src/pages/algorithms/decision.md).
 constexpr double kSymmetricShare = 0.97;
 
-/// Between this share and that of a symmetry, points leave it open whether a plane is one: finer ones may show it.
+/// From this share on, more points may show that a plane is a symmetry.
 constexpr double kNearlySymmetricShare = 0.9;
 
 /// Two planes or two lines within both limits count as the same.
 struct MergeTolerance {
-  double angle;   ///< between the normals or directions, radians
-  double offset;  ///< between the offsets of planes, or between lines, at the origin of their frame; its units
+  double angle;  ///< greatest angle between the normals or directions, radians
+  /// Greatest difference of the offsets of planes, or distance of lines, at the origin of their frame; units of that
+  /// frame.
+  double offset;
 
   bool same(const ReflectionPlane& a, const ReflectionPlane& b) const {
     const double sign = a.normal().dot(b.normal()) < 0.0 ? -1.0 : 1.0;
@@ -92,7 +96,7 @@ struct MergeTolerance {
   };
 
   /// \param of member or function that gives the plane or line of an entry.
-  /// \return whether the list has an entry that is the same.
+  /// \return whether the list has an entry that counts as the same.
   template <typename List, typename Motion, typename Of = Itself>
   bool anySame(const List& list, const Motion& motion, const Of& of = {}) const {
     return std::any_of(list.begin(), list.end(),

@@ -18,31 +18,31 @@ namespace pcl_symmetry {
 
 namespace {
 
-// Lengths are in radii of the bounding ball.
+// Lengths are in radii of the bounding ball, unless stated otherwise.
 struct MeshRules {
-  int samples = 4000;          // that shares are measured on: an error of 0.3 % at the limit of 97 %
-  int fitted_samples = 1000;   // that motions are fitted to, a part of them
-  int border_samples = 1000;   // of the open borders
-  int iterations = 40;         // greatest number; exact surfaces take three to six
-  int max_worse = 3;           // iterations after the best one, at the narrowest weights, that end the fit
+  int samples = 4000;          // samples by which shares are measured: an error of 0.3 % at the limit of 97 %
+  int fitted_samples = 1000;   // samples that motions are fitted to, a part of those
+  int border_samples = 1000;   // samples of the open borders
+  int iterations = 40;         // greatest number of iterations; exact surfaces take three to six
+  int max_worse = 3;           // iterations after the best one, at the least width, that end the fit
   double settled = 1e-9;       // length of a step that ends the fit: below what float coordinates resolve
-  double longest_step = 0.05;  // radians and radii: samples of the other side are not reached in one step
-  double widths = 2.5;         // medians of the distances, the width of the weights: most samples of a symmetry agree
-  double first_width = 0.05;   // of the weights at first: the ends of a bar are few, and far off
-  double short_step = 0.1;     // of the width, after which it is multiplied by
+  double longest_step = 0.05;  // greatest step, radians and radii: a step must not reach samples of the other side
+  double widths = 2.5;         // width of the weights, medians of the distances: most samples of a symmetry agree
+  double first_width = 0.05;   // first least width of the weights: the ends of a bar are few, and far off
+  double short_step = 0.1;     // length of a step, in widths, after which the least width is multiplied by `narrower`
   double narrower = 0.25;
-  double min_width = 1e-4;     // of the weights, far above rounding
-  double exact_cost = 1e-6;    // of all samples: rounding
-  double touching = 1e-5;      // distance below which its direction is rounding, and the normal counts
-  double stiffness = 1e-9;     // of the greatest, below which nothing fixes a direction
+  double min_width = 1e-4;     // final least width of the weights, far above rounding
+  double exact_cost = 1e-6;    // cost of all samples that is due to rounding
+  double touching = 1e-5;      // distance below which its direction is rounding, so that the normal is used
+  double stiffness = 1e-9;     // least stiffness of a constrained direction, as a share of the greatest
   double judged_width = 0.01;  // width by which steps are compared: half the default tolerance
   double farthest = 0.45;      // radians and radii: a fit that moves farther has left its symmetry
 };
 constexpr MeshRules kMesh;
 
-/// Least squares in a small rotation omega of all axes and a translation t of the center.
+/// Least squares in a small rotation omega of all axes and a small translation t of the center.
 struct MotionSums : SmallMotionEquations {
-  double cost = 0.0;  // cost of the disagreement
+  double cost = 0.0;  // cost by which steps are compared
 };
 
 }  // namespace
@@ -64,19 +64,19 @@ void MotionsAbout::addRotations(const Eigen::Vector3d& unit_axis) {
 }
 
 struct MeshSurface::Parts {
-  /// Triangles, or edges as triangles without area, with samples and a direction each: the normal, or along the edge.
+  /// Triangles, or edges as triangles without area, each with a direction: the normal, or the direction of the edge.
   struct Surface {
     std::unique_ptr<TriangleTree> tree;
     Points samples, directions;
   };
 
   BoundingBall ball;
-  Points corners;  // three of each triangle, about the center of the ball, in radii; as the surfaces
+  Points corners;  // three corners for each triangle, in radii about the center of the ball, like the surfaces
   std::vector<Eigen::Vector3i> triangles;
-  Surface faces, borders;  // borders may have no tree
+  Surface faces, borders;  // the borders may have no tree
   std::once_flag has_trees;
 
-  /// Makes the trees when they are first used: many meshes have no symmetry to refine.
+  /// Builds the trees on first use: many meshes have no symmetry to refine.
   const Parts& withTrees();
 
   /// The image of a sample, and the vector to it from the closest point.
@@ -85,7 +85,7 @@ struct MeshSurface::Parts {
   };
   using Matches = std::vector<Match>;
 
-  /// \param[in,out] matches of the wanted number; their closest points under a similar motion serve as guesses.
+  /// \param[in,out] matches one for each sample; their closest points under a similar motion serve as guesses.
   /// \param reach radii; samples farther from the surface keep their match.
   /// \param max_far if more samples than this are farther, the remaining ones keep their match.
   static void match(const Surface& surface, const Eigen::Matrix3d& linear, const Eigen::Vector3d& center,
@@ -104,8 +104,8 @@ struct MeshSurface::Parts {
     }
   }
 
-  /// \param min_width of the weights.
-  /// \param[in,out] matches of each motion.
+  /// \param min_width least width of the weights.
+  /// \param[in,out] matches matches of each motion.
   void addTo(MotionSums& sums, const Surface& surface, const MotionsAbout& motions, double min_width,
              std::vector<Matches>& matches) const {
     for (std::size_t k = 0; k < matches.size(); ++k) {
@@ -153,7 +153,7 @@ MeshSurface::MeshSurface(const PointsRef& vertices, const std::vector<Eigen::Vec
   check(parts_->ball.radius > 0.0, "extent of the mesh", parts_->ball.radius, "> 0");
   parts_->corners = normalizePoints(corners, parts_->ball.center, parts_->ball.radius);
   parts_->triangles = std::move(faces);
-  // Samples that are fitted to are the first, spread over the surface.
+  // Motions are fitted to the first samples, which are spread over the surface.
   const int stride = kMesh.samples / kMesh.fitted_samples;
   const Points samples = sampleTriangles(parts_->corners, parts_->triangles, kMesh.samples);
   parts_->faces.samples = samples;
@@ -203,7 +203,7 @@ MeshSurface::Placement MeshSurface::fitted(const MotionsAbout& motions) const {
   double least = std::numeric_limits<double>::infinity(), width = kMesh.first_width;
   std::vector<Parts::Matches> on_faces(motions.linear.size(), Parts::Matches(kMesh.fitted_samples)),
       on_borders(motions.linear.size(), Parts::Matches(kMesh.border_samples));
-  int num_worse = 0;  // iterations since the best
+  int num_worse = 0;  // iterations since the best one
   for (int i = 0; i < kMesh.iterations; ++i) {
     MotionSums sums;
     parts.addTo(sums, parts.faces, moving, width, on_faces);
@@ -211,7 +211,7 @@ MeshSurface::Placement MeshSurface::fitted(const MotionsAbout& motions) const {
     const bool is_near =
         Eigen::AngleAxisd(rotation).angle() < kMesh.farthest && (moving.center - start).norm() < kMesh.farthest;
     if (!is_near) break;
-    // The last of equally good steps is the most exact.
+    // Of equally good steps, the last is the most exact.
     if (sums.cost <= least * (1.0 + kMesh.min_width) + kMesh.exact_cost) {
       best = {rotation, ball.center + ball.radius * moving.center};
       least = std::min(least, sums.cost);

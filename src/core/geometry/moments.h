@@ -22,7 +22,7 @@ struct Moments {
     squares += other.squares;
   }
 
-  /// Sum of the products of the distances from the mean: the covariance times count.
+  /// Sum of the outer products of the deviations from the mean: the covariance times count.
   Eigen::Matrix3f scatter() const { return squares - sum * sum.transpose() / count; }
 };
 

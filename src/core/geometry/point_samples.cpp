@@ -15,7 +15,7 @@ namespace pcl_symmetry {
 
 namespace {
 
-/// Distances of points from the middle of most of them.
+/// Distances of points from the middle of most of the points.
 std::vector<float> distancesFromMiddle(const PointsRef& points) {
   Eigen::Vector3f middle;
   std::vector<float> values(points.cols());
@@ -31,7 +31,7 @@ std::vector<float> distancesFromMiddle(const PointsRef& points) {
 class OuterGroups {
 public:
   /// \param points distinct.
-  /// \param outer indices of the points beyond the bulk, rising.
+  /// \param outer indices of the points beyond the bulk, ascending.
   OuterGroups(const Points& points, const std::vector<int>& outer, float gap)
       : outer_(outer),
         num_neighbors_(std::min<int>(kGeometry.max_stray_group + 1, static_cast<int>(points.cols()))),
@@ -52,7 +52,7 @@ public:
   }
 
 private:
-  /// \return the group of an outer point, once; empty where it is large or touches the bulk.
+  /// \return the group of an outer point, once; empty if it is large or touches the bulk.
   std::vector<int> isolatedGroup(std::size_t first) {
     std::vector<int> group;
     bool is_isolated = true;
@@ -150,11 +150,12 @@ Eigen::Vector3d farthestFrom(const Eigen::Vector3d& position, const PointsRef& p
 
 /// Why distinct points cannot be analyzed: they lie at one position or on one line, up to rounding.
 std::string whyTooThin(const PointsRef& points) {
-  // The ends of a line: the point farthest from any of its points, and the one farthest from that.
+  // The ends of a line: the point farthest from any point, and the one farthest from that.
   const Eigen::Vector3d first = farthestFrom(points.col(0).cast<double>(), points);
   const Eigen::Vector3d last = farthestFrom(first, points);
   const double length = (last - first).norm();
-  // Rounding moves a point by sqrt(3) 2^-24 of its distance from the origin, and the line through two others as much.
+  // Rounding moves a point by sqrt(3) 2^-24 of its distance from the origin, and the line through two other points by
+  // as much.
   const double rounding =
       2.0 * std::numeric_limits<float>::epsilon() * farthestFrom(Eigen::Vector3d::Zero(), points).norm();
   if (length <= rounding) return "all points are at one position, up to the rounding of their coordinates";

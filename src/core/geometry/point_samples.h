@@ -1,5 +1,5 @@
-/// Subsets of a cloud: samples, and the points that an analysis can use: distinct ones without stray points, if there
-/// are enough of them.
+/// Subsets of a cloud: samples, and the points that an analysis can use, which are distinct and not stray, if there are
+/// enough of them.
 #pragma once
 
 #include <algorithm>
@@ -21,7 +21,7 @@ namespace pcl_symmetry {
 /// \throws std::invalid_argument without a point, and for a coordinate that is not finite.
 void checkPoints(const PointsRef& points);
 
-/// \return the ball around points: squares of points in its radii neither overflow nor underflow.
+/// \return the ball around points, in whose radii squares of points neither overflow nor underflow.
 /// \throws std::invalid_argument as checkPoints() does, and for points without extent.
 BoundingBall checkedBall(const PointsRef& points);
 
@@ -51,9 +51,9 @@ inline std::vector<int> drawSamples(Eigen::Index size, int num_samples, std::uin
   return num_samples >= size ? allOf(size) : shuffled(size, seed, num_samples);
 }
 
-/// Draws one of each of \p num_drawn equal runs of a sequence.
+/// Draws one element of each of \p num_drawn equal runs of a sequence.
 /// \param size length of the sequence, more than \p num_drawn.
-/// \return num_drawn positions in the sequence, rising.
+/// \return num_drawn positions in the sequence, ascending.
 inline std::vector<std::size_t> oneOfEachRun(std::size_t size, std::size_t num_drawn, std::uint64_t seed) {
   std::vector<std::size_t> drawn(num_drawn);
   RandomStream random(seed);
@@ -74,7 +74,7 @@ inline Points pointsAt(const PointsRef& points, const std::vector<int>& samples)
   return chosen;
 }
 
-/// The position of a cell along Morton's curve: the bits of its coordinates, interleaved.
+/// The position of a cell along Morton's curve: the interleaved bits of its coordinates.
 /// \param x,y,z in [0, 1024).
 inline std::uint32_t mortonCode(std::uint32_t x, std::uint32_t y, std::uint32_t z) {
   std::uint32_t code = 0;
@@ -103,7 +103,7 @@ inline std::vector<int> curveOrder(const PointsRef& points) {
 
 /// A subset with the density of the cloud: one point from each of equal runs along a curve through cells of a grid.
 /// \param points 3 x N, finite.
-/// \param size of the subset, < N.
+/// \param size size of the subset, < N.
 /// \return different indices in the order of the curve, so that successive points are near each other.
 inline std::vector<int> spreadSubset(const PointsRef& points, std::size_t size, std::uint64_t seed) {
   const std::vector<int> order = curveOrder(points);
@@ -112,7 +112,7 @@ inline std::vector<int> spreadSubset(const PointsRef& points, std::size_t size, 
   return kept;
 }
 
-/// \return 3 x N, the points reflected across a plane, in their order.
+/// \return 3 x N, the points reflected in a plane, in their order.
 inline Points reflectedPoints(const PointsRef& points, const ReflectionPlane& plane) {
   Points reflected(3, points.cols());
   for (Eigen::Index i = 0; i < points.cols(); ++i)
@@ -120,7 +120,7 @@ inline Points reflectedPoints(const PointsRef& points, const ReflectionPlane& pl
   return reflected;
 }
 
-/// \return 3 x N, normals of points after the points were reflected across a plane.
+/// \return 3 x N, the normals of points after the points were reflected in a plane.
 inline Points reflectedNormals(const PointsRef& normals, const ReflectionPlane& plane) {
   const Eigen::Vector3f n = plane.normal().cast<float>();
   Points reflected(3, normals.cols());
@@ -157,12 +157,12 @@ inline std::vector<int> firstCopies(const PointsRef& points) {
   return first;
 }
 
-/// The points without repetitions. Copies of a point are uninformative about the surface and hide the spacing of its
-/// samples.
+/// The points without repetitions. Copies of a point are uninformative about the surface, and make samples look closer
+/// than they are.
 struct DistinctPoints {
   Points points;              ///< 3 x M, each position once, in the order of the first copies
   std::vector<int> index_of;  ///< N, the column of points that holds each original point
-  std::vector<int> first_of;  ///< M, the first copy of each
+  std::vector<int> first_of;  ///< M, the first copy of each distinct point
 
   /// \param all 3 x N, finite.
   explicit DistinctPoints(const PointsRef& all) : points(3, all.cols()), index_of(firstCopies(all)) {
@@ -177,25 +177,25 @@ struct DistinctPoints {
   }
 };
 
-/// The points far from all others, alone or in tiny groups: flying pixels of cameras, outliers of photogrammetry,
+/// Finds the points far from all others, alone or in tiny groups: flying pixels of cameras, outliers of photogrammetry,
 /// positions that a driver set to zero. They would inflate the diameter and with it the tolerance.
 ///
 /// Nine tenths of the points lie within some distance of the middle of the cloud; twice that distance is its size.
 /// Points beyond that distance by more than a gap are stray if no chain of points with shorter gaps leads back. The gap
 /// is two fifths of the size or ten spacings of a surface, so that tails, antennas and sparse samples belong to the
 /// cloud. Where more than one point in twenty would be stray, none is.
-/// \param points 3 x N; none is stray where one is not finite.
-/// \return their indices, rising.
+/// \param points 3 x N; if a point is not finite, none is stray.
+/// \return indices of the stray points, ascending.
 std::vector<int> strayPoints(const PointsRef& points);
 
-/// \param stray indices, rising.
-/// \return the indices of the other points, rising.
+/// \param stray indices, ascending.
+/// \return the indices of the other points, ascending.
 std::vector<int> allBut(const std::vector<int>& stray, Eigen::Index size);
 
 /// \return 3 x M, the points that are not stray.
 Points withoutStrayPoints(const PointsRef& points);
 
-/// In fewer distinct points, a symmetry cannot be distinguished from chance.
+/// Least number of distinct points: with fewer, a symmetry cannot be distinguished from chance.
 constexpr int kMinDistinctPoints = 20;
 
 /// Why points cannot be analyzed: too few distinct ones, all at one position, or all on one line (a line is symmetric

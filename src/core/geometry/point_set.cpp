@@ -35,7 +35,7 @@ BoundingBall boundingBall(const PointsRef& points) {
     Eigen::Index farthest = 0;
     for (const auto& [distance, i] : outermost) {
       const double max_distance = (1.0 + 1e-9) * (distance + moved);
-      if (max_distance * max_distance < greatest) break;  // nor is any that follows farther
+      if (max_distance * max_distance < greatest) break;  // nor is any of the following points farther
       const double sq_distance = sqDistance(points, i, ball.center);
       if (sq_distance < greatest || (sq_distance == greatest && i > farthest)) continue;
       greatest = sq_distance;

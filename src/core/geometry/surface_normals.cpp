@@ -33,7 +33,7 @@ std::array<int, kNumWitnesses> witnessesOf(int self, const int* neighbors, int c
 }
 
 /// Distance between neighboring samples.
-/// \param sq_radius squared distance of the last one of \p count points, the first of which is the sample.
+/// \param sq_radius squared distance of the last of \p count points, the first of which is the sample.
 float spacingOf(double sq_radius, int count) {
   return static_cast<float>(std::sqrt(kPi * sq_radius / std::max(1, count - 1)));
 }
@@ -51,7 +51,7 @@ TangentPlane tangentPlane(const Points& points, const Eigen::Vector3f& position,
   for (int k = 0; k < count; ++k) offsets.add(points.col(neighbors[k]) - position);
   const Eigen::Matrix3f covariance = offsets.scatter();
   Eigen::Vector3f normal = SymmetricEigen<Eigen::Matrix3f>(covariance).eigenvectors().col(0);
-  const bool is_usable = std::abs(normal.squaredNorm() - 1.0f) < 0.1f;  // false where one is no number
+  const bool is_usable = std::abs(normal.squaredNorm() - 1.0f) < 0.1f;  // false if it is NaN
   const float sq_residual = is_usable ? normal.dot(covariance * normal) : covariance.trace();
   if (!is_usable) normal = Eigen::Vector3f::UnitZ();
   return {normal, offsets.sum, std::sqrt(std::max(0.0f, sq_residual) / static_cast<float>(std::max(1, count - 3)))};
@@ -142,7 +142,8 @@ std::vector<char> openBorders(const Points& samples, const ClosestPointSearch& s
   parallelPoints(size, num_threads, [&](std::size_t begin, std::size_t end) {
     std::vector<int> open, indices;
     std::vector<float> sq_distances;
-    // More neighbors only fill gaps or fold the surface: points that are inside by some neighbors are inside by all.
+    // More neighbors only fill gaps or fold the surface: points that some neighbors show to be inside are inside by
+    // all.
     for (std::size_t i = begin; i < end; ++i) {
       const auto self = static_cast<int>(i);
       const int* const nearest = known ? known->indices.data() + i * known->indices.size() / size : nullptr;
@@ -182,7 +183,7 @@ double weightOf(double miss) {
   return 1.0 / (sum * sum);
 }
 
-/// A motion of space: rotation and shift, so that a point x moves by shift + rotation x x.
+/// A motion of space, a rotation and a translation, so that a point x moves by shift + rotation x x.
 struct Motion {
   Eigen::Vector3d rotation, shift;
 
@@ -221,7 +222,8 @@ Line3d axisOfNormals(const Points& points, const Points& normals, const std::vec
   std::vector<double> weights(oriented.size(), 1.0);
   Motion motion{Eigen::Vector3d::UnitZ(), Eigen::Vector3d::Zero()};
   for (int k = 0; k < kGeometry.reweightings; ++k) {
-    WeightedProducts products;  // of how fast points move along their normals, by rotation and by shift
+    // Normal equations of the speed of the points along their normals, in the rotation and the translation.
+    WeightedProducts products;
     for (std::size_t i = 0; i < oriented.size(); ++i)
       products.add(oriented[i].point.cross(oriented[i].normal), oriented[i].normal, 0.0, weights[i]);
     motion = slowestAlongNormals(products.ofUnknowns());
@@ -231,7 +233,7 @@ Line3d axisOfNormals(const Points& points, const Points& normals, const std::vec
       weights[i] = weightOf(velocity.dot(oriented[i].normal) / lever) / (lever * lever);
     }
   }
-  // The axis is where the motion stands still.
+  // The axis consists of the points that the motion does not move.
   return {motion.rotation.cross(motion.shift), motion.rotation};
 }
 

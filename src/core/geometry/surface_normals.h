@@ -9,23 +9,24 @@
 
 namespace pcl_symmetry {
 
-/// Neighbors of the closest sample that also decide whether a point lies on the surface.
-/// A sample is within reach at 1.25 spacings, and that circle holds pi 1.25^2 = 5 samples on average.
+/// Neighbors of the closest sample that also decide whether a point lies on the surface. A sample is within reach at
+/// 1.25 spacings, and a circle of that radius holds pi 1.25^2 = 5 samples on average.
 constexpr int kNumWitnesses = 4;
 
 /// The surface at each sample, estimated from its neighbors.
 struct LocalGeometry {
   Points normals;                ///< 3 x N, unit, of arbitrary sign
   std::vector<float> roughness;  ///< N, root mean square distance of the neighbors from the tangent plane
-  std::vector<char> at_border;   ///< N, 1 if the neighbors lie to one side: the rim of a scan, or a sharp edge
-  /// N, the closest other samples, nearest first; the sample itself where there are no more
+  /// 1 if the neighbors lie to one side of a sample: the rim of a scan, or a sharp edge; N values.
+  std::vector<char> at_border;
+  /// N, the closest other samples, nearest first; the sample itself if there are no more
   std::vector<std::array<int, kNumWitnesses>> nearest;
   /// N, distance between neighboring samples: 1 / sqrt(density), input units
   std::vector<float> spacing;
 };
 
-/// Neighbors that give normals and spacing.
-/// The error of the spacing from k neighbors is 1 / (2 sqrt(k)), 18 % for 8; fewer exceed 20 %.
+/// Neighbors that determine normals and spacing. The error of the spacing from k neighbors is 1 / (2 sqrt(k)), 18 % for
+/// 8; fewer exceed 20 %.
 constexpr int kNumSupportNeighbors = 8;
 
 /// The closest points of each sample.
@@ -39,9 +40,9 @@ struct FoundNeighbors {
 /// The spacing comes from the distance r_k to the k-th neighbor: a surface of density rho has k = pi rho r_k^2
 /// neighbors within r_k.
 /// \param points 3 x N, finite.
-/// \param search over the same points.
-/// \param[out] neighbors found, including the point itself: for each point num_neighbors + 1 indices, nearest first, or
-/// as many as there are points, and the squared distance of the last one; may be null.
+/// \param search search over the same points.
+/// \param[out] neighbors found neighbors, including the point itself: for each point num_neighbors + 1 indices, nearest
+/// first, or as many as there are points, and the squared distance of the last one; may be null.
 /// \param num_neighbors >= 3; clouds with fewer points use all of them.
 LocalGeometry localGeometry(const Points& points, const ClosestPointSearch& search, int num_threads,
                             FoundNeighbors* neighbors = nullptr, int num_neighbors = kNumSupportNeighbors);
@@ -53,7 +54,7 @@ struct GeometryAtPositions {
 };
 
 /// \param points 3 x N, finite.
-/// \param search over the same points.
+/// \param search search over the same points.
 /// \param positions 3 x M, some of the points.
 GeometryAtPositions localGeometryAt(const Points& points, const ClosestPointSearch& search, const Points& positions,
                                     int num_neighbors = kNumSupportNeighbors);
@@ -61,9 +62,9 @@ GeometryAtPositions localGeometryAt(const Points& points, const ClosestPointSear
 /// Finds the points at the open borders of a sampled surface: the neighbors in the tangent plane leave a gap, and the
 /// surface does not fold there.
 /// \param samples 3 x N, finite.
-/// \param search over the same samples.
+/// \param search search over the same samples.
 /// \param normals 3 x N, unit.
-/// \param known the closest points of each sample, as from localGeometry(): if these leave no gap, no more are
+/// \param known the closest points of each sample, as from localGeometry(): if they leave no gap, no others are
 /// searched; the result is the same. Null = not known.
 /// \return N values, 1 at a border.
 std::vector<char> openBorders(const Points& samples, const ClosestPointSearch& search, const Points& normals,
@@ -71,14 +72,14 @@ std::vector<char> openBorders(const Points& samples, const ClosestPointSearch& s
 
 /// The points within two steps of a border along neighbors: about three spacings.
 /// \param borders what openBorders() returned.
-/// \param geometry of the samples.
+/// \param geometry local geometry of the samples.
 /// \return N values, 1 near a border.
 std::vector<char> nearBorders(const std::vector<char>& borders, const LocalGeometry& geometry);
 
-/// Probability that the position between two neighboring samples lies within about three spacings of an open border by
+/// Probability that a position between two neighboring samples lies within about three spacings of an open border by
 /// chance.
 /// \param borders what openBorders() returned.
-/// \param geometry of the samples.
+/// \param geometry local geometry of the samples.
 /// \return in [0, 1]; 0 for a closed surface, 1 for a wire.
 double shareNearBorders(const std::vector<char>& borders, const LocalGeometry& geometry);
 

@@ -20,20 +20,22 @@ namespace pcl_symmetry {
 namespace {
 
 struct SymmetrizingRules {
-  int passes = 3;       // the mean of closest points slides along slopes by their square: the third pass is below 1e-6
-  float paired = 0.5f;  // of the distance of the second closest vertex: closer ones are counterparts
-  float gap = 0.02f;    // radii beside a border, beyond which the other side has a hole there
-  float at_border = 1e-5f;   // radii
-  int judged = 5000;         // vertices that the deviation is measured at
-  float beside = 2.0f;       // spacings beside a sample of a cloud, beyond which there is no surface
-  double on_plane = 1e-6;    // of the greatest distance from the plane: closer vertices lie on it
-  double pair_share = 0.01;  // of the diameter, greatest distance of a counterpart by default
+  // Iterations; the mean of closest points slides along slopes by their square, so the third is below 1e-6.
+  int passes = 3;
+  float paired = 0.5f;      // distance of a counterpart, at most, in distances of the second closest vertex
+  float gap = 0.02f;        // distance beside a border, radii, beyond which the other side has a hole
+  float at_border = 1e-5f;  // distance from a border, radii, within which a point lies at it
+  int judged = 5000;        // vertices at which the deviation is measured
+  float beside = 2.0f;      // distance beside a sample of a cloud, spacings, beyond which there is no surface
+  // Greatest distance of vertices on the plane, as a share of the greatest distance from the plane.
+  double on_plane = 1e-6;
+  double pair_share = 0.01;  // greatest distance of a counterpart by default, as a share of the diameter
 };
 constexpr SymmetrizingRules kSymmetrizing;
 
 constexpr float kNone = std::numeric_limits<float>::quiet_NaN();
 
-/// Across the plane through 0 with this normal.
+/// Reflects a point in the plane through 0 with this normal.
 Eigen::Vector3f reflected(const Eigen::Vector3f& x, const Eigen::Vector3f& normal) {
   return x - 2.0f * normal.dot(x) * normal;
 }
@@ -44,7 +46,7 @@ Eigen::Vector3f movedTo(const Eigen::Vector3f& x, const Eigen::Vector3f& other, 
   return (normal.dot(x) < 0.0f) == (half == SymmetrizedHalf::Left) ? x : other;
 }
 
-/// Normals of the vertices, as long as a third of the area around them.
+/// Normals of the vertices, whose lengths are a third of the area of their triangles.
 Points vertexNormals(const Points& vertices, const std::vector<Eigen::Vector3i>& triangles) {
   Points normals = Points::Zero(3, vertices.cols());
   for (const Eigen::Vector3i& t : triangles) {
@@ -58,7 +60,7 @@ Points vertexNormals(const Points& vertices, const std::vector<Eigen::Vector3i>&
 /// The surface of a mesh at the reflections of its vertices.
 struct OtherSide {
   Points points;              // closest points
-  std::vector<int> vertices;  // counterparts; -1 where none is close
+  std::vector<int> vertices;  // counterparts; -1 if none is close
 };
 
 OtherSide otherSide(const Points& vertices, const std::vector<Eigen::Vector3i>& triangles,
@@ -88,8 +90,8 @@ OtherSide otherSide(const Points& vertices, const std::vector<Eigen::Vector3i>& 
   return found;
 }
 
-/// Which of the vertices used move: all except those whose reflection lies beside a border, where the other side has no
-/// surface.
+/// Which of the vertices used can move: all except those whose reflection lies beside a border, where the other side
+/// has no surface.
 std::vector<char> movingVertices(const Points& vertices, const std::vector<Eigen::Vector3i>& triangles,
                                  const Points& normals, const Eigen::Vector3f& normal, const OtherSide& other,
                                  const std::vector<char>& used) {
@@ -185,7 +187,7 @@ SymmetrizedShape symmetrizedMesh(const PointsRef& vertices, const std::vector<Ei
 MirroredMesh mirroredHalf(const PointsRef& vertices, const std::vector<Eigen::Vector3i>& triangles,
                           const ReflectionPlane& plane, bool left) {
   const std::vector<Eigen::Vector3i> finite = finiteTriangles(vertices, triangles);
-  std::vector<double> heights(vertices.cols());  // into the side that is kept
+  std::vector<double> heights(vertices.cols());  // positive on the side that is kept
   double greatest = 0.0;
   for (const Eigen::Vector3i& t : finite)
     for (const int i : t) {
@@ -198,7 +200,7 @@ MirroredMesh mirroredHalf(const PointsRef& vertices, const std::vector<Eigen::Ve
   MirroredMesh result;
   std::vector<Eigen::Vector3d> points;
   std::vector<int> reflections;
-  std::map<std::pair<int, int>, int> known;  // vertices that stay: a, a; cuts of an edge: a, b
+  std::map<std::pair<int, int>, int> known;  // vertices that stay, by (a, a), and cuts of an edge, by (a, b)
   const auto vertex = [&](int a, int b) {
     if (a > b) std::swap(a, b);
     const auto [entry, is_new] = known.try_emplace({a, b}, static_cast<int>(points.size()));
@@ -217,7 +219,7 @@ MirroredMesh mirroredHalf(const PointsRef& vertices, const std::vector<Eigen::Ve
   for (const Eigen::Vector3i& t : finite) {
     if (++num_done % 1024 == 0) checkCancelled();
     if (std::max({heights[t[0]], heights[t[1]], heights[t[2]]}) <= 0.0) continue;
-    std::vector<int> corners;  // of the part that is kept
+    std::vector<int> corners;  // corners of the part that is kept
     for (int k = 0; k < 3; ++k) {
       const int a = t[k], b = t[(k + 1) % 3];
       if (heights[a] >= 0.0) corners.push_back(vertex(a, a));
@@ -283,7 +285,7 @@ LandmarkAsymmetry landmarkAsymmetry(const std::vector<std::pair<Eigen::Vector3d,
   for (const auto& [first, second] : pairs) {
     result.paired.emplace_back(plane.reflect(first) - second);
     paired += result.paired.back().squaredNorm();
-    object += 0.5 * result.paired.back().squaredNorm();  // each of the two is half of it off their mean
+    object += 0.5 * result.paired.back().squaredNorm();  // each of the two is half of it away from their mean
   }
   for (const Eigen::Vector3d& landmark : midline) {
     result.unpaired.push_back(plane.signedDistance(landmark));

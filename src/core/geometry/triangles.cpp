@@ -12,7 +12,7 @@
 
 namespace pcl_symmetry {
 
-/// Divides the triangles by the medians of their middles.
+/// Divides the triangles at the medians of their middles.
 struct TriangleTree::Builder {
   TriangleTree& tree;
   const Points& corners;
@@ -105,7 +105,7 @@ TriangleTree::TriangleTree(const Points& corners, const std::vector<Eigen::Vecto
 
 namespace {
 
-/// Stack of nodes that a search has yet to open.
+/// Stack of the nodes that a search has yet to open.
 struct OpenBoxes {
   static constexpr int kMost = 64;  // 2^31 triangles have 16 levels; each leaves at most three children behind
   struct Box {
@@ -125,8 +125,8 @@ struct OpenBoxes {
 
 }  // namespace
 
-/// Where a ray enters and leaves the boxes of the children. Comparisons with NaN, where a ray runs within a side of a
-/// box, leave both as they are.
+/// Where a ray enters and leaves the boxes of the children. Comparisons with NaN, if a ray runs within a side of a box,
+/// leave both values unchanged.
 void TriangleTree::distancesTo(const Node& node, const Ray& ray, float farthest, Lanes& near, Lanes& far) {
   near = Lanes{} + ray.nearest;
   far = Lanes{} + farthest;
@@ -139,7 +139,7 @@ void TriangleTree::distancesTo(const Node& node, const Ray& ray, float farthest,
   }
 }
 
-/// Intersections of a ray with triangles (Moeller and Trumbore 1997), in lengths of its direction; infinity where it
+/// Intersections of a ray with triangles (Moeller and Trumbore 1997), in lengths of its direction; infinity if it
 /// misses the triangle.
 TriangleTree::Lanes TriangleTree::distancesTo(const Leaf& leaf, const Ray& ray) {
   constexpr float kMiss = std::numeric_limits<float>::infinity();  // farther than every hit
@@ -188,7 +188,8 @@ TriangleTree::Vectors TriangleTree::closestPoints(const Leaf& leaf, const Vector
   const Lanes d1 = dot(u, w), d2 = dot(v, w), d3 = dot(u, from_u), d4 = dot(v, from_u), d5 = dot(u, from_v),
               d6 = dot(v, from_v);
   const Lanes a = d3 * d6 - d5 * d4, b = d5 * d2 - d1 * d6, c = d1 * d4 - d3 * d2, to_v = d4 - d3, to_u = d5 - d6;
-  // Within the triangle first. A slender one has weights of its corners that are rounding.
+  // First, the closest point within the triangle. In a slender triangle, the weights of the corners are rounding
+  // errors.
   Vectors start = w, direction = cross(u, v);
   Lanes share = -dot(direction, w) / dot(direction, direction);
   const auto takeIf = [&](const auto& here, const Vectors& from, const Lanes& by, const Vectors& along) {

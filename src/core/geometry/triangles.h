@@ -15,12 +15,12 @@ namespace pcl_symmetry {
 /// The first triangle that a ray meets.
 struct RayHit {
   int triangle = -1;                                        ///< index of the triangle; -1 if the ray meets none
-  float distance = std::numeric_limits<float>::infinity();  ///< lengths of the direction
+  float distance = std::numeric_limits<float>::infinity();  ///< in lengths of the direction of the ray
 };
 
 /// The point of a surface that is closest to another point.
 struct ClosestOnTriangles {
-  int triangle = -1;  ///< index of the triangle; -1 where none is close enough
+  int triangle = -1;  ///< index of the triangle; -1 if none is close enough
   Eigen::Vector3f point = Eigen::Vector3f::Zero();
   float sq_distance = std::numeric_limits<float>::infinity();
 };
@@ -36,7 +36,7 @@ public:
   TriangleTree(const Points& corners, const std::vector<Eigen::Vector3i>& triangles);
 
   /// \param direction not zero; its length is the unit of the distances.
-  /// \return the closest triangle beyond the distance \p nearest.
+  /// \return the first triangle beyond the distance \p nearest.
   RayHit closest(const Eigen::Vector3f& origin, const Eigen::Vector3f& direction, float nearest = 0.0f) const {
     return search(origin, direction, nearest, std::numeric_limits<float>::infinity(), false);
   }
@@ -47,7 +47,7 @@ public:
   }
 
   /// \param sq_reach greatest squared distance of the closest point; smaller is faster.
-  /// \return the exact closest point of the triangles, also of those without area.
+  /// \return the exact closest point on the triangles, including those without area.
   ClosestOnTriangles closestTo(const Eigen::Vector3f& x, float sq_reach = std::numeric_limits<float>::infinity()) const;
 
 private:
@@ -68,7 +68,7 @@ private:
   };
   struct Ray {
     Eigen::Vector3f origin, direction, inverse;
-    int side[3];  // of a box, by axis, that the ray enters through: 0 the lower one, 1 the upper one
+    int side[3];  // side of a box, by axis, that the ray enters through: 0 = lower, 1 = upper
     float nearest;
   };
 
@@ -104,7 +104,8 @@ std::vector<Eigen::Vector3i> finiteTriangles(const PointsRef& vertices, const st
 Points sampleTriangles(const PointsRef& vertices, const std::vector<Eigen::Vector3i>& triangles, int num_points,
                        std::uint64_t seed = 1);
 
-/// The borders of a mesh: edges that have one triangle, by the positions of their ends, because files repeat vertices.
+/// The borders of a mesh: edges of only one triangle, identified by the positions of their ends, because files repeat
+/// vertices.
 /// \param triangles indices of finite vertices.
 /// \return indices of vertices.
 std::vector<std::pair<int, int>> openEdges(const Points& vertices, const std::vector<Eigen::Vector3i>& triangles);
