@@ -15,7 +15,7 @@ namespace pcl_symmetry {
 namespace {
 
 /// The least distance of each shape among the forms.
-/// \param forms rising indices of forms.
+/// \param forms indices of forms, ascending.
 /// \param cosines greatest inner product of each form with a rotation of the query.
 std::vector<std::pair<int, float>> leastDistances(const std::vector<int>& forms, const Eigen::RowVectorXf& cosines,
                                                   int forms_per_shape) {
@@ -61,7 +61,7 @@ Eigen::Index CompactIndex::numShapes() const {
   return compact_.cols() / forms_per_shape_;
 }
 
-/// The forms whose leading components are nearest to those of any rotation of the query, by rising index.
+/// The forms whose leading components are nearest to those of any rotation of the query, by ascending index.
 std::vector<int> CompactIndex::candidates(const Eigen::MatrixXf& rotations, std::size_t count) const {
   std::vector<int> forms = allOf(compact_.cols());
   if (count >= forms.size()) return forms;

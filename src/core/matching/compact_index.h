@@ -7,16 +7,15 @@
 namespace pcl_symmetry {
 
 struct CompactIndexOptions {
-  int num_leading = 24;      ///< components of greatest variance, by which candidates are chosen, >= 1
-  int num_candidates = 512;  ///< least number of forms of which all components are compared, >= 1
+  int num_leading = 24;      ///< components of greatest variance, by which candidates are selected, >= 1
+  int num_candidates = 512;  ///< least number of candidates, forms of which all components are compared, >= 1
   int num_threads = 0;       ///< >= 0; 0 = one per core
 };
 
 /// The mean distance of a shape to the nearest shapes of a fixed reference set.
-///
 /// d(a, b) / sqrt(typical(a) typical(b)) makes distances of common and of unusual shapes comparable. The classes of the
 /// references need not be known.
-/// \param distances to the references; infinite ones, as to the shape itself, are left out.
+/// \param distances distances to the references; infinite ones, such as that to the shape itself, are left out.
 /// \return > 0; 1 where no distance is left.
 float typicalDistance(std::vector<float> distances, std::size_t num_nearest = 10);
 
@@ -28,12 +27,12 @@ class CompactIndex {
 public:
   CompactIndex() = default;
 
-  /// \param compact K x (forms_per_shape N), unit columns, those of one shape side by side.
+  /// \param compact K x (forms_per_shape N), unit columns, the forms of one shape side by side.
   /// \param forms_per_shape >= 1.
-  /// \param typical distances of the N shapes, each > 0: distances to a shape are divided by the root of its own, see
-  /// typicalDistance(); empty: all are 1.
-  /// \throws std::invalid_argument for a number of columns that is no multiple of forms_per_shape, or
-  /// another number of typical distances.
+  /// \param typical typical distances of the N shapes, each > 0: distances to a shape are divided by the root of its
+  /// own, see typicalDistance(); empty: all are 1.
+  /// \throws std::invalid_argument if the number of columns is no multiple of forms_per_shape, or the number of typical
+  /// distances does not fit.
   CompactIndex(Eigen::MatrixXf compact, int forms_per_shape, const CompactIndexOptions& options = {},
                std::vector<float> typical = {});
 
@@ -52,7 +51,7 @@ private:
   Eigen::MatrixXf compact_;
   Eigen::MatrixXf leading_;  // the first components of compact_
   int forms_per_shape_ = 1;
-  std::vector<float> typical_;  // of the shapes
+  std::vector<float> typical_;  // typical distance of each shape
   CompactIndexOptions options_;
 };
 

@@ -22,43 +22,43 @@ constexpr double kPairDistanceStep = 0.15;
 // Steps of 15 degrees of the angle between the first normal and the line, and of the angles of the second normal with
 // the line and the first normal, which have no sign.
 constexpr int kPairAngles = 12, kPairOtherAngles = kPairAngles / 2;
-// Steps of a full rotation about the first normal: as many as a byte tells apart.
+// Steps of a full rotation about the first normal: as many as a byte holds.
 constexpr float kStepsOfTurn = 256.0f;
-// Radii: the diameter, with rounding.
+// Longest distance of a pair, radii: the diameter, with rounding.
 constexpr double kLongestPair = 2.1;
 
 /// Two points with their normals.
 struct PointPair {
-  double log_distance;       ///< in steps
-  double angle;              ///< between the first normal and the line, in steps
-  int other_angle, between;  ///< steps
-  std::uint8_t rotation;     ///< of the second point about the first normal, in steps
+  double log_distance;       ///< logarithm of the distance, in steps
+  double angle;              ///< angle between the first normal and the line, in steps
+  int other_angle, between;  ///< in steps
+  std::uint8_t rotation;     ///< rotation of the second point about the first normal, in steps
 };
 
 /// Pairs of one point with all points of its surface.
 struct PairRow {
   Eigen::ArrayXf distance;                                             ///< radii
   Eigen::ArrayXi distance_step, angle_step, other_step, between_step;  ///< valid where distance > 0
-  Eigen::ArrayXi rotation;                                             ///< 1/256
+  Eigen::ArrayXi rotation;                                             ///< in units of 1/256
 };
 
-/// What pairOf() finds for all pairs of points of a surface, many at once.
+/// Finds for all pairs of points of a surface, many at once, what pairOf() finds for one.
 class PairedSurface {
 public:
   /// \param normals unit.
   /// \param radius unit of the distances, > 0.
   PairedSurface(const PointsRef& points, const PointsRef& normals, double radius);
 
-  /// Pairs of point \p i, the first of each pair.
+  /// Pairs whose first point is point \p i.
   PairRow row(int i) const;
 
 private:
-  Eigen::ArrayX3f points_, normals_;  // one a row
-  int first_step_;                    // of distances, below the shortest one
-  std::vector<float> sq_distances_;   // where each further step begins
+  Eigen::ArrayX3f points_, normals_;  // one per row
+  int first_step_;                    // number of the step of the shortest distance
+  std::vector<float> sq_distances_;   // where each further step begins, squared
 };
 
-// Added to divisors.
+// Added to divisors to avoid divisions by 0.
 constexpr float kTiny = 1e-20f;
 
 int angleStep(double cosine, int num_steps, double range) {
@@ -66,7 +66,7 @@ int angleStep(double cosine, int num_steps, double range) {
   return std::min(num_steps - 1, static_cast<int>(angle / range * num_steps));
 }
 
-/// Where a step of the angle ends, as cosines.
+/// The ends of the steps of an angle, as cosines.
 template <int kSteps>
 std::vector<float> cosineLimits(double range) {
   std::vector<float> limits;
@@ -84,7 +84,7 @@ Eigen::ArrayXi limitsReached(const Eigen::ArrayXf& values, const std::vector<flo
 /// Angles of directions in a plane, in steps.
 Eigen::ArrayXi anglesOf(const Eigen::ArrayXf& u, const Eigen::ArrayXf& v) {
   const Eigen::ArrayXf au = u.abs(), av = v.abs(), t = au.min(av) / (au.max(av) + kTiny), s = t * t;
-  // Abramowitz and Stegun 4.4.47, off by 1e-5, over 2 pi.
+  // Abramowitz and Stegun 4.4.47, with an error of 1e-5, divided by 2 pi.
   Eigen::ArrayXf angle = t * (0.159133f + s * (-0.0525688f + s * (0.0286703f + s * (-0.0135493f + s * 0.00331601f))));
   angle = (au < av).select(0.25f - angle, angle);
   angle = (u < 0.0f).select(0.5f - angle, angle);
@@ -103,8 +103,8 @@ Eigen::Matrix3d frameOf(const Eigen::Vector3d& normal) {
   return frame;
 }
 
-/// \param frame of the first point.
-/// \param second another point than \p first.
+/// \param frame frame of the first point.
+/// \param second a point other than \p first.
 PointPair pairOf(const Eigen::Matrix3d& frame, const Eigen::Vector3d& first, const Eigen::Vector3d& second,
                  const Eigen::Vector3d& second_normal) {
   const Eigen::Vector3d line = second - first;
@@ -155,7 +155,7 @@ PairRow PairedSurface::row(int i) const {
   return row;
 }
 
-// Rotations about a normal that are distinguished: 22.5 degrees, 4 of the 8 bits that store one.
+// Number of rotations about a normal that are distinguished: 22.5 degrees apart, 4 of the 8 bits that store one.
 constexpr int kNumRotations = 16;
 constexpr std::uint32_t kRotationMask = std::numeric_limits<std::uint8_t>::max();
 constexpr std::uint32_t kPairsAtOnce = 128;
@@ -192,7 +192,7 @@ PointPairIndex::PointPairIndex(const std::vector<SurfacePoints>& shapes, int num
   first_distance_ = static_cast<int>(std::floor(std::log(nearest) / kPairDistanceStep));
   num_distances_ = static_cast<int>(std::floor(std::log(farthest) / kPairDistanceStep)) - first_distance_ + 1;
   weights_.resize(keyOf(first_distance_ + num_distances_, 0, 0, 0));
-  const std::size_t block_size = 4;  // shapes whose votes and pairs fit into a cache
+  const std::size_t block_size = 4;  // number of shapes whose votes and pairs fit into a cache
   blocks_.resize((shapes.size() + block_size - 1) / block_size);
   parallelRanges(shapes.size(), block_size, num_threads, [&](std::size_t begin, std::size_t end) {
     blocks_[begin / block_size] = blockOf(static_cast<int>(begin), static_cast<int>(end));
@@ -259,13 +259,13 @@ PointPairIndex::Reference PointPairIndex::referenceOf(const SurfacePoints& scan,
         reference.look_ups.push_back(
             {static_cast<std::uint32_t>(keyOf(d, a, pair.other_angle, pair.between)), pair.rotation});
   }
-  // Neighbors in memory one after the other.
+  // Look-ups in the order of memory.
   std::sort(reference.look_ups.begin(), reference.look_ups.end(),
             [](const LookUp& a, const LookUp& b) { return a.key < b.key; });
   return reference;
 }
 
-/// Votes of one point of the scan: for each point of the shapes that it may be, and each rotation about its normal.
+/// Votes of one point of the scan, for each point of the shapes that it may be and each rotation about its normal.
 void PointPairIndex::count(const Block& block, const std::vector<LookUp>& look_ups,
                            std::vector<std::int32_t>& votes) const {
   std::fill(votes.begin(), votes.end(), 0);
@@ -281,8 +281,8 @@ void PointPairIndex::count(const Block& block, const std::vector<LookUp>& look_u
   }
 }
 
-/// The poses of a shape with most votes of a point of the scan.
-/// \param votes of the points of the shape.
+/// Collects the poses of a shape with most votes of a point of the scan.
+/// \param votes votes for the points of the shape.
 void PointPairIndex::collect(int shape, const Reference& reference, const Eigen::Vector3d& center,
                              const std::int32_t* votes, std::vector<Vote>& poses) const {
   struct Peak {
@@ -293,7 +293,7 @@ void PointPairIndex::collect(int shape, const Reference& reference, const Eigen:
   for (int i = begin; i < end; ++i, votes += kNumRotations) {
     std::int32_t most = 0;
     for (int t = 0; t < kNumRotations; ++t) most = std::max(most, votes[t]);
-    if (2 * most <= best.back().weight) continue;  // also with the next rotation
+    if (2 * most <= best.back().weight) continue;  // votes for two neighboring steps of the rotation are added
     Peak peak{0, i, 0};
     for (int t = 0; t < kNumRotations; ++t) {
       const int weight = votes[t] + votes[(t + 1) % kNumRotations];
@@ -316,7 +316,7 @@ void PointPairIndex::collect(int shape, const Reference& reference, const Eigen:
   }
 }
 
-/// Joins votes for one pose.
+/// Joins votes for similar poses.
 ShapeOfPairs PointPairIndex::clustered(int shape, std::vector<Vote> votes, const Eigen::Vector3d& center,
                                        int num_poses) const {
   sortFalling(votes, &Vote::weight);

@@ -11,7 +11,7 @@ namespace pcl_symmetry {
 /// A shape that has pairs of points like those of a scan.
 struct ShapeOfPairs {
   int shape;                                    ///< number of the shape, in the order in which shapes were added
-  double votes;                                 ///< of the best pose
+  double votes;                                 ///< votes for the best pose
   std::vector<Eigen::Isometry3d> T_shape_scan;  ///< poses, those with most votes first
 };
 
@@ -23,13 +23,13 @@ struct PairSearchOptions {
 
 /// Finds shapes and poses by pairs of points with their normals (Drost et al. 2010): two points of a scan have the same
 /// distance and angles between normals as two points of the shape that it shows. Occlusion removes pairs but does not
-/// change the others, whereas views, see ViewIndex, change with every hidden part. Not in the paper.
+/// change the others, whereas views (see ViewIndex) change with every hidden part. Not in the paper.
 ///
-/// Unlike there, normals have no sign, distances are compared by their ratio, so that shapes may be of any size, and
-/// pairs that many shapes have count less.
+/// Unlike in that work, normals have no sign, distances are compared by their ratio, so that shapes may be of any size,
+/// and pairs that many shapes have count less.
 class PointPairIndex {
 public:
-  /// \param shapes the points of each, about MatchingRules::num_pair_points.
+  /// \param shapes points of each shape, about MatchingRules::num_pair_points.
   explicit PointPairIndex(const std::vector<SurfacePoints>& shapes, int num_threads = 0);
 
   int numShapes() const { return static_cast<int>(radii_.size()); }
@@ -42,7 +42,7 @@ private:
   /// A pose that one point of the scan votes for.
   struct Vote {
     Eigen::Quaterniond rotation;
-    Eigen::Vector3d position;  // of the center of the scan, frame of the shape
+    Eigen::Vector3d position;  // center of the scan, frame of the shape
     double weight;
   };
 
@@ -50,7 +50,7 @@ private:
   struct Block {
     int first_shape, end_shape;
     // Their pairs by key: the first point, counted from the first one of the block, and in the last 8 bits the rotation
-    // of the second one about the normal of the first.
+    // of the second point about the normal of the first.
     std::vector<std::uint32_t> key_begins, pairs;
   };
 
@@ -59,7 +59,7 @@ private:
     std::uint32_t key, rotation;
   };
 
-  /// A point of the scan that votes, with its normal of some sign.
+  /// A point of the scan that votes, with its normal in one of the two directions.
   struct Reference {
     Eigen::Matrix3d frame;
     Eigen::Vector3d point;
@@ -79,10 +79,10 @@ private:
   // Points of all shapes, one after the other: positions, normals, where the points of each shape begin.
   Points points_, normals_;
   std::vector<int> begins_ = {0};
-  std::vector<double> radii_;  // of the shapes
+  std::vector<double> radii_;  // radius of each shape
   int first_distance_ = 0, num_distances_ = 0;
   std::vector<Block> blocks_;
-  std::vector<std::uint8_t> weights_;  // of the keys
+  std::vector<std::uint8_t> weights_;  // weight of each key
 };
 
 }  // namespace pcl_symmetry

@@ -11,8 +11,8 @@ namespace pcl_symmetry {
 
 /// A shape or a scan reduced to a few points, enough to reject impossible poses.
 struct ScreenedSurface {
-  BoundingBall ball;     ///< of the points, input frame
-  PosedSurface surface;  ///< about its center, input units
+  BoundingBall ball;     ///< bounding ball of the points, input frame
+  PosedSurface surface;  ///< the points about the center of the ball, input units
 
   /// \param points in random order, at least one.
   /// \param seen what the scanner saw of a scan, input frame; nothing for a shape.
@@ -27,8 +27,8 @@ struct PosesOfShape {
 
 struct PoseScreeningOptions {
   int num_shapes = 10;       ///< shapes that are returned, >= 0
-  double max_behind = 0.15;  ///< merit behind the best pose of all shapes at which a shape is left out,
-  int min_shapes = 2;        ///< unless it is one of the first: a confidence needs a second one
+  double max_behind = 0.15;  ///< deficit in merit to the best pose of all shapes, at which a shape is left out
+  int min_shapes = 2;        ///< number of best shapes that are never left out, because a confidence needs a second one
   int num_poses = 6;         ///< poses of each shape, >= 1
   int num_threads = 0;       ///< >= 0; 0 = one per core
 };

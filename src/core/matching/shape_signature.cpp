@@ -19,7 +19,7 @@ constexpr int kNumCells = kSignatureCells * kSignatureCells * kSignatureCells;
 // Finer cells count as surface or not, so that the density of the points does not matter.
 constexpr int kFineSide = 2 * kSignatureCells;
 constexpr int kNumFineCells = kFineSide * kFineSide * kFineSide;
-// Rows and columns of the entries of n n^T, see kNumOrientations.
+// Rows and columns of the products of components, see kNumOrientations.
 constexpr int kPairs[kNumOrientations][2] = {{0, 0}, {1, 1}, {2, 2}, {1, 2}, {2, 0}, {0, 1}};
 
 using Orientation = Eigen::Matrix<float, kNumOrientations, 1>;
@@ -53,8 +53,8 @@ void spread(const Orientation& value, const Eigen::Array3f& position, float* cel
 }
 
 /// Sums of n n^T over the points in each fine cell.
-/// \param points about their middle.
-/// \param normals of cells, in the axes of the points.
+/// \param points points about their middle.
+/// \param normals normals of cells, in the axes of the points.
 /// \param reach half the side of the cube.
 std::vector<FineCell> fineCells(const Points& points, const Eigen::Matrix3Xf& normals,
                                 const std::vector<int>& normal_of_points, float reach) {
@@ -71,9 +71,9 @@ std::vector<FineCell> fineCells(const Points& points, const Eigen::Matrix3Xf& no
 }
 
 /// One cube of a signature, of unit norm.
-/// \param points about their middle, in the axes.
-/// \param normals of cells, in the same axes.
-/// \param cube kNumOrientations * kNumCells values, 0 before.
+/// \param points points about their middle, in the axes.
+/// \param normals normals of cells, in the same axes.
+/// \param cube kNumOrientations * kNumCells values, initially 0.
 void fillCube(const Points& points, const Eigen::Matrix3Xf& normals, const std::vector<int>& normal_of_points,
               float* cube) {
   const float reach = static_cast<float>(kMatching.signature_reach) * points.colwise().norm().mean();

@@ -17,7 +17,7 @@ constexpr int kNumOrientations = 6;
 /// Values of a signature: for each of two cubes and each product, one value per cell, x fastest.
 constexpr int kSignatureSize = 2 * kNumOrientations * kSignatureCells * kSignatureCells * kSignatureCells;
 
-/// Shape signature, what matching compares (Section 5.2): where the surface of a shape lies and which way it faces, in
+/// Shape signature, which matching compares (Section 5.2): where the surface of a shape lies and which way it faces, in
 /// a frame of its symmetry.
 ///
 /// Departure from the paper: the values of its distance transform (GEDT) tell only how near the surface is. Here each
@@ -31,13 +31,13 @@ constexpr int kSignatureSize = 2 * kNumOrientations * kSignatureCells * kSignatu
 /// \throws std::invalid_argument for points without extent.
 std::vector<float> shapeSignature(const PointsRef& points, const Eigen::Matrix3d& axes);
 
-/// Frames that signatures are made in, right-handed axes in columns.
+/// Frames in which signatures are made, right-handed axes in columns.
 /// \return two frames. In the first one, the first axis is that of the symmetry frame, and the others are the
 /// directions of greatest and least spread perpendicular to it: shapes of a class share these more often than weak
 /// symmetry planes. The second one is the symmetry frame.
 std::vector<Eigen::Matrix3d> signatureFrames(const PointsRef& points, const SymmetryFrame& frame);
 
-/// \return options of symmetryFrame() that are good enough for signatures and take a third of the default's time.
+/// \return options of symmetryFrame() that are good enough for signatures and take a third of the time of the default.
 FrameOptions signatureFrameOptions();
 
 /// The signature in the frame whose axes are axes * axisRotations()[rotation]^T.
@@ -47,7 +47,8 @@ FrameOptions signatureFrameOptions();
 void rotateSignature(const float* signature, int rotation, float* rotated);
 
 struct DescriptionOptions {
-  int max_points = 20'000;  ///< that signatures are made of, spread evenly over the input, >= 2
+  /// Greatest number of points that signatures are made from, spread evenly over the input, >= 2.
+  int max_points = 20'000;
   std::uint64_t seed = 1;
   int num_threads = 0;  ///< >= 0; 0 = one per core
 };

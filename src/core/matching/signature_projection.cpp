@@ -15,7 +15,7 @@ namespace pcl_symmetry {
 
 namespace {
 
-/// Index of the rotation a^T b.
+/// Index of the rotation a^T b, for indices \p a and \p b of rotations.
 int quotient(int a, int b) {
   const auto& rotations = axisRotations();
   const Eigen::Matrix3i product = rotations[a].transpose() * rotations[b];
@@ -49,7 +49,7 @@ Eigen::MatrixXf innerProducts(const Eigen::MatrixXf& signatures, SignatureRotati
 
 struct Components {
   Eigen::MatrixXf vectors;    // orthonormal columns
-  Eigen::VectorXf variances;  // along the columns, falling
+  Eigen::VectorXf variances;  // variances along the columns, decreasing
 };
 
 /// The greatest eigenvalues of a symmetric matrix by subspace iteration.

@@ -8,7 +8,7 @@
 namespace pcl_symmetry {
 
 struct ProjectionOptions {
-  int num_dimensions = 256;  ///< of the compact form, >= 1; fewer where the references span fewer
+  int num_dimensions = 256;  ///< dimensions of the compact form, >= 1; fewer if the references span fewer
   int num_threads = 0;       ///< >= 0; 0 = one per core
 };
 
@@ -20,7 +20,7 @@ using SignatureRotation = void (*)(const float* values, int rotation, float* rot
 ///
 /// The components are those of the reference shapes in all 24 rotations, about zero: about the mean of a few shapes,
 /// all shapes unlike them would have the same compact form. The rotations therefore map the space of the components
-/// onto itself, and a compact form is rotated there. Distances of compact forms tell classes apart better than
+/// onto itself, and a compact form is rotated there. Distances of compact forms distinguish classes better than
 /// distances of signatures; the classes need not be known.
 class SignatureProjection {
 public:
@@ -39,14 +39,14 @@ public:
   /// \throws std::invalid_argument for another S.
   Eigen::MatrixXf project(const Eigen::Ref<const Eigen::MatrixXf>& signatures) const;
 
-  /// \param compact numDimensions() x M, of project().
+  /// \param compact numDimensions() x M, from project().
   /// \return numDimensions() x 24 M: for each compact form its 24 rotations, the identity first, see rotateSignature().
   /// \throws std::invalid_argument for another number of rows.
   Eigen::MatrixXf rotations(const Eigen::Ref<const Eigen::MatrixXf>& compact) const;
 
   /// \return all numbers of the projection, to be stored: basis, rotations.
   std::vector<float> toValues() const;
-  /// \param values of toValues(), of a projection of shape signatures.
+  /// \param values values from toValues() of a projection of shape signatures.
   /// \throws std::invalid_argument for another number of values.
   static SignatureProjection fromValues(const std::vector<float>& values);
 

@@ -15,7 +15,7 @@ namespace pcl_symmetry {
 namespace {
 
 /// Points of the surface that are at least \p distance apart.
-/// \param order of the points.
+/// \param order order in which points are tried.
 std::vector<int> spreadPoints(const Points& points, const std::vector<int>& order, double distance, int max_count) {
   const auto sq_least = static_cast<float>(distance * distance);
   std::vector<int> chosen;

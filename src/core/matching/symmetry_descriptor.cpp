@@ -13,8 +13,8 @@ namespace pcl_symmetry {
 
 namespace {
 
-/// sqrt(max(D, 0)), or equation 1, of the planes within distance 1 of the origin.
-/// \param num_radius bins of r.
+/// sqrt(max(D, 0)), or PRST of Equation 1, of the planes within distance 1 of the origin.
+/// \param num_radius number of bins of r.
 std::vector<float> prstOf(const GaussianEdt& edt, int num_radius, const DescriptorOptions& options) {
   const PlaneGrid grid(kDescriptorBins, kDescriptorBins, num_radius, Eigen::Vector3d::Zero(), 1.0);
   SampledTransformOptions sampling;

@@ -17,8 +17,8 @@ constexpr int kPRSDSize = kDescriptorBins * kDescriptorBins;                    
 constexpr int kGEDTSize = kPRSTSize;                                            // cells x cells x cells
 
 struct DescriptorOptions {
-  int num_samples = 256;  ///< of the transform, >= 1
-  /// PRST and PRSD by equation 1, sqrt((1 + D) / 2), in place of sqrt(max(D, 0)).
+  int num_samples = 256;  ///< samples of the transform, >= 1
+  /// Whether PRST and PRSD are sqrt((1 + D) / 2) as in Equation 1, instead of sqrt(max(D, 0)).
   bool by_equation_1 = false;
   std::uint64_t seed = 1;
   int num_threads = 0;  ///< >= 0; 0 = one per core
@@ -31,9 +31,9 @@ struct DescriptorOptions {
 struct SymmetryDescriptors {
   /// Planar reflective symmetry transform at the centers of the bins (theta, phi, r), r fastest.
   ///
-  /// Departure from the paper: the values are sqrt(max(D, 0)) instead of PRST = sqrt((1 + D) / 2) of equation 1. f is
-  /// nowhere negative, so that equation 1 maps all planes to [0.71, 1]; the root of D uses [0, 1] and is 0 for planes
-  /// without any symmetry. Both rise with D; DescriptorOptions::by_equation_1 chooses.
+  /// Departure from the paper: the values are sqrt(max(D, 0)) instead of PRST = sqrt((1 + D) / 2) of Equation 1. f is
+  /// nowhere negative, so that Equation 1 maps all planes to [0.71, 1]; the root of D uses [0, 1] and is 0 for planes
+  /// without any symmetry. Both increase with D; DescriptorOptions::by_equation_1 selects one of them.
   std::vector<float> prst;
   /// PRSD, the reflective symmetry descriptor of Kazhdan et al. (2004): the same values for the planes through the
   /// origin, (theta, phi), phi fastest.

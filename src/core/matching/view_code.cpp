@@ -24,8 +24,8 @@ Integer inSteps(double value, double step) {
 
 constexpr std::size_t kBytesOfView = kViewCodeSize + 2;  // see packedViewCodes()
 
-/// Squared distances of codes, in squares of the step.
-/// \param codes value by value, \p stride apart.
+/// Squared distances of codes, in squared steps.
+/// \param codes codes value by value, \p stride apart.
 PCL_SYMMETRY_MULTIVERSION
 void sqCodeDistances(const std::int8_t* codes, std::size_t stride, std::size_t count, const std::int8_t* scan,
                      std::int32_t* sums) {
@@ -45,7 +45,7 @@ std::int16_t sizeAt(const std::int8_t* sizes, std::size_t i) {
   return static_cast<std::int16_t>(low | high << 8);
 }
 
-/// The least distance of the views of a shape; infinite without views.
+/// The least distance of the views of a shape; infinite if it has none.
 float leastDistance(const std::int8_t* codes, std::size_t num_views, const ViewCode& scan, float size_weight) {
   const std::int8_t* sizes = codes + kViewCodeSize * num_views;
   constexpr std::size_t views_at_once = 256;
@@ -165,7 +165,7 @@ std::vector<NearView> nearestViews(const std::vector<View>& views, const View& s
   for (const View& view : views) {
     const double size = kMatching.size_weight * std::abs(std::log(view.radius / scan.radius));
     const bool full = nearest.size() >= kMatching.num_view_poses;
-    const double enough = full ? nearest.back().distance - size : 2.0;  // the greatest distance of unit vectors
+    const double enough = full ? nearest.back().distance - size : 2.0;  // 2 is the greatest distance of unit vectors
     if (enough <= 0.0) continue;
     const ViewAgreement agreement = comparison.compare(view.values.data(), static_cast<float>(enough));
     if (agreement.distance >= enough) continue;

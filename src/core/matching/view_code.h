@@ -12,12 +12,12 @@
 
 namespace pcl_symmetry {
 
-/// Values of a code.
+/// Number of values of a code.
 constexpr int kViewCodeSize = 24;
 
-/// A view in few bytes, independent of rotations in the image.
+/// A view in a few bytes, independent of rotations in the image.
 struct ViewCode {
-  std::array<std::int8_t, kViewCodeSize> values;  ///< in steps of kViewCodeStep
+  std::array<std::int8_t, kViewCodeSize> values;  ///< values in steps of kViewCodeStep
   std::int16_t size;                              ///< logarithm of View::radius in steps of kViewSizeStep
 };
 /// Step of the values of a code, which are components of a unit vector.
@@ -54,7 +54,7 @@ private:
 /// All codes are compared. Eight million, those of 100 000 shapes, take 208 MB and milliseconds per query.
 class ViewCodeIndex {
 public:
-  /// \param codes of a shape, see packedViewCodes().
+  /// \param codes codes of a shape, see packedViewCodes().
   /// \throws std::invalid_argument for another number of bytes.
   void add(const std::string& codes);
 
@@ -62,25 +62,25 @@ public:
   std::size_t numViews() const { return begins_.back(); }
 
   /// \param count >= 0.
-  /// \return the numbers of the nearest shapes, rising, at most \p count. Shapes without views are never found.
+  /// \return the numbers of the nearest shapes, ascending, at most \p count. Shapes without views are never found.
   std::vector<int> nearest(const ViewCode& scan, int count, int num_threads) const;
 
 private:
-  std::vector<std::int8_t> codes_;         // of all shapes, one after the other
-  std::vector<std::size_t> begins_ = {0};  // of the shapes, and the end, in views
+  std::vector<std::int8_t> codes_;         // codes of all shapes, one after the other
+  std::vector<std::size_t> begins_ = {0};  // where each shape begins, and the end, in views
 };
 
 /// A shape that looks like a scan from some side.
 struct ShapeOfView {
   int shape;        ///< number of the shape, in the order in which shapes were added
-  double distance;  ///< mean distance of its two nearest views, with the difference of sizes
+  double distance;  ///< mean distance of its two nearest views, including the difference of sizes
   std::vector<Eigen::Isometry3d> T_shape_scan;  ///< poses of the nearest views, nearest first
 };
 
-/// Finds the shapes that a scan can show, and their poses.
+/// Finds the shapes that a scan may show, and their poses.
 class ViewIndex {
 public:
-  /// \param views of a shape, from viewsAround().
+  /// \param views views of a shape, from viewsAround().
   void add(const std::vector<View>& views);
 
   int numShapes() const { return static_cast<int>(shapes_.size()); }

@@ -58,11 +58,11 @@ struct ViewOutline {
 /// A raster smoothed over neighboring cells, sampled between their centers.
 class SmoothRaster {
 public:
-  /// \param middle the depth that becomes 0.
-  /// \param unit of depths, > 0.
+  /// \param middle depth that becomes 0.
+  /// \param unit unit of depths, > 0.
   SmoothRaster(const DepthRaster& raster, float middle, float unit);
 
-  /// \param at in cells from the corner.
+  /// \param at position in cells from the corner.
   /// \return outline (1 inside) and depth, both 0 beyond the raster.
   Eigen::Array2f sample(const Eigen::Array2f& at) const {
     const Eigen::Array2f corner = (at - 0.5f).floor(), t = at - 0.5f - corner;
@@ -187,7 +187,7 @@ Eigen::VectorXf harmonicsOf(const SmoothRaster& raster) {
                   y = static_cast<float>(radius) * rotationTable().sines[1][a];
       const Eigen::Array2f sample = raster.sample((Eigen::Array2f(x, y) + reach) * to_cells);
       for (int m = 0; m <= kViewHarmonics; ++m) {
-        // A ring counts by its area; a harmonic and its conjugate count as two.
+        // A ring is weighted by its area; a harmonic and its conjugate count as two.
         const float weight = static_cast<float>(std::sqrt((m > 0 ? 2.0 : 1.0) * radius));
         for (int c = 0; c < 2; ++c) {
           values[realPart(m) + c * kViewRings + ring] += weight * rotationTable().cosines[m][a] * sample[c];
@@ -271,7 +271,7 @@ ViewAgreement ViewComparison::compare(const float* values, float enough) const {
   const float weight = kMatching.magnitude_weight;
   const Eigen::Map<const Eigen::VectorXf> other(values, kViewSignatureSize);
   const float apart = (magnitudesOf(other) - magnitudes_).norm();
-  if (apart >= enough) return best;  // it is the smaller one of the two distances
+  if (apart >= enough) return best;  // the distance of the magnitudes is the smaller of the two
   // Above this distance of the signatures, the remaining terms are not needed.
   const float enough_of_all = (enough - weight * apart) / (1.0f - weight);
   // Re conj(V_m) Q_m exp(i m a) is what harmonic m adds to the correlation with the view rotated by a.

@@ -8,16 +8,17 @@
 namespace pcl_symmetry {
 
 constexpr int kViewRings = 8;      ///< rings of a view in polar coordinates
-constexpr int kViewHarmonics = 8;  ///< of each ring, beside its mean
-/// Values of a view: outline and depth, per ring a mean and the real and imaginary parts of the harmonics.
+constexpr int kViewHarmonics = 8;  ///< harmonics of each ring, in addition to its mean
+/// Number of values of a view: outline and depth, per ring a mean and the real and imaginary parts of the harmonics.
 constexpr int kViewSignatureSize = 2 * kViewRings * (2 * kViewHarmonics + 1);
 
-/// Values of a view that do not change with rotations in the image: per ring a mean and the magnitude of each harmonic.
+/// Number of values of a view that do not change with rotations in the image: per ring a mean and the magnitude of each
+/// harmonic.
 constexpr int kViewMagnitudes = 2 * kViewRings * (kViewHarmonics + 1);
 
 /// The appearance of a shape from far away on one side: its outline and its depths. Not in the paper.
 ///
-/// Signatures need the symmetry of the whole shape, and a scan hides it. Views tell which model a scan shows, and from
+/// Signatures need the symmetry of the whole shape, which a scan hides. Views tell which model a scan shows, and from
 /// which side.
 struct View {
   /// Harmonics of outline and depth on rings around the middle; unit norm, independent of size and distance. Harmonic m
@@ -26,7 +27,8 @@ struct View {
   /// harmonic m by exp(-i m a).
   Eigen::VectorXf values;
   double radius = 0.0;  ///< root mean square distance of the inside of the outline from its middle, input units
-  /// To the axes of the view: z points away from the viewer, and the origin is the middle of the visible part.
+  /// Transform to the axes of the view: z points away from the viewer, and the origin is the middle of the visible
+  /// part.
   Eigen::Isometry3d T_view_input = Eigen::Isometry3d::Identity();
 };
 
@@ -37,7 +39,7 @@ View viewOf(const PointsRef& points, const Eigen::Vector3d& forward);
 
 /// Views from directions that are spread evenly over the sphere.
 /// \param points 3 x N, finite, input units.
-/// \param num_views >= 1: of 80, the nearest is within 12 degrees of any direction.
+/// \param num_views >= 1; with 80, one is within 12 degrees of any direction.
 /// \throws std::invalid_argument for points without extent.
 std::vector<View> viewsAround(const PointsRef& points, int num_views = 80, int num_threads = 0);
 
@@ -51,7 +53,7 @@ struct ViewAgreement {
   /// L2 distances of the signatures at the best rotation and of their magnitudesOf(), weighted 0.3 and 0.7, in [0, 2].
   /// Missing parts of a scan change the phases of harmonics more than their magnitudes.
   float distance = 2.0f;
-  double angle = 0.0;  ///< radians about z, from the first view to the second
+  double angle = 0.0;  ///< rotation about z from the first view to the second, radians
 };
 
 /// Compares one view with many, at all rotations in steps of 7.5 degrees.
@@ -59,8 +61,8 @@ class ViewComparison {
 public:
   explicit ViewComparison(const View& view);
 
-  /// \param enough distance from which on the comparison may stop early.
-  /// \return the default where the distance is at least \p enough at all rotations.
+  /// \param enough distance from which the comparison may stop early.
+  /// \return a default ViewAgreement if the distance is at least \p enough at all rotations.
   ViewAgreement compare(const float* values, float enough) const;
 
 private:
