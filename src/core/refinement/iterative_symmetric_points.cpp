@@ -37,7 +37,7 @@ struct WeightedExtent {
 /// Weight of a pair by the visibility of the reflection, in [0, 1].
 ///
 /// Departure from the paper: its pairs all have full weight, but many partners of a scan's points are hidden. The
-/// closest points, taken instead, would draw a plane away from the symmetry, to where more of the visible surface
+/// closest points, used instead, would draw a plane away from the symmetry, to where more of the visible surface
 /// overlaps.
 double seenWeight(const Visibility* visibility, const Eigen::Vector3d& reflection, double sigma) {
   if (!visibility) return 1.0;
@@ -45,11 +45,11 @@ double seenWeight(const Visibility* visibility, const Eigen::Vector3d& reflectio
   return std::exp(-depth * depth);
 }
 
-/// The pairs of samples and closest points to their reflections, before the plane moves.
+/// Pairs of samples and the closest points to their reflections, before the plane moves.
 struct WeightedPairs {
-  Points x, y;  ///< y is 0 where a sample has no partner, and no weight
+  Points x, y;  ///< y is 0, with no weight, if a sample has no partner
   std::vector<double> weights;
-  IspStep step;  ///< of the plane itself
+  IspStep step;  ///< step that leaves the plane as it is
 
   WeightedPairs(const IspSurface& surface, const std::vector<int>& samples, const ReflectionPlane& plane, double sigma,
                 const std::vector<int>* guesses)
@@ -110,8 +110,9 @@ struct StepEquations {
 
 /// The plane after one Gauss-Newton step on sum w (m . (x' - y))^2.
 ///
-/// Directions that this leaves free (a flat piece of surface is uninformative about planes across it) move by a step on
-/// sum w |x' - y|^2. Departure from the paper: it minimizes the latter alone, which needs many more iterations.
+/// Directions that this leaves unconstrained (a flat piece of surface is uninformative about planes perpendicular to
+/// it) move by a step on sum w |x' - y|^2. Departure from the paper: it minimizes only the latter, which needs many
+/// more iterations.
 ReflectionPlane steppedPlane(const IspSurface& surface, const std::vector<int>& samples, const WeightedPairs& pairs) {
   const ReflectionPlane& plane = pairs.step.plane;
   const WeightedExtent extent(pairs.x, pairs.weights);
@@ -135,7 +136,7 @@ ReflectionPlane steppedPlane(const IspSurface& surface, const std::vector<int>& 
     for (Eigen::Index i = 0; i < pairs.x.cols(); ++i)
       if (pairs.weights[i] != 0.0)
         whole.addPointToPoint(pairs.x.col(i).cast<double>(), pairs.y.col(i).cast<double>(), pairs.weights[i]);
-    Eigen::Matrix3d soft = Eigen::Matrix3d::Zero();  // projects onto the directions that \p across leaves free
+    Eigen::Matrix3d soft = Eigen::Matrix3d::Zero();  // projects onto the directions that \p across leaves unconstrained
     for (int i = 0; i < num_soft; ++i) soft += solver.eigenvectors().col(i) * solver.eigenvectors().col(i).transpose();
     step -= SymmetricEigen<Eigen::Matrix3d>(soft * whole.h * soft).solve(soft * whole.g, 1e-12);
   }
@@ -210,7 +211,7 @@ IspResult refineSymmetricPoints(const IspSurface& surface, const std::vector<int
     result.converged = sigma == options.final_sigma && moved <= tolerance && angle * whole.extent <= tolerance;
     result.plane = next;
     if (stays && !stays(next)) break;
-    // Narrower weights only once the plane has come to rest at the current ones: it must not lose its target.
+    // The weights become narrower only when the plane is at rest at the current width: it must not lose its target.
     if (moved + angle * whole.extent <= kRefinement.rest_sigmas * sigma)
       sigma = std::max(options.final_sigma, 0.5 * sigma);
   }

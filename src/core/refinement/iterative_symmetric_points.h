@@ -17,13 +17,13 @@ enum class IspUpdate {
 
 /// Options of Iterative Symmetric Points (Section 4.4).
 struct IspOptions {
-  IspUpdate update = IspUpdate::PointToPlane;  ///< objective of a step
+  IspUpdate update = IspUpdate::PointToPlane;  ///< what a step minimizes
   double sigma = 0.0;        ///< width of the Gaussian weights exp(-dist^2 / sigma^2) at the start, input units, > 0
   double final_sigma = 0.0;  ///< width at the end, input units, in (0, sigma]; halved whenever the plane comes to rest
-  int max_iterations = 30;   ///< >= 1
-  /// The plane has converged when it moves by less than this share of its own standard error, residual / sqrt(number of
-  /// samples), >= 0, or stands still. After that, changing matches keep the plane of a sampled surface in motion
-  /// without improving it.
+  int max_iterations = 30;   ///< limit of the iterations, >= 1
+  /// Share of its own standard error, residual / sqrt(number of samples), below which a step of the plane means
+  /// convergence, >= 0; a plane that does not move has converged, too. After that, changing matches keep the plane of a
+  /// sampled surface in motion without improving it.
   double error_share = 0.5;
 
   /// \throws std::invalid_argument naming field, value and rule.
@@ -43,7 +43,7 @@ struct IspStep {
 struct IspResult {
   ReflectionPlane plane;   ///< where the steps ended, input frame
   int iterations = 0;      ///< number of steps
-  bool converged = false;  ///< the last step moved the plane by less than the tolerance
+  bool converged = false;  ///< whether the last step was shorter than the tolerance
   IspStep last;            ///< the last iteration; its distances were measured before its step
 };
 
@@ -71,7 +71,7 @@ IspStep matchSymmetricPoints(const IspSurface& surface, const std::vector<int>& 
 
 /// Iterates until the plane stands still (Section 4.4).
 /// \param samples indices of the points of the surface to reflect.
-/// \param plane where to start.
+/// \param plane where iteration starts.
 /// \param stays whether to continue from a plane; iteration ends at the first plane for which it is false. Null: always
 /// true.
 /// \throws std::invalid_argument for bad options.

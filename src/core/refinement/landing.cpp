@@ -35,7 +35,7 @@ Landing land(const IspSurface& surface, Points images, double reach, const std::
   const auto sq_reach = static_cast<float>(reach * reach);
   parallelPoints(size, surface.num_threads, [&](std::size_t begin, std::size_t end) {
     const auto some = landing.images.middleCols(begin, end - begin);
-    std::vector<Eigen::Index> near;  // from begin on
+    std::vector<Eigen::Index> near;  // offsets from begin
     if (has_far) {
       near = surface.far->nearOf(some, bound);
     } else {

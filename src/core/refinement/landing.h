@@ -14,9 +14,9 @@ namespace pcl_symmetry {
 /// Detects by a distance transform, without a search, that a point is far from the surface.
 class FarTest {
 public:
-  /// Tests points (x - center) / scale for x in the input frame.
+  /// Prepares tests of points (x - center) / scale for x in the input frame.
   /// \param edt distance transform of the surface; must outlive this object.
-  /// \param center,scale of the frame of the tested points, input units; scale > 0.
+  /// \param center,scale frame of the tested points, input units; scale > 0.
   FarTest(const GaussianEdt& edt, const Eigen::Vector3d& center, double scale)
       : edt_(edt), center_(center), scale_(scale) {}
 
@@ -49,29 +49,30 @@ struct IspSurface {
   const Points& points;              ///< 3 x N
   const Points& normals;             ///< 3 x N unit normals of any sign; may be empty with PointToPoint
   const ClosestPointSearch& search;  ///< finds the closest of points
-  /// N values; matches to points with 1 get no weight, because the true match at the rim of a scan may not have been
-  /// seen. Null: no such points.
+  /// N values; matches to points with the value 1 get no weight, because the true match at the rim of a scan may not
+  /// have been seen. Null: no such points.
   const std::vector<char>* at_border = nullptr;
-  const FarTest* far = nullptr;  ///< spares the search for points that would get no weight; null = search for all
+  const FarTest* far = nullptr;  ///< avoids the search for points that would get no weight; null = search for all
   int num_threads = 1;           ///< for the searches of one iteration; 0 = one per core
-  /// What a scanner saw, in the frame of the points: the partner of a reflection behind the visible surface lies there
-  /// and not at the closest point. Null: the points show the object from all sides.
+  /// What a scanner saw, in the frame of the points. The partner of a reflection behind the visible surface is hidden
+  /// there: it is not the closest point. Null: the points show the object from all sides.
   const Visibility* visibility = nullptr;
 };
 
 /// Where a motion maps points of a surface.
 struct Landing {
-  Points images, normals;           ///< the points and their normals after the motion; normals only where they are used
-  std::vector<int> closest;         ///< points of the surface that the images are closest to; -1: none is near
-  std::vector<float> sq_distances;  ///< from these points; infinite where none is near
-  std::vector<float> distances;     ///< from the discs of the surface, see surfaceDistances(); only where they are used
+  Points images, normals;           ///< the points and their normals after the motion; normals only if they are used
+  std::vector<int> closest;         ///< points of the surface closest to the images; -1 = none is near
+  std::vector<float> sq_distances;  ///< squared distances of the images from these points; infinite where none is near
+  /// Distances from the discs of the surface, see surfaceDistances(); only if they are used.
+  std::vector<float> distances;
 };
 
-/// Finds where points land on a surface: the closest points of Iterative Symmetric Points (Section 4.4) and of
+/// Finds the closest points of a surface to moved points, for Iterative Symmetric Points (Section 4.4) and for
 /// rotations of scans.
 /// \param images the points after the motion, in the frame of the surface.
 /// \param reach greatest distance of a near point.
-/// \param guesses indices of points that are likely to be near, which makes the search faster; null = not known.
+/// \param guesses indices of points that are likely to be close, which makes the search faster; null = not known.
 /// \param leaves_out points beyond the reach of the distance transform are skipped; their weight is negligible.
 Landing land(const IspSurface& surface, Points images, double reach, const std::vector<int>* guesses = nullptr,
              bool leaves_out = false);

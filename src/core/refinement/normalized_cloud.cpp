@@ -23,8 +23,8 @@ LocalGeometry withNormals(LocalGeometry geometry, const Points* given) {
   return geometry;
 }
 
-/// The dimension that points fill within their neighborhoods, by maximum likelihood (Levina and Bickel 2004): 1 of a
-/// wire, 2 of a surface, 3 of a volume.
+/// The dimension that points fill within their neighborhoods, by maximum likelihood (Levina and Bickel 2004): 1 for a
+/// wire, 2 for a surface, 3 for a volume.
 double localDimension(const Points& points, const FoundNeighbors& neighbors) {
   const std::size_t size = neighbors.sq_reach.size(), count = neighbors.indices.size() / std::max<std::size_t>(1, size);
   double sum = 0.0;

@@ -21,7 +21,7 @@ namespace pcl_symmetry {
 struct NormalizedCloud {
   /// \param input 3 x N, finite, distinct, input units.
   /// \param edt_of_input distance transform of these points; must outlive this object.
-  /// \param input_search closest points among the normalized points; null = FLANN's.
+  /// \param input_search search over the normalized points; null = FLANN.
   /// \param seen what a scanner saw, input frame; null = the points show the object from all sides.
   /// \param given_normals 3 x N, of any length and sign, used where they are finite and not zero; null = all estimated.
   NormalizedCloud(const PointsRef& input, const GaussianEdt& edt_of_input, ClosestPointSearch::Ptr input_search,
@@ -30,24 +30,24 @@ struct NormalizedCloud {
   NormalizedCloud& operator=(const NormalizedCloud&) = delete;
 
   const GaussianEdt& edt;        ///< input frame
-  const Eigen::Vector3d center;  ///< of the edt, input units
+  const Eigen::Vector3d center;  ///< center of the edt, input units
   const double scale;            ///< radius of the edt, input units
 
   const Points points;                       ///< 3 x N
   const std::shared_ptr<FlannSearch> flann;  ///< null if the caller provides the search
   const ClosestPointSearch::Ptr search;
-  FoundNeighbors neighbors;  ///< of the points, found together with their geometry
+  FoundNeighbors neighbors;  ///< neighbors of the points, found together with their geometry
   const LocalGeometry geometry;
   const std::shared_ptr<const NeighborLists>
       lists;                     ///< null if there are too many points or the processor lacks the instructions
   const SurfaceSamples samples;  ///< the points and their geometry
-  const std::optional<Visibility> visibility;  ///< of a scan
+  const std::optional<Visibility> visibility;  ///< what the scanner of a scan saw, normalized frame
   const FarTest far;
   const IspSurface surface;                  ///< the above, as input of Iterative Symmetric Points
   const std::unique_ptr<NeighborWalk> walk;  ///< null: there are no lists
   const IspSurface quick_surface;            ///< matched by walks, for first steps that are refined again
 
-  const PrincipalAxes principal_axes;  ///< of the points
+  const PrincipalAxes principal_axes;  ///< principal axes of the points
   const double extent;                 ///< diameter of the points, by farthestPair()
   const double spacing;                ///< median of the points' spacing
   const double roughness;              ///< median of the points' roughness, divided by the spacing
@@ -56,23 +56,23 @@ struct NormalizedCloud {
   const double final_sigma;  ///< width at the end: as narrow as the spacing allows, <= sigma
 
   CloudKind kind() const { return kind_; }
-  const Visibility* seen() const { return visibility ? &*visibility : nullptr; }  ///< null: from all sides
+  const Visibility* seen() const { return visibility ? &*visibility : nullptr; }  ///< null = the points show all sides
 
-  /// From the input frame to the normalized one and back. Lengths: times scale.
+  /// Transforms between the input frame and the normalized one. Lengths in the input frame are `scale` times as long.
   Eigen::Vector3d toNormalized(const Eigen::Vector3d& input_point) const { return (input_point - center) / scale; }
   Eigen::Vector3d toInput(const Eigen::Vector3d& point) const { return point * scale + center; }
   ReflectionPlane toNormalized(const ReflectionPlane& input_plane) const {
     return input_plane.normalized(center, scale);
   }
   ReflectionPlane toInput(const ReflectionPlane& plane) const;
-  /// \param input_axis with a point and a direction, such as SymmetryAxis.
+  /// \param input_axis an axis with a point and a direction, such as SymmetryAxis.
   template <typename Axis>
   Line3d lineOf(const Axis& input_axis) const {
     return {toNormalized(input_axis.point), input_axis.direction};
   }
 
-  /// D(f, gamma) of equation 2 for a normalized f: the full sum over the cells of the edt.
-  /// \param input_plane in the input frame.
+  /// D(f, gamma) of Equation 2 for a normalized f: the full sum over the cells of the edt.
+  /// \param input_plane plane in the input frame.
   /// \return in [0, 1].
   double score(const ReflectionPlane& input_plane) const;
 
