@@ -38,7 +38,7 @@ Residuals residualsAt(const PosedSurface& scan, const PosedSurface& model, const
     const Vector6d row = lever * n;
     const double distance = n.dot(x - model.points.col(j).cast<double>());
     residuals.hessian += row * row.transpose();
-    // A normal is off in the two directions across it, by half of the square in each.
+    // A normal has errors in the two directions perpendicular to it, with half of the squared error in each.
     residuals.gain_of_noise += 0.5 * lever * (Eigen::Matrix3d::Identity() - n * n.transpose()) * lever.transpose();
     residuals.sum_squares += distance * distance;
     residuals.sq_sines.push_back(n.cross(rotated).squaredNorm());

@@ -55,7 +55,7 @@ struct NotMeasured {
   double contradicted = 0.0, missing = 0.0, aside = 0.0;  ///< see PoseEvidence
 };
 
-/// \param on_scan where the points of the surface land on the scan.
+/// \param on_scan where the points of the surface lie on the scan, as from land().
 NotMeasured notMeasured(const PosedSurface& surface, const PosedSurface& scan, const Eigen::Isometry3d& T_scan_surface,
                         const Landing& on_scan, double tolerance, double far) {
   if (!scan.seen) return {};
@@ -76,9 +76,10 @@ NotMeasured notMeasured(const PosedSurface& surface, const PosedSurface& scan, c
   return {area.contradicted / all, area.missing / all, area.aside / all};
 }
 
-/// A lower limit of the share of points that lie on the surface: by a width that does not grow with the spacing of the
-/// points, so that few points on a wrong object do not count, and by discs about the points of the surface, as wide as
-/// their spacing, so that their density does not matter. Points on the far side of a thin part do not count.
+/// A lower limit of the share of points that lie on the surface. The width of the weights does not grow with the
+/// spacing of the points, so that few points on a wrong object do not count; the discs about the points of the surface
+/// are as wide as their spacing, so that their density does not matter. Points on the far side of a thin part do not
+/// count.
 double shareOnSurface(const PosedSurface& from, const Landing& landing, const PosedSurface& to) {
   const double width = kRegistration.contact;
   const auto size = static_cast<double>(landing.images.cols());
@@ -87,7 +88,7 @@ double shareOnSurface(const PosedSurface& from, const Landing& landing, const Po
     if (normalCosine(from, to, landing, i) < -kRegistration.agreeing_cosine) continue;
     sum += std::exp(static_cast<float>(-1.0 / (width * width)) * to.sqDiscDistance(landing, i));
   }
-  // Three standard errors of a share, at most half over the root of the number of points.
+  // Three standard errors of a share, each at most half divided by the root of the number of points.
   return std::max(0.0, sum / size - 1.5 / std::sqrt(size));
 }
 
@@ -168,7 +169,7 @@ double poseConfidence(const PoseEvidence& evidence) {
       std::log(std::clamp(evidence.noise, kRegistration.min_noise, kRegistration.max_noise) / 0.001 + 0.5),
       std::abs(std::log(evidence.size_ratio))};
   const double log_odds = std::inner_product(terms.begin(), terms.end(), kRegistrationFit.begin(), 0.0);
-  // Surfaces that face each other have to agree mostly, whatever else supports the pose.
+  // Surfaces that face each other must mostly agree, whatever else supports the pose.
   return std::min(logistic(log_odds), evidence.agreement) * evidence.uniqueness;
 }
 

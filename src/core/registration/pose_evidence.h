@@ -12,18 +12,18 @@ namespace pcl_symmetry {
 /// Measures where two surfaces overlap at a pose, and whether they agree there.
 ///
 /// Points that face the interior of the other surface have to lie on it; points beyond its border may lie anywhere but
-/// in free space. So the pose of two scans that share a third of their surface is decided as reliably as that of a scan
-/// on a whole model.
+/// in free space. The pose of two scans that share a third of their surface is therefore decided as reliably as that of
+/// a scan on a whole model.
 /// \param scan,model in search frames, made with exact search.
 PoseEvidence poseEvidence(const PosedSurface& scan, const PosedSurface& model, const Eigen::Isometry3d& T_model_scan);
 
-/// Distances of some points of a surface, in its order, from the discs about their closest points on another one; the
-/// discs are as wide as the local spacing.
+/// Distances of some points of a surface, in its order, from the discs about their closest points on another surface;
+/// the discs are as wide as the local spacing.
 std::vector<float> discDistances(const PosedSurface& from, const PosedSurface& to, const Eigen::Isometry3d& T_to_from,
                                  int num_points);
 
 /// \param tolerance diameters.
-/// \return whether a motion maps a whole model, except a few points, onto itself.
+/// \return whether a motion maps 97 % of a whole model onto itself.
 bool isSymmetry(const Eigen::Isometry3d& motion, const PosedSurface& model, double tolerance);
 
 /// \return whether a scan is compatible with a motion being a symmetry of its object.

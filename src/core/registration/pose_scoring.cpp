@@ -14,20 +14,20 @@ float gaussian(double distance, double width) {
   return static_cast<float>(std::exp(-distance * distance / (width * width)));
 }
 
-/// The Gaussian of the distance of a match from its closest point, or from the disc about it.
+/// The Gaussian of the distance of a point from its closest point, or from the disc about it.
 float nearness(const Landing& landing, Eigen::Index i, const PosedSurface& to, double width, bool from_disc = false) {
   const float sq_distance = from_disc ? to.sqDiscDistance(landing, i)
                                       : (to.points.col(landing.closest[i]) - landing.images.col(i)).squaredNorm();
   return std::exp(static_cast<float>(-1.0 / (width * width)) * sq_distance);
 }
 
-/// Factor of the normal on a point's support: 1 where it is parallel to that of the closest point.
+/// Factor of the normal on a point's support: 1 if it is parallel to that of the closest point.
 float normalFactor(const PosedSurface& from, const Landing& landing, Eigen::Index i, const PosedSurface& to) {
   const float cosine = std::max(0.0f, normalCosine(from, to, landing, i));
   return 1.0f - kRegistration.normal_share + kRegistration.normal_share * cosine * cosine;
 }
 
-/// Depth of a match behind the visible surface. A depth camera misses surfaces: pixels without a depth are
+/// Depth of a point behind the visible surface. A depth camera misses surfaces: pixels without a depth are
 /// uninformative.
 double depthBehind(const Landing& landing, Eigen::Index i, const PosedSurface& to) {
   const Eigen::Vector3d x = landing.images.col(i).cast<double>();
@@ -53,7 +53,7 @@ PoseScore PoseScorer::score(const Eigen::Isometry3d& T_model_scan, const Detail&
   double conflict = 0.0, judged = kRegistration.min_judged * static_cast<double>(on_scan.images.cols());
   for (Eigen::Index i = 0; i < on_scan.images.cols(); ++i) {
     const double depth = depthBehind(on_scan, i, scan_);
-    // The scanner may have measured more beside the scan: a piece of the object that was cut off.
+    // The scanner may have measured more of the object beside the scan: a piece that was cut off.
     double on_surface = nearness(on_scan, i, scan_, detail.width, detail.from_surface);
     if (detail.from_surface) on_surface = std::max<double>(on_surface, gaussian(depth, detail.width));
     conflict += depth < 0.0 ? 1.0 - on_surface : 0.0;

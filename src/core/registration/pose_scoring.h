@@ -19,15 +19,15 @@ class PoseScorer {
 public:
   /// Level of detail.
   struct Detail {
-    int num_points;      ///< of each cloud, >= 1
-    double width;        ///< of the Gaussian, > 0, in the unit of the clouds
-    bool exact = false;  ///< closest points from the tree, not from the grid
-    /// Distances from the surface between the points of the model, without normals, so that the density of the model
-    /// and the noise of the scan do not matter. Otherwise distances from its points, with less support where normals
-    /// differ.
+    int num_points;      ///< points of each cloud, >= 1
+    double width;        ///< width of the Gaussian, in the unit of the clouds, > 0
+    bool exact = false;  ///< takes closest points from the tree, not from the grid
+    /// Measures distances from the surface between the points of the model, without normals, so that the density of the
+    /// model and the noise of the scan do not matter. Otherwise distances from its points are measured, with less
+    /// support where normals differ.
     bool from_surface = false;
-    double unit = 1.0;  ///< length in the unit of the clouds, > 0: of the model's size, so that rotations and
-                        ///< translations count alike
+    /// Size of the model, in the unit of the clouds, > 0: in this unit, rotations and translations have equal weight.
+    double unit = 1.0;
   };
 
   /// \param scan,model must outlive this object.
@@ -44,7 +44,7 @@ private:
   const PosedSurface& model_;
 };
 
-/// Steps with a Gaussian whose width shrinks geometrically.
+/// Steps with a Gaussian whose width decreases geometrically.
 struct PoseImprovement {
   int num_steps, num_points;
   double first_width, last_width;  ///< radii
@@ -53,14 +53,14 @@ struct PoseImprovement {
 struct RankedPose {
   Eigen::Isometry3d T_model_scan = Eigen::Isometry3d::Identity();
   PoseScore score;
-  int num_points = 0;  ///< of the scan that the pose was fitted to; 0 = it was not fitted
+  int num_points = 0;  ///< points of the scan that the pose was fitted to; 0 = it was not fitted
 
   /// \param unit radius of the model, in the unit of the pose.
   void improve(const PoseScorer& scorer, const PoseImprovement& how, double unit = 1.0);
 };
 
 /// The first poses, at most \p max_count, that differ from all earlier ones.
-/// \param radius of the model, in the unit of the poses.
+/// \param radius radius of the model, in the unit of the poses.
 std::vector<RankedPose> firstDistinct(const std::vector<RankedPose>& poses, std::size_t max_count, double radius = 1.0);
 
 /// The poses of greatest merit, at most \p max_count, that differ from all better ones.
@@ -69,10 +69,10 @@ std::vector<RankedPose> distinctPoses(std::vector<RankedPose> poses,
                                       double radius = 1.0);
 
 /// A few distinct poses of greatest merit (Section 5.1). Evenly spread rotations are screened by merit. The best of
-/// them and all hypotheses are improved coarsely, the best of those finely, by Gauss-Newton steps with a shrinking
+/// these and all hypotheses are improved coarsely, and the best results finely, by Gauss-Newton steps with a narrowing
 /// Gaussian.
 /// \param scan,model each about its own center, in units of the model's radius.
-/// \param hypotheses T_model_scan to improve beside the screened ones, such as those that align frames.
+/// \param hypotheses T_model_scan to improve in addition to the screened ones, such as those that align frames.
 /// \return best first.
 /// \throws std::invalid_argument for bad options.
 std::vector<RankedPose> searchPoses(const PosedSurface& scan, const PosedSurface& model,

@@ -65,8 +65,7 @@ Eigen::Isometry3d PoseStarts::pose(const Eigen::Matrix3d& R_model_scan) const {
 
 namespace {
 
-/// The rotations about an axis of revolution that represent all of them; the identity alone where there is no such
-/// axis.
+/// The rotations that represent all rotations about an axis of revolution; the identity alone if there is no such axis.
 std::vector<Eigen::Matrix3d> rotationsOf(const SymmetryFrame& frame) {
   const bool is_round = frame.revolution_axis >= 0 && frame.revolution_axis < 3;
   std::vector<Eigen::Matrix3d> rotations{Eigen::Matrix3d::Identity()};

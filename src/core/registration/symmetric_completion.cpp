@@ -16,7 +16,7 @@ void CompletionOptions::validate() const {
 }
 
 ReflectionPlane planeAcrossView(const Line3d& axis, const Eigen::Vector3d& viewpoint) {
-  constexpr double kLeastSine = 1e-6;  // a viewpoint that is closer to the axis gives no direction
+  constexpr double kLeastSine = 1e-6;  // a viewpoint closer to the axis gives no direction
   const Eigen::Vector3d view = viewpoint - axis.origin();
   const Eigen::Vector3d across = view - axis.direction().dot(view) * axis.direction();
   const Eigen::Vector3d normal =

@@ -12,7 +12,7 @@ namespace {
 
 /// Whether a depth image shows a surface in front of a point, or slightly beside it.
 /// \param margin least distance of that surface from the point.
-/// \param beside how far it may be beside the point; 0 = only on its ray.
+/// \param beside how far from the ray of the point the surface may be; 0 = only on its ray.
 bool isHidden(const Visibility& view, const Eigen::Vector3d& x, const Eigen::Vector3d& ray, double margin,
               double beside) {
   const Eigen::Vector3d u = beside * ray.unitOrthogonal(), v = ray.cross(u);

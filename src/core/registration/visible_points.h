@@ -9,15 +9,15 @@ namespace pcl_symmetry {
 
 /// A point of a surface that the surface itself does not hide from a scanner.
 struct VisiblePoint {
-  Eigen::Index index;                ///< in the order of the surface
-  Eigen::Vector3d position, normal;  ///< in the frame of the scan; the normal of any sign
-  double cosine;                     ///< between normal and ray, > 0: its visible area
-  /// Height above the measured surface on its ray, along the normal: positive in free space, infinite if the ray met no
+  Eigen::Index index;                ///< index in the order of the surface
+  Eigen::Vector3d position, normal;  ///< frame of the scan; the normal has any sign
+  double cosine;                     ///< cosine between normal and ray, > 0: its visible area
+  /// Height above the measured surface on its ray, along the normal: positive in free space, infinity if the ray met no
   /// surface, and minus infinity if no ray passed.
   double height;
 };
 
-/// \param scan with what its scanner saw.
+/// \param scan a scan, with what its scanner saw.
 /// \param num_points number of points of the surface that are examined.
 /// \param is_strict also leaves out points that are hidden slightly beside their rays: images made from points have
 /// gaps, through which points at the back are visible.
