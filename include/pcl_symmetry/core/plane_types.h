@@ -91,7 +91,8 @@ struct SymmetryRotation {
   Eigen::Vector3d point;      ///< point of the axis closest to the center of the bounding ball, input frame
   Eigen::Vector3d direction;  ///< unit vector along the axis, input frame
   int fold = 0;               ///< order of the rotations; 0 = by any angle
-  /// Probability that these rotations are symmetries of the whole object at the limits of ObjectSymmetryOptions.
+  /// Probability that these rotations map all but 10 % of the whole surface to within 1 % of the diameter of the
+  /// surface, and all but 1.25 % to within ten times that.
   double confidence = 0.0;
   /// Share of the visible points that the best rotation maps onto the visible surface, in [0, 1]; for rotations by any
   /// angle, the mean of two small ones.

@@ -14,7 +14,7 @@ namespace pcl_symmetry {
 
 namespace {
 
-// Rotations that differ by less than this are one: files are rounded, and folds go up to 120.
+// Rotations that differ by less than this count as one: files are rounded, and folds go up to 120.
 constexpr double kOneRotation = 1.0 * kDegree;
 
 using Rotations = std::vector<Eigen::Matrix3d>;
@@ -24,7 +24,7 @@ Eigen::Matrix3d closestRotation(const Eigen::Matrix3d& matrix) {
   return Eigen::Affine3d(matrix).rotation();
 }
 
-/// Axes of products that differ by rounding.
+/// The axes of products, which differ by rounding.
 std::vector<RotationAxis> axesOfProducts(const Rotations& elements) {
   std::vector<RotationAxis> axes;
   for (std::size_t i = 1; i < elements.size(); ++i) {
@@ -46,12 +46,12 @@ RotationGroup groupOf(std::size_t size, const std::vector<RotationAxis>& axes) {
   for (const RotationAxis& axis : axes) ++num_axes[axis.order];
   if (axes.empty()) return {Kind::Cyclic, 1};
   if (axes.size() == 1) return {Kind::Cyclic, static_cast<int>(size)};
-  for (const RotationGroup& solid : kPolyhedralGroups)  // alone have more than one axis of order 3
+  for (const RotationGroup& solid : kPolyhedralGroups)  // only these groups have several axes of order 3
     if (num_axes[3] > 1 && size == solid.elements().size()) return solid;
   return {Kind::Dihedral, static_cast<int>(size / 2)};
 }
 
-/// A rotation that takes the axes z and x of a group's own frame to axes of the generated one.
+/// A rotation that maps the axes z and x of a group's own frame to axes of the generated one.
 Eigen::Matrix3d roughFrame(const RotationGroup& group, const std::vector<RotationAxis>& axes) {
   const int main_order = group.kind == Kind::Cyclic || group.kind == Kind::Dihedral ? group.fold
                          : group.kind == Kind::Octahedral                           ? 4
@@ -85,8 +85,8 @@ double misfitOf(const Rotations& own, const Rotations& generated, const Eigen::M
   return sum;
 }
 
-/// The frame in which the elements of a group are closest to the generated ones: the axes, weighted by the sine of half
-/// the angle, fit best.
+/// The frame in which the elements of a group are closest to the generated ones. Their axes are fitted, weighted by the
+/// sine of half the angle.
 Eigen::Matrix3d closeFrame(const Rotations& own, const Rotations& generated, const Eigen::Matrix3d& frame) {
   Eigen::Matrix3d sum = Eigen::Matrix3d::Zero();
   for (const Eigen::Matrix3d& rotation : generated) {
@@ -95,16 +95,16 @@ Eigen::Matrix3d closeFrame(const Rotations& own, const Rotations& generated, con
     sum += (moved.dot(to.vec()) < 0.0 ? -1.0 : 1.0) * to.vec() * from.vec().transpose();
   }
   if (sum.norm() == 0.0) return frame;
-  // One axis alone leaves the rotation about it free: there the frame stays as it is.
+  // A single axis leaves the rotation about it undetermined: then the frame stays as it is.
   return closestRotation(sum / sum.norm() + 1e-6 * frame);
 }
 
-/// The generated group, exact.
+/// The elements of the group, placed exactly.
 Rotations placed(const RotationGroup& group, const Rotations& generated, const std::vector<RotationAxis>& axes) {
   const Rotations own = group.elements();
   if (axes.empty()) return own;
   Eigen::Matrix3d frame = roughFrame(group, axes);
-  // Three perpendicular axes of order 2 leave two orientations of an icosahedron, a quarter turn apart.
+  // Three perpendicular axes of order 2 are compatible with two orientations of an icosahedron, a quarter turn apart.
   const Eigen::Matrix3d other = frame * rotationAbout(Eigen::Vector3d::UnitZ(), 0.5 * kPi);
   if (misfitOf(own, generated, other) < misfitOf(own, generated, frame) - 1e-6) frame = other;
   frame = closeFrame(own, generated, frame);
@@ -113,8 +113,8 @@ Rotations placed(const RotationGroup& group, const Rotations& generated, const s
   return result;
 }
 
-/// The point that all motions fix, as close to the origin as there is one; in least squares.
-/// \throws std::invalid_argument where there is none.
+/// The fixed point of all motions that is closest to the origin, by least squares.
+/// \throws std::invalid_argument if there is none.
 Eigen::Vector3d fixedPoint(const std::vector<Eigen::Isometry3d>& motions, const std::vector<ContinuousSymmetry>& axes) {
   const auto num_rows = static_cast<Eigen::Index>(3 * (motions.size() + axes.size()));
   if (num_rows == 0) return Eigen::Vector3d::Zero();
@@ -136,7 +136,7 @@ Eigen::Vector3d fixedPoint(const std::vector<Eigen::Isometry3d>& motions, const 
     row += 3;
   }
   const double off_center =
-      0.02;  // misfit as a share of the translations: files are rounded, but a screw is no rotation
+      0.02;  // greatest misfit, as a share of the translations: files are rounded, but a screw is no rotation
   const Eigen::Matrix3d squares = rows.transpose().lazyProduct(rows);
   const Eigen::Vector3d center =
       SymmetricEigen<Eigen::Matrix3d>(squares).solve(rows.transpose() * right, off_center * off_center);
@@ -145,7 +145,7 @@ Eigen::Vector3d fixedPoint(const std::vector<Eigen::Isometry3d>& motions, const 
   return center;
 }
 
-/// The axis that all axes of revolution share; nothing where motions or other axes tilt it, as on a sphere.
+/// The axis that all axes of revolution share; nothing if motions or other axes tilt it, as on a sphere.
 std::optional<Eigen::Vector3d> sharedAxis(const std::vector<ContinuousSymmetry>& axes, const Rotations& rotations) {
   const Eigen::Vector3d axis = axes.front().axis.normalized();
   const auto tilts = [&](const Eigen::Vector3d& other) { return axis.cross(other).norm() > std::sin(kOneRotation); };
@@ -185,7 +185,7 @@ ObjectSymmetries ObjectSymmetries::from(const std::vector<Eigen::Isometry3d>& di
     setRound(result, continuous, rotations);
     return result;
   }
-  const std::size_t max_size = 240;  // those of D_120
+  const std::size_t max_size = 240;  // size of D_120
   // Frobenius norm of the difference of two rotations by an angle: sqrt(8) sin(angle / 2).
   const Rotations products = productsOf(rotations, std::sqrt(8.0) * std::sin(0.5 * kOneRotation), max_size);
   if (products.size() > max_size)

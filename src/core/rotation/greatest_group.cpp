@@ -23,10 +23,10 @@ RotationSet rotationsOfSphere(const Eigen::Vector3d& center) {
   return set;
 }
 
-/// Rotations about axes in all directions have to hold: two axes of revolution could be one.
+/// The group of a sphere. Rotations about axes in all directions have to fit: two axes of revolution could be one.
 std::optional<PlacedGroup> sphericalGroup(const RotationFit& fit, const ObjectSymmetryOptions& options,
                                           const FoldAxis& main) {
-  // The center lies on the axis; the samples, whose mean is about there, tell where.
+  // The center lies on the axis. Its position along the axis is that of the samples' mean, which lies near it.
   const Eigen::Vector3d mass = centerOfMass(fit.points());
   const Eigen::Vector3d center =
       main.line.origin() + main.line.direction().dot(mass - main.line.origin()) * main.line.direction();
@@ -36,7 +36,7 @@ std::optional<PlacedGroup> sphericalGroup(const RotationFit& fit, const ObjectSy
 std::optional<PlacedGroup> cylindricalGroup(const RotationFit& fit, const ObjectSymmetryOptions& options,
                                             const FoldAxis& main) {
   std::vector<double> offsets;
-  // Up to half the radius: where points are unevenly dense, the center of a cylinder lies off the center of mass.
+  // Up to half the radius: if points are unevenly dense, the center of a cylinder lies off the center of mass.
   const int num_steps = static_cast<int>(std::lround(0.5 / kRotation.across_step));
   for (int k = -num_steps; k <= num_steps; ++k) offsets.push_back(kRotation.across_step * k);
   const Line3d across = bestAcross(fit, main.line, kPi, 1, offsets);
@@ -51,7 +51,7 @@ std::optional<PlacedGroup> dihedralGroup(const RotationFit& fit, const ObjectSym
   const RotationGroup group{RotationGroupKind::Dihedral, main.fold};
   const double width = kPi / main.fold;
   const int num_angles = std::max(4, static_cast<int>(std::ceil(width / kRotation.across_step)));
-  std::vector<double> offsets{0.0};  // the nearest first
+  std::vector<double> offsets{0.0};  // nearest first
   for (int k = 1; k <= 3; ++k)
     for (const double way : {-2.0, 2.0}) offsets.push_back(way * k * kRotation.across_step);
   const Line3d across = bestAcross(fit, main.line, width, num_angles, offsets);
@@ -60,7 +60,8 @@ std::optional<PlacedGroup> dihedralGroup(const RotationFit& fit, const ObjectSym
     return placedGroup(fit, options, group.kind, main.fold, elementsOf(group, frame, across.origin()));
   };
   if (auto found = placed(across.direction())) return found;
-  // The cells of a slender part tell no angle apart; its surface does, within less than the tolerance.
+  // In the cells of a slender part, all angles look alike; its surface distinguishes them, within less than the
+  // tolerance.
   constexpr double kSharp = 0.25;
   const RotationFit sharp = fit.withLimits({kSharp * fit.limits().tolerance, options.max_feature});
   double least = std::numeric_limits<double>::infinity();
@@ -75,9 +76,9 @@ std::optional<PlacedGroup> dihedralGroup(const RotationFit& fit, const ObjectSym
   return placed(best);
 }
 
-/// Two axes that are not parallel fix the position of a group, up to its own symmetry.
+/// Two axes that are not parallel determine the position of a group, up to its own symmetry.
 /// \param first,second axes that were found.
-/// \param a,b axes of the group that they are identified with.
+/// \param a,b axes of the group with which they are identified.
 std::optional<PlacedGroup> groupThrough(const RotationFit& fit, const ObjectSymmetryOptions& options,
                                         const RotationGroup& group, const FoldAxis& first, const FoldAxis& second,
                                         const RotationAxis& a, const RotationAxis& b) {
@@ -98,7 +99,7 @@ std::optional<PlacedGroup> groupThrough(const RotationFit& fit, const ObjectSymm
 std::optional<PlacedGroup> polyhedralGroup(const RotationFit& fit, const ObjectSymmetryOptions& options,
                                            const RotationGroup& group, const std::vector<FoldAxis>& axes) {
   const std::vector<RotationAxis> own = axesOf(group.elements());
-  // Axes of one order are images of each other: one of each order represents the first.
+  // Axes of one order are images of each other, so that one axis of each order represents `first`.
   std::vector<RotationAxis> firsts;
   for (const RotationAxis& axis : own)
     if (std::none_of(firsts.begin(), firsts.end(), [&](const RotationAxis& a) { return a.order == axis.order; }))
@@ -125,7 +126,7 @@ PlacedGroup finiteGroup(const RotationFit& fit, const ObjectSymmetryOptions& opt
   for (const RotationGroup& group : kPolyhedralGroups)
     if (auto solid = polyhedralGroup(fit, options, group, axes)) return *solid;
   for (const FoldAxis& axis : axes) {
-    // A dihedral group about this axis would have no more elements than the rotations about the main one.
+    // A dihedral group about this axis would have no more elements than the rotations about the main axis.
     if (2 * axis.fold <= axes.front().fold) break;
     if (auto prism = dihedralGroup(fit, options, axis)) return *prism;
   }

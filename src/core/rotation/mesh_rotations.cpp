@@ -17,7 +17,7 @@ MotionsAbout motionsOf(const ObjectSymmetries& symmetries) {
   return motions;
 }
 
-/// Moves a group, as a whole, to where it maps the mesh onto itself.
+/// Moves a group, as a whole, to where it maps the mesh best onto itself.
 void moveOntoMesh(const MeshSurface& mesh, ObjectSymmetries& symmetries) {
   const MotionsAbout motions = motionsOf(symmetries);
   if (motions.linear.empty()) return;

@@ -17,8 +17,8 @@ bool representsAll(RotationGroupKind kind) {
   return kind == RotationGroupKind::Revolution || kind == RotationGroupKind::Spherical;
 }
 
-/// The mean shares of rotations that represent all; none if one of them fails clearly. The worst one would be a matter
-/// of chance.
+/// The mean shares of rotations that represent all rotations; nothing if one of them fails clearly. The worst one would
+/// be a matter of chance.
 std::optional<OffShares> meanShares(const RotationFit& fit, const RotationSet& set) {
   OffShares mean;
   for (std::size_t i = 0; i < set.num_judged; ++i) {

@@ -14,38 +14,38 @@ namespace pcl_symmetry {
 struct PlacedGroup {
   RotationGroupKind kind = RotationGroupKind::Cyclic;
   int fold = 1;
-  RotationSet set;  ///< all elements but the identity; for continuous groups, rotations that represent all
-  Eigen::Vector3d axis = Eigen::Vector3d::UnitZ();  ///< of the first rotation
-  OffShares shares;                                 ///< of the worst rotation; of rotations by any angle the mean
+  RotationSet set;  ///< all elements except the identity; for continuous groups, rotations that represent all
+  Eigen::Vector3d axis = Eigen::Vector3d::UnitZ();  ///< axis of the first rotation, unit
+  OffShares shares;  ///< shares of the worst rotation; for rotations by any angle, the mean
 };
 
 /// The groups of the regular solids, the greatest first.
 constexpr RotationGroup kPolyhedralGroups[] = {
     {RotationGroupKind::Icosahedral, 5}, {RotationGroupKind::Octahedral, 4}, {RotationGroupKind::Tetrahedral, 3}};
 
-/// The excess above which a set judged by kRotation.num_some_points is rejected: three standard errors above 1.
+/// The excess above which a set that is judged by kRotation.num_some_points is rejected: three standard errors above 1.
 double greatestExcess(const RotationLimits& limits);
 
-/// The set moved to where it fits the surface best; none if the surface does not support it there.
+/// Moves the set to where it fits the surface best; nothing if the surface does not support it there.
 std::optional<PlacedGroup> placedGroup(const RotationFit& fit, const ObjectSymmetryOptions& options,
                                        RotationGroupKind kind, int fold, RotationSet set);
 
-/// The rotation that takes z to \p z, and x as close as possible to \p x.
+/// The rotation that maps z to \p z, and x as close as possible to \p x.
 /// \param z,x not parallel.
 Eigen::Matrix3d frameAlong(const Eigen::Vector3d& z, const Eigen::Vector3d& x);
 
 /// All products of rotations, the identity first; more than \p max_count if they generate no group of at most that
 /// size.
-/// \param same Frobenius norm below which two matrices are one rotation.
+/// \param same Frobenius norm below which two matrices count as one rotation.
 std::vector<Eigen::Matrix3d> productsOf(const std::vector<Eigen::Matrix3d>& generators, double same,
                                         std::size_t max_count = std::numeric_limits<std::size_t>::max() - 1);
 
 /// Axis of a rotation, unit.
 Eigen::Vector3d axisOf(const Eigen::Matrix3d& rotation);
 
-/// All elements of a group but the identity, placed by \p frame. The generators are judged and, about a main axis, the
-/// rotations by about a quarter and a half of a full one: where there are many folds, one step cannot be distinguished
-/// from that of one fold more or less.
+/// All elements of a group except the identity, placed by \p frame. The generators are judged and, about a main axis,
+/// the rotations by about a quarter and a half turn: for a high fold, one step cannot be distinguished from a step of
+/// the next fold.
 /// \param frame rotation from the frame of the group to that of the points.
 RotationSet elementsOf(const RotationGroup& group, const Eigen::Matrix3d& frame, const Eigen::Vector3d& center);
 

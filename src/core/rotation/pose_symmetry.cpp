@@ -20,7 +20,7 @@ namespace pcl_symmetry {
 
 namespace {
 
-// Differences of traces and entries of rotation matrices below this are rounding.
+// Differences of traces and entries of rotation matrices below this are rounding errors.
 constexpr double kEqual = 1e-9;
 
 using Poses = std::vector<Eigen::Isometry3d>;
@@ -29,7 +29,7 @@ bool isSphere(const ObjectSymmetries& symmetries) {
   return symmetries.continuous.size() >= 2;
 }
 
-/// The pose with a given rotation that puts the center where another pose puts it.
+/// The pose with a given rotation that puts the center where \p T puts it.
 Eigen::Isometry3d withRotation(const Eigen::Isometry3d& T, const Eigen::Matrix3d& rotation,
                                const Eigen::Vector3d& center) {
   return isometry(rotation, T * center - rotation * center);
@@ -47,13 +47,13 @@ RotationTraces rotationTraces(const Eigen::Matrix3d& M, const Eigen::Vector3d& a
   return {along, std::hypot(cosine, sine), std::atan2(sine, cosine)};
 }
 
-/// The symmetry D or D C of an object that takes a rotation closest to another one.
+/// The symmetry D or D C of an object that brings a rotation closest to another one.
 struct ClosestSymmetry {
   int element = -1;    ///< D, index into discrete; -1 is the identity
-  double angle = 0.0;  ///< of the rotation C
+  double angle = 0.0;  ///< angle of the rotation C
 };
 
-/// Of equally close elements, the first one.
+/// The closest symmetry; of equally close elements, the first one.
 /// \param M R_previous^T R: the symmetry S with the greatest trace of M S is the closest.
 ClosestSymmetry closestSymmetry(const ObjectSymmetries& symmetries, const Eigen::Matrix3d& M) {
   ClosestSymmetry closest;
@@ -77,8 +77,8 @@ double angleBetween(const Eigen::Matrix3d& a, const Eigen::Matrix3d& b) {
   return Eigen::Quaterniond(a).angularDistance(Eigen::Quaterniond(b));
 }
 
-/// The rotation R C, with a rotation C about an axis, that has the smallest angle. Where R is a half turn about a line
-/// perpendicular to the axis, all have the angle pi: there it is the one closest to a half turn about a fixed line.
+/// The rotation R C with the smallest angle, for rotations C about an axis. If R is a half turn about a line
+/// perpendicular to the axis, all have the angle pi: then it is the one closest to a half turn about a fixed line.
 Eigen::Matrix3d smallestRotation(const Eigen::Matrix3d& R, const Eigen::Vector3d& axis) {
   RotationTraces traces = rotationTraces(R, axis);
   if (traces.swing < 1e-6) {
@@ -112,7 +112,7 @@ double greatestSqOffset(const Eigen::Isometry3d& T_1, const Eigen::Isometry3d& T
   return greatest;
 }
 
-/// mean + cosine cos(phi) + sine sin(phi): the squared distance of a point from one that rotates about an axis.
+/// The squared distance of a point from one that rotates about an axis: mean + cosine cos(phi) + sine sin(phi).
 struct CircleWave {
   double mean, cosine, sine;
 };
@@ -140,7 +140,7 @@ double circleMinimax(const std::vector<CircleWave>& waves) {
   return best.first;
 }
 
-/// The rotation about an axis that brings points closest to where a motion takes them.
+/// The rotation about an axis that brings points closest to their images under a motion.
 /// \return its angle, radians.
 double closestAngle(const Eigen::Isometry3d& motion, const ContinuousSymmetry& symmetry, const PointsRef& points) {
   std::vector<CircleWave> waves(points.cols());
@@ -162,7 +162,7 @@ Poses ObjectSymmetries::equivalents(const Eigen::Isometry3d& T, double step) con
   Poses symmetries{Eigen::Isometry3d::Identity()};
   double angle_step = step;
   if (isSphere(*this)) {
-    // A rotation by step / sqrt(2) and a tilt by step / sqrt(8) leave less than step / 2 of any rotation.
+    // A rotation by step / sqrt(2) and a tilt by step / sqrt(8) come within step / 2 of any rotation.
     angle_step = std::sqrt(0.5) * step;
     symmetries.clear();
     for (const Eigen::Matrix3d& tilt : tiltsCovering(continuous.front().axis, std::min(kPi, 0.5 * angle_step)))

@@ -23,14 +23,14 @@ Eigen::Vector3d directionAt(int k, int count) {
   return spiralDirection(k, count, kGoldenAngle * k);
 }
 
-/// The overlap of a rotation; 0 where a part of the points shows that it is too small.
+/// The overlap of a rotation; 0 if a part of the points shows that it is too small.
 double overlapOrLess(const RotationFit& fit, const Eigen::Matrix3d& rotation, const Eigen::Vector3d& center) {
   return fit.overlap(rotation, center, kRotation.num_first_points) < kRotation.first_overlap
              ? 0.0
              : fit.overlap(rotation, center);
 }
 
-/// The directions of the greatest values, apart from each other.
+/// The directions of the greatest values that are not close to each other.
 std::vector<int> peaks(const std::vector<double>& values) {
   const int size = static_cast<int>(values.size());
   std::vector<int> kept;
@@ -43,8 +43,8 @@ std::vector<int> peaks(const std::vector<double>& values) {
   return kept;
 }
 
-/// Overlaps of the rotations by 2 pi / n about a line, at index n; 0 where half of that angle overlaps better. Small
-/// rotations overlap well with any shape, the better the smaller they are.
+/// Overlaps of the rotations by 2 pi / n about a line, at index n; 0 if the rotation by half of that angle overlaps
+/// clearly better. Small rotations overlap well with any shape, and the better the smaller they are.
 std::vector<double> foldOverlaps(const RotationFit& fit, const Line3d& line, int max_fold) {
   std::vector<double> overlaps(static_cast<std::size_t>(max_fold) + 1, 0.0);
   for (int n = 2; n <= max_fold; ++n) {
@@ -56,7 +56,7 @@ std::vector<double> foldOverlaps(const RotationFit& fit, const Line3d& line, int
 }
 
 /// Lines through one center about which a rotation of prime order overlaps most. A rotation of any order has a power of
-/// prime order; an axis with greater primes only is the single one of its shape, hence a principal axis of the points.
+/// prime order; an axis with only greater primes is the only one of its shape, hence a principal axis of the points.
 std::vector<Line3d> linesThrough(const Eigen::Vector3d& center, const RotationFit& fit, int num_directions,
                                  int max_fold, int num_threads) {
   std::vector<Line3d> lines;
@@ -72,8 +72,8 @@ std::vector<Line3d> linesThrough(const Eigen::Vector3d& center, const RotationFi
   return lines;
 }
 
-/// Centers that axes may pass through: the center of mass and, where it lies elsewhere because points are unevenly
-/// dense, that of the bounding ball, which is 0.
+/// Centers that axes may pass through: the center of mass, and if that is elsewhere because points are unevenly dense,
+/// the center of the bounding ball, which is 0.
 std::vector<Eigen::Vector3d> axisCenters(const RotationFit& fit) {
   const Eigen::Vector3d mass = centerOfMass(fit.points());
   return mass.norm() > kRotation.same_line ? std::vector<Eigen::Vector3d>{mass, Eigen::Vector3d::Zero()}
@@ -82,9 +82,9 @@ std::vector<Eigen::Vector3d> axisCenters(const RotationFit& fit) {
 
 constexpr MergeTolerance kSameLine{kRotation.same_line, kRotation.same_line};
 
-/// Folds in [2, \p max_fold] whose rotations by 2 pi / n overlap best with the surface, of those that overlap as well
-/// as half the rotation: one of at most small_fold, and one of all where that is another.
-/// \return one or two, rising.
+/// Folds in [2, \p max_fold] whose rotations by 2 pi / n overlap best with the surface, among those that overlap as
+/// well as half the rotation: one of at most small_fold and, if it differs, one of all.
+/// \return one or two, ascending.
 std::vector<int> likelyFolds(const RotationFit& fit, const Line3d& line, int max_fold) {
   const std::vector<double> overlaps = foldOverlaps(fit, line, max_fold);
   const auto min_near_best = [&](int last) {
@@ -97,16 +97,17 @@ std::vector<int> likelyFolds(const RotationFit& fit, const Line3d& line, int max
   return any == small ? std::vector{small} : std::vector{small, any};
 }
 
-// Multiples of 1/97 of a full rotation tell whether a line is an axis of revolution: 97 is prime, so that they lie at
+// Multiples of 1/97 of a full rotation show whether a line is an axis of revolution: 97 is prime, so that they lie at
 // all phases of every fold up to 60.
 constexpr int kNumPhases = 97;
 
-/// The shares that rotations about a line map off the surface, judged by some of the points. Each is computed once.
+/// The shares that rotations about a line map off the surface, judged by some of the points. Each is computed only
+/// once.
 class RotationProfile {
 public:
   RotationProfile(const RotationFit& fit, const Line3d& line) : fit_(fit), line_(line) {}
 
-  /// \return shares of the rotation by \p part / \p whole of a full one.
+  /// \return shares of the rotation by \p part / \p whole of a full turn.
   const OffShares& shares(int part, int whole) {
     const int divisor = std::gcd(part, whole);
     part = std::min(part / divisor, (whole - part) / divisor);  // a rotation and its inverse fail alike
@@ -134,8 +135,8 @@ Line3d lineOf(const RotationSet& rotation, const Line3d& start) {
   return {rotation.center + direction.dot(start.origin() - rotation.center) * direction, direction};
 }
 
-/// The likeliest rotation about a line moved to where it fits best; none if it does not fit or ends at a line that was
-/// tried.
+/// The likeliest rotation about a line, moved to where it fits best; nothing if it does not fit or ends at a line that
+/// was tried.
 std::optional<RotationSet> fittedRotation(const RotationFit& fit, const Line3d& start, int max_fold,
                                           const std::vector<Line3d>& tried) {
   RotationSet best;
@@ -154,8 +155,8 @@ std::optional<RotationSet> fittedRotation(const RotationFit& fit, const Line3d& 
   return fit.overlap(best) < kRotation.fair_overlap ? std::nullopt : std::optional(best);
 }
 
-/// The surface judged at a tolerance that rotations about a line do not meet trivially: about a slender part, every
-/// point moves less than a share of its length.
+/// The surface, judged at a tolerance that is not trivial for rotations about a line: about the axis of a slender part,
+/// every point moves by less than a share of its length.
 RotationFit fitAbout(const RotationFit& fit, const Line3d& line) {
   double sq_radius = 0.0;
   for (Eigen::Index i = 0; i < fit.points().cols(); ++i)
@@ -170,7 +171,7 @@ RotationFit fitAbout(const RotationFit& fit, const Line3d& line) {
 std::pair<int, double> failingRotation(RotationProfile& profile, double max_excess) {
   std::pair<int, double> worst{1, 0.0};
   for (int k = 1; 2 * k < kNumPhases && worst.second <= max_excess; ++k) {
-    const int part = 1 + (k * 19) % (kNumPhases / 2);  // the first ones are spread over half a rotation
+    const int part = 1 + (k * 19) % (kNumPhases / 2);  // the first parts are spread over half a rotation
     if (const double excess = profile.excess(part, kNumPhases); excess > worst.second) worst = {part, excess};
   }
   return worst;
@@ -190,8 +191,9 @@ double excessBetween(RotationProfile& profile, int fold) {
   return least;
 }
 
-/// The n for which the rotations by 2 pi / n and its multiples are symmetries, and are clearly better than those
-/// halfway between. A multiple of a true fold fails that: half its rotations are no symmetries, or as good as any.
+/// The n for which the rotations by 2 pi / n and its multiples are symmetries, and fit clearly better than those
+/// halfway between. A multiple of a true fold fails that: half its rotations are no symmetries, or fit as well as any
+/// other.
 /// \return the greatest first.
 std::vector<int> foldsOf(const RotationFit& fit, RotationProfile& profile, const Line3d& line, int max_fold) {
   const double max_excess = greatestExcess(fit.limits());
@@ -200,7 +202,7 @@ std::vector<int> foldsOf(const RotationFit& fit, RotationProfile& profile, const
     if (fit.overlap(profile.rotation(1, n), line.origin()) < kRotation.rough_overlap) continue;
     const double excess = excessOfFold(profile, n, max_excess);
     if (excess > max_excess) continue;
-    // If others fail hardly more, the choice is a matter of chance.
+    // Reject a fold unless the rotations halfway between its own fail clearly more.
     const double others = excessBetween(profile, n);
     if (others >= kRotation.clear_factor * excess && others >= excess + kRotation.clear_excess) folds.push_back(n);
   }

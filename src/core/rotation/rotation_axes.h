@@ -10,30 +10,30 @@ namespace pcl_symmetry {
 /// An axis with the rotations about it that are symmetries, in the normalized frame.
 struct FoldAxis {
   Line3d line;
-  int fold;  ///< 0: every rotation
+  int fold;  ///< order of the rotations; 0 = by any angle
   PlacedGroup group;
 };
 
 /// A line with rotations about it that are no symmetries, in the normalized frame.
 struct RejectedAxis {
   Line3d line;
-  int fold;          ///< 0: rotations by any angle
-  double angle;      ///< of the rotation that fails, radians
-  OffShares shares;  ///< of this rotation
+  int fold;          ///< order of the rotations; 0 = by any angle
+  double angle;      ///< angle of the rotation that fails, radians
+  OffShares shares;  ///< shares of that rotation
 };
 
-/// The principal axes of the points through their center of mass and, where points are unevenly dense, that of the
-/// bounding ball, and the line through both centers. The axis of a shape of revolution, or of a fold of 3 or more about
-/// a single axis, is one of them.
+/// The principal axes of the points through their center of mass and, if points are unevenly dense, through the center
+/// of the bounding ball, and the line through both centers. The axis of a shape of revolution is one of them, and so is
+/// the axis of a fold of 3 or more if it is the only one.
 std::vector<Line3d> principalLines(const RotationFit& fit);
 
 /// Lines through these centers, in all directions, about which a rotation of prime order overlaps most with the
 /// surface.
-/// \param num_directions of lines through each center, on a half sphere.
+/// \param num_directions number of lines through each center, on a half sphere.
 std::vector<Line3d> axisLineCandidates(const RotationFit& fit, int num_directions, int max_fold, int num_threads);
 
 /// The half turn about an axis perpendicular to a line that overlaps most with the surface.
-/// \param width the axes have \p num_angles angles in [0, width), radians.
+/// \param width range of the angles of the axes, [0, width), radians; it is divided into \p num_angles.
 /// \param offsets positions of the axis along the line, from its origin.
 Line3d bestAcross(const RotationFit& fit, const Line3d& line, double width, int num_angles,
                   const std::vector<double>& offsets);
@@ -65,7 +65,7 @@ private:
 };
 
 /// The greatest group that contains the axes and that the surface supports as a whole.
-/// \return C_1 where there is no axis.
+/// \return C_1 if there is no axis.
 PlacedGroup greatestGroup(const RotationFit& fit, const ObjectSymmetryOptions& options,
                           const std::vector<FoldAxis>& axes);
 

@@ -19,13 +19,14 @@ struct Ring {
   int size;      ///< number of directions, evenly spaced
 };
 
-/// The number of directions on a ring from which no point of the band at \p theta_border is farther than an angle.
+/// The number of directions on a ring that are needed so that no point of the band up to \p theta_border is farther
+/// than an angle.
 int directionsReaching(double theta, double theta_border, double angle) {
   const double across = std::sin(theta) * std::sin(theta_border);
   const double along = std::cos(theta) * std::cos(theta_border);
-  if (along - across >= std::cos(angle)) return 1;  // even the far side of the border
+  if (along - across >= std::cos(angle)) return 1;  // even the far side of the border is near enough
   const double cos_half_width = (std::cos(angle) - along) / across;
-  if (cos_half_width >= 1.0) return std::numeric_limits<int>::max();  // not even the near side
+  if (cos_half_width >= 1.0) return std::numeric_limits<int>::max();  // not even the near side is near enough
   return static_cast<int>(std::ceil(kPi / std::acos(cos_half_width)));
 }
 
@@ -51,8 +52,8 @@ double sizeOf(const std::vector<Ring>& rings) {
 std::vector<Ring> fewestRings(double angle) {
   if (angle >= kPi) return {{0.0, 1}};
   if (angle >= 0.5 * kPi) return {{0.0, 1}, {kPi, 1}};
-  // Bands wider than twice the angle are not covered. Square cells, sqrt(2) times the angle wide, are best for small
-  // angles, and bands half as wide never are.
+  // Bands wider than twice the angle are not covered. For small angles, square cells of sqrt(2) times the angle are
+  // best, and bands half as wide never are.
   const int min_bands = std::max(1, static_cast<int>(std::ceil((kPi - 2.0 * angle) / (2.0 * angle))));
   std::vector<Ring> best = ringsOf(min_bands, angle);
   for (int num_bands = min_bands + 1; num_bands <= 2 * min_bands + 2; ++num_bands) {

@@ -25,7 +25,7 @@ double greatestDisc(const LocalGeometry& geometry) {
          static_cast<double>(*std::max_element(geometry.spacing.begin(), geometry.spacing.end()));
 }
 
-/// The normals of a scan, toward the scanner.
+/// The normals of a scan, oriented toward the scanner.
 Points facingNormals(const NormalizedCloud& cloud) {
   const Eigen::Vector3f viewpoint = cloud.visibility->viewpoint().cast<float>();
   Points facing = cloud.geometry.normals;
@@ -34,13 +34,13 @@ Points facingNormals(const NormalizedCloud& cloud) {
   return facing;
 }
 
-/// The line moved by tilts about the two directions across it and by shifts along them.
+/// The line, moved by tilts about the two directions perpendicular to it and by translations along them.
 Line3d movedLine(const Line3d& line, const Eigen::Vector4d& by) {
   const Eigen::Vector3d u = line.direction().unitOrthogonal(), v = line.direction().cross(u);
   return {line.origin() + by[2] * u + by[3] * v, (line.direction() + by[0] * u + by[1] * v).normalized()};
 }
 
-/// The rotations about the lines beside a line, by kScanAxes.fit_step.
+/// The rotations about the lines on either side of a line, at kScanAxes.fit_step.
 std::array<Eigen::Isometry3d, 4> motionsBeside(const Line3d& line, double angle) {
   std::array<Eigen::Isometry3d, 4> beside;
   for (int k = 0; k < 4; ++k)
@@ -48,7 +48,7 @@ std::array<Eigen::Isometry3d, 4> motionsBeside(const Line3d& line, double angle)
   return beside;
 }
 
-/// How fast a point moves along a direction as the line does.
+/// How fast a point moves along a direction with each parameter of the line.
 Eigen::Vector4d slopeOf(const std::array<Eigen::Isometry3d, 4>& beside, const Eigen::Vector3d& x,
                         const Eigen::Vector3d& moved, const Eigen::Vector3d& along) {
   Eigen::Vector4d slope;
@@ -181,7 +181,8 @@ void RotationEvidence::addPulls(const IspSurface& surface, const Line3d& line, d
 
 Line3d RotationEvidence::fitted(const IspSurface& surface, const Line3d& start, const std::vector<double>& angles,
                                 const std::vector<int>& samples, const ScanAxisRules::Widths& widths) const {
-  // Tilts about the point of the line among the points, so that they and the shifts are independent.
+  // The tilts are about the point of the line in the middle of the points, so that they and the translations are
+  // independent.
   Line3d line(start.projection(Eigen::Vector3d::Zero()), start.direction());
   std::vector<std::vector<int>> closest(angles.size(), std::vector<int>(samples.size(), -1));
   for (const double width : widths) {
@@ -208,7 +209,7 @@ namespace {
 
 /// RotationSigns::planes_off.
 double planesOff(const RotationEvidence& evidence, const Line3d& line) {
-  constexpr double kStep = 0.5 * kPi / kScanAxes.num_plane_pairs;  // radians. Pairs repeat after a right angle
+  constexpr double kStep = 0.5 * kPi / kScanAxes.num_plane_pairs;  // radians; pairs repeat after a right angle
   const auto cost = [&](double angle) {
     double sum = 0.0;
     for (const double rotated : {angle, angle + 0.5 * kPi}) {
@@ -279,7 +280,7 @@ std::vector<double> rotationOddsTerms(const SymmetryRotation& rotation, const Ro
   const double off = std::log1p(rotation.off / kScanAxes.negligible_share),
                far = std::log1p(rotation.far / kScanAxes.negligible_share);
   switch (kindOf(rotation)) {
-    case RotationKind::Half:  // without `far`, which `grown` and `off` hold
+    case RotationKind::Half:  // without `far`, which `grown` and `off` cover
       return {1.0,
               off,
               1.0 - rotation.support,

@@ -66,7 +66,7 @@ RotationFit::RotationFit(Points points, const GaussianEdt& edt, RotationLimits l
   });
   surface->order = shuffled(p.cols(), seed);
   surface->overlap_points = pointsAt(p, drawSamples(p.cols(), kRotation.num_overlap_points, seed + 2));
-  // Under a symmetry the closest sample of a rotated sample is as far away as the closest other sample of a sample.
+  // Under a symmetry, the closest sample of a rotated sample is as far away as the closest other sample of a sample.
   double sum = 0.0;
   std::vector<double> closest;
   for (Eigen::Index i = 0; i < p.cols(); ++i) {
@@ -165,7 +165,7 @@ RotationSet RotationFit::closelyFitted(const RotationSet& set) const {
                 {first_sigma_, last_sigma_, kRotation.close_iterations, false});
 }
 
-/// The sample that the grid names for the cell of a point, or a neighbor that is closer.
+/// The sample that the grid gives for the cell of a point, or a neighbor of that sample that is closer.
 int RotationFit::closestSample(const Eigen::Vector3f& x) const {
   const Points& points = surface_->points;
   int closest = surface_->grid->closest(x);
@@ -268,7 +268,7 @@ OffShares RotationFit::offShares(const Eigen::Matrix3d& rotation, const Eigen::V
 }
 
 OffShares RotationFit::worstShares(const RotationSet& set, int num_samples, double max_excess) const {
-  const std::size_t at_a_time = 4;  // for the threads
+  const std::size_t at_a_time = 4;  // rotations, for the threads
   OffShares worst;
   for (std::size_t begin = 0; begin < set.num_judged; begin += at_a_time) {
     std::vector<OffShares> shares(std::min(at_a_time, set.num_judged - begin));

@@ -14,71 +14,87 @@
 
 namespace pcl_symmetry {
 
-/// Parameters that affect the search for rotations. Lengths are in radii of the bounding ball, angles in radians.
+/// Parameters that affect the search for rotations. Lengths are in radii of the bounding ball and angles in radians,
+/// unless stated otherwise.
 struct RotationRules {
   // Failures, as shares of the surface
-  double far_tolerances = 10.0;   // beyond these a piece of surface sticks out: 10 % of the diameter, as in BOP
-  double far_of_feature = 0.125;  // share that may stick out, of max_feature
-  double min_far = 0.002;         // the least of that share: single samples at sharp edges are far by chance
-  double optimism = 1.3;          // true excess over that of the fitted cloud; 1.28 on 98 groups of 354 models of PSB
-  double share_unit = 0.02;       // uncertainty of a share: with it, the confidences of these groups come true
-  double share_errors = 0.5;      // standard errors that it grows by for few points
-  double max_worst = 1.25;        // excess of the worst of the rotations that represent all; their mean may be 1
-  double max_errors = 3.0;        // standard errors that a share of some of the points may be off by
-  double gain_of_fit = 0.03;      // share that a close fit gains
-  double clear_factor = 1.5;      // rotations between those of a fold fail by this factor more,
-  double clear_excess = 0.2;      // and by this share of the allowed excess
+  // Tolerances beyond which a piece of surface sticks out: 10 % of the diameter, as in BOP.
+  double far_tolerances = 10.0;
+  double far_of_feature = 0.125;  // greatest share of the surface that may stick out, as a share of max_feature
+  double min_far = 0.002;         // least value of that share: single samples at sharp edges are far by chance
+  double optimism = 1.3;      // true excess divided by that of the fitted cloud; 1.28 on 98 groups of 354 models of PSB
+  double share_unit = 0.02;   // uncertainty of a share: with it, the confidences of these groups are calibrated
+  double share_errors = 0.5;  // standard errors by which that uncertainty grows for few points
+  // Greatest excess of the worst of the rotations that represent all rotations, whose mean may be 1.
+  double max_worst = 1.25;
+  double max_errors = 3.0;    // standard errors by which a share of some of the points may be off
+  double gain_of_fit = 0.03;  // share of the surface that a close fit may gain
+  // Least ratio of the excess halfway between the rotations of a fold to the excess of the fold itself.
+  double clear_factor = 1.5;
+  double clear_excess = 0.2;  // least difference of these two excesses
 
   // Resolution of points
-  double min_own_share = 0.5;     // share of the points within the tolerance of the surface of the others
-  double surface_slack = 1.5;     // tolerances that a sparse surface may resolve: its uncertainty lowers the confidence
-  int body_neighbors = 50;        // at most a quarter of the points: in a body, they reach across as far as along;
-  double body_thickness = 0.56;   // 0.75 inside, balls of 200 points 0.57 to 0.69, bowls as thin as their spacing 0.45;
-  int close_neighbors = 8;        // of which bodies are as thick, too: walls a few spacings thick have two surfaces,
-  double close_thickness = 0.32;  // each of them flat: at most 0.25, 0.4 in a body
-  int border_neighbors = 30;      // of a point of a body:
-  double border_offset = 0.27;    // mean of them, radii of theirs: 3/8 at a flat border, inside 0.14 by chance
-  double single_distance = 0.5;   // distances between points within which images meet one by one: 8 % do by chance
-  Eigen::Index max_single_points = 50'000;  // that are compared one by one
+  double min_own_share = 0.5;  // least share of the points within the tolerance of the surface of the others
+  // Resolution of a sparse surface that is accepted, tolerances: its uncertainty lowers the confidence.
+  double surface_slack = 1.5;
+  int body_neighbors = 50;  // neighbors by which solid bodies are recognized, at most a quarter of the points
+  // Least thickness over length of such a neighborhood in a body: 0.75 inside, balls of 200 points 0.57 to 0.69, bowls
+  // as thin as their spacing 0.45.
+  double body_thickness = 0.56;
+  // Fewer neighbors, which distinguish a body from walls a few spacings thick, whose two surfaces are flat.
+  int close_neighbors = 8;
+  // Least thickness over length of such a neighborhood: 0.4 in a body, at most 0.25 in a flat surface.
+  double close_thickness = 0.32;
+  int border_neighbors = 30;  // neighbors by which the border of a body is recognized
+  // Least distance of a border point from their mean, in distances of the farthest one: 3/8 at a flat border, 0.14
+  // inside by chance.
+  double border_offset = 0.27;
+  // Tolerance for points compared one by one, in median distances to the closest point: 8 % of images are within it by
+  // chance.
+  double single_distance = 0.5;
+  Eigen::Index max_single_points = 50'000;  // greatest number of points that are compared one by one
 
   // Fits: Iterative Symmetric Points, whose steps and weights kRefinement limits
   int num_overlap_points = 256;   // points of overlap()
   int num_rough_points = 200;     // points of rough fits
   int num_close_points = 1000;    // points of close fits
-  int num_some_points = 600;      // points that tell whether a close fit is worth judging by all
-  int rough_iterations = 8;       // at most, in rough fits
-  int close_iterations = 12;      // at most, in close fits
-  double first_tolerances = 2.0;  // width of the weights at first, the greater of this many tolerances
-  double first_spacings = 1.0;    // and spacings of the points
-  double last_tolerances = 0.7;   // width at last, the greater of this many tolerances
-  double last_roughnesses = 3.0;  // and roughnesses
-  double settled_step = 2e-4;     // a shorter step ends the fit: a hundredth of the default tolerance
-  std::size_t max_fitted = 6;     // rotations of a large group that are fitted, spread over it
-  double rough_overlap = 0.6;     // that a set has to reach before its fit,
-  double fair_overlap = 0.7;      // and after its rough fit
+  int num_some_points = 600;      // points that show whether a close fit is worth judging by all points
+  int rough_iterations = 8;       // greatest number of iterations of rough fits
+  int close_iterations = 12;      // greatest number of iterations of close fits
+  double first_tolerances = 2.0;  // width of the weights at the start, tolerances, unless first_spacings is more
+  // Width of the weights at the start, spacings of the points, unless first_tolerances is more.
+  double first_spacings = 1.0;
+  double last_tolerances = 0.7;   // width of the weights at the end, tolerances, unless last_roughnesses is more
+  double last_roughnesses = 3.0;  // width of the weights at the end, roughnesses, unless last_tolerances is more
+  double settled_step = 2e-4;     // step that ends the fit: a hundredth of the default tolerance
+  std::size_t max_fitted = 6;     // greatest number of rotations of a large group that are fitted, spread over it
+  double rough_overlap = 0.6;     // least overlap of a set before its fit
+  double fair_overlap = 0.7;      // least overlap of a set after its rough fit
 
   // Axes
-  double same_line = 0.05;         // closer lines are one
-  double min_line_overlap = 0.6;   // of a line that is tried
-  int num_first_points = 48;       // points that rule out most lines,
-  double first_overlap = 0.42;     // and the overlap they need: min_line_overlap less three standard errors
-  std::size_t max_directions = 6;  // kept for each order: as many as axes of order 5 of the icosahedron
-  double min_angle = 0.17;         // between kept directions
-  double near_best = 0.05;         // overlap behind the best at which a smaller fold is as likely
-  int small_fold = 6;              // folds up to this one are tried whatever the greater ones reach
-  double half_allowance = 0.03;    // overlap that the rotation by half the angle may have beyond that of a fold
-  double min_overlap = 0.5;        // of the likeliest rotation about a line before its fit
-  double clearly_better = 0.02;    // overlap that a smaller angle needs beyond a greater one
-  std::size_t max_axes = 12;       // enough to determine any finite group
-  std::size_t max_folds = 3;       // folds of a line that are fitted, the greatest first
-  int min_pattern = 3;             // equal pieces around a line that are a pattern, not features,
-  double pattern_excess = 0.5;     // where other rotations exceed this
+  double same_line = 0.05;        // angle and distance within which lines are one
+  double min_line_overlap = 0.6;  // least overlap of a line that is tried
+  int num_first_points = 48;      // points that rule out most lines
+  double first_overlap = 0.42;    // least overlap of these points: min_line_overlap less three standard errors
+  // Greatest number of directions kept for each order: as many as axes of order 5 of the icosahedron.
+  std::size_t max_directions = 6;
+  double min_angle = 0.17;  // least angle between kept directions
+  double near_best = 0.05;  // deficit of the overlap to the best one up to which a smaller fold is as likely
+  int small_fold = 6;       // folds up to this one are tried whatever the overlap of greater ones
+  // Greatest surplus of the overlap of the rotation by half the angle over that of a fold.
+  double half_allowance = 0.03;
+  double min_overlap = 0.5;      // least overlap of the likeliest rotation about a line before its fit
+  double clearly_better = 0.02;  // least surplus of the overlap of a greater fold over that of a smaller one
+  std::size_t max_axes = 12;     // greatest number of axes: enough to determine any finite group
+  std::size_t max_folds = 3;     // greatest number of folds of a line that are fitted, the greatest first
+  int min_pattern = 3;           // least fold of equal pieces around a line that are a pattern rather than features
+  double pattern_excess = 0.5;   // excess of the worst rotation from which a pattern is searched for
   double max_tolerance_of_radius =
       0.06;  // a bar 3 % as thick as long keeps its corners, a polygon of 12 sides is round
 
   // Groups
-  double axes_meet = 0.1;     // angles between two found axes and two of a group agree within this
-  double across_step = 0.02;  // of the search for half turns about axes perpendicular to the main one
+  double axes_meet = 0.1;     // difference up to which the angles between two found axes and two axes of a group agree
+  double across_step = 0.02;  // step of the search for half turns about axes perpendicular to the main one
 };
 inline constexpr RotationRules kRotation;
 
@@ -86,7 +102,7 @@ inline constexpr RotationRules kRotation;
 struct RotationSet {
   std::vector<Eigen::Matrix3d> rotations;
   Eigen::Vector3d center = Eigen::Vector3d::Zero();
-  std::size_t num_judged = 0;  ///< rotations at the front that are judged; the others follow from them
+  std::size_t num_judged = 0;  ///< number of rotations at the front that are judged; the others follow from them
 
   /// \return the image of \p x under rotation \p i.
   Eigen::Vector3d image(std::size_t i, const Eigen::Vector3d& x) const { return center + rotations[i] * (x - center); }
@@ -94,8 +110,8 @@ struct RotationSet {
 
 /// Shares of the surface that a rotation maps off the surface, by area, in [0, 1].
 struct OffShares {
-  double off = 0.0;  ///< by more than the tolerance, relative to the samples on themselves
-  double far = 0.0;  ///< more than ten tolerances: parts that stick out, such as a handle
+  double off = 0.0;  ///< share beyond the tolerance, less that of the samples themselves
+  double far = 0.0;  ///< share beyond ten tolerances: parts that stick out, such as a handle
 };
 
 /// Definition of a symmetry: tolerance tau and feature share phi (ObjectSymmetryOptions).
@@ -103,11 +119,11 @@ struct RotationLimits {
   double tolerance;    ///< normalized frame
   double max_feature;  ///< share of the surface that may be off
 
-  /// The greater ratio of the two shares to their allowed values.
+  /// The greater of the ratios of the two shares to their allowed values.
   /// \return <= 1 for a symmetry.
   double excess(const OffShares& shares) const;
-  /// Probability that rotations of these measured shares are symmetries at the limits.
-  /// \param num_points number of points of the shares.
+  /// Probability that rotations with these measured shares keep within the limits.
+  /// \param num_points number of points by which the shares were measured.
   double confidence(const OffShares& shares, std::size_t num_points) const;
 };
 
@@ -121,12 +137,12 @@ public:
   /// \param edt distance transform of these points; must outlive this object.
   /// \param limits definition of a symmetry; tolerance at most \p reach.
   /// \param reach greatest tolerance of withLimits().
-  /// \param seed of the samples.
+  /// \param seed seed of the samples.
   /// \param single each point has to meet another one: judges the points, not a surface.
   RotationFit(Points points, const GaussianEdt& edt, RotationLimits limits, double reach, std::uint64_t seed,
               int num_threads, bool single = false);
 
-  /// The same surface judged at other limits.
+  /// The same surface, judged at other limits.
   /// \param limits tolerance at most the reach.
   RotationFit withLimits(RotationLimits limits) const;
 
@@ -149,18 +165,18 @@ public:
   /// The least overlap of any rotation of a set, at most 1.
   double overlap(const RotationSet& set) const;
 
-  /// The set rotated and moved as a whole to where the rotated samples lie closest to the surface: few samples, wide
+  /// The set, rotated and moved as a whole to where the rotated samples lie closest to the surface: few samples, wide
   /// weights.
   RotationSet roughlyFitted(const RotationSet& set) const;
   /// The same with many samples and narrow weights: samples that are off by more than the tolerance hardly count.
   RotationSet closelyFitted(const RotationSet& set) const;
 
   /// The shares that one rotation maps off the surface.
-  /// \param num_samples number of points, the same ones each time; all if there are no more.
+  /// \param num_samples number of points by which it is judged, the same ones each time; all if there are no more.
   OffShares offShares(const Eigen::Matrix3d& rotation, const Eigen::Vector3d& center,
                       int num_samples = std::numeric_limits<int>::max()) const;
 
-  /// The worst of the judged rotations of a set.
+  /// The shares of the worst of the judged rotations of a set.
   /// \param max_excess stops at a rotation with a greater excess.
   OffShares worstShares(const RotationSet& set, int num_samples = std::numeric_limits<int>::max(),
                         double max_excess = std::numeric_limits<double>::infinity()) const;
@@ -172,14 +188,14 @@ public:
   Eigen::Vector3d whereOff(const Eigen::Matrix3d& rotation, const Eigen::Vector3d& center) const;
 
 private:
-  /// Thickness over length of the neighborhood of a point, in [0, 1]: the median of some points.
+  /// Thickness over length of the neighborhood of a point, in [0, 1]: the median over some points.
   double thickness(int num_neighbors) const;
 
   /// Widths of the Gaussian weights from first to last iteration.
   struct Annealing {
     double sigma, final_sigma;
     int max_iterations;
-    bool rough;  ///< closest samples by grid instead of closest discs
+    bool rough;  ///< closest samples from the grid instead of closest discs
   };
   /// The data that do not depend on the tolerance.
   struct Surface {
@@ -207,8 +223,8 @@ private:
   std::shared_ptr<const Surface> surface_;
   const GaussianEdt& edt_;
   RotationLimits limits_;
-  double own_share_;    ///< of the samples within the tolerance of the discs of the others
-  double first_sigma_;  ///< of close fits
+  double own_share_;    ///< share of the samples within the tolerance of the discs of the others
+  double first_sigma_;  ///< width of the weights at the start of close fits
   double last_sigma_;
   int num_threads_;
 };

@@ -20,7 +20,7 @@ namespace pcl_symmetry {
 
 namespace {
 
-/// The direction across an axis that is closest to a coordinate axis.
+/// The direction perpendicular to an axis that is closest to a coordinate axis.
 Eigen::Vector3d coordinateAcross(const Eigen::Vector3d& axis) {
   int max_across = 0;
   axis.cwiseAbs().minCoeff(&max_across);
@@ -28,7 +28,7 @@ Eigen::Vector3d coordinateAcross(const Eigen::Vector3d& axis) {
   return (unit - axis.dot(unit) * axis).normalized();
 }
 
-/// A group of the normalized frame in the input frame.
+/// A group in the normalized frame, transformed to the input frame.
 ObjectSymmetries inInputFrame(const PlacedGroup& group, const RotationFit& fit, const BoundingBall& ball) {
   ObjectSymmetries result;
   result.kind = group.kind;
@@ -50,7 +50,7 @@ ObjectSymmetries inInputFrame(const PlacedGroup& group, const RotationFit& fit, 
   return result;
 }
 
-/// The rejected rotations in the input frame, the least failure first.
+/// The rejected rotations, transformed to the input frame, the least failure first.
 std::vector<RejectedRotation> inInputFrame(std::vector<RejectedAxis> axes, const RotationFit& fit,
                                            const BoundingBall& ball) {
   sortRising(axes, [&](const RejectedAxis& axis) { return fit.limits().excess(axis.shares); });
@@ -71,7 +71,7 @@ std::vector<RejectedRotation> inInputFrame(std::vector<RejectedAxis> axes, const
   return rejected;
 }
 
-/// Finds the symmetry group of points, judged against their surface or point by point, at one or more tolerances.
+/// Finds the symmetry group of points, judged by their surface or point by point, at one or more tolerances.
 class GroupSearch {
 public:
   /// \param points normalized.
@@ -111,17 +111,17 @@ private:
   double max_tolerance_ = std::numeric_limits<double>::infinity();
 };
 
-/// The surface that points resolve or, if they fill a body, the surface of its border. Points that resolve none at the
-/// tolerance may still meet each other one by one: atoms, grids, the corners of a solid.
+/// The surface that points resolve or, if they fill a body, the surface of its border. Points that resolve no surface
+/// at the tolerance may still meet each other one by one: atoms, grids, the corners of a solid.
 /// \param[out] resolution the least tolerance at which the points show a surface.
-/// \return null where the points resolve no answer.
+/// \return null if the points resolve no answer.
 std::unique_ptr<GroupSearch> searchThatResolves(const Points& points, const RotationLimits& limits,
                                                 const ObjectSymmetryOptions& options, double& resolution) {
   const std::vector<int> drawn = drawSamples(points.cols(), options.max_points, options.seed);
   auto search = std::make_unique<GroupSearch>(pointsAt(points, drawn), limits, options, false);
   const bool fills_body = search->fit().fillsBody();
   if (fills_body) {
-    const double distance = search->fit().closestDistance();  // the border of a body is as thick
+    const double distance = search->fit().closestDistance();  // the border of a body is about as thick
     search = std::make_unique<GroupSearch>(search->fit().borderPoints(), limits, options, false);
     resolution = std::max(distance, search->fit().resolution());
   } else {

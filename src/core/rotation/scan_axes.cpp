@@ -22,7 +22,7 @@ namespace pcl_symmetry {
 
 namespace {
 
-/// A line that may be an axis, and the order that it may have; 0: any angle.
+/// A line that may be an axis, and the order of its rotations; 0 = by any angle.
 struct AxisStart {
   Line3d line;
   int fold;
@@ -37,8 +37,8 @@ double missAt(const Line3d& line, const Eigen::Vector3d& x, const Eigen::Vector3
   return std::abs(velocity.dot(normal)) / std::max(kGeometry.min_lever, velocity.norm());
 }
 
-/// Lines that many normals of a scan meet or are parallel to: the best of all, and the best of small draws, so that a
-/// base or a handle does not decide.
+/// Lines that many normals of a scan meet or are parallel to: the best line for all normals, and the best ones for
+/// small draws, so that a base or a handle does not decide.
 std::vector<AxisStart> startsFromNormals(const NormalizedCloud& cloud, std::uint64_t seed, int num_threads) {
   const std::vector<int> samples = drawSamples(cloud.points.cols(), kScanAxes.normal_samples, seed);
   const Points& normals = cloud.geometry.normals;
@@ -93,7 +93,7 @@ std::vector<AxisStart> startsFromPlanes(const std::vector<ReflectionPlane>& plan
       const double s = (planes[i].offset() - cosine * planes[j].offset()) / sq_sine,
                    t = (planes[j].offset() - cosine * planes[i].offset()) / sq_sine;
       const Line3d line(s * a + t * b, a.cross(b).normalized());
-      // The least fold whose planes have this angle: two planes at k pi / n rotate by 2 k pi / n.
+      // The least fold that has planes at this angle: two planes at k pi / n generate a rotation by 2 k pi / n.
       for (int n = 2; n <= max_fold; ++n) {
         const double step = kPi / n, off = std::abs(angle - step * std::round(angle / step));
         if (off > kScanAxes.angle_of_fold * std::min(1.0, 6.0 / n)) continue;
@@ -128,7 +128,7 @@ std::vector<AxisStart> startsFromTransform(const NormalizedCloud& cloud, std::ui
   return starts;
 }
 
-/// The worst shares of two rotations, and the greatest share on the surface.
+/// The worse shares off the surface of two rotations, and the greater share on it.
 RotationShares worstOf(const RotationShares& a, const RotationShares& b) {
   return {std::max(a.on, b.on), std::max(a.off, b.off), std::max(a.far, b.far)};
 }
@@ -171,16 +171,16 @@ struct ScreenedShares {
   }
 };
 
-/// The judgment of a line by one scan.
+/// What one scan shows of a line.
 struct JudgedLine {
   Line3d line;
-  SymmetryRotation rotation;  ///< without a position
-  double margin;              ///< marginOf()
+  SymmetryRotation rotation;  ///< the position is not set
+  double margin;              ///< see marginOf()
 };
 
 class AxisJudge {
 public:
-  /// \param max_fold of the rotations that are tried besides those by any angle.
+  /// \param max_fold greatest fold of the rotations that are tried, in addition to rotations by any angle.
   AxisJudge(const RotationEvidence& evidence, int max_fold) : evidence_(evidence), max_fold_(max_fold) {}
 
   Line3d fitted(const AxisStart& start) const { return evidence_.refined(start.line, fitAngles(start.fold)); }
@@ -350,7 +350,7 @@ std::vector<SymmetryAxis> withRoundAxes(const RotationEvidence& evidence, std::v
     return all.far > kScanAxes.max_round_far;
   });
   for (const SymmetryRotation& rotation : rotations) {
-    // A visible handle contradicts, however probable the axis is.
+    // A visible handle is a contradiction, however probable the axis is.
     const bool is_contradicted = rotation.off > kScanAxes.max_round_off || rotation.far > kScanAxes.max_round_far;
     if (rotation.fold != 0 || is_contradicted || rotation.confidence < options.min_confidence) continue;
     const auto known = std::find_if(axes.begin(), axes.end(), [&](const SymmetryAxis& axis) {

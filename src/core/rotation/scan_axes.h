@@ -13,20 +13,20 @@ namespace pcl_symmetry {
 /// Options of scanAxes(); the defaults are those of DetectionOptions.
 struct ScanAxesOptions {
   bool folds = true;            ///< also tries axes of finite order
-  double min_confidence = 0.5;  ///< least confidence of a round body whose axis is added to those of planes
-  double min_possible = 0.2;    ///< least confidence of the axes returned
+  double min_confidence = 0.5;  ///< least confidence of a round body whose axis is added to those from planes
+  double min_possible = 0.2;    ///< least confidence of the axes that are returned
   std::uint64_t seed = 1;
   int num_threads = 0;  ///< 0 = one per core
 };
 
-/// Axes of a scan: lines about which rotations by any angle, or by 2 pi / n, map the visible surface onto itself or to
-/// unseen space, but not into free space. Not in the paper, which leaves rotations to future work (Section 6).
+/// Axes of a scan: lines about which rotations by any angle, or by 2 pi / n, map the visible surface onto itself or
+/// into unseen space, but not into free space. Not in the paper, which leaves rotations to future work (Section 6).
 ///
-/// Lines come from the normals (a body of revolution), from pairs of planes, and from maxima of a coarse axial
-/// transform. Each is moved to where the rotations fit best, then judged. A fold has to beat the rotations halfway
-/// between its own; a line that no rotation contradicts is an axis of revolution.
-/// \param evidence of a scan.
-/// \param planes found so far, input frame.
+/// Lines come from the normals (for a body of revolution), from pairs of planes, and from maxima of a coarse axial
+/// transform. Each is moved to where the rotations fit best, then judged. A fold is accepted only if the rotations
+/// halfway between its own fail more; a line that no rotation contradicts is an axis of revolution.
+/// \param evidence evidence of a scan.
+/// \param planes planes found so far, input frame.
 /// \param evidence_of_all filled with the evidence of all rotations, including those that are not returned; may be
 /// null.
 /// \return input frame, most confident first; no two along one line.
@@ -34,17 +34,17 @@ std::vector<SymmetryRotation> scanAxes(const RotationEvidence& evidence, const s
                                        const std::vector<SymmetryAxis>& axes, const ScanAxesOptions& options,
                                        std::vector<JudgedRotation>* evidence_of_all = nullptr);
 
-/// The axis of a body that is round but for a part, such as a mug with its handle, and this part.
+/// The axis of a body that is round except for a part, such as a mug with its handle, and that part.
 struct NearlyRound {
   Line3d axis;                 ///< normalized frame
-  std::vector<int> not_round;  ///< as RotationEvidence::notRound()
+  std::vector<int> not_round;  ///< see RotationEvidence::notRound()
 };
 
-/// \return nothing where a scan shows no such body.
+/// \return nothing if a scan shows no such body.
 std::optional<NearlyRound> nearlyRound(const RotationEvidence& evidence, const ScanAxesOptions& options);
 
 /// The center of a ball seen from one side: rotations by any angle about any line through it map the visible surface
-/// onto itself or to unseen space.
+/// onto itself or into unseen space.
 std::optional<SymmetryCenter> centerOfScan(const RotationEvidence& evidence, const ScanAxesOptions& options);
 
 /// The rotations of a scan: the center of a ball, or axes.
@@ -55,10 +55,10 @@ struct ScanRotations {
 
 /// The same for points whose planes are not known.
 /// \param points 3 x N, finite, input units.
-/// \param edt of these points.
+/// \param edt distance transform of these points.
 /// \param axes lines that are tried first, input frame.
 /// \param make_search as in detectPlanes().
-/// \return none if the points cannot be analyzed.
+/// \return empty if the points cannot be analyzed.
 ScanRotations rotationsOfScan(const PointsRef& points, const GaussianEdt& edt, const Visibility& visibility,
                               const std::vector<SymmetryAxis>& axes, const ScanAxesOptions& options,
                               const MakeSearch& make_search = nullptr);
