@@ -25,10 +25,10 @@ std::vector<float> inverted(const std::vector<float>& depths) {
   return inverse;
 }
 
-/// The inverse depth of a pixel by its neighbors.
+/// The inverse depth of a pixel, estimated from its neighbors.
 struct Fit {
   float inverse_depth = std::numeric_limits<float>::quiet_NaN();
-  float weight = 0.0f;  ///< of the neighbors
+  float weight = 0.0f;  ///< sum of the weights of the neighbors
 };
 
 /// Weighted least squares of a + b du + c dv.
@@ -41,7 +41,7 @@ public:
   }
 
   Eigen::Vector3f solve() const {
-    // One pixel in line has no slope across: any tiny ridge keeps it at 0.
+    // Pixels in one line have no slope across it: a tiny ridge keeps that slope at 0.
     const Eigen::Vector3f ridge = 1e-3f * Eigen::Vector3f(0.0f, 1.0f, 1.0f);
     return solveSymmetric(Eigen::Matrix3f(squares_ + Eigen::Matrix3f(ridge.asDiagonal())), right_);
   }
@@ -61,7 +61,7 @@ public:
         slant_(static_cast<float>(kScan.slant_at_start * image.pixel_angle)),
         inverse_(inverted(image.depths)) {}
 
-  /// \return the filtered depth; NaN where the pixel flies.
+  /// \return the filtered depth; NaN for a flying pixel.
   float at(int u, int v) const {
     const float own = inverse_[index(u, v)];
     if (!std::isfinite(own)) return std::numeric_limits<float>::quiet_NaN();
@@ -114,7 +114,7 @@ private:
   std::vector<float> inverse_;
 };
 
-/// Standard deviation of an inverse depth, by second differences of pixels that are some columns apart.
+/// Standard deviation of an inverse depth, from second differences of pixels that are some columns apart.
 double deviationOfBends(const std::vector<float>& inverse, const DepthImage& image, int apart) {
   std::vector<float> bends;
   for (int v = 0; v < image.height; ++v) {
@@ -138,7 +138,7 @@ double deviationOfBends(const std::vector<float>& inverse, const DepthImage& ima
 double inverseDepthError(const DepthImage& image, int apart) {
   const std::vector<float> inverse = inverted(image.depths);
   const double error = deviationOfBends(inverse, image, apart);
-  // Over twice the distance a shape bends four times as much, and errors are the same.
+  // Over twice the distance a shape bends four times as much, while errors stay the same.
   const bool is_error = apart > 1 || deviationOfBends(inverse, image, 2) < kScan.max_growth * error;
   return is_error ? error : 0.0;
 }
@@ -154,7 +154,7 @@ FilteredDepths filterDepths(const DepthImage& image, int radius, int num_threads
     sum += 1.0 / depth;
     count += 1.0;
   }
-  // An error of depth over the size of a pixel, both at the mean inverse depth.
+  // Compares the error of a depth with the size of a pixel, both at the mean inverse depth.
   if (count == 0.0 || error < kScan.min_error * image.pixel_angle * sum / count) return result;
   if (inverseDepthError(image, kScan.window) > kScan.max_own * error) return result;
   result.inverse_error = error;

@@ -29,7 +29,7 @@ struct PixelStep {
   float length() const { return std::hypot(static_cast<float>(du), static_cast<float>(dv)); }
 };
 
-/// Calls visit(from, to, count) for each two filled pixels of a line that follow each other, \p count steps apart.
+/// Calls visit(from, to, count) for each two successive filled pixels of a line, \p count steps apart.
 template <typename Visit>
 void visitLine(const RangeImage& image, int u, int v, const PixelStep& step, const Visit& visit) {
   std::ptrdiff_t last = -1;
@@ -63,10 +63,10 @@ std::vector<float> distancesAlong(const RangeImage& image, const PixelStep& step
   return distances;
 }
 
-/// The distance of rays across the direction in which they are dense: rings of a LiDAR scanner are many pixels apart,
-/// while rays within a ring are neighbors.
-/// \return median over the pixels with a depth of the distance to the next such pixel in row or column, whichever is
-/// larger, pixels; 0 where no pixel has neighbors in row and column.
+/// The distance between rays in the direction in which they are sparse: rings of a LiDAR are many pixels apart, while
+/// rays within a ring are neighbors.
+/// \return median over the pixels with a depth of the distance to the next such pixel in the row or the column,
+/// whichever is larger, pixels; 0 if no pixel has neighbors in both.
 double typicalGap(const RangeImage& image) {
   const std::vector<float> in_row = distancesAlong(image, {1, 0}), in_column = distancesAlong(image, {0, 1});
   std::vector<double> gaps;
@@ -78,8 +78,8 @@ double typicalGap(const RangeImage& image) {
 
 /// Closes the gaps between neighboring rays. An empty pixel between two filled ones, on the shortest of the four lines
 /// through it along rows, columns and diagonals, gets the nearer of their depths: space between two rays counts as free
-/// as far as both of them show it to be.
-/// \param longest gap that is closed, pixels.
+/// as far as both of them show it to be free.
+/// \param longest longest gap that is closed, pixels.
 void bridgeGaps(RangeImage& image, double longest) {
   std::vector<float> filled = image.depths, shortest(filled.size(), std::numeric_limits<float>::infinity());
   for (const PixelStep& step : {PixelStep{1, 0}, PixelStep{0, 1}, PixelStep{1, 1}, PixelStep{-1, 1}}) {
@@ -98,7 +98,8 @@ void bridgeGaps(RangeImage& image, double longest) {
   image.depths = std::move(filled);
 }
 
-// Rays at more than 75 degrees to the middle give no image: it would be stretched by 1 / cos^2 there.
+// Cosine of the greatest angle of a ray to the middle of an image, 75 degrees: at more, the image would be stretched by
+// 1 / cos^2.
 const double kLeastCosine = std::cos(75.0 * kPi / 180.0);
 
 /// A grid whose filled pixels have \p points_per_pixel points on average.
@@ -127,7 +128,7 @@ PixelGrid fitPixels(const std::vector<Eigen::Array2d>& positions, std::size_t ma
   }
 }
 
-/// Calls visit(index) for the pixels around (u, v) and itself that lie in the image.
+/// Calls visit(index) for the pixels around (u, v), and that pixel itself, that lie in the image.
 template <typename Visit>
 void visitAround(int u, int v, const PixelGrid& grid, const Visit& visit) {
   for (int y = std::max(0, v - 1); y <= std::min(grid.height - 1, v + 1); ++y)
@@ -155,9 +156,9 @@ void closeHoles(RangeImage& image) {
   }
 }
 
-/// Closes small holes whole, with the depth of their nearest border. A gap between sparse points does not show that the
-/// scanner looked through.
-/// \param largest_hole pixels, whatever the size of the image.
+/// Closes small holes completely, with the depth of their nearest border. A gap between sparse points does not show
+/// that the scanner looked through it.
+/// \param largest_hole size of the largest hole that is closed, pixels, whatever the size of the image.
 void closeGaps(RangeImage& image, std::size_t largest_hole) {
   std::vector<float>& depths = image.depths;
   const std::size_t width = image.grid.width;
@@ -203,8 +204,8 @@ void closeSurfaces(RangeImage& image, std::size_t largest_hole) {
   closeGaps(image, largest_hole);
 }
 
-/// Sets empty pixels beyond the measured part of the image to Visibility::kNoRay: those that have filled pixels in
-/// fewer than kScan.inside_sides of the four directions along rows and columns.
+/// Sets empty pixels beyond the measured part of the image to Visibility::kNoRay: those with filled pixels in fewer
+/// than kScan.inside_sides of the four directions along rows and columns.
 void forgetOutside(RangeImage& image) {
   const int width = image.grid.width, height = image.grid.height;
   // For each pixel, the number of the four directions in which a filled pixel lies.
@@ -230,7 +231,8 @@ void forgetOutside(RangeImage& image) {
     if (num_sides[i] < kScan.inside_sides) image.depths[i] = Visibility::kNoRay;
 }
 
-/// Directions of points from a viewpoint: unit vectors to them minus the one to their middle, in units of \p width.
+/// Directions to points in an image: unit vectors from the viewpoint to them minus the one to their middle, in units of
+/// \p width.
 Points imageDirections(const PointsRef& points, const Eigen::Vector3d& viewpoint, const Eigen::Vector3d& middle,
                        double width) {
   const Eigen::Vector3d forward = (middle - viewpoint).normalized();
@@ -287,7 +289,7 @@ namespace {
 
 using Positions = std::vector<Eigen::Array2d>;
 
-/// Rows of positions: their direction, one of four at right angles, and the distance of neighbors.
+/// The direction of the rows of positions, one of four at right angles, and the distance of neighbors.
 struct PixelRows {
   double angle;
   double pitch;
@@ -313,7 +315,7 @@ std::optional<PixelRows> rowsOf(const Positions& positions) {
   return PixelRows{std::arg(sum) / 4.0, median(distances)};
 }
 
-/// The line that all positions lie behind, and how many lie in the three rows next to it.
+/// The line that all positions lie behind, and the numbers of positions in the three rows next to it.
 struct LastRows {
   FrameSide side;
   std::array<int, 3> counts{};
@@ -334,7 +336,7 @@ LastRows lastRows(const Positions& positions, double angle, double pitch) {
   return rows;
 }
 
-/// Those of the positions that may be in the last rows at any angle of the side.
+/// The positions that may be in the last rows at any angle of the side.
 Positions nearSide(const Positions& positions, double angle, double pitch) {
   const Eigen::Vector2d normal(std::cos(angle), std::sin(angle));
   Eigen::Array2d low = positions.front(), high = positions.front();
@@ -383,7 +385,7 @@ double layeredShare(const PointsRef& points, const Eigen::Vector3d& viewpoint) {
   const double min_gap =
       kScan.roughnesses * typicalRoughness(normalizePoints(points, ball.center, ball.radius), stride);
 
-  // The next point of each sample in the image.
+  // The nearest other point of each sample in the image.
   const double width = ball.radius / distance;
   const Points directions = imageDirections(points, viewpoint, ball.center, width);
   std::vector<int> closest;
@@ -410,7 +412,7 @@ std::optional<Visibility> spaceSeenFrom(const PointsRef& points, const Eigen::Ve
   if (!((viewpoint - ball.center).norm() > ball.radius)) return std::nullopt;
   std::optional<Visibility> visibility = Visibility::fromPoints(points, viewpoint);
   if (!visibility) return std::nullopt;
-  // The surface slants by as much as in layeredShare(), over half of a pixel.
+  // The surface may slant as much as in layeredShare(), over half a pixel.
   const double pixel = 2.0 / std::max(visibility->width(), visibility->height());
   const double margin = std::max(kScan.hidden_margin, 0.5 * kScan.steepest * pixel) * ball.radius;
   if (visibility->hiddenShare(points, margin) > limits.max_hidden) return std::nullopt;

@@ -13,21 +13,21 @@ namespace pcl_symmetry {
 
 /// Which points a range image contains.
 enum class FieldOfView {
-  Cone,     ///< within 75 degrees of the direction that the camera looks along
-  CubeFace  ///< a square of 90 degrees: six of them see all around
+  Cone,     ///< points within 75 degrees of the direction in which the camera looks
+  CubeFace  ///< points in a square of 90 degrees, so that six images cover all directions
 };
 
 /// Points in the image plane at depth one.
 struct SeenPositions {
   std::vector<Eigen::Array2d> positions;
-  std::vector<float> depths;  ///< along the direction that the camera looks along, input units
+  std::vector<float> depths;  ///< depths along the direction in which the camera looks, input units
 };
 
-/// The pixels of a range image. Pixel (u, v) contains the positions about its integer coordinates; one empty pixel at
-/// least surrounds the filled ones.
+/// The pixels of a range image. Pixel (u, v) contains the positions around its integer coordinates; the filled pixels
+/// are surrounded by at least one empty one.
 struct PixelGrid {
   Eigen::Array2d low;  ///< least coordinates of the positions
-  double size;         ///< of a pixel, at depth one
+  double size;         ///< size of a pixel at depth one
   int width = 1, height = 1;
 
   int column(const Eigen::Array2d& p) const { return static_cast<int>((p.x() - low.x()) / size) + 1; }
@@ -35,7 +35,7 @@ struct PixelGrid {
   std::size_t at(const Eigen::Array2d& p) const { return static_cast<std::size_t>(row(p)) * width + column(p); }
   std::size_t numPixels() const { return static_cast<std::size_t>(width) * height; }
 
-  /// Takes positions at depth one to pixels.
+  /// Maps positions at depth one to pixels.
   Eigen::Matrix3d toPixels() const {
     Eigen::Matrix3d to_pixels = Eigen::Matrix3d::Identity();
     to_pixels(0, 0) = to_pixels(1, 1) = 1.0 / size;
@@ -53,41 +53,41 @@ struct RangeImage {
 
 /// \param points 3 x N, finite.
 /// \param R_camera_input rows right, down and forward in the frame of the points.
-/// \return those of the points that lie in the field of view.
+/// \return the points that lie in the field of view.
 SeenPositions positionsSeen(const PointsRef& points, const Eigen::Vector3d& viewpoint,
                             const Eigen::Matrix3d& R_camera_input, FieldOfView field);
 
 /// A range image of the unorganized points of one object. The size of the pixels follows the distance between the
 /// points in the image; gaps between the points are closed. Empty pixels are background.
 /// \param seen at least one position.
-/// \param max_pixels number of pixels from which on they are enlarged, >= 16.
+/// \param max_pixels number of pixels above which they are enlarged, >= 16.
 RangeImage rangeImage(const SeenPositions& seen, std::size_t max_pixels);
 
-/// The same for a scene. Where its rays are denser in one direction than across, as in the rings of a LiDAR scanner,
-/// pixels are as small as the denser distance, and the gaps between the rings are bridged. Empty pixels beyond the
-/// measured part of the image are Visibility::kNoRay: those with filled pixels in fewer than three of the four
-/// directions along rows and columns.
+/// The same for a scene. If its rays are denser in one direction than across it, as in the rings of a LiDAR, pixels are
+/// as small as the denser spacing, and the gaps between the rings are bridged. Empty pixels beyond the measured part of
+/// the image are Visibility::kNoRay: those with filled pixels in fewer than three of the four directions along rows and
+/// columns.
 /// \param seen at least one position.
-/// \param max_pixels number of pixels from which on they are enlarged, >= 16.
+/// \param max_pixels number of pixels above which they are enlarged, >= 16.
 RangeImage sceneRangeImage(const SeenPositions& seen, std::size_t max_pixels);
 
-/// A side of the image of a camera, at which the object was cut off: no ray passed where normal . p > offset.
+/// A side of the image of a camera that cut the object off: no ray passed where normal . p > offset.
 struct FrameSide {
   Eigen::Vector2d normal;  ///< unit, pointing out of the image
-  double offset;           ///< of the line, units of the positions
+  double offset;           ///< offset of the line, units of the positions
 };
 
 /// Finds the sides of the image that cut the object, from the points alone. Not in the paper.
 ///
 /// Like pixels, the positions of the points of a scan lie in rows and columns. Where the image ends, its last row is as
 /// long as those before it; where the object ends, rows become shorter. A straight edge of the object along a row looks
-/// like a side of the image: space beyond it is then unknown, which loses evidence but adds none.
-/// \param positions of points in the image plane at depth one.
+/// like a side of the image: space beyond it then counts as unknown, which loses evidence but adds none.
+/// \param positions positions of points in the image plane at depth one.
 /// \return at most four sides; none if the positions form no grid, as for a random subset of the points.
 std::vector<FrameSide> frameSides(const std::vector<Eigen::Array2d>& positions);
 
-/// Determines from the points of a scene whether they were measured from a viewpoint. Unlike that of one object, a
-/// scene may surround the viewpoint.
+/// Determines from the points of a scene whether they were measured from a viewpoint. Unlike the points of one object,
+/// a scene may surround the viewpoint.
 /// \param points 3 x N, finite.
 /// \param viewpoint in the frame of the points.
 /// \param max_pixels as in Visibility::ofScene().
@@ -102,8 +102,8 @@ std::string whyNotSeenFrom(const PointsRef& points, const Eigen::Vector3d& viewp
 
 /// Limits of a single view, as shares of the points.
 struct SingleViewLimits {
-  double max_hidden;   ///< share of points well behind others
-  double max_layered;  ///< layeredShare()
+  double max_hidden;   ///< greatest share of points well behind others
+  double max_layered;  ///< greatest layeredShare()
 };
 
 /// spaceSeenFrom() of visibility.h with other limits.
@@ -112,17 +112,17 @@ std::optional<Visibility> spaceSeenFrom(const PointsRef& points, const Eigen::Ve
 
 /// Share of the points that form layers as seen from a viewpoint.
 ///
-/// A point is layered if the next point in the image is much farther away or much nearer, and the roughness of the
+/// A point is layered if its neighbor in the image is much farther away or much nearer, and the roughness of the
 /// surface does not explain it. A scan has one layer except at its silhouettes (0.1 of the points, up to 0.2 with
-/// noise); an object that is known from all sides has two or more.
+/// noise); an object that is seen from all sides has two or more.
 /// \param points 3 x N, finite.
 /// \param viewpoint in the frame of the points.
 /// \return a value in [0, 1]; 0 for fewer than two points.
 double layeredShare(const PointsRef& points, const Eigen::Vector3d& viewpoint);
 
 /// How much of the outline of a cloud the image border cuts off.
-/// \param points 3 x N, finite, N >= 1, seen within 75 degrees of one direction.
-/// \param margin distance beyond the outermost points at which the image is read, share of their distance from the
+/// \param margin distance beyond the outermost points at which the image is read, as a share of their distance from the
+/// middle.
 /// middle.
 /// \return share of the directions of the outline, seen from the viewpoint, in which the sensor's image ends beside the
 /// cloud; 0 for an image made from points.

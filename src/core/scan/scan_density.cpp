@@ -20,7 +20,7 @@ namespace {
 /// The ellipse that the neighbors of a point cover.
 struct Patch {
   Eigen::Vector3f normal;
-  float log_density;  ///< less a constant of all patches
+  float log_density;  ///< up to a constant of all patches
   bool is_surface;
 };
 
@@ -42,7 +42,7 @@ Patch fitPatch(const Points& points, const int* neighbors, int count) {
 
 }  // namespace
 
-/// A viewpoint in radii about the center.
+/// A viewpoint, in radii about the center.
 struct ScanDensity::Candidate {
   Eigen::Vector3d direction;
   double log_distance;
@@ -185,8 +185,8 @@ ScanDensity::Candidate ScanDensity::refined(Candidate best, double first_step, d
   return best;
 }
 
-/// Refines, by the coarse samples, the directions that leave least unexplained, apart from each other; none if all are
-/// hopeless.
+/// Of the directions that leave the least variance unexplained, refines those that are not close to each other by the
+/// coarse samples; none if all are hopeless.
 std::vector<ScanDensity::Candidate> ScanDensity::coarseMinima(std::size_t max_count) const {
   std::vector<Candidate> coarse;
   for (const Eigen::Vector3d& direction : evenDirections(kScan.num_directions))

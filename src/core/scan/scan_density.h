@@ -20,8 +20,8 @@ public:
   /// \param points 3 x N, finite. Large clouds are sampled.
   explicit ScanDensity(const PointsRef& points);
 
-  /// \return variance of log(density d^2 / cos(a)) over the samples between the smallest and the largest tenth; infinite
-  /// where the cloud shows no surface. Small if the points were measured from there.
+  /// \return variance of log(density d^2 / cos(a)) over the samples between the smallest and the largest tenth;
+  /// infinite where the cloud shows no surface. Small if the points were measured from there.
   /// \param viewpoint frame of the points.
   double unexplained(const Eigen::Vector3d& viewpoint) const;
 
@@ -37,10 +37,10 @@ public:
   /// \return the variance of log(density), which a viewpoint has to explain.
   double variance() const;
 
-  /// \return the variance of log(density) of points at random, which no viewpoint explains.
+  /// \return the variance of log(density) of random points, which no viewpoint explains.
   double varianceAtRandom() const { return 1.0 / num_neighbors_; }
 
-  /// \return the viewpoint that explains most, up to 30 radii away, frame of the points; none if no direction comes
+  /// \return the viewpoint that explains most, up to 30 radii away, frame of the points; nothing if no direction comes
   /// close to explaining the density.
   std::optional<Eigen::Vector3d> bestViewpoint() const;
 
@@ -63,8 +63,8 @@ private:
 
   BoundingBall ball_;
   Eigen::Index num_points_ = 0;  // number of points used
-  int num_neighbors_ = 1;        // neighbors per density
-  Points samples_;               // on the surface, in radii about the center, in random order
+  int num_neighbors_ = 1;        // neighbors for each density
+  Points samples_;               // points on the surface, in radii about the center, in random order
   Points normals_;               // unit, of arbitrary sign
   std::vector<float> log_density_;
 };

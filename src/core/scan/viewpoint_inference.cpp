@@ -15,15 +15,14 @@ namespace pcl_symmetry {
 
 namespace {
 
-// Shares of the points, stricter than for viewpoints that are stored: two scans put together pass those half as often
-// again.
+// Stricter than for stored viewpoints: two scans put together pass those limits half as often again.
 constexpr SingleViewLimits kLimits{0.12, 0.15};
-// The same where a viewpoint explains nearly all of the variance of the density: leaves and wires lie in layers from
-// the true viewpoint, too.
+// The same if a viewpoint explains nearly all of the variance of the density: leaves and wires lie in layers even from
+// the true viewpoint.
 constexpr SingleViewLimits kSureLimits{kScan.max_hidden, 0.4};
 
-/// Whether all points are at a border, as those of a wire: its density is uninformative, and it is seen once from
-/// everywhere.
+/// Whether all points are at a border, as those of a wire: its density is uninformative, and rays from everywhere meet
+/// it once.
 bool isWire(const PointsRef& points) {
   const Points drawn = pointsAt(points, drawSamples(points.cols(), kScan.border_samples, 1));
   const ClosestPointSearch::Ptr search = makeFlannSearch(drawn);
@@ -31,7 +30,8 @@ bool isWire(const PointsRef& points) {
   return shareNearBorders(openBorders(drawn, *search, geometry.normals, 1), geometry) > kScan.wire;
 }
 
-/// A scanner so far away that its rays are parallel leaves the same density from behind: then the bulge decides.
+/// Decides between the two sides by the bulge of the surface: a scanner so far away that its rays are parallel leaves
+/// the same density from behind.
 Eigen::Vector3d onItsSide(const ScanDensity& density, const Eigen::Vector3d& best) {
   const Eigen::Vector3d center = density.ball().center, opposite = 2.0 * center - best;
   const Eigen::Vector3d far = center + kScan.greatest_distance * density.ball().radius * (center - best).normalized();
@@ -40,8 +40,8 @@ Eigen::Vector3d onItsSide(const ScanDensity& density, const Eigen::Vector3d& bes
   return as_good && !density.bulgesToward(best) ? behind : best;
 }
 
-/// The view from the position from which the points have the fewest layers, of those from which they may be seen at
-/// all. Two or three flat pieces are as dense as seen from several positions.
+/// The view from the position with the fewest layers, among those from which the points may be seen at all. Two or
+/// three flat pieces have the density of views from several positions.
 template <typename SeenFrom>
 std::optional<InferredView> leastLayered(const PointsRef& points, const ScanDensity& density, double max_unexplained,
                                          const SeenFrom& seenFrom) {
@@ -75,7 +75,7 @@ std::optional<InferredView> inferView(const PointsRef& points, const Eigen::Vect
     return left + kScan.min_variance < share * (density.variance() + kScan.min_variance);
   };
   if (!leaves(kScan.max_unexplained)) return std::nullopt;
-  // Few points leave much to chance, and no chance lays them as evenly as a scanner does.
+  // Few points leave much to chance, but chance never distributes them as evenly as a scanner does.
   const bool surely =
       left + kScan.min_variance <
       kScan.surely_explained * std::min(density.variance() + kScan.min_variance, density.varianceAtRandom());

@@ -16,7 +16,7 @@ namespace pcl_symmetry {
 
 namespace {
 
-/// Takes points of the input frame to the frame of a camera.
+/// Maps points of the input frame to the frame of a camera.
 Visibility::Projection cameraAt(const Eigen::Vector3d& viewpoint, const Eigen::Matrix3d& R_camera_input) {
   Visibility::Projection projection;
   projection.leftCols<3>() = R_camera_input;
@@ -26,7 +26,7 @@ Visibility::Projection cameraAt(const Eigen::Vector3d& viewpoint, const Eigen::M
 
 /// Rays from a viewpoint to points.
 struct Rays {
-  Eigen::Index count = 0;  ///< points at the viewpoint have none
+  Eigen::Index count = 0;  ///< number of rays; points at the viewpoint have none
   Eigen::Vector3d mean = Eigen::Vector3d::Zero();
 };
 
@@ -42,7 +42,7 @@ Rays raysTo(const PointsRef& points, const Eigen::Vector3d& viewpoint) {
   return rays;
 }
 
-/// The six directions of a cube, as rotations of a camera that looks at the first one.
+/// The six directions of a cube, as rotations of a camera that looks in the first one.
 std::vector<Eigen::Matrix3d> cubeFaces() {
   std::vector<Eigen::Matrix3d> faces;
   for (int quarter = 0; quarter < 4; ++quarter)
@@ -52,7 +52,7 @@ std::vector<Eigen::Matrix3d> cubeFaces() {
   return faces;
 }
 
-/// The view of points from a camera; none if it sees no point or fewer than required.
+/// The view of points from a camera; nothing if it sees no point, or fewer than required.
 std::optional<Visibility> viewFrom(const PointsRef& points, const Eigen::Vector3d& viewpoint,
                                    const Eigen::Matrix3d& R_camera_input, FieldOfView field, std::size_t max_pixels,
                                    Eigen::Index min_seen) {
@@ -136,14 +136,15 @@ Visibility Visibility::withDepthErrors(double inverse_depth_error) const {
 }
 
 double Visibility::depthError(const Eigen::Vector3d& x) const {
-  // As d(1 / z) = dz / z^2.
+  // Because d(1 / z) = dz / z^2.
   const DepthView& view = depth_views_.front();
   const double depth = view.projection.row(2).dot(x.homogeneous());
   return view.inverse_depth_error * view.unit * depth * depth;
 }
 
 double Visibility::resolvedTolerance(const PointsRef& points) const {
-  // 97 % of a normal distribution lie within 2.17 standard deviations; the difference of two errors has the root of 2
+  // 97 % of a normal distribution lie within 2.17 standard deviations; the difference of two errors has sqrt(2) times
+  // the standard deviation of one.
   // times that of one.
   const double deviations = 2.17 * std::sqrt(2.0);
   const Eigen::Vector3d middle = points.cast<double>().rowwise().mean();
