@@ -24,7 +24,7 @@ public:
   }
 
   /// Makes \p b part of \p a; they need not be neighbors.
-  /// \return the border between them, which is gone.
+  /// \return the border between them, which then no longer exists.
   Sum join(int a, int b) {
     Sum between{};
     for (const auto& [c, sum] : std::exchange(borders_[b], {})) {

@@ -47,11 +47,12 @@ namespace {
 
 /// Labels that result from copying one side of a plane to the other.
 struct CopiedLabels {
-  std::vector<int> labels;  ///< of each element: its own, or the number of segments + that of the segment copied to it
-  double kept = 0.0;        ///< area that stays with the segment that most of its new segment was
+  /// For each element: its own label or, if copied, the number of segments + the label of the segment copied to it.
+  std::vector<int> labels;
+  double kept = 0.0;  ///< area that stays with the segment that most of its new segment belonged to
 };
 
-/// Whether each segment lies on both sides of a plane.
+/// For each segment, whether it lies on both sides of a plane.
 std::vector<char> liesAcross(const SurfaceGraph& graph, const std::vector<int>& labels,
                              const std::vector<char>& above) {
   const std::vector<double> areas = areasOf(graph, labels);

@@ -19,10 +19,10 @@ namespace {
 
 struct SurfacePoint {
   Eigen::Vector3f position, normal;
-  float reach;  ///< input units; rays from here begin at this distance
+  float reach;  ///< input units; rays from the point begin at this distance
 };
 
-/// Points spread over each patch by area, one in each of equal shares. The points of a cloud represent themselves.
+/// Points spread over each patch by area, one in each of equal shares. The points of a cloud are used themselves.
 std::vector<std::vector<SurfacePoint>> samplePatches(const SurfaceGraph& graph, const Patches& patches, float radius,
                                                      std::uint64_t seed) {
   RandomStream random(seed);
@@ -127,7 +127,7 @@ Eigen::MatrixXf supportOfPatches(const SurfaceGraph& graph, const Patches& patch
   return means;
 }
 
-/// The patch at the reflection of the center of each patch, for each plane that maps enough of the surface onto itself.
+/// For each plane that maps enough of the surface onto itself, the patch at the reflection of the center of each patch.
 std::vector<std::vector<int>> imagesOfPatches(const Patches& patches, const std::vector<PartPlane>& planes) {
   std::vector<std::vector<int>> images;
   const auto search = makeFlannSearch(patches.centers);
@@ -138,7 +138,8 @@ std::vector<std::vector<int>> imagesOfPatches(const Patches& patches, const std:
   return images;
 }
 
-/// The element where the first patch of a division grows, drawn by area; -1 for the first division: the usual one.
+/// The element from which the first patch of a division grows, drawn by area; -1 for the first division: the default
+/// one.
 int firstSeed(const SurfaceGraph& graph, int division, std::uint64_t seed) {
   if (division == 0) return -1;
   double left = RandomStream(seed).uniform() * graph.area();

@@ -15,13 +15,13 @@ namespace pcl_symmetry {
 struct PartEvidence {
   Patches patches;
   std::vector<PatchBorder> borders;
-  /// K, median length of rays from the patch to the other side of the body (shape diameter, Shapira et al. 2008), in
+  /// K median lengths of rays from the patch to the other side of the body (shape diameter, Shapira et al. 2008), in
   /// radii of the surface; 0 if no ray met another side.
   std::vector<double> thickness;
   /// K x K, symmetric: 1 if no surface lies between the positions half-way through the body behind two patches, else 0.
   Eigen::MatrixXf sight;
-  std::vector<PartPlane> planes;  ///< of the whole surface, strongest first
-  Eigen::MatrixXf support;        ///< planes x K, in [0, 1]: means over the elements of a patch, by area
+  std::vector<PartPlane> planes;  ///< planes of the whole surface, strongest first
+  Eigen::MatrixXf support;        ///< planes x K, in [0, 1]: means over the elements of a patch, weighted by area
   /// For each plane with share >= kMappedShare: the patch at the reflection of the center of each patch.
   std::vector<std::vector<int>> images;
 
@@ -38,7 +38,8 @@ public:
   const std::vector<PartPlane>& planes() const { return features_.planes; }
 
   /// Divides the surface into patches (over-segmentation) and gathers evidence.
-  /// \param division divisions with different numbers, from 0, grow their patches from different seeds.
+  /// \param division number of the division, from 0; divisions with different numbers grow their patches from different
+  /// seeds.
   PartEvidence ofDivision(int division) const;
 
 private:

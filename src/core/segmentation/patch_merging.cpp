@@ -20,7 +20,7 @@ namespace pcl_symmetry {
 
 namespace {
 
-/// The strongest plane that maps nearly the whole surface onto itself, across which labels have to agree, and the
+/// The strongest plane that maps nearly the whole surface onto itself, in which labels have to be symmetric, and the
 /// element at the reflection of each element.
 struct LabelSymmetry {
   ReflectionPlane plane;
@@ -35,8 +35,8 @@ std::optional<LabelSymmetry> symmetricPlane(const WholeEvidence& whole, const Se
   return std::nullopt;
 }
 
-/// Borders that follow the surface instead of the patches, equal on both sides of the symmetry plane, and no small
-/// segments.
+/// Labels whose borders follow the surface instead of the patches and are symmetric in the symmetry plane, without
+/// small segments.
 std::vector<int> refinedLabels(const SurfaceGraph& graph, std::vector<int> labels,
                                const std::optional<LabelSymmetry>& symmetry, int max_segments,
                                const SegmentationOptions& options) {
@@ -51,15 +51,15 @@ std::vector<int> refinedLabels(const SurfaceGraph& graph, std::vector<int> label
 /// Binary joins of leaves. A node below num_leaves is a leaf, node num_leaves + i is join i.
 struct Joins {
   int num_leaves = 0, root = 0;
-  std::vector<std::pair<int, int>> children;  ///< of each join
+  std::vector<std::pair<int, int>> children;  ///< the two children of each join
 };
 
 Joins joinsOf(const std::vector<int>& region_of_patch, const std::vector<int>& segment_of_region,
               const std::vector<Merge>& merges) {
   Joins joins;
   joins.num_leaves = 1 + *std::max_element(segment_of_region.begin(), segment_of_region.end());
-  std::vector<int> node = segment_of_region;   // the topmost node that a region belongs to
-  std::vector<int> current = region_of_patch;  // the region that each patch belongs to by now
+  std::vector<int> node = segment_of_region;   // topmost node that a region belongs to
+  std::vector<int> current = region_of_patch;  // region that each patch belongs to at present
   const auto join = [&](int into, int from) {
     if (into == from) return;
     joins.children.emplace_back(node[into], node[from]);
@@ -104,14 +104,14 @@ std::vector<SegmentNode> segmentTree(const std::vector<int>& region_of_patch, co
   return tree;
 }
 
-/// A segment for each patch: the one that holds most of it, but each segment has at least one patch.
+/// A segment for each patch: the one that holds most of it; each segment has at least one patch.
 /// \param labels one per element, from 0; at most as many segments as patches.
 std::vector<int> segmentsOfPatches(const SurfaceGraph& graph, const Patches& patches, const std::vector<int>& labels) {
   const int num_segments = 1 + *std::max_element(labels.begin(), labels.end());
   Eigen::MatrixXd shared = Eigen::MatrixXd::Zero(num_segments, patches.size());
   for (int i = 0; i < graph.size(); ++i) shared(labels[i], patches.of_element[i]) += graph.areas[i];
   std::vector<int> segment(patches.size(), -1);
-  // The segment with the smallest share of any patch chooses first.
+  // The segment whose largest share of a patch is smallest is assigned first.
   const Eigen::VectorXd most = shared.rowwise().maxCoeff();
   for (const int s : fallingOrder(Eigen::VectorXd(-most))) {
     int best = -1;
@@ -185,9 +185,9 @@ namespace {
 
 /// Elements that lie in one cell of every division.
 struct CommonCells {
-  std::vector<int> of_element;          ///< from 0
-  std::vector<double> areas;            ///< shares of the surface
-  std::vector<std::vector<int>> cells;  ///< per division: its cell that holds each common cell
+  std::vector<int> of_element;          ///< for each element, its common cell, from 0
+  std::vector<double> areas;            ///< share of the surface of each common cell
+  std::vector<std::vector<int>> cells;  ///< for each division, its cell that holds each common cell
 
   int size() const { return static_cast<int>(areas.size()); }
 };
@@ -260,7 +260,7 @@ public:
     double probability = -1.0;
   };
 
-  /// The neighbors that are most likely one part; a = -1 if no two clusters are neighbors.
+  /// The two neighbors that most likely are one part; a = -1 if no two clusters are neighbors.
   Pair likeliest() const {
     Pair best;
     for (int a = 0; a < static_cast<int>(areas_.size()); ++a) {
@@ -283,10 +283,10 @@ public:
   }
 
 private:
-  std::vector<int> cluster_;   ///< of each cell
-  std::vector<double> areas_;  ///< of clusters, shares of the surface
-  Adjacency<int> neighbors_;   ///< numbers of edges between clusters
-  Eigen::MatrixXf sums_;       ///< mean probability times both areas
+  std::vector<int> cluster_;   ///< cluster of each cell
+  std::vector<double> areas_;  ///< share of the surface of each cluster
+  Adjacency<int> neighbors_;   ///< number of edges between two clusters
+  Eigen::MatrixXf sums_;       ///< mean probability of two clusters times both areas
   int num_clusters_;
 };
 

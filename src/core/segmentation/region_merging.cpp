@@ -18,7 +18,8 @@ double ratio(double a, double b) {
   return b > 0.0 ? a / b : 0.0;
 }
 
-/// Log of the thickness at each patch. A patch behind which no ray met another side is open: as thick as the thickest.
+/// Logarithm of the thickness at each patch. A patch behind which no ray met another side is open: as thick as the
+/// thickest one.
 std::vector<double> logThickness(const std::vector<double>& thickness) {
   const double thickest = *std::max_element(thickness.begin(), thickness.end());
   std::vector<double> log_thickness;
@@ -123,7 +124,7 @@ void Regions::merge(int a, int b) {
 }
 
 std::vector<Merge> mergeRegions(Regions regions, const MergeWeights& weights) {
-  // That two regions are one part: a weighted sum of the cues.
+  // log odds that two regions are one part: a weighted sum of the cues
   std::map<std::pair<int, int>, double> log_odds;  // by the regions, the lower number first
   const auto update = [&](int a, int b) {
     const Cues cues = regions.cues(a, b);
@@ -158,7 +159,7 @@ MergedDivision mergedDivision(const PartEvidence& evidence, const MergeWeights& 
   const std::vector<int> cell_of_patch = renumbered(regions.ofPatches());
   MergedDivision division;
   for (const int patch : evidence.patches.of_element) division.cell.push_back(cell_of_patch[patch]);
-  std::map<int, std::vector<int>> cells_of;  // of regions
+  std::map<int, std::vector<int>> cells_of;  // cells of each region
   for (int patch = 0; patch < evidence.size(); ++patch) cells_of[regions.ofPatches()[patch]] = {cell_of_patch[patch]};
   const auto size = static_cast<Eigen::Index>(cells_of.size());
   division.probability = Eigen::MatrixXf::Identity(size, size);

@@ -18,13 +18,13 @@ enum Cue {
   kSupportDifference,  ///< root mean square difference of their support for the planes of the surface, in [0, 1]
   kImages,             ///< 1 if some plane reflects each onto the other, else 0
   kEdgeConcavity,      ///< mean concavity of the edges along the border, radians
-  kPatchConcavity,     ///< mean concavity between the patches on both sides of the border, as PatchBorder
-  kInnerConcavity,     ///< mean concavity between the patches within the two regions, as PatchBorder
-  kThicknessRatio,     ///< |log| of the ratio of their thicknesses
-  kConstriction,       ///< log of the thickness of the thinner region over the thickness at the border
-  kSight,              ///< share of the pairs of patches, one in each region, with a free line of sight within the body
-  kRelativeSight,      ///< kSight over the same share within the regions
-  kSightOfSmall,       ///< kSight * kSmallArea
+  kPatchConcavity,  ///< mean concavity between the patches on both sides of the border, as PatchBorder::patch_concavity
+  kInnerConcavity,  ///< mean concavity between the patches within the two regions, as PatchBorder::patch_concavity
+  kThicknessRatio,  ///< |log| of the ratio of the thicknesses of the two regions
+  kConstriction,    ///< log of the thickness of the thinner region over the thickness at the border
+  kSight,           ///< share of the pairs of patches, one in each region, with a free line of sight within the body
+  kRelativeSight,   ///< kSight divided by the same share within the regions
+  kSightOfSmall,    ///< kSight * kSmallArea
   kNumCues
 };
 using Cues = std::array<double, kNumCues>;
@@ -32,7 +32,7 @@ using Cues = std::array<double, kNumCues>;
 /// Log odds per unit of each cue, in the order of Cue.
 using MergeWeights = std::array<double, kNumCues>;
 
-/// Regions of a surface that grow together, at first one per patch. A region has the number of one of its patches.
+/// Regions of a surface that are merged; initially one per patch. A region has the number of one of its patches.
 class Regions {
 public:
   /// One region per patch.
@@ -41,7 +41,7 @@ public:
   /// \return the number of patches; regions have numbers below it.
   int size() const { return static_cast<int>(areas_.size()); }
 
-  /// \return share of the surface.
+  /// \return area of a region, as a share of the surface.
   double area(int region) const { return areas_[region]; }
 
   /// \return the region of each patch.
@@ -64,7 +64,7 @@ public:
 private:
   int imageOf(int region, const Eigen::MatrixXf& shared) const;
 
-  std::vector<int> region_;              ///< of each patch
+  std::vector<int> region_;              ///< region of each patch
   std::vector<double> areas_;            ///< shares of the surface
   std::vector<double> log_thickness_;    ///< sums over patches, weighted by area
   std::vector<double> perimeters_;       ///< input units
@@ -78,21 +78,22 @@ private:
 /// Region \p from became part of region \p into.
 struct Merge {
   int into, from;
-  double log_odds;  ///< that the two are one part, when they were merged
+  double log_odds;  ///< log odds that the two are one part, when they were merged
 };
 
 /// Merges neighboring regions, the pair that is most likely one part first, until no two regions are neighbors. Log
 /// odds are updated after each merge.
 std::vector<Merge> mergeRegions(Regions regions, const MergeWeights& weights);
 
-/// Probabilities that pairs of elements are in one part, by the merges of one division into patches.
+/// Probabilities that pairs of elements are in one part, from the merges of one division into patches.
 struct MergedDivision {
-  std::vector<int> cell;        ///< of each element, from 0: regions that are surely one part
-  Eigen::MatrixXf probability;  ///< cells x cells: that two of them are one part, in [0, 1]
+  std::vector<int> cell;        ///< cell of each element, from 0: cells are regions that are surely one part
+  Eigen::MatrixXf probability;  ///< cells x cells, probability that two cells are one part, in [0, 1]
 };
 
-/// Merges the patches of a division. Two cells are one part with the least probability among the merges that join them.
-/// \param num_parts 0, or the number of regions that are left: those joined later are surely not one part.
+/// Merges the patches of a division. The probability that two cells are one part is the least one among the merges that
+/// join them.
+/// \param num_parts 0, or the number of remaining regions: regions that are merged later are surely not one part.
 MergedDivision mergedDivision(const PartEvidence& evidence, const MergeWeights& weights, int num_parts);
 
 /// The same division, reflected.

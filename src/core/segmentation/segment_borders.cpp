@@ -47,7 +47,7 @@ std::vector<float> distanceFromBorder(const SurfaceGraph& graph, const std::vect
   return distance;
 }
 
-/// Elements that may change sides: the open ones and those in the band, without the farthest element of each side.
+/// Elements that may change sides: the open ones and those in the band, except the farthest element of each side.
 std::vector<int> movableElements(const std::vector<int>& side, const std::vector<float>& distance,
                                  const std::vector<int>& open) {
   const int size = static_cast<int>(side.size());
@@ -142,10 +142,11 @@ namespace {
 /// Connected pieces of equal label.
 struct Pieces {
   std::vector<int> of_element;
-  std::vector<double> areas;                    ///< input units squared
-  std::vector<int> labels;                      ///< of each piece
-  std::vector<char> is_largest;                 ///< whether no piece of the same label is larger
-  std::vector<std::map<int, double>> contacts;  ///< length of the border with each other label, input units
+  std::vector<double> areas;     ///< area of each piece, input units squared
+  std::vector<int> labels;       ///< label of each piece
+  std::vector<char> is_largest;  ///< whether no piece of the same label is larger
+  /// For each piece, the length of its border with each other label, input units.
+  std::vector<std::map<int, double>> contacts;
 };
 
 Pieces piecesOf(const SurfaceGraph& graph, const std::vector<int>& labels) {
@@ -169,7 +170,7 @@ Pieces piecesOf(const SurfaceGraph& graph, const std::vector<int>& labels) {
   return pieces;
 }
 
-/// \param lengths by label, not empty.
+/// \param lengths lengths by label, not empty.
 int labelOfMost(const std::map<int, double>& lengths) {
   const auto shorter = [](const auto& a, const auto& b) { return a.second < b.second; };
   return std::max_element(lengths.begin(), lengths.end(), shorter)->first;
@@ -227,7 +228,8 @@ public:
   }
 
   int size() const { return static_cast<int>(areas_.size()); }
-  /// In a cloud at most the segment's share of the points, as the area of a point among few others is a guess.
+  /// In a cloud, the area is at most the segment's share of the points, because the area of a point among few others is
+  /// a guess.
   double area(int segment) const { return std::min(areas_.at(segment), num_elements_.at(segment) * most_of_element_); }
 
   int smallest() const {
@@ -236,7 +238,7 @@ public:
         ->first;
   }
 
-  /// The segment that a small one belongs to.
+  /// The segment that a small segment is joined with.
   int hostOf(int segment) const {
     const std::map<int, double>& lengths = borders_.borders(segment);
     return lengths.empty() ? closestTo(segment) : labelOfMost(lengths);
@@ -273,8 +275,8 @@ private:
   std::vector<int> labels_;
   std::map<int, double> areas_;      ///< by segment
   std::map<int, int> num_elements_;  ///< by segment
-  Adjacency<double> borders_;        ///< lengths
-  double most_of_element_;           ///< area that an element may count for in the mean of its segment
+  Adjacency<double> borders_;        ///< lengths of the common borders
+  double most_of_element_;           ///< greatest area that an element counts for, on average over its segment
 };
 
 }  // namespace

@@ -24,7 +24,7 @@ namespace {
 constexpr double min_extent = 1e-15;  // input units; squares and sums stay within float
 constexpr double greatest_extent = 1e15;
 
-/// Refuses points whose distances have no squares in float: areas and neighbors would be infinite or zero.
+/// Throws for points whose distances have no squares in float: areas and neighbors would be infinite or zero.
 /// \param points 3 x N; those that are not finite do not count.
 /// \throws std::invalid_argument naming the extent and the rule.
 void checkExtent(const PointsRef& points) {
@@ -75,7 +75,8 @@ std::vector<std::vector<int>> membersOfPieces(const SurfaceGraph& graph) {
   return members;
 }
 
-/// Area of the elements whose rays along the normal leave the shape, minus that of those whose rays against it do.
+/// Area of the elements whose rays along the normal leave the shape, minus that of the elements whose rays against the
+/// normal do.
 double escapingArea(const SurfaceGraph& graph, const Points& normals, const TriangleTree& tree,
                     const std::vector<int>& members, RandomStream& random) {
   const int num_rays = static_cast<int>(std::min<std::size_t>(members.size(), kSegmentation.orientation_rays));
@@ -134,8 +135,8 @@ float concavityOf(const SurfaceGraph& graph, const SurfaceGraph::Edge& edge) {
   return opening > 0.0f ? angle : -angle;
 }
 
-/// The last steps of building a graph: index of the edges, outward normals, concavity of the edges.
-/// \param graph with everything but first_edge, edge_of and the concavity of the edges; normals of any sign.
+/// Completes a graph: index of the edges, outward normals, concavity of the edges.
+/// \param graph a graph without first_edge, edge_of and the concavity of the edges; normals of any sign.
 /// \param agreement one per edge: > 0 if the normals at both ends point to the same side, < 0 if they do not; a larger
 /// magnitude is more certain.
 SurfaceGraph completedGraph(SurfaceGraph graph, const std::vector<float>& agreement) {
@@ -153,8 +154,8 @@ SurfaceGraph completedGraph(SurfaceGraph graph, const std::vector<float>& agreem
 /// The surface at a point of a cloud, from the point and its neighbors.
 struct LocalSurface {
   Eigen::Vector3f normal, u, v;  ///< unit, perpendicular to each other: least, middle and greatest principal axis
-  float area;                    ///< that the point represents, input units squared
-  float border;                  ///< with each neighbor, input units
+  float area;                    ///< area that the point represents, input units squared
+  float border;                  ///< length of the border with each neighbor, input units
 };
 
 LocalSurface localSurface(const PointsRef& points, Eigen::Index i, const std::vector<int>& neighbors) {

@@ -30,7 +30,7 @@ std::vector<int> elementsOfLargestPieces(const SurfaceGraph& graph, int num_piec
   return elements;
 }
 
-/// Patches that grow around seeds; each element belongs to the seed with the shortest way along the surface.
+/// Patches that grow around seeds; each element belongs to the seed with the shortest path along the surface.
 class GrowingPatches {
 public:
   GrowingPatches(const SurfaceGraph& graph, float concave_detour)
@@ -43,7 +43,7 @@ public:
     }
   }
 
-  /// \return length of the way from the closest seed; infinite if no patch has reached the element.
+  /// \return length of the path from the closest seed; infinite if no patch has reached the element.
   float distance(int element) const { return distance_[element]; }
 
   /// \return the patch of each element; -1 for none.
@@ -74,7 +74,7 @@ public:
 
 private:
   const SurfaceGraph& graph_;
-  std::vector<float> lengths_;  ///< of the steps across edges, with the detour across concave ones, input units
+  std::vector<float> lengths_;  ///< lengths of the steps across edges, with the detour for concave ones, input units
   std::vector<float> distance_;
   std::vector<int> patch_;
   using Way = std::pair<float, int>;  ///< length and element
@@ -89,7 +89,7 @@ std::vector<int> growPatches(const SurfaceGraph& graph, int num_patches, float c
   if (first >= 0) patches.addSeed(first);
   std::vector<int> elements = elementsOfLargestPieces(graph, num_patches);
   eraseIf(elements, [&](int i) { return !(graph.areas[i] > 0.0f); });
-  // Each large piece has a seed. After that the next one is the element farthest from all seeds.
+  // Each large piece has a seed. After that, the next seed is the element farthest from all seeds.
   std::vector<int> others;
   for (auto element = elements.rbegin(); element != elements.rend(); ++element) {
     if (std::isinf(patches.distance(*element)))
@@ -104,7 +104,7 @@ std::vector<int> growPatches(const SurfaceGraph& graph, int num_patches, float c
     const auto [distance, element] = farthest.top();
     farthest.pop();
     if (distance > patches.distance(element))
-      farthest.emplace(patches.distance(element), element);  // a seed has come closer since
+      farthest.emplace(patches.distance(element), element);  // a seed has come closer in the meantime
     else
       patches.addSeed(element);
   }

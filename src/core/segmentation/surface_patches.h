@@ -12,7 +12,7 @@ namespace pcl_symmetry {
 /// \param num_patches >= 1; there may be a few more or fewer patches.
 /// \param concave_detour >= 0, per radian: a step across an edge of concavity c > 0 is 1 + concave_detour * c times as
 /// long.
-/// \param first the element where the first patch grows; -1 for the last element with an area.
+/// \param first the element from which the first patch grows; -1 = the last element with an area.
 /// \return the patch of each element, from 0.
 std::vector<int> growPatches(const SurfaceGraph& graph, int num_patches, float concave_detour, int first = -1);
 
@@ -31,8 +31,8 @@ struct PatchBorder {
   int from, to;
   double length;          ///< input units
   double edge_concavity;  ///< mean concavity of the edges, weighted by length, radians
-  /// (n_from - n_to) . d in [-2, 2], with the unit vector d from the center of the one to the center of the other;
-  /// > 0 if the normals point toward each other.
+  /// (n_from - n_to) . d in [-2, 2], with d the unit vector between the two centers; > 0 if the normals point toward
+  /// each other.
   double patch_concavity;
 };
 

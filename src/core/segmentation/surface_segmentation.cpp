@@ -18,7 +18,7 @@ bool showsASurface(const SurfaceGraph& graph) {
   return DistinctPoints(graph.centers).points.cols() >= kMinDistinctPoints;
 }
 
-/// \param result of another number of parts than is wanted.
+/// \param result a segmentation whose number of parts differs from the wanted one.
 std::string reasonOf(const SurfaceGraph& graph, const Segmentation& result, const SegmentationOptions& options) {
   const std::string text =
       "num_parts = " + std::to_string(options.num_parts) + ", " + std::to_string(result.num_segments) + " possible: ";
@@ -37,7 +37,7 @@ Segmentation oneSegment(const SurfaceGraph& graph) {
   return result;
 }
 
-/// \return for each point the num_neighbors closest others, or all where there are fewer, nearest first.
+/// \return for each point, the num_neighbors closest others, or all if there are fewer, nearest first.
 std::vector<std::vector<int>> nearestOthers(const PointsRef& points, const ClosestPointSearch& search,
                                             int num_neighbors, int num_threads) {
   const auto size = static_cast<std::size_t>(points.cols());
@@ -79,7 +79,7 @@ Segmentation segmentSurface(const SurfaceGraph& graph, const SegmentationOptions
 }
 
 Segmentation segmentCloud(const PointsRef& points, std::size_t max_points, const SegmentationOptions& options) {
-  constexpr int num_neighbors = 12;  // that each point is joined with
+  constexpr int num_neighbors = 12;  // number of points that each point is joined with
   const auto size = static_cast<std::size_t>(points.cols());
   std::vector<std::size_t> drawn;
   if (size > max_points) drawn = oneOfEachRun(size, max_points, options.seed);

@@ -28,12 +28,12 @@ Points sampleElements(const SurfaceGraph& graph, const std::vector<int>& element
   return sampleTriangles(graph.corners, triangles, kSegmentation.feature_samples, seed);
 }
 
-/// Takes planes to the ball that a distance transform covers.
+/// Transforms planes to the ball that a distance transform covers.
 auto intoBall(const GaussianEdt& edt) {
   return [&edt](const ReflectionPlane& plane) { return plane.normalized(edt.center(), edt.radius()); };
 }
 
-/// The strongest significant maxima of the transform, one of each basin (Section 4.4).
+/// The strongest significant maxima of the transform, one for each basin (Section 4.4).
 std::vector<ReflectionPlane> significantMaxima(const Points& samples, const GaussianEdt& edt, std::uint64_t seed,
                                                int num_threads) {
   const PlaneGrid grid(kSegmentation.map_size, edt.center(), edt.radius());
@@ -44,8 +44,8 @@ std::vector<ReflectionPlane> significantMaxima(const Points& samples, const Gaus
   return kSameMaximum.distinct(std::move(maxima), intoBall(edt), kSegmentation.max_planes);
 }
 
-/// Refines planes by Iterative Symmetric Points (Section 4.4). A plane that leaves its basin keeps its start, a
-/// Departure from the paper.
+/// Refines planes by Iterative Symmetric Points (Section 4.4). Departure from the paper: a plane that leaves its basin
+/// keeps its start.
 std::vector<ReflectionPlane> refined(const std::vector<ReflectionPlane>& starts, const Points& samples,
                                      const GaussianEdt& edt, const SegmentationOptions& options) {
   const ClosestPointSearch::Ptr search = options.make_search ? options.make_search(samples) : makeFlannSearch(samples);

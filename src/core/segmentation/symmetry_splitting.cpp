@@ -25,7 +25,7 @@ struct SplitPart {
 
 /// Splits a part in two by its symmetries (Section 5.3): k-means with k = 2 on the support, the two largest connected
 /// components, and the minimum cut between them.
-/// \param features of the part, one column of support per element.
+/// \param features features of the part, one column of support per element.
 /// \return both sides; nothing if all elements have the same support or one side is empty.
 std::optional<SplitPart> splitByTwoMeans(const SurfaceGraph& graph, const std::vector<int>& elements,
                                          const SymmetryFeatures& features, const SplittingOptions& options,
@@ -38,7 +38,8 @@ std::optional<SplitPart> splitByTwoMeans(const SurfaceGraph& graph, const std::v
   std::vector<int> side(graph.size(), -1);
   for (std::size_t i = 0; i < elements.size(); ++i) side[elements[i]] = clusters.labels[i];
 
-  // "the two largest connected components": the cut assigns the smaller ones; as published, the closer of the two does
+  // "the two largest connected components": the cut assigns the smaller ones; as published, they go to the closer of
+  // the two
   const std::vector<int> pieces = connectedPieces(graph, side);
   const std::vector<int> largest = fallingOrder(areasOf(graph, pieces));
   if (largest.size() < 2) return std::nullopt;
@@ -66,8 +67,8 @@ std::optional<SplitPart> splitByTwoMeans(const SurfaceGraph& graph, const std::v
   return split;
 }
 
-/// The splitting rule of Section 5.3. "Segmentation is terminated ... when the only planes of local maxima reflect
-/// either more than 90 % or less than 10 % of the surface onto itself": a plane between the two keeps it going.
+/// The splitting rule of Section 5.3: "Segmentation is terminated ... when the only planes of local maxima reflect
+/// either more than 90 % or less than 10 % of the surface onto itself". A plane between the two limits continues it.
 bool hasDistinctSymmetries(const std::vector<PartPlane>& planes) {
   return std::any_of(planes.begin(), planes.end(), [&](const PartPlane& plane) {
     return plane.share >= kSegmentation.min_share && plane.share <= kSegmentation.max_share;
@@ -141,7 +142,7 @@ private:
     return static_cast<int>(nodes_.size()) - 1;
   }
 
-  /// A given number of parts overrules the depth.
+  /// Whether a leaf may still be split; a given number of parts overrules the depth.
   bool isOpen(int node) const {
     return is_open_[node] && (options_.num_parts > 0 || nodes_[node].depth < options_.splitting.depth);
   }
@@ -149,9 +150,9 @@ private:
   const SurfaceGraph& graph_;
   const SegmentationOptions& options_;
   std::vector<SegmentNode> nodes_;
-  std::vector<std::vector<int>> elements_;  ///< of each node
-  std::vector<double> areas_;               ///< of each node, input units squared
-  std::vector<bool> is_open_;               ///< leaves that nobody has tried to split
+  std::vector<std::vector<int>> elements_;  ///< elements of each node
+  std::vector<double> areas_;               ///< area of each node, input units squared
+  std::vector<bool> is_open_;               ///< leaves not yet tried
 };
 
 }  // namespace
