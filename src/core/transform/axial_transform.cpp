@@ -18,15 +18,15 @@ namespace pcl_symmetry {
 namespace {
 
 /// A rotation about an axis, and its weight in D_n of each fold. Rotations by an angle and by its negative correlate
-/// equally, but differ in the part that they move into free space.
+/// equally, but move different parts into free space.
 struct AxialRotation {
   double angle;                 ///< radians, in (0, 2 pi)
-  std::vector<double> weights;  ///< for each fold; over all rotations they sum to 1
+  std::vector<double> weights;  ///< for each fold; the sum over all rotations is 1
 };
 
-/// The rotations that the D of all folds are made of, each once.
+/// The rotations that determine the D of all folds, each once.
 /// \param folds as in AxialTransformOptions.
-/// \param both_ways also rotations by more than pi.
+/// \param both_ways whether rotations by more than pi are included.
 std::vector<AxialRotation> rotationsOf(const std::vector<int>& folds, bool both_ways) {
   const int num_rotations = kTransform.num_rotations;
   std::map<std::pair<int, int>, std::size_t> index_of;  // by reduced fraction of a full rotation
@@ -45,8 +45,8 @@ std::vector<AxialRotation> rotationsOf(const std::vector<int>& folds, bool both_
   for (std::size_t i = 0; i < folds.size(); ++i) {
     const int n = folds[i];
     for (int k = 1; 2 * k <= n; ++k) addPair(k, n, i, 1.0 / (n - 1));
-    // The middles of equal parts of a half rotation: the mean over all angles but for harmonics of 2 num_rotations and
-    // more.
+    // The middles of equal parts of a half rotation: the mean over all angles, except for harmonics of order 2
+    // num_rotations and more.
     for (int k = 0; n == 0 && k < num_rotations; ++k) addPair(2 * k + 1, 4 * num_rotations, i, 0.5 / num_rotations);
   }
   return rotations;
@@ -210,7 +210,7 @@ public:
     return values;
   }
 
-  /// The axis moved to where D of its best fold is greatest, in steps of half a bin that are halved.
+  /// The axis, moved to where D of its best fold is greatest, in steps of half a bin that are halved repeatedly.
   AxisMaximum refined(Line3d axis) const {
     const int fold = bestFold(map_.folds, valuesAt(axis));
     const std::size_t position = std::find(map_.folds.begin(), map_.folds.end(), fold) - map_.folds.begin();
@@ -266,7 +266,7 @@ private:
   Eigen::Matrix3Xf samples_;
 };
 
-/// Bins with great values, none near a stronger one.
+/// Bins of great values, none close to a stronger one.
 std::vector<Line3d> startsOf(const AxisMap& map, std::size_t count, double min_value) {
   std::vector<std::size_t> bins;
   for (std::size_t i = 0; i < map.greatest.size(); ++i)
@@ -316,7 +316,7 @@ std::vector<AxisMaximum> axisMaxima(const AxisMap& map, const GaussianEdt& edt, 
 
 namespace {
 
-constexpr std::size_t points_at_a_time = 1024;  // their values stay in the first cache
+constexpr std::size_t points_at_a_time = 1024;  // their values stay in the first-level cache
 
 /// Values of one direction, bilinear between their bins and 0 beyond.
 class DirectionValues {

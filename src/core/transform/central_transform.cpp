@@ -34,7 +34,7 @@ CenterMap centralTransform(const GaussianEdt& edt, int num_centers, const AxialT
   const LookupTable table(edt, freeSpace(edt, visibility, options.num_threads), options.num_threads);
   // The image of x is 2 c - x.
   const Eigen::Matrix3Xf reflected = -centeredSamples(edt, options.num_samples, options.seed, options.num_threads);
-  // |f|^2 / S by the same samples: their noise cancels, and takes D of no center beyond 1 by the 2 % of the draw.
+  // |f|^2 / S from the same samples: their noise cancels, so that no D exceeds 1 by the 2 % of the draw.
   double own = 0.0;
   for (Eigen::Index i = 0; i < reflected.cols(); ++i) {
     const Eigen::Array3i cell = (static_cast<float>(middleCell(edt)) - reflected.col(i).array()).round().cast<int>();

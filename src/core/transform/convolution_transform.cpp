@@ -25,7 +25,7 @@ constexpr std::size_t convolved_per_block = 16;  // directions
 // g = 1.3247..., the root of g^3 = g + 1.
 constexpr double kPhaseSteps[2] = {0.7548776662466927, 0.5698402909980532};
 
-constexpr int kRowLanes = 8;    ///< lines of a bundle through cells of the same row, which are looked up by one load
+constexpr int kRowLanes = 8;    ///< lines of a bundle through cells of the same row, whose values one load reads
 constexpr int kBundleRows = 2;  ///< rows whose lanes make a bundle
 constexpr int kBundleLanes = kBundleRows * kRowLanes;
 
@@ -55,7 +55,7 @@ struct BundleLattice {
         refine(static_cast<int>(std::ceil(2.0 * radius_step / spacing))) {
     if (isNearlyWhole(2.0 * radius_step / refine)) ++refine;
     along = 2.0 * radius_step / refine;
-    max_ahead = half() / std::sqrt(3.0);  // the axis that is the farthest from n has at most 1 / sqrt(3) of it
+    max_ahead = half() / std::sqrt(3.0);  // the axis that is farthest from n has a component of at most 1 / sqrt(3)
     num_along = static_cast<int>(std::ceil(2.0 * (clip + max_ahead + radius_step) / along)) + 2;
     const int n = edt.numCells();
     for (int row = 0; row < n * n; ++row) {
@@ -66,29 +66,30 @@ struct BundleLattice {
     }
   }
 
-  /// \return from the middle of a row of a bundle to its first and last line.
+  /// \return distance from the middle of a row of a bundle to its first and last line.
   double half() const { return 0.5 * (kRowLanes - 1) * step; }
 
   Eigen::AlignedBox3d filled;  ///< around the centers of the cells in which f is not 0
-  double middle;               ///< coordinate of the middle in cells from the first cell center
+  double middle;               ///< coordinate of the middle, in cells from the first cell center
   double clip;                 ///< radius of the ball beyond which f is taken as 0
-  Eigen::Vector3d center;      ///< of the grid of planes
-  double grid_offset;          ///< of the first bin from the center of the grid
+  Eigen::Vector3d center;      ///< center of the grid of planes
+  double grid_offset;          ///< offset of the first bin from the center of the grid
   double radius_step;
-  double spacing;  ///< between parallel lines
-  int step;        ///< between the lines of a bundle, along an axis of the cells
+  double spacing;  ///< distance between parallel lines
+  int step;        ///< distance between the lines of a bundle, along an axis of the cells
   /// Points at t0 + l * along have the planes between them at t0 + (a + b) * along / 2: every refine-th one is a bin.
   int refine;
-  double along;      ///< between the points of a line
-  double max_ahead;  ///< from the middle of a row to its first and last line, along the normal
-  int num_along;     ///< points of a line
+  double along;      ///< distance between the points of a line
+  double max_ahead;  ///< distance from the middle of a row to its first and last line, along the normal
+  int num_along;     ///< number of points of a line
 };
 
 /// The bundles of one direction: lines along the normal n through every step-th cell of rows of cells. Rows lie along
-/// the axis e that is the farthest from n, at equal distances along v, which is across both. Vectors have e first.
+/// the axis e that is farthest from n, at equal distances along v, which is perpendicular to both. Vectors have e
+/// first.
 ///
-/// Point l of the middle of a row of a bundle has the height t = t0 + l * along, and lies at x e + b v + tau n with
-/// tau = t - x n.x.
+/// Point l of the middle of a row of a bundle has the height t = t0 + l * along, and lies at x e + b v + tau n with tau
+/// = t - x n.x.
 class BundlesOfDirection {
 public:
   BundlesOfDirection(const BundleLattice& lattice, const Eigen::Vector3d& normal) : lattice_(lattice) {
@@ -104,27 +105,26 @@ public:
     for (int i = 0; i < 3; ++i) step_[i] = LookupTable::toFixed(lattice.along * n_[i]);
   }
 
-  int axis() const { return axis_; }  ///< of the rows
-  /// \return bins from t0 to the first one, times -1.
+  int axis() const { return axis_; }  ///< axis of the rows
+  /// \return number of bins from t0 to the first one, times -1.
   double numSkipped() const { return num_skipped_; }
-  double between() const { return between_; }  ///< rows
-  /// \return height of a line above the one before in its row, in cells.
+  double between() const { return between_; }  ///< distance between rows
+  /// \return difference in height of neighboring lines of a row, in cells.
   double ahead() const { return lattice_.step * n_.x(); }
   /// \return volume that each point represents, in cells.
   double volume() const { return lattice_.along * between_ * lattice_.step * across_; }
-  /// \return rows on each side of the middle.
+  /// \return number of rows on each side of the middle.
   int numRows() const { return static_cast<int>(std::ceil(lattice_.clip / between_)); }
 
   /// Where a row of the lattice lies.
   struct Row {
     double b;
-    double shift;  ///< along it
+    double shift;  ///< offset along the row
   };
-  /// The bundles of kBundleRows rows, each cut to where it can meet nonzero cells, without those of which nothing is
-  /// left.
+  /// The bundles of kBundleRows rows, each cut to where it can meet nonzero cells; empty ones are left out.
   std::vector<Bundle> bundles(const Row* rows) const {
     std::vector<Bundle> bundles;
-    // The ball casts an ellipse along n. Rows are shifted by up to half a step.
+    // The projection of the ball along n is an ellipse. Rows are shifted by up to half a step.
     const double width = kRowLanes * lattice_.step;
     const int num_side = static_cast<int>(std::ceil(lattice_.clip / (across_ * width) + 0.5 / kRowLanes));
     for (int c = -num_side; c < num_side; ++c) {
@@ -132,7 +132,7 @@ public:
       double first = lattice_.num_along, last = -1.0;
       for (int r = 0; r < kBundleRows; ++r) {
         const double x = static_cast<float>((c + 0.5) * width + rows[r].shift);
-        const double tau = t0_ - x * n_.x();  // of point 0
+        const double tau = t0_ - x * n_.x();  // tau of point 0
         const auto [from, to] = filledPart(x, rows[r].b);
         if (from <= to) {
           first = std::min(first, (from - tau) / lattice_.along);
@@ -153,10 +153,10 @@ public:
   }
 
 private:
-  /// The heights tau between which the lines of a bundle of a row can meet what is not 0.
-  /// \param x of the middle of the bundle.
+  /// The heights tau between which the lines of a bundle of a row can meet nonzero cells.
+  /// \param x position of the middle of the bundle.
   std::pair<double, double> filledPart(double x, double b) const {
-    // A look-up takes the whole cell; fixed-point steps are rounded.
+    // A look-up reads the whole cell; fixed-point steps are rounded.
     const double of_cell = 0.51, min_slope = 1e-5;
     const double radius = lattice_.clip + lattice_.half() + std::sqrt(3.0) * of_cell;
     const double chord = std::sqrt(std::max(0.0, radius * radius - x * x - b * b + x * n_.x() * x * n_.x()));
@@ -176,30 +176,30 @@ private:
   const BundleLattice& lattice_;
   int axis_ = 0;
   Eigen::Vector3d n_, v_;
-  double across_;       ///< distance of lines whose feet are one cell apart on a row
-  double between_;      ///< rows
-  double num_skipped_;  ///< bins from t0 to the first one, times -1
+  double across_;       ///< distance of lines through neighboring cells of a row
+  double between_;      ///< distance between rows
+  double num_skipped_;  ///< number of bins from t0 to the first one, times -1
   double t0_;           ///< height of the first points of all bundles
   std::int32_t step_[3];
 };
 
-/// \return in [-0.5, 0.5).
+/// \return fractional part, in [-0.5, 0.5).
 double phase(double rotations) {
   return rotations - std::floor(rotations) - 0.5;
 }
 
-/// The cells of an EDT as bytes in rows along each of the three axes, for points that are many cells of a row: of every
-/// step-th cell of a row, kRowLanes lie side by side, whichever is the first. Values are multiplied by
+/// The cells of an EDT as bytes in rows along each of the three axes, for points that are several cells of a row apart:
+/// of every step-th cell of a row, kRowLanes are stored side by side, whichever is the first. Values are multiplied by
 /// LookupTable::kOne; cells beyond a ball and beyond the cube are 0.
 class RowTable {
 public:
   /// \param f num_cells^3 values in [0, 255 / LookupTable::kOne], x fastest.
-  /// \param clip cells whose centers are farther from the middle of the cube are 0, in cells.
-  /// \param step between the cells of a row that lie side by side, >= 1.
+  /// \param clip radius in cells; cells whose centers are farther from the middle of the cube are 0.
+  /// \param step distance of the cells of a row that are stored side by side, >= 1.
   RowTable(const std::vector<float>& f, int num_cells, double clip, int step, int num_threads)
       : num_cells_(num_cells), step_(step) {
     const int n = num_cells;
-    stride_ = (n + step - 1) / step + kRowLanes;  // the lanes before a row are those after the one before
+    stride_ = (n + step - 1) / step + kRowLanes;  // the lanes before a row are those after the previous one
     const std::size_t of_phase = static_cast<std::size_t>(n) * n * stride_;
     size_ = of_phase * step;
     for (int x = -kRowLanes * step; x < n; ++x) {
@@ -238,8 +238,8 @@ public:
     const std::uint8_t* bytes;
     const std::int32_t* of_x;
     int of_y, of_z;
-    int min_x;  ///< that x may have
-    int last;   ///< cell of a row
+    int min_x;  ///< least x
+    int last;   ///< last cell of a row
   };
   Rows along(int axis) const {
     const int before = kRowLanes * step_;
@@ -249,14 +249,14 @@ public:
 
 private:
   int num_cells_, step_;
-  int stride_;        // bytes of a row: cells of one phase between kRowLanes cells of nothing
-  std::size_t size_;  // bytes of one axis
+  int stride_;        // bytes of a row: cells of one phase between kRowLanes empty cells
+  std::size_t size_;  // bytes for one axis
   std::vector<std::int32_t> of_x_;
   std::vector<std::uint8_t> bytes_;
 };
 
-/// Looks the points of a bundle up, each in the cell that contains it.
-/// \param[out] values of each point kBundleLanes of them.
+/// Looks up the points of a bundle, each in the cell that contains it.
+/// \param[out] values kBundleLanes values for each point.
 PCL_SYMMETRY_MULTIVERSION
 void lookUp(Bundle bundle, const RowTable::Rows& rows, std::int32_t* __restrict offsets, float* __restrict values) {
   const int first = bundle.first, last = bundle.last;
@@ -281,7 +281,7 @@ PCL_SYMMETRY_MULTIVERSION
 void correlate(const float* values, int first, int last, std::int32_t* sums) {
   typedef float Lanes __attribute__((vector_size(kBundleLanes * sizeof(float))));
   for (int s = 2 * first; s < 2 * last - 1; ++s) {
-    // Products of different points count twice. The sums are integers that a float holds without rounding.
+    // Products of two different points count twice. The sums are integers that a float holds without rounding.
     Lanes total{}, a, b;
     for (int low = std::max(first, s - last + 1); 2 * low < s; ++low) {
       std::memcpy(&a, values + low * kBundleLanes, sizeof a);
@@ -299,10 +299,10 @@ void correlate(const float* values, int first, int last, std::int32_t* sums) {
 
 // Poles of the quintic spline: roots within the unit circle of z^4 + 26 z^3 + 66 z^2 + 26 z + 1.
 constexpr double kPoles[2] = {-0.4305753470999738, -0.0430962882032647};
-constexpr int reach_of_spline = 12;  // values on each side that a coefficient depends on: pole^13 = 2e-5 is left out
+constexpr int reach_of_spline = 12;  // values on each side that a coefficient depends on: pole^13 = 2e-5 is negligible
 constexpr int num_taps = 6;          // coefficients that a value of quintic splines depends on
 
-/// Weights of the coefficients -2 to 3 in the value at t in [0, 1].
+/// Weights of the coefficients -2 to 3 for the value at t in [0, 1].
 std::array<float, num_taps> weightsAt(double t) {
   const auto spline = [](double x) {
     if (x <= 1.0) return 11.0 / 20.0 - x * x * (1.0 / 2.0 - x * x * (1.0 / 4.0 - x / 12.0));
@@ -314,7 +314,7 @@ std::array<float, num_taps> weightsAt(double t) {
   return weights;
 }
 
-/// \return weights of values at distances up to reach_of_spline in a coefficient.
+/// \return weights of values at distances up to reach_of_spline for a coefficient.
 std::array<float, reach_of_spline + 1> weightsOfValues() {
   std::array<float, reach_of_spline + 1> weights{};
   for (const double z : kPoles) {
@@ -333,11 +333,11 @@ void addLane(const float* values, int size, const float* weights, float* sums) {
   }
 }
 
-/// Sums of the lanes of bundles at equally spaced positions, which differ from lane to lane of a row by a fraction of
-/// the distance, and what they add up to at common positions, by quintic splines (Unser, Splines: a perfect fit, 1999).
+/// Sums of the lanes of bundles at equally spaced positions, which differ between the lanes of a row by a fraction of
+/// the distance; and their total at common positions, by quintic splines (Unser, Splines: a perfect fit, 1999).
 class LaneSums {
 public:
-  /// \param max_ahead distances that the first and the last lane of a row are from its middle, at most.
+  /// \param max_ahead greatest offset of the first and the last lane of a row from its middle, distances of positions.
   LaneSums(int size, double max_ahead)
       : size_(size),
         margin_(static_cast<int>(std::ceil(max_ahead)) + num_taps),
@@ -349,8 +349,8 @@ public:
   std::int32_t* data() { return sums_.data(); }
 
   /// Adds the sums to the values at common positions, and sets them to 0.
-  /// \param ahead distances that each lane of a row is ahead of the one before; the middle of a row is at the common
-  /// positions.
+  /// \param ahead offset of each lane of a row from the lane before, distances of positions; the middle of a row is at
+  /// the common positions.
   void bringTogether(double ahead) {
     for (int j = 0; j < kRowLanes; ++j) {
       const double of_lane = (j - 0.5 * (kRowLanes - 1)) * ahead;
@@ -390,8 +390,8 @@ private:
 /// D for all planes of one direction: the volume is resampled along the normal, and each line is correlated with its
 /// reversal (Section 4.2).
 ///
-/// Lines stand side by side in bundles: those through cells of the same row are looked up by one load. Their points lie
-/// at different heights along the normal: the sums of each lane are brought to the bins of r in the end.
+/// Lines are grouped in bundles: lines through cells of the same row are looked up by one load. Their points lie at
+/// different heights along the normal; in the end, the sums of each lane are interpolated at the bins of r.
 class DirectionConvolution {
 public:
   DirectionConvolution(const BundleLattice& lattice, const RowTable& table)
@@ -400,14 +400,14 @@ public:
         offsets_(lattice.num_along),
         values_(static_cast<std::size_t>(lattice.num_along) * kBundleLanes),
         sums_(2 * lattice.num_along, 2.0 * lattice.max_ahead / lattice.along) {
-    // The sums of these fit in 32 bits
+    // The sums of these products fit in 32 bits.
     constexpr auto most = static_cast<std::int64_t>(LookupTable::kMaxValue);
     max_bundles_ = static_cast<int>(
         std::max<std::int64_t>(1, std::numeric_limits<std::int32_t>::max() / (most * most * lattice.num_along)));
   }
 
   /// \param index of the direction in the grid.
-  /// \param norm by which sums of products are divided.
+  /// \param norm divisor of the sums of products.
   /// \param[out] d num_radius values of D.
   void run(const Eigen::Vector3d& normal, std::size_t index, double norm, int num_radius, float* d) {
     const BundlesOfDirection bundles(lattice_, normal);
@@ -426,8 +426,8 @@ private:
     const double ahead = 2.0 * bundles.ahead() / lattice_.along;
     const int num_rows = bundles.numRows();
     int num_added = 0;
-    // Each direction has its own phase of the lattice, and each row one of its own along it, so that what aliasing is
-    // left does not add up.
+    // Each direction has its own phase of the lattice, and each row one of its own along it, so that the remaining
+    // aliasing does not add up.
     const double phase_of_rows = phase(kPhaseSteps[0] * index);
     for (int i = -num_rows; i <= num_rows; i += kBundleRows) {
       BundlesOfDirection::Row rows_of_bundle[kBundleRows];
@@ -453,8 +453,8 @@ private:
 
   const BundleLattice& lattice_;
   const RowTable& table_;
-  std::vector<std::int32_t> offsets_;  // of the points of a row of a bundle
-  std::vector<float> values_;          // of the points of a bundle, lane by lane
+  std::vector<std::int32_t> offsets_;  // offsets of the points of a row of a bundle
+  std::vector<float> values_;          // values of the points of a bundle, lane by lane
   LaneSums sums_;
   int max_bundles_;
 };
@@ -470,7 +470,7 @@ SymmetryMap convolutionTransform(const GaussianEdt& edt, const PlaneGrid& grid,
                                  const ConvolutionTransformOptions& options) {
   options.validate();
   const BundleLattice lattice(edt, grid, options.spacing);
-  // Half: the look-up of the nearest cell is one box, interpolation is two.
+  // Half of it, because the look-up of the nearest cell is one box, and interpolation is two.
   const RowTable table(edt.sharpened(0.5 * kTransform.of_interpolation, options.num_threads), edt.numCells(),
                        lattice.clip, lattice.step, options.num_threads);
   const double norm = edt.sqNorm() * LookupTable::kOne * LookupTable::kOne;

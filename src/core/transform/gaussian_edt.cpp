@@ -20,7 +20,7 @@ namespace pcl_symmetry {
 namespace {
 
 /// The ball that a grid of cells covers.
-/// \param given taken where its radius is > 0; otherwise the ball around the points is, without stray ones.
+/// \param given used if its radius is > 0; otherwise the ball around the points, without stray ones, is used.
 /// \throws std::invalid_argument without a point, for a value that is not finite, and for a ball without extent.
 BoundingBall coveredBall(const PointsRef& points, const BoundingBall& given) {
   checkPoints(points);
@@ -35,7 +35,7 @@ BoundingBall coveredBall(const PointsRef& points, const BoundingBall& given) {
 /// \param points 3 x N, finite.
 /// \return input units; 0 if all points coincide.
 double sampleSpacing(const PointsRef& points) {
-  // A standard error of 13 % for random samples of a surface; 18 % for half as many, 9 % for twice as many
+  // A standard error of 13 % for random samples of a surface; with half as many, 18 %, with twice as many, 9 %.
   constexpr Eigen::Index kNumProbes = 32;
   const Eigen::Index size = points.cols(), num_probes = std::min(kNumProbes, size);
   std::vector<double> nearest;
@@ -55,16 +55,16 @@ int clampedInt(float value, int low, int high) {
   return static_cast<int>(std::clamp(value, static_cast<float>(low), static_cast<float>(high)));
 }
 
-constexpr int kLanes = 8;  // floats in an AVX2 register: compilers take wider ones apart, float by float
+constexpr int kLanes = 8;  // floats in an AVX2 register: compilers split wider arrays into single floats
 
-/// Cells from begin to before end along an axis.
+/// Cells [begin, end) along an axis.
 struct CellSpan {
   int begin, end;
 };
 
-/// Lowers the squared distances of cells to those from a point.
-/// \param stride of the rows of \p layer, whose first slice is number \p first_slice. Some cells behind \p x are lowered,
-/// too: a row ends with kLanes of them.
+/// Lowers the squared distances of cells to their distances from a point.
+/// \param stride stride of the rows of \p layer, whose first slice has the number \p first_slice. A few cells behind \p
+/// x are lowered, too: a row ends with kLanes of them.
 PCL_SYMMETRY_MULTIVERSION
 void lowerAround(const float* point, CellSpan x, CellSpan y, CellSpan z, float sq_reach, std::ptrdiff_t stride,
                  std::ptrdiff_t num_rows, float* layer, int first_slice) {
@@ -90,7 +90,7 @@ void lowerAround(const float* point, CellSpan x, CellSpan y, CellSpan z, float s
 
 /// Squared distances of the cells of a cube from the nearest of some points, exact up to a reach (Section 4.1).
 /// \param points 3 x N, in cells from the center of cell (0, 0, 0).
-/// \param reach beyond which distances do not matter, cells, > 0.
+/// \param reach distance beyond which distances do not matter, cells, > 0.
 /// \return num_cells^3 values, x fastest: at most reach^2.
 std::vector<float> sqCellDistances(const Points& points, int num_cells, float reach, int num_threads) {
   const auto n = static_cast<std::size_t>(num_cells), stride = n + kLanes;
@@ -98,7 +98,7 @@ std::vector<float> sqCellDistances(const Points& points, int num_cells, float re
     return CellSpan{clampedInt(std::ceil(at - reach), low, high), clampedInt(std::floor(at + reach) + 1.0f, low, high)};
   };
   std::vector<float> result(n * n * n);
-  constexpr std::size_t num_slices = 8;  // of a layer, whose cells stay in the second cache
+  constexpr std::size_t num_slices = 8;  // slices of a layer, whose cells stay in the second-level cache
   parallelRanges(n, num_slices, num_threads, [&](std::size_t begin, std::size_t end) {
     const int first = static_cast<int>(begin);
     std::vector<float> layer((end - begin) * n * stride, reach * reach);

@@ -27,12 +27,12 @@ std::vector<float> localSymmetry(const GaussianEdt& edt, const PointsRef& points
   std::vector<float> result(points.cols(), 0.0f);
   parallelRanges(result.size(), 64, options.num_threads, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
-      // Cells of the window that f is not 0 in.
+      // The cells of the window in which f is not 0.
       const Eigen::Vector3d p = (points.col(i).cast<double>() - edt.origin()) / cell;
       const int n = edt.numCells();
       const Eigen::Vector3d low = (p.array() - scale).ceil().max(0.0), high = (p.array() + scale).floor().min(n - 1.0);
       std::vector<Eigen::Vector3d> cells;
-      std::vector<double> up_to;  // sums of w^2 f
+      std::vector<double> up_to;  // cumulative sums of w^2 f
       double sum = 0.0, sq_norm = 0.0;
       for (int z = static_cast<int>(low.z()); z <= high.z(); ++z)
         for (int y = static_cast<int>(low.y()); y <= high.y(); ++y)
@@ -47,7 +47,7 @@ std::vector<float> localSymmetry(const GaussianEdt& edt, const PointsRef& points
             up_to.push_back(sum);
           }
       if (sum == 0.0) continue;
-      // Drawn with probability w^2 f, each counts f(gamma x).
+      // Samples are drawn with probability w^2 f; each contributes f(gamma x).
       RandomStream random(options.seed, i);
       std::vector<Eigen::Vector3d> drawn;
       for (int k = 0; k < options.num_samples; ++k) {

@@ -6,7 +6,7 @@ namespace pcl_symmetry {
 
 namespace {
 
-/// \param free_space of a scan, which the sampled transform alone takes.
+/// \param free_space free space of a scan, which only the sampled transform uses.
 SymmetryMap transformed(const GaussianEdt& edt, const PlaneGrid& grid, const PlanarTransformOptions& options,
                         const std::vector<float>& free_space) {
   switch (options.method) {

@@ -29,14 +29,14 @@ int smoothSize(double min_size) {
   return size;
 }
 
-/// D of all planes through one point (Figure 4b): of those that contain a line of direction psi, tilted about it by
+/// D of all planes through one point (Figure 4b), namely those that contain a line of direction psi, tilted about it by
 /// delta. Lengths are in cells.
 class PlanesThroughPoint {
 public:
-  /// \param axis of the grid that the point lies on: normals are cos(delta) e + sin(delta) b, e along the axis,
-  /// b = e x a, where the line in the plane has the direction a = (cos psi, sin psi) in the other two axes.
-  /// \param reach from the point to the farthest cell that is not 0.
-  /// \param step between the positions that f is looked up at.
+  /// \param axis axis of the grid that the point lies on: normals are cos(delta) e + sin(delta) b, with e along the
+  /// axis and b = e x a, where the line in the plane has the direction a = (cos psi, sin psi) in the other two axes.
+  /// \param reach distance from the point to the farthest nonzero cell.
+  /// \param step distance between the positions at which f is looked up.
   /// \param line_step how far the far end of a plane moves from one line to the next.
   PlanesThroughPoint(const GaussianEdt& edt, int axis, const Eigen::Vector3d& point, double reach, double step,
                      double line_step)
@@ -124,7 +124,7 @@ private:
 
   static int firstOf(double position) { return static_cast<int>(std::floor(position)); }
   int sizeOfRow(int k) const { return smoothSize(2.0 * kPi * (k + 0.5)); }
-  /// The same line half a turn on: b and with it delta change their sign.
+  /// The same line half a turn on: b, and with it delta, change their sign.
   std::pair<int, int> wrapped(int line) const {
     return line < 0          ? std::pair(line + num_psi_, -1)
            : line < num_psi_ ? std::pair(line, 1)
@@ -140,16 +140,17 @@ private:
   std::vector<std::vector<float>> of_line_;
 };
 
-/// Where a bin of the grid is looked up.
+/// Where the value of a bin of the grid is looked up.
 struct BinLookUp {
   std::size_t bin;
-  double position;  ///< of its plane on the axis, in points from the first
+  double position;  ///< intersection of its plane with the axis, in points from the first
   double psi, delta;
 };
 
-/// Sets the values of the planes whose normals lie closest to one axis of the grid: each meets it in a point.
-/// \param bins that are computed.
-/// \param step between points on an axis, and between planes of neighboring lines at the far end of the shape, cells.
+/// Sets the values of the planes whose normals lie closest to one axis of the grid: each intersects it in a point.
+/// \param bins bins that are computed.
+/// \param step distance between points on an axis, and between planes of neighboring lines at the far end of the shape,
+/// cells.
 void computeAboutAxis(int axis, const GaussianEdt& edt, const PlaneGrid& grid,
                       const RotationalTransformOptions& options, const std::vector<std::size_t>& bins, double step,
                       std::vector<float>& values) {

@@ -24,9 +24,9 @@ using Cube = LineSums::Cube;
 using Lines = LineSums::Lines;
 
 constexpr int line_lanes = 8;    // 32-bit integers in an AVX2 register; sums are padded by as many
-constexpr int max_lines = 1024;  // at a time: they stay in the first cache, and sums of bytes fit in 32 bits
+constexpr int max_lines = 1024;  // at a time: they stay in the first-level cache, and sums of bytes fit in 32 bits
 
-/// Fills the lines that the images of points run along when the points are reflected in parallel planes.
+/// Fills the lines along which the images of points move when the points are reflected in parallel planes.
 PCL_SYMMETRY_MULTIVERSION
 void setUpReflected(const float* px, const float* py, const float* pz, const ParallelPlanes& planes, const Cube& cube,
                     Lines& lines) {
@@ -57,7 +57,7 @@ void setUpReflected(const float* px, const float* py, const float* pz, const Par
   }
 }
 
-/// Fills lines that run along start + moved + k * step, within the ball of the cube.
+/// Fills lines along start + moved + k * step, within the ball of the cube.
 /// \param moved 3 x lines.size.
 PCL_SYMMETRY_MULTIVERSION
 void setUpMoved(const float* moved, const float* start, const float* step, float begin, float end, const Cube& cube,
@@ -149,7 +149,7 @@ auto* kernelOf(bool scalar) {
 
 constexpr std::size_t sampled_per_block = 32;  // directions
 
-/// (S / |f|^2) mean g(gamma x_i) at every bin: D for g = f and, with free space, F for that.
+/// (S / |f|^2) mean g(gamma x_i) at every bin: D for g = f and, with free space, F for g = free space.
 std::vector<std::vector<float>> sampleMeans(const GaussianEdt& edt, const PlaneGrid& grid,
                                             const SampledTransformOptions& options,
                                             const std::vector<float>& free_space) {
@@ -220,7 +220,7 @@ LineSums::LineSums(const GaussianEdt& edt, const LookupTable& table, int num_ste
   for (auto& sums : sums_) sums_of_.push_back(sums.data());
 }
 
-/// \param set_up fills lines that begin at a sample; size and step are given.
+/// \param set_up fills lines that begin at a sample; size and step are set.
 template <typename SetUp>
 const LineSums::Totals& LineSums::add(int num_samples, const Eigen::Vector3f& step, int begin, int end,
                                       const SetUp& set_up) {
@@ -307,7 +307,7 @@ std::array<Eigen::Vector3i, block_side * block_side * block_side> cellsOfBlock()
 
 /// A cube of cells and its share of the sum of f.
 struct Block {
-  std::uint32_t code;  ///< along the Morton curve
+  std::uint32_t code;  ///< position along the Morton curve
   Eigen::Vector3i first_cell;
   double sum;
 };
@@ -339,7 +339,7 @@ std::vector<Block> blocksOf(const GaussianEdt& edt, int num_threads) {
 }
 
 /// The cell of a block at which the sum of f along the curve passes \p target.
-/// \param before sum before the block.
+/// \param before sum over the blocks before it.
 Eigen::Vector3f cellAt(const GaussianEdt& edt, const Block& block, double before, double target) {
   static const auto kCells = cellsOfBlock();
   const int n = edt.numCells();
@@ -395,8 +395,9 @@ std::vector<float> freeSpace(const GaussianEdt& edt, const Visibility* visibilit
 }
 
 double correlation(const GaussianEdt& edt, const ReflectionPlane& plane, int num_threads) {
-  constexpr std::size_t layers = 8;    // of cells along z, a slab
-  constexpr std::size_t num_sums = 8;  // of a slab, over cells in turn: rounding errors grow less than in one
+  constexpr std::size_t layers = 8;  // layers of cells along z in a slab
+  // Sums of a slab, over cells in turn: rounding errors grow less than in a single sum.
+  constexpr std::size_t num_sums = 8;
   const ReflectionPlane cells(plane.normal(), plane.signedDistance(edt.origin()) / -edt.cellSize());
   const Eigen::Vector3d step = Eigen::Vector3d::UnitX() - 2.0 * plane.normal().x() * plane.normal();
   const auto n = static_cast<std::size_t>(edt.numCells());

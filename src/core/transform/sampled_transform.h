@@ -11,14 +11,14 @@
 
 namespace pcl_symmetry {
 
-/// Functions on the cells of an EDT as bytes, for the hot loops: a look-up is three shifts and a load.
+/// Functions on the cells of an EDT as bytes, for the innermost loops: a look-up takes three shifts and a load.
 ///
 /// Positions are fixed-point numbers of cells. The table is padded to a power of two along each side and has at least
 /// one empty cell all around, so that a clipped line needs no further test. Values are multiplied by kOne. f and the
 /// free space of a scan share a table, byte by byte, so that one load gets both.
 class LookupTable {
 public:
-  static constexpr int kFractionBits = 16;  ///< 32 bits hold up to 2^15 cells with 1 / 65536 of a cell
+  static constexpr int kFractionBits = 16;  ///< 32 bits hold up to 2^15 cells with a resolution of 1 / 65536 of a cell
   /// Value that stores f = 1. Sharpening raises f to 1.11 at most, which still fits in a byte.
   static constexpr double kOne = 200.0;
   static constexpr float kMaxValue = std::numeric_limits<std::uint8_t>::max();  ///< greatest value of a cell
@@ -60,7 +60,7 @@ inline Eigen::Vector3d middleOf(const GaussianEdt& edt) {
   return edt.origin() + Eigen::Vector3d::Constant(middleCell(edt) * edt.cellSize());
 }
 
-/// Points, the coordinates along each axis side by side.
+/// Points, with the coordinates along each axis stored side by side.
 using CoordinateRows = Eigen::Matrix<float, 3, Eigen::Dynamic, Eigen::RowMajor>;
 
 /// Equally spaced planes of one normal: n.x = offset + k * step for k in [0, count).
@@ -75,12 +75,12 @@ struct ParallelPlanes {
 /// and centers. Lengths are cells. f is taken as 0 beyond the ball in the EDT's cube.
 class LineSums {
 public:
-  /// \param table of f, and for scans of the free space; outlives this.
+  /// \param table table of f and, for scans, of the free space; must outlive this object.
   /// \param num_steps greatest number of images of a sample.
   /// \param scalar uses the plain loop, which the vectorized one has to match bit by bit.
   LineSums(const GaussianEdt& edt, const LookupTable& table, int num_steps, bool scalar = false);
 
-  /// For each function of the table one sum per step.
+  /// One sum per step for each function of the table.
   using Totals = std::vector<std::vector<double>>;
 
   /// Sums over the images of samples reflected in parallel planes.
@@ -91,16 +91,16 @@ public:
   /// Sums over moved samples.
   /// \param moved 3 x N, the samples at step 0, relative to \p start, which is measured from the middle of the cube.
   /// \param start,step the image k of a sample is its moved position + start + k * step.
-  /// \param begin,end steps to add up, in [0, num_steps]; the sums of others are 0.
+  /// \param begin,end steps whose images are added up, in [0, num_steps]; the sums of other steps are 0.
   /// \return valid until the next call.
   const Totals& ofMoved(const Eigen::Matrix3Xf& moved, const Eigen::Vector3f& start, const Eigen::Vector3f& step,
                         int begin, int end);
 
-  /// The EDT's cube of cells and its position in a LookupTable.
+  /// The EDT's cube of cells, and its position in a LookupTable.
   struct Cube {
-    float middle;    ///< coordinate of its middle, in cells from the first cell center
+    float middle;    ///< coordinate of the middle of the cube, in cells from the first cell center
     float sq_clip;   ///< squared radius of the ball about the middle
-    float to_table;  ///< table coordinate of the middle
+    float to_table;  ///< table coordinate of the middle of the cube
   };
   /// Point k of line i is start_i + k * step, in fixed-point table coordinates, inside the ball for k in
   /// [k_begin_i, k_end_i).
@@ -108,7 +108,7 @@ public:
     std::int32_t *x, *y, *z;  ///< start of each line
     std::int32_t *k_begin, *k_end;
     int size;
-    std::int32_t step[3];  ///< of all lines
+    std::int32_t step[3];  ///< step of all lines
   };
 
 private:
@@ -154,14 +154,15 @@ Eigen::Matrix3Xf drawPoints(const GaussianEdt& edt, int num_samples, std::uint64
 /// \return one value in [0, 1] per cell, x fastest; none without visibility.
 std::vector<float> freeSpace(const GaussianEdt& edt, const Visibility* visibility, int num_threads = 0);
 
-/// Symmetry of a scan with respect to a plane. Departure from the paper: its measure is D alone; here reflected points
+/// Symmetry of a scan with respect to a plane. Departure from the paper: its measure is D alone; here, reflected points
 /// in free space count against the plane.
 /// \param d D of Equation 2, >= 0.
 /// \param f F, the same correlation of f with the reflected free space, >= 0.
-/// \return (1 + c) D / (D + F + c) with c = 0.15; 1 for D = 1 and F = 0. A plane that maps the surface to unknown space
-/// has D = F = 0 and the value 0.
+/// \return (1 + c) D / (D + F + c) with c = 0.15; 1 for D = 1 and F = 0. A plane that maps the surface into unknown
+/// space has D = F = 0 and the value 0.
 inline double seenSymmetry(double d, double f) {
   // With this value, the first axis is within 5 degrees for 53 % of 160 scans of training models; with D alone, for 36
+  // %.
   // %.
   constexpr double kDoubt = 0.15;
   return (1.0 + kDoubt) * d / (d + f + kDoubt);

@@ -16,8 +16,8 @@ namespace {
 
 using Factors = std::array<int, 3>;
 
-/// How many voxels along each axis are averaged, so that the voxels become alike and few.
-/// \param max_ratio of the greatest spacing to the least.
+/// The numbers of voxels that are averaged along each axis, so that voxels become similar in size and few.
+/// \param max_ratio greatest ratio of two spacings.
 Factors factorsFor(const ScalarGrid& grid, std::size_t max_voxels, double max_ratio) {
   constexpr int kLeastSize = 16;  // voxels along an axis: fewer are not averaged
   const Eigen::Vector3d spacing = grid.spacing();
@@ -35,8 +35,8 @@ Factors factorsFor(const ScalarGrid& grid, std::size_t max_voxels, double max_ra
   }
 }
 
-/// Means over groups of voxels; the remainder at the end of an axis is not used.
-/// \param map takes a value to the one that is averaged.
+/// Averages over groups of voxels; the remainder at the end of an axis is not used.
+/// \param map maps a value to the one that is averaged.
 template <typename Map>
 ScalarGrid averaged(const ScalarGrid& grid, const Factors& factors, int num_threads, const Map& map) {
   const ScalarGrid::Size& from = grid.size();
@@ -63,7 +63,7 @@ ScalarGrid averaged(const ScalarGrid& grid, const Factors& factors, int num_thre
   return ScalarGrid(size, grid.T_input_index() * T_index_group, std::move(values));
 }
 
-/// One pass of the weights 1/4, 1/2, 1/4 along an axis, a variance of half a voxel.
+/// One pass of the weights 1/4, 1/2, 1/4 along an axis: a variance of half a voxel.
 void smoothAlong(int axis, const ScalarGrid::Size& size, std::vector<float>& values, int num_threads) {
   const std::array<std::size_t, 3> steps{1, static_cast<std::size_t>(size[0]),
                                          static_cast<std::size_t>(size[0]) * size[1]};
@@ -82,7 +82,7 @@ void smoothAlong(int axis, const ScalarGrid::Size& size, std::vector<float>& val
   });
 }
 
-/// A Gaussian, where the voxels are small enough.
+/// A Gaussian filter, along axes whose voxels are small enough.
 /// \param variance in units of the smallest spacing.
 void smooth(const ScalarGrid::Size& size, const Eigen::Vector3d& spacing, double variance, std::vector<float>& values,
             int num_threads) {
@@ -114,7 +114,7 @@ struct TwoClasses {
   }
 };
 
-/// Finite values of a volume, one of equal runs, ascending.
+/// Finite values of a volume, one from each of equal runs, ascending.
 std::vector<float> someValues(const std::vector<float>& values) {
   constexpr std::size_t kMostValues = 200'000;  // an error of 0.1 % of a quantile
   std::vector<float> some;
@@ -135,7 +135,7 @@ VolumeLevels levelsOf(const ScalarGrid& volume, const VolumeLevels& given) {
   if (given.low < given.high) return given;
   const double highest = values[0.995 * static_cast<double>(values.size() - 1)];
   VolumeLevels levels{TwoClasses(values).low_mean, highest};
-  if (!(levels.low < levels.high)) levels.high = values.back();  // a body of less than half a percent
+  if (!(levels.low < levels.high)) levels.high = values.back();  // for a body of less than half a percent of the voxels
   if (!(levels.low < levels.high)) throw VolumeWithoutAnswer("volume: all values are equal");
   return levels;
 }
@@ -193,7 +193,8 @@ void VolumeLevels::validate() const {
 VolumeFunction::VolumeFunction(const ScalarGrid& volume, const VolumeLevels& given, std::size_t max_voxels,
                                int num_threads)
     : f({1, 1, 1}, Eigen::Affine3d::Identity(), {0.0f}), levels(levelsOf(volume, given)) {
-  // Noise of the background is left as it is until it is averaged: cut at 0 it would make the box of the volume a body.
+  // Noise of the background is kept until it is averaged: cut off at 0, it would turn the box of the volume into a
+  // body.
   const float low = static_cast<float>(levels.low), scale = static_cast<float>(1.0 / (levels.high - levels.low));
   const float least = given.low < given.high ? 0.0f : -1.0f;
   f = averaged(volume, factorsFor(volume, max_voxels, 8.0), num_threads,

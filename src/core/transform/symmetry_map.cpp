@@ -15,7 +15,7 @@ namespace pcl_symmetry {
 
 namespace {
 
-/// Whether no neighbor is higher; of equal neighbors, the one with the lowest index is the maximum.
+/// Whether no neighbor has a greater value; of equal neighbors, the one with the lowest index is the maximum.
 bool isLocalMaximum(const SymmetryMap& map, std::size_t index) {
   const float value = map[index];
   return map.grid.visitNeighbors(map.grid.bin(index), [&](std::size_t neighbor) {
@@ -43,7 +43,7 @@ struct PointBlock {
 
 /// A direction and its values: the middle of the row is at the center of the grid, its ends are 0.
 struct DirectionRow {
-  Eigen::Vector3f normal;  ///< of length one step of the row
+  Eigen::Vector3f normal;  ///< its length is one step of the row
   float greatest;
   std::vector<float> values;
 };
@@ -63,9 +63,9 @@ void raise(const PointBlock& points, const DirectionRow& direction, float* best)
   }
 }
 
-/// D along one direction at the bins, and half-way between them by the cubic through four. Without these a peak between
+/// D along one direction at the bins, and half-way between them by a cubic through four bins. Otherwise a peak between
 /// two bins would be cut off, for example the one at the center of the grid.
-/// \return 2 num_radius + 4 values: two of 0, bin 0, half-way, bin 1, ..., the last bin, and three of 0.
+/// \return 2 num_radius + 4 values: two zeros, bin 0, half-way, bin 1, ..., the last bin, and three zeros.
 std::vector<float> refinedRow(const float* values, int num_radius) {
   const auto at = [&](int k) { return k < 0 || k >= num_radius ? 0.0f : values[k]; };
   std::vector<float> row(2 * num_radius + 4, 0.0f);
@@ -96,7 +96,7 @@ std::vector<float> greatestThrough(const std::vector<float>& values, const std::
     const Eigen::MatrixX3f block = points.middleCols(begin, size).transpose();
     const PointBlock coordinates{block.col(0).data(), block.col(1).data(), block.col(2).data(), size};
     for (std::size_t d = 0; d < rows.size(); ++d) {
-      // The remaining directions can no longer raise any value.
+      // The remaining directions cannot raise any value.
       if (d % stop_every == 0 && rows[d].greatest <= *std::min_element(best.begin() + begin, best.begin() + end)) break;
       raise(coordinates, rows[d], best.data() + begin);
     }
@@ -211,7 +211,7 @@ std::vector<LocalMaximum> findLocalMaxima(const SymmetryMap& map, const LocalMax
       const float* const values = &map.values[grid.index({t, p, 0})];
       const double center_offset = grid.normal(t, p).dot(map.center_of_mass - grid.center());
       for (int k = 0; k < grid.numRadius(); ++k) {
-        // Most bins fail at those beside them along r.
+        // Most bins are lower than one of their two neighbors along r.
         const float beside = std::max(k > 0 ? values[k - 1] : 0.0f, k + 1 < grid.numRadius() ? values[k + 1] : 0.0f);
         if (values[k] <= 0.0f || values[k] < beside) continue;
         const PlaneGrid::Bin bin{t, p, k};

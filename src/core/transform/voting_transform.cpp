@@ -15,7 +15,8 @@ namespace pcl_symmetry {
 
 namespace {
 
-/// Draws points of the EDT with probability f: a cell, then a uniform position in it; f is sharpened to undo this blur.
+/// Draws points of the EDT with probability f: a cell, then a uniform position in it; f is sharpened to compensate for
+/// this blur.
 class PointSampler {
 public:
   PointSampler(const GaussianEdt& edt, int num_threads) : edt_(edt) {
@@ -36,7 +37,7 @@ public:
     return cells_[cell].cast<double>() + edt_.cellSize() * Eigen::Vector3d(x, y, z);
   }
 
-  double sum() const { return sum_; }  ///< S, of f over the cells
+  double sum() const { return sum_; }  ///< S, the sum of f over the cells
 
 private:
   const GaussianEdt& edt_;
@@ -45,7 +46,7 @@ private:
   boost::random::discrete_distribution<std::size_t> draw_cell_;
 };
 
-/// The votes of Section 4.3, and those for planes between near points.
+/// The votes of Section 4.3, and votes for planes between close points.
 class Votes {
 public:
   Votes(const GaussianEdt& edt, const PlaneGrid& grid, const VotingTransformOptions& options)
@@ -54,10 +55,10 @@ public:
     num_far_ = options.num_pairs - num_near_;
     const double cell = edt.cellSize(), cell_volume = cell * cell * cell, sum = sampler_.sum();
     const double bin_measure = grid.thetaStep() * grid.phiStep() * grid.radiusStep();
-    // S^2 h^3 / (N V |f|^2), the factor of sum 1 / (2 d^2 sin theta): the estimator of Section 4.3 for f that are not
-    // normalized, on cells of volume h^3 and bins of measure V = dtheta dphi dr.
+    // S^2 h^3 / (N V |f|^2), the factor of the sum of 1 / (2 d^2 sin theta): the estimator of Section 4.3 for a
+    // function f that is not normalized, on cells of volume h^3 and bins of measure V = dtheta dphi dr.
     if (num_far_ > 0) far_weight_ = sum * sum * cell_volume / (num_far_ * bin_measure * edt.sqNorm());
-    // S V_near / (N V |f|^2), the factor of sum f(x').
+    // S V_near / (N V |f|^2), the factor of the sum of f(x').
     if (num_near_ > 0) near_weight_ = sum * (0.5 * kPi * 2.0 * kPi * near_) / (num_near_ * bin_measure * edt.sqNorm());
     const double step = grid.thetaStep();
     for (int t = 0; t < grid.numTheta(); ++t) sines_.push_back((std::cos(t * step) - std::cos((t + 1) * step)) / step);
@@ -68,9 +69,10 @@ public:
 
   /// Draws a pair (x, x') with probability f(x) f(x') and votes for the plane between its points.
   ///
-  /// The weight is w_samp w_change-of-variables = 1 / (f(x) f(x')) * 1 / (2 d^2 sin theta) with d = |x - x'|; times the
-  /// product f(x) f(x') that the transform integrates it is 1 / (2 d^2 sin theta). The sine is the mean of the bin, and
-  /// d at least a cell, as between the different cells that the paper draws: both bound the weight.
+  /// The weight is w_samp w_change-of-variables = 1 / (f(x) f(x')) * 1 / (2 d^2 sin theta) with d = |x - x'|;
+  /// multiplied by the product f(x) f(x') that the transform integrates, it is 1 / (2 d^2 sin theta). The sine is the
+  /// mean over the bin, and d is at least a cell, as between the different cells that the paper draws: both bound the
+  /// weight.
   void voteFar(RandomStream& random, std::vector<float>& values) const {
     const Eigen::Vector3d x = sampler_.draw(random), y = sampler_.draw(random);
     const double sq_distance = (y - x).squaredNorm(), min_sq_distance = edt_.cellSize() * edt_.cellSize();
@@ -99,13 +101,13 @@ private:
   const GaussianEdt& edt_;
   const PlaneGrid& grid_;
   PointSampler sampler_;
-  double near_;  // pairs closer than this are drawn plane first, input units
+  double near_;  // distance below which pairs are drawn plane first, input units
   std::int64_t num_near_ = 0, num_far_ = 0;
   double far_weight_ = 0.0, near_weight_ = 0.0;
   std::vector<double> sines_;  // mean of sin theta over the bins of each row
 };
 
-/// Number of a block's pairs if \p total pairs are shared among all blocks.
+/// Number of pairs of a block if \p total pairs are shared among all blocks.
 std::int64_t shareOf(std::size_t block, std::int64_t total) {
   const auto upTo = [&](std::size_t b) {
     return total * static_cast<std::int64_t>(b) / static_cast<std::int64_t>(kTransform.num_vote_blocks);
