@@ -45,7 +45,7 @@ struct Loop {
 
   const std::size_t num_blocks;
   std::atomic<std::size_t> next{0};
-  std::atomic<bool> cancelled{false};  // by the progress callback
+  std::atomic<bool> cancelled{false};  // set by the progress callback
   int num_free, num_helpers = 0;  // threads that may still join, and that have joined; guarded by the lock of Threads
   Loop* const outer;
   const std::function<void(std::size_t)>& block;

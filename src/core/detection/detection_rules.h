@@ -94,7 +94,7 @@ struct DetectionRules {
     double slanted_odds = 0.1;  ///< odds of a slanted plane relative to another one
     double no_surface = 1.5;    ///< spacing in tolerances from which points are too sparse for a surface
     int max_possible = 5;  ///< greatest number of symmetries and possible planes together, if there are possible ones
-    double slope_dip = 0.005;  ///< rise of D through rounding alone
+    double slope_dip = 0.005;  ///< rise of D on the way to a better plane that counts as rounding
     double slope_angle = 0.2,
            slope_offset = 0.15;  ///< radians, radii: a plane this close to a better one may lie on its slope
   } decide;
@@ -102,58 +102,68 @@ struct DetectionRules {
   /// Polygons and families.
   struct {
     double contained_offset = 0.03,
-           contained_angle = 3.0 * kDegree;  ///< limits within which a plane contains a line
-    std::size_t min_planes = 4;              ///< least planes of a lattice; three fit too many lattices by chance
-    std::size_t max_pairs = 6;               ///< planes whose common lines are tried for a lattice
-    double min_pair_angle = 0.1;  ///< least angle between two planes; smaller ones leave their line uncertain
-    double max_folded = 0.2;  ///< allowed deviation from a plane of the lattice, in angles between neighboring planes
-    std::size_t max_planes = 8;  ///< planes whose common lines are tried for an axis
-    double min_angle = 0.17;     ///< least angle between two of them
+           /// Greatest offset and angle between a line and a plane that contains it, radii and radians.
+        contained_angle = 3.0 * kDegree;
+    std::size_t min_planes = 4;   ///< least number of planes of a lattice; three fit too many lattices by chance
+    std::size_t max_pairs = 6;    ///< greatest number of planes whose common lines are tried for a lattice
+    double min_pair_angle = 0.1;  ///< least angle between two such planes; with smaller ones, their line is uncertain
+    double max_folded = 0.2;  ///< greatest deviation from a plane of the lattice, in angles between neighboring planes
+    std::size_t max_planes = 8;  ///< greatest number of planes whose common lines are tried for an axis
+    double min_angle = 0.17;     ///< least angle between two such planes
     int screening_planes = 3, fitted_planes = 6,
-        tested_planes = 8;       ///< planes of a family that screen it, fit its line, test it
-    double rough_factor = 2.0;   ///< allowances in the screening
-    double coplanar = 0.05;      ///< share of the largest singular value below which normals are coplanar
-    double min_spread = 0.02;    ///< least eigenvalue of the mean outer product of normals, at most 1/3
-    int rough_sample_share = 5;  ///< one sample in this many screens a family
-    double worst_share = 0.5;    ///< least confidence of the worst plane of a family, share of that of a symmetry
-    int refine_iterations = 6;   ///< of a plane of a family
+        /// Numbers of planes of a family that screen it, that its line is fitted to, and that test it.
+        tested_planes = 8;
+    double rough_factor = 2.0;  ///< factor on the allowance in the screening
+    double coplanar = 0.05;     ///< share of the greatest singular value up to which normals are coplanar
+    /// Least eigenvalue of the mean outer product of the normals of planes through one point, at most 1/3.
+    double min_spread = 0.02;
+    int rough_sample_share = 5;  ///< number of samples per sample that screens a family
+    double worst_share = 0.5;    ///< least confidence of the worst plane of a family, as a share of that of a symmetry
+    int refine_iterations = 6;   ///< iterations that refine a plane of a family
   } families;
 
   /// Folds of noisy clouds, by their spectrum.
   struct {
-    int max_frequency = 120, min_fold = 3;  ///< a cloud that is thinner on one side, or flat, has folds one and two
-    int rings = 8, slabs = 4;               ///< about the line: rings for the fold, slabs for the angle of the planes
+    /// Limits of a fold; a cloud that is thinner on one side, or flat, has folds one and two.
+    int max_frequency = 120, min_fold = 3;
+    /// Number of rings about the line for the fold, and of slabs for the angle of the planes.
+    int rings = 8, slabs = 4;
     int spectrum_samples = 20'000, halfway_samples = 5000;
-    int compared_frequencies = 12;   ///< frequencies on either side that one is compared with
-    double min_power = 20.0;         ///< least power of a fold; round bodies in noise reach 15
-    double stands_out = 4.0;         ///< least ratio to the median power of the frequencies beside it
-    double max_gap = 0.125;          ///< greatest gap between angles of folded points, in angles between two planes
-    double errors = 3.0;             ///< standard errors by which planes halfway between those of a polygon are worse
+    int compared_frequencies = 12;  ///< frequencies on either side with which a frequency is compared
+    double min_power = 20.0;        ///< least power of a fold; round bodies in noise reach 15
+    double stands_out = 4.0;        ///< least ratio to the median power of the frequencies beside it
+    /// Greatest gap between angles of folded points, in angles between two planes; sparser points are uninformative.
+    double max_gap = 0.125;
+    double errors = 3.0;  ///< standard errors by which planes halfway between those of a polygon must fit less well
     double odds_of_polygon = 4.0;    ///< odds of planes of a polygon relative to other planes with the same evidence
-    std::size_t max_line_pairs = 4;  ///< planes whose common lines are tried
-    std::array<int, 3> divisors{2, 3, 5};  ///< divisors of a fold, for subsets of planes that may differ
+    std::size_t max_line_pairs = 4;  ///< greatest number of planes whose common lines are tried
+    /// Divisors of a fold, for subsets of planes that may differ from the others.
+    std::array<int, 3> divisors{2, 3, 5};
   } folds;
 
   /// Symmetries of parts.
   struct {
-    int num_seeds = 24, num_directions = 8;        ///< balls of each radius, and directions beside their principal axes
-    std::array<double, 3> radii{0.25, 0.35, 0.5};  ///< of the balls: limbs to halves of a shape
-    double min_ball = 0.04, largest_ball = 0.6;    ///< share of the points of a ball
+    /// Number of balls of each radius, and of directions in addition to their principal axes.
+    int num_seeds = 24, num_directions = 8;
+    std::array<double, 3> radii{0.25, 0.35, 0.5};  ///< radii of the balls, from limbs to halves of a shape
+    double min_ball = 0.04, largest_ball = 0.6;    ///< least and greatest share of the points in a ball
     double min_support = 0.7;                      ///< least share of matching points in a ball
     double farthest_plane = 0.5;  ///< greatest distance of a plane from the middle of its ball, radii of the ball
-    double min_part = 0.04, largest_part = 0.9;  ///< share of the points of a part
+    double min_part = 0.04, largest_part = 0.9;  ///< least and greatest share of the points in a part
     double min_edge = 0.4,
-           edge_per_share = 0.5;  ///< longest edge of a part in edges of a disc, and its increase per share
-    double longer_edge = 0.15, shared_part = 0.5;  ///< extra edge allowed if better parts contain at most this share
-    double same_part = 0.5;                        ///< regions that share more than this belong to one part
-    std::size_t max_planes_of_part = 9;            ///< those of a cube
-    std::array<double, 2> longest_edges_before{1.0, 0.6};  ///< extra edge allowed before each round, as above
-    int iterations = 6;                                    ///< of a plane of a part
-    std::size_t ball_samples = 200, region_samples = 400;  ///< points that are reflected
-    int num_region_samples = 4000;                         ///< samples of a cloud; a part of 4 % has 160
-    int num_smoothing = 11, num_connecting = 6;            ///< neighbors used to smooth and to connect matches
-    double matched_support = 0.8;                          ///< least mean support of a matching neighborhood
-    float counterpart = 0.5f;  ///< least support that connects a sample with its counterpart
+           /// Typical edge of a part, in edges of a disc, and its increase per share of the points.
+        edge_per_share = 0.5;
+    /// Greatest excess edge of a part, and greatest share of its points in better parts if it has an excess edge.
+    double longer_edge = 0.15, shared_part = 0.5;
+    double same_part = 0.5;              ///< share of their points above which two regions belong to one part
+    std::size_t max_planes_of_part = 9;  ///< greatest number of planes of a part without an axis: those of a cube
+    std::array<double, 2> longest_edges_before{1.0, 0.6};  ///< greatest excess edge of a region before each round
+    int iterations = 6;                                    ///< iterations that refine a plane of a part
+    std::size_t ball_samples = 200, region_samples = 400;  ///< points that are reflected in a ball, and in a region
+    int num_region_samples = 4000;                         ///< samples of a cloud for regions; a part of 4 % has 160
+    int num_smoothing = 11, num_connecting = 6;  ///< numbers of neighbors used to smooth and to connect matches
+    double matched_support = 0.8;                ///< least mean support of a matching neighborhood
+    float counterpart = 0.5f;                    ///< least support that connects a sample with its counterpart
   } parts;
 };
 
@@ -162,7 +172,7 @@ inline constexpr DetectionRules kDetection;
 /// A parameter that depends on the kind of cloud.
 template <typename T>
 struct KindRule {
-  T surface, scan, volume;  ///< of points
+  T surface, scan, volume;  ///< value for points of each kind
 
   constexpr T operator[](CloudKind kind) const {
     return kind == CloudKind::Scan ? scan : kind == CloudKind::Volume ? volume : surface;
@@ -174,30 +184,31 @@ struct KindRules {
   // clang-format off
   //                                        surface     scan   volume
 
-  // The points show all sides. A scan shows too little to complete groups of planes, candidates of little merit may be
-  // symmetries, and point-to-plane steps slide along flat pieces; planes of noisy scans climb within the last stage.
+  // Whether the points show all sides. A scan shows too little to complete groups of planes, candidates of little merit
+  // may be symmetries, and point-to-plane steps slide along flat pieces; planes of noisy scans climb within the last
+  // stage.
   KindRule<bool> shows_all                {    true,   false,    true};
-  // Points resolve a surface, whose normals are known. Otherwise the points are made evenly dense, one half of them is
-  // compared with the other, and planes of a polygon are judged together, as noise hides single ones.
+  // Whether points resolve a surface, whose normals are known. Otherwise the points are made evenly dense, one half of
+  // them is compared with the other, and planes of a polygon are judged together, because noise hides single ones.
   KindRule<bool> resolves_surface         {    true,    true,   false};
-  // Open borders indicate cuts.
+  // Whether open borders indicate cuts.
   KindRule<bool> may_lack_piece           {    true,   false,   false};
 
-  // Refinement: the last stage reflects one sample in this many: a scan is limited by its visible part.
+  // Refinement: the last stage reflects one sample in this many. Scans are limited by their visible part.
   KindRule<int> full_stride               {       1,       4,       1};
-  // Candidates that never settle reflect one sample in this many; ...
+  // One sample in this many is reflected for candidates that never settle.
   KindRule<int> rough_stride              {      10,      20,      10};
-  // ... those with less merit never settle.
+  // Least merit of candidates that settle.
   KindRule<double> settled_merit          {    0.83,    0.93,    0.83};
 
   // Evidence: planes are judged by one sample in this many; 0 = by all points.
   KindRule<int> judged_stride             {       0,       4,       0};
-  // Families: share of the surface seen that their planes map on average.
+  // Families: least mean share of the visible surface that their planes map onto the surface.
   KindRule<double> family_share           {    0.92,    0.98,    0.92};
-  // Share of the surface by which planes of a family may differ, at this many points or more.
+  // Share of the surface by which the planes of a family may differ, at points_of_allowance points or more.
   KindRule<double> family_allowance       {   0.015,   0.015,   0.012};
   KindRule<double> points_of_allowance    {     0.0,     0.0, 10000.0};
-  // Points that judge a family; a look-up in a density costs a tenth of a search.
+  // Number of points that judge a family; a look-up in a density costs a tenth of a search.
   KindRule<int> family_samples            {    1500,    1500,   15000};
   // clang-format on
 };

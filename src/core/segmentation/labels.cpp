@@ -69,7 +69,7 @@ CopiedLabels copySide(bool copy_above, const SurfaceGraph& graph, const std::vec
                       const std::vector<char>& above, const std::vector<int>& reflected) {
   const std::vector<char> across = liesAcross(graph, labels, above);
   CopiedLabels copied;
-  std::map<int, std::map<int, double>> shared;  // by new and old label
+  std::map<int, std::map<int, double>> shared;  // shared area, by new and old label
   for (int i = 0; i < graph.size(); ++i) {
     int label = labels[i];
     if ((above[i] != 0) != copy_above) {

@@ -384,7 +384,8 @@ private:
   int margin_;  // zeros on both sides of lane_
   std::vector<std::int32_t> sums_;
   std::vector<float> lane_;
-  std::vector<float> coefficients_;  // of the spline through the values, with reach_of_spline zeros on both sides
+  // Coefficients of the spline through the values, with reach_of_spline zeros on both sides.
+  std::vector<float> coefficients_;
 };
 
 /// D for all planes of one direction: the volume is resampled along the normal, and each line is correlated with its
