@@ -63,10 +63,9 @@ struct DetectionRules {
   /// Measuring a plane.
   struct {
     double surely_whole = 0.985;  ///< share within the tolerance from which no missing piece is assumed
-    double held_stiffness =
-        /// Offset stiffness above which open borders begin to excuse missing matches; at twice this value, they do so
-        /// fully.
-        0.02;
+    /// Offset stiffness above which open borders begin to excuse missing matches; at twice this value, they do so
+    /// fully.
+    double held_stiffness = 0.02;
     double moved_tolerances = 2.0;  ///< tolerances by which a plane has to move an informative sample of a scan
     double noisy_thinness = 3.0;    ///< tolerances within which a volume of points is a sheet or a line
     double round_spacings = 2.0;    ///< spacings within which points of a line do not resolve its cross-section
@@ -101,18 +100,16 @@ struct DetectionRules {
 
   /// Polygons and families.
   struct {
-    double contained_offset = 0.03,
-           /// Greatest offset and angle between a line and a plane that contains it, radii and radians.
-        contained_angle = 3.0 * kDegree;
+    /// Greatest offset and angle between a line and a plane that contains it, radii and radians.
+    double contained_offset = 0.03, contained_angle = 3.0 * kDegree;
     std::size_t min_planes = 4;   ///< least number of planes of a lattice; three fit too many lattices by chance
     std::size_t max_pairs = 6;    ///< greatest number of planes whose common lines are tried for a lattice
     double min_pair_angle = 0.1;  ///< least angle between two such planes; with smaller ones, their line is uncertain
     double max_folded = 0.2;  ///< greatest deviation from a plane of the lattice, in angles between neighboring planes
     std::size_t max_planes = 8;  ///< greatest number of planes whose common lines are tried for an axis
     double min_angle = 0.17;     ///< least angle between two such planes
-    int screening_planes = 3, fitted_planes = 6,
-        /// Numbers of planes of a family that screen it, that its line is fitted to, and that test it.
-        tested_planes = 8;
+    /// Numbers of planes of a family that screen it, that its line is fitted to, and that test it.
+    int screening_planes = 3, fitted_planes = 6, tested_planes = 8;
     double rough_factor = 2.0;  ///< factor on the allowance in the screening
     double coplanar = 0.05;     ///< share of the greatest singular value up to which normals are coplanar
     /// Least eigenvalue of the mean outer product of the normals of planes through one point, at most 1/3.
@@ -150,9 +147,8 @@ struct DetectionRules {
     double min_support = 0.7;                      ///< least share of matching points in a ball
     double farthest_plane = 0.5;  ///< greatest distance of a plane from the middle of its ball, radii of the ball
     double min_part = 0.04, largest_part = 0.9;  ///< least and greatest share of the points in a part
-    double min_edge = 0.4,
-           /// Typical edge of a part, in edges of a disc, and its increase per share of the points.
-        edge_per_share = 0.5;
+    /// Typical edge of a part, in edges of a disc, and its increase per share of the points.
+    double min_edge = 0.4, edge_per_share = 0.5;
     /// Greatest excess edge of a part, and greatest share of its points in better parts if it has an excess edge.
     double longer_edge = 0.15, shared_part = 0.5;
     double same_part = 0.5;              ///< share of their points above which two regions belong to one part

@@ -46,9 +46,8 @@ struct EvidenceRules {
   double unknown_share = 0.5;        ///< uncertainty of the share per uninformative share
 
   // Where a cloud ends.
-  float min_explained = 0.4f,
-        /// Share of an edge from which its region begins to count as missing, and from which it counts fully.
-      explained = 0.75f;
+  /// Share of an edge from which its region begins to count as missing, and from which it counts fully.
+  float min_explained = 0.4f, explained = 0.75f;
   float standard_errors = 1.96f;  ///< standard errors of that share
   double min_piece = 0.002;       ///< least share of the surface in a piece that was cut off
   std::size_t min_of_piece = 8;   ///< least number of samples in such a piece
