@@ -1,4 +1,5 @@
-/// Long calls from Python: other threads of Python run meanwhile, Ctrl-C ends them, and they report their progress.
+/// Long calls from Python: other threads of Python run in the meantime, Ctrl-C ends the call, and it reports its
+/// progress.
 #pragma once
 
 #include <pybind11/pybind11.h>
@@ -10,13 +11,13 @@
 
 namespace pcl_symmetry::python {
 
-/// An exception of Python raised during a call. Not a std::exception, as those are collected where one of many models
-/// fails.
+/// An exception of Python raised during a call. It is not a std::exception, because these are collected where one of
+/// many models fails.
 struct RaisedMeanwhile {
   std::shared_ptr<pybind11::error_already_set> error;
 };
 
-/// Called with the share done; null if there is no callback. The package sets it for the duration of a call.
+/// Receives the share done; null if there is no callback. The package sets it for the duration of a call.
 inline thread_local PyObject* told_progress = nullptr;
 
 /// Replaces pybind11::gil_scoped_release around long computations.
@@ -41,13 +42,13 @@ private:
   ProgressMonitor monitor_;
 };
 
-/// Adds a function with these names of parameters, which all are given by the package.
+/// Adds a function with these parameter names, all of which the package passes.
 template <typename Function, typename... Names>
 void add(pybind11::module_& module, const char* name, const Function& function, Names... parameters) {
   module.def(name, function, pybind11::arg(parameters)...);
 }
 
-/// Adds the functions that the package needs for this to a module.
+/// Adds the functions that the package needs for this header to a module.
 inline void addComputing(pybind11::module_& module) {
   module.def("tell",
              [](const pybind11::object& progress) { told_progress = progress.is_none() ? nullptr : progress.ptr(); });

@@ -22,16 +22,16 @@ namespace pcl_symmetry::python {
 
 namespace {
 
-using Columns = std::vector<std::pair<std::string, std::string>>;  ///< names, and types as NumPy has them
+using Columns = std::vector<std::pair<std::string, std::string>>;  ///< names, and types as in NumPy
 
-/// \param rows tuples of a value for each column.
+/// \param rows tuples with a value for each column.
 template <typename Rows>
 py::array arrayOfRows(const Rows& rows, const Columns& columns) {
   const py::module_ numpy = py::module_::import("numpy");
   return numpy.attr("array")(rows, numpy.attr("dtype")(columns, py::arg("align") = true));
 }
 
-/// Kinds have terms of their own, at most seven.
+/// Kinds have different terms, at most seven.
 std::vector<double> padded(std::vector<double> terms) {
   terms.resize(7);
   return terms;
@@ -62,7 +62,7 @@ auto rowsOf(const std::vector<Judged>& all) {
   return rows;
 }
 
-/// Small patches of a mesh, and their merges by any weights.
+/// Small patches of a mesh, and their merges with any weights.
 class Merging {
 public:
   Merging(const AnyArray& points, const py::object& faces, std::uint64_t seed, int threads) {

@@ -21,8 +21,9 @@ namespace pcl_symmetry::python {
 
 namespace {
 
-/// Share of the extent. A hundredth of the default tolerance of 1 %, which no decision notices; ten times as much costs
-/// results a digit, a tenth refuses clouds far from the origin that give the same planes.
+/// Greatest rounding of coordinates, as a share of the extent: a hundredth of the default tolerance of 1 %, which
+/// changes no decision. Ten times as much costs results a digit; a tenth refuses clouds far from the origin that give
+/// the same planes.
 constexpr double kMostRounding = 1e-4;
 
 using Rows = py::array_t<float, py::array::forcecast>;
@@ -42,7 +43,7 @@ void checkShape(const char* name, const py::array& array) {
                                 ", must hold real numbers");
 }
 
-/// \throws std::invalid_argument where float32 rounds more than results stand.
+/// \throws std::invalid_argument if float32 rounds coordinates by more than kMostRounding.
 void checkRounding(const char* name, const py::array& array) {
   if (array.dtype().kind() == 'f' && array.itemsize() <= 4) return;
   const auto exact = py::array_t<double, py::array::forcecast>(array);

@@ -1,5 +1,4 @@
-/// The core of the Python package: its functions on arrays of NumPy. The package gives them defaults and documents
-/// them.
+/// The core of the Python package: functions on arrays of NumPy. The package adds defaults and documentation.
 #include <pybind11/eigen.h>
 #include <pybind11/functional.h>
 #include <pybind11/pybind11.h>
@@ -65,7 +64,7 @@ MeshSurface meshSurface(const AnyArray& vertices, const py::object& faces) {
   return {mesh.vertices.points(), mesh.triangles};
 }
 
-/// \return the enumerator whose name, in their order, is \p value.
+/// \return the enumerator whose name is \p value; names are in the order of the enumerators.
 /// \throws std::invalid_argument for another name.
 template <typename Enum>
 Enum named(const char* parameter, const std::string& value, const std::vector<std::string>& names) {
@@ -95,7 +94,7 @@ SymmetrizedShape symmetrize(const AnyArray& points, const py::object& faces, con
   const SymmetrizedShape found = symmetrizedCloud(input.points(), plane, kept, threads);
   const std::vector<std::size_t>& rows = input.rows();
   if (rows.empty()) return found;
-  SymmetrizedShape all = found;  // other rows are not finite
+  SymmetrizedShape all = found;  // the other rows are not finite
   all.points = Points::Constant(3, static_cast<Eigen::Index>(input.numRows()), std::nanf(""));
   all.points(Eigen::all, rows) = found.points;
   all.asymmetry.assign(input.numRows(), std::nanf(""));
@@ -156,7 +155,7 @@ PlaneSearch planes(const AnyArray& points, const py::object& viewpoint, std::opt
   return search;
 }
 
-/// First index along x, as nibabel has it.
+/// The first index is along x, as in nibabel.
 using VolumeArray = py::array_t<float, py::array::f_style | py::array::forcecast>;
 
 /// A volume in place of points.
@@ -185,7 +184,7 @@ PlaneSearch volumePlanes(const GivenVolume& volume, bool approximate, int max_pl
   return search;
 }
 
-/// What a transform is made from.
+/// The input of a transform.
 struct TransformInput {
   GaussianEdt edt;
   Eigen::Vector3d center_of_mass;
@@ -260,7 +259,7 @@ SymmetryFrame frame(const AnyArray& points, const py::object& viewpoint, std::si
   const InputPoints input("points", points, max_points, seed);
   const std::optional<Visibility> seen = seenFrom(input.points(), viewpoint);
   checkAnswerable("points", input.points());
-  options.refined = !mesh || seen;  // else on the mesh itself
+  options.refined = !mesh || seen;  // otherwise it is refined on the mesh itself
   const Computing computing;
   SymmetryFrame found = symmetryFrame(input.points(), options, seen ? &*seen : nullptr);
   if (mesh && !seen) refineOnMesh(*mesh, found);
@@ -288,7 +287,7 @@ ObjectSymmetries rotations(const AnyArray& points, const py::object& viewpoint, 
   return found;
 }
 
-/// \param continuous point and direction of axes.
+/// \param continuous point and direction of each axis.
 ObjectSymmetries rotationsOf(const std::vector<RowMajor4>& discrete,
                              const std::vector<std::pair<Eigen::Vector3d, Eigen::Vector3d>>& continuous) {
   std::vector<Eigen::Isometry3d> motions;
@@ -329,7 +328,7 @@ std::pair<py::array_t<float>, std::vector<std::size_t>> complete(
   return {toRows(added), rows};
 }
 
-/// Labels, and why there is another number of parts than is wanted.
+/// Labels, and why the number of parts differs from the one that was set.
 using Parts = std::pair<std::vector<int>, std::string>;
 
 Parts segmentArray(const py::array& points, const SegmentationOptions& options) {
@@ -396,7 +395,8 @@ SymmetryMap transform(const py::object& shape, const std::array<int, 3>& bins, c
   return planarTransform(input.edt, grid, input.center_of_mass, options);
 }
 
-/// \return for each row the row of its counterpart, -1 for none, and its distance from the reflection.
+/// \return for each row, the row of its counterpart, -1 for none, and the distance of the counterpart from the
+/// reflection.
 std::pair<py::array_t<std::int64_t>, py::array_t<double>> pairs(const AnyArray& points, const ReflectionPlane& plane,
                                                                 double max_distance) {
   const InputPoints input("points", points, 0, 0);

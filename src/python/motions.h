@@ -21,12 +21,12 @@ inline pybind11::array_t<double> stacked(const std::vector<Eigen::Isometry3d>& m
   return result;
 }
 
-/// \param name of the parameter, for messages.
-/// \throws std::invalid_argument where the matrix is no rigid motion.
+/// \param name name of the parameter, for messages.
+/// \throws std::invalid_argument if the matrix is not a rigid motion.
 inline Eigen::Isometry3d motionOf(const std::string& name, const RowMajor4& matrix) {
   Eigen::Isometry3d motion;
   motion.matrix() = matrix;
-  // Poses of float32 pass, shears and mirrors do not
+  // Poses of float32 pass; shears and reflections do not.
   if (!motion.linear().isUnitary(1e-6) || motion.linear().determinant() < 0.0 ||
       !matrix.row(3).isApprox(Eigen::RowVector4d(0, 0, 0, 1)))
     throw std::invalid_argument(name + " = another matrix, must be a rotation and a translation, (4, 4)");

@@ -1,5 +1,5 @@
-/// What the Python module needs PCL for: poses refined by its ICP, and the database of models. Loaded when one of these
-/// is asked for.
+/// The functions of the Python module that need PCL: poses refined by its ICP, and the database of models. Loaded on
+/// first use.
 #include <pcl/console/print.h>
 #include <pcl/exceptions.h>
 #include <pybind11/eigen.h>
@@ -98,8 +98,8 @@ namespace {
 
 using Cloud = SymmetryDatabase::Cloud;
 
-/// \param points (N, 3), without rows that are not finite, or (H, W, 3), as it is: rows and columns of a camera.
-/// \param viewpoint that of a file stays with the cloud.
+/// \param points (N, 3), without rows that are not finite, or (H, W, 3) as given: rows and columns of a camera.
+/// \param viewpoint viewpoint; that of a file stays with the cloud.
 Cloud cloudOf(const py::array& points, const py::object& viewpoint = py::none(), const char* name = "points") {
   const bool is_organized = points.ndim() == 3;
   const InputPoints input(name, is_organized ? py::array(points.attr("reshape")(-1, points.shape(2))) : points, 0, 0);
@@ -157,7 +157,7 @@ CloudRegistration registerPoints(const AnyArray& source, const AnyArray& target,
   return registerClouds(from.points, from.seen, to.points, to.seen, T_target_source, options);
 }
 
-/// The scans in one frame, and the rows of their merged points as pairs (scan, row).
+/// The scans in one frame, and the rows of their merged points, as pairs (scan, row).
 std::pair<RegisteredScans, py::array_t<int>> registerAllPoints(const std::vector<AnyArray>& clouds,
                                                                const std::vector<py::object>& viewpoints,
                                                                std::uint64_t seed, int threads) {
@@ -194,7 +194,7 @@ std::pair<RegisteredScans, py::array_t<int>> registerAllPoints(const std::vector
 }
 
 /// \return the result; if it is empty, the points may be the reason.
-/// \throws NoAnswer
+/// \throws NoAnswer if they are.
 template <typename Found>
 Found answerFor(const Cloud& cloud, const pcl::Indices* indices, Found found) {
   if (found.empty()) {
@@ -231,8 +231,8 @@ private:
   Points points_;
 };
 
-/// \return (M, 3) points that are used, the row of each, what the scanner saw or None, where its viewpoint is known
-/// from, whether they may be rings, and why there is no answer.
+/// \return (M, 3) points used, the row of each, what the scanner saw or None, how its viewpoint is known, whether the
+/// points may be rings, and why there is no answer.
 py::tuple look(const AnyArray& points, const std::optional<pcl::Indices>& indices, const py::object& viewpoint,
                const std::optional<Eigen::Vector4d>& ground, std::size_t max_points, bool as_measured,
                std::uint64_t seed, int threads) {
@@ -285,8 +285,8 @@ py::dict sceneOf(const AnyArray& points, const py::object& viewpoint, const std:
                   "plane_distance"_a = found.plane_distance, "cluster_distance"_a = found.cluster_distance);
 }
 
-/// \param extension of the kind of file that the text is, such as .ply.
-/// \return its points, (H, W, 3) or (N, 3), (F, 3) triangles, and (3,) where the sensor stood, or None.
+/// \param extension extension for the kind of file, such as .ply.
+/// \return its points, (H, W, 3) or (N, 3), (F, 3) triangles, and the position of the sensor, (3,), or None.
 /// \throws std::invalid_argument naming the file.
 py::tuple read(const std::string& path, std::string text, const std::string& extension) {
   apps::CloudFile file;
@@ -334,7 +334,7 @@ py::tuple read(const std::string& path, std::string text, const std::string& ext
 using Weighted = std::vector<std::pair<Eigen::Vector3d, double>>;
 
 /// \param planes normals and weights; the first num_symmetries are symmetries of the whole object.
-/// \param points of the object; None: views hide nothing.
+/// \param points points of the object; None: views hide nothing.
 /// \return direction, score and pose of the good views, or of the worst one alone.
 std::vector<std::tuple<Eigen::Vector3d, double, RowMajor4>> views(const Weighted& planes, std::size_t num_symmetries,
                                                                   const Weighted& axes, const Weighted& maxima,
@@ -372,7 +372,7 @@ std::vector<std::tuple<Eigen::Vector3d, double, RowMajor4>> views(const Weighted
   return result;
 }
 
-/// What the package gives a function for, such as the points of a file.
+/// What a function of the package returns, such as the points of a file.
 py::object called(const py::object& points) {
   if (!py::isinstance<py::function>(points)) return points;
   try {
@@ -382,7 +382,7 @@ py::object called(const py::object& points) {
   }
 }
 
-/// Models of a mapping from names to points, or of pairs of both. Points become clouds when they are used.
+/// Models from a mapping of names to points, or from pairs of both. Points become clouds when they are used.
 std::vector<ModelInput> modelsOf(const py::object& models) {
   const py::object pairs = py::hasattr(models, "items") ? models.attr("items")() : models;
   std::vector<ModelInput> inputs;
@@ -393,7 +393,7 @@ std::vector<ModelInput> modelsOf(const py::object& models) {
     } catch (const py::cast_error&) {
       throw py::type_error("models: item " + std::to_string(inputs.size()) + " is no pair of a name and points");
     }
-    // Shared, as the threads that copy it do not hold the lock of the interpreter.
+    // Shared, because the threads that copy it do not hold the lock of the interpreter.
     const auto held = std::make_shared<py::object>(std::move(model.second));
     inputs.push_back({model.first, {}, [held] {
                         const py::gil_scoped_acquire acquire;
@@ -510,7 +510,7 @@ void addScenes(py::module_& module) {
 }  // namespace
 
 PYBIND11_MODULE(_recognition, module) {
-  pcl::console::setVerbosityLevel(pcl::console::L_ALWAYS);  // the package tells the reasons
+  pcl::console::setVerbosityLevel(pcl::console::L_ALWAYS);  // the package reports the reasons
   py::module_::import("pcl_symmetry._pcl_symmetry");        // has the classes that both use, and NoAnswer
   addComputing(module);
   // Messages of the library name the file or the parameter.

@@ -25,16 +25,16 @@ pybind11::dict dictOf(const SymmetrizedShape& shape);
 
 namespace python {
 
-/// A detection, and the rows of the array that its points were.
+/// A detection, and the rows of the array that its points come from.
 struct PlaneSearch {
   Detection found;
-  DetectionEvidence evidence;                ///< empty where it was not wanted
-  std::optional<Eigen::Vector3d> viewpoint;  ///< that was used, frame of the points
+  DetectionEvidence evidence;                ///< empty if it was not requested
+  std::optional<Eigen::Vector3d> viewpoint;  ///< viewpoint used, frame of the points
   std::vector<std::size_t> rows;             ///< the row of each point; empty: all rows
 };
 pybind11::dict dictOf(const PlaneSearch& search);
 
-// The evidence of decisions as structured arrays: one row a candidate, named columns.
+// The evidence of decisions as structured arrays: one row per candidate, named columns.
 /// \return one row for each candidate of planes(evidence=True); empty without evidence.
 pybind11::array planeEvidence(const DetectionEvidence& evidence);
 /// \return one row for each rotation of a scan; empty without evidence.
@@ -50,7 +50,7 @@ void addEvidence(pybind11::module_& module);
 }  // namespace python
 }  // namespace pcl_symmetry
 
-/// Whatever has a dictOf() in its namespace.
+/// Any type with a dictOf() in its namespace.
 template <typename Result>
 struct pybind11::detail::type_caster<Result, std::void_t<decltype(dictOf(std::declval<const Result&>()))>> {
   static constexpr auto name = const_name("dict");
