@@ -72,7 +72,7 @@ std::shared_ptr<const Search> DatabaseParts::latest(std::shared_ptr<const Search
                                                     std::uint64_t& version_of_made) {
   const std::lock_guard<std::mutex> lock(mutex);
   const std::uint64_t version = store.version();
-  if (version_of_made != version) made.reset();  // first: both together would take twice the memory
+  if (version_of_made != version) made.reset();  // before reading: both together would take twice the memory
   if (!made) made = std::make_shared<const Search>(store, storedForms(), options);
   version_of_made = version;
   return made;
@@ -93,7 +93,7 @@ std::shared_ptr<const PairSearch> DatabaseParts::pairs() {
   if (store.models().size() > kRecognition.max_pair_models) return pairs_ = nullptr;
   const std::vector<StoredModel> models = store.models();
   const std::shared_ptr<const PairSearch> before = pairs_;
-  lock.unlock();  // models are read under it, one at a time
+  lock.unlock();  // models are read under the lock, one at a time
   const auto read = [&](const StoredModel& model) { return shape(model); };
   const auto made = std::make_shared<const PairSearch>(models, read, before.get(), options.num_threads);
   lock.lock();

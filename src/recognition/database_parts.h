@@ -15,17 +15,18 @@
 namespace pcl_symmetry::detail {
 
 /// The parts of a database: the file, and the data read from it for queries. Every function throws pcl::IOException,
-/// which names the file and the reason. Threads may call all functions at once; `store` belongs to who holds `mutex`.
+/// which names the file and the reason. All functions may be called by several threads at once; `store` may be used
+/// only by the thread that holds `mutex`.
 struct DatabaseParts {
   DatabaseParts(const std::string& file, const DatabaseOptions& database_options)
       : options(database_options), store(file, database_options.lock_timeout, database_options.unit) {}
 
-  /// The indexes of the state that is read now.
+  /// The indexes of the state that is read at present.
   std::shared_ptr<const ShapeSearch> shapes();
   std::shared_ptr<const ViewSearch> views();
   /// Pairs of points of all models; null in a large database.
   std::shared_ptr<const PairSearch> pairs();
-  /// The fitted data of the store; forms are null if there are none. The mutex must be held.
+  /// The fitted data of the store; the forms are null if there are none. The mutex must be held.
   FittedForms storedForms();
 
   /// Views of a model.
@@ -53,7 +54,8 @@ private:
   std::shared_ptr<const ShapeSearch> shapes_;
   std::shared_ptr<const ViewSearch> views_;
   std::shared_ptr<const PairSearch> pairs_;
-  std::uint64_t shapes_version_ = 0, views_version_ = 0, pairs_version_ = 0;  // of the store when they were read
+  // Versions of the store when they were read.
+  std::uint64_t shapes_version_ = 0, views_version_ = 0, pairs_version_ = 0;
   FittedForms forms_;
 };
 
@@ -63,10 +65,10 @@ std::int64_t currentTime();
 /// \throws std::invalid_argument unless it is 1 to 200 bytes of UTF-8 without "/" and control characters, not "." first.
 void checkModelName(const std::string& name);
 
-/// A model as it is stored.
+/// A model as stored.
 struct DescribedModel {
   PackedModel packed;
-  Eigen::MatrixXf signatures;  ///< as they are stored
+  Eigen::MatrixXf signatures;  ///< signatures as stored
 };
 /// \throws std::invalid_argument for points that hold no answer.
 DescribedModel describedModel(const Points& points, const DatabaseOptions& options);
@@ -76,9 +78,9 @@ inline Points finitePoints(const PositionCloud& cloud, std::size_t max_points) {
   return selectPoints(cloud, nullptr, max_points, 1).points;
 }
 
-/// Calls \p body if the points hold an answer. Else, and where the core finds that they do not (std::invalid_argument),
-/// the result is empty and a PCL_WARN says why.
-/// \param indices that the points were chosen by; null: all points were taken.
+/// Calls \p body if the points hold an answer. Otherwise, and if the core finds that they do not
+/// (std::invalid_argument), the result is empty and a PCL_WARN gives the reason.
+/// \param indices indices by which the points were chosen; null: all points were taken.
 template <typename Body>
 auto emptyWithoutAnswer(const Points& points, const Body& body, const pcl::Indices* indices = nullptr)
     -> decltype(body()) {

@@ -27,7 +27,7 @@ Eigen::MatrixXf signaturesOf(ModelStore& store, const StoredModel& model, std::m
   });
 }
 
-/// FNV-1a.
+/// FNV-1a hash.
 std::uint64_t hashOf(const std::string& text) {
   std::uint64_t hash = 0xcbf29ce484222325u;
   for (const char c : text) hash = (hash ^ static_cast<unsigned char>(c)) * 0x100000001b3u;

@@ -21,7 +21,7 @@ ShapeSearch::ShapeSearch(ModelStore& store, const FittedForms& stored, const Dat
   makeIndex(store, is_fitted ? stored.id : 0, options);
 }
 
-/// \param stored the projection whose forms are read, 0: all forms are made.
+/// \param stored the projection whose forms are read; 0 = all forms are made.
 void ShapeSearch::makeIndex(ModelStore& store, std::int64_t stored, const DatabaseOptions& options) {
   Eigen::MatrixXf compact(forms_->numDimensions(), kFormsPerModel * static_cast<Eigen::Index>(models_.size()));
   std::vector<float> typical;

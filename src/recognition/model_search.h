@@ -25,7 +25,7 @@ namespace pcl_symmetry::detail {
 class ShapeSearch {
 public:
   /// Reads the compact forms of all models, and makes those that are missing.
-  /// \param stored what is fitted in the store.
+  /// \param stored the fitted data of the store.
   /// \throws pcl::IOException naming file and reason.
   ShapeSearch(ModelStore& store, const FittedForms& stored, const DatabaseOptions& options);
 
@@ -43,7 +43,7 @@ private:
   void makeIndex(ModelStore& store, std::int64_t stored, const DatabaseOptions& options);
 
   int num_threads_;
-  std::shared_ptr<const CompactForms> forms_;  // null: there are no models
+  std::shared_ptr<const CompactForms> forms_;  // null if there are no models
   std::vector<StoredModel> models_;            // in the order of the index
   CompactIndex index_;
 };
@@ -54,15 +54,15 @@ struct ModelOfView {
   std::vector<Eigen::Isometry3d> T_model_scan;  ///< poses of the nearest views, nearest first
 };
 
-/// Finds models that a scan can show by their views: those with the nearest codes, whose views are then read and
-/// compared in full. In a small database all views are compared.
+/// Finds models that a scan may show by their views: those with the nearest codes, whose views are then read and
+/// compared in full. In a small database, all views are compared.
 class ViewSearch {
 public:
   /// Reads the views of a model, called by several threads at once.
   using ViewReader = std::function<std::vector<View>(const StoredModel&)>;
 
   /// Reads the codes of all models, and makes those that are missing.
-  /// \param stored what is fitted in the store.
+  /// \param stored the fitted data of the store.
   /// \throws pcl::IOException naming file and reason.
   ViewSearch(ModelStore& store, const FittedForms& stored, const DatabaseOptions& options);
 
@@ -71,37 +71,37 @@ public:
 
 private:
   std::vector<StoredModel> models_;         // in the order of the indexes
-  ViewIndex all_;                           // of a small database
-  std::shared_ptr<const ViewCoder> coder_;  // of a large one
+  ViewIndex all_;                           // views of a small database
+  std::shared_ptr<const ViewCoder> coder_;  // codes of a large database
   ViewCodeIndex codes_;
 };
 
 /// A few points of a model, spread evenly.
 struct ModelShape {
-  SurfacePoints of_pairs;    ///< that pairs are made of
-  ScreenedSurface screened;  ///< that poses are screened by
+  SurfacePoints of_pairs;    ///< points from which pairs are made
+  ScreenedSurface screened;  ///< points by which poses are screened
 };
 
-/// A model that a scan may show, and how it may lie there.
+/// A model that a scan may show, with its possible poses.
 struct PossibleModel {
   StoredModel model;
   std::shared_ptr<const ModelShape> shape;
   std::vector<Eigen::Isometry3d> T_model_scan;
 };
 
-/// Finds models that a scan can show, also where much of the object is hidden, by poses that pairs of its points
-/// suggest, see PointPairIndex.
+/// Finds models that a scan may show, even if much of the object is hidden, by poses that pairs of its points suggest,
+/// see PointPairIndex.
 class PairSearch {
 public:
   /// Reads a model, called by several threads at once.
   using ShapeReader = std::function<std::shared_ptr<const ModelShape>(const StoredModel&)>;
 
-  /// \param before whose shapes are taken over for the models that it has; null: none.
+  /// \param before the previous search, whose shapes are reused for the models that it has; null: none.
   PairSearch(std::vector<StoredModel> models, const ShapeReader& read, const PairSearch* before, int num_threads);
 
   /// All models, each with the poses that pairs of points suggest.
-  /// \param scan few points, unit of the models.
-  /// \param others more poses.
+  /// \param scan a few points, unit of the models.
+  /// \param others further poses.
   std::vector<PossibleModel> possibleModels(const SurfacePoints& scan, const std::vector<ModelOfView>& others,
                                             int num_threads) const;
 
@@ -109,7 +109,7 @@ private:
   std::size_t indexOf(std::int64_t model) const;
 
   std::vector<StoredModel> models_;
-  std::vector<std::shared_ptr<const ModelShape>> shapes_;  // of the models
+  std::vector<std::shared_ptr<const ModelShape>> shapes_;  // shape of each model
   std::optional<PointPairIndex> index_;
 };
 

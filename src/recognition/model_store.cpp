@@ -64,14 +64,14 @@ const PartTable kPartTables[] = {{ModelPart::Cloud, "clouds", &PackedModel::clou
                                  {ModelPart::Views, "views", &PackedModel::views},
                                  {ModelPart::Surfaces, "surfaces", &PackedModel::surfaces}};
 
-/// Tags as they are stored: a line each.
+/// Tags as stored: one per line.
 std::string joinedTags(const std::vector<std::string>& tags) {
   std::string text;
   for (const std::string& tag : tags) text += (text.empty() ? "" : "\n") + tag;
   return text;
 }
 
-/// CRC-32 of texts, each with its end: any change of up to 32 neighboring bits changes it.
+/// CRC-32 of texts, each with its end: it detects any change of up to 32 neighboring bits.
 std::int64_t checksumOf(std::initializer_list<std::string_view> texts) {
   std::uint32_t value = 0;
   for (const std::string_view text : texts) {
@@ -81,7 +81,7 @@ std::int64_t checksumOf(std::initializer_list<std::string_view> texts) {
   return value;
 }
 
-/// Checksums hold the table and the number of the model, so that parts of different models cannot be mixed up.
+/// Checksums include the table and the number of the model, so that parts of different models cannot be mixed up.
 std::int64_t checksumOf(std::int64_t id, const ModelInfo& info) {
   return checksumOf({std::to_string(id), info.name, std::to_string(info.time), info.source.path, info.source.checksum,
                      joinedTags(info.source.tags), std::to_string(info.num_points)});
@@ -100,7 +100,7 @@ void createSchema(const SQLiteConnection& connection, const std::string& unit) {
   connection.run("PRAGMA user_version = " + std::to_string(kSchemaVersion));
 }
 
-/// Looks at the file without SQLite, which would take any file for its own.
+/// Checks the file without SQLite, which would accept any file as its own.
 void refuseForeignFile(const std::string& file) {
   std::error_code error;
   if (fs::is_directory(file, error)) failIO(file, "is a folder, must be a file");
@@ -128,7 +128,7 @@ void refuseOtherSchema(const SQLiteConnection& connection) {
                                   " reads version " + std::to_string(kSchemaVersion) + ": build the database again");
 }
 
-/// Tables whose definition is not the one that this library wrote.
+/// Finds tables whose definition is not the one that this library writes.
 void compareTables(const SQLiteConnection& connection, std::vector<std::string>& damages) {
   for (const Table& table : tables()) {
     SQLiteStatement row = connection.prepare("SELECT sql FROM sqlite_schema WHERE type = 'table' AND name = ?");
@@ -138,7 +138,7 @@ void compareTables(const SQLiteConnection& connection, std::vector<std::string>&
   }
 }
 
-/// Blobs whose bytes are not those of their checksum.
+/// Finds blobs whose checksum does not match.
 void compareBlobs(const SQLiteConnection& connection, const std::string& table, const std::string& key,
                   std::vector<std::string>& damages) {
   SQLiteStatement row = connection.prepare("SELECT " + key + ", data, checksum FROM " + table);
@@ -148,7 +148,7 @@ void compareBlobs(const SQLiteConnection& connection, const std::string& table, 
 }
 
 /// \param damages errors in the rows of models.
-/// \return a sentence for each damage.
+/// \return one sentence per damage.
 std::vector<std::string> damagesOf(const SQLiteConnection& connection, std::vector<std::string> damages) {
   compareTables(connection, damages);
   for (const char* pragma : {"PRAGMA integrity_check", "PRAGMA foreign_key_check"}) {
@@ -195,7 +195,7 @@ ModelInfo checkedInfo(const SQLiteStatement& row, const std::string& file) {
 
 /// \return the id of the new model.
 std::int64_t insertModel(const SQLiteConnection& connection, const ModelInfo& info, const PackedModel& model) {
-  // The id is known before the row is there, as the checksum holds it.
+  // The id is computed before the row exists, because the checksum includes it.
   const std::int64_t id = connection.integer("SELECT seq FROM sqlite_sequence WHERE name = 'models'") + 1;
   connection.prepare("INSERT INTO models VALUES (?, ?, ?, ?, ?, ?, ?, ?)")
       .bind(id, info.name, info.time, info.source.path, info.source.checksum, joinedTags(info.source.tags),
@@ -220,7 +220,7 @@ ModelStore::ModelStore(const std::string& file, double lock_timeout, const std::
   }
 }
 
-/// Opens the file where there is one, and refuses what this library did not write, and another unit than is given.
+/// Opens the file if it exists. Refuses files that this library did not write, and another unit than the given one.
 void ModelStore::open() {
   std::error_code error;
   if (!fs::exists(file_, error) && !error) return;
@@ -234,8 +234,8 @@ void ModelStore::open() {
     throwBadArgument("unit = '" + unit_ + "', must be '" + stored + "' as in " + file_);
 }
 
-/// Makes an empty database under another name and then gives it its own: a file of that name is whole from the start,
-/// and one that another program made in the meantime is kept.
+/// Makes an empty database under a temporary name and then renames it: a file of the final name is complete from the
+/// start, and one that another program made in the meantime is kept.
 void ModelStore::create(const Fill& fill) {
   std::error_code error;
   const fs::path folder = fs::absolute(file_).parent_path();
@@ -251,7 +251,7 @@ void ModelStore::create(const Fill& fill) {
     makeTables(SQLiteConnection(made, SQLiteAccess::Create, lock_timeout_), fill);
     fs::create_hard_link(made, file_, error);
     if (error && !fs::exists(file_, error))
-      fs::rename(made, file_);  // file systems without links
+      fs::rename(made, file_);  // for file systems without links
     else if (error && fill)
       failIO(made, "another program has made this file, try again");
   } catch (const fs::filesystem_error& reason) {
@@ -267,7 +267,7 @@ void ModelStore::create(const Fill& fill) {
   open();
 }
 
-/// The log comes last: without it each page of the contents is written once.
+/// The write-ahead log is set up last: without it, each page of the contents is written only once.
 void ModelStore::makeTables(const SQLiteConnection& connection, const Fill& fill) const {
   {
     SQLiteTransaction transaction(connection);
@@ -278,12 +278,12 @@ void ModelStore::makeTables(const SQLiteConnection& connection, const Fill& fill
   connection.run("PRAGMA journal_mode = WAL");
 }
 
-/// \return false where there is nothing to read.
+/// \return false if there is nothing to read.
 bool ModelStore::startReading() {
   if (!connection_) return false;
   if (connection_->inTransaction()) return true;
   connection_->run("BEGIN");
-  connection_->integer("SELECT count(*) FROM facts");  // from here on the state is fixed
+  connection_->integer("SELECT count(*) FROM facts");  // from here on, the state that is read is fixed
   const std::int64_t data_version = connection_->integer("PRAGMA data_version");
   if (std::exchange(data_version_, data_version) != data_version) ++version_;
   return true;
@@ -409,7 +409,7 @@ std::int64_t ModelStore::add(const ModelInfo& info, const PackedModel& model, st
 }
 
 /// \return the number of models.
-/// \throws where they cannot be put together, before anything is written.
+/// \throws if the databases cannot be merged, before anything is written.
 std::size_t ModelStore::checkBeforeMerge(const std::vector<std::string>& files) {
   std::error_code error;
   std::map<std::string, std::string> file_of_model;
@@ -496,7 +496,7 @@ void ModelStore::addForms(std::int64_t projection, const std::vector<PackedForms
   change([&] { insertForms(projection, forms); });
 }
 
-/// Forms of models or of a projection that are gone are passed over.
+/// Forms of deleted models, or of a deleted projection, are skipped.
 void ModelStore::insertForms(std::int64_t projection, const std::vector<PackedForms>& forms) {
   const auto insert = [&](const std::string& table, std::string PackedForms::*data) {
     SQLiteStatement statement =

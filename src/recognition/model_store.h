@@ -15,10 +15,10 @@
 
 namespace pcl_symmetry::detail {
 
-/// Grows by 1 when tables or the bytes in them change.
+/// Increases by 1 when tables or the bytes in them change.
 constexpr int kSchemaVersion = 7;
 
-/// The data by which a model is found and recognized, as bytes of packed_model.h.
+/// The data by which a model is found and recognized, as bytes, see packed_model.h.
 struct PackedModel {
   std::string cloud, signatures, views, surfaces;
   std::size_t num_points = 0;
@@ -27,7 +27,7 @@ struct PackedModel {
 enum class ModelPart { Cloud, Signatures, Views, Surfaces };
 
 struct StoredModel {
-  std::int64_t id;  ///< of one model that was added once; never used again
+  std::int64_t id;  ///< id of one model that was added once; never reused
   std::string name;
 };
 
@@ -45,7 +45,7 @@ struct PackedForms {
   std::string view_codes;
 };
 
-/// Which of the PackedForms.
+/// Selects one of the PackedForms.
 enum class FormPart { Compact, ViewCodes };
 /// \return how messages name the part of a model, up to its number.
 inline const char* nameOf(FormPart part) {
@@ -53,21 +53,20 @@ inline const char* nameOf(FormPart part) {
 }
 
 /// The file of a database. Every function throws pcl::IOException, which names the file and the reason.
-///
-/// What is read is one consistent state, the one at the first reading, until refresh() or a change of this store. What
-/// was changed is on the disk when a function returns, all of it or nothing.
+/// What is read is one consistent state, that of the first reading, until refresh() or a change by this store. When a
+/// function returns, its changes are on the disk, all of them or none.
 class ModelStore {
 public:
-  /// Takes the id of a model and its bytes.
+  /// Receives the id of a model and its bytes.
   using EachBytes = std::function<void(std::int64_t, const std::string&)>;
 
-  /// Nothing is written before the first change: a file that is missing is an empty database.
+  /// Nothing is written before the first change: a missing file is an empty database.
   /// \param file ":memory:" = no file.
-  /// \param unit stored in a new database; that of one that is there, or empty.
+  /// \param unit unit to store in a new database; for an existing one, its unit or empty.
   ModelStore(const std::string& file, double lock_timeout, const std::string& unit);
 
   const std::string& file() const { return file_; }
-  /// False where there is no file yet.
+  /// Whether there is a file.
   bool exists() const { return connection_.has_value(); }
   /// Reads the newest state from now on.
   void refresh();
@@ -82,29 +81,30 @@ public:
   /// The id of a model, and where it comes from. It takes as long for many models as for few.
   std::optional<std::pair<std::int64_t, ModelInfo>> find(const std::string& name);
   std::string part(ModelPart part, const StoredModel& model);
-  /// The id of the projection that was stored last, 0 without one.
+  /// The id of the projection that was stored last; 0 = none.
   std::int64_t projectionId();
   std::vector<StoredModel> modelsWithoutForms();
   std::optional<PackedProjection> projection();
-  /// The forms of the models for a projection, by rising id of the model.
+  /// The forms of the models for a projection, by ascending id of the model.
   void each(FormPart part, std::int64_t projection, const EachBytes& take);
 
-  /// Adds a model or replaces that of its name.
-  /// \param forms of this model, of any id, and the projection that they were made with; 0: none.
+  /// Adds a model, or replaces the model of that name.
+  /// \param projection projection that the forms were made with; 0 = there are no forms.
+  /// \param forms forms of this model, with any id.
   /// \return the id of the new model.
   std::int64_t add(const ModelInfo& info, const PackedModel& model, std::int64_t projection, PackedForms forms);
-  /// \return whether there was such a model.
+  /// \return whether there was a model of that name.
   bool remove(const std::string& name);
-  /// Replaces the projection and all that was made with it. Models that are gone are passed over.
+  /// Replaces the projection and everything that was made with it. Deleted models are skipped.
   void setProjection(const PackedProjection& projection, const std::vector<PackedForms>& forms);
-  /// Adds all models of other databases in one change, as they are stored there; forms and projections are not taken
-  /// over. Where there is no file yet, the new one takes their unit.
-  /// \return the number of models; none where the progress function says that it is enough, and then nothing is changed.
+  /// Adds all models of other databases in one change, as they are stored there; forms and projections are not copied.
+  /// If there is no file yet, the new one has their unit.
+  /// \return the number of models; nothing if the progress function cancels, and then nothing is changed.
   std::optional<std::size_t> merge(const std::vector<std::string>& files, const BuildProgress& progress);
-  /// Adds forms that are missing. Nothing happens where the projection is no longer the stored one.
+  /// Adds missing forms. Nothing happens if the projection is no longer the stored one.
   void addForms(std::int64_t projection, const std::vector<PackedForms>& forms);
 
-  /// The errors in the contents, a sentence each.
+  /// The errors in the contents, one sentence each.
   std::vector<std::string> damages();
 
 private:
@@ -125,11 +125,11 @@ private:
   std::optional<SQLiteConnection> connection_;
   std::vector<StoredModel> models_;
   std::uint64_t version_ = 1, models_version_ = 0;
-  std::int64_t data_version_ = -1;  // SQLite's count of the changes of others
+  std::int64_t data_version_ = -1;  // SQLite's count of changes by others
 };
 
-/// A part of a model, as \p unpack makes it of its bytes.
-/// \param name of the part in the message where \p unpack throws std::invalid_argument.
+/// A part of a model, which \p unpack makes from its bytes.
+/// \param name name of the part in the message if \p unpack throws std::invalid_argument.
 /// \param mutex held while the store is read.
 template <typename Unpack>
 auto unpackedPart(ModelStore& store, ModelPart part, const std::string& name, const StoredModel& model,

@@ -11,7 +11,7 @@ namespace {
 
 constexpr Eigen::Index kPoseSize = 8;  // radius, quaternion and translation of a view, before its values
 
-/// The matrices of bytes that hold \p count of them with \p rows rows each; -1 = any number.
+/// The matrices in \p bytes, which hold \p count matrices of \p rows rows each; -1 = any number.
 std::vector<Eigen::MatrixXf> matricesOf(const std::string& bytes, Eigen::Index rows, std::ptrdiff_t count) {
   std::vector<Eigen::MatrixXf> matrices = unpackedMatrices(bytes);
   bool fits = count < 0 || static_cast<std::ptrdiff_t>(matrices.size()) == count;

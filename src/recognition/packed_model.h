@@ -13,9 +13,9 @@
 namespace pcl_symmetry::detail {
 
 /// The parts of a model as bytes, in the order of all machines that PCL runs on: lowest byte first. Reading throws
-/// std::invalid_argument where the bytes are no such part.
+/// std::invalid_argument if the bytes are not such a part.
 
-/// For each matrix its numbers of rows and columns, 32 bits each, and its values column by column.
+/// For each matrix: its numbers of rows and columns, 32 bits each, and its values column by column.
 /// \param matrices finite.
 std::string packedMatrices(const std::vector<Eigen::MatrixXf>& matrices);
 std::vector<Eigen::MatrixXf> unpackedMatrices(const std::string& bytes);

@@ -19,7 +19,7 @@ namespace pcl_symmetry::detail {
 namespace {
 
 /// Distance within which a scan and the surface of a model agree: the resolution of the scanner.
-/// \param radius of the model, > 0.
+/// \param radius radius of the model, > 0.
 double modelTolerance(const PosedSurface& scan, double radius) {
   const double error = scan.seen ? scan.seen->depthError(scan.points.rowwise().mean().cast<double>()) : 0.0;
   const double tolerance = std::max(
@@ -27,7 +27,7 @@ double modelTolerance(const PosedSurface& scan, double radius) {
   return std::min(tolerance, kRecognition.max_tolerance * radius);
 }
 
-/// Whether the second of two poses of a model explains more of the scan and of the depth image.
+/// Whether \p b, the second of two poses of a model, explains more of the scan and of the depth image.
 bool isWorse(const PosedModel& a, const PosedModel& b) {
   const auto explained = [](const RecognizedModel& model) {
     return model.evidence.on_model * model.evidence.shown * std::max(0.0, model.score.merit());
@@ -92,7 +92,8 @@ double sharedSurface(const PosedModel& a, const PosedModel& b) {
 CloudRegistrationOptions quickRegistration(int num_threads) {
   CloudRegistrationOptions options;
   options.frame = signatureFrameOptions();
-  options.search_parts = options.refine_closely = false;  // confidences of names are fitted to poses before that
+  // The confidences of names were fitted to poses before these steps.
+  options.search_parts = options.refine_closely = false;
   options.search.num_rotations = 200;
   options.search.num_screened = 16;
   options.search.num_refined = 6;

@@ -14,54 +14,53 @@
 
 namespace pcl_symmetry::detail {
 
-/// A model that a scan was brought to.
+/// A model that a scan was registered to.
 struct PosedModel {
-  RecognizedModel model;  ///< its confidence is 0 until all models are judged together
+  RecognizedModel model;  ///< the confidence is 0 until all models are judged together
   std::shared_ptr<const PosedSurface> surface;
-  Eigen::Isometry3d T_surface_scan;  ///< as T_model_scan, in radii about the centers of both
-  SearchFrames frames;               ///< of both poses
+  Eigen::Isometry3d T_surface_scan;  ///< the same as T_model_scan, but in radii about the centers of both
+  SearchFrames frames;               ///< search frames of both poses
 };
 
-/// The share of each surface that lies on the other one where a scan puts both, the smaller of the two shares, in
-/// [0, 1]: near 1 for models of the same shape. Gaussian of the distance, as wide as samples of one surface may be
-/// apart.
+/// The share of each surface that lies on the other one where a scan puts both, the smaller of the two, in [0, 1]: near
+/// 1 for models of the same shape. The Gaussian of the distance is as wide as samples of one surface may be apart.
 double sharedSurface(const PosedModel& a, const PosedModel& b);
 
-/// \return a search for poses that takes a tenth of the time of the default, as candidates come with poses or frames of
-/// their own.
+/// \return options of a pose search that takes a tenth of the time of the default, because candidates come with poses
+/// or frames of their own.
 CloudRegistrationOptions quickRegistration(int num_threads);
 
 /// Least-squares steps that move the visible surface of a model onto the measurements of a scanner along the same rays,
-/// also beside the points of the scan: parts cut off from an object help to pose it.
-/// \param scan with what its scanner saw.
+/// including those beside the points of the scan: parts cut off from an object help to pose it.
+/// \param scan a scan, with what its scanner saw.
 /// \return T_model_scan.
 Eigen::Isometry3d posedInPicture(const PosedSurface& scan, const PosedSurface& model,
                                  const Eigen::Isometry3d& T_model_scan);
 
 /// Evidence for a model at a pose.
-/// \param scan made with exact search, as \p model.
+/// \param scan,model made with exact search.
 ModelEvidence modelEvidence(const PosedSurface& scan, const PosedSurface& model, const Eigen::Isometry3d& T_model_scan);
 
-/// A scan that is brought to models.
+/// A scan that is registered to models.
 class PosedScan {
 public:
   /// \param points 3 x N, finite, input units, not all equal.
   /// \param seen what the scanner saw; nothing = the points show the object from all sides.
   PosedScan(const Points& points, const std::optional<Visibility>& seen, int num_threads);
 
-  /// Brings the scan to a model: the best of some poses, refined and judged.
-  /// \param points of the model, 3 x M, finite, units of the scan.
+  /// Registers the scan to a model: the best of some poses, refined and judged.
+  /// \param points points of the model, 3 x M, finite, units of the scan.
   /// \param poses T_model_scan to start from, at least one.
   PosedModel fitted(const std::string& name, const Points& points, const std::vector<Eigen::Isometry3d>& poses) const;
 
   /// Tries rotations of a model about its principal axes: a mug fits nearly as well with its handle elsewhere, and no
   /// step leads from there to the true pose.
-  /// \return the best pose, with the confidence of the model as it was.
+  /// \return the best pose, with the confidence that the model had.
   PosedModel rotated(const PosedModel& found) const;
 
   /// Judges a pose that was found elsewhere, as fitted() does: by the distances of the scan from the surface between
-  /// the points of the model, so that it does not count how densely the model was sampled.
-  /// \param points of the model, 3 x M, finite, units of the scan.
+  /// the points of the model, so that the density of these points does not matter.
+  /// \param points points of the model, 3 x M, finite, units of the scan.
   PosedModel judged(const std::string& name, const Points& points, const Eigen::Isometry3d& T_model_scan) const;
 
 private:
@@ -73,7 +72,7 @@ private:
 
   CloudRegistrationOptions options_;
   BoundingBall ball_;
-  double scale_;  // input units: estimated radius of the whole object
+  double scale_;  // estimated radius of the whole object, input units
   PosedSurface surface_;
 };
 

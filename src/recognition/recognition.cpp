@@ -45,7 +45,7 @@ std::vector<PossibleModel> screened(const ScreenedSurface& scan, const std::vect
   return best;
 }
 
-/// For each model the first one of the same shape.
+/// For each model, the first one of the same shape.
 /// \param found best first.
 std::vector<std::size_t> firstsOfShapes(const std::vector<PosedModel>& found) {
   std::vector<std::size_t> firsts;
@@ -88,9 +88,9 @@ void rank(std::vector<PosedModel>& found) {
   fillConfidences(found);
 }
 
-/// Models brought to the scan from poses that its looks suggest, and in a small database pairs of its points. In a
-/// large one, many look more like a scan than the model that it shows: more are tried where none of the first is
-/// accepted.
+/// Models registered to the scan from poses that its views and, in a small database, pairs of its points suggest. In a
+/// large database, many models look more like a scan than the one that it shows: further ones are tried if none of the
+/// first is accepted.
 /// \return models, best first.
 std::vector<PosedModel> fitLikeViews(DatabaseParts& database, const Points& points, const Points& scan_points,
                                      const Visibility& seen, const RecognitionOptions& options) {
@@ -127,7 +127,7 @@ std::vector<PosedModel> fitLikeViews(DatabaseParts& database, const Points& poin
     fitAlike(0, num_first);
     if (!isFound()) fitAlike(num_first, alike.size());
   }
-  // The confidence is that of the pose before this step.
+  // The confidence stays that of the pose before this step.
   if (isFound()) found.front() = scan.rotated(found.front());
   return found;
 }
@@ -148,7 +148,7 @@ std::vector<PosedModel> fitLikeShapes(DatabaseParts& database, const Points& poi
   return found;
 }
 
-/// \param scan_points fewer of the points, for poses.
+/// \param scan_points a smaller number of the points, for poses.
 /// \param find_seen gives what the scanner saw.
 template <typename FindSeen>
 Recognition recognizeIn(DatabaseParts& database, const Points& points, const Points& scan_points,
@@ -178,7 +178,7 @@ void RecognitionOptions::validate() const {
 }
 
 void SymmetryDatabase::prepare() const {
-  parts_->views();  // by one thread, so that others may work beside it
+  parts_->views();  // by one thread, so that others can work at the same time
   parts_->pairs();
 }
 

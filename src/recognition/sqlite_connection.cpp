@@ -14,7 +14,7 @@ namespace pcl_symmetry::detail {
 
 namespace {
 
-/// What an error of SQLite means to the user of a file.
+/// The meaning of an error of SQLite for the user of a file.
 std::string reasonOf(sqlite3* database) {
   const int code = sqlite3_extended_errcode(database), system_error = sqlite3_system_errno(database);
   const std::string system =
@@ -42,7 +42,7 @@ std::string reasonOf(sqlite3* database) {
   }
 }
 
-/// A name for sqlite3_open_v2() that says that nobody changes the file: no file is made beside it.
+/// A name for sqlite3_open_v2() that declares the file unchanging, so that no file is made beside it.
 std::string immutableName(const std::string& file) {
   std::string name = "file:";
   for (const unsigned char c : std::filesystem::absolute(file).string()) {
@@ -128,7 +128,8 @@ SQLiteConnection::SQLiteConnection(const std::string& file, SQLiteAccess access,
     open(file, SQLITE_OPEN_READWRITE | (access == SQLiteAccess::Create ? SQLITE_OPEN_CREATE : 0));
   sqlite3_busy_timeout(database_.get(), static_cast<int>(std::lround(1000.0 * seconds)));
   if (access == SQLiteAccess::Change && !canRead()) {
-    // SQLite needs two files beside a database that can be changed. Where they cannot be made, nobody can write either.
+    // SQLite needs two files beside a database that can be changed. If they cannot be made, nobody else can write
+    // either.
     std::error_code error;
     const std::uintmax_t waiting = std::filesystem::file_size(file + "-wal", error);
     if (!error && waiting > 0)
@@ -147,7 +148,7 @@ void SQLiteConnection::open(const std::string& name, int flags) {
   sqlite3_extended_result_codes(database, 1);
 }
 
-/// False where a file of SQLite cannot be read because its folder cannot be written.
+/// False if a file of SQLite cannot be read because its folder is not writable.
 bool SQLiteConnection::canRead() const {
   const int code =
       sqlite3_exec(database_.get(), "SELECT count(*) FROM sqlite_schema", nullptr, nullptr, nullptr) & 0xff;
@@ -183,7 +184,7 @@ SQLiteTransaction::~SQLiteTransaction() {
   try {
     if (connection_.inTransaction()) connection_.run("ROLLBACK");
   } catch (const std::exception&) {
-    // SQLite undoes an unfinished transaction when the file is opened next.
+    // SQLite rolls back an unfinished transaction when the file is opened next.
   }
 }
 

@@ -9,7 +9,7 @@ struct sqlite3_stmt;
 
 namespace pcl_symmetry::detail {
 
-/// Throws pcl::IOException "file: reason" and nothing else. (PCL puts " : " before its text.)
+/// Throws pcl::IOException with the text "file: reason" and nothing else. (PCL prepends " : " to its text.)
 [[noreturn]] void failIO(const std::string& file, const std::string& reason);
 
 /// Bytes that are bound to a statement.
@@ -64,7 +64,7 @@ enum class SQLiteAccess {
 /// A connection to one file. Foreign keys are enforced, and each change is on the disk when its transaction ends.
 class SQLiteConnection {
 public:
-  /// \param seconds that a change waits for another program that is writing.
+  /// \param seconds how long a change waits for another program that is writing.
   /// \throws pcl::IOException naming file and reason.
   SQLiteConnection(const std::string& file, SQLiteAccess access, double seconds);
 

@@ -22,7 +22,7 @@ namespace {
   throw std::invalid_argument("name = '" + name + "', must be that of a model");
 }
 
-/// Names are looked up in an index of the file, which can be damaged apart from the models.
+/// Names are looked up in an index of the file, which may be damaged independently of the models.
 bool isListed(detail::ModelStore& store, const std::string& name) {
   const std::vector<detail::StoredModel>& models = store.models();
   return std::any_of(models.begin(), models.end(), [&](const auto& model) { return model.name == name; });
@@ -143,7 +143,7 @@ std::vector<ModelMatch> SymmetryDatabase::match(const Cloud& cloud, int num_near
   });
 }
 
-/// Describes models on all threads, a model on one, and stores each when it is described.
+/// Describes models on all threads, each model on one, and stores each as soon as it is described.
 BuildReport SymmetryDatabase::build(const std::vector<ModelInput>& models, const BuildProgress& progress) {
   DatabaseOptions options = parts_->options;
   options.num_threads = 1;
@@ -158,14 +158,14 @@ BuildReport SymmetryDatabase::build(const std::vector<ModelInput>& models, const
       failures[i] = "name = '" + models[i].name + "' is that of an earlier model, names must differ";
   }
 
-  std::mutex mutex;  // of the report, the failures and calls of progress
+  std::mutex mutex;  // guards the report, the failures and calls of progress
   std::atomic<bool> stopped{false};
   std::size_t num_done = 0;
   parallelBlocks(used.size(), parts_->options.num_threads, [&](std::size_t k) {
     if (stopped) return;
     const ModelInput& input = models[used[k]];
     ModelInfo info{input.name, 0, {}, 0};
-    std::optional<detail::DescribedModel> model;  // nothing where it is stored already
+    std::optional<detail::DescribedModel> model;  // empty if it is stored already
     std::optional<std::string> failure;
     try {
       detail::checkModelName(input.name);
