@@ -24,7 +24,7 @@ namespace pcl_symmetry {
 
 namespace {
 
-/// Two clouds in search frames. The scan is the one that was seen from a viewpoint, the model the one that shows its
+/// Two clouds in search frames. The scan is the cloud that was seen from a viewpoint, the model the one that shows its
 /// object from all sides: if only the target was seen from one side, the two swap roles.
 class CloudPair {
 public:
@@ -50,7 +50,7 @@ public:
   Eigen::Isometry3d toInput(const Eigen::Isometry3d& T_model_scan) const {
     return frames_.toInput(swappedPose(T_model_scan));
   }
-  /// The covariance of a motion of the model's search frame as that of a motion of the target's input frame.
+  /// The covariance of a motion of the model's search frame, converted to that of a motion of the target's input frame.
   /// \param T_model_scan between search frames, before the motion.
   Matrix6d toInput(const Matrix6d& covariance, const Eigen::Isometry3d& T_model_scan) const {
     // exp(m) T of the model's frame is T^-1 exp(-m) = exp(-Ad(T^-1) m) T^-1 of the scan's; a motion about the
@@ -64,7 +64,7 @@ public:
     return map * covariance * map.transpose();
   }
 
-  /// What decides whether a pose is right, of source and target.
+  /// Evidence of a pose, in terms of source and target.
   PoseEvidence evidence(const RankedPose& pose) const {
     PoseEvidence evidence = poseEvidence(*scan_, *model_, pose.T_model_scan);
     if (swapped_) {
@@ -83,8 +83,8 @@ private:
   std::shared_ptr<const PosedSurface> scan_, model_;
 };
 
-/// The poses that align the symmetry frames of both clouds. Each is tried with the center of symmetry found, and with
-/// the position that the outline of the scan suggests.
+/// The poses that align the symmetry frames of both clouds. Each is tried with the center of symmetry and with the
+/// position that the outline of the scan suggests.
 std::vector<Eigen::Isometry3d> posesFromFrames(const CloudPair& clouds) {
   const PoseStarts starts(clouds.scan(), clouds.model());
   std::vector<Eigen::Isometry3d> poses;
@@ -99,10 +99,10 @@ double angleOf(const Eigen::Isometry3d& motion) {
   return Eigen::AngleAxisd(motion.linear()).angle();
 }
 
-/// Rotations to try: evenly spread ones that are small enough, of which there are few, and some about each axis.
+/// Rotations to try: the few evenly spread ones that are small enough, and some about each axis.
 std::vector<Eigen::Matrix3d> rotationsWithin(double angle, int num_rotations) {
-  // Of 356 tracks of models of PSB (noise of 0.5 %, 40 % missing) 343 are right without those about the axes, 347 with
-  // this share of the angle and 346 with 0.9.
+  // Share of the greatest angle. Of 356 tracks of models of PSB (noise of 0.5 %, 40 % missing), 343 are right without
+  // rotations about the axes, 347 with this share and 346 with 0.9.
   constexpr double share = 0.6;
   std::vector<Eigen::Matrix3d> rotations;
   for (const Eigen::Matrix3d& rotation : uniformRotations(num_rotations))
@@ -113,7 +113,8 @@ std::vector<Eigen::Matrix3d> rotationsWithin(double angle, int num_rotations) {
   return rotations;
 }
 
-/// Poses near a guess to start from: the guess and rotations of it, each also where the outline of the scan suggests.
+/// Poses near a guess to start from: the guess and rotations of it, each also at the position that the outline of the
+/// scan suggests.
 std::vector<Eigen::Isometry3d> posesAround(const PosedSurface& scan, const PosedSurface& model,
                                            const Eigen::Isometry3d& guess, const CloudRegistrationOptions& options) {
   const PoseStarts starts(scan, model);
@@ -129,12 +130,12 @@ std::vector<Eigen::Isometry3d> posesAround(const PosedSurface& scan, const Posed
 }
 
 /// Poses of two clouds that share a part of their surface, by pairs of points that are alike in both (Drost et al.
-/// 2010). A search by the share of the whole ends beside them, because parts that the other cloud does not show also
-/// pull.
+/// 2010). A search by the share of the whole surface ends beside them, because parts that the other cloud does not show
+/// attract it.
 std::vector<RankedPose> posesOfParts(const CloudPair& clouds, const CloudRegistrationOptions& options) {
   const auto& rules = kRegistration;
   PosedSurface scan = clouds.scan(), model = clouds.model();
-  scan.seen = model.seen = std::nullopt;  // while the pose is fitted: missing parts look like free space
+  scan.seen = model.seen = std::nullopt;  // for the fit, because missing parts look like free space
   const PointPairIndex pairs({evenSurfacePoints(model.points, kMatching.num_pair_points, options.seed)},
                              options.num_threads);
   const SurfacePoints few = evenSurfacePoints(scan.points, kMatching.num_scan_points, options.seed);
@@ -144,7 +145,7 @@ std::vector<RankedPose> posesOfParts(const CloudPair& clouds, const CloudRegistr
   for (const Eigen::Isometry3d& pose : found.front().T_shape_scan) {
     poses.push_back({pose, {}});
     poses.back().improve(scorer, {rules.part_steps, rules.fine_points, rules.part_width, rules.fine_width});
-    poses.back().score = {};  // all are refined
+    poses.back().score = {};  // all of these poses are refined
   }
   if (poses.empty()) return poses;
   poses = refinePoses(scan, model, poses, options);
@@ -159,9 +160,9 @@ struct JudgedPose {
   double confidence;
 };
 
-/// Poses by falling confidence.
-/// \param poses distinct, best first.
-/// \param within of the merit of the first; poses of less are left out.
+/// Poses with their evidence, by decreasing confidence.
+/// \param poses distinct poses, best first.
+/// \param within greatest deficit in merit to the first pose; poses with more are left out.
 std::vector<JudgedPose> judgedPoses(const CloudPair& clouds, const std::vector<RankedPose>& poses, double within) {
   std::vector<JudgedPose> judged;
   for (const RankedPose& pose : poses) {
@@ -174,11 +175,11 @@ std::vector<JudgedPose> judgedPoses(const CloudPair& clouds, const std::vector<R
 }
 
 /// See PoseEvidence::uniqueness.
-/// \param judged all poses to compare with; the best one may be among them.
+/// \param judged all poses that the best one is compared with, among which it may be.
 double uniquenessOf(const CloudPair& clouds, const JudgedPose& best, const std::vector<JudgedPose>& judged,
                     const CloudRegistrationOptions& options) {
   const PosedSurface& model = clouds.model();
-  // Poses that differ by a symmetry of the model, and by remaining errors of ICP, count as one.
+  // Poses that differ by a symmetry of the model, and by the remaining errors of ICP, count as one.
   const auto isNearSymmetry = [&](const Eigen::Isometry3d& other) {
     const Eigen::Isometry3d motion = other * best.pose.T_model_scan.inverse();
     if (model.seen)
@@ -198,8 +199,8 @@ double uniquenessOf(const CloudPair& clouds, const JudgedPose& best, const std::
   return best_odds / all;
 }
 
-/// Keeps the poses around a guess.
-/// \param poses between search frames.
+/// Removes the poses that are not around a guess.
+/// \param poses poses between search frames.
 void keepAround(const CloudPair& clouds, const Eigen::Isometry3d& guess, const PoseNeighborhood& around,
                 std::vector<RankedPose>& poses) {
   const Eigen::Vector3d& center = clouds.frames().source_center;
@@ -309,7 +310,7 @@ CloudRegistration registerClouds(const Points& source, const std::optional<Visib
   if (!judged.empty()) {
     result.evidence = judged.front().evidence;
     if (judged.front().confidence >= kRegistration.min_confidence)
-      // Between two scans merit grows with what they share: a pose of less merit may fit as well.
+      // Between two scans, the merit grows with the surface that they share: a pose of less merit may fit equally well.
       result.evidence.uniqueness = uniquenessOf(
           clouds, judged.front(),
           clouds.model().seen ? judgedPoses(clouds, poses, std::numeric_limits<double>::infinity()) : judged, inner);

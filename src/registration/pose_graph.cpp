@@ -26,7 +26,7 @@ Vector6d smallMotionOf(const Eigen::Isometry3d& motion) {
   return small;
 }
 
-/// Adds to each answer half the weight of each triangle that it closes with two others.
+/// The weight of each answer, plus half the weight of each triangle that it closes with two others.
 std::vector<double> votesOf(int num_scans, const std::vector<PairAnswer>& answers, const SamePose& same) {
   struct Other {
     int scan;
@@ -54,7 +54,7 @@ std::vector<double> votesOf(int num_scans, const std::vector<PairAnswer>& answer
 
 void adjustPoses(const std::vector<PoseConstraint>& constraints, std::vector<Eigen::Isometry3d>& T_world_scan,
                  int num_steps) {
-  constexpr double inertia = 1e-6;  // share of the mean stiffness, which keeps unconstrained directions at rest
+  constexpr double inertia = 1e-6;  // as a share of the mean stiffness; it keeps unconstrained directions at rest
   const int size = kSize * static_cast<int>(T_world_scan.size());
   for (int step = 0; step < num_steps && !constraints.empty(); ++step) {
     Triplets entries;
@@ -113,7 +113,7 @@ ScanGroups joinScans(int num_scans, const std::vector<PairAnswer>& answers, cons
       double sum = 0.0;
       for (std::size_t f = 0; f < answers.size(); ++f) {
         if (groupsOf(answers[f]) != between) continue;
-        // The other answer, as a pose of the scans of this one.
+        // The other answer, as a pose between the scans of this one.
         const bool reversed = groups.group[answers[f].target] != groups.group[answers[e].target];
         const PairAnswer& other = answers[f];
         const Eigen::Isometry3d T_group_group =
@@ -138,7 +138,7 @@ ScanGroups joinScans(int num_scans, const std::vector<PairAnswer>& answers, cons
       groups.T_group_scan[k] = T_group_other * groups.T_group_scan[k];
     }
   }
-  // The covariances of single pairs are those of noise alone: they meet their neighbors to this.
+  // Least deviation of an answer from its neighbors: the covariances of single pairs account only for noise.
   constexpr double min_deviation = 0.005;
   std::vector<PoseConstraint> constraints;
   for (const PairAnswer& answer : answers)

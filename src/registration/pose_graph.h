@@ -11,12 +11,12 @@ namespace pcl_symmetry {
 struct PoseConstraint {
   int source, target;
   Eigen::Isometry3d T_target_source;
-  Matrix6d information;  ///< inverse covariance of the small motion of the target's frame that makes the pose true
+  Matrix6d information;  ///< inverse covariance of the small motion of the target's frame that corrects the pose
 };
 
-/// The poses that agree best with all constraints, by Gauss-Newton. Scans that constraints do not connect do not move
-/// against each other.
-/// \param T_world_scan of each scan, where the steps begin; changed.
+/// Moves scans to the poses that agree best with all constraints, by Gauss-Newton. Scans that constraints do not
+/// connect do not move relative to each other.
+/// \param[in,out] T_world_scan pose of each scan, where the steps begin.
 void adjustPoses(const std::vector<PoseConstraint>& constraints, std::vector<Eigen::Isometry3d>& T_world_scan,
                  int num_steps);
 
@@ -24,7 +24,7 @@ void adjustPoses(const std::vector<PoseConstraint>& constraints, std::vector<Eig
 struct PairAnswer {
   int source, target;
   Eigen::Isometry3d T_target_source;
-  Matrix6d covariance;  ///< of the small motion of the target's frame
+  Matrix6d covariance;  ///< covariance of the small motion of the target's frame that corrects the pose
   double weight = 0.0;  ///< 1 for a pose that converged, less for a doubtful one, 0 for a bad one
   bool converged = false;
 };
@@ -32,23 +32,23 @@ struct PairAnswer {
 /// Limits within which two poses of scans count as the same.
 struct SamePose {
   double angle, distance;  ///< radians and units of the scans
-  /// \param T_a_b,other compared where they bring the origin of b.
+  /// \param T_a_b,other poses, compared by their rotations and by where they put the origin of b.
   bool operator()(const Eigen::Isometry3d& T_a_b, const Eigen::Isometry3d& other) const;
 };
 
-/// Scans in groups, in each of which poses are known.
+/// Scans in groups, within which poses are known.
 struct ScanGroups {
-  std::vector<int> group;                       ///< of each scan
-  std::vector<Eigen::Isometry3d> T_group_scan;  ///< of each scan
+  std::vector<int> group;                       ///< group of each scan
+  std::vector<Eigen::Isometry3d> T_group_scan;  ///< pose of each scan in its group
 
-  /// \return whether the scans of an answer are in one group in which it is right.
+  /// \return whether the scans of an answer are in one group and the answer agrees with their poses.
   bool agrees(const PairAnswer& answer, const SamePose& same) const;
 };
 
-/// Joins scans by the answers of their pairs, best known first: all answers between two groups vote for the pose that
-/// brings them together, for themselves and for what agrees with them, against what does not. At the start the votes of
+/// Joins scans by the answers of their pairs, the most certain first: all answers between two groups vote for the pose
+/// that joins them, each for itself and for what agrees with it, and against what does not. At the start, the votes of
 /// a pair are those of the triangles that it closes.
-/// \param min_votes sum of weights that joins two groups: 1 for one pair that converged.
+/// \param min_votes least sum of weights that joins two groups: 1 for one pair that converged.
 ScanGroups joinScans(int num_scans, const std::vector<PairAnswer>& answers, const SamePose& same, double min_votes);
 
 }  // namespace pcl_symmetry

@@ -20,18 +20,20 @@ namespace {
 using NormalCloud = pcl::PointCloud<pcl::PointNormal>;
 
 struct PoseRefinementRules {
-  int refined_points = 1000;  ///< of the scan, that ICP uses
-  double reach = 4.0;         ///< accuracies, in which ICP looks for its first pairs
-  double min_reach = 0.08;    ///< radii
-  double same_merit = 0.01;   ///< by which the closest pose may score less: the comparison is coarser than that pose
-  double min_width = 0.015;   ///< radii, of the Gaussian of the last comparison; otherwise it is the accuracy
-  double hopeless = 0.2;      ///< merit behind the best pose at which poses are not refined
-  /// Pairs that fix a motion of six unknowns; with fewer, PCL's ICP says so on stderr.
+  int refined_points = 1000;  ///< points of the scan that ICP uses
+  double reach = 4.0;         ///< greatest distance of ICP's first pairs, accuracies of the surfaces
+  double min_reach = 0.08;    ///< least value of that distance, radii
+  /// Deficit in merit that the closest pose may have: the comparison is coarser than that pose.
+  double same_merit = 0.01;
+  /// Least width of the Gaussian of the last comparison, radii; otherwise it is the accuracy.
+  double min_width = 0.015;
+  double hopeless = 0.2;  ///< deficit in merit to the best pose above which poses are not refined
+  /// Least number of pairs, which determine a motion of six parameters; with fewer, PCL's ICP prints to stderr.
   std::size_t min_pairs = WeightedProducts::kLast;
 };
 constexpr PoseRefinementRules kPoseRefinement;
 
-/// \param points indices of those that are taken.
+/// \param points indices of the points.
 NormalCloud::Ptr cloudOf(const PosedSurface& surface, const std::vector<int>& points) {
   auto cloud = pcl::make_shared<NormalCloud>();
   cloud->resize(points.size());
@@ -42,14 +44,14 @@ NormalCloud::Ptr cloudOf(const PosedSurface& surface, const std::vector<int>& po
   return cloud;
 }
 
-/// Points that are spread over the scan.
+/// Points spread over the scan.
 NormalCloud::Ptr fewPoints(const PosedSurface& scan) {
   const auto size = std::min<std::size_t>(scan.order.size(), kPoseRefinement.refined_points);
   return cloudOf(scan, {scan.order.begin(), scan.order.begin() + size});
 }
 
-/// Pairs of closest points, all at once and by the search that the model has. PCL's own asks FLANN point by point: of a
-/// frame of eight objects that are recognized it took 0.6 s of 3.7, with the same pairs, this takes 0.1 s.
+/// Pairs of closest points, all at once and by the search of the model. PCL's own estimation queries FLANN point by
+/// point: for a frame of eight recognized objects it took 0.6 s of 3.7 s, this takes 0.1 s, with the same pairs.
 class ModelCorrespondences
     : public pcl::registration::CorrespondenceEstimation<pcl::PointNormal, pcl::PointNormal, double> {
 public:
@@ -62,7 +64,7 @@ public:
     pairs.clear();
     closest_.resize(scan.size(), -1);
     std::vector<float> sq_distances;
-    if (positions.allFinite())  // else the step was unconstrained, and its result is dropped
+    if (positions.allFinite())  // otherwise the step was unconstrained, and its result is discarded
       model_->searchWithin(positions, static_cast<float>(max_distance * max_distance), closest_, sq_distances);
     for (std::size_t i = 0; i < sq_distances.size(); ++i)
       if (closest_[i] >= 0) pairs.emplace_back(static_cast<int>(i), closest_[i], sq_distances[i]);
@@ -72,7 +74,7 @@ public:
 
 private:
   ClosestPointSearch::Ptr model_;
-  std::vector<int> closest_;  // of the last call, where the next one begins
+  std::vector<int> closest_;  // result of the last call, from which the next one begins
 };
 
 /// Point-to-plane ICP from several poses.
@@ -80,7 +82,8 @@ class PoseRefinement {
 public:
   PoseRefinement(const PosedSurface& scan, const PosedSurface& model, double reach,
                  const CloudRegistrationOptions& options) {
-    icp_.setSearchMethodTarget(pcl::make_shared<pcl::search::KdTree<pcl::PointNormal>>(), true);  // which is not used
+    // This tree is not used.
+    icp_.setSearchMethodTarget(pcl::make_shared<pcl::search::KdTree<pcl::PointNormal>>(), true);
     icp_.setCorrespondenceEstimation(pcl::make_shared<ModelCorrespondences>(model.search));
     icp_.setInputTarget(cloudOf(model, allOf(model.points.cols())));
     icp_.setInputSource(fewPoints(scan));
@@ -92,7 +95,7 @@ public:
     icp_.setTransformationRotationEpsilon(options.rotation_epsilon);
   }
 
-  /// \return the refined T_model_scan; \p start where ICP fails.
+  /// \return the refined T_model_scan; \p start if ICP fails.
   Eigen::Isometry3d refined(const Eigen::Isometry3d& start) {
     NormalCloud aligned;
     icp_.align(aligned, start.matrix());

@@ -8,7 +8,7 @@ namespace pcl_symmetry {
 
 namespace {
 
-constexpr Eigen::Index kLeastPoints = 3;  // that fix a rotation
+constexpr Eigen::Index kLeastPoints = 3;  // points that determine a rotation
 
 BoundingBall ballOf(const std::string& name, const Points& points) {
   const BoundingBall ball = boundingBall(points);

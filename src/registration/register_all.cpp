@@ -21,22 +21,24 @@ namespace pcl_symmetry {
 namespace {
 
 struct RegisterAllRules {
-  std::size_t max_points = 10'000;  ///< of each scan, and of scans together, that are registered
-  int enough_pairs = 3;             ///< of a scan that agree; more are not tried
+  /// Greatest number of points of each scan, and of scans together, that are registered.
+  std::size_t max_points = 10'000;
+  int enough_pairs = 3;  ///< number of agreeing pairs of a scan after which no more are tried
   SamePose same{6.0 * kDegree, 0.08};
-  /// Merit of a pair that did not converge at which it begins to count, and where it counts like half of one that did.
-  /// Of pairs of real scans, many right ones and no wrong one are above it.
+  /// Merit at which a pair that did not converge begins to count, and at which it counts half as much as one that did.
+  /// Of pairs of real scans, many right ones and no wrong one are above the first.
   double min_merit = -0.1, good_merit = 0.4;
-  double min_uniqueness = 0.6;  ///< of a pose that counts
-  double min_votes = 0.6;       ///< that join scans: more than one pair that did not converge
+  double min_uniqueness = 0.6;  ///< least uniqueness of a pose that counts
+  double min_votes = 0.6;       ///< least number of votes that join scans: more than one pair that did not converge
   // Adjustment of all poses together
-  int adjust_points = 2000;      ///< of each scan
-  int adjust_steps = 16;         ///< over which the reach shrinks
-  double first_reach = 0.06;     ///< radii, distance in which points correspond
+  int adjust_points = 2000;      ///< points of each scan
+  int adjust_steps = 16;         ///< steps over which the reach decreases
+  double first_reach = 0.06;     ///< distance within which points correspond at first, radii
   double last_accuracies = 2.0;  ///< the same at the end, in distances that the scans resolve
-  double min_cosine = 0.7;       ///< of the normals of corresponding points
-  double min_overlap = 0.03;     ///< share of the points that must correspond
-  double around_angle = 15.0 * kDegree, around_distance = 0.2;  ///< radians, radii: where a scan must fit the others
+  double min_cosine = 0.7;       ///< least cosine between the normals of corresponding points
+  double min_overlap = 0.03;     ///< least share of the points that correspond
+  /// Radians and radii: neighborhood in which a scan must fit the others.
+  double around_angle = 15.0 * kDegree, around_distance = 0.2;
 };
 constexpr RegisterAllRules kRegisterAll{};
 
@@ -50,7 +52,7 @@ Points drawn(const Points& points, std::uint64_t seed) {
   return few;
 }
 
-/// Of the points in each cell of a grid, the one nearest to their mean; in the order of the cells.
+/// For each cell of a grid, the point nearest to the mean of its points; in the order of the cells.
 std::vector<int> onePerCell(const Points& points, double edge) {
   const Eigen::Vector3d corner = points.rowwise().minCoeff().cast<double>();
   std::vector<std::pair<std::array<std::int64_t, 3>, int>> cells;
@@ -78,7 +80,7 @@ std::vector<int> onePerCell(const Points& points, double edge) {
 /// A scan about its own center, in units that all scans share.
 struct NormalizedScan {
   ObjectScan scan;
-  double spacing_ratio = 1.0;  ///< spacing of all its points over that of those here
+  double spacing_ratio = 1.0;  ///< spacing of all points of the scan divided by the spacing of the points here
   std::shared_ptr<const PosedSurface> surface;
   std::shared_ptr<const PreparedCloud> target;
 };
@@ -117,7 +119,8 @@ public:
   const ScanGroups& groups() const { return groups_; }
   bool agrees(const PairAnswer& answer) const { return groups_.agrees(answer, kRegisterAll.same); }
 
-  /// Pairs of scans that are a step apart in their order, for growing steps, until all are connected.
+  /// Registers pairs of scans that are a number of steps apart in their order, for increasing numbers, until all are
+  /// connected.
   void registerPairs() {
     groups_ = joinScans(size(), {}, kRegisterAll.same, kRegisterAll.min_votes);
     for (int step = 1; 2 * step <= size(); ++step) {
@@ -142,7 +145,7 @@ public:
     }
   }
 
-  /// \return the group of most scans, the first one of several.
+  /// \return the group with most scans; of several, the first one.
   int largestGroup() const {
     std::vector<int> sizes(2 * size());
     for (const int group : groups_.group) ++sizes[group];
@@ -152,7 +155,7 @@ public:
     return best;
   }
 
-  /// Tries scans outside of the largest group with all those in it.
+  /// Tries to add scans outside the largest group by registering them to all scans in it.
   void addToLargest() {
     for (bool grown = true; grown;) {
       grown = false;
@@ -171,7 +174,7 @@ public:
     }
   }
 
-  /// Moves all scans so that their surfaces meet.
+  /// Moves all scans so that their surfaces coincide.
   void adjust() {
     double last_reach = 0.0;
     for (const NormalizedScan& scan : scans_)
@@ -199,8 +202,8 @@ public:
     }
   }
 
-  /// Registers the scans that fewer than two converged pairs connect with the largest group to its others together,
-  /// around where they are; those that do not fit are taken out.
+  /// Registers each scan that fewer than two converged pairs connect with the largest group to all others of that
+  /// group, around its current pose; scans that do not fit are removed.
   void settleLoose() {
     const int largest = largestGroup();
     std::vector<int> num_pairs(size());
@@ -223,10 +226,10 @@ public:
     }
   }
 
-  /// Removes scans from a group, the least certain first, until each remaining one lies on the others' points and
+  /// Removes scans from a group, the least certain first, until each remaining one lies on the points of the others and
   /// outside their free space.
-  /// \param confidences of all scans; set for those of the group: that their poses are right, in [0, 1], of a scan that
-  /// is taken out as it was then.
+  /// \param[in,out] confidences for each scan of the group, the probability that its pose is right, in [0, 1]; for a
+  /// removed scan, as it was then.
   void takeOutDoubtful(int group, std::vector<double>& confidences) {
     std::vector<int> kept;
     for (int k = 0; k < size(); ++k)
@@ -254,7 +257,7 @@ public:
     confidences[kept.front()] = 1.0;
   }
 
-  /// Share of the points of one scan that lie on another.
+  /// Share of the points of one scan that lie on another one.
   double overlap(int source, int target) const {
     const PosedSurface &from = *scans_[source].surface, &to = *scans_[target].surface;
     const double reach = kRegisterAll.last_accuracies * std::max(from.accuracy, to.accuracy);
@@ -262,7 +265,7 @@ public:
     return static_cast<double>(matched.pairs.size()) / static_cast<double>(matched.num_points);
   }
 
-  /// Of all points of the scans of a group, input units.
+  /// Distance that all points of the scans of a group resolve, input units.
   double resolution(int group) const {
     std::vector<double> resolved;
     for (int k = 0; k < size(); ++k) {
@@ -274,7 +277,7 @@ public:
     return median(resolved);
   }
 
-  /// T_first_scan between input frames.
+  /// T_first_scan of a scan, between input frames.
   Eigen::Isometry3d pose(int scan, int first) const {
     Eigen::Isometry3d pose = groups_.T_group_scan[first].inverse() * groups_.T_group_scan[scan];
     pose.translation() = unit_ * pose.translation() + balls_[first].center - pose.linear() * balls_[scan].center;
@@ -283,7 +286,8 @@ public:
 
 private:
   struct Matched {
-    std::vector<std::pair<Eigen::Vector3d, int>> pairs;  ///< points in the target's frame, with those of the target
+    /// Points in the target's frame, with indices of those of the target.
+    std::vector<std::pair<Eigen::Vector3d, int>> pairs;
     int num_points;
   };
 
@@ -297,7 +301,7 @@ private:
     const double doubtful =
         (found.score.merit() - kRegisterAll.min_merit) / (kRegisterAll.good_merit - kRegisterAll.min_merit);
     answer.weight = answer.converged ? 1.0 : 0.5 * std::clamp(doubtful, 0.0, 1.0);
-    // For a nearly round body, all pairs may agree on the pose in which its views are alike.
+    // For a nearly round body, all pairs may agree on the pose in which its views look alike.
     if (found.evidence.uniqueness < kRegisterAll.min_uniqueness) answer.weight = 0.0;
     return answer;
   }
@@ -322,7 +326,7 @@ private:
     return matched;
   }
 
-  /// The pose near the current one in which the surfaces of two scans meet (point to plane).
+  /// The pose near the current one in which the surfaces of two scans coincide (point to plane).
   std::optional<PoseConstraint> meeting(int source, int target, double reach) const {
     const Matched matched = match(source, target, reach);
     if (static_cast<double>(matched.pairs.size()) < kRegisterAll.min_overlap * matched.num_points) return std::nullopt;
@@ -347,7 +351,7 @@ private:
                           hessian / variance};
   }
 
-  /// The points of a group but those of one scan.
+  /// The points of a group, except those of one scan.
   Points together(int group, int without) const {
     std::vector<Points> moved;
     Eigen::Index total = 0;
