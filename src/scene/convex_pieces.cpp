@@ -17,8 +17,8 @@ namespace pcl_symmetry::detail {
 
 namespace {
 
-/// The piece of each supervoxel, named by one of its supervoxels. Small segments join their largest neighbor, the
-/// smallest one first: LCCPSegmentation joins them in the order of their addresses.
+/// The piece of each supervoxel, named by one of its supervoxels. Small segments are joined with their largest
+/// neighbor, the smallest one first: LCCPSegmentation would join them in the order of their addresses.
 std::map<std::uint32_t, std::uint32_t> piecesOf(pcl::LCCPSegmentation<pcl::PointXYZ>& segmentation) {
   std::map<std::uint32_t, std::set<std::uint32_t>> members, neighbors;
   segmentation.getSegmentToSupervoxelMap(members);
@@ -80,7 +80,7 @@ std::vector<pcl::Indices> convexPieces(const SymmetryScene::Cloud& scene, const 
   for (std::size_t i = 0; i < cluster.size(); ++i)
     of_label[piece_of_supervoxel[(*labeled)[i].label]].push_back(cluster[i]);
   std::vector<pcl::Indices> pieces;
-  pcl::Indices rest, all;  // points that no supervoxel holds have label 0
+  pcl::Indices rest, all;  // points that are in no supervoxel have label 0
   std::vector<std::size_t> piece_of;
   for (auto& [label, piece] : of_label) {
     if (label == 0 || piece.size() < static_cast<std::size_t>(min_points)) {

@@ -27,15 +27,15 @@ namespace pcl_symmetry::detail {
 
 namespace {
 
-/// A plane that sample consensus found among some points.
+/// A plane that sample consensus found in a set of points.
 struct Consensus {
   Eigen::Vector4d coefficients;
   pcl::Indices inliers;  // into the scene
 };
 
-/// A factor, a power of two, that gives scenes of any unit one scale: PCL's models of planes refuse three samples by an
-/// absolute area, and write about it.
-/// \param distance of points that belong together.
+/// A factor, a power of two, that scales scenes of any unit alike: PCL's model of planes rejects three samples by an
+/// absolute area, and prints a message.
+/// \param distance distance of points that belong together.
 float unitScale(double distance) {
   return static_cast<float>(std::exp2(std::round(-std::log2(distance))));
 }
@@ -49,7 +49,7 @@ SymmetryScene::Cloud::ConstPtr scaled(const SymmetryScene::Cloud& scene, float f
 std::optional<Consensus> greatestPlane(const SymmetryScene::Cloud::ConstPtr& scene, const pcl::Indices& points,
                                        double distance) {
   if (points.size() < 3) return std::nullopt;
-  // What pcl::SACSegmentation does, without its other models.
+  // Does what pcl::SACSegmentation does, without its other models.
   using Model = pcl::SampleConsensusModelPlane<pcl::PointXYZ>;
   pcl::Indices some;
   const std::size_t stride = 1 + (points.size() - 1) / kScene.consensus_points;
@@ -70,8 +70,8 @@ std::optional<Consensus> greatestPlane(const SymmetryScene::Cloud::ConstPtr& sce
   return plane;
 }
 
-/// The plane of least squares of the points that are nearest to a plane: sample consensus ends with one through three
-/// of them, which is tilted by their noise and by points of what stands on it.
+/// The least-squares plane of the points nearest to a plane: sample consensus ends with a plane through three of them,
+/// which is tilted by their noise and by points of objects that stand on it.
 Eigen::Vector4d fitted(const SymmetryScene::Cloud& scene, const Consensus& plane) {
   Eigen::Vector4d coefficients = plane.coefficients;
   for (int round = 0; round < kScene.fit_rounds; ++round) {
@@ -90,10 +90,10 @@ Eigen::Vector4d fitted(const SymmetryScene::Cloud& scene, const Consensus& plane
   return coefficients;
 }
 
-/// Points that lie over and under a plane.
+/// Numbers of points above and below a plane.
 struct Sides {
   std::size_t above = 0, below = 0;  ///< within its extent
-  std::size_t attached = 0;          ///< close under it, also beyond its extent
+  std::size_t attached = 0;          ///< close below it, also beyond its extent
 };
 
 Sides sidesOf(const SymmetryScene::Cloud& scene, const Consensus& plane, const pcl::Indices& others, double distance) {
@@ -162,8 +162,8 @@ Eigen::AlignedBox3f boxAround(const SymmetryScene::Cloud& scene, const pcl::Indi
   return box;
 }
 
-/// The height to which noise raises points of a support above it around a cluster.
-/// \return input units, > 0; infinity where few points of the support are around the cluster.
+/// The height to which noise raises points of a support around a cluster.
+/// \return input units, > 0; infinity if few points of the support are around the cluster.
 double riseOfNoise(const SymmetryScene::Cloud& scene, const SupportingPlane& support, const pcl::Indices& cluster,
                    const SceneDistances& distances) {
   const Eigen::AlignedBox3f around = boxAround(scene, cluster, kScene.around * distances.cluster);
@@ -176,10 +176,10 @@ double riseOfNoise(const SymmetryScene::Cloud& scene, const SupportingPlane& sup
                   kScene.rises * kDeviationPerMedian * median(std::move(heights)));
 }
 
-/// For each point of a scene the squared distance from the nearest cluster, and its number; -1: none.
+/// For each point of a scene, the squared distance from the nearest cluster and the number of that cluster; -1 = none.
 using NearestClusters = std::vector<std::pair<float, int>>;
 
-/// Adds to a cluster the points of the supports that may be its feet.
+/// Assigns to a cluster the points of the supports that may be its feet.
 void offerFeet(const SymmetryScene::Cloud& scene, const std::vector<SupportingPlane>& supports,
                const pcl::Indices& cluster, int number, const SceneDistances& distances, NearestClusters& nearest) {
   const Eigen::AlignedBox3f near = boxAround(scene, cluster, distances.cluster);
@@ -197,16 +197,16 @@ void offerFeet(const SymmetryScene::Cloud& scene, const std::vector<SupportingPl
       nearest[risen[i]] = {sq_distances[i], number};
 }
 
-// Root mean square distance of the points of a flat piece from their plane, in tolerances. 17 pieces of the wall in
-// PCL's stereo picture have 0.5 to 2.4.
+// Greatest root mean square distance of the points of a flat piece from their plane, in tolerances. 17 pieces of the
+// wall in PCL's stereo image have 0.5 to 2.4.
 constexpr double kFlat = 3.0;
-// Shares of the outline of a piece of a wall or table along which the surface goes on, at least, and behind which
-// something farther is seen, at most: 0.3 to 0.94 and 0.01 to 0.02 for such pieces in PCL's frames of a
-// stereo camera and of a Kinect; 0.22 to 0.43 of the outlines of flat objects on tables are before something farther.
+// Least share of the outline of a piece of a wall or table along which the surface continues, and greatest share in
+// front of something farther away. Such pieces have 0.3 to 0.94 and 0.01 to 0.02 in PCL's frames of a stereo camera and
+// of a Kinect; flat objects on tables have 0.22 to 0.43 in front of something farther away.
 constexpr double kGoesOn = 0.25, kBeforeFarther = 0.05;
-constexpr double kDepthErrors = 4.0;  // of the sensor, by which neighbors on one surface may be apart
+constexpr double kDepthErrors = 4.0;  // greatest distance of neighbors on one surface, errors of the sensor's depths
 
-/// Whether the surface goes on at the outline of a cluster, and is seen to end nowhere before something farther.
+/// Whether the surface continues at the outline of a cluster, and nowhere ends in front of something farther away.
 bool goesOn(const SymmetryScene::Cloud& frame, const pcl::Indices& cluster, const Visibility& seen, double distance) {
   std::vector<char> is_inside(frame.size(), 0);
   for (const pcl::index_t i : cluster) is_inside[i] = 1;
@@ -265,7 +265,7 @@ SceneDistances sceneDistances(const SymmetryScene::Cloud& scene, const pcl::Indi
   search->search(positions, num_neighbors, closest, sq_distances);
   std::vector<float> spacings(positions.cols());
   for (std::size_t i = 0; i < spacings.size(); ++i)
-    // As LocalGeometry::spacing: pi r^2 holds the neighbors within r.
+    // As in LocalGeometry::spacing, pi r^2 holds the neighbors within r.
     spacings[i] =
         std::sqrt(static_cast<float>(kPi) * sq_distances[(i + 1) * static_cast<std::size_t>(num_neighbors) - 1] /
                   static_cast<float>(std::max(1, num_neighbors - 1)));
@@ -285,7 +285,7 @@ SeenSpace seenOfObject(const SeenSpace& seen, const SymmetryScene::Cloud& scene,
   const double max_rise = kScene.support_margin * distances.plane;
   for (const SupportingPlane& support : supports) {
     if (!carries(support, points, max_rise)) continue;
-    // A symmetric surface may be off by the tolerance, and by noise. A wider margin would leave unknown space below a
+    // A symmetric surface may be off by the tolerance and by noise. A wider margin would leave unknown space below a
     // table, where reflections are not penalized.
     const double rise = riseOfNoise(scene, support, object, distances);
     result = result.withSupport(support.coefficients, std::min(max_rise, rise + off));
@@ -312,7 +312,7 @@ SeenSpace standingInScene(const SeenSpace& seen, const SymmetryScene::Cloud::Con
   pcl::Indices finite;
   for (std::size_t i = 0; i < scene->size(); ++i)
     if (pcl::isXYZFinite((*scene)[i])) finite.push_back(static_cast<pcl::index_t>(i));
-  // A face of the object is no table.
+  // A face of the object is not a table.
   const pcl::Indices others = without(finite, part, scene->size()), object = without(finite, others, scene->size());
   if (object.empty() || others.empty()) return seen;
   const SceneDistances distances = sceneDistances(*scene, others);
@@ -347,7 +347,7 @@ std::vector<SupportingPlane> findSupports(const SymmetryScene::Cloud::ConstPtr& 
     }
     const double few = kScene.telling_share * static_cast<double>(plane->inliers.size());
     const bool tells = static_cast<double>(sides.above + sides.below) > few;
-    // Above a table lies what stands on it. Behind the face of a box the other faces begin.
+    // Objects stand above a table; behind the face of a box, its other faces begin.
     const bool is_bare =
         share(plane->inliers.size()) >= kScene.bare_share && static_cast<double>(sides.attached) <= few;
     const bool supports_others = tells ? sides.above >= sides.below : is_bare;
@@ -387,7 +387,7 @@ std::vector<pcl::Indices> findClusters(const SymmetryScene::Cloud::ConstPtr& sce
   pcl::EuclideanClusterExtraction<pcl::PointXYZ> extraction;
   extraction.setClusterTolerance(distances.cluster);
   extraction.setMinClusterSize(min_points);
-  // PCL's own choice for frames guesses the camera from these points, of which a few show too little of it.
+  // PCL's own choice for organized clouds estimates the camera from these points, which are too few for that.
   extraction.setSearchMethod(pcl::make_shared<pcl::search::KdTree<pcl::PointXYZ>>(false));
   extraction.setInputCloud(scene);
   extraction.setIndices(pcl::make_shared<pcl::Indices>(points));

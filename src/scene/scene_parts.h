@@ -14,7 +14,7 @@ namespace pcl_symmetry::detail {
 /// \return the positions of some points of a scene.
 Points pointsOf(const SymmetryScene::Cloud& scene, const pcl::Indices& indices);
 
-/// \return the squared distance of each of some points from the closest of \p surface, not empty.
+/// \return the squared distance of each point from the closest point of \p surface, which is not empty.
 std::vector<float> sqDistancesFrom(const Points& surface, const Points& points);
 
 /// \param plane unit normal and offset, frame of the scene.
@@ -23,44 +23,47 @@ double heightOver(const Eigen::Vector4d& plane, const pcl::PointXYZ& point);
 
 /// Distances that decide what belongs together, input units.
 struct SceneDistances {
-  double spacing;  ///< of neighboring points, median
-  double plane;    ///< of the points of a supporting plane
-  double cluster;  ///< between the points of one object
+  double spacing;  ///< median spacing of neighboring points
+  double plane;    ///< distance of the points of a supporting plane from the plane
+  double cluster;  ///< distance between the points of one object
 };
 
-/// From the spacing of the points and how far neighbors are from their tangent plane.
+/// Computes the distances from the spacing of the points and how far neighbors are from their tangent plane.
 /// \param points indices of finite points, at least one.
 SceneDistances sceneDistances(const SymmetryScene::Cloud& scene, const pcl::Indices& points);
 
-/// Adds the supporting planes to the visibility: no part of an object lies behind planes that carry or back it.
-/// \param object indices of its points, at least one.
+/// Adds the supporting planes to the visibility: no part of an object lies behind planes that it stands on or in front
+/// of.
+/// \param object indices of the points of the object, at least one.
 /// \param tolerance how far a symmetric surface may be off, as a share of the diameter.
 SeenSpace seenOfObject(const SeenSpace& seen, const SymmetryScene::Cloud& scene,
                        const std::vector<SupportingPlane>& supports, const pcl::Indices& object,
                        const SceneDistances& distances, double tolerance);
 
 /// Evidence against a model of an object: depths, with the errors of the points of the supports, and the greatest
-/// support that carries the object. Other planes may end before the object, and its hidden part pass them.
-/// \param object indices of its points, at least one.
+/// support that the object stands on. Other planes may end before the object, and its hidden part may reach beyond
+/// them.
+/// \param object indices of the points of the object, at least one.
 SeenSpace seenOfModel(const SeenSpace& seen, const SymmetryScene::Cloud& scene,
                       const std::vector<SupportingPlane>& supports, const pcl::Indices& object,
                       const SceneDistances& distances);
 
-/// The greatest planes of a scene that carry or back other points.
+/// The greatest planes of a scene that other points stand on or in front of.
 /// \param points indices of finite points.
-/// \param viewpoint of the sensor; nothing: the normals point to where most of the other points are.
-/// \param distance of points that belong to a plane, > 0.
+/// \param viewpoint position of the sensor; nothing: the normals point to the side with most of the other points.
+/// \param distance greatest distance of points that belong to a plane, > 0.
 std::vector<SupportingPlane> findSupports(const SymmetryScene::Cloud::ConstPtr& scene, const pcl::Indices& points,
                                           const std::optional<Eigen::Vector3d>& viewpoint, double distance);
 
 /// A supporting plane that is known.
-/// \param plane unit normal of any sign; its side is that of the viewpoint, or else that of most points.
-/// \param distance of points that belong to it, > 0.
+/// \param plane unit normal of any sign; objects are on the side of the viewpoint, or else on the side with most
+/// points.
+/// \param distance greatest distance of points that belong to it, > 0.
 SupportingPlane supportOf(const SymmetryScene::Cloud& scene, const pcl::Indices& points,
                           const std::optional<Eigen::Vector3d>& viewpoint, const Eigen::Vector4d& plane,
                           double distance);
 
-/// \return those of the points that belong to no support.
+/// \return the points that belong to no support.
 pcl::Indices withoutSupports(const pcl::Indices& points, const std::vector<SupportingPlane>& supports,
                              std::size_t scene_size);
 
@@ -74,7 +77,8 @@ std::vector<pcl::Indices> findClusters(const SymmetryScene::Cloud::ConstPtr& sce
 /// Returns feet to objects: points that were assigned to the support of an object because they lie within its distance,
 /// but that rise above the plane around the object by more than the noise.
 ///
-/// Without its feet, a box looks lower than it is: as high as it is deep, it gets a plane of symmetry between the two.
+/// Without its feet, a box looks lower than it is: if it then looks as high as it is deep, it gets a plane of symmetry
+/// between the two directions.
 /// \param supports lose these points.
 /// \param clusters gain these points, each the cluster that is nearest to it.
 /// \param distances a foot is as close to the other points of its cluster as these are to each other.
@@ -82,13 +86,14 @@ void returnFeet(const SymmetryScene::Cloud& scene, std::vector<SupportingPlane>&
                 std::vector<pcl::Indices>& clusters, const SceneDistances& distances);
 
 /// Whether a cluster is a flat piece of a table, floor or wall that noise lifts off its plane: stereo cameras measure
-/// walls in waves, and depths far away have large errors. All of its points lie near one plane, along its outline the
-/// surface goes on, and nowhere does it end before something farther. An object, also a thin one, does.
+/// walls in waves, and depths far away have large errors. All points of such a piece lie near one plane, the surface
+/// continues along its outline, and nowhere does it end in front of something farther away. An object, even a thin one,
+/// does.
 /// \param frame organized; others have no such clusters.
 /// \param cluster indices of finite points, at least one.
-/// \param seen of this frame; null: no such clusters.
+/// \param seen what the scanner saw, from this frame; null: no such clusters.
 /// \param tolerance how far a symmetric surface may be off, as a share of the diagonal, > 0.
-/// \param distance of points of one object, input units, > 0.
+/// \param distance distance between points of one object, input units, > 0.
 bool isBulge(const SymmetryScene::Cloud& frame, const pcl::Indices& cluster, const Visibility* seen, double tolerance,
              double distance);
 

@@ -29,7 +29,7 @@ Eigen::Vector3d positionOf(const Cloud& scene, pcl::index_t i) {
   return scene[i].getVector3fMap().cast<double>();
 }
 
-/// Indices of both, ascending.
+/// Indices of both objects, ascending.
 pcl::Indices indicesOf(const SceneObject& a, const SceneObject& b) {
   pcl::Indices all;
   std::merge(a.indices.begin(), a.indices.end(), b.indices.begin(), b.indices.end(), std::back_inserter(all));
@@ -43,7 +43,7 @@ std::vector<ReflectionPlane> planesThrough(const SymmetryAxis& axis) {
   return planes;
 }
 
-/// The planes of symmetry of an object; of a body of revolution some of those through its axis.
+/// The planes of symmetry of an object; for a body of revolution, some of those through its axis.
 std::vector<ReflectionPlane> planesOf(const SceneObject& object) {
   if (!object.axes.empty()) return planesThrough(object.axes.front());
   std::vector<ReflectionPlane> planes;
@@ -52,11 +52,11 @@ std::vector<ReflectionPlane> planesOf(const SceneObject& object) {
   return planes;
 }
 
-/// Counts of where a reflection maps the points of a piece.
+/// Numbers of points that a reflection maps to different places.
 struct Landings {
-  double own = 0.0, other = 0.0;  ///< onto the piece itself, onto the other one
+  double own = 0.0, other = 0.0;  ///< onto the piece itself, and onto the other piece
   double off = 0.0;               ///< into free space
-  double all = 0.0;               ///< including points that land in unknown space
+  double all = 0.0;               ///< all points, including those mapped into unknown space
 
   double known() const { return own + other + off; }
   bool isInformative() const { return known() >= kScene.informative * all; }
@@ -78,22 +78,23 @@ public:
     reach_ = 2.0 * tolerance;
   }
 
-  /// Whether one symmetry may explain both, judging by the pieces.
+  /// Whether one symmetry may explain both pieces, judged by the pieces alone.
   bool isPlausible() const {
     const SceneObject &larger = *pieces_[0], &smaller = *pieces_[1];
     if (larger.axes.empty()) return false;
     return hangs() || (!smaller.axes.empty() && isSame(larger.axes.front(), smaller.axes.front()));
   }
 
-  /// Whether the pieces are two bodies: symmetries of their own explain them, and neither is a face or part of a wall.
+  /// Whether the pieces are two bodies: their own symmetries explain them, and neither is a face or a part of a wall.
   bool isCutBySymmetry(double share_apart) const {
     return share_apart >= kScene.own && !isFlat(*pieces_[0]) && !isFlat(*pieces_[1]);
   }
 
   const pcl::Indices& indices() const { return indices_; }
 
-  /// Share of the points of both whose normals point to one upright line; nothing unless the pieces stand side by side
-  /// and are of one body of revolution. Noise pulls the line too far toward the points for reflections to fit.
+  /// Share of the points of both pieces whose normals point to one upright line; nothing unless the pieces stand side
+  /// by side and belong to one body of revolution. Noise pulls the line too far toward the points for reflections to
+  /// fit.
   std::optional<double> roundShare() const {
     if (scene_.supports.empty()) return std::nullopt;
     const SupportingPlane& support = nearestSupport();
@@ -105,7 +106,7 @@ public:
     const std::vector<Wall> walls = wallsOf(up);
     Eigen::Vector3d at = center_;
     for (int round = 0; round < kScene.axis_rounds; ++round) {
-      Eigen::Matrix3d a = up * up.transpose();  // leaves the height where it is
+      Eigen::Matrix3d a = up * up.transpose();  // keeps the height unchanged
       Eigen::Vector3d b = a * center_;
       for (const Wall& wall : walls) {
         const double off = wall.aside.dot(wall.point - at) / (kScene.misses * diagonal_);
@@ -131,7 +132,7 @@ public:
     return shareOfBoth(num_round[0] / num_walls[0], num_round[1] / num_walls[1]);
   }
 
-  /// Whether a symmetry of both explains each, and leaves the axis of the larger one, or a plane through it.
+  /// Whether a symmetry of the union explains each piece, and keeps the axis of the larger one or a plane through it.
   bool areOne(const SceneObject& together) const {
     const SymmetryAxis& axis = pieces_[0]->axes.front();
     if (!together.axes.empty() && !isSame(axis, together.axes.front())) return false;
@@ -140,7 +141,7 @@ public:
            explains(planes, !together.axes.empty());
   }
 
-  /// Share of the points that the best symmetry of the union, where it is known, or of a piece explains.
+  /// Share of the points that the best symmetry explains: of the union if it is known, otherwise of a piece.
   double shareTogether(const SceneObject* together) const {
     std::vector<ReflectionPlane> planes;
     for (const SceneObject* object : {together, pieces_[0], pieces_[1]})
@@ -206,8 +207,8 @@ private:
     return std::binary_search(points.begin(), points.end(), i);
   }
 
-  /// Whether no piece contradicts these planes, and each has an informative one: unless the planes are those of an
-  /// axis, a symmetry of the piece by itself.
+  /// Whether no piece contradicts these planes, and each has an informative one, which is a symmetry of the piece by
+  /// itself unless the planes are those of an axis.
   bool explains(const std::vector<ReflectionPlane>& planes, bool of_axis) const {
     std::array<bool, 2> is_explained{};
     for (const ReflectionPlane& plane : planes)
@@ -223,7 +224,7 @@ private:
   /// A point of a piece with a normal that is not upright.
   struct Wall {
     int piece;
-    Eigen::Vector3d point, aside;  // aside: across the normal, level
+    Eigen::Vector3d point, aside;  // aside: level, perpendicular to the normal
   };
 
   std::vector<Wall> wallsOf(const Eigen::Vector3d& up) const {
@@ -244,7 +245,7 @@ private:
     return walls;
   }
 
-  /// The point of an axis that is closest to the center of both.
+  /// The point of an axis that is closest to the center of both pieces.
   Eigen::Vector3d middleOf(const SymmetryAxis& axis) const {
     return axis.point + axis.direction.dot(center_ - axis.point) * axis.direction;
   }
@@ -259,7 +260,7 @@ private:
            std::abs(plane.signedDistance(middleOf(axis))) <= kScene.same_offset * diagonal_;
   }
 
-  /// The plane through the axis of the larger piece and the smaller piece.
+  /// The plane through the axis of the larger piece and through the smaller piece.
   std::optional<ReflectionPlane> throughAxisOfLarger() const {
     if (pieces_[0]->axes.empty()) return std::nullopt;
     const SymmetryAxis& axis = pieces_[0]->axes.front();
@@ -274,7 +275,7 @@ private:
     return variances[2] < std::pow(kScene.flat, 2) * variances[0];
   }
 
-  /// The support that a piece comes closest to.
+  /// The support that is closest to a piece.
   const SupportingPlane& nearestSupport() const {
     const auto foot = [&](const SupportingPlane& support) {
       return std::min(footOf(support, *pieces_[0]), footOf(support, *pieces_[1]));
@@ -283,7 +284,7 @@ private:
                              [&](const auto& a, const auto& b) { return foot(a) < foot(b); });
   }
 
-  /// Whether the smaller piece does not stand where the larger one stands.
+  /// Whether the smaller piece does not stand on what the larger one stands on.
   bool hangs() const {
     if (scene_.supports.empty()) return true;
     const SupportingPlane& support = nearestSupport();
@@ -304,7 +305,7 @@ private:
 
   const JoiningScene& scene_;
   std::array<const SceneObject*, 2> pieces_;  // the larger one first
-  pcl::Indices indices_;                      // of both
+  pcl::Indices indices_;                      // indices of both pieces
   std::array<pcl::Indices, 2> reflected_;
   pcl::KdTreeFLANN<pcl::PointXYZ> tree_{false};
   SeenSpace seen_;
@@ -321,7 +322,7 @@ bool touch(const JoiningScene& scene, const SceneObject& larger, const SceneObje
 /// The decision on a pair.
 struct Verdict {
   bool are_one = false;
-  std::optional<SceneObject> object;  // the one object, where it was analyzed
+  std::optional<SceneObject> object;  // the union, if it was analyzed
   double together = 0.0, apart = 0.0;
 };
 
@@ -350,7 +351,7 @@ public:
 
   /// Unites pairs until decide(pair, number of pairs) unites none.
   /// \param report whether these pairs are reported as junctions.
-  /// \param again whether united pieces are analyzed.
+  /// \param again whether united pieces are analyzed again.
   template <typename Decide>
   void unite(const Decide& decide, bool report, bool again) {
     std::vector<PiecePair> asked;
@@ -391,7 +392,7 @@ public:
     }
   }
 
-  /// Keeps objects apart that models explain, if no model explains their union.
+  /// Keeps objects separate that models explain, if no model explains their union.
   /// \return whether there are any.
   bool separateNamed(Joining& united) {
     std::map<std::size_t, std::vector<std::size_t>> parts;
@@ -456,9 +457,9 @@ private:
 
   const JoiningScene& scene_;
   std::vector<SceneObject> objects_;
-  std::vector<std::size_t> owners_;                   // of each piece, the one that it was united with
-  std::map<PiecePair, std::array<double, 2>> pairs_;  // that touch: shares together and apart
-  std::vector<SceneJunction> junctions_;              // of pieces that symmetry joined
+  std::vector<std::size_t> owners_;                   // for each piece, the one that it was united with
+  std::map<PiecePair, std::array<double, 2>> pairs_;  // pairs that touch: shares together and apart
+  std::vector<SceneJunction> junctions_;              // junctions of pieces that symmetry joined
 };
 
 }  // namespace

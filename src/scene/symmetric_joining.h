@@ -15,27 +15,29 @@ struct JoiningScene {
   SceneDistances distances;
   double tolerance;  ///< how far a symmetric surface may be off, as a share of the diagonal
   int num_threads;   ///< 0 = one per core
-  /// What the sensor saw, for an object with these points.
+  /// Gives what the sensor saw, for an object with these points.
   std::function<SeenSpace(const pcl::Indices&)> seen_of;
-  /// The planes and axes of an object with these points, one of several that are analyzed at once, by several threads.
+  /// Finds the planes and axes of an object with these points; it is one of several that are analyzed at once, by
+  /// several threads.
   std::function<SceneObject(const pcl::Indices&, std::size_t num_objects)> analyze;
-  /// Notes the models that an object shows; returns whether one is accepted. Empty where no models are known.
+  /// Sets the models that an object shows, and returns whether one is accepted. Empty if there are no models.
   std::function<bool(SceneObject&)> is_named;
 };
 
 struct JoinedPieces {
   std::vector<SceneObject> objects;      ///< with planes and axes, most points first
-  std::vector<SceneJunction> junctions;  ///< of the pieces that touch
+  std::vector<SceneJunction> junctions;  ///< junctions of the pieces that touch
 };
 
 /// Keeps the cuts between convex pieces that symmetry confirms.
 ///
-/// Pieces side by side whose normals point to one upright line belong to one body of revolution, as the two halves of
-/// the inside of a bowl. A bottle and its neck are one where both have the same axis; a mug and its handle where the
-/// handle does not stand on the support of the mug, and the union has a plane through the axis of the mug, or that
-/// axis, that explains each piece by itself. Pieces stay apart if their own symmetries explain many of their points and
-/// neither is flat, as a face of a box or a part of a wall is; all others are united again. If no model explains such a
-/// union, the pieces that a model explains stay apart: cameras blur the symmetries of objects that touch.
+/// Pieces side by side whose normals point to one upright line belong to one body of revolution, like the two halves of
+/// the inside of a bowl. A bottle and its neck are one object if both have the same axis. A mug and its handle are one
+/// if the handle does not stand on the support of the mug, and the union has a plane through the axis of the mug, or
+/// that axis, that explains each piece by itself. Pieces stay separate if their own symmetries explain many of their
+/// points and neither is flat, like a face of a box or a part of a wall; all others are united again. If no model
+/// explains such a union, the pieces that a model explains stay separate: cameras blur the symmetries of objects that
+/// touch.
 /// \param pieces of clusters, ascending indices.
 /// \param cluster_of number of the cluster of each piece.
 JoinedPieces joinBySymmetry(const JoiningScene& scene, const std::vector<pcl::Indices>& pieces,

@@ -35,8 +35,8 @@ pcl::Indices nearPoints(const Cloud& scene, const std::optional<Eigen::Vector3d>
   return points;
 }
 
-/// What the sensor of a frame saw. A frame was seen from its viewpoint by definition: where rows and columns do not
-/// show one, and none is given, it is the one that is stored with the frame, also amid the points.
+/// What the sensor of a frame saw. A frame was seen from its viewpoint by definition: if rows and columns do not show
+/// one, and none is given, it is the viewpoint stored with the frame, even amid the points.
 SeenSpace::ConstPtr seenSpaceOf(const Cloud& frame, const Viewpoint& viewpoint) {
   if (viewpoint.mode == Viewpoint::Mode::Auto) {
     const Viewpoint stored{Viewpoint::Mode::Given, frame.sensor_origin_.head<3>().cast<double>()};
@@ -49,10 +49,10 @@ SeenSpace::ConstPtr seenSpaceOf(const Cloud& frame, const Viewpoint& viewpoint) 
   return std::make_shared<const SeenSpace>(frame, viewpoint);
 }
 
-/// Planes that may show the far side of an object: the best one, and others that are as good as sure. Where the best
-/// one lies along the view and adds nothing, one that is less sure would often add points beside the object.
+/// Planes that may show the far side of an object: the best one, and others that are nearly certain. If the best one
+/// lies along the view and adds nothing, a less certain one would often add points beside the object.
 std::vector<ReflectionPlane> completingPlanes(const SceneObject& object, const Visibility* seen) {
-  constexpr double sure = 0.8;  // of 79 such answers in real frames all are right
+  constexpr double sure = 0.8;  // all of 79 such answers in real frames are right
   if (seen)
     if (const auto plane = planeAcrossView(object, seen->viewpoint())) return {*plane};
   std::vector<ReflectionPlane> planes;
@@ -64,7 +64,7 @@ std::vector<ReflectionPlane> completingPlanes(const SceneObject& object, const V
 /// Whether all four borders of an image are empty, and supporting planes are slices of a curved body.
 bool isCutOut(const Cloud& scene, const SceneAnalysis& found) {
   constexpr unsigned border = 50;  // one row or column in this many
-  constexpr double curved = 0.35;  // plane distances, root mean square; points spread evenly have 0.58
+  constexpr double curved = 0.35;  // root mean square in plane distances; points spread evenly have 0.58
   if (!scene.isOrganized()) return false;
   for (const SupportingPlane& support : found.supports) {
     double sum = 0.0;
@@ -100,7 +100,7 @@ std::string signOfOneObject(const Cloud& scene, const SceneAnalysis& found) {
 /// Analyzes single objects.
 class ObjectAnalysis {
 public:
-  /// \param found has what the sensor saw and the supporting planes.
+  /// \param found what the sensor saw, and the supporting planes.
   ObjectAnalysis(const Cloud::ConstPtr& scene, const SceneAnalysis& found, const detail::SceneDistances& distances,
                  SceneOptions options, const SymmetryDatabase* database)
       : scene_(scene), found_(found), distances_(distances), options_(std::move(options)), database_(database) {}
@@ -115,12 +115,12 @@ public:
     object.indices = indices;
     SymmetryMaximaRefinement<pcl::PointXYZ> refinement;
     DetectionOptions detection = options_.detection;
-    detection.folds = false;  // an object has planes, axes of revolution and centers
+    detection.folds = false;  // objects have planes, axes of revolution and centers
     refinement.setOptions(detection);
     prepare(refinement, object, std::make_shared<const SeenSpace>(seenOf(indices)));
     refinement.compute();
     static_cast<Detection&>(object) = refinement.getDetection();
-    object.map = {};  // large, and not asked for
+    object.map = {};  // it is large, and not part of the result
     object.reason = refinement.getReason();
     return object;
   }
@@ -213,7 +213,7 @@ Pieces piecesOf(const Cloud& scene, const std::vector<pcl::Indices>& clusters,
   return pieces;
 }
 
-/// Options for one of several objects: where there are no fewer objects than threads, each has one.
+/// Options for one of several objects: if there are at least as many objects as threads, each has one thread.
 SceneOptions ofOneObject(const SceneOptions& options, std::size_t num_objects) {
   SceneOptions of_one = options;
   if (num_objects >= static_cast<std::size_t>(resolveNumThreads(options.num_threads)))
@@ -256,7 +256,7 @@ SceneAnalysis SymmetryScene::compute() const {
   Cloud::ConstPtr frame = input_;
   if (frame) analysis.seen = seenSpaceOf(*frame, viewpoint_);
   const double seen_ms = watch.lap();
-  // What the database reads is ready when the clusters are: planes are searched for by one thread.
+  // The database is prepared while the clusters are searched, which one thread does.
   std::shared_future<void> prepared;
   if (database_ && analysis.seen && analysis.seen->visibility() && resolveNumThreads(options_.num_threads) > 1)
     prepared = std::async(std::launch::async, [&] { database_->prepare(); });
@@ -273,7 +273,7 @@ SceneAnalysis SymmetryScene::compute() const {
   if (points.size() < static_cast<std::size_t>(options_.min_points))
     return without(std::to_string(points.size()) + " points, too few for an object (min_points)");
   analysis.timing_ms = {{"seen_space", seen_ms}, {"filter", watch.lap()}};
-  // The filter leaves the distortions of the depth image: the distances follow from the original frame.
+  // The filter keeps the distortions of the depth image: the distances follow from the original frame.
   detail::SceneDistances distances = detail::sceneDistances(*input_, points);
   if (options_.plane_distance > 0.0) distances.plane = options_.plane_distance;
   if (options_.cluster_distance > 0.0) distances.cluster = options_.cluster_distance;
