@@ -19,7 +19,7 @@ namespace {
 using Cloud = pcl::PointCloud<pcl::PointXYZ>;
 
 constexpr float no_depth = std::numeric_limits<float>::quiet_NaN();  // the depth of a pixel without a point
-constexpr int filter_radius = 2;                                     // pixels; 1 leaves a third of the noise
+constexpr int filter_radius = 2;  // half the side of the filter's window, pixels; 1 leaves a third of the noise
 
 /// Angle between the rays of neighboring pixels; 0 where there are none.
 double pixelAngle(const Cloud& frame, const Eigen::Vector3d& viewpoint) {
@@ -63,15 +63,18 @@ namespace detail {
 
 namespace {
 
-constexpr double largest_error = 0.7;  // pixels, root mean square; more are rows and columns that are not an image
+// Greatest root mean square error, pixels; with more, rows and columns are not those of an image.
+constexpr double largest_error = 0.7;
 constexpr double largest_skew =
     0.05;  // share of the focal length, also between the two: cameras that fit a flat cloud have no square pixels
-constexpr std::size_t fewest_points = 50;   // fewer leave the 11 parameters of a projection to noise
-constexpr std::size_t max_points = 20'000;  // that the 11 parameters gain from
-constexpr double small_hole = 0.01;         // share of the image; smaller ones are missing measurements, not background
+// Least number of points; fewer leave the 11 parameters of a projection to noise.
+constexpr std::size_t fewest_points = 50;
+constexpr std::size_t max_points = 20'000;  // greatest number of points that determine the 11 parameters
+// Share of the image; smaller regions without points are missing measurements, not background.
+constexpr double small_hole = 0.01;
 
-/// Fills the pixels without a point: large regions and regions at the border are background, small regions are missing
-/// measurements.
+/// Fills the pixels without a point: large regions and regions at the border become background, small regions are
+/// missing measurements.
 void fillEmptyPixels(int width, int height, std::vector<float>& depths) {
   const std::size_t size = depths.size();
   std::vector<char> visited(size, 0);
@@ -100,9 +103,9 @@ void fillEmptyPixels(int width, int height, std::vector<float>& depths) {
   }
 }
 
-/// The camera at the origin that looks along z, as depth cameras have it: points of one plane fix no other.
+/// The camera at the origin that looks along z, as for depth cameras: the points of one plane determine no other.
 /// \param normalized the points used, (x - ball.center) / ball.radius.
-/// \return of the normalized points; none where one lies behind the camera.
+/// \return projection of the normalized points; nothing if one lies behind the camera.
 std::optional<Visibility::Projection> cameraAtOrigin(const Points& normalized, const BoundingBall& ball,
                                                      const std::vector<Eigen::Vector2d>& pixels) {
   Eigen::Matrix2d squares[2] = {Eigen::Matrix2d::Zero(), Eigen::Matrix2d::Zero()};
@@ -127,13 +130,13 @@ std::optional<Visibility::Projection> cameraAtOrigin(const Points& normalized, c
   return projection;
 }
 
-/// Any camera, of 11 parameters.
+/// Any camera, with 11 parameters.
 std::optional<Visibility::Projection> anyCamera(const Points& normalized, const Cloud& frame,
                                                 const pcl::Indices& used) {
   auto cloud = pcl::make_shared<pcl::PointCloud<pcl::PointXYZ>>(frame.width, frame.height);
   for (std::size_t i = 0; i < used.size(); ++i) (*cloud)[used[i]].getVector3fMap() = normalized.col(i);
   Eigen::Matrix<float, 3, 4, Eigen::RowMajor> estimate;
-  // The residual that it returns may be slightly negative. The error in pixels decides.
+  // The residual that it returns may be slightly negative; the error in pixels decides.
   pcl::estimateProjectionMatrix<pcl::PointXYZ>(cloud, estimate, used);
   const double length = estimate.block<1, 3>(2, 0).cast<double>().norm();
   if (!estimate.allFinite() || !(length > 0.0)) return std::nullopt;
@@ -144,7 +147,7 @@ std::optional<Visibility::Projection> anyCamera(const Points& normalized, const 
 }
 
 /// \return the focal length in pixels of a camera with square pixels that maps the points to their pixels; 0 for any
-/// other, which a flat cloud may fit.
+/// other camera, which a flat cloud may fit.
 double focalLength(const Visibility::Projection& projection, const Points& normalized,
                    const std::vector<Eigen::Vector2d>& pixels) {
   double sq_error = 0.0;
@@ -180,7 +183,7 @@ std::optional<Visibility> seenByOrganizedCloud(const Cloud& frame) {
   const BoundingBall ball = boundingBall(points);
   if (!(ball.radius > 0.0)) return std::nullopt;
 
-  // The estimate depends on the units: it is made from coordinates near 1.
+  // The estimate depends on the units: it is computed from coordinates near 1.
   const Points normalized = normalizePoints(points, ball.center, ball.radius);
   std::optional<Visibility::Projection> camera = anyCamera(normalized, frame, used);
   double focal = camera ? focalLength(*camera, normalized, pixels) : 0.0;
@@ -191,7 +194,7 @@ std::optional<Visibility> seenByOrganizedCloud(const Cloud& frame) {
   if (focal == 0.0) return std::nullopt;
   Visibility::Projection projection = *camera;
 
-  // Back to the input frame; depths are in its units.
+  // Back to the input frame; depths are in input units.
   projection.col(3) = projection.col(3) * ball.radius - projection.leftCols<3>() * ball.center;
   std::vector<float> depths(frame.size(), no_depth);
   for (const pcl::index_t i : finite)

@@ -1,4 +1,4 @@
-/// Exceptions of PCL with the text as given: their own what() puts " : " before it.
+/// Exceptions of PCL with the text as given: their own what() prepends " : ".
 #pragma once
 
 #include <string>

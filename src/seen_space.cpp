@@ -29,7 +29,7 @@ SeenSpace spaceOfScene(const pcl::PointCloud<pcl::PointXYZ>& scene, const Viewpo
     if (!seen) throw std::invalid_argument("viewpoint: at all points of the scene, must see one");
     return {std::move(*seen), ViewpointSource::Given};
   }
-  // A default origin in the middle of a whole object would be seen once all around.
+  // A default origin in the middle of a whole object would look like a viewpoint that sees it once, all around.
   const Eigen::Vector3d stored = scene.sensor_origin_.head<3>().cast<double>();
   if (auto seen = sceneSeenFrom(points, stored, max_pixels))
     if (!detail::hasDefaultSensor(scene) || seen->numPictures() == 1)

@@ -10,7 +10,7 @@ namespace pcl_symmetry {
 
 namespace {
 
-/// Writes positions into the fields x, y and z, all float.
+/// Writes positions into the fields x, y and z, which are float.
 void setPositions(pcl::PCLPointCloud2& cloud, const Points& points) {
   for (const pcl::PCLPointField& field : cloud.fields)
     for (int axis = 0; axis < 3; ++axis)

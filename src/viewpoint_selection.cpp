@@ -15,14 +15,15 @@ namespace pcl_symmetry {
 namespace {
 
 struct ViewRules {
-  double view_angle = 25.0 * kPi / 180.0;  // of the camera
-  double near_best = 0.98;                 // of the best score: views that show as much
-  double camera_distance = 5.0;            // radii: from farther away, the same points are hidden
-  double hidden_margin = 0.05;             // radii: depth behind others that hides a point
-  double perpendicular = 0.05;             // cosine between two planes that were found with errors
-  double near_up = 0.8;                    // cosine: axes farther from the given direction would tilt the object
-  double from_above = 0.98;                // cosine between the direction of a view and up
-  double level = -0.05;                    // sine of the elevation of the lowest view from above
+  double view_angle = 25.0 * kPi / 180.0;  // angle of view of the camera, radians
+  double near_best = 0.98;                 // share of the best score, for views that show as much
+  // Distance of the camera for hidden points, radii: from farther away, the same points are hidden.
+  double camera_distance = 5.0;
+  double hidden_margin = 0.05;  // depth behind others at which a point is hidden, radii
+  double perpendicular = 0.05;  // greatest cosine between two perpendicular planes, which were found with errors
+  double near_up = 0.8;         // least cosine of an axis to the given direction: others would tilt the object
+  double from_above = 0.98;     // cosine between the direction of a view and up, from which on it is a view from above
+  double level = -0.05;         // sine of the elevation of the lowest view from above
 };
 constexpr ViewRules kView;
 
@@ -167,14 +168,16 @@ std::vector<SelectedView> ViewpointSelection::getGoodViews(int num_views) const 
   detail::withBadArguments([&] { check(num_views >= 1, "num_views", num_views, ">= 1"); });
   if (!hasExtent()) return {};
   const Eigen::Vector3d up = getUpAxis();
-  std::vector<RankedView> remaining = bestViews(planes_);  // each with its opposite, of equal score: one is from below
+  // Each with its opposite of equal score, one of which is from below.
+  std::vector<RankedView> remaining = bestViews(planes_);
   eraseIf(remaining, [&](const RankedView& view) { return view.direction.dot(up) <= kView.level; });
   if (remaining.empty()) {
     const Eigen::Vector3d side = up.unitOrthogonal();
     remaining.push_back({(up + 2.0 * side + side.cross(up)).normalized(), 0.0});
   }
   std::vector<SelectedView> views;
-  // A view that hides less may be chosen before one of a greater score: on until no other can be among the best.
+  // A view that hides less may be preferred to one of a greater score: continue until no other view can be among the
+  // best.
   const auto goes_on = [&] {
     return !remaining.empty() && std::count_if(views.begin(), views.end(), [&](const SelectedView& view) {
                                    return view.score >= remaining[0].score;
