@@ -20,7 +20,7 @@ namespace pcl_symmetry::apps {
 
 namespace {
 
-constexpr double kMostChanged = 0.05;  // share of the surface whose color a symmetry may change
+constexpr double kMostChanged = 0.05;  // greatest share of the surface whose color a symmetry may change
 constexpr int kNumColorsNear = 4;      // samples around a position that may have its color
 constexpr int kNumTurns = 8;           // rotations that represent all rotations about an axis
 constexpr int kMaxFold = 24;           // greatest fold of stripes
@@ -80,7 +80,7 @@ private:
   ClosestPointSearch::Ptr search_;
 };
 
-/// The motions that keep the colors and are a group: the worst one goes until the rest is.
+/// The motions that keep the colors and form a group: the worst ones are removed until the others do.
 ObjectSymmetries finiteGroup(const std::vector<Eigen::Isometry3d>& motions, const ColoredSurface& surface) {
   std::vector<std::pair<double, std::size_t>> kept;  // changed share and index
   for (std::size_t i = 0; i < motions.size(); ++i) {
@@ -110,7 +110,7 @@ std::vector<Eigen::Isometry3d> keptTurns(const ContinuousSymmetry& axis, const C
   return {};
 }
 
-/// The half turn about a line across an axis that changes least.
+/// The half turn about a line perpendicular to an axis that changes least.
 Eigen::Isometry3d bestFlip(const ContinuousSymmetry& axis, const ColoredSurface& surface) {
   constexpr int kNumLines = 90;
   const Eigen::Vector3d across = axis.axis.unitOrthogonal();
@@ -169,7 +169,8 @@ ObjectSymmetries keepingColors(const ObjectSymmetries& found, const SurfaceColor
     kept = roundGroup(found, surface);
   else
     kept = finiteGroup(found.discrete, surface);
-  // What the shape says of its symmetries holds for those that are left; their axes pass through the same point.
+  // The support and limits that the shape's symmetries have also hold for the remaining ones; their axes pass through
+  // the same point.
   kept.support = found.support;
   kept.confidence = found.confidence;
   kept.timing_ms = found.timing_ms;
@@ -214,7 +215,7 @@ SurfaceColors vertexColors(const Shape& shape, const pcl::PCLPointField& field) 
   return colors;
 }
 
-/// Coordinates of the vertices in a texture, u to the right and v upwards.
+/// Texture coordinates of the vertices, u to the right and v upwards.
 std::optional<Eigen::Matrix2Xf> textureCoordinates(const pcl::PCLPointCloud2& cloud) {
   const pcl::PCLPointField* u = fieldOf(cloud, {"texture_u", "s", "u"});
   const pcl::PCLPointField* v = fieldOf(cloud, {"texture_v", "t", "v"});
@@ -226,7 +227,7 @@ std::optional<Eigen::Matrix2Xf> textureCoordinates(const pcl::PCLPointCloud2& cl
   return coordinates;
 }
 
-/// The picture that the header of a PLY file names; empty where it names none.
+/// The texture that the header of a PLY file names; empty if it names none.
 std::string texturePath(const std::string& path) {
   const std::string comment = "comment TextureFile ";
   std::ifstream file(path, std::ios::binary);

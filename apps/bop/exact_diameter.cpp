@@ -11,7 +11,7 @@ namespace pcl_symmetry::apps {
 
 namespace {
 
-/// A binary tree that halves the points at each node, with a box around those of each node.
+/// A binary tree that halves the points at each node, with a box around the points of each node.
 class HalvingTree {
 public:
   explicit HalvingTree(const PointsRef& points) {
@@ -19,7 +19,7 @@ public:
     nodes_.push_back(around(0, static_cast<int>(points_.size())));
   }
 
-  /// \param at_least a squared distance between two of the points: pairs that are not above it are skipped.
+  /// \param at_least a squared distance between two of the points: pairs that do not exceed it are skipped.
   double greatestSqDistance(double at_least) {
     double best = at_least;
     search(0, 0, best);
@@ -30,7 +30,7 @@ private:
   struct Node {
     Eigen::AlignedBox3d box;
     int begin = 0, end = 0;  // range of its points
-    std::size_t child = 0;   // the first of two, side by side; 0 before it is split
+    std::size_t child = 0;   // index of the first of two successive children; 0 before the node is split
 
     int size() const { return end - begin; }
     bool isLeaf() const { return size() <= 8; }
@@ -91,7 +91,7 @@ private:
 
 double exactDiameter(const PointsRef& points) {
   if (points.cols() < 2) return 0.0;
-  // Mostly close to the diameter; a little less, as it is rounded.
+  // Usually close to the diameter; slightly less, because it is rounded.
   const double at_least = 0.9999 * farthestPair(points);
   return std::sqrt(HalvingTree(points).greatestSqDistance(at_least * at_least));
 }

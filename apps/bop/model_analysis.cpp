@@ -45,11 +45,12 @@ Points sampled(const Shape& shape, const Points& vertices, int num_points, std::
   return shape.mesh ? finitePoints(*sampleMesh(*shape.mesh, num_points, seed)) : vertices;
 }
 
-constexpr int kMostRejections = 3;    // rejected candidates that are told of, those that fail least
-constexpr double kFarFailure = 10.0;  // tolerances; as ObjectSymmetryOptions::max_feature has it
+// Greatest number of rejected candidates that are reported, the least failures first.
+constexpr int kMostRejections = 3;
+constexpr double kFarFailure = 10.0;  // tolerances; as in ObjectSymmetryOptions::max_feature
 
 pcl::PointXYZRGB coloredPoint(const Eigen::Vector3f& x, double distance, double tolerance) {
-  // Gray, vermilion and purple of Okabe and Ito: apart for all eyes.
+  // Gray, vermilion and purple of Okabe and Ito, which color-blind readers distinguish.
   const auto color = [](std::uint8_t red, std::uint8_t green, std::uint8_t blue) {
     return pcl::PointXYZRGB(red, green, blue);
   };
@@ -61,7 +62,7 @@ pcl::PointXYZRGB coloredPoint(const Eigen::Vector3f& x, double distance, double 
 }
 
 /// Prints the groups at half and twice the tolerance, and the rejected rotations with the least failure.
-/// \param digits significant ones of lengths.
+/// \param digits significant digits of lengths.
 void printRejections(const ObjectSymmetries& symmetries, int digits) {
   if (symmetries.at_half_tolerance && symmetries.at_twice_tolerance)
     std::printf("  tolerance %.3g  at half of it %s, at twice %s\n", symmetries.tolerance,
@@ -76,10 +77,10 @@ void printRejections(const ObjectSymmetries& symmetries, int digits) {
   }
 }
 
-/// Writes PREFIX_rejected_1.ply and so on, each the surface with what a rejected rotation maps off it: red beyond the
-/// tolerance, purple beyond ten; gray is mapped onto the surface.
+/// Writes PREFIX_rejected_1.ply and so on: the surface, with what a rejected rotation maps off it in red beyond the
+/// tolerance, in purple beyond ten; gray is mapped onto the surface.
 /// \param surface in the frame of the symmetries.
-/// \param shift that is added to the points.
+/// \param shift vector that is added to the points.
 /// \throws InputError if a file cannot be written.
 void writeRejections(const std::string& prefix, const ObjectSymmetries& symmetries, const SurfaceEvidence& surface,
                      const Eigen::Vector3d& shift) {
@@ -119,7 +120,7 @@ void compare(ModelInfo& info, const Shape& shape, const Points& vertices, const 
   const SurfaceEvidence surface(sampled(shape, vertices, num_points, seed), tolerance);
   if (options.failures_folder) {
     const boost::filesystem::path folder(*options.failures_folder), name(boost::filesystem::path(info.file).stem());
-    boost::system::error_code ignored;  // saveCloud() names the folder that is missing
+    boost::system::error_code ignored;  // saveCloud() reports the missing folder
     boost::filesystem::create_directories(folder, ignored);
     writeRejections((folder / name).string(), info.symmetries, surface, shape.shift);
   }

@@ -17,7 +17,7 @@ namespace pcl_symmetry::apps {
 
 namespace {
 
-constexpr double kRotationError = 0.02;  // greatest entry of R R^T - I of a rotation in a file
+constexpr double kRotationError = 0.02;  // greatest entry of R R^T - I for a rotation in a file
 
 using nlohmann::json;
 using nlohmann::ordered_json;
@@ -74,11 +74,11 @@ const json& listOf(const json& entry, const char* field, const std::string& wher
 
 constexpr std::size_t kShownOfName = 40;  // bytes of a name that a message shows
 
-/// A name as it stands in the file, on one line: line breaks and the like stay escaped, and a long one is cut off.
+/// A name as it is in the file, on one line: line breaks and the like stay escaped, and a long one is cut off.
 std::string onOneLine(const std::string& name) {
   const json shown = name.substr(0, kShownOfName) + (name.size() > kShownOfName ? "..." : "");
   const std::string quoted =
-      shown.dump(-1, ' ', false, json::error_handler_t::replace);  // where a letter is cut in two
+      shown.dump(-1, ' ', false, json::error_handler_t::replace);  // for a name cut within a character
   return quoted.substr(1, quoted.size() - 2);
 }
 
@@ -164,7 +164,7 @@ std::map<std::string, ListedSymmetries> readModelsInfo(const std::string& path) 
 
 namespace {
 
-constexpr double kAligned = 5.0 * kDegree;  // angle between an axis and a coordinate axis that counts as none
+constexpr double kAligned = 5.0 * kDegree;  // angle within which an axis counts as a coordinate axis
 
 const std::string kNames = "xyz";
 
@@ -182,7 +182,7 @@ int orderAbout(const ObjectSymmetries& symmetries, const Eigen::Vector3d& axis) 
   return 1;
 }
 
-/// \return the text without blanks and quotes around it; nothing where other than letters, digits and _ . + - stand in it.
+/// \return the text without blanks and quotes around it; nothing if it holds anything but letters, digits and _ . + -
 std::optional<std::string> wordIn(std::string text) {
   boost::algorithm::trim(text);
   boost::algorithm::trim_if(text, boost::algorithm::is_any_of("\"'"));
@@ -191,7 +191,7 @@ std::optional<std::string> wordIn(std::string text) {
   return is_word ? std::optional<std::string>(text) : std::nullopt;
 }
 
-/// A line `name: ["z_90", "z_180"]`, perhaps with a comment behind it.
+/// A line `name: ["z_90", "z_180"]`, perhaps followed by a comment.
 struct AxesLine {
   std::string name;
   std::vector<std::string> axes;
@@ -211,7 +211,8 @@ std::optional<AxesLine> axesLineOf(const std::string& line) {
   boost::algorithm::split(entries, list, boost::algorithm::is_any_of(","));
   for (std::string& entry : entries) {
     boost::algorithm::trim(entry);
-    if (!entry.empty()) result.axes.push_back(wordIn(entry).value_or(entry));  // what is no word is no turn either
+    // A text that is no word is no rotation either.
+    if (!entry.empty()) result.axes.push_back(wordIn(entry).value_or(entry));
   }
   return result;
 }

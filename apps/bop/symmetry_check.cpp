@@ -16,7 +16,7 @@ namespace pcl_symmetry::apps {
 
 namespace {
 
-// Greatest distance of a point between turns that are one, share of the diameter.
+// Greatest displacement of a point between rotations that count as one, as a share of the diameter.
 constexpr double kOneTurn = 0.02;
 constexpr int kNumAngles = 8;  // rotations that represent all rotations about an axis
 
@@ -62,7 +62,7 @@ public:
   }
 
 private:
-  /// The points farthest along many directions: those that decide on greatest distances.
+  /// The points farthest along many directions, which determine greatest distances.
   static Points cornersOf(const Points& points) {
     constexpr int kNumDirections = 200;
     std::vector<int> corners;
@@ -81,7 +81,7 @@ private:
   double limit_;
 };
 
-/// What is wrong with a list that should be a group as bop_toolkit composes it.
+/// What is wrong with a list that should be a group as bop_toolkit composes it; empty if nothing is.
 std::string lacksOf(const ListedSymmetries& listed, const ObjectSymmetries& group) {
   if (listed.is_composed) return "";
   if (group.kind == RotationGroupKind::Spherical && listed.continuous.size() > 1)
@@ -133,7 +133,7 @@ std::vector<Eigen::Isometry3d> wrongTurns(const ListedSymmetries& listed, const 
   return wrong;
 }
 
-/// What the file has and the surface has not. Of a sphere, whose tilts are many, only the worst.
+/// Adds rotations that the file has and the surface has not. For a sphere, which has many tilts, only the worst one.
 void addWrong(const ListedSymmetries& listed, const ObjectSymmetries& found, bool is_sphere,
               const Comparison& comparison, std::vector<Disagreement>& disagreements) {
   std::vector<Disagreement> wrong;
@@ -149,7 +149,7 @@ void addWrong(const ListedSymmetries& listed, const ObjectSymmetries& found, boo
   disagreements.insert(disagreements.end(), wrong.begin(), wrong.end());
 }
 
-/// Rotations of the surface that the file does not list: one axis at a time, by its smallest rotation.
+/// Adds rotations of the surface that the file does not list: one axis at a time, by its smallest rotation.
 void addMissing(const ObjectSymmetries& found, const ObjectSymmetries& given, const Comparison& comparison,
                 std::vector<Disagreement>& disagreements) {
   for (const ContinuousSymmetry& symmetry : found.continuous)

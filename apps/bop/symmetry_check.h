@@ -1,5 +1,5 @@
-/// How well a rigid motion maps a surface onto itself, and the symmetries that a file lists for a model compared with
-/// those of its surface.
+/// How well a rigid motion maps a surface onto itself, and a comparison of the symmetries that a file lists for a model
+/// with those of its surface.
 #pragma once
 
 #include <Eigen/Geometry>
@@ -14,12 +14,12 @@
 namespace pcl_symmetry::apps {
 
 struct MotionEvidence {
-  double share = 1.0;      ///< of the surface that is mapped to within the tolerance of the surface
+  double share = 1.0;      ///< share of the surface that is mapped to within the tolerance of the surface, in [0, 1]
   double mean = 0.0;       ///< mean distance of mapped points from the surface, input units
-  double deviation = 0.0;  ///< 97 % of the mapped points stay within it, input units
+  double deviation = 0.0;  ///< distance from the surface within which 97 % of the mapped points stay, input units
 };
 
-/// Samples of a surface, and the distances from it that planes are judged by.
+/// Samples of a surface, and the distances from it by which motions are judged.
 class SurfaceEvidence {
 public:
   /// \param points 3 x N, finite, at least 20 distinct ones.
@@ -44,9 +44,9 @@ private:
 struct Disagreement {
   std::string says;         ///< "file only" or "surface only"
   Eigen::Vector3d axis;     ///< unit, input frame
-  Eigen::Vector3d point;    ///< of the axis, input frame
-  double angle = 0.0;       ///< radians; 0: any angle
-  MotionEvidence evidence;  ///< of the rotation; for any angle, of the worst of eight rotations
+  Eigen::Vector3d point;    ///< point of the axis, input frame
+  double angle = 0.0;       ///< radians; 0 = any angle
+  MotionEvidence evidence;  ///< evidence of the rotation; for any angle, of the worst of eight rotations
 };
 
 struct SymmetryCheck {
@@ -59,13 +59,14 @@ struct SymmetryCheck {
 };
 
 /// \param found symmetries of the surface.
-/// \param diameter of the model, input units. Rotations that differ by up to 2 % of it at every point count as one.
+/// \param diameter diameter of the model, input units. Rotations that differ by up to 2 % of it at every point count as
+/// one.
 SymmetryCheck checkSymmetries(const ListedSymmetries& listed, const ObjectSymmetries& found,
                               const SurfaceEvidence& surface, double diameter);
 
 nlohmann::ordered_json toJson(const SymmetryCheck& check, double diameter);
 
-/// \param name of the model.
+/// \param name name of the model.
 void printCheck(const std::string& name, const SymmetryCheck& check, double diameter);
 
 }  // namespace pcl_symmetry::apps

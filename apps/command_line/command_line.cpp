@@ -23,11 +23,11 @@ namespace po = boost::program_options;
 
 namespace {
 
-/// Former spellings, which stay for one version.
+/// Former spellings, which are accepted for one version.
 const std::map<std::string, std::string> kRenamedFlags{
     {"symmetrise", "symmetrize"}, {"colour", "color"}, {"colour_tolerance", "color_tolerance"}};
 
-/// Groups of the help, in order: what is written, what is read, how it is computed. Flags of the tool alone stand
+/// Groups of the help, in order: what is written, what is read, how it is computed. Flags of only this tool are listed
 /// between the first two.
 const std::vector<std::pair<std::string, std::vector<std::string>>> kFlagGroups{
     {"Output", {"json", "png", "html", "csv", "support", "profile", "report", "resume"}},
@@ -36,10 +36,10 @@ const std::vector<std::pair<std::string, std::vector<std::string>>> kFlagGroups{
     {"Computation", {"grid", "sigma", "seed", "threads", "quiet"}},
     {"Help", {"help", "version"}}};
 
-/// Flags that name files to read; the files of all others are written.
+/// Flags that name files to read; all other flags of files name outputs.
 const std::vector<std::string> kReadFlags{"target", "database", "check", "landmarks"};
 
-/// \return columns of the terminal, or those of a page.
+/// \return number of columns of the terminal, or of a page.
 unsigned helpWidth() {
   winsize size{};
   const bool known = ::ioctl(STDOUT_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 0;
@@ -48,7 +48,7 @@ unsigned helpWidth() {
 
 constexpr std::size_t kHelpColumn = 26;  // where the description of a name begins
 
-/// \return words, in lines that fit the terminal, from a column on; a name stands before them, or above where it is longer
+/// \return words in lines that fit the terminal, from a column on; the name is before them, or above if it is longer
 std::string inColumn(std::string line, std::size_t column, const std::string& words) {
   std::string text;
   if (line.size() + 1 > column && !line.empty()) text = std::exchange(line, "") + "\n";
@@ -66,7 +66,7 @@ std::string inColumn(std::string line, std::size_t column, const std::string& wo
   return text;
 }
 
-nlohmann::json made_by;  // of the command line that was parsed last
+nlohmann::json made_by;  // provenance of the command line that was parsed last
 
 std::size_t editDistance(const std::string& a, const std::string& b) {
   std::vector<std::size_t> row(b.size() + 1);
@@ -151,7 +151,7 @@ CommandLine& CommandLine::choice(const std::string& name, std::string& value, co
                                  const std::string& help) {
   const std::string list = boost::algorithm::join(allowed, "|");
   return add(name, list, help + " (" + value + ")", [&value, allowed, list, name](std::string text) {
-    if (name == "method" && text == "exact") text = "convolution";  // its name in versions before
+    if (name == "method" && text == "exact") text = "convolution";  // its name in earlier versions
     if (std::find(allowed.begin(), allowed.end(), text) == allowed.end())
       rejectValue("-" + name, text, "must be " + list);
     value = text;

@@ -28,8 +28,8 @@ struct CommonOptions {
   int mesh_points = 10'000;     ///< number of points spread over a mesh
   Viewpoint viewpoint;
   bool takes_volumes = false;     ///< whether the tool analyzes volumes
-  std::vector<double> levels;     ///< intensities of volumes that count, two; empty: chosen from the values
-  std::optional<double> surface;  ///< the intensity whose surface is analyzed in place of the volume
+  std::vector<double> levels;     ///< range of intensities of volumes, two values; empty: chosen from the values
+  std::optional<double> surface;  ///< intensity whose surface is analyzed in place of the volume
   bool quiet = false;
 
   /// Sets seed, threads, grid and sigma of the library's options, e.g. DetectionOptions or FrameOptions.
@@ -53,7 +53,7 @@ inline TransformMethod methodNamed(const std::string& name) {
                                 : TransformMethod::Sampled;
 }
 
-/// Number of points spread over a mesh by the tools of the database, where a model is described once and asked often.
+/// Number of points spread over a mesh by the tools of the database, where a model is described once and queried often.
 constexpr int kDatabaseMeshPoints = 20'000;
 
 /// Which of the common flags a tool offers.
@@ -67,8 +67,8 @@ enum CommonFlag : unsigned {
   kSigma = 1u << 6,
   kMeshPoints = 1u << 7,
   kVolumes = 1u << 8,
-  kAnalysisFlags = (1u << 6) - 1,             ///< all but -sigma and -points
-  kShapeFlags = kAnalysisFlags | kMeshPoints  ///< of tools that analyze one cloud or mesh
+  kAnalysisFlags = (1u << 6) - 1,             ///< all flags except -sigma and -points
+  kShapeFlags = kAnalysisFlags | kMeshPoints  ///< flags of tools that analyze one cloud or mesh
 };
 
 /// \return the provenance in the JSON of a tool: tool, version, seed, and the options given.
@@ -86,7 +86,7 @@ public:
   /// Arguments without a flag, in the order of declaration; required ones come first.
   CommandLine& positional(const std::string& name, std::string& value, const std::string& help);
   CommandLine& positional(const std::string& name, std::optional<std::string>& value, const std::string& help);
-  /// All that follow, to the end of the command line, at least one where they are required; declared last.
+  /// All following arguments, to the end of the command line, at least one if they are required; declared last.
   CommandLine& positionals(const std::string& name, std::vector<std::string>& values, const std::string& help,
                            bool required = true);
 
@@ -99,7 +99,7 @@ public:
   CommandLine& page(const std::string& name, std::optional<std::string>& value, const std::string& help);
   CommandLine& choice(const std::string& name, std::string& value, const std::vector<std::string>& allowed,
                       const std::string& help);
-  /// \param value double, int, or an optional of these, whose help tells the default.
+  /// \param value double, int, or an optional of these, whose help states the default.
   template <typename Value>
   CommandLine& number(const std::string& name, Value& value, const Range& range, const std::string& help);
   CommandLine& number(const std::string& name, std::uint64_t& value, const std::string& help);
@@ -110,16 +110,17 @@ public:
   CommandLine& common(CommonOptions& options, unsigned flags);
 
   /// Reads the arguments into the bound variables.
-  /// \return false if -h or -version was given: the text is then on standard output and the tool is done
+  /// \return false if -h or -version was given: the text is then on standard output, and the tool has nothing more to
+  /// do
   /// \throws UsageError naming flag, value and rule
   bool parse(int argc, const char* const* argv);
 
-  /// \return true if the flag stood on the parsed command line
+  /// \return true if the flag was on the parsed command line
   bool given(const std::string& name) const;
 
-  /// Refuses flags that would do nothing.
+  /// Rejects flags that would have no effect.
   /// \param there whether the flag that they belong to was given
-  /// \throws UsageError for the first of the flags that stood on the command line without it
+  /// \throws UsageError for the first of the flags that was given without it
   void goWith(const std::string& what, bool there, std::initializer_list<const char*> flags) const;
 
   /// \return synopsis, flags with their defaults, and the example
@@ -139,13 +140,13 @@ private:
   std::string closestFlag(const std::string& unknown) const;
   void readTokens(int argc, const char* const* argv);
   void assignPositionals() const;
-  /// Refuses an output that is an input or another output.
+  /// Rejects an output that is an input or another output.
   void checkFiles() const;
 
   std::string tool_, summary_, example_;
   std::vector<Positional> positionals_;
   std::vector<std::string> file_flags_;
-  const std::uint64_t* seed_ = nullptr;  // of a tool that draws
+  const std::uint64_t* seed_ = nullptr;  // seed of a tool that draws random numbers
   boost::program_options::options_description flags_;
   boost::program_options::variables_map values_;
 };

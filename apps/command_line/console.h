@@ -29,8 +29,8 @@ private:
   bool quiet_;
 };
 
-/// One step of a tool, of which a terminal shows how far its loops are: prints "Loading a.pcd " when it begins and
-/// "[done, 12.3 ms : 10000 points]" when it is done; a step that is left by an exception ends its line with "[failed]".
+/// One step of a tool, whose progress a terminal shows: prints "Loading a.pcd " when it begins and "[done, 12.3 ms :
+/// 10000 points]" when it is done; a step that is left by an exception ends its line with "[failed]".
 class Step {
 public:
   Step(const Console& console, const std::string& what);
@@ -55,7 +55,7 @@ private:
   bool open_ = true;
   int drawn_ = -1;
   std::string what_;
-  bool told_ = false;  ///< progress() was called: reports of loops are ignored
+  bool told_ = false;  ///< progress() was called: progress of loops is ignored
   Stopwatch time_;
   std::optional<ProgressMonitor> loops_;
 };

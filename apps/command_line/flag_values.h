@@ -1,4 +1,4 @@
-/// The values of flags: numbers in a range, lists, vectors and viewpoints, each read from text or refused with its
+/// The values of flags: numbers in a range, lists, vectors and viewpoints, each read from text or rejected with its
 /// rule.
 #pragma once
 
@@ -38,7 +38,7 @@ struct Range {
 /// \return the value with at most six significant digits.
 std::string shortest(double value);
 
-// All throw UsageError starting with `name = text` where the whole text does not spell such a value.
+// All throw UsageError starting with `name = text` if the text is not such a value as a whole.
 
 double parseNumber(const std::string& name, const std::string& text, const Range& range = {});
 std::int64_t parseInteger(const std::string& name, const std::string& text, const Range& range = {});

@@ -8,17 +8,17 @@
 
 namespace pcl_symmetry::apps {
 
-/// A file to read, and the folder among the arguments that it was found in, empty where the file itself was given.
+/// A file to read, and the folder argument in which it was found, empty if the file itself was given.
 struct InputFile {
   std::string path;
   std::string folder;
 };
 
-/// \param arguments files; "-", standard input; folders, with the shape files in them and in folders of theirs, sorted
-/// by name; patterns with *, ? and []; and lists "@FILE" of any of these, one on each line, # before comments
+/// \param arguments files; "-", standard input; folders, with the shape files in them and in their subfolders, sorted
+/// by name; patterns with *, ? and []; and lists "@FILE" of any of these, one on each line, with # before comments
 /// \return the files in the order of the arguments
-/// \throws InputError if a list or folder cannot be read or a pattern has no file. A file that is missing is kept,
-/// to be reported with those that cannot be used.
+/// \throws InputError if a list or folder cannot be read or a pattern has no file. A missing file is kept, to be
+/// reported with those that cannot be used.
 std::vector<InputFile> inputFiles(const std::vector<std::string>& arguments);
 
 /// \return whether one argument may name several files: a folder, a pattern or a list

@@ -27,8 +27,8 @@ namespace pcl_symmetry::apps {
 
 namespace {
 
-constexpr std::size_t kWaitingPerThread = 64;  // results that wait for one before them, for each thread
-constexpr std::size_t kMaxFailures = 1000;     // failures that are kept to be named at the end
+constexpr std::size_t kWaitingPerThread = 64;  // results that wait for an earlier one, for each thread
+constexpr std::size_t kMaxFailures = 1000;     // failures that are kept to be listed at the end
 
 std::string cellOf(const nlohmann::json& value) {
   if (value.is_null() || (value.is_number_float() && std::isnan(value.get<double>()))) return "";
@@ -99,7 +99,7 @@ int runOnOne(const std::string& path, const BatchOptions& batch, const CommonOpt
   return 0;
 }
 
-/// \throws UsageError or InputError where two inputs would write one file, or the folder of an output is missing.
+/// \throws UsageError or InputError if two inputs would write one file, or the folder of an output is missing.
 void checkOutputs(const BatchOptions& batch, const std::vector<InputFile>& files) {
   std::string pattern;
   for (const std::optional<std::string>* output : batch.outputs) {
@@ -113,7 +113,7 @@ void checkOutputs(const BatchOptions& batch, const std::vector<InputFile>& files
   if (!pattern.empty()) checkNames(files);
 }
 
-/// Calls use(line) for each line of a file that has an end, which is left out; for none where there is no file.
+/// Calls use(line) for each complete line of a file, without its end; for none if there is no file.
 void forWholeLines(const std::string& path, const std::function<void(const std::string&)>& use) {
   boost::system::error_code error;
   if (!boost::filesystem::exists(path, error)) return;
@@ -122,14 +122,14 @@ void forWholeLines(const std::string& path, const std::function<void(const std::
   if (!text.eof()) throw InputError(path + ": cannot be read");
 }
 
-/// \return how a result was made, but for flags that change no value of it.
+/// \return how a result was made, without flags that change no value of it.
 nlohmann::json analysisOf(nlohmann::json made_by) {
   for (const char* flag : {"csv", "html", "json", "png", "profile", "quiet", "report", "resume", "support", "threads"})
     if (made_by.contains("options")) made_by["options"].erase(flag);
   return made_by;
 }
 
-/// \return the input whose result the line of a file is; empty where it failed, or has changed since.
+/// \return the input whose result is in a line of a file; empty if it failed, or has changed since.
 std::string inputOf(const std::string& line, const std::string& path) {
   const nlohmann::json json = nlohmann::json::parse(line, nullptr, false);
   if (!json.is_object() || !json.contains("file") || !json["file"].is_string())
@@ -147,13 +147,13 @@ std::string inputOf(const std::string& line, const std::string& path) {
 /// A file that grows, or standard output.
 class Sink {
 public:
-  /// \param keeps of the file that is there, the lines for which this holds stay; none without \p resume.
+  /// \param keeps lines of an existing file for which this is true are kept; none without \p resume.
   void open(const std::string& path, const std::string& header, const std::function<bool(const std::string&)>& keeps,
             bool resume) {
     path_ = path;
     if (isStandardStream(path)) return add(header);
     if (resume) {
-      // Line by line, because the file may be larger than what the tool needs besides.
+      // Line by line, because the file may be larger than everything else that the tool needs.
       writeStream(path, [&](std::ostream& kept) {
         kept << header;
         forWholeLines(path, [&](const std::string& line) {
@@ -188,15 +188,15 @@ private:
 
   std::string path_;
   std::ofstream file_;
-  std::uintmax_t size_ = 0;  // bytes of the file that are whole lines
+  std::uintmax_t size_ = 0;  // bytes of the file that are complete lines
 };
 
-/// JSON Lines and CSV, or tables at a terminal. What stands in files is whole lines, also if the program is killed, but
+/// JSON Lines and CSV, or tables at a terminal. Files hold complete lines, even if the program is killed, except
 /// perhaps for the last line, which a later run with -resume drops.
 class ResultFiles {
 public:
-  /// Opens the files. Where neither a JSON nor a CSV file is named, a terminal gets tables, and a pipe JSON.
-  /// \throws InputError if one cannot be written, or holds something else than results and -resume is given.
+  /// Opens the files. If neither a JSON nor a CSV file is named, a terminal gets tables, and a pipe JSON.
+  /// \throws InputError if one cannot be written, or if -resume is given and it holds something other than results.
   ResultFiles(const BatchOptions& batch, const CommonOptions& common, const std::string& csv_header) {
     has_csv_ = batch.csv_path.has_value();
     has_text_ = !common.json_path && !has_csv_ && isatty(STDOUT_FILENO);
@@ -222,9 +222,9 @@ public:
   bool holds(const std::string& input) const { return kept_.count(input) > 0; }
   std::size_t numKept() const { return kept_.size(); }
 
-  /// \param json_line,csv_lines,text with their ends.
+  /// \param json_line,csv_lines,text with their line ends.
   void add(const std::string& json_line, const std::string& csv_lines, const std::string& text) {
-    // The JSON line comes last: what it names is complete.
+    // The JSON line comes last: what it names is then complete.
     if (has_csv_) csv_.add(csv_lines);
     if (has_json_) json_.add(json_line);
     if (has_text_) writeText("-", text);
@@ -236,7 +236,7 @@ private:
   bool has_json_ = false, has_csv_ = false, has_text_ = false;
 };
 
-/// Hands the inputs out, and their results on in the order of the inputs.
+/// Distributes the inputs, and passes their results on in the order of the inputs.
 class Batch {
 public:
   Batch(const std::vector<InputFile>& files, const BatchOptions& batch, const CommonOptions& common,
@@ -247,7 +247,7 @@ public:
         common_(common),
         console_(common.quiet) {
     common_.threads = 1;
-    // No line of progress is cut in two by results that go to the same place.
+    // Results on the same terminal must not cut a line of progress in two.
     const bool is_free = isTextWanted(batch, common) && (common.json_path || batch.csv_path);
     if (is_free || (isatty(STDERR_FILENO) && !isatty(STDOUT_FILENO)))
       step_.emplace(console_, "Working on " + counted(files.size(), "file"));
@@ -276,7 +276,7 @@ private:
     std::string json_line, csv_lines, text, error;
   };
 
-  /// \return false where none is left. Waits while too many results wait for an earlier one.
+  /// \return false if none is left. Waits while too many results wait for an earlier one.
   bool takeNext(std::size_t& i) {
     std::unique_lock<std::mutex> lock(mutex_);
     while (next_ < files_.size() && results_.holds(files_[next_].path)) {
@@ -317,7 +317,7 @@ private:
     if (step_) step_->progress(static_cast<double>(num_written_) / static_cast<double>(files_.size()));
   }
 
-  /// Under the lock.
+  /// To be called under the lock.
   void writeWaiting() {
     try {
       for (auto first = waiting_.begin(); first != waiting_.end() && first->first == num_written_ && !failure_;) {

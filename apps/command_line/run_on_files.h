@@ -19,7 +19,7 @@
 
 namespace pcl_symmetry::apps {
 
-/// For the help of tools whose inputs are all their arguments without a flag.
+/// For the help of tools all of whose arguments without a flag are inputs.
 inline const char* const kManyInputs =
     "files (.pcd, .ply, .obj, .stl, .off, .glb, .xyz, .pts, .asc, .txt or .csv), folders, patterns in quotes, lists "
     "@FILE, or - for standard input";
@@ -29,10 +29,11 @@ inline const char* const kOneOrManyInputs =
     "folder, a pattern in quotes, a list @FILE";
 
 struct BatchOptions {
-  std::vector<std::string> inputs;  ///< as inputFiles() takes them
+  std::vector<std::string> inputs;  ///< arguments as for inputFiles()
   std::optional<std::string> csv_path;
   bool resume = false;
-  /// Outputs of the tool for each input besides JSON and CSV: names in which {} is replaced by the name of the input.
+  /// Outputs of the tool for each input, in addition to JSON and CSV: names in which {} is replaced by the name of the
+  /// input.
   std::vector<const std::optional<std::string>*> outputs;
 
   /// Adds -csv and -resume.
@@ -47,26 +48,26 @@ struct BatchOptions {
 /// The report of a tool on an input.
 struct FileReport {
   std::string text;     ///< for standard output
-  nlohmann::json json;  ///< an object; in a file of several inputs it is a line
+  nlohmann::json json;  ///< an object; with several inputs, one line
   /// Rows of the table of comma-separated values: numbers and strings, one for each column after "file".
   std::vector<std::vector<nlohmann::json>> rows;
 };
 
 class FileJob {
 public:
-  /// \param console is silent where there are several inputs.
-  /// \param use is called with each report.
+  /// \param console silent if there are several inputs.
+  /// \param use called with each report.
   FileJob(std::string path, const Console& console, const CommonOptions& common,
           std::function<void(const FileReport&)> use = {})
       : path_(std::move(path)), console_(console), common_(common), use_(std::move(use)) {}
 
   const std::string& path() const { return path_; }
   const Console& console() const { return console_; }
-  /// The common flags, but of one thread where there are several inputs, of which each has a thread.
+  /// The common flags, but with one thread if there are several inputs, each of which has a thread.
   const CommonOptions& common() const { return common_; }
 
-  /// \return the name of an output of this input: {} in the pattern becomes the name of the input without its folder and
-  /// extension.
+  /// \return the name of an output of this input: {} in the pattern becomes the name of the input without its folder
+  /// and extension.
   std::string output(const std::string& pattern) const;
 
   /// Reports stay even if a later step throws.
@@ -84,20 +85,20 @@ private:
   std::optional<FileReport> report_;
 };
 
-/// \param cells strings and numbers; null is an empty cell.
+/// \param cells strings and numbers; null = an empty cell.
 /// \return a line of comma-separated values (RFC 4180) that ends with a line feed.
 std::string csvLine(const std::vector<nlohmann::json>& cells);
 
-/// \throws InputError if two files have one name, without folder and extension.
+/// \throws InputError if two files have the same name, without folder and extension.
 void checkNames(const std::vector<InputFile>& files);
 
-/// Works on items side by side, and shows in the step how far that is.
+/// Works on items in parallel, and shows the progress in the step.
 /// \param work throws InputError for an item that fails.
 /// \return the error of each item; empty if there is none.
 std::vector<std::string> workOnAll(std::size_t num_items, int num_threads, Step& step,
                                    const std::function<void(std::size_t)>& work);
 
-/// \param columns of the CSV table, after "file".
+/// \param columns columns of the CSV table, after "file".
 /// \param analyze called once for each input, from several threads at once; throws what stops this input.
 /// \return exit status of the tool: 1 if an input failed.
 /// \throws what the analysis of a single input throws; UsageError where outputs of several inputs would have one name;

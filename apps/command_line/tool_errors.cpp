@@ -28,14 +28,14 @@ std::string oneLine(std::string text) {
   return text;
 }
 
-/// A random password that clients of an X server need, in the form of a file that has no name.
-/// \return its descriptor; the server and the clients read it anew.
+/// A random password that clients of an X server need, in the form of a file without a name.
+/// \return its descriptor, from which the server and the clients read.
 int secretOfServer() {
   unsigned char cookie[16];
   if (::getentropy(cookie, sizeof(cookie)) != 0) return -1;
   const int file = ::memfd_create("Xauthority", 0);
   const std::string name = "MIT-MAGIC-COOKIE-1";
-  // Of any host (0xffff) and any display (an empty number).
+  // Valid for any host (0xffff) and any display (an empty number).
   std::string entry("\xff\xff\0\0\0\0\0\x12", 8);
   entry += name + std::string("\0\x10", 2) + std::string(cookie, cookie + sizeof(cookie));
   return ::write(file, entry.data(), entry.size()) == static_cast<ssize_t>(entry.size()) ? file : -1;
@@ -70,7 +70,7 @@ void findDisplay() {
 
 std::string plainMessage(const pcl::PCLException& error) {
   const std::string text = error.what();
-  // As PCLException::createDetailedMessage() puts it together.
+  // As PCLException::createDetailedMessage() composes it.
   std::ostringstream prefix;
   if (error.getFunctionName()) prefix << error.getFunctionName() << " ";
   if (error.getFileName()) {

@@ -1,4 +1,4 @@
-/// The reasons that stop a tool, their exit codes, and the frame that maps one to the other.
+/// The errors that stop a tool, their exit codes, and the function that maps one to the other.
 #pragma once
 
 #include <pcl/exceptions.h>
@@ -43,9 +43,9 @@ auto namingFile(const std::string& path, const Body& body) -> decltype(body()) {
   }
 }
 
-/// VTK draws through an X server. Where there is none, a tool that is to write a picture starts one, which ends with
-/// the tool, whatever ends that. Where Xvfb is missing the tool goes on, and what draws says so.
-/// To be called before there are threads: the server ends with the thread that starts it.
+/// VTK draws through an X server. If there is none, a tool that is to write a picture starts one, which ends with the
+/// tool, however that ends. If Xvfb is missing, the tool continues, and drawing reports the error. To be called before
+/// there are threads: the server ends with the thread that starts it.
 void findDisplay();
 
 /// Runs the body of a tool and reports exceptions in one line on standard error and by an exit code: 0 done (or the

@@ -23,8 +23,8 @@ int main(int argc, char** argv) {
   pcl_symmetry::SymmetryMaximaRefinement<pcl::PointXYZ> refinement;
   refinement.setInputCloud(cloud);
   refinement.setSymmetryMap(map, transform.getDistanceTransform());  // otherwise it computes its own map
-  refinement.setMinConfidence(0.8);                                  // planes above are symmetries
-  refinement.setApproximate(true);                                   // reports other planes too, marked by their kind
+  refinement.setMinConfidence(0.8);  // planes of at least this confidence are symmetries
+  refinement.setApproximate(true);   // reports other planes too, marked by their kind
   refinement.setMaxPlanes(5);
   refinement.setNumberOfThreads(2);  // the result does not depend on it
   for (const pcl_symmetry::SymmetryPlane& plane : refinement.compute()) {

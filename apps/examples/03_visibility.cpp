@@ -13,9 +13,9 @@ int main(int argc, char** argv) {
   }
   pcl_symmetry::SymmetryMaximaRefinement<pcl::PointXYZ> refinement;
   refinement.setInputCloud(scan);
-  // By default the data decide: the rays of an organized cloud, else sensor_origin_ where the points can be seen from
-  // there, else the density of the points. getViewpointSource() says which. setViewpoint() overrules that, and
-  // Mode::None takes the cloud for a whole object.
+  // By default, the data decide: the rays of an organized cloud, otherwise sensor_origin_ if the points can be seen
+  // from there, otherwise the density of the points. getViewpointSource() tells which. setViewpoint() overrides that,
+  // and Mode::None treats the cloud as a whole object.
   const std::vector<pcl_symmetry::SymmetryPlane> planes = refinement.compute();
   std::cout << (refinement.usedViewpoint() ? "a scan, seen from one side\n" : "a whole object\n");
   if (planes.empty()) {

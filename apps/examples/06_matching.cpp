@@ -1,4 +1,5 @@
-/// What models are like a cloud, and which of them a scan shows: descriptors, and a database that finds and recognizes.
+/// Which models are like a cloud, and which of them a scan shows: descriptors, and a database that finds and
+/// recognizes.
 #include <pcl/io/pcd_io.h>
 #include <pcl_symmetry/prst.h>
 #include <pcl_symmetry/symmetry_database.h>

@@ -1,4 +1,4 @@
-/// A point type of the user's own, and a search of PCL in place of the library's. PCL_NO_PRECOMPILE brings the bodies
+/// A point type of the user's own, and a search of PCL in place of the library's. PCL_NO_PRECOMPILE includes the bodies
 /// of PCL's octree.
 #define PCL_NO_PRECOMPILE
 #include <pcl/io/pcd_io.h>

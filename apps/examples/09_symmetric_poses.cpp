@@ -14,7 +14,8 @@ int main(int argc, char** argv) {
   const pcl_symmetry::ObjectSymmetries symmetries = pcl_symmetry::detectObjectSymmetries(*model);
   std::cout << "group " << symmetries.name() << ", confidence " << symmetries.confidence << "\n";
 
-  // An object that turns by 0.1 radians a frame; the estimator picks a pose that looks the same, another one each time.
+  // An object that rotates by 0.1 radians per frame; in each frame the estimator returns another pose that looks the
+  // same.
   const double degrees = 57.2957795;
   std::vector<Eigen::Isometry3d> estimates;
   for (int frame = 0; frame < 6; ++frame) {

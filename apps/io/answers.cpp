@@ -11,9 +11,9 @@ namespace {
 std::string explained(const std::string& name, const SymmetryPlane& plane, const Detection& found) {
   std::string lines = formatted("%s: %s, confidence %.3f\n", name.c_str(), toString(plane.kind), plane.confidence);
   if (!std::isnan(plane.share)) {
-    // Where points resolve no surface, symmetries are told by the density.
+    // If points resolve no surface, symmetries are judged by the density.
     const bool is_below = plane.kind == PlaneKind::Symmetry && plane.share < 0.97;
-    // It is the diameter where the worst points are farther than was searched.
+    // It is the diameter if the worst points are farther away than was searched.
     const std::string most =
         plane.deviation < 0.99 * found.diameter ? formatted(", 97 %% within %.3g", plane.deviation) : "";
     lines += formatted(

@@ -1,4 +1,4 @@
-/// Answers as tools write them: text as printf() writes it, words, lines of tables, and JSON.
+/// Results as tools write them: text as printf() writes it, words, lines of tables, and JSON.
 #pragma once
 
 #include <Eigen/Geometry>
@@ -17,14 +17,14 @@
 namespace pcl_symmetry::apps {
 
 /// "1 plane", "2 planes".
-/// \param many where it is not that with an s.
+/// \param many plural, if it is not the singular with an s.
 inline std::string counted(std::size_t number, const std::string& one, const std::string& many = "") {
   return std::to_string(number) + " " + (number == 1 ? one : many.empty() ? one + "s" : many);
 }
 
-/// JSON as text; an object says how it was made, see madeBy(). Names of files are bytes: what is no UTF-8 is replaced,
+/// JSON as text; an object holds its provenance, see madeBy(). Names of files are bytes: invalid UTF-8 is replaced,
 /// where nlohmann's default would throw.
-/// \param indent blanks a level; -1: one line
+/// \param indent blanks per level; -1 = one line
 template <typename Json>
 std::string jsonText(Json json, int indent = 2) {
   if (json.is_object()) json["made_by"] = Json::parse(madeBy().dump(-1, ' ', false, Json::error_handler_t::replace));
@@ -46,7 +46,7 @@ inline std::vector<double> rowMajor(const Eigen::Isometry3d& transform) {
   return rowMajor(transform.matrix());
 }
 
-/// \param shift that was subtracted from the input.
+/// \param shift vector that was subtracted from the input.
 /// \return a, b, c and d, input frame.
 inline std::vector<double> numbersOf(const ReflectionPlane& plane, const Eigen::Vector3d& shift) {
   return numbersOf(shiftedBack(plane, shift).coefficients());
@@ -86,7 +86,7 @@ std::string formatted(const char* format, Values... values) {
 
 /// A line such as "axis of order 6: through 0 0 0 along 0.000000 0.000000 1.000000, confidence 0.973".
 /// \param axis SymmetryAxis or SymmetryRotation.
-/// \param fold order of the rotations; 0: any angle.
+/// \param fold order of the rotations; 0 = any angle.
 template <typename Axis>
 std::string lineOf(const Axis& axis, int fold, const Eigen::Vector3d& shift) {
   const std::string order = fold > 0 ? "axis of order " + std::to_string(fold) : "axis of revolution";
@@ -95,11 +95,11 @@ std::string lineOf(const Axis& axis, int fold, const Eigen::Vector3d& shift) {
          formatted(" along %.6f %.6f %.6f, confidence %.3f\n", d.x(), d.y(), d.z(), axis.confidence);
 }
 
-/// Why each plane, axis and center has its confidence, and planes their kind, in words.
+/// Why each plane, axis and center has its confidence, and each plane its kind, in words.
 std::string explained(const Detection& found);
 
 /// A motion, row by row.
-/// \param digits significant ones of lengths.
+/// \param digits significant digits of lengths.
 std::string matrixLines(const Eigen::Isometry3d& motion, int digits);
 
 }  // namespace pcl_symmetry::apps

@@ -63,7 +63,7 @@ private:
   const aiScene& scene_;
   ExactShape shape_;
   VertexWelder welder_{shape_};
-  std::vector<Eigen::Vector3d> points_;  // of points and lines
+  std::vector<Eigen::Vector3d> points_;  // vertices of points and lines
 };
 
 /// Assimp subtracts one or two from the number of vertices of a line, a strip or a fan.
@@ -81,7 +81,7 @@ void checkPrimitives(const std::string& path, const nlohmann::json& scene) {
 }
 
 /// Assimp trusts the sizes of chunks, follows values and nodes by recursion, and reads a node again for each of its
-/// parents.
+/// parents: this check protects it.
 void checkGLB(const std::string& path, const std::string& text) {
   constexpr int kMostNested = 64, kMostLevels = 1000;
   const auto chunkAt = [&](std::size_t begin) {
@@ -121,20 +121,20 @@ void checkGLB(const std::string& path, const std::string& text) {
 }  // namespace
 
 void readGLB(const std::string& path, const std::string& content, ExactShape& shape) {
-  // Assimp 5.2 reads the bytes of these as if they were plain numbers.
+  // Assimp 5.2 would read the bytes of these extensions as if they were plain numbers.
   for (const char* extension : {"KHR_mesh_quantization", "EXT_meshopt_compression"})
     if (content.find(extension) != std::string::npos)
       throw InputError(path + ": is compressed by " + extension + ", which is not supported");
   try {
     checkGLB(path, content);
-  } catch (const nlohmann::json::exception&) {  // a value is not of the kind that it must be
+  } catch (const nlohmann::json::exception&) {  // a value has the wrong type
     throw InputError(path + ": cannot be read as glb, its JSON is damaged");
   }
   Assimp::Importer importer;
   const aiScene* const scene = importer.ReadFileFromMemory(content.data(), content.size(), 0, "glb");
   if (!scene || !scene->mRootNode) {
     std::string reason = boost::algorithm::replace_all_copy(std::string(importer.GetErrorString()), "\n", " ");
-    boost::algorithm::erase_all(reason, " for $$$___magic___$$$.glb");  // what it calls memory
+    boost::algorithm::erase_all(reason, " for $$$___magic___$$$.glb");  // Assimp's name for memory
     boost::algorithm::trim(reason);
     throw InputError(path + ": cannot be read as glb" + (reason.empty() ? "" : ", " + reason));
   }

@@ -69,7 +69,7 @@ std::optional<std::uint8_t> typeNamed(std::string name) {
       {"float", pcl::PCLPointField::FLOAT32},     {"float32", pcl::PCLPointField::FLOAT32},
       {"double", pcl::PCLPointField::FLOAT64},    {"float64", pcl::PCLPointField::FLOAT64}};
   boost::algorithm::to_lower(name);
-  // Words of C, as NRRD has them, and of MetaImage.
+  // Words of C, as in NRRD, and of MetaImage.
   for (const auto& [word, plain] : {std::pair("met_", ""), {"_", " "}, {" t", ""}, {"unsigned ", "u"}, {"signed ", ""}})
     boost::algorithm::replace_all(name, word, plain);
   if (boost::algorithm::ends_with(name, " int")) boost::algorithm::erase_tail(name, 4);
@@ -87,7 +87,7 @@ double numberAt(const void* source, std::uint8_t type) {
 bool storeNumber(std::string_view token, std::uint8_t type, void* target) {
   if (!token.empty() && token.front() == '+') token.remove_prefix(1);
   return withType(type, [&](auto value) {
-    // Read as the type itself: through double a float would be rounded twice.
+    // Read as the type itself: through double, a float would be rounded twice.
     const char* const end = token.data() + token.size();
     const auto [read, error] = std::from_chars(token.data(), end, value);
     if (error != std::errc() || read != end) {

@@ -16,7 +16,7 @@ using Columns = std::array<std::size_t, 3>;
 
 using Cells = std::vector<std::string_view>;
 
-/// Cuts a line into cells without quotes.
+/// Splits a line into cells, without quotes.
 void splitRow(std::string_view line, Cells& cells) {
   const auto has = [&](char c) { return line.find(c) != std::string_view::npos; };
   const char separator = has(';') ? ';' : has(',') ? ',' : ' ';
@@ -42,7 +42,7 @@ bool isNumber(std::string_view cell, double* value) {
   return spellsNumber(text, value);
 }
 
-/// \return where the columns x, y and z are, if all three have a name; ParaView calls them Points:0 to Points:2.
+/// \return the positions of the columns x, y and z, if all three are named; ParaView names them Points:0 to Points:2.
 std::optional<Columns> namedColumns(const Cells& names) {
   Columns columns{};
   for (std::size_t k = 0; k < 3; ++k) {
@@ -68,7 +68,7 @@ std::optional<Columns> numericColumns(const Cells& cells) {
 }  // namespace
 
 ExactShape readColumns(const std::string& path, std::string_view text) {
-  if (text.substr(0, 3) == "\xef\xbb\xbf") text.remove_prefix(3);  // the mark of UTF-8
+  if (text.substr(0, 3) == "\xef\xbb\xbf") text.remove_prefix(3);  // the byte order mark of UTF-8
   ExactShape shape;
   std::optional<Columns> columns, named;
   std::optional<std::uint64_t> num_points;
@@ -84,7 +84,7 @@ ExactShape readColumns(const std::string& path, std::string_view text) {
   std::string_view line;
   for (std::size_t number = 1; lines.next(line); ++number) {
     const std::size_t comment = std::min(line.find('#'), line.find("//"));
-    if (!columns && !named) {  // names may stand in a comment
+    if (!columns && !named) {  // names may be in a comment
       splitRow(line.substr(std::min(line.find_first_not_of("#/ \t"), line.size())), cells);
       named = namedColumns(cells);
       if (comment <= line.find_first_not_of(" \t")) num_names = cells.size();
@@ -97,9 +97,9 @@ ExactShape readColumns(const std::string& path, std::string_view text) {
       num_points = count;
       continue;
     }
-    // A comment may hold the words x, y and z for another reason.
+    // A comment may hold the words x, y and z for other reasons.
     if (!columns) columns = named && (num_names == 0 || cells.size() == num_names) ? named : numericColumns(cells);
-    if (!columns) {  // a header is words
+    if (!columns) {  // words are a header
       if (std::any_of(cells.begin(), cells.end(), [](std::string_view cell) { return isNumber(cell, nullptr); }))
         fail(number, "= " + std::string(line.substr(0, 40)) + ", must hold three numbers");
       continue;

@@ -13,9 +13,9 @@ namespace pcl_symmetry::apps {
 
 namespace {
 
-/// Spacing of float numbers, relative. 23 bits of mantissa.
+/// Relative spacing of float numbers: 23 bits of mantissa.
 constexpr double kFloatSpacing = 0x1.0p-23;
-constexpr double kAllowedSpacing = 1e-5;  // spacing of coordinates that is allowed, in extents
+constexpr double kAllowedSpacing = 1e-5;  // greatest spacing of coordinates, as a share of the extent
 
 }  // namespace
 
@@ -26,12 +26,12 @@ Eigen::Vector3d shiftFor(const std::vector<Eigen::Vector3d>& points) {
   if (box.isEmpty()) return Eigen::Vector3d::Zero();
   const double extent = box.sizes().maxCoeff();
   const double largest = std::max(box.min().cwiseAbs().maxCoeff(), box.max().cwiseAbs().maxCoeff());
-  // One point has no shape to lose.
+  // A single point has no shape to lose.
   if (!(extent > 0.0) || !std::isfinite(extent) || largest * kFloatSpacing <= kAllowedSpacing * extent)
     return Eigen::Vector3d::Zero();
   const double unit = std::exp2(std::floor(std::log2(extent)));
   const Eigen::Vector3d shift = (box.center() / unit).array().round().matrix() * unit;
-  // Extents below the least normal number make no unit that the center could be counted in.
+  // Extents below the smallest normal number give no unit in which the center could be rounded.
   return shift.allFinite() ? shift : Eigen::Vector3d::Zero();
 }
 
@@ -111,7 +111,7 @@ Eigen::Vector4d printedCoefficients(const ReflectionPlane& plane, const Eigen::V
 }
 
 int lengthDigits(const Eigen::Vector3d& shift) {
-  // Six digits tell 1e-5 of the extent; a shift of up to a million extents takes six more.
+  // Six digits resolve 1e-5 of the extent; a shift of up to a million extents takes six more.
   return shift.isZero(0.0) ? 6 : 12;
 }
 

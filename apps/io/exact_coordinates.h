@@ -1,4 +1,5 @@
-/// Coordinates that need more digits than float has: read in double, shifted near zero, and shifted back on output.
+/// Coordinates that need more digits than float has: they are read in double, shifted near zero, and shifted back on
+/// output.
 ///
 /// The library computes in float. A box of one meter at map coordinates such as (500000, 5000000, 100) would lose its
 /// shape, so the loader subtracts a shift in double, and the tools add it to what they report.
@@ -26,20 +27,20 @@ namespace pcl_symmetry::apps {
 struct ExactShape {
   std::vector<Eigen::Vector3d> vertices;
   std::vector<pcl::Vertices> polygons;
-  std::vector<std::string> left_out;  ///< further content of the file
+  std::vector<std::string> left_out;  ///< further content of the file, which is not read
 };
 
-/// \return what to subtract: zero where float is precise enough, else a point near the middle of the finite points,
+/// \return what to subtract: zero if float is precise enough, otherwise a point near the middle of the finite points,
 /// rounded so that the subtraction is exact
 Eigen::Vector3d shiftFor(const std::vector<Eigen::Vector3d>& points);
 
 /// \return the points minus the shift
 pcl::PointCloud<pcl::PointXYZ> shifted(const std::vector<Eigen::Vector3d>& points, const Eigen::Vector3d& shift);
 
-/// \return digits of the extent that coordinates of type float keep around the shift, which is not zero
+/// \return number of digits of the extent that float coordinates keep at the shift, which is not zero
 int digitsOfFloat(const pcl::PointCloud<pcl::PointXYZ>& points, const Eigen::Vector3d& shift);
 
-/// \return the points plus the shift: with a shift fields x, y and z of type double, otherwise those of PointXYZ
+/// \return the points plus the shift: with a shift, fields x, y and z are of type double, otherwise those of PointXYZ
 pcl::PCLPointCloud2 toFields(const pcl::PointCloud<pcl::PointXYZ>& points, const Eigen::Vector3d& shift);
 
 /// \return the viewpoint in the frame of the shifted points
@@ -59,11 +60,11 @@ ReflectionPlane shiftedBack(const ReflectionPlane& plane, const Eigen::Vector3d&
 Eigen::Isometry3d shiftedBack(const Eigen::Isometry3d& T_target_source, const Eigen::Vector3d& source_shift,
                               const Eigen::Vector3d& target_shift);
 
-/// \return a, b, c and d of the plane of the shifted points in the input frame, as six decimals of the normal are
-/// printed: far from the origin, d and the rounded normal together are the plane at the points
+/// \return a, b, c and d of the plane of the shifted points in the input frame, for a normal printed with six decimals:
+/// even far from the origin, d and the rounded normal together give the plane at the points
 Eigen::Vector4d printedCoefficients(const ReflectionPlane& plane, const Eigen::Vector3d& shift);
 
-/// \return significant digits of lengths in the input frame that a tool prints
+/// \return number of significant digits of lengths in the input frame that a tool prints
 int lengthDigits(const Eigen::Vector3d& shift);
 
 /// \return "x y z" with the given number of significant digits
@@ -82,7 +83,7 @@ public:
   }
 
 private:
-  /// Bits are compared, so that values that are no numbers are no trouble.
+  /// Bits are compared, so that NaN values are handled as well.
   struct Key {
     Eigen::Vector3d xyz;
     std::string_view bytes() const { return {reinterpret_cast<const char*>(xyz.data()), sizeof(double) * 3}; }

@@ -22,14 +22,14 @@ void checkReadableFile(const std::string& path) {
   if (!fs::exists(status)) throw InputError(path + ": no such file");
   if (fs::is_directory(status)) throw InputError(path + ": is a folder, must be a file");
   errno = 0;
-  // Who opens a pipe takes it from the next one.
+  // Opening a pipe would take its content away from the next reader.
   if (fs::is_regular_file(status) && !std::ifstream(path, std::ios::binary))
     throw InputError(path + ": cannot be opened, " + std::strerror(errno));
 }
 
 namespace {
 
-/// \param name in errors.
+/// \param name name of the file in messages.
 std::string readAll(std::FILE* file, const std::string& name) {
   std::string text;
   constexpr std::size_t kPiece = 1 << 16;

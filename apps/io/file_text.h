@@ -11,7 +11,7 @@
 
 namespace pcl_symmetry::apps {
 
-/// \return whether the name stands for standard input, or output.
+/// \return whether the name means standard input, or standard output.
 inline bool isStandardStream(const std::string& path) {
   return path == "-";
 }
@@ -19,7 +19,7 @@ inline bool isStandardStream(const std::string& path) {
 /// \throws InputError unless `path` is a file that can be opened.
 void checkReadableFile(const std::string& path);
 
-/// \return the whole file; of a pipe all that comes.
+/// \return the whole file; for a pipe, everything that it delivers.
 /// \throws InputError if it cannot be read or is empty.
 std::string readWholeFile(const std::string& path);
 
@@ -30,16 +30,16 @@ std::string readTextFile(const std::string& path);
 /// \throws InputError if it is empty, cannot be read or was read before.
 std::string readStandardInput();
 
-/// \return text as UTF-8 without the mark of its encoding, which tells UTF-8 and UTF-16.
+/// \return text as UTF-8, without the byte order mark, which distinguishes UTF-8 and UTF-16.
 std::string withoutMark(std::string text);
 
-/// Points of a file at most. PCL's indices are 32-bit integers.
+/// Greatest number of points of a file: PCL's indices are 32-bit integers.
 constexpr std::uint64_t kMaxPoints = std::numeric_limits<std::int32_t>::max();
 
 /// \throws InputError `path: what`.
 [[noreturn]] void reject(const std::string& path, const std::string& what);
 
-/// \return the whole number that the value of a header entry spells.
+/// \return the whole number that is the value of a header entry.
 /// \throws InputError naming the key and the rule.
 std::uint64_t headerCount(const std::string& path, const std::string& key, const std::string& value,
                           std::uint64_t largest);
@@ -85,7 +85,7 @@ public:
   void skipLine();
   bool atEnd();
 
-  /// \throws InputError "path: what index = token, rule"; what is missing where the token is empty.
+  /// \throws InputError "path: what index = token, rule"; \p what is missing if the token is empty.
   [[noreturn]] void fail(const char* what, std::uint64_t index, std::string_view token, const std::string& rule) const;
 
 private:

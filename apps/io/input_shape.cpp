@@ -44,7 +44,7 @@ void warnOfLeftOut(const Console& console, const std::string& path, const Shape&
 namespace {
 
 /// A volume, or a surface in it.
-/// \param[out] summary the levels of a volume.
+/// \param[out] summary the levels of a volume, in words.
 InputShape loadVolumeInput(const std::string& path, const CommonOptions& common, std::string& summary) {
   const Volume volume = loadVolume(path);
   InputShape input;
@@ -73,7 +73,7 @@ InputShape loadVolumeInput(const std::string& path, const CommonOptions& common,
   return input;
 }
 
-/// Warns where the file itself says that the scanner stood elsewhere, or the points do.
+/// Warns if the file itself, or its points, show that the scanner stood elsewhere.
 void checkViewpoint(const Console& console, const InputShape& input, const Viewpoint& given) {
   const pcl::PointCloud<pcl::PointXYZ>& cloud = *input.points;
   if (given.mode != Viewpoint::Mode::Given) return;
@@ -83,7 +83,7 @@ void checkViewpoint(const Console& console, const InputShape& input, const Viewp
   if (!cloud.isOrganized() && detail::hasDefaultSensor(cloud)) return;
   const SeenSpace seen(cloud);
   if (seen.source() != ViewpointSource::Rays && seen.source() != ViewpointSource::Stored) return;
-  constexpr double kOneSide = 0.2;  // radians between directions from which a scanner sees about the same
+  constexpr double kOneSide = 0.2;  // angle between directions from which a scanner sees about the same, radians
   const Eigen::Vector3d center = finitePoints(cloud).rowwise().mean().cast<double>(),
                         known = seen.visibility()->viewpoint(), told = given.position - input.shift();
   if (std::atan2((known - center).cross(told - center).norm(), (known - center).dot(told - center)) < kOneSide) return;

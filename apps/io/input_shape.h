@@ -1,5 +1,5 @@
-/// A file as the tools analyze it: the points of a cloud, points spread over a mesh, or a volume of CT, MR and other
-/// devices: NIfTI, Analyze, MGH, NRRD, MetaImage and VTK images.
+/// A file as the tools analyze it: the points of a cloud, points spread over a mesh, or a volume (NIfTI, Analyze, MGH,
+/// NRRD, MetaImage and VTK images) of CT, MR and other devices.
 #pragma once
 
 #include <cstdint>
@@ -18,29 +18,31 @@ namespace pcl_symmetry::apps {
 struct InputShape {
   std::string path;
   Shape shape;
-  pcl::PointCloud<pcl::PointXYZ>::Ptr points;  ///< minus the shift of the shape; those of a cloud may be non-finite
+  /// Coordinates minus the shift of the shape; points of a cloud may be non-finite.
+  pcl::PointCloud<pcl::PointXYZ>::Ptr points;
   double loading_ms = 0.0;
-  ScalarGrid::ConstPtr volume;  ///< of a volume, whose points are the voxels at the border of the body; null otherwise
-  VolumeLevels levels;          ///< intensities of the volume that count
+  /// Null if the input is no volume; otherwise `points` are the voxels at the border of the body.
+  ScalarGrid::ConstPtr volume;
+  VolumeLevels levels;  ///< range of intensities of the volume
 
   const Eigen::Vector3d& shift() const { return shape.shift; }
 
-  /// \return the viewpoint of the flags for `points`. Points spread evenly over a mesh have no density to infer one from.
+  /// \return the viewpoint of the flags for `points`. It is not inferred from points spread evenly over a mesh.
   Viewpoint viewpoint(const CommonOptions& common) const;
 
-  /// \return what outputs extend: all fields of a cloud, or the points spread over a mesh; input frame
+  /// \return the fields that outputs extend: all fields of a cloud, or the points spread over a mesh; input frame
   pcl::PCLPointCloud2 fields() const;
 };
 
 /// \param mesh_points number of points spread over a mesh
-/// \param seed of these points
+/// \param seed seed of these points
 /// \throws InputError naming the file
 InputShape loadInput(const std::string& path, int mesh_points, std::uint64_t seed);
 
 /// The same with the number of points and the seed of the flags, as a step of a tool.
 InputShape loadInput(const Console& console, const std::string& path, const CommonOptions& common);
 
-/// Gives an analysis of points or volumes the input, and the viewpoint of the flags.
+/// Passes the points or the volume, and the viewpoint of the flags, to an analysis.
 template <typename Analysis>
 void setInput(Analysis& analysis, const InputShape& input, const CommonOptions& common) {
   analysis.setViewpoint(input.viewpoint(common));
@@ -50,19 +52,19 @@ void setInput(Analysis& analysis, const InputShape& input, const CommonOptions& 
     analysis.setInputCloud(input.points);
 }
 
-/// \throws InputError with the reason of an analysis that found no answer in the input.
+/// \throws InputError with the reason if an analysis found no answer in the input.
 template <typename Analysis>
 void checkAnswer(const Analysis& analysis, const InputShape& input) {
   if (!analysis.getReason().empty()) throw InputError(input.path + ": " + analysis.getReason());
 }
 
-/// Warns of content of the file that the shape does not have.
+/// Warns of content of the file that the shape does not hold.
 void warnOfLeftOut(const Console& console, const std::string& path, const Shape& shape);
 
 /// The endings of files that loadVolume() reads.
 inline const char* const kVolumeFiles = ".nii, .nii.gz, .hdr, .img, .mgh, .mgz, .nrrd, .nhdr, .mha, .mhd or .vti";
 
-/// \return whether the name ends in one of kVolumeFiles, in capitals or not.
+/// \return whether the name ends in one of kVolumeFiles, in upper or lower case.
 bool isVolumePath(const std::string& path);
 
 /// A volume in the physical frame of its file: RAS for NIfTI and MGH, that of the header otherwise.
@@ -71,13 +73,13 @@ struct Volume {
   std::vector<std::string> left_out;  ///< further content of the file, such as later times
 };
 
-/// \throws InputError naming the file where it is no volume, or cut off.
+/// \throws InputError naming the file if it is no volume, or cut off.
 Volume loadVolume(const std::string& path);
 
-// In the module of VTK.
+// These functions are in the module of VTK.
 extern "C" {
 void readVTI(const std::string& path, Volume& volume);
-/// The surface on which the volume has a value (flying edges).
+/// The surface on which the volume has the value (flying edges).
 void contourVolume(const ScalarGrid& grid, double value, ExactShape& surface);
 }
 

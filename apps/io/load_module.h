@@ -7,8 +7,8 @@
 
 namespace pcl_symmetry::apps {
 
-/// Loads MODULE.so from where the executable's runtime path says: its own folder in the build tree, the library folder
-/// of the installation otherwise.
+/// Loads MODULE.so from the folder in the executable's runtime path: its own folder in the build tree, otherwise the
+/// library folder of the installation.
 /// \return the address of a function with C linkage.
 /// \throws InputError if there is no such module or function.
 void* addressInModule(const std::string& module, const char* function);

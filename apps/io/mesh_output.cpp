@@ -22,15 +22,15 @@ pcl::PointCloud<pcl::PointXYZ> verticesOf(const pcl::PolygonMesh& mesh) {
   return vertices;
 }
 
-/// Properties of vertices or faces beside their coordinates or corners: their lines in the header, and the values of
-/// one.
+/// Properties of vertices or faces in addition to their coordinates or corners: their lines in the header, and the
+/// values of one vertex or face.
 struct Properties {
   std::string header;
   std::function<void(std::ostream&, std::size_t)> write = [](std::ostream&, std::size_t) {};
 };
 
-/// Writes a mesh as text. PCL's own writer of PLY meshes has no values of vertices and faces.
-/// \param type of the coordinates.
+/// Writes a mesh as text. PCL's own writer of PLY meshes writes no values of vertices and faces.
+/// \param type type of the coordinates.
 template <typename Place>
 void writePLY(const std::string& path, const pcl::PolygonMesh& mesh, const std::string& type, const Place& place,
               const Properties& of_vertices, const Properties& of_faces) {

@@ -10,8 +10,9 @@ namespace pcl_symmetry::apps {
 
 namespace {
 
-/// \param word of a face: a number of a vertex from 1, or from -1 backwards, perhaps with /texture/normal behind it.
-/// \return the index; the greatest number where it is wrong.
+/// \param word corner of a face: the number of a vertex, from 1, or from -1 backwards, perhaps followed by
+/// /texture/normal.
+/// \return the index; the greatest number if it is invalid.
 std::size_t vertexIndex(std::string_view word, std::size_t num_vertices) {
   std::int64_t number = 0;
   const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), number);
@@ -37,7 +38,7 @@ ExactShape readOBJ(const std::string& path, std::string_view text) {
     } else if (word == "f") {
       faces.emplace_back();
       for (std::string_view corner = reader.nextOnLine(); !corner.empty(); corner = reader.nextOnLine()) {
-        if (corner == "\\") {  // the line goes on
+        if (corner == "\\") {  // the line continues
           reader.skipLine();
           corner = reader.next();
         }

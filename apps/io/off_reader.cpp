@@ -8,7 +8,7 @@ namespace pcl_symmetry::apps {
 
 namespace {
 
-/// Reads the keyword, which may run into the first count or be missing, and the first count.
+/// Reads the keyword, which may be joined with the first count or be missing, and the first count.
 std::uint64_t readKeywordAndVertexCount(TokenReader& reader, const std::string& path) {
   const std::string keyword(reader.next());
   std::uint64_t num_vertices = 0;
@@ -65,7 +65,7 @@ ExactShape readOFF(const std::string& path, std::string_view text) {
     reader.skipLine();
     if (num_corners >= 3) shape.polygons.push_back(std::move(polygon));
   }
-  std::uint64_t num_corners = 0;  // of a further face; edges may follow
+  std::uint64_t num_corners = 0;  // number of corners of the next face; edges may follow
   if (spellsCount(reader.next(), &num_corners) && num_corners >= 3)
     throw InputError(path + ": holds more faces than its header says, " + std::to_string(num_faces));
   return shape;

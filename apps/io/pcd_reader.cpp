@@ -17,13 +17,13 @@ namespace {
 using Words = std::vector<std::string>;
 using PCDHeader = std::map<std::string, Words>;
 
-/// \return a * b, or the greatest number where the product does not fit.
+/// \return a * b, or the greatest number if the product does not fit.
 std::uint64_t boundedProduct(std::uint64_t a, std::uint64_t b) {
   constexpr std::uint64_t kGreatest = std::numeric_limits<std::uint64_t>::max();
   return b != 0 && a > kGreatest / b ? kGreatest : a * b;
 }
 
-/// \param lines end behind the header.
+/// \param lines ends after the header.
 PCDHeader readPCDHeader(const std::string& path, LineReader& lines) {
   PCDHeader header;
   std::string_view line;
@@ -54,8 +54,8 @@ struct PCDLayout {
   std::vector<Column> columns;
   std::uint64_t num_points = 0;
   std::uint64_t point_size = 0;   ///< bytes of a point in a binary file
-  std::uint64_t packed_size = 0;  ///< without padding
-  std::uint64_t num_values = 0;   ///< of a line of text
+  std::uint64_t packed_size = 0;  ///< bytes of a point without padding
+  std::uint64_t num_values = 0;   ///< values of a line of text
 };
 
 PCDLayout layoutOf(const std::string& path, const PCDHeader& header, pcl::PCLPointCloud2& cloud) {
@@ -112,7 +112,7 @@ void readViewpoint(const std::string& path, const Words& words, CloudFile& file)
 }
 
 /// Stores the values of a line.
-/// \return how many the line has.
+/// \return the number of values of the line.
 std::uint64_t readPCDLine(const std::string& path, std::string_view line, const PCDLayout& layout, std::uint64_t row,
                           std::uint8_t* point) {
   TokenReader tokens(line, path);
@@ -152,8 +152,8 @@ void readPCDText(const std::string& path, std::string_view body, const PCDLayout
     reject(path, "holds " + std::to_string(row) + " points, POINTS = " + std::to_string(layout.num_points));
 }
 
-/// Decompresses LZF: runs of bytes as they are, and references to bytes before, which may reach into what they write.
-/// PCL's own function is in its library of files.
+/// Decompresses LZF: runs of literal bytes, and references to earlier bytes, which may overlap with the bytes that they
+/// write. PCL's own function is in its library of files.
 /// \return whether all of \p target was written, and no byte beyond.
 bool decompressLZF(std::string_view source, std::vector<std::uint8_t>& target) {
   std::size_t from = 0, to = 0;
@@ -168,7 +168,7 @@ bool decompressLZF(std::string_view source, std::vector<std::uint8_t>& target) {
       to += size;
       continue;
     }
-    // A reference: three bits of length, of which 7 is followed by a byte more, and 13 bits of distance.
+    // A reference: three bits of length, where 7 means that another byte follows, and 13 bits of distance.
     std::size_t size = 2 + (control >> 5);
     if (size == 9 && from < source.size()) size += next();
     if (from == source.size()) return false;
@@ -182,7 +182,7 @@ bool decompressLZF(std::string_view source, std::vector<std::uint8_t>& target) {
 /// \return the points, all values of a field together.
 std::vector<std::uint8_t> decompressed(const std::string& path, std::string_view body, const PCDLayout& layout) {
   if (body.size() < 8) reject(path, "ends before the sizes of the compressed points");
-  std::uint32_t sizes[2];  // compressed and not
+  std::uint32_t sizes[2];  // compressed and uncompressed size
   std::memcpy(sizes, body.data(), 8);
   if (sizes[0] == 0 || sizes[0] > body.size() - 8)
     reject(path, "compressed size = " + std::to_string(sizes[0]) +
@@ -223,7 +223,7 @@ CloudFile readPCD(const std::string& path, std::string_view text) {
       reject(path, "holds " + std::to_string(body.size()) + " bytes of points, must be >= " + std::to_string(bytes) +
                        " for POINTS = " + std::to_string(layout.num_points));
   };
-  std::vector<std::uint8_t> bytes;  // of compressed points
+  std::vector<std::uint8_t> bytes;  // decompressed points
   if (data == "ascii") {
     need(boundedProduct(2 * layout.num_values, layout.num_points) - 1);
   } else if (data == "binary") {

@@ -19,8 +19,8 @@ namespace {
 
 struct PLYProperty {
   std::string name;
-  std::uint8_t type = 0;                    ///< of the value, or of the entries of a list
-  std::optional<std::uint8_t> length_type;  ///< of lists
+  std::uint8_t type = 0;                    ///< type of the value, or of the entries of a list
+  std::optional<std::uint8_t> length_type;  ///< type of the length of a list
 };
 
 struct PLYElement {
@@ -88,7 +88,7 @@ PLYHeader readPLYHeader(const std::string& path, std::string_view text) {
   reject(path, "PLY header ends before end_header");
 }
 
-/// The values of a file one after the other, as text or as bytes of either order.
+/// The values of a file in order, as text or as bytes of either order.
 class PLYBody {
 public:
   PLYBody(const std::string& path, std::string_view body, const std::string& format)
@@ -101,7 +101,7 @@ public:
       reject(path, "PLY format = " + format + ", must be ascii, binary_little_endian or binary_big_endian");
   }
 
-  /// \return bytes that a value takes at least.
+  /// \return the least number of bytes of a value.
   std::uint64_t leastSize(std::uint8_t type) const { return is_text_ ? 2 : sizeOfType(type); }
   std::uint64_t size() const { return body_.size(); }
   /// \return whether more than a few bytes, such as the end of a line, follow.
@@ -142,7 +142,7 @@ public:
 
 private:
   double number(const PLYElement& element, std::uint64_t index, const PLYProperty& property, std::uint8_t type) {
-    if (is_text_) type = pcl::PCLPointField::FLOAT64;  // what does not fit into the type is noticed
+    if (is_text_) type = pcl::PCLPointField::FLOAT64;  // values that do not fit the type are noticed
     return numberAt(next(element, index, property, type), type);
   }
 
@@ -176,7 +176,7 @@ public:
   }
 
 private:
-  /// Colors are the bytes of one field, as PCL has them.
+  /// Colors are bytes of one field, as in PCL.
   void addColor(const PLYElement& vertex, const std::string& prefix) {
     const char* const names[] = {"blue", "green", "red", "alpha"};
     const auto isByte = [&](const std::string& name) {
@@ -247,7 +247,7 @@ private:
     }
   }
 
-  /// The rows of the rotation are called x, y and z axis.
+  /// The rows of the rotation are the x, y and z axis.
   void readCamera(const PLYElement& camera) {
     std::map<std::string, double> values;
     for (const PLYProperty& property : camera.properties)
@@ -271,14 +271,15 @@ private:
     file_.sensor_orientation = Eigen::Quaterniond(rotation).normalized().cast<float>();
   }
 
-  /// Faces and strips of triangles; other elements are passed over.
+  /// Reads faces and strips of triangles; other elements are skipped.
   void readLists(const PLYElement& element) {
     const bool is_strip = element.name == "tristrips";
     const PLYProperty* corners = element.name == "face" || is_strip ? element.find("vertex_indices") : nullptr;
     if (!corners && element.name == "face") corners = element.find("vertex_index");
     if (corners && !corners->length_type) corners = nullptr;
     if (element.properties.empty()) return;
-    if (!corners && element.count > 0 && element.name != "range_grid")  // which pixels of Stanford's scans have points
+    // A range_grid of Stanford's scans tells which pixels have points.
+    if (!corners && element.count > 0 && element.name != "range_grid")
       file_.left_out.push_back(std::to_string(element.count) + " of element " + element.name);
     std::vector<pcl::index_t> indices;
     for (std::uint64_t i = 0; i < element.count; ++i) {
@@ -316,7 +317,7 @@ private:
       file_.polygons.back().vertices = std::move(corners);
     };
     if (!is_strip) return add(indices);
-    std::size_t begin = 0;  // of the strip, where -1 ended the one before
+    std::size_t begin = 0;  // begin of the strip; -1 ends a strip
     for (std::size_t k = 0; k < indices.size(); ++k) {
       if (indices[k] < 0) begin = k + 1;
       if (k < begin + 2) continue;
@@ -331,8 +332,8 @@ private:
   PLYBody body_;
   CloudFile file_;
   std::uint64_t num_vertices_ = 0;
-  std::vector<Column> columns_;                   // of the vertices
-  std::map<std::string, std::ptrdiff_t> colors_;  // offsets of their bytes
+  std::vector<Column> columns_;                   // columns of the vertices
+  std::map<std::string, std::ptrdiff_t> colors_;  // offsets of the bytes of the colors
 };
 
 }  // namespace

@@ -1,4 +1,4 @@
-// PCL's classes that part a scene, compiled for its point type: see search_classes.cpp.
+// PCL's classes for the segmentation of scenes, compiled for the library's point type: see search_classes.cpp.
 #include <pcl/point_types.h>
 #include <pcl/impl/pcl_base.hpp>
 #include <pcl/sample_consensus/impl/ransac.hpp>
@@ -9,7 +9,7 @@
 
 namespace pcl::octree {
 
-// The voxels of XYZ points, which PCL's library has as specializations: their mean point.
+// The voxels of XYZ points, represented by their mean point: PCL's library has them as specializations.
 using XYZVoxel = OctreePointCloudAdjacencyContainer<PointXYZ, SupervoxelClustering<PointXYZ>::VoxelData>;
 
 template <>

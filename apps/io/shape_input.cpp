@@ -22,8 +22,8 @@ namespace pcl_symmetry::apps {
 
 namespace {
 
-/// \param shape with the fields of a cloud, or none: those are then the coordinates.
-/// \return the shape with its points, with a shift where float loses digits, and its mesh.
+/// \param shape a shape with the fields of a cloud, or without: then the coordinates become the fields.
+/// \return the shape with its points, with a shift if float loses digits, and its mesh.
 Shape completed(const std::string& path, Shape shape, const std::vector<Eigen::Vector3d>& exact,
                 std::vector<pcl::Vertices> polygons) {
   if (exact.empty()) throw InputError(path + ": has no points");
@@ -36,14 +36,14 @@ Shape completed(const std::string& path, Shape shape, const std::vector<Eigen::V
     shape.mesh.emplace();
     shape.mesh->polygons = std::move(polygons);
     shape.mesh->cloud = shape.cloud;
-    // Meshes are read as PointXYZ everywhere.
+    // Meshes are always read as PointXYZ.
     if (VectorField(shape.cloud).isDouble() || !shape.shift.isZero(0.0))
       pcl::toPCLPointCloud2(*shape.points, shape.mesh->cloud);
   }
   shape.points->is_dense = std::all_of(shape.points->begin(), shape.points->end(),
                                        [](const pcl::PointXYZ& point) { return point.getVector3fMap().allFinite(); });
   shape.points->sensor_origin_ = shape.sensor_origin;
-  // An origin of zero is a default at coordinates so large, and has to stay one.
+  // With coordinates so large, an origin of zero is a default, and has to stay one.
   if (!shape.sensor_origin.head<3>().isZero(0.0f))
     shape.points->sensor_origin_.head<3>() = (shape.sensor_origin.head<3>().cast<double>() - shape.shift).cast<float>();
   shape.points->sensor_orientation_ = shape.sensor_orientation;
@@ -77,7 +77,7 @@ bool isOneOf(const std::string& word, std::initializer_list<const char*> words) 
   return std::find(words.begin(), words.end(), word) != words.end();
 }
 
-/// \param name of the file in errors.
+/// \param name name of the file in messages.
 Shape shapeOf(const std::string& name, const std::string& text, const std::string& extension) {
   try {
     if (extension == ".pcd") return fromCloudFile(name, readPCD(name, text));

@@ -17,10 +17,10 @@
 
 namespace pcl_symmetry::apps {
 
-/// The endings of files that loadShape() reads, for help and messages.
+/// The extensions of files that loadShape() reads, for help and messages.
 inline const char* const kShapeFiles = ".pcd, .ply, .obj, .stl, .off, .glb, .xyz, .pts, .asc, .txt or .csv";
 
-/// The endings of files taken from folders, where .txt and .csv files hold many other things.
+/// The extensions of files taken from folders; there, .txt and .csv files often hold other things.
 inline const char* const kShapeFilesOfFolders = ".pcd, .ply, .obj, .stl, .off, .glb, .xyz, .pts or .asc";
 
 /// The content of a file. Points may be non-finite, as scanners write them.
@@ -28,29 +28,30 @@ struct Shape {
   pcl::PCLPointCloud2 cloud;                   ///< all fields of the file, input frame; the vertices of a mesh
   pcl::PointCloud<pcl::PointXYZ>::Ptr points;  ///< the coordinates minus the shift, same order and organization
   std::optional<pcl::PolygonMesh> mesh;        ///< polygons of any size >= 3, indices checked; minus the shift
-  /// Subtracted from points and mesh; zero unless the file's coordinates have more digits than float holds.
+  /// The vector that was subtracted from points and mesh; zero unless the file's coordinates have more digits than
+  /// float holds.
   Eigen::Vector3d shift = Eigen::Vector3d::Zero();
   Eigen::Vector4f sensor_origin = Eigen::Vector4f::Zero();  ///< input frame
   Eigen::Quaternionf sensor_orientation = Eigen::Quaternionf::Identity();
-  std::vector<std::string> left_out;  ///< further content of the file, such as lists of vertices
+  std::vector<std::string> left_out;  ///< further content of the file, such as lists of vertices, which is not read
 };
 
-/// \param path a file of kShapeFiles, in capitals or not; "-" for standard input, whose kind is known by its content, as
-/// is that of a pipe without extension
+/// \param path a file of kShapeFiles, in upper or lower case; "-" for standard input, whose kind is recognized by its
+/// content, as is that of a pipe without extension
 /// \throws InputError naming the file, what is wrong and the rule
 Shape loadShape(const std::string& path);
 
-/// \return whether the name ends in one of kShapeFilesOfFolders, in capitals or not
+/// \return whether the name ends in one of kShapeFilesOfFolders, in upper or lower case
 bool hasShapeExtension(const std::string& path);
 
-/// \return the extension that a shape file of this content has, such as ".pcd"; empty where it is of no known kind.
+/// \return the extension of shape files with such content, such as ".pcd"; empty if it is of no known kind.
 std::string extensionOfContent(const std::string& content);
 
-/// \return the mesh where a volume has a value.
+/// \return the mesh on which a volume has the value.
 /// \throws InputError naming the file if there is no such surface.
 Shape surfaceOf(const std::string& path, const ScalarGrid& volume, double value);
 
-/// \param indices of these points in the cloud, where they are wanted.
+/// \param indices receives the indices of these points in the cloud, unless it is null.
 /// \return 3 x N, the finite points of a cloud, same order.
 Points finitePoints(const pcl::PointCloud<pcl::PointXYZ>& cloud, std::vector<std::size_t>* indices = nullptr);
 

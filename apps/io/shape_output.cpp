@@ -64,8 +64,8 @@ pcl::PCLPointCloud2 packed(const pcl::PCLPointCloud2& cloud) {
   return result;
 }
 
-/// A file that lies in memory. PCL's and VTK's writers do not look whether the disk takes what they write, and one of
-/// them ends the program where it does not.
+/// A file in memory. PCL's and VTK's writers do not check whether the disk accepts what they write, and one of them
+/// ends the program if it does not.
 class MemoryFile {
 public:
   MemoryFile() : descriptor_(::memfd_create("pcl_symmetry", MFD_CLOEXEC)) {}
@@ -77,11 +77,11 @@ public:
 
   std::string name() const { return "/proc/self/fd/" + std::to_string(descriptor_); }
 
-  /// \param comment line of a header, written behind the first line of .pcd, the second of .ply.
+  /// \param comment line of a header, inserted after the first line of a .pcd file, the second of a .ply file.
   /// \return whether all of it was copied.
   bool copyTo(std::ostream& out, const std::string& comment) const {
     const ::off_t size = ::lseek(descriptor_, 0, SEEK_END);
-    // One byte more shows that no limit cut it off.
+    // Space for one more byte shows that the file was not cut off by a limit.
     if (size <= 0 || ::pwrite(descriptor_, "", 1, size) != 1) return false;
     std::vector<char> piece(1 << 20);
     for (::off_t at = 0; at < size;) {
@@ -105,7 +105,7 @@ private:
   int descriptor_;
 };
 
-/// The file that is being written, which a signal that ends the program removes.
+/// The file that is being written; a signal that ends the program removes it.
 std::atomic<const char*> pending_file{nullptr};
 std::mutex pending_file_mutex;
 
@@ -115,11 +115,11 @@ extern "C" void removePendingFile(int signal) {
   std::raise(signal);
 }
 
-/// A new file, one at a time, which is gone when it goes out of scope, or when SIGINT, SIGTERM or SIGHUP ends the
+/// A new file, one at a time, which is removed when it goes out of scope, or when SIGINT, SIGTERM or SIGHUP ends the
 /// program.
 class TemporaryFile {
 public:
-  /// \param model with % signs, each replaced by a random digit.
+  /// \param model name with % signs, each of which is replaced by a random digit.
   explicit TemporaryFile(const fs::path& model) : lock_(pending_file_mutex), name_(fs::unique_path(model).string()) {
     for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
       struct sigaction action {};
@@ -139,7 +139,7 @@ public:
   TemporaryFile(const TemporaryFile&) = delete;
   TemporaryFile& operator=(const TemporaryFile&) = delete;
 
-  /// \return whether it could be made; errno says why not.
+  /// \return whether it could be made; otherwise errno gives the reason.
   bool exists() const { return pending_file != nullptr; }
   const std::string& name() const { return name_; }
 
@@ -198,7 +198,7 @@ void writeStream(const std::string& path, const std::function<void(std::ostream&
 
 void writeAtomically(const std::string& path, const std::function<void(const std::string&)>& writer,
                      const std::string& comment) {
-  checkTarget(path);  // before the work
+  checkTarget(path);  // before the work begins
   const MemoryFile memory;
   writer(memory.name());
   writeStream(path, [&](std::ostream& stream) {
@@ -211,7 +211,7 @@ void writeText(const std::string& path, const std::string& text) {
 }
 
 void makeFolder(const std::string& path) {
-  boost::system::error_code error, ignored;  // Boost 1.74 has an error for ".", which is there
+  boost::system::error_code error, ignored;  // Boost 1.74 reports an error for ".", which exists
   fs::create_directories(path, error);
   if (!fs::is_directory(path, ignored))
     throw InputError(path + ": cannot be made, " +

@@ -1,4 +1,4 @@
-/// Results appear under their final name whole, or not at all.
+/// Results appear under their final name complete, or not at all.
 #pragma once
 
 #include <pcl/PCLPointCloud2.h>
@@ -16,31 +16,31 @@ namespace pcl_symmetry::apps {
 
 enum class PCDEncoding { Ascii, Binary, BinaryCompressed };
 
-/// Lets a tool refuse before the long work.
-/// \throws InputError if no file of this name can be made: the folder is missing, it is a folder, isForeignShape().
+/// Lets a tool fail before the long work begins.
+/// \throws InputError if no file of this name can be made: the folder is missing, it is a folder, or isForeignShape().
 void checkTarget(const std::string& path);
 
 /// \return whether none of the outputs is "-", so that standard output is free for text.
 /// \throws UsageError if several are.
 bool isStandardOutputFree(const std::vector<std::optional<std::string>>& outputs);
 
-/// Everything that tools write goes this way: into a temporary file beside `path`, which is renamed when it is whole.
-/// It is removed if the disk is full, if the writer throws and if a signal ends the program. With the path "-" the bytes
-/// go to standard output; pipes and devices are written as they are.
+/// All outputs of tools are written in this way: to a temporary file beside `path`, which is renamed when it is
+/// complete. It is removed if the disk is full, if the writer throws and if a signal ends the program. With the path
+/// "-", the bytes go to standard output; pipes and devices are written directly.
 /// \throws InputError if the folder is missing or not writable or the disk is full; whatever the writer throws.
 void writeStream(const std::string& path, const std::function<void(std::ostream&)>& writer);
 
-/// The same for writers of libraries, which want the name of a file: they get that of a file in memory.
-/// \param comment line that is put behind the first line of a PCD file, the second of a PLY file.
+/// The same for writers of libraries that need the name of a file: they get that of a file in memory.
+/// \param comment line that is inserted after the first line of a PCD file, the second of a PLY file.
 /// \throws InputError also if the writer made no file.
 void writeAtomically(const std::string& path, const std::function<void(const std::string& file_in_memory)>& writer,
                      const std::string& comment = "");
 
-/// Makes a folder for outputs and those that hold it, unless they are there.
+/// Makes a folder for outputs, and its parents, unless they exist.
 /// \throws InputError if it cannot be made.
 void makeFolder(const std::string& path);
 
-/// Writes text as it is.
+/// Writes text unchanged.
 void writeText(const std::string& path, const std::string& text);
 
 /// Writes a cloud with all its fields and the pose of the sensor; PCD or (binary) PLY by the extension of the name;
@@ -49,18 +49,18 @@ void writeText(const std::string& path, const std::string& text);
 void saveCloud(const std::string& path, const pcl::PCLPointCloud2& cloud, const Eigen::Vector4f& sensor_origin,
                const Eigen::Quaternionf& sensor_orientation, PCDEncoding encoding = PCDEncoding::BinaryCompressed);
 
-/// \throws UsageError unless saveCloud() knows the extension; lets a tool refuse before the long work.
+/// \throws UsageError unless saveCloud() supports the extension; lets a tool fail before the long work begins.
 void checkCloudExtension(const std::string& path);
 
-/// Name of the tool, which stands in a comment of the header of the clouds and meshes that it writes.
+/// Name of the tool, which is in a comment in the header of the clouds and meshes that it writes.
 std::string& toolName();
 
-/// \return whether a cloud, mesh or volume is there that this tool did not write: perhaps an input.
+/// \return whether there is a cloud, mesh or volume that this tool did not write: perhaps an input.
 bool isForeignShape(const std::string& path);
 
 /// PCL's writers, in the module pcl_symmetry_cloud_files.
-/// \param extension ".ply" or ".pcd"; the encoding is that of PCD.
-/// \return false, or throws what PCL throws, where PCL reports a failure; it does not notice all.
+/// \param extension ".ply" or ".pcd"; the encoding applies to PCD.
+/// \return false, or throws what PCL throws, if PCL reports a failure; it does not notice all failures.
 extern "C" bool writeCloudFile(const std::string& path, const std::string& extension, const pcl::PCLPointCloud2& cloud,
                                const Eigen::Vector4f& origin, const Eigen::Quaternionf& orientation,
                                PCDEncoding encoding);

@@ -20,7 +20,8 @@ std::uint64_t countOf(std::string_view content) {
 ExactShape readTriangles(const std::string& path, std::string_view content) {
   ExactShape shape;
   const std::uint64_t count = countOf(content), rest = content.size() - kHeader, whole = rest / kTriangle;
-  // Programs that do not know the number yet write 0 or what memory holds; a file that is cut off has a part of it.
+  // Programs that do not know the number yet write 0 or what is in memory; a file that is cut off has a part of the
+  // number.
   constexpr std::uint64_t kMostCutOff = 1000;
   const bool is_a_count = count > 0 && count / kMostCutOff <= whole;
   if (count > whole && (is_a_count || rest % kTriangle != 0))

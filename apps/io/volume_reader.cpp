@@ -27,17 +27,17 @@ using Eigen::Matrix3d, Eigen::Vector3d;
 
 /// The voxels of a file, the first index fastest, as its header describes them.
 struct Voxels {
-  std::string file;             ///< empty: that of the header
+  std::string file;             ///< name of the file with the voxels; empty: the file of the header
   std::uint64_t begin = 0;      ///< bytes of the file before the data
-  std::uint64_t num_lines = 0;  ///< before the data, behind these bytes
-  bool is_packed = false;       ///< the data, by zlib or gzip
+  std::uint64_t num_lines = 0;  ///< number of lines before the data, after these bytes
+  bool is_packed = false;       ///< whether the data are compressed, by zlib or gzip
   std::uint64_t skipped = 0;    ///< bytes of the data before the voxels
-  bool is_at_end = false;       ///< the voxels are the last bytes of the data
-  bool has_more = false;        ///< other things may follow the voxels
-  bool is_big = false;          ///< the byte order
-  std::uint8_t type = 0;        ///< of pcl::PCLPointField
-  double components = 1.0;      ///< values of a voxel; the first counts
-  double num_volumes = 1.0;     ///< the first counts
+  bool is_at_end = false;       ///< whether the voxels are the last bytes of the data
+  bool has_more = false;        ///< whether other things may follow the voxels
+  bool is_big = false;          ///< whether the highest byte comes first
+  std::uint8_t type = 0;        ///< type of a value, of pcl::PCLPointField
+  double components = 1.0;      ///< number of values of a voxel, of which the first is used
+  double num_volumes = 1.0;     ///< number of volumes, of which the first is used
   std::vector<double> sizes;
   Eigen::Affine3d T_input_index = Eigen::Affine3d::Identity();
   float slope = 1.0f, intercept = 0.0f;
@@ -47,7 +47,7 @@ struct Voxels {
   reject(path, "cannot be read, " + why);
 }
 
-/// \return bytes of a stream of zlib or of several of gzip, at most as many as wanted.
+/// \return the uncompressed bytes of a stream of zlib or of several of gzip, at most \p max_size.
 std::string inflated(const std::string& path, std::string_view packed, std::uint64_t max_size) {
   z_stream stream{};
   constexpr int kZlibOrGzip = 15 + 32;
@@ -71,7 +71,7 @@ std::string inflated(const std::string& path, std::string_view packed, std::uint
   return bytes;
 }
 
-/// The values of a binary header at their bytes.
+/// The values of a binary header, by their byte offsets.
 struct BinaryHeader {
   std::string_view bytes;
   bool is_big;
@@ -91,8 +91,8 @@ struct BinaryHeader {
   }
 };
 
-/// The frame of NIfTI: its affine map, else its rotation and reflection, else the spacing of Analyze.
-/// \param codes where sform_code and qform_code are not 0, the map and the rotation hold.
+/// The frame of NIfTI: its affine map, otherwise its rotation and reflection, otherwise the spacing of Analyze.
+/// \param codes if sform_code is not 0, the map is valid; if qform_code is not 0, the rotation is.
 template <typename Real>
 Eigen::Affine3d niftiFrame(const BinaryHeader& header, const bool (&codes)[2], std::size_t at_spacing,
                            std::size_t at_quaternion, std::size_t at_rows) {
@@ -118,7 +118,7 @@ Eigen::Affine3d niftiFrame(const BinaryHeader& header, const bool (&codes)[2], s
   return frame;
 }
 
-/// NIfTI 1 and 2, and Analyze 7.5, whose voxels stand in a file beside the header.
+/// NIfTI 1 and 2, and Analyze 7.5, whose voxels are in a separate file.
 Voxels niftiVoxels(const std::string& path, std::string_view bytes) {
   const auto isSize = [&](std::int32_t size, bool is_big) {
     return bytes.size() >= static_cast<std::size_t>(size) && BinaryHeader{bytes, is_big}.at<std::int32_t>(0) == size;
@@ -130,7 +130,7 @@ Voxels niftiVoxels(const std::string& path, std::string_view bytes) {
   const bool is_apart = magic.substr(0, 2) != "n+";
   if (is_apart && magic.substr(0, 2) != "ni" && !boost::algorithm::iends_with(path, "hdr"))
     unreadable(path, "it has no header of NIfTI");
-  // Code of the header, type, values of a voxel.
+  // By the code in the header: type, number of values of a voxel.
   static const std::map<int, std::pair<std::uint8_t, double>> types = {
       {2, {pcl::PCLPointField::UINT8, 1.0}},      {4, {pcl::PCLPointField::INT16, 1.0}},
       {8, {pcl::PCLPointField::INT32, 1.0}},      {16, {pcl::PCLPointField::FLOAT32, 1.0}},
@@ -198,7 +198,7 @@ Voxels mghVoxels(const std::string& path, std::string_view bytes) {
   voxels.num_volumes = std::max(1.0, header.at<std::int32_t>(16));
   Vector3d spacing = Vector3d::Ones(), center = Vector3d::Zero();
   Matrix3d direction;
-  direction << -1, 0, 0, 0, 0, 1, 0, -1, 0;  // where the header has none
+  direction << -1, 0, 0, 0, 0, 1, 0, -1, 0;  // the default for headers without directions
   if (header.at<std::int16_t>(28) > 0.0) {
     spacing = header.vectorAt<float>(30);
     center = header.vectorAt<float>(78);
@@ -230,19 +230,19 @@ Fields fieldsOf(const std::string& path, std::string_view text, bool is_nrrd, st
     is_whole = !value.empty() && fields.emplace(key, value).second && (key != "sizes" || fields.count("dimension"));
     if (is_whole && key == "ElementDataFile") return fields;
   }
-  // A header apart from its data may end with its file.
+  // A header in a file of its own may end with that file.
   if (is_whole && is_nrrd && (fields.count("data file") || fields.count("datafile"))) return fields;
   unreadable(path, "a line of its header is no field with a value");
 }
 
-/// \return the value of the first of the keys that is there; empty without any.
+/// \return the value of the first key that exists; empty if none does.
 std::string valueOf(const Fields& fields, std::initializer_list<const char*> keys) {
   for (const char* key : keys)
     if (const auto found = fields.find(key); found != fields.end()) return found->second;
   return {};
 }
 
-/// The numbers of a text, whatever stands between them.
+/// The numbers in a text, whatever separates them.
 std::vector<double> numbersIn(std::string text) {
   std::replace_if(text.begin(), text.end(), boost::algorithm::is_any_of("(),;"), ' ');
   std::vector<double> numbers;
@@ -252,7 +252,7 @@ std::vector<double> numbersIn(std::string text) {
   return numbers;
 }
 
-/// \param columns of T_input_index, nine numbers; or, where there are none, the spacing, three.
+/// \param columns columns of T_input_index, nine numbers; if they are empty, the three numbers of the spacing are used.
 Eigen::Affine3d frameOf(const std::string& path, std::vector<double> columns, const std::vector<double>& spacing,
                         const std::vector<double>& origin) {
   if (columns.size() < 9) columns = {1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0};
@@ -264,7 +264,7 @@ Eigen::Affine3d frameOf(const std::string& path, std::vector<double> columns, co
   return frame;
 }
 
-/// \return what is skipped; -1 in the header: all but the voxels.
+/// \return number of skipped bytes; -1 in the header means all bytes except those of the voxels.
 std::uint64_t skipOf(const std::string& path, const std::string& value, Voxels& voxels) {
   std::uint64_t skip = 0;
   voxels.is_at_end |= value == "-1";
@@ -337,8 +337,8 @@ Voxels metaVoxels(const std::string& path, std::string_view text) {
   return voxels;
 }
 
-/// \return the bytes of the voxels, of the first volume at least.
-/// \param unpacked holds them where they are packed.
+/// \return the bytes of the voxels, at least of the first volume.
+/// \param unpacked holds the bytes if they are compressed.
 std::string_view bytesOf(const std::string& path, const Voxels& voxels, std::string_view data, std::string& unpacked) {
   double num_voxels = voxels.num_volumes, slice = 1.0;
   for (std::size_t k = 0; k < 3; ++k) {

@@ -26,7 +26,7 @@ namespace pcl_symmetry::apps {
 
 namespace {
 
-/// \return bytes of an image at most, as its header has it; 0 where it has no voxel.
+/// \return greatest number of bytes of an image, according to its header; 0 if it has no voxel.
 double sizeOf(vtkInformation* image) {
   const int* const extent = image->Get(vtkStreamingDemandDrivenPipeline::WHOLE_EXTENT());
   vtkInformation* const voxel = vtkDataObject::GetActiveFieldInformation(image, vtkDataObject::FIELD_ASSOCIATION_POINTS,
@@ -50,11 +50,12 @@ void readVTI(const std::string& path, Volume& volume) {
   vtkNew<vtkXMLImageDataReader> reader;
   reader->SetFileName(path.c_str());
   reader->UpdateInformation();
-  constexpr double kMostPacked = 8.0 * 1100.0;  // bytes of an image for one of the file: those of zlib, as double
+  // Greatest number of bytes of an image for one byte of the file: zlib's limit, with voxels of type double.
+  constexpr double kMostPacked = 8.0 * 1100.0;
   const double size = sizeOf(reader->GetOutputInformation(0));
   const bool is_sound = size > 0.0 && size <= kMostPacked * static_cast<double>(text.size());
   if (is_sound) {
-    vtkNew<vtkCharArray> room;  // the reader writes where it got none
+    vtkNew<vtkCharArray> room;  // the reader would write even without memory for it
     if (!room->Allocate(static_cast<vtkIdType>(size))) throw std::bad_alloc();
     room->Initialize();
     reader->Update();

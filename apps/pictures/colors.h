@@ -6,10 +6,10 @@
 
 namespace pcl_symmetry::apps {
 
-/// Eight colors that remain apart for color-blind eyes (Okabe and Ito), repeated from the start when they run out.
+/// Eight colors that color-blind readers distinguish (Okabe and Ito), repeated from the start when they run out.
 Eigen::Vector3d distinctColor(std::size_t index);
 
-/// Points of which the scanner could not see whether they support a plane.
+/// Segment of points for which the scanner could not see whether they support a plane.
 constexpr int kUnseenSegment = -2;
 
 /// The color of a segment: distinct colors, lighter with each round; violet for kUnseenSegment, gray for others below

@@ -9,7 +9,7 @@ namespace pcl_symmetry::apps {
 
 bool hasDisplay() {
   if (!std::getenv("DISPLAY")) return false;
-  // Stays open: an X server starts anew when its last client leaves, and turns away who comes meanwhile.
+  // Stays open: an X server restarts when its last client leaves, and rejects clients in the meantime.
   static Display* const display = ::XOpenDisplay(nullptr);
   int opcode = 0, event = 0, error = 0;
   return display && ::XQueryExtension(display, "GLX", &opcode, &event, &error);

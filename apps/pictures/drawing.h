@@ -1,5 +1,5 @@
-/// Drawing by VTK, in the module pcl_symmetry_drawing. The functions of pictures/picture.h are what tools call; they
-/// check, and come here through functionOf(). One thread at a time draws.
+/// Drawing by VTK, in the module pcl_symmetry_drawing. Tools call the functions of pictures/picture.h, which check
+/// their arguments and come here through functionOf(). Only one thread at a time draws.
 #pragma once
 
 #include <mutex>
@@ -15,26 +15,26 @@ inline constexpr const char* kDrawingModule = "pcl_symmetry_drawing";
 
 /// The output of a picture.
 struct PictureTarget {
-  std::string name;   ///< in error messages
-  std::string file;   ///< that is written
+  std::string name;   ///< name in error messages
+  std::string file;   ///< file that is written
   int width, height;  ///< pixels
 };
 
-/// VTK has global state.
+/// Guards drawing, because VTK has global state.
 inline std::mutex drawing_mutex;
 
 /// \return whether DISPLAY names an X server that draws with OpenGL.
 bool hasDisplay();
 
 /// \throws InputError unless there is a display; tools look for one when they start, see runTool().
-/// \param name of the picture.
+/// \param name name of the picture.
 void requireDisplay(const std::string& name);
 
-/// All throw InputError naming the file where they fail.
+/// All throw InputError naming the file if they fail.
 extern "C" {
 void drawScenes(const std::vector<PictureScene>& scenes, const PictureTarget& target, int num_columns);
 void decodeImage(const std::string& path, bool png, RasterImage& image);
-/// The pixels of a picture of one channel of 16 bits: column, row and value.
+/// The pixels of an image of one channel of 16 bits: column, row and value.
 void decodeDepth(const std::string& path, pcl::PointCloud<pcl::PointXYZ>& pixels);
 void encodeImage(const RasterImage& image, const std::string& path, const std::string& file);
 void encodeVolume(const VolumeImage& volume, const std::string& path, const std::string& file);

@@ -32,7 +32,7 @@ std::array<Eigen::Vector3d, 4> squareCorners(const PlanePatch& plane, const Eige
   return {center - h * u - h * v, center + h * u - h * v, center + h * u + h * v, center - h * u + h * v};
 }
 
-/// How far the points reach along the axis to either side of its point, and a tenth more.
+/// How far the points reach along the axis on either side of its point, plus a tenth.
 std::pair<double, double> reachAlong(const AxisLine& axis, const PictureScene& scene) {
   const Eigen::Vector3d direction = axis.direction.normalized();
   double low = std::numeric_limits<double>::infinity(), high = -low;

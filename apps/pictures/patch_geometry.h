@@ -10,8 +10,8 @@
 
 namespace pcl_symmetry::apps {
 
-/// Moves the scene to the origin and to unit size: the clipping planes and single-precision buffers of renderers want
-/// that.
+/// Moves the scene to the origin and scales it to unit size, as the clipping planes and single-precision buffers of
+/// renderers require.
 struct Normalization {
   Eigen::Vector3d center = Eigen::Vector3d::Zero();
   double scale = 1;
@@ -21,15 +21,15 @@ struct Normalization {
 /// \throws InputError if no point is finite.
 Normalization normalizationOf(const PictureScene& scene);
 
-/// \return the corners of the rectangle in the plane, along the principal axes of the points' projections; or of a square
-/// where the patch has a size of its own.
+/// \return the corners of the rectangle in the plane, along the principal axes of the points' projections; or of a
+/// square if the patch has a size of its own.
 std::array<Eigen::Vector3d, 4> patchCorners(const PlanePatch& plane, const PictureScene& scene);
 
-/// \return the ends of the line: as long as the points reach along it, and a tenth more, unless it has a length of its
-/// own.
+/// \return the ends of the line: it extends a tenth beyond the points, unless it has a length of its own.
 std::pair<Eigen::Vector3d, Eigen::Vector3d> axisEnds(const AxisLine& axis, const PictureScene& scene);
 
-constexpr std::size_t kMaxShadedPoints = 200'000;  // more points shade themselves by their density
+// Greatest number of points that are shaded; more points show their shape by their density.
+constexpr std::size_t kMaxShadedPoints = 200'000;
 
 /// \return 3 x N, unit, of arbitrary sign, one for each point; not finite where the point is not, and for clouds of
 /// fewer than 16 or more than kMaxShadedPoints points.
@@ -38,12 +38,12 @@ Points pointNormals(const pcl::PointCloud<pcl::PointXYZ>& points, const Normaliz
 /// \return the color of a point in a panel, before shading.
 Eigen::Vector3d pointColor(const PicturePanel& panel, std::size_t point);
 
-/// Light on a point: least + range * |cosine between normal and view|.
+/// Brightness of a point: least + range * |cosine between normal and view|.
 struct PointShade {
   double least, range;
 };
 
-/// \param colored by support or segments, whose colors have to stay legible.
+/// \param colored whether points are colored by support or segments, which have to stay legible.
 PointShade shadeOf(bool colored);
 
 const Eigen::Vector3d kPlainPointColor(0.30, 0.38, 0.52);

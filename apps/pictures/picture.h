@@ -20,8 +20,9 @@ namespace pcl_symmetry::apps {
 struct PlanePatch {
   Eigen::Vector3d normal = Eigen::Vector3d::UnitX();
   double offset = 0;
-  Eigen::Vector3d center = Eigen::Vector3d::Zero();  ///< of the square, projected onto the plane
-  double half_size = 0;  ///< of the square, input units; 0 = a rectangle around the projected points, center not used
+  Eigen::Vector3d center = Eigen::Vector3d::Zero();  ///< center of the square, projected onto the plane
+  /// Half the edge of the square, input units; 0 = a rectangle around the projected points, without `center`.
+  double half_size = 0;
   Eigen::Vector3d color = {0.90, 0.62, 0.0};  ///< red, green, blue in [0, 1]
 };
 
@@ -30,19 +31,20 @@ struct AxisLine {
   Eigen::Vector3d point = Eigen::Vector3d::Zero();
   Eigen::Vector3d direction = Eigen::Vector3d::UnitZ();
   Eigen::Vector3d color = {0.84, 0.37, 0.0};  ///< red, green, blue in [0, 1]
-  double half_length = 0;  ///< to both sides of the point, input units, and in front of all; 0 = through the scene
+  /// Length on either side of the point, input units; drawn in front of everything. 0 = through the whole scene.
+  double half_length = 0;
 };
 
 /// One view among several in a picture.
 struct PicturePanel {
-  std::string label;                 ///< drawn at the top; empty for none
-  std::vector<double> support = {};  ///< one value in [0, 1] per point, cividis colors; empty for one plain color
+  std::string label;                 ///< text at the top; may be empty
+  std::vector<double> support = {};  ///< one value in [0, 1] per point, in cividis colors; empty: one plain color
   std::vector<PlanePatch> planes = {};
   std::vector<AxisLine> axes = {};
-  /// One number per polygon of the mesh, or per point where there is no mesh, each in a color of its own (below 0:
-  /// gray); the points of the mesh are then not drawn. Empty for one plain color.
+  /// One number per polygon of the mesh, or per point if there is no mesh, each with its own color (negative: gray);
+  /// the points of a mesh are then not drawn. Empty: one plain color.
   std::vector<int> segments = {};
-  bool show_points = true;  ///< false: the mesh alone; it takes the colors where its vertices are the points
+  bool show_points = true;  ///< false: only the mesh is drawn; it has the colors if its vertices are the points
   std::vector<std::pair<int, std::string>> legend = {};  ///< segments and their names, in a corner of the picture
 };
 
@@ -51,26 +53,26 @@ struct PictureScene {
   pcl::PointCloud<pcl::PointXYZ>::ConstPtr points;  ///< non-finite points are not drawn
   std::optional<pcl::PolygonMesh> mesh = {};        ///< drawn in light gray
   std::vector<PicturePanel> panels = {};            ///< at least one
-  Eigen::Vector3d view = {1.0, -1.6, 0.8};          ///< from the scene toward the camera
+  Eigen::Vector3d view = {1.0, -1.6, 0.8};          ///< direction from the scene toward the camera
   Eigen::Vector3d up = Eigen::Vector3d::UnitZ();
   bool show_color_bar = true;  ///< legend of the support, in panels that have support
 };
 
-/// The default up direction: z, and -y for a camera, whose viewpoint is the origin.
-/// \param middle of the points.
+/// The default up direction: z, or -y for a camera, whose viewpoint is the origin.
+/// \param middle middle of the points.
 Eigen::Vector3d upFor(const std::optional<Eigen::Vector3d>& viewpoint, const Eigen::Vector3d& middle);
 
-/// Rotates the view so that \p up takes the role of z; any length but zero.
+/// Rotates the view so that \p up takes the place of z; any length but zero.
 void standUpright(PictureScene& scene, const Eigen::Vector3d& up);
 
-/// Renders off screen and writes a PNG whole. Needs a display; tools start one with Xvfb, see findDisplay().
-/// \param width, height of the whole picture in pixels.
+/// Renders off screen and writes a complete PNG. Needs a display; tools start one with Xvfb, see findDisplay().
+/// \param width,height size of the whole picture, pixels.
 /// \throws InputError if nothing can draw or the file cannot be written.
 void renderPicture(const PictureScene& scene, const std::string& path, int width, int height);
 
 /// The panels of several scenes in one picture, row by row.
 /// \param scenes at least one.
-/// \param num_columns of all panels, 0 = as square as the panels allow.
+/// \param num_columns columns of panels; 0 = as square as the panels allow.
 void renderPicture(const std::vector<PictureScene>& scenes, const std::string& path, int width, int height,
                    int num_columns = 0);
 

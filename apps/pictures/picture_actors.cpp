@@ -27,7 +27,7 @@ void addColor(vtkUnsignedCharArray& colors, const Eigen::Vector3d& color) {
     colors.InsertNextValue(static_cast<unsigned char>(std::lround(255 * std::clamp(color[k], 0.0, 1.0))));
 }
 
-/// Adds what has one color and no light.
+/// Adds data in one color and without light.
 /// \return how it is drawn.
 vtkSmartPointer<vtkPolyDataMapper> addPlain(vtkRenderer& renderer, vtkPolyData* data, const Eigen::Vector3d& color,
                                             double line_width, double opacity = 1.0) {

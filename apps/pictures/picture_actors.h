@@ -15,21 +15,21 @@
 
 namespace pcl_symmetry::apps {
 
-/// \return for each point how bright it looks with a light at the camera, in [0, 1].
+/// \return brightness of each point with a light at the camera, in [0, 1].
 std::vector<double> shading(const PictureScene& scene, const Normalization& normalize);
 
 /// \param brightness of each point.
-/// \param panel_pixels the shorter edge of the panel.
+/// \param panel_pixels the shorter edge of the panel, pixels.
 vtkSmartPointer<vtkActor> cloudActor(const PictureScene& scene, const PicturePanel& panel,
                                      const Normalization& normalize, const std::vector<double>& brightness,
                                      double panel_pixels);
 
-/// Light gray; in the colors of PicturePanel::segments of its polygons, or of the panel's support where it shows no
-/// points and has one value per vertex.
+/// The mesh in light gray; in the colors of PicturePanel::segments of its polygons, or of the panel's support if the
+/// panel shows no points and has one value per vertex.
 vtkSmartPointer<vtkActor> meshActor(const pcl::PolygonMesh& mesh, const PicturePanel& panel,
                                     const Normalization& normalize);
 
-/// As long as the points reach along it, and a tenth more, unless it has a length of its own.
+/// The axis extends a tenth beyond the points, unless it has a length of its own.
 /// \param line_width pixels.
 void addAxis(vtkRenderer& renderer, const AxisLine& axis, const PictureScene& scene, const Normalization& normalize,
              double line_width);
@@ -46,7 +46,7 @@ vtkSmartPointer<vtkTextActor> labelActor(const std::string& text, int font_size)
 /// \param panel_height,font_size pixels.
 void addLegend(vtkRenderer& renderer, const PicturePanel& panel, int panel_height, int font_size);
 
-/// The colors of the support.
+/// The color bar of the support.
 /// \param panel_width,panel_height,font_size pixels.
 vtkSmartPointer<vtkScalarBarActor> colorBar(int panel_width, int panel_height, int font_size);
 

@@ -26,11 +26,11 @@ namespace pcl_symmetry::apps {
 
 namespace {
 
-constexpr int kMaxSuperSampled = 4096;  // pictures up to this edge, pixels, are drawn at twice their size
+constexpr int kMaxSuperSampled = 4096;  // greatest edge of pictures that are drawn at twice their size, pixels
 constexpr double kViewAngle = 25.0;     ///< degrees
 
 /// Places the camera so that all of the panel lies inside the picture, below the label and left of the color bar.
-/// \param bar_share part of the panel's width that the color bar takes.
+/// \param bar_share share of the panel's width that the color bar takes.
 void fitCamera(vtkRenderer& renderer, const PictureScene& scene, double aspect, double bar_share) {
   vtkCamera* camera = renderer.GetActiveCamera();
   const Eigen::Vector3d view = scene.view.normalized(), up = scene.up.normalized();
@@ -83,7 +83,7 @@ int numColumns(int num_panels, int wanted, int width, int height) {
   return best;
 }
 
-/// Where the panels of a picture lie, row by row.
+/// Positions of the panels of a picture, row by row.
 struct PanelGrid {
   int columns, rows, panel_width, panel_height;
 
@@ -100,7 +100,7 @@ struct PanelGrid {
   }
 };
 
-/// \param first_panel of the scene among those of the picture.
+/// \param first_panel index of the scene's first panel among the panels of the picture.
 void addPanels(vtkRenderWindow& window, const PictureScene& scene, const PanelGrid& grid, int first_panel) {
   const double panel_pixels = std::min(grid.panel_width, grid.panel_height);
   const int font_size = std::max(8, static_cast<int>(std::lround(panel_pixels * 0.036)));
@@ -122,7 +122,8 @@ void addPanels(vtkRenderWindow& window, const PictureScene& scene, const PanelGr
     const bool has_bar = scene.show_color_bar && !panel.support.empty();
     fitCamera(*renderer, scene, double(grid.panel_width) / grid.panel_height, has_bar ? 0.12 : 0.0);
     if (!panel.label.empty()) {
-      const double widest = 1.75 * grid.panel_width / static_cast<double>(panel.label.size());  // of Arial's letters
+      // Widest letters of Arial.
+      const double widest = 1.75 * grid.panel_width / static_cast<double>(panel.label.size());
       renderer->AddActor2D(labelActor(panel.label, std::min(font_size, static_cast<int>(widest))));
     }
     const int small_font = std::max(8, font_size * 3 / 4);

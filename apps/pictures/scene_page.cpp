@@ -15,16 +15,17 @@
 
 namespace pcl_symmetry::apps {
 
-// The parts of a page that are the same for all shapes; made of page.html, three.min.js and viewer.js by CMake.
+// The parts of a page that are the same for all shapes; made from page.html, three.min.js and viewer.js by CMake.
 extern const char* const kPageHead;     ///< HTML up to the first script
 extern const char* const kPageLibrary;  ///< three.js with its license
 extern const char* const kPageViewer;   ///< JavaScript
 
 namespace {
 
-constexpr std::size_t kMaxPagePoints = 200'000;  // points of a page
+constexpr std::size_t kMaxPagePoints = 200'000;  // greatest number of points of a page
 constexpr int kBarColors = 12;                   // the anchors of the color scale
-constexpr std::size_t kMostSwatches = 8;         // segments of a panel whose colors stand before its name
+// Greatest number of segments of a panel whose colors are shown before its name.
+constexpr std::size_t kMostSwatches = 8;
 
 template <typename Value>
 std::string base64(const std::vector<Value>& values) {
@@ -45,7 +46,7 @@ void addColor(const Eigen::Vector3d& color, std::vector<std::uint8_t>& bytes) {
     bytes.push_back(static_cast<std::uint8_t>(std::lround(255.0 * std::clamp(color[k], 0.0, 1.0))));
 }
 
-/// What a page holds of a scene: its finite points, all or every second, third, ..., and its mesh in triangles.
+/// The content of a page: the finite points of a scene (all, or every second, third, ...) and its mesh in triangles.
 class PageScene {
 public:
   explicit PageScene(const PictureScene& scene) : scene_(scene), normalize_(normalizationOf(scene)) {
@@ -118,7 +119,7 @@ private:
     return base64(values);
   }
 
-  /// In 127ths; empty where there are none.
+  /// In units of 1/127; empty if there are none.
   std::string normals() const {
     const Points all = pointNormals(*scene_.points, normalize_);
     std::vector<std::int8_t> values;
@@ -185,9 +186,9 @@ private:
 
   const PictureScene& scene_;
   Normalization normalize_;
-  std::vector<std::size_t> kept_;       ///< points
+  std::vector<std::size_t> kept_;       ///< indices of the points of the page
   std::vector<float> triangles_;        ///< nine numbers each
-  std::vector<std::size_t> corner_of_;  ///< vertex of each corner
+  std::vector<std::size_t> corner_of_;  ///< vertex of each corner of a triangle
   std::vector<std::size_t> face_of_;    ///< polygon of each triangle
   std::size_t num_vertices_ = 0;
 };
@@ -195,7 +196,7 @@ private:
 }  // namespace
 
 void writePage(const PictureScene& scene, const PageText& text, const std::string& path) {
-  // In a script nothing but "</" can end the script.
+  // Within a script, only "</" can end the script.
   const std::string json = PageScene(scene).json(text).dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
   const std::string safe = boost::algorithm::replace_all_copy(json, "</", "<\\/");
   writeText(path, std::string(kPageHead) + kPageLibrary + "</script>\n<script type=\"application/json\" id=\"scene\">" +

@@ -10,11 +10,11 @@ namespace pcl_symmetry::apps {
 
 namespace {
 
-const Eigen::Vector3d kBrighter(0.90, 0.62, 0.0), kDarker(0.0, 0.45, 0.70);  // apart for all eyes
+const Eigen::Vector3d kBrighter(0.90, 0.62, 0.0), kDarker(0.0, 0.45, 0.70);  // color-blind readers distinguish them
 const Eigen::Vector3d kLine(0.84, 0.37, 0.0);
-constexpr double kFullColor = 0.3;  // difference of f that has the full color
+constexpr double kFullColor = 0.3;  // difference of f at which the color is full
 
-/// A volume that is asked at points of the input frame.
+/// A volume that is sampled at points of the input frame.
 class SlicedVolume {
 public:
   SlicedVolume(const ScalarGrid& volume, const VolumeLevels& levels)

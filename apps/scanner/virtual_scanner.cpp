@@ -25,15 +25,15 @@ namespace pcl_symmetry::apps {
 
 namespace {
 
-/// Distances from single and double precision that differ by more are those of a triangle seen edge on, where the exact
-/// one is no better; diagonals of the mesh.
+/// Difference of a distance in single and in double precision, diagonals of the mesh, above which the triangle is seen
+/// edge on, so that the exact distance is no better.
 constexpr double kCoarseError = 1e-3;
-constexpr int kFirstResolution = 128;         // edge of the first picture, which tells the share of hits, pixels
+constexpr int kFirstResolution = 128;         // edge of the first image, which gives the share of hits, pixels
 constexpr double kAcceptedCountError = 0.01;  // relative error of the number of points
-constexpr int kMaxRounds = 8;                 // pictures until the number of points has to fit
+constexpr int kMaxRounds = 8;                 // greatest number of images until the number of points has to fit
 
-/// Uniform in [0, 1), on every platform the same, which the distributions of the standard library are not.
-/// \param generator of 64 random bits.
+/// Uniform in [0, 1), the same on every platform, unlike the distributions of the standard library.
+/// \param generator gives 64 random bits.
 template <typename Generator>
 double uniform(Generator& generator) {
   return static_cast<double>(generator() >> 11) * 0x1.0p-53;
@@ -46,7 +46,8 @@ double standardNormal(Generator& generator) {
   return radius * std::cos(2.0 * kPi * uniform(generator));
 }
 
-/// Right, down, forward: the columns of the sensor's rotation. The picture's up is z, or y for a vertical view.
+/// The directions right, down and forward: the columns of the sensor's rotation. The image's up is z, or y for a
+/// vertical view.
 Eigen::Matrix3d lookAlong(const Eigen::Vector3d& forward) {
   const Eigen::Vector3d up =
       std::abs(forward.z()) < 0.999 * forward.norm() ? Eigen::Vector3d::UnitZ() : Eigen::Vector3d::UnitY();
@@ -60,7 +61,7 @@ Eigen::Matrix3d lookAlong(const Eigen::Vector3d& forward) {
 struct Camera {
   Eigen::Vector3d origin;
   Eigen::Matrix3d axes;  ///< columns right, down, forward
-  double half_width;     ///< at depth one
+  double half_width;     ///< half the width of the image at depth one
   int resolution;
 
   Eigen::Vector3d rayThrough(int column, int row) const {
@@ -70,7 +71,7 @@ struct Camera {
   }
 };
 
-/// The distance of each pixel along its ray, row by row; infinite where the ray misses.
+/// The distance along the ray of each pixel, row by row; infinite if the ray misses.
 struct Picture {
   Camera camera;
   std::vector<double> distances;
@@ -96,16 +97,16 @@ struct Picture {
 
 }  // namespace
 
-/// The triangles of a mesh in a frame of their own, centered and with unit diagonal, where single precision is enough
-/// to find which one is hit; where exactly is computed in double precision.
+/// The triangles of a mesh in a frame of their own, centered and with unit diagonal. Single precision is enough to find
+/// which triangle is hit; the position is computed in double precision.
 struct VirtualScanner::Scene {
   struct Triangle {
     Eigen::Vector3d a, b, c;
   };
 
-  Eigen::Vector3d center;     ///< of the bounding box, input units
-  double diagonal;            ///< of the bounding box, input units
-  std::vector<Triangle> all;  ///< (corner - center) / diagonal; the index is Embree's
+  Eigen::Vector3d center;     ///< center of the bounding box, input units
+  double diagonal;            ///< diagonal of the bounding box, input units
+  std::vector<Triangle> all;  ///< (corner - center) / diagonal, in the order of Embree's indices
   std::unique_ptr<RTCDeviceTy, decltype(&rtcReleaseDevice)> device{rtcNewDevice("threads=1"), &rtcReleaseDevice};
   std::unique_ptr<RTCSceneTy, decltype(&rtcReleaseScene)> tree{nullptr, &rtcReleaseScene};
 
@@ -139,7 +140,7 @@ struct VirtualScanner::Scene {
     }
   }
 
-  /// One thread builds the tree, so that it is the same tree for any number of threads.
+  /// Builds the tree by one thread, so that it is the same for any number of threads.
   void buildTree() {
     if (!device) throw std::runtime_error("Embree cannot start");
     tree.reset(rtcNewScene(device.get()));
@@ -162,7 +163,7 @@ struct VirtualScanner::Scene {
     if (rtcGetDeviceError(device.get()) != RTC_ERROR_NONE) throw std::runtime_error("Embree cannot build its tree");
   }
 
-  /// \param origin,direction of a unit ray, in the frame of the triangles.
+  /// \param origin,direction a ray with unit direction, in the frame of the triangles.
   /// \return the distance to the first triangle along the ray, infinite if there is none.
   double distanceAlong(const Eigen::Vector3d& origin, const Eigen::Vector3d& direction) const {
     RTCRayHit query{};
@@ -197,7 +198,7 @@ struct VirtualScanner::Scene {
     return {camera, std::move(distances)};
   }
 
-  /// \return the picture, of a resolution chosen for it, whose number of hits is closest to the wanted one
+  /// \return the image whose number of hits is closest to the wanted one, by the choice of its resolution
   Picture takePictureOfPoints(Camera camera, const VirtualScannerOptions& options) const {
     const auto error = [&](const Picture& picture) {
       return std::abs(double(picture.num_hits) / options.num_points - 1.0);

@@ -99,7 +99,7 @@ SymmetryScene makeScene(const SceneToolOptions& options, const CommonOptions& co
   return scene;
 }
 
-/// \return null where none is named.
+/// \return null if no database is named.
 std::shared_ptr<const SymmetryDatabase> openDatabase(const SceneToolOptions& options) {
   if (!options.database_path) return nullptr;
   checkReadableFile(*options.database_path);
@@ -109,7 +109,7 @@ std::shared_ptr<const SymmetryDatabase> openDatabase(const SceneToolOptions& opt
                     [&] { return std::make_shared<const SymmetryDatabase>(*options.database_path, database); });
 }
 
-/// The points of a depth image in the frame of its camera: x to the right, y down, z forward.
+/// The points of a depth image, in the frame of its camera: x to the right, y down, z forward.
 InputShape loadDepth(const Console& console, const std::string& path, const SceneToolOptions& options) {
   if (!options.intrinsics) throw UsageError(path + ": a depth image needs -intrinsics FX,FY,CX,CY of its camera");
   const std::string& given = *options.intrinsics;

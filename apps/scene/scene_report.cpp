@@ -14,12 +14,12 @@ namespace pcl_symmetry::apps {
 namespace {
 
 constexpr std::size_t kDrawnPoints = 150'000;         // points of the overview
-constexpr std::size_t kMostPanels = 8;                // objects that have a panel of their own
+constexpr std::size_t kMostPanels = 8;                // greatest number of objects that have a panel of their own
 constexpr int kPanelWidth = 520, kPanelHeight = 440;  // pixels
-constexpr int kAddedColor = 5;  // color of points that a symmetry added, counted from that of the object
-// Above the line of sight, as a share of the distance: the scene is looked at slightly from above, so that depths tell.
+constexpr int kAddedColor = 5;  // color of points that a symmetry added, relative to the color of the object
+// Height of the camera above the line of sight, as a share of the distance: a slightly raised view shows depths.
 constexpr double kRaised = 0.25;
-constexpr double kAside = 1.1;  // radians, around an object that was completed
+constexpr double kAside = 1.1;  // angle around an object that was completed, radians
 
 constexpr double kAxisReach = 1.4, kPlaneReach = 1.1;  // radii of the object
 
@@ -28,7 +28,7 @@ std::size_t numPlanes(const SceneObject& object, PlaneKind kind) {
                                                 [&](const SymmetryPlane& plane) { return plane.kind == kind; }));
 }
 
-/// What was found of an object, in words.
+/// The findings about an object, in words.
 std::string summaryOf(const SceneObject& object) {
   const auto sure = [](const std::string& what, double confidence) {
     return what + formatted(", confidence %.2f", confidence);
@@ -50,7 +50,7 @@ std::string summaryOf(const SceneObject& object) {
   return text;
 }
 
-/// What an object was decided at, in words.
+/// The tolerance at which an object was decided, in words.
 std::string toleranceOf(const SceneObject& object) {
   if (!(object.diameter > 0.0)) return "";
   const auto share = [&](double length) { return 100.0 * length / object.diameter; };
@@ -102,7 +102,7 @@ std::string summaryOf(const SceneJunction& junction) {
          ": " + shares + "\n";
 }
 
-/// Of each point of the scene its object, from 1 on; -1 for those of supporting planes, 0 for others.
+/// For each point of the scene the number of its object, from 1; -1 for points of supporting planes, 0 for others.
 std::vector<int> objectNumbers(const SceneAnalysis& scene, std::size_t num_points) {
   std::vector<int> numbers(num_points, 0);
   for (const SupportingPlane& support : scene.supports)
@@ -113,8 +113,8 @@ std::vector<int> objectNumbers(const SceneAnalysis& scene, std::size_t num_point
   return numbers;
 }
 
-/// Looks at some points from where the sensor stood.
-/// \param aside angle by which the camera goes around the points, radians.
+/// Looks at some points from the position of the sensor.
+/// \param aside angle by which the camera is moved around the points, radians.
 void lookFromSensor(PictureScene& picture, const SceneAnalysis& scene, const Eigen::Vector3d& middle,
                     double aside = 0.0) {
   std::optional<Eigen::Vector3d> viewpoint;
@@ -164,11 +164,11 @@ PictureScene closeUp(const InputShape& input, const SceneAnalysis& scene, std::s
   PictureScene picture;
   picture.points = points;
   picture.panels = {panel};
-  lookFromSensor(picture, scene, middle, object.added.empty() ? 0.0 : kAside);  // what is added lies behind
+  lookFromSensor(picture, scene, middle, object.added.empty() ? 0.0 : kAside);  // added points lie at the back
   return picture;
 }
 
-/// All objects at once.
+/// All objects in one view.
 PictureScene overview(const InputShape& input, const SceneAnalysis& scene) {
   const std::vector<int> numbers = objectNumbers(scene, input.points->size());
   auto points = pcl::make_shared<SymmetryScene::Cloud>();
@@ -290,7 +290,7 @@ RasterImage cameraPicture(const InputShape& input) {
   });
   if (cloud.height < 2 || field == cloud.fields.end()) return {};
   RasterImage picture(static_cast<int>(cloud.width), static_cast<int>(cloud.height));
-  for (std::size_t i = 0; i < picture.pixels.size(); ++i)  // blue, green, red in the cloud
+  for (std::size_t i = 0; i < picture.pixels.size(); ++i)  // the cloud has the order blue, green, red
     picture.pixels[i] = cloud.data[i / 3 * cloud.point_step + field->offset + 2 - i % 3];
   return picture;
 }

@@ -13,23 +13,23 @@
 namespace pcl_symmetry::apps {
 
 /// One line for each object, in the frame of the input.
-/// \param shift of the loaded points, see InputShape.
+/// \param shift shift of the loaded points, see InputShape.
 std::string tableOf(const SceneAnalysis& scene, const Eigen::Vector3d& shift);
 
-/// For each object: number, points, what was found, model, and the center of its frame; null where there is none.
+/// For each object: number, points, findings, model, and the center of its frame; null if there is none.
 std::vector<std::vector<nlohmann::json>> rowsOf(const SceneAnalysis& scene, const Eigen::Vector3d& shift);
 
 nlohmann::json describeScene(const InputShape& input, const SceneAnalysis& scene);
 
-/// The fields x, y, z, object (0 = none, -1 = supporting plane, then 1, 2 ... as in the table) and completed (1 where a
-/// symmetry added the point) of all finite points of the scene and the added ones.
+/// The fields x, y, z, object (0 = none, -1 = supporting plane, then 1, 2 ... as in the table) and completed (1 if a
+/// symmetry added the point), for all finite points of the scene and the added ones.
 pcl::PCLPointCloud2 completedScene(const InputShape& input, const SceneAnalysis& scene);
 
-/// The scene from where the sensor stood, each object in a color of its own with its plane or axis, and the first
-/// objects one by one, each with its planes and axes and what it was decided at.
+/// The scene from the position of the sensor, each object in its own color with its plane or axis, and the first
+/// objects one by one, each with its planes and axes and the tolerance of its decision.
 PictureScene selectableObjects(const InputShape& input, const SceneAnalysis& scene);
 
-/// The colors of an organized cloud, pixel by pixel; empty where it has none.
+/// The colors of an organized cloud, pixel by pixel; empty if it has none.
 RasterImage cameraPicture(const InputShape& input);
 
 /// The scene, and each object with what its symmetry adds.

@@ -1,4 +1,4 @@
-/// The canonical frame of a cloud by its symmetry, or the transform that brings it to another one; many scans of an
+/// The canonical frame of a cloud by its symmetry, or the transform that registers it to another one; many scans of an
 /// object as one cloud; completion, and symmetrized shapes with their asymmetry.
 #include <pcl/common/io.h>
 #include <pcl/common/transforms.h>
@@ -96,13 +96,14 @@ CommandLine commandLine(AlignOptions& options) {
   return line;
 }
 
-/// In the frame of the shifted points.
+/// The frame, for the shifted points.
 SymmetryFrame computeFrame(const Console& console, const InputShape& input, const CommonOptions& common,
                            bool as_published) {
   Step step(console, "Searching the frame");
   FrameOptions options;
   options.as_published = as_published;
-  options.refined = !input.shape.mesh || common.viewpoint.mode == Viewpoint::Mode::Given;  // else on the mesh itself
+  // Otherwise it is refined on the mesh itself.
+  options.refined = !input.shape.mesh || common.viewpoint.mode == Viewpoint::Mode::Given;
   common.applyTo(options);
   SymmetryAlignment<pcl::PointXYZ> alignment;
   return namingFile(input.path, [&] {
@@ -117,7 +118,7 @@ SymmetryFrame computeFrame(const Console& console, const InputShape& input, cons
   });
 }
 
-/// What a shape is completed or symmetrized by, in the frame of the shifted points.
+/// The plane by which a shape is completed or symmetrized, in the frame of the shifted points.
 struct BestPlane {
   ReflectionPlane plane;
   std::string kind;
@@ -160,7 +161,7 @@ BestPlane bestPlane(const Console& console, const InputShape& input, const Commo
   return {planes.front(), toString(planes.front().kind), planes.front().confidence};
 }
 
-/// The best plane to complete a shape across.
+/// The best plane for completing a shape.
 BestPlane completingPlane(const Console& console, const InputShape& input, const CommonOptions& common,
                           bool by_any_plane) {
   BestPlane best = bestPlane(console, input, common);
@@ -172,8 +173,8 @@ BestPlane completingPlane(const Console& console, const InputShape& input, const
   return best;
 }
 
-/// Adds to the fields what its symmetry shows of the side that was not seen.
-/// \return the points and what is added, in the frame of the shifted points.
+/// Adds to the fields what the symmetry shows of the side that was not seen.
+/// \return the points and the added ones, in the frame of the shifted points.
 pcl::PointCloud<pcl::PointXYZ> complete(const Console& console, const InputShape& input, const CommonOptions& common,
                                         const BestPlane& best, pcl::PCLPointCloud2& fields, nlohmann::json& json) {
   const ReflectionPlane& plane = best.plane;
@@ -229,10 +230,10 @@ nlohmann::json landmarksJson(const Landmarks& landmarks, const ReflectionPlane& 
 
 /// A symmetrized shape in the frame of the shifted points, and what is reported about it.
 struct Symmetrized {
-  pcl::PCLPointCloud2 fields;  ///< of a cloud
+  pcl::PCLPointCloud2 fields;  ///< fields of a cloud
   std::optional<pcl::PolygonMesh> mesh;
-  std::vector<float> asymmetry;       ///< of each point of the input
-  std::vector<float> mesh_asymmetry;  ///< of each vertex of the mesh
+  std::vector<float> asymmetry;       ///< asymmetry at each point of the input
+  std::vector<float> mesh_asymmetry;  ///< asymmetry at each vertex of the mesh
   nlohmann::json json;
   std::string text;
 };
@@ -287,10 +288,11 @@ Symmetrized symmetrized(const Console& console, const InputShape& input, const A
   return result;
 }
 
-/// The input with the colors of its asymmetry: blue inside, yellow outside of the reflection of the other side. What
-/// the rounding of coordinates makes of none has no color.
+/// The input, colored by its asymmetry: blue inside, yellow outside of the reflection of the other side. Values that
+/// are only rounding errors of coordinates have no color.
 PictureScene sceneOf(const InputShape& input, const Symmetrized& shape) {
-  constexpr double kShown = 0.97;  // share of the points within the scale: a few that stick out hide no other
+  // Share of the points within the scale, so that a few outlying ones do not hide the others.
+  constexpr double kShown = 0.97;
   const float rounding =
       std::numeric_limits<float>::epsilon() * finitePoints(*input.shape.points).cwiseAbs().maxCoeff();
   std::vector<float> sizes;
@@ -315,10 +317,10 @@ struct Motion {
   bool converged = true;
   std::string text;
   nlohmann::json json;
-  PictureScene scene;  ///< what a page shows of it
+  PictureScene scene;  ///< scene that a page shows
 };
 
-/// The shape with the axes of its frame: the first red, the second green, the third blue.
+/// The shape with the axes of its frame: the first in red, the second in green, the third in blue.
 PictureScene sceneOf(const InputShape& input, const SymmetryFrame& frame) {
   PicturePanel panel{"center and axes: 1 red, 2 green, 3 blue"};
   panel.show_points = !input.shape.mesh;
@@ -327,7 +329,7 @@ PictureScene sceneOf(const InputShape& input, const SymmetryFrame& frame) {
 }
 
 /// Two clouds in two colors.
-/// \param num_first points of the first.
+/// \param num_first number of points of the first cloud.
 PictureScene sceneOf(const pcl::PointCloud<pcl::PointXYZ>& both, std::size_t num_first, const std::string& label,
                      const std::string& first, const std::string& second) {
   PicturePanel panel{label};
@@ -337,7 +339,7 @@ PictureScene sceneOf(const pcl::PointCloud<pcl::PointXYZ>& both, std::size_t num
   return {pcl::make_shared<pcl::PointCloud<pcl::PointXYZ>>(both), std::nullopt, {panel}};
 }
 
-/// The target, and the input where the motion brings it.
+/// The target, and the input at its registered pose.
 PictureScene sceneOf(const InputShape& input, const InputShape& target, const Eigen::Isometry3d& T_target_input) {
   pcl::PointCloud<pcl::PointXYZ> moved;
   const Eigen::Isometry3d motion =
@@ -361,7 +363,7 @@ Motion registerTo(const Console& console, const InputShape& input, const InputSh
   result.transform =
       shiftedBack(Eigen::Isometry3d(registration.getFinalTransformation()), input.shift(), target.shift());
   result.converged = registration.hasConverged();
-  // A refused answer gives the best pose, too.
+  // A rejected answer also gives the best pose.
   const std::vector<RegisteredPose>& poses = registration.getPoses();
   const Eigen::Isometry3d best = poses.empty() ? Eigen::Isometry3d::Identity() : poses.front().T_target_source;
   result.json = {{"transform", rowMajor(shiftedBack(best, input.shift(), target.shift()))},
@@ -424,7 +426,7 @@ std::string linesOf(const SymmetryFrame& frame, const Eigen::Vector3d& shift) {
   return lines;
 }
 
-/// \param best plane that the frame has at x = 0; none: its own first one.
+/// \param best plane that the frame is to have at x = 0; nothing: its own first plane.
 Motion toOwnFrame(const Console& console, const InputShape& input, const AlignOptions& options,
                   const CommonOptions& common, const std::optional<BestPlane>& best) {
   SymmetryFrame frame = computeFrame(console, input, common, options.as_published);
@@ -474,7 +476,7 @@ void analyze(const AlignOptions& options, FileJob& job) {
     if (options.complete) return completingPlane(console, input, common, options.any_plane);
     return std::nullopt;
   };
-  std::optional<BestPlane> best;  // what is written is symmetric in the frame that it is written in
+  std::optional<BestPlane> best;  // what is written is symmetric in the frame in which it is written
   if (!options.target) best = find_plane();
   Motion motion =
       options.target ? toTarget(console, input, options, common) : toOwnFrame(console, input, options, common, best);
@@ -542,11 +544,11 @@ nlohmann::json describe(const std::vector<InputShape>& inputs, const RegisteredS
 /// Scans of one object as one cloud.
 struct Merged {
   InputShape shape;            ///< its points in the frame of the first scan that is kept, minus its shift
-  pcl::PCLPointCloud2 fields;  ///< those of the scans and the index of each point's scan
-  std::vector<int> scans;      ///< of each point
+  pcl::PCLPointCloud2 fields;  ///< fields of the scans, and the index of each point's scan
+  std::vector<int> scans;      ///< scan of each point
 };
 
-/// Whether the points of two clouds can stand in one.
+/// Whether the points of two clouds can be stored in one.
 bool haveSameFields(const pcl::PCLPointCloud2& a, const pcl::PCLPointCloud2& b) {
   return std::equal(a.fields.begin(), a.fields.end(), b.fields.begin(), b.fields.end(),
                     [](const pcl::PCLPointField& x, const pcl::PCLPointField& y) {

@@ -1,4 +1,4 @@
-/// Symmetries, diameter and extent of models, as models_info.json of the BOP pose benchmark has them.
+/// Symmetries, diameter and extent of models, as in models_info.json of the BOP pose benchmark.
 #include <algorithm>
 #include <boost/algorithm/string.hpp>
 #include <boost/filesystem.hpp>
@@ -92,7 +92,7 @@ std::vector<std::string> shapesIn(const std::string& folder) {
   return chosen;
 }
 
-/// The number that the name of a file ends in; empty where it ends in none.
+/// The number at the end of the name of a file; empty if there is none.
 std::string numberOf(const std::string& path) {
   const std::string stem = boost::filesystem::path(path).stem().string();
   const auto is_digit = [](unsigned char c) { return std::isdigit(c) != 0; };
@@ -101,10 +101,10 @@ std::string numberOf(const std::string& path) {
   return digits != stem.end() && number == stem.end() ? "0" : std::string(number, stem.end());
 }
 
-/// Files as they are; of a folder the files obj_* that hold shapes, or all shapes where there is none of that name, by
+/// Files as given; from a folder, the files obj_* that hold shapes, or all shapes if none has such a name, sorted by
 /// name.
-/// \return each with the number that its name ends in; where there is none the first from 1 on that is free.
-/// \throws UsageError if two files have one number; InputError for a folder without a shape.
+/// \return each with the number at the end of its name; if there is none, the first free number from 1 on.
+/// \throws UsageError if two files have the same number; InputError for a folder without a shape.
 std::vector<ModelFile> modelFiles(const std::vector<std::string>& inputs) {
   std::vector<ModelFile> models;
   for (const std::string& input : inputs) {
@@ -143,13 +143,13 @@ std::optional<ListedSymmetries> givenFor(const GivenSymmetries& given, const std
   return entry->second;
 }
 
-/// What was found of the models, in their order, and what went wrong.
+/// The results of the models, in their order, and what went wrong.
 struct Results {
   std::vector<ModelInfo> infos;
   std::vector<std::string> errors;
 };
 
-/// A model at a time on each thread: memory grows with the threads, not with the models.
+/// Analyzes one model at a time on each thread: memory grows with the threads, not with the models.
 Results analyzeAll(const std::vector<ModelFile>& files, const BopOptions& options, const GivenSymmetries& given) {
   ModelOptions model_options = options.models;
   const auto num_threads = static_cast<std::size_t>(resolveNumThreads(options.common.threads));
@@ -179,7 +179,7 @@ Results analyzeAll(const std::vector<ModelFile>& files, const BopOptions& option
   return results;
 }
 
-/// By number, a line each, as the benchmark's own files are.
+/// The entries by number, one per line, as in the benchmark's own files.
 std::string modelsInfo(std::vector<ModelInfo> infos, double sphere_angle) {
   std::stable_sort(infos.begin(), infos.end(), [](const ModelInfo& a, const ModelInfo& b) {
     return a.key.size() != b.key.size() ? a.key.size() < b.key.size() : a.key < b.key;
@@ -200,7 +200,7 @@ void printColorNote(const std::vector<ModelInfo>& infos, bool use_colors) {
                          : "-color asks for rotations that keep them");
 }
 
-/// Writes how a given file compares as JSON, and prints it.
+/// Writes the comparison with a given file as JSON, and prints it.
 void report(const std::vector<ModelInfo>& infos, const BopOptions& options, bool prints) {
   nlohmann::ordered_json models = nlohmann::ordered_json::object(), missing = nlohmann::ordered_json::array();
   int num_disagreeing = 0, num_compared = 0;
@@ -226,7 +226,7 @@ void report(const std::vector<ModelInfo>& infos, const BopOptions& options, bool
 void writeDope(const std::vector<ModelInfo>& infos, const std::string& folder, double sphere_angle) {
   for (const ModelInfo& info : infos) {
     const boost::filesystem::path model = boost::filesystem::path(folder) / boost::filesystem::path(info.file).stem();
-    boost::system::error_code ignored;  // writeText() names the folder that is missing
+    boost::system::error_code ignored;  // writeText() reports the missing folder
     boost::filesystem::create_directories(model, ignored);
     writeText((model / "model_info.json").string(), dopeJson(info.symmetries, sphere_angle).dump(2) + "\n");
   }

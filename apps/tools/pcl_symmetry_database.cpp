@@ -1,4 +1,4 @@
-/// Builds and keeps a database of models that pcl_symmetry_match asks.
+/// Builds and maintains a database of models, which pcl_symmetry_match queries.
 #include <pcl/conversions.h>
 
 #include <algorithm>
@@ -82,7 +82,7 @@ std::string fileChecksum(const std::string& path) {
   return formatted("%016llx", static_cast<unsigned long long>(checksum.checksum()));
 }
 
-/// \return the name of a file without its ending, or its path within the folder that was given, "_" for "/".
+/// \return the name of a file without its extension, or its path within the given folder, with "_" for "/".
 std::string modelName(const InputFile& file, bool by_path) {
   const fs::path path = file.path;
   if (!by_path || file.folder.empty()) return path.stem().string();
@@ -91,21 +91,21 @@ std::string modelName(const InputFile& file, bool by_path) {
   return name;
 }
 
-/// A file that is missing is one of them, to be reported with those that cannot be used.
+/// A missing file is included, to be reported with those that cannot be used.
 std::vector<ModelInput> modelInputs(const DatabaseToolOptions& options) {
   std::vector<std::string> tags;
   if (options.tag) tags.push_back(*options.tag);
   const std::vector<InputFile> files = inputFiles(options.arguments);
   std::vector<ModelInput> inputs;
   for (std::size_t i = 0; i < files.size(); ++i) {
-    // The number of points is a part of the checksum: another number is another model.
+    // The number of points is part of the checksum: another number gives another model.
     const auto source = [path = files[i].path, num_points = options.common.mesh_points, tags] {
       return ModelSource{fs::absolute(path).lexically_normal().string(),
                          fileChecksum(path) + "-" + std::to_string(num_points), tags};
     };
     const auto load = [path = files[i].path, &common = options.common] {
       const InputShape input = loadInput(path, common.mesh_points, common.seed);
-      // Poses of recognition are those of the model's file; a shift would be lost.
+      // Poses of recognition are in the frame of the model's file; a shift would be lost.
       if (!input.shift().isZero(0.0))
         throw InputError(path + ": its coordinates are too large for its extent, must be moved near the origin");
       return *input.points;
@@ -238,7 +238,7 @@ private:
     return 0;
   }
 
-  /// Files that are there are not replaced.
+  /// Writes clouds to files; existing files are not replaced.
   int exportClouds(const SymmetryDatabase& database) const {
     const fs::path folder = options_.arguments.front();
     std::vector<std::string> names(options_.arguments.begin() + 1, options_.arguments.end());

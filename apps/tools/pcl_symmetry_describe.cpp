@@ -1,4 +1,4 @@
-/// Descriptors of many shapes, a PCD file each.
+/// Descriptors of many shapes, one PCD file for each.
 #include <pcl/conversions.h>
 
 #include <algorithm>
@@ -29,7 +29,7 @@ using namespace pcl_symmetry;
 using namespace pcl_symmetry::apps;
 namespace fs = boost::filesystem;
 
-/// The points spread over a mesh are the same for all seeds: -seed draws what is computed from them.
+/// The points spread over a mesh are the same for all seeds: -seed applies only to what is computed from them.
 constexpr std::uint64_t kMeshSeed = 1;
 
 struct DescribeOptions {
@@ -108,7 +108,7 @@ std::vector<std::string> outputPaths(const DescribeOptions& options) {
   return paths;
 }
 
-/// \return the values of a file that this tool wrote; none where it holds no descriptors of the type.
+/// \return the values of a file that this tool wrote; none if it holds no descriptors of the type.
 std::vector<float> valuesIn(const std::string& path, const std::string& type) {
   boost::system::error_code error;
   if (!fs::exists(path, error)) return {};
@@ -121,14 +121,14 @@ std::vector<float> valuesIn(const std::string& path, const std::string& type) {
   return values;
 }
 
-/// Values of one descriptor.
+/// Number of values of one descriptor.
 std::size_t sizeOf(const std::string& type) {
   if (type == "signature") return ShapeSignature20736::descriptorSize();
   if (type == "prsd") return PRSDSignature1024::descriptorSize();
   return type == "prst" ? PRSTSignature32768::descriptorSize() : GEDTSignature32768::descriptorSize();
 }
 
-/// Writes what the files of the folder hold, one after the other.
+/// Writes the content of the files of the folder, one after the other.
 void writeTable(const DescribeOptions& options, const std::vector<std::string>& outputs,
                 const std::vector<std::string>& failures) {
   const std::size_t size = sizeOf(options.type);

@@ -1,5 +1,5 @@
-/// The transform mapped back to space: for each point of a cloud and each cell of a volume the greatest symmetry of any
-/// plane, axis or center there.
+/// The transform mapped back to space: for each point of a cloud and each cell of a volume, the greatest symmetry of
+/// any plane, axis or center there.
 #include <Eigen/Core>
 #include <algorithm>
 #include <boost/algorithm/string.hpp>
@@ -34,29 +34,30 @@ using namespace pcl_symmetry;
 using namespace pcl_symmetry::apps;
 
 struct SymmetryMeasure {
-  std::string of;             ///< planes, axes or centers
-  std::size_t num_tried = 0;  ///< number of these
-  /// The greatest symmetry of what passes through each of 3 x N points, with a number of threads.
+  std::string of;             ///< "planes", "axes" or "centers"
+  std::size_t num_tried = 0;  ///< number of planes, axes or centers that were tried
+  /// Gives the greatest symmetry of the planes, axes or centers through each of 3 x N points, with a number of threads.
   std::function<std::vector<float>(const Points&, int)> through;
-  std::vector<std::string> lines = {};            ///< the best of these, as printed
+  std::vector<std::string> lines = {};            ///< the best planes, axes or centers, as printed
   nlohmann::json best = nlohmann::json::array();  ///< the same as JSON
   std::vector<AxisLine> axes = {};                ///< the best axes, for pictures
 };
 
 /// What is measured.
 struct MeasureOptions {
-  std::string of = "planes";       ///< planes, axes or centers
-  int fold = -1;                   ///< of axes: order of the rotations, 0 = any angle; below 0: 2 to 8 and any angle
-  std::string method = "sampled";  ///< of planes: the estimator, one of kMethodNames
+  std::string of = "planes";       ///< "planes", "axes" or "centers"
+  int fold = -1;                   ///< order of the rotations about axes, 0 = any angle; negative: 2 to 8 and any angle
+  std::string method = "sampled";  ///< estimator for planes, one of kMethodNames
   bool as_published = false;
-  std::optional<double> refined_share;  ///< of planes by method rotational
-  double scale = 0.0;  ///< of planes: radius of the window around each point, of the shape's; 0: the whole
+  std::optional<double> refined_share;  ///< for planes by method rotational
+  /// Radius of the window around each point for planes, as a share of the shape's radius; 0 = the whole shape.
+  double scale = 0.0;
 };
 
 constexpr int kMostListed = 5;
 constexpr double kLeastListed = 0.6;  // D
 
-/// Gives a transform what all of them take.
+/// Sets the options that all transforms have.
 template <typename Transform>
 void setUp(Transform& transform, const InputShape& input, const CommonOptions& common) {
   if (common.sigma) transform.setSigma(*common.sigma);
@@ -92,7 +93,7 @@ SymmetryMeasure ofPlanes(const InputShape& input, const CommonOptions& common, c
 
 SymmetryMeasure ofAxes(const InputShape& input, const CommonOptions& common, int fold) {
   AxialSymmetryTransform<pcl::PointXYZ> transform;
-  // A map of axes has one dimension more: half the cells, a quarter of the angles theta.
+  // A map of axes has one dimension more: half as many cells, a quarter of the angles theta.
   const int num_phi = std::max(2, common.grid / 2 * 2);
   transform.setNumCells(std::max(8, common.grid / 2));
   transform.setMapSize(std::max(1, common.grid / 4), num_phi, std::max(1, common.grid / 2));
@@ -141,8 +142,8 @@ SymmetryMeasure ofCenters(const InputShape& input, const CommonOptions& common) 
   return measure;
 }
 
-/// The measure of equation 1, PRST = sqrt((1 + D) / 2), in place of D. Estimates of D beyond [0, 1] count as its ends,
-/// so that values lie within [0.707, 1].
+/// The measure of Equation 1, PRST = sqrt((1 + D) / 2), in place of D. Estimates of D are clamped to [0, 1], so that
+/// values lie within [0.707, 1].
 SymmetryMeasure byEquation1(SymmetryMeasure measure) {
   measure.through = [of_d = std::move(measure.through)](const Points& points, int threads) {
     std::vector<float> values = of_d(points, threads);
@@ -160,7 +161,8 @@ SymmetryMeasure measureSymmetry(const InputShape& input, const CommonOptions& co
   });
 }
 
-const Eigen::Vector3d kSurfaceColor(0.84, 0.37, 0.0);  // vermilion: apart from every gray, for all eyes
+// Vermilion, which color-blind readers distinguish from every gray.
+const Eigen::Vector3d kSurfaceColor(0.84, 0.37, 0.0);
 
 struct MapOptions {
   BatchOptions batch;
@@ -206,7 +208,7 @@ CommandLine commandLine(MapOptions& options) {
   return line;
 }
 
-/// The cloud with a field intensity; its own gets another name.
+/// The cloud with a field intensity; an existing field of that name is renamed.
 pcl::PCLPointCloud2 withIntensity(pcl::PCLPointCloud2 cloud, const std::vector<float>& intensity) {
   for (pcl::PCLPointField& field : cloud.fields)
     if (field.name == "intensity") field.name = "input_intensity";
@@ -243,9 +245,9 @@ void writeSymmetry(const SymmetryMeasure& map, const CellBox& volume, const Eige
   writeVolume({"symmetry", volume.size, shiftedBack(volume.origin, shift), volume.cell_size, values}, path);
 }
 
-/// A slice through the middle of the volume across one axis, seen along it.
+/// A slice through the middle of the volume, perpendicular to one axis and seen along it.
 struct Slice {
-  int across, up, axis, size;  // axes to the right, upwards and along the view; pixels
+  int across, up, axis, size;  // axes to the right, upwards and along the view; edge in pixels
   Eigen::Vector3d middle;
   double step;  ///< edge of a pixel, input units
 
@@ -267,7 +269,7 @@ struct Slice {
     return result;
   }
 
-  /// White for the least value of all slices, black for the greatest; the shape where it meets the slice.
+  /// White for the least value of all slices, black for the greatest; the shape is drawn where it meets the slice.
   RasterImage draw(const std::vector<float>& symmetry, float least, float greatest, const Points& points,
                    double thickness) const {
     RasterImage image(size, size);
@@ -300,10 +302,10 @@ RasterImage drawSlices(const SymmetryMeasure& map, const CellBox& volume, const 
   return sideBySide(images);
 }
 
-/// What was found at the points of a cloud.
+/// The values at the points of a cloud.
 struct MappedCloud {
   pcl::PointCloud<pcl::PointXYZ>::ConstPtr cloud;
-  std::vector<std::size_t> indices;  ///< of the finite points
+  std::vector<std::size_t> indices;  ///< indices of the finite points
   Points points;
   std::vector<float> symmetry;
   float least, greatest;
@@ -341,7 +343,7 @@ void drawPoints(const SymmetryMeasure& map, const MappedCloud& mapped, const std
   renderPicture(scene, path, size, size);
 }
 
-/// What is written of the space around the points.
+/// Writes the outputs that describe the space around the points.
 void writeSpace(const MapOptions& options, const FileJob& job, const InputShape& input, const SymmetryMeasure& map,
                 const Points& points) {
   const CellBox volume(points, options.cells);

@@ -1,4 +1,4 @@
-/// Which models of a database a cloud is like, or shows.
+/// Which models of a database are like a cloud, or are shown by it.
 #include <algorithm>
 #include <nlohmann/json.hpp>
 #include <string>

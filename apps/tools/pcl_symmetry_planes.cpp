@@ -42,7 +42,7 @@ struct PlanesOptions {
   CommonOptions common;
 };
 
-/// One row a plane, axis or center; what does not apply is empty.
+/// One row per plane, axis or center; cells that do not apply are empty.
 const std::vector<std::string> kColumns = {"number",     "kind",  "a",       "b",     "c",    "d",
                                            "x",          "y",     "z",       "dx",    "dy",   "dz",
                                            "confidence", "share", "support", "score", "seen", "deviation"};
@@ -93,13 +93,13 @@ CommandLine commandLine(PlanesOptions& options) {
   return line;
 }
 
-/// What was found, best first, in the frame of the shifted points. Its rotations have orders from 2 on, and are at
-/// least as confident as a symmetry.
+/// The findings, best first, in the frame of the shifted points. Its rotations have orders from 2 on, and at least the
+/// confidence of a symmetry.
 struct Findings : Detection {
   ViewpointSource viewpoint_source = ViewpointSource::None;
-  std::optional<Eigen::Vector3d> viewpoint;  ///< that was used
-  std::size_t num_points = 0;                ///< that were used
-  std::vector<std::vector<float>> support;   ///< of each plane, by every point; empty where no output shows it
+  std::optional<Eigen::Vector3d> viewpoint;  ///< viewpoint used
+  std::size_t num_points = 0;                ///< number of points used
+  std::vector<std::vector<float>> support;   ///< support for each plane at every point; empty if no output shows it
 
   bool empty() const { return planes.empty() && axes.empty() && centers.empty() && rotations.empty(); }
   bool hasSymmetry() const {
@@ -115,12 +115,12 @@ std::string coefficientsOf(const ReflectionPlane& plane, const Eigen::Vector3d& 
   return formatted("%.6f %.6f %.6f %.*g", c[0], c[1], c[2], lengthDigits(shift), c[3]);
 }
 
-/// \return a number of the table; "-" where it was not measured.
+/// \return a number of the table; "-" if it was not measured.
 std::string measured(double number) {
   return std::isnan(number) ? "-" : formatted("%.3f", number);
 }
 
-/// What the sensor and the points resolve.
+/// The resolution of the sensor and of the points, in words.
 std::string lineOfTolerance(const Findings& findings) {
   const double share = 100.0 * findings.tolerance / findings.diameter;
   if (findings.tolerance >= findings.resolution)
@@ -140,9 +140,9 @@ std::string tableOf(const Findings& findings, const Eigen::Vector3d& shift) {
   if (findings.resolution >= findings.tolerance && findings.tolerance > 0.0) table += lineOfTolerance(findings);
   if (findings.empty()) {
     table += "no symmetry plane\n";
-    if (const auto& best = findings.best)  // how far it is off
+    if (const auto& best = findings.best)  // its deviation from a symmetry
       table += "best plane " + coefficientsOf(*best, shift) +
-               (std::isnan(best->share)  // of a volume
+               (std::isnan(best->share)  // for a volume
                     ? formatted(", confidence %.3f\n", best->confidence)
                     : formatted(" maps %.1f %% of the surface to within %.3g, 97 %% to within %.3g\n",
                                 100.0 * best->share, findings.tolerance, best->deviation));
@@ -279,8 +279,8 @@ PictureScene makeScene(const pcl::PointCloud<pcl::PointXYZ>::ConstPtr& cloud, co
   return scene;
 }
 
-/// Gives the refinement a map by the estimator that was named: of 64 x 64 x 64 bins as published, else as fine as
-/// that of the refinement itself.
+/// Passes to the refinement a map by the given estimator: of 64 x 64 x 64 bins as published, otherwise as fine as the
+/// refinement's own map.
 void giveMap(SymmetryMaximaRefinement<pcl::PointXYZ>& refinement, const InputShape& input,
              const PlanesOptions& options) {
   PlanarSymmetryTransform<pcl::PointXYZ> transform;
@@ -319,7 +319,7 @@ Findings search(const FileJob& job, const InputShape& input, const PlanesOptions
     checkAnswer(refinement, input);
   });
   static_cast<Detection&>(findings) = refinement.getDetection();
-  const auto is_other = [&](const SymmetryRotation& rotation) {  // those of any angle are among the axes
+  const auto is_other = [&](const SymmetryRotation& rotation) {  // rotations by any angle are among the axes
     return rotation.fold == 0 || rotation.confidence < options.detection.min_confidence;
   };
   findings.rotations.erase(std::remove_if(findings.rotations.begin(), findings.rotations.end(), is_other),
@@ -347,7 +347,7 @@ void saveSupport(const InputShape& input, const Findings& findings, const std::s
             input.shape.sensor_orientation);
 }
 
-/// A drawing of the profile: the curve and its spread to one side of the axis, the curve alone to the other.
+/// A drawing of the profile: the curve and its spread on one side of the axis, only the curve on the other.
 std::string profileSvg(const std::vector<ProfilePoint>& profile) {
   double width = 0.0, low = profile.front().height, high = low;
   for (const ProfilePoint& point : profile) {
@@ -426,7 +426,8 @@ void analyze(const PlanesOptions& options, FileJob& job) {
   if (options.png_path) draw(job.console(), input, findings, options.up, job.output(*options.png_path));
   if (options.html_path)
     writePage(makeScene(input.points, findings, options.up), {job.path(), table}, job.output(*options.html_path));
-  if (options.profile_path) saveProfile(input, findings, job.output(*options.profile_path));  // not all shapes have one
+  // Not all shapes have a profile.
+  if (options.profile_path) saveProfile(input, findings, job.output(*options.profile_path));
 }
 
 int run(int argc, char** argv) {

@@ -1,4 +1,4 @@
-/// Virtual range scanner: a mesh seen from one side, or from the eight corners of a cube (Section 5.1).
+/// A virtual range scanner: a mesh seen from one side, or from the eight corners of a cube (Section 5.1).
 #include <algorithm>
 #include <boost/algorithm/string/predicate.hpp>
 #include <boost/filesystem/path.hpp>
@@ -26,7 +26,7 @@ struct ScanOptions {
   std::optional<Eigen::Vector3d> direction;
   std::optional<int> corner;
   bool all = false;
-  std::optional<double> field_of_view;  ///< degrees; none: wide enough
+  std::optional<double> field_of_view;  ///< degrees; not set: wide enough
   std::string format = "binary_compressed";
   VirtualScannerOptions scanner;
   CommonOptions common;
@@ -142,7 +142,7 @@ int run(int argc, char** argv) {
     console.warn(options.input + ": reaches beyond the picture; a larger -fov or -distance shows all of it");
 
   nlohmann::json report;
-  // A scan without a random pose lies where its mesh lies, shifted; one with such a pose lies near the origin.
+  // A scan without a random pose is at the position of its mesh, shifted; one with a random pose is near the origin.
   const Eigen::Vector3d shift = options.scanner.random_pose ? Eigen::Vector3d(Eigen::Vector3d::Zero()) : shape.shift;
   Step saving(console, "Saving " + (options.all ? std::to_string(views.size()) + " files" : options.output));
   for (std::size_t i = 0; i < views.size(); ++i) {

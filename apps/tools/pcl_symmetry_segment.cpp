@@ -133,7 +133,7 @@ Shape load(const FileJob& job, const SegmentOptions& o) {
   return shape;
 }
 
-/// \return the parts, which the segmentation labels; \p ms is the time.
+/// \return the parts, which the segmentation labels; \p ms is the time in milliseconds.
 std::vector<pcl::PointIndices> cut(const FileJob& job, const SegmentOptions& o, const Shape& shape,
                                    SymmetrySegmentation<pcl::PointXYZ>& segmentation, double& ms) {
   Step cutting(job.console(), "Cutting into parts");
@@ -172,7 +172,7 @@ void analyze(const SegmentOptions& options, FileJob& job) {
   if (options.html_path) {
     PictureScene scene = sceneOf(options, shape, labels);
     scene.panels[0].label = counted(segments.size(), "part");
-    constexpr int kMostPanels = 12;  // each has colors of its own in the page
+    constexpr int kMostPanels = 12;  // each has its own colors in the page
     for (int part = 0; part < std::min<int>(kMostPanels, segments.size()); ++part) {
       PicturePanel alone;
       for (const int label : labels) alone.segments.push_back(label == part ? part : -1);

@@ -1,4 +1,4 @@
-/// A window on a cloud or mesh and its planes of symmetry; or what it shows as a picture.
+/// A window that shows a cloud or mesh and its planes of symmetry; or its content as a picture.
 #include <pcl/common/point_tests.h>
 #include <pcl/visualization/pcl_visualizer.h>
 
@@ -49,7 +49,7 @@ CommandLine commandLine(ViewerOptions& options) {
   return line;
 }
 
-/// What is seen: the points in the colors of their support of one plane, the plane, and what a key adds.
+/// The content of the window: the points in the colors of their support for one plane, the plane, and what keys add.
 class View {
 public:
   View(Window& window, const pcl::PointCloud<pcl::PointXYZ>::Ptr& points,

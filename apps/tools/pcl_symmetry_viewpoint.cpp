@@ -67,7 +67,7 @@ PictureScene sceneOf(const InputShape& input, const SelectedView& view, const st
   return {input.points, input.shape.mesh, {panel}, view.direction, -view.pose.linear().col(1).cast<double>()};
 }
 
-/// The score as a spherical function (Figure 16): directions scaled and colored by it.
+/// The score as a spherical function (Figure 16): directions scaled and colored by the score.
 PictureScene scoreSphere(const ViewpointSelection& selection, const SelectedView& best, const SelectedView& worst) {
   constexpr int kRings = 120, kAround = 240;  // 1.5 degrees
   const Eigen::Vector3d up = selection.getUpAxis(), side = up.unitOrthogonal(), front = up.cross(side);
@@ -102,7 +102,7 @@ PictureScene scoreSphere(const ViewpointSelection& selection, const SelectedView
   return {surface, mesh, {panel}, view, up, false};
 }
 
-/// Chooses by the local maxima of the transform of the cloud.
+/// Selects views by the local maxima of the transform of the cloud.
 /// \return milliseconds.
 double choose(ViewpointSelection& selection, const InputShape& input, const ViewpointToolOptions& options,
               const FileJob& job) {

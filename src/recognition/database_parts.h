@@ -62,7 +62,8 @@ private:
 /// Seconds since 1970 (UTC).
 std::int64_t currentTime();
 
-/// \throws std::invalid_argument unless it is 1 to 200 bytes of UTF-8 without "/" and control characters, not "." first.
+/// \throws std::invalid_argument unless it is 1 to 200 bytes of UTF-8 without "/" and control characters, not "."
+/// first.
 void checkModelName(const std::string& name);
 
 /// A model as stored.
