@@ -13,7 +13,7 @@ XML = FOLDER.parent / "xml"
 
 project = "pcl_symmetry"
 extensions = ["breathe", "myst_parser", "sphinx.ext.autodoc"]
-include_patterns = ["*.rst", "cpp/**", "*.md", "src/pages/**", "src/core/evidence/README.md", "apps/README.md", "apps/gallery/README.md"]
+include_patterns = ["*.rst", "cpp/**", "*.md", "src/pages/**", "apps/README.md", "apps/gallery/README.md"]
 include_patterns += ["test/benchmark/*.md"]
 html_theme = "furo"
 html_title = project

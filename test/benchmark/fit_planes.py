@@ -1,4 +1,4 @@
-"""Fits the confidence of planes (src/core/evidence/README.md), and writes the header that holds its numbers.
+"""Fits the confidence of planes (src/pages/algorithms/decision.md), and writes the header that holds its numbers.
 
 usage: PYTHONPATH=build/src/python python3 test/benchmark/fit_planes.py PSB --classes train.cla --fold 0
 

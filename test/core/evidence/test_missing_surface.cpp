@@ -239,7 +239,7 @@ TEST(SplitSurface, OwnScoreIsThatOfATruePlane) {
       return std::inner_product(a.values().begin(), a.values().end(), b.values().begin(), 0.0) /
              std::sqrt(a.sqNorm() * b.sqNorm());
     };
-    // Three times the deviation of D of true planes (evidence/README.md).
+    // Three times the deviation of D of true planes (src/pages/algorithms/decision.md).
     for (const int axis : {0, 1, 2}) EXPECT_NEAR(scoreOf({Eigen::Vector3d::Unit(axis), 0.0}), own, 0.006) << axis;
     EXPECT_LT(scoreOf({Eigen::Vector3d::UnitX(), 0.1}), own - 0.02) << "a plane that maps one side 0.2 away";
   }
