@@ -56,7 +56,7 @@ IsaacAxes isaacAxes(const ObjectSymmetries& symmetries);
 std::string isaacLine(const std::string& name, const std::vector<std::string>& axes);
 
 /// Reads lines such as isaacLine() writes, one for each model, or the parameter `symmetry_axes: [...]` of a ROS file.
-/// \return symmetries by the number of the model; those of symmetry_axes under an empty name.
+/// \return symmetries by the number of the model; symmetry_axes are under an empty name.
 /// \throws InputError naming the file and the rule.
 std::map<std::string, ListedSymmetries> readIsaacAxes(const std::string& path);
 

@@ -19,7 +19,7 @@ public:
   /// \return whether the cloud has the fields; otherwise they must not be read.
   bool isThere() const { return is_there_; }
   bool isDouble() const { return is_double_[0] || is_double_[1] || is_double_[2]; }
-  /// \param cloud a cloud with the same fields as that of the constructor.
+  /// \param cloud a cloud with the same fields as the constructor's.
   Eigen::Vector3d get(const pcl::PCLPointCloud2& cloud, std::size_t i) const;
   void set(pcl::PCLPointCloud2& cloud, std::size_t i, const Eigen::Vector3d& value) const;
 

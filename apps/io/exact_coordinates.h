@@ -40,7 +40,7 @@ pcl::PointCloud<pcl::PointXYZ> shifted(const std::vector<Eigen::Vector3d>& point
 /// \return number of digits of the extent that float coordinates keep at the shift, which is not zero
 int digitsOfFloat(const pcl::PointCloud<pcl::PointXYZ>& points, const Eigen::Vector3d& shift);
 
-/// \return the points plus the shift: with a shift, fields x, y and z are of type double, otherwise those of PointXYZ
+/// \return the points plus the shift; fields x, y and z are doubles if there is a shift, floats otherwise
 pcl::PCLPointCloud2 toFields(const pcl::PointCloud<pcl::PointXYZ>& points, const Eigen::Vector3d& shift);
 
 /// \return the viewpoint in the frame of the shifted points

@@ -36,8 +36,8 @@ struct Shape {
   std::vector<std::string> left_out;  ///< further content of the file, such as lists of vertices, which is not read
 };
 
-/// \param path a file of kShapeFiles, in upper or lower case; "-" for standard input, whose kind is recognized by its
-/// content, as is that of a pipe without extension
+/// \param path a file of kShapeFiles, in upper or lower case, or "-" for standard input. The kind of standard input,
+/// and of a pipe without extension, is recognized by the content
 /// \throws InputError naming the file, what is wrong and the rule
 Shape loadShape(const std::string& path);
 

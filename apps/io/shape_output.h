@@ -30,7 +30,7 @@ bool isStandardOutputFree(const std::vector<std::optional<std::string>>& outputs
 /// \throws InputError if the folder is missing or not writable or the disk is full; whatever the writer throws.
 void writeStream(const std::string& path, const std::function<void(std::ostream&)>& writer);
 
-/// The same for writers of libraries that need the name of a file: they get that of a file in memory.
+/// The same for writers of libraries that need the name of a file: they get the name of a file in memory.
 /// \param comment line that is inserted after the first line of a PCD file, the second of a PLY file.
 /// \throws InputError also if the writer made no file.
 void writeAtomically(const std::string& path, const std::function<void(const std::string& file_in_memory)>& writer,

@@ -264,7 +264,7 @@ Eigen::Affine3d frameOf(const std::string& path, std::vector<double> columns, co
   return frame;
 }
 
-/// \return number of skipped bytes; -1 in the header means all bytes except those of the voxels.
+/// \return number of skipped bytes; -1 in the header means all bytes before the voxels.
 std::uint64_t skipOf(const std::string& path, const std::string& value, Voxels& voxels) {
   std::uint64_t skip = 0;
   voxels.is_at_end |= value == "-1";

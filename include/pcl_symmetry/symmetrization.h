@@ -77,8 +77,8 @@ pcl::PolygonMesh mirroredHalf(const pcl::PolygonMesh& mesh, const ReflectionPlan
 /// The counterpart of each point of a cloud: the point closest to its reflection.
 /// \param max_distance greatest distance of a counterpart from the reflection, input units, >= 0; 0 = 1 % of the
 /// diameter.
-/// \return for each point that has a counterpart: its index, that of the counterpart, and the squared distance of the
-/// counterpart from the reflection, as in PCL's correspondences.
+/// \return for each point that has a counterpart: the indices of both, and the squared distance of the counterpart
+/// from the reflection, as in PCL's correspondences.
 /// \throws pcl::BadArgumentException for a negative distance.
 template <typename PointT>
 pcl::Correspondences reflectedCorrespondences(const pcl::PointCloud<PointT>& cloud, const ReflectionPlane& plane,

@@ -75,7 +75,7 @@ struct CloudRegistration : RegisteredPose {
   /// \return why the best pose is no answer, one sentence without a full stop.
   std::string doubt(double min_confidence = 0.5) const;
 
-  /// Distinct poses, at most PoseSearchOptions::max_poses, best first: those of nearly the greatest merit by decreasing
+  /// Distinct poses, at most PoseSearchOptions::max_poses, best first: poses of nearly the greatest merit by decreasing
   /// confidence, then others by decreasing merit. If no pose was convincing and pairs of points were tried, all by
   /// decreasing confidence. Poses that are equivalent by symmetry have nearly the same merit.
   std::vector<RegisteredPose> poses;
@@ -116,7 +116,7 @@ CloudRegistration registerClouds(const Points& source, const std::optional<Visib
                                  const Points& target, const std::optional<Visibility>& target_seen,
                                  const Eigen::Isometry3d& guess, const CloudRegistrationOptions& options = {});
 
-/// The same for a target that was prepared once. Its frame is that of the options of registrationTarget().
+/// The same for a target that was prepared once. registrationTarget() was given the options of its frame.
 CloudRegistration registerClouds(const Points& source, const std::optional<Visibility>& source_seen,
                                  const PreparedCloud& target, const Eigen::Isometry3d& guess,
                                  const CloudRegistrationOptions& options = {});
@@ -218,7 +218,7 @@ public:
   /// \return the evidence that the confidence follows from: agreement, surface that should be visible but was not
   /// measured, and more.
   const PoseEvidence& getEvidence() const { return result_.evidence; }
-  /// \return the best poses that the last align() found, see CloudRegistration::poses; the first one is that of the
+  /// \return the best poses that the last align() found, see CloudRegistration::poses; the first one is the
   /// transformation. Empty if a cloud held no answer.
   const std::vector<RegisteredPose>& getPoses() const { return result_.poses; }
   /// \return the uncertainty of the transformation of the last align(), see CloudRegistration::covariance; nothing if

@@ -99,7 +99,7 @@ namespace {
 using Cloud = SymmetryDatabase::Cloud;
 
 /// \param points (N, 3), without rows that are not finite, or (H, W, 3) as given: rows and columns of a camera.
-/// \param viewpoint viewpoint; that of a file stays with the cloud.
+/// \param viewpoint if it is the viewpoint of a file, it becomes the sensor origin of the cloud; unused otherwise.
 Cloud cloudOf(const py::array& points, const py::object& viewpoint = py::none(), const char* name = "points") {
   const bool is_organized = points.ndim() == 3;
   const InputPoints input(name, is_organized ? py::array(points.attr("reshape")(-1, points.shape(2))) : points, 0, 0);

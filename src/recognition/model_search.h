@@ -54,7 +54,7 @@ struct ModelOfView {
   std::vector<Eigen::Isometry3d> T_model_scan;  ///< poses of the nearest views, nearest first
 };
 
-/// Finds models that a scan may show by their views: those with the nearest codes, whose views are then read and
+/// Finds models that a scan may show by their views. The views of the models with the nearest codes are read and
 /// compared in full. In a small database, all views are compared.
 class ViewSearch {
 public:

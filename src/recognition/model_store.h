@@ -53,7 +53,7 @@ inline const char* nameOf(FormPart part) {
 }
 
 /// The file of a database. Every function throws pcl::IOException, which names the file and the reason.
-/// What is read is one consistent state, that of the first reading, until refresh() or a change by this store. When a
+/// Until refresh() or a change by this store, all reads see the state of the first one. When a
 /// function returns, its changes are on the disk, all of them or none.
 class ModelStore {
 public:

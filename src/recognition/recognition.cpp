@@ -127,7 +127,7 @@ std::vector<PosedModel> fitLikeViews(DatabaseParts& database, const Points& poin
     fitAlike(0, num_first);
     if (!isFound()) fitAlike(num_first, alike.size());
   }
-  // The confidence stays that of the pose before this step.
+  // The confidence is not computed anew after this step.
   if (isFound()) found.front() = scan.rotated(found.front());
   return found;
 }

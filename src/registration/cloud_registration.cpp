@@ -50,7 +50,7 @@ public:
   Eigen::Isometry3d toInput(const Eigen::Isometry3d& T_model_scan) const {
     return frames_.toInput(swappedPose(T_model_scan));
   }
-  /// The covariance of a motion of the model's search frame, converted to that of a motion of the target's input frame.
+  /// Converts the covariance of motions of the model's search frame to motions of the target's input frame.
   /// \param T_model_scan between search frames, before the motion.
   Matrix6d toInput(const Matrix6d& covariance, const Eigen::Isometry3d& T_model_scan) const {
     // exp(m) T of the model's frame is T^-1 exp(-m) = exp(-Ad(T^-1) m) T^-1 of the scan's; a motion about the

@@ -207,8 +207,8 @@ private:
     return std::binary_search(points.begin(), points.end(), i);
   }
 
-  /// Whether no piece contradicts these planes, and each has an informative one, which is a symmetry of the piece by
-  /// itself unless the planes are those of an axis.
+  /// Whether no piece contradicts these planes, and each piece has an informative one among them. Unless they are
+  /// planes of an axis, that one is a symmetry of the piece by itself.
   bool explains(const std::vector<ReflectionPlane>& planes, bool of_axis) const {
     std::array<bool, 2> is_explained{};
     for (const ReflectionPlane& plane : planes)
@@ -326,7 +326,7 @@ struct Verdict {
   double together = 0.0, apart = 0.0;
 };
 
-/// Pieces, those of them that were united, and the pairs that touch.
+/// Pieces: which of them were united, and which pairs touch.
 class Joining {
 public:
   using PiecePair = std::pair<std::size_t, std::size_t>;  // the larger one first

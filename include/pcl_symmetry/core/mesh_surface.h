@@ -48,7 +48,7 @@ public:
     Eigen::Vector3d center = Eigen::Vector3d::Zero();        ///< the new center, input frame
   };
   /// Finds the placement in which the motions best map the surface onto itself: least squares of the distances from
-  /// samples to the mesh, and from its open borders to the borders, with robust weights. The steps are those of
+  /// samples to the mesh, and from its open borders to the borders, with robust weights, by steps as in
   /// Iterative Symmetric Points (Section 4.4).
   /// \return that placement, or the given one if it fits no worse.
   Placement fitted(const MotionsAbout& motions) const;

@@ -101,7 +101,7 @@ struct SymmetryRotation {
   /// Share of the visible points that the worst rotation maps into free space, farther than ten tolerances from the
   /// surface, in [0, 1].
   double far = 0.0;
-  /// `off` of the rotations halfway between those of the fold, in [0, 1]: evidence against other folds.
+  /// `off` of the rotations by angles halfway between those of the fold, in [0, 1]: evidence against other folds.
   double halfway = 0.0;
 };
 
@@ -122,8 +122,8 @@ struct Detection {
   std::vector<SymmetryPlane> planes;  ///< symmetries, then possible, then approximate and local; each best first
   /// The plane that maps the greatest share of the surface, if there is no symmetry and no possible one; else empty.
   std::optional<SymmetryPlane> best;
-  /// Whether there is no symmetry only because few points of a whole cloud leave it open: the share of the surface that
-  /// the best plane maps may also be that of a symmetry.
+  /// Whether the cloud is whole and has too few points to decide: no plane is a symmetry, but the best one may map
+  /// enough of the surface to be one.
   bool undecided = false;
   /// A plane near which 97 % of the points lie, within the tolerance (three tolerances where noise hides the surface),
   /// as for a sheet, a disc or one side of a box. A reflection in it moves no point and is uninformative.

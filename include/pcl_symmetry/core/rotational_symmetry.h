@@ -122,8 +122,8 @@ struct ObjectSymmetries {
   /// \throws std::invalid_argument for a step that is not > 0.
   std::vector<Eigen::Isometry3d> equivalents(const Eigen::Isometry3d& T, double step = 0.5) const;
 
-  /// The pose that looks like T and is rotated least from another one: the pose that continues a track. The step from
-  /// \p T_previous is never greater than that of the object, whichever of the equivalent poses T is.
+  /// The pose that looks like T and is rotated least from \p T_previous: the pose that continues a track. Whichever of
+  /// the equivalent poses T is, this rotation is never greater than the rotation of the object itself.
   Eigen::Isometry3d closestTo(const Eigen::Isometry3d& T, const Eigen::Isometry3d& T_previous) const;
 
   /// One pose for all that look the same: the one with the smallest rotation, among equals the one whose matrix is
@@ -143,8 +143,8 @@ struct ObjectSymmetries {
   double surfaceDistance(const Eigen::Isometry3d& T_1, const Eigen::Isometry3d& T_2, const PointsRef& points) const;
 };
 
-/// Finds the group of rotations of a shape: both the rotations that planes of symmetry generate and those of shapes
-/// without any plane, such as propellers. It extends the paper's transform and refinement from reflections to
+/// Finds the group of rotations of a shape, with planes of symmetry, which generate rotations, or without, such as a
+/// propeller. It extends the paper's transform and refinement from reflections to
 /// rotations, as its future work suggests (Section 6).
 ///
 /// The distance transform shows in which directions axes through the center of mass are likely. Rotations about these

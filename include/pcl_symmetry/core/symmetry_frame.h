@@ -101,7 +101,7 @@ struct SymmetryFrame {
 /// plane before the other two are searched, and free space counts against planes. The center is a mean over frames that
 /// are nearly as good.
 ///
-/// Order: the first plane is that of the frame that is best as a whole. The second scores more than the third or, if
+/// Order: the first plane makes the best frame as a whole. The second scores more than the third or, if
 /// the two tie, the points spread more along its normal. Signs: the third central moment of the points along the second
 /// and third axis is positive; the sign of the first axis makes the frame right-handed. Along the normal of a symmetry
 /// plane this moment vanishes, and the sign is a matter of chance. SymmetryFrame::equivalent lists all signs.

@@ -35,7 +35,7 @@ namespace detail {
 struct MeshArrays {
   Points vertices;                         ///< 3 x V, input units; may be not finite
   std::vector<std::vector<int>> polygons;  ///< indices of vertices, each valid
-  std::vector<Eigen::Vector3i> triangles;  ///< triangles of the polygons; those of one polygon share its first corner
+  std::vector<Eigen::Vector3i> triangles;  ///< fans of the polygons, each about its first corner
 
   /// \return whether any polygon with finite corners has an area.
   bool hasArea() const;

@@ -115,7 +115,7 @@ struct DetectionRules {
     /// Least eigenvalue of the mean outer product of the normals of planes through one point, at most 1/3.
     double min_spread = 0.02;
     int rough_sample_share = 5;  ///< number of samples per sample that screens a family
-    double worst_share = 0.5;    ///< least confidence of the worst plane of a family, as a share of that of a symmetry
+    double worst_share = 0.5;    ///< least confidence of the worst plane of a family, as a share of a symmetry's
     int refine_iterations = 6;   ///< iterations that refine a plane of a family
   } families;
 
@@ -131,7 +131,7 @@ struct DetectionRules {
     double stands_out = 4.0;        ///< least ratio to the median power of the frequencies beside it
     /// Greatest gap between angles of folded points, in angles between two planes; sparser points are uninformative.
     double max_gap = 0.125;
-    double errors = 3.0;  ///< standard errors by which planes halfway between those of a polygon must fit less well
+    double errors = 3.0;             ///< standard errors by which planes halfway between a polygon's must fit less well
     double odds_of_polygon = 4.0;    ///< odds of planes of a polygon relative to other planes with the same evidence
     std::size_t max_line_pairs = 4;  ///< greatest number of planes whose common lines are tried
     /// Divisors of a fold, for subsets of planes that may differ from the others.
@@ -152,7 +152,7 @@ struct DetectionRules {
     /// Greatest excess edge of a part, and greatest share of its points in better parts if it has an excess edge.
     double longer_edge = 0.15, shared_part = 0.5;
     double same_part = 0.5;              ///< share of their points above which two regions belong to one part
-    std::size_t max_planes_of_part = 9;  ///< greatest number of planes of a part without an axis: those of a cube
+    std::size_t max_planes_of_part = 9;  ///< greatest number of planes of a part without an axis: a cube has nine
     std::array<double, 2> longest_edges_before{1.0, 0.6};  ///< greatest excess edge of a region before each round
     int iterations = 6;                                    ///< iterations that refine a plane of a part
     std::size_t ball_samples = 200, region_samples = 400;  ///< points that are reflected in a ball, and in a region

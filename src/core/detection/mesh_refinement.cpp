@@ -49,7 +49,7 @@ void refine(const MeshSurface& mesh, SymmetryPlane& plane, double tolerance, con
 }  // namespace
 
 void refineOnMesh(const MeshSurface& mesh, Detection& found, const DetectionOptions& options) {
-  // Planes closer than this are one after the refinement; those of 120 teeth are 0.026 apart.
+  // Planes closer than this are one after the refinement; the planes of 120 teeth are 0.026 apart.
   constexpr double kSameOnMesh = 0.01;
   const auto inBall = [&](const ReflectionPlane& plane) {
     return plane.normalized(mesh.ball().center, mesh.ball().radius);

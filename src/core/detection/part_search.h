@@ -21,7 +21,7 @@ struct MatchedRegion {
 ///
 /// Every plane matches some part of a surface. A part that is symmetric by itself is matched completely: its region
 /// ends with a short edge where the part joins others, or has no edge at all. A chance match, such as a smooth cap
-/// about a point of the plane, ends in the middle of the surface, with an edge as long as that of a disc.
+/// about a point of the plane, ends in the middle of the surface, with an edge as long as the edge of a disc.
 class MatchedRegions {
 public:
   /// \param cloud,fit must outlive this object.

@@ -195,10 +195,10 @@ std::vector<Candidate> candidatesOf(const PlaneLattice& lattice) {
   return candidates;
 }
 
-/// Whether the planes halfway between those of a lattice are no symmetries of a surface. The points are folded into the
-/// sector between two planes, where they are denser by twice the fold and resolve what single planes do not. Reflecting
-/// them in the halfway plane must bring clearly fewer of them to within the tolerance of other points than are so close
-/// without it.
+/// Whether the planes halfway between the planes of a lattice are no symmetries of a surface. The points are folded
+/// into the sector between two planes, where they are denser by twice the fold and resolve what single planes do not.
+/// Reflecting them in the halfway plane must bring clearly fewer of them to within the tolerance of other points than
+/// are so close without it.
 bool isPolygon(const PlaneLattice& lattice, const Points& points, double tolerance) {
   const double step = kPi / lattice.fold;
   const Eigen::Vector3d up = lattice.line.direction(), across = lattice.plane(0.0).normal(), along = across.cross(up);

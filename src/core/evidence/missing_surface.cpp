@@ -93,7 +93,7 @@ float lowerLimit(float count, float total) {
 /// Regions of samples that are joined as neighbors.
 using Regions = boost::disjoint_sets<int*, int*>;
 
-/// The samples of each region, those of the smallest index first.
+/// The samples of each region; regions by their smallest index.
 std::vector<std::vector<int>> membersOf(Regions& regions, const std::vector<char>& matched) {
   std::vector<std::vector<int>> members;
   std::vector<int> number(matched.size(), -1);

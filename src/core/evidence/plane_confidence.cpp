@@ -20,7 +20,7 @@ double coarseness(const PlaneEvidence& evidence) {
   return evidence.spacing / std::max(evidence.tolerance, 1e-6);
 }
 
-/// \return log odds as a function of the share of the surface that is off: 0 at that of a symmetry.
+/// \return log odds as a function of the share of the surface that is off: 0 at the greatest share of a symmetry.
 double byOff(double off, double unit) {
   return std::log((off + unit) / (1.0 - kSymmetricShare + unit));
 }

@@ -19,7 +19,7 @@ namespace pcl_symmetry {
 Eigen::Matrix3d motionStiffness(const Points& points, const Points& normals, const std::vector<char>& matched,
                                 const ReflectionPlane& plane);
 
-/// How strongly the matches constrain the offset of a plane: those of a tube constrain it only at the ends.
+/// How strongly the matches constrain the offset of a plane: in a tube, only matches at the ends do.
 /// \param stiffness of motionStiffness().
 /// \return mean squared derivative of a match's distance by the offset, after the best tilt, in [0, 4].
 double offsetStiffness(const Eigen::Matrix3d& stiffness);

@@ -53,7 +53,7 @@ struct Quadric {
     }
   }
 
-  /// A Newton step upwards along every axis, also where the curvature is that of a minimum.
+  /// A Newton step upwards along every axis, also where the density curves upwards.
   Eigen::Vector3d stepUp() const {
     const SymmetricEigen<Eigen::Matrix3d> solver(hessian);
     Eigen::Vector3d step = Eigen::Vector3d::Zero();

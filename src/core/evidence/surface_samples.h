@@ -20,9 +20,9 @@ struct EvidenceRules {
   // Surface of samples.
   float disc_radius = 1.25f;  ///< radius of the disc that a sample represents, spacings; 1 in 135 holds no other sample
   float max_roughness = 0.25f,
-        trust_width = 0.1f;  ///< roughness in spacings at which normals become meaningless; volumes: 0.42
-  float new_point_factor =
-      1.41421356f;  ///< ratio of the distance of a new point from a plane to that of the nine points of the plane
+        trust_width = 0.1f;              ///< roughness in spacings at which normals become meaningless; volumes: 0.42
+  float new_point_factor = 1.41421356f;  ///< deviation of a new point from a plane, relative to the nine points to
+                                         ///< which the plane was fitted
 
   // Support.
   float normal_reach = 0.01f;     ///< reach across the surface, radii of the points

@@ -24,8 +24,7 @@ struct FrameRules {
   // The same for scans: these terms break ties, as between planes along faces and along edges of a square box.
   double scan_weight = 0.3;
   double tail = 0.005;  // share of the points beyond either end of their extent: outliers
-  double push =
-      0.05;  // radii by which the middle of a scanned object is farther from the scanner than that of its points
+  double push = 0.05;   // radii by which the middle of a scanned object is farther from the scanner than its points
   double face_width = 6.0 * kDegree;      // width of the agreement of normals with an axis, radians
   double peak_width = 5.0 * kDegree;      // angle within which normals belong to one face, radians
   double peak_distance = 15.0 * kDegree;  // least angle between two faces, radians
@@ -155,9 +154,9 @@ struct FrameEvidence {
 
   /// Variance of the points along an axis, input units squared.
   double spreadAlong(const Eigen::Vector3f& axis) const;
-  /// Middle of the extent of the points along an axis, cells. For a scan it lies near that of the whole object, unlike
-  /// the center of mass, because silhouettes and rims are visible even where the surfaces behind them are not. It is
-  /// pushed away from the scanner, because the extent ends where the back of the object begins.
+  /// Middle of the extent of the points along an axis, cells. For a scan it lies near the middle of the whole object,
+  /// unlike the center of mass, because silhouettes and rims are visible even where the surfaces behind them are not.
+  /// It is pushed away from the scanner, because the extent ends where the back of the object begins.
   double middleAlong(const Eigen::Vector3f& axis) const;
 };
 

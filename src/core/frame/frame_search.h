@@ -8,7 +8,7 @@
 
 namespace pcl_symmetry {
 
-/// Three perpendicular planes that may be those of the frame. Offsets are in cells from the middle of the grid.
+/// Three perpendicular planes that may make the frame. Offsets are in cells from the middle of the grid.
 struct FrameCandidate {
   Eigen::Matrix3f axes;     ///< columns: unit normals of the first, second and third plane
   Eigen::Vector3f offsets;  ///< offsets of these planes
@@ -42,7 +42,7 @@ std::vector<FrameCandidate> framesAbout(const FrameEvidence& evidence, const std
 std::vector<FrameCandidate> frameMaxima(const std::vector<FrameCandidate>& rotated);
 
 /// The frame of given axes, each plane at its best offset, in the order of refinedFrames().
-/// \param axes orthonormal columns, the first that of the first plane.
+/// \param axes orthonormal columns: normals of the planes, the first plane first.
 FrameCandidate frameOfAxes(const FrameEvidence& evidence, const Eigen::Matrix3f& axes);
 
 /// Moves each frame to the nearest maximum of its value, all three planes together. Then orders the second and third

@@ -46,7 +46,7 @@ std::vector<FrameCandidate> leveledFirst(const FrameEvidence& evidence, std::vec
 
 /// The evidence for a frame: x above.
 ///   0  1
-///   1  value less that of the best frame of the shape, <= 0
+///   1  value, less the value of the best frame of the shape, <= 0
 ///   2  score of the first plane
 ///   3  Outline::Box::contact, seen along the first axis
 ///   4  angle to the principal axes of the points, in any order and sign, as a share of 20 degrees, at most 1

@@ -61,7 +61,7 @@ Eigen::Index CompactIndex::numShapes() const {
   return compact_.cols() / forms_per_shape_;
 }
 
-/// The forms whose leading components are nearest to those of any rotation of the query, by ascending index.
+/// The forms whose leading components are nearest to any rotation of the query, by ascending index.
 std::vector<int> CompactIndex::candidates(const Eigen::MatrixXf& rotations, std::size_t count) const {
   std::vector<int> forms = allOf(compact_.cols());
   if (count >= forms.size()) return forms;

@@ -8,11 +8,11 @@
 
 namespace pcl_symmetry {
 
-/// A shape that has pairs of points like those of a scan.
+/// A shape with pairs of points like the pairs of a scan.
 struct ShapeOfPairs {
   int shape;                                    ///< number of the shape, in the order in which shapes were added
   double votes;                                 ///< votes for the best pose
-  std::vector<Eigen::Isometry3d> T_shape_scan;  ///< poses, those with most votes first
+  std::vector<Eigen::Isometry3d> T_shape_scan;  ///< poses by decreasing votes
 };
 
 struct PairSearchOptions {

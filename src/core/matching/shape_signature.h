@@ -32,7 +32,7 @@ constexpr int kSignatureSize = 2 * kNumOrientations * kSignatureCells * kSignatu
 std::vector<float> shapeSignature(const PointsRef& points, const Eigen::Matrix3d& axes);
 
 /// Frames in which signatures are made, right-handed axes in columns.
-/// \return two frames. In the first one, the first axis is that of the symmetry frame, and the others are the
+/// \return two frames. The first one has the first axis of the symmetry frame; its other axes are the
 /// directions of greatest and least spread perpendicular to it: shapes of a class share these more often than weak
 /// symmetry planes. The second one is the symmetry frame.
 std::vector<Eigen::Matrix3d> signatureFrames(const PointsRef& points, const SymmetryFrame& frame);

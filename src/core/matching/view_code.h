@@ -51,7 +51,7 @@ private:
 
 /// Finds the shapes that a scan can show by the codes of their views; ViewIndex then compares them in full.
 ///
-/// All codes are compared. Eight million, those of 100 000 shapes, take 208 MB and milliseconds per query.
+/// All codes are compared. 100 000 shapes have eight million codes: 208 MB, and milliseconds per query.
 class ViewCodeIndex {
 public:
   /// \param codes codes of a shape, see packedViewCodes().

@@ -22,7 +22,7 @@ constexpr int kViewMagnitudes = 2 * kViewRings * (kViewHarmonics + 1);
 /// which side.
 struct View {
   /// Harmonics of outline and depth on rings around the middle; unit norm, independent of size and distance. Harmonic m
-  /// is followed by harmonic m + 1; each holds the real parts of the outline's rings, then those of the depths, then
+  /// is followed by harmonic m + 1; each holds the real parts of the outline's rings and of the depths' rings, then
   /// the imaginary parts in the same order (harmonic 0 has none). A rotation of the view by an angle a multiplies
   /// harmonic m by exp(-i m a).
   Eigen::VectorXf values;
@@ -45,7 +45,7 @@ std::vector<View> viewsAround(const PointsRef& points, int num_views = 80, int n
 
 /// Means of the rings and magnitudes of the harmonics, in the order of View::values: the same for all rotations of the
 /// view.
-/// \return kViewMagnitudes values. Their L2 distance is at most that of the signatures at any rotation.
+/// \return kViewMagnitudes values. Their L2 distance is at most the distance of the signatures at any rotation.
 Eigen::VectorXf magnitudesOf(const Eigen::VectorXf& values);
 
 /// How alike two views are at their best rotation.

@@ -14,7 +14,7 @@ namespace pcl_symmetry {
 
 namespace {
 
-/// Replaces estimated normals by those of the input.
+/// Replaces estimated normals by normals of the input.
 LocalGeometry withNormals(LocalGeometry geometry, const Points* given) {
   for (Eigen::Index i = 0; given && i < given->cols(); ++i) {
     const float length = given->col(i).norm();

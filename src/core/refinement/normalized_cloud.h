@@ -52,7 +52,7 @@ struct NormalizedCloud {
   const double spacing;                ///< median of the points' spacing
   const double roughness;              ///< median of the points' roughness, divided by the spacing
   const double baseline;     ///< mean support of the points by the surface of all others, > 0, which a symmetry reaches
-  const double sigma;        ///< width of the weights when refinement starts: that of the edt
+  const double sigma;        ///< width of the weights when refinement starts, the sigma of the edt
   const double final_sigma;  ///< width at the end: as narrow as the spacing allows, <= sigma
 
   CloudKind kind() const { return kind_; }

@@ -12,8 +12,8 @@ namespace pcl_symmetry {
 /// Measures where two surfaces overlap at a pose, and whether they agree there.
 ///
 /// Points that face the interior of the other surface have to lie on it; points beyond its border may lie anywhere but
-/// in free space. The pose of two scans that share a third of their surface is therefore decided as reliably as that of
-/// a scan on a whole model.
+/// in free space. Two scans that share a third of their surface are therefore decided as reliably as a scan and a
+/// whole model.
 /// \param scan,model in search frames, made with exact search.
 PoseEvidence poseEvidence(const PosedSurface& scan, const PosedSurface& model, const Eigen::Isometry3d& T_model_scan);
 

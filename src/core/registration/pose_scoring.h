@@ -35,8 +35,8 @@ public:
 
   PoseScore score(const Eigen::Isometry3d& T_model_scan, const Detail& detail) const;
 
-  /// One Gauss-Newton step. It reduces the distances of the scan's points from the tangent planes at their closest
-  /// points, weighted by the Gaussian, and those of the model's points in free space from the scan.
+  /// One Gauss-Newton step. It reduces two kinds of distances: of the scan's points from the tangent planes at their
+  /// closest points, weighted by the Gaussian, and of the model's points in free space from the scan.
   Eigen::Isometry3d step(const Eigen::Isometry3d& T_model_scan, const Detail& detail) const;
 
 private:

@@ -51,7 +51,7 @@ struct RegistrationRules {
   double facing_spacings = 1.5;    ///< distance between a point and the middle of the disc that it faces, spacings
   /// Greatest distance of a surface that a point faces, diameters of the smaller cloud; farther ones are another layer.
   double facing_reach = 0.05;
-  double min_noise = 0.0015;  ///< least noise, diameters: that of a close depth camera; less is no evidence for a pose
+  double min_noise = 0.0015;  ///< least noise, diameters, of a close depth camera; less is no evidence for a pose
   double max_noise = 0.01;    ///< greatest noise, diameters: more is the curvature between few points
   double other_unit = 5.0;    ///< ratio of diameters above which a wrong unit is suspected
   /// Distance within which a surface that should be visible counts as measured, diameters.

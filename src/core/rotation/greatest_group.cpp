@@ -26,7 +26,7 @@ RotationSet rotationsOfSphere(const Eigen::Vector3d& center) {
 /// The group of a sphere. Rotations about axes in all directions have to fit: two axes of revolution could be one.
 std::optional<PlacedGroup> sphericalGroup(const RotationFit& fit, const ObjectSymmetryOptions& options,
                                           const FoldAxis& main) {
-  // The center lies on the axis. Its position along the axis is that of the samples' mean, which lies near it.
+  // The center is the point of the axis nearest to the mean of the samples.
   const Eigen::Vector3d mass = centerOfMass(fit.points());
   const Eigen::Vector3d center =
       main.line.origin() + main.line.direction().dot(mass - main.line.origin()) * main.line.direction();

@@ -49,7 +49,7 @@ RotationFit::RotationFit(Points points, const GaussianEdt& edt, RotationLimits l
   const LocalGeometry& geometry = surface->geometry;
   surface->spacing = median(geometry.spacing);
   surface->roughness = median(geometry.roughness);
-  constexpr double rounding = 1e-6;  // radii: that of float coordinates
+  constexpr double rounding = 1e-6;  // radii, of float coordinates
   first_sigma_ =
       std::max({rounding, kRotation.first_tolerances * limits.tolerance, kRotation.first_spacings * surface->spacing});
   last_sigma_ = std::max(

@@ -22,9 +22,9 @@ struct RotationRules {
   double far_tolerances = 10.0;
   double far_of_feature = 0.125;  // greatest share of the surface that may stick out, as a share of max_feature
   double min_far = 0.002;         // least value of that share: single samples at sharp edges are far by chance
-  double optimism = 1.3;      // true excess divided by that of the fitted cloud; 1.28 on 98 groups of 354 models of PSB
-  double share_unit = 0.02;   // uncertainty of a share: with it, the confidences of these groups are calibrated
-  double share_errors = 0.5;  // standard errors by which that uncertainty grows for few points
+  double optimism = 1.3;          // true excess divided by the fitted cloud's; 1.28 on 98 groups of 354 models of PSB
+  double share_unit = 0.02;       // uncertainty of a share: with it, the confidences of these groups are calibrated
+  double share_errors = 0.5;      // standard errors by which that uncertainty grows for few points
   // Greatest excess of the worst of the rotations that represent all rotations, whose mean may be 1.
   double max_worst = 1.25;
   double max_errors = 3.0;    // standard errors by which a share of some of the points may be off
@@ -81,10 +81,10 @@ struct RotationRules {
   double min_angle = 0.17;  // least angle between kept directions
   double near_best = 0.05;  // deficit of the overlap to the best one up to which a smaller fold is as likely
   int small_fold = 6;       // folds up to this one are tried whatever the overlap of greater ones
-  // Greatest surplus of the overlap of the rotation by half the angle over that of a fold.
+  // Greatest surplus of the overlap of the rotation by half the angle of a fold over the overlap of the fold.
   double half_allowance = 0.03;
   double min_overlap = 0.5;      // least overlap of the likeliest rotation about a line before its fit
-  double clearly_better = 0.02;  // least surplus of the overlap of a greater fold over that of a smaller one
+  double clearly_better = 0.02;  // least surplus of the overlap of a greater fold over a smaller one
   std::size_t max_axes = 12;     // greatest number of axes: enough to determine any finite group
   std::size_t max_folds = 3;     // greatest number of folds of a line that are fitted, the greatest first
   int min_pattern = 3;           // least fold of equal pieces around a line that are a pattern rather than features
@@ -110,7 +110,7 @@ struct RotationSet {
 
 /// Shares of the surface that a rotation maps off the surface, by area, in [0, 1].
 struct OffShares {
-  double off = 0.0;  ///< share beyond the tolerance, less that of the samples themselves
+  double off = 0.0;  ///< share beyond the tolerance, less the share of the samples themselves
   double far = 0.0;  ///< share beyond ten tolerances: parts that stick out, such as a handle
 };
 

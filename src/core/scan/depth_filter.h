@@ -27,11 +27,11 @@ double inverseDepthError(const DepthImage& image, int apart = 1);
 
 /// Removes the errors of a depth camera from its depth image.
 ///
-/// Each depth becomes that of a plane fitted to the inverse depths of the pixels around it, which change linearly on a
-/// slanted plane. Pixels of other surfaces do not count, so that edges stay. A pixel with which hardly any neighbor
-/// agrees is a flying pixel between two surfaces and is removed. Images without errors stay unchanged, as do images
-/// whose pixels share errors with their neighbors (stereo, structured light): averaging would keep the errors and round
-/// the edges.
+/// Each depth is replaced by the depth of a plane fitted to the inverse depths of the pixels around it, which change
+/// linearly on a slanted plane. Pixels of other surfaces do not count, so that edges stay. A pixel with which hardly
+/// any neighbor agrees is a flying pixel between two surfaces and is removed. Images without errors stay unchanged, as
+/// do images whose pixels share errors with their neighbors (stereo, structured light): averaging would keep the errors
+/// and round the edges.
 /// \param radius half the side of the square around a pixel, pixels, >= 1.
 FilteredDepths filterDepths(const DepthImage& image, int radius, int num_threads);
 

@@ -204,8 +204,8 @@ void closeSurfaces(RangeImage& image, std::size_t largest_hole) {
   closeGaps(image, largest_hole);
 }
 
-/// Sets empty pixels beyond the measured part of the image to Visibility::kNoRay: those with filled pixels in fewer
-/// than kScan.inside_sides of the four directions along rows and columns.
+/// Sets empty pixels beyond the measured part of the image, with filled pixels in fewer than kScan.inside_sides of the
+/// four directions along rows and columns, to Visibility::kNoRay.
 void forgetOutside(RangeImage& image) {
   const int width = image.grid.width, height = image.grid.height;
   // For each pixel, the number of the four directions in which a filled pixel lies.

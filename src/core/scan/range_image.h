@@ -65,8 +65,8 @@ RangeImage rangeImage(const SeenPositions& seen, std::size_t max_pixels);
 
 /// The same for a scene. If its rays are denser in one direction than across it, as in the rings of a LiDAR, pixels are
 /// as small as the denser spacing, and the gaps between the rings are bridged. Empty pixels beyond the measured part of
-/// the image are Visibility::kNoRay: those with filled pixels in fewer than three of the four directions along rows and
-/// columns.
+/// the image, with filled pixels in fewer than three of the four directions along rows and columns, are
+/// Visibility::kNoRay.
 /// \param seen at least one position.
 /// \param max_pixels number of pixels above which they are enlarged, >= 16.
 RangeImage sceneRangeImage(const SeenPositions& seen, std::size_t max_pixels);

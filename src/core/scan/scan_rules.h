@@ -84,7 +84,7 @@ struct ScanRules {
   int num_viewpoint_starts = 3;     ///< directions that are refined; with two, one scan in fifty is missed
   std::size_t max_viewpoints = 12;  ///< minima are 37 degrees apart: a dozen covers half of all directions
   double min_apart = 0.8;           ///< greatest cosine of the angle between starts
-  double first_distance = 4.0;      ///< distance of the starts, radii: that of a camera whose image the object fills
+  double first_distance = 4.0;      ///< distance of the starts, radii: the object fills the image of a camera there
   /// Least distance of a viewpoint, radii; points lie within 75 degrees of the middle from 1.04 radii on.
   double min_distance = 1.3;
   /// Greatest distance of a viewpoint, radii; rays from there are parallel to within 2 degrees.
@@ -98,10 +98,10 @@ struct ScanRules {
   // Errors of a depth camera
   /// Least distance of pixels whose errors are independent, pixels; a Kinect matches windows of up to 11.
   int window = 6;
-  /// Greatest ratio of the deviation of such pixels to that of neighbors if each pixel has an error of its own.
+  /// Greatest ratio of the deviation of pixels so far apart to the deviation of neighbors if each pixel has an error of
+  /// its own.
   double max_own = 1.5;
-  /// Greatest ratio of the deviation of such pixels to that of neighbors if neighbors share errors: 1.8 to 2.5 in
-  /// frames of a Kinect, more where shapes bend.
+  /// Greatest value of this ratio if neighbors share errors: 1.8 to 2.5 in frames of a Kinect, more where shapes bend.
   double max_shared = 2.2;
 
   // One view or several

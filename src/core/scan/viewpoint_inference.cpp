@@ -21,8 +21,8 @@ constexpr SingleViewLimits kLimits{0.12, 0.15};
 // the true viewpoint.
 constexpr SingleViewLimits kSureLimits{kScan.max_hidden, 0.4};
 
-/// Whether all points are at a border, as those of a wire: its density is uninformative, and rays from everywhere meet
-/// it once.
+/// Whether all points are at a border, as in a wire, whose density is uninformative and which rays from everywhere meet
+/// once.
 bool isWire(const PointsRef& points) {
   const Points drawn = pointsAt(points, drawSamples(points.cols(), kScan.border_samples, 1));
   const ClosestPointSearch::Ptr search = makeFlannSearch(drawn);

@@ -145,7 +145,6 @@ double Visibility::depthError(const Eigen::Vector3d& x) const {
 double Visibility::resolvedTolerance(const PointsRef& points) const {
   // 97 % of a normal distribution lie within 2.17 standard deviations; the difference of two errors has sqrt(2) times
   // the standard deviation of one.
-  // times that of one.
   const double deviations = 2.17 * std::sqrt(2.0);
   const Eigen::Vector3d middle = points.cast<double>().rowwise().mean();
   return deviations * depthError(middle);

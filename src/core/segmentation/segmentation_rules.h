@@ -36,7 +36,7 @@ struct SegmentationRules {
   // Divisions
   /// Least share of the surface of an intersection of divisions; smaller ones join the closest larger one.
   double min_cell = 0.0005;
-  /// Factor on the angles of a cloud relative to those of a mesh: its normals spread a crease over several rows.
+  /// Factor on the angles of a cloud, whose normals spread a crease over several rows; 1 for a mesh.
   float sharpened = 1.5f;
   double surely_one = 1.0;  ///< least log odds with which two regions are surely one part: probability 0.73
 

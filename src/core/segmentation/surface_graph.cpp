@@ -75,8 +75,8 @@ std::vector<std::vector<int>> membersOfPieces(const SurfaceGraph& graph) {
   return members;
 }
 
-/// Area of the elements whose rays along the normal leave the shape, minus that of the elements whose rays against the
-/// normal do.
+/// Area of the elements whose rays along the normal leave the shape, minus the area of the elements whose rays against
+/// the normal do.
 double escapingArea(const SurfaceGraph& graph, const Points& normals, const TriangleTree& tree,
                     const std::vector<int>& members, RandomStream& random) {
   const int num_rays = static_cast<int>(std::min<std::size_t>(members.size(), kSegmentation.orientation_rays));

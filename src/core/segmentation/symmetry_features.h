@@ -18,7 +18,7 @@ struct SymmetryFeatures {
 /// Finds the significant maxima of the transform of a part (Section 4.4) and the support of every element for them
 /// ("how well does the face map onto the surface after reflection across the plane", Section 5.3).
 /// \param elements elements of the part, with an area > 0.
-/// \param seed seed of the samples of the part, in place of that of the options.
+/// \param seed seed of the samples of the part, in place of the seed in the options.
 SymmetryFeatures symmetryFeatures(const SurfaceGraph& graph, const std::vector<int>& elements,
                                   const SegmentationOptions& options, std::uint64_t seed);
 
