@@ -20,7 +20,8 @@ struct EvidenceRules {
   // Surface of samples.
   float disc_radius = 1.25f;  ///< radius of the disc that a sample represents, spacings; 1 in 135 holds no other sample
   float max_roughness = 0.25f,
-        trust_width = 0.1f;              ///< roughness in spacings at which normals become meaningless; volumes: 0.42
+        trust_width = 0.1f;  ///< roughness above which normals count for nothing (volumes: 0.42), and width of the
+                             ///< decline, spacings
   float new_point_factor = 1.41421356f;  ///< deviation of a new point from a plane, relative to the nine points to
                                          ///< which the plane was fitted
 
