@@ -35,6 +35,7 @@ struct DetectionRules {
     double max_drift = 1.0;
     int first_samples = 100;        ///< points reflected in the first stage
     double symmetric_merit = 0.93;  ///< merit of a symmetry: support of 97 % and conflict of 3 % give 0.97
+    /// Greatest number of iterations of the three stages, and of candidates that never settle.
     int coarse_iterations = 5, close_iterations = 6, full_iterations = 8, rough_iterations = 4;
     double close_slack = 0.1;   ///< allowed deficit to the merit of a symmetry after the second stage
     double coarse_slack = 0.2;  ///< allowed deficit to that merit after the first stage, if there is a symmetry
@@ -95,7 +96,7 @@ struct DetectionRules {
     int max_possible = 5;  ///< greatest number of symmetries and possible planes together, if there are possible ones
     double slope_dip = 0.005;  ///< rise of D on the way to a better plane that counts as rounding
     double slope_angle = 0.2,
-           slope_offset = 0.15;  ///< radians, radii: a plane this close to a better one may lie on its slope
+           slope_offset = 0.15;  ///< angle and offset to a better plane within which a plane may lie on its slope
   } decide;
 
   /// Polygons and families.
@@ -125,6 +126,7 @@ struct DetectionRules {
     int max_frequency = 120, min_fold = 3;
     /// Number of rings about the line for the fold, and of slabs for the angle of the planes.
     int rings = 8, slabs = 4;
+    /// Number of points that give the spectrum, and of points reflected in a halfway plane.
     int spectrum_samples = 20'000, halfway_samples = 5000;
     int compared_frequencies = 12;  ///< frequencies on either side with which a frequency is compared
     double min_power = 20.0;        ///< least power of a fold; round bodies in noise reach 15

@@ -38,12 +38,12 @@ struct EvidenceRules {
 
   // Confidence.
   double coarsest =
-      3.0;  ///< tolerances; by default, points with a wider spacing decide at the tolerance that they resolve
+      3.0;  ///< greatest spacing, tolerances; by default, the tolerance is raised where the spacing is wider
   /// `coarsest` for flat clouds and for scans whose spacing raised the tolerance.
   double coarsest_part = 0.5 * coarsest;
   /// Share by which spacing raises the tolerance of a scan until coarsest_part applies to it fully.
   double surely_coarser = 0.05;
-  double lost_per_coarseness = 2.0;  ///< log odds lost per tolerance of spacing beyond these
+  double lost_per_coarseness = 2.0;  ///< log odds lost per tolerance of spacing beyond `coarsest`
   double unknown_share = 0.5;        ///< uncertainty of the share per uninformative share
 
   // Where a cloud ends.
@@ -56,10 +56,11 @@ struct EvidenceRules {
   double layered_sheet = 0.1;     ///< greatest layered share of an open sheet; 38 of 40 cut objects have more
   /// Share near borders up to which they are trusted fully, and from which not at all.
   double few_borders = 0.6, borders_everywhere = 0.75;
-  /// Spacings by which a piece may reach behind the last points: up to the first it is beyond them, from the second on
-  /// not.
+  /// Spacings by which a piece overlaps the last points: up to the first it lies beyond the cloud, from the second on
+  /// it does not.
   float in_front = 3.0f, behind = 4.0f;
-  /// Cosine to the normals of the last points up to which the surface runs into the cut, and from which it closes.
+  /// Cosine between the direction to the piece and the normals of the last points, up to which the surface runs into
+  /// the cut, and from which it closes.
   float runs_into = 0.65f, closes = 0.8f;
   float last_points = 2.0f;  ///< depth of the last points, spacings
   double outliers = 0.002;   ///< share of the points that are left out at the end as outliers

@@ -55,8 +55,8 @@ struct ScanRules {
   /// Largest hole in the image of a scene that is closed, in points that it would hold: a gap between samples of one of
   /// many surfaces.
   double largest_scene_hole = 100.0;
-  /// Least number of directions, of four, with filled pixels around a pixel inside; with 4, the sky between two objects
-  /// would be outside.
+  /// Least number of the four directions in which a pixel inside the measured part has filled pixels; with 4, the sky
+  /// between two objects would be outside.
   int inside_sides = 3;
 
   // Density of points as evidence of the viewpoint
@@ -85,11 +85,12 @@ struct ScanRules {
   std::size_t max_viewpoints = 12;  ///< minima are 37 degrees apart: a dozen covers half of all directions
   double min_apart = 0.8;           ///< greatest cosine of the angle between starts
   double first_distance = 4.0;      ///< distance of the starts, radii: the object fills the image of a camera there
-  /// Least distance of a viewpoint, radii; points lie within 75 degrees of the middle from 1.04 radii on.
+  /// Least distance of a viewpoint, radii. From 1.04 radii on, all points lie within 75 degrees of the middle.
   double min_distance = 1.3;
   /// Greatest distance of a viewpoint, radii; rays from there are parallel to within 2 degrees.
   double greatest_distance = 30.0;
-  /// First step of the refinement, radians, and halves of the logarithm of the distance: the angle between directions.
+  /// First step of the refinement, radians: the angle between neighboring directions. The logarithm of the distance
+  /// changes by twice the step.
   double first_step = 0.2;
   double middle_step = 0.25 * first_step;
   double last_step = 0.25 * middle_step;  ///< half a degree, less than the error of the result
@@ -121,14 +122,15 @@ struct ScanRules {
   double max_unexplained = 0.75;
   /// Greatest variance of the logarithm of the density over 64 patches; scans have 0.005, two put together 0.015.
   double max_uneven = 0.008;
-  /// Greatest share of the variance, and of the variance of random points, that is left if more layers are allowed:
-  /// leaves, wires.
+  /// Share of the variance of the density, and of the variance that random points would have. If a viewpoint leaves
+  /// less unexplained, more layers are allowed, as in leaves and wires.
   double surely_explained = 0.25;
-  double surely_even = 0.25 * max_uneven;  ///< greatest variance over patches if more layers are allowed
-  /// Greatest variance that the true viewpoint of 1000 points leaves, in those that the best one leaves.
+  double surely_even = 0.25 * max_uneven;  ///< greatest variance over patches at which more layers are allowed
+  /// Factor on the variance that the best viewpoint leaves, within which another viewpoint is as good: the true
+  /// viewpoint of 1000 points is within it.
   double as_good = 1.3;
   double as_good_beyond =
-      2.0 * min_variance;  ///< variance of the logarithm: a depth camera 3 degrees from the best viewpoint
+      2.0 * min_variance;  ///< variance added to this limit: a depth camera is 3 degrees from the best viewpoint
   /// Greatest variance that one of several viewpoints may leave; true ones leave 0.0023, two scans put together 0.006.
   double max_of_several = 0.003;
   /// Least number of points: they give 25 independent densities, a quarter of whose variance three parameters explain
