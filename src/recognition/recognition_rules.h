@@ -17,7 +17,7 @@ struct RecognitionRules {
   std::size_t num_fine_points = 5'000;   // points of a model by which poses are refined and judged
 
   // Poses
-  double seen_radius = 0.95;     // radius of a scan divided by that of the whole object
+  double seen_radius = 0.95;     // radius of a scan, in radii of the whole object
   int num_judged_points = 3000;  // points that decide whether a model fits
   // Least width of the Gaussian for that, unless the accuracy of the scan or score_errors gives more.
   double min_width = 0.015;

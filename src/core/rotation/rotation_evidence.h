@@ -22,6 +22,7 @@ struct ScanAxisRules {
   int from_normals = 3;                  ///< greatest number of such lines that are kept
   double angle_of_fold = 3.0 * kDegree;  ///< error of the angles between planes of scans, radians
   double min_plane_angle = 0.13;         ///< least angle between two planes that give a common line
+  /// Coarse axial transform: cells along an edge of its distance field, bins of the directions and offsets, samples.
   int coarse_cells = 24, coarse_theta = 8, coarse_phi = 32, coarse_offset = 8, coarse_samples = 32;
   /// Greatest distance of an axis from the middle of the cloud in the coarse axial transform.
   double coarse_reach = 0.67;
