@@ -5,11 +5,10 @@ from __future__ import annotations
 import dataclasses
 import os
 import tempfile
-import warnings
 from typing import TYPE_CHECKING, Any, Callable, Dict, Iterable, Iterator, List, Mapping, Optional, Sequence, Tuple, Union
 
 from . import _recognition
-from .functions import Cloud, Core, NoAnswer, Viewpoint, _frame, _planes_of, left_out, no_answer, opened, prepare, rows_of
+from .functions import Cloud, Core, NoAnswer, Viewpoint, _frame, _planes_of, left_out, no_answer, opened, prepare, rows_of, warn
 from .progress import Progress, shares_of
 from .results import (
     BuildReport,
@@ -374,7 +373,7 @@ def scene(
     reason = found["reason"]
     if reason or found["alone"]:
         alone = f"{found['alone']}; if this is one object, planes() takes it as a whole"
-        warnings.warn(f"points: {reason or alone}", RuntimeWarning, stacklevel=2)
+        warn(f"points: {reason or alone}")
     sensor = None if found["seen"] is None else found["seen"].viewpoint
     seen: Dict[str, Any] = dict(viewpoint=sensor, _shape=cloud.shape, _viewpoint_from=found["viewpoint_from"])
     result = Scene(

@@ -5,6 +5,7 @@ from __future__ import annotations
 import dataclasses
 import os
 import re
+import sys
 import warnings
 from typing import TYPE_CHECKING, Any, Callable, Dict, List, NamedTuple, Optional, Sequence, Tuple, Union
 
@@ -34,6 +35,14 @@ if TYPE_CHECKING:
     Shift = Optional[NDArray[np.float64]]
 
 
+def warn(text: str) -> None:
+    """A RuntimeWarning at the line outside the package that called it."""
+    frame, level = sys._getframe(1), 2
+    while frame.f_back is not None and frame.f_globals.get("__name__", "").startswith(f"{__package__}."):
+        frame, level = frame.f_back, level + 1
+    warnings.warn(text, RuntimeWarning, stacklevel=level)
+
+
 class Core:
     """A module of pybind11, or an object of it; where that lists all its types, the argument that has another one is named."""
 
@@ -52,7 +61,8 @@ class Core:
                 with telling(self._module, told):
                     return function(*points, **arguments)
             except ValueError as error:
-                raise ValueError(re.sub(r"^num_(threads|parts)\b", r"\1", str(error))) from None
+                named = re.sub(r"^num_(threads|parts|cells|samples)\b", r"\1", str(error))
+                raise ValueError(re.sub(r"^num_(theta|phi|r)\b", r"bins of \1", named)) from None
             except TypeError as error:
                 if not re.search("incompatible (function|constructor) arguments", str(error)):
                     raise
@@ -125,7 +135,7 @@ class Cloud(NamedTuple):
             return core.StoredViewpoint(self.stored if self.shift is None else self.stored - self.shift)
         position = _seen_from(viewpoint, self.shift)
         if not isinstance(position, (str, type(None))) and (why := core.why_not_seen_from(self.array, position)):
-            warnings.warn(f"points: {why}", RuntimeWarning, stacklevel=4)
+            warn(f"points: {why}")
         return position
 
 
@@ -226,11 +236,9 @@ def _near_origin(name: str, array: NDArray[Any]) -> Tuple[NDArray[Any], Shift]:
         rounding = float(np.finfo(np.float32).eps) * greatest
         if extent > 0 and rounding > 1e-4 * extent:
             digits = max(0, int(np.floor(np.log10(extent / rounding))))
-            warnings.warn(
+            warn(
                 f"{name}: float32 coordinates up to {greatest:.4g} leave {digits} digits of an extent of {extent:.4g}; "
-                "subtract an offset in float64 before they become float32",
-                RuntimeWarning,
-                stacklevel=4,
+                "subtract an offset in float64 before they become float32"
             )
         return array, None
     if greatest <= 64 * extent:
@@ -289,7 +297,7 @@ def look(
         threads=threads,
     )
     if ground is not None and seen is None and not reason:
-        warnings.warn("ground: has no effect without a viewpoint", RuntimeWarning, stacklevel=3)
+        warn("ground: has no effect without a viewpoint")
     return Used(points, seen, viewpoint_from, rows, may_be_rings, re.sub("^input cloud: ", "", reason))
 
 
@@ -374,9 +382,9 @@ def _core_plane(plane: ReflectionPlane, shift: Shift) -> Any:
     return core.ReflectionPlane(moved.normal, moved.offset)
 
 
-def _warn_of_stray(count: int, level: int = 3) -> None:
+def _warn_of_stray(count: int) -> None:
     if count:
-        warnings.warn(f"points: {count} stray, far from all others, left out", RuntimeWarning, stacklevel=level)
+        warn(f"points: {count} stray, far from all others, left out")
 
 
 def _planes_of(found: Dict[str, Any], cloud: Cloud, used: Optional[Used] = None, judged: bool = True, quiet: bool = False) -> Planes:
@@ -386,9 +394,9 @@ def _planes_of(found: Dict[str, Any], cloud: Cloud, used: Optional[Used] = None,
     every = [Plane(**p) for p in found["planes"]]
     reason = used.reason if used is not None and used.reason else found["reason"]
     if reason and not quiet:
-        warnings.warn(reason if reason.startswith("volume") else f"points: {reason}", RuntimeWarning, stacklevel=3)
+        warn(reason if reason.startswith("volume") else f"points: {reason}")
     if not quiet:
-        _warn_of_stray(found["stray_points"], 4)
+        _warn_of_stray(found["stray_points"])
     found.update(
         planes=[p for p in every if not judged or p.kind == "symmetry"],
         possible=[p for p in every if p.kind == "possible"],
@@ -509,10 +517,10 @@ def planes(
     result = _planes_of(found, cloud, used)
     has_symmetry = result.planes or result.axes or result.centers or result.rotations or result.reason
     if len(cloud.shape) == 2 and indices is None and result.viewpoint is not None and not has_symmetry:
-        warnings.warn("points: no symmetry; if this is a whole frame, scene() finds its objects", RuntimeWarning, stacklevel=2)
+        warn("points: no symmetry; if this is a whole frame, scene() finds its objects")
     if result.undecided and result.best is not None:
         low, high = result.best.share_interval
-        warnings.warn(f"points: they leave it open, a share of {low:.2f} to {high:.2f} for the best plane", RuntimeWarning, stacklevel=2)
+        warn(f"points: they leave it open, a share of {low:.2f} to {high:.2f} for the best plane")
     return result if cloud.shift is None else result._moved(cloud.shift)
 
 
@@ -627,7 +635,8 @@ def complete(
     if plane is None:
         search = planes(points, viewpoint=viewpoint, indices=indices, threads=threads)
         if not (found_by := [*search.centers, *search.axes, *search, *search.possible]):
-            warnings.warn("points: no symmetry, nothing is added", RuntimeWarning, stacklevel=2)
+            if not search.reason:
+                warn("points: no symmetry, nothing is added")
             return np.empty((0, 3), np.float32), np.empty(0, np.int64)
         plane = found_by[0]
     if isinstance(plane, Plane) and plane.kind not in ("symmetry", "possible"):
@@ -651,7 +660,7 @@ def complete(
     if doubt or not len(added):
         finite = np.isfinite(used.array).all(axis=1).any()
         why = used.reason or ("their reflections fall onto the points or into space seen to be empty" if finite else "no finite point")
-        warnings.warn(f"points: {len(added)} are added{doubt}" + ("" if len(added) else f": {why}"), RuntimeWarning, stacklevel=2)
+        warn(f"points: {len(added)} are added{doubt}" + ("" if len(added) else f": {why}"))
     return (added if cloud.shift is None else added + cloud.shift), rows
 
 
@@ -785,7 +794,7 @@ def from_depth(depth: ArrayLike, intrinsics: ArrayLike, *, unit: float = 1.0) ->
     if not (np.isfinite(unit) and unit > 0):
         raise ValueError(f"unit = {unit}, must be > 0")
     if z.dtype.kind != "f" and unit == 1.0:
-        warnings.warn("depth: whole numbers are taken as they are; unit=0.001 makes meters of millimeters", RuntimeWarning, stacklevel=2)
+        warn("depth: whole numbers are taken as they are; unit=0.001 makes meters of millimeters")
     k = np.asarray(getattr(intrinsics, "intrinsic_matrix", intrinsics), dtype=float)
     if k.shape == (3, 3):
         k = k[[0, 1, 0, 1], [0, 1, 2, 2]]
@@ -807,7 +816,7 @@ NoAnswer = _pcl_symmetry.NoAnswer
 def no_answer(found: Exception, reason: str = "") -> str:
     """Why points hold no answer; whoever asked for one is warned of it. reason: of selected rows."""
     name, why = str(found).split(": ", 1)
-    warnings.warn(f"{name}: {reason or why}", RuntimeWarning, stacklevel=3)
+    warn(f"{name}: {reason or why}")
     return reason or why
 
 
@@ -890,7 +899,7 @@ def rotations(
     result = Rotations(**found.fields)
     _warn_of_stray(result.stray_points)
     if result.reason:
-        warnings.warn(f"points: {result.reason}", RuntimeWarning, stacklevel=2)
+        warn(f"points: {result.reason}")
     return result if cloud.shift is None else result._moved(cloud.shift)
 
 
@@ -931,7 +940,7 @@ def segment(
         no_answer(none)
         return np.full(cloud.shape, -1, np.int32)
     if reason:
-        warnings.warn(re.sub("^num_parts", "parts", reason), RuntimeWarning, stacklevel=2)
+        warn(re.sub("^num_parts", "parts", reason))
     labels = np.asarray(found, dtype=np.int32)
     return labels.reshape(cloud.shape) if faces is None else labels
 
