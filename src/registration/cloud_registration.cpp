@@ -9,7 +9,9 @@
 #include "core/base/check.h"
 #include "core/base/constants.h"
 #include "core/base/lists.h"
+#include "core/base/small_motion.h"
 #include "core/base/stopwatch.h"
+#include "core/base/symmetric_solvers.h"
 #include "core/matching/matching_rules.h"
 #include "core/matching/point_pair_index.h"
 #include "core/registration/pose_covariance.h"
@@ -17,6 +19,7 @@
 #include "core/registration/pose_scoring.h"
 #include "core/registration/pose_starts.h"
 #include "core/registration/registration_rules.h"
+#include "pcl_symmetry/core/rotation_group.h"
 #include "registration/pose_refinement.h"
 #include "registration/prepared_cloud.h"
 
@@ -199,6 +202,37 @@ double uniquenessOf(const CloudPair& clouds, const JudgedPose& best, const std::
   return best_odds / all;
 }
 
+/// In search units, of the motion of the model.
+Matrix6d searchCovariance(const CloudPair& clouds, const RankedPose& pose, const CloudRegistrationOptions& inner) {
+  const double reach = closestReach(clouds.scan(), clouds.model(), inner.max_correspondence);
+  return poseCovariance(clouds.scan(), clouds.model(), pose.T_model_scan, std::max(1, pose.num_points), reach);
+}
+
+/// Poses beside a pose, refined, that its surfaces hardly tell from it, such as rotations about the axis of a can whose
+/// handle one of the scans does not show. The two motions that are constrained least may each mix a rotation with a
+/// translation along its axis, as the wall of a can admits both: they are tried one by one.
+std::vector<RankedPose> slidPoses(const CloudPair& clouds, const RankedPose& pose,
+                                  const CloudRegistrationOptions& inner) {
+  constexpr double some = 0.1;  // share of a motion
+  const SymmetricEigen<Matrix6d> motions(searchCovariance(clouds, pose, inner));
+  std::vector<RankedPose> poses{pose};
+  for (const int k : {5, 4})
+    for (const double way : {-kRegistration.slide, kRegistration.slide}) {
+      const auto add = [&](const Eigen::Isometry3d& motion) {
+        poses.push_back(closestPose(clouds.scan(), clouds.model(), {motion * pose.T_model_scan, {}}, inner));
+      };
+      const Eigen::Vector3d rotation = motions.eigenvectors().col(k).head<3>(),
+                            translation = motions.eigenvectors().col(k).tail<3>(), axis = rotation.normalized();
+      const bool rotates = rotation.norm() > some;
+      const Eigen::Vector3d along = rotates ? Eigen::Vector3d(axis * axis.dot(translation)) : translation;
+      if (rotates) add(motionAbout({rotation.cross(translation) / rotation.squaredNorm(), axis}, way));
+      if (along.norm() > some) add(isometry(Eigen::Matrix3d::Identity(), way * along.normalized()));
+    }
+  poses = firstDistinct(poses, poses.size());
+  poses.erase(poses.begin());
+  return poses;
+}
+
 /// Removes the poses that are not around a guess.
 /// \param poses poses between search frames.
 void keepAround(const CloudPair& clouds, const Eigen::Isometry3d& guess, const PoseNeighborhood& around,
@@ -210,13 +244,6 @@ void keepAround(const CloudPair& clouds, const Eigen::Isometry3d& guess, const P
            (T_target_source * center - guess * center).norm() > around.distance;
   };
   eraseIf(poses, isFar);
-}
-
-Matrix6d covarianceOf(const CloudPair& clouds, const RankedPose& pose, const CloudRegistrationOptions& inner) {
-  const double reach = closestReach(clouds.scan(), clouds.model(), inner.max_correspondence);
-  return clouds.toInput(
-      poseCovariance(clouds.scan(), clouds.model(), pose.T_model_scan, std::max(1, pose.num_points), reach),
-      pose.T_model_scan);
 }
 
 /// The options with threads and seed passed on to all parts, and lengths in units of the search.
@@ -309,11 +336,14 @@ CloudRegistration registerClouds(const Points& source, const std::optional<Visib
   }
   if (!judged.empty()) {
     result.evidence = judged.front().evidence;
-    if (judged.front().confidence >= kRegistration.min_confidence)
+    if (judged.front().confidence >= kRegistration.min_confidence) {
       // Between two scans, the merit grows with the surface that they share: a pose of less merit may fit equally well.
-      result.evidence.uniqueness = uniquenessOf(
-          clouds, judged.front(),
-          clouds.model().seen ? judgedPoses(clouds, poses, std::numeric_limits<double>::infinity()) : judged, inner);
+      constexpr double any = std::numeric_limits<double>::infinity();
+      std::vector<JudgedPose> all = clouds.model().seen ? judgedPoses(clouds, poses, any) : judged;
+      const std::vector<JudgedPose> slid = judgedPoses(clouds, slidPoses(clouds, judged.front().pose, inner), any);
+      all.insert(all.end(), slid.begin(), slid.end());
+      result.evidence.uniqueness = uniquenessOf(clouds, judged.front(), all, inner);
+    }
     result.confidence = poseConfidence(result.evidence);
     std::vector<RankedPose> ranked;
     for (const JudgedPose& one : judged) ranked.push_back(one.pose);
@@ -321,7 +351,7 @@ CloudRegistration registerClouds(const Points& source, const std::optional<Visib
     ranked.insert(ranked.end(), poses.begin(), poses.end());
     for (const RankedPose& pose : firstDistinct(ranked, static_cast<std::size_t>(search.max_poses)))
       result.poses.push_back({clouds.toInput(pose.T_model_scan), pose.score});
-    result.covariance = covarianceOf(clouds, ranked.front(), inner);
+    result.covariance = clouds.toInput(searchCovariance(clouds, ranked.front(), inner), ranked.front().T_model_scan);
   }
   if (result.poses.empty()) result.poses.push_back({guess, {}});
   static_cast<RegisteredPose&>(result) = result.poses.front();

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <numeric>
 #include <sstream>
 
@@ -52,7 +53,39 @@ Overlap overlapOf(const PosedSurface& from, const Landing& landing, const PosedS
 
 /// The parts of a surface that a scanner should have measured but did not.
 struct NotMeasured {
-  double contradicted = 0.0, missing = 0.0, aside = 0.0;  ///< see PoseEvidence
+  double contradicted = 0.0, missing = 0.0, aside = 0.0, outside = 0.0;  ///< see PoseEvidence
+};
+
+/// The convex outline of a scan as its scanner saw it, a polygon around its rays.
+class Outline {
+public:
+  explicit Outline(const PosedSurface& scan) : viewpoint_(scan.seen->viewpoint()) {
+    forward_ = (scan.points.cast<double>().rowwise().mean() - viewpoint_).normalized();
+    const Eigen::Vector3d right = forward_.unitOrthogonal(), down = forward_.cross(right);
+    for (int k = 0; k < kNumSides; ++k) {
+      const double angle = 2.0 * kPi * k / kNumSides;
+      outward_.row(k) = std::cos(angle) * right + std::sin(angle) * down;
+    }
+    reach_.setConstant(-std::numeric_limits<double>::infinity());
+    for (Eigen::Index i = 0; i < scan.points.cols(); ++i)
+      reach_ = reach_.cwiseMax(slopes(scan.points.col(i).cast<double>()));
+  }
+
+  /// \return distance by which a point is outside; negative inside.
+  double distance(const Eigen::Vector3d& x) const {
+    return (slopes(x) - reach_).maxCoeff() * forward_.dot(x - viewpoint_);
+  }
+
+private:
+  static constexpr int kNumSides = 32;
+  using Slopes = Eigen::Matrix<double, kNumSides, 1>;
+
+  /// Of the ray through a point, toward each side.
+  Slopes slopes(const Eigen::Vector3d& x) const { return outward_ * (x - viewpoint_) / forward_.dot(x - viewpoint_); }
+
+  Eigen::Vector3d viewpoint_, forward_;
+  Eigen::Matrix<double, kNumSides, 3> outward_;
+  Slopes reach_;
 };
 
 /// \param on_scan where the points of the surface lie on the scan, as from land().
@@ -62,18 +95,23 @@ NotMeasured notMeasured(const PosedSurface& surface, const PosedSurface& scan, c
   NotMeasured area;
   double measured = 0.0;
   int num_judged = 0;
+  const Outline outline(scan);
   for (const VisiblePoint& point :
        visiblePoints(surface, scan, T_scan_surface, static_cast<int>(on_scan.images.cols()), true)) {
     const double distance = std::sqrt(scan.sqDiscDistance(on_scan, point.index));
     const bool is_measured = std::min(std::abs(point.height), distance) < tolerance;
     if (!is_measured && point.height < 0.0) continue;  // behind the measured surface: unknown
-    (is_measured ? measured : std::isinf(point.height) ? area.missing : area.contradicted) += point.cosine;
-    if (!is_measured && distance > far) area.aside += point.cosine;
+    const bool is_missing = !is_measured && std::isinf(point.height);
+    (is_measured ? measured : is_missing ? area.missing : area.contradicted) += point.cosine;
+    const bool is_far = !is_measured && distance > far;
+    if (is_far) area.aside += point.cosine;
+    const bool is_outside = is_missing ? outline.distance(point.position) > tolerance : is_far;
+    if (is_missing || is_far) area.outside += is_outside ? point.cosine : -point.cosine;
     ++num_judged;
   }
   if (num_judged < kRegistration.min_visible) return {};
   const double all = measured + area.contradicted + area.missing;
-  return {area.contradicted / all, area.missing / all, area.aside / all};
+  return {area.contradicted / all, area.missing / all, area.aside / all, std::max(0.0, area.outside) / all};
 }
 
 /// A lower limit of the share of points that lie on the surface. The width of the weights does not grow with the
@@ -135,6 +173,7 @@ PoseEvidence poseEvidence(const PosedSurface& scan, const PosedSurface& model, c
   evidence.contradicted = std::max(of_model_in_view.contradicted, of_scan_in_view.contradicted);
   evidence.missing = std::max(of_model_in_view.missing, of_scan_in_view.missing);
   evidence.aside = std::max(of_model_in_view.aside, of_scan_in_view.aside);
+  evidence.outside = std::max(of_model_in_view.outside, of_scan_in_view.outside);
   evidence.noise = noise / size;
   evidence.size_ratio = scan_size / model_size;
   return evidence;
@@ -153,7 +192,9 @@ std::string doubtOf(const PoseEvidence& evidence) {
         << percent(1.0 - evidence.agreement) << " % are apart";
   if (evidence.contradicted + evidence.missing > kRegistration.some_not_measured)
     doubt << "; of the surface that a scanner should have seen, " << percent(evidence.contradicted)
-          << " % lie in space it saw to be empty, and " << percent(evidence.missing) << " % were not measured";
+          << " % lie in space it saw to be empty, and " << percent(evidence.missing) << " % were not measured"
+          << (evidence.outside > 0.5 * kRegistration.max_outside ? ", mostly beyond the outline of what it measured"
+                                                                 : "");
   if (evidence.uniqueness < kRegistration.some_uniqueness)
     doubt << ", and it has " << percent(evidence.uniqueness) << " % of the odds of all poses that fit";
   return doubt.str();
@@ -169,8 +210,10 @@ double poseConfidence(const PoseEvidence& evidence) {
       std::log(std::clamp(evidence.noise, kRegistration.min_noise, kRegistration.max_noise) / 0.001 + 0.5),
       std::abs(std::log(evidence.size_ratio))};
   const double log_odds = std::inner_product(terms.begin(), terms.end(), kRegistrationFit.begin(), 0.0);
-  // Surfaces that face each other must mostly agree, whatever else supports the pose.
-  return std::min(logistic(log_odds), evidence.agreement) * evidence.uniqueness;
+  // Surfaces that face each other must mostly agree, and both clouds must have the same parts, whatever else supports
+  // the pose.
+  const double same_parts = std::max(0.0, 1.0 - 0.5 * evidence.outside / kRegistration.max_outside);
+  return std::min({logistic(log_odds), evidence.agreement, same_parts}) * evidence.uniqueness;
 }
 
 }  // namespace pcl_symmetry

@@ -64,6 +64,7 @@ struct RegistrationRules {
   double like_merit = 0.05;         ///< deficit in merit to the best pose up to which a pose may be right
   /// Share of the best odds above which a pose counts as equally likely, because sampling changes odds.
   double like_odds = 0.5;
+  double slide = 0.25;      ///< rotation or translation to poses beside the best one, radians or radii
   double same_pose = 0.03;  ///< distance within which a symmetry maps a model onto itself, diameters
   /// Distance within which the motion to another pose may be a symmetry that ICP has not reached, diameters.
   double near_pose = 0.05;
@@ -71,6 +72,8 @@ struct RegistrationRules {
       0.9;  ///< agreement of a scan with its image under a symmetry; wrong poses of scans have 0.3 to 0.6
   /// Greatest share of the scan that may lie aside under a symmetry; the handle of a mug is 0.09.
   double symmetric_aside = 0.05;
+  /// PoseEvidence::outside of a pose with a confidence of one half; 127 of 128 right poses of real scans have less.
+  double max_outside = 0.045;
   double some_uniqueness = 0.9;  ///< uniqueness below which doubtOf() mentions other poses
   double contact = 0.025;        ///< width within which points of one surface lie on each other, radii
 
