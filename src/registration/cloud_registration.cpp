@@ -161,6 +161,8 @@ struct JudgedPose {
   RankedPose pose;
   PoseEvidence evidence;
   double confidence;
+
+  double odds() const { return confidence / (1.0 - confidence); }
 };
 
 /// Poses with their evidence, by decreasing confidence.
@@ -193,12 +195,11 @@ double uniquenessOf(const CloudPair& clouds, const JudgedPose& best, const std::
     const RankedPose nearest = refinePoses(model, model, {{motion, {}}}, options).front();
     return isSymmetry(nearest.T_model_scan, model, kRegistration.same_pose);
   };
-  const auto odds = [](const JudgedPose& pose) { return pose.confidence / (1.0 - pose.confidence); };
-  const double best_odds = odds(best);
+  const double best_odds = best.odds();
   double all = best_odds;
   for (const JudgedPose& other : judged)
     if (!isNearSymmetry(other.pose.T_model_scan))
-      all += odds(other) > kRegistration.like_odds * best_odds ? best_odds : odds(other);
+      all += other.odds() > kRegistration.like_odds * best_odds ? best_odds : other.odds();
   return best_odds / all;
 }
 
@@ -340,8 +341,9 @@ CloudRegistration registerClouds(const Points& source, const std::optional<Visib
       // Between two scans, the merit grows with the surface that they share: a pose of less merit may fit equally well.
       constexpr double any = std::numeric_limits<double>::infinity();
       std::vector<JudgedPose> all = clouds.model().seen ? judgedPoses(clouds, poses, any) : judged;
-      const std::vector<JudgedPose> slid = judgedPoses(clouds, slidPoses(clouds, judged.front().pose, inner), any);
-      all.insert(all.end(), slid.begin(), slid.end());
+      // A pose on the flank of the best one counts only if it fits equally well.
+      for (const JudgedPose& slid : judgedPoses(clouds, slidPoses(clouds, judged.front().pose, inner), any))
+        if (slid.odds() > kRegistration.like_odds * judged.front().odds()) all.push_back(slid);
       result.evidence.uniqueness = uniquenessOf(clouds, judged.front(), all, inner);
     }
     result.confidence = poseConfidence(result.evidence);
