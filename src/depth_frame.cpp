@@ -18,8 +18,8 @@ namespace {
 
 using Cloud = pcl::PointCloud<pcl::PointXYZ>;
 
-constexpr float no_depth = std::numeric_limits<float>::quiet_NaN();  // the depth of a pixel without a point
-constexpr int filter_radius = 2;  // half the side of the filter's window, pixels; 1 leaves a third of the noise
+constexpr float kNoDepth = std::numeric_limits<float>::quiet_NaN();  // the depth of a pixel without a point
+constexpr int kFilterRadius = 2;  // half the side of the filter's window, pixels; 1 leaves a third of the noise
 
 /// Angle between the rays of neighboring pixels; 0 where there are none.
 double pixelAngle(const Cloud& frame, const Eigen::Vector3d& viewpoint) {
@@ -42,12 +42,12 @@ Cloud::ConstPtr withoutDepthErrors(const Cloud::ConstPtr& frame, const SeenSpace
       visibility->height() != static_cast<int>(frame->height))
     return frame;
   const Eigen::Vector3d viewpoint = visibility->viewpoint();
-  DepthImage image{visibility->width(), visibility->height(), std::vector<float>(frame->size(), no_depth),
+  DepthImage image{visibility->width(), visibility->height(), std::vector<float>(frame->size(), kNoDepth),
                    pixelAngle(*frame, viewpoint)};
   for (std::size_t i = 0; i < frame->size(); ++i)
     if (pcl::isXYZFinite((*frame)[i]))
       image.depths[i] = visibility->depth(static_cast<int>(i % frame->width), static_cast<int>(i / frame->width));
-  const FilteredDepths filtered = filterDepths(image, filter_radius, num_threads);
+  const FilteredDepths filtered = filterDepths(image, kFilterRadius, num_threads);
   if (!(filtered.inverse_error > 0.0)) return frame;
   auto result = pcl::make_shared<Cloud>(*frame);
   for (std::size_t i = 0; i < result->size(); ++i) {
@@ -64,14 +64,14 @@ namespace detail {
 namespace {
 
 // Greatest root mean square error, pixels; with more, rows and columns are not those of an image.
-constexpr double largest_error = 0.7;
-constexpr double largest_skew =
+constexpr double kLargestError = 0.7;
+constexpr double kLargestSkew =
     0.05;  // share of the focal length, also between the two: cameras that fit a flat cloud have no square pixels
 // Least number of points; fewer leave the 11 parameters of a projection to noise.
-constexpr std::size_t fewest_points = 50;
-constexpr std::size_t max_points = 20'000;  // greatest number of points that determine the 11 parameters
+constexpr std::size_t kFewestPoints = 50;
+constexpr std::size_t kMaxPoints = 20'000;  // greatest number of points that determine the 11 parameters
 // Share of the image; smaller regions without points are missing measurements, not background.
-constexpr double small_hole = 0.01;
+constexpr double kSmallHole = 0.01;
 
 /// Fills the pixels without a point: large regions and regions at the border become background, small regions are
 /// missing measurements.
@@ -98,7 +98,7 @@ void fillEmptyPixels(int width, int height, std::vector<float>& depths) {
       visit(v > 0, at - width);
       visit(v + 1 < height, at + width);
     }
-    const bool background = at_border || static_cast<double>(region.size()) > small_hole * static_cast<double>(size);
+    const bool background = at_border || static_cast<double>(region.size()) > kSmallHole * static_cast<double>(size);
     for (const std::size_t at : region) depths[at] = background ? Visibility::kBackground : Visibility::kNoRay;
   }
 }
@@ -156,13 +156,13 @@ double focalLength(const Visibility::Projection& projection, const Points& norma
     if (!(image.z() > 0.0)) return 0.0;
     sq_error += (image.head<2>() / image.z() - pixels[i]).squaredNorm();
   }
-  if (!(sq_error <= largest_error * largest_error * static_cast<double>(pixels.size()))) return 0.0;
+  if (!(sq_error <= kLargestError * kLargestError * static_cast<double>(pixels.size()))) return 0.0;
   const Eigen::Vector3d across = projection.block<1, 3>(0, 0), down = projection.block<1, 3>(1, 0),
                         forward = projection.block<1, 3>(2, 0);
   const Eigen::Vector3d x = across - across.dot(forward) * forward, y = down - down.dot(forward) * forward;
   const double focal = std::max(x.norm(), y.norm());
   const bool is_square =
-      std::abs(x.norm() - y.norm()) <= largest_skew * focal && std::abs(x.dot(y)) <= largest_skew * focal * focal;
+      std::abs(x.norm() - y.norm()) <= kLargestSkew * focal && std::abs(x.dot(y)) <= kLargestSkew * focal * focal;
   return is_square ? focal : 0.0;
 }
 
@@ -171,8 +171,8 @@ double focalLength(const Visibility::Projection& projection, const Points& norma
 std::optional<Visibility> seenByOrganizedCloud(const Cloud& frame) {
   const auto width = static_cast<int>(frame.width), height = static_cast<int>(frame.height);
   const pcl::Indices finite = selectPoints(frame, nullptr, frame.size(), 0).indices;
-  if (finite.size() < fewest_points) return std::nullopt;
-  const std::size_t stride = 1 + finite.size() / max_points;
+  if (finite.size() < kFewestPoints) return std::nullopt;
+  const std::size_t stride = 1 + finite.size() / kMaxPoints;
   pcl::Indices used;
   std::vector<Eigen::Vector2d> pixels;
   for (std::size_t i = 0; i < finite.size(); i += stride) {
@@ -196,7 +196,7 @@ std::optional<Visibility> seenByOrganizedCloud(const Cloud& frame) {
 
   // Back to the input frame; depths are in input units.
   projection.col(3) = projection.col(3) * ball.radius - projection.leftCols<3>() * ball.center;
-  std::vector<float> depths(frame.size(), no_depth);
+  std::vector<float> depths(frame.size(), kNoDepth);
   for (const pcl::index_t i : finite)
     depths[i] = static_cast<float>(
         projection.row(2).dot(Eigen::Vector4d(frame[i].getVector3fMap().cast<double>().homogeneous())));

@@ -197,7 +197,7 @@ std::vector<SelectedView> ViewpointSelection::getGoodViews(int num_views) const 
     };
     eraseIf(remaining, taken);
   }
-  sortFalling(views, &SelectedView::score);
+  sortDescending(views, &SelectedView::score);
   if (views.size() > static_cast<std::size_t>(num_views)) views.resize(num_views);
   return views;
 }

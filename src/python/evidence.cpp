@@ -2,7 +2,6 @@
 #include <pybind11/stl.h>
 
 #include <algorithm>
-#include <memory>
 #include <optional>
 #include <stdexcept>
 #include <string>
@@ -48,10 +47,10 @@ auto rowOf(const MeasuredPlane& judged) {
 
 auto rowOf(const JudgedRotation& judged) {
   const SymmetryRotation& rotation = judged.rotation;
-  const RotationSigns& signs = judged.signs;
+  const HalfTurnEvidence& signs = judged.half_turns;
   return std::make_tuple(rotation.point, rotation.direction, rotation.fold, static_cast<int>(kindOf(rotation)),
                          rotation.confidence, rotation.support, rotation.off, rotation.far, rotation.halfway,
-                         signs.grown, signs.stiffness, signs.planes_off, signs.beside,
+                         signs.extent_ratio, signs.stiffness, signs.planes_off_share, signs.conflicts_with_best,
                          padded(rotationOddsTerms(rotation, signs)));
 }
 

@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-#include "core/detection/detection_evidence.h"
+#include "core/detection/plane_search.h"
 #include "pcl_symmetry/core/symmetrized_shape.h"
 #include "pcl_symmetry/core/symmetry_frame.h"
 

@@ -117,15 +117,15 @@ PosedModel PosedScan::withoutPose(const std::string& name, const Points& points)
   return model;
 }
 
-PosedModel PosedScan::fitted(const std::string& name, const Points& points,
-                             const std::vector<Eigen::Isometry3d>& poses) const {
+PosedModel PosedScan::fitModel(const std::string& name, const Points& points,
+                               const std::vector<Eigen::Isometry3d>& poses) const {
   const PosedModel model = withoutPose(name, points);
   std::vector<Eigen::Isometry3d> starts;
   for (const Eigen::Isometry3d& pose : poses) starts.push_back(model.frames.toSearch(pose));
-  return fitted(model, starts);
+  return fitModel(model, starts);
 }
 
-PosedModel PosedScan::fitted(const PosedModel& model, const std::vector<Eigen::Isometry3d>& T_surface_scan) const {
+PosedModel PosedScan::fitModel(const PosedModel& model, const std::vector<Eigen::Isometry3d>& T_surface_scan) const {
   PoseSearchOptions search = options_.search;
   search.num_threads = options_.num_threads;
   search.num_rotations = 0;
@@ -149,7 +149,7 @@ PosedModel PosedScan::rotated(const PosedModel& found) const {
                        found.T_surface_scan);
     }
   }
-  const PosedModel other = fitted(found, starts);
+  const PosedModel other = fitModel(found, starts);
   return isWorse(found, other) ? other : found;
 }
 

@@ -51,21 +51,21 @@ public:
   /// Registers the scan to a model: the best of some poses, refined and judged.
   /// \param points points of the model, 3 x M, finite, units of the scan.
   /// \param poses T_model_scan to start from, at least one.
-  PosedModel fitted(const std::string& name, const Points& points, const std::vector<Eigen::Isometry3d>& poses) const;
+  PosedModel fitModel(const std::string& name, const Points& points, const std::vector<Eigen::Isometry3d>& poses) const;
 
   /// Tries rotations of a model about its principal axes: a mug fits nearly as well with its handle elsewhere, and no
   /// step leads from there to the true pose.
   /// \return the best pose, with the confidence that the model had.
   PosedModel rotated(const PosedModel& found) const;
 
-  /// Judges a pose that was found elsewhere, as fitted() does: by the distances of the scan from the surface between
+  /// Judges a pose that was found elsewhere, as fitModel() does: by the distances of the scan from the surface between
   /// the points of the model, so that the density of these points does not matter.
   /// \param points points of the model, 3 x M, finite, units of the scan.
   PosedModel judged(const std::string& name, const Points& points, const Eigen::Isometry3d& T_model_scan) const;
 
 private:
   PosedModel withoutPose(const std::string& name, const Points& points) const;
-  PosedModel fitted(const PosedModel& model, const std::vector<Eigen::Isometry3d>& T_surface_scan) const;
+  PosedModel fitModel(const PosedModel& model, const std::vector<Eigen::Isometry3d>& T_surface_scan) const;
   PosedModel posed(PosedModel model, const Eigen::Isometry3d& T_surface_scan) const;
   PoseScore scoreOf(const PosedSurface& model, const Eigen::Isometry3d& T_model_scan) const;
   PosedSurface surfaceOf(const Points& points, const Eigen::Vector3d& center, std::optional<Visibility> seen) const;

@@ -84,7 +84,7 @@ void fillConfidences(std::vector<PosedModel>& found) {
 
 /// Sorts models, best first, and judges them together.
 void rank(std::vector<PosedModel>& found) {
-  sortFalling(found, [](const PosedModel& posed) { return posed.model.score.merit(); });
+  sortDescending(found, [](const PosedModel& posed) { return posed.model.score.merit(); });
   fillConfidences(found);
 }
 
@@ -107,8 +107,8 @@ std::vector<PosedModel> fitLikeViews(DatabaseParts& database, const Points& poin
   std::vector<PosedModel> found;
   const auto fit = [&](const std::vector<PossibleModel>& models) {
     for (const PossibleModel& model : screened(screened_scan, models, options.num_refined, options.num_threads))
-      found.push_back(scan.fitted(model.model.name, database.points(model.model, kRecognition.num_fine_points),
-                                  model.T_model_scan));
+      found.push_back(scan.fitModel(model.model.name, database.points(model.model, kRecognition.num_fine_points),
+                                    model.T_model_scan));
     rank(found);
   };
   const auto isFound = [&] { return !found.empty() && found.front().model.confidence >= options.min_confidence; };

@@ -175,7 +175,7 @@ std::vector<JudgedPose> judgedPoses(const CloudPair& clouds, const std::vector<R
     const PoseEvidence evidence = clouds.evidence(pose);
     judged.push_back({pose, evidence, poseConfidence(evidence)});
   }
-  sortFalling(judged, &JudgedPose::confidence);
+  sortDescending(judged, &JudgedPose::confidence);
   return judged;
 }
 

@@ -5,7 +5,6 @@
 #include <pcl/registration/icp.h>
 
 #include <algorithm>
-#include <cmath>
 #include <utility>
 
 #include "core/base/small_motion.h"
@@ -85,7 +84,7 @@ public:
     // This tree is not used.
     icp_.setSearchMethodTarget(pcl::make_shared<pcl::search::KdTree<pcl::PointNormal>>(), true);
     icp_.setCorrespondenceEstimation(pcl::make_shared<ModelCorrespondences>(model.search));
-    icp_.setInputTarget(cloudOf(model, allOf(model.points.cols())));
+    icp_.setInputTarget(cloudOf(model, allIndices(model.points.cols())));
     icp_.setInputSource(fewPoints(scan));
     icp_.setUseSymmetricObjective(true);
     icp_.setEnforceSameDirectionNormals(true);

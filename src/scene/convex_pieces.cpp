@@ -95,7 +95,7 @@ std::vector<pcl::Indices> convexPieces(const SymmetryScene::Cloud& scene, const 
   const std::vector<int> closest = makeFlannSearch(pointsOf(scene, all))->closest(pointsOf(scene, rest));
   for (std::size_t i = 0; i < rest.size(); ++i) pieces[piece_of[closest[i]]].push_back(rest[i]);
   for (pcl::Indices& piece : pieces) std::sort(piece.begin(), piece.end());
-  sortFalling(pieces, [](const pcl::Indices& piece) { return piece.size(); });
+  sortDescending(pieces, [](const pcl::Indices& piece) { return piece.size(); });
   return pieces;
 }
 

@@ -72,7 +72,7 @@ std::optional<Consensus> greatestPlane(const SymmetryScene::Cloud::ConstPtr& sce
 
 /// The least-squares plane of the points nearest to a plane: sample consensus ends with a plane through three of them,
 /// which is tilted by their noise and by points of objects that stand on it.
-Eigen::Vector4d fitted(const SymmetryScene::Cloud& scene, const Consensus& plane) {
+Eigen::Vector4d fitPlane(const SymmetryScene::Cloud& scene, const Consensus& plane) {
   Eigen::Vector4d coefficients = plane.coefficients;
   for (int round = 0; round < kScene.fit_rounds; ++round) {
     const auto height = [&](pcl::index_t i) { return std::abs(heightOver(coefficients, scene[i])); };
@@ -336,7 +336,7 @@ std::vector<SupportingPlane> findSupports(const SymmetryScene::Cloud::ConstPtr& 
     if (!plane || share(plane->inliers.size()) < kScene.min_share) break;
     checkCancelled();
     plane->coefficients[3] /= scale;
-    plane->coefficients = fitted(*scene, *plane);
+    plane->coefficients = fitPlane(*scene, *plane);
     candidates = without(candidates, plane->inliers, scene->size());
     if (viewpoint && plane->coefficients.dot(viewpoint->homogeneous()) < 0.0) plane->coefficients *= -1.0;
     checkCancelled();
@@ -402,7 +402,7 @@ std::vector<pcl::Indices> findClusters(const SymmetryScene::Cloud::ConstPtr& sce
     });
     if (!is_remainder) clusters.push_back(std::move(cluster.indices));
   }
-  sortFalling(clusters, [](const pcl::Indices& cluster) { return cluster.size(); });
+  sortDescending(clusters, [](const pcl::Indices& cluster) { return cluster.size(); });
   return clusters;
 }
 

@@ -204,7 +204,7 @@ Pieces piecesOf(const Cloud& scene, const std::vector<pcl::Indices>& clusters,
   std::vector<std::pair<pcl::Indices, int>> all;
   for (std::size_t k = 0; k < found.size(); ++k)
     for (pcl::Indices& piece : found[k]) all.emplace_back(std::move(piece), static_cast<int>(k));
-  sortFalling(all, [](const auto& entry) { return entry.first.size(); });
+  sortDescending(all, [](const auto& entry) { return entry.first.size(); });
   Pieces pieces;
   for (auto& [indices, cluster] : all) {
     pieces.indices.push_back(std::move(indices));
@@ -246,8 +246,7 @@ void SymmetryScene::setGround(const Eigen::Vector4d& coefficients) {
 
 SceneAnalysis SymmetryScene::compute() const {
   SceneAnalysis analysis;
-  Stopwatch watch;
-  const auto timed = [&](const char* stage) { analysis.timing_ms.emplace_back(stage, watch.lap()); };
+  StageTimes done(analysis.timing_ms);
   const auto without = [&](const std::string& reason) {
     detail::warnOfNoAnswer("SymmetryScene", "scene: " + reason);
     analysis.reason = reason;
@@ -255,8 +254,8 @@ SceneAnalysis SymmetryScene::compute() const {
   };
   Cloud::ConstPtr frame = input_;
   if (frame) analysis.seen = seenSpaceOf(*frame, viewpoint_);
-  const double seen_ms = watch.lap();
-  // The database is prepared while the clusters are searched, which one thread does.
+  done("seen_space");
+  // What the database reads is ready when the clusters are: planes are searched for by one thread.
   std::shared_future<void> prepared;
   if (database_ && analysis.seen && analysis.seen->visibility() && resolveNumThreads(options_.num_threads) > 1)
     prepared = std::async(std::launch::async, [&] { database_->prepare(); });
@@ -272,8 +271,8 @@ SceneAnalysis SymmetryScene::compute() const {
   }
   if (points.size() < static_cast<std::size_t>(options_.min_points))
     return without(std::to_string(points.size()) + " points, too few for an object (min_points)");
-  analysis.timing_ms = {{"seen_space", seen_ms}, {"filter", watch.lap()}};
-  // The filter keeps the distortions of the depth image: the distances follow from the original frame.
+  done("filter");
+  // The filter leaves the distortions of the depth image: the distances follow from the original frame.
   detail::SceneDistances distances = detail::sceneDistances(*input_, points);
   if (options_.plane_distance > 0.0) distances.plane = options_.plane_distance;
   if (options_.cluster_distance > 0.0) distances.cluster = options_.cluster_distance;
@@ -284,7 +283,7 @@ SceneAnalysis SymmetryScene::compute() const {
     analysis.supports = {detail::supportOf(*frame, points, viewpoint, *ground_, distances.plane)};
   else
     analysis.supports = detail::findSupports(frame, points, viewpoint, distances.plane);
-  timed("supports");
+  done("supports");
   const pcl::Indices rest = detail::withoutSupports(points, analysis.supports, frame->size());
   std::vector<pcl::Indices> clusters =
       detail::findClusters(frame, rest, analysis.supports, distances, options_.min_points);
@@ -295,7 +294,7 @@ SceneAnalysis SymmetryScene::compute() const {
   eraseIf(clusters, is_bulge);
   Pieces pieces = piecesOf(*frame, clusters, viewpoint, distances.spacing, options_);
   detail::returnFeet(*frame, analysis.supports, pieces.indices, distances);
-  timed("clusters");
+  done("clusters");
   const auto of = [&](std::size_t num_objects) {
     return ObjectAnalysis(frame, analysis, distances, ofOneObject(options_, num_objects), database_.get());
   };
@@ -314,16 +313,16 @@ SceneAnalysis SymmetryScene::compute() const {
       pieces.indices, pieces.cluster_of);
   analysis.objects = std::move(joined.objects);
   analysis.junctions = std::move(joined.junctions);
-  timed("planes");
+  done("planes");
   if (database_ && !analysis.objects.empty() && viewpoint) {
     prepare();
-    timed("database");
+    done("database");
   }
   const std::size_t num_objects = analysis.objects.size();
   const bool one_each = num_objects >= static_cast<std::size_t>(resolveNumThreads(options_.num_threads));
   parallelBlocks(num_objects, one_each ? options_.num_threads : 1,
                  [&](std::size_t k) { of(num_objects).finish(analysis.objects[k]); });
-  timed("objects");
+  done("objects");
   analysis.alone = signOfOneObject(*input_, analysis);
   return analysis;
 }

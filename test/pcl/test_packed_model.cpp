@@ -76,8 +76,8 @@ TEST(PosedScan, TriesRotationsAboutTheAxesOfAModel) {
   const Points points = mug();
   for (const double degrees : {50.0, 120.0, 180.0}) {
     const detail::PosedScan scan(points, std::nullopt, 0);
-    const detail::PosedModel found =
-        scan.fitted("mug", points, {Eigen::Isometry3d(Eigen::AngleAxisd(degrees * kDegree, Eigen::Vector3d::UnitZ()))});
+    const detail::PosedModel found = scan.fitModel(
+        "mug", points, {Eigen::Isometry3d(Eigen::AngleAxisd(degrees * kDegree, Eigen::Vector3d::UnitZ()))});
     EXPECT_GT(angleOf(found), 45.0 * kDegree) << degrees;
     const detail::PosedModel rotated = scan.rotated(found);
     EXPECT_LT(angleOf(rotated), 2.0 * kDegree) << degrees;

@@ -23,20 +23,20 @@ void append(List& list, List more) {
 
 /// Sorts entries by a member or function in descending order; the sort is stable.
 template <typename List, typename Value>
-void sortFalling(List& list, const Value& value) {
+void sortDescending(List& list, const Value& value) {
   std::stable_sort(list.begin(), list.end(),
                    [&](const auto& a, const auto& b) { return std::invoke(value, a) > std::invoke(value, b); });
 }
 
 /// Sorts entries by a member or function in ascending order; the sort is stable.
 template <typename List, typename Value>
-void sortRising(List& list, const Value& value) {
+void sortAscending(List& list, const Value& value) {
   std::stable_sort(list.begin(), list.end(),
                    [&](const auto& a, const auto& b) { return std::invoke(value, a) < std::invoke(value, b); });
 }
 
 /// \return 0, 1, ..., size - 1.
-inline std::vector<int> allOf(std::ptrdiff_t size) {
+inline std::vector<int> allIndices(std::ptrdiff_t size) {
   std::vector<int> all(size);
   std::iota(all.begin(), all.end(), 0);
   return all;
@@ -44,9 +44,9 @@ inline std::vector<int> allOf(std::ptrdiff_t size) {
 
 /// \return the indices that sort the values in descending order; stable.
 template <typename Values>
-std::vector<int> fallingOrder(const Values& values) {
-  std::vector<int> order = allOf(static_cast<std::ptrdiff_t>(values.size()));
-  sortFalling(order, [&](int i) { return values[i]; });
+std::vector<int> descendingOrder(const Values& values) {
+  std::vector<int> order = allIndices(static_cast<std::ptrdiff_t>(values.size()));
+  sortDescending(order, [&](int i) { return values[i]; });
   return order;
 }
 

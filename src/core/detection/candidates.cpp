@@ -29,8 +29,8 @@ std::vector<ReflectionPlane> planesOf(const std::vector<SymmetryPlane>& planes, 
   return found;
 }
 
-std::vector<Candidate> impliedBy(const std::vector<SymmetryPlane>& planes, const NormalizedCloud& cloud,
-                                 std::vector<ReflectionPlane>& tried) {
+std::vector<Candidate> reflectSymmetries(const std::vector<SymmetryPlane>& planes, const NormalizedCloud& cloud,
+                                         std::vector<ReflectionPlane>& tried) {
   const std::vector<ReflectionPlane> symmetries = planesOf(planes, {PlaneKind::Symmetry}, cloud);
   std::vector<Candidate> found;
   append(tried, symmetries);
@@ -49,15 +49,15 @@ std::vector<Candidate> impliedBy(const std::vector<SymmetryPlane>& planes, const
   return found;
 }
 
-std::vector<Candidate> atRightAngles(const std::vector<SymmetryPlane>& planes,
-                                     const std::vector<Eigen::Vector3d>& carrying_normals,
-                                     const NormalizedCloud& cloud) {
+std::vector<Candidate> proposeAtRightAngles(const std::vector<SymmetryPlane>& planes,
+                                            const std::vector<Eigen::Vector3d>& support_normals,
+                                            const NormalizedCloud& cloud) {
   std::vector<Eigen::Vector3d> normals, tried;
   for (const SymmetryPlane& plane : planes)
     if (plane.kind == PlaneKind::Symmetry) normals.push_back(plane.normal());
   tried = normals;
   const std::size_t num_symmetries = normals.size();
-  append(normals, carrying_normals);
+  append(normals, support_normals);
   std::vector<Candidate> found;
   for (std::size_t i = 0; i < num_symmetries; ++i) {
     for (std::size_t k = i + 1; k < normals.size(); ++k) {

@@ -35,15 +35,15 @@ std::vector<ReflectionPlane> planesOf(const std::vector<SymmetryPlane>& planes, 
 /// \param planes found so far, input frame; only symmetries are used.
 /// \param[in,out] tried planes that were known or returned before, normalized frame.
 /// \return the implied planes that are not among \p tried.
-std::vector<Candidate> impliedBy(const std::vector<SymmetryPlane>& planes, const NormalizedCloud& cloud,
-                                 std::vector<ReflectionPlane>& tried);
+std::vector<Candidate> reflectSymmetries(const std::vector<SymmetryPlane>& planes, const NormalizedCloud& cloud,
+                                         std::vector<ReflectionPlane>& tried);
 
 /// Planes of a scan perpendicular to two of its symmetries, or to one of them and to its support, spread along the
 /// object. Half of the surface that such a plane maps may be hidden, so that a map of few samples has no maximum there.
 /// Not in the paper.
-/// \param carrying_normals unit normals of the supports, as from carryingNormals().
-std::vector<Candidate> atRightAngles(const std::vector<SymmetryPlane>& planes,
-                                     const std::vector<Eigen::Vector3d>& carrying_normals,
-                                     const NormalizedCloud& cloud);
+/// \param support_normals unit normals of the supports, as from supportNormals().
+std::vector<Candidate> proposeAtRightAngles(const std::vector<SymmetryPlane>& planes,
+                                            const std::vector<Eigen::Vector3d>& support_normals,
+                                            const NormalizedCloud& cloud);
 
 }  // namespace pcl_symmetry

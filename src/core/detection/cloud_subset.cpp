@@ -25,7 +25,7 @@ double maxPoints(const PointsRef& points, const DetectionOptions& options) {
 
 }  // namespace
 
-std::optional<std::vector<int>> subsetOf(const PointsRef& points, const DetectionOptions& options) {
+std::optional<std::vector<int>> drawSubset(const PointsRef& points, const DetectionOptions& options) {
   if (static_cast<double>(points.cols()) <= kDetection.points.max_points) return std::nullopt;
   const double max_points = maxPoints(points, options);
   if (!(static_cast<double>(points.cols()) > max_points)) return std::nullopt;
@@ -47,10 +47,10 @@ void spreadSupport(Detection& detection, const std::vector<int>& representative_
   if (detection.best) spread(*detection.best);
 }
 
-std::vector<int> evenlyDense(const NormalizedCloud& cloud, std::uint64_t seed) {
+std::vector<int> thinToEvenDensity(const NormalizedCloud& cloud, std::uint64_t seed) {
   const Eigen::Index size = cloud.points.cols();
   const std::vector<int> samples = drawSamples(size, kDetection.points.density_samples, seed);
-  if (size <= kDetection.points.max_counted) return allOf(size);
+  if (size <= kDetection.points.max_counted) return allIndices(size);
   std::vector<int> unused;
   std::vector<float> sq_distances;
   const Points at = pointsAt(cloud.points, samples);
@@ -76,7 +76,7 @@ std::vector<int> evenlyDense(const NormalizedCloud& cloud, std::uint64_t seed) {
                high = quantile(along, 1.0 - kDetection.points.trimmed);
   const double strength = std::clamp(
       (high - low - kDetection.points.uneven) / (kDetection.points.fully_uneven - kDetection.points.uneven), 0.0, 1.0);
-  if (strength == 0.0) return allOf(size);
+  if (strength == 0.0) return allIndices(size);
   RandomStream random(seed);
   std::vector<int> kept;
   for (Eigen::Index i = 0; i < size; ++i) {

@@ -13,7 +13,7 @@ namespace pcl_symmetry {
 /// support; every other point takes the support of the nearest of them.
 /// \param points 3 x N, finite, for which whyUnanswerable() is empty.
 /// \return indices of points; nothing if all points are needed.
-std::optional<std::vector<int>> subsetOf(const PointsRef& points, const DetectionOptions& options);
+std::optional<std::vector<int>> drawSubset(const PointsRef& points, const DetectionOptions& options);
 
 /// Gives each point of a cloud the support of the point that represents it.
 /// \param representative_of for each point, the index of the point whose support it takes; -1: it supports nothing.
@@ -25,6 +25,6 @@ void spreadSupport(Detection& detection, const std::vector<int>& representative_
 /// as asymmetric as a shape that ends there. The logarithm of the density is fitted by a linear function of the
 /// position. Variation of the shape itself is equal on both sides of a symmetry plane and remains.
 /// \return indices in increasing order; all if the density is even.
-std::vector<int> evenlyDense(const NormalizedCloud& cloud, std::uint64_t seed);
+std::vector<int> thinToEvenDensity(const NormalizedCloud& cloud, std::uint64_t seed);
 
 }  // namespace pcl_symmetry

@@ -1,8 +1,6 @@
 #include "pcl_symmetry/core/detect_planes.h"
 
 #include <algorithm>
-#include <cmath>
-#include <memory>
 #include <sstream>
 #include <utility>
 #include <vector>
@@ -11,7 +9,6 @@
 #include "core/base/lists.h"
 #include "core/base/stopwatch.h"
 #include "core/detection/cloud_subset.h"
-#include "core/detection/detection_evidence.h"
 #include "core/detection/part_search.h"
 #include "core/detection/plane_decision.h"
 #include "core/detection/plane_families.h"
@@ -23,7 +20,6 @@
 #include "core/geometry/point_samples.h"
 #include "core/rotation/scan_axes.h"
 #include "core/transform/sampled_transform.h"
-#include "pcl_symmetry/core/mesh_surface.h"
 #include "pcl_symmetry/core/planar_transform.h"
 
 namespace pcl_symmetry {
@@ -33,144 +29,186 @@ namespace {
 /// Judges the likely symmetries first or, if none of them is a symmetry, all candidates. In a whole cloud, once a plane
 /// explains everything, hopeless candidates are skipped: no missing piece could account for their unmatched points.
 /// \param candidates after the second stage, best first.
-void decide(const PlaneSearch& search, std::vector<Candidate> candidates, Found& found) {
+void refineAndJudgeInOrder(const PlaneSearch& search, std::vector<Candidate> candidates,
+                           std::vector<SymmetryPlane>& planes) {
   const CloudKind kind = search.cloud.kind();
-  const bool skips_hopeless = !search.options.approximate && kKindRules.may_lack_piece[kind];
+  const bool skips_hopeless = !search.options.approximate && kind == CloudKind::Surface;
   const auto isExplained = [&] {
-    return std::any_of(found.planes.begin(), found.planes.end(),
+    return std::any_of(planes.begin(), planes.end(),
                        [&](const SymmetryPlane& plane) { return explainsAll(plane, kind); });
   };
   if (skips_hopeless && !isExplained() && candidates.size() > 1) {
-    append(found.planes, search.refinedAndJudged({candidates.front()}));
+    append(planes, search.refineAndJudge({candidates.front()}));
     candidates.erase(candidates.begin());
   }
   if (skips_hopeless && isExplained())
     eraseIf(candidates, [&](const Candidate& other) { return search.isHopeless(other); });
-  append(found.planes, search.refinedAndJudged(std::move(candidates)));
+  append(planes, search.refineAndJudge(std::move(candidates)));
 }
 
 /// The evidence of all candidates, including those that the detection rejects early.
 /// \param candidates after the second stage.
-std::vector<MeasuredPlane> judgeAll(const PlaneSearch& search, std::vector<Candidate> candidates) {
+std::vector<MeasuredPlane> measureAllCandidates(const PlaneSearch& search, std::vector<Candidate> candidates) {
   candidates = search.refinement.refineFully(std::move(candidates));
   search.refinement.climb(candidates, std::vector<char>(candidates.size(), true));
   return search.judge(search.refinement.distinct(std::move(candidates)));
 }
 
 /// The reflection of one symmetry in another is a symmetry, and so are the missing planes of a regular polygon.
-void completeGroups(const PlaneSearch& search, Found& found) {
-  if (!kKindRules.shows_all[search.cloud.kind()]) return;
+void completeGroups(const PlaneSearch& search, DetectionState& state) {
+  if (search.cloud.isScan()) return;
   std::vector<ReflectionPlane> tried;
   for (std::vector<Candidate> candidates;
-       !(candidates = search.refinement.refineSymmetries(impliedBy(found.planes, search.cloud, tried))).empty();)
-    decide(search, std::move(candidates), found);
+       !(candidates = search.refinement.refineSymmetries(reflectSymmetries(state.answer.planes, search.cloud, tried)))
+            .empty();)
+    refineAndJudgeInOrder(search, std::move(candidates), state.answer.planes);
 }
 
 /// Tries the planes of a scan that the map does not show because half of the surface that they map is hidden.
-void tryRightAngles(const PlaneSearch& search, Found& found) {
-  const NormalizedCloud& cloud = search.cloud;
-  if (kKindRules.shows_all[cloud.kind()] || !cloud.seen()) return;
-  std::vector<Candidate> candidates = atRightAngles(found.planes, carryingNormals(cloud.points, *cloud.seen()), cloud);
-  if (!candidates.empty()) decide(search, search.refinement.refineSymmetries(std::move(candidates)), found);
+void tryRightAngles(const PlaneSearch& search, DetectionState& state) {
+  if (!search.cloud.isScan()) return;
+  std::vector<Candidate> candidates = proposeAtRightAngles(state.answer.planes, search.support_normals, search.cloud);
+  if (!candidates.empty())
+    refineAndJudgeInOrder(search, search.refinement.refineSymmetries(std::move(candidates)), state.answer.planes);
 }
 
 /// Every plane through the axis of a mug maps its body onto itself. One that does not map its handle onto itself is
 /// possible at most.
 void limitByHandle(const PlaneSearch& search, const RotationEvidence& rotations, const ScanAxesOptions& options,
-                   Found& found) {
-  if (std::none_of(found.planes.begin(), found.planes.end(),
+                   std::vector<SymmetryPlane>& planes) {
+  if (std::none_of(planes.begin(), planes.end(),
                    [](const SymmetryPlane& plane) { return plane.kind == PlaneKind::Symmetry; }))
     return;
   const std::optional<NearlyRound> body = nearlyRound(rotations, options);
   if (!body) return;
-  for (SymmetryPlane& plane : found.planes) {
+  for (SymmetryPlane& plane : planes) {
     const ReflectionPlane normalized = search.cloud.toNormalized(plane);
     if (contains(normalized, body->axis) &&
-        rotations.shareOn(normalized.reflection(), body->not_round) < kScanAxes.min_mapped)
+        rotations.shareOn(normalized.reflection(), body->off_body) < kScanAxes.min_mapped)
       limitToPossible(plane, "contains the axis of a round body, and does not map what is not round of it onto itself");
   }
 }
 
 /// Finds axes of rotations of a scan and makes axes of revolution and planes consistent with them.
-void findAxesOfScan(const PlaneSearch& search, Found& found) {
+void findAxesOfScan(const PlaneSearch& search, DetectionState& state) {
+  Detection& answer = state.answer;
   const DetectionOptions& options = search.options;
   if (search.measure.limits().isCutAllAround() || !options.rotations) return;
   // A ball is symmetric about every line through its center.
-  if (kKindRules.shows_all[search.cloud.kind()] || !found.centers.empty()) return;
+  if (!search.cloud.isScan() || !answer.centers.empty()) return;
   const ScanAxesOptions scan_axes{options.folds, options.min_confidence, options.min_possible, options.seed,
                                   options.num_threads};
   const RotationEvidence rotations(search.cloud, search.measure.tolerance(), options.seed);
   if (std::optional<SymmetryCenter> center = centerOfScan(rotations, scan_axes)) {
-    found.axes.clear();
-    found.planes = withoutPlanesThrough(std::move(found.planes), *center, search.cloud);
-    found.centers.push_back(*std::move(center));
+    answer.axes.clear();
+    answer.planes = withoutPlanesThrough(std::move(answer.planes), *center, search.cloud);
+    answer.centers.push_back(*std::move(center));
     return;
   }
-  found.rotations =
-      scanAxes(rotations, found.planes, found.axes, scan_axes, found.evidence ? &found.evidence->rotations : nullptr);
-  found.axes = withRoundAxes(rotations, std::move(found.axes), found.rotations, scan_axes);
-  found.planes = withoutPlanesThrough(std::move(found.planes), found.axes, search.cloud);
+  answer.rotations =
+      scanAxes(rotations, answer.planes, answer.axes, scan_axes, state.evidence ? &state.evidence->rotations : nullptr);
+  answer.axes = withRoundAxes(rotations, std::move(answer.axes), answer.rotations, scan_axes);
+  answer.planes = withoutPlanesThrough(std::move(answer.planes), answer.axes, search.cloud);
   // A body other than a ball has one axis: further axes, as of a dome, are round only within the tolerance.
-  sortFalling(found.axes, &SymmetryAxis::confidence);
-  if (found.axes.size() > 1) found.axes.resize(1);
-  if (found.axes.empty()) limitByHandle(search, rotations, scan_axes, found);
+  sortDescending(answer.axes, &SymmetryAxis::confidence);
+  if (answer.axes.size() > 1) answer.axes.resize(1);
+  if (answer.axes.empty()) limitByHandle(search, rotations, scan_axes, answer.planes);
 }
 
 /// Rules by which results correct each other, applied in this order. Not in the paper.
 constexpr struct {
   const char* name;  ///< stage in Detection::timing_ms
-  void (*apply)(const PlaneSearch& search, Found& found);
+  void (*apply)(const PlaneSearch& search, DetectionState& state);
 } kRules[] = {
     {"groups", completeGroups},
     {"right_angles", tryRightAngles},
-    {"missing_pieces", [](const PlaneSearch& search,
-                          Found& found) { doubtMissingPieces(found.planes, search.cloud.kind(), search.options); }},
+    {"missing_pieces",
+     [](const PlaneSearch& search, DetectionState& state) {
+       doubtMissingPieces(state.answer.planes, search.cloud.kind(), search.options);
+     }},
     {"polygon", completePolygon},
     {"families", findFamilies},
     {"rotations", findAxesOfScan},
     {"beside_best",
-     [](const PlaneSearch& search, Found& found) {
-       doubtFurtherPlanes(found.planes, found.hasFamily(), search.cloud.kind(), search.options);
+     [](const PlaneSearch& search, DetectionState& state) {
+       doubtFurtherPlanes(state.answer.planes, state.answer.hasFamily(), search.cloud.kind(), search.options);
      }},
     {"slanted",
-     [](const PlaneSearch& search, Found& found) {
-       if (const Visibility* seen = search.cloud.seen())
-         doubtSlantedPlanes(found.planes, carryingNormals(search.cloud.points, *seen), search.options);
+     [](const PlaneSearch& search, DetectionState& state) {
+       doubtSlantedPlanes(state.answer.planes, search.support_normals, search.options);
      }},
     {"parts", findPlanesOfParts},
 };
 
 /// Section 4.4 and what follows: from the maxima of the map of a cloud to the list of planes. publishedPlanes() is the
 /// section alone.
-/// \param[in,out] found receives the results.
-void refineAndDecide(const PlaneSearch& search, const SymmetryMap& map, Found& found, StageTimes& timed) {
+/// \param[in,out] state receives the results.
+void refineAndDecide(const PlaneSearch& search, const SymmetryMap& map, DetectionState& state, StageTimes& done) {
   // Candidates: local maxima of the transform, and the planes perpendicular to the principal axes.
   std::vector<Candidate> candidates = gatherCandidates(search.cloud, map, search.options);
-  timed("maxima");
+  done("maxima");
 
   // Iterative Symmetric Points, with more samples and narrower weights in each stage; the last one with the decision.
   candidates = search.refinement.refineCoarsely(std::move(candidates), map.grid);
-  timed("coarse_refinement");
+  done("coarse_refinement");
   candidates = search.refinement.refineClosely(std::move(candidates));
-  timed("close_refinement");
-  if (found.evidence) {
-    found.evidence->planes = judgeAll(search, candidates);
-    timed("evidence");
+  done("close_refinement");
+  if (state.evidence) {
+    state.evidence->planes = measureAllCandidates(search, candidates);
+    done("evidence");
   }
-  decide(search, std::move(candidates), found);
-  timed("full_refinement");
+  refineAndJudgeInOrder(search, std::move(candidates), state.answer.planes);
+  done("full_refinement");
 
   for (const auto& rule : kRules) {
-    rule.apply(search, found);
-    timed(rule.name);
+    rule.apply(search, state);
+    done(rule.name);
   }
 
-  report(search, found);
-  timed("report");
+  report(search, state);
+  done("report");
 }
 
-/// The normals of the distinct points; if copies differ, that of the last copy.
-/// \param used indices of the input points that became distinct ones, in the order of DistinctPoints::index_of.
+/// The bulk of a cloud: all points that are not stray. Of a large cloud, some points represent it.
+struct UsedPoints {
+  const std::vector<int> stray, in_bulk;  ///< indices of points of the cloud
+  const Points bulk;
+  const std::string reason;                      ///< why the bulk cannot be analyzed; empty if it can
+  const std::optional<std::vector<int>> subset;  ///< indices of points of the bulk; none if all are used
+  std::vector<int> indices;                      ///< of the points of the cloud that are used
+  Points points;                                 ///< that are used
+
+  UsedPoints(const PointsRef& cloud, const DetectionOptions& options)
+      : stray(strayPoints(cloud)),
+        in_bulk(complementOf(stray, cloud.cols())),
+        bulk(pointsAt(cloud, in_bulk)),
+        reason(whyUnanswerable(bulk)),
+        subset(reason.empty() ? drawSubset(bulk, options) : std::nullopt),
+        indices(subset ? *subset : allIndices(bulk.cols())) {
+    for (int& i : indices) i = in_bulk[i];
+    points = pointsAt(cloud, indices);
+  }
+};
+
+/// Sections 4.1 to 4.3: the distance transform and the map, unless the input has them.
+/// \param[in,out] found receives the map.
+/// \return none if the input has both.
+std::optional<GaussianEdt> computeMap(const PlaneInput& input, const UsedPoints& used, const DetectionOptions& options,
+                                      Detection& found, StageTimes& done) {
+  if (input.map) return std::nullopt;
+  std::optional<GaussianEdt> edt(std::in_place, used.points, options.edtOptions());
+  done("distance_transform");
+  const std::vector<float> free_space = freeSpace(*edt, input.visibility, options.num_threads);
+  done("free_space");
+  const PlaneGrid grid(options.expert, edt->center(), edt->radius());
+  found.map = sampledTransform(*edt, grid, {options.expert.num_samples, options.seed, options.num_threads}, free_space);
+  found.map.center_of_mass = centerOfMass(used.bulk);
+  done("transform");
+  return edt;
+}
+
+/// The normals of the distinct points: where copies differ, that of the last copy.
+/// \param used indices of the points that became distinct ones, in the order of DistinctPoints::index_of.
 Points normalsOf(const DistinctPoints& distinct, const Points& normals, const std::vector<int>& used) {
   Points result(3, distinct.points.cols());
   for (std::size_t i = 0; i < used.size(); ++i) result.col(distinct.index_of[i]) = normals.col(used[i]);
@@ -221,53 +259,36 @@ Detection detectWithEvidence(const PlaneInput& input, const DetectionOptions& op
     check(input.normals->cols() == input.points.cols(), "number of normals", input.normals->cols(),
           "the number of points");
   check(!input.map == !input.edt, "map", input.map ? "given" : "missing", "given together with edt");
-  Found found;
-  StageTimes timed(found.timing_ms);
-  found.evidence = evidence;
+  DetectionState state;
+  state.evidence = evidence;
+  Detection& found = state.answer;
+  StageTimes done(found.timing_ms);
 
-  // The bulk: all points that are not stray, of a large cloud a subset.
-  const std::vector<int> stray = strayPoints(input.points), in_bulk = allBut(stray, input.points.cols());
-  const Points bulk = pointsAt(input.points, in_bulk);
-  found.num_stray_points = static_cast<int>(stray.size());
-  found.reason = whyUnanswerable(bulk);
+  const UsedPoints used(input.points, options);
+  found.num_stray_points = static_cast<int>(used.stray.size());
+  found.reason = used.reason;
   if (!found.reason.empty()) return std::move(found);
-  const std::optional<std::vector<int>> subset = subsetOf(bulk, options);
-  std::vector<int> used = subset ? *subset : allOf(bulk.cols());
-  for (int& i : used) i = in_bulk[i];
-  const Points points = pointsAt(input.points, used);
-  if (subset) timed("subset");
+  if (used.subset) done("subset");
 
-  // Sections 4.1 to 4.3: the distance transform and the map, unless the input has them.
-  std::optional<GaussianEdt> own_edt;
-  if (!input.map) {
-    own_edt.emplace(points, options.edtOptions());
-    timed("distance_transform");
-    const std::vector<float> free_space = freeSpace(*own_edt, input.visibility, options.num_threads);
-    timed("free_space");
-    const PlaneGrid grid(options.expert, own_edt->center(), own_edt->radius());
-    found.map =
-        sampledTransform(*own_edt, grid, {options.expert.num_samples, options.seed, options.num_threads}, free_space);
-    found.map.center_of_mass = centerOfMass(bulk);
-    timed("transform");
-  }
+  const std::optional<GaussianEdt> own_edt = computeMap(input, used, options, found, done);
   const GaussianEdt& edt = input.edt ? *input.edt : *own_edt;
 
   // The cloud: each position once and, where noise leaves no surface, evenly dense.
-  const DistinctPoints distinct(points);
-  const Points normals = input.normals ? normalsOf(distinct, *input.normals, used) : Points();
+  const DistinctPoints distinct(used.points);
+  const Points normals = input.normals ? normalsOf(distinct, *input.normals, used.indices) : Points();
   ClosestPointSearch::Ptr search;
   if (input.make_search) search = inFrame(input.make_search(distinct.points), edt.center(), edt.radius());
   const NormalizedCloud cloud(distinct.points, edt, std::move(search), input.visibility, options.num_threads,
                               input.normals ? &normals : nullptr);
   std::optional<EvenCloud> even;
-  if (!kKindRules.resolves_surface[cloud.kind()])
-    if (const std::vector<int> kept = evenlyDense(cloud, options.seed); kept.size() < distinct.first_of.size())
+  if (cloud.isVolume())
+    if (const std::vector<int> kept = thinToEvenDensity(cloud, options.seed); kept.size() < distinct.first_of.size())
       even.emplace(cloud, distinct.points, kept, options.num_threads);
 
   // Section 4.4: planes.
   const PlaneSearch plane_search(even ? even->cloud : cloud, cloud.points, options);
-  timed("surface");
-  refineAndDecide(plane_search, input.map ? *input.map : found.map, found, timed);
+  done("surface");
+  refineAndDecide(plane_search, input.map ? *input.map : found.map, state, done);
 
   // The support of all points: of the whole cloud, then of the bulk, then of the input. Stray points support no plane.
   const auto complete = [&](SymmetryPlane& plane) {
@@ -278,13 +299,14 @@ Detection detectWithEvidence(const PlaneInput& input, const DetectionOptions& op
     if (found.best) complete(*found.best);
   }
   if (!found.planes.empty() || found.best)
-    spreadSupport(
-        found, subset ? closestPoints(*makeFlannSearch(points), bulk, options.num_threads).index : distinct.index_of);
-  if (subset) timed("support_of_all");
-  if (input.may_be_rings && input.visibility) decideByUprightBox(bulk, *input.visibility, options, found);
-  if (stray.empty()) return std::move(found);
+    spreadSupport(found, used.subset
+                             ? closestPoints(*makeFlannSearch(used.points), used.bulk, options.num_threads).index
+                             : distinct.index_of);
+  if (used.subset) done("support_of_all");
+  if (input.may_be_rings && input.visibility) decideByUprightBox(used.bulk, *input.visibility, options, found);
+  if (used.stray.empty()) return std::move(found);
   std::vector<int> index_in_bulk(input.points.cols(), -1);
-  for (std::size_t i = 0; i < in_bulk.size(); ++i) index_in_bulk[in_bulk[i]] = static_cast<int>(i);
+  for (std::size_t i = 0; i < used.in_bulk.size(); ++i) index_in_bulk[used.in_bulk[i]] = static_cast<int>(i);
   spreadSupport(found, index_in_bulk);
   return std::move(found);
 }

@@ -182,16 +182,6 @@ struct KindRules {
   // clang-format off
   //                                        surface     scan   volume
 
-  // Whether the points show all sides. A scan shows too little to complete groups of planes, candidates of little merit
-  // may be symmetries, and point-to-plane steps slide along flat pieces; planes of noisy scans climb within the last
-  // stage.
-  KindRule<bool> shows_all                {    true,   false,    true};
-  // Whether points resolve a surface, whose normals are known. Otherwise the points are made evenly dense, one half of
-  // them is compared with the other, and planes of a polygon are judged together, because noise hides single ones.
-  KindRule<bool> resolves_surface         {    true,    true,   false};
-  // Whether open borders indicate cuts.
-  KindRule<bool> may_lack_piece           {    true,   false,   false};
-
   // Refinement: the last stage reflects one sample in this many. Scans are limited by their visible part.
   KindRule<int> full_stride               {       1,       4,       1};
   // One sample in this many is reflected for candidates that never settle.

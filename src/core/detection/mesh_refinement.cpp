@@ -79,7 +79,7 @@ void refineOnMesh(const MeshSurface& mesh, Detection& found, const DetectionOpti
     found.best = dropped;
   }
   if (found.flat) found.flat = mesh.fitted(*found.flat);
-  found.planes = reordered(std::move(kept), options);
+  found.planes = sortPlanes(std::move(kept), options);
   for (SymmetryAxis& axis : found.axes) {
     MotionsAbout motions{{}, axis.point};
     motions.addRotations(axis.direction);

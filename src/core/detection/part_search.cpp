@@ -45,7 +45,7 @@ MatchedRegions::MatchedRegions(const NormalizedCloud& cloud, const PlaneFit& fit
 }
 
 MatchedRegion MatchedRegions::largest(const ReflectionPlane& plane, const std::vector<int>* guesses, bool walks) const {
-  const IspSurface& surface = walks && kKindRules.shows_all[cloud_.kind()] ? cloud_.quick_surface : cloud_.surface;
+  const IspSurface& surface = walks && !cloud_.isScan() ? cloud_.quick_surface : cloud_.surface;
   IspStep step = matchSymmetricPoints(surface, samples_, plane, cloud_.final_sigma, guesses);
   const std::vector<float> support = fit_.shares(plane, samples_, step).points.support;
   const std::size_t size = samples_.size(), num_neighbors = neighbors_.size() / size;
@@ -76,7 +76,7 @@ MatchedRegion MatchedRegions::largest(const ReflectionPlane& plane, const std::v
 std::vector<char> MatchedRegions::inLargest(const std::vector<char>& matched, const IspStep& step,
                                             const std::vector<float>& support) const {
   const std::size_t size = samples_.size(), num_neighbors = neighbors_.size() / size;
-  std::vector<int> rank(size, 0), parent = allOf(static_cast<Eigen::Index>(size));
+  std::vector<int> rank(size, 0), parent = allIndices(static_cast<Eigen::Index>(size));
   boost::disjoint_sets<int*, int*> sets(rank.data(), parent.data());
   const std::size_t num_connecting = std::min<std::size_t>(kDetection.parts.num_connecting + 1, num_neighbors);
   for (std::size_t i = 0; i < size; ++i) {
@@ -151,7 +151,7 @@ bool isBall(std::size_t count, const Points& points) {
 }
 
 /// Evenly chosen samples, at most \p max_count and at least half as many if there are enough.
-std::vector<int> thinned(const std::vector<int>& samples, std::size_t max_count) {
+std::vector<int> thin(const std::vector<int>& samples, std::size_t max_count) {
   std::vector<int> some;
   const std::size_t stride = 1 + samples.size() / max_count;
   for (std::size_t i = 0; i < samples.size(); i += stride) some.push_back(samples[i]);
@@ -193,14 +193,14 @@ struct BallSearch {
 
   /// Refines a plane on the points of a ball, moves the ball to the plane, and refines the plane again.
   /// \return nothing if the ball has too few or too many points, the plane leaves the ball, or too little matches.
-  std::optional<SymmetricPart> refined(const ReflectionPlane& start, const std::vector<int>& ball,
-                                       const Eigen::Vector3d& middle, double radius) const {
-    IspResult result = refineSymmetricPoints(surface, thinned(ball, kDetection.parts.ball_samples), start, isp);
+  std::optional<SymmetricPart> refinePart(const ReflectionPlane& start, const std::vector<int>& ball,
+                                          const Eigen::Vector3d& middle, double radius) const {
+    IspResult result = refineSymmetricPoints(surface, thin(ball, kDetection.parts.ball_samples), start, isp);
     // A plane through its center cuts a ball into equal halves.
     const Eigen::Vector3d center = middle - result.plane.signedDistance(middle) * result.plane.normal();
     const std::vector<int> moved = within(cloud.points, center.cast<float>(), radius);
     if (!isBall(moved.size(), cloud.points)) return std::nullopt;
-    const std::vector<int> samples = thinned(moved, kDetection.parts.ball_samples);
+    const std::vector<int> samples = thin(moved, kDetection.parts.ball_samples);
     IspOptions fine = isp;
     fine.sigma = fine.final_sigma;
     const int num_before = result.iterations;
@@ -222,14 +222,15 @@ struct BallSearch {
     std::vector<SymmetricPart> found;
     if (!isBall(ball.size(), points)) return found;
     for (const ReflectionPlane& start : startingPlanes(pointsAt(points, ball), middle))
-      if (std::optional<SymmetricPart> part = refined(start, ball, middle, radius)) found.push_back(std::move(*part));
+      if (std::optional<SymmetricPart> part = refinePart(start, ball, middle, radius))
+        found.push_back(std::move(*part));
     return found;
   }
 };
 
 /// The planes that differ from better ones, best first.
 std::vector<SymmetricPart> distinct(std::vector<SymmetricPart> parts) {
-  sortFalling(parts, [](const SymmetricPart& part) { return part.support * part.share; });
+  sortDescending(parts, [](const SymmetricPart& part) { return part.support * part.share; });
   return kSamePlaneOfPart.distinct(std::move(parts), &SymmetricPart::plane);
 }
 
@@ -251,7 +252,7 @@ struct RegionSearch {
     IspOptions isp = balls.isp;
     isp.sigma = sigma;
     const IspResult result = refineSymmetricPoints(
-        balls.cloud.surface, thinned(region.points, kDetection.parts.region_samples), part.plane, isp);
+        balls.cloud.surface, thin(region.points, kDetection.parts.region_samples), part.plane, isp);
     part.plane = result.plane;
     part.iterations += result.iterations;
   }
@@ -281,7 +282,7 @@ struct RegionSearch {
 
 /// Removes parts with a long edge whose points belong to better parts.
 std::vector<SymmetricPart> withoutRemains(std::vector<SymmetricPart> parts, Eigen::Index num_points) {
-  sortRising(parts, [](const SymmetricPart& part) { return std::max(0.0, part.longer_edge); });
+  sortAscending(parts, [](const SymmetricPart& part) { return std::max(0.0, part.longer_edge); });
   std::vector<char> taken(num_points, 0);
   std::vector<SymmetricPart> kept;
   for (SymmetricPart& part : parts) {
@@ -348,13 +349,13 @@ std::vector<SymmetricPart> findSymmetricParts(const NormalizedCloud& cloud, cons
 
 }  // namespace
 
-void findPlanesOfParts(const PlaneSearch& search, Found& found) {
+void findPlanesOfParts(const PlaneSearch& search, DetectionState& state) {
   const NormalizedCloud& cloud = search.cloud;
   if (!search.options.approximate) return;
   const std::vector<ReflectionPlane> decided =
-      planesOf(found.planes, {PlaneKind::Symmetry, PlaneKind::Possible}, cloud);
+      planesOf(state.answer.planes, {PlaneKind::Symmetry, PlaneKind::Possible}, cloud);
   const std::vector<SymmetricPart> parts = findSymmetricParts(cloud, *search.fit, search.options);
-  const std::vector<int> all = allOf(cloud.points.cols());
+  const std::vector<int> all = allIndices(cloud.points.cols());
   std::vector<std::optional<SymmetryPlane>> of_parts(parts.size());
   parallelBlocks(parts.size(), search.options.num_threads, [&](std::size_t i) {
     if (kSameMaximum.anySame(decided, parts[i].plane)) return;
@@ -365,7 +366,7 @@ void findPlanesOfParts(const PlaneSearch& search, Found& found) {
     of_parts[i] = std::move(plane);
   });
   for (std::optional<SymmetryPlane>& plane : of_parts)
-    if (plane) found.planes.push_back(std::move(*plane));
+    if (plane) state.answer.planes.push_back(std::move(*plane));
 }
 
 }  // namespace pcl_symmetry

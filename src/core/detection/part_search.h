@@ -55,6 +55,6 @@ private:
 ///
 /// With DetectionOptions::approximate, adds planes of PlaneKind::Local, unlike the symmetries and possible symmetries
 /// found before.
-void findPlanesOfParts(const PlaneSearch& search, Found& found);
+void findPlanesOfParts(const PlaneSearch& search, DetectionState& state);
 
 }  // namespace pcl_symmetry

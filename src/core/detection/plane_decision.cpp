@@ -1,7 +1,6 @@
 #include "core/detection/plane_decision.h"
 
 #include <algorithm>
-#include <utility>
 
 #include "core/base/lists.h"
 #include "core/base/statistics.h"
@@ -74,7 +73,7 @@ void limitToPossible(SymmetryPlane& plane, const char* rule) {
 }
 
 bool explainsAll(const SymmetryPlane& plane, CloudKind kind) {
-  return kKindRules.may_lack_piece[kind] && plane.kind == PlaneKind::Symmetry &&
+  return kind == CloudKind::Surface && plane.kind == PlaneKind::Symmetry &&
          1.0 - plane.seen <= kDetection.decide.nothing_missing;
 }
 
@@ -96,14 +95,14 @@ void doubtFurtherPlanes(std::vector<SymmetryPlane>& planes, bool has_family, Clo
     if (&plane != best) multiplyOdds(plane, furtherOdds(kind, 1.0 - plane.seen), rule, options);
 }
 
-void doubtSlantedPlanes(std::vector<SymmetryPlane>& planes, const std::vector<Eigen::Vector3d>& carrying_normals,
+void doubtSlantedPlanes(std::vector<SymmetryPlane>& planes, const std::vector<Eigen::Vector3d>& support_normals,
                         const DetectionOptions& options) {
   for (SymmetryPlane& plane : planes)
-    if (isDecided(plane) && slants(plane, carrying_normals))
+    if (isDecided(plane) && isSlanted(plane, support_normals))
       multiplyOdds(plane, kDetection.decide.slanted_odds, "slants on what the object stands on", options);
 }
 
-std::vector<SymmetryPlane> reordered(std::vector<SymmetryPlane> planes, const DetectionOptions& options) {
+std::vector<SymmetryPlane> sortPlanes(std::vector<SymmetryPlane> planes, const DetectionOptions& options) {
   if (!options.approximate) eraseIf(planes, [](const SymmetryPlane& p) { return !isDecided(p); });
   std::stable_sort(planes.begin(), planes.end(), isBetter);
   return planes;

@@ -48,11 +48,11 @@ void doubtFurtherPlanes(std::vector<SymmetryPlane>& planes, bool has_family, Clo
 
 /// Lowers the odds of slanted planes: an object on a table was made to stand there, or lies on one of its sides, so
 /// that nearly all of its planes are upright or level. Without a known support, no plane counts as slanted.
-/// \param carrying_normals as from carryingNormals().
-void doubtSlantedPlanes(std::vector<SymmetryPlane>& planes, const std::vector<Eigen::Vector3d>& carrying_normals,
+/// \param support_normals as from supportNormals().
+void doubtSlantedPlanes(std::vector<SymmetryPlane>& planes, const std::vector<Eigen::Vector3d>& support_normals,
                         const DetectionOptions& options);
 
 /// Planes in the order of the results; only decided ones unless `approximate` is set.
-std::vector<SymmetryPlane> reordered(std::vector<SymmetryPlane> planes, const DetectionOptions& options);
+std::vector<SymmetryPlane> sortPlanes(std::vector<SymmetryPlane> planes, const DetectionOptions& options);
 
 }  // namespace pcl_symmetry

@@ -139,7 +139,7 @@ std::vector<AxisFamily> findAxes(const std::vector<ReflectionPlane>& planes, con
       attempt(commonLine({planes[i], planes[j]}), std::max(test.share(planes[i]), test.share(planes[j])));
     }
   }
-  sortFalling(axes, &AxisFamily::share);
+  sortDescending(axes, &AxisFamily::share);
   return axes;
 }
 
@@ -151,10 +151,10 @@ FamilyTest familyTest(const PlaneSearch& search, const std::vector<int>& samples
   const DetectionOptions& options = search.options;
   // If the tolerance is greater than the default one, points within it may lie beyond the support of all samples.
   const double usual = DetectionOptions().tolerance * cloud.extent;
-  const bool is_coarse = cloud.kind() == CloudKind::Surface &&
-                         std::max(options.tolerance * cloud.extent, options.absolute_tolerance / cloud.scale) > usual;
+  const bool is_coarse =
+      cloud.isSurface() && std::max(options.tolerance * cloud.extent, options.absolute_tolerance / cloud.scale) > usual;
   // A plane that maps most of a scan to unknown space is uninformative: only contradictions count.
-  const auto share_of = [&, is_coarse, is_scan = !kKindRules.shows_all[cloud.kind()]](const std::vector<int>& used) {
+  const auto share_of = [&, is_coarse, is_scan = cloud.isScan()](const std::vector<int>& used) {
     return [&, used, is_coarse, is_scan](const ReflectionPlane& plane) {
       if (is_coarse) return search.judge(plane, used).evidence.share;
       const PlaneShares shares = fit.shares(plane, used);
@@ -171,7 +171,7 @@ FamilyTest familyTest(const PlaneSearch& search, const std::vector<int>& samples
        drawSamples(num_samples, static_cast<int>(num_samples) / kDetection.families.rough_sample_share, options.seed))
     fewer.push_back(samples[i]);
   test.rough_share = share_of(fewer);
-  test.refine = [&fit, samples](const ReflectionPlane& plane) { return fit.refined(plane, samples); };
+  test.refine = [&fit, samples](const ReflectionPlane& plane) { return fit.refinePlane(plane, samples); };
   const CloudKind kind = cloud.kind();
   const double few_points = kKindRules.points_of_allowance[kind] / static_cast<double>(cloud.points.cols());
   test.min_share = kKindRules.family_share[kind];
@@ -181,7 +181,7 @@ FamilyTest familyTest(const PlaneSearch& search, const std::vector<int>& samples
 
 /// Different symmetries among planes, most confident first, normalized frame.
 std::vector<ReflectionPlane> symmetriesOf(std::vector<SymmetryPlane> planes, const NormalizedCloud& cloud) {
-  sortFalling(planes, &SymmetryPlane::confidence);
+  sortDescending(planes, &SymmetryPlane::confidence);
   return kSamePlane.distinct(planesOf(planes, {PlaneKind::Symmetry}, cloud));
 }
 
@@ -193,12 +193,13 @@ Line3d longestAxis(const PrincipalAxes& axes) {
 
 }  // namespace
 
-void findFamilies(const PlaneSearch& search, Found& found) {
+void findFamilies(const PlaneSearch& search, DetectionState& state) {
+  Detection& answer = state.answer;
   const NormalizedCloud& cloud = search.cloud;
   const DetectionOptions& options = search.options;
   const CloudLimits& limits = search.measure.limits();
-  if (limits.isCutAllAround() || (found.polygon && cloud.kind() == CloudKind::Surface)) return;
-  const std::vector<ReflectionPlane> symmetries = symmetriesOf(found.planes, cloud);
+  if (limits.isCutAllAround() || (state.polygon && cloud.isSurface())) return;
+  const std::vector<ReflectionPlane> symmetries = symmetriesOf(answer.planes, cloud);
   const bool is_line = limits.thinness() == Thinness::Line;
   if (symmetries.empty() && !is_line) return;
   const std::vector<int> samples =
@@ -207,46 +208,43 @@ void findFamilies(const PlaneSearch& search, Found& found) {
     const Line3d line = longestAxis(cloud.principal_axes);
     const JudgedFamily family = search.judgeFamily(planesAt([&](int k) { return planeOfFamily(line, k, 0); }), samples);
     if (family.confidence >= options.min_confidence)
-      found.axes.push_back(
+      answer.axes.push_back(
           {cloud.toInput(line.origin()), line.direction(), family.confidence, family.score, family.support});
     return;
   }
   const FamilyTest test = familyTest(search, samples);
   std::vector<Line3d> likely_axes;
   std::vector<Eigen::Vector3d> likely_centers;
-  if (kKindRules.resolves_surface[cloud.kind()]) {
+  if (!cloud.isVolume()) {
     likely_axes.push_back(axisOfNormals(cloud.points, cloud.geometry.normals, samples));
     likely_centers.push_back(centerOfNormals(cloud.points, cloud.geometry.normals, samples));
   }
-  const auto drop = [&](const auto& belongs) {
-    eraseIf(found.planes, [&](const SymmetryPlane& plane) { return belongs(cloud.toNormalized(plane)); });
-  };
   // A regular polygon is not symmetric between its planes: the worst plane decides, too. In a scan, some planes are too
   // poorly visible for that.
   const auto isFamily = [&](const JudgedFamily& family) {
     return family.confidence >= options.min_confidence &&
-           (!kKindRules.shows_all[cloud.kind()] ||
-            family.min_confidence >= kDetection.families.worst_share * options.min_confidence);
+           (cloud.isScan() || family.min_confidence >= kDetection.families.worst_share * options.min_confidence);
   };
   if (const std::optional<CenterFamily> center = findCenter(symmetries, test, likely_centers)) {
     const JudgedFamily family = search.judgeFamily(center->planes, samples);
     if (isFamily(family)) {
-      found.centers.push_back({cloud.toInput(center->common), family.confidence, family.score, family.support});
-      found.planes = withoutPlanesThrough(std::move(found.planes), found.centers.back(), cloud);
+      answer.centers.push_back({cloud.toInput(center->common), family.confidence, family.score, family.support});
+      answer.planes = withoutPlanesThrough(std::move(answer.planes), answer.centers.back(), cloud);
       return;
     }
   }
   for (const AxisFamily& axis : findAxes(symmetries, test, likely_axes)) {
     // Noise blurs the gaps between the planes of a polygon, but not equally at all of them.
-    if (!kKindRules.resolves_surface[cloud.kind()] && latticeBySpectrum(search.all_points, axis.common)) continue;
+    if (cloud.isVolume() && latticeBySpectrum(search.all_points, axis.common)) continue;
     const JudgedFamily family = search.judgeFamily(axis.planes, samples);
     if (!isFamily(family)) continue;
     // No bounded shape has two parallel axes, but a thin disc seems to within the tolerance: only the best one counts.
-    if (!isNearAny(found.axes, axis.common.direction(), std::cos(kDetection.families.contained_angle),
+    if (!isNearAny(answer.axes, axis.common.direction(), std::cos(kDetection.families.contained_angle),
                    &SymmetryAxis::direction))
-      found.axes.push_back({cloud.toInput(axis.common.origin()), axis.common.direction(), family.confidence,
-                            family.score, family.support});
-    drop([&](const ReflectionPlane& plane) { return contains(plane, axis.common); });
+      answer.axes.push_back({cloud.toInput(axis.common.origin()), axis.common.direction(), family.confidence,
+                             family.score, family.support});
+    eraseIf(answer.planes,
+            [&](const SymmetryPlane& plane) { return contains(cloud.toNormalized(plane), axis.common); });
   }
 }
 

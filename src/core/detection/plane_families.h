@@ -9,7 +9,7 @@
 namespace pcl_symmetry {
 
 class PlaneSearch;
-struct Found;
+struct DetectionState;
 
 /// Continuous families of planes: all planes through a line (a body of revolution) or through a point (a sphere).
 ///
@@ -54,7 +54,7 @@ std::vector<AxisFamily> findAxes(const std::vector<ReflectionPlane>& planes, con
 
 /// Finds the families that symmetries belong to: bodies of revolution and spheres replace their planes. A line-shaped
 /// cloud gets its line as axis.
-void findFamilies(const PlaneSearch& search, Found& found);
+void findFamilies(const PlaneSearch& search, DetectionState& state);
 
 /// \param planes,axes input frame.
 /// \return the planes that contain no axis.

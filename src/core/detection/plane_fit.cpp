@@ -1,7 +1,6 @@
 #include "core/detection/plane_fit.h"
 
 #include <algorithm>
-#include <cmath>
 #include <utility>
 
 #include "core/base/parallel.h"
@@ -21,7 +20,7 @@ class SurfaceFit : public PlaneFit {
 public:
   SurfaceFit(const NormalizedCloud& cloud, const DetectionOptions& options) : PlaneFit(cloud, options) {}
 
-  void refine(std::vector<Candidate>& candidates, const RefinementStage& stage) const override {
+  std::vector<Candidate> refine(std::vector<Candidate> candidates, const RefinementStage& stage) const override {
     const auto samples = std::make_shared<const std::vector<int>>(drawn(stage.num_samples)),
                fewer = std::make_shared<const std::vector<int>>(drawn(stage.num_rough_samples));
     parallelBlocks(candidates.size(), options_.num_threads, [&](std::size_t i) {
@@ -31,8 +30,7 @@ public:
       const std::vector<int>& used = *candidate.samples;
       const ReflectionPlane start = candidate.plane;
       // The first steps have wide weights. Scans have many borders, at which walks end beside the closest point.
-      const IspSurface& surface =
-          candidate.iterations == 0 && kKindRules.shows_all[cloud_.kind()] ? cloud_.quick_surface : cloud_.surface;
+      const IspSurface& surface = candidate.iterations == 0 && !cloud_.isScan() ? cloud_.quick_surface : cloud_.surface;
       IspResult result = refineSymmetricPoints(surface, used, start, settles ? stage.isp : stage.rough_isp);
       candidate.plane = result.plane;
       candidate.iterations += result.iterations;
@@ -43,8 +41,9 @@ public:
       undoSlide(candidate, start, used, stage.isp.final_sigma);
       if (stage.climbs && cloud_.roughness > kDetection.fit.noisy_depth &&
           candidate.merit >= kDetection.fit.climbing_merit)
-        climbOne(candidate, used, *fewer);
+        climb(candidate, used, *fewer);
     });
+    return candidates;
   }
 
   std::vector<char> climb(std::vector<Candidate>& candidates, const RefinementStage& stage,
@@ -57,13 +56,13 @@ public:
       // At a symmetry, no false pairs pull the plane away.
       const bool is_at_rest = candidate.merit >= kDetection.stages.symmetric_merit;
       moved[i] = may_climb[i] && candidate.merit >= kDetection.fit.climbing_merit && !is_at_rest &&
-                 climbOne(candidate, *samples, fewer);
+                 climb(candidate, *samples, fewer);
       if (moved[i]) candidate.samples = samples;
     });
     return moved;
   }
 
-  ReflectionPlane refined(const ReflectionPlane& plane, const std::vector<int>& samples) const override {
+  ReflectionPlane refinePlane(const ReflectionPlane& plane, const std::vector<int>& samples) const override {
     IspOptions isp;
     isp.sigma = isp.final_sigma = cloud_.final_sigma;
     isp.max_iterations = kDetection.families.refine_iterations;
@@ -106,7 +105,7 @@ private:
   /// \param samples for the final merit.
   /// \param fewer samples by which the plane climbs.
   /// \return whether the plane moved.
-  bool climbOne(Candidate& candidate, const std::vector<int>& samples, const std::vector<int>& fewer) const {
+  bool climb(Candidate& candidate, const std::vector<int>& samples, const std::vector<int>& fewer) const {
     ReflectionPlane plane = candidate.plane;
     IspStep here = matches(plane, fewer);
     double best = merit(shares(plane, fewer, here));
@@ -145,7 +144,7 @@ public:
         surface_(cloud, options),
         density_(cloud.points, kDetection.fit.bandwidth * cloud.spacing, options.num_threads) {}
 
-  void refine(std::vector<Candidate>& candidates, const RefinementStage& stage) const override {
+  std::vector<Candidate> refine(std::vector<Candidate> candidates, const RefinementStage& stage) const override {
     const int num_samples =
         std::min(kDetection.fit.sample_factor * stage.num_samples, options_.expert.num_refine_samples);
     const Points samples = pointsAt(cloud_.points, drawSamples(cloud_.points.cols(), num_samples, options_.seed));
@@ -157,9 +156,10 @@ public:
       candidate.iterations += refined.iterations;
       candidate.merit = density_.overlap(samples, candidate.plane);
     });
+    return candidates;
   }
 
-  ReflectionPlane refined(const ReflectionPlane& plane, const std::vector<int>& samples) const override {
+  ReflectionPlane refinePlane(const ReflectionPlane& plane, const std::vector<int>& samples) const override {
     return density_.refine(pointsAt(cloud_.points, samples), plane, kDetection.families.refine_iterations).plane;
   }
 
@@ -182,13 +182,13 @@ private:
 }  // namespace
 
 std::unique_ptr<PlaneFit> makePlaneFit(const NormalizedCloud& cloud, const DetectionOptions& options) {
-  if (kKindRules.resolves_surface[cloud.kind()]) return std::make_unique<SurfaceFit>(cloud, options);
+  if (!cloud.isVolume()) return std::make_unique<SurfaceFit>(cloud, options);
   return std::make_unique<VolumeFit>(cloud, options);
 }
 
 std::vector<float> surfaceSupport(const NormalizedCloud& cloud, const ReflectionPlane& plane,
                                   const DetectionOptions& options) {
-  return SurfaceFit(cloud, options).shares(plane, allOf(cloud.points.cols())).points.seenSupport();
+  return SurfaceFit(cloud, options).shares(plane, allIndices(cloud.points.cols())).points.seenSupport();
 }
 
 }  // namespace pcl_symmetry

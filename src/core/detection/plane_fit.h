@@ -40,7 +40,7 @@ public:
   virtual ~PlaneFit() = default;
 
   /// Moves each candidate to the best plane nearby, and updates its merit.
-  virtual void refine(std::vector<Candidate>& candidates, const RefinementStage& stage) const = 0;
+  virtual std::vector<Candidate> refine(std::vector<Candidate> candidates, const RefinementStage& stage) const = 0;
 
   /// Moves candidates that stopped near their optimum to it and updates their merit; this takes as long as all stages
   /// together. Densities have no false pairs, so their planes need not climb.
@@ -54,7 +54,7 @@ public:
 
   /// The best plane nearby, at the narrowest weights.
   /// \param samples indices of points.
-  virtual ReflectionPlane refined(const ReflectionPlane& plane, const std::vector<int>& samples) const = 0;
+  virtual ReflectionPlane refinePlane(const ReflectionPlane& plane, const std::vector<int>& samples) const = 0;
 
   /// \param samples indices of points.
   /// \param step closest points to the reflections of these samples.
@@ -77,7 +77,7 @@ public:
   virtual double merit(const PlaneShares& shares) const = 0;
 
   /// Support that the samples of a symmetry reach.
-  double baseline() const { return kKindRules.resolves_surface[cloud_.kind()] ? cloud_.baseline : 1.0; }
+  double baseline() const { return cloud_.isVolume() ? 1.0 : cloud_.baseline; }
 
   /// Support relative to baseline(), in [0, 1].
   double relativeSupport(const PlaneShares& shares) const { return std::min(1.0, shares.support / baseline()); }

@@ -245,11 +245,11 @@ bool isPolygon(const PlaneLattice& lattice, const Points& points, double toleran
 }
 
 /// The polygon of a surface, whose planes are too close to be distinguished individually.
-void addClosePlanes(const PlaneSearch& search, Found& found) {
+void addClosePlanes(const PlaneSearch& search, DetectionState& state) {
   const NormalizedCloud& cloud = search.cloud;
   std::vector<ReflectionPlane> through;
   for (std::vector<ReflectionPlane>& containing :
-       bundlesOf(planesOf(found.planes, {PlaneKind::Symmetry}, cloud), kDetection.families.max_pairs))
+       bundlesOf(planesOf(state.answer.planes, {PlaneKind::Symmetry}, cloud), kDetection.families.max_pairs))
     if (containing.size() > through.size()) through = std::move(containing);
   if (through.size() < kDetection.families.min_planes) return;
   const Line3d line = commonLine(through);
@@ -268,32 +268,33 @@ void addClosePlanes(const PlaneSearch& search, Found& found) {
     if (one.plane.kind != PlaneKind::Symmetry) return;
     completed.push_back(std::move(one.plane));
   }
-  for (SymmetryPlane& plane : found.planes)
+  for (SymmetryPlane& plane : state.answer.planes)
     if (!contains(cloud.toNormalized(plane), line)) completed.push_back(std::move(plane));
-  found.planes = std::move(completed);
-  found.polygon = lattice;
+  state.answer.planes = std::move(completed);
+  state.polygon = lattice;
 }
 
 }  // namespace
 
-void completePolygon(const PlaneSearch& search, Found& found) {
+void completePolygon(const PlaneSearch& search, DetectionState& state) {
   const NormalizedCloud& cloud = search.cloud;
-  if (cloud.kind() == CloudKind::Surface) return addClosePlanes(search, found);
-  if (kKindRules.resolves_surface[cloud.kind()]) return;
-  sortFalling(found.planes, &SymmetryPlane::confidence);
-  const std::optional<PlaneLattice> lattice = bestLattice(found.planes, cloud, search.all_points);
+  if (cloud.isSurface()) return addClosePlanes(search, state);
+  if (!cloud.isVolume()) return;
+  sortDescending(state.answer.planes, &SymmetryPlane::confidence);
+  const std::optional<PlaneLattice> lattice = bestLattice(state.answer.planes, cloud, search.all_points);
   if (!lattice) return;
   std::vector<MeasuredPlane> of_lattice = search.judge(candidatesOf(*lattice));
   const double together = withOdds(leastTogether(of_lattice), kDetection.folds.odds_of_polygon);
   if (together < search.options.min_confidence) return;
   // All planes determine the polygon; planes that noise moved away from it are dropped.
-  eraseIf(found.planes, [&](const SymmetryPlane& plane) { return contains(cloud.toNormalized(plane), lattice->line); });
+  eraseIf(state.answer.planes,
+          [&](const SymmetryPlane& plane) { return contains(cloud.toNormalized(plane), lattice->line); });
   for (MeasuredPlane& one : of_lattice) {
     if (together > one.plane.confidence)
       changeConfidence(one.plane, together, "the planes of a regular polygon together", search.options);
-    found.planes.push_back(std::move(one.plane));
+    state.answer.planes.push_back(std::move(one.plane));
   }
-  found.polygon = lattice;
+  state.polygon = lattice;
 }
 
 }  // namespace pcl_symmetry

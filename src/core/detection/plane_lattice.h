@@ -8,7 +8,7 @@
 namespace pcl_symmetry {
 
 class PlaneSearch;
-struct Found;
+struct DetectionState;
 
 /// Whether a plane contains a line, normalized frame, within kDetection.families.
 bool contains(const ReflectionPlane& plane, const Line3d& line);
@@ -32,6 +32,6 @@ std::optional<PlaneLattice> latticeBySpectrum(const Points& all, const Line3d& l
 
 /// Completes polygons. Planes of noisy clouds are judged jointly: all of them are symmetries or none is. Planes of
 /// surfaces can be judged individually, but with many teeth they are too close to be found one by one.
-void completePolygon(const PlaneSearch& search, Found& found);
+void completePolygon(const PlaneSearch& search, DetectionState& state);
 
 }  // namespace pcl_symmetry

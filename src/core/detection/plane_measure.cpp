@@ -21,9 +21,9 @@ namespace {
 /// noise of a few points on a line exceeds the tolerance.
 double lineTolerance(CloudKind kind, const CloudLimits::Lengths& lengths) {
   const double noisy = kDetection.measure.noisy_thinness * lengths.tolerance;
-  return kKindRules.resolves_surface[kind]
-             ? std::clamp(kDetection.measure.round_spacings * lengths.spacing, lengths.tolerance, noisy)
-             : noisy;
+  return kind == CloudKind::Volume
+             ? noisy
+             : std::clamp(kDetection.measure.round_spacings * lengths.spacing, lengths.tolerance, noisy);
 }
 
 /// Share of the points that a plane moves by more than a distance.
@@ -52,7 +52,7 @@ std::array<double, 2> sharesWithin(const std::vector<float>& distances, double t
 /// The tolerance that the spacing of a surface resolves, up to the greatest one at which shares are measured; 0 for
 /// points that resolve no surface.
 double sampledTolerance(const NormalizedCloud& cloud, double tolerance) {
-  if (!kKindRules.resolves_surface[cloud.kind()]) return 0.0;
+  if (cloud.isVolume()) return 0.0;
   return std::min(cloud.spacing / kEvidence.coarsest, kDetection.measure.tolerances.back() * tolerance * cloud.extent);
 }
 
@@ -62,7 +62,7 @@ CloudLimits::CloudLimits(const PointsRef& points, const PrincipalAxes& axes, Clo
                          const Lengths& lengths)
     : is_resolved_(isResolved(lengths)),
       is_cut_(seen && cutShare(points, *seen, kDetection.measure.beside_outline) > kDetection.decide.max_cut),
-      still_((kKindRules.resolves_surface[kind] ? 1.0 : kDetection.measure.noisy_thinness) * lengths.tolerance),
+      still_((kind == CloudKind::Volume ? kDetection.measure.noisy_thinness : 1.0) * lengths.tolerance),
       thinness_(thinnessOf(points, axes, still_, lineTolerance(kind, lengths))),
       is_one_side_(seen && seen->supports().empty() && thinness_ == Thinness::Sheet &&
                    movedShare({axes.axes.col(2), axes.axes.col(2).dot(axes.center)}, points, 2.0 * still_) <
@@ -96,9 +96,8 @@ PlaneMeasure::PlaneMeasure(const NormalizedCloud& cloud, const PlaneFit& fit, co
                                          options.max_tolerance * cloud.extent))),
       limits_(cloud.points, cloud.principal_axes, cloud.kind(), cloud.seen(),
               {tolerance_, resolution_, cloud.spacing, cloud.extent}),
-      halves_(kKindRules.resolves_surface[cloud.kind()]
-                  ? std::nullopt
-                  : std::make_optional<SplitSurface>(cloud.points, options.seed, options.num_threads)),
+      halves_(cloud.isVolume() ? std::make_optional<SplitSurface>(cloud.points, options.seed, options.num_threads)
+                               : std::nullopt),
       own_shares_(sharesWithin(
           halves_ ? halves_->ownDistances() : ownSurfaceDistances(cloud.samples, options.num_threads), tolerance_)),
       own_score_(halves_ ? halves_->ownScore(cloud.edt.numCells(), cloud.sigma, {Eigen::Vector3d::Zero(), 1.0},
@@ -109,21 +108,22 @@ std::vector<int> PlaneMeasure::samples() const {
   const Eigen::Index num_points = cloud_.points.cols();
   const int stride = kKindRules.judged_stride[cloud_.kind()];
   return stride > 0 ? drawSamples(num_points, options_.expert.num_refine_samples / stride, options_.seed)
-                    : allOf(num_points);
+                    : allIndices(num_points);
 }
 
-MeasuredPlane PlaneMeasure::measured(const Candidate& candidate, const std::vector<int>& samples) const {
+MeasuredPlane PlaneMeasure::measureCandidate(const Candidate& candidate, const std::vector<int>& samples) const {
   // The last stage may have matched these very samples.
   const bool has_matches = candidate.samples && *candidate.samples == samples;
   const IspStep step = has_matches ? candidate.step : fit_.matches(candidate.plane, samples);
-  MeasuredPlane result = measured(candidate.plane, samples, step, 0.0);
+  MeasuredPlane result = measureMatched(candidate.plane, samples, step, 0.0);
   result.plane.iterations = candidate.iterations;
   result.plane.converged = candidate.converged;
   return result;
 }
 
-MeasuredPlane PlaneMeasure::measured(const ReflectionPlane& plane, const std::vector<int>& samples, double rim) const {
-  return measured(plane, samples, fit_.matches(plane, samples), rim);
+MeasuredPlane PlaneMeasure::measurePlane(const ReflectionPlane& plane, const std::vector<int>& samples,
+                                         double rim) const {
+  return measureMatched(plane, samples, fit_.matches(plane, samples), rim);
 }
 
 PlaneEvidence PlaneMeasure::evidenceOf(double support, double conflict, double score) const {
@@ -139,13 +139,16 @@ PlaneEvidence PlaneMeasure::evidenceOf(double support, double conflict, double s
   evidence.own_score = own_score_;
   evidence.flat = limits_.thinness() == Thinness::Sheet;
   if (options_.absolute_tolerance == 0.0)
-    evidence.coarser = std::max(0.0, tolerance_ / std::max(resolution_, options_.tolerance * cloud_.extent) - 1.0);
+    evidence.tolerance_raise =
+        std::max(0.0, tolerance_ / std::max(resolution_, options_.tolerance * cloud_.extent) - 1.0);
   return evidence;
 }
 
-Landing PlaneMeasure::landed(const ReflectionPlane& plane, const std::vector<int>& samples,
-                             std::vector<int> closest) const {
-  Landing landing{reflectedPoints(pointsAt(cloud_.points, samples), plane), {}, std::move(closest), {}, {}};
+Landing PlaneMeasure::land(const ReflectionPlane& plane, const std::vector<int>& samples,
+                           std::vector<int> closest) const {
+  Landing landing;
+  landing.images = reflectedPoints(pointsAt(cloud_.points, samples), plane);
+  landing.closest = std::move(closest);
   landing.distances = surfaceDistances(landing.images, landing.closest, cloud_.samples, options_.num_threads);
   return landing;
 }
@@ -159,8 +162,8 @@ std::vector<float> PlaneMeasure::unknownMatches(const Landing& landing, const st
       if (!matched[i]) {
         const Eigen::Vector3d x = landing.images.col(i).cast<double>();
         // The camera's measurements beside an object have errors, too.
-        const double beside = std::isfinite(cloud_.seen()->depthBehind(x)) ? std::max(rim, resolution_) : rim;
-        unknown[i] = isFreeSpace(*cloud_.seen(), x, 0.0, beside) ? 1.0f - freeConfidence(*cloud_.seen(), x) : 1.0f;
+        const double width = std::isfinite(cloud_.seen()->depthBehind(x)) ? std::max(rim, resolution_) : rim;
+        unknown[i] = isFreeSpace(*cloud_.seen(), x, 0.0, width) ? 1.0f - freeConfidence(*cloud_.seen(), x) : 1.0f;
       }
     return unknown;
   }
@@ -174,9 +177,16 @@ std::vector<float> PlaneMeasure::unknownMatches(const Landing& landing, const st
   return unknown;
 }
 
-MeasuredPlane PlaneMeasure::measured(const ReflectionPlane& plane, const std::vector<int>& samples, const IspStep& step,
-                                     double rim) const {
-  const Landing landing = landed(plane, samples, step.closest);
+Eigen::Matrix3d PlaneMeasure::stiffnessOf(const ReflectionPlane& plane, const Landing& landing,
+                                          const std::vector<char>& matched) const {
+  std::vector<int> matches = landing.closest;
+  for (int& match : matches) match = std::max(0, match);
+  return motionStiffness(landing.images, pointsAt(cloud_.geometry.normals, matches), matched, plane);
+}
+
+MeasuredPlane PlaneMeasure::measureMatched(const ReflectionPlane& plane, const std::vector<int>& samples,
+                                           const IspStep& step, double rim) const {
+  const Landing landing = land(plane, samples, step.closest);
   const std::size_t size = samples.size();
   std::vector<char> matched(size), is_moved(size);
   // Distances of the samples whose position is informative; in scans, of those that the plane moves.
@@ -185,7 +195,7 @@ MeasuredPlane PlaneMeasure::measured(const ReflectionPlane& plane, const std::ve
     matched[i] = landing.distances[i] <= tolerance_;
     const Eigen::Vector3d x = landing.images.col(i).cast<double>();
     is_moved[i] =
-        !cloud_.seen() || 2.0 * std::abs(plane.signedDistance(x)) > kDetection.measure.moved_tolerances * tolerance_;
+        !cloud_.isScan() || 2.0 * std::abs(plane.signedDistance(x)) > kDetection.measure.moved_tolerances * tolerance_;
     if (is_moved[i]) moved.push_back(landing.distances[i]);
   }
   if (halves_) moved = halves_->reflectedDistances(plane);
@@ -194,10 +204,8 @@ MeasuredPlane PlaneMeasure::measured(const ReflectionPlane& plane, const std::ve
     within[k] = std::min(1.0, shareWithin(moved, kDetection.measure.tolerances[k] * tolerance_) / own_shares_[k]);
   Eigen::Matrix3d stiffness = Eigen::Matrix3d::Zero();
   std::vector<float> unknown(size, 0.0f);
-  if (cloud_.seen() || (kKindRules.may_lack_piece[cloud_.kind()] && within[0] < kDetection.measure.surely_whole)) {
-    std::vector<int> matches = step.closest;
-    for (int& match : matches) match = std::max(0, match);
-    stiffness = motionStiffness(landing.images, pointsAt(cloud_.geometry.normals, matches), matched, plane);
+  if (cloud_.isScan() || (cloud_.isSurface() && within[0] < kDetection.measure.surely_whole)) {
+    stiffness = stiffnessOf(plane, landing, matched);
     unknown = unknownMatches(landing, matched, offsetStiffness(stiffness), rim);
   }
   std::vector<float> informative;  // distances of the informative samples
@@ -226,7 +234,7 @@ MeasuredPlane PlaneMeasure::measured(const ReflectionPlane& plane, const std::ve
   evidence.share = std::min(share(0), share(1));
   evidence.stiffness = secondStiffness(stiffness);
   evidence.unknown = meanSupport(unknown);
-  result.informative = cloud_.seen() ? static_cast<double>(num_informative) / static_cast<double>(size) : 1.0;
+  result.informative = cloud_.isScan() ? static_cast<double>(num_informative) / static_cast<double>(size) : 1.0;
   const ShareInterval interval = shareInterval(evidence);
   result.plane.score = evidence.score;
   result.plane.support = seenSupport(evidence);
@@ -234,7 +242,7 @@ MeasuredPlane PlaneMeasure::measured(const ReflectionPlane& plane, const std::ve
   result.plane.share_low = interval.low;
   result.plane.share_high = interval.high;
   result.plane.deviation = deviationOf(std::move(halves_ ? moved : informative)) * cloud_.scale;
-  result.plane.seen = cloud_.seen() ? std::min(1.0, shares.support + shares.conflict) : 1.0 - evidence.unknown;
+  result.plane.seen = cloud_.isScan() ? std::min(1.0, shares.support + shares.conflict) : 1.0 - evidence.unknown;
   result.plane.point_support = shares.points.seenSupport();
   result.plane.residual = step.residual * cloud_.scale;
   return result;
@@ -250,22 +258,22 @@ double PlaneMeasure::deviation(const ReflectionPlane& plane) const {
   if (halves_) return deviationOf(halves_->reflectedDistances(plane));
   const std::vector<int> samples =
       drawSamples(cloud_.points.cols(), kDetection.measure.screening_samples, options_.seed);
-  const Landing all =
-      landed(plane, samples, cloud_.search->closest(reflectedPoints(pointsAt(cloud_.points, samples), plane)));
+  const Landing landing =
+      land(plane, samples, cloud_.search->closest(reflectedPoints(pointsAt(cloud_.points, samples), plane)));
   std::vector<char> matched;
-  for (const float distance : all.distances) matched.push_back(distance <= tolerance_);
-  const std::vector<float> unknown = unknownMatches(all, matched, 0.0, 0.0);
+  for (const float distance : landing.distances) matched.push_back(distance <= tolerance_);
+  const std::vector<float> unknown = unknownMatches(landing, matched, 0.0, 0.0);
   std::vector<float> informative;
   for (std::size_t i = 0; i < samples.size(); ++i)
-    if (unknown[i] < 0.5f) informative.push_back(all.distances[i]);
+    if (unknown[i] < 0.5f) informative.push_back(landing.distances[i]);
   return deviationOf(std::move(informative));
 }
 
 PlaneMeasure::ScreenedShare PlaneMeasure::screenedShare(const Candidate& candidate) const {
   const std::vector<int> samples =
       drawSamples(cloud_.points.cols(), kDetection.measure.screening_samples, options_.seed);
-  const Landing some = landed(candidate.plane, samples, fit_.matches(candidate.plane, samples).closest);
-  const double share = std::min(1.0, shareWithin(some.distances, tolerance_) / own_shares_[0]);
+  const Landing landing = land(candidate.plane, samples, fit_.matches(candidate.plane, samples).closest);
+  const double share = std::min(1.0, shareWithin(landing.distances, tolerance_) / own_shares_[0]);
   return {share, std::sqrt(share * (1.0 - share) / static_cast<double>(samples.size()))};
 }
 

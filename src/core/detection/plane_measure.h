@@ -87,12 +87,12 @@ public:
   /// \param candidate after the last stage of refinement.
   /// \param samples what samples() returned.
   /// \return the measured plane, without confidence and kind.
-  MeasuredPlane measured(const Candidate& candidate, const std::vector<int>& samples) const;
+  MeasuredPlane measureCandidate(const Candidate& candidate, const std::vector<int>& samples) const;
 
   /// \param plane normalized frame.
   /// \param samples indices of points.
   /// \param rim a reflection contradicts only if the space within this distance on either side is free, too.
-  MeasuredPlane measured(const ReflectionPlane& plane, const std::vector<int>& samples, double rim = 0.0) const;
+  MeasuredPlane measurePlane(const ReflectionPlane& plane, const std::vector<int>& samples, double rim = 0.0) const;
 
   /// Evidence of a whole cloud for one plane; fields beyond support, conflict and D keep their defaults.
   PlaneEvidence evidenceOf(double support, double conflict, double score) const;
@@ -113,13 +113,16 @@ private:
   double deviationOf(std::vector<float> distances) const;
   /// Finds where a plane maps some samples.
   /// \param closest points of the surface closest to the reflections.
-  Landing landed(const ReflectionPlane& plane, const std::vector<int>& samples, std::vector<int> closest) const;
+  Landing land(const ReflectionPlane& plane, const std::vector<int>& samples, std::vector<int> closest) const;
   /// For each sample without a match, the certainty that its counterpart lies in unknown space, in [0, 1].
   std::vector<float> unknownMatches(const Landing& landing, const std::vector<char>& matched, double offset_stiffness,
                                     double rim) const;
-  /// \param rim see measured() above.
-  MeasuredPlane measured(const ReflectionPlane& plane, const std::vector<int>& samples, const IspStep& step,
-                         double rim) const;
+  /// How strongly the matches constrain a plane, see motionStiffness().
+  Eigen::Matrix3d stiffnessOf(const ReflectionPlane& plane, const Landing& landing,
+                              const std::vector<char>& matched) const;
+  /// \param rim as above.
+  MeasuredPlane measureMatched(const ReflectionPlane& plane, const std::vector<int>& samples, const IspStep& step,
+                               double rim) const;
   const SurfaceEnds& ends() const;
 
   const NormalizedCloud& cloud_;

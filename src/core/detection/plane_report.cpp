@@ -32,7 +32,8 @@ bool isOfPolygon(const std::optional<PlaneLattice>& polygon, const SymmetryPlane
 void completeSupport(SymmetryPlane& plane, const PlaneSearch& search) {
   const NormalizedCloud& cloud = search.cloud;
   if (static_cast<Eigen::Index>(plane.point_support.size()) == cloud.points.cols()) return;
-  plane.point_support = search.fit->shares(cloud.toNormalized(plane), allOf(cloud.points.cols())).points.seenSupport();
+  plane.point_support =
+      search.fit->shares(cloud.toNormalized(plane), allIndices(cloud.points.cols())).points.seenSupport();
 }
 
 /// Removes approximate planes that are symmetries of parts: they are reported as local ones.
@@ -55,15 +56,15 @@ std::optional<ReflectionPlane> flatPlane(const PlaneSearch& search) {
 
 }  // namespace
 
-std::vector<SymmetryPlane> rankedPlanes(const PlaneSearch& search, std::vector<SymmetryPlane> planes,
-                                        const std::optional<PlaneLattice>& polygon) {
+std::vector<SymmetryPlane> selectReported(const PlaneSearch& search, std::vector<SymmetryPlane> planes,
+                                          const std::optional<PlaneLattice>& polygon) {
   const NormalizedCloud& cloud = search.cloud;
   const DetectionOptions& options = search.options;
   planes = withoutPlanesOfParts(std::move(planes), cloud);
   // Equally confident planes, such as those of a polygon, are ordered by support.
-  sortFalling(planes, &SymmetryPlane::support);
+  sortDescending(planes, &SymmetryPlane::support);
   std::vector<SymmetryPlane> ranked;
-  for (SymmetryPlane& plane : reordered(std::move(planes), options)) {
+  for (SymmetryPlane& plane : sortPlanes(std::move(planes), options)) {
     if (static_cast<int>(ranked.size()) >= options.max_planes) break;
     if (plane.kind == PlaneKind::Possible && static_cast<int>(ranked.size()) >= kDetection.decide.max_possible)
       continue;
@@ -93,12 +94,13 @@ std::optional<SymmetryPlane> bestApproximate(const PlaneSearch& search, const st
   return answer;
 }
 
-void report(const PlaneSearch& search, Found& found) {
+void report(const PlaneSearch& search, DetectionState& state) {
+  Detection& found = state.answer;
   const NormalizedCloud& cloud = search.cloud;
   const PlaneMeasure& measure = search.measure;
   if (!found.hasFamily()) found.best = bestApproximate(search, found.planes);
   if (found.best) found.best->deviation = measure.deviation(cloud.toNormalized(*found.best)) * cloud.scale;
-  found.undecided = found.best && !cloud.seen() && found.best->share_low < kNearlySymmetricShare &&
+  found.undecided = found.best && !cloud.isScan() && found.best->share_low < kNearlySymmetricShare &&
                     found.best->share_high >= kSymmetricShare;
   found.flat = flatPlane(search);
   found.tolerance = measure.tolerance() * cloud.scale;
@@ -106,7 +108,7 @@ void report(const PlaneSearch& search, Found& found) {
       search.options.absolute_tolerance == 0.0 && measure.tolerance() > search.options.tolerance * cloud.extent;
   found.resolution = std::max(measure.resolution(), is_raised ? measure.tolerance() : 0.0) * cloud.scale;
   found.diameter = cloud.extent * cloud.scale;
-  found.planes = rankedPlanes(search, std::move(found.planes), found.polygon);
+  found.planes = selectReported(search, std::move(found.planes), state.polygon);
 }
 
 }  // namespace pcl_symmetry

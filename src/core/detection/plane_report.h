@@ -14,8 +14,8 @@ namespace pcl_symmetry {
 /// \param planes input frame.
 /// \param polygon normalized frame; each of its planes is a maximum.
 /// \return the planes, with the support of every point.
-std::vector<SymmetryPlane> rankedPlanes(const PlaneSearch& search, std::vector<SymmetryPlane> planes,
-                                        const std::optional<PlaneLattice>& polygon = std::nullopt);
+std::vector<SymmetryPlane> selectReported(const PlaneSearch& search, std::vector<SymmetryPlane> planes,
+                                          const std::optional<PlaneLattice>& polygon = std::nullopt);
 
 /// The plane of the whole shape with the greatest share, for shapes without a symmetry.
 /// \param planes input frame.
@@ -25,6 +25,6 @@ std::optional<SymmetryPlane> bestApproximate(const PlaneSearch& search, const st
 
 /// Turns what was found into the answer: selects the planes to report, and fills the fields that describe the whole
 /// cloud.
-void report(const PlaneSearch& search, Found& found);
+void report(const PlaneSearch& search, DetectionState& state);
 
 }  // namespace pcl_symmetry

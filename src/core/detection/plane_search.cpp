@@ -10,7 +10,7 @@
 
 namespace pcl_symmetry {
 
-MeasuredPlane PlaneSearch::decided(MeasuredPlane measured, const ReflectionPlane& plane) const {
+MeasuredPlane PlaneSearch::decide(MeasuredPlane measured, const ReflectionPlane& plane) const {
   SymmetryPlane& result = measured.plane;
   for (const char* rule : measure.limits().rulesAgainst(plane, cloud.points)) limitToPossible(result, rule);
   constexpr KindRule<const char*> kRule{
@@ -26,39 +26,39 @@ MeasuredPlane PlaneSearch::decided(MeasuredPlane measured, const ReflectionPlane
 }
 
 bool PlaneSearch::isHopeless(const Candidate& candidate) const {
-  if (!kKindRules.may_lack_piece[cloud.kind()] || candidate.merit >= kDetection.stages.symmetric_merit) return false;
+  if (!cloud.isSurface() || candidate.merit >= kDetection.stages.symmetric_merit) return false;
   const PlaneMeasure::ScreenedShare quick = measure.screenedShare(candidate);
   return quick.share + kDetection.decide.screening_errors * quick.error < kDetection.decide.hopeful_share;
 }
 
 std::vector<MeasuredPlane> PlaneSearch::judge(const std::vector<Candidate>& candidates) const {
   std::vector<MeasuredPlane> judged(candidates.size());
-  judge(candidates, std::vector<char>(candidates.size(), true), judged);
+  rejudge(candidates, std::vector<char>(candidates.size(), true), judged);
   return judged;
 }
 
-void PlaneSearch::judge(const std::vector<Candidate>& candidates, const std::vector<char>& some,
-                        std::vector<MeasuredPlane>& judged) const {
+void PlaneSearch::rejudge(const std::vector<Candidate>& candidates, const std::vector<char>& chosen,
+                          std::vector<MeasuredPlane>& judged) const {
   const std::vector<int> samples = measure.samples();
   parallelBlocks(candidates.size(), options.num_threads, [&](std::size_t i) {
-    if (some[i]) judged[i] = decided(measure.measured(candidates[i], samples), candidates[i].plane);
+    if (chosen[i]) judged[i] = decide(measure.measureCandidate(candidates[i], samples), candidates[i].plane);
   });
 }
 
 MeasuredPlane PlaneSearch::judge(const ReflectionPlane& plane, const std::vector<int>& samples) const {
-  return decided(measure.measured(plane, samples), plane);
+  return decide(measure.measurePlane(plane, samples), plane);
 }
 
 JudgedFamily PlaneSearch::judgeFamily(const std::vector<ReflectionPlane>& planes,
                                       const std::vector<int>& samples) const {
   const double count = static_cast<double>(planes.size());
-  const bool is_scan = !kKindRules.shows_all[cloud.kind()];
+  const bool is_scan = cloud.isScan();
   JudgedFamily family;
   PlaneEvidence together;
   together.share = together.double_share = together.stiffness = 0.0;
   double informative = 0.0, best_score = 0.0;
   for (const ReflectionPlane& plane : planes) {
-    const PlaneEvidence one = measure.measured(plane, samples, is_scan ? measure.tolerance() : 0.0).evidence;
+    const PlaneEvidence one = measure.measurePlane(plane, samples, is_scan ? measure.tolerance() : 0.0).evidence;
     together.support += one.support / count;
     together.conflict += one.conflict / count;
     const double part = (1.0 - one.unknown) / count;
@@ -83,29 +83,29 @@ JudgedFamily PlaneSearch::judgeFamily(const std::vector<ReflectionPlane>& planes
   return family;
 }
 
-std::vector<SymmetryPlane> PlaneSearch::refinedAndJudged(std::vector<Candidate> candidates) const {
+std::vector<SymmetryPlane> PlaneSearch::refineAndJudge(std::vector<Candidate> candidates) const {
   candidates = refinement.refineFully(std::move(candidates));
   std::vector<MeasuredPlane> measured = judge(candidates);
   std::vector<char> may_climb;
   for (const MeasuredPlane& one : measured)
     may_climb.push_back(one.plane.confidence >= kDetection.fit.climbing_confidence);
-  judge(candidates, refinement.climb(candidates, may_climb), measured);
+  rejudge(candidates, refinement.climb(candidates, may_climb), measured);
   std::vector<SymmetryPlane> planes;
   for (MeasuredPlane& one : measured) planes.push_back(std::move(one.plane));
   return planes;
 }
 
-std::vector<SymmetryPlane> refinedAt(const std::vector<ReflectionPlane>& starts, const PlaneInput& input,
-                                     const DetectionOptions& options) {
+std::vector<SymmetryPlane> refinePlanes(const std::vector<ReflectionPlane>& starts, const PlaneInput& input,
+                                        const DetectionOptions& options) {
   if (!whyUnanswerable(input.points).empty()) return {};
-  const std::optional<std::vector<int>> subset = subsetOf(input.points, options);
+  const std::optional<std::vector<int>> subset = drawSubset(input.points, options);
   const DistinctPoints distinct(subset ? pointsAt(input.points, *subset) : Points(input.points));
   const GaussianEdt edt(distinct.points, options.edtOptions());
   const NormalizedCloud cloud(distinct.points, edt, nullptr, input.visibility, options.num_threads);
   const PlaneSearch search(cloud, cloud.points, options);
   std::vector<Candidate> candidates;
   for (const ReflectionPlane& start : starts) candidates.push_back({cloud.toNormalized(start)});
-  return search.refinedAndJudged(search.refinement.refineClosely(std::move(candidates)));
+  return search.refineAndJudge(search.refinement.refineClosely(std::move(candidates)));
 }
 
 }  // namespace pcl_symmetry

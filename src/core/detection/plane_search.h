@@ -7,10 +7,10 @@
 #include "core/detection/plane_lattice.h"
 #include "core/detection/plane_measure.h"
 #include "core/detection/staged_refinement.h"
+#include "core/detection/standing_object.h"
+#include "core/rotation/rotation_evidence.h"
 
 namespace pcl_symmetry {
-
-struct DetectionEvidence;
 
 /// Combined evidence of the planes of a family.
 struct JudgedFamily {
@@ -29,18 +29,24 @@ public:
   const std::unique_ptr<PlaneFit> fit = makePlaneFit(cloud, options);
   const StagedRefinement refinement{cloud, *fit, options};
   const PlaneMeasure measure{cloud, *fit, options};
+  /// Unit normals of the supports that carry the object of a scan.
+  const std::vector<Eigen::Vector3d> support_normals;
 
   /// Cloud, points and options must outlive this object.
   PlaneSearch(const NormalizedCloud& given_cloud, const Points& points, const DetectionOptions& given_options)
-      : cloud(given_cloud), all_points(points), options(given_options) {}
+      : cloud(given_cloud),
+        all_points(points),
+        options(given_options),
+        support_normals(cloud.isScan() ? supportNormals(cloud.points, *cloud.seen()) : std::vector<Eigen::Vector3d>()) {
+  }
 
   /// \param candidates after the last stage of refinement.
   /// \return one plane per candidate, in the same order.
   std::vector<MeasuredPlane> judge(const std::vector<Candidate>& candidates) const;
 
   /// The same for some of the candidates, replacing their previous judgments.
-  void judge(const std::vector<Candidate>& candidates, const std::vector<char>& some,
-             std::vector<MeasuredPlane>& judged) const;
+  void rejudge(const std::vector<Candidate>& candidates, const std::vector<char>& chosen,
+               std::vector<MeasuredPlane>& judged) const;
 
   /// \param plane normalized frame.
   /// \param samples indices of the points that judge it.
@@ -55,24 +61,37 @@ public:
   bool isHopeless(const Candidate& candidate) const;
 
   /// Refines and judges candidates; re-judges those that hill climbing moved.
-  std::vector<SymmetryPlane> refinedAndJudged(std::vector<Candidate> candidates) const;
+  std::vector<SymmetryPlane> refineAndJudge(std::vector<Candidate> candidates) const;
 
 private:
   /// Sets the confidence of a plane from its evidence and the limits of the cloud.
   /// \param plane normalized frame.
-  MeasuredPlane decided(MeasuredPlane measured, const ReflectionPlane& plane) const;
+  MeasuredPlane decide(MeasuredPlane measured, const ReflectionPlane& plane) const;
+};
+
+/// The evidence behind the decisions of one detection, to which confidences are fitted.
+struct DetectionEvidence {
+  /// Candidates after all stages of refinement, each plane once, best merit first. They do not depend on fitted
+  /// numbers.
+  std::vector<MeasuredPlane> planes;
+  std::vector<JudgedRotation> rotations;  ///< of scans
 };
 
 /// Results found so far, input frame.
-struct Found : Detection {
-  std::optional<PlaneLattice> polygon;    ///< normalized frame; its planes are among `planes`
+struct DetectionState {
+  Detection answer;
+  std::optional<PlaneLattice> polygon;    ///< normalized frame; its planes are among the planes of the answer
   DetectionEvidence* evidence = nullptr;  ///< filled with the evidence of all candidates; may be null
 };
 
 /// Refines approximately known planes and decides each of them, without searching for others.
 /// \param starts input frame.
 /// \param input points and what a scanner saw.
-std::vector<SymmetryPlane> refinedAt(const std::vector<ReflectionPlane>& starts, const PlaneInput& input,
-                                     const DetectionOptions& options);
+std::vector<SymmetryPlane> refinePlanes(const std::vector<ReflectionPlane>& starts, const PlaneInput& input,
+                                        const DetectionOptions& options);
+
+/// detectPlanes(), with the evidence of its decisions.
+/// \param evidence filled with the evidence of all candidates (doubles the time); may be null.
+Detection detectWithEvidence(const PlaneInput& input, const DetectionOptions& options, DetectionEvidence* evidence);
 
 }  // namespace pcl_symmetry

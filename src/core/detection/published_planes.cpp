@@ -143,7 +143,7 @@ std::vector<SymmetryPlane> publishedPlanes(const PointsRef& points, const Gaussi
   std::vector<SymmetryPlane> planes;
   for (std::size_t i = 0; i < refined.size(); ++i)
     if (is_stable[i]) planes.push_back(refined[i]);
-  sortFalling(planes, &SymmetryPlane::score);
+  sortDescending(planes, &SymmetryPlane::score);
   if (options.discard_unstable) keepOneOfEachCell(planes, map.grid);
   return planes;
 }

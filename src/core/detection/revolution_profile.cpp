@@ -83,53 +83,37 @@ FittedPosition fittedPosition(const std::vector<Eigen::Vector2d>& points, Eigen:
   return result;
 }
 
-}  // namespace
-
-std::vector<ProfilePoint> revolutionProfile(const PointsRef& points, const SymmetryAxis& axis, int num_points) {
-  check(num_points >= 2, "num_points", num_points, ">= 2");
-  const Eigen::Vector3d direction = axis.direction.normalized();
-  std::vector<Eigen::Vector2d> positions;
-  Eigen::AlignedBox2d box;
-  for (Eigen::Index i = 0; i < points.cols(); ++i) {
-    if (!points.col(i).allFinite()) continue;
-    const Eigen::Vector3d x = points.col(i).cast<double>() - axis.point;
-    const double height = direction.dot(x);
-    positions.emplace_back((x - height * direction).norm(), height);
-    box.extend(positions.back());
+/// One start a cell; the cells that the curve passes tell how long it is.
+std::vector<Eigen::Vector2d> startsFor(const std::vector<Eigen::Vector2d>& positions, double cell) {
+  std::map<std::pair<std::int64_t, std::int64_t>, std::pair<Eigen::Vector2d, int>> cells;
+  for (const Eigen::Vector2d& position : positions) {
+    auto& [sum, count] = cells[{static_cast<std::int64_t>(std::floor(position.x() / cell)),
+                                static_cast<std::int64_t>(std::floor(position.y() / cell))}];
+    if (count++ == 0) sum.setZero();
+    sum += position;
   }
-  check(positions.size() >= kMinDistinctPoints, "number of points", positions.size(), ">= 20");
-  const double extent = box.diagonal().norm();
-  check(extent > 0.0, "extent of the points", extent, "> 0");
+  std::vector<Eigen::Vector2d> starts;
+  for (const auto& [key, entry] : cells) starts.emplace_back(entry.first / entry.second);
+  return starts;
+}
 
-  // One start a cell; the cells that the curve passes tell how long it is.
-  const auto startsFor = [&](double cell) {
-    std::map<std::pair<std::int64_t, std::int64_t>, std::pair<Eigen::Vector2d, int>> cells;
-    for (const Eigen::Vector2d& position : positions) {
-      auto& [sum, count] = cells[{static_cast<std::int64_t>(std::floor(position.x() / cell)),
-                                  static_cast<std::int64_t>(std::floor(position.y() / cell))}];
-      if (count++ == 0) sum.setZero();
-      sum += position;
-    }
-    std::vector<Eigen::Vector2d> starts;
-    for (const auto& [key, entry] : cells) starts.emplace_back(entry.first / entry.second);
-    return starts;
-  };
-  double width = kProfile.first_width * extent;
-  // Points near the axis are added again with a negative radius: the curve continues beyond the axis.
-  std::vector<Eigen::Vector2d> around = positions;
-  for (const Eigen::Vector2d& position : positions)
-    if (position.x() < kProfile.max_width * extent) around.emplace_back(-position.x(), position.y());
-  {
-    std::vector<double> spreads;
-    for (const Eigen::Vector2d& start : startsFor(width))
-      if (const FittedPosition fit = fittedPosition(around, start, width); fit.count > 0) spreads.push_back(fit.spread);
-    if (!spreads.empty())
-      width = std::min(kProfile.max_width * extent,
-                       std::max(kProfile.min_width * extent, kProfile.widths * median(std::move(spreads))));
-  }
-  const double step = 2.0 * extent / num_points;  // a vase is about twice as long as it is high
+/// The width of the weights, by how far the points spread about the curve.
+double chooseWidth(const std::vector<Eigen::Vector2d>& around, const std::vector<Eigen::Vector2d>& positions,
+                   double extent) {
+  const double width = kProfile.first_width * extent;
+  std::vector<double> spreads;
+  for (const Eigen::Vector2d& start : startsFor(positions, width))
+    if (const FittedPosition fit = fittedPosition(around, start, width); fit.count > 0) spreads.push_back(fit.spread);
+  if (spreads.empty()) return width;
+  return std::min(kProfile.max_width * extent,
+                  std::max(kProfile.min_width * extent, kProfile.widths * median(std::move(spreads))));
+}
+
+/// \param step between the starts.
+std::vector<FittedPosition> fitCurve(const std::vector<Eigen::Vector2d>& around,
+                                     const std::vector<Eigen::Vector2d>& positions, double step, double width) {
   std::vector<FittedPosition> curve;
-  for (const Eigen::Vector2d& start : startsFor(step)) {
+  for (const Eigen::Vector2d& start : startsFor(positions, step)) {
     const FittedPosition fit = fittedPosition(around, start, width);
     // The parabola continues beyond the ends of the curve, and starts at outliers find parabolas of their own.
     if (fit.count == 0 || fit.position.x() < 0.0 || (fit.position - start).norm() > width) continue;
@@ -138,15 +122,20 @@ std::vector<ProfilePoint> revolutionProfile(const PointsRef& points, const Symme
     });
     if (!is_known) curve.push_back(fit);
   }
-
-  if (curve.empty()) return {};
+  if (curve.empty()) return curve;
   const auto density = [&](const FittedPosition& fit) { return fit.count / std::max(fit.position.x(), width); };
   std::vector<double> densities;
   for (const FittedPosition& fit : curve) densities.push_back(density(fit));
   const double min_density = kProfile.min_density * median(std::move(densities));
   eraseIf(curve, [&](const FittedPosition& fit) { return density(fit) < min_density; });
+  return curve;
+}
 
-  // In order along the curve, piece by piece.
+/// Lists the curve piece by piece, each from its lower end.
+/// \param bottom of the points, on the axis.
+/// \param step as in fitCurve().
+std::vector<ProfilePoint> orderAlongCurve(const std::vector<FittedPosition>& curve, const Eigen::Vector2d& bottom,
+                                          double step) {
   std::vector<ProfilePoint> profile;
   std::vector<char> is_listed(curve.size(), 0);
   const auto closestTo = [&](const Eigen::Vector2d& x) {
@@ -169,7 +158,7 @@ std::vector<ProfilePoint> revolutionProfile(const PointsRef& points, const Symme
     return order;
   };
   while (profile.size() < curve.size()) {
-    const std::size_t any = closestTo({0.0, box.min().y()});
+    const std::size_t any = closestTo(bottom);
     const std::vector<char> before = is_listed;
     const std::size_t end = walk(any).back();
     is_listed = before;
@@ -179,6 +168,33 @@ std::vector<ProfilePoint> revolutionProfile(const PointsRef& points, const Symme
       profile.push_back({curve[i].position.x(), curve[i].position.y(), curve[i].spread, curve[i].count});
   }
   return profile;
+}
+
+}  // namespace
+
+std::vector<ProfilePoint> revolutionProfile(const PointsRef& points, const SymmetryAxis& axis, int num_points) {
+  check(num_points >= 2, "num_points", num_points, ">= 2");
+  const Eigen::Vector3d direction = axis.direction.normalized();
+  std::vector<Eigen::Vector2d> positions;
+  Eigen::AlignedBox2d box;
+  for (Eigen::Index i = 0; i < points.cols(); ++i) {
+    if (!points.col(i).allFinite()) continue;
+    const Eigen::Vector3d x = points.col(i).cast<double>() - axis.point;
+    const double height = direction.dot(x);
+    positions.emplace_back((x - height * direction).norm(), height);
+    box.extend(positions.back());
+  }
+  check(positions.size() >= kMinDistinctPoints, "number of points", positions.size(), ">= 20");
+  const double extent = box.diagonal().norm();
+  check(extent > 0.0, "extent of the points", extent, "> 0");
+
+  // Points near the axis again with a negative radius: the curve continues beyond it.
+  std::vector<Eigen::Vector2d> around = positions;
+  for (const Eigen::Vector2d& position : positions)
+    if (position.x() < kProfile.max_width * extent) around.emplace_back(-position.x(), position.y());
+  const double step = 2.0 * extent / num_points;  // a vase is about twice as long as it is high
+  const std::vector<FittedPosition> curve = fitCurve(around, positions, step, chooseWidth(around, positions, extent));
+  return orderAlongCurve(curve, {0.0, box.min().y()}, step);
 }
 
 }  // namespace pcl_symmetry

@@ -10,8 +10,9 @@ namespace pcl_symmetry {
 
 std::vector<Candidate> StagedRefinement::refineCoarsely(std::vector<Candidate> candidates,
                                                         const PlaneGrid& grid) const {
-  const std::vector<Candidate> moved = refined(candidates, stage(kDetection.stages.first_samples, cloud.sigma,
-                                                                 coarseSigma(), kDetection.stages.coarse_iterations));
+  const std::vector<Candidate> moved = fit.refine(
+      candidates,
+      stage(kDetection.stages.first_samples, cloud.sigma, coarseSigma(), kDetection.stages.coarse_iterations));
   return distinct(withinCells(moved, candidates, grid), kDetection.stages.kept_coarsely);
 }
 
@@ -19,32 +20,32 @@ std::vector<Candidate> StagedRefinement::refineClosely(std::vector<Candidate> ca
   const auto isSymmetry = [](const Candidate& candidate) {
     return candidate.merit >= kDetection.stages.symmetric_merit;
   };
-  const bool keeps_all = !kKindRules.shows_all[cloud.kind()] || options.approximate;
+  const bool keeps_all = cloud.isScan() || options.approximate;
   const auto likely =
       keeps_all ? candidates.end()
                 : std::stable_partition(candidates.begin(), candidates.end(), [](const Candidate& candidate) {
                     return candidate.merit >= kDetection.stages.symmetric_merit - kDetection.stages.coarse_slack;
                   });
-  std::vector<Candidate> found = refined({candidates.begin(), likely}, closeStage());
+  std::vector<Candidate> found = fit.refine({candidates.begin(), likely}, closeStage());
   // Once a whole cloud has a symmetry, candidates of much less merit are dropped.
   if (!keeps_all && std::any_of(found.begin(), found.end(), isSymmetry)) return distinct(std::move(found), 0);
-  append(found, refined({likely, candidates.end()}, closeStage()));
+  append(found, fit.refine({likely, candidates.end()}, closeStage()));
   const bool is_whole = std::any_of(found.begin(), found.end(), isSymmetry);
   return distinct(std::move(found), keeps_all || !is_whole ? kDetection.stages.kept_closely : 0);
 }
 
 std::vector<Candidate> StagedRefinement::refineSymmetries(std::vector<Candidate> candidates) const {
-  return distinct(refined(std::move(candidates), closeStage()), kDetection.stages.kept_closely,
+  return distinct(fit.refine(std::move(candidates), closeStage()), kDetection.stages.kept_closely,
                   kDetection.stages.symmetric_merit - kDetection.stages.close_slack);
 }
 
 std::vector<Candidate> StagedRefinement::refineFully(std::vector<Candidate> candidates) const {
-  return refined(std::move(candidates), fullStage());
+  return fit.refine(std::move(candidates), fullStage());
 }
 
 std::vector<char> StagedRefinement::climb(std::vector<Candidate>& candidates,
                                           const std::vector<char>& may_climb) const {
-  if (!kKindRules.shows_all[cloud.kind()]) return std::vector<char>(candidates.size(), false);
+  if (cloud.isScan()) return std::vector<char>(candidates.size(), false);
   return fit.climb(candidates, fullStage(), may_climb);
 }
 
@@ -64,7 +65,7 @@ RefinementStage StagedRefinement::closeStage() const {
                                          options.expert.num_refine_samples),
                                 coarseSigma(), cloud.final_sigma, kDetection.stages.close_iterations);
   // On the way to narrow weights, point-to-plane steps would slide a scan along its flat pieces.
-  if (!kKindRules.shows_all[cloud.kind()] && close.isp.final_sigma < close.isp.sigma)
+  if (cloud.isScan() && close.isp.final_sigma < close.isp.sigma)
     close.isp.update = close.rough_isp.update = IspUpdate::PointToPoint;
   return close;
 }
@@ -77,7 +78,7 @@ RefinementStage StagedRefinement::stage(int num_samples, double sigma, double fi
       std::clamp(options.expert.num_refine_samples / kKindRules.rough_stride[kind], 1, stage.num_samples);
   stage.min_merit = kKindRules.settled_merit[kind];
   // For sparse points, the weights have their least width from the first stage on.
-  stage.undo_slides = !kKindRules.shows_all[kind] && final_sigma == sigma;
+  stage.undo_slides = kind == CloudKind::Scan && final_sigma == sigma;
   stage.isp.sigma = sigma;
   stage.isp.final_sigma = final_sigma;
   stage.isp.max_iterations = max_iterations;
@@ -85,12 +86,6 @@ RefinementStage StagedRefinement::stage(int num_samples, double sigma, double fi
   stage.rough_isp.max_iterations = std::min(stage.isp.max_iterations, kDetection.stages.rough_iterations);
   stage.isp.error_share = kDetection.stages.settled_error_share;
   return stage;
-}
-
-std::vector<Candidate> StagedRefinement::refined(std::vector<Candidate> candidates,
-                                                 const RefinementStage& stage) const {
-  fit.refine(candidates, stage);
-  return candidates;
 }
 
 /// The candidates that stayed near the cell they came from. Departure from the paper: it drops all candidates that
@@ -110,13 +105,13 @@ std::vector<Candidate> StagedRefinement::withinCells(const std::vector<Candidate
     if (stays) best = std::max(best, candidates[i].merit);
   }
   for (const Candidate& candidate : left)
-    if (kKindRules.shows_all[cloud.kind()] && candidate.merit > best) kept.push_back(candidate);
+    if (!cloud.isScan() && candidate.merit > best) kept.push_back(candidate);
   return kept;
 }
 
 std::vector<Candidate> StagedRefinement::distinct(std::vector<Candidate> candidates, std::size_t max_count,
                                                   double min_merit) const {
-  sortFalling(candidates, &Candidate::merit);
+  sortDescending(candidates, &Candidate::merit);
   std::vector<Candidate> kept;
   for (Candidate& candidate : candidates) {
     if (candidate.merit < min_merit) break;

@@ -49,7 +49,6 @@ private:
   RefinementStage closeStage() const;
   RefinementStage fullStage() const;
   RefinementStage stage(int num_samples, double sigma, double final_sigma, int max_iterations) const;
-  std::vector<Candidate> refined(std::vector<Candidate> candidates, const RefinementStage& stage) const;
   std::vector<Candidate> withinCells(const std::vector<Candidate>& candidates, const std::vector<Candidate>& starts,
                                      const PlaneGrid& grid) const;
 };

@@ -27,7 +27,7 @@ double heightOf(const PointsRef& points, const Eigen::Vector4d& support) {
 
 }  // namespace
 
-std::vector<Eigen::Vector3d> carryingNormals(const PointsRef& points, const Visibility& seen) {
+std::vector<Eigen::Vector3d> supportNormals(const PointsRef& points, const Visibility& seen) {
   std::vector<double> heights;
   for (const Eigen::Vector4d& support : seen.supports()) heights.push_back(heightOf(points, support));
   if (heights.empty()) return {};
@@ -39,12 +39,12 @@ std::vector<Eigen::Vector3d> carryingNormals(const PointsRef& points, const Visi
   return normals;
 }
 
-bool slants(const ReflectionPlane& plane, const std::vector<Eigen::Vector3d>& carrying_normals) {
+bool isSlanted(const ReflectionPlane& plane, const std::vector<Eigen::Vector3d>& support_normals) {
   const auto is_along = [&](const Eigen::Vector3d& normal) {
     const double angle = std::acos(std::min(1.0, std::abs(normal.dot(plane.normal()))));
     return angle <= kDetection.decide.upright || angle >= 0.5 * kPi - kDetection.decide.upright;
   };
-  return !carrying_normals.empty() && std::none_of(carrying_normals.begin(), carrying_normals.end(), is_along);
+  return !support_normals.empty() && std::none_of(support_normals.begin(), support_normals.end(), is_along);
 }
 
 namespace {
@@ -129,11 +129,11 @@ double meanDiagonal(const PointsRef& points, const Eigen::Vector3d& up) {
 /// image, at very different ranges. No surface is seen that edge-on.
 bool endAtImageBorder(const PointsRef& points, const Eigen::Vector3d& up, const Eigen::Vector3d& viewpoint) {
   const Eigen::Vector3d middle = centerOfMass(points) - viewpoint;
-  const Eigen::Vector3d ahead = (middle - middle.dot(up) * up).normalized(), aside = up.cross(ahead);
+  const Eigen::Vector3d ahead = (middle - middle.dot(up) * up).normalized(), sideways = up.cross(ahead);
   const auto along = [&](const Eigen::Vector3d& axis) -> Eigen::ArrayXd {
     return (axis.transpose() * (points.cast<double>().colwise() - viewpoint)).transpose();
   };
-  const Eigen::ArrayXd x = along(ahead), y = along(aside), range = (x.square() + y.square()).sqrt();
+  const Eigen::ArrayXd x = along(ahead), y = along(sideways), range = (x.square() + y.square()).sqrt();
   const Eigen::ArrayXd elevation = (along(up) / range).atan();
   Eigen::ArrayXd azimuth = y.binaryExpr(x, [](double b, double a) { return std::atan2(b, a); });
   const auto widthOf = [](const Eigen::ArrayXd& values) { return values.maxCoeff() - values.minCoeff(); };
@@ -176,18 +176,19 @@ std::vector<Meets> meetingsAt(const Points& reflected, const PointsRef& points, 
   const Points directions = directionsTo(points, viewpoint, ranges);
   const ClosestPointSearch::Ptr search = makeFlannSearch(directions);
   std::vector<int> beams, closest;
-  std::vector<float> sq_aside, sq_distances, apart;
-  search->search(directions, kBox.beams + 2, beams, sq_aside);
-  for (std::size_t i = kBox.beams + 1; i < sq_aside.size(); i += kBox.beams + 2) apart.push_back(sq_aside[i]);
-  const float sq_beam_reach = static_cast<float>(kBox.beam_reach * kBox.beam_reach) * median(std::move(apart));
-  search->search(directionsTo(reflected, viewpoint, reflected_ranges), kBox.beams, beams, sq_aside);
+  std::vector<float> sq_beam_distances, sq_distances, sq_reaches;
+  search->search(directions, kBox.beams + 2, beams, sq_beam_distances);
+  for (std::size_t i = kBox.beams + 1; i < sq_beam_distances.size(); i += kBox.beams + 2)
+    sq_reaches.push_back(sq_beam_distances[i]);
+  const float sq_beam_reach = static_cast<float>(kBox.beam_reach * kBox.beam_reach) * median(std::move(sq_reaches));
+  search->search(directionsTo(reflected, viewpoint, reflected_ranges), kBox.beams, beams, sq_beam_distances);
   makeFlannSearch(points)->search(reflected, 1, closest, sq_distances);
   std::vector<Meets> met(reflected_ranges.size(), Meets::Unknown);
   for (std::size_t i = 0; i < met.size(); ++i) {
     bool meets = sq_distances[i] <= reach * reach, all_pass = true;
     for (std::size_t k = kBox.beams * i; k < kBox.beams * (i + 1); ++k) {
       const double behind = reflected_ranges[i] - ranges[beams[k]];
-      const bool is_close = sq_aside[k] <= sq_beam_reach;
+      const bool is_close = sq_beam_distances[k] <= sq_beam_reach;
       meets |= is_close && std::abs(behind) <= reach;
       all_pass &= is_close && behind < -reach;
     }
@@ -229,7 +230,7 @@ std::optional<MiddlePlane> middlePlaneOfBox(const PointsRef& points, const Eigen
 
 void decideByUprightBox(const PointsRef& points, const Visibility& seen, const DetectionOptions& options,
                         Detection& found) {
-  const std::vector<Eigen::Vector3d> up = carryingNormals(points, seen);
+  const std::vector<Eigen::Vector3d> up = supportNormals(points, seen);
   if (up.empty()) return;
   const double spacing = median(localGeometry(points, *makeFlannSearch(points), options.num_threads).spacing);
   const bool is_sparse = spacing > kDetection.decide.no_surface * found.tolerance;
@@ -268,7 +269,7 @@ void decideByUprightBox(const PointsRef& points, const Visibility& seen, const D
   const auto in_ball = [&](const ReflectionPlane& other) { return other.normalized(ball.center, ball.radius); };
   eraseIf(found.planes, [&](const SymmetryPlane& other) { return kSamePlane.same(in_ball(other), in_ball(*plane)); });
   found.planes.insert(found.planes.begin(), std::move(*plane));
-  found.planes = reordered(std::move(found.planes), options);
+  found.planes = sortPlanes(std::move(found.planes), options);
   if (static_cast<int>(found.planes.size()) > options.max_planes) found.planes.resize(options.max_planes);
   found.best.reset();
 }

@@ -13,10 +13,10 @@ namespace pcl_symmetry {
 /// touches.
 /// \param points points of the object, 3 x N, finite, N >= 1.
 /// \return their unit normals.
-std::vector<Eigen::Vector3d> carryingNormals(const PointsRef& points, const Visibility& seen);
+std::vector<Eigen::Vector3d> supportNormals(const PointsRef& points, const Visibility& seen);
 
 /// Whether a plane is neither upright nor level on any of these supports; false without supports.
-bool slants(const ReflectionPlane& plane, const std::vector<Eigen::Vector3d>& carrying_normals);
+bool isSlanted(const ReflectionPlane& plane, const std::vector<Eigen::Vector3d>& support_normals);
 
 /// The middle plane of an upright box around points, along its longer side, and its evidence.
 struct MiddlePlane {
@@ -44,7 +44,7 @@ std::optional<MiddlePlane> middlePlaneOfBox(const PointsRef& points, const Eigen
 
 /// Decides by the middle plane of the upright box around points on a ground, if they are too sparse for a surface, such
 /// as the rings of a LiDAR, or if no symmetry was found.
-/// \param points,seen as in carryingNormals().
+/// \param points,seen as in supportNormals().
 /// \param[in,out] found result for these points; its planes have their support.
 void decideByUprightBox(const PointsRef& points, const Visibility& seen, const DetectionOptions& options,
                         Detection& found);

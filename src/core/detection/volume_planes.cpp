@@ -118,7 +118,7 @@ public:
   /// Gauss-Newton from a plane to the nearest maximum of D.
   /// \param tolerance last step: radians, and tenths of a voxel.
   /// \return the plane, with iterations and converged.
-  SymmetryPlane refined(const ReflectionPlane& start, int stride, int max_iterations, double tolerance) const {
+  SymmetryPlane refinePlane(const ReflectionPlane& start, int stride, int max_iterations, double tolerance) const {
     const double spacing = f_.spacing().minCoeff(), max_step = 4.0 * stride * spacing;
     SymmetryPlane result(start);
     double residual = compare(start, stride, false).residual;
@@ -268,7 +268,7 @@ struct VolumeSearch {
   /// Of the planes that ended at the same plane only the best one, best first.
   std::vector<SymmetryPlane> distinct(std::vector<SymmetryPlane> planes) const {
     const MergeTolerance one{kVolume.merge_angle, kVolume.merge_offset * edt.radius()};
-    sortFalling(planes, &SymmetryPlane::support);
+    sortDescending(planes, &SymmetryPlane::support);
     eraseIf(planes, [](const SymmetryPlane& plane) { return !(plane.support > 0.0); });
     return one.distinct(
         std::move(planes), [&](const SymmetryPlane& plane) { return plane.normalized(center); }, options.max_planes);
@@ -281,7 +281,7 @@ struct VolumeSearch {
       if (static_cast<int>(starts.size()) < options.expert.max_candidates) starts.push_back(maximum.plane);
     std::vector<SymmetryPlane> refined(starts.size());
     parallelBlocks(starts.size(), options.num_threads, [&](std::size_t i) {
-      refined[i] = few.refined(starts[i], stride, kVolume.rough_steps, kVolume.rough_tolerance);
+      refined[i] = few.refinePlane(starts[i], stride, kVolume.rough_steps, kVolume.rough_tolerance);
       refined[i].support = few.compare(refined[i], 1, false).merit();
     });
     return distinct(std::move(refined));
@@ -311,13 +311,13 @@ struct VolumeSearch {
   }
 
   /// Refines the maxima that may be symmetries on many voxels.
-  std::vector<SymmetryPlane> refined(std::vector<SymmetryPlane> maxima, double chance) const {
+  std::vector<SymmetryPlane> refinePlanes(std::vector<SymmetryPlane> maxima, double chance) const {
     for (SymmetryPlane& plane : maxima) {
       if (!options.approximate && &plane != &maxima.front() && confidence(plane, chance) < options.min_possible)
         continue;
       const int before = plane.iterations;
-      plane = all.refined(plane, strideFor(fine.f, kVolume.precise_voxels), kVolume.precise_steps,
-                          kVolume.precise_tolerance);
+      plane = all.refinePlane(plane, strideFor(fine.f, kVolume.precise_voxels), kVolume.precise_steps,
+                              kVolume.precise_tolerance);
       const Comparison comparison = few.compare(plane, 1, false);
       plane.iterations += before;
       plane.support = std::max(0.0, comparison.merit());
@@ -373,10 +373,10 @@ Detection detectVolumePlanes(const ScalarGrid& input, const DetectionOptions& op
       found.reason = "volume: the body is round, planes in all directions map it onto itself";
       return found;
     }
-    planes = search.refined(std::move(planes), chance);
+    planes = search.refinePlanes(std::move(planes), chance);
     for (SymmetryPlane& plane : planes) search.judge(plane, chance, planes.front().support);
     if (std::none_of(planes.begin(), planes.end(), isDecided) && !planes.empty()) found.best = planes.front();
-    found.planes = reordered(std::move(planes), options);
+    found.planes = sortPlanes(std::move(planes), options);
     done("refinement");
   } catch (const VolumeWithoutAnswer& error) {
     found.reason = error.what();

@@ -117,7 +117,7 @@ std::vector<float> missingCounterparts(const SampledSurface& surface, const std:
   const auto& nearest = surface.geometry.nearest;
   const std::vector<char> near = nearBorders(surface.borders, surface.geometry);
   const auto ends = [&](int i) { return near[i] || (closest[i] >= 0 && near[closest[i]]); };
-  std::vector<int> ranks(size, 0), parents = allOf(static_cast<Eigen::Index>(size));
+  std::vector<int> ranks(size, 0), parents = allIndices(static_cast<Eigen::Index>(size));
   Regions regions(ranks.data(), parents.data());
   for (std::size_t i = 0; i < size; ++i)
     for (const int j : nearest[i])

@@ -114,7 +114,7 @@ double planeConfidence(const PlaneEvidence& evidence) {
   const auto& coefficients = kConfidenceFit.log_odds[static_cast<int>(evidence.kind)];
   // A flat cloud is judged by its outline alone, a scan by one side.
   const double by_spacing =
-      evidence.kind == CloudKind::Scan ? std::min(1.0, evidence.coarser / kEvidence.surely_coarser) : 0.0;
+      evidence.kind == CloudKind::Scan ? std::min(1.0, evidence.tolerance_raise / kEvidence.surely_coarser) : 0.0;
   const double tells_little = evidence.flat ? 1.0 : by_spacing;
   const double coarsest = kEvidence.coarsest + tells_little * (kEvidence.coarsest_part - kEvidence.coarsest);
   const double unresolved = kEvidence.lost_per_coarseness * std::max(0.0, coarseness(evidence) - coarsest);

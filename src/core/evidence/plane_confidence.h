@@ -54,7 +54,7 @@ struct PlaneEvidence {
   double tolerance = 0.02;    ///< tolerance of `share`, divided by the radius of the points, > 0
   double unknown = 0.0;  ///< share of the surface that is uninformative: its reflection was not seen or was cut off
   bool flat = false;     ///< whether all points lie in one plane, so that only their outline is informative
-  double coarser = 0.0;  ///< share by which the spacing of the points raised the tolerance, >= 0
+  double tolerance_raise = 0.0;  ///< share by which the spacing of the points raised the tolerance, >= 0
 };
 
 /// Share of the visible surface that the plane maps onto the surface, relative to what sampling allows.

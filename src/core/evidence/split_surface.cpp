@@ -23,7 +23,7 @@ std::pair<Points, Points> halvesOf(const Points& points, std::uint64_t seed) {
   const Eigen::Index size = points.cols();
   std::vector<int> second = drawSamples(size, static_cast<int>(size / 2), seed), first;
   std::sort(second.begin(), second.end());
-  const std::vector<int> all = allOf(size);
+  const std::vector<int> all = allIndices(size);
   std::set_difference(all.begin(), all.end(), second.begin(), second.end(), std::back_inserter(first));
   return {pointsAt(points, first), pointsAt(points, second)};
 }

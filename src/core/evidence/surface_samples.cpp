@@ -16,7 +16,7 @@ namespace pcl_symmetry {
 
 namespace {
 
-constexpr float half_diagonal = 0.8660254f;  // cells: sqrt(3) / 2
+constexpr float kHalfDiagonal = 0.8660254f;  // cells: sqrt(3) / 2
 
 }  // namespace
 
@@ -49,7 +49,7 @@ SurfaceDiscs::SurfaceDiscs(const Points& samples, const LocalGeometry& geometry,
 /// Calls visit(cell) for the cells that hold points within reach of a disc, and for a few others.
 template <typename Visit>
 void SurfaceDiscs::visitCells(const SurfaceDisc& disc, const Visit& visit) const {
-  const float beside = disc.radius + reach_, slack = half_diagonal * cell_size_;
+  const float beside = disc.radius + reach_, slack = kHalfDiagonal * cell_size_;
   const Eigen::Array3f low = (disc.center - origin_).array() - beside, high = low + 2.0f * beside;
   const Eigen::Array3i from = (low / cell_size_).max(0.0f).cast<int>();
   const Eigen::Array3i to = (high / cell_size_).cast<int>().min(size_ - 1);

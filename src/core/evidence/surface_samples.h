@@ -4,7 +4,6 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
-#include <cstdint>
 #include <limits>
 #include <vector>
 
@@ -147,7 +146,7 @@ private:
 struct alignas(64) SurfaceSample : SurfaceDisc {
   float roughness;     ///< LocalGeometry::roughness
   float normal_trust;  ///< reliability of the normal, in [0, 1]: 0 for noise beyond the spacing
-  std::array<int, kNumWitnesses> nearest;
+  std::array<int, kNumDiscNeighbors> nearest;
 };
 
 using SurfaceSamples = std::vector<SurfaceSample>;

@@ -68,7 +68,7 @@ std::vector<Eigen::Vector3f> SurfaceDirections::peaks(int max_peaks) const {
     }
     if (share >= kFrame.min_peak) found.push_back({direction, share});
   }
-  sortFalling(found, &Peak::share);
+  sortDescending(found, &Peak::share);
   std::vector<Eigen::Vector3f> peaks;
   const float same = static_cast<float>(std::cos(kFrame.peak_distance));
   for (const Peak& peak : found) {

@@ -19,7 +19,7 @@ bool isKnown(const std::vector<CellPlane>& planes, const Eigen::Vector3f& normal
 }
 
 /// Moves a plane to the nearest maximum of quality, by decreasing steps, degrees. It rotates about the center of mass.
-CellPlane climbed(const FrameEvidence& evidence, CellPlane plane) {
+CellPlane climb(const FrameEvidence& evidence, CellPlane plane) {
   double quality = evidence.quality(plane);
   for (const double step : {3.0, 1.5, 0.75}) {
     for (int move = 0; move < kFrame.max_plane_moves; ++move) {
@@ -115,7 +115,7 @@ FrameCandidate rotatedTo(const FrameEvidence& evidence, const FrameCandidate& fr
 }
 
 /// Rotates a frame about its own axes, by decreasing steps, to the nearest maximum of the value.
-FrameCandidate climbed(const FrameEvidence& evidence, const FrameCandidate& start) {
+FrameCandidate climb(const FrameEvidence& evidence, const FrameCandidate& start) {
   FrameCandidate frame = rotatedTo(evidence, start, start.axes);
   for (const double step : {2.0, 1.0, 0.5}) {
     for (int move = 0; move < kFrame.max_frame_moves; ++move) {
@@ -162,7 +162,7 @@ std::vector<CellPlane> firstPlaneCandidates(const FrameEvidence& evidence, const
   parallelBlocks(candidates.size(), num_threads, [&](std::size_t i) {
     CellPlane& plane = candidates[i];
     if (i >= num_maxima) plane.offset = evidence.bestOffset(plane.normal).offset;
-    plane = climbed(evidence, plane);
+    plane = climb(evidence, plane);
   });
   return candidates;
 }
@@ -170,7 +170,7 @@ std::vector<CellPlane> firstPlaneCandidates(const FrameEvidence& evidence, const
 std::vector<CellPlane> bestFirstPlanes(const FrameEvidence& evidence, const std::vector<CellPlane>& candidates) {
   std::vector<std::pair<double, CellPlane>> ranked;
   for (const CellPlane& plane : candidates) ranked.emplace_back(evidence.quality(plane), plane);
-  sortFalling(ranked, [](const auto& entry) { return entry.first; });
+  sortDescending(ranked, [](const auto& entry) { return entry.first; });
   std::vector<CellPlane> best;
   for (const auto& [quality, plane] : ranked) {
     if (best.size() >= kFrame.max_first_planes) break;
@@ -213,7 +213,7 @@ std::vector<FrameCandidate> frameMaxima(const std::vector<FrameCandidate>& rotat
     // Where no angle stands out, all are equally good.
     if (maxima.empty()) maxima.push_back(rotated[first]);
   }
-  sortFalling(maxima, &FrameCandidate::value);
+  sortDescending(maxima, &FrameCandidate::value);
   maxima.resize(std::min(maxima.size(), kFrame.max_refined));
   return maxima;
 }
@@ -221,8 +221,8 @@ std::vector<FrameCandidate> frameMaxima(const std::vector<FrameCandidate>& rotat
 std::vector<FrameCandidate> refinedFrames(const FrameEvidence& evidence, std::vector<FrameCandidate> frames,
                                           int num_threads) {
   parallelBlocks(frames.size(), num_threads,
-                 [&](std::size_t i) { frames[i] = ordered(evidence, climbed(evidence, frames[i])); });
-  sortFalling(frames, &FrameCandidate::value);
+                 [&](std::size_t i) { frames[i] = ordered(evidence, climb(evidence, frames[i])); });
+  sortDescending(frames, &FrameCandidate::value);
   return frames;
 }
 

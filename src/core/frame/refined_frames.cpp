@@ -149,9 +149,9 @@ void refineOnPoints(const PointsRef& points, const Visibility* visibility, const
   DetectionOptions detection;
   detection.seed = options.seed;
   detection.num_threads = options.num_threads;
-  std::vector<SymmetryPlane> found = refinedAt(starts, PlaneInput(points, visibility), detection);
+  std::vector<SymmetryPlane> found = refinePlanes(starts, PlaneInput(points, visibility), detection);
   eraseIf(found, [](const SymmetryPlane& plane) { return plane.kind != PlaneKind::Symmetry; });
-  sortFalling(found, &SymmetryPlane::confidence);
+  sortDescending(found, &SymmetryPlane::confidence);
   bringToPlanes(
       [&](const ReflectionPlane& start) -> std::optional<ReflectionPlane> {
         for (const SymmetryPlane& plane : found)

@@ -1,7 +1,6 @@
 #include "pcl_symmetry/core/symmetry_frame.h"
 
 #include <algorithm>
-#include <cmath>
 
 #include "core/base/check.h"
 #include "core/base/constants.h"
@@ -82,9 +81,10 @@ SymmetryFrame publishedFrame(const PointsRef& points, const FrameOptions& option
   return frame;
 }
 
-/// The rotations of a scan; the axes of its frame are tried first.
-ScanRotations rotationsAlong(const SymmetryFrame& frame, const PointsRef& points, const GaussianEdt& edt,
-                             const FrameOptions& options, const Visibility& visibility, const MakeSearch& make_search) {
+/// Adds the rotations of a scan, whose center and axis of revolution replace those of the planes. The axes of the frame
+/// are tried first.
+void addRotations(const PointsRef& points, const GaussianEdt& edt, const FrameOptions& options,
+                  const Visibility& visibility, const MakeSearch& make_search, SymmetryFrame& frame) {
   ScanAxesOptions scan_axes;
   scan_axes.seed = options.seed;
   scan_axes.num_threads = options.num_threads;
@@ -93,7 +93,14 @@ ScanRotations rotationsAlong(const SymmetryFrame& frame, const PointsRef& points
     axes[k].point = frame.center;
     axes[k].direction = frame.axes.col(k);
   }
-  return rotationsOfScan(points, edt, visibility, axes, scan_axes, make_search);
+  ScanRotations found = rotationsOfScan(points, edt, visibility, axes, scan_axes, make_search);
+  frame.rotations = std::move(found.rotations);
+  if (found.center) {
+    frame.center = found.center->point;
+    frame.revolution_axis = 3;
+  }
+  for (const SymmetryRotation& rotation : frame.rotations)
+    if (rotation.fold == 0 && frame.revolution_axis < 0) frame.revolution_axis = axisAlong(rotation, frame);
 }
 
 /// The frame itself, then the others by decreasing probability.
@@ -118,6 +125,21 @@ std::vector<ProbableFrame> probableFrames(const FrameEvidence& evidence, const S
     std::stable_sort(probable.begin() + 1, probable.end(),
                      [](const ProbableFrame& a, const ProbableFrame& b) { return a.probability > b.probability; });
   return probable;
+}
+
+/// Equally good frames: first the maxima, then the angles between them where the second plane hardly matters.
+/// \param frames,centers the maxima, best first, and their centers.
+/// \param rotated frames at all angles.
+void listEquivalents(const std::vector<FrameCandidate>& frames, const std::vector<Eigen::Vector3d>& centers,
+                     const std::vector<FrameCandidate>& rotated, SymmetryFrame& frame) {
+  const auto& scores = frames.front().scores;
+  addWithSigns(frame.axes, frame.center, frame.equivalent);
+  for (std::size_t i = 0; i < frames.size(); ++i)
+    addTied(frames[i], scores, i == 0 ? frame.center : centers[i], frame.equivalent);
+  frame.num_maxima = frame.equivalent.size();
+  for (const FrameCandidate& other : rotated)
+    if (!isRotatedAboutRevolution(frame.axes.cast<float>(), frame.revolution_axis, other.axes))
+      addTied(other, scores, frame.center, frame.equivalent);
 }
 
 }  // namespace
@@ -170,26 +192,12 @@ SymmetryFrame symmetryFrame(const PointsRef& all, const FrameOptions& options, c
   frame.revolution_axis = revolutionAxis(evidence, best);
   done("center");
   if (visibility && options.rotations) {
-    ScanRotations found = rotationsAlong(frame, points, edt, options, *visibility, make_search);
-    frame.rotations = std::move(found.rotations);
-    if (found.center) {
-      frame.center = found.center->point;
-      frame.revolution_axis = 3;
-    }
-    for (const SymmetryRotation& rotation : frame.rotations)
-      if (rotation.fold == 0 && frame.revolution_axis < 0) frame.revolution_axis = axisAlong(rotation, frame);
+    addRotations(points, edt, options, *visibility, make_search, frame);
     done("rotations");
   }
   frame.T_canonical_input = canonicalPose(frame.axes, frame.center);
 
-  // Equally good frames: first the maxima, then the frames at angles between them if the second plane hardly matters.
-  addWithSigns(frame.axes, frame.center, frame.equivalent);
-  for (std::size_t i = 0; i < frames.size(); ++i)
-    addTied(frames[i], best.scores, i == 0 ? frame.center : centers[i], frame.equivalent);
-  frame.num_maxima = frame.equivalent.size();
-  for (const FrameCandidate& other : rotated)
-    if (!isRotatedAboutRevolution(frame.axes.cast<float>(), frame.revolution_axis, other.axes))
-      addTied(other, best.scores, frame.center, frame.equivalent);
+  listEquivalents(frames, centers, rotated, frame);
   done("equivalent");
   if (options.refined) {
     refineOnPoints(points, visibility, options, frame);

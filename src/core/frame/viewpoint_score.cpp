@@ -43,7 +43,7 @@ std::vector<ViewPlane> viewPlanes(std::vector<ViewPlane> planes, const std::vect
     if (!best.empty() && worstView(planes).score >= min_score * best[0].score) break;
     planes.push_back(maximum);
   }
-  sortFalling(planes, [](const auto& entry) { return entry.weight; });
+  sortDescending(planes, [](const auto& entry) { return entry.weight; });
   return planes;
 }
 
@@ -68,7 +68,7 @@ std::vector<RankedView> bestViews(const std::vector<ViewPlane>& planes) {
     views.push_back({v, score});
     views.push_back({-v, score});
   }
-  sortFalling(views, [](const auto& entry) { return entry.score; });
+  sortDescending(views, [](const auto& entry) { return entry.score; });
   return views;
 }
 

@@ -2,16 +2,106 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 #include <limits>
 #include <stdexcept>
+#include <utility>
 #include <vector>
 
 #include "core/base/check.h"
+#include "core/base/random.h"
 #include "core/base/statistics.h"
 #include "core/geometry/geometry_rules.h"
 #include "pcl_symmetry/core/closest_point_search.h"
 
 namespace pcl_symmetry {
+
+std::vector<int> shuffled(Eigen::Index size, std::uint64_t seed, Eigen::Index max_count) {
+  std::vector<int> order = allIndices(size);
+  RandomStream random(seed);
+  max_count = std::min(max_count, size);
+  for (Eigen::Index i = 0; i < max_count; ++i)
+    std::swap(order[i], order[i + random.below(static_cast<std::uint64_t>(size - i))]);
+  order.resize(max_count);
+  return order;
+}
+
+std::vector<std::size_t> oneOfEachRun(std::size_t size, std::size_t num_drawn, std::uint64_t seed) {
+  std::vector<std::size_t> drawn(num_drawn);
+  RandomStream random(seed);
+  const double run = static_cast<double>(size) / static_cast<double>(num_drawn);
+  std::size_t next = 0;
+  for (std::size_t i = 0; i < num_drawn; ++i) {
+    const double position = (static_cast<double>(i) + random.uniform()) * run;
+    drawn[i] = std::max(next, std::min(size - 1, static_cast<std::size_t>(position)));
+    next = drawn[i] + 1;
+  }
+  return drawn;
+}
+
+namespace {
+
+/// Indices of points along Morton's curve through the cells of a grid, so that successive points are near each other.
+/// \param points 3 x N, finite.
+std::vector<int> curveOrder(const PointsRef& points) {
+  constexpr int num_cells = 64;  // along each side
+  const Eigen::Vector3f low = points.rowwise().minCoeff(), high = points.rowwise().maxCoeff();
+  const float extent = (high - low).maxCoeff();
+  const float scale = extent > 0.0f ? static_cast<float>(num_cells) / extent : 0.0f;
+  std::vector<std::pair<std::uint32_t, int>> cells;
+  for (int i = 0; i < static_cast<int>(points.cols()); ++i) {
+    const Eigen::Array3i cell = ((points.col(i) - low).array() * scale).cast<int>().min(num_cells - 1);
+    cells.emplace_back(mortonCode(cell.x(), cell.y(), cell.z()), i);
+  }
+  std::sort(cells.begin(), cells.end());
+  std::vector<int> order;
+  for (const auto& [cell, i] : cells) order.push_back(i);
+  return order;
+}
+
+}  // namespace
+
+std::vector<int> spreadSubset(const PointsRef& points, std::size_t size, std::uint64_t seed) {
+  const std::vector<int> order = curveOrder(points);
+  std::vector<int> kept;
+  for (const std::size_t position : oneOfEachRun(order.size(), size, seed)) kept.push_back(order[position]);
+  return kept;
+}
+
+Points reflectedNormals(const PointsRef& normals, const ReflectionPlane& plane) {
+  const Eigen::Vector3f n = plane.normal().cast<float>();
+  Points reflected(3, normals.cols());
+  for (Eigen::Index i = 0; i < normals.cols(); ++i)
+    reflected.col(i) = normals.col(i) - 2.0f * n.dot(normals.col(i)) * n;
+  return reflected;
+}
+
+std::vector<int> firstCopies(const PointsRef& points) {
+  const auto hash = [](const Eigen::Vector3f& point) {
+    constexpr std::uint64_t factor = 0x9E3779B97F4A7C15u;  // 2^64 divided by the golden ratio, made odd
+    std::uint64_t result = 0;
+    for (int axis = 0; axis < 3; ++axis) {
+      const float coordinate = point[axis] + 0.0f;  // 0 and -0 are equal
+      std::uint32_t bits = 0;
+      std::memcpy(&bits, &coordinate, sizeof bits);
+      result = (result ^ bits) * factor;
+      result ^= result >> 32;
+    }
+    return result;
+  };
+  std::vector<int> first(points.cols());
+  std::size_t num_slots = 1;
+  while (num_slots < 2 * first.size()) num_slots *= 2;
+  std::vector<int> first_of_slot(num_slots, -1);
+  for (std::size_t i = 0; i < first.size(); ++i) {
+    const Eigen::Vector3f point = points.col(i);
+    std::size_t slot = hash(point) & (num_slots - 1);
+    while (first_of_slot[slot] >= 0 && points.col(first_of_slot[slot]) != point) slot = (slot + 1) & (num_slots - 1);
+    if (first_of_slot[slot] < 0) first_of_slot[slot] = static_cast<int>(i);
+    first[i] = first_of_slot[slot];
+  }
+  return first;
+}
 
 namespace {
 
@@ -113,7 +203,7 @@ std::vector<int> strayPoints(const PointsRef& points) {
   return stray;
 }
 
-std::vector<int> allBut(const std::vector<int>& stray, Eigen::Index size) {
+std::vector<int> complementOf(const std::vector<int>& stray, Eigen::Index size) {
   std::vector<int> others;
   auto next = stray.begin();
   for (int i = 0; i < static_cast<int>(size); ++i) {
@@ -127,7 +217,7 @@ std::vector<int> allBut(const std::vector<int>& stray, Eigen::Index size) {
 
 Points withoutStrayPoints(const PointsRef& points) {
   const std::vector<int> stray = strayPoints(points);
-  return stray.empty() ? Points(points) : pointsAt(points, allBut(stray, points.cols()));
+  return stray.empty() ? Points(points) : pointsAt(points, complementOf(stray, points.cols()));
 }
 
 namespace {

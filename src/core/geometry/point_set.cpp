@@ -28,7 +28,7 @@ BoundingBall boundingBall(const PointsRef& points) {
   std::vector<std::pair<double, Eigen::Index>> outermost;  // first: distances from the start
   for (Eigen::Index i = 0; i < points.cols(); i += stride)
     outermost.emplace_back(std::sqrt(sqDistance(points, i, start)), i);
-  sortFalling(outermost, [](const auto& entry) { return entry.first; });
+  sortDescending(outermost, [](const auto& entry) { return entry.first; });
   for (int k = 1; k <= kGeometry.ball_iterations; ++k) {
     const double moved = (ball.center - start).norm();
     double greatest = -1.0;

@@ -24,12 +24,12 @@ int numToSearch(Eigen::Index size, int num_neighbors) {
 
 /// The closest other points.
 /// \param neighbors \p count indices, nearest first, among them \p self.
-std::array<int, kNumWitnesses> witnessesOf(int self, const int* neighbors, int count) {
-  std::array<int, kNumWitnesses> witnesses;
-  witnesses.fill(self);
-  for (int k = 0, next = 0; k < count && next < kNumWitnesses; ++k)
-    if (neighbors[k] != self) witnesses[next++] = neighbors[k];
-  return witnesses;
+std::array<int, kNumDiscNeighbors> discNeighborsOf(int self, const int* neighbors, int count) {
+  std::array<int, kNumDiscNeighbors> disc_neighbors;
+  disc_neighbors.fill(self);
+  for (int k = 0, next = 0; k < count && next < kNumDiscNeighbors; ++k)
+    if (neighbors[k] != self) disc_neighbors[next++] = neighbors[k];
+  return disc_neighbors;
 }
 
 /// Distance between neighboring samples.
@@ -79,7 +79,7 @@ LocalGeometry localGeometry(const Points& points, const ClosestPointSearch& sear
       const int* const nearest = indices.data() + (i - begin) * static_cast<std::size_t>(count);
       if (neighbors) std::copy_n(nearest, count, &neighbors->indices[i * static_cast<std::size_t>(count)]);
       const TangentPlane plane = tangentPlane(points, points.col(column), nearest, count);
-      geometry.nearest[i] = witnessesOf(static_cast<int>(i), nearest, count);
+      geometry.nearest[i] = discNeighborsOf(static_cast<int>(i), nearest, count);
       geometry.normals.col(column) = plane.normal;
       geometry.roughness[i] = plane.roughness;
       const double sq_radius = sq_distances[(i - begin + 1) * static_cast<std::size_t>(count) - 1];

@@ -11,7 +11,7 @@ namespace pcl_symmetry {
 
 /// Neighbors of the closest sample that also decide whether a point lies on the surface. A sample is within reach at
 /// 1.25 spacings, and a circle of that radius holds pi 1.25^2 = 5 samples on average.
-constexpr int kNumWitnesses = 4;
+constexpr int kNumDiscNeighbors = 4;
 
 /// The surface at each sample, estimated from its neighbors.
 struct LocalGeometry {
@@ -20,7 +20,7 @@ struct LocalGeometry {
   /// 1 if the neighbors lie to one side of a sample: the rim of a scan, or a sharp edge; N values.
   std::vector<char> at_border;
   /// N, the closest other samples, nearest first; the sample itself if there are no more
-  std::vector<std::array<int, kNumWitnesses>> nearest;
+  std::vector<std::array<int, kNumDiscNeighbors>> nearest;
   /// N, distance between neighboring samples: 1 / sqrt(density), input units
   std::vector<float> spacing;
 };

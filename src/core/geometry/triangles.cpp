@@ -3,7 +3,6 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 
 #include "core/base/check.h"
 #include "core/base/parallel.h"
@@ -25,7 +24,7 @@ struct TriangleTree::Builder {
         corners(all_corners),
         triangles(all_triangles),
         middles(3, static_cast<Eigen::Index>(all_triangles.size())),
-        order(allOf(static_cast<Eigen::Index>(all_triangles.size()))) {
+        order(allIndices(static_cast<Eigen::Index>(all_triangles.size()))) {
     for (std::size_t t = 0; t < triangles.size(); ++t)
       middles.col(t) =
           (corners.col(triangles[t][0]) + corners.col(triangles[t][1]) + corners.col(triangles[t][2])) / 3.0f;

@@ -63,7 +63,7 @@ Eigen::Index CompactIndex::numShapes() const {
 
 /// The forms whose leading components are nearest to any rotation of the query, by ascending index.
 std::vector<int> CompactIndex::candidates(const Eigen::MatrixXf& rotations, std::size_t count) const {
-  std::vector<int> forms = allOf(compact_.cols());
+  std::vector<int> forms = allIndices(compact_.cols());
   if (count >= forms.size()) return forms;
   // -1/2 of the squared distance to the nearest rotation, scaled.
   const Eigen::MatrixXf queries = rotations.topRows(leading_.rows());
@@ -100,7 +100,7 @@ std::vector<std::pair<int, float>> CompactIndex::nearest(const Eigen::MatrixXf& 
   const Eigen::RowVectorXf cosines = (rotations.transpose() * near).colwise().maxCoeff();
   std::vector<std::pair<int, float>> found = leastDistances(forms, cosines, forms_per_shape_);
   for (auto& [shape, distance] : found) distance /= std::sqrt(typical_[shape]);
-  sortRising(found, [](const auto& one) { return one.second; });
+  sortAscending(found, [](const auto& one) { return one.second; });
   found.resize(std::min(found.size(), static_cast<std::size_t>(num_nearest)));
   return found;
 }

@@ -319,7 +319,7 @@ void PointPairIndex::collect(int shape, const Reference& reference, const Eigen:
 /// Joins votes for similar poses.
 ShapeOfPairs PointPairIndex::clustered(int shape, std::vector<Vote> votes, const Eigen::Vector3d& center,
                                        int num_poses) const {
-  sortFalling(votes, &Vote::weight);
+  sortDescending(votes, &Vote::weight);
   struct Cluster {
     Vote first;
     Eigen::Vector4d rotation;
@@ -342,7 +342,7 @@ ShapeOfPairs PointPairIndex::clustered(int shape, std::vector<Vote> votes, const
     same->position += vote.weight * vote.position;
     same->weight += vote.weight;
   }
-  sortFalling(clusters, &Cluster::weight);
+  sortDescending(clusters, &Cluster::weight);
   ShapeOfPairs found{shape, clusters.empty() ? 0.0 : clusters.front().weight, {}};
   for (const Cluster& cluster : clusters) {
     if (found.T_shape_scan.size() == static_cast<std::size_t>(num_poses)) break;
@@ -376,7 +376,7 @@ std::vector<ShapeOfPairs> PointPairIndex::nearest(const SurfacePoints& scan, con
     for (std::size_t k = begin; k < end; ++k)
       found[k] = clustered(static_cast<int>(k), std::move(poses[k - begin]), center, options.num_poses);
   });
-  sortFalling(found, &ShapeOfPairs::votes);
+  sortDescending(found, &ShapeOfPairs::votes);
   found.resize(std::min(found.size(), static_cast<std::size_t>(options.num_nearest)));
   return found;
 }

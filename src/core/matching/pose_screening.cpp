@@ -29,7 +29,7 @@ void judgeAll(std::vector<Trial>& trials, const ScreenedSurface& scan, const std
       judge(trials[i].pose, PoseScorer(scan.surface, shape.surface), shape.ball.radius);
     }
   });
-  sortFalling(trials, [](const Trial& entry) { return entry.pose.score.merit(); });
+  sortDescending(trials, [](const Trial& entry) { return entry.pose.score.merit(); });
 }
 
 /// All poses of shapes that have a size.

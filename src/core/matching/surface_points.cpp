@@ -48,7 +48,7 @@ std::vector<SurfacePoints> evenSurfacePoints(const Points& points, const std::ve
   const double area = areaOf(points, *search, order);
   std::vector<SurfacePoints> found;
   for (const int count : counts) {
-    std::vector<int> chosen = allOf(points.cols());
+    std::vector<int> chosen = allIndices(points.cols());
     // Discs of half the distance cover at most 0.547 of the area, the jamming limit of random sequential adsorption.
     if (points.cols() > count) chosen = spreadPoints(points, order, std::sqrt(4.0 * 0.5 * area / (kPi * count)), count);
     const Points kept = pointsAt(points, chosen);

@@ -202,7 +202,7 @@ std::vector<ShapeOfView> ViewIndex::nearest(const View& scan, int num_nearest, i
   for (std::size_t i = 0; i < views.size(); ++i)
     if (!views[i].empty()) order.push_back(static_cast<int>(i));
   const auto distance = [&](int shape) { return meanDistance(views[shape]); };
-  sortRising(order, distance);
+  sortAscending(order, distance);
   order.resize(std::min(order.size(), static_cast<std::size_t>(num_nearest)));
 
   std::vector<ShapeOfView> found;

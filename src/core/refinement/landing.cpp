@@ -25,11 +25,10 @@ std::vector<Eigen::Index> FarTest::nearOf(const PointsRef& points, float bound) 
 
 Landing land(const IspSurface& surface, Points images, double reach, const std::vector<int>* guesses, bool leaves_out) {
   const auto size = static_cast<std::size_t>(images.cols());
-  Landing landing{std::move(images),
-                  {},
-                  std::vector<int>(size, -1),
-                  std::vector<float>(size, std::numeric_limits<float>::infinity()),
-                  {}};
+  Landing landing;
+  landing.images = std::move(images);
+  landing.closest.assign(size, -1);
+  landing.sq_distances.assign(size, std::numeric_limits<float>::infinity());
   const float bound = surface.far ? surface.far->bound(reach) : 0.0f;
   const bool has_far = surface.far && (leaves_out || FarTest::isExact(bound));
   const auto sq_reach = static_cast<float>(reach * reach);

@@ -3,7 +3,6 @@
 #include <Eigen/Geometry>
 #include <memory>
 #include <optional>
-#include <vector>
 
 #include "core/evidence/plane_confidence.h"
 #include "core/evidence/surface_samples.h"
@@ -56,7 +55,15 @@ struct NormalizedCloud {
   const double final_sigma;  ///< width at the end: as narrow as the spacing allows, <= sigma
 
   CloudKind kind() const { return kind_; }
-  const Visibility* seen() const { return visibility ? &*visibility : nullptr; }  ///< null = the points show all sides
+  /// Points on all sides of a surface. Open borders indicate that a piece is missing.
+  bool isSurface() const { return kind_ == CloudKind::Surface; }
+  /// A scan shows too little to complete groups of planes, candidates of little merit may be symmetries, and
+  /// point-to-plane steps slide along flat pieces; planes of noisy scans climb within the last stage.
+  bool isScan() const { return kind_ == CloudKind::Scan; }
+  /// Points that resolve no surface and have no normals: they are made evenly dense, one half of them is compared with
+  /// the other, and planes of a polygon are judged together, as noise hides single ones.
+  bool isVolume() const { return kind_ == CloudKind::Volume; }
+  const Visibility* seen() const { return visibility ? &*visibility : nullptr; }  ///< null: isScan() is false
 
   /// Transforms between the input frame and the normalized one. Lengths in the input frame are `scale` times as long.
   Eigen::Vector3d toNormalized(const Eigen::Vector3d& input_point) const { return (input_point - center) / scale; }

@@ -145,10 +145,8 @@ std::vector<float> discDistances(const PosedSurface& from, const PosedSurface& t
 }
 
 bool isSymmetry(const Eigen::Isometry3d& motion, const PosedSurface& model, double tolerance) {
-  const auto max_distance = static_cast<float>(tolerance * diameterOf(model));
   const std::vector<float> distances = discDistances(model, model, motion, kRegistration.evidence_points);
-  const auto num_on = std::count_if(distances.begin(), distances.end(), [&](float d) { return d < max_distance; });
-  return static_cast<double>(num_on) >= kSymmetricShare * static_cast<double>(distances.size());
+  return shareWithin(distances, tolerance * diameterOf(model)) >= kSymmetricShare;
 }
 
 bool mayBeSymmetry(const Eigen::Isometry3d& motion, const PosedSurface& scan) {

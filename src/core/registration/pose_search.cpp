@@ -24,7 +24,7 @@ std::vector<RankedPose> screened(const PoseStarts& starts, const PoseScorer& sco
     poses[i].T_model_scan = starts.pose(poses[i].T_model_scan.linear());
     poses[i].score = scorer.score(poses[i].T_model_scan, {kRegistration.screen_points, kRegistration.screen_width});
   });
-  sortFalling(poses, [](const RankedPose& pose) { return pose.score.merit(); });
+  sortDescending(poses, [](const RankedPose& pose) { return pose.score.merit(); });
   poses.resize(std::min<std::size_t>(poses.size(), options.num_screened));
   return poses;
 }
@@ -66,7 +66,7 @@ std::vector<RankedPose> firstDistinct(const std::vector<RankedPose>& poses, std:
 }
 
 std::vector<RankedPose> distinctPoses(std::vector<RankedPose> poses, std::size_t max_count, double radius) {
-  sortFalling(poses, [](const RankedPose& pose) { return pose.score.merit(); });
+  sortDescending(poses, [](const RankedPose& pose) { return pose.score.merit(); });
   return firstDistinct(poses, max_count, radius);
 }
 

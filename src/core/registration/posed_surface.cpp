@@ -2,9 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 #include <utility>
 
+#include "core/base/lists.h"
 #include "core/base/parallel.h"
 #include "core/base/random.h"
 #include "core/base/statistics.h"
@@ -16,8 +16,7 @@ namespace pcl_symmetry {
 namespace {
 
 std::vector<int> randomOrder(int size, std::uint64_t seed) {
-  std::vector<int> order(size);
-  std::iota(order.begin(), order.end(), 0);
+  std::vector<int> order = allIndices(size);
   RandomStream random(seed);
   for (int i = size - 1; i > 0; --i) std::swap(order[i], order[random.below(static_cast<std::uint64_t>(i) + 1)]);
   return order;
@@ -61,11 +60,9 @@ PosedSurface::PosedSurface(const PointsRef& input, std::optional<Visibility> see
 PosedSurface::PosedSurface(const PointsRef& input, const PointsRef& known_normals, std::optional<Visibility> seen_space)
     : points(input),
       normals(known_normals),
-      order(static_cast<std::size_t>(input.cols())),
+      order(allIndices(input.cols())),
       seen(std::move(seen_space)),
-      grid(lateGrid(points, kRegistration.few_cells)) {
-  std::iota(order.begin(), order.end(), 0);
-}
+      grid(lateGrid(points, kRegistration.few_cells)) {}
 
 float normalCosine(const PosedSurface& from, const PosedSurface& onto, const Landing& landing, Eigen::Index i) {
   const float cosine = landing.normals.col(i).dot(onto.normals.col(landing.closest[i]));
@@ -77,7 +74,10 @@ Landing land(const PosedSurface& from, const PosedSurface& onto, const Eigen::Is
   const auto size = std::min<Eigen::Index>(num_points, from.points.cols());
   const Eigen::Matrix3f rotation = T_onto_from.linear().cast<float>();
   const Eigen::Vector3f translation = T_onto_from.translation().cast<float>();
-  Landing landing{Points(3, size), Points(3, size), std::vector<int>(size), {}, {}};
+  Landing landing;
+  landing.images.resize(3, size);
+  landing.normals.resize(3, size);
+  landing.closest.resize(size);
   for (Eigen::Index i = 0; i < size; ++i) {
     landing.images.col(i) = rotation * from.points.col(from.order[i]) + translation;
     landing.normals.col(i) = rotation * from.normals.col(from.order[i]);

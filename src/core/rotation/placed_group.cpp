@@ -40,16 +40,16 @@ double greatestExcess(const RotationLimits& limits) {
 std::optional<PlacedGroup> placedGroup(const RotationFit& fit, const ObjectSymmetryOptions& options,
                                        RotationGroupKind kind, int fold, RotationSet set) {
   if (fit.overlap(set) < kRotation.rough_overlap) return std::nullopt;
-  set = fit.roughlyFitted(set);
+  set = fit.fitRoughly(set);
   if (fit.overlap(set) < kRotation.fair_overlap) return std::nullopt;
-  set = fit.closelyFitted(set);
+  set = fit.fitClosely(set);
   const double some = greatestExcess(fit.limits());
   if (fit.limits().excess(fit.worstShares(set, kRotation.num_some_points, some)) > some) return std::nullopt;
   const std::optional<OffShares> shares =
       representsAll(kind) ? meanShares(fit, set)
                           : fit.worstShares(set, std::numeric_limits<int>::max(), 1.0 / options.min_confidence);
   if (!shares || fit.confidence(*shares) < options.min_confidence) return std::nullopt;
-  const Eigen::Vector3d axis = axisOf(set.rotations.front());
+  const Eigen::Vector3d axis = Eigen::AngleAxisd(set.rotations.front()).axis();
   return PlacedGroup{kind, fold, std::move(set), axis, *shares};
 }
 
@@ -73,10 +73,6 @@ std::vector<Eigen::Matrix3d> productsOf(const std::vector<Eigen::Matrix3d>& gene
     }
   }
   return elements;
-}
-
-Eigen::Vector3d axisOf(const Eigen::Matrix3d& rotation) {
-  return Eigen::AngleAxisd(rotation).axis();
 }
 
 RotationSet elementsOf(const RotationGroup& group, const Eigen::Matrix3d& frame, const Eigen::Vector3d& center) {

@@ -40,9 +40,6 @@ Eigen::Matrix3d frameAlong(const Eigen::Vector3d& z, const Eigen::Vector3d& x);
 std::vector<Eigen::Matrix3d> productsOf(const std::vector<Eigen::Matrix3d>& generators, double same,
                                         std::size_t max_count = std::numeric_limits<std::size_t>::max() - 1);
 
-/// Axis of a rotation, unit.
-Eigen::Vector3d axisOf(const Eigen::Matrix3d& rotation);
-
 /// All elements of a group except the identity, placed by \p frame. The generators are judged and, about a main axis,
 /// the rotations by about a quarter and a half turn: for a high fold, one step cannot be distinguished from a step of
 /// the next fold.

@@ -34,7 +34,7 @@ double overlapOrLess(const RotationFit& fit, const Eigen::Matrix3d& rotation, co
 std::vector<int> peaks(const std::vector<double>& values) {
   const int size = static_cast<int>(values.size());
   std::vector<int> kept;
-  for (const int k : fallingOrder(values)) {
+  for (const int k : descendingOrder(values)) {
     if (kept.size() >= kRotation.max_directions || values[k] < kRotation.min_line_overlap) break;
     if (!isNearAny(kept, directionAt(k, size), std::cos(kRotation.min_angle),
                    [&](int other) { return directionAt(other, size); }))
@@ -131,7 +131,7 @@ private:
 
 /// The axis of a rotation, near the point where the search for it began.
 Line3d lineOf(const RotationSet& rotation, const Line3d& start) {
-  const Eigen::Vector3d direction = axisOf(rotation.rotations[0]);
+  const Eigen::Vector3d direction = Eigen::AngleAxisd(rotation.rotations[0]).axis();
   return {rotation.center + direction.dot(start.origin() - rotation.center) * direction, direction};
 }
 
@@ -144,14 +144,14 @@ std::optional<RotationSet> fittedRotation(const RotationFit& fit, const Line3d& 
   for (const int fold : likelyFolds(fit, start, max_fold)) {
     RotationSet other{{rotationAbout(start.direction(), 2.0 * kPi / fold)}, start.origin(), 1};
     if (fit.overlap(other) < kRotation.min_overlap) continue;
-    other = fit.roughlyFitted(other);
+    other = fit.fitRoughly(other);
     const double its_overlap = fit.overlap(other);
     if (its_overlap <= overlap + kRotation.clearly_better) continue;
     overlap = its_overlap;
     best = std::move(other);
   }
   if (overlap < kRotation.rough_overlap || kSameLine.anySame(tried, lineOf(best, start))) return std::nullopt;
-  best = fit.closelyFitted(best);
+  best = fit.fitClosely(best);
   return fit.overlap(best) < kRotation.fair_overlap ? std::nullopt : std::optional(best);
 }
 
@@ -307,7 +307,7 @@ void AxisFinder::judge(const std::vector<Line3d>& lines) {
     if (axis->fold == 0) axes_.clear();
     axes_.push_back(std::move(*axis));
   }
-  sortFalling(axes_, &FoldAxis::fold);
+  sortDescending(axes_, &FoldAxis::fold);
 }
 
 }  // namespace pcl_symmetry

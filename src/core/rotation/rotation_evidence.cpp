@@ -94,14 +94,14 @@ Points RotationEvidence::moved(const Eigen::Affine3d& motion, const std::vector<
   return moved;
 }
 
-Landing RotationEvidence::landed(const Eigen::Affine3d& motion) const {
+Landing RotationEvidence::landMoved(const Eigen::Affine3d& motion) const {
   Landing landing = land(cloud_.surface, moved(motion, samples_), reach_);
   landing.distances = surfaceDistances(landing.images, landing.closest, cloud_.samples);
   return landing;
 }
 
 RotationShares RotationEvidence::measure(const Eigen::Affine3d& motion) const {
-  const Landing all = landed(motion);
+  const Landing all = landMoved(motion);
   RotationShares shares;
   const double one = 1.0 / static_cast<double>(samples_.size());
   for (std::size_t i = 0; i < samples_.size(); ++i) {
@@ -115,10 +115,10 @@ RotationShares RotationEvidence::measure(const Eigen::Affine3d& motion) const {
   return shares;
 }
 
-std::vector<int> RotationEvidence::notRound(const Line3d& line) const {
+std::vector<int> RotationEvidence::samplesOffBody(const Line3d& line) const {
   std::vector<char> is_far(samples_.size(), false);
   for (int k = 1; k <= kScanAxes.round_rotations; ++k) {
-    const Landing all = landed(motionAbout(line, 2.0 * kPi * goldenFraction(k)));
+    const Landing all = landMoved(motionAbout(line, 2.0 * kPi * goldenFraction(k)));
     for (std::size_t i = 0; i < samples_.size(); ++i)
       if (all.distances[i] > far_ && isFree(all.images.col(i).cast<double>())) is_far[i] = true;
   }
@@ -129,7 +129,7 @@ std::vector<int> RotationEvidence::notRound(const Line3d& line) const {
 }
 
 double RotationEvidence::shareOn(const Eigen::Affine3d& motion, const std::vector<int>& some) const {
-  const Landing all = landed(motion);
+  const Landing all = landMoved(motion);
   const auto count = std::count_if(some.begin(), some.end(), [&](int i) { return all.distances[i] <= tolerance_; });
   return static_cast<double>(count) / static_cast<double>(some.size());
 }
@@ -137,7 +137,7 @@ double RotationEvidence::shareOn(const Eigen::Affine3d& motion, const std::vecto
 double RotationEvidence::stiffness(const Line3d& line, double angle) const {
   const Eigen::Isometry3d motion = motionAbout(line, angle);
   const std::array<Eigen::Isometry3d, 4> beside = motionsBeside(line, angle);
-  const Landing all = landed(motion);
+  const Landing all = landMoved(motion);
   Eigen::Matrix4d stiffness = Eigen::Matrix4d::Zero();
   for (std::size_t i = 0; i < samples_.size(); ++i) {
     if (all.closest[i] < 0 || all.distances[i] > tolerance_) continue;
@@ -148,9 +148,9 @@ double RotationEvidence::stiffness(const Line3d& line, double angle) const {
   return std::max(0.0, SymmetricEigen<Eigen::Matrix4d>(stiffness).eigenvalues()[1]);
 }
 
-void RotationEvidence::addPulls(const IspSurface& surface, const Line3d& line, double angle,
-                                const std::vector<int>& samples, double width, std::vector<int>& closest,
-                                Pulls& pulls) const {
+void RotationEvidence::addEquations(const IspSurface& surface, const Line3d& line, double angle,
+                                    const std::vector<int>& samples, double width, std::vector<int>& closest,
+                                    LineEquations& equations) const {
   const double sq_width = width * width * tolerance_ * tolerance_;
   const Eigen::Isometry3d motion = motionAbout(line, angle);
   const std::array<Eigen::Isometry3d, 4> beside = motionsBeside(line, angle);
@@ -174,41 +174,41 @@ void RotationEvidence::addPulls(const IspSurface& surface, const Line3d& line, d
       along = (there + moved_normal).normalized();
     }
     const Eigen::Vector4d slope = slopeOf(beside, x, y, along);
-    pulls.squares += weight * slope * slope.transpose();
-    pulls.sum -= weight * along.dot(miss) * slope;
+    equations.squares += weight * slope * slope.transpose();
+    equations.sum -= weight * along.dot(miss) * slope;
   }
 }
 
-Line3d RotationEvidence::fitted(const IspSurface& surface, const Line3d& start, const std::vector<double>& angles,
-                                const std::vector<int>& samples, const ScanAxisRules::Widths& widths) const {
+Line3d RotationEvidence::fitLine(const IspSurface& surface, const Line3d& start, const std::vector<double>& angles,
+                                 const std::vector<int>& samples, const ScanAxisRules::Widths& widths) const {
   // The tilts are about the point of the line in the middle of the points, so that they and the translations are
   // independent.
   Line3d line(start.projection(Eigen::Vector3d::Zero()), start.direction());
   std::vector<std::vector<int>> closest(angles.size(), std::vector<int>(samples.size(), -1));
   for (const double width : widths) {
-    Pulls pulls;
+    LineEquations equations;
     for (std::size_t k = 0; k < angles.size(); ++k)
-      addPulls(surface, line, angles[k], samples, width, closest[k], pulls);
-    pulls.squares.diagonal().array() += kScanAxes.fit_ridge * pulls.squares.trace() + kScanAxes.min_f;
-    const Eigen::Vector4d step = solveSymmetric(pulls.squares, pulls.sum);
+      addEquations(surface, line, angles[k], samples, width, closest[k], equations);
+    equations.squares.diagonal().array() += kScanAxes.fit_ridge * equations.squares.trace() + kScanAxes.min_f;
+    const Eigen::Vector4d step = solveSymmetric(equations.squares, equations.sum);
     line = movedLine(line, step * std::min(1.0, kScanAxes.longest_step / std::max(kScanAxes.fit_step, step.norm())));
     line.origin() = line.projection(Eigen::Vector3d::Zero());
   }
   return line;
 }
 
-Line3d RotationEvidence::refined(const Line3d& start, const std::vector<double>& angles) const {
-  return fitted(cloud_.quick_surface, start, angles, few_samples_, kScanAxes.fit_widths);
+Line3d RotationEvidence::refineLine(const Line3d& start, const std::vector<double>& angles) const {
+  return fitLine(cloud_.quick_surface, start, angles, few_samples_, kScanAxes.fit_widths);
 }
 
-Line3d RotationEvidence::closelyRefined(const Line3d& start, const std::vector<double>& angles) const {
-  return fitted(cloud_.surface, start, angles, samples_, kScanAxes.close_fit_widths);
+Line3d RotationEvidence::refineLineClosely(const Line3d& start, const std::vector<double>& angles) const {
+  return fitLine(cloud_.surface, start, angles, samples_, kScanAxes.close_fit_widths);
 }
 
 namespace {
 
-/// RotationSigns::planes_off.
-double planesOff(const RotationEvidence& evidence, const Line3d& line) {
+/// HalfTurnEvidence::planes_off_share.
+double planesOffShare(const RotationEvidence& evidence, const Line3d& line) {
   constexpr double kStep = 0.5 * kPi / kScanAxes.num_plane_pairs;  // radians; pairs repeat after a right angle
   const auto cost = [&](double angle) {
     double sum = 0.0;
@@ -233,8 +233,8 @@ double planesOff(const RotationEvidence& evidence, const Line3d& line) {
                   evidence.measure(planeThrough(line, best + 0.5 * kPi).reflection()).off);
 }
 
-/// RotationSigns::grown.
-double grownBy(const NormalizedCloud& cloud, const Eigen::Affine3d& rotation) {
+/// HalfTurnEvidence::extent_ratio.
+double extentRatio(const NormalizedCloud& cloud, const Eigen::Affine3d& rotation) {
   const Eigen::Index size = cloud.points.cols();
   Points both(3, 2 * size);
   both.leftCols(size) = cloud.points;
@@ -251,43 +251,44 @@ bool crossesUpright(const Line3d& a, const Line3d& b) {
 
 }  // namespace
 
-std::vector<RotationSigns> rotationSigns(const RotationEvidence& evidence,
-                                         const std::vector<SymmetryRotation>& rotations, double min_confidence,
-                                         int num_threads) {
+std::vector<HalfTurnEvidence> halfTurnEvidence(const RotationEvidence& evidence,
+                                               const std::vector<SymmetryRotation>& rotations, double min_confidence,
+                                               int num_threads) {
   const NormalizedCloud& cloud = evidence.cloud();
-  std::vector<RotationSigns> signs(rotations.size());
+  std::vector<HalfTurnEvidence> half_turns(rotations.size());
   const auto best =
       std::max_element(rotations.begin(), rotations.end(),
                        [](const SymmetryRotation& a, const SymmetryRotation& b) { return marginOf(a) < marginOf(b); });
   parallelBlocks(rotations.size(), num_threads, [&](std::size_t i) {
     if (rotations[i].fold != 2) return;
     const Line3d line = cloud.lineOf(rotations[i]);
-    signs[i].grown = grownBy(cloud, motionAbout(line, kPi));
-    signs[i].stiffness = evidence.stiffness(line, kPi);
+    half_turns[i].extent_ratio = extentRatio(cloud, motionAbout(line, kPi));
+    half_turns[i].stiffness = evidence.stiffness(line, kPi);
     const bool is_best = marginOf(rotations[i]) >= marginOf(*best);
-    signs[i].beside = is_best || crossesUpright(line, cloud.lineOf(*best)) ? 0.0 : 1.0;
+    half_turns[i].conflicts_with_best = is_best || crossesUpright(line, cloud.lineOf(*best)) ? 0.0 : 1.0;
     // Planes can only be evidence against a rotation, and they take most of the time.
-    if (rotationConfidence(rotations[i], signs[i]) >= min_confidence) signs[i].planes_off = planesOff(evidence, line);
+    if (rotationConfidence(rotations[i], half_turns[i]) >= min_confidence)
+      half_turns[i].planes_off_share = planesOffShare(evidence, line);
   });
-  return signs;
+  return half_turns;
 }
 
 RotationKind kindOf(const SymmetryRotation& rotation) {
   return rotation.fold == 0 ? RotationKind::AnyAngle : rotation.fold == 2 ? RotationKind::Half : RotationKind::Folds;
 }
 
-std::vector<double> rotationOddsTerms(const SymmetryRotation& rotation, const RotationSigns& signs) {
+std::vector<double> rotationOddsTerms(const SymmetryRotation& rotation, const HalfTurnEvidence& half_turns) {
   const double off = std::log1p(rotation.off / kScanAxes.negligible_share),
                far = std::log1p(rotation.far / kScanAxes.negligible_share);
   switch (kindOf(rotation)) {
-    case RotationKind::Half:  // without `far`, which `grown` and `off` cover
+    case RotationKind::Half:  // without `far`, which `extent_ratio` and `off` cover
       return {1.0,
               off,
               1.0 - rotation.support,
-              std::log(signs.grown),
-              -std::log1p(signs.stiffness / kScanAxes.min_stiffness),
-              std::log1p(signs.planes_off / kScanAxes.negligible_of_planes),
-              signs.beside};
+              std::log(half_turns.extent_ratio),
+              -std::log1p(half_turns.stiffness / kScanAxes.min_stiffness),
+              std::log1p(half_turns.planes_off_share / kScanAxes.negligible_of_planes),
+              half_turns.conflicts_with_best};
     case RotationKind::Folds:
       return {1.0,
               off,
@@ -300,8 +301,8 @@ std::vector<double> rotationOddsTerms(const SymmetryRotation& rotation, const Ro
   }
 }
 
-double rotationConfidence(const SymmetryRotation& rotation, const RotationSigns& signs) {
-  const std::vector<double> terms = rotationOddsTerms(rotation, signs);
+double rotationConfidence(const SymmetryRotation& rotation, const HalfTurnEvidence& half_turns) {
+  const std::vector<double> terms = rotationOddsTerms(rotation, half_turns);
   const std::vector<double>& numbers = kRotationConfidenceFit[static_cast<std::size_t>(kindOf(rotation))];
   return logistic(std::inner_product(terms.begin(), terms.end(), numbers.begin(), 0.0));
 }

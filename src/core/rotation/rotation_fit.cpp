@@ -59,10 +59,11 @@ RotationFit::RotationFit(Points points, const GaussianEdt& edt, RotationLimits l
   surface->discs =
       std::make_unique<SurfaceDiscs>(p, geometry, single ? 0.0f : kEvidence.disc_radius, static_cast<float>(farthest));
   surface->grid = std::make_unique<ClosestPointGrid>(p, 32);
-  surface->own_distances.resize(p.cols());
-  parallelPoints(surface->own_distances.size(), num_threads, [&](std::size_t begin, std::size_t end) {
+  surface->leave_one_out_distances.resize(p.cols());
+  parallelPoints(surface->leave_one_out_distances.size(), num_threads, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i)
-      surface->own_distances[i] = surface->discs->ownDistance(static_cast<int>(i), kEvidence.new_point_factor);
+      surface->leave_one_out_distances[i] =
+          surface->discs->ownDistance(static_cast<int>(i), kEvidence.new_point_factor);
   });
   surface->order = shuffled(p.cols(), seed);
   surface->overlap_points = pointsAt(p, drawSamples(p.cols(), kRotation.num_overlap_points, seed + 2));
@@ -127,15 +128,11 @@ Points RotationFit::borderPoints() const {
 }
 
 double RotationFit::resolution() const {
-  return quantile(surface_->own_distances, kRotation.min_own_share);
+  return quantile(surface_->leave_one_out_distances, kRotation.min_own_share);
 }
 
 double RotationFit::ownShare() const {
-  if (surface_->single) return 1.0;
-  const std::vector<float>& distances = surface_->own_distances;
-  const auto within =
-      std::count_if(distances.begin(), distances.end(), [&](float distance) { return distance <= limits_.tolerance; });
-  return std::max(1e-3, static_cast<double>(within) / static_cast<double>(distances.size()));
+  return surface_->single ? 1.0 : std::max(1e-3, shareWithin(surface_->leave_one_out_distances, limits_.tolerance));
 }
 
 double RotationFit::overlap(const Eigen::Matrix3d& rotation, const Eigen::Vector3d& center, int num_points) const {
@@ -154,15 +151,15 @@ double RotationFit::overlap(const RotationSet& set) const {
   return least;
 }
 
-RotationSet RotationFit::roughlyFitted(const RotationSet& set) const {
+RotationSet RotationFit::fitRoughly(const RotationSet& set) const {
   const double sigma = edt_.sigma();
-  return fitted(set, spreadOver(set.num_judged, kRotation.max_fitted), kRotation.num_rough_points,
-                {sigma, std::max(std::min(sigma, first_sigma_), 0.5 * sigma), kRotation.rough_iterations, true});
+  return fitRotations(set, spreadOver(set.num_judged, kRotation.max_fitted), kRotation.num_rough_points,
+                      {sigma, std::max(std::min(sigma, first_sigma_), 0.5 * sigma), kRotation.rough_iterations, true});
 }
 
-RotationSet RotationFit::closelyFitted(const RotationSet& set) const {
-  return fitted(set, spreadOver(set.rotations.size(), kRotation.max_fitted), kRotation.num_close_points,
-                {first_sigma_, last_sigma_, kRotation.close_iterations, false});
+RotationSet RotationFit::fitClosely(const RotationSet& set) const {
+  return fitRotations(set, spreadOver(set.rotations.size(), kRotation.max_fitted), kRotation.num_close_points,
+                      {first_sigma_, last_sigma_, kRotation.close_iterations, false});
 }
 
 /// The sample that the grid gives for the cell of a point, or a neighbor of that sample that is closer.
@@ -221,8 +218,8 @@ SmallMotionEquations RotationFit::equations(const RotationSet& set, std::size_t 
   return sums;
 }
 
-RotationSet RotationFit::fitted(RotationSet set, const std::vector<std::size_t>& used, int num_samples,
-                                Annealing annealing) const {
+RotationSet RotationFit::fitRotations(RotationSet set, const std::vector<std::size_t>& used, int num_samples,
+                                      Annealing annealing) const {
   std::vector<SmallMotionEquations> parts(used.size());
   for (int iteration = 0; iteration < annealing.max_iterations; ++iteration) {
     parallelBlocks(used.size(), num_threads_,

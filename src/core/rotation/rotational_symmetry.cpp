@@ -53,7 +53,7 @@ ObjectSymmetries inInputFrame(const PlacedGroup& group, const RotationFit& fit, 
 /// The rejected rotations, transformed to the input frame, the least failure first.
 std::vector<RejectedRotation> inInputFrame(std::vector<RejectedAxis> axes, const RotationFit& fit,
                                            const BoundingBall& ball) {
-  sortRising(axes, [&](const RejectedAxis& axis) { return fit.limits().excess(axis.shares); });
+  sortAscending(axes, [&](const RejectedAxis& axis) { return fit.limits().excess(axis.shares); });
   const std::size_t max_reported = 5;
   if (axes.size() > max_reported) axes.resize(max_reported);
   std::vector<RejectedRotation> rejected;
@@ -182,7 +182,7 @@ ObjectSymmetries objectSymmetries(const PointsRef& all, const ObjectSymmetryOpti
       };
       result.at_half_tolerance = name_at(0.5);
       result.at_twice_tolerance = name_at(2.0);
-      done("other tolerances");
+      done("other_tolerances");
     }
   } else {
     char text[160];

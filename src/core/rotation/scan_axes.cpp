@@ -65,7 +65,7 @@ std::vector<AxisStart> startsFromNormals(const NormalizedCloud& cloud, std::uint
     }
   });
   eraseIf(found, [](const auto& one) { return one.first > 0.0; });
-  sortRising(found, [](const auto& one) { return one.first; });
+  sortAscending(found, [](const auto& one) { return one.first; });
   std::vector<AxisStart> starts;
   for (const auto& [unused, line] : found) {
     if (starts.size() == kScanAxes.from_normals) break;
@@ -116,7 +116,7 @@ std::vector<AxisStart> startsFromTransform(const NormalizedCloud& cloud, std::ui
                       kScanAxes.coarse_reach * edt.radius());
   const AxisMap map = axialTransform(edt, grid, options, &*cloud.visibility);
   std::vector<AxisStart> starts;
-  for (const int bin : fallingOrder(map.greatest)) {
+  for (const int bin : descendingOrder(map.greatest)) {
     if (starts.size() == kScanAxes.coarse_maxima || !(map.greatest[bin] > 0.0f)) break;
     const Line3d line = grid.axis(grid.bin(bin));
     if (kSameCoarsely.anySame(starts, line, &AxisStart::line)) continue;
@@ -183,25 +183,26 @@ public:
   /// \param max_fold greatest fold of the rotations that are tried, in addition to rotations by any angle.
   AxisJudge(const RotationEvidence& evidence, int max_fold) : evidence_(evidence), max_fold_(max_fold) {}
 
-  Line3d fitted(const AxisStart& start) const { return evidence_.refined(start.line, fitAngles(start.fold)); }
+  Line3d fitLine(const AxisStart& start) const { return evidence_.refineLine(start.line, fitAngles(start.fold)); }
 
   /// The best rotations about a line.
-  std::optional<JudgedLine> judged(const Line3d& line) const {
+  std::optional<JudgedLine> judgeLine(const Line3d& line) const {
     const ScreenedShares screened{evidence_, line};
     std::optional<JudgedLine> best;
     const auto take = [&](const JudgedLine& judged) {
       if (!best || judged.margin > best->margin) best = judged;
     };
-    if (kScreeningLimits.allow(worstRoundShares(screened, kScreeningLimits))) take(measured(line, 0));
+    if (kScreeningLimits.allow(worstRoundShares(screened, kScreeningLimits))) take(measureLine(line, 0));
     for (int fold = max_fold_; fold >= 2; --fold) {
       if (best && best->margin > 0.0) break;
-      if (kScreeningLimits.allow(worstSharesOfFold(screened, fold, 0.0, kScreeningLimits))) take(measured(line, fold));
+      if (kScreeningLimits.allow(worstSharesOfFold(screened, fold, 0.0, kScreeningLimits)))
+        take(measureLine(line, fold));
     }
     return best;
   }
 
-  JudgedLine measured(Line3d line, int fold) const {
-    line = evidence_.closelyRefined(line, fitAngles(fold));
+  JudgedLine measureLine(Line3d line, int fold) const {
+    line = evidence_.refineLineClosely(line, fitAngles(fold));
     const auto shares = [&](double angle) { return evidence_.measure(motionAbout(line, angle)); };
     const RotationShares own = fold == 0 ? worstRoundShares(shares) : worstSharesOfFold(shares, fold, 0.0);
     SymmetryRotation rotation{Eigen::Vector3d::Zero(), line.direction(), fold, 0.0, own.on, own.off, own.far, 0.0};
@@ -245,13 +246,13 @@ std::vector<SymmetryRotation> scanAxes(const RotationEvidence& evidence, const s
   }
   const AxisJudge judge(evidence, options.folds ? kScanAxes.max_order : 1);
   std::vector<Line3d> fitted(starts.size());
-  parallelBlocks(starts.size(), options.num_threads, [&](std::size_t i) { fitted[i] = judge.fitted(starts[i]); });
+  parallelBlocks(starts.size(), options.num_threads, [&](std::size_t i) { fitted[i] = judge.fitLine(starts[i]); });
   std::vector<Line3d> lines;
   for (const Line3d& line : fitted)
     if (line.direction().allFinite() && line.origin().allFinite() && !kSameFitted.anySame(lines, line))
       lines.push_back(line);
   std::vector<std::optional<JudgedLine>> judged(lines.size());
-  parallelBlocks(lines.size(), options.num_threads, [&](std::size_t i) { judged[i] = judge.judged(lines[i]); });
+  parallelBlocks(lines.size(), options.num_threads, [&](std::size_t i) { judged[i] = judge.judgeLine(lines[i]); });
   std::stable_sort(judged.begin(), judged.end(),
                    [](const auto& a, const auto& b) { return a && (!b || a->margin > b->margin); });
   std::vector<Line3d> found;
@@ -264,13 +265,14 @@ std::vector<SymmetryRotation> scanAxes(const RotationEvidence& evidence, const s
     result.back().point = cloud.toInput(best->line.projection(Eigen::Vector3d::Zero()));
   }
   const double min_confidence = evidence_of_all ? 0.0 : options.min_possible;
-  const std::vector<RotationSigns> signs = rotationSigns(evidence, result, min_confidence, options.num_threads);
+  const std::vector<HalfTurnEvidence> half_turns =
+      halfTurnEvidence(evidence, result, min_confidence, options.num_threads);
   for (std::size_t i = 0; i < result.size(); ++i) {
-    result[i].confidence = rotationConfidence(result[i], signs[i]);
-    if (evidence_of_all) evidence_of_all->push_back({result[i], signs[i]});
+    result[i].confidence = rotationConfidence(result[i], half_turns[i]);
+    if (evidence_of_all) evidence_of_all->push_back({result[i], half_turns[i]});
   }
   eraseIf(result, [&](const SymmetryRotation& rotation) { return rotation.confidence < options.min_possible; });
-  sortFalling(result, &SymmetryRotation::confidence);
+  sortDescending(result, &SymmetryRotation::confidence);
   return result;
 }
 
@@ -278,14 +280,14 @@ std::optional<NearlyRound> nearlyRound(const RotationEvidence& evidence, const S
   const AxisJudge judge(evidence, 1);
   const auto num_samples = std::min<Eigen::Index>(kScanAxes.num_samples, evidence.cloud().points.cols());
   for (const AxisStart& start : startsFromNormals(evidence.cloud(), options.seed, options.num_threads)) {
-    const Line3d axis = judge.fitted(start);
+    const Line3d axis = judge.fitLine(start);
     if (!axis.direction().allFinite() || !axis.origin().allFinite() ||
         evidence.measure(motionAbout(axis, kScanAxes.small_angle)).on < kScanAxes.round_on)
       continue;
-    std::vector<int> not_round = evidence.notRound(axis);
-    const double share = static_cast<double>(not_round.size()) / static_cast<double>(num_samples);
-    if (share > kScanAxes.max_round_far && share < kScanAxes.max_not_round)
-      return NearlyRound{axis, std::move(not_round)};
+    std::vector<int> off_body = evidence.samplesOffBody(axis);
+    const double share = static_cast<double>(off_body.size()) / static_cast<double>(num_samples);
+    if (share > kScanAxes.max_round_far && share < kScanAxes.max_off_body)
+      return NearlyRound{axis, std::move(off_body)};
   }
   return std::nullopt;
 }

@@ -36,8 +36,8 @@ std::vector<SymmetryRotation> scanAxes(const RotationEvidence& evidence, const s
 
 /// The axis of a body that is round except for a part, such as a mug with its handle, and that part.
 struct NearlyRound {
-  Line3d axis;                 ///< normalized frame
-  std::vector<int> not_round;  ///< see RotationEvidence::notRound()
+  Line3d axis;                ///< normalized frame
+  std::vector<int> off_body;  ///< as RotationEvidence::samplesOffBody()
 };
 
 /// \return nothing if a scan shows no such body.

@@ -12,7 +12,7 @@ namespace pcl_symmetry {
 
 namespace {
 
-constexpr std::size_t rows_of_block = 8;
+constexpr std::size_t kRowsOfBlock = 8;
 
 bool hasDepth(float depth) {
   return depth > 0.0f && std::isfinite(depth);
@@ -160,7 +160,7 @@ FilteredDepths filterDepths(const DepthImage& image, int radius, int num_threads
   result.inverse_error = error;
   const std::vector<float> before = result.depths;
   const DepthFilter filter(image, radius, error);
-  parallelRanges(image.height, rows_of_block, num_threads, [&](std::size_t begin, std::size_t end) {
+  parallelRanges(image.height, kRowsOfBlock, num_threads, [&](std::size_t begin, std::size_t end) {
     for (std::size_t v = begin; v < end; ++v)
       for (int u = 0; u < image.width; ++u)
         result.depths[v * static_cast<std::size_t>(image.width) + static_cast<std::size_t>(u)] =

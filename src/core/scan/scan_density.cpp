@@ -160,8 +160,8 @@ double ScanDensity::varianceOf(Eigen::Index num_samples) const {
   return trimmedVariance(num_samples, [&](Eigen::Index i) { return log_density_[i]; });
 }
 
-ScanDensity::Candidate ScanDensity::refined(Candidate best, double first_step, double last_step,
-                                            Eigen::Index num_samples) const {
+ScanDensity::Candidate ScanDensity::refine(Candidate best, double first_step, double last_step,
+                                           Eigen::Index num_samples) const {
   const auto rated = [&](const Eigen::Vector3d& direction, double log_distance) {
     Candidate candidate{direction.normalized(),
                         std::clamp(log_distance, std::log(kScan.min_distance), std::log(kScan.greatest_distance)), 0.0};
@@ -192,7 +192,7 @@ std::vector<ScanDensity::Candidate> ScanDensity::coarseMinima(std::size_t max_co
   for (const Eigen::Vector3d& direction : evenDirections(kScan.num_directions))
     coarse.push_back({direction, std::log(kScan.first_distance),
                       unexplainedFrom(kScan.first_distance * direction, kScan.coarse_density_samples)});
-  sortRising(coarse, &Candidate::unexplained);
+  sortAscending(coarse, &Candidate::unexplained);
   std::vector<Candidate> minima;
   if (!(coarse.front().unexplained < kScan.hopeless * (varianceOf(kScan.coarse_density_samples) + kScan.min_variance)))
     return minima;
@@ -204,7 +204,7 @@ std::vector<ScanDensity::Candidate> ScanDensity::coarseMinima(std::size_t max_co
     if (minima.size() == max_count) break;
   }
   for (Candidate& start : minima)
-    start = refined(start, kScan.first_step, kScan.middle_step, kScan.coarse_density_samples);
+    start = refine(start, kScan.first_step, kScan.middle_step, kScan.coarse_density_samples);
   return minima;
 }
 
@@ -215,7 +215,7 @@ std::optional<Eigen::Vector3d> ScanDensity::bestViewpoint() const {
   const auto best = std::min_element(starts.begin(), starts.end(), [](const Candidate& a, const Candidate& b) {
     return a.unexplained < b.unexplained;
   });
-  const Eigen::Vector3d eye = refined(*best, kScan.middle_step, kScan.last_step, samples_.cols()).eye();
+  const Eigen::Vector3d eye = refine(*best, kScan.middle_step, kScan.last_step, samples_.cols()).eye();
   return Eigen::Vector3d(ball_.center + ball_.radius * eye);
 }
 
@@ -223,7 +223,7 @@ std::vector<Eigen::Vector3d> ScanDensity::viewpoints(double max_unexplained) con
   std::vector<Eigen::Vector3d> found;
   if (samples_.cols() < static_cast<Eigen::Index>(kScan.fewest_density_samples)) return found;
   for (const Candidate& start : coarseMinima(kScan.max_viewpoints)) {
-    const Candidate minimum = refined(start, kScan.middle_step, kScan.last_step, samples_.cols());
+    const Candidate minimum = refine(start, kScan.middle_step, kScan.last_step, samples_.cols());
     if (minimum.unexplained <= max_unexplained) found.push_back(ball_.center + ball_.radius * minimum.eye());
   }
   return found;

@@ -59,7 +59,7 @@ private:
   double unexplainedFrom(const Eigen::Vector3d& eye, Eigen::Index num_samples) const;
   struct Candidate;
   std::vector<Candidate> coarseMinima(std::size_t max_count) const;
-  Candidate refined(Candidate start, double first_step, double last_step, Eigen::Index num_samples) const;
+  Candidate refine(Candidate start, double first_step, double last_step, Eigen::Index num_samples) const;
 
   BoundingBall ball_;
   Eigen::Index num_points_ = 0;  // number of points used

@@ -34,7 +34,7 @@ std::vector<int> filledFromClosest(const SurfaceGraph& graph, std::vector<int> l
 }
 
 Segmentation numberedByArea(const SurfaceGraph& graph, Segmentation segmentation) {
-  const std::vector<int> order = fallingOrder(areasOf(graph, segmentation.labels));
+  const std::vector<int> order = descendingOrder(areasOf(graph, segmentation.labels));
   std::vector<int> number(order.size());
   for (std::size_t i = 0; i < order.size(); ++i) number[order[i]] = static_cast<int>(i);
   for (int& label : segmentation.labels) label = number[label];

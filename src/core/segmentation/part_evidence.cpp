@@ -153,7 +153,7 @@ int firstSeed(const SurfaceGraph& graph, int division, std::uint64_t seed) {
 WholeEvidence::WholeEvidence(const SurfaceGraph& graph, const SegmentationOptions& options)
     : graph_(graph),
       seed_(options.seed),
-      features_(symmetryFeatures(graph, allOf(graph.size()), options, options.seed)) {
+      features_(symmetryFeatures(graph, allIndices(graph.size()), options, options.seed)) {
   if (options.evidence == MergingEvidence::All) tree_.emplace(graph.corners, graph.triangles);
 }
 

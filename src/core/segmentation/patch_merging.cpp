@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <numeric>
 #include <optional>
 #include <utility>
 
@@ -113,7 +112,7 @@ std::vector<int> segmentsOfPatches(const SurfaceGraph& graph, const Patches& pat
   std::vector<int> segment(patches.size(), -1);
   // The segment whose largest share of a patch is smallest is assigned first.
   const Eigen::VectorXd most = shared.rowwise().maxCoeff();
-  for (const int s : fallingOrder(Eigen::VectorXd(-most))) {
+  for (const int s : descendingOrder(Eigen::VectorXd(-most))) {
     int best = -1;
     for (int p = 0; p < patches.size(); ++p)
       if (segment[p] < 0 && (best < 0 || shared(s, p) > shared(s, best))) best = p;
@@ -234,7 +233,7 @@ CommonCells commonCells(const SurfaceGraph& graph, const std::vector<MergedDivis
 class PatchClusters {
 public:
   PatchClusters(const SurfaceGraph& graph, const CommonCells& common, const std::vector<MergedDivision>& divisions)
-      : cluster_(allOf(common.size())),
+      : cluster_(allIndices(common.size())),
         areas_(common.areas),
         neighbors_(cluster_.size()),
         sums_(Eigen::MatrixXf::Zero(common.size(), common.size())),

@@ -159,7 +159,7 @@ Pieces piecesOf(const SurfaceGraph& graph, const std::vector<int>& labels) {
   for (int i = 0; i < graph.size(); ++i) pieces.labels[of[i]] = labels[i];
   std::set<int> seen;
   pieces.is_largest.assign(num_pieces, 0);
-  for (const int p : fallingOrder(pieces.areas)) pieces.is_largest[p] = seen.insert(pieces.labels[p]).second;
+  for (const int p : descendingOrder(pieces.areas)) pieces.is_largest[p] = seen.insert(pieces.labels[p]).second;
   pieces.contacts.resize(num_pieces);
   for (const SurfaceGraph::Edge& edge : graph.edges) {
     const int a = of[edge.from], b = of[edge.to];

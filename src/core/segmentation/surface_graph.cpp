@@ -21,8 +21,8 @@ namespace pcl_symmetry {
 
 namespace {
 
-constexpr double min_extent = 1e-15;  // input units; squares and sums stay within float
-constexpr double greatest_extent = 1e15;
+constexpr double kMinExtent = 1e-15;  // input units; squares and sums stay within float
+constexpr double kGreatestExtent = 1e15;
 
 /// Throws for points whose distances have no squares in float: areas and neighbors would be infinite or zero.
 /// \param points 3 x N; those that are not finite do not count.
@@ -32,8 +32,8 @@ void checkExtent(const PointsRef& points) {
   for (Eigen::Index i = 0; i < points.cols(); ++i)
     if (points.col(i).allFinite()) box.extend(Eigen::Vector3d(points.col(i).cast<double>()));
   const double extent = box.isEmpty() ? 0.0 : box.diagonal().norm();
-  check(extent == 0.0 || extent >= min_extent, "extent of the points", extent, ">= 1e-15");
-  check(extent <= greatest_extent, "extent of the points", extent, "<= 1e15");
+  check(extent == 0.0 || extent >= kMinExtent, "extent of the points", extent, ">= 1e-15");
+  check(extent <= kGreatestExtent, "extent of the points", extent, "<= 1e15");
 }
 
 /// Orients normals so that neighbors agree, along the most certain edges first (Hoppe et al. 1992).

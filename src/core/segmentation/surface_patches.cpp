@@ -20,7 +20,7 @@ namespace {
 std::vector<int> elementsOfLargestPieces(const SurfaceGraph& graph, int num_pieces) {
   const std::vector<int> piece = connectedPieces(graph, std::vector<int>(static_cast<std::size_t>(graph.size()), 0));
   const std::vector<double> areas = areasOf(graph, piece);
-  std::vector<int> largest = fallingOrder(areas);
+  std::vector<int> largest = descendingOrder(areas);
   largest.resize(std::min(largest.size(), static_cast<std::size_t>(num_pieces)));
   std::vector<char> large(areas.size(), 0);
   for (const int p : largest) large[p] = areas[p] > 0.0;

@@ -46,8 +46,8 @@ std::vector<ReflectionPlane> significantMaxima(const Points& samples, const Gaus
 
 /// Refines planes by Iterative Symmetric Points (Section 4.4). Departure from the paper: a plane that leaves its basin
 /// keeps its start.
-std::vector<ReflectionPlane> refined(const std::vector<ReflectionPlane>& starts, const Points& samples,
-                                     const GaussianEdt& edt, const SegmentationOptions& options) {
+std::vector<ReflectionPlane> refinePlanes(const std::vector<ReflectionPlane>& starts, const Points& samples,
+                                          const GaussianEdt& edt, const SegmentationOptions& options) {
   const ClosestPointSearch::Ptr search = options.make_search ? options.make_search(samples) : makeFlannSearch(samples);
   const int num_threads = options.num_threads;
   const LocalGeometry geometry = localGeometry(samples, *search, num_threads);
@@ -90,7 +90,8 @@ SymmetryFeatures symmetryFeatures(const SurfaceGraph& graph, const std::vector<i
       features.planes.push_back({plane, 0.0});
   } else {
     const std::vector<ReflectionPlane> maxima = significantMaxima(samples, edt, seed, num_threads);
-    for (const ReflectionPlane& plane : refined(maxima, samples, edt, options)) features.planes.push_back({plane, 0.0});
+    for (const ReflectionPlane& plane : refinePlanes(maxima, samples, edt, options))
+      features.planes.push_back({plane, 0.0});
   }
   features.support.resize(features.planes.size(), static_cast<Eigen::Index>(elements.size()));
   double area = 0.0;

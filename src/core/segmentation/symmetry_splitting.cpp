@@ -41,7 +41,7 @@ std::optional<SplitPart> splitByTwoMeans(const SurfaceGraph& graph, const std::v
   // "the two largest connected components": the cut assigns the smaller ones; as published, they go to the closer of
   // the two
   const std::vector<int> pieces = connectedPieces(graph, side);
-  const std::vector<int> largest = fallingOrder(areasOf(graph, pieces));
+  const std::vector<int> largest = descendingOrder(areasOf(graph, pieces));
   if (largest.size() < 2) return std::nullopt;
   const int first = largest[0], second = largest[1];
   std::vector<int> open;
@@ -79,7 +79,7 @@ bool hasDistinctSymmetries(const std::vector<PartPlane>& planes) {
 class SplittingTree {
 public:
   SplittingTree(const SurfaceGraph& graph, const SegmentationOptions& options) : graph_(graph), options_(options) {
-    add(-1, 0, allOf(graph.size()));
+    add(-1, 0, allIndices(graph.size()));
   }
 
   /// \return the largest leaf that may be split; -1 for none.

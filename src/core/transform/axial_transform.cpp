@@ -104,7 +104,7 @@ void AxialTransformOptions::validate() const {
 
 namespace {
 
-constexpr std::size_t directions_per_block = 4;
+constexpr std::size_t kDirectionsPerBlock = 4;
 
 /// The bins of u with u^2 + v^2 <= radius^2.
 std::pair<int, int> rowInBall(const AxisGrid& grid, int v) {
@@ -172,7 +172,7 @@ AxisMap axialTransform(const GaussianEdt& edt, const AxisGrid& grid, const Axial
       }
     }
   };
-  parallelRanges(grid.numDirections(), directions_per_block, options.num_threads, run);
+  parallelRanges(grid.numDirections(), kDirectionsPerBlock, options.num_threads, run);
   return map;
 }
 
@@ -211,7 +211,7 @@ public:
   }
 
   /// The axis, moved to where D of its best fold is greatest, in steps of half a bin that are halved repeatedly.
-  AxisMaximum refined(Line3d axis) const {
+  AxisMaximum refine(Line3d axis) const {
     const int fold = bestFold(map_.folds, valuesAt(axis));
     const std::size_t position = std::find(map_.folds.begin(), map_.folds.end(), fold) - map_.folds.begin();
     double angle = 0.25 * kPi / map_.grid.numTheta(), offset = 0.5 * map_.grid.offsetStep();
@@ -300,8 +300,8 @@ std::vector<AxisMaximum> axisMaxima(const AxisMap& map, const GaussianEdt& edt, 
       startsOf(map, static_cast<std::size_t>(count) * kTransform.starts_per_maximum, kTransform.min_of_bin * min_value);
   const AxisClimb climb(edt, map, options);
   std::vector<AxisMaximum> candidates(starts.size());
-  parallelBlocks(starts.size(), options.num_threads, [&](std::size_t i) { candidates[i] = climb.refined(starts[i]); });
-  sortFalling(candidates, &AxisMaximum::value);
+  parallelBlocks(starts.size(), options.num_threads, [&](std::size_t i) { candidates[i] = climb.refine(starts[i]); });
+  sortDescending(candidates, &AxisMaximum::value);
   std::vector<AxisMaximum> maxima;
   for (const AxisMaximum& maximum : candidates) {
     if (maximum.value < min_value || static_cast<int>(maxima.size()) == count) break;
@@ -316,7 +316,7 @@ std::vector<AxisMaximum> axisMaxima(const AxisMap& map, const GaussianEdt& edt, 
 
 namespace {
 
-constexpr std::size_t points_at_a_time = 1024;  // their values stay in the first-level cache
+constexpr std::size_t kPointsAtATime = 1024;  // their values stay in the first-level cache
 
 /// Values of one direction, bilinear between their bins and 0 beyond.
 class DirectionValues {
@@ -354,7 +354,7 @@ std::vector<float> axialPointSymmetry(const AxisMap& map, const PointsRef& point
   std::vector<float> greatest(points.cols(), 0.0f);
   if (map.empty()) return greatest;
   const Points centered = normalizePoints(points, map.grid.center(), 1.0);
-  parallelRanges(greatest.size(), points_at_a_time, num_threads, [&](std::size_t begin, std::size_t end) {
+  parallelRanges(greatest.size(), kPointsAtATime, num_threads, [&](std::size_t begin, std::size_t end) {
     for (std::size_t direction = 0; direction < map.grid.numDirections(); ++direction) {
       const DirectionValues values(map, direction);
       const Eigen::Matrix3f frame = map.grid.frame(direction).cast<float>();

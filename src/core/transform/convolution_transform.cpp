@@ -19,7 +19,7 @@ namespace pcl_symmetry {
 
 namespace {
 
-constexpr std::size_t convolved_per_block = 16;  // directions
+constexpr std::size_t kConvolvedPerBlock = 16;  // directions
 
 // Steps of the R2 sequence, which fills the unit square evenly: 1 / g and 1 / g^2 with the plastic number
 // g = 1.3247..., the root of g^3 = g + 1.
@@ -299,27 +299,27 @@ void correlate(const float* values, int first, int last, std::int32_t* sums) {
 
 // Poles of the quintic spline: roots within the unit circle of z^4 + 26 z^3 + 66 z^2 + 26 z + 1.
 constexpr double kPoles[2] = {-0.4305753470999738, -0.0430962882032647};
-constexpr int reach_of_spline = 12;  // values on each side that a coefficient depends on: pole^13 = 2e-5 is negligible
-constexpr int num_taps = 6;          // coefficients that a value of quintic splines depends on
+constexpr int kReachOfSpline = 12;  // values on each side that a coefficient depends on: pole^13 = 2e-5 is left out
+constexpr int kNumTaps = 6;         // coefficients that a value of quintic splines depends on
 
 /// Weights of the coefficients -2 to 3 for the value at t in [0, 1].
-std::array<float, num_taps> weightsAt(double t) {
+std::array<float, kNumTaps> weightsAt(double t) {
   const auto spline = [](double x) {
     if (x <= 1.0) return 11.0 / 20.0 - x * x * (1.0 / 2.0 - x * x * (1.0 / 4.0 - x / 12.0));
     if (x <= 2.0) return 17.0 / 40.0 + x * (5.0 / 8.0 - x * (7.0 / 4.0 - x * (5.0 / 4.0 - x * (3.0 / 8.0 - x / 24.0))));
     return std::pow(3.0 - x, 5) / 120.0;
   };
-  std::array<float, num_taps> weights;
-  for (int k = 0; k < num_taps; ++k) weights[k] = static_cast<float>(spline(std::abs(t - (k - 2))));
+  std::array<float, kNumTaps> weights;
+  for (int k = 0; k < kNumTaps; ++k) weights[k] = static_cast<float>(spline(std::abs(t - (k - 2))));
   return weights;
 }
 
-/// \return weights of values at distances up to reach_of_spline for a coefficient.
-std::array<float, reach_of_spline + 1> weightsOfValues() {
-  std::array<float, reach_of_spline + 1> weights{};
+/// \return weights of values at distances up to kReachOfSpline for a coefficient.
+std::array<float, kReachOfSpline + 1> weightsOfValues() {
+  std::array<float, kReachOfSpline + 1> weights{};
   for (const double z : kPoles) {
     const double slope = (2.0 * z + 26.0 - 26.0 / (z * z) - 2.0 / (z * z * z)) / 120.0;
-    for (int k = 0; k <= reach_of_spline; ++k) weights[k] += static_cast<float>(std::pow(z, k) / (z * slope));
+    for (int k = 0; k <= kReachOfSpline; ++k) weights[k] += static_cast<float>(std::pow(z, k) / (z * slope));
   }
   return weights;
 }
@@ -340,10 +340,10 @@ public:
   /// \param max_ahead greatest offset of the first and the last lane of a row from its middle, distances of positions.
   LaneSums(int size, double max_ahead)
       : size_(size),
-        margin_(static_cast<int>(std::ceil(max_ahead)) + num_taps),
+        margin_(static_cast<int>(std::ceil(max_ahead)) + kNumTaps),
         sums_(static_cast<std::size_t>(size) * kBundleLanes),
         lane_(size + 2 * margin_),
-        coefficients_(size + 2 * reach_of_spline) {}
+        coefficients_(size + 2 * kReachOfSpline) {}
 
   /// \return number s * kBundleLanes + j is the sum of lane j at position s.
   std::int32_t* data() { return sums_.data(); }
@@ -361,18 +361,18 @@ public:
           lane_[margin_ + s] += static_cast<float>(sums_[s * kBundleLanes + r]);
       }
       addLane(lane_.data() + margin_ - shift, size_, weightsAt(shift - of_lane).data(),
-              coefficients_.data() + reach_of_spline);
+              coefficients_.data() + kReachOfSpline);
     }
     std::fill(sums_.begin(), sums_.end(), 0);
   }
 
   /// \return the value at common position s, 0 outside of [0, size).
   float at(std::int64_t s) const {
-    static const std::array<float, reach_of_spline + 1> kWeights = weightsOfValues();
+    static const std::array<float, kReachOfSpline + 1> kWeights = weightsOfValues();
     if (s < 0 || s >= size_) return 0.0f;
-    const float* const here = coefficients_.data() + reach_of_spline + s;
+    const float* const here = coefficients_.data() + kReachOfSpline + s;
     float value = kWeights[0] * here[0];
-    for (int k = 1; k <= reach_of_spline; ++k) value += kWeights[k] * (here[-k] + here[k]);
+    for (int k = 1; k <= kReachOfSpline; ++k) value += kWeights[k] * (here[-k] + here[k]);
     return value;
   }
 
@@ -384,7 +384,7 @@ private:
   int margin_;  // zeros on both sides of lane_
   std::vector<std::int32_t> sums_;
   std::vector<float> lane_;
-  // Coefficients of the spline through the values, with reach_of_spline zeros on both sides.
+  // Coefficients of the spline through the values, with kReachOfSpline zeros on both sides.
   std::vector<float> coefficients_;
 };
 
@@ -477,7 +477,7 @@ SymmetryMap convolutionTransform(const GaussianEdt& edt, const PlaneGrid& grid,
   const double norm = edt.sqNorm() * LookupTable::kOne * LookupTable::kOne;
   const int num_radius = grid.numRadius();
   SymmetryMap map = SymmetryMap::zero(edt, grid, TransformMethod::Convolution);
-  parallelRanges(grid.numDirections(), convolved_per_block, options.num_threads,
+  parallelRanges(grid.numDirections(), kConvolvedPerBlock, options.num_threads,
                  [&](std::size_t begin, std::size_t end) {
                    DirectionConvolution convolution(lattice, table);
                    for (std::size_t direction = begin; direction < end; ++direction)

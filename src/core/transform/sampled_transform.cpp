@@ -23,8 +23,8 @@ namespace {
 using Cube = LineSums::Cube;
 using Lines = LineSums::Lines;
 
-constexpr int line_lanes = 8;    // 32-bit integers in an AVX2 register; sums are padded by as many
-constexpr int max_lines = 1024;  // at a time: they stay in the first-level cache, and sums of bytes fit in 32 bits
+constexpr int kLineLanes = 8;    // 32-bit integers in an AVX2 register; sums are padded by as many
+constexpr int kMaxLines = 1024;  // at a time: they stay in the first-level cache, and sums of bytes fit in 32 bits
 
 /// Fills the lines along which the images of points move when the points are reflected in parallel planes.
 PCL_SYMMETRY_MULTIVERSION
@@ -108,7 +108,7 @@ __attribute__((target("avx2"))) void accumulateAvx2(const Lines& lines, const st
   __m256i ramp[3], stride[3];
   for (int axis = 0; axis < 3; ++axis) {
     ramp[axis] = _mm256_mullo_epi32(lane, _mm256_set1_epi32(lines.step[axis]));
-    stride[axis] = _mm256_set1_epi32(line_lanes * lines.step[axis]);
+    stride[axis] = _mm256_set1_epi32(kLineLanes * lines.step[axis]);
   }
   for (int i = 0; i < lines.size; ++i) {
     const std::int32_t k_end = lines.k_end[i];
@@ -116,7 +116,7 @@ __attribute__((target("avx2"))) void accumulateAvx2(const Lines& lines, const st
     __m256i x = _mm256_add_epi32(_mm256_set1_epi32(lines.x[i] + k * lines.step[0]), ramp[0]);
     __m256i y = _mm256_add_epi32(_mm256_set1_epi32(lines.y[i] + k * lines.step[1]), ramp[1]);
     __m256i z = _mm256_add_epi32(_mm256_set1_epi32(lines.z[i] + k * lines.step[2]), ramp[2]);
-    for (; k < k_end; k += line_lanes) {
+    for (; k < k_end; k += kLineLanes) {
       const __m256i inside = _mm256_cmpgt_epi32(_mm256_set1_epi32(k_end - k), lane);
       const __m256i index = _mm256_add_epi32(_mm256_add_epi32(_mm256_sll_epi32(_mm256_sra_epi32(z, fraction), slice),
                                                               _mm256_sll_epi32(_mm256_sra_epi32(y, fraction), row)),
@@ -147,7 +147,7 @@ auto* kernelOf(bool scalar) {
   return accumulateScalar<kFunctions>;
 }
 
-constexpr std::size_t sampled_per_block = 32;  // directions
+constexpr std::size_t kSampledPerBlock = 32;  // directions
 
 /// (S / |f|^2) mean g(gamma x_i) at every bin: D for g = f and, with free space, F for g = free space.
 std::vector<std::vector<float>> sampleMeans(const GaussianEdt& edt, const PlaneGrid& grid,
@@ -175,7 +175,7 @@ std::vector<std::vector<float>> sampleMeans(const GaussianEdt& edt, const PlaneG
           means[g][direction * num_radius + k] = static_cast<float>(scale * totals[g][k]);
     }
   };
-  parallelRanges(grid.numDirections(), sampled_per_block, options.num_threads, run);
+  parallelRanges(grid.numDirections(), kSampledPerBlock, options.num_threads, run);
   return means;
 }
 
@@ -211,8 +211,8 @@ LineSums::LineSums(const GaussianEdt& edt, const LookupTable& table, int num_ste
     : table_(table),
       accumulate_(table.numFunctions() == 1 ? kernelOf<1>(scalar) : kernelOf<2>(scalar)),
       totals_(table.numFunctions(), std::vector<double>(num_steps)),
-      sums_(table.numFunctions(), std::vector<std::int32_t>(num_steps + line_lanes)),
-      storage_(5 * max_lines) {
+      sums_(table.numFunctions(), std::vector<std::int32_t>(num_steps + kLineLanes)),
+      storage_(5 * kMaxLines) {
   const double middle = middleCell(edt);
   cube_.middle = static_cast<float>(middle);
   cube_.sq_clip = static_cast<float>(std::pow(middle - 0.5, 2));
@@ -226,11 +226,11 @@ const LineSums::Totals& LineSums::add(int num_samples, const Eigen::Vector3f& st
                                       const SetUp& set_up) {
   for (auto& total : totals_) std::fill(total.begin(), total.end(), 0.0);
   std::int32_t* const data = storage_.data();
-  Lines lines{data, data + max_lines, data + 2 * max_lines, data + 3 * max_lines, data + 4 * max_lines, 0, {}};
+  Lines lines{data, data + kMaxLines, data + 2 * kMaxLines, data + 3 * kMaxLines, data + 4 * kMaxLines, 0, {}};
   for (int axis = 0; axis < 3; ++axis)
     lines.step[axis] = static_cast<std::int32_t>(std::lround(step[axis] * (1 << LookupTable::kFractionBits)));
-  for (int first = 0; first < num_samples; first += max_lines) {
-    lines.size = std::min(max_lines, num_samples - first);
+  for (int first = 0; first < num_samples; first += kMaxLines) {
+    lines.size = std::min(kMaxLines, num_samples - first);
     set_up(first, lines);
     for (auto& sums : sums_) std::fill(sums.begin(), sums.end(), 0);
     accumulate_(lines, table_.data(), table_.bits(), sums_of_.data());
@@ -294,14 +294,14 @@ void weighSeen(SymmetryMap& map, const std::vector<float>& free_overlap) {
 
 namespace {
 
-constexpr int block_side = 8;  // cells
+constexpr int kBlockSide = 8;  // cells
 
 /// The cells of a block along the Morton curve.
-std::array<Eigen::Vector3i, block_side * block_side * block_side> cellsOfBlock() {
-  std::array<Eigen::Vector3i, block_side * block_side * block_side> cells;
-  for (int z = 0; z < block_side; ++z)
-    for (int y = 0; y < block_side; ++y)
-      for (int x = 0; x < block_side; ++x) cells[mortonCode(x, y, z)] = {x, y, z};
+std::array<Eigen::Vector3i, kBlockSide * kBlockSide * kBlockSide> cellsOfBlock() {
+  std::array<Eigen::Vector3i, kBlockSide * kBlockSide * kBlockSide> cells;
+  for (int z = 0; z < kBlockSide; ++z)
+    for (int y = 0; y < kBlockSide; ++y)
+      for (int x = 0; x < kBlockSide; ++x) cells[mortonCode(x, y, z)] = {x, y, z};
   return cells;
 }
 
@@ -314,22 +314,22 @@ struct Block {
 
 /// All blocks along the Morton curve.
 std::vector<Block> blocksOf(const GaussianEdt& edt, int num_threads) {
-  const int n = edt.numCells(), side = (n + block_side - 1) / block_side;
+  const int n = edt.numCells(), side = (n + kBlockSide - 1) / kBlockSide;
   std::vector<Block> blocks(static_cast<std::size_t>(side) * side * side);
   for (int z = 0; z < side; ++z)
     for (int y = 0; y < side; ++y)
       for (int x = 0; x < side; ++x)
         blocks[(static_cast<std::size_t>(z) * side + y) * side + x] = {mortonCode(x, y, z),
-                                                                       block_side * Eigen::Vector3i(x, y, z), 0.0};
+                                                                       kBlockSide * Eigen::Vector3i(x, y, z), 0.0};
   parallelBlocks(side, num_threads, [&](std::size_t layer) {
-    for (int z = static_cast<int>(layer) * block_side; z < std::min(n, static_cast<int>(layer + 1) * block_side); ++z) {
+    for (int z = static_cast<int>(layer) * kBlockSide; z < std::min(n, static_cast<int>(layer + 1) * kBlockSide); ++z) {
       for (int y = 0; y < n; ++y) {
         const float* const f = edt.values().data() + (static_cast<std::size_t>(z) * n + y) * n;
-        Block* const row = &blocks[(layer * side + y / block_side) * side];
-        for (int x = 0; x < n; x += block_side) {
+        Block* const row = &blocks[(layer * side + y / kBlockSide) * side];
+        for (int x = 0; x < n; x += kBlockSide) {
           float sum = 0.0f;
-          for (int i = x; i < std::min(n, x + block_side); ++i) sum += f[i];
-          row[x / block_side].sum += sum;
+          for (int i = x; i < std::min(n, x + kBlockSide); ++i) sum += f[i];
+          row[x / kBlockSide].sum += sum;
         }
       }
     }

@@ -33,7 +33,7 @@ double laplacian(const SymmetryMap& map, const PlaneGrid::Bin& bin) {
          6.0 * value(0, 0, 0);
 }
 
-constexpr std::size_t stop_every = 32;  // directions between two checks of the smallest value
+constexpr std::size_t kStopEvery = 32;  // directions between two checks of the smallest value
 
 /// Coordinates of points, each in an array of its own.
 struct PointBlock {
@@ -89,7 +89,7 @@ std::vector<float> greatestThrough(const std::vector<float>& values, const std::
     const float greatest = *std::max_element(row.begin(), row.end());
     rows.push_back({normals[d] * steps_per_unit, greatest, std::move(row)});
   }
-  sortFalling(rows, &DirectionRow::greatest);
+  sortDescending(rows, &DirectionRow::greatest);
   std::vector<float> best(points.cols(), 0.0f);
   parallelPoints(points.cols(), num_threads, [&](std::size_t begin, std::size_t end) {
     const int size = static_cast<int>(end - begin);
@@ -97,7 +97,7 @@ std::vector<float> greatestThrough(const std::vector<float>& values, const std::
     const PointBlock coordinates{block.col(0).data(), block.col(1).data(), block.col(2).data(), size};
     for (std::size_t d = 0; d < rows.size(); ++d) {
       // The remaining directions cannot raise any value.
-      if (d % stop_every == 0 && rows[d].greatest <= *std::min_element(best.begin() + begin, best.begin() + end)) break;
+      if (d % kStopEvery == 0 && rows[d].greatest <= *std::min_element(best.begin() + begin, best.begin() + end)) break;
       raise(coordinates, rows[d], best.data() + begin);
     }
   });
@@ -223,7 +223,7 @@ std::vector<LocalMaximum> findLocalMaxima(const SymmetryMap& map, const LocalMax
     }
   });
   for (const auto& row : rows) maxima.insert(maxima.end(), row.begin(), row.end());
-  sortFalling(maxima, &LocalMaximum::value);
+  sortDescending(maxima, &LocalMaximum::value);
   return maxima;
 }
 

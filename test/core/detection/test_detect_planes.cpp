@@ -120,21 +120,21 @@ TEST(DetectionOptions, RefusesBadOnes) {
 TEST(CloudSubset, TakesAsManyPointsAsTheToleranceNeeds) {
   const Points points = box(90'000, Sampling::Random, 1).cloud();
   DetectionOptions options;
-  EXPECT_EQ(subsetOf(points, options)->size(), 20'000u);
+  EXPECT_EQ(drawSubset(points, options)->size(), 20'000u);
   options.tolerance = 0.005;  // half of the spacing: four times as many
-  EXPECT_EQ(subsetOf(points, options)->size(), 80'000u);
+  EXPECT_EQ(drawSubset(points, options)->size(), 80'000u);
   options.tolerance = 0.002;
-  EXPECT_FALSE(subsetOf(points, options));
-  EXPECT_FALSE(subsetOf(points.leftCols(20'000), DetectionOptions()));
+  EXPECT_FALSE(drawSubset(points, options));
+  EXPECT_FALSE(drawSubset(points.leftCols(20'000), DetectionOptions()));
 }
 
 TEST(CloudSubset, LeavesCloudsOfFewDistinctPoints) {
-  EXPECT_FALSE(subsetOf(box(10'000, Sampling::Random, 1).cloud().replicate(1, 5), DetectionOptions()));
+  EXPECT_FALSE(drawSubset(box(10'000, Sampling::Random, 1).cloud().replicate(1, 5), DetectionOptions()));
 }
 
 TEST(CloudSubset, NamesTheNearestPoint) {
   const Points points = moved(prism(5, 30'000, Sampling::Random, 2), randomPose(3)).cloud();
-  const Points kept = pointsAt(points, *subsetOf(points, DetectionOptions()));
+  const Points kept = pointsAt(points, *drawSubset(points, DetectionOptions()));
   const auto search = makeFlannSearch(kept);
   const std::vector<int> nearest = closestPoints(*search, points, 1).index;
   for (std::size_t i = 0; i < nearest.size(); i += 500) {

@@ -1,4 +1,5 @@
 /// From maxima to planes that are symmetries: how they are refined, measured and decided, and what lowers them.
+#include "core/base/random.h"
 #include "core/detection/plane_decision.h"
 
 #include <gtest/gtest.h>
@@ -63,7 +64,8 @@ TEST(StagedRefinement, DistinctKeepsTheBestOfLikePlanes) {
 TEST(PlaneMeasure, ShareFallsWithTheDistanceFromASymmetry) {
   const SearchedShape box(test::box({1.0, 0.7, 0.4}, 5000, test::Sampling::Random, 1).cloud());
   const auto shareAt = [&](double offset) {
-    return box.measure.measured(box.normalized(Eigen::Vector3d::UnitX(), offset), box.measure.samples()).evidence.share;
+    return box.measure.measurePlane(box.normalized(Eigen::Vector3d::UnitX(), offset), box.measure.samples())
+        .evidence.share;
   };
   EXPECT_GT(shareAt(0.0), 0.99);
   double last = 1.0;
@@ -82,8 +84,8 @@ TEST(PlaneMeasure, MatchesOfOtherSamplesAreNotTaken) {
   candidate.plane = box.normalized(Eigen::Vector3d::UnitX(), 0.0);
   candidate.samples = std::make_shared<const std::vector<int>>(drawn(1));
   candidate.step = box.fit->matches(candidate.plane, *candidate.samples);
-  EXPECT_EQ(box.measure.measured(candidate, drawn(2)).evidence.share,
-            box.measure.measured(candidate.plane, drawn(2)).evidence.share);
+  EXPECT_EQ(box.measure.measureCandidate(candidate, drawn(2)).evidence.share,
+            box.measure.measurePlane(candidate.plane, drawn(2)).evidence.share);
 }
 
 TEST(CloudLimits, TheOwnPlaneOfASheetMovesNothing) {
@@ -159,7 +161,7 @@ TEST(RankedPlanes, BestFirstAndEachOnce) {
   const auto supports = [&] {
     const SearchedShape searched(box(500, Sampling::Random, 3).cloud(), options);
     std::vector<double> found;
-    for (const SymmetryPlane& plane : rankedPlanes(searched, planes)) {
+    for (const SymmetryPlane& plane : selectReported(searched, planes)) {
       EXPECT_EQ(plane.point_support.size(), 500u);
       found.push_back(plane.support);
     }
@@ -176,7 +178,7 @@ TEST(RankedPlanes, FewPossibleOnes) {
   const SearchedShape searched(box(500, Sampling::Random, 3).cloud());
   std::vector<SymmetryPlane> planes;
   for (int k = 0; k < 6; ++k) planes.push_back(planeOfFan(k, PlaneKind::Possible, 0.3, 0.5));
-  const auto numRanked = [&] { return rankedPlanes(searched, planes).size(); };
+  const auto numRanked = [&] { return selectReported(searched, planes).size(); };
   EXPECT_EQ(numRanked(), static_cast<std::size_t>(kDetection.decide.max_possible));
   for (SymmetryPlane& plane : planes) plane.kind = PlaneKind::Symmetry;
   EXPECT_EQ(numRanked(), 6u);
@@ -190,7 +192,7 @@ TEST(RankedPlanes, APlaneOnTheSlopeOfABetterOneIsNoMaximum) {
     planes.back().kind = PlaneKind::Symmetry;
     planes.back().confidence = 0.8;
     planes.back().score = score;
-    return rankedPlanes(searched, planes).size();
+    return selectReported(searched, planes).size();
   };
   EXPECT_EQ(numRanked(0.0), 1u) << "D between them is greater";
   EXPECT_EQ(numRanked(1.1), 2u) << "D falls on the way";

@@ -120,13 +120,13 @@ TEST(CompletePolygon, PlanesOfANoisyPolygonAreJudgedTogether) {
   const SearchedPoints searched(wheel(7, 0.1, 0.04, false, 6));
   ASSERT_EQ(searched.cloud.kind(), CloudKind::Volume);
   SymmetryPlane first = searched.symmetry(0.5 * kPi), second = searched.symmetry(0.5 * kPi + kPi / 7.0);
-  Found completed;
-  completed.planes = {first, second};
+  DetectionState completed;
+  completed.answer.planes = {first, second};
   completePolygon(searched, completed);
   ASSERT_TRUE(completed.polygon);
   EXPECT_EQ(completed.polygon->fold, 7);
-  EXPECT_EQ(completed.planes.size(), 7u);
-  for (const SymmetryPlane& plane : completed.planes) EXPECT_EQ(plane.kind, PlaneKind::Symmetry);
+  EXPECT_EQ(completed.answer.planes.size(), 7u);
+  for (const SymmetryPlane& plane : completed.answer.planes) EXPECT_EQ(plane.kind, PlaneKind::Symmetry);
 }
 
 TEST(FoldSpectrum, ToldFromARoundBody) {

@@ -127,13 +127,13 @@ SymmetryPlane planeAt(double angle, double turn, double confidence) {
 
 TEST(StandingObject, PlanesSlantWhereTheyAreNeitherUprightNorLevel) {
   const Points points = cubeAt(0.0);
-  const auto normals = carryingNormals(points, seenFromAbove(points).withSupport(kTable, 0.0));
+  const auto normals = supportNormals(points, seenFromAbove(points).withSupport(kTable, 0.0));
   ASSERT_EQ(normals.size(), 1u);
   for (const double angle : {0.0, 4.0, 86.0, 90.0, 94.0, 176.0})
-    for (const double turn : {0.0, 50.0}) EXPECT_FALSE(slants(planeAt(angle, turn, 0.9), normals)) << angle;
+    for (const double turn : {0.0, 50.0}) EXPECT_FALSE(isSlanted(planeAt(angle, turn, 0.9), normals)) << angle;
   for (const double angle : {6.0, 45.0, 84.0, 96.0, 150.0})
-    for (const double turn : {0.0, 50.0}) EXPECT_TRUE(slants(planeAt(angle, turn, 0.9), normals)) << angle;
-  EXPECT_FALSE(slants(planeAt(45.0, 0.0, 0.9), {})) << "nothing carries it";
+    for (const double turn : {0.0, 50.0}) EXPECT_TRUE(isSlanted(planeAt(angle, turn, 0.9), normals)) << angle;
+  EXPECT_FALSE(isSlanted(planeAt(45.0, 0.0, 0.9), {})) << "nothing carries it";
 }
 
 TEST(StandingObject, ItStandsOnTheNearestSupport) {
@@ -141,15 +141,15 @@ TEST(StandingObject, ItStandsOnTheNearestSupport) {
   Points points = cubeAt(0.0);
   points.row(0).array() += 1.0f;
   const Visibility seen = seenFromAbove(points).withSupport(kWall, 0.0).withSupport(kTable, 0.0);
-  ASSERT_EQ(carryingNormals(points, seen).size(), 1u);
-  EXPECT_EQ(carryingNormals(points, seen).front(), Eigen::Vector3d::UnitZ());
+  ASSERT_EQ(supportNormals(points, seen).size(), 1u);
+  EXPECT_EQ(supportNormals(points, seen).front(), Eigen::Vector3d::UnitZ());
   const Points at_the_wall = cubeAt(0.0);
   const auto both =
-      carryingNormals(at_the_wall, seenFromAbove(at_the_wall).withSupport(kWall, 0.0).withSupport(kTable, 0.0));
+      supportNormals(at_the_wall, seenFromAbove(at_the_wall).withSupport(kWall, 0.0).withSupport(kTable, 0.0));
   ASSERT_EQ(both.size(), 2u);
-  EXPECT_FALSE(slants(planeAt(90.0, 45.0, 0.9), both)) << "upright, and askew to the wall";
-  EXPECT_TRUE(slants(planeAt(45.0, 45.0, 0.9), both));
-  EXPECT_TRUE(carryingNormals(points, seenFromAbove(points)).empty());
+  EXPECT_FALSE(isSlanted(planeAt(90.0, 45.0, 0.9), both)) << "upright, and askew to the wall";
+  EXPECT_TRUE(isSlanted(planeAt(45.0, 45.0, 0.9), both));
+  EXPECT_TRUE(supportNormals(points, seenFromAbove(points)).empty());
 }
 
 /// Rows of points on two sides of a box of 4 x 2 x 1 on the ground, as rings of a LiDAR at kBeside show it.

@@ -1,4 +1,5 @@
 /// What a plane misses: distances from a surface, how densely its points lie, where it ends and what nobody saw.
+#include "core/base/random.h"
 #include "core/evidence/missing_surface.h"
 
 #include <gtest/gtest.h>

@@ -39,16 +39,16 @@ SeenFromOneSide seenFrom(const TurningShape& shape, const Eigen::Vector3d& viewp
 }
 
 /// What confirms a half turn.
-RotationSigns clearSigns() {
-  RotationSigns signs;
-  signs.grown = 1.0;
+HalfTurnEvidence clearEvidence() {
+  HalfTurnEvidence signs;
+  signs.extent_ratio = 1.0;
   signs.stiffness = 0.1;
-  signs.planes_off = 0.0;
+  signs.planes_off_share = 0.0;
   return signs;
 }
 
 double confidenceOf(int fold, double support, double off, double far, double halfway,
-                    const RotationSigns& signs = clearSigns()) {
+                    const HalfTurnEvidence& signs = clearEvidence()) {
   SymmetryRotation rotation{Eigen::Vector3d::Zero(), Eigen::Vector3d::UnitZ()};
   rotation.fold = fold;
   rotation.support = support;
@@ -71,16 +71,17 @@ TEST(RotationConfidence, FallsWithWhatLandsInEmptySpaceAndGrowsWithWhatLandsOnTh
 TEST(RotationConfidence, OfAHalfTurnFallsWithEachSignAgainstIt) {
   const double clear = confidenceOf(2, 0.9, 0.0, 0.0, 0.4);
   // Each sign alone, from clear to clearly against.
-  const std::array<std::pair<double RotationSigns::*, double>, 4> against{{{&RotationSigns::grown, 1.5},
-                                                                           {&RotationSigns::stiffness, 1e-9},
-                                                                           {&RotationSigns::planes_off, 0.3},
-                                                                           {&RotationSigns::beside, 1.0}}};
+  const std::array<std::pair<double HalfTurnEvidence::*, double>, 4> against{
+      {{&HalfTurnEvidence::extent_ratio, 1.5},
+       {&HalfTurnEvidence::stiffness, 1e-9},
+       {&HalfTurnEvidence::planes_off_share, 0.3},
+       {&HalfTurnEvidence::conflicts_with_best, 1.0}}};
   for (std::size_t k = 0; k < against.size(); ++k) {
     const auto [sign, worst] = against[k];
-    const double best = clearSigns().*sign;
+    const double best = clearEvidence().*sign;
     double last = clear;
     for (int step = 1; step <= 5; ++step) {
-      RotationSigns signs = clearSigns();
+      HalfTurnEvidence signs = clearEvidence();
       signs.*sign = best + (worst - best) * step / 5;
       const double confidence = confidenceOf(2, 0.9, 0.0, 0.0, 0.4, signs);
       EXPECT_LE(confidence, last) << "sign " << k << ", step " << step;
@@ -127,32 +128,32 @@ struct Scanned {
 
 const Eigen::Vector3d kCorner(2.0, 3.0, 5.0);
 
-TEST(RotationSigns, AHalfTurnOfABoxHasPlanesAndStaysInItsPlace) {
+TEST(HalfTurnEvidence, AHalfTurnOfABoxHasPlanesAndStaysInItsPlace) {
   const Scanned scanned(box(), kCorner);
   const SymmetryRotation right = scanned.rotation(Eigen::Vector3d::Zero(), Eigen::Vector3d::UnitZ());
   const SymmetryRotation wrong = scanned.rotation({0.5, 0.0, 0.0}, {0.3, 0.0, 1.0});
-  const std::vector<RotationSigns> signs = rotationSigns(scanned.evidence, {right, wrong});
+  const std::vector<HalfTurnEvidence> signs = halfTurnEvidence(scanned.evidence, {right, wrong});
   ASSERT_EQ(signs.size(), 2u);
-  EXPECT_LT(signs[0].planes_off, 0.02);
-  EXPECT_GT(signs[1].planes_off, 0.1);
+  EXPECT_LT(signs[0].planes_off_share, 0.02);
+  EXPECT_GT(signs[1].planes_off_share, 0.1);
   // The box seen from a corner shows its longest diagonal.
-  EXPECT_LT(signs[0].grown, 1.05);
-  EXPECT_GT(signs[1].grown, 1.05);
-  EXPECT_EQ(signs[0].beside, 0.0);
-  EXPECT_EQ(signs[1].beside, 1.0);
+  EXPECT_LT(signs[0].extent_ratio, 1.05);
+  EXPECT_GT(signs[1].extent_ratio, 1.05);
+  EXPECT_EQ(signs[0].conflicts_with_best, 0.0);
+  EXPECT_EQ(signs[1].conflicts_with_best, 1.0);
   // A rotation that the other signs leave too little confidence is not asked for planes.
-  const std::vector<RotationSigns> few = rotationSigns(scanned.evidence, {right, wrong}, 0.2);
-  EXPECT_EQ(few[0].planes_off, signs[0].planes_off);
-  EXPECT_EQ(few[1].planes_off, 0.0);
+  const std::vector<HalfTurnEvidence> few = halfTurnEvidence(scanned.evidence, {right, wrong}, 0.2);
+  EXPECT_EQ(few[0].planes_off_share, signs[0].planes_off_share);
+  EXPECT_EQ(few[1].planes_off_share, 0.0);
   EXPECT_LT(rotationConfidence(wrong, few[1]), 0.2);
 }
 
-TEST(RotationSigns, AFlatSideHoldsNoLineAndABoxDoes) {
+TEST(HalfTurnEvidence, AFlatSideHoldsNoLineAndABoxDoes) {
   const Scanned flat(sheetShape(1.0, 0.7), {0.3, 0.5, 5.0});
   const SymmetryRotation over = flat.rotation(Eigen::Vector3d::Zero(), Eigen::Vector3d::UnitX());
   EXPECT_GT(over.support, 0.95) << "the shares alone take the lower side for the upper one";
   const auto stiffness = [](const Scanned& scanned, const Eigen::Vector3d& direction) {
-    return rotationSigns(scanned.evidence, {scanned.rotation(Eigen::Vector3d::Zero(), direction)})[0].stiffness;
+    return halfTurnEvidence(scanned.evidence, {scanned.rotation(Eigen::Vector3d::Zero(), direction)})[0].stiffness;
   };
   EXPECT_LT(stiffness(flat, Eigen::Vector3d::UnitX()), 1e-3) << "it slides both ways along itself";
   EXPECT_GT(stiffness(Scanned(box(), kCorner), Eigen::Vector3d::UnitZ()), 1e-2);
@@ -194,7 +195,7 @@ TEST(RotationEvidence, ALineBesideTheAxisComesBackToIt) {
   for (const Eigen::Vector3d& viewpoint : {kCorner, Eigen::Vector3d(5.0, 1.0, 3.0), Eigen::Vector3d(1.0, -2.0, 5.0)}) {
     const Scanned scanned(box(), viewpoint);
     const SymmetryRotation beside = scanned.rotation({0.03, -0.03, 0.0}, {0.03, 0.02, 1.0});
-    const Line3d line = scanned.evidence.closelyRefined(scanned.lineOf(beside), {kPi});
+    const Line3d line = scanned.evidence.refineLineClosely(scanned.lineOf(beside), {kPi});
     const Eigen::Vector3d center = -scanned.cloud.center / scanned.cloud.scale;
     // Within the tolerance of the surface, by which a line that is half as far off moves it.
     EXPECT_LT(line.distance(center), 0.5 * Scanned::tolerance * scanned.cloud.extent);
