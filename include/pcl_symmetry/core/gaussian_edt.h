@@ -64,6 +64,8 @@ public:
   /// \return center of the cell, input frame.
   Eigen::Vector3d cellCenter(std::size_t index) const;
 
+  /// Greatest distance in cells from a point that was left out, as many were near, to one that f shows.
+  double thinning() const { return thinning_; }
   double sum() const { return sum_; }         ///< sum of f over the cells
   double sqNorm() const { return sq_norm_; }  ///< |f|^2, the sum of f^2 over the cells
 
@@ -112,6 +114,7 @@ private:
   std::vector<float> values_;
   std::vector<Range> filled_;
   std::vector<float> interpolation_;
+  double thinning_ = 0.0;
   double sum_ = 0.0;
   double sq_norm_ = 0.0;
 };

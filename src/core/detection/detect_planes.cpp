@@ -74,12 +74,16 @@ void tryRightAngles(const PlaneSearch& search, DetectionState& state) {
 
 /// Every plane through the axis of a mug maps its body onto itself. One that does not map its handle onto itself is
 /// possible at most.
-void limitByHandle(const PlaneSearch& search, const RotationEvidence& rotations, const ScanAxesOptions& options,
+void limitByHandle(const PlaneSearch& search, const RotationEvidence& rotations, const std::vector<Line3d>& lines,
                    std::vector<SymmetryPlane>& planes) {
-  if (std::none_of(planes.begin(), planes.end(),
-                   [](const SymmetryPlane& plane) { return plane.kind == PlaneKind::Symmetry; }))
+  const auto mayBeThrough = [&](const SymmetryPlane& plane) {
+    const ReflectionPlane normalized = search.cloud.toNormalized(plane);
+    return std::any_of(lines.begin(), lines.end(), [&](const Line3d& line) { return contains(normalized, line); });
+  };
+  if (planesOf(planes, {PlaneKind::Symmetry}, search.cloud).empty() ||
+      std::none_of(planes.begin(), planes.end(), mayBeThrough))
     return;
-  const std::optional<NearlyRound> body = nearlyRound(rotations, options);
+  const std::optional<NearlyRound> body = nearlyRound(rotations, lines);
   if (!body) return;
   for (SymmetryPlane& plane : planes) {
     const ReflectionPlane normalized = search.cloud.toNormalized(plane);
@@ -105,14 +109,15 @@ void findAxesOfScan(const PlaneSearch& search, DetectionState& state) {
     answer.centers.push_back(*std::move(center));
     return;
   }
-  answer.rotations =
-      scanAxes(rotations, answer.planes, answer.axes, scan_axes, state.evidence ? &state.evidence->rotations : nullptr);
+  const std::vector<Line3d> lines = linesOfNormals(rotations, scan_axes);
+  answer.rotations = scanAxes(rotations, lines, answer.planes, answer.axes, scan_axes,
+                              state.evidence ? &state.evidence->rotations : nullptr);
   answer.axes = withRoundAxes(rotations, std::move(answer.axes), answer.rotations, scan_axes);
   answer.planes = withoutPlanesThrough(std::move(answer.planes), answer.axes, search.cloud);
   // A body other than a ball has one axis: further axes, as of a dome, are round only within the tolerance.
   sortDescending(answer.axes, &SymmetryAxis::confidence);
   if (answer.axes.size() > 1) answer.axes.resize(1);
-  if (answer.axes.empty()) limitByHandle(search, rotations, scan_axes, answer.planes);
+  if (answer.axes.empty()) limitByHandle(search, rotations, lines, answer.planes);
 }
 
 /// Rules by which results correct each other, applied in this order. Not in the paper.

@@ -1,24 +1,36 @@
 #include "core/refinement/landing.h"
 
-#include <algorithm>
+#include <cmath>
 #include <limits>
-#include <numeric>
 #include <utility>
 
+#include "core/base/lists.h"
 #include "core/base/parallel.h"
+#include "core/geometry/point_samples.h"
+#include "core/transform/transform_rules.h"
 
 namespace pcl_symmetry {
 
-std::vector<Eigen::Index> FarTest::nearOf(const PointsRef& points, float bound) const {
-  const float min_value = std::min(bound, kFarthest);
+std::vector<int> FarTest::nearOf(const PointsRef& points, double distance, bool leaves_out) const {
   const std::ptrdiff_t size = edt_.numCells();
-  std::vector<Eigen::Index> near;
+  // The least f of a cell whose center is this many cells from a point within the distance
+  const auto least = [&](double beside) {
+    const double reach = (distance * scale_ + (beside + edt_.thinning()) * edt_.cellSize()) / edt_.sigma();
+    return reach < kTransform.reach_in_sigmas ? static_cast<float>(std::exp(-reach * reach)) : 0.0f;
+  };
+  const float at_center = least(0.0), at_corner = least(0.5 * std::sqrt(3.0));
+  std::vector<int> near;
+  near.reserve(points.cols());
   for (Eigen::Index i = 0; i < points.cols(); ++i) {
     const Eigen::Vector3d x = points.col(i).cast<double>() * scale_ + center_ - edt_.origin();
     const Eigen::Array3d cell = x.array() / edt_.cellSize() + 0.5;
-    if (!(cell >= 0.0).all() || !(cell < static_cast<double>(size)).all()) continue;
-    const Eigen::Array<std::ptrdiff_t, 3, 1> at = cell.cast<std::ptrdiff_t>();
-    if (edt_.values()[(at[2] * size + at[1]) * size + at[0]] > min_value) near.push_back(i);
+    float f = 0.0f, bound = at_corner;
+    if ((cell >= 0.0).all() && (cell < static_cast<double>(size)).all()) {
+      const Eigen::Array<std::ptrdiff_t, 3, 1> at = cell.cast<std::ptrdiff_t>();
+      f = edt_.values()[(at[2] * size + at[1]) * size + at[0]];
+      if (f > at_corner && f < at_center) bound = least((cell - at.cast<double>() - 0.5).matrix().norm());
+    }
+    if (f > 0.0f ? f >= bound : !leaves_out && bound == 0.0f) near.push_back(static_cast<int>(i));
   }
   return near;
 }
@@ -29,20 +41,12 @@ Landing land(const IspSurface& surface, Points images, double reach, const std::
   landing.images = std::move(images);
   landing.closest.assign(size, -1);
   landing.sq_distances.assign(size, std::numeric_limits<float>::infinity());
-  const float bound = surface.far ? surface.far->bound(reach) : 0.0f;
-  const bool has_far = surface.far && (leaves_out || FarTest::isExact(bound));
   const auto sq_reach = static_cast<float>(reach * reach);
   parallelPoints(size, surface.num_threads, [&](std::size_t begin, std::size_t end) {
     const auto some = landing.images.middleCols(begin, end - begin);
-    std::vector<Eigen::Index> near;  // offsets from begin
-    if (has_far) {
-      near = surface.far->nearOf(some, bound);
-    } else {
-      near.resize(end - begin);
-      std::iota(near.begin(), near.end(), Eigen::Index{0});
-    }
-    Points asked(3, near.size());
-    for (std::size_t i = 0; i < near.size(); ++i) asked.col(i) = some.col(near[i]);
+    const std::vector<int> near =  // from begin on
+        surface.far ? surface.far->nearOf(some, reach, leaves_out) : allIndices(static_cast<Eigen::Index>(end - begin));
+    const Points asked = pointsAt(some, near);
     std::vector<int> closest(near.size(), -1);
     std::vector<float> sq_distances;
     if (guesses)

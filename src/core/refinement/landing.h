@@ -1,7 +1,6 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <cmath>
 #include <vector>
 
 #include "pcl_symmetry/core/closest_point_search.h"
@@ -20,25 +19,13 @@ public:
   FarTest(const GaussianEdt& edt, const Eigen::Vector3d& center, double scale)
       : edt_(edt), center_(center), scale_(scale) {}
 
-  /// \param distance in the frame of the tested points.
-  /// \return the least f of any cell that contains a point within \p distance of the surface.
-  float bound(double distance) const {
-    const double half_diagonal = 0.5 * std::sqrt(3.0) * edt_.cellSize();
-    const double reach = (distance * scale_ + half_diagonal) / edt_.sigma();
-    return static_cast<float>(std::exp(-reach * reach));
-  }
-
-  /// Whether the distance transform reaches that distance, so that no nearer point counts as far.
-  /// \param bound what bound() returned for a distance.
-  static bool isExact(float bound) { return bound > 1.2e-3f; }  // below it, f is 0
-
   /// \param points 3 x M, side by side.
-  /// \param bound what bound() returned for a distance.
-  /// \return ascending indices of the points inside the grid that may be within that distance of the surface.
-  std::vector<Eigen::Index> nearOf(const PointsRef& points, float bound) const;
+  /// \param distance in the frame of the points.
+  /// \param leaves_out points beyond the reach of the distance transform count as farther.
+  /// \return ascending indices of the points that may be within that distance of the surface.
+  std::vector<int> nearOf(const PointsRef& points, double distance, bool leaves_out) const;
 
 private:
-  static constexpr float kFarthest = 1e-3f;  // below f at the cut of the transform, exp(-2.6^2) = 1.2e-3
   const GaussianEdt& edt_;
   Eigen::Vector3d center_;
   double scale_;

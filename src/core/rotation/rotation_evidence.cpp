@@ -11,6 +11,7 @@
 #include "core/base/symmetric_solvers.h"
 #include "core/evidence/surface_samples.h"
 #include "core/geometry/cloud_extent.h"
+#include "core/geometry/directions.h"
 #include "core/geometry/point_samples.h"
 #include "core/rotation/rotation_confidence_fit.h"
 #include "pcl_symmetry/core/rotation_group.h"
@@ -62,7 +63,7 @@ RotationEvidence::RotationEvidence(const NormalizedCloud& cloud, double toleranc
     : cloud_(cloud),
       tolerance_(tolerance),
       far_(kScanAxes.far_tolerances * tolerance),
-      reach_(kScanAxes.slack_of_reach * (far_ + greatestDisc(cloud.geometry))),
+      greatest_disc_(greatestDisc(cloud.geometry)),
       samples_(drawSamples(cloud.points.cols(), kScanAxes.num_samples, seed)),
       few_samples_(drawSamples(cloud.points.cols(), kScanAxes.num_few_samples, seed)),
       facing_(facingNormals(cloud)) {}
@@ -94,14 +95,14 @@ Points RotationEvidence::moved(const Eigen::Affine3d& motion, const std::vector<
   return moved;
 }
 
-Landing RotationEvidence::landMoved(const Eigen::Affine3d& motion) const {
-  Landing landing = land(cloud_.surface, moved(motion, samples_), reach_);
+Landing RotationEvidence::landMoved(Points images, double farthest) const {
+  Landing landing = land(cloud_.surface, std::move(images), kScanAxes.slack_of_reach * (farthest + greatest_disc_));
   landing.distances = surfaceDistances(landing.images, landing.closest, cloud_.samples);
   return landing;
 }
 
 RotationShares RotationEvidence::measure(const Eigen::Affine3d& motion) const {
-  const Landing all = landMoved(motion);
+  const Landing all = landMoved(moved(motion, samples_), far_);
   RotationShares shares;
   const double one = 1.0 / static_cast<double>(samples_.size());
   for (std::size_t i = 0; i < samples_.size(); ++i) {
@@ -117,19 +118,25 @@ RotationShares RotationEvidence::measure(const Eigen::Affine3d& motion) const {
 
 std::vector<int> RotationEvidence::samplesOffBody(const Line3d& line) const {
   std::vector<char> is_far(samples_.size(), false);
-  for (int k = 1; k <= kScanAxes.round_rotations; ++k) {
-    const Landing all = landMoved(motionAbout(line, 2.0 * kPi * goldenFraction(k)));
-    for (std::size_t i = 0; i < samples_.size(); ++i)
-      if (all.distances[i] > far_ && isFree(all.images.col(i).cast<double>())) is_far[i] = true;
-  }
   std::vector<int> some;
-  for (std::size_t i = 0; i < samples_.size(); ++i)
-    if (is_far[i]) some.push_back(static_cast<int>(i));
+  const double too_many = kScanAxes.max_off_body * static_cast<double>(samples_.size());
+  for (int k = 1; k <= kScanAxes.round_rotations && static_cast<double>(some.size()) < too_many; ++k) {
+    const Points images = moved(motionAbout(line, 2.0 * kPi * goldenFraction(k)), samples_);
+    std::vector<int> free;  // those that may be far
+    for (std::size_t i = 0; i < samples_.size(); ++i)
+      if (!is_far[i] && isFree(images.col(i).cast<double>())) free.push_back(static_cast<int>(i));
+    const std::vector<float> distances = landMoved(pointsAt(images, free), far_).distances;
+    for (std::size_t i = 0; i < free.size(); ++i) {
+      if (!(distances[i] > far_)) continue;
+      is_far[free[i]] = true;
+      some.push_back(free[i]);
+    }
+  }
   return some;
 }
 
 double RotationEvidence::shareOn(const Eigen::Affine3d& motion, const std::vector<int>& some) const {
-  const Landing all = landMoved(motion);
+  const Landing all = landMoved(moved(motion, samples_), tolerance_);
   const auto count = std::count_if(some.begin(), some.end(), [&](int i) { return all.distances[i] <= tolerance_; });
   return static_cast<double>(count) / static_cast<double>(some.size());
 }
@@ -137,7 +144,7 @@ double RotationEvidence::shareOn(const Eigen::Affine3d& motion, const std::vecto
 double RotationEvidence::stiffness(const Line3d& line, double angle) const {
   const Eigen::Isometry3d motion = motionAbout(line, angle);
   const std::array<Eigen::Isometry3d, 4> beside = motionsBeside(line, angle);
-  const Landing all = landMoved(motion);
+  const Landing all = landMoved(moved(motion, samples_), tolerance_);
   Eigen::Matrix4d stiffness = Eigen::Matrix4d::Zero();
   for (std::size_t i = 0; i < samples_.size(); ++i) {
     if (all.closest[i] < 0 || all.distances[i] > tolerance_) continue;

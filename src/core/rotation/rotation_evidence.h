@@ -51,7 +51,7 @@ public:
 
   /// \param line axis of a nearly round body.
   /// \return indices into samples_ of the points that some rotation about the line maps far into free space, such as a
-  /// handle.
+  /// handle; only some of them if they are more than kScanAxes.max_off_body.
   std::vector<int> samplesOffBody(const Line3d& line) const;
 
   /// \param some indices into samples_, at least one.
@@ -82,8 +82,8 @@ private:
   };
 
   Points moved(const Eigen::Affine3d& motion, const std::vector<int>& samples) const;
-  /// Maps the samples; distances beyond the reach are not measured.
-  Landing landMoved(const Eigen::Affine3d& motion) const;
+  /// \param farthest greatest distance from the surface that is measured.
+  Landing landMoved(Points images, double farthest) const;
   /// \param width width of the weights, tolerances.
   /// \param[in,out] closest closest points to the moved samples, for a line nearby; -1 = not known.
   void addEquations(const IspSurface& surface, const Line3d& line, double angle, const std::vector<int>& samples,
@@ -97,7 +97,7 @@ private:
 
   const NormalizedCloud& cloud_;
   double tolerance_;
-  double far_, reach_;  ///< distance from which points are far, and distance up to which they are measured
+  double far_, greatest_disc_;  ///< distance from which points are far, and radius of the greatest disc of a point
   std::vector<int> samples_, few_samples_;
   Points facing_;  ///< normals, oriented toward the scanner
 };

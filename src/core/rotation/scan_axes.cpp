@@ -183,7 +183,14 @@ public:
   /// \param max_fold greatest fold of the rotations that are tried, in addition to rotations by any angle.
   AxisJudge(const RotationEvidence& evidence, int max_fold) : evidence_(evidence), max_fold_(max_fold) {}
 
-  Line3d fitLine(const AxisStart& start) const { return evidence_.refineLine(start.line, fitAngles(start.fold)); }
+  /// The lines of some starts, where rotations fit best.
+  std::vector<Line3d> fitLines(const std::vector<AxisStart>& starts, int num_threads) const {
+    std::vector<Line3d> lines(starts.size());
+    parallelBlocks(lines.size(), num_threads,
+                   [&](std::size_t i) { lines[i] = evidence_.refineLine(starts[i].line, fitAngles(starts[i].fold)); });
+    eraseIf(lines, [](const Line3d& line) { return !line.direction().allFinite() || !line.origin().allFinite(); });
+    return lines;
+  }
 
   /// The best rotations about a line.
   std::optional<JudgedLine> judgeLine(const Line3d& line) const {
@@ -234,25 +241,27 @@ std::vector<ReflectionPlane> likelyPlanes(const std::vector<SymmetryPlane>& plan
 
 }  // namespace
 
-std::vector<SymmetryRotation> scanAxes(const RotationEvidence& evidence, const std::vector<SymmetryPlane>& planes,
-                                       const std::vector<SymmetryAxis>& axes, const ScanAxesOptions& options,
-                                       std::vector<JudgedRotation>* evidence_of_all) {
+std::vector<Line3d> linesOfNormals(const RotationEvidence& evidence, const ScanAxesOptions& options) {
+  return AxisJudge(evidence, 1)
+      .fitLines(startsFromNormals(evidence.cloud(), options.seed, options.num_threads), options.num_threads);
+}
+
+std::vector<SymmetryRotation> scanAxes(const RotationEvidence& evidence, const std::vector<Line3d>& lines,
+                                       const std::vector<SymmetryPlane>& planes, const std::vector<SymmetryAxis>& axes,
+                                       const ScanAxesOptions& options, std::vector<JudgedRotation>* evidence_of_all) {
   const NormalizedCloud& cloud = evidence.cloud();
-  std::vector<AxisStart> starts = startsFromNormals(cloud, options.seed, options.num_threads);
+  std::vector<AxisStart> starts;
   for (const SymmetryAxis& axis : axes) starts.push_back({cloud.lineOf(axis), 0});
   if (options.folds) {
     append(starts, startsFromPlanes(likelyPlanes(planes, cloud), kScanAxes.max_order));
     append(starts, startsFromTransform(cloud, options.seed, options.num_threads));
   }
   const AxisJudge judge(evidence, options.folds ? kScanAxes.max_order : 1);
-  std::vector<Line3d> fitted(starts.size());
-  parallelBlocks(starts.size(), options.num_threads, [&](std::size_t i) { fitted[i] = judge.fitLine(starts[i]); });
-  std::vector<Line3d> lines;
-  for (const Line3d& line : fitted)
-    if (line.direction().allFinite() && line.origin().allFinite() && !kSameFitted.anySame(lines, line))
-      lines.push_back(line);
-  std::vector<std::optional<JudgedLine>> judged(lines.size());
-  parallelBlocks(lines.size(), options.num_threads, [&](std::size_t i) { judged[i] = judge.judgeLine(lines[i]); });
+  std::vector<Line3d> all = lines;
+  append(all, judge.fitLines(starts, options.num_threads));
+  all = kSameFitted.distinct(std::move(all));
+  std::vector<std::optional<JudgedLine>> judged(all.size());
+  parallelBlocks(all.size(), options.num_threads, [&](std::size_t i) { judged[i] = judge.judgeLine(all[i]); });
   std::stable_sort(judged.begin(), judged.end(),
                    [](const auto& a, const auto& b) { return a && (!b || a->margin > b->margin); });
   std::vector<Line3d> found;
@@ -276,14 +285,10 @@ std::vector<SymmetryRotation> scanAxes(const RotationEvidence& evidence, const s
   return result;
 }
 
-std::optional<NearlyRound> nearlyRound(const RotationEvidence& evidence, const ScanAxesOptions& options) {
-  const AxisJudge judge(evidence, 1);
+std::optional<NearlyRound> nearlyRound(const RotationEvidence& evidence, const std::vector<Line3d>& lines) {
   const auto num_samples = std::min<Eigen::Index>(kScanAxes.num_samples, evidence.cloud().points.cols());
-  for (const AxisStart& start : startsFromNormals(evidence.cloud(), options.seed, options.num_threads)) {
-    const Line3d axis = judge.fitLine(start);
-    if (!axis.direction().allFinite() || !axis.origin().allFinite() ||
-        evidence.measure(motionAbout(axis, kScanAxes.small_angle)).on < kScanAxes.round_on)
-      continue;
+  for (const Line3d& axis : lines) {
+    if (evidence.measure(motionAbout(axis, kScanAxes.small_angle)).on < kScanAxes.round_on) continue;
     std::vector<int> off_body = evidence.samplesOffBody(axis);
     const double share = static_cast<double>(off_body.size()) / static_cast<double>(num_samples);
     if (share > kScanAxes.max_round_far && share < kScanAxes.max_off_body)
@@ -338,7 +343,7 @@ ScanRotations rotationsOfScan(const PointsRef& points, const GaussianEdt& edt, c
   const NormalizedCloud cloud(used, edt, search, &visibility, options.num_threads);
   const RotationEvidence evidence(cloud, ObjectSymmetryOptions().tolerance * cloud.extent, options.seed);
   ScanRotations found{centerOfScan(evidence, options), {}};
-  if (!found.center) found.rotations = scanAxes(evidence, {}, axes, options);
+  if (!found.center) found.rotations = scanAxes(evidence, linesOfNormals(evidence, options), {}, axes, options);
   return found;
 }
 

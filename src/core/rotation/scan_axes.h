@@ -19,6 +19,9 @@ struct ScanAxesOptions {
   int num_threads = 0;  ///< 0 = one per core
 };
 
+/// Lines about which a scan may be round, from its normals, moved to where rotations by small angles fit best.
+std::vector<Line3d> linesOfNormals(const RotationEvidence& evidence, const ScanAxesOptions& options);
+
 /// Axes of a scan: lines about which rotations by any angle, or by 2 pi / n, map the visible surface onto itself or
 /// into unseen space, but not into free space. Not in the paper, which leaves rotations to future work (Section 6).
 ///
@@ -26,12 +29,14 @@ struct ScanAxesOptions {
 /// transform. Each is moved to where the rotations fit best, then judged. A fold is accepted only if the rotations
 /// halfway between its own fail more; a line that no rotation contradicts is an axis of revolution.
 /// \param evidence evidence of a scan.
+/// \param lines lines from linesOfNormals().
 /// \param planes planes found so far, input frame.
 /// \param evidence_of_all filled with the evidence of all rotations, including those that are not returned; may be
 /// null.
 /// \return input frame, most confident first; no two along one line.
-std::vector<SymmetryRotation> scanAxes(const RotationEvidence& evidence, const std::vector<SymmetryPlane>& planes,
-                                       const std::vector<SymmetryAxis>& axes, const ScanAxesOptions& options,
+std::vector<SymmetryRotation> scanAxes(const RotationEvidence& evidence, const std::vector<Line3d>& lines,
+                                       const std::vector<SymmetryPlane>& planes, const std::vector<SymmetryAxis>& axes,
+                                       const ScanAxesOptions& options,
                                        std::vector<JudgedRotation>* evidence_of_all = nullptr);
 
 /// The axis of a body that is round except for a part, such as a mug with its handle, and that part.
@@ -40,8 +45,9 @@ struct NearlyRound {
   std::vector<int> off_body;  ///< as RotationEvidence::samplesOffBody()
 };
 
+/// \param lines from linesOfNormals().
 /// \return nothing if a scan shows no such body.
-std::optional<NearlyRound> nearlyRound(const RotationEvidence& evidence, const ScanAxesOptions& options);
+std::optional<NearlyRound> nearlyRound(const RotationEvidence& evidence, const std::vector<Line3d>& lines);
 
 /// The center of a ball seen from one side: rotations by any angle about any line through it map the visible surface
 /// onto itself or into unseen space.

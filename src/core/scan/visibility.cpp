@@ -184,10 +184,8 @@ std::vector<char> Visibility::areFree(const Eigen::Matrix3Xd& points) const {
   const auto addWhere = [&](const auto& isFree) {
     for (std::size_t i = 0; i < is_free.size(); ++i) is_free[i] |= isFree(static_cast<Eigen::Index>(i));
   };
-  for (const DepthView& view : depth_views_) {
-    const Eigen::Matrix3Xd images = (view.projection.leftCols<3>() * points).colwise() + view.projection.col(3);
-    addWhere([&](Eigen::Index i) { return view.depthBehind(images.col(i)) < 0.0; });
-  }
+  for (const DepthView& view : depth_views_)
+    addWhere([&](Eigen::Index i) { return view.depthBehind(view.projection * points.col(i).homogeneous()) < 0.0; });
   for (const Eigen::Vector4d& support : supports_)
     addWhere([&](Eigen::Index i) { return support.head<3>().dot(points.col(i)) + support[3] < 0.0; });
   return is_free;

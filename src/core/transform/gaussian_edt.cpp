@@ -125,7 +125,7 @@ void sharpenRow(const float* f, std::ptrdiff_t num_cells, std::ptrdiff_t slice_s
   }
 }
 
-/// Keeps the first point in each slot of 1/64 cell.
+/// Keeps the first point in each slot, 1/64 of a cell.
 /// \param points in cells.
 Points thin(const Points& points, int num_cells) {
   const int side = kTransform.slots_per_cell * num_cells;
@@ -182,7 +182,10 @@ void GaussianEdt::computeValues(const PointsRef& points, int num_threads) {
   const int n = num_cells_;
   const std::size_t slice_size = static_cast<std::size_t>(n) * n;
   Points cells = normalizePoints(points, origin_, cell_size_);
-  if (static_cast<std::size_t>(cells.cols()) > kTransform.dense_per_cell * slice_size) cells = thin(cells, n);
+  if (static_cast<std::size_t>(cells.cols()) > kTransform.dense_per_cell * slice_size) {
+    cells = thin(cells, n);
+    thinning_ = std::sqrt(3.0) / kTransform.slots_per_cell;
+  }
   const float reach = static_cast<float>(kTransform.reach_in_sigmas * sigma_ / cell_size_), sq_reach = reach * reach;
   values_ = sqCellDistances(cells, n, reach, num_threads);
   // Section 4.1: f = exp(-dist^2 / sigma^2).
