@@ -381,6 +381,7 @@ Motion registerTo(const Console& console, const InputShape& input, const InputSh
                              {"contradicted", evidence.contradicted},
                              {"missing", evidence.missing},
                              {"aside", evidence.aside},
+                             {"outside", evidence.outside},
                              {"noise", evidence.noise},
                              {"size_ratio", evidence.size_ratio},
                              {"uniqueness", evidence.uniqueness}};

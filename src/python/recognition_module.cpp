@@ -44,8 +44,8 @@ static py::dict dictOf(const PoseScore& s) {
 static py::dict dictOf(const PoseEvidence& e) {
   return py::dict("overlap_source"_a = e.overlap_source, "overlap_target"_a = e.overlap_target,
                   "agreement"_a = e.agreement, "on_surface"_a = e.on_surface, "contradicted"_a = e.contradicted,
-                  "missing"_a = e.missing, "aside"_a = e.aside, "noise"_a = e.noise, "size_ratio"_a = e.size_ratio,
-                  "uniqueness"_a = e.uniqueness);
+                  "missing"_a = e.missing, "aside"_a = e.aside, "outside"_a = e.outside, "noise"_a = e.noise,
+                  "size_ratio"_a = e.size_ratio, "uniqueness"_a = e.uniqueness);
 }
 
 static py::dict dictOf(const CloudRegistration& r) {

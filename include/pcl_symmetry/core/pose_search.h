@@ -43,9 +43,12 @@ struct PoseEvidence {
   double contradicted = 0.0;
   /// The same share for space where the scanner measured nothing, beside the cloud or in its holes.
   double missing = 0.0;
+  /// The share counted by `contradicted` or `missing`, in [0, 1], that lies farther than 5 % of the smaller diameter
+  /// from everything measured.
+  double aside = 0.0;
   /// Share that is missing beyond the outline of what was measured, or contradicted far from it, less the share that is
   /// missing within the outline, in [0, 1]: a part that only one of the clouds has, as holes would be in both places.
-  double aside = 0.0;
+  double outside = 0.0;
   double noise = 0.0;       ///< noise of the noisier cloud, in diameters of the smaller one
   double size_ratio = 1.0;  ///< diameter of the source divided by that of the target
   /// Share of this pose in the summed odds of all judged poses, in (0, 1]: 0.5 if another pose fits equally well. Poses

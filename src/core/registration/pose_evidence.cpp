@@ -53,7 +53,7 @@ Overlap overlapOf(const PosedSurface& from, const Landing& landing, const PosedS
 
 /// The parts of a surface that a scanner should have measured but did not.
 struct NotMeasured {
-  double contradicted = 0.0, missing = 0.0, aside = 0.0;  ///< see PoseEvidence
+  double contradicted = 0.0, missing = 0.0, aside = 0.0, outside = 0.0;  ///< see PoseEvidence
 };
 
 /// The convex outline of a scan as its scanner saw it, a polygon around its rays.
@@ -103,18 +103,20 @@ NotMeasured notMeasured(const PosedSurface& surface, const PosedSurface& scan, c
     if (!is_measured && point.height < 0.0) continue;  // behind the measured surface: unknown
     if (is_measured) {
       measured += point.cosine;
-    } else if (std::isinf(point.height)) {
-      area.missing += point.cosine;
-      area.aside += outline.distance(point.position) > tolerance ? point.cosine : -point.cosine;
     } else {
-      area.contradicted += point.cosine;
-      if (distance > far) area.aside += point.cosine;
+      const bool is_far = distance > far, is_missing = std::isinf(point.height);
+      (is_missing ? area.missing : area.contradicted) += point.cosine;
+      if (is_far) area.aside += point.cosine;
+      if (is_missing)
+        area.outside += outline.distance(point.position) > tolerance ? point.cosine : -point.cosine;
+      else if (is_far)
+        area.outside += point.cosine;
     }
     ++num_judged;
   }
   if (num_judged < kRegistration.min_visible) return {};
   const double all = measured + area.contradicted + area.missing;
-  return {area.contradicted / all, area.missing / all, std::max(0.0, area.aside) / all};
+  return {area.contradicted / all, area.missing / all, area.aside / all, std::max(0.0, area.outside) / all};
 }
 
 /// A lower limit of the share of points that lie on the surface. The width of the weights does not grow with the
@@ -151,7 +153,7 @@ bool isSymmetry(const Eigen::Isometry3d& motion, const PosedSurface& model, doub
 
 bool mayBeSymmetry(const Eigen::Isometry3d& motion, const PosedSurface& scan) {
   const PoseEvidence evidence = poseEvidence(scan, scan, motion);
-  return evidence.agreement > kRegistration.symmetric_agreement && evidence.aside < kRegistration.max_aside;
+  return evidence.agreement > kRegistration.symmetric_agreement && evidence.aside < kRegistration.symmetric_aside;
 }
 
 PoseEvidence poseEvidence(const PosedSurface& scan, const PosedSurface& model, const Eigen::Isometry3d& T_model_scan) {
@@ -174,6 +176,7 @@ PoseEvidence poseEvidence(const PosedSurface& scan, const PosedSurface& model, c
   evidence.contradicted = std::max(of_model_in_view.contradicted, of_scan_in_view.contradicted);
   evidence.missing = std::max(of_model_in_view.missing, of_scan_in_view.missing);
   evidence.aside = std::max(of_model_in_view.aside, of_scan_in_view.aside);
+  evidence.outside = std::max(of_model_in_view.outside, of_scan_in_view.outside);
   evidence.noise = noise / size;
   evidence.size_ratio = scan_size / model_size;
   return evidence;
@@ -193,7 +196,8 @@ std::string doubtOf(const PoseEvidence& evidence) {
   if (evidence.contradicted + evidence.missing > kRegistration.some_not_measured)
     doubt << "; of the surface that a scanner should have seen, " << percent(evidence.contradicted)
           << " % lie in space it saw to be empty, and " << percent(evidence.missing) << " % were not measured"
-          << (evidence.aside > 0.5 * kRegistration.max_aside ? ", mostly beyond the outline of what it measured" : "");
+          << (evidence.outside > 0.5 * kRegistration.max_outside ? ", mostly beyond the outline of what it measured"
+                                                                 : "");
   if (evidence.uniqueness < kRegistration.some_uniqueness)
     doubt << ", and it has " << percent(evidence.uniqueness) << " % of the odds of all poses that fit";
   return doubt.str();
@@ -211,7 +215,7 @@ double poseConfidence(const PoseEvidence& evidence) {
   const double log_odds = std::inner_product(terms.begin(), terms.end(), kRegistrationFit.begin(), 0.0);
   // Surfaces that face each other must mostly agree, and both clouds must have the same parts, whatever else supports
   // the pose.
-  const double same_parts = std::max(0.0, 1.0 - 0.5 * evidence.aside / kRegistration.max_aside);
+  const double same_parts = std::max(0.0, 1.0 - 0.5 * evidence.outside / kRegistration.max_outside);
   return std::min({logistic(log_odds), evidence.agreement, same_parts}) * evidence.uniqueness;
 }
 

@@ -70,9 +70,10 @@ struct RegistrationRules {
   double near_pose = 0.05;
   double symmetric_agreement =
       0.9;  ///< agreement of a scan with its image under a symmetry; wrong poses of scans have 0.3 to 0.6
-  /// PoseEvidence::aside of a pose with a confidence of one half, and greatest one under a symmetry of a scan. 127 of
-  /// 128 right poses of real scans have less; the handle of a mug has 0.09.
-  double max_aside = 0.045;
+  /// Greatest share of the scan that may lie aside under a symmetry; the handle of a mug is 0.09.
+  double symmetric_aside = 0.05;
+  /// PoseEvidence::outside of a pose with a confidence of one half; 127 of 128 right poses of real scans have less.
+  double max_outside = 0.045;
   double some_uniqueness = 0.9;  ///< uniqueness below which doubtOf() mentions other poses
   double contact = 0.025;        ///< width within which points of one surface lie on each other, radii
 

@@ -834,7 +834,7 @@ class PoseScore(Result):
 class PoseEvidence(Result):
     """What decides whether a pose is right: points that face the other surface have to lie on it."""
 
-    _in_repr = ("overlap_source", "overlap_target", "agreement", "contradicted", "missing", "aside")
+    _in_repr = ("overlap_source", "overlap_target", "agreement", "contradicted", "missing", "outside")
     overlap_source: float
     """Share of the source's points that lie on the surface of the target, in [0, 1]."""
     overlap_target: float
@@ -849,6 +849,8 @@ class PoseEvidence(Result):
     missing: float
     """The same, the share where it measured nothing, in [0, 1]: beside the cloud or in its holes."""
     aside: float
+    """The share of both, in [0, 1], that lies farther than 5 % of the smaller diameter from all that it measured."""
+    outside: float
     """The share that is missing beyond the outline of what was measured, or contradicted far from it, less the share that is
     missing within the outline, in [0, 1]: a part that only one of the clouds has, as holes would be in both places."""
     noise: float
