@@ -76,7 +76,7 @@ def register(
         no_answer(none)
         return Registration(
             transform=np.eye(4), score=PoseScore(0, 0, 0), converged=False, confidence=0.0, reason=str(none), poses=[],
-            evidence=PoseEvidence(0, 0, 0, 0, 0, 0, 0, 0, size_ratio=1, uniqueness=1), covariance=None,
+            evidence=PoseEvidence(0, 0, 0, 0, 0, 0, 0, 0, 0, size_ratio=1, uniqueness=1), covariance=None,
         )  # fmt: skip
     poses = [(pose, PoseScore(**score)) for pose, score in found["poses"]]
     found.update(score=PoseScore(**found["score"]), evidence=PoseEvidence(**found["evidence"]), poses=poses)
