@@ -203,15 +203,15 @@ double uniquenessOf(const CloudPair& clouds, const JudgedPose& best, const std::
   return best_odds / all;
 }
 
-/// In search units, of the motion of the model.
+/// Covariance of the motion of the model that takes a pose to the true one, in search units.
 Matrix6d searchCovariance(const CloudPair& clouds, const RankedPose& pose, const CloudRegistrationOptions& inner) {
   const double reach = closestReach(clouds.scan(), clouds.model(), inner.max_correspondence);
   return poseCovariance(clouds.scan(), clouds.model(), pose.T_model_scan, std::max(1, pose.num_points), reach);
 }
 
-/// Poses beside a pose, refined, that its surfaces hardly tell from it, such as rotations about the axis of a can whose
-/// handle one of the scans does not show. The two motions that are constrained least may each mix a rotation with a
-/// translation along its axis, as the wall of a can admits both: they are tried one by one.
+/// Refined poses beside a pose that the surfaces hardly distinguish from it, such as rotations about the axis of a can
+/// whose handle one of the scans does not show. The two least constrained motions may each mix a rotation with a
+/// translation along its axis, because the wall of a can admits both: each part is tried by itself.
 std::vector<RankedPose> slidPoses(const CloudPair& clouds, const RankedPose& pose,
                                   const CloudRegistrationOptions& inner) {
   constexpr double some = 0.1;  // share of a motion
@@ -341,9 +341,10 @@ CloudRegistration registerClouds(const Points& source, const std::optional<Visib
       // Between two scans, the merit grows with the surface that they share: a pose of less merit may fit equally well.
       constexpr double any = std::numeric_limits<double>::infinity();
       std::vector<JudgedPose> all = clouds.model().seen ? judgedPoses(clouds, poses, any) : judged;
-      // A pose on the flank of the best one counts only if it fits equally well.
-      for (const JudgedPose& slid : judgedPoses(clouds, slidPoses(clouds, judged.front().pose, inner), any))
-        if (slid.odds() > kRegistration.like_odds * judged.front().odds()) all.push_back(slid);
+      // A pose on the flank of the best one counts only if it fits equally well. In tracks, the guess decides.
+      if (!options.around)
+        for (const JudgedPose& slid : judgedPoses(clouds, slidPoses(clouds, judged.front().pose, inner), any))
+          if (slid.odds() > kRegistration.like_odds * judged.front().odds()) all.push_back(slid);
       result.evidence.uniqueness = uniquenessOf(clouds, judged.front(), all, inner);
     }
     result.confidence = poseConfidence(result.evidence);
