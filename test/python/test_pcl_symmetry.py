@@ -126,12 +126,12 @@ class Planes(unittest.TestCase):
         for number, points in ((5, box(num_points=5)), (12, box(num_points=12)), (1, np.ones((1000, 3))), (0, np.full((50, 3), np.nan)), (0, none)):
             words = f"{number} distinct point{'s' if number > 1 else ''}, at least 20 are needed" if number else "no finite point"
             of = {f.__name__: warned("points: " + words, f, points)
-                  for f in (s.planes, s.frame, s.rotations, s.transform, s.describe, s.descriptors, s.local_symmetry, s.segment)}  # fmt: skip
+                  for f in (s.planes, s.frame, s.rotations, s.transform, s.describe, s.descriptors, s.local_symmetry, s.segment, s.viewpoints)}  # fmt: skip
             self.assertEqual((len(of["planes"]), of["planes"].reason), (0, words))
             for found, size in ((of["frame"], len(of["frame"].equivalent)), (of["rotations"], len(of["rotations"].discrete)),
                                 (of["transform"], of["transform"].values.size)):  # fmt: skip
                 self.assertEqual((found.reason, np.isnan(found.center).all(), size), (words, True, 0))
-            self.assertFalse(of["frame"] or of["rotations"].name or of["transform"].radius)
+            self.assertFalse(of["frame"] or of["rotations"].name or of["transform"].radius or of["viewpoints"])
             self.assertTrue(len(of["local_symmetry"]) == len(points) and np.isnan(of["local_symmetry"]).all())
             self.assertEqual(of["segment"].tolist(), [-1] * len(points))
             if has_pcl():
