@@ -216,12 +216,10 @@ std::vector<RankedPose> slidPoses(const CloudPair& clouds, const RankedPose& pos
                                   const CloudRegistrationOptions& inner) {
   constexpr double some = 0.1;  // share of a motion
   const SymmetricEigen<Matrix6d> motions(searchCovariance(clouds, pose, inner));
-  std::vector<RankedPose> poses{pose};
+  std::vector<Eigen::Isometry3d> starts;
   for (const int k : {5, 4})
     for (const double way : {-kRegistration.slide, kRegistration.slide}) {
-      const auto add = [&](const Eigen::Isometry3d& motion) {
-        poses.push_back(closestPose(clouds.scan(), clouds.model(), {motion * pose.T_model_scan, {}}, inner));
-      };
+      const auto add = [&](const Eigen::Isometry3d& motion) { starts.push_back(motion * pose.T_model_scan); };
       const Eigen::Vector3d rotation = motions.eigenvectors().col(k).head<3>(),
                             translation = motions.eigenvectors().col(k).tail<3>(), axis = rotation.normalized();
       const bool rotates = rotation.norm() > some;
@@ -229,6 +227,8 @@ std::vector<RankedPose> slidPoses(const CloudPair& clouds, const RankedPose& pos
       if (rotates) add(motionAbout({rotation.cross(translation) / rotation.squaredNorm(), axis}, way));
       if (along.norm() > some) add(isometry(Eigen::Matrix3d::Identity(), way * along.normalized()));
     }
+  std::vector<RankedPose> poses = closestPoses(clouds.scan(), clouds.model(), starts, inner);
+  poses.insert(poses.begin(), pose);
   poses = firstDistinct(poses, poses.size());
   poses.erase(poses.begin());
   return poses;

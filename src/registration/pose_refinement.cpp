@@ -134,13 +134,21 @@ PoseScore lastScore(const PosedSurface& scan, const PosedSurface& model, const E
   return PoseScorer(scan, model).score(T_model_scan, {kRegistration.evidence_points, width, true});
 }
 
+std::vector<RankedPose> closestPoses(const PosedSurface& scan, const PosedSurface& model,
+                                     const std::vector<Eigen::Isometry3d>& starts,
+                                     const CloudRegistrationOptions& options) {
+  PoseRefinement icp(scan, model, closestReach(scan, model, options.max_correspondence), options);
+  std::vector<RankedPose> poses;
+  for (const Eigen::Isometry3d& start : starts)
+    poses.push_back({icp.refined(start), {}, kPoseRefinement.refined_points});
+  return poses;
+}
+
 RankedPose closestPose(const PosedSurface& scan, const PosedSurface& model, const RankedPose& pose,
                        const CloudRegistrationOptions& options) {
-  PoseRefinement icp(scan, model, closestReach(scan, model, options.max_correspondence), options);
-  const Eigen::Isometry3d T_model_scan = icp.refined(pose.T_model_scan);
-  const PoseScore score = lastScore(scan, model, T_model_scan);
-  if (score.merit() < pose.score.merit() - kPoseRefinement.same_merit) return pose;
-  return {T_model_scan, score, kPoseRefinement.refined_points};
+  RankedPose closest = closestPoses(scan, model, {pose.T_model_scan}, options).front();
+  closest.score = lastScore(scan, model, closest.T_model_scan);
+  return closest.score.merit() < pose.score.merit() - kPoseRefinement.same_merit ? pose : closest;
 }
 
 std::vector<RankedPose> refinePoses(const PosedSurface& scan, const PosedSurface& model,

@@ -39,8 +39,16 @@ PoseScore lastScore(const PosedSurface& scan, const PosedSurface& model, const E
 std::vector<RankedPose> refinePoses(const PosedSurface& scan, const PosedSurface& model,
                                     const std::vector<RankedPose>& poses, const CloudRegistrationOptions& options);
 
-/// Refines a pose from refinePoses() once more, with pairs as close as the points allow. Otherwise parts that only one
-/// of two scans shows are paired with the border of the other one, and attract it as far as ICP reaches.
+/// Refines poses with pairs as close as the points allow. Otherwise parts that only one of two scans shows are paired
+/// with the border of the other one, and attract it as far as ICP reaches.
+/// \param starts T_model_scan between search frames.
+/// \return a pose for each start, without scores.
+std::vector<RankedPose> closestPoses(const PosedSurface& scan, const PosedSurface& model,
+                                     const std::vector<Eigen::Isometry3d>& starts,
+                                     const CloudRegistrationOptions& options);
+
+/// Refines a pose from refinePoses() once more by closestPoses().
+/// \return the pose itself if it has clearly more merit.
 RankedPose closestPose(const PosedSurface& scan, const PosedSurface& model, const RankedPose& pose,
                        const CloudRegistrationOptions& options);
 
