@@ -179,28 +179,37 @@ std::vector<JudgedPose> judgedPoses(const CloudPair& clouds, const std::vector<R
   return judged;
 }
 
+/// \return whether two poses count as one: they differ by a symmetry of the model, or by a motion that contradicts
+/// neither scan, up to the remaining errors of ICP.
+bool differBySymmetry(const CloudPair& clouds, const Eigen::Isometry3d& pose, const Eigen::Isometry3d& other,
+                      const CloudRegistrationOptions& options) {
+  const PosedSurface& model = clouds.model();
+  const Eigen::Isometry3d motion = other * pose.inverse();
+  if (model.seen)
+    return mayBeSymmetry(motion, model) &&
+           (!clouds.scan().seen || mayBeSymmetry(pose.inverse() * other, clouds.scan()));
+  if (!isSymmetry(motion, model, kRegistration.near_pose)) return false;
+  if (isSymmetry(motion, model, kRegistration.same_pose)) return true;
+  const RankedPose nearest = refinePoses(model, model, {{motion, {}}}, options).front();
+  return isSymmetry(nearest.T_model_scan, model, kRegistration.same_pose);
+}
+
+/// \return whether a pose is as likely as the best one, although sampling changes its odds: no part that the best pose
+/// brings together, such as a handle, lies aside.
+bool fitsAsWell(const JudgedPose& pose, const JudgedPose& best) {
+  return pose.odds() > kRegistration.like_odds * best.odds() &&
+         pose.evidence.aside < best.evidence.aside + kRegistration.like_aside;
+}
+
 /// See PoseEvidence::uniqueness.
 /// \param judged all poses that the best one is compared with, among which it may be.
 double uniquenessOf(const CloudPair& clouds, const JudgedPose& best, const std::vector<JudgedPose>& judged,
                     const CloudRegistrationOptions& options) {
-  const PosedSurface& model = clouds.model();
-  // Poses that differ by a symmetry of the model, and by the remaining errors of ICP, count as one.
-  const auto isNearSymmetry = [&](const Eigen::Isometry3d& other) {
-    const Eigen::Isometry3d motion = other * best.pose.T_model_scan.inverse();
-    if (model.seen)
-      return mayBeSymmetry(motion, model) &&
-             (!clouds.scan().seen || mayBeSymmetry(best.pose.T_model_scan.inverse() * other, clouds.scan()));
-    if (!isSymmetry(motion, model, kRegistration.near_pose)) return false;
-    if (isSymmetry(motion, model, kRegistration.same_pose)) return true;
-    const RankedPose nearest = refinePoses(model, model, {{motion, {}}}, options).front();
-    return isSymmetry(nearest.T_model_scan, model, kRegistration.same_pose);
-  };
-  const double best_odds = best.odds();
-  double all = best_odds;
+  double all = best.odds();
   for (const JudgedPose& other : judged)
-    if (!isNearSymmetry(other.pose.T_model_scan))
-      all += other.odds() > kRegistration.like_odds * best_odds ? best_odds : other.odds();
-  return best_odds / all;
+    if (!differBySymmetry(clouds, best.pose.T_model_scan, other.pose.T_model_scan, options))
+      all += fitsAsWell(other, best) ? best.odds() : other.odds();
+  return best.odds() / all;
 }
 
 /// Covariance of the motion of the model that takes a pose to the true one, in search units.
@@ -209,29 +218,78 @@ Matrix6d searchCovariance(const CloudPair& clouds, const RankedPose& pose, const
   return poseCovariance(clouds.scan(), clouds.model(), pose.T_model_scan, std::max(1, pose.num_points), reach);
 }
 
-/// Refined poses beside a pose that the surfaces hardly distinguish from it, such as rotations about the axis of a can
-/// whose handle one of the scans does not show. The two least constrained motions may each mix a rotation with a
-/// translation along its axis, because the wall of a can admits both: each part is tried by itself.
-std::vector<RankedPose> slidPoses(const CloudPair& clouds, const RankedPose& pose,
-                                  const CloudRegistrationOptions& inner) {
+/// A motion that changes how two aligned surfaces fit less than others do: a rotation about an axis, a translation
+/// along a direction, or both.
+struct LooseMotion {
+  std::optional<Eigen::ParametrizedLine<double, 3>> axis;
+  std::optional<Eigen::Vector3d> direction;
+};
+
+/// The two least constrained motions of the model at a pose. Each may mix a rotation with a translation along its axis,
+/// because the wall of a can admits both.
+std::vector<LooseMotion> looseMotions(const CloudPair& clouds, const RankedPose& pose,
+                                      const CloudRegistrationOptions& inner) {
   constexpr double some = 0.1;  // share of a motion
   const SymmetricEigen<Matrix6d> motions(searchCovariance(clouds, pose, inner));
+  std::vector<LooseMotion> loose;
+  for (const int k : {5, 4}) {
+    const Eigen::Vector3d rotation = motions.eigenvectors().col(k).head<3>(),
+                          translation = motions.eigenvectors().col(k).tail<3>(), axis = rotation.normalized();
+    const bool rotates = rotation.norm() > some;
+    const Eigen::Vector3d along = rotates ? Eigen::Vector3d(axis * axis.dot(translation)) : translation;
+    loose.emplace_back();
+    if (rotates) loose.back().axis = {rotation.cross(translation) / rotation.squaredNorm(), axis};
+    if (along.norm() > some) loose.back().direction = along.normalized();
+  }
+  return loose;
+}
+
+/// Refined poses beside a pose that the surfaces hardly distinguish from it, such as rotations about the axis of a can
+/// whose handle one of the scans does not show.
+std::vector<RankedPose> slidPoses(const CloudPair& clouds, const RankedPose& pose,
+                                  const CloudRegistrationOptions& inner) {
   std::vector<Eigen::Isometry3d> starts;
-  for (const int k : {5, 4})
+  for (const LooseMotion& motion : looseMotions(clouds, pose, inner))
     for (const double way : {-kRegistration.slide, kRegistration.slide}) {
-      const auto add = [&](const Eigen::Isometry3d& motion) { starts.push_back(motion * pose.T_model_scan); };
-      const Eigen::Vector3d rotation = motions.eigenvectors().col(k).head<3>(),
-                            translation = motions.eigenvectors().col(k).tail<3>(), axis = rotation.normalized();
-      const bool rotates = rotation.norm() > some;
-      const Eigen::Vector3d along = rotates ? Eigen::Vector3d(axis * axis.dot(translation)) : translation;
-      if (rotates) add(motionAbout({rotation.cross(translation) / rotation.squaredNorm(), axis}, way));
-      if (along.norm() > some) add(isometry(Eigen::Matrix3d::Identity(), way * along.normalized()));
+      if (motion.axis) starts.push_back(motionAbout(*motion.axis, way) * pose.T_model_scan);
+      if (motion.direction)
+        starts.push_back(isometry(Eigen::Matrix3d::Identity(), way * *motion.direction) * pose.T_model_scan);
     }
   std::vector<RankedPose> poses = closestPoses(clouds.scan(), clouds.model(), starts, inner);
   poses.insert(poses.begin(), pose);
   poses = firstDistinct(poses, poses.size());
   poses.erase(poses.begin());
   return poses;
+}
+
+/// Poses that turn the model about its axis and fit about as well as a given one, if that pose still agrees when it is
+/// turned a little: the search finds the axis of a mug, but not always where its handle is.
+std::vector<JudgedPose> turnedPoses(const CloudPair& clouds, const JudgedPose& best,
+                                    const CloudRegistrationOptions& inner) {
+  std::vector<JudgedPose> fitting;
+  const auto agrees = [](const PoseEvidence& evidence) {
+    return evidence.agreement > kRegistration.symmetric_agreement;
+  };
+  if (!agrees(best.evidence)) return fitting;
+  std::vector<Eigen::Isometry3d> starts;
+  for (const LooseMotion& motion : looseMotions(clouds, best.pose, inner)) {
+    if (!motion.axis) continue;
+    const auto turned = [&](double angle) { return motionAbout(*motion.axis, angle) * best.pose.T_model_scan; };
+    const Eigen::Isometry3d beside = turned(kRegistration.slide);
+    if (!agrees(clouds.evidence({beside, {}})) || differBySymmetry(clouds, best.pose.T_model_scan, beside, inner))
+      continue;
+    for (double angle = kRegistration.slide; angle < 2.0 * kPi - 0.5 * kRegistration.slide;
+         angle += kRegistration.slide)
+      starts.push_back(turned(angle));
+  }
+  const std::vector<RankedPose> poses =
+      firstDistinct(closestPoses(clouds.scan(), clouds.model(), starts, inner), starts.size());
+  for (JudgedPose& turned : judgedPoses(clouds, poses, std::numeric_limits<double>::infinity())) {
+    if (!fitsAsWell(turned, best)) continue;
+    turned.pose.score = lastScore(clouds.scan(), clouds.model(), turned.pose.T_model_scan);
+    fitting.push_back(std::move(turned));
+  }
+  return fitting;
 }
 
 /// Removes the poses that are not around a guess.
@@ -336,6 +394,12 @@ CloudRegistration registerClouds(const Points& source, const std::optional<Visib
     done("parts");
   }
   if (!judged.empty()) {
+    if (!options.around)
+      for (const JudgedPose& turned : turnedPoses(clouds, JudgedPose(judged.front()), inner)) {
+        judged.push_back(turned);
+        poses.push_back(turned.pose);
+      }
+    sortDescending(judged, &JudgedPose::confidence);
     result.evidence = judged.front().evidence;
     if (judged.front().confidence >= kRegistration.min_confidence) {
       // Between two scans, the merit grows with the surface that they share: a pose of less merit may fit equally well.
@@ -344,7 +408,7 @@ CloudRegistration registerClouds(const Points& source, const std::optional<Visib
       // A pose on the flank of the best one counts only if it fits equally well. In tracks, the guess decides.
       if (!options.around)
         for (const JudgedPose& slid : judgedPoses(clouds, slidPoses(clouds, judged.front().pose, inner), any))
-          if (slid.odds() > kRegistration.like_odds * judged.front().odds()) all.push_back(slid);
+          if (fitsAsWell(slid, judged.front())) all.push_back(slid);
       result.evidence.uniqueness = uniquenessOf(clouds, judged.front(), all, inner);
     }
     result.confidence = poseConfidence(result.evidence);

@@ -1,6 +1,7 @@
 #include "pcl_symmetry/core/detect_planes.h"
 
 #include <algorithm>
+#include <cmath>
 #include <sstream>
 #include <utility>
 #include <vector>
@@ -16,6 +17,7 @@
 #include "core/detection/plane_search.h"
 #include "core/detection/standing_object.h"
 #include "core/geometry/closest_points.h"
+#include "core/geometry/directions.h"
 #include "core/geometry/geometry_rules.h"
 #include "core/geometry/point_samples.h"
 #include "core/rotation/scan_axes.h"
@@ -93,6 +95,37 @@ void limitByHandle(const PlaneSearch& search, const RotationEvidence& rotations,
   }
 }
 
+/// Share of the points whose reflection would face the scanner but lies behind the surface that it measured, as the
+/// inside of a mug does in the plane that exchanges its opening and its bottom.
+double hiddenInside(const PlaneSearch& search, const ReflectionPlane& plane) {
+  const NormalizedCloud& cloud = search.cloud;
+  const Eigen::Vector3d viewpoint = cloud.seen()->viewpoint();
+  const std::vector<int> samples = drawSamples(cloud.points.cols(), kScanAxes.num_samples, search.options.seed);
+  const auto isInside = [&](int i) {
+    const Eigen::Vector3d x = cloud.points.col(i).cast<double>(), image = plane.reflect(x);
+    Eigen::Vector3d normal = cloud.geometry.normals.col(i).cast<double>();
+    if (normal.dot(viewpoint - x) < 0.0) normal = -normal;
+    const double behind = cloud.seen()->depthBehind(image);
+    return std::isfinite(behind) && behind > search.measure.tolerance() &&
+           (plane.reflection().linear() * normal).dot(viewpoint - image) > 0.0;
+  };
+  return static_cast<double>(std::count_if(samples.begin(), samples.end(), isInside)) /
+         static_cast<double>(samples.size());
+}
+
+/// A mug, a bowl or a tube whose inside was seen through one end: whether the other end is open is unknown. A plane
+/// that exchanges its ends is possible at most.
+void limitByOpening(const PlaneSearch& search, const std::vector<Line3d>& lines, std::vector<SymmetryPlane>& planes) {
+  for (SymmetryPlane& plane : planes) {
+    const ReflectionPlane normalized = search.cloud.toNormalized(plane);
+    if (plane.kind == PlaneKind::Symmetry &&
+        isNearAny(lines, normalized.normal(), std::cos(kDetection.decide.upright),
+                  [](const Line3d& line) { return line.direction(); }) &&
+        hiddenInside(search, normalized) > kDetection.decide.max_inside)
+      limitToPossible(plane, "the inside of a hollow body was seen through one end alone");
+  }
+}
+
 /// Finds axes of rotations of a scan and makes axes of revolution and planes consistent with them.
 void findAxesOfScan(const PlaneSearch& search, DetectionState& state) {
   Detection& answer = state.answer;
@@ -118,6 +151,7 @@ void findAxesOfScan(const PlaneSearch& search, DetectionState& state) {
   sortDescending(answer.axes, &SymmetryAxis::confidence);
   if (answer.axes.size() > 1) answer.axes.resize(1);
   if (answer.axes.empty()) limitByHandle(search, rotations, lines, answer.planes);
+  limitByOpening(search, lines, answer.planes);
 }
 
 /// Rules by which results correct each other, applied in this order. Not in the paper.

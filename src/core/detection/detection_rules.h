@@ -92,7 +92,8 @@ struct DetectionRules {
     double upright = 5.0 * kPi / 180.0;  ///< a plane within this angle of upright or level does not slant
     double touching = 0.05;  ///< distance beyond the nearest support, diameters, within which other supports carry, too
     double slanted_odds = 0.1;  ///< odds of a slanted plane relative to another one
-    double no_surface = 1.5;    ///< spacing in tolerances from which points are too sparse for a surface
+    double max_inside = 0.05;  ///< greatest share of the inside of a hollow body that was seen; closed bodies have 0.01
+    double no_surface = 1.5;   ///< spacing in tolerances from which points are too sparse for a surface
     int max_possible = 5;  ///< greatest number of symmetries and possible planes together, if there are possible ones
     double slope_dip = 0.005;  ///< rise of D on the way to a better plane that counts as rounding
     double slope_angle = 0.2,
