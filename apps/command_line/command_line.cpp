@@ -250,6 +250,11 @@ std::string CommandLine::closestFlag(const std::string& unknown) const {
   return best;
 }
 
+const po::option_description* CommandLine::flagNamed(const std::string& argument) const {
+  const std::size_t begin = argument.find_first_not_of('-');
+  return begin == 1 || begin == 2 ? flags_.find_nothrow(argument.substr(begin), false) : nullptr;
+}
+
 bool CommandLine::parse(int argc, const char* const* argv) {
   readTokens(argc, argv);
   if (given("help")) {
@@ -293,6 +298,11 @@ void CommandLine::readTokens(int argc, const char* const* argv) {
       if (begin == 0 || begin == std::string::npos || begin > end) continue;
       const auto renamed = kRenamedFlags.find(argument.substr(begin, end - begin));
       if (renamed != kRenamedFlags.end()) argument.replace(begin, end - begin, renamed->second);
+    }
+    for (std::size_t i = 1; i < arguments.size() && arguments[i - 1] != "--"; ++i) {
+      const auto *const flag = flagNamed(arguments[i - 1]), *const next = flagNamed(arguments[i]);
+      if (flag && next && flag->semantic()->max_tokens() > 0)
+        throw UsageError(arguments[i - 1] + " needs a value, but " + arguments[i] + " follows");
     }
     po::store(po::command_line_parser(arguments).options(all).positional(order).style(style).run(), values_);
   } catch (const po::unknown_option& error) {

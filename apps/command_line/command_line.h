@@ -138,6 +138,8 @@ private:
 
   CommandLine& add(const std::string& name, const std::string& placeholder, const std::string& help, Assign assign);
   std::string closestFlag(const std::string& unknown) const;
+  /// \return the flag that an argument names in full; null if it is a value or not a flag of this tool.
+  const boost::program_options::option_description* flagNamed(const std::string& argument) const;
   void readTokens(int argc, const char* const* argv);
   void assignPositionals() const;
   /// Rejects an output that is an input or another output.

@@ -115,6 +115,7 @@ class Flags(ToolTest):
         self.fails(2, "-html = page.txt, must end in .html", self.box, "-html page.txt")
         self.fails(2, "-png = out.jpg, must end in .png", self.box, "-png out.jpg")
         self.fails(2, "min_confidence", self.box, "-min_confidence 2")
+        self.fails(2, "-json needs a value, but -quiet follows", self.box, "-json -quiet")
 
     def test_flags_that_would_do_nothing_are_refused(self):
         self.write("a.txt", "")

@@ -46,8 +46,9 @@ struct PoseEvidence {
   /// The share counted by `contradicted` or `missing`, in [0, 1], that lies farther than 5 % of the smaller diameter
   /// from everything measured.
   double aside = 0.0;
-  /// Share that is missing beyond the outline of what was measured, or contradicted far from it, less the share that is
-  /// missing within the outline, in [0, 1]: a part that only one of the clouds has, as holes would be in both places.
+  /// Share of the surface, in [0, 1], in parts that only one of the clouds has: what is missing beyond the outline of
+  /// what was measured, or contradicted far from it, less what is missing within the outline, as holes would be in both
+  /// places; or what lies farther than 5 % of the smaller diameter from a cloud that shows its object from all sides.
   double outside = 0.0;
   double noise = 0.0;       ///< noise of the noisier cloud, in diameters of the smaller one
   double size_ratio = 1.0;  ///< diameter of the source divided by that of the target

@@ -119,6 +119,16 @@ NotMeasured notMeasured(const PosedSurface& surface, const PosedSurface& scan, c
   return {area.contradicted / all, area.missing / all, area.aside / all, std::max(0.0, area.outside) / all};
 }
 
+/// Share of the points that lie farther than \p far from a cloud that shows its object from all sides: it lacks that
+/// part.
+double shareOff(const Landing& landing, const PosedSurface& whole, double far) {
+  if (whole.seen) return 0.0;
+  double num_off = 0.0;
+  for (Eigen::Index i = 0; i < landing.images.cols(); ++i)
+    num_off += whole.sqDiscDistance(landing, i) > far * far ? 1.0 : 0.0;
+  return num_off / static_cast<double>(landing.images.cols());
+}
+
 /// A lower limit of the share of points that lie on the surface. The width of the weights does not grow with the
 /// spacing of the points, so that few points on a wrong object do not count; the discs about the points of the surface
 /// are as wide as their spacing, so that their density does not matter. Points on the far side of a thin part do not
@@ -176,7 +186,8 @@ PoseEvidence poseEvidence(const PosedSurface& scan, const PosedSurface& model, c
   evidence.contradicted = std::max(of_model_in_view.contradicted, of_scan_in_view.contradicted);
   evidence.missing = std::max(of_model_in_view.missing, of_scan_in_view.missing);
   evidence.aside = std::max(of_model_in_view.aside, of_scan_in_view.aside);
-  evidence.outside = std::max(of_model_in_view.outside, of_scan_in_view.outside);
+  evidence.outside = std::max({of_model_in_view.outside, of_scan_in_view.outside, shareOff(on_model, model, far),
+                               shareOff(on_scan, scan, far)});
   evidence.noise = noise / size;
   evidence.size_ratio = scan_size / model_size;
   return evidence;
@@ -195,9 +206,9 @@ std::string doubtOf(const PoseEvidence& evidence) {
         << percent(1.0 - evidence.agreement) << " % are apart";
   if (evidence.contradicted + evidence.missing > kRegistration.some_not_measured)
     doubt << "; of the surface that a scanner should have seen, " << percent(evidence.contradicted)
-          << " % lie in space it saw to be empty, and " << percent(evidence.missing) << " % were not measured"
-          << (evidence.outside > 0.5 * kRegistration.max_outside ? ", mostly beyond the outline of what it measured"
-                                                                 : "");
+          << " % lie in space it saw to be empty, and " << percent(evidence.missing) << " % were not measured";
+  if (evidence.outside > 0.5 * kRegistration.max_outside)
+    doubt << "; " << percent(evidence.outside) << " % belong to parts that only one of them has";
   if (evidence.uniqueness < kRegistration.some_uniqueness)
     doubt << ", and it has " << percent(evidence.uniqueness) << " % of the odds of all poses that fit";
   return doubt.str();

@@ -851,8 +851,9 @@ class PoseEvidence(Result):
     aside: float
     """The share of both, in [0, 1], that lies farther than 5 % of the smaller diameter from all that it measured."""
     outside: float
-    """The share that is missing beyond the outline of what was measured, or contradicted far from it, less the share that is
-    missing within the outline, in [0, 1]: a part that only one of the clouds has, as holes would be in both places."""
+    """The share of the surface in parts that only one of the clouds has: what is missing beyond the outline of what was
+    measured, or contradicted far from it, less what is missing within the outline, as holes would be in both places; or what
+    lies farther than 5 % of the smaller diameter from a cloud that shows its object from all sides."""
     noise: float
     """Of the noisier cloud, in diameters of the smaller one."""
     size_ratio: float
