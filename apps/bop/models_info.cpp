@@ -9,7 +9,7 @@
 
 #include "command_line/flag_values.h"
 #include "core/base/constants.h"
-#include "core/rotation/rotation_cover.h"
+#include "core/geometry/directions.h"
 #include "io/answers.h"
 #include "io/file_text.h"
 

@@ -11,7 +11,6 @@
 #include "core/registration/pose_covariance.h"
 #include "core/registration/pose_evidence.h"
 #include "core/registration/pose_scoring.h"
-#include "core/registration/visible_points.h"
 #include "recognition/recognition_rules.h"
 
 namespace pcl_symmetry::detail {

@@ -17,7 +17,6 @@
 #include "core/registration/pose_covariance.h"
 #include "core/registration/pose_evidence.h"
 #include "core/registration/pose_scoring.h"
-#include "core/registration/pose_starts.h"
 #include "core/registration/registration_rules.h"
 #include "pcl_symmetry/core/rotation_group.h"
 #include "registration/pose_refinement.h"

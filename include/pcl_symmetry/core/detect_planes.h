@@ -1,12 +1,9 @@
 #pragma once
 
-#include <cstdint>
-
 #include "pcl_symmetry/core/closest_point_search.h"
 #include "pcl_symmetry/core/exports.h"
 #include "pcl_symmetry/core/gaussian_edt.h"
 #include "pcl_symmetry/core/plane_types.h"
-#include "pcl_symmetry/core/symmetry_map.h"
 #include "pcl_symmetry/core/visibility.h"
 
 namespace PCL_SYMMETRY_EXPORTS pcl_symmetry {
@@ -40,45 +37,6 @@ struct PlaneInput {
   /// Whether the points may be the rings of a LiDAR. If so, and if the visibility has a support, the answer is the
   /// middle plane of an upright box where the points are too sparse for a surface, or where nothing else is decided.
   bool may_be_rings = false;
-};
-
-/// Options of detectPlanes(); the defaults suit any shape and unit.
-struct DetectionOptions {
-  /// Greatest deviation of a symmetric surface, as a share of the greatest distance between two points, in (0, 0.1]: a
-  /// symmetry maps 97 % of the surface to within this distance of the surface.
-  double tolerance = 0.01;
-  /// Upper limit of the tolerance, as a share of the same distance, in (0, 0.1]: if a depth camera or few points do not
-  /// resolve `tolerance`, the tolerance that they resolve is used, up to this limit. If the limit is at most
-  /// `tolerance`, `tolerance` is always used, and symmetries that the camera does not resolve are reported as possible.
-  double max_tolerance = 0.03;
-  double absolute_tolerance = 0.0;  ///< replaces both tolerances, input units, >= 0; 0 = not used
-  double min_confidence = 0.5;      ///< a plane is a symmetry if confidence >= min_confidence; in [0, 1]
-  double min_possible = 0.2;  ///< a plane is reported as possible if confidence >= min_possible; in [0, min_confidence]
-  /// Also reports the other maxima, after the symmetries: approximate symmetries of the whole, and symmetries of parts.
-  bool approximate = false;
-  bool rotations = true;  ///< also searches axes of rotation of scans; false saves about a third of the time
-  bool folds = true;     ///< with `rotations`: also axes of finite order; false finds bodies of revolution only, faster
-  int max_planes = 128;  ///< greatest number of planes, >= 1; a gear of 120 teeth has 121
-  int num_cells = 64;    ///< cells of the distance transform along each side, in [8, 512]
-  /// Width of the Gaussian, input units, >= 0; 0 = two cells, or the spacing of the points if that is more.
-  double sigma = 0.0;
-  std::uint64_t seed = 1;  ///< seed of all random draws; the same seed gives the same answer
-  int num_threads = 0;     ///< >= 0; 0 = one per core; the answer does not depend on it
-
-  /// Expert options, and the bins of the map that candidates come from.
-  struct Expert : MapSize {
-    int num_samples = 64;       ///< samples of the transform, >= 1: an error of 1 % of PRST, enough to find maxima
-    LocalMaximaOptions maxima;  ///< thresholds of the maxima of the map that become candidates
-    int max_candidates = 24;    ///< strongest maxima that are refined, >= 1
-    int num_refine_samples = 10'000;  ///< points reflected in late iterations (the paper's figure), >= 10
-  };
-  Expert expert;  ///< options for experts
-
-  /// \return num_cells, sigma and num_threads as options of the distance transform.
-  GaussianEdtOptions edtOptions() const { return {num_cells, sigma, num_threads}; }
-
-  /// \throws std::invalid_argument naming field, value and rule.
-  void validate() const;
 };
 
 /// Finds the planes of symmetry of points: transform, maxima, refinement, decision (Sections 4.1 to 4.4).

@@ -1,7 +1,7 @@
 #pragma once
 
-#include "pcl_symmetry/core/detect_planes.h"
 #include "pcl_symmetry/core/exports.h"
+#include "pcl_symmetry/core/plane_types.h"
 #include "pcl_symmetry/core/scalar_grid.h"
 
 namespace PCL_SYMMETRY_EXPORTS pcl_symmetry {

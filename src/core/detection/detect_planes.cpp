@@ -133,19 +133,17 @@ void findAxesOfScan(const PlaneSearch& search, DetectionState& state) {
   if (search.measure.limits().isCutAllAround() || !options.rotations) return;
   // A ball is symmetric about every line through its center.
   if (!search.cloud.isScan() || !answer.centers.empty()) return;
-  const ScanAxesOptions scan_axes{options.folds, options.min_confidence, options.min_possible, options.seed,
-                                  options.num_threads};
   const RotationEvidence rotations(search.cloud, search.measure.tolerance(), options.seed);
-  if (std::optional<SymmetryCenter> center = centerOfScan(rotations, scan_axes)) {
+  if (std::optional<SymmetryCenter> center = centerOfScan(rotations, options)) {
     answer.axes.clear();
     answer.planes = withoutPlanesThrough(std::move(answer.planes), *center, search.cloud);
     answer.centers.push_back(*std::move(center));
     return;
   }
-  const std::vector<Line3d> lines = linesOfNormals(rotations, scan_axes);
-  answer.rotations = scanAxes(rotations, lines, answer.planes, answer.axes, scan_axes,
+  const std::vector<Line3d> lines = linesOfNormals(rotations, options);
+  answer.rotations = scanAxes(rotations, lines, answer.planes, answer.axes, options,
                               state.evidence ? &state.evidence->rotations : nullptr);
-  answer.axes = withRoundAxes(rotations, std::move(answer.axes), answer.rotations, scan_axes);
+  answer.axes = withRoundAxes(rotations, std::move(answer.axes), answer.rotations, options);
   answer.planes = withoutPlanesThrough(std::move(answer.planes), answer.axes, search.cloud);
   // A body other than a ball has one axis: further axes, as of a dome, are round only within the tolerance.
   sortDescending(answer.axes, &SymmetryAxis::confidence);

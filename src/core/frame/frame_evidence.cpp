@@ -6,8 +6,8 @@
 
 #include "core/base/lists.h"
 #include "core/base/statistics.h"
-#include "core/geometry/cell_normals.h"
 #include "core/geometry/directions.h"
+#include "core/geometry/surface_normals.h"
 #include "core/transform/sampled_transform.h"
 
 namespace pcl_symmetry {

@@ -85,18 +85,15 @@ SymmetryFrame publishedFrame(const PointsRef& points, const FrameOptions& option
 /// are tried first.
 void addRotations(const PointsRef& points, const GaussianEdt& edt, const FrameOptions& options,
                   const Visibility& visibility, const MakeSearch& make_search, SymmetryFrame& frame) {
-  ScanAxesOptions scan_axes;
-  scan_axes.seed = options.seed;
-  scan_axes.num_threads = options.num_threads;
-  std::vector<SymmetryAxis> axes(3);
-  for (int k = 0; k < 3; ++k) {
-    axes[k].point = frame.center;
-    axes[k].direction = frame.axes.col(k);
-  }
-  ScanRotations found = rotationsOfScan(points, edt, visibility, axes, scan_axes, make_search);
+  DetectionOptions detection;
+  detection.seed = options.seed;
+  detection.num_threads = options.num_threads;
+  std::vector<SymmetryAxis> axes;
+  for (int k = 0; k < 3; ++k) axes.push_back({frame.center, frame.axes.col(k)});
+  Detection found = rotationsOfScan(points, edt, visibility, axes, detection, make_search);
   frame.rotations = std::move(found.rotations);
-  if (found.center) {
-    frame.center = found.center->point;
+  if (!found.centers.empty()) {
+    frame.center = found.centers.front().point;
     frame.revolution_axis = 3;
   }
   for (const SymmetryRotation& rotation : frame.rotations)

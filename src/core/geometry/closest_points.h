@@ -46,7 +46,6 @@ private:
 /// The closest neighbors of each point, which verify the results of most queries that start with a guess.
 ///
 /// All points closer to a query than a point at distance d lie within 2 d of that point. If its neighbors reach that
-/// far, the closest point is one of them or the point itself.
 /// far, the closest point of all is one of them or the point itself.
 class NeighborLists {
 public:

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <Eigen/Core>
 #include <array>
 #include <vector>
 
@@ -8,6 +9,28 @@
 #include "pcl_symmetry/core/reflection_plane.h"
 
 namespace pcl_symmetry {
+
+/// Sums over points that give their mean and covariance.
+/// Floats are precise enough for points near the origin of their frame.
+struct Moments {
+  float count = 0.0f;
+  Eigen::Vector3f sum = Eigen::Vector3f::Zero();
+  Eigen::Matrix3f squares = Eigen::Matrix3f::Zero();
+
+  void add(const Eigen::Vector3f& p) {
+    count += 1.0f;
+    sum += p;
+    squares += p * p.transpose();
+  }
+  void operator+=(const Moments& other) {
+    count += other.count;
+    sum += other.sum;
+    squares += other.squares;
+  }
+
+  /// Sum of the outer products of the deviations from the mean: the covariance times count.
+  Eigen::Matrix3f scatter() const { return squares - sum * sum.transpose() / count; }
+};
 
 /// Neighbors of the closest sample that also decide whether a point lies on the surface. A sample is within reach at
 /// 1.25 spacings, and a circle of that radius holds pi 1.25^2 = 5 samples on average.
@@ -100,5 +123,20 @@ Line3d axisOfNormals(const Points& points, const Points& normals, const std::vec
 /// The point that most of the normals meet.
 /// \param points,normals,samples as in axisOfNormals().
 Eigen::Vector3d centerOfNormals(const Points& points, const Points& normals, const std::vector<int>& samples);
+
+/// One normal for each occupied cell of a coarse grid. It depends neither on the density of the points nor on noise
+/// below the size of a cell.
+struct CellNormals {
+  Eigen::Matrix3Xf normals;         ///< 3 x C, unit, of arbitrary sign
+  Eigen::VectorXf flatness;         ///< C, in [0, 1]: 1 for a plane, 0 where the points show no surface
+  std::vector<int> cell_of_points;  ///< N, column of `normals` for each point
+};
+
+/// Fits a plane to the points of each occupied cell and its 26 neighbors.
+/// \param points 3 x N, finite.
+/// \param origin corner of the cube of cells. The few points outside it are assigned to the cells at its sides.
+/// \param cell_size input units, > 0.
+/// \param num_cells cells along each side of the cube.
+CellNormals cellNormals(const PointsRef& points, const Eigen::Vector3d& origin, double cell_size, int num_cells);
 
 }  // namespace pcl_symmetry

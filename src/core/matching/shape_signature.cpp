@@ -5,10 +5,10 @@
 #include <cstdint>
 
 #include "core/base/symmetric_solvers.h"
-#include "core/geometry/cell_normals.h"
 #include "core/geometry/cloud_extent.h"
 #include "core/geometry/directions.h"
 #include "core/geometry/point_samples.h"
+#include "core/geometry/surface_normals.h"
 #include "core/matching/matching_rules.h"
 
 namespace pcl_symmetry {

@@ -25,38 +25,38 @@ RotationSet rotationsOfSphere(const Eigen::Vector3d& center) {
 
 /// The group of a sphere. Rotations about axes in all directions have to fit: two axes of revolution could be one.
 std::optional<PlacedGroup> sphericalGroup(const RotationFit& fit, const ObjectSymmetryOptions& options,
-                                          const FoldAxis& main) {
+                                          const PlacedGroup& main) {
   // The center is the point of the axis nearest to the mean of the samples.
   const Eigen::Vector3d mass = centerOfMass(fit.points());
   const Eigen::Vector3d center =
-      main.line.origin() + main.line.direction().dot(mass - main.line.origin()) * main.line.direction();
+      main.line().origin() + main.line().direction().dot(mass - main.line().origin()) * main.line().direction();
   return placedGroup(fit, options, RotationGroupKind::Spherical, 0, rotationsOfSphere(center));
 }
 
 std::optional<PlacedGroup> cylindricalGroup(const RotationFit& fit, const ObjectSymmetryOptions& options,
-                                            const FoldAxis& main) {
+                                            const PlacedGroup& main) {
   std::vector<double> offsets;
   // Up to half the radius: if points are unevenly dense, the center of a cylinder lies off the center of mass.
   const int num_steps = static_cast<int>(std::lround(0.5 / kRotation.across_step));
   for (int k = -num_steps; k <= num_steps; ++k) offsets.push_back(kRotation.across_step * k);
-  const Line3d across = bestAcross(fit, main.line, kPi, 1, offsets);
-  RotationSet set = rotationsAbout({across.origin(), main.line.direction()});
+  const Line3d across = bestAcross(fit, main.line(), kPi, 1, offsets);
+  RotationSet set = rotationsAbout({across.origin(), main.line().direction()});
   set.rotations.insert(set.rotations.begin() + 1, rotationAbout(across.direction(), kPi));
   set.num_judged = 2;
   return placedGroup(fit, options, RotationGroupKind::Cylindrical, 0, set);
 }
 
 std::optional<PlacedGroup> dihedralGroup(const RotationFit& fit, const ObjectSymmetryOptions& options,
-                                         const FoldAxis& main) {
+                                         const PlacedGroup& main) {
   const RotationGroup group{RotationGroupKind::Dihedral, main.fold};
   const double width = kPi / main.fold;
   const int num_angles = std::max(4, static_cast<int>(std::ceil(width / kRotation.across_step)));
   std::vector<double> offsets{0.0};  // nearest first
   for (int k = 1; k <= 3; ++k)
     for (const double way : {-2.0, 2.0}) offsets.push_back(way * k * kRotation.across_step);
-  const Line3d across = bestAcross(fit, main.line, width, num_angles, offsets);
+  const Line3d across = bestAcross(fit, main.line(), width, num_angles, offsets);
   const auto placed = [&](const Eigen::Vector3d& direction) {
-    const Eigen::Matrix3d frame = frameAlong(main.line.direction(), direction);
+    const Eigen::Matrix3d frame = frameAlong(main.line().direction(), direction);
     return placedGroup(fit, options, group.kind, main.fold, elementsOf(group, frame, across.origin()));
   };
   if (auto found = placed(across.direction())) return found;
@@ -67,7 +67,8 @@ std::optional<PlacedGroup> dihedralGroup(const RotationFit& fit, const ObjectSym
   double least = std::numeric_limits<double>::infinity();
   Eigen::Vector3d best = across.direction();
   for (int k = 0; k < num_angles; ++k) {
-    const Eigen::Vector3d direction = rotationAbout(main.line.direction(), width * k / num_angles) * across.direction();
+    const Eigen::Vector3d direction =
+        rotationAbout(main.line().direction(), width * k / num_angles) * across.direction();
     const OffShares shares = sharp.offShares(rotationAbout(direction, kPi), across.origin(), kRotation.num_some_points);
     if (!(shares.off < least)) continue;
     least = shares.off;
@@ -80,24 +81,24 @@ std::optional<PlacedGroup> dihedralGroup(const RotationFit& fit, const ObjectSym
 /// \param first,second axes that were found.
 /// \param a,b axes of the group with which they are identified.
 std::optional<PlacedGroup> groupThrough(const RotationFit& fit, const ObjectSymmetryOptions& options,
-                                        const RotationGroup& group, const FoldAxis& first, const FoldAxis& second,
+                                        const RotationGroup& group, const PlacedGroup& first, const PlacedGroup& second,
                                         const RotationAxis& a, const RotationAxis& b) {
   if (a.order % first.fold != 0 || b.order % second.fold != 0) return std::nullopt;
   const double cosine = a.direction.dot(b.direction);
-  const Eigen::Vector3d direction = first.line.direction().dot(second.line.direction()) * cosine < 0.0
-                                        ? -second.line.direction()
-                                        : second.line.direction();
+  const Eigen::Vector3d direction = first.line().direction().dot(second.line().direction()) * cosine < 0.0
+                                        ? -second.line().direction()
+                                        : second.line().direction();
   const double expected = angleBetweenLines(a.direction, b.direction);
   if (expected < kRotation.axes_meet ||
-      std::abs(angleBetweenLines(first.line.direction(), direction) - expected) > kRotation.axes_meet)
+      std::abs(angleBetweenLines(first.line().direction(), direction) - expected) > kRotation.axes_meet)
     return std::nullopt;
   const Eigen::Matrix3d frame =
-      frameAlong(first.line.direction(), direction) * frameAlong(a.direction, b.direction).transpose();
-  return placedGroup(fit, options, group.kind, group.fold, elementsOf(group, frame, first.line.origin()));
+      frameAlong(first.line().direction(), direction) * frameAlong(a.direction, b.direction).transpose();
+  return placedGroup(fit, options, group.kind, group.fold, elementsOf(group, frame, first.line().origin()));
 }
 
 std::optional<PlacedGroup> polyhedralGroup(const RotationFit& fit, const ObjectSymmetryOptions& options,
-                                           const RotationGroup& group, const std::vector<FoldAxis>& axes) {
+                                           const RotationGroup& group, const std::vector<PlacedGroup>& axes) {
   const std::vector<RotationAxis> own = axesOf(group.elements());
   // Axes of one order are images of each other, so that one axis of each order represents `first`.
   std::vector<RotationAxis> firsts;
@@ -114,29 +115,29 @@ std::optional<PlacedGroup> polyhedralGroup(const RotationFit& fit, const ObjectS
 
 /// The greatest group of a body of revolution.
 PlacedGroup continuousGroup(const RotationFit& fit, const ObjectSymmetryOptions& options,
-                            const std::vector<FoldAxis>& axes) {
+                            const std::vector<PlacedGroup>& axes) {
   if (auto sphere = sphericalGroup(fit, options, axes.front())) return *sphere;
   if (auto cylinder = cylindricalGroup(fit, options, axes.front())) return *cylinder;
-  return axes.front().group;
+  return axes.front();
 }
 
 /// The greatest group with axes of finite order: the regular solids, then prisms, then the rotations about one axis.
 PlacedGroup finiteGroup(const RotationFit& fit, const ObjectSymmetryOptions& options,
-                        const std::vector<FoldAxis>& axes) {
+                        const std::vector<PlacedGroup>& axes) {
   for (const RotationGroup& group : kPolyhedralGroups)
     if (auto solid = polyhedralGroup(fit, options, group, axes)) return *solid;
-  for (const FoldAxis& axis : axes) {
+  for (const PlacedGroup& axis : axes) {
     // A dihedral group about this axis would have no more elements than the rotations about the main axis.
     if (2 * axis.fold <= axes.front().fold) break;
     if (auto prism = dihedralGroup(fit, options, axis)) return *prism;
   }
-  return axes.front().group;
+  return axes.front();
 }
 
 }  // namespace
 
 PlacedGroup greatestGroup(const RotationFit& fit, const ObjectSymmetryOptions& options,
-                          const std::vector<FoldAxis>& axes) {
+                          const std::vector<PlacedGroup>& axes) {
   if (axes.empty()) return {};
   return axes.front().fold == 0 ? continuousGroup(fit, options, axes) : finiteGroup(fit, options, axes);
 }

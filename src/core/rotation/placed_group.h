@@ -17,6 +17,8 @@ struct PlacedGroup {
   RotationSet set;  ///< all elements except the identity; for continuous groups, rotations that represent all
   Eigen::Vector3d axis = Eigen::Vector3d::UnitZ();  ///< axis of the first rotation, unit
   OffShares shares;  ///< shares of the worst rotation; for rotations by any angle, the mean
+
+  Line3d line() const { return {set.center, axis}; }
 };
 
 /// The groups of the regular solids, the greatest first.

@@ -13,7 +13,7 @@
 #include "core/base/constants.h"
 #include "core/base/lists.h"
 #include "core/base/small_motion.h"
-#include "core/rotation/rotation_cover.h"
+#include "core/geometry/directions.h"
 #include "pcl_symmetry/core/rotational_symmetry.h"
 
 namespace pcl_symmetry {

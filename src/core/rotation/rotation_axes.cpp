@@ -209,13 +209,6 @@ std::vector<int> foldsOf(const RotationFit& fit, RotationProfile& profile, const
   return folds;
 }
 
-/// The axis of a group that was placed about a line.
-std::optional<FoldAxis> axisFrom(std::optional<PlacedGroup> group, int fold) {
-  if (!group) return std::nullopt;
-  const Line3d fitted(group->set.center, group->axis);
-  return FoldAxis{fitted, fold, std::move(*group)};
-}
-
 }  // namespace
 
 std::vector<Line3d> principalLines(const RotationFit& fit) {
@@ -252,34 +245,33 @@ Line3d bestAcross(const RotationFit& fit, const Line3d& line, double width, int 
   return best;
 }
 
-std::optional<FoldAxis> AxisFinder::foldAbout(const RotationFit& fit, const Line3d& line,
-                                              const std::vector<int>& folds) const {
+std::optional<PlacedGroup> AxisFinder::foldAbout(const RotationFit& fit, const Line3d& line,
+                                                 const std::vector<int>& folds) const {
   const Eigen::Matrix3d frame = frameAlong(line.direction(), line.direction().unitOrthogonal());
   for (std::size_t i = 0; i < folds.size() && i < kRotation.max_folds; ++i) {
     const RotationSet rotations = elementsOf({RotationGroupKind::Cyclic, folds[i]}, frame, line.origin());
-    auto axis = axisFrom(placedGroup(fit, options_, RotationGroupKind::Cyclic, folds[i], rotations), folds[i]);
-    if (axis) return axis;
+    if (auto axis = placedGroup(fit, options_, RotationGroupKind::Cyclic, folds[i], rotations)) return axis;
   }
   return std::nullopt;
 }
 
 /// The line with all rotations about it that are symmetries. Three or more equal pieces around a line are a pattern:
 /// their fold has precedence over rotations by all angles, even if the pieces together are small enough for a feature.
-std::optional<FoldAxis> AxisFinder::axisAbout(const Line3d& line) {
+std::optional<PlacedGroup> AxisFinder::axisAbout(const Line3d& line) {
   const RotationFit fit = fitAbout(fit_, line);
   RotationProfile profile(fit, line);
   const double max_excess = greatestExcess(fit.limits());
   const auto failing = failingRotation(profile, max_excess);
   const int worst = failing.first;
   const double excess = failing.second;
-  const auto revolution = [&]() -> std::optional<FoldAxis> {
+  const auto revolution = [&]() -> std::optional<PlacedGroup> {
     if (excess > kRotation.max_worst * max_excess) return std::nullopt;
-    return axisFrom(placedGroup(fit, options_, RotationGroupKind::Revolution, 0, rotationsAbout(line)), 0);
+    return placedGroup(fit, options_, RotationGroupKind::Revolution, 0, rotationsAbout(line));
   };
   std::vector<int> folds;
   if (excess >= kRotation.pattern_excess) folds = foldsOf(fit, profile, line, options_.max_fold);
   const bool is_pattern = !folds.empty() && (folds.front() >= kRotation.min_pattern || excess > 1.0);
-  std::optional<FoldAxis> axis = is_pattern ? foldAbout(fit, line, folds) : revolution();
+  std::optional<PlacedGroup> axis = is_pattern ? foldAbout(fit, line, folds) : revolution();
   if (!axis) axis = is_pattern ? revolution() : foldAbout(fit, line, folds);
   if (!axis || axis->fold > 0)
     rejected_.push_back({line, 0, 2.0 * kPi * worst / kNumPhases, profile.shares(worst, kNumPhases)});
@@ -302,12 +294,12 @@ void AxisFinder::judge(const std::vector<Line3d>& lines) {
       rejected_.push_back({line, static_cast<int>(std::lround(2.0 * kPi / angle)), angle, shares});
       continue;
     }
-    std::optional<FoldAxis> axis = axisAbout(line);
+    std::optional<PlacedGroup> axis = axisAbout(line);
     if (!axis) continue;
     if (axis->fold == 0) axes_.clear();
     axes_.push_back(std::move(*axis));
   }
-  sortDescending(axes_, &FoldAxis::fold);
+  sortDescending(axes_, &PlacedGroup::fold);
 }
 
 }  // namespace pcl_symmetry

@@ -7,13 +7,6 @@
 
 namespace pcl_symmetry {
 
-/// An axis with the rotations about it that are symmetries, in the normalized frame.
-struct FoldAxis {
-  Line3d line;
-  int fold;  ///< order of the rotations; 0 = by any angle
-  PlacedGroup group;
-};
-
 /// A line with rotations about it that are no symmetries, in the normalized frame.
 struct RejectedAxis {
   Line3d line;
@@ -50,23 +43,23 @@ public:
 
   bool isRound() const { return !axes_.empty() && axes_.front().fold == 0; }
   /// An axis of revolution alone, or axes of finite order, the greatest order first.
-  const std::vector<FoldAxis>& axes() const { return axes_; }
+  const std::vector<PlacedGroup>& axes() const { return axes_; }
   const std::vector<RejectedAxis>& rejected() const { return rejected_; }
 
 private:
-  std::optional<FoldAxis> axisAbout(const Line3d& line);
-  std::optional<FoldAxis> foldAbout(const RotationFit& fit, const Line3d& line, const std::vector<int>& folds) const;
+  std::optional<PlacedGroup> axisAbout(const Line3d& line);
+  std::optional<PlacedGroup> foldAbout(const RotationFit& fit, const Line3d& line, const std::vector<int>& folds) const;
 
   const RotationFit& fit_;
   const ObjectSymmetryOptions& options_;
   std::vector<Line3d> tried_;
-  std::vector<FoldAxis> axes_;
+  std::vector<PlacedGroup> axes_;
   std::vector<RejectedAxis> rejected_;
 };
 
 /// The greatest group that contains the axes and that the surface supports as a whole.
 /// \return C_1 if there is no axis.
 PlacedGroup greatestGroup(const RotationFit& fit, const ObjectSymmetryOptions& options,
-                          const std::vector<FoldAxis>& axes);
+                          const std::vector<PlacedGroup>& axes);
 
 }  // namespace pcl_symmetry

@@ -59,14 +59,9 @@ std::vector<RejectedRotation> inInputFrame(std::vector<RejectedAxis> axes, const
   std::vector<RejectedRotation> rejected;
   for (const RejectedAxis& axis : axes) {
     const Eigen::Matrix3d rotation = rotationAbout(axis.line.direction(), axis.angle);
-    RejectedRotation entry;
-    entry.motion = motionFixing(ball.center + ball.radius * axis.line.origin(), rotation);
-    entry.axis = axis.line.direction();
-    entry.fold = axis.fold;
-    entry.off = axis.shares.off;
-    entry.far = axis.shares.far;
-    entry.where = ball.center + ball.radius * fit.whereOff(rotation, axis.line.origin());
-    rejected.push_back(entry);
+    rejected.push_back({motionFixing(ball.center + ball.radius * axis.line.origin(), rotation), axis.line.direction(),
+                        axis.fold, axis.shares.off, axis.shares.far,
+                        ball.center + ball.radius * fit.whereOff(rotation, axis.line.origin())});
   }
   return rejected;
 }

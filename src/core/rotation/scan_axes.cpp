@@ -241,14 +241,14 @@ std::vector<ReflectionPlane> likelyPlanes(const std::vector<SymmetryPlane>& plan
 
 }  // namespace
 
-std::vector<Line3d> linesOfNormals(const RotationEvidence& evidence, const ScanAxesOptions& options) {
+std::vector<Line3d> linesOfNormals(const RotationEvidence& evidence, const DetectionOptions& options) {
   return AxisJudge(evidence, 1)
       .fitLines(startsFromNormals(evidence.cloud(), options.seed, options.num_threads), options.num_threads);
 }
 
 std::vector<SymmetryRotation> scanAxes(const RotationEvidence& evidence, const std::vector<Line3d>& lines,
                                        const std::vector<SymmetryPlane>& planes, const std::vector<SymmetryAxis>& axes,
-                                       const ScanAxesOptions& options, std::vector<JudgedRotation>* evidence_of_all) {
+                                       const DetectionOptions& options, std::vector<JudgedRotation>* evidence_of_all) {
   const NormalizedCloud& cloud = evidence.cloud();
   std::vector<AxisStart> starts;
   for (const SymmetryAxis& axis : axes) starts.push_back({cloud.lineOf(axis), 0});
@@ -297,7 +297,7 @@ std::optional<NearlyRound> nearlyRound(const RotationEvidence& evidence, const s
   return std::nullopt;
 }
 
-std::optional<SymmetryCenter> centerOfScan(const RotationEvidence& evidence, const ScanAxesOptions& options) {
+std::optional<SymmetryCenter> centerOfScan(const RotationEvidence& evidence, const DetectionOptions& options) {
   const NormalizedCloud& cloud = evidence.cloud();
   const std::vector<int> samples = drawSamples(cloud.points.cols(), kScanAxes.normal_samples, options.seed);
   const Eigen::Vector3d met = centerOfNormals(cloud.points, cloud.geometry.normals, samples);
@@ -332,9 +332,9 @@ std::optional<SymmetryCenter> centerOfScan(const RotationEvidence& evidence, con
   return SymmetryCenter{cloud.toInput(center), confidence, score, worst.support};
 }
 
-ScanRotations rotationsOfScan(const PointsRef& points, const GaussianEdt& edt, const Visibility& visibility,
-                              const std::vector<SymmetryAxis>& axes, const ScanAxesOptions& options,
-                              const MakeSearch& make_search) {
+Detection rotationsOfScan(const PointsRef& points, const GaussianEdt& edt, const Visibility& visibility,
+                          const std::vector<SymmetryAxis>& axes, const DetectionOptions& options,
+                          const MakeSearch& make_search) {
   if (!whyUnanswerable(points).empty()) return {};
   const Points distinct = DistinctPoints(points).points;
   const Points used =
@@ -342,14 +342,17 @@ ScanRotations rotationsOfScan(const PointsRef& points, const GaussianEdt& edt, c
   const ClosestPointSearch::Ptr search = make_search ? inFrame(make_search(used), edt.center(), edt.radius()) : nullptr;
   const NormalizedCloud cloud(used, edt, search, &visibility, options.num_threads);
   const RotationEvidence evidence(cloud, ObjectSymmetryOptions().tolerance * cloud.extent, options.seed);
-  ScanRotations found{centerOfScan(evidence, options), {}};
-  if (!found.center) found.rotations = scanAxes(evidence, linesOfNormals(evidence, options), {}, axes, options);
+  Detection found;
+  if (const std::optional<SymmetryCenter> center = centerOfScan(evidence, options))
+    found.centers.push_back(*center);
+  else
+    found.rotations = scanAxes(evidence, linesOfNormals(evidence, options), {}, axes, options);
   return found;
 }
 
 std::vector<SymmetryAxis> withRoundAxes(const RotationEvidence& evidence, std::vector<SymmetryAxis> axes,
                                         const std::vector<SymmetryRotation>& rotations,
-                                        const ScanAxesOptions& options) {
+                                        const DetectionOptions& options) {
   const NormalizedCloud& cloud = evidence.cloud();
   eraseIf(axes, [&](const SymmetryAxis& axis) {
     const RotationShares all =

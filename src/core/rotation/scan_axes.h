@@ -1,6 +1,5 @@
 #pragma once
 
-#include <cstdint>
 #include <optional>
 #include <vector>
 
@@ -10,17 +9,8 @@
 
 namespace pcl_symmetry {
 
-/// Options of scanAxes(); the defaults are those of DetectionOptions.
-struct ScanAxesOptions {
-  bool folds = true;            ///< also tries axes of finite order
-  double min_confidence = 0.5;  ///< least confidence of a round body whose axis is added to those from planes
-  double min_possible = 0.2;    ///< least confidence of the axes that are returned
-  std::uint64_t seed = 1;
-  int num_threads = 0;  ///< 0 = one per core
-};
-
 /// Lines about which a scan may be round, from its normals, moved to where rotations by small angles fit best.
-std::vector<Line3d> linesOfNormals(const RotationEvidence& evidence, const ScanAxesOptions& options);
+std::vector<Line3d> linesOfNormals(const RotationEvidence& evidence, const DetectionOptions& options);
 
 /// Axes of a scan: lines about which rotations by any angle, or by 2 pi / n, map the visible surface onto itself or
 /// into unseen space, but not into free space. Not in the paper, which leaves rotations to future work (Section 6).
@@ -36,7 +26,7 @@ std::vector<Line3d> linesOfNormals(const RotationEvidence& evidence, const ScanA
 /// \return input frame, most confident first; no two along one line.
 std::vector<SymmetryRotation> scanAxes(const RotationEvidence& evidence, const std::vector<Line3d>& lines,
                                        const std::vector<SymmetryPlane>& planes, const std::vector<SymmetryAxis>& axes,
-                                       const ScanAxesOptions& options,
+                                       const DetectionOptions& options,
                                        std::vector<JudgedRotation>* evidence_of_all = nullptr);
 
 /// The axis of a body that is round except for a part, such as a mug with its handle, and that part.
@@ -51,29 +41,24 @@ std::optional<NearlyRound> nearlyRound(const RotationEvidence& evidence, const s
 
 /// The center of a ball seen from one side: rotations by any angle about any line through it map the visible surface
 /// onto itself or into unseen space.
-std::optional<SymmetryCenter> centerOfScan(const RotationEvidence& evidence, const ScanAxesOptions& options);
+std::optional<SymmetryCenter> centerOfScan(const RotationEvidence& evidence, const DetectionOptions& options);
 
-/// The rotations of a scan: the center of a ball, or axes.
-struct ScanRotations {
-  std::optional<SymmetryCenter> center;
-  std::vector<SymmetryRotation> rotations;
-};
-
-/// The same for points whose planes are not known.
+/// The center of a ball, or the axes of a scan whose planes are not known.
 /// \param points 3 x N, finite, input units.
 /// \param edt distance transform of these points.
 /// \param axes lines that are tried first, input frame.
 /// \param make_search as in detectPlanes().
-/// \return empty if the points cannot be analyzed.
-ScanRotations rotationsOfScan(const PointsRef& points, const GaussianEdt& edt, const Visibility& visibility,
-                              const std::vector<SymmetryAxis>& axes, const ScanAxesOptions& options,
-                              const MakeSearch& make_search = nullptr);
+/// \return centers and rotations; none if the points cannot be analyzed.
+Detection rotationsOfScan(const PointsRef& points, const GaussianEdt& edt, const Visibility& visibility,
+                          const std::vector<SymmetryAxis>& axes, const DetectionOptions& options,
+                          const MakeSearch& make_search = nullptr);
 
 /// The axes of revolution of a scan, checked by rotations: axes that map a visible handle into free space are dropped,
 /// the others moved to where rotations fit best, and axes of round bodies with too few visible planes added.
 /// \param axes input frame, as from findFamilies().
 /// \param rotations as from scanAxes().
 std::vector<SymmetryAxis> withRoundAxes(const RotationEvidence& evidence, std::vector<SymmetryAxis> axes,
-                                        const std::vector<SymmetryRotation>& rotations, const ScanAxesOptions& options);
+                                        const std::vector<SymmetryRotation>& rotations,
+                                        const DetectionOptions& options);
 
 }  // namespace pcl_symmetry

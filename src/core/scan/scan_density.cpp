@@ -8,8 +8,8 @@
 #include "core/base/statistics.h"
 #include "core/base/symmetric_solvers.h"
 #include "core/geometry/directions.h"
-#include "core/geometry/moments.h"
 #include "core/geometry/point_samples.h"
+#include "core/geometry/surface_normals.h"
 #include "core/scan/scan_rules.h"
 #include "pcl_symmetry/core/closest_point_search.h"
 

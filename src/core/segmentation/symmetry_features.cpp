@@ -1,4 +1,4 @@
-#include "core/segmentation/symmetry_features.h"
+#include "core/segmentation/part_evidence.h"
 
 #include <algorithm>
 

@@ -16,9 +16,9 @@
 #include <thread>
 #include <vector>
 
-#include "core/base/k_means.h"
 #include "core/base/random.h"
 #include "core/base/statistics.h"
+#include "core/segmentation/symmetry_splitting.h"
 
 extern "C" void __tsan_init() __attribute__((weak));  // null where the program runs without the thread sanitizer
 

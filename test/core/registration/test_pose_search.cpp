@@ -11,7 +11,6 @@
 
 #include "core/registration/pose_evidence.h"
 #include "core/registration/pose_scoring.h"
-#include "core/registration/pose_starts.h"
 #include "core/registration/posed_surface.h"
 #include "pcl_symmetry/core/visibility.h"
 #include "shapes/scans.h"

@@ -8,7 +8,7 @@
 #include <functional>
 #include <vector>
 
-#include "core/rotation/rotation_cover.h"
+#include "core/geometry/directions.h"
 #include "shapes/complaint.h"
 #include "shapes/shapes.h"
 #include "shapes/threads.h"
