@@ -1,11 +1,10 @@
-#include "core/detection/candidates.h"
+#include "core/detection/plane_search.h"
 
 #include <algorithm>
 #include <cmath>
 #include <utility>
 
 #include "core/base/lists.h"
-#include "core/detection/detection_rules.h"
 #include "core/geometry/cloud_extent.h"
 #include "core/geometry/directions.h"
 

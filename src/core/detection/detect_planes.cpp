@@ -10,10 +10,8 @@
 #include "core/base/lists.h"
 #include "core/base/stopwatch.h"
 #include "core/detection/cloud_subset.h"
-#include "core/detection/part_search.h"
 #include "core/detection/plane_decision.h"
 #include "core/detection/plane_families.h"
-#include "core/detection/plane_report.h"
 #include "core/detection/plane_search.h"
 #include "core/detection/standing_object.h"
 #include "core/geometry/closest_points.h"
@@ -51,9 +49,9 @@ void refineAndJudgeInOrder(const PlaneSearch& search, std::vector<Candidate> can
 /// The evidence of all candidates, including those that the detection rejects early.
 /// \param candidates after the second stage.
 std::vector<MeasuredPlane> measureAllCandidates(const PlaneSearch& search, std::vector<Candidate> candidates) {
-  candidates = search.refinement.refineFully(std::move(candidates));
-  search.refinement.climb(candidates, std::vector<char>(candidates.size(), true));
-  return search.judge(search.refinement.distinct(std::move(candidates)));
+  candidates = search.fit.refineFully(std::move(candidates));
+  search.fit.climb(candidates, std::vector<char>(candidates.size(), true));
+  return search.judge(search.fit.distinct(std::move(candidates)));
 }
 
 /// The reflection of one symmetry in another is a symmetry, and so are the missing planes of a regular polygon.
@@ -61,7 +59,7 @@ void completeGroups(const PlaneSearch& search, DetectionState& state) {
   if (search.cloud.isScan()) return;
   std::vector<ReflectionPlane> tried;
   for (std::vector<Candidate> candidates;
-       !(candidates = search.refinement.refineSymmetries(reflectSymmetries(state.answer.planes, search.cloud, tried)))
+       !(candidates = search.fit.refineSymmetries(reflectSymmetries(state.answer.planes, search.cloud, tried)))
             .empty();)
     refineAndJudgeInOrder(search, std::move(candidates), state.answer.planes);
 }
@@ -71,7 +69,7 @@ void tryRightAngles(const PlaneSearch& search, DetectionState& state) {
   if (!search.cloud.isScan()) return;
   std::vector<Candidate> candidates = proposeAtRightAngles(state.answer.planes, search.support_normals, search.cloud);
   if (!candidates.empty())
-    refineAndJudgeInOrder(search, search.refinement.refineSymmetries(std::move(candidates)), state.answer.planes);
+    refineAndJudgeInOrder(search, search.fit.refineSymmetries(std::move(candidates)), state.answer.planes);
 }
 
 /// Every plane through the axis of a mug maps its body onto itself. One that does not map its handle onto itself is
@@ -186,9 +184,9 @@ void refineAndDecide(const PlaneSearch& search, const SymmetryMap& map, Detectio
   done("maxima");
 
   // Iterative Symmetric Points, with more samples and narrower weights in each stage; the last one with the decision.
-  candidates = search.refinement.refineCoarsely(std::move(candidates), map.grid);
+  candidates = search.fit.refineCoarsely(std::move(candidates), map.grid);
   done("coarse_refinement");
-  candidates = search.refinement.refineClosely(std::move(candidates));
+  candidates = search.fit.refineClosely(std::move(candidates));
   done("close_refinement");
   if (state.evidence) {
     state.evidence->planes = measureAllCandidates(search, candidates);
@@ -329,7 +327,10 @@ Detection detectWithEvidence(const PlaneInput& input, const DetectionOptions& op
 
   // The support of all points: of the whole cloud, then of the bulk, then of the input. Stray points support no plane.
   const auto complete = [&](SymmetryPlane& plane) {
-    plane.point_support = surfaceSupport(cloud, cloud.toNormalized(plane), options);
+    const ReflectionPlane normalized = cloud.toNormalized(plane);
+    const std::vector<int> all = allIndices(cloud.points.cols());
+    const IspStep step = matchSymmetricPoints(cloud.surface, all, normalized, cloud.final_sigma);
+    plane.point_support = surfaceShares(cloud, normalized, all, step.closest).points.seenSupport();
   };
   if (even) {
     for (SymmetryPlane& plane : found.planes) complete(plane);

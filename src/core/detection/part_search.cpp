@@ -1,4 +1,4 @@
-#include "core/detection/part_search.h"
+#include "core/detection/plane_search.h"
 
 #include <algorithm>
 #include <boost/pending/disjoint_sets.hpp>
@@ -20,6 +20,46 @@ namespace pcl_symmetry {
 
 namespace {
 
+/// A connected piece of the surface that a plane maps onto itself.
+struct MatchedRegion {
+  std::vector<int> points;  ///< indices of points of the cloud, among the samples of MatchedRegions, ascending
+  double share = 0.0;       ///< share of all samples, in [0, 1]
+  double support = 0.0;     ///< mean support of its samples, relative to what sampling and noise allow, in [0, 1]
+  /// Length of its edge, beyond which the surface continues unmatched, divided by the edge of a flat disc of equal
+  /// area.
+  double edge = 0.0;
+  std::vector<int> closest;  ///< closest point to the reflection of each sample, as in IspStep
+};
+
+/// Finds the regions that planes map onto themselves, which Figure 8 shows in white. Not in the paper.
+///
+/// Every plane matches some part of a surface. A part that is symmetric by itself is matched completely: its region
+/// ends with a short edge where the part joins others, or has no edge at all. A chance match, such as a smooth cap
+/// about a point of the plane, ends in the middle of the surface, with an edge as long as the edge of a disc.
+class MatchedRegions {
+public:
+  /// \param cloud,fit must outlive this object.
+  MatchedRegions(const NormalizedCloud& cloud, const PlaneFit& fit, const DetectionOptions& options);
+
+  /// \param plane normalized frame.
+  /// \param guesses MatchedRegion::closest of a plane nearby, which makes the search faster; null = not known.
+  /// \param walks finds closest points by walking along neighbor lists, which may miss some.
+  /// \return the largest region; empty if nothing matches.
+  MatchedRegion largest(const ReflectionPlane& plane, const std::vector<int>* guesses = nullptr,
+                        bool walks = false) const;
+
+private:
+  std::vector<char> inLargest(const std::vector<char>& matched, const IspStep& step,
+                              const std::vector<float>& support) const;
+  double edgeOf(const std::vector<char>& inside, double count) const;
+
+  const NormalizedCloud& cloud_;
+  const PlaneFit& fit_;
+  std::vector<int> samples_;         ///< indices of points of the cloud, ascending
+  std::vector<int> neighbors_;       ///< neighbors of each sample, as indices of samples, nearest first
+  std::vector<int> closest_sample_;  ///< closest sample to each point of the cloud, as an index of a sample
+};
+
 /// The edge of a flat disc of n samples, divided by sqrt(n); an edge is the sum over samples of the share of their
 /// neighbors beyond it. The k neighbors of a sample lie within rho = sqrt(k / pi) spacings. Beyond a straight edge lies
 /// a share of the neighbors that adds up to 2 rho / (3 pi) per spacing of edge, and a disc has an edge of 2 sqrt(pi n)
@@ -28,8 +68,6 @@ double edgeOfDisc() {
   const double reach = std::sqrt((kDetection.parts.num_smoothing + 1) / kPi);
   return 2.0 * reach / (3.0 * kPi) * 2.0 * std::sqrt(kPi);
 }
-
-}  // namespace
 
 MatchedRegions::MatchedRegions(const NormalizedCloud& cloud, const PlaneFit& fit, const DetectionOptions& options)
     : cloud_(cloud),
@@ -108,8 +146,6 @@ double MatchedRegions::edgeOf(const std::vector<char>& inside, double count) con
   const double share = static_cast<double>(num_beyond) / static_cast<double>(num_neighbors);
   return share / (std::sqrt(count) * edgeOfDisc());
 }
-
-namespace {
 
 /// A part of a surface, and a plane of symmetry of that part.
 struct SymmetricPart {
@@ -354,7 +390,7 @@ void findPlanesOfParts(const PlaneSearch& search, DetectionState& state) {
   if (!search.options.approximate) return;
   const std::vector<ReflectionPlane> decided =
       planesOf(state.answer.planes, {PlaneKind::Symmetry, PlaneKind::Possible}, cloud);
-  const std::vector<SymmetricPart> parts = findSymmetricParts(cloud, *search.fit, search.options);
+  const std::vector<SymmetricPart> parts = findSymmetricParts(cloud, search.fit, search.options);
   const std::vector<int> all = allIndices(cloud.points.cols());
   std::vector<std::optional<SymmetryPlane>> of_parts(parts.size());
   parallelBlocks(parts.size(), search.options.num_threads, [&](std::size_t i) {

@@ -147,7 +147,7 @@ namespace {
 
 FamilyTest familyTest(const PlaneSearch& search, const std::vector<int>& samples) {
   const NormalizedCloud& cloud = search.cloud;
-  const PlaneFit& fit = *search.fit;
+  const PlaneFit& fit = search.fit;
   const DetectionOptions& options = search.options;
   // If the tolerance is greater than the default one, points within it may lie beyond the support of all samples.
   const double usual = DetectionOptions().tolerance * cloud.extent;

@@ -8,8 +8,8 @@
 
 namespace pcl_symmetry {
 
-class PlaneSearch;
-struct DetectionState;
+/// Whether a plane contains a line, normalized frame, within kDetection.families.
+bool contains(const ReflectionPlane& plane, const Line3d& line);
 
 /// Continuous families of planes: all planes through a line (a body of revolution) or through a point (a sphere).
 ///
@@ -52,10 +52,6 @@ std::optional<CenterFamily> findCenter(const std::vector<ReflectionPlane>& plane
 std::vector<AxisFamily> findAxes(const std::vector<ReflectionPlane>& planes, const FamilyTest& test,
                                  const std::vector<Line3d>& guesses = {});
 
-/// Finds the families that symmetries belong to: bodies of revolution and spheres replace their planes. A line-shaped
-/// cloud gets its line as axis.
-void findFamilies(const PlaneSearch& search, DetectionState& state);
-
 /// \param planes,axes input frame.
 /// \return the planes that contain no axis.
 std::vector<SymmetryPlane> withoutPlanesThrough(std::vector<SymmetryPlane> planes,
@@ -65,5 +61,22 @@ std::vector<SymmetryPlane> withoutPlanesThrough(std::vector<SymmetryPlane> plane
 /// \return the planes that do not contain the center.
 std::vector<SymmetryPlane> withoutPlanesThrough(std::vector<SymmetryPlane> planes, const SymmetryCenter& center,
                                                 const NormalizedCloud& cloud);
+
+/// The planes of a regular polygon: \p fold planes through a line, at equal angles.
+struct PlaneLattice {
+  Line3d line;
+  int fold = 0;        ///< number of planes, >= 3
+  double phase = 0.0;  ///< angle of the normal of plane 0 from line.direction().unitOrthogonal(), radians
+
+  /// \param k of any sign, may be a fraction: k + 0.5 lies halfway between two planes.
+  ReflectionPlane plane(double k) const;
+};
+
+/// Finds the regular polygon of a noisy cloud about a line: the density of points in rings about the line, as a
+/// function of the angle, has one strong frequency. It sums over all points and finds folds that no single plane shows.
+/// \param all the points of the cloud and those removed to make it evenly dense, normalized frame.
+/// \param line normalized frame.
+/// \return nothing if no frequency stands out: no rotation maps the cloud onto itself, or all rotations do.
+std::optional<PlaneLattice> latticeBySpectrum(const Points& all, const Line3d& line);
 
 }  // namespace pcl_symmetry

@@ -1,4 +1,4 @@
-#include "core/detection/plane_report.h"
+#include "core/detection/plane_search.h"
 
 #include <algorithm>
 #include <utility>
@@ -33,7 +33,7 @@ void completeSupport(SymmetryPlane& plane, const PlaneSearch& search) {
   const NormalizedCloud& cloud = search.cloud;
   if (static_cast<Eigen::Index>(plane.point_support.size()) == cloud.points.cols()) return;
   plane.point_support =
-      search.fit->shares(cloud.toNormalized(plane), allIndices(cloud.points.cols())).points.seenSupport();
+      search.fit.shares(cloud.toNormalized(plane), allIndices(cloud.points.cols())).points.seenSupport();
 }
 
 /// Removes approximate planes that are symmetries of parts: they are reported as local ones.

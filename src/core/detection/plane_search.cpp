@@ -84,12 +84,12 @@ JudgedFamily PlaneSearch::judgeFamily(const std::vector<ReflectionPlane>& planes
 }
 
 std::vector<SymmetryPlane> PlaneSearch::refineAndJudge(std::vector<Candidate> candidates) const {
-  candidates = refinement.refineFully(std::move(candidates));
+  candidates = fit.refineFully(std::move(candidates));
   std::vector<MeasuredPlane> measured = judge(candidates);
   std::vector<char> may_climb;
   for (const MeasuredPlane& one : measured)
     may_climb.push_back(one.plane.confidence >= kDetection.fit.climbing_confidence);
-  rejudge(candidates, refinement.climb(candidates, may_climb), measured);
+  rejudge(candidates, fit.climb(candidates, may_climb), measured);
   std::vector<SymmetryPlane> planes;
   for (MeasuredPlane& one : measured) planes.push_back(std::move(one.plane));
   return planes;
@@ -105,7 +105,7 @@ std::vector<SymmetryPlane> refinePlanes(const std::vector<ReflectionPlane>& star
   const PlaneSearch search(cloud, cloud.points, options);
   std::vector<Candidate> candidates;
   for (const ReflectionPlane& start : starts) candidates.push_back({cloud.toNormalized(start)});
-  return search.refineAndJudge(search.refinement.refineClosely(std::move(candidates)));
+  return search.refineAndJudge(search.fit.refineClosely(std::move(candidates)));
 }
 
 }  // namespace pcl_symmetry

@@ -1,12 +1,11 @@
 #pragma once
 
-#include <memory>
+#include <initializer_list>
 #include <optional>
 #include <vector>
 
-#include "core/detection/plane_lattice.h"
+#include "core/detection/plane_families.h"
 #include "core/detection/plane_measure.h"
-#include "core/detection/staged_refinement.h"
 #include "core/detection/standing_object.h"
 #include "core/rotation/rotation_evidence.h"
 
@@ -26,9 +25,8 @@ public:
   const NormalizedCloud& cloud;
   const Points& all_points;  ///< the points of the cloud and those removed to make it evenly dense, normalized frame
   const DetectionOptions& options;
-  const std::unique_ptr<PlaneFit> fit = makePlaneFit(cloud, options);
-  const StagedRefinement refinement{cloud, *fit, options};
-  const PlaneMeasure measure{cloud, *fit, options};
+  const PlaneFit fit{cloud, options};
+  const PlaneMeasure measure{cloud, fit, options};
   /// Unit normals of the supports that carry the object of a scan.
   const std::vector<Eigen::Vector3d> support_normals;
 
@@ -83,6 +81,70 @@ struct DetectionState {
   std::optional<PlaneLattice> polygon;    ///< normalized frame; its planes are among the planes of the answer
   DetectionEvidence* evidence = nullptr;  ///< filled with the evidence of all candidates; may be null
 };
+
+/// The strongest local maxima of the map, one per basin of refinement, and the planes perpendicular to the principal
+/// axes.
+/// \param map over planes in the input frame.
+std::vector<Candidate> gatherCandidates(const NormalizedCloud& cloud, const SymmetryMap& map,
+                                        const DetectionOptions& options);
+
+/// \return the planes of the given kinds, in their order, transformed from the input frame to the normalized frame.
+std::vector<ReflectionPlane> planesOf(const std::vector<SymmetryPlane>& planes, std::initializer_list<PlaneKind> kinds,
+                                      const NormalizedCloud& cloud);
+
+/// Completes the group that some symmetries generate: the reflection of one in another is a symmetry, too.
+/// \param planes found so far, input frame; only symmetries are used.
+/// \param[in,out] tried planes that were known or returned before, normalized frame.
+/// \return the implied planes that are not among \p tried.
+std::vector<Candidate> reflectSymmetries(const std::vector<SymmetryPlane>& planes, const NormalizedCloud& cloud,
+                                         std::vector<ReflectionPlane>& tried);
+
+/// Planes of a scan perpendicular to two of its symmetries, or to one of them and to its support, spread along the
+/// object. Half of the surface that such a plane maps may be hidden, so that a map of few samples has no maximum there.
+/// Not in the paper.
+/// \param support_normals unit normals of the supports, as from supportNormals().
+std::vector<Candidate> proposeAtRightAngles(const std::vector<SymmetryPlane>& planes,
+                                            const std::vector<Eigen::Vector3d>& support_normals,
+                                            const NormalizedCloud& cloud);
+
+/// Finds the families that symmetries belong to: bodies of revolution and spheres replace their planes. A line-shaped
+/// cloud gets its line as axis.
+void findFamilies(const PlaneSearch& search, DetectionState& state);
+
+/// Completes polygons. Planes of noisy clouds are judged jointly: all of them are symmetries or none is. Planes of
+/// surfaces can be judged individually, but with many teeth they are too close to be found one by one.
+void completePolygon(const PlaneSearch& search, DetectionState& state);
+
+/// Finds symmetries of parts of a surface, such as planes 2 to 4 of Figure 8.
+///
+/// Departure from the paper: it takes them from local maxima of the transform of the whole shape, to which a small part
+/// contributes too little. Here planes through the middles of balls of several radii, spread over the surface, are
+/// refined on the points of their ball and then on the region that they map onto itself (MatchedRegions), which
+/// distinguishes a part from a chance match.
+///
+/// With DetectionOptions::approximate, adds planes of PlaneKind::Local, unlike the symmetries and possible symmetries
+/// found before.
+void findPlanesOfParts(const PlaneSearch& search, DetectionState& state);
+
+/// The planes that are reported: best first, each maximum once, at most DetectionOptions::max_planes.
+///
+/// They are ordered as symmetries, then possible ones, both by decreasing confidence, then approximate and local ones
+/// by decreasing support.
+/// \param planes input frame.
+/// \param polygon normalized frame; each of its planes is a maximum.
+/// \return the planes, with the support of every point.
+std::vector<SymmetryPlane> selectReported(const PlaneSearch& search, std::vector<SymmetryPlane> planes,
+                                          const std::optional<PlaneLattice>& polygon = std::nullopt);
+
+/// The plane of the whole shape with the greatest share, for shapes without a symmetry.
+/// \param planes input frame.
+/// \return a plane with the support of every point; nothing if a plane is a symmetry or a possible one, or there is no
+/// plane.
+std::optional<SymmetryPlane> bestApproximate(const PlaneSearch& search, const std::vector<SymmetryPlane>& planes);
+
+/// Turns what was found into the answer: selects the planes to report, and fills the fields that describe the whole
+/// cloud.
+void report(const PlaneSearch& search, DetectionState& state);
 
 /// Refines approximately known planes and decides each of them, without searching for others.
 /// \param starts input frame.

@@ -199,32 +199,36 @@ std::vector<Meets> meetingsAt(const Points& reflected, const PointsRef& points, 
 
 }  // namespace
 
-std::optional<MiddlePlane> middlePlaneOfBox(const PointsRef& points, const Eigen::Vector3d& up,
-                                            const Eigen::Vector3d& viewpoint) {
+std::optional<SymmetryPlane> middlePlaneOfBox(const PointsRef& points, const Eigen::Vector3d& up,
+                                              const Eigen::Vector3d& viewpoint) {
   const Rectangle box = bestRectangle(points, up.normalized());
   const auto width = [&](std::size_t k) { return box.sides[k][1] - box.sides[k][0]; };
   const std::size_t across = width(0) <= width(1) ? 0 : 1;
   const double reach = kBox.meets * meanDiagonal(points, up.normalized());
   if (!(width(across) > 2.0 * reach)) return std::nullopt;
-  MiddlePlane middle;
-  middle.plane = ReflectionPlane(box.axes[across], 0.5 * (box.sides[across][0] + box.sides[across][1])).canonical();
-  const std::vector<Meets> met = meetingsAt(reflectedPoints(points, middle.plane), points, viewpoint, reach);
+  SymmetryPlane middle(ReflectionPlane(box.axes[across], 0.5 * (box.sides[across][0] + box.sides[across][1])));
+  double num_moved = 0.0, num_met = 0.0, num_free = 0.0;
+  const std::vector<Meets> met = meetingsAt(reflectedPoints(points, middle), points, viewpoint, reach);
   for (std::size_t i = 0; i < met.size(); ++i) {
     middle.point_support.push_back(met[i] == Meets::Surface ? 1.0f
                                    : met[i] == Meets::Free  ? 0.0f
                                                             : std::numeric_limits<float>::quiet_NaN());
-    if (2.0 * std::abs(middle.plane.signedDistance(points.col(i).cast<double>())) <= reach) continue;
-    middle.num_moved += 1.0;
-    middle.num_met += met[i] == Meets::Surface ? 1.0 : 0.0;
-    middle.num_free += met[i] == Meets::Free ? 1.0 : 0.0;
+    if (2.0 * std::abs(middle.signedDistance(points.col(i).cast<double>())) <= reach) continue;
+    num_moved += 1.0;
+    num_met += met[i] == Meets::Surface ? 1.0 : 0.0;
+    num_free += met[i] == Meets::Free ? 1.0 : 0.0;
   }
-  if (!(middle.num_met > 0.0)) return std::nullopt;
+  if (!(num_met > 0.0)) return std::nullopt;
   const auto num_near = std::count_if(box.distances.begin(), box.distances.end(),
                                       [&](double distance) { return distance < kBox.near * width(across); });
   const double near = static_cast<double>(num_near) / static_cast<double>(points.cols());
-  middle.confidence =
-      logistic(kBox.confidence + kBox.of_near * near + kBox.of_free * std::sqrt(middle.num_free / middle.num_moved));
+  middle.confidence = logistic(kBox.confidence + kBox.of_near * near + kBox.of_free * std::sqrt(num_free / num_moved));
+  middle.share = num_met / (num_met + num_free);
+  middle.share_low = middle.support = num_met / num_moved;
+  middle.share_high = 1.0 - num_free / num_moved;
+  middle.seen = (num_met + num_free) / num_moved;
   middle.residual = std::sqrt(box.sq_error);
+  middle.converged = true;
   return middle;
 }
 
@@ -237,24 +241,14 @@ void decideByUprightBox(const PointsRef& points, const Visibility& seen, const D
   const bool is_decided =
       found.hasFamily() || (!found.planes.empty() && found.planes.front().kind == PlaneKind::Symmetry);
   if (is_decided && !is_sparse) return;
-  const std::optional<MiddlePlane> middle = middlePlaneOfBox(points, up.front(), seen.viewpoint());
-  std::optional<SymmetryPlane> plane;
-  if (middle) {
-    plane.emplace(middle->plane);
-    plane->share = middle->num_met / (middle->num_met + middle->num_free);
-    plane->share_low = middle->num_met / middle->num_moved;
-    plane->share_high = 1.0 - middle->num_free / middle->num_moved;
-    plane->support = middle->num_met / middle->num_moved;
-    plane->seen = (middle->num_met + middle->num_free) / middle->num_moved;
-    plane->residual = middle->residual;
-    plane->converged = true;
-    plane->point_support = middle->point_support;
+  std::optional<SymmetryPlane> plane = middlePlaneOfBox(points, up.front(), seen.viewpoint());
+  if (plane) {
     const CloudLimits limits(points, principalAxes(points), CloudKind::Scan, &seen,
                              {found.tolerance, found.resolution, spacing, found.diameter});
     for (const char* rule : limits.rulesAgainst(*plane, points)) limitToPossible(*plane, rule);
     if (endAtImageBorder(points, up.front(), seen.viewpoint()))
       limitToPossible(*plane, "the picture cuts the points off");
-    setConfidence(*plane, middle->confidence, "the sides of the upright box around the points", options);
+    setConfidence(*plane, plane->confidence, "the sides of the upright box around the points", options);
   }
   if (is_sparse) {
     found.planes.clear();

@@ -18,16 +18,6 @@ std::vector<Eigen::Vector3d> supportNormals(const PointsRef& points, const Visib
 /// Whether a plane is neither upright nor level on any of these supports; false without supports.
 bool isSlanted(const ReflectionPlane& plane, const std::vector<Eigen::Vector3d>& support_normals);
 
-/// The middle plane of an upright box around points, along its longer side, and its evidence.
-struct MiddlePlane {
-  ReflectionPlane plane;
-  double confidence = 0.0;  ///< probability that the plane is a symmetry, in [0, 1]
-  double num_moved = 0.0, num_met = 0.0,
-         num_free = 0.0;             ///< points that it moves at all, onto the surface, and into free space
-  std::vector<float> point_support;  ///< support of each point, as in SymmetryPlane
-  double residual = 0.0;             ///< root mean square distance of the points from the sides of the box
-};
-
 /// Symmetry of a vehicle in the rings of a spinning LiDAR. Rings are not a surface: few points have a counterpart, one
 /// or two sides are visible, and the space between two rings is unknown. Straight sides and their ends are more
 /// informative. Not in the paper.
@@ -38,9 +28,10 @@ struct MiddlePlane {
 /// \param points 3 x N, finite, N >= 20, of an object on a ground.
 /// \param up normal of the ground.
 /// \param viewpoint position of the scanner.
-/// \return nothing if the points do not resolve a box.
-std::optional<MiddlePlane> middlePlaneOfBox(const PointsRef& points, const Eigen::Vector3d& up,
-                                            const Eigen::Vector3d& viewpoint);
+/// \return the middle plane of the box, along its longer side, of no kind yet; its residual is that of the points from the
+/// sides. Nothing if the points do not resolve a box.
+std::optional<SymmetryPlane> middlePlaneOfBox(const PointsRef& points, const Eigen::Vector3d& up,
+                                              const Eigen::Vector3d& viewpoint);
 
 /// Decides by the middle plane of the upright box around points on a ground, if they are too sparse for a surface, such
 /// as the rings of a LiDAR, or if no symmetry was found.

@@ -11,7 +11,6 @@
 #include <vector>
 
 #include "core/base/constants.h"
-#include "core/detection/plane_report.h"
 #include "core/geometry/point_samples.h"
 #include "pcl_symmetry/core/detect_planes.h"
 #include "shapes/searched_shape.h"
@@ -31,34 +30,33 @@ struct RefinedBox : test::SearchedShape {
   }
 };
 
-TEST(StagedRefinement, EachStageComesNearer) {
+TEST(PlaneFit, EachStageComesNearer) {
   const RefinedBox box;
   const ReflectionPlane exact = box.normalized(Eigen::Vector3d::UnitX(), 0.0);
   std::vector<Candidate> candidates{box.candidate({1.0, 0.06, -0.04}, 0.03)};
   const double at_start = candidates[0].plane.angleTo(exact);
-  candidates =
-      box.refinement.refineCoarsely(candidates, PlaneGrid(box.options.expert, box.edt.center(), box.edt.radius()));
+  candidates = box.fit.refineCoarsely(candidates, PlaneGrid(box.options.expert, box.edt.center(), box.edt.radius()));
   ASSERT_EQ(candidates.size(), 1u);
   const double after_coarse = candidates[0].plane.angleTo(exact);
   EXPECT_LT(after_coarse, 0.3 * at_start);
-  candidates = box.refinement.refineFully(box.refinement.refineClosely(candidates));
+  candidates = box.fit.refineFully(box.fit.refineClosely(candidates));
   ASSERT_EQ(candidates.size(), 1u);
   EXPECT_LT(candidates[0].plane.angleTo(exact), 0.1 * kDegree);
   EXPECT_GT(candidates[0].merit, kDetection.stages.symmetric_merit);
 }
 
-TEST(StagedRefinement, DistinctKeepsTheBestOfLikePlanes) {
+TEST(PlaneFit, DistinctKeepsTheBestOfLikePlanes) {
   const RefinedBox box;
   std::vector<Candidate> candidates{box.candidate({1.0, 0.0, 0.0}, 0.0), box.candidate({1.0, 0.01, 0.0}, 0.0),
                                     box.candidate({0.0, 1.0, 0.0}, 0.0)};
   candidates[0].merit = 0.5;
   candidates[1].merit = 0.6;
   candidates[2].merit = 0.55;
-  const std::vector<Candidate> kept = box.refinement.distinct(candidates);
+  const std::vector<Candidate> kept = box.fit.distinct(candidates);
   ASSERT_EQ(kept.size(), 2u);
   EXPECT_EQ(kept[0].merit, 0.6);
   EXPECT_EQ(kept[1].merit, 0.55);
-  EXPECT_EQ(box.refinement.distinct(candidates, 1).size(), 1u) << "none may be a symmetry";
+  EXPECT_EQ(box.fit.distinct(candidates, 1).size(), 1u) << "none may be a symmetry";
 }
 
 TEST(PlaneMeasure, ShareFallsWithTheDistanceFromASymmetry) {
@@ -83,7 +81,7 @@ TEST(PlaneMeasure, MatchesOfOtherSamplesAreNotTaken) {
   Candidate candidate;
   candidate.plane = box.normalized(Eigen::Vector3d::UnitX(), 0.0);
   candidate.samples = std::make_shared<const std::vector<int>>(drawn(1));
-  candidate.step = box.fit->matches(candidate.plane, *candidate.samples);
+  candidate.step = box.fit.matches(candidate.plane, *candidate.samples);
   EXPECT_EQ(box.measure.measureCandidate(candidate, drawn(2)).evidence.share,
             box.measure.measurePlane(candidate.plane, drawn(2)).evidence.share);
 }

@@ -171,8 +171,8 @@ TEST(MiddlePlaneOfBox, IsAlongTheLongerSideAndTurnsWithThePoints) {
     const Eigen::Isometry3d R(Eigen::AngleAxisd(turn, Eigen::Vector3d::UnitZ()));
     const auto plane = middlePlaneOfBox(moved(ringsOnBox(), R), {0.0, 0.0, 2.0}, R * kBeside);
     ASSERT_TRUE(plane);
-    EXPECT_LT(std::acos(std::abs(plane->plane.normal().dot(R * Eigen::Vector3d::UnitY()))), 0.01) << turn;
-    EXPECT_LT(std::abs(plane->plane.signedDistance(Eigen::Vector3d::Zero())), 0.05) << turn;
+    EXPECT_LT(std::acos(std::abs(plane->normal().dot(R * Eigen::Vector3d::UnitY()))), 0.01) << turn;
+    EXPECT_LT(std::abs(plane->signedDistance(Eigen::Vector3d::Zero())), 0.05) << turn;
     EXPECT_NEAR(plane->confidence, 0.94, 0.06) << "straight sides, and nothing in free space: " << turn;
   }
 }
