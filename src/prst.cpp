@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/base/random.h"
 #include "core/matching/shape_signature.h"
 #include "core/matching/symmetry_descriptor.h"
 
@@ -15,10 +16,8 @@ static_assert(ShapeSignature20736::descriptorSize() == kSignatureSize);
 
 detail::SymmetrySignatures detail::describeBySymmetry(const Points& points, const PRSTParameters& parameters,
                                                       const Visibility* seen) {
-  DescriptorOptions options;
+  auto options = optionsWith<DescriptorOptions>(parameters.seed, parameters.num_threads);
   options.by_equation_1 = parameters.by_equation_1;
-  options.seed = parameters.seed;
-  options.num_threads = parameters.num_threads;
   const Eigen::Isometry3d T_frame_input = descriptorFrame(points, parameters.use_input_axes, seen, options);
   const SymmetryDescriptors all = symmetryDescriptors(points, T_frame_input, options);
   SymmetrySignatures signatures;

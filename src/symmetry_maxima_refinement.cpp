@@ -2,6 +2,7 @@
 
 #include <limits>
 
+#include "core/base/random.h"
 #include "core/evidence/surface_samples.h"
 #include "pcl_symmetry/core/published_planes.h"
 
@@ -13,11 +14,9 @@ Detection planesAsPublished(const Points& points, const GaussianEdt* edt, const 
   std::optional<GaussianEdt> own;
   if (!edt) own.emplace(points, options.edtOptions());
   if (!edt) found.map = publishedMap(points, *own, TransformMethod::Convolution, options.seed, options.num_threads);
-  PublishedOptions published;
+  auto published = optionsWith<PublishedOptions>(options.seed, options.num_threads);
   published.maxima = options.expert.maxima;
   published.num_points = options.expert.num_refine_samples;
-  published.seed = options.seed;
-  published.num_threads = options.num_threads;
   found.planes = publishedPlanes(points, edt ? *edt : *own, edt ? map : found.map, published);
   if (static_cast<int>(found.planes.size()) > options.max_planes) found.planes.resize(options.max_planes);
   return found;

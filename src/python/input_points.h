@@ -8,6 +8,7 @@
 #include <stdexcept>
 #include <vector>
 
+#include "core/base/random.h"
 #include "pcl_symmetry/core/point_set.h"
 #include "pcl_symmetry/core/visibility.h"
 
@@ -90,15 +91,6 @@ pybind11::array_t<float> toRows(const PointsRef& points);
 template <typename Value>
 pybind11::array_t<Value> toArray(const std::vector<Value>& values) {
   return pybind11::array_t<Value>(static_cast<pybind11::ssize_t>(values.size()), values.data());
-}
-
-/// \return options with their seed and number of threads.
-template <typename Options>
-Options optionsWith(std::uint64_t seed, int threads) {
-  Options options;
-  options.seed = seed;
-  options.num_threads = threads;
-  return options;
 }
 
 }  // namespace pcl_symmetry::python

@@ -20,6 +20,15 @@ namespace pcl_symmetry {
 
 namespace {
 
+/// The edge of a flat disc of n samples, divided by sqrt(n); an edge is the sum over samples of the share of their
+/// neighbors beyond it. The k neighbors of a sample lie within rho = sqrt(k / pi) spacings. Beyond a straight edge lies
+/// a share of the neighbors that adds up to 2 rho / (3 pi) per spacing of edge, and a disc has an edge of 2 sqrt(pi n)
+/// spacings.
+double edgeOfDisc() {
+  const double reach = std::sqrt((kDetection.parts.num_smoothing + 1) / kPi);
+  return 2.0 * reach / (3.0 * kPi) * 2.0 * std::sqrt(kPi);
+}
+
 /// A connected piece of the surface that a plane maps onto itself.
 struct MatchedRegion {
   std::vector<int> points;  ///< indices of points of the cloud, among the samples of MatchedRegions, ascending
@@ -39,19 +48,89 @@ struct MatchedRegion {
 class MatchedRegions {
 public:
   /// \param cloud,fit must outlive this object.
-  MatchedRegions(const NormalizedCloud& cloud, const PlaneFit& fit, const DetectionOptions& options);
+  MatchedRegions(const NormalizedCloud& cloud, const PlaneFit& fit, const DetectionOptions& options)
+      : cloud_(cloud),
+        fit_(fit),
+        samples_(drawSamples(cloud.points.cols(), kDetection.parts.num_region_samples, options.seed)) {
+    std::sort(samples_.begin(), samples_.end());
+    const Points positions = pointsAt(cloud.points, samples_);
+    const ClosestPointSearch::Ptr search = makeFlannSearch(positions);
+    std::vector<float> sq_distances;
+    const int num_neighbors = std::min<int>(kDetection.parts.num_smoothing + 1, static_cast<int>(samples_.size()));
+    search->search(positions, num_neighbors, neighbors_, sq_distances);
+    closest_sample_ = closestPoints(*search, cloud.points, options.num_threads).index;
+  }
 
   /// \param plane normalized frame.
   /// \param guesses MatchedRegion::closest of a plane nearby, which makes the search faster; null = not known.
   /// \param walks finds closest points by walking along neighbor lists, which may miss some.
   /// \return the largest region; empty if nothing matches.
   MatchedRegion largest(const ReflectionPlane& plane, const std::vector<int>* guesses = nullptr,
-                        bool walks = false) const;
+                        bool walks = false) const {
+    const IspSurface& surface = walks && !cloud_.isScan() ? cloud_.quick_surface : cloud_.surface;
+    IspStep step = matchSymmetricPoints(surface, samples_, plane, cloud_.final_sigma, guesses);
+    const std::vector<float> support = fit_.shares(plane, samples_, step).points.support;
+    const std::size_t size = samples_.size(), num_neighbors = neighbors_.size() / size;
+    std::vector<char> matched(size);
+    for (std::size_t i = 0; i < size; ++i) {
+      double sum = 0.0;
+      for (std::size_t k = 0; k < num_neighbors; ++k) sum += support[neighbors_[i * num_neighbors + k]];
+      matched[i] = sum >= kDetection.parts.matched_support * static_cast<double>(num_neighbors);
+    }
+    const std::vector<char> inside = inLargest(matched, step, support);
+    MatchedRegion region;
+    region.closest = std::move(step.closest);
+    for (std::size_t i = 0; i < size; ++i) {
+      if (!inside[i]) continue;
+      region.points.push_back(samples_[i]);
+      region.support += support[i];
+    }
+    if (region.points.empty()) return region;
+    const auto count = static_cast<double>(region.points.size());
+    region.share = count / static_cast<double>(size);
+    region.support = std::min(1.0, region.support / (count * cloud_.baseline));
+    region.edge = edgeOf(inside, count);
+    return region;
+  }
 
 private:
+  /// Neighbors that match are in one region, and so are samples and their counterparts: two hands are one region of the
+  /// plane between them.
   std::vector<char> inLargest(const std::vector<char>& matched, const IspStep& step,
-                              const std::vector<float>& support) const;
-  double edgeOf(const std::vector<char>& inside, double count) const;
+                              const std::vector<float>& support) const {
+    const std::size_t size = samples_.size(), num_neighbors = neighbors_.size() / size;
+    std::vector<int> rank(size, 0), parent = allIndices(static_cast<Eigen::Index>(size));
+    boost::disjoint_sets<int*, int*> sets(rank.data(), parent.data());
+    const std::size_t num_connecting = std::min<std::size_t>(kDetection.parts.num_connecting + 1, num_neighbors);
+    for (std::size_t i = 0; i < size; ++i) {
+      if (!matched[i]) continue;
+      for (std::size_t k = 0; k < num_connecting; ++k) {
+        const int j = neighbors_[i * num_neighbors + k];
+        if (matched[j]) sets.union_set(static_cast<int>(i), j);
+      }
+      if (step.closest[i] < 0 || support[i] < kDetection.parts.counterpart) continue;
+      const int j = closest_sample_[step.closest[i]];
+      if (matched[j]) sets.union_set(static_cast<int>(i), j);
+    }
+    std::vector<int> count(size, 0);
+    for (std::size_t i = 0; i < size; ++i)
+      if (matched[i]) ++count[sets.find_set(static_cast<int>(i))];
+    const auto largest = static_cast<int>(std::max_element(count.begin(), count.end()) - count.begin());
+    std::vector<char> inside(size, 0);
+    for (std::size_t i = 0; i < size; ++i) inside[i] = matched[i] && sets.find_set(static_cast<int>(i)) == largest;
+    return inside;
+  }
+
+  double edgeOf(const std::vector<char>& inside, double count) const {
+    const std::size_t size = samples_.size(), num_neighbors = neighbors_.size() / size;
+    std::size_t num_beyond = 0;
+    for (std::size_t i = 0; i < size; ++i) {
+      if (!inside[i]) continue;
+      for (std::size_t k = 0; k < num_neighbors; ++k) num_beyond += inside[neighbors_[i * num_neighbors + k]] ? 0 : 1;
+    }
+    const double share = static_cast<double>(num_beyond) / static_cast<double>(num_neighbors);
+    return share / (std::sqrt(count) * edgeOfDisc());
+  }
 
   const NormalizedCloud& cloud_;
   const PlaneFit& fit_;
@@ -59,93 +138,6 @@ private:
   std::vector<int> neighbors_;       ///< neighbors of each sample, as indices of samples, nearest first
   std::vector<int> closest_sample_;  ///< closest sample to each point of the cloud, as an index of a sample
 };
-
-/// The edge of a flat disc of n samples, divided by sqrt(n); an edge is the sum over samples of the share of their
-/// neighbors beyond it. The k neighbors of a sample lie within rho = sqrt(k / pi) spacings. Beyond a straight edge lies
-/// a share of the neighbors that adds up to 2 rho / (3 pi) per spacing of edge, and a disc has an edge of 2 sqrt(pi n)
-/// spacings.
-double edgeOfDisc() {
-  const double reach = std::sqrt((kDetection.parts.num_smoothing + 1) / kPi);
-  return 2.0 * reach / (3.0 * kPi) * 2.0 * std::sqrt(kPi);
-}
-
-MatchedRegions::MatchedRegions(const NormalizedCloud& cloud, const PlaneFit& fit, const DetectionOptions& options)
-    : cloud_(cloud),
-      fit_(fit),
-      samples_(drawSamples(cloud.points.cols(), kDetection.parts.num_region_samples, options.seed)) {
-  std::sort(samples_.begin(), samples_.end());
-  const Points positions = pointsAt(cloud.points, samples_);
-  const ClosestPointSearch::Ptr search = makeFlannSearch(positions);
-  std::vector<float> sq_distances;
-  const int num_neighbors = std::min<int>(kDetection.parts.num_smoothing + 1, static_cast<int>(samples_.size()));
-  search->search(positions, num_neighbors, neighbors_, sq_distances);
-  closest_sample_ = closestPoints(*search, cloud.points, options.num_threads).index;
-}
-
-MatchedRegion MatchedRegions::largest(const ReflectionPlane& plane, const std::vector<int>* guesses, bool walks) const {
-  const IspSurface& surface = walks && !cloud_.isScan() ? cloud_.quick_surface : cloud_.surface;
-  IspStep step = matchSymmetricPoints(surface, samples_, plane, cloud_.final_sigma, guesses);
-  const std::vector<float> support = fit_.shares(plane, samples_, step).points.support;
-  const std::size_t size = samples_.size(), num_neighbors = neighbors_.size() / size;
-  std::vector<char> matched(size);
-  for (std::size_t i = 0; i < size; ++i) {
-    double sum = 0.0;
-    for (std::size_t k = 0; k < num_neighbors; ++k) sum += support[neighbors_[i * num_neighbors + k]];
-    matched[i] = sum >= kDetection.parts.matched_support * static_cast<double>(num_neighbors);
-  }
-  const std::vector<char> inside = inLargest(matched, step, support);
-  MatchedRegion region;
-  region.closest = std::move(step.closest);
-  for (std::size_t i = 0; i < size; ++i) {
-    if (!inside[i]) continue;
-    region.points.push_back(samples_[i]);
-    region.support += support[i];
-  }
-  if (region.points.empty()) return region;
-  const auto count = static_cast<double>(region.points.size());
-  region.share = count / static_cast<double>(size);
-  region.support = std::min(1.0, region.support / (count * cloud_.baseline));
-  region.edge = edgeOf(inside, count);
-  return region;
-}
-
-/// Neighbors that match are in one region, and so are samples and their counterparts: two hands are one region of the
-/// plane between them.
-std::vector<char> MatchedRegions::inLargest(const std::vector<char>& matched, const IspStep& step,
-                                            const std::vector<float>& support) const {
-  const std::size_t size = samples_.size(), num_neighbors = neighbors_.size() / size;
-  std::vector<int> rank(size, 0), parent = allIndices(static_cast<Eigen::Index>(size));
-  boost::disjoint_sets<int*, int*> sets(rank.data(), parent.data());
-  const std::size_t num_connecting = std::min<std::size_t>(kDetection.parts.num_connecting + 1, num_neighbors);
-  for (std::size_t i = 0; i < size; ++i) {
-    if (!matched[i]) continue;
-    for (std::size_t k = 0; k < num_connecting; ++k) {
-      const int j = neighbors_[i * num_neighbors + k];
-      if (matched[j]) sets.union_set(static_cast<int>(i), j);
-    }
-    if (step.closest[i] < 0 || support[i] < kDetection.parts.counterpart) continue;
-    const int j = closest_sample_[step.closest[i]];
-    if (matched[j]) sets.union_set(static_cast<int>(i), j);
-  }
-  std::vector<int> count(size, 0);
-  for (std::size_t i = 0; i < size; ++i)
-    if (matched[i]) ++count[sets.find_set(static_cast<int>(i))];
-  const auto largest = static_cast<int>(std::max_element(count.begin(), count.end()) - count.begin());
-  std::vector<char> inside(size, 0);
-  for (std::size_t i = 0; i < size; ++i) inside[i] = matched[i] && sets.find_set(static_cast<int>(i)) == largest;
-  return inside;
-}
-
-double MatchedRegions::edgeOf(const std::vector<char>& inside, double count) const {
-  const std::size_t size = samples_.size(), num_neighbors = neighbors_.size() / size;
-  std::size_t num_beyond = 0;
-  for (std::size_t i = 0; i < size; ++i) {
-    if (!inside[i]) continue;
-    for (std::size_t k = 0; k < num_neighbors; ++k) num_beyond += inside[neighbors_[i * num_neighbors + k]] ? 0 : 1;
-  }
-  const double share = static_cast<double>(num_beyond) / static_cast<double>(num_neighbors);
-  return share / (std::sqrt(count) * edgeOfDisc());
-}
 
 /// A part of a surface, and a plane of symmetry of that part.
 struct SymmetricPart {

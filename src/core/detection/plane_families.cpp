@@ -92,6 +92,52 @@ std::optional<PlaneFamily<Common>> familyAt(const Common& start, double min_shar
   return PlaneFamily<Common>{common, share, planesAt(at)};
 }
 
+FamilyTest familyTest(const PlaneSearch& search, const std::vector<int>& samples) {
+  const NormalizedCloud& cloud = search.cloud;
+  const PlaneFit& fit = search.fit;
+  const DetectionOptions& options = search.options;
+  // If the tolerance is greater than the default one, points within it may lie beyond the support of all samples.
+  const double usual = DetectionOptions().tolerance * cloud.extent;
+  const bool is_coarse =
+      cloud.isSurface() && std::max(options.tolerance * cloud.extent, options.absolute_tolerance / cloud.scale) > usual;
+  // A plane that maps most of a scan to unknown space is uninformative: only contradictions count.
+  const auto share_of = [&, is_coarse, is_scan = cloud.isScan()](const std::vector<int>& used) {
+    return [&, used, is_coarse, is_scan](const ReflectionPlane& plane) {
+      if (is_coarse) return search.judge(plane, used).evidence.share;
+      const PlaneShares shares = fit.shares(plane, used);
+      const double support = fit.relativeSupport(shares);
+      return is_scan ? 1.0 - shares.conflict : support / std::max(0.01, std::min(1.0, support + shares.conflict));
+    };
+  };
+  FamilyTest test;
+  test.share = share_of(samples);
+  // Samples may be all points in the order of the file, whose first fifth may be one end of the shape.
+  std::vector<int> fewer;
+  const auto num_samples = static_cast<Eigen::Index>(samples.size());
+  for (const int i :
+       drawSamples(num_samples, static_cast<int>(num_samples) / kDetection.families.rough_sample_share, options.seed))
+    fewer.push_back(samples[i]);
+  test.rough_share = share_of(fewer);
+  test.refine = [&fit, samples](const ReflectionPlane& plane) { return fit.refinePlane(plane, samples); };
+  const CloudKind kind = cloud.kind();
+  const double few_points = kKindRules.points_of_allowance[kind] / static_cast<double>(cloud.points.cols());
+  test.min_share = kKindRules.family_share[kind];
+  test.allowance = kKindRules.family_allowance[kind] * std::sqrt(std::max(1.0, few_points));
+  return test;
+}
+
+/// Different symmetries among planes, most confident first, normalized frame.
+std::vector<ReflectionPlane> symmetriesOf(std::vector<SymmetryPlane> planes, const NormalizedCloud& cloud) {
+  sortDescending(planes, &SymmetryPlane::confidence);
+  return kSamePlane.distinct(planesOf(planes, {PlaneKind::Symmetry}, cloud));
+}
+
+/// The longest principal axis.
+Line3d longestAxis(const PrincipalAxes& axes) {
+  const Eigen::Vector3d direction = axes.axes.col(0);
+  return Line3d(axes.center - direction.dot(axes.center) * direction, direction);
+}
+
 }  // namespace
 
 Line3d commonLine(const std::vector<ReflectionPlane>& planes) {
@@ -142,56 +188,6 @@ std::vector<AxisFamily> findAxes(const std::vector<ReflectionPlane>& planes, con
   sortDescending(axes, &AxisFamily::share);
   return axes;
 }
-
-namespace {
-
-FamilyTest familyTest(const PlaneSearch& search, const std::vector<int>& samples) {
-  const NormalizedCloud& cloud = search.cloud;
-  const PlaneFit& fit = search.fit;
-  const DetectionOptions& options = search.options;
-  // If the tolerance is greater than the default one, points within it may lie beyond the support of all samples.
-  const double usual = DetectionOptions().tolerance * cloud.extent;
-  const bool is_coarse =
-      cloud.isSurface() && std::max(options.tolerance * cloud.extent, options.absolute_tolerance / cloud.scale) > usual;
-  // A plane that maps most of a scan to unknown space is uninformative: only contradictions count.
-  const auto share_of = [&, is_coarse, is_scan = cloud.isScan()](const std::vector<int>& used) {
-    return [&, used, is_coarse, is_scan](const ReflectionPlane& plane) {
-      if (is_coarse) return search.judge(plane, used).evidence.share;
-      const PlaneShares shares = fit.shares(plane, used);
-      const double support = fit.relativeSupport(shares);
-      return is_scan ? 1.0 - shares.conflict : support / std::max(0.01, std::min(1.0, support + shares.conflict));
-    };
-  };
-  FamilyTest test;
-  test.share = share_of(samples);
-  // Samples may be all points in the order of the file, whose first fifth may be one end of the shape.
-  std::vector<int> fewer;
-  const auto num_samples = static_cast<Eigen::Index>(samples.size());
-  for (const int i :
-       drawSamples(num_samples, static_cast<int>(num_samples) / kDetection.families.rough_sample_share, options.seed))
-    fewer.push_back(samples[i]);
-  test.rough_share = share_of(fewer);
-  test.refine = [&fit, samples](const ReflectionPlane& plane) { return fit.refinePlane(plane, samples); };
-  const CloudKind kind = cloud.kind();
-  const double few_points = kKindRules.points_of_allowance[kind] / static_cast<double>(cloud.points.cols());
-  test.min_share = kKindRules.family_share[kind];
-  test.allowance = kKindRules.family_allowance[kind] * std::sqrt(std::max(1.0, few_points));
-  return test;
-}
-
-/// Different symmetries among planes, most confident first, normalized frame.
-std::vector<ReflectionPlane> symmetriesOf(std::vector<SymmetryPlane> planes, const NormalizedCloud& cloud) {
-  sortDescending(planes, &SymmetryPlane::confidence);
-  return kSamePlane.distinct(planesOf(planes, {PlaneKind::Symmetry}, cloud));
-}
-
-/// The longest principal axis.
-Line3d longestAxis(const PrincipalAxes& axes) {
-  const Eigen::Vector3d direction = axes.axes.col(0);
-  return Line3d(axes.center - direction.dot(axes.center) * direction, direction);
-}
-
-}  // namespace
 
 void findFamilies(const PlaneSearch& search, DetectionState& state) {
   Detection& answer = state.answer;

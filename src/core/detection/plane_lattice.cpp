@@ -43,19 +43,6 @@ std::vector<std::vector<ReflectionPlane>> bundlesOf(const std::vector<Reflection
   return bundles;
 }
 
-}  // namespace
-
-bool contains(const ReflectionPlane& plane, const Line3d& line) {
-  return std::abs(plane.normal().dot(line.direction())) <= std::sin(kDetection.families.contained_angle) &&
-         std::abs(plane.signedDistance(line.origin())) <= kDetection.families.contained_offset;
-}
-
-ReflectionPlane PlaneLattice::plane(double k) const {
-  return planeThrough(line, phase + k * kPi / fold);
-}
-
-namespace {
-
 /// The folds of points about a line.
 class FoldSpectrum {
 public:
@@ -162,31 +149,6 @@ std::optional<PlaneLattice> bestLattice(const std::vector<SymmetryPlane>& planes
   return std::nullopt;
 }
 
-}  // namespace
-
-std::optional<PlaneLattice> latticeBySpectrum(const Points& all, const Line3d& line) {
-  const FoldSpectrum spectrum(all, line, 1);
-  int fold = 0;
-  double most = 0.0;
-  for (int m = kDetection.folds.min_fold; m <= kDetection.folds.max_frequency; ++m) {
-    const double now = spectrum.prominence(m);
-    if (now <= most) continue;
-    most = now;
-    fold = m;
-  }
-  if (fold == 0) return std::nullopt;
-  // The multiples of the frequency of a polygon are also strong, and so is frequency 2 for two perpendicular planes.
-  for (int m = 2; m < fold; ++m)
-    if (fold % m == 0 && spectrum.prominence(m) > 0.0) {
-      fold = m;
-      break;
-    }
-  if (fold < kDetection.folds.min_fold) return std::nullopt;
-  return PlaneLattice{line, fold, FoldSpectrum(all, line, kDetection.folds.slabs).phase(fold)};
-}
-
-namespace {
-
 std::vector<Candidate> candidatesOf(const PlaneLattice& lattice) {
   std::vector<Candidate> candidates;
   for (int k = 0; k < lattice.fold; ++k) candidates.push_back({lattice.plane(k)});
@@ -273,6 +235,36 @@ void addClosePlanes(const PlaneSearch& search, DetectionState& state) {
 }
 
 }  // namespace
+
+bool contains(const ReflectionPlane& plane, const Line3d& line) {
+  return std::abs(plane.normal().dot(line.direction())) <= std::sin(kDetection.families.contained_angle) &&
+         std::abs(plane.signedDistance(line.origin())) <= kDetection.families.contained_offset;
+}
+
+ReflectionPlane PlaneLattice::plane(double k) const {
+  return planeThrough(line, phase + k * kPi / fold);
+}
+
+std::optional<PlaneLattice> latticeBySpectrum(const Points& all, const Line3d& line) {
+  const FoldSpectrum spectrum(all, line, 1);
+  int fold = 0;
+  double most = 0.0;
+  for (int m = kDetection.folds.min_fold; m <= kDetection.folds.max_frequency; ++m) {
+    const double now = spectrum.prominence(m);
+    if (now <= most) continue;
+    most = now;
+    fold = m;
+  }
+  if (fold == 0) return std::nullopt;
+  // The multiples of the frequency of a polygon are also strong, and so is frequency 2 for two perpendicular planes.
+  for (int m = 2; m < fold; ++m)
+    if (fold % m == 0 && spectrum.prominence(m) > 0.0) {
+      fold = m;
+      break;
+    }
+  if (fold < kDetection.folds.min_fold) return std::nullopt;
+  return PlaneLattice{line, fold, FoldSpectrum(all, line, kDetection.folds.slabs).phase(fold)};
+}
 
 void completePolygon(const PlaneSearch& search, DetectionState& state) {
   const NormalizedCloud& cloud = search.cloud;

@@ -8,7 +8,7 @@
 #include "core/detection/plane_fit.h"
 #include "core/evidence/missing_surface.h"
 #include "core/evidence/plane_confidence.h"
-#include "core/evidence/split_surface.h"
+#include "core/evidence/point_density.h"
 #include "core/evidence/surface_samples.h"
 #include "core/geometry/cloud_extent.h"
 #include "pcl_symmetry/core/detect_planes.h"

@@ -25,30 +25,6 @@ double heightOf(const PointsRef& points, const Eigen::Vector4d& support) {
   return (support.head<3>().transpose().cast<float>() * points).minCoeff() + support[3];
 }
 
-}  // namespace
-
-std::vector<Eigen::Vector3d> supportNormals(const PointsRef& points, const Visibility& seen) {
-  std::vector<double> heights;
-  for (const Eigen::Vector4d& support : seen.supports()) heights.push_back(heightOf(points, support));
-  if (heights.empty()) return {};
-  const double reach = *std::min_element(heights.begin(), heights.end()) +
-                       kDetection.decide.touching * 2.0 * boundingBall(points).radius;
-  std::vector<Eigen::Vector3d> normals;
-  for (std::size_t i = 0; i < heights.size(); ++i)
-    if (heights[i] <= reach) normals.push_back(seen.supports()[i].head<3>().normalized());
-  return normals;
-}
-
-bool isSlanted(const ReflectionPlane& plane, const std::vector<Eigen::Vector3d>& support_normals) {
-  const auto is_along = [&](const Eigen::Vector3d& normal) {
-    const double angle = std::acos(std::min(1.0, std::abs(normal.dot(plane.normal()))));
-    return angle <= kDetection.decide.upright || angle >= 0.5 * kPi - kDetection.decide.upright;
-  };
-  return !support_normals.empty() && std::none_of(support_normals.begin(), support_normals.end(), is_along);
-}
-
-namespace {
-
 struct UprightBoxRules {
   int num_angles = 180;   // angles that are tried, in steps of half a degree within a quarter turn
   double trimmed = 0.01;  // share of the points beyond each side of the box
@@ -198,6 +174,26 @@ std::vector<Meets> meetingsAt(const Points& reflected, const PointsRef& points, 
 }
 
 }  // namespace
+
+std::vector<Eigen::Vector3d> supportNormals(const PointsRef& points, const Visibility& seen) {
+  std::vector<double> heights;
+  for (const Eigen::Vector4d& support : seen.supports()) heights.push_back(heightOf(points, support));
+  if (heights.empty()) return {};
+  const double reach = *std::min_element(heights.begin(), heights.end()) +
+                       kDetection.decide.touching * 2.0 * boundingBall(points).radius;
+  std::vector<Eigen::Vector3d> normals;
+  for (std::size_t i = 0; i < heights.size(); ++i)
+    if (heights[i] <= reach) normals.push_back(seen.supports()[i].head<3>().normalized());
+  return normals;
+}
+
+bool isSlanted(const ReflectionPlane& plane, const std::vector<Eigen::Vector3d>& support_normals) {
+  const auto is_along = [&](const Eigen::Vector3d& normal) {
+    const double angle = std::acos(std::min(1.0, std::abs(normal.dot(plane.normal()))));
+    return angle <= kDetection.decide.upright || angle >= 0.5 * kPi - kDetection.decide.upright;
+  };
+  return !support_normals.empty() && std::none_of(support_normals.begin(), support_normals.end(), is_along);
+}
 
 std::optional<SymmetryPlane> middlePlaneOfBox(const PointsRef& points, const Eigen::Vector3d& up,
                                               const Eigen::Vector3d& viewpoint) {

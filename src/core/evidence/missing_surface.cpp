@@ -53,6 +53,39 @@ float ramp(float value, float none, float all) {
   return std::clamp((value - none) / (all - none), 0.0f, 1.0f);
 }
 
+/// Lower limit of a proportion (Wilson).
+float lowerLimit(float count, float total) {
+  const float share = count / total, sq = kEvidence.standard_errors * kEvidence.standard_errors / total;
+  return (share + 0.5f * sq - std::sqrt(sq * (share * (1.0f - share) + 0.25f * sq))) / (1.0f + sq);
+}
+
+/// Regions of samples that are joined as neighbors.
+using Regions = boost::disjoint_sets<int*, int*>;
+
+/// The samples of each region; regions by their smallest index.
+std::vector<std::vector<int>> membersOf(Regions& regions, const std::vector<char>& matched) {
+  std::vector<std::vector<int>> members;
+  std::vector<int> number(matched.size(), -1);
+  for (std::size_t i = 0; i < matched.size(); ++i) {
+    if (matched[i]) continue;
+    int& of_root = number[regions.find_set(static_cast<int>(i))];
+    if (of_root < 0) {
+      of_root = static_cast<int>(members.size());
+      members.emplace_back();
+    }
+    members[of_root].push_back(static_cast<int>(i));
+  }
+  return members;
+}
+
+/// Whether each line along the shortest principal axis meets the surface once, as for open ground: it ends all around,
+/// and its end is not a cut.
+bool isOpenSheet(const Points& points) {
+  const PrincipalAxes axes = principalAxes(points);
+  const double far = kEvidence.far_view * boundingBall(points).radius;
+  return layeredShare(points, axes.center + far * axes.axes.col(2)) < kEvidence.layered_sheet;
+}
+
 }  // namespace
 
 float beyondEnd(const Points& cloud, const Points& normals, const Points& piece, double spacing) {
@@ -81,35 +114,6 @@ float beyondEnd(const Points& cloud, const Points& normals, const Points& piece,
   return is_beyond *
          ramp(-std::max(cosines / count, cosines_before / count_before), -kEvidence.closes, -kEvidence.runs_into);
 }
-
-namespace {
-
-/// Lower limit of a proportion (Wilson).
-float lowerLimit(float count, float total) {
-  const float share = count / total, sq = kEvidence.standard_errors * kEvidence.standard_errors / total;
-  return (share + 0.5f * sq - std::sqrt(sq * (share * (1.0f - share) + 0.25f * sq))) / (1.0f + sq);
-}
-
-/// Regions of samples that are joined as neighbors.
-using Regions = boost::disjoint_sets<int*, int*>;
-
-/// The samples of each region; regions by their smallest index.
-std::vector<std::vector<int>> membersOf(Regions& regions, const std::vector<char>& matched) {
-  std::vector<std::vector<int>> members;
-  std::vector<int> number(matched.size(), -1);
-  for (std::size_t i = 0; i < matched.size(); ++i) {
-    if (matched[i]) continue;
-    int& of_root = number[regions.find_set(static_cast<int>(i))];
-    if (of_root < 0) {
-      of_root = static_cast<int>(members.size());
-      members.emplace_back();
-    }
-    members[of_root].push_back(static_cast<int>(i));
-  }
-  return members;
-}
-
-}  // namespace
 
 std::vector<float> missingCounterparts(const SampledSurface& surface, const std::vector<char>& matched,
                                        const std::vector<int>& closest, const Points& reflected) {
@@ -152,18 +156,6 @@ std::vector<float> missingCounterparts(const SampledSurface& surface, const std:
   }
   return missing;
 }
-
-namespace {
-
-/// Whether each line along the shortest principal axis meets the surface once, as for open ground: it ends all around,
-/// and its end is not a cut.
-bool isOpenSheet(const Points& points) {
-  const PrincipalAxes axes = principalAxes(points);
-  const double far = kEvidence.far_view * boundingBall(points).radius;
-  return layeredShare(points, axes.center + far * axes.axes.col(2)) < kEvidence.layered_sheet;
-}
-
-}  // namespace
 
 SurfaceEnds::SurfaceEnds(const Points& points, const LocalGeometry& geometry, const ClosestPointSearch& search,
                          const FoundNeighbors& found, int num_threads)

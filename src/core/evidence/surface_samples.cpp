@@ -18,6 +18,50 @@ namespace {
 
 constexpr float kHalfDiagonal = 0.8660254f;  // cells: sqrt(3) / 2
 
+/// Distance from the nearest of the discs of a sample and its neighbors, without the disc of sample \p self (-1 =
+/// none).
+float distanceNear(int closest, int self, const Eigen::Vector3f& point, const SurfaceSamples& samples,
+                   float sq_across_factor = 1.0f) {
+  float least = samples[closest].sqDistance(point, sq_across_factor);
+  for (const int j : samples[closest].nearest)
+    if (j != self) least = std::min(least, samples[j].sqDistance(point, sq_across_factor));
+  return std::sqrt(least);
+}
+
+/// Squared deviation of a point with a normal from the surface at a sample, in units of its allowed support.
+/// \return \p max_sq_deviation if it is not less.
+float sqDeviation(const SurfaceSample& sample, const Eigen::Vector3f& point, const Eigen::Vector3f& point_normal,
+                  float max_sq_deviation) {
+  const Eigen::Vector3f difference = point - sample.center;
+  const float reach = std::max(1e-6f, sample.radius);
+  const float sq_length = difference.squaredNorm();
+  const float along =
+      sq_length < kEvidence.surely * reach * reach ? 0.0f : std::max(0.0f, std::sqrt(sq_length) / reach - 1.0f);
+  if (along * along >= max_sq_deviation) return max_sq_deviation;
+  const float normal_reach = std::max(kEvidence.normal_reach, kEvidence.rough_reach * sample.roughness);
+  const float height = std::abs(sample.normal.dot(difference));
+  const float across = height < kEvidence.surely * normal_reach ? 0.0f : std::max(0.0f, height / normal_reach - 1.0f);
+  const float sq_distance = along * along + across * across;
+  if (sq_distance >= max_sq_deviation) return max_sq_deviation;
+  const float cosine = std::min(1.0f, std::abs(sample.normal.dot(point_normal)));
+  // Normals count by their reliability, without a jump.
+  static const float agreeing = std::cos(kEvidence.normal_angle);
+  if (cosine > agreeing || sample.normal_trust == 0.0f) return sq_distance;
+  const float excess = sample.normal_trust * std::max(0.0f, std::acos(cosine) / kEvidence.normal_angle - 1.0f);
+  return sq_distance + excess * excess;
+}
+
+/// Support by the closest sample or one of those next to it, whichever is best, except sample \p self (-1 = none).
+float supportNear(int closest, int self, const Eigen::Vector3f& point, const Eigen::Vector3f& point_normal,
+                  const SurfaceSamples& samples) {
+  float least = sqDeviation(samples[closest], point, point_normal, kEvidence.max_sq_deviation);
+  for (const int j : samples[closest].nearest) {
+    if (least == 0.0f) return 1.0f;
+    if (j != self) least = std::min(least, sqDeviation(samples[j], point, point_normal, least));
+  }
+  return least < kEvidence.max_sq_deviation ? std::exp(-least) : 0.0f;
+}
+
 }  // namespace
 
 SurfaceDiscs::SurfaceDiscs(const Points& samples, const LocalGeometry& geometry, float disc_radius, float reach)
@@ -132,20 +176,6 @@ SurfaceSamples surfaceSamples(const Points& points, const LocalGeometry& geometr
   return samples;
 }
 
-namespace {
-
-/// Distance from the nearest of the discs of a sample and its neighbors, without the disc of sample \p self (-1 =
-/// none).
-float distanceNear(int closest, int self, const Eigen::Vector3f& point, const SurfaceSamples& samples,
-                   float sq_across_factor = 1.0f) {
-  float least = samples[closest].sqDistance(point, sq_across_factor);
-  for (const int j : samples[closest].nearest)
-    if (j != self) least = std::min(least, samples[j].sqDistance(point, sq_across_factor));
-  return std::sqrt(least);
-}
-
-}  // namespace
-
 std::vector<float> surfaceDistances(const Points& points, const std::vector<int>& closest,
                                     const SurfaceSamples& samples, int num_threads) {
   std::vector<float> distances(closest.size(), std::numeric_limits<float>::infinity());
@@ -172,44 +202,6 @@ double shareWithin(const std::vector<float>& distances, double tolerance) {
       std::count_if(distances.begin(), distances.end(), [&](float distance) { return distance <= limit; });
   return static_cast<double>(count) / static_cast<double>(distances.size());
 }
-
-namespace {
-
-/// Squared deviation of a point with a normal from the surface at a sample, in units of its allowed support.
-/// \return \p max_sq_deviation if it is not less.
-float sqDeviation(const SurfaceSample& sample, const Eigen::Vector3f& point, const Eigen::Vector3f& point_normal,
-                  float max_sq_deviation) {
-  const Eigen::Vector3f difference = point - sample.center;
-  const float reach = std::max(1e-6f, sample.radius);
-  const float sq_length = difference.squaredNorm();
-  const float along =
-      sq_length < kEvidence.surely * reach * reach ? 0.0f : std::max(0.0f, std::sqrt(sq_length) / reach - 1.0f);
-  if (along * along >= max_sq_deviation) return max_sq_deviation;
-  const float normal_reach = std::max(kEvidence.normal_reach, kEvidence.rough_reach * sample.roughness);
-  const float height = std::abs(sample.normal.dot(difference));
-  const float across = height < kEvidence.surely * normal_reach ? 0.0f : std::max(0.0f, height / normal_reach - 1.0f);
-  const float sq_distance = along * along + across * across;
-  if (sq_distance >= max_sq_deviation) return max_sq_deviation;
-  const float cosine = std::min(1.0f, std::abs(sample.normal.dot(point_normal)));
-  // Normals count by their reliability, without a jump.
-  static const float agreeing = std::cos(kEvidence.normal_angle);
-  if (cosine > agreeing || sample.normal_trust == 0.0f) return sq_distance;
-  const float excess = sample.normal_trust * std::max(0.0f, std::acos(cosine) / kEvidence.normal_angle - 1.0f);
-  return sq_distance + excess * excess;
-}
-
-/// Support by the closest sample or one of those next to it, whichever is best, except sample \p self (-1 = none).
-float supportNear(int closest, int self, const Eigen::Vector3f& point, const Eigen::Vector3f& point_normal,
-                  const SurfaceSamples& samples) {
-  float least = sqDeviation(samples[closest], point, point_normal, kEvidence.max_sq_deviation);
-  for (const int j : samples[closest].nearest) {
-    if (least == 0.0f) return 1.0f;
-    if (j != self) least = std::min(least, sqDeviation(samples[j], point, point_normal, least));
-  }
-  return least < kEvidence.max_sq_deviation ? std::exp(-least) : 0.0f;
-}
-
-}  // namespace
 
 float freeConfidence(const Visibility& visibility, const Eigen::Vector3d& x) {
   const double behind = visibility.depthBehind(x);

@@ -77,6 +77,46 @@ double contactOf(const Outline& outline, const FrameCandidate& frame) {
   return outline.boxAt(outline.angleOf(frame.axes.col(1))).contact;
 }
 
+/// Frames rotated about their first axis to the smallest box around the outline, to its longest contact, to the faces
+/// of the surface, and to the principal axes of the outline.
+/// \param first unit, the first axis.
+std::vector<FrameCandidate> leveledFrames(const FrameEvidence& evidence, const Eigen::Vector3f& first) {
+  const Outline outline(evidence.points, first);
+  std::vector<FrameCandidate> frames;
+  for (const double angle : {angleOfGreatest([&](double a) { return -outline.boxAt(a).area; }),
+                             angleOfGreatest([&](double a) { return outline.boxAt(a).contact; }),
+                             angleOfFaces(evidence, outline), angleOfPrincipalAxes(evidence, outline)})
+    frames.push_back(frameAt(evidence, outline, first, angle));
+  return frames;
+}
+
+/// The rotation between two frames, the smallest over any order and signs of the axes, radians.
+double angleBetween(const Eigen::Matrix3f& a, const Eigen::Matrix3f& b) {
+  Eigen::Matrix3f rotation = a.transpose() * b;
+  if (rotation.determinant() < 0.0f) rotation.col(2) *= -1.0f;
+  float trace = -1.0f;
+  for (const Eigen::Matrix3i& order : axisRotations())
+    trace = std::max(trace, rotation.cwiseProduct(order.cast<float>()).sum());
+  return std::acos(std::clamp(0.5 * (static_cast<double>(trace) - 1.0), -1.0, 1.0));
+}
+
+bool isKnown(const std::vector<FrameChoice>& known, const FrameCandidate& frame) {
+  return std::any_of(known.begin(), known.end(), [&](const FrameChoice& other) {
+    return isRotatedAboutRevolution(other.frame.axes, other.revolution_axis, frame.axes) ||
+           angleBetween(frame.axes, other.frame.axes) < kFrame.same_frame;
+  });
+}
+
+std::vector<Eigen::Vector3f> firstAxes(const std::vector<FrameCandidate>& frames) {
+  std::vector<Eigen::Vector3f> axes;
+  for (const FrameCandidate& frame : frames) {
+    if (axes.size() >= kFrame.max_outlines) break;
+    const Eigen::Vector3f first = frame.axes.col(0);
+    if (!isNearAny(axes, first, std::cos(kFrame.same_outline))) axes.push_back(first);
+  }
+  return axes;
+}
+
 }  // namespace
 
 Outline::Outline(const PointsRef& points, const Eigen::Vector3f& along)
@@ -128,50 +168,6 @@ std::vector<FrameCandidate> leveledFirst(const FrameEvidence& evidence, std::vec
     frames.insert(frames.begin(), leveled);
   return frames;
 }
-
-namespace {
-
-/// Frames rotated about their first axis to the smallest box around the outline, to its longest contact, to the faces
-/// of the surface, and to the principal axes of the outline.
-/// \param first unit, the first axis.
-std::vector<FrameCandidate> leveledFrames(const FrameEvidence& evidence, const Eigen::Vector3f& first) {
-  const Outline outline(evidence.points, first);
-  std::vector<FrameCandidate> frames;
-  for (const double angle : {angleOfGreatest([&](double a) { return -outline.boxAt(a).area; }),
-                             angleOfGreatest([&](double a) { return outline.boxAt(a).contact; }),
-                             angleOfFaces(evidence, outline), angleOfPrincipalAxes(evidence, outline)})
-    frames.push_back(frameAt(evidence, outline, first, angle));
-  return frames;
-}
-
-/// The rotation between two frames, the smallest over any order and signs of the axes, radians.
-double angleBetween(const Eigen::Matrix3f& a, const Eigen::Matrix3f& b) {
-  Eigen::Matrix3f rotation = a.transpose() * b;
-  if (rotation.determinant() < 0.0f) rotation.col(2) *= -1.0f;
-  float trace = -1.0f;
-  for (const Eigen::Matrix3i& order : axisRotations())
-    trace = std::max(trace, rotation.cwiseProduct(order.cast<float>()).sum());
-  return std::acos(std::clamp(0.5 * (static_cast<double>(trace) - 1.0), -1.0, 1.0));
-}
-
-bool isKnown(const std::vector<FrameChoice>& known, const FrameCandidate& frame) {
-  return std::any_of(known.begin(), known.end(), [&](const FrameChoice& other) {
-    return isRotatedAboutRevolution(other.frame.axes, other.revolution_axis, frame.axes) ||
-           angleBetween(frame.axes, other.frame.axes) < kFrame.same_frame;
-  });
-}
-
-std::vector<Eigen::Vector3f> firstAxes(const std::vector<FrameCandidate>& frames) {
-  std::vector<Eigen::Vector3f> axes;
-  for (const FrameCandidate& frame : frames) {
-    if (axes.size() >= kFrame.max_outlines) break;
-    const Eigen::Vector3f first = frame.axes.col(0);
-    if (!isNearAny(axes, first, std::cos(kFrame.same_outline))) axes.push_back(first);
-  }
-  return axes;
-}
-
-}  // namespace
 
 std::vector<FrameChoice> frameChoices(const FrameEvidence& evidence, const std::vector<FrameCandidate>& frames,
                                       int num_threads) {

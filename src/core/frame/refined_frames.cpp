@@ -4,6 +4,7 @@
 #include <optional>
 
 #include "core/base/lists.h"
+#include "core/base/random.h"
 #include "core/base/small_motion.h"
 #include "core/detection/plane_search.h"
 #include "core/frame/canonical_frame.h"
@@ -46,20 +47,6 @@ void rotateOrder(int first, SymmetryFrame& frame) {
   frame.probable.front().axes = frame.axes;
   frame.probable.front().revolution_axis = frame.revolution_axis;
 }
-
-}  // namespace
-
-void bringToPlane(const ReflectionPlane& plane, SymmetryFrame& frame) {
-  int across = 0;
-  (frame.axes.transpose() * plane.normal()).cwiseAbs().maxCoeff(&across);
-  rotateOrder(across, frame);
-  const Eigen::Vector3d first = frame.axes.col(0);
-  const Eigen::Vector3d normal = first.dot(plane.normal()) < 0.0 ? Eigen::Vector3d(-plane.normal()) : plane.normal();
-  const Eigen::Matrix3d axes = Eigen::Quaterniond::FromTwoVectors(first, normal).toRotationMatrix() * frame.axes;
-  moveTo(frame.center - plane.signedDistance(frame.center) * plane.normal(), axes, frame);
-}
-
-namespace {
 
 /// A plane is fitted if it maps this share to within twice the tolerance; none of 94 planes that became exact on meshes
 /// had less than 0.96.
@@ -107,6 +94,16 @@ void bringToLine(const Line3d& line, int k, SymmetryFrame& frame) {
 
 }  // namespace
 
+void bringToPlane(const ReflectionPlane& plane, SymmetryFrame& frame) {
+  int across = 0;
+  (frame.axes.transpose() * plane.normal()).cwiseAbs().maxCoeff(&across);
+  rotateOrder(across, frame);
+  const Eigen::Vector3d first = frame.axes.col(0);
+  const Eigen::Vector3d normal = first.dot(plane.normal()) < 0.0 ? Eigen::Vector3d(-plane.normal()) : plane.normal();
+  const Eigen::Matrix3d axes = Eigen::Quaterniond::FromTwoVectors(first, normal).toRotationMatrix() * frame.axes;
+  moveTo(frame.center - plane.signedDistance(frame.center) * plane.normal(), axes, frame);
+}
+
 void bringToSymmetry(const Detection& found, SymmetryFrame& frame) {
   if (!found.centers.empty()) {
     moveTo(found.centers.front().point, frame.axes, frame);
@@ -146,9 +143,7 @@ void refineOnPoints(const PointsRef& points, const Visibility* visibility, const
       bringToLine({rotation.point, rotation.direction}, k, frame);
   std::vector<ReflectionPlane> starts;
   for (int k = 0; k < 3; ++k) starts.emplace_back(frame.axes.col(k), frame.axes.col(k).dot(frame.center));
-  DetectionOptions detection;
-  detection.seed = options.seed;
-  detection.num_threads = options.num_threads;
+  const auto detection = optionsWith<DetectionOptions>(options.seed, options.num_threads);
   std::vector<SymmetryPlane> found = refinePlanes(starts, PlaneInput(points, visibility), detection);
   eraseIf(found, [](const SymmetryPlane& plane) { return plane.kind != PlaneKind::Symmetry; });
   sortDescending(found, &SymmetryPlane::confidence);

@@ -5,6 +5,7 @@
 #include "core/base/check.h"
 #include "core/base/constants.h"
 #include "core/base/parallel.h"
+#include "core/base/random.h"
 #include "core/base/stopwatch.h"
 #include "core/frame/canonical_frame.h"
 #include "core/frame/frame_evidence.h"
@@ -44,11 +45,9 @@ SymmetryFrame publishedFrame(const PointsRef& points, const FrameOptions& option
 
   // First: the plane of greatest D among the strongest refined maxima. Maxima that leave their cell are kept, because
   // the method works best that way.
-  PublishedOptions published;
+  auto published = optionsWith<PublishedOptions>(options.seed, options.num_threads);
   published.discard_unstable = false;
   published.max_maxima = 8;
-  published.seed = options.seed;
-  published.num_threads = options.num_threads;
   const std::vector<SymmetryPlane> maxima = publishedPlanes(points, edt, map, published);
   const ReflectionPlane first =
       maxima.empty() ? grid.plane(grid.bin(map.strongest())) : ReflectionPlane(maxima.front());
@@ -85,9 +84,7 @@ SymmetryFrame publishedFrame(const PointsRef& points, const FrameOptions& option
 /// are tried first.
 void addRotations(const PointsRef& points, const GaussianEdt& edt, const FrameOptions& options,
                   const Visibility& visibility, const MakeSearch& make_search, SymmetryFrame& frame) {
-  DetectionOptions detection;
-  detection.seed = options.seed;
-  detection.num_threads = options.num_threads;
+  const auto detection = optionsWith<DetectionOptions>(options.seed, options.num_threads);
   std::vector<SymmetryAxis> axes;
   for (int k = 0; k < 3; ++k) axes.push_back({frame.center, frame.axes.col(k)});
   Detection found = rotationsOfScan(points, edt, visibility, axes, detection, make_search);

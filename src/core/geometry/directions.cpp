@@ -17,28 +17,6 @@ Eigen::Vector3d directionAt(double z, double angle) {
   return {ring * std::cos(angle), ring * std::sin(angle), z};
 }
 
-}  // namespace
-
-double goldenFraction(int k) {
-  return k * kGoldenSection - std::floor(k * kGoldenSection);
-}
-
-Eigen::Vector3d spiralDirection(int k, int count, double angle) {
-  return directionAt((k + 0.5) / count, angle);
-}
-
-std::vector<Eigen::Vector3d> evenDirections(int num_directions) {
-  check(num_directions >= 1, "num_directions", num_directions, ">= 1");
-  // One unit in the last place below kGoldenAngle: stored signatures were made with these very directions.
-  const double golden_angle = kPi * (3.0 - std::sqrt(5.0));
-  std::vector<Eigen::Vector3d> directions;
-  for (int i = 0; i < num_directions; ++i)
-    directions.push_back(directionAt(1.0 - (2.0 * i + 1.0) / num_directions, golden_angle * i));
-  return directions;
-}
-
-namespace {
-
 std::array<Eigen::Matrix3i, kNumAxisRotations> makeRotations() {
   // All orders of three axes, the three cyclic ones first
   constexpr int kOrders[6][3] = {{0, 1, 2}, {1, 2, 0}, {2, 0, 1}, {0, 2, 1}, {2, 1, 0}, {1, 0, 2}};
@@ -52,15 +30,6 @@ std::array<Eigen::Matrix3i, kNumAxisRotations> makeRotations() {
     }
   return rotations;
 }
-
-}  // namespace
-
-const std::array<Eigen::Matrix3i, kNumAxisRotations>& axisRotations() {
-  static const std::array<Eigen::Matrix3i, kNumAxisRotations> rotations = makeRotations();
-  return rotations;
-}
-
-namespace {
 
 /// A ring of directions about the pole.
 struct Ring {
@@ -113,6 +82,29 @@ std::vector<Ring> fewestRings(double angle) {
 }
 
 }  // namespace
+
+double goldenFraction(int k) {
+  return k * kGoldenSection - std::floor(k * kGoldenSection);
+}
+
+Eigen::Vector3d spiralDirection(int k, int count, double angle) {
+  return directionAt((k + 0.5) / count, angle);
+}
+
+std::vector<Eigen::Vector3d> evenDirections(int num_directions) {
+  check(num_directions >= 1, "num_directions", num_directions, ">= 1");
+  // One unit in the last place below kGoldenAngle: stored signatures were made with these very directions.
+  const double golden_angle = kPi * (3.0 - std::sqrt(5.0));
+  std::vector<Eigen::Vector3d> directions;
+  for (int i = 0; i < num_directions; ++i)
+    directions.push_back(directionAt(1.0 - (2.0 * i + 1.0) / num_directions, golden_angle * i));
+  return directions;
+}
+
+const std::array<Eigen::Matrix3i, kNumAxisRotations>& axisRotations() {
+  static const std::array<Eigen::Matrix3i, kNumAxisRotations> rotations = makeRotations();
+  return rotations;
+}
 
 std::vector<Eigen::Matrix3d> tiltsCovering(const Eigen::Vector3d& axis, double angle) {
   check(angle > 0.0 && angle <= kPi, "angle", angle, "in (0, pi]");

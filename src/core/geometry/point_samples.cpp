@@ -16,29 +16,6 @@
 
 namespace pcl_symmetry {
 
-std::vector<int> shuffled(Eigen::Index size, std::uint64_t seed, Eigen::Index max_count) {
-  std::vector<int> order = allIndices(size);
-  RandomStream random(seed);
-  max_count = std::min(max_count, size);
-  for (Eigen::Index i = 0; i < max_count; ++i)
-    std::swap(order[i], order[i + random.below(static_cast<std::uint64_t>(size - i))]);
-  order.resize(max_count);
-  return order;
-}
-
-std::vector<std::size_t> oneOfEachRun(std::size_t size, std::size_t num_drawn, std::uint64_t seed) {
-  std::vector<std::size_t> drawn(num_drawn);
-  RandomStream random(seed);
-  const double run = static_cast<double>(size) / static_cast<double>(num_drawn);
-  std::size_t next = 0;
-  for (std::size_t i = 0; i < num_drawn; ++i) {
-    const double position = (static_cast<double>(i) + random.uniform()) * run;
-    drawn[i] = std::max(next, std::min(size - 1, static_cast<std::size_t>(position)));
-    next = drawn[i] + 1;
-  }
-  return drawn;
-}
-
 namespace {
 
 /// Indices of points along Morton's curve through the cells of a grid, so that successive points are near each other.
@@ -58,52 +35,6 @@ std::vector<int> curveOrder(const PointsRef& points) {
   for (const auto& [cell, i] : cells) order.push_back(i);
   return order;
 }
-
-}  // namespace
-
-std::vector<int> spreadSubset(const PointsRef& points, std::size_t size, std::uint64_t seed) {
-  const std::vector<int> order = curveOrder(points);
-  std::vector<int> kept;
-  for (const std::size_t position : oneOfEachRun(order.size(), size, seed)) kept.push_back(order[position]);
-  return kept;
-}
-
-Points reflectedNormals(const PointsRef& normals, const ReflectionPlane& plane) {
-  const Eigen::Vector3f n = plane.normal().cast<float>();
-  Points reflected(3, normals.cols());
-  for (Eigen::Index i = 0; i < normals.cols(); ++i)
-    reflected.col(i) = normals.col(i) - 2.0f * n.dot(normals.col(i)) * n;
-  return reflected;
-}
-
-std::vector<int> firstCopies(const PointsRef& points) {
-  const auto hash = [](const Eigen::Vector3f& point) {
-    constexpr std::uint64_t factor = 0x9E3779B97F4A7C15u;  // 2^64 divided by the golden ratio, made odd
-    std::uint64_t result = 0;
-    for (int axis = 0; axis < 3; ++axis) {
-      const float coordinate = point[axis] + 0.0f;  // 0 and -0 are equal
-      std::uint32_t bits = 0;
-      std::memcpy(&bits, &coordinate, sizeof bits);
-      result = (result ^ bits) * factor;
-      result ^= result >> 32;
-    }
-    return result;
-  };
-  std::vector<int> first(points.cols());
-  std::size_t num_slots = 1;
-  while (num_slots < 2 * first.size()) num_slots *= 2;
-  std::vector<int> first_of_slot(num_slots, -1);
-  for (std::size_t i = 0; i < first.size(); ++i) {
-    const Eigen::Vector3f point = points.col(i);
-    std::size_t slot = hash(point) & (num_slots - 1);
-    while (first_of_slot[slot] >= 0 && points.col(first_of_slot[slot]) != point) slot = (slot + 1) & (num_slots - 1);
-    if (first_of_slot[slot] < 0) first_of_slot[slot] = static_cast<int>(i);
-    first[i] = first_of_slot[slot];
-  }
-  return first;
-}
-
-namespace {
 
 /// Distances of points from the middle of most of the points.
 std::vector<float> distancesFromMiddle(const PointsRef& points) {
@@ -178,7 +109,108 @@ private:
   std::vector<float> sq_distances_;
 };
 
+/// \return the number of distinct points, counted up to \p max_count.
+int countDistinct(const PointsRef& points, int max_count) {
+  std::vector<Eigen::Vector3f> distinct;
+  for (Eigen::Index i = 0; i < points.cols() && static_cast<int>(distinct.size()) < max_count; ++i) {
+    const Eigen::Vector3f point = points.col(i);
+    if (std::find(distinct.begin(), distinct.end(), point) == distinct.end()) distinct.push_back(point);
+  }
+  return static_cast<int>(distinct.size());
+}
+
+Eigen::Vector3d farthestFrom(const Eigen::Vector3d& position, const PointsRef& points) {
+  Eigen::Index farthest = 0;
+  (points.cast<double>().colwise() - position).colwise().squaredNorm().maxCoeff(&farthest);
+  return points.col(farthest).cast<double>();
+}
+
+/// Why distinct points cannot be analyzed: they lie at one position or on one line, up to rounding.
+std::string whyTooThin(const PointsRef& points) {
+  // The ends of a line: the point farthest from any point, and the one farthest from that.
+  const Eigen::Vector3d first = farthestFrom(points.col(0).cast<double>(), points);
+  const Eigen::Vector3d last = farthestFrom(first, points);
+  const double length = (last - first).norm();
+  // Rounding moves a point by sqrt(3) 2^-24 of its distance from the origin, and the line through two other points by
+  // as much.
+  const double rounding =
+      2.0 * std::numeric_limits<float>::epsilon() * farthestFrom(Eigen::Vector3d::Zero(), points).norm();
+  if (length <= rounding) return "all points are at one position, up to the rounding of their coordinates";
+  const Eigen::Vector3d direction = (last - first) / length;
+  const double thickness = std::max(kGeometry.line_thickness * length, rounding);
+  for (Eigen::Index i = 0; i < points.cols(); ++i) {
+    const Eigen::Vector3d offset = points.col(i).cast<double>() - first;
+    if ((offset - direction.dot(offset) * direction).norm() > thickness) return {};
+  }
+  return "all points lie on one line";
+}
+
 }  // namespace
+
+std::vector<int> shuffled(Eigen::Index size, std::uint64_t seed, Eigen::Index max_count) {
+  std::vector<int> order = allIndices(size);
+  RandomStream random(seed);
+  max_count = std::min(max_count, size);
+  for (Eigen::Index i = 0; i < max_count; ++i)
+    std::swap(order[i], order[i + random.below(static_cast<std::uint64_t>(size - i))]);
+  order.resize(max_count);
+  return order;
+}
+
+std::vector<std::size_t> oneOfEachRun(std::size_t size, std::size_t num_drawn, std::uint64_t seed) {
+  std::vector<std::size_t> drawn(num_drawn);
+  RandomStream random(seed);
+  const double run = static_cast<double>(size) / static_cast<double>(num_drawn);
+  std::size_t next = 0;
+  for (std::size_t i = 0; i < num_drawn; ++i) {
+    const double position = (static_cast<double>(i) + random.uniform()) * run;
+    drawn[i] = std::max(next, std::min(size - 1, static_cast<std::size_t>(position)));
+    next = drawn[i] + 1;
+  }
+  return drawn;
+}
+
+std::vector<int> spreadSubset(const PointsRef& points, std::size_t size, std::uint64_t seed) {
+  const std::vector<int> order = curveOrder(points);
+  std::vector<int> kept;
+  for (const std::size_t position : oneOfEachRun(order.size(), size, seed)) kept.push_back(order[position]);
+  return kept;
+}
+
+Points reflectedNormals(const PointsRef& normals, const ReflectionPlane& plane) {
+  const Eigen::Vector3f n = plane.normal().cast<float>();
+  Points reflected(3, normals.cols());
+  for (Eigen::Index i = 0; i < normals.cols(); ++i)
+    reflected.col(i) = normals.col(i) - 2.0f * n.dot(normals.col(i)) * n;
+  return reflected;
+}
+
+std::vector<int> firstCopies(const PointsRef& points) {
+  const auto hash = [](const Eigen::Vector3f& point) {
+    constexpr std::uint64_t factor = 0x9E3779B97F4A7C15u;  // 2^64 divided by the golden ratio, made odd
+    std::uint64_t result = 0;
+    for (int axis = 0; axis < 3; ++axis) {
+      const float coordinate = point[axis] + 0.0f;  // 0 and -0 are equal
+      std::uint32_t bits = 0;
+      std::memcpy(&bits, &coordinate, sizeof bits);
+      result = (result ^ bits) * factor;
+      result ^= result >> 32;
+    }
+    return result;
+  };
+  std::vector<int> first(points.cols());
+  std::size_t num_slots = 1;
+  while (num_slots < 2 * first.size()) num_slots *= 2;
+  std::vector<int> first_of_slot(num_slots, -1);
+  for (std::size_t i = 0; i < first.size(); ++i) {
+    const Eigen::Vector3f point = points.col(i);
+    std::size_t slot = hash(point) & (num_slots - 1);
+    while (first_of_slot[slot] >= 0 && points.col(first_of_slot[slot]) != point) slot = (slot + 1) & (num_slots - 1);
+    if (first_of_slot[slot] < 0) first_of_slot[slot] = static_cast<int>(i);
+    first[i] = first_of_slot[slot];
+  }
+  return first;
+}
 
 std::vector<int> strayPoints(const PointsRef& points) {
   const auto size = static_cast<double>(points.cols());
@@ -219,46 +251,6 @@ Points withoutStrayPoints(const PointsRef& points) {
   const std::vector<int> stray = strayPoints(points);
   return stray.empty() ? Points(points) : pointsAt(points, complementOf(stray, points.cols()));
 }
-
-namespace {
-
-/// \return the number of distinct points, counted up to \p max_count.
-int countDistinct(const PointsRef& points, int max_count) {
-  std::vector<Eigen::Vector3f> distinct;
-  for (Eigen::Index i = 0; i < points.cols() && static_cast<int>(distinct.size()) < max_count; ++i) {
-    const Eigen::Vector3f point = points.col(i);
-    if (std::find(distinct.begin(), distinct.end(), point) == distinct.end()) distinct.push_back(point);
-  }
-  return static_cast<int>(distinct.size());
-}
-
-Eigen::Vector3d farthestFrom(const Eigen::Vector3d& position, const PointsRef& points) {
-  Eigen::Index farthest = 0;
-  (points.cast<double>().colwise() - position).colwise().squaredNorm().maxCoeff(&farthest);
-  return points.col(farthest).cast<double>();
-}
-
-/// Why distinct points cannot be analyzed: they lie at one position or on one line, up to rounding.
-std::string whyTooThin(const PointsRef& points) {
-  // The ends of a line: the point farthest from any point, and the one farthest from that.
-  const Eigen::Vector3d first = farthestFrom(points.col(0).cast<double>(), points);
-  const Eigen::Vector3d last = farthestFrom(first, points);
-  const double length = (last - first).norm();
-  // Rounding moves a point by sqrt(3) 2^-24 of its distance from the origin, and the line through two other points by
-  // as much.
-  const double rounding =
-      2.0 * std::numeric_limits<float>::epsilon() * farthestFrom(Eigen::Vector3d::Zero(), points).norm();
-  if (length <= rounding) return "all points are at one position, up to the rounding of their coordinates";
-  const Eigen::Vector3d direction = (last - first) / length;
-  const double thickness = std::max(kGeometry.line_thickness * length, rounding);
-  for (Eigen::Index i = 0; i < points.cols(); ++i) {
-    const Eigen::Vector3d offset = points.col(i).cast<double>() - first;
-    if ((offset - direction.dot(offset) * direction).norm() > thickness) return {};
-  }
-  return "all points lie on one line";
-}
-
-}  // namespace
 
 void checkPoints(const PointsRef& points) {
   if (points.cols() == 0) throw std::invalid_argument("points: 0 given, must be >= 1");

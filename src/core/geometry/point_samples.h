@@ -2,6 +2,7 @@
 /// enough of them.
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <limits>
@@ -30,6 +31,13 @@ inline std::vector<int> everyNth(Eigen::Index size, Eigen::Index stride) {
   std::vector<int> samples;
   for (Eigen::Index i = 0; i < size; i += stride) samples.push_back(static_cast<int>(i));
   return samples;
+}
+
+/// \return at most \p max_count of 0, 1, ..., size - 1, at equal steps.
+inline std::vector<int> equalSteps(Eigen::Index size, Eigen::Index max_count) {
+  std::vector<int> chosen = allIndices(std::min(size, max_count));
+  for (int& i : chosen) i = static_cast<int>(i * size / static_cast<Eigen::Index>(chosen.size()));
+  return chosen;
 }
 
 /// Draws points without replacement.

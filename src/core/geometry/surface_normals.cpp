@@ -56,6 +56,107 @@ TangentPlane tangentPlane(const Points& points, const Eigen::Vector3f& position,
   return {normal, offsets.sum, std::sqrt(std::max(0.0f, sq_residual) / static_cast<float>(std::max(1, count - 3)))};
 }
 
+/// Whether the neighbors of a sample leave a gap in its tangent plane.
+bool isAtBorder(int self, const int* neighbors, int count, const Points& samples, const Points& normals) {
+  const Eigen::Vector3f n = normals.col(self), u = n.unitOrthogonal(), v = n.cross(u);
+  std::array<float, kGeometry.border_neighbors + 1> angles;
+  int num_angles = 0, num_off = 0;
+  for (int k = 0; k < count; ++k) {
+    if (neighbors[k] == self) continue;
+    const Eigen::Vector3f difference = samples.col(neighbors[k]) - samples.col(self);
+    if (std::abs(n.dot(difference)) > kGeometry.off_plane * difference.norm()) {
+      ++num_off;
+      continue;
+    }
+    angles[num_angles++] = std::atan2(v.dot(difference), u.dot(difference));
+  }
+  if (num_off > kGeometry.max_off_plane || num_angles == 0) return false;
+  std::sort(angles.begin(), angles.begin() + num_angles);
+  float gap = angles[0] + 2.0f * static_cast<float>(kPi) - angles[num_angles - 1];
+  for (int k = 1; k < num_angles; ++k) gap = std::max(gap, angles[k] - angles[k - 1]);
+  return gap > kGeometry.border_gap;
+}
+
+double weightOf(double miss) {
+  const double scaled = miss / kGeometry.normal_miss, sum = 1.0 + scaled * scaled;
+  return 1.0 / (sum * sum);
+}
+
+/// A motion of space, a rotation and a translation, so that a point x moves by shift + rotation x x.
+struct Motion {
+  Eigen::Vector3d rotation, shift;
+
+  Eigen::Vector3d velocityAt(const Eigen::Vector3d& x) const { return shift + rotation.cross(x); }
+};
+
+/// The motion with a rotation of length one that moves the samples the least along their normals.
+Motion slowestAlongNormals(const Matrix6d& sum) {
+  Eigen::Matrix3d shifts = sum.bottomRightCorner<3, 3>();
+  shifts.diagonal().array() += kGeometry.translation_ridge * std::max(1e-12, shifts.trace());
+  const Eigen::Matrix3d coupling = sum.topRightCorner<3, 3>();
+  const Eigen::Matrix3d best_shifts = -solveSymmetric(shifts, Eigen::Matrix3d(coupling.transpose()));
+  const Eigen::Matrix3d rotations = sum.topLeftCorner<3, 3>() + coupling * best_shifts;
+  const SymmetricEigen<Eigen::Matrix3d> solver(0.5 * (rotations + rotations.transpose()));
+  const Eigen::Vector3d rotation = solver.eigenvectors().col(0);
+  const Eigen::Vector3d shift = best_shifts * rotation;
+  return {rotation, shift - rotation.dot(shift) * rotation};  // without the translation along the axis
+}
+
+/// A point of a surface.
+struct Oriented {
+  Eigen::Vector3d point, normal;
+};
+
+std::vector<Oriented> orientedAt(const Points& points, const Points& normals, const std::vector<int>& samples) {
+  std::vector<Oriented> oriented;
+  oriented.reserve(samples.size());
+  for (const int i : samples) oriented.push_back({points.col(i).cast<double>(), normals.col(i).cast<double>()});
+  return oriented;
+}
+
+/// Moments of the points in each occupied cell. Occupied cells have slots, in the order of their first points.
+class CellMoments {
+public:
+  explicit CellMoments(int num_cells)
+      : side_(num_cells + 2), slot_of_cells_(static_cast<std::size_t>(side_) * side_ * side_, -1) {}
+
+  /// \param x position in cells from the corner of the cube.
+  /// \return the slot of its cell.
+  int add(const Eigen::Vector3d& x) {
+    const Eigen::Array3i at = (x.array() + 1.0).max(1.0).min(static_cast<double>(side_ - 2)).cast<int>();
+    const int index = (at.z() * side_ + at.y()) * side_ + at.x();
+    int& slot = slot_of_cells_[index];
+    if (slot < 0) {
+      slot = static_cast<int>(occupied_.size());
+      occupied_.push_back(index);
+      moments_.emplace_back();
+    }
+    // Relative to the middle of the cube: floats are precise enough there.
+    moments_[slot].add((x - Eigen::Vector3d::Constant(0.5 * (side_ - 2))).cast<float>());
+    return slot;
+  }
+
+  std::size_t numOccupied() const { return occupied_.size(); }
+
+  /// Sum over a cell and its 26 neighbors.
+  Moments around(std::size_t slot) const {
+    Moments sum;
+    for (int z = -1; z <= 1; ++z)
+      for (int y = -1; y <= 1; ++y)
+        for (int x = -1; x <= 1; ++x) {
+          const int near = slot_of_cells_[occupied_[slot] + (z * side_ + y) * side_ + x];
+          if (near >= 0) sum += moments_[near];
+        }
+    return sum;
+  }
+
+private:
+  int side_;  // cells along each side, with a border of one empty cell
+  std::vector<int> slot_of_cells_;
+  std::vector<int> occupied_;  // index of the cell of each slot
+  std::vector<Moments> moments_;
+};
+
 }  // namespace
 
 LocalGeometry localGeometry(const Points& points, const ClosestPointSearch& search, int num_threads,
@@ -91,6 +192,12 @@ LocalGeometry localGeometry(const Points& points, const ClosestPointSearch& sear
   return geometry;
 }
 
+Points normalsToward(Points normals, const PointsRef& points, const Eigen::Vector3f& viewpoint) {
+  for (Eigen::Index i = 0; i < normals.cols(); ++i)
+    if (normals.col(i).dot(viewpoint - points.col(i)) < 0.0f) normals.col(i) *= -1.0f;
+  return normals;
+}
+
 GeometryAtPositions localGeometryAt(const Points& points, const ClosestPointSearch& search, const Points& positions,
                                     int num_neighbors) {
   const int count = numToSearch(points.cols(), num_neighbors);
@@ -106,31 +213,6 @@ GeometryAtPositions localGeometryAt(const Points& points, const ClosestPointSear
   }
   return geometry;
 }
-
-namespace {
-
-/// Whether the neighbors of a sample leave a gap in its tangent plane.
-bool isAtBorder(int self, const int* neighbors, int count, const Points& samples, const Points& normals) {
-  const Eigen::Vector3f n = normals.col(self), u = n.unitOrthogonal(), v = n.cross(u);
-  std::array<float, kGeometry.border_neighbors + 1> angles;
-  int num_angles = 0, num_off = 0;
-  for (int k = 0; k < count; ++k) {
-    if (neighbors[k] == self) continue;
-    const Eigen::Vector3f difference = samples.col(neighbors[k]) - samples.col(self);
-    if (std::abs(n.dot(difference)) > kGeometry.off_plane * difference.norm()) {
-      ++num_off;
-      continue;
-    }
-    angles[num_angles++] = std::atan2(v.dot(difference), u.dot(difference));
-  }
-  if (num_off > kGeometry.max_off_plane || num_angles == 0) return false;
-  std::sort(angles.begin(), angles.begin() + num_angles);
-  float gap = angles[0] + 2.0f * static_cast<float>(kPi) - angles[num_angles - 1];
-  for (int k = 1; k < num_angles; ++k) gap = std::max(gap, angles[k] - angles[k - 1]);
-  return gap > kGeometry.border_gap;
-}
-
-}  // namespace
 
 std::vector<char> openBorders(const Points& samples, const ClosestPointSearch& search, const Points& normals,
                               int num_threads, const FoundNeighbors* known) {
@@ -174,47 +256,6 @@ double shareNearBorders(const std::vector<char>& borders, const LocalGeometry& g
   }
   return num_pairs > 0 ? static_cast<double>(num_near) / static_cast<double>(num_pairs) : 0.0;
 }
-
-namespace {
-
-double weightOf(double miss) {
-  const double scaled = miss / kGeometry.normal_miss, sum = 1.0 + scaled * scaled;
-  return 1.0 / (sum * sum);
-}
-
-/// A motion of space, a rotation and a translation, so that a point x moves by shift + rotation x x.
-struct Motion {
-  Eigen::Vector3d rotation, shift;
-
-  Eigen::Vector3d velocityAt(const Eigen::Vector3d& x) const { return shift + rotation.cross(x); }
-};
-
-/// The motion with a rotation of length one that moves the samples the least along their normals.
-Motion slowestAlongNormals(const Matrix6d& sum) {
-  Eigen::Matrix3d shifts = sum.bottomRightCorner<3, 3>();
-  shifts.diagonal().array() += kGeometry.translation_ridge * std::max(1e-12, shifts.trace());
-  const Eigen::Matrix3d coupling = sum.topRightCorner<3, 3>();
-  const Eigen::Matrix3d best_shifts = -solveSymmetric(shifts, Eigen::Matrix3d(coupling.transpose()));
-  const Eigen::Matrix3d rotations = sum.topLeftCorner<3, 3>() + coupling * best_shifts;
-  const SymmetricEigen<Eigen::Matrix3d> solver(0.5 * (rotations + rotations.transpose()));
-  const Eigen::Vector3d rotation = solver.eigenvectors().col(0);
-  const Eigen::Vector3d shift = best_shifts * rotation;
-  return {rotation, shift - rotation.dot(shift) * rotation};  // without the translation along the axis
-}
-
-/// A point of a surface.
-struct Oriented {
-  Eigen::Vector3d point, normal;
-};
-
-std::vector<Oriented> orientedAt(const Points& points, const Points& normals, const std::vector<int>& samples) {
-  std::vector<Oriented> oriented;
-  oriented.reserve(samples.size());
-  for (const int i : samples) oriented.push_back({points.col(i).cast<double>(), normals.col(i).cast<double>()});
-  return oriented;
-}
-
-}  // namespace
 
 Line3d axisOfNormals(const Points& points, const Points& normals, const std::vector<int>& samples) {
   const std::vector<Oriented> oriented = orientedAt(points, normals, samples);
@@ -261,53 +302,6 @@ Eigen::Vector3d centerOfNormals(const Points& points, const Points& normals, con
   }
   return center;
 }
-
-namespace {
-
-/// Moments of the points in each occupied cell. Occupied cells have slots, in the order of their first points.
-class CellMoments {
-public:
-  explicit CellMoments(int num_cells)
-      : side_(num_cells + 2), slot_of_cells_(static_cast<std::size_t>(side_) * side_ * side_, -1) {}
-
-  /// \param x position in cells from the corner of the cube.
-  /// \return the slot of its cell.
-  int add(const Eigen::Vector3d& x) {
-    const Eigen::Array3i at = (x.array() + 1.0).max(1.0).min(static_cast<double>(side_ - 2)).cast<int>();
-    const int index = (at.z() * side_ + at.y()) * side_ + at.x();
-    int& slot = slot_of_cells_[index];
-    if (slot < 0) {
-      slot = static_cast<int>(occupied_.size());
-      occupied_.push_back(index);
-      moments_.emplace_back();
-    }
-    // Relative to the middle of the cube: floats are precise enough there.
-    moments_[slot].add((x - Eigen::Vector3d::Constant(0.5 * (side_ - 2))).cast<float>());
-    return slot;
-  }
-
-  std::size_t numOccupied() const { return occupied_.size(); }
-
-  /// Sum over a cell and its 26 neighbors.
-  Moments around(std::size_t slot) const {
-    Moments sum;
-    for (int z = -1; z <= 1; ++z)
-      for (int y = -1; y <= 1; ++y)
-        for (int x = -1; x <= 1; ++x) {
-          const int near = slot_of_cells_[occupied_[slot] + (z * side_ + y) * side_ + x];
-          if (near >= 0) sum += moments_[near];
-        }
-    return sum;
-  }
-
-private:
-  int side_;  // cells along each side, with a border of one empty cell
-  std::vector<int> slot_of_cells_;
-  std::vector<int> occupied_;  // index of the cell of each slot
-  std::vector<Moments> moments_;
-};
-
-}  // namespace
 
 CellNormals cellNormals(const PointsRef& points, const Eigen::Vector3d& origin, double cell_size, int num_cells) {
   CellMoments cells(num_cells);

@@ -70,6 +70,9 @@ struct FoundNeighbors {
 LocalGeometry localGeometry(const Points& points, const ClosestPointSearch& search, int num_threads,
                             FoundNeighbors* neighbors = nullptr, int num_neighbors = kNumSupportNeighbors);
 
+/// \return the normals of points, with the signs by which they face a viewer.
+Points normalsToward(Points normals, const PointsRef& points, const Eigen::Vector3f& viewpoint);
+
 /// A part of LocalGeometry at a few of the points.
 struct GeometryAtPositions {
   Points normals;                         ///< 3 x M

@@ -42,22 +42,6 @@ struct PairRow {
   Eigen::ArrayXi rotation;                                             ///< in units of 1/256
 };
 
-/// Finds for all pairs of points of a surface, many at once, what pairOf() finds for one.
-class PairedSurface {
-public:
-  /// \param normals unit.
-  /// \param radius unit of the distances, > 0.
-  PairedSurface(const PointsRef& points, const PointsRef& normals, double radius);
-
-  /// Pairs whose first point is point \p i.
-  PairRow row(int i) const;
-
-private:
-  Eigen::ArrayX3f points_, normals_;  // one per row
-  int first_step_;                    // number of the step of the shortest distance
-  std::vector<float> sq_distances_;   // where each further step begins, squared
-};
-
 // Added to divisors to avoid divisions by 0.
 constexpr float kTiny = 1e-20f;
 
@@ -120,40 +104,52 @@ PointPair pairOf(const Eigen::Matrix3d& frame, const Eigen::Vector3d& first, con
   return pair;
 }
 
-PairedSurface::PairedSurface(const PointsRef& points, const PointsRef& normals, double radius)
-    : first_step_(static_cast<int>(std::floor(std::log(0.1 * radius) / kPairDistanceStep))) {
-  const Eigen::Vector3f middle = points.rowwise().mean();
-  points_ = ((points.colwise() - middle) / static_cast<float>(radius)).transpose();
-  normals_ = normals.transpose();
-  for (int step = first_step_ + 1;; ++step) {
-    const double distance = std::exp(kPairDistanceStep * step) / radius;
-    if (distance > kLongestPair) break;
-    sq_distances_.push_back(static_cast<float>(distance * distance));
+/// Finds for all pairs of points of a surface, many at once, what pairOf() finds for one.
+class PairedSurface {
+public:
+  /// \param normals unit.
+  /// \param radius unit of the distances, > 0.
+  PairedSurface(const PointsRef& points, const PointsRef& normals, double radius)
+      : first_step_(static_cast<int>(std::floor(std::log(0.1 * radius) / kPairDistanceStep))) {
+    const Eigen::Vector3f middle = points.rowwise().mean();
+    points_ = ((points.colwise() - middle) / static_cast<float>(radius)).transpose();
+    normals_ = normals.transpose();
+    for (int step = first_step_ + 1;; ++step) {
+      const double distance = std::exp(kPairDistanceStep * step) / radius;
+      if (distance > kLongestPair) break;
+      sq_distances_.push_back(static_cast<float>(distance * distance));
+    }
   }
-}
 
-PairRow PairedSurface::row(int i) const {
-  static const std::vector<float> limits = cosineLimits<kPairAngles>(kPi);
-  static const std::vector<float> other_limits = cosineLimits<kPairOtherAngles>(0.5 * kPi);
-  const Eigen::Matrix3f frame = frameOf(normals_.row(i).matrix().transpose().cast<double>()).cast<float>();
-  const Eigen::ArrayX3f lines = points_.rowwise() - points_.row(i);
-  const auto along = [](const Eigen::Vector3f& axis, const Eigen::ArrayX3f& vectors) -> Eigen::ArrayXf {
-    return axis.x() * vectors.col(0) + axis.y() * vectors.col(1) + axis.z() * vectors.col(2);
-  };
-  const auto dot = [](const Eigen::ArrayX3f& a, const Eigen::ArrayX3f& b) -> Eigen::ArrayXf {
-    return a.col(0) * b.col(0) + a.col(1) * b.col(1) + a.col(2) * b.col(2);
-  };
-  const Eigen::ArrayXf sq_distances = dot(lines, lines), inverse = 1.0f / (sq_distances + kTiny).sqrt();
-  PairRow row;
-  row.distance = sq_distances.sqrt();
-  row.distance_step = Eigen::ArrayXi::Constant(lines.rows(), first_step_);
-  for (const float limit : sq_distances_) row.distance_step += (sq_distances >= limit).cast<int>();
-  row.angle_step = limitsReached(along(frame.col(0), lines) * inverse, limits);
-  row.other_step = limitsReached(dot(normals_, lines).abs() * inverse, other_limits);
-  row.between_step = limitsReached(along(frame.col(0), normals_).abs(), other_limits);
-  row.rotation = anglesOf(along(frame.col(1), lines), along(frame.col(2), lines));
-  return row;
-}
+  /// Pairs whose first point is point \p i.
+  PairRow row(int i) const {
+    static const std::vector<float> limits = cosineLimits<kPairAngles>(kPi);
+    static const std::vector<float> other_limits = cosineLimits<kPairOtherAngles>(0.5 * kPi);
+    const Eigen::Matrix3f frame = frameOf(normals_.row(i).matrix().transpose().cast<double>()).cast<float>();
+    const Eigen::ArrayX3f lines = points_.rowwise() - points_.row(i);
+    const auto along = [](const Eigen::Vector3f& axis, const Eigen::ArrayX3f& vectors) -> Eigen::ArrayXf {
+      return axis.x() * vectors.col(0) + axis.y() * vectors.col(1) + axis.z() * vectors.col(2);
+    };
+    const auto dot = [](const Eigen::ArrayX3f& a, const Eigen::ArrayX3f& b) -> Eigen::ArrayXf {
+      return a.col(0) * b.col(0) + a.col(1) * b.col(1) + a.col(2) * b.col(2);
+    };
+    const Eigen::ArrayXf sq_distances = dot(lines, lines), inverse = 1.0f / (sq_distances + kTiny).sqrt();
+    PairRow row;
+    row.distance = sq_distances.sqrt();
+    row.distance_step = Eigen::ArrayXi::Constant(lines.rows(), first_step_);
+    for (const float limit : sq_distances_) row.distance_step += (sq_distances >= limit).cast<int>();
+    row.angle_step = limitsReached(along(frame.col(0), lines) * inverse, limits);
+    row.other_step = limitsReached(dot(normals_, lines).abs() * inverse, other_limits);
+    row.between_step = limitsReached(along(frame.col(0), normals_).abs(), other_limits);
+    row.rotation = anglesOf(along(frame.col(1), lines), along(frame.col(2), lines));
+    return row;
+  }
+
+private:
+  Eigen::ArrayX3f points_, normals_;  // one per row
+  int first_step_;                    // number of the step of the shortest distance
+  std::vector<float> sq_distances_;   // where each further step begins, squared
+};
 
 // Number of rotations about a normal that are distinguished: 22.5 degrees apart, 4 of the 8 bits that store one.
 constexpr int kNumRotations = 16;

@@ -156,14 +156,6 @@ Points stretched(const Points& points) {
   return spread.cwiseMax(kMatching.min_spread * spread.maxCoeff()).cwiseInverse().asDiagonal() * points;
 }
 
-/// At most \p max_points points, at equal steps in the input.
-Points evenSteps(const PointsRef& points, Eigen::Index max_points) {
-  if (points.cols() <= max_points) return points;
-  Points kept(3, max_points);
-  for (Eigen::Index i = 0; i < max_points; ++i) kept.col(i) = points.col(i * points.cols() / max_points);
-  return kept;
-}
-
 }  // namespace
 
 std::vector<float> shapeSignature(const PointsRef& points, const Eigen::Matrix3d& axes) {
@@ -223,8 +215,9 @@ ShapeDescription describeShape(const PointsRef& points, const DescriptionOptions
   frame_options.seed = options.seed;
   frame_options.num_threads = options.num_threads;
   ShapeDescription result;
-  result.frame = symmetryFrame(evenSteps(points, kMatching.frame_points), frame_options, visibility);
-  const Points used = evenSteps(points, options.max_points);
+  result.frame =
+      symmetryFrame(pointsAt(points, equalSteps(points.cols(), kMatching.frame_points)), frame_options, visibility);
+  const Points used = pointsAt(points, equalSteps(points.cols(), options.max_points));
   const std::vector<Eigen::Matrix3d> frames = signatureFrames(used, result.frame);
   result.signatures.resize(kSignatureSize, frames.size());
   for (std::size_t i = 0; i < frames.size(); ++i) {

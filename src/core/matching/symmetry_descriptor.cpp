@@ -5,6 +5,7 @@
 
 #include "core/base/check.h"
 #include "core/base/constants.h"
+#include "core/base/random.h"
 #include "core/geometry/point_samples.h"
 #include "core/matching/matching_rules.h"
 #include "pcl_symmetry/core/symmetry_frame.h"
@@ -17,11 +18,8 @@ namespace {
 /// \param num_radius number of bins of r.
 std::vector<float> prstOf(const GaussianEdt& edt, int num_radius, const DescriptorOptions& options) {
   const PlaneGrid grid(kDescriptorBins, kDescriptorBins, num_radius, Eigen::Vector3d::Zero(), 1.0);
-  SampledTransformOptions sampling;
-  sampling.num_samples = options.num_samples;
-  sampling.seed = options.seed;
-  sampling.num_threads = options.num_threads;
-  std::vector<float> values = sampledTransform(edt, grid, sampling).values;
+  std::vector<float> values =
+      sampledTransform(edt, grid, {options.num_samples, options.seed, options.num_threads}).values;
   for (float& value : values)
     value = std::sqrt(options.by_equation_1 ? 0.5f * (1.0f + std::max(0.0f, value)) : std::max(0.0f, value));
   return values;
@@ -37,10 +35,8 @@ void DescriptorOptions::validate() const {
 Eigen::Isometry3d descriptorFrame(const PointsRef& points, bool input_axes, const Visibility* seen,
                                   const DescriptorOptions& options) {
   if (input_axes) return Eigen::Isometry3d(Eigen::Translation3d(-centerOfMass(points)));
-  FrameOptions frame;
+  auto frame = optionsWith<FrameOptions>(options.seed, options.num_threads);
   frame.probabilities = frame.rotations = frame.refined = false;
-  frame.seed = options.seed;
-  frame.num_threads = options.num_threads;
   return symmetryFrame(points, frame, seen).T_canonical_input;
 }
 

@@ -62,6 +62,38 @@ float leastDistance(const std::int8_t* codes, std::size_t num_views, const ViewC
   return least;
 }
 
+struct NearView {
+  double distance;
+  const View* view;
+  double angle;
+};
+
+/// The nearest views of one shape, nearest first.
+std::vector<NearView> nearestViews(const std::vector<View>& views, const View& scan, const ViewComparison& comparison) {
+  std::vector<NearView> nearest;
+  for (const View& view : views) {
+    const double size = kMatching.size_weight * std::abs(std::log(view.radius / scan.radius));
+    const bool full = nearest.size() >= kMatching.num_view_poses;
+    const double enough = full ? nearest.back().distance - size : 2.0;  // 2 is the greatest distance of unit vectors
+    if (enough <= 0.0) continue;
+    const ViewAgreement agreement = comparison.compare(view.values.data(), static_cast<float>(enough));
+    if (agreement.distance >= enough) continue;
+    const NearView pose{agreement.distance + size, &view, agreement.angle};
+    if (full) nearest.pop_back();
+    nearest.insert(std::upper_bound(nearest.begin(), nearest.end(), pose,
+                                    [](const NearView& a, const NearView& b) { return a.distance < b.distance; }),
+                   pose);
+  }
+  return nearest;
+}
+
+double meanDistance(const std::vector<NearView>& nearest) {
+  const std::size_t count = std::min<std::size_t>(kMatching.num_mean_views, nearest.size());
+  double sum = 0.0;
+  for (std::size_t i = 0; i < count; ++i) sum += nearest[i].distance;
+  return sum / static_cast<double>(count);
+}
+
 }  // namespace
 
 std::string packedViewCodes(const std::vector<ViewCode>& codes) {
@@ -150,42 +182,6 @@ std::vector<int> ViewCodeIndex::nearest(const ViewCode& scan, int count, int num
   std::sort(shapes.begin(), shapes.end());
   return shapes;
 }
-
-namespace {
-
-struct NearView {
-  double distance;
-  const View* view;
-  double angle;
-};
-
-/// The nearest views of one shape, nearest first.
-std::vector<NearView> nearestViews(const std::vector<View>& views, const View& scan, const ViewComparison& comparison) {
-  std::vector<NearView> nearest;
-  for (const View& view : views) {
-    const double size = kMatching.size_weight * std::abs(std::log(view.radius / scan.radius));
-    const bool full = nearest.size() >= kMatching.num_view_poses;
-    const double enough = full ? nearest.back().distance - size : 2.0;  // 2 is the greatest distance of unit vectors
-    if (enough <= 0.0) continue;
-    const ViewAgreement agreement = comparison.compare(view.values.data(), static_cast<float>(enough));
-    if (agreement.distance >= enough) continue;
-    const NearView pose{agreement.distance + size, &view, agreement.angle};
-    if (full) nearest.pop_back();
-    nearest.insert(std::upper_bound(nearest.begin(), nearest.end(), pose,
-                                    [](const NearView& a, const NearView& b) { return a.distance < b.distance; }),
-                   pose);
-  }
-  return nearest;
-}
-
-double meanDistance(const std::vector<NearView>& nearest) {
-  const std::size_t count = std::min<std::size_t>(kMatching.num_mean_views, nearest.size());
-  double sum = 0.0;
-  for (std::size_t i = 0; i < count; ++i) sum += nearest[i].distance;
-  return sum / static_cast<double>(count);
-}
-
-}  // namespace
 
 void ViewIndex::add(const std::vector<View>& views) {
   shapes_.push_back(views);

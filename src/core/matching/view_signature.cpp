@@ -32,7 +32,15 @@ public:
       : side_(side), corner_(corner), cell_(cell), depths_(static_cast<std::size_t>(side) * side, kBackground) {}
 
   /// Points beyond the raster are left out.
-  void add(const PointColumns& points);
+  void add(const PointColumns& points) {
+    for (Eigen::Index i = 0; i < points.rows(); ++i) {
+      const float u = (points(i, 0) - corner_.x()) / cell_, v = (points(i, 1) - corner_.y()) / cell_;
+      const auto side = static_cast<float>(side_);
+      if (!(u >= 0.0f && v >= 0.0f && u < side && v < side)) continue;
+      float& depth = depths_[static_cast<int>(v) * side_ + static_cast<int>(u)];
+      depth = std::min(depth, points(i, 2));
+    }
+  }
 
   int side() const { return side_; }
   Eigen::Array2f center(int u, int v) const { return corner_ + cell_ * (Eigen::Array2i(u, v).cast<float>() + 0.5f); }
@@ -60,7 +68,25 @@ class SmoothRaster {
 public:
   /// \param middle depth that becomes 0.
   /// \param unit unit of depths, > 0.
-  SmoothRaster(const DepthRaster& raster, float middle, float unit);
+  SmoothRaster(const DepthRaster& raster, float middle, float unit) : side_(raster.side()) {
+    const float weights[3] = {0.25f, 0.5f, 0.25f};
+    const float deepest = kMatching.deepest;
+    values_.resize(static_cast<std::size_t>(side_) * side_);
+    for (int v = 0; v < side_; ++v) {
+      for (int u = 0; u < side_; ++u) {
+        Eigen::Array2f& value = values_[v * side_ + u];
+        value.setZero();
+        for (int j = -1; j <= 1; ++j) {
+          for (int i = -1; i <= 1; ++i) {
+            const float depth = raster.depth(u + i, v + j);
+            if (depth == DepthRaster::kBackground) continue;
+            value += weights[i + 1] * weights[j + 1] *
+                     Eigen::Array2f(1.0f, std::clamp((depth - middle) / unit, -deepest, deepest));
+          }
+        }
+      }
+    }
+  }
 
   /// \param at position in cells from the corner.
   /// \return outline (1 inside) and depth, both 0 beyond the raster.
@@ -91,16 +117,6 @@ void forEachSeenCell(const DepthRaster& raster, const Visit& visit) {
   }
 }
 
-void DepthRaster::add(const PointColumns& points) {
-  for (Eigen::Index i = 0; i < points.rows(); ++i) {
-    const float u = (points(i, 0) - corner_.x()) / cell_, v = (points(i, 1) - corner_.y()) / cell_;
-    const auto side = static_cast<float>(side_);
-    if (!(u >= 0.0f && v >= 0.0f && u < side && v < side)) continue;
-    float& depth = depths_[static_cast<int>(v) * side_ + static_cast<int>(u)];
-    depth = std::min(depth, points(i, 2));
-  }
-}
-
 /// \param in_view N >= 1 points, z away from the viewer.
 /// \throws std::invalid_argument for points that are seen as one.
 ViewOutline outlineOf(const PointColumns& in_view) {
@@ -124,26 +140,6 @@ ViewOutline outlineOf(const PointColumns& in_view) {
   // The mean square distance from the center of a square cell is 1/6 of its squared side.
   outline.radius = std::sqrt(sq_radius / count + extent * extent / (6.0 * cells * cells));
   return outline;
-}
-
-SmoothRaster::SmoothRaster(const DepthRaster& raster, float middle, float unit) : side_(raster.side()) {
-  const float weights[3] = {0.25f, 0.5f, 0.25f};
-  const float deepest = kMatching.deepest;
-  values_.resize(static_cast<std::size_t>(side_) * side_);
-  for (int v = 0; v < side_; ++v) {
-    for (int u = 0; u < side_; ++u) {
-      Eigen::Array2f& value = values_[v * side_ + u];
-      value.setZero();
-      for (int j = -1; j <= 1; ++j) {
-        for (int i = -1; i <= 1; ++i) {
-          const float depth = raster.depth(u + i, v + j);
-          if (depth == DepthRaster::kBackground) continue;
-          value += weights[i + 1] * weights[j + 1] *
-                   Eigen::Array2f(1.0f, std::clamp((depth - middle) / unit, -deepest, deepest));
-        }
-      }
-    }
-  }
 }
 
 constexpr int kNumAngles = 48;        // samples on a ring, and rotations that are compared: 7.5 degrees

@@ -27,31 +27,6 @@ bool isHidden(const Visibility& view, const Eigen::Vector3d& x, const Eigen::Vec
   return isBehind(x) || (beside > 0.0 && (isBehind(x + u) || isBehind(x - u) || isBehind(x + v) || isBehind(x - v)));
 }
 
-}  // namespace
-
-std::vector<VisiblePoint> visiblePoints(const PosedSurface& surface, const PosedSurface& scan,
-                                        const Eigen::Isometry3d& T_scan_surface, int num_points, bool is_strict) {
-  const auto size = std::min<Eigen::Index>(num_points, surface.points.cols());
-  const Eigen::Isometry3f pose = T_scan_surface.cast<float>();
-  Points positions(3, size);
-  for (Eigen::Index i = 0; i < size; ++i) positions.col(i) = pose * surface.points.col(surface.order[i]);
-  const Eigen::Vector3d viewpoint = scan.seen->viewpoint();
-  const std::optional<Visibility> view = Visibility::fromPoints(positions, viewpoint);
-  std::vector<VisiblePoint> visible;
-  if (!view) return visible;
-  const double margin = kRegistration.hidden_depth * boundingBall(surface.points).radius;
-  for (Eigen::Index i = 0; i < size; ++i) {
-    const Eigen::Vector3d x = positions.col(i).cast<double>(), ray = (x - viewpoint).normalized();
-    const Eigen::Vector3d n = (pose.linear() * surface.normals.col(surface.order[i])).cast<double>();
-    const double cosine = std::abs(n.dot(ray));
-    if (cosine < kRegistration.min_cosine || isHidden(*view, x, ray, margin, is_strict ? margin : 0.0)) continue;
-    visible.push_back({i, x, n, cosine, -scan.seen->depthBehind(x) * cosine});
-  }
-  return visible;
-}
-
-namespace {
-
 double diameterOf(const PosedSurface& surface) {
   return 2.0 * boundingBall(surface.points).radius;
 }
@@ -181,6 +156,27 @@ double shareOnSurface(const PosedSurface& from, const Landing& landing, const Po
 }
 
 }  // namespace
+
+std::vector<VisiblePoint> visiblePoints(const PosedSurface& surface, const PosedSurface& scan,
+                                        const Eigen::Isometry3d& T_scan_surface, int num_points, bool is_strict) {
+  const auto size = std::min<Eigen::Index>(num_points, surface.points.cols());
+  const Eigen::Isometry3f pose = T_scan_surface.cast<float>();
+  Points positions(3, size);
+  for (Eigen::Index i = 0; i < size; ++i) positions.col(i) = pose * surface.points.col(surface.order[i]);
+  const Eigen::Vector3d viewpoint = scan.seen->viewpoint();
+  const std::optional<Visibility> view = Visibility::fromPoints(positions, viewpoint);
+  std::vector<VisiblePoint> visible;
+  if (!view) return visible;
+  const double margin = kRegistration.hidden_depth * boundingBall(surface.points).radius;
+  for (Eigen::Index i = 0; i < size; ++i) {
+    const Eigen::Vector3d x = positions.col(i).cast<double>(), ray = (x - viewpoint).normalized();
+    const Eigen::Vector3d n = (pose.linear() * surface.normals.col(surface.order[i])).cast<double>();
+    const double cosine = std::abs(n.dot(ray));
+    if (cosine < kRegistration.min_cosine || isHidden(*view, x, ray, margin, is_strict ? margin : 0.0)) continue;
+    visible.push_back({i, x, n, cosine, -scan.seen->depthBehind(x) * cosine});
+  }
+  return visible;
+}
 
 std::vector<float> discDistances(const PosedSurface& from, const PosedSurface& to, const Eigen::Isometry3d& T_to_from,
                                  int num_points) {

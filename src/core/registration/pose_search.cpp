@@ -31,6 +31,31 @@ Eigen::Matrix3Xd sampleOf(const PosedSurface& surface) {
   return sample;
 }
 
+/// The rotations that represent all rotations about an axis of revolution; the identity alone if there is no such axis.
+std::vector<Eigen::Matrix3d> rotationsOf(const SymmetryFrame& frame) {
+  const bool is_round = frame.revolution_axis >= 0 && frame.revolution_axis < 3;
+  std::vector<Eigen::Matrix3d> rotations{Eigen::Matrix3d::Identity()};
+  for (int k = 1; is_round && k < kRegistration.num_rotations; ++k)
+    rotations.push_back(
+        Eigen::AngleAxisd(2.0 * kPi * k / kRegistration.num_rotations, Eigen::Vector3d::Unit(frame.revolution_axis))
+            .toRotationMatrix());
+  return rotations;
+}
+
+/// The evenly spread rotations of greatest merit.
+std::vector<RankedPose> screened(const PoseStarts& starts, const PoseScorer& scorer, const PoseSearchOptions& options) {
+  std::vector<RankedPose> poses;
+  for (const Eigen::Matrix3d& rotation : uniformRotations(options.num_rotations))
+    poses.push_back({Eigen::Isometry3d(rotation), {}});
+  parallelBlocks(poses.size(), options.num_threads, [&](std::size_t i) {
+    poses[i].T_model_scan = starts.pose(poses[i].T_model_scan.linear());
+    poses[i].score = scorer.score(poses[i].T_model_scan, {kRegistration.screen_points, kRegistration.screen_width});
+  });
+  sortDescending(poses, [](const RankedPose& pose) { return pose.score.merit(); });
+  poses.resize(std::min<std::size_t>(poses.size(), options.num_screened));
+  return poses;
+}
+
 }  // namespace
 
 std::vector<Eigen::Matrix3d> uniformRotations(int num_rotations) {
@@ -68,21 +93,6 @@ Eigen::Isometry3d PoseStarts::pose(const Eigen::Matrix3d& R_model_scan) const {
   return isometry(R_model_scan, anchor - R_model_scan * scan_anchor_);
 }
 
-namespace {
-
-/// The rotations that represent all rotations about an axis of revolution; the identity alone if there is no such axis.
-std::vector<Eigen::Matrix3d> rotationsOf(const SymmetryFrame& frame) {
-  const bool is_round = frame.revolution_axis >= 0 && frame.revolution_axis < 3;
-  std::vector<Eigen::Matrix3d> rotations{Eigen::Matrix3d::Identity()};
-  for (int k = 1; is_round && k < kRegistration.num_rotations; ++k)
-    rotations.push_back(
-        Eigen::AngleAxisd(2.0 * kPi * k / kRegistration.num_rotations, Eigen::Vector3d::Unit(frame.revolution_axis))
-            .toRotationMatrix());
-  return rotations;
-}
-
-}  // namespace
-
 std::vector<Eigen::Isometry3d> frameHypotheses(const SymmetryFrame& a, const SymmetryFrame& b) {
   const Eigen::Isometry3d T_b_canonical = b.T_canonical_input.inverse();
   const std::vector<Eigen::Matrix3d> about_axis = rotationsOf(a);
@@ -101,24 +111,6 @@ std::vector<Eigen::Isometry3d> frameHypotheses(const SymmetryFrame& a, const Sym
   }
   return hypotheses;
 }
-
-namespace {
-
-/// The evenly spread rotations of greatest merit.
-std::vector<RankedPose> screened(const PoseStarts& starts, const PoseScorer& scorer, const PoseSearchOptions& options) {
-  std::vector<RankedPose> poses;
-  for (const Eigen::Matrix3d& rotation : uniformRotations(options.num_rotations))
-    poses.push_back({Eigen::Isometry3d(rotation), {}});
-  parallelBlocks(poses.size(), options.num_threads, [&](std::size_t i) {
-    poses[i].T_model_scan = starts.pose(poses[i].T_model_scan.linear());
-    poses[i].score = scorer.score(poses[i].T_model_scan, {kRegistration.screen_points, kRegistration.screen_width});
-  });
-  sortDescending(poses, [](const RankedPose& pose) { return pose.score.merit(); });
-  poses.resize(std::min<std::size_t>(poses.size(), options.num_screened));
-  return poses;
-}
-
-}  // namespace
 
 void PoseSearchOptions::validate() const {
   check(num_rotations >= 0, "num_rotations", num_rotations, ">= 0");

@@ -45,11 +45,7 @@ PosedSurface::PosedSurface(const PointsRef& input, std::optional<Visibility> see
   checkCancelled();
   normals = std::move(geometry.normals);
   is_oriented = seen && seen->numPictures() == 1;
-  if (is_oriented) {
-    const Eigen::Vector3f viewpoint = seen->viewpoint().cast<float>();
-    for (Eigen::Index i = 0; i < points.cols(); ++i)
-      if (normals.col(i).dot(viewpoint - points.col(i)) < 0.0f) normals.col(i) *= -1.0f;
-  }
+  if (is_oriented) normals = normalsToward(std::move(normals), points, seen->viewpoint().cast<float>());
   noise = median(std::move(geometry.roughness));
   accuracy = typical + 2.0 * noise;
   borders = std::async(std::launch::deferred, [points = points, normals = normals, search = search, neighbors] {

@@ -26,15 +26,6 @@ double greatestDisc(const LocalGeometry& geometry) {
          static_cast<double>(*std::max_element(geometry.spacing.begin(), geometry.spacing.end()));
 }
 
-/// The normals of a scan, oriented toward the scanner.
-Points facingNormals(const NormalizedCloud& cloud) {
-  const Eigen::Vector3f viewpoint = cloud.visibility->viewpoint().cast<float>();
-  Points facing = cloud.geometry.normals;
-  for (Eigen::Index i = 0; i < facing.cols(); ++i)
-    if (facing.col(i).dot(viewpoint - cloud.points.col(i)) < 0.0f) facing.col(i) = -facing.col(i);
-  return facing;
-}
-
 /// The line, moved by tilts about the two directions perpendicular to it and by translations along them.
 Line3d movedLine(const Line3d& line, const Eigen::Vector4d& by) {
   const Eigen::Vector3d u = line.direction().unitOrthogonal(), v = line.direction().cross(u);
@@ -57,6 +48,48 @@ Eigen::Vector4d slopeOf(const std::array<Eigen::Isometry3d, 4>& beside, const Ei
   return slope;
 }
 
+/// HalfTurnEvidence::planes_off_share.
+double planesOffShare(const RotationEvidence& evidence, const Line3d& line) {
+  constexpr double kStep = 0.5 * kPi / kScanAxes.num_plane_pairs;  // radians; pairs repeat after a right angle
+  const auto cost = [&](double angle) {
+    double sum = 0.0;
+    for (const double rotated : {angle, angle + 0.5 * kPi}) {
+      const RotationShares shares =
+          evidence.screen(planeThrough(line, rotated).reflection(), kScanAxes.plane_slack, 1.0, 1.0);
+      sum += shares.off - kScanAxes.landed_counts * shares.on;
+    }
+    return sum;
+  };
+  double best = 0.0, least = cost(0.0);
+  const auto take = [&](double angle) {
+    const double of_angle = cost(angle);
+    if (of_angle >= least) return;
+    least = of_angle;
+    best = angle;
+  };
+  for (int k = 1; k < kScanAxes.num_plane_pairs; ++k) take(k * kStep);
+  const double coarse = best;
+  for (const double beside : {-0.5 * kStep, 0.5 * kStep}) take(coarse + beside);
+  return std::max(evidence.measure(planeThrough(line, best).reflection()).off,
+                  evidence.measure(planeThrough(line, best + 0.5 * kPi).reflection()).off);
+}
+
+/// HalfTurnEvidence::extent_ratio.
+double extentRatio(const NormalizedCloud& cloud, const Eigen::Affine3d& rotation) {
+  const Eigen::Index size = cloud.points.cols();
+  Points both(3, 2 * size);
+  both.leftCols(size) = cloud.points;
+  both.rightCols(size) = rotation.cast<float>() * cloud.points;
+  return std::max(1.0, farthestPair(both) / cloud.extent);
+}
+
+/// Whether two lines, normalized frame, cross at a right angle.
+bool crossesUpright(const Line3d& a, const Line3d& b) {
+  const Eigen::Vector3d across = a.direction().cross(b.direction()).normalized();
+  return std::abs(a.direction().dot(b.direction())) < std::sin(kScanAxes.upright_angle) &&
+         std::abs(across.dot(a.origin() - b.origin())) < kScanAxes.crossing_gap;
+}
+
 }  // namespace
 
 RotationEvidence::RotationEvidence(const NormalizedCloud& cloud, double tolerance, std::uint64_t seed)
@@ -66,7 +99,7 @@ RotationEvidence::RotationEvidence(const NormalizedCloud& cloud, double toleranc
       greatest_disc_(greatestDisc(cloud.geometry)),
       samples_(drawSamples(cloud.points.cols(), kScanAxes.num_samples, seed)),
       few_samples_(drawSamples(cloud.points.cols(), kScanAxes.num_few_samples, seed)),
-      facing_(facingNormals(cloud)) {}
+      facing_(normalsToward(cloud.geometry.normals, cloud.points, cloud.visibility->viewpoint().cast<float>())) {}
 
 RotationShares RotationEvidence::screen(const Eigen::Affine3d& motion, double slack, double max_off,
                                         double max_far) const {
@@ -211,52 +244,6 @@ Line3d RotationEvidence::refineLine(const Line3d& start, const std::vector<doubl
 Line3d RotationEvidence::refineLineClosely(const Line3d& start, const std::vector<double>& angles) const {
   return fitLine(cloud_.surface, start, angles, samples_, kScanAxes.close_fit_widths);
 }
-
-namespace {
-
-/// HalfTurnEvidence::planes_off_share.
-double planesOffShare(const RotationEvidence& evidence, const Line3d& line) {
-  constexpr double kStep = 0.5 * kPi / kScanAxes.num_plane_pairs;  // radians; pairs repeat after a right angle
-  const auto cost = [&](double angle) {
-    double sum = 0.0;
-    for (const double rotated : {angle, angle + 0.5 * kPi}) {
-      const RotationShares shares =
-          evidence.screen(planeThrough(line, rotated).reflection(), kScanAxes.plane_slack, 1.0, 1.0);
-      sum += shares.off - kScanAxes.landed_counts * shares.on;
-    }
-    return sum;
-  };
-  double best = 0.0, least = cost(0.0);
-  const auto take = [&](double angle) {
-    const double of_angle = cost(angle);
-    if (of_angle >= least) return;
-    least = of_angle;
-    best = angle;
-  };
-  for (int k = 1; k < kScanAxes.num_plane_pairs; ++k) take(k * kStep);
-  const double coarse = best;
-  for (const double beside : {-0.5 * kStep, 0.5 * kStep}) take(coarse + beside);
-  return std::max(evidence.measure(planeThrough(line, best).reflection()).off,
-                  evidence.measure(planeThrough(line, best + 0.5 * kPi).reflection()).off);
-}
-
-/// HalfTurnEvidence::extent_ratio.
-double extentRatio(const NormalizedCloud& cloud, const Eigen::Affine3d& rotation) {
-  const Eigen::Index size = cloud.points.cols();
-  Points both(3, 2 * size);
-  both.leftCols(size) = cloud.points;
-  both.rightCols(size) = rotation.cast<float>() * cloud.points;
-  return std::max(1.0, farthestPair(both) / cloud.extent);
-}
-
-/// Whether two lines, normalized frame, cross at a right angle.
-bool crossesUpright(const Line3d& a, const Line3d& b) {
-  const Eigen::Vector3d across = a.direction().cross(b.direction()).normalized();
-  return std::abs(a.direction().dot(b.direction())) < std::sin(kScanAxes.upright_angle) &&
-         std::abs(across.dot(a.origin() - b.origin())) < kScanAxes.crossing_gap;
-}
-
-}  // namespace
 
 std::vector<HalfTurnEvidence> halfTurnEvidence(const RotationEvidence& evidence,
                                                const std::vector<SymmetryRotation>& rotations, double min_confidence,

@@ -13,17 +13,6 @@
 
 namespace pcl_symmetry {
 
-namespace {
-
-/// Indices of at most \p max_count of \p size items, evenly spread.
-std::vector<std::size_t> spreadOver(std::size_t size, std::size_t max_count) {
-  std::vector<std::size_t> chosen(std::min(size, max_count));
-  for (std::size_t i = 0; i < chosen.size(); ++i) chosen[i] = i * size / chosen.size();
-  return chosen;
-}
-
-}  // namespace
-
 double RotationLimits::excess(const OffShares& shares) const {
   const double far = std::max(kRotation.min_far, kRotation.far_of_feature * max_feature);
   const double by_off = max_feature > 0.0 ? shares.off / max_feature : (shares.off > 0.0 ? 2.0 : 0.0);
@@ -153,13 +142,14 @@ double RotationFit::overlap(const RotationSet& set) const {
 
 RotationSet RotationFit::fitRoughly(const RotationSet& set) const {
   const double sigma = edt_.sigma();
-  return fitRotations(set, spreadOver(set.num_judged, kRotation.max_fitted), kRotation.num_rough_points,
+  return fitRotations(set, equalSteps(static_cast<Eigen::Index>(set.num_judged), kRotation.max_fitted),
+                      kRotation.num_rough_points,
                       {sigma, std::max(std::min(sigma, first_sigma_), 0.5 * sigma), kRotation.rough_iterations, true});
 }
 
 RotationSet RotationFit::fitClosely(const RotationSet& set) const {
-  return fitRotations(set, spreadOver(set.rotations.size(), kRotation.max_fitted), kRotation.num_close_points,
-                      {first_sigma_, last_sigma_, kRotation.close_iterations, false});
+  return fitRotations(set, equalSteps(static_cast<Eigen::Index>(set.rotations.size()), kRotation.max_fitted),
+                      kRotation.num_close_points, {first_sigma_, last_sigma_, kRotation.close_iterations, false});
 }
 
 /// The sample that the grid gives for the cell of a point, or a neighbor of that sample that is closer.
@@ -218,7 +208,7 @@ SmallMotionEquations RotationFit::equations(const RotationSet& set, std::size_t 
   return sums;
 }
 
-RotationSet RotationFit::fitRotations(RotationSet set, const std::vector<std::size_t>& used, int num_samples,
+RotationSet RotationFit::fitRotations(RotationSet set, const std::vector<int>& used, int num_samples,
                                       Annealing annealing) const {
   std::vector<SmallMotionEquations> parts(used.size());
   for (int iteration = 0; iteration < annealing.max_iterations; ++iteration) {

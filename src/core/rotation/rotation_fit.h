@@ -135,8 +135,7 @@ private:
   /// Least squares of the distances m . (x' - y) in a small rotation of all axes and a translation of the center.
   SmallMotionEquations equations(const RotationSet& set, std::size_t i, int num_samples,
                                  const Annealing& annealing) const;
-  RotationSet fitRotations(RotationSet set, const std::vector<std::size_t>& used, int num_samples,
-                           Annealing annealing) const;
+  RotationSet fitRotations(RotationSet set, const std::vector<int>& used, int num_samples, Annealing annealing) const;
 
   std::shared_ptr<const Surface> surface_;
   const GaussianEdt& edt_;

@@ -61,7 +61,7 @@ struct RotationRules {
   double last_tolerances = 0.7;   // width of the weights at the end, tolerances, unless last_roughnesses is more
   double last_roughnesses = 3.0;  // width of the weights at the end, roughnesses, unless last_tolerances is more
   double settled_step = 2e-4;     // step that ends the fit: a hundredth of the default tolerance
-  std::size_t max_fitted = 6;     // greatest number of rotations of a large group that are fitted, spread over it
+  Eigen::Index max_fitted = 6;    // greatest number of rotations of a large group that are fitted, spread over it
   double rough_overlap = 0.6;     // least overlap of a set before its fit
   double fair_overlap = 0.7;      // least overlap of a set after its rough fit
 

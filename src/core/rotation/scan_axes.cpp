@@ -107,11 +107,7 @@ std::vector<AxisStart> startsFromPlanes(const std::vector<ReflectionPlane>& plan
 /// Maxima of an axial transform with few bins and the free space of the scan.
 std::vector<AxisStart> startsFromTransform(const NormalizedCloud& cloud, std::uint64_t seed, int num_threads) {
   const GaussianEdt edt(cloud.points, {kScanAxes.coarse_cells, 0.0, num_threads});
-  AxialTransformOptions options;
-  options.folds = {2, 3, 4, 5, 6};
-  options.num_samples = kScanAxes.coarse_samples;
-  options.seed = seed;
-  options.num_threads = num_threads;
+  const AxialTransformOptions options{{2, 3, 4, 5, 6}, kScanAxes.coarse_samples, seed, num_threads};
   const AxisGrid grid(kScanAxes.coarse_theta, kScanAxes.coarse_phi, kScanAxes.coarse_offset, edt.center(),
                       kScanAxes.coarse_reach * edt.radius());
   const AxisMap map = axialTransform(edt, grid, options, &*cloud.visibility);

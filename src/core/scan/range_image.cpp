@@ -248,45 +248,6 @@ double typicalRoughness(const Points& surface, Eigen::Index stride) {
                     .roughness);
 }
 
-}  // namespace
-
-SeenPositions positionsSeen(const PointsRef& points, const Eigen::Vector3d& viewpoint,
-                            const Eigen::Matrix3d& R_camera_input, FieldOfView field) {
-  SeenPositions seen;
-  seen.positions.reserve(points.cols());
-  for (Eigen::Index i = 0; i < points.cols(); ++i) {
-    const Eigen::Vector3d ray = R_camera_input * (points.col(i).cast<double>() - viewpoint);
-    const bool inside = field == FieldOfView::Cone ? ray.z() > kLeastCosine * ray.norm()
-                                                   : ray.z() > 0.0 && ray.head<2>().cwiseAbs().maxCoeff() <= ray.z();
-    if (!inside) continue;
-    seen.positions.push_back(ray.head<2>().array() / ray.z());
-    seen.depths.push_back(static_cast<float>(ray.z()));
-  }
-  return seen;
-}
-
-RangeImage rangeImage(const SeenPositions& seen, std::size_t max_pixels) {
-  RangeImage image = nearestInPixels(seen, max_pixels, kScan.points_per_pixel);
-  closeSurfaces(image, std::numeric_limits<std::size_t>::max());
-  return image;
-}
-
-RangeImage sceneRangeImage(const SeenPositions& seen, std::size_t max_pixels) {
-  RangeImage image = nearestInPixels(seen, max_pixels, kScan.points_per_ring_pixel);
-  const double gap = typicalGap(image);
-  if (gap < kScan.gap_of_rings) {
-    image = nearestInPixels(seen, max_pixels, kScan.points_per_pixel);
-    closeSurfaces(image, static_cast<std::size_t>(kScan.largest_scene_hole / kScan.points_per_pixel));
-  } else {
-    bridgeGaps(image, kScan.longest_bridge * gap);
-    closeGaps(image, static_cast<std::size_t>(kScan.largest_scene_hole / kScan.points_per_ring_pixel));
-  }
-  forgetOutside(image);
-  return image;
-}
-
-namespace {
-
 using Positions = std::vector<Eigen::Array2d>;
 
 /// The direction of the rows of positions, one of four at right angles, and the distance of neighbors.
@@ -354,6 +315,41 @@ Positions nearSide(const Positions& positions, double angle, double pitch) {
 }
 
 }  // namespace
+
+SeenPositions positionsSeen(const PointsRef& points, const Eigen::Vector3d& viewpoint,
+                            const Eigen::Matrix3d& R_camera_input, FieldOfView field) {
+  SeenPositions seen;
+  seen.positions.reserve(points.cols());
+  for (Eigen::Index i = 0; i < points.cols(); ++i) {
+    const Eigen::Vector3d ray = R_camera_input * (points.col(i).cast<double>() - viewpoint);
+    const bool inside = field == FieldOfView::Cone ? ray.z() > kLeastCosine * ray.norm()
+                                                   : ray.z() > 0.0 && ray.head<2>().cwiseAbs().maxCoeff() <= ray.z();
+    if (!inside) continue;
+    seen.positions.push_back(ray.head<2>().array() / ray.z());
+    seen.depths.push_back(static_cast<float>(ray.z()));
+  }
+  return seen;
+}
+
+RangeImage rangeImage(const SeenPositions& seen, std::size_t max_pixels) {
+  RangeImage image = nearestInPixels(seen, max_pixels, kScan.points_per_pixel);
+  closeSurfaces(image, std::numeric_limits<std::size_t>::max());
+  return image;
+}
+
+RangeImage sceneRangeImage(const SeenPositions& seen, std::size_t max_pixels) {
+  RangeImage image = nearestInPixels(seen, max_pixels, kScan.points_per_ring_pixel);
+  const double gap = typicalGap(image);
+  if (gap < kScan.gap_of_rings) {
+    image = nearestInPixels(seen, max_pixels, kScan.points_per_pixel);
+    closeSurfaces(image, static_cast<std::size_t>(kScan.largest_scene_hole / kScan.points_per_pixel));
+  } else {
+    bridgeGaps(image, kScan.longest_bridge * gap);
+    closeGaps(image, static_cast<std::size_t>(kScan.largest_scene_hole / kScan.points_per_ring_pixel));
+  }
+  forgetOutside(image);
+  return image;
+}
 
 std::vector<FrameSide> frameSides(const Positions& positions) {
   std::vector<FrameSide> sides;

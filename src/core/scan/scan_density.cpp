@@ -145,9 +145,7 @@ double ScanDensity::unexplainedByPatches(const Eigen::Vector3d& viewpoint) const
 
 bool ScanDensity::bulgesToward(const Eigen::Vector3d& viewpoint) const {
   const Eigen::Vector3f eye = ((viewpoint - ball_.center) / ball_.radius).cast<float>();
-  Points toward = normals_;
-  for (Eigen::Index i = 0; i < toward.cols(); ++i)
-    if (toward.col(i).dot(eye - samples_.col(i)) < 0.0f) toward.col(i) *= -1.0f;
+  Points toward = normalsToward(normals_, samples_, eye);
   toward.colwise() -= toward.rowwise().mean().eval();
   return toward.cwiseProduct(samples_).sum() > 0.0f;
 }

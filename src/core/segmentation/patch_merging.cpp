@@ -152,36 +152,6 @@ Segmentation segmentsOf(const SurfaceGraph& graph, const PartEvidence& evidence,
   return result;
 }
 
-}  // namespace
-
-Segmentation segmentByMerging(const SurfaceGraph& graph, const SegmentationOptions& options) {
-  const auto tell = [&](double share) {
-    if (options.progress) options.progress(share);
-  };
-  const WholeEvidence whole(graph, options);
-  tell(0.3);
-  const MergeWeights& weights = kMergeFit[static_cast<std::size_t>(options.evidence)];
-  const std::size_t num_divisions = kSegmentation.num_divisions;
-  std::vector<MergedDivision> divisions(num_divisions);
-  std::optional<PartEvidence> first;
-  parallelBlocks(num_divisions, options.num_threads, [&](std::size_t d) {
-    PartEvidence evidence = whole.ofDivision(static_cast<int>(d));
-    divisions[d] = mergedDivision(evidence, weights, options.num_parts);
-    if (d == 0) first = std::move(evidence);
-  });
-  tell(0.8);
-  const std::optional<LabelSymmetry> symmetry = symmetricPlane(whole, options);
-  for (std::size_t d = 0; symmetry && d < num_divisions; ++d)
-    divisions.push_back(reflectedDivision(divisions[d], symmetry->reflected));
-  std::vector<int> labels =
-      refinedLabels(graph, consensus(graph, divisions, options.num_parts), symmetry, first->size(), options);
-  Segmentation result = segmentsOf(graph, *first, std::move(labels), weights);
-  tell(1.0);
-  return result;
-}
-
-namespace {
-
 /// Elements that lie in one cell of every division.
 struct CommonCells {
   std::vector<int> of_element;          ///< for each element, its common cell, from 0
@@ -290,6 +260,32 @@ private:
 };
 
 }  // namespace
+
+Segmentation segmentByMerging(const SurfaceGraph& graph, const SegmentationOptions& options) {
+  const auto tell = [&](double share) {
+    if (options.progress) options.progress(share);
+  };
+  const WholeEvidence whole(graph, options);
+  tell(0.3);
+  const MergeWeights& weights = kMergeFit[static_cast<std::size_t>(options.evidence)];
+  const std::size_t num_divisions = kSegmentation.num_divisions;
+  std::vector<MergedDivision> divisions(num_divisions);
+  std::optional<PartEvidence> first;
+  parallelBlocks(num_divisions, options.num_threads, [&](std::size_t d) {
+    PartEvidence evidence = whole.ofDivision(static_cast<int>(d));
+    divisions[d] = mergedDivision(evidence, weights, options.num_parts);
+    if (d == 0) first = std::move(evidence);
+  });
+  tell(0.8);
+  const std::optional<LabelSymmetry> symmetry = symmetricPlane(whole, options);
+  for (std::size_t d = 0; symmetry && d < num_divisions; ++d)
+    divisions.push_back(reflectedDivision(divisions[d], symmetry->reflected));
+  std::vector<int> labels =
+      refinedLabels(graph, consensus(graph, divisions, options.num_parts), symmetry, first->size(), options);
+  Segmentation result = segmentsOf(graph, *first, std::move(labels), weights);
+  tell(1.0);
+  return result;
+}
 
 std::vector<int> consensus(const SurfaceGraph& graph, const std::vector<MergedDivision>& divisions, int num_parts) {
   const CommonCells common = commonCells(graph, divisions);

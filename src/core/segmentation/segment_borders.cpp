@@ -114,31 +114,6 @@ Network networkOf(const SurfaceGraph& graph, const std::vector<int>& side, const
   return network;
 }
 
-}  // namespace
-
-std::vector<int> cutBorder(const SurfaceGraph& graph, std::vector<int> side, const std::vector<int>& open,
-                           const BorderCutOptions& options) {
-  const std::vector<float> distance = distanceFromBorder(graph, side, static_cast<float>(options.band));
-  const std::vector<int> movable = movableElements(side, distance, open);
-  Network network = networkOf(graph, side, movable, options.concavity_weight);
-  checkCancelled();
-  std::size_t num_looked_up = 0;
-  const auto index = boost::make_function_property_map<std::size_t>([&](std::size_t node) {
-    if (++num_looked_up % 65536 == 0) checkCancelled();
-    return node;
-  });
-  boost::boykov_kolmogorov_max_flow(
-      network, boost::get(boost::edge_capacity, network), boost::get(boost::edge_residual_capacity, network),
-      boost::get(boost::edge_reverse, network), boost::get(boost::vertex_predecessor, network),
-      boost::get(boost::vertex_color, network), boost::get(boost::vertex_distance, network), index, movable.size(),
-      movable.size() + 1);
-  for (std::size_t i = 0; i < movable.size(); ++i)
-    side[movable[i]] = boost::get(boost::vertex_color, network, i) == boost::black_color ? 0 : 1;
-  return side;
-}
-
-namespace {
-
 /// Connected pieces of equal label.
 struct Pieces {
   std::vector<int> of_element;
@@ -175,39 +150,6 @@ int labelOfMost(const std::map<int, double>& lengths) {
   const auto shorter = [](const auto& a, const auto& b) { return a.second < b.second; };
   return std::max_element(lengths.begin(), lengths.end(), shorter)->first;
 }
-
-}  // namespace
-
-std::vector<int> smoothBorders(const SurfaceGraph& graph, std::vector<int> labels, const BorderCutOptions& options) {
-  std::set<std::pair<int, int>> pairs;
-  for (const SurfaceGraph::Edge& edge : graph.edges) {
-    const auto pair = std::minmax(labels[edge.from], labels[edge.to]);
-    if (pair.first != pair.second) pairs.insert(pair);
-  }
-  for (const auto& [a, b] : pairs) {
-    std::vector<int> side;
-    for (const int label : labels) side.push_back(label == a ? 0 : label == b ? 1 : -1);
-    side = cutBorder(graph, std::move(side), {}, options);
-    for (std::size_t i = 0; i < side.size(); ++i)
-      if (side[i] >= 0) labels[i] = side[i] == 0 ? a : b;
-  }
-  return labels;
-}
-
-std::vector<int> joinCrumbs(const SurfaceGraph& graph, const std::vector<int>& labels, double min_area) {
-  const Pieces pieces = piecesOf(graph, labels);
-  std::vector<int> moved = pieces.labels;
-  for (std::size_t p = 0; p < moved.size(); ++p) {
-    const std::map<int, double>& contacts = pieces.contacts[p];
-    if (pieces.is_largest[p] || pieces.areas[p] >= min_area || contacts.empty()) continue;
-    moved[p] = labelOfMost(contacts);
-  }
-  std::vector<int> result(labels.size());
-  for (std::size_t i = 0; i < result.size(); ++i) result[i] = moved[pieces.of_element[i]];
-  return result;
-}
-
-namespace {
 
 /// Segments with their areas and the lengths of their common borders, input units.
 class SmallSegments {
@@ -280,6 +222,56 @@ private:
 };
 
 }  // namespace
+
+std::vector<int> cutBorder(const SurfaceGraph& graph, std::vector<int> side, const std::vector<int>& open,
+                           const BorderCutOptions& options) {
+  const std::vector<float> distance = distanceFromBorder(graph, side, static_cast<float>(options.band));
+  const std::vector<int> movable = movableElements(side, distance, open);
+  Network network = networkOf(graph, side, movable, options.concavity_weight);
+  checkCancelled();
+  std::size_t num_looked_up = 0;
+  const auto index = boost::make_function_property_map<std::size_t>([&](std::size_t node) {
+    if (++num_looked_up % 65536 == 0) checkCancelled();
+    return node;
+  });
+  boost::boykov_kolmogorov_max_flow(
+      network, boost::get(boost::edge_capacity, network), boost::get(boost::edge_residual_capacity, network),
+      boost::get(boost::edge_reverse, network), boost::get(boost::vertex_predecessor, network),
+      boost::get(boost::vertex_color, network), boost::get(boost::vertex_distance, network), index, movable.size(),
+      movable.size() + 1);
+  for (std::size_t i = 0; i < movable.size(); ++i)
+    side[movable[i]] = boost::get(boost::vertex_color, network, i) == boost::black_color ? 0 : 1;
+  return side;
+}
+
+std::vector<int> smoothBorders(const SurfaceGraph& graph, std::vector<int> labels, const BorderCutOptions& options) {
+  std::set<std::pair<int, int>> pairs;
+  for (const SurfaceGraph::Edge& edge : graph.edges) {
+    const auto pair = std::minmax(labels[edge.from], labels[edge.to]);
+    if (pair.first != pair.second) pairs.insert(pair);
+  }
+  for (const auto& [a, b] : pairs) {
+    std::vector<int> side;
+    for (const int label : labels) side.push_back(label == a ? 0 : label == b ? 1 : -1);
+    side = cutBorder(graph, std::move(side), {}, options);
+    for (std::size_t i = 0; i < side.size(); ++i)
+      if (side[i] >= 0) labels[i] = side[i] == 0 ? a : b;
+  }
+  return labels;
+}
+
+std::vector<int> joinCrumbs(const SurfaceGraph& graph, const std::vector<int>& labels, double min_area) {
+  const Pieces pieces = piecesOf(graph, labels);
+  std::vector<int> moved = pieces.labels;
+  for (std::size_t p = 0; p < moved.size(); ++p) {
+    const std::map<int, double>& contacts = pieces.contacts[p];
+    if (pieces.is_largest[p] || pieces.areas[p] >= min_area || contacts.empty()) continue;
+    moved[p] = labelOfMost(contacts);
+  }
+  std::vector<int> result(labels.size());
+  for (std::size_t i = 0; i < result.size(); ++i) result[i] = moved[pieces.of_element[i]];
+  return result;
+}
 
 std::vector<int> joinSmallSegments(const SurfaceGraph& graph, std::vector<int> labels, double min_area,
                                    int max_segments) {

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "core/base/parallel.h"
+#include "core/base/random.h"
 #include "core/geometry/geometry_rules.h"
 #include "core/geometry/point_samples.h"
 #include "core/geometry/surface_normals.h"
@@ -82,10 +83,8 @@ SymmetryFeatures symmetryFeatures(const SurfaceGraph& graph, const std::vector<i
   features.radius = boundingBall(samples).radius;
   if (options.splitting.as_published) {
     const SymmetryMap map = publishedMap(samples, edt, TransformMethod::Convolution, seed, num_threads);
-    PublishedOptions published;
+    auto published = optionsWith<PublishedOptions>(seed, num_threads);
     published.num_points = kSegmentation.published_samples;
-    published.seed = seed;
-    published.num_threads = num_threads;
     for (const SymmetryPlane& plane : publishedPlanes(samples, edt, map, published))
       features.planes.push_back({plane, 0.0});
   } else {

@@ -70,26 +70,6 @@ void moveCenters(const Eigen::MatrixXf& features, const std::vector<float>& weig
     if (totals[k] > 0.0) clusters.centers.col(k) = (sums.col(k) / totals[k]).cast<float>();
 }
 
-}  // namespace
-
-Clusters kMeans(const Eigen::MatrixXf& features, const std::vector<float>& weights, int num_clusters,
-                std::uint64_t seed) {
-  constexpr int num_tries = 4, max_iterations = 100;
-  Clusters best;
-  for (int attempt = 0; attempt < num_tries; ++attempt) {
-    RandomStream random(seed, attempt);
-    Clusters clusters;
-    clusters.labels.assign(features.cols(), -1);
-    clusters.centers = spreadCenters(features, weights, num_clusters, random);
-    for (int i = 0; i < max_iterations && assign(features, weights, clusters); ++i)
-      moveCenters(features, weights, clusters);
-    if (attempt == 0 || clusters.sq_error < best.sq_error) best = std::move(clusters);
-  }
-  return best;
-}
-
-namespace {
-
 /// The elements of both sides of a split.
 struct SplitPart {
   std::vector<int> first, second;
@@ -228,6 +208,22 @@ private:
 };
 
 }  // namespace
+
+Clusters kMeans(const Eigen::MatrixXf& features, const std::vector<float>& weights, int num_clusters,
+                std::uint64_t seed) {
+  constexpr int num_tries = 4, max_iterations = 100;
+  Clusters best;
+  for (int attempt = 0; attempt < num_tries; ++attempt) {
+    RandomStream random(seed, attempt);
+    Clusters clusters;
+    clusters.labels.assign(features.cols(), -1);
+    clusters.centers = spreadCenters(features, weights, num_clusters, random);
+    for (int i = 0; i < max_iterations && assign(features, weights, clusters); ++i)
+      moveCenters(features, weights, clusters);
+    if (attempt == 0 || clusters.sq_error < best.sq_error) best = std::move(clusters);
+  }
+  return best;
+}
 
 Segmentation segmentBySplitting(const SurfaceGraph& graph, const SegmentationOptions& options) {
   SplittingTree tree(graph, options);

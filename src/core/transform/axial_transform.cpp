@@ -52,58 +52,6 @@ std::vector<AxialRotation> rotationsOf(const std::vector<int>& folds, bool both_
   return rotations;
 }
 
-}  // namespace
-
-AxisGrid::AxisGrid(int num_theta, int num_phi, int num_offset, const Eigen::Vector3d& center, double radius)
-    : num_theta_(num_theta), num_phi_(num_phi), num_offset_(num_offset), center_(center), radius_(radius) {
-  constexpr int max_per_axis = 1024;            // 0.1 degrees
-  constexpr std::size_t max_bins = 1ull << 28;  // 1 GiB for each fold
-  check(num_theta >= 1 && num_theta <= max_per_axis, "num_theta", num_theta, "in [1, 1024]");
-  check(num_phi >= 2 && num_phi <= max_per_axis && num_phi % 2 == 0, "num_phi", num_phi, "even and in [2, 1024]");
-  check(num_offset >= 1 && num_offset <= max_per_axis, "num_offset", num_offset, "in [1, 1024]");
-  check(size() <= max_bins, "number of bins", size(), "at most 268435456");
-  check(center.allFinite(), "center", center.transpose(), "finite");
-  check(std::isfinite(radius) && radius > 0.0, "radius", radius, "finite and > 0");
-}
-
-std::size_t AxisGrid::index(const Bin& bin) const {
-  const std::size_t direction = static_cast<std::size_t>(bin.theta) * num_phi_ + bin.phi;
-  return (direction * num_offset_ + bin.v) * num_offset_ + bin.u;
-}
-
-AxisGrid::Bin AxisGrid::bin(std::size_t index) const {
-  const std::size_t row = index / num_offset_, direction = row / num_offset_;
-  return {static_cast<int>(direction / num_phi_), static_cast<int>(direction % num_phi_),
-          static_cast<int>(index % num_offset_), static_cast<int>(row % num_offset_)};
-}
-
-Eigen::Matrix3d AxisGrid::frame(std::size_t direction) const {
-  const double theta = (direction / num_phi_ + 0.5) * 0.5 * kPi / num_theta_;
-  const double phi = (direction % num_phi_ + 0.5) * 2.0 * kPi / num_phi_;
-  Eigen::Matrix3d frame;
-  frame.col(0) << std::cos(theta) * std::cos(phi), std::cos(theta) * std::sin(phi), -std::sin(theta);
-  frame.col(1) << -std::sin(phi), std::cos(phi), 0.0;
-  frame.col(2) << std::sin(theta) * std::cos(phi), std::sin(theta) * std::sin(phi), std::cos(theta);
-  return frame;
-}
-
-Line3d AxisGrid::axis(const Bin& bin) const {
-  const Eigen::Matrix3d axes = frame(static_cast<std::size_t>(bin.theta) * num_phi_ + bin.phi);
-  return {center_ + offset(bin.u) * axes.col(0) + offset(bin.v) * axes.col(1), axes.col(2)};
-}
-
-void AxialTransformOptions::validate() const {
-  check(!folds.empty(), "number of folds", folds.size(), ">= 1");
-  for (std::size_t i = 0; i < folds.size(); ++i) {
-    check(folds[i] == 0 || (folds[i] >= 2 && folds[i] <= 60), "fold", folds[i], "0 or in [2, 60]");
-    check(std::count(folds.begin(), folds.end(), folds[i]) == 1, "fold", folds[i], "named once");
-  }
-  check(num_samples >= 1 && num_samples <= 1'000'000, "num_samples", num_samples, "in [1, 1000000]");
-  checkNumThreads(num_threads);
-}
-
-namespace {
-
 constexpr std::size_t kDirectionsPerBlock = 4;
 
 /// The bins of u with u^2 + v^2 <= radius^2.
@@ -141,50 +89,6 @@ void addRotation(LineSums& lines, const GaussianEdt& edt, const AxisGrid& grid, 
       }
   }
 }
-
-}  // namespace
-
-AxisMap axialTransform(const GaussianEdt& edt, const AxisGrid& grid, const AxialTransformOptions& options,
-                       const Visibility* visibility) {
-  options.validate();
-  const LookupTable table(edt, freeSpace(edt, visibility, options.num_threads), options.num_threads);
-  const Eigen::Matrix3Xf samples = centeredSamples(edt, options.num_samples, options.seed, options.num_threads);
-  const std::vector<AxialRotation> rotations = rotationsOf(options.folds, visibility != nullptr);
-  const double scale = edt.sum() / (edt.sqNorm() * options.num_samples * LookupTable::kOne);
-  const std::size_t per_direction = static_cast<std::size_t>(grid.numOffset()) * grid.numOffset();
-  AxisMap map{grid, options.folds, {}, std::vector<float>(grid.size(), 0.0f), edt.sigma()};
-  map.values.assign(options.folds.size(), map.greatest);
-  const auto run = [&](std::size_t begin, std::size_t end) {
-    LineSums lines(edt, table, grid.numOffset());
-    const std::vector<std::vector<float>> nothing(options.folds.size(), std::vector<float>(per_direction, 0.0f));
-    for (std::size_t direction = begin; direction < end; ++direction) {
-      std::vector<std::vector<std::vector<float>>> sums(table.numFunctions(), nothing);
-      for (const AxialRotation& rotation : rotations)
-        addRotation(lines, edt, grid, grid.frame(direction), rotation, scale, samples, sums);
-      for (std::size_t i = 0; i < options.folds.size(); ++i) {
-        float* const values = map.values[i].data() + direction * per_direction;
-        float* const greatest = map.greatest.data() + direction * per_direction;
-        for (std::size_t k = 0; k < per_direction; ++k) {
-          const float d = sums[0][i][k];
-          values[k] = visibility ? static_cast<float>(seenSymmetry(d, sums[1][i][k])) : d;
-          greatest[k] = std::max(greatest[k], values[k]);
-        }
-      }
-    }
-  };
-  parallelRanges(grid.numDirections(), kDirectionsPerBlock, options.num_threads, run);
-  return map;
-}
-
-int bestFold(const std::vector<int>& folds, const std::vector<double>& values) {
-  const double least = *std::max_element(values.begin(), values.end()) - kTransform.equal_orders;
-  int best = -1;
-  for (std::size_t i = 0; i < folds.size(); ++i)
-    if (values[i] >= least && best != 0 && (folds[i] == 0 || folds[i] > best)) best = folds[i];
-  return best;
-}
-
-namespace {
 
 bool isSameAxis(const Line3d& a, const Line3d& b, const Eigen::Vector3d& center, double angle, double distance) {
   const double cosine = std::abs(a.direction().dot(b.direction()));
@@ -288,34 +192,6 @@ std::vector<Line3d> startsOf(const AxisMap& map, std::size_t count, double min_v
   return starts;
 }
 
-}  // namespace
-
-std::vector<AxisMaximum> axisMaxima(const AxisMap& map, const GaussianEdt& edt, int count, double min_value,
-                                    const AxialTransformOptions& options) {
-  options.validate();
-  check(count >= 1, "count", count, ">= 1");
-  check(min_value >= 0.0 && min_value <= 1.0, "min_value", min_value, "in [0, 1]");
-  if (map.empty()) return {};
-  const std::vector<Line3d> starts =
-      startsOf(map, static_cast<std::size_t>(count) * kTransform.starts_per_maximum, kTransform.min_of_bin * min_value);
-  const AxisClimb climb(edt, map, options);
-  std::vector<AxisMaximum> candidates(starts.size());
-  parallelBlocks(starts.size(), options.num_threads, [&](std::size_t i) { candidates[i] = climb.refine(starts[i]); });
-  sortDescending(candidates, &AxisMaximum::value);
-  std::vector<AxisMaximum> maxima;
-  for (const AxisMaximum& maximum : candidates) {
-    if (maximum.value < min_value || static_cast<int>(maxima.size()) == count) break;
-    if (std::none_of(maxima.begin(), maxima.end(), [&](const AxisMaximum& other) {
-          return isSameAxis(maximum.axis, other.axis, map.grid.center(), kTransform.same_maximum,
-                            kTransform.same_offset * map.sigma);
-        }))
-      maxima.push_back(maximum);
-  }
-  return maxima;
-}
-
-namespace {
-
 constexpr std::size_t kPointsAtATime = 1024;  // their values stay in the first-level cache
 
 /// Values of one direction, bilinear between their bins and 0 beyond.
@@ -349,6 +225,118 @@ private:
 };
 
 }  // namespace
+
+AxisGrid::AxisGrid(int num_theta, int num_phi, int num_offset, const Eigen::Vector3d& center, double radius)
+    : num_theta_(num_theta), num_phi_(num_phi), num_offset_(num_offset), center_(center), radius_(radius) {
+  constexpr int max_per_axis = 1024;            // 0.1 degrees
+  constexpr std::size_t max_bins = 1ull << 28;  // 1 GiB for each fold
+  check(num_theta >= 1 && num_theta <= max_per_axis, "num_theta", num_theta, "in [1, 1024]");
+  check(num_phi >= 2 && num_phi <= max_per_axis && num_phi % 2 == 0, "num_phi", num_phi, "even and in [2, 1024]");
+  check(num_offset >= 1 && num_offset <= max_per_axis, "num_offset", num_offset, "in [1, 1024]");
+  check(size() <= max_bins, "number of bins", size(), "at most 268435456");
+  check(center.allFinite(), "center", center.transpose(), "finite");
+  check(std::isfinite(radius) && radius > 0.0, "radius", radius, "finite and > 0");
+}
+
+std::size_t AxisGrid::index(const Bin& bin) const {
+  const std::size_t direction = static_cast<std::size_t>(bin.theta) * num_phi_ + bin.phi;
+  return (direction * num_offset_ + bin.v) * num_offset_ + bin.u;
+}
+
+AxisGrid::Bin AxisGrid::bin(std::size_t index) const {
+  const std::size_t row = index / num_offset_, direction = row / num_offset_;
+  return {static_cast<int>(direction / num_phi_), static_cast<int>(direction % num_phi_),
+          static_cast<int>(index % num_offset_), static_cast<int>(row % num_offset_)};
+}
+
+Eigen::Matrix3d AxisGrid::frame(std::size_t direction) const {
+  const double theta = (direction / num_phi_ + 0.5) * 0.5 * kPi / num_theta_;
+  const double phi = (direction % num_phi_ + 0.5) * 2.0 * kPi / num_phi_;
+  Eigen::Matrix3d frame;
+  frame.col(0) << std::cos(theta) * std::cos(phi), std::cos(theta) * std::sin(phi), -std::sin(theta);
+  frame.col(1) << -std::sin(phi), std::cos(phi), 0.0;
+  frame.col(2) << std::sin(theta) * std::cos(phi), std::sin(theta) * std::sin(phi), std::cos(theta);
+  return frame;
+}
+
+Line3d AxisGrid::axis(const Bin& bin) const {
+  const Eigen::Matrix3d axes = frame(static_cast<std::size_t>(bin.theta) * num_phi_ + bin.phi);
+  return {center_ + offset(bin.u) * axes.col(0) + offset(bin.v) * axes.col(1), axes.col(2)};
+}
+
+void AxialTransformOptions::validate() const {
+  check(!folds.empty(), "number of folds", folds.size(), ">= 1");
+  for (std::size_t i = 0; i < folds.size(); ++i) {
+    check(folds[i] == 0 || (folds[i] >= 2 && folds[i] <= 60), "fold", folds[i], "0 or in [2, 60]");
+    check(std::count(folds.begin(), folds.end(), folds[i]) == 1, "fold", folds[i], "named once");
+  }
+  check(num_samples >= 1 && num_samples <= 1'000'000, "num_samples", num_samples, "in [1, 1000000]");
+  checkNumThreads(num_threads);
+}
+
+AxisMap axialTransform(const GaussianEdt& edt, const AxisGrid& grid, const AxialTransformOptions& options,
+                       const Visibility* visibility) {
+  options.validate();
+  const LookupTable table(edt, freeSpace(edt, visibility, options.num_threads), options.num_threads);
+  const Eigen::Matrix3Xf samples = centeredSamples(edt, options.num_samples, options.seed, options.num_threads);
+  const std::vector<AxialRotation> rotations = rotationsOf(options.folds, visibility != nullptr);
+  const double scale = edt.sum() / (edt.sqNorm() * options.num_samples * LookupTable::kOne);
+  const std::size_t per_direction = static_cast<std::size_t>(grid.numOffset()) * grid.numOffset();
+  AxisMap map{grid, options.folds, {}, std::vector<float>(grid.size(), 0.0f), edt.sigma()};
+  map.values.assign(options.folds.size(), map.greatest);
+  const auto run = [&](std::size_t begin, std::size_t end) {
+    LineSums lines(edt, table, grid.numOffset());
+    const std::vector<std::vector<float>> nothing(options.folds.size(), std::vector<float>(per_direction, 0.0f));
+    for (std::size_t direction = begin; direction < end; ++direction) {
+      std::vector<std::vector<std::vector<float>>> sums(table.numFunctions(), nothing);
+      for (const AxialRotation& rotation : rotations)
+        addRotation(lines, edt, grid, grid.frame(direction), rotation, scale, samples, sums);
+      for (std::size_t i = 0; i < options.folds.size(); ++i) {
+        float* const values = map.values[i].data() + direction * per_direction;
+        float* const greatest = map.greatest.data() + direction * per_direction;
+        for (std::size_t k = 0; k < per_direction; ++k) {
+          const float d = sums[0][i][k];
+          values[k] = visibility ? static_cast<float>(seenSymmetry(d, sums[1][i][k])) : d;
+          greatest[k] = std::max(greatest[k], values[k]);
+        }
+      }
+    }
+  };
+  parallelRanges(grid.numDirections(), kDirectionsPerBlock, options.num_threads, run);
+  return map;
+}
+
+int bestFold(const std::vector<int>& folds, const std::vector<double>& values) {
+  const double least = *std::max_element(values.begin(), values.end()) - kTransform.equal_orders;
+  int best = -1;
+  for (std::size_t i = 0; i < folds.size(); ++i)
+    if (values[i] >= least && best != 0 && (folds[i] == 0 || folds[i] > best)) best = folds[i];
+  return best;
+}
+
+std::vector<AxisMaximum> axisMaxima(const AxisMap& map, const GaussianEdt& edt, int count, double min_value,
+                                    const AxialTransformOptions& options) {
+  options.validate();
+  check(count >= 1, "count", count, ">= 1");
+  check(min_value >= 0.0 && min_value <= 1.0, "min_value", min_value, "in [0, 1]");
+  if (map.empty()) return {};
+  const std::vector<Line3d> starts =
+      startsOf(map, static_cast<std::size_t>(count) * kTransform.starts_per_maximum, kTransform.min_of_bin * min_value);
+  const AxisClimb climb(edt, map, options);
+  std::vector<AxisMaximum> candidates(starts.size());
+  parallelBlocks(starts.size(), options.num_threads, [&](std::size_t i) { candidates[i] = climb.refine(starts[i]); });
+  sortDescending(candidates, &AxisMaximum::value);
+  std::vector<AxisMaximum> maxima;
+  for (const AxisMaximum& maximum : candidates) {
+    if (maximum.value < min_value || static_cast<int>(maxima.size()) == count) break;
+    if (std::none_of(maxima.begin(), maxima.end(), [&](const AxisMaximum& other) {
+          return isSameAxis(maximum.axis, other.axis, map.grid.center(), kTransform.same_maximum,
+                            kTransform.same_offset * map.sigma);
+        }))
+      maxima.push_back(maximum);
+  }
+  return maxima;
+}
 
 std::vector<float> axialPointSymmetry(const AxisMap& map, const PointsRef& points, int num_threads) {
   std::vector<float> greatest(points.cols(), 0.0f);

@@ -179,6 +179,69 @@ std::vector<std::vector<float>> sampleMeans(const GaussianEdt& edt, const PlaneG
   return means;
 }
 
+constexpr int kBlockSide = 8;  // cells
+
+/// The cells of a block along the Morton curve.
+std::array<Eigen::Vector3i, kBlockSide * kBlockSide * kBlockSide> cellsOfBlock() {
+  std::array<Eigen::Vector3i, kBlockSide * kBlockSide * kBlockSide> cells;
+  for (int z = 0; z < kBlockSide; ++z)
+    for (int y = 0; y < kBlockSide; ++y)
+      for (int x = 0; x < kBlockSide; ++x) cells[mortonCode(x, y, z)] = {x, y, z};
+  return cells;
+}
+
+/// A cube of cells and its share of the sum of f.
+struct Block {
+  std::uint32_t code;  ///< position along the Morton curve
+  Eigen::Vector3i first_cell;
+  double sum;
+};
+
+/// All blocks along the Morton curve.
+std::vector<Block> blocksOf(const GaussianEdt& edt, int num_threads) {
+  const int n = edt.numCells(), side = (n + kBlockSide - 1) / kBlockSide;
+  std::vector<Block> blocks(static_cast<std::size_t>(side) * side * side);
+  for (int z = 0; z < side; ++z)
+    for (int y = 0; y < side; ++y)
+      for (int x = 0; x < side; ++x)
+        blocks[(static_cast<std::size_t>(z) * side + y) * side + x] = {mortonCode(x, y, z),
+                                                                       kBlockSide * Eigen::Vector3i(x, y, z), 0.0};
+  parallelBlocks(side, num_threads, [&](std::size_t layer) {
+    for (int z = static_cast<int>(layer) * kBlockSide; z < std::min(n, static_cast<int>(layer + 1) * kBlockSide); ++z) {
+      for (int y = 0; y < n; ++y) {
+        const float* const f = edt.values().data() + (static_cast<std::size_t>(z) * n + y) * n;
+        Block* const row = &blocks[(layer * side + y / kBlockSide) * side];
+        for (int x = 0; x < n; x += kBlockSide) {
+          float sum = 0.0f;
+          for (int i = x; i < std::min(n, x + kBlockSide); ++i) sum += f[i];
+          row[x / kBlockSide].sum += sum;
+        }
+      }
+    }
+  });
+  std::sort(blocks.begin(), blocks.end(), [](const Block& a, const Block& b) { return a.code < b.code; });
+  return blocks;
+}
+
+/// The cell of a block at which the sum of f along the curve passes \p target.
+/// \param before sum over the blocks before it.
+Eigen::Vector3f cellAt(const GaussianEdt& edt, const Block& block, double before, double target) {
+  static const auto kCells = cellsOfBlock();
+  const int n = edt.numCells();
+  double sum = before;
+  Eigen::Vector3f chosen = Eigen::Vector3f::Zero();
+  for (const Eigen::Vector3i& offset : kCells) {
+    const Eigen::Vector3i cell = block.first_cell + offset;
+    if ((cell.array() >= n).any()) continue;
+    const float f = edt.values()[(static_cast<std::size_t>(cell.z()) * n + cell.y()) * n + cell.x()];
+    if (f == 0.0f) continue;
+    chosen = cell.cast<float>();
+    sum += f;
+    if (sum > target) break;
+  }
+  return chosen;
+}
+
 }  // namespace
 
 LookupTable::LookupTable(const GaussianEdt& edt, const std::vector<float>& free_space, int num_threads) {
@@ -291,73 +354,6 @@ void weighSeen(SymmetryMap& map, const std::vector<float>& free_overlap) {
   for (std::size_t i = 0; i < map.values.size(); ++i)
     map.values[i] = static_cast<float>(seenSymmetry(map.values[i], free_overlap[i]));
 }
-
-namespace {
-
-constexpr int kBlockSide = 8;  // cells
-
-/// The cells of a block along the Morton curve.
-std::array<Eigen::Vector3i, kBlockSide * kBlockSide * kBlockSide> cellsOfBlock() {
-  std::array<Eigen::Vector3i, kBlockSide * kBlockSide * kBlockSide> cells;
-  for (int z = 0; z < kBlockSide; ++z)
-    for (int y = 0; y < kBlockSide; ++y)
-      for (int x = 0; x < kBlockSide; ++x) cells[mortonCode(x, y, z)] = {x, y, z};
-  return cells;
-}
-
-/// A cube of cells and its share of the sum of f.
-struct Block {
-  std::uint32_t code;  ///< position along the Morton curve
-  Eigen::Vector3i first_cell;
-  double sum;
-};
-
-/// All blocks along the Morton curve.
-std::vector<Block> blocksOf(const GaussianEdt& edt, int num_threads) {
-  const int n = edt.numCells(), side = (n + kBlockSide - 1) / kBlockSide;
-  std::vector<Block> blocks(static_cast<std::size_t>(side) * side * side);
-  for (int z = 0; z < side; ++z)
-    for (int y = 0; y < side; ++y)
-      for (int x = 0; x < side; ++x)
-        blocks[(static_cast<std::size_t>(z) * side + y) * side + x] = {mortonCode(x, y, z),
-                                                                       kBlockSide * Eigen::Vector3i(x, y, z), 0.0};
-  parallelBlocks(side, num_threads, [&](std::size_t layer) {
-    for (int z = static_cast<int>(layer) * kBlockSide; z < std::min(n, static_cast<int>(layer + 1) * kBlockSide); ++z) {
-      for (int y = 0; y < n; ++y) {
-        const float* const f = edt.values().data() + (static_cast<std::size_t>(z) * n + y) * n;
-        Block* const row = &blocks[(layer * side + y / kBlockSide) * side];
-        for (int x = 0; x < n; x += kBlockSide) {
-          float sum = 0.0f;
-          for (int i = x; i < std::min(n, x + kBlockSide); ++i) sum += f[i];
-          row[x / kBlockSide].sum += sum;
-        }
-      }
-    }
-  });
-  std::sort(blocks.begin(), blocks.end(), [](const Block& a, const Block& b) { return a.code < b.code; });
-  return blocks;
-}
-
-/// The cell of a block at which the sum of f along the curve passes \p target.
-/// \param before sum over the blocks before it.
-Eigen::Vector3f cellAt(const GaussianEdt& edt, const Block& block, double before, double target) {
-  static const auto kCells = cellsOfBlock();
-  const int n = edt.numCells();
-  double sum = before;
-  Eigen::Vector3f chosen = Eigen::Vector3f::Zero();
-  for (const Eigen::Vector3i& offset : kCells) {
-    const Eigen::Vector3i cell = block.first_cell + offset;
-    if ((cell.array() >= n).any()) continue;
-    const float f = edt.values()[(static_cast<std::size_t>(cell.z()) * n + cell.y()) * n + cell.x()];
-    if (f == 0.0f) continue;
-    chosen = cell.cast<float>();
-    sum += f;
-    if (sum > target) break;
-  }
-  return chosen;
-}
-
-}  // namespace
 
 Eigen::Matrix3Xf drawPoints(const GaussianEdt& edt, int num_samples, std::uint64_t seed, int num_threads) {
   const std::vector<Block> blocks = blocksOf(edt, num_threads);

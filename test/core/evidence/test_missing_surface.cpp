@@ -11,7 +11,6 @@
 #include "core/base/constants.h"
 #include "core/base/statistics.h"
 #include "core/evidence/point_density.h"
-#include "core/evidence/split_surface.h"
 #include "core/evidence/surface_samples.h"
 #include "core/geometry/point_samples.h"
 #include "core/geometry/surface_normals.h"
