@@ -95,7 +95,7 @@ bool crossesUpright(const Line3d& a, const Line3d& b) {
 RotationEvidence::RotationEvidence(const NormalizedCloud& cloud, double tolerance, std::uint64_t seed)
     : cloud_(cloud),
       tolerance_(tolerance),
-      far_(kScanAxes.far_tolerances * tolerance),
+      far_(kRotation.far_tolerances * tolerance),
       greatest_disc_(greatestDisc(cloud.geometry)),
       samples_(drawSamples(cloud.points.cols(), kScanAxes.num_samples, seed)),
       few_samples_(drawSamples(cloud.points.cols(), kScanAxes.num_few_samples, seed)),

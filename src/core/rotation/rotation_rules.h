@@ -127,13 +127,11 @@ struct ScanAxisRules {
   double fit_ridge = 1e-3;     ///< ridge that keeps unconstrained directions at rest, as a share of the trace
   /// Greatest step of a fit, radians and radii; starts are closer, and larger steps leave the basin.
   double longest_step = 0.1;
-  double fit_step = 1e-4;  ///< step of the derivatives, radians and radii
-  double min_f = 1e-6;     ///< least f, below any f that is not 0
-  /// Tolerances beyond which a part counts as far, as in ObjectSymmetryOptions::max_feature.
-  double far_tolerances = 10.0;
+  double fit_step = 1e-4;         ///< step of the derivatives, radians and radii
+  double min_f = 1e-6;            ///< least f, below any f that is not 0
   double slack_of_reach = 1.001;  ///< factor on the reach, greater than the rounding of distances
   /// Greatest shares of the points mapped into free space, and far into it, for folds.
-  double max_off = 0.05, max_far = 0.0125;
+  double max_off = 0.05, max_far = 0.25 * max_off;
   double max_round_off = 0.015, max_round_far = 0.004;  ///< the same for round bodies
   /// Least shares of the points mapped onto the surface, for round bodies, for folds, and for folds of 2.
   double round_on = 0.6, fold_on = 0.3, twofold_on = 0.75;

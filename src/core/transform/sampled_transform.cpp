@@ -242,6 +242,22 @@ Eigen::Vector3f cellAt(const GaussianEdt& edt, const Block& block, double before
   return chosen;
 }
 
+/// \param free_space free space of a scan, which only the sampled transform uses.
+SymmetryMap transformed(const GaussianEdt& edt, const PlaneGrid& grid, const PlanarTransformOptions& options,
+                        const std::vector<float>& free_space) {
+  switch (options.method) {
+    case TransformMethod::Convolution:
+      return convolutionTransform(edt, grid, options.convolution);
+    case TransformMethod::Rotational:
+      return rotationalTransform(edt, grid, options.rotational);
+    case TransformMethod::Voting:
+      return votingTransform(edt, grid, options.voting);
+    case TransformMethod::Sampled:
+      break;
+  }
+  return sampledTransform(edt, grid, options.sampled, free_space);
+}
+
 }  // namespace
 
 LookupTable::LookupTable(const GaussianEdt& edt, const std::vector<float>& free_space, int num_threads) {
@@ -412,6 +428,23 @@ double correlation(const GaussianEdt& edt, const ReflectionPlane& plane, int num
     slabs[slab] = std::accumulate(sums, sums + num_sums, 0.0);
   });
   return std::clamp(std::accumulate(slabs.begin(), slabs.end(), 0.0) / edt.sqNorm(), 0.0, 1.0);
+}
+
+void PlanarTransformOptions::validate() const {
+  sampled.validate();
+  convolution.validate();
+  rotational.validate();
+  voting.validate();
+}
+
+SymmetryMap planarTransform(const GaussianEdt& edt, const PlaneGrid& grid, const Eigen::Vector3d& center_of_mass,
+                            const PlanarTransformOptions& options, const Visibility* visibility) {
+  const std::vector<float> free_space = freeSpace(edt, visibility, options.sampled.num_threads);
+  SymmetryMap map = transformed(edt, grid, options, free_space);
+  if (visibility && options.method != TransformMethod::Sampled)
+    weighSeen(map, freeOverlap(edt, grid, free_space, options.sampled));
+  map.center_of_mass = center_of_mass;
+  return map;
 }
 
 }  // namespace pcl_symmetry
