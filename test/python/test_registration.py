@@ -62,6 +62,18 @@ class Registration(unittest.TestCase):
     def test_noise_and_a_whole_model(self):
         self.assert_converges(5, scan(body(5), 20, noise=0.01), body(5)[0][::4], target_viewpoint=None)
 
+    def test_a_model_that_lacks_a_part_of_the_scan_is_refused(self):
+        for seed in (3, 5):
+            points, normals = body(seed)
+            part = points_on_sphere(6000, seed)
+            whole = np.r_[points, [0, 1.1, 0] + 0.3 * part], np.r_[normals, part]
+            views = dict(source_viewpoint=20 * np.array([np.sin(np.radians(20)), 0, np.cos(np.radians(20))]), target_viewpoint=None)
+            self.assert_converges(seed, scan(whole, 20), whole[0][::4], **views)
+            found = pcl_symmetry.register(scan(whole, 20), points[::4], threads=1, **views)
+            self.assertFalse(found.converged, found)
+            self.assertGreater(found.evidence.outside, 0.06)
+            self.assertIn("% belong to parts that only one of them has", found.reason)
+
     def test_scans_of_other_bodies_and_of_other_sides_are_refused(self):
         for seed in range(4):
             for target in (scan(body(seed + 50), 0, seed=1), scan(body(seed), 180, seed=1)):
@@ -84,7 +96,7 @@ class Registration(unittest.TestCase):
             views = dict(source_viewpoint=at(a), target_viewpoint=at(b))
             return pcl_symmetry.register(scan(source, a), scan(can, b, seed=1), threads=1, **views)
 
-        for angles in ((330, 210), (270, 330), (20, 160)):
+        for angles in ((330, 210), (270, 330), (20, 160), (45, 80)):
             with self.subTest(both_show_it=angles):
                 found = register(can, *angles)
                 self.assertTrue(found.converged, found.reason)

@@ -44,6 +44,16 @@ class Planes(ToolTest):
         report = self.report("scan.pcd", "-tolerance 0.002 -ground 1,1,1,4")
         self.assertTrue(report["planes"] == [] and report["best"])
 
+    def test_exchanging_the_ends_of_a_mug_is_possible_at_most(self):
+        """From above, the inside shows through the opening: whether the bottom is open, too, was not seen."""
+        mug = self.write("mug.off", tool_run.off(*tool_run.mug()))
+        for direction in ("1,-1,1", "1,1,0.7"):
+            self.run_tool(mug, f"scan.pcd -direction {direction} -quiet", tool="scan")
+            planes = self.report("scan.pcd", "-explain")["planes"]
+            handle, *others = [abs(plane["coefficients"][1]) for plane in planes if plane["kind"] == "symmetry"]
+            self.assertTrue(handle > 0.99 and not others, direction)
+            self.assertIn("the inside of a hollow body was seen through one end alone", self.output)
+
     def test_keeps_coordinates_beyond_float_precision(self):
         """A box of 1 x 0.8 x 0.6 m at map coordinates, where the spacing of float is half a meter; its planes are oblique."""
         half, middle, turn = (0.5, 0.4, 0.3), np.array([500000.3, 5000000.7, 100.2]), tool_run.rotation((1, 2, 3), 0.7)

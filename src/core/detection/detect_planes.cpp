@@ -1,7 +1,6 @@
 #include "pcl_symmetry/core/detect_planes.h"
 
 #include <algorithm>
-#include <cmath>
 #include <sstream>
 #include <utility>
 #include <vector>
@@ -72,23 +71,30 @@ void tryRightAngles(const PlaneSearch& search, DetectionState& state) {
     refineAndJudgeInOrder(search, search.fit.refineSymmetries(std::move(candidates)), state.answer.planes);
 }
 
+/// Whether the reflection in a plane exchanges the ends of a line.
+bool isAcross(const ReflectionPlane& plane, const Line3d& line) {
+  return angleBetweenLines(plane.normal(), line.direction()) < kDetection.decide.upright;
+}
+
+/// The body of a mug, if a symmetry contains its axis or lies across it.
+std::optional<NearlyRound> bodyOfMug(const PlaneSearch& search, const RotationEvidence& rotations,
+                                     const std::vector<Line3d>& lines, const std::vector<SymmetryPlane>& planes) {
+  const auto concerns = [&](const ReflectionPlane& plane) {
+    return std::any_of(lines.begin(), lines.end(),
+                       [&](const Line3d& line) { return contains(plane, line) || isAcross(plane, line); });
+  };
+  const std::vector<ReflectionPlane> symmetries = planesOf(planes, {PlaneKind::Symmetry}, search.cloud);
+  return std::any_of(symmetries.begin(), symmetries.end(), concerns) ? nearlyRound(rotations, lines) : std::nullopt;
+}
+
 /// Every plane through the axis of a mug maps its body onto itself. One that does not map its handle onto itself is
 /// possible at most.
-void limitByHandle(const PlaneSearch& search, const RotationEvidence& rotations, const std::vector<Line3d>& lines,
+void limitByHandle(const PlaneSearch& search, const RotationEvidence& rotations, const NearlyRound& body,
                    std::vector<SymmetryPlane>& planes) {
-  const auto mayBeThrough = [&](const SymmetryPlane& plane) {
-    const ReflectionPlane normalized = search.cloud.toNormalized(plane);
-    return std::any_of(lines.begin(), lines.end(), [&](const Line3d& line) { return contains(normalized, line); });
-  };
-  if (planesOf(planes, {PlaneKind::Symmetry}, search.cloud).empty() ||
-      std::none_of(planes.begin(), planes.end(), mayBeThrough))
-    return;
-  const std::optional<NearlyRound> body = nearlyRound(rotations, lines);
-  if (!body) return;
   for (SymmetryPlane& plane : planes) {
     const ReflectionPlane normalized = search.cloud.toNormalized(plane);
-    if (contains(normalized, body->axis) &&
-        rotations.shareOn(normalized.reflection(), body->off_body) < kScanAxes.min_mapped)
+    if (contains(normalized, body.axis) &&
+        rotations.shareOn(normalized.reflection(), body.off_body) < kScanAxes.min_mapped)
       limitToPossible(plane, "contains the axis of a round body, and does not map what is not round of it onto itself");
   }
 }
@@ -113,12 +119,10 @@ double hiddenInside(const PlaneSearch& search, const ReflectionPlane& plane) {
 
 /// A mug, a bowl or a tube whose inside was seen through one end: whether the other end is open is unknown. A plane
 /// that exchanges its ends is possible at most.
-void limitByOpening(const PlaneSearch& search, const std::vector<Line3d>& lines, std::vector<SymmetryPlane>& planes) {
+void limitByOpening(const PlaneSearch& search, const Line3d& axis, std::vector<SymmetryPlane>& planes) {
   for (SymmetryPlane& plane : planes) {
     const ReflectionPlane normalized = search.cloud.toNormalized(plane);
-    if (plane.kind == PlaneKind::Symmetry &&
-        isNearAny(lines, normalized.normal(), std::cos(kDetection.decide.upright),
-                  [](const Line3d& line) { return line.direction(); }) &&
+    if (plane.kind == PlaneKind::Symmetry && isAcross(normalized, axis) &&
         hiddenInside(search, normalized) > kDetection.decide.max_inside)
       limitToPossible(plane, "the inside of a hollow body was seen through one end alone");
   }
@@ -146,8 +150,12 @@ void findAxesOfScan(const PlaneSearch& search, DetectionState& state) {
   // A body other than a ball has one axis: further axes, as of a dome, are round only within the tolerance.
   sortDescending(answer.axes, &SymmetryAxis::confidence);
   if (answer.axes.size() > 1) answer.axes.resize(1);
-  if (answer.axes.empty()) limitByHandle(search, rotations, lines, answer.planes);
-  limitByOpening(search, lines, answer.planes);
+  if (!answer.axes.empty()) {
+    limitByOpening(search, search.cloud.lineOf(answer.axes.front()), answer.planes);
+  } else if (const auto body = bodyOfMug(search, rotations, lines, answer.planes)) {
+    limitByHandle(search, rotations, *body, answer.planes);
+    limitByOpening(search, body->axis, answer.planes);
+  }
 }
 
 /// Rules by which results correct each other, applied in this order. Not in the paper.

@@ -129,13 +129,11 @@ NotMeasured notMeasured(const PosedSurface& surface, const PosedSurface& scan, c
   return {area.contradicted / all, area.missing / all, area.aside / all, std::max(0.0, area.outside) / all};
 }
 
-/// Share of the points that lie farther than \p far from a cloud that shows its object from all sides: it lacks that
-/// part.
-double shareOff(const Landing& landing, const PosedSurface& whole, double far) {
-  if (whole.seen) return 0.0;
+/// Share of the points that lie farther than \p far from another surface.
+double shareOff(const Landing& landing, const PosedSurface& surface, double far) {
   double num_off = 0.0;
   for (Eigen::Index i = 0; i < landing.images.cols(); ++i)
-    num_off += whole.sqDiscDistance(landing, i) > far * far ? 1.0 : 0.0;
+    num_off += surface.sqDiscDistance(landing, i) > far * far ? 1.0 : 0.0;
   return num_off / static_cast<double>(landing.images.cols());
 }
 
@@ -217,8 +215,9 @@ PoseEvidence poseEvidence(const PosedSurface& scan, const PosedSurface& model, c
   evidence.contradicted = std::max(of_model_in_view.contradicted, of_scan_in_view.contradicted);
   evidence.missing = std::max(of_model_in_view.missing, of_scan_in_view.missing);
   evidence.aside = std::max(of_model_in_view.aside, of_scan_in_view.aside);
-  evidence.outside = std::max({of_model_in_view.outside, of_scan_in_view.outside, shareOff(on_model, model, far),
-                               shareOff(on_scan, scan, far)});
+  // A scan shows what a whole model lacks. Of two clouds without viewpoints, either may be a part of the other.
+  const double off_model = scan.seen && !model.seen ? shareOff(on_model, model, far) : 0.0;
+  evidence.outside = std::max({of_model_in_view.outside, of_scan_in_view.outside, off_model});
   evidence.noise = noise / size;
   evidence.size_ratio = scan_size / model_size;
   return evidence;
