@@ -193,21 +193,26 @@ bool differBySymmetry(const CloudPair& clouds, const Eigen::Isometry3d& pose, co
   return isSymmetry(nearest.T_model_scan, model, kRegistration.same_pose);
 }
 
-/// \return whether a pose is as likely as the best one, although sampling changes its odds: no part that the best pose
-/// brings together, such as a handle, lies aside.
-bool fitsAsWell(const JudgedPose& pose, const JudgedPose& best) {
-  return pose.odds() > kRegistration.like_odds * best.odds() &&
-         pose.evidence.aside < best.evidence.aside + kRegistration.like_aside;
+/// \return whether a pose beside the best one is as likely: the fit of the bodies changes its odds, and no part that the
+/// best pose brings together, such as a handle, lies aside.
+bool fitsBeside(const JudgedPose& pose, const JudgedPose& best) {
+  return pose.odds() > kRegistration.beside_odds * best.odds() &&
+         pose.evidence.aside < best.evidence.aside + kRegistration.beside_aside;
 }
 
 /// See PoseEvidence::uniqueness.
-/// \param judged all poses that the best one is compared with, among which it may be.
+/// \param judged poses from the search that the best one is compared with, among which it may be.
+/// \param beside poses beside the best one, as for fitsBeside().
 double uniquenessOf(const CloudPair& clouds, const JudgedPose& best, const std::vector<JudgedPose>& judged,
-                    const CloudRegistrationOptions& options) {
+                    const std::vector<JudgedPose>& beside, const CloudRegistrationOptions& options) {
+  const auto isOther = [&](const JudgedPose& pose) {
+    return !differBySymmetry(clouds, best.pose.T_model_scan, pose.pose.T_model_scan, options);
+  };
   double all = best.odds();
   for (const JudgedPose& other : judged)
-    if (!differBySymmetry(clouds, best.pose.T_model_scan, other.pose.T_model_scan, options))
-      all += fitsAsWell(other, best) ? best.odds() : other.odds();
+    if (isOther(other)) all += other.odds() > kRegistration.like_odds * best.odds() ? best.odds() : other.odds();
+  for (const JudgedPose& other : beside)
+    if (fitsBeside(other, best) && isOther(other)) all += best.odds();
   return best.odds() / all;
 }
 
@@ -284,7 +289,7 @@ std::vector<JudgedPose> turnedPoses(const CloudPair& clouds, const JudgedPose& b
   const std::vector<RankedPose> poses =
       firstDistinct(closestPoses(clouds.scan(), clouds.model(), starts, inner), starts.size());
   for (JudgedPose& turned : judgedPoses(clouds, poses, std::numeric_limits<double>::infinity())) {
-    if (!fitsAsWell(turned, best)) continue;
+    if (!fitsBeside(turned, best)) continue;
     turned.pose.score = lastScore(clouds.scan(), clouds.model(), turned.pose.T_model_scan);
     fitting.push_back(std::move(turned));
   }
@@ -393,22 +398,17 @@ CloudRegistration registerClouds(const Points& source, const std::optional<Visib
     done("parts");
   }
   if (!judged.empty()) {
-    if (!options.around)
-      for (const JudgedPose& turned : turnedPoses(clouds, JudgedPose(judged.front()), inner)) {
-        judged.push_back(turned);
-        poses.push_back(turned.pose);
-      }
+    // Between two scans, the merit grows with the surface that they share: a pose of less merit may fit equally well.
+    constexpr double any = std::numeric_limits<double>::infinity();
+    const std::vector<JudgedPose> all = clouds.model().seen ? judgedPoses(clouds, poses, any) : judged;
+    std::vector<JudgedPose> beside;  // in tracks, the guess decides
+    if (!options.around) beside = turnedPoses(clouds, judged.front(), inner);
+    append(judged, beside);
     sortDescending(judged, &JudgedPose::confidence);
     result.evidence = judged.front().evidence;
     if (judged.front().confidence >= kRegistration.min_confidence) {
-      // Between two scans, the merit grows with the surface that they share: a pose of less merit may fit equally well.
-      constexpr double any = std::numeric_limits<double>::infinity();
-      std::vector<JudgedPose> all = clouds.model().seen ? judgedPoses(clouds, poses, any) : judged;
-      // A pose on the flank of the best one counts only if it fits equally well. In tracks, the guess decides.
-      if (!options.around)
-        for (const JudgedPose& slid : judgedPoses(clouds, slidPoses(clouds, judged.front().pose, inner), any))
-          if (fitsAsWell(slid, judged.front())) all.push_back(slid);
-      result.evidence.uniqueness = uniquenessOf(clouds, judged.front(), all, inner);
+      if (!options.around) append(beside, judgedPoses(clouds, slidPoses(clouds, judged.front().pose, inner), any));
+      result.evidence.uniqueness = uniquenessOf(clouds, judged.front(), all, beside, inner);
     }
     result.confidence = poseConfidence(result.evidence);
     std::vector<RankedPose> ranked;

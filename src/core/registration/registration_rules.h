@@ -62,12 +62,12 @@ struct RegistrationRules {
   double some_not_measured = 0.1;   ///< share of the surface above which doubtOf() mentions that it was not measured
   double agreeing_cosine = 0.7071;  ///< least cosine between normals of one surface: 45 degrees
   double like_merit = 0.05;         ///< deficit in merit to the best pose up to which a pose may be right
-  /// Share of the best odds above which a pose counts as equally likely: sampling and the fit of the bodies change
-  /// odds.
-  double like_odds = 0.1;
-  double like_aside = 0.025;  ///< greatest excess of PoseEvidence::aside of such a pose, half of a small handle
-  double slide = 0.25;        ///< rotation or translation to poses beside the best one, radians or radii
-  double same_pose = 0.03;    ///< distance within which a symmetry maps a model onto itself, diameters
+  /// Share of the best odds above which a pose counts as equally likely, because sampling changes odds; the same of
+  /// poses beside the best one, whose odds depend on how the bodies fit.
+  double like_odds = 0.5, beside_odds = 0.1;
+  double beside_aside = 0.025;  ///< greatest excess of PoseEvidence::aside of such poses, half of a small handle
+  double slide = 0.25;          ///< rotation or translation to poses beside the best one, radians or radii
+  double same_pose = 0.03;      ///< distance within which a symmetry maps a model onto itself, diameters
   /// Distance within which the motion to another pose may be a symmetry that ICP has not reached, diameters.
   double near_pose = 0.05;
   double symmetric_agreement =
