@@ -48,7 +48,8 @@ struct PoseEvidence {
   double aside = 0.0;
   /// Share of the surface, in [0, 1], in parts that only one of the clouds has: what is missing beyond the outline of
   /// what was measured, or contradicted far from it, less what is missing within the outline, as holes would be in both
-  /// places; or what a scan shows farther than 5 % of the smaller diameter from a model of the whole object.
+  /// places; or what a scan shows farther than 5 % of the smaller diameter from a model of the whole object, but for
+  /// its open borders.
   double outside = 0.0;
   double noise = 0.0;       ///< noise of the noisier cloud, in diameters of the smaller one
   double size_ratio = 1.0;  ///< diameter of the source divided by that of the target

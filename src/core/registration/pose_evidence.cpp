@@ -129,11 +129,11 @@ NotMeasured notMeasured(const PosedSurface& surface, const PosedSurface& scan, c
   return {area.contradicted / all, area.missing / all, area.aside / all, std::max(0.0, area.outside) / all};
 }
 
-/// Share of the points that lie farther than \p far from another surface.
-double shareOff(const Landing& landing, const PosedSurface& surface, double far) {
+/// Share of the points that lie farther than \p far from a whole model, unless it ends there at an open border.
+double shareOff(const Landing& landing, const PosedSurface& model, double far) {
   double num_off = 0.0;
   for (Eigen::Index i = 0; i < landing.images.cols(); ++i)
-    num_off += surface.sqDiscDistance(landing, i) > far * far ? 1.0 : 0.0;
+    num_off += model.sqDiscDistance(landing, i) > far * far && !model.borders.get()[landing.closest[i]] ? 1.0 : 0.0;
   return num_off / static_cast<double>(landing.images.cols());
 }
 
@@ -215,7 +215,7 @@ PoseEvidence poseEvidence(const PosedSurface& scan, const PosedSurface& model, c
   evidence.contradicted = std::max(of_model_in_view.contradicted, of_scan_in_view.contradicted);
   evidence.missing = std::max(of_model_in_view.missing, of_scan_in_view.missing);
   evidence.aside = std::max(of_model_in_view.aside, of_scan_in_view.aside);
-  // A scan shows what a whole model lacks. Of two clouds without viewpoints, either may be a part of the other.
+  // A scan shows what a model lacks. Of two clouds without viewpoints, either may be a part of the other.
   const double off_model = scan.seen && !model.seen ? shareOff(on_model, model, far) : 0.0;
   evidence.outside = std::max({of_model_in_view.outside, of_scan_in_view.outside, off_model});
   evidence.noise = noise / size;

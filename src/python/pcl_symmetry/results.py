@@ -853,7 +853,7 @@ class PoseEvidence(Result):
     outside: float
     """The share of the surface in parts that only one of the clouds has: what is missing beyond the outline of what was
     measured, or contradicted far from it, less what is missing within the outline, as holes would be in both places; or what
-    a scan shows farther than 5 % of the smaller diameter from a model of the whole object."""
+    a scan shows farther than 5 % of the smaller diameter from a model of the whole object, but for its open borders."""
     noise: float
     """Of the noisier cloud, in diameters of the smaller one."""
     size_ratio: float
