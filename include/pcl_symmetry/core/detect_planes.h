@@ -42,8 +42,8 @@ struct PlaneInput {
 /// Finds the planes of symmetry of points: transform, maxima, refinement, decision (Sections 4.1 to 4.4).
 /// publishedPlanes() follows Section 4.4 of the paper exactly. This default adds stages of refinement, the decision
 /// whether a plane is a symmetry, families of planes, rotations of scans and symmetries of parts.
-/// \throws std::invalid_argument for bad options, coordinates that are not finite, or a number of normals that is
-/// not the number of points.
+/// \throws std::invalid_argument for bad options, coordinates that are not finite, a number of normals that is not the
+/// number of points, or a map without its distance transform or the reverse.
 Detection detectPlanes(const PlaneInput& input, const DetectionOptions& options = {});
 
 /// Refines planes, axes and centers on the mesh itself: the last step of a search whose points were sampled from a

@@ -71,7 +71,7 @@ struct SymmetryPlane : ReflectionPlane {
   std::vector<float> point_support;
   /// Reasons for confidence and kind, in the order of the rules; empty for published planes.
   std::vector<Reason> reasons;
-  int iterations = 0;      ///< iterations of Iterative Symmetric Points, in all stages
+  int iterations = 0;      ///< steps of refinement, in all stages
   bool converged = false;  ///< whether the last stage converged
   double residual = 0.0;   ///< weighted root mean square distance of the reflected points from the surface, input units
 };
@@ -144,7 +144,9 @@ struct DetectionOptions {
     int num_samples = 64;       ///< samples of the transform, >= 1: an error of 1 % of PRST, enough to find maxima
     LocalMaximaOptions maxima;  ///< thresholds of the maxima of the map that become candidates
     int max_candidates = 24;    ///< strongest maxima that are refined, >= 1
-    int num_refine_samples = 10'000;  ///< points reflected in late iterations (the paper's figure), >= 10
+    /// Points reflected in the last stage (the paper's figure), >= 10; in scans a quarter of them, which also judge the
+    /// planes.
+    int num_refine_samples = 10'000;
   };
   Expert expert;  ///< options for experts
 

@@ -25,11 +25,11 @@ namespace pcl_symmetry {
 
 namespace {
 
-/// Judges the likely symmetries first or, if none of them is a symmetry, all candidates. In a whole cloud, once a plane
-/// explains everything, hopeless candidates are skipped: no missing piece could account for their unmatched points.
+/// Judges the candidates. In a whole cloud, the best one is judged first: if it, or an earlier plane, explains
+/// everything, hopeless candidates are skipped, because no missing piece could account for their unmatched points.
 /// \param candidates after the second stage, best first.
-void refineAndJudgeInOrder(const PlaneSearch& search, std::vector<Candidate> candidates,
-                           std::vector<SymmetryPlane>& planes) {
+void refineAndJudgeBestFirst(const PlaneSearch& search, std::vector<Candidate> candidates,
+                             std::vector<SymmetryPlane>& planes) {
   const CloudKind kind = search.cloud.kind();
   const bool skips_hopeless = !search.options.approximate && kind == CloudKind::Surface;
   const auto isExplained = [&] {
@@ -58,9 +58,8 @@ void completeGroups(const PlaneSearch& search, DetectionState& state) {
   if (search.cloud.isScan()) return;
   std::vector<ReflectionPlane> tried;
   for (std::vector<Candidate> candidates;
-       !(candidates = search.fit.refineSymmetries(reflectSymmetries(state.answer.planes, search.cloud, tried)))
-            .empty();)
-    refineAndJudgeInOrder(search, std::move(candidates), state.answer.planes);
+       !(candidates = search.fit.refineImplied(reflectSymmetries(state.answer.planes, search.cloud, tried))).empty();)
+    refineAndJudgeBestFirst(search, std::move(candidates), state.answer.planes);
 }
 
 /// Tries the planes of a scan that the map does not show because half of the surface that they map is hidden.
@@ -68,7 +67,7 @@ void tryRightAngles(const PlaneSearch& search, DetectionState& state) {
   if (!search.cloud.isScan()) return;
   std::vector<Candidate> candidates = proposeAtRightAngles(state.answer.planes, search.support_normals, search.cloud);
   if (!candidates.empty())
-    refineAndJudgeInOrder(search, search.fit.refineSymmetries(std::move(candidates)), state.answer.planes);
+    refineAndJudgeBestFirst(search, search.fit.refineImplied(std::move(candidates)), state.answer.planes);
 }
 
 /// Whether the reflection in a plane exchanges the ends of a line.
@@ -132,7 +131,7 @@ void limitByOpening(const PlaneSearch& search, const Line3d& axis, std::vector<S
 void findAxesOfScan(const PlaneSearch& search, DetectionState& state) {
   Detection& answer = state.answer;
   const DetectionOptions& options = search.options;
-  if (search.measure.limits().isCutAllAround() || !options.rotations) return;
+  if (search.measure.limits().isCutOff() || !options.rotations) return;
   // A ball is symmetric about every line through its center.
   if (!search.cloud.isScan() || !answer.centers.empty()) return;
   const RotationEvidence rotations(search.cloud, search.measure.tolerance(), options.seed);
@@ -158,11 +157,11 @@ void findAxesOfScan(const PlaneSearch& search, DetectionState& state) {
   }
 }
 
-/// Rules by which results correct each other, applied in this order. Not in the paper.
+/// Corrections of results by each other, applied in this order. Not in the paper.
 constexpr struct {
   const char* name;  ///< stage in Detection::timing_ms
   void (*apply)(const PlaneSearch& search, DetectionState& state);
-} kRules[] = {
+} kCorrections[] = {
     {"groups", completeGroups},
     {"right_angles", tryRightAngles},
     {"missing_pieces",
@@ -200,12 +199,12 @@ void refineAndDecide(const PlaneSearch& search, const SymmetryMap& map, Detectio
     state.evidence->planes = measureAllCandidates(search, candidates);
     done("evidence");
   }
-  refineAndJudgeInOrder(search, std::move(candidates), state.answer.planes);
+  refineAndJudgeBestFirst(search, std::move(candidates), state.answer.planes);
   done("full_refinement");
 
-  for (const auto& rule : kRules) {
-    rule.apply(search, state);
-    done(rule.name);
+  for (const auto& correction : kCorrections) {
+    correction.apply(search, state);
+    done(correction.name);
   }
 
   report(search, state);
@@ -234,18 +233,19 @@ struct UsedPoints {
 };
 
 /// Sections 4.1 to 4.3: the distance transform and the map, unless the input has them.
-/// \param[in,out] found receives the map.
+/// \param[in,out] answer receives the map.
 /// \return none if the input has both.
 std::optional<GaussianEdt> computeMap(const PlaneInput& input, const UsedPoints& used, const DetectionOptions& options,
-                                      Detection& found, StageTimes& done) {
+                                      Detection& answer, StageTimes& done) {
   if (input.map) return std::nullopt;
   std::optional<GaussianEdt> edt(std::in_place, used.points, options.edtOptions());
   done("distance_transform");
   const std::vector<float> free_space = freeSpace(*edt, input.visibility, options.num_threads);
   done("free_space");
   const PlaneGrid grid(options.expert, edt->center(), edt->radius());
-  found.map = sampledTransform(*edt, grid, {options.expert.num_samples, options.seed, options.num_threads}, free_space);
-  found.map.center_of_mass = centerOfMass(used.bulk);
+  answer.map =
+      sampledTransform(*edt, grid, {options.expert.num_samples, options.seed, options.num_threads}, free_space);
+  answer.map.center_of_mass = centerOfMass(used.bulk);
   done("transform");
   return edt;
 }
@@ -272,6 +272,33 @@ struct EvenCloud {
         cloud(points, edt, nullptr, nullptr, num_threads) {}
 };
 
+/// Replaces the support of the evenly dense part by that of the whole cloud.
+void supportWholeCloud(const NormalizedCloud& cloud, Detection& answer) {
+  const std::vector<int> all = allIndices(cloud.points.cols());
+  const auto complete = [&](SymmetryPlane& plane) {
+    const ReflectionPlane normalized = cloud.toNormalized(plane);
+    const IspStep step = matchSymmetricPoints(cloud.surface, all, normalized, cloud.final_sigma);
+    plane.point_support = surfaceShares(cloud, normalized, all, step.closest).points.seenSupport();
+  };
+  for (SymmetryPlane& plane : answer.planes) complete(plane);
+  if (answer.best) complete(*answer.best);
+}
+
+/// Spreads the support of the distinct points to the bulk.
+void spreadToBulk(const UsedPoints& used, const DistinctPoints& distinct, int num_threads, Detection& answer) {
+  if (answer.planes.empty() && !answer.best) return;
+  spreadSupport(answer, used.subset ? closestPoints(*makeFlannSearch(used.points), used.bulk, num_threads).index
+                                    : distinct.index_of);
+}
+
+/// Spreads the support of the bulk to the input. Stray points support no plane.
+void spreadToInput(const UsedPoints& used, Eigen::Index num_points, Detection& answer) {
+  if (used.stray.empty()) return;
+  std::vector<int> index_in_bulk(num_points, -1);
+  for (std::size_t i = 0; i < used.in_bulk.size(); ++i) index_in_bulk[used.in_bulk[i]] = static_cast<int>(i);
+  spreadSupport(answer, index_in_bulk);
+}
+
 }  // namespace
 
 void DetectionOptions::validate() const {
@@ -283,8 +310,7 @@ void DetectionOptions::validate() const {
   rule << "in [0, min_confidence = " << min_confidence << "]";
   check(min_possible >= 0.0 && min_possible <= min_confidence, "min_possible", min_possible, rule.str().c_str());
   check(max_planes >= 1, "max_planes", max_planes, ">= 1");
-  edtOptions().validate();
-  checkNumThreads(num_threads);
+  edtOptions().validate();  // num_threads, too
   expert.maxima.validate();
   expert.MapSize::validate();
   check(expert.num_samples >= 1, "num_samples", expert.num_samples, ">= 1");
@@ -304,16 +330,16 @@ Detection detectWithEvidence(const PlaneInput& input, const DetectionOptions& op
   check(!input.map == !input.edt, "map", input.map ? "given" : "missing", "given together with edt");
   DetectionState state;
   state.evidence = evidence;
-  Detection& found = state.answer;
-  StageTimes done(found.timing_ms);
+  Detection& answer = state.answer;
+  StageTimes done(answer.timing_ms);
 
   const UsedPoints used(input.points, options);
-  found.num_stray_points = static_cast<int>(used.stray.size());
-  found.reason = used.reason;
-  if (!found.reason.empty()) return std::move(found);
+  answer.num_stray_points = static_cast<int>(used.stray.size());
+  answer.reason = used.reason;
+  if (!answer.reason.empty()) return std::move(answer);
   if (used.subset) done("subset");
 
-  const std::optional<GaussianEdt> own_edt = computeMap(input, used, options, found, done);
+  const std::optional<GaussianEdt> own_edt = computeMap(input, used, options, answer, done);
   const GaussianEdt& edt = input.edt ? *input.edt : *own_edt;
 
   // The cloud: each position once and, where noise leaves no surface, evenly dense.
@@ -331,30 +357,14 @@ Detection detectWithEvidence(const PlaneInput& input, const DetectionOptions& op
   // Section 4.4: planes.
   const PlaneSearch plane_search(even ? even->cloud : cloud, cloud.points, options);
   done("surface");
-  refineAndDecide(plane_search, input.map ? *input.map : found.map, state, done);
+  refineAndDecide(plane_search, input.map ? *input.map : answer.map, state, done);
 
-  // The support of all points: of the whole cloud, then of the bulk, then of the input. Stray points support no plane.
-  const auto complete = [&](SymmetryPlane& plane) {
-    const ReflectionPlane normalized = cloud.toNormalized(plane);
-    const std::vector<int> all = allIndices(cloud.points.cols());
-    const IspStep step = matchSymmetricPoints(cloud.surface, all, normalized, cloud.final_sigma);
-    plane.point_support = surfaceShares(cloud, normalized, all, step.closest).points.seenSupport();
-  };
-  if (even) {
-    for (SymmetryPlane& plane : found.planes) complete(plane);
-    if (found.best) complete(*found.best);
-  }
-  if (!found.planes.empty() || found.best)
-    spreadSupport(found, used.subset
-                             ? closestPoints(*makeFlannSearch(used.points), used.bulk, options.num_threads).index
-                             : distinct.index_of);
+  if (even) supportWholeCloud(cloud, answer);
+  spreadToBulk(used, distinct, options.num_threads, answer);
   if (used.subset) done("support_of_all");
-  if (input.may_be_rings && input.visibility) decideByUprightBox(used.bulk, *input.visibility, options, found);
-  if (used.stray.empty()) return std::move(found);
-  std::vector<int> index_in_bulk(input.points.cols(), -1);
-  for (std::size_t i = 0; i < used.in_bulk.size(); ++i) index_in_bulk[used.in_bulk[i]] = static_cast<int>(i);
-  spreadSupport(found, index_in_bulk);
-  return std::move(found);
+  if (input.may_be_rings && input.visibility) decideByUprightBox(used.bulk, *input.visibility, options, answer);
+  spreadToInput(used, input.points.cols(), answer);
+  return std::move(answer);
 }
 
 }  // namespace pcl_symmetry

@@ -35,22 +35,22 @@ struct DetectionRules {
     double max_drift = 1.0;
     int first_samples = 100;        ///< points reflected in the first stage
     double symmetric_merit = 0.93;  ///< merit of a symmetry: support of 97 % and conflict of 3 % give 0.97
-    /// Greatest number of iterations of the three stages, and of candidates that never settle.
+    /// Greatest number of iterations of the three stages, and of candidates that are not likely.
     int coarse_iterations = 5, close_iterations = 6, full_iterations = 8, rough_iterations = 4;
-    double close_slack = 0.1;   ///< allowed deficit to the merit of a symmetry after the second stage
+    double close_slack = 0.1;   ///< deficit to the merit of a symmetry up to which a candidate is kept in any case
     double coarse_slack = 0.2;  ///< allowed deficit to that merit after the first stage, if there is a symmetry
-    /// Candidates of less merit that are kept after the first and the second stage.
+    /// Number of candidates up to which those of less merit are kept after the first and the second stage.
     std::size_t kept_coarsely = 8, kept_closely = 4;
     int close_sample_factor = 4;      ///< samples of the second stage per sample of the first
     double narrowest_coarsely = 0.5;  ///< sigmas at the end of the first stage
-    /// A step shorter than this many standard errors ends the refinement of a symmetry.
-    double settled_error_share = 3.0;
+    /// Standard errors of the plane below which a step ends the refinement of a likely symmetry.
+    double settled_errors = 3.0;
   } stages;
 
   /// Planes on surfaces and in volumes.
   struct {
     double first_climb = 0.02, last_climb = first_climb / 8.0;  ///< first and last step of a climb, radians and radii
-    int max_climbs = 24;                                        ///< greatest number of steps of a climb, of all lengths
+    int max_climb_steps = 24;                                   ///< greatest number of steps of a climb, of all lengths
     int climb_samples = 500;                                    ///< points used by climbs on whole clouds
     double min_gain = 0.005;                                    ///< least gain in merit for which a climb is kept
     double climbing_merit = 0.5;                                ///< least merit of planes that climb
@@ -88,12 +88,13 @@ struct DetectionRules {
     double odds_of_a_piece = 0.2;    ///< odds that a piece is missing although a plane explains the whole cloud
     double as_likely = 0.05;       ///< difference of two confidences whose order other samples of the shape may reverse
     double min_informative = 0.1;  ///< share of informative samples below which confidence falls in proportion
-    double coarsest = 3.0;         ///< resolution, in greatest tolerances, above which a sensor decides nothing
+    double max_resolution = 3.0;   ///< resolution, in greatest tolerances, above which a sensor decides nothing
     double upright = 5.0 * kPi / 180.0;  ///< a plane within this angle of upright or level does not slant
     double touching = 0.05;  ///< distance beyond the nearest support, diameters, within which other supports carry, too
     double slanted_odds = 0.1;  ///< odds of a slanted plane relative to another one
-    double max_inside = 0.05;  ///< greatest share of the inside of a hollow body that was seen; closed bodies have 0.01
-    double no_surface = 1.5;   ///< spacing in tolerances from which points are too sparse for a surface
+    /// Greatest share of the points that a plane maps into the hidden inside of a hollow body; closed bodies have 0.01.
+    double max_inside = 0.05;
+    double no_surface = 1.5;  ///< spacing in tolerances from which points are too sparse for a surface
     int max_possible = 5;  ///< greatest number of symmetries and possible planes together, if there are possible ones
     double slope_dip = 0.005;  ///< rise of D on the way to a better plane that counts as rounding
     double slope_angle = 0.2,
@@ -183,15 +184,16 @@ struct KindRules {
   // clang-format off
   //                                        surface     scan   volume
 
-  // Refinement: the last stage reflects one sample in this many. Scans are limited by their visible part.
-  KindRule<int> full_stride               {       1,       4,       1};
-  // One sample in this many is reflected for candidates that never settle.
-  KindRule<int> rough_stride              {      10,      20,      10};
-  // Least merit of candidates that settle.
-  KindRule<double> settled_merit          {    0.83,    0.93,    0.83};
+  // Refinement: num_refine_samples divided by this is the number of samples that the last stage reflects. Scans are
+  // limited by their visible part.
+  KindRule<int> full_divisor              {       1,       4,       1};
+  // num_refine_samples divided by this is the number of samples reflected for candidates that are not likely.
+  KindRule<int> rough_divisor             {      10,      20,      10};
+  // Least merit of candidates that may be symmetries; others take fewer samples and iterations.
+  KindRule<double> likely_merit           {    0.83,    0.93,    0.83};
 
-  // Evidence: planes are judged by one sample in this many; 0 = by all points.
-  KindRule<int> judged_stride             {       0,       4,       0};
+  // Evidence: num_refine_samples divided by this is the number of samples that judge planes; 0 = all points.
+  KindRule<int> judged_divisor            {       0,       4,       0};
   // Families: least mean share of the visible surface that their planes map onto the surface.
   KindRule<double> family_share           {    0.92,    0.98,    0.92};
   // Share of the surface by which the planes of a family may differ, at points_of_allowance points or more.

@@ -7,7 +7,8 @@
 namespace pcl_symmetry {
 
 // The only functions that write the confidence, the kind and the reasons of planes of the whole shape, measured on a
-// cloud, a mesh, a volume, an upright box or a polygon; and the rules that lower the odds of a plane because of other
+// cloud, a mesh, a volume, an upright box or a polygon (middlePlaneOfBox() returns a confidence, which
+// decideByUprightBox() passes to setConfidence()); and the rules that lower the odds of a plane because of other
 // findings. Not in the paper.
 
 /// Sets the confidence of a plane, and its kind from min_confidence and min_possible. The evidence replaces all earlier

@@ -194,7 +194,7 @@ void findFamilies(const PlaneSearch& search, DetectionState& state) {
   const NormalizedCloud& cloud = search.cloud;
   const DetectionOptions& options = search.options;
   const CloudLimits& limits = search.measure.limits();
-  if (limits.isCutAllAround() || (state.polygon && cloud.isSurface())) return;
+  if (limits.isCutOff() || (state.polygon && cloud.isSurface())) return;
   const std::vector<ReflectionPlane> symmetries = symmetriesOf(answer.planes, cloud);
   const bool is_line = limits.thinness() == Thinness::Line;
   if (symmetries.empty() && !is_line) return;

@@ -53,7 +53,7 @@ std::vector<Candidate> PlaneFit::refineClosely(std::vector<Candidate> candidates
   return distinct(std::move(found), keeps_all || !is_whole ? kDetection.stages.kept_closely : 0);
 }
 
-std::vector<Candidate> PlaneFit::refineSymmetries(std::vector<Candidate> candidates) const {
+std::vector<Candidate> PlaneFit::refineImplied(std::vector<Candidate> candidates) const {
   return distinct(refine(std::move(candidates), closeStage()), kDetection.stages.kept_closely,
                   kDetection.stages.symmetric_merit - kDetection.stages.close_slack);
 }
@@ -117,7 +117,7 @@ double PlaneFit::coarseSigma() const {
 }
 
 PlaneFit::Stage PlaneFit::fullStage() const {
-  Stage full = stage(options_.expert.num_refine_samples / kKindRules.full_stride[cloud_.kind()], cloud_.final_sigma,
+  Stage full = stage(options_.expert.num_refine_samples / kKindRules.full_divisor[cloud_.kind()], cloud_.final_sigma,
                      cloud_.final_sigma, kDetection.stages.full_iterations);
   full.climbs = true;
   return full;
@@ -137,7 +137,7 @@ PlaneFit::Stage PlaneFit::stage(int num_samples, double sigma, double final_sigm
   Stage stage;
   stage.num_samples = std::max(1, num_samples);
   stage.num_rough_samples =
-      std::clamp(options_.expert.num_refine_samples / kKindRules.rough_stride[cloud_.kind()], 1, stage.num_samples);
+      std::clamp(options_.expert.num_refine_samples / kKindRules.rough_divisor[cloud_.kind()], 1, stage.num_samples);
   // For sparse points, the weights have their least width from the first stage on.
   stage.undo_slides = cloud_.isScan() && final_sigma == sigma;
   stage.isp.sigma = sigma;
@@ -145,7 +145,7 @@ PlaneFit::Stage PlaneFit::stage(int num_samples, double sigma, double final_sigm
   stage.isp.max_iterations = max_iterations;
   stage.rough_isp = stage.isp;
   stage.rough_isp.max_iterations = std::min(stage.isp.max_iterations, kDetection.stages.rough_iterations);
-  stage.isp.error_share = kDetection.stages.settled_error_share;
+  stage.isp.settled_errors = kDetection.stages.settled_errors;
   return stage;
 }
 
@@ -179,12 +179,12 @@ std::vector<Candidate> PlaneFit::refine(std::vector<Candidate> candidates, const
 void PlaneFit::refineOnSurface(Candidate& candidate, const Stage& stage,
                                const std::shared_ptr<const std::vector<int>>& samples,
                                const std::shared_ptr<const std::vector<int>>& fewer) const {
-  const bool settles = candidate.iterations == 0 || candidate.merit >= kKindRules.settled_merit[cloud_.kind()];
-  candidate.samples = settles ? samples : fewer;
+  const bool is_likely = candidate.iterations == 0 || candidate.merit >= kKindRules.likely_merit[cloud_.kind()];
+  candidate.samples = is_likely ? samples : fewer;
   const ReflectionPlane start = candidate.plane;
   // The first steps have wide weights. Scans have many borders, at which walks end beside the closest point.
   const IspSurface& surface = candidate.iterations == 0 && !cloud_.isScan() ? cloud_.quick_surface : cloud_.surface;
-  IspResult result = refineSymmetricPoints(surface, *candidate.samples, start, settles ? stage.isp : stage.rough_isp);
+  IspResult result = refineSymmetricPoints(surface, *candidate.samples, start, is_likely ? stage.isp : stage.rough_isp);
   candidate.plane = result.plane;
   candidate.iterations += result.iterations;
   candidate.converged = result.converged;
@@ -218,9 +218,9 @@ bool PlaneFit::climb(Candidate& candidate, const std::vector<int>& samples, cons
   ReflectionPlane plane = candidate.plane;
   IspStep here = matches(plane, fewer);
   double best = merit(shares(plane, fewer, here));
-  int num_climbs = 0;
+  int num_steps = 0;
   for (double step = kDetection.fit.first_climb; step >= kDetection.fit.last_climb; step *= 0.5) {
-    for (int fails = 0, k = 0; fails < 6 && num_climbs < kDetection.fit.max_climbs; k = (k + 1) % 6) {
+    for (int fails = 0, k = 0; fails < 6 && num_steps < kDetection.fit.max_climb_steps; k = (k + 1) % 6) {
       const PlaneChart chart(plane, Eigen::Vector3d::Zero());
       const ReflectionPlane next = chart.moved((k % 2 == 0 ? step : -step) * Eigen::Vector3d::Unit(k / 2));
       IspStep there = matches(next, fewer, &here.closest);
@@ -230,11 +230,11 @@ bool PlaneFit::climb(Candidate& candidate, const std::vector<int>& samples, cons
       best = value;
       here = std::move(there);
       plane = next;
-      ++num_climbs;
+      ++num_steps;
       fails = 0;
     }
   }
-  if (num_climbs == 0) return false;
+  if (num_steps == 0) return false;
   IspStep step = matches(plane, samples);
   const double value = merit(shares(plane, samples, step));
   if (value <= candidate.merit + kDetection.fit.min_gain) return false;

@@ -44,8 +44,9 @@ PlaneShares surfaceShares(const NormalizedCloud& cloud, const ReflectionPlane& p
 ///
 /// Planes of points that resolve a surface are moved by Iterative Symmetric Points and supported by the share of the
 /// points whose reflection lies on the surface; those of other points by the overlap of the points' density with its
-/// reflection. After each of the first two stages, candidates at the same plane are merged, and in whole clouds only
-/// the best of those that are no symmetries are kept.
+/// reflection. After each of the first two stages, candidates at the same plane are merged, and of those whose merit
+/// is too low for a symmetry only the best are kept; in a whole cloud that has a symmetry, none after the second stage,
+/// unless approximate planes are reported.
 class PlaneFit {
 public:
   /// \param cloud,options must outlive this object.
@@ -58,8 +59,8 @@ public:
   /// More samples; the weights end as narrow as the spacing of the points allows.
   std::vector<Candidate> refineClosely(std::vector<Candidate> candidates) const;
 
-  /// The same for reflections of symmetries, which must be symmetries themselves.
-  std::vector<Candidate> refineSymmetries(std::vector<Candidate> candidates) const;
+  /// The same for planes implied by symmetries; those with much less merit than a symmetry are dropped.
+  std::vector<Candidate> refineImplied(std::vector<Candidate> candidates) const;
 
   /// All samples at the narrowest weights: this stage decides the precision of the planes.
   std::vector<Candidate> refineFully(std::vector<Candidate> candidates) const;
@@ -103,8 +104,8 @@ public:
   double relativeSupport(const PlaneShares& shares) const { return std::min(1.0, shares.support / baseline()); }
 
 private:
-  /// How many samples are reflected, how wide the weights are, and how many iterations are made. Candidates whose merit
-  /// is too low for a symmetry never settle: they take fewer samples and iterations.
+  /// How many samples are reflected, how wide the weights are, and how many iterations are made. Candidates that may be
+  /// symmetries are likely ones; others take fewer samples and iterations.
   struct Stage {
     int num_samples;        ///< samples that likely symmetries reflect
     int num_rough_samples;  ///< samples that other candidates reflect

@@ -38,7 +38,7 @@ double movedShare(const ReflectionPlane& plane, const PointsRef& points, double 
 bool isResolved(const CloudLimits::Lengths& lengths) {
   const double greatest = DetectionOptions().max_tolerance * lengths.diameter;
   return lengths.tolerance >= lengths.resolution ||
-         (lengths.tolerance >= greatest && lengths.resolution <= kDetection.decide.coarsest * greatest);
+         (lengths.tolerance >= greatest && lengths.resolution <= kDetection.decide.max_resolution * greatest);
 }
 
 std::array<double, 2> sharesWithin(const std::vector<float>& distances, double tolerance) {
@@ -68,7 +68,7 @@ CloudLimits::CloudLimits(const PointsRef& points, const PrincipalAxes& axes, Clo
                    movedShare({axes.axes.col(2), axes.axes.col(2).dot(axes.center)}, points, 2.0 * still_) <
                        kDetection.decide.nothing_missing) {}
 
-bool CloudLimits::movesNothing(const ReflectionPlane& plane, const PointsRef& points) const {
+bool CloudLimits::leavesMostInPlace(const ReflectionPlane& plane, const PointsRef& points) const {
   return thinness_ == Thinness::Sheet && movedShare(plane, points, still_) < 1.0 - kDetection.decide.max_unmoved_share;
 }
 
@@ -79,7 +79,7 @@ std::vector<const char*> CloudLimits::rulesAgainst(const ReflectionPlane& plane,
   if (is_one_side_) rules.push_back("one flat side alone was seen");
   if (thinness_ == Thinness::Line)
     rules.push_back("at the tolerance the points are a line");
-  else if (movesNothing(plane, points))
+  else if (leavesMostInPlace(plane, points))
     rules.push_back("the plane moves the points by no more than the tolerance");
   return rules;
 }
@@ -106,9 +106,9 @@ PlaneMeasure::PlaneMeasure(const NormalizedCloud& cloud, const PlaneFit& fit, co
 
 std::vector<int> PlaneMeasure::samples() const {
   const Eigen::Index num_points = cloud_.points.cols();
-  const int stride = kKindRules.judged_stride[cloud_.kind()];
-  return stride > 0 ? drawSamples(num_points, options_.expert.num_refine_samples / stride, options_.seed)
-                    : allIndices(num_points);
+  const int divisor = kKindRules.judged_divisor[cloud_.kind()];
+  return divisor > 0 ? drawSamples(num_points, options_.expert.num_refine_samples / divisor, options_.seed)
+                     : allIndices(num_points);
 }
 
 MeasuredPlane PlaneMeasure::measureCandidate(const Candidate& candidate, const std::vector<int>& samples) const {
@@ -144,8 +144,8 @@ PlaneEvidence PlaneMeasure::evidenceOf(double support, double conflict, double s
   return evidence;
 }
 
-Landing PlaneMeasure::land(const ReflectionPlane& plane, const std::vector<int>& samples,
-                           std::vector<int> closest) const {
+Landing PlaneMeasure::landingOf(const ReflectionPlane& plane, const std::vector<int>& samples,
+                                std::vector<int> closest) const {
   Landing landing;
   landing.images = reflectedPoints(pointsAt(cloud_.points, samples), plane);
   landing.closest = std::move(closest);
@@ -186,7 +186,7 @@ Eigen::Matrix3d PlaneMeasure::stiffnessOf(const ReflectionPlane& plane, const La
 
 MeasuredPlane PlaneMeasure::measureMatched(const ReflectionPlane& plane, const std::vector<int>& samples,
                                            const IspStep& step, double rim) const {
-  const Landing landing = land(plane, samples, step.closest);
+  const Landing landing = landingOf(plane, samples, step.closest);
   const std::size_t size = samples.size();
   std::vector<char> matched(size), is_moved(size);
   // Distances of the samples whose position is informative; in scans, of those that the plane moves.
@@ -259,7 +259,7 @@ double PlaneMeasure::deviation(const ReflectionPlane& plane) const {
   const std::vector<int> samples =
       drawSamples(cloud_.points.cols(), kDetection.measure.screening_samples, options_.seed);
   const Landing landing =
-      land(plane, samples, cloud_.search->closest(reflectedPoints(pointsAt(cloud_.points, samples), plane)));
+      landingOf(plane, samples, cloud_.search->closest(reflectedPoints(pointsAt(cloud_.points, samples), plane)));
   std::vector<char> matched;
   for (const float distance : landing.distances) matched.push_back(distance <= tolerance_);
   const std::vector<float> unknown = unknownMatches(landing, matched, 0.0, 0.0);
@@ -272,7 +272,7 @@ double PlaneMeasure::deviation(const ReflectionPlane& plane) const {
 PlaneMeasure::ScreenedShare PlaneMeasure::screenedShare(const Candidate& candidate) const {
   const std::vector<int> samples =
       drawSamples(cloud_.points.cols(), kDetection.measure.screening_samples, options_.seed);
-  const Landing landing = land(candidate.plane, samples, fit_.matches(candidate.plane, samples).closest);
+  const Landing landing = landingOf(candidate.plane, samples, fit_.matches(candidate.plane, samples).closest);
   const double share = std::min(1.0, shareWithin(landing.distances, tolerance_) / own_shares_[0]);
   return {share, std::sqrt(share * (1.0 - share) / static_cast<double>(samples.size()))};
 }

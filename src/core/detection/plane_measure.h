@@ -17,7 +17,7 @@
 namespace pcl_symmetry {
 
 /// Limits of a cloud that no evidence overcomes: its sensor does not resolve the tolerance, the image border cuts it
-/// off all around, or a plane moves its points by no more than the tolerance, like the plane of a sheet and all planes
+/// off, or a plane moves its points by no more than the tolerance, like the plane of a sheet and all planes
 /// of a line. Such planes are at most possible symmetries.
 class CloudLimits {
 public:
@@ -38,14 +38,14 @@ public:
   /// Whether the cloud is solid, a sheet or a line at the tolerance.
   Thinness thinness() const { return thinness_; }
 
-  /// Whether the image border cuts the cloud off all around: then it is part of the surroundings, such as a table top,
-  /// and not an object.
-  bool isCutAllAround() const { return is_cut_; }
+  /// Whether the image border cuts off more of the outline than kDetection.decide.max_cut: then the cloud is part of
+  /// the surroundings, such as a table top, and not an object.
+  bool isCutOff() const { return is_cut_; }
 
   /// Whether a reflection leaves most points of a sheet in place.
   /// \param plane frame of the points.
   /// \param points the points of the cloud.
-  bool movesNothing(const ReflectionPlane& plane, const PointsRef& points) const;
+  bool leavesMostInPlace(const ReflectionPlane& plane, const PointsRef& points) const;
 
   /// \param plane frame of the points.
   /// \param points the points of the cloud.
@@ -111,9 +111,9 @@ public:
 private:
   /// The distance within which 97 % of the samples lie, less the effect of sampling and noise.
   double deviationOf(std::vector<float> distances) const;
-  /// Finds where a plane maps some samples.
+  /// The images of some samples and their distances from the surface.
   /// \param closest points of the surface closest to the reflections.
-  Landing land(const ReflectionPlane& plane, const std::vector<int>& samples, std::vector<int> closest) const;
+  Landing landingOf(const ReflectionPlane& plane, const std::vector<int>& samples, std::vector<int> closest) const;
   /// For each sample without a match, the certainty that its counterpart lies in unknown space, in [0, 1].
   std::vector<float> unknownMatches(const Landing& landing, const std::vector<char>& matched, double offset_stiffness,
                                     double rim) const;

@@ -50,7 +50,7 @@ std::vector<SymmetryPlane> withoutPlanesOfParts(std::vector<SymmetryPlane> plane
 std::optional<ReflectionPlane> flatPlane(const PlaneSearch& search) {
   const PrincipalAxes& axes = search.cloud.principal_axes;
   const ReflectionPlane plane(axes.axes.col(2), axes.axes.col(2).dot(axes.center));
-  if (!search.measure.limits().movesNothing(plane, search.cloud.points)) return std::nullopt;
+  if (!search.measure.limits().leavesMostInPlace(plane, search.cloud.points)) return std::nullopt;
   return search.cloud.toInput(plane);
 }
 

@@ -95,8 +95,8 @@ std::vector<SymmetryPlane> PlaneSearch::refineAndJudge(std::vector<Candidate> ca
   return planes;
 }
 
-std::vector<SymmetryPlane> refinePlanes(const std::vector<ReflectionPlane>& starts, const PlaneInput& input,
-                                        const DetectionOptions& options) {
+std::vector<SymmetryPlane> decidePlanesNear(const std::vector<ReflectionPlane>& starts, const PlaneInput& input,
+                                            const DetectionOptions& options) {
   if (!whyUnanswerable(input.points).empty()) return {};
   const std::optional<std::vector<int>> subset = drawSubset(input.points, options);
   const DistinctPoints distinct(subset ? pointsAt(input.points, *subset) : Points(input.points));

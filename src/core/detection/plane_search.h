@@ -149,8 +149,8 @@ void report(const PlaneSearch& search, DetectionState& state);
 /// Refines approximately known planes and decides each of them, without searching for others.
 /// \param starts input frame.
 /// \param input points and what a scanner saw.
-std::vector<SymmetryPlane> refinePlanes(const std::vector<ReflectionPlane>& starts, const PlaneInput& input,
-                                        const DetectionOptions& options);
+std::vector<SymmetryPlane> decidePlanesNear(const std::vector<ReflectionPlane>& starts, const PlaneInput& input,
+                                            const DetectionOptions& options);
 
 /// detectPlanes(), with the evidence of its decisions.
 /// \param evidence filled with the evidence of all candidates (doubles the time); may be null.

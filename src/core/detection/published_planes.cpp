@@ -125,7 +125,7 @@ std::vector<SymmetryPlane> publishedPlanes(const PointsRef& points, const Gaussi
     // Few points bring a plane near its end at little cost; all points determine where it ends.
     for (const int count : {std::min(1000, options.num_points), options.num_points}) {
       const std::vector<int> samples = drawSamples(points.cols(), count, options.seed + i);
-      isp.error_share = count == options.num_points ? 0.5 : 0.1;
+      isp.settled_errors = count == options.num_points ? 0.5 : 0.1;
       found = refineSymmetricPoints(surface, samples, found.plane, isp, stays);
       iterations += found.iterations;
       if (!stays(found.plane)) return;

@@ -144,7 +144,7 @@ void refineOnPoints(const PointsRef& points, const Visibility* visibility, const
   std::vector<ReflectionPlane> starts;
   for (int k = 0; k < 3; ++k) starts.emplace_back(frame.axes.col(k), frame.axes.col(k).dot(frame.center));
   const auto detection = optionsWith<DetectionOptions>(options.seed, options.num_threads);
-  std::vector<SymmetryPlane> found = refinePlanes(starts, PlaneInput(points, visibility), detection);
+  std::vector<SymmetryPlane> found = decidePlanesNear(starts, PlaneInput(points, visibility), detection);
   eraseIf(found, [](const SymmetryPlane& plane) { return plane.kind != PlaneKind::Symmetry; });
   sortDescending(found, &SymmetryPlane::confidence);
   bringToPlanes(

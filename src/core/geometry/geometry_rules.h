@@ -67,7 +67,7 @@ inline constexpr GeometryRules kGeometry{};
 /// (src/pages/algorithms/decision.md).
 constexpr double kSymmetricShare = 0.97;
 
-/// From this share on, more points may show that a plane is a symmetry.
+/// Below this share an object is asymmetric, from it to kSymmetricShare nearly symmetric.
 constexpr double kNearlySymmetricShare = 0.9;
 
 /// Two planes or two lines within both limits count as the same.

@@ -152,7 +152,7 @@ void IspOptions::validate() const {
   check(std::isfinite(sigma) && sigma > 0.0, "sigma", sigma, "finite and > 0");
   check(final_sigma > 0.0 && final_sigma <= sigma, "final_sigma", final_sigma, "in (0, sigma]");
   check(max_iterations >= 1, "max_iterations", max_iterations, ">= 1");
-  check(error_share >= 0.0, "error_share", error_share, ">= 0");
+  check(settled_errors >= 0.0, "settled_errors", settled_errors, ">= 0");
 }
 
 ReflectionPlane fitReflectionPlane(const PointsRef& x, const PointsRef& y, const std::vector<double>& weights,
@@ -207,7 +207,7 @@ IspResult refineSymmetricPoints(const IspSurface& surface, const std::vector<int
         std::abs(std::abs(next.signedDistance(whole.middle)) - std::abs(result.plane.signedDistance(whole.middle)));
     const double angle = next.angleTo(result.plane);
     const double tolerance =
-        kRefinement.stands_still * whole.extent + options.error_share * result.last.residual / root_size;
+        kRefinement.stands_still * whole.extent + options.settled_errors * result.last.residual / root_size;
     result.converged = sigma == options.final_sigma && moved <= tolerance && angle * whole.extent <= tolerance;
     result.plane = next;
     if (stays && !stays(next)) break;

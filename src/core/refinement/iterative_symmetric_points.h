@@ -21,10 +21,10 @@ struct IspOptions {
   double sigma = 0.0;        ///< width of the Gaussian weights exp(-dist^2 / sigma^2) at the start, input units, > 0
   double final_sigma = 0.0;  ///< width at the end, input units, in (0, sigma]; halved whenever the plane comes to rest
   int max_iterations = 30;   ///< limit of the iterations, >= 1
-  /// Share of its own standard error, residual / sqrt(number of samples), below which a step of the plane means
-  /// convergence, >= 0; a plane that does not move has converged, too. After that, changing matches keep the plane of a
-  /// sampled surface in motion without improving it.
-  double error_share = 0.5;
+  /// Standard errors of the plane, residual / sqrt(number of samples), below which a step ends the iteration, >= 0; a
+  /// plane that does not move has converged, too. After that, changing matches keep the plane of a sampled surface in
+  /// motion without improving it.
+  double settled_errors = 0.5;
 
   /// \throws std::invalid_argument naming field, value and rule.
   void validate() const;

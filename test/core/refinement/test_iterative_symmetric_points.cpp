@@ -243,7 +243,7 @@ TEST(IspOptions, RefusesBadOnes) {
   refused([](auto& o) { o.final_sigma = 0.0; });
   refused([](auto& o) { o.final_sigma = 2.0; });
   refused([](auto& o) { o.max_iterations = 0; });
-  refused([](auto& o) { o.error_share = -1.0; });
+  refused([](auto& o) { o.settled_errors = -1.0; });
 }
 
 }  // namespace
