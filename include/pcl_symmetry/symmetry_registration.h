@@ -31,9 +31,10 @@ struct CloudRegistrationOptions {
   /// Restricts the search to poses around the guess, as tracking needs it; symmetry frames are then not computed. Not
   /// set: all poses are searched.
   std::optional<PoseNeighborhood> around = {};
-  /// Options of the symmetry frames that poses are derived from, in addition to evenly spread rotations.
+  /// Options of the symmetry frames that poses are derived from, in addition to evenly spread rotations. Its
+  /// probabilities, refined, rotations, seed and num_threads are not used.
   FrameOptions frame;
-  PoseSearchOptions search;  ///< options of the search for poses
+  PoseSearchOptions search;  ///< options of the search for poses; its num_threads is not used
   /// If no pose is convincing, also searches poses by pairs of points, which clouds that share a small part need.
   bool search_parts = true;
   /// Refines the answer once more with correspondences as close as the points allow; its evidence and confidence are
@@ -43,11 +44,13 @@ struct CloudRegistrationOptions {
   /// Greatest distance of corresponding points in the refinement, input units, > 0; not set: from the data. With
   /// refine_closely, the last refinement uses the distance within which samples of one surface meet, if that is less.
   std::optional<double> max_correspondence = {};
-  /// As in pcl::Registration, but with lengths in radii, >= 0; of the refinement.
+  /// As in pcl::Registration, of the refinement, but with lengths in radii, >= 0.
   double transformation_epsilon = 1e-8;
-  double rotation_epsilon = 0.0;  ///< of the refinement, as in pcl::Registration
-  std::uint64_t seed = 1;         ///< seed of all random draws
-  int num_threads = 0;            ///< >= 0; 0 = one per core
+  /// As in pcl::Registration, of the refinement: cosine of the rotation of a step, at or above which the refinement may
+  /// end; where it is not > 0, 1 - transformation_epsilon.
+  double rotation_epsilon = 0.0;
+  std::uint64_t seed = 1;  ///< seed of all random draws
+  int num_threads = 0;     ///< >= 0; 0 = one per core
 
   /// Checks all values.
   /// \throws std::invalid_argument naming field, value and rule.

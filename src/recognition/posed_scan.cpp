@@ -8,7 +8,6 @@
 #include "core/base/constants.h"
 #include "core/geometry/cloud_extent.h"
 #include "core/matching/shape_signature.h"
-#include "core/registration/pose_covariance.h"
 #include "core/registration/pose_evidence.h"
 #include "core/registration/pose_scoring.h"
 #include "recognition/recognition_rules.h"

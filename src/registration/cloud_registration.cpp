@@ -266,10 +266,10 @@ std::vector<RankedPose> slidPoses(const CloudPair& clouds, const RankedPose& pos
   return poses;
 }
 
-/// Poses that turn the model about its axis and fit about as well as a given one, if that pose still agrees when it is
-/// turned a little: the search finds the axis of a mug, but not always where its handle is.
-std::vector<JudgedPose> turnedPoses(const CloudPair& clouds, const JudgedPose& best,
-                                    const CloudRegistrationOptions& inner) {
+/// Poses rotated about the axis of the model that fit about as well as a given one, if that pose still agrees when it
+/// is rotated a little: the search finds the axis of a mug, but not always where its handle is.
+std::vector<JudgedPose> rotatedPoses(const CloudPair& clouds, const JudgedPose& best,
+                                     const CloudRegistrationOptions& inner) {
   std::vector<JudgedPose> fitting;
   const auto agrees = [](const PoseEvidence& evidence) {
     return evidence.agreement > kRegistration.symmetric_agreement;
@@ -278,20 +278,20 @@ std::vector<JudgedPose> turnedPoses(const CloudPair& clouds, const JudgedPose& b
   std::vector<Eigen::Isometry3d> starts;
   for (const LooseMotion& motion : looseMotions(clouds, best.pose, inner)) {
     if (!motion.axis) continue;
-    const auto turned = [&](double angle) { return motionAbout(*motion.axis, angle) * best.pose.T_model_scan; };
-    const Eigen::Isometry3d beside = turned(kRegistration.slide);
+    const auto rotated = [&](double angle) { return motionAbout(*motion.axis, angle) * best.pose.T_model_scan; };
+    const Eigen::Isometry3d beside = rotated(kRegistration.slide);
     if (!agrees(clouds.evidence({beside, {}})) || differBySymmetry(clouds, best.pose.T_model_scan, beside, inner))
       continue;
     for (double angle = kRegistration.slide; angle < 2.0 * kPi - 0.5 * kRegistration.slide;
          angle += kRegistration.slide)
-      starts.push_back(turned(angle));
+      starts.push_back(rotated(angle));
   }
   const std::vector<RankedPose> poses =
       firstDistinct(closestPoses(clouds.scan(), clouds.model(), starts, inner), starts.size());
-  for (JudgedPose& turned : judgedPoses(clouds, poses, std::numeric_limits<double>::infinity())) {
-    if (!fitsBeside(turned, best)) continue;
-    turned.pose.score = lastScore(clouds.scan(), clouds.model(), turned.pose.T_model_scan);
-    fitting.push_back(std::move(turned));
+  for (JudgedPose& rotated : judgedPoses(clouds, poses, std::numeric_limits<double>::infinity())) {
+    if (!fitsBeside(rotated, best)) continue;
+    rotated.pose.score = lastScore(clouds.scan(), clouds.model(), rotated.pose.T_model_scan);
+    fitting.push_back(std::move(rotated));
   }
   return fitting;
 }
@@ -309,7 +309,7 @@ void keepAround(const CloudPair& clouds, const Eigen::Isometry3d& guess, const P
   eraseIf(poses, isFar);
 }
 
-/// The options with threads and seed passed on to all parts, and lengths in units of the search.
+/// The options with the number of threads of the search and with lengths in units of the search.
 CloudRegistrationOptions inSearchUnits(CloudRegistrationOptions options, double scale) {
   options.search.num_threads = options.num_threads;
   if (options.max_correspondence) *options.max_correspondence /= scale;
@@ -402,7 +402,7 @@ CloudRegistration registerClouds(const Points& source, const std::optional<Visib
     constexpr double any = std::numeric_limits<double>::infinity();
     const std::vector<JudgedPose> all = clouds.model().seen ? judgedPoses(clouds, poses, any) : judged;
     std::vector<JudgedPose> beside;  // in tracks, the guess decides
-    if (!options.around) beside = turnedPoses(clouds, judged.front(), inner);
+    if (!options.around) beside = rotatedPoses(clouds, judged.front(), inner);
     append(judged, beside);
     sortDescending(judged, &JudgedPose::confidence);
     result.evidence = judged.front().evidence;

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <numeric>
 
-#include "core/registration/pose_covariance.h"
+#include "core/base/small_motion.h"
 
 namespace pcl_symmetry {
 

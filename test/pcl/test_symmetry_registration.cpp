@@ -12,7 +12,6 @@
 #include "core/base/constants.h"
 #include "core/base/random.h"
 #include "core/base/symmetric_solvers.h"
-#include "core/registration/pose_covariance.h"
 #include "pcl/clouds.h"
 #include "shapes/scans.h"
 
@@ -72,7 +71,7 @@ private:
   pcl::console::VERBOSITY_LEVEL level_;
 };
 
-/// What a user has who knows nothing of us.
+/// What a caller of pcl::Registration sees.
 struct UserAnswer {
   bool converged;
   Eigen::Matrix4f transform;

@@ -34,8 +34,8 @@ struct PoseEvidence {
   double overlap_source = 0.0;  ///< share of the source's points that lie on the surface of the target, in [0, 1]
   double overlap_target = 0.0;  ///< share of the target's points that lie on the surface of the source, in [0, 1]
   double agreement = 0.0;       ///< share of the points facing the other surface that lie on it, in [0, 1]
-  /// Lower limit of the share of the scan's points that lie on the surface of the model, within 2 % of its radius or
-  /// what noise requires, in [0, 1].
+  /// Lower limit of the share of the scan's points that lie on the surface of the model, in [0, 1]: points count by a
+  /// Gaussian of their distance, 2.5 % of the model's radius wide.
   double on_surface = 0.0;
   /// Share of one cloud's surface that the other cloud's scanner should see at this pose, but that lies in free space
   /// in front of its measurements, in [0, 1]. The greater of the two shares if both clouds were scanned; 0 if neither

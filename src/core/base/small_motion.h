@@ -60,4 +60,20 @@ inline Eigen::Isometry3d motionBy(const Vector6d& motion) {
   return isometry(rotationBy(motion.head<3>()), motion.tail<3>());
 }
 
+/// \return the matrix that multiplies v to x x v.
+inline Eigen::Matrix3d crossMatrix(const Eigen::Vector3d& x) {
+  Eigen::Matrix3d matrix;
+  matrix << 0.0, -x.z(), x.y(), x.z(), 0.0, -x.x(), -x.y(), x.x(), 0.0;
+  return matrix;
+}
+
+/// \return the matrix that maps a small motion (rotation vector, translation) of frame A to that of frame B.
+/// \param T_b_a maps points of A to B.
+inline Matrix6d adjoint(const Eigen::Isometry3d& T_b_a) {
+  Matrix6d adjoint = Matrix6d::Zero();
+  adjoint.topLeftCorner<3, 3>() = adjoint.bottomRightCorner<3, 3>() = T_b_a.linear();
+  adjoint.bottomLeftCorner<3, 3>() = crossMatrix(T_b_a.translation()) * T_b_a.linear();
+  return adjoint;
+}
+
 }  // namespace pcl_symmetry

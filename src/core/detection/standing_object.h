@@ -28,8 +28,8 @@ bool isSlanted(const ReflectionPlane& plane, const std::vector<Eigen::Vector3d>&
 /// \param points 3 x N, finite, N >= 20, of an object on a ground.
 /// \param up normal of the ground.
 /// \param viewpoint position of the scanner.
-/// \return the middle plane of the box, along its longer side, without a kind; its residual is the distance (rms) of the
-/// points from the sides. Nothing if the points do not resolve a box.
+/// \return the middle plane of the box, along its longer side, without a kind; its residual is the distance (rms) of
+/// the points from the sides. Nothing if the points do not resolve a box.
 std::optional<SymmetryPlane> middlePlaneOfBox(const PointsRef& points, const Eigen::Vector3d& up,
                                               const Eigen::Vector3d& viewpoint);
 

@@ -59,19 +59,6 @@ Matrix6d hessianWithoutNoise(Residuals residuals) {
 
 }  // namespace
 
-Eigen::Matrix3d crossMatrix(const Eigen::Vector3d& x) {
-  Eigen::Matrix3d matrix;
-  matrix << 0.0, -x.z(), x.y(), x.z(), 0.0, -x.x(), -x.y(), x.x(), 0.0;
-  return matrix;
-}
-
-Matrix6d adjoint(const Eigen::Isometry3d& T_b_a) {
-  Matrix6d adjoint = Matrix6d::Zero();
-  adjoint.topLeftCorner<3, 3>() = adjoint.bottomRightCorner<3, 3>() = T_b_a.linear();
-  adjoint.bottomLeftCorner<3, 3>() = crossMatrix(T_b_a.translation()) * T_b_a.linear();
-  return adjoint;
-}
-
 Matrix6d poseCovariance(const PosedSurface& scan, const PosedSurface& model, const Eigen::Isometry3d& T_model_scan,
                         int num_points, double reach) {
   // The variance of an angle that is uniform in (-pi, pi), and a translation by the radius of the model.
@@ -86,25 +73,6 @@ Matrix6d poseCovariance(const PosedSurface& scan, const PosedSurface& model, con
                    std::max(kRegistration.min_deviation * kRegistration.min_deviation, variance);
   }
   return information.inverse();
-}
-
-Eigen::Isometry3d MotionEquations::motion() const {
-  constexpr int last = WeightedProducts::kLast;
-  const WeightedProducts::Matrix planes = of_planes_.sums(), points = of_points_.sums();
-  const Eigen::Matrix3d arms = points.topLeftCorner<3, 3>(), rotated = points.block<3, 3>(0, 3);
-  Matrix6d hessian = of_planes_.ofUnknowns();
-  hessian.topLeftCorner<3, 3>() += arms.trace() * Eigen::Matrix3d::Identity() - arms;
-  hessian.block<3, 3>(3, 0) -= crossMatrix(points.block<3, 1>(0, last));
-  hessian.bottomRightCorner<3, 3>().diagonal().array() += points(last, last);
-  Vector6d gradient = planes.block<last, 1>(0, last);
-  gradient.head<3>() +=
-      Eigen::Vector3d(rotated(1, 2) - rotated(2, 1), rotated(2, 0) - rotated(0, 2), rotated(0, 1) - rotated(1, 0));
-  gradient.tail<3>() += points.block<3, 1>(3, last);
-  hessian.diagonal().array() += kRegistration.inertia + kRegistration.relative_inertia * hessian.diagonal().maxCoeff();
-  Vector6d motion = solveSymmetric(hessian, gradient);
-  if (!motion.allFinite()) return Eigen::Isometry3d::Identity();
-  motion.tail<3>() *= unit_;
-  return motionBy(motion);
 }
 
 }  // namespace pcl_symmetry

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/registration/pose_covariance.h"
+#include "core/base/symmetric_solvers.h"
 #include "core/registration/registration_rules.h"
 
 namespace pcl_symmetry {
@@ -36,6 +36,25 @@ double depthBehind(const Landing& landing, Eigen::Index i, const PosedSurface& t
 }
 
 }  // namespace
+
+Eigen::Isometry3d MotionEquations::motion() const {
+  constexpr int last = WeightedProducts::kLast;
+  const WeightedProducts::Matrix planes = of_planes_.sums(), points = of_points_.sums();
+  const Eigen::Matrix3d arms = points.topLeftCorner<3, 3>(), rotated = points.block<3, 3>(0, 3);
+  Matrix6d hessian = of_planes_.ofUnknowns();
+  hessian.topLeftCorner<3, 3>() += arms.trace() * Eigen::Matrix3d::Identity() - arms;
+  hessian.block<3, 3>(3, 0) -= crossMatrix(points.block<3, 1>(0, last));
+  hessian.bottomRightCorner<3, 3>().diagonal().array() += points(last, last);
+  Vector6d gradient = planes.block<last, 1>(0, last);
+  gradient.head<3>() +=
+      Eigen::Vector3d(rotated(1, 2) - rotated(2, 1), rotated(2, 0) - rotated(0, 2), rotated(0, 1) - rotated(1, 0));
+  gradient.tail<3>() += points.block<3, 1>(3, last);
+  hessian.diagonal().array() += kRegistration.inertia + kRegistration.relative_inertia * hessian.diagonal().maxCoeff();
+  Vector6d motion = solveSymmetric(hessian, gradient);
+  if (!motion.allFinite()) return Eigen::Isometry3d::Identity();
+  motion.tail<3>() *= unit_;
+  return motionBy(motion);
+}
 
 PoseScore PoseScorer::score(const Eigen::Isometry3d& T_model_scan, const Detail& detail) const {
   PoseScore score;

@@ -5,11 +5,37 @@
 #include <limits>
 #include <vector>
 
+#include "core/base/small_motion.h"
 #include "core/registration/posed_surface.h"
 #include "pcl_symmetry/core/pose_search.h"
 #include "pcl_symmetry/core/symmetry_frame.h"
 
 namespace pcl_symmetry {
+
+/// Least squares in a small motion (rotation vector, translation).
+class MotionEquations {
+public:
+  /// \param unit unit of the lengths, > 0, in which rotations and translations have equal weight.
+  explicit MotionEquations(double unit) : unit_(unit) {}
+
+  /// Adds w (n . (x + rotation x x + translation) - n . y)^2.
+  void addPlane(const Eigen::Vector3d& x, const Eigen::Vector3d& y, const Eigen::Vector3d& n, double weight) {
+    of_planes_.add(x.cross(n) / unit_, n, n.dot(y - x) / unit_, weight);
+  }
+
+  /// Adds w |x + rotation x x + translation - y|^2, the sum of addPlane() over three perpendicular normals.
+  void addPoint(const Eigen::Vector3d& x, const Eigen::Vector3d& y, double weight) {
+    of_points_.add(x / unit_, (y - x) / unit_, 1.0, weight);
+  }
+
+  /// The least-squares motion, without motion along unconstrained directions.
+  Eigen::Isometry3d motion() const;
+
+private:
+  double unit_;
+  WeightedProducts of_planes_;  // rows of lever, normal and distance
+  WeightedProducts of_points_;  // rows of arm, displacement and 1
+};
 
 /// Scores and improves poses that align a scan or a whole object with a model of it (Section 5.1).
 ///

@@ -842,7 +842,8 @@ class PoseEvidence(Result):
     agreement: float
     """Of the points that face the other surface, the share that lies on it, in [0, 1]."""
     on_surface: float
-    """Lower limit of the share of the source's points that lie on the surface of the target, within 2 % of its radius."""
+    """Lower limit of the share of the scan's points that lie on the surface of the model, in [0, 1]: points count by a Gaussian of
+    their distance, 2.5 % of the model's radius wide. The source is the scan, unless only the target was seen from one side."""
     contradicted: float
     """Of the surface of a cloud that the scanner of the other one would see at this pose, the share that lies in space it saw to
     be empty, before what it measured, in [0, 1]. The greater one where both were scanned; 0 where none was."""
