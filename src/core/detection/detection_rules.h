@@ -105,10 +105,10 @@ struct DetectionRules {
   struct {
     /// Greatest offset and angle between a line and a plane that contains it, radii and radians.
     double contained_offset = 0.03, contained_angle = 3.0 * kDegree;
-    std::size_t min_planes = 4;   ///< least number of planes of a lattice; three fit too many lattices by chance
-    std::size_t max_pairs = 6;    ///< greatest number of planes whose common lines are tried for a lattice
+    std::size_t min_planes = 4;   ///< least number of planes of a polygon; three fit too many polygons by chance
+    std::size_t max_pairs = 6;    ///< greatest number of planes whose common lines are tried for a polygon
     double min_pair_angle = 0.1;  ///< least angle between two such planes; with smaller ones, their line is uncertain
-    double max_folded = 0.2;  ///< greatest deviation from a plane of the lattice, in angles between neighboring planes
+    double max_folded = 0.2;  ///< greatest deviation from a plane of the polygon, in angles between neighboring planes
     std::size_t max_planes = 8;  ///< greatest number of planes whose common lines are tried for an axis
     double min_angle = 0.17;     ///< least angle between two such planes
     /// Numbers of planes of a family that screen it, that its line is fitted to, and that test it.

@@ -9,6 +9,7 @@
 #include "core/base/lists.h"
 #include "core/base/symmetric_solvers.h"
 #include "core/detection/plane_search.h"
+#include "core/detection/regular_polygon.h"
 #include "core/geometry/cloud_extent.h"
 #include "core/geometry/directions.h"
 #include "core/geometry/point_samples.h"
@@ -140,6 +141,11 @@ Line3d longestAxis(const PrincipalAxes& axes) {
 
 }  // namespace
 
+bool contains(const ReflectionPlane& plane, const Line3d& line) {
+  return std::abs(plane.normal().dot(line.direction())) <= std::sin(kDetection.families.contained_angle) &&
+         std::abs(plane.signedDistance(line.origin())) <= kDetection.families.contained_offset;
+}
+
 Line3d commonLine(const std::vector<ReflectionPlane>& planes) {
   const SymmetricEigen<Eigen::Matrix3d> solver(normalProducts(planes));
   const Eigen::Vector3d direction = solver.eigenvectors().col(0);
@@ -231,7 +237,7 @@ void findFamilies(const PlaneSearch& search, DetectionState& state) {
   }
   for (const AxisFamily& axis : findAxes(symmetries, test, likely_axes)) {
     // Noise blurs the gaps between the planes of a polygon, but not equally at all of them.
-    if (cloud.isVolume() && latticeBySpectrum(search.all_points, axis.common)) continue;
+    if (cloud.isVolume() && polygonBySpectrum(search.all_points, axis.common)) continue;
     const JudgedFamily family = search.judgeFamily(axis.planes, samples);
     if (!isFamily(family)) continue;
     // No bounded shape has two parallel axes, but a thin disc seems to within the tolerance: only the best one counts.

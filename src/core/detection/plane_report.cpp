@@ -24,7 +24,8 @@ bool isOnSlopeOf(const SymmetryPlane& better, const SymmetryPlane& plane, const 
 }
 
 /// Whether a plane belongs to a polygon; noise may level the dips of D between its planes.
-bool isOfPolygon(const std::optional<PlaneLattice>& polygon, const SymmetryPlane& plane, const NormalizedCloud& cloud) {
+bool isOfPolygon(const std::optional<RegularPolygon>& polygon, const SymmetryPlane& plane,
+                 const NormalizedCloud& cloud) {
   return polygon && contains(cloud.toNormalized(plane), polygon->line);
 }
 
@@ -57,7 +58,7 @@ std::optional<ReflectionPlane> flatPlane(const PlaneSearch& search) {
 }  // namespace
 
 std::vector<SymmetryPlane> selectReported(const PlaneSearch& search, std::vector<SymmetryPlane> planes,
-                                          const std::optional<PlaneLattice>& polygon) {
+                                          const std::optional<RegularPolygon>& polygon) {
   const NormalizedCloud& cloud = search.cloud;
   const DetectionOptions& options = search.options;
   planes = withoutPlanesOfParts(std::move(planes), cloud);

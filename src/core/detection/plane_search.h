@@ -6,6 +6,7 @@
 
 #include "core/detection/plane_families.h"
 #include "core/detection/plane_measure.h"
+#include "core/detection/regular_polygon.h"
 #include "core/detection/standing_object.h"
 #include "core/rotation/rotation_evidence.h"
 
@@ -78,7 +79,7 @@ struct DetectionEvidence {
 /// Results found so far, input frame.
 struct DetectionState {
   Detection answer;
-  std::optional<PlaneLattice> polygon;    ///< normalized frame; its planes are among the planes of the answer
+  std::optional<RegularPolygon> polygon;  ///< normalized frame; its planes are among the planes of the answer
   DetectionEvidence* evidence = nullptr;  ///< filled with the evidence of all candidates; may be null
 };
 
@@ -134,7 +135,7 @@ void findPlanesOfParts(const PlaneSearch& search, DetectionState& state);
 /// \param polygon normalized frame; each of its planes is a maximum.
 /// \return the planes, with the support of every point.
 std::vector<SymmetryPlane> selectReported(const PlaneSearch& search, std::vector<SymmetryPlane> planes,
-                                          const std::optional<PlaneLattice>& polygon = std::nullopt);
+                                          const std::optional<RegularPolygon>& polygon = std::nullopt);
 
 /// The plane of the whole shape with the greatest share, for shapes without a symmetry.
 /// \param planes input frame.

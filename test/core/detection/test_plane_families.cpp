@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "core/detection/plane_decision.h"
+#include "core/detection/regular_polygon.h"
 #include "pcl_symmetry/core/detect_planes.h"
 #include "shapes/counting_search.h"
 #include "shapes/searched_shape.h"
@@ -130,8 +131,8 @@ TEST(CompletePolygon, PlanesOfANoisyPolygonAreJudgedTogether) {
 
 TEST(FoldSpectrum, ToldFromARoundBody) {
   const auto foldOf = [](const Points& points) {
-    const auto lattice = latticeBySpectrum(points, Line3d(Eigen::Vector3d(0.0, 0.0, 0.3), Eigen::Vector3d::UnitZ()));
-    return lattice ? lattice->fold : 0;
+    const auto polygon = polygonBySpectrum(points, Line3d(Eigen::Vector3d(0.0, 0.0, 0.3), Eigen::Vector3d::UnitZ()));
+    return polygon ? polygon->fold : 0;
   };
   for (const int n : {3, 7, 16}) EXPECT_EQ(foldOf(wheel(n, 0.1, 0.04, false, 6)), n);
   for (std::uint64_t seed = 1; seed <= 5; ++seed) EXPECT_EQ(foldOf(wheel(1, 0.0, 0.04, false, seed)), 0);

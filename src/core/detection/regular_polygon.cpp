@@ -1,4 +1,4 @@
-#include "core/detection/plane_search.h"
+#include "core/detection/regular_polygon.h"
 
 #include <algorithm>
 #include <array>
@@ -11,6 +11,7 @@
 #include "core/base/lists.h"
 #include "core/base/statistics.h"
 #include "core/detection/plane_decision.h"
+#include "core/detection/plane_search.h"
 #include "core/geometry/geometry_rules.h"
 #include "core/geometry/point_samples.h"
 #include "pcl_symmetry/core/closest_point_search.h"
@@ -140,32 +141,32 @@ double leastTogether(const std::vector<MeasuredPlane>& judged) {
 }
 
 /// \param planes most confident first, input frame.
-std::optional<PlaneLattice> bestLattice(const std::vector<SymmetryPlane>& planes, const NormalizedCloud& cloud,
-                                        const Points& all) {
+std::optional<RegularPolygon> bestPolygon(const std::vector<SymmetryPlane>& planes, const NormalizedCloud& cloud,
+                                          const Points& all) {
   const std::vector<ReflectionPlane> likely =
       kSameMaximum.distinct(planesOf(planes, {PlaneKind::Symmetry, PlaneKind::Possible}, cloud));
   for (const std::vector<ReflectionPlane>& through : bundlesOf(likely, kDetection.folds.max_line_pairs))
-    if (const auto lattice = latticeBySpectrum(all, commonLine(through))) return lattice;
+    if (const auto polygon = polygonBySpectrum(all, commonLine(through))) return polygon;
   return std::nullopt;
 }
 
-std::vector<Candidate> candidatesOf(const PlaneLattice& lattice) {
+std::vector<Candidate> candidatesOf(const RegularPolygon& polygon) {
   std::vector<Candidate> candidates;
-  for (int k = 0; k < lattice.fold; ++k) candidates.push_back({lattice.plane(k)});
+  for (int k = 0; k < polygon.fold; ++k) candidates.push_back({polygon.plane(k)});
   return candidates;
 }
 
-/// Whether the planes halfway between the planes of a lattice are no symmetries of a surface. The points are folded
+/// Whether the planes halfway between the planes of a polygon are no symmetries of a surface. The points are folded
 /// into the sector between two planes, where they are denser by twice the fold and resolve what single planes do not.
 /// Reflecting them in the halfway plane must bring clearly fewer of them to within the tolerance of other points than
 /// are so close without it.
-bool isPolygon(const PlaneLattice& lattice, const Points& points, double tolerance) {
-  const double step = kPi / lattice.fold;
-  const Eigen::Vector3d up = lattice.line.direction(), across = lattice.plane(0.0).normal(), along = across.cross(up);
+bool isPolygon(const RegularPolygon& polygon, const Points& points, double tolerance) {
+  const double step = kPi / polygon.fold;
+  const Eigen::Vector3d up = polygon.line.direction(), across = polygon.plane(0.0).normal(), along = across.cross(up);
   Points folded(3, 3 * points.cols()), halfway(3, points.cols());  // the sector and its reflections on both sides
   std::vector<double> angles{0.0, step};
   for (Eigen::Index i = 0; i < points.cols(); ++i) {
-    const Eigen::Vector3d x = points.col(i).cast<double>() - lattice.line.origin();
+    const Eigen::Vector3d x = points.col(i).cast<double>() - polygon.line.origin();
     const double angle = std::abs(std::remainder(std::atan2(x.dot(across), x.dot(along)), 2.0 * step));
     const double radius = std::hypot(x.dot(across), x.dot(along));
     const auto at = [&](double a) -> Eigen::Vector3f {
@@ -213,39 +214,34 @@ void addClosePlanes(const PlaneSearch& search, DetectionState& state) {
     if (containing.size() > through.size()) through = std::move(containing);
   if (through.size() < kDetection.families.min_planes) return;
   const Line3d line = commonLine(through);
-  std::optional<PlaneLattice> lattice = latticeBySpectrum(cloud.points, line);
-  if (!lattice || kPi / lattice->fold > kDetection.decide.slope_angle ||
-      !isPolygon(*lattice, cloud.points, search.measure.tolerance()))
+  std::optional<RegularPolygon> polygon = polygonBySpectrum(cloud.points, line);
+  if (!polygon || kPi / polygon->fold > kDetection.decide.slope_angle ||
+      !isPolygon(*polygon, cloud.points, search.measure.tolerance()))
     return;
   std::complex<double> sum = 0.0;  // the planes that were found give a better angle
   for (const ReflectionPlane& plane : through)
-    if (const double angle = angleAbout(line, plane), step = kPi / lattice->fold;
-        std::abs(std::remainder(angle - lattice->phase, step)) <= kDetection.families.max_folded * step)
-      sum += std::polar(1.0, 2.0 * lattice->fold * angle);
-  if (std::abs(sum) > 0.0) lattice->phase = std::arg(sum) / (2.0 * lattice->fold);
+    if (const double angle = angleAbout(line, plane), step = kPi / polygon->fold;
+        std::abs(std::remainder(angle - polygon->phase, step)) <= kDetection.families.max_folded * step)
+      sum += std::polar(1.0, 2.0 * polygon->fold * angle);
+  if (std::abs(sum) > 0.0) polygon->phase = std::arg(sum) / (2.0 * polygon->fold);
   std::vector<SymmetryPlane> completed;
-  for (MeasuredPlane& one : search.judge(candidatesOf(*lattice))) {
+  for (MeasuredPlane& one : search.judge(candidatesOf(*polygon))) {
     if (one.plane.kind != PlaneKind::Symmetry) return;
     completed.push_back(std::move(one.plane));
   }
   for (SymmetryPlane& plane : state.answer.planes)
     if (!contains(cloud.toNormalized(plane), line)) completed.push_back(std::move(plane));
   state.answer.planes = std::move(completed);
-  state.polygon = lattice;
+  state.polygon = polygon;
 }
 
 }  // namespace
 
-bool contains(const ReflectionPlane& plane, const Line3d& line) {
-  return std::abs(plane.normal().dot(line.direction())) <= std::sin(kDetection.families.contained_angle) &&
-         std::abs(plane.signedDistance(line.origin())) <= kDetection.families.contained_offset;
-}
-
-ReflectionPlane PlaneLattice::plane(double k) const {
+ReflectionPlane RegularPolygon::plane(double k) const {
   return planeThrough(line, phase + k * kPi / fold);
 }
 
-std::optional<PlaneLattice> latticeBySpectrum(const Points& all, const Line3d& line) {
+std::optional<RegularPolygon> polygonBySpectrum(const Points& all, const Line3d& line) {
   const FoldSpectrum spectrum(all, line, 1);
   int fold = 0;
   double most = 0.0;
@@ -263,7 +259,7 @@ std::optional<PlaneLattice> latticeBySpectrum(const Points& all, const Line3d& l
       break;
     }
   if (fold < kDetection.folds.min_fold) return std::nullopt;
-  return PlaneLattice{line, fold, FoldSpectrum(all, line, kDetection.folds.slabs).phase(fold)};
+  return RegularPolygon{line, fold, FoldSpectrum(all, line, kDetection.folds.slabs).phase(fold)};
 }
 
 void completePolygon(const PlaneSearch& search, DetectionState& state) {
@@ -271,20 +267,20 @@ void completePolygon(const PlaneSearch& search, DetectionState& state) {
   if (cloud.isSurface()) return addClosePlanes(search, state);
   if (!cloud.isVolume()) return;
   sortDescending(state.answer.planes, &SymmetryPlane::confidence);
-  const std::optional<PlaneLattice> lattice = bestLattice(state.answer.planes, cloud, search.all_points);
-  if (!lattice) return;
-  std::vector<MeasuredPlane> of_lattice = search.judge(candidatesOf(*lattice));
-  const double together = withOdds(leastTogether(of_lattice), kDetection.folds.odds_of_polygon);
+  const std::optional<RegularPolygon> polygon = bestPolygon(state.answer.planes, cloud, search.all_points);
+  if (!polygon) return;
+  std::vector<MeasuredPlane> of_polygon = search.judge(candidatesOf(*polygon));
+  const double together = withOdds(leastTogether(of_polygon), kDetection.folds.odds_of_polygon);
   if (together < search.options.min_confidence) return;
   // All planes determine the polygon; planes that noise moved away from it are dropped.
   eraseIf(state.answer.planes,
-          [&](const SymmetryPlane& plane) { return contains(cloud.toNormalized(plane), lattice->line); });
-  for (MeasuredPlane& one : of_lattice) {
+          [&](const SymmetryPlane& plane) { return contains(cloud.toNormalized(plane), polygon->line); });
+  for (MeasuredPlane& one : of_polygon) {
     if (together > one.plane.confidence)
       changeConfidence(one.plane, together, "the planes of a regular polygon together", search.options);
     state.answer.planes.push_back(std::move(one.plane));
   }
-  state.polygon = lattice;
+  state.polygon = polygon;
 }
 
 }  // namespace pcl_symmetry
