@@ -92,7 +92,7 @@ private:
 double exactDiameter(const PointsRef& points) {
   if (points.cols() < 2) return 0.0;
   // Usually close to the diameter; slightly less, because it is rounded.
-  const double at_least = 0.9999 * farthestPair(points);
+  const double at_least = 0.9999 * approximateDiameter(points);
   return std::sqrt(HalvingTree(points).greatestSqDistance(at_least * at_least));
 }
 

@@ -3,10 +3,17 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <numeric>
 #include <utility>
 #include <vector>
 
 namespace pcl_symmetry {
+
+/// \param values at least one.
+template <typename T>
+double mean(const std::vector<T>& values) {
+  return std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
+}
 
 /// The upper median: with an even number of values, the greater of the two in the middle.
 /// \param values at least one.

@@ -18,7 +18,7 @@ namespace {
 /// The number of points that resolve a surface at the tolerance: it grows with the inverse square of their spacing.
 double maxPoints(const PointsRef& points, const DetectionOptions& options) {
   const double tolerance =
-      options.absolute_tolerance > 0.0 ? options.absolute_tolerance / farthestPair(points) : options.tolerance;
+      options.absolute_tolerance > 0.0 ? options.absolute_tolerance / approximateDiameter(points) : options.tolerance;
   const double finer = std::max(1.0, DetectionOptions().tolerance / tolerance);
   return kDetection.points.max_points * finer * finer;
 }

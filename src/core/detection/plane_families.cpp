@@ -98,9 +98,9 @@ FamilyTest familyTest(const PlaneSearch& search, const std::vector<int>& samples
   const PlaneFit& fit = search.fit;
   const DetectionOptions& options = search.options;
   // If the tolerance is greater than the default one, points within it may lie beyond the support of all samples.
-  const double usual = DetectionOptions().tolerance * cloud.extent;
-  const bool is_coarse =
-      cloud.isSurface() && std::max(options.tolerance * cloud.extent, options.absolute_tolerance / cloud.scale) > usual;
+  const double usual = DetectionOptions().tolerance * cloud.diameter;
+  const bool is_coarse = cloud.isSurface() &&
+                         std::max(options.tolerance * cloud.diameter, options.absolute_tolerance / cloud.scale) > usual;
   // A plane that maps most of a scan to unknown space is uninformative: only contradictions count.
   const auto share_of = [&, is_coarse, is_scan = cloud.isScan()](const std::vector<int>& used) {
     return [&, used, is_coarse, is_scan](const ReflectionPlane& plane) {

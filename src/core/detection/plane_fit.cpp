@@ -6,6 +6,7 @@
 
 #include "core/base/lists.h"
 #include "core/base/parallel.h"
+#include "core/base/statistics.h"
 #include "core/geometry/plane_chart.h"
 #include "core/geometry/point_samples.h"
 #include "core/transform/sampled_transform.h"
@@ -25,7 +26,7 @@ PlaneShares surfaceShares(const NormalizedCloud& cloud, const ReflectionPlane& p
   PointEvidence evidence = pointEvidence(reflectedPoints(pointsAt(cloud.points, samples), plane),
                                          reflectedNormals(pointsAt(cloud.geometry.normals, samples), plane), closest,
                                          cloud.samples, cloud.seen(), cloud.surface.num_threads);
-  return {meanSupport(evidence.support), meanSupport(evidence.conflict), std::move(evidence)};
+  return {mean(evidence.support), mean(evidence.conflict), std::move(evidence)};
 }
 
 PlaneFit::PlaneFit(const NormalizedCloud& cloud, const DetectionOptions& options) : cloud_(cloud), options_(options) {

@@ -53,7 +53,8 @@ std::array<double, 2> sharesWithin(const std::vector<float>& distances, double t
 /// points that resolve no surface.
 double sampledTolerance(const NormalizedCloud& cloud, double tolerance) {
   if (cloud.isVolume()) return 0.0;
-  return std::min(cloud.spacing / kEvidence.coarsest, kDetection.measure.tolerances.back() * tolerance * cloud.extent);
+  return std::min(cloud.spacing / kEvidence.coarsest,
+                  kDetection.measure.tolerances.back() * tolerance * cloud.diameter);
 }
 
 }  // namespace
@@ -91,11 +92,11 @@ PlaneMeasure::PlaneMeasure(const NormalizedCloud& cloud, const PlaneFit& fit, co
       resolution_(cloud.seen() ? cloud.seen()->resolvedTolerance(cloud.points) : 0.0),
       tolerance_(options.absolute_tolerance > 0.0
                      ? options.absolute_tolerance / cloud.scale
-                     : std::max(options.tolerance * cloud.extent,
+                     : std::max(options.tolerance * cloud.diameter,
                                 std::min(std::max(resolution_, sampledTolerance(cloud, options.tolerance)),
-                                         options.max_tolerance * cloud.extent))),
+                                         options.max_tolerance * cloud.diameter))),
       limits_(cloud.points, cloud.principal_axes, cloud.kind(), cloud.seen(),
-              {tolerance_, resolution_, cloud.spacing, cloud.extent}),
+              {tolerance_, resolution_, cloud.spacing, cloud.diameter}),
       halves_(cloud.isVolume() ? std::make_optional<SplitSurface>(cloud.points, options.seed, options.num_threads)
                                : std::nullopt),
       own_shares_(sharesWithin(
@@ -140,7 +141,7 @@ PlaneEvidence PlaneMeasure::evidenceOf(double support, double conflict, double s
   evidence.flat = limits_.thinness() == Thinness::Sheet;
   if (options_.absolute_tolerance == 0.0)
     evidence.tolerance_raise =
-        std::max(0.0, tolerance_ / std::max(resolution_, options_.tolerance * cloud_.extent) - 1.0);
+        std::max(0.0, tolerance_ / std::max(resolution_, options_.tolerance * cloud_.diameter) - 1.0);
   return evidence;
 }
 
@@ -233,7 +234,7 @@ MeasuredPlane PlaneMeasure::measureMatched(const ReflectionPlane& plane, const s
   // tolerance small, the share at the tolerance can come out greater.
   evidence.share = std::min(share(0), share(1));
   evidence.stiffness = secondStiffness(stiffness);
-  evidence.unknown = meanSupport(unknown);
+  evidence.unknown = mean(unknown);
   result.informative = cloud_.isScan() ? static_cast<double>(num_informative) / static_cast<double>(size) : 1.0;
   const ShareInterval interval = shareInterval(evidence);
   result.plane.score = evidence.score;
@@ -251,7 +252,7 @@ MeasuredPlane PlaneMeasure::measureMatched(const ReflectionPlane& plane, const s
 double PlaneMeasure::deviationOf(std::vector<float> distances) const {
   if (distances.empty()) return 0.0;
   const float last = quantile(std::move(distances), kSymmetricShare * std::min(1.0, own_shares_[0]));
-  return std::isfinite(last) ? last : cloud_.extent;
+  return std::isfinite(last) ? last : cloud_.diameter;
 }
 
 double PlaneMeasure::deviation(const ReflectionPlane& plane) const {

@@ -26,7 +26,7 @@ public:
     double tolerance;   ///< > 0
     double resolution;  ///< least tolerance that the sensor resolves; 0 if its errors are unknown
     double spacing;     ///< median distance of the points
-    double diameter;    ///< diameter of the points, by farthestPair()
+    double diameter;    ///< diameter of the points, by approximateDiameter()
   };
 
   /// \param points 3 x N, finite, N >= 1.

@@ -106,9 +106,9 @@ void report(const PlaneSearch& search, DetectionState& state) {
   found.flat = flatPlane(search);
   found.tolerance = measure.tolerance() * cloud.scale;
   const bool is_raised =
-      search.options.absolute_tolerance == 0.0 && measure.tolerance() > search.options.tolerance * cloud.extent;
+      search.options.absolute_tolerance == 0.0 && measure.tolerance() > search.options.tolerance * cloud.diameter;
   found.resolution = std::max(measure.resolution(), is_raised ? measure.tolerance() : 0.0) * cloud.scale;
-  found.diameter = cloud.extent * cloud.scale;
+  found.diameter = cloud.diameter * cloud.scale;
   found.planes = selectReported(search, std::move(found.planes), state.polygon);
 }
 

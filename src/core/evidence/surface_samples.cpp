@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numeric>
 #include <optional>
 
 #include "core/base/check.h"
@@ -234,10 +233,6 @@ std::vector<float> ownSupport(const SurfaceSamples& samples, int num_threads) {
       support[i] = supportNear(samples[i].nearest[0], i, samples[i].center, samples[i].normal, samples);
   });
   return support;
-}
-
-double meanSupport(const std::vector<float>& support) {
-  return std::accumulate(support.begin(), support.end(), 0.0) / static_cast<double>(support.size());
 }
 
 std::vector<float> PointEvidence::seenSupport() const {

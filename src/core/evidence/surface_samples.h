@@ -208,10 +208,6 @@ PointEvidence pointEvidence(const Points& reflected, const Points& reflected_nor
 /// \return N values in [0, 1].
 std::vector<float> ownSupport(const SurfaceSamples& samples, int num_threads);
 
-/// \param support at least one value.
-/// \return the mean.
-double meanSupport(const std::vector<float>& support);
-
 /// Support of \p points for several planes, on the surface that \p samples describe.
 /// \param points 3 x M, finite.
 /// \param samples 3 x N, finite, not all equal, in the same frame.

@@ -57,7 +57,7 @@ std::pair<Eigen::Index, float> farthestOf(const Eigen::Vector3f& position, const
 
 }  // namespace
 
-double farthestPair(const PointsRef& points) {
+double approximateDiameter(const PointsRef& points) {
   if (points.cols() < 2) return 0.0;
   Eigen::Index at = farthestOf(centerOfMass(points).cast<float>(), points).first;
   double distance = -1.0;

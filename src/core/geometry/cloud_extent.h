@@ -48,6 +48,6 @@ inline double boxDiagonal(const PointsRef& points) {
 /// less than 1 / sqrt(3) of the diameter. Takes a few passes over the points, whatever their shape.
 /// \param points 3 x N, finite, input units.
 /// \return distance, input units; 0 for fewer than two points.
-double farthestPair(const PointsRef& points);
+double approximateDiameter(const PointsRef& points);
 
 }  // namespace pcl_symmetry

@@ -271,7 +271,7 @@ SymmetrizedShape symmetrizedCloud(const PointsRef& points, const ReflectionPlane
 ReflectedPairs reflectedPairs(const PointsRef& points, const ReflectionPlane& plane, double max_distance) {
   check(max_distance >= 0.0, "max_distance", max_distance, ">= 0");
   if (points.cols() == 0) return {};
-  if (max_distance == 0.0) max_distance = kSymmetrizing.pair_share * farthestPair(withoutStrayPoints(points));
+  if (max_distance == 0.0) max_distance = kSymmetrizing.pair_share * approximateDiameter(withoutStrayPoints(points));
   auto [index, sq_distances] = closestPoints(*makeFlannSearch(points), reflectedPoints(points, plane), 0);
   for (std::size_t i = 0; i < index.size(); ++i)
     if (sq_distances[i] > max_distance * max_distance) index[i] = -1;

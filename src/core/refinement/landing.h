@@ -48,10 +48,12 @@ struct IspSurface {
 
 /// Where a motion maps points of a surface.
 struct Landing {
-  Points images, normals;           ///< the points and their normals after the motion; normals only if they are used
-  std::vector<int> closest;         ///< points of the surface closest to the images; -1 = none is near
-  std::vector<float> sq_distances;  ///< squared distances of the images from these points; infinite where none is near
-  /// Distances from the discs of the surface, see surfaceDistances(); only if they are used.
+  Points images;             ///< the points after the motion
+  Points normals;            ///< their normals after the motion; empty if they are not measured
+  std::vector<int> closest;  ///< points of the surface closest to the images; -1 = none is near
+  /// Squared distances of the images from these points; infinite where none is near; empty if they are not measured.
+  std::vector<float> sq_distances;
+  /// Distances from the discs of the surface, see surfaceDistances(); empty if they are not measured.
   std::vector<float> distances;
 };
 

@@ -66,10 +66,10 @@ NormalizedCloud::NormalizedCloud(const PointsRef& input, const GaussianEdt& edt_
       quick_surface{points, geometry.normals, walk ? *walk : *search, surface.at_border,
                     &far,   num_threads,      surface.visibility},
       principal_axes(principalAxes(points)),
-      extent(farthestPair(points)),
+      diameter(approximateDiameter(points)),
       spacing(median(geometry.spacing)),
       roughness(median(geometry.roughness) / std::max(spacing, 1e-6)),
-      baseline(std::max(meanSupport(ownSupport(samples, num_threads)), 1e-3)),
+      baseline(std::max(mean(ownSupport(samples, num_threads)), 1e-3)),
       sigma(edt.sigma() / scale),
       final_sigma(std::min(sigma, std::max(1e-6, kRefinement.final_sigma_in_spacings * spacing))),
       kind_(visibility ? CloudKind::Scan

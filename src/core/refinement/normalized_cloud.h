@@ -47,7 +47,7 @@ struct NormalizedCloud {
   const IspSurface quick_surface;            ///< matched by walks, for first steps that are refined again
 
   const PrincipalAxes principal_axes;  ///< principal axes of the points
-  const double extent;                 ///< diameter of the points, by farthestPair()
+  const double diameter;               ///< diameter of the points, by approximateDiameter()
   const double spacing;                ///< median of the points' spacing
   const double roughness;              ///< median of the points' roughness, divided by the spacing
   const double baseline;     ///< mean support of the points by the surface of all others, > 0, which a symmetry reaches

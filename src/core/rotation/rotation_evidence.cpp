@@ -80,7 +80,7 @@ double extentRatio(const NormalizedCloud& cloud, const Eigen::Affine3d& rotation
   Points both(3, 2 * size);
   both.leftCols(size) = cloud.points;
   both.rightCols(size) = rotation.cast<float>() * cloud.points;
-  return std::max(1.0, farthestPair(both) / cloud.extent);
+  return std::max(1.0, approximateDiameter(both) / cloud.diameter);
 }
 
 /// Whether two lines, normalized frame, cross at a right angle.

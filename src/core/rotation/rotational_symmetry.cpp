@@ -159,7 +159,7 @@ ObjectSymmetries objectSymmetries(const PointsRef& all, const ObjectSymmetryOpti
       boundingBall(pointsAt(distinct, drawSamples(distinct.cols(), options.max_points, options.seed)));
   const Points normalized = normalizePoints(distinct, ball.center, ball.radius);
   const double tolerance = options.absolute_tolerance > 0.0 ? options.absolute_tolerance / ball.radius
-                                                            : options.tolerance * farthestPair(normalized);
+                                                            : options.tolerance * approximateDiameter(normalized);
   const RotationLimits limits{tolerance, options.max_feature};
   ObjectSymmetries result;
   double resolution = 0.0;

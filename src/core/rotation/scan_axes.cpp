@@ -337,7 +337,7 @@ Detection rotationsOfScan(const PointsRef& points, const GaussianEdt& edt, const
       pointsAt(distinct, drawSamples(distinct.cols(), ObjectSymmetryOptions().max_points, options.seed));
   const ClosestPointSearch::Ptr search = make_search ? inFrame(make_search(used), edt.center(), edt.radius()) : nullptr;
   const NormalizedCloud cloud(used, edt, search, &visibility, options.num_threads);
-  const RotationEvidence evidence(cloud, ObjectSymmetryOptions().tolerance * cloud.extent, options.seed);
+  const RotationEvidence evidence(cloud, ObjectSymmetryOptions().tolerance * cloud.diameter, options.seed);
   Detection found;
   if (const std::optional<SymmetryCenter> center = centerOfScan(evidence, options))
     found.centers.push_back(*center);

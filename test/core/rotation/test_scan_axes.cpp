@@ -101,7 +101,7 @@ struct Scanned {
       : scan(seenFrom(shape, viewpoint)),
         edt(scan.points),
         cloud(scan.points, edt, nullptr, &scan.seen.value(), 1),
-        evidence(cloud, tolerance * cloud.extent, 0) {}
+        evidence(cloud, tolerance * cloud.diameter, 0) {}
 
   /// A half turn about a line of the shape's frame, with the shares that were seen.
   SymmetryRotation rotation(const Eigen::Vector3d& point, const Eigen::Vector3d& direction) const {
@@ -198,7 +198,7 @@ TEST(RotationEvidence, ALineBesideTheAxisComesBackToIt) {
     const Line3d line = scanned.evidence.refineLineClosely(scanned.lineOf(beside), {kPi});
     const Eigen::Vector3d center = -scanned.cloud.center / scanned.cloud.scale;
     // Within the tolerance of the surface, by which a line that is half as far off moves it.
-    EXPECT_LT(line.distance(center), 0.5 * Scanned::tolerance * scanned.cloud.extent);
+    EXPECT_LT(line.distance(center), 0.5 * Scanned::tolerance * scanned.cloud.diameter);
     EXPECT_GT(std::abs(line.direction().z()), std::cos(0.5 * kDegree));
   }
 }
