@@ -197,15 +197,6 @@ void offerFeet(const SymmetryScene::Cloud& scene, const std::vector<SupportingPl
       nearest[risen[i]] = {sq_distances[i], number};
 }
 
-// Greatest root mean square distance of the points of a flat piece from their plane, in tolerances. 17 pieces of the
-// wall in PCL's stereo image have 0.5 to 2.4.
-constexpr double kFlat = 3.0;
-// Least share of the outline of a piece of a wall or table along which the surface continues, and greatest share in
-// front of something farther away. Such pieces have 0.3 to 0.94 and 0.01 to 0.02 in PCL's frames of a stereo camera and
-// of a Kinect; flat objects on tables have 0.22 to 0.43 in front of something farther away.
-constexpr double kGoesOn = 0.25, kBeforeFarther = 0.05;
-constexpr double kDepthErrors = 4.0;  // greatest distance of neighbors on one surface, errors of the sensor's depths
-
 /// Whether the surface continues at the outline of a cluster, and nowhere ends in front of something farther away.
 bool goesOn(const SymmetryScene::Cloud& frame, const pcl::Indices& cluster, const Visibility& seen, double distance) {
   std::vector<char> is_inside(frame.size(), 0);
@@ -223,13 +214,13 @@ bool goesOn(const SymmetryScene::Cloud& frame, const pcl::Indices& cluster, cons
       num_ends += 1.0;
       if (!is_in_picture || !pcl::isXYZFinite(frame[next])) continue;
       const Eigen::Vector3d beside = frame[next].getVector3fMap().cast<double>();
-      if ((beside - x).norm() < distance + kDepthErrors * seen.depthError(x))
+      if ((beside - x).norm() < distance + kScene.depth_errors * seen.depthError(x))
         num_going_on += 1.0;
       else if ((beside - viewpoint).norm() > (x - viewpoint).norm())
         num_before_farther += 1.0;
     }
   }
-  return num_going_on > kGoesOn * num_ends && num_before_farther < kBeforeFarther * num_ends;
+  return num_going_on > kScene.goes_on * num_ends && num_before_farther < kScene.before_farther * num_ends;
 }
 
 }  // namespace
@@ -427,7 +418,8 @@ bool isBulge(const SymmetryScene::Cloud& frame, const pcl::Indices& cluster, con
   if (!frame.isOrganized() || !seen) return false;
   const Points points = pointsOf(frame, cluster);
   const double thickness = std::sqrt(principalAxes(points).variances[2]);  // root mean square distance from their plane
-  return thickness < kFlat * tolerance * boxDiagonal(points) && goesOn(frame, cluster, *seen, distance);
+  return thickness < kScene.bulge_tolerances * tolerance * boxDiagonal(points) &&
+         goesOn(frame, cluster, *seen, distance);
 }
 
 }  // namespace pcl_symmetry::detail

@@ -15,6 +15,7 @@
 #include "pcl_symmetry/symmetry_maxima_refinement.h"
 #include "scene/convex_pieces.h"
 #include "scene/scene_parts.h"
+#include "scene/scene_rules.h"
 #include "scene/symmetric_joining.h"
 
 namespace pcl_symmetry {
@@ -52,19 +53,18 @@ SeenSpace::ConstPtr seenSpaceOf(const Cloud& frame, const Viewpoint& viewpoint) 
 /// Planes that may show the far side of an object: the best one, and others that are nearly certain. If the best one
 /// lies along the view and adds nothing, a less certain one would often add points beside the object.
 std::vector<ReflectionPlane> completingPlanes(const SceneObject& object, const Visibility* seen) {
-  constexpr double sure = 0.8;  // all of 79 such answers in real frames are right
   if (seen)
     if (const auto plane = planeAcrossView(object, seen->viewpoint())) return {*plane};
   std::vector<ReflectionPlane> planes;
   for (const SymmetryPlane& plane : object.planes)
-    if (plane.kind == PlaneKind::Symmetry && (planes.empty() || plane.confidence >= sure)) planes.push_back(plane);
+    if (plane.kind == PlaneKind::Symmetry && (planes.empty() || plane.confidence >= detail::kScene.sure))
+      planes.push_back(plane);
   return planes;
 }
 
 /// Whether all four borders of an image are empty, and supporting planes are slices of a curved body.
 bool isCutOut(const Cloud& scene, const SceneAnalysis& found) {
   constexpr unsigned border = 50;  // one row or column in this many
-  constexpr double curved = 0.35;  // root mean square in plane distances; points spread evenly have 0.58
   if (!scene.isOrganized()) return false;
   for (const SupportingPlane& support : found.supports) {
     double sum = 0.0;
@@ -72,7 +72,8 @@ bool isCutOut(const Cloud& scene, const SceneAnalysis& found) {
       const double distance = support.coefficients.dot(scene[i].getVector3fMap().cast<double>().homogeneous());
       sum += distance * distance;
     }
-    if (std::sqrt(sum / static_cast<double>(support.indices.size())) < curved * found.plane_distance) return false;
+    if (std::sqrt(sum / static_cast<double>(support.indices.size())) < detail::kScene.curved * found.plane_distance)
+      return false;
   }
   const unsigned rows = scene.height / border, columns = scene.width / border;
   for (std::size_t i = 0; i < scene.size(); ++i) {
@@ -85,13 +86,12 @@ bool isCutOut(const Cloud& scene, const SceneAnalysis& found) {
 
 /// Evidence for a single object: a table, a floor or a wall is wider than what it carries, and than the image.
 std::string signOfOneObject(const Cloud& scene, const SceneAnalysis& found) {
-  constexpr double wider = 1.5;
   if (isCutOut(scene, found)) return "no point is near the border of the picture";
   if (found.supports.empty()) return "no supporting plane (table, floor, wall) was found";
   if (found.objects.empty()) return "no object was found";
   if (found.objects.size() > 1) return "";
   const auto radius = [&](const pcl::Indices& part) { return boundingBall(detail::pointsOf(scene, part)).radius; };
-  const double width = wider * radius(found.objects.front().indices);
+  const double width = detail::kScene.wider * radius(found.objects.front().indices);
   const bool has_wide = std::any_of(found.supports.begin(), found.supports.end(),
                                     [&](const SupportingPlane& support) { return radius(support.indices) > width; });
   return has_wide ? "" : "no supporting plane is much wider than the object";
