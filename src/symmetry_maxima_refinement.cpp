@@ -2,7 +2,7 @@
 
 #include <limits>
 
-#include "core/base/random.h"
+#include "core/base/options.h"
 #include "core/evidence/surface_samples.h"
 #include "pcl_symmetry/core/published_planes.h"
 

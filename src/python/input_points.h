@@ -8,7 +8,7 @@
 #include <stdexcept>
 #include <vector>
 
-#include "core/base/random.h"
+#include "core/base/options.h"
 #include "pcl_symmetry/core/point_set.h"
 #include "pcl_symmetry/core/visibility.h"
 

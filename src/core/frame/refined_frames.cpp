@@ -4,7 +4,7 @@
 #include <optional>
 
 #include "core/base/lists.h"
-#include "core/base/random.h"
+#include "core/base/options.h"
 #include "core/base/small_motion.h"
 #include "core/detection/plane_search.h"
 #include "core/frame/canonical_frame.h"

@@ -4,8 +4,8 @@
 
 #include "core/base/check.h"
 #include "core/base/constants.h"
+#include "core/base/options.h"
 #include "core/base/parallel.h"
-#include "core/base/random.h"
 #include "core/base/stopwatch.h"
 #include "core/frame/canonical_frame.h"
 #include "core/frame/frame_evidence.h"

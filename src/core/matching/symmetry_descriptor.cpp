@@ -5,7 +5,7 @@
 
 #include "core/base/check.h"
 #include "core/base/constants.h"
-#include "core/base/random.h"
+#include "core/base/options.h"
 #include "core/geometry/point_samples.h"
 #include "core/matching/matching_rules.h"
 #include "pcl_symmetry/core/symmetry_frame.h"

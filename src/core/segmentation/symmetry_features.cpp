@@ -2,8 +2,8 @@
 
 #include <algorithm>
 
+#include "core/base/options.h"
 #include "core/base/parallel.h"
-#include "core/base/random.h"
 #include "core/geometry/geometry_rules.h"
 #include "core/geometry/point_samples.h"
 #include "core/geometry/surface_normals.h"
