@@ -1,4 +1,4 @@
-/// What speaks for a plane: its support, how it is fixed, and the probability that follows.
+/// Evidence for a plane: support, stiffness, and the confidence that follows.
 #include "core/evidence/plane_confidence.h"
 
 #include <gtest/gtest.h>

@@ -155,7 +155,7 @@ TEST(PoseScorer, TheTruePoseIsBestAndStandsStill) {
   }
 }
 
-TEST(PoseScorer, FreeSpaceSpeaksAgainstAPose) {
+TEST(PoseScorer, FreeSpaceCountsAgainstAPose) {
   const BlockObject object = blockChair();
   const Scan scan = test::scan(object, {3.0, -6.0, 4.0});
   const PosedSurface seen = surface(scan.cloud(), scan.visibility()), unseen = surface(scan.cloud());
@@ -168,7 +168,7 @@ TEST(PoseScorer, FreeSpaceSpeaksAgainstAPose) {
   EXPECT_LT(PoseScorer(seen, model).score(Eigen::Isometry3d::Identity(), detail).conflict, 0.02);
 }
 
-TEST(PoseEvidence, WhatAScannerShouldHaveSeenItHasMeasured) {
+TEST(PoseEvidence, MissingSurfaceIsReported) {
   const BlockObject object = blockChair();
   const Scan scan = test::scan(object, {3.0, -6.0, 4.0}), other = test::scan(object, {-3.0, -6.0, 4.0});
   const PosedSurface seen = surface(scan.cloud(), scan.visibility()), unseen = surface(scan.cloud());

@@ -184,7 +184,7 @@ TEST(CentralTransform, FindsTheCenterOfABoxAndNoneOfATetrahedron) {
   EXPECT_LT(none.values[none.strongest()], 0.6f);
 }
 
-TEST(AxialTransform, FreeSpaceSpeaksAgainstAxes) {
+TEST(AxialTransform, FreeSpaceCountsAgainstAxes) {
   // A half cylinder seen from outside. F counts both ways of turning: one may lead behind the surface, one before it.
   Points points(3, 4000);
   for (int i = 0; i < 4000; ++i) {
