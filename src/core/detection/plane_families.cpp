@@ -102,7 +102,7 @@ FamilyTest familyTest(const PlaneSearch& search, const std::vector<int>& samples
   const bool is_coarse = cloud.isSurface() &&
                          std::max(options.tolerance * cloud.diameter, options.absolute_tolerance / cloud.scale) > usual;
   // A plane that maps most of a scan to unknown space is uninformative: only contradictions count.
-  const auto share_of = [&, is_coarse, is_scan = cloud.isScan()](const std::vector<int>& used) {
+  const auto shareOf = [&, is_coarse, is_scan = cloud.isScan()](const std::vector<int>& used) {
     return [&, used, is_coarse, is_scan](const ReflectionPlane& plane) {
       if (is_coarse) return search.judge(plane, used).evidence.share;
       const PlaneShares shares = fit.shares(plane, used);
@@ -111,14 +111,14 @@ FamilyTest familyTest(const PlaneSearch& search, const std::vector<int>& samples
     };
   };
   FamilyTest test;
-  test.share = share_of(samples);
+  test.share = shareOf(samples);
   // Samples may be all points in the order of the file, whose first fifth may be one end of the shape.
   std::vector<int> fewer;
   const auto num_samples = static_cast<Eigen::Index>(samples.size());
   for (const int i :
        drawSamples(num_samples, static_cast<int>(num_samples) / kDetection.families.rough_sample_share, options.seed))
     fewer.push_back(samples[i]);
-  test.rough_share = share_of(fewer);
+  test.rough_share = shareOf(fewer);
   test.refine = [&fit, samples](const ReflectionPlane& plane) { return fit.refinePlane(plane, samples); };
   const CloudKind kind = cloud.kind();
   const double few_points = kKindRules.points_of_allowance[kind] / static_cast<double>(cloud.points.cols());

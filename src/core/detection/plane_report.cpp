@@ -40,10 +40,10 @@ void completeSupport(SymmetryPlane& plane, const PlaneSearch& search) {
 /// Removes approximate planes that are symmetries of parts: they are reported as local ones.
 std::vector<SymmetryPlane> withoutPlanesOfParts(std::vector<SymmetryPlane> planes, const NormalizedCloud& cloud) {
   const std::vector<ReflectionPlane> local = planesOf(planes, {PlaneKind::Local}, cloud);
-  const auto is_of_part = [&](const SymmetryPlane& plane) {
+  const auto isOfPart = [&](const SymmetryPlane& plane) {
     return plane.kind == PlaneKind::Approximate && kSamePlane.anySame(local, cloud.toNormalized(plane));
   };
-  eraseIf(planes, is_of_part);
+  eraseIf(planes, isOfPart);
   return planes;
 }
 

@@ -77,11 +77,11 @@ private:
 /// first.
 void keepOneOfEachCell(std::vector<SymmetryPlane>& planes, const PlaneGrid& grid) {
   std::set<std::size_t> cells;
-  const auto is_known = [&](const SymmetryPlane& plane) {
+  const auto isKnown = [&](const SymmetryPlane& plane) {
     const auto cell = grid.find(plane);
     return cell && !cells.insert(grid.index(*cell)).second;
   };
-  eraseIf(planes, is_known);
+  eraseIf(planes, isKnown);
 }
 
 }  // namespace

@@ -188,11 +188,11 @@ std::vector<Eigen::Vector3d> supportNormals(const PointsRef& points, const Visib
 }
 
 bool isSlanted(const ReflectionPlane& plane, const std::vector<Eigen::Vector3d>& support_normals) {
-  const auto is_along = [&](const Eigen::Vector3d& normal) {
+  const auto isAlong = [&](const Eigen::Vector3d& normal) {
     const double angle = std::acos(std::min(1.0, std::abs(normal.dot(plane.normal()))));
     return angle <= kDetection.decide.upright || angle >= 0.5 * kPi - kDetection.decide.upright;
   };
-  return !support_normals.empty() && std::none_of(support_normals.begin(), support_normals.end(), is_along);
+  return !support_normals.empty() && std::none_of(support_normals.begin(), support_normals.end(), isAlong);
 }
 
 std::optional<SymmetryPlane> middlePlaneOfBox(const PointsRef& points, const Eigen::Vector3d& up,
@@ -256,8 +256,8 @@ void decideByUprightBox(const PointsRef& points, const Visibility& seen, const D
   if (!plane || plane->confidence < (is_sparse ? options.min_possible : options.min_confidence)) return;
   // An earlier result for this plane was at most possible.
   const BoundingBall ball = boundingBall(points);
-  const auto in_ball = [&](const ReflectionPlane& other) { return other.normalized(ball.center, ball.radius); };
-  eraseIf(found.planes, [&](const SymmetryPlane& other) { return kSamePlane.same(in_ball(other), in_ball(*plane)); });
+  const auto inBall = [&](const ReflectionPlane& other) { return other.normalized(ball.center, ball.radius); };
+  eraseIf(found.planes, [&](const SymmetryPlane& other) { return kSamePlane.same(inBall(other), inBall(*plane)); });
   found.planes.insert(found.planes.begin(), std::move(*plane));
   found.planes = sortPlanes(std::move(found.planes), options);
   if (static_cast<int>(found.planes.size()) > options.max_planes) found.planes.resize(options.max_planes);

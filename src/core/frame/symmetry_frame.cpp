@@ -34,7 +34,7 @@ SymmetryFrame publishedFrame(const PointsRef& points, const FrameOptions& option
   const PlaneGrid& grid = map.grid;
   const PlaneProfiles profiles(edt, {}, kFrame.num_profile_samples, options.seed, options.num_threads);
   const Eigen::Vector3d middle = middleOf(edt);
-  const auto best_offset = [&](const Eigen::Vector3d& normal) -> OffsetAndScore {
+  const auto bestOffset = [&](const Eigen::Vector3d& normal) -> OffsetAndScore {
     const double first = (normal.dot(grid.center() - middle) + grid.offset(0)) / edt.cellSize();
     const std::vector<float> s =
         profiles.scores(normal.cast<float>(), static_cast<float>(first),
@@ -60,7 +60,7 @@ SymmetryFrame publishedFrame(const PointsRef& points, const FrameOptions& option
   };
   std::vector<OffsetAndScore> perpendicular(grid.numPhi());
   parallelBlocks(perpendicular.size(), options.num_threads,
-                 [&](std::size_t i) { perpendicular[i] = best_offset(across(i)); });
+                 [&](std::size_t i) { perpendicular[i] = bestOffset(across(i)); });
   const auto second =
       std::max_element(perpendicular.begin(), perpendicular.end(),
                        [](const OffsetAndScore& a, const OffsetAndScore& b) { return a.score < b.score; });
@@ -68,7 +68,7 @@ SymmetryFrame publishedFrame(const PointsRef& points, const FrameOptions& option
 
   // Third: the plane of greatest D among those perpendicular to both.
   frame.axes.col(2) = frame.axes.col(0).cross(frame.axes.col(1));
-  const OffsetAndScore third = best_offset(frame.axes.col(2));
+  const OffsetAndScore third = bestOffset(frame.axes.col(2));
 
   // The center of symmetry is where the three meet.
   frame.center =

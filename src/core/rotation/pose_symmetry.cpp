@@ -93,8 +93,8 @@ Eigen::Matrix3d firstOf(std::vector<Eigen::Matrix3d> rotations) {
   const auto keepGreatest = [&](const auto& value) {
     double greatest = -std::numeric_limits<double>::infinity();
     for (const Eigen::Matrix3d& rotation : rotations) greatest = std::max(greatest, value(rotation));
-    const auto is_less = [&](const Eigen::Matrix3d& rotation) { return value(rotation) < greatest - kEqual; };
-    eraseIf(rotations, is_less);
+    const auto isLess = [&](const Eigen::Matrix3d& rotation) { return value(rotation) < greatest - kEqual; };
+    eraseIf(rotations, isLess);
   };
   keepGreatest([](const Eigen::Matrix3d& rotation) { return rotation.trace(); });
   for (int i = 0; i < 9 && rotations.size() > 1; ++i)

@@ -87,13 +87,13 @@ constexpr MergeTolerance kSameLine{kRotation.same_line, kRotation.same_line};
 /// \return one or two, ascending.
 std::vector<int> likelyFolds(const RotationFit& fit, const Line3d& line, int max_fold) {
   const std::vector<double> overlaps = foldOverlaps(fit, line, max_fold);
-  const auto min_near_best = [&](int last) {
+  const auto minNearBest = [&](int last) {
     const double best = *std::max_element(overlaps.begin(), overlaps.begin() + last + 1);
     int n = 2;
     while (overlaps[n] < best - kRotation.near_best) ++n;
     return n;
   };
-  const int small = min_near_best(std::min(kRotation.small_fold, max_fold)), any = min_near_best(max_fold);
+  const int small = minNearBest(std::min(kRotation.small_fold, max_fold)), any = minNearBest(max_fold);
   return any == small ? std::vector{small} : std::vector{small, any};
 }
 

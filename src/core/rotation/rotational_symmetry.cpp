@@ -171,12 +171,12 @@ ObjectSymmetries objectSymmetries(const PointsRef& all, const ObjectSymmetryOpti
     done("group");
     result.rejected = inInputFrame(found.rejected, search->fit(), ball);
     if (options.other_tolerances) {
-      const auto name_at = [&](double factor) {
+      const auto nameAt = [&](double factor) {
         const PlacedGroup group = search->at({factor * tolerance, options.max_feature}).group;
         return GroupName{group.kind, group.fold};
       };
-      result.at_half_tolerance = name_at(0.5);
-      result.at_twice_tolerance = name_at(2.0);
+      result.at_half_tolerance = nameAt(0.5);
+      result.at_twice_tolerance = nameAt(2.0);
       done("other_tolerances");
     }
   } else {

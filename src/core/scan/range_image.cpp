@@ -162,7 +162,7 @@ void closeHoles(RangeImage& image) {
 void closeGaps(RangeImage& image, std::size_t largest_hole) {
   std::vector<float>& depths = image.depths;
   const std::size_t width = image.grid.width;
-  const auto is_empty = [&](std::size_t at) { return depths[at] == Visibility::kBackground; };
+  const auto isEmpty = [&](std::size_t at) { return depths[at] == Visibility::kBackground; };
   const auto num_empty = std::count(depths.begin(), depths.end(), Visibility::kBackground);
   const double largest =
       std::min(static_cast<double>(largest_hole),
@@ -170,15 +170,15 @@ void closeGaps(RangeImage& image, std::size_t largest_hole) {
   std::vector<char> visited(depths.size(), 0);
   std::vector<std::size_t> region;
   for (std::size_t start = 0; start < depths.size(); ++start) {
-    if (visited[start] || !is_empty(start)) continue;
+    if (visited[start] || !isEmpty(start)) continue;
     region.assign(1, start);
     visited[start] = 1;
     float nearest = Visibility::kBackground;
     for (std::size_t next = 0; next < region.size(); ++next) {
       const int u = static_cast<int>(region[next] % width), v = static_cast<int>(region[next] / width);
       visitAround(u, v, image.grid, [&](std::size_t to) {
-        if (!is_empty(to)) nearest = std::min(nearest, depths[to]);
-        if (visited[to] || !is_empty(to)) return;
+        if (!isEmpty(to)) nearest = std::min(nearest, depths[to]);
+        if (visited[to] || !isEmpty(to)) return;
         visited[to] = 1;
         region.push_back(to);
       });
