@@ -8,6 +8,7 @@
 
 #include "core/base/constants.h"
 #include "core/base/parallel.h"
+#include "core/base/small_motion.h"
 #include "core/base/statistics.h"
 #include "core/base/stopwatch.h"
 #include "core/geometry/point_samples.h"
