@@ -33,9 +33,6 @@ class BadProgram(BadInput):
     """A program that all items need and that cannot be run."""
 
 
-# Meshes and lists of models
-
-
 @dataclasses.dataclass
 class Mesh:
     vertices: np.ndarray  # (V, 3) float64, input units
@@ -192,9 +189,6 @@ def list_models(arguments):
     return models
 
 
-# What a process keeps for its next item
-
-
 @functools.lru_cache(maxsize=2)
 def read_json(path):
     return json.loads(pathlib.Path(path).read_text())
@@ -212,9 +206,6 @@ def opened_database(path):
     import pcl_symmetry
 
     return pcl_symmetry.Database(path, threads=1)
-
-
-# Random numbers, poses and clouds
 
 
 def generator(seed, *names):
@@ -372,9 +363,6 @@ def scan(mesh, direction, random, num_points=10_000, noise=0.0, pose=None):
 CUBE_CORNERS = np.array([[x, y, z] for z in (-1, 1) for y in (-1, 1) for x in (-1, 1)]) / math.sqrt(3)
 
 
-# Files of clouds and of answers
-
-
 def write_cloud(path, points, T_cloud_sensor=None, **fields):
     """Binary PCD of (N, 3) or organized (H, W, 3) points, with the pose of the sensor where it is known, and fields of
     one number for each point."""
@@ -391,17 +379,7 @@ def write_cloud(path, points, T_cloud_sensor=None, **fields):
     pathlib.Path(path).write_bytes(header.encode() + np.concatenate(values, -1).astype("<f4").tobytes())
 
 
-def answers_of(found, milliseconds=None):
-    """Answers of pcl_symmetry.planes() in the shape that `pcl_symmetry_planes -json` writes."""
-    numbers = lambda v: [float(x) for x in v]
-    plane = lambda p: {"coefficients": numbers(p.coefficients), "kind": p.kind, "confidence": p.confidence}
-    axis = lambda a: {"point": numbers(a.point), "direction": numbers(a.direction), "confidence": a.confidence}
-    return {"planes": [plane(p) for p in found.every], "axes": [axis(a) for a in found.axes],
-            "centers": [{"point": numbers(c.point), "confidence": c.confidence} for c in found.centers],
-            "best": plane(found.best) if found.best else None, "failed": bool(found.reason),
-            "milliseconds": milliseconds}  # fmt: skip
-
-
+# In the shape that `pcl_symmetry_planes -json` writes.
 NO_ANSWERS = {"planes": [], "axes": [], "centers": [], "best": None, "failed": True, "milliseconds": None}
 
 
@@ -415,12 +393,18 @@ def detect(points, sensor=None, seed=1, **options):
     viewpoint = "auto" if sensor is None or "as_published" in options else tuple(sensor[:3, 3])
     if isinstance(points, np.ndarray):
         points = np.ascontiguousarray(points, np.float32)
-    start = time.perf_counter()
     try:
-        found = pcl_symmetry.planes(points, viewpoint=viewpoint, seed=seed, threads=1, **options)
+        found, milliseconds = timed(pcl_symmetry.planes, points, viewpoint=viewpoint, seed=seed, threads=1, **options)
     except ValueError:
         return NO_ANSWERS
-    return answers_of(found, 1000 * (time.perf_counter() - start))
+    return {**NO_ANSWERS, **found.to_dict(), "failed": bool(found.reason), "milliseconds": milliseconds}
+
+
+def timed(function, *arguments, clock=time.perf_counter, **options):
+    """What a function returns, and the milliseconds that it took."""
+    start = clock()
+    result = function(*arguments, **options)
+    return result, 1000 * (clock() - start)
 
 
 def ask(name, points, sensor, arguments, **options):
@@ -475,9 +459,6 @@ def read_answers(folder, name):
         return answers
     except (ValueError, IndexError, AttributeError, OSError):
         raise BadInput(f"{base}: is no list of planes") from None
-
-
-# Rates, calibration and tables
 
 
 def wilson(count, total):
@@ -550,9 +531,6 @@ def save_figure(path, draw):
     axes.grid(alpha=0.3)
     figure.savefig(path, dpi=150)
     pyplot.close(figure)
-
-
-# Programs and runs
 
 
 def plain_parser(description):

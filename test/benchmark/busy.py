@@ -5,7 +5,6 @@ usage: python3 test/benchmark/busy.py
 Keeps two cores busy with loops, then times a cloud of 10 000 points by turns with all threads and with one, 40 times. Prints
 the median times and their ratio.
 """
-
 import subprocess
 import sys
 import time

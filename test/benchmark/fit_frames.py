@@ -8,6 +8,7 @@ The probability of a frame is exp(w.x) / (1 + the sum of exp(w.x) over all frame
 whose 1 counts for "none of them" (McFadden 1974); w maximizes the likelihood that one of the right frames is right.
 """
 import numpy as np
+import pcl_symmetry
 from scipy.optimize import minimize
 from scipy.special import logsumexp
 
@@ -27,8 +28,6 @@ def is_right(found, own):
 
 def sample_item(item, arguments):
     """A row for each cloud: whether it is a scan, what is right, and the evidence of its frames."""
-    import pcl_symmetry
-
     mesh, rows = bench.read_mesh(item.path), []
     for view in range(VIEWS + 1):
         random = bench.generator(arguments.seed, item.key, "frames", view)
@@ -37,7 +36,7 @@ def sample_item(item, arguments):
             points = bench.moved(pose, bench.sample(mesh, 10_000, random))
         else:
             scan = bench.scan(mesh, bench.CUBE_CORNERS[view - 1], random, pose=pose)
-            points, viewpoint = scan.rows, tuple(scan.viewpoint)
+            points, viewpoint = scan.rows, scan.viewpoint
         frame = pcl_symmetry.frame(points.astype(np.float32), viewpoint=viewpoint, threads=1)
         right = [is_right(p, pose[:3, :3]) for p in frame.probable]
         rows.append([view > 0, right, [list(map(float, row)) for row in frame.evidence.tolist()]])

@@ -9,6 +9,7 @@ maps is measured on the mesh. A plane is right where it lies within 3 degrees an
 import math
 
 import numpy as np
+import pcl_symmetry
 
 import bench
 import fits
@@ -72,8 +73,6 @@ def shape_clouds(i, seed):
 
 def sample_item(item, arguments):
     """Rows of all clouds: model, cloud, kind, share on the mesh, near share, share, its unit and the terms."""
-    import pcl_symmetry
-
     if isinstance(item, str):
         mesh, clouds = shape_clouds(int(item.split()[1]), arguments.seed)
     else:
@@ -81,8 +80,7 @@ def sample_item(item, arguments):
         clouds = clouds_of(mesh, item.key, arguments.seed)
     rows, planes = [], []
     for name, points, viewpoint, pose in clouds:
-        view = viewpoint if isinstance(viewpoint, str) else tuple(viewpoint)
-        found = pcl_symmetry.planes(points.astype(np.float32), viewpoint=view, tolerance=TOLERANCE, evidence=True, threads=1)
+        found = pcl_symmetry.planes(points.astype(np.float32), viewpoint=viewpoint, tolerance=TOLERANCE, evidence=True, threads=1)
         for e in found.evidence:
             plane = references_plane(e["coefficients"], pose, mesh)
             planes.append(plane)

@@ -6,7 +6,6 @@ Scans of each model, clean and with noise, are brought to a database of nine of 
 what fits best where it is not in the database, or is left out of the answer. --real adds the answers for real scans: lines of
 JSON with "object" and "models", as real_recognition.py --rows writes them. A file that is named twice counts twice.
 """
-
 import tempfile
 
 import numpy as np

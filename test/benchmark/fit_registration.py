@@ -8,7 +8,6 @@ JSON with "good", "object", "seed" and the fields of PoseEvidence; a pose with s
 together count a fifth of these: of real objects that are left out, more make the fit worse (log loss 0.101; 0.113 with a half).
 Poses beside which another one fits as well are left out.
 """
-
 import argparse
 import dataclasses
 
@@ -33,8 +32,6 @@ def terms_of(e):
 
 def sample_item(item, arguments):
     """A row for each pose: its terms, and whether it is right."""
-    import pcl_symmetry
-
     mesh, rows = bench.read_mesh(item.path), []
     other = bench.read_mesh(item.other.path) if item.other is not None else None
     symmetries = references.find_references(mesh)
@@ -46,8 +43,7 @@ def sample_item(item, arguments):
         if other is not None:
             targets += [(cloud_of(other, item.other, -1, asked, clean=True), False), (cloud_of(other, item.other, view, asked), False)]
         for (target, T_target_model), is_own in targets:
-            seen = [None if viewpoint is None else tuple(viewpoint) for _, viewpoint in (source, target)]
-            found = pcl_symmetry.register(source[0], target[0], source_viewpoint=seen[0], target_viewpoint=seen[1], threads=1)
+            found = registration.register(source, target)
             if found.covariance is None:
                 continue
             right = False

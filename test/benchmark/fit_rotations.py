@@ -8,6 +8,7 @@ within 1 % of the diameter of the surface, and all but 1.25 % to within ten time
 models alone: prisms have them more often than objects do.
 """
 import numpy as np
+import pcl_symmetry
 
 import bench
 import fits
@@ -33,8 +34,6 @@ def solid(i, random):
 
 def sample_item(item, arguments):
     """Rows of the rotations of all scans of a model or solid: model, kind, excess and terms."""
-    import pcl_symmetry
-
     name = str(getattr(item, "name", item))
     if isinstance(item, str):
         mesh, num_scans = solid(int(item.split()[1]), bench.generator(arguments.seed, item)), 1
@@ -45,7 +44,7 @@ def sample_item(item, arguments):
     for view in range(num_scans):
         random = bench.generator(arguments.seed, name, "turns", view)
         scan = bench.scan(mesh, bench.random_directions(random, 1)[0], random, pose=bench.random_pose(random, mesh))
-        found = pcl_symmetry.planes(scan.rows.astype(np.float32), viewpoint=tuple(scan.viewpoint), evidence=True, threads=1)
+        found = pcl_symmetry.planes(scan.rows.astype(np.float32), viewpoint=scan.viewpoint, evidence=True, threads=1)
         T_model_cloud = np.linalg.inv(scan.T_cloud_model)
         for e in found.rotation_evidence:
             line = bench.moved(T_model_cloud, e["point"]), T_model_cloud[:3, :3] @ e["direction"]

@@ -12,6 +12,7 @@ import pathlib
 import sys
 
 import numpy as np
+import pcl_symmetry
 
 import bench
 import fits
@@ -30,8 +31,6 @@ class People:
     """The patches of a mesh, and the segments that people made of it."""
 
     def __init__(self, path, folder):
-        import pcl_symmetry
-
         mesh = bench.read_mesh(path)
         self.name, self.merging = path.stem, pcl_symmetry.Merging(mesh.vertices.astype(np.float32), mesh.triangles, threads=1)
         patches = np.array(self.merging.patches)

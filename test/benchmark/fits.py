@@ -90,8 +90,6 @@ def write_header(arguments, body, includes=()):
     bench.write_whole(arguments.output, text + body.strip("\n") + "\n\n}  // namespace pcl_symmetry\n")
 
 
-# Shapes that fits are made with
-
 def with_handle(mesh):
     """The same with a handle, half an ellipse in the half plane x > 0, y = 0."""
     low, high = mesh.vertices[:, 2].min(), mesh.vertices[:, 2].max()

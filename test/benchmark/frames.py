@@ -5,7 +5,6 @@ for the whole model, and with the axes that the model was made in. Right is with
 
 frames.py PSB --classes train.cla --fold 1 --every 8 --views 4 --figure misalignment.png
 """
-
 import dataclasses
 import time
 
@@ -19,9 +18,6 @@ import references
 RIGHT_ANGLE = 5.0  # degrees
 TIE_ANGLE = 5.0  # degrees: products of reference planes that differ by less are one rotation
 ORDERS = Rotation.create_group("O").as_matrix()  # orders and signs of three axes that make a rotation
-
-
-# How far frames differ
 
 
 def least_angle(rotations, axis=None):
@@ -79,7 +75,7 @@ class Ties:
 
 
 def by_symmetry(points, viewpoint, seed):
-    return pcl_symmetry.frame(points, viewpoint=None if viewpoint is None else tuple(viewpoint), seed=seed, threads=1)
+    return pcl_symmetry.frame(points, viewpoint=viewpoint, seed=seed, threads=1)
 
 
 def as_published(points, viewpoint, seed):
@@ -94,9 +90,6 @@ def by_mass(points, viewpoint, seed):
 
 
 METHODS = {"symmetry": by_symmetry, "as published": as_published, "mass": by_mass}
-
-
-# Evaluation
 
 
 def cloud_of(mesh, model, view, arguments, clean=False):
@@ -130,9 +123,8 @@ def evaluate(model, arguments):
     for view in range(-1, arguments.views):
         points, scan, pose = cloud_of(mesh, model, view, arguments)
         for method in arguments.methods:
-            start = time.process_time()
-            found = METHODS[method](points, scan and scan.viewpoint, arguments.seed + 1)  # with center and axes
-            milliseconds = 1000 * (time.process_time() - start)
+            seen = points, scan and scan.viewpoint, arguments.seed + 1
+            found, milliseconds = bench.timed(METHODS[method], *seen, clock=time.process_time)  # with center and axes
             back = np.linalg.inv(pose)
             found = Frame(bench.moved(back, found.center), back[:3, :3] @ found.axes)
             errors = judge(found, wholes.setdefault(method, found), mesh.diagonal, ties)

@@ -19,9 +19,6 @@ ROWS = ("whole", "noise", "scan", "moved", "crop", "random")
 NOISE, CROPS = 0.02, (0.05, 0.2, 0.5)  # standard deviation in diagonals; shares of the points cut off
 
 
-# Clouds
-
-
 def clouds_of(mesh, key, arguments):
     """Yields (row of the table, name, points, T_cloud_model, scan) of one model; scan is None for whole clouds."""
 
@@ -55,9 +52,6 @@ def clouds_of(mesh, key, arguments):
         yield whole(f"cut off {100 * cut:g} %", even, cut=cut)
     if "random" in arguments.rows:
         yield whole("random", bench.sample(mesh, arguments.points, bench.generator(arguments.seed, key, "random"), even=False))
-
-
-# Judging
 
 
 def judge(answers, truth):
@@ -199,9 +193,6 @@ def evaluate(model, arguments):
                    scan=scan is not None, failed=answers["failed"], milliseconds=answers["milliseconds"])  # fmt: skip
         rows.append(row)
     return {"rows": rows, "truths": truths if arguments.export else {}}
-
-
-# Tables
 
 
 def summarize(rows):

@@ -54,9 +54,6 @@ def read_sweep(repository, path):
     return points[np.isfinite(points).all(1)]
 
 
-# References of boxes and cylinders
-
-
 def fit_plane(points):
     """(n, offset) with n.x = offset and n toward the camera at the origin."""
     mean = points.mean(0)
@@ -187,9 +184,6 @@ def objects_of(frame, points, labels):
         truths[label] = {"shape": None, **(fit or {}), "center": [*map(float, p.mean(0))],
                          "extent": float(np.linalg.norm(np.ptp(p, axis=0)))}  # fmt: skip
     return truths
-
-
-# Judging
 
 
 def is_right(kind, answer, truth, max_offset):

@@ -7,7 +7,6 @@ unlabeled: models that stand there without a known pose) and scans (file, object
 models. Each frame is analyzed in one call of scene(), and each scan alone by recognize(). A pose is right within 5 degrees
 and 5 % of the diameter, up to the symmetries of the model. A frame given by --unknown shows none of the models.
 """
-
 import json
 import pathlib
 import tempfile

@@ -12,7 +12,6 @@ that bring the points nearest to the target. It has no confidence: each pose cou
 
 --rows writes a line of JSON a pair, for fit_registration.py.
 """
-
 import dataclasses
 import functools
 import json

@@ -7,9 +7,9 @@ is.
 """
 import pathlib
 import tempfile
-import time
 
 import numpy as np
+import pcl_symmetry
 
 import bench
 
@@ -18,8 +18,6 @@ MODEL_POINTS = 20_000  # of a model in a database
 
 def build_of_meshes(models, arguments):
     """Builds a database, whole or not at all; returns sentences about those that were left out."""
-    import pcl_symmetry
-
     left_out, clouds = [], []
     for model in models:
         try:
@@ -40,9 +38,8 @@ def ask(model, arguments):
     mesh, random = bench.read_mesh(model.path), bench.generator(arguments.seed, model.key)
     direction, pose = bench.random_directions(random, 1)[0], bench.random_pose(random, mesh)
     scan = bench.scan(mesh, direction, random, pose=pose)
-    start = time.perf_counter()
-    found = bench.opened_database(arguments.database).recognize(scan.rows.astype(np.float32), viewpoint=scan.viewpoint, threads=1)
-    milliseconds = 1000 * (time.perf_counter() - start)
+    database, points = bench.opened_database(arguments.database), scan.rows.astype(np.float32)
+    found, milliseconds = bench.timed(database.recognize, points, viewpoint=scan.viewpoint, threads=1)
     name, confidence = (found[0].name, found[0].confidence) if found else (None, None)
     return {"model": model.name, "answer": name, "confidence": confidence, "milliseconds": milliseconds}
 

@@ -5,7 +5,6 @@ each scan is also brought to the model before its own in the list, where nothing
 
 registration.py PSB --classes train.cla --fold 1 --every 2 --views 1 --impostors
 """
-
 import contextlib
 import dataclasses
 import itertools
@@ -24,9 +23,6 @@ ACROSS = np.cos(np.radians(3.0))  # a plane that lies across an axis, within the
 AROUND_DISTANCE = 0.1  # diagonals that a guess is off
 SEARCHED = 1.5  # tracks are searched half as far again as the guess is off: the search has to find where to stop
 VOXEL = 0.015  # of ICP and features, diagonals of the target
-
-
-# How far a pose is from the truth, up to symmetry
 
 
 def reflection(plane):
@@ -70,11 +66,14 @@ def angle_between(a, b):
 
 
 def by_symmetry(source, target, guess):
-    more = {} if guess is None else {"guess": guess[0], "around": guess[1]}
-    seen = [None if viewpoint is None else tuple(viewpoint) for _, viewpoint in (source, target)]
-    more.update(source_viewpoint=seen[0], target_viewpoint=seen[1], threads=1)
-    found = pcl_symmetry.register(source[0], target[0], **more)
+    found = register(source, target, **({} if guess is None else {"guess": guess[0], "around": guess[1]}))
     return found.transform, found.converged
+
+
+def register(source, target, **options):
+    """pcl_symmetry.register() of clouds with their viewpoints."""
+    (points, viewpoint), (onto, seen_from) = source, target
+    return pcl_symmetry.register(points, onto, source_viewpoint=viewpoint, target_viewpoint=seen_from, threads=1, **options)
 
 
 def open3d_cloud(points, viewpoint=None, voxel=None):
@@ -138,9 +137,6 @@ def by_features(source, target, guess):
 METHODS = {"symmetry": by_symmetry, "principal axes": by_principal_axes, "features": by_features}
 
 
-# Evaluation
-
-
 def seen(points, scan, pose):
     """((points, viewpoint), T_cloud_model)"""
     return (points, None if scan is None else scan.viewpoint), pose
@@ -183,10 +179,8 @@ def evaluate(item, arguments):
                 random = bench.generator(arguments.seed, item.key, view, "guess")
                 guess = guess_for(true, target[0], mesh.diagonal, random, arguments)
             for method in arguments.methods:
-                start = time.process_time()
-                pose, fits = METHODS[method](source, target, guess)
-                row = {"scan": f"{item.name}_{view}", "impostor": impostor, "method": method, "fits": bool(fits)}
-                row["ms"] = 1000 * (time.process_time() - start)
+                (pose, fits), milliseconds = bench.timed(METHODS[method], source, target, guess, clock=time.process_time)
+                row = {"scan": f"{item.name}_{view}", "impostor": impostor, "method": method, "fits": bool(fits), "ms": milliseconds}
                 if impostor is None:
                     T_model_target = np.linalg.inv(T_target_model)
                     angle, way = pose_error(T_model_target @ pose, np.linalg.inv(T_source_model), symmetries)

@@ -20,6 +20,7 @@ import pathlib
 import tempfile
 
 import numpy as np
+import pcl_symmetry
 from scipy.spatial import cKDTree
 
 import bench
@@ -34,9 +35,6 @@ ROTATIONS = [(order, np.array(signs)) for order in itertools.permutations(range(
              for signs in itertools.product((1, -1), repeat=3) if np.linalg.det(np.eye(3)[list(order)] * signs) > 0]  # fmt: skip
 
 
-# Descriptors
-
-
 def gedt(points, num_cells):
     """(n, n, n) values of the Gaussian distance transform in a ball of radius 1, sigma = two cells, x first."""
     cell = 1 / (num_cells / 2 - 4)  # a margin of two sigmas
@@ -48,8 +46,6 @@ def gedt(points, num_cells):
 
 def prst(points, bins):
     """sqrt(D) of planes (theta, phi, r) within distance 1 of the origin."""
-    import pcl_symmetry
-
     map_ = pcl_symmetry.transform(points, bins, radius=1.0, sigma=1 / 16, threads=1)
     return np.sqrt(np.maximum(map_.values, 0))
 
@@ -61,8 +57,6 @@ def in_ball(points, reach):
 
 def describe(model, arguments):
     """Writes the descriptors of one model, half precision; a worker on another machine needs the same folder."""
-    import pcl_symmetry
-
     mesh = bench.read_mesh(model.path)
     random = bench.generator(arguments.seed, model.key)
     cloud = bench.sample(mesh, NUM_POINTS, random)
@@ -202,8 +196,6 @@ def in_all_turns(load, seed):
 
 def by_database(clouds, seed):
     """Database.match(): each cloud, turned once more, asks a database of all."""
-    import pcl_symmetry
-
     distances = np.full((len(clouds), len(clouds)), 1e6, np.float32)
     with tempfile.TemporaryDirectory() as folder:
         database = pcl_symmetry.Database(f"{folder}/models.db", create=True, threads=1)
@@ -213,9 +205,6 @@ def by_database(clouds, seed):
             for match in database.match(turned, len(clouds), viewpoint=None):
                 distances[int(match.name), i] = match.distance
     return {"Database.match": distances}
-
-
-# How good the rankings are
 
 
 def relevant_ranks(distances, classes, query):

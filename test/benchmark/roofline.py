@@ -5,7 +5,6 @@ bytes), each at the speed at which a loop of nothing else runs it here. Prints p
 
 example: roofline.py build-benchmark/test/benchmark/benchmark_speed
 """
-
 import bench
 
 STEPS = {  # counter of a stage: benchmark of the machine

@@ -9,7 +9,6 @@ rotations.py --counts 2000,10000
 rotations.py PSB --classes train.cla --fold 1
 rotations.py PSB --classes train.cla --fold 1 --every 4 --views 2
 """
-
 import dataclasses
 import itertools
 import time
@@ -24,9 +23,6 @@ import solids
 TOLERANCE, MAX_OFF, MAX_FAR, FAR = 0.01, 0.10, 0.0125, 10  # diameters, shares of the area, shares, tolerances
 NUM_ANGLES = 16  # of an axis of revolution, of 1/17 of a turn: no fold divides it
 NUM_POSES = 20  # pairs that distances of poses are tried on
-
-
-# Judging on the mesh
 
 
 def about(point, direction, fold=0):
@@ -56,9 +52,6 @@ def excess(mesh, points, motions):
 def in_frame_of(pose, motion):
     """A motion of the moved frame as one of the frame before."""
     return np.linalg.inv(pose) @ motion @ pose
-
-
-# Poses that look alike
 
 
 def surface_distance(estimate, truth, points, symmetries):
@@ -100,9 +93,6 @@ def worst_of(errors):
     return {key: max(float(error[key]) for error in errors) for key in errors[0]}
 
 
-# Solids
-
-
 @dataclasses.dataclass
 class Trial:
     solid: solids.Solid
@@ -122,9 +112,7 @@ def find_group(trial, arguments):
     pose[:3, :3] = bench.random_rotation(random)
     points = bench.moved(pose, bench.sample(mesh, trial.count, random))
     points = (points + trial.noise * mesh.diameter * random.normal(size=points.shape)).astype("f")
-    start = time.process_time()
-    group = pcl_symmetry.rotations(points, threads=1)
-    milliseconds = 1000 * (time.process_time() - start)
+    group, milliseconds = bench.timed(pcl_symmetry.rotations, points, threads=1, clock=time.process_time)
     on_mesh = bench.sample(mesh, 2000, random)
     wrong = [excess(mesh, on_mesh, [in_frame_of(pose, motion)]) > 1 for motion in motions_of(group)]
     row = {"solid": solid.name, "kind": solid.kind, "group": solid.group, "points": trial.count, "noise": trial.noise}
@@ -167,9 +155,6 @@ def measure_solids(arguments):
     bench.write_json(arguments, {"rates": rates, "poses": worst, "left_out": left_out, "rows": rows})
 
 
-# Meshes
-
-
 def judge_mesh(model, arguments):
     """Groups of clouds of the whole mesh."""
     mesh = bench.read_mesh(model.path)
@@ -193,7 +178,7 @@ def judge_scans(model, arguments):
         random = bench.generator(arguments.seed, model.key, view)
         pose = bench.random_pose(random, mesh)
         scan = bench.scan(mesh, bench.random_directions(random, 1)[0], random, pose=pose)
-        found = pcl_symmetry.planes(scan.rows.astype("f"), viewpoint=tuple(scan.viewpoint), threads=1)
+        found = pcl_symmetry.planes(scan.rows.astype("f"), viewpoint=scan.viewpoint, threads=1)
         for turn in found.rotations:
             motions = about(turn.point, turn.direction, turn.fold)
             worst = excess(mesh, points, [in_frame_of(pose, motion) for motion in motions])

@@ -15,10 +15,10 @@ import json
 import math
 import pathlib
 import tempfile
-import time
 import types
 
 import numpy as np
+import pcl_symmetry
 
 import bench
 import planes
@@ -31,9 +31,6 @@ DEVIATION, STEP, FLYING, EDGE = 1.425e-3, 2.85e-3, 0.5, 0.02  # structured light
 TABLE_RIM = 0.4  # meters
 
 
-# Models in their size
-
-
 def prepare(model, arguments):
     """Size and reference symmetries of a model, in meters about its center."""
     random = bench.generator(arguments.seed, model.key, "size")
@@ -43,9 +40,6 @@ def prepare(model, arguments):
     pose[:3, 3] = -factor * mesh.center
     symmetries = references.moved(found, pose, factor)
     return {"name": model.name, "path": model.path, "diagonal": diagonal, "symmetries": symmetries}
-
-
-# Scenes
 
 
 def standing(random):
@@ -166,9 +160,6 @@ def make(number, arguments):
     return frames
 
 
-# Judging
-
-
 def read_frame(path, field="label"):
     """(N, 3) points, NaN where nothing was met, (N,) whole numbers of a field, and the position of the sensor."""
     import open3d
@@ -193,31 +184,20 @@ def overlaps(labels, truth, shape):
 
 def analyzed(frame, seed):
     """(objects, number of the object of each point, from 1) that pcl_symmetry.scene() finds in a frame."""
-    import pcl_symmetry
-
     found = pcl_symmetry.scene(frame, seed=seed + 2, threads=1)
     return found.to_dict()["objects"], found.labels.ravel()
 
 
-def found_in_frame(frame, finite, truth, arguments):
-    """([answers of each object found], IoU of each with each true one, milliseconds)"""
-    start = time.perf_counter()
-    found, labels = analyzed(f"{arguments.frames}/{frame}.pcd", arguments.seed)
-    milliseconds = 1000 * (time.perf_counter() - start)
-    return found, overlaps(labels[finite] - 1, truth[finite], (len(found), truth.max() + 1)), milliseconds
-
-
 def judge_frame(frame, arguments):
     """Rows of the wanted objects of one frame: alone, and in the scene."""
-    import pcl_symmetry
-
     file = f"{arguments.frames}/{frame.name}.pcd"
     points, labels, viewpoint = read_frame(file)
     shape = pcl_symmetry.read(file)
     finite, sensor, rows, milliseconds = np.isfinite(points[:, 0]), np.eye(4), [], 0
     sensor[:3, 3] = viewpoint
     if "scene" in arguments.seen:
-        found, iou, milliseconds = found_in_frame(frame.name, finite, labels, arguments)
+        (found, numbers), milliseconds = bench.timed(analyzed, file, arguments.seed)
+        iou = overlaps(numbers[finite] - 1, labels[finite], (len(found), labels.max() + 1))
     for truth in frame.objects:
         k, ways = truth["object"], []  # (how it was seen, whether it was found, answers)
         own = points[finite & (labels == k)]
@@ -261,9 +241,6 @@ def wanted_frames(truths, arguments):
                 frame.objects.append(truth)
         frames += [frame] if frame.objects else []
     return frames
-
-
-# Tables
 
 
 def summarize(rows):

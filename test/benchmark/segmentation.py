@@ -14,9 +14,9 @@ segmentations. Methods:
 """
 import functools
 import pathlib
-import time
 
 import numpy as np
+import pcl_symmetry
 from scipy.sparse import csr_matrix
 from scipy.sparse.csgraph import dijkstra
 from scipy.spatial import cKDTree
@@ -92,14 +92,10 @@ def mirror_agreement(surface, labels, plane):
 
 
 def segment(mesh, path, arguments, **options):
-    import pcl_symmetry
-
     return pcl_symmetry.segment(mesh.vertices, mesh.triangles, threads=1, **options)
 
 
 def segment_points(mesh, path, arguments):
-    import pcl_symmetry
-
     points = bench.sample(mesh, NUM_POINTS, bench.generator(arguments.seed, path))
     labels = np.array(pcl_symmetry.segment(points, threads=1))
     points, labels = points[labels >= 0], labels[labels >= 0]
@@ -154,9 +150,7 @@ def evaluate(model, arguments):
             own = [{"segments": p.num_segments, "mirrored": mirrored(p.labels), "milliseconds": np.nan} for p in people]
             rows[method] = {**mean(pairs), **mean(own)} if pairs else None
             continue
-        start = time.perf_counter()
-        labels = METHODS[method](mesh, model.path, arguments)
-        milliseconds = 1000 * (time.perf_counter() - start)
+        labels, milliseconds = bench.timed(METHODS[method], mesh, model.path, arguments)
         found = Segmentation(surface, labels)
         own = {"segments": found.num_segments, "mirrored": mirrored(labels), "milliseconds": milliseconds}
         rows[method] = {**mean([compare(surface, person, found) for person in people]), **mean([own])}

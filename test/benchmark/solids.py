@@ -1,5 +1,4 @@
 """Shapes made by code: solids whose groups of rotations are known, and bodies of random sizes."""
-
 import dataclasses
 
 import numpy as np

@@ -3,7 +3,6 @@
 turntable.py FOLDER bunny buddha: FOLDER/index.json names of each scan its file, .ply, and T_object_scan. Right is within
 1 degree and 1 % of the diameter, in the frame of the first scan that is kept.
 """
-
 import json
 import sys
 import time

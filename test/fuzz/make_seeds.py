@@ -1,6 +1,5 @@
 """Seeds for the fuzzers: whole files of every kind that the tools read, those that their tests find refused, and bytes that
 become points."""
-
 import gzip
 import json
 import random

@@ -6,7 +6,6 @@ BUILD PREFIX FOLDER: does not build and install first, but takes the programs an
 installed below PREFIX, and FOLDER in place of that of the demo, which is made anew. A block is saved as the file that is
 named before it. In a fresh Debian 12: bash test/bare_system.sh --user python3 test/pages/paste_readme.py
 """
-
 import re
 import shutil
 import subprocess

@@ -1,5 +1,4 @@
 """What a depth camera needs of the Python module: organized arrays, parts of scenes, scenes, and calls that can be ended."""
-
 import dataclasses
 import importlib.util
 import inspect

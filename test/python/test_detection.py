@@ -1,5 +1,4 @@
 """From points to planes: shapes whose planes are known, moved, scaled, disturbed, cut and flat; and groups of solids."""
-
 import itertools
 import types
 import unittest

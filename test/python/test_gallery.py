@@ -1,5 +1,4 @@
 """Shapes and drawings of the gallery: what they make is what they say."""
-
 import os
 import subprocess
 import sys

@@ -1,5 +1,4 @@
 """The Python module: shapes, units, errors, and that it says what the C++ functions say."""
-
 import copy
 import dataclasses
 import functools

@@ -1,5 +1,4 @@
 """Planes of volumes: phantoms with known planes, tilted, cropped, noisy, with a lesion on one side; and none."""
-
 import unittest
 
 import pcl_symmetry

@@ -1,5 +1,4 @@
 """The virtual scanner as a tool."""
-
 import tool_run
 from tool_run import ToolTest, np
 
