@@ -61,16 +61,15 @@ def program(arguments):
             exact[n] = averages(points, n), bins, at_centers(points, n, bins)
         for name, options, settings in CURVES:
             for n, samples in settings:
-                start = time.process_time()
-                found = pcl_symmetry.transform(points, (n,) * 3, cells=n, samples=samples, threads=1, **options).values
-                milliseconds = 1000 * (time.process_time() - start)
-                means, bins, sums = exact[n]
+                options = {**options, "bins": (n,) * 3, "cells": n, "samples": samples, "threads": 1}
+                found, milliseconds = bench.timed(pcl_symmetry.transform, points, clock=time.process_time, **options)
+                found, (means, bins, sums) = found.values, exact[n]
                 errors = prst(found) - prst(means) if "voting" in name else prst(found[tuple(bins.T)]) - prst(sums)
                 rows[name, n, samples].append((milliseconds, 100 * np.sqrt((errors**2).mean()), 100 * np.median(np.abs(errors))))
     means = {key: np.mean(each, axis=0) for key, each in rows.items()}
-    print("| estimator, n | samples | ms | root mean square, % | median, % |\n|---|---|---|---|---|")
-    for (name, n, samples), (milliseconds, rms, median) in means.items():
-        print(f"| {name.split(',')[0]}, {n} | {samples or 'all'} | {milliseconds:.0f} | {rms:.2f} | {median:.2f} |")
+    cells = [[f"{name.split(',')[0]}, {n}", samples or "all", f"{milliseconds:.0f}", f"{rms:.2f}", f"{median:.2f}"]
+             for (name, n, samples), (milliseconds, rms, median) in means.items()]  # fmt: skip
+    bench.print_table("Errors of PRST", ["estimator, n", "samples", "ms", "root mean square, %", "median, %"], cells)
 
     def draw(axes):
         for name, _, settings in CURVES:

@@ -16,6 +16,7 @@ import pcl_symmetry
 
 import bench
 import fits
+import segmentation
 
 OUTPUT = "src/core/segmentation/merge_fit.h"
 NUM_CUES = 14
@@ -39,9 +40,7 @@ class People:
             raise bench.BadInput(f"{path}: no .seg file in {folder}")
         self.counts = []  # for each person, faces of each patch in each segment
         for file in files:
-            labels = np.loadtxt(file, dtype=int)
-            if len(labels) != len(patches):
-                raise bench.BadInput(f"{file}: has another number of labels than {path} has faces")
+            labels = segmentation.read_labels(file, mesh)
             counts = np.zeros((patches.max() + 1, labels.max() + 1))
             np.add.at(counts, (patches, labels), 1)
             self.counts.append(counts)
@@ -111,10 +110,7 @@ inline constexpr std::array<MergeWeights, {len(rows)}> kMergeFit{{
 
 def program(arguments):
     folder = pathlib.Path(arguments.people)
-    models = [pathlib.Path(model.path) for model in bench.list_models(arguments)]
-    models = [p for p in models if p.stem.isdigit() and int(p.stem) % 2 and (int(p.stem) - 1) // 20 % 3 < 2]
-    if not models:
-        raise bench.BadInput(f"{arguments.models[0]}: no mesh with an odd number of these categories")
+    models = [pathlib.Path(model.path) for model in segmentation.chosen_models(arguments, (0, 1))]
     with concurrent.futures.ThreadPoolExecutor(arguments.jobs) as pool:  # the module works without Python's lock
         meshes = [mesh for mesh in pool.map(lambda path: read(path, folder), models) if mesh]
         if not meshes:

@@ -5,12 +5,12 @@ and scanned from one side, and a cloud of 10 000 points without a plane. Shares 
 
 example: instructions.py build/apps build/instructions
 """
-import math
-import random
 import re
 import shutil
 import subprocess
 from pathlib import Path
+
+import numpy as np
 
 import bench
 
@@ -28,15 +28,10 @@ STAGES = {  # functions, each with what it calls
 
 def write_blob(path, count):
     """Points of a ball with waves that no plane reflects onto each other."""
-    draw = random.Random(1)
-    waves = [(draw.gauss(0, 1), draw.gauss(0, 1), draw.gauss(0, 1), draw.uniform(0, 6)) for _ in range(12)]
-    with open(path, "w") as file:
-        for _ in range(count):
-            x, y, z = (draw.gauss(0, 1) for _ in range(3))
-            length = math.sqrt(x * x + y * y + z * z)
-            x, y, z = x / length, y / length, z / length
-            radius = 1.0 + 0.08 * sum(math.sin(1.5 * (a * x + b * y + c * z) + phase) for a, b, c, phase in waves)
-            print(f"{radius * x:.6f} {radius * y:.6f} {radius * z:.6f}", file=file)
+    random = np.random.default_rng(1)
+    points, waves, phases = bench.random_directions(random, count), random.normal(size=(12, 3)), random.uniform(0, 6, 12)
+    radius = 1.0 + 0.08 * np.sin(1.5 * points @ waves.T + phases).sum(axis=1, keepdims=True)
+    np.savetxt(path, radius * points, "%.6f")
 
 
 def profile(tools, folder, name, command):

@@ -231,8 +231,7 @@ class Search:
         """Those that are not close to a better one, best first."""
         kept = []
         for i in np.argsort(-shares, kind="stable"):
-            angles, offsets = offsets_and_angles(planes[kept], planes[i]) if kept else (np.ones(0), np.ones(0))
-            if not ((angles <= angle) & (offsets <= offset)).any():
+            if not kept or not Search.holds(planes[kept], planes[i], angle, offset):
                 kept.append(i)
         return planes[kept], shares[kept]
 

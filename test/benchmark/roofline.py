@@ -40,16 +40,15 @@ def report(arguments):
             if name not in rows or row["cpu_ns"] < rows[name]["cpu_ns"]:
                 rows[name] = row
     step_ns = {step: rows[name]["cpu_ns"] / rows[name]["steps"] for step, (_, name) in STEPS.items()}
-    print("| step | ns |\n|---|---|")
-    for step, (words, _) in STEPS.items():
-        print(f"| {words} | {step_ns[step]:.3g} |")
-    print("\n| stage, one thread | steps, thousands | least ms | measured ms | share |\n|---|---|---|---|---|")
+    bench.print_table("Steps", ["step", "ns"], [[words, f"{step_ns[step]:.3g}"] for step, (words, _) in STEPS.items()])
+    table = []
     for name, words in STAGES.items():
         row = rows[name]
         counts = {step: row.get(f"needs_{step}", 0.0) for step in STEPS}
         least = sum(count * step_ns[step] for step, count in counts.items())
         text = ", ".join(f"{count / 1000:.0f} {STEPS[step][0]}" for step, count in counts.items() if count >= 500)
-        print(f"| {words} | {text} | {1e-6 * least:.2f} | {1e-6 * row['cpu_ns']:.2f} | {100 * least / row['cpu_ns']:.0f} % |")
+        table.append([words, text, f"{1e-6 * least:.2f}", f"{1e-6 * row['cpu_ns']:.2f}", f"{100 * least / row['cpu_ns']:.0f} %"])
+    bench.print_table("Stages", ["stage, one thread", "steps, thousands", "least ms", "measured ms", "share"], table)
 
 
 if __name__ == "__main__":

@@ -12,6 +12,7 @@ segmentations. Methods:
   points       the same on 30 000 points; a face takes the label of the nearest one
   paper-1 to paper-4        the same by splitting as in the paper, by depth
 """
+import argparse
 import functools
 import pathlib
 
@@ -190,13 +191,17 @@ def report(summary):
     bench.print_table("Distance from segmentations of people, means over models with 95 % intervals", header, rows)
 
 
-def main(arguments):
-    every, arguments.every = arguments.every, 1
-    wanted = lambda number: number % 2 == 1 and (number - 1) // 20 % 3 in arguments.remainders
-    models = [m for m in bench.list_models(arguments) if m.name.isdigit() and wanted(int(m.name))][::every]
+def chosen_models(arguments, remainders):
+    """Every N-th of the models with odd numbers whose category, modulo 3, is one of these remainders."""
+    models = bench.list_models(argparse.Namespace(**{**vars(arguments), "every": 1}))
+    models = [m for m in models if m.name.isdigit() and int(m.name) % 2 and (int(m.name) - 1) // 20 % 3 in remainders]
     if not models:
         raise bench.BadInput(f"{arguments.models[0]}: no mesh with an odd number of these categories")
-    results, left_out = bench.run(models, evaluate, arguments)
+    return models[:: arguments.every]
+
+
+def main(arguments):
+    results, left_out = bench.run(chosen_models(arguments, arguments.remainders), evaluate, arguments)
     summary = summarize(results)
     report(summary)
     bench.write_json(arguments, {"methods": summary, "models": results, "left_out": left_out})

@@ -51,13 +51,11 @@ def run_program(*words):
     return done.returncode, done.stderr.strip()
 
 
-class Rates(unittest.TestCase):
+class Parts(unittest.TestCase):
     def test_calibration(self):
         self.assertAlmostEqual(bench.calibration([0.85] * 4, [1, 1, 1, 0])["error"], 0.1)
         self.assertAlmostEqual(bench.calibration([1, 0], [1, 0])["brier"], 0)
 
-
-class Clouds(unittest.TestCase):
     def test_samples_lie_on_the_mesh_by_area(self):
         mesh = box()
         for even in (True, False):
@@ -77,8 +75,6 @@ class Clouds(unittest.TestCase):
         turned = bench.scan(mesh, [0, 0, 1], np.random.default_rng(0), 2000, pose=pose)
         np.testing.assert_allclose(turned.rows, bench.moved(pose, scan.rows), atol=1e-9)
 
-
-class References(unittest.TestCase):
     def test_a_box_has_its_three_planes(self):
         found = references_of_box()
         self.assertEqual(found["kind"], "symmetric")

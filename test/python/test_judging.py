@@ -34,6 +34,15 @@ def symmetries(planes=(), axes=(), centers=()):
     return {"planes": planes, "axes": axes, "centers": centers, "center": [0, 0, 0], "diagonal": 2.0}
 
 
+def stone(seed, radii, at):
+    """(T, 3, 3) triangles of a body without symmetry."""
+    random = np.random.default_rng(seed)
+    u, faces = solids.ball()
+    bumps = bench.random_directions(random, 6)
+    swell = (random.uniform(-0.45, 0.45, 6) * np.exp(4 * (u @ bumps.T - 1))).sum(-1)
+    return (at + np.array(radii) * (1 + swell)[:, None] * u)[faces]
+
+
 class Poses(unittest.TestCase):
     def error(self, estimate, **known):
         true = pose(50, (1, 2, 3), (4, 5, 6))
@@ -56,41 +65,6 @@ class Poses(unittest.TestCase):
     def test_sphere(self):
         error = self.error(pose(77, (3, 1, 2), (0, 0, 0.5)), centers=[{"point": [0, 0, 0]}])
         np.testing.assert_allclose(error, (0, 0.25), atol=1e-9)
-
-
-class Frames(unittest.TestCase):
-    def test_order_and_signs_do_not_matter(self):
-        axes = rotated(40, (1, 2, 0)) @ np.array([[0, 0, 1], [-1, 0, 0], [0, -1, 0]])
-        self.assertAlmostEqual(frames.angle_of_axes(rotated(4, (1, 0, 0)) @ axes, rotated(40, (1, 2, 0))), 4, 5)
-
-    def test_ties_of_a_prism_and_of_a_body_of_revolution(self):
-        triangle = [{"coefficients": [np.cos(a), np.sin(a), 0, 0]} for a in np.radians([0, 60, 120])]
-        ties = frames.Ties({"planes": triangle, "axes": [], "centers": []})
-        self.assertAlmostEqual(ties.angle(rotated(62, (0, 0, 1)), np.eye(3)), 2, 5)
-        self.assertAlmostEqual(ties.angle(rotated(45, (0, 0, 1)), np.eye(3)), 15, 5)
-        ties = frames.Ties({"planes": [], "axes": [Z], "centers": []})
-        self.assertLess(ties.angle(rotated(45, (0, 0, 1)), np.eye(3)), 1e-5)
-        self.assertAlmostEqual(ties.angle(rotated(30, (1, 0, 0)), np.eye(3)), 30, 5)
-
-
-class Groups(unittest.TestCase):
-    def test_solids_have_the_rotations_that_they_are_said_to_have(self):
-        golden = (1 + 5**0.5) / 2
-        known = {"rim of 5 spokes": ((0, 0, 1), 5), "gear of 16 teeth on a hub": ((0, 0, 1), 16), "goblet": ((0, 0, 1), 0),
-                 "cube": ((1, 1, 1), 3), "tetrahedron": ((1, 1, 1), 3), "icosahedron": ((0, 1, golden), 5)}  # fmt: skip
-        for solid in (solid for solid in solids.solids() if solid.name in known):
-            mesh, (axis, order) = bench.make_mesh(solid.vertices, solid.faces), known[solid.name]
-            points, axis = bench.sample(mesh, 500, np.random.default_rng(1)), np.array(axis) / np.linalg.norm(axis)
-            about = lambda degrees: [bench.rotation_about(np.zeros(3), axis, np.radians(degrees))]
-            with self.subTest(solid.name):
-                self.assertLessEqual(rotations.excess(mesh, points, about(360 / order if order else 77)), 1)
-                if order:
-                    self.assertGreater(rotations.excess(mesh, points, about(360 / order) + about(180 / order)), 1)
-
-    def test_surface_distance_is_the_least_over_the_symmetries(self):
-        corners, thirds = np.array([[2, 0, 0], [0, 0, 1.0]]), [pose(120 * k, (0, 0, 1)) for k in range(3)]
-        distance = rotations.surface_distance(pose(125, (0, 0, 1)), np.eye(4), corners, thirds)
-        self.assertAlmostEqual(distance, 4 * np.sin(np.radians(2.5)))
 
 
 class Segmentations(unittest.TestCase):
@@ -124,7 +98,38 @@ class Segmentations(unittest.TestCase):
         self.assertRaisesRegex(bench.BadInput, "no_file.seg: is no list of labels", segmentation.read_labels, "no_file.seg", self.mesh)
 
 
-class Rankings(unittest.TestCase):
+class KnownAnswers(unittest.TestCase):
+    def test_order_and_signs_of_axes_do_not_matter(self):
+        axes = rotated(40, (1, 2, 0)) @ np.array([[0, 0, 1], [-1, 0, 0], [0, -1, 0]])
+        self.assertAlmostEqual(frames.angle_of_axes(rotated(4, (1, 0, 0)) @ axes, rotated(40, (1, 2, 0))), 4, 5)
+
+    def test_ties_of_a_prism_and_of_a_body_of_revolution(self):
+        triangle = [{"coefficients": [np.cos(a), np.sin(a), 0, 0]} for a in np.radians([0, 60, 120])]
+        ties = frames.Ties({"planes": triangle, "axes": [], "centers": []})
+        self.assertAlmostEqual(ties.angle(rotated(62, (0, 0, 1)), np.eye(3)), 2, 5)
+        self.assertAlmostEqual(ties.angle(rotated(45, (0, 0, 1)), np.eye(3)), 15, 5)
+        ties = frames.Ties({"planes": [], "axes": [Z], "centers": []})
+        self.assertLess(ties.angle(rotated(45, (0, 0, 1)), np.eye(3)), 1e-5)
+        self.assertAlmostEqual(ties.angle(rotated(30, (1, 0, 0)), np.eye(3)), 30, 5)
+
+    def test_solids_have_the_rotations_that_they_are_said_to_have(self):
+        golden = (1 + 5**0.5) / 2
+        known = {"rim of 5 spokes": ((0, 0, 1), 5), "gear of 16 teeth on a hub": ((0, 0, 1), 16), "goblet": ((0, 0, 1), 0),
+                 "cube": ((1, 1, 1), 3), "tetrahedron": ((1, 1, 1), 3), "icosahedron": ((0, 1, golden), 5)}  # fmt: skip
+        for solid in (solid for solid in solids.solids() if solid.name in known):
+            mesh, (axis, order) = bench.make_mesh(solid.vertices, solid.faces), known[solid.name]
+            points, axis = bench.sample(mesh, 500, np.random.default_rng(1)), np.array(axis) / np.linalg.norm(axis)
+            about = lambda degrees: [bench.rotation_about(np.zeros(3), axis, np.radians(degrees))]
+            with self.subTest(solid.name):
+                self.assertLessEqual(rotations.excess(mesh, points, about(360 / order if order else 77)), 1)
+                if order:
+                    self.assertGreater(rotations.excess(mesh, points, about(360 / order) + about(180 / order)), 1)
+
+    def test_surface_distance_is_the_least_over_the_symmetries(self):
+        corners, thirds = np.array([[2, 0, 0], [0, 0, 1.0]]), [pose(120 * k, (0, 0, 1)) for k in range(3)]
+        distance = rotations.surface_distance(pose(125, (0, 0, 1)), np.eye(4), corners, thirds)
+        self.assertAlmostEqual(distance, 4 * np.sin(np.radians(2.5)))
+
     def test_measures_of_a_known_ranking(self):
         found = retrieval.scores(np.array([1, 4, 5]))
         self.assertEqual(found["nearest"], 1)
@@ -151,8 +156,6 @@ class Rankings(unittest.TestCase):
             expected = [[pcl_symmetry.descriptor_distance(a, b, of_planes=of_planes) for b in roots] for a in roots]
             np.testing.assert_allclose(retrieval.l2(weights * roots), expected, atol=0.01)  # roots of rounding errors
 
-
-class Descriptors(unittest.TestCase):
     def test_descriptors_rotate_with_the_points(self):
         points = np.random.default_rng(1).normal(size=(300, 3)) * [0.5, 0.3, 0.15]
         for order, signs in retrieval.ROTATIONS[::5]:
@@ -175,8 +178,6 @@ class Descriptors(unittest.TestCase):
         self.assertGreater(turned[0, 0, :, 3].max(), 0)  # theta is near 0
         self.assertEqual(turned[0, 3:].max(), 0)
 
-
-class Scenes(unittest.TestCase):
     def test_objects_match_by_the_share_of_common_points(self):
         found, truth = np.array([0, 0, 0, 1, -1, 1]), np.array([1, 1, -1, 0, 0, 0])
         np.testing.assert_allclose(scenes.overlaps(found, truth, (2, 2)), [[0, 2 / 3], [2 / 3, 0]])
@@ -184,8 +185,6 @@ class Scenes(unittest.TestCase):
     def test_bands_of_occlusion(self):
         self.assertEqual([scenes.band_of(x) for x in (0, 0.1, 0.69, 0.7)], [0, 1, 3, None])
 
-
-class Cameras(unittest.TestCase):
     def test_a_camera_sees_a_square_where_it_is(self):
         square = np.array([(-0.1, -0.1, 2), (0.1, -0.1, 2), (0.1, 0.1, 2), (-0.1, 0.1, 2)])[[[0, 1, 2], [0, 2, 3]]]
         depths = scenes.depths_of(square)
@@ -200,17 +199,6 @@ class Cameras(unittest.TestCase):
         np.testing.assert_allclose(steps, np.round(steps), atol=1e-6)
         self.assertGreater(noisy.std(), 0)
 
-
-def stone(seed, radii, at):
-    """(T, 3, 3) triangles of a body without symmetry."""
-    random = np.random.default_rng(seed)
-    u, faces = solids.ball()
-    bumps = bench.random_directions(random, 6)
-    swell = (random.uniform(-0.45, 0.45, 6) * np.exp(4 * (u @ bumps.T - 1))).sum(-1)
-    return (at + np.array(radii) * (1 + swell)[:, None] * u)[faces]
-
-
-class Names(unittest.TestCase):
     def test_models_cut_objects_that_touch_where_no_symmetry_does(self):
         c, s = np.cos(0.6), np.sin(0.6)
         toward_camera = np.array([[1, 0, 0], [0, -s, -c], [0, c, -s]])

@@ -21,10 +21,6 @@ def head(x):
             + 0.4 * in_ellipsoid(side, (25, 55, -20), (10, 8, 9)) + 0.6 * in_ellipsoid(side, (0, 80, -20), (8, 14, 10)))  # fmt: skip
 
 
-def with_lesion(x):
-    return head(x) + 0.4 * in_ellipsoid(x, (30, -20, 20), (12, 12, 12))
-
-
 def spiral(x):
     """A tube that winds about z as it rises."""
     angle = np.arctan2(x[..., 1], x[..., 0])[..., None] + 2 * np.pi * np.arange(-2, 3)
@@ -80,10 +76,10 @@ class Volumes(unittest.TestCase):
             self.assert_plane(0.5, 0.5)
 
     def test_of_heads_that_are_cropped_or_have_a_lesion_on_one_side_are_exact(self):
-        self.phantom(cropped=45)
-        self.assert_plane(0.1, 0.2)
-        self.phantom(with_lesion)
-        self.assert_plane(0.1, 0.2)
+        with_lesion = lambda x: head(x) + 0.4 * in_ellipsoid(x, (30, -20, 20), (12, 12, 12))
+        for options in (dict(cropped=45), dict(function=with_lesion)):
+            self.phantom(**options)
+            self.assert_plane(0.1, 0.2)
 
     def test_of_thick_slices_are_right(self):
         self.phantom(size=160, slices=7)

@@ -3,7 +3,6 @@ import csv
 import io
 import json
 import os
-import subprocess
 
 import tool_run
 from tool_run import ToolTest
@@ -55,11 +54,9 @@ class Flags(ToolTest):
         self.assertLess(self.output.index("-png"), at[1])
 
     def test_help_fits_the_terminal(self):
-        tools = [tool for tool in tool_run.TOOLS.glob("pcl_symmetry_*") if not tool.suffix]
-        for tool in tools:
+        for tool in (tool.name.split("_", 2)[2] for tool in tool_run.TOOLS.glob("pcl_symmetry_*") if not tool.suffix):
             for columns in (60, 90):
-                shown = subprocess.run(["script", "-qec", f"stty cols {columns}; {tool} -h", "/dev/null"], capture_output=True, text=True)
-                lines = shown.stdout.split("\nExample:")[0].splitlines()
+                lines = self.at_terminal("-h", tool=tool, columns=columns)[1].split("\nExample:")[0].splitlines()
                 self.assertTrue(columns - 15 < max(map(len, lines)) <= columns, (tool, columns))
                 self.assertEqual([line for line in lines if line.endswith(" ")], [], tool)
 

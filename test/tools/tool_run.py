@@ -1,10 +1,10 @@
 """Tools run as their users run them, the files that go in and come out, and shapes to test with."""
-import contextlib
 import importlib.util
 import json
 import os
 import re
 import resource
+import shlex
 import struct
 import subprocess
 import sys
@@ -82,17 +82,11 @@ class ToolTest(unittest.TestCase):
         self.output, self.error = (text.decode(errors="replace") for text in (done.stdout, done.stderr))
         self.assertEqual(done.returncode, code, f"{words}: {self.error}")
 
-    def at_terminal(self, *words):
+    def at_terminal(self, *words, tool=None, columns=80):
         """Exit code of a tool at a terminal, and what it shows there."""
-        ours, theirs = os.openpty()
-        tool = subprocess.Popen([TOOLS / f"pcl_symmetry_{self.tool}", *words], cwd=self.folder, stdout=theirs, stderr=theirs)
-        os.close(theirs)
-        shown = b""
-        with contextlib.suppress(OSError):  # the end
-            while piece := os.read(ours, 1 << 16):
-                shown += piece
-        os.close(ours)
-        return tool.wait(), shown.decode()
+        command = f"stty cols {columns}; {TOOLS}/pcl_symmetry_{tool or self.tool} {shlex.join(map(str, words))}"
+        done = subprocess.run(["script", "-qec", command, "/dev/null"], cwd=self.folder, stdout=subprocess.PIPE, check=False)
+        return done.returncode, done.stdout.decode()
 
     def report(self, *arguments, **options):
         """Runs a tool that must not fail. Returns what it reports."""
