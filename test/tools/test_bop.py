@@ -1,8 +1,8 @@
 """The tool of symmetries of object models: files of the BOP benchmark, of DOPE and of Isaac, and colors."""
 import json
 
-import tool_run
-from tool_run import ToolTest, np
+from tool_run import BOX_FACES, CYLINDER, SPHERE, TETRAHEDRON, VASE, Image, ToolTest, box_corners, box_off, lathe, mug, np
+from tool_run import off, pcd, pcd_points, ply_points, rotation, xyz
 
 FEW = "-quiet -points 2000 -grid 32"
 
@@ -40,11 +40,11 @@ def textured_cube(texture, is_printed):
 
 def pyramid(n):
     corners = [(np.cos(a), np.sin(a), 0) for a in 2 * np.pi * np.arange(n) / n]
-    return tool_run.off([*corners, (0, 0, 1.3)], [list(range(n))[::-1], *([k, (k + 1) % n, n] for k in range(n))])
+    return off([*corners, (0, 0, 1.3)], [list(range(n))[::-1], *([k, (k + 1) % n, n] for k in range(n))])
 
 
 def prism(n):
-    return tool_run.lathe([(0.001, -0.7), (1, -0.7), (1, 0.7), (0.001, 0.7)], n)
+    return lathe([(0.001, -0.7), (1, -0.7), (1, 0.7), (0.001, 0.7)], n)
 
 
 def deltahedron(corners, edge):
@@ -52,11 +52,11 @@ def deltahedron(corners, edge):
     corners = np.array(corners, float)
     near = np.linalg.norm(corners[:, None] - corners, axis=2) < 1.01 * edge
     count = range(len(corners))
-    return tool_run.off(corners, [(i, j, k) for i in count for j in range(i) for k in range(j) if near[i, j] and near[j, k] and near[k, i]])
+    return off(corners, [(i, j, k) for i in count for j in range(i) for k in range(j) if near[i, j] and near[j, k] and near[k, i]])
 
 
 def greatest_distance(model):
-    """Between two vertices of a text of tool_run.off()."""
+    """Between two vertices of a text of off()."""
     lines = model.split("\n")
     vertices = np.loadtxt(lines[2:2 + int(lines[1].split()[0])], dtype=np.float32).astype(float)
     return np.sqrt(((vertices[:, None] - vertices) ** 2).sum(axis=2).max())
@@ -70,13 +70,13 @@ def num_composed(axes):
     """How many rotations Isaac composes: a turn about z with one about y and one about x, the identity among each."""
     about = [[np.eye(3)] for _ in range(3)]
     for text in axes:
-        about["xyz".index(text[0])].append(tool_run.rotation(np.eye(3)["xyz".index(text[0])], np.radians(float(text[2:]))))
+        about["xyz".index(text[0])].append(rotation(np.eye(3)["xyz".index(text[0])], np.radians(float(text[2:]))))
     return len({tuple((z @ y @ x).round(3).ravel() + 0.0) for x in about[0] for y in about[1] for z in about[2]})
 
 
 class Bop(ToolTest):
     tool = "bop"
-    files = dict(box=("obj_000003.off", tool_run.box()), vase=("obj_000012.off", tool_run.VASE))
+    files = dict(box=("obj_000003.off", box_off()), vase=("obj_000012.off", VASE))
 
     def test_describes_a_box_as_the_benchmark_does(self):
         info = self.report(self.box, "-quiet")
@@ -95,42 +95,41 @@ class Bop(ToolTest):
 
     def test_gives_bodies_of_revolution_an_axis_and_cylinders_a_flip(self):
         vase = self.report(self.vase, "-quiet")["12"]
-        self.assertAlmostEqual(vase["diameter"], greatest_distance(tool_run.VASE), delta=1e-9)
+        self.assertAlmostEqual(vase["diameter"], greatest_distance(VASE), delta=1e-9)
         self.assertNotIn("symmetries_discrete", vase)
         self.assertEqual(len(vase["symmetries_continuous"]), 1)
         self.assertAlmostEqual(abs(vase["symmetries_continuous"][0]["axis"][2]), 1, delta=1e-4)
         np.testing.assert_allclose(vase["symmetries_continuous"][0]["offset"][:2], 0, atol=0.01)
-        cylinder = self.report(self.write("can.off", tool_run.CYLINDER), "-quiet")["1"]
+        cylinder = self.report(self.write("can.off", CYLINDER), "-quiet")["1"]
         self.assertEqual([len(cylinder[key]) for key in ("symmetries_continuous", "symmetries_discrete")], [1, 1])
         self.assertAlmostEqual(cylinder["symmetries_discrete"][0][10], -1, delta=1e-3, msg="end over end")
 
     def test_gives_a_sphere_an_axis_and_tilts_and_an_asymmetric_model_nothing(self):
-        sphere = self.report(self.write("ball.off", tool_run.SPHERE), "-quiet -sphere_angle 90")["1"]
+        sphere = self.report(self.write("ball.off", SPHERE), "-quiet -sphere_angle 90")["1"]
         self.assertEqual([len(sphere[key]) for key in ("symmetries_continuous", "symmetries_discrete")], [1, 1])
         self.assertAlmostEqual(sphere["symmetries_discrete"][0][10], -1, delta=1e-9, msg="upside down")
-        self.assertAlmostEqual(sphere["diameter"], greatest_distance(tool_run.SPHERE), delta=1e-9)
-        tetrahedron = self.report(self.write("m7.off", tool_run.TETRAHEDRON), "-quiet")["7"]
+        self.assertAlmostEqual(sphere["diameter"], greatest_distance(SPHERE), delta=1e-9)
+        tetrahedron = self.report(self.write("m7.off", TETRAHEDRON), "-quiet")["7"]
         self.assertFalse({"symmetries_continuous", "symmetries_discrete"} & set(tetrahedron))
         self.assertIn("group C1", self.output)
 
     def test_explains_what_fails(self):
-        self.run_tool(self.write("mug.off", tool_run.off(*tool_run.mug())), "-quiet -explain -failures failures")
-        self.assertIn("  tolerance ", self.output)
+        self.assertIn("  tolerance ", self.run_tool(self.write("mug.off", off(*mug())), "-quiet -explain -failures failures"))
         self.assertIn("  rejected ", self.output)
-        points, _ = tool_run.ply_points(self.folder / "failures/mug_rejected_1.ply")
+        points, _ = ply_points(self.folder / "failures/mug_rejected_1.ply")
         self.assertEqual(len(points), 20_000)
         self.assertIn("red", points.dtype.names)
 
     def test_numbers_models_as_their_files_or_else_by_the_first_free_number(self):
-        zero, plain = self.write("obj_000000.off", tool_run.box()), self.write("vase.off", tool_run.VASE)
+        zero, plain = self.write("obj_000000.off", box_off()), self.write("vase.off", VASE)
         info = self.report(self.vase, self.box, plain, zero, "-quiet -points 1000")
         self.assertEqual(list(info), ["0", "1", "3", "12"], "by number")
         self.assertEqual(self.text("report.json").count("\n"), 6, "a line for each")
-        self.fails(2, "both model 3", self.box, self.write("copy_3.off", tool_run.box()))
+        self.fails(2, "both model 3", self.box, self.write("copy_3.off", box_off()))
 
     def test_takes_folders(self):
-        for name, content in (("obj_000002.off", tool_run.box()), ("obj_000010.off", "OFF\n1 0 0\n0 0 0\n"),
-                              ("obj_000011.off", tool_run.box()), ("other.off", tool_run.box()), ("readme.txt", "no model")):
+        for name, content in (("obj_000002.off", box_off()), ("obj_000010.off", "OFF\n1 0 0\n0 0 0\n"),
+                              ("obj_000011.off", box_off()), ("other.off", box_off()), ("readme.txt", "no model")):
             self.write(f"models/{name}", content)
         self.fails(1, "obj_000010.off", "models -quiet -points 1000 -grid 32 -json report.json")  # it has no surface
         self.assertEqual(self.error.count("\n"), 1, self.error)
@@ -149,7 +148,7 @@ class Bop(ToolTest):
         half_turn = [1, 0, 0, 0, 0, -1, 0, 0, 0, 0, -1, 0, 0, 0, 0, 1]
         given = {"3": {"symmetries_discrete": [np.reshape(half_turn, (4, 4)).tolist()]}, "5": {"diameter": 3.0},
                  "12": {"symmetries_continuous": [{"axis": [0, 0, 1], "offset": [0, 0, 0]}]}}
-        found = self.check(given, self.box, self.vase, self.write("plain.off", tool_run.box()))
+        found = self.check(given, self.box, self.vase, self.write("plain.off", box_off()))
         self.assertIn("model 12     file Cinf  surface Cinf  agree", self.output)
         self.assertIn("1 of 2 models disagree", self.output)
         self.assertEqual((found["missing"], found["disagreeing"]), (["1"], 1))
@@ -170,7 +169,7 @@ class Bop(ToolTest):
         self.run_tool(self.box, self.vase, "-quiet -check given.json", code=1)  # a file of one model
 
     def test_agrees_with_what_it_wrote_in_every_format(self):
-        models = self.box, self.vase, self.write("obj_000013.off", prism(6)), self.write("obj_000014.off", tool_run.TETRAHEDRON)
+        models = self.box, self.vase, self.write("obj_000013.off", prism(6)), self.write("obj_000014.off", TETRAHEDRON)
         self.run_tool(*models, FEW, "-json bop.json -isaac isaac.yaml -dope dope")
         self.assertIn('"3": ["x_180", "y_180", "z_180"]  # D2', self.text("isaac.yaml"))
         for path in ("bop.json", "isaac.yaml"):
@@ -181,17 +180,17 @@ class Bop(ToolTest):
             self.assertIn("0 of 1 models disagree", self.output, model)
 
     def test_writes_axes_for_dope_to_choose_from(self):
-        self.run_tool(self.write("can.off", tool_run.CYLINDER), self.write("none.off", tool_run.TETRAHEDRON), FEW, "-dope dope")
+        self.run_tool(self.write("can.off", CYLINDER), self.write("none.off", TETRAHEDRON), FEW, "-dope dope")
         across, along = (entry["object"] for entry in json.loads(self.text("dope/can/model_info.json"))["align_axes"])
         np.testing.assert_allclose(np.abs(along), (0, 0, 1), atol=1e-3)
         self.assertAlmostEqual(np.dot(across, along), 0, delta=1e-9)
         self.assertEqual(json.loads(self.text("dope/none/model_info.json")), {}, "nothing to choose from")
 
     def test_writes_axes_for_isaac_that_compose_the_group(self):
-        slanted = tool_run.off(tool_run.box_corners(1, 1.5, 2) @ tool_run.rotation(np.array([1.0, 2, 3]), 0.7).T, tool_run.BOX_FACES)
-        bodies = {"C1": tool_run.TETRAHEDRON, "C4": pyramid(4), "C7": pyramid(7), "D2": tool_run.box(), "D3": prism(3), "D6": prism(6),
-                  "O": tool_run.box(1, 1), "T": deltahedron([(1, 1, 1), (1, -1, -1), (-1, 1, -1), (-1, -1, 1)], np.sqrt(8)), "I": ICOSAHEDRON,
-                  "Cinf": tool_run.VASE, "Dinf": tool_run.CYLINDER, "O(3)": tool_run.SPHERE, "slanted": slanted}
+        slanted = off(box_corners(1, 1.5, 2) @ rotation(np.array([1.0, 2, 3]), 0.7).T, BOX_FACES)
+        bodies = {"C1": TETRAHEDRON, "C4": pyramid(4), "C7": pyramid(7), "D2": box_off(), "D3": prism(3), "D6": prism(6),
+                  "O": box_off(1, 1), "T": deltahedron([(1, 1, 1), (1, -1, -1), (-1, 1, -1), (-1, -1, 1)], np.sqrt(8)), "I": ICOSAHEDRON,
+                  "Cinf": VASE, "Dinf": CYLINDER, "O(3)": SPHERE, "slanted": slanted}
         self.run_tool(*(self.write(f"{k + 1}.off", content) for k, content in enumerate(bodies.values())), "-quiet -isaac axes.yaml")
         orders = {"C1": 1, "C4": 4, "C7": 7, "D2": 4, "D3": 6, "D6": 12, "O": 24}
         for group, line in zip(bodies, self.text("axes.yaml").splitlines(), strict=True):
@@ -233,8 +232,8 @@ class Bop(ToolTest):
 
     def test_warns_of_scans(self):
         self.run_tool(self.box, "scan.pcd", tool="scan")
-        points = tool_run.xyz(tool_run.pcd_points(self.folder / "scan.pcd"))
-        self.write("moved.pcd", tool_run.pcd(points[np.isfinite(points).all(axis=1)] + 1))
+        points = xyz(pcd_points(self.folder / "scan.pcd"))
+        self.write("moved.pcd", pcd(points[np.isfinite(points).all(axis=1)] + 1))
         for scan in ("scan.pcd", "moved.pcd"):
             self.run_tool(scan)
             self.assertIn(f"{scan}: is a scan from one side, must be a whole object", self.error)
@@ -243,11 +242,9 @@ class Bop(ToolTest):
 
     def test_asks_for_colors_only_when_it_is_told(self):
         plain, red = self.write("obj_1.ply", colored_cube(False)), self.write("obj_2.ply", colored_cube(True))
-        self.run_tool(red, FEW)
-        self.assertIn("1 of 1 models have colors, which were not looked at", self.output)
+        self.assertIn("1 of 1 models have colors, which were not looked at", self.run_tool(red, FEW))
         self.assertIn("obj_2.ply  group O", self.output)
-        self.run_tool(plain, red, FEW, "-color")
-        self.assertNotIn("not looked at", self.output)
+        self.assertNotIn("not looked at", self.run_tool(plain, red, FEW, "-color"))
         for said in ("obj_1.ply  group O", "obj_2.ply  group C4", "without its colors the group is O"):
             self.assertIn(said, self.output)
         # The same red cube with its colors as coordinates in a texture that it does not name.
@@ -257,10 +254,9 @@ class Bop(ToolTest):
     def test_reads_the_texture_that_a_model_of_the_benchmark_names(self):
         pixels = np.full((64, 64, 3), 255, np.uint8)
         pixels[:32] = (255, 0, 0)
-        tool_run.Image.fromarray(pixels).save(self.folder / "print.png")
+        Image.fromarray(pixels).save(self.folder / "print.png")
         white, red = (self.write(f"obj_{k + 1}.ply", textured_cube("print.png", k == 1)) for k in range(2))
-        self.run_tool(white, red, FEW, "-color")
-        self.assertNotIn("not looked at", self.output)
+        self.assertNotIn("not looked at", self.run_tool(white, red, FEW, "-color"))
         self.assertIn("obj_1.ply  group O", self.output)
         self.assertIn("obj_2.ply  group C1", self.output, "v runs from bottom to top: half of that side is red")
         self.fails(1, "missing.png", self.write("obj_3.ply", textured_cube("missing.png", True)), "-quiet -color")

@@ -4,13 +4,12 @@ import io
 import json
 import os
 
-import tool_run
-from tool_run import ToolTest
+from tool_run import CYLINDER, TOOLS, VASE, ToolTest, box_off, limit_of_memory, pcd_header
 
 
 class Flags(ToolTest):
     tool = "planes"
-    files = dict(box=("box.off", tool_run.box()))
+    files = dict(box=("box.off", box_off()))
 
     def test_single_and_double_dash_mean_the_same(self):
         scans = []
@@ -54,7 +53,7 @@ class Flags(ToolTest):
         self.assertLess(self.output.index("-png"), at[1])
 
     def test_help_fits_the_terminal(self):
-        for tool in (tool.name.split("_", 2)[2] for tool in tool_run.TOOLS.glob("pcl_symmetry_*") if not tool.suffix):
+        for tool in (tool.name.split("_", 2)[2] for tool in TOOLS.glob("pcl_symmetry_*") if not tool.suffix):
             for columns in (60, 90):
                 lines = self.at_terminal("-h", tool=tool, columns=columns)[1].split("\nExample:")[0].splitlines()
                 self.assertTrue(columns - 15 < max(map(len, lines)) <= columns, (tool, columns))
@@ -151,7 +150,7 @@ class Flags(ToolTest):
             self.fails(2, f"pcl_symmetry_{tool}: {said}", arguments, tool=tool)
 
     def test_too_little_memory_is_one_line(self):
-        limit = tool_run.limit_of_memory(1 << 29)
+        limit = limit_of_memory(1 << 29)
         if not limit:
             self.skipTest("sanitizers take all addresses")
         self.run_tool("box.off a.pcd -points 20000000 -quiet", code=1, tool="scan", preexec_fn=limit)
@@ -168,7 +167,7 @@ class Flags(ToolTest):
             self.fails(1, f"standard input: {said}" if said in ("is of no known kind", "is empty") else said, "-", input=content)
 
     def test_outputs_to_a_pipe_are_alone_in_it(self):
-        box = self.write("box.off", tool_run.box())
+        box = self.write("box.off", box_off())
         self.run_tool("build m.db -points 500", box, tool="database")
         self.run_tool(box, "a.pcd", tool="scan")
         for tool, arguments in (("bop", "box.off -points 500"), ("match", "m.db box.off -points 500"), ("match", "m.db a.pcd -recognize"),
@@ -188,10 +187,10 @@ class ManyInputs(ToolTest):
     flags = "-quiet -points 500"
 
     def test_are_written_in_their_order(self):
-        paths = [self.write(name, tool_run.box(1.5, z)) for z, name in enumerate(("a.off", 'b "2", new.off', "c.off"), 2)]
+        paths = [self.write(name, box_off(1.5, z)) for z, name in enumerate(("a.off", 'b "2", new.off', "c.off"), 2)]
         for threads in (1, 3):
             self.run_tool(*paths, self.flags, f"-json out.jsonl -csv out.csv -support {{}}_support.pcd -threads {threads}")
-            self.assertEqual([tool_run.pcd_header(f"{path.with_suffix('')}_support.pcd")["POINTS"] for path in paths], 3 * [["500"]])
+            self.assertEqual([pcd_header(f"{path.with_suffix('')}_support.pcd")["POINTS"] for path in paths], 3 * [["500"]])
             self.assertEqual([line["file"] for line in self.lines("out.jsonl")], list(map(str, paths)))
             header, *rows = csv.reader(io.StringIO(self.text("out.csv")))
             self.assertEqual(header[:7], ["file", "number", "kind", *"abcd"])
@@ -204,7 +203,7 @@ class ManyInputs(ToolTest):
             self.assertEqual({**alone, **other}, {**self.lines("out.jsonl")[2], **other}, "the same as one by one")
 
     def test_are_tables_at_a_terminal_and_lines_of_json_in_a_pipe(self):
-        paths = [self.write(name, shape) for name, shape in (("a.off", tool_run.box()), ("b.off", "no shape"), ("c.off", tool_run.CYLINDER))]
+        paths = [self.write(name, shape) for name, shape in (("a.off", box_off()), ("b.off", "no shape"), ("c.off", CYLINDER))]
         self.run_tool(*paths, "-points 500", code=1)
         self.assertEqual([json.loads(line)["file"] for line in self.output.splitlines()], list(map(str, paths)))
         self.assertTrue(self.error.startswith("3 files: 2 done, 1 failed\n"), self.error)
@@ -217,7 +216,7 @@ class ManyInputs(ToolTest):
 
     def test_resume_where_they_were_interrupted(self):
         names = ("a.off", "b, or not.off", "c.off", "d.off")
-        paths = [self.write(name, tool_run.box(1.5, z)) for z, name in enumerate(names, 2)]
+        paths = [self.write(name, box_off(1.5, z)) for z, name in enumerate(names, 2)]
         broken = paths[2].read_bytes()
         paths[2].write_text("no shape")
         arguments = (*paths, self.flags, "-json out.jsonl -csv out.csv")
@@ -244,7 +243,7 @@ class ManyInputs(ToolTest):
 
     def test_more_than_may_wait_for_an_early_one(self):
         """Nothing hangs, and the order is that of the inputs; errors are named at the end, a thousand of them."""
-        first = self.write("first.off", tool_run.VASE)
+        first = self.write("first.off", VASE)
         names = [str(first), *(str(self.write(f"{i}.xyz", "1 2 3\n")) for i in range(1, 2000))]
         self.write("list", "\n".join(names))
         for kept in (0, 1500):
@@ -256,7 +255,7 @@ class ManyInputs(ToolTest):
 
     def test_names_that_clash_are_refused(self):
         for name in ("a.off", "b.off", "more/a.off"):
-            self.write(name, tool_run.box())
+            self.write(name, box_off())
         self.fails(2, "with several inputs only -json and -csv can be -", "a.off b.off -support -")
         self.fails(1, "more/a.off: has the name of a.off, names must differ", "a.off b.off more/a.off -support {}.pcd")
         self.fails(2, "-resume needs several inputs", "a.off -resume -json out.jsonl")

@@ -6,10 +6,9 @@ import sys
 import tempfile
 from pathlib import Path
 
-import tool_run
-from tool_run import TOOLS, ToolTest, wait_for
+from tool_run import TOOLS, ToolTest, box_off, need, wait_for
 
-psutil, _ = tool_run.need("psutil", "dask.distributed")
+psutil, _ = need("psutil", "dask.distributed")
 EXAMPLE = str(Path(__file__).parents[2] / "apps/examples/13_distributed.py")
 
 
@@ -26,7 +25,7 @@ class Distributed(ToolTest):
         cls.models = Path(place.name) / "models"
         cls.models.mkdir()
         for i in range(24):  # boxes, no two of one shape
-            (cls.models / f"box_{i:02}.off").write_text(tool_run.box(1.1 + 0.1 * (i % 6), 1.2 + 0.3 * (i // 6)))
+            (cls.models / f"box_{i:02}.off").write_text(box_off(1.1 + 0.1 * (i % 6), 1.2 + 0.3 * (i // 6)))
         alone = Path(place.name) / "alone.db"
         tool("database", "build", alone, cls.models, "-quiet")
         cls.expected = cls.answers(alone)

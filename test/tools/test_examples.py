@@ -3,8 +3,7 @@ import os
 import subprocess
 from pathlib import Path
 
-import tool_run
-from tool_run import ToolTest
+from tool_run import BOX_FACES, ToolTest, box_corners, box_off, off
 
 EXAMPLES = Path(os.environ["TOOLS"]) / "examples"
 # Arguments, what is printed at least once, what is printed so many times, and what the output file holds.
@@ -26,9 +25,9 @@ CASES = (("01_first_plane scan.pcd", ["a b c d = ", "reflects to"], {"nan": 0}, 
 
 class Examples(ToolTest):
     def test_print_what_they_find(self):
-        mesh = self.write("box.off", tool_run.box(1.4))
+        mesh = self.write("box.off", box_off(1.4))
         table = [(-6, -6, -2), (6, -6, -2), (6, 6, -2), (-6, 6, -2)]
-        scene = tool_run.off([*tool_run.box_corners(1, 1.4, 2), *table], [*tool_run.BOX_FACES, (8, 9, 10, 11)])
+        scene = off([*box_corners(1, 1.4, 2), *table], [*BOX_FACES, (8, 9, 10, 11)])
         self.run_tool(mesh, "scan.pcd -quiet", tool="scan")
         self.run_tool(mesh, "other.pcd -direction 1,-1,0.8 -quiet", tool="scan")
         self.run_tool(self.write("scene.off", scene), "scene.pcd -direction 1,1.5,1 -quiet", tool="scan")

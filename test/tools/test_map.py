@@ -1,17 +1,16 @@
 """The tools of the map, of views and of parts."""
-import tool_run
-from tool_run import ToolTest, np
+from tool_run import TETRAHEDRON, Image, ToolTest, box_off, mug, np, off, pcd, pcd_header, ply_points, xyz
 
 
 class Map(ToolTest):
     tool = "map"
-    files = dict(box=("box.off", tool_run.box(1.4)))
+    files = dict(box=("box.off", box_off(1.4)))
 
     def test_points_on_the_planes_of_a_box_are_the_most_symmetric(self):
         report = self.report(self.box, "box.ply -quiet")
-        points, _ = tool_run.ply_points(self.folder / "box.ply")
+        points, _ = ply_points(self.folder / "box.ply")
         self.assertEqual((report["num_points"], len(points)), (10000, 10000))
-        distance = abs(tool_run.xyz(points)).min(axis=1)
+        distance = abs(xyz(points)).min(axis=1)
         self.assertGreater(points["intensity"][distance < 0.05].mean(), 0.85)
         self.assertLess(points["intensity"][distance > 0.5].mean(), 0.75)
 
@@ -24,13 +23,13 @@ class Map(ToolTest):
         self.run_tool(self.box, "-quiet -cells 20 -size 50 -volume a.vti -slices a.png")
         self.assertIn('WholeExtent="0 11 0 14 0 19"', self.text("a.vti"))
         self.assertIn('Name="symmetry"', self.text("a.vti"))
-        self.assertEqual(tool_run.Image.open(self.folder / "a.png").size, (158, 50))
+        self.assertEqual(Image.open(self.folder / "a.png").size, (158, 50))
 
     def test_a_box_has_three_axes_of_half_turns_and_a_center(self):
         common = "-quiet -grid 32 -points 3000"
         axes = self.report(self.box, common, "-of axes -fold 2 -png a.png")["axes"]
         self.assertIn("symmetry of the axes through the points", self.output)
-        self.assertEqual(tool_run.Image.open(self.folder / "a.png").size, (800, 800))
+        self.assertEqual(Image.open(self.folder / "a.png").size, (800, 800))
         self.assertGreaterEqual(len(axes), 3)
         for axis in axes[:3]:
             self.assertEqual(axis["fold"], 2)
@@ -46,7 +45,7 @@ class Map(ToolTest):
 
 class Viewpoint(ToolTest):
     tool = "viewpoint"
-    files = dict(box=("box.off", tool_run.box(1.4)), tetrahedron=("t.off", tool_run.TETRAHEDRON))
+    files = dict(box=("box.off", box_off(1.4)), tetrahedron=("t.off", TETRAHEDRON))
 
     def test_lists_views_by_their_score(self):
         """The module has the same views: test_depth_cameras."""
@@ -62,8 +61,8 @@ class Viewpoint(ToolTest):
 
 class Segment(ToolTest):
     tool = "segment"
-    vertices, quads = tool_run.mug()
-    files = dict(mesh=("mug.off", tool_run.off(vertices, quads)))
+    vertices, quads = mug()
+    files = dict(mesh=("mug.off", off(vertices, quads)))
 
     def labels(self):
         return np.loadtxt(self.folder / "out.seg", int)
@@ -78,7 +77,7 @@ class Segment(ToolTest):
         self.assertNotEqual(tree["tree"][0]["planes"], [])
         self.assertIn("3 parts", self.error)
         self.assertEqual(self.output, f"3 parts of {sizes[2]} to {sizes[0]} faces\n")
-        self.assertEqual(tool_run.Image.open(self.folder / "p.png").size, (300, 300))
+        self.assertEqual(Image.open(self.folder / "p.png").size, (300, 300))
         self.run_tool(self.mesh, "-parts 3 -size 300 -up 1,0,0 -png q.png")
         self.assertNotEqual((self.folder / "p.png").read_bytes(), (self.folder / "q.png").read_bytes())
         many = self.report(self.mesh, "-parts 1000")
@@ -92,9 +91,9 @@ class Segment(ToolTest):
 
     def test_labels_points_of_clouds_and_keeps_their_fields(self):
         centers = np.array([self.vertices[quad].mean(axis=0) for quad in self.quads])
-        cloud = self.write("cloud.pcd", tool_run.pcd(centers, weight=np.full(len(centers), 7.0)))
+        cloud = self.write("cloud.pcd", pcd(centers, weight=np.full(len(centers), 7.0)))
         self.run_tool(cloud, "labeled.pcd -parts 2 -png p.png")
-        header = tool_run.pcd_header(self.folder / "labeled.pcd")
+        header = pcd_header(self.folder / "labeled.pcd")
         self.assertCountEqual(header["FIELDS"], ["x", "y", "z", "weight", "label"])
         self.assertEqual(header["WIDTH"], [str(len(centers))])
         self.run_tool(cloud, "out.seg", code=1)  # a cloud has no faces

@@ -5,8 +5,7 @@ import signal
 import subprocess
 from pathlib import Path
 
-import tool_run
-from tool_run import ToolTest, np, wait_for
+from tool_run import TOOLS, VASE, Image, ToolTest, box_off, np, pcd, points_on_sphere, wait_for
 
 
 class Pages(ToolTest):
@@ -24,7 +23,7 @@ class Pages(ToolTest):
 
     def test_hold_everything_in_little_room(self):
         # A name that would end the script of the page.
-        path = self.write("a </script>.off", tool_run.box())
+        path = self.write("a </script>.off", box_off())
         self.run_tool(path, "-quiet -html upright.html -up 0,1,0")
         upright = self.scene("upright.html")
         self.assertEqual(upright["up"], [0, 1, 0])
@@ -49,17 +48,17 @@ class Pages(ToolTest):
             self.assertTrue(panel["label"].startswith(f"plane {k} (symmetry): "), panel["label"])
             self.assertEqual(self.num_bytes(panel["point_colors"]), 30_000)
             self.assertEqual(len(panel["planes"][0]["corners"]), 4)
-        self.run_tool(self.write("vase.off", tool_run.VASE), "-quiet -html v.html")
+        self.run_tool(self.write("vase.off", VASE), "-quiet -html v.html")
         self.assertEqual(len(self.scene("v.html")["panels"][0]["axes"][0]["ends"]), 2)
 
     def test_thin_large_clouds_and_leave_out_what_is_not_finite(self):
-        points = tool_run.points_on_sphere(450_000)
+        points = points_on_sphere(450_000)
         points[0, 0] = np.nan
-        self.run_tool(self.write("a.pcd", tool_run.pcd(points)), "-quiet -html a.html")
+        self.run_tool(self.write("a.pcd", pcd(points)), "-quiet -html a.html")
         self.assertEqual(self.num_bytes(self.scene("a.html")["points"]), 12 * 150_000, "every third")
 
     def test_show_the_parts_of_a_mesh(self):
-        self.run_tool(self.write("box.off", tool_run.box()), "-quiet -parts 3 -html a.html", tool="segment")
+        self.run_tool(self.write("box.off", box_off()), "-quiet -parts 3 -html a.html", tool="segment")
         page = self.scene("a.html")
         num_triangles = 6 * 2
         self.assertEqual(self.num_bytes(page["mesh"]), 36 * num_triangles)
@@ -70,28 +69,28 @@ class Pages(ToolTest):
 
 class Pictures(ToolTest):
     tool = "viewer"
-    files = dict(box=("box.off", tool_run.box(1.4)))
+    files = dict(box=("box.off", box_off(1.4)))
     no_display = {key: value for key, value in os.environ.items() if key != "DISPLAY"}
 
     def test_are_made_without_a_screen(self):
         pictures = set()
         for plane in ("1", "2"):
             self.run_tool(self.box, "-quiet -symmetries -screenshot a.png -plane", plane, env=self.no_display)
-            self.assertEqual(tool_run.Image.open(self.folder / "a.png").size, (1000, 750))
+            self.assertEqual(Image.open(self.folder / "a.png").size, (1000, 750))
             pictures.add((self.folder / "a.png").read_bytes())
         self.assertEqual(len(pictures), 2)
         self.run_tool(self.box, "-quiet -symmetries -screenshot b.png -plane 9", env=self.no_display, code=2)
         self.assertIn("-plane: 9, must be <= 3", self.error)
         for tool, flag in (("planes", "-png -"), ("segment", "-png=-")):
-            command = [tool_run.TOOLS / f"pcl_symmetry_{tool}", self.box, "-quiet", *flag.split()]
+            command = [TOOLS / f"pcl_symmetry_{tool}", self.box, "-quiet", *flag.split()]
             picture = subprocess.run(command, env=self.no_display, stdout=subprocess.PIPE, check=True).stdout
             self.assertEqual(picture[:4], b"\x89PNG", "on standard output")
 
     def test_hold_panels_of_several_scenes(self):
         self.run_tool(self.box, "-quiet -points 2000 -size 100 -png views.png -icon best.png", tool="viewpoint")
-        self.assertEqual([tool_run.Image.open(self.folder / name).size for name in ("views.png", "best.png")], [(300, 100), (100, 100)])
+        self.assertEqual([Image.open(self.folder / name).size for name in ("views.png", "best.png")], [(300, 100), (100, 100)])
         self.assertEqual(sorted(path.name for path in self.folder.iterdir()), ["best.png", "box.off", "views.png"])
-        best, *panels = (np.asarray(tool_run.Image.open(self.folder / name)) for name in ("best.png", "views.png"))
+        best, *panels = (np.asarray(Image.open(self.folder / name)) for name in ("best.png", "views.png"))
         score, again, worst = np.split(panels[0], 3, axis=1)
         for picture in (best, score, again, worst):
             self.assertGreater(np.unique(picture.reshape(-1, picture.shape[2]), axis=0).shape[0], 10, "not blank")
@@ -101,9 +100,9 @@ class Pictures(ToolTest):
         """The X server that a picture is drawn on ends with the tool, whatever ends that."""
         names = [f"b{i}.off" for i in range(400)]
         for name in names:
-            self.write(name, tool_run.box(1.4))
+            self.write(name, box_off(1.4))
         for stop in (signal.SIGTERM, signal.SIGKILL, signal.SIGINT):
-            command = [tool_run.TOOLS / "pcl_symmetry_planes", *names, "-png", "{}.png", "-quiet", "-threads", "1", "-json", "o.json"]
+            command = [TOOLS / "pcl_symmetry_planes", *names, "-png", "{}.png", "-quiet", "-threads", "1", "-json", "o.json"]
             tool = subprocess.Popen(command, cwd=self.folder, env=self.no_display, stdout=subprocess.DEVNULL)
             self.assertTrue(wait_for(lambda: self.children_of(tool.pid) and list(self.folder.glob("*.png")), 30))
             server, = self.children_of(tool.pid)

@@ -2,16 +2,15 @@
 import sqlite3
 from pathlib import Path
 
-import tool_run
-from tool_run import ToolTest, np
+from tool_run import TETRAHEDRON, VASE, ToolTest, box_off, np, pcd_header
 
 
 class Recognition(ToolTest):
-    files = dict(vase=("vase.off", tool_run.VASE), box=("box.off", tool_run.box()), other=("tetrahedron.off", tool_run.TETRAHEDRON))
+    files = dict(vase=("vase.off", VASE), box=("box.off", box_off()), other=("tetrahedron.off", TETRAHEDRON))
 
     def descriptors(self, name):
         """The values of a file of descriptors, a row each, and their field."""
-        header = tool_run.pcd_header(self.folder / name)
+        header = pcd_header(self.folder / name)
         shape = int(header["POINTS"][0]), int(header["COUNT"][0])
         body = (self.folder / name).read_bytes().split(b"DATA binary\n", 1)[1]  # zeros may follow
         return np.frombuffer(body, "<f4", shape[0] * shape[1]).reshape(shape), header["FIELDS"][0]
@@ -65,7 +64,7 @@ class Describe(Recognition):
         self.assertTrue((self.folder / "out/box.pcd").exists())
         few = self.write("few.xyz", "0 0 0\n1 0 0\n0 1 0\n0 0 1\n")
         self.fails(1, "few.xyz: input cloud: 4 distinct points, at least 20 are needed", "out", few)
-        self.fails(1, "names must differ", "out", self.box, self.write("other/box.off", tool_run.box()))
+        self.fails(1, "names must differ", "out", self.box, self.write("other/box.off", box_off()))
         self.run_tool("out", self.box, "-type nonsense", code=2)
 
 
@@ -79,8 +78,7 @@ class Database(Recognition):
         self.run_tool("build models.db", self.vase, self.box)
         self.fails(1, "nothing.off: no such file", "add models.db nothing.off", self.other)
         self.assertNotIn("1 models", self.error)
-        self.run_tool("list models.db")
-        self.assertEqual(self.output, "box\ntetrahedron\nvase\n")
+        self.assertEqual(self.run_tool("list models.db"), "box\ntetrahedron\nvase\n")
         matches = self.match("models.db", self.vase, "-max 2")["matches"]
         self.assertEqual((len(matches), matches[0]["name"]), (2, "vase"))
         answer = self.match("models.db", self.box, "-recognize")
@@ -100,13 +98,13 @@ class Database(Recognition):
         self.fails(1, "2 of them before", "models.db @list.txt -json o.jsonl -resume", tool="match")
 
     def test_go_on_take_folders_and_tell_what_they_hold(self):
-        self.write("shapes/a.off", tool_run.box())
-        self.write("shapes/more/b.off", tool_run.TETRAHEDRON)
+        self.write("shapes/a.off", box_off())
+        self.write("shapes/more/b.off", TETRAHEDRON)
         self.write("shapes/notes.txt", "mine")
         self.write("list.txt", f"# files\n{self.vase}\n{self.folder}/sha*\n")
         build = "build models.db -points 2000 -names path -unit m -tag thing shapes"
         self.run_tool(build)
-        self.write("shapes/a.off", tool_run.box() + "\n")
+        self.write("shapes/a.off", box_off() + "\n")
         built = self.report(build, "va*.off")
         self.assertEqual((built["added"], built["kept"]), (2, 1), "the file that changed and the new one")
         listed = self.report("list models.db -csv list.csv")
@@ -114,10 +112,9 @@ class Database(Recognition):
         self.assertTrue(self.text("list.csv").startswith("name,points,time,source,checksum,tags\na,2000,"))
         self.run_tool("info models.db")
         self.assertTrue(self.output.startswith("models  3\nunit    m\n"), self.output)
-        self.run_tool("info models.db vase")
-        self.assertIn("vase.off", self.output)
+        self.assertIn("vase.off", self.run_tool("info models.db vase"))
         self.run_tool("export models.db clouds")
-        self.assertEqual(tool_run.pcd_header(self.folder / "clouds/more_b.pcd")["POINTS"], ["2000"])
+        self.assertEqual(pcd_header(self.folder / "clouds/more_b.pcd")["POINTS"], ["2000"])
         self.run_tool("export models.db clouds a", code=1)  # files that are there stay
         self.run_tool("merge other.db models.db")
         self.run_tool("check other.db")
@@ -126,8 +123,7 @@ class Database(Recognition):
         self.fails(1, "damaged.db: ", "check damaged.db -quiet")
         self.assertEqual((self.output, "check names" in self.error), ("", False))
         self.run_tool("build third.db @list.txt -points 2000")
-        self.run_tool("list third.db")
-        self.assertEqual(self.output, "a\nb\nvase\n")
+        self.assertEqual(self.run_tool("list third.db"), "a\nb\nvase\n")
 
     def contents(self, name):
         """What a database holds of each model, but the time; and the number of its projection."""
@@ -152,7 +148,7 @@ class Database(Recognition):
         self.fails(1, "inches.db: unit = 'inch', must be '' as in merged.db", "merge merged.db inches.db")
         self.fails(1, "unit = 'mm', must be 'inch' as in inches.db", "add inches.db", self.vase, "-unit mm")
         self.assertEqual((self.folder / "merged.db").read_bytes(), before, "what cannot be merged changes nothing")
-        self.write("shapes/box.off", tool_run.box())
+        self.write("shapes/box.off", box_off())
         self.fails(1, "shapes: is a folder, must be a file", "merge new.db shapes")
         self.run_tool("merge new.db first.db inches.db", code=1)
         self.assertFalse(Path(self.folder / "new.db").exists())

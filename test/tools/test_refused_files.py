@@ -2,8 +2,7 @@
 import os
 import struct
 
-import tool_run
-from tool_run import ToolTest, np
+from tool_run import ToolTest, box_off, limit_of_memory, np
 
 GARBAGE = b"\x7f\x45\0\1\2\3\xff\xfe"
 RAW = b"\1" * 12
@@ -156,7 +155,7 @@ class RefusedFiles(ToolTest):
             if content is not None:
                 self.write(name, content)
         self.write("list", "\n".join(FILES) + "\n")
-        limit = tool_run.limit_of_memory(3 << 30)  # headers cannot ask for more than their files hold
+        limit = limit_of_memory(3 << 30)  # headers cannot ask for more than their files hold
         self.run_tool("@list -json answers.json -quiet -threads 1", code=1, preexec_fn=limit)
         answers = self.lines("answers.json")
         self.assertEqual([answer["file"] for answer in answers], list(FILES))
@@ -168,7 +167,7 @@ class RefusedFiles(ToolTest):
         self.assertEqual(self.error, "".join(f"error: {answer['error']}\n" for answer in answers))
 
     def test_are_no_folders_and_may_be_read(self):
-        self.write("box.off", tool_run.box())
+        self.write("box.off", box_off())
         (self.folder / "folder.pcd").mkdir()
         self.fails(1, "folder.pcd: is a folder", "box.off -target folder.pcd", tool="align")
         if os.geteuid() != 0:

@@ -5,8 +5,7 @@ import signal
 import subprocess
 import time
 
-import tool_run
-from tool_run import ToolTest, np
+from tool_run import TOOLS, ToolTest, box_off, np, pcd, pcd_header, pcd_points, xyz
 
 OLD = "# pcl_symmetry_scan"
 COMMANDS = {"o.pcd": "scan box.off OUT -format ascii", "binary.pcd": "scan box.off OUT -format binary", "packed.pcd": "segment box.off OUT",
@@ -18,11 +17,11 @@ COMMANDS = {"o.pcd": "scan box.off OUT -format ascii", "binary.pcd": "scan box.o
 
 
 class SafeFiles(ToolTest):
-    files = dict(box=("box.off", tool_run.box()))
+    files = dict(box=("box.off", box_off()))
 
     def interrupt(self, number):
         """Sends a signal to the scanner while it writes big.pcd. Returns its exit status; None where it was done before."""
-        command = [tool_run.TOOLS / "pcl_symmetry_scan", *"box.off big.pcd -points 200000 -format ascii -quiet -threads 1".split()]
+        command = [TOOLS / "pcl_symmetry_scan", *"box.off big.pcd -points 200000 -format ascii -quiet -threads 1".split()]
         with subprocess.Popen(command, cwd=self.folder) as process:
             while process.poll() is None:
                 if any(name.startswith(".big.") for name in os.listdir(self.folder)):
@@ -40,7 +39,7 @@ class SafeFiles(ToolTest):
                           "align box.off link.off -merge box.off"):  # fmt: skip
             tool, rest = arguments.split(" ", 1)
             self.fails(2, "an output needs a name of its own", rest, tool=tool)
-        self.assertEqual((self.text("box.off"), self.text("models.db")), (tool_run.box(), "a database"))
+        self.assertEqual((self.text("box.off"), self.text("models.db")), (box_off(), "a database"))
         self.assertEqual(sorted(os.listdir(self.folder)), ["box.off", "link.off", "models.db"])
 
     def test_a_cloud_of_somebody_else_is_not_replaced(self):
@@ -55,10 +54,10 @@ class SafeFiles(ToolTest):
         self.write("name_0.pcd", theirs)
         self.fails(1, "name_0.pcd: cannot be written, it is there", "box.off name.pcd -all -quiet", tool="scan")
         self.assertEqual([self.text(name) for name in ("theirs.pcd", "name_0.pcd")], [theirs, theirs])
-        self.write("other.off", tool_run.box())
+        self.write("other.off", box_off())
         for flag in ("-json", "-csv"):  # the name of the file was forgotten
             self.fails(2, "there and was not written by this tool", f"{flag} other.off box.off -quiet", tool="planes")
-        self.assertEqual(self.text("other.off"), tool_run.box())
+        self.assertEqual(self.text("other.off"), box_off())
 
     def test_what_can_be_written_is_written(self):
         self.fails(1, "is no body of revolution", "box.off -json a.json -html a.html -profile a.svg", tool="planes")
@@ -115,7 +114,7 @@ class SafeFiles(ToolTest):
         # A disk of 16 kB, seen by this shell alone.
         script = "mount -t tmpfs -o size=16k none disk && head -c 16384 /dev/zero >disk/full || exit 77\n"
         for name, command in COMMANDS.items():
-            tool = tool_run.TOOLS / f"pcl_symmetry_{command.replace('OUT', 'disk/' + name)}"
+            tool = TOOLS / f"pcl_symmetry_{command.replace('OUT', 'disk/' + name)}"
             script += f"{tool} -quiet >/dev/null 2>{name}.said; echo $? `ls -A disk` >{name}.left\n"
         for flags in ("-m", "-rm"):  # as root, or as a user who becomes root in a space of names
             if subprocess.run(["unshare", flags, "sh", "-c", script], cwd=self.folder, check=False).returncode == 0:
@@ -141,17 +140,17 @@ class SafeFiles(ToolTest):
                   "z": np.where(i == 5, np.nan, 1e8 * (i // 20)),
                   "curvature": i, "rgb": (i << 8 | i << 16).astype("<u4").view("<f4")}
         cloud = np.rec.fromarrays([column.astype("<f4") for column in values.values()], names=list(values))
-        content = tool_run.pcd(tool_run.xyz(cloud), 20, (1, -2, 0.5), curvature=cloud["curvature"], rgb=cloud["rgb"])
+        content = pcd(xyz(cloud), 20, (1, -2, 0.5), curvature=cloud["curvature"], rgb=cloud["rgb"])
         self.write("a.pcd", content.replace(b"0.5 1 0 0 0", b"0.5 0.5 0.5 -0.5 0.5"))
         for source, target in (("a.pcd", "b.pcd"), ("b.pcd", "c.ply"), ("c.ply", "d.pcd")):
             self.run_tool(source, target, "-parts 1 -threads 1", tool="segment")
             file = self.folder / target
             file.write_bytes(file.read_bytes().replace(b"label", b"in_" + target[0].encode() + b"_", 1))  # makes room for the next one
         for name in ("b.pcd", "d.pcd"):
-            found = tool_run.pcd_header(self.folder / name)
+            found = pcd_header(self.folder / name)
             self.assertEqual([found[key] for key in ("WIDTH", "HEIGHT")], [["20"], ["3"]])
             np.testing.assert_allclose(np.array(found["VIEWPOINT"], float), [1, -2, 0.5, 0.5, 0.5, -0.5, 0.5], atol=1e-5)
-            points = tool_run.pcd_points(self.folder / name)
+            points = pcd_points(self.folder / name)
             for field in "x", "y", "z", "curvature":
                 np.testing.assert_array_equal(points[field], cloud[field], f"{field} of {name}")
             np.testing.assert_array_equal(points["rgb"].view("<u4") & 0xffffff, cloud["rgb"].view("<u4") & 0xffffff, name)

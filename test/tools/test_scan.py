@@ -1,15 +1,14 @@
 """The virtual scanner as a tool."""
-import tool_run
-from tool_run import ToolTest, np
+from tool_run import BOX_FACES, ToolTest, box_corners, box_off, np, off, pcd_header, ply_points, rotation, xyz
 
 
 class Scan(ToolTest):
     tool = "scan"
-    files = dict(mesh=("box.off", tool_run.box(1.0)))
+    files = dict(mesh=("box.off", box_off(1.0)))
 
     def seen(self, name, transform=np.eye(4)):
         """The finite points of a scan in the frame of the model."""
-        points = tool_run.xyz(tool_run.ply_points(self.folder / name)[0])
+        points = xyz(ply_points(self.folder / name)[0])
         points = points[np.isfinite(points).all(axis=1)]
         return np.linalg.solve(transform, np.vstack([points.T, np.ones(len(points))]))[:3].T
 
@@ -20,7 +19,7 @@ class Scan(ToolTest):
         for name in ("a.pcd", "a.ply"):
             report = self.report(self.mesh, name, "-direction -1,-2,0.5")
         scan, = report["scans"]
-        header = tool_run.pcd_header(self.folder / "a.pcd")
+        header = pcd_header(self.folder / "a.pcd")
         self.assertEqual([header["WIDTH"], header["HEIGHT"]], [[str(scan["width"])], [str(scan["height"])]])
         self.assertGreater(scan["height"], 1)
         points = self.seen("a.ply")
@@ -49,16 +48,16 @@ class BoxScan(ToolTest):
     half, center = np.array([0.5, 0.8, 1.2]), np.array([10.0, -20.0, 5.0])
     corners = np.array([[1 if i >> k & 1 else -1 for k in range(3)] for i in range(8)]) / np.sqrt(3)
     diagonal = 2 * np.linalg.norm(half)
-    files = dict(mesh=("box.off", tool_run.off(center + tool_run.box_corners(*half), tool_run.BOX_FACES)))
+    files = dict(mesh=("box.off", off(center + box_corners(*half), BOX_FACES)))
 
     def scanned(self, *arguments, name="a.ply"):
         """What is reported of a scan, and its points, one a pixel."""
         scan, = self.report(self.mesh, name, *arguments)["scans"]
-        return scan, tool_run.xyz(tool_run.ply_points(self.folder / name)[0]).astype(float)
+        return scan, xyz(ply_points(self.folder / name)[0]).astype(float)
 
     def test_every_pixel_sees_the_first_surface_on_its_ray(self):
         for scan in self.report(self.mesh, "a.ply -all -fov 22.918311805232928")["scans"]:
-            points = tool_run.xyz(tool_run.ply_points(self.folder / scan["file"])[0]).astype(float)
+            points = xyz(ply_points(self.folder / scan["file"])[0]).astype(float)
             n = scan["width"]
             self.assertEqual(scan["height"], n)
             row, column = np.divmod(np.arange(n * n), n)
@@ -68,8 +67,8 @@ class BoxScan(ToolTest):
             entry, exit = sides.min(axis=0).max(axis=1), sides.max(axis=0).min(axis=1)
             hit = entry <= exit
             np.testing.assert_array_equal(np.isfinite(points).all(axis=1), hit)
-            off = np.linalg.norm(points - (pose[:3, 3] + entry[:, None] * rays), axis=1)[hit]
-            self.assertLess(off.max(), 4e-6)  # float has 2e-6 at 20
+            away = np.linalg.norm(points - (pose[:3, 3] + entry[:, None] * rays), axis=1)[hit]
+            self.assertLess(away.max(), 4e-6)  # float has 2e-6 at 20
             self.assertEqual(hit.sum(), scan["num_points"])
 
     def test_stands_at_two_diagonals_and_looks_at_the_center(self):
@@ -82,10 +81,10 @@ class BoxScan(ToolTest):
             np.testing.assert_allclose(pose[:3, 2], -corner, atol=1e-6)  # z looks forward
             self.assertLess(pose[2, 1], 0)  # y looks down
             self.assertAlmostEqual(np.linalg.det(pose[:3, :3]), 1, delta=1e-5)
-            x, y, z, w, i, j, k = map(float, tool_run.pcd_header(self.folder / scan["file"])["VIEWPOINT"])
+            x, y, z, w, i, j, k = map(float, pcd_header(self.folder / scan["file"])["VIEWPOINT"])
             np.testing.assert_allclose([x, y, z], expected, atol=1e-4)
             angle = 2 * np.arctan2(np.linalg.norm([i, j, k]), w)
-            np.testing.assert_allclose(tool_run.rotation(np.array([i, j, k]), angle), pose[:3, :3], atol=1e-5)
+            np.testing.assert_allclose(rotation(np.array([i, j, k]), angle), pose[:3, :3], atol=1e-5)
 
     def test_same_bytes_for_any_number_of_threads(self):
         def scanned(arguments):
@@ -110,12 +109,12 @@ class BoxScan(ToolTest):
         self.assertLess(abs(along.sum() / n), 4 * sigma / np.sqrt(n))  # four standard errors
         self.assertAlmostEqual(np.sqrt((along ** 2).sum() / n), sigma, delta=4 * sigma / np.sqrt(2 * n))
         self.run_tool(self.mesh, "b.ply -all -noise 0.01")
-        others = tool_run.xyz(tool_run.ply_points(self.folder / "b_7.ply")[0])
+        others = xyz(ply_points(self.folder / "b_7.ply")[0])
         self.assertFalse(np.array_equal(others[hit], noisy[hit]), "scans from eight corners have noise of their own")
 
     def test_works_at_any_scale(self):
         for scale in 1e-9, 1e9:
-            mesh = self.write("scaled.off", tool_run.off(scale * tool_run.box_corners(*self.half), tool_run.BOX_FACES))
+            mesh = self.write("scaled.off", off(scale * box_corners(*self.half), BOX_FACES))
             scan, = self.report(mesh, "a.ply")["scans"]
             self.assertAlmostEqual(scan["num_points"], 10000, delta=500)
 
@@ -135,7 +134,7 @@ class BoxScan(ToolTest):
         self.assertFalse((self.folder / "never.pcd").exists())
 
     def test_says_when_the_model_reaches_beyond_the_picture(self):
-        self.mesh = self.write("cube.off", tool_run.box(1.0, 1.0))
+        self.mesh = self.write("cube.off", box_off(1.0, 1.0))
         # 0.47 diagonals from the axis, a picture of 22.9 degrees shows 0.41.
         for arguments, cropped in ("-corner 7 -fov 22.9", True), ("-corner 7", False), ("-corner 7 -fov 34.4", False):
             self.assertEqual(self.scanned(arguments)[0]["cropped"], cropped)

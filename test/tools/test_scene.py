@@ -1,6 +1,5 @@
 """The tool of scenes: objects on a table, bodies that touch, vehicles around a LiDAR, and what is written of them."""
-import tool_run
-from tool_run import ToolTest, np, pcd
+from tool_run import TETRAHEDRON, Image, ToolTest, np, pcd, ply_points, points_on_box, rotation, xyz
 
 EYE = np.array([0.1, -1.6, 1.0])
 TABLE = (0, 0, -0.02), (0.7, 0.7, 0.02)  # center and half size
@@ -12,7 +11,7 @@ def camera(eye, target, width, height, focal, roll=0.0):
     """The rays of all pixels, row by row; their depth is 1."""
     forward = (np.array(target) - eye) / np.linalg.norm(np.array(target) - eye)
     right = np.cross(forward, [0, 0, 1])
-    right = tool_run.rotation(forward, roll) @ right / np.linalg.norm(right)
+    right = rotation(forward, roll) @ right / np.linalg.norm(right)
     y, x = np.divmod(np.arange(width * height), width)
     return forward + np.outer((x - (width - 1) / 2) / focal, right) + np.outer((y - (height - 1) / 2) / focal, np.cross(forward, right))
 
@@ -22,7 +21,7 @@ RAYS = camera(EYE, (0, 0, 0), 320, 240, 190)
 
 def block(center, half, turn=0.0):
     """A body, as the distances at which rays meet it, in their lengths: a box, turned about z."""
-    back = tool_run.rotation((0, 0, 1), -turn)
+    back = rotation((0, 0, 1), -turn)
 
     def hits(eye, rays):
         eye, rays = back @ (eye - np.array(center)), rays @ back.T
@@ -84,8 +83,8 @@ class SceneObjects(ToolTest):
         report = self.report("s.pcd out.ply", FEW, flags, "-quiet")
         if num_objects is not None:
             self.assertEqual([len(report["supports"]), len(report["objects"])], [1, num_objects])
-        points, _ = tool_run.ply_points(self.folder / "out.ply")
-        return report, tool_run.xyz(points), points["object"], points["completed"]
+        points, _ = ply_points(self.folder / "out.ply")
+        return report, xyz(points), points["object"], points["completed"]
 
     def assert_planes_across_axes(self, report):
         """Boxes of three different sides have no other planes."""
@@ -128,11 +127,11 @@ class SceneObjects(ToolTest):
         _, points, numbers, completed = self.found(pcd(picture, 320), num_objects=1)
         added = points[completed == 1]
         self.assertGreater(len(added), 0.4 * ((numbers == 1) & (completed == 0)).sum())
-        own = (added - (0, 0, 0.2)) @ tool_run.rotation((0, 0, 1), 0.45)
+        own = (added - (0, 0, 0.2)) @ rotation((0, 0, 1), 0.45)
         self.assertLess(np.median(abs((abs(own) / (0.3, 0.3, 0.2)).max(axis=1) - 1)), 0.02, "on its faces")
 
     def test_have_the_plane_whose_far_half_is_hidden_with_every_seed(self):
-        eye, turn = np.array([0.35, -1.15, 0.92]), tool_run.rotation((0, 0, 1), 0.6)
+        eye, turn = np.array([0.35, -1.15, 0.92]), rotation((0, 0, 1), 0.6)
         bodies = [block((0, 0, -0.02), (0.5, 0.4, 0.02)), block((0, 0, 0.06), (0.1, 0.06, 0.06), 0.6)]
         points, _ = look(eye, camera(eye, (0, 0, 0), 320, 240, 420), bodies)
         deviates = np.random.default_rng(1).normal(size=(len(points), 1))
@@ -245,8 +244,8 @@ class Scene(ToolTest):
         self.assertEqual({len(item["frame"]["transform"]) for item in report["objects"]}, {16})
         self.assertGreater(min(item["num_points"] for item in report["objects"]), 300)
         num_added = sum(item.get("completed", {"num_added": 0})["num_added"] for item in report["objects"])
-        self.assertEqual(len(tool_run.ply_points(self.folder / "completed.ply")[0]), count + num_added)
-        self.assertGreater(min(tool_run.Image.open(self.folder / "objects.png").size), 100)
+        self.assertEqual(len(ply_points(self.folder / "completed.ply")[0]), count + num_added)
+        self.assertGreater(min(Image.open(self.folder / "objects.png").size), 100)
         page = self.text("page.html")
         for part in ("1 supporting plane, 2 objects", "</html>", '"picture":{"pixels":"yAAA', "2: ", "decided at 1.0 % of the diameter"):
             self.assertIn(part, page)
@@ -259,10 +258,10 @@ class Scene(ToolTest):
     def test_reads_depth_images(self):
         depth = (POINTS - EYE) @ (-EYE / np.linalg.norm(EYE))
         values = np.round(5000 * np.nan_to_num(depth)).astype(np.uint16).reshape(240, 320)
-        tool_run.Image.fromarray(values).save(self.folder / "depth.png")
+        Image.fromarray(values).save(self.folder / "depth.png")
         report = self.report("depth.png out.ply", FEW, "-intrinsics 190,190,159.5,119.5 -depth_scale 5000 -no_completion")
         self.assertEqual([len(report["supports"]), len(report["objects"]), report["viewpoint"]["from"]], [1, 2, "rays"])
-        of_camera = tool_run.xyz(tool_run.ply_points(self.folder / "out.ply")[0])
+        of_camera = xyz(ply_points(self.folder / "out.ply")[0])
         seen = POINTS[np.isfinite(depth)] - EYE
         np.testing.assert_allclose(np.linalg.norm(of_camera, axis=1), np.linalg.norm(seen, axis=1), atol=2e-4)
         np.testing.assert_allclose(np.diff(of_camera, axis=0) ** 2 @ np.ones(3), np.diff(seen, axis=0) ** 2 @ np.ones(3), atol=1e-3)
@@ -278,7 +277,7 @@ class Scene(ToolTest):
         points = look(EYE, RAYS, [block(*BOXES[0])])[0]
         self.run_tool(self.write("box.pcd", pcd(points[np.isfinite(points).all(axis=1)], viewpoint=EYE)), FEW)
         self.assertIn("box.pcd: no supporting plane (table, floor, wall) was found; if this is one object, pcl_symmetry_planes", self.error)
-        self.run_tool(self.write("all.pcd", pcd(tool_run.points_on_box((2, 2, 2), 20_000))))
+        self.run_tool(self.write("all.pcd", pcd(points_on_box((2, 2, 2), 20_000))))
         self.assertIn("all.pcd: no supporting plane is much wider than the object; if this is one object, pcl_symmetry_planes", self.error)
 
         slopes = (np.mgrid[:60, :80] - np.array([29.5, 39.5])[:, None, None]) / 80
@@ -296,7 +295,7 @@ class Scene(ToolTest):
         self.assertNotIn("pcl_symmetry_scene", self.error)
 
     def test_refuses_what_is_no_scene(self):
-        mesh = self.write("t.off", tool_run.TETRAHEDRON)
+        mesh = self.write("t.off", TETRAHEDRON)
         self.fails(1, f"{mesh}: is a mesh, must be a cloud as a sensor sees it", mesh)
         self.fails(1, "none.db", self.scene, "-database none.db")
         self.fails(2, "-ground = 0,0,1, must be four numbers A,B,C,D", self.scene, "-ground 0,0,1")
@@ -373,5 +372,5 @@ class Vehicles(ToolTest):
         plane, = report["planes"]
         self.assertEqual(plane["kind"], "symmetry")
         self.assertGreater(abs(np.dot(plane["coefficients"][:3], (np.sin(0.3), np.cos(0.3), 0))), 0.99)
-        support = tool_run.ply_points(self.folder / "s.ply")[0]["support_1"]
+        support = ply_points(self.folder / "s.ply")[0]["support_1"]
         self.assertAlmostEqual(np.isfinite(support).mean(), plane["seen"], delta=0.05)

@@ -1,8 +1,7 @@
 """The JSON that the tools write follows the schemas in apps/schemas."""
 import json
 
-import tool_run
-from tool_run import ToolTest
+from tool_run import SCHEMAS, ToolTest, lathe, pcd, points_on_sphere
 
 FEW = "-quiet -points 2000"
 # Tool and arguments, and the schema of what it writes.
@@ -20,7 +19,7 @@ class Schemas(ToolTest):
     def setUp(self):
         super().setUp()
         for name, sides, height in (("box", 4, 0.4), ("can", 96, 1.5), ("prism", 5, 0.4)):
-            self.write(name + ".off", tool_run.lathe([(0.001, -height), (1, -height), (1, height), (0.001, height)], sides))
+            self.write(name + ".off", lathe([(0.001, -height), (1, -height), (1, height), (0.001, height)], sides))
         self.run_tool("box.off scan.pcd -quiet", tool="scan")
 
     def assert_follows(self, document, schema):
@@ -33,10 +32,10 @@ class Schemas(ToolTest):
             with self.subTest(run):
                 tool, arguments = run.split(" ", 1)
                 self.assert_follows(self.report(arguments, tool=tool), schema)
-        self.assertEqual({schema for _, schema in RUNS} | {"bop_check"}, {path.name.split(".")[0] for path in tool_run.SCHEMAS.glob("*.json")}, "each is held to")
+        self.assertEqual({schema for _, schema in RUNS} | {"bop_check"}, {path.name.split(".")[0] for path in SCHEMAS.glob("*.json")}, "each is held to")
 
     def test_are_followed_line_by_line(self):
-        self.write("ball.pcd", tool_run.pcd(tool_run.points_on_sphere(3000)))
+        self.write("ball.pcd", pcd(points_on_sphere(3000)))
         self.write("bad.off", "x")
         self.run_tool(f"box.off can.off ball.pcd bad.off {FEW} -approximate -json a.jsonl", tool="planes", code=1)
         for line in self.lines("a.jsonl"):

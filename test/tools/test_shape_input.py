@@ -3,9 +3,8 @@ import os
 import struct
 import threading
 
-import tool_run
 from test_refused_files import SQUARE, XYZ, glb, pcd, ply
-from tool_run import ToolTest, np
+from tool_run import ToolTest, np, pcd_header, pcd_points, ply_text, xyz
 
 POINTS = np.array([(x, y, z) for x in (1, 4) for y in (2, 5, 7) for z in (3, 6, 8, 9.5, 10)])
 CORNERS = np.array([(0, 0, 0), (2, 0, 0), (2, 1, 0), (0, 1, 0)])
@@ -47,7 +46,7 @@ class ShapeInput(ToolTest):
         if content is not None:
             self.write(name, content)
         self.run_tool(name, "out.ply -parts 1 -threads 1")
-        header, vertices, polygons = tool_run.ply_text(self.text("out.ply"))
+        header, vertices, polygons = ply_text(self.text("out.ply"))
         self.assertIn("element face", header)
         return vertices, polygons, header.split("property ")[1].split()[0]
 
@@ -56,11 +55,11 @@ class ShapeInput(ToolTest):
         if content is not None:
             self.write(name, content)
         self.run_tool(name, "out.pcd -parts 1 -threads 1")
-        return tool_run.pcd_points(self.folder / "out.pcd"), tool_run.pcd_header(self.folder / "out.pcd")
+        return pcd_points(self.folder / "out.pcd"), pcd_header(self.folder / "out.pcd")
 
     def assert_points(self, name, content, expected=POINTS):
         points, _ = self.cloud(name, content)
-        np.testing.assert_array_equal(tool_run.xyz(points), expected, name)
+        np.testing.assert_array_equal(xyz(points), expected, name)
         return points
 
     def test_meshes_of_every_kind(self):
@@ -190,7 +189,7 @@ class ShapeInput(ToolTest):
         lines = rows("+{} {:e} {} -128 65535 18446744073709551615 7 4294967295\n") + "nan 0 0 1 2 3 4 5\n"
         content = pcd(31, "ascii\n", lines, fields="x y z i u big pair", sizes="4 4 4 1 2 8 4", types="F F F I U U U\nCOUNT 1 1 1 1 1 1 2")
         points, _ = self.cloud("a.pcd", content)
-        np.testing.assert_array_equal(tool_run.xyz(points)[:30], POINTS)
+        np.testing.assert_array_equal(xyz(points)[:30], POINTS)
         self.assertTrue(np.isnan(points["x"][30]))
         self.assertEqual([points[name][0] for name in ("i", "u", "big")], [-128, 65535, 2 ** 64 - 1])
         self.assertEqual(points["pair"][0].tolist(), [7, 4294967295])

@@ -3,8 +3,7 @@ import gzip
 import struct
 import zlib
 
-import tool_run
-from tool_run import ToolTest, np
+from tool_run import Image, ToolTest, np, ply_points, xyz
 
 SIZE = (22, 24, 20)  # x, y, z
 
@@ -127,7 +126,7 @@ class Volumes(ToolTest):
     def test_are_drawn_as_slices_and_their_surface_is_a_mesh(self):
         path = self.write("a.mha", meta_image(BODY))
         self.run_tool(path, "-quiet -png a.png")
-        width, height = tool_run.Image.open(self.folder / "a.png").size
+        width, height = Image.open(self.folder / "a.png").size
         self.assertGreater(width, 3 * 400)
         self.assertGreater(height, 2 * 400)
         of_surface = self.planes(path, "-surface 50")
@@ -142,7 +141,7 @@ class Volumes(ToolTest):
         boxes = []
         for path, level in ((meta, 60), (scaled, 70)):
             self.run_tool(path, f"-quiet -surface {level} -support {path.stem}{path.suffix[1:]}.ply")
-            points = tool_run.xyz(tool_run.ply_points(self.folder / f"{path.stem}{path.suffix[1:]}.ply")[0])
+            points = xyz(ply_points(self.folder / f"{path.stem}{path.suffix[1:]}.ply")[0])
             boxes.append([points.min(axis=0), points.max(axis=0)])
         np.testing.assert_allclose(boxes[1], boxes[0], atol=0.2)
 

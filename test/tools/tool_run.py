@@ -73,14 +73,15 @@ class ToolTest(unittest.TestCase):
         return [json.loads(line) for line in self.text(name).splitlines()]
 
     def run_tool(self, *arguments, code=0, tool=None, **options):
-        """Runs a tool in the folder of the test: paths as they are, strings cut at blanks.
+        """Runs a tool in the folder of the test: paths as they are, strings cut at blanks. Returns what it printed.
 
-        What it printed is in self.output and self.error then.
+        That is in self.output, and its messages in self.error.
         """
         words = [word for argument in arguments for word in ([argument] if isinstance(argument, Path) else argument.split())]
         done = subprocess.run([TOOLS / f"pcl_symmetry_{tool or self.tool}", *words], capture_output=True, cwd=self.folder, **options)
         self.output, self.error = (text.decode(errors="replace") for text in (done.stdout, done.stderr))
         self.assertEqual(done.returncode, code, f"{words}: {self.error}")
+        return self.output
 
     def at_terminal(self, *words, tool=None, columns=80):
         """Exit code of a tool at a terminal, and what it shows there."""
@@ -123,7 +124,7 @@ def box_corners(x, y, z):
     return np.array([[a * x, b * y, c * z] for c in (-1, 1) for a, b in ((-1, -1), (1, -1), (1, 1), (-1, 1))])
 
 
-def box(y=1.5, z=2.0):
+def box_off(y=1.5, z=2.0):
     """A box from -1 -y -z to 1 y z."""
     return off(box_corners(1.0, y, z), BOX_FACES)
 
