@@ -68,17 +68,13 @@ def main(arguments):
     weights = np.r_[np.full(len(made), 0.2 * len(real) / len(made) if real else 1.0), np.ones(len(real))]
     pull = float(max(1, len({row["seed"] for row in rows})))
 
-    def judged(train, test):
-        w, _ = fits.logistic(terms[train], right[train], weights[train], pull=pull)
-        odds = terms[test] @ w
-        wrong, missed = ((odds > 0) & ~right[test]).sum(), ((odds <= 0) & right[test]).sum()
-        print(f"  {', '.join(sorted(set(names[test])))}: {right[test].sum()} right poses, {missed} of them refused;"
-              f" {(~right[test]).sum()} wrong poses, {wrong} of them accepted")
-        return wrong + missed
-
     print("Each object judged by the fit to all others:")
     for name in sorted(set(names) - {"made"}):
-        judged(names != name, names == name)
+        train, test = names != name, names == name
+        accepted = terms[test] @ fits.logistic(terms[train], right[train], weights[train], pull=pull)[0] > 0
+        wrong, missed = (accepted & ~right[test]).sum(), (~accepted & right[test]).sum()
+        print(f"  {name}: {right[test].sum()} right poses, {missed} of them refused;"
+              f" {(~right[test]).sum()} wrong poses, {wrong} of them accepted")
     w, errors = fits.logistic(terms, right, weights, pull=pull)
     print("weights", w, "errors", errors)
     texts = fits.rounded(w, errors)

@@ -45,18 +45,6 @@ def rounded(values, errors):
     return [f"{value:.{d}f}" for value, d in zip(values, digits)]
 
 
-def log_loss(odds, right, weights=None):
-    """Mean negative log likelihood, nats a case."""
-    return float(np.average(np.logaddexp(0, np.where(right, -odds, odds)), weights=weights))
-
-
-def cross_validated(fit, names, num_parts=5):
-    """Mean of fit(train, test) over parts of the names: masks of the cases that are fitted and judged."""
-    number = {name: i % num_parts for i, name in enumerate(sorted(set(names)))}
-    part = np.array([number[name] for name in names])
-    return np.mean([fit(part != k, part == k) for k in range(num_parts)])
-
-
 def main(program, description, output, **flags):
     """Runs a program; flags: what add_argument() takes of each of its own."""
     parser = bench.make_parser(description, others=False)
