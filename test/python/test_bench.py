@@ -9,11 +9,9 @@ import subprocess
 import sys
 import unittest
 
-from tool_run import BOX_FACES, ToolTest, box_corners, need, off
+from tool_run import BOX_FACES, ToolTest, box_corners, need, np, off
 
 need("open3d", "scipy", "pcl_symmetry")
-import numpy as np
-
 import bench
 import planes
 import real_frames

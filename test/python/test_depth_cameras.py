@@ -154,34 +154,6 @@ class SameBytes(ToolTest):
         self.assertEqual([view.to_dict() for view in pcl_symmetry.viewpoints(points, worst=True, **options)], [read["worst"]])
 
 
-class DepthImages(unittest.TestCase):
-    def test_become_points_in_the_frame_of_the_camera(self):
-        depth, _ = table()
-        points = pcl_symmetry.from_depth(depth, INTRINSICS)
-        self.assertEqual((points.shape, points.dtype), ((240, 320, 3), np.float32))
-        np.testing.assert_array_equal(np.isnan(points[..., 2]), depth == 0)
-        fx, fy, cx, cy = INTRINSICS
-        v, u = np.indices(depth.shape)
-        seen = depth > 0
-        np.testing.assert_allclose((fx * points[..., 0] / points[..., 2] + cx)[seen], u[seen], atol=1e-3)
-        np.testing.assert_allclose((fy * points[..., 1] / points[..., 2] + cy)[seen], v[seen], atol=1e-3)
-        matrix = [[fx, 0, cx], [0, fy, cy], [0, 0, 1]]
-        millimeters = pcl_symmetry.from_depth((1000 * depth).round().astype(np.uint16), matrix, unit=0.001)
-        np.testing.assert_allclose(millimeters[seen], points[seen], atol=1e-3)
-        warned("unit=0.001 makes meters of millimeters", pcl_symmetry.from_depth, np.full((4, 4), 700, np.uint16), matrix)
-        of_open3d = lambda **size: types.SimpleNamespace(intrinsic_matrix=matrix, **size)
-        for *wrong, error, words in (
-            (depth[0], INTRINSICS, ValueError, "depth = array of shape"),
-            (depth, (0, 300, 1, 1), ValueError, "fx and fy > 0"),
-            (depth, np.eye(4), ValueError, "intrinsics = "),
-            (depth, of_open3d(width=640, height=480), ValueError, r"depth = .* \(240, 320\), must be \(480, 640\), that of the intrinsics"),
-            ("a.png", INTRINSICS, TypeError, "depth = 'a.png', must be .* read files"),
-        ):
-            self.assertRaisesRegex(error, words, pcl_symmetry.from_depth, *wrong)
-        for size in ({}, dict(width=320, height=240), dict(width=-1, height=-1)):
-            np.testing.assert_array_equal(pcl_symmetry.from_depth(depth, of_open3d(**size)), points)
-
-
 @needs_pcl
 class OrganizedArrays(ToolTest):
     def setUp(self):
@@ -398,7 +370,33 @@ class OrganizedArrays(ToolTest):
         self.assert_follow(pcl_symmetry.Database(":memory:").build({"box": box(), "words": "none"}), "database_build")
 
 
-class Meshes(unittest.TestCase):
+class ImagesAndMeshes(unittest.TestCase):
+    def test_depth_images_become_points_in_the_frame_of_the_camera(self):
+        depth, _ = table()
+        points = pcl_symmetry.from_depth(depth, INTRINSICS)
+        self.assertEqual((points.shape, points.dtype), ((240, 320, 3), np.float32))
+        np.testing.assert_array_equal(np.isnan(points[..., 2]), depth == 0)
+        fx, fy, cx, cy = INTRINSICS
+        v, u = np.indices(depth.shape)
+        seen = depth > 0
+        np.testing.assert_allclose((fx * points[..., 0] / points[..., 2] + cx)[seen], u[seen], atol=1e-3)
+        np.testing.assert_allclose((fy * points[..., 1] / points[..., 2] + cy)[seen], v[seen], atol=1e-3)
+        matrix = [[fx, 0, cx], [0, fy, cy], [0, 0, 1]]
+        millimeters = pcl_symmetry.from_depth((1000 * depth).round().astype(np.uint16), matrix, unit=0.001)
+        np.testing.assert_allclose(millimeters[seen], points[seen], atol=1e-3)
+        warned("unit=0.001 makes meters of millimeters", pcl_symmetry.from_depth, np.full((4, 4), 700, np.uint16), matrix)
+        of_open3d = lambda **size: types.SimpleNamespace(intrinsic_matrix=matrix, **size)
+        for *wrong, error, words in (
+            (depth[0], INTRINSICS, ValueError, "depth = array of shape"),
+            (depth, (0, 300, 1, 1), ValueError, "fx and fy > 0"),
+            (depth, np.eye(4), ValueError, "intrinsics = "),
+            (depth, of_open3d(width=640, height=480), ValueError, r"depth = .* \(240, 320\), must be \(480, 640\), that of the intrinsics"),
+            ("a.png", INTRINSICS, TypeError, "depth = 'a.png', must be .* read files"),
+        ):
+            self.assertRaisesRegex(error, words, pcl_symmetry.from_depth, *wrong)
+        for size in ({}, dict(width=320, height=240), dict(width=-1, height=-1)):
+            np.testing.assert_array_equal(pcl_symmetry.from_depth(depth, of_open3d(**size)), points)
+
     def test_answers_index_what_was_given(self):
         mesh = bar()
         self.assertEqual(pcl_symmetry.segment(mesh).shape, (len(mesh.faces),))
@@ -415,7 +413,7 @@ class Meshes(unittest.TestCase):
         self.assertEqual(pcl_symmetry.sample_mesh(mesh).shape, (10_000, 3))
 
     @needs("open3d", "matplotlib")
-    def test_of_open3d_pass_everywhere(self):
+    def test_objects_of_open3d_pass_everywhere(self):
         import open3d
 
         points = box(num_points=2000).astype(float)
@@ -446,9 +444,7 @@ class Meshes(unittest.TestCase):
                     report = pcl_symmetry.Database(":memory:").build({name: each})
                     self.assertEqual((report.num_added, report.failures), (1, []))
 
-
-class Answers(unittest.TestCase):
-    def test_are_false_where_there_is_no_symmetry(self):
+    def test_answers_are_false_where_there_is_no_symmetry(self):
         """Noise of half of the tolerance beside a bump: the plane may be one."""
         blob = points_on_sphere(4000, 3)
         blob *= 1 + 0.3 * np.sin(3 * blob @ (1, 2, 0.5))[:, None] + 0.2 * blob[:, :1] * blob[:, 1:2]
@@ -466,7 +462,7 @@ class Answers(unittest.TestCase):
         self.assertEqual([len(each) for each in warned("no symmetry, nothing is added", pcl_symmetry.complete, blob)], [0, 0])
         self.assertEqual([each["kind"] for each in json.loads(every.to_json())["planes"]], [each.kind for each in every.approximate])
 
-    def test_cannot_be_written_into(self):
+    def test_answers_cannot_be_written_into(self):
         found = pcl_symmetry.planes(box())
         for array in (found[0].normal, found._rows, pcl_symmetry.frame(box()).axes, pcl_symmetry.ReflectionPlane((1, 0, 0), 1).normal,
                       found[0].coefficients, found[0].reflection):  # fmt: skip

@@ -6,11 +6,9 @@ import pathlib
 import types
 from unittest import mock
 
-from tool_run import ToolTest, need
+from tool_run import ToolTest, need, np
 
 need("bench", "fits")
-import numpy as np
-
 import bench
 import fit_frames
 import fit_planes

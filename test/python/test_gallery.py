@@ -40,25 +40,25 @@ class Shapes(unittest.TestCase):
         self.assertEqual(result.returncode, 2)
         self.assertIn("usage", result.stderr)
 
+    def test_a_polygon_has_a_line_through_each_corner_and_edge(self):
+        for corners in (3, 4, 5):
+            lines = planar.LineTransform(planar.contour(f"polygon {corners}") + (2, 1)).lines(least=0.99)
+            self.assertEqual(len(lines), corners)
+            step = np.diff(np.sort(lines[:, 0]))
+            np.testing.assert_allclose(step, np.pi / corners, atol=1e-3)
+            normals = np.array([np.cos(lines[:, 0]), np.sin(lines[:, 0])]).T
+            np.testing.assert_allclose(normals @ (2, 1), lines[:, 1], atol=2e-3, err_msg="through the center")
 
-class Frames(ToolTest):
-    @needs("matplotlib")
-    def test_of_mugs_and_mailboxes_have_their_center_where_their_planes_meet(self):  # Figure 10
-        import drawings
+    def test_noise_lowers_and_a_handle_moves_no_line(self):
+        noise = [planar.LineTransform(planar.contour(f"starfish {size}")).lines()[0, 2] for size in (0, 0.02, 0.06)]
+        self.assertEqual(noise, sorted(noise, reverse=True))
+        mug = planar.LineTransform(planar.contour("mug 0.45")).lines()[:2]
+        np.testing.assert_allclose(mug[:, 0], (np.pi / 2, 0), atol=2e-3)
 
-        for i, points in enumerate(map(drawings.sampled, drawings.mugs_and_mailboxes())):
-            planes, some = pcl_symmetry.planes(points[::2], as_published=True), points[::10]
-            diameter = np.linalg.norm(some[:, None] - some, axis=2).max()
-            across = [next(plane for plane in planes if abs(plane.normal[k]) > np.cos(np.radians(5))) for k in range(3)]
-            meet = np.linalg.solve([plane.normal for plane in across], [plane.offset for plane in across])
-            for seed in range(3):
-                turn = random_pose(seed)[0].astype("f")
-                center = pcl_symmetry.frame(points @ turn.T).center
-                self.assertLess(np.linalg.norm(center - turn @ meet), 0.01 * diameter, f"{i} {seed}")
-            if not os.environ.get("TOOLS"):
-                continue
-            np.savetxt(self.folder / "turned.xyz", points @ turn.T, "%.9g")
-            np.testing.assert_allclose(self.report("turned.xyz -quiet", tool="align")["center"], center, atol=1e-6)
+    def test_the_transform_agrees_with_the_sum_over_cells(self):
+        transform = planar.LineTransform(planar.contour("flower 4"))
+        for t, k in ((0, 127), (31, 100), (90, 140)):
+            self.assertAlmostEqual(transform.values[t, k], transform.value(transform.theta[t], transform.r[k]), delta=2e-3)
 
 
 @unittest.skipUnless("scene" in pcl_symmetry.__all__, "the module was built without PCL")
@@ -89,32 +89,28 @@ class Views(unittest.TestCase):
             self.assertGreater(np.abs(normals[:2] @ best.direction).min(), 0.1, shape.__name__)
 
 
-class Planar(unittest.TestCase):
-    def test_a_polygon_has_a_line_through_each_corner_and_edge(self):
-        for corners in (3, 4, 5):
-            lines = planar.LineTransform(planar.contour(f"polygon {corners}") + (2, 1)).lines(least=0.99)
-            self.assertEqual(len(lines), corners)
-            step = np.diff(np.sort(lines[:, 0]))
-            np.testing.assert_allclose(step, np.pi / corners, atol=1e-3)
-            normals = np.array([np.cos(lines[:, 0]), np.sin(lines[:, 0])]).T
-            np.testing.assert_allclose(normals @ (2, 1), lines[:, 1], atol=2e-3, err_msg="through the center")
+class Drawings(ToolTest):
+    @needs("matplotlib")
+    def test_frames_of_mugs_and_mailboxes_have_their_center_where_their_planes_meet(self):  # Figure 10
+        import drawings
 
-    def test_noise_lowers_and_a_handle_moves_no_line(self):
-        noise = [planar.LineTransform(planar.contour(f"starfish {size}")).lines()[0, 2] for size in (0, 0.02, 0.06)]
-        self.assertEqual(noise, sorted(noise, reverse=True))
-        mug = planar.LineTransform(planar.contour("mug 0.45")).lines()[:2]
-        np.testing.assert_allclose(mug[:, 0], (np.pi / 2, 0), atol=2e-3)
+        for i, points in enumerate(map(drawings.sampled, drawings.mugs_and_mailboxes())):
+            planes, some = pcl_symmetry.planes(points[::2], as_published=True), points[::10]
+            diameter = np.linalg.norm(some[:, None] - some, axis=2).max()
+            across = [next(plane for plane in planes if abs(plane.normal[k]) > np.cos(np.radians(5))) for k in range(3)]
+            meet = np.linalg.solve([plane.normal for plane in across], [plane.offset for plane in across])
+            for seed in range(3):
+                turn = random_pose(seed)[0].astype("f")
+                center = pcl_symmetry.frame(points @ turn.T).center
+                self.assertLess(np.linalg.norm(center - turn @ meet), 0.01 * diameter, f"{i} {seed}")
+            if not os.environ.get("TOOLS"):
+                continue
+            np.savetxt(self.folder / "turned.xyz", points @ turn.T, "%.9g")
+            np.testing.assert_allclose(self.report("turned.xyz -quiet", tool="align")["center"], center, atol=1e-6)
 
-    def test_the_transform_agrees_with_the_sum_over_cells(self):
-        transform = planar.LineTransform(planar.contour("flower 4"))
-        for t, k in ((0, 127), (31, 100), (90, 140)):
-            self.assertAlmostEqual(transform.values[t, k], transform.value(transform.theta[t], transform.r[k]), delta=2e-3)
-
-
-class FirstLook(ToolTest):
     @needs("matplotlib", "open3d")
     @unittest.skipUnless(os.environ.get("TOOLS"), "needs the tools")
-    def test_of_the_first_page_is_what_is_found_today(self):
+    def test_the_picture_of_the_first_page_is_what_is_found_today(self):
         if subprocess.run(["bash", GALLERY.parent / "fetch_meshes.sh", self.folder, "cow"], stdout=subprocess.DEVNULL).returncode:
             self.skipTest("the mesh cannot be fetched")
         tools = {**os.environ, "PATH": f"{os.environ['TOOLS']}:{os.environ['PATH']}"}
@@ -125,10 +121,8 @@ class FirstLook(ToolTest):
         self.assertEqual((shown.text["Description"], shown.size), (now.text["Description"], now.size), "bash apps/gallery/make.sh --only first_look apps")
         self.assertLess(off, 0.005)
 
-
-class MedialAxis(ToolTest):
     @needs("matplotlib")
-    def test_of_a_rectangle_is_a_ridge_with_a_branch_to_each_corner(self):
+    def test_the_medial_axis_of_a_rectangle_is_a_ridge_with_a_branch_to_each_corner(self):
         across, along = np.arange(-1, 1.001, 0.01), np.arange(-0.49, 0.491, 0.01)
         border = [(x, y) for x in across for y in (0.5, -0.5)] + [(x, y) for y in along for x in (1, -1)]
         contour, picture = self.folder / "rectangle.txt", self.folder / "axis.png"

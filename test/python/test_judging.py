@@ -1,11 +1,9 @@
 """How the programs of test/benchmark judge: poses, groups, segmentations, rankings and scenes that are known."""
 import unittest
 
-from tool_run import BOX_FACES, box_corners, need
+from tool_run import BOX_FACES, box_corners, need, np
 
 need("open3d", "scipy", "sklearn", "pcl_symmetry")
-import numpy as np
-
 import bench
 import frames
 import pcl_symmetry

@@ -41,12 +41,16 @@ def box_mesh():
     return box_corners(1, 0.5, 0.5).astype(np.float32), triangles(BOX_FACES)
 
 
-class Planes(unittest.TestCase):
+def count_planes(seed):
+    return len(pcl_symmetry.planes(box(seed=seed)))
+
+
+class Functions(unittest.TestCase):
     def test_volumes_without_an_answer_say_why(self):
         found = warned("^volume: all values are equal", pcl_symmetry.planes, volume=np.zeros((8, 8, 8)))
         self.assertEqual(found.reason, "volume: all values are equal")
 
-    def test_as_published_are_neither_added_nor_judged(self):
+    def test_planes_as_published_are_neither_added_nor_judged(self):
         found = pcl_symmetry.planes(box(num_points=2000), as_published=True)
         self.assertTrue(len(found))
         self.assertEqual({plane.kind for plane in found}, {"approximate"})
@@ -249,8 +253,6 @@ class Planes(unittest.TestCase):
             timer.join()
         self.assertLess(max(ticks), ended)
 
-
-class OtherFunctions(unittest.TestCase):
     def test_frame_and_rotations_of_a_box(self):
         frame = pcl_symmetry.frame(box())
         np.testing.assert_allclose(np.abs(frame.axes).max(axis=0), 1, atol=1e-3)
@@ -736,12 +738,6 @@ class Results(unittest.TestCase):
         self.assertGreater(len(pcl_symmetry.frame(mesh).plot(mesh).collections[0].get_offsets()), 1000, "not the corners alone")
         self.assertEqual(len(pcl_symmetry.transform(points, (8, 8, 9)).plot().images), 1)
 
-
-def count_planes(seed):
-    return len(pcl_symmetry.planes(box(seed=seed)))
-
-
-class Processes(unittest.TestCase):
     def test_forked_workers_answer_after_the_parent_has(self):
         code = (
             "import multiprocessing, test_pcl_symmetry as t\n"

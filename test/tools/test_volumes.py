@@ -56,19 +56,6 @@ def vti(data, size=SIZE, thickness=6):
 FORMATS = ((".mha", meta_image), (".nrrd", nrrd), (".nii", nifti), (".vti", vti))
 
 
-class Maps(ToolTest):
-    tool = "map"
-
-    def test_are_of_planes_axes_and_centers_and_seen_at_a_scale(self):
-        path = self.write("a.mha", meta_image(BODY))
-        for flags in ("-method convolution", "-method rotational", "-method rotational -refined_share 0.1", "-method voting -as_published", "-of axes -fold 2", "-of centers", "-scale 0.4"):
-            report = self.report(path, "-quiet -grid 16", flags)
-            # No center lies at the border, where the values of the map are read.
-            greatest = report["centers"][0]["symmetry"] if flags == "-of centers" else report["greatest"]
-            self.assertGreater(greatest, 0.6, flags)
-            self.assertGreater(report["num_points"], 500, "the border of the body")
-
-
 def mgh(data, size=SIZE):
     """The frame of the others by its middle."""
     center = np.array([5, 7, -9]) + np.array([[0, -4, 0], [4, 0, 0], [0, 0, 6]]) @ np.array(size) / 2
@@ -122,6 +109,16 @@ class Volumes(ToolTest):
                               ("skip.nhdr", detached.replace(b"a.raw", b"b.raw\nbyte skip: 10")),
                               ("last.nhdr", detached.replace(b"a.raw", b"b.raw\nbyte skip: -1"))):
             self.assert_plane(self.write(name, bytes(content)) if content is not None else name, name)
+
+    def test_maps_are_of_planes_axes_and_centers_and_seen_at_a_scale(self):
+        path = self.write("a.mha", meta_image(BODY))
+        for flags in ("-method convolution", "-method rotational", "-method rotational -refined_share 0.1", "-method voting -as_published",
+                      "-of axes -fold 2", "-of centers", "-scale 0.4"):  # fmt: skip
+            report = self.report(path, "-quiet -grid 16", flags, tool="map")
+            # No center lies at the border, where the values of the map are read.
+            greatest = report["centers"][0]["symmetry"] if flags == "-of centers" else report["greatest"]
+            self.assertGreater(greatest, 0.6, flags)
+            self.assertGreater(report["num_points"], 500, "the border of the body")
 
     def test_are_drawn_as_slices_and_their_surface_is_a_mesh(self):
         path = self.write("a.mha", meta_image(BODY))
