@@ -237,8 +237,8 @@ def kinect_frame(frame, arguments):
     file = tempfile.NamedTemporaryFile(suffix=".pcd")
     file.write(show(arguments.repository, path))
     file.flush()
-    points, labels, _ = scenes.read_frame(file.name)
-    points, labels = points.astype(float).reshape(480, 640, 3), labels.reshape(480, 640)
+    shape, labels = scenes.read_frame(file.name)
+    points, labels = shape.points.astype(float).reshape(480, 640, 3), labels.reshape(480, 640)
     truths, rows, exported = objects_of(frame, points, labels), [], {}
     objects = objects_found(f"learn_{frame}", points, arguments)
     for label, truth in truths.items():

@@ -160,18 +160,14 @@ def make(number, arguments):
     return frames
 
 
-def read_frame(path, field="label"):
-    """(N, 3) points, NaN where nothing was met, (N,) whole numbers of a field, and the position of the sensor."""
+def read_frame(path):
+    """The shape in a file, NaN where nothing was met, and (N,) whole numbers of its field label."""
     import open3d
 
     try:
-        with open(path, "rb") as file:
-            header = next((line for line in file if line.startswith(b"VIEWPOINT")), b"VIEWPOINT 0 0 0")
-        cloud = open3d.t.io.read_point_cloud(str(path)).point
-        labels = cloud[field].numpy().ravel().astype(int)
-        return cloud["positions"].numpy().astype(np.float32), labels, np.array(header.split()[1:4], float)
+        return pcl_symmetry.read(path), open3d.t.io.read_point_cloud(str(path)).point["label"].numpy().ravel().astype(int)
     except (OSError, KeyError, RuntimeError, ValueError):
-        raise bench.BadInput(f"{path}: is no frame with the field {field}") from None
+        raise bench.BadInput(f"{path}: is no frame with the field label") from None
 
 
 def overlaps(labels, truth, shape):
@@ -191,10 +187,10 @@ def analyzed(frame, seed):
 def judge_frame(frame, arguments):
     """Rows of the wanted objects of one frame: alone, and in the scene."""
     file = f"{arguments.frames}/{frame.name}.pcd"
-    points, labels, viewpoint = read_frame(file)
-    shape = pcl_symmetry.read(file)
+    shape, labels = read_frame(file)
+    points = shape.points.reshape(-1, 3)
     finite, sensor, rows, milliseconds = np.isfinite(points[:, 0]), np.eye(4), [], 0
-    sensor[:3, 3] = viewpoint
+    sensor[:3, 3] = shape.viewpoint
     if "scene" in arguments.seen:
         (found, numbers), milliseconds = bench.timed(analyzed, file, arguments.seed)
         iou = overlaps(numbers[finite] - 1, labels[finite], (len(found), labels.max() + 1))
