@@ -10,6 +10,7 @@ import math
 import multiprocessing
 import os
 import pathlib
+import resource
 import shutil
 import subprocess
 import sys
@@ -405,6 +406,11 @@ def timed(function, *arguments, clock=time.perf_counter, **options):
     start = clock()
     result = function(*arguments, **options)
     return result, 1000 * (clock() - start)
+
+
+def seconds_of_children():
+    """Processor time of all programs that were run and have ended."""
+    return sum(resource.getrusage(resource.RUSAGE_CHILDREN)[:2])
 
 
 def ask(name, points, sensor, arguments, **options):

@@ -8,7 +8,6 @@ the merge; seconds of the merge; bytes. What other programs take of the machine 
 example: distributed.py build/apps models --workers 1,2,4
          distributed.py build/apps models --workers 2 --make 20000 --of PSB   # copies of small meshes, each stretched anew
 """
-import resource
 import subprocess
 import sys
 import tempfile
@@ -33,15 +32,13 @@ exit $code
 
 def used_by(command):
     """Processor seconds of a command and of all that it started."""
-    before = resource.getrusage(resource.RUSAGE_CHILDREN)
     try:
-        code = subprocess.run(list(map(str, command)), check=False).returncode
+        done, milliseconds = bench.timed(subprocess.run, list(map(str, command)), clock=bench.seconds_of_children)
     except OSError as error:
         raise bench.BadInput(f"{command[0]}: cannot be run, {error.strerror}") from None
-    after = resource.getrusage(resource.RUSAGE_CHILDREN)
-    if code not in (0, 1):  # 1 where a model was left out
-        raise bench.BadInput(f"{command[0]}: ended with {code}")
-    return sum(after[:2]) - sum(before[:2])
+    if done.returncode not in (0, 1):  # 1 where a model was left out
+        raise bench.BadInput(f"{command[0]}: ended with {done.returncode}")
+    return milliseconds / 1000
 
 
 def make_models(source, folder, count):

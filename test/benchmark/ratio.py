@@ -6,7 +6,6 @@ is faster. The ratios of single rounds, from the least to the greatest, tell how
 
 example: ratio.py ../before/build-benchmark build-benchmark cow.off
 """
-import resource
 from pathlib import Path
 
 import bench
@@ -21,10 +20,8 @@ def times_of(build, files):
     found = bench.google_benchmark([*ON_ONE_CORE, f"{build}/test/benchmark/benchmark_speed"], f"--benchmark_filter={ROWS}")
     times = {each["name"]: each["cpu_ms"] for each in found}
     for file in files:
-        before = resource.getrusage(resource.RUSAGE_CHILDREN)
-        bench.run_tool("/usr/bin", *ON_ONE_CORE, f"{build}/apps/pcl_symmetry_planes", file, "-threads", "1", "-quiet")
-        after = resource.getrusage(resource.RUSAGE_CHILDREN)
-        times[f"pcl_symmetry_planes {Path(file).name}"] = 1000 * (sum(after[:2]) - sum(before[:2]))
+        command = ["/usr/bin", *ON_ONE_CORE, f"{build}/apps/pcl_symmetry_planes", file, "-threads", "1", "-quiet"]
+        _, times[f"pcl_symmetry_planes {Path(file).name}"] = bench.timed(bench.run_tool, *command, clock=bench.seconds_of_children)
     return times
 
 

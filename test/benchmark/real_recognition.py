@@ -55,7 +55,7 @@ def main(arguments):
     with tempfile.TemporaryDirectory() as temporary:
         database = pcl_symmetry.Database(temporary + "/models.db", create=True)
         database.build((name, points.astype(np.float32)) for name, points in surfaces.items())
-        table, total = [], {key: bench.Rate() for key in ("named", "right", "wrong")}
+        table, total = [], {key: bench.Rate() for key in ("named", "with the right pose", "frames with more than one wrong name")}
         for name, scene in index["scenes"].items():
             start = time.process_time()
             frame = pcl_symmetry.read(folder / scene["file"]).points
@@ -70,31 +70,30 @@ def main(arguments):
                 seen.update(id(m) for m in mine)
                 right = any(pose_is_right(model, np.linalg.inv(m.transform), truth) for m in mine)
                 total["named"].add(bool(mine))
-                total["right"].add(right)
+                total["with the right pose"].add(right)
                 texts.append(f"{model} {'right' if right else 'pose wrong' if mine else 'not named'}")
             wrong = [m for m in names if id(m) not in seen and m.name not in scene.get("unlabeled", [])]
-            total["wrong"].add(len(wrong) > 1)
+            total["frames with more than one wrong name"].add(len(wrong) > 1)
             table.append([name, len(found.objects), "; ".join(texts), "; ".join(f"{m.name} {m.confidence:.2f}" for m in wrong), f"{seconds:.1f}"])
         bench.print_table("Frames", ["", "objects", "known", "wrong names", "s"], table)
-        bench.print_table("All frames", ["", "rate"], [["named", total["named"].text], ["with the right pose", total["right"].text], ["frames with more than one wrong name", total["wrong"].text]])
-        answers = {key: bench.Rate() for key in ("right", "pose wrong", "unknown", "wrong name")}
+        bench.print_table("All frames", ["", "rate"], [[key, rate.text] for key, rate in total.items()])
+        answers = []
         for scan in index["scans"].values():
-            if scan["object"] not in surfaces or arguments.frames_only:
+            if scan["object"] not in surfaces:
                 continue
             points = read(folder / scan["file"])[0].astype(np.float32)
             models = database.recognize(points, viewpoint=tuple(scan["viewpoint"] or scan["sensor"]), min_confidence=0.0, threads=1)
             rows.append({"object": scan["object"], "models": answer_of(models)})
             models = [model for model in models if model.confidence >= 0.5]
             if not models:
-                answer = "unknown"
+                answers.append("unknown")
             elif models[0].name != scan["object"]:
-                answer = "wrong name"
+                answers.append("wrong name")
             else:
                 good = pose_is_right(scan["object"], np.linalg.inv(models[0].transform), np.linalg.inv(np.array(scan["T_object_scan"])))
-                answer = "right" if good else "pose wrong"
-            for key, rate in answers.items():
-                rate.add(key == answer)
-        bench.print_table("Scans alone", ["", "rate"], [[key, rate.text] for key, rate in answers.items()])
+                answers.append("right" if good else "pose wrong")
+        rates = {key: bench.Rate(answer == key for answer in answers) for key in ("right", "pose wrong", "unknown", "wrong name")}
+        bench.print_table("Scans alone", ["", "rate"], [[key, rate.text] for key, rate in rates.items()])
         unknown = []
         for path in arguments.unknown:
             frame = pcl_symmetry.read(path).points
@@ -112,5 +111,4 @@ if __name__ == "__main__":
     parser.add_argument("folder", help="with index.json")
     parser.add_argument("--unknown", nargs="*", default=[], metavar="FRAME")
     parser.add_argument("--rows", metavar="FILE", help="a line of JSON for each object, for fit_recognition.py")
-    parser.add_argument("--frames-only", action="store_true")
     main(parser.parse_args())
