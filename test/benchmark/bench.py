@@ -227,20 +227,23 @@ def random_rotation(random):
     return Rotation.from_quat([x, y, z, w]).as_matrix()
 
 
+def rigid(rotation, translation=(0, 0, 0)):
+    """(4, 4) that rotates, then translates."""
+    motion = np.eye(4)
+    motion[:3, :3], motion[:3, 3] = rotation, translation
+    return motion
+
+
 def random_pose(random, mesh):
     """T_cloud_model, (4, 4): rotates about the center of the mesh, and moves it by up to a diagonal along each axis."""
-    pose = np.eye(4)
-    pose[:3, :3] = random_rotation(random)
-    pose[:3, 3] = mesh.diagonal * random.uniform(-1, 1, 3) - pose[:3, :3] @ mesh.center
-    return pose
+    rotation = random_rotation(random)
+    return rigid(rotation, mesh.diagonal * random.uniform(-1, 1, 3) - rotation @ mesh.center)
 
 
 def rotation_about(point, direction, angle):
     """(4, 4) by an angle in radians about a line of unit direction."""
-    motion = np.eye(4)
-    motion[:3, :3] = Rotation.from_rotvec(angle * np.asarray(direction, float)).as_matrix()
-    motion[:3, 3] = point - motion[:3, :3] @ point
-    return motion
+    rotation = Rotation.from_rotvec(angle * np.asarray(direction, float)).as_matrix()
+    return rigid(rotation, point - rotation @ point)
 
 
 def moved(pose, points):
@@ -356,8 +359,7 @@ def scan(mesh, direction, random, num_points=10_000, noise=0.0, pose=None):
     length = np.linalg.norm(rays, axis=-1)
     depth = np.where(hit, depth + noise * mesh.diagonal / length * random.normal(size=depth.shape), np.nan)
     pose = np.eye(4) if pose is None else pose
-    sensor = np.eye(4)
-    sensor[:3, :3], sensor[:3, 3] = pose[:3, :3] @ axes, moved(pose, origin)
+    sensor = rigid(pose[:3, :3] @ axes, moved(pose, origin))
     return Scan(moved(sensor, depth[..., None] * rays), pose, sensor, half)
 
 

@@ -53,10 +53,7 @@ def nearest_symmetry(S, points, diameter):
         x = bench.moved(S, some)
         y = points[tree.query(x)[1]]
         R, _ = Rotation.align_vectors(y - y.mean(axis=0), x - x.mean(axis=0))
-        step = np.eye(4)
-        step[:3, :3] = R.as_matrix()
-        step[:3, 3] = y.mean(axis=0) - step[:3, :3] @ x.mean(axis=0)
-        S = step @ S
+        S = bench.rigid(R.as_matrix(), y.mean(axis=0) - R.apply(x.mean(axis=0))) @ S
     reach = SYMMETRIC_DISTANCE * diameter + 0.5 * np.quantile(tree.query(points, k=2)[0][:, 1], 0.9)
     return S if (tree.query(bench.moved(S, points))[0] < reach).mean() >= SYMMETRIC_SHARE else None
 

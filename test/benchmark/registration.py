@@ -105,10 +105,8 @@ def by_principal_axes(source, target, guess):
     frames = [by_mass(points, None, 0) for points, _ in (source, target)]
     tried = []
     for signs in ((1, 1, 1), (1, -1, -1), (-1, 1, -1), (-1, -1, 1)):
-        pose = np.eye(4)
-        pose[:3, :3] = frames[1].axes * signs @ frames[0].axes.T
-        pose[:3, 3] = frames[1].center - pose[:3, :3] @ frames[0].center
-        tried.append(icp(*coarse, pose, 10 * voxel))
+        rotation = frames[1].axes * signs @ frames[0].axes.T
+        tried.append(icp(*coarse, bench.rigid(rotation, frames[1].center - rotation @ frames[0].center), 10 * voxel))
     pose = max(tried, key=lambda t: (round(t[1], 2), -t[2]))[0]
     pose, fitness, _ = icp(open3d_cloud(source[0]), open3d_cloud(target[0]), pose, 5 * voxel)
     return pose, fitness > 0

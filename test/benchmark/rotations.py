@@ -73,8 +73,8 @@ def judge_poses(group, points, random):
         symmetries = [a @ b for a in around for b in symmetries]
     errors = []
     for _ in range(NUM_POSES):
-        truth, angle = np.eye(4), random.uniform(0, 0.4)
-        truth[:3, :3], truth[:3, 3] = bench.random_rotation(random), random.normal(size=3)
+        angle = random.uniform(0, 0.4)
+        truth = bench.rigid(bench.random_rotation(random), random.normal(size=3))
         motion = bench.rotation_about(np.zeros(3), bench.random_directions(random, 1)[0], angle)
         symmetry = symmetries[random.integers(len(symmetries))]
         estimate = truth @ motion @ symmetry  # turned a little, and then as the symmetry has it
@@ -108,8 +108,7 @@ def find_group(trial, arguments):
     solid = trial.solid
     mesh = bench.make_mesh(solid.vertices, solid.faces)
     random = bench.generator(arguments.seed, trial.name)
-    pose = np.eye(4)
-    pose[:3, :3] = bench.random_rotation(random)
+    pose = bench.rigid(bench.random_rotation(random))
     points = bench.moved(pose, bench.sample(mesh, trial.count, random))
     points = (points + trial.noise * mesh.diameter * random.normal(size=points.shape)).astype("f")
     group, milliseconds = bench.timed(pcl_symmetry.rotations, points, threads=1, clock=time.process_time)

@@ -36,9 +36,8 @@ def prepare(model, arguments):
     random = bench.generator(arguments.seed, model.key, "size")
     diagonal = random.uniform(LEAST_DIAGONAL, GREATEST_DIAGONAL)
     mesh = bench.read_mesh(model.path)
-    found, factor, pose = references.find_references(mesh), diagonal / mesh.diagonal, np.eye(4)
-    pose[:3, 3] = -factor * mesh.center
-    symmetries = references.moved(found, pose, factor)
+    factor = diagonal / mesh.diagonal
+    symmetries = references.moved(references.find_references(mesh), bench.rigid(np.eye(3), -factor * mesh.center), factor)
     return {"name": model.name, "path": model.path, "diagonal": diagonal, "symmetries": symmetries}
 
 
@@ -63,8 +62,7 @@ def draw_scene(models, arguments, number):
         radius = np.linalg.norm(corners[:, :2] - middle, axis=1).max()
         for at in random.uniform(-half_side, half_side, (100, 2)):
             if all(np.linalg.norm(other - at) > reach + radius + 0.005 for _, _, other, reach in placed):
-                pose = np.eye(4)
-                pose[:3, :3], pose[:3, 3] = rotation, [*(at - middle), -corners[:, 2].min()]
+                pose = bench.rigid(rotation, [*(at - middle), -corners[:, 2].min()])
                 placed.append((int(index), pose, at, radius))
                 break
     return placed, random
@@ -80,9 +78,7 @@ def look_at_middle(placed, random):
         azimuth = math.atan2(nearest[1], nearest[0]) + random.uniform(-0.5, 0.5)
     elevation, distance = math.radians(random.uniform(10, 40)), random.uniform(0.9, 1.3)
     toward = np.array([math.cos(elevation) * math.cos(azimuth), math.cos(elevation) * math.sin(azimuth), math.sin(elevation)])
-    pose = np.eye(4)
-    pose[:3, :3], pose[:3, 3] = bench.look_along(-toward), distance * toward
-    return pose
+    return bench.rigid(bench.look_along(-toward), distance * toward)
 
 
 def rays():
@@ -189,8 +185,7 @@ def judge_frame(frame, arguments):
     file = f"{arguments.frames}/{frame.name}.pcd"
     shape, labels = read_frame(file)
     points = shape.points.reshape(-1, 3)
-    finite, sensor, rows, milliseconds = np.isfinite(points[:, 0]), np.eye(4), [], 0
-    sensor[:3, 3] = shape.viewpoint
+    finite, sensor, rows, milliseconds = np.isfinite(points[:, 0]), bench.rigid(np.eye(3), shape.viewpoint), [], 0
     if "scene" in arguments.seen:
         (found, numbers), milliseconds = bench.timed(analyzed, file, arguments.seed)
         iou = overlaps(numbers[finite] - 1, labels[finite], (len(found), labels.max() + 1))

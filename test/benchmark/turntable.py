@@ -25,7 +25,7 @@ for name in arguments.objects:
     names = [scan for scan in scans if scan.startswith(name + "_")]
     clouds = [np.asarray(open3d.io.read_point_cloud(str(arguments.folder / scans[scan]["file"])).points) for scan in names]
     poses = [np.array(scans[scan]["T_object_scan"]) for scan in names]
-    found, elapsed = bench.timed(pcl_symmetry.register_all, clouds, clock=time.process_time)
+    found, ms = bench.timed(pcl_symmetry.register_all, clouds, clock=time.process_time)
     kept = [k for k, transform in enumerate(found.transforms) if transform is not None]
     diameter = np.linalg.norm(np.ptp(np.concatenate([bench.moved(poses[k], clouds[k]) for k in kept]), axis=0))
     wrong = []
@@ -39,4 +39,4 @@ for name in arguments.objects:
         print(f"  {names[k]}: {angle:.2f} degrees, {100 * way:.2f} % of the diameter")
     for k, reason in found.left_out.items():
         print(f"  {names[k]}: left out, {reason}")
-    print(f"{name}: {len(kept) - len(wrong)} right, {len(found.left_out)} left out, {len(wrong)} wrong of {len(names)}; {elapsed / 1000:.1f} s")
+    print(f"{name}: {len(kept) - len(wrong)} right, {len(found.left_out)} left out, {len(wrong)} wrong of {len(names)}; {ms / 1000:.1f} s")

@@ -18,13 +18,11 @@ Z = {"point": [0, 0, 0], "direction": [0, 0, 1]}
 
 
 def pose(degrees, axis, way=(0, 0, 0)):
-    matrix = bench.rotation_about(np.zeros(3), np.array(axis) / np.linalg.norm(axis), np.radians(degrees))
-    matrix[:3, 3] = way
-    return matrix
+    return bench.rigid(rotated(degrees, axis), way)
 
 
 def rotated(degrees, axis):
-    return pose(degrees, axis)[:3, :3]
+    return bench.rotation_about(np.zeros(3), np.array(axis) / np.linalg.norm(axis), np.radians(degrees))[:3, :3]
 
 
 def symmetries(planes=(), axes=(), centers=()):
