@@ -400,9 +400,7 @@ def lamp(num_points=4000, seed=1):
 
 def motion(angle=2.0, translation=(3.0, -1.0, 0.5)):
     """A turn about (1, 2, 3) and a translation, (4, 4)."""
-    result = np.eye(4)
-    result[:3, :3], result[:3, 3] = rotation((1, 2, 3), angle), translation
-    return result
+    return np.vstack([np.c_[rotation((1, 2, 3), angle), translation], (0, 0, 0, 1)])
 
 
 def moved(points, T):

@@ -28,9 +28,7 @@ def scan(shape, angle, noise=0.0, seed=0):
 
 
 def motion(seed):
-    T = np.eye(4)
-    T[:3, :3], T[:3, 3] = random_pose(seed)
-    return T
+    return np.vstack([np.c_[random_pose(seed)], (0, 0, 0, 1)])
 
 
 def degrees(a, b):

@@ -70,10 +70,6 @@ def with_depth_errors(window=1):
     return EYE + (1 + 1.4e-3 * depth * means.ravel())[:, None] * offsets
 
 
-def is_on(box, points, margin=1e-4):
-    return (abs(points - np.array(box[0])) < np.array(box[1]) + margin).all(axis=1)
-
-
 class SceneObjects(ToolTest):
     tool = "scene"
 
@@ -102,7 +98,8 @@ class SceneObjects(ToolTest):
         boxes = set()
         for k, item in enumerate(report["objects"], 1):
             own = points[seen & (numbers == k)]
-            box, = (i for i, box in enumerate(BOXES) if is_on(box, own).all())  # points of one box and none of the table
+            # Points of one box and none of the table.
+            box, = (i for i, (center, half) in enumerate(BOXES) if (abs(own - center) < np.array(half) + 1e-4).all())
             boxes.add(box)
             self.assertLess(own[:, 2].min(), near, "rows of pixels are as far apart")
             self.assertLess(np.linalg.norm(np.array(item["frame"]["center"]) - BOXES[box][0]), 0.25 * np.linalg.norm(BOXES[box][1]))
