@@ -4,7 +4,7 @@ import os
 import subprocess
 from pathlib import Path
 
-from tool_run import BOX_FACES, CYLINDER, SPHERE, TETRAHEDRON, TOOLS, ToolTest, box_corners, box_off, lathe, np, off, pcd
+from tool_run import BOX_FACES, CYLINDER, SPHERE, TETRAHEDRON, TOOLS, ToolTest, box_corners, box_off, lathe, mug, np, off, pcd
 from tool_run import pcd_header, ply_points, points_on_box, points_on_sphere, rotation, xyz
 
 
@@ -46,9 +46,9 @@ class Planes(ToolTest):
 
     def test_exchanging_the_ends_of_a_mug_is_possible_at_most(self):
         """From above, the inside shows through the opening: whether the bottom is open, too, was not seen."""
-        mug = self.write("mug.off", tool_run.off(*tool_run.mug()))
+        cup = self.write("mug.off", off(*mug()))
         for direction in ("1,-1,1", "1,1,0.7"):
-            self.run_tool(mug, f"scan.pcd -direction {direction} -quiet", tool="scan")
+            self.run_tool(cup, f"scan.pcd -direction {direction} -quiet", tool="scan")
             planes = self.report("scan.pcd", "-explain")["planes"]
             handle, *others = [abs(plane["coefficients"][1]) for plane in planes if plane["kind"] == "symmetry"]
             self.assertTrue(handle > 0.99 and not others, direction)
