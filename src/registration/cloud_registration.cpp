@@ -398,15 +398,16 @@ CloudRegistration registerClouds(const Points& source, const std::optional<Visib
     done("parts");
   }
   if (!judged.empty()) {
-    // Between two scans, the merit grows with the surface that they share: a pose of less merit may fit equally well.
-    constexpr double any = std::numeric_limits<double>::infinity();
-    const std::vector<JudgedPose> all = clouds.model().seen ? judgedPoses(clouds, poses, any) : judged;
+    const std::vector<JudgedPose> likeliest = judged;
     std::vector<JudgedPose> beside;  // in tracks, the guess decides
     if (!options.around) beside = rotatedPoses(clouds, judged.front(), inner);
     append(judged, beside);
     sortDescending(judged, &JudgedPose::confidence);
     result.evidence = judged.front().evidence;
     if (judged.front().confidence >= kRegistration.min_confidence) {
+      // Between two scans, the merit grows with the surface that they share: a pose of less merit may fit equally well.
+      constexpr double any = std::numeric_limits<double>::infinity();
+      const std::vector<JudgedPose> all = clouds.model().seen ? judgedPoses(clouds, poses, any) : likeliest;
       if (!options.around) append(beside, judgedPoses(clouds, slidPoses(clouds, judged.front().pose, inner), any));
       result.evidence.uniqueness = uniquenessOf(clouds, judged.front(), all, beside, inner);
     }

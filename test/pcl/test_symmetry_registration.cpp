@@ -237,19 +237,19 @@ TEST_F(SymmetryRegistrationTest, SaysWhereNothingFits) {
 /// A box with a knob at its back. From the front, the half turn that brings back to back cannot be told from none,
 /// unless the scanner looks over the box and sees the top of the knob.
 TEST_F(SymmetryRegistrationTest, RefusesAPoseBesideWhichAnotherOneFitsAsWell) {
-  const auto align_from = [&](const Eigen::Vector3d& viewpoint, double height_of_knob) {
+  const auto alignFrom = [&](const Eigen::Vector3d& viewpoint, double height_of_knob) {
     BlockObject box = blockBox();
     box.blocks.push_back({{0.5, -1.0, height_of_knob}, {0.3, 0.3, 0.1}});
     const auto cloud = toCloud(test::scan(box, viewpoint).cloud());
     cloud->sensor_origin_.head<3>() = viewpoint.cast<float>();
     return align(cloud, toCloud(surfaceOf(box, 6000)));
   };
-  EXPECT_FALSE(align_from({3.0, 6.0, 4.0}, 0.0));
+  EXPECT_FALSE(alignFrom({3.0, 6.0, 4.0}, 0.0));
   EXPECT_LT(registration_.getEvidence().uniqueness, 0.8);
   EXPECT_EQ(registration_.getReason().rfind("another pose fits as well", 0), 0u) << registration_.getReason();
-  EXPECT_TRUE(align_from({3.0, 6.0, 4.0}, 0.2)) << registration_.getReason();
+  EXPECT_TRUE(alignFrom({3.0, 6.0, 4.0}, 0.2)) << registration_.getReason();
   EXPECT_LT(angleOf(registration_.getFinalTransformation()), 2.0 * kDegree);
-  EXPECT_TRUE(align_from({3.0, -6.0, 4.0}, 0.2)) << registration_.getReason();
+  EXPECT_TRUE(alignFrom({3.0, -6.0, 4.0}, 0.2)) << registration_.getReason();
   EXPECT_GT(registration_.getEvidence().uniqueness, 0.9);
   EXPECT_LT(angleOf(registration_.getFinalTransformation()), 2.0 * kDegree);
 }

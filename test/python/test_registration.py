@@ -114,6 +114,12 @@ class Registration(unittest.TestCase):
             self.assertFalse(found.converged, found.evidence)
             self.assertRegex(found.reason, reason)
 
+    def test_the_same_scan_twice(self):
+        source = scan(body(3), 0)
+        found = pcl_symmetry.register(source, source, threads=1)
+        self.assertTrue(found.converged)
+        np.testing.assert_allclose(found.transform, np.eye(4), atol=1e-3)
+
     def test_thirty_points_are_refused(self):
         source = scan(body(3), 0)
         found = warned("source: 30 points, must be at least 100", pcl_symmetry.register, source[:30], source, threads=1)
