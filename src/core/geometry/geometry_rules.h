@@ -25,7 +25,7 @@ struct GeometryRules {
   int max_stray_group = 16;  ///< greatest number of distinct points in a stray group; more are a part of the shape
   /// Least width of the gap around stray points, in spacings of points spread evenly over a ball.
   float stray_spacings = 10.0f;
-  float min_stray_gap = 0.4f, max_stray_gap = 1.0f;  ///< limits of that gap, in sizes of the cloud
+  float min_stray_gap = 0.1f, max_stray_gap = 1.0f;  ///< limits of that gap, in sizes of the cloud
 
   // Normals
   int fewest_cell_points = 6;  ///< least points around a cell for a normal: twice the three that span a plane

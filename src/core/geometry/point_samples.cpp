@@ -221,13 +221,13 @@ std::vector<int> strayPoints(const PointsRef& points) {
   const float gap = 2.0f * bulk *
                     std::clamp(kGeometry.stray_spacings * std::sqrt(3.0f / static_cast<float>(size)),
                                kGeometry.min_stray_gap, kGeometry.max_stray_gap);
-  const auto isOuter = [&](float distance) { return distance > bulk + gap; };
-  if (std::none_of(distances.begin(), distances.end(), isOuter)) return {};
+  if (std::none_of(distances.begin(), distances.end(), [&](float distance) { return distance > bulk + gap; }))
+    return {};
   // Copies of one position are one point.
   const DistinctPoints distinct(points);
   std::vector<int> outer, stray;
   for (int k = 0; k < static_cast<int>(distinct.first_of.size()); ++k)
-    if (isOuter(distances[distinct.first_of[k]])) outer.push_back(k);
+    if (distances[distinct.first_of[k]] > bulk) outer.push_back(k);
   const std::vector<int> alone = OuterGroups(distinct.points, outer, gap).stray();
   for (int i = 0; i < static_cast<int>(points.cols()); ++i)
     if (std::binary_search(alone.begin(), alone.end(), distinct.index_of[i])) stray.push_back(i);

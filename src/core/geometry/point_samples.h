@@ -112,9 +112,9 @@ struct DistinctPoints {
 /// positions that a driver set to zero. They would inflate the diameter and with it the tolerance.
 ///
 /// Nine tenths of the points lie within some distance of the middle of the cloud; twice that distance is its size.
-/// Points beyond that distance by more than a gap are stray if no chain of points with shorter gaps leads back. The gap
-/// is two fifths of the size or ten spacings of a surface, so that tails, antennas and sparse samples belong to the
-/// cloud. Where more than one point in twenty would be stray, none is.
+/// Where others lie beyond that distance by more than a gap, those beyond it are stray if no chain of points with
+/// shorter gaps leads back. The gap is ten spacings of a surface, and at least a tenth of the size, so that tails,
+/// antennas and sparse samples belong to the cloud. Where more than one point in twenty would be stray, none is.
 /// \param points 3 x N; if a point is not finite, none is stray.
 /// \return indices of the stray points, ascending.
 std::vector<int> strayPoints(const PointsRef& points);

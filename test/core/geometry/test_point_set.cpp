@@ -224,6 +224,22 @@ TEST(StrayPoints, AreFoundWhereverTheyLie) {
     }
 }
 
+/// Outliers of photogrammetry: most lie beside the shape, not far from it.
+TEST(StrayPoints, HardlyMoveTheDiameterWhereTheyFillABox) {
+  for (std::uint64_t seed = 1; seed <= 3; ++seed) {
+    const Points cloud = (seed % 2 ? box(10'000, Sampling::Random, seed) : asymmetricBlob(10'000, seed)).cloud();
+    const double size = diagonal(cloud);
+    for (const int count : {1, 5, 20, 50}) {
+      RandomStream random(seed);
+      Points outliers(3, count);
+      for (float& x : outliers.reshaped()) x = static_cast<float>(0.7 * size * symmetric(random));
+      const Points kept =
+          withoutStrayPoints(joined(cloud, Points(outliers.colwise() + centerOfMass(cloud).cast<float>())));
+      EXPECT_LT(approximateDiameter(kept), 1.15 * approximateDiameter(cloud)) << count << " outliers, seed " << seed;
+    }
+  }
+}
+
 TEST(StrayPoints, MakeNoLineOfTheOthersHoweverFarTheyAre) {
   const Points cloud = box(2000, Sampling::Random, 3).cloud();
   for (const float far : {1e3f, 1e7f, 1e12f, 1e18f})
