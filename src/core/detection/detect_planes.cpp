@@ -94,7 +94,7 @@ void limitByHandle(const PlaneSearch& search, const RotationEvidence& rotations,
     const ReflectionPlane normalized = search.cloud.toNormalized(plane);
     if (contains(normalized, body.axis) &&
         rotations.shareOn(normalized.reflection(), body.off_body) < kScanAxes.min_mapped)
-      limitToPossible(plane, "contains the axis of a round body, and does not map what is not round of it onto itself");
+      limitToPossible(plane, kPartOffRoundBody);
   }
 }
 

@@ -19,6 +19,8 @@ namespace pcl_symmetry {
 
 namespace {
 
+constexpr MergeTolerance kSameAxisOfFamily{kDetection.families.contained_angle, kDetection.families.contained_offset};
+
 /// Plane \p k of a sequence of planes through a line at angles that occur in no regular polygon.
 ReflectionPlane planeOfFamily(const Line3d& line, int k, int) {
   return planeThrough(line, kPi * goldenFraction(k + 1));
@@ -133,6 +135,30 @@ std::vector<ReflectionPlane> symmetriesOf(std::vector<SymmetryPlane> planes, con
   return kSamePlane.distinct(planesOf(planes, {PlaneKind::Symmetry}, cloud));
 }
 
+/// Planes through the axis of a body that is round but for a part, such as a bottle with its nozzle, map the body onto
+/// itself. If one maps the part onto itself, too, those that do not are possible at most.
+/// \param symmetries those among \p planes, normalized frame.
+void limitByPart(const NormalizedCloud& cloud, const std::vector<ReflectionPlane>& symmetries, const FamilyTest& test,
+                 std::vector<SymmetryPlane>& planes) {
+  const auto byShare = [&](const ReflectionPlane& a, const ReflectionPlane& b) {
+    return test.share(a) < test.share(b);
+  };
+  const ReflectionPlane best = *std::max_element(symmetries.begin(), symmetries.end(), byShare);
+  const double best_share = test.share(best);
+  std::vector<Line3d> tried;
+  for (const ReflectionPlane& other : symmetries) {
+    if (best.angleTo(other) < kDetection.families.min_angle) continue;
+    const Line3d line = commonLine({best, other});
+    if (kSameAxisOfFamily.anySame(tried, line)) continue;
+    tried.push_back(line);
+    const std::optional<AxisFamily> body = familyAt(line, test.min_share, test);
+    if (!body || body->share > best_share - test.allowance) continue;
+    for (SymmetryPlane& plane : planes)
+      if (test.share(cloud.toNormalized(plane)) < 0.5 * (body->share + best_share))
+        limitToPossible(plane, kPartOffRoundBody);
+  }
+}
+
 /// The longest principal axis.
 Line3d longestAxis(const PrincipalAxes& axes) {
   const Eigen::Vector3d direction = axes.axes.col(0);
@@ -171,7 +197,6 @@ std::optional<CenterFamily> findCenter(const std::vector<ReflectionPlane>& plane
 
 std::vector<AxisFamily> findAxes(const std::vector<ReflectionPlane>& planes, const FamilyTest& test,
                                  const std::vector<Line3d>& guesses) {
-  constexpr MergeTolerance kSameAxisOfFamily{kDetection.families.contained_angle, kDetection.families.contained_offset};
   std::vector<AxisFamily> axes;
   std::vector<Line3d> tried;
   const auto attempt = [&](const Line3d& line, double best_share) {
@@ -248,6 +273,7 @@ void findFamilies(const PlaneSearch& search, DetectionState& state) {
     eraseIf(answer.planes,
             [&](const SymmetryPlane& plane) { return contains(cloud.toNormalized(plane), axis.common); });
   }
+  if (cloud.isSurface()) limitByPart(cloud, symmetries, test, answer.planes);
 }
 
 std::vector<SymmetryPlane> withoutPlanesThrough(std::vector<SymmetryPlane> planes, const SymmetryCenter& center,

@@ -116,6 +116,21 @@ TEST(WithoutPlanesThrough, TakesThePlanesOfAnAxis) {
   EXPECT_EQ(kept[0].angleTo(across), 0.0);
 }
 
+TEST(FindFamilies, OfACanWithANozzleOnePlaneIsASymmetry) {
+  for (const std::uint64_t seed : {1, 2, 3}) {
+    Points nozzle = box({0.2, 0.1, 0.1}, 350, Sampling::Random, seed).cloud();
+    nozzle.colwise() += Eigen::Vector3f(0.7F, 0.0F, 0.8F);
+    const auto sticksOut = [](const Eigen::Vector3f& x) { return x.head<2>().norm() > 0.6F; };
+    const Detection found =
+        detectPlanes({joined(cylinder(8000, seed).cloud(), pointsWhere(nozzle, sticksOut))}, manyPlanes());
+    EXPECT_TRUE(found.axes.empty());
+    ASSERT_GT(found.planes.size(), 1u);
+    EXPECT_EQ(found.planes[0].kind, PlaneKind::Symmetry);
+    EXPECT_LT(found.planes[0].angleTo(ReflectionPlane(Eigen::Vector3d::UnitY(), 0.0)), 0.02);
+    EXPECT_NE(found.planes[1].kind, PlaneKind::Symmetry);
+  }
+}
+
 TEST(CompletePolygon, PlanesOfANoisyPolygonAreJudgedTogether) {
   const SearchedPoints searched(wheel(7, 0.1, 0.04, false, 6));
   ASSERT_EQ(searched.cloud.kind(), CloudKind::Volume);
