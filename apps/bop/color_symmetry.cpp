@@ -2,18 +2,17 @@
 
 #include <algorithm>
 #include <array>
+#include <boost/algorithm/string.hpp>
 #include <boost/filesystem.hpp>
 #include <cmath>
-#include <cstdint>
 #include <cstring>
 #include <fstream>
-#include <stdexcept>
 #include <utility>
-#include <vector>
 
 #include "core/base/constants.h"
 #include "core/geometry/directions.h"
 #include "pcl_symmetry/core/closest_point_search.h"
+#include "pcl_symmetry/impl/cloud_conversion.hpp"
 #include "pictures/raster_image.h"
 
 namespace pcl_symmetry::apps {
@@ -157,30 +156,6 @@ ObjectSymmetries sphereGroup(const ObjectSymmetries& found, const ColoredSurface
   return ObjectSymmetries::from({}, {});
 }
 
-}  // namespace
-
-ObjectSymmetries keepingColors(const ObjectSymmetries& found, const SurfaceColors& colors, const Points& points,
-                               double tolerance) {
-  const ColoredSurface surface(colors, points, tolerance);
-  ObjectSymmetries kept;
-  if (found.kind == RotationGroupKind::Spherical)
-    kept = sphereGroup(found, surface);
-  else if (isContinuous(found.kind))
-    kept = roundGroup(found, surface);
-  else
-    kept = finiteGroup(found.discrete, surface);
-  // The support and limits that the shape's symmetries have also hold for the remaining ones; their axes pass through
-  // the same point.
-  kept.support = found.support;
-  kept.confidence = found.confidence;
-  kept.timing_ms = found.timing_ms;
-  kept.center = found.center;
-  for (ContinuousSymmetry& symmetry : kept.continuous) symmetry.offset = found.center;
-  return kept;
-}
-
-namespace {
-
 constexpr int kTexturedPoints = 100'000;  // points of a surface with a texture
 constexpr int kMostHeaderLines = 1000;
 
@@ -199,19 +174,13 @@ Number valueOf(const pcl::PCLPointCloud2& cloud, const pcl::PCLPointField& field
 }
 
 SurfaceColors vertexColors(const Shape& shape, const pcl::PCLPointField& field) {
-  SurfaceColors colors;
-  colors.points.resize(3, static_cast<Eigen::Index>(shape.points->size()));
+  std::vector<std::size_t> finite;
+  SurfaceColors colors{finitePoints(*shape.points, &finite), {}};
   colors.rgb.resize(3, colors.points.cols());
-  Eigen::Index size = 0;
-  for (std::size_t i = 0; i < shape.points->size(); ++i) {
-    if (!(*shape.points)[i].getVector3fMap().allFinite()) continue;
-    const auto packed = valueOf<std::uint32_t>(shape.cloud, field, i);
-    colors.points.col(size) = (*shape.points)[i].getVector3fMap();
-    colors.rgb.col(size++) << static_cast<float>((packed >> 16) & 255) / 255.0f,
-        static_cast<float>((packed >> 8) & 255) / 255.0f, static_cast<float>(packed & 255) / 255.0f;
+  for (std::size_t k = 0; k < finite.size(); ++k) {
+    const auto packed = valueOf<std::uint32_t>(shape.cloud, field, finite[k]);
+    colors.rgb.col(k) = Eigen::Vector3f((packed >> 16) & 255, (packed >> 8) & 255, packed & 255) / 255.0f;
   }
-  colors.points.conservativeResize(3, size);
-  colors.rgb.conservativeResize(3, size);
   return colors;
 }
 
@@ -233,9 +202,9 @@ std::string texturePath(const std::string& path) {
   std::ifstream file(path, std::ios::binary);
   std::string line;
   for (int k = 0; k < kMostHeaderLines && std::getline(file, line); ++k) {
-    while (!line.empty() && std::isspace(static_cast<unsigned char>(line.back()))) line.pop_back();
+    boost::algorithm::trim_right(line);
     if ((k == 0 && line != "ply") || line == "end_header") break;
-    if (line.compare(0, comment.size(), comment) == 0)
+    if (boost::algorithm::starts_with(line, comment))
       return (boost::filesystem::path(path).parent_path() / line.substr(comment.size())).string();
   }
   return "";
@@ -253,21 +222,18 @@ Eigen::Vector3f colorAt(const RasterImage& image, const Eigen::Vector2f& uv) {
 /// A corner of a triangle: position and texture coordinates.
 using Corner = Eigen::Matrix<float, 5, 1>;
 
-/// The triangles of a mesh, polygons cut into fans; those with positions or coordinates that are not finite are left
-/// out.
+/// The triangles of a mesh without those whose positions or coordinates are not finite.
 std::vector<std::array<Corner, 3>> texturedTriangles(const Shape& shape, const Eigen::Matrix2Xf& coordinates) {
   std::vector<std::array<Corner, 3>> triangles;
-  const auto corner = [&](std::uint32_t i) {
+  const auto corner = [&](int i) {
     Corner result;
     result << (*shape.points)[i].getVector3fMap(), coordinates.col(i);
     return result;
   };
-  for (const pcl::Vertices& polygon : shape.mesh->polygons)
-    for (std::size_t k = 2; k < polygon.vertices.size(); ++k) {
-      triangles.push_back({corner(polygon.vertices[0]), corner(polygon.vertices[k - 1]), corner(polygon.vertices[k])});
-      const auto& added = triangles.back();
-      if (!added[0].allFinite() || !added[1].allFinite() || !added[2].allFinite()) triangles.pop_back();
-    }
+  for (const Eigen::Vector3i& indices : detail::toArrays(*shape.mesh).triangles) {
+    const std::array<Corner, 3> triangle{corner(indices[0]), corner(indices[1]), corner(indices[2])};
+    if (triangle[0].allFinite() && triangle[1].allFinite() && triangle[2].allFinite()) triangles.push_back(triangle);
+  }
   return triangles;
 }
 
@@ -306,6 +272,26 @@ SurfaceColors textureColors(const Shape& shape, const Eigen::Matrix2Xf& coordina
 }
 
 }  // namespace
+
+ObjectSymmetries keepingColors(const ObjectSymmetries& found, const SurfaceColors& colors, const Points& points,
+                               double tolerance) {
+  const ColoredSurface surface(colors, points, tolerance);
+  ObjectSymmetries kept;
+  if (found.kind == RotationGroupKind::Spherical)
+    kept = sphereGroup(found, surface);
+  else if (isContinuous(found.kind))
+    kept = roundGroup(found, surface);
+  else
+    kept = finiteGroup(found.discrete, surface);
+  // The support and limits that the shape's symmetries have also hold for the remaining ones; their axes pass through
+  // the same point.
+  kept.support = found.support;
+  kept.confidence = found.confidence;
+  kept.timing_ms = found.timing_ms;
+  kept.center = found.center;
+  for (ContinuousSymmetry& symmetry : kept.continuous) symmetry.offset = found.center;
+  return kept;
+}
 
 bool hasColors(const Shape& shape) {
   return fieldOf(shape.cloud, {"rgb", "rgba"}) || fieldOf(shape.cloud, {"texture_u", "s", "u"});

@@ -3,11 +3,8 @@
 #include <boost/algorithm/string.hpp>
 #include <cmath>
 #include <cstdlib>
-#include <optional>
 #include <sstream>
-#include <stdexcept>
 
-#include "command_line/flag_values.h"
 #include "core/base/constants.h"
 #include "core/geometry/directions.h"
 #include "io/answers.h"
@@ -103,67 +100,6 @@ ListedSymmetries symmetriesFromJson(const json& entry, const std::string& where)
   return listed;
 }
 
-}  // namespace
-
-std::vector<RotationAxis> axesOf(const std::vector<Eigen::Isometry3d>& motions) {
-  std::vector<Eigen::Matrix3d> rotations;
-  for (const Eigen::Isometry3d& motion : motions) rotations.push_back(motion.linear());
-  return pcl_symmetry::axesOf(rotations);
-}
-
-ListedSymmetries bopSymmetries(const ObjectSymmetries& symmetries, double sphere_angle) {
-  if (symmetries.kind != RotationGroupKind::Spherical) return {symmetries.discrete, symmetries.continuous, false};
-  ListedSymmetries listed;
-  listed.continuous.push_back({Eigen::Vector3d::UnitZ(), symmetries.center});
-  for (const Eigen::Matrix3d& tilt : tiltsCovering(Eigen::Vector3d::UnitZ(), sphere_angle)) {
-    Eigen::Isometry3d motion = Eigen::Isometry3d::Identity();
-    motion.linear() = tilt;
-    motion.translation() = symmetries.center - tilt * symmetries.center;
-    if (!tilt.isIdentity(1e-12)) listed.discrete.push_back(motion);
-  }
-  return listed;
-}
-
-ordered_json symmetriesJson(const ListedSymmetries& listed) {
-  ordered_json entry = ordered_json::object();
-  for (const Eigen::Isometry3d& motion : listed.discrete) entry["symmetries_discrete"].push_back(rowMajor(motion));
-  for (const ContinuousSymmetry& symmetry : listed.continuous)
-    entry["symmetries_continuous"].push_back(
-        {{"axis", numbersOf(symmetry.axis)}, {"offset", numbersOf(symmetry.offset)}});
-  return entry;
-}
-
-ordered_json dopeJson(const ObjectSymmetries& symmetries, double sphere_angle) {
-  const ListedSymmetries listed = bopSymmetries(symmetries, sphere_angle);
-  ordered_json entry = symmetriesJson(listed);
-  Eigen::Vector3d main = Eigen::Vector3d::UnitZ();
-  int greatest_order = 1;
-  for (const RotationAxis& axis : axesOf(listed.discrete)) {
-    if (axis.order <= greatest_order) continue;
-    greatest_order = axis.order;
-    main = axis.direction;
-  }
-  if (!listed.continuous.empty()) main = listed.continuous.front().axis;
-  if (greatest_order == 1 && listed.continuous.empty()) return entry;
-  const Eigen::Vector3d across = signedDirection(main.unitOrthogonal());
-  const std::vector<double> up{0.0, 1.0, 0.0}, forward{0.0, 0.0, 1.0};
-  entry["align_axes"] = {{{"object", numbersOf(across)}, {"camera", forward}},
-                         {{"object", numbersOf(main)}, {"camera", up}}};
-  return entry;
-}
-
-std::map<std::string, ListedSymmetries> readModelsInfo(const std::string& path) {
-  const json file = json::parse(readTextFile(path), nullptr, false);
-  if (!file.is_object()) throw InputError(path + ": must be a JSON object of models");
-  if (isOneModel(file)) return {{"", symmetriesFromJson(file, path)}};
-  std::map<std::string, ListedSymmetries> models;
-  for (const auto& [key, entry] : file.items())
-    models[key] = symmetriesFromJson(entry, path + ": model " + onOneLine(key));
-  return models;
-}
-
-namespace {
-
 constexpr double kAligned = 5.0 * kDegree;  // angle within which an axis counts as a coordinate axis
 
 const std::string kNames = "xyz";
@@ -250,12 +186,69 @@ ListedSymmetries symmetriesFromIsaac(const std::vector<std::string>& axes, const
 
 }  // namespace
 
+std::vector<RotationAxis> axesOf(const std::vector<Eigen::Isometry3d>& motions) {
+  std::vector<Eigen::Matrix3d> rotations;
+  for (const Eigen::Isometry3d& motion : motions) rotations.push_back(motion.linear());
+  return pcl_symmetry::axesOf(rotations);
+}
+
+ListedSymmetries bopSymmetries(const ObjectSymmetries& symmetries, double sphere_angle) {
+  if (symmetries.kind != RotationGroupKind::Spherical) return {symmetries.discrete, symmetries.continuous, false};
+  ListedSymmetries listed;
+  listed.continuous.push_back({Eigen::Vector3d::UnitZ(), symmetries.center});
+  for (const Eigen::Matrix3d& tilt : tiltsCovering(Eigen::Vector3d::UnitZ(), sphere_angle)) {
+    Eigen::Isometry3d motion = Eigen::Isometry3d::Identity();
+    motion.linear() = tilt;
+    motion.translation() = symmetries.center - tilt * symmetries.center;
+    if (!tilt.isIdentity(1e-12)) listed.discrete.push_back(motion);
+  }
+  return listed;
+}
+
+ordered_json symmetriesJson(const ListedSymmetries& listed) {
+  ordered_json entry = ordered_json::object();
+  for (const Eigen::Isometry3d& motion : listed.discrete) entry["symmetries_discrete"].push_back(rowMajor(motion));
+  for (const ContinuousSymmetry& symmetry : listed.continuous)
+    entry["symmetries_continuous"].push_back(
+        {{"axis", numbersOf(symmetry.axis)}, {"offset", numbersOf(symmetry.offset)}});
+  return entry;
+}
+
+ordered_json dopeJson(const ObjectSymmetries& symmetries, double sphere_angle) {
+  const ListedSymmetries listed = bopSymmetries(symmetries, sphere_angle);
+  ordered_json entry = symmetriesJson(listed);
+  Eigen::Vector3d main = Eigen::Vector3d::UnitZ();
+  int greatest_order = 1;
+  for (const RotationAxis& axis : axesOf(listed.discrete)) {
+    if (axis.order <= greatest_order) continue;
+    greatest_order = axis.order;
+    main = axis.direction;
+  }
+  if (!listed.continuous.empty()) main = listed.continuous.front().axis;
+  if (greatest_order == 1 && listed.continuous.empty()) return entry;
+  const Eigen::Vector3d across = signedDirection(main.unitOrthogonal());
+  const std::vector<double> up{0.0, 1.0, 0.0}, forward{0.0, 0.0, 1.0};
+  entry["align_axes"] = {{{"object", numbersOf(across)}, {"camera", forward}},
+                         {{"object", numbersOf(main)}, {"camera", up}}};
+  return entry;
+}
+
+std::map<std::string, ListedSymmetries> readModelsInfo(const std::string& path) {
+  const json file = json::parse(readTextFile(path), nullptr, false);
+  if (!file.is_object()) throw InputError(path + ": must be a JSON object of models");
+  if (isOneModel(file)) return {{"", symmetriesFromJson(file, path)}};
+  std::map<std::string, ListedSymmetries> models;
+  for (const auto& [key, entry] : file.items())
+    models[key] = symmetriesFromJson(entry, path + ": model " + onOneLine(key));
+  return models;
+}
+
 IsaacAxes isaacAxes(const ObjectSymmetries& symmetries) {
   IsaacAxes result;
   for (int k = 0; k < 3; ++k) {
     const int order = orderAbout(symmetries, Eigen::Vector3d::Unit(k));
     if (order == 0) result.axes.push_back(kNames.substr(k, 1) + "_full");
-    for (int i = 1; i < order; ++i) result.axes.push_back(kNames.substr(k, 1) + "_" + shortest(360.0 * i / order));
+    for (int i = 1; i < order; ++i) result.axes.push_back(kNames.substr(k, 1) + formatted("_%g", 360.0 * i / order));
   }
   const ListedSymmetries listed = symmetriesFromIsaac(result.axes, "axes");
   if (symmetries.continuous.empty()) {

@@ -2,10 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
-#include <optional>
-#include <stdexcept>
-#include <vector>
 
 #include "core/base/constants.h"
 #include "core/geometry/directions.h"
@@ -160,10 +156,6 @@ void addMissing(const ObjectSymmetries& found, const ObjectSymmetries& given, co
   }
 }
 
-std::string angleText(double angle) {
-  return angle == 0.0 ? "any angle" : formatted("%.2f degrees", angle / kDegree);
-}
-
 }  // namespace
 
 SymmetryCheck checkSymmetries(const ListedSymmetries& listed, const ObjectSymmetries& found,
@@ -205,10 +197,11 @@ void printCheck(const std::string& name, const SymmetryCheck& check, double diam
               check.agrees() ? "agree" : "disagree", check.remark.empty() ? "" : (": " + check.remark).c_str());
   for (const Disagreement& disagreement : check.disagreements) {
     const Eigen::Vector3d& axis = disagreement.axis;
+    const double angle = disagreement.angle;
+    const std::string turns = angle == 0.0 ? "any angle" : formatted("%.2f degrees", angle / kDegree);
     std::printf("  %-12s  axis %9.6f %9.6f %9.6f  %-14s  share %.3f  mean %5.2f %%  deviation %5.2f %%\n",
-                disagreement.says.c_str(), axis.x(), axis.y(), axis.z(), angleText(disagreement.angle).c_str(),
-                disagreement.evidence.share, 100.0 * disagreement.evidence.mean / diameter,
-                100.0 * disagreement.evidence.deviation / diameter);
+                disagreement.says.c_str(), axis.x(), axis.y(), axis.z(), turns.c_str(), disagreement.evidence.share,
+                100.0 * disagreement.evidence.mean / diameter, 100.0 * disagreement.evidence.deviation / diameter);
   }
 }
 

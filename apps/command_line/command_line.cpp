@@ -10,10 +10,8 @@
 #include <map>
 #include <numeric>
 #include <sstream>
-#include <type_traits>
-#include <utility>
 
-#include "command_line/tool_errors.h"
+#include "io/answers.h"
 #include "io/file_text.h"
 #include "io/shape_output.h"
 
@@ -94,17 +92,6 @@ CommandLine::CommandLine(std::string tool, std::string summary, std::string exam
   flags_.add_options()("help,h", "print this text")("version", "print the version");
 }
 
-CommandLine& CommandLine::positional(const std::string& name, std::string& value, const std::string& help) {
-  positionals_.push_back({name, help, true, [&value](const std::string& text) { value = text; }});
-  return *this;
-}
-
-CommandLine& CommandLine::positional(const std::string& name, std::optional<std::string>& value,
-                                     const std::string& help) {
-  positionals_.push_back({name, help, false, [&value](const std::string& text) { value = text; }});
-  return *this;
-}
-
 CommandLine& CommandLine::positionals(const std::string& name, std::vector<std::string>& values,
                                       const std::string& help, bool required) {
   positionals_.push_back({name, help, required, [&values](const std::string& text) { values.push_back(text); }, true});
@@ -173,7 +160,7 @@ CommandLine& CommandLine::number(const std::string& name, Value& value, const Ra
   constexpr bool is_whole = std::is_same_v<Value, int> || std::is_same_v<Value, std::optional<int>>;
   std::string text = help;
   if constexpr (std::is_arithmetic_v<Value>)
-    text += is_whole ? " (" + std::to_string(value) + ")" : " (" + shortest(value) + ")";
+    text += is_whole ? " (" + std::to_string(value) + ")" : formatted(" (%g)", static_cast<double>(value));
   return add(name, is_whole ? "N" : "F", text, [&value, range, name](const std::string& given) {
     if constexpr (is_whole)
       value = parseInt("-" + name, given, range);
@@ -318,9 +305,8 @@ void CommandLine::assignPositionals() const {
   std::vector<std::string> arguments;
   if (given("positional arguments")) arguments = values_["positional arguments"].as<std::vector<std::string>>();
   const bool repeated = !positionals_.empty() && positionals_.back().repeated;
-  if (arguments.size() > positionals_.size() && !repeated) {
+  if (arguments.size() > positionals_.size() && !repeated)
     throw UsageError("unexpected argument '" + arguments[positionals_.size()] + "'");
-  }
   for (std::size_t i = 0; i < std::max(arguments.size(), positionals_.size()); ++i) {
     const Positional& positional = positionals_[std::min(i, positionals_.size() - 1)];
     if (i < arguments.size()) {
@@ -384,11 +370,10 @@ std::string CommandLine::usage() const {
   }
   std::string text = inColumn("", 0, summary_) + "\n" + inColumn("", 0, synopsis + " [-flag value]") + "\n";
   for (const Positional& argument : positionals_) text += inColumn("  " + argument.name, kHelpColumn, argument.help);
-  const auto groupOf = [](const std::string& flag) {
-    const auto found = std::find_if(kFlagGroups.begin(), kFlagGroups.end(), [&](const auto& group) {
+  const auto isGrouped = [](const std::string& flag) {
+    return std::any_of(kFlagGroups.begin(), kFlagGroups.end(), [&](const auto& group) {
       return std::count(group.second.begin(), group.second.end(), flag) > 0;
     });
-    return found == kFlagGroups.end() ? std::string("Analysis") : found->first;
   };
   for (const auto& [name, known] : kFlagGroups) {
     std::string group;
@@ -401,7 +386,7 @@ std::string CommandLine::usage() const {
       for (const auto& flag : flags_.options())
         if (flag->long_name() == first) addFlag(*flag);
     for (const auto& flag : flags_.options())
-      if (known.empty() && groupOf(flag->long_name()) == name) addFlag(*flag);
+      if (known.empty() && !isGrouped(flag->long_name())) addFlag(*flag);
     if (!group.empty()) text += "\n" + name + ":\n" + group;
   }
   return text + "\nExample:\n  " + example_ + "\n";

@@ -10,6 +10,7 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
+#include <type_traits>
 #include <vector>
 
 #include "command_line/flag_values.h"
@@ -84,8 +85,13 @@ public:
   CommandLine(std::string tool, std::string summary, std::string example);
 
   /// Arguments without a flag, in the order of declaration; required ones come first.
-  CommandLine& positional(const std::string& name, std::string& value, const std::string& help);
-  CommandLine& positional(const std::string& name, std::optional<std::string>& value, const std::string& help);
+  /// \param value std::string of a required argument, or an optional of it.
+  template <typename Value>
+  CommandLine& positional(const std::string& name, Value& value, const std::string& help) {
+    constexpr bool is_required = std::is_same_v<Value, std::string>;
+    positionals_.push_back({name, help, is_required, [&value](const std::string& text) { value = text; }});
+    return *this;
+  }
   /// All following arguments, to the end of the command line, at least one if they are required; declared last.
   CommandLine& positionals(const std::string& name, std::vector<std::string>& values, const std::string& help,
                            bool required = true);

@@ -3,17 +3,11 @@
 #include <boost/algorithm/string.hpp>
 #include <charconv>
 #include <cmath>
-#include <sstream>
 
+#include "io/answers.h"
 #include "io/file_text.h"
 
 namespace pcl_symmetry::apps {
-
-std::string shortest(double value) {
-  std::ostringstream text;
-  text << value;
-  return text.str();
-}
 
 void rejectValue(const std::string& name, const std::string& value, const std::string& rule) {
   throw UsageError(name + " = " + value + ", " + rule);
@@ -26,9 +20,9 @@ bool Range::contains(double value) const {
 std::string Range::rule() const {
   const bool has_min = std::isfinite(min), has_max = std::isfinite(max);
   std::string text = "must be ";
-  if (has_min) text += (min_open ? "> " : ">= ") + shortest(min);
+  if (has_min) text += formatted(min_open ? "> %g" : ">= %g", min);
   if (has_min && has_max) text += " and ";
-  if (has_max) text += (max_open ? "< " : "<= ") + shortest(max);
+  if (has_max) text += formatted(max_open ? "< %g" : "<= %g", max);
   return has_min || has_max ? text : "must be a number";
 }
 

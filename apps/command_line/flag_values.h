@@ -35,9 +35,6 @@ struct Range {
 /// \throws UsageError `name = value, rule`.
 [[noreturn]] void rejectValue(const std::string& name, const std::string& value, const std::string& rule);
 
-/// \return the value with at most six significant digits.
-std::string shortest(double value);
-
 // All throw UsageError starting with `name = text` if the text is not such a value as a whole.
 
 double parseNumber(const std::string& name, const std::string& text, const Range& range = {});

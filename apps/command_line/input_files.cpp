@@ -50,13 +50,11 @@ void addPattern(const std::string& pattern, std::vector<InputFile>& files) {
   const std::vector<std::string> paths(found.gl_pathv, found.gl_pathv + (code == 0 ? found.gl_pathc : 0));
   ::globfree(&found);
   if (code != 0) throw InputError(pattern + ": no file has such a name");
-  for (const std::string& path : paths) {
-    if (isFolder(path)) {
+  for (const std::string& path : paths)
+    if (isFolder(path))
       addFolder(path, files);
-    } else {
+    else
       files.push_back({path, ""});
-    }
-  }
 }
 
 void addArgument(const std::string& argument, std::vector<InputFile>& files);
@@ -70,15 +68,14 @@ void addList(const std::string& path, std::vector<InputFile>& files) {
 }
 
 void addArgument(const std::string& argument, std::vector<InputFile>& files) {
-  if (isList(argument)) {
+  if (isList(argument))
     addList(argument.substr(1), files);
-  } else if (isFolder(argument)) {
+  else if (isFolder(argument))
     addFolder(argument, files);
-  } else if (isPattern(argument)) {
+  else if (isPattern(argument))
     addPattern(argument, files);
-  } else {
+  else
     files.push_back({argument, ""});
-  }
 }
 
 }  // namespace

@@ -8,17 +8,11 @@
 #include <cerrno>
 #include <cmath>
 #include <condition_variable>
-#include <cstring>
-#include <exception>
 #include <fstream>
 #include <map>
 #include <mutex>
 #include <set>
-#include <utility>
 
-#include "command_line/input_files.h"
-#include "command_line/tool_errors.h"
-#include "core/base/parallel.h"
 #include "io/answers.h"
 #include "io/file_text.h"
 #include "io/shape_output.h"
@@ -63,10 +57,6 @@ std::string csvLines(const std::string& path, const FileReport& report) {
   return lines;
 }
 
-std::string lineOf(const nlohmann::json& json) {
-  return jsonText(json, -1) + "\n";
-}
-
 bool isTextWanted(const BatchOptions& batch, const CommonOptions& common) {
   std::vector<std::optional<std::string>> outputs{common.json_path, batch.csv_path};
   for (const std::optional<std::string>* output : batch.outputs) outputs.push_back(*output);
@@ -82,12 +72,12 @@ int runOnOne(const std::string& path, const BatchOptions& batch, const CommonOpt
   if (batch.csv_path) checkTarget(*batch.csv_path);
   const Console console(common.quiet);
   // Files before pictures are drawn, which takes longer and may fail; the table after the steps that the console shows.
-  FileJob job(path, console, common, [&](const FileReport& report) {
-    if (common.json_path) writeText(*common.json_path, jsonText(report.json) + "\n");
-    if (batch.csv_path) writeText(*batch.csv_path, csv_header + csvLines(path, report));
-  });
+  FileJob job{path, console, common, [&](const FileReport& report) {
+                writeJson(common, report.json);
+                if (batch.csv_path) writeText(*batch.csv_path, csv_header + csvLines(path, report));
+              }};
   const auto print = [&] {
-    if (text_wanted && job.reported()) writeText("-", job.reported()->text);
+    if (text_wanted && job.reported) writeText("-", job.reported->text);
   };
   try {
     analyze(job);
@@ -292,20 +282,20 @@ private:
 
   Result resultOf(const std::string& path, const std::function<void(FileJob&)>& analyze) const {
     const Console silent(true);
-    FileJob job(path, silent, common_);
+    FileJob job{path, silent, common_};
     Result result;
     try {
       namingFile(path, [&] { analyze(job); });
     } catch (const std::exception& error) {
       result.error = error.what();
     }
-    nlohmann::json json = job.reported() ? job.reported()->json : nlohmann::json::object();
+    nlohmann::json json = job.reported ? job.reported->json : nlohmann::json::object();
     json["file"] = path;
     if (!result.error.empty()) json["error"] = result.error;
-    result.json_line = lineOf(json);
-    if (!job.reported()) return result;
-    result.csv_lines = csvLines(path, *job.reported());
-    result.text = path + "\n" + job.reported()->text;
+    result.json_line = jsonText(json, -1) + "\n";
+    if (!job.reported) return result;
+    result.csv_lines = csvLines(path, *job.reported);
+    result.text = path + "\n" + job.reported->text;
     return result;
   }
 
@@ -380,7 +370,7 @@ std::vector<std::string> workOnAll(std::size_t num_items, int num_threads, Step&
 }
 
 std::string FileJob::output(const std::string& pattern) const {
-  return boost::algorithm::replace_all_copy(pattern, "{}", stemOf(path_));
+  return boost::algorithm::replace_all_copy(pattern, "{}", stemOf(path));
 }
 
 int runOnFiles(const BatchOptions& batch, const CommonOptions& common, const std::vector<std::string>& columns,

@@ -45,26 +45,24 @@ struct BatchOptions {
   }
 };
 
+/// Rows of a table of comma-separated values, of strings and numbers; null = an empty cell.
+using Rows = std::vector<std::vector<nlohmann::json>>;
+
 /// The report of a tool on an input.
 struct FileReport {
   std::string text;     ///< for standard output
   nlohmann::json json;  ///< an object; with several inputs, one line
-  /// Rows of the table of comma-separated values: numbers and strings, one for each column after "file".
-  std::vector<std::vector<nlohmann::json>> rows;
+  Rows rows;            ///< a cell for each column after "file"
 };
 
-class FileJob {
-public:
-  /// \param console silent if there are several inputs.
-  /// \param use called with each report.
-  FileJob(std::string path, const Console& console, const CommonOptions& common,
-          std::function<void(const FileReport&)> use = {})
-      : path_(std::move(path)), console_(console), common_(common), use_(std::move(use)) {}
-
-  const std::string& path() const { return path_; }
-  const Console& console() const { return console_; }
-  /// The common flags, but with one thread if there are several inputs, each of which has a thread.
-  const CommonOptions& common() const { return common_; }
+/// The work of a tool on an input.
+struct FileJob {
+  std::string path;
+  const Console& console;  ///< silent if there are several inputs
+  const CommonOptions&
+      common;  ///< the common flags; with one thread if there are several inputs, each of which has one
+  std::function<void(const FileReport&)> use = {};  ///< called with each report
+  std::optional<FileReport> reported = {};
 
   /// \return the name of an output of this input: {} in the pattern becomes the name of the input without its folder
   /// and extension.
@@ -72,17 +70,9 @@ public:
 
   /// Reports stay even if a later step throws.
   void report(FileReport report) {
-    report_ = std::move(report);
-    if (use_) use_(*report_);
+    reported = std::move(report);
+    if (use) use(*reported);
   }
-  const std::optional<FileReport>& reported() const { return report_; }
-
-private:
-  std::string path_;
-  const Console& console_;
-  CommonOptions common_;
-  std::function<void(const FileReport&)> use_;
-  std::optional<FileReport> report_;
 };
 
 /// \param cells strings and numbers; null = an empty cell.

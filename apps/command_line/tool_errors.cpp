@@ -2,7 +2,6 @@
 
 #include <fcntl.h>
 #include <pcl/console/print.h>
-#include <pcl/exceptions.h>
 #include <sys/mman.h>
 #include <sys/prctl.h>
 #include <unistd.h>
@@ -13,8 +12,6 @@
 #include <csignal>
 #include <cstdlib>
 #include <iostream>
-#include <new>
-#include <sstream>
 #include <vector>
 
 namespace pcl_symmetry::apps {
@@ -70,15 +67,8 @@ void findDisplay() {
 
 std::string plainMessage(const pcl::PCLException& error) {
   const std::string text = error.what();
-  // As PCLException::createDetailedMessage() composes it.
-  std::ostringstream prefix;
-  if (error.getFunctionName()) prefix << error.getFunctionName() << " ";
-  if (error.getFileName()) {
-    prefix << "in " << error.getFileName() << " ";
-    if (error.getLineNumber() != 0) prefix << "@ " << error.getLineNumber() << " ";
-  }
-  prefix << ": ";
-  return boost::algorithm::starts_with(text, prefix.str()) ? text.substr(prefix.str().size()) : text;
+  // As PCLException::createDetailedMessage() composes it: "FUNCTION in FILE @ LINE : MESSAGE".
+  return error.getFileName() ? text.substr(text.find(": ") + 2) : text;
 }
 
 int runTool(int argc, char** argv, const std::function<int(int, char**)>& body) {

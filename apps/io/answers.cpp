@@ -1,7 +1,8 @@
 #include "io/answers.h"
 
 #include <cmath>
-#include <utility>
+
+#include "io/shape_output.h"
 
 namespace pcl_symmetry::apps {
 
@@ -23,14 +24,13 @@ std::string explained(const std::string& name, const SymmetryPlane& plane, const
         100.0 * plane.seen);
   }
   bool is_first = true;
-  for (const Reason& reason : plane.reasons) {
+  for (const Reason& reason : plane.reasons)
     if (!reason.odds)
       lines += std::string("  possible at most: ") + reason.rule + "\n";
     else if (std::exchange(is_first, false))
       lines += formatted("  %.3f: %s\n", *reason.odds / (1.0 + *reason.odds), reason.rule);
     else
       lines += formatted("  odds x %.3g: %s\n", *reason.odds, reason.rule);
-  }
   return lines;
 }
 
@@ -50,14 +50,18 @@ std::string explained(const SymmetryRotation& rotation) {
 
 }  // namespace
 
+void writeJson(const CommonOptions& common, const nlohmann::json& json) {
+  if (common.json_path) writeText(*common.json_path, jsonText(json) + "\n");
+}
+
 nlohmann::json planeJson(const SymmetryPlane& plane, const Eigen::Vector3d& shift) {
-  nlohmann::json reasons = nlohmann::json::array();
-  for (const Reason& reason : plane.reasons)
-    reasons.push_back({{"rule", reason.rule}, {"odds", reason.odds ? nlohmann::json(*reason.odds) : nullptr}});
+  const auto reasonJson = [](const Reason& reason) -> nlohmann::json {
+    return {{"rule", reason.rule}, {"odds", reason.odds ? nlohmann::json(*reason.odds) : nullptr}};
+  };
   return {{"coefficients", numbersOf(plane, shift)},
           {"kind", toString(plane.kind)},
           {"confidence", plane.confidence},
-          {"reasons", reasons},
+          {"reasons", listOf(plane.reasons, reasonJson)},
           {"share", plane.share},
           {"share_interval", nlohmann::json::array({plane.share_low, plane.share_high})},
           {"deviation", plane.deviation},
@@ -69,27 +73,32 @@ nlohmann::json planeJson(const SymmetryPlane& plane, const Eigen::Vector3d& shif
           {"converged", plane.converged}};
 }
 
+nlohmann::json planesJson(const std::vector<SymmetryPlane>& planes, const Eigen::Vector3d& shift) {
+  return listOf(planes, [&](const SymmetryPlane& plane) { return planeJson(plane, shift); });
+}
+
 nlohmann::json rotationsJson(const std::vector<SymmetryRotation>& rotations, const Eigen::Vector3d& shift) {
-  nlohmann::json json = nlohmann::json::array();
-  for (const SymmetryRotation& rotation : rotations) {
-    json.push_back(axisJson(rotation, shift));
-    json.back().update({{"fold", rotation.fold},
-                        {"support", rotation.support},
-                        {"off", rotation.off},
-                        {"far", rotation.far},
-                        {"halfway", rotation.halfway}});
-  }
-  return json;
+  return listOf(rotations, [&](const SymmetryRotation& rotation) {
+    nlohmann::json json = axisJson(rotation, shift);
+    json.update({{"fold", rotation.fold},
+                 {"support", rotation.support},
+                 {"off", rotation.off},
+                 {"far", rotation.far},
+                 {"halfway", rotation.halfway}});
+    return json;
+  });
+}
+
+nlohmann::json axesJson(const Eigen::Matrix3d& axes) {
+  return listOf(axes.colwise(), [](const Eigen::Vector3d& axis) { return numbersOf(axis); });
 }
 
 nlohmann::json frameJson(const SymmetryFrame& frame, const Eigen::Vector3d& shift) {
-  nlohmann::json json{{"center", numbersOf(shiftedBack(frame.center, shift))},
-                      {"axes", nlohmann::json::array()},
-                      {"scores", numbersOf(frame.scores)},
-                      {"revolution_axis", frame.revolution_axis},
-                      {"transform", rowMajor(shiftedBack(frame.T_canonical_input, shift, Eigen::Vector3d::Zero()))}};
-  for (int k = 0; k < 3; ++k) json["axes"].push_back(numbersOf(frame.axes.col(k)));
-  return json;
+  return {{"center", numbersOf(shiftedBack(frame.center, shift))},
+          {"axes", axesJson(frame.axes)},
+          {"scores", numbersOf(frame.scores)},
+          {"revolution_axis", frame.revolution_axis},
+          {"transform", rowMajor(shiftedBack(frame.T_canonical_input, shift, Eigen::Vector3d::Zero()))}};
 }
 
 std::string matrixLines(const Eigen::Isometry3d& motion, int digits) {

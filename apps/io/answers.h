@@ -31,19 +31,25 @@ std::string jsonText(Json json, int indent = 2) {
   return json.dump(indent, ' ', false, Json::error_handler_t::replace);
 }
 
+/// Writes JSON to the file of the flag -json, if it was given.
+void writeJson(const CommonOptions& common, const nlohmann::json& json);
+
+/// \return an array of what \p toJson gives for each item.
+template <typename Items, typename ToJson>
+nlohmann::json listOf(const Items& items, const ToJson& toJson) {
+  nlohmann::json list = nlohmann::json::array();
+  for (const auto& item : items) list.push_back(toJson(item));
+  return list;
+}
+
 inline std::vector<double> numbersOf(const Eigen::VectorXd& v) {
   return {v.data(), v.data() + v.size()};
 }
 
 /// \return 16 numbers, row by row
-inline std::vector<double> rowMajor(const Eigen::Matrix4d& matrix) {
-  std::vector<double> numbers;
-  for (int i = 0; i < 16; ++i) numbers.push_back(matrix(i / 4, i % 4));
-  return numbers;
-}
-
 inline std::vector<double> rowMajor(const Eigen::Isometry3d& transform) {
-  return rowMajor(transform.matrix());
+  const Eigen::Matrix<double, 4, 4, Eigen::RowMajor> matrix = transform.matrix();
+  return {matrix.data(), matrix.data() + matrix.size()};
 }
 
 /// \param shift vector that was subtracted from the input.
@@ -52,8 +58,9 @@ inline std::vector<double> numbersOf(const ReflectionPlane& plane, const Eigen::
   return numbersOf(shiftedBack(plane, shift).coefficients());
 }
 
-/// A plane and all its measurements, input frame.
+/// Planes and all their measurements, input frame.
 nlohmann::json planeJson(const SymmetryPlane& plane, const Eigen::Vector3d& shift);
+nlohmann::json planesJson(const std::vector<SymmetryPlane>& planes, const Eigen::Vector3d& shift);
 
 /// The position of an axis, input frame, and its confidence.
 /// \param axis SymmetryAxis or SymmetryRotation.
@@ -66,6 +73,9 @@ nlohmann::json axisJson(const Axis& axis, const Eigen::Vector3d& shift) {
 
 /// The same for axes of rotations of scans, with their evidence.
 nlohmann::json rotationsJson(const std::vector<SymmetryRotation>& rotations, const Eigen::Vector3d& shift);
+
+/// The columns of a matrix of axes.
+nlohmann::json axesJson(const Eigen::Matrix3d& axes);
 
 /// Center and axes, the transform to them, input frame.
 nlohmann::json frameJson(const SymmetryFrame& frame, const Eigen::Vector3d& shift);

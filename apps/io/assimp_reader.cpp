@@ -4,13 +4,9 @@
 
 #include <assimp/Importer.hpp>
 #include <boost/algorithm/string.hpp>
-#include <cstring>
 #include <nlohmann/json.hpp>
-#include <stdexcept>
-#include <string_view>
 
 #include "command_line/tool_errors.h"
-#include "io/exact_coordinates.h"
 
 namespace pcl_symmetry::apps {
 

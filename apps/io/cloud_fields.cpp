@@ -4,7 +4,6 @@
 #include <pcl/type_traits.h>
 
 #include <cstring>
-#include <stdexcept>
 
 #include "command_line/tool_errors.h"
 #include "io/cloud_file.h"

@@ -1,9 +1,7 @@
 #include "io/shape_readers.h"
 
 #include <algorithm>
-#include <array>
 #include <boost/algorithm/string.hpp>
-#include <optional>
 
 #include "io/answers.h"
 #include "io/file_text.h"

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 
 #include "io/answers.h"
 #include "io/cloud_file.h"
@@ -35,8 +34,8 @@ Eigen::Vector3d shiftFor(const std::vector<Eigen::Vector3d>& points) {
   return shift.allFinite() ? shift : Eigen::Vector3d::Zero();
 }
 
-pcl::PointCloud<pcl::PointXYZ> shifted(const std::vector<Eigen::Vector3d>& points, const Eigen::Vector3d& shift) {
-  pcl::PointCloud<pcl::PointXYZ> cloud;
+Cloud shifted(const std::vector<Eigen::Vector3d>& points, const Eigen::Vector3d& shift) {
+  Cloud cloud;
   cloud.reserve(points.size());
   for (const Eigen::Vector3d& point : points) {
     const Eigen::Vector3f p = (point - shift).cast<float>();
@@ -45,7 +44,7 @@ pcl::PointCloud<pcl::PointXYZ> shifted(const std::vector<Eigen::Vector3d>& point
   return cloud;
 }
 
-int digitsOfFloat(const pcl::PointCloud<pcl::PointXYZ>& points, const Eigen::Vector3d& shift) {
+int digitsOfFloat(const Cloud& points, const Eigen::Vector3d& shift) {
   Eigen::AlignedBox3f box;
   for (const pcl::PointXYZ& point : points)
     if (point.getVector3fMap().allFinite()) box.extend(point.getVector3fMap());
@@ -53,7 +52,7 @@ int digitsOfFloat(const pcl::PointCloud<pcl::PointXYZ>& points, const Eigen::Vec
   return std::max(0, static_cast<int>(std::floor(std::log10(box.sizes().norm() / spacing))));
 }
 
-pcl::PCLPointCloud2 toFields(const pcl::PointCloud<pcl::PointXYZ>& points, const Eigen::Vector3d& shift) {
+pcl::PCLPointCloud2 toFields(const Cloud& points, const Eigen::Vector3d& shift) {
   pcl::PCLPointCloud2 cloud;
   if (shift.isZero(0.0)) {
     pcl::toPCLPointCloud2(points, cloud);

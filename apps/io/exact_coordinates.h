@@ -11,10 +11,11 @@
 #include <pcl/point_types.h>
 
 #include <Eigen/Geometry>
+#include <array>
+#include <boost/functional/hash.hpp>
+#include <cstdint>
 #include <cstring>
-#include <functional>
 #include <string>
-#include <string_view>
 #include <unordered_map>
 #include <vector>
 
@@ -22,6 +23,8 @@
 #include "pcl_symmetry/viewpoint.h"
 
 namespace pcl_symmetry::apps {
+
+using Cloud = pcl::PointCloud<pcl::PointXYZ>;
 
 /// Vertices and faces of a file, in double.
 struct ExactShape {
@@ -35,13 +38,13 @@ struct ExactShape {
 Eigen::Vector3d shiftFor(const std::vector<Eigen::Vector3d>& points);
 
 /// \return the points minus the shift
-pcl::PointCloud<pcl::PointXYZ> shifted(const std::vector<Eigen::Vector3d>& points, const Eigen::Vector3d& shift);
+Cloud shifted(const std::vector<Eigen::Vector3d>& points, const Eigen::Vector3d& shift);
 
 /// \return number of digits of the extent that float coordinates keep at the shift, which is not zero
-int digitsOfFloat(const pcl::PointCloud<pcl::PointXYZ>& points, const Eigen::Vector3d& shift);
+int digitsOfFloat(const Cloud& points, const Eigen::Vector3d& shift);
 
 /// \return the points plus the shift; fields x, y and z are doubles if there is a shift, floats otherwise
-pcl::PCLPointCloud2 toFields(const pcl::PointCloud<pcl::PointXYZ>& points, const Eigen::Vector3d& shift);
+pcl::PCLPointCloud2 toFields(const Cloud& points, const Eigen::Vector3d& shift);
 
 /// \return the viewpoint in the frame of the shifted points
 Viewpoint shifted(Viewpoint viewpoint, const Eigen::Vector3d& shift);
@@ -76,24 +79,19 @@ public:
 
   /// \return the index of the vertex in the shape.
   pcl::index_t add(const Eigen::Vector3d& vertex) {
-    const Key key{vertex + Eigen::Vector3d::Zero()};  // 0 in place of -0
-    const auto [entry, is_new] = index_of_.emplace(key, static_cast<pcl::index_t>(shape_.vertices.size()));
+    const Eigen::Vector3d xyz = vertex + Eigen::Vector3d::Zero();  // 0 in place of -0
+    Bits bits;
+    std::memcpy(bits.data(), xyz.data(), sizeof(bits));
+    const auto [entry, is_new] = index_of_.emplace(bits, static_cast<pcl::index_t>(shape_.vertices.size()));
     if (is_new) shape_.vertices.push_back(vertex);
     return entry->second;
   }
 
 private:
-  /// Bits are compared, so that NaN values are handled as well.
-  struct Key {
-    Eigen::Vector3d xyz;
-    std::string_view bytes() const { return {reinterpret_cast<const char*>(xyz.data()), sizeof(double) * 3}; }
-    bool operator==(const Key& other) const { return bytes() == other.bytes(); }
-  };
-  struct Hash {
-    std::size_t operator()(const Key& key) const { return std::hash<std::string_view>()(key.bytes()); }
-  };
+  /// Compared in place of the coordinates, so that NaN values are handled as well.
+  using Bits = std::array<std::uint64_t, 3>;
   ExactShape& shape_;
-  std::unordered_map<Key, pcl::index_t, Hash> index_of_;
+  std::unordered_map<Bits, pcl::index_t, boost::hash<Bits>> index_of_;
 };
 
 }  // namespace pcl_symmetry::apps

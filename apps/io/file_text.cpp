@@ -114,11 +114,10 @@ bool spellsNumber(std::string_view token, double* value) {
   if (!token.empty() && token.front() == '+') token.remove_prefix(1);
   double parsed = 0;
   const auto [end, error] = std::from_chars(token.data(), token.data() + token.size(), parsed);
-  if (error == std::errc::result_out_of_range) {
+  if (error == std::errc::result_out_of_range)
     parsed = std::strtod(std::string(token).c_str(), nullptr);
-  } else if (error != std::errc()) {
+  else if (error != std::errc())
     return false;
-  }
   if (end != token.data() + token.size()) return false;
   if (value) *value = parsed;
   return true;
@@ -132,13 +131,12 @@ bool spellsCount(std::string_view token, std::uint64_t* value) {
 void TokenReader::skipSpace(bool across_lines) {
   while (position_ < text_.size()) {
     const char c = text_[position_];
-    if (c == '#') {
+    if (c == '#')
       position_ = std::min(text_.find('\n', position_), text_.size());
-    } else if (std::isspace(static_cast<unsigned char>(c)) && (across_lines || c != '\n')) {
+    else if (std::isspace(static_cast<unsigned char>(c)) && (across_lines || c != '\n'))
       ++position_;
-    } else {
+    else
       break;
-    }
   }
 }
 
@@ -146,9 +144,8 @@ std::string_view TokenReader::nextOnLine() {
   skipSpace(false);
   const std::size_t begin = position_;
   while (position_ < text_.size() && text_[position_] != '#' &&
-         !std::isspace(static_cast<unsigned char>(text_[position_]))) {
+         !std::isspace(static_cast<unsigned char>(text_[position_])))
     ++position_;
-  }
   return text_.substr(begin, position_ - begin);
 }
 

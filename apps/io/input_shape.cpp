@@ -2,14 +2,10 @@
 
 #include <boost/algorithm/string.hpp>
 #include <cmath>
-#include <new>
-#include <sstream>
 
-#include "command_line/tool_errors.h"
 #include "core/scan/range_image.h"
 #include "io/answers.h"
 #include "io/cloud_fields.h"
-#include "io/exact_coordinates.h"
 #include "io/file_text.h"
 #include "io/load_module.h"
 #include "pcl_symmetry/impl/cloud_conversion.hpp"
@@ -56,12 +52,10 @@ InputShape loadVolumeInput(const std::string& path, const CommonOptions& common,
     if (!common.levels.empty()) input.levels = {common.levels[0], common.levels[1]};
     input.volume = volume.grid;
     constexpr std::size_t kMostVoxels = 64 * 64 * 64;
-    input.points = std::make_shared<pcl::PointCloud<pcl::PointXYZ>>();
+    input.points = std::make_shared<Cloud>();
     const Points border = namingFile(path, [&] {
       const VolumeFunction function(*volume.grid, input.levels, kMostVoxels, common.threads);
-      std::ostringstream levels;
-      levels << ", levels " << function.levels.low << " to " << function.levels.high;
-      summary = levels.str();
+      summary = formatted(", levels %g to %g", function.levels.low, function.levels.high);
       return function.bodyPoints(true);
     });
     for (Eigen::Index i = 0; i < border.cols(); ++i)
@@ -75,7 +69,7 @@ InputShape loadVolumeInput(const std::string& path, const CommonOptions& common,
 
 /// Warns if the file itself, or its points, show that the scanner stood elsewhere.
 void checkViewpoint(const Console& console, const InputShape& input, const Viewpoint& given) {
-  const pcl::PointCloud<pcl::PointXYZ>& cloud = *input.points;
+  const Cloud& cloud = *input.points;
   if (given.mode != Viewpoint::Mode::Given) return;
   if (const Points points = finitePoints(cloud); points.cols() > 0)
     if (const std::string why = whyNotSeenFrom(points, given.position - input.shift()); !why.empty())

@@ -19,7 +19,7 @@ struct InputShape {
   std::string path;
   Shape shape;
   /// Coordinates minus the shift of the shape; points of a cloud may be non-finite.
-  pcl::PointCloud<pcl::PointXYZ>::Ptr points;
+  Cloud::Ptr points;
   double loading_ms = 0.0;
   /// Null if the input is no volume; otherwise `points` are the voxels at the border of the body.
   ScalarGrid::ConstPtr volume;
@@ -52,10 +52,12 @@ void setInput(Analysis& analysis, const InputShape& input, const CommonOptions& 
     analysis.setInputCloud(input.points);
 }
 
-/// \throws InputError with the reason if an analysis found no answer in the input.
-template <typename Analysis>
-void checkAnswer(const Analysis& analysis, const InputShape& input) {
+/// \return the answer that an analysis of the input gave.
+/// \throws InputError with the reason if the analysis found none.
+template <typename Analysis, typename Answer>
+Answer checked(const Analysis& analysis, const InputShape& input, Answer answer) {
   if (!analysis.getReason().empty()) throw InputError(input.path + ": " + analysis.getReason());
+  return answer;
 }
 
 /// Warns of content of the file that the shape does not hold.

@@ -4,7 +4,6 @@
 
 #include <boost/algorithm/string.hpp>
 #include <cmath>
-#include <functional>
 #include <ostream>
 
 #include "io/cloud_fields.h"
@@ -16,8 +15,8 @@ namespace pcl_symmetry::apps {
 
 namespace {
 
-pcl::PointCloud<pcl::PointXYZ> verticesOf(const pcl::PolygonMesh& mesh) {
-  pcl::PointCloud<pcl::PointXYZ> vertices;
+Cloud verticesOf(const pcl::PolygonMesh& mesh) {
+  Cloud vertices;
   pcl::fromPCLPointCloud2(mesh.cloud, vertices);
   return vertices;
 }
@@ -34,7 +33,7 @@ struct Properties {
 template <typename Place>
 void writePLY(const std::string& path, const pcl::PolygonMesh& mesh, const std::string& type, const Place& place,
               const Properties& of_vertices, const Properties& of_faces) {
-  const pcl::PointCloud<pcl::PointXYZ> vertices = verticesOf(mesh);
+  const Cloud vertices = verticesOf(mesh);
   writeStream(path, [&](std::ostream& ply) {
     ply.precision(type == "double" ? 17 : 9);  // as many digits as the type holds
     ply << "ply\nformat ascii 1.0\ncomment " << toolName() << "\nelement vertex " << vertices.size() << "\n";
@@ -57,8 +56,8 @@ void writePLY(const std::string& path, const pcl::PolygonMesh& mesh, const std::
 }
 
 pcl::PCLPointCloud2 facesAsPoints(const Shape& shape) {
-  const pcl::PointCloud<pcl::PointXYZ> vertices = verticesOf(*shape.mesh);
-  pcl::PointCloud<pcl::PointXYZ> middles;
+  const Cloud vertices = verticesOf(*shape.mesh);
+  Cloud middles;
   for (const pcl::Vertices& polygon : shape.mesh->polygons) {
     Eigen::Vector3f middle = Eigen::Vector3f::Zero();
     for (const pcl::index_t corner : polygon.vertices) middle += vertices[corner].getVector3fMap();
@@ -95,10 +94,6 @@ void saveMesh(const std::string& path, const pcl::PolygonMesh& mesh, const Eigen
   writePLY(path, mesh, "double", [&](const Eigen::Vector3d& x) -> Eigen::Vector3d { return motion * x; },
            {"property float " + property + "\n", [&](std::ostream& ply, std::size_t i) { ply << ' ' << values[i]; }},
            {});
-}
-
-void checkMeshExtension(const std::string& path) {
-  if (!boost::iends_with(path, ".ply")) throw UsageError(path + ": a symmetrized mesh is written as .ply");
 }
 
 }  // namespace pcl_symmetry::apps

@@ -24,7 +24,4 @@ void saveLabeled(const std::string& path, const Shape& shape, const std::vector<
 void saveMesh(const std::string& path, const pcl::PolygonMesh& mesh, const Eigen::Isometry3d& motion,
               const std::string& property, const std::vector<float>& values);
 
-/// \throws UsageError unless the extension is `.ply`.
-void checkMeshExtension(const std::string& path);
-
 }  // namespace pcl_symmetry::apps

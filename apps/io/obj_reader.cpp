@@ -1,9 +1,7 @@
 #include "io/shape_readers.h"
 
 #include <charconv>
-#include <limits>
 
-#include "io/exact_coordinates.h"
 #include "io/file_text.h"
 
 namespace pcl_symmetry::apps {

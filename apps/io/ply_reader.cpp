@@ -3,12 +3,9 @@
 #include <pcl/common/io.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstdio>
-#include <cstring>
 #include <map>
-#include <optional>
 #include <set>
 
 #include "io/file_text.h"
@@ -161,15 +158,13 @@ public:
 
   CloudFile read() {
     makePoints();
-    for (const PLYElement& element : header_.elements) {
-      if (element.name == "vertex") {
+    for (const PLYElement& element : header_.elements)
+      if (element.name == "vertex")
         readVertices(element);
-      } else if (element.name == "camera" && element.count == 1) {
+      else if (element.name == "camera" && element.count == 1)
         readCamera(element);
-      } else {
+      else
         readLists(element);
-      }
-    }
     if (body_.hasMore()) reject(path_, "holds more than its header says");
     file_.cloud.is_dense = isDense(file_.cloud);
     return std::move(file_);
@@ -206,11 +201,10 @@ private:
     for (const PLYProperty& property : vertex->properties) {
       min_size += body_.leastSize(property.length_type.value_or(property.type));
       Column column{property.name, property.type, 1, sizeOfType(property.type), property.type, -1};
-      if (property.length_type) {
+      if (property.length_type)
         file_.left_out.push_back("list " + property.name + " of the vertices");
-      } else if (property.name == "red" || property.name == "diffuse_red") {
+      else if (property.name == "red" || property.name == "diffuse_red")
         addColor(*vertex, property.name == "red" ? "" : "diffuse_");
-      }
       if (const auto color = colors_.find(property.name); color != colors_.end()) {
         column.offset = color->second;
       } else if (!property.length_type) {
@@ -238,11 +232,10 @@ private:
       std::uint8_t* const point = &file_.cloud.data[i * file_.cloud.point_step];
       for (std::size_t k = 0; k < columns_.size(); ++k) {
         const PLYProperty& property = vertex.properties[k];
-        if (property.length_type) {
+        if (property.length_type)
           body_.list(vertex, i, property, [](double) {});
-        } else {
+        else
           storeValues(columns_[k], body_.next(vertex, i, property, property.type), point);
-        }
       }
     }
   }

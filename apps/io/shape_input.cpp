@@ -6,11 +6,8 @@
 #include <boost/algorithm/string.hpp>
 #include <boost/filesystem.hpp>
 #include <cctype>
-#include <new>
-#include <utility>
-#include <vector>
 
-#include "command_line/flag_values.h"
+#include "io/answers.h"
 #include "io/cloud_fields.h"
 #include "io/file_text.h"
 #include "io/input_shape.h"
@@ -28,7 +25,7 @@ Shape completed(const std::string& path, Shape shape, const std::vector<Eigen::V
                 std::vector<pcl::Vertices> polygons) {
   if (exact.empty()) throw InputError(path + ": has no points");
   shape.shift = shiftFor(exact);
-  shape.points.reset(new pcl::PointCloud<pcl::PointXYZ>(shifted(exact, shape.shift)));
+  shape.points.reset(new Cloud(shifted(exact, shape.shift)));
   if (shape.cloud.fields.empty()) shape.cloud = toFields(*shape.points, shape.shift);
   shape.points->width = shape.cloud.width;
   shape.points->height = shape.cloud.height;
@@ -144,11 +141,11 @@ Shape loadShape(const std::string& path) {
 Shape surfaceOf(const std::string& path, const ScalarGrid& volume, double value) {
   ExactShape surface;
   functionOf<decltype(contourVolume)>(kDrawingModule, "contourVolume")(volume, value, surface);
-  if (surface.polygons.empty()) throw InputError(path + ": no surface of value " + shortest(value));
+  if (surface.polygons.empty()) throw InputError(path + formatted(": no surface of value %g", value));
   return fromExact(path, std::move(surface));
 }
 
-Points finitePoints(const pcl::PointCloud<pcl::PointXYZ>& cloud, std::vector<std::size_t>* indices) {
+Points finitePoints(const Cloud& cloud, std::vector<std::size_t>* indices) {
   Points points(3, static_cast<Eigen::Index>(cloud.size()));
   Eigen::Index size = 0;
   for (std::size_t i = 0; i < cloud.size(); ++i) {

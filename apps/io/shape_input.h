@@ -1,17 +1,12 @@
 /// Reads clouds and meshes from files, and rejects invalid ones with one clear line.
 #pragma once
 
-#include <pcl/PCLPointCloud2.h>
-#include <pcl/PolygonMesh.h>
-#include <pcl/point_cloud.h>
-#include <pcl/point_types.h>
-
-#include <Eigen/Geometry>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "command_line/tool_errors.h"
+#include "io/exact_coordinates.h"
 #include "pcl_symmetry/core/point_set.h"
 #include "pcl_symmetry/core/scalar_grid.h"
 
@@ -25,9 +20,9 @@ inline const char* const kShapeFilesOfFolders = ".pcd, .ply, .obj, .stl, .off, .
 
 /// The content of a file. Points may be non-finite, as scanners write them.
 struct Shape {
-  pcl::PCLPointCloud2 cloud;                   ///< all fields of the file, input frame; the vertices of a mesh
-  pcl::PointCloud<pcl::PointXYZ>::Ptr points;  ///< the coordinates minus the shift, same order and organization
-  std::optional<pcl::PolygonMesh> mesh;        ///< polygons of any size >= 3, indices checked; minus the shift
+  pcl::PCLPointCloud2 cloud;             ///< all fields of the file, input frame; the vertices of a mesh
+  Cloud::Ptr points;                     ///< the coordinates minus the shift, same order and organization
+  std::optional<pcl::PolygonMesh> mesh;  ///< polygons of any size >= 3, indices checked; minus the shift
   /// The vector that was subtracted from points and mesh; zero unless the file's coordinates have more digits than
   /// float holds.
   Eigen::Vector3d shift = Eigen::Vector3d::Zero();
@@ -53,6 +48,6 @@ Shape surfaceOf(const std::string& path, const ScalarGrid& volume, double value)
 
 /// \param indices receives the indices of these points in the cloud, unless it is null.
 /// \return 3 x N, the finite points of a cloud, same order.
-Points finitePoints(const pcl::PointCloud<pcl::PointXYZ>& cloud, std::vector<std::size_t>* indices = nullptr);
+Points finitePoints(const Cloud& cloud, std::vector<std::size_t>* indices = nullptr);
 
 }  // namespace pcl_symmetry::apps

@@ -2,7 +2,6 @@
 
 #include <fcntl.h>
 #include <pcl/common/io.h>
-#include <pcl/exceptions.h>
 #include <sys/mman.h>
 #include <unistd.h>
 
@@ -13,11 +12,9 @@
 #include <cerrno>
 #include <csignal>
 #include <cstdio>
-#include <cstring>
 #include <fstream>
 #include <iostream>
 #include <mutex>
-#include <optional>
 
 #include "io/file_text.h"
 #include "io/input_shape.h"
@@ -244,9 +241,8 @@ void saveCloud(const std::string& path, const pcl::PCLPointCloud2& cloud, const 
   const std::string extension = lowerExtension(path);
   if (extension != ".pcd" && extension != ".ply") throw InputError(path + ": unknown extension, must be .pcd or .ply");
   if (cloud.width == 0 || cloud.height == 0) throw InputError(path + ": not written, the cloud has no points");
-  if (cloud.data.size() < std::size_t{cloud.width} * cloud.height * cloud.point_step) {
+  if (cloud.data.size() < std::size_t{cloud.width} * cloud.height * cloud.point_step)
     throw InputError(path + ": not written, the cloud holds fewer points than width * height");
-  }
   const pcl::PCLPointCloud2 fields = packed(cloud);
   writeAtomically(
       path,

@@ -43,11 +43,13 @@ void makeFolder(const std::string& path);
 /// Writes text unchanged.
 void writeText(const std::string& path, const std::string& text);
 
-/// Writes a cloud with all its fields and the pose of the sensor; PCD or (binary) PLY by the extension of the name;
-/// PCD to standard output, "-".
+/// Writes a cloud with all its fields and the pose of the sensor, by default none; PCD or (binary) PLY by the extension
+/// of the name; PCD to standard output, "-".
 /// \throws InputError for another extension, an empty cloud, or a file that cannot be written.
-void saveCloud(const std::string& path, const pcl::PCLPointCloud2& cloud, const Eigen::Vector4f& sensor_origin,
-               const Eigen::Quaternionf& sensor_orientation, PCDEncoding encoding = PCDEncoding::BinaryCompressed);
+void saveCloud(const std::string& path, const pcl::PCLPointCloud2& cloud,
+               const Eigen::Vector4f& sensor_origin = Eigen::Vector4f::Zero(),
+               const Eigen::Quaternionf& sensor_orientation = Eigen::Quaternionf::Identity(),
+               PCDEncoding encoding = PCDEncoding::BinaryCompressed);
 
 /// \throws UsageError unless saveCloud() supports the extension; lets a tool fail before the long work begins.
 void checkCloudExtension(const std::string& path);

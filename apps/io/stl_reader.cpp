@@ -1,7 +1,5 @@
 #include <boost/algorithm/string.hpp>
-#include <cstring>
 
-#include "io/exact_coordinates.h"
 #include "io/file_text.h"
 #include "io/shape_readers.h"
 

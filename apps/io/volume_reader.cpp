@@ -5,9 +5,7 @@
 #include <boost/algorithm/string.hpp>
 #include <boost/filesystem.hpp>
 #include <cmath>
-#include <cstring>
 #include <map>
-#include <optional>
 #include <tuple>
 
 #include "io/answers.h"

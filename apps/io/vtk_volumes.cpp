@@ -7,16 +7,13 @@
 #include <vtkImageData.h>
 #include <vtkInformation.h>
 #include <vtkMatrix4x4.h>
-#include <vtkNew.h>
 #include <vtkPointData.h>
 #include <vtkPolyData.h>
 #include <vtkStreamingDemandDrivenPipeline.h>
 #include <vtkXMLImageDataReader.h>
 
 #include <algorithm>
-#include <new>
 
-#include "command_line/tool_errors.h"
 #include "io/file_text.h"
 #include "io/input_shape.h"
 #include "pictures/drawing.h"

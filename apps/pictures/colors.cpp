@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdint>
 #include <iterator>
 
 namespace pcl_symmetry::apps {
@@ -21,6 +20,10 @@ Eigen::Vector3d segmentColor(int segment) {
   constexpr int kNumColors = 8;  // the colors of Okabe and Ito
   const double white = 1.0 - std::pow(0.65, segment / kNumColors);
   return (1.0 - white) * distinctColor(static_cast<std::size_t>(segment)) + white * Eigen::Vector3d::Ones();
+}
+
+Eigen::Matrix<std::uint8_t, 3, 1> bytesOf(const Eigen::Vector3d& color) {
+  return (255.0 * color.array().max(0.0).min(1.0)).round().cast<std::uint8_t>();
 }
 
 Eigen::Vector3d cividis(double value) {

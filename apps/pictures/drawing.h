@@ -35,7 +35,7 @@ extern "C" {
 void drawScenes(const std::vector<PictureScene>& scenes, const PictureTarget& target, int num_columns);
 void decodeImage(const std::string& path, bool png, RasterImage& image);
 /// The pixels of an image of one channel of 16 bits: column, row and value.
-void decodeDepth(const std::string& path, pcl::PointCloud<pcl::PointXYZ>& pixels);
+void decodeDepth(const std::string& path, Cloud& pixels);
 void encodeImage(const RasterImage& image, const std::string& path, const std::string& file);
 void encodeVolume(const VolumeImage& volume, const std::string& path, const std::string& file);
 }

@@ -10,9 +10,9 @@
 #include <vtkXMLImageDataWriter.h>
 
 #include <algorithm>
-#include <cstring>
 
 #include "pictures/drawing.h"
+#include "pictures/vtk_messages.h"
 
 namespace pcl_symmetry::apps {
 
@@ -20,23 +20,20 @@ namespace {
 
 vtkSmartPointer<vtkImageReader2> readerOf(const std::string& path, bool png) {
   vtkSmartPointer<vtkImageReader2> reader;
-  if (png) {
+  if (png)
     reader = vtkSmartPointer<vtkPNGReader>::New();
-  } else {
+  else
     reader = vtkSmartPointer<vtkPNMReader>::New();
-  }
-  const int display = vtkObject::GetGlobalWarningDisplay();
-  vtkObject::GlobalWarningDisplayOff();
+  const VtkMessages messages;
   reader->SetFileName(path.c_str());
   reader->Update();
-  vtkObject::SetGlobalWarningDisplay(display);
   if (reader->GetErrorCode() != 0) throw InputError(path + ": cannot be read, the picture is damaged");
   return reader;
 }
 
 }  // namespace
 
-void decodeDepth(const std::string& path, pcl::PointCloud<pcl::PointXYZ>& pixels) {
+void decodeDepth(const std::string& path, Cloud& pixels) {
   const std::lock_guard<std::mutex> lock(drawing_mutex);
   const auto reader = readerOf(path, true);
   vtkImageData* const data = reader->GetOutput();

@@ -2,10 +2,8 @@
 
 #include <pcl/common/point_tests.h>
 
-#include <Eigen/Geometry>
 #include <algorithm>
 #include <limits>
-#include <vector>
 
 #include "core/base/symmetric_solvers.h"
 #include "core/geometry/surface_normals.h"
@@ -32,21 +30,7 @@ std::array<Eigen::Vector3d, 4> squareCorners(const PlanePatch& plane, const Eige
   return {center - h * u - h * v, center + h * u - h * v, center + h * u + h * v, center - h * u + h * v};
 }
 
-/// How far the points reach along the axis on either side of its point, plus a tenth.
-std::pair<double, double> reachAlong(const AxisLine& axis, const PictureScene& scene) {
-  const Eigen::Vector3d direction = axis.direction.normalized();
-  double low = std::numeric_limits<double>::infinity(), high = -low;
-  for (const pcl::PointXYZ& point : *scene.points) {
-    if (!pcl::isXYZFinite(point)) continue;
-    const double along = direction.dot(point.getVector3fMap().cast<double>() - axis.point);
-    low = std::min(low, along);
-    high = std::max(high, along);
-  }
-  const double margin = 0.1 * (high - low);
-  return {low - margin, high + margin};
-}
-
-std::array<Eigen::Vector3d, 4> fittedCorners(const PlanePatch& plane, const pcl::PointCloud<pcl::PointXYZ>& points) {
+std::array<Eigen::Vector3d, 4> fittedCorners(const PlanePatch& plane, const Cloud& points) {
   const Eigen::Vector3d normal = plane.normal.normalized(), s = normal.unitOrthogonal(), t = normal.cross(s);
   std::vector<Eigen::Vector2d> projections;
   Eigen::Vector2d mean = Eigen::Vector2d::Zero();
@@ -75,17 +59,14 @@ std::array<Eigen::Vector3d, 4> fittedCorners(const PlanePatch& plane, const pcl:
 }  // namespace
 
 Normalization normalizationOf(const PictureScene& scene) {
-  Eigen::AlignedBox3d box;
-  for (const pcl::PointXYZ& point : *scene.points) {
-    const Eigen::Vector3d position = point.getVector3fMap().cast<double>();
-    if (position.allFinite()) box.extend(position);
-  }
-  if (box.isEmpty()) throw InputError("nothing to draw, no point is finite");
+  const Points points = finitePoints(*scene.points);
+  if (points.cols() == 0) throw InputError("nothing to draw, no point is finite");
+  const Eigen::AlignedBox3d box(points.rowwise().minCoeff().cast<double>(), points.rowwise().maxCoeff().cast<double>());
   const double diagonal = box.diagonal().norm();
   return {box.center(), diagonal > 0 ? 1.0 / diagonal : 1.0};
 }
 
-Points pointNormals(const pcl::PointCloud<pcl::PointXYZ>& points, const Normalization& normalize) {
+Points pointNormals(const Cloud& points, const Normalization& normalize) {
   Points result = Points::Constant(3, points.size(), std::numeric_limits<float>::quiet_NaN());
   std::vector<std::size_t> index;
   Points finite = finitePoints(points, &index);
@@ -111,9 +92,19 @@ std::array<Eigen::Vector3d, 4> patchCorners(const PlanePatch& plane, const Pictu
 }
 
 std::pair<Eigen::Vector3d, Eigen::Vector3d> axisEnds(const AxisLine& axis, const PictureScene& scene) {
-  const auto [low, high] =
-      axis.half_length > 0.0 ? std::pair(-axis.half_length, axis.half_length) : reachAlong(axis, scene);
   const Eigen::Vector3d direction = axis.direction.normalized();
+  double low = -axis.half_length, high = axis.half_length;
+  if (!(axis.half_length > 0.0)) {
+    low = std::numeric_limits<double>::infinity(), high = -low;
+    for (const pcl::PointXYZ& point : *scene.points) {
+      if (!pcl::isXYZFinite(point)) continue;
+      const double along = direction.dot(point.getVector3fMap().cast<double>() - axis.point);
+      low = std::min(low, along);
+      high = std::max(high, along);
+    }
+    const double margin = 0.1 * (high - low);
+    low -= margin, high += margin;
+  }
   return {axis.point + low * direction, axis.point + high * direction};
 }
 

@@ -33,7 +33,7 @@ constexpr std::size_t kMaxShadedPoints = 200'000;
 
 /// \return 3 x N, unit, of arbitrary sign, one for each point; not finite where the point is not, and for clouds of
 /// fewer than 16 or more than kMaxShadedPoints points.
-Points pointNormals(const pcl::PointCloud<pcl::PointXYZ>& points, const Normalization& normalize);
+Points pointNormals(const Cloud& points, const Normalization& normalize);
 
 /// \return the color of a point in a panel, before shading.
 Eigen::Vector3d pointColor(const PicturePanel& panel, std::size_t point);

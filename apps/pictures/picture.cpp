@@ -1,7 +1,5 @@
 #include "pictures/picture.h"
 
-#include <Eigen/Geometry>
-
 #include "io/load_module.h"
 #include "io/shape_output.h"
 #include "pictures/drawing.h"
@@ -17,10 +15,6 @@ void standUpright(PictureScene& scene, const Eigen::Vector3d& up) {
   const Eigen::Quaterniond turn = Eigen::Quaterniond::FromTwoVectors(Eigen::Vector3d::UnitZ(), up);
   scene.view = turn * scene.view;
   scene.up = up;
-}
-
-void renderPicture(const PictureScene& scene, const std::string& path, int width, int height) {
-  renderPicture(std::vector<PictureScene>{scene}, path, width, height);
 }
 
 void renderPicture(const std::vector<PictureScene>& scenes, const std::string& path, int width, int height,

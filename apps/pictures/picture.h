@@ -1,17 +1,13 @@
 /// Pictures of clouds, meshes and symmetry planes as PNG files, also on machines without a display.
 #pragma once
 
-#include <pcl/PolygonMesh.h>
-#include <pcl/point_cloud.h>
-#include <pcl/point_types.h>
-
-#include <Eigen/Core>
 #include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "command_line/tool_errors.h"
+#include "io/exact_coordinates.h"
 #include "pictures/colors.h"
 
 namespace pcl_symmetry::apps {
@@ -50,10 +46,10 @@ struct PicturePanel {
 
 /// The content of a picture: the same shape in every panel.
 struct PictureScene {
-  pcl::PointCloud<pcl::PointXYZ>::ConstPtr points;  ///< non-finite points are not drawn
-  std::optional<pcl::PolygonMesh> mesh = {};        ///< drawn in light gray
-  std::vector<PicturePanel> panels = {};            ///< at least one
-  Eigen::Vector3d view = {1.0, -1.6, 0.8};          ///< direction from the scene toward the camera
+  Cloud::ConstPtr points;                     ///< non-finite points are not drawn
+  std::optional<pcl::PolygonMesh> mesh = {};  ///< drawn in light gray
+  std::vector<PicturePanel> panels = {};      ///< at least one
+  Eigen::Vector3d view = {1.0, -1.6, 0.8};    ///< direction from the scene toward the camera
   Eigen::Vector3d up = Eigen::Vector3d::UnitZ();
   bool show_color_bar = true;  ///< legend of the support, in panels that have support
 };
@@ -65,14 +61,12 @@ Eigen::Vector3d upFor(const std::optional<Eigen::Vector3d>& viewpoint, const Eig
 /// Rotates the view so that \p up takes the place of z; any length but zero.
 void standUpright(PictureScene& scene, const Eigen::Vector3d& up);
 
-/// Renders off screen and writes a complete PNG. Needs a display; tools start one with Xvfb, see findDisplay().
-/// \param width,height size of the whole picture, pixels.
-/// \throws InputError if nothing can draw or the file cannot be written.
-void renderPicture(const PictureScene& scene, const std::string& path, int width, int height);
-
-/// The panels of several scenes in one picture, row by row.
+/// Renders the panels of scenes off screen, row by row in one picture, and writes a complete PNG. Needs a display;
+/// tools start one with Xvfb, see findDisplay().
 /// \param scenes at least one.
+/// \param width,height size of the whole picture, pixels.
 /// \param num_columns columns of panels; 0 = as square as the panels allow.
+/// \throws InputError if nothing can draw or the file cannot be written.
 void renderPicture(const std::vector<PictureScene>& scenes, const std::string& path, int width, int height,
                    int num_columns = 0);
 

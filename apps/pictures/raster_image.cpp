@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <boost/algorithm/string/predicate.hpp>
 #include <cmath>
-#include <cstring>
 
 #include "io/file_text.h"
 #include "io/load_module.h"
@@ -13,8 +12,7 @@
 namespace pcl_symmetry::apps {
 
 void RasterImage::set(int x, int y, const Eigen::Vector3d& color) {
-  for (int k = 0; k < 3; ++k)
-    at(x, y)[k] = static_cast<std::uint8_t>(std::lround(255.0 * std::clamp(color[k], 0.0, 1.0)));
+  std::memcpy(at(x, y), bytesOf(color).data(), 3);
 }
 
 void RasterImage::drawDisk(const Eigen::Vector2d& center, double radius, const Eigen::Vector3d& color) {

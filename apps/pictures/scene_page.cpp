@@ -6,10 +6,9 @@
 #include <boost/algorithm/string.hpp>
 #include <boost/beast/core/detail/base64.hpp>
 #include <cmath>
-#include <nlohmann/json.hpp>
 #include <set>
-#include <vector>
 
+#include "io/answers.h"
 #include "io/shape_output.h"
 #include "pictures/patch_geometry.h"
 
@@ -42,8 +41,7 @@ nlohmann::json numbers(const Vector& v) {
 }
 
 void addColor(const Eigen::Vector3d& color, std::vector<std::uint8_t>& bytes) {
-  for (int k = 0; k < 3; ++k)
-    bytes.push_back(static_cast<std::uint8_t>(std::lround(255.0 * std::clamp(color[k], 0.0, 1.0))));
+  for (const std::uint8_t byte : bytesOf(color)) bytes.push_back(byte);
 }
 
 /// The content of a page: the finite points of a scene (all, or every second, third, ...) and its mesh in triangles.
@@ -51,8 +49,7 @@ class PageScene {
 public:
   explicit PageScene(const PictureScene& scene) : scene_(scene), normalize_(normalizationOf(scene)) {
     std::vector<std::size_t> finite;
-    for (std::size_t i = 0; i < scene.points->size(); ++i)
-      if ((*scene.points)[i].getVector3fMap().allFinite()) finite.push_back(i);
+    finitePoints(*scene.points, &finite);
     const std::size_t step = (finite.size() + kMaxPagePoints - 1) / kMaxPagePoints;
     for (std::size_t i = 0; i < finite.size(); i += step) kept_.push_back(finite[i]);
     if (scene.mesh) cutIntoTriangles(*scene.mesh);
@@ -63,8 +60,8 @@ public:
                         {"text", text.text},
                         {"view", numbers(scene_.view)},
                         {"up", numbers(scene_.up)},
-                        {"plain_point", plain(kPlainPointColor)},
-                        {"plain_mesh", plain(kPlainMeshColor)},
+                        {"plain_point", numbers(bytesOf(kPlainPointColor))},
+                        {"plain_mesh", numbers(bytesOf(kPlainMeshColor))},
                         {"point_size", 0.5 / std::sqrt(static_cast<double>(std::max<std::size_t>(1, kept_.size())))},
                         {"points", positions()},
                         {"normals", normals()},
@@ -75,22 +72,15 @@ public:
       page["picture"] = {{"width", text.picture.width}, {"pixels", base64(text.picture.pixels)}};
     for (const PicturePanel& panel : scene_.panels) page["panels"].push_back(panelJson(panel));
     for (int i = 0; i < kBarColors; ++i) {
-      const Eigen::Vector3i c = (255.0 * cividis(i / (kBarColors - 1.0))).array().round().cast<int>();
-      page["support_colors"].push_back("rgb(" + std::to_string(c[0]) + "," + std::to_string(c[1]) + "," +
-                                       std::to_string(c[2]) + ")");
+      const auto c = bytesOf(cividis(i / (kBarColors - 1.0)));
+      page["support_colors"].push_back(formatted("rgb(%d,%d,%d)", c[0], c[1], c[2]));
     }
     return page;
   }
 
 private:
-  static nlohmann::json plain(const Eigen::Vector3d& color) {
-    std::vector<std::uint8_t> bytes;
-    addColor(color, bytes);
-    return {bytes[0], bytes[1], bytes[2]};
-  }
-
   void cutIntoTriangles(const pcl::PolygonMesh& mesh) {
-    pcl::PointCloud<pcl::PointXYZ> vertices;
+    Cloud vertices;
     pcl::fromPCLPointCloud2(mesh.cloud, vertices);
     for (std::size_t f = 0; f < mesh.polygons.size(); ++f) {
       const auto& corners = mesh.polygons[f].vertices;

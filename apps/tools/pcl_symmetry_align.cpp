@@ -4,26 +4,15 @@
 #include <pcl/common/transforms.h>
 
 #include <algorithm>
+#include <boost/algorithm/string.hpp>
 #include <boost/filesystem/path.hpp>
 #include <cmath>
-#include <exception>
-#include <limits>
-#include <nlohmann/json.hpp>
 #include <numeric>
-#include <optional>
 #include <sstream>
-#include <string>
-#include <utility>
-#include <vector>
 
-#include "command_line/command_line.h"
-#include "command_line/console.h"
-#include "command_line/input_files.h"
 #include "command_line/run_on_files.h"
-#include "command_line/tool_errors.h"
 #include "io/answers.h"
 #include "io/cloud_fields.h"
-#include "io/exact_coordinates.h"
 #include "io/file_text.h"
 #include "io/input_shape.h"
 #include "io/mesh_output.h"
@@ -35,7 +24,6 @@
 #include "pcl_symmetry/symmetry_alignment.h"
 #include "pcl_symmetry/symmetry_maxima_refinement.h"
 #include "pcl_symmetry/symmetry_registration.h"
-#include "pictures/picture.h"
 #include "pictures/scene_page.h"
 
 namespace {
@@ -96,28 +84,6 @@ CommandLine commandLine(AlignOptions& options) {
   return line;
 }
 
-/// The frame, for the shifted points.
-SymmetryFrame computeFrame(const Console& console, const InputShape& input, const CommonOptions& common,
-                           bool as_published) {
-  Step step(console, "Searching the frame");
-  FrameOptions options;
-  options.as_published = as_published;
-  // Otherwise it is refined on the mesh itself.
-  options.refined = !input.shape.mesh || common.viewpoint.mode == Viewpoint::Mode::Given;
-  common.applyTo(options);
-  SymmetryAlignment<pcl::PointXYZ> alignment;
-  return namingFile(input.path, [&] {
-    alignment.setOptions(options);
-    alignment.setViewpoint(input.viewpoint(common));
-    alignment.setInputCloud(input.points);
-    SymmetryFrame frame = alignment.compute();
-    checkAnswer(alignment, input);
-    if (input.shape.mesh && !alignment.usedViewpoint()) refineOnMesh(meshSurface(*input.shape.mesh), frame);
-    step.done(alignment.usedViewpoint() ? "seen from one side" : "");
-    return frame;
-  });
-}
-
 /// The plane by which a shape is completed or symmetrized, in the frame of the shifted points.
 struct BestPlane {
   ReflectionPlane plane;
@@ -139,9 +105,7 @@ BestPlane bestPlane(const Console& console, const InputShape& input, const Commo
     refinement.setOptions(detection);
     setInput(refinement, input, common);
     if (input.shape.mesh) refinement.setMesh(meshSurface(*input.shape.mesh));
-    std::vector<SymmetryPlane> found = refinement.compute();
-    checkAnswer(refinement, input);
-    return found;
+    return checked(refinement, input, refinement.compute());
   });
   const Detection& found = refinement.getDetection();
   const Eigen::Vector3d scanner =
@@ -161,7 +125,6 @@ BestPlane bestPlane(const Console& console, const InputShape& input, const Commo
   return {planes.front(), toString(planes.front().kind), planes.front().confidence};
 }
 
-/// The best plane for completing a shape.
 BestPlane completingPlane(const Console& console, const InputShape& input, const CommonOptions& common,
                           bool by_any_plane) {
   BestPlane best = bestPlane(console, input, common);
@@ -175,8 +138,8 @@ BestPlane completingPlane(const Console& console, const InputShape& input, const
 
 /// Adds to the fields what the symmetry shows of the side that was not seen.
 /// \return the points and the added ones, in the frame of the shifted points.
-pcl::PointCloud<pcl::PointXYZ> complete(const Console& console, const InputShape& input, const CommonOptions& common,
-                                        const BestPlane& best, pcl::PCLPointCloud2& fields, nlohmann::json& json) {
+Cloud complete(const Console& console, const InputShape& input, const CommonOptions& common, const BestPlane& best,
+               pcl::PCLPointCloud2& fields, nlohmann::json& json) {
   const ReflectionPlane& plane = best.plane;
   Step step(console, "Completing");
   CompletionOptions options;
@@ -219,13 +182,13 @@ Landmarks readLandmarks(const std::string& path, const Eigen::Vector3d& shift) {
 
 nlohmann::json landmarksJson(const Landmarks& landmarks, const ReflectionPlane& plane) {
   const LandmarkAsymmetry found = landmarkAsymmetry(landmarks.pairs, landmarks.midline, plane);
-  nlohmann::json json{{"object_rms", found.object_rms},
-                      {"paired_rms", found.paired_rms},
-                      {"paired", nlohmann::json::array()},
-                      {"midline", found.unpaired}};
-  for (const Eigen::Vector3d& apart : found.paired)
-    json["paired"].push_back({{"distance", apart.norm()}, {"vector", numbersOf(apart)}});
-  return json;
+  const auto pairJson = [](const Eigen::Vector3d& apart) -> nlohmann::json {
+    return {{"distance", apart.norm()}, {"vector", numbersOf(apart)}};
+  };
+  return {{"object_rms", found.object_rms},
+          {"paired_rms", found.paired_rms},
+          {"paired", listOf(found.paired, pairJson)},
+          {"midline", found.unpaired}};
 }
 
 /// A symmetrized shape in the frame of the shifted points, and what is reported about it.
@@ -320,7 +283,6 @@ struct Motion {
   PictureScene scene;  ///< scene that a page shows
 };
 
-/// The shape with the axes of its frame: the first in red, the second in green, the third in blue.
 PictureScene sceneOf(const InputShape& input, const SymmetryFrame& frame) {
   PicturePanel panel{"center and axes: 1 red, 2 green, 3 blue"};
   panel.show_points = !input.shape.mesh;
@@ -328,28 +290,27 @@ PictureScene sceneOf(const InputShape& input, const SymmetryFrame& frame) {
   return {input.points, input.shape.mesh, {panel}};
 }
 
-/// Two clouds in two colors.
-/// \param num_first number of points of the first cloud.
-PictureScene sceneOf(const pcl::PointCloud<pcl::PointXYZ>& both, std::size_t num_first, const std::string& label,
-                     const std::string& first, const std::string& second) {
+/// \param num_first number of points of the first of two clouds, which have two colors.
+PictureScene sceneOf(const Cloud& both, std::size_t num_first, const std::string& label, const std::string& first,
+                     const std::string& second) {
   PicturePanel panel{label};
   panel.legend = {{0, first}, {1, second}};
   panel.segments.assign(num_first, 0);
   panel.segments.resize(both.size(), 1);
-  return {pcl::make_shared<pcl::PointCloud<pcl::PointXYZ>>(both), std::nullopt, {panel}};
+  return {pcl::make_shared<Cloud>(both), std::nullopt, {panel}};
 }
 
-/// The target, and the input at its registered pose.
 PictureScene sceneOf(const InputShape& input, const InputShape& target, const Eigen::Isometry3d& T_target_input) {
-  pcl::PointCloud<pcl::PointXYZ> moved;
+  Cloud moved;
   const Eigen::Isometry3d motion =
       Eigen::Translation3d(-target.shift()) * T_target_input * Eigen::Translation3d(input.shift());
   pcl::transformPointCloud(*input.points, moved, motion.matrix());
   return sceneOf(*target.points + moved, target.points->size(), "the input in the target", "target", "input");
 }
 
-Motion registerTo(const Console& console, const InputShape& input, const InputShape& target,
-                  const CommonOptions& common) {
+Motion toTarget(const Console& console, const InputShape& input, const AlignOptions& options,
+                const CommonOptions& common) {
+  const InputShape target = loadInput(console, *options.target, common);
   Step step(console, "Registering");
   SymmetryRegistration<pcl::PointXYZ, pcl::PointXYZ, double> registration;
   registration.setSourceViewpoint(input.viewpoint(common));
@@ -357,7 +318,7 @@ Motion registerTo(const Console& console, const InputShape& input, const InputSh
   registration.setNumberOfThreads(common.threads);
   registration.setInputSource(input.points);
   registration.setInputTarget(target.points);
-  pcl::PointCloud<pcl::PointXYZ> aligned;
+  Cloud aligned;
   registration.align(aligned);
   Motion result;
   result.transform =
@@ -387,6 +348,9 @@ Motion registerTo(const Console& console, const InputShape& input, const InputSh
                              {"uniqueness", evidence.uniqueness}};
   if (!result.converged) result.json["reason"] = registration.getReason();
   step.done(result.converged ? formatted("confidence %.3f", registration.getConfidence()) : "nothing fits");
+  result.scene = sceneOf(input, target, result.transform);
+  if (result.converged)
+    result.text = matrixLines(result.transform, std::max(lengthDigits(input.shift()), lengthDigits(target.shift())));
   return result;
 }
 
@@ -394,19 +358,16 @@ nlohmann::json describe(const SymmetryFrame& frame, const Eigen::Vector3d& shift
   nlohmann::json json = frameJson(frame, shift);
   json["stray_points"] = frame.num_stray_points;
   json["timing_ms"] = timingJson(frame.timing_ms);
-  json["equivalent"] = nlohmann::json::array();
-  for (const Eigen::Isometry3d& T_canonical_input : frame.equivalent)
-    json["equivalent"].push_back(rowMajor(shiftedBack(T_canonical_input, shift, Eigen::Vector3d::Zero())));
+  json["equivalent"] = listOf(frame.equivalent, [&](const Eigen::Isometry3d& T_canonical_input) {
+    return rowMajor(shiftedBack(T_canonical_input, shift, Eigen::Vector3d::Zero()));
+  });
   json["rotations"] = rotationsJson(frame.rotations, shift);
-  json["probable"] = nlohmann::json::array();
-  for (const ProbableFrame& other : frame.probable) {
-    nlohmann::json axes = nlohmann::json::array();
-    for (int k = 0; k < 3; ++k) axes.push_back(numbersOf(other.axes.col(k)));
-    json["probable"].push_back({{"center", numbersOf(shiftedBack(other.center, shift))},
-                                {"axes", axes},
-                                {"revolution_axis", other.revolution_axis},
-                                {"probability", other.probability}});
-  }
+  json["probable"] = listOf(frame.probable, [&](const ProbableFrame& other) -> nlohmann::json {
+    return {{"center", numbersOf(shiftedBack(other.center, shift))},
+            {"axes", axesJson(other.axes)},
+            {"revolution_axis", other.revolution_axis},
+            {"probability", other.probability}};
+  });
   return json;
 }
 
@@ -427,30 +388,29 @@ std::string linesOf(const SymmetryFrame& frame, const Eigen::Vector3d& shift) {
   return lines;
 }
 
+/// The motion to the frame of the input.
 /// \param best plane that the frame is to have at x = 0; nothing: its own first plane.
 Motion toOwnFrame(const Console& console, const InputShape& input, const AlignOptions& options,
                   const CommonOptions& common, const std::optional<BestPlane>& best) {
-  SymmetryFrame frame = computeFrame(console, input, common, options.as_published);
+  Step step(console, "Searching the frame");
+  FrameOptions how;
+  how.as_published = options.as_published;
+  // Otherwise it is refined on the mesh itself.
+  how.refined = !input.shape.mesh || common.viewpoint.mode == Viewpoint::Mode::Given;
+  common.applyTo(how);
+  SymmetryAlignment<pcl::PointXYZ> alignment;
+  SymmetryFrame frame = namingFile(input.path, [&] {
+    alignment.setOptions(how);
+    alignment.setViewpoint(input.viewpoint(common));
+    alignment.setInputCloud(input.points);
+    SymmetryFrame found = checked(alignment, input, alignment.compute());
+    if (input.shape.mesh && !alignment.usedViewpoint()) refineOnMesh(meshSurface(*input.shape.mesh), found);
+    return found;
+  });
+  step.done(alignment.usedViewpoint() ? "seen from one side" : "");
   if (best) bringToPlane(best->plane, frame);
   return {shiftedBack(frame.T_canonical_input, input.shift(), Eigen::Vector3d::Zero()), true,
           linesOf(frame, input.shift()), describe(frame, input.shift()), sceneOf(input, frame)};
-}
-
-Motion toTarget(const Console& console, const InputShape& input, const AlignOptions& options,
-                const CommonOptions& common) {
-  const InputShape target = loadInput(console, *options.target, common);
-  Motion motion = registerTo(console, input, target, common);
-  motion.scene = sceneOf(input, target, motion.transform);
-  if (motion.converged)
-    motion.text = matrixLines(motion.transform, std::max(lengthDigits(input.shift()), lengthDigits(target.shift())));
-  return motion;
-}
-
-/// The transform, row by row.
-std::vector<std::vector<nlohmann::json>> rowsOf(const Motion& motion) {
-  std::vector<nlohmann::json> row{motion.converged};
-  for (const double value : rowMajor(motion.transform)) row.emplace_back(value);
-  return {row};
 }
 
 void save(const Console& console, const Shape& shape, pcl::PCLPointCloud2 fields, const Eigen::Isometry3d& motion,
@@ -466,12 +426,13 @@ void save(const Console& console, const Shape& shape, pcl::PCLPointCloud2 fields
 }
 
 void analyze(const AlignOptions& options, FileJob& job) {
-  const Console& console = job.console();
-  const CommonOptions& common = job.common();
-  const InputShape input = loadInput(console, job.path(), common);
+  const Console& console = job.console;
+  const CommonOptions& common = job.common;
+  const InputShape input = loadInput(console, job.path, common);
   const bool symmetrizes = options.symmetrize != "none";
-  if (options.cut && !input.shape.mesh) throw InputError(job.path() + ": has no faces, -cut needs a mesh");
-  if (symmetrizes && options.output && input.shape.mesh) checkMeshExtension(job.output(*options.output));
+  if (options.cut && !input.shape.mesh) throw InputError(job.path + ": has no faces, -cut needs a mesh");
+  if (symmetrizes && options.output && input.shape.mesh && !boost::iends_with(*options.output, ".ply"))
+    throw UsageError(job.output(*options.output) + ": a symmetrized mesh is written as .ply");
   const auto find_plane = [&]() -> std::optional<BestPlane> {
     if (symmetrizes) return bestPlane(console, input, common);
     if (options.complete) return completingPlane(console, input, common, options.any_plane);
@@ -491,16 +452,16 @@ void analyze(const AlignOptions& options, FileJob& job) {
   }
   pcl::PCLPointCloud2 fields = shape ? std::move(shape->fields) : input.fields();
   if (options.complete && motion.converged) {
-    const pcl::PointCloud<pcl::PointXYZ> both =
-        complete(console, input, common, *best, fields, motion.json["completed"]);
+    const Cloud both = complete(console, input, common, *best, fields, motion.json["completed"]);
     motion.scene = sceneOf(both, input.points->size(), "the input and what completes it", "input", "added");
   }
-  job.report({motion.text, motion.json, rowsOf(motion)});
+  std::vector<nlohmann::json> row{motion.converged};
+  for (const double value : rowMajor(motion.transform)) row.emplace_back(value);
+  job.report({motion.text, motion.json, {row}});
   if (!motion.converged)
-    throw InputError(job.path() + ": does not fit " + *options.target + ": " +
-                     motion.json["reason"].get<std::string>());
-  if (options.html_path) writePage(motion.scene, {job.path(), motion.text}, job.output(*options.html_path));
-  if (options.png_path) renderPicture(motion.scene, job.output(*options.png_path), 800, 600);
+    throw InputError(job.path + ": does not fit " + *options.target + ": " + motion.json["reason"].get<std::string>());
+  if (options.html_path) writePage(motion.scene, {job.path, motion.text}, job.output(*options.html_path));
+  if (options.png_path) renderPicture({motion.scene}, job.output(*options.png_path), 800, 600);
   if (shape && shape->mesh) {
     const Eigen::Isometry3d T_output_shifted = motion.transform * Eigen::Translation3d(input.shift());
     if (options.output)
@@ -510,20 +471,9 @@ void analyze(const AlignOptions& options, FileJob& job) {
   if (options.output) save(console, input.shape, std::move(fields), motion.transform, job.output(*options.output));
 }
 
-/// The files of a command with -merge, in the order of their arguments.
-std::vector<InputShape> loadScans(const Console& console, const AlignOptions& options) {
-  std::vector<std::string> arguments{options.input};
-  if (options.output) arguments.push_back(*options.output);
-  arguments.insert(arguments.end(), options.more.begin(), options.more.end());
-  std::vector<InputShape> inputs;
-  for (const InputFile& file : inputFiles(arguments)) inputs.push_back(loadInput(console, file.path, options.common));
-  return inputs;
-}
-
 nlohmann::json describe(const std::vector<InputShape>& inputs, const RegisteredScans& registered,
                         const std::vector<Eigen::Isometry3d>& motions) {
   nlohmann::json json{{"scans", nlohmann::json::array()},
-                      {"pairs", nlohmann::json::array()},
                       {"resolution", registered.resolution},
                       {"timing_ms", timingJson(registered.timing_ms)}};
   for (std::size_t k = 0; k < inputs.size(); ++k) {
@@ -534,22 +484,21 @@ nlohmann::json describe(const std::vector<InputShape>& inputs, const RegisteredS
       scan["left_out"] = registered.scans[k].left_out;
     json["scans"].push_back(scan);
   }
-  for (const ScanPair& pair : registered.pairs)
-    json["pairs"].push_back({{"source", inputs[pair.source].path},
-                             {"target", inputs[pair.target].path},
-                             {"overlap", pair.overlap},
-                             {"used", pair.used}});
+  json["pairs"] = listOf(registered.pairs, [&](const ScanPair& pair) -> nlohmann::json {
+    return {{"source", inputs[pair.source].path},
+            {"target", inputs[pair.target].path},
+            {"overlap", pair.overlap},
+            {"used", pair.used}};
+  });
   return json;
 }
 
-/// Scans of one object as one cloud.
 struct Merged {
   InputShape shape;            ///< its points in the frame of the first scan that is kept, minus its shift
   pcl::PCLPointCloud2 fields;  ///< fields of the scans, and the index of each point's scan
   std::vector<int> scans;      ///< scan of each point
 };
 
-/// Whether the points of two clouds can be stored in one.
 bool haveSameFields(const pcl::PCLPointCloud2& a, const pcl::PCLPointCloud2& b) {
   return std::equal(a.fields.begin(), a.fields.end(), b.fields.begin(), b.fields.end(),
                     [](const pcl::PCLPointField& x, const pcl::PCLPointField& y) {
@@ -561,14 +510,14 @@ Merged merged(const std::vector<InputShape>& inputs, const std::vector<ObjectSca
               const std::vector<pcl::Indices>& indices, const RegisteredScans& registered,
               const std::vector<Eigen::Isometry3d>& motions, std::size_t first) {
   Merged merged;
-  merged.shape.shape.points = merged.shape.points = pcl::make_shared<pcl::PointCloud<pcl::PointXYZ>>();
+  merged.shape.shape.points = merged.shape.points = pcl::make_shared<Cloud>();
   merged.shape.shape.shift = inputs[first].shift();
   std::vector<pcl::Indices> kept(inputs.size());
   for (const ScanPoint& point : registered.mergedPoints(scans))
     kept[point.scan].push_back(indices[point.scan][point.index]);
   for (std::size_t k = 0; k < inputs.size(); ++k) {
     if (!registered.scans[k].left_out.empty()) continue;
-    pcl::PointCloud<pcl::PointXYZ> moved;
+    Cloud moved;
     pcl::transformPointCloud(*inputs[k].points, kept[k], moved, registered.scans[k].T_first_scan.matrix());
     *merged.shape.points += moved;
     merged.scans.resize(merged.shape.points->size(), static_cast<int>(k));
@@ -592,7 +541,11 @@ int mergeScans(const AlignOptions& options) {
   for (const std::optional<std::string>& output : outputs)
     if (output) checkTarget(*output);
   const bool prints = isStandardOutputFree(outputs);
-  const std::vector<InputShape> inputs = loadScans(console, options);
+  std::vector<std::string> arguments{options.input};
+  if (options.output) arguments.push_back(*options.output);
+  arguments.insert(arguments.end(), options.more.begin(), options.more.end());
+  std::vector<InputShape> inputs;
+  for (const InputFile& file : inputFiles(arguments)) inputs.push_back(loadInput(console, file.path, options.common));
   for (const InputShape& input : inputs)
     if (!haveSameFields(input.fields(), inputs.front().fields()))
       throw InputError(input.path + ": has other fields than " + inputs.front().path);
@@ -626,7 +579,7 @@ int mergeScans(const AlignOptions& options) {
   }
   nlohmann::json json = describe(inputs, registered, motions);
   if (num_kept == 1 && inputs.size() > 1) {
-    if (options.common.json_path) writeText(*options.common.json_path, jsonText(json) + "\n");
+    writeJson(options.common, json);
     if (prints) writeText("-", text);
     throw InputError(*options.merge + ": is not written, as no two of the scans fit each other");
   }
@@ -654,9 +607,9 @@ int mergeScans(const AlignOptions& options) {
   const std::size_t num_points = finiteIndices(cloud.fields).size();
   text += formatted("%zu of ", num_kept) + counted(inputs.size(), "scan") + ", " + counted(num_points, "point") +
           formatted(", one in each cube of %.3g\n", registered.resolution);
-  if (options.common.json_path) writeText(*options.common.json_path, jsonText(json) + "\n");
+  writeJson(options.common, json);
   if (options.html_path) writePage(scene, {*options.merge, text}, *options.html_path);
-  if (options.png_path) renderPicture(scene, *options.png_path, 800, 600);
+  if (options.png_path) renderPicture({scene}, *options.png_path, 800, 600);
   save(console, cloud.shape.shape, std::move(cloud.fields), Eigen::Isometry3d::Identity(), *options.merge);
   if (prints) writeText("-", text);
   if (incomplete) std::rethrow_exception(incomplete);

@@ -2,23 +2,14 @@
 #include <pcl/conversions.h>
 
 #include <algorithm>
-#include <array>
 #include <boost/algorithm/string/join.hpp>
 #include <boost/crc.hpp>
 #include <boost/filesystem.hpp>
-#include <cstdio>
 #include <ctime>
 #include <fstream>
 #include <map>
-#include <nlohmann/json.hpp>
-#include <string>
-#include <vector>
 
-#include "command_line/command_line.h"
-#include "command_line/console.h"
-#include "command_line/input_files.h"
 #include "command_line/run_on_files.h"
-#include "command_line/tool_errors.h"
 #include "io/answers.h"
 #include "io/file_text.h"
 #include "io/input_shape.h"
@@ -37,8 +28,6 @@ struct DatabaseToolOptions {
   std::optional<std::string> csv, tag, unit;
   bool is_part = false;
   CommonOptions common;
-
-  DatabaseToolOptions() { common.mesh_points = kDatabaseMeshPoints; }
 };
 
 CommandLine commandLine(DatabaseToolOptions& options) {
@@ -184,7 +173,7 @@ private:
       console_.error("left out: " + (is_named ? reason : name + ": " + reason));
       json["failures"].push_back({{"name", name}, {"reason", reason}});
     }
-    writeJson(json);
+    writeJson(options_.common, json);
     return report.failures.empty() ? 0 : 1;
   }
 
@@ -222,7 +211,7 @@ private:
                     database.unit().empty() ? "not given" : database.unit().c_str(), bytes);
     }
     if (options_.csv) writeText(*options_.csv, table);
-    writeJson(json);
+    writeJson(options_.common, json);
     return 0;
   }
 
@@ -233,7 +222,7 @@ private:
       damages = SymmetryDatabase::check(options_.file);
       step.done(damages.empty() ? "no damage" : counted(damages.size(), "damage"));
     }
-    writeJson({{"damages", damages}});
+    writeJson(options_.common, {{"damages", damages}});
     if (!damages.empty()) throw InputError(options_.file + ": " + boost::algorithm::join(damages, "; "));
     return 0;
   }
@@ -252,7 +241,7 @@ private:
         if (fs::exists(path)) throw InputError(path + ": exists, is not replaced");
         pcl::PCLPointCloud2 cloud;
         pcl::toPCLPointCloud2(database.cloud(name), cloud);
-        saveCloud(path, cloud, Eigen::Vector4f::Zero(), Eigen::Quaternionf::Identity());
+        saveCloud(path, cloud);
       } catch (const pcl::PCLException& reason) {
         failures.push_back(plainMessage(reason));
       } catch (const InputError& reason) {
@@ -264,16 +253,13 @@ private:
     return failures.empty() ? 0 : 1;
   }
 
-  void writeJson(const nlohmann::json& json) const {
-    if (options_.common.json_path) writeText(*options_.common.json_path, jsonText(json) + "\n");
-  }
-
   const DatabaseToolOptions& options_;
   const Console console_;
 };
 
 int run(int argc, char** argv) {
   DatabaseToolOptions options;
+  options.common.mesh_points = kDatabaseMeshPoints;
   CommandLine line = commandLine(options);
   if (!line.parse(argc, argv)) return 0;
   options.file = options.arguments.front();

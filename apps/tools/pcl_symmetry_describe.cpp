@@ -3,20 +3,12 @@
 
 #include <algorithm>
 #include <boost/filesystem.hpp>
-#include <cstring>
-#include <optional>
 #include <ostream>
-#include <string>
-#include <vector>
 
-#include "command_line/command_line.h"
-#include "command_line/console.h"
 #include "command_line/run_on_files.h"
-#include "command_line/tool_errors.h"
 #include "core/matching/shape_signature.h"
 #include "core/matching/symmetry_descriptor.h"
 #include "io/answers.h"
-#include "io/exact_coordinates.h"
 #include "io/file_text.h"
 #include "io/input_shape.h"
 #include "io/shape_output.h"
@@ -74,7 +66,7 @@ pcl::PCLPointCloud2 toBlob(const std::vector<const float*>& values, float (Point
 }
 
 pcl::PCLPointCloud2 describe(const InputShape& input, const DescribeOptions& options) {
-  const pcl::PointCloud<pcl::PointXYZ>& cloud = *input.points;
+  const Cloud& cloud = *input.points;
   const auto max_points = static_cast<std::size_t>(options.num_points);
   const detail::SelectedPoints selected = detail::selectPoints(cloud, nullptr, max_points, options.common.seed);
   if (const std::string reason = detail::reasonForNoAnswer(selected.points); !reason.empty())
@@ -100,14 +92,6 @@ pcl::PCLPointCloud2 describe(const InputShape& input, const DescribeOptions& opt
   return toBlob({all.gedt.data()}, &GEDTSignature32768::gedt);
 }
 
-std::vector<std::string> outputPaths(const DescribeOptions& options) {
-  std::vector<std::string> paths;
-  for (const std::string& input : options.inputs)
-    paths.push_back((fs::path(options.output) / (fs::path(input).stem().string() + ".pcd")).string());
-  makeFolder(options.output);
-  return paths;
-}
-
 /// \return the values of a file that this tool wrote; none if it holds no descriptors of the type.
 std::vector<float> valuesIn(const std::string& path, const std::string& type) {
   boost::system::error_code error;
@@ -121,14 +105,12 @@ std::vector<float> valuesIn(const std::string& path, const std::string& type) {
   return values;
 }
 
-/// Number of values of one descriptor.
 std::size_t sizeOf(const std::string& type) {
   if (type == "signature") return ShapeSignature20736::descriptorSize();
   if (type == "prsd") return PRSDSignature1024::descriptorSize();
   return type == "prst" ? PRSTSignature32768::descriptorSize() : GEDTSignature32768::descriptorSize();
 }
 
-/// Writes the content of the files of the folder, one after the other.
 void writeTable(const DescribeOptions& options, const std::vector<std::string>& outputs,
                 const std::vector<std::string>& failures) {
   const std::size_t size = sizeOf(options.type);
@@ -166,9 +148,13 @@ int run(int argc, char** argv) {
   const Console console(options.common.quiet);
   const std::vector<InputFile> files = inputFiles(options.inputs);
   checkNames(files);
+  makeFolder(options.output);
   options.inputs.clear();
-  for (const InputFile& file : files) options.inputs.push_back(file.path);
-  const std::vector<std::string> outputs = outputPaths(options);
+  std::vector<std::string> outputs;
+  for (const InputFile& file : files) {
+    options.inputs.push_back(file.path);
+    outputs.push_back((fs::path(options.output) / (fs::path(file.path).stem().string() + ".pcd")).string());
+  }
   Step step(console, "Describing " + counted(options.inputs.size(), "shape"));
   std::vector<std::string> failures =
       workOnAll(options.inputs.size(), options.common.threads, step,

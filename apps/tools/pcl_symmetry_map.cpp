@@ -1,29 +1,16 @@
 /// The transform mapped back to space: for each point of a cloud and each cell of a volume, the greatest symmetry of
 /// any plane, axis or center there.
-#include <Eigen/Core>
 #include <algorithm>
 #include <boost/algorithm/string.hpp>
 #include <cmath>
-#include <functional>
-#include <limits>
-#include <memory>
-#include <nlohmann/json.hpp>
-#include <string>
-#include <utility>
-#include <vector>
 
-#include "command_line/command_line.h"
-#include "command_line/console.h"
 #include "command_line/run_on_files.h"
-#include "command_line/tool_errors.h"
 #include "io/answers.h"
 #include "io/cloud_fields.h"
-#include "io/exact_coordinates.h"
 #include "io/input_shape.h"
 #include "io/shape_output.h"
 #include "pcl_symmetry/axial_symmetry_transform.h"
 #include "pcl_symmetry/core/local_symmetry.h"
-#include "pcl_symmetry/core/point_set.h"
 #include "pcl_symmetry/planar_symmetry_transform.h"
 #include "pictures/picture.h"
 #include "pictures/raster_image.h"
@@ -34,7 +21,6 @@ using namespace pcl_symmetry;
 using namespace pcl_symmetry::apps;
 
 struct SymmetryMeasure {
-  std::string of;             ///< "planes", "axes" or "centers"
   std::size_t num_tried = 0;  ///< number of planes, axes or centers that were tried
   /// Gives the greatest symmetry of the planes, axes or centers through each of 3 x N points, with a number of threads.
   std::function<std::vector<float>(const Points&, int)> through;
@@ -43,21 +29,26 @@ struct SymmetryMeasure {
   std::vector<AxisLine> axes = {};                ///< the best axes, for pictures
 };
 
-/// What is measured.
-struct MeasureOptions {
+struct MapOptions {
+  BatchOptions batch;
+  std::string input;
+  std::optional<std::string> output, volume_path, slices_path, png_path;
   std::string of = "planes";       ///< "planes", "axes" or "centers"
-  int fold = -1;                   ///< order of the rotations about axes, 0 = any angle; negative: 2 to 8 and any angle
+  std::string measure = "D";       ///< "D" or "prst"
+  std::optional<int> fold;         ///< order of the rotations about axes, 0 = any angle; none: 2 to 8 and any angle
   std::string method = "sampled";  ///< estimator for planes, one of kMethodNames
   bool as_published = false;
   std::optional<double> refined_share;  ///< for planes by method rotational
   /// Radius of the window around each point for planes, as a share of the shape's radius; 0 = the whole shape.
   double scale = 0.0;
+  int cells = 96;
+  std::optional<int> size;
+  CommonOptions common;
 };
 
 constexpr int kMostListed = 5;
 constexpr double kLeastListed = 0.6;  // D
 
-/// Sets the options that all transforms have.
 template <typename Transform>
 void setUp(Transform& transform, const InputShape& input, const CommonOptions& common) {
   if (common.sigma) transform.setSigma(*common.sigma);
@@ -66,7 +57,7 @@ void setUp(Transform& transform, const InputShape& input, const CommonOptions& c
   setInput(transform, input, common);
 }
 
-SymmetryMeasure ofPlanes(const InputShape& input, const CommonOptions& common, const MeasureOptions& options) {
+SymmetryMeasure ofPlanes(const InputShape& input, const CommonOptions& common, const MapOptions& options) {
   PlanarSymmetryTransform<pcl::PointXYZ> transform;
   transform.setGridSize(common.grid);
   PlanarTransformOptions estimator;
@@ -75,33 +66,31 @@ SymmetryMeasure ofPlanes(const InputShape& input, const CommonOptions& common, c
   if (options.refined_share) estimator.rotational.refined_share = *options.refined_share;
   transform.setOptions(estimator);
   setUp(transform, input, common);
-  const auto map = std::make_shared<const SymmetryMap>(transform.compute());
-  checkAnswer(transform, input);
+  const auto map = std::make_shared<const SymmetryMap>(checked(transform, input, transform.compute()));
   if (options.scale > 0.0) {
     LocalSymmetryOptions local;
     local.scale = options.scale * map->grid.radius();
     local.seed = common.seed;
-    return {"planes", static_cast<std::size_t>(local.num_directions),
+    return {static_cast<std::size_t>(local.num_directions),
             [edt = transform.getDistanceTransform(), local](const Points& points, int threads) mutable {
               local.num_threads = threads;
               return localSymmetry(*edt, points, local);
             }};
   }
-  return {"planes", map->values.size(),
+  return {map->values.size(),
           [map](const Points& points, int threads) { return pointSymmetry(*map, points, threads); }};
 }
 
-SymmetryMeasure ofAxes(const InputShape& input, const CommonOptions& common, int fold) {
+SymmetryMeasure ofAxes(const InputShape& input, const CommonOptions& common, std::optional<int> fold) {
   AxialSymmetryTransform<pcl::PointXYZ> transform;
   // A map of axes has one dimension more: half as many cells, a quarter of the angles theta.
   const int num_phi = std::max(2, common.grid / 2 * 2);
   transform.setNumCells(std::max(8, common.grid / 2));
   transform.setMapSize(std::max(1, common.grid / 4), num_phi, std::max(1, common.grid / 2));
-  if (fold >= 0) transform.setOptions({{fold}});
+  if (fold) transform.setOptions({{*fold}});
   setUp(transform, input, common);
-  const auto map = std::make_shared<const AxisMap>(transform.compute());
-  checkAnswer(transform, input);
-  SymmetryMeasure measure{"axes", map->greatest.size(), [map](const Points& points, int threads) {
+  const auto map = std::make_shared<const AxisMap>(checked(transform, input, transform.compute()));
+  SymmetryMeasure measure{map->greatest.size(), [map](const Points& points, int threads) {
                             return axialPointSymmetry(*map, points, threads);
                           }};
   for (const AxisMaximum& maximum : transform.getAxes(kMostListed, kLeastListed)) {
@@ -126,15 +115,15 @@ SymmetryMeasure ofCenters(const InputShape& input, const CommonOptions& common) 
   AxialSymmetryTransform<pcl::PointXYZ> transform;
   transform.setNumCells(common.grid);
   setUp(transform, input, common);
-  const auto map = std::make_shared<const CenterMap>(transform.computeCenters(std::min(512, common.grid)));
-  checkAnswer(transform, input);
+  const auto map = std::make_shared<const CenterMap>(
+      checked(transform, input, transform.computeCenters(std::min(512, common.grid))));
   const auto through = [map](const Points& points, int) {
     std::vector<float> values;
     for (Eigen::Index i = 0; i < points.cols(); ++i)
       values.push_back(static_cast<float>((*map)(points.col(i).cast<double>())));
     return values;
   };
-  SymmetryMeasure measure{"centers", map->values.size(), through};
+  SymmetryMeasure measure{map->values.size(), through};
   const Eigen::Vector3d p = shiftedBack(map->center(map->strongest()), input.shift());
   const double value = map->values[map->strongest()];
   measure.lines.push_back(formatted("center %.6g %.6g %.6g  D %.3f", p.x(), p.y(), p.z(), value));
@@ -153,8 +142,7 @@ SymmetryMeasure byEquation1(SymmetryMeasure measure) {
   return measure;
 }
 
-/// \throws InputError if the input holds no answer.
-SymmetryMeasure measureSymmetry(const InputShape& input, const CommonOptions& common, const MeasureOptions& options) {
+SymmetryMeasure measureSymmetry(const InputShape& input, const CommonOptions& common, const MapOptions& options) {
   return namingFile(input.path, [&] {
     if (options.of == "axes") return ofAxes(input, common, options.fold);
     return options.of == "centers" ? ofCenters(input, common) : ofPlanes(input, common, options);
@@ -164,38 +152,26 @@ SymmetryMeasure measureSymmetry(const InputShape& input, const CommonOptions& co
 // Vermilion, which color-blind readers distinguish from every gray.
 const Eigen::Vector3d kSurfaceColor(0.84, 0.37, 0.0);
 
-struct MapOptions {
-  BatchOptions batch;
-  std::string input;
-  std::optional<std::string> output, volume_path, slices_path, png_path;
-  std::string measure = "D";
-  MeasureOptions what;
-  std::optional<int> fold;
-  int cells = 96;
-  std::optional<int> size;
-  CommonOptions common;
-};
-
 CommandLine commandLine(MapOptions& options) {
   CommandLine line("pcl_symmetry_map", "Writes the greatest symmetry of any plane, axis or center at each point.",
                    "pcl_symmetry_map bull.off bull_symmetry.pcd -volume bull.vti -slices bull_slices.png");
   options.batch.outputs = {&options.output, &options.volume_path, &options.slices_path, &options.png_path};
   line.positional("input", options.input, kOneOrManyInputs + std::string("; or a volume (") + kVolumeFiles + ")")
       .positional("output", options.output, ".pcd or .ply: the points with one more field, intensity, about 0 to 1")
-      .choice("of", options.what.of, {"planes", "axes", "centers"},
+      .choice("of", options.of, {"planes", "axes", "centers"},
               "what is symmetric: reflections, rotations about axes, or point symmetry")
       .choice("measure", options.measure, {"D", "prst"},
               "what is written: D of equation 2, or PRST = sqrt((1 + D) / 2) of equation 1, within 0.707 and 1")
       .number(
           "fold", options.fold, Range::closed(0, 60),
           "with -of axes: order of the rotations, 0 = by any angle, not 1; default: the best of 2 to 8 and any angle")
-      .choice("method", options.what.method, kMethodNames, "estimator of planes (Sections 4.2 and 4.3)")
-      .flag("as_published", options.what.as_published, "with -method voting: near pairs of points vote like all others")
+      .choice("method", options.method, kMethodNames, "estimator of planes (Sections 4.2 and 4.3)")
+      .flag("as_published", options.as_published, "with -method voting: near pairs of points vote like all others")
       .number(
-          "refined_share", options.what.refined_share, Range::closed(0, 1),
+          "refined_share", options.refined_share, Range::closed(0, 1),
           "with -method rotational, multiresolution: this share of the planes, those of the greatest D, is computed "
           "finely, the others coarsely; default 1")
-      .number("scale", options.what.scale, Range::closed(0, 1),
+      .number("scale", options.scale, Range::closed(0, 1),
               "local symmetry of planes: within this share of the shape's radius around each point; 0 = of the whole")
       .text("volume", "FILE", options.volume_path, "VTK image (.vti) of the space around, for ParaView")
       .picture("slices", options.slices_path,
@@ -302,16 +278,14 @@ RasterImage drawSlices(const SymmetryMeasure& map, const CellBox& volume, const 
   return sideBySide(images);
 }
 
-/// The values at the points of a cloud.
 struct MappedCloud {
-  pcl::PointCloud<pcl::PointXYZ>::ConstPtr cloud;
+  Cloud::ConstPtr cloud;
   std::vector<std::size_t> indices;  ///< indices of the finite points
   Points points;
   std::vector<float> symmetry;
   float least, greatest;
 
-  MappedCloud(const pcl::PointCloud<pcl::PointXYZ>::ConstPtr& input, const SymmetryMeasure& map, int threads,
-              Step& step)
+  MappedCloud(const Cloud::ConstPtr& input, const SymmetryMeasure& map, int threads, Step& step)
       : cloud(input), points(finitePoints(*input, &indices)) {
     constexpr Eigen::Index kAtATime = 100'000;
     for (Eigen::Index i = 0; i < points.cols(); i += kAtATime) {
@@ -331,8 +305,9 @@ void savePoints(const InputShape& input, const MappedCloud& mapped, const std::s
   saveCloud(path, withIntensity(input.fields(), intensity), input.shape.sensor_origin, input.shape.sensor_orientation);
 }
 
-void drawPoints(const SymmetryMeasure& map, const MappedCloud& mapped, const std::string& path, int size) {
-  PicturePanel panel{"greatest symmetry of the " + map.of + " through each point"};
+void drawPoints(const MapOptions& options, const SymmetryMeasure& map, const MappedCloud& mapped,
+                const std::string& path) {
+  PicturePanel panel{"greatest symmetry of the " + options.of + " through each point"};
   panel.axes = map.axes;
   panel.support.assign(mapped.cloud->size(), 0.0);
   const double range = std::max(1e-9f, mapped.greatest - mapped.least);
@@ -340,49 +315,49 @@ void drawPoints(const SymmetryMeasure& map, const MappedCloud& mapped, const std
     panel.support[mapped.indices[i]] = (mapped.symmetry[i] - mapped.least) / range;
   PictureScene scene{mapped.cloud, std::nullopt, {panel}};
   scene.show_color_bar = false;
-  renderPicture(scene, path, size, size);
+  const int size = options.size.value_or(800);
+  renderPicture({scene}, path, size, size);
 }
 
-/// Writes the outputs that describe the space around the points.
 void writeSpace(const MapOptions& options, const FileJob& job, const InputShape& input, const SymmetryMeasure& map,
                 const Points& points) {
   const CellBox volume(points, options.cells);
   if (options.volume_path) {
     const std::string path = job.output(*options.volume_path);
-    Step writing(job.console(), "Writing " + path);
-    writeSymmetry(map, volume, input.shift(), job.common().threads, path);
+    Step writing(job.console, "Writing " + path);
+    writeSymmetry(map, volume, input.shift(), job.common.threads, path);
     writing.done(std::to_string(volume.size.prod()) + " cells");
   }
   if (options.slices_path)
-    writeImage(drawSlices(map, volume, points, options.size.value_or(300), job.common().threads),
+    writeImage(drawSlices(map, volume, points, options.size.value_or(300), job.common.threads),
                job.output(*options.slices_path));
 }
 
 void analyze(const MapOptions& options, FileJob& job) {
-  const InputShape input = loadInput(job.console(), job.path(), options.common);
-  Step transforming(job.console(), "Transforming");
-  SymmetryMeasure map = measureSymmetry(input, job.common(), options.what);
+  const InputShape input = loadInput(job.console, job.path, options.common);
+  Step transforming(job.console, "Transforming");
+  SymmetryMeasure map = measureSymmetry(input, job.common, options);
   if (options.measure == "prst") map = byEquation1(std::move(map));
-  const double transforming_ms = transforming.done(std::to_string(map.num_tried) + " " + map.of);
+  const double transforming_ms = transforming.done(std::to_string(map.num_tried) + " " + options.of);
 
-  Step mapping(job.console(), "Mapping back to points");
-  const MappedCloud mapped(input.points, map, job.common().threads, mapping);
+  Step mapping(job.console, "Mapping back to points");
+  const MappedCloud mapped(input.points, map, job.common.threads, mapping);
   const double mapping_ms = mapping.done(counted(mapped.symmetry.size(), "point"));
 
   std::string text;
   for (const std::string& line_of_best : map.lines) text += line_of_best + "\n";
-  text +=
-      formatted("symmetry of the %s through the points: %.3f to %.3f\n", map.of.c_str(), mapped.least, mapped.greatest);
-  nlohmann::json json{{"file", job.path()},
+  text += formatted("symmetry of the %s through the points: %.3f to %.3f\n", options.of.c_str(), mapped.least,
+                    mapped.greatest);
+  nlohmann::json json{{"file", job.path},
                       {"num_points", mapped.symmetry.size()},
                       {"least", mapped.least},
                       {"greatest", mapped.greatest},
                       {"timing_ms", {{"transform", transforming_ms}, {"points", mapping_ms}}}};
-  if (!map.best.empty()) json[map.of] = map.best;
+  if (!map.best.empty()) json[options.of] = map.best;
   job.report({text, json, {{mapped.symmetry.size(), mapped.least, mapped.greatest}}});
   if (options.output) savePoints(input, mapped, job.output(*options.output));
   writeSpace(options, job, input, map, mapped.points);
-  if (options.png_path) drawPoints(map, mapped, job.output(*options.png_path), options.size.value_or(800));
+  if (options.png_path) drawPoints(options, map, mapped, job.output(*options.png_path));
 }
 
 int run(int argc, char** argv) {
@@ -392,13 +367,11 @@ int run(int argc, char** argv) {
   if (options.output) checkCloudExtension(*options.output);
   if (options.volume_path && !boost::algorithm::iends_with(*options.volume_path, ".vti"))
     rejectValue("-volume", *options.volume_path, "must end in .vti");
-  options.what.fold = options.fold.value_or(-1);
-  line.goWith("-of planes", options.what.of == "planes", {"scale", "method", "refined_share", "as_published"});
-  line.goWith("the whole shape, without -scale", options.what.scale == 0.0,
-              {"method", "refined_share", "as_published"});
-  line.goWith("-method rotational", options.what.method == "rotational", {"refined_share"});
-  line.goWith("-method voting", options.what.method == "voting", {"as_published"});
-  line.goWith("-of axes", options.what.of == "axes", {"fold"});
+  line.goWith("-of planes", options.of == "planes", {"scale", "method", "refined_share", "as_published"});
+  line.goWith("the whole shape, without -scale", options.scale == 0.0, {"method", "refined_share", "as_published"});
+  line.goWith("-method rotational", options.method == "rotational", {"refined_share"});
+  line.goWith("-method voting", options.method == "voting", {"as_published"});
+  line.goWith("-of axes", options.of == "axes", {"fold"});
   line.goWith("-volume", options.volume_path.has_value(), {"cells"});
   line.goWith("-png or -slices", options.png_path || options.slices_path, {"size"});
   if (options.fold == 1) rejectValue("-fold", "1", "must be 0 or >= 2: a rotation of order 1 changes nothing");

@@ -1,14 +1,8 @@
 /// Which models of a database are like a cloud, or are shown by it.
 #include <algorithm>
-#include <nlohmann/json.hpp>
-#include <string>
 
-#include "command_line/command_line.h"
-#include "command_line/console.h"
 #include "command_line/run_on_files.h"
-#include "command_line/tool_errors.h"
 #include "io/answers.h"
-#include "io/exact_coordinates.h"
 #include "io/file_text.h"
 #include "io/input_shape.h"
 #include "io/shape_output.h"
@@ -27,8 +21,6 @@ struct MatchOptions {
   bool recognize = false;
   RecognitionOptions recognition;
   CommonOptions common;
-
-  MatchOptions() { common.mesh_points = kDatabaseMeshPoints; }
 };
 
 CommandLine commandLine(MatchOptions& options) {
@@ -51,11 +43,11 @@ CommandLine commandLine(MatchOptions& options) {
 
 FileReport match(const FileJob& job, const SymmetryDatabase& database, const InputShape& input,
                  const MatchOptions& options) {
-  Step step(job.console(), "Matching");
+  Step step(job.console, "Matching");
   const std::vector<ModelMatch> matches =
       database.match(*input.points, options.num_matches, input.viewpoint(options.common));
   step.done(std::to_string(matches.size()) + " of " + counted(database.size(), "model"));
-  FileReport report{"", {{"file", job.path()}, {"matches", nlohmann::json::array()}}, {}};
+  FileReport report{"", {{"file", job.path}, {"matches", nlohmann::json::array()}}, {}};
   for (const ModelMatch& found : matches) {
     report.text += formatted("%s  distance %.4f\n", found.name.c_str(), found.distance);
     report.json["matches"].push_back({{"name", found.name}, {"distance", found.distance}});
@@ -67,11 +59,11 @@ FileReport match(const FileJob& job, const SymmetryDatabase& database, const Inp
 FileReport recognize(const FileJob& job, const SymmetryDatabase& database, const InputShape& input,
                      const MatchOptions& options) {
   RecognitionOptions recognition = options.recognition;
-  recognition.num_threads = job.common().threads;
-  Step step(job.console(), "Recognizing");
+  recognition.num_threads = job.common.threads;
+  Step step(job.console, "Recognizing");
   Recognition found = database.recognize(*input.points, recognition, input.viewpoint(options.common));
   found.resize(std::min(found.size(), static_cast<std::size_t>(options.num_matches)));
-  FileReport report{"", {{"file", job.path()}, {"known", !found.empty()}, {"models", nlohmann::json::array()}}, {}};
+  FileReport report{"", {{"file", job.path}, {"known", !found.empty()}, {"models", nlohmann::json::array()}}, {}};
   if (found.empty()) {
     const std::string reason =
         formatted("none of %zu reaches a confidence of %g", database.size(), recognition.min_confidence);
@@ -98,6 +90,7 @@ FileReport recognize(const FileJob& job, const SymmetryDatabase& database, const
 
 int run(int argc, char** argv) {
   MatchOptions options;
+  options.common.mesh_points = kDatabaseMeshPoints;
   CommandLine line = commandLine(options);
   if (!line.parse(argc, argv)) return 0;
   line.goWith("-recognize", options.recognize, {"candidates", "min_confidence"});
@@ -110,10 +103,10 @@ int run(int argc, char** argv) {
                                                ? std::vector<std::string>{"model", "confidence", "support", "conflict"}
                                                : std::vector<std::string>{"model", "distance"};
   return runOnFiles(options.batch, options.common, columns, [&](FileJob& job) {
-    const InputShape input = loadInput(job.path(), options.common.mesh_points, options.common.seed);
+    const InputShape input = loadInput(job.path, options.common.mesh_points, options.common.seed);
     if (const std::string reason = detail::reasonForNoAnswer(finitePoints(*input.points)); !reason.empty())
-      throw InputError(job.path() + ": " + reason);
-    job.report(namingFile(job.path(), [&] {
+      throw InputError(job.path + ": " + reason);
+    job.report(namingFile(job.path, [&] {
       return options.recognize ? recognize(job, database, input, options) : match(job, database, input, options);
     }));
   });

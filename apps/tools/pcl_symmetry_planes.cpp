@@ -2,27 +2,18 @@
 #include <algorithm>
 #include <boost/algorithm/string.hpp>
 #include <cmath>
-#include <nlohmann/json.hpp>
-#include <string>
-#include <utility>
-#include <vector>
 
-#include "command_line/command_line.h"
-#include "command_line/console.h"
 #include "command_line/run_on_files.h"
-#include "command_line/tool_errors.h"
 #include "io/answers.h"
 #include "io/cloud_fields.h"
-#include "io/exact_coordinates.h"
 #include "io/input_shape.h"
 #include "io/shape_output.h"
 #include "pcl_symmetry/core/revolution_profile.h"
 #include "pcl_symmetry/mesh_sampling.h"
 #include "pcl_symmetry/planar_symmetry_transform.h"
 #include "pcl_symmetry/symmetry_maxima_refinement.h"
-#include "pictures/picture.h"
+#include "pictures/raster_image.h"
 #include "pictures/scene_page.h"
-#include "pictures/volume_slices.h"
 
 namespace {
 
@@ -109,7 +100,6 @@ struct Findings : Detection {
   }
 };
 
-/// a, b, c and d of a plane.
 std::string coefficientsOf(const ReflectionPlane& plane, const Eigen::Vector3d& shift) {
   const Eigen::Vector4d c = printedCoefficients(plane, shift);
   return formatted("%.6f %.6f %.6f %.*g", c[0], c[1], c[2], lengthDigits(shift), c[3]);
@@ -120,7 +110,6 @@ std::string measured(double number) {
   return std::isnan(number) ? "-" : formatted("%.3f", number);
 }
 
-/// The resolution of the sensor and of the points, in words.
 std::string lineOfTolerance(const Findings& findings) {
   const double share = 100.0 * findings.tolerance / findings.diameter;
   if (findings.tolerance >= findings.resolution)
@@ -183,8 +172,8 @@ nlohmann::json describe(const SymmetryCenter& center, const Eigen::Vector3d& shi
           {"support", center.support}};
 }
 
-std::vector<std::vector<nlohmann::json>> rowsOf(const Findings& findings, const Eigen::Vector3d& shift) {
-  std::vector<std::vector<nlohmann::json>> rows;
+Rows rowsOf(const Findings& findings, const Eigen::Vector3d& shift) {
+  Rows rows;
   const auto add = [&](std::size_t number, const char* kind, const nlohmann::json& found) {
     std::vector<nlohmann::json> row{number, kind};
     for (const auto& [name, size] : {std::pair("coefficients", 4), std::pair("point", 3), std::pair("direction", 3)})
@@ -204,25 +193,23 @@ std::vector<std::vector<nlohmann::json>> rowsOf(const Findings& findings, const 
 
 nlohmann::json describe(const InputShape& input, const Findings& findings) {
   const Eigen::Vector3d& shift = input.shift();
-  nlohmann::json json{{"file", input.path},
-                      {"num_points", findings.num_points},
-                      {"stray_points", findings.num_stray_points},
-                      {"partial", findings.viewpoint.has_value()},
-                      {"undecided", findings.undecided},
-                      {"viewpoint", {{"from", toString(findings.viewpoint_source)}}},
-                      {"tolerance", findings.tolerance},
-                      {"resolution", findings.resolution},
-                      {"planes", nlohmann::json::array()},
-                      {"axes", nlohmann::json::array()},
-                      {"centers", nlohmann::json::array()},
-                      {"timing_ms", timingJson(findings.timing_ms)}};
+  nlohmann::json json{
+      {"file", input.path},
+      {"num_points", findings.num_points},
+      {"stray_points", findings.num_stray_points},
+      {"partial", findings.viewpoint.has_value()},
+      {"undecided", findings.undecided},
+      {"viewpoint", {{"from", toString(findings.viewpoint_source)}}},
+      {"tolerance", findings.tolerance},
+      {"resolution", findings.resolution},
+      {"planes", planesJson(findings.planes, shift)},
+      {"axes", listOf(findings.axes, [&](const auto& axis) { return describe(axis, shift); })},
+      {"centers", listOf(findings.centers, [&](const auto& center) { return describe(center, shift); })},
+      {"timing_ms", timingJson(findings.timing_ms)}};
   if (findings.viewpoint) json["viewpoint"]["position"] = numbersOf(shiftedBack(*findings.viewpoint, shift));
-  for (const SymmetryPlane& plane : findings.planes) json["planes"].push_back(planeJson(plane, shift));
   if (findings.best) json["best"] = planeJson(*findings.best, shift);
   if (findings.flat) json["flat"] = {{"coefficients", numbersOf(*findings.flat, shift)}};
-  for (const SymmetryAxis& axis : findings.axes) json["axes"].push_back(describe(axis, shift));
   if (findings.viewpoint) json["rotations"] = rotationsJson(findings.rotations, shift);
-  for (const SymmetryCenter& center : findings.centers) json["centers"].push_back(describe(center, shift));
   return json;
 }
 
@@ -256,7 +243,7 @@ std::vector<PicturePanel> panelsOf(const Findings& findings) {
   return panels;
 }
 
-PictureScene makeScene(const pcl::PointCloud<pcl::PointXYZ>::ConstPtr& cloud, const Findings& findings,
+PictureScene makeScene(const Cloud::ConstPtr& cloud, const Findings& findings,
                        const std::optional<Eigen::Vector3d>& given_up) {
   PictureScene scene{cloud, std::nullopt, panelsOf(findings)};
   const Eigen::Vector3d middle = finitePoints(*cloud).rowwise().mean().cast<double>();
@@ -300,23 +287,22 @@ void giveMap(SymmetryMaximaRefinement<pcl::PointXYZ>& refinement, const InputSha
 }
 
 Findings search(const FileJob& job, const InputShape& input, const PlanesOptions& options) {
-  Step searching(job.console(), "Searching planes");
+  Step searching(job.console, "Searching planes");
   SymmetryMaximaRefinement<pcl::PointXYZ> refinement;
   Findings findings;
   namingFile(input.path, [&] {
     DetectionOptions detection = options.detection;
-    job.common().applyTo(detection);
+    job.common.applyTo(detection);
     refinement.setOptions(detection);
     if (options.tolerance) refinement.setTolerance(*options.tolerance);
     refinement.setAsPublished(options.as_published);
     if (options.ground) refinement.setGround(shifted(*options.ground, input.shift()));
-    setInput(refinement, input, job.common());
+    setInput(refinement, input, job.common);
     if (options.label)
       refinement.setIndices(pcl::make_shared<pcl::Indices>(labeledPoints(input.shape.cloud, *options.label)));
     if (input.shape.mesh) refinement.setMesh(meshSurface(*input.shape.mesh));
     if (options.method_given && !input.volume) giveMap(refinement, input, options);
-    refinement.compute();
-    checkAnswer(refinement, input);
+    checked(refinement, input, refinement.compute());
   });
   static_cast<Detection&>(findings) = refinement.getDetection();
   const auto is_other = [&](const SymmetryRotation& rotation) {  // rotations by any angle are among the axes
@@ -385,6 +371,73 @@ void saveProfile(const InputShape& input, const Findings& findings, const std::s
   writeText(path, table);
 }
 
+const Eigen::Vector3d kBrighter(0.90, 0.62, 0.0), kDarker(0.0, 0.45, 0.70);  // color-blind readers distinguish them
+const Eigen::Vector3d kLine(0.84, 0.37, 0.0);
+constexpr double kFullColor = 0.3;  // difference of f at which the color is full
+
+/// A volume that is sampled at points of the input frame.
+struct SlicedVolume {
+  VolumeFunction function;
+  Eigen::Affine3d T_index_input;
+  Eigen::Vector3d middle;
+  double extent;
+
+  SlicedVolume(const ScalarGrid& volume, const VolumeLevels& levels)
+      : function(volume, levels, std::size_t{1} << 23), T_index_input(function.f.T_input_index().inverse()) {
+    const Points body = function.bodyPoints(false);
+    const Eigen::Vector3d low = body.rowwise().minCoeff().cast<double>(),
+                          high = body.rowwise().maxCoeff().cast<double>();
+    middle = 0.5 * (low + high);
+    extent = 1.15 * (high - low).maxCoeff();
+  }
+
+  std::optional<double> at(const Eigen::Vector3d& x) const {
+    const Eigen::Vector3d p = T_index_input * x;
+    return function.f.contains(p) ? std::optional<double>(function.f.at(p)) : std::nullopt;
+  }
+};
+
+RasterImage drawSlice(const SlicedVolume& volume, int axis, const std::optional<ReflectionPlane>& plane, bool compared,
+                      int size) {
+  const int across = axis == 0 ? 1 : 0, up = axis == 2 ? 1 : 2;
+  const double step = volume.extent / size;
+  RasterImage image(size, size);
+  for (int y = 0; y < size; ++y)
+    for (int x = 0; x < size; ++x) {
+      Eigen::Vector3d at = volume.middle;
+      at[across] += (x + 0.5 - 0.5 * size) * step;
+      at[up] -= (y + 0.5 - 0.5 * size) * step;
+      const double own = volume.at(at).value_or(0.0);
+      Eigen::Vector3d color = Eigen::Vector3d::Constant(own);
+      if (compared) {
+        const std::optional<double> other = volume.at(plane->reflect(at));
+        const double difference = other ? own - *other : 0.0, share = std::min(1.0, std::abs(difference) / kFullColor);
+        color = (1.0 - share) * Eigen::Vector3d::Constant(1.0 - 0.35 * own) +
+                share * (difference > 0.0 ? kBrighter : kDarker);
+      }
+      if (plane) {
+        const double in_slice = std::hypot(plane->normal()[across], plane->normal()[up]);
+        if (in_slice > 0.05 && std::abs(plane->signedDistance(at)) < 0.8 * step * in_slice) color = kLine;
+      }
+      image.set(x, y, color);
+    }
+  return image;
+}
+
+/// Three slices through the middle of the body, seen along z, x and y of the input frame, with the line of the plane;
+/// below them the same with the asymmetry f(x) - f(gamma x) in color: orange where a voxel is brighter than its
+/// reflection, blue where it is darker. Without a plane, only the upper row.
+/// \param size edge of each slice, pixels.
+RasterImage drawVolumeSlices(const ScalarGrid& volume, const VolumeLevels& levels,
+                             const std::optional<ReflectionPlane>& plane, int size) {
+  const SlicedVolume sliced(volume, levels);
+  std::vector<RasterImage> slices;
+  for (const bool compared : {false, true})
+    for (const int axis : {2, 0, 1})
+      if (plane || !compared) slices.push_back(drawSlice(sliced, axis, plane, compared, size));
+  return sideBySide(slices, 3);
+}
+
 void draw(const Console& console, const InputShape& input, const Findings& findings,
           const std::optional<Eigen::Vector3d>& up, const std::string& path) {
   Step drawing(console, "Drawing " + path);
@@ -394,15 +447,15 @@ void draw(const Console& console, const InputShape& input, const Findings& findi
     writeImage(drawVolumeSlices(*input.volume, input.levels, plane, 400), path);
   } else {
     const PictureScene scene = makeScene(input.points, findings, up);
-    renderPicture(scene, path, scene.panels.size() > 1 ? 1400 : 800, scene.panels.size() > 2 ? 1100 : 600);
+    renderPicture({scene}, path, scene.panels.size() > 1 ? 1400 : 800, scene.panels.size() > 2 ? 1100 : 600);
   }
   drawing.done();
 }
 
 void analyze(const PlanesOptions& options, FileJob& job) {
-  const InputShape input = loadInput(job.console(), job.path(), options.common);
+  const InputShape input = loadInput(job.console, job.path, options.common);
   if (input.volume && (options.support_path || options.html_path))
-    throw InputError(job.path() + ": -support and -html are of points; -surface VALUE makes some");
+    throw InputError(job.path + ": -support and -html are of points; -surface VALUE makes some");
   const std::pair<bool, const char*> of_points[]{
       {options.as_published, "-as_published"},
       {options.method_given, "-method"},
@@ -412,20 +465,20 @@ void analyze(const PlanesOptions& options, FileJob& job) {
       {options.up.has_value(), "-up"},
       {options.common.viewpoint.mode != Viewpoint::Mode::Auto, "-viewpoint"}};
   for (const auto& [is_given, flag] : of_points)
-    if (input.volume && is_given) throw InputError(job.path() + ": " + flag + " is of points, not of volumes");
+    if (input.volume && is_given) throw InputError(job.path + ": " + flag + " is of points, not of volumes");
   if (options.label && (input.volume || input.shape.mesh))
-    throw InputError(job.path() + ": -label needs a cloud with a field label");
+    throw InputError(job.path + ": -label needs a cloud with a field label");
   const Findings findings = search(job, input, options);
   if (options.ground && !findings.viewpoint)
-    job.console().warn(input.path + ": -ground has no effect without a viewpoint (-viewpoint)");
+    job.console.warn(input.path + ": -ground has no effect without a viewpoint (-viewpoint)");
   if (findings.viewpoint && !findings.hasSymmetry() && input.points->isOrganized() && !options.label)
-    job.console().warn(input.path + ": if this is a whole frame, pcl_symmetry_scene finds its objects");
+    job.console.warn(input.path + ": if this is a whole frame, pcl_symmetry_scene finds its objects");
   const std::string table = tableOf(findings, input.shift()) + (options.explain ? explained(findings) : "");
   job.report({table, describe(input, findings), rowsOf(findings, input.shift())});
   if (options.support_path) saveSupport(input, findings, job.output(*options.support_path));
-  if (options.png_path) draw(job.console(), input, findings, options.up, job.output(*options.png_path));
+  if (options.png_path) draw(job.console, input, findings, options.up, job.output(*options.png_path));
   if (options.html_path)
-    writePage(makeScene(input.points, findings, options.up), {job.path(), table}, job.output(*options.html_path));
+    writePage(makeScene(input.points, findings, options.up), {job.path, table}, job.output(*options.html_path));
   // Not all shapes have a profile.
   if (options.profile_path) saveProfile(input, findings, job.output(*options.profile_path));
 }

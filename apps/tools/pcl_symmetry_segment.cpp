@@ -2,21 +2,13 @@
 #include <algorithm>
 #include <boost/algorithm/string.hpp>
 #include <boost/filesystem/path.hpp>
-#include <nlohmann/json.hpp>
-#include <string>
-#include <vector>
 
-#include "command_line/command_line.h"
-#include "command_line/console.h"
 #include "command_line/run_on_files.h"
-#include "command_line/tool_errors.h"
 #include "io/answers.h"
-#include "io/exact_coordinates.h"
 #include "io/input_shape.h"
 #include "io/mesh_output.h"
 #include "io/shape_output.h"
 #include "pcl_symmetry/symmetry_segmentation.h"
-#include "pictures/picture.h"
 #include "pictures/scene_page.h"
 
 namespace {
@@ -29,10 +21,9 @@ struct SegmentOptions {
   std::string input;
   std::optional<std::string> output, png_path, html_path;
   std::optional<Eigen::Vector3d> up;
-  bool as_published = false;
   std::string method = "merging", evidence = "all";
-  int depth = SplittingOptions().depth, num_parts = 0, size = 800;
-  double concavity = 0.0;
+  SegmentationOptions segmentation;
+  int size = 800;
   CommonOptions common;
 };
 
@@ -52,33 +43,21 @@ CommandLine commandLine(SegmentOptions& o) {
               "merging: small patches grow to parts; splitting: as in the paper, by support for symmetry planes")
       .choice("evidence", o.evidence, {"all", "concavity"},
               "for merging: symmetry and concavity, for scans from one side, or thickness and line of sight too")
-      .number("parts", o.num_parts, Range::closed(0, 10'000),
+      .number("parts", o.segmentation.num_parts, Range::closed(0, 10'000),
               "number of parts, where the shape allows it; 0: as many as it has")
-      .flag("as_published", o.as_published, "for splitting: to the letter of Sections 4.4 and 5.3")
-      .number("depth", o.depth, Range::closed(0, 30),
+      .flag("as_published", o.segmentation.splitting.as_published,
+            "for splitting: to the letter of Sections 4.4 and 5.3")
+      .number("depth", o.segmentation.splitting.depth, Range::closed(0, 30),
               "for splitting: largest number of splits from the whole to a part")
-      .number("concavity", o.concavity, Range::closed(0, 100),
+      .number("concavity", o.segmentation.splitting.concavity_weight, Range::closed(0, 100),
               "for splitting: weight of concave edges, which attract the cut")
       .common(o.common, kJson | kSeed | kThreads | kQuiet);
   o.batch.addTo(line);
   return line;
 }
 
-SegmentationOptions segmentationOptions(const SegmentOptions& o, const CommonOptions& common) {
-  SegmentationOptions options;
-  options.method = o.method == "splitting" ? SegmentationMethod::Splitting : SegmentationMethod::Merging;
-  options.evidence = o.evidence == "all" ? MergingEvidence::All : MergingEvidence::SymmetryAndConcavity;
-  options.splitting.depth = o.depth;
-  options.splitting.concavity_weight = o.concavity;
-  options.splitting.as_published = o.as_published;
-  options.num_parts = o.num_parts;
-  options.seed = common.seed;
-  options.num_threads = common.threads;
-  return options;
-}
-
 void checkOutput(const SegmentOptions& o, const CommandLine& line) {
-  line.goWith("-method splitting and -parts 0", o.method == "splitting" && o.num_parts == 0, {"depth"});
+  line.goWith("-method splitting and -parts 0", o.method == "splitting" && o.segmentation.num_parts == 0, {"depth"});
   line.goWith("-method splitting", o.method == "splitting", {"concavity", "as_published"});
   line.goWith("-method merging", o.method == "merging", {"evidence"});
   line.goWith("-png", o.png_path.has_value(), {"size"});
@@ -91,25 +70,27 @@ void checkOutput(const SegmentOptions& o, const CommandLine& line) {
 }
 
 nlohmann::json describe(const std::string& path, const Shape& shape, const std::vector<pcl::PointIndices>& segments,
-                        const std::vector<SegmentNode>& tree, const std::vector<std::vector<int>>& images, double ms) {
-  nlohmann::json json{{"file", path},
-                      {"elements", shape.mesh ? "faces" : "points"},
-                      {"segments", nlohmann::json::array()},
-                      {"tree", nlohmann::json::array()},
-                      {"timing_ms", {{"total", ms}}}};
-  for (const pcl::PointIndices& segment : segments) json["segments"].push_back({{"size", segment.indices.size()}});
-  for (const SegmentNode& node : tree) {
-    nlohmann::json entry{{"parent", node.parent}, {"planes", nlohmann::json::array()}};
+                        const SymmetrySegmentation<pcl::PointXYZ>& segmentation, double ms) {
+  const auto segmentJson = [](const pcl::PointIndices& segment) -> nlohmann::json {
+    return {{"size", segment.indices.size()}};
+  };
+  const auto planeJson = [&](const PartPlane& plane) -> nlohmann::json {
+    return {{"coefficients", numbersOf(plane.plane, shape.shift)}, {"share", plane.share}};
+  };
+  const auto nodeJson = [&](const SegmentNode& node) {
+    nlohmann::json json{{"parent", node.parent}, {"planes", listOf(node.planes, planeJson)}};
     if (node.segment >= 0)
-      entry["segment"] = node.segment;
+      json["segment"] = node.segment;
     else
-      entry["children"] = node.children;
-    for (const PartPlane& plane : node.planes)
-      entry["planes"].push_back({{"coefficients", numbersOf(plane.plane, shape.shift)}, {"share", plane.share}});
-    json["tree"].push_back(entry);
-  }
-  json["images"] = images;
-  return json;
+      json["children"] = node.children;
+    return json;
+  };
+  return {{"file", path},
+          {"elements", shape.mesh ? "faces" : "points"},
+          {"segments", listOf(segments, segmentJson)},
+          {"tree", listOf(segmentation.getTree(), nodeJson)},
+          {"images", segmentation.getImages()},
+          {"timing_ms", {{"total", ms}}}};
 }
 
 PictureScene sceneOf(const SegmentOptions& o, const Shape& shape, const std::vector<int>& labels) {
@@ -123,24 +104,28 @@ PictureScene sceneOf(const SegmentOptions& o, const Shape& shape, const std::vec
 }
 
 Shape load(const FileJob& job, const SegmentOptions& o) {
-  Step loading(job.console(), "Loading " + job.path());
-  Shape shape = loadShape(job.path());
+  Step loading(job.console, "Loading " + job.path);
+  Shape shape = loadShape(job.path);
   if (o.output && boost::algorithm::iends_with(*o.output, ".seg") && !shape.mesh)
-    throw InputError(job.path() + ": has no faces, must have for " + *o.output);
+    throw InputError(job.path + ": has no faces, must have for " + *o.output);
   loading.done(shape.mesh ? counted(shape.mesh->polygons.size(), "face")
                           : counted(finitePoints(*shape.points).cols(), "point"));
-  warnOfLeftOut(job.console(), job.path(), shape);
+  warnOfLeftOut(job.console, job.path, shape);
   return shape;
 }
 
 /// \return the parts, which the segmentation labels; \p ms is the time in milliseconds.
 std::vector<pcl::PointIndices> cut(const FileJob& job, const SegmentOptions& o, const Shape& shape,
                                    SymmetrySegmentation<pcl::PointXYZ>& segmentation, double& ms) {
-  Step cutting(job.console(), "Cutting into parts");
-  SegmentationOptions how = segmentationOptions(o, job.common());
+  Step cutting(job.console, "Cutting into parts");
+  SegmentationOptions how = o.segmentation;
+  how.method = o.method == "splitting" ? SegmentationMethod::Splitting : SegmentationMethod::Merging;
+  how.evidence = o.evidence == "all" ? MergingEvidence::All : MergingEvidence::SymmetryAndConcavity;
+  how.seed = job.common.seed;
+  how.num_threads = job.common.threads;
   how.progress = [&](double share) { cutting.progress(share); };
   std::vector<pcl::PointIndices> segments;
-  namingFile(job.path(), [&] {
+  namingFile(job.path, [&] {
     segmentation.setOptions(how);
     if (shape.mesh)
       segmentation.setInputMesh(pcl::make_shared<pcl::PolygonMesh>(*shape.mesh));
@@ -148,9 +133,9 @@ std::vector<pcl::PointIndices> cut(const FileJob& job, const SegmentOptions& o, 
       segmentation.setInputCloud(shape.points);
     segmentation.segment(segments);
   });
-  if (segments.empty()) throw InputError(job.path() + ": " + segmentation.getReason());
+  if (segments.empty()) throw InputError(job.path + ": " + segmentation.getReason());
   ms = cutting.done(counted(segments.size(), "part"));
-  if (!segmentation.getReason().empty()) job.console().warn(job.path() + ": " + segmentation.getReason());
+  if (!segmentation.getReason().empty()) job.console.warn(job.path + ": " + segmentation.getReason());
   return segments;
 }
 
@@ -160,12 +145,12 @@ void analyze(const SegmentOptions& options, FileJob& job) {
   double ms = 0.0;
   const std::vector<pcl::PointIndices> segments = cut(job, options, shape, segmentation, ms);
   const std::vector<int>& labels = segmentation.getLabels();
-  std::vector<std::vector<nlohmann::json>> rows;
+  Rows rows;
   for (std::size_t i = 0; i < segments.size(); ++i) rows.push_back({i, segments[i].indices.size()});
   const std::string least = segments.size() > 1 ? std::to_string(segments.back().indices.size()) + " to " : "",
                     text = counted(segments.size(), "part") + " of " + least +
                            counted(segments.front().indices.size(), shape.mesh ? "face" : "point") + "\n";
-  nlohmann::json json = describe(job.path(), shape, segments, segmentation.getTree(), segmentation.getImages(), ms);
+  nlohmann::json json = describe(job.path, shape, segments, segmentation, ms);
   if (!segmentation.getReason().empty()) json["reason"] = segmentation.getReason();
   job.report({text, json, rows});
   if (options.output) saveLabeled(job.output(*options.output), shape, labels);
@@ -180,12 +165,12 @@ void analyze(const SegmentOptions& options, FileJob& job) {
           formatted("part %d: ", part + 1) + counted(segments[part].indices.size(), shape.mesh ? "face" : "point");
       scene.panels.push_back(std::move(alone));
     }
-    writePage(scene, {job.path(), text}, job.output(*options.html_path));
+    writePage(scene, {job.path, text}, job.output(*options.html_path));
   }
   if (!options.png_path) return;
   const std::string picture = job.output(*options.png_path);
-  Step drawing(job.console(), "Drawing " + picture);
-  renderPicture(sceneOf(options, shape, labels), picture, options.size, options.size);
+  Step drawing(job.console, "Drawing " + picture);
+  renderPicture({sceneOf(options, shape, labels)}, picture, options.size, options.size);
   drawing.done();
 }
 

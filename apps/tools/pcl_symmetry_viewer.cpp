@@ -4,14 +4,9 @@
 
 #include <algorithm>
 #include <chrono>
-#include <string>
 #include <thread>
-#include <vector>
 
-#include "command_line/command_line.h"
-#include "command_line/console.h"
 #include "io/answers.h"
-#include "io/exact_coordinates.h"
 #include "io/input_shape.h"
 #include "io/shape_output.h"
 #include "pcl_symmetry/symmetry_maxima_refinement.h"
@@ -52,8 +47,7 @@ CommandLine commandLine(ViewerOptions& options) {
 /// The content of the window: the points in the colors of their support for one plane, the plane, and what keys add.
 class View {
 public:
-  View(Window& window, const pcl::PointCloud<pcl::PointXYZ>::Ptr& points,
-       SymmetryMaximaRefinement<pcl::PointXYZ>& refinement, int plane)
+  View(Window& window, const Cloud::Ptr& points, SymmetryMaximaRefinement<pcl::PointXYZ>& refinement, int plane)
       : window_(window), refinement_(refinement), planes_(refinement.getDetection().planes), plane_(plane) {
     scene_.points = points;
     draw();
@@ -91,7 +85,7 @@ private:
       text = formatted("plane %d of %zu: confidence %.2f, support %.2f", plane_, planes_.size(), plane->confidence,
                        plane->support);
       const PlanePatch patch{plane->normal(), plane->offset()};
-      pcl::PointCloud<pcl::PointXYZ>::Ptr corners(new pcl::PointCloud<pcl::PointXYZ>);
+      Cloud::Ptr corners(new Cloud);
       for (const Eigen::Vector3d& corner : patchCorners(patch, scene_)) corners->push_back(toPoint(corner));
       window_.addPolygon<pcl::PointXYZ>(corners, patch.color.x(), patch.color.y(), patch.color.z(), "plane");
       using namespace pcl::visualization;
@@ -140,8 +134,8 @@ int run(int argc, char** argv) {
   refinement.setOptions(detection);
   setInput(refinement, input, options.common);
   Step searching(console, "Searching planes");
-  const std::size_t num_planes = namingFile(options.input, [&] { return refinement.compute().size(); });
-  checkAnswer(refinement, input);
+  const std::size_t num_planes =
+      namingFile(options.input, [&] { return checked(refinement, input, refinement.compute()).size(); });
   searching.done(counted(num_planes, "plane"));
   if (options.plane > 1 && options.plane > static_cast<int>(num_planes))
     throw UsageError(formatted("-plane: %d, must be <= %zu, the number of planes", options.plane, num_planes));

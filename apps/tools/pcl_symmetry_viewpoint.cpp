@@ -1,23 +1,13 @@
 /// Good and bad views of a cloud or mesh, by the symmetries that they show: a table, JSON with camera poses, pictures.
 #include <pcl/conversions.h>
 
-#include <Eigen/Geometry>
 #include <cmath>
-#include <nlohmann/json.hpp>
-#include <string>
-#include <utility>
-#include <vector>
 
-#include "command_line/command_line.h"
-#include "command_line/console.h"
 #include "command_line/run_on_files.h"
-#include "command_line/tool_errors.h"
 #include "core/base/constants.h"
 #include "io/answers.h"
-#include "io/exact_coordinates.h"
 #include "io/input_shape.h"
 #include "io/shape_output.h"
-#include "pcl_symmetry/core/symmetry_map.h"
 #include "pcl_symmetry/symmetry_maxima_refinement.h"
 #include "pcl_symmetry/viewpoint_selection.h"
 #include "pictures/picture.h"
@@ -56,9 +46,10 @@ CommandLine commandLine(ViewpointToolOptions& options) {
 }
 
 nlohmann::json toJson(const SelectedView& view, const Eigen::Vector3d& shift) {
-  Eigen::Matrix4d pose = view.pose.matrix().cast<double>();
-  pose.block<3, 1>(0, 3) = shiftedBack(Eigen::Vector3d(pose.block<3, 1>(0, 3)), shift);
-  return {{"direction", numbersOf(view.direction)}, {"score", view.score}, {"pose", rowMajor(pose)}};
+  const Eigen::Isometry3d pose(view.pose.matrix().cast<double>());
+  return {{"direction", numbersOf(view.direction)},
+          {"score", view.score},
+          {"pose", rowMajor(shiftedBack(pose, Eigen::Vector3d::Zero(), shift))}};
 }
 
 PictureScene sceneOf(const InputShape& input, const SelectedView& view, const std::string& label) {
@@ -71,7 +62,7 @@ PictureScene sceneOf(const InputShape& input, const SelectedView& view, const st
 PictureScene scoreSphere(const ViewpointSelection& selection, const SelectedView& best, const SelectedView& worst) {
   constexpr int kRings = 120, kAround = 240;  // 1.5 degrees
   const Eigen::Vector3d up = selection.getUpAxis(), side = up.unitOrthogonal(), front = up.cross(side);
-  pcl::PointCloud<pcl::PointXYZ>::Ptr surface(new pcl::PointCloud<pcl::PointXYZ>);
+  Cloud::Ptr surface(new Cloud);
   PicturePanel panel{"score of each direction"};
   panel.show_points = false;
   const double range = std::max(best.score - worst.score, 1e-9);
@@ -108,16 +99,14 @@ double choose(ViewpointSelection& selection, const InputShape& input, const View
               const FileJob& job) {
   DetectionOptions detection;
   detection.approximate = true;
-  job.common().applyTo(detection);
-  Step searching(job.console(), "Searching planes");
+  job.common.applyTo(detection);
+  Step searching(job.console, "Searching planes");
   SymmetryMaximaRefinement<pcl::PointXYZ> refinement;
   const std::vector<SymmetryPlane> planes = namingFile(input.path, [&] {
     refinement.setOptions(detection);
     refinement.setAsPublished(options.as_published);
-    setInput(refinement, input, job.common());
-    std::vector<SymmetryPlane> found = refinement.compute();
-    checkAnswer(refinement, input);
-    return found;
+    setInput(refinement, input, job.common);
+    return checked(refinement, input, refinement.compute());
   });
   if (options.as_published)
     selection.setPlanes(planes);
@@ -161,10 +150,10 @@ void draw(const FileJob& job, const ViewpointToolOptions& options, const InputSh
           const ViewpointSelection& selection, const ChosenViews& views) {
   const SelectedView& best = views.good[0];
   if (options.icon_path)
-    renderPicture(sceneOf(input, best, ""), job.output(*options.icon_path), options.size, options.size);
+    renderPicture({sceneOf(input, best, "")}, job.output(*options.icon_path), options.size, options.size);
   if (!options.png_path) return;
   const std::string picture = job.output(*options.png_path);
-  Step drawing(job.console(), "Drawing " + picture);
+  Step drawing(job.console, "Drawing " + picture);
   renderPicture({scoreSphere(selection, best, views.worst), sceneOf(input, best, "best view"),
                  sceneOf(input, views.worst, "worst view")},
                 picture, 3 * options.size, options.size, 3);
@@ -172,10 +161,10 @@ void draw(const FileJob& job, const ViewpointToolOptions& options, const InputSh
 }
 
 void analyze(const ViewpointToolOptions& options, FileJob& job) {
-  const InputShape input = loadInput(job.console(), job.path(), options.common);
+  const InputShape input = loadInput(job.console, job.path, options.common);
   ViewpointSelection selection;
   const double searching_ms = choose(selection, input, options, job);
-  Step choosing(job.console(), "Choosing views");
+  Step choosing(job.console, "Choosing views");
   const ChosenViews views{selection.getGoodViews(options.num_views), selection.getWorstView()};
   const double choosing_ms = choosing.done(counted(views.good.size(), "view"));
   FileReport report = reportOf(input, selection, views);
