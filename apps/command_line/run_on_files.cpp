@@ -138,10 +138,13 @@ std::string inputOf(const std::string& line, const std::string& path) {
 class Sink {
 public:
   /// \param keeps lines of an existing file for which this is true are kept; none without \p resume.
-  void open(const std::string& path, const std::string& header, const std::function<bool(const std::string&)>& keeps,
-            bool resume) {
-    path_ = path;
-    if (isStandardStream(path)) return add(header);
+  Sink(const std::string& path, const std::string& header, const std::function<bool(const std::string&)>& keeps,
+       bool resume)
+      : path_(path) {
+    if (isStandardStream(path)) {
+      add(header);
+      return;
+    }
     if (resume) {
       // Line by line, because the file may be larger than everything else that the tool needs.
       writeStream(path, [&](std::ostream& kept) {
@@ -150,11 +153,9 @@ public:
           if (keeps(line)) kept << line << '\n';
         });
       });
-      file_.open(path, std::ios::binary | std::ios::app);
       size_ = boost::filesystem::file_size(path);
-    } else {
-      file_.open(path, std::ios::binary | std::ios::trunc);
     }
+    file_.open(path, std::ios::binary | (resume ? std::ios::app : std::ios::trunc));
     if (!file_) fail();
     if (!resume) add(header);
   }
@@ -188,9 +189,7 @@ public:
   /// Opens the files. If neither a JSON nor a CSV file is named, a terminal gets tables, and a pipe JSON.
   /// \throws InputError if one cannot be written, or if -resume is given and it holds something other than results.
   ResultFiles(const BatchOptions& batch, const CommonOptions& common, const std::string& csv_header) {
-    has_csv_ = batch.csv_path.has_value();
-    has_text_ = !common.json_path && !has_csv_ && isatty(STDOUT_FILENO);
-    has_json_ = common.json_path || (!has_csv_ && !has_text_);
+    has_text_ = !common.json_path && !batch.csv_path && isatty(STDOUT_FILENO);
     const std::string json_path = common.json_path.value_or("-");
     if (batch.resume && isStandardStream(json_path)) throw UsageError("-resume needs -json FILE");
     std::vector<bool> is_kept;  // each line of the JSON file
@@ -204,8 +203,8 @@ public:
     std::size_t number = 0;
     const auto keeps_line = [&](const std::string&) { return is_kept[number++]; };
     const auto keeps_row = [&](const std::string& line) { return holds(firstCell(line)); };
-    if (has_json_) json_.open(json_path, "", keeps_line, !kept_.empty());
-    if (has_csv_) csv_.open(*batch.csv_path, csv_header, keeps_row, !kept_.empty());
+    if (common.json_path || (!batch.csv_path && !has_text_)) json_.emplace(json_path, "", keeps_line, !kept_.empty());
+    if (batch.csv_path) csv_.emplace(*batch.csv_path, csv_header, keeps_row, !kept_.empty());
   }
 
   /// \return whether -resume found the result of the input; failed inputs are tried again.
@@ -215,15 +214,15 @@ public:
   /// \param json_line,csv_lines,text with their line ends.
   void add(const std::string& json_line, const std::string& csv_lines, const std::string& text) {
     // The JSON line comes last: what it names is then complete.
-    if (has_csv_) csv_.add(csv_lines);
-    if (has_json_) json_.add(json_line);
+    if (csv_) csv_->add(csv_lines);
+    if (json_) json_->add(json_line);
     if (has_text_) writeText("-", text);
   }
 
 private:
   std::set<std::string> kept_;
-  Sink json_, csv_;
-  bool has_json_ = false, has_csv_ = false, has_text_ = false;
+  std::optional<Sink> json_, csv_;
+  bool has_text_;
 };
 
 /// Distributes the inputs, and passes their results on in the order of the inputs.

@@ -65,12 +65,6 @@ void findDisplay() {
   ::setenv("XAUTHORITY", authority.c_str(), 1);
 }
 
-std::string plainMessage(const pcl::PCLException& error) {
-  const std::string text = error.what();
-  // As PCLException::createDetailedMessage() composes it: "FUNCTION in FILE @ LINE : MESSAGE".
-  return error.getFileName() ? text.substr(text.find(": ") + 2) : text;
-}
-
 int runTool(int argc, char** argv, const std::function<int(int, char**)>& body) {
   const std::string tool = argc > 0 ? boost::filesystem::path(argv[0]).filename().string() : "pcl_symmetry";
   pcl::console::setVerbosityLevel(pcl::console::L_ALWAYS);

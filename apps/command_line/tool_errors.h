@@ -23,13 +23,18 @@ struct UsageError : std::runtime_error {
 };
 
 /// \return the message of an exception of PCL without the names of function and source file that PCL puts before it
-std::string plainMessage(const pcl::PCLException& error);
+inline std::string plainMessage(const pcl::PCLException& error) {
+  const std::string text = error.what();
+  // As PCLException::createDetailedMessage() composes it: "FUNCTION in FILE @ LINE : MESSAGE".
+  return error.getFileName() ? text.substr(text.find(": ") + 2) : text;
+}
 
 /// Calls the body.
+/// \param before begin of what is wrong, for what the library throws
 /// \return what it returns
 /// \throws InputError `path: what is wrong` for what the library throws; never the name of a function or source file
 template <typename Body>
-auto namingFile(const std::string& path, const Body& body) -> decltype(body()) {
+auto namingFile(const std::string& path, const Body& body, const std::string& before = "") -> decltype(body()) {
   try {
     return body();
   } catch (const InputError&) {
@@ -37,9 +42,9 @@ auto namingFile(const std::string& path, const Body& body) -> decltype(body()) {
   } catch (const std::bad_alloc&) {
     throw InputError(path + ": is too large for the memory of this machine");
   } catch (const pcl::PCLException& error) {
-    throw InputError(path + ": " + plainMessage(error));
+    throw InputError(path + ": " + before + plainMessage(error));
   } catch (const std::exception& error) {
-    throw InputError(path + ": " + error.what());
+    throw InputError(path + ": " + before + error.what());
   }
 }
 

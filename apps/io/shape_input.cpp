@@ -76,24 +76,16 @@ bool isOneOf(const std::string& word, std::initializer_list<const char*> words) 
 
 /// \param name name of the file in messages.
 Shape shapeOf(const std::string& name, const std::string& text, const std::string& extension) {
-  try {
-    if (extension == ".pcd") return fromCloudFile(name, readPCD(name, text));
-    if (extension == ".ply") return fromCloudFile(name, readPLY(name, text));
-    if (extension == ".off") return fromExact(name, readOFF(name, text));
-    if (extension == ".obj") return fromExact(name, readOBJ(name, text));
-    if (isOneOf(extension, {".xyz", ".pts", ".asc", ".txt", ".csv"})) return fromExact(name, readColumns(name, text));
-    if (extension == ".stl") return fromExact(name, readSTL(name, text));
-    if (extension == ".glb") {
-      ExactShape shape;
-      functionOf<decltype(readGLB)>("pcl_symmetry_mesh_files", "readGLB")(name, text, shape);
-      return fromExact(name, std::move(shape));
-    }
-  } catch (const InputError&) {
-    throw;
-  } catch (const std::bad_alloc&) {
-    throw InputError(name + ": is too large for the memory of this machine");
-  } catch (const std::exception& error) {
-    throw InputError(name + ": cannot be read, " + error.what());
+  if (extension == ".pcd") return fromCloudFile(name, readPCD(name, text));
+  if (extension == ".ply") return fromCloudFile(name, readPLY(name, text));
+  if (extension == ".off") return fromExact(name, readOFF(name, text));
+  if (extension == ".obj") return fromExact(name, readOBJ(name, text));
+  if (isOneOf(extension, {".xyz", ".pts", ".asc", ".txt", ".csv"})) return fromExact(name, readColumns(name, text));
+  if (extension == ".stl") return fromExact(name, readSTL(name, text));
+  if (extension == ".glb") {
+    ExactShape shape;
+    functionOf<decltype(readGLB)>("pcl_symmetry_mesh_files", "readGLB")(name, text, shape);
+    return fromExact(name, std::move(shape));
   }
   throw InputError(name + ": unknown extension '" + extension + "', must be " + kShapeFiles +
                    "; planes and map also read volumes, " + kVolumeFiles + ", and scene depth images, .png");
@@ -135,7 +127,8 @@ Shape loadShape(const std::string& path) {
     if (extension.empty()) throw InputError(name + ": is of no known kind, must be " + kShapeFiles);
   }
   if (extension != ".glb" && !isBinarySTL(text)) text = withoutMark(std::move(text));
-  return shapeOf(name, text, extension);
+  return namingFile(
+      name, [&] { return shapeOf(name, text, extension); }, "cannot be read, ");
 }
 
 Shape surfaceOf(const std::string& path, const ScalarGrid& volume, double value) {

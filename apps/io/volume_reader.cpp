@@ -423,16 +423,13 @@ bool isVolumePath(const std::string& path) {
 }
 
 Volume loadVolume(const std::string& path) {
-  try {
+  const auto load = [&] {
     if (!boost::algorithm::iends_with(path, ".vti")) return volumeOf(path);
     Volume volume;
     functionOf<decltype(readVTI)>(kDrawingModule, "readVTI")(path, volume);
     return volume;
-  } catch (const std::bad_alloc&) {
-    reject(path, "is too large for the memory of this machine");
-  } catch (const std::invalid_argument& error) {
-    unreadable(path, error.what());
-  }
+  };
+  return namingFile(path, load, "cannot be read, ");
 }
 
 }  // namespace pcl_symmetry::apps

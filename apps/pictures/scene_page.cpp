@@ -9,6 +9,7 @@
 #include <set>
 
 #include "io/answers.h"
+#include "io/shape_input.h"
 #include "io/shape_output.h"
 #include "pictures/patch_geometry.h"
 
