@@ -113,23 +113,13 @@ CommandLine& CommandLine::add(const std::string& name, const std::string& placeh
 
 CommandLine& CommandLine::text(const std::string& name, const std::string& placeholder,
                                std::optional<std::string>& value, const std::string& help) {
-  return add(name, placeholder, help, [&value, name](const std::string& text) {
+  const std::string ending = boost::algorithm::starts_with(placeholder, "FILE.") ? placeholder.substr(4) : "";
+  return add(name, placeholder, help, [&value, name, ending](const std::string& text) {
+    const bool is_checked = !ending.empty() && text != "-";
+    if (is_checked && !boost::algorithm::iends_with(text, ending))
+      rejectValue("-" + name, text, "must end in " + ending);
     if (text.empty()) throw UsageError("-" + name + " must not be empty");
-    value = text;
-  });
-}
-
-CommandLine& CommandLine::picture(const std::string& name, std::optional<std::string>& value, const std::string& help) {
-  return add(name, "FILE.png", help, [&value, name](const std::string& text) {
-    if (text != "-" && !boost::algorithm::iends_with(text, ".png")) rejectValue("-" + name, text, "must end in .png");
-    findDisplay();
-    value = text;
-  });
-}
-
-CommandLine& CommandLine::page(const std::string& name, std::optional<std::string>& value, const std::string& help) {
-  return add(name, "FILE.html", help, [&value, name](const std::string& text) {
-    if (text != "-" && !boost::algorithm::iends_with(text, ".html")) rejectValue("-" + name, text, "must end in .html");
+    if (ending == ".png") findDisplay();
     value = text;
   });
 }

@@ -97,12 +97,9 @@ public:
                            bool required = true);
 
   CommandLine& flag(const std::string& name, bool& value, const std::string& help);
+  /// \param placeholder in the help; FILE.png and FILE.html also name how the value must end, unless it is "-".
   CommandLine& text(const std::string& name, const std::string& placeholder, std::optional<std::string>& value,
                     const std::string& help);
-  /// The name of a picture to write; must end in .png, or be "-" for standard output.
-  CommandLine& picture(const std::string& name, std::optional<std::string>& value, const std::string& help);
-  /// The name of a page to write; must end in .html, or be "-" for standard output.
-  CommandLine& page(const std::string& name, std::optional<std::string>& value, const std::string& help);
   CommandLine& choice(const std::string& name, std::string& value, const std::vector<std::string>& allowed,
                       const std::string& help);
   /// \param value double, int, or an optional of these, whose help states the default.

@@ -58,9 +58,9 @@ CommandLine commandLine(AlignOptions& options) {
           "of its file. Scans that fit no others are left out and named. Other flags: -complete, -viewpoint, which is "
           "the same in the frame of each scan, and outputs")
       .text("target", "FILE", options.target, "cloud or mesh that the input is brought to")
-      .page("html", options.html_path,
+      .text("html", "FILE.html", options.html_path,
             "page that shows the input in the target, or its center and axes, for any browser, without network")
-      .picture("png", options.png_path, "picture of the same")
+      .text("png", "FILE.png", options.png_path, "picture of the same")
       .choice(
           "symmetrize", options.symmetrize, {"none", "mean", "left", "right"},
           "write the shape that its best plane maps onto itself, after the transform: its halves are the mean of both "

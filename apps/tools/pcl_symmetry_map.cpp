@@ -174,9 +174,9 @@ CommandLine commandLine(MapOptions& options) {
       .number("scale", options.scale, Range::closed(0, 1),
               "local symmetry of planes: within this share of the shape's radius around each point; 0 = of the whole")
       .text("volume", "FILE", options.volume_path, "VTK image (.vti) of the space around, for ParaView")
-      .picture("slices", options.slices_path,
-               "picture: three slices through the middle, the darker the greater, the shape on top")
-      .picture("png", options.png_path, "picture: the points in the colors of their symmetry")
+      .text("slices", "FILE.png", options.slices_path,
+            "picture: three slices through the middle, the darker the greater, the shape on top")
+      .text("png", "FILE.png", options.png_path, "picture: the points in the colors of their symmetry")
       .number("cells", options.cells, Range::closed(8, 512), "cells of the volume along its longest edge")
       .number("size", options.size, Range::closed(16, 4096), "edge of each picture, pixels (-png 800, -slices 300)")
       .common(options.common, kShapeFlags | kSigma | kVolumes);

@@ -43,9 +43,10 @@ CommandLine commandLine(PlanesOptions& options) {
                    "pcl_symmetry_planes chair.pcd -json planes.json -png planes.png");
   options.batch.outputs = {&options.png_path, &options.html_path, &options.support_path, &options.profile_path};
   line.positionals("input", options.batch.inputs, kManyInputs + std::string("; volumes (") + kVolumeFiles + ")")
-      .picture("png", options.png_path,
-               "picture: cloud, planes and support, best planes first; three slices of a volume and its asymmetry")
-      .page("html", options.html_path, "page with the same in three dimensions, for any browser, without network")
+      .text("png", "FILE.png", options.png_path,
+            "picture: cloud, planes and support, best planes first; three slices of a volume and its asymmetry")
+      .text("html", "FILE.html", options.html_path,
+            "page with the same in three dimensions, for any browser, without network")
       .direction("up", options.up,
                  "direction that is up in the picture, input frame (0,0,1; for a camera at 0 0 0 0,-1,0)")
       .text("support", "FILE", options.support_path,

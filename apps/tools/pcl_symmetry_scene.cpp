@@ -49,8 +49,8 @@ CommandLine commandLine(SceneToolOptions& o) {
           "output", o.output,
           "completed scene, .pcd or .ply, with the fields object (-1 = supporting plane, 0 = none) and completed")
       .text("database", "FILE", o.database_path, "names objects by the models of this file of pcl_symmetry_database")
-      .picture("png", o.png_path, "picture: the scene, and each object with what its symmetry adds")
-      .page("html", o.html_path, "page that shows the scene, its objects, planes and axes in any browser")
+      .text("png", "FILE.png", o.png_path, "picture: the scene, and each object with what its symmetry adds")
+      .text("html", "FILE.html", o.html_path, "page that shows the scene, its objects, planes and axes in any browser")
       .text("intrinsics", "FX,FY,CX,CY", o.intrinsics, "of the camera of a depth image, pixels")
       .number("depth_scale", o.depth_scale, Range::above(0), "values of a depth image for each unit of length")
       .plane("ground", o.ground,

@@ -35,8 +35,9 @@ CommandLine commandLine(SegmentOptions& o) {
       .positional("output", o.output,
                   ".pcd or .ply: points with their segment in the field label; .ply of a mesh: with its faces colored; "
                   ".seg: the segment of each face, one a line")
-      .picture("png", o.png_path, "picture: parts in colors")
-      .page("html", o.html_path, "page with the same in three dimensions, for any browser, without network")
+      .text("png", "FILE.png", o.png_path, "picture: parts in colors")
+      .text("html", "FILE.html", o.html_path,
+            "page with the same in three dimensions, for any browser, without network")
       .direction("up", o.up, "direction that is up in the picture, input frame (0,0,1)")
       .number("size", o.size, Range::closed(16, 4096), "edge of the picture, pixels")
       .choice("method", o.method, {"merging", "splitting"},

@@ -36,7 +36,7 @@ CommandLine commandLine(ViewerOptions& options) {
   CommandLine line("pcl_symmetry_viewer", "Shows a cloud or mesh and its planes of symmetry in a window of PCL.",
                    "pcl_symmetry_viewer bull.off -up 0,1,0");
   line.positional("input", options.input, kShapeFiles)
-      .picture("screenshot", options.screenshot_path, "write a picture and open no window; needs no screen")
+      .text("screenshot", "FILE.png", options.screenshot_path, "write a picture and open no window; needs no screen")
       .number("plane", options.plane, Range::closed(1, 1000), "number of the plane that is shown first")
       .flag("symmetries", options.symmetries_only, "leave out approximate symmetries and those of parts")
       .direction("up", options.up, "direction that is about up, input frame (0,0,1)")

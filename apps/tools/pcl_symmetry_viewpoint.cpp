@@ -32,8 +32,8 @@ CommandLine commandLine(ViewpointToolOptions& options) {
                    "pcl_symmetry_viewpoint chair.off -up 0,1,0 -png chair_views.png -json chair_views.json");
   options.batch.outputs = {&options.png_path, &options.icon_path};
   line.positionals("input", options.batch.inputs, kManyInputs)
-      .picture("png", options.png_path, "picture: score of all directions, best view, worst view")
-      .picture("icon", options.icon_path, "picture of the best view alone")
+      .text("png", "FILE.png", options.png_path, "picture: score of all directions, best view, worst view")
+      .text("icon", "FILE.png", options.icon_path, "picture of the best view alone")
       .direction("up", options.up, "direction that is about up, input frame (0,0,1)")
       .number("views", options.num_views, Range::closed(1, 100), "largest number of good views")
       .number("separation", options.separation, Range::closed(0, 180), "least angle between good views, degrees")
