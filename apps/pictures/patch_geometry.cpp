@@ -95,7 +95,8 @@ std::pair<Eigen::Vector3d, Eigen::Vector3d> axisEnds(const AxisLine& axis, const
   const Eigen::Vector3d direction = axis.direction.normalized();
   double low = -axis.half_length, high = axis.half_length;
   if (!(axis.half_length > 0.0)) {
-    low = std::numeric_limits<double>::infinity(), high = -low;
+    low = std::numeric_limits<double>::infinity();
+    high = -low;
     for (const pcl::PointXYZ& point : *scene.points) {
       if (!pcl::isXYZFinite(point)) continue;
       const double along = direction.dot(point.getVector3fMap().cast<double>() - axis.point);
@@ -103,7 +104,8 @@ std::pair<Eigen::Vector3d, Eigen::Vector3d> axisEnds(const AxisLine& axis, const
       high = std::max(high, along);
     }
     const double margin = 0.1 * (high - low);
-    low -= margin, high += margin;
+    low -= margin;
+    high += margin;
   }
   return {axis.point + low * direction, axis.point + high * direction};
 }
