@@ -6,11 +6,12 @@ namespace pcl_symmetry {
 
 namespace detail {
 
-ObjectSymmetries objectSymmetriesOrNone(const Points& points, const ObjectSymmetryOptions& options,
+ObjectSymmetries objectSymmetriesOrNone(const Points& points, const ObjectSymmetryOptions& options, bool is_scan,
                                         const MeshSurface* mesh) {
   return withBadArguments([&] {
     options.validate();
     std::string reason = reasonForNoAnswer(points);
+    if (reason.empty() && is_scan) reason = kOneSided;
     if (reason.empty()) return mesh ? objectSymmetries(points, *mesh, options) : objectSymmetries(points, options);
     warnOfNoAnswer("detectObjectSymmetries", reason);
     ObjectSymmetries none;
@@ -28,7 +29,7 @@ ObjectSymmetries detectObjectSymmetries(const pcl::PolygonMesh& mesh, const Obje
   if (points->empty()) return detectObjectSymmetries(*points, options);
   const MeshSurface surface = meshSurface(mesh);
   const Points all = detail::selectPoints(*points, nullptr, points->size(), options.seed).points;
-  return detail::objectSymmetriesOrNone(all, options, &surface);
+  return detail::objectSymmetriesOrNone(all, options, false, &surface);
 }
 
 }  // namespace pcl_symmetry

@@ -219,6 +219,7 @@ std::string CommandLine::closestFlag(const std::string& unknown) const {
   std::string best;
   std::size_t best_distance = std::max<std::size_t>(2, name.size() / 3) + 1;
   for (const auto& flag : flags_.options()) {
+    if (name.size() >= 3 && flag->long_name().rfind(name, 0) == 0) return flag->long_name();
     const std::size_t distance = editDistance(name, flag->long_name());
     if (distance >= best_distance) continue;
     best = flag->long_name();

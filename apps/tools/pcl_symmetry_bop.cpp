@@ -161,7 +161,6 @@ ModelInfo analyzeModel(const std::string& path, const BopOptions& options,
   ModelInfo info;
   info.file = path;
   info.digits = lengthDigits(shape.shift);
-  info.is_scan = !shape.mesh && detail::findSeenSpace(*shape.points, finite, {}).visibility();
   info.low = vertices.rowwise().minCoeff().cast<double>();
   info.size = vertices.rowwise().maxCoeff().cast<double>() - info.low;
   info.low = shiftedBack(info.low, shape.shift);
@@ -170,7 +169,8 @@ ModelInfo analyzeModel(const std::string& path, const BopOptions& options,
     return shape.mesh ? detectObjectSymmetries(*shape.mesh, options.symmetries, options.common.mesh_points)
                       : detectObjectSymmetries(*shape.points, options.symmetries);
   });
-  if (!info.symmetries.reason.empty()) throw InputError(path + ": " + info.symmetries.reason);
+  info.is_scan = info.symmetries.reason == detail::kOneSided;
+  if (!info.is_scan && !info.symmetries.reason.empty()) throw InputError(path + ": " + info.symmetries.reason);
   namingFile(path, [&] { compare(info, shape, vertices, options, given); });
   shiftBack(info.symmetries, shape.shift);
   return info;

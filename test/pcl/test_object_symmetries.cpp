@@ -4,6 +4,7 @@
 
 #include "pcl/clouds.h"
 #include "pcl/pcl_meshes.h"
+#include "shapes/scans.h"
 #include "shapes/threads.h"
 #include "shapes/turning_shapes.h"
 
@@ -45,6 +46,13 @@ TEST(DetectObjectSymmetries, AreTheIdentityAloneWhereThereIsNoAnswer) {
     EXPECT_NE(none.reason, "") << name;
   }
   EXPECT_NE(detectObjectSymmetries(pcl::PolygonMesh()).reason, "");
+}
+
+TEST(DetectObjectSymmetries, AScanFromOneSideHasNone) {
+  const ObjectSymmetries none = detectObjectSymmetries(*test::pictureOf(test::scan(test::blockBox(), {3.5, 4.2, 2.9})));
+  EXPECT_EQ(none.name(), "C1");
+  EXPECT_EQ(none.confidence, 0.0);
+  EXPECT_NE(none.reason.find("one side"), std::string::npos) << none.reason;
 }
 
 }  // namespace

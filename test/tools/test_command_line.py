@@ -99,6 +99,7 @@ class Flags(ToolTest):
                             ("-seed", "the required argument for option '-seed' is missing"),
                             ("--seed 1 -seed 2", "option '-seed' cannot be specified more than once"),
                             ("-quiet -quiet", "option '-quiet' cannot be specified more than once"),
+                            ("-tol 0.02", "unknown flag -tol, did you mean -tolerance?"),
                             ("-see 1", "unknown flag -see, did you mean -seed?")):  # abbreviations are not guessed
             self.fails(2, f"pcl_symmetry_planes: {said}", self.box, flags)
             self.assertTrue(self.error.endswith("(see pcl_symmetry_planes -h)\n"), self.error)

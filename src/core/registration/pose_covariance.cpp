@@ -59,8 +59,9 @@ Residuals residualsAt(const PosedSurface& scan, const PosedSurface& model, const
 /// which the surface slides on itself.
 Matrix6d hessianWithoutNoise(Residuals residuals) {
   // The squares of errors in two directions have an exponential distribution; its mean is the median over log 2. The
-  // mean of two normals has a quarter of the variance of their difference.
-  const double sq_noise = 0.25 * median(std::move(residuals.sq_sines)) / std::log(2.0);
+  // mean of two normals has a quarter of the variance of their difference; twice that, because large errors are more
+  // frequent.
+  const double sq_noise = 0.5 * median(std::move(residuals.sq_sines)) / std::log(2.0);
   const SymmetricEigen<Matrix6d> solver(residuals.hessian - sq_noise * residuals.gain_of_noise);
   return solver.eigenvectors() * solver.eigenvalues().cwiseMax(0.0).asDiagonal() * solver.eigenvectors().transpose();
 }
@@ -75,18 +76,19 @@ Matrix6d poseCovariance(const PosedSurface& scan, const PosedSurface& model, con
   information.diagonal().head<3>().setConstant(1.0 / sq_angle);
   information.diagonal().tail<3>().setConstant(1.0 / sq_way);
   Residuals residuals = residualsAt(scan, model, T_model_scan, num_points, reach);
-  Matrix6d correlated = Matrix6d::Zero();
   if (residuals.count > WeightedProducts::kLast) {
     const double variance = std::max(kRegistration.min_deviation * kRegistration.min_deviation,
                                      residuals.sum_squares / (residuals.count - WeightedProducts::kLast));
+    Matrix6d correlated = Matrix6d::Zero();
     for (const auto& [cell, gradient] : residuals.gradients) correlated += gradient * gradient.transpose();
     const auto num_cells = static_cast<double>(residuals.gradients.size());
     correlated *= num_cells / std::max(1.0, num_cells - WeightedProducts::kLast) / (variance * variance);
-    information += hessianWithoutNoise(std::move(residuals)) / variance;
+    // Independent errors of the points give the covariance H^-1, those that the points of a cell have in common H^-1 C
+    // H^-1; the inverse of the sum, H (H + C)^-1 H, also exists where H does not fix a direction.
+    const Matrix6d hessian = hessianWithoutNoise(std::move(residuals)) / variance;
+    information += hessian * (information + hessian + correlated).inverse() * hessian;
   }
-  // Independent errors of the points, and those that the points of a cell have in common.
-  const Matrix6d covariance = information.inverse();
-  return covariance + covariance * correlated * covariance;
+  return information.inverse();
 }
 
 }  // namespace pcl_symmetry
