@@ -14,7 +14,6 @@
 #include "core/base/symmetric_solvers.h"
 #include "core/matching/matching_rules.h"
 #include "core/matching/point_pair_index.h"
-#include "core/registration/pose_covariance.h"
 #include "core/registration/pose_evidence.h"
 #include "core/registration/pose_scoring.h"
 #include "core/registration/registration_rules.h"

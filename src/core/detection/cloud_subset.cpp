@@ -1,4 +1,4 @@
-#include "core/detection/cloud_subset.h"
+#include "core/detection/plane_search.h"
 
 #include <algorithm>
 #include <cmath>
@@ -7,7 +7,6 @@
 #include "core/base/random.h"
 #include "core/base/statistics.h"
 #include "core/base/symmetric_solvers.h"
-#include "core/detection/detection_rules.h"
 #include "core/geometry/cloud_extent.h"
 #include "core/geometry/point_samples.h"
 

@@ -8,7 +8,6 @@
 #include "core/base/check.h"
 #include "core/base/lists.h"
 #include "core/base/stopwatch.h"
-#include "core/detection/cloud_subset.h"
 #include "core/detection/plane_decision.h"
 #include "core/detection/plane_families.h"
 #include "core/detection/plane_search.h"

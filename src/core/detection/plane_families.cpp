@@ -9,7 +9,6 @@
 #include "core/base/lists.h"
 #include "core/base/symmetric_solvers.h"
 #include "core/detection/plane_search.h"
-#include "core/detection/regular_polygon.h"
 #include "core/geometry/cloud_extent.h"
 #include "core/geometry/directions.h"
 #include "core/geometry/point_samples.h"

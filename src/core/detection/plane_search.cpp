@@ -4,7 +4,6 @@
 #include <utility>
 
 #include "core/base/parallel.h"
-#include "core/detection/cloud_subset.h"
 #include "core/detection/plane_decision.h"
 #include "core/geometry/point_samples.h"
 

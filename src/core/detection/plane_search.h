@@ -1,12 +1,12 @@
 #pragma once
 
+#include <cstdint>
 #include <initializer_list>
 #include <optional>
 #include <vector>
 
 #include "core/detection/plane_families.h"
 #include "core/detection/plane_measure.h"
-#include "core/detection/regular_polygon.h"
 #include "core/detection/standing_object.h"
 #include "core/rotation/rotation_evidence.h"
 
@@ -76,12 +76,47 @@ struct DetectionEvidence {
   std::vector<JudgedRotation> rotations;  ///< of scans
 };
 
+/// The planes of a regular polygon: \p fold planes through a line, at equal angles.
+struct RegularPolygon {
+  Line3d line;
+  int fold = 0;        ///< number of planes, >= 3
+  double phase = 0.0;  ///< angle of the normal of plane 0 from line.direction().unitOrthogonal(), radians
+
+  /// \param k of any sign, may be a fraction: k + 0.5 lies halfway between two planes.
+  ReflectionPlane plane(double k) const;
+};
+
+/// Finds the regular polygon of a noisy cloud about a line: the density of points in rings about the line, as a
+/// function of the angle, has one strong frequency. It sums over all points and finds folds that no single plane shows.
+/// \param all the points of the cloud and those removed to make it evenly dense, normalized frame.
+/// \param line normalized frame.
+/// \return nothing if no frequency stands out: no rotation maps the cloud onto itself, or all rotations do.
+std::optional<RegularPolygon> polygonBySpectrum(const Points& all, const Line3d& line);
+
 /// Results found so far, input frame.
 struct DetectionState {
   Detection answer;
   std::optional<RegularPolygon> polygon;  ///< normalized frame; its planes are among the planes of the answer
   DetectionEvidence* evidence = nullptr;  ///< filled with the evidence of all candidates; may be null
 };
+
+/// The points that represent a large cloud, as many as the tolerance requires. They determine planes, decisions and
+/// support; every other point takes the support of the nearest of them.
+/// \param points 3 x N, finite, for which whyUnanswerable() is empty.
+/// \return indices of points; nothing if all points are needed.
+std::optional<std::vector<int>> drawSubset(const PointsRef& points, const DetectionOptions& options);
+
+/// Gives each point of a cloud the support of the point that represents it.
+/// \param representative_of for each point, the index of the point whose support it takes; -1: it supports nothing.
+void spreadSupport(Detection& detection, const std::vector<int>& representative_of);
+
+/// Thins a cloud until opposite sides are about equally dense.
+///
+/// Where noise hides the surface, planes are judged by the point density, so a cloud that is sparser on one side looks
+/// as asymmetric as a shape that ends there. The logarithm of the density is fitted by a linear function of the
+/// position. Variation of the shape itself is equal on both sides of a symmetry plane and remains.
+/// \return indices in increasing order; all if the density is even.
+std::vector<int> thinToEvenDensity(const NormalizedCloud& cloud, std::uint64_t seed);
 
 /// The strongest local maxima of the map, one per basin of refinement, and the planes perpendicular to the principal
 /// axes.

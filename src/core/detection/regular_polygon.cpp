@@ -1,4 +1,4 @@
-#include "core/detection/regular_polygon.h"
+#include "core/detection/plane_search.h"
 
 #include <algorithm>
 #include <array>
@@ -11,7 +11,6 @@
 #include "core/base/lists.h"
 #include "core/base/statistics.h"
 #include "core/detection/plane_decision.h"
-#include "core/detection/plane_search.h"
 #include "core/geometry/geometry_rules.h"
 #include "core/geometry/point_samples.h"
 #include "pcl_symmetry/core/closest_point_search.h"

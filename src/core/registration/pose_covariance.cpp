@@ -1,4 +1,4 @@
-#include "core/registration/pose_covariance.h"
+#include "core/registration/pose_evidence.h"
 
 #include <algorithm>
 #include <array>

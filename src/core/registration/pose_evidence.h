@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "core/base/small_motion.h"
 #include "core/registration/posed_surface.h"
 #include "pcl_symmetry/core/pose_search.h"
 
@@ -51,5 +52,15 @@ double poseConfidence(const PoseEvidence& evidence);
 
 /// \return one sentence with the evidence against a pose.
 std::string doubtOf(const PoseEvidence& evidence);
+
+/// The uncertainty of a pose from least squares of point-to-plane distances: the inverse of their Hessian, corrected
+/// for noise of the normals, times their mean square. An unconstrained direction has the variance of an unknown pose: a
+/// uniform rotation, or a translation by a radius.
+/// \param scan,model each about its own center, in units of the model's radius.
+/// \param num_points number of points of the scan that the pose was fitted to, >= 1.
+/// \param reach greatest distance of points that corresponded, > 0, radii.
+/// \return covariance of the motion of the model's frame that corrects the pose; radians and radii.
+Matrix6d poseCovariance(const PosedSurface& scan, const PosedSurface& model, const Eigen::Isometry3d& T_model_scan,
+                        int num_points, double reach);
 
 }  // namespace pcl_symmetry

@@ -11,7 +11,7 @@
 #include <utility>
 #include <vector>
 
-#include "core/detection/cloud_subset.h"
+#include "core/detection/plane_search.h"
 #include "core/geometry/closest_points.h"
 #include "core/geometry/point_samples.h"
 #include "core/geometry/triangles.h"

@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "core/detection/plane_decision.h"
-#include "core/detection/regular_polygon.h"
+#include "core/detection/plane_search.h"
 #include "pcl_symmetry/core/detect_planes.h"
 #include "shapes/counting_search.h"
 #include "shapes/searched_shape.h"
