@@ -15,8 +15,8 @@ namespace pcl_symmetry {
 namespace {
 
 struct ViewRules {
-  double view_angle = 25.0 * kPi / 180.0;  // angle of view of the camera, radians
-  double near_best = 0.98;                 // share of the best score, for views that show as much
+  double view_angle = 25.0 * kDegree;  // angle of view of the camera, radians
+  double near_best = 0.98;             // share of the best score, for views that show as much
   // Distance of the camera for hidden points, radii: from farther away, the same points are hidden.
   double camera_distance = 5.0;
   double hidden_margin = 0.05;  // depth behind others at which a point is hidden, radii

@@ -73,8 +73,8 @@ struct SceneRules {
   /// Least share of the points with images in known space that a symmetry maps onto the surface.
   double explained = 0.9;
   double informative = 0.1;  ///< least share of the points whose images lie in known space; less is not decisive
-  double same_angle = 5.0 * kPi / 180.0;  ///< angle within which planes and axes are one, radians
-  double same_offset = 0.03;              ///< offset within which planes and axes are one
+  double same_angle = 5.0 * kDegree;  ///< angle within which planes and axes are one, radians
+  double same_offset = 0.03;          ///< offset within which planes and axes are one
   /// Height above the foot of the larger piece from which a piece hangs: noise has half of it, handles have twice.
   double hangs = 0.1;
   double trimmed = 0.02;  ///< share of the points trimmed at a foot or a top: flying pixels
@@ -83,7 +83,7 @@ struct SceneRules {
   double level = 0.3;    ///< least horizontal part of a normal that shows where an upright axis is
   int axis_rounds = 5;   ///< rounds of the fit of an axis to normals
   double misses = 0.05;  ///< distance by which a normal may miss the axis; normals that miss it by more weigh less
-  double points_to = 15.0 * kPi / 180.0;  ///< angle within which a normal points to the axis, radians
+  double points_to = 15.0 * kDegree;  ///< angle within which a normal points to the axis, radians
   double round_share = 0.7;  ///< least share of such normals on a round piece; faces of a square box have a third
   double walls = 0.1;        ///< least share of the points of a round piece with a level normal
   double beside = 0.5;       ///< least share of the lower height that pieces side by side have in common

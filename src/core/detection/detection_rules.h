@@ -57,7 +57,7 @@ struct DetectionRules {
     double climbing_confidence = 0.01;                          ///< least confidence of planes that climb
     double noisy_depth = 0.1;  ///< roughness, spacings, from which planes of scans climb: noise looks hidden
     double bandwidth = 1.5;    ///< bandwidth of a density, spacings; less shows single points, more blurs the shape
-    int max_iterations = 6;    ///< Newton steps in a density
+    int max_iterations = 6;    ///< Newton steps in a density, and iterations that refine a plane of a family
     int sample_factor = 10;    ///< samples of a density per sample of a surface
   } fit;
 
@@ -73,8 +73,6 @@ struct DetectionRules {
     double min_own_share = 0.1;  ///< least share of the points on the surface of the others by which shares are divided
     int screening_samples = 2000;                ///< samples for screening and for SymmetryPlane::deviation
     std::array<double, 2> tolerances{1.0, 2.0};  ///< tolerances at which shares are measured, see PlaneEvidence
-    /// Distance beside an outline, as a share of its radius, at which the depth image is read.
-    double beside_outline = 0.1;
   } measure;
 
   /// Deciding.
@@ -89,7 +87,7 @@ struct DetectionRules {
     double as_likely = 0.05;       ///< difference of two confidences whose order other samples of the shape may reverse
     double min_informative = 0.1;  ///< share of informative samples below which confidence falls in proportion
     double max_resolution = 3.0;   ///< resolution, in greatest tolerances, above which a sensor decides nothing
-    double upright = 5.0 * kPi / 180.0;  ///< a plane within this angle of upright or level does not slant
+    double upright = 5.0 * kDegree;  ///< a plane within this angle of upright or level does not slant
     double touching = 0.05;  ///< distance beyond the nearest support, diameters, within which other supports carry, too
     double slanted_odds = 0.1;  ///< odds of a slanted plane relative to another one
     /// Greatest share of the points that a plane maps into the hidden inside of a hollow body; closed bodies have 0.01.
@@ -105,8 +103,8 @@ struct DetectionRules {
   struct {
     /// Greatest offset and angle between a line and a plane that contains it, radii and radians.
     double contained_offset = 0.03, contained_angle = 3.0 * kDegree;
-    std::size_t min_planes = 4;   ///< least number of planes of a polygon; three fit too many polygons by chance
-    std::size_t max_pairs = 6;    ///< greatest number of planes whose common lines are tried for a polygon
+    std::size_t min_planes = 4;         ///< least number of planes of a polygon; three fit too many polygons by chance
+    std::size_t max_paired_planes = 6;  ///< greatest number of planes whose common lines are tried for a polygon
     double min_pair_angle = 0.1;  ///< least angle between two such planes; with smaller ones, their line is uncertain
     double max_folded = 0.2;  ///< greatest deviation from a plane of the polygon, in angles between neighboring planes
     std::size_t max_planes = 8;  ///< greatest number of planes whose common lines are tried for an axis
@@ -119,7 +117,6 @@ struct DetectionRules {
     double min_spread = 0.02;
     int rough_sample_share = 5;  ///< number of samples per sample that screens a family
     double worst_share = 0.5;    ///< least confidence of the worst plane of a family, as a share of a symmetry's
-    int refine_iterations = 6;   ///< iterations that refine a plane of a family
   } families;
 
   /// Folds of noisy clouds, by their spectrum.
@@ -135,9 +132,9 @@ struct DetectionRules {
     double stands_out = 4.0;        ///< least ratio to the median power of the frequencies beside it
     /// Greatest gap between angles of folded points, in angles between two planes; sparser points are uninformative.
     double max_gap = 0.125;
-    double errors = 3.0;             ///< standard errors by which planes halfway between a polygon's must fit less well
-    double odds_of_polygon = 4.0;    ///< odds of planes of a polygon relative to other planes with the same evidence
-    std::size_t max_line_pairs = 4;  ///< greatest number of planes whose common lines are tried
+    double errors = 3.0;           ///< standard errors by which planes halfway between a polygon's must fit less well
+    double odds_of_polygon = 4.0;  ///< odds of planes of a polygon relative to other planes with the same evidence
+    std::size_t max_paired_planes = 4;  ///< greatest number of planes whose common lines are tried
     /// Divisors of a fold, for subsets of planes that may differ from the others.
     std::array<int, 3> divisors{2, 3, 5};
   } folds;
@@ -192,8 +189,6 @@ struct KindRules {
   // Least merit of candidates that may be symmetries; others take fewer samples and iterations.
   KindRule<double> likely_merit           {    0.83,    0.93,    0.83};
 
-  // Evidence: num_refine_samples divided by this is the number of samples that judge planes; 0 = all points.
-  KindRule<int> judged_divisor            {       0,       4,       0};
   // Families: least mean share of the visible surface that their planes map onto the surface.
   KindRule<double> family_share           {    0.92,    0.98,    0.92};
   // Share of the surface by which the planes of a family may differ, at points_of_allowance points or more.

@@ -93,7 +93,7 @@ std::vector<Candidate> PlaneFit::distinct(std::vector<Candidate> candidates, std
 }
 
 ReflectionPlane PlaneFit::refinePlane(const ReflectionPlane& plane, const std::vector<int>& samples) const {
-  const int max_iterations = kDetection.families.refine_iterations;
+  const int max_iterations = kDetection.fit.max_iterations;
   if (density_) return density_->refine(pointsAt(cloud_.points, samples), plane, max_iterations).plane;
   IspOptions isp;
   isp.sigma = isp.final_sigma = cloud_.final_sigma;

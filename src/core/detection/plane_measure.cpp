@@ -62,7 +62,7 @@ double sampledTolerance(const NormalizedCloud& cloud, double tolerance) {
 CloudLimits::CloudLimits(const PointsRef& points, const PrincipalAxes& axes, CloudKind kind, const Visibility* seen,
                          const Lengths& lengths)
     : is_resolved_(isResolved(lengths)),
-      is_cut_(seen && cutShare(points, *seen, kDetection.measure.beside_outline) > kDetection.decide.max_cut),
+      is_cut_(seen && cutShare(points, *seen) > kDetection.decide.max_cut),
       still_((kind == CloudKind::Volume ? kDetection.measure.noisy_thinness : 1.0) * lengths.tolerance),
       thinness_(thinnessOf(points, axes, still_, lineTolerance(kind, lengths))),
       is_one_side_(seen && seen->supports().empty() && thinness_ == Thinness::Sheet &&
@@ -106,10 +106,10 @@ PlaneMeasure::PlaneMeasure(const NormalizedCloud& cloud, const PlaneFit& fit, co
                          : 1.0) {}
 
 std::vector<int> PlaneMeasure::samples() const {
-  const Eigen::Index num_points = cloud_.points.cols();
-  const int divisor = kKindRules.judged_divisor[cloud_.kind()];
-  return divisor > 0 ? drawSamples(num_points, options_.expert.num_refine_samples / divisor, options_.seed)
-                     : allIndices(num_points);
+  // Those of scans are the samples of the last stage, whose matches measureCandidate() uses again.
+  return cloud_.isScan() ? drawSamples(cloud_.points.cols(),
+                                       options_.expert.num_refine_samples / kKindRules.full_divisor.scan, options_.seed)
+                         : allIndices(cloud_.points.cols());
 }
 
 MeasuredPlane PlaneMeasure::measureCandidate(const Candidate& candidate, const std::vector<int>& samples) const {

@@ -144,7 +144,7 @@ std::optional<RegularPolygon> bestPolygon(const std::vector<SymmetryPlane>& plan
                                           const Points& all) {
   const std::vector<ReflectionPlane> likely =
       kSameMaximum.distinct(planesOf(planes, {PlaneKind::Symmetry, PlaneKind::Possible}, cloud));
-  for (const std::vector<ReflectionPlane>& through : bundlesOf(likely, kDetection.folds.max_line_pairs))
+  for (const std::vector<ReflectionPlane>& through : bundlesOf(likely, kDetection.folds.max_paired_planes))
     if (const auto polygon = polygonBySpectrum(all, commonLine(through))) return polygon;
   return std::nullopt;
 }
@@ -209,7 +209,7 @@ void addClosePlanes(const PlaneSearch& search, DetectionState& state) {
   const NormalizedCloud& cloud = search.cloud;
   std::vector<ReflectionPlane> through;
   for (std::vector<ReflectionPlane>& containing :
-       bundlesOf(planesOf(state.answer.planes, {PlaneKind::Symmetry}, cloud), kDetection.families.max_pairs))
+       bundlesOf(planesOf(state.answer.planes, {PlaneKind::Symmetry}, cloud), kDetection.families.max_paired_planes))
     if (containing.size() > through.size()) through = std::move(containing);
   if (through.size() < kDetection.families.min_planes) return;
   const Line3d line = commonLine(through);

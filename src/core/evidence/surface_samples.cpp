@@ -69,13 +69,13 @@ SurfaceDiscs::SurfaceDiscs(const Points& samples, const LocalGeometry& geometry,
   float greatest = 0.0f;
   for (Eigen::Index i = 0; i < samples.cols(); ++i) {
     discs_.push_back({samples.col(i), geometry.normals.col(i),
-                      disc_radius * std::min(geometry.spacing[i], kGeometry.max_disc_spacing * spacing)});
+                      disc_radius * std::min(geometry.spacing[i], kEvidence.max_disc_spacing * spacing)});
     greatest = std::max(greatest, discs_.back().radius);
   }
   const float margin = reach + greatest;
   const Eigen::Vector3f low = samples.rowwise().minCoeff(), high = samples.rowwise().maxCoeff();
   const float extent = (high - low).maxCoeff() + 2.0f * margin;
-  cell_size_ = std::max(kGeometry.disc_cell * spacing, extent / kGeometry.max_disc_cells);
+  cell_size_ = std::max(kEvidence.disc_cell * spacing, extent / kEvidence.max_disc_cells);
   origin_ = low.array() - margin;
   const Eigen::Array3f sides = (high - low).array() + 2.0f * margin;
   size_ = (sides / cell_size_).cast<int>() + 1;
@@ -114,7 +114,7 @@ void SurfaceDiscs::visitCells(const SurfaceDisc& disc, const Visit& visit) const
 SurfaceDiscs::Range SurfaceDiscs::discsNear(const Eigen::Vector3f& x) const {
   const Eigen::Array3f position = (x - origin_).array() / cell_size_;
   if (!(position >= 0.0f).all()) return {nullptr, nullptr};
-  const Eigen::Array3i cell = position.min(static_cast<float>(kGeometry.max_disc_cells) + 2.0f).cast<int>();
+  const Eigen::Array3i cell = position.min(static_cast<float>(kEvidence.max_disc_cells) + 2.0f).cast<int>();
   if (!(cell < size_).all()) return {nullptr, nullptr};
   const std::size_t index = (static_cast<std::size_t>(cell.z()) * size_.y() + cell.y()) * size_.x() + cell.x();
   return {entries_.data() + first_[index], entries_.data() + first_[index + 1]};

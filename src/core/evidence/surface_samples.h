@@ -18,11 +18,13 @@ namespace pcl_symmetry {
 struct EvidenceRules {
   // Surface of samples.
   float disc_radius = 1.25f;  ///< radius of the disc that a sample represents, spacings; 1 in 135 holds no other sample
-  float max_roughness = 0.25f,
-        trust_width = 0.1f;  ///< roughness above which normals count for nothing (volumes: 0.42), and width of the
-                             ///< decline, spacings
-  float new_point_factor = 1.41421356f;  ///< deviation of a new point from a plane, relative to the nine points to
-                                         ///< which the plane was fitted
+  /// Roughness above which normals count for nothing (volumes: 0.42), and width of the decline, spacings.
+  float max_roughness = 0.25f, trust_width = 0.1f;
+  /// Deviation of a new point from a plane, relative to the nine points to which the plane was fitted.
+  float new_point_factor = 1.41421356f;
+  float disc_cell = 1.5f;         ///< edge of a cell of SurfaceDiscs, spacings
+  float max_disc_spacing = 3.0f;  ///< greatest spacing for which a point makes a disc, median spacings
+  float max_disc_cells = 96.0f;   ///< greatest number of cells along the longest edge
 
   // Support.
   float normal_reach = 0.01f;     ///< reach across the surface, radii of the points
@@ -30,20 +32,20 @@ struct EvidenceRules {
   float normal_angle = 0.5f;      ///< angle up to which normals agree, radians
   float surely = 0.99999f;        ///< share of a reach that rounding does not exceed
   float max_sq_deviation = 9.0f;  ///< squared deviation that counts as no support
-  double tilt_ridge = 1e-4;       ///< ridge for tilts of the plane, far below the stiffness of constrained ones
 
   double exact_depth = 4e-3;         ///< depth error, radii, up to which a pixel without depth means free space
   float free_without_depth = 0.15f;  ///< confidence in free space at such a pixel where errors are larger
 
   // Confidence.
-  double coarsest =
-      3.0;  ///< greatest spacing, tolerances; by default, the tolerance is raised where the spacing is wider
+  /// Greatest spacing, tolerances; by default, the tolerance is raised where the spacing is wider.
+  double coarsest = 3.0;
   /// `coarsest` for flat clouds and for scans whose spacing raised the tolerance.
   double coarsest_part = 0.5 * coarsest;
   /// Share by which spacing raises the tolerance of a scan until coarsest_part applies to it fully.
   double surely_coarser = 0.05;
   double lost_per_coarseness = 2.0;  ///< log odds lost per tolerance of spacing beyond `coarsest`
   double unknown_share = 0.5;        ///< uncertainty of the share per uninformative share
+  double tilt_ridge = 1e-4;          ///< ridge for tilts of the plane, far below the stiffness of constrained ones
 
   // Where a cloud ends.
   /// Share of an edge from which its region begins to count as missing, and from which it counts fully.

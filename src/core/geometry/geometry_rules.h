@@ -50,11 +50,6 @@ struct GeometryRules {
   double translation_ridge = 1e-6;  ///< ridge that keeps the translation along a cylinder at 0, share of the trace
   double position_ridge = 1e-9;     ///< ridge for the position along parallel normals, which they leave undetermined
 
-  // Discs
-  float disc_cell = 1.5f;         ///< edge of a cell, spacings
-  float max_disc_spacing = 3.0f;  ///< greatest spacing for which a point makes a disc, median spacings
-  float max_disc_cells = 96.0f;   ///< greatest number of cells along the longest edge
-
   // Local geometry
   /// Offset of the neighbors' mean from a point at which the point counts as at the border, in distances to the last
   /// neighbor; 0.25 by chance, 0.42 beside half a disc.

@@ -217,7 +217,7 @@ GeometryAtPositions localGeometryAt(const Points& points, const ClosestPointSear
 std::vector<char> openBorders(const Points& samples, const ClosestPointSearch& search, const Points& normals,
                               int num_threads, const FoundNeighbors* known) {
   const auto size = static_cast<std::size_t>(samples.cols());
-  const int count = static_cast<int>(std::min<Eigen::Index>(samples.cols(), kGeometry.border_neighbors + 1));
+  const int count = numToSearch(samples.cols(), kGeometry.border_neighbors);
   const int num_known = known ? std::min(count, static_cast<int>(known->indices.size() / size)) : 0;
   std::vector<char> borders(size);
   parallelPoints(size, num_threads, [&](std::size_t begin, std::size_t end) {

@@ -98,7 +98,7 @@ double meanDistance(const std::vector<NearView>& nearest) {
 
 std::string packedViewCodes(const std::vector<ViewCode>& codes) {
   std::string bytes;
-  bytes.reserve((kViewCodeSize + 2) * codes.size());
+  bytes.reserve(kBytesOfView * codes.size());
   for (std::size_t k = 0; k < kViewCodeSize; ++k)
     for (const ViewCode& code : codes) bytes.push_back(static_cast<char>(code.values[k]));
   for (const ViewCode& code : codes) {

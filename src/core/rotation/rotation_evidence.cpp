@@ -54,8 +54,7 @@ double planesOffShare(const RotationEvidence& evidence, const Line3d& line) {
   const auto cost = [&](double angle) {
     double sum = 0.0;
     for (const double rotated : {angle, angle + 0.5 * kPi}) {
-      const RotationShares shares =
-          evidence.screen(planeThrough(line, rotated).reflection(), kScanAxes.plane_slack, 1.0, 1.0);
+      const RotationShares shares = evidence.screen(planeThrough(line, rotated).reflection(), 1.0, 1.0);
       sum += shares.off - kScanAxes.landed_counts * shares.on;
     }
     return sum;
@@ -101,12 +100,11 @@ RotationEvidence::RotationEvidence(const NormalizedCloud& cloud, double toleranc
       few_samples_(drawSamples(cloud.points.cols(), kScanAxes.num_few_samples, seed)),
       facing_(normalsToward(cloud.geometry.normals, cloud.points, cloud.visibility->viewpoint().cast<float>())) {}
 
-RotationShares RotationEvidence::screen(const Eigen::Affine3d& motion, double slack, double max_off,
-                                        double max_far) const {
+RotationShares RotationEvidence::screen(const Eigen::Affine3d& motion, double max_off, double max_far) const {
   RotationShares shares;
   const double one = 1.0 / static_cast<double>(few_samples_.size());
   const auto fAt = [&](double distance) { return std::exp(-std::pow(distance / cloud_.sigma, 2)); };
-  const double near_f = fAt(slack * tolerance_), far_f = fAt(far_);
+  const double near_f = fAt(kScanAxes.screening_slack * tolerance_), far_f = fAt(far_);
   for (const int sample : few_samples_) {
     if (shares.off > max_off || shares.far > max_far) break;
     const Eigen::Vector3d x = motion * cloud_.points.col(sample).cast<double>();

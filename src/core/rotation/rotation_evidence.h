@@ -42,9 +42,8 @@ public:
   RotationEvidence(const NormalizedCloud& cloud, double tolerance, std::uint64_t seed);
 
   /// Screens a rotation by distances from the EDT at a few points.
-  /// \param slack distance of a point on the surface, tolerances.
   /// \param max_off,max_far shares above which the remaining points are skipped.
-  RotationShares screen(const Eigen::Affine3d& motion, double slack, double max_off, double max_far) const;
+  RotationShares screen(const Eigen::Affine3d& motion, double max_off, double max_far) const;
 
   /// Measures a rotation by distances from the surface.
   RotationShares measure(const Eigen::Affine3d& motion) const;

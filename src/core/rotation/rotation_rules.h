@@ -109,8 +109,8 @@ struct ScanAxisRules {
   int max_order = 12;              ///< greatest order: bodies of more folds look nearly round in a scan
   int round_rotations = 10;        ///< rotations that represent rotations by any angle, in addition to small ones
   double small_angle = 0.26, larger_angle = 0.7;  ///< angles that the fit of a round body uses
-  /// Factor on max_off and max_far, and greatest distance in tolerances, in screening.
-  double rough_factor = 3.0, rough_slack = 2.0;
+  double rough_factor = 3.0;                      ///< factor on max_off and max_far in screening
+  double screening_slack = 2.0;        ///< greatest distance of a point on the surface in screening, tolerances
   std::size_t max_planes_of_axes = 8;  ///< greatest number of planes whose common lines are tried
   double plane_share = 0.85;           ///< least share of these planes
   /// Limits within which two axes are one: no body has two nearer ones.
@@ -137,9 +137,8 @@ struct ScanAxisRules {
   double round_on = 0.6, fold_on = 0.3, twofold_on = 0.75;
   double halfway_more = 0.06;  ///< least additional share of the points that rotations halfway map into free space
   int num_plane_pairs = 24;    ///< number of pairs of perpendicular planes through a line that are screened
-  double plane_slack = 2.0;    ///< greatest distance of a point on the surface in that screening, tolerances
-  double upright_angle = 6.0 * kDegree,
-         crossing_gap = 0.06;  ///< limits for lines that cross at a right angle: angle and distance
+  /// Limits for lines that cross at a right angle: angle and distance.
+  double upright_angle = 6.0 * kDegree, crossing_gap = 0.06;
   /// Weight of the share on the surface relative to that in free space, in the choice of a pair of planes.
   double landed_counts = 0.1;
   /// Additional share of the points that rotations halfway map into free space, above which more makes no difference.

@@ -163,7 +163,7 @@ struct ScreenedShares {
   const Line3d& line;
 
   RotationShares operator()(double angle) const {
-    return evidence.screen(motionAbout(line, angle), kScanAxes.rough_slack, kScreeningLimits.off, kScreeningLimits.far);
+    return evidence.screen(motionAbout(line, angle), kScreeningLimits.off, kScreeningLimits.far);
   }
 };
 

@@ -100,7 +100,7 @@ void bridgeGaps(RangeImage& image, double longest) {
 
 // Cosine of the greatest angle of a ray to the middle of an image, 75 degrees: at more, the image would be stretched by
 // 1 / cos^2.
-const double kLeastCosine = std::cos(75.0 * kPi / 180.0);
+const double kLeastCosine = std::cos(75.0 * kDegree);
 
 /// A grid whose filled pixels have \p points_per_pixel points on average.
 PixelGrid fitPixels(const std::vector<Eigen::Array2d>& positions, std::size_t max_pixels, double points_per_pixel) {
@@ -440,7 +440,7 @@ std::string whyNotSeenFrom(const PointsRef& points, const Eigen::Vector3d& viewp
          " % of the points lie behind others as seen from the viewpoint given; a cloud from all sides has no viewpoint";
 }
 
-double cutShare(const PointsRef& points, const Visibility& seen, double margin) {
+double cutShare(const PointsRef& points, const Visibility& seen) {
   const Eigen::Vector3d viewpoint = seen.viewpoint();
   Eigen::Vector3d forward = Eigen::Vector3d::Zero();
   for (Eigen::Index i = 0; i < points.cols(); ++i) forward += (points.col(i).cast<double>() - viewpoint).normalized();
@@ -457,7 +457,7 @@ double cutShare(const PointsRef& points, const Visibility& seen, double margin) 
   double count = 0.0, num_cut = 0.0;
   for (const Eigen::Vector3d& aside : outermost) {
     if (aside.isZero()) continue;
-    const Eigen::Vector3d beside = viewpoint + forward + (1.0 + margin) * aside;
+    const Eigen::Vector3d beside = viewpoint + forward + (1.0 + kScan.beside_outline) * aside;
     count += 1.0;
     num_cut += seen.isInPicture(beside) ? 0.0 : 1.0;
   }

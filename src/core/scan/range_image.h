@@ -121,11 +121,9 @@ std::optional<Visibility> spaceSeenFrom(const PointsRef& points, const Eigen::Ve
 double layeredShare(const PointsRef& points, const Eigen::Vector3d& viewpoint);
 
 /// How much of the outline of a cloud the image border cuts off.
-/// \param margin distance beyond the outermost points at which the image is read, as a share of their distance from the
-/// middle.
 /// \return share of the directions of the outline, seen from the viewpoint, in which the sensor's image ends beside the
 /// cloud; 0 for an image made from points.
-double cutShare(const PointsRef& points, const Visibility& seen, double margin);
+double cutShare(const PointsRef& points, const Visibility& seen);
 
 /// Whether the space at a point and beside it is free.
 /// \param margin least depth of the point in front of the visible surface, units of the points.

@@ -38,6 +38,7 @@ struct ScanRules {
   /// Least ratio of the points of the last row to the mean of the two rows before it; it is smaller at the ends of most
   /// objects.
   double min_row_ratio = 0.8;
+  double beside_outline = 0.1;  ///< distance beside an outline at which the image is read, radii of the outline
 
   // Depth images made from points
   /// Mean number of points per pixel: on a surface that faces the viewer, one pixel in seven is then empty and can be

@@ -192,8 +192,6 @@ std::vector<Line3d> startsOf(const AxisMap& map, std::size_t count, double min_v
   return starts;
 }
 
-constexpr std::size_t kPointsAtATime = 1024;  // their values stay in the first-level cache
-
 /// Values of one direction, bilinear between their bins and 0 beyond.
 class DirectionValues {
 public:
@@ -342,7 +340,7 @@ std::vector<float> axialPointSymmetry(const AxisMap& map, const PointsRef& point
   std::vector<float> greatest(points.cols(), 0.0f);
   if (map.empty()) return greatest;
   const Points centered = normalizePoints(points, map.grid.center(), 1.0);
-  parallelRanges(greatest.size(), kPointsAtATime, num_threads, [&](std::size_t begin, std::size_t end) {
+  parallelPoints(greatest.size(), num_threads, [&](std::size_t begin, std::size_t end) {
     for (std::size_t direction = 0; direction < map.grid.numDirections(); ++direction) {
       const DirectionValues values(map, direction);
       const Eigen::Matrix3f frame = map.grid.frame(direction).cast<float>();

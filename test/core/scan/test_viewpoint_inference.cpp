@@ -130,8 +130,8 @@ TEST(CutShare, IsOfTheOutlineBesideWhichThePictureEnds) {
       depths[100 * v + u] = 1.0f;
       points.col(i) << (static_cast<float>(u) - 49.5f) / 100.0f, (static_cast<float>(v) - 49.5f) / 100.0f, 1.0f;
     }
-    if (is_of_points) return cutShare(points, *Visibility::ofScene(points, Eigen::Vector3d::Zero()), 0.1);
-    return cutShare(points, Visibility(projection, 100, 100, depths), 0.1);
+    if (is_of_points) return cutShare(points, *Visibility::ofScene(points, Eigen::Vector3d::Zero()));
+    return cutShare(points, Visibility(projection, 100, 100, depths));
   };
   EXPECT_EQ(cutAt(30), 0.0);
   EXPECT_NEAR(cutAt(0), 0.5, 0.1);
